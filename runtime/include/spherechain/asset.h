@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "spherechain/status.h"
+#include "spherechain/types.h"
+
+namespace spherechain {
+
+inline constexpr std::size_t kAssetAlignment = 8;       // bytes; malloc, new and mmap all give at least this
+inline constexpr std::uint32_t kFormatVersion = 1;      // the newest format this runtime reads
+inline constexpr std::uint32_t kMaxSphereCount = 65535;
+
+enum class Side : std::uint8_t { kNone = 0, kLeft = 1, kRight = 2 };
+enum class RefitRule : std::uint8_t { kPaper = 0, kCalibrated = 1 };
+
+// One triangle that carries a sphere: vertex indices in the source file's order, and its share of the centre.
+struct Pivot {
+  std::uint32_t a, b, c;
+  float weight;
+};
+
+// A sphere at rest. Lengths in source units.
+struct RestSphere {
+  Vec3 center;
+  float radius;         // fit radius
+  float detect_radius;  // >= 0
+  float pivot_spread;   // mean distance of the pivots' centroids from the refitted centre; > 0
+  std::uint32_t first_pivot;
+  std::uint32_t first_triangle;
+  std::uint32_t triangle_count;
+  std::uint16_t pivot_count;  // >= 1
+  std::uint8_t region;
+  Side side;
+  std::int16_t level;  // torso: disk position from the bottom; limbs: -1
+  std::uint16_t reserved;
+};
+
+// Spheres a < b that overlap at rest without being neighbours: reported only when closer than reach * (ra + rb).
+struct NearPair {
+  std::uint32_t a, b;
+  float reach;  // [0, 1)
+};
+
+struct ChainView {
+  const char* name;
+  Span<const std::uint8_t> regions;
+  Span<const std::uint32_t> spheres;  // each sphere once
+};
+
+struct RegionView {
+  const char* name;
+  std::uint32_t triangle_count;
+};
+
+struct JointView {
+  const char* name;
+  std::int32_t parent;  // -1 for the root, else less than the joint's own index
+  Vec3 position, tail;
+};
+
+struct FitError {
+  float mean_abs_f, max_abs_f;  // the paper's F (section 3.2), source units
+};
+
+struct AssetInfo {
+  std::uint32_t format_version;
+  const char* writer;
+  const char* settings;  // canonical JSON
+  const char* settings_sha256;
+  const char* source_file;
+  const char* source_sha256;
+  std::uint32_t source_vertex_count;
+  std::uint32_t source_triangle_count;
+  std::uint64_t source_rest_hash;
+  float metres_per_unit;
+  Vec3 origin, left, up, forward;  // the character's own axes: orthonormal, left x up = forward
+  float height;                    // source units
+  FitError phi1, phi1_adjusted, phi2;
+  RefitRule refit;
+  std::uint32_t chain_entries_table1;  // 3x + 2t + 3|T| + |D|
+};
+
+// A verified view of an asset's bytes. It copies nothing: the bytes must outlive it, unchanged. Copying an Asset copies
+// the view. All members are const; any number of threads may read one Asset at once.
+//
+// What is promised for hostile bytes: open() reads only inside [data, data + size), returns a Status other than kOk, or
+// leaves an Asset every accessor and every job of the runtime can use without reading or writing out of bounds, without
+// a division by zero, an endless loop or an allocation. It promises nothing about the sense of the figures in it.
+class Asset {
+ public:
+  // Verifies `size` bytes at `data` and makes this a view of them. On failure the Asset is closed (is_open() is false)
+  // and, where `message` is not null, a sentence that names what is wrong is written there, cut to `message_size` bytes
+  // with the final zero. Costs about one pass over the bytes; allocates nothing.
+  Status open(const void* data, std::size_t size, char* message = nullptr, std::size_t message_size = 0) noexcept;
+
+  bool is_open() const noexcept { return root_ != nullptr; }
+
+  // The accessors below need an open Asset.
+  AssetInfo info() const noexcept;
+  Span<const RestSphere> spheres() const noexcept { return spheres_; }
+  Span<const Pivot> pivots() const noexcept { return pivots_; }
+  // Source triangle numbers, grouped by sphere: see RestSphere::first_triangle.
+  Span<const std::uint32_t> triangles() const noexcept { return triangles_; }
+  // Triangular bit table, bit b(b-1)/2 + a for a < b: 1 where the pair is never reported.
+  Span<const std::uint64_t> ignored() const noexcept { return ignored_; }
+  // Sorted by (a, b).
+  Span<const NearPair> near_pairs(RadiusKind kind) const noexcept {
+    return kind == RadiusKind::kFit ? near_fit_ : near_detect_;
+  }
+  std::size_t region_count() const noexcept;
+  RegionView region(std::size_t i) const noexcept;
+  std::size_t chain_count() const noexcept;
+  ChainView chain(std::size_t i) const noexcept;
+  // Joints of the automatic rig; 0 where the source brings its own.
+  std::size_t joint_count() const noexcept;
+  JointView joint(std::size_t i) const noexcept;
+
+ private:
+  const void* root_ = nullptr;
+  Span<const RestSphere> spheres_;
+  Span<const Pivot> pivots_;
+  Span<const std::uint32_t> triangles_;
+  Span<const std::uint64_t> ignored_;
+  Span<const NearPair> near_fit_, near_detect_;
+};
+
+// A 64-bit FNV-1a over the bit patterns of x, y, z of each position, negative zero taken as zero: what
+// AssetInfo::source_rest_hash holds for the rest pose. `stride` in bytes between positions; a multiple of 4, at least 12.
+std::uint64_t hash_positions(const float* positions, std::size_t count, std::size_t stride = 12) noexcept;
+
+// kOk where `positions` (source order, rest pose) is the buffer the asset was baked from; kTooFewVertices or kWrongSource.
+Status check_source(const Asset& asset, const float* positions, std::size_t count, std::size_t stride = 12) noexcept;
+
+}  // namespace spherechain

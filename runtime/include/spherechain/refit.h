@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+
+#include "spherechain/asset.h"
+#include "spherechain/status.h"
+#include "spherechain/types.h"
+
+namespace spherechain {
+
+// Moves the spheres with the deformed skin: new centre and radius from the pivots' current positions (the paper's
+// section 5.1). With p_k the centroid of pivot k's corners and w_k its weight:
+//   centre = sum_k w_k p_k
+//   radius = mean_k |p_k - centre|                             refit rule kPaper
+//   radius = rest radius * mean_k |p_k - centre| / pivot_spread   refit rule kCalibrated: exact at rest
+// kDetect scales that radius by the sphere's rest ratio detect_radius / radius.
+//
+// Fill in the fields and call run(). Allocates nothing, takes no lock; jobs on other buffers may run at the same time.
+struct RefitJob {
+  const Asset* asset = nullptr;        // open
+  const float* positions = nullptr;    // x, y, z of each source vertex, source order, any space with the asset's scale
+  std::size_t vertex_count = 0;        // at least info().source_vertex_count
+  std::size_t stride = 12;             // bytes from one position to the next; a multiple of 4, at least 12
+  RadiusKind radius = RadiusKind::kDetect;
+  Span<Sphere> spheres;                // out: at least asset->spheres().size; further entries are left alone
+
+  // kOk, kNullArgument, kNotOpen, kTooFewVertices, kTooFewSpheres, kBadStride or kBadArgument; nothing is written unless
+  // kOk. Positions that are not finite give spheres that are not finite, and those touch nothing.
+  Status run() const noexcept;
+};
+
+}  // namespace spherechain

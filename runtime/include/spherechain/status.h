@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+namespace spherechain {
+
+// What every operation of the runtime returns. Values are never reassigned; new ones are appended.
+enum class Status : int {
+  kOk = 0,
+  kNullArgument = 1,        // a required pointer is null
+  kMisaligned = 2,          // the asset's bytes do not start at a multiple of kAssetAlignment
+  kTruncated = 3,           // fewer bytes than any asset has
+  kWrongIdentifier = 4,     // not a .sphc file
+  kUnsupportedVersion = 5,  // written by a newer (or never released) format
+  kCorrupt = 6,             // the FlatBuffers structure is broken, or a value is out of its range
+  kNotOpen = 7,             // the Asset was never opened
+  kTooFewVertices = 8,      // the vertex buffer is shorter than the asset's source
+  kTooFewSpheres = 9,       // a sphere buffer holds fewer spheres than the asset has
+  kContextTooSmall = 10,    // the caller's scratch memory is smaller than the asset needs
+  kOverflow = 11,           // an output buffer was too small; the job says how many entries were needed
+  kBadStride = 12,          // a vertex stride below 12 bytes or no multiple of 4
+  kWrongSource = 13,        // the positions are not the rest pose the asset was baked from
+  kBadArgument = 14,        // an enum value that does not exist
+};
+
+// A short English sentence without a final stop. Never null, also for values that do not exist.
+const char* to_string(Status status) noexcept;
+
+}  // namespace spherechain
