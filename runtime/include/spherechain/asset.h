@@ -9,8 +9,8 @@
 
 namespace spherechain {
 
-inline constexpr std::size_t kAssetAlignment = 8;       // bytes; malloc, new and mmap all give at least this
-inline constexpr std::uint32_t kFormatVersion = 1;      // the newest format this runtime reads
+inline constexpr std::size_t kAssetAlignment = 8;   // bytes; malloc, new and mmap all give at least this
+inline constexpr std::uint32_t kFormatVersion = 1;  // the newest format this runtime reads
 inline constexpr std::uint32_t kMaxSphereCount = 65535;
 
 enum class Side : std::uint8_t { kNone = 0, kLeft = 1, kRight = 2 };
@@ -25,7 +25,7 @@ struct Pivot {
 // A sphere at rest. Lengths in source units.
 struct RestSphere {
   Vec3 center;
-  float radius;         // fit radius
+  float radius;         // fit radius; > 0
   float detect_radius;  // >= 0
   float pivot_spread;   // mean distance of the pivots' centroids from the refitted centre; > 0
   std::uint32_t first_pivot;
@@ -93,7 +93,9 @@ class Asset {
  public:
   // Verifies `size` bytes at `data` and makes this a view of them. On failure the Asset is closed (is_open() is false)
   // and, where `message` is not null, a sentence that names what is wrong is written there, cut to `message_size` bytes
-  // with the final zero. Costs about one pass over the bytes; allocates nothing.
+  // with the final zero; 160 are enough. On success the message is empty. Costs about one pass over the bytes, also for
+  // hostile ones; allocates nothing, and needs some 10 KiB of stack.
+  // kOk, kNullArgument, kMisaligned, kTruncated, kWrongIdentifier, kUnsupportedVersion or kCorrupt.
   Status open(const void* data, std::size_t size, char* message = nullptr, std::size_t message_size = 0) noexcept;
 
   bool is_open() const noexcept { return root_ != nullptr; }
@@ -106,6 +108,7 @@ class Asset {
   Span<const std::uint32_t> triangles() const noexcept { return triangles_; }
   // Triangular bit table, bit b(b-1)/2 + a for a < b: 1 where the pair is never reported.
   Span<const std::uint64_t> ignored() const noexcept { return ignored_; }
+  std::size_t ignored_count() const noexcept { return ignored_count_; }
   // Sorted by (a, b).
   Span<const NearPair> near_pairs(RadiusKind kind) const noexcept {
     return kind == RadiusKind::kFit ? near_fit_ : near_detect_;
@@ -124,14 +127,17 @@ class Asset {
   Span<const Pivot> pivots_;
   Span<const std::uint32_t> triangles_;
   Span<const std::uint64_t> ignored_;
+  std::size_t ignored_count_ = 0;
   Span<const NearPair> near_fit_, near_detect_;
 };
 
-// A 64-bit FNV-1a over the bit patterns of x, y, z of each position, negative zero taken as zero: what
-// AssetInfo::source_rest_hash holds for the rest pose. `stride` in bytes between positions; a multiple of 4, at least 12.
+// A 64-bit FNV-1a over the bit patterns (low byte first) of x, y, z of each position, negative zero taken as zero: what
+// AssetInfo::source_rest_hash holds for the rest pose. `stride` in bytes between positions; a multiple of 4, at
+// least 12.
 std::uint64_t hash_positions(const float* positions, std::size_t count, std::size_t stride = 12) noexcept;
 
-// kOk where `positions` (source order, rest pose) is the buffer the asset was baked from; kTooFewVertices or kWrongSource.
+// kOk where `positions` (source order, rest pose) is the buffer the asset was baked from; positions past the source's
+// vertex count are not looked at. Else kWrongSource, or kNullArgument, kNotOpen, kBadStride, kTooFewVertices.
 Status check_source(const Asset& asset, const float* positions, std::size_t count, std::size_t stride = 12) noexcept;
 
 }  // namespace spherechain

@@ -18,16 +18,21 @@ struct DetectContext {
   static std::size_t words_needed(const Asset& asset) noexcept;
 };
 
-// One overlap found by M1 as the paper counts it: a pair shows up once for every chain that holds both spheres.
+// One overlap found by M1 as the paper counts it: a pair shows up once for every chain that holds both spheres. Within
+// a chain the first spheres' pairs come first: positions (0, 1), (0, 2) ... (1, 2) ..., whichever index is the smaller.
 struct ChainPair {
   std::uint32_t chain;
   Pair pair;
 };
 
-// Which spheres touch: the overlap test of the paper's section 5.2, (|ca - cb|)^2 < (ra + rb)^2, ignored pairs left out.
-// Pairs that overlap at rest without being neighbours are reported where |ca - cb| < reach * (ra + rb).
-// The arithmetic is fixed: ((dx*dx + dy*dy) + dz*dz) < s*s, s = (ra + rb) or reach * (ra + rb), single precision, no
-// contraction; every backend reports the same pairs, bit for bit.
+// Which spheres touch: the overlap test of the paper's section 5.2, (|ca - cb|)^2 < (ra + rb)^2, ignored pairs left
+// out. Pairs that overlap at rest without being neighbours (near pairs) are reported where |ca - cb| < reach * (ra +
+// rb).
+//
+// The arithmetic is fixed, in single precision without contraction, so that every backend reports the same pairs, bit
+// for bit. With d2 = (dx*dx + dy*dy) + dz*dz, s = ra + rb:
+//   every pair   d2 < s*s  and  s*s <= FLT_MAX: what is not finite touches nothing
+//   a near pair  that, and  d2 < t*t  with  t = reach * s
 //
 // Fill in the fields and call run(). Allocates nothing, takes no lock; jobs with other outputs and contexts may run at
 // the same time.
@@ -38,15 +43,16 @@ struct DetectJob {
   Method method = Method::kM2;
   DetectContext* context = nullptr;  // M1: required
   Span<Pair> pairs;                  // out: sorted by (a, b), each once; may be empty to count only
-  Span<ChainPair> chain_pairs;       // out, M1: the raw list, chain by chain, sorted within a chain; may be empty
+  Span<ChainPair> chain_pairs;       // out, M1: the raw list, chain by chain, in chain order within one; may be empty
 
   // Out. Counts are what there is, also where a buffer was too small for it.
   std::size_t pair_count = 0;        // unique pairs
   std::size_t chain_pair_count = 0;  // M1: overlaps with their repeats; M2: equal to pair_count
   std::size_t test_count = 0;        // distance tests: pairs not ignored; M1: with repeats
 
-  // kOk; kOverflow where `pairs` or `chain_pairs` was not empty and too small (the first entries are written, the counts
-  // say what is needed); kNullArgument, kNotOpen, kTooFewSpheres, kContextTooSmall, kBadArgument: nothing is written.
+  // kOk; kOverflow where `pairs` or `chain_pairs` was not empty and too small (the first entries are written, the
+  // counts say what is needed); kNullArgument, kNotOpen, kTooFewSpheres, kContextTooSmall, kBadArgument: nothing is
+  // written, the counts keep their values.
   Status run() noexcept;
 };
 

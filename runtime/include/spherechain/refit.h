@@ -16,17 +16,22 @@ namespace spherechain {
 //   radius = rest radius * mean_k |p_k - centre| / pivot_spread   refit rule kCalibrated: exact at rest
 // kDetect scales that radius by the sphere's rest ratio detect_radius / radius.
 //
+// The arithmetic is fixed, in single precision without contraction, so that every backend gives the same spheres, bit
+// for bit: p_k = ((a + b) + c) * (1.0f / 3); the sums over k start at 0 and run in pivot order; |d| = sqrt((dx*dx +
+// dy*dy) + dz*dz); mean = sum / float(K); radius = mean, or mean * (detect_radius / radius), under kPaper, and radius
+// or detect_radius, times (mean / pivot_spread), under kCalibrated.
+//
 // Fill in the fields and call run(). Allocates nothing, takes no lock; jobs on other buffers may run at the same time.
 struct RefitJob {
-  const Asset* asset = nullptr;        // open
-  const float* positions = nullptr;    // x, y, z of each source vertex, source order, any space with the asset's scale
-  std::size_t vertex_count = 0;        // at least info().source_vertex_count
-  std::size_t stride = 12;             // bytes from one position to the next; a multiple of 4, at least 12
+  const Asset* asset = nullptr;      // open
+  const float* positions = nullptr;  // x, y, z of each source vertex, source order, any space with the asset's scale
+  std::size_t vertex_count = 0;      // at least info().source_vertex_count
+  std::size_t stride = 12;           // bytes from one position to the next; a multiple of 4, at least 12
   RadiusKind radius = RadiusKind::kDetect;
-  Span<Sphere> spheres;                // out: at least asset->spheres().size; further entries are left alone
+  Span<Sphere> spheres;  // out: at least asset->spheres().size; further entries are left alone
 
-  // kOk, kNullArgument, kNotOpen, kTooFewVertices, kTooFewSpheres, kBadStride or kBadArgument; nothing is written unless
-  // kOk. Positions that are not finite give spheres that are not finite, and those touch nothing.
+  // kOk, kNullArgument, kNotOpen, kTooFewVertices, kTooFewSpheres, kBadStride or kBadArgument; nothing is written
+  // unless kOk. Positions that are not finite give spheres that are not finite, and those touch nothing.
   Status run() const noexcept;
 };
 

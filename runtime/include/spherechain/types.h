@@ -36,7 +36,8 @@ struct Pair {
   friend constexpr bool operator<(const Pair& l, const Pair& r) { return l.a != r.a ? l.a < r.a : l.b < r.b; }
 };
 
-// Which of a sphere's radii an operation uses. kFit is the paper's; kDetect is the one pairs are reported at by default.
+// Which of a sphere's radii an operation uses. kFit is the paper's; kDetect is the one pairs are reported at by
+// default.
 enum class RadiusKind : std::uint8_t { kFit = 0, kDetect = 1 };
 
 // M1: chain by chain, as the paper's section 5.2. M2: over all spheres of the mesh.

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: MIT
+#include "spherechain/asset.h"
+
+#include <cinttypes>
+#include <cstring>
+#include <type_traits>
+
+#include "asset_checks.h"
+#include "message.h"
+#include "sphere_chains_generated.h"
+
+namespace spherechain {
+namespace {
+
+// The views point straight into the bytes, so the public structs must be the schema's: little-endian, field by field.
+static_assert(FLATBUFFERS_LITTLEENDIAN, "the asset is little-endian and used in place");
+template <typename View, typename Stored>
+constexpr bool kSameLayout = std::is_standard_layout_v<View>&& std::is_trivially_copyable_v<View> &&
+                             sizeof(View) == sizeof(Stored) && alignof(View) == alignof(Stored);
+static_assert(kSameLayout<Vec3, schema::Vec3> && offsetof(Vec3, y) == 4 && offsetof(Vec3, z) == 8);
+static_assert(kSameLayout<Pivot, schema::Pivot> && offsetof(Pivot, b) == 4 && offsetof(Pivot, c) == 8 &&
+              offsetof(Pivot, weight) == 12);
+static_assert(kSameLayout<NearPair, schema::NearPair> && offsetof(NearPair, b) == 4 && offsetof(NearPair, reach) == 8);
+static_assert(kSameLayout<RestSphere, schema::Sphere> && offsetof(RestSphere, radius) == 12 &&
+              offsetof(RestSphere, detect_radius) == 16 && offsetof(RestSphere, pivot_spread) == 20 &&
+              offsetof(RestSphere, first_pivot) == 24 && offsetof(RestSphere, first_triangle) == 28 &&
+              offsetof(RestSphere, triangle_count) == 32 && offsetof(RestSphere, pivot_count) == 36 &&
+              offsetof(RestSphere, region) == 38 && offsetof(RestSphere, side) == 39 &&
+              offsetof(RestSphere, level) == 40 && offsetof(RestSphere, reserved) == 42);
+
+constexpr std::size_t kHeaderSize = 8;  // the root's offset and the identifier
+constexpr std::size_t kMinSize = kHeaderSize + sizeof(schema::Sphere) + sizeof(schema::Pivot);
+constexpr std::size_t kMaxSize = FLATBUFFERS_MAX_BUFFER_SIZE - 1;
+constexpr flatbuffers::uoffset_t kMaxDepth = 8;        // the schema's tables nest two deep
+constexpr flatbuffers::uoffset_t kMaxTables = 100000;  // regions, chains, joints: some dozens in a human
+
+const schema::Asset& root_of(const void* root) { return *static_cast<const schema::Asset*>(root); }
+
+template <typename View, typename Vector>
+Span<const View> view(const Vector& vector) {
+  return {reinterpret_cast<const View*>(vector.Data()), vector.size()};
+}
+
+Vec3 to_vec3(const schema::Vec3* v) { return {v->x(), v->y(), v->z()}; }
+FitError to_error(const schema::FitError* e) { return {e->mean_abs_f(), e->max_abs_f()}; }
+
+Status verify(const void* data, std::size_t size, Message& message) {
+  if (data == nullptr) {
+    message.wrong("data: null");
+    return Status::kNullArgument;
+  }
+  if (reinterpret_cast<std::uintptr_t>(data) % kAssetAlignment != 0) {
+    message.wrong("data: not aligned to %zu bytes", kAssetAlignment);
+    return Status::kMisaligned;
+  }
+  if (size >= kHeaderSize && !schema::AssetBufferHasIdentifier(data)) {
+    message.wrong("file identifier: not \"%s\"", schema::AssetIdentifier());
+    return Status::kWrongIdentifier;
+  }
+  if (size < kMinSize) {
+    message.wrong("size: %zu bytes, but any asset has at least %zu", size, kMinSize);
+    return Status::kTruncated;
+  }
+  if (size > kMaxSize) {
+    message.wrong("size: %zu bytes, past the limit of %zu", size, kMaxSize);
+    return Status::kCorrupt;
+  }
+  flatbuffers::Verifier verifier(static_cast<const std::uint8_t*>(data), size, kMaxDepth, kMaxTables);
+  if (!schema::VerifyAssetBuffer(verifier)) {
+    message.wrong("structure: an offset or an array of the %zu bytes leads outside them (cut short or overwritten?)",
+                  size);
+    return Status::kCorrupt;
+  }
+  const schema::Asset& root = *schema::GetAsset(data);
+  if (root.format_version() == 0 || root.format_version() > kFormatVersion) {
+    message.wrong("format_version: %" PRIu32 ", but this runtime reads 1 to %" PRIu32, root.format_version(),
+                  kFormatVersion);
+    return Status::kUnsupportedVersion;
+  }
+  return values_are_valid(root, size, message) ? Status::kOk : Status::kCorrupt;
+}
+
+}  // namespace
+
+Status Asset::open(const void* data, std::size_t size, char* message, std::size_t message_size) noexcept {
+  *this = Asset();
+  Message sentence(message, message_size);
+  const Status status = verify(data, size, sentence);
+  if (status != Status::kOk) {
+    return status;
+  }
+  const schema::Asset& root = *schema::GetAsset(data);
+  root_ = &root;
+  spheres_ = view<RestSphere>(*root.spheres());
+  pivots_ = view<Pivot>(*root.pivots());
+  triangles_ = view<std::uint32_t>(*root.triangles());
+  ignored_ = view<std::uint64_t>(*root.ignored());
+  ignored_count_ = count_ignored(root);
+  near_fit_ = view<NearPair>(*root.near_fit());
+  near_detect_ = view<NearPair>(*root.near_detect());
+  return Status::kOk;
+}
+
+AssetInfo Asset::info() const noexcept {
+  const schema::Asset& root = root_of(root_);
+  const schema::Provenance& provenance = *root.provenance();
+  const schema::Source& source = *root.source();
+  const schema::Frame& frame = *root.frame();
+  AssetInfo info{};
+  info.format_version = root.format_version();
+  info.writer = provenance.writer()->c_str();
+  info.settings = provenance.settings()->c_str();
+  info.settings_sha256 = provenance.settings_sha256()->c_str();
+  info.source_file = source.file()->c_str();
+  info.source_sha256 = source.sha256()->c_str();
+  info.source_vertex_count = source.vertex_count();
+  info.source_triangle_count = source.triangle_count();
+  info.source_rest_hash = source.rest_hash();
+  info.metres_per_unit = source.metres_per_unit();
+  info.origin = to_vec3(frame.origin());
+  info.left = to_vec3(frame.left());
+  info.up = to_vec3(frame.up());
+  info.forward = to_vec3(frame.forward());
+  info.height = frame.height();
+  info.phi1 = to_error(root.fit()->phi1());
+  info.phi1_adjusted = to_error(root.fit()->phi1_adjusted());
+  info.phi2 = to_error(root.fit()->phi2());
+  info.refit = static_cast<RefitRule>(root.refit());
+  info.chain_entries_table1 = root.chain_entries_table1();
+  return info;
+}
+
+std::size_t Asset::region_count() const noexcept { return root_of(root_).regions()->size(); }
+
+RegionView Asset::region(std::size_t i) const noexcept {
+  const schema::Region& region = *root_of(root_).regions()->Get(static_cast<flatbuffers::uoffset_t>(i));
+  return {region.name()->c_str(), region.triangle_count()};
+}
+
+std::size_t Asset::chain_count() const noexcept { return root_of(root_).chains()->size(); }
+
+ChainView Asset::chain(std::size_t i) const noexcept {
+  const schema::Chain& chain = *root_of(root_).chains()->Get(static_cast<flatbuffers::uoffset_t>(i));
+  return {chain.name()->c_str(), view<std::uint8_t>(*chain.regions()), view<std::uint32_t>(*chain.spheres())};
+}
+
+std::size_t Asset::joint_count() const noexcept {
+  const auto* joints = root_of(root_).joints();
+  return joints == nullptr ? 0 : joints->size();
+}
+
+JointView Asset::joint(std::size_t i) const noexcept {
+  const schema::Joint& joint = *root_of(root_).joints()->Get(static_cast<flatbuffers::uoffset_t>(i));
+  return {joint.name()->c_str(), joint.parent(), to_vec3(joint.position()), to_vec3(joint.tail())};
+}
+
+}  // namespace spherechain

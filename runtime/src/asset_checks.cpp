@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: MIT
+#include "asset_checks.h"
+
+#include <bitset>
+#include <cinttypes>
+#include <cmath>
+
+#include "sphere_chains_generated.h"
+#include "spherechain/asset.h"
+#include "triangle_bits.h"
+
+namespace spherechain {
+namespace {
+
+bool is_finite(float value) { return std::isfinite(value); }
+bool is_finite(const schema::Vec3& v) { return is_finite(v.x()) && is_finite(v.y()) && is_finite(v.z()); }
+bool is_finite(const schema::FitError& e) { return is_finite(e.mean_abs_f()) && is_finite(e.max_abs_f()); }
+
+double dot(const schema::Vec3& a, const schema::Vec3& b) {
+  return double{a.x()} * b.x() + double{a.y()} * b.y() + double{a.z()} * b.z();
+}
+
+schema::Vec3 cross(const schema::Vec3& a, const schema::Vec3& b) {
+  return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x()};
+}
+
+// A struct in a table is optional to FlatBuffers; to us it is not.
+template <typename Struct>
+bool is_given(const Struct* value, const char* name, Message& message) {
+  if (value == nullptr) {
+    return message.wrong("%s: missing", name);
+  }
+  return is_finite(*value) || message.wrong("%s: not finite", name);
+}
+
+bool is_positive(float value, const char* name, Message& message) {
+  return (is_finite(value) && value > 0.0F) ||
+         message.wrong("%s: %g is not a finite number above 0", name, double{value});
+}
+
+bool check_frame(const schema::Frame& frame, Message& message) {
+  if (!is_given(frame.origin(), "frame.origin", message) || !is_given(frame.left(), "frame.left", message) ||
+      !is_given(frame.up(), "frame.up", message) || !is_given(frame.forward(), "frame.forward", message) ||
+      !is_positive(frame.height(), "frame.height", message)) {
+    return false;
+  }
+  constexpr double kTolerance = 1e-3;  // of a unit length; axes made in float are within 1e-6
+  const auto is_near = [](double value, double wanted) { return std::abs(value - wanted) <= kTolerance; };
+  const schema::Vec3& left = *frame.left();
+  const schema::Vec3& up = *frame.up();
+  const schema::Vec3& forward = *frame.forward();
+  return (is_near(dot(left, left), 1.0) && is_near(dot(up, up), 1.0) && is_near(dot(left, up), 0.0) &&
+          is_near(dot(forward, forward), 1.0) && is_near(dot(cross(left, up), forward), 1.0)) ||
+         message.wrong("frame: left, up and forward are not orthonormal and right-handed");
+}
+
+bool check_header(const schema::Asset& root, Message& message) {
+  const auto refit = static_cast<unsigned>(root.refit());
+  if (refit > static_cast<unsigned>(RefitRule::kCalibrated)) {
+    return message.wrong("refit: %u is no known rule", refit);
+  }
+  return is_positive(root.source()->metres_per_unit(), "source.metres_per_unit", message) &&
+         check_frame(*root.frame(), message) && is_given(root.fit()->phi1(), "fit.phi1", message) &&
+         is_given(root.fit()->phi1_adjusted(), "fit.phi1_adjusted", message) &&
+         is_given(root.fit()->phi2(), "fit.phi2", message);
+}
+
+bool check_pivots(const schema::Asset& root, Message& message) {
+  const std::uint32_t vertex_count = root.source()->vertex_count();
+  for (std::uint32_t i = 0; i < root.pivots()->size(); ++i) {
+    const schema::Pivot& pivot = *root.pivots()->Get(i);
+    const std::uint32_t corners[] = {pivot.a(), pivot.b(), pivot.c()};
+    for (int corner = 0; corner < 3; ++corner) {
+      if (corners[corner] >= vertex_count) {
+        return message.wrong("pivots[%" PRIu32 "].%c: %" PRIu32 " is past the %" PRIu32 " vertices of the source", i,
+                             "abc"[corner], corners[corner], vertex_count);
+      }
+    }
+    if (!is_finite(pivot.weight())) {
+      return message.wrong("pivots[%" PRIu32 "].weight: not finite", i);
+    }
+  }
+  return true;
+}
+
+bool check_triangles(const schema::Asset& root, Message& message) {
+  const std::uint32_t triangle_count = root.source()->triangle_count();
+  for (std::uint32_t i = 0; i < root.triangles()->size(); ++i) {
+    if (root.triangles()->Get(i) >= triangle_count) {
+      return message.wrong("triangles[%" PRIu32 "]: %" PRIu32 " is past the %" PRIu32 " triangles of the source", i,
+                           root.triangles()->Get(i), triangle_count);
+    }
+  }
+  return true;
+}
+
+bool check_sphere_numbers(const schema::Sphere& sphere, std::uint32_t i, Message& message) {
+  const auto wrong = [&](const char* field, const char* what) {
+    return message.wrong("spheres[%" PRIu32 "].%s: %s", i, field, what);
+  };
+  if (!is_finite(sphere.center())) {
+    return wrong("center", "not finite");
+  }
+  if (!is_finite(sphere.radius()) || sphere.radius() <= 0.0F) {
+    return wrong("radius", "not a finite number above 0");
+  }
+  if (!is_finite(sphere.detect_radius()) || sphere.detect_radius() < 0.0F) {
+    return wrong("detect_radius", "not a finite number of at least 0");
+  }
+  if (!is_finite(sphere.pivot_spread()) || sphere.pivot_spread() <= 0.0F) {
+    return wrong("pivot_spread", "not a finite number above 0");
+  }
+  if (sphere.pivot_count() == 0) {
+    return wrong("pivot_count", "0, but a sphere needs a pivot");
+  }
+  if (static_cast<unsigned>(sphere.side()) > static_cast<unsigned>(Side::kRight)) {
+    return wrong("side", "no known side");
+  }
+  if (sphere.level() < -1) {
+    return wrong("level", "below -1");
+  }
+  return sphere.reserved() == 0 || wrong("reserved", "not 0");
+}
+
+bool check_spheres(const schema::Asset& root, Message& message) {
+  const std::uint32_t count = root.spheres()->size();
+  if (count == 0 || count > kMaxSphereCount) {
+    return message.wrong("spheres: %" PRIu32 " of them, not 1 to %" PRIu32, count, kMaxSphereCount);
+  }
+  const std::uint32_t pivots = root.pivots()->size();
+  const std::uint32_t triangles = root.triangles()->size();
+  const std::uint32_t regions = root.regions()->size();
+  std::uint64_t pivots_used = 0;
+  std::uint64_t triangles_used = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const schema::Sphere& sphere = *root.spheres()->Get(i);
+    if (!check_sphere_numbers(sphere, i, message)) {
+      return false;
+    }
+    if (std::uint64_t{sphere.first_pivot()} + sphere.pivot_count() > pivots) {
+      return message.wrong("spheres[%" PRIu32 "].first_pivot: %" PRIu32 " and %u on is past the %" PRIu32 " pivots", i,
+                           sphere.first_pivot(), unsigned{sphere.pivot_count()}, pivots);
+    }
+    if (std::uint64_t{sphere.first_triangle()} + sphere.triangle_count() > triangles) {
+      return message.wrong("spheres[%" PRIu32 "].first_triangle: %" PRIu32 " and %" PRIu32 " on is past the %" PRIu32
+                           " triangles",
+                           i, sphere.first_triangle(), sphere.triangle_count(), triangles);
+    }
+    if (sphere.region() >= regions) {
+      return message.wrong("spheres[%" PRIu32 "].region: %u is past the %" PRIu32 " regions", i,
+                           unsigned{sphere.region()}, regions);
+    }
+    pivots_used += sphere.pivot_count();
+    triangles_used += sphere.triangle_count();
+  }
+  // Shared pivots would let a small file ask for a very long refit.
+  if (pivots_used > pivots) {
+    return message.wrong("spheres: their pivot_count add up to %" PRIu64 ", past the %" PRIu32 " pivots", pivots_used,
+                         pivots);
+  }
+  return triangles_used <= triangles ||
+         message.wrong("spheres: their triangle_count add up to %" PRIu64 ", past the %" PRIu32 " triangles",
+                       triangles_used, triangles);
+}
+
+// Marks the spheres of one chain at a time.
+class SphereSet {
+ public:
+  bool insert(std::uint32_t sphere) {
+    std::uint64_t& word = words_[sphere / 64];
+    const std::uint64_t bit = std::uint64_t{1} << (sphere % 64);
+    const bool is_new = (word & bit) == 0;
+    word |= bit;
+    return is_new;
+  }
+  void erase(std::uint32_t sphere) { words_[sphere / 64] &= ~(std::uint64_t{1} << (sphere % 64)); }
+
+ private:
+  std::uint64_t words_[kMaxSphereCount / 64 + 1] = {};  // 8 KiB of stack
+};
+
+bool check_chain(const schema::Asset& root, std::uint32_t c, SphereSet& seen, Message& message) {
+  const schema::Chain& chain = *root.chains()->Get(c);
+  for (std::uint32_t i = 0; i < chain.regions()->size(); ++i) {
+    const unsigned region = chain.regions()->Get(i);
+    if (region >= root.regions()->size()) {
+      return message.wrong("chains[%" PRIu32 "].regions[%" PRIu32 "]: %u is past the %" PRIu32 " regions", c, i, region,
+                           root.regions()->size());
+    }
+  }
+  const auto& spheres = *chain.spheres();
+  for (std::uint32_t i = 0; i < spheres.size(); ++i) {
+    if (spheres.Get(i) >= root.spheres()->size()) {
+      return message.wrong("chains[%" PRIu32 "].spheres[%" PRIu32 "]: %" PRIu32 " is past the %" PRIu32 " spheres", c,
+                           i, spheres.Get(i), root.spheres()->size());
+    }
+    if (!seen.insert(spheres.Get(i))) {
+      return message.wrong("chains[%" PRIu32 "].spheres[%" PRIu32 "]: %" PRIu32 " is in this chain already", c, i,
+                           spheres.Get(i));
+    }
+  }
+  for (const std::uint32_t sphere : spheres) {
+    seen.erase(sphere);
+  }
+  return true;
+}
+
+bool check_chains(const schema::Asset& root, std::size_t size, Message& message) {
+  SphereSet seen;
+  std::uint64_t bytes = 0;
+  for (std::uint32_t c = 0; c < root.chains()->size(); ++c) {
+    // Chains that share one array would let a small file ask for a very long check.
+    const schema::Chain& chain = *root.chains()->Get(c);
+    bytes += chain.regions()->size() + std::uint64_t{4} * chain.spheres()->size();
+    if (bytes > size) {
+      return message.wrong("chains[%" PRIu32 "]: the chains up to here list more than the file has bytes for", c);
+    }
+    if (!check_chain(root, c, seen, message)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+bool check_ignored(const schema::Asset& root, Message& message) {
+  const auto& words = *root.ignored();
+  const std::size_t bits = pairs_of(root.spheres()->size());
+  if (words.size() != words_for(bits)) {
+    return message.wrong("ignored: %" PRIu32 " words, not the %zu that %" PRIu32 " spheres need", words.size(),
+                         words_for(bits), root.spheres()->size());
+  }
+  // The verifier only sees to the alignment of the array's length.
+  if (words.size() > 0 && reinterpret_cast<std::uintptr_t>(words.Data()) % alignof(std::uint64_t) != 0) {
+    return message.wrong("ignored: not aligned to %zu bytes", alignof(std::uint64_t));
+  }
+  if (bits % 64 != 0 && (words.Get(words.size() - 1) >> (bits % 64)) != 0) {
+    return message.wrong("ignored: a spare bit is not 0");
+  }
+  return true;
+}
+
+using NearPairs = flatbuffers::Vector<const schema::NearPair*>;
+
+bool check_near(const NearPairs& pairs, const char* name, std::uint32_t sphere_count, Message& message) {
+  for (std::uint32_t i = 0; i < pairs.size(); ++i) {
+    const schema::NearPair& pair = *pairs.Get(i);
+    const auto wrong = [&](const char* what) { return message.wrong("%s[%" PRIu32 "]: %s", name, i, what); };
+    if (pair.b() >= sphere_count) {
+      return message.wrong("%s[%" PRIu32 "].b: %" PRIu32 " is past the %" PRIu32 " spheres", name, i, pair.b(),
+                           sphere_count);
+    }
+    if (pair.a() >= pair.b()) {
+      return wrong("a is not below b");
+    }
+    if (!(pair.reach() >= 0.0F && pair.reach() < 1.0F)) {
+      return wrong("reach is not in [0, 1)");
+    }
+    if (i > 0 && !(Pair{pairs.Get(i - 1)->a(), pairs.Get(i - 1)->b()} < Pair{pair.a(), pair.b()})) {
+      return wrong("not sorted, or there twice");
+    }
+  }
+  return true;
+}
+
+bool check_joints(const schema::Asset& root, Message& message) {
+  if (root.joints() == nullptr) {
+    return true;
+  }
+  for (std::uint32_t i = 0; i < root.joints()->size(); ++i) {
+    const schema::Joint& joint = *root.joints()->Get(i);
+    if (joint.parent() < -1 || joint.parent() >= std::int64_t{i}) {
+      return message.wrong("joints[%" PRIu32 "].parent: %" PRId32 " is not -1 or a joint before it", i, joint.parent());
+    }
+    for (const auto& [point, name] : {std::pair{joint.position(), "position"}, std::pair{joint.tail(), "tail"}}) {
+      if (point == nullptr || !is_finite(*point)) {
+        return message.wrong("joints[%" PRIu32 "].%s: %s", i, name, point == nullptr ? "missing" : "not finite");
+      }
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+bool values_are_valid(const schema::Asset& root, std::size_t size, Message& message) {
+  return check_header(root, message) && check_pivots(root, message) && check_triangles(root, message) &&
+         check_spheres(root, message) && check_chains(root, size, message) && check_ignored(root, message) &&
+         check_near(*root.near_fit(), "near_fit", root.spheres()->size(), message) &&
+         check_near(*root.near_detect(), "near_detect", root.spheres()->size(), message) && check_joints(root, message);
+}
+
+std::size_t count_ignored(const schema::Asset& root) {
+  std::size_t count = 0;
+  for (const std::uint64_t word : *root.ignored()) {
+    count += std::bitset<64>(word).count();
+  }
+  return count;
+}
+
+}  // namespace spherechain

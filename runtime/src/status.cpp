@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+#include "spherechain/status.h"
+
+namespace spherechain {
+
+const char* to_string(Status status) noexcept {
+  // No default: the compiler names a status that is forgotten here.
+  switch (status) {
+    case Status::kOk:
+      return "done";
+    case Status::kNullArgument:
+      return "a required pointer is null";
+    case Status::kMisaligned:
+      return "the asset's bytes are not aligned to 8";
+    case Status::kTruncated:
+      return "fewer bytes than any asset has";
+    case Status::kWrongIdentifier:
+      return "not a sphere chain asset";
+    case Status::kUnsupportedVersion:
+      return "the asset's format version is not one this runtime reads";
+    case Status::kCorrupt:
+      return "the asset is corrupt";
+    case Status::kNotOpen:
+      return "the asset was never opened";
+    case Status::kTooFewVertices:
+      return "the vertex buffer is shorter than the asset's source";
+    case Status::kTooFewSpheres:
+      return "the sphere buffer holds fewer spheres than the asset";
+    case Status::kContextTooSmall:
+      return "the context's scratch memory is smaller than the asset needs";
+    case Status::kOverflow:
+      return "an output buffer was too small for what there is";
+    case Status::kBadStride:
+      return "the vertex stride is below 12 bytes or no multiple of 4";
+    case Status::kWrongSource:
+      return "the positions are not the rest pose the asset was baked from";
+    case Status::kBadArgument:
+      return "an argument has a value that does not exist";
+  }
+  return "unknown status";
+}
+
+}  // namespace spherechain
