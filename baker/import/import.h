@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "mesh/mesh.h"
+
+namespace spherechain::baker {
+
+// What cleaning found and did; all of it goes into the bake report.
+struct ImportReport {
+  std::string importer;               // "assimp"
+  std::size_t meshes = 0;             // mesh instances in the source's scene
+  std::size_t components = 0;         // connected pieces after welding
+  std::size_t welded_vertices = 0;    // distinct positions over all pieces
+  std::size_t degenerate_dropped = 0; // triangles without area: two corners at one position, or all on a line
+  std::size_t duplicates_dropped = 0; // triangles with the same three positions as an earlier one
+  std::size_t points_and_lines_dropped = 0;
+};
+
+// A character as read, before any decision about its shape.
+//
+// Source order: the vertices and triangles of the file's meshes, one after another, each as the importer hands it out with
+// nothing joined or reordered (assimp: scene order, polygons triangulated, node transforms applied). It is the order of
+// the vertex buffer the runtime refits from, and of every index in the asset.
+struct Character {
+  std::string file;    // name without its folder
+  std::string sha256;  // of the file's bytes, lower-case hex
+
+  std::vector<Vec3> source_positions;       // rest pose, exactly representable as float
+  std::size_t source_triangle_count = 0;
+
+  // The largest connected piece, welded and cleaned.
+  Mesh body;
+  std::vector<Triangle> body_source_corners;  // a triangle of body -> its corners' source vertices
+  std::vector<Index> body_source_triangle;    // a triangle of body -> its number in the source
+  std::vector<Index> body_of_source;          // source vertex -> vertex of body, kNoIndex where on another piece
+
+  // The other pieces (eyes, clothes), carried along: one mesh, cleaned as the body was.
+  Mesh others;
+  std::vector<Index> others_source_triangle;
+  std::vector<Index> others_of_source;
+
+  double metres_per_unit = 1;
+  Vec3 up_hint = Vec3::UnitY();  // the file's up axis; the character's own is found from its shape
+  ImportReport report;
+};
+
+// Reads a character. Throws Error(kFile) where there is no such file, it is no mesh, it has no triangles, a position is not
+// finite, an index is out of range, or all positions coincide.
+Character import_character(const std::filesystem::path& path);
+
+// An importer's raw result: what assimp and (with the issue about real characters) tinygltf have in common.
+struct SourceMesh {
+  std::vector<Vec3> positions;
+  std::vector<Triangle> triangles;
+  std::string importer;
+  std::size_t meshes = 0;
+  std::size_t points_and_lines_dropped = 0;
+  double metres_per_unit = 1;
+  Vec3 up_hint = Vec3::UnitY();
+};
+SourceMesh read_with_assimp(const std::filesystem::path& path);
+
+// Checks, welds, cleans and splits what an importer read; `name` is what errors call the file.
+Character build_character(const SourceMesh& source, const std::string& name);
+
+}  // namespace spherechain::baker

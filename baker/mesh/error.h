@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace spherechain::baker {
+
+// The command line's exit codes (README). Values are part of the contract.
+enum class ExitCode : int {
+  kDone = 0,
+  kInternal = 1,
+  kUsage = 2,
+  kFile = 3,          // a file cannot be read or written, or is not what it should be
+  kSegmentation = 4,  // the mesh cannot be segmented
+  kTargetMissed = 5,  // done, but a target in the settings was not met
+};
+
+// Anything the user can mend. what() is one line: "FILE: what is wrong (what to do)".
+class Error : public std::runtime_error {
+ public:
+  Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}
+  ExitCode code() const { return code_; }
+
+ private:
+  ExitCode code_;
+};
+
+}  // namespace spherechain::baker

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "mesh/polyline.h"
+#include "segment/curve_skeleton.h"
+
+namespace spherechain::baker {
+
+// The character's own axes, orthonormal and right-handed (left x up = forward). Found from its shape alone: they turn,
+// move and scale with the mesh, whatever the file's up axis.
+struct BodyFrame {
+  Vec3 origin;  // in the plane of symmetry, at the height of the lowest vertex
+  Vec3 left, up, forward;
+  double height;  // extent along `up`: the length every setting is a fraction of
+};
+
+// The five long branches of a biped's curve skeleton, each from the junction it leaves to its tip.
+struct BodyPlan {
+  BodyFrame frame;
+  std::string facing;  // how forward was decided, for the report
+  Polyline spine;      // hip junction to chest junction
+  Polyline head;
+  std::array<Polyline, 4> limbs;  // left arm, right arm, left leg, right leg
+};
+
+inline constexpr std::array<const char*, 5> kRegionNames{"left_arm", "right_arm", "left_leg", "right_leg", "torso"};
+
+// `facing` overrides what the feet say: any vector with a part along the character's forward axis.
+// Throws Error(kSegmentation) where there are not five long branches, and says which is missing.
+BodyPlan find_body_plan(const Mesh& mesh, const CurveSkeleton& skeleton, const std::optional<Vec3>& facing,
+                        const std::string& file);
+
+}  // namespace spherechain::baker

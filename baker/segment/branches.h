@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "mesh/polyline.h"
+#include "segment/curve_skeleton.h"
+
+namespace spherechain::baker {
+
+// The skeleton without its short branches (fingers, toes, ears, noise): a tree of long branches.
+struct BranchTree {
+  struct Branch {
+    Index from, to;  // junction (or tip) at either end
+    Polyline line;   // from `from` to `to`
+  };
+  std::vector<Branch> branches;
+  std::vector<std::vector<Index>> at;  // node -> branches that end there; a tip has one, a junction three or more, else none
+
+  bool is_tip(Index node) const { return at[node].size() == 1; }
+  std::size_t tip_count() const;
+};
+
+// Keeps the branches that are at least `shortest` of the tree's longest path.
+BranchTree find_long_branches(const CurveSkeleton& skeleton, double shortest);
+
+}  // namespace spherechain::baker

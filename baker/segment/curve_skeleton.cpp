@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "segment/curve_skeleton.h"
+
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/Surface_mesh.h>
+#include <CGAL/extract_mean_curvature_flow_skeleton.h>
+
+namespace spherechain::baker {
+
+CurveSkeleton extract_curve_skeleton(const Mesh& mesh) {
+  using Kernel = CGAL::Simple_cartesian<double>;
+  using SurfaceMesh = CGAL::Surface_mesh<Kernel::Point_3>;
+  using Skeletonization = CGAL::Mean_curvature_flow_skeletonization<SurfaceMesh>;
+
+  SurfaceMesh surface;
+  surface.reserve(static_cast<SurfaceMesh::size_type>(mesh.positions.size()),
+                  static_cast<SurfaceMesh::size_type>(mesh.triangles.size() * 3 / 2),
+                  static_cast<SurfaceMesh::size_type>(mesh.triangles.size()));
+  std::vector<SurfaceMesh::Vertex_index> vertices;
+  for (const Vec3& p : mesh.positions) vertices.push_back(surface.add_vertex({p.x(), p.y(), p.z()}));
+  for (const Triangle& t : mesh.triangles) surface.add_face(vertices[t[0]], vertices[t[1]], vertices[t[2]]);
+
+  Skeletonization skeletonization(surface);
+  // CGAL's default is this fraction of an axis-aligned diagonal, which turns with the mesh.
+  skeletonization.set_min_edge_length(0.002 * diameter(mesh));
+  Skeletonization::Skeleton graph;
+  skeletonization(graph);
+
+  CurveSkeleton skeleton;
+  skeleton.points.resize(boost::num_vertices(graph));
+  skeleton.neighbours.resize(skeleton.points.size());
+  for (const auto v : CGAL::make_range(boost::vertices(graph))) {
+    const Kernel::Point_3& p = graph[v].point;
+    skeleton.points[v] = Vec3(p.x(), p.y(), p.z());
+  }
+  for (const auto e : CGAL::make_range(boost::edges(graph))) {
+    const auto a = boost::source(e, graph), b = boost::target(e, graph);
+    skeleton.neighbours[a].push_back(static_cast<Index>(b));
+    skeleton.neighbours[b].push_back(static_cast<Index>(a));
+  }
+  return skeleton;
+}
+
+}  // namespace spherechain::baker
