@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Geometry>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "rig/rig.h"
+#include "segment/body_plan.h"
+
+namespace spherechain::baker {
+
+// Rotations of joints from the rest pose, in the character's own axes (x left, y up, z forward), about each joint's
+// position, applied before the rotation of its parent.
+struct Pose {
+  std::map<std::string, Eigen::Quaterniond> rotations;
+};
+
+// A motion that starts at rest and goes through poses.
+struct PoseMotion {
+  std::string name;
+  std::vector<Pose> poses;
+};
+
+// Reads a pose file (samples/poses/README.md). Throws Error(kFile) that names the file and the cause; joint names are checked
+// against `joints`.
+PoseMotion read_pose_motion(const std::filesystem::path& path, const std::vector<Joint>& joints);
+
+// Linear blend skinning of the rest positions. `rest` and `weights` have the same length and order.
+std::vector<Vec3> skin(const std::vector<Vec3>& rest, const std::vector<VertexWeights>& weights,
+                       const std::vector<Joint>& joints, const BodyFrame& frame, const Pose& pose);
+
+// The animation of the paper's section 5.1: quadratic Bezier interpolation of the vertices between poses. Frame 0 is the
+// rest pose, the last frame the last pose.
+class BezierMotion {
+ public:
+  BezierMotion(const std::vector<Vec3>& rest, const std::vector<VertexWeights>& weights, const std::vector<Joint>& joints,
+               const BodyFrame& frame, const PoseMotion& motion);
+  // Positions at t in [0, 1].
+  std::vector<Vec3> at(double t) const;
+
+ private:
+  std::vector<std::vector<Vec3>> keys_;  // pose 0, middle, pose 1, middle, pose 2 ...: a segment is three of them
+};
+
+}  // namespace spherechain::baker

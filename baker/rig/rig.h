@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "import/import.h"
+#include "segment/segment.h"
+
+namespace spherechain::baker {
+
+// A joint turns what hangs on it about `position`; its bone is the segment from there to `tail`.
+struct Joint {
+  std::string name;
+  int parent;  // -1 for the root; parents come before their children
+  Vec3 position, tail;
+};
+
+// Joints of a character without a skeleton, from its regions' centre lines.
+std::vector<Joint> place_joints(const Character& character, const Regions& regions);
+
+// At most four joints a vertex, the largest first; weights are positive and sum to 1, unused entries are zero.
+struct VertexWeights {
+  std::array<Index, 4> joint{};
+  std::array<double, 4> weight{};
+};
+
+// Bone-heat weights of every vertex of a closed mesh (Baran and Popovic 2007, section 4).
+std::vector<VertexWeights> bone_heat_weights(const Mesh& mesh, const std::vector<Joint>& joints);
+
+// Weights of every source vertex: the body's by bone heat, the other pieces' (eyes) rigidly with the nearest body vertex.
+std::vector<VertexWeights> rig_weights(const Character& character, const std::vector<Joint>& joints);
+
+}  // namespace spherechain::baker
