@@ -69,15 +69,19 @@ LimbCut find_limb_cut(const SurfaceQuery& surface, const Polyline& line, const B
   const double middle = 0.5 * line.length();
   double start = middle;
   while (start - step > 0 && (line.at(start - step) - line.at(0)).norm() > ball &&
-         escaped_fraction(section(surface, line, start - step, frame, rays)) <= 0.05) {
+         escaped_fraction(section(surface, line, start - step, frame, rays)) == 0) {
     start -= step;
   }
   if (start == middle) {
     throw Error(ExitCode::kSegmentation, file + ": the " + limb + " has no section of its own: it merges with the torso");
   }
+  // One step back: between two rays of the last section a gap may have opened already.
+  start += step;
+  double radius = 0;
+  for (const auto& hit : section(surface, line, start, frame, rays).hits) radius = std::max(radius, hit ? hit->distance : 0);
   const double rest = line.length() - start;
   // Wrists were seen at 0.71 and ankles at 0.76 of the way from the cut to the tip; past 0.85 fingers and toes are thinner.
-  return {start, narrowest_section(surface, line, start + 0.5 * rest, start + 0.85 * rest, frame, rays)};
+  return {start, radius, narrowest_section(surface, line, start + 0.5 * rest, start + 0.85 * rest, frame, rays)};
 }
 
 double narrowest_section(const SurfaceQuery& surface, const Polyline& line, double from, double to,

@@ -13,12 +13,13 @@ Polyline centre_in_sections(const SurfaceQuery& surface, const Polyline& branch,
 
 struct LimbCut {
   double start;      // arc length at which the limb leaves the torso
+  double radius;     // the longest ray of the section there
   double extremity;  // arc length of its narrowest section before hand or foot: wrist or ankle
 };
 
 // `line` comes from the torso. The limb starts outside the torso's maximal ball at the junction, at the innermost section
-// that is still the limb's own: at least 95 % of its rays end on a wall about as far as the others do (further in, rays
-// escape past armpit or crotch). Throws Error(kSegmentation) where there is no such section.
+// that is still the limb's own: all its rays end on a wall about as far as the others do (further in, rays escape past
+// armpit or crotch). Throws Error(kSegmentation) where there is no such section.
 LimbCut find_limb_cut(const SurfaceQuery& surface, const Polyline& line, const BodyFrame& frame, int rays,
                       const std::string& limb, const std::string& file);
 

@@ -13,11 +13,16 @@ namespace {
 
 using Neighbours = std::vector<std::array<Index, 3>>;
 
-// The triangles beyond the plane through the limb's start, in one piece with its tip.
+// The triangles beyond the plane through the limb's start, in one piece with its tip. Near the plane they must also be no
+// farther from the centre line than the section there reaches: armpit and crotch are not crossed.
 void label_limb(const Mesh& mesh, const Neighbours& neighbours, const SurfaceQuery& surface, const Limb& limb,
-                double tangent_window, std::uint8_t region, std::vector<std::uint8_t>& labels) {
+                double radius, double tangent_window, std::uint8_t region, std::vector<std::uint8_t>& labels) {
   const Vec3 point = limb.line.at(0), normal = limb.line.tangent(0, tangent_window);
-  const auto beyond = [&](Index t) { return (triangle_centroid(mesh, t) - point).dot(normal) > 0; };
+  const auto beyond = [&](Index t) {
+    const Vec3 from_start = triangle_centroid(mesh, t) - point;
+    const double along = from_start.dot(normal);
+    return along > 0 && (along > 2 * radius || (from_start - along * normal).norm() < 1.1 * radius + 0.5 * along);
+  };
   std::vector<Index> stack{surface.closest(limb.line.points().back()).triangle};
   labels[stack.back()] = region;
   while (!stack.empty()) {
@@ -121,11 +126,13 @@ Regions segment(const Character& character, const SegmentSettings& settings) {
   Regions regions;
   regions.frame = plan.frame;
   regions.facing = plan.facing;
+  std::array<double, 4> radius{};
   for (std::size_t i = 0; i < plan.limbs.size(); ++i) {
     const Polyline line = centre_in_sections(surface, plan.limbs[i], plan.frame, settings.rays);
     std::string name = kRegionNames[i];
     std::replace(name.begin(), name.end(), '_', ' ');
     const LimbCut cut = find_limb_cut(surface, line, plan.frame, settings.rays, name, character.file);
+    radius[i] = cut.radius;
     regions.limbs[i] = {i % 2 == 0, i < 2, line.part(cut.start, line.length()), cut.extremity - cut.start, line.at(0)};
   }
 
@@ -141,7 +148,7 @@ Regions segment(const Character& character, const SegmentSettings& settings) {
   const Neighbours neighbours = triangle_neighbours(mesh);
   regions.of_triangle.assign(mesh.triangles.size(), kTorso);
   for (std::uint8_t i = 0; i < regions.limbs.size(); ++i) {
-    label_limb(mesh, neighbours, surface, regions.limbs[i], 0.02 * plan.frame.height, i, regions.of_triangle);
+    label_limb(mesh, neighbours, surface, regions.limbs[i], radius[i], 0.02 * plan.frame.height, i, regions.of_triangle);
   }
   smooth_loops(neighbours, regions.of_triangle);
   join_islands(mesh, neighbours, regions.of_triangle);
