@@ -4,6 +4,7 @@
 #include <bitset>
 #include <cinttypes>
 #include <cmath>
+#include <utility>
 
 #include "sphere_chains_generated.h"
 #include "spherechain/asset.h"

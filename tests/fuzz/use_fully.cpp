@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+#include "use_fully.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+
+#include "jobs.h"
+#include "tiny_asset.h"
+
+namespace spherechain::test {
+namespace {
+
+constexpr std::uint32_t kMaxVertexCount = 1U << 20;
+
+volatile std::size_t sink;  // so that no read is optimized away
+
+void read(const char* text) { sink = sink + std::strlen(text); }
+
+template <typename T>
+void read(Span<T> span) {
+  std::size_t sum = 0;
+  for (std::size_t i = 0; i < span.size * sizeof(T); ++i) {
+    sum += reinterpret_cast<const unsigned char*>(span.data)[i];
+  }
+  sink = sink + sum;
+}
+
+void read_all(const Asset& asset) {
+  const AssetInfo info = asset.info();
+  for (const char* text : {info.writer, info.settings, info.settings_sha256, info.source_file, info.source_sha256}) {
+    read(text);
+  }
+  read(asset.spheres());
+  read(asset.pivots());
+  read(asset.triangles());
+  read(asset.ignored());
+  read(asset.near_pairs(RadiusKind::kFit));
+  read(asset.near_pairs(RadiusKind::kDetect));
+  for (std::size_t i = 0; i < asset.region_count(); ++i) {
+    read(asset.region(i).name);
+  }
+  for (std::size_t i = 0; i < asset.chain_count(); ++i) {
+    const ChainView chain = asset.chain(i);
+    read(chain.name);
+    read(chain.regions);
+    read(chain.spheres);
+  }
+  for (std::size_t i = 0; i < asset.joint_count(); ++i) {
+    const JointView joint = asset.joint(i);
+    read(joint.name);
+    sink = sink + static_cast<std::size_t>(joint.parent + 1);
+  }
+  // What a narrow phase would do with the surrounding regions.
+  for (const RestSphere& sphere : asset.spheres()) {
+    read(Span<const std::uint32_t>{asset.triangles().data + sphere.first_triangle, sphere.triangle_count});
+    read(asset.region(sphere.region).name);
+  }
+}
+
+bool broken(const char* what) {
+  std::fprintf(stderr, "fuzz_asset: %s\n", what);
+  return false;
+}
+
+bool detect_all_ways(const Asset& asset, const std::vector<Sphere>& spheres) {
+  for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
+    const Detected m1 = detect(asset, spheres, Method::kM1, kind);
+    const Detected m2 = detect(asset, spheres, Method::kM2, kind);
+    if (m1.status != Status::kOk || m2.status != Status::kOk) {
+      return broken("a detect job failed");
+    }
+    for (const Pair& pair : m2.pairs) {
+      if (pair.a >= pair.b || pair.b >= spheres.size()) {
+        return broken("a pair of spheres that do not exist");
+      }
+    }
+    if (!std::includes(m2.pairs.begin(), m2.pairs.end(), m1.pairs.begin(), m1.pairs.end())) {
+      return broken("M1 found a pair that M2 did not");
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+Use use_fully(const Asset& asset) {
+  read_all(asset);
+  std::vector<Sphere> rest;
+  for (const RestSphere& sphere : asset.spheres()) {
+    rest.push_back({sphere.center.x, sphere.center.y, sphere.center.z, sphere.detect_radius});
+  }
+  if (!detect_all_ways(asset, rest)) {
+    return Use::kBroken;
+  }
+  const std::uint32_t vertex_count = asset.info().source_vertex_count;
+  if (vertex_count > kMaxVertexCount) {
+    return Use::kWithoutRefit;
+  }
+  std::mt19937 random(1);
+  std::vector<float> positions(std::size_t{3} * vertex_count);
+  std::generate(positions.begin(), positions.end(), [&] { return uniform(random, -1, 1); });
+  (void)check_source(asset, positions.data(), vertex_count);
+  for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
+    const Refitted refitted = refit(asset, positions, kind);
+    if (refitted.status != Status::kOk) {
+      broken("a refit job failed");
+      return Use::kBroken;
+    }
+    if (!detect_all_ways(asset, refitted.spheres)) {
+      return Use::kBroken;
+    }
+  }
+  return Use::kFull;
+}
+
+}  // namespace spherechain::test

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+#include "jobs.h"
+
+namespace spherechain::test {
+
+Refitted refit(const Asset& asset, const std::vector<float>& positions, RadiusKind radius, std::size_t stride) {
+  Refitted result{Status::kOk, std::vector<Sphere>(asset.spheres().size)};
+  RefitJob job;
+  job.asset = &asset;
+  job.positions = positions.data();
+  job.vertex_count = positions.size() * sizeof(float) / stride;
+  job.stride = stride;
+  job.radius = radius;
+  job.spheres = {result.spheres.data(), result.spheres.size()};
+  result.status = job.run();
+  return result;
+}
+
+Detected detect(const Asset& asset, const std::vector<Sphere>& spheres, Method method, RadiusKind radius) {
+  std::vector<std::uint64_t> words(DetectContext::words_needed(asset), ~std::uint64_t{0});  // dirty on purpose
+  DetectContext context{{words.data(), words.size()}};
+  DetectJob job;
+  job.asset = &asset;
+  job.spheres = {spheres.data(), spheres.size()};
+  job.radius = radius;
+  job.method = method;
+  job.context = method == Method::kM1 ? &context : nullptr;
+  Detected result{job.run(), {}, {}, 0};
+  if (result.status != Status::kOk) {
+    return result;
+  }
+  result.pairs.resize(job.pair_count);
+  result.chain_pairs.resize(method == Method::kM1 ? job.chain_pair_count : 0);
+  job.pairs = {result.pairs.data(), result.pairs.size()};
+  job.chain_pairs = {result.chain_pairs.data(), result.chain_pairs.size()};
+  result.status = job.run();
+  result.test_count = job.test_count;
+  return result;
+}
+
+}  // namespace spherechain::test

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// The runtime's jobs as one call each, their buffers on the heap and sized exactly, so that sanitizers see any overrun.
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+#include <vector>
+
+#include "spherechain/detect.h"
+#include "spherechain/refit.h"
+
+namespace spherechain::test {
+
+struct Refitted {
+  Status status;
+  std::vector<Sphere> spheres;
+};
+
+// `positions` are as many vertices as it has whole strides.
+Refitted refit(const Asset& asset, const std::vector<float>& positions, RadiusKind radius, std::size_t stride = 12);
+
+struct Detected {
+  Status status;
+  std::vector<Pair> pairs;
+  std::vector<ChainPair> chain_pairs;
+  std::size_t test_count;
+};
+
+// Runs twice: to count, then with buffers of exactly that many.
+Detected detect(const Asset& asset, const std::vector<Sphere>& spheres, Method method, RadiusKind radius);
+
+// Bit for bit, so that a NaN equals itself.
+template <typename T>
+bool same_bits(const std::vector<T>& l, const std::vector<T>& r) {
+  return l.size() == r.size() && (l.empty() || std::memcmp(l.data(), r.data(), l.size() * sizeof(T)) == 0);
+}
+
+}  // namespace spherechain::test

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: MIT
+// Each way an asset can be wrong has its status, and a message that names the field.
+#include <doctest/doctest.h>
+
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "sphere_chains_generated.h"
+#include "tiny_asset.h"
+
+namespace spherechain::test {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+struct Corruption {
+  const char* message;  // what it must contain
+  std::function<void(AssetParts&)> apply;
+};
+
+// Opens a valid asset of 12 spheres, 48 pivots and triangles, 144 vertices, 5 regions, after each change alone.
+void check_each(const std::vector<Corruption>& corruptions) {
+  const AssetParts valid = random_asset(12, 1).parts;
+  REQUIRE(OpenedAsset(valid).status == Status::kOk);
+  for (const Corruption& corruption : corruptions) {
+    AssetParts parts = valid;
+    corruption.apply(parts);
+    const OpenedAsset opened(parts);
+    INFO("expected: ", corruption.message);
+    INFO("message:  ", opened.message);
+    CHECK(opened.status == Status::kCorrupt);
+    CHECK(opened.message.find(corruption.message) == 0);
+    CHECK(!opened.asset.is_open());
+  }
+}
+
+Status open_bytes(const std::vector<std::uint8_t>& bytes, std::size_t size, std::string& message) {
+  char buffer[160];
+  const Status status = Asset().open(bytes.data(), size, buffer, sizeof buffer);
+  message = buffer;
+  return status;
+}
+
+}  // namespace
+
+TEST_CASE("no bytes, unaligned bytes and too few bytes are refused") {
+  const std::vector<std::uint8_t> bytes = build(random_asset(12, 1).parts);
+  std::string message;
+  char buffer[160];
+  CHECK(Asset().open(nullptr, 100, buffer, sizeof buffer) == Status::kNullArgument);
+  CHECK(std::string(buffer) == "data: null");
+  for (std::size_t offset = 1; offset < kAssetAlignment; ++offset) {
+    CHECK(Asset().open(bytes.data() + offset, bytes.size() - offset, buffer, sizeof buffer) == Status::kMisaligned);
+    CHECK(std::string(buffer) == "data: not aligned to 8 bytes");
+  }
+  CHECK(open_bytes(bytes, 0, message) == Status::kTruncated);
+  CHECK(open_bytes(bytes, 67, message) == Status::kTruncated);
+  CHECK(message == "size: 67 bytes, but any asset has at least 68");
+  CHECK(open_bytes(bytes, 68, message) == Status::kCorrupt);
+  CHECK(message.find("structure: ") == 0);
+}
+
+TEST_CASE("another kind of file is refused, also a short one") {
+  const std::string text = "solid cube\nfacet normal 0 0 1";
+  std::string message;
+  CHECK(open_bytes({text.begin(), text.end()}, text.size(), message) == Status::kWrongIdentifier);
+  CHECK(message == "file identifier: not \"SPHC\"");
+}
+
+TEST_CASE("a format that is newer or was never released is refused") {
+  AssetParts parts = random_asset(12, 1).parts;
+  parts.format_version = kFormatVersion + 1;
+  const OpenedAsset newer(parts);
+  CHECK(newer.status == Status::kUnsupportedVersion);
+  CHECK(newer.message == "format_version: 2, but this runtime reads 1 to 1");
+  parts.format_version = 0;
+  CHECK(OpenedAsset(parts).status == Status::kUnsupportedVersion);
+}
+
+TEST_CASE("a size no FlatBuffer can have is refused before anything is read") {
+  std::vector<std::uint8_t> bytes = build(random_asset(12, 1).parts);
+  std::string message;
+  CHECK(open_bytes(bytes, std::numeric_limits<std::size_t>::max(), message) == Status::kCorrupt);
+  CHECK(message.find("size: 18446744073709551615 bytes") == 0);
+}
+
+TEST_CASE("a wrong header, frame or fit is refused") {
+  check_each({
+      {"refit: 2 is no known rule", [](AssetParts& p) { p.refit = 2; }},
+      {"source.metres_per_unit: 0", [](AssetParts& p) { p.metres_per_unit = 0; }},
+      {"source.metres_per_unit: inf", [](AssetParts& p) { p.metres_per_unit = kInfinity; }},
+      {"frame.height: nan", [](AssetParts& p) { p.height = kNan; }},
+      {"frame.height: -1", [](AssetParts& p) { p.height = -1; }},
+      {"frame.origin: missing", [](AssetParts& p) { p.without = "frame.origin"; }},
+      {"frame.left: missing", [](AssetParts& p) { p.without = "frame.left"; }},
+      {"frame.up: missing", [](AssetParts& p) { p.without = "frame.up"; }},
+      {"frame.forward: missing", [](AssetParts& p) { p.without = "frame.forward"; }},
+      {"frame.origin: not finite", [](AssetParts& p) { p.origin.y = kNan; }},
+      {"frame.left: not finite", [](AssetParts& p) { p.left.z = kInfinity; }},
+      {"frame: left, up and forward are not", [](AssetParts& p) { p.left.x = 1.01F; }},
+      {"frame: left, up and forward are not", [](AssetParts& p) { p.left.x = -1.0F; }},
+      {"frame: left, up and forward are not", [](AssetParts& p) { p.up = p.left; }},
+      {"frame: left, up and forward are not",
+       [](AssetParts& p) {
+         p.forward = {0, 0, 3e38F};
+       }},
+      {"fit.phi1: missing", [](AssetParts& p) { p.without = "fit.phi1"; }},
+      {"fit.phi1_adjusted: missing", [](AssetParts& p) { p.without = "fit.phi1_adjusted"; }},
+      {"fit.phi2: missing", [](AssetParts& p) { p.without = "fit.phi2"; }},
+      {"fit.phi2: not finite", [](AssetParts& p) { p.phi2.max_abs_f = kNan; }},
+  });
+}
+
+TEST_CASE("an index past its array is refused") {
+  check_each({
+      {"pivots[7].a: 144 is past the 144 vertices", [](AssetParts& p) { p.pivots[7].a = 144; }},
+      {"pivots[0].b: 4294967295 is past", [](AssetParts& p) { p.pivots[0].b = 0xFFFFFFFFU; }},
+      {"pivots[47].c: 144 is past", [](AssetParts& p) { p.pivots[47].c = 144; }},
+      {"triangles[3]: 48 is past the 48 triangles", [](AssetParts& p) { p.triangles[3] = 48; }},
+      {"spheres[11].first_pivot: 45 and 4 on is past the 48 pivots",
+       [](AssetParts& p) { p.spheres[11].first_pivot = 45; }},
+      {"spheres[2].first_pivot: 4294967295", [](AssetParts& p) { p.spheres[2].first_pivot = 0xFFFFFFFFU; }},
+      {"spheres[11].first_pivot: 44 and 5 on", [](AssetParts& p) { p.spheres[11].pivot_count = 5; }},
+      {"spheres[11].first_triangle: 45 and 4 on", [](AssetParts& p) { p.spheres[11].first_triangle = 45; }},
+      {"spheres[2].first_triangle: 4294967293 and 4 on is past the 48 triangles",
+       [](AssetParts& p) { p.spheres[2].first_triangle = 0xFFFFFFFDU; }},
+      {"spheres[1].first_triangle: 4 and 4294967295 on",
+       [](AssetParts& p) { p.spheres[1].triangle_count = 0xFFFFFFFFU; }},
+      {"spheres[0].region: 5 is past the 5 regions", [](AssetParts& p) { p.spheres[0].region = 5; }},
+      {"chains[1].regions[0]: 5 is past the 5 regions", [](AssetParts& p) { p.chains[1].regions[0] = 5; }},
+      {"chains[3].spheres[2]: 12 is past the 12 spheres", [](AssetParts& p) { p.chains[3].spheres[2] = 12; }},
+      {"chains[0].spheres[0]: 4294967295 is past", [](AssetParts& p) { p.chains[0].spheres[0] = 0xFFFFFFFFU; }},
+      {"near_fit[0].b: 12 is past the 12 spheres", [](AssetParts& p) { p.near_fit[0].b = 12; }},
+      {"near_detect[0].b: 12 is past", [](AssetParts& p) { p.near_detect[0].b = 12; }},
+      {"joints[0].parent: 0 is not", [](AssetParts& p) { p.joints[0].parent = 0; }},
+      {"joints[1].parent: 2 is not -1 or a joint before it", [](AssetParts& p) { p.joints[1].parent = 2; }},
+      {"joints[2].parent: -2 is not", [](AssetParts& p) { p.joints[2].parent = -2; }},
+  });
+}
+
+TEST_CASE("a figure that makes no sense is refused") {
+  check_each({
+      {"pivots[5].weight: not finite", [](AssetParts& p) { p.pivots[5].weight = kNan; }},
+      {"spheres[3].center: not finite", [](AssetParts& p) { p.spheres[3].center.z = kInfinity; }},
+      {"spheres[3].radius: not", [](AssetParts& p) { p.spheres[3].radius = 0; }},
+      {"spheres[3].radius: not", [](AssetParts& p) { p.spheres[3].radius = kNan; }},
+      {"spheres[3].detect_radius: not", [](AssetParts& p) { p.spheres[3].detect_radius = -0.5F; }},
+      {"spheres[3].detect_radius: not", [](AssetParts& p) { p.spheres[3].detect_radius = kInfinity; }},
+      {"spheres[3].pivot_spread: not", [](AssetParts& p) { p.spheres[3].pivot_spread = 0; }},
+      {"spheres[3].pivot_spread: not", [](AssetParts& p) { p.spheres[3].pivot_spread = kNan; }},
+      {"spheres[3].pivot_count: 0", [](AssetParts& p) { p.spheres[3].pivot_count = 0; }},
+      {"spheres[3].side: no known side", [](AssetParts& p) { p.spheres[3].side = static_cast<Side>(3); }},
+      {"spheres[3].level: below -1", [](AssetParts& p) { p.spheres[3].level = -2; }},
+      {"spheres[3].reserved: not 0", [](AssetParts& p) { p.spheres[3].reserved = 1; }},
+      {"near_fit[0]: a is not below b", [](AssetParts& p) { p.near_fit[0].a = p.near_fit[0].b; }},
+      {"near_fit[1]: reach is not in [0, 1)", [](AssetParts& p) { p.near_fit[1].reach = 1; }},
+      {"near_fit[1]: reach is not in [0, 1)", [](AssetParts& p) { p.near_fit[1].reach = -0.25F; }},
+      {"near_detect[1]: reach is not in [0, 1)", [](AssetParts& p) { p.near_detect[1].reach = kNan; }},
+      {"near_detect[2]: not sorted, or there twice", [](AssetParts& p) { p.near_detect[2] = p.near_detect[1]; }},
+      {"near_fit[1]: not sorted", [](AssetParts& p) { std::swap(p.near_fit[0], p.near_fit[1]); }},
+      {"joints[0].position: missing", [](AssetParts& p) { p.without = "joints.position"; }},
+      {"joints[0].tail: missing", [](AssetParts& p) { p.without = "joints.tail"; }},
+      {"joints[2].tail: not finite", [](AssetParts& p) { p.joints[2].tail.x = kNan; }},
+  });
+}
+
+TEST_CASE("an array of the wrong length is refused") {
+  check_each({
+      {"spheres: 0 of them, not 1 to 65535", [](AssetParts& p) { p.spheres.clear(); }},
+      {"spheres: 65536 of them", [](AssetParts& p) { p.spheres.resize(65536, p.spheres[0]); }},
+      {"ignored: 3 words, not the 2 that 12 spheres need", [](AssetParts& p) { p.ignored.push_back(0); }},
+      {"ignored: 1 words", [](AssetParts& p) { p.ignored.pop_back(); }},
+      {"ignored: a spare bit is not 0", [](AssetParts& p) { p.ignored[1] |= std::uint64_t{1} << 2; }},
+      {"ignored: a spare bit is not 0", [](AssetParts& p) { p.ignored[1] |= std::uint64_t{1} << 63; }},
+  });
+}
+
+TEST_CASE("arrays that overlap to make a small file ask for much work are refused") {
+  check_each({
+      {"spheres: their pivot_count add up to 49, past the 48 pivots",
+       [](AssetParts& p) { p.spheres[0].pivot_count = 5; }},
+      {"spheres: their triangle_count add up to 52, past the 48 triangles",
+       [](AssetParts& p) { p.spheres[0].triangle_count = 8; }},
+      {"chains[1].spheres[1]: ", [](AssetParts& p) { p.chains[1].spheres[1] = p.chains[1].spheres[0]; }},
+  });
+  // 65,535 chains that all list the same 65,535 spheres: 2 MB that ask for 4 * 10^9 steps.
+  AssetParts parts = random_asset(1, 1).parts;
+  parts.spheres.resize(40, parts.spheres[0]);
+  parts.ignored.assign((40 * 39 / 2 + 63) / 64, 0);
+  for (std::uint32_t i = 1; i < 40; ++i) {
+    parts.spheres[i].first_pivot = 4 * i;
+    parts.spheres[i].triangle_count = 0;
+    parts.pivots.insert(parts.pivots.end(), parts.pivots.begin(), parts.pivots.begin() + 4);
+  }
+  parts.chains.assign(200, {"z", {0}, {}});
+  for (std::uint32_t i = 0; i < 40; ++i) {
+    parts.chains[0].spheres.push_back(i);
+  }
+  REQUIRE(OpenedAsset(parts).status == Status::kOk);
+  parts.chains_share_array = true;
+  const OpenedAsset opened(parts);
+  CHECK(opened.status == Status::kCorrupt);
+  CHECK(opened.message.find("list more than the file has bytes for") != std::string::npos);
+}
+
+TEST_CASE("an array of 64-bit words off its alignment is refused") {
+  // FlatBuffers' verifier looks at the alignment of the array's length only. Move the array to the end of the file.
+  const AssetParts parts = random_asset(12, 1).parts;
+  std::vector<std::uint8_t> bytes = build(parts);
+  const auto* root = reinterpret_cast<const flatbuffers::Table*>(schema::GetAsset(bytes.data()));
+  const auto field = static_cast<std::size_t>(root->GetAddressOf(schema::Asset::VT_IGNORED) - bytes.data());
+  for (const std::size_t misalignment : {0U, 4U}) {
+    std::vector<std::uint8_t> moved = bytes;
+    moved.resize((moved.size() + 7) / 8 * 8 + 4 + misalignment);  // the words start 4 bytes after the length
+    const std::size_t array = moved.size();
+    moved.resize(array + 4 + 8 * parts.ignored.size() + 8);
+    const auto length = static_cast<std::uint32_t>(parts.ignored.size());
+    const auto offset = static_cast<std::uint32_t>(array - field);
+    std::memcpy(&moved[array], &length, 4);
+    std::memcpy(&moved[array + 4], parts.ignored.data(), 8 * parts.ignored.size());
+    std::memcpy(&moved[field], &offset, 4);
+    std::string message;
+    const Status status = open_bytes(moved, moved.size(), message);
+    CHECK(status == (misalignment == 0 ? Status::kOk : Status::kCorrupt));
+    CHECK(message == (misalignment == 0 ? "" : "ignored: not aligned to 8 bytes"));
+  }
+}
+
+}  // namespace spherechain::test

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: MIT
+// The pairs M1 and M2 find, against a brute force written apart.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "jobs.h"
+#include "tiny_asset.h"
+
+namespace spherechain::test {
+namespace {
+
+// What the header says of one pair, without bit tables and without testing the full reach first.
+class Rules {
+ public:
+  Rules(const TinyAsset& tiny, RadiusKind kind) : ignored_(tiny.ignored_pairs.begin(), tiny.ignored_pairs.end()) {
+    for (const NearPair& near : kind == RadiusKind::kFit ? tiny.parts.near_fit : tiny.parts.near_detect) {
+      reach_[{near.a, near.b}] = near.reach;
+    }
+  }
+
+  bool is_ignored(Pair pair) const { return ignored_.count(pair) > 0; }
+
+  bool touch(Pair pair, const std::vector<Sphere>& spheres) const {
+    const Sphere p = spheres[pair.a];
+    const Sphere q = spheres[pair.b];
+    const float dx = q.x - p.x, dy = q.y - p.y, dz = q.z - p.z;
+    const float sum = p.radius + q.radius;
+    const auto near = reach_.find(pair);
+    const float s = near == reach_.end() ? sum : near->second * sum;
+    return ((dx * dx + dy * dy) + dz * dz) < s * s;
+  }
+
+ private:
+  std::set<Pair> ignored_;
+  std::map<Pair, float> reach_;
+};
+
+Detected brute_force_all(const TinyAsset& tiny, const std::vector<Sphere>& spheres, RadiusKind kind) {
+  const Rules rules(tiny, kind);
+  Detected result{Status::kOk, {}, {}, 0};
+  for (std::uint32_t a = 0; a < spheres.size(); ++a) {
+    for (std::uint32_t b = a + 1; b < spheres.size(); ++b) {
+      if (!rules.is_ignored({a, b})) {
+        ++result.test_count;
+        if (rules.touch({a, b}, spheres)) {
+          result.pairs.push_back({a, b});
+        }
+      }
+    }
+  }
+  return result;
+}
+
+Detected brute_force_chains(const TinyAsset& tiny, const std::vector<Sphere>& spheres, RadiusKind kind) {
+  const Rules rules(tiny, kind);
+  Detected result{Status::kOk, {}, {}, 0};
+  std::set<Pair> unique;
+  for (std::uint32_t c = 0; c < tiny.parts.chains.size(); ++c) {
+    const std::vector<std::uint32_t>& members = tiny.parts.chains[c].spheres;
+    for (auto i = members.begin(); i != members.end(); ++i) {
+      for (auto j = i + 1; j != members.end(); ++j) {
+        const Pair pair = *i < *j ? Pair{*i, *j} : Pair{*j, *i};
+        if (!rules.is_ignored(pair)) {
+          ++result.test_count;
+          if (rules.touch(pair, spheres)) {
+            result.chain_pairs.push_back({c, pair});
+            unique.insert(pair);
+          }
+        }
+      }
+    }
+  }
+  result.pairs.assign(unique.begin(), unique.end());
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("M1 and M2 find what a brute force finds, at every size from 1 to 200") {
+  std::size_t found = 0;
+  for (unsigned n = 1; n <= 200; ++n) {
+    CAPTURE(n);
+    const TinyAsset tiny = random_asset(n, n);
+    const OpenedAsset opened(tiny.parts);
+    REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
+    std::mt19937 random(n);
+    const std::vector<Sphere> spheres = random_spheres(n, random);
+    for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
+      const Detected m2 = detect(opened.asset, spheres, Method::kM2, kind);
+      const Detected all = brute_force_all(tiny, spheres, kind);
+      CHECK(m2.status == Status::kOk);
+      CHECK(m2.pairs == all.pairs);
+      CHECK(m2.test_count == all.test_count);
+
+      const Detected m1 = detect(opened.asset, spheres, Method::kM1, kind);
+      const Detected chains = brute_force_chains(tiny, spheres, kind);
+      CHECK(m1.status == Status::kOk);
+      CHECK(m1.pairs == chains.pairs);
+      CHECK(same_bits(m1.chain_pairs, chains.chain_pairs));
+      CHECK(m1.test_count == chains.test_count);
+      CHECK(std::includes(m2.pairs.begin(), m2.pairs.end(), m1.pairs.begin(), m1.pairs.end()));
+      found += m1.pairs.size();
+    }
+  }
+  CHECK(found > 50000);  // the comparison above was not of empty lists
+}
+
+TEST_CASE("M1 reports a pair once, and in the raw list once a chain, in chain order") {
+  TinyAsset tiny = random_asset(5, 1);
+  tiny.parts.ignored.assign(1, 0);
+  tiny.parts.near_detect.clear();
+  tiny.parts.chains = {{"one", {0, 4}, {3, 1, 2}}, {"two", {1, 4}, {1, 0, 3}}};
+  const OpenedAsset opened(tiny.parts);
+  REQUIRE(opened.status == Status::kOk);
+  const std::vector<Sphere> heap(5, {0, 0, 0, 1});
+  const Detected m1 = detect(opened.asset, heap, Method::kM1, RadiusKind::kDetect);
+  CHECK(m1.pairs == std::vector<Pair>{{0, 1}, {0, 3}, {1, 2}, {1, 3}, {2, 3}});
+  const std::vector<ChainPair> raw{{0, {1, 3}}, {0, {2, 3}}, {0, {1, 2}}, {1, {0, 1}}, {1, {1, 3}}, {1, {0, 3}}};
+  CHECK(same_bits(m1.chain_pairs, raw));
+  CHECK(m1.test_count == 6);
+  CHECK(detect(opened.asset, heap, Method::kM2, RadiusKind::kDetect).pairs.size() == 10);
+}
+
+TEST_CASE("M2 counts each pair as its only overlap") {
+  const OpenedAsset opened(random_asset(5, 1).parts);
+  const std::vector<Sphere> heap(5, {0, 0, 0, 1});
+  DetectJob job;
+  job.asset = &opened.asset;
+  job.spheres = {heap.data(), heap.size()};
+  REQUIRE(job.run() == Status::kOk);
+  CHECK(job.pair_count == 10 - random_asset(5, 1).ignored_pairs.size());
+  CHECK(job.chain_pair_count == job.pair_count);
+}
+
+TEST_CASE("the same spheres give the same pairs again, whatever the scratch memory held") {
+  const OpenedAsset opened(random_asset(40, 3).parts);
+  std::mt19937 random(4);
+  std::vector<std::uint64_t> words(DetectContext::words_needed(opened.asset));
+  CHECK(words.size() == (40 * 39 / 2 + 63) / 64);
+  DetectContext context{{words.data(), words.size()}};
+  for (int frame = 0; frame < 5; ++frame) {
+    const std::vector<Sphere> spheres = random_spheres(40, random);
+    const Detected fresh = detect(opened.asset, spheres, Method::kM1, RadiusKind::kDetect);
+    std::vector<Pair> pairs(fresh.pairs.size());
+    DetectJob job;
+    job.asset = &opened.asset;
+    job.spheres = {spheres.data(), spheres.size()};
+    job.method = Method::kM1;
+    job.context = &context;
+    job.pairs = {pairs.data(), pairs.size()};
+    CHECK(job.run() == Status::kOk);
+    CHECK(pairs == fresh.pairs);
+  }
+}
+
+}  // namespace spherechain::test

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "jobs.h"
+#include "tiny_asset.h"
+
+namespace spherechain::test {
+namespace {
+
+// Of coordinates around 1 and sums of a dozen floats: some units in the last place.
+constexpr double kRounding = 2e-6;
+
+struct Expected {
+  double x, y, z, radius;
+};
+
+// The header's formulas in double precision, written apart from the runtime.
+Expected expected_sphere(const AssetParts& parts, std::size_t i, const std::vector<float>& positions, RadiusKind kind) {
+  const RestSphere& rest = parts.spheres[i];
+  std::vector<std::array<double, 3>> centroids;
+  std::array<double, 3> center{};
+  for (std::size_t k = 0; k < rest.pivot_count; ++k) {
+    const Pivot& pivot = parts.pivots[rest.first_pivot + k];
+    std::array<double, 3> p{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (const std::size_t corner : {pivot.a, pivot.b, pivot.c}) {
+        p[axis] += double{positions[3 * corner + axis]} / 3.0;
+      }
+      center[axis] += double{pivot.weight} * p[axis];
+    }
+    centroids.push_back(p);
+  }
+  double mean = 0.0;
+  for (const auto& p : centroids) {
+    mean += std::hypot(p[0] - center[0], p[1] - center[1], p[2] - center[2]) / rest.pivot_count;
+  }
+  double radius = parts.refit == 0 ? mean : double{rest.radius} * mean / double{rest.pivot_spread};
+  if (kind == RadiusKind::kDetect) {
+    radius *= double{rest.detect_radius} / double{rest.radius};
+  }
+  return {center[0], center[1], center[2], radius};
+}
+
+void check_close(const Sphere& sphere, const Expected& expected, double tolerance) {
+  CHECK(std::abs(double{sphere.x} - expected.x) < tolerance);
+  CHECK(std::abs(double{sphere.y} - expected.y) < tolerance);
+  CHECK(std::abs(double{sphere.z} - expected.z) < tolerance);
+  CHECK(std::abs(double{sphere.radius} - expected.radius) < tolerance);
+}
+
+// Uneven weights, so that no centre is a plain mean.
+TinyAsset weighted_asset(std::uint8_t rule) {
+  TinyAsset tiny = random_asset(9, 11);
+  tiny.parts.refit = rule;
+  std::mt19937 random(5);
+  for (Pivot& pivot : tiny.parts.pivots) {
+    pivot.weight = uniform(random, -0.2F, 0.7F);
+  }
+  return tiny;
+}
+
+RefitJob job_for(const Asset& asset, const std::vector<float>& positions, std::vector<Sphere>& spheres) {
+  RefitJob job;
+  job.asset = &asset;
+  job.positions = positions.data();
+  job.vertex_count = positions.size() / 3;
+  job.spheres = {spheres.data(), spheres.size()};
+  return job;
+}
+
+}  // namespace
+
+TEST_CASE("calibrated spheres are the rest spheres at rest") {
+  const TinyAsset tiny = random_asset(9, 10);
+  const OpenedAsset opened(tiny.parts);
+  for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
+    const Refitted result = refit(opened.asset, tiny.rest, kind);
+    REQUIRE(result.status == Status::kOk);
+    for (std::size_t i = 0; i < result.spheres.size(); ++i) {
+      const RestSphere& rest = tiny.parts.spheres[i];
+      const float radius = kind == RadiusKind::kFit ? rest.radius : rest.detect_radius;
+      check_close(result.spheres[i], {rest.center.x, rest.center.y, rest.center.z, radius}, kRounding);
+    }
+  }
+}
+
+TEST_CASE("the paper's radius is the mean distance of the pivots, whatever the rest radius") {
+  TinyAsset tiny = random_asset(9, 10);
+  tiny.parts.refit = 0;
+  const OpenedAsset opened(tiny.parts);
+  const Refitted fit = refit(opened.asset, tiny.rest, RadiusKind::kFit);
+  const Refitted detect = refit(opened.asset, tiny.rest, RadiusKind::kDetect);
+  for (std::size_t i = 0; i < fit.spheres.size(); ++i) {
+    CHECK(fit.spheres[i].radius == doctest::Approx(tiny.parts.spheres[i].pivot_spread).epsilon(kRounding));
+    CHECK(detect.spheres[i].radius == doctest::Approx(1.25 * double{fit.spheres[i].radius}).epsilon(kRounding));
+  }
+}
+
+TEST_CASE("spheres follow any deformation by the formulas of the header") {
+  for (const std::uint8_t rule : {std::uint8_t{0}, std::uint8_t{1}}) {
+    const TinyAsset tiny = weighted_asset(rule);
+    const OpenedAsset opened(tiny.parts);
+    REQUIRE(opened.status == Status::kOk);
+    std::vector<float> positions = tiny.rest;
+    std::mt19937 random(6);
+    for (float& value : positions) {
+      value += uniform(random, -0.3F, 0.3F);
+    }
+    for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
+      const Refitted result = refit(opened.asset, positions, kind);
+      for (std::size_t i = 0; i < result.spheres.size(); ++i) {
+        check_close(result.spheres[i], expected_sphere(tiny.parts, i, positions, kind), 2 * kRounding);
+      }
+    }
+  }
+}
+
+TEST_CASE("spheres move, turn and grow with the body") {
+  for (const std::uint8_t rule : {std::uint8_t{0}, std::uint8_t{1}}) {
+    TinyAsset tiny = random_asset(9, 12);
+    tiny.parts.refit = rule;
+    const OpenedAsset opened(tiny.parts);
+    const Refitted rest = refit(opened.asset, tiny.rest, RadiusKind::kFit);
+    constexpr float kScale = 2.5F;
+    const auto move = [](float x, float y, float z) {  // a quarter turn about z, scaled, shifted
+      return std::array<float, 3>{-kScale * y + 1.0F, kScale * x - 2.0F, kScale * z + 0.5F};
+    };
+    std::vector<float> positions = tiny.rest;
+    for (std::size_t v = 0; v < positions.size(); v += 3) {
+      const auto moved = move(positions[v], positions[v + 1], positions[v + 2]);
+      std::copy(moved.begin(), moved.end(), positions.begin() + static_cast<std::ptrdiff_t>(v));
+    }
+    const Refitted result = refit(opened.asset, positions, RadiusKind::kFit);
+    for (std::size_t i = 0; i < result.spheres.size(); ++i) {
+      const auto center = move(rest.spheres[i].x, rest.spheres[i].y, rest.spheres[i].z);
+      const Expected expected{center[0], center[1], center[2], double{kScale * rest.spheres[i].radius}};
+      check_close(result.spheres[i], expected, 4 * kRounding);
+    }
+  }
+}
+
+TEST_CASE("a stride skips what lies between positions, bit for bit") {
+  const TinyAsset tiny = weighted_asset(1);
+  const OpenedAsset opened(tiny.parts);
+  const Refitted packed = refit(opened.asset, tiny.rest, RadiusKind::kDetect);
+  for (const std::size_t stride : {16U, 20U, 32U}) {
+    std::vector<float> padded;
+    for (std::size_t v = 0; v < tiny.rest.size(); v += 3) {
+      padded.insert(padded.end(), {tiny.rest[v], tiny.rest[v + 1], tiny.rest[v + 2]});
+      padded.resize(padded.size() + stride / 4 - 3, 1e9F);
+    }
+    const Refitted result = refit(opened.asset, padded, RadiusKind::kDetect, stride);
+    CHECK(result.status == Status::kOk);
+    CHECK(same_bits(result.spheres, packed.spheres));
+  }
+}
+
+TEST_CASE("positions that are not finite give spheres that are not finite") {
+  const TinyAsset tiny = random_asset(3, 13);
+  const OpenedAsset opened(tiny.parts);
+  for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    std::vector<float> positions = tiny.rest;
+    positions[3 * tiny.parts.pivots[0].a] = bad;
+    const Refitted result = refit(opened.asset, positions, RadiusKind::kFit);
+    CHECK(result.status == Status::kOk);
+    CHECK(!std::isfinite(result.spheres[0].x));
+    CHECK(std::isfinite(result.spheres[1].x));
+    CHECK(std::isfinite(result.spheres[1].radius));
+  }
+}
+
+TEST_CASE("refit leaves entries past the asset's spheres alone") {
+  const TinyAsset tiny = random_asset(3, 14);
+  const OpenedAsset opened(tiny.parts);
+  std::vector<Sphere> spheres(5, {7, 7, 7, 7});
+  CHECK(job_for(opened.asset, tiny.rest, spheres).run() == Status::kOk);
+  CHECK(spheres[2].x != 7.0F);
+  CHECK(same_bits(std::vector<Sphere>(spheres.begin() + 3, spheres.end()), std::vector<Sphere>(2, {7, 7, 7, 7})));
+}
+
+TEST_CASE("refit refuses what it cannot use and writes nothing") {
+  const TinyAsset tiny = random_asset(3, 15);
+  const OpenedAsset opened(tiny.parts);
+  const std::vector<Sphere> untouched(3, {7, 7, 7, 7});
+  std::vector<Sphere> spheres = untouched;
+  const RefitJob good = job_for(opened.asset, tiny.rest, spheres);
+  const Asset closed;
+  const auto status_of = [&](auto change) {
+    RefitJob job = good;
+    change(job);
+    return job.run();
+  };
+  CHECK(status_of([](RefitJob& j) { j.asset = nullptr; }) == Status::kNullArgument);
+  CHECK(status_of([](RefitJob& j) { j.positions = nullptr; }) == Status::kNullArgument);
+  CHECK(status_of([](RefitJob& j) { j.spheres.data = nullptr; }) == Status::kNullArgument);
+  CHECK(status_of([&](RefitJob& j) { j.asset = &closed; }) == Status::kNotOpen);
+  CHECK(status_of([](RefitJob& j) { j.vertex_count -= 1; }) == Status::kTooFewVertices);
+  CHECK(status_of([](RefitJob& j) { j.spheres.size -= 1; }) == Status::kTooFewSpheres);
+  CHECK(status_of([](RefitJob& j) { j.stride = 0; }) == Status::kBadStride);
+  CHECK(status_of([](RefitJob& j) { j.stride = 8; }) == Status::kBadStride);
+  CHECK(status_of([](RefitJob& j) { j.stride = 14; }) == Status::kBadStride);
+  CHECK(status_of([](RefitJob& j) { j.radius = static_cast<RadiusKind>(2); }) == Status::kBadArgument);
+  CHECK(same_bits(spheres, untouched));
+  CHECK(good.run() == Status::kOk);
+}
+
+}  // namespace spherechain::test
