@@ -84,6 +84,19 @@ LimbCut find_limb_cut(const SurfaceQuery& surface, const Polyline& line, const B
   return {start, radius, narrowest_section(surface, line, start + 0.5 * rest, start + 0.85 * rest, frame, rays)};
 }
 
+double find_neck_base(const SurfaceQuery& surface, const Polyline& head, const BodyFrame& frame, int rays) {
+  // The skull is wider than the neck, and a skeleton's last part wanders towards the face.
+  double s = narrowest_section(surface, head, 0.3 * head.length(), 0.7 * head.length(), frame, rays);
+  const double limit = 1.5 * mean_distance(section(surface, head, s, frame, rays));
+  const double step = kScanStep * frame.height;
+  while (s > step) {
+    const Ring below = section(surface, head, s - step, frame, rays);
+    if (mean_distance(below) > limit) break;
+    s -= step;
+  }
+  return s;
+}
+
 double narrowest_section(const SurfaceQuery& surface, const Polyline& line, double from, double to,
                          const BodyFrame& frame, int rays) {
   double best = std::numeric_limits<double>::max(), where = from;

@@ -23,6 +23,10 @@ struct LimbCut {
 LimbCut find_limb_cut(const SurfaceQuery& surface, const Polyline& line, const BodyFrame& frame, int rays,
                       const std::string& limb, const std::string& file);
 
+// Arc length on the head's line at which the neck rises from the shoulders: the lowest section, of those that lead to the
+// narrowest one, whose mean ray is at most 1.5 times the narrowest's.
+double find_neck_base(const SurfaceQuery& surface, const Polyline& head, const BodyFrame& frame, int rays);
+
 // Arc length of the narrowest section of `line` between two arc lengths, by the mean ray.
 double narrowest_section(const SurfaceQuery& surface, const Polyline& line, double from, double to,
                          const BodyFrame& frame, int rays);

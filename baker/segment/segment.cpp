@@ -139,9 +139,7 @@ Regions segment(const Character& character, const SegmentSettings& settings) {
   const Polyline head = centre_in_sections(surface, plan.head, plan.frame, settings.rays);
   std::vector<Vec3> spine = plan.spine.points();
   regions.chest = plan.spine.length();
-  // The skull is wider than the neck, and a skeleton's last part wanders towards the face.
-  regions.neck = regions.chest + narrowest_section(surface, head, 0.3 * head.length(), 0.7 * head.length(), plan.frame,
-                                                   settings.rays);
+  regions.neck = regions.chest + find_neck_base(surface, head, plan.frame, settings.rays);
   spine.insert(spine.end(), head.points().begin(), head.points().end());
   regions.spine = Polyline(std::move(spine));
 

@@ -30,7 +30,7 @@ struct Regions {
   std::string facing;
   std::array<Limb, 4> limbs;                 // in the order of kRegionNames
   Polyline spine;                            // from hip to chest junction and on to the head's tip
-  double chest, neck;                        // arc lengths on `spine` of the chest junction and the narrowest neck
+  double chest, neck;                        // arc lengths on `spine` of the chest junction and the neck's base
   std::vector<std::uint8_t> of_triangle;     // a triangle of Character::body -> region
   std::vector<std::uint8_t> of_other;        // a triangle of Character::others -> region, that of the nearest body triangle
 };

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "import/import.h"
+#include "segment/segment.h"
+
+namespace spherechain::baker {
+
+enum class Side : std::uint8_t { kNone = 0, kLeft = 1, kRight = 2 };
+
+struct Ball {
+  Vec3 center;
+  double radius;
+};
+
+struct FittedSphere {
+  Ball ball;
+  std::uint8_t region;
+  int level;   // torso: disk position from the bottom; limbs: -1
+  Side side;   // torso: which half of the disk; limbs: none
+  Vec3 axis;   // unit direction of the chain here: along the limb towards its tip, up the torso
+};
+
+// The three fits of one torso sphere, judged on the same points: the vertices of its half of the disk's band, from halfway
+// to the level below to halfway to the level above. F = radius - |centre - vertex| (section 3.2).
+struct TorsoFit {
+  Ball phi1, phi1_adjusted, phi2;
+  std::vector<Index> vertices;  // of Character::body
+};
+
+double signed_f(const Ball& ball, const Vec3& vertex);
+
+struct FError {
+  double mean_abs = 0, max_abs = 0;
+};
+FError f_error(const Ball& ball, const Mesh& mesh, const std::vector<Index>& vertices);
+
+// All spheres of the body. Torso first, level by level from the bottom, left before right (the paper's numbering); then
+// the limbs in region order, each from shoulder or hip outwards.
+struct Spheres {
+  std::vector<FittedSphere> spheres;
+  std::array<std::vector<std::uint32_t>, kRegionCount> of_region;  // in the order above
+  std::vector<TorsoFit> torso;                                     // of spheres 0 ..
+  std::vector<double> level_heights;                               // along frame.up from frame.origin
+};
+
+// Lengths are fractions of the character's height.
+struct FitSettings {
+  int rays = 80;                     // N_r
+  double penetration_depth = 0.30;   // PD of neighbours on a limb, and of torso levels
+  double delta = 0.015;              // climb of the disk
+  double limb_step = 0.0015;         // march of the circumference
+};
+
+// Throws Error(kSegmentation) where a limb or the torso has no section a sphere fits in.
+Spheres fit_spheres(const Character& character, const Regions& regions, const FitSettings& settings);
+
+// Its two halves.
+std::vector<FittedSphere> fit_limb(const Mesh& mesh, const Regions& regions, std::uint8_t region,
+                                   const FitSettings& settings, const std::string& file);
+void fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& settings, const std::string& file, Spheres& out);
+
+// phi2: the smallest sphere around the points (CGAL).
+Ball minimum_enclosing_ball(const Mesh& mesh, const std::vector<Index>& vertices);
+
+// Penetration depth of two neighbours: 0 they touch, 0.5 equal spheres half overlapped.
+double penetration_depth(const Ball& a, const Ball& b);
+
+}  // namespace spherechain::baker

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The marching circumference of section 3.1: a ring of rays moves along the limb and a sphere is placed where it overlaps the
+// last one by PD.
+#include <algorithm>
+#include <optional>
+
+#include "fit/fit.h"
+#include "mesh/error.h"
+#include "mesh/ring.h"
+
+namespace spherechain::baker {
+namespace {
+
+constexpr double kClosingDepth = 0.7;
+
+class LimbMarch {
+ public:
+  LimbMarch(const Mesh& mesh, const Regions& regions, std::uint8_t region, const FitSettings& settings)
+      : body_(mesh),
+        skin_(mesh, triangles_of(regions, region)),
+        regions_(regions),
+        region_(region),
+        line_(regions.limbs[region].line),
+        window_(0.02 * regions.frame.height),
+        rays_(settings.rays) {}
+
+  // 95 % of the rays meet the limb's own skin.
+  bool on_own_skin(double s) const {
+    const Ring ring = cast(s);
+    const auto own = std::count_if(ring.hits.begin(), ring.hits.end(),
+                                   [&](const auto& hit) { return hit && regions_.of_triangle[hit->triangle] == region_; });
+    return static_cast<double>(own) >= 0.95 * static_cast<double>(ring.hits.size());
+  }
+
+  // The largest sphere around a point of the ring's plane that does not leave the skin: it touches.
+  Ball sphere_at(double s) const {
+    const Ring ring = cast(s);
+    Vec3 center = ring.section_centroid();
+    double radius = skin_.closest(center).distance;
+    // A compass search: the distance to the skin has one maximum in a section as round as a limb's.
+    for (double step = 0.25 * radius; step > 1e-4 * radius;) {
+      bool moved = false;
+      for (const Vec3& direction : {ring.u, ring.v, Vec3(-ring.u), Vec3(-ring.v)}) {
+        const Vec3 candidate = center + step * direction;
+        const double distance = skin_.closest(candidate).distance;
+        if (distance > radius) {
+          center = candidate;
+          radius = distance;
+          moved = true;
+          break;
+        }
+      }
+      if (!moved) step *= 0.5;
+    }
+    return {center, radius};
+  }
+
+  Vec3 axis(double s) const { return line_.tangent(s, window_); }
+
+ private:
+  static std::vector<Index> triangles_of(const Regions& regions, std::uint8_t region) {
+    std::vector<Index> triangles;
+    for (Index t = 0; t < regions.of_triangle.size(); ++t) {
+      if (regions.of_triangle[t] == region) triangles.push_back(t);
+    }
+    return triangles;
+  }
+
+  Ring cast(double s) const {
+    const Vec3 reference = regions_.frame.up + 0.7 * regions_.frame.left + 0.3 * regions_.frame.forward;
+    return cast_ring(body_, line_.at(s), axis(s), reference, rays_);
+  }
+
+  SurfaceQuery body_, skin_;
+  const Regions& regions_;
+  std::uint8_t region_;
+  const Polyline& line_;
+  double window_;
+  int rays_;
+};
+
+}  // namespace
+
+std::vector<FittedSphere> fit_limb(const Mesh& mesh, const Regions& regions, std::uint8_t region,
+                                   const FitSettings& settings, const std::string& file) {
+  const LimbMarch march(mesh, regions, region, settings);
+  const double end = regions.limbs[region].extremity, step = settings.limb_step * regions.frame.height;
+
+  double s = 0;
+  while (s < end && !march.on_own_skin(s)) s += step;
+  if (s >= end) {
+    throw Error(ExitCode::kSegmentation, file + ": no section of the " + kRegionNames[region] + " is closed by its own skin");
+  }
+  std::vector<FittedSphere> spheres;
+  const auto place = [&](double at, const Ball& ball) {
+    spheres.push_back({ball, region, -1, Side::kNone, march.axis(at)});
+  };
+  Ball last = march.sphere_at(s);
+  place(s, last);
+  const auto overlap = [&](double at) { return penetration_depth(last, march.sphere_at(at)); };
+  while (true) {
+    double high = s + step;
+    while (high < end && overlap(high) > settings.penetration_depth) high += step;
+    if (high >= end) break;
+    double low = high - step;
+    for (int i = 0; i < 24; ++i) {
+      const double middle = 0.5 * (low + high);
+      (overlap(middle) > settings.penetration_depth ? low : high) = middle;
+    }
+    s = high;
+    last = march.sphere_at(s);
+    place(s, last);
+  }
+  // The closing pair overlaps by whatever is left; a sphere mostly inside its neighbour would add nothing.
+  const Ball closing = march.sphere_at(end);
+  if (penetration_depth(last, closing) < kClosingDepth) place(end, closing);
+  return spheres;
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The climbing disk of section 3.2: N_s = 2 spheres a level, one for each half of the disk.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "fit/fit.h"
+#include "mesh/error.h"
+#include "mesh/ring.h"
+
+namespace spherechain::baker {
+namespace {
+
+struct Level {
+  double height;             // along frame.up from frame.origin
+  Vec3 disk;                 // centre of the disk
+  std::array<Ball, 2> half;  // phi1: left, right
+
+  double radius() const { return std::max(half[0].radius, half[1].radius); }
+};
+
+class TorsoDisk {
+ public:
+  TorsoDisk(const Mesh& mesh, const Regions& regions, int rays)
+      : torso_(mesh, triangles_of(regions)), frame_(regions.frame), spine_(regions.spine), rays_(rays) {}
+
+  // Nothing where a half of the disk meets no skin.
+  std::optional<Level> at(double height) const {
+    // Rays leave through shoulders and hips where limbs were cut off: those meet nothing and say nothing.
+    const Ring first = cast_ring(torso_, spine_at(height), frame_.up, frame_.left, rays_);
+    const Vec3 centroid = first.section_centroid();
+    Level level{height, centroid, {}};
+    // The halves are those of the body: the disk stays in the plane of symmetry.
+    level.disk -= (centroid - frame_.origin).dot(frame_.left) * frame_.left;
+    const Ring disk = cast_ring(torso_, level.disk, frame_.up, frame_.left, rays_);
+    for (std::size_t side = 0; side < 2; ++side) {
+      const auto ball = half_ball(disk, side == 0 ? 1.0 : -1.0);
+      if (!ball) return std::nullopt;
+      level.half[side] = *ball;
+    }
+    return level;
+  }
+
+ private:
+  static std::vector<Index> triangles_of(const Regions& regions) {
+    std::vector<Index> triangles;
+    for (Index t = 0; t < regions.of_triangle.size(); ++t) {
+      if (regions.of_triangle[t] == kTorso) triangles.push_back(t);
+    }
+    return triangles;
+  }
+
+  Vec3 spine_at(double height) const {
+    const std::vector<Vec3>& points = spine_.points();
+    const auto h = [&](const Vec3& p) { return (p - frame_.origin).dot(frame_.up); };
+    Vec3 p = h(points.front()) > height ? points.front() : points.back();
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      const double a = h(points[i - 1]), b = h(points[i]);
+      if (a <= height && height <= b && b > a) {
+        p = points[i - 1] + (height - a) / (b - a) * (points[i] - points[i - 1]);
+        break;
+      }
+    }
+    p += (height - h(p)) * frame_.up;
+    return p - (p - frame_.origin).dot(frame_.left) * frame_.left;
+  }
+
+  // phi1: "located in the center of the diameter" (section 3.1): the middle of the half-section's extent sideways and front to
+  // back, and half of the larger extent.
+  std::optional<Ball> half_ball(const Ring& disk, double sign) const {
+    double side = 0, front = -std::numeric_limits<double>::max(), back = std::numeric_limits<double>::max();
+    int count = 0;
+    for (const auto& hit : disk.hits) {
+      if (!hit) continue;
+      const Vec3 d = hit->point - disk.center;
+      if (sign * d.dot(frame_.left) < -1e-9 * frame_.height) continue;
+      side = std::max(side, sign * d.dot(frame_.left));
+      front = std::max(front, d.dot(frame_.forward));
+      back = std::min(back, d.dot(frame_.forward));
+      ++count;
+    }
+    if (count < 3 || side <= 0 || front <= back) return std::nullopt;
+    return Ball{disk.center + 0.5 * sign * side * frame_.left + 0.5 * (front + back) * frame_.forward,
+                0.5 * std::max(side, front - back)};
+  }
+
+  SurfaceQuery torso_;
+  const BodyFrame& frame_;
+  const Polyline& spine_;
+  int rays_;
+};
+
+// The sphere adjustment: towards the disk's centre in its plane, scaled down, to the least mean |F|. The radius with the
+// least mean |F| around a centre is the median distance.
+Ball adjust(const Ball& phi1, const Vec3& disk, const Vec3& up, const Mesh& mesh, const std::vector<Index>& vertices) {
+  if (vertices.empty()) return phi1;
+  Vec3 towards = disk - phi1.center;
+  towards -= towards.dot(up) * up;
+  Ball best = phi1;
+  double least = f_error(phi1, mesh, vertices).mean_abs;
+  constexpr int kSteps = 200;
+  for (int i = 0; i <= kSteps; ++i) {
+    Ball candidate{phi1.center + static_cast<double>(i) / kSteps * towards, 0};
+    std::vector<double> distances;
+    distances.reserve(vertices.size());
+    for (const Index v : vertices) distances.push_back((mesh.positions[v] - candidate.center).norm());
+    const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
+    std::nth_element(distances.begin(), middle, distances.end());
+    candidate.radius = std::min(*middle, phi1.radius);
+    const double mean = f_error(candidate, mesh, vertices).mean_abs;
+    if (mean < least) {
+      least = mean;
+      best = candidate;
+    }
+  }
+  return best;
+}
+
+double mean_depth(const Level& a, const Level& b) {
+  return 0.5 * (penetration_depth(a.half[0], b.half[0]) + penetration_depth(a.half[1], b.half[1]));
+}
+
+}  // namespace
+
+void fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& settings, const std::string& file, Spheres& out) {
+  const BodyFrame& frame = regions.frame;
+  const TorsoDisk disk(mesh, regions, settings.rays);
+  const auto height_of = [&](const Vec3& p) { return (p - frame.origin).dot(frame.up); };
+
+  double bottom = std::numeric_limits<double>::max();
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (regions.of_triangle[t] != kTorso) continue;
+    for (const Index v : mesh.triangles[t]) bottom = std::min(bottom, height_of(mesh.positions[v]));
+  }
+  const double neck = height_of(regions.spine.at(regions.neck));
+  const double step = settings.delta * frame.height;
+
+  // The disk climbs by delta; between two of its positions the place is found by bisection.
+  std::vector<Level> levels;
+  const auto place_where = [&](double from, const auto& reached) -> std::optional<Level> {
+    for (double high = from + step; high < neck; high += step) {
+      const auto level = disk.at(high);
+      if (!level || !reached(*level)) continue;
+      double low = high - step, top = high;
+      for (int i = 0; i < 24; ++i) {
+        const double middle = 0.5 * (low + top);
+        const auto candidate = disk.at(middle);
+        (candidate && reached(*candidate) ? top : low) = middle;
+      }
+      return disk.at(top);
+    }
+    return std::nullopt;
+  };
+  auto level = place_where(bottom, [&](const Level& l) { return l.height - bottom >= l.radius(); });
+  while (level && level->height < neck - 0.5 * level->radius()) {
+    levels.push_back(*level);
+    level = place_where(level->height, [&](const Level& l) { return mean_depth(levels.back(), l) <= settings.penetration_depth; });
+  }
+  if (levels.empty()) throw Error(ExitCode::kSegmentation, file + ": the torso has no level between hip and neck that a disk fits in");
+
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const double h = levels[i].height;
+    const double below = i > 0 ? 0.5 * (h - levels[i - 1].height) : -1, above = i + 1 < levels.size() ? 0.5 * (levels[i + 1].height - h) : -1;
+    const double low = h - (below > 0 ? below : (above > 0 ? above : levels[i].radius()));
+    const double high = h + (above > 0 ? above : (below > 0 ? below : levels[i].radius()));
+    std::vector<bool> in_torso(mesh.positions.size(), false);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      if (regions.of_triangle[t] != kTorso) continue;
+      for (const Index v : mesh.triangles[t]) in_torso[v] = true;
+    }
+    for (std::size_t side = 0; side < 2; ++side) {
+      const double sign = side == 0 ? 1 : -1;
+      TorsoFit fit{levels[i].half[side], {}, {}, {}};
+      for (Index v = 0; v < mesh.positions.size(); ++v) {
+        const double vh = height_of(mesh.positions[v]);
+        if (in_torso[v] && vh >= low && vh < high && sign * (mesh.positions[v] - levels[i].disk).dot(frame.left) >= 0) {
+          fit.vertices.push_back(v);
+        }
+      }
+      fit.phi1_adjusted = adjust(fit.phi1, levels[i].disk, frame.up, mesh, fit.vertices);
+      fit.phi2 = fit.vertices.empty() ? fit.phi1 : minimum_enclosing_ball(mesh, fit.vertices);
+      out.spheres.push_back({fit.phi1_adjusted, kTorso, static_cast<int>(i), side == 0 ? Side::kLeft : Side::kRight, frame.up});
+      out.torso.push_back(std::move(fit));
+    }
+    out.level_heights.push_back(h);
+  }
+}
+
+}  // namespace spherechain::baker
