@@ -152,7 +152,7 @@ void add_spheres(TinyAsset& tiny, std::size_t count, std::mt19937& random) {
     sphere.triangle_count = 4;
     sphere.region = static_cast<std::uint8_t>(i % 5);
     sphere.side = i % 5 == 4 ? (i % 2 == 0 ? Side::kLeft : Side::kRight) : Side::kNone;
-    sphere.level = static_cast<std::int16_t>(i % 5 == 4 ? i / 5 : -1);
+    sphere.level = i % 5 == 4 ? static_cast<std::int16_t>(i / 5) : std::int16_t{-1};
     add_pivots(tiny, sphere.center, sphere.pivot_spread);
     tiny.parts.spheres.push_back(sphere);
   }

@@ -1,33 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
+#include "counting_new.h"
 #include "jobs.h"
 #include "tiny_asset.h"
 
-namespace {
-
-std::atomic<std::size_t> allocations{0};
-
-}  // namespace
-
-// Arrays and nothrow forms come through here; symbol_rules.cmake sees to malloc.
-void* operator new(std::size_t size) {
-  ++allocations;
-  void* memory = std::malloc(size == 0 ? 1 : size);
-  if (memory == nullptr) {
-    std::abort();
-  }
-  return memory;
-}
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-
 namespace spherechain::test {
 
+// symbol_rules.cmake sees to malloc.
 TEST_CASE("open, refit and detect allocate nothing") {
   const TinyAsset tiny = random_asset(60, 1);
   const OpenedAsset opened(tiny.parts);
@@ -46,7 +26,7 @@ TEST_CASE("open, refit and detect allocate nothing") {
   detect.pairs = {pairs.data(), pairs.size()};
   detect.chain_pairs = {chain_pairs.data(), chain_pairs.size()};
 
-  const std::size_t before = allocations;
+  const std::size_t before = allocation_count();
   Asset asset;
   char message[160];
   const Status open_status = asset.open(opened.bytes.data(), opened.bytes.size(), message, sizeof message);
@@ -60,7 +40,7 @@ TEST_CASE("open, refit and detect allocate nothing") {
   const Status m1_status = detect.run();
   Asset closed;
   const Status bad_status = closed.open(opened.bytes.data(), opened.bytes.size() - 100, message, sizeof message);
-  const std::size_t after = allocations;
+  const std::size_t after = allocation_count();
 
   CHECK(after == before);
   CHECK(open_status == Status::kOk);
