@@ -24,20 +24,30 @@ struct PoseMotion {
   std::vector<Pose> poses;
 };
 
-// Reads a pose file (samples/poses/README.md). Throws Error(kFile) that names the file and the cause; joint names are checked
-// against `joints`.
+// Reads a pose file (samples/poses/README.md). Throws Error(kFile) that names the file and the cause; joint names are
+// checked against `joints`.
 PoseMotion read_pose_motion(const std::filesystem::path& path, const std::vector<Joint>& joints);
+
+// x -> rotation x + translation, in the mesh's axes and units.
+struct JointTransform {
+  Eigen::Matrix3d rotation;
+  Vec3 translation;
+};
+
+// A transform a joint, its parents' included: the bone matrices of a pose. Exactly none for a joint that nothing turns.
+std::vector<JointTransform> joint_transforms(const std::vector<Joint>& joints, const BodyFrame& frame,
+                                             const Pose& pose);
 
 // Linear blend skinning of the rest positions. `rest` and `weights` have the same length and order.
 std::vector<Vec3> skin(const std::vector<Vec3>& rest, const std::vector<VertexWeights>& weights,
                        const std::vector<Joint>& joints, const BodyFrame& frame, const Pose& pose);
 
-// The animation of the paper's section 5.1: quadratic Bezier interpolation of the vertices between poses. Frame 0 is the
-// rest pose, the last frame the last pose.
+// The animation of the paper's section 5.1: quadratic Bezier interpolation of the vertices between poses. Frame 0 is
+// the rest pose, the last frame the last pose.
 class BezierMotion {
  public:
-  BezierMotion(const std::vector<Vec3>& rest, const std::vector<VertexWeights>& weights, const std::vector<Joint>& joints,
-               const BodyFrame& frame, const PoseMotion& motion);
+  BezierMotion(const std::vector<Vec3>& rest, const std::vector<VertexWeights>& weights,
+               const std::vector<Joint>& joints, const BodyFrame& frame, const PoseMotion& motion);
   // Positions at t in [0, 1].
   std::vector<Vec3> at(double t) const;
 

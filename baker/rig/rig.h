@@ -29,7 +29,8 @@ struct VertexWeights {
 // Bone-heat weights of every vertex of a closed mesh (Baran and Popovic 2007, section 4).
 std::vector<VertexWeights> bone_heat_weights(const Mesh& mesh, const std::vector<Joint>& joints);
 
-// Weights of every source vertex: the body's by bone heat, the other pieces' (eyes) rigidly with the nearest body vertex.
+// Weights of every source vertex: the body's by bone heat, the other pieces' (eyes) rigidly with the nearest body
+// vertex.
 std::vector<VertexWeights> rig_weights(const Character& character, const std::vector<Joint>& joints);
 
 }  // namespace spherechain::baker

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "mesh/error.h"
+#include "motion/motion.h"
+
+namespace spherechain::baker {
+namespace {
+
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostPoses = 1000;  // files that include files multiply
+constexpr double kMostDegrees = 180;      // farther round the interpolation would go the other way
+
+[[noreturn]] void fail(const fs::path& file, const std::string& what) {
+  throw Error(ExitCode::kFile, file.string() + ": " + what);
+}
+
+Json read_json(const fs::path& file) {
+  std::ifstream stream(file);
+  if (!fs::is_regular_file(file) || !stream) fail(file, "no such pose file (name an existing JSON file)");
+  try {
+    return Json::parse(stream);
+  } catch (const Json::exception& error) {
+    std::string what = error.what();
+    if (const auto at = what.find("line "); at != std::string::npos) what = what.substr(at);
+    fail(file, "is not valid JSON: " + what + " (mend the file there)");
+  }
+}
+
+Eigen::Quaterniond read_rotation(const fs::path& file, const std::string& joint, const Json& value) {
+  const bool three = value.is_array() && value.size() == 3 &&
+                     std::all_of(value.begin(), value.end(), [](const Json& v) { return v.is_number(); });
+  if (!three) fail(file, "the rotation of '" + joint + "' is not three numbers (write [x, y, z] in degrees)");
+  const Vec3 degrees(value[0].get<double>(), value[1].get<double>(), value[2].get<double>());
+  const double angle = degrees.norm();
+  if (!std::isfinite(angle) || angle > kMostDegrees) {
+    fail(file, "the rotation of '" + joint + "' is more than 180 degrees long (go there in two poses)");
+  }
+  if (angle == 0) return Eigen::Quaterniond::Identity();
+  return Eigen::Quaterniond(Eigen::AngleAxisd(angle * std::numbers::pi / 180, degrees / angle));
+}
+
+Pose read_pose(const fs::path& file, const Json& value, const std::vector<Joint>& joints) {
+  Pose pose;
+  for (const auto& [name, rotation] : value.items()) {
+    const std::string& joint = name;
+    if (std::none_of(joints.begin(), joints.end(), [&](const Joint& j) { return j.name == joint; })) {
+      std::string known;
+      for (const Joint& j : joints) known += (known.empty() ? "" : ", ") + j.name;
+      fail(file, "there is no joint '" + joint + "' (known: " + known + ")");
+    }
+    pose.rotations[joint] = read_rotation(file, joint, rotation);
+  }
+  return pose;
+}
+
+void read_into(PoseMotion& motion, const fs::path& file, const std::vector<Joint>& joints,
+               std::vector<fs::path>& open) {
+  const fs::path canonical = fs::weakly_canonical(file);
+  if (std::find(open.begin(), open.end(), canonical) != open.end()) {
+    fail(file, "includes itself, directly or through another file (break the circle)");
+  }
+  open.push_back(canonical);
+  const Json json = read_json(file);
+  if (!json.is_object() || !json.contains("poses") || !json["poses"].is_array() || json["poses"].empty()) {
+    fail(file, "is no pose file (it needs an object with a non-empty list 'poses'; see samples/poses/README.md)");
+  }
+  for (const auto& [key, value] : json.items()) {
+    if (key != "name" && key != "about" && key != "poses") {
+      fail(file, "the key '" + key + "' is not known (known: name, about, poses)");
+    }
+    if (key != "poses" && !value.is_string()) fail(file, "'" + key + "' is not a text (write it in quotes)");
+  }
+  if (open.size() == 1) motion.name = json.value("name", file.stem().string());
+  for (const Json& entry : json["poses"]) {
+    if (entry.is_string()) {
+      const fs::path other = file.parent_path() / entry.get<std::string>();
+      if (!fs::is_regular_file(other)) {
+        fail(file, "takes poses from '" + entry.get<std::string>() +
+                       "', and there is no such file next to it (mend the name)");
+      }
+      read_into(motion, other, joints, open);
+    } else if (entry.is_object()) {
+      motion.poses.push_back(read_pose(file, entry, joints));
+    } else {
+      fail(file,
+           "an entry of 'poses' is neither an object of rotations nor the name of a pose file (write one of them)");
+    }
+    if (motion.poses.size() > kMostPoses) fail(file, "has more than 1000 poses with what it includes (shorten it)");
+  }
+  open.pop_back();
+}
+
+}  // namespace
+
+PoseMotion read_pose_motion(const fs::path& path, const std::vector<Joint>& joints) {
+  PoseMotion motion;
+  std::vector<fs::path> open;
+  read_into(motion, path, joints, open);
+  return motion;
+}
+
+}  // namespace spherechain::baker
