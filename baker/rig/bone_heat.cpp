@@ -19,6 +19,8 @@ constexpr double kUnseen = 1e-3;    // pull on a vertex that sees no bone: its n
 constexpr double kFarthest = 2.0;   // a bone in sight but that much farther than the nearest is not the vertex's own
 constexpr double kInside = 1e-4;    // of the diameter: how far a line of sight starts below the skin
 
+constexpr double kGiveWay = 0.25;  // of the strongest joint on another branch is taken off a weight
+
 struct Bone {
   Vec3 from, to;
   Index joint;
@@ -140,6 +142,31 @@ HeatSystem build_system(const Mesh& mesh, const std::vector<Source>& sources, st
   return system;
 }
 
+// Whether one joint hangs on the other: hip and knee do, the two hips do not.
+std::vector<std::vector<bool>> same_branch(const std::vector<Joint>& joints) {
+  std::vector<std::vector<bool>> same(joints.size(), std::vector<bool>(joints.size(), false));
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    for (int up = static_cast<int>(j); up >= 0; up = joints[static_cast<std::size_t>(up)].parent) {
+      same[j][static_cast<std::size_t>(up)] = same[static_cast<std::size_t>(up)][j] = true;
+    }
+  }
+  return same;
+}
+
+// Heat seeps through the crotch from one thigh into the other. Where a branch is strong the others give way, and do so
+// gradually: a sudden end would crease the skin.
+Eigen::RowVectorXd give_way(const Eigen::RowVectorXd& row, const std::vector<std::vector<bool>>& same) {
+  Eigen::RowVectorXd out = row;
+  for (Eigen::Index i = 0; i < row.size(); ++i) {
+    double other = 0;
+    for (Eigen::Index j = 0; j < row.size(); ++j) {
+      if (!same[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)]) other = std::max(other, row[j]);
+    }
+    if (other > row[i]) out[i] = std::max(0.0, row[i] - kGiveWay * (other - row[i]));
+  }
+  return out;
+}
+
 // The four largest, without traces, as a partition of one.
 VertexWeights largest_four(const Eigen::RowVectorXd& row) {
   std::vector<Index> order;
@@ -163,10 +190,11 @@ VertexWeights largest_four(const Eigen::RowVectorXd& row) {
 std::vector<VertexWeights> bone_heat_weights(const Mesh& mesh, const std::vector<Joint>& joints) {
   const HeatSystem system = build_system(mesh, find_sources(mesh, bones_of(joints)), joints.size());
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(system.matrix);
+  const std::vector<std::vector<bool>> same = same_branch(joints);
   const Eigen::MatrixXd solution = solver.solve(system.heat);
   std::vector<VertexWeights> weights;
   weights.reserve(mesh.positions.size());
-  for (Eigen::Index v = 0; v < solution.rows(); ++v) weights.push_back(largest_four(solution.row(v)));
+  for (Eigen::Index v = 0; v < solution.rows(); ++v) weights.push_back(largest_four(give_way(solution.row(v), same)));
   return weights;
 }
 

@@ -8,18 +8,22 @@
 namespace spherechain::baker {
 namespace {
 
-// Segment proportions of de Leva 1996 (Adjustments to Zatsiorsky-Seluyanov's segment inertia parameters), men and women
-// averaged by eye: between joint centres, as fractions of the distance named.
+// Segment proportions of men after de Leva 1996 (Adjustments to Zatsiorsky-Seluyanov's segment inertia parameters):
+// between joint centres, as fractions of the distance named.
 constexpr double kElbow = 0.512;     // shoulder to wrist
 constexpr double kKnee = 0.493;      // hip to ankle
 constexpr double kOmphalion = 0.24;  // middle of the hips to the base of the neck: where the lumbar spine bends
 constexpr double kXiphion = 0.60;    // and where the rib cage begins
 
+// A neck is narrowest between its two joints.
+constexpr double kNape = 0.85;      // from the chest junction to the narrowest neck: the seventh vertebra
+constexpr double kSkull = 0.40;     // from the narrowest neck to the crown: the ears' height, where the skull turns
+constexpr double kClavicle = 0.60;  // from the chest junction to the narrowest neck: the sternum's upper end
+
 // Fractions of the height.
 constexpr double kShoulderInside = 0.032;  // the joint is deeper than the armpit's plane, on the arm's axis
 constexpr double kHipInside = 0.028;       // and deeper than the crotch's plane, on the thigh's axis
 constexpr double kAnkleBelow = 0.025;      // a leg is narrowest above its malleoli, at 0.07; the joint is at 0.04
-constexpr double kSkullAbove = 0.030;      // a neck is narrowest below the chin; the skull turns at the ears' height
 constexpr double kSternum = 0.015;         // half the distance between the clavicles' inner ends
 
 // How much a centre line has to bend to overrule the proportions: squared deviation against squared shift, both as
@@ -90,19 +94,21 @@ std::vector<Joint> place_joints(const Character& character, const Regions& regio
 
   const Polyline& spine = regions.spine;
   const Vec3 pelvis = 0.5 * (limbs[2].root + limbs[3].root);
-  const double base = spine.closest(pelvis), nape = 0.5 * (regions.chest + regions.neck);
+  const auto above_chest = [&](double fraction) { return regions.chest + fraction * (regions.neck - regions.chest); };
+  const double base = spine.closest(pelvis), nape = above_chest(kNape);
   const auto on_spine = [&](double fraction) { return spine.at(base + fraction * (nape - base)); };
-  const Vec3 neck = spine.at(nape);
-  const Vec3 head = spine.at(regions.neck) + kSkullAbove * h * frame.up;
-  // From above: inside, the mouth would be in the way.
-  const auto crown = SurfaceQuery(character.body).first_hit(head + 2 * h * frame.up, -frame.up);
-  const Vec3 sternum = spine.at(0.75 * regions.chest + 0.25 * regions.neck);
+  // From above: inside, the mouth would be in the way. The skeleton's own end wanders to the face.
+  const Vec3 throat = spine.at(regions.neck);
+  const auto top = SurfaceQuery(character.body).first_hit(throat + 2 * h * frame.up, -frame.up);
+  const Vec3 crown = top ? top->point : Vec3(throat + 0.15 * h * frame.up);
+  const Vec3 neck = spine.at(nape), head = throat + kSkull * (crown - throat);
+  const Vec3 sternum = spine.at(above_chest(kClavicle));
 
   std::vector<Joint> joints{{"pelvis", -1, pelvis, on_spine(kOmphalion)},
                             {"spine", 0, on_spine(kOmphalion), on_spine(kXiphion)},
                             {"chest", 1, on_spine(kXiphion), neck},
                             {"neck", 2, neck, head},
-                            {"head", 3, head, crown ? crown->point : Vec3(head + 0.1 * h * frame.up)}};
+                            {"head", 3, head, crown}};
   const auto chain = [&](const std::string& side, int parent, const LimbJoints& limb,
                          std::array<const char*, 3> names) {
     const auto first = static_cast<int>(joints.size());

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bind/bind.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+
+#include "mesh/error.h"
+
+namespace spherechain::baker {
+namespace {
+
+using IdPair = std::pair<std::uint32_t, std::uint32_t>;
+
+// Section 5.1: a triangle belongs to the sphere closest to it, here of its own region.
+std::vector<std::uint32_t> assign_triangles(const Mesh& mesh, const std::vector<std::uint8_t>& region_of_triangle,
+                                            const Spheres& spheres) {
+  std::vector<std::uint32_t> owner;
+  owner.reserve(mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Vec3 centroid = triangle_centroid(mesh, t);
+    double least = std::numeric_limits<double>::max();
+    std::uint32_t best = 0;
+    for (const std::uint32_t i : spheres.of_region[region_of_triangle[t]]) {
+      const double d = (spheres.spheres[i].ball.center - centroid).squaredNorm();
+      if (d < least) {
+        least = d;
+        best = i;
+      }
+    }
+    owner.push_back(best);
+  }
+  return owner;
+}
+
+// Neighbours on the body: next to each other on a chain, on the same or the next torso level, or with touching regions.
+std::set<IdPair> find_ignored(const Mesh& mesh, const Spheres& spheres, const Chains& chains,
+                              const std::vector<std::uint32_t>& owner) {
+  std::set<IdPair> ignored;
+  for (const IdPair& pair : chains.neighbours()) ignored.insert(pair);
+  const std::vector<std::uint32_t>& torso = spheres.of_region[kTorso];
+  for (const std::uint32_t a : torso) {
+    for (const std::uint32_t b : torso) {
+      if (a < b && std::abs(spheres.spheres[a].level - spheres.spheres[b].level) <= 1) ignored.emplace(a, b);
+    }
+  }
+  const std::vector<std::array<Index, 3>> neighbours = triangle_neighbours(mesh);
+  for (std::size_t t = 0; t < neighbours.size(); ++t) {
+    for (const Index n : neighbours[t]) {
+      if (n != kNoIndex && owner[t] != owner[n]) ignored.insert(std::minmax(owner[t], owner[n]));
+    }
+  }
+  return ignored;
+}
+
+// The smallest radius around the centre that holds this share of the region's area; each triangle counts at its centroid.
+double area_quantile(const Mesh& mesh, const std::vector<Index>& triangles, const Vec3& center, double share) {
+  std::vector<std::pair<double, double>> rings;
+  double total = 0;
+  for (const Index t : triangles) {
+    rings.emplace_back((triangle_centroid(mesh, t) - center).norm(), triangle_area(mesh, t));
+    total += rings.back().second;
+  }
+  std::sort(rings.begin(), rings.end());
+  double sum = 0;
+  for (const auto& [distance, area] : rings) {
+    sum += area;
+    if (sum >= share * total) return distance;
+  }
+  return 0;
+}
+
+BoundSphere bind_sphere(const Mesh& mesh, const std::vector<Index>& triangles, const FittedSphere& sphere,
+                        const BodyFrame& frame, const BindSettings& settings) {
+  BoundSphere bound{sphere.ball, 0, 0, {}, 0};
+  // Ray 0 of the rings points there too: pivots turn with the body.
+  const Vec3 reference = sphere.region == kTorso ? frame.forward : Vec3(frame.up + 0.7 * frame.left + 0.3 * frame.forward);
+  bound.pivots = choose_pivots(mesh, triangles, sphere, reference, settings.rule);
+  Vec3 center = Vec3::Zero();
+  for (const BoundPivot& pivot : bound.pivots) {
+    center += pivot.weight * triangle_centroid(mesh, pivot.triangle);
+    bound.weight_sum += std::abs(pivot.weight);
+  }
+  for (const BoundPivot& pivot : bound.pivots) {
+    bound.spread += (triangle_centroid(mesh, pivot.triangle) - center).norm() / static_cast<double>(bound.pivots.size());
+  }
+  if (settings.rule == RefitRule::kPaper) bound.rest = {center, bound.spread};
+
+  // A region may reach far beyond its sphere (head, hands, feet): no farther than what closes the waists between neighbours
+  // of equal size, r sqrt(1 + (1 - PD)^2).
+  const double waist = std::sqrt(1 + std::pow(1 - settings.penetration_depth, 2));
+  const double quantile = area_quantile(mesh, triangles, sphere.ball.center, settings.detect_quantile);
+  const double ratio = std::clamp(quantile / sphere.ball.radius, 1.0, waist);
+  bound.detect_radius = ratio * bound.rest.radius;
+  return bound;
+}
+
+std::vector<BoundPair> find_near(const std::vector<BoundSphere>& spheres, const std::set<IdPair>& ignored, double fraction,
+                                 double BoundSphere::*detect) {
+  // Pairs that all but touch at rest are near too: rounding must not report them.
+  constexpr double kMargin = 1 + 1e-4;
+  std::vector<BoundPair> near;
+  for (std::uint32_t a = 0; a < spheres.size(); ++a) {
+    for (std::uint32_t b = a + 1; b < spheres.size(); ++b) {
+      if (ignored.count({a, b}) > 0) continue;
+      const double distance = (spheres[a].rest.center - spheres[b].rest.center).norm();
+      const double sum = detect ? spheres[a].*detect + spheres[b].*detect : spheres[a].rest.radius + spheres[b].rest.radius;
+      if (distance < kMargin * sum) near.push_back({a, b, fraction * distance / sum});
+    }
+  }
+  return near;
+}
+
+}  // namespace
+
+Binding bind_spheres(const Character& character, const Regions& regions, const Spheres& spheres, const Chains& chains,
+                     const BindSettings& settings) {
+  Binding out;
+  out.rule = settings.rule;
+  out.sphere_of_triangle = assign_triangles(character.body, regions.of_triangle, spheres);
+  out.sphere_of_other = assign_triangles(character.others, regions.of_other, spheres);
+
+  std::vector<std::vector<Index>> surrounding(spheres.spheres.size());
+  for (Index t = 0; t < out.sphere_of_triangle.size(); ++t) surrounding[out.sphere_of_triangle[t]].push_back(t);
+  for (std::size_t i = 0; i < spheres.spheres.size(); ++i) {
+    BoundSphere bound = bind_sphere(character.body, surrounding[i], spheres.spheres[i], regions.frame, settings);
+    if (bound.pivots.size() < 4) {
+      throw Error(ExitCode::kSegmentation, character.file + ": sphere " + std::to_string(i) + " of the " +
+                                               kRegionNames[spheres.spheres[i].region] + " finds no pivots that carry it among its " +
+                                               std::to_string(surrounding[i].size()) + " triangles");
+    }
+    out.spheres.push_back(std::move(bound));
+  }
+  const std::set<IdPair> ignored = find_ignored(character.body, spheres, chains, out.sphere_of_triangle);
+  out.ignored.assign(ignored.begin(), ignored.end());
+  out.near_fit = find_near(out.spheres, ignored, settings.near_fraction, nullptr);
+  out.near_detect = find_near(out.spheres, ignored, settings.near_fraction, &BoundSphere::detect_radius);
+  return out;
+}
+
+}  // namespace spherechain::baker

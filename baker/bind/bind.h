@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "chains/chains.h"
+#include "fit/fit.h"
+#include "import/import.h"
+#include "segment/segment.h"
+
+namespace spherechain::baker {
+
+// How centre and radius follow the pivots. paper: section 5.1; calibrated: exact at rest (see runtime/refit.h).
+enum class RefitRule : std::uint8_t { kPaper = 0, kCalibrated = 1 };
+
+struct BoundPivot {
+  Index triangle;  // of Character::body
+  double weight;
+};
+
+struct BoundSphere {
+  Ball rest;             // what refit gives in the rest pose: the fitted sphere, but for the paper's rule
+  double detect_radius;  // rest
+  double spread;         // mean distance of the pivots' centroids from the centre at rest
+  std::vector<BoundPivot> pivots;
+  double weight_sum;     // sum of |weight|: 1 means the centre lies inside the pivots' hull
+};
+
+struct BoundPair {
+  std::uint32_t a, b;  // a < b
+  double reach;        // reported only when closer than reach * (ra + rb)
+};
+
+struct Binding {
+  RefitRule rule;
+  std::vector<std::uint32_t> sphere_of_triangle;  // a triangle of Character::body -> the sphere whose surrounding region it is in
+  std::vector<std::uint32_t> sphere_of_other;     // the same for Character::others
+  std::vector<BoundSphere> spheres;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> ignored;  // a < b, sorted
+  std::vector<BoundPair> near_fit, near_detect;                  // overlapping at rest, not ignored; sorted
+};
+
+struct BindSettings {
+  RefitRule rule = RefitRule::kCalibrated;
+  double penetration_depth = 0.30;  // that of the fit: bounds the detect radius
+  double detect_quantile = 0.6;     // of the surrounding region's area, by distance from the centre
+  double near_fraction = 0.7;       // of the rest distance, for pairs that overlap at rest
+};
+
+// Throws Error(kSegmentation) where a sphere has fewer than four triangles to hang on.
+Binding bind_spheres(const Character& character, const Regions& regions, const Spheres& spheres, const Chains& chains,
+                     const BindSettings& settings);
+
+// The pivots of one sphere among the triangles of its surrounding region.
+std::vector<BoundPivot> choose_pivots(const Mesh& mesh, const std::vector<Index>& triangles, const FittedSphere& sphere,
+                                      const Vec3& reference, RefitRule rule);
+
+}  // namespace spherechain::baker

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <Eigen/Geometry>
+#include <Eigen/QR>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "bind/bind.h"
+
+namespace spherechain::baker {
+namespace {
+
+// A set of pivots as a wish: `count` directions around the axis, every second one shifted along it by +-stagger radii.
+struct Pattern {
+  int count;
+  double stagger;
+};
+
+// The triangles nearest to the wished places, each once. A quadrant without skin (the inner half of the torso) gets the
+// nearest there is.
+std::vector<Index> pick(const Mesh& mesh, const std::vector<Index>& triangles, const FittedSphere& sphere,
+                        const Vec3& reference, const Pattern& pattern) {
+  const Vec3 axis = sphere.axis;
+  const Vec3 u = (reference - reference.dot(axis) * axis).normalized(), v = axis.cross(u);
+  std::vector<Index> picked;
+  for (int k = 0; k < pattern.count; ++k) {
+    // In the middle of the k-th sector: with four, of the quadrant.
+    const double angle = 2 * std::numbers::pi * (k + 0.5) / pattern.count;
+    const Vec3 direction = std::cos(angle) * u + std::sin(angle) * v;
+    const double shift = (k % 2 == 0 ? 1 : -1) * pattern.stagger;
+    double least = std::numeric_limits<double>::max();
+    Index best = kNoIndex;
+    for (const Index t : triangles) {
+      if (std::find(picked.begin(), picked.end(), t) != picked.end()) continue;
+      const Vec3 d = triangle_centroid(mesh, t) - sphere.ball.center;
+      const double along = d.dot(axis) / sphere.ball.radius;
+      const double turned = std::acos(std::clamp((d - d.dot(axis) * axis).normalized().dot(direction), -1.0, 1.0));
+      const double cost = std::abs(along - shift) + turned;
+      if (cost < least) {
+        least = cost;
+        best = t;
+      }
+    }
+    if (best == kNoIndex) break;
+    picked.push_back(best);
+  }
+  return picked;
+}
+
+// Weights that sum to one and put the centre exactly, as close to equal as that allows: a minimum-norm change.
+std::vector<double> solve_weights(const Mesh& mesh, const std::vector<Index>& pivots, const Ball& ball) {
+  const auto n = static_cast<Eigen::Index>(pivots.size());
+  Eigen::MatrixXd rows(4, n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    rows.block<3, 1>(0, k) = (triangle_centroid(mesh, pivots[static_cast<std::size_t>(k)]) - ball.center) / ball.radius;
+    rows(3, k) = 1;
+  }
+  const Eigen::VectorXd even = Eigen::VectorXd::Constant(n, 1.0 / static_cast<double>(n));
+  const Eigen::Vector4d wanted(0, 0, 0, 1);
+  const Eigen::VectorXd weights = even + rows.completeOrthogonalDecomposition().solve(wanted - rows * even);
+  if ((rows * weights - wanted).norm() > 1e-9) return {};  // pivots in one plane cannot carry a centre outside it
+  return {weights.data(), weights.data() + n};
+}
+
+double sum_of_magnitudes(const std::vector<double>& weights) {
+  double sum = 0;
+  for (const double w : weights) sum += std::abs(w);
+  return sum;
+}
+
+}  // namespace
+
+std::vector<BoundPivot> choose_pivots(const Mesh& mesh, const std::vector<Index>& triangles, const FittedSphere& sphere,
+                                      const Vec3& reference, RefitRule rule) {
+  std::vector<BoundPivot> pivots;
+  if (rule == RefitRule::kPaper) {
+    const std::vector<Index> picked = pick(mesh, triangles, sphere, reference, {4, 0});
+    for (const Index t : picked) pivots.push_back({t, 1.0 / static_cast<double>(picked.size())});
+    return pivots;
+  }
+  // Four pivots in one plane are an ill-posed system (weights of 49 were seen). Staggered ones are not; where skin is on one
+  // side only, more of them and farther apart help.
+  constexpr double kIllPosed = 1.5;
+  double least = std::numeric_limits<double>::max();
+  for (const Pattern& pattern : {Pattern{8, 0.35}, Pattern{8, 0.6}, Pattern{12, 0.5}, Pattern{16, 0.5}, Pattern{16, 0.9}}) {
+    const std::vector<Index> picked = pick(mesh, triangles, sphere, reference, pattern);
+    const std::vector<double> weights = solve_weights(mesh, picked, sphere.ball);
+    const double sum = sum_of_magnitudes(weights);
+    if (weights.empty() || sum >= least) continue;
+    least = sum;
+    pivots.clear();
+    for (std::size_t k = 0; k < picked.size(); ++k) pivots.push_back({picked[k], weights[k]});
+    if (sum <= kIllPosed) return pivots;
+  }
+  return {};
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "cli/commands.h"
+#include "cli/files.h"
+#include "pipeline/pipeline.h"
+#include "report/report.h"
+#include "write/write.h"
+
+namespace spherechain::baker {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Baking onto the input, or onto a file that is no asset, is most likely a slip: nothing is lost to it.
+void check_output(const BakeOptions& options) {
+  std::error_code ignored;
+  if (fs::equivalent(options.input, options.output, ignored)) {
+    throw Error(ExitCode::kUsage, options.output + ": input and output are the same file");
+  }
+  if (!options.report.empty() && fs::weakly_canonical(options.report) == fs::weakly_canonical(options.output)) {
+    throw Error(ExitCode::kUsage, options.report + ": report and asset are the same file");
+  }
+  if (options.force || !fs::is_regular_file(options.output, ignored) || fs::file_size(options.output, ignored) == 0) return;
+  const std::string there = read_file(options.output);
+  if (there.size() < 8 || there.compare(4, 4, "SPHC") != 0) {
+    throw Error(ExitCode::kFile, options.output + ": exists and is not an asset (--force replaces it)");
+  }
+}
+
+}  // namespace
+
+ExitCode run_bake(const BakeOptions& options) {
+  const BakeSettings settings = make_settings(options.profile, options.config.empty() ? "{}" : read_file(options.config), options.config);
+  if (!fs::exists(options.input)) throw Error(ExitCode::kFile, options.input + ": no such file");
+  check_output(options);
+
+  Bake result;
+  {
+    Progress progress("bake " + options.input + ":");
+    result = bake(options.input, settings, [&](const std::string& stage) { progress.show(stage); });
+  }
+  // The report first: where it cannot be written, no asset without one stays behind.
+  if (!options.report.empty()) write_atomically(options.report, bake_report_json(result));
+  write_atomically(options.output, {reinterpret_cast<const char*>(result.asset.data()), result.asset.size()});
+
+  fmt::print("{}", bake_report_text(result));
+  fmt::print("wrote {} ({} bytes)\n", options.output, result.asset.size());
+  if (!options.report.empty()) fmt::print("wrote {}\n", options.report);
+  const std::vector<std::string> missed = missed_targets(result);
+  for (const std::string& target : missed) fmt::print(stderr, "spherechain: target missed: {}: {}\n", options.input, target);
+  return missed.empty() ? ExitCode::kDone : ExitCode::kTargetMissed;
+}
+
+}  // namespace spherechain::baker

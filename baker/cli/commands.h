@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+#include "mesh/error.h"
+
+namespace spherechain::baker {
+
+// One struct of options and one function a subcommand. They throw Error; what they return is the exit code.
+
+struct BakeOptions {
+  std::string input, output, config, report;
+  std::string profile = "balanced";
+  bool force = false;
+};
+ExitCode run_bake(const BakeOptions& options);
+
+struct InspectOptions {
+  std::string asset;
+  bool json = false;
+};
+ExitCode run_inspect(const InspectOptions& options);
+
+struct PlayOptions {
+  std::string asset, source, poses, json;
+  int frames = 40;
+  double fps = 30;
+  std::string mode = "both", radius = "detect", backend = "auto";
+};
+ExitCode run_play(const PlayOptions& options);
+
+}  // namespace spherechain::baker

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/files.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "mesh/error.h"
+
+namespace spherechain::baker {
+
+std::string read_file(const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) throw Error(ExitCode::kFile, path + ": no such file");
+  if (std::filesystem::is_directory(path, ignored)) throw Error(ExitCode::kFile, path + ": is a folder");
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream bytes;
+  if (in.peek() != std::ifstream::traits_type::eof()) bytes << in.rdbuf();
+  if (!in.is_open() || in.bad()) throw Error(ExitCode::kFile, path + ": cannot be read");
+  return std::move(bytes).str();
+}
+
+AssetFile open_asset(const std::string& path) {
+  const std::string bytes = read_file(path);
+  AssetFile file;
+  file.bytes = std::make_unique<std::uint64_t[]>(bytes.size() / sizeof(std::uint64_t) + 1);
+  std::memcpy(file.bytes.get(), bytes.data(), bytes.size());
+  char message[256] = "";
+  const Status status = file.asset.open(file.bytes.get(), bytes.size(), message, sizeof(message));
+  if (status != Status::kOk) {
+    throw Error(ExitCode::kFile, path + ": " + to_string(status) + (message[0] ? std::string(": ") + message : "") + " (bake it again)");
+  }
+  return file;
+}
+
+Progress::Progress(std::string title) : title_(std::move(title)), terminal_(::isatty(STDERR_FILENO) == 1) {}
+
+Progress::~Progress() {
+  if (terminal_) std::fprintf(stderr, "\r\033[K");
+}
+
+void Progress::show(const std::string& text) {
+  if (terminal_) std::fprintf(stderr, "\r\033[K%s %s", title_.c_str(), text.c_str());
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include "cli/commands.h"
+#include "cli/files.h"
+#include "report/report.h"
+
+namespace spherechain::baker {
+
+ExitCode run_inspect(const InspectOptions& options) {
+  const AssetFile file = open_asset(options.asset);
+  fmt::print("{}", options.json ? inspect_json(file.asset) : inspect_text(file.asset));
+  return ExitCode::kDone;
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// spherechain: the command line tool. README.md has the contract.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <functional>
+
+#include "cli/commands.h"
+#include "write/version.h"
+
+namespace {
+
+using namespace spherechain::baker;
+
+// Control characters in a file's name or an importer's words must not break "one line" apart.
+std::string one_line(std::string text) {
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < 0x20) c = ' ';
+  }
+  while (!text.empty() && text.back() == ' ') text.pop_back();
+  return text;
+}
+
+int fail(ExitCode code, const std::string& message) {
+  std::fprintf(stderr, "spherechain: error: %s\n", one_line(message).c_str());
+  return static_cast<int>(code);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Self-collision of animated characters by sphere chains."};
+  app.name("spherechain");
+  app.set_version_flag("--version", std::string("spherechain ") + kVersion);
+  app.require_subcommand(1);
+  app.footer("Exit: 0 done; 1 internal error; 2 usage; 3 a file cannot be read or written, or is not what it should be;\n"
+             "4 the mesh cannot be segmented; 5 done, but a target in the settings was not met.");
+  std::function<ExitCode()> run;
+
+  BakeOptions bake;
+  CLI::App* bake_command = app.add_subcommand("bake", "Turn a character into an asset");
+  bake_command->add_option("INPUT", bake.input, "Mesh: anything assimp reads")->required();
+  bake_command->add_option("-o,--output", bake.output, "Asset to write (.sphc)")->required();
+  bake_command->add_option("--config", bake.config, "JSON file that changes the profile's settings");
+  bake_command->add_option("--profile", bake.profile, "Where the settings start")->check(CLI::IsMember({"paper", "balanced"}))->capture_default_str();
+  bake_command->add_option("--report", bake.report, "JSON report to write");
+  bake_command->add_flag("--force", bake.force, "Replace an output file that is not an asset");
+  bake_command->callback([&] { run = [&] { return run_bake(bake); }; });
+
+  InspectOptions inspect;
+  CLI::App* inspect_command = app.add_subcommand("inspect", "Print what an asset holds");
+  inspect_command->add_option("ASSET", inspect.asset, "Asset (.sphc)")->required();
+  inspect_command->add_flag("--json", inspect.json, "As JSON");
+  inspect_command->callback([&] { run = [&] { return run_inspect(inspect); }; });
+
+  PlayOptions play;
+  CLI::App* play_command = app.add_subcommand("play", "Animate an asset's source and report which spheres touch");
+  play_command->add_option("ASSET", play.asset, "Asset (.sphc)")->required();
+  play_command->add_option("--source", play.source, "The mesh it was baked from")->required();
+  play_command->add_option("--poses", play.poses, "Pose file to move through; without it the rest pose is held");
+  play_command->add_option("--frames", play.frames, "Number of frames, from the rest pose to the last pose")->check(CLI::Range(1, 1000000))->capture_default_str();
+  play_command->add_option("--fps", play.fps, "Frames a second, for the frames' times")->check(CLI::Range(1e-3, 1e6))->capture_default_str();
+  play_command->add_option("--mode", play.mode, "Overlap test: chains, all spheres, or both")->check(CLI::IsMember({"m1", "m2", "both"}))->capture_default_str();
+  play_command->add_option("--radius", play.radius, "Radius pairs are reported at")->check(CLI::IsMember({"fit", "detect"}))->capture_default_str();
+  play_command->add_option("--backend", play.backend, "Arithmetic; this build has 'scalar'")->check(CLI::IsMember({"auto", "scalar"}))->capture_default_str();
+  play_command->add_option("--json", play.json, "JSON file to write");
+  play_command->callback([&] { run = [&] { return run_play(play); }; });
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::CallForHelp& help) {
+    return app.exit(help);
+  } catch (const CLI::CallForAllHelp& help) {
+    return app.exit(help);
+  } catch (const CLI::CallForVersion& version) {
+    return app.exit(version);
+  } catch (const CLI::ParseError& error) {
+    return fail(ExitCode::kUsage, std::string(error.what()) + " (try spherechain --help)");
+  }
+  try {
+    return static_cast<int>(run());
+  } catch (const Error& error) {
+    return fail(error.code(), error.what());
+  } catch (const std::exception& error) {
+    return fail(ExitCode::kInternal, std::string("internal error: ") + error.what());
+  }
+}

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/pipeline.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "write/write.h"
+
+namespace spherechain::baker {
+namespace {
+
+double mean_abs_f(const Bake& bake) {
+  double sum = 0;
+  for (const TorsoFit& fit : bake.spheres.torso) {
+    sum += f_error(fit.phi1_adjusted, bake.character.body, fit.vertices).mean_abs;
+  }
+  return sum / static_cast<double>(bake.spheres.torso.size());
+}
+
+}  // namespace
+
+Bake bake(const std::filesystem::path& input, const BakeSettings& settings,
+          const std::function<void(const std::string&)>& progress) {
+  Bake out;
+  out.settings = settings;
+  const auto stage = [&](const char* name, const auto& run) {
+    if (progress) progress(name);
+    const auto start = std::chrono::steady_clock::now();
+    run();
+    out.times.push_back({name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
+  };
+  stage("import", [&] { out.character = import_character(input); });
+  stage("segment", [&] { out.regions = segment(out.character, settings.segment); });
+  stage("fit", [&] { out.spheres = fit_spheres(out.character, out.regions, settings.fit); });
+  stage("chains", [&] {
+    std::vector<LimbPlace> limbs;
+    for (std::uint8_t i = 0; i < kTorso; ++i) limbs.push_back({i, out.regions.limbs[i].left, out.regions.limbs[i].top});
+    out.chains = build_chains(out.spheres, limbs);
+  });
+  stage("bind", [&] { out.binding = bind_spheres(out.character, out.regions, out.spheres, out.chains, settings.bind); });
+  stage("rig", [&] { out.joints = place_joints(out.character, out.regions); });
+  stage("write", [&] {
+    out.asset = serialize({out.character, out.regions, out.spheres, out.chains, out.binding, out.joints, to_json(settings)});
+  });
+  return out;
+}
+
+double covered_area(const Bake& bake) {
+  const Mesh& mesh = bake.character.body;
+  double covered = 0, total = 0;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const BoundSphere& sphere = bake.binding.spheres[bake.binding.sphere_of_triangle[t]];
+    const double area = triangle_area(mesh, t);
+    total += area;
+    if ((triangle_centroid(mesh, t) - sphere.rest.center).norm() <= sphere.detect_radius) covered += area;
+  }
+  return covered / total;
+}
+
+std::vector<std::string> missed_targets(const Bake& bake) {
+  const Targets& targets = bake.settings.targets;
+  std::vector<std::string> missed;
+  if (targets.max_spheres && bake.spheres.spheres.size() > *targets.max_spheres) {
+    missed.push_back(fmt::format("max_spheres: {} asked, {} needed", *targets.max_spheres, bake.spheres.spheres.size()));
+  }
+  const double f = mean_abs_f(bake) / bake.regions.frame.height;
+  if (targets.max_mean_abs_f && f > *targets.max_mean_abs_f) {
+    missed.push_back(fmt::format("max_mean_abs_f: {:.4g} asked, {:.4g} reached", *targets.max_mean_abs_f, f));
+  }
+  const double covered = covered_area(bake);
+  if (targets.min_covered_area && covered < *targets.min_covered_area) {
+    missed.push_back(fmt::format("min_covered_area: {:.4g} asked, {:.4g} reached", *targets.min_covered_area, covered));
+  }
+  return missed;
+}
+
+}  // namespace spherechain::baker

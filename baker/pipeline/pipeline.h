@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bind/bind.h"
+#include "chains/chains.h"
+#include "fit/fit.h"
+#include "import/import.h"
+#include "rig/rig.h"
+#include "segment/segment.h"
+
+namespace spherechain::baker {
+
+// What a bake has to reach; where it does not, the asset is written and the exit code says so.
+struct Targets {
+  std::optional<std::size_t> max_spheres;
+  std::optional<double> max_mean_abs_f;    // of phi1' over the torso; fraction of the height
+  std::optional<double> min_covered_area;  // share of the surface within its sphere's detect radius
+};
+
+struct BakeSettings {
+  SegmentSettings segment;
+  FitSettings fit;
+  BindSettings bind;
+  Targets targets;
+};
+
+// "paper" (the paper's refit on 4 pivots) or "balanced" (calibrated refit), changed by a JSON text. Throws Error(kFile) that
+// names `file` where the JSON is broken, has an unknown key or a value out of its range; Error(kUsage) for another profile.
+BakeSettings make_settings(const std::string& profile, const std::string& json, const std::string& file);
+
+// The settings as canonical JSON: all keys, sorted, no spaces.
+std::string to_json(const BakeSettings& settings);
+
+struct StageTime {
+  std::string stage;
+  double seconds;
+};
+
+// All stages' results, import to write.
+struct Bake {
+  BakeSettings settings;
+  Character character;
+  Regions regions;
+  Spheres spheres;
+  Chains chains;
+  Binding binding;
+  std::vector<Joint> joints;
+  std::vector<std::uint8_t> asset;
+  std::vector<StageTime> times;
+};
+
+// Runs every stage. `progress` is told each stage's name before it runs; it may be empty.
+Bake bake(const std::filesystem::path& input, const BakeSettings& settings,
+          const std::function<void(const std::string&)>& progress);
+
+// Share of the body's area whose triangles have their centroid within their sphere's detect radius.
+double covered_area(const Bake& bake);
+
+// What the settings ask for and the bake has not reached, a sentence each.
+std::vector<std::string> missed_targets(const Bake& bake);
+
+}  // namespace spherechain::baker

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "mesh/error.h"
+#include "pipeline/pipeline.h"
+
+namespace spherechain::baker {
+namespace {
+
+using nlohmann::json;
+
+class Reader {
+ public:
+  Reader(const json& object, std::string file) : object_(object), file_(std::move(file)) {}
+
+  [[noreturn]] void fail(const std::string& key, const std::string& what) const {
+    throw Error(ExitCode::kFile, file_ + ": setting '" + key + "' " + what);
+  }
+
+  void number(const char* key, double& value, double low, double high) {
+    if (!take(key)) return;
+    const json& v = object_[key];
+    if (!v.is_number() || !(v.get<double>() >= low && v.get<double>() <= high)) {
+      fail(key, "is not a number from " + json(low).dump() + " to " + json(high).dump());
+    }
+    value = v.get<double>();
+  }
+
+  void integer(const char* key, int& value, int low, int high) {
+    if (!take(key)) return;
+    const json& v = object_[key];
+    if (!v.is_number_integer() || v.get<std::int64_t>() < low || v.get<std::int64_t>() > high) {
+      fail(key, "is not a whole number from " + std::to_string(low) + " to " + std::to_string(high));
+    }
+    value = v.get<int>();
+  }
+
+  void vector(const char* key, std::optional<Vec3>& value) {
+    if (!take(key) || object_[key].is_null()) return;
+    const json& v = object_[key];
+    Vec3 read = Vec3::Zero();
+    if (v.is_array() && v.size() == 3 && v[0].is_number() && v[1].is_number() && v[2].is_number()) {
+      read = Vec3(v[0].get<double>(), v[1].get<double>(), v[2].get<double>());
+    }
+    if (!(read.norm() > 0) || !read.allFinite()) fail(key, "is not a direction [x, y, z]");
+    value = read;
+  }
+
+  void text(const char* key, const std::vector<std::string>& choices, const std::function<void(const std::string&)>& set) {
+    if (!take(key)) return;
+    std::string list;
+    for (const std::string& choice : choices) {
+      if (object_[key] == choice) return set(choice);
+      list += (list.empty() ? "" : ", ") + choice;
+    }
+    fail(key, "is not one of: " + list);
+  }
+
+  const json* object(const char* key) { return take(key) ? &object_[key] : nullptr; }
+
+  void done() const {
+    for (const auto& [key, value] : object_.items()) {
+      if (!known_.contains(key)) fail(key, "is unknown");
+    }
+  }
+
+ private:
+  bool take(const char* key) {
+    known_[key] = true;
+    return object_.contains(key);
+  }
+  const json& object_;
+  std::string file_;
+  json known_ = json::object();
+};
+
+json parse(const std::string& text, const std::string& file) {
+  try {
+    json parsed = json::parse(text);
+    if (parsed.is_object()) return parsed;
+  } catch (const json::parse_error& e) {
+    throw Error(ExitCode::kFile, file + ": is not JSON (" + e.what() + ")");
+  }
+  throw Error(ExitCode::kFile, file + ": is not a JSON object");
+}
+
+}  // namespace
+
+BakeSettings make_settings(const std::string& profile, const std::string& text, const std::string& file) {
+  BakeSettings settings;
+  if (profile == "paper") {
+    settings.bind.rule = RefitRule::kPaper;
+  } else if (profile != "balanced") {
+    throw Error(ExitCode::kUsage, "profile '" + profile + "' is neither 'paper' nor 'balanced'");
+  }
+  const json object = parse(text, file);
+  Reader reader(object, file);
+  reader.integer("rays", settings.fit.rays, 8, 4096);
+  settings.segment.rays = settings.fit.rays;
+  reader.number("penetration_depth", settings.fit.penetration_depth, 0, 0.9);
+  settings.bind.penetration_depth = settings.fit.penetration_depth;
+  reader.number("delta", settings.fit.delta, 1e-4, 0.2);
+  reader.number("limb_step", settings.fit.limb_step, 1e-4, 0.05);
+  reader.vector("facing", settings.segment.facing);
+  reader.text("refit", {"paper", "calibrated"}, [&](const std::string& rule) {
+    settings.bind.rule = rule == "paper" ? RefitRule::kPaper : RefitRule::kCalibrated;
+  });
+  reader.number("detect_quantile", settings.bind.detect_quantile, 0, 1);
+  reader.number("near_fraction", settings.bind.near_fraction, 0, 0.99);
+  if (const json* targets = reader.object("targets")) {
+    if (!targets->is_object()) reader.fail("targets", "is not an object");
+    Reader inner(*targets, file + ": targets");
+    int spheres = 0;
+    double value = 0;
+    inner.integer("max_spheres", spheres, 1, 65535);
+    if (targets->contains("max_spheres")) settings.targets.max_spheres = static_cast<std::size_t>(spheres);
+    inner.number("max_mean_abs_f", value, 0, 1);
+    if (targets->contains("max_mean_abs_f")) settings.targets.max_mean_abs_f = value;
+    inner.number("min_covered_area", value, 0, 1);
+    if (targets->contains("min_covered_area")) settings.targets.min_covered_area = value;
+    inner.done();
+  }
+  reader.done();
+  return settings;
+}
+
+std::string to_json(const BakeSettings& settings) {
+  json out;
+  out["rays"] = settings.fit.rays;
+  out["penetration_depth"] = settings.fit.penetration_depth;
+  out["delta"] = settings.fit.delta;
+  out["limb_step"] = settings.fit.limb_step;
+  out["facing"] = nullptr;
+  if (const auto& facing = settings.segment.facing) out["facing"] = {facing->x(), facing->y(), facing->z()};
+  out["refit"] = settings.bind.rule == RefitRule::kPaper ? "paper" : "calibrated";
+  out["detect_quantile"] = settings.bind.detect_quantile;
+  out["near_fraction"] = settings.bind.near_fraction;
+  json targets = json::object();
+  if (settings.targets.max_spheres) targets["max_spheres"] = *settings.targets.max_spheres;
+  if (settings.targets.max_mean_abs_f) targets["max_mean_abs_f"] = *settings.targets.max_mean_abs_f;
+  if (settings.targets.min_covered_area) targets["min_covered_area"] = *settings.targets.min_covered_area;
+  out["targets"] = std::move(targets);
+  return out.dump();
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "report/report.h"
+#include "write/version.h"
+
+namespace spherechain::baker {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json to_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+ordered_json import_section(const Bake& bake) {
+  const ImportReport& report = bake.character.report;
+  return {{"importer", report.importer},
+          {"meshes", report.meshes},
+          {"components", report.components},
+          {"source_vertices", bake.character.source_positions.size()},
+          {"source_triangles", bake.character.source_triangle_count},
+          {"welded_vertices", report.welded_vertices},
+          {"body_vertices", bake.character.body.positions.size()},
+          {"body_triangles", bake.character.body.triangles.size()},
+          {"other_triangles", bake.character.others.triangles.size()},
+          {"degenerate_dropped", report.degenerate_dropped},
+          {"duplicates_dropped", report.duplicates_dropped},
+          {"points_and_lines_dropped", report.points_and_lines_dropped},
+          {"metres_per_unit", bake.character.metres_per_unit},
+          {"up_axis_of_file", to_json(bake.character.up_hint)}};
+}
+
+double region_area(const Bake& bake, std::size_t region) {
+  double area = 0;
+  for (std::size_t t = 0; t < bake.character.body.triangles.size(); ++t) {
+    if (bake.regions.of_triangle[t] == region) area += triangle_area(bake.character.body, t);
+  }
+  return area;
+}
+
+ordered_json segment_section(const Bake& bake) {
+  const BodyFrame& frame = bake.regions.frame;
+  ordered_json regions = ordered_json::array();
+  for (std::size_t r = 0; r < kRegionCount; ++r) {
+    ordered_json entry{{"name", kRegionNames[r]},
+                       {"triangles", std::count(bake.regions.of_triangle.begin(), bake.regions.of_triangle.end(), r)},
+                       {"area", region_area(bake, r)}};
+    if (r < kTorso) {
+      entry["length_to_wrist_or_ankle"] = bake.regions.limbs[r].extremity;
+      entry["starts_at"] = to_json(bake.regions.limbs[r].line.at(0));
+    }
+    regions.push_back(std::move(entry));
+  }
+  return {{"provider", "shape"},
+          {"facing", bake.regions.facing},
+          {"height", frame.height},
+          {"left", to_json(frame.left)},
+          {"up", to_json(frame.up)},
+          {"forward", to_json(frame.forward)},
+          {"regions", std::move(regions)}};
+}
+
+ordered_json fit_entry(const Ball& ball, const TorsoFit& fit, const Mesh& mesh) {
+  const FError error = f_error(ball, mesh, fit.vertices);
+  ordered_json f = ordered_json::array();
+  for (const Index v : fit.vertices) f.push_back(signed_f(ball, mesh.positions[v]));
+  return {{"center", to_json(ball.center)}, {"radius", ball.radius}, {"mean_abs_F", error.mean_abs}, {"max_abs_F", error.max_abs},
+          {"F", std::move(f)}};
+}
+
+ordered_json fit_section(const Bake& bake) {
+  const Mesh& mesh = bake.character.body;
+  ordered_json torso = ordered_json::array();
+  for (std::size_t i = 0; i < bake.spheres.torso.size(); ++i) {
+    const TorsoFit& fit = bake.spheres.torso[i];
+    ordered_json vertices = ordered_json::array();
+    for (const Index v : fit.vertices) vertices.push_back(to_json(mesh.positions[v]));
+    torso.push_back({{"sphere", i},
+                     {"level", bake.spheres.spheres[i].level},
+                     {"side", bake.spheres.spheres[i].side == Side::kLeft ? "left" : "right"},
+                     {"vertices", std::move(vertices)},
+                     {"phi1", fit_entry(fit.phi1, fit, mesh)},
+                     {"phi1_adjusted", fit_entry(fit.phi1_adjusted, fit, mesh)},
+                     {"phi2", fit_entry(fit.phi2, fit, mesh)}});
+  }
+  ordered_json limbs = ordered_json::array();
+  for (std::size_t r = 0; r < kTorso; ++r) {
+    const std::vector<std::uint32_t>& ids = bake.spheres.of_region[r];
+    ordered_json depths = ordered_json::array();
+    for (std::size_t i = 1; i < ids.size(); ++i) {
+      depths.push_back(penetration_depth(bake.spheres.spheres[ids[i - 1]].ball, bake.spheres.spheres[ids[i]].ball));
+    }
+    limbs.push_back({{"name", kRegionNames[r]}, {"spheres", ids.size()}, {"penetration_depths", std::move(depths)}});
+  }
+  return {{"torso", std::move(torso)}, {"limbs", std::move(limbs)}};
+}
+
+// A march at penetration depth PD takes about length / (2 r (1 - PD)) spheres.
+std::string why_this_count(const Bake& bake) {
+  std::string why;
+  for (std::size_t r = 0; r < kTorso; ++r) {
+    double radius = 0;
+    for (const std::uint32_t i : bake.spheres.of_region[r]) radius += bake.spheres.spheres[i].ball.radius;
+    const std::size_t count = bake.spheres.of_region[r].size();
+    why += fmt::format("{}{} {} (length {:.3f}, mean radius {:.4f})", r == 0 ? "" : ", ", kRegionNames[r], count,
+                       bake.regions.limbs[r].extremity, radius / static_cast<double>(count));
+  }
+  why += fmt::format(", torso {} (levels {}). Limb spheres touch the skin: their radius is the distance to it, the shortest "
+                     "ray, and not the mean ray; smaller spheres, so more of them at the same penetration depth.",
+                     bake.spheres.of_region[kTorso].size(), bake.spheres.level_heights.size());
+  return why;
+}
+
+ordered_json counts_section(const Bake& bake) {
+  const std::size_t n = bake.spheres.spheres.size();
+  std::size_t m1_tests = 0;
+  const auto ignored = [&](std::uint32_t a, std::uint32_t b) {
+    return std::binary_search(bake.binding.ignored.begin(), bake.binding.ignored.end(), std::pair<std::uint32_t, std::uint32_t>(std::minmax(a, b)));
+  };
+  for (const Chain& chain : bake.chains.chains) {
+    for (std::size_t i = 0; i < chain.spheres.size(); ++i) {
+      for (std::size_t j = i + 1; j < chain.spheres.size(); ++j) m1_tests += ignored(chain.spheres[i], chain.spheres[j]) ? 0 : 1;
+    }
+  }
+  return {{"spheres", n},
+          {"why", why_this_count(bake)},
+          {"paper", {{"spheres_by_its_chain_counts", 46}, {"spheres_as_stated", 80}, {"chain_entries", 138}}},
+          {"chain_entries", bake.chains.entries()},
+          {"chain_entries_table1", bake.chains.entries_table1},
+          {"m1_tests", m1_tests},
+          {"m2_tests", n * (n - 1) / 2 - bake.binding.ignored.size()},
+          {"ignored_pairs", bake.binding.ignored.size()},
+          {"near_pairs_fit", bake.binding.near_fit.size()},
+          {"near_pairs_detect", bake.binding.near_detect.size()}};
+}
+
+ordered_json bind_section(const Bake& bake) {
+  ordered_json spheres = ordered_json::array();
+  for (std::size_t i = 0; i < bake.binding.spheres.size(); ++i) {
+    const BoundSphere& sphere = bake.binding.spheres[i];
+    spheres.push_back({{"sphere", i},
+                       {"pivots", sphere.pivots.size()},
+                       {"sum_of_weight_magnitudes", sphere.weight_sum},
+                       {"radius", sphere.rest.radius},
+                       {"detect_radius", sphere.detect_radius},
+                       {"moved_by_refit_at_rest", (sphere.rest.center - bake.spheres.spheres[i].ball.center).norm()}});
+  }
+  return {{"refit", bake.binding.rule == RefitRule::kPaper ? "paper" : "calibrated"},
+          {"covered_area", covered_area(bake)},
+          {"spheres", std::move(spheres)}};
+}
+
+}  // namespace
+
+double peak_memory_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<double>(usage.ru_maxrss) / 1024;
+}
+
+std::string bake_report_json(const Bake& bake) {
+  ordered_json stages = ordered_json::array();
+  double total = 0;
+  for (const StageTime& time : bake.times) {
+    stages.push_back({{"stage", time.stage}, {"seconds", time.seconds}});
+    total += time.seconds;
+  }
+  const ordered_json report{{"writer", std::string("spherechain ") + kVersion},
+                            {"source", {{"file", bake.character.file}, {"sha256", bake.character.sha256}}},
+                            {"settings", ordered_json::parse(to_json(bake.settings))},
+                            {"import", import_section(bake)},
+                            {"segment", segment_section(bake)},
+                            {"counts", counts_section(bake)},
+                            {"fit", fit_section(bake)},
+                            {"bind", bind_section(bake)},
+                            {"missed_targets", missed_targets(bake)},
+                            {"stages", std::move(stages)},
+                            {"total_seconds", total},
+                            {"peak_memory_mb", peak_memory_mb()}};
+  return report.dump(1) + "\n";
+}
+
+std::string bake_report_text(const Bake& bake) {
+  const Mesh& mesh = bake.character.body;
+  const double mm = 1000 * bake.character.metres_per_unit;
+  std::string out = fmt::format("{}: {} triangles ({} body), {} components, {:.3f} m tall; {}\n", bake.character.file,
+                                bake.character.source_triangle_count, mesh.triangles.size(), bake.character.report.components,
+                                bake.regions.frame.height * bake.character.metres_per_unit, bake.regions.facing);
+  out += fmt::format("\n{:<10} {:>9} {:>7}\n", "region", "triangles", "spheres");
+  for (std::size_t r = 0; r < kRegionCount; ++r) {
+    out += fmt::format("{:<10} {:>9} {:>7}\n", kRegionNames[r],
+                       std::count(bake.regions.of_triangle.begin(), bake.regions.of_triangle.end(), r),
+                       bake.spheres.of_region[r].size());
+  }
+  out += fmt::format("{} spheres, {} chain entries ({} as Table 1 counts), {} pairs ignored\n", bake.spheres.spheres.size(),
+                     bake.chains.entries(), bake.chains.entries_table1, bake.binding.ignored.size());
+
+  out += fmt::format("\nmean |F| in mm (max)\n{:<8} {:>14} {:>14} {:>14}\n", "sphere", "phi1", "phi1'", "phi2");
+  std::array<double, 3> sums{};
+  for (std::size_t i = 0; i < bake.spheres.torso.size(); ++i) {
+    const TorsoFit& fit = bake.spheres.torso[i];
+    out += fmt::format("{:<8}", fmt::format("{} {}{}", i, bake.spheres.spheres[i].side == Side::kLeft ? 'L' : 'R', bake.spheres.spheres[i].level));
+    std::size_t column = 0;
+    for (const Ball* ball : {&fit.phi1, &fit.phi1_adjusted, &fit.phi2}) {
+      const FError error = f_error(*ball, mesh, fit.vertices);
+      sums[column++] += error.mean_abs / static_cast<double>(bake.spheres.torso.size());
+      out += fmt::format(" {:>14}", fmt::format("{:.1f} ({:.1f})", mm * error.mean_abs, mm * error.max_abs));
+    }
+    out += "\n";
+  }
+  out += fmt::format("{:<8} {:>14.1f} {:>14.1f} {:>14.1f}\n", "mean", mm * sums[0], mm * sums[1], mm * sums[2]);
+
+  out += fmt::format("\n{:<10} {:>8}\n", "stage", "ms");
+  double total = 0;
+  for (const StageTime& time : bake.times) {
+    out += fmt::format("{:<10} {:>8.1f}\n", time.stage, 1e3 * time.seconds);
+    total += time.seconds;
+  }
+  out += fmt::format("{:<10} {:>8.1f}   peak memory {:.0f} MB\n", "total", 1e3 * total, peak_memory_mb());
+  return out;
+}
+
+}  // namespace spherechain::baker

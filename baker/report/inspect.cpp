@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <bit>
+#include <nlohmann/json.hpp>
+
+#include "report/report.h"
+
+namespace spherechain::baker {
+namespace {
+
+using nlohmann::ordered_json;
+
+const char* name_of(spherechain::Side side) {
+  switch (side) {
+    case spherechain::Side::kLeft:
+      return "left";
+    case spherechain::Side::kRight:
+      return "right";
+    case spherechain::Side::kNone:
+      break;
+  }
+  return "none";
+}
+
+std::size_t count_ignored(const Asset& asset) {
+  std::size_t count = 0;
+  for (const std::uint64_t word : asset.ignored()) count += static_cast<std::size_t>(std::popcount(word));
+  return count;
+}
+
+std::size_t count_chain_entries(const Asset& asset) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < asset.chain_count(); ++i) count += asset.chain(i).spheres.size;
+  return count;
+}
+
+std::size_t spheres_in_region(const Asset& asset, std::size_t region) {
+  std::size_t count = 0;
+  for (const RestSphere& sphere : asset.spheres()) count += sphere.region == region ? 1 : 0;
+  return count;
+}
+
+// Floats as the shortest decimals that give them back.
+ordered_json number(float value) { return ordered_json::parse(fmt::format("{}", value)); }
+ordered_json to_json(const spherechain::Vec3& v) { return {number(v.x), number(v.y), number(v.z)}; }
+ordered_json to_json(const FitError& e) { return {{"mean_abs_F", number(e.mean_abs_f)}, {"max_abs_F", number(e.max_abs_f)}}; }
+
+ordered_json sphere_json(const Asset& asset, std::size_t i) {
+  const RestSphere& sphere = asset.spheres()[i];
+  ordered_json pivots = ordered_json::array();
+  for (std::uint32_t k = 0; k < sphere.pivot_count; ++k) {
+    const Pivot& pivot = asset.pivots()[sphere.first_pivot + k];
+    pivots.push_back({{"vertices", {pivot.a, pivot.b, pivot.c}}, {"weight", number(pivot.weight)}});
+  }
+  return {{"id", i},
+          {"center", to_json(sphere.center)},
+          {"radius", number(sphere.radius)},
+          {"detect_radius", number(sphere.detect_radius)},
+          {"region", asset.region(sphere.region).name},
+          {"level", sphere.level},
+          {"side", name_of(sphere.side)},
+          {"triangles", sphere.triangle_count},
+          {"pivots", std::move(pivots)}};
+}
+
+}  // namespace
+
+std::string inspect_json(const Asset& asset) {
+  const AssetInfo info = asset.info();
+  ordered_json regions = ordered_json::array(), spheres = ordered_json::array(), chains = ordered_json::array(),
+               joints = ordered_json::array();
+  for (std::size_t r = 0; r < asset.region_count(); ++r) {
+    regions.push_back({{"name", asset.region(r).name},
+                       {"triangles", asset.region(r).triangle_count},
+                       {"spheres", spheres_in_region(asset, r)}});
+  }
+  for (std::size_t i = 0; i < asset.spheres().size; ++i) spheres.push_back(sphere_json(asset, i));
+  for (std::size_t c = 0; c < asset.chain_count(); ++c) {
+    const ChainView chain = asset.chain(c);
+    ordered_json names = ordered_json::array();
+    for (const std::uint8_t r : chain.regions) names.push_back(asset.region(r).name);
+    chains.push_back({{"name", chain.name},
+                      {"regions", std::move(names)},
+                      {"spheres", std::vector<std::uint32_t>(chain.spheres.begin(), chain.spheres.end())}});
+  }
+  for (std::size_t j = 0; j < asset.joint_count(); ++j) {
+    const JointView joint = asset.joint(j);
+    joints.push_back({{"name", joint.name}, {"parent", joint.parent}, {"position", to_json(joint.position)}, {"tail", to_json(joint.tail)}});
+  }
+  const ordered_json out{
+      {"format_version", info.format_version},
+      {"writer", info.writer},
+      {"settings", ordered_json::parse(info.settings, nullptr, false)},
+      {"settings_sha256", info.settings_sha256},
+      {"source",
+       {{"file", info.source_file},
+        {"sha256", info.source_sha256},
+        {"vertices", info.source_vertex_count},
+        {"triangles", info.source_triangle_count},
+        {"rest_hash", fmt::format("{:016x}", info.source_rest_hash)},
+        {"metres_per_unit", number(info.metres_per_unit)}}},
+      {"frame",
+       {{"origin", to_json(info.origin)},
+        {"left", to_json(info.left)},
+        {"up", to_json(info.up)},
+        {"forward", to_json(info.forward)},
+        {"height", number(info.height)}}},
+      {"refit", info.refit == spherechain::RefitRule::kPaper ? "paper" : "calibrated"},
+      {"sphere_count", asset.spheres().size},
+      {"chain_entries", count_chain_entries(asset)},
+      {"chain_entries_table1", info.chain_entries_table1},
+      {"ignored_pairs", count_ignored(asset)},
+      {"near_pairs", {{"fit", asset.near_pairs(RadiusKind::kFit).size}, {"detect", asset.near_pairs(RadiusKind::kDetect).size}}},
+      {"regions", std::move(regions)},
+      {"spheres", std::move(spheres)},
+      {"chains", std::move(chains)},
+      {"joints", std::move(joints)},
+      {"fit", {{"phi1", to_json(info.phi1)}, {"phi1_adjusted", to_json(info.phi1_adjusted)}, {"phi2", to_json(info.phi2)}}}};
+  // A name in a foreign asset may hold any bytes; JSON must not.
+  return out.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string inspect_text(const Asset& asset) {
+  const AssetInfo info = asset.info();
+  std::string out = fmt::format("format {}, written by {}\n", info.format_version, info.writer);
+  out += fmt::format("source   {} ({} vertices, {} triangles)\n         sha256 {}\n", info.source_file, info.source_vertex_count,
+                     info.source_triangle_count, info.source_sha256);
+  out += fmt::format("settings {}\n         sha256 {}\n", info.settings, info.settings_sha256);
+  out += fmt::format("refit    {}\n", info.refit == spherechain::RefitRule::kPaper ? "paper" : "calibrated");
+  out += fmt::format("spheres  {}, {} chain entries ({} as Table 1 counts), {} pairs ignored, {} joints\n", asset.spheres().size,
+                     count_chain_entries(asset), info.chain_entries_table1, count_ignored(asset), asset.joint_count());
+  out += fmt::format("\n{:<12} {:>9} {:>7}\n", "region", "triangles", "spheres");
+  for (std::size_t r = 0; r < asset.region_count(); ++r) {
+    out += fmt::format("{:<12} {:>9} {:>7}\n", asset.region(r).name, asset.region(r).triangle_count, spheres_in_region(asset, r));
+  }
+  for (std::size_t c = 0; c < asset.chain_count(); ++c) {
+    const ChainView chain = asset.chain(c);
+    out += fmt::format("{}{:<8}", c == 0 ? "\n" : "", chain.name);
+    for (const std::uint32_t i : chain.spheres) out += fmt::format(" {}", i);
+    out += "\n";
+  }
+  out += fmt::format("\nmean |F| over the torso: phi1 {:.4g}, phi1' {:.4g}, phi2 {:.4g} (source units)\n", info.phi1.mean_abs_f,
+                     info.phi1_adjusted.mean_abs_f, info.phi2.mean_abs_f);
+  return out;
+}
+
+}  // namespace spherechain::baker

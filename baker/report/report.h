@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+#include "pipeline/pipeline.h"
+#include "spherechain/asset.h"
+
+namespace spherechain::baker {
+
+// What the bake did and reached, as JSON: import counts, how left and right were decided, every torso sphere's three fits
+// with F at every vertex, pivots, radii, both readings of the paper's numbers, time of each stage, peak memory, targets.
+std::string bake_report_json(const Bake& bake);
+
+// The same in a screenful of text.
+std::string bake_report_text(const Bake& bake);
+
+// An asset's contents, as the command line contract has it; `text` for people.
+std::string inspect_json(const Asset& asset);
+std::string inspect_text(const Asset& asset);
+
+// The process's peak resident memory so far.
+double peak_memory_mb();
+
+}  // namespace spherechain::baker

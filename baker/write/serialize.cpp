@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
+#include "import/sha256.h"
+#include "mesh/error.h"
+#include "spherechain/asset.h"
+#include "sphere_chains_generated.h"
+#include "write/version.h"
+#include "write/write.h"
+
+namespace spherechain::baker {
+namespace {
+
+schema::Vec3 to_schema(const Vec3& v) {
+  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+}
+
+// Source triangles grouped by sphere, in source order within a group.
+struct SurroundingTriangles {
+  std::vector<std::uint32_t> triangles;
+  std::vector<std::uint32_t> first, count;
+};
+
+SurroundingTriangles group_triangles(const AssetSource& in) {
+  std::vector<std::vector<std::uint32_t>> groups(in.spheres.spheres.size());
+  const auto add = [&](const std::vector<std::uint32_t>& owner, const std::vector<Index>& source) {
+    for (std::size_t t = 0; t < owner.size(); ++t) groups[owner[t]].push_back(source[t]);
+  };
+  add(in.binding.sphere_of_triangle, in.character.body_source_triangle);
+  add(in.binding.sphere_of_other, in.character.others_source_triangle);
+  SurroundingTriangles out;
+  for (std::vector<std::uint32_t>& group : groups) {
+    std::sort(group.begin(), group.end());
+    out.first.push_back(static_cast<std::uint32_t>(out.triangles.size()));
+    out.count.push_back(static_cast<std::uint32_t>(group.size()));
+    out.triangles.insert(out.triangles.end(), group.begin(), group.end());
+  }
+  return out;
+}
+
+void add_spheres(const AssetSource& in, const SurroundingTriangles& triangles, std::vector<schema::Sphere>& spheres,
+                 std::vector<schema::Pivot>& pivots) {
+  for (std::size_t i = 0; i < in.spheres.spheres.size(); ++i) {
+    const FittedSphere& fitted = in.spheres.spheres[i];
+    const BoundSphere& bound = in.binding.spheres[i];
+    spheres.emplace_back(to_schema(bound.rest.center), static_cast<float>(bound.rest.radius),
+                         static_cast<float>(bound.detect_radius), static_cast<float>(bound.spread),
+                         static_cast<std::uint32_t>(pivots.size()), triangles.first[i], triangles.count[i],
+                         static_cast<std::uint16_t>(bound.pivots.size()), fitted.region,
+                         static_cast<schema::Side>(fitted.side), static_cast<std::int16_t>(fitted.level), std::uint16_t{0});
+    for (const BoundPivot& pivot : bound.pivots) {
+      const Triangle& corners = in.character.body_source_corners[pivot.triangle];
+      pivots.emplace_back(corners[0], corners[1], corners[2], static_cast<float>(pivot.weight));
+    }
+  }
+}
+
+std::vector<std::uint64_t> ignored_bits(const AssetSource& in) {
+  const std::size_t n = in.spheres.spheres.size();
+  std::vector<std::uint64_t> words((n * (n - 1) / 2 + 63) / 64, 0);
+  for (const auto& [a, b] : in.binding.ignored) {
+    const std::size_t bit = std::size_t{b} * (b - 1) / 2 + a;
+    words[bit / 64] |= std::uint64_t{1} << (bit % 64);
+  }
+  return words;
+}
+
+std::vector<schema::NearPair> to_schema(const std::vector<BoundPair>& pairs) {
+  std::vector<schema::NearPair> out;
+  for (const BoundPair& pair : pairs) out.emplace_back(pair.a, pair.b, static_cast<float>(pair.reach));
+  return out;
+}
+
+// Over the spheres that have all three fits, the torso's: mean of mean |F|, largest |F|.
+schema::FitError fit_error(const AssetSource& in, Ball TorsoFit::*which) {
+  FError sum;
+  for (const TorsoFit& fit : in.spheres.torso) {
+    const FError error = f_error(fit.*which, in.character.body, fit.vertices);
+    sum.mean_abs += error.mean_abs / static_cast<double>(in.spheres.torso.size());
+    sum.max_abs = std::max(sum.max_abs, error.max_abs);
+  }
+  return {static_cast<float>(sum.mean_abs), static_cast<float>(sum.max_abs)};
+}
+
+std::uint64_t rest_hash(const std::vector<Vec3>& positions) {
+  std::vector<float> packed;
+  packed.reserve(positions.size() * 3);
+  for (const Vec3& p : positions) {
+    for (int k = 0; k < 3; ++k) packed.push_back(static_cast<float>(p[k]));
+  }
+  return hash_positions(packed.data(), positions.size());
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> serialize(const AssetSource& in) {
+  flatbuffers::FlatBufferBuilder builder(1 << 20);
+  const SurroundingTriangles triangles = group_triangles(in);
+  std::vector<schema::Sphere> spheres;
+  std::vector<schema::Pivot> pivots;
+  add_spheres(in, triangles, spheres, pivots);
+
+  std::vector<flatbuffers::Offset<schema::Region>> regions;
+  for (std::size_t r = 0; r < kRegionCount; ++r) {
+    std::uint32_t count = 0;
+    for (const std::uint32_t i : in.spheres.of_region[r]) count += triangles.count[i];
+    regions.push_back(schema::CreateRegionDirect(builder, kRegionNames[r], count));
+  }
+  std::vector<flatbuffers::Offset<schema::Chain>> chains;
+  for (const Chain& chain : in.chains.chains) {
+    chains.push_back(schema::CreateChainDirect(builder, chain.name.c_str(), &chain.regions, &chain.spheres));
+  }
+  std::vector<flatbuffers::Offset<schema::Joint>> joints;
+  for (const Joint& joint : in.joints) {
+    const schema::Vec3 position = to_schema(joint.position), tail = to_schema(joint.tail);
+    joints.push_back(schema::CreateJointDirect(builder, joint.name.c_str(), joint.parent, &position, &tail));
+  }
+  const std::vector<std::uint64_t> ignored = ignored_bits(in);
+  const std::vector<schema::NearPair> near_fit = to_schema(in.binding.near_fit), near_detect = to_schema(in.binding.near_detect);
+
+  const std::string writer = std::string("spherechain ") + kVersion, settings_hash = sha256_of_text(in.settings);
+  const auto provenance =
+      schema::CreateProvenanceDirect(builder, writer.c_str(), in.settings.c_str(), settings_hash.c_str());
+  const auto source = schema::CreateSourceDirect(
+      builder, in.character.file.c_str(), in.character.sha256.c_str(),
+      static_cast<std::uint32_t>(in.character.source_positions.size()),
+      static_cast<std::uint32_t>(in.character.source_triangle_count), rest_hash(in.character.source_positions),
+      static_cast<float>(in.character.metres_per_unit));
+  const BodyFrame& f = in.regions.frame;
+  const schema::Vec3 origin = to_schema(f.origin), left = to_schema(f.left), up = to_schema(f.up), forward = to_schema(f.forward);
+  const auto frame = schema::CreateFrame(builder, &origin, &left, &up, &forward, static_cast<float>(f.height));
+  const schema::FitError phi1 = fit_error(in, &TorsoFit::phi1), adjusted = fit_error(in, &TorsoFit::phi1_adjusted),
+                         phi2 = fit_error(in, &TorsoFit::phi2);
+  const auto fit = schema::CreateFit(builder, &phi1, &adjusted, &phi2);
+
+  builder.Finish(schema::CreateAssetDirect(builder, kFormatVersion, provenance, source, frame,
+                                           in.binding.rule == RefitRule::kPaper ? schema::Refit::paper : schema::Refit::calibrated,
+                                           fit, &regions, &spheres, &pivots, &triangles.triangles, &chains,
+                                           static_cast<std::uint32_t>(in.chains.entries_table1), &ignored, &near_fit,
+                                           &near_detect, &joints),
+                 schema::AssetIdentifier());
+  std::vector<std::uint8_t> bytes(builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize());
+
+  Asset check;
+  char message[256];
+  if (check.open(bytes.data(), bytes.size(), message, sizeof(message)) != Status::kOk) {
+    throw Error(ExitCode::kInternal, in.character.file + ": the baked asset does not open: " + message);
+  }
+  return bytes;
+}
+
+}  // namespace spherechain::baker

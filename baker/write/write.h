@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "bind/bind.h"
+#include "rig/rig.h"
+
+namespace spherechain::baker {
+
+// Everything an asset is made of.
+struct AssetSource {
+  const Character& character;
+  const Regions& regions;
+  const Spheres& spheres;
+  const Chains& chains;
+  const Binding& binding;
+  const std::vector<Joint>& joints;
+  std::string settings;  // canonical JSON
+};
+
+// The bytes of a .sphc file: the same for the same input. Throws Error(kInternal) should the runtime not open them.
+std::vector<std::uint8_t> serialize(const AssetSource& source);
+
+// Writes next to `path` and renames, so that `path` is either whole or untouched. Throws Error(kFile).
+void write_atomically(const std::filesystem::path& path, std::string_view bytes);
+
+}  // namespace spherechain::baker
