@@ -12,7 +12,7 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr double kHeat = 1.0;       // c in H = c / d^2
+constexpr double kHeat = 3.0;       // c in H = c / d^2
 constexpr double kSmallest = 1e-3;  // lighter weights are dropped: what is far does not move at all
 constexpr double kTie = 1e-6;       // relative difference of distances that is none
 constexpr double kUnseen = 1e-3;    // pull on a vertex that sees no bone: its neighbours know better
@@ -167,20 +167,21 @@ Eigen::RowVectorXd give_way(const Eigen::RowVectorXd& row, const std::vector<std
   return out;
 }
 
-// The four largest, without traces, as a partition of one.
+// The four largest, without traces, as a partition of one. The fifth is taken off each, so that a joint is at zero
+// where it changes places with another: a cut would crease the skin.
 VertexWeights largest_four(const Eigen::RowVectorXd& row) {
   std::vector<Index> order;
   for (Index j = 0; j < row.size(); ++j) {
     if (row[j] > kSmallest) order.push_back(j);
   }
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return row[a] > row[b]; });
-  if (order.size() > 4) order.resize(4);
+  const double fifth = order.size() > 4 && row[order[0]] > row[order[4]] ? row[order[4]] : 0.0;
   VertexWeights weights;
   double sum = 0;
-  for (const Index j : order) sum += row[j];
-  for (std::size_t k = 0; k < order.size(); ++k) {
+  for (std::size_t k = 0; k < std::min<std::size_t>(order.size(), 4); ++k) sum += row[order[k]] - fifth;
+  for (std::size_t k = 0; k < std::min<std::size_t>(order.size(), 4) && row[order[k]] > fifth; ++k) {
     weights.joint[k] = order[k];
-    weights.weight[k] = row[order[k]] / sum;
+    weights.weight[k] = (row[order[k]] - fifth) / sum;
   }
   return weights;
 }
