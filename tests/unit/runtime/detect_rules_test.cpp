@@ -69,6 +69,26 @@ TEST_CASE("spheres overlap where they share a point inside both, not where they 
   CHECK(pairs_of(parts, {{1, 2, 3, 0.5F}, {1, 2, 3, 0}}).size() == 1);
 }
 
+TEST_CASE("the squared distance is summed in the order the header gives, where the last bit decides") {
+  const OpenedAsset opened(plain_asset(2));
+  std::mt19937 random(3);
+  int other_order_differs = 0, fused_differs = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const Sphere p{uniform(random, 0, 1), uniform(random, 0, 1), uniform(random, 0, 1), 0.0F};
+    Sphere q{uniform(random, 0, 1), uniform(random, 0, 1), uniform(random, 0, 1), 0.0F};
+    const float dx = p.x - q.x, dy = p.y - q.y, dz = p.z - q.z;
+    const float d2 = (dx * dx + dy * dy) + dz * dz;
+    q.radius = std::sqrt(d2);  // they touch, as nearly as a float can say
+    const float reach = q.radius * q.radius;
+    const bool overlaps = !detect(opened.asset, {p, q}, Method::kM2, RadiusKind::kFit).pairs.empty();
+    CHECK(overlaps == (d2 < reach));
+    other_order_differs += overlaps != (dx * dx + (dy * dy + dz * dz) < reach);
+    fused_differs += overlaps != (std::fma(dz, dz, std::fma(dy, dy, dx * dx)) < reach);
+  }
+  CHECK(other_order_differs > 100);
+  CHECK(fused_differs > 100);
+}
+
 TEST_CASE("an ignored pair is neither tested nor reported") {
   AssetParts parts = plain_asset(3);
   parts.ignored[0] = 1U << 1;  // bit b(b-1)/2 + a: a = 0, b = 2

@@ -45,6 +45,32 @@ Expected expected_sphere(const AssetParts& parts, std::size_t i, const std::vect
   return {center[0], center[1], center[2], radius};
 }
 
+// The header's fixed arithmetic, to the last bit.
+Sphere exact_sphere(const AssetParts& parts, const RestSphere& rest, const std::vector<float>& v, RadiusKind kind) {
+  std::vector<std::array<float, 3>> centroids;
+  float c[3] = {0, 0, 0};
+  for (std::size_t k = rest.first_pivot; k < rest.first_pivot + rest.pivot_count; ++k) {
+    const Pivot& pivot = parts.pivots[k];
+    std::array<float, 3> p{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float sum = v[3 * pivot.a + axis] + v[3 * pivot.b + axis];
+      p[axis] = (sum + v[3 * pivot.c + axis]) * (1.0F / 3);
+      c[axis] = c[axis] + pivot.weight * p[axis];
+    }
+    centroids.push_back(p);
+  }
+  float sum = 0;
+  for (const auto& p : centroids) {
+    const float dx = p[0] - c[0], dy = p[1] - c[1], dz = p[2] - c[2];
+    sum = sum + std::sqrt((dx * dx + dy * dy) + dz * dz);
+  }
+  const float mean = sum / static_cast<float>(rest.pivot_count);
+  const bool fit = kind == RadiusKind::kFit;
+  const float paper = fit ? mean : mean * (rest.detect_radius / rest.radius);
+  const float calibrated = (fit ? rest.radius : rest.detect_radius) * (mean / rest.pivot_spread);
+  return {c[0], c[1], c[2], parts.refit == 0 ? paper : calibrated};
+}
+
 void check_close(const Sphere& sphere, const Expected& expected, double tolerance) {
   CHECK(std::abs(double{sphere.x} - expected.x) < tolerance);
   CHECK(std::abs(double{sphere.y} - expected.y) < tolerance);
@@ -61,6 +87,14 @@ TinyAsset weighted_asset(std::uint8_t rule) {
     pivot.weight = uniform(random, -0.2F, 0.7F);
   }
   return tiny;
+}
+
+std::vector<float> deformed(std::vector<float> positions) {
+  std::mt19937 random(6);
+  for (float& value : positions) {
+    value += uniform(random, -0.3F, 0.3F);
+  }
+  return positions;
 }
 
 RefitJob job_for(const Asset& asset, const std::vector<float>& positions, std::vector<Sphere>& spheres) {
@@ -105,16 +139,27 @@ TEST_CASE("spheres follow any deformation by the formulas of the header") {
     const TinyAsset tiny = weighted_asset(rule);
     const OpenedAsset opened(tiny.parts);
     REQUIRE(opened.status == Status::kOk);
-    std::vector<float> positions = tiny.rest;
-    std::mt19937 random(6);
-    for (float& value : positions) {
-      value += uniform(random, -0.3F, 0.3F);
-    }
+    const std::vector<float> positions = deformed(tiny.rest);
     for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
       const Refitted result = refit(opened.asset, positions, kind);
       for (std::size_t i = 0; i < result.spheres.size(); ++i) {
         check_close(result.spheres[i], expected_sphere(tiny.parts, i, positions, kind), 2 * kRounding);
       }
+    }
+  }
+}
+
+TEST_CASE("spheres follow the fixed arithmetic of the header bit for bit") {
+  for (const std::uint8_t rule : {std::uint8_t{0}, std::uint8_t{1}}) {
+    const TinyAsset tiny = weighted_asset(rule);
+    const OpenedAsset opened(tiny.parts);
+    const std::vector<float> positions = deformed(tiny.rest);
+    for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
+      std::vector<Sphere> expected;
+      for (const RestSphere& rest : tiny.parts.spheres) {
+        expected.push_back(exact_sphere(tiny.parts, rest, positions, kind));
+      }
+      CHECK(same_bits(refit(opened.asset, positions, kind).spheres, expected));
     }
   }
 }
