@@ -91,10 +91,11 @@ void detect_chains(const Asset& asset, Span<const Sphere> spheres, Span<const Ne
     for (std::size_t i = 0; i < members.size; ++i) {
       for (std::size_t j = i + 1; j < members.size; ++j) {
         const Pair pair{std::min(members[i], members[j]), std::max(members[i], members[j])};
-        // No branch on the ignored bit: it follows no pattern, and a mispredicted branch costs more than a distance.
-        const bool counts = !test_bit(ignored, ignored_bit(pair.a, pair.b));
-        tests += counts ? 1 : 0;
-        if ((counts & overlap(spheres[pair.a], spheres[pair.b])) && !out_of_reach(near, spheres, pair)) {
+        if (test_bit(ignored, ignored_bit(pair.a, pair.b))) {
+          continue;
+        }
+        ++tests;
+        if (overlap(spheres[pair.a], spheres[pair.b]) && !out_of_reach(near, spheres, pair)) {
           result.chain_pairs.add({static_cast<std::uint32_t>(c), pair});
           set_bit(seen, sorted_bit(pair.a, pair.b, n));
         }
