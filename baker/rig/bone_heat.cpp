@@ -18,8 +18,7 @@ constexpr double kTie = 1e-6;       // relative difference of distances that is 
 constexpr double kUnseen = 1e-3;    // pull on a vertex that sees no bone: its neighbours know better
 constexpr double kFarthest = 2.0;   // a bone in sight but that much farther than the nearest is not the vertex's own
 constexpr double kInside = 1e-4;    // of the diameter: how far a line of sight starts below the skin
-
-constexpr double kGiveWay = 0.25;  // of the strongest joint on another branch is taken off a weight
+constexpr double kGiveWay = 0.25;   // of the lead that the strongest joint on another branch has is taken off a weight
 
 struct Bone {
   Vec3 from, to;
