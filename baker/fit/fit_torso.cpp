@@ -23,12 +23,12 @@ struct Level {
 class TorsoDisk {
  public:
   TorsoDisk(const Mesh& mesh, const Regions& regions, int rays)
-      : torso_(mesh, triangles_of(regions)), frame_(regions.frame), spine_(regions.spine), rays_(rays) {}
+      : torso_(mesh, triangles_of(regions)), frame_(regions.frame), regions_(regions), rays_(rays) {}
 
   // Nothing where a half of the disk meets no skin.
   std::optional<Level> at(double height) const {
     // Rays leave through shoulders and hips where limbs were cut off: those meet nothing and say nothing.
-    const Ring first = cast_ring(torso_, spine_at(height), frame_.up, frame_.left, rays_);
+    const Ring first = cast_ring(torso_, axis_at(height), frame_.up, frame_.left, rays_);
     const Vec3 centroid = first.section_centroid();
     Level level{height, centroid, {}};
     // The halves are those of the body: the disk stays in the plane of symmetry.
@@ -51,19 +51,11 @@ class TorsoDisk {
     return triangles;
   }
 
-  Vec3 spine_at(double height) const {
-    const std::vector<Vec3>& points = spine_.points();
+  // On the straight line from hip to chest and beyond.
+  Vec3 axis_at(double height) const {
     const auto h = [&](const Vec3& p) { return (p - frame_.origin).dot(frame_.up); };
-    Vec3 p = h(points.front()) > height ? points.front() : points.back();
-    for (std::size_t i = 1; i < points.size(); ++i) {
-      const double a = h(points[i - 1]), b = h(points[i]);
-      if (a <= height && height <= b && b > a) {
-        p = points[i - 1] + (height - a) / (b - a) * (points[i] - points[i - 1]);
-        break;
-      }
-    }
-    p += (height - h(p)) * frame_.up;
-    return p - (p - frame_.origin).dot(frame_.left) * frame_.left;
+    const double f = (height - h(regions_.hip)) / (h(regions_.chest) - h(regions_.hip));
+    return regions_.hip + f * (regions_.chest - regions_.hip);
   }
 
   // phi1: "located in the center of the diameter" (section 3.1): the middle of the half-section's extent sideways and front to
@@ -87,7 +79,7 @@ class TorsoDisk {
 
   SurfaceQuery torso_;
   const BodyFrame& frame_;
-  const Polyline& spine_;
+  const Regions& regions_;
   int rays_;
 };
 
@@ -128,12 +120,7 @@ void fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& sett
   const TorsoDisk disk(mesh, regions, settings.rays);
   const auto height_of = [&](const Vec3& p) { return (p - frame.origin).dot(frame.up); };
 
-  double bottom = std::numeric_limits<double>::max();
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (regions.of_triangle[t] != kTorso) continue;
-    for (const Index v : mesh.triangles[t]) bottom = std::min(bottom, height_of(mesh.positions[v]));
-  }
-  const double neck = height_of(regions.spine.at(regions.neck));
+  const double bottom = regions.torso.crotch, neck = regions.torso.neck;
   const double step = settings.delta * frame.height;
 
   // The disk climbs by delta; between two of its positions the place is found by bisection.

@@ -16,8 +16,9 @@ constexpr double kOmphalion = 0.24;  // middle of the hips to the base of the ne
 constexpr double kXiphion = 0.60;    // and where the rib cage begins
 
 // A neck is narrowest between its two joints.
-constexpr double kNape = 0.85;      // from the chest junction to the narrowest neck: the seventh vertebra
-constexpr double kSkull = 0.40;     // from the narrowest neck to the crown: the ears' height, where the skull turns
+constexpr double kNape = 0.85;  // from the chest junction to the narrowest neck: the seventh vertebra
+constexpr double kSkull =
+    0.28;  // from the base of the neck to the crown: as low as the jaw, so that the skull stays in one piece
 constexpr double kClavicle = 0.60;  // from the chest junction to the narrowest neck: the sternum's upper end
 
 // Fractions of the height.
@@ -28,7 +29,7 @@ constexpr double kSternum = 0.015;         // half the distance between the clav
 
 // How much a centre line has to bend to overrule the proportions: squared deviation against squared shift, both as
 // fractions of the chord.
-constexpr double kBendTrust = 0.003;
+constexpr double kBendTrust = 0.02;
 
 double squared_distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 ab = b - a;
@@ -65,16 +66,19 @@ struct LimbJoints {
   Vec3 root, middle, end, tip;
 };
 
-// `from` .. `to`: the stretch that gives the upper bone's axis; `inside`: how far before the line's start the joint is.
-LimbJoints limb_joints(const Limb& limb, double from, double to, double inside, double end, double usual) {
+// `from` .. `to`: the stretch that gives the upper bone's axis; `inside`: how far before the line's start the joint is;
+// `beyond`: how far the last joint is past the narrowest section, straight on.
+LimbJoints limb_joints(const Limb& limb, double from, double to, double inside, double beyond, double usual) {
   const Vec3 axis = (limb.line.at(to) - limb.line.at(from)).normalized();
   LimbJoints joints;
   joints.root = limb.line.at(from) - (from + inside) * axis;
-  const Polyline outside = limb.line.part(from, end);
+  const Vec3 narrowest = limb.line.at(limb.extremity);
+  const Polyline outside = limb.line.part(from, limb.extremity);
+  joints.end = narrowest + beyond * (narrowest - limb.line.at(limb.extremity - (to - from))).normalized();
   std::vector<Vec3> points{joints.root};
   points.insert(points.end(), outside.points().begin(), outside.points().end());
+  points.push_back(joints.end);
   joints.middle = middle_joint(Polyline(std::move(points)), usual);
-  joints.end = limb.line.at(end);
   joints.tip = limb.line.points().back();
   return joints;
 }
@@ -87,26 +91,28 @@ std::vector<Joint> place_joints(const Character& character, const Regions& regio
   std::array<LimbJoints, 4> limbs;
   for (std::size_t i = 0; i < limbs.size(); ++i) {
     const Limb& limb = regions.limbs[i];
-    limbs[i] = limb.top
-                   ? limb_joints(limb, 0.02 * h, 0.08 * h, kShoulderInside * h, limb.extremity, kElbow)
-                   : limb_joints(limb, 0.04 * h, 0.16 * h, kHipInside * h, limb.extremity + kAnkleBelow * h, kKnee);
+    limbs[i] = limb.top ? limb_joints(limb, 0.02 * h, 0.08 * h, kShoulderInside * h, 0, kElbow)
+                        : limb_joints(limb, 0.04 * h, 0.16 * h, kHipInside * h, kAnkleBelow * h, kKnee);
   }
 
-  const Polyline& spine = regions.spine;
-  const Vec3 pelvis = 0.5 * (limbs[2].root + limbs[3].root);
-  const auto above_chest = [&](double fraction) { return regions.chest + fraction * (regions.neck - regions.chest); };
-  const double base = spine.closest(pelvis), nape = above_chest(kNape);
-  const auto on_spine = [&](double fraction) { return spine.at(base + fraction * (nape - base)); };
+  // Three sure points say where the spine runs; the skeleton's curve between them is noise from the torso's shape.
+  const auto in_plane = [&](const Vec3& p) { return Vec3(p - (p - frame.origin).dot(frame.left) * frame.left); };
+  const Vec3 pelvis = in_plane(0.5 * (limbs[2].root + limbs[3].root));
+  const Vec3 throat = in_plane(regions.spine.at(regions.spine_neck));
+  const Polyline back({pelvis, in_plane(regions.chest), throat});
+  const double chest = back.length() - (throat - in_plane(regions.chest)).norm();
+  const auto above_chest = [&](double fraction) { return back.at(chest + fraction * (back.length() - chest)); };
+  const Vec3 neck = above_chest(kNape), sternum = above_chest(kClavicle);
+  const double nape = chest + kNape * (back.length() - chest);
+  const Vec3 spine = back.at(kOmphalion * nape), rib_cage = back.at(kXiphion * nape);
   // From above: inside, the mouth would be in the way. The skeleton's own end wanders to the face.
-  const Vec3 throat = spine.at(regions.neck);
   const auto top = SurfaceQuery(character.body).first_hit(throat + 2 * h * frame.up, -frame.up);
   const Vec3 crown = top ? top->point : Vec3(throat + 0.15 * h * frame.up);
-  const Vec3 neck = spine.at(nape), head = throat + kSkull * (crown - throat);
-  const Vec3 sternum = spine.at(above_chest(kClavicle));
+  const Vec3 head = throat + kSkull * (crown - throat);
 
-  std::vector<Joint> joints{{"pelvis", -1, pelvis, on_spine(kOmphalion)},
-                            {"spine", 0, on_spine(kOmphalion), on_spine(kXiphion)},
-                            {"chest", 1, on_spine(kXiphion), neck},
+  std::vector<Joint> joints{{"pelvis", -1, pelvis, spine},
+                            {"spine", 0, spine, rib_cage},
+                            {"chest", 1, rib_cage, neck},
                             {"neck", 2, neck, head},
                             {"head", 3, head, crown}};
   const auto chain = [&](const std::string& side, int parent, const LimbJoints& limb,

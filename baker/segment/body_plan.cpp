@@ -179,6 +179,13 @@ void place(BodyFrame& frame, const Mesh& mesh) {
 
 }  // namespace
 
+BodyFrame with_up(BodyFrame frame, const Vec3& up, const Mesh& mesh) {
+  frame.up = (up - up.dot(frame.left) * frame.left).normalized();
+  frame.forward = frame.left.cross(frame.up);
+  place(frame, mesh);
+  return frame;
+}
+
 BodyPlan find_body_plan(const Mesh& mesh, const CurveSkeleton& skeleton, const std::optional<Vec3>& facing,
                         const std::string& file) {
   const BranchTree tree = find_long_branches(skeleton, kShortestBranch);

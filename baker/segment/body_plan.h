@@ -27,6 +27,9 @@ struct BodyPlan {
   std::array<Polyline, 4> limbs;  // left arm, right arm, left leg, right leg
 };
 
+// The frame with another up axis (its part across `left`); origin and height follow.
+BodyFrame with_up(BodyFrame frame, const Vec3& up, const Mesh& mesh);
+
 inline constexpr std::array<const char*, 5> kRegionNames{"left_arm", "right_arm", "left_leg", "right_leg", "torso"};
 
 // `facing` overrides what the feet say: any vector with a part along the character's forward axis.

@@ -1,25 +1,34 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "segment/curve_skeleton.h"
 
+#include "segment/skeleton_arena.h"
+
+// CGAL collapses edges in the order of their addresses. Out of the arena addresses follow the order of creation, so that a
+// mesh has one skeleton, not one a process. CGAL's containers ask this macro for their allocator; it must come before them
+// and stay in this file.
+#define CGAL_ALLOCATOR(T) spherechain::baker::ArenaAllocator<T>
+
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/extract_mean_curvature_flow_skeleton.h>
 
+#include "segment/canonical_mesh.h"
+
 namespace spherechain::baker {
 
-CurveSkeleton extract_curve_skeleton(const Mesh& mesh) {
+CurveSkeleton extract_curve_skeleton(const Mesh& original) {
   using Kernel = CGAL::Simple_cartesian<double>;
   using SurfaceMesh = CGAL::Surface_mesh<Kernel::Point_3>;
   using Skeletonization = CGAL::Mean_curvature_flow_skeletonization<SurfaceMesh>;
 
+  const CanonicalMesh canonical = make_canonical(original);
+  const Mesh& mesh = canonical.mesh;
   SurfaceMesh surface;
-  surface.reserve(static_cast<SurfaceMesh::size_type>(mesh.positions.size()),
-                  static_cast<SurfaceMesh::size_type>(mesh.triangles.size() * 3 / 2),
-                  static_cast<SurfaceMesh::size_type>(mesh.triangles.size()));
   std::vector<SurfaceMesh::Vertex_index> vertices;
   for (const Vec3& p : mesh.positions) vertices.push_back(surface.add_vertex({p.x(), p.y(), p.z()}));
   for (const Triangle& t : mesh.triangles) surface.add_face(vertices[t[0]], vertices[t[1]], vertices[t[2]]);
 
+  const SkeletonArena arena(mesh.triangles.size());
   Skeletonization skeletonization(surface);
   // CGAL's default is this fraction of an axis-aligned diagonal, which turns with the mesh.
   skeletonization.set_min_edge_length(0.002 * diameter(mesh));
@@ -31,7 +40,7 @@ CurveSkeleton extract_curve_skeleton(const Mesh& mesh) {
   skeleton.neighbours.resize(skeleton.points.size());
   for (const auto v : CGAL::make_range(boost::vertices(graph))) {
     const Kernel::Point_3& p = graph[v].point;
-    skeleton.points[v] = Vec3(p.x(), p.y(), p.z());
+    skeleton.points[v] = canonical.to_original(Vec3(p.x(), p.y(), p.z()));
   }
   for (const auto e : CGAL::make_range(boost::edges(graph))) {
     const auto a = boost::source(e, graph), b = boost::target(e, graph);

@@ -6,7 +6,7 @@
 
 #include "mesh/error.h"
 #include "mesh/surface_query.h"
-#include "segment/limb_cut.h"
+#include "segment/limb_trace.h"
 
 namespace spherechain::baker {
 namespace {
@@ -14,14 +14,24 @@ namespace {
 using Neighbours = std::vector<std::array<Index, 3>>;
 
 // The triangles beyond the plane through the limb's start, in one piece with its tip. Near the plane they must also be no
-// farther from the centre line than the section there reaches: armpit and crotch are not crossed.
-void label_limb(const Mesh& mesh, const Neighbours& neighbours, const SurfaceQuery& surface, const Limb& limb,
-                double radius, double tangent_window, std::uint8_t region, std::vector<std::uint8_t>& labels) {
-  const Vec3 point = limb.line.at(0), normal = limb.line.tangent(0, tangent_window);
+// farther from the centre line than the section there reaches, and closer to this limb than to another: armpit and crotch
+// are not crossed.
+void label_limb(const Mesh& mesh, const Neighbours& neighbours, const SurfaceQuery& surface,
+                const std::array<LimbTrace, 4>& traces, std::uint8_t region, std::vector<std::uint8_t>& labels) {
+  const LimbTrace& limb = traces[region];
+  const Vec3 start = limb.line.at(0);
+  const auto distance_to = [&](std::size_t i, const Vec3& p) { return (traces[i].line.at(traces[i].line.closest(p)) - p).norm(); };
   const auto beyond = [&](Index t) {
-    const Vec3 from_start = triangle_centroid(mesh, t) - point;
-    const double along = from_start.dot(normal);
-    return along > 0 && (along > 2 * radius || (from_start - along * normal).norm() < 1.1 * radius + 0.5 * along);
+    const Vec3 centroid = triangle_centroid(mesh, t);
+    const double along = (centroid - start).dot(limb.direction);
+    if (along <= 0) return false;
+    if (along > 2 * limb.radius) return true;
+    if ((centroid - start - along * limb.direction).norm() > 1.1 * limb.radius + 0.5 * along) return false;
+    const double own = distance_to(region, centroid);
+    for (std::size_t i = 0; i < traces.size(); ++i) {
+      if (i != region && distance_to(i, centroid) < own) return false;
+    }
+    return true;
   };
   std::vector<Index> stack{surface.closest(limb.line.points().back()).triangle};
   labels[stack.back()] = region;
@@ -111,6 +121,16 @@ std::vector<std::uint8_t> label_others(const Character& character, const Surface
   return labels;
 }
 
+Vec3 in_symmetry_plane(const BodyFrame& frame, const Vec3& p) { return p - (p - frame.origin).dot(frame.left) * frame.left; }
+
+// Arc length of the first point of a rising curve at a height along frame.up.
+double arc_at_height(const Polyline& line, const BodyFrame& frame, double height) {
+  const double step = 1e-3 * frame.height;
+  double s = 0;
+  while (s < line.length() && (line.at(s) - frame.origin).dot(frame.up) < height) s += step;
+  return std::min(s, line.length());
+}
+
 }  // namespace
 
 Regions segment(const Character& character, const SegmentSettings& settings) {
@@ -124,29 +144,31 @@ Regions segment(const Character& character, const SegmentSettings& settings) {
   const SurfaceQuery surface(mesh);
 
   Regions regions;
-  regions.frame = plan.frame;
   regions.facing = plan.facing;
-  std::array<double, 4> radius{};
+  std::array<LimbTrace, 4> traces;
   for (std::size_t i = 0; i < plan.limbs.size(); ++i) {
-    const Polyline line = centre_in_sections(surface, plan.limbs[i], plan.frame, settings.rays);
     std::string name = kRegionNames[i];
     std::replace(name.begin(), name.end(), '_', ' ');
-    const LimbCut cut = find_limb_cut(surface, line, plan.frame, settings.rays, name, character.file);
-    radius[i] = cut.radius;
-    regions.limbs[i] = {i % 2 == 0, i < 2, line.part(cut.start, line.length()), cut.extremity - cut.start, line.at(0)};
+    traces[i] = trace_limb(surface, plan.limbs[i], plan.frame, settings.rays, name, character.file);
+    regions.limbs[i] = {i % 2 == 0, i < 2, traces[i].line, traces[i].extremity, plan.limbs[i].at(0)};
   }
-
-  const Polyline head = centre_in_sections(surface, plan.head, plan.frame, settings.rays);
+  // Where the limbs start is known better than where the skeleton forks: the torso's axis is taken from there.
+  const auto start = [&](std::size_t i) { return regions.limbs[i].line.at(0); };
+  const Vec3 chest = 0.5 * (start(0) + start(1)), hip = 0.5 * (start(2) + start(3));
+  regions.frame = with_up(plan.frame, chest - hip, mesh);
+  regions.hip = in_symmetry_plane(regions.frame, hip);
+  regions.chest = in_symmetry_plane(regions.frame, chest);
+  regions.torso = find_torso_ends(surface, regions.hip, regions.chest, regions.frame, settings.rays, character.file);
   std::vector<Vec3> spine = plan.spine.points();
-  regions.chest = plan.spine.length();
-  regions.neck = regions.chest + find_neck_base(surface, head, plan.frame, settings.rays);
-  spine.insert(spine.end(), head.points().begin(), head.points().end());
+  spine.insert(spine.end(), plan.head.points().begin(), plan.head.points().end());
   regions.spine = Polyline(std::move(spine));
+  regions.spine_chest = plan.spine.length();
+  regions.spine_neck = arc_at_height(regions.spine, regions.frame, regions.torso.neck);
 
   const Neighbours neighbours = triangle_neighbours(mesh);
   regions.of_triangle.assign(mesh.triangles.size(), kTorso);
   for (std::uint8_t i = 0; i < regions.limbs.size(); ++i) {
-    label_limb(mesh, neighbours, surface, regions.limbs[i], radius[i], 0.02 * plan.frame.height, i, regions.of_triangle);
+    label_limb(mesh, neighbours, surface, traces, i, regions.of_triangle);
   }
   smooth_loops(neighbours, regions.of_triangle);
   join_islands(mesh, neighbours, regions.of_triangle);

@@ -10,6 +10,7 @@
 #include "import/import.h"
 #include "mesh/polyline.h"
 #include "segment/body_plan.h"
+#include "segment/limb_trace.h"
 
 namespace spherechain::baker {
 
@@ -29,8 +30,10 @@ struct Regions {
   BodyFrame frame;
   std::string facing;
   std::array<Limb, 4> limbs;                 // in the order of kRegionNames
-  Polyline spine;                            // from hip to chest junction and on to the head's tip
-  double chest, neck;                        // arc lengths on `spine` of the chest junction and the neck's base
+  Vec3 hip, chest;                           // in the plane of symmetry, between the legs' and between the arms' starts
+  TorsoEnds torso;
+  Polyline spine;                            // the skeleton's curve from hip to chest junction and on to the head's tip
+  double spine_chest, spine_neck;            // arc lengths on `spine` of the chest junction and the neck's base
   std::vector<std::uint8_t> of_triangle;     // a triangle of Character::body -> region
   std::vector<std::uint8_t> of_other;        // a triangle of Character::others -> region, that of the nearest body triangle
 };

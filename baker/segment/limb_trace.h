@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "mesh/polyline.h"
+#include "mesh/surface_query.h"
+#include "segment/body_plan.h"
+
+namespace spherechain::baker {
+
+// A limb's centre line by marching sections. The curve skeleton says where the limb's middle is and where its tip; all
+// between shoulder or hip and wrist or ankle comes from the sections alone, so that the skeleton's noise does not show.
+struct LimbTrace {
+  Polyline line;     // from the innermost section of the limb's own to the tip
+  Vec3 direction;    // along the line at its start
+  double radius;     // the longest ray of the section there
+  double extremity;  // arc length of the narrowest section before hand or foot: wrist or ankle
+};
+
+// `branch` comes from the torso. The limb starts outside the torso's maximal ball at the junction, at the innermost section
+// all of whose rays end on a wall about as far as the others do: further in, rays escape past armpit or crotch.
+// Throws Error(kSegmentation) where there is no such section.
+LimbTrace trace_limb(const SurfaceQuery& surface, const Polyline& branch, const BodyFrame& frame, int rays,
+                     const std::string& limb, const std::string& file);
+
+// Heights along frame.up from frame.origin.
+struct TorsoEnds {
+  double crotch;  // where a ray straight down leaves the torso
+  double neck;    // the base of the neck: half as wide again as its narrowest part
+};
+
+// `hip` and `chest` are points inside the torso, between the legs' and between the arms' starts.
+TorsoEnds find_torso_ends(const SurfaceQuery& surface, const Vec3& hip, const Vec3& chest, const BodyFrame& frame, int rays,
+                          const std::string& file);
+
+}  // namespace spherechain::baker
