@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "baked_human.h"
+
+#include <doctest/doctest.h>
+
+#include "human.h"
+#include "motion/motion.h"
+
+using spherechain::Asset;
+using spherechain::Status;
+using namespace spherechain::baker;
+
+namespace {
+
+const std::vector<VertexWeights>& human_weights() {
+  static const std::vector<VertexWeights> weights = rig_weights(baked_human().character, baked_human().joints);
+  return weights;
+}
+
+BezierMotion motion_of(const std::string& pose_file) {
+  const Bake& bake = baked_human();
+  const PoseMotion poses = read_pose_motion(std::string(SPHERECHAIN_SAMPLES) + "/poses/" + pose_file, bake.joints);
+  return {bake.character.source_positions, human_weights(), bake.joints, bake.regions.frame, poses};
+}
+
+}  // namespace
+
+const Bake& baked_human() {
+  static const Bake result = bake(kHumanFile, make_settings("balanced", "{}", "test"), {});
+  return result;
+}
+
+const Bake& paper_baked_human() {
+  static const Bake result = bake(kHumanFile, make_settings("paper", "{}", "test"), {});
+  return result;
+}
+
+Asset open_asset_of(const Bake& bake) {
+  Asset asset;
+  char message[256] = "";
+  REQUIRE_MESSAGE(asset.open(bake.asset.data(), bake.asset.size(), message, sizeof(message)) == Status::kOk, message);
+  return asset;
+}
+
+const std::vector<AnimationFrame>& animation_frames() {
+  static const std::vector<AnimationFrame> frames = [] {
+    std::vector<AnimationFrame> out;
+    for (const char* name : {"animation_arms.json", "animation_legs.json"}) {
+      const BezierMotion motion = motion_of(name);
+      for (int i = 0; i < 40; ++i) out.push_back({name, i, motion.at(i / 39.0)});
+    }
+    return out;
+  }();
+  return frames;
+}
+
+std::vector<Vec3> posed_human(const std::string& pose_file) { return motion_of(pose_file).at(1); }
+
+std::vector<float> packed(const std::vector<Vec3>& positions) {
+  std::vector<float> out;
+  for (const Vec3& p : positions) {
+    for (int k = 0; k < 3; ++k) out.push_back(static_cast<float>(p[k]));
+  }
+  return out;
+}

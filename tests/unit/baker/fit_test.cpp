@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fit/fit.h"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "baked_human.h"
+
+using namespace spherechain::baker;
+
+namespace {
+
+// Independent of the tree the fit uses: the nearest point of a triangle by its plane or its sides.
+double distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 n = (b - a).cross(c - a).normalized();
+  const Vec3 q = p - (p - a).dot(n) * n;
+  const bool inside = (b - a).cross(q - a).dot(n) >= 0 && (c - b).cross(q - b).dot(n) >= 0 && (a - c).cross(q - c).dot(n) >= 0;
+  if (inside) return (p - q).norm();
+  const auto to_side = [&](const Vec3& s, const Vec3& e) {
+    const double f = std::clamp((p - s).dot(e - s) / (e - s).squaredNorm(), 0.0, 1.0);
+    return (p - s - f * (e - s)).norm();
+  };
+  return std::min({to_side(a, b), to_side(b, c), to_side(c, a)});
+}
+
+double distance_to_region(const Bake& bake, const Vec3& p, std::uint8_t region) {
+  const Mesh& mesh = bake.character.body;
+  double least = 1e9;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (bake.regions.of_triangle[t] != region) continue;
+    const Triangle& v = mesh.triangles[t];
+    least = std::min(least, distance_to_triangle(p, mesh.positions[v[0]], mesh.positions[v[1]], mesh.positions[v[2]]));
+  }
+  return least;
+}
+
+Vec3 mirrored(const BodyFrame& frame, const Vec3& p) { return p - 2 * (p - frame.origin).dot(frame.left) * frame.left; }
+
+}  // namespace
+
+TEST_CASE("a human gets 8 to 12 spheres an arm and a leg and four or five torso levels of two") {
+  const Bake& bake = baked_human();
+  for (std::size_t limb = 0; limb < 4; ++limb) {
+    CHECK(bake.spheres.of_region[limb].size() >= 8);
+    CHECK(bake.spheres.of_region[limb].size() <= 12);
+  }
+  const std::size_t levels = bake.spheres.level_heights.size();
+  CHECK((levels == 4 || levels == 5));
+  CHECK(bake.spheres.of_region[kTorso].size() == 2 * levels);
+  MESSAGE(fmt::format("spheres: arms {} + {}, legs {} + {}, torso {}: {} in all", bake.spheres.of_region[0].size(),
+                      bake.spheres.of_region[1].size(), bake.spheres.of_region[2].size(), bake.spheres.of_region[3].size(),
+                      bake.spheres.of_region[4].size(), bake.spheres.spheres.size()));
+}
+
+TEST_CASE("a limb sphere touches the skin of its limb") {
+  const Bake& bake = baked_human();
+  double worst = 0;
+  for (const FittedSphere& sphere : bake.spheres.spheres) {
+    if (sphere.region == kTorso) continue;
+    const double distance = distance_to_region(bake, sphere.ball.center, sphere.region);
+    worst = std::max(worst, std::abs(distance - sphere.ball.radius) / sphere.ball.radius);
+  }
+  CHECK(worst < 0.03);
+}
+
+TEST_CASE("neighbours on a limb overlap by the penetration depth asked for, but for the closing pair") {
+  const Bake& bake = baked_human();
+  for (std::size_t limb = 0; limb < 4; ++limb) {
+    const auto& ids = bake.spheres.of_region[limb];
+    for (std::size_t i = 1; i + 1 < ids.size(); ++i) {
+      const Ball &a = bake.spheres.spheres[ids[i - 1]].ball, &b = bake.spheres.spheres[ids[i]].ball;
+      const double depth = (a.radius + b.radius - (a.center - b.center).norm()) / (a.radius + b.radius);
+      CHECK(depth == doctest::Approx(0.30).epsilon(0.02 / 0.30));
+    }
+  }
+}
+
+TEST_CASE("left and right limbs have the same number of spheres, mirrored to 1.5 % of the height") {
+  const Bake& bake = baked_human();
+  const BodyFrame& frame = bake.regions.frame;
+  double worst = 0;
+  for (const auto& [left, right] : {std::pair(0, 1), std::pair(2, 3)}) {
+    const auto &l = bake.spheres.of_region[static_cast<std::size_t>(left)], &r = bake.spheres.of_region[static_cast<std::size_t>(right)];
+    REQUIRE(l.size() == r.size());
+    for (std::size_t i = 0; i < l.size(); ++i) {
+      const Ball &a = bake.spheres.spheres[l[i]].ball, &b = bake.spheres.spheres[r[i]].ball;
+      worst = std::max({worst, (mirrored(frame, a.center) - b.center).norm(), std::abs(a.radius - b.radius)});
+    }
+  }
+  CHECK(worst < 0.015 * frame.height);
+  MESSAGE(fmt::format("largest difference of mirrored limb spheres: {:.2f} % of the height", 100 * worst / frame.height));
+}
+
+TEST_CASE("left spheres are on the character's left, and levels climb") {
+  const Bake& bake = baked_human();
+  const BodyFrame& frame = bake.regions.frame;
+  for (const FittedSphere& sphere : bake.spheres.spheres) {
+    const double side = (sphere.ball.center - frame.origin).dot(frame.left);
+    if (sphere.side == Side::kLeft || sphere.region == 0 || sphere.region == 2) CHECK(side > 0);
+    if (sphere.side == Side::kRight || sphere.region == 1 || sphere.region == 3) CHECK(side < 0);
+  }
+  CHECK(std::is_sorted(bake.spheres.level_heights.begin(), bake.spheres.level_heights.end()));
+}
+
+TEST_CASE("the sphere adjustment lowers mean |F| of every torso sphere or leaves it; phi2 encloses its points") {
+  const Bake& bake = baked_human();
+  const Mesh& mesh = bake.character.body;
+  std::string table = fmt::format("mean |F| in mm\n{:<8} {:>8} {:>8} {:>8}\n", "sphere", "phi1", "phi1'", "phi2");
+  Vec3 means = Vec3::Zero();
+  for (std::size_t i = 0; i < bake.spheres.torso.size(); ++i) {
+    const TorsoFit& fit = bake.spheres.torso[i];
+    REQUIRE(fit.vertices.size() > 20);
+    // Written out again, not taken from the code under test.
+    const auto mean_abs_f = [&](const Ball& ball) {
+      double sum = 0;
+      for (const Index v : fit.vertices) sum += std::abs(ball.radius - (ball.center - mesh.positions[v]).norm());
+      return sum / static_cast<double>(fit.vertices.size());
+    };
+    const Vec3 f(mean_abs_f(fit.phi1), mean_abs_f(fit.phi1_adjusted), mean_abs_f(fit.phi2));
+    CHECK(f[1] <= f[0]);
+    CHECK(fit.phi1_adjusted.radius <= fit.phi1.radius);
+    double deepest = 1e9;
+    for (const Index v : fit.vertices) deepest = std::min(deepest, fit.phi2.radius - (fit.phi2.center - mesh.positions[v]).norm());
+    CHECK(deepest > -1e-9 * bake.regions.frame.height);
+    CHECK(deepest < 1e-9 * bake.regions.frame.height);  // some vertex is on it: it could not be smaller about this centre
+    means += f / static_cast<double>(bake.spheres.torso.size());
+    table += fmt::format("{:<8} {:>8.1f} {:>8.1f} {:>8.1f}\n", i, 1e3 * f[0], 1e3 * f[1], 1e3 * f[2]);
+  }
+  table += fmt::format("{:<8} {:>8.1f} {:>8.1f} {:>8.1f}", "mean", 1e3 * means[0], 1e3 * means[1], 1e3 * means[2]);
+  MESSAGE(table);
+}
+
+TEST_CASE("the minimum enclosing ball of a cube's corners is its circumscribed sphere") {
+  Mesh cube;
+  std::vector<Index> all;
+  for (int i = 0; i < 8; ++i) {
+    cube.positions.emplace_back(i & 1 ? 3 : 1, i & 2 ? 3 : 1, i & 4 ? 3 : 1);
+    all.push_back(static_cast<Index>(i));
+  }
+  const Ball ball = minimum_enclosing_ball(cube, all);
+  CHECK((ball.center - Vec3(2, 2, 2)).norm() < 1e-12);
+  CHECK(ball.radius == doctest::Approx(std::sqrt(3.0)));
+}
+
+TEST_CASE("penetration depth is 0 for touching spheres and 0.5 for equal ones half overlapped") {
+  CHECK(penetration_depth({{0, 0, 0}, 1}, {{2, 0, 0}, 1}) == doctest::Approx(0));
+  CHECK(penetration_depth({{0, 0, 0}, 1}, {{1, 0, 0}, 1}) == doctest::Approx(0.5));
+}

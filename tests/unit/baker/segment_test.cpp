@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "segment/segment.h"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "baked_human.h"
+#include "closed_shapes.h"
+#include "mesh/error.h"
+
+using namespace spherechain::baker;
+
+namespace {
+
+double area_of(const Bake& bake, std::uint8_t region) {
+  double area = 0;
+  for (std::size_t t = 0; t < bake.character.body.triangles.size(); ++t) {
+    if (bake.regions.of_triangle[t] == region) area += triangle_area(bake.character.body, t);
+  }
+  return area;
+}
+
+std::string segmentation_error(const SourceMesh& source, const SegmentSettings& settings = {}) {
+  try {
+    segment(build_character(source, "test.obj"), settings);
+  } catch (const Error& error) {
+    CHECK(error.code() == ExitCode::kSegmentation);
+    return error.what();
+  }
+  return "no error";
+}
+
+}  // namespace
+
+TEST_CASE("every triangle has one of the five regions, and so has every triangle of the eyes") {
+  const Bake& bake = baked_human();
+  REQUIRE(bake.regions.of_triangle.size() == bake.character.body.triangles.size());
+  CHECK(*std::max_element(bake.regions.of_triangle.begin(), bake.regions.of_triangle.end()) == kTorso);
+  REQUIRE(bake.regions.of_other.size() == bake.character.others.triangles.size());
+  // The eyes are in the head, and the head is the torso's.
+  CHECK(std::all_of(bake.regions.of_other.begin(), bake.regions.of_other.end(), [](auto r) { return r == kTorso; }));
+}
+
+TEST_CASE("each region is one piece, joined over shared edges") {
+  const Bake& bake = baked_human();
+  const Mesh& mesh = bake.character.body;
+  std::map<std::pair<Index, Index>, std::vector<Index>> edges;
+  for (Index t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) edges[std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3])].push_back(t);
+  }
+  std::vector<std::set<Index>> next(mesh.triangles.size());
+  for (const auto& [edge, triangles] : edges) {
+    for (const Index a : triangles) {
+      for (const Index b : triangles) {
+        if (a != b && bake.regions.of_triangle[a] == bake.regions.of_triangle[b]) next[a].insert(b);
+      }
+    }
+  }
+  for (std::uint8_t region = 0; region < kRegionCount; ++region) {
+    std::vector<Index> all;
+    for (Index t = 0; t < mesh.triangles.size(); ++t) {
+      if (bake.regions.of_triangle[t] == region) all.push_back(t);
+    }
+    REQUIRE(!all.empty());
+    std::set<Index> reached{all[0]};
+    std::vector<Index> stack{all[0]};
+    while (!stack.empty()) {
+      const Index t = stack.back();
+      stack.pop_back();
+      for (const Index n : next[t]) {
+        if (reached.insert(n).second) stack.push_back(n);
+      }
+    }
+    CHECK_MESSAGE(reached.size() == all.size(), kRegionNames[region]);
+  }
+}
+
+TEST_CASE("left and right arm, and left and right leg, have the same area to 3 %") {
+  const Bake& bake = baked_human();
+  for (const auto& [left, right] : {std::pair<std::uint8_t, std::uint8_t>(0, 1), std::pair<std::uint8_t, std::uint8_t>(2, 3)}) {
+    CHECK(area_of(bake, left) == doctest::Approx(area_of(bake, right)).epsilon(0.03));
+    MESSAGE(fmt::format("{}: {:.4f}, {}: {:.4f}", kRegionNames[left], area_of(bake, left), kRegionNames[right], area_of(bake, right)));
+  }
+}
+
+TEST_CASE("the body's axes are found: this one stands along y, faces z, and its left is x") {
+  const BodyFrame& frame = baked_human().regions.frame;
+  CHECK(frame.up.dot(Vec3::UnitY()) > 0.999);
+  CHECK(frame.forward.dot(Vec3::UnitZ()) > 0.999);
+  CHECK(frame.left.dot(Vec3::UnitX()) > 0.999);
+  CHECK((frame.left.cross(frame.up) - frame.forward).norm() < 1e-9);
+  CHECK(frame.height == doctest::Approx(1.66).epsilon(0.01));
+}
+
+TEST_CASE("a facing direction in the settings overrides the feet and swaps left and right") {
+  SegmentSettings settings;
+  settings.facing = -Vec3::UnitZ();
+  const Regions turned = segment(baked_human().character, settings);
+  CHECK(turned.frame.forward.dot(Vec3::UnitZ()) < -0.999);
+  const auto& usual = baked_human().regions.of_triangle;
+  std::size_t swapped = 0;
+  constexpr std::array<std::uint8_t, 5> kSwap{1, 0, 3, 2, 4};
+  for (std::size_t t = 0; t < usual.size(); ++t) swapped += turned.of_triangle[t] == kSwap[usual[t]] ? 1u : 0u;
+  CHECK(static_cast<double>(swapped) > 0.99 * static_cast<double>(usual.size()));
+  settings.facing = Vec3::UnitX();
+  CHECK_THROWS_WITH_AS(segment(baked_human().character, settings), doctest::Contains("facing direction"), Error);
+}
+
+TEST_CASE("a body without a limb is refused by the missing limb's name") {
+  for (std::uint8_t limb = 0; limb < 4; ++limb) {
+    std::string name = kRegionNames[limb];
+    std::replace(name.begin(), name.end(), '_', ' ');
+    const std::string error = segmentation_error(without_region(baked_human(), limb));
+    CHECK_MESSAGE(error.find("the " + name + " is missing") != std::string::npos, error);
+  }
+}
+
+TEST_CASE("a body without arms, a ball, a tube and an open surface are refused with the reason") {
+  CHECK(segmentation_error(without_region(baked_human(), 0, 1)).find("missing") != std::string::npos);
+  CHECK(segmentation_error(ball_mesh(24)).find("missing") != std::string::npos);
+  CHECK(segmentation_error(tube_mesh(10, 24)).find("missing") != std::string::npos);
+  SourceMesh open = ball_mesh(24);
+  open.triangles.pop_back();
+  CHECK(segmentation_error(open).find("not one closed surface") != std::string::npos);
+}
