@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bind/bind.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "baked_human.h"
+
+using namespace spherechain::baker;
+
+TEST_CASE("a triangle belongs to the nearest sphere of its own region") {
+  const Bake& bake = baked_human();
+  const Mesh& mesh = bake.character.body;
+  for (std::size_t t = 0; t < mesh.triangles.size(); t += 7) {
+    const Triangle& v = mesh.triangles[t];
+    const Vec3 centroid = (mesh.positions[v[0]] + mesh.positions[v[1]] + mesh.positions[v[2]]) / 3;
+    const FittedSphere& owner = bake.spheres.spheres[bake.binding.sphere_of_triangle[t]];
+    CHECK(owner.region == bake.regions.of_triangle[t]);
+    for (const FittedSphere& other : bake.spheres.spheres) {
+      if (other.region != owner.region) continue;
+      CHECK((owner.ball.center - centroid).norm() <= (other.ball.center - centroid).norm() + 1e-12);
+    }
+  }
+}
+
+TEST_CASE("calibrated pivots carry their sphere exactly, from inside their hull or nearly") {
+  const Bake& bake = baked_human();
+  for (std::size_t i = 0; i < bake.binding.spheres.size(); ++i) {
+    const BoundSphere& sphere = bake.binding.spheres[i];
+    CHECK(sphere.pivots.size() >= 8);
+    CHECK(sphere.weight_sum <= 1.5);
+    double sum = 0;
+    Vec3 center = Vec3::Zero();
+    std::set<Index> distinct;
+    for (const BoundPivot& pivot : sphere.pivots) {
+      sum += pivot.weight;
+      center += pivot.weight * triangle_centroid(bake.character.body, pivot.triangle);
+      distinct.insert(pivot.triangle);
+      CHECK(bake.binding.sphere_of_triangle[pivot.triangle] == i);
+    }
+    CHECK(sum == doctest::Approx(1));
+    CHECK((center - bake.spheres.spheres[i].ball.center).norm() < 1e-9);
+    CHECK(distinct.size() == sphere.pivots.size());
+  }
+}
+
+TEST_CASE("the paper's pivots are four, of equal weight, around the sphere") {
+  const Bake& bake = paper_baked_human();
+  for (std::size_t i = 0; i < bake.binding.spheres.size(); ++i) {
+    REQUIRE(bake.binding.spheres[i].pivots.size() == 4);
+    for (const BoundPivot& pivot : bake.binding.spheres[i].pivots) CHECK(pivot.weight == 0.25);
+  }
+}
+
+TEST_CASE("four pivots in one plane are rejected as ill-posed, more are taken") {
+  // A flat disk of triangles cannot carry a centre above it; the same disk with a rim at the centre's height can.
+  Mesh mesh;
+  const auto add = [&](const Vec3& at) {
+    const auto base = static_cast<Index>(mesh.positions.size());
+    mesh.positions.insert(mesh.positions.end(), {at, at + Vec3(0.01, 0, 0), at + Vec3(0, 0.01, 0)});
+    mesh.triangles.push_back({base, base + 1, base + 2});
+  };
+  for (int i = 0; i < 16; ++i) add({std::cos(0.4 * i), std::sin(0.4 * i), 0});
+  std::vector<Index> all(mesh.triangles.size());
+  for (Index t = 0; t < all.size(); ++t) all[t] = t;
+  const FittedSphere above{{{0, 0, 0.3}, 1}, 0, -1, Side::kNone, Vec3::UnitZ()};
+  CHECK(choose_pivots(mesh, all, above, Vec3::UnitX(), RefitRule::kCalibrated).empty());
+  for (int i = 0; i < 16; ++i) {
+    add({std::cos(0.4 * i), std::sin(0.4 * i), 0.7});
+    all.push_back(static_cast<Index>(all.size()));
+  }
+  const auto pivots = choose_pivots(mesh, all, above, Vec3::UnitX(), RefitRule::kCalibrated);
+  REQUIRE(pivots.size() >= 8);
+  double magnitude = 0;
+  for (const BoundPivot& pivot : pivots) magnitude += std::abs(pivot.weight);
+  CHECK(magnitude <= 1.5);
+}
+
+TEST_CASE("the detect radius lies between the fit radius and what closes the waist between equal neighbours") {
+  const Bake& bake = baked_human();
+  const double waist = std::sqrt(1 + 0.7 * 0.7);
+  for (const BoundSphere& sphere : bake.binding.spheres) {
+    CHECK(sphere.detect_radius >= sphere.rest.radius);
+    CHECK(sphere.detect_radius <= waist * sphere.rest.radius * (1 + 1e-12));
+  }
+}
+
+TEST_CASE("neighbours along limbs, on the torso and across shared edges are ignored, and nothing far apart is") {
+  const Bake& bake = baked_human();
+  const auto ignored = [&](std::uint32_t a, std::uint32_t b) {
+    return std::binary_search(bake.binding.ignored.begin(), bake.binding.ignored.end(), std::pair<std::uint32_t, std::uint32_t>(std::minmax(a, b)));
+  };
+  for (std::size_t limb = 0; limb < 4; ++limb) {
+    const auto& ids = bake.spheres.of_region[limb];
+    for (std::size_t i = 1; i < ids.size(); ++i) CHECK(ignored(ids[i - 1], ids[i]));
+    CHECK(!ignored(ids.front(), ids.back()));
+  }
+  for (const std::uint32_t a : bake.spheres.of_region[kTorso]) {
+    for (const std::uint32_t b : bake.spheres.of_region[kTorso]) {
+      if (a < b) CHECK(ignored(a, b) == (std::abs(bake.spheres.spheres[a].level - bake.spheres.spheres[b].level) <= 1));
+    }
+  }
+  // Both wrists, both ankles, a wrist and the torso.
+  const auto last = [&](std::size_t limb) { return bake.spheres.of_region[limb].back(); };
+  CHECK(!ignored(last(0), last(1)));
+  CHECK(!ignored(last(2), last(3)));
+  CHECK(!ignored(0, last(0)));
+}
+
+TEST_CASE("pairs that overlap at rest without being neighbours are kept, with a reach below their rest distance") {
+  const Bake& bake = baked_human();
+  for (const BoundPair& near : bake.binding.near_detect) {
+    const BoundSphere &a = bake.binding.spheres[near.a], &b = bake.binding.spheres[near.b];
+    const double distance = (a.rest.center - b.rest.center).norm();
+    CHECK(near.reach * (a.detect_radius + b.detect_radius) == doctest::Approx(0.7 * distance));
+    CHECK(!std::binary_search(bake.binding.ignored.begin(), bake.binding.ignored.end(), std::pair(near.a, near.b)));
+  }
+}

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which spheres of the baked human touch, at rest, in poses and over both animations.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "baked_human.h"
+#include "jobs.h"
+
+using namespace spherechain::baker;
+using spherechain::Asset;
+using spherechain::Method;
+using spherechain::Pair;
+using spherechain::RadiusKind;
+using spherechain::Sphere;
+
+namespace {
+
+using spherechain::test::detect;
+using spherechain::test::Detected;
+using spherechain::test::refit;
+
+std::vector<Pair> touching(const Bake& bake, const std::vector<Vec3>& positions, RadiusKind kind) {
+  const Asset asset = open_asset_of(bake);
+  return detect(asset, refit(asset, packed(positions), kind).spheres, Method::kM2, kind).pairs;
+}
+
+// Written apart from the runtime: from the baker's own lists, with sets, in the arithmetic the headers fix.
+std::vector<Pair> brute_force(const Bake& bake, const std::vector<Sphere>& spheres, RadiusKind kind) {
+  const std::set<std::pair<std::uint32_t, std::uint32_t>> ignored(bake.binding.ignored.begin(), bake.binding.ignored.end());
+  std::map<std::pair<std::uint32_t, std::uint32_t>, float> reach;
+  for (const BoundPair& near : kind == RadiusKind::kFit ? bake.binding.near_fit : bake.binding.near_detect) {
+    reach[{near.a, near.b}] = static_cast<float>(near.reach);
+  }
+  std::vector<Pair> pairs;
+  for (std::uint32_t a = 0; a < spheres.size(); ++a) {
+    for (std::uint32_t b = a + 1; b < spheres.size(); ++b) {
+      if (ignored.count({a, b}) > 0) continue;
+      const float dx = spheres[a].x - spheres[b].x, dy = spheres[a].y - spheres[b].y, dz = spheres[a].z - spheres[b].z;
+      float sum = spheres[a].radius + spheres[b].radius;
+      if (reach.count({a, b}) > 0) sum = reach[{a, b}] * sum;
+      if ((dx * dx + dy * dy) + dz * dz < sum * sum) pairs.push_back({a, b});
+    }
+  }
+  return pairs;
+}
+
+std::uint8_t region_of(const Bake& bake, std::uint32_t sphere) { return bake.spheres.spheres[sphere].region; }
+
+// Pairs between two regions, the torso's spheres only of one side where `side` is given.
+std::size_t count_between(const Bake& bake, const std::vector<Pair>& pairs, std::uint8_t a, std::uint8_t b, Side side = Side::kNone) {
+  return static_cast<std::size_t>(std::count_if(pairs.begin(), pairs.end(), [&](const Pair& pair) {
+    for (const auto& [p, q] : {std::pair(pair.a, pair.b), std::pair(pair.b, pair.a)}) {
+      if (region_of(bake, p) != a || region_of(bake, q) != b) continue;
+      if (side == Side::kNone || bake.spheres.spheres[q].side == side) return true;
+    }
+    return false;
+  }));
+}
+
+}  // namespace
+
+TEST_CASE("at rest no pair is reported, with either radius and either refit") {
+  for (const Bake* bake : {&baked_human(), &paper_baked_human()}) {
+    CHECK(touching(*bake, bake->character.source_positions, RadiusKind::kFit).empty());
+    CHECK(touching(*bake, bake->character.source_positions, RadiusKind::kDetect).empty());
+  }
+}
+
+TEST_CASE("hands on hips: each arm touches its own side of the torso or its own leg") {
+  const Bake& bake = baked_human();
+  const std::vector<Pair> pairs = touching(bake, posed_human("hands_on_hips.json"), RadiusKind::kDetect);
+  CHECK(count_between(bake, pairs, 0, kTorso, Side::kLeft) > 0);
+  CHECK(count_between(bake, pairs, 1, kTorso, Side::kRight) > 0);
+  CHECK(count_between(bake, pairs, 0, kTorso, Side::kRight) == 0);
+  CHECK(count_between(bake, pairs, 1, kTorso, Side::kLeft) == 0);
+  CHECK(count_between(bake, pairs, 2, 3) == 0);
+}
+
+TEST_CASE("one leg over the other: leg touches leg, and no arm does") {
+  const Bake& bake = baked_human();
+  const std::vector<Pair> pairs = touching(bake, posed_human("leg_over_leg.json"), RadiusKind::kDetect);
+  CHECK(count_between(bake, pairs, 2, 3) > 0);
+  CHECK(count_between(bake, pairs, 0, 1) == 0);
+}
+
+TEST_CASE("arms crossed: arm touches arm or chest") {
+  const Bake& bake = baked_human();
+  const std::vector<Pair> pairs = touching(bake, posed_human("arms_crossed.json"), RadiusKind::kDetect);
+  CHECK(count_between(bake, pairs, 0, 1) + count_between(bake, pairs, 0, kTorso) > 0);
+  CHECK(count_between(bake, pairs, 2, 3) == 0);
+}
+
+TEST_CASE("in all 80 frames M2 equals a brute force, and M1's pairs are some of M2's, counted chain by chain") {
+  for (const Bake* bake : {&baked_human(), &paper_baked_human()}) {
+    const Asset asset = open_asset_of(*bake);
+    for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
+      std::size_t m1_total = 0, m2_total = 0, frames_touching = 0;
+      for (const AnimationFrame& frame : animation_frames()) {
+        const std::vector<Sphere> spheres = refit(asset, packed(frame.positions), kind).spheres;
+        const Detected m1 = detect(asset, spheres, Method::kM1, kind), m2 = detect(asset, spheres, Method::kM2, kind);
+        CHECK(m2.pairs == brute_force(*bake, spheres, kind));
+        CHECK(std::is_sorted(m1.pairs.begin(), m1.pairs.end()));
+        CHECK(std::includes(m2.pairs.begin(), m2.pairs.end(), m1.pairs.begin(), m1.pairs.end()));
+        // The paper's count: for each chain, the pairs both of whose spheres it holds.
+        std::size_t raw = 0;
+        for (const Chain& chain : bake->chains.chains) {
+          const std::set<std::uint32_t> in(chain.spheres.begin(), chain.spheres.end());
+          for (const Pair& pair : m2.pairs) raw += in.count(pair.a) > 0 && in.count(pair.b) > 0 ? 1u : 0u;
+        }
+        CHECK(m1.chain_pairs.size() == raw);
+        m1_total += m1.pairs.size();
+        m2_total += m2.pairs.size();
+        frames_touching += m2.pairs.empty() ? 0u : 1u;
+      }
+      MESSAGE(fmt::format("{} refit, {} radius: {} of 80 frames touch, M1 finds {} of M2's {} pairs",
+                          bake == &baked_human() ? "calibrated" : "paper", kind == RadiusKind::kFit ? "fit" : "detect", frames_touching,
+                          m1_total, m2_total));
+      CHECK(m2_total > 0);
+    }
+  }
+}

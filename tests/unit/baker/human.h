@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "import/import.h"
+#include "segment/segment.h"
+
+// Debian's assimp-testmodels: a MakeHuman body in an A-pose, 26,756 triangles, without a skeleton.
+inline constexpr const char* kHumanFile = "/usr/share/assimp/models/Collada/human.zae";
+
+struct HumanFixture {
+  spherechain::baker::Character character;
+  spherechain::baker::Regions regions;
+};
+
+// Imported and segmented once for all tests of a run.
+const HumanFixture& human();
