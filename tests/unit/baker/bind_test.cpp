@@ -91,7 +91,8 @@ TEST_CASE("the detect radius lies between the fit radius and what closes the wai
 TEST_CASE("neighbours along limbs, on the torso and across shared edges are ignored, and nothing far apart is") {
   const Bake& bake = baked_human();
   const auto ignored = [&](std::uint32_t a, std::uint32_t b) {
-    return std::binary_search(bake.binding.ignored.begin(), bake.binding.ignored.end(), std::pair<std::uint32_t, std::uint32_t>(std::minmax(a, b)));
+    return std::binary_search(bake.binding.ignored.begin(), bake.binding.ignored.end(),
+                              std::pair<std::uint32_t, std::uint32_t>(std::minmax(a, b)));
   };
   for (std::size_t limb = 0; limb < 4; ++limb) {
     const auto& ids = bake.spheres.of_region[limb];

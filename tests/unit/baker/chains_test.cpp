@@ -38,12 +38,12 @@ TEST_CASE("the rule gives the paper's Table 1 for a biped") {
   const Chains chains = build_chains(stick_figure(4, {2, 2, 2, 2}), kBiped);
   REQUIRE(chains.chains.size() == 6);
   using Ids = std::vector<std::uint32_t>;
-  CHECK(chains.chains[0].spheres == Ids{9, 8, 6, 4, 2, 0, 12, 13});         // R0 L R2
-  CHECK(chains.chains[1].spheres == Ids{11, 10, 7, 5, 3, 1, 14, 15});       // R1 R R3
-  CHECK(chains.chains[2].spheres == Ids{9, 8, 6, 7, 10, 11});               // R0 T R1
-  CHECK(chains.chains[3].spheres == Ids{13, 12, 0, 1, 14, 15});             // R2 D R3
-  CHECK(chains.chains[4].spheres == Ids{9, 8, 6, 7, 5, 3, 1, 14, 15});      // R0 T R R3
-  CHECK(chains.chains[5].spheres == Ids{11, 10, 7, 6, 4, 2, 0, 12, 13});    // R1 T L R2
+  CHECK(chains.chains[0].spheres == Ids{9, 8, 6, 4, 2, 0, 12, 13});       // R0 L R2
+  CHECK(chains.chains[1].spheres == Ids{11, 10, 7, 5, 3, 1, 14, 15});     // R1 R R3
+  CHECK(chains.chains[2].spheres == Ids{9, 8, 6, 7, 10, 11});             // R0 T R1
+  CHECK(chains.chains[3].spheres == Ids{13, 12, 0, 1, 14, 15});           // R2 D R3
+  CHECK(chains.chains[4].spheres == Ids{9, 8, 6, 7, 5, 3, 1, 14, 15});    // R0 T R R3
+  CHECK(chains.chains[5].spheres == Ids{11, 10, 7, 6, 4, 2, 0, 12, 13});  // R1 T L R2
   CHECK(chains.chains[4].name == "zeta4");
   CHECK(chains.chains[4].regions == std::vector<std::uint8_t>{0, kTorso, 3});
 }

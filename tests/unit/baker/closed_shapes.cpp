@@ -20,7 +20,9 @@ SourceMesh revolve(const std::vector<std::pair<double, double>>& profile, double
       mesh.positions.emplace_back(radius * std::cos(angle), radius * std::sin(angle), z);
     }
   }
-  const auto at = [&](std::size_t ring, int i) { return static_cast<Index>(ring * static_cast<std::size_t>(around) + static_cast<std::size_t>(i % around)); };
+  const auto at = [&](std::size_t ring, int i) {
+    return static_cast<Index>(ring * static_cast<std::size_t>(around) + static_cast<std::size_t>(i % around));
+  };
   const auto low = static_cast<Index>(mesh.positions.size()), high = low + 1;
   mesh.positions.emplace_back(0, 0, bottom);
   mesh.positions.emplace_back(0, 0, top);
@@ -89,7 +91,8 @@ SourceMesh without_region(const Bake& bake, std::uint8_t region, std::uint8_t ot
     }
     const auto centre = static_cast<Index>(mesh.positions.size());
     mesh.positions.push_back(middle / static_cast<double>(loop.size()));
-    for (std::size_t i = 0; i < loop.size(); ++i) mesh.triangles.push_back({loop[i], loop[(i + 1) % loop.size()], centre});
+    for (std::size_t i = 0; i < loop.size(); ++i)
+      mesh.triangles.push_back({loop[i], loop[(i + 1) % loop.size()], centre});
   }
   return mesh;
 }

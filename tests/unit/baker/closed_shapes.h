@@ -8,4 +8,5 @@ spherechain::baker::SourceMesh ball_mesh(int rings);
 // A straight tube of radius 1 with round ends.
 spherechain::baker::SourceMesh tube_mesh(double length, int rings);
 // The body without one or two of its regions, each hole closed by a fan.
-spherechain::baker::SourceMesh without_region(const spherechain::baker::Bake& bake, std::uint8_t region, std::uint8_t other = 255);
+spherechain::baker::SourceMesh without_region(const spherechain::baker::Bake& bake, std::uint8_t region,
+                                              std::uint8_t other = 255);

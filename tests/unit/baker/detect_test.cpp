@@ -30,7 +30,8 @@ std::vector<Pair> touching(const Bake& bake, const std::vector<Vec3>& positions,
 
 // Written apart from the runtime: from the baker's own lists, with sets, in the arithmetic the headers fix.
 std::vector<Pair> brute_force(const Bake& bake, const std::vector<Sphere>& spheres, RadiusKind kind) {
-  const std::set<std::pair<std::uint32_t, std::uint32_t>> ignored(bake.binding.ignored.begin(), bake.binding.ignored.end());
+  const std::set<std::pair<std::uint32_t, std::uint32_t>> ignored(bake.binding.ignored.begin(),
+                                                                  bake.binding.ignored.end());
   std::map<std::pair<std::uint32_t, std::uint32_t>, float> reach;
   for (const BoundPair& near : kind == RadiusKind::kFit ? bake.binding.near_fit : bake.binding.near_detect) {
     reach[{near.a, near.b}] = static_cast<float>(near.reach);
@@ -51,7 +52,8 @@ std::vector<Pair> brute_force(const Bake& bake, const std::vector<Sphere>& spher
 std::uint8_t region_of(const Bake& bake, std::uint32_t sphere) { return bake.spheres.spheres[sphere].region; }
 
 // Pairs between two regions, the torso's spheres only of one side where `side` is given.
-std::size_t count_between(const Bake& bake, const std::vector<Pair>& pairs, std::uint8_t a, std::uint8_t b, Side side = Side::kNone) {
+std::size_t count_between(const Bake& bake, const std::vector<Pair>& pairs, std::uint8_t a, std::uint8_t b,
+                          Side side = Side::kNone) {
   return static_cast<std::size_t>(std::count_if(pairs.begin(), pairs.end(), [&](const Pair& pair) {
     for (const auto& [p, q] : {std::pair(pair.a, pair.b), std::pair(pair.b, pair.a)}) {
       if (region_of(bake, p) != a || region_of(bake, q) != b) continue;
@@ -117,8 +119,8 @@ TEST_CASE("in all 80 frames M2 equals a brute force, and M1's pairs are some of 
         frames_touching += m2.pairs.empty() ? 0u : 1u;
       }
       MESSAGE(fmt::format("{} refit, {} radius: {} of 80 frames touch, M1 finds {} of M2's {} pairs",
-                          bake == &baked_human() ? "calibrated" : "paper", kind == RadiusKind::kFit ? "fit" : "detect", frames_touching,
-                          m1_total, m2_total));
+                          bake == &baked_human() ? "calibrated" : "paper", kind == RadiusKind::kFit ? "fit" : "detect",
+                          frames_touching, m1_total, m2_total));
       CHECK(m2_total > 0);
     }
   }

@@ -18,7 +18,8 @@ namespace {
 double distance_to_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 n = (b - a).cross(c - a).normalized();
   const Vec3 q = p - (p - a).dot(n) * n;
-  const bool inside = (b - a).cross(q - a).dot(n) >= 0 && (c - b).cross(q - b).dot(n) >= 0 && (a - c).cross(q - c).dot(n) >= 0;
+  const bool inside =
+      (b - a).cross(q - a).dot(n) >= 0 && (c - b).cross(q - b).dot(n) >= 0 && (a - c).cross(q - c).dot(n) >= 0;
   if (inside) return (p - q).norm();
   const auto to_side = [&](const Vec3& s, const Vec3& e) {
     const double f = std::clamp((p - s).dot(e - s) / (e - s).squaredNorm(), 0.0, 1.0);
@@ -52,8 +53,8 @@ TEST_CASE("a human gets 8 to 12 spheres an arm and a leg and four or five torso 
   CHECK((levels == 4 || levels == 5));
   CHECK(bake.spheres.of_region[kTorso].size() == 2 * levels);
   MESSAGE(fmt::format("spheres: arms {} + {}, legs {} + {}, torso {}: {} in all", bake.spheres.of_region[0].size(),
-                      bake.spheres.of_region[1].size(), bake.spheres.of_region[2].size(), bake.spheres.of_region[3].size(),
-                      bake.spheres.of_region[4].size(), bake.spheres.spheres.size()));
+                      bake.spheres.of_region[1].size(), bake.spheres.of_region[2].size(),
+                      bake.spheres.of_region[3].size(), bake.spheres.of_region[4].size(), bake.spheres.spheres.size()));
 }
 
 TEST_CASE("a limb sphere touches the skin of its limb") {
@@ -84,7 +85,8 @@ TEST_CASE("left and right limbs have the same number of spheres, mirrored to 1.5
   const BodyFrame& frame = bake.regions.frame;
   double worst = 0;
   for (const auto& [left, right] : {std::pair(0, 1), std::pair(2, 3)}) {
-    const auto &l = bake.spheres.of_region[static_cast<std::size_t>(left)], &r = bake.spheres.of_region[static_cast<std::size_t>(right)];
+    const auto &l = bake.spheres.of_region[static_cast<std::size_t>(left)],
+               &r = bake.spheres.of_region[static_cast<std::size_t>(right)];
     REQUIRE(l.size() == r.size());
     for (std::size_t i = 0; i < l.size(); ++i) {
       const Ball &a = bake.spheres.spheres[l[i]].ball, &b = bake.spheres.spheres[r[i]].ball;
@@ -92,7 +94,8 @@ TEST_CASE("left and right limbs have the same number of spheres, mirrored to 1.5
     }
   }
   CHECK(worst < 0.015 * frame.height);
-  MESSAGE(fmt::format("largest difference of mirrored limb spheres: {:.2f} % of the height", 100 * worst / frame.height));
+  MESSAGE(
+      fmt::format("largest difference of mirrored limb spheres: {:.2f} % of the height", 100 * worst / frame.height));
 }
 
 TEST_CASE("left spheres are on the character's left, and levels climb") {
@@ -124,9 +127,11 @@ TEST_CASE("the sphere adjustment lowers mean |F| of every torso sphere or leaves
     CHECK(f[1] <= f[0]);
     CHECK(fit.phi1_adjusted.radius <= fit.phi1.radius);
     double deepest = 1e9;
-    for (const Index v : fit.vertices) deepest = std::min(deepest, fit.phi2.radius - (fit.phi2.center - mesh.positions[v]).norm());
+    for (const Index v : fit.vertices)
+      deepest = std::min(deepest, fit.phi2.radius - (fit.phi2.center - mesh.positions[v]).norm());
     CHECK(deepest > -1e-9 * bake.regions.frame.height);
-    CHECK(deepest < 1e-9 * bake.regions.frame.height);  // some vertex is on it: it could not be smaller about this centre
+    CHECK(deepest <
+          1e-9 * bake.regions.frame.height);  // some vertex is on it: it could not be smaller about this centre
     means += f / static_cast<double>(bake.spheres.torso.size());
     table += fmt::format("{:<8} {:>8.1f} {:>8.1f} {:>8.1f}\n", i, 1e3 * f[0], 1e3 * f[1], 1e3 * f[2]);
   }

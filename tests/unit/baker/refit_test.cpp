@@ -17,8 +17,8 @@ namespace {
 
 using spherechain::test::refit;
 
-// The sphere that keeps its rest F to the vertices around it best: the least squares of (r - |c - v_i|) - F_i over centre and
-// radius, by Gauss and Newton from the rest sphere moved with the vertices' centroid.
+// The sphere that keeps its rest F to the vertices around it best: the least squares of (r - |c - v_i|) - F_i over
+// centre and radius, by Gauss and Newton from the rest sphere moved with the vertices' centroid.
 struct BestFit {
   std::vector<Index> vertices;  // source vertices of the surrounding region with |F| < r / 2 at rest
   std::vector<double> rest_f;
@@ -26,7 +26,8 @@ struct BestFit {
 
   Ball fitted_to(const std::vector<Vec3>& rest_positions, const std::vector<Vec3>& positions) const {
     Ball ball = rest;
-    for (const Index v : vertices) ball.center += (positions[v] - rest_positions[v]) / static_cast<double>(vertices.size());
+    for (const Index v : vertices)
+      ball.center += (positions[v] - rest_positions[v]) / static_cast<double>(vertices.size());
     for (int pass = 0; pass < 30; ++pass) {
       Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
       Eigen::Vector4d gradient = Eigen::Vector4d::Zero();
@@ -112,12 +113,14 @@ TEST_CASE("calibrated refit follows the best-fit sphere of the deformed surround
   std::vector<std::vector<Ball>> best;
   for (const AnimationFrame& frame : animation_frames()) {
     best.emplace_back();
-    for (const BestFit& fit : fits) best.back().push_back(fit.fitted_to(bake.character.source_positions, frame.positions));
+    for (const BestFit& fit : fits)
+      best.back().push_back(fit.fitted_to(bake.character.source_positions, frame.positions));
   }
   REQUIRE(best.size() == 80);
   const Errors calibrated = refit_errors(bake, best), paper = refit_errors(paper_baked_human(), best);
-  const std::string header = fmt::format("refit against a best-fit sphere, 80 frames (centre mm, radius %)\n{:<11} {:>6} {:>6} {:>6} {:>8} {:>6}\n", "",
-                                         "mean", "p95", "max", "mean", "p95");
+  const std::string header = fmt::format(
+      "refit against a best-fit sphere, 80 frames (centre mm, radius %)\n{:<11} {:>6} {:>6} {:>6} {:>8} {:>6}\n", "",
+      "mean", "p95", "max", "mean", "p95");
   MESSAGE(header, calibrated.row("calibrated"), paper.row("paper"));
   CHECK(Errors::mean(calibrated.center) < 3);
   CHECK(Errors::p95(calibrated.center) < 10);
@@ -133,7 +136,8 @@ TEST_CASE("at rest the calibrated refit gives the baked spheres to 1e-5 of the h
     double worst = 0;
     for (std::size_t i = 0; i < result.spheres.size(); ++i) {
       const spherechain::Sphere& s = result.spheres[i];
-      const double wanted = kind == RadiusKind::kFit ? bake.spheres.spheres[i].ball.radius : bake.binding.spheres[i].detect_radius;
+      const double wanted =
+          kind == RadiusKind::kFit ? bake.spheres.spheres[i].ball.radius : bake.binding.spheres[i].detect_radius;
       worst = std::max({worst, (Vec3(s.x, s.y, s.z) - bake.spheres.spheres[i].ball.center).norm(),
                         std::abs(static_cast<double>(s.radius) - wanted)});
     }

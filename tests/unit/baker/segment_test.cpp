@@ -51,7 +51,8 @@ TEST_CASE("each region is one piece, joined over shared edges") {
   const Mesh& mesh = bake.character.body;
   std::map<std::pair<Index, Index>, std::vector<Index>> edges;
   for (Index t = 0; t < mesh.triangles.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) edges[std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3])].push_back(t);
+    for (std::size_t k = 0; k < 3; ++k)
+      edges[std::minmax(mesh.triangles[t][k], mesh.triangles[t][(k + 1) % 3])].push_back(t);
   }
   std::vector<std::set<Index>> next(mesh.triangles.size());
   for (const auto& [edge, triangles] : edges) {
@@ -82,9 +83,11 @@ TEST_CASE("each region is one piece, joined over shared edges") {
 
 TEST_CASE("left and right arm, and left and right leg, have the same area to 3 %") {
   const Bake& bake = baked_human();
-  for (const auto& [left, right] : {std::pair<std::uint8_t, std::uint8_t>(0, 1), std::pair<std::uint8_t, std::uint8_t>(2, 3)}) {
+  for (const auto& [left, right] :
+       {std::pair<std::uint8_t, std::uint8_t>(0, 1), std::pair<std::uint8_t, std::uint8_t>(2, 3)}) {
     CHECK(area_of(bake, left) == doctest::Approx(area_of(bake, right)).epsilon(0.03));
-    MESSAGE(fmt::format("{}: {:.4f}, {}: {:.4f}", kRegionNames[left], area_of(bake, left), kRegionNames[right], area_of(bake, right)));
+    MESSAGE(fmt::format("{}: {:.4f}, {}: {:.4f}", kRegionNames[left], area_of(bake, left), kRegionNames[right],
+                        area_of(bake, right)));
   }
 }
 

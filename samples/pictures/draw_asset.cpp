@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Draws an asset's spheres in its source's skin, at rest or in a frame of a pose file's motion; touching spheres stand
+// out.
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <set>
+
+#include "mesh/error.h"
+#include "motion/motion.h"
+#include "picture.h"
+#include "spherechain/detect.h"
+#include "spherechain/refit.h"
+
+using namespace spherechain::baker;
+using namespace spherechain::pictures;
+using spherechain::Asset;
+using spherechain::RadiusKind;
+using Vec3 = spherechain::baker::Vec3;
+
+namespace {
+
+struct Options {
+  std::string asset, source, out, poses, radius = "fit";
+  int frame = -1, frames = 40, height = 900;
+};
+
+Vec3 to_vec3(const spherechain::Vec3& v) { return {v.x, v.y, v.z}; }
+
+std::vector<std::uint64_t> read_aligned(const std::string& path, std::size_t& size) {
+  std::ifstream in(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  std::vector<std::uint64_t> words(bytes.size() / 8 + 1);
+  size = bytes.copy(reinterpret_cast<char*>(words.data()), bytes.size());
+  return words;
+}
+
+std::vector<spherechain::Sphere> refit(const Asset& asset, const std::vector<Vec3>& positions, RadiusKind radius) {
+  std::vector<float> packed;
+  for (const Vec3& p : positions)
+    packed.insert(packed.end(), {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
+  std::vector<spherechain::Sphere> spheres(asset.spheres().size);
+  spherechain::RefitJob job;
+  job.asset = &asset;
+  job.positions = packed.data();
+  job.vertex_count = positions.size();
+  job.radius = radius;
+  job.spheres = {spheres.data(), spheres.size()};
+  if (const auto status = job.run(); status != spherechain::Status::kOk)
+    throw Error(ExitCode::kInternal, to_string(status));
+  return spheres;
+}
+
+std::set<std::uint32_t> touching(const Asset& asset, const std::vector<spherechain::Sphere>& spheres,
+                                 RadiusKind radius) {
+  std::vector<spherechain::Pair> pairs(spheres.size() * (spheres.size() - 1) / 2);
+  spherechain::DetectJob job;
+  job.asset = &asset;
+  job.spheres = {spheres.data(), spheres.size()};
+  job.radius = radius;
+  job.pairs = {pairs.data(), pairs.size()};
+  if (const auto status = job.run(); status != spherechain::Status::kOk)
+    throw Error(ExitCode::kInternal, to_string(status));
+  std::set<std::uint32_t> ids;
+  for (std::size_t i = 0; i < job.pair_count; ++i) {
+    ids.insert({pairs[i].a, pairs[i].b});
+    std::cout << asset.region(asset.spheres()[pairs[i].a].region).name << ' ' << pairs[i].a << " - "
+              << asset.region(asset.spheres()[pairs[i].b].region).name << ' ' << pairs[i].b << '\n';
+  }
+  return ids;
+}
+
+void draw(const Options& options) {
+  std::size_t size = 0;
+  const std::vector<std::uint64_t> bytes = read_aligned(options.asset, size);
+  Asset asset;
+  char message[256] = "";
+  if (const auto status = asset.open(bytes.data(), size, message, sizeof(message));
+      status != spherechain::Status::kOk) {
+    throw Error(ExitCode::kFile, options.asset + ": " + to_string(status) + " " + message);
+  }
+  const Character character = import_character(options.source);
+  const spherechain::AssetInfo info = asset.info();
+  const BodyFrame frame{to_vec3(info.origin), to_vec3(info.left), to_vec3(info.up), to_vec3(info.forward),
+                        static_cast<double>(info.height)};
+
+  std::vector<Vec3> positions = character.source_positions;
+  if (!options.poses.empty()) {
+    std::vector<Joint> joints;
+    for (std::size_t j = 0; j < asset.joint_count(); ++j) {
+      const auto joint = asset.joint(j);
+      joints.push_back({joint.name, joint.parent, to_vec3(joint.position), to_vec3(joint.tail)});
+    }
+    const int index = options.frame < 0 ? options.frames - 1 : options.frame;
+    const double t = options.frames > 1 ? static_cast<double>(index) / (options.frames - 1) : 1.0;
+    positions =
+        BezierMotion(positions, rig_weights(character, joints), joints, frame, read_pose_motion(options.poses, joints))
+            .at(t);
+  }
+
+  Picture picture{character.body, {}, {}, {}, {kFront, kLeftSide, kThreeQuarter}, frame, 0.35, options.height};
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    if (character.body_of_source[v] != kNoIndex) picture.mesh.positions[character.body_of_source[v]] = positions[v];
+  }
+  const RadiusKind radius = options.radius == "fit" ? RadiusKind::kFit : RadiusKind::kDetect;
+  const std::vector<spherechain::Sphere> spheres = refit(asset, positions, radius);
+  const std::set<std::uint32_t> ids = touching(asset, spheres, radius);
+  for (std::uint32_t i = 0; i < spheres.size(); ++i) {
+    const std::uint8_t region = asset.spheres()[i].region;
+    picture.spheres.push_back({Vec3(spheres[i].x, spheres[i].y, spheres[i].z), static_cast<double>(spheres[i].radius),
+                               kRegionColours[std::min<std::size_t>(region, kRegionColours.size() - 1)],
+                               ids.count(i) > 0});
+  }
+  write_picture(options.out, picture);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Draws an asset's spheres in its source's skin as a PNG and lists the pairs that touch"};
+  Options options;
+  app.add_option("asset", options.asset, "asset (.sphc)")->required();
+  app.add_option("source", options.source, "the mesh it was baked from")->required();
+  app.add_option("-o,--out", options.out, "PNG file to write")->required();
+  app.add_option("--poses", options.poses, "pose file (samples/poses)");
+  app.add_option("--frame", options.frame, "frame of the motion; the last one by default");
+  app.add_option("--frames", options.frames, "frames of the motion")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  app.add_option("--radius", options.radius, "fit or detect")
+      ->check(CLI::IsMember({"fit", "detect"}))
+      ->capture_default_str();
+  app.add_option("--height", options.height, "height of the picture in pixels")
+      ->check(CLI::Range(64, 8192))
+      ->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  try {
+    draw(options);
+  } catch (const Error& error) {
+    std::cerr << "draw_asset: error: " << error.what() << '\n';
+    return static_cast<int>(error.code());
+  }
+  return 0;
+}

@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# The main job, end to end: bakes the MakeHuman body that Debian's assimp-testmodels installs, plays two animations of 40
+# frames and draws what it found. Results go to out/demo.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+scripts/install_packages.sh
+cmake --preset release >/dev/null
+cmake --build --preset release --target spherechain draw_asset draw_character
+
+human=/usr/share/assimp/models/Collada/human.zae
+tool=build/release/bin/spherechain
+out=out/demo
+mkdir -p "$out"
+
+echo
+"$tool" bake "$human" -o "$out/human.sphc" --report "$out/human_report.json"
+for animation in arms legs; do
+  echo
+  echo "== animation_$animation"
+  "$tool" play "$out/human.sphc" --source "$human" --poses "samples/poses/animation_$animation.json" --frames 40 \
+    --json "$out/play_$animation.json"
+done
+
+build/release/bin/draw_character "$human" -o "$out/regions.png"
+build/release/bin/draw_asset "$out/human.sphc" "$human" -o "$out/rest.png" >/dev/null
+for pose in hands_on_hips arms_crossed hand_behind_head leg_over_leg deep_squat; do
+  build/release/bin/draw_asset "$out/human.sphc" "$human" --poses "samples/poses/$pose.json" --radius detect \
+    -o "$out/$pose.png" >/dev/null
+done
+
+echo
+echo "Wrote, in $out:"
+ls -1 "$out" | sed 's/^/  /'

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "import/import.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "closed_shapes.h"
+#include "human.h"
+#include "mesh/error.h"
+#include "temporary_folder.h"
+
+using namespace spherechain::baker;
+namespace fs = std::filesystem;
+
+namespace {
+
+// The message of the error a file must end with.
+std::string refusal(const fs::path& path) {
+  try {
+    import_character(path);
+  } catch (const Error& error) {
+    CHECK(error.code() == ExitCode::kFile);
+    CHECK(std::string(error.what()).find(path.string()) == 0);  // names the file
+    return error.what();
+  }
+  return "accepted";
+}
+
+bool contains(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
+
+const char* const kTetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+
+}  // namespace
+
+TEST_CASE("the human comes in whole: a closed body, welded, and the eyes beside it") {
+  const Character& character = human().character;
+  CHECK(character.body.triangles.size() == 26756);
+  CHECK(character.body.positions.size() == 13380);
+  CHECK(count_open_edges(character.body) == 0);
+  CHECK(character.source_triangle_count == 28796);
+  CHECK(character.others.triangles.size() == 28796 - 26756);
+  CHECK(character.report.components == 5);
+  CHECK(character.metres_per_unit == 1);
+  CHECK(character.sha256.size() == 64);
+  // Source corners and body corners are the same places.
+  for (std::size_t t = 0; t < character.body.triangles.size(); t += 101) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index source = character.body_source_corners[t][k];
+      CHECK(character.body_of_source[source] == character.body.triangles[t][k]);
+      CHECK(character.source_positions[source] == character.body.positions[character.body.triangles[t][k]]);
+    }
+  }
+}
+
+TEST_CASE("what is no character is refused with the file's name and the cause") {
+  const TemporaryFolder folder;
+  CHECK(contains(refusal(folder.path / "nowhere.obj"), "no such file"));
+  CHECK(contains(refusal(folder.path), "is a folder"));
+  CHECK(contains(refusal(folder.write("notes.txt", "dear diary")), "not a mesh"));
+  CHECK(contains(refusal(folder.write("broken.dae", "<COLLADA><asset>")), "not a mesh"));
+  CHECK(contains(refusal(folder.write("empty.obj", "")), "not a mesh"));
+  CHECK(refusal(folder.write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n")) != "accepted");
+  CHECK(contains(refusal(folder.write("lines.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nl 2 3\n")), "no triangles"));
+  CHECK(
+      contains(refusal(folder.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n")), "no triangles with an area"));
+  CHECK(contains(refusal(folder.write("dot.obj", "v 1 2 3\nv 1 2 3\nv 1 2 3\nf 1 2 3\n")), "no size"));
+  CHECK(contains(refusal(folder.write("nan.obj", std::string("v nan 0 0\n") + kTetrahedron)), "not finite"));
+  CHECK(contains(refusal(folder.write("inf.obj", std::string("v 0 inf 0\n") + kTetrahedron)), "not finite"));
+  CHECK(refusal(folder.write("range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n")) != "accepted");
+}
+
+TEST_CASE("indices out of range and positions beyond single precision are refused whatever the importer") {
+  SourceMesh mesh = ball_mesh(8);
+  mesh.triangles[3][1] = 100000;
+  CHECK_THROWS_WITH_AS(build_character(mesh, "x.obj"), "x.obj: triangle 3 uses vertex 100000 of 114", Error);
+  mesh = ball_mesh(8);
+  mesh.positions[5].x() = 1e300;
+  CHECK_THROWS_WITH_AS(build_character(mesh, "x.obj"), doctest::Contains("single precision"), Error);
+}
+
+TEST_CASE("degenerate and duplicate triangles are dropped and counted, and split vertices welded") {
+  const TemporaryFolder folder;
+  // Two corners at one place, three on a line, one triangle twice (turned, and once inside out); vertex 5 repeats
+  // vertex 1.
+  const auto path =
+      folder.write("dirty.obj",
+                   "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0 0 0\nv 0.5 0 0\nf 1 3 2\nf 5 2 4\nf 2 3 4\nf 3 1 4\n"
+                   "f 1 5 2\nf 1 6 2\nf 3 2 1\nf 2 3 1\n");
+  const Character character = import_character(path);
+  CHECK(character.body.triangles.size() == 4);
+  CHECK(character.report.degenerate_dropped == 2);
+  CHECK(character.report.duplicates_dropped == 2);
+  CHECK(character.report.welded_vertices == 4);
+  CHECK(count_open_edges(character.body) == 0);
+  CHECK(character.source_triangle_count == 8);
+}
+
+TEST_CASE("the largest piece by area is the body, whichever comes first") {
+  SourceMesh small = ball_mesh(6), large = ball_mesh(12);
+  for (Vec3& p : large.positions) p = 5 * p + Vec3(20, 0, 0);
+  const auto join = [](SourceMesh a, const SourceMesh& b) {
+    const auto base = static_cast<Index>(a.positions.size());
+    a.positions.insert(a.positions.end(), b.positions.begin(), b.positions.end());
+    for (const Triangle& t : b.triangles) a.triangles.push_back({t[0] + base, t[1] + base, t[2] + base});
+    return a;
+  };
+  for (const SourceMesh& mesh : {join(small, large), join(large, small)}) {
+    const Character character = build_character(mesh, "two.obj");
+    CHECK(character.report.components == 2);
+    CHECK(character.body.triangles.size() == large.triangles.size());
+    CHECK(character.others.triangles.size() == small.triangles.size());
+  }
+}
