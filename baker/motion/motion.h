@@ -18,7 +18,7 @@ struct Pose {
   std::map<std::string, Eigen::Quaterniond> rotations;
 };
 
-// A motion that starts at rest and goes through poses.
+// A motion that starts at rest and goes through poses, evenly spaced.
 struct PoseMotion {
   std::string name;
   std::vector<Pose> poses;
@@ -52,7 +52,7 @@ class BezierMotion {
   std::vector<Vec3> at(double t) const;
 
  private:
-  std::vector<std::vector<Vec3>> keys_;  // pose 0, middle, pose 1, middle, pose 2 ...: a segment is three of them
+  std::vector<std::vector<Vec3>> keys_;  // rest, control, pose 0, control, pose 1 ...: a stretch is three of them
 };
 
 }  // namespace spherechain::baker

@@ -17,7 +17,8 @@ struct Joint {
   Vec3 position, tail;
 };
 
-// Joints of a character without a skeleton, from its regions' centre lines.
+// Joints of a character without a skeleton, from its regions' centre lines: pelvis, spine, chest, neck, head, and on
+// either side (left_, right_) clavicle, shoulder, elbow, wrist, hip, knee, ankle.
 std::vector<Joint> place_joints(const Character& character, const Regions& regions);
 
 // At most four joints a vertex, the largest first; weights are positive and sum to 1, unused entries are zero.
@@ -26,7 +27,8 @@ struct VertexWeights {
   std::array<double, 4> weight{};
 };
 
-// Bone-heat weights of every vertex of a closed mesh (Baran and Popovic 2007, section 4).
+// Bone-heat weights of every vertex of a closed mesh (Baran and Popovic 2007, section 4). They depend on nothing else:
+// the same mesh and joints give the same weights.
 std::vector<VertexWeights> bone_heat_weights(const Mesh& mesh, const std::vector<Joint>& joints);
 
 // Weights of every source vertex: the body's by bone heat, the other pieces' (eyes) rigidly with the nearest body
