@@ -21,9 +21,15 @@ constexpr double kMostDegrees = 180;      // farther round the interpolation wou
   throw Error(ExitCode::kFile, file.string() + ": " + what);
 }
 
+// Unlike the library's, without an exception where the name is too long or a folder is locked.
+bool is_file(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
 Json read_json(const fs::path& file) {
   std::ifstream stream(file);
-  if (!fs::is_regular_file(file) || !stream) fail(file, "no such pose file (name an existing JSON file)");
+  if (!stream) fail(file, "cannot be read (check its permissions)");
   try {
     return Json::parse(stream);
   } catch (const Json::exception& error) {
@@ -62,7 +68,8 @@ Pose read_pose(const fs::path& file, const Json& value, const std::vector<Joint>
 
 void read_into(PoseMotion& motion, const fs::path& file, const std::vector<Joint>& joints,
                std::vector<fs::path>& open) {
-  const fs::path canonical = fs::weakly_canonical(file);
+  if (!is_file(file)) fail(file, "no such pose file (name an existing JSON file)");
+  const fs::path canonical = fs::canonical(file);
   if (std::find(open.begin(), open.end(), canonical) != open.end()) {
     fail(file, "includes itself, directly or through another file (break the circle)");
   }
@@ -81,7 +88,7 @@ void read_into(PoseMotion& motion, const fs::path& file, const std::vector<Joint
   for (const Json& entry : json["poses"]) {
     if (entry.is_string()) {
       const fs::path other = file.parent_path() / entry.get<std::string>();
-      if (!fs::is_regular_file(other)) {
+      if (!is_file(other)) {
         fail(file, "takes poses from '" + entry.get<std::string>() +
                        "', and there is no such file next to it (mend the name)");
       }
