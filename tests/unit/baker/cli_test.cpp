@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The command line as pipelines use it: exit codes, one-line errors, JSON, and what is left on disk.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "baked_human.h"
+#include "human.h"
+#include "temporary_folder.h"
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using spherechain::baker::kTorso;
+
+namespace {
+
+struct Run {
+  int code;
+  std::string out, error;
+};
+
+std::string contents(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+Run run(const std::string& arguments) {
+  const TemporaryFolder folder;
+  const fs::path out = folder.path / "out", error = folder.path / "error";
+  const int status = std::system(fmt::format("{} {} >{} 2>{}", SPHERECHAIN_TOOL, arguments, out.string(), error.string()).c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(out), contents(error)};
+}
+
+// One line, "spherechain: error: ...", that mentions what it should.
+void check_error(const Run& run, int code, const std::vector<std::string>& parts) {
+  CHECK_MESSAGE(run.code == code, run.error);
+  CHECK(run.error.rfind("spherechain: error: ", 0) == 0);
+  CHECK(std::count(run.error.begin(), run.error.end(), '\n') == 1);
+  for (const std::string& part : parts) CHECK_MESSAGE(run.error.find(part) != std::string::npos, run.error);
+}
+
+std::size_t files_in(const fs::path& folder) {
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+// The human, baked by the tool once a run.
+struct BakedFiles {
+  TemporaryFolder folder;
+  fs::path asset = folder.path / "human.sphc", report = folder.path / "report.json";
+  Run bake = run(fmt::format("bake {} -o {} --report {}", kHumanFile, asset.string(), report.string()));
+};
+const BakedFiles& baked_files() {
+  static const BakedFiles files;
+  return files;
+}
+
+std::string pose(const char* name) { return std::string(SPHERECHAIN_SAMPLES) + "/poses/" + name; }
+
+}  // namespace
+
+TEST_CASE("bake writes the same bytes as the library, a report and a table, and no temporary file stays") {
+  const BakedFiles& files = baked_files();
+  REQUIRE_MESSAGE(files.bake.code == 0, files.bake.error);
+  CHECK(files.bake.error.empty());
+  CHECK(files.bake.out.find("stage") != std::string::npos);
+  const std::string bytes = contents(files.asset);
+  CHECK(bytes == std::string(baked_human().asset.begin(), baked_human().asset.end()));
+  CHECK(files_in(files.folder.path) == 2);
+
+  const json report = json::parse(contents(files.report));
+  CHECK(report["import"]["body_triangles"] == 26756);
+  CHECK(report["counts"]["spheres"] == baked_human().spheres.spheres.size());
+  CHECK(report["counts"]["why"].get<std::string>().find("touch the skin") != std::string::npos);
+  for (const json& sphere : report["fit"]["torso"]) {
+    for (const char* fit : {"phi1", "phi1_adjusted", "phi2"}) CHECK(sphere[fit]["F"].size() == sphere["vertices"].size());
+    CHECK(sphere["phi1_adjusted"]["mean_abs_F"] <= sphere["phi1"]["mean_abs_F"]);
+  }
+  std::set<std::string> stages;
+  for (const json& stage : report["stages"]) stages.insert(stage["stage"].get<std::string>());
+  CHECK(stages == std::set<std::string>{"import", "segment", "fit", "chains", "bind", "rig", "write"});
+}
+
+TEST_CASE("inspect --json has the contract's fields and agrees with itself") {
+  const Run inspect = run(fmt::format("inspect {} --json", baked_files().asset.string()));
+  REQUIRE(inspect.code == 0);
+  const json asset = json::parse(inspect.out);
+  CHECK(asset["format_version"] == 1);
+  CHECK(asset["writer"].get<std::string>().rfind("spherechain ", 0) == 0);
+  CHECK(asset["source"]["file"] == "human.zae");
+  CHECK(asset["source"]["sha256"].get<std::string>().size() == 64);
+  CHECK(asset["source"]["triangles"] == 28796);
+  REQUIRE(asset["spheres"].size() == asset["sphere_count"]);
+  std::size_t triangles = 0, in_regions = 0, entries = 0;
+  for (const json& sphere : asset["spheres"]) {
+    for (const char* key : {"id", "center", "radius", "detect_radius", "region", "level", "side", "triangles", "pivots"}) CHECK(sphere.contains(key));
+    CHECK(sphere["pivots"].size() >= 8);
+    triangles += sphere["triangles"].get<std::size_t>();
+  }
+  const std::vector<std::string> names{"left_arm", "right_arm", "left_leg", "right_leg", "torso"};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    CHECK(asset["regions"][i]["name"] == names[i]);
+    in_regions += asset["regions"][i]["triangles"].get<std::size_t>();
+  }
+  CHECK(triangles == 28796);
+  CHECK(in_regions == triangles);
+  REQUIRE(asset["chains"].size() == 6);
+  for (const json& chain : asset["chains"]) entries += chain["spheres"].size();
+  CHECK(asset["chain_entries"] == entries);
+  CHECK(asset["chain_entries_table1"] == baked_human().chains.entries_table1);
+  CHECK(asset["ignored_pairs"] == baked_human().binding.ignored.size());
+  for (const char* fit : {"phi1", "phi1_adjusted", "phi2"}) {
+    CHECK(asset["fit"][fit].contains("mean_abs_F"));
+    CHECK(asset["fit"][fit].contains("max_abs_F"));
+  }
+  CHECK(run("inspect " + baked_files().asset.string()).out.find("zeta5") != std::string::npos);
+}
+
+TEST_CASE("play --json has the contract's fields; at rest nothing touches, hands on hips do") {
+  const TemporaryFolder folder;
+  const fs::path out = folder.path / "play.json";
+  const auto play = [&](const std::string& more) {
+    return run(fmt::format("play {} --source {} --json {} {}", baked_files().asset.string(), kHumanFile, out.string(), more));
+  };
+  REQUIRE(play(fmt::format("--poses {} --frames 5 --fps 10", pose("hands_on_hips.json"))).code == 0);
+  const json both = json::parse(contents(out));
+  CHECK(both["backend"] == "scalar");
+  REQUIRE(both["frames"].size() == 5);
+  for (std::size_t i = 0; i < 5; ++i) {
+    const json& frame = both["frames"][i];
+    CHECK(frame["index"] == i);
+    CHECK(frame["time"].get<double>() == doctest::Approx(0.1 * static_cast<double>(i)));
+    CHECK(frame.contains("refit_us"));
+    CHECK(frame["m1"]["unique_pairs"] <= frame["m2"]["pairs"]);
+    CHECK(frame["m1"]["pairs"] >= frame["m1"]["unique_pairs"]);
+    CHECK(frame["m2"]["pairs"] == frame["pairs"].size());
+    CHECK(frame["m2"]["tests"] == both["frames"][0]["m2"]["tests"]);
+    CHECK(frame["m1"].contains("us"));
+  }
+  CHECK(both["frames"][0]["pairs"].empty());
+  CHECK(!both["frames"][4]["pairs"].empty());
+
+  REQUIRE(play("--frames 1 --mode m1 --radius fit --backend scalar").code == 0);
+  const json one = json::parse(contents(out));
+  CHECK(one["frames"][0].contains("m1"));
+  CHECK(!one["frames"][0].contains("m2"));
+}
+
+TEST_CASE("usage errors end with 2") {
+  check_error(run(""), 2, {"--help"});
+  check_error(run("bake"), 2, {});
+  check_error(run("frobnicate"), 2, {});
+  check_error(run(fmt::format("bake {} -o x.sphc --profile fancy", kHumanFile)), 2, {"fancy"});
+  check_error(run(fmt::format("play {} --source {} --mode m3", baked_files().asset.string(), kHumanFile)), 2, {"m3"});
+  check_error(run(fmt::format("play {} --source {} --frames 0", baked_files().asset.string(), kHumanFile)), 2, {});
+  CHECK(run("--help").code == 0);
+  CHECK(run("bake --help").out.find("--report") != std::string::npos);
+  CHECK(run("--version").out.find("spherechain ") == 0);
+}
+
+TEST_CASE("files that cannot be read end with 3, name the file and the cause, and leave nothing behind") {
+  const TemporaryFolder folder;
+  const std::string out = (folder.path / "out.sphc").string();
+  const auto junk = folder.write("junk.obj", "hello").string(), empty = folder.write("empty.sphc", "").string();
+  const std::size_t before = files_in(folder.path);
+  check_error(run("bake /nowhere.obj -o " + out), 3, {"/nowhere.obj", "no such file"});
+  check_error(run("bake " + junk + " -o " + out), 3, {"junk.obj"});
+  check_error(run(fmt::format("bake {} -o {} --config /nowhere.json", kHumanFile, out)), 3, {"/nowhere.json"});
+  check_error(run("inspect /nowhere.sphc"), 3, {"/nowhere.sphc", "no such file"});
+  check_error(run("inspect " + empty), 3, {"empty.sphc"});
+  check_error(run("inspect " + junk), 3, {"junk.obj"});
+  check_error(run(fmt::format("play {} --source {}", baked_files().asset.string(), junk)), 3, {"junk.obj"});
+  check_error(run(fmt::format("play {} --source {} --poses {}", baked_files().asset.string(), kHumanFile, junk)), 3, {"junk.obj"});
+  CHECK(files_in(folder.path) == before);
+  check_error(run(fmt::format("bake {} -o /nowhere/out.sphc", kHumanFile)), 3, {"/nowhere/out.sphc"});
+}
+
+TEST_CASE("broken settings end with 3 and name the setting") {
+  const TemporaryFolder folder;
+  const auto bake_with = [&](const std::string& text) {
+    return run(fmt::format("bake {} -o {} --config {}", kHumanFile, (folder.path / "out.sphc").string(), folder.write("c.json", text).string()));
+  };
+  check_error(bake_with("{"), 3, {"c.json", "JSON"});
+  check_error(bake_with("[1]"), 3, {"c.json", "object"});
+  check_error(bake_with(R"({"rayz": 80})"), 3, {"c.json", "rayz", "unknown"});
+  check_error(bake_with(R"({"rays": 3})"), 3, {"rays", "8"});
+  check_error(bake_with(R"({"penetration_depth": "much"})"), 3, {"penetration_depth"});
+  check_error(bake_with(R"({"facing": [0, 0, 0]})"), 3, {"facing"});
+  check_error(bake_with(R"({"targets": {"speed": 1}})"), 3, {"speed"});
+  CHECK(!fs::exists(folder.path / "out.sphc"));
+}
+
+TEST_CASE("a mesh that cannot be segmented ends with 4") {
+  const TemporaryFolder folder;
+  // A tetrahedron has no limbs.
+  const auto mesh = folder.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n").string();
+  check_error(run(fmt::format("bake {} -o {}", mesh, (folder.path / "t.sphc").string())), 4, {"t.obj", "missing"});
+  CHECK(!fs::exists(folder.path / "t.sphc"));
+}
+
+TEST_CASE("a missed target ends with 5, says so, and writes the asset all the same") {
+  const TemporaryFolder folder;
+  const auto config = folder.write("c.json", R"({"targets": {"max_spheres": 10, "min_covered_area": 0.01}})").string();
+  const fs::path out = folder.path / "out.sphc", report = folder.path / "r.json";
+  const Run result = run(fmt::format("bake {} -o {} --config {} --report {}", kHumanFile, out.string(), config, report.string()));
+  CHECK(result.code == 5);
+  CHECK(result.error.find("max_spheres: 10 asked") != std::string::npos);
+  CHECK(fs::exists(out));
+  CHECK(json::parse(contents(report))["missed_targets"].size() == 1);
+}
+
+TEST_CASE("an output that is no asset is not overwritten without --force, nor is the input with it") {
+  const TemporaryFolder folder;
+  const auto precious = folder.write("thesis.txt", "years of work").string();
+  check_error(run(fmt::format("bake {} -o {}", kHumanFile, precious)), 3, {"thesis.txt", "--force"});
+  CHECK(contents(precious) == "years of work");
+  const auto input = folder.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").string();
+  check_error(run(fmt::format("bake {} -o {} --force", input, input)), 2, {"same file"});
+  CHECK(contents(input).rfind("v 0 0 0", 0) == 0);
+}
+
+TEST_CASE("an asset is refused for another mesh than its source") {
+  const TemporaryFolder folder;
+  const auto other = folder.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n").string();
+  check_error(run(fmt::format("play {} --source {}", baked_files().asset.string(), other)), 3, {"t.obj", "not the mesh"});
+}
