@@ -97,10 +97,14 @@ Use use_fully(const Asset& asset) {
   if (vertex_count > kMaxVertexCount) {
     return Use::kWithoutRefit;
   }
-  std::mt19937 random(1);
-  std::vector<float> positions(std::size_t{3} * vertex_count);
-  std::generate(positions.begin(), positions.end(), [&] { return uniform(random, -1, 1); });
-  (void)check_source(asset, positions.data(), vertex_count);
+  // Nearly all variants agree on the vertex count: its buffer, sized exactly, is made and hashed once.
+  static std::vector<float> positions;
+  if (positions.size() != std::size_t{3} * vertex_count) {
+    std::mt19937 random(1);
+    positions = std::vector<float>(std::size_t{3} * vertex_count);
+    std::generate(positions.begin(), positions.end(), [&] { return uniform(random, -1, 1); });
+    (void)check_source(asset, positions.data(), vertex_count);
+  }
   for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
     const Refitted refitted = refit(asset, positions, kind);
     if (refitted.status != Status::kOk) {
