@@ -2,66 +2,82 @@
 #include "segment/segment.h"
 
 #include <algorithm>
-#include <map>
+#include <cmath>
 
 #include "mesh/error.h"
 #include "mesh/surface_query.h"
 #include "segment/limb_trace.h"
+#include "segment/shortest_loop.h"
 
 namespace spherechain::baker {
 namespace {
 
 using Neighbours = std::vector<std::array<Index, 3>>;
 
+// Half the width of the strip around a cut in which the loop may run, as a fraction of the height.
+constexpr double kStripHalfWidth = 0.015;
+
 // The triangles beyond the plane through the limb's start, in one piece with its tip. Near the plane they must also be no
 // farther from the centre line than the section there reaches, and closer to this limb than to another: armpit and crotch
-// are not crossed.
-void label_limb(const Mesh& mesh, const Neighbours& neighbours, const SurfaceQuery& surface,
-                const std::array<LimbTrace, 4>& traces, std::uint8_t region, std::vector<std::uint8_t>& labels) {
-  const LimbTrace& limb = traces[region];
-  const Vec3 start = limb.line.at(0);
-  const auto distance_to = [&](std::size_t i, const Vec3& p) { return (traces[i].line.at(traces[i].line.closest(p)) - p).norm(); };
-  const auto beyond = [&](Index t) {
-    const Vec3 centroid = triangle_centroid(mesh, t);
-    const double along = (centroid - start).dot(limb.direction);
-    if (along <= 0) return false;
-    if (along > 2 * limb.radius) return true;
-    if ((centroid - start - along * limb.direction).norm() > 1.1 * limb.radius + 0.5 * along) return false;
+// are not crossed. The loop is then the shortest in a strip around the plane.
+class LimbLabeller {
+ public:
+  LimbLabeller(const Mesh& mesh, const std::array<LimbTrace, 4>& traces, double height)
+      : mesh_(mesh), neighbours_(triangle_neighbours(mesh)), traces_(traces), half_width_(kStripHalfWidth * height) {}
+
+  void label(std::uint8_t region, Index tip, std::vector<std::uint8_t>& labels) const {
+    const LimbTrace& limb = traces_[region];
+    std::vector<Index> stack{tip};
+    labels[tip] = region;
+    while (!stack.empty()) {
+      const Index t = stack.back();
+      stack.pop_back();
+      for (const Index n : neighbours_[t]) {
+        if (n == kNoIndex || labels[n] != kTorso) continue;
+        const double along = along_of(limb, n);
+        if (along <= 0 || (along <= 2 * limb.radius && !near(region, n, along))) continue;
+        labels[n] = region;
+        stack.push_back(n);
+      }
+    }
+    std::vector<Strip> strip(mesh_.triangles.size(), Strip::kOutside);
+    for (Index t = 0; t < strip.size(); ++t) {
+      if (labels[t] != region && labels[t] != kTorso) continue;
+      const double along = along_of(limb, t);
+      if (std::abs(along) < half_width_ && near(region, t, std::abs(along))) strip[t] = Strip::kFree;
+    }
+    shorten_loop(mesh_, neighbours_, strip, region, kTorso, labels);
+  }
+
+  const Neighbours& neighbours() const { return neighbours_; }
+
+ private:
+  double along_of(const LimbTrace& limb, Index t) const {
+    return (triangle_centroid(mesh_, t) - limb.line.at(0)).dot(limb.direction);
+  }
+
+  bool near(std::uint8_t region, Index t, double along) const {
+    const LimbTrace& limb = traces_[region];
+    const Vec3 centroid = triangle_centroid(mesh_, t), from_start = centroid - limb.line.at(0);
+    const double across = (from_start - from_start.dot(limb.direction) * limb.direction).norm();
+    if (across > 1.1 * limb.radius + 0.5 * along) return false;
     const double own = distance_to(region, centroid);
-    for (std::size_t i = 0; i < traces.size(); ++i) {
+    for (std::size_t i = 0; i < traces_.size(); ++i) {
       if (i != region && distance_to(i, centroid) < own) return false;
     }
     return true;
-  };
-  std::vector<Index> stack{surface.closest(limb.line.points().back()).triangle};
-  labels[stack.back()] = region;
-  while (!stack.empty()) {
-    const Index t = stack.back();
-    stack.pop_back();
-    for (const Index n : neighbours[t]) {
-      if (n == kNoIndex || labels[n] != kTorso || !beyond(n)) continue;
-      labels[n] = region;
-      stack.push_back(n);
-    }
   }
-}
 
-// A plane cuts through triangles, labels cannot: teeth along the loop go to the side that two of their neighbours are on.
-void smooth_loops(const Neighbours& neighbours, std::vector<std::uint8_t>& labels) {
-  for (int pass = 0; pass < 8; ++pass) {
-    std::vector<std::uint8_t> next = labels;
-    for (std::size_t t = 0; t < labels.size(); ++t) {
-      std::array<int, kRegionCount> votes{};
-      for (const Index n : neighbours[t]) {
-        if (n != kNoIndex) ++votes[labels[n]];
-      }
-      const auto most = std::max_element(votes.begin(), votes.end()) - votes.begin();
-      if (votes[static_cast<std::size_t>(most)] >= 2) next[t] = static_cast<std::uint8_t>(most);
-    }
-    if (next == labels) break;
-    labels = std::move(next);
+  double distance_to(std::size_t limb, const Vec3& p) const {
+    const Polyline& line = traces_[limb].line;
+    return (line.at(line.closest(p)) - p).norm();
   }
-}
+
+  const Mesh& mesh_;
+  Neighbours neighbours_;
+  const std::array<LimbTrace, 4>& traces_;
+  double half_width_;
+};
 
 // Keeps each region's largest piece; every other piece joins the region it borders on most.
 void join_islands(const Mesh& mesh, const Neighbours& neighbours, std::vector<std::uint8_t>& labels) {
@@ -165,13 +181,12 @@ Regions segment(const Character& character, const SegmentSettings& settings) {
   regions.spine_chest = plan.spine.length();
   regions.spine_neck = arc_at_height(regions.spine, regions.frame, regions.torso.neck);
 
-  const Neighbours neighbours = triangle_neighbours(mesh);
+  const LimbLabeller labeller(mesh, traces, regions.frame.height);
   regions.of_triangle.assign(mesh.triangles.size(), kTorso);
   for (std::uint8_t i = 0; i < regions.limbs.size(); ++i) {
-    label_limb(mesh, neighbours, surface, traces, i, regions.of_triangle);
+    labeller.label(i, surface.closest(regions.limbs[i].line.points().back()).triangle, regions.of_triangle);
   }
-  smooth_loops(neighbours, regions.of_triangle);
-  join_islands(mesh, neighbours, regions.of_triangle);
+  join_islands(mesh, labeller.neighbours(), regions.of_triangle);
   regions.of_other = label_others(character, surface, regions.of_triangle);
   return regions;
 }
