@@ -55,7 +55,8 @@ std::set<IdPair> find_ignored(const Mesh& mesh, const Spheres& spheres, const Ch
   return ignored;
 }
 
-// The smallest radius around the centre that holds this share of the region's area; each triangle counts at its centroid.
+// The smallest radius around the centre that holds this share of the region's area; each triangle counts at its
+// centroid.
 double area_quantile(const Mesh& mesh, const std::vector<Index>& triangles, const Vec3& center, double share) {
   std::vector<std::pair<double, double>> rings;
   double total = 0;
@@ -76,7 +77,8 @@ BoundSphere bind_sphere(const Mesh& mesh, const std::vector<Index>& triangles, c
                         const BodyFrame& frame, const BindSettings& settings) {
   BoundSphere bound{sphere.ball, 0, 0, {}, 0};
   // Ray 0 of the rings points there too: pivots turn with the body.
-  const Vec3 reference = sphere.region == kTorso ? frame.forward : Vec3(frame.up + 0.7 * frame.left + 0.3 * frame.forward);
+  const Vec3 reference =
+      sphere.region == kTorso ? frame.forward : Vec3(frame.up + 0.7 * frame.left + 0.3 * frame.forward);
   bound.pivots = choose_pivots(mesh, triangles, sphere, reference, settings.rule);
   Vec3 center = Vec3::Zero();
   for (const BoundPivot& pivot : bound.pivots) {
@@ -84,12 +86,13 @@ BoundSphere bind_sphere(const Mesh& mesh, const std::vector<Index>& triangles, c
     bound.weight_sum += std::abs(pivot.weight);
   }
   for (const BoundPivot& pivot : bound.pivots) {
-    bound.spread += (triangle_centroid(mesh, pivot.triangle) - center).norm() / static_cast<double>(bound.pivots.size());
+    bound.spread +=
+        (triangle_centroid(mesh, pivot.triangle) - center).norm() / static_cast<double>(bound.pivots.size());
   }
   if (settings.rule == RefitRule::kPaper) bound.rest = {center, bound.spread};
 
-  // A region may reach far beyond its sphere (head, hands, feet): no farther than what closes the waists between neighbours
-  // of equal size, r sqrt(1 + (1 - PD)^2).
+  // A region may reach far beyond its sphere (head, hands, feet): no farther than what closes the waists between
+  // neighbours of equal size, r sqrt(1 + (1 - PD)^2).
   const double waist = std::sqrt(1 + std::pow(1 - settings.penetration_depth, 2));
   const double quantile = area_quantile(mesh, triangles, sphere.ball.center, settings.detect_quantile);
   const double ratio = std::clamp(quantile / sphere.ball.radius, 1.0, waist);
@@ -97,8 +100,8 @@ BoundSphere bind_sphere(const Mesh& mesh, const std::vector<Index>& triangles, c
   return bound;
 }
 
-std::vector<BoundPair> find_near(const std::vector<BoundSphere>& spheres, const std::set<IdPair>& ignored, double fraction,
-                                 double BoundSphere::*detect) {
+std::vector<BoundPair> find_near(const std::vector<BoundSphere>& spheres, const std::set<IdPair>& ignored,
+                                 double fraction, double BoundSphere::*detect) {
   // Pairs that all but touch at rest are near too: rounding must not report them.
   constexpr double kMargin = 1 + 1e-4;
   std::vector<BoundPair> near;
@@ -106,7 +109,8 @@ std::vector<BoundPair> find_near(const std::vector<BoundSphere>& spheres, const 
     for (std::uint32_t b = a + 1; b < spheres.size(); ++b) {
       if (ignored.count({a, b}) > 0) continue;
       const double distance = (spheres[a].rest.center - spheres[b].rest.center).norm();
-      const double sum = detect ? spheres[a].*detect + spheres[b].*detect : spheres[a].rest.radius + spheres[b].rest.radius;
+      const double sum =
+          detect ? spheres[a].*detect + spheres[b].*detect : spheres[a].rest.radius + spheres[b].rest.radius;
       if (distance < kMargin * sum) near.push_back({a, b, fraction * distance / sum});
     }
   }
@@ -128,7 +132,8 @@ Binding bind_spheres(const Character& character, const Regions& regions, const S
     BoundSphere bound = bind_sphere(character.body, surrounding[i], spheres.spheres[i], regions.frame, settings);
     if (bound.pivots.size() < 4) {
       throw Error(ExitCode::kSegmentation, character.file + ": sphere " + std::to_string(i) + " of the " +
-                                               kRegionNames[spheres.spheres[i].region] + " finds no pivots that carry it among its " +
+                                               kRegionNames[spheres.spheres[i].region] +
+                                               " finds no pivots that carry it among its " +
                                                std::to_string(surrounding[i].size()) + " triangles");
     }
     out.spheres.push_back(std::move(bound));

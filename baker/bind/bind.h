@@ -25,7 +25,7 @@ struct BoundSphere {
   double detect_radius;  // rest
   double spread;         // mean distance of the pivots' centroids from the centre at rest
   std::vector<BoundPivot> pivots;
-  double weight_sum;     // sum of |weight|: 1 means the centre lies inside the pivots' hull
+  double weight_sum;  // sum of |weight|: 1 means the centre lies inside the pivots' hull
 };
 
 struct BoundPair {
@@ -35,8 +35,9 @@ struct BoundPair {
 
 struct Binding {
   RefitRule rule;
-  std::vector<std::uint32_t> sphere_of_triangle;  // a triangle of Character::body -> the sphere whose surrounding region it is in
-  std::vector<std::uint32_t> sphere_of_other;     // the same for Character::others
+  std::vector<std::uint32_t>
+      sphere_of_triangle;  // a triangle of Character::body -> the sphere whose surrounding region it is in
+  std::vector<std::uint32_t> sphere_of_other;  // the same for Character::others
   std::vector<BoundSphere> spheres;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> ignored;  // a < b, sorted
   std::vector<BoundPair> near_fit, near_detect;                  // overlapping at rest, not ignored; sorted

@@ -79,11 +79,12 @@ std::vector<BoundPivot> choose_pivots(const Mesh& mesh, const std::vector<Index>
     for (const Index t : picked) pivots.push_back({t, 1.0 / static_cast<double>(picked.size())});
     return pivots;
   }
-  // Four pivots in one plane are an ill-posed system (weights of 49 were seen). Staggered ones are not; where skin is on one
-  // side only, more of them and farther apart help.
+  // Four pivots in one plane are an ill-posed system (weights of 49 were seen). Staggered ones are not; where skin is
+  // on one side only, more of them and farther apart help.
   constexpr double kIllPosed = 1.5;
   double least = std::numeric_limits<double>::max();
-  for (const Pattern& pattern : {Pattern{8, 0.35}, Pattern{8, 0.6}, Pattern{12, 0.5}, Pattern{16, 0.5}, Pattern{16, 0.9}}) {
+  for (const Pattern& pattern :
+       {Pattern{8, 0.35}, Pattern{8, 0.6}, Pattern{12, 0.5}, Pattern{16, 0.5}, Pattern{16, 0.9}}) {
     const std::vector<Index> picked = pick(mesh, triangles, sphere, reference, pattern);
     const std::vector<double> weights = solve_weights(mesh, picked, sphere.ball);
     const double sum = sum_of_magnitudes(weights);

@@ -87,7 +87,8 @@ Chains build_chains(const Spheres& spheres, const std::vector<LimbPlace>& limbs)
         for (const Ids& part : parts) {
           out.entries_table1 += part.size();
           for (const std::uint32_t id : part) {
-            if (std::find(chain.spheres.begin(), chain.spheres.end(), id) == chain.spheres.end()) chain.spheres.push_back(id);
+            if (std::find(chain.spheres.begin(), chain.spheres.end(), id) == chain.spheres.end())
+              chain.spheres.push_back(id);
           }
         }
         out.chains.push_back(std::move(chain));

@@ -18,8 +18,8 @@ struct Chain {
 
 struct Chains {
   std::vector<Chain> chains;
-  // The paper's count, 3x + 2t + 3|T| + |D| for a biped: the same lists with the spheres that stand in two of a chain's parts
-  // counted twice.
+  // The paper's count, 3x + 2t + 3|T| + |D| for a biped: the same lists with the spheres that stand in two of a chain's
+  // parts counted twice.
   std::size_t entries_table1 = 0;
 
   std::size_t entries() const;
@@ -27,9 +27,10 @@ struct Chains {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> neighbours() const;
 };
 
-// The rule behind the paper's Table 1, for any number of limbs: a chain for each pair of limbs, through the part of the torso
-// between them. Limbs at one end of the torso are joined by its top (T) or bottom (D) level; limbs on one side by that side
-// (L, R); the others by the top and then the lower limb's side. First the sides, then the ends, then the diagonals.
+// The rule behind the paper's Table 1, for any number of limbs: a chain for each pair of limbs, through the part of the
+// torso between them. Limbs at one end of the torso are joined by its top (T) or bottom (D) level; limbs on one side by
+// that side (L, R); the others by the top and then the lower limb's side. First the sides, then the ends, then the
+// diagonals.
 struct LimbPlace {
   std::uint8_t region;
   bool left, top;

@@ -23,7 +23,8 @@ void check_output(const BakeOptions& options) {
   if (!options.report.empty() && fs::weakly_canonical(options.report) == fs::weakly_canonical(options.output)) {
     throw Error(ExitCode::kUsage, options.report + ": report and asset are the same file");
   }
-  if (options.force || !fs::is_regular_file(options.output, ignored) || fs::file_size(options.output, ignored) == 0) return;
+  if (options.force || !fs::is_regular_file(options.output, ignored) || fs::file_size(options.output, ignored) == 0)
+    return;
   const std::string there = read_file(options.output);
   if (there.size() < 8 || there.compare(4, 4, "SPHC") != 0) {
     throw Error(ExitCode::kFile, options.output + ": exists and is not an asset (--force replaces it)");
@@ -33,7 +34,8 @@ void check_output(const BakeOptions& options) {
 }  // namespace
 
 ExitCode run_bake(const BakeOptions& options) {
-  const BakeSettings settings = make_settings(options.profile, options.config.empty() ? "{}" : read_file(options.config), options.config);
+  const BakeSettings settings =
+      make_settings(options.profile, options.config.empty() ? "{}" : read_file(options.config), options.config);
   if (!fs::exists(options.input)) throw Error(ExitCode::kFile, options.input + ": no such file");
   check_output(options);
 
@@ -50,7 +52,8 @@ ExitCode run_bake(const BakeOptions& options) {
   fmt::print("wrote {} ({} bytes)\n", options.output, result.asset.size());
   if (!options.report.empty()) fmt::print("wrote {}\n", options.report);
   const std::vector<std::string> missed = missed_targets(result);
-  for (const std::string& target : missed) fmt::print(stderr, "spherechain: target missed: {}: {}\n", options.input, target);
+  for (const std::string& target : missed)
+    fmt::print(stderr, "spherechain: target missed: {}: {}\n", options.input, target);
   return missed.empty() ? ExitCode::kDone : ExitCode::kTargetMissed;
 }
 

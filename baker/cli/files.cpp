@@ -32,7 +32,8 @@ AssetFile open_asset(const std::string& path) {
   char message[256] = "";
   const Status status = file.asset.open(file.bytes.get(), bytes.size(), message, sizeof(message));
   if (status != Status::kOk) {
-    throw Error(ExitCode::kFile, path + ": " + to_string(status) + (message[0] ? std::string(": ") + message : "") + " (bake it again)");
+    throw Error(ExitCode::kFile,
+                path + ": " + to_string(status) + (message[0] ? std::string(": ") + message : "") + " (bake it again)");
   }
   return file;
 }

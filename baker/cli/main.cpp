@@ -33,8 +33,9 @@ int main(int argc, char** argv) {
   app.name("spherechain");
   app.set_version_flag("--version", std::string("spherechain ") + kVersion);
   app.require_subcommand(1);
-  app.footer("Exit: 0 done; 1 internal error; 2 usage; 3 a file cannot be read or written, or is not what it should be;\n"
-             "4 the mesh cannot be segmented; 5 done, but a target in the settings was not met.");
+  app.footer(
+      "Exit: 0 done; 1 internal error; 2 usage; 3 a file cannot be read or written, or is not what it should be;\n"
+      "4 the mesh cannot be segmented; 5 done, but a target in the settings was not met.");
   std::function<ExitCode()> run;
 
   BakeOptions bake;
@@ -42,7 +43,9 @@ int main(int argc, char** argv) {
   bake_command->add_option("INPUT", bake.input, "Mesh: anything assimp reads")->required();
   bake_command->add_option("-o,--output", bake.output, "Asset to write (.sphc)")->required();
   bake_command->add_option("--config", bake.config, "JSON file that changes the profile's settings");
-  bake_command->add_option("--profile", bake.profile, "Where the settings start")->check(CLI::IsMember({"paper", "balanced"}))->capture_default_str();
+  bake_command->add_option("--profile", bake.profile, "Where the settings start")
+      ->check(CLI::IsMember({"paper", "balanced"}))
+      ->capture_default_str();
   bake_command->add_option("--report", bake.report, "JSON report to write");
   bake_command->add_flag("--force", bake.force, "Replace an output file that is not an asset");
   bake_command->callback([&] { run = [&] { return run_bake(bake); }; });
@@ -58,11 +61,21 @@ int main(int argc, char** argv) {
   play_command->add_option("ASSET", play.asset, "Asset (.sphc)")->required();
   play_command->add_option("--source", play.source, "The mesh it was baked from")->required();
   play_command->add_option("--poses", play.poses, "Pose file to move through; without it the rest pose is held");
-  play_command->add_option("--frames", play.frames, "Number of frames, from the rest pose to the last pose")->check(CLI::Range(1, 1000000))->capture_default_str();
-  play_command->add_option("--fps", play.fps, "Frames a second, for the frames' times")->check(CLI::Range(1e-3, 1e6))->capture_default_str();
-  play_command->add_option("--mode", play.mode, "Overlap test: chains, all spheres, or both")->check(CLI::IsMember({"m1", "m2", "both"}))->capture_default_str();
-  play_command->add_option("--radius", play.radius, "Radius pairs are reported at")->check(CLI::IsMember({"fit", "detect"}))->capture_default_str();
-  play_command->add_option("--backend", play.backend, "Arithmetic; this build has 'scalar'")->check(CLI::IsMember({"auto", "scalar"}))->capture_default_str();
+  play_command->add_option("--frames", play.frames, "Number of frames, from the rest pose to the last pose")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  play_command->add_option("--fps", play.fps, "Frames a second, for the frames' times")
+      ->check(CLI::Range(1e-3, 1e6))
+      ->capture_default_str();
+  play_command->add_option("--mode", play.mode, "Overlap test: chains, all spheres, or both")
+      ->check(CLI::IsMember({"m1", "m2", "both"}))
+      ->capture_default_str();
+  play_command->add_option("--radius", play.radius, "Radius pairs are reported at")
+      ->check(CLI::IsMember({"fit", "detect"}))
+      ->capture_default_str();
+  play_command->add_option("--backend", play.backend, "Arithmetic; this build has 'scalar'")
+      ->check(CLI::IsMember({"auto", "scalar"}))
+      ->capture_default_str();
   play_command->add_option("--json", play.json, "JSON file to write");
   play_command->callback([&] { run = [&] { return run_play(play); }; });
 

@@ -35,7 +35,8 @@ std::vector<Joint> joints_of(const Asset& asset) {
 
 BodyFrame frame_of(const Asset& asset) {
   const AssetInfo info = asset.info();
-  return {to_vec3(info.origin), to_vec3(info.left), to_vec3(info.up), to_vec3(info.forward), static_cast<double>(info.height)};
+  return {to_vec3(info.origin), to_vec3(info.left), to_vec3(info.up), to_vec3(info.forward),
+          static_cast<double>(info.height)};
 }
 
 std::vector<float> pack(const std::vector<Vec3>& positions) {
@@ -87,7 +88,8 @@ class Player {
     refit_us_ += out["refit_us"].get<double>();
     if (m1_) {
       const auto [job, us] = detect(Method::kM1);
-      out["m1"] = {{"tests", job.test_count}, {"pairs", job.chain_pair_count}, {"unique_pairs", job.pair_count}, {"us", us}};
+      out["m1"] = {
+          {"tests", job.test_count}, {"pairs", job.chain_pair_count}, {"unique_pairs", job.pair_count}, {"us", us}};
       m1_us_ += us;
       m1_tests_ = job.test_count;
       m1_raw_ += job.chain_pair_count;
@@ -107,15 +109,22 @@ class Player {
   }
 
   std::string summary(int frames) const {
-    std::string out = fmt::format("{} frames, radius {}, backend scalar\n\n", frames, radius_ == RadiusKind::kFit ? "fit" : "detect");
+    std::string out =
+        fmt::format("{} frames, radius {}, backend scalar\n\n", frames, radius_ == RadiusKind::kFit ? "fit" : "detect");
     out += fmt::format("{:<6} {:>8} {:>10} {:>12} {:>10}\n", "", "tests", "pairs", "raw pairs", "us");
     const double n = frames;
     out += fmt::format("{:<6} {:>8} {:>10} {:>12} {:>10.2f}\n", "refit", "", "", "", refit_us_ / n);
-    if (m1_) out += fmt::format("{:<6} {:>8} {:>10} {:>12.1f} {:>10.2f}\n", "M1", m1_tests_, m2_ ? std::string() : fmt::format("{:.1f}", static_cast<double>(total_pairs_) / n), static_cast<double>(m1_raw_) / n, m1_us_ / n);
-    if (m2_) out += fmt::format("{:<6} {:>8} {:>10.1f} {:>12} {:>10.2f}\n", "M2", m2_tests_, static_cast<double>(total_pairs_) / n, "", m2_us_ / n);
+    if (m1_)
+      out += fmt::format("{:<6} {:>8} {:>10} {:>12.1f} {:>10.2f}\n", "M1", m1_tests_,
+                         m2_ ? std::string() : fmt::format("{:.1f}", static_cast<double>(total_pairs_) / n),
+                         static_cast<double>(m1_raw_) / n, m1_us_ / n);
+    if (m2_)
+      out += fmt::format("{:<6} {:>8} {:>10.1f} {:>12} {:>10.2f}\n", "M2", m2_tests_,
+                         static_cast<double>(total_pairs_) / n, "", m2_us_ / n);
     out += fmt::format("(a frame, on average)\n\nframes with touching spheres: {} of {}\n", touching_frames_, frames);
     for (const auto& [names, frame_list] : by_region_) {
-      out += fmt::format("  {:<24} {:>3} frames, from frame {}\n", names.first + " - " + names.second, frame_list.second, frame_list.first);
+      out += fmt::format("  {:<24} {:>3} frames, from frame {}\n", names.first + " - " + names.second,
+                         frame_list.second, frame_list.first);
     }
     return out;
   }
@@ -141,7 +150,8 @@ class Player {
     touching_frames_ += pair_count_ > 0 ? 1 : 0;
     std::map<std::pair<std::string, std::string>, bool> seen;
     for (std::size_t i = 0; i < pair_count_; ++i) {
-      std::string a = asset_.region(asset_.spheres()[pairs_[i].a].region).name, b = asset_.region(asset_.spheres()[pairs_[i].b].region).name;
+      std::string a = asset_.region(asset_.spheres()[pairs_[i].a].region).name,
+                  b = asset_.region(asset_.spheres()[pairs_[i].b].region).name;
       if (b < a) std::swap(a, b);
       seen[{a, b}] = true;
     }
@@ -166,7 +176,8 @@ ExitCode run_play(const PlayOptions& options) {
   const Character character = import_character(options.source);
   const std::vector<float> rest = pack(character.source_positions);
   if (const Status status = check_source(file.asset, rest.data(), rest.size() / 3); status != Status::kOk) {
-    throw Error(ExitCode::kFile, options.source + ": is not the mesh that " + options.asset + " was baked from (" + to_string(status) + ")");
+    throw Error(ExitCode::kFile, options.source + ": is not the mesh that " + options.asset + " was baked from (" +
+                                     to_string(status) + ")");
   }
   std::optional<BezierMotion> motion;
   if (!options.poses.empty()) {
@@ -186,7 +197,9 @@ ExitCode run_play(const PlayOptions& options) {
     }
   }
   if (!options.json.empty()) {
-    write_atomically(options.json, ordered_json{{"backend", "scalar"}, {"radius", options.radius}, {"frames", std::move(frames)}}.dump(1) + "\n");
+    write_atomically(
+        options.json,
+        ordered_json{{"backend", "scalar"}, {"radius", options.radius}, {"frames", std::move(frames)}}.dump(1) + "\n");
   }
   fmt::print("{}", player.summary(options.frames));
   if (!options.json.empty()) fmt::print("wrote {}\n", options.json);

@@ -21,13 +21,13 @@ struct Ball {
 struct FittedSphere {
   Ball ball;
   std::uint8_t region;
-  int level;   // torso: disk position from the bottom; limbs: -1
-  Side side;   // torso: which half of the disk; limbs: none
-  Vec3 axis;   // unit direction of the chain here: along the limb towards its tip, up the torso
+  int level;  // torso: disk position from the bottom; limbs: -1
+  Side side;  // torso: which half of the disk; limbs: none
+  Vec3 axis;  // unit direction of the chain here: along the limb towards its tip, up the torso
 };
 
-// The three fits of one torso sphere, judged on the same points: the vertices of its half of the disk's band, from halfway
-// to the level below to halfway to the level above. F = radius - |centre - vertex| (section 3.2).
+// The three fits of one torso sphere, judged on the same points: the vertices of its half of the disk's band, from
+// halfway to the level below to halfway to the level above. F = radius - |centre - vertex| (section 3.2).
 struct TorsoFit {
   Ball phi1, phi1_adjusted, phi2;
   std::vector<Index> vertices;  // of Character::body
@@ -51,10 +51,10 @@ struct Spheres {
 
 // Lengths are fractions of the character's height.
 struct FitSettings {
-  int rays = 80;                     // N_r
-  double penetration_depth = 0.30;   // PD of neighbours on a limb, and of torso levels
-  double delta = 0.015;              // climb of the disk
-  double limb_step = 0.0015;         // march of the circumference
+  int rays = 80;                    // N_r
+  double penetration_depth = 0.30;  // PD of neighbours on a limb, and of torso levels
+  double delta = 0.015;             // climb of the disk
+  double limb_step = 0.0015;        // march of the circumference
 };
 
 // Throws Error(kSegmentation) where a limb or the torso has no section a sphere fits in.
@@ -63,7 +63,8 @@ Spheres fit_spheres(const Character& character, const Regions& regions, const Fi
 // Its two halves.
 std::vector<FittedSphere> fit_limb(const Mesh& mesh, const Regions& regions, std::uint8_t region,
                                    const FitSettings& settings, const std::string& file);
-void fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& settings, const std::string& file, Spheres& out);
+void fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& settings, const std::string& file,
+               Spheres& out);
 
 // phi2: the smallest sphere around the points (CGAL).
 Ball minimum_enclosing_ball(const Mesh& mesh, const std::vector<Index>& vertices);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The marching circumference of section 3.1: a ring of rays moves along the limb and a sphere is placed where it overlaps the
-// last one by PD.
+// The marching circumference of section 3.1: a ring of rays moves along the limb and a sphere is placed where it
+// overlaps the last one by PD.
 #include <algorithm>
 #include <optional>
 
@@ -27,8 +27,9 @@ class LimbMarch {
   // 95 % of the rays meet the limb's own skin.
   bool on_own_skin(double s) const {
     const Ring ring = cast(s);
-    const auto own = std::count_if(ring.hits.begin(), ring.hits.end(),
-                                   [&](const auto& hit) { return hit && regions_.of_triangle[hit->triangle] == region_; });
+    const auto own = std::count_if(ring.hits.begin(), ring.hits.end(), [&](const auto& hit) {
+      return hit && regions_.of_triangle[hit->triangle] == region_;
+    });
     return static_cast<double>(own) >= 0.95 * static_cast<double>(ring.hits.size());
   }
 
@@ -89,7 +90,8 @@ std::vector<FittedSphere> fit_limb(const Mesh& mesh, const Regions& regions, std
   double s = 0;
   while (s < end && !march.on_own_skin(s)) s += step;
   if (s >= end) {
-    throw Error(ExitCode::kSegmentation, file + ": no section of the " + kRegionNames[region] + " is closed by its own skin");
+    throw Error(ExitCode::kSegmentation,
+                file + ": no section of the " + kRegionNames[region] + " is closed by its own skin");
   }
   std::vector<FittedSphere> spheres;
   const auto place = [&](double at, const Ball& ball) {

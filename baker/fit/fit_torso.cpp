@@ -58,8 +58,8 @@ class TorsoDisk {
     return regions_.hip + f * (regions_.chest - regions_.hip);
   }
 
-  // phi1: "located in the center of the diameter" (section 3.1): the middle of the half-section's extent sideways and front to
-  // back, and half of the larger extent.
+  // phi1: "located in the center of the diameter" (section 3.1): the middle of the half-section's extent sideways and
+  // front to back, and half of the larger extent.
   std::optional<Ball> half_ball(const Ring& disk, double sign) const {
     double side = 0, front = -std::numeric_limits<double>::max(), back = std::numeric_limits<double>::max();
     int count = 0;
@@ -83,8 +83,8 @@ class TorsoDisk {
   int rays_;
 };
 
-// The sphere adjustment: towards the disk's centre in its plane, scaled down, to the least mean |F|. The radius with the
-// least mean |F| around a centre is the median distance.
+// The sphere adjustment: towards the disk's centre in its plane, scaled down, to the least mean |F|. The radius with
+// the least mean |F| around a centre is the median distance.
 Ball adjust(const Ball& phi1, const Vec3& disk, const Vec3& up, const Mesh& mesh, const std::vector<Index>& vertices) {
   if (vertices.empty()) return phi1;
   Vec3 towards = disk - phi1.center;
@@ -115,7 +115,8 @@ double mean_depth(const Level& a, const Level& b) {
 
 }  // namespace
 
-void fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& settings, const std::string& file, Spheres& out) {
+void fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& settings, const std::string& file,
+               Spheres& out) {
   const BodyFrame& frame = regions.frame;
   const TorsoDisk disk(mesh, regions, settings.rays);
   const auto height_of = [&](const Vec3& p) { return (p - frame.origin).dot(frame.up); };
@@ -142,13 +143,16 @@ void fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& sett
   auto level = place_where(bottom, [&](const Level& l) { return l.height - bottom >= l.radius(); });
   while (level && level->height < neck - 0.5 * level->radius()) {
     levels.push_back(*level);
-    level = place_where(level->height, [&](const Level& l) { return mean_depth(levels.back(), l) <= settings.penetration_depth; });
+    level = place_where(level->height,
+                        [&](const Level& l) { return mean_depth(levels.back(), l) <= settings.penetration_depth; });
   }
-  if (levels.empty()) throw Error(ExitCode::kSegmentation, file + ": the torso has no level between hip and neck that a disk fits in");
+  if (levels.empty())
+    throw Error(ExitCode::kSegmentation, file + ": the torso has no level between hip and neck that a disk fits in");
 
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const double h = levels[i].height;
-    const double below = i > 0 ? 0.5 * (h - levels[i - 1].height) : -1, above = i + 1 < levels.size() ? 0.5 * (levels[i + 1].height - h) : -1;
+    const double below = i > 0 ? 0.5 * (h - levels[i - 1].height) : -1,
+                 above = i + 1 < levels.size() ? 0.5 * (levels[i + 1].height - h) : -1;
     const double low = h - (below > 0 ? below : (above > 0 ? above : levels[i].radius()));
     const double high = h + (above > 0 ? above : (below > 0 ? below : levels[i].radius()));
     std::vector<bool> in_torso(mesh.positions.size(), false);
@@ -167,7 +171,8 @@ void fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& sett
       }
       fit.phi1_adjusted = adjust(fit.phi1, levels[i].disk, frame.up, mesh, fit.vertices);
       fit.phi2 = fit.vertices.empty() ? fit.phi1 : minimum_enclosing_ball(mesh, fit.vertices);
-      out.spheres.push_back({fit.phi1_adjusted, kTorso, static_cast<int>(i), side == 0 ? Side::kLeft : Side::kRight, frame.up});
+      out.spheres.push_back(
+          {fit.phi1_adjusted, kTorso, static_cast<int>(i), side == 0 ? Side::kLeft : Side::kRight, frame.up});
       out.torso.push_back(std::move(fit));
     }
     out.level_heights.push_back(h);

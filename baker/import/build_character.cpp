@@ -127,8 +127,8 @@ Character build_character(const SourceMesh& source, const std::string& name) {
     }
   }
   if (all.triangles.empty()) {
-    throw Error(ExitCode::kFile, name + ": has no triangles with an area (all " + std::to_string(source.triangles.size()) +
-                                     " are degenerate)");
+    throw Error(ExitCode::kFile, name + ": has no triangles with an area (all " +
+                                     std::to_string(source.triangles.size()) + " are degenerate)");
   }
 
   const Components components = connected_components(all);

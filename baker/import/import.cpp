@@ -3,8 +3,8 @@
 
 #include <system_error>
 
-#include "mesh/error.h"
 #include "import/sha256.h"
+#include "mesh/error.h"
 
 namespace spherechain::baker {
 

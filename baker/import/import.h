@@ -11,25 +11,25 @@ namespace spherechain::baker {
 
 // What cleaning found and did; all of it goes into the bake report.
 struct ImportReport {
-  std::string importer;               // "assimp"
-  std::size_t meshes = 0;             // mesh instances in the source's scene
-  std::size_t components = 0;         // connected pieces after welding
-  std::size_t welded_vertices = 0;    // distinct positions over all pieces
-  std::size_t degenerate_dropped = 0; // triangles without area: two corners at one position, or all on a line
-  std::size_t duplicates_dropped = 0; // triangles with the same three positions as an earlier one
+  std::string importer;                // "assimp"
+  std::size_t meshes = 0;              // mesh instances in the source's scene
+  std::size_t components = 0;          // connected pieces after welding
+  std::size_t welded_vertices = 0;     // distinct positions over all pieces
+  std::size_t degenerate_dropped = 0;  // triangles without area: two corners at one position, or all on a line
+  std::size_t duplicates_dropped = 0;  // triangles with the same three positions as an earlier one
   std::size_t points_and_lines_dropped = 0;
 };
 
 // A character as read, before any decision about its shape.
 //
-// Source order: the vertices and triangles of the file's meshes, one after another, each as the importer hands it out with
-// nothing joined or reordered (assimp: scene order, polygons triangulated, node transforms applied). It is the order of
-// the vertex buffer the runtime refits from, and of every index in the asset.
+// Source order: the vertices and triangles of the file's meshes, one after another, each as the importer hands it out
+// with nothing joined or reordered (assimp: scene order, polygons triangulated, node transforms applied). It is the
+// order of the vertex buffer the runtime refits from, and of every index in the asset.
 struct Character {
   std::string file;    // name without its folder
   std::string sha256;  // of the file's bytes, lower-case hex
 
-  std::vector<Vec3> source_positions;       // rest pose, exactly representable as float
+  std::vector<Vec3> source_positions;  // rest pose, exactly representable as float
   std::size_t source_triangle_count = 0;
 
   // The largest connected piece, welded and cleaned.
@@ -48,8 +48,8 @@ struct Character {
   ImportReport report;
 };
 
-// Reads a character. Throws Error(kFile) where there is no such file, it is no mesh, it has no triangles, a position is not
-// finite, an index is out of range, or all positions coincide.
+// Reads a character. Throws Error(kFile) where there is no such file, it is no mesh, it has no triangles, a position is
+// not finite, an index is out of range, or all positions coincide.
 Character import_character(const std::filesystem::path& path);
 
 // An importer's raw result: what assimp and (with the issue about real characters) tinygltf have in common.

@@ -53,24 +53,27 @@ SourceMesh read_with_assimp(const std::filesystem::path& path) {
   Assimp::Importer importer;
   const aiScene* scene = importer.ReadFile(path.string(), aiProcess_Triangulate);
   const std::string name = path.string();
-  if (scene == nullptr) throw Error(ExitCode::kFile, name + ": not a mesh that assimp reads (" + importer.GetErrorString() + ")");
+  if (scene == nullptr)
+    throw Error(ExitCode::kFile, name + ": not a mesh that assimp reads (" + importer.GetErrorString() + ")");
   SourceMesh out;
   out.importer = "assimp";
   if (scene->mRootNode != nullptr) {
-    const std::function<void(const aiNode&, const aiMatrix4x4t<double>&)> visit = [&](const aiNode& node,
-                                                                                      const aiMatrix4x4t<double>& parent) {
-      const aiMatrix4x4t<double> to_world = parent * to_double(node.mTransformation);
-      for (unsigned m = 0; m < node.mNumMeshes; ++m) append(*scene->mMeshes[node.mMeshes[m]], to_world, name, out);
-      for (unsigned c = 0; c < node.mNumChildren; ++c) visit(*node.mChildren[c], to_world);
-    };
+    const std::function<void(const aiNode&, const aiMatrix4x4t<double>&)> visit =
+        [&](const aiNode& node, const aiMatrix4x4t<double>& parent) {
+          const aiMatrix4x4t<double> to_world = parent * to_double(node.mTransformation);
+          for (unsigned m = 0; m < node.mNumMeshes; ++m) append(*scene->mMeshes[node.mMeshes[m]], to_world, name, out);
+          for (unsigned c = 0; c < node.mNumChildren; ++c) visit(*node.mChildren[c], to_world);
+        };
     visit(*scene->mRootNode, aiMatrix4x4t<double>());
   }
   // Formats without units are taken as metres. FBX says its own, in centimetres.
   double centimetres = 0;
   float centimetres_f = 0;
   if (scene->mMetaData != nullptr) {
-    if (scene->mMetaData->Get("UnitScaleFactor", centimetres) && centimetres > 0) out.metres_per_unit = centimetres / 100;
-    else if (scene->mMetaData->Get("UnitScaleFactor", centimetres_f) && centimetres_f > 0) out.metres_per_unit = static_cast<double>(centimetres_f) / 100;
+    if (scene->mMetaData->Get("UnitScaleFactor", centimetres) && centimetres > 0)
+      out.metres_per_unit = centimetres / 100;
+    else if (scene->mMetaData->Get("UnitScaleFactor", centimetres_f) && centimetres_f > 0)
+      out.metres_per_unit = static_cast<double>(centimetres_f) / 100;
     int axis = 1, sign = 1;
     if (scene->mMetaData->Get("UpAxis", axis) && axis >= 0 && axis < 3) {
       scene->mMetaData->Get("UpAxisSign", sign);

@@ -25,7 +25,8 @@ Vec3 triangle_centroid(const Mesh& mesh, std::size_t t);
 Vec3 triangle_cross(const Mesh& mesh, std::size_t t);
 double triangle_area(const Mesh& mesh, std::size_t t);
 
-// For each triangle the neighbour across edge (k, k+1), kNoIndex where the edge is a border or has more than two triangles.
+// For each triangle the neighbour across edge (k, k+1), kNoIndex where the edge is a border or has more than two
+// triangles.
 std::vector<std::array<Index, 3>> triangle_neighbours(const Mesh& mesh);
 
 // Triangles joined through shared vertices: a label a triangle, 0 the component of the lowest triangle, and so on.

@@ -21,7 +21,8 @@ struct Ring {
   Vec3 section_centroid() const;
 };
 
-// `reference` is any vector not parallel to `normal`: ray 0 points to its part in the plane, so that rings turn with the mesh.
+// `reference` is any vector not parallel to `normal`: ray 0 points to its part in the plane, so that rings turn with
+// the mesh.
 Ring cast_ring(const SurfaceQuery& surface, const Vec3& center, const Vec3& normal, const Vec3& reference, int rays);
 
 }  // namespace spherechain::baker

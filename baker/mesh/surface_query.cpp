@@ -30,7 +30,8 @@ struct SurfaceQuery::Tree {
     triangles.reserve(ids.size());
     for (const Index t : ids) {
       const Triangle& v = mesh.triangles[t];
-      triangles.emplace_back(to_cgal(mesh.positions[v[0]]), to_cgal(mesh.positions[v[1]]), to_cgal(mesh.positions[v[2]]));
+      triangles.emplace_back(to_cgal(mesh.positions[v[0]]), to_cgal(mesh.positions[v[1]]),
+                             to_cgal(mesh.positions[v[2]]));
     }
     aabb.insert(triangles.cbegin(), triangles.cend());
     aabb.build();

@@ -38,10 +38,12 @@ Bake bake(const std::filesystem::path& input, const BakeSettings& settings,
     for (std::uint8_t i = 0; i < kTorso; ++i) limbs.push_back({i, out.regions.limbs[i].left, out.regions.limbs[i].top});
     out.chains = build_chains(out.spheres, limbs);
   });
-  stage("bind", [&] { out.binding = bind_spheres(out.character, out.regions, out.spheres, out.chains, settings.bind); });
+  stage("bind",
+        [&] { out.binding = bind_spheres(out.character, out.regions, out.spheres, out.chains, settings.bind); });
   stage("rig", [&] { out.joints = place_joints(out.character, out.regions); });
   stage("write", [&] {
-    out.asset = serialize({out.character, out.regions, out.spheres, out.chains, out.binding, out.joints, to_json(settings)});
+    out.asset =
+        serialize({out.character, out.regions, out.spheres, out.chains, out.binding, out.joints, to_json(settings)});
   });
   return out;
 }
@@ -62,7 +64,8 @@ std::vector<std::string> missed_targets(const Bake& bake) {
   const Targets& targets = bake.settings.targets;
   std::vector<std::string> missed;
   if (targets.max_spheres && bake.spheres.spheres.size() > *targets.max_spheres) {
-    missed.push_back(fmt::format("max_spheres: {} asked, {} needed", *targets.max_spheres, bake.spheres.spheres.size()));
+    missed.push_back(
+        fmt::format("max_spheres: {} asked, {} needed", *targets.max_spheres, bake.spheres.spheres.size()));
   }
   const double f = mean_abs_f(bake) / bake.regions.frame.height;
   if (targets.max_mean_abs_f && f > *targets.max_mean_abs_f) {

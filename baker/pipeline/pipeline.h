@@ -31,8 +31,9 @@ struct BakeSettings {
   Targets targets;
 };
 
-// "paper" (the paper's refit on 4 pivots) or "balanced" (calibrated refit), changed by a JSON text. Throws Error(kFile) that
-// names `file` where the JSON is broken, has an unknown key or a value out of its range; Error(kUsage) for another profile.
+// "paper" (the paper's refit on 4 pivots) or "balanced" (calibrated refit), changed by a JSON text. Throws Error(kFile)
+// that names `file` where the JSON is broken, has an unknown key or a value out of its range; Error(kUsage) for another
+// profile.
 BakeSettings make_settings(const std::string& profile, const std::string& json, const std::string& file);
 
 // The settings as canonical JSON: all keys, sorted, no spaces.

@@ -47,7 +47,8 @@ class Reader {
     value = read;
   }
 
-  void text(const char* key, const std::vector<std::string>& choices, const std::function<void(const std::string&)>& set) {
+  void text(const char* key, const std::vector<std::string>& choices,
+            const std::function<void(const std::string&)>& set) {
     if (!take(key)) return;
     std::string list;
     for (const std::string& choice : choices) {

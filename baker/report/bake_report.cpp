@@ -54,12 +54,8 @@ ordered_json segment_section(const Bake& bake) {
     }
     regions.push_back(std::move(entry));
   }
-  return {{"provider", "shape"},
-          {"facing", bake.regions.facing},
-          {"height", frame.height},
-          {"left", to_json(frame.left)},
-          {"up", to_json(frame.up)},
-          {"forward", to_json(frame.forward)},
+  return {{"provider", "shape"},          {"facing", bake.regions.facing}, {"height", frame.height},
+          {"left", to_json(frame.left)},  {"up", to_json(frame.up)},       {"forward", to_json(frame.forward)},
           {"regions", std::move(regions)}};
 }
 
@@ -67,7 +63,10 @@ ordered_json fit_entry(const Ball& ball, const TorsoFit& fit, const Mesh& mesh) 
   const FError error = f_error(ball, mesh, fit.vertices);
   ordered_json f = ordered_json::array();
   for (const Index v : fit.vertices) f.push_back(signed_f(ball, mesh.positions[v]));
-  return {{"center", to_json(ball.center)}, {"radius", ball.radius}, {"mean_abs_F", error.mean_abs}, {"max_abs_F", error.max_abs},
+  return {{"center", to_json(ball.center)},
+          {"radius", ball.radius},
+          {"mean_abs_F", error.mean_abs},
+          {"max_abs_F", error.max_abs},
           {"F", std::move(f)}};
 }
 
@@ -108,9 +107,10 @@ std::string why_this_count(const Bake& bake) {
     why += fmt::format("{}{} {} (length {:.3f}, mean radius {:.4f})", r == 0 ? "" : ", ", kRegionNames[r], count,
                        bake.regions.limbs[r].extremity, radius / static_cast<double>(count));
   }
-  why += fmt::format(", torso {} (levels {}). Limb spheres touch the skin: their radius is the distance to it, the shortest "
-                     "ray, and not the mean ray; smaller spheres, so more of them at the same penetration depth.",
-                     bake.spheres.of_region[kTorso].size(), bake.spheres.level_heights.size());
+  why += fmt::format(
+      ", torso {} (levels {}). Limb spheres touch the skin: their radius is the distance to it, the shortest "
+      "ray, and not the mean ray; smaller spheres, so more of them at the same penetration depth.",
+      bake.spheres.of_region[kTorso].size(), bake.spheres.level_heights.size());
   return why;
 }
 
@@ -118,11 +118,13 @@ ordered_json counts_section(const Bake& bake) {
   const std::size_t n = bake.spheres.spheres.size();
   std::size_t m1_tests = 0;
   const auto ignored = [&](std::uint32_t a, std::uint32_t b) {
-    return std::binary_search(bake.binding.ignored.begin(), bake.binding.ignored.end(), std::pair<std::uint32_t, std::uint32_t>(std::minmax(a, b)));
+    return std::binary_search(bake.binding.ignored.begin(), bake.binding.ignored.end(),
+                              std::pair<std::uint32_t, std::uint32_t>(std::minmax(a, b)));
   };
   for (const Chain& chain : bake.chains.chains) {
     for (std::size_t i = 0; i < chain.spheres.size(); ++i) {
-      for (std::size_t j = i + 1; j < chain.spheres.size(); ++j) m1_tests += ignored(chain.spheres[i], chain.spheres[j]) ? 0 : 1;
+      for (std::size_t j = i + 1; j < chain.spheres.size(); ++j)
+        m1_tests += ignored(chain.spheres[i], chain.spheres[j]) ? 0 : 1;
     }
   }
   return {{"spheres", n},
@@ -186,23 +188,26 @@ std::string bake_report_json(const Bake& bake) {
 std::string bake_report_text(const Bake& bake) {
   const Mesh& mesh = bake.character.body;
   const double mm = 1000 * bake.character.metres_per_unit;
-  std::string out = fmt::format("{}: {} triangles ({} body), {} components, {:.3f} m tall; {}\n", bake.character.file,
-                                bake.character.source_triangle_count, mesh.triangles.size(), bake.character.report.components,
-                                bake.regions.frame.height * bake.character.metres_per_unit, bake.regions.facing);
+  std::string out =
+      fmt::format("{}: {} triangles ({} body), {} components, {:.3f} m tall; {}\n", bake.character.file,
+                  bake.character.source_triangle_count, mesh.triangles.size(), bake.character.report.components,
+                  bake.regions.frame.height * bake.character.metres_per_unit, bake.regions.facing);
   out += fmt::format("\n{:<10} {:>9} {:>7}\n", "region", "triangles", "spheres");
   for (std::size_t r = 0; r < kRegionCount; ++r) {
     out += fmt::format("{:<10} {:>9} {:>7}\n", kRegionNames[r],
                        std::count(bake.regions.of_triangle.begin(), bake.regions.of_triangle.end(), r),
                        bake.spheres.of_region[r].size());
   }
-  out += fmt::format("{} spheres, {} chain entries ({} as Table 1 counts), {} pairs ignored\n", bake.spheres.spheres.size(),
-                     bake.chains.entries(), bake.chains.entries_table1, bake.binding.ignored.size());
+  out += fmt::format("{} spheres, {} chain entries ({} as Table 1 counts), {} pairs ignored\n",
+                     bake.spheres.spheres.size(), bake.chains.entries(), bake.chains.entries_table1,
+                     bake.binding.ignored.size());
 
   out += fmt::format("\nmean |F| in mm (max)\n{:<8} {:>14} {:>14} {:>14}\n", "sphere", "phi1", "phi1'", "phi2");
   std::array<double, 3> sums{};
   for (std::size_t i = 0; i < bake.spheres.torso.size(); ++i) {
     const TorsoFit& fit = bake.spheres.torso[i];
-    out += fmt::format("{:<8}", fmt::format("{} {}{}", i, bake.spheres.spheres[i].side == Side::kLeft ? 'L' : 'R', bake.spheres.spheres[i].level));
+    out += fmt::format("{:<8}", fmt::format("{} {}{}", i, bake.spheres.spheres[i].side == Side::kLeft ? 'L' : 'R',
+                                            bake.spheres.spheres[i].level));
     std::size_t column = 0;
     for (const Ball* ball : {&fit.phi1, &fit.phi1_adjusted, &fit.phi2}) {
       const FError error = f_error(*ball, mesh, fit.vertices);

@@ -44,7 +44,9 @@ std::size_t spheres_in_region(const Asset& asset, std::size_t region) {
 // Floats as the shortest decimals that give them back.
 ordered_json number(float value) { return ordered_json::parse(fmt::format("{}", value)); }
 ordered_json to_json(const spherechain::Vec3& v) { return {number(v.x), number(v.y), number(v.z)}; }
-ordered_json to_json(const FitError& e) { return {{"mean_abs_F", number(e.mean_abs_f)}, {"max_abs_F", number(e.max_abs_f)}}; }
+ordered_json to_json(const FitError& e) {
+  return {{"mean_abs_F", number(e.mean_abs_f)}, {"max_abs_F", number(e.max_abs_f)}};
+}
 
 ordered_json sphere_json(const Asset& asset, std::size_t i) {
   const RestSphere& sphere = asset.spheres()[i];
@@ -86,7 +88,10 @@ std::string inspect_json(const Asset& asset) {
   }
   for (std::size_t j = 0; j < asset.joint_count(); ++j) {
     const JointView joint = asset.joint(j);
-    joints.push_back({{"name", joint.name}, {"parent", joint.parent}, {"position", to_json(joint.position)}, {"tail", to_json(joint.tail)}});
+    joints.push_back({{"name", joint.name},
+                      {"parent", joint.parent},
+                      {"position", to_json(joint.position)},
+                      {"tail", to_json(joint.tail)}});
   }
   const ordered_json out{
       {"format_version", info.format_version},
@@ -111,12 +116,14 @@ std::string inspect_json(const Asset& asset) {
       {"chain_entries", count_chain_entries(asset)},
       {"chain_entries_table1", info.chain_entries_table1},
       {"ignored_pairs", count_ignored(asset)},
-      {"near_pairs", {{"fit", asset.near_pairs(RadiusKind::kFit).size}, {"detect", asset.near_pairs(RadiusKind::kDetect).size}}},
+      {"near_pairs",
+       {{"fit", asset.near_pairs(RadiusKind::kFit).size}, {"detect", asset.near_pairs(RadiusKind::kDetect).size}}},
       {"regions", std::move(regions)},
       {"spheres", std::move(spheres)},
       {"chains", std::move(chains)},
       {"joints", std::move(joints)},
-      {"fit", {{"phi1", to_json(info.phi1)}, {"phi1_adjusted", to_json(info.phi1_adjusted)}, {"phi2", to_json(info.phi2)}}}};
+      {"fit",
+       {{"phi1", to_json(info.phi1)}, {"phi1_adjusted", to_json(info.phi1_adjusted)}, {"phi2", to_json(info.phi2)}}}};
   // A name in a foreign asset may hold any bytes; JSON must not.
   return out.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
@@ -124,15 +131,17 @@ std::string inspect_json(const Asset& asset) {
 std::string inspect_text(const Asset& asset) {
   const AssetInfo info = asset.info();
   std::string out = fmt::format("format {}, written by {}\n", info.format_version, info.writer);
-  out += fmt::format("source   {} ({} vertices, {} triangles)\n         sha256 {}\n", info.source_file, info.source_vertex_count,
-                     info.source_triangle_count, info.source_sha256);
+  out += fmt::format("source   {} ({} vertices, {} triangles)\n         sha256 {}\n", info.source_file,
+                     info.source_vertex_count, info.source_triangle_count, info.source_sha256);
   out += fmt::format("settings {}\n         sha256 {}\n", info.settings, info.settings_sha256);
   out += fmt::format("refit    {}\n", info.refit == spherechain::RefitRule::kPaper ? "paper" : "calibrated");
-  out += fmt::format("spheres  {}, {} chain entries ({} as Table 1 counts), {} pairs ignored, {} joints\n", asset.spheres().size,
-                     count_chain_entries(asset), info.chain_entries_table1, count_ignored(asset), asset.joint_count());
+  out += fmt::format("spheres  {}, {} chain entries ({} as Table 1 counts), {} pairs ignored, {} joints\n",
+                     asset.spheres().size, count_chain_entries(asset), info.chain_entries_table1, count_ignored(asset),
+                     asset.joint_count());
   out += fmt::format("\n{:<12} {:>9} {:>7}\n", "region", "triangles", "spheres");
   for (std::size_t r = 0; r < asset.region_count(); ++r) {
-    out += fmt::format("{:<12} {:>9} {:>7}\n", asset.region(r).name, asset.region(r).triangle_count, spheres_in_region(asset, r));
+    out += fmt::format("{:<12} {:>9} {:>7}\n", asset.region(r).name, asset.region(r).triangle_count,
+                       spheres_in_region(asset, r));
   }
   for (std::size_t c = 0; c < asset.chain_count(); ++c) {
     const ChainView chain = asset.chain(c);
@@ -140,8 +149,8 @@ std::string inspect_text(const Asset& asset) {
     for (const std::uint32_t i : chain.spheres) out += fmt::format(" {}", i);
     out += "\n";
   }
-  out += fmt::format("\nmean |F| over the torso: phi1 {:.4g}, phi1' {:.4g}, phi2 {:.4g} (source units)\n", info.phi1.mean_abs_f,
-                     info.phi1_adjusted.mean_abs_f, info.phi2.mean_abs_f);
+  out += fmt::format("\nmean |F| over the torso: phi1 {:.4g}, phi1' {:.4g}, phi2 {:.4g} (source units)\n",
+                     info.phi1.mean_abs_f, info.phi1_adjusted.mean_abs_f, info.phi2.mean_abs_f);
   return out;
 }
 

@@ -8,8 +8,9 @@
 
 namespace spherechain::baker {
 
-// What the bake did and reached, as JSON: import counts, how left and right were decided, every torso sphere's three fits
-// with F at every vertex, pivots, radii, both readings of the paper's numbers, time of each stage, peak memory, targets.
+// What the bake did and reached, as JSON: import counts, how left and right were decided, every torso sphere's three
+// fits with F at every vertex, pivots, radii, both readings of the paper's numbers, time of each stage, peak memory,
+// targets.
 std::string bake_report_json(const Bake& bake);
 
 // The same in a screenful of text.

@@ -24,7 +24,8 @@ Polyline join(const Polyline& a, const Polyline& b) {
 }
 
 // The curves from `node` to every tip that is reached without branch `barred`.
-void collect_tips(const BranchTree& tree, Index node, Index barred, const Polyline& so_far, std::vector<Polyline>& out) {
+void collect_tips(const BranchTree& tree, Index node, Index barred, const Polyline& so_far,
+                  std::vector<Polyline>& out) {
   for (const Index b : tree.at[node]) {
     if (b == barred) continue;
     const BranchTree::Branch& branch = tree.branches[b];
@@ -69,7 +70,9 @@ std::optional<Split> split_tree(const BranchTree& tree, std::size_t lower, std::
 Vec3 chord(const Polyline& line) { return line.points().back() - line.points().front(); }
 
 // Cosine between a branch and the direction in which the spine leaves towards it.
-double alignment(const Polyline& branch, const Vec3& outward) { return chord(branch).normalized().dot(outward.normalized()); }
+double alignment(const Polyline& branch, const Vec3& outward) {
+  return chord(branch).normalized().dot(outward.normalized());
+}
 
 // The axis of the plane of symmetry. A symmetric body has it as an exact principal axis; where the pose hides that, the
 // limbs' tips say it.
@@ -133,7 +136,8 @@ void place(BodyFrame& frame, const Mesh& mesh) {
 }
 
 [[noreturn]] void fail(const std::string& file, const std::string& what) {
-  throw Error(ExitCode::kSegmentation, file + ": " + what + " (a biped has five long branches: head, two arms, two legs)");
+  throw Error(ExitCode::kSegmentation,
+              file + ": " + what + " (a biped has five long branches: head, two arms, two legs)");
 }
 
 // With four tips, which of the five branches is missing?
@@ -167,7 +171,8 @@ void place(BodyFrame& frame, const Mesh& mesh) {
     const Polyline& leg = branches.front();
     const Vec3 up = -chord(leg);
     std::vector<Polyline> others(branches.begin() + 1, branches.end());
-    std::sort(others.begin(), others.end(), [&](const auto& a, const auto& b) { return alignment(a, up) < alignment(b, up); });
+    std::sort(others.begin(), others.end(),
+              [&](const auto& a, const auto& b) { return alignment(a, up) < alignment(b, up); });
     const Vec3 across = others[0].points().back() - others[1].points().back();
     const BodyFrame frame = orient(up, across, facing.value_or(toe_direction({&leg})));
     const Vec3 middle = 0.5 * (others[0].points().back() + others[1].points().back());
@@ -209,7 +214,8 @@ BodyPlan find_body_plan(const Mesh& mesh, const CurveSkeleton& skeleton, const s
 
   BodyPlan plan;
   const Vec3 toes = toe_direction({&legs[0], &legs[1]});
-  plan.frame = orient(up, lateral_axis(mesh, across_arms.normalized() + across_legs.normalized()), facing.value_or(toes));
+  plan.frame =
+      orient(up, lateral_axis(mesh, across_arms.normalized() + across_legs.normalized()), facing.value_or(toes));
   plan.facing = facing ? "forward is the direction in the settings" : "forward is where the feet point";
   const double clear = std::abs(plan.frame.forward.dot((facing ? *facing : toes).normalized()));
   if (clear < 0.3) {

@@ -15,7 +15,8 @@ struct BranchTree {
     Polyline line;   // from `from` to `to`
   };
   std::vector<Branch> branches;
-  std::vector<std::vector<Index>> at;  // node -> branches that end there; a tip has one, a junction three or more, else none
+  std::vector<std::vector<Index>>
+      at;  // node -> branches that end there; a tip has one, a junction three or more, else none
 
   bool is_tip(Index node) const { return at[node].size() == 1; }
   std::size_t tip_count() const;

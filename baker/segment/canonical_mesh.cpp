@@ -59,7 +59,8 @@ CanonicalMesh make_canonical(const Mesh& original) {
   for (int k = 0; k < 2; ++k) {
     double skew = 0;
     for (std::size_t t = 0; t < out.mesh.triangles.size(); ++t) {
-      skew += triangle_area(out.mesh, t) * std::pow((triangle_centroid(out.mesh, t) - out.centroid).dot(out.axes.col(k)), 3);
+      skew += triangle_area(out.mesh, t) *
+              std::pow((triangle_centroid(out.mesh, t) - out.centroid).dot(out.axes.col(k)), 3);
     }
     if (skew < 0) out.axes.col(k) = -out.axes.col(k);
   }

@@ -3,9 +3,9 @@
 
 #include "segment/skeleton_arena.h"
 
-// CGAL collapses edges in the order of their addresses. Out of the arena addresses follow the order of creation, so that a
-// mesh has one skeleton, not one a process. CGAL's containers ask this macro for their allocator; it must come before them
-// and stay in this file.
+// CGAL collapses edges in the order of their addresses. Out of the arena addresses follow the order of creation, so
+// that a mesh has one skeleton, not one a process. CGAL's containers ask this macro for their allocator; it must come
+// before them and stay in this file.
 #define CGAL_ALLOCATOR(T) spherechain::baker::ArenaAllocator<T>
 
 #include <CGAL/Simple_cartesian.h>

@@ -12,16 +12,18 @@ namespace spherechain::baker {
 namespace {
 
 // Fractions of the character's height.
-constexpr double kStep = 0.0025;          // between sections
-constexpr double kDirectionWindow = 0.06;  // a section stands across the last part of the line: longer than a joint's crease
+constexpr double kStep = 0.0025;  // between sections
+constexpr double kDirectionWindow =
+    0.06;  // a section stands across the last part of the line: longer than a joint's crease
 
-// A ray this many times the median's length left the section through a gap: a limb's longest radius stays under 1.7 times
-// the median.
+// A ray this many times the median's length left the section through a gap: a limb's longest radius stays under 1.7
+// times the median.
 constexpr double kEscaped = 2.0;
 
 bool closed(const Ring& ring) {
   const double limit = kEscaped * ring.median_distance();
-  return std::all_of(ring.hits.begin(), ring.hits.end(), [&](const auto& hit) { return hit && hit->distance <= limit; });
+  return std::all_of(ring.hits.begin(), ring.hits.end(),
+                     [&](const auto& hit) { return hit && hit->distance <= limit; });
 }
 
 double mean_distance(const Ring& ring) {
@@ -64,8 +66,8 @@ class March {
     return Section{ring.center, mean_distance(ring), longest_distance(ring)};
   }
 
-  // Appends sections from the last one on, each step along the last part of the line, until one is not closed or `stop` says
-  // so. The last step is halved until the end is known to a hundredth of a step.
+  // Appends sections from the last one on, each step along the last part of the line, until one is not closed or `stop`
+  // says so. The last step is halved until the end is known to a hundredth of a step.
   template <typename Stop>
   void run(std::vector<Section>& sections, Vec3 direction, const Stop& stop) const {
     double length = step_;
@@ -107,7 +109,8 @@ std::vector<Vec3> centers(const std::vector<Section>& sections) {
 double narrowest(const Polyline& line, const std::vector<Section>& sections, double from, double to) {
   constexpr double kAlike = 1.04;
   std::vector<double> arc{0};
-  for (std::size_t i = 1; i < sections.size(); ++i) arc.push_back(arc.back() + (sections[i].center - sections[i - 1].center).norm());
+  for (std::size_t i = 1; i < sections.size(); ++i)
+    arc.push_back(arc.back() + (sections[i].center - sections[i - 1].center).norm());
   std::size_t least = sections.size();
   for (std::size_t i = 0; i < sections.size(); ++i) {
     if (arc[i] < from || arc[i] > to) continue;
@@ -137,7 +140,8 @@ LimbTrace trace_limb(const SurfaceQuery& surface, const Polyline& branch, const 
   const Vec3 outward = branch.tangent(middle, 0.5 * kDirectionWindow * frame.height);
   const auto start = march.section(branch.at(middle), outward);
   if (!start) {
-    throw Error(ExitCode::kSegmentation, file + ": the " + limb + " has no section of its own: it merges with the torso");
+    throw Error(ExitCode::kSegmentation,
+                file + ": the " + limb + " has no section of its own: it merges with the torso");
   }
 
   // Out to hand or foot, then in from there, so that both directions follow a line of sections.
@@ -156,7 +160,8 @@ LimbTrace trace_limb(const SurfaceQuery& surface, const Polyline& branch, const 
   const Polyline own(centers(sections));
   trace.direction = own.tangent(0, kDirectionWindow * frame.height);
   trace.radius = sections.front().longest;
-  // Wrists were seen at 0.71 and ankles at 0.76 of the way from the cut to the tip; past 0.85 fingers and toes are thinner.
+  // Wrists were seen at 0.71 and ankles at 0.76 of the way from the cut to the tip; past 0.85 fingers and toes are
+  // thinner.
   const double tip = own.length() + (branch.points().back() - own.points().back()).norm();
   trace.extremity = narrowest(own, sections, 0.5 * tip, 0.85 * tip);
 
@@ -170,8 +175,8 @@ LimbTrace trace_limb(const SurfaceQuery& surface, const Polyline& branch, const 
   return trace;
 }
 
-TorsoEnds find_torso_ends(const SurfaceQuery& surface, const Vec3& hip, const Vec3& chest, const BodyFrame& frame, int rays,
-                          const std::string& file) {
+TorsoEnds find_torso_ends(const SurfaceQuery& surface, const Vec3& hip, const Vec3& chest, const BodyFrame& frame,
+                          int rays, const std::string& file) {
   const auto height = [&](const Vec3& p) { return (p - frame.origin).dot(frame.up); };
   TorsoEnds ends{};
   // From well inside: between the legs' starts the skin may be just below.

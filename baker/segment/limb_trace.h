@@ -19,8 +19,8 @@ struct LimbTrace {
   double extremity;  // arc length of the narrowest section before hand or foot: wrist or ankle
 };
 
-// `branch` comes from the torso. The limb starts outside the torso's maximal ball at the junction, at the innermost section
-// all of whose rays end on a wall about as far as the others do: further in, rays escape past armpit or crotch.
+// `branch` comes from the torso. The limb starts outside the torso's maximal ball at the junction, at the innermost
+// section all of whose rays end on a wall about as far as the others do: further in, rays escape past armpit or crotch.
 // Throws Error(kSegmentation) where there is no such section.
 LimbTrace trace_limb(const SurfaceQuery& surface, const Polyline& branch, const BodyFrame& frame, int rays,
                      const std::string& limb, const std::string& file);
@@ -32,7 +32,7 @@ struct TorsoEnds {
 };
 
 // `hip` and `chest` are points inside the torso, between the legs' and between the arms' starts.
-TorsoEnds find_torso_ends(const SurfaceQuery& surface, const Vec3& hip, const Vec3& chest, const BodyFrame& frame, int rays,
-                          const std::string& file);
+TorsoEnds find_torso_ends(const SurfaceQuery& surface, const Vec3& hip, const Vec3& chest, const BodyFrame& frame,
+                          int rays, const std::string& file);
 
 }  // namespace spherechain::baker

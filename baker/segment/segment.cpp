@@ -17,9 +17,9 @@ using Neighbours = std::vector<std::array<Index, 3>>;
 // Half the width of the strip around a cut in which the loop may run, as a fraction of the height.
 constexpr double kStripHalfWidth = 0.015;
 
-// The triangles beyond the plane through the limb's start, in one piece with its tip. Near the plane they must also be no
-// farther from the centre line than the section there reaches, and closer to this limb than to another: armpit and crotch
-// are not crossed. The loop is then the shortest in a strip around the plane.
+// The triangles beyond the plane through the limb's start, in one piece with its tip. Near the plane they must also be
+// no farther from the centre line than the section there reaches, and closer to this limb than to another: armpit and
+// crotch are not crossed. The loop is then the shortest in a strip around the plane.
 class LimbLabeller {
  public:
   LimbLabeller(const Mesh& mesh, const std::array<LimbTrace, 4>& traces, double height)
@@ -137,7 +137,9 @@ std::vector<std::uint8_t> label_others(const Character& character, const Surface
   return labels;
 }
 
-Vec3 in_symmetry_plane(const BodyFrame& frame, const Vec3& p) { return p - (p - frame.origin).dot(frame.left) * frame.left; }
+Vec3 in_symmetry_plane(const BodyFrame& frame, const Vec3& p) {
+  return p - (p - frame.origin).dot(frame.left) * frame.left;
+}
 
 // Arc length of the first point of a rising curve at a height along frame.up.
 double arc_at_height(const Polyline& line, const BodyFrame& frame, double height) {
@@ -152,9 +154,9 @@ double arc_at_height(const Polyline& line, const BodyFrame& frame, double height
 Regions segment(const Character& character, const SegmentSettings& settings) {
   const Mesh& mesh = character.body;
   if (const std::size_t open = count_open_edges(mesh); open > 0) {
-    throw Error(ExitCode::kSegmentation,
-                character.file + ": the body is not one closed surface (" + std::to_string(open) +
-                    " edges are open or shared by more than two triangles; close its holes)");
+    throw Error(ExitCode::kSegmentation, character.file + ": the body is not one closed surface (" +
+                                             std::to_string(open) +
+                                             " edges are open or shared by more than two triangles; close its holes)");
   }
   const BodyPlan plan = find_body_plan(mesh, extract_curve_skeleton(mesh), settings.facing, character.file);
   const SurfaceQuery surface(mesh);

@@ -19,28 +19,28 @@ inline constexpr std::uint8_t kTorso = 4;
 inline constexpr std::size_t kRegionCount = 5;
 
 struct Limb {
-  bool left, top;       // which side of the torso it leaves, and whether from the chest (arms) or the hip (legs)
-  Polyline line;        // centre line from the cut at shoulder or hip to the tip of hand or foot
-  double extremity;     // arc length of wrist or ankle: where hand or foot begin
-  Vec3 attachment;      // the junction of the curve skeleton it comes from: chest or hip
+  bool left, top;    // which side of the torso it leaves, and whether from the chest (arms) or the hip (legs)
+  Polyline line;     // centre line from the cut at shoulder or hip to the tip of hand or foot
+  double extremity;  // arc length of wrist or ankle: where hand or foot begin
+  Vec3 attachment;   // the junction of the curve skeleton it comes from: chest or hip
 };
 
 // Which part of the body every triangle is.
 struct Regions {
   BodyFrame frame;
   std::string facing;
-  std::array<Limb, 4> limbs;                 // in the order of kRegionNames
-  Vec3 hip, chest;                           // in the plane of symmetry, between the legs' and between the arms' starts
+  std::array<Limb, 4> limbs;  // in the order of kRegionNames
+  Vec3 hip, chest;            // in the plane of symmetry, between the legs' and between the arms' starts
   TorsoEnds torso;
-  Polyline spine;                            // the skeleton's curve from hip to chest junction and on to the head's tip
-  double spine_chest, spine_neck;            // arc lengths on `spine` of the chest junction and the neck's base
-  std::vector<std::uint8_t> of_triangle;     // a triangle of Character::body -> region
-  std::vector<std::uint8_t> of_other;        // a triangle of Character::others -> region, that of the nearest body triangle
+  Polyline spine;                         // the skeleton's curve from hip to chest junction and on to the head's tip
+  double spine_chest, spine_neck;         // arc lengths on `spine` of the chest junction and the neck's base
+  std::vector<std::uint8_t> of_triangle;  // a triangle of Character::body -> region
+  std::vector<std::uint8_t> of_other;  // a triangle of Character::others -> region, that of the nearest body triangle
 };
 
 struct SegmentSettings {
-  int rays = 80;                   // N_r
-  std::optional<Vec3> facing;      // overrides what the feet say
+  int rays = 80;               // N_r
+  std::optional<Vec3> facing;  // overrides what the feet say
 };
 
 // Segments by shape alone. Throws Error(kSegmentation) where the body is not one closed surface or lacks a limb.

@@ -10,10 +10,11 @@ namespace {
 using Traits = boost::adjacency_list_traits<boost::vecS, boost::vecS, boost::directedS>;
 using Graph = boost::adjacency_list<
     boost::vecS, boost::vecS, boost::directedS,
-    boost::property<boost::vertex_index_t, std::size_t,
-                    boost::property<boost::vertex_color_t, boost::default_color_type,
-                                    boost::property<boost::vertex_distance_t, long,
-                                                    boost::property<boost::vertex_predecessor_t, Traits::edge_descriptor>>>>,
+    boost::property<
+        boost::vertex_index_t, std::size_t,
+        boost::property<boost::vertex_color_t, boost::default_color_type,
+                        boost::property<boost::vertex_distance_t, long,
+                                        boost::property<boost::vertex_predecessor_t, Traits::edge_descriptor>>>>,
     boost::property<boost::edge_capacity_t, double,
                     boost::property<boost::edge_residual_capacity_t, double,
                                     boost::property<boost::edge_reverse_t, Traits::edge_descriptor>>>>;
@@ -28,8 +29,9 @@ void connect(Graph& graph, std::size_t a, std::size_t b, double forth, double ba
 
 }  // namespace
 
-void shorten_loop(const Mesh& mesh, const std::vector<std::array<Index, 3>>& neighbours, const std::vector<Strip>& strip,
-                  std::uint8_t inner, std::uint8_t outer, std::vector<std::uint8_t>& labels) {
+void shorten_loop(const Mesh& mesh, const std::vector<std::array<Index, 3>>& neighbours,
+                  const std::vector<Strip>& strip, std::uint8_t inner, std::uint8_t outer,
+                  std::vector<std::uint8_t>& labels) {
   std::vector<Index> node(strip.size(), kNoIndex), triangles;
   for (Index t = 0; t < strip.size(); ++t) {
     if (strip[t] != Strip::kFree) continue;

@@ -8,8 +8,8 @@
 
 namespace spherechain::baker {
 
-// Memory whose addresses depend only on the order of the calls: one block, handed out from its start, freed pieces of a size
-// reused last in, first out. ArenaAllocator draws on the one that lives: at most one a thread.
+// Memory whose addresses depend only on the order of the calls: one block, handed out from its start, freed pieces of a
+// size reused last in, first out. ArenaAllocator draws on the one that lives: at most one a thread.
 class SkeletonArena {
  public:
   // 1.2 KiB a triangle were seen; pages never touched cost nothing.

@@ -3,8 +3,8 @@
 
 #include "import/sha256.h"
 #include "mesh/error.h"
-#include "spherechain/asset.h"
 #include "sphere_chains_generated.h"
+#include "spherechain/asset.h"
 #include "write/version.h"
 #include "write/write.h"
 
@@ -43,11 +43,11 @@ void add_spheres(const AssetSource& in, const SurroundingTriangles& triangles, s
   for (std::size_t i = 0; i < in.spheres.spheres.size(); ++i) {
     const FittedSphere& fitted = in.spheres.spheres[i];
     const BoundSphere& bound = in.binding.spheres[i];
-    spheres.emplace_back(to_schema(bound.rest.center), static_cast<float>(bound.rest.radius),
-                         static_cast<float>(bound.detect_radius), static_cast<float>(bound.spread),
-                         static_cast<std::uint32_t>(pivots.size()), triangles.first[i], triangles.count[i],
-                         static_cast<std::uint16_t>(bound.pivots.size()), fitted.region,
-                         static_cast<schema::Side>(fitted.side), static_cast<std::int16_t>(fitted.level), std::uint16_t{0});
+    spheres.emplace_back(
+        to_schema(bound.rest.center), static_cast<float>(bound.rest.radius), static_cast<float>(bound.detect_radius),
+        static_cast<float>(bound.spread), static_cast<std::uint32_t>(pivots.size()), triangles.first[i],
+        triangles.count[i], static_cast<std::uint16_t>(bound.pivots.size()), fitted.region,
+        static_cast<schema::Side>(fitted.side), static_cast<std::int16_t>(fitted.level), std::uint16_t{0});
     for (const BoundPivot& pivot : bound.pivots) {
       const Triangle& corners = in.character.body_source_corners[pivot.triangle];
       pivots.emplace_back(corners[0], corners[1], corners[2], static_cast<float>(pivot.weight));
@@ -116,28 +116,30 @@ std::vector<std::uint8_t> serialize(const AssetSource& in) {
     joints.push_back(schema::CreateJointDirect(builder, joint.name.c_str(), joint.parent, &position, &tail));
   }
   const std::vector<std::uint64_t> ignored = ignored_bits(in);
-  const std::vector<schema::NearPair> near_fit = to_schema(in.binding.near_fit), near_detect = to_schema(in.binding.near_detect);
+  const std::vector<schema::NearPair> near_fit = to_schema(in.binding.near_fit),
+                                      near_detect = to_schema(in.binding.near_detect);
 
   const std::string writer = std::string("spherechain ") + kVersion, settings_hash = sha256_of_text(in.settings);
   const auto provenance =
       schema::CreateProvenanceDirect(builder, writer.c_str(), in.settings.c_str(), settings_hash.c_str());
-  const auto source = schema::CreateSourceDirect(
-      builder, in.character.file.c_str(), in.character.sha256.c_str(),
-      static_cast<std::uint32_t>(in.character.source_positions.size()),
-      static_cast<std::uint32_t>(in.character.source_triangle_count), rest_hash(in.character.source_positions),
-      static_cast<float>(in.character.metres_per_unit));
+  const auto source = schema::CreateSourceDirect(builder, in.character.file.c_str(), in.character.sha256.c_str(),
+                                                 static_cast<std::uint32_t>(in.character.source_positions.size()),
+                                                 static_cast<std::uint32_t>(in.character.source_triangle_count),
+                                                 rest_hash(in.character.source_positions),
+                                                 static_cast<float>(in.character.metres_per_unit));
   const BodyFrame& f = in.regions.frame;
-  const schema::Vec3 origin = to_schema(f.origin), left = to_schema(f.left), up = to_schema(f.up), forward = to_schema(f.forward);
+  const schema::Vec3 origin = to_schema(f.origin), left = to_schema(f.left), up = to_schema(f.up),
+                     forward = to_schema(f.forward);
   const auto frame = schema::CreateFrame(builder, &origin, &left, &up, &forward, static_cast<float>(f.height));
   const schema::FitError phi1 = fit_error(in, &TorsoFit::phi1), adjusted = fit_error(in, &TorsoFit::phi1_adjusted),
                          phi2 = fit_error(in, &TorsoFit::phi2);
   const auto fit = schema::CreateFit(builder, &phi1, &adjusted, &phi2);
 
-  builder.Finish(schema::CreateAssetDirect(builder, kFormatVersion, provenance, source, frame,
-                                           in.binding.rule == RefitRule::kPaper ? schema::Refit::paper : schema::Refit::calibrated,
-                                           fit, &regions, &spheres, &pivots, &triangles.triangles, &chains,
-                                           static_cast<std::uint32_t>(in.chains.entries_table1), &ignored, &near_fit,
-                                           &near_detect, &joints),
+  builder.Finish(schema::CreateAssetDirect(
+                     builder, kFormatVersion, provenance, source, frame,
+                     in.binding.rule == RefitRule::kPaper ? schema::Refit::paper : schema::Refit::calibrated, fit,
+                     &regions, &spheres, &pivots, &triangles.triangles, &chains,
+                     static_cast<std::uint32_t>(in.chains.entries_table1), &ignored, &near_fit, &near_detect, &joints),
                  schema::AssetIdentifier());
   std::vector<std::uint8_t> bytes(builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize());
 

@@ -34,7 +34,8 @@ std::string contents(const fs::path& path) {
 Run run(const std::string& arguments) {
   const TemporaryFolder folder;
   const fs::path out = folder.path / "out", error = folder.path / "error";
-  const int status = std::system(fmt::format("{} {} >{} 2>{}", SPHERECHAIN_TOOL, arguments, out.string(), error.string()).c_str());
+  const int status =
+      std::system(fmt::format("{} {} >{} 2>{}", SPHERECHAIN_TOOL, arguments, out.string(), error.string()).c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(out), contents(error)};
 }
 
@@ -79,7 +80,8 @@ TEST_CASE("bake writes the same bytes as the library, a report and a table, and 
   CHECK(report["counts"]["spheres"] == baked_human().spheres.spheres.size());
   CHECK(report["counts"]["why"].get<std::string>().find("touch the skin") != std::string::npos);
   for (const json& sphere : report["fit"]["torso"]) {
-    for (const char* fit : {"phi1", "phi1_adjusted", "phi2"}) CHECK(sphere[fit]["F"].size() == sphere["vertices"].size());
+    for (const char* fit : {"phi1", "phi1_adjusted", "phi2"})
+      CHECK(sphere[fit]["F"].size() == sphere["vertices"].size());
     CHECK(sphere["phi1_adjusted"]["mean_abs_F"] <= sphere["phi1"]["mean_abs_F"]);
   }
   std::set<std::string> stages;
@@ -99,7 +101,9 @@ TEST_CASE("inspect --json has the contract's fields and agrees with itself") {
   REQUIRE(asset["spheres"].size() == asset["sphere_count"]);
   std::size_t triangles = 0, in_regions = 0, entries = 0;
   for (const json& sphere : asset["spheres"]) {
-    for (const char* key : {"id", "center", "radius", "detect_radius", "region", "level", "side", "triangles", "pivots"}) CHECK(sphere.contains(key));
+    for (const char* key :
+         {"id", "center", "radius", "detect_radius", "region", "level", "side", "triangles", "pivots"})
+      CHECK(sphere.contains(key));
     CHECK(sphere["pivots"].size() >= 8);
     triangles += sphere["triangles"].get<std::size_t>();
   }
@@ -126,7 +130,8 @@ TEST_CASE("play --json has the contract's fields; at rest nothing touches, hands
   const TemporaryFolder folder;
   const fs::path out = folder.path / "play.json";
   const auto play = [&](const std::string& more) {
-    return run(fmt::format("play {} --source {} --json {} {}", baked_files().asset.string(), kHumanFile, out.string(), more));
+    return run(
+        fmt::format("play {} --source {} --json {} {}", baked_files().asset.string(), kHumanFile, out.string(), more));
   };
   REQUIRE(play(fmt::format("--poses {} --frames 5 --fps 10", pose("hands_on_hips.json"))).code == 0);
   const json both = json::parse(contents(out));
@@ -176,7 +181,8 @@ TEST_CASE("files that cannot be read end with 3, name the file and the cause, an
   check_error(run("inspect " + empty), 3, {"empty.sphc"});
   check_error(run("inspect " + junk), 3, {"junk.obj"});
   check_error(run(fmt::format("play {} --source {}", baked_files().asset.string(), junk)), 3, {"junk.obj"});
-  check_error(run(fmt::format("play {} --source {} --poses {}", baked_files().asset.string(), kHumanFile, junk)), 3, {"junk.obj"});
+  check_error(run(fmt::format("play {} --source {} --poses {}", baked_files().asset.string(), kHumanFile, junk)), 3,
+              {"junk.obj"});
   CHECK(files_in(folder.path) == before);
   check_error(run(fmt::format("bake {} -o /nowhere/out.sphc", kHumanFile)), 3, {"/nowhere/out.sphc"});
 }
@@ -184,7 +190,8 @@ TEST_CASE("files that cannot be read end with 3, name the file and the cause, an
 TEST_CASE("broken settings end with 3 and name the setting") {
   const TemporaryFolder folder;
   const auto bake_with = [&](const std::string& text) {
-    return run(fmt::format("bake {} -o {} --config {}", kHumanFile, (folder.path / "out.sphc").string(), folder.write("c.json", text).string()));
+    return run(fmt::format("bake {} -o {} --config {}", kHumanFile, (folder.path / "out.sphc").string(),
+                           folder.write("c.json", text).string()));
   };
   check_error(bake_with("{"), 3, {"c.json", "JSON"});
   check_error(bake_with("[1]"), 3, {"c.json", "object"});
@@ -199,7 +206,8 @@ TEST_CASE("broken settings end with 3 and name the setting") {
 TEST_CASE("a mesh that cannot be segmented ends with 4") {
   const TemporaryFolder folder;
   // A tetrahedron has no limbs.
-  const auto mesh = folder.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n").string();
+  const auto mesh =
+      folder.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n").string();
   check_error(run(fmt::format("bake {} -o {}", mesh, (folder.path / "t.sphc").string())), 4, {"t.obj", "missing"});
   CHECK(!fs::exists(folder.path / "t.sphc"));
 }
@@ -208,7 +216,8 @@ TEST_CASE("a missed target ends with 5, says so, and writes the asset all the sa
   const TemporaryFolder folder;
   const auto config = folder.write("c.json", R"({"targets": {"max_spheres": 10, "min_covered_area": 0.01}})").string();
   const fs::path out = folder.path / "out.sphc", report = folder.path / "r.json";
-  const Run result = run(fmt::format("bake {} -o {} --config {} --report {}", kHumanFile, out.string(), config, report.string()));
+  const Run result =
+      run(fmt::format("bake {} -o {} --config {} --report {}", kHumanFile, out.string(), config, report.string()));
   CHECK(result.code == 5);
   CHECK(result.error.find("max_spheres: 10 asked") != std::string::npos);
   CHECK(fs::exists(out));
@@ -227,6 +236,8 @@ TEST_CASE("an output that is no asset is not overwritten without --force, nor is
 
 TEST_CASE("an asset is refused for another mesh than its source") {
   const TemporaryFolder folder;
-  const auto other = folder.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n").string();
-  check_error(run(fmt::format("play {} --source {}", baked_files().asset.string(), other)), 3, {"t.obj", "not the mesh"});
+  const auto other =
+      folder.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n").string();
+  check_error(run(fmt::format("play {} --source {}", baked_files().asset.string(), other)), 3,
+              {"t.obj", "not the mesh"});
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Never compiled: include_rules.cmake must complain of the first two and not of the others.
-#include "mesh/mesh.h"
-#  include <Eigen/Dense>
+#include <Eigen/Dense>
 #include <vector>
+#include "mesh/mesh.h"
 #include "spherechain/asset.h"
