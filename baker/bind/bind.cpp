@@ -73,13 +73,22 @@ double area_quantile(const Mesh& mesh, const std::vector<Index>& triangles, cons
   return 0;
 }
 
-BoundSphere bind_sphere(const Mesh& mesh, const std::vector<Index>& triangles, const FittedSphere& sphere,
-                        const BodyFrame& frame, const BindSettings& settings) {
+// All triangles within two radii of a sphere's centre.
+std::vector<Index> triangles_around(const Mesh& mesh, const FittedSphere& sphere) {
+  std::vector<Index> around;
+  for (Index t = 0; t < mesh.triangles.size(); ++t) {
+    if ((triangle_centroid(mesh, t) - sphere.ball.center).norm() < 2 * sphere.ball.radius) around.push_back(t);
+  }
+  return around;
+}
+
+BoundSphere bind_sphere(const Mesh& mesh, const std::vector<Index>& surrounding, const std::vector<Index>& carriers,
+                        const FittedSphere& sphere, const BodyFrame& frame, const BindSettings& settings) {
   BoundSphere bound{sphere.ball, 0, 0, {}, 0};
   // Ray 0 of the rings points there too: pivots turn with the body.
   const Vec3 reference =
       sphere.region == kTorso ? frame.forward : Vec3(frame.up + 0.7 * frame.left + 0.3 * frame.forward);
-  bound.pivots = choose_pivots(mesh, triangles, sphere, reference, settings.rule);
+  bound.pivots = choose_pivots(mesh, carriers, sphere, reference, settings.rule);
   Vec3 center = Vec3::Zero();
   for (const BoundPivot& pivot : bound.pivots) {
     center += pivot.weight * triangle_centroid(mesh, pivot.triangle);
@@ -94,7 +103,7 @@ BoundSphere bind_sphere(const Mesh& mesh, const std::vector<Index>& triangles, c
   // A region may reach far beyond its sphere (head, hands, feet): no farther than what closes the waists between
   // neighbours of equal size, r sqrt(1 + (1 - PD)^2).
   const double waist = std::sqrt(1 + std::pow(1 - settings.penetration_depth, 2));
-  const double quantile = area_quantile(mesh, triangles, sphere.ball.center, settings.detect_quantile);
+  const double quantile = area_quantile(mesh, surrounding, sphere.ball.center, settings.detect_quantile);
   const double ratio = std::clamp(quantile / sphere.ball.radius, 1.0, waist);
   bound.detect_radius = ratio * bound.rest.radius;
   return bound;
@@ -129,11 +138,16 @@ Binding bind_spheres(const Character& character, const Regions& regions, const S
   std::vector<std::vector<Index>> surrounding(spheres.spheres.size());
   for (Index t = 0; t < out.sphere_of_triangle.size(); ++t) surrounding[out.sphere_of_triangle[t]].push_back(t);
   for (std::size_t i = 0; i < spheres.spheres.size(); ++i) {
-    BoundSphere bound = bind_sphere(character.body, surrounding[i], spheres.spheres[i], regions.frame, settings);
+    BoundSphere bound =
+        bind_sphere(character.body, surrounding[i], surrounding[i], spheres.spheres[i], regions.frame, settings);
+    if (bound.pivots.size() < 4) {  // few and large triangles: those beyond the region's border carry the sphere too
+      const std::vector<Index> around = triangles_around(character.body, spheres.spheres[i]);
+      bound = bind_sphere(character.body, surrounding[i], around, spheres.spheres[i], regions.frame, settings);
+    }
     if (bound.pivots.size() < 4) {
       throw Error(ExitCode::kSegmentation, character.file + ": sphere " + std::to_string(i) + " of the " +
                                                kRegionNames[spheres.spheres[i].region] +
-                                               " finds no pivots that carry it among its " +
+                                               " finds no pivots that carry it around its " +
                                                std::to_string(surrounding[i].size()) + " triangles");
     }
     out.spheres.push_back(std::move(bound));

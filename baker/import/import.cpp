@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "import/import.h"
 
+#include <algorithm>
+#include <cctype>
 #include <system_error>
 
 #include "import/sha256.h"
@@ -13,6 +15,14 @@ Character import_character(const std::filesystem::path& path) {
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) throw Error(ExitCode::kFile, path.string() + ": no such file");
   if (std::filesystem::is_directory(status)) throw Error(ExitCode::kFile, path.string() + ": is a folder, not a mesh");
+  // Through assimp a glTF would lose its own vertex order and bind pose, and an asset would be tied to neither.
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (extension == ".glb" || extension == ".gltf") {
+    throw Error(ExitCode::kFile,
+                path.string() + ": glTF is not read by this version (convert it to FBX, Collada or OBJ)");
+  }
   const std::string digest = sha256_of_file(path);
   Character character = build_character(read_with_assimp(path), path.string());
   character.file = path.filename().string();

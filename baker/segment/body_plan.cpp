@@ -197,7 +197,7 @@ BodyPlan find_body_plan(const Mesh& mesh, const CurveSkeleton& skeleton, const s
   const std::size_t tips = tree.tip_count();
   if (tips == 4) fail_with_four(tree, facing, file);
   if (tips < 4) {
-    fail(file, "arms or legs are missing: the shape has " + std::to_string(tips) + " ends, a biped has five");
+    fail(file, "arms or legs are missing: the shape has " + std::to_string(tips) + " ends");
   }
   if (tips > 5) fail(file, "the shape has " + std::to_string(tips) + " long branches, which is no biped");
   std::optional<Split> split = split_tree(tree, 2, 3);

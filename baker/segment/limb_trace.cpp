@@ -194,8 +194,8 @@ TorsoEnds find_torso_ends(const SurfaceQuery& surface, const Vec3& hip, const Ve
     const auto half = static_cast<std::size_t>(rays / 2);
     if (!disk.hits[0] || !disk.hits[half]) break;
     const double width = disk.hits[0]->distance + disk.hits[half]->distance;
-    // A fall this sudden is no neck: the disk's centre has come into a mouth, or out through the skin.
-    if (!widths.empty() && width < 0.7 * widths.back()) break;
+    // Shoulders may end suddenly; a neck does not: the disk's centre has come into a mouth, or out through the skin.
+    if (!widths.empty() && widths[least] < 0.5 * widths[0] && width < 0.7 * widths.back()) break;
     widths.push_back(width);
     heights.push_back(height(center));
     if (widths.back() < widths[least]) least = widths.size() - 1;
