@@ -4,8 +4,9 @@
 #include <filesystem>
 
 #include "cli/commands.h"
-#include "cli/files.h"
+#include "cli/progress.h"
 #include "pipeline/pipeline.h"
+#include "play/asset_file.h"
 #include "report/report.h"
 #include "write/write.h"
 

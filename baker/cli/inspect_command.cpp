@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 
 #include "cli/commands.h"
-#include "cli/files.h"
+#include "play/asset_file.h"
 #include "report/report.h"
 
 namespace spherechain::baker {

@@ -8,10 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
-#include "cli/files.h"
-#include "import/import.h"
-#include "motion/motion.h"
-#include "rig/rig.h"
+#include "cli/progress.h"
+#include "play/play.h"
 #include "spherechain/detect.h"
 #include "spherechain/refit.h"
 #include "write/write.h"
@@ -21,32 +19,6 @@ namespace {
 
 using nlohmann::ordered_json;
 using Clock = std::chrono::steady_clock;
-
-Vec3 to_vec3(const spherechain::Vec3& v) { return {v.x, v.y, v.z}; }
-
-std::vector<Joint> joints_of(const Asset& asset) {
-  std::vector<Joint> joints;
-  for (std::size_t i = 0; i < asset.joint_count(); ++i) {
-    const JointView joint = asset.joint(i);
-    joints.push_back({joint.name, joint.parent, to_vec3(joint.position), to_vec3(joint.tail)});
-  }
-  return joints;
-}
-
-BodyFrame frame_of(const Asset& asset) {
-  const AssetInfo info = asset.info();
-  return {to_vec3(info.origin), to_vec3(info.left), to_vec3(info.up), to_vec3(info.forward),
-          static_cast<double>(info.height)};
-}
-
-std::vector<float> pack(const std::vector<Vec3>& positions) {
-  std::vector<float> packed;
-  packed.reserve(positions.size() * 3);
-  for (const Vec3& p : positions) {
-    for (int k = 0; k < 3; ++k) packed.push_back(static_cast<float>(p[k]));
-  }
-  return packed;
-}
 
 // Median microseconds of a few runs: a frame's work is shorter than the machine's hiccups.
 template <typename Run>
@@ -172,34 +144,19 @@ class Player {
 }  // namespace
 
 ExitCode run_play(const PlayOptions& options) {
-  const AssetFile file = open_asset(options.asset);
-  const Character character = import_character(options.source);
-  const std::vector<float> rest = pack(character.source_positions);
-  if (const Status status = check_source(file.asset, rest.data(), rest.size() / 3); status != Status::kOk) {
-    throw Error(ExitCode::kFile, options.source + ": is not the mesh that " + options.asset + " was baked from (" +
-                                     to_string(status) + ")");
-  }
-  std::optional<BezierMotion> motion;
-  if (!options.poses.empty()) {
-    const std::vector<Joint> joints = joints_of(file.asset);
-    const PoseMotion poses = read_pose_motion(options.poses, joints);
-    motion.emplace(character.source_positions, rig_weights(character, joints), joints, frame_of(file.asset), poses);
-  }
-
-  Player player(file.asset, options);
+  const AnimatedAsset animated(options.asset, options.source, options.poses);
+  Player player(animated.asset(), options);
   ordered_json frames = ordered_json::array();
   {
     Progress progress("play " + options.asset + ":");
     for (int i = 0; i < options.frames; ++i) {
       progress.show(fmt::format("frame {} of {}", i + 1, options.frames));
-      const double t = options.frames > 1 ? static_cast<double>(i) / (options.frames - 1) : 0;
-      frames.push_back(player.frame(i, i / options.fps, motion ? pack(motion->at(t)) : rest));
+      frames.push_back(player.frame(i, i / options.fps, pack(animated.positions(i, options.frames))));
     }
   }
   if (!options.json.empty()) {
-    write_atomically(
-        options.json,
-        ordered_json{{"backend", "scalar"}, {"radius", options.radius}, {"frames", std::move(frames)}}.dump(1) + "\n");
+    const ordered_json out{{"backend", "scalar"}, {"radius", options.radius}, {"frames", std::move(frames)}};
+    write_atomically(options.json, out.dump(1) + "\n");
   }
   fmt::print("{}", player.summary(options.frames));
   if (!options.json.empty()) fmt::print("wrote {}\n", options.json);

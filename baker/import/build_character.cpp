@@ -74,6 +74,15 @@ void check_positions(const SourceMesh& source, const std::string& name) {
 
 }  // namespace
 
+std::vector<float> pack(const std::vector<Vec3>& positions) {
+  std::vector<float> packed;
+  packed.reserve(positions.size() * 3);
+  for (const Vec3& p : positions) {
+    for (int k = 0; k < 3; ++k) packed.push_back(static_cast<float>(p[k]));
+  }
+  return packed;
+}
+
 Character build_character(const SourceMesh& source, const std::string& name) {
   check_positions(source, name);
   Character character;

@@ -52,6 +52,9 @@ struct Character {
 // not finite, an index is out of range, or all positions coincide.
 Character import_character(const std::filesystem::path& path);
 
+// x y z after another, as the runtime takes them.
+std::vector<float> pack(const std::vector<Vec3>& positions);
+
 // An importer's raw result: what assimp and (with the issue about real characters) tinygltf have in common.
 struct SourceMesh {
   std::vector<Vec3> positions;

@@ -11,6 +11,9 @@
 namespace spherechain::baker {
 namespace {
 
+static_assert(static_cast<int>(Side::kLeft) == static_cast<int>(schema::Side::left));
+static_assert(static_cast<int>(Side::kRight) == static_cast<int>(schema::Side::right));
+
 schema::Vec3 to_schema(const Vec3& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }
@@ -82,15 +85,6 @@ schema::FitError fit_error(const AssetSource& in, Ball TorsoFit::*which) {
   return {static_cast<float>(sum.mean_abs), static_cast<float>(sum.max_abs)};
 }
 
-std::uint64_t rest_hash(const std::vector<Vec3>& positions) {
-  std::vector<float> packed;
-  packed.reserve(positions.size() * 3);
-  for (const Vec3& p : positions) {
-    for (int k = 0; k < 3; ++k) packed.push_back(static_cast<float>(p[k]));
-  }
-  return hash_positions(packed.data(), positions.size());
-}
-
 }  // namespace
 
 std::vector<std::uint8_t> serialize(const AssetSource& in) {
@@ -122,11 +116,12 @@ std::vector<std::uint8_t> serialize(const AssetSource& in) {
   const std::string writer = std::string("spherechain ") + kVersion, settings_hash = sha256_of_text(in.settings);
   const auto provenance =
       schema::CreateProvenanceDirect(builder, writer.c_str(), in.settings.c_str(), settings_hash.c_str());
-  const auto source = schema::CreateSourceDirect(builder, in.character.file.c_str(), in.character.sha256.c_str(),
-                                                 static_cast<std::uint32_t>(in.character.source_positions.size()),
-                                                 static_cast<std::uint32_t>(in.character.source_triangle_count),
-                                                 rest_hash(in.character.source_positions),
-                                                 static_cast<float>(in.character.metres_per_unit));
+  const auto source = schema::CreateSourceDirect(
+      builder, in.character.file.c_str(), in.character.sha256.c_str(),
+      static_cast<std::uint32_t>(in.character.source_positions.size()),
+      static_cast<std::uint32_t>(in.character.source_triangle_count),
+      hash_positions(pack(in.character.source_positions).data(), in.character.source_positions.size()),
+      static_cast<float>(in.character.metres_per_unit));
   const BodyFrame& f = in.regions.frame;
   const schema::Vec3 origin = to_schema(f.origin), left = to_schema(f.left), up = to_schema(f.up),
                      forward = to_schema(f.forward);

@@ -2,16 +2,13 @@
 // Draws an asset's spheres in its source's skin, at rest or in a frame of a pose file's motion; touching spheres stand
 // out.
 #include <CLI/CLI.hpp>
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <set>
 
 #include "mesh/error.h"
-#include "motion/motion.h"
 #include "picture.h"
+#include "play/play.h"
 #include "spherechain/detect.h"
-#include "spherechain/refit.h"
 
 using namespace spherechain::baker;
 using namespace spherechain::pictures;
@@ -26,20 +23,8 @@ struct Options {
   int frame = -1, frames = 40, height = 900;
 };
 
-Vec3 to_vec3(const spherechain::Vec3& v) { return {v.x, v.y, v.z}; }
-
-std::vector<std::uint64_t> read_aligned(const std::string& path, std::size_t& size) {
-  std::ifstream in(path, std::ios::binary);
-  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  std::vector<std::uint64_t> words(bytes.size() / 8 + 1);
-  size = bytes.copy(reinterpret_cast<char*>(words.data()), bytes.size());
-  return words;
-}
-
 std::vector<spherechain::Sphere> refit(const Asset& asset, const std::vector<Vec3>& positions, RadiusKind radius) {
-  std::vector<float> packed;
-  for (const Vec3& p : positions)
-    packed.insert(packed.end(), {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())});
+  const std::vector<float> packed = pack(positions);
   std::vector<spherechain::Sphere> spheres(asset.spheres().size);
   spherechain::RefitJob job;
   job.asset = &asset;
@@ -72,34 +57,14 @@ std::set<std::uint32_t> touching(const Asset& asset, const std::vector<spherecha
 }
 
 void draw(const Options& options) {
-  std::size_t size = 0;
-  const std::vector<std::uint64_t> bytes = read_aligned(options.asset, size);
-  Asset asset;
-  char message[256] = "";
-  if (const auto status = asset.open(bytes.data(), size, message, sizeof(message));
-      status != spherechain::Status::kOk) {
-    throw Error(ExitCode::kFile, options.asset + ": " + to_string(status) + " " + message);
-  }
-  const Character character = import_character(options.source);
-  const spherechain::AssetInfo info = asset.info();
-  const BodyFrame frame{to_vec3(info.origin), to_vec3(info.left), to_vec3(info.up), to_vec3(info.forward),
-                        static_cast<double>(info.height)};
+  const AnimatedAsset animated(options.asset, options.source, options.poses);
+  const Asset& asset = animated.asset();
+  const Character& character = animated.character();
+  const std::vector<Vec3> positions =
+      animated.positions(options.frame < 0 ? options.frames - 1 : options.frame, options.frames);
 
-  std::vector<Vec3> positions = character.source_positions;
-  if (!options.poses.empty()) {
-    std::vector<Joint> joints;
-    for (std::size_t j = 0; j < asset.joint_count(); ++j) {
-      const auto joint = asset.joint(j);
-      joints.push_back({joint.name, joint.parent, to_vec3(joint.position), to_vec3(joint.tail)});
-    }
-    const int index = options.frame < 0 ? options.frames - 1 : options.frame;
-    const double t = options.frames > 1 ? static_cast<double>(index) / (options.frames - 1) : 1.0;
-    positions =
-        BezierMotion(positions, rig_weights(character, joints), joints, frame, read_pose_motion(options.poses, joints))
-            .at(t);
-  }
-
-  Picture picture{character.body, {}, {}, {}, {kFront, kLeftSide, kThreeQuarter}, frame, 0.35, options.height};
+  Picture picture{character.body, {}, {}, {}, {kFront, kLeftSide, kThreeQuarter}, animated.frame(), 0.35,
+                  options.height};
   for (std::size_t v = 0; v < positions.size(); ++v) {
     if (character.body_of_source[v] != kNoIndex) picture.mesh.positions[character.body_of_source[v]] = positions[v];
   }

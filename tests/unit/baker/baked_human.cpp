@@ -55,11 +55,3 @@ const std::vector<AnimationFrame>& animation_frames() {
 }
 
 std::vector<Vec3> posed_human(const std::string& pose_file) { return motion_of(pose_file).at(1); }
-
-std::vector<float> packed(const std::vector<Vec3>& positions) {
-  std::vector<float> out;
-  for (const Vec3& p : positions) {
-    for (int k = 0; k < 3; ++k) out.push_back(static_cast<float>(p[k]));
-  }
-  return out;
-}

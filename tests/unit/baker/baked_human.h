@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "pipeline/pipeline.h"
+#include "play/play.h"
 #include "spherechain/asset.h"
 
 // The MakeHuman body baked once a run with each profile.
@@ -23,5 +24,3 @@ struct AnimationFrame {
 const std::vector<AnimationFrame>& animation_frames();
 // The last frame of one of samples/poses.
 std::vector<spherechain::baker::Vec3> posed_human(const std::string& pose_file);
-
-std::vector<float> packed(const std::vector<spherechain::baker::Vec3>& positions);

@@ -25,7 +25,7 @@ using spherechain::test::refit;
 
 std::vector<Pair> touching(const Bake& bake, const std::vector<Vec3>& positions, RadiusKind kind) {
   const Asset asset = open_asset_of(bake);
-  return detect(asset, refit(asset, packed(positions), kind).spheres, Method::kM2, kind).pairs;
+  return detect(asset, refit(asset, pack(positions), kind).spheres, Method::kM2, kind).pairs;
 }
 
 // Written apart from the runtime: from the baker's own lists, with sets, in the arithmetic the headers fix.
@@ -102,7 +102,7 @@ TEST_CASE("in all 80 frames M2 equals a brute force, and M1's pairs are some of 
     for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
       std::size_t m1_total = 0, m2_total = 0, frames_touching = 0;
       for (const AnimationFrame& frame : animation_frames()) {
-        const std::vector<Sphere> spheres = refit(asset, packed(frame.positions), kind).spheres;
+        const std::vector<Sphere> spheres = refit(asset, pack(frame.positions), kind).spheres;
         const Detected m1 = detect(asset, spheres, Method::kM1, kind), m2 = detect(asset, spheres, Method::kM2, kind);
         CHECK(m2.pairs == brute_force(*bake, spheres, kind));
         CHECK(std::is_sorted(m1.pairs.begin(), m1.pairs.end()));

@@ -94,7 +94,7 @@ Errors refit_errors(const Bake& bake, const std::vector<std::vector<Ball>>& best
   const spherechain::Asset asset = open_asset_of(bake);
   Errors errors;
   for (std::size_t frame = 0; frame < animation_frames().size(); ++frame) {
-    const auto result = refit(asset, packed(animation_frames()[frame].positions), RadiusKind::kFit);
+    const auto result = refit(asset, pack(animation_frames()[frame].positions), RadiusKind::kFit);
     REQUIRE(result.status == spherechain::Status::kOk);
     for (std::size_t i = 0; i < result.spheres.size(); ++i) {
       const spherechain::Sphere& s = result.spheres[i];
@@ -130,7 +130,7 @@ TEST_CASE("calibrated refit follows the best-fit sphere of the deformed surround
 TEST_CASE("at rest the calibrated refit gives the baked spheres to 1e-5 of the height, and both radii") {
   const Bake& bake = baked_human();
   const spherechain::Asset asset = open_asset_of(bake);
-  const std::vector<float> rest = packed(bake.character.source_positions);
+  const std::vector<float> rest = pack(bake.character.source_positions);
   for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
     const auto result = refit(asset, rest, kind);
     double worst = 0;
@@ -148,7 +148,7 @@ TEST_CASE("at rest the calibrated refit gives the baked spheres to 1e-5 of the h
 TEST_CASE("the asset knows its own rest pose from any other buffer") {
   const Bake& bake = baked_human();
   const spherechain::Asset asset = open_asset_of(bake);
-  std::vector<float> positions = packed(bake.character.source_positions);
+  std::vector<float> positions = pack(bake.character.source_positions);
   CHECK(spherechain::check_source(asset, positions.data(), positions.size() / 3) == spherechain::Status::kOk);
   positions[3000] += 1e-3f;
   CHECK(spherechain::check_source(asset, positions.data(), positions.size() / 3) == spherechain::Status::kWrongSource);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -18,19 +19,5 @@ struct AssetFile {
 };
 // Throws Error(kFile) that says what is wrong with the file.
 AssetFile open_asset(const std::string& path);
-
-// A line on stderr that is replaced by the next; silent where stderr is no terminal.
-class Progress {
- public:
-  explicit Progress(std::string title);
-  ~Progress();
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
-  void show(const std::string& text);
-
- private:
-  std::string title_;
-  bool terminal_;
-};
 
 }  // namespace spherechain::baker

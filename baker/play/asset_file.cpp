@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/files.h"
+#include "play/asset_file.h"
 
-#include <unistd.h>
-
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -36,16 +33,6 @@ AssetFile open_asset(const std::string& path) {
                 path + ": " + to_string(status) + (message[0] ? std::string(": ") + message : "") + " (bake it again)");
   }
   return file;
-}
-
-Progress::Progress(std::string title) : title_(std::move(title)), terminal_(::isatty(STDERR_FILENO) == 1) {}
-
-Progress::~Progress() {
-  if (terminal_) std::fprintf(stderr, "\r\033[K");
-}
-
-void Progress::show(const std::string& text) {
-  if (terminal_) std::fprintf(stderr, "\r\033[K%s %s", title_.c_str(), text.c_str());
 }
 
 }  // namespace spherechain::baker

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/progress.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+
+namespace spherechain::baker {
+
+Progress::Progress(std::string title) : title_(std::move(title)), terminal_(::isatty(STDERR_FILENO) == 1) {}
+
+Progress::~Progress() {
+  if (terminal_) std::fprintf(stderr, "\r\033[K");
+}
+
+void Progress::show(const std::string& text) {
+  if (terminal_) std::fprintf(stderr, "\r\033[K%s %s", title_.c_str(), text.c_str());
+}
+
+}  // namespace spherechain::baker
