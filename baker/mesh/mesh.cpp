@@ -94,15 +94,20 @@ std::size_t count_open_edges(const Mesh& mesh) {
   return open;
 }
 
-double diameter(const Mesh& mesh) {
-  Vec3 centroid = Vec3::Zero();
+double surface_area(const Mesh& mesh) {
   double area = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const double a = triangle_area(mesh, t);
-    centroid += a * triangle_centroid(mesh, t);
-    area += a;
-  }
-  if (area > 0) centroid /= area;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) area += triangle_area(mesh, t);
+  return area;
+}
+
+Vec3 surface_centroid(const Mesh& mesh) {
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) sum += triangle_area(mesh, t) * triangle_centroid(mesh, t);
+  return sum / surface_area(mesh);
+}
+
+double diameter(const Mesh& mesh) {
+  const Vec3 centroid = surface_centroid(mesh);
   double farthest = 0;
   for (const Vec3& p : mesh.positions) farthest = std::max(farthest, (p - centroid).norm());
   return 2 * farthest;

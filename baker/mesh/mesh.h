@@ -39,6 +39,10 @@ Components connected_components(const Mesh& mesh);
 // Edges that do not have exactly two triangles, one in each direction. 0 means closed and consistently oriented.
 std::size_t count_open_edges(const Mesh& mesh);
 
+// The centroid of the surface, each triangle weighted by its area.
+Vec3 surface_centroid(const Mesh& mesh);
+double surface_area(const Mesh& mesh);
+
 // A size that no rotation or vertex order changes: twice the largest distance from the surface's centroid.
 double diameter(const Mesh& mesh);
 

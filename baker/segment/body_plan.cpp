@@ -77,13 +77,7 @@ double alignment(const Polyline& branch, const Vec3& outward) {
 // The axis of the plane of symmetry. A symmetric body has it as an exact principal axis; where the pose hides that, the
 // limbs' tips say it.
 Vec3 lateral_axis(const Mesh& mesh, const Vec3& between_tips) {
-  Vec3 centroid = Vec3::Zero();
-  double area = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    centroid += triangle_area(mesh, t) * triangle_centroid(mesh, t);
-    area += triangle_area(mesh, t);
-  }
-  centroid /= area;
+  const Vec3 centroid = surface_centroid(mesh);
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const Vec3 d = triangle_centroid(mesh, t) - centroid;
@@ -124,13 +118,7 @@ void place(BodyFrame& frame, const Mesh& mesh) {
     low = std::min(low, p.dot(frame.up));
     high = std::max(high, p.dot(frame.up));
   }
-  Vec3 centroid = Vec3::Zero();
-  double area = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    centroid += triangle_area(mesh, t) * triangle_centroid(mesh, t);
-    area += triangle_area(mesh, t);
-  }
-  centroid /= area;
+  const Vec3 centroid = surface_centroid(mesh);
   frame.height = high - low;
   frame.origin = centroid + (low - centroid.dot(frame.up)) * frame.up;
 }

@@ -41,13 +41,8 @@ CanonicalMesh make_canonical(const Mesh& original) {
   CanonicalMesh out;
   out.mesh = sorted_by(original, keys);
 
-  double area = 0;
-  out.centroid = Vec3::Zero();
-  for (std::size_t t = 0; t < out.mesh.triangles.size(); ++t) {
-    area += triangle_area(out.mesh, t);
-    out.centroid += triangle_area(out.mesh, t) * triangle_centroid(out.mesh, t);
-  }
-  out.centroid /= area;
+  const double area = surface_area(out.mesh);
+  out.centroid = surface_centroid(out.mesh);
   out.scale = diameter(out.mesh);
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (std::size_t t = 0; t < out.mesh.triangles.size(); ++t) {

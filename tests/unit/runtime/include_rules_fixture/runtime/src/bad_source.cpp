@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Never compiled: include_rules.cmake must complain of the first two and not of the others.
+// Never compiled: include_rules.cmake must complain of Eigen and of mesh, not of the others.
 #include <Eigen/Dense>
 #include <vector>
+
 #include "mesh/mesh.h"
 #include "spherechain/asset.h"
