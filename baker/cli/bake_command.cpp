@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <filesystem>
 
@@ -15,9 +16,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// A bake takes seconds: that its result cannot be written is said before.
+void check_folder(const std::string& file) {
+  const fs::path folder = fs::absolute(file).parent_path();
+  std::error_code ignored;
+  if (!fs::is_directory(folder, ignored)) {
+    throw Error(ExitCode::kFile, file + ": cannot be created (there is no folder " + folder.string() + ")");
+  }
+  if (::access(folder.c_str(), W_OK) != 0) {
+    throw Error(ExitCode::kFile, file + ": cannot be created (the folder " + folder.string() + " is not writable)");
+  }
+}
+
 // Baking onto the input, or onto a file that is no asset, is most likely a slip: nothing is lost to it.
 void check_output(const BakeOptions& options) {
   std::error_code ignored;
+  check_folder(options.output);
+  if (!options.report.empty()) check_folder(options.report);
   if (fs::equivalent(options.input, options.output, ignored)) {
     throw Error(ExitCode::kUsage, options.output + ": input and output are the same file");
   }
