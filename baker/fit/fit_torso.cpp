@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "fit/fit.h"
 #include "mesh/error.h"
@@ -113,20 +114,12 @@ double mean_depth(const Level& a, const Level& b) {
   return 0.5 * (penetration_depth(a.half[0], b.half[0]) + penetration_depth(a.half[1], b.half[1]));
 }
 
-}  // namespace
-
-void fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& settings, const std::string& file,
-               Spheres& out) {
-  const BodyFrame& frame = regions.frame;
-  const TorsoDisk disk(mesh, regions, settings.rays);
-  const auto height_of = [&](const Vec3& p) { return (p - frame.origin).dot(frame.up); };
-
+// The disk climbs by delta from the crotch; between two of its positions a level's place is found by bisection. The
+// first level stands on the crotch, the others overlap the one below by PD, the last ends below the neck.
+std::vector<Level> place_levels(const TorsoDisk& disk, const Regions& regions, const FitSettings& settings) {
   const double bottom = regions.torso.crotch, neck = regions.torso.neck;
-  const double step = settings.delta * frame.height;
-
-  // The disk climbs by delta; between two of its positions the place is found by bisection.
-  std::vector<Level> levels;
-  const auto place_where = [&](double from, const auto& reached) -> std::optional<Level> {
+  const double step = settings.delta * regions.frame.height;
+  const auto first_where = [&](double from, const auto& reached) -> std::optional<Level> {
     for (double high = from + step; high < neck; high += step) {
       const auto level = disk.at(high);
       if (!level || !reached(*level)) continue;
@@ -140,42 +133,60 @@ void fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& sett
     }
     return std::nullopt;
   };
-  auto level = place_where(bottom, [&](const Level& l) { return l.height - bottom >= l.radius(); });
+  std::vector<Level> levels;
+  auto level = first_where(bottom, [&](const Level& l) { return l.height - bottom >= l.radius(); });
   while (level && level->height < neck - 0.5 * level->radius()) {
     levels.push_back(*level);
-    level = place_where(level->height,
+    level = first_where(level->height,
                         [&](const Level& l) { return mean_depth(levels.back(), l) <= settings.penetration_depth; });
   }
-  if (levels.empty())
-    throw Error(ExitCode::kSegmentation, file + ": the torso has no level between hip and neck that a disk fits in");
+  return levels;
+}
 
+// The heights between which a level's fits are judged: halfway to its neighbours, as far on the side without one, its
+// radius where it has none.
+std::pair<double, double> band_of(const std::vector<Level>& levels, std::size_t i) {
+  const bool has_below = i > 0, has_above = i + 1 < levels.size();
+  const double h = levels[i].height;
+  double below = has_below ? 0.5 * (h - levels[i - 1].height) : levels[i].radius();
+  double above = has_above ? 0.5 * (levels[i + 1].height - h) : levels[i].radius();
+  if (has_below && !has_above) above = below;
+  if (has_above && !has_below) below = above;
+  return {h - below, h + above};
+}
+
+}  // namespace
+
+void fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& settings, const std::string& file,
+               Spheres& out) {
+  const BodyFrame& frame = regions.frame;
+  const std::vector<Level> levels = place_levels(TorsoDisk(mesh, regions, settings.rays), regions, settings);
+  if (levels.empty()) {
+    throw Error(ExitCode::kSegmentation, file + ": the torso has no level between hip and neck that a disk fits in");
+  }
+  std::vector<bool> in_torso(mesh.positions.size(), false);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    if (regions.of_triangle[t] != kTorso) continue;
+    for (const Index v : mesh.triangles[t]) in_torso[v] = true;
+  }
+  // A vertex in the plane of symmetry is both halves'.
+  const double on_plane = 1e-6 * frame.height;
   for (std::size_t i = 0; i < levels.size(); ++i) {
-    const double h = levels[i].height;
-    const double below = i > 0 ? 0.5 * (h - levels[i - 1].height) : -1,
-                 above = i + 1 < levels.size() ? 0.5 * (levels[i + 1].height - h) : -1;
-    const double low = h - (below > 0 ? below : (above > 0 ? above : levels[i].radius()));
-    const double high = h + (above > 0 ? above : (below > 0 ? below : levels[i].radius()));
-    std::vector<bool> in_torso(mesh.positions.size(), false);
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-      if (regions.of_triangle[t] != kTorso) continue;
-      for (const Index v : mesh.triangles[t]) in_torso[v] = true;
-    }
-    for (std::size_t side = 0; side < 2; ++side) {
-      const double sign = side == 0 ? 1 : -1;
-      TorsoFit fit{levels[i].half[side], {}, {}, {}};
+    const auto [low, high] = band_of(levels, i);
+    for (const Side side : {Side::kLeft, Side::kRight}) {
+      const double sign = side == Side::kLeft ? 1 : -1;
+      TorsoFit fit{levels[i].half[side == Side::kLeft ? 0 : 1], {}, {}, {}};
       for (Index v = 0; v < mesh.positions.size(); ++v) {
-        const double vh = height_of(mesh.positions[v]);
-        if (in_torso[v] && vh >= low && vh < high && sign * (mesh.positions[v] - levels[i].disk).dot(frame.left) >= 0) {
-          fit.vertices.push_back(v);
-        }
+        const double h = (mesh.positions[v] - frame.origin).dot(frame.up);
+        const double across = sign * (mesh.positions[v] - levels[i].disk).dot(frame.left);
+        if (in_torso[v] && h >= low && h < high && across >= -on_plane) fit.vertices.push_back(v);
       }
       fit.phi1_adjusted = adjust(fit.phi1, levels[i].disk, frame.up, mesh, fit.vertices);
       fit.phi2 = fit.vertices.empty() ? fit.phi1 : minimum_enclosing_ball(mesh, fit.vertices);
-      out.spheres.push_back(
-          {fit.phi1_adjusted, kTorso, static_cast<int>(i), side == 0 ? Side::kLeft : Side::kRight, frame.up});
+      out.spheres.push_back({fit.phi1_adjusted, kTorso, static_cast<int>(i), side, frame.up});
       out.torso.push_back(std::move(fit));
     }
-    out.level_heights.push_back(h);
+    out.level_heights.push_back(levels[i].height);
   }
 }
 
