@@ -40,11 +40,11 @@ class LimbLabeller {
         stack.push_back(n);
       }
     }
-    std::vector<Strip> strip(mesh_.triangles.size(), Strip::kOutside);
-    for (Index t = 0; t < strip.size(); ++t) {
+    std::vector<Index> strip;
+    for (Index t = 0; t < labels.size(); ++t) {
       if (labels[t] != region && labels[t] != kTorso) continue;
       const double along = along_of(limb, t);
-      if (std::abs(along) < half_width_ && near(region, t, std::abs(along))) strip[t] = Strip::kFree;
+      if (std::abs(along) < half_width_ && near(region, t, std::abs(along))) strip.push_back(t);
     }
     shorten_loop(mesh_, neighbours_, strip, region, kTorso, labels);
   }

