@@ -23,6 +23,14 @@ double penetration_depth(const Ball& a, const Ball& b) {
   return 1 - (a.center - b.center).norm() / (a.radius + b.radius);
 }
 
+std::vector<Index> triangles_of_region(const Regions& regions, std::uint8_t region) {
+  std::vector<Index> triangles;
+  for (Index t = 0; t < regions.of_triangle.size(); ++t) {
+    if (regions.of_triangle[t] == region) triangles.push_back(t);
+  }
+  return triangles;
+}
+
 Spheres fit_spheres(const Character& character, const Regions& regions, const FitSettings& settings) {
   Spheres out;
   fit_torso(character.body, regions, settings, character.file, out);

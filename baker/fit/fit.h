@@ -60,7 +60,10 @@ struct FitSettings {
 // Throws Error(kSegmentation) where a limb or the torso has no section a sphere fits in.
 Spheres fit_spheres(const Character& character, const Regions& regions, const FitSettings& settings);
 
-// Its two halves.
+// The body's triangles of a region.
+std::vector<Index> triangles_of_region(const Regions& regions, std::uint8_t region);
+
+// fit_spheres' two halves.
 std::vector<FittedSphere> fit_limb(const Mesh& mesh, const Regions& regions, std::uint8_t region,
                                    const FitSettings& settings, const std::string& file);
 void fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& settings, const std::string& file,

@@ -17,7 +17,7 @@ class LimbMarch {
  public:
   LimbMarch(const Mesh& mesh, const Regions& regions, std::uint8_t region, const FitSettings& settings)
       : body_(mesh),
-        skin_(mesh, triangles_of(regions, region)),
+        skin_(mesh, triangles_of_region(regions, region)),
         regions_(regions),
         region_(region),
         line_(regions.limbs[region].line),
@@ -59,14 +59,6 @@ class LimbMarch {
   Vec3 axis(double s) const { return line_.tangent(s, window_); }
 
  private:
-  static std::vector<Index> triangles_of(const Regions& regions, std::uint8_t region) {
-    std::vector<Index> triangles;
-    for (Index t = 0; t < regions.of_triangle.size(); ++t) {
-      if (regions.of_triangle[t] == region) triangles.push_back(t);
-    }
-    return triangles;
-  }
-
   Ring cast(double s) const {
     const Vec3 reference = regions_.frame.up + 0.7 * regions_.frame.left + 0.3 * regions_.frame.forward;
     return cast_ring(body_, line_.at(s), axis(s), reference, rays_);

@@ -24,7 +24,7 @@ struct Level {
 class TorsoDisk {
  public:
   TorsoDisk(const Mesh& mesh, const Regions& regions, int rays)
-      : torso_(mesh, triangles_of(regions)), frame_(regions.frame), regions_(regions), rays_(rays) {}
+      : torso_(mesh, triangles_of_region(regions, kTorso)), frame_(regions.frame), regions_(regions), rays_(rays) {}
 
   // Nothing where a half of the disk meets no skin.
   std::optional<Level> at(double height) const {
@@ -44,14 +44,6 @@ class TorsoDisk {
   }
 
  private:
-  static std::vector<Index> triangles_of(const Regions& regions) {
-    std::vector<Index> triangles;
-    for (Index t = 0; t < regions.of_triangle.size(); ++t) {
-      if (regions.of_triangle[t] == kTorso) triangles.push_back(t);
-    }
-    return triangles;
-  }
-
   // On the straight line from hip to chest and beyond.
   Vec3 axis_at(double height) const {
     const auto h = [&](const Vec3& p) { return (p - frame_.origin).dot(frame_.up); };
