@@ -28,13 +28,6 @@ Vec3 Polyline::tangent(double s, double window) const {
   return high > low ? Vec3((at(high) - at(low)).normalized()) : Vec3((at(s + window) - at(s - window)).normalized());
 }
 
-Polyline Polyline::resampled(double spacing) const {
-  const int steps = std::max(1, static_cast<int>(std::lround(length() / spacing)));
-  std::vector<Vec3> points;
-  for (int i = 0; i <= steps; ++i) points.push_back(at(length() * i / steps));
-  return Polyline(std::move(points));
-}
-
 Polyline Polyline::reversed() const { return Polyline(std::vector<Vec3>(points_.rbegin(), points_.rend())); }
 
 Polyline Polyline::part(double from, double to) const {

@@ -14,13 +14,11 @@ class Polyline {
   explicit Polyline(std::vector<Vec3> points);
 
   const std::vector<Vec3>& points() const { return points_; }
-  bool empty() const { return points_.empty(); }
   double length() const { return arc_.empty() ? 0 : arc_.back(); }
   // Positions before the start and past the end lie on the curve's straight continuation.
   Vec3 at(double s) const;
   // Unit chord over [s - window, s + window].
   Vec3 tangent(double s, double window) const;
-  Polyline resampled(double spacing) const;
   Polyline reversed() const;
   // The part from arc length `from` to `to`.
   Polyline part(double from, double to) const;

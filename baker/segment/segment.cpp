@@ -168,7 +168,7 @@ Regions segment(const Character& character, const SegmentSettings& settings) {
     std::string name = kRegionNames[i];
     std::replace(name.begin(), name.end(), '_', ' ');
     traces[i] = trace_limb(surface, plan.limbs[i], plan.frame, settings.rays, name, character.file);
-    regions.limbs[i] = {i % 2 == 0, i < 2, traces[i].line, traces[i].extremity, plan.limbs[i].at(0)};
+    regions.limbs[i] = {i % 2 == 0, i < 2, traces[i].line, traces[i].extremity};
   }
   // Where the limbs start is known better than where the skeleton forks: the torso's axis is taken from there.
   const auto start = [&](std::size_t i) { return regions.limbs[i].line.at(0); };

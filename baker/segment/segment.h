@@ -22,7 +22,6 @@ struct Limb {
   bool left, top;    // which side of the torso it leaves, and whether from the chest (arms) or the hip (legs)
   Polyline line;     // centre line from the cut at shoulder or hip to the tip of hand or foot
   double extremity;  // arc length of wrist or ankle: where hand or foot begin
-  Vec3 attachment;   // the junction of the curve skeleton it comes from: chest or hip
 };
 
 // Which part of the body every triangle is.
