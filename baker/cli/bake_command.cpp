@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <filesystem>
 
 #include "cli/commands.h"
+#include "cli/outputs.h"
 #include "cli/progress.h"
 #include "pipeline/pipeline.h"
 #include "play/asset_file.h"
@@ -15,18 +15,6 @@ namespace spherechain::baker {
 namespace {
 
 namespace fs = std::filesystem;
-
-// A bake takes seconds: that its result cannot be written is said before.
-void check_folder(const std::string& file) {
-  const fs::path folder = fs::absolute(file).parent_path();
-  std::error_code ignored;
-  if (!fs::is_directory(folder, ignored)) {
-    throw Error(ExitCode::kFile, file + ": cannot be created (there is no folder " + folder.string() + ")");
-  }
-  if (::access(folder.c_str(), W_OK) != 0) {
-    throw Error(ExitCode::kFile, file + ": cannot be created (the folder " + folder.string() + " is not writable)");
-  }
-}
 
 // Baking onto the input, or onto a file that is no asset, is most likely a slip: nothing is lost to it.
 void check_output(const BakeOptions& options) {
@@ -39,12 +27,7 @@ void check_output(const BakeOptions& options) {
   if (!options.report.empty() && fs::weakly_canonical(options.report) == fs::weakly_canonical(options.output)) {
     throw Error(ExitCode::kUsage, options.report + ": report and asset are the same file");
   }
-  if (options.force || !fs::is_regular_file(options.output, ignored) || fs::file_size(options.output, ignored) == 0)
-    return;
-  const std::string there = read_file(options.output);
-  if (there.size() < 8 || there.compare(4, 4, "SPHC") != 0) {
-    throw Error(ExitCode::kFile, options.output + ": exists and is not an asset (--force replaces it)");
-  }
+  check_replaceable(options.output, "SPHC", "an asset", options.force, 4);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "mesh/error.h"
+#include "play/play.h"
 
 namespace spherechain::baker {
 
@@ -23,11 +24,22 @@ struct InspectOptions {
 ExitCode run_inspect(const InspectOptions& options);
 
 struct PlayOptions {
-  std::string asset, source, poses, json;
+  std::string asset, source, json;
+  MotionChoice motion;
   int frames = 40;
   double fps = 30;
   std::string mode = "both", radius = "detect", backend = "auto";
 };
 ExitCode run_play(const PlayOptions& options);
+
+struct ViewOptions {
+  std::string asset, source, output, report;
+  MotionChoice motion;
+  int frames = 40;
+  double fps = 30;
+  std::string radius = "detect";
+  bool force = false;
+};
+ExitCode run_view(const ViewOptions& options);
 
 }  // namespace spherechain::baker

@@ -26,6 +26,23 @@ int fail(ExitCode code, const std::string& message) {
   return static_cast<int>(code);
 }
 
+// The choice of motion, the same for every command that animates.
+void add_motion(CLI::App& command, MotionChoice& motion, int& frames, double& fps) {
+  command.add_option("--poses", motion.poses, "Pose file to move through; without it the rest pose is held");
+  command.add_option("--frames", frames, "Number of frames, from the rest pose to the last pose")
+      ->check(CLI::Range(1, 1000000))
+      ->capture_default_str();
+  command.add_option("--fps", fps, "Frames a second, for the frames' times")
+      ->check(CLI::Range(1e-3, 1e6))
+      ->capture_default_str();
+}
+
+void add_radius(CLI::App& command, std::string& radius) {
+  command.add_option("--radius", radius, "Radius pairs are reported at")
+      ->check(CLI::IsMember({"fit", "detect"}))
+      ->capture_default_str();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -60,24 +77,27 @@ int main(int argc, char** argv) {
   CLI::App* play_command = app.add_subcommand("play", "Animate an asset's source and report which spheres touch");
   play_command->add_option("ASSET", play.asset, "Asset (.sphc)")->required();
   play_command->add_option("--source", play.source, "The mesh it was baked from")->required();
-  play_command->add_option("--poses", play.poses, "Pose file to move through; without it the rest pose is held");
-  play_command->add_option("--frames", play.frames, "Number of frames, from the rest pose to the last pose")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  play_command->add_option("--fps", play.fps, "Frames a second, for the frames' times")
-      ->check(CLI::Range(1e-3, 1e6))
-      ->capture_default_str();
+  add_motion(*play_command, play.motion, play.frames, play.fps);
   play_command->add_option("--mode", play.mode, "Overlap test: chains, all spheres, or both")
       ->check(CLI::IsMember({"m1", "m2", "both"}))
       ->capture_default_str();
-  play_command->add_option("--radius", play.radius, "Radius pairs are reported at")
-      ->check(CLI::IsMember({"fit", "detect"}))
-      ->capture_default_str();
+  add_radius(*play_command, play.radius);
   play_command->add_option("--backend", play.backend, "Arithmetic; this build has 'scalar'")
       ->check(CLI::IsMember({"auto", "scalar"}))
       ->capture_default_str();
   play_command->add_option("--json", play.json, "JSON file to write");
   play_command->callback([&] { run = [&] { return run_play(play); }; });
+
+  ViewOptions view;
+  CLI::App* view_command = app.add_subcommand("view", "Write a page that shows an asset on its source in motion");
+  view_command->add_option("ASSET", view.asset, "Asset (.sphc)")->required();
+  view_command->add_option("--source", view.source, "The mesh it was baked from")->required();
+  view_command->add_option("-o,--output", view.output, "Page to write (.html)")->required();
+  add_motion(*view_command, view.motion, view.frames, view.fps);
+  add_radius(*view_command, view.radius);
+  view_command->add_option("--report", view.report, "The report that bake wrote, to show in the page");
+  view_command->add_flag("--force", view.force, "Replace an output file that is not a page");
+  view_command->callback([&] { run = [&] { return run_view(view); }; });
 
   try {
     app.parse(argc, argv);

@@ -86,7 +86,8 @@ std::vector<float> pack(const std::vector<Vec3>& positions) {
 Character build_character(const SourceMesh& source, const std::string& name) {
   check_positions(source, name);
   Character character;
-  character.source_triangle_count = source.triangles.size();
+  character.source_triangles = source.triangles;
+  character.rig = source.rig;
   character.metres_per_unit = source.metres_per_unit;
   character.up_hint = source.up_hint;
   ImportReport& report = character.report;
@@ -152,7 +153,6 @@ Character build_character(const SourceMesh& source, const std::string& name) {
     if (components.of_triangle[t] == body) {
       body_triangles.push_back(all.triangles[t]);
       character.body_source_triangle.push_back(s);
-      character.body_source_corners.push_back(source.triangles[s]);
     } else {
       other_triangles.push_back(all.triangles[t]);
       character.others_source_triangle.push_back(s);

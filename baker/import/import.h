@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "import/source_rig.h"
 #include "mesh/mesh.h"
 
 namespace spherechain::baker {
@@ -29,14 +30,14 @@ struct Character {
   std::string file;    // name without its folder
   std::string sha256;  // of the file's bytes, lower-case hex
 
-  std::vector<Vec3> source_positions;  // rest pose, exactly representable as float
-  std::size_t source_triangle_count = 0;
+  std::vector<Vec3> source_positions;      // rest pose, exactly representable as float
+  std::vector<Triangle> source_triangles;  // corners: source vertices
+  SourceRig rig;
 
   // The largest connected piece, welded and cleaned.
   Mesh body;
-  std::vector<Triangle> body_source_corners;  // a triangle of body -> its corners' source vertices
-  std::vector<Index> body_source_triangle;    // a triangle of body -> its number in the source
-  std::vector<Index> body_of_source;          // source vertex -> vertex of body, kNoIndex where on another piece
+  std::vector<Index> body_source_triangle;  // a triangle of body -> its number in the source
+  std::vector<Index> body_of_source;        // source vertex -> vertex of body, kNoIndex where on another piece
 
   // The other pieces (eyes, clothes), carried along: one mesh, cleaned as the body was.
   Mesh others;
@@ -59,6 +60,7 @@ std::vector<float> pack(const std::vector<Vec3>& positions);
 struct SourceMesh {
   std::vector<Vec3> positions;
   std::vector<Triangle> triangles;
+  SourceRig rig;
   std::string importer;
   std::size_t meshes = 0;
   std::size_t points_and_lines_dropped = 0;

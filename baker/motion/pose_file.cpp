@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "mesh/error.h"
-#include "motion/motion.h"
+#include "motion/poses.h"
 
 namespace spherechain::baker {
 namespace {

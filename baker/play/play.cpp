@@ -2,6 +2,7 @@
 #include "play/play.h"
 
 #include "mesh/error.h"
+#include "motion/poses.h"
 
 namespace spherechain::baker {
 namespace {
@@ -19,17 +20,18 @@ std::vector<Joint> joints_of(const Asset& asset) {
 
 }  // namespace
 
-AnimatedAsset::AnimatedAsset(const std::string& asset, const std::string& source, const std::string& poses)
+AnimatedAsset::AnimatedAsset(const std::string& asset, const std::string& source, const MotionChoice& choice)
     : file_(open_asset(asset)), character_(import_character(source)) {
   const std::vector<float> rest = pack(character_.source_positions);
   if (const Status status = check_source(file_.asset, rest.data(), rest.size() / 3); status != Status::kOk) {
     throw Error(ExitCode::kFile,
                 source + ": is not the mesh that " + asset + " was baked from (" + to_string(status) + ")");
   }
-  if (poses.empty()) return;
+  if (choice.poses.empty()) return;
   const std::vector<Joint> joints = joints_of(file_.asset);
-  const PoseMotion motion = read_pose_motion(poses, joints);
-  motion_.emplace(character_.source_positions, rig_weights(character_, joints), joints, frame(), motion);
+  motion_ = std::make_unique<BezierMotion>(joints, frame(), read_pose_motion(choice.poses, joints));
+  weights_ = rig_weights(character_, joints);
+  for (const Joint& joint : joints) bone_names_.push_back(joint.name);
 }
 
 BodyFrame AnimatedAsset::frame() const {
@@ -38,9 +40,13 @@ BodyFrame AnimatedAsset::frame() const {
           static_cast<double>(info.height)};
 }
 
-std::vector<Vec3> AnimatedAsset::positions(int index, int count) const {
-  if (!motion_) return character_.source_positions;
+Deformation AnimatedAsset::deformation(int index, int count) const {
+  if (!motion_) return {};
   return motion_->at(count > 1 ? static_cast<double>(index) / (count - 1) : 0.0);
+}
+
+std::vector<Vec3> AnimatedAsset::positions(const Deformation& deformation) const {
+  return motion_ ? deform(character_.source_positions, weights_, deformation) : character_.source_positions;
 }
 
 }  // namespace spherechain::baker

@@ -21,7 +21,7 @@ ordered_json import_section(const Bake& bake) {
           {"meshes", report.meshes},
           {"components", report.components},
           {"source_vertices", bake.character.source_positions.size()},
-          {"source_triangles", bake.character.source_triangle_count},
+          {"source_triangles", bake.character.source_triangles.size()},
           {"welded_vertices", report.welded_vertices},
           {"body_vertices", bake.character.body.positions.size()},
           {"body_triangles", bake.character.body.triangles.size()},
@@ -190,7 +190,7 @@ std::string bake_report_text(const Bake& bake) {
   const double mm = 1000 * bake.character.metres_per_unit;
   std::string out =
       fmt::format("{}: {} triangles ({} body), {} components, {:.3f} m tall; {}\n", bake.character.file,
-                  bake.character.source_triangle_count, mesh.triangles.size(), bake.character.report.components,
+                  bake.character.source_triangles.size(), mesh.triangles.size(), bake.character.report.components,
                   bake.regions.frame.height * bake.character.metres_per_unit, bake.regions.facing);
   out += fmt::format("\n{:<10} {:>9} {:>7}\n", "region", "triangles", "spheres");
   for (std::size_t r = 0; r < kRegionCount; ++r) {

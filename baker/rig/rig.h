@@ -21,14 +21,8 @@ struct Joint {
 // either side (left_, right_) clavicle, shoulder, elbow, wrist, hip, knee, ankle.
 std::vector<Joint> place_joints(const Character& character, const Regions& regions);
 
-// At most four joints a vertex, the largest first; weights are positive and sum to 1, unused entries are zero.
-struct VertexWeights {
-  std::array<Index, 4> joint{};
-  std::array<double, 4> weight{};
-};
-
 // Bone-heat weights of every vertex of a closed mesh (Baran and Popovic 2007, section 4). They depend on nothing else:
-// the same mesh and joints give the same weights.
+// the same mesh and joints give the same weights. At most four joints a vertex.
 std::vector<VertexWeights> bone_heat_weights(const Mesh& mesh, const std::vector<Joint>& joints);
 
 // Weights of every source vertex: the body's by bone heat, the other pieces' (eyes) rigidly with the nearest body

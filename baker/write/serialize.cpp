@@ -52,7 +52,7 @@ void add_spheres(const AssetSource& in, const SurroundingTriangles& triangles, s
         triangles.count[i], static_cast<std::uint16_t>(bound.pivots.size()), fitted.region,
         static_cast<schema::Side>(fitted.side), static_cast<std::int16_t>(fitted.level), std::uint16_t{0});
     for (const BoundPivot& pivot : bound.pivots) {
-      const Triangle& corners = in.character.body_source_corners[pivot.triangle];
+      const Triangle& corners = in.character.source_triangles[in.character.body_source_triangle[pivot.triangle]];
       pivots.emplace_back(corners[0], corners[1], corners[2], static_cast<float>(pivot.weight));
     }
   }
@@ -119,7 +119,7 @@ std::vector<std::uint8_t> serialize(const AssetSource& in) {
   const auto source = schema::CreateSourceDirect(
       builder, in.character.file.c_str(), in.character.sha256.c_str(),
       static_cast<std::uint32_t>(in.character.source_positions.size()),
-      static_cast<std::uint32_t>(in.character.source_triangle_count),
+      static_cast<std::uint32_t>(in.character.source_triangles.size()),
       hash_positions(pack(in.character.source_positions).data(), in.character.source_positions.size()),
       static_cast<float>(in.character.metres_per_unit));
   const BodyFrame& f = in.regions.frame;

@@ -8,6 +8,7 @@
 #include "mesh/error.h"
 #include "picture.h"
 #include "play/play.h"
+#include "play/player.h"
 #include "spherechain/detect.h"
 
 using namespace spherechain::baker;
@@ -22,20 +23,6 @@ struct Options {
   std::string asset, source, out, poses, radius = "fit";
   int frame = -1, frames = 40, height = 900;
 };
-
-std::vector<spherechain::Sphere> refit(const Asset& asset, const std::vector<Vec3>& positions, RadiusKind radius) {
-  const std::vector<float> packed = pack(positions);
-  std::vector<spherechain::Sphere> spheres(asset.spheres().size);
-  spherechain::RefitJob job;
-  job.asset = &asset;
-  job.positions = packed.data();
-  job.vertex_count = positions.size();
-  job.radius = radius;
-  job.spheres = {spheres.data(), spheres.size()};
-  if (const auto status = job.run(); status != spherechain::Status::kOk)
-    throw Error(ExitCode::kInternal, to_string(status));
-  return spheres;
-}
 
 std::set<std::uint32_t> touching(const Asset& asset, const std::vector<spherechain::Sphere>& spheres,
                                  RadiusKind radius) {
@@ -57,11 +44,11 @@ std::set<std::uint32_t> touching(const Asset& asset, const std::vector<spherecha
 }
 
 void draw(const Options& options) {
-  const AnimatedAsset animated(options.asset, options.source, options.poses);
+  const AnimatedAsset animated(options.asset, options.source, {options.poses});
   const Asset& asset = animated.asset();
   const Character& character = animated.character();
   const std::vector<Vec3> positions =
-      animated.positions(options.frame < 0 ? options.frames - 1 : options.frame, options.frames);
+      animated.positions(animated.deformation(options.frame < 0 ? options.frames - 1 : options.frame, options.frames));
 
   Picture picture{character.body, {}, {}, {}, {kFront, kLeftSide, kThreeQuarter}, animated.frame(), 0.35,
                   options.height};
@@ -69,7 +56,7 @@ void draw(const Options& options) {
     if (character.body_of_source[v] != kNoIndex) picture.mesh.positions[character.body_of_source[v]] = positions[v];
   }
   const RadiusKind radius = options.radius == "fit" ? RadiusKind::kFit : RadiusKind::kDetect;
-  const std::vector<spherechain::Sphere> spheres = refit(asset, positions, radius);
+  const std::vector<spherechain::Sphere> spheres = refit_spheres(asset, pack(positions), radius);
   const std::set<std::uint32_t> ids = touching(asset, spheres, radius);
   for (std::uint32_t i = 0; i < spheres.size(); ++i) {
     const std::uint8_t region = asset.spheres()[i].region;

@@ -4,7 +4,7 @@
 #include <iostream>
 
 #include "mesh/error.h"
-#include "motion/motion.h"
+#include "motion/poses.h"
 #include "picture.h"
 
 using namespace spherechain;
@@ -41,8 +41,9 @@ void draw(const Options& options) {
     const int frame = options.frame < 0 ? options.frames - 1 : options.frame;
     const double t = options.frames > 1 ? static_cast<double>(frame) / (options.frames - 1) : 1.0;
     const std::vector<VertexWeights> weights = bone_heat_weights(character.body, joints);
-    picture.mesh.positions = BezierMotion(character.body.positions, weights, joints, regions.frame, motion).at(t);
-    ends = BezierMotion(ends, rigid_ends(joints), joints, regions.frame, motion).at(t);
+    const Deformation deformation = BezierMotion(joints, regions.frame, motion).at(t);
+    picture.mesh.positions = deform(character.body.positions, weights, deformation);
+    ends = deform(ends, rigid_ends(joints), deformation);
   }
   if (options.bones || options.poses.empty()) {
     for (std::size_t j = 0; j < joints.size(); ++j) picture.lines.push_back({ends[2 * j], ends[2 * j + 1], {0, 0, 0}});

@@ -4,7 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "human.h"
-#include "motion/motion.h"
+#include "motion/poses.h"
 
 using spherechain::Asset;
 using spherechain::Status;
@@ -17,10 +17,11 @@ const std::vector<VertexWeights>& human_weights() {
   return weights;
 }
 
-BezierMotion motion_of(const std::string& pose_file) {
+std::vector<Vec3> human_at(const std::string& pose_file, double t) {
   const Bake& bake = baked_human();
   const PoseMotion poses = read_pose_motion(std::string(SPHERECHAIN_SAMPLES) + "/poses/" + pose_file, bake.joints);
-  return {bake.character.source_positions, human_weights(), bake.joints, bake.regions.frame, poses};
+  const BezierMotion motion(bake.joints, bake.regions.frame, poses);
+  return deform(bake.character.source_positions, human_weights(), motion.at(t));
 }
 
 }  // namespace
@@ -46,12 +47,11 @@ const std::vector<AnimationFrame>& animation_frames() {
   static const std::vector<AnimationFrame> frames = [] {
     std::vector<AnimationFrame> out;
     for (const char* name : {"animation_arms.json", "animation_legs.json"}) {
-      const BezierMotion motion = motion_of(name);
-      for (int i = 0; i < 40; ++i) out.push_back({name, i, motion.at(i / 39.0)});
+      for (int i = 0; i < 40; ++i) out.push_back({name, i, human_at(name, i / 39.0)});
     }
     return out;
   }();
   return frames;
 }
 
-std::vector<Vec3> posed_human(const std::string& pose_file) { return motion_of(pose_file).at(1); }
+std::vector<Vec3> posed_human(const std::string& pose_file) { return human_at(pose_file, 1); }

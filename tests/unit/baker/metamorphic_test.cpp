@@ -58,7 +58,7 @@ Variant make_variant(const SourceMesh& original, const Change& change) {
 
 // Share of the body's area with the same label before and after.
 double equal_area(const Bake& before, const Variant& after) {
-  std::vector<int> label(before.character.source_triangle_count, -1);
+  std::vector<int> label(before.character.source_triangles.size(), -1);
   for (std::size_t t = 0; t < after.character.body.triangles.size(); ++t) {
     label[after.character.body_source_triangle[t]] = after.regions.of_triangle[t];
   }

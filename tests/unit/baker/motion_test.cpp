@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "motion/motion.h"
+#include "motion/poses.h"
 
 #include <doctest/doctest.h>
 #include <cmath>
@@ -18,9 +18,9 @@ namespace {
 const fs::path kPoses = fs::path(SPHERECHAIN_SAMPLES) / "poses";
 constexpr int kFrames = 40;  // as in the paper's section 5.1
 
-BezierMotion body_motion(const PoseMotion& motion) {
+std::vector<Vec3> body_at(const PoseMotion& motion, double t) {
   const RiggedHuman& h = rigged_human();
-  return {h.body.positions, h.weights, h.joints, h.frame, motion};
+  return deform(h.body.positions, h.weights, BezierMotion(h.joints, h.frame, motion).at(t));
 }
 
 // A folder of pose files that is gone at the end.
@@ -124,8 +124,8 @@ TEST_CASE("frame 0 of a motion is rest and the last frame the last pose, exactly
   const RiggedHuman& h = rigged_human();
   for (const char* file : {"animation_arms.json", "animation_legs.json"}) {
     const PoseMotion motion = read_pose_motion(kPoses / file, h.joints);
-    CHECK(body_motion(motion).at(0) == h.body.positions);
-    CHECK(body_motion(motion).at(1) == h.posed(motion.poses.back()));
+    CHECK(body_at(motion, 0) == h.body.positions);
+    CHECK(body_at(motion, 1) == h.posed(motion.poses.back()));
   }
 }
 
@@ -133,7 +133,7 @@ TEST_CASE("a motion passes through each of its poses, evenly spaced") {
   const RiggedHuman& h = rigged_human();
   const PoseMotion motion = read_pose_motion(kPoses / "animation_legs.json", h.joints);
   REQUIRE(motion.poses.size() == 2);
-  const std::vector<Vec3> half = body_motion(motion).at(0.5), pose = h.posed(motion.poses[0]);
+  const std::vector<Vec3> half = body_at(motion, 0.5), pose = h.posed(motion.poses[0]);
   for (std::size_t v = 0; v < pose.size(); ++v) REQUIRE((half[v] - pose[v]).norm() < 1e-12 * h.frame.height);
 }
 
@@ -149,9 +149,9 @@ TEST_CASE("no bone changes its length by more than 5 % in any frame of the sampl
   for (const auto& entry : fs::directory_iterator(kPoses)) {
     if (entry.path().extension() != ".json") continue;
     ++files;
-    const BezierMotion motion(ends, rigid, h.joints, h.frame, read_pose_motion(entry.path(), h.joints));
+    const BezierMotion motion(h.joints, h.frame, read_pose_motion(entry.path(), h.joints));
     for (int frame = 0; frame < kFrames; ++frame) {
-      const std::vector<Vec3> now = motion.at(static_cast<double>(frame) / (kFrames - 1));
+      const std::vector<Vec3> now = deform(ends, rigid, motion.at(static_cast<double>(frame) / (kFrames - 1)));
       for (std::size_t j = 0; j < h.joints.size(); ++j) {
         INFO(entry.path().filename().string() << ", frame " << frame << ", " << h.joints[j].name);
         const double length = (ends[2 * j + 1] - ends[2 * j]).norm();

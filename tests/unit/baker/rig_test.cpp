@@ -16,7 +16,7 @@ namespace {
 Character moved(const Character& character, const Eigen::Matrix3d& rotation, double scale, const Vec3& shift) {
   SourceMesh source;
   for (const Vec3& p : character.source_positions) source.positions.push_back(scale * rotation * p + shift);
-  for (const Triangle& corners : character.body_source_corners) source.triangles.push_back(corners);
+  for (const Index t : character.body_source_triangle) source.triangles.push_back(character.source_triangles[t]);
   return build_character(source, "moved");
 }
 

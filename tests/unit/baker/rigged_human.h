@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "human.h"
-#include "motion/motion.h"
+#include "motion/poses.h"
 #include "rig/rig.h"
 
 // The human with the joints and weights of the automatic rig.
@@ -25,7 +25,8 @@ struct RiggedHuman {
   double weight(std::size_t vertex, const std::string& name) const {
     const spherechain::baker::VertexWeights& w = weights[vertex];
     double sum = 0;
-    for (std::size_t k = 0; k < 4; ++k) sum += w.joint[k] == joint(name) ? w.weight[k] : 0.0;
+    for (std::size_t k = 0; k < spherechain::baker::kMaxInfluences; ++k)
+      sum += w.joint[k] == joint(name) ? w.weight[k] : 0.0;
     return sum;
   }
   // Left, up, forward, as fractions of the height.
@@ -34,7 +35,7 @@ struct RiggedHuman {
     return {d.dot(frame.left), d.dot(frame.up), d.dot(frame.forward)};
   }
   std::vector<spherechain::baker::Vec3> posed(const spherechain::baker::Pose& pose) const {
-    return skin(body.positions, weights, joints, frame, pose);
+    return deform(body.positions, weights, deformation_of(joints, frame, pose));
   }
 };
 

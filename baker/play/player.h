@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "spherechain/detect.h"
+#include "spherechain/refit.h"
+
+namespace spherechain::baker {
+
+// What one method found in a frame and what it cost.
+struct Detection {
+  std::size_t tests, pairs, raw_pairs;  // pairs: each once; raw: as the paper counts M1's, repeats over chains included
+  double us;                            // median of a few runs
+};
+
+// The runtime's refit of the whole asset.
+std::vector<Sphere> refit_spheres(const Asset& asset, const std::vector<float>& positions, RadiusKind radius);
+
+struct FrameResult {
+  double refit_us = 0;
+  std::optional<Detection> m1, m2;
+};
+
+// The runtime as a game uses it: buffers made once, then a refit and a detection a frame.
+class Player {
+ public:
+  Player(const Asset& asset, RadiusKind radius, bool m1, bool m2);
+
+  // `positions` are the deformed source vertices.
+  FrameResult run(const std::vector<float>& positions);
+
+  // Of the last frame: the refitted spheres, and the pairs the last method found (M1 and M2 report the same, but that
+  // M1 leaves out pairs in no common chain).
+  const std::vector<Sphere>& spheres() const { return spheres_; }
+  Span<const Pair> pairs() const { return {pairs_.data(), pair_count_}; }
+
+ private:
+  Detection detect(Method method);
+
+  const Asset& asset_;
+  RadiusKind radius_;
+  bool m1_, m2_;
+  std::vector<Sphere> spheres_;
+  std::vector<Pair> pairs_;
+  std::vector<std::uint64_t> words_;
+  std::size_t pair_count_ = 0;
+};
+
+}  // namespace spherechain::baker

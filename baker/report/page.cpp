@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/page.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "mesh/error.h"
+#include "play/player.h"
+#include "report/play_frames.h"
+#include "report/report.h"
+
+namespace spherechain::baker {
+namespace {
+
+using nlohmann::ordered_json;
+
+static_assert(std::endian::native == std::endian::little, "the page's arrays are little-endian");
+
+// Base64 of an array's bytes.
+template <typename T>
+std::string base64(const std::vector<T>& values) {
+  static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
+  const std::size_t size = values.size() * sizeof(T);
+  std::string out;
+  out.reserve((size + 2) / 3 * 4);
+  for (std::size_t i = 0; i < size; i += 3) {
+    const std::size_t left = std::min<std::size_t>(3, size - i);
+    unsigned group = 0;
+    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | (k < left ? bytes[i + k] : 0u);
+    for (std::size_t k = 0; k < 4; ++k) out += k <= left ? kDigits[group >> (18 - 6 * k) & 63] : '=';
+  }
+  return out;
+}
+
+ordered_json to_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+// The skin's weights in 16 bits; a vertex's sum stays exact.
+ordered_json weights_json(const std::vector<VertexWeights>& weights) {
+  std::size_t influences = 0;
+  for (const VertexWeights& w : weights) {
+    const auto used = std::count_if(w.weight.begin(), w.weight.end(), [](double x) { return x > 0; });
+    influences = std::max(influences, static_cast<std::size_t>(used));
+  }
+  std::vector<std::uint16_t> joints, shares;
+  for (const VertexWeights& w : weights) {
+    const std::size_t first = shares.size();
+    int left = w.weight[0] > 0 ? 65535 : 0;
+    for (std::size_t k = 0; k < influences; ++k) {
+      const int share = std::min(left, static_cast<int>(std::lround(w.weight[k] * 65535)));
+      joints.push_back(static_cast<std::uint16_t>(w.joint[k]));
+      shares.push_back(static_cast<std::uint16_t>(share));
+      left -= share;
+    }
+    if (left > 0) shares[first] = static_cast<std::uint16_t>(shares[first] + left);
+  }
+  return {{"influences", influences}, {"joints", base64(joints)}, {"weights", base64(shares)}};
+}
+
+ordered_json mesh_json(const AnimatedAsset& animated) {
+  const Character& character = animated.character();
+  const Asset& asset = animated.asset();
+  std::vector<std::uint32_t> corners;
+  for (const Triangle& t : character.source_triangles) corners.insert(corners.end(), t.begin(), t.end());
+  std::vector<std::uint16_t> owner(character.source_triangles.size(), 0xFFFF);
+  for (std::size_t i = 0; i < asset.spheres().size; ++i) {
+    const RestSphere& sphere = asset.spheres()[i];
+    for (std::uint32_t k = 0; k < sphere.triangle_count; ++k) {
+      const std::uint32_t triangle = asset.triangles()[sphere.first_triangle + k];
+      if (triangle < owner.size()) owner[triangle] = static_cast<std::uint16_t>(i);
+    }
+  }
+  ordered_json out{{"positions", base64(pack(character.source_positions))},
+                   {"triangles", base64(corners)},
+                   {"owner", base64(owner)}};
+  out.update(weights_json(animated.weights()));
+  return out;
+}
+
+// F of the paper's section 3.2 over each sphere's surrounding region, at rest.
+ordered_json sphere_f_json(const AnimatedAsset& animated) {
+  const Character& character = animated.character();
+  const Asset& asset = animated.asset();
+  ordered_json out = ordered_json::array();
+  for (const RestSphere& sphere : asset.spheres()) {
+    std::set<Index> vertices;
+    for (std::uint32_t k = 0; k < sphere.triangle_count; ++k) {
+      const std::uint32_t triangle = asset.triangles()[sphere.first_triangle + k];
+      if (triangle >= character.source_triangles.size()) continue;
+      vertices.insert(character.source_triangles[triangle].begin(), character.source_triangles[triangle].end());
+    }
+    const Vec3 center(sphere.center.x, sphere.center.y, sphere.center.z);
+    double sum = 0, most = 0;
+    for (const Index v : vertices) {
+      const double f = std::abs(sphere.radius - (center - character.source_positions[v]).norm());
+      sum += f;
+      most = std::max(most, f);
+    }
+    const double mean = vertices.empty() ? 0 : sum / static_cast<double>(vertices.size());
+    out.push_back({{"mean_abs_f", mean}, {"max_abs_f", most}});
+  }
+  return out;
+}
+
+// The pivots of each sphere as triangle numbers: corners tell which.
+ordered_json pivot_triangles_json(const AnimatedAsset& animated) {
+  const Asset& asset = animated.asset();
+  const std::vector<Triangle>& triangles = animated.character().source_triangles;
+  ordered_json out = ordered_json::array();
+  for (const RestSphere& sphere : asset.spheres()) {
+    ordered_json numbers = ordered_json::array();
+    for (std::uint32_t p = 0; p < sphere.pivot_count; ++p) {
+      const Pivot& pivot = asset.pivots()[sphere.first_pivot + p];
+      for (std::uint32_t k = 0; k < sphere.triangle_count; ++k) {
+        const std::uint32_t t = asset.triangles()[sphere.first_triangle + k];
+        if (t < triangles.size() && triangles[t] == Triangle{pivot.a, pivot.b, pivot.c}) {
+          numbers.push_back(t);
+          break;
+        }
+      }
+    }
+    out.push_back(std::move(numbers));
+  }
+  return out;
+}
+
+ordered_json ignored_json(const Asset& asset) {
+  ordered_json out = ordered_json::array();
+  std::size_t bit = 0;
+  for (std::size_t b = 1; b < asset.spheres().size; ++b) {
+    for (std::size_t a = 0; a < b; ++a, ++bit) {
+      if (asset.ignored()[bit / 64] >> (bit % 64) & 1) out.push_back({a, b});
+    }
+  }
+  return out;
+}
+
+ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& options,
+                         const std::function<void(int)>& progress) {
+  Player player(animated.asset(), options.radius, true, true);
+  std::vector<float> bones, spheres;
+  ordered_json play = ordered_json::array();
+  for (int i = 0; i < options.frames; ++i) {
+    progress(i);
+    const Deformation deformation = animated.deformation(i, options.frames);
+    for (const Affine& bone : deformation.bones) {
+      for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 4; ++column) bones.push_back(static_cast<float>(bone.matrix()(row, column)));
+      }
+    }
+    const std::vector<float> positions = pack(animated.positions(deformation));
+    const FrameResult result = player.run(positions);
+    play.push_back(frame_json(i, i / options.fps, result, player));
+    const std::vector<Sphere> fit = refit_spheres(animated.asset(), positions, RadiusKind::kFit),
+                              detect = refit_spheres(animated.asset(), positions, RadiusKind::kDetect);
+    for (std::size_t s = 0; s < fit.size(); ++s) {
+      spheres.insert(spheres.end(), {fit[s].x, fit[s].y, fit[s].z, fit[s].radius, detect[s].radius});
+    }
+  }
+  return {{"count", options.frames}, {"fps", options.fps},         {"bones", base64(bones)},
+          {"sphere_floats", 5},      {"spheres", base64(spheres)}, {"play", std::move(play)}};
+}
+
+}  // namespace
+
+std::string view_page(const AnimatedAsset& animated, const PageOptions& options,
+                      const std::function<void(int)>& progress) {
+  const std::string page = read_file(options.template_file);
+  const std::string open = R"(<script id="spherechain-data" type="application/json">)", hole = "null</script>";
+  const std::size_t at = page.find(open + hole);
+  if (at == std::string::npos) {
+    throw Error(ExitCode::kFile, options.template_file + ": is not the viewer's page (build it again)");
+  }
+  const BodyFrame frame = animated.frame();
+  const ordered_json data{{"title", options.title},
+                          {"frame",
+                           {{"origin", to_json(frame.origin)},
+                            {"left", to_json(frame.left)},
+                            {"up", to_json(frame.up)},
+                            {"forward", to_json(frame.forward)},
+                            {"height", frame.height}}},
+                          {"mesh", mesh_json(animated)},
+                          {"bones", animated.bone_names()},
+                          {"inspect", ordered_json::parse(inspect_json(animated.asset()))},
+                          {"sphere_f", sphere_f_json(animated)},
+                          {"pivot_triangles", pivot_triangles_json(animated)},
+                          {"ignored", ignored_json(animated.asset())},
+                          {"report", options.report.empty() ? ordered_json() : ordered_json::parse(options.report)},
+                          {"motion", options.motion},
+                          {"radius", options.radius == RadiusKind::kFit ? "fit" : "detect"},
+                          {"frames", frames_json(animated, options, progress)}};
+  std::string text = data.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  // Nothing in it may end the script.
+  for (std::size_t i = text.find('<'); i != std::string::npos; i = text.find('<', i)) text.replace(i, 1, "\\u003c");
+  return page.substr(0, at) + open + text + page.substr(at + open.size() + std::string("null").size());
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "play/play.h"
+#include "spherechain/types.h"
+
+namespace spherechain::baker {
+
+struct PageOptions {
+  std::string title, motion;  // what the page calls them
+  std::string report;         // what `bake --report` wrote, as JSON; may be empty
+  std::string template_file;  // the viewer, as its build made it
+  RadiusKind radius = RadiusKind::kDetect;
+  int frames = 40;
+  double fps = 30;
+};
+
+// The page of `spherechain view`: the viewer with all it shows inside (samples/viewer/README.md has the data's shape).
+// `progress` is told each frame before it is played. Throws Error(kFile) where the template is not there or no viewer.
+std::string view_page(const AnimatedAsset& animated, const PageOptions& options,
+                      const std::function<void(int)>& progress);
+
+}  // namespace spherechain::baker

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/play_frames.h"
+
+#include <nlohmann/json.hpp>
+
+namespace spherechain::baker {
+
+nlohmann::ordered_json frame_json(int index, double time, const FrameResult& result, const Player& player) {
+  nlohmann::ordered_json out{{"index", index}, {"time", time}, {"refit_us", result.refit_us}};
+  if (const auto& m1 = result.m1) {
+    out["m1"] = {{"tests", m1->tests}, {"pairs", m1->raw_pairs}, {"unique_pairs", m1->pairs}, {"us", m1->us}};
+  }
+  if (const auto& m2 = result.m2) out["m2"] = {{"tests", m2->tests}, {"pairs", m2->pairs}, {"us", m2->us}};
+  out["pairs"] = nlohmann::ordered_json::array();
+  for (const Pair& pair : player.pairs()) out["pairs"].push_back({pair.a, pair.b});
+  return out;
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "play/player.h"
+
+namespace spherechain::baker {
+
+// One entry of `play --json`'s `frames`; `player` has just run it. Time in seconds.
+nlohmann::ordered_json frame_json(int index, double time, const FrameResult& result, const Player& player);
+
+}  // namespace spherechain::baker
