@@ -26,8 +26,7 @@ ExitCode run_inspect(const InspectOptions& options);
 struct PlayOptions {
   std::string asset, source, json;
   MotionChoice motion;
-  int frames = 40;
-  double fps = 30;
+  FrameChoice frames;
   std::string mode = "both", radius = "detect", backend = "auto";
 };
 ExitCode run_play(const PlayOptions& options);
@@ -35,8 +34,7 @@ ExitCode run_play(const PlayOptions& options);
 struct ViewOptions {
   std::string asset, source, output, report;
   MotionChoice motion;
-  int frames = 40;
-  double fps = 30;
+  FrameChoice frames;
   std::string radius = "detect";
   bool force = false;
 };

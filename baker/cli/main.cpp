@@ -27,14 +27,18 @@ int fail(ExitCode code, const std::string& message) {
 }
 
 // The choice of motion, the same for every command that animates.
-void add_motion(CLI::App& command, MotionChoice& motion, int& frames, double& fps) {
-  command.add_option("--poses", motion.poses, "Pose file to move through; without it the rest pose is held");
-  command.add_option("--frames", frames, "Number of frames, from the rest pose to the last pose")
-      ->check(CLI::Range(1, 1000000))
-      ->capture_default_str();
-  command.add_option("--fps", fps, "Frames a second, for the frames' times")
-      ->check(CLI::Range(1e-3, 1e6))
-      ->capture_default_str();
+void add_motion(CLI::App& command, MotionChoice& motion, FrameChoice& frames) {
+  CLI::Option_group& choice = *command.add_option_group(
+      "Motion", "What to play; without a choice all clips of the source's own, or the rest pose");
+  choice.add_option("--clip", motion.clip, "A clip of the source's own: its name or number");
+  choice.add_option("--poses", motion.poses, "Pose file, or a folder or .txt list of meshes that are poses");
+  choice.add_option("--motion", motion.motion, "Folder or .txt list of meshes that are frames");
+  choice.require_option(0, 1);
+  command
+      .add_option("--frames", frames.count,
+                  "Number of frames, from the motion's start to its end (default: its own, or 40)")
+      ->check(CLI::Range(1, 1000000));
+  command.add_option("--fps", frames.fps, "Frames a second")->check(CLI::Range(1e-3, 1e6))->capture_default_str();
 }
 
 void add_radius(CLI::App& command, std::string& radius) {
@@ -77,7 +81,7 @@ int main(int argc, char** argv) {
   CLI::App* play_command = app.add_subcommand("play", "Animate an asset's source and report which spheres touch");
   play_command->add_option("ASSET", play.asset, "Asset (.sphc)")->required();
   play_command->add_option("--source", play.source, "The mesh it was baked from")->required();
-  add_motion(*play_command, play.motion, play.frames, play.fps);
+  add_motion(*play_command, play.motion, play.frames);
   play_command->add_option("--mode", play.mode, "Overlap test: chains, all spheres, or both")
       ->check(CLI::IsMember({"m1", "m2", "both"}))
       ->capture_default_str();
@@ -93,7 +97,7 @@ int main(int argc, char** argv) {
   view_command->add_option("ASSET", view.asset, "Asset (.sphc)")->required();
   view_command->add_option("--source", view.source, "The mesh it was baked from")->required();
   view_command->add_option("-o,--output", view.output, "Page to write (.html)")->required();
-  add_motion(*view_command, view.motion, view.frames, view.fps);
+  add_motion(*view_command, view.motion, view.frames);
   add_radius(*view_command, view.radius);
   view_command->add_option("--report", view.report, "The report that bake wrote, to show in the page");
   view_command->add_flag("--force", view.force, "Replace an output file that is not a page");

@@ -74,18 +74,18 @@ class Tally {
 
 ExitCode run_play(const PlayOptions& options) {
   if (!options.json.empty()) check_folder(options.json);
-  const AnimatedAsset animated(options.asset, options.source, options.motion);
+  const AnimatedAsset animated(options.asset, options.source, options.motion, options.frames);
   Player player(animated.asset(), options.radius == "fit" ? RadiusKind::kFit : RadiusKind::kDetect,
                 options.mode != "m2", options.mode != "m1");
   Tally tally;
   ordered_json frames = ordered_json::array();
   {
     Progress progress("play " + options.asset + ":");
-    for (int i = 0; i < options.frames; ++i) {
-      progress.show(fmt::format("frame {} of {}", i + 1, options.frames));
-      const FrameResult result = player.run(pack(animated.positions(animated.deformation(i, options.frames))));
+    for (int i = 0; i < animated.frame_count(); ++i) {
+      progress.show(fmt::format("frame {} of {}", i + 1, animated.frame_count()));
+      const FrameResult result = player.run(pack(animated.positions(animated.deformation(i))));
       tally.add(i, result, player, animated.asset());
-      if (!options.json.empty()) frames.push_back(frame_json(i, i / options.fps, result, player));
+      if (!options.json.empty()) frames.push_back(frame_json(animated, i, result, player));
     }
   }
   if (!options.json.empty()) {

@@ -40,15 +40,16 @@ ExitCode run_view(const ViewOptions& options) {
   page.template_file = viewer_template().string();
   page.report = read_report(options.report);
   page.title = fs::path(options.asset).filename().string();
-  page.motion = options.motion.poses.empty() ? "rest" : fs::path(options.motion.poses).filename().string();
   page.radius = options.radius == "fit" ? RadiusKind::kFit : RadiusKind::kDetect;
-  page.frames = options.frames;
-  page.fps = options.fps;
-  const AnimatedAsset animated(options.asset, options.source, options.motion);
+  const AnimatedAsset animated(options.asset, options.source, options.motion, options.frames);
+  page.motion = options.motion.name().empty() ? animated.clip_at(0) : options.motion.name();
+  if (page.motion.empty()) page.motion = "rest";
+  page.fps = options.frames.fps;
   std::string html;
   {
     Progress progress("view " + options.asset + ":");
-    html = view_page(animated, page, [&](int i) { progress.show(fmt::format("frame {} of {}", i + 1, page.frames)); });
+    html = view_page(animated, page,
+                     [&](int i) { progress.show(fmt::format("frame {} of {}", i + 1, animated.frame_count())); });
   }
   write_atomically(options.output, html);
   fmt::print("wrote {} ({:.1f} MB): open it in a browser\n", options.output, static_cast<double>(html.size()) / 1e6);

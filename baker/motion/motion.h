@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "import/source_rig.h"
 
 namespace spherechain::baker {
 
-// What deforms a character in one frame: linear in the rest positions, so that a page or a game can do it too.
+// What deforms a character in one frame. Bones and morphs are linear in the rest positions, so that a page or a game
+// can do it too.
 struct Deformation {
-  std::vector<Affine> bones;  // rest -> deformed, a bone each
+  std::vector<Affine> bones;    // rest -> deformed, a bone each
+  std::vector<double> morphs;   // a weight each
+  std::vector<Vec3> positions;  // pose sequences only: the deformed source vertices themselves
 };
 
 class Motion {
@@ -17,11 +21,20 @@ class Motion {
   virtual ~Motion() = default;
   // t from 0, the start, to 1, the end.
   virtual Deformation at(double t) const = 0;
+  // Seconds; 0 where the motion has no pace of its own.
+  virtual double duration() const { return 0; }
+  // The name of the clip that plays there, where there are several.
+  virtual std::string clip_at(double) const { return {}; }
+  // Frames of its own, where it is made of frames; else 0.
+  virtual int frame_count() const { return 0; }
 };
+
+// The rest positions displaced by morph targets.
+std::vector<Vec3> morph(std::vector<Vec3> rest, const std::vector<Morph>& morphs, const std::vector<double>& weights);
 
 // Linear blend skinning. `weights` has an entry a rest position; bones that are exactly the identity leave rest as it
 // is.
 std::vector<Vec3> deform(const std::vector<Vec3>& rest, const std::vector<VertexWeights>& weights,
-                         const Deformation& deformation);
+                         const std::vector<Affine>& bones);
 
 }  // namespace spherechain::baker

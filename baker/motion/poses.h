@@ -30,7 +30,7 @@ struct PoseMotion {
 PoseMotion read_pose_motion(const std::filesystem::path& path, const std::vector<Joint>& joints);
 
 // A pose as a transform a joint, its parents' included. Exactly none for a joint that nothing turns.
-Deformation deformation_of(const std::vector<Joint>& joints, const BodyFrame& frame, const Pose& pose);
+std::vector<Affine> bones_of(const std::vector<Joint>& joints, const BodyFrame& frame, const Pose& pose);
 
 // The animation of the paper's section 5.1: quadratic Bezier interpolation of the vertices between poses. A vertex is
 // linear in the bones, so its curve is that of the bones' matrices. It starts at rest and ends in the last pose.
@@ -40,7 +40,7 @@ class BezierMotion : public Motion {
   Deformation at(double t) const override;
 
  private:
-  std::vector<Deformation> keys_;  // rest, control, pose 0, control, pose 1 ...: a stretch is three of them
+  std::vector<std::vector<Affine>> keys_;  // rest, control, pose 0, control, pose 1 ...: a stretch is three of them
 };
 
 }  // namespace spherechain::baker

@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "play/play.h"
 
+#include <algorithm>
+#include <filesystem>
+
 #include "mesh/error.h"
+#include "motion/clip.h"
 #include "motion/poses.h"
+#include "motion/sequence.h"
 
 namespace spherechain::baker {
 namespace {
+
+constexpr double kMostFrames = 1e6;
 
 Vec3 to_vec3(const spherechain::Vec3& v) { return {v.x, v.y, v.z}; }
 
@@ -20,18 +27,65 @@ std::vector<Joint> joints_of(const Asset& asset) {
 
 }  // namespace
 
-AnimatedAsset::AnimatedAsset(const std::string& asset, const std::string& source, const MotionChoice& choice)
-    : file_(open_asset(asset)), character_(import_character(source)) {
+std::string MotionChoice::name() const {
+  if (!poses.empty()) return std::filesystem::path(poses).filename().string();
+  if (!motion.empty()) return std::filesystem::path(motion).filename().string();
+  return clip;
+}
+
+AnimatedAsset::AnimatedAsset(const std::string& asset, const std::string& source, const MotionChoice& motion,
+                             const FrameChoice& frames)
+    : file_(open_asset(asset)), character_(import_character(source)), fps_(frames.fps) {
   const std::vector<float> rest = pack(character_.source_positions);
   if (const Status status = check_source(file_.asset, rest.data(), rest.size() / 3); status != Status::kOk) {
     throw Error(ExitCode::kFile,
                 source + ": is not the mesh that " + asset + " was baked from (" + to_string(status) + ")");
   }
-  if (choice.poses.empty()) return;
+  if (!motion.poses.empty() && !is_sequence(motion.poses)) {
+    play_poses(motion.poses);
+  } else if (!motion.poses.empty()) {
+    motion_ = std::make_unique<SequenceMotion>(character_, sequence_files(motion.poses), SequenceMotion::Path::kBezier);
+  } else if (!motion.motion.empty()) {
+    motion_ =
+        std::make_unique<SequenceMotion>(character_, sequence_files(motion.motion), SequenceMotion::Path::kFrames);
+  } else if (!motion.clip.empty() || !character_.rig.clips.empty()) {
+    play_clips(source, motion.clip);
+  }
+  frame_count_ = frames.count;
+  if (frame_count_ == 0 && motion_) frame_count_ = motion_->frame_count();
+  if (frame_count_ == 0 && motion_ && motion_->duration() > 0) {
+    frame_count_ = static_cast<int>(std::min(motion_->duration() * fps_ + 1e-6, kMostFrames)) + 1;
+  }
+  if (frame_count_ == 0) frame_count_ = 40;
+}
+
+void AnimatedAsset::play_poses(const std::string& file) {
   const std::vector<Joint> joints = joints_of(file_.asset);
-  motion_ = std::make_unique<BezierMotion>(joints, frame(), read_pose_motion(choice.poses, joints));
+  motion_ = std::make_unique<BezierMotion>(joints, frame(), read_pose_motion(file, joints));
   weights_ = rig_weights(character_, joints);
   for (const Joint& joint : joints) bone_names_.push_back(joint.name);
+}
+
+// By name, or by number where no name is that; all of them where none is asked for.
+void AnimatedAsset::play_clips(const std::string& source, const std::string& wanted) {
+  const SourceRig& rig = character_.rig;
+  std::vector<const Clip*> clips;
+  std::string names;
+  for (const Clip& clip : rig.clips) {
+    if (wanted.empty() || clip.name == wanted) clips.push_back(&clip);
+    names += (names.empty() ? "" : ", ") + clip.name;
+  }
+  for (std::size_t i = 0; i < rig.clips.size() && clips.empty(); ++i) {
+    if (std::to_string(i) == wanted) clips.push_back(&rig.clips[i]);
+  }
+  if (clips.empty()) {
+    throw Error(ExitCode::kFile, source + ": has no clip '" + wanted + "' (" +
+                                     (names.empty() ? "it has none at all" : "it has " + names) + ")");
+  }
+  if (!wanted.empty()) clips.erase(clips.begin() + 1, clips.end());  // names need not differ
+  motion_ = std::make_unique<ClipMotion>(rig, clips);
+  weights_ = rig.weights;
+  for (const Bone& bone : rig.bones) bone_names_.push_back(rig.nodes[bone.node].name);
 }
 
 BodyFrame AnimatedAsset::frame() const {
@@ -40,13 +94,19 @@ BodyFrame AnimatedAsset::frame() const {
           static_cast<double>(info.height)};
 }
 
-Deformation AnimatedAsset::deformation(int index, int count) const {
-  if (!motion_) return {};
-  return motion_->at(count > 1 ? static_cast<double>(index) / (count - 1) : 0.0);
+double AnimatedAsset::time(int frame) const {
+  const double duration = motion_ ? motion_->duration() : 0;
+  return duration > 0 ? along(frame) * duration : frame / fps_;
 }
 
+std::string AnimatedAsset::clip_at(int frame) const { return motion_ ? motion_->clip_at(along(frame)) : std::string(); }
+
+Deformation AnimatedAsset::deformation(int frame) const { return motion_ ? motion_->at(along(frame)) : Deformation(); }
+
 std::vector<Vec3> AnimatedAsset::positions(const Deformation& deformation) const {
-  return motion_ ? deform(character_.source_positions, weights_, deformation) : character_.source_positions;
+  if (!deformation.positions.empty()) return deformation.positions;
+  return deform(morph(character_.source_positions, character_.rig.morphs, deformation.morphs), weights_,
+                deformation.bones);
 }
 
 }  // namespace spherechain::baker

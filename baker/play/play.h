@@ -12,16 +12,27 @@
 
 namespace spherechain::baker {
 
-// What to play. Nothing chosen: the rest pose is held.
+// What to play: at most one. None: all clips of the source's own, or where it has none, the rest pose.
 struct MotionChoice {
-  std::string poses;  // a pose file
+  std::string poses;   // a pose file, or whole meshes that are poses (motion/sequence.h)
+  std::string clip;    // name or number of a clip of the source's own
+  std::string motion;  // whole meshes that are frames
+
+  std::string name() const;  // for people
+};
+
+// The frames of a motion: `count` 0 means as many as it has of its own, or as its duration has at `fps`, or 40.
+struct FrameChoice {
+  int count = 0;
+  double fps = 30;
 };
 
 // An asset, the mesh it was baked from, and the motion to play: what every command that animates starts with.
 class AnimatedAsset {
  public:
   // Throws Error(kFile) where a file is not what it should be, or the source is not the asset's.
-  AnimatedAsset(const std::string& asset, const std::string& source, const MotionChoice& choice);
+  AnimatedAsset(const std::string& asset, const std::string& source, const MotionChoice& motion,
+                const FrameChoice& frames);
 
   const Asset& asset() const { return file_.asset; }
   const Character& character() const { return character_; }
@@ -31,17 +42,27 @@ class AnimatedAsset {
   const std::vector<VertexWeights>& weights() const { return weights_; }
   const std::vector<std::string>& bone_names() const { return bone_names_; }
 
-  // Frame `index` of `count`: the first is the motion's start, the last its end.
-  Deformation deformation(int index, int count) const;
+  // Frames are evenly spaced: 0 is the motion's start, the last its end.
+  int frame_count() const { return frame_count_; }
+  double time(int frame) const;          // seconds
+  std::string clip_at(int frame) const;  // its name, where the motion is clips
+  Deformation deformation(int frame) const;
   // The deformed source vertices of such a frame.
   std::vector<Vec3> positions(const Deformation& deformation) const;
 
  private:
+  void play_poses(const std::string& file);
+  void play_clips(const std::string& source, const std::string& wanted);
+
   AssetFile file_;
   Character character_;
   std::vector<VertexWeights> weights_;
   std::vector<std::string> bone_names_;
   std::unique_ptr<Motion> motion_;
+  int frame_count_ = 1;
+  double fps_;
+
+  double along(int frame) const { return frame_count_ > 1 ? static_cast<double>(frame) / (frame_count_ - 1) : 0.0; }
 };
 
 }  // namespace spherechain::baker

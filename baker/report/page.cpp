@@ -141,11 +141,11 @@ ordered_json ignored_json(const Asset& asset) {
 ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& options,
                          const std::function<void(int)>& progress) {
   Player player(animated.asset(), options.radius, true, true);
-  std::vector<float> bones, spheres;
+  std::vector<float> bones, vertices, spheres;
   ordered_json play = ordered_json::array();
-  for (int i = 0; i < options.frames; ++i) {
+  for (int i = 0; i < animated.frame_count(); ++i) {
     progress(i);
-    const Deformation deformation = animated.deformation(i, options.frames);
+    const Deformation deformation = animated.deformation(i);
     for (const Affine& bone : deformation.bones) {
       for (int row = 0; row < 3; ++row) {
         for (int column = 0; column < 4; ++column) bones.push_back(static_cast<float>(bone.matrix()(row, column)));
@@ -153,15 +153,27 @@ ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& optio
     }
     const std::vector<float> positions = pack(animated.positions(deformation));
     const FrameResult result = player.run(positions);
-    play.push_back(frame_json(i, i / options.fps, result, player));
+    // What is not linear in bones alone goes into the page as it is.
+    if (!deformation.positions.empty() || !deformation.morphs.empty()) {
+      vertices.insert(vertices.end(), positions.begin(), positions.end());
+    }
+    play.push_back(frame_json(animated, i, result, player));
     const std::vector<Sphere> fit = refit_spheres(animated.asset(), positions, RadiusKind::kFit),
                               detect = refit_spheres(animated.asset(), positions, RadiusKind::kDetect);
     for (std::size_t s = 0; s < fit.size(); ++s) {
       spheres.insert(spheres.end(), {fit[s].x, fit[s].y, fit[s].z, fit[s].radius, detect[s].radius});
     }
   }
-  return {{"count", options.frames}, {"fps", options.fps},         {"bones", base64(bones)},
-          {"sphere_floats", 5},      {"spheres", base64(spheres)}, {"play", std::move(play)}};
+  ordered_json out{{"count", animated.frame_count()},
+                   {"fps", options.fps},
+                   {"sphere_floats", 5},
+                   {"spheres", base64(spheres)},
+                   {"play", std::move(play)}};
+  if (vertices.empty())
+    out["bones"] = base64(bones);
+  else
+    out["vertices"] = base64(vertices);
+  return out;
 }
 
 }  // namespace

@@ -14,7 +14,6 @@ struct PageOptions {
   std::string report;         // what `bake --report` wrote, as JSON; may be empty
   std::string template_file;  // the viewer, as its build made it
   RadiusKind radius = RadiusKind::kDetect;
-  int frames = 40;
   double fps = 30;
 };
 

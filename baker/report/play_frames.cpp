@@ -5,8 +5,10 @@
 
 namespace spherechain::baker {
 
-nlohmann::ordered_json frame_json(int index, double time, const FrameResult& result, const Player& player) {
-  nlohmann::ordered_json out{{"index", index}, {"time", time}, {"refit_us", result.refit_us}};
+nlohmann::ordered_json frame_json(const AnimatedAsset& animated, int index, const FrameResult& result,
+                                  const Player& player) {
+  nlohmann::ordered_json out{{"index", index}, {"time", animated.time(index)}, {"refit_us", result.refit_us}};
+  if (const std::string clip = animated.clip_at(index); !clip.empty()) out["clip"] = clip;
   if (const auto& m1 = result.m1) {
     out["m1"] = {{"tests", m1->tests}, {"pairs", m1->raw_pairs}, {"unique_pairs", m1->pairs}, {"us", m1->us}};
   }

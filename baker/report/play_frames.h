@@ -3,11 +3,13 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "play/play.h"
 #include "play/player.h"
 
 namespace spherechain::baker {
 
-// One entry of `play --json`'s `frames`; `player` has just run it. Time in seconds.
-nlohmann::ordered_json frame_json(int index, double time, const FrameResult& result, const Player& player);
+// One entry of `play --json`'s `frames`; `player` has just run it.
+nlohmann::ordered_json frame_json(const AnimatedAsset& animated, int index, const FrameResult& result,
+                                  const Player& player);
 
 }  // namespace spherechain::baker

@@ -20,8 +20,10 @@ using Vec3 = spherechain::baker::Vec3;
 namespace {
 
 struct Options {
-  std::string asset, source, out, poses, radius = "fit";
-  int frame = -1, frames = 40, height = 900;
+  std::string asset, source, out, radius = "fit";
+  MotionChoice motion;
+  FrameChoice frames;
+  int frame = -1, height = 900;
 };
 
 std::set<std::uint32_t> touching(const Asset& asset, const std::vector<spherechain::Sphere>& spheres,
@@ -44,11 +46,11 @@ std::set<std::uint32_t> touching(const Asset& asset, const std::vector<spherecha
 }
 
 void draw(const Options& options) {
-  const AnimatedAsset animated(options.asset, options.source, {options.poses});
+  const AnimatedAsset animated(options.asset, options.source, options.motion, options.frames);
   const Asset& asset = animated.asset();
   const Character& character = animated.character();
-  const std::vector<Vec3> positions =
-      animated.positions(animated.deformation(options.frame < 0 ? options.frames - 1 : options.frame, options.frames));
+  const std::vector<Vec3> positions = animated.positions(animated.deformation(
+      options.frame < 0 ? animated.frame_count() - 1 : std::min(options.frame, animated.frame_count() - 1)));
 
   Picture picture{character.body, {}, {}, {}, {kFront, kLeftSide, kThreeQuarter}, animated.frame(), 0.35,
                   options.height};
@@ -75,11 +77,11 @@ int main(int argc, char** argv) {
   app.add_option("asset", options.asset, "asset (.sphc)")->required();
   app.add_option("source", options.source, "the mesh it was baked from")->required();
   app.add_option("-o,--out", options.out, "PNG file to write")->required();
-  app.add_option("--poses", options.poses, "pose file (samples/poses)");
+  app.add_option("--poses", options.motion.poses, "as for spherechain play");
+  app.add_option("--clip", options.motion.clip, "as for spherechain play");
+  app.add_option("--motion", options.motion.motion, "as for spherechain play");
   app.add_option("--frame", options.frame, "frame of the motion; the last one by default");
-  app.add_option("--frames", options.frames, "frames of the motion")
-      ->check(CLI::Range(1, 100000))
-      ->capture_default_str();
+  app.add_option("--frames", options.frames.count, "frames of the motion")->check(CLI::Range(1, 100000));
   app.add_option("--radius", options.radius, "fit or detect")
       ->check(CLI::IsMember({"fit", "detect"}))
       ->capture_default_str();

@@ -41,9 +41,9 @@ void draw(const Options& options) {
     const int frame = options.frame < 0 ? options.frames - 1 : options.frame;
     const double t = options.frames > 1 ? static_cast<double>(frame) / (options.frames - 1) : 1.0;
     const std::vector<VertexWeights> weights = bone_heat_weights(character.body, joints);
-    const Deformation deformation = BezierMotion(joints, regions.frame, motion).at(t);
-    picture.mesh.positions = deform(character.body.positions, weights, deformation);
-    ends = deform(ends, rigid_ends(joints), deformation);
+    const std::vector<Affine> bones = BezierMotion(joints, regions.frame, motion).at(t).bones;
+    picture.mesh.positions = deform(character.body.positions, weights, bones);
+    ends = deform(ends, rigid_ends(joints), bones);
   }
   if (options.bones || options.poses.empty()) {
     for (std::size_t j = 0; j < joints.size(); ++j) picture.lines.push_back({ends[2 * j], ends[2 * j + 1], {0, 0, 0}});

@@ -21,7 +21,7 @@ std::vector<Vec3> human_at(const std::string& pose_file, double t) {
   const Bake& bake = baked_human();
   const PoseMotion poses = read_pose_motion(std::string(SPHERECHAIN_SAMPLES) + "/poses/" + pose_file, bake.joints);
   const BezierMotion motion(bake.joints, bake.regions.frame, poses);
-  return deform(bake.character.source_positions, human_weights(), motion.at(t));
+  return deform(bake.character.source_positions, human_weights(), motion.at(t).bones);
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ constexpr int kFrames = 40;  // as in the paper's section 5.1
 
 std::vector<Vec3> body_at(const PoseMotion& motion, double t) {
   const RiggedHuman& h = rigged_human();
-  return deform(h.body.positions, h.weights, BezierMotion(h.joints, h.frame, motion).at(t));
+  return deform(h.body.positions, h.weights, BezierMotion(h.joints, h.frame, motion).at(t).bones);
 }
 
 // A folder of pose files that is gone at the end.
@@ -151,7 +151,7 @@ TEST_CASE("no bone changes its length by more than 5 % in any frame of the sampl
     ++files;
     const BezierMotion motion(h.joints, h.frame, read_pose_motion(entry.path(), h.joints));
     for (int frame = 0; frame < kFrames; ++frame) {
-      const std::vector<Vec3> now = deform(ends, rigid, motion.at(static_cast<double>(frame) / (kFrames - 1)));
+      const std::vector<Vec3> now = deform(ends, rigid, motion.at(static_cast<double>(frame) / (kFrames - 1)).bones);
       for (std::size_t j = 0; j < h.joints.size(); ++j) {
         INFO(entry.path().filename().string() << ", frame " << frame << ", " << h.joints[j].name);
         const double length = (ends[2 * j + 1] - ends[2 * j]).norm();

@@ -35,7 +35,7 @@ struct RiggedHuman {
     return {d.dot(frame.left), d.dot(frame.up), d.dot(frame.forward)};
   }
   std::vector<spherechain::baker::Vec3> posed(const spherechain::baker::Pose& pose) const {
-    return deform(body.positions, weights, deformation_of(joints, frame, pose));
+    return deform(body.positions, weights, bones_of(joints, frame, pose));
   }
 };
 

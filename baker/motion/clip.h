@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "motion/motion.h"
+
+namespace spherechain::baker {
+
+// A channel's value at a time, held before its first and after its last key: 3 numbers, 4 (a unit quaternion, x y z w)
+// or 1, as its path says; the rest are 0.
+Eigen::Vector4d sample(const Channel& channel, double seconds);
+
+// The rig's bones with the nodes as `clip` has them at a time. Morphs no channel moves keep their rest weight.
+Deformation sample(const SourceRig& rig, const Clip& clip, double seconds);
+
+// Clips of the file's own, one after another. The rig and its clips must outlive it.
+class ClipMotion : public Motion {
+ public:
+  ClipMotion(const SourceRig& rig, std::vector<const Clip*> clips) : rig_(rig), clips_(std::move(clips)) {}
+  Deformation at(double t) const override;
+  double duration() const override;
+  std::string clip_at(double t) const override;
+
+ private:
+  struct Place {
+    const Clip* clip;
+    double seconds;
+  };
+  Place place(double t) const;
+
+  const SourceRig& rig_;
+  std::vector<const Clip*> clips_;
+};
+
+}  // namespace spherechain::baker
