@@ -35,17 +35,9 @@ std::vector<std::uint32_t> assign_triangles(const Mesh& mesh, const std::vector<
   return owner;
 }
 
-// Neighbours on the body: next to each other on a chain, on the same or the next torso level, or with touching regions.
-std::set<IdPair> find_ignored(const Mesh& mesh, const Spheres& spheres, const Chains& chains,
-                              const std::vector<std::uint32_t>& owner) {
-  std::set<IdPair> ignored;
-  for (const IdPair& pair : chains.neighbours()) ignored.insert(pair);
-  const std::vector<std::uint32_t>& torso = spheres.of_region[kTorso];
-  for (const std::uint32_t a : torso) {
-    for (const std::uint32_t b : torso) {
-      if (a < b && std::abs(spheres.spheres[a].level - spheres.spheres[b].level) <= 1) ignored.emplace(a, b);
-    }
-  }
+// Neighbours on the body: linked, or with touching regions.
+std::set<IdPair> find_ignored(const Mesh& mesh, const Spheres& spheres, const std::vector<std::uint32_t>& owner) {
+  std::set<IdPair> ignored(spheres.links.begin(), spheres.links.end());
   const std::vector<std::array<Index, 3>> neighbours = triangle_neighbours(mesh);
   for (std::size_t t = 0; t < neighbours.size(); ++t) {
     for (const Index n : neighbours[t]) {
@@ -73,11 +65,11 @@ double area_quantile(const Mesh& mesh, const std::vector<Index>& triangles, cons
   return 0;
 }
 
-// All triangles within two radii of a sphere's centre.
-std::vector<Index> triangles_around(const Mesh& mesh, const FittedSphere& sphere) {
+// All triangles within some radii of a sphere's centre.
+std::vector<Index> triangles_around(const Mesh& mesh, const FittedSphere& sphere, double radii) {
   std::vector<Index> around;
   for (Index t = 0; t < mesh.triangles.size(); ++t) {
-    if ((triangle_centroid(mesh, t) - sphere.ball.center).norm() < 2 * sphere.ball.radius) around.push_back(t);
+    if ((triangle_centroid(mesh, t) - sphere.ball.center).norm() < radii * sphere.ball.radius) around.push_back(t);
   }
   return around;
 }
@@ -109,8 +101,28 @@ BoundSphere bind_sphere(const Mesh& mesh, const std::vector<Index>& surrounding,
   return bound;
 }
 
+// Spheres of a region with one between them: at detect radius a bend of 60 degrees at that one already makes them
+// overlap.
+std::set<IdPair> next_but_one(const Spheres& spheres) {
+  std::vector<std::vector<std::uint32_t>> linked(spheres.spheres.size());
+  for (const auto& [a, b] : spheres.links) {
+    if (spheres.spheres[a].region != spheres.spheres[b].region) continue;
+    linked[a].push_back(b);
+    linked[b].push_back(a);
+  }
+  std::set<IdPair> pairs;
+  for (const std::vector<std::uint32_t>& around : linked) {
+    for (const std::uint32_t a : around) {
+      for (const std::uint32_t b : around) {
+        if (a < b) pairs.emplace(a, b);
+      }
+    }
+  }
+  return pairs;
+}
+
 std::vector<BoundPair> find_near(const std::vector<BoundSphere>& spheres, const std::set<IdPair>& ignored,
-                                 double fraction, double BoundSphere::*detect) {
+                                 const std::set<IdPair>& close, double fraction, double BoundSphere::*detect) {
   // Pairs that all but touch at rest are near too: rounding must not report them.
   constexpr double kMargin = 1 + 1e-4;
   std::vector<BoundPair> near;
@@ -120,7 +132,8 @@ std::vector<BoundPair> find_near(const std::vector<BoundSphere>& spheres, const 
       const double distance = (spheres[a].rest.center - spheres[b].rest.center).norm();
       const double sum =
           detect ? spheres[a].*detect + spheres[b].*detect : spheres[a].rest.radius + spheres[b].rest.radius;
-      if (distance < kMargin * sum) near.push_back({a, b, fraction * distance / sum});
+      const double reach = fraction * distance / sum;
+      if (reach < 1 && (distance < kMargin * sum || close.count({a, b}) > 0)) near.push_back({a, b, reach});
     }
   }
   return near;
@@ -128,7 +141,7 @@ std::vector<BoundPair> find_near(const std::vector<BoundSphere>& spheres, const 
 
 }  // namespace
 
-Binding bind_spheres(const Character& character, const Regions& regions, const Spheres& spheres, const Chains& chains,
+Binding bind_spheres(const Character& character, const Regions& regions, const Spheres& spheres,
                      const BindSettings& settings) {
   Binding out;
   out.rule = settings.rule;
@@ -140,8 +153,9 @@ Binding bind_spheres(const Character& character, const Regions& regions, const S
   for (std::size_t i = 0; i < spheres.spheres.size(); ++i) {
     BoundSphere bound =
         bind_sphere(character.body, surrounding[i], surrounding[i], spheres.spheres[i], regions.frame, settings);
-    if (bound.pivots.size() < 4) {  // few and large triangles: those beyond the region's border carry the sphere too
-      const std::vector<Index> around = triangles_around(character.body, spheres.spheres[i]);
+    // Few and large triangles: those beyond the region's border carry the sphere too.
+    for (double radii = 2; bound.pivots.size() < 4 && radii <= 8; radii *= 2) {
+      const std::vector<Index> around = triangles_around(character.body, spheres.spheres[i], radii);
       bound = bind_sphere(character.body, surrounding[i], around, spheres.spheres[i], regions.frame, settings);
     }
     if (bound.pivots.size() < 4) {
@@ -152,10 +166,11 @@ Binding bind_spheres(const Character& character, const Regions& regions, const S
     }
     out.spheres.push_back(std::move(bound));
   }
-  const std::set<IdPair> ignored = find_ignored(character.body, spheres, chains, out.sphere_of_triangle);
+  const std::set<IdPair> ignored = find_ignored(character.body, spheres, out.sphere_of_triangle);
   out.ignored.assign(ignored.begin(), ignored.end());
-  out.near_fit = find_near(out.spheres, ignored, settings.near_fraction, nullptr);
-  out.near_detect = find_near(out.spheres, ignored, settings.near_fraction, &BoundSphere::detect_radius);
+  const std::set<IdPair> close = next_but_one(spheres);
+  out.near_fit = find_near(out.spheres, ignored, close, settings.near_fraction, nullptr);
+  out.near_detect = find_near(out.spheres, ignored, close, settings.near_fraction, &BoundSphere::detect_radius);
   return out;
 }
 

@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "chains/chains.h"
 #include "fit/fit.h"
 #include "import/import.h"
 #include "segment/segment.h"
@@ -40,18 +39,18 @@ struct Binding {
   std::vector<std::uint32_t> sphere_of_other;  // the same for Character::others
   std::vector<BoundSphere> spheres;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> ignored;  // a < b, sorted
-  std::vector<BoundPair> near_fit, near_detect;                  // overlapping at rest, not ignored; sorted
+  std::vector<BoundPair> near_fit, near_detect;                  // overlap at rest or next but one, not ignored; sorted
 };
 
 struct BindSettings {
   RefitRule rule = RefitRule::kCalibrated;
   double penetration_depth = 0.30;  // that of the fit: bounds the detect radius
   double detect_quantile = 0.6;     // of the surrounding region's area, by distance from the centre
-  double near_fraction = 0.7;       // of the rest distance, for pairs that overlap at rest
+  double near_fraction = 0.7;       // of the rest distance: see near_fit
 };
 
 // Throws Error(kSegmentation) where a sphere has fewer than four triangles to hang on.
-Binding bind_spheres(const Character& character, const Regions& regions, const Spheres& spheres, const Chains& chains,
+Binding bind_spheres(const Character& character, const Regions& regions, const Spheres& spheres,
                      const BindSettings& settings);
 
 // The pivots of one sphere among the triangles of its surrounding region.

@@ -86,6 +86,7 @@ std::vector<BoundPivot> choose_pivots(const Mesh& mesh, const std::vector<Index>
   for (const Pattern& pattern :
        {Pattern{8, 0.35}, Pattern{8, 0.6}, Pattern{12, 0.5}, Pattern{16, 0.5}, Pattern{16, 0.9}}) {
     const std::vector<Index> picked = pick(mesh, triangles, sphere, reference, pattern);
+    if (picked.size() < 4) return {};
     const std::vector<double> weights = solve_weights(mesh, picked, sphere.ball);
     const double sum = sum_of_magnitudes(weights);
     if (weights.empty() || sum >= least) continue;

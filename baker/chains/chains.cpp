@@ -2,7 +2,6 @@
 #include "chains/chains.h"
 
 #include <algorithm>
-#include <set>
 
 namespace spherechain::baker {
 namespace {
@@ -14,23 +13,35 @@ Ids reversed(Ids ids) {
   return ids;
 }
 
-// A side of the torso from the top down.
-Ids side_of_torso(const Spheres& spheres, bool left) {
+// Some of the torso's spheres, level by level from the bottom.
+template <typename Wanted>
+Ids of_torso(const Spheres& spheres, const Wanted& wanted) {
   Ids ids;
   for (const std::uint32_t i : spheres.of_region[kTorso]) {
-    if (spheres.spheres[i].side == (left ? Side::kLeft : Side::kRight)) ids.push_back(i);
+    if (wanted(spheres.spheres[i])) ids.push_back(i);
   }
-  return reversed(std::move(ids));
+  return ids;
+}
+
+// A side of the torso from the top down.
+Ids side_of_torso(const Spheres& spheres, bool left) {
+  const Side other = left ? Side::kRight : Side::kLeft;
+  return reversed(of_torso(spheres, [&](const FittedSphere& s) { return !s.extremity && s.side != other; }));
 }
 
 // A level from one side to the other.
 Ids level_of_torso(const Spheres& spheres, bool top, bool from_left) {
-  const int level = top ? spheres.spheres[spheres.of_region[kTorso].back()].level : 0;
-  Ids ids;
+  int level = 0;
   for (const std::uint32_t i : spheres.of_region[kTorso]) {
-    if (spheres.spheres[i].level == level) ids.push_back(i);
+    if (top && !spheres.spheres[i].extremity) level = std::max(level, spheres.spheres[i].level);
   }
-  return from_left ? ids : reversed(std::move(ids));
+  const Ids ids = of_torso(spheres, [&](const FittedSphere& s) { return !s.extremity && s.level == level; });
+  return from_left ? ids : reversed(ids);
+}
+
+// From the crown down.
+Ids head(const Spheres& spheres) {
+  return reversed(of_torso(spheres, [](const FittedSphere& s) { return s.extremity; }));
 }
 
 enum class Kind { kSide, kEnd, kDiagonal };
@@ -61,16 +72,6 @@ std::size_t Chains::entries() const {
   return sum;
 }
 
-std::vector<std::pair<std::uint32_t, std::uint32_t>> Chains::neighbours() const {
-  std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
-  for (const Chain& chain : chains) {
-    for (std::size_t i = 1; i < chain.spheres.size(); ++i) {
-      pairs.insert(std::minmax(chain.spheres[i - 1], chain.spheres[i]));
-    }
-  }
-  return {pairs.begin(), pairs.end()};
-}
-
 Chains build_chains(const Spheres& spheres, const std::vector<LimbPlace>& limbs) {
   Chains out;
   for (const Kind kind : {Kind::kSide, Kind::kEnd, Kind::kDiagonal}) {
@@ -80,6 +81,7 @@ Chains build_chains(const Spheres& spheres, const std::vector<LimbPlace>& limbs)
         const bool in_order = limbs[i].top || !limbs[j].top;
         const LimbPlace &upper = in_order ? limbs[i] : limbs[j], &lower = in_order ? limbs[j] : limbs[i];
         std::vector<Ids> parts{reversed(spheres.of_region[upper.region])};
+        if (upper.top) parts.push_back(head(spheres));
         for (Ids& part : between(spheres, upper, lower)) parts.push_back(std::move(part));
         parts.push_back(spheres.of_region[lower.region]);
 

@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "fit/fit.h"
@@ -13,24 +12,23 @@ namespace spherechain::baker {
 struct Chain {
   std::string name;                    // zeta0 ..
   std::vector<std::uint8_t> regions;   // limb, torso, limb
-  std::vector<std::uint32_t> spheres;  // each once: from one limb's tip through the torso to the other's
+  std::vector<std::uint32_t> spheres;  // each once: from one limb's tip, the head, through the torso to the other's tip
 };
 
 struct Chains {
   std::vector<Chain> chains;
-  // The paper's count, 3x + 2t + 3|T| + |D| for a biped: the same lists with the spheres that stand in two of a chain's
-  // parts counted twice.
+  // The paper's count, 3x + 2(|L| + |R|) + 3|T| + |D| for a biped, and 5 for each sphere of the head, which the paper
+  // has none of: the same lists with the spheres that stand in two of a chain's parts counted twice.
   std::size_t entries_table1 = 0;
 
   std::size_t entries() const;
-  // Spheres next to each other in some chain, a < b, sorted.
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> neighbours() const;
 };
 
 // The rule behind the paper's Table 1, for any number of limbs: a chain for each pair of limbs, through the part of the
 // torso between them. Limbs at one end of the torso are joined by its top (T) or bottom (D) level; limbs on one side by
 // that side (L, R); the others by the top and then the lower limb's side. First the sides, then the ends, then the
-// diagonals.
+// diagonals. A sphere in the middle of its level is both sides'. The head hangs on the top level: it is in every chain
+// with an upper limb. A list's order is for reading: what stands next to each other on the body is Spheres::links.
 struct LimbPlace {
   std::uint8_t region;
   bool left, top;

@@ -33,8 +33,9 @@ void check_output(const BakeOptions& options) {
 }  // namespace
 
 ExitCode run_bake(const BakeOptions& options) {
-  const BakeSettings settings =
+  BakeSettings settings =
       make_settings(options.profile, options.config.empty() ? "{}" : read_file(options.config), options.config);
+  if (options.extremities) settings.fit.extremities = true;
   if (!fs::exists(options.input)) throw Error(ExitCode::kFile, options.input + ": no such file");
   check_output(options);
 

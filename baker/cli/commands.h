@@ -13,7 +13,7 @@ namespace spherechain::baker {
 struct BakeOptions {
   std::string input, output, config, report;
   std::string profile = "balanced";
-  bool force = false;
+  bool extremities = false, force = false;
 };
 ExitCode run_bake(const BakeOptions& options);
 

@@ -67,6 +67,8 @@ int main(int argc, char** argv) {
   bake_command->add_option("--profile", bake.profile, "Where the settings start")
       ->check(CLI::IsMember({"paper", "balanced"}))
       ->capture_default_str();
+  bake_command->add_flag("--extremities", bake.extremities,
+                         "Spheres in head, hands and feet too (profile balanced has them)");
   bake_command->add_option("--report", bake.report, "JSON report to write");
   bake_command->add_flag("--force", bake.force, "Replace an output file that is not an asset");
   bake_command->callback([&] { run = [&] { return run_bake(bake); }; });

@@ -5,6 +5,35 @@
 #include <cmath>
 
 namespace spherechain::baker {
+namespace {
+
+using Link = std::pair<std::uint32_t, std::uint32_t>;
+
+std::vector<Link> find_links(const Spheres& spheres, const Regions& regions) {
+  std::vector<Link> links;
+  const std::vector<std::uint32_t>& torso = spheres.of_region[kTorso];
+  const auto level = [&](std::uint32_t i) { return spheres.spheres[i].level; };
+  for (const std::uint32_t a : torso) {
+    for (const std::uint32_t b : torso) {
+      if (a < b && level(b) - level(a) <= 1) links.emplace_back(a, b);
+    }
+  }
+  const int top = static_cast<int>(spheres.level_heights.size()) - 1;
+  for (std::uint8_t region = 0; region < kTorso; ++region) {
+    const std::vector<std::uint32_t>& limb = spheres.of_region[region];
+    for (std::size_t i = 1; i < limb.size(); ++i) links.emplace_back(limb[i - 1], limb[i]);
+    const Side other = regions.limbs[region].left ? Side::kRight : Side::kLeft;
+    for (const std::uint32_t i : torso) {
+      if (level(i) == (regions.limbs[region].top ? top : 0) && spheres.spheres[i].side != other) {
+        links.emplace_back(i, limb.front());
+      }
+    }
+  }
+  std::sort(links.begin(), links.end());
+  return links;
+}
+
+}  // namespace
 
 double signed_f(const Ball& ball, const Vec3& vertex) { return ball.radius - (ball.center - vertex).norm(); }
 
@@ -32,14 +61,19 @@ std::vector<Index> triangles_of_region(const Regions& regions, std::uint8_t regi
 }
 
 Spheres fit_spheres(const Character& character, const Regions& regions, const FitSettings& settings) {
+  const Mesh& mesh = character.body;
   Spheres out;
-  fit_torso(character.body, regions, settings, character.file, out);
+  const auto append = [&](const std::vector<FittedSphere>& spheres) {
+    out.spheres.insert(out.spheres.end(), spheres.begin(), spheres.end());
+  };
+  fit_torso(mesh, regions, settings, character.file, out);
+  if (settings.extremities) append(fit_head(mesh, regions, out, settings));
   for (std::uint8_t region = 0; region < kTorso; ++region) {
-    for (const FittedSphere& sphere : fit_limb(character.body, regions, region, settings, character.file)) {
-      out.spheres.push_back(sphere);
-    }
+    append(fit_limb(mesh, regions, region, settings, character.file));
+    if (settings.extremities) append(fit_hand_or_foot(mesh, regions, region, out.spheres.back().ball, settings));
   }
   for (std::uint32_t i = 0; i < out.spheres.size(); ++i) out.of_region[out.spheres[i].region].push_back(i);
+  out.links = find_links(out, regions);
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "import/import.h"
@@ -21,12 +22,13 @@ struct Ball {
 struct FittedSphere {
   Ball ball;
   std::uint8_t region;
-  int level;  // torso: disk position from the bottom; limbs: -1
-  Side side;  // torso: which half of the disk; limbs: none
-  Vec3 axis;  // unit direction of the chain here: along the limb towards its tip, up the torso
+  int level;       // torso: disk position from the bottom, the head's numbered on; limbs: -1
+  Side side;       // torso: which part of the disk; limbs, head, the middle of a level: none
+  Vec3 axis;       // unit direction of the chain here: along the limb towards its tip, up the torso
+  bool extremity;  // in head, hand or foot: past where the paper stops
 };
 
-// The three fits of one torso sphere, judged on the same points: the vertices of its half of the disk's band, from
+// The three fits of one torso sphere, judged on the same points: the vertices of its part of the disk's band, from
 // halfway to the level below to halfway to the level above. F = radius - |centre - vertex| (section 3.2).
 struct TorsoFit {
   Ball phi1, phi1_adjusted, phi2;
@@ -40,13 +42,16 @@ struct FError {
 };
 FError f_error(const Ball& ball, const Mesh& mesh, const std::vector<Index>& vertices);
 
-// All spheres of the body. Torso first, level by level from the bottom, left before right (the paper's numbering); then
-// the limbs in region order, each from shoulder or hip outwards.
+// All spheres of the body. Torso first, level by level from the bottom, left before right (the paper's numbering), and
+// on through neck and head; then the limbs in region order, each from shoulder or hip to the tip of hand or foot.
 struct Spheres {
   std::vector<FittedSphere> spheres;
   std::array<std::vector<std::uint32_t>, kRegionCount> of_region;  // in the order above
-  std::vector<TorsoFit> torso;                                     // of spheres 0 ..
-  std::vector<double> level_heights;                               // along frame.up from frame.origin
+  std::vector<TorsoFit> torso;                                     // of spheres 0 ..: without the head
+  std::vector<double> level_heights;  // along frame.up from frame.origin: without the head's
+  // Next to each other on the body, a < b, sorted: along a limb, on the same or the next torso level, limb to torso,
+  // neck to torso.
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> links;
 };
 
 // Lengths are fractions of the character's height.
@@ -55,6 +60,7 @@ struct FitSettings {
   double penetration_depth = 0.30;  // PD of neighbours on a limb, and of torso levels
   double delta = 0.015;             // climb of the disk
   double limb_step = 0.0015;        // march of the circumference
+  bool extremities = true;          // spheres in head, hands and feet
 };
 
 // Throws Error(kSegmentation) where a limb or the torso has no section a sphere fits in.
@@ -63,11 +69,17 @@ Spheres fit_spheres(const Character& character, const Regions& regions, const Fi
 // The body's triangles of a region.
 std::vector<Index> triangles_of_region(const Regions& regions, std::uint8_t region);
 
-// fit_spheres' two halves.
+// fit_spheres' parts.
 std::vector<FittedSphere> fit_limb(const Mesh& mesh, const Regions& regions, std::uint8_t region,
                                    const FitSettings& settings, const std::string& file);
 void fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& settings, const std::string& file,
                Spheres& out);
+// The hand or foot past the limb's last sphere: none where there is none.
+std::vector<FittedSphere> fit_hand_or_foot(const Mesh& mesh, const Regions& regions, std::uint8_t region,
+                                           const Ball& last, const FitSettings& settings);
+// Neck and head above the torso's top level; one sphere a level.
+std::vector<FittedSphere> fit_head(const Mesh& mesh, const Regions& regions, const Spheres& torso,
+                                   const FitSettings& settings);
 
 // phi2: the smallest sphere around the points (CGAL).
 Ball minimum_enclosing_ball(const Mesh& mesh, const std::vector<Index>& vertices);

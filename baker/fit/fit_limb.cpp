@@ -2,16 +2,14 @@
 // The marching circumference of section 3.1: a ring of rays moves along the limb and a sphere is placed where it
 // overlaps the last one by PD.
 #include <algorithm>
-#include <optional>
 
 #include "fit/fit.h"
+#include "fit/march.h"
 #include "mesh/error.h"
 #include "mesh/ring.h"
 
 namespace spherechain::baker {
 namespace {
-
-constexpr double kClosingDepth = 0.7;
 
 class LimbMarch {
  public:
@@ -87,25 +85,19 @@ std::vector<FittedSphere> fit_limb(const Mesh& mesh, const Regions& regions, std
   }
   std::vector<FittedSphere> spheres;
   const auto place = [&](double at, const Ball& ball) {
-    spheres.push_back({ball, region, -1, Side::kNone, march.axis(at)});
+    spheres.push_back({ball, region, -1, Side::kNone, march.axis(at), false});
   };
   Ball last = march.sphere_at(s);
   place(s, last);
-  const auto overlap = [&](double at) { return penetration_depth(last, march.sphere_at(at)); };
-  while (true) {
-    double high = s + step;
-    while (high < end && overlap(high) > settings.penetration_depth) high += step;
-    if (high >= end) break;
-    double low = high - step;
-    for (int i = 0; i < 24; ++i) {
-      const double middle = 0.5 * (low + high);
-      (overlap(middle) > settings.penetration_depth ? low : high) = middle;
-    }
-    s = high;
+  const auto far_enough = [&](double at) {
+    return penetration_depth(last, march.sphere_at(at)) <= settings.penetration_depth;
+  };
+  while (const auto next = first_where(s, end, step, far_enough)) {
+    s = *next;
     last = march.sphere_at(s);
     place(s, last);
   }
-  // The closing pair overlaps by whatever is left; a sphere mostly inside its neighbour would add nothing.
+  // The closing pair overlaps by whatever is left.
   const Ball closing = march.sphere_at(end);
   if (penetration_depth(last, closing) < kClosingDepth) place(end, closing);
   return spheres;

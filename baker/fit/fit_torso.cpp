@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "fit/fit.h"
+#include "fit/march.h"
 #include "mesh/error.h"
 #include "mesh/ring.h"
 
@@ -111,26 +112,19 @@ double mean_depth(const Level& a, const Level& b) {
 std::vector<Level> place_levels(const TorsoDisk& disk, const Regions& regions, const FitSettings& settings) {
   const double bottom = regions.torso.crotch, neck = regions.torso.neck;
   const double step = settings.delta * regions.frame.height;
-  const auto first_where = [&](double from, const auto& reached) -> std::optional<Level> {
-    for (double high = from + step; high < neck; high += step) {
-      const auto level = disk.at(high);
-      if (!level || !reached(*level)) continue;
-      double low = high - step, top = high;
-      for (int i = 0; i < 24; ++i) {
-        const double middle = 0.5 * (low + top);
-        const auto candidate = disk.at(middle);
-        (candidate && reached(*candidate) ? top : low) = middle;
-      }
-      return disk.at(top);
-    }
-    return std::nullopt;
+  const auto first = [&](double from, const auto& reached) -> std::optional<Level> {
+    const auto height = first_where(from, neck, step, [&](double h) {
+      const auto level = disk.at(h);
+      return level && reached(*level);
+    });
+    return height ? disk.at(*height) : std::nullopt;
   };
   std::vector<Level> levels;
-  auto level = first_where(bottom, [&](const Level& l) { return l.height - bottom >= l.radius(); });
+  auto level = first(bottom, [&](const Level& l) { return l.height - bottom >= l.radius(); });
   while (level && level->height < neck - 0.5 * level->radius()) {
     levels.push_back(*level);
-    level = first_where(level->height,
-                        [&](const Level& l) { return mean_depth(levels.back(), l) <= settings.penetration_depth; });
+    level = first(level->height,
+                  [&](const Level& l) { return mean_depth(levels.back(), l) <= settings.penetration_depth; });
   }
   return levels;
 }
@@ -175,7 +169,7 @@ void fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& sett
       }
       fit.phi1_adjusted = adjust(fit.phi1, levels[i].disk, frame.up, mesh, fit.vertices);
       fit.phi2 = fit.vertices.empty() ? fit.phi1 : minimum_enclosing_ball(mesh, fit.vertices);
-      out.spheres.push_back({fit.phi1_adjusted, kTorso, static_cast<int>(i), side, frame.up});
+      out.spheres.push_back({fit.phi1_adjusted, kTorso, static_cast<int>(i), side, frame.up, false});
       out.torso.push_back(std::move(fit));
     }
     out.level_heights.push_back(levels[i].height);

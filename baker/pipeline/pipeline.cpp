@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "write/write.h"
 
@@ -38,8 +40,7 @@ Bake bake(const std::filesystem::path& input, const BakeSettings& settings,
     for (std::uint8_t i = 0; i < kTorso; ++i) limbs.push_back({i, out.regions.limbs[i].left, out.regions.limbs[i].top});
     out.chains = build_chains(out.spheres, limbs);
   });
-  stage("bind",
-        [&] { out.binding = bind_spheres(out.character, out.regions, out.spheres, out.chains, settings.bind); });
+  stage("bind", [&] { out.binding = bind_spheres(out.character, out.regions, out.spheres, settings.bind); });
   stage("rig", [&] { out.joints = place_joints(out.character, out.regions); });
   stage("write", [&] {
     out.asset =
@@ -58,6 +59,19 @@ double covered_area(const Bake& bake) {
     if ((triangle_centroid(mesh, t) - sphere.rest.center).norm() <= sphere.detect_radius) covered += area;
   }
   return covered / total;
+}
+
+OwnerDistance owner_distance(const Character& character, const Regions& regions, const Binding& binding) {
+  std::vector<double> distances;
+  double sum = 0;
+  for (std::size_t t = 0; t < character.body.triangles.size(); ++t) {
+    const Ball& ball = binding.spheres[binding.sphere_of_triangle[t]].rest;
+    distances.push_back(std::abs(signed_f(ball, triangle_centroid(character.body, t))) / regions.frame.height);
+    sum += distances.back();
+  }
+  std::sort(distances.begin(), distances.end());
+  const auto count = static_cast<double>(distances.size());
+  return {sum / count, distances[static_cast<std::size_t>(0.95 * count)], distances.back()};
 }
 
 std::vector<std::string> missed_targets(const Bake& bake) {

@@ -31,7 +31,8 @@ struct BakeSettings {
   Targets targets;
 };
 
-// "paper" (the paper's refit on 4 pivots) or "balanced" (calibrated refit), changed by a JSON text. Throws Error(kFile)
+// "paper" (the paper's refit on 4 pivots, no spheres in head, hands and feet) or "balanced" (calibrated refit,
+// extremities), changed by a JSON text. Throws Error(kFile)
 // that names `file` where the JSON is broken, has an unknown key or a value out of its range; Error(kUsage) for another
 // profile.
 BakeSettings make_settings(const std::string& profile, const std::string& json, const std::string& file);
@@ -63,6 +64,13 @@ Bake bake(const std::filesystem::path& input, const BakeSettings& settings,
 
 // Share of the body's area whose triangles have their centroid within their sphere's detect radius.
 double covered_area(const Bake& bake);
+
+// How far the skin is from the surface of the sphere it belongs to: over the body's triangles, at their centroids, in
+// fractions of the height.
+struct OwnerDistance {
+  double mean, p95, max;
+};
+OwnerDistance owner_distance(const Character& character, const Regions& regions, const Binding& binding);
 
 // What the settings ask for and the bake has not reached, a sentence each.
 std::vector<std::string> missed_targets(const Bake& bake);

@@ -36,6 +36,12 @@ class Reader {
     value = v.get<int>();
   }
 
+  void boolean(const char* key, bool& value) {
+    if (!take(key)) return;
+    if (!object_[key].is_boolean()) fail(key, "is neither true nor false");
+    value = object_[key].get<bool>();
+  }
+
   void vector(const char* key, std::optional<Vec3>& value) {
     if (!take(key) || object_[key].is_null()) return;
     const json& v = object_[key];
@@ -92,6 +98,7 @@ BakeSettings make_settings(const std::string& profile, const std::string& text, 
   BakeSettings settings;
   if (profile == "paper") {
     settings.bind.rule = RefitRule::kPaper;
+    settings.fit.extremities = false;
   } else if (profile != "balanced") {
     throw Error(ExitCode::kUsage, "profile '" + profile + "' is neither 'paper' nor 'balanced'");
   }
@@ -103,6 +110,7 @@ BakeSettings make_settings(const std::string& profile, const std::string& text, 
   settings.bind.penetration_depth = settings.fit.penetration_depth;
   reader.number("delta", settings.fit.delta, 1e-4, 0.2);
   reader.number("limb_step", settings.fit.limb_step, 1e-4, 0.05);
+  reader.boolean("extremities", settings.fit.extremities);
   reader.vector("facing", settings.segment.facing);
   reader.text("refit", {"paper", "calibrated"}, [&](const std::string& rule) {
     settings.bind.rule = rule == "paper" ? RefitRule::kPaper : RefitRule::kCalibrated;
@@ -132,6 +140,7 @@ std::string to_json(const BakeSettings& settings) {
   out["penetration_depth"] = settings.fit.penetration_depth;
   out["delta"] = settings.fit.delta;
   out["limb_step"] = settings.fit.limb_step;
+  out["extremities"] = settings.fit.extremities;
   out["facing"] = nullptr;
   if (const auto& facing = settings.segment.facing) out["facing"] = {facing->x(), facing->y(), facing->z()};
   out["refit"] = settings.bind.rule == RefitRule::kPaper ? "paper" : "calibrated";

@@ -97,20 +97,31 @@ ordered_json fit_section(const Bake& bake) {
   return {{"torso", std::move(torso)}, {"limbs", std::move(limbs)}};
 }
 
+std::size_t count_extremity(const Bake& bake, std::size_t region) {
+  const std::vector<std::uint32_t>& ids = bake.spheres.of_region[region];
+  return static_cast<std::size_t>(
+      std::count_if(ids.begin(), ids.end(), [&](std::uint32_t i) { return bake.spheres.spheres[i].extremity; }));
+}
+
 // A march at penetration depth PD takes about length / (2 r (1 - PD)) spheres.
 std::string why_this_count(const Bake& bake) {
   std::string why;
   for (std::size_t r = 0; r < kTorso; ++r) {
     double radius = 0;
-    for (const std::uint32_t i : bake.spheres.of_region[r]) radius += bake.spheres.spheres[i].ball.radius;
-    const std::size_t count = bake.spheres.of_region[r].size();
+    const std::size_t count = bake.spheres.of_region[r].size() - count_extremity(bake, r);
+    for (std::size_t i = 0; i < count; ++i) radius += bake.spheres.spheres[bake.spheres.of_region[r][i]].ball.radius;
     why += fmt::format("{}{} {} (length {:.3f}, mean radius {:.4f})", r == 0 ? "" : ", ", kRegionNames[r], count,
                        bake.regions.limbs[r].extremity, radius / static_cast<double>(count));
   }
   why += fmt::format(
       ", torso {} (levels {}). Limb spheres touch the skin: their radius is the distance to it, the shortest "
       "ray, and not the mean ray; smaller spheres, so more of them at the same penetration depth.",
-      bake.spheres.of_region[kTorso].size(), bake.spheres.level_heights.size());
+      bake.spheres.torso.size(), bake.spheres.level_heights.size());
+  if (bake.settings.fit.extremities) {
+    why += fmt::format(" Past where the paper stops: hands {} + {}, feet {} + {}, neck and head {}.",
+                       count_extremity(bake, 0), count_extremity(bake, 1), count_extremity(bake, 2),
+                       count_extremity(bake, 3), count_extremity(bake, kTorso));
+  }
   return why;
 }
 
@@ -150,8 +161,10 @@ ordered_json bind_section(const Bake& bake) {
                        {"detect_radius", sphere.detect_radius},
                        {"moved_by_refit_at_rest", (sphere.rest.center - bake.spheres.spheres[i].ball.center).norm()}});
   }
+  const OwnerDistance owner = owner_distance(bake.character, bake.regions, bake.binding);
   return {{"refit", bake.binding.rule == RefitRule::kPaper ? "paper" : "calibrated"},
           {"covered_area", covered_area(bake)},
+          {"owner_distance", {{"mean", owner.mean}, {"p95", owner.p95}, {"max", owner.max}}},
           {"spheres", std::move(spheres)}};
 }
 
@@ -201,6 +214,10 @@ std::string bake_report_text(const Bake& bake) {
   out += fmt::format("{} spheres, {} chain entries ({} as Table 1 counts), {} pairs ignored\n",
                      bake.spheres.spheres.size(), bake.chains.entries(), bake.chains.entries_table1,
                      bake.binding.ignored.size());
+
+  const OwnerDistance owner = owner_distance(bake.character, bake.regions, bake.binding);
+  out += fmt::format("skin to its sphere: mean {:.2f} %, p95 {:.2f} %, max {:.2f} % of the height\n", 100 * owner.mean,
+                     100 * owner.p95, 100 * owner.max);
 
   out += fmt::format("\nmean |F| in mm (max)\n{:<8} {:>14} {:>14} {:>14}\n", "sphere", "phi1", "phi1'", "phi2");
   std::array<double, 3> sums{};

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bind/bind.h"
+#include "chains/chains.h"
 #include "rig/rig.h"
 
 namespace spherechain::baker {

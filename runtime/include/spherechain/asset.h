@@ -34,11 +34,12 @@ struct RestSphere {
   std::uint16_t pivot_count;  // >= 1
   std::uint8_t region;
   Side side;
-  std::int16_t level;  // torso: disk position from the bottom; limbs: -1
+  std::int16_t level;  // torso: disk position from the bottom, the head's numbered on; limbs: -1
   std::uint16_t reserved;
 };
 
-// Spheres a < b that overlap at rest without being neighbours: reported only when closer than reach * (ra + rb).
+// Spheres a < b that overlap at rest without being neighbours, or are next but one on the body: reported only when
+// closer than reach * (ra + rb).
 struct NearPair {
   std::uint32_t a, b;
   float reach;  // [0, 1)
@@ -80,7 +81,7 @@ struct AssetInfo {
   float height;                    // source units
   FitError phi1, phi1_adjusted, phi2;
   RefitRule refit;
-  std::uint32_t chain_entries_table1;  // 3x + 2t + 3|T| + |D|
+  std::uint32_t chain_entries_table1;  // 3x + 2(|L| + |R|) + 3|T| + |D|, and 5 for each sphere of the head
 };
 
 // A verified view of an asset's bytes. It copies nothing: the bytes must outlive it, unchanged. Copying an Asset copies

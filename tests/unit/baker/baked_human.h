@@ -9,7 +9,7 @@
 #include "spherechain/asset.h"
 
 // The MakeHuman body baked once a run with each profile.
-const spherechain::baker::Bake& baked_human();        // balanced: calibrated refit
+const spherechain::baker::Bake& baked_human();        // balanced: calibrated refit, extremities
 const spherechain::baker::Bake& paper_baked_human();  // paper: the paper's refit
 
 // Its asset, opened.

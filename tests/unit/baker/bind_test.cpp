@@ -67,7 +67,7 @@ TEST_CASE("four pivots in one plane are rejected as ill-posed, more are taken") 
   for (int i = 0; i < 16; ++i) add({std::cos(0.4 * i), std::sin(0.4 * i), 0});
   std::vector<Index> all(mesh.triangles.size());
   for (Index t = 0; t < all.size(); ++t) all[t] = t;
-  const FittedSphere above{{{0, 0, 0.3}, 1}, 0, -1, Side::kNone, Vec3::UnitZ()};
+  const FittedSphere above{{{0, 0, 0.3}, 1}, 0, -1, Side::kNone, Vec3::UnitZ(), false};
   CHECK(choose_pivots(mesh, all, above, Vec3::UnitX(), RefitRule::kCalibrated).empty());
   for (int i = 0; i < 16; ++i) {
     add({std::cos(0.4 * i), std::sin(0.4 * i), 0.7});
@@ -112,9 +112,11 @@ TEST_CASE("neighbours along limbs and on the torso are ignored, and nothing far 
   CHECK(!ignored(0, last(0)));
 }
 
-TEST_CASE("surrounding regions that share an edge are ignored, whatever the chains say") {
+TEST_CASE("surrounding regions that share an edge are ignored, whatever the links say") {
   const Bake& bake = baked_human();
-  const Binding binding = bind_spheres(bake.character, bake.regions, bake.spheres, Chains{}, {});
+  Spheres unlinked = bake.spheres;
+  unlinked.links.clear();
+  const Binding binding = bind_spheres(bake.character, bake.regions, unlinked, {});
   std::map<std::pair<Index, Index>, std::set<std::uint32_t>> owners_of_edge;
   for (std::size_t t = 0; t < bake.character.body.triangles.size(); ++t) {
     const Triangle& v = bake.character.body.triangles[t];
@@ -130,6 +132,26 @@ TEST_CASE("surrounding regions that share an edge are ignored, whatever the chai
                              std::pair(*owners.begin(), *owners.rbegin())));
   }
   CHECK(shared > 100);
+}
+
+TEST_CASE("spheres next but one along a limb are reported only where the limb is folded") {
+  const Bake& bake = baked_human();
+  std::size_t found = 0;
+  for (std::size_t limb = 0; limb < 4; ++limb) {
+    const auto& ids = bake.spheres.of_region[limb];
+    for (std::size_t i = 2; i < ids.size(); ++i) {
+      const std::pair pair(ids[i - 2], ids[i]);
+      if (std::binary_search(bake.binding.ignored.begin(), bake.binding.ignored.end(), pair)) continue;
+      const BoundSphere &a = bake.binding.spheres[pair.first], &b = bake.binding.spheres[pair.second];
+      const double distance = (a.rest.center - b.rest.center).norm(), sum = a.detect_radius + b.detect_radius;
+      const auto& near = bake.binding.near_detect;
+      const bool listed = std::any_of(near.begin(), near.end(),
+                                      [&](const BoundPair& n) { return n.a == pair.first && n.b == pair.second; });
+      CHECK(listed == (0.7 * distance < sum));
+      found += listed ? 1u : 0u;
+    }
+  }
+  CHECK(found > 20);
 }
 
 TEST_CASE("pairs that overlap at rest without being neighbours are kept, with a reach below their rest distance") {

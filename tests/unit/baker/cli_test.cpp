@@ -157,6 +157,16 @@ TEST_CASE("play --json has the contract's fields; at rest nothing touches, hands
   CHECK(!one["frames"][0].contains("m2"));
 }
 
+TEST_CASE("--extremities puts spheres in head, hands and feet in any profile") {
+  const TemporaryFolder folder;
+  const fs::path out = folder.path / "out.sphc";
+  REQUIRE(run(fmt::format("bake {} -o {} --profile paper --extremities", kHumanFile, out.string())).code == 0);
+  const json asset = json::parse(run(fmt::format("inspect {} --json", out.string())).out);
+  CHECK(asset["sphere_count"] == baked_human().spheres.spheres.size());
+  CHECK(asset["settings"]["extremities"] == true);
+  CHECK(asset["refit"] == "paper");
+}
+
 TEST_CASE("usage errors end with 2") {
   check_error(run(""), 2, {"--help"});
   check_error(run("bake"), 2, {});
@@ -198,6 +208,7 @@ TEST_CASE("broken settings end with 3 and name the setting") {
   check_error(bake_with(R"({"rayz": 80})"), 3, {"c.json", "rayz", "unknown"});
   check_error(bake_with(R"({"rays": 3})"), 3, {"rays", "8"});
   check_error(bake_with(R"({"penetration_depth": "much"})"), 3, {"penetration_depth"});
+  check_error(bake_with(R"({"extremities": 1})"), 3, {"extremities", "true"});
   check_error(bake_with(R"({"facing": [0, 0, 0]})"), 3, {"facing"});
   check_error(bake_with(R"({"targets": {"speed": 1}})"), 3, {"speed"});
   CHECK(!fs::exists(folder.path / "out.sphc"));

@@ -96,6 +96,29 @@ TEST_CASE("arms crossed: arm touches arm or chest") {
   CHECK(count_between(bake, pairs, 2, 3) == 0);
 }
 
+TEST_CASE("in no frame does a hand touch its own arm, a foot its own leg or the head its own neck") {
+  const Bake& bake = baked_human();
+  std::size_t hands_touching = 0;
+  for (const AnimationFrame& frame : animation_frames()) {
+    for (const Pair& pair : touching(bake, frame.positions, RadiusKind::kDetect)) {
+      const FittedSphere &a = bake.spheres.spheres[pair.a], &b = bake.spheres.spheres[pair.b];
+      if (a.extremity || b.extremity) CHECK(a.region != b.region);
+      if (a.region != b.region && (a.extremity || b.extremity)) ++hands_touching;
+    }
+  }
+  CHECK(hands_touching > 0);
+}
+
+TEST_CASE("a hand behind the head touches the head") {
+  const Bake& bake = baked_human();
+  std::size_t found = 0;
+  for (const Pair& pair : touching(bake, posed_human("hand_behind_head.json"), RadiusKind::kDetect)) {
+    const FittedSphere &a = bake.spheres.spheres[pair.a], &b = bake.spheres.spheres[pair.b];
+    found += a.region == kTorso && a.extremity && b.region == 0 && b.extremity ? 1u : 0u;
+  }
+  CHECK(found > 0);
+}
+
 TEST_CASE("in all 80 frames M2 equals a brute force, and M1's pairs are some of M2's, counted chain by chain") {
   for (const Bake* bake : {&baked_human(), &paper_baked_human()}) {
     const Asset asset = open_asset_of(*bake);

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "baked_human.h"
 
@@ -39,19 +40,33 @@ double distance_to_region(const Bake& bake, const Vec3& p, std::uint8_t region) 
   return least;
 }
 
+std::vector<FittedSphere> select(const Bake& bake, std::uint8_t region, bool extremity) {
+  std::vector<FittedSphere> selected;
+  for (const std::uint32_t i : bake.spheres.of_region[region]) {
+    if (bake.spheres.spheres[i].extremity == extremity) selected.push_back(bake.spheres.spheres[i]);
+  }
+  return selected;
+}
+std::vector<FittedSphere> without_extremity(const Bake& bake, std::uint8_t region) {
+  return select(bake, region, false);
+}
+// Head, hand or foot of a region.
+std::vector<FittedSphere> extremity(const Bake& bake, std::uint8_t region) { return select(bake, region, true); }
+
 Vec3 mirrored(const BodyFrame& frame, const Vec3& p) { return p - 2 * (p - frame.origin).dot(frame.left) * frame.left; }
 
 }  // namespace
 
 TEST_CASE("a human gets 8 to 12 spheres an arm and a leg and four or five torso levels of two") {
   const Bake& bake = baked_human();
-  for (std::size_t limb = 0; limb < 4; ++limb) {
-    CHECK(bake.spheres.of_region[limb].size() >= 8);
-    CHECK(bake.spheres.of_region[limb].size() <= 12);
+  for (std::uint8_t limb = 0; limb < 4; ++limb) {
+    const std::size_t count = without_extremity(bake, limb).size();
+    CHECK(count >= 8);
+    CHECK(count <= 12);
   }
   const std::size_t levels = bake.spheres.level_heights.size();
   CHECK((levels == 4 || levels == 5));
-  CHECK(bake.spheres.of_region[kTorso].size() == 2 * levels);
+  CHECK(without_extremity(bake, kTorso).size() == 2 * levels);
   MESSAGE(fmt::format("spheres: arms {} + {}, legs {} + {}, torso {}: {} in all", bake.spheres.of_region[0].size(),
                       bake.spheres.of_region[1].size(), bake.spheres.of_region[2].size(),
                       bake.spheres.of_region[3].size(), bake.spheres.of_region[4].size(), bake.spheres.spheres.size()));
@@ -61,7 +76,7 @@ TEST_CASE("a limb sphere touches the skin of its limb") {
   const Bake& bake = baked_human();
   double worst = 0;
   for (const FittedSphere& sphere : bake.spheres.spheres) {
-    if (sphere.region == kTorso) continue;
+    if (sphere.region == kTorso || sphere.extremity) continue;
     const double distance = distance_to_region(bake, sphere.ball.center, sphere.region);
     worst = std::max(worst, std::abs(distance - sphere.ball.radius) / sphere.ball.radius);
   }
@@ -70,12 +85,14 @@ TEST_CASE("a limb sphere touches the skin of its limb") {
 
 TEST_CASE("neighbours on a limb overlap by the penetration depth asked for, but for the closing pair") {
   const Bake& bake = baked_human();
-  for (std::size_t limb = 0; limb < 4; ++limb) {
-    const auto& ids = bake.spheres.of_region[limb];
-    for (std::size_t i = 1; i + 1 < ids.size(); ++i) {
-      const Ball &a = bake.spheres.spheres[ids[i - 1]].ball, &b = bake.spheres.spheres[ids[i]].ball;
-      const double depth = (a.radius + b.radius - (a.center - b.center).norm()) / (a.radius + b.radius);
-      CHECK(std::abs(depth - 0.30) <= 0.02);
+  for (std::uint8_t limb = 0; limb < 4; ++limb) {
+    for (const auto& march : {without_extremity(bake, limb), extremity(bake, limb)}) {
+      REQUIRE(march.size() > 2);
+      for (std::size_t i = 1; i + 1 < march.size(); ++i) {
+        const Ball &a = march[i - 1].ball, &b = march[i].ball;
+        const double depth = (a.radius + b.radius - (a.center - b.center).norm()) / (a.radius + b.radius);
+        CHECK(std::abs(depth - 0.30) <= 0.02);
+      }
     }
   }
 }
@@ -96,6 +113,89 @@ TEST_CASE("left and right limbs have the same number of spheres, mirrored to 1.5
   CHECK(worst < 0.015 * frame.height);
   MESSAGE(
       fmt::format("largest difference of mirrored limb spheres: {:.2f} % of the height", 100 * worst / frame.height));
+}
+
+TEST_CASE("head, hands and feet are filled to their ends: crown, heel, toes and fingertips") {
+  const Bake& bake = baked_human();
+  const BodyFrame& frame = bake.regions.frame;
+  const Mesh& mesh = bake.character.body;
+  // From the region's vertex farthest in a direction, of those lower than `below`, to its nearest sphere, in fractions
+  // of the height.
+  const auto gap = [&](std::uint8_t region, const Vec3& direction, double below = 1e9) {
+    Vec3 end = Vec3::Zero();
+    double farthest = -1e9;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+      if (bake.regions.of_triangle[t] != region) continue;
+      for (const Index v : mesh.triangles[t]) {
+        if (mesh.positions[v].dot(direction) <= farthest || mesh.positions[v].dot(frame.up) > below) continue;
+        farthest = mesh.positions[v].dot(direction);
+        end = mesh.positions[v];
+      }
+    }
+    double least = 1e9;
+    for (const FittedSphere& sphere : extremity(bake, region)) {
+      least = std::min(least, (end - sphere.ball.center).norm() - sphere.ball.radius);
+    }
+    return least / frame.height;
+  };
+  CHECK(std::abs(gap(kTorso, frame.up)) < 0.005);
+  for (const std::uint8_t arm : {std::uint8_t{0}, std::uint8_t{1}}) {
+    const Vec3 hand = extremity(bake, arm).back().ball.center - without_extremity(bake, arm).back().ball.center;
+    CHECK(gap(arm, hand) < 0.01);
+    CHECK(extremity(bake, arm).size() >= 4);
+  }
+  for (const std::uint8_t leg : {std::uint8_t{2}, std::uint8_t{3}}) {
+    const Vec3 ankle = without_extremity(bake, leg).back().ball.center;
+    CHECK(gap(leg, frame.forward, ankle.dot(frame.up)) < 0.01);
+    CHECK(gap(leg, -frame.forward, ankle.dot(frame.up)) < 0.01);
+    // The foot turns forward, heel first: each sphere stands farther ahead than the one before.
+    const std::vector<FittedSphere> foot = extremity(bake, leg);
+    CHECK(foot.front().ball.center.dot(frame.forward) < ankle.dot(frame.forward));
+    for (std::size_t i = 1; i < foot.size(); ++i) {
+      CHECK((foot[i].ball.center - foot[i - 1].ball.center).dot(frame.forward) > 0);
+    }
+  }
+  const std::vector<FittedSphere> head = extremity(bake, kTorso);
+  for (std::size_t i = 0; i < head.size(); ++i) {
+    CHECK(head[i].level == static_cast<int>(bake.spheres.level_heights.size() + i));
+    CHECK(head[i].side == Side::kNone);
+  }
+}
+
+TEST_CASE("with extremities the skin is six times nearer to its spheres") {
+  const Bake &with = baked_human(), &without = paper_baked_human();
+  REQUIRE(extremity(without, 0).empty());
+  const OwnerDistance near = owner_distance(with.character, with.regions, with.binding),
+                      far = owner_distance(without.character, without.regions, without.binding);
+  CHECK(near.mean < 0.01);
+  CHECK(near.p95 < 0.02);
+  CHECK(near.max < 0.04);
+  CHECK(far.mean > 0.05);
+  MESSAGE(
+      fmt::format("skin to its sphere, % of the height, mean p95 max: {:.2f} {:.2f} {:.2f}; without extremities "
+                  "{:.2f} {:.2f} {:.2f}",
+                  100 * near.mean, 100 * near.p95, 100 * near.max, 100 * far.mean, 100 * far.p95, 100 * far.max));
+}
+
+TEST_CASE("other bodies get extremities too" * doctest::skip(std::getenv("SPHERECHAIN_TEST_DATA") == nullptr)) {
+  for (const auto& [file, limit] : {std::pair("mh_boxing.glb", 0.01), std::pair("CesiumMan.glb", 0.02)}) {
+    CAPTURE(file);
+    const std::string path = std::string(std::getenv("SPHERECHAIN_TEST_DATA")) + "/" + file;
+    const Character character = build_character(read_with_assimp(path), file);
+    const Regions regions = segment(character, {});
+    std::array<OwnerDistance, 2> distances{};
+    for (const bool extremities : {false, true}) {
+      FitSettings settings;
+      settings.extremities = extremities;
+      const Spheres spheres = fit_spheres(character, regions, settings);
+      distances[extremities ? 1 : 0] =
+          owner_distance(character, regions, bind_spheres(character, regions, spheres, {}));
+    }
+    CHECK(distances[1].mean < limit);
+    CHECK(distances[1].mean < 0.2 * distances[0].mean);
+    MESSAGE(fmt::format("{}: mean {:.2f} % of the height, without extremities {:.2f} %", file, 100 * distances[1].mean,
+                        100 * distances[0].mean));
+  }
 }
 
 TEST_CASE("left spheres are on the character's left, and levels climb") {

@@ -90,16 +90,18 @@ struct Errors {
   }
 };
 
-Errors refit_errors(const Bake& bake, const std::vector<std::vector<Ball>>& best) {
+Errors refit_errors(const Bake& bake) {
   const spherechain::Asset asset = open_asset_of(bake);
+  const std::vector<BestFit> fits = best_fits(bake);
   Errors errors;
-  for (std::size_t frame = 0; frame < animation_frames().size(); ++frame) {
-    const auto result = refit(asset, pack(animation_frames()[frame].positions), RadiusKind::kFit);
+  for (const AnimationFrame& frame : animation_frames()) {
+    const auto result = refit(asset, pack(frame.positions), RadiusKind::kFit);
     REQUIRE(result.status == spherechain::Status::kOk);
     for (std::size_t i = 0; i < result.spheres.size(); ++i) {
+      const Ball best = fits[i].fitted_to(bake.character.source_positions, frame.positions);
       const spherechain::Sphere& s = result.spheres[i];
-      errors.center.push_back(1e3 * (Vec3(s.x, s.y, s.z) - best[frame][i].center).norm());
-      errors.radius.push_back(std::abs(static_cast<double>(s.radius) - best[frame][i].radius) / best[frame][i].radius);
+      errors.center.push_back(1e3 * (Vec3(s.x, s.y, s.z) - best.center).norm());
+      errors.radius.push_back(std::abs(static_cast<double>(s.radius) - best.radius) / best.radius);
     }
   }
   return errors;
@@ -108,16 +110,8 @@ Errors refit_errors(const Bake& bake, const std::vector<std::vector<Ball>>& best
 }  // namespace
 
 TEST_CASE("calibrated refit follows the best-fit sphere of the deformed surrounding region over both animations") {
-  const Bake& bake = baked_human();
-  const std::vector<BestFit> fits = best_fits(bake);
-  std::vector<std::vector<Ball>> best;
-  for (const AnimationFrame& frame : animation_frames()) {
-    best.emplace_back();
-    for (const BestFit& fit : fits)
-      best.back().push_back(fit.fitted_to(bake.character.source_positions, frame.positions));
-  }
-  REQUIRE(best.size() == 80);
-  const Errors calibrated = refit_errors(bake, best), paper = refit_errors(paper_baked_human(), best);
+  REQUIRE(animation_frames().size() == 80);
+  const Errors calibrated = refit_errors(baked_human()), paper = refit_errors(paper_baked_human());
   const std::string header = fmt::format(
       "refit against a best-fit sphere, 80 frames (centre mm, radius %)\n{:<11} {:>6} {:>6} {:>6} {:>8} {:>6}\n", "",
       "mean", "p95", "max", "mean", "p95");
