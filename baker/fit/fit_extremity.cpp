@@ -18,12 +18,12 @@ namespace {
 // The skin across an axis. Positions `s` are along it, in the mesh's own space.
 class Sections {
  public:
-  Sections(const Mesh& mesh, std::vector<Index> triangles, const Vec3& axis, const Vec3& reference, int rays)
-      : mesh_(mesh), triangles_(std::move(triangles)), axis_(axis), rays_(rays) {
+  Sections(Mesh skin, const Vec3& axis, const Vec3& reference, int rays)
+      : skin_(std::move(skin)), axis_(axis), rays_(rays) {
     u_ = (reference - reference.dot(axis) * axis).normalized();
-    for (const Vec3& p : mesh.positions) along_.push_back(p.dot(axis));
-    for (const Index t : triangles_) {
-      for (const Index v : mesh.triangles[t]) {
+    for (const Vec3& p : skin_.positions) along_.push_back(p.dot(axis));
+    for (const Triangle& triangle : skin_.triangles) {
+      for (const Index v : triangle) {
         low_ = std::min(low_, along_[v]);
         high_ = std::max(high_, along_[v]);
       }
@@ -36,20 +36,20 @@ class Sections {
   // In the middle of the section's outline and as far from it as the rays are long on average. Nothing where there is
   // no skin.
   std::optional<Ball> at(double s) const {
-    const std::vector<Segment> skin = cut(s);
+    const std::vector<Segment> cut = cut_at(s);
     Vec3 center = Vec3::Zero();
     double length = 0;
-    for (const Segment& segment : skin) {
+    for (const Segment& segment : cut) {
       const double l = (segment.b - segment.a).norm();
       center += 0.5 * l * (segment.a + segment.b);
       length += l;
     }
     if (!(length > 0)) return std::nullopt;
     center /= length;
-    for (int pass = 0; pass < 2; ++pass) center = outline(skin, center).section_centroid();
+    for (int pass = 0; pass < 2; ++pass) center = outline(cut, center).section_centroid();
     // A ray stands for as much skin as it is long: in a section as flat as a palm few rays meet much of it.
     double sum = 0, squares = 0;
-    for (const auto& hit : outline(skin, center).hits) {
+    for (const auto& hit : outline(cut, center).hits) {
       if (!hit) continue;
       sum += hit->distance;
       squares += hit->distance * hit->distance;
@@ -63,31 +63,30 @@ class Sections {
     Vec3 a, b;
   };
 
-  std::vector<Segment> cut(double s) const {
-    std::vector<Segment> skin;
-    for (const Index t : triangles_) {
-      const Triangle& v = mesh_.triangles[t];
+  std::vector<Segment> cut_at(double s) const {
+    std::vector<Segment> cut;
+    for (const Triangle& v : skin_.triangles) {
       std::array<Vec3, 2> ends;
       std::size_t count = 0;
       for (std::size_t k = 0; k < 3; ++k) {
         const Index a = v[k], b = v[(k + 1) % 3];
         if ((along_[a] < s) == (along_[b] < s)) continue;
         const double f = (s - along_[a]) / (along_[b] - along_[a]);
-        ends[count++] = mesh_.positions[a] + f * (mesh_.positions[b] - mesh_.positions[a]);
+        ends[count++] = skin_.positions[a] + f * (skin_.positions[b] - skin_.positions[a]);
       }
-      if (count == 2) skin.push_back({ends[0], ends[1]});
+      if (count == 2) cut.push_back({ends[0], ends[1]});
     }
-    return skin;
+    return cut;
   }
 
   // A ring whose rays end where they leave the last skin they meet.
-  Ring outline(const std::vector<Segment>& skin, const Vec3& center) const {
+  Ring outline(const std::vector<Segment>& cut, const Vec3& center) const {
     Ring ring{center, axis_, u_, axis_.cross(u_), {}};
     for (int k = 0; k < rays_; ++k) {
       const double angle = 2 * std::numbers::pi * k / rays_;
       const Vec3 along = std::cos(angle) * ring.u + std::sin(angle) * ring.v, across = axis_.cross(along);
       double farthest = 0;
-      for (const Segment& segment : skin) {
+      for (const Segment& segment : cut) {
         const double a = (segment.a - center).dot(across), b = (segment.b - center).dot(across);
         if ((a < 0) == (b < 0)) continue;
         farthest = std::max(farthest, (segment.a + a / (a - b) * (segment.b - segment.a) - center).dot(along));
@@ -98,8 +97,7 @@ class Sections {
     return ring;
   }
 
-  const Mesh& mesh_;
-  std::vector<Index> triangles_;
+  Mesh skin_;
   Vec3 axis_, u_;
   int rays_;
   std::vector<double> along_;
@@ -131,71 +129,83 @@ std::vector<Ball> march(const Sections& sections, double start, double step, dou
 }
 
 // The direction in which the skin is longest, pointing away from `from`.
-Vec3 longest_axis(const Mesh& mesh, const std::vector<Index>& triangles, const Vec3& from) {
-  Vec3 centroid = Vec3::Zero();
-  double area = 0;
-  for (const Index t : triangles) {
-    centroid += triangle_area(mesh, t) * triangle_centroid(mesh, t);
-    area += triangle_area(mesh, t);
-  }
-  centroid /= area;
+Vec3 longest_axis(const Mesh& skin, const Vec3& from) {
+  const Vec3 centroid = surface_centroid(skin);
   // A triangle's second moment is that of its corners and, nine times, its centroid.
   Eigen::Matrix3d moment = Eigen::Matrix3d::Zero();
-  for (const Index t : triangles) {
+  for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
     const auto add = [&](const Vec3& p, double weight) {
-      moment += weight * triangle_area(mesh, t) * (p - centroid) * (p - centroid).transpose();
+      moment += weight * triangle_area(skin, t) * (p - centroid) * (p - centroid).transpose();
     };
-    for (const Index v : mesh.triangles[t]) add(mesh.positions[v], 1);
-    add(triangle_centroid(mesh, t), 9);
+    for (const Index v : skin.triangles[t]) add(skin.positions[v], 1);
+    add(triangle_centroid(skin, t), 9);
   }
   const Vec3 axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(moment).eigenvectors().col(2);
   return axis.dot(centroid - from) < 0 ? Vec3(-axis) : axis;
 }
 
-// The skin past wrist or ankle: beyond the plane across the limb's end, in one piece with the tip.
-std::vector<Index> triangles_past_end(const Mesh& mesh, const Regions& regions, std::uint8_t region) {
-  const Limb& limb = regions.limbs[region];
+struct Plane {
+  Vec3 point, normal;
+  double distance(const Vec3& p) const { return (p - point).dot(normal); }
+};
+
+// Across wrist or ankle, facing outwards.
+Plane end_of_limb(const Regions& regions, const Limb& limb) {
   const double window = 0.02 * regions.frame.height;
-  const Vec3 end = limb.line.at(limb.extremity), outward = limb.line.tangent(limb.extremity - window, window);
+  return {limb.line.at(limb.extremity), limb.line.tangent(limb.extremity - window, window)};
+}
+
+// The piece of a region with its tip beyond the plane, cut along it: triangles of any size end there alike.
+Mesh skin_beyond(const Plane& plane, const Mesh& mesh, const std::vector<Index>& region, const Vec3& tip) {
   Mesh beyond{mesh.positions, {}};
-  std::vector<Index> triangles;
   double nearest = std::numeric_limits<double>::max();
-  std::size_t tip = 0;
-  for (const Index t : triangles_of_region(regions, region)) {
-    const Vec3 centroid = triangle_centroid(mesh, t);
-    if ((centroid - end).dot(outward) <= 0) continue;
-    const double distance = (centroid - limb.line.points().back()).norm();
+  std::size_t at_tip = 0;
+  for (const Index t : region) {
+    const Triangle& v = mesh.triangles[t];
+    if (std::none_of(v.begin(), v.end(), [&](Index i) { return plane.distance(mesh.positions[i]) > 0; })) continue;
+    const double distance = (triangle_centroid(mesh, t) - tip).norm();
     if (distance < nearest) {
       nearest = distance;
-      tip = triangles.size();
+      at_tip = beyond.triangles.size();
     }
-    triangles.push_back(t);
-    beyond.triangles.push_back(mesh.triangles[t]);
+    beyond.triangles.push_back(v);
   }
   const Components pieces = connected_components(beyond);
-  std::vector<Index> piece;
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    if (pieces.of_triangle[i] == pieces.of_triangle[tip]) piece.push_back(triangles[i]);
+  Mesh skin;
+  for (std::size_t t = 0; t < beyond.triangles.size(); ++t) {
+    if (pieces.of_triangle[t] != pieces.of_triangle[at_tip]) continue;
+    const auto first = static_cast<Index>(skin.positions.size());
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 &a = mesh.positions[beyond.triangles[t][k]], &b = mesh.positions[beyond.triangles[t][(k + 1) % 3]];
+      const double da = plane.distance(a), db = plane.distance(b);
+      if (da > 0) skin.positions.push_back(a);
+      if ((da > 0) != (db > 0)) skin.positions.emplace_back(a + da / (da - db) * (b - a));
+    }
+    for (auto corner = first + 2; corner < skin.positions.size(); ++corner) {
+      skin.triangles.push_back({first, corner - 1, corner});
+    }
   }
-  return piece;
+  return skin;
 }
 
 }  // namespace
 
 std::vector<FittedSphere> fit_hand_or_foot(const Mesh& mesh, const Regions& regions, std::uint8_t region,
                                            const Ball& last, const FitSettings& settings) {
-  const std::vector<Index> triangles = triangles_past_end(mesh, regions, region);
-  if (triangles.empty()) return {};
   const Limb& limb = regions.limbs[region];
-  const Vec3 axis = longest_axis(mesh, triangles, limb.line.at(limb.extremity));
-  const Sections sections(mesh, triangles, axis,
-                          Vec3(regions.frame.up + 0.7 * regions.frame.left + 0.3 * regions.frame.forward),
-                          settings.rays);
-  const double step = settings.delta * regions.frame.height;
-  // The first sphere stands inside the near end: a foot's is the heel, behind the ankle.
+  const BodyFrame& frame = regions.frame;
+  const Plane end = end_of_limb(regions, limb);
+  Mesh skin = skin_beyond(end, mesh, triangles_of_region(regions, region), limb.line.points().back());
+  if (skin.triangles.empty()) return {};
+  const Vec3 axis = longest_axis(skin, end.point);
+  const Sections sections(std::move(skin), axis, frame.up + 0.7 * frame.left + 0.3 * frame.forward, settings.rays);
+  const double step = settings.delta * frame.height;
+  // A hand goes on from the limb's last sphere; a foot turns, and its first sphere stands in its end behind the ankle.
+  const bool turns = axis.dot(end.normal) < 0.7;
   const auto inside = [&](double s) {
     const auto ball = sections.at(s);
-    return ball && s - sections.low() >= ball->radius && penetration_depth(last, *ball) <= settings.penetration_depth;
+    return ball && s - sections.low() >= ball->radius &&
+           (turns || penetration_depth(last, *ball) <= settings.penetration_depth);
   };
   const auto start = first_where(sections.low(), sections.high(), step, inside);
   if (!start) return {};
@@ -211,7 +221,9 @@ std::vector<FittedSphere> fit_hand_or_foot(const Mesh& mesh, const Regions& regi
 std::vector<FittedSphere> fit_head(const Mesh& mesh, const Regions& regions, const Spheres& torso,
                                    const FitSettings& settings) {
   const BodyFrame& frame = regions.frame;
-  const Sections sections(mesh, triangles_of_region(regions, kTorso), frame.up, frame.left, settings.rays);
+  Mesh skin{mesh.positions, {}};
+  for (const Index t : triangles_of_region(regions, kTorso)) skin.triangles.push_back(mesh.triangles[t]);
+  const Sections sections(std::move(skin), frame.up, frame.left, settings.rays);
   const double step = settings.delta * frame.height;
   const int top = static_cast<int>(torso.level_heights.size()) - 1;
   const auto far_enough = [&](double s) {
