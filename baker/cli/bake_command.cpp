@@ -8,6 +8,7 @@
 #include "cli/progress.h"
 #include "pipeline/pipeline.h"
 #include "play/asset_file.h"
+#include "report/preview.h"
 #include "report/report.h"
 #include "write/write.h"
 
@@ -16,18 +17,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Baking onto the input, or onto a file that is no asset, is most likely a slip: nothing is lost to it.
-void check_output(const BakeOptions& options) {
-  std::error_code ignored;
-  check_folder(options.output);
-  if (!options.report.empty()) check_folder(options.report);
-  if (fs::equivalent(options.input, options.output, ignored)) {
-    throw Error(ExitCode::kUsage, options.output + ": input and output are the same file");
-  }
-  if (!options.report.empty() && fs::weakly_canonical(options.report) == fs::weakly_canonical(options.output)) {
-    throw Error(ExitCode::kUsage, options.report + ": report and asset are the same file");
+// Two files that are one are most likely a slip; so is one of another kind in an output's place.
+void check_outputs(const BakeOptions& options) {
+  std::vector<std::pair<std::string, fs::path>> files{{"input", options.input}};
+  for (const auto& [name, file] : {std::pair("asset", &options.output), std::pair("report", &options.report),
+                                   std::pair("preview", &options.preview)}) {
+    if (file->empty()) continue;
+    check_folder(*file);
+    for (const auto& [other_name, other] : files) {
+      std::error_code ignored;
+      if (fs::equivalent(other, *file, ignored) || fs::weakly_canonical(other) == fs::weakly_canonical(*file)) {
+        throw Error(ExitCode::kUsage, *file + ": " + other_name + " and " + name + " are the same file");
+      }
+    }
+    files.emplace_back(name, *file);
   }
   check_replaceable(options.output, "SPHC", "an asset", options.force, 4);
+  check_replaceable(options.preview, "glTF", "a GLB file", options.force);
 }
 
 }  // namespace
@@ -37,20 +43,27 @@ ExitCode run_bake(const BakeOptions& options) {
       make_settings(options.profile, options.config.empty() ? "{}" : read_file(options.config), options.config);
   if (options.extremities) settings.fit.extremities = true;
   if (!fs::exists(options.input)) throw Error(ExitCode::kFile, options.input + ": no such file");
-  check_output(options);
+  check_outputs(options);
 
   Bake result;
+  std::string preview;
   {
     Progress progress("bake " + options.input + ":");
     result = bake(options.input, settings, [&](const std::string& stage) { progress.show(stage); });
+    if (!options.preview.empty()) {
+      progress.show("preview");
+      preview = preview_glb(result);
+    }
   }
-  // The report first: where it cannot be written, no asset without one stays behind.
+  // The asset last: where report or preview cannot be written, no asset without them stays behind.
   if (!options.report.empty()) write_atomically(options.report, bake_report_json(result));
+  if (!options.preview.empty()) write_atomically(options.preview, preview);
   write_atomically(options.output, {reinterpret_cast<const char*>(result.asset.data()), result.asset.size()});
 
   fmt::print("{}", bake_report_text(result));
   fmt::print("wrote {} ({} bytes)\n", options.output, result.asset.size());
   if (!options.report.empty()) fmt::print("wrote {}\n", options.report);
+  if (!options.preview.empty()) fmt::print("wrote {} ({} bytes)\n", options.preview, preview.size());
   const std::vector<std::string> missed = missed_targets(result);
   for (const std::string& target : missed)
     fmt::print(stderr, "spherechain: target missed: {}: {}\n", options.input, target);

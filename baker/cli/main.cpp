@@ -70,7 +70,8 @@ int main(int argc, char** argv) {
   bake_command->add_flag("--extremities", bake.extremities,
                          "Spheres in head, hands and feet too (profile balanced has them)");
   bake_command->add_option("--report", bake.report, "JSON report to write");
-  bake_command->add_flag("--force", bake.force, "Replace an output file that is not an asset");
+  bake_command->add_option("--preview", bake.preview, "glTF binary to write: regions, joints and spheres");
+  bake_command->add_flag("--force", bake.force, "Replace an output file of another kind");
   bake_command->callback([&] { run = [&] { return run_bake(bake); }; });
 
   InspectOptions inspect;

@@ -240,6 +240,13 @@ TEST_CASE("an output that is no asset is not overwritten without --force, nor is
   const auto precious = folder.write("thesis.txt", "years of work").string();
   check_error(run(fmt::format("bake {} -o {}", kHumanFile, precious)), 3, {"thesis.txt", "--force"});
   CHECK(contents(precious) == "years of work");
+  const auto glb = (folder.path / "p.glb").string();
+  check_error(run(fmt::format("bake {} -o {} --preview {}", kHumanFile, glb + ".sphc", precious)), 3,
+              {"thesis.txt", "not a GLB file", "--force"});
+  check_error(run(fmt::format("bake {} -o {} --preview {} --force", kHumanFile, glb, glb)), 2, {"p.glb", "same file"});
+  check_error(run(fmt::format("bake {} -o {} --preview /nowhere/p.glb", kHumanFile, glb)), 3, {"/nowhere"});
+  CHECK(contents(precious) == "years of work");
+  CHECK(files_in(folder.path) == 1);
   const auto input = folder.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").string();
   check_error(run(fmt::format("bake {} -o {} --force", input, input)), 2, {"same file"});
   CHECK(contents(input).rfind("v 0 0 0", 0) == 0);
