@@ -80,7 +80,7 @@ BoundSphere bind_sphere(const Mesh& mesh, const std::vector<Index>& surrounding,
   // Ray 0 of the rings points there too: pivots turn with the body.
   const Vec3 reference =
       sphere.region == kTorso ? frame.forward : Vec3(frame.up + 0.7 * frame.left + 0.3 * frame.forward);
-  bound.pivots = choose_pivots(mesh, carriers, sphere, reference, settings.rule);
+  bound.pivots = choose_pivots(mesh, carriers, sphere, reference, settings.rule, settings.pivots);
   Vec3 center = Vec3::Zero();
   for (const BoundPivot& pivot : bound.pivots) {
     center += pivot.weight * triangle_centroid(mesh, pivot.triangle);
@@ -154,11 +154,11 @@ Binding bind_spheres(const Character& character, const Regions& regions, const S
     BoundSphere bound =
         bind_sphere(character.body, surrounding[i], surrounding[i], spheres.spheres[i], regions.frame, settings);
     // Few and large triangles: those beyond the region's border carry the sphere too.
-    for (double radii = 2; bound.pivots.size() < 4 && radii <= 8; radii *= 2) {
+    for (double radii = 2; bound.pivots.empty() && radii <= 8; radii *= 2) {
       const std::vector<Index> around = triangles_around(character.body, spheres.spheres[i], radii);
       bound = bind_sphere(character.body, surrounding[i], around, spheres.spheres[i], regions.frame, settings);
     }
-    if (bound.pivots.size() < 4) {
+    if (bound.pivots.empty()) {
       throw Error(ExitCode::kSegmentation, character.file + ": sphere " + std::to_string(i) + " of the " +
                                                kRegionNames[spheres.spheres[i].region] +
                                                " finds no pivots that carry it around its " +

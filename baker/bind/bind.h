@@ -44,17 +44,20 @@ struct Binding {
 
 struct BindSettings {
   RefitRule rule = RefitRule::kCalibrated;
+  int pivots = 8;                   // of a sphere; calibrated: more where so many are ill-posed
   double penetration_depth = 0.30;  // that of the fit: bounds the detect radius
   double detect_quantile = 0.6;     // of the surrounding region's area, by distance from the centre
   double near_fraction = 0.7;       // of the rest distance: see near_fit
 };
 
-// Throws Error(kSegmentation) where a sphere has fewer than four triangles to hang on.
+// Throws Error(kSegmentation) where a sphere finds no pivots.
 Binding bind_spheres(const Character& character, const Regions& regions, const Spheres& spheres,
                      const BindSettings& settings);
 
-// The pivots of one sphere among the triangles of its surrounding region.
+// The pivots of one sphere among the triangles of its surrounding region. The paper's rule takes `count` of them, or
+// none where there are not as many. The calibrated rule takes `count`, or all where there are fewer, or up to 16 where
+// those would need weights whose magnitudes add up to more than 1.5; none where that does not help either.
 std::vector<BoundPivot> choose_pivots(const Mesh& mesh, const std::vector<Index>& triangles, const FittedSphere& sphere,
-                                      const Vec3& reference, RefitRule rule);
+                                      const Vec3& reference, RefitRule rule, int count);
 
 }  // namespace spherechain::baker

@@ -72,10 +72,11 @@ double sum_of_magnitudes(const std::vector<double>& weights) {
 }  // namespace
 
 std::vector<BoundPivot> choose_pivots(const Mesh& mesh, const std::vector<Index>& triangles, const FittedSphere& sphere,
-                                      const Vec3& reference, RefitRule rule) {
+                                      const Vec3& reference, RefitRule rule, int count) {
   std::vector<BoundPivot> pivots;
   if (rule == RefitRule::kPaper) {
-    const std::vector<Index> picked = pick(mesh, triangles, sphere, reference, {4, 0});
+    const std::vector<Index> picked = pick(mesh, triangles, sphere, reference, {count, 0});
+    if (picked.size() < static_cast<std::size_t>(count)) return {};
     for (const Index t : picked) pivots.push_back({t, 1.0 / static_cast<double>(picked.size())});
     return pivots;
   }
@@ -83,8 +84,8 @@ std::vector<BoundPivot> choose_pivots(const Mesh& mesh, const std::vector<Index>
   // on one side only, more of them and farther apart help.
   constexpr double kIllPosed = 1.5;
   double least = std::numeric_limits<double>::max();
-  for (const Pattern& pattern :
-       {Pattern{8, 0.35}, Pattern{8, 0.6}, Pattern{12, 0.5}, Pattern{16, 0.5}, Pattern{16, 0.9}}) {
+  for (const Pattern& pattern : {Pattern{count, 0.35}, Pattern{count, 0.6}, Pattern{std::max(count, 8), 0.6},
+                                 Pattern{std::max(count, 12), 0.5}, Pattern{16, 0.5}, Pattern{16, 0.9}}) {
     const std::vector<Index> picked = pick(mesh, triangles, sphere, reference, pattern);
     if (picked.size() < 4) return {};
     const std::vector<double> weights = solve_weights(mesh, picked, sphere.ball);

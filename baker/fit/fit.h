@@ -60,6 +60,7 @@ struct FitSettings {
   double penetration_depth = 0.30;  // PD of neighbours on a limb, and of torso levels
   double delta = 0.015;             // climb of the disk
   double limb_step = 0.0015;        // march of the circumference
+  int spheres_per_level = 2;        // N_s: 1 to 3
   bool extremities = true;          // spheres in head, hands and feet
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The climbing disk of section 3.2: N_s = 2 spheres a level, one for each half of the disk.
+// The climbing disk of section 3.2: N_s spheres a level, one for each part of the disk.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,32 +14,60 @@
 namespace spherechain::baker {
 namespace {
 
-struct Level {
-  double height;             // along frame.up from frame.origin
-  Vec3 disk;                 // centre of the disk
-  std::array<Ball, 2> half;  // phi1: left, right
+// A part of the disk between two planes along the body; phi1 in it.
+struct Part {
+  Side side;
+  double right, left;  // along frame.left from the disk's centre; the outermost parts end at the skin
+  Ball ball;
+};
 
-  double radius() const { return std::max(half[0].radius, half[1].radius); }
+struct Level {
+  double height;            // along frame.up from frame.origin
+  Vec3 disk;                // centre of the disk
+  std::vector<Part> parts;  // from left to right
+
+  double radius() const {
+    double radius = 0;
+    for (const Part& part : parts) radius = std::max(radius, part.ball.radius);
+    return radius;
+  }
 };
 
 class TorsoDisk {
  public:
-  TorsoDisk(const Mesh& mesh, const Regions& regions, int rays)
-      : torso_(mesh, triangles_of_region(regions, kTorso)), frame_(regions.frame), regions_(regions), rays_(rays) {}
+  TorsoDisk(const Mesh& mesh, const Regions& regions, const FitSettings& settings)
+      : torso_(mesh, triangles_of_region(regions, kTorso)),
+        frame_(regions.frame),
+        regions_(regions),
+        rays_(settings.rays),
+        parts_(settings.spheres_per_level) {}
 
-  // Nothing where a half of the disk meets no skin.
+  // Nothing where a part of the disk meets no skin.
   std::optional<Level> at(double height) const {
     // Rays leave through shoulders and hips where limbs were cut off: those meet nothing and say nothing.
     const Ring first = cast_ring(torso_, axis_at(height), frame_.up, frame_.left, rays_);
     const Vec3 centroid = first.section_centroid();
     Level level{height, centroid, {}};
-    // The halves are those of the body: the disk stays in the plane of symmetry.
+    // The sides are those of the body: the disk stays in the plane of symmetry.
     level.disk -= (centroid - frame_.origin).dot(frame_.left) * frame_.left;
     const Ring disk = cast_ring(torso_, level.disk, frame_.up, frame_.left, rays_);
-    for (std::size_t side = 0; side < 2; ++side) {
-      const auto ball = half_ball(disk, side == 0 ? 1.0 : -1.0);
+    double left = 0, right = 0;
+    for (const auto& hit : disk.hits) {
+      if (!hit) continue;
+      const double across = (hit->point - disk.center).dot(frame_.left);
+      left = std::max(left, across);
+      right = std::max(right, -across);
+    }
+    // Parts of equal width on either side of the plane of symmetry.
+    const auto plane = [&](int i) {
+      const double f = 1 - 2.0 * i / parts_;
+      return f * (f > 0 ? left : right);
+    };
+    for (int i = 0; i < parts_; ++i) {
+      const auto ball = phi1(disk, plane(i + 1), plane(i));
       if (!ball) return std::nullopt;
-      level.half[side] = *ball;
+      const Side side = 2 * i + 1 == parts_ ? Side::kNone : 2 * i < parts_ ? Side::kLeft : Side::kRight;
+      level.parts.push_back({side, plane(i + 1), plane(i), *ball});
     }
     return level;
   }
@@ -52,29 +80,29 @@ class TorsoDisk {
     return regions_.hip + f * (regions_.chest - regions_.hip);
   }
 
-  // phi1: "located in the center of the diameter" (section 3.1): the middle of the half-section's extent sideways and
-  // front to back, and half of the larger extent.
-  std::optional<Ball> half_ball(const Ring& disk, double sign) const {
-    double side = 0, front = -std::numeric_limits<double>::max(), back = std::numeric_limits<double>::max();
+  // "Located in the center of the diameter" (section 3.1): the middle of the part's extent sideways and front to back,
+  // and half of the larger extent.
+  std::optional<Ball> phi1(const Ring& disk, double right, double left) const {
+    double front = -std::numeric_limits<double>::max(), back = std::numeric_limits<double>::max();
     int count = 0;
+    const double on_plane = 1e-9 * frame_.height;
     for (const auto& hit : disk.hits) {
       if (!hit) continue;
       const Vec3 d = hit->point - disk.center;
-      if (sign * d.dot(frame_.left) < -1e-9 * frame_.height) continue;
-      side = std::max(side, sign * d.dot(frame_.left));
+      if (d.dot(frame_.left) < right - on_plane || d.dot(frame_.left) > left + on_plane) continue;
       front = std::max(front, d.dot(frame_.forward));
       back = std::min(back, d.dot(frame_.forward));
       ++count;
     }
-    if (count < 3 || side <= 0 || front <= back) return std::nullopt;
-    return Ball{disk.center + 0.5 * sign * side * frame_.left + 0.5 * (front + back) * frame_.forward,
-                0.5 * std::max(side, front - back)};
+    if (count < 3 || left <= right || front <= back) return std::nullopt;
+    return Ball{disk.center + 0.5 * (left + right) * frame_.left + 0.5 * (front + back) * frame_.forward,
+                0.5 * std::max(left - right, front - back)};
   }
 
   SurfaceQuery torso_;
   const BodyFrame& frame_;
   const Regions& regions_;
-  int rays_;
+  int rays_, parts_;
 };
 
 // The sphere adjustment: towards the disk's centre in its plane, scaled down, to the least mean |F|. The radius with
@@ -104,7 +132,9 @@ Ball adjust(const Ball& phi1, const Vec3& disk, const Vec3& up, const Mesh& mesh
 }
 
 double mean_depth(const Level& a, const Level& b) {
-  return 0.5 * (penetration_depth(a.half[0], b.half[0]) + penetration_depth(a.half[1], b.half[1]));
+  double sum = 0;
+  for (std::size_t i = 0; i < a.parts.size(); ++i) sum += penetration_depth(a.parts[i].ball, b.parts[i].ball);
+  return sum / static_cast<double>(a.parts.size());
 }
 
 // The disk climbs by delta from the crotch; between two of its positions a level's place is found by bisection. The
@@ -146,7 +176,7 @@ std::pair<double, double> band_of(const std::vector<Level>& levels, std::size_t 
 void fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& settings, const std::string& file,
                Spheres& out) {
   const BodyFrame& frame = regions.frame;
-  const std::vector<Level> levels = place_levels(TorsoDisk(mesh, regions, settings.rays), regions, settings);
+  const std::vector<Level> levels = place_levels(TorsoDisk(mesh, regions, settings), regions, settings);
   if (levels.empty()) {
     throw Error(ExitCode::kSegmentation, file + ": the torso has no level between hip and neck that a disk fits in");
   }
@@ -155,21 +185,23 @@ void fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& sett
     if (regions.of_triangle[t] != kTorso) continue;
     for (const Index v : mesh.triangles[t]) in_torso[v] = true;
   }
-  // A vertex in the plane of symmetry is both halves'.
+  // A vertex in the plane between two parts is both parts'.
   const double on_plane = 1e-6 * frame.height;
+  constexpr double kEverything = std::numeric_limits<double>::max();
   for (std::size_t i = 0; i < levels.size(); ++i) {
     const auto [low, high] = band_of(levels, i);
-    for (const Side side : {Side::kLeft, Side::kRight}) {
-      const double sign = side == Side::kLeft ? 1 : -1;
-      TorsoFit fit{levels[i].half[side == Side::kLeft ? 0 : 1], {}, {}, {}};
+    for (const Part& part : levels[i].parts) {
+      const double left = &part == &levels[i].parts.front() ? kEverything : part.left + on_plane,
+                   right = &part == &levels[i].parts.back() ? -kEverything : part.right - on_plane;
+      TorsoFit fit{part.ball, {}, {}, {}};
       for (Index v = 0; v < mesh.positions.size(); ++v) {
         const double h = (mesh.positions[v] - frame.origin).dot(frame.up);
-        const double across = sign * (mesh.positions[v] - levels[i].disk).dot(frame.left);
-        if (in_torso[v] && h >= low && h < high && across >= -on_plane) fit.vertices.push_back(v);
+        const double across = (mesh.positions[v] - levels[i].disk).dot(frame.left);
+        if (in_torso[v] && h >= low && h < high && across >= right && across <= left) fit.vertices.push_back(v);
       }
       fit.phi1_adjusted = adjust(fit.phi1, levels[i].disk, frame.up, mesh, fit.vertices);
       fit.phi2 = fit.vertices.empty() ? fit.phi1 : minimum_enclosing_ball(mesh, fit.vertices);
-      out.spheres.push_back({fit.phi1_adjusted, kTorso, static_cast<int>(i), side, frame.up, false});
+      out.spheres.push_back({fit.phi1_adjusted, kTorso, static_cast<int>(i), part.side, frame.up, false});
       out.torso.push_back(std::move(fit));
     }
     out.level_heights.push_back(levels[i].height);

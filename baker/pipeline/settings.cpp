@@ -110,11 +110,16 @@ BakeSettings make_settings(const std::string& profile, const std::string& text, 
   settings.bind.penetration_depth = settings.fit.penetration_depth;
   reader.number("delta", settings.fit.delta, 1e-4, 0.2);
   reader.number("limb_step", settings.fit.limb_step, 1e-4, 0.05);
+  reader.integer("spheres_per_level", settings.fit.spheres_per_level, 1, 3);
   reader.boolean("extremities", settings.fit.extremities);
   reader.vector("facing", settings.segment.facing);
   reader.text("refit", {"paper", "calibrated"}, [&](const std::string& rule) {
     settings.bind.rule = rule == "paper" ? RefitRule::kPaper : RefitRule::kCalibrated;
   });
+  // One pivot is a centre without a radius; fewer than four cannot put a centre where they like.
+  const bool paper = settings.bind.rule == RefitRule::kPaper;
+  settings.bind.pivots = paper ? 4 : 8;
+  reader.integer("pivots", settings.bind.pivots, paper ? 2 : 4, 16);
   reader.number("detect_quantile", settings.bind.detect_quantile, 0, 1);
   reader.number("near_fraction", settings.bind.near_fraction, 0, 0.99);
   if (const json* targets = reader.object("targets")) {
@@ -140,10 +145,12 @@ std::string to_json(const BakeSettings& settings) {
   out["penetration_depth"] = settings.fit.penetration_depth;
   out["delta"] = settings.fit.delta;
   out["limb_step"] = settings.fit.limb_step;
+  out["spheres_per_level"] = settings.fit.spheres_per_level;
   out["extremities"] = settings.fit.extremities;
   out["facing"] = nullptr;
   if (const auto& facing = settings.segment.facing) out["facing"] = {facing->x(), facing->y(), facing->z()};
   out["refit"] = settings.bind.rule == RefitRule::kPaper ? "paper" : "calibrated";
+  out["pivots"] = settings.bind.pivots;
   out["detect_quantile"] = settings.bind.detect_quantile;
   out["near_fraction"] = settings.bind.near_fraction;
   json targets = json::object();

@@ -70,6 +70,8 @@ ordered_json fit_entry(const Ball& ball, const TorsoFit& fit, const Mesh& mesh) 
           {"F", std::move(f)}};
 }
 
+const char* name_of(Side side) { return side == Side::kLeft ? "left" : side == Side::kRight ? "right" : "none"; }
+
 ordered_json fit_section(const Bake& bake) {
   const Mesh& mesh = bake.character.body;
   ordered_json torso = ordered_json::array();
@@ -79,7 +81,7 @@ ordered_json fit_section(const Bake& bake) {
     for (const Index v : fit.vertices) vertices.push_back(to_json(mesh.positions[v]));
     torso.push_back({{"sphere", i},
                      {"level", bake.spheres.spheres[i].level},
-                     {"side", bake.spheres.spheres[i].side == Side::kLeft ? "left" : "right"},
+                     {"side", name_of(bake.spheres.spheres[i].side)},
                      {"vertices", std::move(vertices)},
                      {"phi1", fit_entry(fit.phi1, fit, mesh)},
                      {"phi1_adjusted", fit_entry(fit.phi1_adjusted, fit, mesh)},
@@ -150,6 +152,13 @@ ordered_json counts_section(const Bake& bake) {
           {"near_pairs_detect", bake.binding.near_detect.size()}};
 }
 
+// Fewest and most of a sphere.
+std::pair<std::size_t, std::size_t> pivots_used(const Bake& bake) {
+  const auto fewer = [](const BoundSphere& a, const BoundSphere& b) { return a.pivots.size() < b.pivots.size(); };
+  const auto [fewest, most] = std::minmax_element(bake.binding.spheres.begin(), bake.binding.spheres.end(), fewer);
+  return {fewest->pivots.size(), most->pivots.size()};
+}
+
 ordered_json bind_section(const Bake& bake) {
   ordered_json spheres = ordered_json::array();
   for (std::size_t i = 0; i < bake.binding.spheres.size(); ++i) {
@@ -162,7 +171,9 @@ ordered_json bind_section(const Bake& bake) {
                        {"moved_by_refit_at_rest", (sphere.rest.center - bake.spheres.spheres[i].ball.center).norm()}});
   }
   const OwnerDistance owner = owner_distance(bake.character, bake.regions, bake.binding);
+  const auto [fewest, most] = pivots_used(bake);
   return {{"refit", bake.binding.rule == RefitRule::kPaper ? "paper" : "calibrated"},
+          {"pivots", {{"asked", bake.settings.bind.pivots}, {"fewest", fewest}, {"most", most}}},
           {"covered_area", covered_area(bake)},
           {"owner_distance", {{"mean", owner.mean}, {"p95", owner.p95}, {"max", owner.max}}},
           {"spheres", std::move(spheres)}};
@@ -219,12 +230,16 @@ std::string bake_report_text(const Bake& bake) {
   out += fmt::format("skin to its sphere: mean {:.2f} %, p95 {:.2f} %, max {:.2f} % of the height\n", 100 * owner.mean,
                      100 * owner.p95, 100 * owner.max);
 
+  const auto [fewest, most] = pivots_used(bake);
+  out += fmt::format("pivots a sphere: {} asked, {} to {} used\n", bake.settings.bind.pivots, fewest, most);
+
   out += fmt::format("\nmean |F| in mm (max)\n{:<8} {:>14} {:>14} {:>14}\n", "sphere", "phi1", "phi1'", "phi2");
   std::array<double, 3> sums{};
   for (std::size_t i = 0; i < bake.spheres.torso.size(); ++i) {
     const TorsoFit& fit = bake.spheres.torso[i];
-    out += fmt::format("{:<8}", fmt::format("{} {}{}", i, bake.spheres.spheres[i].side == Side::kLeft ? 'L' : 'R',
-                                            bake.spheres.spheres[i].level));
+    const FittedSphere& sphere = bake.spheres.spheres[i];
+    const char side = sphere.side == Side::kLeft ? 'L' : sphere.side == Side::kRight ? 'R' : ' ';
+    out += fmt::format("{:<8}", fmt::format("{} {}{}", i, side, sphere.level));
     std::size_t column = 0;
     for (const Ball* ball : {&fit.phi1, &fit.phi1_adjusted, &fit.phi2}) {
       const FError error = f_error(*ball, mesh, fit.vertices);

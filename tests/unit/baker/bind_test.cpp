@@ -56,6 +56,39 @@ TEST_CASE("the paper's pivots are four, of equal weight, around the sphere") {
   }
 }
 
+TEST_CASE(
+    "as many pivots as asked carry a sphere: the paper's of equal weight, the calibrated exactly, more if they must") {
+  const Bake& bake = baked_human();
+  const auto bound = [&](RefitRule rule, int pivots) {
+    BindSettings settings;
+    settings.rule = rule;
+    settings.pivots = pivots;
+    return bind_spheres(bake.character, bake.regions, bake.spheres, settings).spheres;
+  };
+  for (const int count : {2, 8, 16}) {
+    for (const BoundSphere& sphere : bound(RefitRule::kPaper, count)) {
+      CHECK(sphere.pivots.size() == static_cast<std::size_t>(count));
+      CHECK(sphere.pivots.front().weight == doctest::Approx(1.0 / count));
+      CHECK(sphere.rest.radius > 0);
+    }
+  }
+  for (const int count : {4, 16}) {
+    const std::vector<BoundSphere> spheres = bound(RefitRule::kCalibrated, count);
+    std::size_t as_asked = 0;
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+      Vec3 center = Vec3::Zero();
+      for (const BoundPivot& pivot : spheres[i].pivots) {
+        center += pivot.weight * triangle_centroid(bake.character.body, pivot.triangle);
+      }
+      CHECK((center - bake.spheres.spheres[i].ball.center).norm() < 1e-9);
+      CHECK(spheres[i].weight_sum <= 1.5);
+      CHECK(spheres[i].pivots.size() >= static_cast<std::size_t>(count));
+      as_asked += spheres[i].pivots.size() == static_cast<std::size_t>(count) ? 1u : 0u;
+    }
+    CHECK(as_asked > spheres.size() / 2);
+  }
+}
+
 TEST_CASE("four pivots in one plane are rejected as ill-posed, more are taken") {
   // A flat disk of triangles cannot carry a centre above it; the same disk with a rim at the centre's height can.
   Mesh mesh;
@@ -68,12 +101,12 @@ TEST_CASE("four pivots in one plane are rejected as ill-posed, more are taken") 
   std::vector<Index> all(mesh.triangles.size());
   for (Index t = 0; t < all.size(); ++t) all[t] = t;
   const FittedSphere above{{{0, 0, 0.3}, 1}, 0, -1, Side::kNone, Vec3::UnitZ(), false};
-  CHECK(choose_pivots(mesh, all, above, Vec3::UnitX(), RefitRule::kCalibrated).empty());
+  CHECK(choose_pivots(mesh, all, above, Vec3::UnitX(), RefitRule::kCalibrated, 8).empty());
   for (int i = 0; i < 16; ++i) {
     add({std::cos(0.4 * i), std::sin(0.4 * i), 0.7});
     all.push_back(static_cast<Index>(all.size()));
   }
-  const auto pivots = choose_pivots(mesh, all, above, Vec3::UnitX(), RefitRule::kCalibrated);
+  const auto pivots = choose_pivots(mesh, all, above, Vec3::UnitX(), RefitRule::kCalibrated, 8);
   REQUIRE(pivots.size() >= 8);
   double magnitude = 0;
   for (const BoundPivot& pivot : pivots) magnitude += std::abs(pivot.weight);

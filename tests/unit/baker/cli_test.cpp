@@ -77,6 +77,8 @@ TEST_CASE("bake writes the same bytes as the library, a report and a table, and 
 
   const json report = json::parse(contents(files.report));
   CHECK(report["import"]["body_triangles"] == 26756);
+  CHECK(report["bind"]["pivots"]["asked"] == 8);
+  CHECK(report["bind"]["owner_distance"]["mean"] < 0.01);
   CHECK(report["counts"]["spheres"] == baked_human().spheres.spheres.size());
   CHECK(report["counts"]["why"].get<std::string>().find("touch the skin") != std::string::npos);
   for (const json& sphere : report["fit"]["torso"]) {
@@ -209,9 +211,27 @@ TEST_CASE("broken settings end with 3 and name the setting") {
   check_error(bake_with(R"({"rays": 3})"), 3, {"rays", "8"});
   check_error(bake_with(R"({"penetration_depth": "much"})"), 3, {"penetration_depth"});
   check_error(bake_with(R"({"extremities": 1})"), 3, {"extremities", "true"});
+  check_error(bake_with(R"({"spheres_per_level": 4})"), 3, {"spheres_per_level", "3"});
+  check_error(bake_with(R"({"pivots": 3})"), 3, {"pivots", "4"});
+  check_error(bake_with(R"({"refit": "paper", "pivots": 1})"), 3, {"pivots", "2"});
   check_error(bake_with(R"({"facing": [0, 0, 0]})"), 3, {"facing"});
   check_error(bake_with(R"({"targets": {"speed": 1}})"), 3, {"speed"});
   CHECK(!fs::exists(folder.path / "out.sphc"));
+}
+
+TEST_CASE("a profile is where the settings start; the number of pivots follows the refit rule") {
+  using spherechain::baker::make_settings;
+  const auto balanced = make_settings("balanced", "{}", ""), paper = make_settings("paper", "{}", ""),
+             mixed = make_settings("balanced", R"({"refit": "paper", "spheres_per_level": 3})", ""),
+             many = make_settings("paper", R"({"extremities": true, "pivots": 16})", "");
+  CHECK(balanced.fit.extremities);
+  CHECK(balanced.bind.pivots == 8);
+  CHECK(!paper.fit.extremities);
+  CHECK(paper.bind.pivots == 4);
+  CHECK(mixed.bind.pivots == 4);
+  CHECK(mixed.fit.spheres_per_level == 3);
+  CHECK(many.fit.extremities);
+  CHECK(many.bind.pivots == 16);
 }
 
 TEST_CASE("a mesh that cannot be segmented ends with 4") {

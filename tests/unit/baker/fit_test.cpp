@@ -8,8 +8,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <set>
 
 #include "baked_human.h"
+#include "human.h"
 
 using namespace spherechain::baker;
 
@@ -237,6 +239,59 @@ TEST_CASE("the sphere adjustment lowers mean |F| of every torso sphere or leaves
   }
   table += fmt::format("{:<8} {:>8.1f} {:>8.1f} {:>8.1f}", "mean", 1e3 * means[0], 1e3 * means[1], 1e3 * means[2]);
   MESSAGE(table);
+}
+
+TEST_CASE("a torso level has one, two or three spheres, and its parts share out all of its band") {
+  const HumanFixture& fixture = human();
+  const Mesh& mesh = fixture.character.body;
+  const BodyFrame& frame = fixture.regions.frame;
+  const std::array<std::vector<Side>, 3> sides{
+      {{Side::kNone}, {Side::kLeft, Side::kRight}, {Side::kLeft, Side::kNone, Side::kRight}}};
+  std::vector<double> mean_f;
+  for (std::size_t parts = 1; parts <= 3; ++parts) {
+    FitSettings settings;
+    settings.spheres_per_level = static_cast<int>(parts);
+    Spheres torso;
+    fit_torso(mesh, fixture.regions, settings, "human", torso);
+    const std::size_t levels = torso.level_heights.size();
+    REQUIRE(torso.spheres.size() == parts * levels);
+    mean_f.push_back(0);
+    for (std::size_t level = 0; level < levels; ++level) {
+      std::set<Index> vertices;
+      double last = 1e9, low = 1e9, high = -1e9;
+      for (std::size_t i = 0; i < parts; ++i) {
+        const FittedSphere& sphere = torso.spheres[parts * level + i];
+        const TorsoFit& fit = torso.torso[parts * level + i];
+        CHECK(sphere.side == sides[parts - 1][i]);
+        CHECK(sphere.level == static_cast<int>(level));
+        // From left to right.
+        CHECK(sphere.ball.center.dot(frame.left) < last);
+        last = sphere.ball.center.dot(frame.left);
+        CHECK(fit.vertices.size() > 10);
+        CHECK(f_error(fit.phi1_adjusted, mesh, fit.vertices).mean_abs <=
+              f_error(fit.phi1, mesh, fit.vertices).mean_abs);
+        mean_f.back() += f_error(fit.phi1_adjusted, mesh, fit.vertices).mean_abs / static_cast<double>(parts * levels);
+        vertices.insert(fit.vertices.begin(), fit.vertices.end());
+        for (const Index v : fit.vertices) {
+          low = std::min(low, mesh.positions[v].dot(frame.up));
+          high = std::max(high, mesh.positions[v].dot(frame.up));
+        }
+      }
+      std::size_t in_band = 0;
+      std::vector<bool> torso_vertex(mesh.positions.size(), false);
+      for (const Index t : triangles_of_region(fixture.regions, kTorso)) {
+        for (const Index v : mesh.triangles[t]) torso_vertex[v] = true;
+      }
+      for (Index v = 0; v < mesh.positions.size(); ++v) {
+        const double height = mesh.positions[v].dot(frame.up);
+        in_band += torso_vertex[v] && height >= low && height <= high ? 1u : 0u;
+      }
+      CHECK(vertices.size() == in_band);
+    }
+  }
+  CHECK(mean_f[1] < mean_f[0]);
+  MESSAGE(fmt::format("mean |F| of phi1' with 1, 2, 3 spheres a level: {:.1f} {:.1f} {:.1f} mm", 1e3 * mean_f[0],
+                      1e3 * mean_f[1], 1e3 * mean_f[2]));
 }
 
 TEST_CASE("the minimum enclosing ball of a cube's corners is its circumscribed sphere") {
