@@ -1,0 +1,96 @@
+import uPlot from 'uplot';
+import { css, h } from './dom.js';
+import { number } from './format.js';
+
+// Per frame: tests, pairs and microseconds of M1 and M2. The line is the frame shown; a click goes to a frame.
+
+const PADDING = 12; // pixels, as in style.css
+const TITLE = 28;
+const CHARTS = [
+  { title: 'Tests', series: [['M1', 'm1', (f) => f.m1?.tests], ['M2', 'm2', (f) => f.m2?.tests]] },
+  {
+    title: 'Pairs',
+    series: [['M1, chain by chain', 'm1', (f) => f.m1?.pairs], ['M2', 'm2', (f) => f.m2?.pairs]],
+  },
+  {
+    title: 'Time, µs',
+    digits: 2,
+    series: [['M1', 'm1', (f) => f.m1?.us], ['M2', 'm2', (f) => f.m2?.us], ['refit', 'refit', (f) => f.refit_us]],
+  },
+];
+
+function options(series, size) {
+  const axis = (size) => ({
+    size,
+    stroke: () => css('--muted'),
+    grid: { stroke: () => css('--line'), width: 1 },
+    ticks: { show: false },
+    font: `10px ${css('--font')}`,
+    gap: 3,
+  });
+  return {
+    ...size,
+    legend: { show: false },
+    padding: [6, 8, 0, 0],
+    cursor: { y: false, drag: { x: false, y: false }, sync: { key: 'frames' }, points: { size: 5 } },
+    scales: { x: { time: false }, y: { range: (_, low, high) => [Math.min(0, low), high > 0 ? 1.12 * high : 1] } },
+    axes: [
+      { ...axis(18), space: 40, incrs: [1, 2, 5, 10, 20, 50, 100, 200] },
+      { ...axis(38), space: 24, values: (_, ticks) => ticks.map(number) },
+    ],
+    series: [
+      {},
+      ...series.map(([label, name]) => ({ label, stroke: () => css(`--${name}`), width: 1.75, points: { show: false } })),
+    ],
+  };
+}
+
+function chart({ title, digits, series }, store, model, size) {
+  const frames = model.play.map((_, i) => i);
+  const values = series.map(([, , read]) => model.play.map((frame) => read(frame) ?? null));
+  const readouts = series.map(() => h('output', {}));
+  const box = h('div', { class: 'chart' });
+  const plot = new uPlot(options(series, size), [frames, ...values], box);
+  const line = h('div', { class: 'now' });
+  plot.over.append(line);
+  plot.over.addEventListener('click', (event) => {
+    const left = event.clientX - plot.over.getBoundingClientRect().left;
+    store.set({ frame: plot.posToIdx(left), playing: false });
+  });
+  const follow = ({ frame }) => {
+    line.style.left = `${plot.valToPos(frame, 'x')}px`;
+    readouts.forEach((readout, i) => (readout.textContent = digits ? (values[i][frame] ?? NaN).toFixed(digits) : number(values[i][frame])));
+  };
+  // The first layout comes after this turn; a redraw before it would lose the scales.
+  queueMicrotask(() => {
+    store.watch(['frame'], follow);
+    store.watch(['theme'], () => plot.redraw());
+  });
+  const legend = series.map(([label, name], i) =>
+    h('span', { class: 'key' }, h('i', { style: `background: var(--${name})` }), label, ' ', readouts[i]),
+  );
+  return {
+    element: h('section', { class: 'chart-box', 'aria-label': `${title} per frame` }, h('h3', {}, title, legend), box),
+    resize: (size) => {
+      plot.setSize(size);
+      follow(store.state);
+    },
+  };
+}
+
+export function fillCharts(panel, store, model) {
+  if (model.play.length < 2) {
+    panel.append(h('p', { class: 'note' }, 'One frame only: nothing to draw over time.'));
+    return;
+  }
+  // uPlot needs a size to start with: the charts are made when their tab is first shown.
+  let charts = null;
+  new ResizeObserver(() => {
+    if (panel.hidden) return;
+    const height = Math.floor((panel.clientHeight - PADDING) / CHARTS.length) - TITLE;
+    const size = { width: panel.clientWidth - 2 * PADDING, height: Math.min(Math.max(height, 64), 150) };
+    if (charts) return charts.forEach(({ resize }) => resize(size));
+    charts = CHARTS.map((spec) => chart(spec, store, model, size));
+    panel.append(...charts.map(({ element }) => element));
+  }).observe(panel);
+}
