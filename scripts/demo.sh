@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
 # The main job, end to end: bakes the MakeHuman body that Debian's assimp-testmodels installs, plays two animations of 40
-# frames and draws what it found. Results go to out/demo.
+# frames and draws what it found. Results go to out/demo; the page to open is human.html.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/install_packages.sh
 cmake --preset release >/dev/null
 cmake --build --preset release --target spherechain draw_asset draw_character
+page=build/release/share/spherechain/viewer.html
+if command -v npm >/dev/null; then cmake --build --preset release --target viewer || true; fi
 
 human=/usr/share/assimp/models/Collada/human.zae
 tool=build/release/bin/spherechain
@@ -29,6 +31,16 @@ for pose in hands_on_hips arms_crossed hand_behind_head leg_over_leg deep_squat;
     -o "$out/$pose.png" >/dev/null
 done
 
+if [[ -f $page ]]; then
+  "$tool" view "$out/human.sphc" --source "$human" --poses samples/poses/animation_arms.json --frames 40 \
+    --report "$out/human_report.json" -o "$out/human.html" >/dev/null
+fi
+
 echo
 echo "Wrote, in $out:"
 ls -1 "$out" | sed 's/^/  /'
+if [[ -f $page ]]; then
+  echo "Open $out/human.html in a browser."
+else
+  echo "The page of \`spherechain view\` is left out: it is built where Node and npm are."
+fi

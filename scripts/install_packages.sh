@@ -7,6 +7,8 @@ command -v dpkg-query >/dev/null || { echo "install_packages: no dpkg here; inst
 missing=()
 while read -r package; do
   [[ -z $package || $package == \#* ]] && continue
+  # Debian's Node would replace parts of one that came from elsewhere.
+  [[ $package == nodejs || $package == npm ]] && command -v node >/dev/null && command -v npm >/dev/null && continue
   dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed || missing+=("$package")
 done < packages.txt
 [[ ${#missing[@]} -eq 0 ]] && exit 0
