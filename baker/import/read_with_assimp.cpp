@@ -1,31 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <assimp/Importer.hpp>
-#include <functional>
 
+#include "import/assimp_scene.h"
 #include "import/import.h"
 #include "mesh/error.h"
 
 namespace spherechain::baker {
 namespace {
 
-Vec3 transform(const aiMatrix4x4t<double>& m, const aiVector3D& p) {
-  const double x = p.x, y = p.y, z = p.z;
-  return {m.a1 * x + m.a2 * y + m.a3 * z + m.a4, m.b1 * x + m.b2 * y + m.b3 * z + m.b4,
-          m.c1 * x + m.c2 * y + m.c3 * z + m.c4};
-}
-
-aiMatrix4x4t<double> to_double(const aiMatrix4x4& m) {
-  return {m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2, m.d3, m.d4};
-}
-
-void append(const aiMesh& mesh, const aiMatrix4x4t<double>& to_world, const std::string& name, SourceMesh& out) {
-  const auto base = static_cast<Index>(out.positions.size());
-  for (unsigned v = 0; v < mesh.mNumVertices; ++v) out.positions.push_back(transform(to_world, mesh.mVertices[v]));
+void append(const MeshInstance& instance, const std::string& name, SourceMesh& out) {
+  const aiMesh& mesh = *instance.mesh;
+  const Index base = instance.first_vertex;
+  for (unsigned v = 0; v < mesh.mNumVertices; ++v)
+    out.positions.push_back(instance.placement * to_vec3(mesh.mVertices[v]));
   // A mirroring transform turns triangles inside out.
-  const bool flip = to_world.Determinant() < 0;
+  const bool flip = instance.placement.linear().determinant() < 0;
   for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
     const aiFace& face = mesh.mFaces[f];
     if (face.mNumIndices != 3) {
@@ -51,21 +44,17 @@ void append(const aiMesh& mesh, const aiMatrix4x4t<double>& to_world, const std:
 
 SourceMesh read_with_assimp(const std::filesystem::path& path) {
   Assimp::Importer importer;
+  // Sticks that importers put where a file has bones and no mesh are no character.
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   const aiScene* scene = importer.ReadFile(path.string(), aiProcess_Triangulate);
   const std::string name = path.string();
   if (scene == nullptr)
     throw Error(ExitCode::kFile, name + ": not a mesh that assimp reads (" + importer.GetErrorString() + ")");
   SourceMesh out;
   out.importer = "assimp";
-  if (scene->mRootNode != nullptr) {
-    const std::function<void(const aiNode&, const aiMatrix4x4t<double>&)> visit =
-        [&](const aiNode& node, const aiMatrix4x4t<double>& parent) {
-          const aiMatrix4x4t<double> to_world = parent * to_double(node.mTransformation);
-          for (unsigned m = 0; m < node.mNumMeshes; ++m) append(*scene->mMeshes[node.mMeshes[m]], to_world, name, out);
-          for (unsigned c = 0; c < node.mNumChildren; ++c) visit(*node.mChildren[c], to_world);
-        };
-    visit(*scene->mRootNode, aiMatrix4x4t<double>());
-  }
+  const AssimpScene flat = flatten(*scene, name);
+  for (const MeshInstance& instance : flat.instances) append(instance, name, out);
+  out.rig = read_rig(*scene, flat, name);
   // Formats without units are taken as metres. FBX says its own, in centimetres.
   double centimetres = 0;
   float centimetres_f = 0;

@@ -57,6 +57,10 @@ struct Channel {
   std::vector<double> times, values;
 };
 
+// A channel's value at a time, held before its first and after its last key: 3 numbers, 4 (a unit quaternion, x y z w)
+// or 1, as its path says; the rest are 0.
+Eigen::Vector4d sample(const Channel& channel, double seconds);
+
 struct Clip {
   std::string name;
   double duration = 0;  // seconds, of the last key
@@ -72,5 +76,8 @@ struct SourceRig {
   std::vector<Clip> clips;
   Affine to_rest = Affine::Identity();  // from the scene's axes and units to those of the rest positions
 };
+
+// Every node's transform into the scene.
+std::vector<Affine> world_of(const std::vector<Node>& nodes);
 
 }  // namespace spherechain::baker

@@ -6,73 +6,33 @@
 namespace spherechain::baker {
 namespace {
 
-Eigen::Index width_of(ChannelPath path) {
-  if (path == ChannelPath::kRotation) return 4;
-  return path == ChannelPath::kMorphWeight ? 1 : 3;
-}
-
 // A clip of one key is a pose: it shows for a frame.
 double length_of(const Clip& clip) { return std::max(clip.duration, 1.0 / 30); }
 
-Eigen::Quaterniond to_quaternion(const Eigen::Vector4d& v) {
-  const Eigen::Quaterniond q(v[3], v[0], v[1], v[2]);
-  return q.norm() > 0 ? q.normalized() : Eigen::Quaterniond::Identity();
-}
-
 }  // namespace
 
-Eigen::Vector4d sample(const Channel& channel, double seconds) {
-  const Eigen::Index width = width_of(channel.path);
-  const bool cubic = channel.interpolation == Interpolation::kCubicSpline;
-  // `part` of a cubic key: 0 in-tangent, 1 value, 2 out-tangent.
-  const auto value = [&](std::size_t key, std::size_t part) {
-    const std::size_t entry = cubic ? 3 * key + part : key;
-    Eigen::Vector4d out = Eigen::Vector4d::Zero();
-    for (Eigen::Index i = 0; i < width; ++i) {
-      out[i] = channel.values[entry * static_cast<std::size_t>(width) + static_cast<std::size_t>(i)];
-    }
-    return out;
-  };
-  const auto finished = [&](const Eigen::Vector4d& v) {
-    return channel.path == ChannelPath::kRotation ? to_quaternion(v).coeffs() : v;
-  };
-  const std::vector<double>& times = channel.times;
-  const auto above = std::upper_bound(times.begin(), times.end(), seconds);
-  if (above == times.begin()) return finished(value(0, 1));
-  const auto low = static_cast<std::size_t>(above - times.begin()) - 1;
-  if (above == times.end() || channel.interpolation == Interpolation::kStep) return finished(value(low, 1));
-  const double span = times[low + 1] - times[low], u = (seconds - times[low]) / span;
-  const Eigen::Vector4d a = value(low, 1), b = value(low + 1, 1);
-  if (cubic) {
-    const double u2 = u * u, u3 = u2 * u;
-    return finished((2 * u3 - 3 * u2 + 1) * a + span * (u3 - 2 * u2 + u) * value(low, 2) + (3 * u2 - 2 * u3) * b +
-                    span * (u3 - u2) * value(low + 1, 0));
+std::vector<Affine> world_at(const SourceRig& rig, const Clip& clip, double seconds) {
+  std::vector<Node> nodes = rig.nodes;
+  for (const Channel& channel : clip.channels) {
+    if (channel.path == ChannelPath::kMorphWeight) continue;
+    const Eigen::Vector4d v = sample(channel, seconds);
+    Node& node = nodes[channel.target];
+    if (channel.path == ChannelPath::kTranslation) node.translation = v.head<3>();
+    if (channel.path == ChannelPath::kRotation) node.rotation = Eigen::Quaterniond(v);
+    if (channel.path == ChannelPath::kScale) node.scale = v.head<3>();
+    node.local.linear() = node.rotation.toRotationMatrix() * node.scale.asDiagonal();
+    node.local.translation() = node.translation;
   }
-  if (channel.path == ChannelPath::kRotation) return to_quaternion(a).slerp(u, to_quaternion(b)).coeffs();
-  return (1 - u) * a + u * b;
+  return world_of(nodes);
 }
 
 Deformation sample(const SourceRig& rig, const Clip& clip, double seconds) {
   Deformation out;
   for (const Morph& morph : rig.morphs) out.morphs.push_back(morph.rest_weight);
-  std::vector<Node> nodes = rig.nodes;
   for (const Channel& channel : clip.channels) {
-    const Eigen::Vector4d v = sample(channel, seconds);
-    if (channel.path == ChannelPath::kMorphWeight) {
-      out.morphs[channel.target] = v[0];
-      continue;
-    }
-    Node& node = nodes[channel.target];
-    if (channel.path == ChannelPath::kTranslation) node.translation = v.head<3>();
-    if (channel.path == ChannelPath::kRotation) node.rotation = to_quaternion(v);
-    if (channel.path == ChannelPath::kScale) node.scale = v.head<3>();
-    node.local.linear() = node.rotation.toRotationMatrix() * node.scale.asDiagonal();
-    node.local.translation() = node.translation;
+    if (channel.path == ChannelPath::kMorphWeight) out.morphs[channel.target] = sample(channel, seconds)[0];
   }
-  std::vector<Affine> world;
-  for (const Node& node : nodes) {
-    world.push_back(node.parent < 0 ? node.local : world[static_cast<std::size_t>(node.parent)] * node.local);
-  }
+  const std::vector<Affine> world = world_at(rig, clip, seconds);
   for (const Bone& bone : rig.bones) out.bones.push_back(rig.to_rest * world[bone.node] * bone.inverse_bind);
   return out;
 }

@@ -8,9 +8,8 @@
 
 namespace spherechain::baker {
 
-// A channel's value at a time, held before its first and after its last key: 3 numbers, 4 (a unit quaternion, x y z w)
-// or 1, as its path says; the rest are 0.
-Eigen::Vector4d sample(const Channel& channel, double seconds);
+// Every node's transform into the scene, as `clip` has it at a time.
+std::vector<Affine> world_at(const SourceRig& rig, const Clip& clip, double seconds);
 
 // The rig's bones with the nodes as `clip` has them at a time. Morphs no channel moves keep their rest weight.
 Deformation sample(const SourceRig& rig, const Clip& clip, double seconds);

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "import/assimp_scene.h"
+#include "mesh/error.h"
+
+namespace spherechain::baker {
+namespace {
+
+constexpr double kTicksPerSecond = 25;  // where a file does not say, by assimp's convention
+
+using Channels = std::map<std::string, const aiNodeAnim*>;
+
+// Keys in seconds, sorted; of several at one time the first.
+class Keys {
+ public:
+  Keys(const std::string& file, const std::string& node, double ticks) : file_(file), node_(node), ticks_(ticks) {}
+
+  template <typename Key, typename Values>
+  Channel read(ChannelPath path, Index target, const Key* keys, unsigned count, const Values& values) const {
+    std::vector<const Key*> order;
+    for (unsigned k = 0; k < count; ++k) {
+      order.push_back(&keys[k]);
+      bool finite = std::isfinite(keys[k].mTime);
+      for (const double v : values(keys[k])) finite = finite && std::isfinite(v);
+      if (!finite) throw Error(ExitCode::kFile, file_ + ": a key of '" + node_ + "' is not finite");
+    }
+    std::stable_sort(order.begin(), order.end(), [](const Key* a, const Key* b) { return a->mTime < b->mTime; });
+    Channel channel{path, target, Interpolation::kLinear, {}, {}};
+    for (const Key* key : order) {
+      const double seconds = key->mTime / ticks_;
+      if (!channel.times.empty() && seconds <= channel.times.back()) continue;
+      channel.times.push_back(seconds);
+      for (const double v : values(*key)) channel.values.push_back(v);
+    }
+    return channel;
+  }
+
+ private:
+  const std::string& file_;
+  const std::string& node_;
+  double ticks_;
+};
+
+std::vector<Channel> read_node(const aiNodeAnim& animation, Index target, double ticks, const std::string& file) {
+  const std::string name = animation.mNodeName.C_Str();
+  const Keys keys(file, name, ticks);
+  const auto vector = [](const aiVectorKey& key) {
+    return std::array<double, 3>{key.mValue.x, key.mValue.y, key.mValue.z};
+  };
+  const auto turn = [](const aiQuatKey& key) {
+    return std::array<double, 4>{key.mValue.x, key.mValue.y, key.mValue.z, key.mValue.w};
+  };
+  std::vector<Channel> channels{
+      keys.read(ChannelPath::kTranslation, target, animation.mPositionKeys, animation.mNumPositionKeys, vector),
+      keys.read(ChannelPath::kRotation, target, animation.mRotationKeys, animation.mNumRotationKeys, turn),
+      keys.read(ChannelPath::kScale, target, animation.mScalingKeys, animation.mNumScalingKeys, vector)};
+  channels.erase(std::remove_if(channels.begin(), channels.end(), [](const Channel& c) { return c.times.empty(); }),
+                 channels.end());
+  return channels;
+}
+
+Affine local_at(const aiNode& link, const std::vector<Channel>& channels, double seconds) {
+  Node node;
+  node.local = to_affine(link.mTransformation);
+  if (channels.empty()) return node.local;
+  decompose(node);
+  for (const Channel& channel : channels) {
+    const Eigen::Vector4d v = sample(channel, seconds);
+    if (channel.path == ChannelPath::kTranslation) node.translation = v.head<3>();
+    if (channel.path == ChannelPath::kRotation) node.rotation = Eigen::Quaterniond(v);
+    if (channel.path == ChannelPath::kScale) node.scale = v.head<3>();
+  }
+  return Affine(Eigen::Translation3d(node.translation) * node.rotation * Eigen::Scaling(node.scale));
+}
+
+// Between the keys of a turn about a pivot the node itself moves on an arc: keys on it, 30 a second.
+std::vector<double> on_arcs(std::vector<double> times) {
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  std::vector<double> out;
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    out.push_back(times[k]);
+    const double gap = k + 1 < times.size() ? times[k + 1] - times[k] : 0;
+    constexpr double kMost = 256;
+    const double steps = std::min(std::ceil(gap * 30), kMost);
+    for (double step = 1; step < steps; ++step) out.push_back(times[k] + gap * step / steps);
+  }
+  return out;
+}
+
+// The channels of a node's pivots, folded into one translation, rotation and scale of the node.
+std::vector<Channel> fold(const std::vector<const aiNode*>& chain, const Channels& by_name, Index target, double ticks,
+                          const std::string& file) {
+  std::vector<std::vector<Channel>> links;
+  std::vector<double> times;
+  for (const aiNode* link : chain) {
+    const auto found = by_name.find(link->mName.C_Str());
+    links.push_back(found == by_name.end() ? std::vector<Channel>() : read_node(*found->second, target, ticks, file));
+    for (const Channel& channel : links.back()) times.insert(times.end(), channel.times.begin(), channel.times.end());
+  }
+  if (times.empty()) return {};
+  times = on_arcs(std::move(times));
+  Channel move{ChannelPath::kTranslation, target, Interpolation::kLinear, times, {}},
+      turn{ChannelPath::kRotation, target, Interpolation::kLinear, times, {}},
+      scale{ChannelPath::kScale, target, Interpolation::kLinear, times, {}};
+  for (const double seconds : times) {
+    Node node;
+    for (std::size_t l = 0; l < chain.size(); ++l) node.local = node.local * local_at(*chain[l], links[l], seconds);
+    decompose(node);
+    const Eigen::Vector4d q = node.rotation.coeffs();
+    move.values.insert(move.values.end(), node.translation.begin(), node.translation.end());
+    turn.values.insert(turn.values.end(), q.begin(), q.end());
+    scale.values.insert(scale.values.end(), node.scale.begin(), node.scale.end());
+  }
+  return {move, turn, scale};
+}
+
+// "Mesh" or "Mesh*3": the mesh's name, or its node's.
+bool is_for(const aiMeshMorphAnim& animation, const MeshInstance& instance, const AssimpScene& flat) {
+  std::string name = animation.mName.C_Str();
+  if (name == instance.mesh->mName.C_Str() || name == flat.nodes[instance.node].name) return true;
+  name = name.substr(0, name.rfind('*'));
+  return name == instance.mesh->mName.C_Str() || name == flat.nodes[instance.node].name;
+}
+
+void read_morph_weights(const aiMeshMorphAnim& animation, const MeshInstance& instance, double ticks,
+                        const std::string& file, Clip& clip) {
+  const std::string name = animation.mName.C_Str();
+  for (unsigned a = 0; a < instance.mesh->mNumAnimMeshes; ++a) {
+    const auto weight = [&](const aiMeshMorphKey& key) {
+      double sum = 0;
+      for (unsigned i = 0; i < key.mNumValuesAndWeights; ++i) sum += key.mValues[i] == a ? key.mWeights[i] : 0.0;
+      return std::array<double, 1>{sum};
+    };
+    Channel channel =
+        Keys(file, name, ticks)
+            .read(ChannelPath::kMorphWeight, instance.first_morph + a, animation.mKeys, animation.mNumKeys, weight);
+    if (!channel.times.empty()) clip.channels.push_back(std::move(channel));
+  }
+}
+
+// A clip begins with its first key, wherever on the file's time line that is.
+void start_at_zero(Clip& clip) {
+  double first = std::numeric_limits<double>::max();
+  for (const Channel& channel : clip.channels) first = std::min(first, channel.times.front());
+  for (Channel& channel : clip.channels) {
+    for (double& time : channel.times) time -= first;
+    clip.duration = std::max(clip.duration, channel.times.back());
+  }
+}
+
+}  // namespace
+
+std::vector<Clip> read_clips(const aiScene& scene, const AssimpScene& flat, const std::string& file) {
+  std::vector<Clip> clips;
+  for (unsigned a = 0; a < scene.mNumAnimations; ++a) {
+    const aiAnimation& animation = *scene.mAnimations[a];
+    const double ticks = animation.mTicksPerSecond > 0 ? animation.mTicksPerSecond : kTicksPerSecond;
+    Clip clip;
+    clip.name = animation.mName.length > 0 ? animation.mName.C_Str() : std::to_string(a);
+    Channels by_name;
+    for (unsigned c = 0; c < animation.mNumChannels; ++c)
+      by_name.emplace(animation.mChannels[c]->mNodeName.C_Str(), animation.mChannels[c]);
+    for (Index n = 0; n < flat.nodes.size(); ++n) {
+      const std::string& name = flat.nodes[n].name;
+      if (flat.by_name.at(name) != n) continue;
+      const auto own = by_name.find(name);
+      // A channel of the node's own name is all of the node, its pivots included.
+      const std::vector<Channel> channels = own != by_name.end() ? read_node(*own->second, n, ticks, file)
+                                                                 : fold(flat.chains[n], by_name, n, ticks, file);
+      clip.channels.insert(clip.channels.end(), channels.begin(), channels.end());
+    }
+    for (unsigned m = 0; m < animation.mNumMorphMeshChannels; ++m) {
+      for (const MeshInstance& instance : flat.instances) {
+        const aiMeshMorphAnim& morph = *animation.mMorphMeshChannels[m];
+        if (is_for(morph, instance, flat)) read_morph_weights(morph, instance, ticks, file, clip);
+      }
+    }
+    if (clip.channels.empty()) continue;
+    start_at_zero(clip);
+    clips.push_back(std::move(clip));
+  }
+  return clips;
+}
+
+}  // namespace spherechain::baker

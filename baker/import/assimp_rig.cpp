@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "import/assimp_scene.h"
+#include "mesh/error.h"
+
+namespace spherechain::baker {
+namespace {
+
+using Influences = std::vector<std::pair<double, Index>>;  // weight, bone
+
+Index add_bone(Index node, const Affine& inverse_bind, std::vector<Bone>& bones) {
+  constexpr double kSame = 1e-5;  // singles
+  for (Index b = 0; b < bones.size(); ++b) {
+    if (bones[b].node == node && bones[b].inverse_bind.isApprox(inverse_bind, kSame)) return b;
+  }
+  bones.push_back({node, inverse_bind});
+  return static_cast<Index>(bones.size() - 1);
+}
+
+VertexWeights largest(Influences influences) {
+  std::sort(influences.begin(), influences.end(),
+            [](const auto& a, const auto& b) { return a.first != b.first ? a.first > b.first : a.second < b.second; });
+  influences.resize(std::min(influences.size(), kMaxInfluences));
+  double sum = 0;
+  for (const auto& [weight, bone] : influences) sum += weight;
+  VertexWeights out;
+  for (std::size_t k = 0; k < influences.size(); ++k) {
+    out.weight[k] = influences[k].first / sum;
+    out.joint[k] = influences[k].second;
+  }
+  return out;
+}
+
+// What no bone holds moves with the mesh's node.
+void read_weights(const MeshInstance& instance, const AssimpScene& flat, const std::string& file, SourceRig& rig) {
+  const aiMesh& mesh = *instance.mesh;
+  const Affine to_mesh = instance.placement.inverse();
+  std::vector<Influences> influences(mesh.mNumVertices);
+  for (unsigned b = 0; b < mesh.mNumBones; ++b) {
+    const aiBone& bone = *mesh.mBones[b];
+    const auto refuse = [&](const std::string& what) {
+      throw Error(ExitCode::kFile, file + ": bone '" + bone.mName.C_Str() + "' " + what);
+    };
+    const auto node = flat.by_name.find(bone.mName.C_Str());
+    if (node == flat.by_name.end() || bone.mNumWeights == 0) continue;
+    const Affine inverse_bind = to_affine(bone.mOffsetMatrix) * to_mesh;
+    if (!inverse_bind.matrix().allFinite()) refuse("has a bind pose that is not finite");
+    const Index index = add_bone(node->second, inverse_bind, rig.bones);
+    for (unsigned w = 0; w < bone.mNumWeights; ++w) {
+      const aiVertexWeight& weight = bone.mWeights[w];
+      if (weight.mVertexId >= mesh.mNumVertices)
+        refuse("moves vertex " + std::to_string(weight.mVertexId) + " of " + std::to_string(mesh.mNumVertices));
+      if (!std::isfinite(weight.mWeight)) refuse("has a weight that is not finite");
+      if (weight.mWeight > 0) influences[weight.mVertexId].emplace_back(weight.mWeight, index);
+    }
+  }
+  const bool held = std::none_of(influences.begin(), influences.end(), [](const auto& i) { return i.empty(); });
+  if (!held && to_mesh.matrix().allFinite()) {
+    const Index rigid = add_bone(instance.node, flat.world[instance.node].inverse(), rig.bones);
+    for (Influences& own : influences) {
+      if (own.empty()) own.emplace_back(1.0, rigid);
+    }
+  }
+  for (Influences& own : influences) rig.weights.push_back(largest(std::move(own)));
+}
+
+void read_morphs(const MeshInstance& instance, const std::string& file, std::vector<Morph>& morphs) {
+  const aiMesh& mesh = *instance.mesh;
+  for (unsigned a = 0; a < mesh.mNumAnimMeshes; ++a) {
+    const aiAnimMesh& target = *mesh.mAnimMeshes[a];
+    Morph morph;
+    morph.name = target.mName.C_Str();
+    for (unsigned v = 0; target.HasPositions() && v < std::min(target.mNumVertices, mesh.mNumVertices); ++v) {
+      const Vec3 delta = instance.placement.linear() * (to_vec3(target.mVertices[v]) - to_vec3(mesh.mVertices[v]));
+      if (!delta.allFinite()) {
+        throw Error(ExitCode::kFile, file + ": morph target '" + morph.name + "' has a position that is not finite");
+      }
+      if (delta.isZero(0)) continue;
+      morph.vertices.push_back(instance.first_vertex + v);
+      morph.deltas.push_back(delta);
+    }
+    morphs.push_back(std::move(morph));
+  }
+}
+
+// Whether a skeleton or a clip can move a mesh of the scene.
+bool anything_moves(const AssimpScene& flat, const std::vector<Clip>& clips) {
+  std::set<Index> animated;
+  for (const Clip& clip : clips) {
+    for (const Channel& channel : clip.channels) {
+      if (channel.path != ChannelPath::kMorphWeight) animated.insert(channel.target);
+    }
+  }
+  return std::any_of(flat.instances.begin(), flat.instances.end(), [&](const MeshInstance& instance) {
+    if (instance.mesh->mNumBones > 0) return true;
+    int node = static_cast<int>(instance.node);
+    while (node >= 0 && animated.count(static_cast<Index>(node)) == 0)
+      node = flat.nodes[static_cast<std::size_t>(node)].parent;
+    return node >= 0;
+  });
+}
+
+}  // namespace
+
+SourceRig read_rig(const aiScene& scene, const AssimpScene& flat, const std::string& file) {
+  SourceRig rig;
+  rig.clips = read_clips(scene, flat, file);
+  for (const MeshInstance& instance : flat.instances) read_morphs(instance, file, rig.morphs);
+  if (anything_moves(flat, rig.clips)) {
+    for (const MeshInstance& instance : flat.instances) read_weights(instance, flat, file, rig);
+  }
+  if (!flat.instances.empty() && rig.bones.empty() && rig.morphs.empty()) return {};
+  rig.nodes = flat.nodes;
+  return rig;
+}
+
+}  // namespace spherechain::baker

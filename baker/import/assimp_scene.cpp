@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "import/assimp_scene.h"
+
+#include <cmath>
+
+#include "mesh/error.h"
+
+namespace spherechain::baker {
+namespace {
+
+bool is_pivot(const aiNode& node) {
+  return std::string_view(node.mName.C_Str()).find("_$AssimpFbx$_") != std::string_view::npos && node.mNumMeshes == 0 &&
+         node.mNumChildren > 0;
+}
+
+void visit(const aiScene& scene, const aiNode& node, int parent, std::vector<const aiNode*> chain,
+           const std::string& file, AssimpScene& out) {
+  chain.push_back(&node);
+  if (!to_affine(node.mTransformation).matrix().allFinite()) {
+    throw Error(ExitCode::kFile, file + ": node '" + node.mName.C_Str() + "' has a transform that is not finite");
+  }
+  int self = parent;
+  if (!is_pivot(node)) {
+    Node read;
+    read.name = node.mName.C_Str();
+    read.parent = parent;
+    for (const aiNode* link : chain) read.local = read.local * to_affine(link->mTransformation);
+    decompose(read);
+    self = static_cast<int>(out.nodes.size());
+    const auto index = static_cast<Index>(self);
+    out.by_name.emplace(read.name, index);
+    out.world.push_back(parent < 0 ? read.local : out.world[static_cast<std::size_t>(parent)] * read.local);
+    out.nodes.push_back(std::move(read));
+    out.chains.push_back(std::move(chain));
+    chain.clear();
+    for (unsigned m = 0; m < node.mNumMeshes; ++m) {
+      out.instances.push_back({scene.mMeshes[node.mMeshes[m]], index, out.world[index], 0, 0});
+    }
+  }
+  for (unsigned c = 0; c < node.mNumChildren; ++c) visit(scene, *node.mChildren[c], self, chain, file, out);
+}
+
+// What a skeleton at rest does to a mesh beyond its node's transform, which most formats leave out of a skin: other
+// axes, other units. What is no quarter turn is the pose, and that the rest positions keep out.
+Affine axes_and_units(const Affine& shown) {
+  double scale = std::cbrt(std::abs(shown.linear().determinant()));
+  if (!(scale > 0) || !std::isfinite(scale)) return Affine::Identity();
+  Eigen::Matrix3d axes = (shown.linear() / scale).array().round();
+  if (!(axes * axes.transpose()).isIdentity()) axes.setIdentity();
+  constexpr double kSameUnit = 0.01;
+  if (std::abs(scale - 1) < kSameUnit) scale = 1;
+  Affine out = Affine::Identity();
+  out.linear() = scale * axes;
+  return out;
+}
+
+// Where skinned meshes are at rest: where their bones were bound. The first mesh stays where its node has it, but for
+// axes and units; the others fit to it by a bone they share, or else by the skeleton's rest pose.
+class SkinPlacement {
+ public:
+  explicit SkinPlacement(const AssimpScene& flat) : flat_(flat) {}
+
+  Affine place(const MeshInstance& instance) {
+    const aiMesh& mesh = *instance.mesh;
+    const Affine placement = find(mesh, instance.placement);
+    for (unsigned b = 0; b < mesh.mNumBones; ++b) {
+      inverse_binds_.emplace(mesh.mBones[b]->mName.C_Str(),
+                             to_affine(mesh.mBones[b]->mOffsetMatrix) * placement.inverse());
+    }
+    return placement;
+  }
+
+ private:
+  Affine find(const aiMesh& mesh, const Affine& by_node) {
+    const Affine in_rest_pose = shown(mesh, by_node);
+    if (inverse_binds_.empty()) {
+      const Affine placement = axes_and_units(in_rest_pose * by_node.inverse()) * by_node;
+      rest_pose_to_rest_ = placement * in_rest_pose.inverse();
+      return placement;
+    }
+    Affine placement = rest_pose_to_rest_ * in_rest_pose;
+    for (unsigned b = 0; b < mesh.mNumBones; ++b) {
+      const auto bound = inverse_binds_.find(mesh.mBones[b]->mName.C_Str());
+      if (bound == inverse_binds_.end()) continue;
+      placement = bound->second.inverse() * to_affine(mesh.mBones[b]->mOffsetMatrix);
+      break;
+    }
+    constexpr double kSame = 1e-4;  // singles
+    return placement.isApprox(by_node, kSame) || !placement.matrix().allFinite() ? by_node : placement;
+  }
+
+  // Mesh space into the scene, as the highest of the mesh's bones has it in the rest pose.
+  Affine shown(const aiMesh& mesh, const Affine& by_node) const {
+    Affine out = by_node;
+    Index highest = kNoIndex;
+    for (unsigned b = 0; b < mesh.mNumBones; ++b) {
+      const auto node = flat_.by_name.find(mesh.mBones[b]->mName.C_Str());
+      if (node == flat_.by_name.end() || node->second >= highest) continue;
+      highest = node->second;
+      out = flat_.world[highest] * to_affine(mesh.mBones[b]->mOffsetMatrix);
+    }
+    return out;
+  }
+
+  const AssimpScene& flat_;
+  Affine rest_pose_to_rest_ = Affine::Identity();
+  std::unordered_map<std::string, Affine> inverse_binds_;  // by bone name, of the meshes placed so far
+};
+
+}  // namespace
+
+Affine to_affine(const aiMatrix4x4& m) {
+  Affine out;
+  out.matrix() << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4;
+  return out;
+}
+
+void decompose(Node& node) {
+  const Eigen::Matrix3d linear = node.local.linear();
+  node.translation = node.local.translation();
+  node.scale = linear.colwise().norm();
+  if (linear.determinant() < 0) node.scale = -node.scale;
+  if ((node.scale.array() != 0).all()) {
+    Eigen::Matrix3d turn = linear * node.scale.cwiseInverse().asDiagonal();
+    // A unit matrix stays one: the quaternion of an unsheared matrix needs no orthogonalising.
+    if (!turn.isUnitary(1e-6)) turn = Eigen::Affine3d(turn).rotation();
+    node.rotation = Eigen::Quaterniond(turn).normalized();
+  }
+}
+
+AssimpScene flatten(const aiScene& scene, const std::string& file) {
+  AssimpScene out;
+  if (scene.mRootNode != nullptr) visit(scene, *scene.mRootNode, -1, {}, file, out);
+  SkinPlacement skins(out);
+  Index vertices = 0, morphs = 0;
+  for (MeshInstance& instance : out.instances) {
+    if (instance.mesh->mNumBones > 0) instance.placement = skins.place(instance);
+    instance.first_vertex = vertices;
+    instance.first_morph = morphs;
+    vertices += instance.mesh->mNumVertices;
+    morphs += instance.mesh->mNumAnimMeshes;
+  }
+  return out;
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <assimp/scene.h>
+
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "import/source_rig.h"
+
+namespace spherechain::baker {
+
+inline Vec3 to_vec3(const aiVector3D& v) { return {v.x, v.y, v.z}; }
+Affine to_affine(const aiMatrix4x4& m);
+
+// Translation, rotation and scale of `local`; what it shears is lost to them.
+void decompose(Node& node);
+
+// A mesh of the scene where a node shows it.
+struct MeshInstance {
+  const aiMesh* mesh;
+  Index node;
+  Affine placement;  // mesh space -> rest positions
+  Index first_vertex, first_morph;
+};
+
+// An assimp scene as a flat list of nodes, parents before children. The rest positions are its world.
+struct AssimpScene {
+  std::vector<Node> nodes;
+  // The scene's nodes each of them stands for, the last one of the same name. They are more than one in FBX, where
+  // assimp unfolds a node's pivots into a chain of nodes, which no clip of another file would fit.
+  std::vector<std::vector<const aiNode*>> chains;
+  std::vector<Affine> world;
+  std::unordered_map<std::string, Index> by_name;  // the first of that name, as assimp refers to them
+  std::vector<MeshInstance> instances;
+};
+
+// Throws Error(kFile) that begins with `file` where a transform is not finite.
+AssimpScene flatten(const aiScene& scene, const std::string& file);
+
+std::vector<Clip> read_clips(const aiScene& scene, const AssimpScene& flat, const std::string& file);
+
+// Skeleton, skin, morph targets and clips; empty where nothing moves a mesh. Throws Error(kFile) where a number of it
+// is not finite.
+SourceRig read_rig(const aiScene& scene, const AssimpScene& flat, const std::string& file);
+
+}  // namespace spherechain::baker
