@@ -20,32 +20,50 @@ double mean_abs_f(const Bake& bake) {
   return sum / static_cast<double>(bake.spheres.torso.size());
 }
 
-}  // namespace
+using Progress = std::function<void(const std::string&)>;
 
-Bake bake(const std::filesystem::path& input, const BakeSettings& settings,
-          const std::function<void(const std::string&)>& progress) {
-  Bake out;
-  out.settings = settings;
-  const auto stage = [&](const char* name, const auto& run) {
-    if (progress) progress(name);
-    const auto start = std::chrono::steady_clock::now();
-    run();
-    out.times.push_back({name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
-  };
-  stage("import", [&] { out.character = import_character(input); });
-  stage("segment", [&] { out.regions = segment(out.character, settings.segment); });
-  stage("fit", [&] { out.spheres = fit_spheres(out.character, out.regions, settings.fit); });
-  stage("chains", [&] {
+template <typename Run>
+void stage(Bake& out, const Progress& progress, const char* name, const Run& run) {
+  if (progress) progress(name);
+  const auto start = std::chrono::steady_clock::now();
+  run();
+  out.times.push_back({name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
+}
+
+void run_after_segmentation(Bake& out, const Progress& progress) {
+  const BakeSettings& settings = out.settings;
+  stage(out, progress, "fit", [&] { out.spheres = fit_spheres(out.character, out.regions, settings.fit); });
+  stage(out, progress, "chains", [&] {
     std::vector<LimbPlace> limbs;
     for (std::uint8_t i = 0; i < kTorso; ++i) limbs.push_back({i, out.regions.limbs[i].left, out.regions.limbs[i].top});
     out.chains = build_chains(out.spheres, limbs);
   });
-  stage("bind", [&] { out.binding = bind_spheres(out.character, out.regions, out.spheres, settings.bind); });
-  stage("rig", [&] { out.joints = place_joints(out.character, out.regions); });
-  stage("write", [&] {
+  stage(out, progress, "bind",
+        [&] { out.binding = bind_spheres(out.character, out.regions, out.spheres, settings.bind); });
+  stage(out, progress, "rig", [&] { out.joints = place_joints(out.character, out.regions); });
+  stage(out, progress, "write", [&] {
     out.asset =
         serialize({out.character, out.regions, out.spheres, out.chains, out.binding, out.joints, to_json(settings)});
   });
+}
+
+}  // namespace
+
+Bake bake(const std::filesystem::path& input, const BakeSettings& settings, const Progress& progress) {
+  Bake out;
+  out.settings = settings;
+  stage(out, progress, "import", [&] { out.character = import_character(input); });
+  stage(out, progress, "segment", [&] { out.regions = segment(out.character, settings.segment); });
+  run_after_segmentation(out, progress);
+  return out;
+}
+
+Bake rebake(const Bake& segmented, const BakeSettings& settings) {
+  Bake out;
+  out.settings = settings;
+  out.character = segmented.character;
+  out.regions = segmented.regions;
+  run_after_segmentation(out, {});
   return out;
 }
 

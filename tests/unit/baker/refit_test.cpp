@@ -3,12 +3,12 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
 #include "baked_human.h"
 #include "jobs.h"
+#include "measure/refit_error.h"
 
 using namespace spherechain::baker;
 using spherechain::RadiusKind;
@@ -16,60 +16,6 @@ using spherechain::RadiusKind;
 namespace {
 
 using spherechain::test::refit;
-
-// The sphere that keeps its rest F to the vertices around it best: the least squares of (r - |c - v_i|) - F_i over
-// centre and radius, by Gauss and Newton from the rest sphere moved with the vertices' centroid.
-struct BestFit {
-  std::vector<Index> vertices;  // source vertices of the surrounding region with |F| < r / 2 at rest
-  std::vector<double> rest_f;
-  Ball rest;
-
-  Ball fitted_to(const std::vector<Vec3>& rest_positions, const std::vector<Vec3>& positions) const {
-    Ball ball = rest;
-    for (const Index v : vertices)
-      ball.center += (positions[v] - rest_positions[v]) / static_cast<double>(vertices.size());
-    for (int pass = 0; pass < 30; ++pass) {
-      Eigen::Matrix4d normal = Eigen::Matrix4d::Zero();
-      Eigen::Vector4d gradient = Eigen::Vector4d::Zero();
-      for (std::size_t i = 0; i < vertices.size(); ++i) {
-        const Vec3 d = ball.center - positions[vertices[i]];
-        const double residual = ball.radius - d.norm() - rest_f[i];
-        Eigen::Vector4d row;
-        row << -d / d.norm(), 1;
-        normal += row * row.transpose();
-        gradient += row * residual;
-      }
-      const Eigen::Vector4d step = normal.ldlt().solve(-gradient);
-      ball.center += step.head<3>();
-      ball.radius += step[3];
-      if (step.norm() < 1e-10) break;
-    }
-    return ball;
-  }
-};
-
-// About the fitted sphere, whatever the refit rule: the skin's own motion is what both rules are judged by.
-std::vector<BestFit> best_fits(const Bake& bake) {
-  std::vector<BestFit> fits(bake.spheres.spheres.size());
-  std::vector<std::vector<bool>> taken(fits.size(), std::vector<bool>(bake.character.source_positions.size(), false));
-  for (std::size_t i = 0; i < fits.size(); ++i) fits[i].rest = bake.spheres.spheres[i].ball;
-  std::vector<Index> source_of_body(bake.character.body.positions.size(), 0);
-  for (Index v = 0; v < bake.character.body_of_source.size(); ++v) {
-    if (bake.character.body_of_source[v] != kNoIndex) source_of_body[bake.character.body_of_source[v]] = v;
-  }
-  for (std::size_t t = 0; t < bake.character.body.triangles.size(); ++t) {
-    const std::uint32_t s = bake.binding.sphere_of_triangle[t];
-    for (const Index w : bake.character.body.triangles[t]) {
-      const Index v = source_of_body[w];
-      const double f = fits[s].rest.radius - (bake.character.source_positions[v] - fits[s].rest.center).norm();
-      if (taken[s][v] || std::abs(f) >= 0.5 * fits[s].rest.radius) continue;
-      taken[s][v] = true;
-      fits[s].vertices.push_back(v);
-      fits[s].rest_f.push_back(f);
-    }
-  }
-  return fits;
-}
 
 struct Errors {
   std::vector<double> center, radius;  // millimetres; fraction of the best fit's radius
@@ -92,13 +38,13 @@ struct Errors {
 
 Errors refit_errors(const Bake& bake) {
   const spherechain::Asset asset = open_asset_of(bake);
-  const std::vector<BestFit> fits = best_fits(bake);
+  const std::vector<SkinFollower> followers = skin_followers(bake);
   Errors errors;
   for (const AnimationFrame& frame : animation_frames()) {
     const auto result = refit(asset, pack(frame.positions), RadiusKind::kFit);
     REQUIRE(result.status == spherechain::Status::kOk);
     for (std::size_t i = 0; i < result.spheres.size(); ++i) {
-      const Ball best = fits[i].fitted_to(bake.character.source_positions, frame.positions);
+      const Ball best = followers[i].at(frame.positions);
       const spherechain::Sphere& s = result.spheres[i];
       errors.center.push_back(1e3 * (Vec3(s.x, s.y, s.z) - best.center).norm());
       errors.radius.push_back(std::abs(static_cast<double>(s.radius) - best.radius) / best.radius);

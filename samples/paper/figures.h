@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "claims.h"
+#include "plot.h"
+
+namespace spherechain::paper {
+
+Figure accuracy_figure(const Results& results);      // Figure 13
+Figure shape_figure(const Results& results);         // its claim
+Figure running_time_figure(const Results& results);  // Figure 15
+Figure sphere_count_figure(const Results& results);  // 46 or 80
+// What a setting brings, a line a series.
+struct SweepLine {
+  std::string series, label;
+  Style style;
+};
+Figure sweep_figure(const Results& results, const std::string& setting, const std::vector<SweepLine>& lines);
+Figure quality_figure(const Results& results);
+
+}  // namespace spherechain::paper

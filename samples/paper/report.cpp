@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report.h"
+
+#include <fmt/format.h>
+
+#include "figures.h"
+#include "write/write.h"
+
+namespace spherechain::paper {
+namespace {
+
+struct ShownColumn {
+  std::string column, header;
+  int digits = 0;  // after the point
+  double scale = 1;
+};
+
+struct ShownTable {
+  std::vector<std::string> header;
+  std::vector<std::vector<std::string>> rows;
+};
+
+ShownTable show(const Table& table, const std::vector<ShownColumn>& columns) {
+  ShownTable out;
+  for (const ShownColumn& column : columns) out.header.push_back(column.header);
+  for (std::size_t r = 0; r < table.rows.size(); ++r) {
+    out.rows.emplace_back();
+    for (const ShownColumn& column : columns) {
+      const Cell& cell = table.at(r, column.column);
+      out.rows.back().push_back(cell.number ? fmt::format("{:.{}f}", column.scale * *cell.number, column.digits)
+                                            : cell.word);
+    }
+  }
+  return out;
+}
+
+struct Section {
+  std::string title;
+  std::vector<std::string> text;
+  std::vector<Figure> figures;
+  std::vector<ShownTable> tables;
+};
+
+std::vector<Section> sections(const Results& results) {
+  std::vector<Section> out;
+  out.push_back({"What the paper claims",
+                 {"Every verdict is computed from the run's tables by the rule beside it."},
+                 {},
+                 {show(judge_claims(results), {{"paper_says", "The paper says"},
+                                               {"verdict", "Verdict"},
+                                               {"finding", "Finding"},
+                                               {"rule", "Rule"},
+                                               {"where", "Where"}})}});
+  out.push_back(
+      {"Figure 13: the three fits of the torso",
+       {"phi1 is the sphere of the climbing disk, phi1' the same after the sphere adjustment, phi2 the minimum "
+        "enclosing "
+        "ball, read in two ways: around the vertices of the sphere's band of the torso (as the bake report has it), or "
+        "around the colliding points of the disk's rays alone. Eccentricity is that of the ellipse with the section's "
+        "second moments, 0 for a circle. Left and right spheres mirror each other, so that the eight are four shapes.",
+        "The paper finds on its body: sphere 0: phi2 better in the first half of the colliding points; sphere 1: phi1' "
+        "there; 2 and 3 like 0 and 1; 4: phi2 from r8; 5: phi2 in r0 to r25; 6: phi1' before r16; 7: phi1' after r16. "
+        "On "
+        "this one:"},
+       {accuracy_figure(results), shape_figure(results)},
+       {show(results.accuracy.spheres, {{"sphere", "Sphere"},
+                                        {"level", "Level"},
+                                        {"side", "Side"},
+                                        {"eccentricity_half", "Eccentricity, half", 2},
+                                        {"eccentricity_section", "whole section", 2},
+                                        {"rays_phi1_mm", "mean |F| phi1 (mm)", 1},
+                                        {"rays_phi1_adjusted_mm", "phi1'", 1},
+                                        {"rays_phi2_mm", "phi2", 1},
+                                        {"rays_phi2_rays_mm", "phi2 of the rays", 1},
+                                        {"phi1_adjusted_better_at", "phi1' better at"},
+                                        {"phi2_better_at", "phi2 better at"}})}});
+  out.push_back(
+      {"Figure 15: time of a frame",
+       {"The runtime's own jobs, scalar, on one core, at the paper's radius: " + results.machine +
+        ". In every repetition each frame and method takes its turn; a time is the median of the repetitions."},
+       {running_time_figure(results)},
+       {}});
+  out.push_back({"46 or 80 spheres",
+                 {"Table 1 puts every limb in three chains, L and R in two each, T in three, D in one: 3x + 2t + 3|T| "
+                  "+ |D| entries "
+                  "for x limb and t torso spheres. The paper's two numbers, 138 entries and 80 spheres, do not fit "
+                  "each other. Both "
+                  "readings, and bakes near them:"},
+                 {sphere_count_figure(results)},
+                 {show(compare_readings(results), {{"reading", "Reading"},
+                                                   {"penetration_depth", "PD", 2},
+                                                   {"spheres", "Spheres"},
+                                                   {"chain_entries_table1", "Chain entries"},
+                                                   {"full_tests_m1", "n_c n^2"},
+                                                   {"full_tests_m2", "m^2"},
+                                                   {"tests_m1", "Tests M1"},
+                                                   {"tests_m2", "Tests M2"},
+                                                   {"overlaps_m1", "Overlaps M1", 2},
+                                                   {"overlaps_m2", "Overlaps M2", 2},
+                                                   {"us_m1", "us M1", 2},
+                                                   {"us_m2", "us M2", 2}})}});
+  Section sweep{"What each setting costs and brings",
+                {"One setting at a time, the others at their defaults (profile balanced unless said otherwise)."},
+                {},
+                {show(derive_defaults(results), {{"setting", "Setting"},
+                                                 {"current", "Default", 3},
+                                                 {"follows", "Follows", 3},
+                                                 {"rule", "Rule"},
+                                                 {"finding", "Finding"}})}};
+  const auto add_sweep = [&](const char* setting, const std::vector<SweepLine>& lines) {
+    Figure figure = sweep_figure(results, setting, lines);
+    if (!figure.panels[0].series.empty()) sweep.figures.push_back(std::move(figure));
+  };
+  add_sweep("penetration_depth",
+            {{kDepthPaper, "paper", Style::kDashed}, {kDepthExtremities, "balanced", Style::kLineAndMarks}});
+  add_sweep("spheres_per_level", {{kPerLevel, "", Style::kLineAndMarks}});
+  add_sweep("delta", {{kDelta, "", Style::kLineAndMarks}});
+  add_sweep("pivots",
+            {{kPivotsPaper, "paper's rule", Style::kDashed}, {kPivotsCalibrated, "calibrated", Style::kLineAndMarks}});
+  out.push_back(std::move(sweep));
+  out.push_back(
+      {"Sphere sets by the field's measures",
+       {"10,000 points inside the body and 10,000 of its skin, the same for every set. Coverage: the volume inside "
+        "some "
+        "sphere; outside: the spheres' volume outside the skin, of the part's volume; volume ratio: their sum; "
+        "protrusion: how deep points of the spheres lie outside the skin; gap: how far the skin is from the spheres. "
+        "Body is all of it, core what the paper covers (without head, hands and feet), torso that of the core."},
+       {quality_figure(results)},
+       {show(results.quality, {{"set", "Set"},
+                               {"radius", "Radius"},
+                               {"part", "Part"},
+                               {"spheres", "Spheres"},
+                               {"coverage", "Coverage (%)", 1, 100},
+                               {"outside_volume", "Outside (%)", 1, 100},
+                               {"volume_ratio", "Volume ratio", 2},
+                               {"protrusion_p95_mm", "Protrusion p95 (mm)", 1},
+                               {"gap_mean_mm", "Gap mean (mm)", 2},
+                               {"gap_p95_mm", "p95 (mm)", 1},
+                               {"uncovered_surface", "Uncovered skin (%)", 1, 100}})}});
+  return out;
+}
+
+constexpr const char* kTitle = "The paper's experiments";
+
+constexpr const char* kHead = R"(<!doctype html>
+<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
+<title>Sphere chains: the paper's experiments</title>
+<style>
+body{font:16px/1.5 Helvetica,Arial,sans-serif;color:#222;background:#fff;max-width:1120px;margin:2rem auto;padding:0 1rem}
+h1{font-size:1.7rem}h2{font-size:1.25rem;margin-top:2.5rem;border-top:1px solid #ddd;padding-top:1.2rem}
+figure{margin:1.2rem 0}figure svg{width:100%;height:auto;border:1px solid #e3e3e3;border-radius:4px}
+figcaption{font-size:.9rem;color:#444;margin-top:.3rem}
+.wide{overflow-x:auto}table{border-collapse:collapse;font-size:.86rem;width:100%}
+th,td{text-align:left;vertical-align:top;padding:.35rem .6rem;border-bottom:1px solid #e3e3e3}th{background:#f6f6f6}
+td.number{text-align:right;font-variant-numeric:tabular-nums}
+.verdict{display:inline-block;padding:.05rem .5rem;border-radius:1rem;white-space:nowrap;font-weight:600}
+.holds{background:#d9efe7;color:#00543d}.part{background:#fdf0d0;color:#6b4a00}.fails{background:#fbe0d1;color:#7d3600}
+.none{background:#eee;color:#444}
+</style></head><body>
+)";
+
+std::string verdict_badge(const std::string& word) {
+  const char* style = word == kHolds ? "holds" : word == kInPart ? "part" : word == kFails ? "fails" : "none";
+  return fmt::format("<span class=\"verdict {}\">{}</span>", style, word);
+}
+
+bool is_number(const std::string& text) {
+  return !text.empty() && text.find_first_not_of("0123456789.-") == std::string::npos;
+}
+
+bool is_verdict(const std::string& text) {
+  return text == kHolds || text == kInPart || text == kFails || text == kNotRun;
+}
+
+std::string html(const ShownTable& table) {
+  std::string out = "<div class=\"wide\"><table><tr>";
+  for (const std::string& header : table.header) out += "<th>" + escape(header) + "</th>";
+  out += "</tr>\n";
+  for (const auto& row : table.rows) {
+    out += "<tr>";
+    for (const std::string& cell : row) {
+      out += is_number(cell) ? "<td class=\"number\">" : "<td>";
+      out += (is_verdict(cell) ? verdict_badge(cell) : escape(cell)) + "</td>";
+    }
+    out += "</tr>\n";
+  }
+  return out + "</table></div>\n";
+}
+
+std::string markdown(const ShownTable& table) {
+  std::string out, rule;
+  const auto line = [&](const std::vector<std::string>& cells) {
+    out += "|";
+    for (const std::string& cell : cells) {
+      out += ' ';
+      for (const char c : cell) out += c == '|' ? std::string("\\|") : std::string(1, c);
+      out += " |";
+    }
+    out += "\n";
+  };
+  line(table.header);
+  for (std::size_t i = 0; i < table.header.size(); ++i) rule += "---|";
+  out += "|" + rule + "\n";
+  for (const auto& row : table.rows) line(row);
+  return out + "\n";
+}
+
+std::vector<Table> tables(const Results& results) {
+  return {judge_claims(results),     derive_defaults(results), results.accuracy.rays,
+          results.accuracy.spheres,  results.sweep.accuracy,   results.running_time,
+          compare_readings(results), results.sweep.sweep,      results.quality};
+}
+
+}  // namespace
+
+void write_page(const std::filesystem::path& folder, const Results& results) {
+  std::filesystem::create_directories(folder);
+  std::string page = kHead;
+  page += fmt::format(
+      "<h1>{}</h1>\n<p>Self-collision Detection using Sphere Chains, on the MakeHuman body of Debian's "
+      "assimp-testmodels. The tables:",
+      kTitle);
+  for (const Table& table : tables(results)) {
+    baker::write_atomically(folder / (table.name + ".csv"), to_csv(table));
+    page += fmt::format(" <a href=\"{0}.csv\">{0}.csv</a>", table.name);
+  }
+  page += ".</p>\n";
+  for (const Section& section : sections(results)) {
+    page += "<section><h2>" + escape(section.title) + "</h2>\n";
+    for (const std::string& paragraph : section.text) page += "<p>" + escape(paragraph) + "</p>\n";
+    for (const Figure& figure : section.figures) {
+      const std::string svg = to_svg(figure);
+      baker::write_atomically(folder / (figure.name + ".svg"), svg);
+      page += "<figure>" + svg + "<figcaption>" + escape(figure.caption) + "</figcaption></figure>\n";
+    }
+    for (const ShownTable& table : section.tables) page += html(table);
+    page += "</section>\n";
+  }
+  baker::write_atomically(folder / "index.html", page + "</body></html>\n");
+}
+
+void write_docs(const std::filesystem::path& file, const Results& results) {
+  const std::filesystem::path folder = std::filesystem::path(file).replace_extension();
+  std::filesystem::create_directories(folder);
+  std::string page = fmt::format(
+      "# {}\n\nWritten by `scripts/paper.sh`; do not edit. \"Self-collision Detection using Sphere Chains\" on the "
+      "MakeHuman body of Debian's `assimp-testmodels`: profile `paper` is the paper's setting (N_r = 80, N_s = 2, "
+      "delta = "
+      "0.25 of its decimetres, PD = 30 %). The script's page, `out/paper/index.html`, shows the same with all figures, "
+      "and "
+      "the CSV files beside it hold every number.\n\n",
+      kTitle);
+  for (const Section& section : sections(results)) {
+    page += "## " + section.title + "\n\n";
+    for (const std::string& paragraph : section.text) page += paragraph + "\n\n";
+    for (const Figure& figure : section.figures) {
+      baker::write_atomically(folder / (figure.name + ".svg"), to_svg(figure));
+      page += fmt::format("![{0}]({1}/{2}.svg)\n\n{0}\n\n", figure.caption, folder.filename().string(), figure.name);
+    }
+    for (const ShownTable& table : section.tables) page += markdown(table);
+  }
+  while (page.ends_with("\n\n")) page.pop_back();
+  baker::write_atomically(file, page);
+}
+
+}  // namespace spherechain::paper

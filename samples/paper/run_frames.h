@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "study.h"
+
+namespace spherechain::paper {
+
+// What is timed. M1 and M2 are the runtime's: each pair once, ignored pairs left out. The full ones are the paper's
+// loops to the letter, n_c n^2 and m^2 comparisons of every sphere with every other.
+inline constexpr std::array<const char*, 5> kMethods{"refit", "M1", "M2", "M1 full", "M2 full"};
+
+struct Cost {
+  std::size_t tests = 0, overlaps = 0;
+  double us = 0;  // median over the repetitions
+};
+
+struct FrameCost {
+  std::size_t animation, frame;
+  std::array<Cost, kMethods.size()> methods;  // in the order of kMethods
+};
+
+// The running stage on every frame of every animation, on one core, at the paper's radius. In each repetition all
+// frames and methods take their turn, so that a disturbance of the machine meets all alike.
+std::vector<FrameCost> run_frames(const std::vector<std::uint8_t>& asset, const std::vector<Animation>& animations,
+                                  int repetitions);
+
+}  // namespace spherechain::paper

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Each verdict once more, from the CSV files alone.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "csv.h"
+
+namespace {
+
+const std::vector<Row>& claims() {
+  static const std::vector<Row> rows = read_csv("claims.csv");
+  return rows;
+}
+
+std::string verdict(const std::string& id) { return only(claims(), "id", id).front().at("verdict"); }
+
+std::string graded(bool all, bool some) { return all ? "holds" : some ? "holds in part" : "does not hold"; }
+
+double median_of(std::vector<double> v) {
+  std::sort(v.begin(), v.end());
+  return 0.5 * (v[(v.size() - 1) / 2] + v[v.size() / 2]);
+}
+
+double mean_of(const std::vector<double>& v) {
+  double sum = 0;
+  for (const double x : v) sum += x;
+  return sum / static_cast<double>(v.size());
+}
+
+// Spearman's, by counting what is smaller and what is equal.
+double spearman(const std::vector<double>& x, const std::vector<double>& y) {
+  const auto ranks = [](const std::vector<double>& v) {
+    std::vector<double> out;
+    for (const double a : v) {
+      double rank = 0;
+      for (const double b : v) rank += b < a ? 1 : b == a ? 0.5 : 0;
+      out.push_back(rank);
+    }
+    return out;
+  };
+  const std::vector<double> a = ranks(x), b = ranks(y);
+  double ab = 0, aa = 0, bb = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    ab += (a[i] - mean_of(a)) * (b[i] - mean_of(b));
+    aa += (a[i] - mean_of(a)) * (a[i] - mean_of(a));
+    bb += (b[i] - mean_of(b)) * (b[i] - mean_of(b));
+  }
+  return ab / std::sqrt(aa * bb);
+}
+
+std::vector<Row> depth_series() {
+  const std::vector<Row> sweep = read_csv("sweep.csv");
+  std::vector<Row> rows = only(sweep, "series", "penetration_depth");
+  for (const Row& row : only(sweep, "series", "penetration_depth_extremities")) rows.push_back(row);
+  return rows;
+}
+
+std::vector<double> times(const std::string& method, const std::string& animation) {
+  return numbers(only(only(read_csv("figure15.csv"), "method", method), "animation", animation), "us");
+}
+
+}  // namespace
+
+TEST_CASE("the page and the Markdown state every claim with its verdict and finding") {
+  const std::string page = read_output("index.html"), markdown = read_output("paper.md");
+  CHECK(claims().size() == 12);
+  for (const Row& claim : claims()) {
+    CHECK(page.find(">" + claim.at("verdict") + "</span>") != std::string::npos);
+    CHECK(markdown.find("| " + claim.at("verdict") + " |") != std::string::npos);
+    // Up to the first character that either escapes.
+    const std::string finding = claim.at("finding").substr(0, claim.at("finding").find_first_of("&<>|"));
+    CHECK(page.find(finding) != std::string::npos);
+    CHECK(markdown.find(finding) != std::string::npos);
+  }
+}
+
+TEST_CASE("adjustment, shape: recomputed from figure13_spheres.csv") {
+  const std::vector<Row> spheres = read_csv("figure13_spheres.csv");
+  double gain = 0;
+  bool never_worse = true;
+  for (const Row& row : spheres) {
+    const double change = number(row, "vertices_phi1_mm") - number(row, "vertices_phi1_adjusted_mm");
+    gain += change;
+    never_worse = never_worse && change >= 0;
+  }
+  CHECK(verdict("adjustment") == graded(never_worse && gain > 0, gain > 0));
+
+  const std::vector<double> e = numbers(spheres, "eccentricity_half");
+  for (const auto& [id, phi2] : {std::pair("shape", "rays_phi2_mm"), std::pair("shape_rays", "rays_phi2_rays_mm")}) {
+    std::vector<double> lead;
+    double of[2] = {0, 0}, right[2] = {0, 0};
+    for (std::size_t i = 0; i < spheres.size(); ++i) {
+      lead.push_back(number(spheres[i], phi2) - number(spheres[i], "rays_phi1_adjusted_mm"));
+      const int group = e[i] > median_of(e) ? 1 : 0;
+      ++of[group];
+      if (group == 1 ? lead[i] > 0 : lead[i] < 0) ++right[group];
+    }
+    const bool round = right[0] >= 0.75 * of[0], eccentric = right[1] >= 0.75 * of[1];
+    CHECK(verdict(id) == graded(round && eccentric && spearman(e, lead) >= 0.5, round || eccentric));
+  }
+}
+
+TEST_CASE("sphere count, tests, turn over: recomputed from sweep.csv and readings.csv") {
+  bool stated = false, less = false, more = false, any_m1_less = false;
+  for (const Row& row : depth_series()) {
+    const double entries = number(row, "chain_entries_table1") / number(row, "spheres");
+    less = less || entries <= 138.0 / 80;
+    more = more || entries >= 138.0 / 80;
+    any_m1_less = any_m1_less || number(row, "full_tests_m1") < number(row, "full_tests_m2") ||
+                  number(row, "tests_m1") < number(row, "tests_m2");
+  }
+  stated = less && more;
+  CHECK(verdict("sphere_count") == graded(stated, false));
+  CHECK(verdict("turn_over") == graded(!any_m1_less, true));
+
+  const std::vector<Row> readings = read_csv("readings.csv");
+  CHECK(readings.size() == 6);
+  const auto fewer = std::count_if(readings.begin(), readings.end(), [](const Row& row) {
+    return number(row, "full_tests_m2") < number(row, "full_tests_m1");
+  });
+  CHECK(verdict("fewer_tests") == graded(fewer == 6, fewer > 0));
+}
+
+TEST_CASE("overlaps, time, animation: recomputed from figure15.csv") {
+  const std::vector<Row> all = read_csv("figure15.csv");
+  const std::vector<double> m1 = numbers(only(all, "method", "M1"), "overlaps"),
+                            m2 = numbers(only(all, "method", "M2"), "overlaps");
+  bool never_fewer = true;
+  for (std::size_t i = 0; i < m1.size(); ++i) never_fewer = never_fewer && m1[i] >= m2[i];
+  const bool more = mean_of(m1) > mean_of(m2);
+  CHECK(verdict("overlaps") == graded(more && never_fewer, more));
+
+  bool faster[2];
+  for (const int full : {0, 1}) {
+    const std::vector<double> slow = numbers(only(all, "method", full == 1 ? "M1 full" : "M1"), "us"),
+                              fast = numbers(only(all, "method", full == 1 ? "M2 full" : "M2"), "us");
+    std::vector<double> ratio;
+    for (std::size_t i = 0; i < slow.size(); ++i) ratio.push_back(slow[i] / fast[i]);
+    faster[full] = median_of(ratio) > 1;
+  }
+  CHECK(verdict("m2_faster") == graded(faster[0] && faster[1], faster[0] || faster[1]));
+
+  bool same = true, grows = true;
+  const std::vector<Row> series = depth_series();
+  for (const auto& [method, column] : {std::pair("M1", "us_m1"), std::pair("M2", "us_m2")}) {
+    const double arms = median_of(times(method, "arms")), legs = median_of(times(method, "legs"));
+    same = same && std::max(arms, legs) <= 1.1 * std::min(arms, legs);
+    grows = grows && spearman(numbers(series, "spheres"), numbers(series, column)) >= 0.9;
+  }
+  CHECK(verdict("animation") == graded(same && grows, same || grows));
+}
