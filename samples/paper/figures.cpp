@@ -135,9 +135,9 @@ Figure sphere_count_figure(const Results& results) {
   for (const bool extremities : {false, true}) {
     const Table& t = extremities ? whole : core;
     if (t.empty()) continue;
-    const std::string suffix = extremities ? ", extremities" : "";
+    const std::string suffix = extremities ? " with extremities" : "";
     const std::vector<double> n = t.numbers("spheres");
-    const Style style = extremities ? Style::kMarks : Style::kLineAndMarks;
+    const Style style = extremities ? Style::kDashed : Style::kLineAndMarks;
     cost.series.push_back({"M1" + suffix, Colour::kBlue, style, n, t.numbers("us_m1")});
     cost.series.push_back({"M2" + suffix, Colour::kVermilion, style, n, t.numbers("us_m2")});
     ratio.series.push_back({"tests, all pairs" + suffix, Colour::kGreen, style, n,
@@ -163,17 +163,18 @@ Figure sphere_count_figure(const Results& results) {
   return figure;
 }
 
-Figure sweep_figure(const Results& results, const std::string& setting, const std::vector<SweepLine>& lines) {
+Figure sweep_figure(const Results& results, const std::string& setting, const std::string& axis,
+                    const std::vector<SweepLine>& lines) {
   Figure figure{"sweep_" + setting,
-                "Over " + setting +
+                "Over " + axis +
                     ": spheres; |F| over the torso's vertices; skin outside all spheres at the two radii; the refit's "
                     "error against the sphere that fits the deformed skin best, frames of both animations.",
                 4,
                 250,
                 {}};
-  Panel spheres{"spheres", setting, "spheres", {}}, fit{"fit", setting, "|F| (mm)", {}};
-  Panel uncovered{"skin outside the spheres", setting, "% of the area", {}};
-  Panel refit{"refit", setting, "centre's error (mm)", {}};
+  Panel spheres{"spheres", axis, "spheres", {}}, fit{"fit", axis, "|F| (mm)", {}};
+  Panel uncovered{"skin outside the spheres", axis, "% of the area", {}};
+  Panel refit{"refit", axis, "centre's error (mm)", {}};
   for (const SweepLine& line : lines) {
     const Table t = results.sweep.sweep.where("series", line.series);
     if (t.empty()) continue;
@@ -200,28 +201,38 @@ Figure sweep_figure(const Results& results, const std::string& setting, const st
 }
 
 Figure quality_figure(const Results& results) {
-  Figure figure{"quality",
-                "Sphere sets: volume inside the spheres against volume of the spheres outside the skin (left), and the "
-                "skin's distance from the spheres against how far they stick out of it (right), for what the paper "
-                "covers (without head, hands and feet). Best: top left; bottom left.",
-                2,
-                330,
-                {}};
-  const Table t = results.quality.where("part", "core");
-  Panel volume{"", "spheres outside the skin (% of the volume)", "volume covered (%)", {}};
-  Panel surface{"", "protrusion, 95th percentile (mm)", "gap, 95th percentile (mm)", {}};
-  volume.zero_based = false;
-  for (const auto& [radius, colour] : {std::pair("fit", Colour::kBlue), std::pair("detect", Colour::kVermilion)}) {
-    const Table one = t.where("radius", radius);
-    std::vector<std::string> names;
-    for (std::size_t i = 0; i < one.rows.size(); ++i) names.push_back(one.word(i, "set"));
-    const std::string label = std::string(radius) + " radius";
-    volume.series.push_back({label, colour, Style::kMarks, scaled(one.numbers("outside_volume"), 100),
-                             scaled(one.numbers("coverage"), 100), names});
-    surface.series.push_back(
-        {label, colour, Style::kMarks, one.numbers("protrusion_p95_mm"), one.numbers("gap_p95_mm"), names});
+  Figure figure{
+      "quality",
+      "Sphere sets by the field's measures, for the whole body, for what the paper covers (core: without head, "
+      "hands and feet) and for the torso of that. Coverage is better to the right, the others to the left.",
+      4,
+      300,
+      {},
+      120};
+  std::vector<std::string> sets;
+  const Table core = results.quality.where("part", "core");
+  for (std::size_t i = 0; i < core.rows.size(); ++i) {
+    sets.push_back(core.word(i, "set") + (core.word(i, "radius") == "detect" ? ", detect radius" : ""));
   }
-  figure.panels = {volume, surface};
+  struct Measure {
+    const char *title, *label, *column;
+    double scale;
+  };
+  for (const Measure& m : {Measure{"coverage", "% of the volume", "coverage", 100},
+                           Measure{"outside the skin", "% of the volume", "outside_volume", 100},
+                           Measure{"protrusion", "95th percentile (mm)", "protrusion_p95_mm", 1},
+                           Measure{"gap to the skin", "mean (mm)", "gap_mean_mm", 1}}) {
+    Panel panel{m.title, m.label, "", {}};
+    panel.rows = sets;
+    for (const auto& [part, colour] :
+         {std::pair("body", Colour::kGrey), std::pair("core", Colour::kBlue), std::pair("torso", Colour::kVermilion)}) {
+      Series series{
+          part, colour, Style::kMarks, scaled(results.quality.where("part", part).numbers(m.column), m.scale), {}};
+      for (std::size_t i = 0; i < sets.size(); ++i) series.y.push_back(static_cast<double>(i));
+      panel.series.push_back(std::move(series));
+    }
+    figure.panels.push_back(std::move(panel));
+  }
   return figure;
 }
 

@@ -17,7 +17,8 @@ struct SweepLine {
   std::string series, label;
   Style style;
 };
-Figure sweep_figure(const Results& results, const std::string& setting, const std::vector<SweepLine>& lines);
+Figure sweep_figure(const Results& results, const std::string& setting, const std::string& axis,
+                    const std::vector<SweepLine>& lines);
 Figure quality_figure(const Results& results);
 
 }  // namespace spherechain::paper

@@ -55,8 +55,10 @@ Axis linear_axis(double low, double high, double from, double to, int count, dou
 Axis log_axis(double low, double high, double from, double to) {
   Axis axis{low / 1.15, high * 1.15, from, to, true, {}};
   for (double decade = std::pow(10, std::floor(std::log10(axis.low))); decade < axis.high; decade *= 10) {
-    for (const double digit : {1.0, 2.0, 5.0}) {
-      if (digit * decade >= axis.low && digit * decade <= axis.high) axis.ticks.push_back(digit * decade);
+    const bool narrow = axis.high < 4 * axis.low;
+    for (int digit = 1; digit < 10; ++digit) {
+      const bool labelled = narrow || digit == 1 || digit == 2 || digit == 5;
+      if (labelled && digit * decade >= axis.low && digit * decade <= axis.high) axis.ticks.push_back(digit * decade);
     }
   }
   return axis;
@@ -101,7 +103,11 @@ std::string line_of(const Series& series, const Axis& x, const Axis& y) {
          "\n";
 }
 
-std::string draw(const Panel& panel, double left, double top, double width, double height) {
+struct Axes {
+  Axis x, y;
+};
+
+Axes axes_of(const Panel& panel, double left, double top, double width, double height) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   double x0 = kInfinity, x1 = -kInfinity, y0 = panel.zero_based && !panel.log_axes ? 0 : kInfinity, y1 = -kInfinity;
   const auto extend = [](double value, double& low, double& high) {
@@ -116,50 +122,75 @@ std::string draw(const Panel& panel, double left, double top, double width, doub
   for (const Reference& reference : panel.references) {
     reference.vertical ? extend(reference.at, x0, x1) : extend(reference.at, y0, y1);
   }
-  if (!panel.log_axes) {
-    const double room = 0.06 * (y1 - y0);
-    y1 += room;
-    if (!panel.zero_based) y0 -= room;
-    x0 -= 0.02 * (x1 - x0);
-    x1 += 0.02 * (x1 - x0);
-  }
   const double a = left + kLeft, b = left + width - kRight, c = top + height - kBottom, d = top + kTop;
-  const Axis x =
-      panel.log_axes ? log_axis(x0, x1, a, b) : linear_axis(x0, x1, a, b, static_cast<int>((b - a) / 55), panel.x_tick);
-  const Axis y = panel.log_axes ? log_axis(y0, y1, c, d) : linear_axis(y0, y1, c, d, 5, 0);
+  if (panel.log_axes) return {log_axis(x0, x1, a, b), log_axis(y0, y1, c, d)};
+  const double room = 0.06 * (y1 - y0);
+  y1 += room;
+  if (!panel.zero_based) y0 -= room;
+  const auto x_ticks = static_cast<int>((b - a) / 55);
+  if (!panel.rows.empty()) {
+    const auto n = static_cast<double>(panel.rows.size());
+    Axis y{n - 0.5, -0.5, c, d, false, {}};
+    for (std::size_t i = 0; i < panel.rows.size(); ++i) y.ticks.push_back(static_cast<double>(i));
+    return {linear_axis(std::min(0.0, x0), 1.04 * x1, a, b, x_ticks, panel.x_tick), y};
+  }
+  const double margin = 0.02 * (x1 - x0);
+  return {linear_axis(x0 - margin, x1 + margin, a, b, x_ticks, panel.x_tick), linear_axis(y0, y1, c, d, 5, 0)};
+}
 
-  std::string out = text(0.5 * (a + b), top + 15, "middle", panel.title, R"(font-weight="600")");
-  for (const double t : y.ticks) {
-    out += fmt::format("<path d=\"M{:.1f} {:.1f}H{:.1f}\" stroke=\"#e3e3e3\"/>\n", a, y.at(t), b);
-    out += text(a - 6, y.at(t) + 4, "end", fmt::format("{:.6g}", t));
+std::string draw_axes(const Panel& panel, const Axes& axes, double left, double top, bool row_names) {
+  const auto& [x, y] = axes;
+  std::string out = text(0.5 * (x.from + x.to), top + 15, "middle", panel.title, R"(font-weight="600")");
+  for (std::size_t i = 0; i < y.ticks.size(); ++i) {
+    const double at = y.at(y.ticks[i]);
+    out += fmt::format("<path d=\"M{:.1f} {:.1f}H{:.1f}\" stroke=\"#e3e3e3\"/>\n", x.from, at, x.to);
+    if (!panel.rows.empty() && !row_names) continue;
+    out += text(x.from - 6, at + 4, "end", panel.rows.empty() ? fmt::format("{:.6g}", y.ticks[i]) : panel.rows[i]);
   }
   for (const double t : x.ticks) {
-    out += fmt::format("<path d=\"M{:.1f} {:.1f}v4\" stroke=\"#444\"/>\n", x.at(t), c);
-    out += text(x.at(t), c + 17, "middle", fmt::format("{:.6g}", t));
+    out += fmt::format("<path d=\"M{:.1f} {:.1f}v4\" stroke=\"#444\"/>\n", x.at(t), y.from);
+    out += text(x.at(t), y.from + 17, "middle", fmt::format("{:.6g}", t));
   }
-  out += fmt::format("<path d=\"M{:.1f} {:.1f}V{:.1f}H{:.1f}\" fill=\"none\" stroke=\"#444\"/>\n", a, d, c, b);
-  out += text(0.5 * (a + b), c + 35, "middle", panel.x_label);
-  out += text(0, 0, "middle", panel.y_label,
-              fmt::format(R"~(transform="translate({:.1f} {:.1f}) rotate(-90)")~", left + 14, 0.5 * (c + d)));
-  for (const Reference& reference : panel.references) {
-    const double at = reference.vertical ? x.at(reference.at) : y.at(reference.at);
-    out += reference.vertical ? fmt::format("<path d=\"M{:.1f} {:.1f}V{:.1f}\"", at, c, d)
-                              : fmt::format("<path d=\"M{:.1f} {:.1f}H{:.1f}\"", a, at, b);
-    out += " stroke=\"#444\" stroke-dasharray=\"2 3\"/>\n";
-    out += reference.vertical ? text(at + 4, d + 11, "start", reference.label, R"(class="small")")
-                              : text(b - 2, at - 5, "end", reference.label, R"(class="small")");
+  out += fmt::format("<path d=\"M{:.1f} {:.1f}V{:.1f}H{:.1f}\" fill=\"none\" stroke=\"#444\"/>\n", x.from, y.to, y.from,
+                     x.to);
+  out += text(0.5 * (x.from + x.to), y.from + 35, "middle", panel.x_label);
+  if (panel.y_label.empty()) return out;
+  const std::string turned =
+      fmt::format(R"~(transform="translate({:.1f} {:.1f}) rotate(-90)")~", left + 14, 0.5 * (y.from + y.to));
+  return out + text(0, 0, "middle", panel.y_label, turned);
+}
+
+std::string draw_reference(const Reference& reference, const Axes& axes) {
+  const auto& [x, y] = axes;
+  constexpr const char *kStroke = " stroke=\"#444\" stroke-dasharray=\"2 3\"/>\n", *kSmall = R"(class="small")";
+  if (reference.vertical) {
+    const double at = x.at(reference.at);
+    return fmt::format("<path d=\"M{:.1f} {:.1f}V{:.1f}\"{}", at, y.from, y.to, kStroke) +
+           text(at + 4, y.to + 11, "start", reference.label, kSmall);
   }
-  for (const Series& series : panel.series) {
-    if (series.style != Style::kMarks) out += line_of(series, x, y);
-    for (std::size_t i = 0; has_marks(series) && i < series.x.size(); ++i) {
-      if (!std::isfinite(series.x[i]) || !std::isfinite(series.y[i])) continue;
-      const double px = x.at(series.x[i]), py = y.at(series.y[i]);
-      out += mark(series.colour, px, py) + "\n";
-      if (i >= series.names.size() || series.names[i].empty()) continue;
-      const bool flip = px > 0.5 * (a + b);
-      out += text(px + (flip ? -7 : 7), py - 5, flip ? "end" : "start", series.names[i], R"(class="small")");
-    }
+  const double at = y.at(reference.at);
+  return fmt::format("<path d=\"M{:.1f} {:.1f}H{:.1f}\"{}", x.from, at, x.to, kStroke) +
+         text(x.to - 2, at - 5, "end", reference.label, kSmall);
+}
+
+std::string draw_series(const Series& series, const Axes& axes) {
+  std::string out;
+  if (series.style != Style::kMarks) out += line_of(series, axes.x, axes.y);
+  if (!has_marks(series)) return out;
+  for (std::size_t i = 0; i < series.x.size(); ++i) {
+    if (!std::isfinite(series.x[i]) || !std::isfinite(series.y[i])) continue;
+    const double x = axes.x.at(series.x[i]), y = axes.y.at(series.y[i]);
+    out += mark(series.colour, x, y) + "\n";
+    if (i < series.names.size()) out += text(x - 7, y - 5, "end", series.names[i], R"(class="small")");
   }
+  return out;
+}
+
+std::string draw(const Panel& panel, double left, double top, double width, double height, bool row_names) {
+  const Axes axes = axes_of(panel, left, top, width, height);
+  std::string out = draw_axes(panel, axes, left, top, row_names);
+  for (const Reference& reference : panel.references) out += draw_reference(reference, axes);
+  for (const Series& series : panel.series) out += draw_series(series, axes);
   return out;
 }
 
@@ -168,7 +199,7 @@ using LegendRows = std::vector<std::vector<const Series*>>;
 
 double legend_width(const std::string& label) {
   const auto letters = std::count_if(label.begin(), label.end(), [](char c) { return (c & 0xC0) != 0x80; });
-  return 42 + 6.9 * static_cast<double>(letters);
+  return 46 + 6.2 * static_cast<double>(letters);
 }
 
 double legend_width(const std::vector<const Series*>& row) {
@@ -237,7 +268,7 @@ std::string to_svg(const Figure& figure) {
   const LegendRows legend = legend_rows(figure);
   const double legend_height = 14 + kLegendRow * static_cast<double>(legend.size());
   const double height = legend_height + static_cast<double>(rows) * figure.panel_height + 4;
-  const double width = kWidth / static_cast<double>(figure.columns);
+  const double width = (kWidth - figure.names_width) / static_cast<double>(figure.columns);
   std::string out = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0f} {:.0f}\" font-family=\"Helvetica, Arial, "
       "sans-serif\" font-size=\"12\" fill=\"#222\" role=\"img\" aria-label=\"{}\">\n"
@@ -245,9 +276,10 @@ std::string to_svg(const Figure& figure) {
       kWidth, height, escape(figure.caption));
   out += draw(legend);
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+    const std::size_t row = i / figure.columns, column = i % figure.columns;
     out +=
-        draw(figure.panels[i], static_cast<double>(i % figure.columns) * width,
-             legend_height + static_cast<double>(i / figure.columns) * figure.panel_height, width, figure.panel_height);
+        draw(figure.panels[i], figure.names_width + static_cast<double>(column) * width,
+             legend_height + static_cast<double>(row) * figure.panel_height, width, figure.panel_height, column == 0);
   }
   return out + "</svg>\n";
 }

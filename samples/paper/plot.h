@@ -34,6 +34,8 @@ struct Panel {
   bool log_axes = false;   // both
   bool zero_based = true;  // the y axis starts at 0
   double x_tick = 0;       // distance of the x axis' ticks; 0: chosen
+  // Named rows instead of a y axis: a mark's y counts them from 0 at the top. The first column shows the names.
+  std::vector<std::string> rows{};
 };
 
 struct Figure {
@@ -42,6 +44,7 @@ struct Figure {
   std::size_t columns;
   double panel_height;  // pixels, of a width of 1080
   std::vector<Panel> panels;
+  double names_width = 0;  // pixels left of the first column, for the names of rows
 };
 
 std::string to_svg(const Figure& figure);

@@ -107,16 +107,16 @@ std::vector<Section> sections(const Results& results) {
                                                  {"follows", "Follows", 3},
                                                  {"rule", "Rule"},
                                                  {"finding", "Finding"}})}};
-  const auto add_sweep = [&](const char* setting, const std::vector<SweepLine>& lines) {
-    Figure figure = sweep_figure(results, setting, lines);
+  const auto add_sweep = [&](const char* setting, const char* axis, const std::vector<SweepLine>& lines) {
+    Figure figure = sweep_figure(results, setting, axis, lines);
     if (!figure.panels[0].series.empty()) sweep.figures.push_back(std::move(figure));
   };
-  add_sweep("penetration_depth",
-            {{kDepthPaper, "paper", Style::kDashed}, {kDepthExtremities, "balanced", Style::kLineAndMarks}});
-  add_sweep("spheres_per_level", {{kPerLevel, "", Style::kLineAndMarks}});
-  add_sweep("delta", {{kDelta, "", Style::kLineAndMarks}});
-  add_sweep("pivots",
-            {{kPivotsPaper, "paper's rule", Style::kDashed}, {kPivotsCalibrated, "calibrated", Style::kLineAndMarks}});
+  constexpr Style kMain = Style::kLineAndMarks, kOther = Style::kDashed;
+  add_sweep("penetration_depth", "penetration depth PD",
+            {{kDepthPaper, "paper", kOther}, {kDepthExtremities, "balanced", kMain}});
+  add_sweep("spheres_per_level", "spheres a level N_s", {{kPerLevel, "", kMain}});
+  add_sweep("delta", "delta (of the height)", {{kDelta, "", kMain}});
+  add_sweep("pivots", "pivots", {{kPivotsPaper, "paper's rule", kOther}, {kPivotsCalibrated, "calibrated", kMain}});
   out.push_back(std::move(sweep));
   out.push_back(
       {"Sphere sets by the field's measures",

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study.h"
 
-#include "motion/motion.h"
+#include "motion/poses.h"
 
 namespace spherechain::paper {
 namespace {
@@ -28,10 +28,13 @@ Study::Study(const std::filesystem::path& character, const std::filesystem::path
     : paper_(baker::bake(character, baker::make_settings("paper", "{}", "paper"), {})), core_(core_triangles(paper_)) {
   const std::vector<baker::VertexWeights> weights = rig_weights(paper_.character, paper_.joints);
   for (const std::string name : {"arms", "legs"}) {
-    const baker::BezierMotion motion(paper_.character.source_positions, weights, paper_.joints, paper_.regions.frame,
+    const baker::BezierMotion motion(paper_.joints, paper_.regions.frame,
                                      read_pose_motion(poses / ("animation_" + name + ".json"), paper_.joints));
     Animation animation{name, {}};
-    for (int i = 0; i < frames; ++i) animation.frames.push_back(motion.at(static_cast<double>(i) / (frames - 1)));
+    for (int i = 0; i < frames; ++i) {
+      const std::vector<baker::Affine> bones = motion.at(static_cast<double>(i) / (frames - 1)).bones;
+      animation.frames.push_back(deform(paper_.character.source_positions, weights, bones));
+    }
     animations_.push_back(std::move(animation));
   }
 }
