@@ -30,14 +30,16 @@ using Columns = std::vector<Column>;
 // The paper's count: what stands in its chains, and what brute force compares.
 Columns count(const Bake& bake) {
   const std::size_t m = bake.spheres.spheres.size();
-  std::size_t torso = 0, limbs = 0, full_m1 = 0, top = 0, bottom = 0;
-  for (const baker::FittedSphere& s : bake.spheres.spheres) limbs += s.region != baker::kTorso ? 1 : 0;
+  std::size_t limbs = 0, sides = 0, middles = 0, head = 0, top = 0, bottom = 0, full_m1 = 0;
   const int top_level = static_cast<int>(bake.spheres.level_heights.size()) - 1;
-  for (const std::uint32_t i : bake.spheres.of_region[baker::kTorso]) {
-    const baker::FittedSphere& s = bake.spheres.spheres[i];
-    torso += s.side != Side::kNone ? 1 : 0;
-    top += s.level == top_level ? 1 : 0;
-    bottom += s.level == 0 ? 1 : 0;
+  for (const baker::FittedSphere& s : bake.spheres.spheres) {
+    const bool torso = s.region == baker::kTorso && !s.extremity;
+    limbs += s.region != baker::kTorso ? 1 : 0;
+    head += s.region == baker::kTorso && s.extremity ? 1 : 0;
+    sides += torso && s.side != Side::kNone ? 1 : 0;
+    middles += torso && s.side == Side::kNone ? 1 : 0;
+    top += torso && s.level == top_level ? 1 : 0;
+    bottom += torso && s.level == 0 ? 1 : 0;
   }
   std::vector<bool> in_chain(m, false);
   for (const baker::Chain& chain : bake.chains.chains) {
@@ -46,7 +48,9 @@ Columns count(const Bake& bake) {
   }
   return {{"spheres", m},
           {"limb_spheres", limbs},
-          {"torso_side_spheres", torso},
+          {"torso_side_spheres", sides},
+          {"torso_middle_spheres", middles},
+          {"head_spheres", head},
           {"top_spheres", top},
           {"bottom_spheres", bottom},
           {"in_no_chain", std::count(in_chain.begin(), in_chain.end(), false)},
