@@ -109,6 +109,8 @@ TEST_CASE("clips play one after another, each from its own start") {
   CHECK(motion.clip_at(0.25) == "bend");
   CHECK(motion.clip_at(0.75) == "still");
   CHECK(motion.at(0.75).bones[1].isApprox(Affine::Identity()));
+  const ClipMotion other_way(rig, {&second, &first});
+  CHECK(other_way.at(0.75).bones[1].isApprox(sample(rig, first, 1).bones[1]));
 }
 
 TEST_CASE("morph weights displace the rest pose before the bones turn it") {
