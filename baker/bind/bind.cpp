@@ -35,6 +35,18 @@ std::vector<std::uint32_t> assign_triangles(const Mesh& mesh, const std::vector<
   return owner;
 }
 
+// Triangles of pieces too small to be body (eyes, teeth, buttons): they may move on their own, so they carry no sphere.
+std::vector<bool> small_pieces(const Mesh& skin) {
+  constexpr double kSmall = 0.01;  // of the area
+  const Components pieces = connected_components(skin);
+  std::vector<double> area(pieces.count, 0.0);
+  for (std::size_t t = 0; t < skin.triangles.size(); ++t) area[pieces.of_triangle[t]] += triangle_area(skin, t);
+  const double total = surface_area(skin);
+  std::vector<bool> small;
+  for (const Index piece : pieces.of_triangle) small.push_back(area[piece] < kSmall * total);
+  return small;
+}
+
 // Neighbours on the body: linked, or with touching regions.
 std::set<IdPair> find_ignored(const Mesh& mesh, const Spheres& spheres, const std::vector<std::uint32_t>& owner) {
   std::set<IdPair> ignored(spheres.links.begin(), spheres.links.end());
@@ -75,11 +87,11 @@ std::vector<Index> triangles_around(const Mesh& mesh, const FittedSphere& sphere
 }
 
 BoundSphere bind_sphere(const Mesh& mesh, const std::vector<Index>& surrounding, const std::vector<Index>& carriers,
-                        const FittedSphere& sphere, const BodyFrame& frame, const BindSettings& settings) {
+                        const FittedSphere& sphere, bool on_torso, const BodyFrame& frame,
+                        const BindSettings& settings) {
   BoundSphere bound{sphere.ball, 0, 0, {}, 0};
   // Ray 0 of the rings points there too: pivots turn with the body.
-  const Vec3 reference =
-      sphere.region == kTorso ? frame.forward : Vec3(frame.up + 0.7 * frame.left + 0.3 * frame.forward);
+  const Vec3 reference = on_torso ? frame.forward : Vec3(frame.up + 0.7 * frame.left + 0.3 * frame.forward);
   bound.pivots = choose_pivots(mesh, carriers, sphere, reference, settings.rule, settings.pivots);
   Vec3 center = Vec3::Zero();
   for (const BoundPivot& pivot : bound.pivots) {
@@ -145,28 +157,32 @@ Binding bind_spheres(const Character& character, const Regions& regions, const S
                      const BindSettings& settings) {
   Binding out;
   out.rule = settings.rule;
-  out.sphere_of_triangle = assign_triangles(character.body, regions.of_triangle, spheres);
-  out.sphere_of_other = assign_triangles(character.others, regions.of_other, spheres);
+  const Mesh& skin = character.skin;
+  out.sphere_of_triangle = assign_triangles(skin, regions.of_skin, spheres);
 
   std::vector<std::vector<Index>> surrounding(spheres.spheres.size());
-  for (Index t = 0; t < out.sphere_of_triangle.size(); ++t) surrounding[out.sphere_of_triangle[t]].push_back(t);
+  const std::vector<bool> loose = small_pieces(skin);
+  for (Index t = 0; t < out.sphere_of_triangle.size(); ++t) {
+    if (!loose[t]) surrounding[out.sphere_of_triangle[t]].push_back(t);
+  }
   for (std::size_t i = 0; i < spheres.spheres.size(); ++i) {
-    BoundSphere bound =
-        bind_sphere(character.body, surrounding[i], surrounding[i], spheres.spheres[i], regions.frame, settings);
+    const FittedSphere& sphere = spheres.spheres[i];
+    const bool on_torso = sphere.region == regions.torso_region();
+    BoundSphere bound = bind_sphere(skin, surrounding[i], surrounding[i], sphere, on_torso, regions.frame, settings);
     // Few and large triangles: those beyond the region's border carry the sphere too.
     for (double radii = 2; bound.pivots.empty() && radii <= 8; radii *= 2) {
-      const std::vector<Index> around = triangles_around(character.body, spheres.spheres[i], radii);
-      bound = bind_sphere(character.body, surrounding[i], around, spheres.spheres[i], regions.frame, settings);
+      const std::vector<Index> around = triangles_around(skin, sphere, radii);
+      bound = bind_sphere(skin, surrounding[i], around, sphere, on_torso, regions.frame, settings);
     }
     if (bound.pivots.empty()) {
       throw Error(ExitCode::kSegmentation, character.file + ": sphere " + std::to_string(i) + " of the " +
-                                               kRegionNames[spheres.spheres[i].region] +
+                                               regions.name(sphere.region) +
                                                " finds no pivots that carry it around its " +
                                                std::to_string(surrounding[i].size()) + " triangles");
     }
     out.spheres.push_back(std::move(bound));
   }
-  const std::set<IdPair> ignored = find_ignored(character.body, spheres, out.sphere_of_triangle);
+  const std::set<IdPair> ignored = find_ignored(skin, spheres, out.sphere_of_triangle);
   out.ignored.assign(ignored.begin(), ignored.end());
   const std::set<IdPair> close = next_but_one(spheres);
   out.near_fit = find_near(out.spheres, ignored, close, settings.near_fraction, nullptr);

@@ -15,7 +15,7 @@ namespace spherechain::baker {
 enum class RefitRule : std::uint8_t { kPaper = 0, kCalibrated = 1 };
 
 struct BoundPivot {
-  Index triangle;  // of Character::body
+  Index triangle;  // of Character::skin
   double weight;
 };
 
@@ -35,8 +35,7 @@ struct BoundPair {
 struct Binding {
   RefitRule rule;
   std::vector<std::uint32_t>
-      sphere_of_triangle;  // a triangle of Character::body -> the sphere whose surrounding region it is in
-  std::vector<std::uint32_t> sphere_of_other;  // the same for Character::others
+      sphere_of_triangle;  // a triangle of Character::skin -> the sphere whose surrounding region it is in
   std::vector<BoundSphere> spheres;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> ignored;  // a < b, sorted
   std::vector<BoundPair> near_fit, near_detect;                  // overlap at rest or next but one, not ignored; sorted

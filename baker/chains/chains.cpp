@@ -13,53 +13,54 @@ Ids reversed(Ids ids) {
   return ids;
 }
 
-// Some of the torso's spheres, level by level from the bottom.
+// Some of the torso's spheres, without the head, level by level from the bottom.
 template <typename Wanted>
 Ids of_torso(const Spheres& spheres, const Wanted& wanted) {
   Ids ids;
-  for (const std::uint32_t i : spheres.of_region[kTorso]) {
-    if (wanted(spheres.spheres[i])) ids.push_back(i);
+  for (const std::uint32_t i : spheres.of_region[spheres.torso_region()]) {
+    if (!spheres.spheres[i].extremity && wanted(spheres.spheres[i])) ids.push_back(i);
   }
   return ids;
 }
 
-// A side of the torso from the top down.
-Ids side_of_torso(const Spheres& spheres, bool left) {
-  const Side other = left ? Side::kRight : Side::kLeft;
-  return reversed(of_torso(spheres, [&](const FittedSphere& s) { return !s.extremity && s.side != other; }));
+// A side of the torso from a level down to another.
+Ids side_of_torso(const Spheres& spheres, Side side, int from, int to) {
+  return reversed(of_torso(
+      spheres, [&](const FittedSphere& s) { return s.level <= from && s.level >= to && !opposite(s.side, side); }));
 }
 
 // A level from one side to the other.
-Ids level_of_torso(const Spheres& spheres, bool top, bool from_left) {
-  int level = 0;
-  for (const std::uint32_t i : spheres.of_region[kTorso]) {
-    if (top && !spheres.spheres[i].extremity) level = std::max(level, spheres.spheres[i].level);
-  }
-  const Ids ids = of_torso(spheres, [&](const FittedSphere& s) { return !s.extremity && s.level == level; });
-  return from_left ? ids : reversed(ids);
+Ids level_of_torso(const Spheres& spheres, int level, Side from) {
+  const Ids ids = of_torso(spheres, [&](const FittedSphere& s) { return s.level == level; });
+  return from == Side::kRight ? reversed(ids) : ids;
 }
 
 // From the crown down.
 Ids head(const Spheres& spheres) {
-  return reversed(of_torso(spheres, [](const FittedSphere& s) { return s.extremity; }));
+  Ids ids;
+  for (const std::uint32_t i : spheres.of_region[spheres.torso_region()]) {
+    if (spheres.spheres[i].extremity) ids.push_back(i);
+  }
+  return reversed(ids);
 }
 
 enum class Kind { kSide, kEnd, kDiagonal };
 
 Kind kind_of(const LimbPlace& a, const LimbPlace& b) {
-  if (a.top == b.top) return Kind::kEnd;
-  return a.left == b.left ? Kind::kSide : Kind::kDiagonal;
+  if (a.along == b.along) return Kind::kEnd;
+  return opposite(a.side, b.side) ? Kind::kDiagonal : Kind::kSide;
 }
 
-// The torso's parts between two limbs; the upper limb, if one is, comes first.
+// The torso's parts between two limbs; the upper limb comes first.
 std::vector<Ids> between(const Spheres& spheres, const LimbPlace& a, const LimbPlace& b) {
+  const int upper = spheres.level_at(a.along), lower = spheres.level_at(b.along);
   switch (kind_of(a, b)) {
     case Kind::kEnd:
-      return {level_of_torso(spheres, a.top, a.left)};
+      return {level_of_torso(spheres, upper, a.side)};
     case Kind::kSide:
-      return {side_of_torso(spheres, a.left)};
+      return {side_of_torso(spheres, a.side == Side::kNone ? b.side : a.side, upper, lower)};
     case Kind::kDiagonal:
-      return {level_of_torso(spheres, true, a.left), side_of_torso(spheres, b.left)};
+      return {level_of_torso(spheres, upper, a.side), side_of_torso(spheres, b.side, upper, lower)};
   }
   return {};
 }
@@ -74,18 +75,26 @@ std::size_t Chains::entries() const {
 
 Chains build_chains(const Spheres& spheres, const std::vector<LimbPlace>& limbs) {
   Chains out;
+  if (limbs.size() == 1) {
+    const Ids& ids = spheres.of_region[limbs[0].region];
+    out.chains.push_back({"zeta0", {limbs[0].region}, ids});
+    out.entries_table1 = ids.size();
+    return out;
+  }
+  const int top = spheres.level_at(1);
   for (const Kind kind : {Kind::kSide, Kind::kEnd, Kind::kDiagonal}) {
     for (std::size_t i = 0; i < limbs.size(); ++i) {
       for (std::size_t j = i + 1; j < limbs.size(); ++j) {
         if (kind_of(limbs[i], limbs[j]) != kind) continue;
-        const bool in_order = limbs[i].top || !limbs[j].top;
+        const bool in_order = limbs[i].along >= limbs[j].along;
         const LimbPlace &upper = in_order ? limbs[i] : limbs[j], &lower = in_order ? limbs[j] : limbs[i];
         std::vector<Ids> parts{reversed(spheres.of_region[upper.region])};
-        if (upper.top) parts.push_back(head(spheres));
+        if (spheres.level_at(upper.along) == top && upper.along > 0) parts.push_back(head(spheres));
         for (Ids& part : between(spheres, upper, lower)) parts.push_back(std::move(part));
         parts.push_back(spheres.of_region[lower.region]);
 
-        Chain chain{"zeta" + std::to_string(out.chains.size()), {upper.region, kTorso, lower.region}, {}};
+        Chain chain{
+            "zeta" + std::to_string(out.chains.size()), {upper.region, spheres.torso_region(), lower.region}, {}};
         for (const Ids& part : parts) {
           out.entries_table1 += part.size();
           for (const std::uint32_t id : part) {

@@ -25,13 +25,15 @@ struct Chains {
 };
 
 // The rule behind the paper's Table 1, for any number of limbs: a chain for each pair of limbs, through the part of the
-// torso between them. Limbs at one end of the torso are joined by its top (T) or bottom (D) level; limbs on one side by
-// that side (L, R); the others by the top and then the lower limb's side. First the sides, then the ends, then the
-// diagonals. A sphere in the middle of its level is both sides'. The head hangs on the top level: it is in every chain
-// with an upper limb. A list's order is for reading: what stands next to each other on the body is Spheres::links.
+// torso between them. Limbs at one place of the torso (T, D) are joined by the level there; limbs on one side by that
+// side between them (L, R); the others by the upper limb's level and then the lower limb's side. First the sides, then
+// the ends, then the diagonals. A sphere in the middle of its level is both sides'. The head hangs on the top level: it
+// is in every chain that goes there. A list's order is for reading: what stands next to each other on the body is
+// Spheres::links. A single limb is a chain of its own.
 struct LimbPlace {
   std::uint8_t region;
-  bool left, top;
+  Side side;     // none: in the plane of symmetry, on either side's way
+  double along;  // where it leaves the torso, from 0, the hip, to 1, the chest
 };
 Chains build_chains(const Spheres& spheres, const std::vector<LimbPlace>& limbs);
 

@@ -11,20 +11,19 @@ using Link = std::pair<std::uint32_t, std::uint32_t>;
 
 std::vector<Link> find_links(const Spheres& spheres, const Regions& regions) {
   std::vector<Link> links;
-  const std::vector<std::uint32_t>& torso = spheres.of_region[kTorso];
+  const std::vector<std::uint32_t>& torso = spheres.of_region[spheres.torso_region()];
   const auto level = [&](std::uint32_t i) { return spheres.spheres[i].level; };
   for (const std::uint32_t a : torso) {
     for (const std::uint32_t b : torso) {
       if (a < b && level(b) - level(a) <= 1) links.emplace_back(a, b);
     }
   }
-  const int top = static_cast<int>(spheres.level_heights.size()) - 1;
-  for (std::uint8_t region = 0; region < kTorso; ++region) {
+  for (std::uint8_t region = 0; region < regions.limbs.size(); ++region) {
     const std::vector<std::uint32_t>& limb = spheres.of_region[region];
     for (std::size_t i = 1; i < limb.size(); ++i) links.emplace_back(limb[i - 1], limb[i]);
-    const Side other = regions.limbs[region].left ? Side::kRight : Side::kLeft;
+    const Limb& place = regions.limbs[region];
     for (const std::uint32_t i : torso) {
-      if (level(i) == (regions.limbs[region].top ? top : 0) && spheres.spheres[i].side != other) {
+      if (level(i) == spheres.level_at(place.along) && !opposite(spheres.spheres[i].side, place.side)) {
         links.emplace_back(i, limb.front());
       }
     }
@@ -34,6 +33,10 @@ std::vector<Link> find_links(const Spheres& spheres, const Regions& regions) {
 }
 
 }  // namespace
+
+int Spheres::level_at(double along) const {
+  return static_cast<int>(std::lround(along * (static_cast<double>(level_heights.size()) - 1)));
+}
 
 double signed_f(const Ball& ball, const Vec3& vertex) { return ball.radius - (ball.center - vertex).norm(); }
 
@@ -66,9 +69,10 @@ Spheres fit_spheres(const Character& character, const Regions& regions, const Fi
   const auto append = [&](const std::vector<FittedSphere>& spheres) {
     out.spheres.insert(out.spheres.end(), spheres.begin(), spheres.end());
   };
-  fit_torso(mesh, regions, settings, character.file, out);
-  if (settings.extremities) append(fit_head(mesh, regions, out, settings));
-  for (std::uint8_t region = 0; region < kTorso; ++region) {
+  out.of_region.resize(regions.limbs.size() + 1);
+  if (regions.has_torso) fit_torso(mesh, regions, settings, character.file, out);
+  if (regions.has_torso && settings.extremities) append(fit_head(mesh, regions, out, settings));
+  for (std::uint8_t region = 0; region < regions.limbs.size(); ++region) {
     append(fit_limb(mesh, regions, region, settings, character.file));
     if (settings.extremities) append(fit_hand_or_foot(mesh, regions, region, out.spheres.back().ball, settings));
   }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -11,8 +10,6 @@
 #include "segment/segment.h"
 
 namespace spherechain::baker {
-
-enum class Side : std::uint8_t { kNone = 0, kLeft = 1, kRight = 2 };
 
 struct Ball {
   Vec3 center;
@@ -46,12 +43,17 @@ FError f_error(const Ball& ball, const Mesh& mesh, const std::vector<Index>& ver
 // on through neck and head; then the limbs in region order, each from shoulder or hip to the tip of hand or foot.
 struct Spheres {
   std::vector<FittedSphere> spheres;
-  std::array<std::vector<std::uint32_t>, kRegionCount> of_region;  // in the order above
-  std::vector<TorsoFit> torso;                                     // of spheres 0 ..: without the head
+  std::vector<std::vector<std::uint32_t>>
+      of_region;                      // in the order above; the torso, also where there is none, is last
+  std::vector<TorsoFit> torso;        // of spheres 0 ..: without the head
   std::vector<double> level_heights;  // along frame.up from frame.origin: without the head's
   // Next to each other on the body, a < b, sorted: along a limb, on the same or the next torso level, limb to torso,
   // neck to torso.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> links;
+
+  std::uint8_t torso_region() const { return static_cast<std::uint8_t>(of_region.size() - 1); }
+  // The torso level at a place from 0, the hip, to 1, the chest.
+  int level_at(double along) const;
 };
 
 // Lengths are fractions of the character's height.

@@ -222,7 +222,8 @@ std::vector<FittedSphere> fit_head(const Mesh& mesh, const Regions& regions, con
                                    const FitSettings& settings) {
   const BodyFrame& frame = regions.frame;
   Mesh skin{mesh.positions, {}};
-  for (const Index t : triangles_of_region(regions, kTorso)) skin.triangles.push_back(mesh.triangles[t]);
+  for (const Index t : triangles_of_region(regions, regions.torso_region()))
+    skin.triangles.push_back(mesh.triangles[t]);
   const Sections sections(std::move(skin), frame.up, frame.left, settings.rays);
   const double step = settings.delta * frame.height;
   const int top = static_cast<int>(torso.level_heights.size()) - 1;
@@ -238,7 +239,7 @@ std::vector<FittedSphere> fit_head(const Mesh& mesh, const Regions& regions, con
   std::vector<FittedSphere> spheres;
   for (const Ball& ball : march(sections, *start, step, settings.penetration_depth)) {
     const int level = top + 1 + static_cast<int>(spheres.size());
-    spheres.push_back({ball, kTorso, level, Side::kNone, frame.up, true});
+    spheres.push_back({ball, regions.torso_region(), level, Side::kNone, frame.up, true});
   }
   return spheres;
 }

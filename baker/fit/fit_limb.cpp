@@ -81,7 +81,7 @@ std::vector<FittedSphere> fit_limb(const Mesh& mesh, const Regions& regions, std
   while (s < end && !march.on_own_skin(s)) s += step;
   if (s >= end) {
     throw Error(ExitCode::kSegmentation,
-                file + ": no section of the " + kRegionNames[region] + " is closed by its own skin");
+                file + ": no section of the " + regions.name(region) + " is closed by its own skin");
   }
   std::vector<FittedSphere> spheres;
   const auto place = [&](double at, const Ball& ball) {

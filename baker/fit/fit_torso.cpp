@@ -36,7 +36,7 @@ struct Level {
 class TorsoDisk {
  public:
   TorsoDisk(const Mesh& mesh, const Regions& regions, const FitSettings& settings)
-      : torso_(mesh, triangles_of_region(regions, kTorso)),
+      : torso_(mesh, triangles_of_region(regions, regions.torso_region())),
         frame_(regions.frame),
         regions_(regions),
         rays_(settings.rays),
@@ -182,7 +182,7 @@ void fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& sett
   }
   std::vector<bool> in_torso(mesh.positions.size(), false);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    if (regions.of_triangle[t] != kTorso) continue;
+    if (regions.of_triangle[t] != regions.torso_region()) continue;
     for (const Index v : mesh.triangles[t]) in_torso[v] = true;
   }
   // A vertex in the plane between two parts is both parts'.
@@ -201,7 +201,8 @@ void fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& sett
       }
       fit.phi1_adjusted = adjust(fit.phi1, levels[i].disk, frame.up, mesh, fit.vertices);
       fit.phi2 = fit.vertices.empty() ? fit.phi1 : minimum_enclosing_ball(mesh, fit.vertices);
-      out.spheres.push_back({fit.phi1_adjusted, kTorso, static_cast<int>(i), part.side, frame.up, false});
+      out.spheres.push_back(
+          {fit.phi1_adjusted, regions.torso_region(), static_cast<int>(i), part.side, frame.up, false});
       out.torso.push_back(std::move(fit));
     }
     out.level_heights.push_back(levels[i].height);

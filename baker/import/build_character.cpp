@@ -147,26 +147,21 @@ Character build_character(const SourceMesh& source, const std::string& name) {
   for (std::size_t t = 0; t < all.triangles.size(); ++t) area[components.of_triangle[t]] += triangle_area(all, t);
   const auto body = static_cast<Index>(std::max_element(area.begin(), area.end()) - area.begin());
 
-  std::vector<Triangle> body_triangles, other_triangles;
+  std::vector<Triangle> body_triangles;
   for (std::size_t t = 0; t < all.triangles.size(); ++t) {
-    const Index s = source_triangle[t];
-    if (components.of_triangle[t] == body) {
-      body_triangles.push_back(all.triangles[t]);
-      character.body_source_triangle.push_back(s);
-    } else {
-      other_triangles.push_back(all.triangles[t]);
-      character.others_source_triangle.push_back(s);
-    }
+    if (components.of_triangle[t] != body) continue;
+    body_triangles.push_back(all.triangles[t]);
+    character.body_source_triangle.push_back(source_triangle[t]);
   }
-  Piece body_piece = extract(positions, body_triangles);
-  Piece others_piece = extract(positions, other_triangles);
-  report.welded_vertices = body_piece.mesh.positions.size() + others_piece.mesh.positions.size();
+  Piece skin_piece = extract(positions, all.triangles), body_piece = extract(positions, body_triangles);
+  report.welded_vertices = skin_piece.mesh.positions.size();
   for (const Index w : welded) {
+    character.skin_of_source.push_back(skin_piece.of_source[w]);
     character.body_of_source.push_back(body_piece.of_source[w]);
-    character.others_of_source.push_back(others_piece.of_source[w]);
   }
+  character.skin = std::move(skin_piece.mesh);
+  character.skin_source_triangle = std::move(source_triangle);
   character.body = std::move(body_piece.mesh);
-  character.others = std::move(others_piece.mesh);
   return character;
 }
 

@@ -34,15 +34,15 @@ struct Character {
   std::vector<Triangle> source_triangles;  // corners: source vertices
   SourceRig rig;
 
-  // The largest connected piece, welded and cleaned.
+  // All pieces, welded and cleaned: what spheres are bound to.
+  Mesh skin;
+  std::vector<Index> skin_source_triangle;  // a triangle of skin -> its number in the source
+  std::vector<Index> skin_of_source;        // source vertex -> vertex of skin, kNoIndex where no triangle uses it
+
+  // The surface that is segmented and fitted: the skin's largest connected piece.
   Mesh body;
   std::vector<Index> body_source_triangle;  // a triangle of body -> its number in the source
-  std::vector<Index> body_of_source;        // source vertex -> vertex of body, kNoIndex where on another piece
-
-  // The other pieces (eyes, clothes), carried along: one mesh, cleaned as the body was.
-  Mesh others;
-  std::vector<Index> others_source_triangle;
-  std::vector<Index> others_of_source;
+  std::vector<Index> body_of_source;        // source vertex -> vertex of body, kNoIndex where it is on none
 
   double metres_per_unit = 1;
   Vec3 up_hint = Vec3::UnitY();  // the file's up axis; the character's own is found from its shape

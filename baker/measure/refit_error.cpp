@@ -41,18 +41,18 @@ Ball SkinFollower::at(const std::vector<Vec3>& positions) const {
 
 std::vector<SkinFollower> skin_followers(const Bake& bake) {
   const Character& character = bake.character;
-  std::vector<Index> source_of_body(character.body.positions.size(), 0);
-  for (Index v = 0; v < character.body_of_source.size(); ++v) {
-    if (character.body_of_source[v] != kNoIndex) source_of_body[character.body_of_source[v]] = v;
+  std::vector<Index> source_of_skin(character.skin.positions.size(), 0);
+  for (Index v = 0; v < character.skin_of_source.size(); ++v) {
+    if (character.skin_of_source[v] != kNoIndex) source_of_skin[character.skin_of_source[v]] = v;
   }
   const std::size_t count = bake.spheres.spheres.size();
   std::vector<std::vector<Index>> vertices(count);
   std::vector<std::vector<bool>> taken(count, std::vector<bool>(character.source_positions.size(), false));
-  for (std::size_t t = 0; t < character.body.triangles.size(); ++t) {
+  for (std::size_t t = 0; t < character.skin.triangles.size(); ++t) {
     const std::uint32_t s = bake.binding.sphere_of_triangle[t];
     const Ball& ball = bake.spheres.spheres[s].ball;
-    for (const Index corner : character.body.triangles[t]) {
-      const Index v = source_of_body[corner];
+    for (const Index corner : character.skin.triangles[t]) {
+      const Index v = source_of_skin[corner];
       if (taken[s][v] || std::abs(signed_f(ball, character.source_positions[v])) >= 0.5 * ball.radius) continue;
       taken[s][v] = true;
       vertices[s].push_back(v);

@@ -17,7 +17,7 @@ double mean_abs_f(const Bake& bake) {
   for (const TorsoFit& fit : bake.spheres.torso) {
     sum += f_error(fit.phi1_adjusted, bake.character.body, fit.vertices).mean_abs;
   }
-  return sum / static_cast<double>(bake.spheres.torso.size());
+  return bake.spheres.torso.empty() ? 0 : sum / static_cast<double>(bake.spheres.torso.size());
 }
 
 using Progress = std::function<void(const std::string&)>;
@@ -35,12 +35,16 @@ void run_after_segmentation(Bake& out, const Progress& progress) {
   stage(out, progress, "fit", [&] { out.spheres = fit_spheres(out.character, out.regions, settings.fit); });
   stage(out, progress, "chains", [&] {
     std::vector<LimbPlace> limbs;
-    for (std::uint8_t i = 0; i < kTorso; ++i) limbs.push_back({i, out.regions.limbs[i].left, out.regions.limbs[i].top});
+    for (const Limb& limb : out.regions.limbs) {
+      limbs.push_back({static_cast<std::uint8_t>(limbs.size()), limb.side, limb.along});
+    }
     out.chains = build_chains(out.spheres, limbs);
   });
   stage(out, progress, "bind",
         [&] { out.binding = bind_spheres(out.character, out.regions, out.spheres, settings.bind); });
-  stage(out, progress, "rig", [&] { out.joints = place_joints(out.character, out.regions); });
+  stage(out, progress, "rig", [&] {
+    if (is_biped(out.regions)) out.joints = place_joints(out.character, out.regions);
+  });
   stage(out, progress, "write", [&] {
     out.asset =
         serialize({out.character, out.regions, out.spheres, out.chains, out.binding, out.joints, to_json(settings)});
@@ -68,7 +72,7 @@ Bake rebake(const Bake& segmented, const BakeSettings& settings) {
 }
 
 double covered_area(const Bake& bake) {
-  const Mesh& mesh = bake.character.body;
+  const Mesh& mesh = bake.character.skin;
   double covered = 0, total = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     const BoundSphere& sphere = bake.binding.spheres[bake.binding.sphere_of_triangle[t]];
@@ -82,9 +86,9 @@ double covered_area(const Bake& bake) {
 OwnerDistance owner_distance(const Character& character, const Regions& regions, const Binding& binding) {
   std::vector<double> distances;
   double sum = 0;
-  for (std::size_t t = 0; t < character.body.triangles.size(); ++t) {
+  for (std::size_t t = 0; t < character.skin.triangles.size(); ++t) {
     const Ball& ball = binding.spheres[binding.sphere_of_triangle[t]].rest;
-    distances.push_back(std::abs(signed_f(ball, triangle_centroid(character.body, t))) / regions.frame.height);
+    distances.push_back(std::abs(signed_f(ball, triangle_centroid(character.skin, t))) / regions.frame.height);
     sum += distances.back();
   }
   std::sort(distances.begin(), distances.end());

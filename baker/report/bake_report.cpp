@@ -25,7 +25,7 @@ ordered_json import_section(const Bake& bake) {
           {"welded_vertices", report.welded_vertices},
           {"body_vertices", bake.character.body.positions.size()},
           {"body_triangles", bake.character.body.triangles.size()},
-          {"other_triangles", bake.character.others.triangles.size()},
+          {"other_triangles", bake.character.skin.triangles.size() - bake.character.body.triangles.size()},
           {"degenerate_dropped", report.degenerate_dropped},
           {"duplicates_dropped", report.duplicates_dropped},
           {"points_and_lines_dropped", report.points_and_lines_dropped},
@@ -35,8 +35,8 @@ ordered_json import_section(const Bake& bake) {
 
 double region_area(const Bake& bake, std::size_t region) {
   double area = 0;
-  for (std::size_t t = 0; t < bake.character.body.triangles.size(); ++t) {
-    if (bake.regions.of_triangle[t] == region) area += triangle_area(bake.character.body, t);
+  for (std::size_t t = 0; t < bake.character.skin.triangles.size(); ++t) {
+    if (bake.regions.of_skin[t] == region) area += triangle_area(bake.character.skin, t);
   }
   return area;
 }
@@ -44,11 +44,11 @@ double region_area(const Bake& bake, std::size_t region) {
 ordered_json segment_section(const Bake& bake) {
   const BodyFrame& frame = bake.regions.frame;
   ordered_json regions = ordered_json::array();
-  for (std::size_t r = 0; r < kRegionCount; ++r) {
-    ordered_json entry{{"name", kRegionNames[r]},
-                       {"triangles", std::count(bake.regions.of_triangle.begin(), bake.regions.of_triangle.end(), r)},
+  for (std::size_t r = 0; r < bake.regions.count(); ++r) {
+    ordered_json entry{{"name", bake.regions.name(r)},
+                       {"triangles", std::count(bake.regions.of_skin.begin(), bake.regions.of_skin.end(), r)},
                        {"area", region_area(bake, r)}};
-    if (r < kTorso) {
+    if (r < bake.regions.limbs.size()) {
       entry["length_to_wrist_or_ankle"] = bake.regions.limbs[r].extremity;
       entry["starts_at"] = to_json(bake.regions.limbs[r].line.at(0));
     }
@@ -88,13 +88,14 @@ ordered_json fit_section(const Bake& bake) {
                      {"phi2", fit_entry(fit.phi2, fit, mesh)}});
   }
   ordered_json limbs = ordered_json::array();
-  for (std::size_t r = 0; r < kTorso; ++r) {
+  for (std::size_t r = 0; r < bake.regions.limbs.size(); ++r) {
     const std::vector<std::uint32_t>& ids = bake.spheres.of_region[r];
     ordered_json depths = ordered_json::array();
     for (std::size_t i = 1; i < ids.size(); ++i) {
       depths.push_back(penetration_depth(bake.spheres.spheres[ids[i - 1]].ball, bake.spheres.spheres[ids[i]].ball));
     }
-    limbs.push_back({{"name", kRegionNames[r]}, {"spheres", ids.size()}, {"penetration_depths", std::move(depths)}});
+    limbs.push_back(
+        {{"name", bake.regions.name(r)}, {"spheres", ids.size()}, {"penetration_depths", std::move(depths)}});
   }
   return {{"torso", std::move(torso)}, {"limbs", std::move(limbs)}};
 }
@@ -108,11 +109,11 @@ std::size_t count_extremity(const Bake& bake, std::size_t region) {
 // A march at penetration depth PD takes about length / (2 r (1 - PD)) spheres.
 std::string why_this_count(const Bake& bake) {
   std::string why;
-  for (std::size_t r = 0; r < kTorso; ++r) {
+  for (std::size_t r = 0; r < bake.regions.limbs.size(); ++r) {
     double radius = 0;
     const std::size_t count = bake.spheres.of_region[r].size() - count_extremity(bake, r);
     for (std::size_t i = 0; i < count; ++i) radius += bake.spheres.spheres[bake.spheres.of_region[r][i]].ball.radius;
-    why += fmt::format("{}{} {} (length {:.3f}, mean radius {:.4f})", r == 0 ? "" : ", ", kRegionNames[r], count,
+    why += fmt::format("{}{} {} (length {:.3f}, mean radius {:.4f})", r == 0 ? "" : ", ", bake.regions.name(r), count,
                        bake.regions.limbs[r].extremity, radius / static_cast<double>(count));
   }
   why += fmt::format(
@@ -120,9 +121,11 @@ std::string why_this_count(const Bake& bake) {
       "ray, and not the mean ray; smaller spheres, so more of them at the same penetration depth.",
       bake.spheres.torso.size(), bake.spheres.level_heights.size());
   if (bake.settings.fit.extremities) {
-    why += fmt::format(" Past where the paper stops: hands {} + {}, feet {} + {}, neck and head {}.",
-                       count_extremity(bake, 0), count_extremity(bake, 1), count_extremity(bake, 2),
-                       count_extremity(bake, 3), count_extremity(bake, kTorso));
+    why += " Past where the paper stops:";
+    for (std::size_t r = 0; r < bake.regions.count(); ++r) {
+      why += fmt::format("{} {} {}", r == 0 ? "" : ",", bake.regions.name(r), count_extremity(bake, r));
+    }
+    why += ".";
   }
   return why;
 }
@@ -217,9 +220,9 @@ std::string bake_report_text(const Bake& bake) {
                   bake.character.source_triangles.size(), mesh.triangles.size(), bake.character.report.components,
                   bake.regions.frame.height * bake.character.metres_per_unit, bake.regions.facing);
   out += fmt::format("\n{:<10} {:>9} {:>7}\n", "region", "triangles", "spheres");
-  for (std::size_t r = 0; r < kRegionCount; ++r) {
-    out += fmt::format("{:<10} {:>9} {:>7}\n", kRegionNames[r],
-                       std::count(bake.regions.of_triangle.begin(), bake.regions.of_triangle.end(), r),
+  for (std::size_t r = 0; r < bake.regions.count(); ++r) {
+    out += fmt::format("{:<10} {:>9} {:>7}\n", bake.regions.name(r),
+                       std::count(bake.regions.of_skin.begin(), bake.regions.of_skin.end(), r),
                        bake.spheres.of_region[r].size());
   }
   out += fmt::format("{} spheres, {} chain entries ({} as Table 1 counts), {} pairs ignored\n",

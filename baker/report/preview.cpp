@@ -146,7 +146,7 @@ void append(const Mesh& mesh, const std::vector<std::uint8_t>& region_of_triangl
       if (is_new) {
         skin.positions.push_back(to_float(mesh.positions[v]));
         skin.normals.push_back(to_float(normals[v]));
-        skin.colours.push_back(to_linear(kRegionColours[region]));
+        skin.colours.push_back(to_linear(kRegionColours[region % kRegionColours.size()]));
         std::array<std::uint16_t, 4> joints;
         std::array<float, 4> shares;
         for (std::size_t k = 0; k < 4; ++k) {
@@ -172,12 +172,14 @@ std::vector<VertexWeights> weights_of(const std::vector<VertexWeights>& of_sourc
   return out;
 }
 
-int add_skin_mesh(tinygltf::Model& model, const Skin& skin) {
+int add_skin_mesh(tinygltf::Model& model, const Skin& skin, bool rigged) {
   std::map<std::string, int> attributes{{"POSITION", add_positions(model, skin.positions)},
                                         {"NORMAL", add_vertices(model, skin.normals)},
-                                        {"COLOR_0", add_vertices(model, skin.colours)},
-                                        {"JOINTS_0", add_vertices(model, skin.joints)},
-                                        {"WEIGHTS_0", add_vertices(model, skin.weights)}};
+                                        {"COLOR_0", add_vertices(model, skin.colours)}};
+  if (rigged) {
+    attributes["JOINTS_0"] = add_vertices(model, skin.joints);
+    attributes["WEIGHTS_0"] = add_vertices(model, skin.weights);
+  }
   const int indices = add_indices(model, skin.triangles);
   return add_mesh(model, "skin", std::move(attributes), indices, add_material(model, "skin", 1, 0.5));
 }
@@ -244,37 +246,43 @@ int add_joints(tinygltf::Model& model, const std::vector<Joint>& joints, int roo
   return static_cast<int>(model.skins.size()) - 1;
 }
 
-std::string sphere_name(const FittedSphere& sphere, std::size_t place) {
-  const char* region = kRegionNames[sphere.region];
-  if (sphere.region != kTorso) return fmt::format("{}_{:02}", region, place);
+std::string sphere_name(const Regions& regions, const FittedSphere& sphere, std::size_t place) {
+  const std::string region = regions.name(sphere.region);
+  if (sphere.region != regions.torso_region()) return fmt::format("{}_{:02}", region, place);
   const char* side = sphere.side == Side::kLeft ? "_left" : sphere.side == Side::kRight ? "_right" : "";
   return fmt::format("{}_level_{}{}", region, sphere.level, side);
 }
 
 // The joint with the most weight over the sphere's pivots.
-std::size_t carrier(const BoundSphere& sphere, const Mesh& body, const std::vector<VertexWeights>& weights,
+std::size_t carrier(const BoundSphere& sphere, const Mesh& skin, const std::vector<VertexWeights>& weights,
                     std::size_t joint_count) {
   std::vector<double> sum(joint_count, 0.0);
   for (const BoundPivot& pivot : sphere.pivots) {
-    for (const Index v : body.triangles[pivot.triangle]) {
+    for (const Index v : skin.triangles[pivot.triangle]) {
       for (std::size_t k = 0; k < 4; ++k) sum[weights[v].joint[k]] += weights[v].weight[k];
     }
   }
   return static_cast<std::size_t>(std::max_element(sum.begin(), sum.end()) - sum.begin());
 }
 
-void add_spheres(tinygltf::Model& model, const Bake& bake, const std::vector<VertexWeights>& body_weights,
+// Under the joints, or under the root where there are none.
+void add_spheres(tinygltf::Model& model, const Bake& bake, const std::vector<VertexWeights>& weights, int root,
                  const std::vector<int>& joint_nodes) {
   const int mesh = add_sphere_mesh(model);
   for (const std::vector<std::uint32_t>& region : bake.spheres.of_region) {
     for (std::size_t place = 0; place < region.size(); ++place) {
       const BoundSphere& sphere = bake.binding.spheres[region[place]];
-      const std::size_t joint = carrier(sphere, bake.character.body, body_weights, bake.joints.size());
       tinygltf::Node node;
-      node.name = sphere_name(bake.spheres.spheres[region[place]], place);
+      node.name = sphere_name(bake.regions, bake.spheres.spheres[region[place]], place);
       node.mesh = mesh;
-      node.translation = to_json(sphere.rest.center - bake.joints[joint].position);
       node.scale = std::vector<double>(3, sphere.rest.radius);
+      if (bake.joints.empty()) {
+        node.translation = to_json(sphere.rest.center);
+        add_node(model, std::move(node), root);
+        continue;
+      }
+      const std::size_t joint = carrier(sphere, bake.character.skin, weights, bake.joints.size());
+      node.translation = to_json(sphere.rest.center - bake.joints[joint].position);
       add_node(model, std::move(node), joint_nodes[joint]);
     }
   }
@@ -284,12 +292,12 @@ void add_spheres(tinygltf::Model& model, const Bake& bake, const std::vector<Ver
 
 std::string preview_glb(const Bake& bake) {
   const Character& character = bake.character;
-  const std::vector<VertexWeights> weights = rig_weights(character, bake.joints);
-  const std::vector<VertexWeights> body_weights = weights_of(weights, character.body_of_source, character.body);
+  std::vector<VertexWeights> weights(character.skin.positions.size());
+  if (!bake.joints.empty()) {
+    weights = weights_of(rig_weights(character, bake.joints), character.skin_of_source, character.skin);
+  }
   Skin skin;
-  append(character.body, bake.regions.of_triangle, body_weights, skin);
-  append(character.others, bake.regions.of_other, weights_of(weights, character.others_of_source, character.others),
-         skin);
+  append(character.skin, bake.regions.of_skin, weights, skin);
 
   tinygltf::Model model;
   model.asset.version = "2.0";
@@ -298,12 +306,13 @@ std::string preview_glb(const Bake& bake) {
   model.scenes.resize(1);
   model.defaultScene = 0;
   const int root = add_node(model, root_node(bake), -1);
-  tinygltf::Node node;  // beside the root: glTF places a skinned mesh by its joints alone
+  tinygltf::Node node;
   node.name = "skin";
-  node.skin = add_joints(model, bake.joints, root);
-  node.mesh = add_skin_mesh(model, skin);
-  add_node(model, std::move(node), -1);
-  add_spheres(model, bake, body_weights, model.skins.front().joints);
+  const bool rigged = !bake.joints.empty();
+  if (rigged) node.skin = add_joints(model, bake.joints, root);
+  node.mesh = add_skin_mesh(model, skin, rigged);
+  add_node(model, std::move(node), rigged ? -1 : root);  // glTF places a skinned mesh by its joints alone
+  add_spheres(model, bake, weights, root, rigged ? model.skins.front().joints : std::vector<int>());
 
   std::ostringstream bytes;
   if (!tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, bytes, false, true)) {

@@ -91,8 +91,8 @@ std::vector<Joint> place_joints(const Character& character, const Regions& regio
   std::array<LimbJoints, 4> limbs;
   for (std::size_t i = 0; i < limbs.size(); ++i) {
     const Limb& limb = regions.limbs[i];
-    limbs[i] = limb.top ? limb_joints(limb, 0.02 * h, 0.08 * h, kShoulderInside * h, 0, kElbow)
-                        : limb_joints(limb, 0.04 * h, 0.16 * h, kHipInside * h, kAnkleBelow * h, kKnee);
+    limbs[i] = limb.along > 0.5 ? limb_joints(limb, 0.02 * h, 0.08 * h, kShoulderInside * h, 0, kElbow)
+                                : limb_joints(limb, 0.04 * h, 0.16 * h, kHipInside * h, kAnkleBelow * h, kKnee);
   }
 
   // Three sure points say where the spine runs; the skeleton's curve between them is noise from the torso's shape.

@@ -218,7 +218,10 @@ BodyPlan find_body_plan(const Mesh& mesh, const CurveSkeleton& skeleton, const s
     return (line.points().back() - plan.frame.origin).dot(plan.frame.left);
   };
   const bool arm0_left = is_left(top[0]) > is_left(top[1]), leg0_left = is_left(legs[0]) > is_left(legs[1]);
-  plan.limbs = {top[arm0_left ? 0 : 1], top[arm0_left ? 1 : 0], legs[leg0_left ? 0 : 1], legs[leg0_left ? 1 : 0]};
+  plan.limbs = {{kRegionNames[0], Side::kLeft, 1, top[arm0_left ? 0 : 1]},
+                {kRegionNames[1], Side::kRight, 1, top[arm0_left ? 1 : 0]},
+                {kRegionNames[2], Side::kLeft, 0, legs[leg0_left ? 0 : 1]},
+                {kRegionNames[3], Side::kRight, 0, legs[leg0_left ? 1 : 0]}};
   return plan;
 }
 

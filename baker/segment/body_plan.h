@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "mesh/polyline.h"
 #include "segment/curve_skeleton.h"
@@ -18,18 +20,28 @@ struct BodyFrame {
   double height;  // extent along `up`: the length every setting is a fraction of
 };
 
-// The five long branches of a biped's curve skeleton, each from the junction it leaves to its tip.
+enum class Side : std::uint8_t { kNone = 0, kLeft = 1, kRight = 2 };
+
+// The long branches of a curve skeleton, each from the junction it leaves to its tip.
 struct BodyPlan {
+  struct Limb {
+    std::string name;  // its region's
+    Side side;         // of the torso; none: in the plane of symmetry (a tail)
+    double along;      // where it leaves the torso, from 0, the hip, to 1, the chest
+    Polyline line;
+  };
+
   BodyFrame frame;
   std::string facing;  // how forward was decided, for the report
   Polyline spine;      // hip junction to chest junction
   Polyline head;
-  std::array<Polyline, 4> limbs;  // left arm, right arm, left leg, right leg
+  std::vector<Limb> limbs;
 };
 
 // The frame with another up axis (its part across `left`); origin and height follow.
 BodyFrame with_up(BodyFrame frame, const Vec3& up, const Mesh& mesh);
 
+// The regions of a biped, in order: R0 .. R4 of the paper.
 inline constexpr std::array<const char*, 5> kRegionNames{"left_arm", "right_arm", "left_leg", "right_leg", "torso"};
 
 // `facing` overrides what the feet say: any vector with a part along the character's forward axis.

@@ -14,6 +14,8 @@ namespace {
 
 using Neighbours = std::vector<std::array<Index, 3>>;
 
+constexpr std::uint8_t kNoRegion = 255;
+
 // Half the width of the strip around a cut in which the loop may run, as a fraction of the height.
 constexpr double kStripHalfWidth = 0.015;
 
@@ -22,8 +24,12 @@ constexpr double kStripHalfWidth = 0.015;
 // crotch are not crossed. The loop is then the shortest in a strip around the plane.
 class LimbLabeller {
  public:
-  LimbLabeller(const Mesh& mesh, const std::array<LimbTrace, 4>& traces, double height)
-      : mesh_(mesh), neighbours_(triangle_neighbours(mesh)), traces_(traces), half_width_(kStripHalfWidth * height) {}
+  LimbLabeller(const Mesh& mesh, const std::vector<LimbTrace>& traces, double height)
+      : mesh_(mesh),
+        neighbours_(triangle_neighbours(mesh)),
+        traces_(traces),
+        torso_(static_cast<std::uint8_t>(traces.size())),
+        half_width_(kStripHalfWidth * height) {}
 
   void label(std::uint8_t region, Index tip, std::vector<std::uint8_t>& labels) const {
     const LimbTrace& limb = traces_[region];
@@ -33,7 +39,7 @@ class LimbLabeller {
       const Index t = stack.back();
       stack.pop_back();
       for (const Index n : neighbours_[t]) {
-        if (n == kNoIndex || labels[n] != kTorso) continue;
+        if (n == kNoIndex || labels[n] != torso_) continue;
         const double along = along_of(limb, n);
         if (along <= 0 || (along <= 2 * limb.radius && !near(region, n, along))) continue;
         labels[n] = region;
@@ -42,11 +48,11 @@ class LimbLabeller {
     }
     std::vector<Index> strip;
     for (Index t = 0; t < labels.size(); ++t) {
-      if (labels[t] != region && labels[t] != kTorso) continue;
+      if (labels[t] != region && labels[t] != torso_) continue;
       const double along = along_of(limb, t);
       if (std::abs(along) < half_width_ && near(region, t, std::abs(along))) strip.push_back(t);
     }
-    shorten_loop(mesh_, neighbours_, strip, region, kTorso, labels);
+    shorten_loop(mesh_, neighbours_, strip, region, torso_, labels);
   }
 
   const Neighbours& neighbours() const { return neighbours_; }
@@ -75,12 +81,14 @@ class LimbLabeller {
 
   const Mesh& mesh_;
   Neighbours neighbours_;
-  const std::array<LimbTrace, 4>& traces_;
+  const std::vector<LimbTrace>& traces_;
+  std::uint8_t torso_;
   double half_width_;
 };
 
 // Keeps each region's largest piece; every other piece joins the region it borders on most.
-void join_islands(const Mesh& mesh, const Neighbours& neighbours, std::vector<std::uint8_t>& labels) {
+void join_islands(const Mesh& mesh, const Neighbours& neighbours, std::size_t regions,
+                  std::vector<std::uint8_t>& labels) {
   std::vector<Index> piece(labels.size(), kNoIndex);
   std::vector<std::vector<Index>> pieces;
   for (Index seed = 0; seed < labels.size(); ++seed) {
@@ -96,8 +104,8 @@ void join_islands(const Mesh& mesh, const Neighbours& neighbours, std::vector<st
       }
     }
   }
-  std::array<double, kRegionCount> largest{};
-  std::array<Index, kRegionCount> keep{};
+  std::vector<double> largest(regions, 0.0);
+  std::vector<Index> keep(regions, kNoIndex);
   for (Index id = 0; id < pieces.size(); ++id) {
     double area = 0;
     for (const Index t : pieces[id]) area += triangle_area(mesh, t);
@@ -110,7 +118,7 @@ void join_islands(const Mesh& mesh, const Neighbours& neighbours, std::vector<st
   for (Index id = 0; id < pieces.size(); ++id) {
     const std::uint8_t region = labels[pieces[id][0]];
     if (keep[region] == id) continue;
-    std::array<int, kRegionCount> votes{};
+    std::vector<int> votes(regions, 0);
     for (const Index t : pieces[id]) {
       for (const Index n : neighbours[t]) {
         if (n != kNoIndex && piece[n] != id) ++votes[labels[n]];
@@ -121,20 +129,34 @@ void join_islands(const Mesh& mesh, const Neighbours& neighbours, std::vector<st
   }
 }
 
-std::vector<std::uint8_t> label_others(const Character& character, const SurfaceQuery& surface,
-                                       const std::vector<std::uint8_t>& body) {
-  const Components pieces = connected_components(character.others);
+// The skin's pieces that are not the body (eyes) go as a whole to the region they are nearest to.
+std::vector<std::uint8_t> label_skin(const Character& character, const SurfaceQuery& surface,
+                                     const std::vector<std::uint8_t>& body) {
+  const Mesh& skin = character.skin;
+  std::vector<std::uint8_t> of_source(character.source_triangles.size(), kNoRegion);
+  for (std::size_t t = 0; t < body.size(); ++t) of_source[character.body_source_triangle[t]] = body[t];
+  const Components pieces = connected_components(skin);
   std::vector<Vec3> centroid(pieces.count, Vec3::Zero());
   std::vector<double> area(pieces.count, 0.0);
-  for (std::size_t t = 0; t < character.others.triangles.size(); ++t) {
-    centroid[pieces.of_triangle[t]] += triangle_area(character.others, t) * triangle_centroid(character.others, t);
-    area[pieces.of_triangle[t]] += triangle_area(character.others, t);
+  for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
+    centroid[pieces.of_triangle[t]] += triangle_area(skin, t) * triangle_centroid(skin, t);
+    area[pieces.of_triangle[t]] += triangle_area(skin, t);
+  }
+  std::vector<std::uint8_t> of_piece;
+  for (Index piece = 0; piece < pieces.count; ++piece) {
+    of_piece.push_back(body[surface.closest(centroid[piece] / area[piece]).triangle]);
   }
   std::vector<std::uint8_t> labels;
-  for (const Index piece : pieces.of_triangle) {
-    labels.push_back(body[surface.closest(centroid[piece] / area[piece]).triangle]);
+  for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
+    const std::uint8_t own = of_source[character.skin_source_triangle[t]];
+    labels.push_back(own == kNoRegion ? of_piece[pieces.of_triangle[t]] : own);
   }
   return labels;
+}
+
+std::string in_words(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
 }
 
 Vec3 in_symmetry_plane(const BodyFrame& frame, const Vec3& p) {
@@ -151,6 +173,12 @@ double arc_at_height(const Polyline& line, const BodyFrame& frame, double height
 
 }  // namespace
 
+bool is_biped(const Regions& regions) {
+  return regions.limbs.size() == kTorso &&
+         std::equal(regions.limbs.begin(), regions.limbs.end(), kRegionNames.begin(),
+                    [](const Limb& limb, const char* name) { return limb.name == name; });
+}
+
 Regions segment(const Character& character, const SegmentSettings& settings) {
   const Mesh& mesh = character.body;
   if (const std::size_t open = count_open_edges(mesh); open > 0) {
@@ -163,12 +191,10 @@ Regions segment(const Character& character, const SegmentSettings& settings) {
 
   Regions regions;
   regions.facing = plan.facing;
-  std::array<LimbTrace, 4> traces;
-  for (std::size_t i = 0; i < plan.limbs.size(); ++i) {
-    std::string name = kRegionNames[i];
-    std::replace(name.begin(), name.end(), '_', ' ');
-    traces[i] = trace_limb(surface, plan.limbs[i], plan.frame, settings.rays, name, character.file);
-    regions.limbs[i] = {i % 2 == 0, i < 2, traces[i].line, traces[i].extremity};
+  std::vector<LimbTrace> traces;
+  for (const BodyPlan::Limb& limb : plan.limbs) {
+    traces.push_back(trace_limb(surface, limb.line, plan.frame, settings.rays, in_words(limb.name), character.file));
+    regions.limbs.push_back({limb.name, limb.side, limb.along, traces.back().line, traces.back().extremity});
   }
   // Where the limbs start is known better than where the skeleton forks: the torso's axis is taken from there.
   const auto start = [&](std::size_t i) { return regions.limbs[i].line.at(0); };
@@ -184,12 +210,12 @@ Regions segment(const Character& character, const SegmentSettings& settings) {
   regions.spine_neck = arc_at_height(regions.spine, regions.frame, regions.torso.neck);
 
   const LimbLabeller labeller(mesh, traces, regions.frame.height);
-  regions.of_triangle.assign(mesh.triangles.size(), kTorso);
+  regions.of_triangle.assign(mesh.triangles.size(), regions.torso_region());
   for (std::uint8_t i = 0; i < regions.limbs.size(); ++i) {
     labeller.label(i, surface.closest(regions.limbs[i].line.points().back()).triangle, regions.of_triangle);
   }
-  join_islands(mesh, labeller.neighbours(), regions.of_triangle);
-  regions.of_other = label_others(character, surface, regions.of_triangle);
+  join_islands(mesh, labeller.neighbours(), regions.count(), regions.of_triangle);
+  regions.of_skin = label_skin(character, surface, regions.of_triangle);
   return regions;
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -14,28 +13,41 @@
 
 namespace spherechain::baker {
 
-// R0 .. R3 of the paper are the limbs, R4 the torso (with neck and head).
-inline constexpr std::uint8_t kTorso = 4;
-inline constexpr std::size_t kRegionCount = 5;
-
 struct Limb {
-  bool left, top;    // which side of the torso it leaves, and whether from the chest (arms) or the hip (legs)
+  std::string name;  // its region's
+  Side side;         // of the torso; none: in the plane of symmetry (a tail)
+  double along;      // where it leaves the torso, from 0, the hip, to 1, the chest
   Polyline line;     // centre line from the cut at shoulder or hip to the tip of hand or foot
   double extremity;  // arc length of wrist or ankle: where hand or foot begin
 };
 
-// Which part of the body every triangle is.
+// Which part of the body every triangle is. The limbs are regions 0 .. k - 1, then comes the torso, with neck and head:
+// a biped's are R0 .. R4 of the paper.
 struct Regions {
   BodyFrame frame;
   std::string facing;
-  std::array<Limb, 4> limbs;  // in the order of kRegionNames
-  Vec3 hip, chest;            // in the plane of symmetry, between the legs' and between the arms' starts
+  std::vector<Limb> limbs;
+  bool has_torso = true;  // a snake has none
+  Vec3 hip, chest;        // in the plane of symmetry, between the legs' and between the arms' starts
   TorsoEnds torso;
   Polyline spine;                         // the skeleton's curve from hip to chest junction and on to the head's tip
   double spine_chest, spine_neck;         // arc lengths on `spine` of the chest junction and the neck's base
   std::vector<std::uint8_t> of_triangle;  // a triangle of Character::body -> region
-  std::vector<std::uint8_t> of_other;  // a triangle of Character::others -> region, that of the nearest body triangle
+  std::vector<std::uint8_t> of_skin;      // a triangle of Character::skin -> region
+
+  std::uint8_t torso_region() const { return static_cast<std::uint8_t>(limbs.size()); }
+  std::size_t count() const { return limbs.size() + (has_torso ? 1 : 0); }
+  std::string name(std::size_t region) const { return region < limbs.size() ? limbs[region].name : "torso"; }
 };
+
+// Left and right; the middle is neither's opposite.
+inline bool opposite(Side a, Side b) { return a != Side::kNone && b != Side::kNone && a != b; }
+
+// Two arms and two legs, in the order of kRegionNames.
+bool is_biped(const Regions& regions);
+
+// The torso's region of a biped: R4 of the paper.
+inline constexpr std::uint8_t kTorso = 4;
 
 struct SegmentSettings {
   int rays = 80;               // N_r

@@ -26,11 +26,9 @@ struct SurroundingTriangles {
 
 SurroundingTriangles group_triangles(const AssetSource& in) {
   std::vector<std::vector<std::uint32_t>> groups(in.spheres.spheres.size());
-  const auto add = [&](const std::vector<std::uint32_t>& owner, const std::vector<Index>& source) {
-    for (std::size_t t = 0; t < owner.size(); ++t) groups[owner[t]].push_back(source[t]);
-  };
-  add(in.binding.sphere_of_triangle, in.character.body_source_triangle);
-  add(in.binding.sphere_of_other, in.character.others_source_triangle);
+  for (std::size_t t = 0; t < in.binding.sphere_of_triangle.size(); ++t) {
+    groups[in.binding.sphere_of_triangle[t]].push_back(in.character.skin_source_triangle[t]);
+  }
   SurroundingTriangles out;
   for (std::vector<std::uint32_t>& group : groups) {
     std::sort(group.begin(), group.end());
@@ -52,7 +50,7 @@ void add_spheres(const AssetSource& in, const SurroundingTriangles& triangles, s
         triangles.count[i], static_cast<std::uint16_t>(bound.pivots.size()), fitted.region,
         static_cast<schema::Side>(fitted.side), static_cast<std::int16_t>(fitted.level), std::uint16_t{0});
     for (const BoundPivot& pivot : bound.pivots) {
-      const Triangle& corners = in.character.source_triangles[in.character.body_source_triangle[pivot.triangle]];
+      const Triangle& corners = in.character.source_triangles[in.character.skin_source_triangle[pivot.triangle]];
       pivots.emplace_back(corners[0], corners[1], corners[2], static_cast<float>(pivot.weight));
     }
   }
@@ -95,10 +93,10 @@ std::vector<std::uint8_t> serialize(const AssetSource& in) {
   add_spheres(in, triangles, spheres, pivots);
 
   std::vector<flatbuffers::Offset<schema::Region>> regions;
-  for (std::size_t r = 0; r < kRegionCount; ++r) {
+  for (std::size_t r = 0; r < in.regions.count(); ++r) {
     std::uint32_t count = 0;
     for (const std::uint32_t i : in.spheres.of_region[r]) count += triangles.count[i];
-    regions.push_back(schema::CreateRegionDirect(builder, kRegionNames[r], count));
+    regions.push_back(schema::CreateRegionDirect(builder, in.regions.name(r).c_str(), count));
   }
   std::vector<flatbuffers::Offset<schema::Chain>> chains;
   for (const Chain& chain : in.chains.chains) {

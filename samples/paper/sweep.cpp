@@ -72,8 +72,10 @@ Columns fit_error(const Study& study, const Bake& bake) {
     }
   }
   std::vector<std::uint32_t> last_owner(mesh.positions.size(), baker::kNoIndex);
+  const std::vector<Index>& skin = bake.character.skin_source_triangle;  // ascending, as the body's are
   for (Index t = 0; t < mesh.triangles.size(); ++t) {
-    const std::uint32_t s = bake.binding.sphere_of_triangle[t];
+    const auto at = std::lower_bound(skin.begin(), skin.end(), bake.character.body_source_triangle[t]) - skin.begin();
+    const std::uint32_t s = bake.binding.sphere_of_triangle[static_cast<std::size_t>(at)];
     for (const Index v : mesh.triangles[t]) {
       if (!study.core()[t] || last_owner[v] == s) continue;
       last_owner[v] = s;

@@ -52,10 +52,10 @@ void draw(const Options& options) {
   const std::vector<Vec3> positions = animated.positions(animated.deformation(
       options.frame < 0 ? animated.frame_count() - 1 : std::min(options.frame, animated.frame_count() - 1)));
 
-  Picture picture{character.body, {}, {}, {}, {kFront, kLeftSide, kThreeQuarter}, animated.frame(), 0.35,
+  Picture picture{character.skin, {}, {}, {}, {kFront, kLeftSide, kThreeQuarter}, animated.frame(), 0.35,
                   options.height};
   for (std::size_t v = 0; v < positions.size(); ++v) {
-    if (character.body_of_source[v] != kNoIndex) picture.mesh.positions[character.body_of_source[v]] = positions[v];
+    if (character.skin_of_source[v] != kNoIndex) picture.mesh.positions[character.skin_of_source[v]] = positions[v];
   }
   const RadiusKind radius = options.radius == "fit" ? RadiusKind::kFit : RadiusKind::kDetect;
   const std::vector<spherechain::Sphere> spheres = refit_spheres(asset, pack(positions), radius);
@@ -63,8 +63,7 @@ void draw(const Options& options) {
   for (std::uint32_t i = 0; i < spheres.size(); ++i) {
     const std::uint8_t region = asset.spheres()[i].region;
     picture.spheres.push_back({Vec3(spheres[i].x, spheres[i].y, spheres[i].z), static_cast<double>(spheres[i].radius),
-                               kRegionColours[std::min<std::size_t>(region, kRegionColours.size() - 1)],
-                               ids.count(i) > 0});
+                               kRegionColours[region % kRegionColours.size()], ids.count(i) > 0});
   }
   write_picture(options.out, picture);
 }

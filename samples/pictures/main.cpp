@@ -35,7 +35,8 @@ void draw(const Options& options) {
 
   Picture picture{character.body, {}, {}, {}, {kFront, kLeftSide, kThreeQuarter}, regions.frame, 1, options.height};
   if (options.back) picture.views.push_back(kBack);
-  for (const std::uint8_t region : regions.of_triangle) picture.triangle_colours.push_back(kRegionColours[region]);
+  for (const std::uint8_t region : regions.of_triangle)
+    picture.triangle_colours.push_back(kRegionColours[region % kRegionColours.size()]);
   if (!options.poses.empty()) {
     const PoseMotion motion = read_pose_motion(options.poses, joints);
     const int frame = options.frame < 0 ? options.frames - 1 : options.frame;

@@ -14,12 +14,12 @@ using namespace spherechain::baker;
 
 TEST_CASE("a triangle belongs to the nearest sphere of its own region") {
   const Bake& bake = baked_human();
-  const Mesh& mesh = bake.character.body;
+  const Mesh& mesh = bake.character.skin;
   for (std::size_t t = 0; t < mesh.triangles.size(); t += 7) {
     const Triangle& v = mesh.triangles[t];
     const Vec3 centroid = (mesh.positions[v[0]] + mesh.positions[v[1]] + mesh.positions[v[2]]) / 3;
     const FittedSphere& owner = bake.spheres.spheres[bake.binding.sphere_of_triangle[t]];
-    CHECK(owner.region == bake.regions.of_triangle[t]);
+    CHECK(owner.region == bake.regions.of_skin[t]);
     for (const FittedSphere& other : bake.spheres.spheres) {
       if (other.region != owner.region) continue;
       CHECK((owner.ball.center - centroid).norm() <= (other.ball.center - centroid).norm() + 1e-12);
@@ -38,7 +38,7 @@ TEST_CASE("calibrated pivots carry their sphere exactly, from inside their hull 
     std::set<Index> distinct;
     for (const BoundPivot& pivot : sphere.pivots) {
       sum += pivot.weight;
-      center += pivot.weight * triangle_centroid(bake.character.body, pivot.triangle);
+      center += pivot.weight * triangle_centroid(bake.character.skin, pivot.triangle);
       distinct.insert(pivot.triangle);
       CHECK(bake.binding.sphere_of_triangle[pivot.triangle] == i);
     }
@@ -151,8 +151,8 @@ TEST_CASE("surrounding regions that share an edge are ignored, whatever the link
   unlinked.links.clear();
   const Binding binding = bind_spheres(bake.character, bake.regions, unlinked, {});
   std::map<std::pair<Index, Index>, std::set<std::uint32_t>> owners_of_edge;
-  for (std::size_t t = 0; t < bake.character.body.triangles.size(); ++t) {
-    const Triangle& v = bake.character.body.triangles[t];
+  for (std::size_t t = 0; t < bake.character.skin.triangles.size(); ++t) {
+    const Triangle& v = bake.character.skin.triangles[t];
     for (std::size_t k = 0; k < 3; ++k) {
       owners_of_edge[std::minmax(v[k], v[(k + 1) % 3])].insert(binding.sphere_of_triangle[t]);
     }

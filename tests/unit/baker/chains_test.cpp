@@ -16,21 +16,25 @@ namespace {
 Spheres stick_figure(int levels, const std::vector<std::size_t>& limbs, int head = 0,
                      const std::vector<Side>& sides = {Side::kLeft, Side::kRight}) {
   Spheres spheres;
+  spheres.of_region.resize(limbs.size() + 1);
+  spheres.level_heights.resize(static_cast<std::size_t>(levels));
+  const auto torso = static_cast<std::uint8_t>(limbs.size());
   const auto add = [&](std::uint8_t region, int level, Side side, bool extremity = false) {
     spheres.of_region[region].push_back(static_cast<std::uint32_t>(spheres.spheres.size()));
     spheres.spheres.push_back({{Vec3::Zero(), 1}, region, level, side, Vec3::UnitY(), extremity});
   };
   for (int level = 0; level < levels; ++level) {
-    for (const Side side : sides) add(kTorso, level, side);
+    for (const Side side : sides) add(torso, level, side);
   }
-  for (int i = 0; i < head; ++i) add(kTorso, levels + i, Side::kNone, true);
+  for (int i = 0; i < head; ++i) add(torso, levels + i, Side::kNone, true);
   for (std::uint8_t limb = 0; limb < limbs.size(); ++limb) {
     for (std::size_t i = 0; i < limbs[limb]; ++i) add(limb, -1, Side::kNone);
   }
   return spheres;
 }
 
-const std::vector<LimbPlace> kBiped{{0, true, true}, {1, false, true}, {2, true, false}, {3, false, false}};
+const std::vector<LimbPlace> kBiped{
+    {0, Side::kLeft, 1}, {1, Side::kRight, 1}, {2, Side::kLeft, 0}, {3, Side::kRight, 0}};
 
 }  // namespace
 
@@ -107,6 +111,7 @@ TEST_CASE("a chain is a set, and every sphere is in some chain") {
 }
 
 TEST_CASE("k limbs make k(k-1)/2 chains") {
-  const Chains three = build_chains(stick_figure(2, {2, 2, 2}), {{0, true, true}, {1, false, true}, {2, true, false}});
+  const Chains three =
+      build_chains(stick_figure(2, {2, 2, 2}), {{0, Side::kLeft, 1}, {1, Side::kRight, 1}, {2, Side::kLeft, 0}});
   CHECK(three.chains.size() == 3);
 }

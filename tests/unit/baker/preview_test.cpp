@@ -139,7 +139,7 @@ double height(const Bake& bake) { return bake.regions.frame.height * bake.charac
 Bake moved(Bake bake, const Eigen::Matrix3d& rotation, double scale, const Vec3& shift) {
   const auto move = [&](Vec3& p) { p = scale * rotation * p + shift; };
   for (auto* points :
-       {&bake.character.source_positions, &bake.character.body.positions, &bake.character.others.positions})
+       {&bake.character.source_positions, &bake.character.body.positions, &bake.character.skin.positions})
     for (Vec3& p : *points) move(p);
   for (Joint& joint : bake.joints) {
     move(joint.position);
@@ -217,15 +217,13 @@ TEST_CASE("a preview's triangles are the character's, each in its own region's c
   const auto positions = preview.attribute<float, 3>("POSITION"), colours = preview.attribute<float, 3>("COLOR_0"),
              normals = preview.attribute<float, 3>("NORMAL");
   const auto indices = preview.read<std::uint32_t, 1>(preview.skin().indices);
-  const std::size_t body = bake.character.body.triangles.size(), others = bake.character.others.triangles.size();
-  REQUIRE(indices.size() == 3 * (body + others));
-  for (std::size_t t = 0; t < body + others; ++t) {
-    const Mesh& mesh = t < body ? bake.character.body : bake.character.others;
-    const std::size_t local = t < body ? t : t - body;
-    const std::uint8_t region = t < body ? bake.regions.of_triangle[local] : bake.regions.of_other[local];
+  const Mesh& mesh = bake.character.skin;
+  REQUIRE(indices.size() == 3 * mesh.triangles.size());
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const std::uint8_t region = bake.regions.of_skin[t];
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t v = indices[3 * t + k][0];
-      REQUIRE(Eigen::Vector3f(positions[v].data()).cast<double>() == mesh.positions[mesh.triangles[local][k]]);
+      REQUIRE(Eigen::Vector3f(positions[v].data()).cast<double>() == mesh.positions[mesh.triangles[t][k]]);
       REQUIRE(Eigen::Vector3f(normals[v].data()).norm() == doctest::Approx(1).epsilon(1e-5));
       for (std::size_t c = 0; c < 3; ++c) {
         // From glTF's linear values to the palette's sRGB (IEC 61966-2-1).
@@ -303,9 +301,9 @@ TEST_CASE(
     preview.model.nodes[preview.node_of_name.at(name)].rotation = {turn.x(), turn.y(), turn.z(), turn.w()};
     const std::vector<Vec3> turned = preview.skin_in_world();
     const auto indices = preview.read<std::uint32_t, 1>(preview.skin().indices);
-    for (std::size_t t = 0; t < bake.character.body.triangles.size(); ++t) {
+    for (std::size_t t = 0; t < bake.character.skin.triangles.size(); ++t) {
       for (std::size_t k = 0; k < 3; ++k) {
-        const Index source = bake.character.source_triangles[bake.character.body_source_triangle[t]][k];
+        const Index source = bake.character.source_triangles[bake.character.skin_source_triangle[t]][k];
         REQUIRE((turned[indices[3 * t + k][0]] - in_metres(bake, posed[source])).norm() < 1e-5 * height(bake));
       }
     }

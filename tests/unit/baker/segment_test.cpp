@@ -42,9 +42,12 @@ TEST_CASE("every triangle has one of the five regions, and so has every triangle
   const Bake& bake = baked_human();
   REQUIRE(bake.regions.of_triangle.size() == bake.character.body.triangles.size());
   CHECK(*std::max_element(bake.regions.of_triangle.begin(), bake.regions.of_triangle.end()) == kTorso);
-  REQUIRE(bake.regions.of_other.size() == bake.character.others.triangles.size());
+  REQUIRE(bake.regions.of_skin.size() == bake.character.skin.triangles.size());
   // The eyes are in the head, and the head is the torso's.
-  CHECK(std::all_of(bake.regions.of_other.begin(), bake.regions.of_other.end(), [](auto r) { return r == kTorso; }));
+  for (std::size_t t = 0; t < bake.regions.of_skin.size(); ++t) {
+    const Index corner = bake.character.source_triangles[bake.character.skin_source_triangle[t]][0];
+    if (bake.character.body_of_source[corner] == kNoIndex) REQUIRE(bake.regions.of_skin[t] == kTorso);
+  }
 }
 
 TEST_CASE("each region is one piece, joined over shared edges") {
@@ -63,7 +66,7 @@ TEST_CASE("each region is one piece, joined over shared edges") {
       }
     }
   }
-  for (std::uint8_t region = 0; region < kRegionCount; ++region) {
+  for (std::uint8_t region = 0; region < kRegionNames.size(); ++region) {
     std::vector<Index> all;
     for (Index t = 0; t < mesh.triangles.size(); ++t) {
       if (bake.regions.of_triangle[t] == region) all.push_back(t);
