@@ -42,6 +42,7 @@ ExitCode run_bake(const BakeOptions& options) {
   BakeSettings settings =
       make_settings(options.profile, options.config.empty() ? "{}" : read_file(options.config), options.config);
   if (options.extremities) settings.fit.extremities = true;
+  if (options.attachments) settings.import.attachments = true;
   if (!fs::exists(options.input)) throw Error(ExitCode::kFile, options.input + ": no such file");
   check_outputs(options);
 

@@ -13,7 +13,7 @@ namespace spherechain::baker {
 struct BakeOptions {
   std::string input, output, config, report, preview;
   std::string profile = "balanced";
-  bool extremities = false, force = false;
+  bool extremities = false, attachments = false, force = false;
 };
 ExitCode run_bake(const BakeOptions& options);
 

@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
 
   BakeOptions bake;
   CLI::App* bake_command = app.add_subcommand("bake", "Turn a character into an asset");
-  bake_command->add_option("INPUT", bake.input, "Mesh: anything assimp reads")->required();
+  bake_command->add_option("INPUT", bake.input, "glTF, or anything assimp reads")->required();
   bake_command->add_option("-o,--output", bake.output, "Asset to write (.sphc)")->required();
   bake_command->add_option("--config", bake.config, "JSON file that changes the profile's settings");
   bake_command->add_option("--profile", bake.profile, "Where the settings start")
@@ -69,6 +69,7 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   bake_command->add_flag("--extremities", bake.extremities,
                          "Spheres in head, hands and feet too (profile balanced has them)");
+  bake_command->add_flag("--attachments", bake.attachments, "Keep rigid meshes that hang on joints: weapons, hats");
   bake_command->add_option("--report", bake.report, "JSON report to write");
   bake_command->add_option("--preview", bake.preview, "glTF binary to write: regions, joints and spheres");
   bake_command->add_flag("--force", bake.force, "Replace an output file of another kind");

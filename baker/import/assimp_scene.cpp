@@ -34,7 +34,7 @@ void visit(const aiScene& scene, const aiNode& node, int parent, std::vector<con
     out.chains.push_back(std::move(chain));
     chain.clear();
     for (unsigned m = 0; m < node.mNumMeshes; ++m) {
-      out.instances.push_back({scene.mMeshes[node.mMeshes[m]], index, out.world[index], 0, 0});
+      out.instances.push_back({scene.mMeshes[node.mMeshes[m]], node.mMeshes[m], index, out.world[index], 0, 0});
     }
   }
   for (unsigned c = 0; c < node.mNumChildren; ++c) visit(scene, *node.mChildren[c], self, chain, file, out);
@@ -113,19 +113,6 @@ Affine to_affine(const aiMatrix4x4& m) {
   Affine out;
   out.matrix() << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4;
   return out;
-}
-
-void decompose(Node& node) {
-  const Eigen::Matrix3d linear = node.local.linear();
-  node.translation = node.local.translation();
-  node.scale = linear.colwise().norm();
-  if (linear.determinant() < 0) node.scale = -node.scale;
-  if ((node.scale.array() != 0).all()) {
-    Eigen::Matrix3d turn = linear * node.scale.cwiseInverse().asDiagonal();
-    // A unit matrix stays one: the quaternion of an unsheared matrix needs no orthogonalising.
-    if (!turn.isUnitary(1e-6)) turn = Eigen::Affine3d(turn).rotation();
-    node.rotation = Eigen::Quaterniond(turn).normalized();
-  }
 }
 
 AssimpScene flatten(const aiScene& scene, const std::string& file) {

@@ -14,12 +14,10 @@ namespace spherechain::baker {
 inline Vec3 to_vec3(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 Affine to_affine(const aiMatrix4x4& m);
 
-// Translation, rotation and scale of `local`; what it shears is lost to them.
-void decompose(Node& node);
-
 // A mesh of the scene where a node shows it.
 struct MeshInstance {
   const aiMesh* mesh;
+  Index number;  // of the mesh in the scene
   Index node;
   Affine placement;  // mesh space -> rest positions
   Index first_vertex, first_morph;

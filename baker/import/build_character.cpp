@@ -87,6 +87,7 @@ Character build_character(const SourceMesh& source, const std::string& name) {
   check_positions(source, name);
   Character character;
   character.source_triangles = source.triangles;
+  character.parts = source.parts;
   character.rig = source.rig;
   character.metres_per_unit = source.metres_per_unit;
   character.up_hint = source.up_hint;
@@ -94,6 +95,7 @@ Character build_character(const SourceMesh& source, const std::string& name) {
   report.importer = source.importer;
   report.meshes = source.meshes;
   report.points_and_lines_dropped = source.points_and_lines_dropped;
+  report.attachments_dropped = source.attachments_dropped;
 
   // The runtime's buffers are float: what the baker measures must be what the runtime sees.
   for (const Vec3& p : source.positions) {

@@ -10,21 +10,19 @@
 
 namespace spherechain::baker {
 
-Character import_character(const std::filesystem::path& path) {
+Character import_character(const std::filesystem::path& path, const ImportOptions& options) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) throw Error(ExitCode::kFile, path.string() + ": no such file");
   if (std::filesystem::is_directory(status)) throw Error(ExitCode::kFile, path.string() + ": is a folder, not a mesh");
-  // Through assimp a glTF would lose its own vertex order and bind pose, and an asset would be tied to neither.
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (extension == ".glb" || extension == ".gltf") {
-    throw Error(ExitCode::kFile,
-                path.string() + ": glTF is not read by this version (convert it to FBX, Collada or OBJ)");
-  }
+  // Through assimp a glTF would lose its own vertex order and bind pose.
+  const bool gltf = extension == ".glb" || extension == ".gltf";
   const std::string digest = sha256_of_file(path);
-  Character character = build_character(read_with_assimp(path), path.string());
+  Character character =
+      build_character(gltf ? read_with_tinygltf(path, options) : read_with_assimp(path), path.string());
   character.file = path.filename().string();
   character.sha256 = digest;
   return character;

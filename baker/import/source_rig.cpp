@@ -49,6 +49,19 @@ Eigen::Vector4d sample(const Channel& channel, double seconds) {
   return (1 - u) * a + u * b;
 }
 
+void decompose(Node& node) {
+  const Eigen::Matrix3d linear = node.local.linear();
+  node.translation = node.local.translation();
+  node.scale = linear.colwise().norm();
+  if (linear.determinant() < 0) node.scale = -node.scale;
+  if ((node.scale.array() != 0).all()) {
+    Eigen::Matrix3d turn = linear * node.scale.cwiseInverse().asDiagonal();
+    // A unit matrix stays one: the quaternion of an unsheared matrix needs no orthogonalising.
+    if (!turn.isUnitary(1e-6)) turn = Eigen::Affine3d(turn).rotation();
+    node.rotation = Eigen::Quaterniond(turn).normalized();
+  }
+}
+
 std::vector<Affine> world_of(const std::vector<Node>& nodes) {
   std::vector<Affine> world;
   for (const Node& node : nodes) {

@@ -31,6 +31,9 @@ struct Node {
   Vec3 scale = Vec3::Ones();
 };
 
+// Translation, rotation and scale of `local`; what it shears is lost to them.
+void decompose(Node& node);
+
 // What vertex weights refer to. A vertex v of the rest pose moves to  to_rest * world(node) * inverse_bind * v.
 struct Bone {
   Index node;

@@ -56,7 +56,7 @@ void run_after_segmentation(Bake& out, const Progress& progress) {
 Bake bake(const std::filesystem::path& input, const BakeSettings& settings, const Progress& progress) {
   Bake out;
   out.settings = settings;
-  stage(out, progress, "import", [&] { out.character = import_character(input); });
+  stage(out, progress, "import", [&] { out.character = import_character(input, settings.import); });
   stage(out, progress, "segment", [&] { out.regions = segment(out.character, settings.segment); });
   run_after_segmentation(out, progress);
   return out;

@@ -25,6 +25,7 @@ struct Targets {
 };
 
 struct BakeSettings {
+  ImportOptions import;
   SegmentSettings segment;
   FitSettings fit;
   BindSettings bind;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "mesh/error.h"
 #include "motion/clip.h"
@@ -25,6 +26,13 @@ std::vector<Joint> joints_of(const Asset& asset) {
   return joints;
 }
 
+// What the source was read with when the asset was baked: other options give other vertices.
+ImportOptions import_options(const Asset& asset) {
+  const auto settings = nlohmann::json::parse(asset.info().settings, nullptr, false);
+  const auto attachments = settings.find("attachments");
+  return {attachments != settings.end() && *attachments == true};
+}
+
 }  // namespace
 
 std::string MotionChoice::name() const {
@@ -35,7 +43,7 @@ std::string MotionChoice::name() const {
 
 AnimatedAsset::AnimatedAsset(const std::string& asset, const std::string& source, const MotionChoice& motion,
                              const FrameChoice& frames)
-    : file_(open_asset(asset)), character_(import_character(source)), fps_(frames.fps) {
+    : file_(open_asset(asset)), character_(import_character(source, import_options(file_.asset))), fps_(frames.fps) {
   const std::vector<float> rest = pack(character_.source_positions);
   if (const Status status = check_source(file_.asset, rest.data(), rest.size() / 3); status != Status::kOk) {
     throw Error(ExitCode::kFile,

@@ -29,6 +29,7 @@ ordered_json import_section(const Bake& bake) {
           {"degenerate_dropped", report.degenerate_dropped},
           {"duplicates_dropped", report.duplicates_dropped},
           {"points_and_lines_dropped", report.points_and_lines_dropped},
+          {"attachments_dropped", report.attachments_dropped},
           {"metres_per_unit", bake.character.metres_per_unit},
           {"up_axis_of_file", to_json(bake.character.up_hint)}};
 }

@@ -70,6 +70,14 @@ ordered_json sphere_json(const Asset& asset, std::size_t i) {
 
 std::string inspect_json(const Asset& asset) {
   const AssetInfo info = asset.info();
+  ordered_json parts = ordered_json::array();
+  for (const spherechain::SourcePart& part : asset.source_parts()) {
+    parts.push_back({{"mesh", part.mesh},
+                     {"primitive", part.primitive},
+                     {"first_vertex", part.first_vertex},
+                     {"vertices", part.vertex_count},
+                     {"hash", fmt::format("{:016x}", part.hash)}});
+  }
   ordered_json regions = ordered_json::array(), spheres = ordered_json::array(), chains = ordered_json::array(),
                joints = ordered_json::array();
   for (std::size_t r = 0; r < asset.region_count(); ++r) {
@@ -104,7 +112,8 @@ std::string inspect_json(const Asset& asset) {
         {"vertices", info.source_vertex_count},
         {"triangles", info.source_triangle_count},
         {"rest_hash", fmt::format("{:016x}", info.source_rest_hash)},
-        {"metres_per_unit", number(info.metres_per_unit)}}},
+        {"metres_per_unit", number(info.metres_per_unit)},
+        {"parts", std::move(parts)}}},
       {"frame",
        {{"origin", to_json(info.origin)},
         {"left", to_json(info.left)},

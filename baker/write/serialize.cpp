@@ -114,12 +114,16 @@ std::vector<std::uint8_t> serialize(const AssetSource& in) {
   const std::string writer = std::string("spherechain ") + kVersion, settings_hash = sha256_of_text(in.settings);
   const auto provenance =
       schema::CreateProvenanceDirect(builder, writer.c_str(), in.settings.c_str(), settings_hash.c_str());
+  std::vector<schema::SourcePart> parts;
+  for (const SourcePart& part : in.character.parts) {
+    parts.emplace_back(part.mesh, part.primitive, part.first_vertex, part.vertex_count, part.hash);
+  }
   const auto source = schema::CreateSourceDirect(
       builder, in.character.file.c_str(), in.character.sha256.c_str(),
       static_cast<std::uint32_t>(in.character.source_positions.size()),
       static_cast<std::uint32_t>(in.character.source_triangles.size()),
       hash_positions(pack(in.character.source_positions).data(), in.character.source_positions.size()),
-      static_cast<float>(in.character.metres_per_unit));
+      static_cast<float>(in.character.metres_per_unit), &parts);
   const BodyFrame& f = in.regions.frame;
   const schema::Vec3 origin = to_schema(f.origin), left = to_schema(f.left), up = to_schema(f.up),
                      forward = to_schema(f.forward);

@@ -20,6 +20,9 @@ constexpr bool kSameLayout = std::is_standard_layout_v<View>&& std::is_trivially
 static_assert(kSameLayout<Vec3, schema::Vec3> && offsetof(Vec3, y) == 4 && offsetof(Vec3, z) == 8);
 static_assert(kSameLayout<Pivot, schema::Pivot> && offsetof(Pivot, b) == 4 && offsetof(Pivot, c) == 8 &&
               offsetof(Pivot, weight) == 12);
+static_assert(kSameLayout<SourcePart, schema::SourcePart> && offsetof(SourcePart, primitive) == 4 &&
+              offsetof(SourcePart, first_vertex) == 8 && offsetof(SourcePart, vertex_count) == 12 &&
+              offsetof(SourcePart, hash) == 16);
 static_assert(kSameLayout<NearPair, schema::NearPair> && offsetof(NearPair, b) == 4 && offsetof(NearPair, reach) == 8);
 static_assert(kSameLayout<RestSphere, schema::Sphere> && offsetof(RestSphere, radius) == 12 &&
               offsetof(RestSphere, detect_radius) == 16 && offsetof(RestSphere, pivot_spread) == 20 &&
@@ -98,6 +101,9 @@ Status Asset::open(const void* data, std::size_t size, char* message, std::size_
   ignored_count_ = count_ignored(root);
   near_fit_ = view<NearPair>(*root.near_fit());
   near_detect_ = view<NearPair>(*root.near_detect());
+  if (const auto* parts = root.source()->parts()) {
+    source_parts_ = view<SourcePart>(*parts);
+  }
   return Status::kOk;
 }
 

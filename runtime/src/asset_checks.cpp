@@ -66,6 +66,32 @@ bool check_header(const schema::Asset& root, Message& message) {
          is_given(root.fit()->phi2(), "fit.phi2", message);
 }
 
+// The verifier only sees to the alignment of the array's length.
+template <typename Vector>
+bool is_aligned(const Vector& vector, const char* name, Message& message) {
+  constexpr std::size_t kAlignment = alignof(std::uint64_t);
+  return vector.size() == 0 || reinterpret_cast<std::uintptr_t>(vector.Data()) % kAlignment == 0 ||
+         message.wrong("%s: not aligned to %zu bytes", name, kAlignment);
+}
+
+bool check_parts(const schema::Source& source, Message& message) {
+  if (source.parts() == nullptr) {
+    return true;
+  }
+  if (!is_aligned(*source.parts(), "source.parts", message)) {
+    return false;
+  }
+  for (std::uint32_t i = 0; i < source.parts()->size(); ++i) {
+    const schema::SourcePart& part = *source.parts()->Get(i);
+    if (std::uint64_t{part.first_vertex()} + part.vertex_count() > source.vertex_count()) {
+      return message.wrong("source.parts[%" PRIu32 "].first_vertex: %" PRIu32 " and %" PRIu32 " on is past the %" PRIu32
+                           " vertices of the source",
+                           i, part.first_vertex(), part.vertex_count(), source.vertex_count());
+    }
+  }
+  return true;
+}
+
 bool check_pivots(const schema::Asset& root, Message& message) {
   const std::uint32_t vertex_count = root.source()->vertex_count();
   for (std::uint32_t i = 0; i < root.pivots()->size(); ++i) {
@@ -230,9 +256,8 @@ bool check_ignored(const schema::Asset& root, Message& message) {
     return message.wrong("ignored: %" PRIu32 " words, not the %zu that %" PRIu32 " spheres need", words.size(),
                          words_for(bits), root.spheres()->size());
   }
-  // The verifier only sees to the alignment of the array's length.
-  if (words.size() > 0 && reinterpret_cast<std::uintptr_t>(words.Data()) % alignof(std::uint64_t) != 0) {
-    return message.wrong("ignored: not aligned to %zu bytes", alignof(std::uint64_t));
+  if (!is_aligned(words, "ignored", message)) {
+    return false;
   }
   if (bits % 64 != 0 && (words.Get(words.size() - 1) >> (bits % 64)) != 0) {
     return message.wrong("ignored: a spare bit is not 0");
@@ -284,9 +309,9 @@ bool check_joints(const schema::Asset& root, Message& message) {
 }  // namespace
 
 bool values_are_valid(const schema::Asset& root, std::size_t size, Message& message) {
-  return check_header(root, message) && check_pivots(root, message) && check_triangles(root, message) &&
-         check_spheres(root, message) && check_chains(root, size, message) && check_ignored(root, message) &&
-         check_near(*root.near_fit(), "near_fit", root.spheres()->size(), message) &&
+  return check_header(root, message) && check_parts(*root.source(), message) && check_pivots(root, message) &&
+         check_triangles(root, message) && check_spheres(root, message) && check_chains(root, size, message) &&
+         check_ignored(root, message) && check_near(*root.near_fit(), "near_fit", root.spheres()->size(), message) &&
          check_near(*root.near_detect(), "near_detect", root.spheres()->size(), message) && check_joints(root, message);
 }
 

@@ -26,6 +26,20 @@ std::uint64_t hash_positions(const float* positions, std::size_t count, std::siz
   return hash;
 }
 
+namespace {
+
+Status check(const float* positions, std::size_t count, std::size_t stride, std::size_t wanted, std::uint64_t hash) {
+  if (!is_valid_stride(stride)) {
+    return Status::kBadStride;
+  }
+  if (count < wanted) {
+    return Status::kTooFewVertices;
+  }
+  return hash_positions(positions, wanted, stride) == hash ? Status::kOk : Status::kWrongSource;
+}
+
+}  // namespace
+
 Status check_source(const Asset& asset, const float* positions, std::size_t count, std::size_t stride) noexcept {
   if (positions == nullptr) {
     return Status::kNullArgument;
@@ -33,15 +47,23 @@ Status check_source(const Asset& asset, const float* positions, std::size_t coun
   if (!asset.is_open()) {
     return Status::kNotOpen;
   }
-  if (!is_valid_stride(stride)) {
-    return Status::kBadStride;
-  }
   const AssetInfo info = asset.info();
-  if (count < info.source_vertex_count) {
-    return Status::kTooFewVertices;
+  return check(positions, count, stride, info.source_vertex_count, info.source_rest_hash);
+}
+
+Status check_source_part(const Asset& asset, std::size_t part, const float* positions, std::size_t count,
+                         std::size_t stride) noexcept {
+  if (positions == nullptr) {
+    return Status::kNullArgument;
   }
-  const std::uint64_t hash = hash_positions(positions, info.source_vertex_count, stride);
-  return hash == info.source_rest_hash ? Status::kOk : Status::kWrongSource;
+  if (!asset.is_open()) {
+    return Status::kNotOpen;
+  }
+  if (part >= asset.source_parts().size) {
+    return Status::kBadArgument;
+  }
+  const SourcePart& wanted = asset.source_parts()[part];
+  return check(positions, count, stride, wanted.vertex_count, wanted.hash);
 }
 
 }  // namespace spherechain

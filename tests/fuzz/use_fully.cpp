@@ -31,6 +31,7 @@ void read_all(const Asset& asset) {
   for (const char* text : {info.writer, info.settings, info.settings_sha256, info.source_file, info.source_sha256}) {
     read(text);
   }
+  read(asset.source_parts());
   read(asset.spheres());
   read(asset.pivots());
   read(asset.triangles());
@@ -104,6 +105,10 @@ Use use_fully(const Asset& asset) {
     positions = std::vector<float>(std::size_t{3} * vertex_count);
     std::generate(positions.begin(), positions.end(), [&] { return uniform(random, -1, 1); });
     (void)check_source(asset, positions.data(), vertex_count);
+    for (std::size_t i = 0; i < asset.source_parts().size; ++i) {
+      const SourcePart& part = asset.source_parts()[i];
+      (void)check_source_part(asset, i, positions.data() + std::size_t{3} * part.first_vertex, part.vertex_count);
+    }
   }
   for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
     const Refitted refitted = refit(asset, positions, kind);

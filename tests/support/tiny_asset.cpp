@@ -15,6 +15,7 @@ namespace fb = flatbuffers;
 schema::Vec3 stored(const Vec3& v) { return {v.x, v.y, v.z}; }
 schema::FitError stored(const FitError& e) { return {e.mean_abs_f, e.max_abs_f}; }
 schema::Pivot stored(const Pivot& p) { return {p.a, p.b, p.c, p.weight}; }
+schema::SourcePart stored(const SourcePart& p) { return {p.mesh, p.primitive, p.first_vertex, p.vertex_count, p.hash}; }
 schema::NearPair stored(const NearPair& p) { return {p.a, p.b, p.reach}; }
 schema::Sphere stored(const RestSphere& s) {
   return {stored(s.center), s.radius,         s.detect_radius, s.pivot_spread, s.first_pivot,
@@ -81,9 +82,13 @@ std::vector<std::uint8_t> build(const AssetParts& parts) {
   }
   const auto provenance = schema::CreateProvenanceDirect(builder, parts.writer.c_str(), parts.settings.c_str(),
                                                          parts.settings_sha256.c_str());
-  const auto source =
-      schema::CreateSourceDirect(builder, parts.source_file.c_str(), parts.source_sha256.c_str(), parts.vertex_count,
-                                 parts.triangle_count, parts.rest_hash, parts.metres_per_unit);
+  const auto source_file = builder.CreateString(parts.source_file);
+  const auto source_sha256 = builder.CreateString(parts.source_sha256);
+  using Parts = fb::Offset<fb::Vector<const schema::SourcePart*>>;
+  const Parts source_parts =
+      parts.source_parts.empty() ? Parts() : struct_vector<schema::SourcePart>(builder, parts.source_parts);
+  const auto source = schema::CreateSource(builder, source_file, source_sha256, parts.vertex_count,
+                                           parts.triangle_count, parts.rest_hash, parts.metres_per_unit, source_parts);
   const auto frame = build_frame(builder, parts);
   const auto fit = build_fit(builder, parts);
   const auto region_vector = builder.CreateVector(regions);
@@ -159,6 +164,10 @@ void add_spheres(TinyAsset& tiny, std::size_t count, std::mt19937& random) {
   tiny.parts.vertex_count = static_cast<std::uint32_t>(tiny.rest.size() / 3);
   tiny.parts.triangle_count = tiny.parts.vertex_count / 3;
   tiny.parts.rest_hash = hash_positions(tiny.rest.data(), tiny.parts.vertex_count);
+  // A buffer of four vertices, and one of the rest.
+  const std::uint32_t rest = tiny.parts.vertex_count - 4;
+  tiny.parts.source_parts = {{1, 0, 0, 4, hash_positions(tiny.rest.data(), 4)},
+                             {0, 2, 4, rest, hash_positions(tiny.rest.data() + 12, rest)}};
 }
 
 void add_chains(AssetParts& parts, std::mt19937& random) {

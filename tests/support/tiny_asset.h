@@ -54,6 +54,7 @@ struct AssetParts {
   std::vector<ChainParts> chains;
   std::vector<std::uint64_t> ignored;
   std::vector<NearPair> near_fit, near_detect;
+  std::vector<SourcePart> source_parts;
   std::vector<JointParts> joints;
 
   // Ways of breaking an asset that no value above can express.

@@ -45,6 +45,13 @@ struct NearPair {
   float reach;  // [0, 1)
 };
 
+// A vertex buffer of the source file: a run of the source's vertices. Parts with the same vertices share a run.
+struct SourcePart {
+  std::uint32_t mesh, primitive;  // glTF: indices in the file; other formats: the importer's mesh, and 0
+  std::uint32_t first_vertex, vertex_count;
+  std::uint64_t hash;  // hash_positions over its positions as the file has them, moved by no node or joint
+};
+
 struct ChainView {
   const char* name;
   Span<const std::uint8_t> regions;
@@ -114,6 +121,8 @@ class Asset {
   Span<const NearPair> near_pairs(RadiusKind kind) const noexcept {
     return kind == RadiusKind::kFit ? near_fit_ : near_detect_;
   }
+  // In the order of their vertices.
+  Span<const SourcePart> source_parts() const noexcept { return source_parts_; }
   std::size_t region_count() const noexcept;
   RegionView region(std::size_t i) const noexcept;
   std::size_t chain_count() const noexcept;
@@ -130,6 +139,7 @@ class Asset {
   Span<const std::uint64_t> ignored_;
   std::size_t ignored_count_ = 0;
   Span<const NearPair> near_fit_, near_detect_;
+  Span<const SourcePart> source_parts_;
 };
 
 // A 64-bit FNV-1a over the bit patterns (low byte first) of x, y, z of each position, negative zero taken as zero: what
@@ -140,5 +150,10 @@ std::uint64_t hash_positions(const float* positions, std::size_t count, std::siz
 // kOk where `positions` (source order, rest pose) is the buffer the asset was baked from; positions past the source's
 // vertex count are not looked at. Else kWrongSource, or kNullArgument, kNotOpen, kBadStride, kTooFewVertices.
 Status check_source(const Asset& asset, const float* positions, std::size_t count, std::size_t stride = 12) noexcept;
+
+// The same for one buffer of the source's file, `positions` as the file has them: kOk where source_parts()[part] is
+// that buffer. kBadArgument where there is no such part.
+Status check_source_part(const Asset& asset, std::size_t part, const float* positions, std::size_t count,
+                         std::size_t stride = 12) noexcept;
 
 }  // namespace spherechain

@@ -21,6 +21,9 @@ namespace spherechain {
 // dy*dy) + dz*dz); mean = sum / float(K); radius = mean, or mean * (detect_radius / radius), under kPaper, and radius
 // or detect_radius, times (mean / pivot_spread), under kCalibrated.
 //
+// A game that holds the character in several vertex buffers copies them into one, each from its
+// Asset::source_parts() entry's first_vertex on; check_source_part() tells whether it is the right one.
+//
 // Fill in the fields and call run(). Allocates nothing, takes no lock; jobs on other buffers may run at the same time.
 struct RefitJob {
   const Asset* asset = nullptr;      // open

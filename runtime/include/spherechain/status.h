@@ -19,7 +19,7 @@ enum class Status : int {
   kOverflow = 11,           // an output buffer was too small; the job says how many entries were needed
   kBadStride = 12,          // a vertex stride below 12 bytes or no multiple of 4
   kWrongSource = 13,        // the positions are not the rest pose the asset was baked from
-  kBadArgument = 14,        // an enum value that does not exist
+  kBadArgument = 14,        // an enum value or an index that does not exist
 };
 
 // A short English sentence without a final stop. Never null, also for values that do not exist.

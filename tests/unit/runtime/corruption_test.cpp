@@ -135,6 +135,10 @@ TEST_CASE("an index past its array is refused") {
       {"chains[0].spheres[0]: 4294967295 is past", [](AssetParts& p) { p.chains[0].spheres[0] = 0xFFFFFFFFU; }},
       {"near_fit[0].b: 12 is past the 12 spheres", [](AssetParts& p) { p.near_fit[0].b = 12; }},
       {"near_detect[0].b: 12 is past", [](AssetParts& p) { p.near_detect[0].b = 12; }},
+      {"source.parts[1].first_vertex: 5 and 140 on is past the 144 vertices",
+       [](AssetParts& p) { p.source_parts[1].first_vertex = 5; }},
+      {"source.parts[0].first_vertex: 4294967295 and 4 on",
+       [](AssetParts& p) { p.source_parts[0].first_vertex = 0xFFFFFFFFU; }},
       {"joints[0].parent: 0 is not", [](AssetParts& p) { p.joints[0].parent = 0; }},
       {"joints[1].parent: 2 is not -1 or a joint before it", [](AssetParts& p) { p.joints[1].parent = 2; }},
       {"joints[2].parent: -2 is not", [](AssetParts& p) { p.joints[2].parent = -2; }},
@@ -207,26 +211,33 @@ TEST_CASE("arrays that overlap to make a small file ask for much work are refuse
 }
 
 TEST_CASE("an array of 64-bit words off its alignment is refused") {
-  // FlatBuffers' verifier looks at the alignment of the array's length only. Move the array to the end of the file.
+  // FlatBuffers' verifier looks at the alignment of the array's length only. Move each array to the end of the file.
   const AssetParts parts = random_asset(12, 1).parts;
-  std::vector<std::uint8_t> bytes = build(parts);
-  const auto* root = reinterpret_cast<const flatbuffers::Table*>(schema::GetAsset(bytes.data()));
-  const auto field = static_cast<std::size_t>(root->GetAddressOf(schema::Asset::VT_IGNORED) - bytes.data());
-  for (const std::size_t misalignment : {0U, 4U}) {
-    std::vector<std::uint8_t> moved = bytes;
-    moved.resize((moved.size() + 7) / 8 * 8 + 4 + misalignment);  // the words start 4 bytes after the length
-    const std::size_t array = moved.size();
-    moved.resize(array + 4 + 8 * parts.ignored.size() + 8);
-    const auto length = static_cast<std::uint32_t>(parts.ignored.size());
-    const auto offset = static_cast<std::uint32_t>(array - field);
-    std::memcpy(&moved[array], &length, 4);
-    std::memcpy(&moved[array + 4], parts.ignored.data(), 8 * parts.ignored.size());
-    std::memcpy(&moved[field], &offset, 4);
-    std::string message;
-    const Status status = open_bytes(moved, moved.size(), message);
-    CHECK(status == (misalignment == 0 ? Status::kOk : Status::kCorrupt));
-    CHECK(message == (misalignment == 0 ? "" : "ignored: not aligned to 8 bytes"));
-  }
+  const std::vector<std::uint8_t> bytes = build(parts);
+  const auto check = [&](const void* table, flatbuffers::voffset_t field_of, std::size_t count, std::size_t word,
+                         const char* expected) {
+    const auto* address = static_cast<const flatbuffers::Table*>(table)->GetAddressOf(field_of);
+    const auto field = static_cast<std::size_t>(address - bytes.data());
+    std::uint32_t from = 0;
+    std::memcpy(&from, &bytes[field], 4);
+    for (const std::size_t misalignment : {0U, 4U}) {
+      std::vector<std::uint8_t> moved = bytes;
+      moved.resize((moved.size() + 7) / 8 * 8 + 4 + misalignment);  // the words start 4 bytes after the length
+      const std::size_t array = moved.size();
+      moved.resize(array + 4 + word * count + 8);
+      const auto offset = static_cast<std::uint32_t>(array - field);
+      std::memcpy(&moved[array], &bytes[field + from], 4 + word * count);
+      std::memcpy(&moved[field], &offset, 4);
+      std::string message;
+      const Status status = open_bytes(moved, moved.size(), message);
+      CHECK(status == (misalignment == 0 ? Status::kOk : Status::kCorrupt));
+      CHECK(message == (misalignment == 0 ? "" : expected));
+    }
+  };
+  const schema::Asset* root = schema::GetAsset(bytes.data());
+  check(root, schema::Asset::VT_IGNORED, parts.ignored.size(), 8, "ignored: not aligned to 8 bytes");
+  check(root->source(), schema::Source::VT_PARTS, parts.source_parts.size(), sizeof(SourcePart),
+        "source.parts: not aligned to 8 bytes");
 }
 
 }  // namespace spherechain::test

@@ -36,6 +36,7 @@ TEST_CASE("the views of an open asset hold what was written") {
   CHECK(same_bits(to_vector(asset.spheres()), parts.spheres));
   CHECK(same_bits(to_vector(asset.pivots()), parts.pivots));
   CHECK(to_vector(asset.triangles()) == parts.triangles);
+  CHECK(same_bits(to_vector(asset.source_parts()), parts.source_parts));
   CHECK(to_vector(asset.ignored()) == parts.ignored);
   CHECK(same_bits(to_vector(asset.near_pairs(RadiusKind::kFit)), parts.near_fit));
   CHECK(same_bits(to_vector(asset.near_pairs(RadiusKind::kDetect)), parts.near_detect));
@@ -108,14 +109,16 @@ TEST_CASE("info tells where the asset comes from") {
   CHECK(info.chain_entries_table1 == parts.chain_entries_table1);
 }
 
-TEST_CASE("an asset without joints or near pairs, of one sphere, opens") {
+TEST_CASE("an asset without joints, near pairs or source parts, of one sphere, opens") {
   AssetParts parts = random_asset(1, 5).parts;
+  parts.source_parts.clear();
   parts.joints.clear();
   parts.near_fit.clear();
   parts.near_detect.clear();
   const OpenedAsset opened(parts);
   CHECK(opened.status == Status::kOk);
   CHECK(opened.asset.joint_count() == 0);
+  CHECK(opened.asset.source_parts().size == 0);
   CHECK(opened.asset.ignored().size == 0);
   CHECK(opened.asset.near_pairs(RadiusKind::kFit).size == 0);
 }

@@ -53,4 +53,21 @@ TEST_CASE("the buffer the asset was baked from is accepted, any other refused") 
   CHECK(check_source(Asset(), moved.data(), count) == Status::kNotOpen);
 }
 
+TEST_CASE("each buffer of the source's file is told from every other") {
+  TinyAsset tiny = random_asset(3, 1);
+  const OpenedAsset opened(tiny.parts);
+  const std::size_t rest = tiny.parts.vertex_count - 4;
+  CHECK(check_source_part(opened.asset, 0, tiny.rest.data(), 4) == Status::kOk);
+  CHECK(check_source_part(opened.asset, 0, tiny.rest.data(), 5) == Status::kOk);
+  CHECK(check_source_part(opened.asset, 1, tiny.rest.data() + 12, rest) == Status::kOk);
+  CHECK(check_source_part(opened.asset, 1, tiny.rest.data(), rest) == Status::kWrongSource);
+  CHECK(check_source_part(opened.asset, 0, tiny.rest.data(), 3) == Status::kTooFewVertices);
+  CHECK(check_source_part(opened.asset, 0, tiny.rest.data(), 4, 10) == Status::kBadStride);
+  CHECK(check_source_part(opened.asset, 2, tiny.rest.data(), 4) == Status::kBadArgument);
+  CHECK(check_source_part(opened.asset, 0, nullptr, 4) == Status::kNullArgument);
+  CHECK(check_source_part(Asset(), 0, tiny.rest.data(), 4) == Status::kNotOpen);
+  tiny.rest[11] += 1e-3F;
+  CHECK(check_source_part(opened.asset, 0, tiny.rest.data(), 4) == Status::kWrongSource);
+}
+
 }  // namespace spherechain::test

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "import/gltf_skeleton.h"
+
+namespace spherechain::baker {
+
+// The morphs of a node's mesh, one a target.
+struct GltfMorphs {
+  Index first = 0, count = 0;
+};
+
+// The file's animations; a channel for weights becomes one a morph. Channels of no node, of another property or of
+// meshes that are not shown are left out, and animations without any other channel. Throws Error(kFile).
+std::vector<Clip> read_clips(const GltfFile& file, const GltfNodes& nodes, const std::vector<GltfMorphs>& morphs);
+
+}  // namespace spherechain::baker

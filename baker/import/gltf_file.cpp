@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "import/gltf_file.h"
+
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "import/gltf_json.h"
+#include "mesh/error.h"
+
+namespace spherechain::baker {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string read_bytes(const fs::path& path, const std::string& name) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream bytes;
+  bytes << in.rdbuf();
+  if (!in || in.bad()) throw Error(ExitCode::kFile, name + ": cannot be read");
+  return std::move(bytes).str();
+}
+
+struct Container {
+  std::string_view json, binary;
+};
+
+std::uint32_t word(std::string_view bytes, std::size_t at) {
+  std::uint32_t value = 0;
+  for (std::size_t k = 4; k-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[at + k]);
+  return value;
+}
+
+// Section 4.4 of the specification: a header of 12 bytes, then chunks, JSON first.
+Container split_glb(std::string_view bytes, const GltfFile& file) {
+  constexpr std::uint32_t kJson = 0x4E4F534A, kBinary = 0x004E4942;
+  if (bytes.size() < 12) file.fail("is cut short inside its header");
+  if (word(bytes, 4) != 2) file.fail("is GLB version " + std::to_string(word(bytes, 4)) + ", but only 2 is read");
+  const std::size_t length = word(bytes, 8);
+  if (length > bytes.size()) {
+    file.fail("is cut short: " + std::to_string(bytes.size()) + " bytes of " + std::to_string(length));
+  }
+  Container parts;
+  std::size_t at = 12;
+  for (int chunk = 0; chunk < 2 && at + 8 <= length; ++chunk) {
+    const std::size_t size = word(bytes, at);
+    const std::uint32_t type = word(bytes, at + 4);
+    at += 8;
+    if (size > length - at) file.fail("has a chunk that reaches past its end");
+    if (chunk == 0 && type == kJson) parts.json = bytes.substr(at, size);
+    if (chunk == 1 && type == kBinary) parts.binary = bytes.substr(at, size);
+    at += size;
+  }
+  if (parts.json.empty()) file.fail("has no JSON chunk");
+  return parts;
+}
+
+std::string percent_decoded(const std::string& uri) {
+  std::string out;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    unsigned value = 0;
+    const bool escaped = uri[i] == '%' && i + 2 < uri.size() && std::isxdigit(static_cast<unsigned char>(uri[i + 1])) &&
+                         std::isxdigit(static_cast<unsigned char>(uri[i + 2]));
+    if (escaped) value = static_cast<unsigned>(std::stoul(uri.substr(i + 1, 2), nullptr, 16));
+    out += escaped ? static_cast<char>(value) : uri[i];
+    if (escaped) i += 2;
+  }
+  return out;
+}
+
+// The buffer's bytes; none where it has no source (the fallback of a compression extension).
+std::vector<unsigned char> buffer_bytes(const nlohmann::json& buffer, const std::string& where, std::string_view binary,
+                                        const fs::path& folder, const GltfFile& file) {
+  const auto length = buffer["byteLength"].get<std::size_t>();
+  const auto check = [&](std::size_t there, const std::string& source) {
+    if (there < length) {
+      file.fail(where + " has " + std::to_string(length) + " bytes, but " + source + " only " + std::to_string(there));
+    }
+  };
+  if (!buffer.contains("uri")) {
+    if (binary.data() == nullptr) return {};
+    check(binary.size(), "the binary chunk");
+    return {binary.begin(), binary.begin() + static_cast<std::ptrdiff_t>(length)};
+  }
+  const auto uri = buffer["uri"].get<std::string>();
+  if (uri.rfind("data:", 0) == 0) {
+    std::vector<unsigned char> bytes;
+    std::string type;
+    if (!tinygltf::DecodeDataURI(&bytes, type, uri, 0, false) && length > 0) {
+      file.fail(where + ".uri is not base64 data of a buffer");
+    }
+    check(bytes.size(), "its data URI");
+    bytes.resize(length);
+    return bytes;
+  }
+  if (uri.find("://") != std::string::npos) file.fail(where + ".uri is not a file beside it: " + uri.substr(0, 80));
+  const fs::path path = folder / percent_decoded(uri);
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) file.fail("its buffer " + path.string() + " is missing");
+  check(fs::file_size(path, error), path.string());
+  std::vector<unsigned char> bytes(length);
+  std::ifstream in(path, std::ios::binary);
+  if (!in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(length))) {
+    file.fail("its buffer " + path.string() + " cannot be read");
+  }
+  return bytes;
+}
+
+bool no_image(tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int, void*) {
+  return true;
+}
+
+}  // namespace
+
+void GltfFile::fail(const std::string& what) const { throw Error(ExitCode::kFile, name + ": " + what); }
+
+GltfFile open_gltf(const fs::path& path) {
+  GltfFile file;
+  file.name = path.string();
+  const std::string bytes = read_bytes(path, file.name);
+  Container parts{bytes, {}};
+  if (bytes.rfind("glTF", 0) == 0) parts = split_glb(bytes, file);
+
+  nlohmann::json json = check_gltf_json(parts.json, file.name);
+  // tinygltf would look for buffers in other places, too, and copy the binary chunk for whoever asks.
+  std::vector<std::vector<unsigned char>> buffers;
+  for (const nlohmann::json& buffer : json["buffers"]) {
+    const std::string where = "buffers[" + std::to_string(buffers.size()) + "]";
+    buffers.push_back(
+        buffer_bytes(buffer, where, buffers.empty() ? parts.binary : std::string_view(), path.parent_path(), file));
+  }
+  json.erase("buffers");
+
+  tinygltf::TinyGLTF loader;
+  loader.SetImageLoader(no_image, nullptr);
+  const std::string text = json.dump();
+  if (text.size() > std::numeric_limits<int>::max()) file.fail("has too large a JSON");
+  std::string error, warning;
+  bool loaded = false;
+  try {
+    loaded =
+        loader.LoadASCIIFromString(&file.model, &error, &warning, text.data(), static_cast<unsigned>(text.size()), "");
+  } catch (const std::exception& thrown) {
+    error = thrown.what();
+  }
+  if (!loaded) file.fail("is not a glTF that can be read (" + error.substr(0, error.find('\n')) + ")");
+  for (std::vector<unsigned char>& data : buffers) file.model.buffers.emplace_back().data = std::move(data);
+  return file;
+}
+
+}  // namespace spherechain::baker

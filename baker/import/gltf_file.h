@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <tiny_gltf.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace spherechain::baker {
+
+// More vertices, triangles, keys or displacements than this are no character, but a file that wants memory.
+inline constexpr std::size_t kMaxGltfElements = std::size_t{1} << 23;
+
+// A glTF file in memory: its structure, in which every index leads to something, and its buffers. No image is read.
+struct GltfFile {
+  std::string name;  // what errors call it
+  tinygltf::Model model;
+
+  [[noreturn]] void fail(const std::string& what) const;
+
+  // The numbers of an accessor, one element after another: normalized integers as fractions, sparse elements put in.
+  // `type` (TINYGLTF_TYPE_...) and `components` (TINYGLTF_COMPONENT_TYPE_...) are what the use allows. Throws
+  // Error(kFile) for anything else, where the buffer is too short, or where a number is not finite.
+  std::vector<double> numbers(int accessor, int type, const std::vector<int>& components) const;
+};
+
+// Reads a .gltf or .glb, told apart by content, with the buffers beside it. Throws Error(kFile).
+GltfFile open_gltf(const std::filesystem::path& path);
+
+}  // namespace spherechain::baker

@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// tinygltf takes members of a wrong type for absent ones, keeps indices as they are and recurses into extras: a hostile
+// file is stopped here, before it.
+#include "import/gltf_json.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mesh/error.h"
+
+namespace spherechain::baker {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kMaxDepth = 64;
+constexpr std::size_t kMaxEntries = std::size_t{1} << 18;  // of one array; a rich character has some thousand accessors
+constexpr double kMaxCount = 2147483647.0;                 // bytes or elements; tinygltf keeps some of them as int
+
+constexpr const char* kKept[] = {
+    "asset", "extensionsUsed", "extensionsRequired", "buffers", "bufferViews", "accessors", "meshes",
+    "nodes", "skins",          "animations",         "scenes",  "scene"};
+
+// Extensions that may be required without a say in where vertices are.
+constexpr const char* kHarmless[] = {"KHR_mesh_quantization", "KHR_materials_", "KHR_texture_",
+                                     "EXT_texture_",          "MSFT_texture_",  "KHR_lights_",
+                                     "EXT_lights_",           "KHR_xmp",        "VRM"};
+
+// An object of the file, and how an error calls it.
+class Object {
+ public:
+  Object(json& value, std::string where, const json& root, const std::string& file)
+      : value_(value), where_(std::move(where)), root_(root), file_(file) {
+    if (!value_.is_object()) throw Error(ExitCode::kFile, file_ + ": " + where_ + " is not an object");
+  }
+
+  [[noreturn]] void fail(const std::string& key, const std::string& what) const {
+    throw Error(ExitCode::kFile, file_ + ": " + (where_.empty() ? "" : where_ + ".") + key + " " + what);
+  }
+
+  bool has(const char* key) const { return value_.contains(key); }
+  void require(const char* key) const {
+    if (!has(key)) fail(key, "is missing");
+  }
+
+  // A whole number of bytes or elements. JSON knows no integers: 36.0 is one.
+  void count(const char* key) const {
+    if (has(key)) whole(value_[key], key, kMaxCount);
+  }
+  // An index into the root's array `of`.
+  void index(const char* key, const char* of) const {
+    if (has(key)) index_of(value_[key], key, of);
+  }
+  void indices(const char* key, const char* of) const {
+    if (!has(key)) return;
+    json& list = array(key);
+    for (std::size_t i = 0; i < list.size(); ++i) index_of(list[i], entry(key, i), of);
+  }
+  void text(const char* key) const {
+    if (has(key) && !value_[key].is_string()) fail(key, "is not a string");
+  }
+  void flag(const char* key) const {
+    if (has(key) && !value_[key].is_boolean()) fail(key, "is not true or false");
+  }
+  // `size` 0: any number of them.
+  void numbers(const char* key, std::size_t size = 0) const {
+    if (!has(key)) return;
+    const json& list = array(key);
+    const bool good = (size == 0 || list.size() == size) && std::all_of(list.begin(), list.end(), [](const json& v) {
+                        return v.is_number() && std::isfinite(v.get<double>());
+                      });
+    if (!good)
+      fail(key, size == 0 ? "is not a list of numbers" : "is not a list of " + std::to_string(size) + " numbers");
+  }
+
+  Object object(const char* key) const { return {value_[key], inner(key), root_, file_}; }
+  template <typename Each>
+  void objects(const char* key, const Each& each) const {
+    if (!has(key)) return;
+    json& list = array(key);
+    for (std::size_t i = 0; i < list.size(); ++i) each(Object(list[i], inner(entry(key, i)), root_, file_));
+  }
+  // Members that are indices of accessors, whatever their names.
+  void accessors(const char* key) const {
+    if (!has(key)) return;
+    const Object members = object(key);
+    members.accessors();
+  }
+  void accessors() const {
+    for (auto& [name, value] : value_.items()) {
+      if (name != "extensions") index_of(value, name, "accessors");
+    }
+  }
+  std::size_t size_of(const char* key) const { return has(key) ? value_[key].size() : 0; }
+  json& operator[](const char* key) const { return value_[key]; }
+
+  json& array(const char* key) const {
+    json& list = value_[key];
+    if (!list.is_array()) fail(key, "is not a list");
+    if (list.size() > kMaxEntries)
+      fail(key, "has " + std::to_string(list.size()) + " entries, too many for a character");
+    return list;
+  }
+
+ private:
+  static std::string entry(const char* key, std::size_t i) { return std::string(key) + "[" + std::to_string(i) + "]"; }
+  std::string inner(const std::string& key) const { return where_.empty() ? key : where_ + "." + key; }
+
+  void whole(json& value, const std::string& key, double high) const {
+    const double number = value.is_number() ? value.get<double>() : -1;
+    if (!(number >= 0 && number <= high) || number != std::floor(number)) {
+      fail(key,
+           value.is_number() ? "is " + value.dump() + ", not a whole number in its range" : "is not a whole number");
+    }
+    value = static_cast<std::uint64_t>(number);
+  }
+  void index_of(json& value, const std::string& key, const char* of) const {
+    whole(value, key, kMaxCount);
+    const std::size_t size = root_.contains(of) && root_[of].is_array() ? root_[of].size() : 0;
+    if (value.get<std::size_t>() >= size) {
+      fail(key, "is " + value.dump() + ", but there are " + std::to_string(size) + " " + of);
+    }
+  }
+
+  json& value_;
+  std::string where_;
+  const json& root_;
+  const std::string& file_;
+};
+
+void check_accessor(const Object& accessor) {
+  accessor.index("bufferView", "bufferViews");
+  accessor.count("byteOffset");
+  accessor.require("componentType");
+  accessor.count("componentType");
+  accessor.require("count");
+  accessor.count("count");
+  accessor.require("type");
+  accessor.text("type");
+  accessor.flag("normalized");
+  if (!accessor.has("sparse")) return;
+  const Object sparse = accessor.object("sparse");
+  sparse.require("count");
+  sparse.count("count");
+  for (const char* key : {"indices", "values"}) {
+    sparse.require(key);
+    const Object part = sparse.object(key);
+    part.require("bufferView");
+    part.index("bufferView", "bufferViews");
+    part.count("byteOffset");
+    part.count("componentType");
+  }
+  sparse.object("indices").require("componentType");
+}
+
+void check_mesh(const Object& mesh) {
+  mesh.text("name");
+  mesh.require("primitives");
+  mesh.numbers("weights");
+  mesh.objects("primitives", [](const Object& primitive) {
+    primitive.require("attributes");
+    primitive.accessors("attributes");
+    primitive.index("indices", "accessors");
+    primitive.count("mode");
+    primitive.objects("targets", [](const Object& target) { target.accessors(); });
+  });
+}
+
+void check_node(const Object& node) {
+  node.text("name");
+  node.index("mesh", "meshes");
+  node.index("skin", "skins");
+  node.indices("children", "nodes");
+  node.numbers("matrix", 16);
+  node.numbers("translation", 3);
+  node.numbers("rotation", 4);
+  node.numbers("scale", 3);
+  node.numbers("weights");
+}
+
+void check_skin(const Object& skin) {
+  skin.require("joints");
+  skin.indices("joints", "nodes");
+  std::vector<std::size_t> joints = skin["joints"];
+  std::sort(joints.begin(), joints.end());
+  if (joints.empty() || std::adjacent_find(joints.begin(), joints.end()) != joints.end()) {
+    skin.fail("joints", joints.empty() ? "is empty" : "names a node twice");
+  }
+  skin.index("inverseBindMatrices", "accessors");
+}
+
+void check_animation(const Object& animation) {
+  animation.text("name");
+  animation.objects("samplers", [](const Object& sampler) {
+    for (const char* key : {"input", "output"}) {
+      sampler.require(key);
+      sampler.index(key, "accessors");
+    }
+    sampler.text("interpolation");
+  });
+  animation.objects("channels", [&](const Object& channel) {
+    channel.require("sampler");
+    channel.count("sampler");
+    if (channel["sampler"].get<std::size_t>() >= animation.size_of("samplers")) {
+      channel.fail("sampler", "is " + channel["sampler"].dump() + ", but there are " +
+                                  std::to_string(animation.size_of("samplers")) + " samplers");
+    }
+    channel.require("target");
+    const Object target = channel.object("target");
+    target.index("node", "nodes");
+    target.require("path");
+    target.text("path");
+  });
+}
+
+void check_members(json& root, const std::string& file) {
+  const Object top(root, "", root, file);
+  top.objects("buffers", [](const Object& buffer) {
+    buffer.require("byteLength");
+    buffer.count("byteLength");
+    buffer.text("uri");
+  });
+  top.objects("bufferViews", [](const Object& view) {
+    view.require("buffer");
+    view.index("buffer", "buffers");
+    view.count("byteOffset");
+    view.require("byteLength");
+    view.count("byteLength");
+    view.count("byteStride");
+  });
+  top.objects("accessors", check_accessor);
+  top.objects("meshes", check_mesh);
+  top.objects("nodes", check_node);
+  top.objects("skins", check_skin);
+  top.objects("animations", check_animation);
+  top.objects("scenes", [](const Object& scene) { scene.indices("nodes", "nodes"); });
+  if (root.contains("scenes")) {
+    top.index("scene", "scenes");
+  } else {
+    root.erase("scene");
+  }
+}
+
+void check_extensions(const json& root, const std::string& file) {
+  if (!root.contains("extensionsRequired")) return;
+  for (const json& required : root["extensionsRequired"]) {
+    const std::string name = required.is_string() ? required.get<std::string>() : required.dump();
+    const bool harmless = std::any_of(std::begin(kHarmless), std::end(kHarmless),
+                                      [&](const char* known) { return name.rfind(known, 0) == 0; });
+    if (!harmless) {
+      throw Error(ExitCode::kFile,
+                  file + ": needs the glTF extension " + name + ", which is not read (export without it)");
+    }
+  }
+}
+
+// Leaves of `extras` the names of morph targets, of extensions their names.
+void strip(json& value) {
+  if (value.is_object()) {
+    if (const auto extras = value.find("extras"); extras != value.end()) {
+      json names;
+      if (extras->is_object() && extras->contains("targetNames")) names = std::move((*extras)["targetNames"]);
+      const bool list = names.is_array() &&
+                        std::all_of(names.begin(), names.end(), [](const json& name) { return name.is_string(); });
+      *extras = list ? json{{"targetNames", std::move(names)}} : json::object();
+    }
+    if (const auto extensions = value.find("extensions"); extensions != value.end()) {
+      if (!extensions->is_object()) *extensions = json::object();
+      for (json& content : *extensions) content = json::object();
+    }
+  }
+  if (value.is_structured()) {
+    for (json& inner : value) strip(inner);
+  }
+}
+
+}  // namespace
+
+json check_gltf_json(std::string_view text, const std::string& file) {
+  json all;
+  try {
+    all = json::parse(text, [&](int depth, json::parse_event_t, json&) {
+      if (depth > kMaxDepth) throw Error(ExitCode::kFile, file + ": its JSON is nested too deeply");
+      return true;
+    });
+  } catch (const json::parse_error& error) {
+    throw Error(ExitCode::kFile, file + ": its JSON is broken at byte " + std::to_string(error.byte));
+  } catch (const json::out_of_range&) {
+    throw Error(ExitCode::kFile, file + ": its JSON has a number that is not finite");
+  }
+  if (!all.is_object() || !all.contains("asset") || !all["asset"].is_object() || !all["asset"].contains("version") ||
+      !all["asset"]["version"].is_string()) {
+    throw Error(ExitCode::kFile, file + ": is not a glTF file (asset.version is missing)");
+  }
+  const auto version = all["asset"]["version"].get<std::string>();
+  if (version.rfind("2.", 0) != 0) {
+    throw Error(ExitCode::kFile, file + ": is glTF " + version + ", but only glTF 2 is read");
+  }
+  json root;
+  for (const char* key : kKept) {
+    if (all.contains(key)) root[key] = std::move(all[key]);
+  }
+  for (const auto& [key, value] : root.items()) {
+    if (key != "asset" && key != "scene" && !value.is_array()) {
+      throw Error(ExitCode::kFile, file + ": " + key + " is not a list");
+    }
+  }
+  check_extensions(root, file);
+  check_members(root, file);
+  strip(root);
+  return root;
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "import/gltf_file.h"
+#include "import/source_rig.h"
+#include "mesh/mesh.h"
+
+namespace spherechain::baker {
+
+// A primitive's parts, each as the file has it. `where` is what errors call the primitive; all throw Error(kFile).
+
+// Triangles or their strips and fans; the rest is points and lines, of which there are so many.
+bool has_triangles(const tinygltf::Primitive& primitive);
+std::size_t count_points_and_lines(const GltfFile& file, const tinygltf::Primitive& primitive);
+
+std::vector<Vec3> read_positions(const GltfFile& file, const tinygltf::Primitive& primitive, const std::string& where);
+std::vector<Triangle> read_triangles(const GltfFile& file, const tinygltf::Primitive& primitive,
+                                     std::size_t vertex_count, const std::string& where);
+
+// Has joints and weights.
+bool is_skinned(const tinygltf::Primitive& primitive);
+// `bones` are those of the skin's joints. Weights sum to 1; a vertex that has none follows the first joint it names.
+std::vector<VertexWeights> read_weights(const GltfFile& file, const tinygltf::Primitive& primitive,
+                                        const std::vector<Index>& bones, std::size_t vertex_count,
+                                        const std::string& where);
+
+// Of a morph target; empty where it leaves positions alone.
+std::vector<Vec3> read_displacements(const GltfFile& file, const std::map<std::string, int>& target,
+                                     std::size_t vertex_count, const std::string& where);
+
+}  // namespace spherechain::baker

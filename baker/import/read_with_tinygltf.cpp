@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// glTF 2.0: the meshes of the scene, in the order of the file's nodes, and what moves them.
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "import/gltf_clips.h"
+#include "import/gltf_primitive.h"
+#include "import/import.h"
+#include "spherechain/asset.h"
+
+namespace spherechain::baker {
+namespace {
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+// The skins of the scene's meshes. The one that moves most vertices leads: its mesh space becomes the rest space.
+std::vector<int> skins_of_scene(const GltfFile& file, const GltfNodes& nodes) {
+  std::map<int, std::size_t> vertices;
+  for (std::size_t n = 0; n < file.model.nodes.size(); ++n) {
+    const tinygltf::Node& node = file.model.nodes[n];
+    if (!nodes.in_scene[n] || node.mesh < 0 || node.skin < 0) continue;
+    for (const tinygltf::Primitive& primitive : file.model.meshes[at(node.mesh)].primitives) {
+      const auto position = primitive.attributes.find("POSITION");
+      if (!is_skinned(primitive) || position == primitive.attributes.end()) continue;
+      vertices[node.skin] += file.model.accessors[at(position->second)].count;
+    }
+  }
+  std::vector<int> skins;
+  for (const auto& [skin, count] : vertices) skins.push_back(skin);
+  std::stable_sort(skins.begin(), skins.end(), [&](int a, int b) { return vertices[a] > vertices[b]; });
+  return skins;
+}
+
+// What moves a primitive: a skin, or the node it hangs on.
+struct Carrier {
+  Affine to_rest;             // from the primitive's space
+  const GltfSkin* skin;       // null: rigid
+  std::optional<Index> bone;  // of a rigid one
+};
+
+class GltfReader {
+ public:
+  GltfReader(const GltfFile& file, const ImportOptions& options)
+      : file_(file),
+        options_(options),
+        nodes_(read_nodes(file)),
+        skeleton_(file, nodes_, skins_of_scene(file, nodes_)),
+        morphs_of_node_(file.model.nodes.size()) {}
+
+  SourceMesh read() {
+    out_.importer = "tinygltf";
+    for (std::size_t n = 0; n < file_.model.nodes.size(); ++n) {
+      if (nodes_.in_scene[n] && file_.model.nodes[n].mesh >= 0) add_mesh(n);
+    }
+    out_.rig.to_rest = skeleton_.world_to_rest();
+    out_.metres_per_unit = 1 / std::cbrt(std::abs(out_.rig.to_rest.linear().determinant()));
+    if (!(out_.metres_per_unit > 1e-12 && out_.metres_per_unit < 1e12))
+      file_.fail("has a skeleton of no sensible size");
+    out_.up_hint = (out_.rig.to_rest.linear() * Vec3::UnitY()).normalized();
+    out_.rig.clips = read_clips(file_, nodes_, morphs_of_node_);
+    if (skeleton_.has_skins() || !out_.rig.clips.empty()) {
+      out_.rig.nodes = std::move(nodes_.nodes);
+      out_.rig.bones = skeleton_.bones();
+    }
+    if (out_.rig.bones.empty()) out_.rig.weights.clear();  // nothing ever moves
+    return std::move(out_);
+  }
+
+ private:
+  void add_mesh(std::size_t n) {
+    const tinygltf::Node& node = file_.model.nodes[n];
+    const tinygltf::Mesh& mesh = file_.model.meshes[at(node.mesh)];
+    const bool on_joint = skeleton_.has_skins() && skeleton_.joint_above(nodes_.of_file[n]) != kNoIndex;
+    std::map<std::pair<std::map<std::string, int>, std::vector<std::map<std::string, int>>>, SourcePart> shared;
+    bool kept = false, dropped = false;
+    for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
+      const tinygltf::Primitive& primitive = mesh.primitives[p];
+      const bool skinned = node.skin >= 0 && is_skinned(primitive);
+      if (!has_triangles(primitive)) {
+        out_.points_and_lines_dropped += count_points_and_lines(file_, primitive);
+      } else if (!skinned && on_joint && !options_.attachments) {
+        dropped = true;
+      } else if (primitive.attributes.count("POSITION") > 0) {
+        kept = true;
+        where_ = "meshes[" + std::to_string(node.mesh) + "].primitives[" + std::to_string(p) + "]";
+        // Primitives may have their vertices in common, and each its own triangles.
+        const auto [known, is_new] = shared.try_emplace({primitive.attributes, primitive.targets});
+        const Carrier carrier = carrier_of(n, skinned);
+        if (is_new) known->second = add_vertices(primitive, carrier, n);
+        out_.parts.push_back(known->second);
+        out_.parts.back().mesh = static_cast<Index>(node.mesh);
+        out_.parts.back().primitive = static_cast<Index>(p);
+        add_triangles(primitive, carrier, known->second);
+      }
+    }
+    out_.meshes += kept ? 1 : 0;
+    out_.attachments_dropped += dropped ? 1 : 0;
+  }
+
+  Carrier carrier_of(std::size_t n, bool skinned) {
+    if (skinned) {
+      const GltfSkin& skin = skeleton_.skin(file_.model.nodes[n].skin);
+      return {skin.to_rest, &skin, {}};
+    }
+    const GltfSkeleton::Rigid rigid = skeleton_.rigid(nodes_.of_file[n]);
+    return {rigid.to_rest, nullptr, rigid.bone};
+  }
+
+  SourcePart add_vertices(const tinygltf::Primitive& primitive, const Carrier& carrier, std::size_t n) {
+    spend(file_.model.accessors[at(primitive.attributes.at("POSITION"))].count);
+    const std::vector<Vec3> positions = read_positions(file_, primitive, where_);
+    SourcePart part;
+    part.first_vertex = static_cast<Index>(out_.positions.size());
+    part.vertex_count = static_cast<Index>(positions.size());
+    part.hash = hash_positions(pack(positions).data(), positions.size());
+    for (const Vec3& p : positions) out_.positions.push_back(carrier.to_rest * p);
+
+    std::vector<VertexWeights>& all = out_.rig.weights;
+    if (carrier.skin != nullptr) {
+      const auto weights = read_weights(file_, primitive, carrier.skin->bones, positions.size(), where_);
+      all.insert(all.end(), weights.begin(), weights.end());
+    } else {
+      VertexWeights rigid;
+      if (carrier.bone) {
+        rigid.joint[0] = *carrier.bone;
+        rigid.weight[0] = 1;
+      }
+      all.insert(all.end(), positions.size(), rigid);
+    }
+    add_morphs(primitive, carrier, n, part);
+    return part;
+  }
+
+  void add_triangles(const tinygltf::Primitive& primitive, const Carrier& carrier, const SourcePart& part) {
+    const std::vector<Triangle> triangles = read_triangles(file_, primitive, part.vertex_count, where_);
+    spend(triangles.size());
+    const bool mirrored = carrier.to_rest.linear().determinant() < 0;  // turns triangles inside out
+    for (Triangle t : triangles) {
+      if (mirrored) std::swap(t[1], t[2]);
+      out_.triangles.push_back({part.first_vertex + t[0], part.first_vertex + t[1], part.first_vertex + t[2]});
+    }
+  }
+
+  // A node's morphs move the vertices of all its primitives.
+  void add_morphs(const tinygltf::Primitive& primitive, const Carrier& carrier, std::size_t n, const SourcePart& part) {
+    const tinygltf::Node& node = file_.model.nodes[n];
+    const tinygltf::Mesh& mesh = file_.model.meshes[at(node.mesh)];
+    GltfMorphs& morphs = morphs_of_node_[n];
+    if (morphs.count == 0 && !primitive.targets.empty()) {
+      spend(primitive.targets.size());
+      morphs = {static_cast<Index>(out_.rig.morphs.size()), static_cast<Index>(primitive.targets.size())};
+      const tinygltf::Value names = mesh.extras.Has("targetNames") ? mesh.extras.Get("targetNames") : tinygltf::Value();
+      const std::vector<double>& weights = node.weights.empty() ? mesh.weights : node.weights;
+      for (std::size_t t = 0; t < morphs.count; ++t) {
+        Morph& morph = out_.rig.morphs.emplace_back();
+        const bool named = names.IsArray() && t < names.ArrayLen();
+        morph.name = named ? names.Get(static_cast<int>(t)).Get<std::string>() : "target_" + std::to_string(t);
+        if (t < weights.size()) morph.rest_weight = weights[t];
+      }
+    }
+    if (primitive.targets.size() != morphs.count) {
+      file_.fail(where_ + " has " + std::to_string(primitive.targets.size()) + " morph targets, another of its mesh " +
+                 std::to_string(morphs.count));
+    }
+    for (std::size_t t = 0; t < primitive.targets.size(); ++t) {
+      Morph& morph = out_.rig.morphs[morphs.first + t];
+      const std::vector<Vec3> displacements = read_displacements(file_, primitive.targets[t], part.vertex_count,
+                                                                 where_ + ".targets[" + std::to_string(t) + "]");
+      for (Index v = 0; v < displacements.size(); ++v) {
+        if (displacements[v].isZero(0)) continue;
+        spend(1);
+        morph.vertices.push_back(part.first_vertex + v);
+        morph.deltas.push_back(carrier.to_rest.linear() * displacements[v]);
+      }
+    }
+  }
+
+  // Instances and shared accessors let a small file ask for much: stop before memory does.
+  void spend(std::size_t elements) {
+    spent_ += elements;
+    if (spent_ > kMaxGltfElements) file_.fail(where_ + " and those before it are too large for a character");
+  }
+
+  const GltfFile& file_;
+  const ImportOptions& options_;
+  GltfNodes nodes_;
+  GltfSkeleton skeleton_;
+  std::vector<GltfMorphs> morphs_of_node_;  // by the file's index
+  SourceMesh out_;
+  std::string where_;  // the primitive at hand, for errors
+  std::size_t spent_ = 0;
+};
+
+}  // namespace
+
+SourceMesh read_with_tinygltf(const std::filesystem::path& path, const ImportOptions& options) {
+  const GltfFile file = open_gltf(path);
+  return GltfReader(file, options).read();
+}
+
+}  // namespace spherechain::baker
