@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kMaxDepth = 64;
+constexpr int kMaxDepth = 64;                              // recursion in tinygltf and here ends there
 constexpr std::size_t kMaxEntries = std::size_t{1} << 18;  // of one array; a rich character has some thousand accessors
 constexpr double kMaxCount = 2147483647.0;                 // bytes or elements; tinygltf keeps some of them as int
 
@@ -254,6 +254,25 @@ void check_extensions(const json& root, const std::string& file) {
   }
 }
 
+// Of objects and lists in one another. (nlohmann's parser can count too, but then takes quadratic time.)
+int depth_of(std::string_view text) {
+  int depth = 0, deepest = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted && c == '\\') {
+      ++i;
+    } else if (c == '"') {
+      quoted = !quoted;
+    } else if (!quoted && (c == '{' || c == '[')) {
+      deepest = std::max(deepest, ++depth);
+    } else if (!quoted && (c == '}' || c == ']')) {
+      --depth;
+    }
+  }
+  return deepest;
+}
+
 // Leaves of `extras` the names of morph targets, of extensions their names.
 void strip(json& value) {
   if (value.is_object()) {
@@ -277,12 +296,10 @@ void strip(json& value) {
 }  // namespace
 
 json check_gltf_json(std::string_view text, const std::string& file) {
+  if (depth_of(text) > kMaxDepth) throw Error(ExitCode::kFile, file + ": its JSON is nested too deeply");
   json all;
   try {
-    all = json::parse(text, [&](int depth, json::parse_event_t, json&) {
-      if (depth > kMaxDepth) throw Error(ExitCode::kFile, file + ": its JSON is nested too deeply");
-      return true;
-    });
+    all = json::parse(text);
   } catch (const json::parse_error& error) {
     throw Error(ExitCode::kFile, file + ": its JSON is broken at byte " + std::to_string(error.byte));
   } catch (const json::out_of_range&) {

@@ -130,11 +130,7 @@ TEST_CASE("members of the wrong type and indices that lead nowhere are named") {
       {"accessors[0].count is not a whole number", [](Glb& g) { accessor(g, 0)["count"] = "many"; }},
       {"accessors[0].count is 2.5", [](Glb& g) { accessor(g, 0)["count"] = 2.5; }},
       {"accessors[0].bufferView is 77", [](Glb& g) { accessor(g, 0)["bufferView"] = 77; }},
-      {"bufferViews[2].buffer is 1, but there are 0 buffers",
-       [](Glb& g) {
-         g.json["bufferViews"][2]["buffer"] = 1;
-         g.json["buffers"] = json::array();
-       }},
+      {"bufferViews[0].buffer is 0, but there are 0 buffers", [](Glb& g) { g.json["buffers"] = json::array(); }},
       {"primitives[0].attributes.POSITION is 99",
        [](Glb& g) { g.json["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = 99; }},
       {"primitives[0].targets[0].POSITION is 99",
@@ -149,7 +145,7 @@ TEST_CASE("members of the wrong type and indices that lead nowhere are named") {
        [](Glb& g) {
          g.json["nodes"][1]["rotation"] = {1, 2, 3};
        }},
-      {"nodes[1].matrix is not a list of 16 numbers", [](Glb& g) { g.json["nodes"][1]["matrix"] = "identity"; }},
+      {"nodes[1].matrix is not a list", [](Glb& g) { g.json["nodes"][1]["matrix"] = "identity"; }},
       {"nodes[1].matrix is not an affine", [](Glb& g) { g.json["nodes"][1]["matrix"] = std::vector<double>(16, 1.0); }},
       {"skins[0].joints[1] is 88",
        [](Glb& g) {
@@ -314,7 +310,7 @@ TEST_CASE("accessors of the wrong type or length, and figures that are none, are
        [](Glb& g) {
          for (const int a : {kPositions, kJoints, kWeights}) accessor(g, a)["count"] = 15;
        }},
-      {"vertex 8 follows joint 1 of 1",
+      {"vertex 2 follows joint 1 of 1",
        [](Glb& g) {
          g.json["skins"][0]["joints"] = {1};
          patch(g, kWeights, 0, 1);
@@ -345,7 +341,7 @@ TEST_CASE("small files that ask for much memory are refused before they get it")
   };
   const long before = memory();
   check_each({
-      {"too many for a character",
+      {"too large for a character",
        [](Glb& g) {
          accessor(g, kPositions)["count"] = 2000000000;
          accessor(g, kPositions).erase("bufferView");
@@ -362,8 +358,9 @@ TEST_CASE("small files that ask for much memory are refused before they get it")
        }},
       {"too many keys",
        [](Glb& g) {
-         const int times = g.accessor(std::vector<float>(100000, 1), "SCALAR"),
-                   values = g.accessor(std::vector<float>(400000, 1), "VEC4");
+         std::vector<float> ascending(100000);
+         for (std::size_t k = 0; k < ascending.size(); ++k) ascending[k] = static_cast<float>(k);
+         const int times = g.accessor(ascending, "SCALAR"), values = g.accessor(std::vector<float>(400000, 1), "VEC4");
          json& clip = g.json["animations"][0];
          clip["samplers"][0] = {{"input", times}, {"output", values}};
          clip["channels"] = std::vector<json>(1000, clip["channels"][0]);

@@ -121,7 +121,8 @@ TEST_CASE("weights as bytes and shorts, in several sets, come down to the larges
   }
   const SourceMesh mesh = read(glb);
   const VertexWeights& first = mesh.rig.weights[0];
-  for (std::size_t k = 0; k < kMaxInfluences; ++k) CHECK(first.weight[k] == doctest::Approx((10.0 - k) / 52));
+  for (std::size_t k = 0; k < kMaxInfluences; ++k)
+    CHECK(first.weight[k] == doctest::Approx((10.0 - static_cast<double>(k)) / 52));
   CHECK(mesh.rig.nodes[mesh.rig.bones[mesh.rig.weights[1].joint[0]].node].name == "5");  // the skin's joint 4
   CHECK(mesh.rig.weights[1].weight[0] == 1);
 }
