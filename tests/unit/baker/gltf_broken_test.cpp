@@ -84,20 +84,18 @@ TEST_CASE("a GLB cut short anywhere is refused") {
   }
 }
 
-TEST_CASE("a GLB with any byte of it changed is refused or read") {
+TEST_CASE("a GLB with a byte of it changed, any byte, is refused or read") {
   const TemporaryFolder folder;
   std::string bytes = character().bytes();
   std::size_t accepted = 0, refused = 0;
   for (std::size_t i = 0; i < bytes.size(); ++i) {
     const char original = bytes[i];
-    for (const char changed : {'\0', '\xFF', '9', '-', '}'}) {
-      bytes[i] = changed;
-      (refusal(folder.write("changed.glb", bytes)) == "accepted" ? accepted : refused) += 1;
-    }
+    bytes[i] = "\xFF\x00\x39-}"[i % 5];
+    (refusal(folder.write("changed.glb", bytes)) == "accepted" ? accepted : refused) += 1;
     bytes[i] = original;
   }
   CHECK(accepted > 0);
-  CHECK(refused > bytes.size());
+  CHECK(refused > bytes.size() / 4);
 }
 
 TEST_CASE("the container's broken parts are named") {

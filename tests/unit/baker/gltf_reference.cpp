@@ -81,11 +81,7 @@ std::vector<Vector3d> world_positions(const Glb& glb) {
   return out;
 }
 
-std::vector<Vector3d> world_positions(const SourceMesh& mesh, const std::vector<Node>& pose) {
-  std::vector<Affine> world;
-  for (const Node& node : pose) {
-    world.push_back(node.parent < 0 ? node.local : world[static_cast<std::size_t>(node.parent)] * node.local);
-  }
+std::vector<Vector3d> world_positions(const SourceMesh& mesh, const std::vector<Affine>& world) {
   std::vector<Vector3d> out;
   for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
     if (mesh.rig.weights.empty()) {

@@ -11,9 +11,9 @@
 // whose accessors are plain (floats, 16-bit joints, nothing normalized or sparse).
 std::vector<Eigen::Vector3d> world_positions(const Glb& glb);
 
-// The same from what the reader made of a file; `pose` (rest, or another file of the same nodes) moves its nodes.
+// The same from what the reader made of a file, with its nodes where `world` has them.
 std::vector<Eigen::Vector3d> world_positions(const spherechain::baker::SourceMesh& mesh,
-                                             const std::vector<spherechain::baker::Node>& pose);
+                                             const std::vector<spherechain::baker::Affine>& world);
 
 // A column of two boxes, 8 vertices each, on two joints above one another (nodes 1 and 2), bound where the joints are
 // not at rest; node 0 has the mesh, node 3 is the joints' parent.

@@ -32,14 +32,14 @@ void check_same(const std::vector<Vector3d>& ours, const std::vector<Vector3d>& 
 // scaled.
 void check_skinning(const Glb& glb, std::size_t moved_node, bool attachments = false) {
   const SourceMesh mesh = read(glb, attachments);
-  check_same(world_positions(mesh, mesh.rig.nodes), world_positions(glb));
+  check_same(world_positions(mesh, world_of(mesh.rig.nodes)), world_positions(glb));
   Glb posed = glb;
   json& node = posed.json["nodes"][moved_node];
   node.erase("matrix");
   node["rotation"] = {0.48, 0.6, 0, 0.64};
   node["translation"] = {0.5, 1.5, -2};
   node["scale"] = {1.25, 1.25, 1.25};
-  check_same(world_positions(mesh, read(posed, attachments).rig.nodes), world_positions(posed));
+  check_same(world_positions(mesh, world_of(read(posed, attachments).rig.nodes)), world_positions(posed));
 }
 
 std::vector<Vector3d> raw_positions(const Glb& glb, int accessor) {
