@@ -64,6 +64,8 @@ struct FitSettings {
   double limb_step = 0.0015;        // march of the circumference
   int spheres_per_level = 2;        // N_s: 1 to 3
   bool extremities = true;          // spheres in head, hands and feet
+
+  bool operator==(const FitSettings&) const = default;
 };
 
 // Throws Error(kSegmentation) where a limb or the torso has no section a sphere fits in.

@@ -30,9 +30,8 @@ void stage(Bake& out, const Progress& progress, const char* name, const Run& run
   out.times.push_back({name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
 }
 
-void run_after_segmentation(Bake& out, const Progress& progress) {
+void run_after_fit(Bake& out, const Progress& progress) {
   const BakeSettings& settings = out.settings;
-  stage(out, progress, "fit", [&] { out.spheres = fit_spheres(out.character, out.regions, settings.fit); });
   stage(out, progress, "chains", [&] {
     std::vector<LimbPlace> limbs;
     for (const Limb& limb : out.regions.limbs) {
@@ -51,6 +50,10 @@ void run_after_segmentation(Bake& out, const Progress& progress) {
   });
 }
 
+void run_fit(Bake& out, const Progress& progress) {
+  stage(out, progress, "fit", [&] { out.spheres = fit_spheres(out.character, out.regions, out.settings.fit); });
+}
+
 }  // namespace
 
 Bake bake(const std::filesystem::path& input, const BakeSettings& settings, const Progress& progress) {
@@ -58,16 +61,22 @@ Bake bake(const std::filesystem::path& input, const BakeSettings& settings, cons
   out.settings = settings;
   stage(out, progress, "import", [&] { out.character = import_character(input, settings.import); });
   stage(out, progress, "segment", [&] { out.regions = segment(out.character, settings.segment); });
-  run_after_segmentation(out, progress);
+  run_fit(out, progress);
+  run_after_fit(out, progress);
   return out;
 }
 
-Bake rebake(const Bake& segmented, const BakeSettings& settings) {
+Bake rebake(const Bake& bake, const BakeSettings& settings) {
   Bake out;
   out.settings = settings;
-  out.character = segmented.character;
-  out.regions = segmented.regions;
-  run_after_segmentation(out, {});
+  out.character = bake.character;
+  out.regions = bake.regions;
+  if (settings.fit == bake.settings.fit) {
+    out.spheres = bake.spheres;
+  } else {
+    run_fit(out, {});
+  }
+  run_after_fit(out, {});
   return out;
 }
 

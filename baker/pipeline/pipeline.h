@@ -63,8 +63,9 @@ struct Bake {
 Bake bake(const std::filesystem::path& input, const BakeSettings& settings,
           const std::function<void(const std::string&)>& progress);
 
-// The stages after segmentation again, with other settings for them, on the same character and regions.
-Bake rebake(const Bake& segmented, const BakeSettings& settings);
+// The stages after segmentation again, on the same character and regions, with other settings for them. Where those of
+// the fit are the same, the spheres stay.
+Bake rebake(const Bake& bake, const BakeSettings& settings);
 
 // Share of the body's area whose triangles have their centroid within their sphere's detect radius.
 double covered_area(const Bake& bake);

@@ -50,7 +50,12 @@ std::vector<Setting> settings(bool quick) {
       quick ? Values{0, 0.3, 0.5} : Values{0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5, 0.55, 0.6});
   add(kDepthExtremities, "balanced", "penetration_depth",
       quick ? Values{0.1, 0.3, 0.5} : Values{0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5});
-  add(kDelta, "balanced", "delta", quick ? Values{0.015} : Values{0.0025, 0.005, 0.01, 0.015, 0.03, 0.06});
+  add(kPerLevel, "balanced", "spheres_per_level", {1, 2, 3});
+  add(kDelta, "balanced", "delta", quick ? Values{0.005, 0.015, 0.03} : Values{0.0025, 0.005, 0.01, 0.015, 0.03, 0.06});
+  // One pivot is no sphere: its distance from the centre is nothing (paper), and no weights put the centre
+  // (calibrated).
+  add(kPivotsPaper, "balanced", "pivots", quick ? Values{4, 16} : Values{2, 4, 6, 8, 12, 16}, ",\"refit\":\"paper\"");
+  add(kPivotsCalibrated, "balanced", "pivots", quick ? Values{4, 8, 16} : Values{4, 6, 8, 12, 16});
   return out;
 }
 
@@ -74,12 +79,11 @@ void run(const Options& options) {
   results.sweep = measure_sweep(study, samples, settings(options.quick), kDepthPaper, options.quick ? 3 : 51, progress);
 
   progress("sphere sets");
-  const Bake balanced = study.bake("balanced", "{}");
   const Table dense = results.sweep.sweep.where("series", kDepthPaper);
   const std::size_t row = nearest_count(dense, kStatedSpheres);
   const Bake denser = study.bake("paper", dense.word(row, "settings"));
   results.quality =
-      measure_quality(study, samples, {{"paper", study.paper()}, {"balanced", balanced}, {"denser", denser}});
+      measure_quality(study, samples, {{"paper", study.paper()}, {"balanced", study.balanced()}, {"denser", denser}});
 
   write_page(options.out, results);
   const auto write_asset = [&](const char* name, const Bake& bake) {
@@ -87,7 +91,7 @@ void run(const Options& options) {
                             {reinterpret_cast<const char*>(bake.asset.data()), bake.asset.size()});
   };
   write_asset("paper.sphc", study.paper());
-  write_asset("balanced.sphc", balanced);
+  write_asset("balanced.sphc", study.balanced());
   if (!options.docs.empty()) write_docs(options.docs, results);
   progress("wrote " + options.out + "/index.html");
   const Table claims = judge_claims(results);

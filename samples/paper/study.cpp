@@ -25,7 +25,9 @@ std::vector<bool> core_triangles(const Bake& bake) {
 }  // namespace
 
 Study::Study(const std::filesystem::path& character, const std::filesystem::path& poses, int frames)
-    : paper_(baker::bake(character, baker::make_settings("paper", "{}", "paper"), {})), core_(core_triangles(paper_)) {
+    : paper_(baker::bake(character, baker::make_settings("paper", "{}", "paper"), {})),
+      balanced_(rebake(paper_, baker::make_settings("balanced", "{}", "balanced"))),
+      core_(core_triangles(paper_)) {
   const std::vector<baker::VertexWeights> weights = rig_weights(paper_.character, paper_.joints);
   for (const std::string name : {"arms", "legs"}) {
     const baker::BezierMotion motion(paper_.joints, paper_.regions.frame,
@@ -40,7 +42,8 @@ Study::Study(const std::filesystem::path& character, const std::filesystem::path
 }
 
 Bake Study::bake(const std::string& profile, const std::string& json) const {
-  return baker::rebake(paper_, baker::make_settings(profile, json, profile + " " + json));
+  const baker::BakeSettings settings = baker::make_settings(profile, json, profile + " " + json);
+  return rebake(settings.fit == balanced_.settings.fit ? balanced_ : paper_, settings);
 }
 
 }  // namespace spherechain::paper

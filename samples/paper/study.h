@@ -26,14 +26,16 @@ class Study {
   // The stages from the fit on, with a profile and settings as in a --config file.
   Bake bake(const std::string& profile, const std::string& json) const;
 
-  const Bake& paper() const { return paper_; }  // profile `paper` as it is
+  // The two profiles as they are.
+  const Bake& paper() const { return paper_; }
+  const Bake& balanced() const { return balanced_; }
   const std::vector<Animation>& animations() const { return animations_; }
   double mm() const { return 1000 * paper_.character.metres_per_unit; }
   // What the paper covers: the body without head, hands and feet.
   const std::vector<bool>& core() const { return core_; }
 
  private:
-  Bake paper_;
+  Bake paper_, balanced_;
   std::vector<Animation> animations_;
   std::vector<bool> core_;  // a triangle of the body
 };

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "csv.h"
 
@@ -150,4 +151,48 @@ TEST_CASE("overlaps, time, animation: recomputed from figure15.csv") {
     grows = grows && spearman(numbers(series, "spheres"), numbers(series, column)) >= 0.9;
   }
   CHECK(verdict("animation") == graded(same && grows, same || grows));
+}
+
+TEST_CASE("spheres a level, pivots: recomputed from sweep.csv") {
+  const std::vector<Row> sweep = read_csv("sweep.csv");
+  const std::vector<double> f = numbers(only(sweep, "series", "spheres_per_level"), "torso_f_mean_mm");
+  REQUIRE(f.size() == 3);
+  CHECK(verdict("per_level") == graded(f[1] < f[0] && f[2] < f[1], f[1] < f[0]));
+
+  int better = 0;
+  for (const char* series : {"pivots_paper", "pivots_calibrated"}) {
+    const std::vector<Row> rows = only(sweep, "series", series);
+    const double with_four = number(only(rows, "value", "4").front(), "refit_center_p95_mm");
+    if (number(rows.back(), "refit_center_p95_mm") < 0.9 * with_four) ++better;
+    CHECK(number(rows.back(), "value") == 16);
+  }
+  CHECK(verdict("more_pivots") == graded(better == 2, better > 0));
+}
+
+TEST_CASE("defaults: recomputed from sweep.csv") {
+  const std::vector<Row> sweep = read_csv("sweep.csv"), defaults = read_csv("defaults.csv");
+  CHECK(defaults.size() == 4);
+  const auto follows = [&](const char* setting) {
+    return number(only(defaults, "setting", setting).front(), "follows");
+  };
+  for (const auto& [setting, series, error] : {std::tuple("spheres_per_level", "spheres_per_level", "torso_f_mean_mm"),
+                                               std::tuple("pivots", "pivots_calibrated", "refit_center_p95_mm")}) {
+    const std::vector<Row> rows = only(sweep, "series", series);
+    const std::vector<double> errors = numbers(rows, error);
+    const double enough = 1.1 * *std::min_element(errors.begin(), errors.end());
+    const auto first = std::find_if(errors.begin(), errors.end(), [&](double e) { return e <= enough; });
+    CHECK(follows(setting) == number(rows[static_cast<std::size_t>(first - errors.begin())], "value"));
+  }
+  // The bend: no other depth lies farther below the line from the first to the last.
+  const std::vector<Row> depths = only(sweep, "series", "penetration_depth_extremities");
+  const std::vector<double> cost = numbers(depths, "spheres"), error = numbers(depths, "core_f_mean_mm");
+  const auto [c0, c1] = std::minmax_element(cost.begin(), cost.end());
+  const auto [e0, e1] = std::minmax_element(error.begin(), error.end());
+  double best = 1e9, chosen = 1e9;
+  for (std::size_t i = 0; i < cost.size(); ++i) {
+    const double sum = (cost[i] - *c0) / (*c1 - *c0) + (error[i] - *e0) / (*e1 - *e0);
+    best = std::min(best, sum);
+    if (number(depths[i], "value") == follows("penetration_depth")) chosen = sum;
+  }
+  CHECK(chosen == best);
 }
