@@ -47,7 +47,7 @@ Verdict judge_adjustment(const Results& results) {
 
 // Of spheres split at the median eccentricity: where phi1' is better among the eccentric, phi2 among the round.
 struct Split {
-  std::size_t eccentric = 0, eccentric_right = 0, round = 0, round_right = 0;
+  std::size_t eccentric = 0, eccentric_right = 0, round = 0, round_right = 0, round_worse = 0;
   double correlation = 0;
 };
 
@@ -61,6 +61,7 @@ Split split_by_shape(const Table& spheres, const std::string& phi2) {
     ++(eccentric ? out.eccentric : out.round);
     if (eccentric && advantage[i] > 0) ++out.eccentric_right;
     if (!eccentric && advantage[i] < 0) ++out.round_right;
+    if (!eccentric && advantage[i] > 0) ++out.round_worse;
   }
   return out;
 }
@@ -73,12 +74,16 @@ Verdict judge_shape(const Results& results, const std::string& phi2) {
   const bool round = three_quarters(split.round_right, split.round);
   std::string finding = fmt::format(
       "phi1' is better at {} of the {} more eccentric spheres, phi2 at {} of the {} rounder ones; rank correlation of "
-      "eccentricity and phi1's lead {:.2f}. Mean |F| at the rays: phi1' {:.1f} mm, phi2 {:.1f} mm. The half-sections' "
+      "eccentricity and the lead of phi1' {:.2f}. Mean |F| at the rays: phi1' {:.1f} mm, phi2 {:.1f} mm. The "
+      "half-sections' "
       "eccentricity is {:.2f} to {:.2f}, the whole sections' {:.2f} to {:.2f}.",
       split.eccentric_right, split.eccentric, split.round_right, split.round, split.correlation,
       mean(t.numbers("rays_phi1_adjusted_mm")), mean(t.numbers(phi2)), least(t.numbers("eccentricity_half")),
       most(t.numbers("eccentricity_half")), least(t.numbers("eccentricity_section")),
       most(t.numbers("eccentricity_section")));
+  if (split.eccentric_right == split.eccentric && split.round_worse == split.round) {
+    finding += " So phi1' is better whatever the shape.";
+  }
   const Table& series = results.sweep.accuracy;
   if (!series.empty()) {
     const Split more = split_by_shape(series, phi2);
@@ -222,11 +227,11 @@ Verdict judge_pivots(const Results& results) {
        {std::pair(kPivotsPaper, "the paper's rule"), std::pair(kPivotsCalibrated, "calibrated")}) {
     const Table t = results.sweep.sweep.where("series", series);
     if (t.empty()) continue;
-    const std::vector<double> error = t.numbers("refit_center_p95_mm"), pivots = t.numbers("value");
+    const std::vector<double> error = t.numbers("refit_sphere_p95_mm"), pivots = t.numbers("value");
     const auto four = static_cast<std::size_t>(std::find(pivots.begin(), pivots.end(), 4.0) - pivots.begin());
     ++rules;
     if (four < error.size() && error.back() < 0.9 * error[four]) ++better;
-    finding += fmt::format("{}{}: 95th percentile of the centre's error", finding.empty() ? "" : " ", name);
+    finding += fmt::format("{}{}: 95th percentile of the refitted sphere's distance", finding.empty() ? "" : " ", name);
     for (std::size_t i = 0; i < error.size(); ++i) {
       finding += fmt::format("{} {:.1f} mm with {:g}", i > 0 ? "," : "", error[i], pivots[i]);
     }
@@ -352,7 +357,8 @@ Table judge_claims(const Results& results) {
       "0.9), for M1 and M2; in part: one of the two.",
       judge_animation(results));
   add("more_pivots", "sections 5.1 and 7", "More pivot polygons refit more accurately.",
-      "The 95th percentile of the centre's error with the most pivots is at least a tenth below that with four, for "
+      "The 95th percentile of the refitted sphere's distance (see the sweep) with the most pivots is at least a tenth "
+      "below that with four, for "
       "both "
       "refit rules; in part: for one.",
       judge_pivots(results));
@@ -404,8 +410,8 @@ Table derive_defaults(const Results& results) {
         }
         return best;
       });
-  add({"pivots", kPivotsCalibrated, 8, "refit_center_p95_mm", "mm",
-       "The fewest within a tenth of the least 95th percentile of the centre's error."},
+  add({"pivots", kPivotsCalibrated, 8, "refit_sphere_p95_mm", "mm",
+       "The fewest within a tenth of the least 95th percentile of the refitted sphere's distance."},
       cheapest);
   return out;
 }

@@ -165,16 +165,18 @@ Figure sphere_count_figure(const Results& results) {
 
 Figure sweep_figure(const Results& results, const std::string& setting, const std::string& axis,
                     const std::vector<SweepLine>& lines) {
-  Figure figure{"sweep_" + setting,
-                "Over " + axis +
-                    ": spheres; |F| over the torso's vertices; skin outside all spheres at the two radii; the refit's "
-                    "error against the sphere that fits the deformed skin best, frames of both animations.",
-                4,
-                250,
-                {}};
+  Figure figure{
+      "sweep_" + setting,
+      "Over " + axis +
+          ": spheres; |F| over the torso's vertices and over all that the paper covers (core); skin outside all "
+          "spheres at the two radii; distance (Hausdorff) of the refitted sphere from the one that fits the "
+          "deformed skin best, frames of both animations.",
+      4,
+      250,
+      {}};
   Panel spheres{"spheres", axis, "spheres", {}}, fit{"fit", axis, "|F| (mm)", {}};
   Panel uncovered{"skin outside the spheres", axis, "% of the area", {}};
-  Panel refit{"refit", axis, "centre's error (mm)", {}};
+  Panel refit{"refit", axis, "distance of spheres (mm)", {}};
   for (const SweepLine& line : lines) {
     const Table t = results.sweep.sweep.where("series", line.series);
     if (t.empty()) continue;
@@ -184,12 +186,13 @@ Figure sweep_figure(const Results& results, const std::string& setting, const st
                               t.numbers("value"), scaled(t.numbers(column), factor)});
     };
     add(spheres, "spheres", Colour::kGrey, "spheres", 1);
-    add(fit, "mean", Colour::kBlue, "torso_f_mean_mm", 1);
-    add(fit, "95th percentile", Colour::kVermilion, "torso_f_p95_mm", 1);
+    add(fit, "torso, mean", Colour::kBlue, "torso_f_mean_mm", 1);
+    add(fit, "torso, 95th percentile", Colour::kVermilion, "torso_f_p95_mm", 1);
+    add(fit, "core, mean", Colour::kOrange, "core_f_mean_mm", 1);
     add(uncovered, "fit radius", Colour::kGreen, "uncovered_body_fit", 100);
     add(uncovered, "detect radius", Colour::kPurple, "uncovered_body_detect", 100);
-    add(refit, "mean", Colour::kBlue, "refit_center_mean_mm", 1);
-    add(refit, "95th percentile", Colour::kVermilion, "refit_center_p95_mm", 1);
+    add(refit, "refit, mean", Colour::kBlue, "refit_sphere_mean_mm", 1);
+    add(refit, "refit, 95th percentile", Colour::kVermilion, "refit_sphere_p95_mm", 1);
   }
   figure.panels = {spheres, fit, uncovered, refit};
   const Table defaults = derive_defaults(results).where("setting", setting);

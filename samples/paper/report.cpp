@@ -103,7 +103,7 @@ std::vector<Section> sections(const Results& results) {
       "What each setting costs and brings",
       {"One setting at a time, the others at their defaults (profile balanced unless said otherwise). The share of "
        "skin "
-       "outside the detect radius is what detect_quantile leaves, about 40 %, whatever else is set. A level's place is "
+       "outside the detect radius is what detect_quantile leaves, less what neighbours cover. A level's place is "
        "found by bisection between two stops of the disk, so that delta only matters where it steps over one. One "
        "pivot is no sphere: its distance from itself is nothing."},
       {},
@@ -260,7 +260,7 @@ void write_docs(const std::filesystem::path& file, const Results& results) {
     for (const std::string& paragraph : section.text) page += paragraph + "\n\n";
     for (const Figure& figure : section.figures) {
       baker::write_atomically(folder / (figure.name + ".svg"), to_svg(figure));
-      page += fmt::format("![{0}]({1}/{2}.svg)\n\n{0}\n\n", figure.caption, folder.filename().string(), figure.name);
+      page += fmt::format("![{2}]({1}/{2}.svg)\n\n{0}\n\n", figure.caption, folder.filename().string(), figure.name);
     }
     for (const ShownTable& table : section.tables) page += markdown(table);
   }

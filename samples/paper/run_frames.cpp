@@ -103,9 +103,8 @@ class Runner {
 
 }  // namespace
 
-std::vector<FrameCost> run_frames(const std::vector<std::uint8_t>& asset, const std::vector<Animation>& animations,
-                                  int repetitions) {
-  Runner runner(asset);
+std::vector<std::vector<FrameCost>> run_frames(const std::vector<std::vector<std::uint8_t>>& assets,
+                                               const std::vector<Animation>& animations, int repetitions) {
   std::vector<FrameCost> frames;
   std::vector<std::vector<float>> positions;
   for (std::size_t a = 0; a < animations.size(); ++a) {
@@ -114,19 +113,26 @@ std::vector<FrameCost> run_frames(const std::vector<std::uint8_t>& asset, const 
       positions.push_back(baker::pack(animations[a].frames[f]));
     }
   }
-  std::vector<std::array<std::vector<double>, kMethods.size()>> times(frames.size());
+  using Times = std::array<std::vector<double>, kMethods.size()>;
+  std::vector<Runner> runners(assets.begin(), assets.end());
+  std::vector<std::vector<FrameCost>> out(assets.size(), frames);
+  std::vector<std::vector<Times>> times(assets.size(), std::vector<Times>(frames.size()));
   for (int repetition = 0; repetition < repetitions; ++repetition) {
-    for (std::size_t f = 0; f < frames.size(); ++f) {
-      for (std::size_t m = 0; m < kMethods.size(); ++m) {
-        frames[f].methods[m] = runner.run(m, positions[f]);
-        times[f][m].push_back(frames[f].methods[m].us);
+    for (std::size_t a = 0; a < assets.size(); ++a) {
+      for (std::size_t f = 0; f < frames.size(); ++f) {
+        for (std::size_t m = 0; m < kMethods.size(); ++m) {
+          out[a][f].methods[m] = runners[a].run(m, positions[f]);
+          times[a][f][m].push_back(out[a][f].methods[m].us);
+        }
       }
     }
   }
-  for (std::size_t f = 0; f < frames.size(); ++f) {
-    for (std::size_t m = 0; m < kMethods.size(); ++m) frames[f].methods[m].us = median(times[f][m]);
+  for (std::size_t a = 0; a < assets.size(); ++a) {
+    for (std::size_t f = 0; f < frames.size(); ++f) {
+      for (std::size_t m = 0; m < kMethods.size(); ++m) out[a][f].methods[m].us = median(times[a][f][m]);
+    }
   }
-  return frames;
+  return out;
 }
 
 }  // namespace spherechain::paper

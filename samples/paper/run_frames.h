@@ -23,9 +23,10 @@ struct FrameCost {
   std::array<Cost, kMethods.size()> methods;  // in the order of kMethods
 };
 
-// The running stage on every frame of every animation, on one core, at the paper's radius. In each repetition all
-// frames and methods take their turn, so that a disturbance of the machine meets all alike.
-std::vector<FrameCost> run_frames(const std::vector<std::uint8_t>& asset, const std::vector<Animation>& animations,
-                                  int repetitions);
+// The running stage on every frame of every animation, on one core, at the paper's radius: a list of frames an asset.
+// In each repetition all assets, frames and methods take their turn, so that a disturbance of the machine meets all
+// alike.
+std::vector<std::vector<FrameCost>> run_frames(const std::vector<std::vector<std::uint8_t>>& assets,
+                                               const std::vector<Animation>& animations, int repetitions);
 
 }  // namespace spherechain::paper
