@@ -287,7 +287,7 @@ Table compare_readings(const Results& results) {
             {}};
   for (const double spheres : {kSummedSpheres, kStatedSpheres}) {
     out.add({spheres == kSummedSpheres ? "the paper by its chains" : "the paper as stated",
-             0.3,
+             kStatedDepth,
              spheres,
              kChainCount * kStatedChain,
              kChainCount * kStatedChain * kStatedChain,
@@ -309,7 +309,7 @@ Table compare_readings(const Results& results) {
   };
   const auto at_default = [](const Table& t) {
     const std::vector<double> v = t.numbers("value");
-    const auto nearer = [](double a, double b) { return std::abs(a - 0.3) < std::abs(b - 0.3); };
+    const auto nearer = [](double a, double b) { return std::abs(a - kStatedDepth) < std::abs(b - kStatedDepth); };
     return static_cast<std::size_t>(std::min_element(v.begin(), v.end(), nearer) - v.begin());
   };
   const auto near_80 = [](const Table& t) { return nearest_count(t, kStatedSpheres); };
@@ -386,18 +386,19 @@ Table derive_defaults(const Results& results) {
     }
     out.add({rule.setting, rule.current, values[choose(t, values, errors)], rule.words, finding});
   };
+  const baker::BakeSettings current = baker::make_settings("balanced", "{}", "balanced");
   using Values = std::vector<double>;
   const auto cheapest = [](const Table&, const Values& values, const Values& errors) {
     return cheapest_within_tenth(values, errors);
   };
-  add({"penetration_depth", kDepthExtremities, 0.30, "core_f_mean_mm", "mm",
+  add({"penetration_depth", kDepthExtremities, current.fit.penetration_depth, "core_f_mean_mm", "mm",
        "Where mean |F| over what the paper covers bends most over the spheres: farthest from the line between the "
        "ends."},
       [](const Table& t, const Values&, const Values& errors) { return bend(t.numbers("spheres"), errors); });
-  add({"spheres_per_level", kPerLevel, 2, "torso_f_mean_mm", "mm",
+  add({"spheres_per_level", kPerLevel, static_cast<double>(current.fit.spheres_per_level), "torso_f_mean_mm", "mm",
        "The fewest within a tenth of the least mean |F| over the torso."},
       cheapest);
-  add({"delta", kDelta, 0.015, "spheres", "",
+  add({"delta", kDelta, current.fit.delta, "spheres", "",
        "The longest climb that places as many spheres as the shortest, mean |F| over the torso within a tenth of the "
        "least."},
       [](const Table& t, const Values& values, const Values& spheres) {
@@ -410,7 +411,7 @@ Table derive_defaults(const Results& results) {
         }
         return best;
       });
-  add({"pivots", kPivotsCalibrated, 8, "refit_sphere_p95_mm", "mm",
+  add({"pivots", kPivotsCalibrated, static_cast<double>(current.bind.pivots), "refit_sphere_p95_mm", "mm",
        "The fewest within a tenth of the least 95th percentile of the refitted sphere's distance."},
       cheapest);
   return out;

@@ -23,7 +23,8 @@ inline constexpr const char *kDepthPaper = "penetration_depth", *kDepthExtremiti
                             *kPivotsCalibrated = "pivots_calibrated";
 
 // The numbers of the paper that disagree (design.md): six chains of 23 are 138 entries.
-inline constexpr double kStatedSpheres = 80, kSummedSpheres = 46, kStatedChain = 23, kChainCount = 6;
+inline constexpr double kStatedSpheres = 80, kSummedSpheres = 46, kStatedChain = 23, kChainCount = 6,
+                        kStatedDepth = 0.3;
 
 inline constexpr const char *kHolds = "holds", *kInPart = "holds in part", *kFails = "does not hold",
                             *kNotRun = "not run";

@@ -118,7 +118,7 @@ Figure sphere_count_figure(const Results& results) {
       "sphere_count",
       "Over penetration depths: what M1 and M2 cost against the number of spheres, their ratio (above 1 M2 is "
       "ahead), and the share of the mesh's spheres that a chain holds (below 41 % M1 needs fewer tests of all "
-      "pairs). Diamonds: the paper's two readings.",
+      "pairs). Dashed: with head, hands and feet. Diamonds: the paper's two readings.",
       3,
       300,
       {}};
@@ -135,16 +135,15 @@ Figure sphere_count_figure(const Results& results) {
   for (const bool extremities : {false, true}) {
     const Table& t = extremities ? whole : core;
     if (t.empty()) continue;
-    const std::string suffix = extremities ? " with extremities" : "";
+    const auto label = [&](const char* name) { return extremities ? "" : name; };
     const std::vector<double> n = t.numbers("spheres");
     const Style style = extremities ? Style::kDashed : Style::kLineAndMarks;
-    cost.series.push_back({"M1" + suffix, Colour::kBlue, style, n, t.numbers("us_m1")});
-    cost.series.push_back({"M2" + suffix, Colour::kVermilion, style, n, t.numbers("us_m2")});
-    ratio.series.push_back({"tests, all pairs" + suffix, Colour::kGreen, style, n,
+    cost.series.push_back({label("M1"), Colour::kBlue, style, n, t.numbers("us_m1")});
+    cost.series.push_back({label("M2"), Colour::kVermilion, style, n, t.numbers("us_m2")});
+    ratio.series.push_back({label("tests, all pairs"), Colour::kGreen, style, n,
                             divided(t.numbers("full_tests_m1"), t.numbers("full_tests_m2"))});
-    ratio.series.push_back(
-        {"time" + suffix, Colour::kPurple, style, n, divided(t.numbers("us_m1"), t.numbers("us_m2"))});
-    share.series.push_back({"share" + suffix, Colour::kGrey, style, n, chain_share(t)});
+    ratio.series.push_back({label("time"), Colour::kPurple, style, n, divided(t.numbers("us_m1"), t.numbers("us_m2"))});
+    share.series.push_back({label("share"), Colour::kGrey, style, n, chain_share(t)});
   }
   const Series readings{"the paper: 46, 80",
                         Colour::kOrange,
@@ -182,8 +181,8 @@ Figure sweep_figure(const Results& results, const std::string& setting, const st
     if (t.empty()) continue;
     const auto add = [&](Panel& panel, const std::string& label, Colour colour, const std::string& column,
                          double factor) {
-      panel.series.push_back({label + (line.label.empty() ? "" : ", " + line.label), colour, line.style,
-                              t.numbers("value"), scaled(t.numbers(column), factor)});
+      panel.series.push_back({&line == &lines.back() ? label : "", colour, line.style, t.numbers("value"),
+                              scaled(t.numbers(column), factor)});
     };
     add(spheres, "spheres", Colour::kGrey, "spheres", 1);
     add(fit, "torso, mean", Colour::kBlue, "torso_f_mean_mm", 1);
@@ -194,6 +193,7 @@ Figure sweep_figure(const Results& results, const std::string& setting, const st
     add(refit, "refit, mean", Colour::kBlue, "refit_sphere_mean_mm", 1);
     add(refit, "refit, 95th percentile", Colour::kVermilion, "refit_sphere_p95_mm", 1);
   }
+  if (lines.size() > 1) figure.caption += fmt::format(" Dashed: {}; solid: {}.", lines[0].label, lines[1].label);
   figure.panels = {spheres, fit, uncovered, refit};
   const Table defaults = derive_defaults(results).where("setting", setting);
   if (!defaults.empty()) {

@@ -12,7 +12,7 @@ Figure accuracy_figure(const Results& results);      // Figure 13
 Figure shape_figure(const Results& results);         // its claim
 Figure running_time_figure(const Results& results);  // Figure 15
 Figure sphere_count_figure(const Results& results);  // 46 or 80
-// What a setting brings, a line a series.
+// What a setting brings, a line a series; the last one names the colours.
 struct SweepLine {
   std::string series, label;
   Style style;

@@ -118,10 +118,11 @@ std::vector<Section> sections(const Results& results) {
   };
   constexpr Style kMain = Style::kLineAndMarks, kOther = Style::kDashed;
   add_sweep("penetration_depth", "penetration depth PD",
-            {{kDepthPaper, "paper", kOther}, {kDepthExtremities, "balanced", kMain}});
+            {{kDepthPaper, "profile paper", kOther}, {kDepthExtremities, "profile balanced", kMain}});
   add_sweep("spheres_per_level", "spheres a level N_s", {{kPerLevel, "", kMain}});
   add_sweep("delta", "delta (of the height)", {{kDelta, "", kMain}});
-  add_sweep("pivots", "pivots", {{kPivotsPaper, "paper's rule", kOther}, {kPivotsCalibrated, "calibrated", kMain}});
+  add_sweep("pivots", "pivots",
+            {{kPivotsPaper, "the paper's refit", kOther}, {kPivotsCalibrated, "calibrated refit", kMain}});
   out.push_back(std::move(sweep));
   out.push_back(
       {"Sphere sets by the field's measures",
