@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "import/source_rig.h"
+
+namespace spherechain::baker {
+
+enum class BodyKind { kUnknown, kBiped, kQuadruped, kOther };
+const char* body_kind_name(BodyKind kind);
+
+// What a node of a rig is on the body.
+//
+// Roles, as the automatic rig calls its joints: pelvis, spine, chest, neck, head, and with left_ or right_ before them
+// clavicle, shoulder (of the upper arm), elbow, wrist, finger, hip (of the thigh), knee, ankle, toe. A body has one
+// node for each but spine, neck, finger and toe. A quadruped's forelegs are arms in this, its hind legs legs.
+// Further: tail_1 ..., limb (a joint of a limb that is neither arm nor leg), twist (part of a limb, follows its
+// joints), eye, jaw, hair, head_part, attachment, control (moves other nodes, not the skin), root, other.
+struct NodeRole {
+  std::string role;
+  int limb = -1;       // index in Roles::limbs; -1 trunk or head, clavicles too
+  std::string reason;  // how it was decided, in words
+};
+
+struct RoleLimb {
+  std::string name;  // left_arm, right_leg; left_foreleg, right_hindleg; left_leg_1 ... from the front; neck; tail
+  bool left, top;    // top: hangs on the chest, or in front
+  std::vector<int> nodes;  // from the first joint of the limb proper (upper arm, thigh) to the tip, one way
+  int extremity = -1;      // which of `nodes` is wrist or ankle; -1 none
+  int girdle = -1;         // the node that joins it to the trunk (clavicle); -1 none
+};
+
+struct Roles {
+  BodyKind kind = BodyKind::kUnknown;
+  std::vector<NodeRole> of_node;
+  std::vector<RoleLimb> limbs;  // left before right, top before bottom; then neck and tail where they are long
+  std::vector<int> trunk;       // pelvis to chest
+  std::vector<int> neck_head;   // from the chest to the head
+};
+
+// Roles that a person gave by hand, node name -> role. They go before names and shape.
+struct RoleFile {
+  std::string file;  // for messages
+  std::map<std::string, std::string> role_of;
+};
+
+// Reads a JSON object. Throws Error(kFile) where it is none or has a role that is none.
+RoleFile parse_role_file(const std::string& json, const std::string& file);
+
+// The roles of a rig's nodes. `positions`: the rest pose of the vertices that rig.weights belong to; empty without
+// skin. The result does not depend on the order of the nodes, nor on place, size and orientation.
+// Throws Error(kFile) where the role file has a name that no node has.
+Roles find_roles(const SourceRig& rig, const std::vector<Vec3>& positions, const RoleFile& file = {});
+
+// Where each node is in the rest pose: by its inverse bind matrix, else by its place under its parent.
+std::vector<Vec3> rest_positions(const SourceRig& rig);
+
+}  // namespace spherechain::baker

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "roles/skeleton.h"
+
+#include <algorithm>
+
+#include "roles/roles.h"
+
+namespace spherechain::baker {
+
+int Skeleton::common_ancestor(int a, int b) const {
+  while (a != b && a >= 0 && b >= 0) (depth[a] >= depth[b] ? a : b) = parent[depth[a] >= depth[b] ? a : b];
+  return a == b ? a : -1;
+}
+
+std::vector<int> Skeleton::path(int from, int to) const {
+  const int top = common_ancestor(from, to);
+  std::vector<int> nodes, down;
+  for (int n = from; n != top; n = parent[n]) nodes.push_back(n);
+  if (top >= 0) nodes.push_back(top);
+  for (int n = to; n != top; n = parent[n]) down.push_back(n);
+  nodes.insert(nodes.end(), down.rbegin(), down.rend());
+  return nodes;
+}
+
+double Skeleton::bone(int node) const {
+  return parent[node] < 0 ? 0 : (position[node] - position[parent[node]]).norm();
+}
+
+double Skeleton::length(const std::vector<int>& path) const {
+  double sum = 0;
+  for (std::size_t i = 1; i < path.size(); ++i) sum += (position[path[i]] - position[path[i - 1]]).norm();
+  return sum;
+}
+
+std::vector<Vec3> rest_positions(const SourceRig& rig) {
+  std::vector<Affine> world(rig.nodes.size());
+  std::vector<const Bone*> bone_of(rig.nodes.size(), nullptr);
+  for (const Bone& bone : rig.bones) {
+    if (bone_of[bone.node] == nullptr && std::abs(bone.inverse_bind.linear().determinant()) > 0) {
+      bone_of[bone.node] = &bone;
+    }
+  }
+  std::vector<Vec3> positions;
+  for (std::size_t n = 0; n < rig.nodes.size(); ++n) {
+    const Node& node = rig.nodes[n];
+    if (bone_of[n] != nullptr)
+      world[n] = bone_of[n]->inverse_bind.inverse();
+    else
+      world[n] = (node.parent < 0 ? rig.to_rest : world[node.parent]) * node.local;
+    positions.push_back(world[n].translation());
+  }
+  return positions;
+}
+
+Skeleton make_skeleton(const SourceRig& rig, const std::vector<Vec3>& positions) {
+  Skeleton s;
+  const std::size_t n = rig.nodes.size();
+  s.children.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    s.names.push_back(rig.nodes[i].name);
+    s.parent.push_back(rig.nodes[i].parent);
+    s.depth.push_back(s.parent[i] < 0 ? 0 : s.depth[s.parent[i]] + 1);
+    if (s.parent[i] >= 0) s.children[s.parent[i]].push_back(static_cast<int>(i));
+  }
+  s.position = rest_positions(rig);
+  s.weight.assign(n, 0);
+  s.skin.assign(n, Vec3::Zero());
+  for (std::size_t v = 0; v < std::min(rig.weights.size(), positions.size()); ++v) {
+    for (std::size_t k = 0; k < kMaxInfluences; ++k) {
+      const double w = rig.weights[v].weight[k];
+      if (w <= 0) continue;
+      const Index node = rig.bones[rig.weights[v].joint[k]].node;
+      s.weight[node] += w;
+      s.skin[node] += w * positions[v];
+    }
+  }
+  const bool skinned = std::any_of(s.weight.begin(), s.weight.end(), [](double w) { return w > 0; });
+  s.alive.assign(n, !skinned && rig.bones.empty());
+  for (const Bone& bone : rig.bones) s.alive[bone.node] = s.alive[bone.node] || !skinned;
+  s.reach.assign(n, 0);
+  s.tip = s.position;
+  for (std::size_t i = n; i-- > 0;) {  // children come after their parents
+    if (s.weight[i] > 0) {
+      s.skin[i] /= s.weight[i];
+      s.alive[i] = true;
+    } else {
+      s.skin[i] = s.position[i];
+    }
+    const int parent = s.parent[i];
+    if (parent < 0 || !s.alive[i]) continue;
+    s.alive[parent] = true;
+    const double reach = s.reach[i] + s.bone(static_cast<int>(i));
+    if (reach > s.reach[parent]) {
+      s.reach[parent] = reach;
+      s.tip[parent] = s.tip[i];
+    }
+  }
+  Vec3 mean = Vec3::Zero();
+  double alive = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!s.alive[i]) continue;
+    mean += s.position[i];
+    ++alive;
+  }
+  for (std::size_t i = 0; i < n && alive > 0; ++i) {
+    if (s.alive[i]) s.size = std::max(s.size, (s.position[i] - mean / alive).norm());
+  }
+  return s;
+}
+
+}  // namespace spherechain::baker
