@@ -154,7 +154,7 @@ struct RoleWriter {
         if (top < 0 || s.reach[child] + s.bone(child) > s.reach[top] + s.bone(top)) top = child;
       }
     }
-    if (top < 0) return;
+    if (top < 0 || !roles.of_node[top].role.empty()) return;
     const std::vector<int> nodes = main_path(s, hints, top, Family::kNone);
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       set(nodes[i], "tail_" + std::to_string(i + 1), -1,
