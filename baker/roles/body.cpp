@@ -137,7 +137,9 @@ struct BodyFinder : Body {
       const auto best_child = [&](int parent) {
         int best = -1;
         const auto key = [&](int n) {
-          return std::tuple(hints[n].word == Word::kNeck, s.reach[n] + s.bone(n), s.weight[n], s.names[n]);
+          // Where all hangs on one body, the longer way is an abdomen or a tail.
+          const double way = s.reach[n] + s.bone(n);
+          return std::tuple(hints[n].word == Word::kNeck, parent == pelvis ? -way : way, s.weight[n], s.names[n]);
         };
         for (const int child : s.children[parent]) {
           if (leads_up(child) && (best < 0 || key(child) > key(best))) best = child;
@@ -160,8 +162,7 @@ struct BodyFinder : Body {
             ? Vec3(mean(upper, [&](int i) { return start(i); }) - mean(lower, [&](int i) { return start(i); }))
             : spine;
     kind = paths.empty() && trunk.empty() ? BodyKind::kUnknown : BodyKind::kOther;
-    bool four_legs = !upper.empty() && paths[upper[0]].family == Family::kLeg;
-    for (const LimbPath& path : paths) four_legs = four_legs || path.place != Place::kNone;
+    const bool four_legs = !upper.empty() && paths[upper[0]].family == Family::kLeg;
     if (upper.size() == 2 && lower.size() == 2) {
       const bool upright = !four_legs && -legs.dot(ahead) > kUpright * legs.norm() * ahead.norm();
       const Vec3 down = legs.normalized();

@@ -71,6 +71,10 @@ std::vector<bool> skinned_nodes(const NamedRig& rig) {
   return skinned;
 }
 
+constexpr double kScale = 37;
+const Vec3 kShift(5, -3, 11);
+Eigen::Matrix3d turn() { return Eigen::AngleAxisd(1.1, Vec3(0.3, -0.5, 0.8).normalized()).toRotationMatrix(); }
+
 }  // namespace
 
 NamedRig named_rig(const std::string& tree, Body body) {
@@ -111,18 +115,18 @@ NamedRig named_rig(const std::string& tree, Body body) {
   return build(names, parents, where, skinned, expected);
 }
 
+Vec3 moved(const Vec3& position) { return kScale * (turn() * position) + kShift; }
+
 NamedRig moved(const NamedRig& rig) {
-  const Eigen::Matrix3d turn = (Eigen::AngleAxisd(1.1, Vec3(0.3, -0.5, 0.8).normalized())).toRotationMatrix();
   NamedRig out = rig;
-  const auto move = [&](const Vec3& p) { return Vec3(37.0 * (turn * p) + Vec3(5, -3, 11)); };
-  for (Vec3& p : out.positions) p = move(p);
+  for (Vec3& p : out.positions) p = moved(p);
   for (Bone& bone : out.rig.bones) {
-    const Vec3 at = move(bone.inverse_bind.inverse().translation());
+    const Vec3 at = moved(Vec3(bone.inverse_bind.inverse().translation()));
     bone.inverse_bind = Affine::Identity();
     bone.inverse_bind.translation() = -at;
   }
-  out.rig.to_rest.linear() = 37.0 * turn;
-  out.rig.to_rest.translation() = Vec3(5, -3, 11);
+  out.rig.to_rest.linear() = kScale * turn();
+  out.rig.to_rest.translation() = kShift;
   return out;
 }
 

@@ -22,6 +22,7 @@ NamedRig named_rig(const std::string& tree, Body body = Body::kHuman);
 
 // The same rig in another place, size and orientation.
 NamedRig moved(const NamedRig& rig);
+spherechain::baker::Vec3 moved(const spherechain::baker::Vec3& position);
 // The same rig with its nodes in another order (parents still first).
 NamedRig shuffled(const NamedRig& rig, unsigned seed);
 // The same rig, its nodes called joint_0, joint_1 ...

@@ -19,6 +19,7 @@ void check_roles(const NamedRig& rig, BodyKind kind = BodyKind::kBiped) {
   for (std::size_t n = 0; n < rig.expected.size(); ++n) {
     CAPTURE(rig.rig.nodes[n].name);
     CHECK_FALSE(roles.of_node[n].reason.empty());
+    CHECK(roles.of_node[n].reason.find("the rig's shape") == std::string::npos);
     CHECK(roles.of_node[n].role == rig.expected[n]);
   }
 }
@@ -88,6 +89,40 @@ mixamorig:Hips = pelvis
           mixamorig:RightToe_End = !right_toe
 )";
 
+const char* const kCapture = R"(
+Hips = !pelvis
+  LHipJoint = !other
+    LeftUpLeg = !left_hip
+      LeftLeg = !left_knee
+        LeftFoot = !left_ankle
+          LeftToeBase = !left_toe
+  RHipJoint = !other
+    RightUpLeg = !right_hip
+      RightLeg = !right_knee
+        RightFoot = !right_ankle
+          RightToeBase = !right_toe
+  LowerBack = !spine
+    Spine = !spine
+      Spine1 = !chest
+        Neck = !neck
+          Neck1 = !neck
+            Head = !head
+        LeftShoulder = !left_clavicle
+          LeftArm = !left_shoulder
+            LeftForeArm = !left_elbow
+              LeftHand = !left_wrist
+                LeftFingerBase = !left_finger
+                  LFingers = !left_finger
+                LThumb = !left_finger
+        RightShoulder = !right_clavicle
+          RightArm = !right_shoulder
+            RightForeArm = !right_elbow
+              RightHand = !right_wrist
+                RightFingerBase = !right_finger
+                  RFingers = !right_finger
+                RThumb = !right_finger
+)";
+
 const char* const kFox = R"(
 root = !root
   b_Hip_01 = pelvis
@@ -142,6 +177,14 @@ TEST_CASE("roles of a Mixamo rig whose exporter dropped the colon") {
   check_roles(named_rig(tree));
 }
 
+TEST_CASE("a namespace is no part of a name") {
+  std::string tree = kMixamo;
+  for (std::size_t at = tree.find("mixamorig:"); at != std::string::npos; at = tree.find("mixamorig:")) {
+    tree.replace(at, 9, "RightHandRig");
+  }
+  check_roles(named_rig(tree));
+}
+
 TEST_CASE("roles of a VRM rig: coat and sleeves named after limbs are none") {
   check_roles(named_rig(R"(
 Root = !root
@@ -171,6 +214,7 @@ Root = !root
                   J_Bip_R_Middle1 = right_finger
     J_Sec_L_SkirtFront0_01_UpperLeg = other
       J_Sec_L_SkirtFront1_01_UpperLeg = other
+    Skirt_L_UpperLeg = other
     J_Bip_L_UpperLeg = left_hip
       J_Bip_L_LowerLeg = left_knee
         J_Bip_L_Foot = left_ankle
@@ -183,7 +227,7 @@ Root = !root
 }
 
 TEST_CASE("roles of the MakeHuman default rig: doubled bones, a shoulder after the clavicle") {
-  check_roles(named_rig(R"(
+  const NamedRig rig = named_rig(R"(
 root = pelvis
   spine05 = spine
     spine04 = spine
@@ -239,43 +283,15 @@ root = pelvis
             foot.R = right_ankle
               toe1-1.R = right_toe
                 toe1-2.R = right_toe
-)"));
+)");
+  check_roles(rig);
+  const Roles roles = roles_of(rig);
+  CHECK(rig.rig.nodes[limb(roles, "left_leg").girdle].name == "pelvis.L");
+  CHECK(rig.rig.nodes[limb(roles, "left_arm").girdle].name == "clavicle.L");
 }
 
 TEST_CASE("roles of a CMU capture: hip joints are no thighs") {
-  const NamedRig rig = named_rig(R"(
-Hips = !pelvis
-  LHipJoint = !other
-    LeftUpLeg = !left_hip
-      LeftLeg = !left_knee
-        LeftFoot = !left_ankle
-          LeftToeBase = !left_toe
-  RHipJoint = !other
-    RightUpLeg = !right_hip
-      RightLeg = !right_knee
-        RightFoot = !right_ankle
-          RightToeBase = !right_toe
-  LowerBack = !spine
-    Spine = !spine
-      Spine1 = !chest
-        Neck = !neck
-          Neck1 = !neck
-            Head = !head
-        LeftShoulder = !left_clavicle
-          LeftArm = !left_shoulder
-            LeftForeArm = !left_elbow
-              LeftHand = !left_wrist
-                LeftFingerBase = !left_finger
-                  LFingers = !left_finger
-                LThumb = !left_finger
-        RightShoulder = !right_clavicle
-          RightArm = !right_shoulder
-            RightForeArm = !right_elbow
-              RightHand = !right_wrist
-                RightFingerBase = !right_finger
-                  RFingers = !right_finger
-                RThumb = !right_finger
-)");
+  const NamedRig rig = named_rig(kCapture);
   check_roles(rig);
   const Roles roles = roles_of(rig);
   CHECK(rig.rig.nodes[limb(roles, "left_leg").girdle].name == "LHipJoint");
@@ -608,13 +624,13 @@ Rig = !root
             lowerarm.l = left_elbow
               wrist.l = left_wrist
                 hand.l = left_finger
-                  handslot.l = !attachment
+                  handslot.l = attachment
                     1H_Axe = !other
           upperarm.r = right_shoulder
             lowerarm.r = right_elbow
               wrist.r = right_wrist
                 hand.r = right_finger
-                  handslot.r = !attachment
+                  handslot.r = attachment
           head = head
             Barbarian_Hat = !other
       upperleg.l = left_hip
@@ -735,7 +751,6 @@ namespace {
 
 // Six or more legs on one body, and a head.
 NamedRig insect(int pairs, bool named) {
-  SourceRig rig;
   NamedRig out;
   const auto add = [&](const std::string& name, int parent, const Vec3& at) {
     Node node;
@@ -751,6 +766,7 @@ NamedRig insect(int pairs, bool named) {
     weights.weight[0] = 1;
     out.rig.weights.push_back(weights);
     out.positions.push_back(at);
+    out.expected.emplace_back();
     return static_cast<int>(index);
   };
   const int body = add("Body", -1, {0, 1, 0});
@@ -794,7 +810,9 @@ TEST_CASE("six legs without names are found by the plane of symmetry") {
   const NamedRig rig = insect(3, false);
   const Roles roles = roles_of(rig);
   CHECK(roles.kind == BodyKind::kOther);
-  REQUIRE(roles.limbs.size() == 7);  // and the abdomen
+  REQUIRE(roles.limbs.size() == 7);
+  CHECK(roles.limbs[6].name == "tail");  // the abdomen
+  CHECK(roles.of_node[1].role == "head");
   const std::vector<Vec3> where = rest_positions(rig.rig);
   for (std::size_t i = 0; i < 6; ++i) {
     const RoleLimb& leg = roles.limbs[i];
@@ -818,6 +836,36 @@ TEST_CASE("without names, shape gives a human and a fox the roles their names gi
     }
     CHECK(unnamed.trunk.front() == named.trunk.front());
     CHECK(unnamed.neck_head.back() == named.neck_head.back());
+  }
+}
+
+TEST_CASE("arms and legs are told apart whichever of them the rig's root is nearer to") {
+  const NamedRig rig = nameless(named_rig(R"(
+Chest = chest
+  Neck = neck
+    Head = head
+  L_Arm1 = left_shoulder
+    L_Arm2 = left_elbow
+      L_Arm3 = left_wrist
+  R_Arm1 = right_shoulder
+    R_Arm2 = right_elbow
+      R_Arm3 = right_wrist
+  Spine = spine
+    Pelvis = pelvis
+      L_Leg1 = left_hip
+        L_Leg2 = left_knee
+          L_Leg3 = left_ankle
+            L_Leg4 = left_toe
+      R_Leg1 = right_hip
+        R_Leg2 = right_knee
+          R_Leg3 = right_ankle
+            R_Leg4 = right_toe
+)"));
+  const Roles roles = roles_of(rig);
+  CHECK(roles.kind == BodyKind::kBiped);
+  for (std::size_t n = 0; n < rig.expected.size(); ++n) {
+    CAPTURE(n);
+    CHECK(roles.of_node[n].role == rig.expected[n]);
   }
 }
 
@@ -860,7 +908,8 @@ TEST_CASE("rigs that are hardly one have no roles, and no rig has none at all") 
   // A bone whose matrix cannot be inverted falls back on its node.
   NamedRig flat = named_rig(kMixamo);
   flat.rig.bones[3].inverse_bind.linear().setZero();
-  CHECK(roles_of(flat).kind == BodyKind::kBiped);
+  check_roles(flat);
+  for (const Vec3& position : rest_positions(flat.rig)) CHECK(position.allFinite());
 }
 
 TEST_CASE("roles do not depend on place, size, orientation and order") {
@@ -870,6 +919,14 @@ TEST_CASE("roles do not depend on place, size, orientation and order") {
       CHECK(summary(moved(rig)) == expected);
       for (const unsigned seed : {1U, 2U, 3U}) CHECK(summary(shuffled(rig, seed)) == expected);
     }
+  }
+  const NamedRig capture = named_rig(kCapture);
+  CHECK(summary(moved(capture)) == summary(capture));
+  CHECK(rest_positions(moved(capture).rig)[0].isApprox(moved(rest_positions(capture.rig)[0]), 1e-9));
+  for (const bool named : {true, false}) {
+    const NamedRig six_legs = insect(3, named);
+    CHECK(summary(moved(six_legs)) == summary(six_legs));
+    for (const unsigned seed : {1U, 2U, 3U}) CHECK(summary(shuffled(six_legs, seed)) == summary(six_legs));
   }
 }
 
