@@ -209,8 +209,8 @@ struct BodyFinder : Body {
     for (std::size_t i = 0; i < paths.size(); ++i) {
       const int limb = static_cast<int>(i);
       const double off = (0.5 * (start(limb) + s.tip[paths[i].nodes.front()]) - middle).dot(left());
-      const Side side = off >= 0 ? Side::kLeft : Side::kRight;
-      if (paths[i].side == Side::kNone) {
+      const NamedSide side = off >= 0 ? NamedSide::kLeft : NamedSide::kRight;
+      if (paths[i].side == NamedSide::kNone) {
         paths[i].side = side;
         side_notes[i] = facing.empty() ? "; side guessed, nothing tells front from back (a role file can)"
                                        : "; side by where it is, forward because " + facing;
@@ -223,7 +223,7 @@ struct BodyFinder : Body {
   // A group's limbs from the front, left before right.
   std::vector<int> in_order(const std::vector<int>& group) const {
     std::array<std::vector<int>, 2> sides;
-    for (const int limb : group) sides[paths[limb].side == Side::kRight].push_back(limb);
+    for (const int limb : group) sides[paths[limb].side == NamedSide::kRight].push_back(limb);
     std::vector<int> order;
     for (auto& side : sides) {
       const auto key = [&](int limb) {
@@ -279,7 +279,7 @@ int find_in_middle(const Skeleton& s, const std::vector<Hint>& hints, const std:
   int best = -1;
   const auto key = [&](int n) { return std::tuple(hints[n].given, -s.depth[n], s.weight[n], s.names[n]); };
   for (int n = 0; n < s.count(); ++n) {
-    if (!s.alive[n] || hints[n].word != word || hints[n].side != Side::kNone || path_of[n] >= 0) continue;
+    if (!s.alive[n] || hints[n].word != word || hints[n].side != NamedSide::kNone || path_of[n] >= 0) continue;
     if (best < 0 || key(n) > key(best)) best = n;
   }
   return best;

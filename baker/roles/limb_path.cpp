@@ -144,7 +144,7 @@ std::vector<int> find_tops(const Skeleton& s, const std::vector<Hint>& hints) {
     return s.alive[n] && family_of(hints[n].word) != Family::kNone && rank_of(hints[n].word) < kDigit;
   };
   // Which families and sides there are above and below: bit 3 * family + side.
-  const auto bit = [&](Family family, Side side) {
+  const auto bit = [&](Family family, NamedSide side) {
     return 1U << (3 * static_cast<int>(family) + static_cast<int>(side));
   };
   const auto own = [&](int n) { return starts(n) ? bit(family_of(hints[n].word), hints[n].side) : 0U; };
@@ -152,19 +152,19 @@ std::vector<int> find_tops(const Skeleton& s, const std::vector<Hint>& hints) {
   for (int n = s.count(); n-- > 0;) {
     if (const int parent = s.parent[n]; parent >= 0) below[parent] |= below[n] | own(n);
   }
-  const unsigned left_or_right = bit(Family::kArm, Side::kLeft) | bit(Family::kArm, Side::kRight) |
-                                 bit(Family::kLeg, Side::kLeft) | bit(Family::kLeg, Side::kRight);
+  const unsigned left_or_right = bit(Family::kArm, NamedSide::kLeft) | bit(Family::kArm, NamedSide::kRight) |
+                                 bit(Family::kLeg, NamedSide::kLeft) | bit(Family::kLeg, NamedSide::kRight);
   std::vector<int> tops;
   for (int n = 0; n < s.count(); ++n) {
     if (const int parent = s.parent[n]; parent >= 0) {
       // A node in the middle above limbs with sides is of the trunk, whatever its name.
-      const bool of_trunk = hints[parent].side == Side::kNone && (below[parent] & left_or_right) != 0;
+      const bool of_trunk = hints[parent].side == NamedSide::kNone && (below[parent] & left_or_right) != 0;
       above[n] = above[parent] | (of_trunk ? 0U : own(parent));
     }
-    if (!starts(n) || (hints[n].side == Side::kNone && (below[n] & left_or_right) != 0)) continue;
+    if (!starts(n) || (hints[n].side == NamedSide::kNone && (below[n] & left_or_right) != 0)) continue;
     const Family family = family_of(hints[n].word);
-    unsigned same = bit(family, hints[n].side) | bit(family, Side::kNone);
-    if (hints[n].side == Side::kNone) same |= bit(family, Side::kLeft) | bit(family, Side::kRight);
+    unsigned same = bit(family, hints[n].side) | bit(family, NamedSide::kNone);
+    if (hints[n].side == NamedSide::kNone) same |= bit(family, NamedSide::kLeft) | bit(family, NamedSide::kRight);
     if ((above[n] & same) == 0) tops.push_back(n);
   }
   if (tops.size() > kMostLimbs) return {};

@@ -14,7 +14,7 @@ enum Rank { kGirdle, kUpper, kLower, kExtremity, kDigit };
 // A limb as the hints tell: its joints from the trunk to the tip of its longest digit.
 struct LimbPath {
   Family family;
-  Side side;
+  NamedSide side;
   Place place;
   std::vector<int> roots;  // where it leaves the trunk; more than one where an exporter tore the chain apart
   std::vector<int> nodes;

@@ -241,10 +241,10 @@ std::vector<std::string> split(std::string_view name) {
   return tokens;
 }
 
-Side side_of(std::string_view token) {
-  if (token == "l" || token == "left" || token == "lf" || token == "lft") return Side::kLeft;
-  if (token == "r" || token == "right" || token == "rt" || token == "rgt") return Side::kRight;
-  return Side::kNone;
+NamedSide side_of(std::string_view token) {
+  if (token == "l" || token == "left" || token == "lf" || token == "lft") return NamedSide::kLeft;
+  if (token == "r" || token == "right" || token == "rt" || token == "rgt") return NamedSide::kRight;
+  return NamedSide::kNone;
 }
 
 Place place_of(std::string_view token) {
@@ -254,7 +254,7 @@ Place place_of(std::string_view token) {
 }
 
 // "leftarm", "rfoot", "armleft": the side is taken off where a word of a limb remains.
-void split_off_side(std::string& token, Side& side) {
+void split_off_side(std::string& token, NamedSide& side) {
   if (lexicon().contains(token)) return;
   const auto is_limb = [](std::string_view rest) {
     const auto found = lexicon().find(rest);
@@ -287,7 +287,7 @@ Hint read_name(const std::string& name) {
   std::vector<std::string> words;
   std::string_view said;
   for (std::string& token : split(name)) {
-    if (const Side side = side_of(token); side != Side::kNone) {
+    if (const NamedSide side = side_of(token); side != NamedSide::kNone) {
       hint.side = side;
       continue;
     }
@@ -310,8 +310,8 @@ Hint read_name(const std::string& name) {
       break;
     }
   }
-  if (hint.word == Word::kHip && hint.side == Side::kNone) hint.word = Word::kPelvis;
-  if (hint.word == Word::kPelvis && hint.side != Side::kNone) hint.word = Word::kHipGirdle;
+  if (hint.word == Word::kHip && hint.side == NamedSide::kNone) hint.word = Word::kPelvis;
+  if (hint.word == Word::kPelvis && hint.side != NamedSide::kNone) hint.word = Word::kHipGirdle;
   if (family_of(hint.word) != Family::kLeg) hint.place = Place::kNone;
   if (hint.word != Word::kNone) hint.reason = fmt::format("its name says {}", said);
   return hint;
@@ -338,12 +338,12 @@ Hint hint_of_role(const std::string& role) {
                                                                 {"attachment", Word::kAttachment}};
   Hint hint;
   std::string_view word = role;
-  for (const auto& [prefix, side] : {std::pair{"left_", Side::kLeft}, std::pair{"right_", Side::kRight}}) {
+  for (const auto& [prefix, side] : {std::pair{"left_", NamedSide::kLeft}, std::pair{"right_", NamedSide::kRight}}) {
     if (!word.starts_with(prefix)) continue;
     word.remove_prefix(std::string_view(prefix).size());
     hint.side = side;
   }
-  const auto& words = hint.side == Side::kNone ? plain : sided;
+  const auto& words = hint.side == NamedSide::kNone ? plain : sided;
   if (const auto found = words.find(word); found != words.end()) {
     hint.word = found->second;
     hint.given = true;

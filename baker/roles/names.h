@@ -5,7 +5,7 @@
 
 namespace spherechain::baker {
 
-enum class Side { kNone, kLeft, kRight };
+enum class NamedSide { kNone, kLeft, kRight };
 
 // What a name speaks of. Where rigs disagree about a word it stays open until the chain of joints is known: a shoulder
 // is a clavicle or an upper arm, an arm an upper or a fore arm, a hip a pelvis or a thigh, a leg a thigh or a shin.
@@ -45,7 +45,7 @@ enum class Place { kNone, kFront, kHind };
 
 struct Hint {
   Word word = Word::kNone;
-  Side side = Side::kNone;
+  NamedSide side = NamedSide::kNone;
   Place place = Place::kNone;
   bool twist = false;
   bool given = false;  // by a role file

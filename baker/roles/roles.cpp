@@ -55,7 +55,7 @@ struct RoleWriter {
   void add_limbs(const std::vector<int>& order, bool top) {
     for (std::size_t k = 0; k < order.size(); ++k) {
       const LimbPath& path = body.paths[order[k]];
-      const bool is_left = path.side == Side::kLeft;
+      const bool is_left = path.side == NamedSide::kLeft;
       const bool arm = path.family == Family::kArm || (top && roles.kind == BodyKind::kQuadruped);
       std::string kind = arm ? "arm" : "leg";
       if (roles.kind == BodyKind::kQuadruped) kind = top ? "foreleg" : "hindleg";

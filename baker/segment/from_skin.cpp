@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "segment/from_skin.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "mesh/ring.h"
+#include "mesh/surface_query.h"
+
+namespace spherechain::baker {
+namespace {
+
+constexpr std::uint8_t kNoLimb = SkinRegions::kNoLimb;
+constexpr std::uint8_t kUnknown = 254;  // nothing moves it
+
+constexpr int kRays = 40;
+constexpr double kStep = 0.005;    // of the limb's length
+constexpr double kWindow = 0.02;   // either side, for its direction
+constexpr double kOwnRays = 0.95;  // share of a ring's rays that meet the limb's own skin where it stands free
+constexpr double kStartsBy = 0.5;  // of the limb's length: one that stands free nowhere before is cut at its joint
+
+// Limb of each bone of the rig.
+std::vector<std::uint8_t> limb_of_bone(const SourceRig& rig, const Roles& roles) {
+  std::vector<std::uint8_t> limbs;
+  for (const Bone& bone : rig.bones) {
+    const int limb = roles.of_node[bone.node].limb;
+    limbs.push_back(limb < 0 ? kNoLimb : static_cast<std::uint8_t>(limb));
+  }
+  return limbs;
+}
+
+// For each vertex of a welded mesh a source vertex whose weights it has.
+std::vector<Index> weighted_source(const SourceRig& rig, const std::vector<Index>& of_source, std::size_t vertices) {
+  std::vector<Index> source(vertices, kNoIndex);
+  for (Index v = 0; v < of_source.size(); ++v) {
+    if (of_source[v] != kNoIndex && source[of_source[v]] == kNoIndex && rig.weights[v].weight[0] > 0) {
+      source[of_source[v]] = v;
+    }
+  }
+  return source;
+}
+
+std::vector<std::uint8_t> dominant_limbs(const SourceRig& rig, const Roles& roles, const Mesh& mesh,
+                                         const std::vector<Index>& of_source) {
+  const std::vector<std::uint8_t> limb_of = limb_of_bone(rig, roles);
+  const std::vector<Index> source = weighted_source(rig, of_source, mesh.positions.size());
+  std::vector<std::uint8_t> labels;
+  for (const Triangle& triangle : mesh.triangles) {
+    std::map<std::uint8_t, double> sum;
+    for (const Index corner : triangle) {
+      if (source[corner] == kNoIndex) continue;
+      const VertexWeights& weights = rig.weights[source[corner]];
+      for (std::size_t k = 0; k < kMaxInfluences; ++k) {
+        if (weights.weight[k] > 0) sum[limb_of[weights.joint[k]]] += weights.weight[k];
+      }
+    }
+    const auto most =
+        std::max_element(sum.begin(), sum.end(), [](const auto& l, const auto& r) { return l.second < r.second; });
+    labels.push_back(most == sum.end() ? kUnknown : most->first);
+  }
+  return labels;
+}
+
+using Neighbours = std::vector<std::array<Index, 3>>;
+
+// Keeps each region's largest piece; every other piece joins the region it shares most of its border with.
+void join_islands(const Mesh& mesh, const Neighbours& neighbours, std::vector<std::uint8_t>& labels) {
+  std::vector<Index> piece_of(labels.size(), kNoIndex);
+  std::vector<std::vector<Index>> pieces;
+  for (Index seed = 0; seed < labels.size(); ++seed) {
+    if (piece_of[seed] != kNoIndex) continue;
+    const auto id = static_cast<Index>(pieces.size());
+    pieces.push_back({seed});
+    piece_of[seed] = id;
+    for (std::size_t head = 0; head < pieces[id].size(); ++head) {
+      for (const Index n : neighbours[pieces[id][head]]) {
+        if (n == kNoIndex || piece_of[n] != kNoIndex || labels[n] != labels[seed]) continue;
+        piece_of[n] = id;
+        pieces[id].push_back(n);
+      }
+    }
+  }
+  std::map<std::uint8_t, std::pair<double, Index>> largest;
+  for (Index id = 0; id < pieces.size(); ++id) {
+    double area = 0;
+    for (const Index t : pieces[id]) area += triangle_area(mesh, t);
+    auto& kept = largest[labels[pieces[id][0]]];
+    if (area > kept.first) kept = {area, id};
+  }
+  // From the largest on, so that an island in an island joins what its surroundings have become.
+  std::vector<Index> islands;
+  for (Index id = 0; id < pieces.size(); ++id) {
+    const std::uint8_t label = labels[pieces[id][0]];
+    if (label == kUnknown || largest[label].second != id) islands.push_back(id);
+  }
+  std::stable_sort(islands.begin(), islands.end(),
+                   [&](Index l, Index r) { return pieces[l].size() > pieces[r].size(); });
+  for (const Index id : islands) {
+    std::map<std::uint8_t, double> border;
+    for (const Index t : pieces[id]) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Index n = neighbours[t][k];
+        if (n == kNoIndex || piece_of[n] == id || labels[n] == kUnknown) continue;
+        const Triangle& corners = mesh.triangles[t];
+        border[labels[n]] += (mesh.positions[corners[k]] - mesh.positions[corners[(k + 1) % 3]]).norm();
+      }
+    }
+    const auto longest = std::max_element(border.begin(), border.end(),
+                                          [](const auto& l, const auto& r) { return l.second < r.second; });
+    for (const Index t : pieces[id]) labels[t] = longest == border.end() ? kNoLimb : longest->first;
+  }
+}
+
+Vec3 centroid(const Mesh& mesh, const std::vector<Index>& triangles) {
+  Vec3 sum = Vec3::Zero();
+  double area = 0;
+  for (const Index t : triangles) {
+    sum += triangle_area(mesh, t) * triangle_centroid(mesh, t);
+    area += triangle_area(mesh, t);
+  }
+  return sum / area;
+}
+
+// The vertex farthest beyond the last joint.
+Vec3 tip_of(const Mesh& mesh, const std::vector<Index>& own, const Vec3& from, const Vec3& direction) {
+  Vec3 tip = from;
+  double farthest = 0;
+  for (const Index t : own) {
+    for (const Index corner : mesh.triangles[t]) {
+      const double along = (mesh.positions[corner] - from).dot(direction);
+      if (along <= farthest) continue;
+      farthest = along;
+      tip = mesh.positions[corner];
+    }
+  }
+  return tip;
+}
+
+Ring ring_at(const SurfaceQuery& surface, const Vec3& center, const Vec3& normal, const Vec3& reference) {
+  const bool usable = normal.cross(reference).norm() > 0.1 * reference.norm();
+  return cast_ring(surface, center, normal, usable ? reference : Vec3(normal.unitOrthogonal()), kRays);
+}
+
+// Through the joints, each moved to the middle of the limb's section there, and on to the tip.
+SkinLimb centre_line(const Mesh& mesh, const std::vector<Index>& own, const RoleLimb& role,
+                     const std::vector<Vec3>& joints, const Vec3& reference) {
+  std::vector<Vec3> points;
+  std::size_t wrist = role.nodes.size();
+  for (std::size_t i = 0; i < role.nodes.size(); ++i) {
+    const Vec3& p = joints[role.nodes[i]];
+    if (points.empty() || (p - points.back()).norm() > 0) points.push_back(p);
+    if (static_cast<int>(i) == role.extremity) wrist = points.size() - 1;
+  }
+  const Vec3 before = points.size() > 1 ? points[points.size() - 2] : Vec3(2 * points[0] - centroid(mesh, own));
+  const Vec3 tip = tip_of(mesh, own, points.back(), points.back() - before);
+  if ((tip - points.back()).norm() > 0) points.push_back(tip);
+  const SurfaceQuery surface(mesh, own);
+  std::vector<Vec3> centred = points;
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+    const Vec3 normal = (points[i + 1] - points[i]).normalized() + (points[i] - points[i - 1]).normalized();
+    if (normal.norm() < 0.1) continue;  // folded back on itself
+    centred[i] = ring_at(surface, points[i], normal.normalized(), reference).section_centroid();
+  }
+  const Polyline line(centred);
+  return {line, wrist < centred.size() ? line.closest(centred[wrist]) : line.length()};
+}
+
+// Arc length of the first ring that meets (almost) nothing but the limb; 0 where there is none in its first half.
+double free_start(const SurfaceQuery& surface, const std::vector<std::uint8_t>& labels, std::uint8_t limb,
+                  const Polyline& line, const Vec3& reference) {
+  const double length = line.length();
+  for (int k = 0; k * kStep < kStartsBy; ++k) {
+    const double s = k * kStep * length;
+    const Ring ring = ring_at(surface, line.at(s), line.tangent(s, kWindow * length), reference);
+    const auto own = std::count_if(ring.hits.begin(), ring.hits.end(),
+                                   [&](const auto& hit) { return hit && labels[hit->triangle] == limb; });
+    if (static_cast<double>(own) >= kOwnRays * kRays) return s;
+  }
+  return 0;
+}
+
+}  // namespace
+
+SkinRegions segment_from_skin(const Character& character, const Roles& roles) {
+  const Mesh& mesh = character.body;
+  const std::vector<Vec3> joints = rest_positions(character.rig);
+  const Neighbours neighbours = triangle_neighbours(mesh);
+  const SurfaceQuery surface(mesh);
+  const Vec3 middle = surface_centroid(mesh);
+  SkinRegions regions;
+  regions.of_triangle = dominant_limbs(character.rig, roles, mesh, character.body_of_source);
+  join_islands(mesh, neighbours, regions.of_triangle);
+  const std::vector<std::uint8_t> dominant = regions.of_triangle;
+  for (std::uint8_t i = 0; i < roles.limbs.size(); ++i) {
+    std::vector<Index> own;
+    for (Index t = 0; t < dominant.size(); ++t) {
+      if (dominant[t] == i) own.push_back(t);
+    }
+    regions.limbs.emplace_back();
+    if (own.empty()) continue;
+    const Vec3 reference = middle - joints[roles.limbs[i].nodes[0]];
+    SkinLimb limb = centre_line(mesh, own, roles.limbs[i], joints, reference);
+    if (!(limb.line.length() > 0)) continue;
+    const double start = free_start(surface, dominant, i, limb.line, reference);
+    const Vec3 at = limb.line.at(start), normal = limb.line.tangent(start, kWindow * limb.line.length());
+    for (const Index t : own) {
+      if ((triangle_centroid(mesh, t) - at).dot(normal) < 0) regions.of_triangle[t] = kNoLimb;
+    }
+    regions.limbs.back() = {limb.line.part(start, limb.line.length()), std::max(0.0, limb.extremity - start)};
+  }
+  join_islands(mesh, neighbours, regions.of_triangle);
+  regions.of_other = dominant_limbs(character.rig, roles, character.others, character.others_of_source);
+  std::replace(regions.of_other.begin(), regions.of_other.end(), kUnknown, kNoLimb);
+  return regions;
+}
+
+}  // namespace spherechain::baker

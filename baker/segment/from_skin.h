@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "import/import.h"
+#include "mesh/polyline.h"
+#include "roles/roles.h"
+
+namespace spherechain::baker {
+
+// A limb's centre line through its joints.
+struct SkinLimb {
+  Polyline line;     // from the cut at shoulder or hip to the tip of hand or foot
+  double extremity;  // arc length of wrist or ankle; the line's length where there is none
+};
+
+// Which part of the body every triangle is, as the rig's weights say.
+struct SkinRegions {
+  static constexpr std::uint8_t kNoLimb = 255;  // torso, neck and head
+  std::vector<std::uint8_t> of_triangle;        // a triangle of Character::body -> index in Roles::limbs, or kNoLimb
+  std::vector<std::uint8_t> of_other;           // the same of Character::others
+  std::vector<SkinLimb> limbs;                  // as in Roles::limbs
+};
+
+// A triangle belongs to the limb whose joints move it most, from the first ring around the limb on that meets (almost)
+// nothing but the limb: armpit and crotch are the torso's. Each region of the body is one piece.
+// The character has weights, and `roles` are those of its rig.
+SkinRegions segment_from_skin(const Character& character, const Roles& roles);
+
+}  // namespace spherechain::baker
