@@ -11,14 +11,15 @@ namespace spherechain::baker {
 // One struct of options and one function a subcommand. They throw Error; what they return is the exit code.
 
 struct BakeOptions {
-  std::string input, output, config, report, preview;
+  std::string input, output, config, report, preview, roles;
   std::string profile = "balanced";
   bool extremities = false, attachments = false, force = false;
 };
 ExitCode run_bake(const BakeOptions& options);
 
 struct InspectOptions {
-  std::string asset;
+  std::string asset;   // with `roles` a character
+  bool roles = false;  // what its rig's nodes are on the body
   bool json = false;
 };
 ExitCode run_inspect(const InspectOptions& options);

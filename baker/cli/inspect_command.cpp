@@ -8,6 +8,12 @@
 namespace spherechain::baker {
 
 ExitCode run_inspect(const InspectOptions& options) {
+  if (options.roles) {
+    const Character character = import_character(options.asset);
+    const Roles roles = find_roles(character.rig, character.source_positions);
+    fmt::print("{}", options.json ? roles_json(character.rig, roles) : roles_text(character.rig, roles));
+    return ExitCode::kDone;
+  }
   const AssetFile file = open_asset(options.asset);
   fmt::print("{}", options.json ? inspect_json(file.asset) : inspect_text(file.asset));
   return ExitCode::kDone;

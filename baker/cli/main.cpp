@@ -64,6 +64,7 @@ int main(int argc, char** argv) {
   bake_command->add_option("INPUT", bake.input, "glTF, or anything assimp reads")->required();
   bake_command->add_option("-o,--output", bake.output, "Asset to write (.sphc)")->required();
   bake_command->add_option("--config", bake.config, "JSON file that changes the profile's settings");
+  bake_command->add_option("--roles", bake.roles, "JSON file of roles by node name, before names and shape");
   bake_command->add_option("--profile", bake.profile, "Where the settings start")
       ->check(CLI::IsMember({"paper", "balanced"}))
       ->capture_default_str();
@@ -76,8 +77,9 @@ int main(int argc, char** argv) {
   bake_command->callback([&] { run = [&] { return run_bake(bake); }; });
 
   InspectOptions inspect;
-  CLI::App* inspect_command = app.add_subcommand("inspect", "Print what an asset holds");
-  inspect_command->add_option("ASSET", inspect.asset, "Asset (.sphc)")->required();
+  CLI::App* inspect_command = app.add_subcommand("inspect", "Print what an asset holds, or what a rig's joints are");
+  inspect_command->add_option("ASSET", inspect.asset, "Asset (.sphc); with --roles a character")->required();
+  inspect_command->add_flag("--roles", inspect.roles, "Print the role of each node of a character's rig, and why");
   inspect_command->add_flag("--json", inspect.json, "As JSON");
   inspect_command->callback([&] { run = [&] { return run_inspect(inspect); }; });
 

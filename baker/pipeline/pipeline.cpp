@@ -60,6 +60,8 @@ Bake bake(const std::filesystem::path& input, const BakeSettings& settings, cons
   Bake out;
   out.settings = settings;
   stage(out, progress, "import", [&] { out.character = import_character(input, settings.import); });
+  stage(out, progress, "roles",
+        [&] { out.roles = find_roles(out.character.rig, out.character.source_positions, settings.roles); });
   stage(out, progress, "segment", [&] { out.regions = segment(out.character, settings.segment); });
   run_fit(out, progress);
   run_after_fit(out, progress);

@@ -13,6 +13,7 @@
 #include "fit/fit.h"
 #include "import/import.h"
 #include "rig/rig.h"
+#include "roles/roles.h"
 #include "segment/segment.h"
 
 namespace spherechain::baker {
@@ -26,6 +27,7 @@ struct Targets {
 
 struct BakeSettings {
   ImportOptions import;
+  RoleFile roles;
   SegmentSettings segment;
   FitSettings fit;
   BindSettings bind;
@@ -50,6 +52,7 @@ struct StageTime {
 struct Bake {
   BakeSettings settings;
   Character character;
+  Roles roles;  // of the nodes of character.rig
   Regions regions;
   Spheres spheres;
   Chains chains;

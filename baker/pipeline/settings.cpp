@@ -105,6 +105,7 @@ BakeSettings make_settings(const std::string& profile, const std::string& text, 
   const json object = parse(text, file);
   Reader reader(object, file);
   reader.boolean("attachments", settings.import.attachments);
+  if (const json* roles = reader.object("roles")) settings.roles = parse_role_file(roles->dump(), file + ": roles");
   reader.integer("rays", settings.fit.rays, 8, 4096);
   settings.segment.rays = settings.fit.rays;
   reader.number("penetration_depth", settings.fit.penetration_depth, 0, 0.9);
@@ -143,6 +144,7 @@ BakeSettings make_settings(const std::string& profile, const std::string& text, 
 std::string to_json(const BakeSettings& settings) {
   json out;
   out["attachments"] = settings.import.attachments;
+  out["roles"] = settings.roles.role_of;
   out["rays"] = settings.fit.rays;
   out["penetration_depth"] = settings.fit.penetration_depth;
   out["delta"] = settings.fit.delta;

@@ -20,6 +20,10 @@ std::string bake_report_text(const Bake& bake);
 std::string inspect_json(const Asset& asset);
 std::string inspect_text(const Asset& asset);
 
+// What each node of a rig is on the body and why, for people and as JSON.
+std::string roles_text(const SourceRig& rig, const Roles& roles);
+std::string roles_json(const SourceRig& rig, const Roles& roles);
+
 // The process's peak resident memory so far.
 double peak_memory_mb();
 

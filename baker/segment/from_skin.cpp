@@ -64,7 +64,8 @@ std::vector<std::uint8_t> dominant_limbs(const SourceRig& rig, const Roles& role
 
 using Neighbours = std::vector<std::array<Index, 3>>;
 
-// Keeps each region's largest piece; every other piece joins the region it shares most of its border with.
+// On each component of the mesh, keeps each region's largest piece; every other piece joins the region it shares most
+// of its border with.
 void join_islands(const Mesh& mesh, const Neighbours& neighbours, std::vector<std::uint8_t>& labels) {
   std::vector<Index> piece_of(labels.size(), kNoIndex);
   std::vector<std::vector<Index>> pieces;
@@ -81,18 +82,21 @@ void join_islands(const Mesh& mesh, const Neighbours& neighbours, std::vector<st
       }
     }
   }
-  std::map<std::uint8_t, std::pair<double, Index>> largest;
+  const Components components = connected_components(mesh);
+  using Region = std::pair<Index, std::uint8_t>;  // on a component
+  const auto region_of = [&](Index t) { return Region(components.of_triangle[t], labels[t]); };
+  std::map<Region, std::pair<double, Index>> largest;
   for (Index id = 0; id < pieces.size(); ++id) {
     double area = 0;
     for (const Index t : pieces[id]) area += triangle_area(mesh, t);
-    auto& kept = largest[labels[pieces[id][0]]];
+    auto& kept = largest[region_of(pieces[id][0])];
     if (area > kept.first) kept = {area, id};
   }
   // From the largest on, so that an island in an island joins what its surroundings have become.
   std::vector<Index> islands;
   for (Index id = 0; id < pieces.size(); ++id) {
-    const std::uint8_t label = labels[pieces[id][0]];
-    if (label == kUnknown || largest[label].second != id) islands.push_back(id);
+    const Region region = region_of(pieces[id][0]);
+    if (region.second == kUnknown || largest[region].second != id) islands.push_back(id);
   }
   std::stable_sort(islands.begin(), islands.end(),
                    [&](Index l, Index r) { return pieces[l].size() > pieces[r].size(); });
@@ -183,15 +187,15 @@ double free_start(const SurfaceQuery& surface, const std::vector<std::uint8_t>& 
 }  // namespace
 
 SkinRegions segment_from_skin(const Character& character, const Roles& roles) {
-  const Mesh& mesh = character.body;
+  const Mesh& mesh = character.skin;
   const std::vector<Vec3> joints = rest_positions(character.rig);
   const Neighbours neighbours = triangle_neighbours(mesh);
   const SurfaceQuery surface(mesh);
   const Vec3 middle = surface_centroid(mesh);
   SkinRegions regions;
-  regions.of_triangle = dominant_limbs(character.rig, roles, mesh, character.body_of_source);
-  join_islands(mesh, neighbours, regions.of_triangle);
-  const std::vector<std::uint8_t> dominant = regions.of_triangle;
+  regions.of_skin = dominant_limbs(character.rig, roles, mesh, character.skin_of_source);
+  join_islands(mesh, neighbours, regions.of_skin);
+  const std::vector<std::uint8_t> dominant = regions.of_skin;
   for (std::uint8_t i = 0; i < roles.limbs.size(); ++i) {
     std::vector<Index> own;
     for (Index t = 0; t < dominant.size(); ++t) {
@@ -205,13 +209,16 @@ SkinRegions segment_from_skin(const Character& character, const Roles& roles) {
     const double start = free_start(surface, dominant, i, limb.line, reference);
     const Vec3 at = limb.line.at(start), normal = limb.line.tangent(start, kWindow * limb.line.length());
     for (const Index t : own) {
-      if ((triangle_centroid(mesh, t) - at).dot(normal) < 0) regions.of_triangle[t] = kNoLimb;
+      if ((triangle_centroid(mesh, t) - at).dot(normal) < 0) regions.of_skin[t] = kNoLimb;
     }
     regions.limbs.back() = {limb.line.part(start, limb.line.length()), std::max(0.0, limb.extremity - start)};
   }
-  join_islands(mesh, neighbours, regions.of_triangle);
-  regions.of_other = dominant_limbs(character.rig, roles, character.others, character.others_of_source);
-  std::replace(regions.of_other.begin(), regions.of_other.end(), kUnknown, kNoLimb);
+  join_islands(mesh, neighbours, regions.of_skin);
+  std::vector<std::uint8_t> of_source(character.source_triangles.size(), kNoLimb);
+  for (std::size_t t = 0; t < regions.of_skin.size(); ++t) {
+    of_source[character.skin_source_triangle[t]] = regions.of_skin[t];
+  }
+  for (const Index source : character.body_source_triangle) regions.of_triangle.push_back(of_source[source]);
   return regions;
 }
 

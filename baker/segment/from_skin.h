@@ -20,12 +20,12 @@ struct SkinLimb {
 struct SkinRegions {
   static constexpr std::uint8_t kNoLimb = 255;  // torso, neck and head
   std::vector<std::uint8_t> of_triangle;        // a triangle of Character::body -> index in Roles::limbs, or kNoLimb
-  std::vector<std::uint8_t> of_other;           // the same of Character::others
-  std::vector<SkinLimb> limbs;                  // as in Roles::limbs
+  std::vector<std::uint8_t> of_skin;            // the same of Character::skin
+  std::vector<SkinLimb> limbs;                  // as in Roles::limbs; a limb that moves no skin has an empty line
 };
 
 // A triangle belongs to the limb whose joints move it most, from the first ring around the limb on that meets (almost)
-// nothing but the limb: armpit and crotch are the torso's. Each region of the body is one piece.
+// nothing but the limb: armpit and crotch are the torso's. On each piece of the skin a region is connected.
 // The character has weights, and `roles` are those of its rig.
 SkinRegions segment_from_skin(const Character& character, const Roles& roles);
 

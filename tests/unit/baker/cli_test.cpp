@@ -169,6 +169,39 @@ TEST_CASE("--extremities puts spheres in head, hands and feet in any profile") {
   CHECK(asset["refit"] == "paper");
 }
 
+TEST_CASE("inspect --roles prints each node's role and why, --roles FILE overrules it and is part of the settings") {
+  const std::string wolf = "/usr/share/assimp/models/X/Testwuson.X";
+  const std::string text = run("inspect --roles " + wolf).out;
+  CHECK(text.find("quadruped") == 0);
+  CHECK(text.find("its name says hindleg") != std::string::npos);
+  const json roles = json::parse(run("inspect --json --roles " + wolf).out);
+  CHECK(roles["kind"] == "quadruped");
+  CHECK(roles["limbs"][0]["name"] == "left_foreleg");
+  CHECK(roles["limbs"][0]["nodes"][0] == "ForeLeg_L_01");
+  bool found = false;
+  for (const json& node : roles["nodes"]) {
+    if (node["name"] != "HindLeg_R_02") continue;
+    found = true;
+    CHECK(node["role"] == "right_knee");
+    CHECK(node["limb"] == "right_hindleg");
+    CHECK(roles["nodes"][node["parent"].get<int>()]["name"] == "HindLeg_R_01");
+  }
+  CHECK(found);
+
+  const TemporaryFolder folder;
+  const std::string out = (folder.path / "out.sphc").string();
+  const auto roles_file = [&](const std::string& content) { return folder.write("roles.json", content).string(); };
+  const auto bake_with = [&](const std::string& content) {
+    return run(fmt::format("bake {} -o {} --roles {}", wolf, out, roles_file(content)));
+  };
+  check_error(bake_with(R"({"Neck": "gill"})"), 3, {"roles.json", "gill", "Neck"});
+  check_error(bake_with(R"({"Nick": "neck"})"), 3, {"roles.json", "no node 'Nick'"});
+  check_error(run(fmt::format("bake {} -o {} --roles /nowhere.json", wolf, out)), 3, {"/nowhere.json"});
+  const BakeSettings settings = make_settings("balanced", R"({"roles": {"Neck": "head"}})", "config.json");
+  CHECK(settings.roles.role_of.at("Neck") == "head");
+  CHECK(to_json(settings).find(R"("roles":{"Neck":"head"})") != std::string::npos);
+}
+
 TEST_CASE("usage errors end with 2") {
   check_error(run(""), 2, {"--help"});
   check_error(run("bake"), 2, {});
