@@ -32,7 +32,8 @@ void add_motion(CLI::App& command, MotionChoice& motion, FrameChoice& frames) {
       "Motion", "What to play; without a choice all clips of the source's own, or the rest pose");
   choice.add_option("--clip", motion.clip, "A clip of the source's own: its name or number");
   choice.add_option("--poses", motion.poses, "Pose file, or a folder or .txt list of meshes that are poses");
-  choice.add_option("--motion", motion.motion, "Folder or .txt list of meshes that are frames");
+  choice.add_option("--motion", motion.motion,
+                    "File of motion capture (BVH, FBX, Collada), or folder or .txt list of meshes that are frames");
   choice.require_option(0, 1);
   command
       .add_option("--frames", frames.count,

@@ -159,7 +159,8 @@ std::vector<Clip> read_clips(const aiScene& scene, const AssimpScene& flat, cons
   std::vector<Clip> clips;
   for (unsigned a = 0; a < scene.mNumAnimations; ++a) {
     const aiAnimation& animation = *scene.mAnimations[a];
-    const double ticks = animation.mTicksPerSecond > 0 ? animation.mTicksPerSecond : kTicksPerSecond;
+    const bool paced = animation.mTicksPerSecond > 0 && std::isfinite(animation.mTicksPerSecond);
+    const double ticks = paced ? animation.mTicksPerSecond : kTicksPerSecond;
     Clip clip;
     clip.name = animation.mName.length > 0 ? animation.mName.C_Str() : std::to_string(a);
     Channels by_name;

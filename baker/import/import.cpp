@@ -10,7 +10,7 @@
 
 namespace spherechain::baker {
 
-Character import_character(const std::filesystem::path& path, const ImportOptions& options) {
+SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& options) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) throw Error(ExitCode::kFile, path.string() + ": no such file");
@@ -20,11 +20,13 @@ Character import_character(const std::filesystem::path& path, const ImportOption
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   // Through assimp a glTF would lose its own vertex order and bind pose.
   const bool gltf = extension == ".glb" || extension == ".gltf";
-  const std::string digest = sha256_of_file(path);
-  Character character =
-      build_character(gltf ? read_with_tinygltf(path, options) : read_with_assimp(path), path.string());
+  return gltf ? read_with_tinygltf(path, options) : read_with_assimp(path);
+}
+
+Character import_character(const std::filesystem::path& path, const ImportOptions& options) {
+  Character character = build_character(read_source(path, options), path.string());
   character.file = path.filename().string();
-  character.sha256 = digest;
+  character.sha256 = sha256_of_file(path);
   return character;
 }
 

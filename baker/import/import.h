@@ -84,6 +84,8 @@ struct SourceMesh {
   double metres_per_unit = 1;
   Vec3 up_hint = Vec3::UnitY();
 };
+// As the importer of the file's format reads it; a file of motion has no mesh. Throws Error(kFile).
+SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& options = {});
 SourceMesh read_with_assimp(const std::filesystem::path& path);
 SourceMesh read_with_tinygltf(const std::filesystem::path& path, const ImportOptions& options);
 

@@ -6,6 +6,7 @@
 #include <assimp/Importer.hpp>
 
 #include "import/assimp_scene.h"
+#include "import/check_bvh.h"
 #include "import/import.h"
 #include "mesh/error.h"
 #include "spherechain/asset.h"
@@ -47,13 +48,14 @@ void append(const MeshInstance& instance, const std::string& name, SourceMesh& o
 }  // namespace
 
 SourceMesh read_with_assimp(const std::filesystem::path& path) {
+  check_bvh(path);
   Assimp::Importer importer;
   // Sticks that importers put where a file has bones and no mesh are no character.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   const aiScene* scene = importer.ReadFile(path.string(), aiProcess_Triangulate);
   const std::string name = path.string();
   if (scene == nullptr)
-    throw Error(ExitCode::kFile, name + ": not a mesh that assimp reads (" + importer.GetErrorString() + ")");
+    throw Error(ExitCode::kFile, name + ": not a mesh or motion that assimp reads (" + importer.GetErrorString() + ")");
   SourceMesh out;
   out.importer = "assimp";
   const AssimpScene flat = flatten(*scene, name);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mesh/error.h"
+#include "motion/capture.h"
 #include "motion/clip.h"
 #include "motion/poses.h"
 #include "motion/sequence.h"
@@ -53,6 +54,8 @@ AnimatedAsset::AnimatedAsset(const std::string& asset, const std::string& source
     play_poses(motion.poses);
   } else if (!motion.poses.empty()) {
     motion_ = std::make_unique<SequenceMotion>(character_, sequence_files(motion.poses), SequenceMotion::Path::kBezier);
+  } else if (!motion.motion.empty() && !is_sequence(motion.motion)) {
+    play_capture(source, motion.motion);
   } else if (!motion.motion.empty()) {
     motion_ =
         std::make_unique<SequenceMotion>(character_, sequence_files(motion.motion), SequenceMotion::Path::kFrames);
@@ -70,8 +73,18 @@ AnimatedAsset::AnimatedAsset(const std::string& asset, const std::string& source
 void AnimatedAsset::play_poses(const std::string& file) {
   const std::vector<Joint> joints = joints_of(file_.asset);
   motion_ = std::make_unique<BezierMotion>(joints, frame(), read_pose_motion(file, joints));
-  weights_ = rig_weights(character_, joints);
-  for (const Joint& joint : joints) bone_names_.push_back(joint.name);
+  use_rig(joints);
+}
+
+// On the source's own skeleton, where it has one.
+void AnimatedAsset::play_capture(const std::string& source, const std::string& file) {
+  if (!character_.rig.bones.empty()) {
+    motion_ = capture_motion(file, character_.rig, character_.source_positions, frame(), source);
+    return use_skin();
+  }
+  const std::vector<Joint> joints = joints_of(file_.asset);
+  motion_ = std::make_unique<CaptureMotion>(read_capture(file), body_of(joints, frame()));
+  use_rig(joints);
 }
 
 // By name, or by number where no name is that; all of them where none is asked for.
@@ -92,8 +105,17 @@ void AnimatedAsset::play_clips(const std::string& source, const std::string& wan
   }
   if (!wanted.empty()) clips.erase(clips.begin() + 1, clips.end());  // names need not differ
   motion_ = std::make_unique<ClipMotion>(rig, clips);
-  weights_ = rig.weights;
-  for (const Bone& bone : rig.bones) bone_names_.push_back(rig.nodes[bone.node].name);
+  use_skin();
+}
+
+void AnimatedAsset::use_skin() {
+  weights_ = character_.rig.weights;
+  for (const Bone& bone : character_.rig.bones) bone_names_.push_back(character_.rig.nodes[bone.node].name);
+}
+
+void AnimatedAsset::use_rig(const std::vector<Joint>& joints) {
+  weights_ = rig_weights(character_, joints);
+  for (const Joint& joint : joints) bone_names_.push_back(joint.name);
 }
 
 BodyFrame AnimatedAsset::frame() const {

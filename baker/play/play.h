@@ -8,6 +8,7 @@
 #include "import/import.h"
 #include "motion/motion.h"
 #include "play/asset_file.h"
+#include "rig/rig.h"
 #include "segment/body_plan.h"
 
 namespace spherechain::baker {
@@ -16,7 +17,7 @@ namespace spherechain::baker {
 struct MotionChoice {
   std::string poses;   // a pose file, or whole meshes that are poses (motion/sequence.h)
   std::string clip;    // name or number of a clip of the source's own
-  std::string motion;  // whole meshes that are frames
+  std::string motion;  // a file of motion capture, or whole meshes that are frames
 
   std::string name() const;  // for people
 };
@@ -52,6 +53,9 @@ class AnimatedAsset {
 
  private:
   void play_poses(const std::string& file);
+  void use_skin();  // the source's own
+  void use_rig(const std::vector<Joint>& joints);
+  void play_capture(const std::string& source, const std::string& file);
   void play_clips(const std::string& source, const std::string& wanted);
 
   AssetFile file_;
