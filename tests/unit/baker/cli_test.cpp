@@ -197,7 +197,8 @@ TEST_CASE("inspect --roles prints each node's role and why, --roles FILE overrul
   check_error(bake_with(R"({"Neck": "gill"})"), 3, {"roles.json", "gill", "Neck"});
   check_error(bake_with(R"({"Nick": "neck"})"), 3, {"roles.json", "no node 'Nick'"});
   check_error(run(fmt::format("bake {} -o {} --roles /nowhere.json", wolf, out)), 3, {"/nowhere.json"});
-  const BakeSettings settings = make_settings("balanced", R"({"roles": {"Neck": "head"}})", "config.json");
+  const spherechain::baker::BakeSettings settings =
+      spherechain::baker::make_settings("balanced", R"({"roles": {"Neck": "head"}})", "config.json");
   CHECK(settings.roles.role_of.at("Neck") == "head");
   CHECK(to_json(settings).find(R"("roles":{"Neck":"head"})") != std::string::npos);
 }
