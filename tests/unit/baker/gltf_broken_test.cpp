@@ -304,7 +304,7 @@ TEST_CASE("accessors of the wrong type or length, and figures that are none, are
              g.accessor(std::vector<float>{1, 2, 3}, "VEC3");
        }},
       {"inverseBindMatrices has 1 matrices for 2 joints", [](Glb& g) { accessor(g, kMatrices)["count"] = 1; }},
-      {"uses vertex 15 of 15",
+      {"primitives[0] uses vertex 15 of 15",
        [](Glb& g) {
          for (const int a : {kPositions, kJoints, kWeights}) accessor(g, a)["count"] = 15;
        }},
