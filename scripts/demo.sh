@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The main job, end to end: bakes the MakeHuman body that Debian's assimp-testmodels installs, plays two animations of 40
-# frames and draws what it found. Results go to out/demo; the page to open is human.html.
+# frames and three recordings of people, and draws what it found. Results go to out/demo; the page to open is human.html.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -24,6 +24,15 @@ for animation in arms legs; do
     --json "$out/play_$animation.json"
 done
 
+captures=/usr/share/assimp/models/BVH
+for capture in Boxing_Toes 01_01 01_03; do
+  echo
+  echo "== $capture"
+  "$tool" play "$out/human.sphc" --source "$human" --motion "$captures/$capture.bvh" --json "$out/play_$capture.json"
+  build/release/bin/draw_asset "$out/human.sphc" "$human" --motion "$captures/$capture.bvh" --frames 9 --frame 4 \
+    --radius detect -o "$out/$capture.png" >/dev/null
+done
+
 build/release/bin/draw_character "$human" -o "$out/regions.png"
 build/release/bin/draw_asset "$out/human.sphc" "$human" -o "$out/rest.png" >/dev/null
 for pose in hands_on_hips arms_crossed hand_behind_head leg_over_leg deep_squat; do
@@ -32,7 +41,7 @@ for pose in hands_on_hips arms_crossed hand_behind_head leg_over_leg deep_squat;
 done
 
 if [[ -f $page ]]; then
-  "$tool" view "$out/human.sphc" --source "$human" --poses samples/poses/animation_arms.json --frames 40 \
+  "$tool" view "$out/human.sphc" --source "$human" --motion "$captures/Boxing_Toes.bvh" --fps 15 \
     --report "$out/human_report.json" -o "$out/human.html" >/dev/null
 fi
 
