@@ -14,14 +14,19 @@ export function h(tag, properties = {}, ...children) {
 
 export const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
-// Sizes a canvas to its box in device pixels; the context draws in CSS pixels.
+// An empty canvas of its box's size in device pixels; the context draws in CSS pixels. It is painted over with nothing: in
+// Chromium 156 a second clearRect or reset in a row brings back what was drawn before.
 export function fitCanvas(canvas) {
   const ratio = Math.min(window.devicePixelRatio, 2);
   const width = canvas.clientWidth;
   const height = canvas.clientHeight;
-  canvas.width = Math.round(width * ratio);
-  canvas.height = Math.round(height * ratio);
+  const size = [Math.round(width * ratio), Math.round(height * ratio)];
+  if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
   const context = canvas.getContext('2d');
   context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  context.globalCompositeOperation = 'copy';
+  context.fillStyle = 'transparent';
+  context.fillRect(0, 0, width, height);
+  context.globalCompositeOperation = 'source-over';
   return { context, width, height };
 }

@@ -126,7 +126,6 @@ function radiusInPixels(model, state, project, id) {
 
 export function drawOverlay(canvas, { model, skin, state, project, eye, visible, touching }) {
   const { context, width, height } = fitCanvas(canvas);
-  context.clearRect(0, 0, width, height);
   const [ink, halo, paper] = ['--ink', '--halo', '--label'].map(css);
   const { pointed } = state;
   const pair = model.pairs(state.frame).find(([a, b]) => state.pair === `${a}-${b}`) ?? [];

@@ -13,7 +13,6 @@ function drawBars(canvas, model) {
   const counts = Array.from({ length: model.frameCount }, (_, frame) => model.pairs(frame).length);
   const most = Math.max(1, ...counts);
   const base = height - 15;
-  context.clearRect(0, 0, width, height);
   context.fillStyle = css('--line');
   context.fillRect(INSET, base, width - 2 * INSET, 1);
   context.fillStyle = WARNING;

@@ -37,7 +37,7 @@ export function makePages({ tool, human, poses, folder }) {
   };
 }
 
-const base64 = (array) => Buffer.from(array.buffer).toString('base64');
+export const base64 = (array) => Buffer.from(array.buffer).toString('base64');
 
 // A sheet of 317 x 317 vertices on one bone that turns about the character's axis, 400 frames.
 export function makeHuge(data) {
