@@ -152,16 +152,16 @@ std::vector<int> find_tops(const Skeleton& s, const std::vector<Hint>& hints) {
   for (int n = s.count(); n-- > 0;) {
     if (const int parent = s.parent[n]; parent >= 0) below[parent] |= below[n] | own(n);
   }
-  const unsigned left_or_right = bit(Family::kArm, NamedSide::kLeft) | bit(Family::kArm, NamedSide::kRight) |
-                                 bit(Family::kLeg, NamedSide::kLeft) | bit(Family::kLeg, NamedSide::kRight);
+  const auto of_side = [&](NamedSide side) { return bit(Family::kArm, side) | bit(Family::kLeg, side); };
+  // A node above limbs of another side is of the trunk, whatever its name ("Pelvis_L", the lower one).
+  const auto of_trunk = [&](int n) {
+    return (hints[n].side != NamedSide::kLeft && (below[n] & of_side(NamedSide::kLeft)) != 0) ||
+           (hints[n].side != NamedSide::kRight && (below[n] & of_side(NamedSide::kRight)) != 0);
+  };
   std::vector<int> tops;
   for (int n = 0; n < s.count(); ++n) {
-    if (const int parent = s.parent[n]; parent >= 0) {
-      // A node in the middle above limbs with sides is of the trunk, whatever its name.
-      const bool of_trunk = hints[parent].side == NamedSide::kNone && (below[parent] & left_or_right) != 0;
-      above[n] = above[parent] | (of_trunk ? 0U : own(parent));
-    }
-    if (!starts(n) || (hints[n].side == NamedSide::kNone && (below[n] & left_or_right) != 0)) continue;
+    if (const int parent = s.parent[n]; parent >= 0) above[n] = above[parent] | (of_trunk(parent) ? 0U : own(parent));
+    if (!starts(n) || of_trunk(n)) continue;
     const Family family = family_of(hints[n].word);
     unsigned same = bit(family, hints[n].side) | bit(family, NamedSide::kNone);
     if (hints[n].side == NamedSide::kNone) same |= bit(family, NamedSide::kLeft) | bit(family, NamedSide::kRight);

@@ -144,6 +144,8 @@ struct RoleWriter {
 
   void find_tail(double trunk) {
     int top = find_in_middle(s, hints, body.path_of, Word::kTail);
+    // What hangs on the head is hair.
+    if (top >= 0 && body.head >= 0 && s.common_ancestor(top, body.head) == body.head) top = -1;
     const bool by_shape = top < 0 && !body.paths.empty() && hints[body.paths[0].nodes[0]].reason == "the rig's shape";
     if (by_shape && body.pelvis >= 0) {
       for (const int child : s.children[body.pelvis]) {

@@ -697,6 +697,28 @@ Hips = pelvis
 )"));
 }
 
+TEST_CASE("a pelvis above both legs is of the trunk though its name has a side, a tail on the head is hair") {
+  check_roles(named_rig(R"(
+B_Root_Pelvis_L = spine
+  B_LowerPelvis = pelvis
+    B_Hip_Left = left_hip
+      B_Knee_Left = left_knee
+        B_Ankle_Left = left_ankle
+    B_Hip_Right = right_hip
+      B_Knee_Right = right_knee
+        B_Ankle_Right = right_ankle
+  B_Spine1 = chest
+    B_UpperArm_Left = left_shoulder
+      B_ForeArm_Left = left_elbow
+        B_Hand_Left = left_wrist
+    B_UpperArm_Right = right_shoulder
+      B_ForeArm_Right = right_elbow
+        B_Hand_Right = right_wrist
+    B_Head = head
+      B_PTail1 = head_part
+)"));
+}
+
 TEST_CASE("a quadruped is one though its names are a human's, and has a tail") {
   const NamedRig rig = named_rig(kFox, Body::kFox);
   check_roles(rig, BodyKind::kQuadruped);
