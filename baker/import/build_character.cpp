@@ -74,6 +74,17 @@ void check_positions(const SourceMesh& source, const std::string& name) {
 
 }  // namespace
 
+bool is_whole(const Character& character) {
+  constexpr double kMost = 0.6;  // of the area: eyes, teeth and a belt are the rest
+  return count_open_edges(character.body) == 0 && surface_area(character.body) > kMost * surface_area(character.skin);
+}
+
+void take_all_pieces(Character& character) {
+  character.body = character.skin;
+  character.body_source_triangle = character.skin_source_triangle;
+  character.body_of_source = character.skin_of_source;
+}
+
 std::vector<float> pack(const std::vector<Vec3>& positions) {
   std::vector<float> packed;
   packed.reserve(positions.size() * 3);

@@ -68,6 +68,12 @@ struct Character {
 // not finite, an index is out of range, or all positions coincide.
 Character import_character(const std::filesystem::path& path, const ImportOptions& options = {});
 
+// Whether the body is closed, and most of the skin.
+bool is_whole(const Character& character);
+
+// Makes the body all of the skin, its pieces as they are: for characters of many pieces, none of which is a body.
+void take_all_pieces(Character& character);
+
 // x y z after another, as the runtime takes them.
 std::vector<float> pack(const std::vector<Vec3>& positions);
 

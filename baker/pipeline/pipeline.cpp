@@ -7,6 +7,8 @@
 #include <chrono>
 #include <cmath>
 
+#include "mesh/error.h"
+#include "segment/by_rig.h"
 #include "write/write.h"
 
 namespace spherechain::baker {
@@ -28,6 +30,23 @@ void stage(Bake& out, const Progress& progress, const char* name, const Run& run
   const auto start = std::chrono::steady_clock::now();
   run();
   out.times.push_back({name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
+}
+
+// A closed biped is segmented by its shape, which knows armpit and crotch best; all else by its rig, where there is
+// one.
+void run_segment(Bake& out) {
+  const bool rigged = !out.roles.limbs.empty() && !out.character.rig.weights.empty();
+  const bool whole = is_whole(out.character);
+  if (!rigged || (whole && out.roles.kind == BodyKind::kBiped)) {
+    try {
+      out.regions = segment(out.character, out.settings.segment);
+      return;
+    } catch (const Error& error) {
+      if (!rigged || error.code() != ExitCode::kSegmentation) throw;
+    }
+  }
+  if (!whole) take_all_pieces(out.character);
+  out.regions = segment_by_rig(out.character, out.roles);
 }
 
 void run_after_fit(Bake& out, const Progress& progress) {
@@ -62,7 +81,7 @@ Bake bake(const std::filesystem::path& input, const BakeSettings& settings, cons
   stage(out, progress, "import", [&] { out.character = import_character(input, settings.import); });
   stage(out, progress, "roles",
         [&] { out.roles = find_roles(out.character.rig, out.character.source_positions, settings.roles); });
-  stage(out, progress, "segment", [&] { out.regions = segment(out.character, settings.segment); });
+  stage(out, progress, "segment", [&] { run_segment(out); });
   run_fit(out, progress);
   run_after_fit(out, progress);
   return out;

@@ -190,6 +190,7 @@ Regions segment(const Character& character, const SegmentSettings& settings) {
   const SurfaceQuery surface(mesh);
 
   Regions regions;
+  regions.provider = "shape";
   regions.facing = plan.facing;
   std::vector<LimbTrace> traces;
   for (const BodyPlan::Limb& limb : plan.limbs) {

@@ -25,6 +25,7 @@ struct Limb {
 // a biped's are R0 .. R4 of the paper.
 struct Regions {
   BodyFrame frame;
+  std::string provider;  // "shape" or "rig"
   std::string facing;
   std::vector<Limb> limbs;
   bool has_torso = true;  // a snake has none

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "segment/by_rig.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "mesh/error.h"
+#include "mesh/surface_query.h"
+#include "segment/from_skin.h"
+
+namespace spherechain::baker {
+namespace {
+
+Side side_of(const RoleLimb& limb) {
+  if (limb.name.starts_with("left_")) return Side::kLeft;
+  return limb.name.starts_with("right_") ? Side::kRight : Side::kNone;
+}
+
+// The middle of the starts of the limbs with sides at one end of the trunk; that joint where there are none.
+Vec3 middle_of_starts(const Regions& regions, double along, const Vec3& joint) {
+  Vec3 sum = Vec3::Zero();
+  int count = 0;
+  for (const Limb& limb : regions.limbs) {
+    if (limb.side == Side::kNone || limb.along != along) continue;
+    sum += limb.line.at(0);
+    ++count;
+  }
+  return count > 0 ? Vec3(sum / count) : joint;
+}
+
+Vec3 left_of(const Regions& regions) {
+  Vec3 left = Vec3::Zero();
+  for (const Limb& limb : regions.limbs) {
+    if (limb.side != Side::kNone) left += (limb.side == Side::kLeft ? 1.0 : -1.0) * limb.line.at(0);
+  }
+  return left;
+}
+
+// A pair of legs between the ends leaves the trunk where its two starts are on average.
+void place_along(Regions& regions, const Vec3& hip, const Vec3& chest) {
+  const Vec3 trunk = chest - hip;
+  const auto number = [](const std::string& name) { return name.substr(name.rfind('_')); };
+  for (Limb& limb : regions.limbs) {
+    if (limb.side == Side::kNone) continue;
+    Vec3 sum = Vec3::Zero();
+    int count = 0;
+    for (const Limb& other : regions.limbs) {
+      if (other.side == Side::kNone || number(other.name) != number(limb.name)) continue;
+      sum += other.line.at(0);
+      ++count;
+    }
+    limb.along = std::clamp((sum / count - hip).dot(trunk) / trunk.squaredNorm(), 0.0, 1.0);
+  }
+}
+
+// Where the trunk ends by its own skin, and the neck begins by its joint.
+TorsoEnds ends_by_joints(const Mesh& mesh, const Regions& regions, const Vec3* neck) {
+  double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
+  const auto height = [&](const Vec3& p) { return (p - regions.frame.origin).dot(regions.frame.up); };
+  for (Index t = 0; t < mesh.triangles.size(); ++t) {
+    if (regions.of_triangle[t] != regions.torso_region()) continue;
+    const double h = height(triangle_centroid(mesh, t));
+    low = std::min(low, h);
+    high = std::max(high, h);
+  }
+  return {low, neck != nullptr ? std::clamp(height(*neck), low, high) : high};
+}
+
+}  // namespace
+
+Regions segment_by_rig(const Character& character, const Roles& roles) {
+  const auto fail = [&](const std::string& what) {
+    throw Error(ExitCode::kSegmentation, character.file + ": " + what + " (inspect --roles says what its joints are)");
+  };
+  if (roles.trunk.empty()) fail("the rig has no trunk that limbs leave from");
+  const std::vector<Vec3> joints = rest_positions(character.rig);
+  const auto joint = [&](int node) { return joints[static_cast<std::size_t>(node)]; };
+  const SkinRegions skin = segment_from_skin(character, roles);
+
+  Regions regions;
+  regions.provider = "rig";
+  regions.facing = "forward is as the rig's left and right have it";
+  std::vector<std::uint8_t> region_of(256, SkinRegions::kNoLimb);
+  for (std::size_t i = 0; i < roles.limbs.size(); ++i) {
+    if (skin.limbs[i].line.points().size() < 2) continue;  // it moves no skin
+    region_of[i] = static_cast<std::uint8_t>(regions.limbs.size());
+    const RoleLimb& limb = roles.limbs[i];
+    regions.limbs.push_back(
+        {limb.name, side_of(limb), limb.top ? 1.0 : 0.0, skin.limbs[i].line, skin.limbs[i].extremity});
+  }
+  if (regions.limbs.size() < 2) fail("the rig has fewer than two limbs that move skin");
+
+  const Vec3 pelvis = joint(roles.trunk.front()), upper = joint(roles.trunk.back());
+  const bool four = roles.kind == BodyKind::kBiped || roles.kind == BodyKind::kQuadruped;
+  if (!four) place_along(regions, pelvis, upper);
+  const Vec3 hip = middle_of_starts(regions, 0, pelvis), chest = middle_of_starts(regions, 1, upper);
+  const Vec3 left = left_of(regions);
+  if (!(left.cross(chest - hip).norm() > 0)) fail("the rig's limbs do not tell left, right and up apart");
+  regions.frame.left = left.normalized();
+  regions.frame = with_up(regions.frame, chest - hip, character.body);
+  const auto in_plane = [&](const Vec3& p) {
+    return Vec3(p - (p - regions.frame.origin).dot(regions.frame.left) * regions.frame.left);
+  };
+  regions.hip = in_plane(hip);
+  regions.chest = in_plane(chest);
+
+  for (const std::uint8_t limb : skin.of_triangle)
+    regions.of_triangle.push_back(std::min(region_of[limb], regions.torso_region()));
+  for (const std::uint8_t limb : skin.of_skin)
+    regions.of_skin.push_back(std::min(region_of[limb], regions.torso_region()));
+  if (std::count(regions.of_triangle.begin(), regions.of_triangle.end(), regions.torso_region()) == 0) {
+    fail("the rig's trunk moves no skin");
+  }
+  const bool has_neck = !roles.neck_head.empty();
+  const Vec3 neck = has_neck ? joint(roles.neck_head.front()) : upper;
+  regions.torso = ends_by_joints(character.body, regions, has_neck ? &neck : nullptr);
+
+  std::vector<Vec3> spine{regions.hip};
+  for (const int node : roles.trunk) {
+    if (node != roles.trunk.front()) spine.push_back(joint(node));
+  }
+  for (const int node : roles.neck_head) spine.push_back(joint(node));
+  regions.spine = Polyline(std::move(spine));
+  regions.spine_chest = regions.spine.closest(regions.chest);
+  regions.spine_neck = regions.spine.closest(neck);
+  return regions;
+}
+
+}  // namespace spherechain::baker

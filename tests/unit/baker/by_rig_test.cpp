@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "segment/by_rig.h"
+
+#include <doctest/doctest.h>
+
+#include "mesh/error.h"
+#include "pipeline/pipeline.h"
+
+using namespace spherechain::baker;
+
+namespace {
+
+// Debian's assimp-testmodels: a person in five open pieces, with a 3ds Max Biped.
+const Bake& person_in_pieces() {
+  static const Bake result =
+      bake("/usr/share/assimp/models/X/BCN_Epileptic.X", make_settings("balanced", "{}", "test"), {});
+  return result;
+}
+
+Vec3 centroid_of(const Bake& bake, std::uint8_t region) {
+  Vec3 sum = Vec3::Zero();
+  double area = 0;
+  for (std::size_t t = 0; t < bake.character.skin.triangles.size(); ++t) {
+    if (bake.regions.of_skin[t] != region) continue;
+    sum += triangle_area(bake.character.skin, t) * triangle_centroid(bake.character.skin, t);
+    area += triangle_area(bake.character.skin, t);
+  }
+  return sum / area;
+}
+
+}  // namespace
+
+TEST_CASE("a rigged person in open pieces is segmented by the rig, and left is left") {
+  const Bake& bake = person_in_pieces();
+  CHECK(bake.regions.provider == "rig");
+  REQUIRE(is_biped(bake.regions));
+  CHECK(bake.character.report.components > 1);
+  CHECK(bake.regions.of_skin.size() == bake.character.skin.triangles.size());
+  const BodyFrame& frame = bake.regions.frame;
+  CHECK(std::abs(frame.left.cross(frame.up).dot(frame.forward) - 1) < 1e-9);
+  const auto place = [&](int region) {
+    return Vec3(centroid_of(bake, static_cast<std::uint8_t>(region)) - frame.origin);
+  };
+  for (const int left : {0, 2}) {
+    CHECK(place(left).dot(frame.left) > 0);
+    CHECK(place(left + 1).dot(frame.left) < 0);
+  }
+  for (const int arm : {0, 1}) CHECK(place(arm).dot(frame.up) > place(arm + 2).dot(frame.up));
+  // Toes are in front of the heels: the last foot sphere is ahead of the first leg sphere.
+  for (const std::size_t leg : {2U, 3U}) {
+    const std::vector<std::uint32_t>& ids = bake.spheres.of_region[leg];
+    const Vec3 forward = bake.spheres.spheres[ids.back()].ball.center - bake.spheres.spheres[ids.front()].ball.center;
+    CHECK(forward.dot(frame.forward) > 0);
+  }
+  for (const auto& ids : bake.spheres.of_region) CHECK(ids.size() >= 4);
+}
+
+TEST_CASE("a rig without a trunk is refused as no body") {
+  const Character& character = person_in_pieces().character;
+  Roles none;
+  none.of_node.resize(character.rig.nodes.size());
+  try {
+    segment_by_rig(character, none);
+    FAIL("it was segmented");
+  } catch (const Error& error) {
+    CHECK(error.code() == ExitCode::kSegmentation);
+    CHECK(std::string(error.what()).find("no trunk") != std::string::npos);
+  }
+}
