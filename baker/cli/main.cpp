@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "cli/commands.h"
+#include "play/target.h"
 #include "write/version.h"
 
 namespace {
@@ -53,7 +54,7 @@ void add_radius(CLI::App& command, std::string& radius) {
 int main(int argc, char** argv) {
   CLI::App app{"Self-collision of animated characters by sphere chains."};
   app.name("spherechain");
-  app.set_version_flag("--version", std::string("spherechain ") + kVersion);
+  app.set_version_flag("--version", std::string("spherechain ") + kVersion + "\ntargets: " + supported_targets_text());
   app.require_subcommand(1);
   app.footer(
       "Exit: 0 done; 1 internal error; 2 usage; 3 a file cannot be read or written, or is not what it should be;\n"
@@ -93,8 +94,11 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"m1", "m2", "both"}))
       ->capture_default_str();
   add_radius(*play_command, play.radius);
-  play_command->add_option("--backend", play.backend, "Arithmetic; this build has 'scalar'")
-      ->check(CLI::IsMember({"auto", "scalar"}))
+  play_command
+      ->add_option("--backend", play.backend,
+                   "How it is computed: auto is simd, with the best instructions this machine has, where "
+                   "SPHERECHAIN_TARGET names no others")
+      ->check(CLI::IsMember({"auto", "scalar", "simd"}))
       ->capture_default_str();
   play_command->add_option("--json", play.json, "JSON file to write");
   play_command->callback([&] { run = [&] { return run_play(play); }; });

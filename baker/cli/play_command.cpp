@@ -8,6 +8,7 @@
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "play/player.h"
+#include "play/target.h"
 #include "report/play_frames.h"
 #include "write/write.h"
 
@@ -41,10 +42,10 @@ class Tally {
     for (const auto& [names, yes] : seen) ++by_region_.try_emplace(names, index, 0).first->second.second;
   }
 
-  std::string text(const std::string& radius) const {
+  std::string text(const std::string& radius, Target target) const {
     const double n = frames_;
     const std::string pairs = fmt::format("{:.1f}", static_cast<double>(pairs_) / n);
-    std::string out = fmt::format("{} frames, radius {}, backend scalar\n\n", frames_, radius);
+    std::string out = fmt::format("{} frames, radius {}, backend {}\n\n", frames_, radius, backend_text(target));
     out += fmt::format("{:<6} {:>8} {:>10} {:>12} {:>10}\n", "", "tests", "pairs", "raw pairs", "us");
     out += fmt::format("{:<6} {:>8} {:>10} {:>12} {:>10.2f}\n", "refit", "", "", "", refit_us_ / n);
     if (last_.m1) {
@@ -74,9 +75,10 @@ class Tally {
 
 ExitCode run_play(const PlayOptions& options) {
   if (!options.json.empty()) check_folder(options.json);
+  const Target target = choose_target(options.backend);
   const AnimatedAsset animated(options.asset, options.source, options.motion, options.frames);
   Player player(animated.asset(), options.radius == "fit" ? RadiusKind::kFit : RadiusKind::kDetect,
-                options.mode != "m2", options.mode != "m1");
+                options.mode != "m2", options.mode != "m1", target);
   Tally tally;
   ordered_json frames = ordered_json::array();
   {
@@ -89,10 +91,13 @@ ExitCode run_play(const PlayOptions& options) {
     }
   }
   if (!options.json.empty()) {
-    const ordered_json out{{"backend", "scalar"}, {"radius", options.radius}, {"frames", std::move(frames)}};
+    const ordered_json out{{"backend", backend_name(target)},
+                           {"target", to_string(target)},
+                           {"radius", options.radius},
+                           {"frames", std::move(frames)}};
     write_atomically(options.json, out.dump(1) + "\n");
   }
-  fmt::print("{}", tally.text(options.radius));
+  fmt::print("{}", tally.text(options.radius, target));
   if (!options.json.empty()) fmt::print("wrote {}\n", options.json);
   return ExitCode::kDone;
 }

@@ -48,11 +48,12 @@ std::vector<Sphere> refit_spheres(const Asset& asset, const std::vector<float>& 
   return spheres;
 }
 
-Player::Player(const Asset& asset, RadiusKind radius, bool m1, bool m2)
+Player::Player(const Asset& asset, RadiusKind radius, bool m1, bool m2, Target target)
     : asset_(asset),
       radius_(radius),
       m1_(m1),
       m2_(m2),
+      target_(target),
       spheres_(asset.spheres().size),
       pairs_(spheres_.size() * (spheres_.size() - 1) / 2),
       words_(DetectContext::words_needed(asset)) {}
@@ -73,6 +74,7 @@ Detection Player::detect(Method method) {
   job.spheres = {spheres_.data(), spheres_.size()};
   job.radius = radius_;
   job.method = method;
+  job.target = target_;
   job.context = &context;
   job.pairs = {pairs_.data(), pairs_.size()};
   const double us = median_us([&] { check(job.run()); });

@@ -27,7 +27,7 @@ struct FrameResult {
 // The runtime as a game uses it: buffers made once, then a refit and a detection a frame.
 class Player {
  public:
-  Player(const Asset& asset, RadiusKind radius, bool m1, bool m2);
+  Player(const Asset& asset, RadiusKind radius, bool m1, bool m2, Target target);
 
   // `positions` are the deformed source vertices.
   FrameResult run(const std::vector<float>& positions);
@@ -43,6 +43,7 @@ class Player {
   const Asset& asset_;
   RadiusKind radius_;
   bool m1_, m2_;
+  Target target_;
   std::vector<Sphere> spheres_;
   std::vector<Pair> pairs_;
   std::vector<std::uint64_t> words_;

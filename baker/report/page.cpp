@@ -9,6 +9,7 @@
 
 #include "mesh/error.h"
 #include "play/player.h"
+#include "play/target.h"
 #include "report/play_frames.h"
 #include "report/report.h"
 
@@ -140,7 +141,7 @@ ordered_json ignored_json(const Asset& asset) {
 
 ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& options,
                          const std::function<void(int)>& progress) {
-  Player player(animated.asset(), options.radius, true, true);
+  Player player(animated.asset(), options.radius, true, true, choose_target("auto"));
   std::vector<float> bones, vertices, spheres;
   ordered_json play = ordered_json::array();
   for (int i = 0; i < animated.frame_count(); ++i) {

@@ -5,6 +5,7 @@
 #include <cfloat>
 
 #include "arithmetic.h"
+#include "simd.h"
 #include "triangle_bits.h"
 
 namespace spherechain {
@@ -137,6 +138,10 @@ Status check(const DetectJob& job) {
   }
   if (job.spheres.size < job.asset->spheres().size) {
     return Status::kTooFewSpheres;
+  }
+  Target resolved{};
+  if (!resolve_target(job.target, resolved)) {
+    return Status::kUnsupportedTarget;
   }
   if (job.method == Method::kM1) {
     if (job.context == nullptr || is_missing(job.context->words) || is_missing(job.chain_pairs)) {

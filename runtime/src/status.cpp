@@ -36,6 +36,8 @@ const char* to_string(Status status) noexcept {
       return "the positions are not the rest pose the asset was baked from";
     case Status::kBadArgument:
       return "an argument has a value that does not exist";
+    case Status::kUnsupportedTarget:
+      return "this build or this machine does not have the instruction set asked for";
   }
   return "unknown status";
 }

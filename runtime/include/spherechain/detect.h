@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "spherechain/asset.h"
+#include "spherechain/simd.h"
 #include "spherechain/status.h"
 #include "spherechain/types.h"
 
@@ -41,6 +42,7 @@ struct DetectJob {
   Span<const Sphere> spheres;    // at least asset->spheres().size, from RefitJob with the same `radius`
   RadiusKind radius = RadiusKind::kDetect;
   Method method = Method::kM2;
+  Target target = Target::kBest;
   DetectContext* context = nullptr;  // M1: required
   Span<Pair> pairs;                  // out: sorted by (a, b), each once; may be empty to count only
   Span<ChainPair> chain_pairs;       // out, M1: the raw list, chain by chain, in chain order within one; may be empty
@@ -51,8 +53,8 @@ struct DetectJob {
   std::size_t test_count = 0;        // distance tests: pairs not ignored; M1: with repeats
 
   // kOk; kOverflow where `pairs` or `chain_pairs` was not empty and too small (the first entries are written, the
-  // counts say what is needed); kNullArgument, kNotOpen, kTooFewSpheres, kContextTooSmall, kBadArgument: nothing is
-  // written, the counts keep their values.
+  // counts say what is needed); kNullArgument, kNotOpen, kTooFewSpheres, kContextTooSmall, kBadArgument,
+  // kUnsupportedTarget: nothing is written, the counts keep their values.
   Status run() noexcept;
 };
 

@@ -20,6 +20,7 @@ enum class Status : int {
   kBadStride = 12,          // a vertex stride below 12 bytes or no multiple of 4
   kWrongSource = 13,        // the positions are not the rest pose the asset was baked from
   kBadArgument = 14,        // an enum value or an index that does not exist
+  kUnsupportedTarget = 15,  // this build or this machine does not have the instruction set asked for
 };
 
 // A short English sentence without a final stop. Never null, also for values that do not exist.

@@ -13,6 +13,7 @@
 
 #include "baked_human.h"
 #include "human.h"
+#include "spherechain/simd.h"
 #include "temporary_folder.h"
 
 namespace fs = std::filesystem;
@@ -31,11 +32,11 @@ std::string contents(const fs::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-Run run(const std::string& arguments) {
+Run run(const std::string& arguments, const std::string& environment = {}) {
   const TemporaryFolder folder;
   const fs::path out = folder.path / "out", error = folder.path / "error";
-  const int status =
-      std::system(fmt::format("{} {} >{} 2>{}", SPHERECHAIN_TOOL, arguments, out.string(), error.string()).c_str());
+  const int status = std::system(
+      fmt::format("{} {} {} >{} 2>{}", environment, SPHERECHAIN_TOOL, arguments, out.string(), error.string()).c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(out), contents(error)};
 }
 
@@ -137,7 +138,8 @@ TEST_CASE("play --json has the contract's fields; at rest nothing touches, hands
   };
   REQUIRE(play(fmt::format("--poses {} --frames 5 --fps 10", pose("hands_on_hips.json"))).code == 0);
   const json both = json::parse(contents(out));
-  CHECK(both["backend"] == "scalar");
+  CHECK(both["backend"] == (spherechain::best_target() == spherechain::Target::kScalar ? "scalar" : "simd"));
+  CHECK(both["target"] == spherechain::to_string(spherechain::best_target()));
   REQUIRE(both["frames"].size() == 5);
   for (std::size_t i = 0; i < 5; ++i) {
     const json& frame = both["frames"][i];
@@ -157,6 +159,31 @@ TEST_CASE("play --json has the contract's fields; at rest nothing touches, hands
   const json one = json::parse(contents(out));
   CHECK(one["frames"][0].contains("m1"));
   CHECK(!one["frames"][0].contains("m2"));
+  CHECK(one["backend"] == "scalar");
+  CHECK(one["target"] == "scalar");
+}
+
+TEST_CASE("SPHERECHAIN_TARGET names the instructions to play with; one that is not there is a usage error") {
+  const TemporaryFolder folder;
+  const fs::path out = folder.path / "play.json";
+  const auto play = [&](const char* target, const std::string& more) {
+    return run(fmt::format("play {} --source {} --frames 1 --json {} {}", baked_files().asset.string(), kHumanFile,
+                           out.string(), more),
+               std::string("SPHERECHAIN_TARGET=") + target);
+  };
+  for (const spherechain::Target target : spherechain::supported_targets()) {
+    const Run done = play(spherechain::to_string(target), "--backend simd");
+    REQUIRE(done.code == 0);
+    CHECK(json::parse(contents(out))["target"] == spherechain::to_string(target));
+    CHECK(done.out.find(spherechain::to_string(target)) != std::string::npos);
+  }
+  REQUIRE(play("best", "").code == 0);
+  CHECK(json::parse(contents(out))["target"] == spherechain::to_string(spherechain::best_target()));
+  REQUIRE(play("best", "--backend scalar").code == 0);
+  CHECK(json::parse(contents(out))["target"] == "scalar");
+  fs::remove(out);
+  check_error(play("mmx", ""), 2, {"SPHERECHAIN_TARGET: 'mmx' is no target of this machine (it has ", "scalar)"});
+  CHECK(!fs::exists(out));
 }
 
 TEST_CASE("--extremities puts spheres in head, hands and feet in any profile") {
@@ -213,6 +240,7 @@ TEST_CASE("usage errors end with 2") {
   CHECK(run("--help").code == 0);
   CHECK(run("bake --help").out.find("--report") != std::string::npos);
   CHECK(run("--version").out.find("spherechain ") == 0);
+  CHECK(run("--version").out.find(spherechain::to_string(spherechain::best_target())) != std::string::npos);
 }
 
 TEST_CASE("files that cannot be read end with 3, name the file and the cause, and leave nothing behind") {

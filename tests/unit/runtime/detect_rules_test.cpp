@@ -214,6 +214,7 @@ TEST_CASE("detect refuses what it cannot use and writes nothing") {
     CHECK(status_of(method, [&](DetectJob& j) { j.asset = &closed; }) == Status::kNotOpen);
     CHECK(status_of(method, [](DetectJob& j) { j.spheres.size = 4; }) == Status::kTooFewSpheres);
     CHECK(status_of(method, [](DetectJob& j) { j.radius = static_cast<RadiusKind>(2); }) == Status::kBadArgument);
+    CHECK(status_of(method, [](DetectJob& j) { j.target = static_cast<Target>(7); }) == Status::kUnsupportedTarget);
   }
   CHECK(status_of(Method::kM1, [](DetectJob& j) { j.method = static_cast<Method>(0); }) == Status::kBadArgument);
   CHECK(status_of(Method::kM1, [](DetectJob& j) { j.method = static_cast<Method>(3); }) == Status::kBadArgument);
