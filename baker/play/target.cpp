@@ -11,7 +11,7 @@ Target choose_target(const std::string& backend) {
   if (backend == "scalar") return Target::kScalar;
   const char* wanted = std::getenv("SPHERECHAIN_TARGET");
   Target target = Target::kBest;
-  if (wanted != nullptr && find_target(wanted, target) != Status::kOk) {
+  if (wanted != nullptr && *wanted != '\0' && find_target(wanted, target) != Status::kOk) {
     throw Error(ExitCode::kUsage, std::string("SPHERECHAIN_TARGET: '") + wanted +
                                       "' is no target of this machine (it has " + supported_targets_text() + ")");
   }

@@ -38,6 +38,10 @@ const char* to_string(Status status) noexcept {
       return "an argument has a value that does not exist";
     case Status::kUnsupportedTarget:
       return "this build or this machine does not have the instruction set asked for";
+    case Status::kBadFilter:
+      return "a filter's buffer has not the size the asset asks for";
+    case Status::kSharedMemory:
+      return "a buffer that is written shares memory with another";
   }
   return "unknown status";
 }

@@ -23,6 +23,11 @@ inline bool test_bit(Span<const std::uint64_t> words, std::size_t bit) {
 
 inline void set_bit(Span<std::uint64_t> words, std::size_t bit) { words[bit / 64] |= std::uint64_t{1} << (bit % 64); }
 
+inline void assign_bit(Span<std::uint64_t> words, std::size_t bit, bool value) {
+  const std::uint64_t mask = std::uint64_t{1} << (bit % 64);
+  words[bit / 64] = value ? words[bit / 64] | mask : words[bit / 64] & ~mask;
+}
+
 // The schema's order of the ignored pairs: independent of n.
 constexpr std::size_t ignored_bit(std::size_t a, std::size_t b) { return b * (b - 1) / 2 + a; }
 

@@ -16,7 +16,8 @@ Refitted refit(const Asset& asset, const std::vector<float>& positions, RadiusKi
   return result;
 }
 
-Detected detect(const Asset& asset, const std::vector<Sphere>& spheres, Method method, RadiusKind radius) {
+Detected detect(const Asset& asset, const std::vector<Sphere>& spheres, Method method, RadiusKind radius, Target target,
+                const Filter* filter) {
   std::vector<std::uint64_t> words(DetectContext::words_needed(asset), ~std::uint64_t{0});  // dirty on purpose
   DetectContext context{{words.data(), words.size()}};
   DetectJob job;
@@ -24,13 +25,17 @@ Detected detect(const Asset& asset, const std::vector<Sphere>& spheres, Method m
   job.spheres = {spheres.data(), spheres.size()};
   job.radius = radius;
   job.method = method;
+  job.target = target;
+  job.filter = filter;
   job.context = method == Method::kM1 ? &context : nullptr;
-  Detected result{job.run(), {}, {}, 0};
+  Detected result{job.run(), {}, {}, {}, 0};
   if (result.status != Status::kOk) {
     return result;
   }
   result.pairs.resize(job.pair_count);
   result.chain_pairs.resize(method == Method::kM1 ? job.chain_pair_count : 0);
+  result.bits.assign(DetectJob::bit_words(asset), ~std::uint64_t{0});
+  job.bits = {result.bits.data(), result.bits.size()};
   job.pairs = {result.pairs.data(), result.pairs.size()};
   job.chain_pairs = {result.chain_pairs.data(), result.chain_pairs.size()};
   result.status = job.run();

@@ -23,11 +23,13 @@ struct Detected {
   Status status;
   std::vector<Pair> pairs;
   std::vector<ChainPair> chain_pairs;
+  std::vector<std::uint64_t> bits;
   std::size_t test_count;
 };
 
 // Runs twice: to count, then with buffers of exactly that many.
-Detected detect(const Asset& asset, const std::vector<Sphere>& spheres, Method method, RadiusKind radius);
+Detected detect(const Asset& asset, const std::vector<Sphere>& spheres, Method method, RadiusKind radius,
+                Target target = Target::kBest, const Filter* filter = nullptr);
 
 // Bit for bit, so that a NaN equals itself.
 template <typename T>

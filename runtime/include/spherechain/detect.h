@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "spherechain/asset.h"
+#include "spherechain/filter.h"
 #include "spherechain/simd.h"
 #include "spherechain/status.h"
 #include "spherechain/types.h"
@@ -34,6 +35,9 @@ struct ChainPair {
 // for bit. With d2 = (dx*dx + dy*dy) + dz*dz, s = ra + rb:
 //   every pair   d2 < s*s  and  s*s <= FLT_MAX: what is not finite touches nothing
 //   a near pair  that, and  d2 < t*t  with  t = reach * s
+// A filter's padding is added to each radius first.
+//
+// Ask for what you need: pairs, bits, both, or neither to count. Bits alone are the cheapest, for they need no order.
 //
 // Fill in the fields and call run(). Allocates nothing, takes no lock; jobs with other outputs and contexts may run at
 // the same time.
@@ -43,18 +47,26 @@ struct DetectJob {
   RadiusKind radius = RadiusKind::kDetect;
   Method method = Method::kM2;
   Target target = Target::kBest;
+  const Filter* filter = nullptr;    // null: the asset's ignored pairs, all spheres as they are
+  bool first_only = false;           // M2: stop at the first pair of the sorted list
   DetectContext* context = nullptr;  // M1: required
   Span<Pair> pairs;                  // out: sorted by (a, b), each once; may be empty to count only
-  Span<ChainPair> chain_pairs;       // out, M1: the raw list, chain by chain, in chain order within one; may be empty
+  // Out: bit b(b-1)/2 + a of each pair found, as in Asset::ignored(), the rest 0; bit_words() words exactly, or empty.
+  Span<std::uint64_t> bits;
+  Span<ChainPair> chain_pairs;  // out, M1: the raw list, chain by chain, in chain order within one; may be empty
 
   // Out. Counts are what there is, also where a buffer was too small for it.
-  std::size_t pair_count = 0;        // unique pairs
+  std::size_t pair_count = 0;        // unique pairs; first_only: 0 or 1
   std::size_t chain_pair_count = 0;  // M1: overlaps with their repeats; M2: equal to pair_count
-  std::size_t test_count = 0;        // distance tests: pairs not ignored; M1: with repeats
+  std::size_t test_count =
+      0;  // distance tests: pairs not ignored; M1: with repeats; first_only: up to where it stopped
 
-  // kOk; kOverflow where `pairs` or `chain_pairs` was not empty and too small (the first entries are written, the
-  // counts say what is needed); kNullArgument, kNotOpen, kTooFewSpheres, kContextTooSmall, kBadArgument,
-  // kUnsupportedTarget: nothing is written, the counts keep their values.
+  static std::size_t bit_words(const Asset& asset) noexcept;
+
+  // Uses some 14 KiB of stack. kOk; kOverflow where `pairs` or `chain_pairs` was not empty and too small (the first
+  // entries are written, the counts say what is needed); kNullArgument, kNotOpen, kTooFewSpheres, kContextTooSmall,
+  // kBadArgument, kUnsupportedTarget, kBadFilter, kSharedMemory (what is written overlaps anything else): nothing is
+  // written, the counts keep their values.
   Status run() noexcept;
 };
 

@@ -21,6 +21,8 @@ enum class Status : int {
   kWrongSource = 13,        // the positions are not the rest pose the asset was baked from
   kBadArgument = 14,        // an enum value or an index that does not exist
   kUnsupportedTarget = 15,  // this build or this machine does not have the instruction set asked for
+  kBadFilter = 16,          // a Filter's buffer has not the size the asset asks for
+  kSharedMemory = 17,       // a buffer that is written shares memory with another
 };
 
 // A short English sentence without a final stop. Never null, also for values that do not exist.

@@ -222,7 +222,48 @@ TEST_CASE("detect refuses what it cannot use and writes nothing") {
   CHECK(status_of(Method::kM1, [&](DetectJob& j) { j.context = &null; }) == Status::kNullArgument);
   CHECK(status_of(Method::kM1, [](DetectJob& j) { j.chain_pairs.data = nullptr; }) == Status::kNullArgument);
   CHECK(status_of(Method::kM1, [&](DetectJob& j) { j.context = &small; }) == Status::kContextTooSmall);
+  std::vector<std::uint64_t> bits(2);
+  for (const Method method : {Method::kM1, Method::kM2}) {
+    CHECK(status_of(method, [&](DetectJob& j) { j.bits = {bits.data(), 2}; }) == Status::kBadArgument);
+    CHECK(status_of(method, [&](DetectJob& j) { j.bits = {nullptr, 1}; }) == Status::kNullArgument);
+  }
+  CHECK(status_of(Method::kM1, [](DetectJob& j) { j.first_only = true; }) == Status::kBadArgument);
   CHECK(buffers.pairs == std::vector<Pair>(200, {77, 77}));
+}
+
+TEST_CASE("detect refuses to write where it reads or writes something else") {
+  const OpenedAsset opened(plain_asset(5));
+  // One block of memory that every buffer is cut from; those that do not overlap are fine.
+  std::vector<std::uint64_t> memory(64, 7);
+  float* floats = reinterpret_cast<float*>(memory.data());
+  for (std::size_t i = 0; i < 20; ++i) floats[i] = 1.0F;  // five spheres: words 0 to 9
+  DetectContext context;
+  DetectJob job;
+  job.asset = &opened.asset;
+  job.context = &context;
+  job.spheres = {reinterpret_cast<const Sphere*>(memory.data()), 5};
+  const auto at = [&](std::size_t pairs, std::size_t bits, std::size_t words, std::size_t chain_pairs, Method method) {
+    job.method = method;
+    job.pairs = {reinterpret_cast<Pair*>(memory.data() + pairs), 10};
+    job.bits = {memory.data() + bits, 1};
+    context.words = {memory.data() + words, 1};
+    job.chain_pairs = {reinterpret_cast<ChainPair*>(memory.data() + chain_pairs), 10};
+    const std::vector<std::uint64_t> before = memory;
+    const Status status = job.run();
+    if (status != Status::kOk) CHECK(memory == before);
+    return status;
+  };
+  for (const Method method : {Method::kM1, Method::kM2}) {
+    CHECK(at(10, 20, 21, 22, method) == Status::kOk);
+    CHECK(at(9, 20, 21, 22, method) == Status::kSharedMemory);
+    CHECK(at(10, 19, 21, 22, method) == Status::kSharedMemory);
+    CHECK(at(10, 0, 21, 22, method) == Status::kSharedMemory);
+  }
+  CHECK(at(10, 20, 20, 22, Method::kM1) == Status::kSharedMemory);
+  CHECK(at(10, 20, 20, 22, Method::kM2) == Status::kOk);  // M2 needs neither of them
+  CHECK(at(10, 20, 21, 21, Method::kM1) == Status::kSharedMemory);
+  CHECK(at(10, 20, 21, 21, Method::kM2) == Status::kOk);
+  CHECK(at(10, 20, 9, 22, Method::kM1) == Status::kSharedMemory);
 }
 
 TEST_CASE("M2 needs no context") {

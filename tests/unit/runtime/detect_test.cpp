@@ -40,7 +40,7 @@ class Rules {
 
 Detected brute_force_all(const TinyAsset& tiny, const std::vector<Sphere>& spheres, RadiusKind kind) {
   const Rules rules(tiny, kind);
-  Detected result{Status::kOk, {}, {}, 0};
+  Detected result{Status::kOk, {}, {}, {}, 0};
   for (std::uint32_t a = 0; a < spheres.size(); ++a) {
     for (std::uint32_t b = a + 1; b < spheres.size(); ++b) {
       if (!rules.is_ignored({a, b})) {
@@ -56,7 +56,7 @@ Detected brute_force_all(const TinyAsset& tiny, const std::vector<Sphere>& spher
 
 Detected brute_force_chains(const TinyAsset& tiny, const std::vector<Sphere>& spheres, RadiusKind kind) {
   const Rules rules(tiny, kind);
-  Detected result{Status::kOk, {}, {}, 0};
+  Detected result{Status::kOk, {}, {}, {}, 0};
   std::set<Pair> unique;
   for (std::uint32_t c = 0; c < tiny.parts.chains.size(); ++c) {
     const std::vector<std::uint32_t>& members = tiny.parts.chains[c].spheres;
@@ -77,11 +77,21 @@ Detected brute_force_chains(const TinyAsset& tiny, const std::vector<Sphere>& sp
   return result;
 }
 
+// The table of the header, by its formula.
+std::vector<std::uint64_t> bits_of(const std::vector<Pair>& pairs, std::size_t n) {
+  std::vector<std::uint64_t> words((n * (n - 1) / 2 + 63) / 64);
+  for (const Pair& pair : pairs) {
+    const std::size_t bit = std::size_t{pair.b} * (pair.b - 1) / 2 + pair.a;
+    words[bit / 64] |= std::uint64_t{1} << (bit % 64);
+  }
+  return words;
+}
+
 }  // namespace
 
-TEST_CASE("M1 and M2 find what a brute force finds, at every size from 1 to 200") {
+TEST_CASE("M1 and M2 find what a brute force finds, at every size from 1 to 140 and some more, on every target") {
   std::size_t found = 0;
-  for (unsigned n = 1; n <= 200; ++n) {
+  for (unsigned n = 1; n <= 400; n += n < 140 ? 1 : 65) {
     CAPTURE(n);
     const TinyAsset tiny = random_asset(n, n);
     const OpenedAsset opened(tiny.parts);
@@ -89,23 +99,27 @@ TEST_CASE("M1 and M2 find what a brute force finds, at every size from 1 to 200"
     std::mt19937 random(n);
     const std::vector<Sphere> spheres = random_spheres(n, random);
     for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
-      const Detected m2 = detect(opened.asset, spheres, Method::kM2, kind);
       const Detected all = brute_force_all(tiny, spheres, kind);
-      CHECK(m2.status == Status::kOk);
-      CHECK(m2.pairs == all.pairs);
-      CHECK(m2.test_count == all.test_count);
-
-      const Detected m1 = detect(opened.asset, spheres, Method::kM1, kind);
       const Detected chains = brute_force_chains(tiny, spheres, kind);
-      CHECK(m1.status == Status::kOk);
-      CHECK(m1.pairs == chains.pairs);
-      CHECK(same_bits(m1.chain_pairs, chains.chain_pairs));
-      CHECK(m1.test_count == chains.test_count);
-      CHECK(std::includes(m2.pairs.begin(), m2.pairs.end(), m1.pairs.begin(), m1.pairs.end()));
-      found += m1.pairs.size();
+      for (const Target target : supported_targets()) {
+        CAPTURE(to_string(target));
+        const Detected m2 = detect(opened.asset, spheres, Method::kM2, kind, target);
+        CHECK(m2.status == Status::kOk);
+        CHECK(m2.pairs == all.pairs);
+        CHECK(m2.bits == bits_of(all.pairs, n));
+        CHECK(m2.test_count == all.test_count);
+        const Detected m1 = detect(opened.asset, spheres, Method::kM1, kind, target);
+        CHECK(m1.status == Status::kOk);
+        CHECK(m1.pairs == chains.pairs);
+        CHECK(m1.bits == bits_of(chains.pairs, n));
+        CHECK(same_bits(m1.chain_pairs, chains.chain_pairs));
+        CHECK(m1.test_count == chains.test_count);
+      }
+      CHECK(std::includes(all.pairs.begin(), all.pairs.end(), chains.pairs.begin(), chains.pairs.end()));
+      found += chains.pairs.size();
     }
   }
-  CHECK(found > 50000);  // the comparison above was not of empty lists
+  CHECK(found > 40000);  // the comparison above was not of empty lists
 }
 
 TEST_CASE("M1 reports a pair once, and in the raw list once a chain, in chain order") {
@@ -122,6 +136,35 @@ TEST_CASE("M1 reports a pair once, and in the raw list once a chain, in chain or
   CHECK(same_bits(m1.chain_pairs, raw));
   CHECK(m1.test_count == 6);
   CHECK(detect(opened.asset, heap, Method::kM2, RadiusKind::kDetect).pairs.size() == 10);
+}
+
+TEST_CASE("the first pair is the first of the list, with its bit alone, on every target and at every size") {
+  for (const unsigned n : {1U, 2U, 30U, 64U, 129U, 300U}) {
+    std::mt19937 random(n);
+    const OpenedAsset opened(random_asset(n, n).parts);
+    for (int sparse = 0; sparse < 4; ++sparse) {
+      std::vector<Sphere> spheres = random_spheres(n, random);
+      for (Sphere& sphere : spheres) sphere.radius *= sparse == 0 ? 1.0F : 0.2F / static_cast<float>(sparse);
+      const std::vector<Pair> all = detect(opened.asset, spheres, Method::kM2, RadiusKind::kFit).pairs;
+      for (const Target target : supported_targets()) {
+        Pair first{77, 77};
+        std::vector<std::uint64_t> bits(DetectJob::bit_words(opened.asset), 5);
+        DetectJob job;
+        job.asset = &opened.asset;
+        job.spheres = {spheres.data(), spheres.size()};
+        job.radius = RadiusKind::kFit;
+        job.target = target;
+        job.first_only = true;
+        job.bits = {bits.data(), bits.size()};
+        REQUIRE(job.run() == Status::kOk);
+        CHECK(job.pair_count == (all.empty() ? 0 : 1));
+        CHECK(bits == bits_of({all.begin(), all.begin() + (all.empty() ? 0 : 1)}, n));
+        job.pairs = {&first, 1};
+        REQUIRE(job.run() == Status::kOk);
+        CHECK(first == (all.empty() ? Pair{77, 77} : all[0]));
+      }
+    }
+  }
 }
 
 TEST_CASE("M2 counts each pair as its only overlap") {

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+// What M1 and M2 share: the pairs to look at, a tile of them tested, and lists out of bits.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "overlap.h"
+#include "spherechain/detect.h"
+#include "triangle_bits.h"
+
+namespace spherechain {
+
+// A list that counts on past its end.
+template <typename T>
+struct Output {
+  Span<T> buffer;
+  std::size_t count = 0;
+
+  void add(const T& value) {
+    put(count, value);
+    ++count;
+  }
+  void put(std::size_t at, const T& value) const {
+    if (at < buffer.size) {
+      buffer[at] = value;
+    }
+  }
+  // A caller who only wants the count brings no buffer.
+  bool overflowed() const { return buffer.size > 0 && count > buffer.size; }
+};
+
+// What a job looks at, its filter taken into account.
+struct Scene {
+  const Asset* asset;
+  const Sphere* spheres;
+  Span<const NearPair> near;
+  Span<const std::uint64_t> ignored;
+  Span<const std::uint64_t> disabled;  // may be empty
+  Span<const float> padding;           // may be empty
+  Target target;                       // resolved
+
+  std::size_t size() const { return asset->spheres().size; }
+  bool is_enabled(std::size_t i) const { return disabled.size == 0 || !test_bit(disabled, i); }
+  Sphere sphere(std::size_t i) const {
+    Sphere s = spheres[i];
+    s.radius += padding.size == 0 ? 0.0F : padding[i];
+    return s;
+  }
+};
+
+struct Result {
+  Output<Pair> pairs;
+  Output<ChainPair> chain_pairs;
+  Span<std::uint64_t> bits;
+  bool first_only = false;
+  std::size_t tests = 0;
+};
+
+inline float squared_distance(const Sphere& p, const Sphere& q) {
+  const float dx = p.x - q.x;
+  const float dy = p.y - q.y;
+  const float dz = p.z - q.z;
+  return (dx * dx + dy * dy) + dz * dz;
+}
+
+// For spheres that overlap: a reach below 1 only ever narrows that test, also after rounding, so testing that first
+// loses nothing.
+inline bool within_reach(const Sphere& p, const Sphere& q, float reach) {
+  const float t = reach * (p.radius + q.radius);
+  return squared_distance(p, q) < t * t;
+}
+
+// All spheres from first_column on, at most kTileSize, against all from first_row on.
+class TestedTile {
+ public:
+  explicit TestedTile(const Scene& scene) : scene_(scene) {}
+
+  void set_columns(std::size_t first);
+  // `wanted`, where it is not null, has room for kTileSize rows: see Tile.
+  void run(std::size_t first_row, std::uint64_t (*wanted)[kTileWords] = nullptr);
+
+  std::size_t first_column() const { return tile_.first_column; }
+  std::size_t first_row() const { return tile_.first_row; }
+  std::size_t row_count() const { return tile_.row_count; }
+  std::size_t test_count() const { return tile_.test_count; }
+  const std::uint64_t (*bits() const)[kTileWords] { return bits_; }
+  const Tile& tile() const { return tile_; }
+
+ private:
+  const Sphere* block(std::size_t first, std::size_t count, Sphere* copy) const;
+  void enable(std::size_t first, std::uint64_t* words) const;
+  void drop_near();
+
+  const Scene& scene_;
+  Tile tile_;
+  Span<const NearPair> near_;  // those of the columns
+  const Sphere* column_spheres_ = nullptr;
+  bool column_is_huge_ = false;
+  SphereColumns columns_;
+  Sphere padded_columns_[kTileSize], padded_rows_[kTileSize];
+  std::uint64_t bits_[kTileSize][kTileWords];
+};
+
+// Orders a tile's bits by column, then row: the order of a sorted list.
+class ColumnOrder {
+ public:
+  ColumnOrder() { clear(); }
+  void clear();
+  void count(const std::uint64_t (*bits)[kTileWords], std::size_t rows);
+  std::size_t total() const { return total_; }
+  // From counts to the place each column's entries begin at.
+  void begin_at(std::size_t place);
+  template <typename Put>
+  void place(const std::uint64_t (*bits)[kTileWords], std::size_t rows, const Put& put) {
+    for (std::size_t r = 0; r < rows; ++r) {
+      for (std::size_t w = 0; w < kTileWords; ++w) {
+        for (std::uint64_t word = bits[r][w]; word != 0; word &= word - 1) {
+          const std::size_t column = 64 * w + lowest_bit(word);
+          put(at_[column]++, column, r);
+        }
+      }
+    }
+  }
+
+ private:
+  std::size_t total_ = 0;
+  std::uint64_t columns_[kTileWords];
+  std::uint32_t at_[kTileSize];
+};
+
+// The pairs (first_column + c, first_row + r) of a tile's bits into a table in the order of Asset::ignored().
+void copy_bits(const std::uint64_t (*bits)[kTileWords], std::size_t rows, std::size_t first_column,
+               std::size_t first_row, Span<std::uint64_t> table);
+
+void detect_all(const Scene& scene, Result& result);
+
+// `seen` has a bit a pair, in the order of sorted pairs.
+void detect_chains(const Scene& scene, Span<std::uint64_t> seen, Result& result);
+
+}  // namespace spherechain

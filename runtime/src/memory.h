@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// Do a caller's buffers lie on top of each other?
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "spherechain/types.h"
+
+namespace spherechain {
+
+struct MemoryRange {
+  std::uintptr_t begin = 0, end = 0;
+};
+
+template <typename T>
+MemoryRange range_of(const Span<T>& span) {
+  const auto begin = reinterpret_cast<std::uintptr_t>(span.data);
+  return {begin, begin + span.size * sizeof(T)};
+}
+
+// Empty ranges share nothing.
+inline bool is_shared(const MemoryRange& p, const MemoryRange& q) {
+  return p.begin < q.end && q.begin < p.end && p.begin < p.end && q.begin < q.end;
+}
+
+// Each of `written` against all others and all of `read`.
+template <std::size_t kWritten, std::size_t kRead>
+bool any_shared(const MemoryRange (&written)[kWritten], const MemoryRange (&read)[kRead]) {
+  bool shared = false;
+  for (std::size_t i = 0; i < kWritten; ++i) {
+    for (std::size_t j = i + 1; j < kWritten; ++j) {
+      shared |= is_shared(written[i], written[j]);
+    }
+    for (const MemoryRange& range : read) {
+      shared |= is_shared(written[i], range);
+    }
+  }
+  return shared;
+}
+
+}  // namespace spherechain
