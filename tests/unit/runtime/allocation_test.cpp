@@ -3,18 +3,23 @@
 
 #include "counting_new.h"
 #include "jobs.h"
+#include "spherechain/contacts.h"
 #include "tiny_asset.h"
 
 namespace spherechain::test {
 
 // symbol_rules.cmake sees to malloc.
-TEST_CASE("open, refit and detect allocate nothing") {
+TEST_CASE("open, refit, detect, filters and contacts allocate nothing, on any target") {
   const TinyAsset tiny = random_asset(60, 1);
   const OpenedAsset opened(tiny.parts);
   std::vector<Sphere> spheres(60);
   std::vector<Pair> pairs(2000);
   std::vector<ChainPair> chain_pairs(4000);
   std::vector<std::uint64_t> words(DetectContext::words_needed(opened.asset));
+  std::vector<std::uint64_t> bits(words.size()), ignored(words.size()), disabled(1);
+  std::vector<float> padding(60);
+  std::vector<Contact> contacts(2000);
+  Filter filter{{ignored.data(), ignored.size()}, {disabled.data(), 1}, {padding.data(), padding.size()}};
   DetectContext context{{words.data(), words.size()}};
   RefitJob refit;
   refit.positions = tiny.rest.data();
@@ -24,6 +29,7 @@ TEST_CASE("open, refit and detect allocate nothing") {
   detect.spheres = {spheres.data(), spheres.size()};
   detect.context = &context;
   detect.pairs = {pairs.data(), pairs.size()};
+  detect.bits = {bits.data(), bits.size()};
   detect.chain_pairs = {chain_pairs.data(), chain_pairs.size()};
 
   const std::size_t before = allocation_count();
@@ -38,6 +44,23 @@ TEST_CASE("open, refit and detect allocate nothing") {
   const std::size_t m2_pairs = detect.pair_count;
   detect.method = Method::kM1;
   const Status m1_status = detect.run();
+  const Status filter_status = reset_filter(asset, filter);
+  const Status edit_status = ignore_regions(asset, filter, 0, 1);
+  detect.filter = &filter;
+  Status target_status = Status::kOk;
+  for (const Target target : supported_targets()) {
+    for (const Method method : {Method::kM1, Method::kM2}) {
+      detect.target = target;
+      detect.method = method;
+      target_status = target_status == Status::kOk ? detect.run() : target_status;
+    }
+  }
+  ContactJob contact;
+  contact.asset = &asset;
+  contact.spheres = {spheres.data(), spheres.size()};
+  contact.pairs = {pairs.data(), detect.pair_count};
+  contact.contacts = {contacts.data(), contacts.size()};
+  const Status contact_status = contact.run();
   Asset closed;
   const Status bad_status = closed.open(opened.bytes.data(), opened.bytes.size() - 100, message, sizeof message);
   const std::size_t after = allocation_count();
@@ -48,6 +71,11 @@ TEST_CASE("open, refit and detect allocate nothing") {
   CHECK(refit_status == Status::kOk);
   CHECK(m2_status == Status::kOk);
   CHECK(m1_status == Status::kOk);
+  CHECK(filter_status == Status::kOk);
+  CHECK(edit_status == Status::kOk);
+  CHECK(target_status == Status::kOk);
+  CHECK(contact_status == Status::kOk);
+  CHECK(contact.contact_count > 0);
   CHECK(bad_status == Status::kCorrupt);
   CHECK(m2_pairs > 0);
   CHECK(before > 0);  // the counter does count
