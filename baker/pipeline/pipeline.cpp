@@ -61,11 +61,15 @@ void run_after_fit(Bake& out, const Progress& progress) {
   stage(out, progress, "bind",
         [&] { out.binding = bind_spheres(out.character, out.regions, out.spheres, settings.bind); });
   stage(out, progress, "rig", [&] {
-    if (is_biped(out.regions)) out.joints = place_joints(out.character, out.regions);
+    if (is_biped(out.regions) && out.joints.empty()) {
+      out.joints = place_joints(out.character, out.regions);
+      if (out.character.rig.bones.empty()) out.rig_weights = rig_weights(out.character, out.joints);
+    }
+    out.bones = bind_bones(out.character, out.binding, out.joints, out.rig_weights);
   });
   stage(out, progress, "write", [&] {
     out.asset =
-        serialize({out.character, out.regions, out.spheres, out.chains, out.binding, out.joints, to_json(settings)});
+        serialize({out.character, out.regions, out.spheres, out.chains, out.binding, out.joints, out.bones, to_json(settings)});
   });
 }
 
@@ -92,6 +96,8 @@ Bake rebake(const Bake& bake, const BakeSettings& settings) {
   out.settings = settings;
   out.character = bake.character;
   out.regions = bake.regions;
+  out.joints = bake.joints;
+  out.rig_weights = bake.rig_weights;
   if (settings.fit == bake.settings.fit) {
     out.spheres = bake.spheres;
   } else {

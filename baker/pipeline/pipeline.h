@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bind/bind.h"
+#include "bind/bind_bones.h"
 #include "chains/chains.h"
 #include "fit/fit.h"
 #include "import/import.h"
@@ -58,6 +59,8 @@ struct Bake {
   Chains chains;
   Binding binding;
   std::vector<Joint> joints;
+  std::vector<VertexWeights> rig_weights;  // to the joints, of every source vertex; none where the source has bones
+  BoneBinding bones;
   std::vector<std::uint8_t> asset;
   std::vector<StageTime> times;
 };

@@ -48,6 +48,23 @@ ordered_json to_json(const FitError& e) {
   return {{"mean_abs_F", number(e.mean_abs_f)}, {"max_abs_F", number(e.max_abs_f)}};
 }
 
+ordered_json bones_json(const Asset& asset) {
+  ordered_json bones = ordered_json::array();
+  for (std::size_t i = 0; i < asset.bone_count(); ++i) {
+    const BoneView bone = asset.bone(i);
+    ordered_json inverse_bind = ordered_json::array();
+    for (std::size_t e = 0; e < 12; ++e) inverse_bind.push_back(number(bone.inverse_bind[e]));
+    bones.push_back({{"name", bone.name}, {"inverse_bind", std::move(inverse_bind)}, {"is_rest", bone.is_rest}});
+  }
+  return bones;
+}
+
+std::size_t bytes_of(const BoneTables& tables) {
+  const auto bytes = [](const auto& span) { return span.size * sizeof(span[0]); };
+  return bytes(tables.weights) + bytes(tables.term_counts) + bytes(tables.term_bones) + bytes(tables.terms) +
+         bytes(tables.morph_term_counts) + bytes(tables.morph_targets) + bytes(tables.morph_terms);
+}
+
 ordered_json sphere_json(const Asset& asset, std::size_t i) {
   const RestSphere& sphere = asset.spheres()[i];
   ordered_json pivots = ordered_json::array();
@@ -79,7 +96,7 @@ std::string inspect_json(const Asset& asset) {
                      {"hash", fmt::format("{:016x}", part.hash)}});
   }
   ordered_json regions = ordered_json::array(), spheres = ordered_json::array(), chains = ordered_json::array(),
-               joints = ordered_json::array();
+               joints = ordered_json::array(), morphs = ordered_json::array();
   for (std::size_t r = 0; r < asset.region_count(); ++r) {
     regions.push_back({{"name", asset.region(r).name},
                        {"triangles", asset.region(r).triangle_count},
@@ -101,6 +118,8 @@ std::string inspect_json(const Asset& asset) {
                       {"position", to_json(joint.position)},
                       {"tail", to_json(joint.tail)}});
   }
+  for (std::size_t m = 0; m < asset.morph_count(); ++m) morphs.push_back(asset.morph_name(m));
+  const BoneTables& tables = asset.bone_tables();
   const ordered_json out{
       {"format_version", info.format_version},
       {"writer", info.writer},
@@ -131,6 +150,14 @@ std::string inspect_json(const Asset& asset) {
       {"spheres", std::move(spheres)},
       {"chains", std::move(chains)},
       {"joints", std::move(joints)},
+      {"bones", bones_json(asset)},
+      {"morphs", std::move(morphs)},
+      {"bone_tables",
+       {{"groups", tables.weights.size},
+        {"terms", tables.terms.size},
+        {"morph_terms", tables.morph_terms.size},
+        {"bytes", bytes_of(tables)}}},
+      {"pivot_vertices", asset.pivot_vertices().size},
       {"fit",
        {{"phi1", to_json(info.phi1)}, {"phi1_adjusted", to_json(info.phi1_adjusted)}, {"phi2", to_json(info.phi2)}}}};
   // A name in a foreign asset may hold any bytes; JSON must not.
@@ -147,6 +174,10 @@ std::string inspect_text(const Asset& asset) {
   out += fmt::format("spheres  {}, {} chain entries ({} as Table 1 counts), {} pairs ignored, {} joints\n",
                      asset.spheres().size, count_chain_entries(asset), info.chain_entries_table1, count_ignored(asset),
                      asset.joint_count());
+  const BoneTables& tables = asset.bone_tables();
+  out += fmt::format("bones    {}, {} morph targets; refit from them: {} terms, {} of morphs, {} bytes\n",
+                     asset.bone_count(), asset.morph_count(), tables.terms.size, tables.morph_terms.size,
+                     bytes_of(tables));
   out += fmt::format("\n{:<12} {:>9} {:>7}\n", "region", "triangles", "spheres");
   for (std::size_t r = 0; r < asset.region_count(); ++r) {
     out += fmt::format("{:<12} {:>9} {:>7}\n", asset.region(r).name, asset.region(r).triangle_count,

@@ -5,6 +5,7 @@
 #include "mesh/error.h"
 #include "sphere_chains_generated.h"
 #include "spherechain/asset.h"
+#include "write/bone_tables.h"
 #include "write/version.h"
 #include "write/write.h"
 
@@ -107,6 +108,8 @@ std::vector<std::uint8_t> serialize(const AssetSource& in) {
     const schema::Vec3 position = to_schema(joint.position), tail = to_schema(joint.tail);
     joints.push_back(schema::CreateJointDirect(builder, joint.name.c_str(), joint.parent, &position, &tail));
   }
+  const PackedPivots packed = pack_pivots(pivots);
+  const auto bone_refit = create_bone_refit(builder, in.bones);
   const std::vector<std::uint64_t> ignored = ignored_bits(in);
   const std::vector<schema::NearPair> near_fit = to_schema(in.binding.near_fit),
                                       near_detect = to_schema(in.binding.near_detect);
@@ -132,12 +135,13 @@ std::vector<std::uint8_t> serialize(const AssetSource& in) {
                          phi2 = fit_error(in, &TorsoFit::phi2);
   const auto fit = schema::CreateFit(builder, &phi1, &adjusted, &phi2);
 
-  builder.Finish(schema::CreateAssetDirect(
-                     builder, kFormatVersion, provenance, source, frame,
-                     in.binding.rule == RefitRule::kPaper ? schema::Refit::paper : schema::Refit::calibrated, fit,
-                     &regions, &spheres, &pivots, &triangles.triangles, &chains,
-                     static_cast<std::uint32_t>(in.chains.entries_table1), &ignored, &near_fit, &near_detect, &joints),
-                 schema::AssetIdentifier());
+  builder.Finish(
+      schema::CreateAssetDirect(builder, kFormatVersion, provenance, source, frame,
+                                in.binding.rule == RefitRule::kPaper ? schema::Refit::paper : schema::Refit::calibrated,
+                                fit, &regions, &spheres, &pivots, &triangles.triangles, &chains,
+                                static_cast<std::uint32_t>(in.chains.entries_table1), &ignored, &near_fit, &near_detect,
+                                &joints, &packed.vertices, &packed.pivots, bone_refit),
+      schema::AssetIdentifier());
   std::vector<std::uint8_t> bytes(builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize());
 
   Asset check;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bind/bind.h"
+#include "bind/bind_bones.h"
 #include "chains/chains.h"
 #include "rig/rig.h"
 
@@ -21,6 +22,7 @@ struct AssetSource {
   const Chains& chains;
   const Binding& binding;
   const std::vector<Joint>& joints;
+  const BoneBinding& bones;
   std::string settings;  // canonical JSON
 };
 

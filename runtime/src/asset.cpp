@@ -31,6 +31,11 @@ static_assert(kSameLayout<RestSphere, schema::Sphere> && offsetof(RestSphere, ra
               offsetof(RestSphere, region) == 38 && offsetof(RestSphere, side) == 39 &&
               offsetof(RestSphere, level) == 40 && offsetof(RestSphere, reserved) == 42);
 
+static_assert(kSameLayout<PivotLanes, schema::Lanes> && kSameLayout<BoneTerm, schema::BoneTerm> &&
+              offsetof(BoneTerm, y) == 32 && offsetof(BoneTerm, z) == 64 && offsetof(BoneTerm, w) == 96);
+static_assert(kSameLayout<MorphTerm, schema::MorphTerm> && offsetof(MorphTerm, y) == 32 &&
+              offsetof(MorphTerm, z) == 64);
+
 constexpr std::size_t kHeaderSize = 8;  // the root's offset and the identifier
 constexpr std::size_t kMinSize = kHeaderSize + sizeof(schema::Sphere) + sizeof(schema::Pivot);
 constexpr std::size_t kMaxSize = FLATBUFFERS_MAX_BUFFER_SIZE - 1;
@@ -46,6 +51,18 @@ Span<const View> view(const Vector& vector) {
 
 Vec3 to_vec3(const schema::Vec3* v) { return {v->x(), v->y(), v->z()}; }
 FitError to_error(const schema::FitError* e) { return {e->mean_abs_f(), e->max_abs_f()}; }
+
+BoneTables tables_of(const schema::BoneRefit& refit) {
+  BoneTables tables;
+  tables.weights = view<PivotLanes>(*refit.weights());
+  tables.term_counts = view<std::uint32_t>(*refit.term_counts());
+  tables.term_bones = view<std::uint32_t>(*refit.term_bones());
+  tables.terms = view<BoneTerm>(*refit.terms());
+  tables.morph_term_counts = view<std::uint32_t>(*refit.morph_term_counts());
+  tables.morph_targets = view<std::uint32_t>(*refit.morph_targets());
+  tables.morph_terms = view<MorphTerm>(*refit.morph_terms());
+  return tables;
+}
 
 Status verify(const void* data, std::size_t size, Message& message) {
   if (data == nullptr) {
@@ -104,6 +121,13 @@ Status Asset::open(const void* data, std::size_t size, char* message, std::size_
   if (const auto* parts = root.source()->parts()) {
     source_parts_ = view<SourcePart>(*parts);
   }
+  if (root.pivot_vertices() != nullptr) {
+    pivot_vertices_ = view<std::uint32_t>(*root.pivot_vertices());
+    packed_pivots_ = view<Pivot>(*root.packed_pivots());
+  }
+  if (root.bone_refit() != nullptr) {
+    bone_tables_ = tables_of(*root.bone_refit());
+  }
   return Status::kOk;
 }
 
@@ -131,10 +155,12 @@ AssetInfo Asset::info() const noexcept {
   info.phi1 = to_error(root.fit()->phi1());
   info.phi1_adjusted = to_error(root.fit()->phi1_adjusted());
   info.phi2 = to_error(root.fit()->phi2());
-  info.refit = static_cast<RefitRule>(root.refit());
+  info.refit = refit_rule();
   info.chain_entries_table1 = root.chain_entries_table1();
   return info;
 }
+
+RefitRule Asset::refit_rule() const noexcept { return static_cast<RefitRule>(root_of(root_).refit()); }
 
 std::size_t Asset::region_count() const noexcept { return root_of(root_).regions()->size(); }
 
@@ -158,6 +184,25 @@ std::size_t Asset::joint_count() const noexcept {
 JointView Asset::joint(std::size_t i) const noexcept {
   const schema::Joint& joint = *root_of(root_).joints()->Get(static_cast<flatbuffers::uoffset_t>(i));
   return {joint.name()->c_str(), joint.parent(), to_vec3(joint.position()), to_vec3(joint.tail())};
+}
+
+std::size_t Asset::bone_count() const noexcept {
+  const auto* refit = root_of(root_).bone_refit();
+  return refit == nullptr ? 0 : refit->bones()->size();
+}
+
+BoneView Asset::bone(std::size_t i) const noexcept {
+  const schema::Bone& bone = *root_of(root_).bone_refit()->bones()->Get(static_cast<flatbuffers::uoffset_t>(i));
+  return {bone.name()->c_str(), bone.inverse_bind()->elements()->data(), bone.is_rest()};
+}
+
+std::size_t Asset::morph_count() const noexcept {
+  const auto* refit = root_of(root_).bone_refit();
+  return refit == nullptr ? 0 : refit->morphs()->size();
+}
+
+const char* Asset::morph_name(std::size_t i) const noexcept {
+  return root_of(root_).bone_refit()->morphs()->Get(static_cast<flatbuffers::uoffset_t>(i))->c_str();
 }
 
 }  // namespace spherechain

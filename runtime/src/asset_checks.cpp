@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "bone_checks.h"
 #include "sphere_chains_generated.h"
 #include "spherechain/asset.h"
 #include "triangle_bits.h"
@@ -312,7 +313,8 @@ bool values_are_valid(const schema::Asset& root, std::size_t size, Message& mess
   return check_header(root, message) && check_parts(*root.source(), message) && check_pivots(root, message) &&
          check_triangles(root, message) && check_spheres(root, message) && check_chains(root, size, message) &&
          check_ignored(root, message) && check_near(*root.near_fit(), "near_fit", root.spheres()->size(), message) &&
-         check_near(*root.near_detect(), "near_detect", root.spheres()->size(), message) && check_joints(root, message);
+         check_near(*root.near_detect(), "near_detect", root.spheres()->size(), message) &&
+         check_joints(root, message) && bone_values_are_valid(root, message);
 }
 
 std::size_t count_ignored(const schema::Asset& root) {

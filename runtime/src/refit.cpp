@@ -24,29 +24,32 @@ Vec3 centroid(const VertexBuffer& vertices, const Pivot& pivot) {
   return {((a[0] + b[0]) + c[0]) * kThird, ((a[1] + b[1]) + c[1]) * kThird, ((a[2] + b[2]) + c[2]) * kThird};
 }
 
-Vec3 center_of(const VertexBuffer& vertices, Span<const Pivot> pivots) {
-  Vec3 center{0.0F, 0.0F, 0.0F};
-  for (const Pivot& pivot : pivots) {
-    const Vec3 p = centroid(vertices, pivot);
-    center.x += pivot.weight * p.x;
-    center.y += pivot.weight * p.y;
-    center.z += pivot.weight * p.z;
+// Centre, and in place of the radius the pivots' mean distance from it.
+Sphere mean_sphere(const VertexBuffer& vertices, Span<const Pivot> pivots) {
+  // A sphere may have any number of pivots; of more than this the centroids are worked out twice.
+  constexpr std::size_t kKept = 16;
+  Vec3 kept[kKept];
+  const bool keeps = pivots.size <= kKept;
+  Sphere sphere{0.0F, 0.0F, 0.0F, 0.0F};
+  for (std::size_t k = 0; k < pivots.size; ++k) {
+    const Vec3 p = centroid(vertices, pivots[k]);
+    if (keeps) {
+      kept[k] = p;
+    }
+    sphere.x += pivots[k].weight * p.x;
+    sphere.y += pivots[k].weight * p.y;
+    sphere.z += pivots[k].weight * p.z;
   }
-  return center;
-}
-
-// Works the centroids out a second time: a sphere may have any number of pivots, and there is no memory to keep them
-// in.
-float mean_distance(const VertexBuffer& vertices, Span<const Pivot> pivots, const Vec3& center) {
   float sum = 0.0F;
-  for (const Pivot& pivot : pivots) {
-    const Vec3 p = centroid(vertices, pivot);
-    const float dx = p.x - center.x;
-    const float dy = p.y - center.y;
-    const float dz = p.z - center.z;
+  for (std::size_t k = 0; k < pivots.size; ++k) {
+    const Vec3 p = keeps ? kept[k] : centroid(vertices, pivots[k]);
+    const float dx = p.x - sphere.x;
+    const float dy = p.y - sphere.y;
+    const float dz = p.z - sphere.z;
     sum += std::sqrt((dx * dx + dy * dy) + dz * dz);
   }
-  return sum / static_cast<float>(pivots.size);
+  sphere.radius = sum / static_cast<float>(pivots.size);
+  return sphere;
 }
 
 float radius_of(const RestSphere& rest, float mean, RefitRule rule, RadiusKind kind) {
@@ -65,14 +68,18 @@ Status RefitJob::run() const noexcept {
   if (!asset->is_open()) {
     return Status::kNotOpen;
   }
-  if (radius != RadiusKind::kFit && radius != RadiusKind::kDetect) {
+  if ((radius != RadiusKind::kFit && radius != RadiusKind::kDetect) ||
+      (vertices != VertexSet::kSource && vertices != VertexSet::kPivots)) {
     return Status::kBadArgument;
   }
   if (!is_valid_stride(stride)) {
     return Status::kBadStride;
   }
-  const AssetInfo info = asset->info();
-  if (vertex_count < info.source_vertex_count) {
+  const bool packed = vertices == VertexSet::kPivots;
+  if (packed && asset->packed_pivots().size == 0) {
+    return Status::kNotInAsset;
+  }
+  if (vertex_count < (packed ? asset->pivot_vertices().size : asset->info().source_vertex_count)) {
     return Status::kTooFewVertices;
   }
   const Span<const RestSphere> rest = asset->spheres();
@@ -80,12 +87,13 @@ Status RefitJob::run() const noexcept {
     return Status::kTooFewSpheres;
   }
 
-  const VertexBuffer vertices{positions, stride};
+  const VertexBuffer buffer{positions, stride};
+  const Pivot* pivots = (packed ? asset->packed_pivots() : asset->pivots()).data;
+  const RefitRule rule = asset->refit_rule();
   for (std::size_t i = 0; i < rest.size; ++i) {
-    const Span<const Pivot> pivots{asset->pivots().data + rest[i].first_pivot, rest[i].pivot_count};
-    const Vec3 center = center_of(vertices, pivots);
-    const float mean = mean_distance(vertices, pivots, center);
-    spheres[i] = {center.x, center.y, center.z, radius_of(rest[i], mean, info.refit, radius)};
+    Sphere sphere = mean_sphere(buffer, {pivots + rest[i].first_pivot, rest[i].pivot_count});
+    sphere.radius = radius_of(rest[i], sphere.radius, rule, radius);
+    spheres[i] = sphere;
   }
   return Status::kOk;
 }

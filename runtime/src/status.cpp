@@ -31,7 +31,7 @@ const char* to_string(Status status) noexcept {
     case Status::kOverflow:
       return "an output buffer was too small for what there is";
     case Status::kBadStride:
-      return "the vertex stride is below 12 bytes or no multiple of 4";
+      return "a stride is too short or no multiple of 4";
     case Status::kWrongSource:
       return "the positions are not the rest pose the asset was baked from";
     case Status::kBadArgument:
@@ -42,6 +42,12 @@ const char* to_string(Status status) noexcept {
       return "a filter's buffer has not the size the asset asks for";
     case Status::kSharedMemory:
       return "a buffer that is written shares memory with another";
+    case Status::kNotInAsset:
+      return "the asset lacks the tables for this (baked by an older version, or from a source without bones)";
+    case Status::kTooFewBones:
+      return "there are fewer bone matrices than the asset has bones";
+    case Status::kTooFewMorphs:
+      return "there are fewer morph weights than the asset has morph targets";
   }
   return "unknown status";
 }

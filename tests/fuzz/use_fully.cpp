@@ -52,6 +52,16 @@ void read_all(const Asset& asset) {
     read(joint.name);
     sink = sink + static_cast<std::size_t>(joint.parent + 1);
   }
+  for (std::size_t i = 0; i < asset.bone_count(); ++i) {
+    const BoneView bone = asset.bone(i);
+    read(bone.name);
+    read(Span<const float>{bone.inverse_bind, 12});
+  }
+  for (std::size_t i = 0; i < asset.morph_count(); ++i) {
+    read(asset.morph_name(i));
+  }
+  read(asset.pivot_vertices());
+  read(asset.packed_pivots());
   // What a narrow phase would do with the surrounding regions.
   for (const RestSphere& sphere : asset.spheres()) {
     read(Span<const std::uint32_t>{asset.triangles().data + sphere.first_triangle, sphere.triangle_count});
@@ -83,6 +93,28 @@ bool detect_all_ways(const Asset& asset, const std::vector<Sphere>& spheres) {
   return true;
 }
 
+// With matrices and weights in blocks of exactly as many as the asset has.
+bool refit_bones_all_ways(const Asset& asset) {
+  std::mt19937 random(2);
+  std::vector<float> matrices(12 * asset.bone_count()), morph_weights(asset.morph_count());
+  for (float& element : matrices) {
+    element = uniform(random, -1, 1);
+  }
+  for (float& weight : morph_weights) {
+    weight = uniform(random, -1, 1);
+  }
+  const BoneMatrices bones{matrices.data(), asset.bone_count()};
+  for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
+    for (const auto& weights : {std::vector<float>(), morph_weights}) {
+      const Refitted refitted = refit_bones(asset, bones, weights, kind);
+      if (asset.bone_count() > 0 && refitted.status != Status::kOk) {
+        return broken("a refit job from bones failed");
+      }
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 Use use_fully(const Asset& asset) {
@@ -91,7 +123,7 @@ Use use_fully(const Asset& asset) {
   for (const RestSphere& sphere : asset.spheres()) {
     rest.push_back({sphere.center.x, sphere.center.y, sphere.center.z, sphere.detect_radius});
   }
-  if (!detect_all_ways(asset, rest)) {
+  if (!detect_all_ways(asset, rest) || !refit_bones_all_ways(asset)) {
     return Use::kBroken;
   }
   const std::uint32_t vertex_count = asset.info().source_vertex_count;

@@ -16,6 +16,20 @@ Refitted refit(const Asset& asset, const std::vector<float>& positions, RadiusKi
   return result;
 }
 
+Refitted refit_bones(const Asset& asset, const BoneMatrices& bones, const std::vector<float>& morph_weights,
+                     RadiusKind radius, Target target) {
+  Refitted result{Status::kOk, std::vector<Sphere>(asset.spheres().size)};
+  RefitBonesJob job;
+  job.target = target;
+  job.asset = &asset;
+  job.bones = bones;
+  job.morph_weights = {morph_weights.data(), morph_weights.size()};
+  job.radius = radius;
+  job.spheres = {result.spheres.data(), result.spheres.size()};
+  result.status = job.run();
+  return result;
+}
+
 Detected detect(const Asset& asset, const std::vector<Sphere>& spheres, Method method, RadiusKind radius, Target target,
                 const Filter* filter) {
   std::vector<std::uint64_t> words(DetectContext::words_needed(asset), ~std::uint64_t{0});  // dirty on purpose

@@ -8,6 +8,7 @@
 
 #include "spherechain/detect.h"
 #include "spherechain/refit.h"
+#include "spherechain/refit_bones.h"
 
 namespace spherechain::test {
 
@@ -18,6 +19,9 @@ struct Refitted {
 
 // `positions` are as many vertices as it has whole strides.
 Refitted refit(const Asset& asset, const std::vector<float>& positions, RadiusKind radius, std::size_t stride = 12);
+
+Refitted refit_bones(const Asset& asset, const BoneMatrices& bones, const std::vector<float>& morph_weights,
+                     RadiusKind radius, Target target = Target::kBest);
 
 struct Detected {
   Status status;

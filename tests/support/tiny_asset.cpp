@@ -23,6 +23,13 @@ schema::Sphere stored(const RestSphere& s) {
           s.level,          s.reserved};
 }
 
+fb::span<const float, kPivotLanes> lanes(const float (&values)[kPivotLanes]) {
+  return fb::span<const float, kPivotLanes>(values, kPivotLanes);
+}
+schema::Lanes stored(const PivotLanes& l) { return schema::Lanes(lanes(l.values)); }
+schema::BoneTerm stored(const BoneTerm& t) { return {lanes(t.x), lanes(t.y), lanes(t.z), lanes(t.w)}; }
+schema::MorphTerm stored(const MorphTerm& t) { return {lanes(t.x), lanes(t.y), lanes(t.z)}; }
+
 template <typename Stored, typename View>
 auto struct_vector(fb::FlatBufferBuilder& builder, const std::vector<View>& views) {
   std::vector<Stored> values;
@@ -72,6 +79,30 @@ auto build_joints(fb::FlatBufferBuilder& builder, const AssetParts& parts) {
   return builder.CreateVector(joints);
 }
 
+fb::Offset<schema::BoneRefit> build_bone_refit(fb::FlatBufferBuilder& builder, const AssetParts& parts) {
+  const BoneRefitParts& in = parts.bone_refit;
+  if (in.weights.empty()) {
+    return 0;
+  }
+  std::vector<fb::Offset<schema::Bone>> bones;
+  for (const BoneParts& bone : in.bones) {
+    const schema::Matrix matrix(fb::span<const float, 12>(bone.inverse_bind.data(), 12));
+    bones.push_back(schema::CreateBone(builder, builder.CreateString(bone.name),
+                                       parts.without == "inverse_bind" ? nullptr : &matrix, bone.is_rest));
+  }
+  const auto bone_vector = builder.CreateVector(bones);
+  const auto morphs = builder.CreateVectorOfStrings(in.morphs);
+  const auto weights = struct_vector<schema::Lanes>(builder, in.weights);
+  const auto term_counts = builder.CreateVector(in.term_counts);
+  const auto term_bones = builder.CreateVector(in.term_bones);
+  const auto terms = struct_vector<schema::BoneTerm>(builder, in.terms);
+  const auto morph_term_counts = builder.CreateVector(in.morph_term_counts);
+  const auto morph_targets = builder.CreateVector(in.morph_targets);
+  const auto morph_terms = struct_vector<schema::MorphTerm>(builder, in.morph_terms);
+  return schema::CreateBoneRefit(builder, bone_vector, morphs, weights, term_counts, term_bones, terms,
+                                 morph_term_counts, morph_targets, morph_terms);
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> build(const AssetParts& parts) {
@@ -101,10 +132,20 @@ std::vector<std::uint8_t> build(const AssetParts& parts) {
   const auto near_detect = struct_vector<schema::NearPair>(builder, parts.near_detect);
   using Joints = decltype(build_joints(builder, parts));
   const Joints joints = parts.joints.empty() ? Joints() : build_joints(builder, parts);
-  schema::FinishAssetBuffer(builder, schema::CreateAsset(builder, parts.format_version, provenance, source, frame,
-                                                         static_cast<schema::Refit>(parts.refit), fit, region_vector,
-                                                         spheres, pivots, triangles, chains, parts.chain_entries_table1,
-                                                         ignored, near_fit, near_detect, joints));
+  using Indices = fb::Offset<fb::Vector<std::uint32_t>>;
+  const Indices pivot_vertices = parts.pivot_vertices.empty() || parts.without == "pivot_vertices"
+                                     ? Indices()
+                                     : builder.CreateVector(parts.pivot_vertices);
+  using Pivots = fb::Offset<fb::Vector<const schema::Pivot*>>;
+  const Pivots packed = parts.pivot_vertices.empty() || parts.without == "packed_pivots"
+                            ? Pivots()
+                            : struct_vector<schema::Pivot>(builder, parts.packed_pivots);
+  const auto bone_refit = build_bone_refit(builder, parts);
+  schema::FinishAssetBuffer(
+      builder, schema::CreateAsset(builder, parts.format_version, provenance, source, frame,
+                                   static_cast<schema::Refit>(parts.refit), fit, region_vector, spheres, pivots,
+                                   triangles, chains, parts.chain_entries_table1, ignored, near_fit, near_detect,
+                                   joints, pivot_vertices, packed, bone_refit));
   return {builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize()};
 }
 

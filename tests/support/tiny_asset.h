@@ -2,6 +2,7 @@
 // Small synthetic assets, valid or broken to measure.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <random>
@@ -27,6 +28,22 @@ struct JointParts {
   std::string name;
   std::int32_t parent = -1;
   Vec3 position{}, tail{};
+};
+
+struct BoneParts {
+  std::string name;
+  std::array<float, 12> inverse_bind{};
+  bool is_rest = false;
+};
+
+struct BoneRefitParts {
+  std::vector<BoneParts> bones;
+  std::vector<std::string> morphs;
+  std::vector<PivotLanes> weights;
+  std::vector<std::uint32_t> term_counts, term_bones;
+  std::vector<BoneTerm> terms;
+  std::vector<std::uint32_t> morph_term_counts, morph_targets;
+  std::vector<MorphTerm> morph_terms;
 };
 
 // Everything an asset holds, to be changed before build().
@@ -56,9 +73,12 @@ struct AssetParts {
   std::vector<NearPair> near_fit, near_detect;
   std::vector<SourcePart> source_parts;
   std::vector<JointParts> joints;
+  std::vector<std::uint32_t> pivot_vertices;
+  std::vector<Pivot> packed_pivots;
+  BoneRefitParts bone_refit;  // left out where it has no weights
 
   // Ways of breaking an asset that no value above can express.
-  std::string without;              // a struct to leave out: "frame.up", "fit.phi1", "joints.tail" ...
+  std::string without;              // a struct to leave out: "frame.up", "fit.phi1", "joints.tail", "packed_pivots" ...
   bool chains_share_array = false;  // all chains point at the first one's spheres
 };
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "spherechain/bone_tables.h"
 #include "spherechain/status.h"
 #include "spherechain/types.h"
 
@@ -69,6 +70,13 @@ struct JointView {
   Vec3 position, tail;
 };
 
+// What a game moves the character by: a bone of the source's skeleton, or a joint of the automatic rig.
+struct BoneView {
+  const char* name;
+  const float* inverse_bind;  // 12: rows of the 3 by 4 matrix from the rest pose to the bone's own space
+  bool is_rest;               // no bone: stands for the vertices that none moves; the last, where there is one
+};
+
 struct FitError {
   float mean_abs_f, max_abs_f;  // the paper's F (section 3.2), source units
 };
@@ -130,6 +138,22 @@ class Asset {
   // Joints of the automatic rig; 0 where the source brings its own.
   std::size_t joint_count() const noexcept;
   JointView joint(std::size_t i) const noexcept;
+  // What RefitBonesJob takes matrices of, in this order: the source's bones in the source's order (one skin of a glTF:
+  // its `joints`; a joint that several skins bind differently: a bone each), or the joints of the automatic rig. 0
+  // where nothing moves the source, and in assets of older bakers.
+  std::size_t bone_count() const noexcept;
+  BoneView bone(std::size_t i) const noexcept;
+  // The source's morph targets, in the source's order.
+  std::size_t morph_count() const noexcept;
+  const char* morph_name(std::size_t i) const noexcept;
+  // Empty where bone_count() is 0.
+  const BoneTables& bone_tables() const noexcept { return bone_tables_; }
+  // The source vertices that pivots have corners at: ascending, each once. Empty in assets of older bakers.
+  Span<const std::uint32_t> pivot_vertices() const noexcept { return pivot_vertices_; }
+  // pivots(), their corners numbered in pivot_vertices().
+  Span<const Pivot> packed_pivots() const noexcept { return packed_pivots_; }
+  // info().refit, for less.
+  RefitRule refit_rule() const noexcept;
 
  private:
   const void* root_ = nullptr;
@@ -140,6 +164,9 @@ class Asset {
   std::size_t ignored_count_ = 0;
   Span<const NearPair> near_fit_, near_detect_;
   Span<const SourcePart> source_parts_;
+  Span<const std::uint32_t> pivot_vertices_;
+  Span<const Pivot> packed_pivots_;
+  BoneTables bone_tables_;
 };
 
 // A 64-bit FNV-1a over the bit patterns (low byte first) of x, y, z of each position, negative zero taken as zero: what

@@ -9,6 +9,10 @@
 
 namespace spherechain {
 
+// Which vertices a buffer holds: all of the source's, or only Asset::pivot_vertices(), in that order, for who skins no
+// more than those.
+enum class VertexSet : std::uint8_t { kSource = 0, kPivots = 1 };
+
 // Moves the spheres with the deformed skin: new centre and radius from the pivots' current positions (the paper's
 // section 5.1). With p_k the centroid of pivot k's corners and w_k its weight:
 //   centre = sum_k w_k p_k
@@ -27,14 +31,16 @@ namespace spherechain {
 // Fill in the fields and call run(). Allocates nothing, takes no lock; jobs on other buffers may run at the same time.
 struct RefitJob {
   const Asset* asset = nullptr;      // open
-  const float* positions = nullptr;  // x, y, z of each source vertex, source order, any space with the asset's scale
-  std::size_t vertex_count = 0;      // at least info().source_vertex_count
+  const float* positions = nullptr;  // x, y, z of each vertex of the set, in any space with the asset's scale
+  std::size_t vertex_count = 0;      // at least info().source_vertex_count, or pivot_vertices().size
   std::size_t stride = 12;           // bytes from one position to the next; a multiple of 4, at least 12
+  VertexSet vertices = VertexSet::kSource;
   RadiusKind radius = RadiusKind::kDetect;
   Span<Sphere> spheres;  // out: at least asset->spheres().size; further entries are left alone
 
-  // kOk, kNullArgument, kNotOpen, kTooFewVertices, kTooFewSpheres, kBadStride or kBadArgument; nothing is written
-  // unless kOk. Positions that are not finite give spheres that are not finite, and those touch nothing.
+  // kOk, kNullArgument, kNotOpen, kTooFewVertices, kTooFewSpheres, kBadStride, kBadArgument or, for kPivots,
+  // kNotInAsset; nothing is written unless kOk. Positions that are not finite give spheres that are not finite, and
+  // those touch nothing.
   Status run() const noexcept;
 };
 

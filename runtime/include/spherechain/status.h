@@ -17,12 +17,15 @@ enum class Status : int {
   kTooFewSpheres = 9,       // a sphere buffer holds fewer spheres than the asset has
   kContextTooSmall = 10,    // the caller's scratch memory is smaller than the asset needs
   kOverflow = 11,           // an output buffer was too small; the job says how many entries were needed
-  kBadStride = 12,          // a vertex stride below 12 bytes or no multiple of 4
+  kBadStride = 12,          // a stride shorter than what it strides over (a vertex: 12 bytes), or no multiple of 4
   kWrongSource = 13,        // the positions are not the rest pose the asset was baked from
   kBadArgument = 14,        // an enum value or an index that does not exist
   kUnsupportedTarget = 15,  // this build or this machine does not have the instruction set asked for
   kBadFilter = 16,          // a Filter's buffer has not the size the asset asks for
   kSharedMemory = 17,       // a buffer that is written shares memory with another
+  kNotInAsset = 18,         // the asset lacks the tables the job reads: of an older baker, or of a source without bones
+  kTooFewBones = 19,        // fewer bone matrices than the asset has bones
+  kTooFewMorphs = 20,       // morph weights, but fewer than the asset has morph targets
 };
 
 // A short English sentence without a final stop. Never null, also for values that do not exist.

@@ -4,13 +4,15 @@
 #include "counting_new.h"
 #include "jobs.h"
 #include "spherechain/contacts.h"
-#include "tiny_asset.h"
+#include "spherechain/refit_bones.h"
+#include "tiny_bones.h"
 
 namespace spherechain::test {
 
 // symbol_rules.cmake sees to malloc.
-TEST_CASE("open, refit, detect, filters and contacts allocate nothing, on any target") {
-  const TinyAsset tiny = random_asset(60, 1);
+TEST_CASE("open, both refits, detect, filters and contacts allocate nothing, on any target") {
+  TinyAsset tiny = random_asset(60, 1);
+  add_bones(tiny, 9, 2);
   const OpenedAsset opened(tiny.parts);
   std::vector<Sphere> spheres(60);
   std::vector<Pair> pairs(2000);
@@ -25,6 +27,12 @@ TEST_CASE("open, refit, detect, filters and contacts allocate nothing, on any ta
   refit.positions = tiny.rest.data();
   refit.vertex_count = tiny.parts.vertex_count;
   refit.spheres = {spheres.data(), spheres.size()};
+  const std::vector<Matrix> matrices = random_matrices(9, 3);
+  const std::vector<float> morph_weights(3, 0.5F);
+  RefitBonesJob refit_bones;
+  refit_bones.bones = {matrices[0].data(), matrices.size()};
+  refit_bones.morph_weights = {morph_weights.data(), morph_weights.size()};
+  refit_bones.spheres = refit.spheres;
   DetectJob detect;
   detect.spheres = {spheres.data(), spheres.size()};
   detect.context = &context;
@@ -39,6 +47,8 @@ TEST_CASE("open, refit, detect, filters and contacts allocate nothing, on any ta
   const Status source_status = check_source(asset, refit.positions, refit.vertex_count);
   refit.asset = &asset;
   detect.asset = &asset;
+  refit_bones.asset = &asset;
+  const Status bones_status = refit_bones.run();
   const Status refit_status = refit.run();
   const Status m2_status = detect.run();
   const std::size_t m2_pairs = detect.pair_count;
@@ -69,6 +79,7 @@ TEST_CASE("open, refit, detect, filters and contacts allocate nothing, on any ta
   CHECK(open_status == Status::kOk);
   CHECK(source_status == Status::kOk);
   CHECK(refit_status == Status::kOk);
+  CHECK(bones_status == Status::kOk);
   CHECK(m2_status == Status::kOk);
   CHECK(m1_status == Status::kOk);
   CHECK(filter_status == Status::kOk);

@@ -8,7 +8,7 @@
 #include <string>
 
 #include "sphere_chains_generated.h"
-#include "tiny_asset.h"
+#include "tiny_bones.h"
 
 namespace spherechain::test {
 namespace {
@@ -21,9 +21,8 @@ struct Corruption {
   std::function<void(AssetParts&)> apply;
 };
 
-// Opens a valid asset of 12 spheres, 48 pivots and triangles, 144 vertices, 5 regions, after each change alone.
-void check_each(const std::vector<Corruption>& corruptions) {
-  const AssetParts valid = random_asset(12, 1).parts;
+// Opens an asset after each change alone.
+void check_each(const AssetParts& valid, const std::vector<Corruption>& corruptions) {
   REQUIRE(OpenedAsset(valid).status == Status::kOk);
   for (const Corruption& corruption : corruptions) {
     AssetParts parts = valid;
@@ -36,6 +35,9 @@ void check_each(const std::vector<Corruption>& corruptions) {
     CHECK(!opened.asset.is_open());
   }
 }
+
+// A valid asset of 12 spheres, 48 pivots and triangles, 144 vertices, 5 regions.
+void check_each(const std::vector<Corruption>& corruptions) { check_each(random_asset(12, 1).parts, corruptions); }
 
 Status open_bytes(const std::vector<std::uint8_t>& bytes, std::size_t size, std::string& message) {
   char buffer[160];
@@ -208,6 +210,62 @@ TEST_CASE("arrays that overlap to make a small file ask for much work are refuse
   const OpenedAsset opened(parts);
   CHECK(opened.status == Status::kCorrupt);
   CHECK(opened.message.find("list more than the file has bytes for") != std::string::npos);
+}
+
+TEST_CASE("tables for refit from bones and from packed pivots that are not sound are refused") {
+  TinyAsset tiny = random_asset(12, 1);
+  give_pivots(tiny, 3, 11, 2);
+  add_bones(tiny, 5, 3);  // 13 groups: sphere 3 has two, the second with three pivots
+  using Parts = AssetParts;
+  check_each(tiny.parts,
+             {
+                 {"pivot_vertices[0]: 144 is past the 144", [](Parts& p) { p.pivot_vertices[0] = 144; }},
+                 {"pivot_vertices[5]: not above", [](Parts& p) { p.pivot_vertices[5] = p.pivot_vertices[4]; }},
+                 {"pivot_vertices: missing", [](Parts& p) { p.without = "pivot_vertices"; }},
+                 {"pivot_vertices: missing", [](Parts& p) { p.without = "packed_pivots"; }},
+                 {"packed_pivots: 58 of them, but 59", [](Parts& p) { p.packed_pivots.pop_back(); }},
+                 {"packed_pivots[7]: not the pivot", [](Parts& p) { p.packed_pivots[7].a += 1; }},
+                 {"packed_pivots[7]: not the pivot", [](Parts& p) { p.packed_pivots[7].b = 0xFFFFFFFFU; }},
+                 {"packed_pivots[7]: not the pivot", [](Parts& p) { p.packed_pivots[7].c = 144; }},
+                 {"packed_pivots[7]: not the pivot", [](Parts& p) { p.packed_pivots[7].weight += 0.5F; }},
+                 {"packed_pivots[7]: not the pivot", [](Parts& p) { p.packed_pivots[7].weight = kNan; }},
+             });
+  using Refit = BoneRefitParts;
+  const auto refit = [](auto change) { return [change](Parts& p) { change(p.bone_refit); }; };
+  check_each(
+      tiny.parts,
+      {
+          {"bone_refit.bones: none", refit([](Refit& r) { r.bones.clear(); })},
+          {"bone_refit.bones[0].inverse_bind: missing", [](Parts& p) { p.without = "inverse_bind"; }},
+          {"bone_refit.bones[1].inverse_bind: not finite", refit([](Refit& r) { r.bones[1].inverse_bind[11] = kNan; })},
+          {"bone_refit.bones[1].is_rest: not the last", refit([](Refit& r) { r.bones[1].is_rest = true; })},
+          {"bone_refit.weights: 12 of them, but 13 groups", refit([](Refit& r) { r.weights.pop_back(); })},
+          {"bone_refit.weights: 14 of them, but 13 groups", refit([](Refit& r) { r.weights.emplace_back(); })},
+          {"bone_refit.term_counts: 12 of them", refit([](Refit& r) { r.term_counts.pop_back(); })},
+          {"bone_refit.weights[2]: not those", refit([](Refit& r) { r.weights[2].values[3] += 0.5F; })},
+          {"bone_refit.weights[2]: not those", refit([](Refit& r) { r.weights[2].values[4] = 0.5F; })},
+          {"bone_refit.weights[2]: not those", refit([](Refit& r) { r.weights[2].values[0] = kNan; })},
+          {"bone_refit.weights[4]: not those", refit([](Refit& r) { r.weights[4].values[3] = 0.5F; })},
+          {"bone_refit.term_counts[2]: below 1", refit([](Refit& r) { r.term_counts[2] = 0; })},
+          {"bone_refit.term_counts: they add up", refit([](Refit& r) { r.term_counts[2] += 1; })},
+          {"bone_refit.term_counts: they add up", refit([](Refit& r) { r.term_counts[2] = 0xFFFFFFFFU; })},
+          {"bone_refit.term_bones: ", refit([](Refit& r) { r.term_bones.pop_back(); })},
+          {"bone_refit.term_bones: ", refit([](Refit& r) { r.terms.pop_back(); })},
+          {"bone_refit.term_bones[0]: 5 is past the 5", refit([](Refit& r) { r.term_bones[0] = 5; })},
+          {"bone_refit.term_bones[1]: not above", refit([](Refit& r) { r.term_bones[1] = r.term_bones[0]; })},
+          {"bone_refit.terms[2]: not finite", refit([](Refit& r) { r.terms[2].x[0] = kNan; })},
+          {"bone_refit.terms[2]: not finite", refit([](Refit& r) { r.terms[2].y[3] = kInfinity; })},
+          {"bone_refit.terms[2]: not finite, or a spare", refit([](Refit& r) { r.terms[2].z[4] = 1; })},
+          {"bone_refit.terms[2]: not finite, or a spare", refit([](Refit& r) { r.terms[2].w[7] = kNan; })},
+          {"bone_refit.morph_term_counts: ", refit([](Refit& r) { r.morph_term_counts.pop_back(); })},
+          {"bone_refit.morph_term_counts: they add up", refit([](Refit& r) { r.morph_term_counts[1] += 1; })},
+          {"bone_refit.morph_targets: ", refit([](Refit& r) { r.morph_targets.pop_back(); })},
+          {"bone_refit.morph_targets[0]: 3 is past the 3", refit([](Refit& r) { r.morph_targets[0] = 3; })},
+          {"bone_refit.morph_targets[1]: not above", refit([](Refit& r) { r.morph_targets[1] = r.morph_targets[0]; })},
+          {"bone_refit.morph_terms[1]: not finite", refit([](Refit& r) { r.morph_terms[1].x[1] = kNan; })},
+          {"bone_refit.morph_terms[1]: not finite, or a spare", refit([](Refit& r) { r.morph_terms[1].y[5] = 1; })},
+          {"bone_refit.morph_terms[1]: not finite", refit([](Refit& r) { r.morph_terms[1].z[2] = kInfinity; })},
+      });
 }
 
 TEST_CASE("an array of 64-bit words off its alignment is refused") {

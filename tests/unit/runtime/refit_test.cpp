@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "jobs.h"
-#include "tiny_asset.h"
+#include "tiny_bones.h"
 
 namespace spherechain::test {
 namespace {
@@ -151,7 +151,9 @@ TEST_CASE("spheres follow any deformation by the formulas of the header") {
 
 TEST_CASE("spheres follow the fixed arithmetic of the header bit for bit") {
   for (const std::uint8_t rule : {std::uint8_t{0}, std::uint8_t{1}}) {
-    const TinyAsset tiny = weighted_asset(rule);
+    TinyAsset tiny = weighted_asset(rule);
+    give_pivots(tiny, 3, 16, 1);
+    give_pivots(tiny, 5, 17, 2);
     const OpenedAsset opened(tiny.parts);
     const std::vector<float> positions = deformed(tiny.rest);
     for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
@@ -204,6 +206,33 @@ TEST_CASE("a stride skips what lies between positions, bit for bit") {
   }
 }
 
+TEST_CASE("the pivots' vertices alone give the spheres of all vertices bit for bit") {
+  TinyAsset tiny = weighted_asset(1);
+  give_pivots(tiny, 4, 16, 1);
+  for (std::size_t k = 1; k < tiny.parts.pivots.size(); k += 2) {
+    tiny.parts.pivots[k].c = tiny.parts.pivots[k].a;  // some vertices are no pivot's
+  }
+  add_bones(tiny, 3, 3);
+  const OpenedAsset opened(tiny.parts);
+  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
+  const std::vector<float> positions = deformed(tiny.rest);
+  std::vector<float> packed;
+  for (const std::uint32_t v : opened.asset.pivot_vertices()) {
+    packed.insert(packed.end(), {positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]});
+  }
+  REQUIRE(packed.size() < positions.size());
+  std::vector<Sphere> spheres(9);
+  RefitJob job = job_for(opened.asset, packed, spheres);
+  job.vertices = VertexSet::kPivots;
+  CHECK(job.run() == Status::kOk);
+  CHECK(same_bits(spheres, refit(opened.asset, positions, RadiusKind::kDetect).spheres));
+  job.vertex_count -= 1;
+  CHECK(job.run() == Status::kTooFewVertices);
+  const OpenedAsset old(random_asset(9, 11).parts);
+  job.asset = &old.asset;
+  CHECK(job.run() == Status::kNotInAsset);
+}
+
 TEST_CASE("positions that are not finite give spheres that are not finite") {
   const TinyAsset tiny = random_asset(3, 13);
   const OpenedAsset opened(tiny.parts);
@@ -249,6 +278,8 @@ TEST_CASE("refit refuses what it cannot use and writes nothing") {
   CHECK(status_of([](RefitJob& j) { j.stride = 8; }) == Status::kBadStride);
   CHECK(status_of([](RefitJob& j) { j.stride = 14; }) == Status::kBadStride);
   CHECK(status_of([](RefitJob& j) { j.radius = static_cast<RadiusKind>(2); }) == Status::kBadArgument);
+  CHECK(status_of([](RefitJob& j) { j.vertices = static_cast<VertexSet>(2); }) == Status::kBadArgument);
+  CHECK(status_of([](RefitJob& j) { j.vertices = VertexSet::kPivots; }) == Status::kNotInAsset);
   CHECK(same_bits(spheres, untouched));
   CHECK(good.run() == Status::kOk);
 }

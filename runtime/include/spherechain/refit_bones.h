@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "spherechain/asset.h"
+#include "spherechain/simd.h"
+#include "spherechain/status.h"
+#include "spherechain/types.h"
+
+namespace spherechain {
+
+// How a matrix that moves points p to M (p; 1) lies in memory. "Row" and "column" are those of that M, its translation
+// the fourth column. Libraries that write p M instead (DirectXMath, Unreal) store the transpose by rows, the
+// translation last: that is kColumnMajor4x4.
+enum class MatrixLayout : std::uint8_t {
+  kRowMajor3x4 = 0,  // 12 floats: three rows of four
+  kRowMajor4x4 = 1,  // 16 floats: four rows of four, the last 0 0 0 1 and not read
+  kColumnMajor4x4 =
+      2,  // 16 floats: four columns of four, the last of each 0 0 0 1 and not read: glTF, OpenGL, glm, Unity
+  kColumnMajor3x4 = 3,  // 12 floats: four columns of three
+};
+
+// Bytes of one matrix; 0 for a layout that does not exist.
+constexpr std::size_t size_of(MatrixLayout layout) noexcept {
+  return layout == MatrixLayout::kRowMajor3x4 || layout == MatrixLayout::kColumnMajor3x4   ? 48
+         : layout == MatrixLayout::kRowMajor4x4 || layout == MatrixLayout::kColumnMajor4x4 ? 64
+                                                                                           : 0;
+}
+
+struct BoneMatrices {
+  const float* data = nullptr;
+  std::size_t count = 0;
+  MatrixLayout layout = MatrixLayout::kRowMajor3x4;
+  std::size_t stride = 48;  // bytes from one matrix to the next; a multiple of 4, at least size_of(layout)
+};
+
+// Moves the spheres with the skeleton, without the mesh: for games that skin on the GPU. Under linear blend skinning a
+// pivot's centroid is linear in the bones' matrices, so these are the spheres that RefitJob makes of the skinned and
+// morphed mesh, but for rounding.
+//
+// What to pass: for each of Asset::bone(), in that order, the matrix that takes the rest pose to the deformed one: the
+// world matrix of the bone's joint times bone.inverse_bind. "World" may be any space, and is the space the spheres come
+// in. It is the palette that the skinning shader gets wherever the engine kept the file's own vertices, inverse bind
+// matrices and order of joints; bone.name and bone.inverse_bind tell. A glTF of several skins lists a joint once more
+// for each different inverse bind matrix, all of them from the one rest pose of the asset. An automatic rig's joints
+// rest unrotated at Asset::joint().position. Where the last bone is_rest, it moves what no bone moves: pass the matrix
+// from the rest pose to the same "world", the identity where that is the rest pose's space.
+// A pose that blends others linearly, a Bezier curve of poses, is as linear in the matrices: blend those.
+//
+// The arithmetic is fixed, in single precision without contraction, so that every backend gives the same spheres, bit
+// for bit. Of a group of eight pivots (see BoneTables), for each lane:
+//   term   x = x0 + w_0 x_0, + w_1 x_1 ... over the term's morph terms, in order, w their targets' weights; so y and z
+//   p      for each row m of a bone's matrix: ((m0*x + m1*y) + (m2*z + m3*w)), summed over the terms in order from 0
+//   s      a * p, a the pivot's share of the centre, summed over the sphere's groups in order from the first's
+// and of a sphere
+//   centre the sum over the lanes of s; with tree(v) = (((v0 + v4) + (v2 + v6)) + ((v1 + v5) + (v3 + v7)))
+//   d      sqrt((dx*dx + dy*dy) + dz*dz) of p - centre, 0 in a spare lane, summed over the groups in order
+//   mean   tree(d) / float(K)
+// and the radius follows from the mean as in RefitJob.
+//
+// Fill in the fields and call run(). Allocates nothing, takes no lock; jobs on other buffers may run at the same time.
+// Fastest where the asset's bytes start at a multiple of 64.
+struct RefitBonesJob {
+  const Asset* asset = nullptr;     // open
+  BoneMatrices bones;               // at least asset->bone_count()
+  Span<const float> morph_weights;  // empty where nothing morphs, or at least asset->morph_count()
+  RadiusKind radius = RadiusKind::kDetect;
+  Target target = Target::kBest;
+  Span<Sphere> spheres;  // out: at least asset->spheres().size; further entries are left alone
+
+  // kOk, kNullArgument, kNotOpen, kBadArgument, kBadStride, kNotInAsset, kTooFewBones, kTooFewMorphs, kTooFewSpheres,
+  // kUnsupportedTarget or kSharedMemory; nothing is written unless kOk. Matrices and weights that are not finite give
+  // spheres that are not finite, and those touch nothing.
+  Status run() const noexcept;
+};
+
+}  // namespace spherechain

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+#include "spherechain/refit_bones.h"
+
+#include "bone_refit.h"
+#include "memory.h"
+#include "simd.h"
+
+namespace spherechain {
+
+Status check_bone_inputs(const Asset* asset, const BoneMatrices& bones, Span<const float> morph_weights,
+                         RadiusKind radius) {
+  if (asset == nullptr || bones.data == nullptr || (morph_weights.data == nullptr && morph_weights.size > 0)) {
+    return Status::kNullArgument;
+  }
+  if (!asset->is_open()) {
+    return Status::kNotOpen;
+  }
+  if ((radius != RadiusKind::kFit && radius != RadiusKind::kDetect) || size_of(bones.layout) == 0) {
+    return Status::kBadArgument;
+  }
+  if (bones.stride < size_of(bones.layout) || bones.stride % sizeof(float) != 0) {
+    return Status::kBadStride;
+  }
+  if (asset->bone_count() == 0) {
+    return Status::kNotInAsset;
+  }
+  if (bones.count < asset->bone_count()) {
+    return Status::kTooFewBones;
+  }
+  if (morph_weights.size > 0 && morph_weights.size < asset->morph_count()) {
+    return Status::kTooFewMorphs;
+  }
+  return Status::kOk;
+}
+
+BoneRefitInputs bone_refit_inputs(const Asset& asset, const BoneMatrices& bones, Span<const float> morph_weights,
+                                  RadiusKind radius) {
+  const BoneTables& tables = asset.bone_tables();
+  BoneRefitInputs in{};
+  in.rest = asset.spheres().data;
+  in.sphere_count = asset.spheres().size;
+  in.weights = tables.weights.data;
+  in.term_counts = tables.term_counts.data;
+  in.term_bones = tables.term_bones.data;
+  in.terms = tables.terms.data;
+  in.morph_term_counts = tables.morph_term_counts.data;
+  in.morph_targets = tables.morph_targets.data;
+  in.morph_terms = tables.morph_terms.data;
+  in.rule = asset.refit_rule();
+  in.matrices = bones.data;
+  in.stride = bones.stride / sizeof(float);
+  in.layout = bones.layout;
+  in.morph_weights = morph_weights.size > 0 && tables.morph_terms.size > 0 ? morph_weights.data : nullptr;
+  in.radius = radius;
+  return in;
+}
+
+Status RefitBonesJob::run() const noexcept {
+  const Status status = check_bone_inputs(asset, bones, morph_weights, radius);
+  if (status != Status::kOk) {
+    return status;
+  }
+  if (spheres.data == nullptr) {
+    return Status::kNullArgument;
+  }
+  const std::size_t count = asset->spheres().size;
+  if (spheres.size < count) {
+    return Status::kTooFewSpheres;
+  }
+  Target resolved{};
+  if (!resolve_target(target, resolved)) {
+    return Status::kUnsupportedTarget;
+  }
+  const auto first_matrix = reinterpret_cast<std::uintptr_t>(bones.data);
+  const MemoryRange matrices{first_matrix,
+                             first_matrix + (asset->bone_count() - 1) * bones.stride + size_of(bones.layout)};
+  if (any_shared({range_of(Span<Sphere>{spheres.data, count})}, {matrices, range_of(morph_weights)})) {
+    return Status::kSharedMemory;
+  }
+  refit_from_bones(bone_refit_inputs(*asset, bones, morph_weights, radius), resolved, spheres.data);
+  return Status::kOk;
+}
+
+}  // namespace spherechain

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Refit from bones on baked characters, against the refit from their skinned meshes.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "baked_human.h"
+#include "jobs.h"
+#include "motion/clip.h"
+#include "motion/poses.h"
+
+using namespace spherechain::baker;
+using spherechain::RadiusKind;
+using spherechain::Status;
+
+namespace {
+
+using spherechain::test::refit;
+using spherechain::test::refit_bones;
+
+constexpr double kTolerance = 1e-5;  // of the height
+constexpr const char* kPerson = "/usr/share/assimp/models/X/BCN_Epileptic.X";
+const bool kNoTestData = std::getenv("SPHERECHAIN_TEST_DATA") == nullptr;
+
+// What a game would pass: matrices by columns, the rest bone's the identity.
+std::vector<float> palette(const spherechain::Asset& asset, const std::vector<Affine>& bones) {
+  std::vector<float> out;
+  for (std::size_t b = 0; b < asset.bone_count(); ++b) {
+    REQUIRE(asset.bone(b).is_rest == (b == bones.size()));
+    const Eigen::Matrix4d m = b < bones.size() ? Eigen::Affine3d(bones[b]).matrix() : Eigen::Matrix4d::Identity();
+    for (Eigen::Index i = 0; i < 16; ++i) out.push_back(static_cast<float>(m.data()[i]));
+  }
+  return out;
+}
+
+// The largest difference of a centre's coordinate or a radius, as a fraction of the height.
+double worst_difference(const Bake& bake, const std::vector<Deformation>& frames) {
+  const spherechain::Asset asset = open_asset_of(bake);
+  const SourceRig& rig = bake.character.rig;
+  double worst = 0;
+  for (const Deformation& frame : frames) {
+    const std::vector<Vec3> mesh = deform(morph(bake.character.source_positions, rig.morphs, frame.morphs),
+                                          rig.bones.empty() ? bake.rig_weights : rig.weights, frame.bones);
+    const std::vector<float> matrices = palette(asset, frame.bones);
+    const spherechain::BoneMatrices view{matrices.data(), asset.bone_count(),
+                                         spherechain::MatrixLayout::kColumnMajor4x4, 64};
+    for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
+      const auto expected = refit(asset, pack(mesh), kind);
+      const auto result = refit_bones(asset, view, {frame.morphs.begin(), frame.morphs.end()}, kind);
+      REQUIRE(expected.status == Status::kOk);
+      REQUIRE(result.status == Status::kOk);
+      for (std::size_t i = 0; i < expected.spheres.size(); ++i) {
+        const spherechain::Sphere &a = expected.spheres[i], &b = result.spheres[i];
+        for (const float difference : {a.x - b.x, a.y - b.y, a.z - b.z, a.radius - b.radius}) {
+          worst = std::max(worst, std::abs(static_cast<double>(difference)));
+        }
+      }
+    }
+  }
+  return worst / bake.regions.frame.height;
+}
+
+std::vector<Deformation> frames_of(const Motion& motion, int count) {
+  std::vector<Deformation> out;
+  for (int i = 0; i < count; ++i) out.push_back(motion.at(i / std::max(1.0, count - 1.0)));
+  return out;
+}
+
+std::vector<Deformation> frames_of_clips(const SourceRig& rig) {
+  std::vector<Deformation> out;
+  for (const Clip& clip : rig.clips) {
+    const std::vector<Deformation> frames = frames_of(ClipMotion(rig, {&clip}), 25);
+    out.insert(out.end(), frames.begin(), frames.end());
+  }
+  return out;
+}
+
+const Bake& baked_person() {
+  static const Bake result = bake(kPerson, make_settings("balanced", "{}", "test"), {});
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("on the automatic rig, along Bezier curves of poses, bones give the spheres of the skinned mesh") {
+  const Bake& bake = baked_human();
+  std::vector<Deformation> frames;
+  for (const char* name : {"animation_arms.json", "animation_legs.json", "hands_on_hips.json", "deep_squat.json"}) {
+    const PoseMotion poses = read_pose_motion(std::string(SPHERECHAIN_SAMPLES) + "/poses/" + name, bake.joints);
+    const auto more = frames_of(BezierMotion(bake.joints, bake.regions.frame, poses), 40);
+    frames.insert(frames.end(), more.begin(), more.end());
+  }
+  const double worst = worst_difference(bake, frames);
+  MESSAGE(fmt::format("{} frames: {:.2g} of the height", frames.size(), worst));
+  CHECK(worst < kTolerance);
+}
+
+TEST_CASE("on a source's own skeleton, over its clips, bones give the spheres of the skinned mesh") {
+  const Bake& bake = baked_person();
+  REQUIRE(!bake.character.rig.clips.empty());
+  const std::vector<Deformation> frames = frames_of_clips(bake.character.rig);
+  const double worst = worst_difference(bake, frames);
+  MESSAGE(fmt::format("{} frames: {:.2g} of the height", frames.size(), worst));
+  CHECK(worst < kTolerance);
+}
+
+TEST_CASE("with morph targets, and vertices that no bone holds, bones give the spheres of the skinned mesh") {
+  Bake morphing = baked_person();
+  SourceRig& rig = morphing.character.rig;
+  const double height = morphing.regions.frame.height;
+  for (int m = 0; m < 3; ++m) {
+    Morph morph{"grows " + std::to_string(m), {}, {}, 0};
+    for (Index v = 0; v < morphing.character.source_positions.size(); ++v) {
+      if (v % 3 == static_cast<Index>(m)) continue;
+      morph.vertices.push_back(v);
+      morph.deltas.push_back(0.05 * height * Vec3(std::sin(v), std::cos(3.0 * v), m - 1));
+    }
+    rig.morphs.push_back(std::move(morph));
+  }
+  for (std::size_t v = 0; v < rig.weights.size(); v += 5) rig.weights[v] = {};
+  const Bake bake = rebake(morphing, morphing.settings);
+  const spherechain::Asset asset = open_asset_of(bake);
+  REQUIRE(asset.morph_count() == 3);
+  CHECK(std::string(asset.morph_name(1)) == "grows 1");
+  REQUIRE(asset.bone(asset.bone_count() - 1).is_rest);
+
+  std::vector<Deformation> frames = frames_of_clips(rig);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const double t = static_cast<double>(i);
+    frames[i].morphs = {std::sin(t), 0.5, std::cos(2 * t)};
+  }
+  CHECK(worst_difference(bake, frames) < kTolerance);
+  // They do morph: without, the spheres are elsewhere.
+  const auto same_bones = palette(asset, frames[7].bones);
+  const spherechain::BoneMatrices view{same_bones.data(), asset.bone_count(),
+                                       spherechain::MatrixLayout::kColumnMajor4x4, 64};
+  const auto with = refit_bones(asset, view, {1, 0, 0}, RadiusKind::kFit),
+             without = refit_bones(asset, view, {}, RadiusKind::kFit);
+  const spherechain::Sphere &a = with.spheres[0], &b = without.spheres[0];
+  CHECK(std::hypot(a.x - b.x, a.y - b.y, a.z - b.z) > 0.01 * height);
+}
+
+TEST_CASE("the bones of an asset are the source's in order, or the automatic rig's") {
+  const spherechain::Asset human = open_asset_of(baked_human()), person = open_asset_of(baked_person());
+  REQUIRE(human.bone_count() == baked_human().joints.size());
+  for (std::size_t b = 0; b < human.bone_count(); ++b) {
+    CHECK(human.bone(b).name == baked_human().joints[b].name);
+    CHECK(human.bone(b).inverse_bind[3] == static_cast<float>(-baked_human().joints[b].position.x()));
+    CHECK(human.bone(b).inverse_bind[0] == 1);
+  }
+  const SourceRig& rig = baked_person().character.rig;
+  REQUIRE(person.bone_count() == rig.bones.size());
+  for (std::size_t b = 0; b < rig.bones.size(); ++b) {
+    CHECK(person.bone(b).name == rig.nodes[rig.bones[b].node].name);
+    CHECK(person.bone(b).inverse_bind[7] == static_cast<float>(rig.bones[b].inverse_bind.translation().y()));
+  }
+}
+
+TEST_CASE("over every clip of characters of the real world bones give the spheres of the skinned mesh" *
+          doctest::skip(kNoTestData)) {
+  for (const char* name : {"CesiumMan.glb", "cesium_man_khronos.gltf", "mh_boxing.glb", "KayKit_Barbarian.glb"}) {
+    const Bake bake = spherechain::baker::bake(std::string(std::getenv("SPHERECHAIN_TEST_DATA")) + "/" + name,
+                                               make_settings("balanced", "{}", "test"), {});
+    const std::vector<Deformation> frames = frames_of_clips(bake.character.rig);
+    const double worst = worst_difference(bake, frames);
+    MESSAGE(fmt::format("{}: {} frames: {:.2g} of the height", name, frames.size(), worst));
+    CHECK(worst < kTolerance);
+  }
+}

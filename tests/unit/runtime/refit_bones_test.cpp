@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: MIT
+#include "spherechain/refit_bones.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "jobs.h"
+#include "tiny_bones.h"
+
+namespace spherechain::test {
+namespace {
+
+// Of coordinates of some units and sums of a dozen floats.
+constexpr double kRounding = 1e-5;
+constexpr std::size_t kBones = 7;
+
+struct Skinned {
+  explicit Skinned(std::uint8_t rule = 1, std::size_t spheres = 11) : tiny(random_asset(spheres, 21)) {
+    tiny.parts.refit = rule;
+    give_pivots(tiny, 2, 8, 1);
+    give_pivots(tiny, 5, 19, 2);  // three groups, the last with spare lanes
+    give_pivots(tiny, 7, 1, 3);
+    give_pivots(tiny, 8, 16, 4);
+    skin = add_bones(tiny, kBones, 22);
+  }
+
+  TinyAsset tiny;
+  TinySkin skin;
+  std::vector<Matrix> matrices = random_matrices(kBones, 23);
+  std::vector<float> morph_weights = {0.5F, 1.0F, -0.75F};
+};
+
+// The matrices in memory as a game may have them: NaN where nothing may be read.
+struct Palette {
+  Palette(const std::vector<Matrix>& matrices, MatrixLayout matrix_layout, std::size_t matrix_stride)
+      : layout(matrix_layout), stride(matrix_stride) {
+    memory.assign((matrices.size() - 1) * stride / 4 + size_of(layout) / 4, std::numeric_limits<float>::quiet_NaN());
+    for (std::size_t b = 0; b < matrices.size(); ++b) {
+      for (std::size_t row = 0; row < 3; ++row) {
+        for (std::size_t column = 0; column < 4; ++column) {
+          const std::size_t at = layout == MatrixLayout::kColumnMajor4x4   ? 4 * column + row
+                                 : layout == MatrixLayout::kColumnMajor3x4 ? 3 * column + row
+                                                                           : 4 * row + column;
+          memory[b * stride / 4 + at] = matrices[b][4 * row + column];
+        }
+      }
+    }
+  }
+  BoneMatrices view(std::size_t count) const { return {memory.data(), count, layout, stride}; }
+
+  std::vector<float> memory;
+  MatrixLayout layout;
+  std::size_t stride;
+};
+
+Refitted refit_posed(const Asset& asset, const Skinned& s, RadiusKind radius, Target target = Target::kBest) {
+  const Palette palette(s.matrices, MatrixLayout::kRowMajor3x4, 48);
+  return refit_bones(asset, palette.view(kBones), s.morph_weights, radius, target);
+}
+
+double distance(const Sphere& a, const Sphere& b) {
+  return std::max({std::abs(double{a.x} - double{b.x}), std::abs(double{a.y} - double{b.y}),
+                   std::abs(double{a.z} - double{b.z}), std::abs(double{a.radius} - double{b.radius})});
+}
+
+void check_close(const std::vector<Sphere>& spheres, const std::vector<Sphere>& expected) {
+  REQUIRE(spheres.size() == expected.size());
+  for (std::size_t i = 0; i < spheres.size(); ++i) {
+    INFO("sphere ", i);
+    CHECK(distance(spheres[i], expected[i]) < kRounding);
+  }
+}
+
+float tree(const float (&v)[kPivotLanes]) { return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7])); }
+
+// The header's fixed arithmetic, to the last bit.
+std::vector<Sphere> exact_spheres(const Skinned& s, RadiusKind kind) {
+  const BoneRefitParts& tables = s.tiny.parts.bone_refit;
+  std::vector<Sphere> out;
+  std::size_t group = 0, term = 0, morph = 0;
+  for (const RestSphere& rest : s.tiny.parts.spheres) {
+    std::vector<std::array<std::array<float, 3>, kPivotLanes>> p;
+    float sums[3][kPivotLanes] = {}, distances[kPivotLanes] = {};
+    for (std::size_t first = 0; first < rest.pivot_count; first += kPivotLanes, ++group) {
+      p.emplace_back();
+      for (std::uint32_t t = 0; t < tables.term_counts[group]; ++t, ++term) {
+        BoneTerm q = tables.terms[term];
+        for (std::uint32_t m = 0; m < tables.morph_term_counts[term]; ++m, ++morph) {
+          const float weight = s.morph_weights[tables.morph_targets[morph]];
+          for (std::size_t lane = 0; lane < kPivotLanes; ++lane) {
+            q.x[lane] = q.x[lane] + weight * tables.morph_terms[morph].x[lane];
+            q.y[lane] = q.y[lane] + weight * tables.morph_terms[morph].y[lane];
+            q.z[lane] = q.z[lane] + weight * tables.morph_terms[morph].z[lane];
+          }
+        }
+        const Matrix& m = s.matrices[tables.term_bones[term]];
+        for (std::size_t lane = 0; lane < kPivotLanes; ++lane) {
+          for (std::size_t r = 0; r < 3; ++r) {
+            const float left = m[4 * r] * q.x[lane] + m[4 * r + 1] * q.y[lane];
+            const float right = m[4 * r + 2] * q.z[lane] + m[4 * r + 3] * q.w[lane];
+            p.back()[lane][r] = p.back()[lane][r] + (left + right);
+          }
+        }
+      }
+      for (std::size_t lane = 0; lane < kPivotLanes; ++lane) {
+        for (std::size_t r = 0; r < 3; ++r) {
+          const float share = tables.weights[group].values[lane] * p.back()[lane][r];
+          sums[r][lane] = first == 0 ? share : sums[r][lane] + share;
+        }
+      }
+    }
+    const float x = tree(sums[0]), y = tree(sums[1]), z = tree(sums[2]);
+    for (std::size_t k = 0; k < rest.pivot_count; ++k) {
+      const auto& pivot = p[k / kPivotLanes][k % kPivotLanes];
+      const float dx = pivot[0] - x, dy = pivot[1] - y, dz = pivot[2] - z;
+      distances[k % kPivotLanes] += std::sqrt((dx * dx + dy * dy) + dz * dz);
+    }
+    const float mean = tree(distances) / static_cast<float>(rest.pivot_count);
+    const bool fit = kind == RadiusKind::kFit;
+    const float paper = fit ? mean : mean * (rest.detect_radius / rest.radius);
+    const float calibrated = (fit ? rest.radius : rest.detect_radius) * (mean / rest.pivot_spread);
+    out.push_back({x, y, z, s.tiny.parts.refit == 0 ? paper : calibrated});
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("spheres from bones and morph weights are those of the skinned mesh") {
+  for (const std::uint8_t rule : {std::uint8_t{0}, std::uint8_t{1}}) {
+    Skinned s(rule);
+    const OpenedAsset opened(s.tiny.parts);
+    REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
+    for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
+      const std::vector<float> mesh = skinned(s.tiny, s.skin, s.matrices, s.morph_weights);
+      const Refitted result = refit_posed(opened.asset, s, kind);
+      REQUIRE(result.status == Status::kOk);
+      check_close(result.spheres, refit(opened.asset, mesh, kind).spheres);
+    }
+  }
+}
+
+TEST_CASE("without morph weights nothing morphs, as with weights of 0") {
+  Skinned s;
+  const OpenedAsset opened(s.tiny.parts);
+  s.morph_weights.clear();
+  const Refitted without = refit_posed(opened.asset, s, RadiusKind::kFit);
+  REQUIRE(without.status == Status::kOk);
+  check_close(without.spheres, refit(opened.asset, skinned(s.tiny, s.skin, s.matrices, {}), RadiusKind::kFit).spheres);
+  s.morph_weights = {0, 0, 0};
+  CHECK(same_bits(refit_posed(opened.asset, s, RadiusKind::kFit).spheres, without.spheres));
+  s.morph_weights = {0, 1, 0};  // the target that moves nothing
+  CHECK(same_bits(refit_posed(opened.asset, s, RadiusKind::kFit).spheres, without.spheres));
+  s.morph_weights = {1, 0, 0};
+  CHECK(!same_bits(refit_posed(opened.asset, s, RadiusKind::kFit).spheres, without.spheres));
+}
+
+TEST_CASE("on every target spheres from bones follow the fixed arithmetic of the header bit for bit") {
+  for (const std::uint8_t rule : {std::uint8_t{0}, std::uint8_t{1}}) {
+    for (const std::size_t count : {9U, 10U, 11U, 12U}) {  // whole and broken chunks of spheres
+      const Skinned s(rule, count);
+      const OpenedAsset opened(s.tiny.parts);
+      for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
+        const std::vector<Sphere> expected = exact_spheres(s, kind);
+        for (const Target target : supported_targets()) {
+          INFO(to_string(target), ", ", count, " spheres");
+          const Refitted result = refit_posed(opened.asset, s, kind, target);
+          CHECK(result.status == Status::kOk);
+          CHECK(same_bits(result.spheres, expected));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("every layout and stride of the matrices gives the same spheres bit for bit, reading none but theirs") {
+  const Skinned s;
+  const OpenedAsset opened(s.tiny.parts);
+  const Refitted expected = refit_posed(opened.asset, s, RadiusKind::kDetect);
+  for (const MatrixLayout layout : {MatrixLayout::kRowMajor3x4, MatrixLayout::kRowMajor4x4,
+                                    MatrixLayout::kColumnMajor4x4, MatrixLayout::kColumnMajor3x4}) {
+    for (const std::size_t padding : {0U, 4U, 52U}) {
+      const Palette palette(s.matrices, layout, size_of(layout) + padding);
+      for (const Target target : supported_targets()) {
+        const Refitted result =
+            refit_bones(opened.asset, palette.view(kBones), s.morph_weights, RadiusKind::kDetect, target);
+        INFO("layout ", static_cast<int>(layout), ", padding ", padding, ", ", to_string(target));
+        CHECK(result.status == Status::kOk);
+        CHECK(same_bits(result.spheres, expected.spheres));
+      }
+    }
+  }
+}
+
+TEST_CASE("matrices and weights that are not finite give spheres that are not finite, and only those they move") {
+  for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    Skinned s;
+    const OpenedAsset opened(s.tiny.parts);
+    s.matrices[0][5] = bad;
+    const Refitted result = refit_posed(opened.asset, s, RadiusKind::kFit);
+    CHECK(result.status == Status::kOk);
+    std::size_t group = 0, term = 0, broken = 0;
+    for (std::size_t i = 0; i < result.spheres.size(); ++i) {
+      bool moves = false;
+      for (std::size_t k = 0; k < s.tiny.parts.spheres[i].pivot_count; k += kPivotLanes, ++group) {
+        for (std::uint32_t t = 0; t < s.tiny.parts.bone_refit.term_counts[group]; ++t, ++term) {
+          moves = moves || s.tiny.parts.bone_refit.term_bones[term] == 0;
+        }
+      }
+      CHECK(std::isfinite(result.spheres[i].y) == !moves);
+      CHECK(std::isfinite(result.spheres[i].radius) == !moves);
+      broken += moves ? 1 : 0;
+    }
+    CHECK(broken > 0);
+    CHECK(broken < result.spheres.size());
+  }
+}
+
+TEST_CASE("refit from bones leaves entries past the asset's spheres alone, and matrices past its bones unread") {
+  const Skinned s;
+  const OpenedAsset opened(s.tiny.parts);
+  std::vector<Sphere> spheres(13, {7, 7, 7, 7});
+  std::vector<Matrix> matrices = s.matrices;
+  matrices.emplace_back().fill(std::numeric_limits<float>::quiet_NaN());
+  RefitBonesJob job;
+  job.asset = &opened.asset;
+  job.bones = {matrices[0].data(), matrices.size()};
+  job.morph_weights = {s.morph_weights.data(), s.morph_weights.size()};
+  job.spheres = {spheres.data(), spheres.size()};
+  CHECK(job.run() == Status::kOk);
+  CHECK(same_bits(std::vector<Sphere>(spheres.begin() + 11, spheres.end()), std::vector<Sphere>(2, {7, 7, 7, 7})));
+  spheres.resize(11);
+  CHECK(same_bits(spheres, refit_posed(opened.asset, s, RadiusKind::kDetect).spheres));
+}
+
+TEST_CASE("refit from bones refuses what it cannot use and writes nothing") {
+  const Skinned s;
+  const OpenedAsset opened(s.tiny.parts);
+  const OpenedAsset old(random_asset(11, 21).parts);
+  REQUIRE(old.status == Status::kOk);
+  const std::vector<Sphere> untouched(11, {7, 7, 7, 7});
+  std::vector<Sphere> spheres = untouched;
+  const Palette palette(s.matrices, MatrixLayout::kRowMajor4x4, 64);
+  RefitBonesJob good;
+  good.asset = &opened.asset;
+  good.bones = palette.view(kBones);
+  good.morph_weights = {s.morph_weights.data(), s.morph_weights.size()};
+  good.spheres = {spheres.data(), spheres.size()};
+  const Asset closed;
+  const auto status_of = [&](auto change) {
+    RefitBonesJob job = good;
+    change(job);
+    return job.run();
+  };
+  using Job = RefitBonesJob;
+  CHECK(status_of([](Job& j) { j.asset = nullptr; }) == Status::kNullArgument);
+  CHECK(status_of([](Job& j) { j.bones.data = nullptr; }) == Status::kNullArgument);
+  CHECK(status_of([](Job& j) { j.morph_weights.data = nullptr; }) == Status::kNullArgument);
+  CHECK(status_of([](Job& j) { j.spheres.data = nullptr; }) == Status::kNullArgument);
+  CHECK(status_of([&](Job& j) { j.asset = &closed; }) == Status::kNotOpen);
+  CHECK(status_of([&](Job& j) { j.asset = &old.asset; }) == Status::kNotInAsset);
+  CHECK(status_of([](Job& j) { j.radius = static_cast<RadiusKind>(2); }) == Status::kBadArgument);
+  CHECK(status_of([](Job& j) { j.bones.layout = static_cast<MatrixLayout>(4); }) == Status::kBadArgument);
+  CHECK(status_of([](Job& j) { j.bones.stride = 0; }) == Status::kBadStride);
+  CHECK(status_of([](Job& j) { j.bones.stride = 48; }) == Status::kBadStride);  // too short for four by four
+  CHECK(status_of([](Job& j) { j.bones.stride = 66; }) == Status::kBadStride);
+  CHECK(status_of([](Job& j) { j.bones.count -= 1; }) == Status::kTooFewBones);
+  CHECK(status_of([](Job& j) { j.bones.count = 0; }) == Status::kTooFewBones);
+  CHECK(status_of([](Job& j) { j.morph_weights.size -= 1; }) == Status::kTooFewMorphs);
+  CHECK(status_of([](Job& j) { j.spheres.size -= 1; }) == Status::kTooFewSpheres);
+  CHECK(status_of([](Job& j) { j.target = static_cast<Target>(99); }) == Status::kUnsupportedTarget);
+  CHECK(same_bits(spheres, untouched));
+  CHECK(good.run() == Status::kOk);
+}
+
+TEST_CASE("refit from bones refuses to write over its own inputs") {
+  const Skinned s;
+  const OpenedAsset opened(s.tiny.parts);
+  constexpr std::size_t kOutput = 11 * 4, kInput = kBones * 12;  // floats
+  std::vector<float> memory(2 * kOutput + kInput);
+  float* const input = memory.data() + kOutput;
+  std::memcpy(input, s.matrices.data(), kInput * sizeof(float));
+  const std::vector<float> before = memory;
+  RefitBonesJob job;
+  job.asset = &opened.asset;
+  job.bones = {input, kBones};
+  for (const std::size_t start : {std::size_t{4}, kOutput, kOutput + kInput - 4}) {
+    job.spheres = {reinterpret_cast<Sphere*>(memory.data() + start), 11};
+    CHECK(job.run() == Status::kSharedMemory);
+    job.bones.data = s.matrices[0].data();
+    job.morph_weights = {input, kInput};
+    CHECK(job.run() == Status::kSharedMemory);
+    job.bones.data = input;
+    job.morph_weights = {};
+  }
+  CHECK(same_bits(memory, before));
+  for (const std::size_t start : {std::size_t{0}, kOutput + kInput}) {
+    job.spheres = {reinterpret_cast<Sphere*>(memory.data() + start), 11};
+    CHECK(job.run() == Status::kOk);
+  }
+}
+
+TEST_CASE("an asset tells its bones and morph targets") {
+  const Skinned s;
+  const OpenedAsset opened(s.tiny.parts);
+  REQUIRE(opened.asset.bone_count() == kBones);
+  CHECK(std::string(opened.asset.bone(2).name) == "bone2");
+  CHECK(opened.asset.bone(2).inverse_bind[3] == -2.0F);
+  CHECK(opened.asset.bone(2).inverse_bind[10] == 1.0F);
+  CHECK(!opened.asset.bone(kBones - 2).is_rest);
+  CHECK(opened.asset.bone(kBones - 1).is_rest);
+  REQUIRE(opened.asset.morph_count() == 3);
+  CHECK(std::string(opened.asset.morph_name(2)) == "morph2");
+  const OpenedAsset old(random_asset(3, 1).parts);
+  CHECK(old.asset.bone_count() == 0);
+  CHECK(old.asset.morph_count() == 0);
+  CHECK(old.asset.bone_tables().terms.size == 0);
+}
+
+}  // namespace spherechain::test
