@@ -119,7 +119,7 @@ TEST_CASE("a hand behind the head touches the head") {
   CHECK(found > 0);
 }
 
-TEST_CASE("in all 80 frames M2 equals a brute force, and M1's pairs are some of M2's, counted chain by chain") {
+TEST_CASE("in all 80 frames and on every target M2 equals a brute force, and M1's pairs are some of M2's, counted chain by chain") {
   for (const Bake* bake : {&baked_human(), &paper_baked_human()}) {
     const Asset asset = open_asset_of(*bake);
     for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
@@ -128,6 +128,10 @@ TEST_CASE("in all 80 frames M2 equals a brute force, and M1's pairs are some of 
         const std::vector<Sphere> spheres = refit(asset, pack(frame.positions), kind).spheres;
         const Detected m1 = detect(asset, spheres, Method::kM1, kind), m2 = detect(asset, spheres, Method::kM2, kind);
         CHECK(m2.pairs == brute_force(*bake, spheres, kind));
+        for (const spherechain::Target target : spherechain::supported_targets()) {
+          CHECK(detect(asset, spheres, Method::kM1, kind, target).pairs == m1.pairs);
+          CHECK(detect(asset, spheres, Method::kM2, kind, target).pairs == m2.pairs);
+        }
         CHECK(std::is_sorted(m1.pairs.begin(), m1.pairs.end()));
         CHECK(std::includes(m2.pairs.begin(), m2.pairs.end(), m1.pairs.begin(), m1.pairs.end()));
         // The paper's count: for each chain, the pairs both of whose spheres it holds.

@@ -4,13 +4,14 @@
 #include "counting_new.h"
 #include "jobs.h"
 #include "spherechain/contacts.h"
+#include "spherechain/crowd.h"
 #include "spherechain/refit_bones.h"
 #include "tiny_bones.h"
 
 namespace spherechain::test {
 
 // symbol_rules.cmake sees to malloc.
-TEST_CASE("open, both refits, detect, filters and contacts allocate nothing, on any target") {
+TEST_CASE("open, both refits, detect, filters, contacts and crowds allocate nothing, on any target") {
   TinyAsset tiny = random_asset(60, 1);
   add_bones(tiny, 9, 2);
   const OpenedAsset opened(tiny.parts);
@@ -22,6 +23,10 @@ TEST_CASE("open, both refits, detect, filters and contacts allocate nothing, on 
   std::vector<float> padding(60);
   std::vector<Contact> contacts(2000);
   Filter filter{{ignored.data(), ignored.size()}, {disabled.data(), 1}, {padding.data(), padding.size()}};
+  std::vector<std::uint64_t> crowd_words(CrowdContext::words_needed(opened.asset, 2));
+  std::vector<CrowdPair> crowd_pairs(2000);
+  std::uint32_t crowd_count = 0;
+  CrowdContext crowd_context{{crowd_words.data(), crowd_words.size()}};
   DetectContext context{{words.data(), words.size()}};
   RefitJob refit;
   refit.positions = tiny.rest.data();
@@ -71,6 +76,15 @@ TEST_CASE("open, both refits, detect, filters and contacts allocate nothing, on 
   contact.pairs = {pairs.data(), detect.pair_count};
   contact.contacts = {contacts.data(), contacts.size()};
   const Status contact_status = contact.run();
+  CrowdJob crowd;
+  crowd.asset = &asset;
+  crowd.spheres = spheres.data();
+  crowd.instance_count = 1;
+  crowd.context = &crowd_context;
+  crowd.task_count = 2;
+  crowd.counts = {&crowd_count, 1};
+  crowd.pairs = {crowd_pairs.data(), crowd_pairs.size()};
+  const Status crowd_status = crowd.run();
   Asset closed;
   const Status bad_status = closed.open(opened.bytes.data(), opened.bytes.size() - 100, message, sizeof message);
   const std::size_t after = allocation_count();
@@ -86,6 +100,8 @@ TEST_CASE("open, both refits, detect, filters and contacts allocate nothing, on 
   CHECK(edit_status == Status::kOk);
   CHECK(target_status == Status::kOk);
   CHECK(contact_status == Status::kOk);
+  CHECK(crowd_status == Status::kOk);
+  CHECK(crowd_count > 0);
   CHECK(contact.contact_count > 0);
   CHECK(bad_status == Status::kCorrupt);
   CHECK(m2_pairs > 0);

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: MIT
+#include "spherechain/crowd.h"
+
+#include <algorithm>
+
+#include "arithmetic.h"
+#include "crowd_lanes.h"
+#include "memory.h"
+#include "simd.h"
+#include "spherechain/detect.h"
+#include "triangle_bits.h"
+
+namespace spherechain {
+namespace {
+
+constexpr std::size_t kAlignmentWords = 8;  // a cache line, and what a wide register wants
+
+// Where in the context's words what is kept.
+struct Layout {
+  explicit Layout(const Asset& asset)
+      : bit_words(DetectJob::bit_words(asset)),
+        near_words(
+            words_for(std::max(asset.near_pairs(RadiusKind::kFit).size, asset.near_pairs(RadiusKind::kDetect).size))),
+        lane_words(asset.spheres().size * 4 * kMostLanes / 2),
+        order_words(1 + asset.spheres().size / 2 + 1) {}
+
+  std::size_t bit_words, near_words;
+  std::size_t lane_words;   // a task
+  std::size_t order_words;  // a task: its total, and a place a sphere
+  std::size_t task_words() const { return kAlignmentWords + lane_words + kMostLanes * bit_words + order_words; }
+  std::size_t shared_words() const { return bit_words + near_words; }
+};
+
+struct Crowd {
+  const CrowdJob& job;
+  Layout layout;
+  Target target;  // resolved
+  std::size_t stride, lanes, task_count;
+  Span<const NearPair> near;
+  Span<std::uint64_t> wanted, near_wanted;
+  bool list_only = false;  // the second pass
+
+  std::uint64_t* scratch_of(std::size_t task) const {
+    return job.context->words.data + layout.shared_words() + task * layout.task_words();
+  }
+  // Whole batches, so that the tasks' number is of no consequence.
+  std::size_t first_of(std::size_t task) const {
+    const std::size_t batches = (job.instance_count + lanes - 1) / lanes;
+    return std::min(job.instance_count,
+                    batches / task_count * task * lanes + std::min(task, batches % task_count) * lanes);
+  }
+};
+
+// Which pairs are to be tested, and which of them as near pairs.
+void choose_pairs(Crowd& crowd) {
+  const CrowdJob& job = crowd.job;
+  const std::size_t n = job.asset->spheres().size;
+  const Span<const std::uint64_t> own = job.asset->ignored();
+  const std::uint64_t* ignored = job.filter == nullptr ? own.data : job.filter->ignored.data;
+  for (std::size_t w = 0; w < crowd.wanted.size; ++w) {
+    crowd.wanted[w] = ~ignored[w];
+  }
+  if (pairs_of(n) % 64 != 0) {
+    crowd.wanted[crowd.wanted.size - 1] &= ~std::uint64_t{0} >> (64 - pairs_of(n) % 64);
+  }
+  if (job.filter != nullptr && job.filter->disabled.size > 0) {
+    const Span<const std::uint64_t> disabled{job.filter->disabled.data, job.filter->disabled.size};
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t k = 0; k < n && test_bit(disabled, i); ++k) {
+        if (k != i) {
+          assign_bit(crowd.wanted, ignored_bit(std::min(i, k), std::max(i, k)), false);
+        }
+      }
+    }
+  }
+  std::fill(crowd.near_wanted.begin(), crowd.near_wanted.end(), std::uint64_t{0});
+  for (std::size_t i = 0; i < crowd.near.size; ++i) {
+    const std::size_t bit = ignored_bit(crowd.near[i].a, crowd.near[i].b);
+    assign_bit(crowd.near_wanted, i, test_bit({crowd.wanted.data, crowd.wanted.size}, bit));
+    assign_bit(crowd.wanted, bit, false);
+  }
+}
+
+// One instance's pairs into the list from place `at` on: a counting sort, for the table's order is by the larger
+// sphere.
+void list_instance(const std::uint64_t* bits, const Crowd& crowd, std::size_t instance, std::size_t at,
+                   std::uint32_t* places) {
+  const std::size_t n = crowd.job.asset->spheres().size;
+  const auto for_each = [&](auto use) {
+    std::size_t b = 1;
+    std::size_t row = 0;
+    for (std::size_t w = 0; w < crowd.layout.bit_words; ++w) {
+      for (std::uint64_t word = bits[w]; word != 0; word &= word - 1) {
+        const std::size_t bit = 64 * w + lowest_bit(word);
+        while (bit >= row + b) {
+          row += b;
+          ++b;
+        }
+        use(static_cast<std::uint32_t>(bit - row), static_cast<std::uint32_t>(b));
+      }
+    }
+  };
+  std::fill(places, places + n, 0U);
+  for_each([&](std::uint32_t a, std::uint32_t) { ++places[a]; });
+  std::uint32_t before = 0;
+  for (std::size_t a = 0; a < n; ++a) {
+    const std::uint32_t count = places[a];
+    places[a] = before;
+    before += count;
+  }
+  for_each([&](std::uint32_t a, std::uint32_t b) {
+    const std::size_t place = at + places[a]++;
+    if (place < crowd.job.pairs.size) {
+      crowd.job.pairs[place] = {static_cast<std::uint32_t>(instance), {a, b}};
+    }
+  });
+}
+
+// A task's instances, a register's lanes at a time.
+void run_task(void* data, std::size_t task) {
+  const Crowd& crowd = *static_cast<const Crowd*>(data);
+  if (task >= crowd.task_count) {
+    return;
+  }
+  const CrowdJob& job = crowd.job;
+  const std::size_t words = crowd.layout.bit_words;
+  std::uint64_t* scratch = crowd.scratch_of(task);
+  auto* places = reinterpret_cast<std::uint32_t*>(scratch + 1);
+  std::uint64_t* own_bits = scratch + crowd.layout.order_words;
+  const auto unaligned = reinterpret_cast<std::uintptr_t>(own_bits + kMostLanes * words);
+  constexpr std::uintptr_t kAlignment = 8 * kAlignmentWords;
+
+  LaneBatch batch;
+  batch.stride = crowd.stride;
+  batch.sphere_count = job.asset->spheres().size;
+  batch.padding = job.filter == nullptr ? nullptr : job.filter->padding.data;
+  batch.wanted = crowd.wanted.data;
+  batch.near = crowd.near;
+  batch.near_wanted = crowd.near_wanted.data;
+  batch.lanes = reinterpret_cast<float*>((unaligned + kAlignment - 1) / kAlignment * kAlignment);
+  batch.bit_words = words;
+
+  const bool lists = job.pairs.size > 0 && (crowd.list_only || crowd.task_count == 1);
+  const std::size_t end = crowd.first_of(task + 1);
+  std::uint64_t total = 0;
+  std::size_t place = 0;
+  for (std::size_t i = 0; lists && i < crowd.first_of(task); ++i) {
+    place += job.counts[i];
+  }
+  for (std::size_t first = crowd.first_of(task); first < end; first += crowd.lanes) {
+    batch.spheres = job.spheres + first * crowd.stride;
+    batch.count = std::min(crowd.lanes, end - first);
+    batch.bits = job.bits.size > 0 ? job.bits.data + first * words : own_bits;
+    if (!crowd.list_only || job.bits.size == 0) {
+      std::fill(batch.bits, batch.bits + batch.count * words, std::uint64_t{0});
+      test_lanes(crowd.target, batch);
+    }
+    for (std::size_t lane = 0; lane < batch.count; ++lane) {
+      total += batch.pair_counts[lane];
+      if (!crowd.list_only && job.counts.size > 0) {
+        job.counts[first + lane] = batch.pair_counts[lane];
+      }
+      if (lists && job.counts[first + lane] > 0) {
+        list_instance(batch.bits + lane * words, crowd, first + lane, place, places);
+        place += job.counts[first + lane];
+      }
+    }
+  }
+  if (!crowd.list_only) {
+    scratch[0] = total;
+  }
+}
+
+void run_tasks(Crowd& crowd) {
+  if (crowd.job.hook.parallel_for != nullptr) {
+    crowd.job.hook.parallel_for(crowd.job.hook.user, crowd.task_count, run_task, &crowd);
+    return;
+  }
+  for (std::size_t task = 0; task < crowd.task_count; ++task) {
+    run_task(&crowd, task);
+  }
+}
+
+template <typename T>
+bool is_missing(const Span<T>& span) {
+  return span.data == nullptr && span.size > 0;
+}
+
+bool shares_memory(const CrowdJob& job, std::size_t stride) {
+  const std::size_t n = job.asset->spheres().size;
+  const std::size_t spheres = job.instance_count == 0 ? 0 : (job.instance_count - 1) * stride + n;
+  const bool has_filter = job.filter != nullptr;
+  const MemoryRange written[] = {range_of(job.counts), range_of(job.bits), range_of(job.pairs),
+                                 range_of(job.context->words)};
+  const MemoryRange read[] = {range_of(Span<const Sphere>{job.spheres, spheres}), range_of(job.asset->ignored()),
+                              has_filter ? range_of(job.filter->ignored) : MemoryRange{},
+                              has_filter ? range_of(job.filter->disabled) : MemoryRange{},
+                              has_filter ? range_of(job.filter->padding) : MemoryRange{}};
+  return any_shared(written, read);
+}
+
+// Counts whose product with anything here cannot wrap.
+bool sizes_fit(const CrowdJob& job, std::size_t stride) {
+  constexpr std::size_t kMost = 0xFFFFFFFFU;
+  constexpr std::uint64_t kMostSpheres = std::uint64_t{1} << 56;
+  return job.instance_count < kMost && stride < kMost && (stride == 0 || job.instance_count <= kMostSpheres / stride) &&
+         job.task_count > 0 && job.task_count < kMost &&
+         (job.counts.size == 0 ? job.pairs.size == 0 : job.counts.size >= job.instance_count) &&
+         (job.bits.size == 0 || job.bits.size == job.instance_count * DetectJob::bit_words(*job.asset)) &&
+         (job.radius == RadiusKind::kFit || job.radius == RadiusKind::kDetect);
+}
+
+Status check(const CrowdJob& job, std::size_t stride) {
+  if ((job.spheres == nullptr && job.instance_count > 0) || job.context == nullptr || is_missing(job.context->words) ||
+      is_missing(job.counts) || is_missing(job.bits) || is_missing(job.pairs)) {
+    return Status::kNullArgument;
+  }
+  if (!sizes_fit(job, stride)) {
+    return Status::kBadArgument;
+  }
+  if (stride < job.asset->spheres().size) {
+    return Status::kTooFewSpheres;
+  }
+  if (job.filter != nullptr) {
+    const Status status = check_filter(*job.asset, *job.filter);
+    if (status != Status::kOk) {
+      return status;
+    }
+  }
+  if (job.context->words.size < CrowdContext::words_needed(*job.asset, job.task_count)) {
+    return Status::kContextTooSmall;
+  }
+  return shares_memory(job, stride) ? Status::kSharedMemory : Status::kOk;
+}
+
+}  // namespace
+
+std::size_t CrowdContext::words_needed(const Asset& asset, std::size_t task_count) noexcept {
+  const Layout layout(asset);
+  return layout.shared_words() + task_count * layout.task_words();
+}
+
+Status CrowdJob::run() noexcept {
+  if (asset == nullptr) {
+    return Status::kNullArgument;
+  }
+  if (!asset->is_open()) {
+    return Status::kNotOpen;
+  }
+  const std::size_t resolved_stride = stride == 0 ? asset->spheres().size : stride;
+  const Status status = check(*this, resolved_stride);
+  if (status != Status::kOk) {
+    return status;
+  }
+  Target resolved{};
+  if (!resolve_target(target, resolved)) {
+    return Status::kUnsupportedTarget;
+  }
+  const Layout layout(*asset);
+  Crowd crowd{*this,
+              layout,
+              resolved,
+              resolved_stride,
+              lanes_of(resolved),
+              task_count,
+              asset->near_pairs(radius),
+              {context->words.data, layout.bit_words},
+              {context->words.data + layout.bit_words, layout.near_words}};
+  choose_pairs(crowd);
+  for (std::size_t task = 0; task < task_count; ++task) {
+    crowd.scratch_of(task)[0] = 0;
+  }
+  run_tasks(crowd);
+  pair_count = 0;
+  for (std::size_t task = 0; task < task_count; ++task) {
+    pair_count += crowd.scratch_of(task)[0];
+  }
+  if (pairs.size > 0 && task_count > 1) {
+    crowd.list_only = true;
+    run_tasks(crowd);
+  }
+  return pairs.size > 0 && pair_count > pairs.size ? Status::kOverflow : Status::kOk;
+}
+
+}  // namespace spherechain

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// The pairs of as many instances as a register has lanes, one a lane.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "spherechain/asset.h"
+#include "spherechain/simd.h"
+#include "spherechain/types.h"
+
+namespace spherechain {
+
+inline constexpr std::size_t kMostLanes = 16;
+
+// Instances [0, count), count at most the target's lanes.
+struct LaneBatch {
+  const Sphere* spheres = nullptr;
+  std::size_t stride = 0, count = 0, sphere_count = 0;
+  const float* padding = nullptr;         // may be null
+  const std::uint64_t* wanted = nullptr;  // a bit a pair, in the order of Asset::ignored(): to be tested; no near pair
+  Span<const NearPair> near;
+  const std::uint64_t* near_wanted = nullptr;  // a bit each
+  float* lanes = nullptr;                      // scratch, aligned to 64 bytes: 4 * kMostLanes floats a sphere
+  // Out. Each instance's table of bits, bit_words each; the words are 0 before.
+  std::uint64_t* bits = nullptr;
+  std::size_t bit_words = 0;
+  std::uint32_t pair_counts[kMostLanes] = {};
+};
+
+void test_lanes(Target resolved, LaneBatch& batch);
+
+}  // namespace spherechain

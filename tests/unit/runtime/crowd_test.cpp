@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: MIT
+// A crowd's pairs are those of a DetectJob an instance, however it is dealt out.
+#include "spherechain/crowd.h"
+
+#include <doctest/doctest.h>
+
+#include <limits>
+#include <thread>
+
+#include "jobs.h"
+#include "tiny_asset.h"
+
+namespace spherechain::test {
+namespace {
+
+constexpr Sphere kGap{0, 0, 0, std::numeric_limits<float>::infinity()};  // between instances: never to be looked at
+
+struct Expected {
+  std::vector<std::uint32_t> counts;
+  std::vector<std::uint64_t> bits;
+  std::vector<CrowdPair> pairs;
+};
+
+struct Crowd {
+  Crowd(const Asset& asset, std::size_t instances, std::size_t gap, std::mt19937& random)
+      : asset(asset), instances(instances), stride(asset.spheres().size + gap), spheres(instances * stride, kGap) {
+    for (std::size_t i = 0; i < instances; ++i) {
+      std::vector<Sphere> one = random_spheres(asset.spheres().size, random);
+      for (Sphere& sphere : one) sphere.radius *= i % 3 == 0 ? 0.1F : 1.0F;  // some touch hardly at all
+      if (i % 7 == 5) one[i % one.size()].x = std::numeric_limits<float>::quiet_NaN();
+      if (i % 7 == 6) one[i % one.size()].radius = i % 2 == 0 ? 3e38F : -kGap.radius;
+      std::copy(one.begin(), one.end(), spheres.begin() + static_cast<std::ptrdiff_t>(i * stride));
+    }
+  }
+
+  Expected expected(RadiusKind radius, const Filter* filter) const {
+    Expected result;
+    for (std::size_t i = 0; i < instances; ++i) {
+      const auto begin = spheres.begin() + static_cast<std::ptrdiff_t>(i * stride);
+      const std::vector<Sphere> one(begin, begin + static_cast<std::ptrdiff_t>(asset.spheres().size));
+      const Detected found = detect(asset, one, Method::kM2, radius, Target::kScalar, filter);
+      result.counts.push_back(static_cast<std::uint32_t>(found.pairs.size()));
+      result.bits.insert(result.bits.end(), found.bits.begin(), found.bits.end());
+      for (const Pair& pair : found.pairs) result.pairs.push_back({static_cast<std::uint32_t>(i), pair});
+    }
+    return result;
+  }
+
+  const Asset& asset;
+  std::size_t instances, stride;
+  std::vector<Sphere> spheres;
+};
+
+// Buffers sized exactly and dirty.
+struct Run {
+  Run(const Crowd& crowd, std::size_t task_count)
+      : words(CrowdContext::words_needed(crowd.asset, task_count), 0xDDDDDDDDDDDDDDDDU), counts(crowd.instances, 7) {
+    context.words = {words.data(), words.size()};
+    job.asset = &crowd.asset;
+    job.spheres = crowd.spheres.data();
+    job.instance_count = crowd.instances;
+    job.stride = crowd.stride;
+    job.context = &context;
+    job.task_count = task_count;
+    job.counts = {counts.data(), counts.size()};
+  }
+  std::vector<std::uint64_t> words;
+  CrowdContext context;
+  std::vector<std::uint32_t> counts;
+  CrowdJob job;
+};
+
+// Tasks on as many threads as `user` says, dealt out in turn, the last ones first.
+void on_threads(void* user, std::size_t count, void (*task)(void*, std::size_t), void* data) {
+  const std::size_t threads = *static_cast<std::size_t*>(user);
+  std::vector<std::thread> running;
+  for (std::size_t t = 0; t < threads; ++t) {
+    running.emplace_back([=] {
+      for (std::size_t i = t; i < count; i += threads) task(data, count - 1 - i);
+    });
+  }
+  for (std::thread& thread : running) thread.join();
+}
+
+}  // namespace
+
+TEST_CASE("a crowd's pairs are each instance's own, on every target, in any number of tasks and threads") {
+  for (const unsigned n : {1U, 2U, 12U, 64U, 75U, 140U}) {
+    std::mt19937 random(n);
+    const OpenedAsset opened(random_asset(n, n).parts);
+    for (const std::size_t instances : {1U, 3U, 16U, 17U, 70U}) {
+      CAPTURE(n);
+      CAPTURE(instances);
+      const Crowd crowd(opened.asset, instances, instances % 2, random);
+      const RadiusKind radius = instances % 2 == 0 ? RadiusKind::kFit : RadiusKind::kDetect;
+      const Expected wanted = crowd.expected(radius, nullptr);
+      for (const Target target : supported_targets()) {
+        for (std::size_t task_count : {1U, 2U, 4U, 9U}) {
+          Run run(crowd, task_count);
+          run.job.radius = radius;
+          run.job.target = target;
+          run.job.hook = {task_count == 9 ? nullptr : on_threads, &task_count};
+          std::vector<CrowdPair> pairs(wanted.pairs.size() + 1);
+          run.job.pairs = {pairs.data(), pairs.size()};
+          REQUIRE(run.job.run() == Status::kOk);
+          CHECK(run.job.pair_count == wanted.pairs.size());
+          CHECK(run.counts == wanted.counts);
+          pairs.pop_back();
+          CHECK(pairs == wanted.pairs);
+
+          std::vector<std::uint64_t> bits(wanted.bits.size(), 5);
+          std::fill(pairs.begin(), pairs.end(), CrowdPair{});
+          run.job.bits = {bits.data(), bits.size()};
+          run.job.pairs.size = pairs.size();
+          REQUIRE(run.job.run() == Status::kOk);
+          CHECK(bits == wanted.bits);
+          CHECK(pairs == wanted.pairs);
+
+          run.job.bits = {};
+          run.job.pairs = {};
+          run.job.counts = {};
+          run.job.pair_count = 0;
+          REQUIRE(run.job.run() == Status::kOk);
+          CHECK(run.job.pair_count == wanted.pairs.size());
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("a crowd takes a filter as a single job does") {
+  std::mt19937 random(5);
+  const OpenedAsset opened(random_asset(70, 5).parts);
+  std::vector<std::uint64_t> ignored(Filter::ignored_words(opened.asset)), disabled(2);
+  std::vector<float> padding(70);
+  Filter filter{{ignored.data(), ignored.size()}, {disabled.data(), 2}, {padding.data(), 70}};
+  REQUIRE(reset_filter(opened.asset, filter) == Status::kOk);
+  for (std::uint32_t i = 0; i < 70; ++i) {
+    if (random() % 4 == 0) REQUIRE(disable_sphere(opened.asset, filter, i) == Status::kOk);
+    REQUIRE(pad_sphere(opened.asset, filter, i, uniform(random, -0.05F, 0.1F)) == Status::kOk);
+    if (i > 0)
+      REQUIRE(ignore_pair(opened.asset, filter, i, static_cast<std::uint32_t>(random() % i), random() % 2 == 0) ==
+              Status::kOk);
+  }
+  const Crowd crowd(opened.asset, 40, 0, random);
+  const Expected wanted = crowd.expected(RadiusKind::kDetect, &filter);
+  CHECK(!wanted.pairs.empty());
+  for (const Target target : supported_targets()) {
+    Run run(crowd, 3);
+    std::vector<CrowdPair> pairs(wanted.pairs.size());
+    run.job.pairs = {pairs.data(), pairs.size()};
+    run.job.target = target;
+    run.job.filter = &filter;
+    run.job.stride = 0;
+    REQUIRE(run.job.run() == Status::kOk);
+    CHECK(pairs == wanted.pairs);
+    CHECK(run.counts == wanted.counts);
+  }
+}
+
+TEST_CASE("a crowd's overflow writes the first pairs and says how many there are") {
+  std::mt19937 random(6);
+  const OpenedAsset opened(random_asset(30, 6).parts);
+  const Crowd crowd(opened.asset, 33, 0, random);
+  const Expected wanted = crowd.expected(RadiusKind::kDetect, nullptr);
+  REQUIRE(wanted.pairs.size() > 200);
+  for (const std::size_t tasks : {1U, 3U}) {
+    Run run(crowd, tasks);
+    const CrowdPair untouched{77, {77, 77}};
+    std::vector<CrowdPair> pairs(201, untouched);
+    run.job.pairs = {pairs.data(), 200};
+    CHECK(run.job.run() == Status::kOverflow);
+    CHECK(run.job.pair_count == wanted.pairs.size());
+    CHECK(run.counts == wanted.counts);
+    CHECK(std::equal(pairs.begin(), pairs.begin() + 200, wanted.pairs.begin()));
+    CHECK(pairs[200] == untouched);
+  }
+}
+
+TEST_CASE("a crowd of none is done; what cannot be used is refused and nothing is written") {
+  std::mt19937 random(7);
+  const OpenedAsset opened(random_asset(30, 7).parts);
+  const Crowd crowd(opened.asset, 20, 0, random);
+  Run run(crowd, 2);
+  std::vector<CrowdPair> pairs(4000);
+  std::vector<std::uint64_t> bits(20 * DetectJob::bit_words(opened.asset), 3);
+  run.job.pairs = {pairs.data(), pairs.size()};
+  run.job.bits = {bits.data(), bits.size()};
+  const Asset closed;
+  const auto refused = [&](Status wanted, auto change) {
+    CrowdJob job = run.job;
+    job.pair_count = 99;
+    const auto before_words = run.words;
+    change(job);
+    CHECK(job.run() == wanted);
+    CHECK(job.pair_count == 99);
+    CHECK(run.words == before_words);
+    CHECK(run.counts == std::vector<std::uint32_t>(20, 7));
+    CHECK(bits[0] == 3);
+  };
+  CrowdContext small{{run.words.data(), run.words.size() - 1}}, null{{nullptr, run.words.size()}};
+  const Filter empty{};
+  refused(Status::kNullArgument, [](CrowdJob& j) { j.asset = nullptr; });
+  refused(Status::kNullArgument, [](CrowdJob& j) { j.spheres = nullptr; });
+  refused(Status::kNullArgument, [](CrowdJob& j) { j.context = nullptr; });
+  refused(Status::kNullArgument, [&](CrowdJob& j) { j.context = &null; });
+  refused(Status::kNullArgument, [](CrowdJob& j) { j.counts.data = nullptr; });
+  refused(Status::kNullArgument, [](CrowdJob& j) { j.bits.data = nullptr; });
+  refused(Status::kNullArgument, [](CrowdJob& j) { j.pairs.data = nullptr; });
+  refused(Status::kNotOpen, [&](CrowdJob& j) { j.asset = &closed; });
+  refused(Status::kTooFewSpheres, [](CrowdJob& j) { j.stride = 29; });
+  refused(Status::kContextTooSmall, [&](CrowdJob& j) { j.context = &small; });
+  refused(Status::kContextTooSmall, [&](CrowdJob& j) { j.task_count = 3; });
+  refused(Status::kBadArgument, [](CrowdJob& j) { j.task_count = 0; });
+  refused(Status::kBadArgument, [](CrowdJob& j) { j.task_count = ~std::size_t{0}; });
+  refused(Status::kBadArgument, [](CrowdJob& j) { j.instance_count = ~std::size_t{0}; });
+  refused(Status::kBadArgument, [](CrowdJob& j) { j.stride = ~std::size_t{0}; });
+  refused(Status::kBadArgument, [](CrowdJob& j) { j.counts.size = 19; });
+  refused(Status::kBadArgument, [](CrowdJob& j) { j.counts = {}; });
+  refused(Status::kBadArgument, [](CrowdJob& j) { --j.bits.size; });
+  refused(Status::kBadArgument, [](CrowdJob& j) { j.radius = static_cast<RadiusKind>(2); });
+  refused(Status::kBadFilter, [&](CrowdJob& j) { j.filter = &empty; });
+  refused(Status::kUnsupportedTarget, [](CrowdJob& j) { j.target = static_cast<Target>(9); });
+  refused(Status::kSharedMemory,
+          [&](CrowdJob& j) { j.pairs.data = reinterpret_cast<CrowdPair*>(run.words.data() + 5); });
+  refused(Status::kSharedMemory, [&](CrowdJob& j) { j.spheres = reinterpret_cast<const Sphere*>(pairs.data()); });
+  refused(Status::kSharedMemory, [&](CrowdJob& j) { j.counts.data = reinterpret_cast<std::uint32_t*>(bits.data()); });
+  CHECK(run.job.run() == Status::kOk);
+
+  run.job.instance_count = 0;
+  run.job.spheres = nullptr;
+  run.job.bits = {};
+  CHECK(run.job.run() == Status::kOk);
+  CHECK(run.job.pair_count == 0);
+}
+
+}  // namespace spherechain::test
