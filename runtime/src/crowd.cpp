@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "arithmetic.h"
+#include "bone_refit.h"
 #include "crowd_lanes.h"
 #include "memory.h"
 #include "simd.h"
@@ -22,12 +23,16 @@ struct Layout {
         near_words(
             words_for(std::max(asset.near_pairs(RadiusKind::kFit).size, asset.near_pairs(RadiusKind::kDetect).size))),
         lane_words(asset.spheres().size * 4 * kMostLanes / 2),
+        sphere_words(asset.spheres().size * kMostLanes * sizeof(Sphere) / sizeof(std::uint64_t)),
         order_words(1 + asset.spheres().size / 2 + 1) {}
 
   std::size_t bit_words, near_words;
-  std::size_t lane_words;   // a task
-  std::size_t order_words;  // a task: its total, and a place a sphere
-  std::size_t task_words() const { return kAlignmentWords + lane_words + kMostLanes * bit_words + order_words; }
+  std::size_t lane_words;    // a task
+  std::size_t sphere_words;  // a task: refitted from bones
+  std::size_t order_words;   // a task: its total, and a place a sphere
+  std::size_t task_words() const {
+    return kAlignmentWords + lane_words + sphere_words + kMostLanes * bit_words + order_words;
+  }
   std::size_t shared_words() const { return bit_words + near_words; }
 };
 
@@ -38,7 +43,8 @@ struct Crowd {
   std::size_t stride, lanes, task_count;
   Span<const NearPair> near;
   Span<std::uint64_t> wanted, near_wanted;
-  bool list_only = false;  // the second pass
+  BoneRefitInputs bones = {};  // where the job has bones
+  bool list_only = false;      // the second pass
 
   std::uint64_t* scratch_of(std::size_t task) const {
     return job.context->words.data + layout.shared_words() + task * layout.task_words();
@@ -116,6 +122,19 @@ void list_instance(const std::uint64_t* bits, const Crowd& crowd, std::size_t in
   });
 }
 
+// One after the other, as the test of a batch wants them.
+void refit_instances(const Crowd& crowd, std::size_t first, std::size_t count, Sphere* spheres) {
+  const CrowdJob& job = crowd.job;
+  BoneRefitInputs inputs = crowd.bones;
+  for (std::size_t i = 0; i < count; ++i) {
+    inputs.matrices = job.bones.data + (first + i) * (job.instance_stride / sizeof(float));
+    if (crowd.bones.morph_weights != nullptr) {
+      inputs.morph_weights = crowd.bones.morph_weights + (first + i) * job.asset->morph_count();
+    }
+    refit_from_bones(inputs, crowd.target, spheres + i * job.asset->spheres().size);
+  }
+}
+
 // A task's instances, a register's lanes at a time.
 void run_task(void* data, std::size_t task) {
   const Crowd& crowd = *static_cast<const Crowd*>(data);
@@ -126,7 +145,8 @@ void run_task(void* data, std::size_t task) {
   const std::size_t words = crowd.layout.bit_words;
   std::uint64_t* scratch = crowd.scratch_of(task);
   auto* places = reinterpret_cast<std::uint32_t*>(scratch + 1);
-  std::uint64_t* own_bits = scratch + crowd.layout.order_words;
+  auto* refitted = reinterpret_cast<Sphere*>(scratch + crowd.layout.order_words);
+  std::uint64_t* own_bits = scratch + crowd.layout.order_words + crowd.layout.sphere_words;
   const auto unaligned = reinterpret_cast<std::uintptr_t>(own_bits + kMostLanes * words);
   constexpr std::uintptr_t kAlignment = 8 * kAlignmentWords;
 
@@ -148,10 +168,13 @@ void run_task(void* data, std::size_t task) {
     place += job.counts[i];
   }
   for (std::size_t first = crowd.first_of(task); first < end; first += crowd.lanes) {
-    batch.spheres = job.spheres + first * crowd.stride;
+    batch.spheres = job.bones.data != nullptr ? refitted : job.spheres + first * crowd.stride;
     batch.count = std::min(crowd.lanes, end - first);
     batch.bits = job.bits.size > 0 ? job.bits.data + first * words : own_bits;
     if (!crowd.list_only || job.bits.size == 0) {
+      if (job.bones.data != nullptr) {
+        refit_instances(crowd, first, batch.count, refitted);
+      }
       std::fill(batch.bits, batch.bits + batch.count * words, std::uint64_t{0});
       test_lanes(crowd.target, batch);
     }
@@ -186,17 +209,47 @@ bool is_missing(const Span<T>& span) {
   return span.data == nullptr && span.size > 0;
 }
 
+// What the bones of one instance take.
+std::size_t instance_bytes(const CrowdJob& job) {
+  return (job.asset->bone_count() - 1) * job.bones.stride + size_of(job.bones.layout);
+}
+
 bool shares_memory(const CrowdJob& job, std::size_t stride) {
   const std::size_t n = job.asset->spheres().size;
-  const std::size_t spheres = job.instance_count == 0 ? 0 : (job.instance_count - 1) * stride + n;
+  const std::size_t before_last = job.instance_count == 0 ? 0 : job.instance_count - 1;
+  const std::size_t spheres = job.instance_count == 0 || job.spheres == nullptr ? 0 : before_last * stride + n;
+  const std::size_t floats = job.instance_count == 0 || job.bones.data == nullptr
+                                 ? 0
+                                 : (before_last * job.instance_stride + instance_bytes(job)) / sizeof(float);
   const bool has_filter = job.filter != nullptr;
   const MemoryRange written[] = {range_of(job.counts), range_of(job.bits), range_of(job.pairs),
                                  range_of(job.context->words)};
-  const MemoryRange read[] = {range_of(Span<const Sphere>{job.spheres, spheres}), range_of(job.asset->ignored()),
+  const MemoryRange read[] = {range_of(Span<const Sphere>{job.spheres, spheres}),
+                              range_of(job.asset->ignored()),
+                              range_of(Span<const float>{job.bones.data, floats}),
+                              range_of(job.morph_weights),
                               has_filter ? range_of(job.filter->ignored) : MemoryRange{},
                               has_filter ? range_of(job.filter->disabled) : MemoryRange{},
                               has_filter ? range_of(job.filter->padding) : MemoryRange{}};
   return any_shared(written, read);
+}
+
+Status check_bones(const CrowdJob& job) {
+  if (job.spheres != nullptr) {
+    return Status::kBadArgument;
+  }
+  const Status status = check_bone_inputs(job.asset, job.bones, {}, job.radius);
+  if (status != Status::kOk) {
+    return status;
+  }
+  constexpr std::size_t kMostBytes = 0xFFFFFFFFU;
+  if (job.bones.stride > kMostBytes / job.asset->bone_count() || job.instance_stride > kMostBytes ||
+      job.instance_stride % sizeof(float) != 0 || job.instance_stride < instance_bytes(job)) {
+    return Status::kBadStride;
+  }
+  return job.morph_weights.size == 0 || job.morph_weights.size / job.instance_count >= job.asset->morph_count()
+             ? Status::kOk
+             : Status::kTooFewMorphs;
 }
 
 // Counts whose product with anything here cannot wrap.
@@ -211,8 +264,10 @@ bool sizes_fit(const CrowdJob& job, std::size_t stride) {
 }
 
 Status check(const CrowdJob& job, std::size_t stride) {
-  if ((job.spheres == nullptr && job.instance_count > 0) || job.context == nullptr || is_missing(job.context->words) ||
-      is_missing(job.counts) || is_missing(job.bits) || is_missing(job.pairs)) {
+  const bool has_bones = job.bones.data != nullptr;
+  if ((job.spheres == nullptr && !has_bones && job.instance_count > 0) || is_missing(job.morph_weights) ||
+      job.context == nullptr || is_missing(job.context->words) || is_missing(job.counts) || is_missing(job.bits) ||
+      is_missing(job.pairs)) {
     return Status::kNullArgument;
   }
   if (!sizes_fit(job, stride)) {
@@ -220,6 +275,12 @@ Status check(const CrowdJob& job, std::size_t stride) {
   }
   if (stride < job.asset->spheres().size) {
     return Status::kTooFewSpheres;
+  }
+  if (has_bones && job.instance_count > 0) {
+    const Status status = check_bones(job);
+    if (status != Status::kOk) {
+      return status;
+    }
   }
   if (job.filter != nullptr) {
     const Status status = check_filter(*job.asset, *job.filter);
@@ -247,7 +308,8 @@ Status CrowdJob::run() noexcept {
   if (!asset->is_open()) {
     return Status::kNotOpen;
   }
-  const std::size_t resolved_stride = stride == 0 ? asset->spheres().size : stride;
+  const bool has_bones = bones.data != nullptr;
+  const std::size_t resolved_stride = stride == 0 || has_bones ? asset->spheres().size : stride;
   const Status status = check(*this, resolved_stride);
   if (status != Status::kOk) {
     return status;
@@ -266,6 +328,9 @@ Status CrowdJob::run() noexcept {
               asset->near_pairs(radius),
               {context->words.data, layout.bit_words},
               {context->words.data + layout.bit_words, layout.near_words}};
+  if (has_bones && instance_count > 0) {
+    crowd.bones = bone_refit_inputs(*asset, bones, morph_weights, radius);
+  }
   choose_pairs(crowd);
   for (std::size_t task = 0; task < task_count; ++task) {
     crowd.scratch_of(task)[0] = 0;

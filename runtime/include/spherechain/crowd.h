@@ -6,6 +6,7 @@
 
 #include "spherechain/asset.h"
 #include "spherechain/filter.h"
+#include "spherechain/refit_bones.h"
 #include "spherechain/simd.h"
 #include "spherechain/status.h"
 #include "spherechain/types.h"
@@ -24,7 +25,7 @@ struct TaskHook {
 struct CrowdContext {
   Span<std::uint64_t> words;
 
-  // Words needed for a job of `task_count` tasks; what they hold does not matter. A human and one task: some 30 KiB.
+  // Words needed for a job of `task_count` tasks; what they hold does not matter. A human and one task: some 45 KiB.
   static std::size_t words_needed(const Asset& asset, std::size_t task_count) noexcept;
 };
 
@@ -38,7 +39,8 @@ struct CrowdPair {
 };
 
 // M2 for many instances of one asset, one instance a lane: for each, exactly the pairs a DetectJob reports, whatever
-// the target, the instance's neighbours, the number of tasks and of threads.
+// the target, the instance's neighbours, the number of tasks and of threads. The instances come as spheres, or as
+// bones: then each is refitted as a RefitBonesJob would, into scratch memory, so that bones in, pairs out is one call.
 //
 // Fill in the fields and call run(). Allocates nothing, takes no lock; jobs with other outputs and contexts may run at
 // the same time.
@@ -47,6 +49,13 @@ struct CrowdJob {
   const Sphere* spheres = nullptr;  // instance i's are spheres[i * stride] and on, from refits with the same `radius`
   std::size_t instance_count = 0;   // below 2^32
   std::size_t stride = 0;           // spheres from one instance to the next; at least the asset's, or 0: as many
+
+  // Instead of `spheres`: instance 0's matrices, and the bytes from one instance's first matrix to the next's: a
+  // multiple of 4, at least what the asset's bones take. Morph weights: asset->morph_count() an instance, or empty.
+  BoneMatrices bones;
+  std::size_t instance_stride = 0;
+  Span<const float> morph_weights;
+
   RadiusKind radius = RadiusKind::kDetect;
   Target target = Target::kBest;
   const Filter* filter = nullptr;   // null: the asset's ignored pairs, all spheres as they are
@@ -63,8 +72,9 @@ struct CrowdJob {
   std::size_t pair_count = 0;
 
   // kOk; kOverflow where `pairs` was not empty and too small (the first are written); kNullArgument, kNotOpen,
-  // kTooFewSpheres (a stride below the asset's spheres), kContextTooSmall, kBadArgument (a count or a buffer's size
-  // that does not fit), kUnsupportedTarget, kBadFilter, kSharedMemory: nothing is written, the count keeps its value.
+  // kBadStride, kNotInAsset, kTooFewBones, kTooFewMorphs, kTooFewSpheres (a stride below the asset's spheres),
+  // kContextTooSmall, kBadArgument (both spheres and bones; a count or a buffer's size that does not fit),
+  // kUnsupportedTarget, kBadFilter, kSharedMemory: nothing is written, the count keeps its value.
   Status run() noexcept;
 };
 

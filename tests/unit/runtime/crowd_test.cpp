@@ -4,11 +4,12 @@
 
 #include <doctest/doctest.h>
 
+#include <cstring>
 #include <limits>
 #include <thread>
 
 #include "jobs.h"
-#include "tiny_asset.h"
+#include "tiny_bones.h"
 
 namespace spherechain::test {
 namespace {
@@ -156,6 +157,83 @@ TEST_CASE("a crowd takes a filter as a single job does") {
     CHECK(pairs == wanted.pairs);
     CHECK(run.counts == wanted.counts);
   }
+}
+
+TEST_CASE("bones in, pairs out: a crowd of skeletons gives the pairs of its refitted spheres, morphed or not") {
+  TinyAsset tiny = random_asset(60, 8);
+  add_bones(tiny, 9, 8);
+  const OpenedAsset opened(tiny.parts);
+  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
+  constexpr std::size_t kInstances = 37, kStride = 9 * sizeof(Matrix) + 8;  // bytes; some between instances
+  const std::size_t morphs = opened.asset.morph_count();
+  REQUIRE(morphs > 0);
+  std::mt19937 random(8);
+  std::vector<float> matrices(kInstances * kStride / 4, 1e30F), weights(kInstances * morphs);
+  for (float& weight : weights) weight = uniform(random, -1, 1);
+  std::vector<Sphere> spheres[2];
+  for (std::size_t i = 0; i < kInstances; ++i) {
+    const std::vector<Matrix> own = random_matrices(9, static_cast<unsigned>(i));
+    std::memcpy(&matrices[i * kStride / 4], own.data(), 9 * sizeof(Matrix));
+    const auto first = weights.begin() + static_cast<std::ptrdiff_t>(i * morphs);
+    for (const bool morphed : {false, true}) {
+      const std::vector<float> one =
+          morphed ? std::vector<float>(first, first + static_cast<std::ptrdiff_t>(morphs)) : std::vector<float>();
+      const Refitted refitted = refit_bones(opened.asset, {own[0].data(), 9, MatrixLayout::kRowMajor3x4, 48}, one,
+                                            RadiusKind::kDetect, Target::kScalar);
+      REQUIRE(refitted.status == Status::kOk);
+      spheres[morphed].insert(spheres[morphed].end(), refitted.spheres.begin(), refitted.spheres.end());
+    }
+  }
+  for (const bool morphed : {false, true}) {
+    Crowd crowd(opened.asset, kInstances, 0, random);
+    crowd.spheres = spheres[morphed];
+    const Expected wanted = crowd.expected(RadiusKind::kDetect, nullptr);
+    CHECK(wanted.pairs.size() > 100);
+    for (const Target target : supported_targets()) {
+      for (const std::size_t tasks : {1U, 3U}) {
+        Run run(crowd, tasks);
+        std::vector<CrowdPair> pairs(wanted.pairs.size());
+        run.job.spheres = nullptr;
+        run.job.bones = {matrices.data(), 9, MatrixLayout::kRowMajor3x4, 48};
+        run.job.instance_stride = kStride;
+        if (morphed) run.job.morph_weights = {weights.data(), weights.size()};
+        run.job.target = target;
+        run.job.pairs = {pairs.data(), pairs.size()};
+        REQUIRE(run.job.run() == Status::kOk);
+        CHECK(pairs == wanted.pairs);
+        CHECK(run.counts == wanted.counts);
+        if (tasks > 1) continue;
+        const auto refused = [&](Status status, auto change) {
+          CrowdJob job = run.job;
+          change(job);
+          CHECK(job.run() == status);
+        };
+        refused(Status::kBadArgument, [&](CrowdJob& j) { j.spheres = crowd.spheres.data(); });
+        refused(Status::kTooFewBones, [](CrowdJob& j) { j.bones.count = 8; });
+        refused(Status::kBadStride, [](CrowdJob& j) { j.bones.stride = 44; });
+        refused(Status::kBadStride, [](CrowdJob& j) { j.instance_stride = 9 * 48 - 4; });
+        refused(Status::kBadStride, [](CrowdJob& j) { j.instance_stride += 2; });
+        refused(Status::kBadStride, [](CrowdJob& j) { j.instance_stride = ~std::size_t{3}; });
+        refused(Status::kBadStride, [](CrowdJob& j) { j.bones.stride = ~std::size_t{3}; });
+        refused(Status::kTooFewMorphs, [&](CrowdJob& j) { j.morph_weights = {weights.data(), weights.size() - 1}; });
+        refused(Status::kNullArgument, [&](CrowdJob& j) { j.morph_weights = {nullptr, weights.size()}; });
+        refused(Status::kSharedMemory,
+                [&](CrowdJob& j) { j.counts.data = reinterpret_cast<std::uint32_t*>(&matrices.back() - 60); });
+        refused(Status::kSharedMemory, [&](CrowdJob& j) {
+          j.morph_weights = {weights.data(), weights.size()};
+          j.counts.data = reinterpret_cast<std::uint32_t*>(weights.data());
+        });
+      }
+    }
+  }
+  const OpenedAsset without(random_asset(60, 8).parts);
+  std::mt19937 again(1);
+  const Crowd crowd(without.asset, 2, 0, again);
+  Run run(crowd, 1);
+  run.job.spheres = nullptr;
+  run.job.bones = {matrices.data(), 9, MatrixLayout::kRowMajor3x4, 48};
+  run.job.instance_stride = kStride;
+  CHECK(run.job.run() == Status::kNotInAsset);
 }
 
 TEST_CASE("a crowd's overflow writes the first pairs and says how many there are") {
