@@ -42,9 +42,18 @@ struct TermPlace {
   std::size_t term, morph_term;
 };
 
+// Eight lanes one at a time are much code, twice as slow where it is inlined.
+#undef SPHERECHAIN_MOVE_GROUP
+#if HWY_TARGET == HWY_SCALAR
+#define SPHERECHAIN_MOVE_GROUP HWY_NOINLINE
+#else
+#define SPHERECHAIN_MOVE_GROUP HWY_INLINE
+#endif
+
 // One group's centroids, by coordinates. Row r, column c of a matrix lies kRow * r + kColumn * c floats from its start.
 template <std::size_t kRow, std::size_t kColumn, bool kMorphs>
-HWY_INLINE void move_group(const BoneRefitInputs& in, std::size_t group, TermPlace& at, float (&out)[3][kPivotLanes]) {
+SPHERECHAIN_MOVE_GROUP void move_group(const BoneRefitInputs& in, std::size_t group, TermPlace& at,
+                                       float (&out)[3][kPivotLanes]) {
   const Lanes8 d;
   using V = hn::Vec<Lanes8>;
   constexpr std::size_t kParts = kPivotLanes / hn::MaxLanes(Lanes8());

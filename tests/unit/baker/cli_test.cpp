@@ -126,6 +126,12 @@ TEST_CASE("inspect --json has the contract's fields and agrees with itself") {
     CHECK(asset["fit"][fit].contains("mean_abs_F"));
     CHECK(asset["fit"][fit].contains("max_abs_F"));
   }
+  CHECK(asset["bones"].size() == asset["joints"].size());
+  CHECK(asset["bones"][0]["name"] == asset["joints"][0]["name"]);
+  CHECK(asset["morphs"].empty());
+  CHECK(asset["bone_tables"]["groups"] >= asset["sphere_count"]);
+  CHECK(asset["bone_tables"]["terms"] >= asset["bone_tables"]["groups"]);
+  CHECK(asset["pivot_vertices"] > asset["sphere_count"]);
   CHECK(run("inspect " + baked_files().asset.string()).out.find("zeta5") != std::string::npos);
 }
 
