@@ -151,6 +151,25 @@ TEST_CASE("the pairs of a thousand frames hash to the same value on every target
   }
 }
 
+TEST_CASE("M1 takes chains as long as the asset, in any order") {
+  for (const std::uint32_t n : {65U, 127U, 128U, 129U}) {
+    CAPTURE(n);
+    std::mt19937 random(n);
+    TinyAsset tiny = random_asset(n, n);
+    std::vector<std::uint32_t> all;
+    for (std::uint32_t i = 0; i < n; ++i) all.push_back((i * 61 + 7) % n);
+    tiny.parts.chains = {{"all", {0}, all}, {"back", {0}, {all.rbegin(), all.rend()}}};
+    const OpenedAsset opened(tiny.parts);
+    REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
+    const std::vector<Sphere> spheres = random_spheres(n, random);
+    const Detected m1 = detect(opened.asset, spheres, Method::kM1, RadiusKind::kDetect);
+    const Detected chains = brute_force_chains(tiny, spheres, RadiusKind::kDetect);
+    CHECK(m1.pairs == chains.pairs);
+    CHECK(same_bits(m1.chain_pairs, chains.chain_pairs));
+    CHECK(m1.test_count == chains.test_count);
+  }
+}
+
 TEST_CASE("M1 reports a pair once, and in the raw list once a chain, in chain order") {
   TinyAsset tiny = random_asset(5, 1);
   tiny.parts.ignored.assign(1, 0);
