@@ -86,13 +86,9 @@ std::vector<Index> triangles_around(const Mesh& mesh, const FittedSphere& sphere
   return around;
 }
 
-BoundSphere bind_sphere(const Mesh& mesh, const std::vector<Index>& surrounding, const std::vector<Index>& carriers,
-                        const FittedSphere& sphere, bool on_torso, const BodyFrame& frame,
-                        const BindSettings& settings) {
-  BoundSphere bound{sphere.ball, 0, 0, {}, 0};
-  // Ray 0 of the rings points there too: pivots turn with the body.
-  const Vec3 reference = on_torso ? frame.forward : Vec3(frame.up + 0.7 * frame.left + 0.3 * frame.forward);
-  bound.pivots = choose_pivots(mesh, carriers, sphere, reference, settings.rule, settings.pivots);
+// What the pivots make of the sphere: its centre and spread in the rest pose.
+BoundSphere carried(const Mesh& mesh, const FittedSphere& sphere, RefitRule rule, std::vector<BoundPivot> pivots) {
+  BoundSphere bound{sphere.ball, 0, 0, std::move(pivots), 0};
   Vec3 center = Vec3::Zero();
   for (const BoundPivot& pivot : bound.pivots) {
     center += pivot.weight * triangle_centroid(mesh, pivot.triangle);
@@ -102,14 +98,40 @@ BoundSphere bind_sphere(const Mesh& mesh, const std::vector<Index>& surrounding,
     bound.spread +=
         (triangle_centroid(mesh, pivot.triangle) - center).norm() / static_cast<double>(bound.pivots.size());
   }
-  if (settings.rule == RefitRule::kPaper) bound.rest = {center, bound.spread};
+  if (rule == RefitRule::kPaper) {
+    bound.rest = {center, bound.spread};
+  } else if ((center - sphere.ball.center).norm() > 1e-6 * sphere.ball.radius) {
+    bound.rest.center = center;
+  }
+  return bound;
+}
 
-  // A region may reach far beyond its sphere (head, hands, feet): no farther than what closes the waists between
-  // neighbours of equal size, r sqrt(1 + (1 - PD)^2).
+// A region may reach far beyond its sphere (head, hands, feet): no farther than what closes the waists between
+// neighbours of equal size, r sqrt(1 + (1 - PD)^2).
+double detect_ratio(const Mesh& mesh, const std::vector<Index>& surrounding, const Ball& ball,
+                    const BindSettings& settings) {
   const double waist = std::sqrt(1 + std::pow(1 - settings.penetration_depth, 2));
-  const double quantile = area_quantile(mesh, surrounding, sphere.ball.center, settings.detect_quantile);
-  const double ratio = std::clamp(quantile / sphere.ball.radius, 1.0, waist);
-  bound.detect_radius = ratio * bound.rest.radius;
+  const double quantile = area_quantile(mesh, surrounding, ball.center, settings.detect_quantile);
+  return std::clamp(quantile / ball.radius, 1.0, waist);
+}
+
+BoundSphere bind_sphere(const Mesh& mesh, const std::vector<Index>& surrounding, const FittedSphere& sphere,
+                        bool on_torso, const BodyFrame& frame, const BindSettings& settings) {
+  // Ray 0 of the rings points there too: pivots turn with the body.
+  const Vec3 reference = on_torso ? frame.forward : Vec3(frame.up + 0.7 * frame.left + 0.3 * frame.forward);
+  const auto choose = [&](const std::vector<Index>& among) {
+    return choose_pivots(mesh, among, sphere, reference, settings.rule, settings.pivots);
+  };
+  std::vector<BoundPivot> pivots = choose(surrounding);
+  // Few and large triangles: those beyond the region's border carry the sphere too.
+  for (double radii = 2; pivots.empty() && radii <= 8; radii *= 2) {
+    pivots = choose(triangles_around(mesh, sphere, radii));
+  }
+  if (pivots.empty() && settings.rule == RefitRule::kCalibrated) {
+    pivots = choose_nearest_pivots(mesh, triangles_around(mesh, sphere, 8), sphere, reference, settings.pivots);
+  }
+  BoundSphere bound = carried(mesh, sphere, settings.rule, std::move(pivots));
+  bound.detect_radius = detect_ratio(mesh, surrounding, sphere.ball, settings) * bound.rest.radius;
   return bound;
 }
 
@@ -168,12 +190,7 @@ Binding bind_spheres(const Character& character, const Regions& regions, const S
   for (std::size_t i = 0; i < spheres.spheres.size(); ++i) {
     const FittedSphere& sphere = spheres.spheres[i];
     const bool on_torso = sphere.region == regions.torso_region();
-    BoundSphere bound = bind_sphere(skin, surrounding[i], surrounding[i], sphere, on_torso, regions.frame, settings);
-    // Few and large triangles: those beyond the region's border carry the sphere too.
-    for (double radii = 2; bound.pivots.empty() && radii <= 8; radii *= 2) {
-      const std::vector<Index> around = triangles_around(skin, sphere, radii);
-      bound = bind_sphere(skin, surrounding[i], around, sphere, on_torso, regions.frame, settings);
-    }
+    BoundSphere bound = bind_sphere(skin, surrounding[i], sphere, on_torso, regions.frame, settings);
     if (bound.pivots.empty()) {
       throw Error(ExitCode::kSegmentation, character.file + ": sphere " + std::to_string(i) + " of the " +
                                                regions.name(sphere.region) +

@@ -20,7 +20,7 @@ struct BoundPivot {
 };
 
 struct BoundSphere {
-  Ball rest;             // what refit gives in the rest pose: the fitted sphere, but for the paper's rule
+  Ball rest;             // what refit gives in the rest pose: the fitted sphere, but for the paper's rule and spikes
   double detect_radius;  // rest
   double spread;         // mean distance of the pivots' centroids from the centre at rest
   std::vector<BoundPivot> pivots;
@@ -58,5 +58,11 @@ Binding bind_spheres(const Character& character, const Regions& regions, const S
 // those would need weights whose magnitudes add up to more than 1.5; none where that does not help either.
 std::vector<BoundPivot> choose_pivots(const Mesh& mesh, const std::vector<Index>& triangles, const FittedSphere& sphere,
                                       const Vec3& reference, RefitRule rule, int count);
+
+// For a sphere in a spike of few triangles, which none carry as it is: those of the calibrated rule that come nearest
+// to it, with weights that do add up to no more than 1.5 and a centre drawn towards the pivots. None where there are
+// fewer than four that do not lie in a plane.
+std::vector<BoundPivot> choose_nearest_pivots(const Mesh& mesh, const std::vector<Index>& triangles,
+                                              const FittedSphere& sphere, const Vec3& reference, int count);
 
 }  // namespace spherechain::baker

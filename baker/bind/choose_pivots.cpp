@@ -69,6 +69,40 @@ double sum_of_magnitudes(const std::vector<double>& weights) {
   return sum;
 }
 
+constexpr double kIllPosed = 1.5;
+
+struct Carriers {
+  std::vector<Index> triangles;
+  std::vector<double> weights;
+  double magnitudes = std::numeric_limits<double>::max();  // their sum
+};
+
+// Four pivots in one plane are an ill-posed system (weights of 49 were seen). Staggered ones are not; where skin is on
+// one side only, more of them and farther apart help.
+Carriers least_ill_posed(const Mesh& mesh, const std::vector<Index>& triangles, const FittedSphere& sphere,
+                         const Vec3& reference, int count) {
+  Carriers best;
+  for (const Pattern& pattern : {Pattern{count, 0.35}, Pattern{count, 0.6}, Pattern{std::max(count, 8), 0.6},
+                                 Pattern{std::max(count, 12), 0.5}, Pattern{16, 0.5}, Pattern{16, 0.9}}) {
+    const std::vector<Index> picked = pick(mesh, triangles, sphere, reference, pattern);
+    if (picked.size() < 4) return {};
+    const std::vector<double> weights = solve_weights(mesh, picked, sphere.ball);
+    const double sum = sum_of_magnitudes(weights);
+    if (weights.empty() || sum >= best.magnitudes) continue;
+    best = {picked, weights, sum};
+    if (sum <= kIllPosed) break;
+  }
+  return best;
+}
+
+std::vector<BoundPivot> bound(const Carriers& carriers) {
+  std::vector<BoundPivot> pivots;
+  for (std::size_t k = 0; k < carriers.triangles.size(); ++k) {
+    pivots.push_back({carriers.triangles[k], carriers.weights[k]});
+  }
+  return pivots;
+}
+
 }  // namespace
 
 std::vector<BoundPivot> choose_pivots(const Mesh& mesh, const std::vector<Index>& triangles, const FittedSphere& sphere,
@@ -80,23 +114,20 @@ std::vector<BoundPivot> choose_pivots(const Mesh& mesh, const std::vector<Index>
     for (const Index t : picked) pivots.push_back({t, 1.0 / static_cast<double>(picked.size())});
     return pivots;
   }
-  // Four pivots in one plane are an ill-posed system (weights of 49 were seen). Staggered ones are not; where skin is
-  // on one side only, more of them and farther apart help.
-  constexpr double kIllPosed = 1.5;
-  double least = std::numeric_limits<double>::max();
-  for (const Pattern& pattern : {Pattern{count, 0.35}, Pattern{count, 0.6}, Pattern{std::max(count, 8), 0.6},
-                                 Pattern{std::max(count, 12), 0.5}, Pattern{16, 0.5}, Pattern{16, 0.9}}) {
-    const std::vector<Index> picked = pick(mesh, triangles, sphere, reference, pattern);
-    if (picked.size() < 4) return {};
-    const std::vector<double> weights = solve_weights(mesh, picked, sphere.ball);
-    const double sum = sum_of_magnitudes(weights);
-    if (weights.empty() || sum >= least) continue;
-    least = sum;
-    pivots.clear();
-    for (std::size_t k = 0; k < picked.size(); ++k) pivots.push_back({picked[k], weights[k]});
-    if (sum <= kIllPosed) return pivots;
+  const Carriers found = least_ill_posed(mesh, triangles, sphere, reference, count);
+  return found.magnitudes <= kIllPosed ? bound(found) : pivots;
+}
+
+std::vector<BoundPivot> choose_nearest_pivots(const Mesh& mesh, const std::vector<Index>& triangles,
+                                              const FittedSphere& sphere, const Vec3& reference, int count) {
+  Carriers found = least_ill_posed(mesh, triangles, sphere, reference, count);
+  // The magnitudes' sum is convex along the way to even weights, where it is 1: a share that grows in proportion stays
+  // below the limit.
+  const double share = std::min(1.0, (kIllPosed - 1) / (found.magnitudes - 1));
+  for (double& weight : found.weights) {
+    weight = share * weight + (1 - share) / static_cast<double>(found.weights.size());
   }
-  return {};
+  return bound(found);
 }
 
 }  // namespace spherechain::baker

@@ -32,6 +32,20 @@ std::vector<Link> find_links(const Spheres& spheres, const Regions& regions) {
   return links;
 }
 
+// A trunk deeper than wide: the spheres of a level all but coincide.
+bool is_narrow(const Spheres& torso) {
+  constexpr double kCoincide = 0.8;
+  double sum = 0;
+  int count = 0;
+  for (std::size_t i = 1; i < torso.spheres.size(); ++i) {
+    const FittedSphere &a = torso.spheres[i - 1], &b = torso.spheres[i];
+    if (a.level != b.level) continue;
+    sum += penetration_depth(a.ball, b.ball);
+    ++count;
+  }
+  return count > 0 && sum > kCoincide * count;
+}
+
 }  // namespace
 
 int Spheres::level_at(double along) const {
@@ -55,27 +69,27 @@ double penetration_depth(const Ball& a, const Ball& b) {
   return 1 - (a.center - b.center).norm() / (a.radius + b.radius);
 }
 
-std::vector<Index> triangles_of_region(const Regions& regions, std::uint8_t region) {
-  std::vector<Index> triangles;
-  for (Index t = 0; t < regions.of_triangle.size(); ++t) {
-    if (regions.of_triangle[t] == region) triangles.push_back(t);
-  }
-  return triangles;
-}
-
 Spheres fit_spheres(const Character& character, const Regions& regions, const FitSettings& settings) {
   const Mesh& mesh = character.body;
   Spheres out;
   const auto append = [&](const std::vector<FittedSphere>& spheres) {
     out.spheres.insert(out.spheres.end(), spheres.begin(), spheres.end());
   };
-  out.of_region.resize(regions.limbs.size() + 1);
-  if (regions.has_torso) fit_torso(mesh, regions, settings, character.file, out);
+  if (regions.has_torso) {
+    fit_torso(mesh, regions, settings, character.file, out);
+    if (!is_biped(regions) && is_narrow(out)) {
+      FitSettings one = settings;
+      one.spheres_per_level = 1;
+      out = {};
+      fit_torso(mesh, regions, one, character.file, out);
+    }
+  }
   if (regions.has_torso && settings.extremities) append(fit_head(mesh, regions, out, settings));
   for (std::uint8_t region = 0; region < regions.limbs.size(); ++region) {
     append(fit_limb(mesh, regions, region, settings, character.file));
     if (settings.extremities) append(fit_hand_or_foot(mesh, regions, region, out.spheres.back().ball, settings));
   }
+  out.of_region.resize(regions.limbs.size() + 1);
   for (std::uint32_t i = 0; i < out.spheres.size(); ++i) out.of_region[out.spheres[i].region].push_back(i);
   out.links = find_links(out, regions);
   return out;

@@ -71,9 +71,6 @@ struct FitSettings {
 // Throws Error(kSegmentation) where a limb or the torso has no section a sphere fits in.
 Spheres fit_spheres(const Character& character, const Regions& regions, const FitSettings& settings);
 
-// The body's triangles of a region.
-std::vector<Index> triangles_of_region(const Regions& regions, std::uint8_t region);
-
 // fit_spheres' parts.
 std::vector<FittedSphere> fit_limb(const Mesh& mesh, const Regions& regions, std::uint8_t region,
                                    const FitSettings& settings, const std::string& file);

@@ -15,6 +15,9 @@
 namespace spherechain::baker {
 namespace {
 
+// Of the limb's last sphere: a heel's point is no start for a chain of growing spheres.
+constexpr double kThin = 0.25;
+
 // The skin across an axis. Positions `s` are along it, in the mesh's own space.
 class Sections {
  public:
@@ -204,7 +207,7 @@ std::vector<FittedSphere> fit_hand_or_foot(const Mesh& mesh, const Regions& regi
   const bool turns = axis.dot(end.normal) < 0.7;
   const auto inside = [&](double s) {
     const auto ball = sections.at(s);
-    return ball && s - sections.low() >= ball->radius &&
+    return ball && s - sections.low() >= ball->radius && ball->radius >= kThin * last.radius &&
            (turns || penetration_depth(last, *ball) <= settings.penetration_depth);
   };
   const auto start = first_where(sections.low(), sections.high(), step, inside);
@@ -234,7 +237,13 @@ std::vector<FittedSphere> fit_head(const Mesh& mesh, const Regions& regions, con
            });
   };
   const double neck = frame.origin.dot(frame.up) + regions.torso.neck;
-  const auto start = first_where(neck, sections.high(), step, far_enough);
+  // A trunk that ends far below the neck leaves room for more: from its top level on.
+  const auto at_neck = sections.at(neck);
+  const bool far = at_neck && std::none_of(torso.spheres.begin(), torso.spheres.end(), [&](const FittedSphere& sphere) {
+                     return penetration_depth(sphere.ball, *at_neck) > 0;
+                   });
+  const double from = far ? frame.origin.dot(frame.up) + torso.level_heights.back() : neck;
+  const auto start = first_where(from, sections.high(), step, far_enough);
   if (!start) return {};
   std::vector<FittedSphere> spheres;
   for (const Ball& ball : march(sections, *start, step, settings.penetration_depth)) {

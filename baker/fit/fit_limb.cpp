@@ -11,6 +11,10 @@
 namespace spherechain::baker {
 namespace {
 
+constexpr double kOwnSkin = 0.95, kLeastSkin = 0.6;  // of the rays
+// Of the limb's thickest sphere: a tail's tip, where spheres would go on getting smaller without end.
+constexpr double kThin = 0.2;
+
 class LimbMarch {
  public:
   LimbMarch(const Mesh& mesh, const Regions& regions, std::uint8_t region, const FitSettings& settings)
@@ -22,13 +26,13 @@ class LimbMarch {
         window_(0.02 * regions.frame.height),
         rays_(settings.rays) {}
 
-  // 95 % of the rays meet the limb's own skin.
-  bool on_own_skin(double s) const {
+  // The share of the rays that meet the limb's own skin.
+  double own_share(double s) const {
     const Ring ring = cast(s);
     const auto own = std::count_if(ring.hits.begin(), ring.hits.end(), [&](const auto& hit) {
       return hit && regions_.of_triangle[hit->triangle] == region_;
     });
-    return static_cast<double>(own) >= 0.95 * static_cast<double>(ring.hits.size());
+    return static_cast<double>(own) / static_cast<double>(ring.hits.size());
   }
 
   // The largest sphere around a point of the ring's plane that does not leave the skin: it touches.
@@ -77,9 +81,16 @@ std::vector<FittedSphere> fit_limb(const Mesh& mesh, const Regions& regions, std
   const LimbMarch march(mesh, regions, region, settings);
   const double end = regions.limbs[region].extremity, step = settings.limb_step * regions.frame.height;
 
-  double s = 0;
-  while (s < end && !march.on_own_skin(s)) s += step;
-  if (s >= end) {
+  // The first ring on the limb's own skin; a few large triangles with a border of teeth may have none, and then the
+  // ring that has most of it.
+  double s = 0, most = 0;
+  for (double at = 0; at < end && most < kOwnSkin; at += step) {
+    const double share = march.own_share(at);
+    if (share <= most) continue;
+    most = share;
+    s = at;
+  }
+  if (most < kLeastSkin) {
     throw Error(ExitCode::kSegmentation,
                 file + ": no section of the " + regions.name(region) + " is closed by its own skin");
   }
@@ -89,17 +100,20 @@ std::vector<FittedSphere> fit_limb(const Mesh& mesh, const Regions& regions, std
   };
   Ball last = march.sphere_at(s);
   place(s, last);
+  double thickest = last.radius;
   const auto far_enough = [&](double at) {
     return penetration_depth(last, march.sphere_at(at)) <= settings.penetration_depth;
   };
   while (const auto next = first_where(s, end, step, far_enough)) {
     s = *next;
     last = march.sphere_at(s);
+    if (last.radius < kThin * thickest) return spheres;
+    thickest = std::max(thickest, last.radius);
     place(s, last);
   }
   // The closing pair overlaps by whatever is left.
   const Ball closing = march.sphere_at(end);
-  if (penetration_depth(last, closing) < kClosingDepth) place(end, closing);
+  if (closing.radius >= kThin * thickest && penetration_depth(last, closing) < kClosingDepth) place(end, closing);
   return spheres;
 }
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "mesh/error.h"
+#include "mesh/ring.h"
 #include "mesh/surface_query.h"
 #include "segment/from_skin.h"
 
@@ -51,6 +52,16 @@ void place_along(Regions& regions, const Vec3& hip, const Vec3& chest) {
     }
     limb.along = std::clamp((sum / count - hip).dot(trunk) / trunk.squaredNorm(), 0.0, 1.0);
   }
+}
+
+// The middle of the trunk's own skin at a point's height: legs leave a quadruped's trunk at its belly.
+Vec3 middle_of_trunk(const SurfaceQuery& trunk, const BodyFrame& frame, Vec3 point) {
+  constexpr int kRays = 80, kPasses = 4;
+  for (int pass = 0; pass < kPasses; ++pass) {
+    point = cast_ring(trunk, point, frame.up, frame.left, kRays).section_centroid();
+    point -= (point - frame.origin).dot(frame.left) * frame.left;
+  }
+  return point;
 }
 
 // Where the trunk ends by its own skin, and the neck begins by its joint.
@@ -110,6 +121,17 @@ Regions segment_by_rig(const Character& character, const Roles& roles) {
     regions.of_skin.push_back(std::min(region_of[limb], regions.torso_region()));
   if (std::count(regions.of_triangle.begin(), regions.of_triangle.end(), regions.torso_region()) == 0) {
     fail("the rig's trunk moves no skin");
+  }
+  if (roles.kind != BodyKind::kBiped) {
+    const SurfaceQuery trunk(character.body, triangles_of_region(regions, regions.torso_region()));
+    const auto height = [&](const Vec3& p) { return (p - regions.frame.origin).dot(regions.frame.up); };
+    const auto centred = [&](const Vec3& p) {
+      const double rise = height(upper) - height(pelvis);
+      const double f = std::abs(rise) > 0 ? (height(p) - height(pelvis)) / rise : 0.5;
+      return middle_of_trunk(trunk, regions.frame, in_plane(pelvis + f * (upper - pelvis)));
+    };
+    regions.hip = centred(regions.hip);
+    regions.chest = centred(regions.chest);
   }
   const bool has_neck = !roles.neck_head.empty();
   const Vec3 neck = has_neck ? joint(roles.neck_head.front()) : upper;

@@ -18,6 +18,7 @@ constexpr int kRays = 40;
 constexpr double kStep = 0.005;    // of the limb's length
 constexpr double kWindow = 0.02;   // either side, for its direction
 constexpr double kOwnRays = 0.95;  // share of a ring's rays that meet the limb's own skin where it stands free
+constexpr double kShortest = 0.2;  // of the free part's length, of a limb before its hand or foot
 constexpr double kStartsBy = 0.5;  // of the limb's length: one that stands free nowhere before is cut at its joint
 
 // Limb of each bone of the rig.
@@ -64,8 +65,31 @@ std::vector<std::uint8_t> dominant_limbs(const SourceRig& rig, const Roles& role
 
 using Neighbours = std::vector<std::array<Index, 3>>;
 
-// On each component of the mesh, keeps each region's largest piece; every other piece joins the region it shares most
-// of its border with.
+// Triangles joined over shared edges: where clothes meet in a seam of three triangles an edge, each is a part.
+std::vector<Index> parts_of(const Neighbours& neighbours) {
+  std::vector<Index> part(neighbours.size(), kNoIndex);
+  Index count = 0;
+  std::vector<Index> stack;
+  for (Index seed = 0; seed < neighbours.size(); ++seed) {
+    if (part[seed] != kNoIndex) continue;
+    part[seed] = count;
+    stack.push_back(seed);
+    while (!stack.empty()) {
+      const Index t = stack.back();
+      stack.pop_back();
+      for (const Index n : neighbours[t]) {
+        if (n == kNoIndex || part[n] != kNoIndex) continue;
+        part[n] = count;
+        stack.push_back(n);
+      }
+    }
+    ++count;
+  }
+  return part;
+}
+
+// On each part of the mesh, keeps each region's largest piece; every other piece joins the region it shares most of its
+// border with.
 void join_islands(const Mesh& mesh, const Neighbours& neighbours, std::vector<std::uint8_t>& labels) {
   std::vector<Index> piece_of(labels.size(), kNoIndex);
   std::vector<std::vector<Index>> pieces;
@@ -82,9 +106,9 @@ void join_islands(const Mesh& mesh, const Neighbours& neighbours, std::vector<st
       }
     }
   }
-  const Components components = connected_components(mesh);
-  using Region = std::pair<Index, std::uint8_t>;  // on a component
-  const auto region_of = [&](Index t) { return Region(components.of_triangle[t], labels[t]); };
+  const std::vector<Index> parts = parts_of(neighbours);
+  using Region = std::pair<Index, std::uint8_t>;  // on a part
+  const auto region_of = [&](Index t) { return Region(parts[t], labels[t]); };
   std::map<Region, std::pair<double, Index>> largest;
   for (Index id = 0; id < pieces.size(); ++id) {
     double area = 0;
@@ -211,7 +235,10 @@ SkinRegions segment_from_skin(const Character& character, const Roles& roles) {
     for (const Index t : own) {
       if ((triangle_centroid(mesh, t) - at).dot(normal) < 0) regions.of_skin[t] = kNoLimb;
     }
-    regions.limbs.back() = {limb.line.part(start, limb.line.length()), std::max(0.0, limb.extremity - start)};
+    // One that stands free from hand or foot on only is no more than that.
+    const Polyline line = limb.line.part(start, limb.line.length());
+    const double extremity = limb.extremity - start;
+    regions.limbs.back() = {line, extremity > kShortest * line.length() ? extremity : line.length()};
   }
   join_islands(mesh, neighbours, regions.of_skin);
   std::vector<std::uint8_t> of_source(character.source_triangles.size(), kNoLimb);

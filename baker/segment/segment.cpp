@@ -173,6 +173,14 @@ double arc_at_height(const Polyline& line, const BodyFrame& frame, double height
 
 }  // namespace
 
+std::vector<Index> triangles_of_region(const Regions& regions, std::uint8_t region) {
+  std::vector<Index> triangles;
+  for (Index t = 0; t < regions.of_triangle.size(); ++t) {
+    if (regions.of_triangle[t] == region) triangles.push_back(t);
+  }
+  return triangles;
+}
+
 bool is_biped(const Regions& regions) {
   return regions.limbs.size() == kTorso &&
          std::equal(regions.limbs.begin(), regions.limbs.end(), kRegionNames.begin(),

@@ -41,6 +41,9 @@ struct Regions {
   std::string name(std::size_t region) const { return region < limbs.size() ? limbs[region].name : "torso"; }
 };
 
+// The body's triangles of a region.
+std::vector<Index> triangles_of_region(const Regions& regions, std::uint8_t region);
+
 // Left and right; the middle is neither's opposite.
 inline bool opposite(Side a, Side b) { return a != Side::kNone && b != Side::kNone && a != b; }
 
