@@ -42,6 +42,7 @@ ExitCode run_bake(const BakeOptions& options) {
   BakeSettings settings =
       make_settings(options.profile, options.config.empty() ? "{}" : read_file(options.config), options.config);
   if (options.extremities) settings.fit.extremities = true;
+  if (!options.body.empty()) settings.segment.body = parse_body(options.body);
   if (options.attachments) settings.import.attachments = true;
   if (!options.roles.empty()) settings.roles = parse_role_file(read_file(options.roles), options.roles);
   if (!fs::exists(options.input)) throw Error(ExitCode::kFile, options.input + ": no such file");

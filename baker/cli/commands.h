@@ -11,7 +11,7 @@ namespace spherechain::baker {
 // One struct of options and one function a subcommand. They throw Error; what they return is the exit code.
 
 struct BakeOptions {
-  std::string input, output, config, report, preview, roles;
+  std::string input, output, config, report, preview, roles, body;
   std::string profile = "balanced";
   bool extremities = false, attachments = false, force = false;
 };

@@ -70,6 +70,10 @@ int main(int argc, char** argv) {
   bake_command->add_option("--profile", bake.profile, "Where the settings start")
       ->check(CLI::IsMember({"paper", "balanced"}))
       ->capture_default_str();
+  bake_command
+      ->add_option("--body", bake.body,
+                   "What to look for: biped, quadruped, or auto, any number of limbs (default auto)")
+      ->check(CLI::IsMember({"biped", "quadruped", "auto"}));
   bake_command->add_flag("--extremities", bake.extremities,
                          "Spheres in head, hands and feet too (profile balanced has them)");
   bake_command->add_flag("--attachments", bake.attachments, "Keep rigid meshes that hang on joints: weapons, hats");

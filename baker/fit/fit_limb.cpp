@@ -84,8 +84,9 @@ std::vector<FittedSphere> fit_limb(const Mesh& mesh, const Regions& regions, std
   // The first ring on the limb's own skin; a few large triangles with a border of teeth may have none, and then the
   // ring that has most of it.
   double s = 0, most = 0;
+  const double thin = kThin * march.sphere_at(0.5 * end).radius;
   for (double at = 0; at < end && most < kOwnSkin; at += step) {
-    const double share = march.own_share(at);
+    const double share = march.sphere_at(at).radius < thin ? 0 : march.own_share(at);
     if (share <= most) continue;
     most = share;
     s = at;
@@ -112,6 +113,7 @@ std::vector<FittedSphere> fit_limb(const Mesh& mesh, const Regions& regions, std
     place(s, last);
   }
   // The closing pair overlaps by whatever is left.
+  if (march.own_share(end) < kLeastSkin) return spheres;
   const Ball closing = march.sphere_at(end);
   if (closing.radius >= kThin * thickest && penetration_depth(last, closing) < kClosingDepth) place(end, closing);
   return spheres;

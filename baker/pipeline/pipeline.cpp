@@ -45,6 +45,11 @@ void run_segment(Bake& out) {
       if (!rigged || error.code() != ExitCode::kSegmentation) throw;
     }
   }
+  const BodyKind wanted = out.settings.segment.body;
+  if (wanted != BodyKind::kUnknown && out.roles.kind != wanted) {
+    throw Error(ExitCode::kSegmentation, out.character.file + ": the rig's limbs are no " + body_kind_name(wanted) +
+                                             "'s (inspect --roles says what its joints are)");
+  }
   if (!whole) take_all_pieces(out.character);
   out.regions = segment_by_rig(out.character, out.roles);
 }
@@ -83,8 +88,9 @@ Bake bake(const std::filesystem::path& input, const BakeSettings& settings, cons
   Bake out;
   out.settings = settings;
   stage(out, progress, "import", [&] { out.character = import_character(input, settings.import); });
-  stage(out, progress, "roles",
-        [&] { out.roles = find_roles(out.character.rig, out.character.source_positions, settings.roles); });
+  stage(out, progress, "roles", [&] {
+    out.roles = find_roles(out.character.rig, out.character.source_positions, settings.roles, settings.segment.body);
+  });
   stage(out, progress, "segment", [&] { run_segment(out); });
   run_fit(out, progress);
   run_after_fit(out, progress);

@@ -41,6 +41,9 @@ struct BakeSettings {
 // profile.
 BakeSettings make_settings(const std::string& profile, const std::string& json, const std::string& file);
 
+// "biped" or "quadruped"; "auto" is unknown: found.
+BodyKind parse_body(const std::string& name);
+
 // The settings as canonical JSON: all keys, sorted, no spaces.
 std::string to_json(const BakeSettings& settings);
 

@@ -94,6 +94,11 @@ json parse(const std::string& text, const std::string& file) {
 
 }  // namespace
 
+BodyKind parse_body(const std::string& name) {
+  if (name == "auto") return BodyKind::kUnknown;
+  return name == "biped" ? BodyKind::kBiped : BodyKind::kQuadruped;
+}
+
 BakeSettings make_settings(const std::string& profile, const std::string& text, const std::string& file) {
   BakeSettings settings;
   if (profile == "paper") {
@@ -115,6 +120,8 @@ BakeSettings make_settings(const std::string& profile, const std::string& text, 
   reader.integer("spheres_per_level", settings.fit.spheres_per_level, 1, 3);
   reader.boolean("extremities", settings.fit.extremities);
   reader.vector("facing", settings.segment.facing);
+  reader.text("body", {"auto", "biped", "quadruped"},
+              [&](const std::string& body) { settings.segment.body = parse_body(body); });
   reader.text("refit", {"paper", "calibrated"}, [&](const std::string& rule) {
     settings.bind.rule = rule == "paper" ? RefitRule::kPaper : RefitRule::kCalibrated;
   });
@@ -153,6 +160,7 @@ std::string to_json(const BakeSettings& settings) {
   out["extremities"] = settings.fit.extremities;
   out["facing"] = nullptr;
   if (const auto& facing = settings.segment.facing) out["facing"] = {facing->x(), facing->y(), facing->z()};
+  out["body"] = settings.segment.body == BodyKind::kUnknown ? "auto" : body_kind_name(settings.segment.body);
   out["refit"] = settings.bind.rule == RefitRule::kPaper ? "paper" : "calibrated";
   out["pivots"] = settings.bind.pivots;
   out["detect_quantile"] = settings.bind.detect_quantile;

@@ -55,8 +55,8 @@ ordered_json segment_section(const Bake& bake) {
     }
     regions.push_back(std::move(entry));
   }
-  return {{"provider", bake.regions.provider},          {"facing", bake.regions.facing}, {"height", frame.height},
-          {"left", to_json(frame.left)},  {"up", to_json(frame.up)},       {"forward", to_json(frame.forward)},
+  return {{"provider", bake.regions.provider}, {"facing", bake.regions.facing}, {"height", frame.height},
+          {"left", to_json(frame.left)},       {"up", to_json(frame.up)},       {"forward", to_json(frame.forward)},
           {"regions", std::move(regions)}};
 }
 

@@ -16,10 +16,12 @@ constexpr double kStands = 0.6;
 struct BodyFinder : Body {
   const Skeleton& s;
   const std::vector<Hint>& hints;
+  BodyKind wanted;
   Vec3 up = Vec3::Zero(), forward = Vec3::Zero();
   std::string facing;  // why forward is where it is; empty where that is a guess
 
-  BodyFinder(const Skeleton& skeleton, const std::vector<Hint>& names) : s(skeleton), hints(names) {
+  BodyFinder(const Skeleton& skeleton, const std::vector<Hint>& names, BodyKind kind_wanted)
+      : s(skeleton), hints(names), wanted(kind_wanted) {
     paths = find_limb_paths(s, hints);
     path_of = s.inherited([&](int n) {
       for (std::size_t i = 0; i < paths.size(); ++i) {
@@ -170,6 +172,7 @@ struct BodyFinder : Body {
       const double reached = (mean(upper, [&](int i) { return end(i); }) - s.position[std::max(0, pelvis)]).dot(down);
       const bool stands = arms.dot(down) > 0 && reached > kStands * ground;
       kind = !upright && (four_legs || stands) ? BodyKind::kQuadruped : BodyKind::kBiped;
+      if (wanted != BodyKind::kUnknown) kind = wanted;
     }
     if (kind == BodyKind::kBiped || (kind == BodyKind::kOther && lower.size() <= 2)) {
       up = ahead.norm() > 0 ? ahead : Vec3(-legs);
@@ -285,6 +288,8 @@ int find_in_middle(const Skeleton& s, const std::vector<Hint>& hints, const std:
   return best;
 }
 
-Body find_body(const Skeleton& skeleton, const std::vector<Hint>& hints) { return BodyFinder(skeleton, hints); }
+Body find_body(const Skeleton& skeleton, const std::vector<Hint>& hints, BodyKind wanted) {
+  return BodyFinder(skeleton, hints, wanted);
+}
 
 }  // namespace spherechain::baker

@@ -20,7 +20,7 @@ struct Body {
   std::vector<int> trunk, neck_head;  // as in Roles
 };
 
-Body find_body(const Skeleton& skeleton, const std::vector<Hint>& hints);
+Body find_body(const Skeleton& skeleton, const std::vector<Hint>& hints, BodyKind wanted);
 
 // The node outside the limbs that speaks of something in the body's middle: by a role file, else the one fewest steps
 // from the root, then the heaviest. -1 none.

@@ -205,7 +205,7 @@ const char* body_kind_name(BodyKind kind) {
   }
 }
 
-Roles find_roles(const SourceRig& rig, const std::vector<Vec3>& positions, const RoleFile& file) {
+Roles find_roles(const SourceRig& rig, const std::vector<Vec3>& positions, const RoleFile& file, BodyKind wanted) {
   const Skeleton skeleton = make_skeleton(rig, positions);
   std::vector<Hint> hints;
   for (const Node& node : rig.nodes) hints.push_back(read_name(node.name));
@@ -225,7 +225,7 @@ Roles find_roles(const SourceRig& rig, const std::vector<Vec3>& positions, const
     if (!known) throw Error(ExitCode::kFile, file.file + ": the rig has no node '" + name + "'");
   }
 
-  const Body body = find_body(skeleton, hints);
+  const Body body = find_body(skeleton, hints, wanted);
   RoleWriter writer{skeleton, hints, body, {}};
   Roles& roles = writer.roles;
   roles.kind = body.kind;

@@ -52,8 +52,10 @@ RoleFile parse_role_file(const std::string& json, const std::string& file);
 
 // The roles of a rig's nodes. `positions`: the rest pose of the vertices that rig.weights belong to; empty without
 // skin. The result does not depend on the order of the nodes, nor on place, size and orientation.
+// `wanted`: what a body with two pairs of limbs is, however it stands; unknown: as it stands.
 // Throws Error(kFile) where the role file has a name that no node has.
-Roles find_roles(const SourceRig& rig, const std::vector<Vec3>& positions, const RoleFile& file = {});
+Roles find_roles(const SourceRig& rig, const std::vector<Vec3>& positions, const RoleFile& file = {},
+                 BodyKind wanted = BodyKind::kUnknown);
 
 // Where each node is in the rest pose: by its inverse bind matrix, else by its place under its parent.
 std::vector<Vec3> rest_positions(const SourceRig& rig);

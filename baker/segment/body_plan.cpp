@@ -74,24 +74,6 @@ double alignment(const Polyline& branch, const Vec3& outward) {
   return chord(branch).normalized().dot(outward.normalized());
 }
 
-// The axis of the plane of symmetry. A symmetric body has it as an exact principal axis; where the pose hides that, the
-// limbs' tips say it.
-Vec3 lateral_axis(const Mesh& mesh, const Vec3& between_tips) {
-  const Vec3 centroid = surface_centroid(mesh);
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const Vec3 d = triangle_centroid(mesh, t) - centroid;
-    covariance += triangle_area(mesh, t) * d * d.transpose();
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);
-  const Vec3 tips = between_tips.normalized();
-  for (int k = 0; k < 3; ++k) {
-    const Vec3 axis = axes.eigenvectors().col(k);
-    if (std::abs(axis.dot(tips)) > 0.95) return axis.dot(tips) > 0 ? axis : Vec3(-axis);
-  }
-  return tips;
-}
-
 // Where the toes are from the ankle: the last tenth of each leg against its middle.
 Vec3 toe_direction(const std::vector<const Polyline*>& legs) {
   Vec3 sum = Vec3::Zero();
@@ -177,6 +159,34 @@ BodyFrame with_up(BodyFrame frame, const Vec3& up, const Mesh& mesh) {
   frame.forward = frame.left.cross(frame.up);
   place(frame, mesh);
   return frame;
+}
+
+Vec3 lateral_axis(const Mesh& mesh, const Vec3& roughly) {
+  const Vec3 centroid = surface_centroid(mesh);
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Vec3 d = triangle_centroid(mesh, t) - centroid;
+    covariance += triangle_area(mesh, t) * d * d.transpose();
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(covariance);
+  const Vec3 tips = roughly.normalized();
+  for (int k = 0; k < 3; ++k) {
+    const Vec3 axis = axes.eigenvectors().col(k);
+    if (std::abs(axis.dot(tips)) > 0.95) return axis.dot(tips) > 0 ? axis : Vec3(-axis);
+  }
+  return tips;
+}
+
+std::size_t count_ends(const CurveSkeleton& skeleton) {
+  return find_long_branches(skeleton, kShortestBranch).tip_count();
+}
+
+bool looks_like_biped(const CurveSkeleton& skeleton) {
+  const BranchTree tree = find_long_branches(skeleton, kShortestBranch);
+  const std::optional<Split> split = tree.tip_count() == 5 ? split_tree(tree, 2, 3) : std::nullopt;
+  constexpr double kGoesOn = 0.5;
+  return split && std::all_of(split->lower.begin(), split->lower.end(),
+                              [&](const Polyline& leg) { return alignment(leg, -chord(split->spine)) > kGoesOn; });
 }
 
 BodyPlan find_body_plan(const Mesh& mesh, const CurveSkeleton& skeleton, const std::optional<Vec3>& facing,

@@ -22,6 +22,9 @@ struct BodyFrame {
 
 enum class Side : std::uint8_t { kNone = 0, kLeft = 1, kRight = 2 };
 
+// How a limb ends: narrowed to wrist, ankle or throat before hand, foot or head; or not at all, a tail.
+enum class LimbEnd : std::uint8_t { kHand, kTip };
+
 // The long branches of a curve skeleton, each from the junction it leaves to its tip.
 struct BodyPlan {
   struct Limb {
@@ -29,20 +32,31 @@ struct BodyPlan {
     Side side;         // of the torso; none: in the plane of symmetry (a tail)
     double along;      // where it leaves the torso, from 0, the hip, to 1, the chest
     Polyline line;
+    LimbEnd end = LimbEnd::kHand;
   };
 
   BodyFrame frame;
   std::string facing;  // how forward was decided, for the report
   Polyline spine;      // hip junction to chest junction
-  Polyline head;
+  Polyline head;       // empty where there is none
   std::vector<Limb> limbs;
 };
+
+// The axis of the plane of symmetry, near to `roughly`: a symmetric body has it as an exact principal axis; where the
+// pose hides that, it is `roughly` itself.
+Vec3 lateral_axis(const Mesh& mesh, const Vec3& roughly);
 
 // The frame with another up axis (its part across `left`); origin and height follow.
 BodyFrame with_up(BodyFrame frame, const Vec3& up, const Mesh& mesh);
 
 // The regions of a biped, in order: R0 .. R4 of the paper.
 inline constexpr std::array<const char*, 5> kRegionNames{"left_arm", "right_arm", "left_leg", "right_leg", "torso"};
+
+// Ends of the long branches: a biped has five.
+std::size_t count_ends(const CurveSkeleton& skeleton);
+
+// Whether the long branches are a biped's: two go on from the lower end of the spine, three leave the upper one.
+bool looks_like_biped(const CurveSkeleton& skeleton);
 
 // `facing` overrides what the feet say: any vector with a part along the character's forward axis.
 // Throws Error(kSegmentation) where there are not five long branches, and says which is missing.

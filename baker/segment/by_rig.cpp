@@ -2,12 +2,11 @@
 #include "segment/by_rig.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "mesh/error.h"
-#include "mesh/ring.h"
 #include "mesh/surface_query.h"
 #include "segment/from_skin.h"
+#include "segment/trunk.h"
 
 namespace spherechain::baker {
 namespace {
@@ -17,64 +16,12 @@ Side side_of(const RoleLimb& limb) {
   return limb.name.starts_with("right_") ? Side::kRight : Side::kNone;
 }
 
-// The middle of the starts of the limbs with sides at one end of the trunk; that joint where there are none.
-Vec3 middle_of_starts(const Regions& regions, double along, const Vec3& joint) {
-  Vec3 sum = Vec3::Zero();
-  int count = 0;
-  for (const Limb& limb : regions.limbs) {
-    if (limb.side == Side::kNone || limb.along != along) continue;
-    sum += limb.line.at(0);
-    ++count;
-  }
-  return count > 0 ? Vec3(sum / count) : joint;
-}
-
 Vec3 left_of(const Regions& regions) {
   Vec3 left = Vec3::Zero();
   for (const Limb& limb : regions.limbs) {
     if (limb.side != Side::kNone) left += (limb.side == Side::kLeft ? 1.0 : -1.0) * limb.line.at(0);
   }
   return left;
-}
-
-// A pair of legs between the ends leaves the trunk where its two starts are on average.
-void place_along(Regions& regions, const Vec3& hip, const Vec3& chest) {
-  const Vec3 trunk = chest - hip;
-  const auto number = [](const std::string& name) { return name.substr(name.rfind('_')); };
-  for (Limb& limb : regions.limbs) {
-    if (limb.side == Side::kNone) continue;
-    Vec3 sum = Vec3::Zero();
-    int count = 0;
-    for (const Limb& other : regions.limbs) {
-      if (other.side == Side::kNone || number(other.name) != number(limb.name)) continue;
-      sum += other.line.at(0);
-      ++count;
-    }
-    limb.along = std::clamp((sum / count - hip).dot(trunk) / trunk.squaredNorm(), 0.0, 1.0);
-  }
-}
-
-// The middle of the trunk's own skin at a point's height: legs leave a quadruped's trunk at its belly.
-Vec3 middle_of_trunk(const SurfaceQuery& trunk, const BodyFrame& frame, Vec3 point) {
-  constexpr int kRays = 80, kPasses = 4;
-  for (int pass = 0; pass < kPasses; ++pass) {
-    point = cast_ring(trunk, point, frame.up, frame.left, kRays).section_centroid();
-    point -= (point - frame.origin).dot(frame.left) * frame.left;
-  }
-  return point;
-}
-
-// Where the trunk ends by its own skin, and the neck begins by its joint.
-TorsoEnds ends_by_joints(const Mesh& mesh, const Regions& regions, const Vec3* neck) {
-  double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
-  const auto height = [&](const Vec3& p) { return (p - regions.frame.origin).dot(regions.frame.up); };
-  for (Index t = 0; t < mesh.triangles.size(); ++t) {
-    if (regions.of_triangle[t] != regions.torso_region()) continue;
-    const double h = height(triangle_centroid(mesh, t));
-    low = std::min(low, h);
-    high = std::max(high, h);
-  }
-  return {low, neck != nullptr ? std::clamp(height(*neck), low, high) : high};
 }
 
 }  // namespace
@@ -135,7 +82,7 @@ Regions segment_by_rig(const Character& character, const Roles& roles) {
   }
   const bool has_neck = !roles.neck_head.empty();
   const Vec3 neck = has_neck ? joint(roles.neck_head.front()) : upper;
-  regions.torso = ends_by_joints(character.body, regions, has_neck ? &neck : nullptr);
+  regions.torso = ends_by_skin(character.body, regions, has_neck ? &neck : nullptr);
 
   std::vector<Vec3> spine{regions.hip};
   for (const int node : roles.trunk) {

@@ -130,9 +130,17 @@ double narrowest(const Polyline& line, const std::vector<Section>& sections, dou
   return 0.5 * (start + end);
 }
 
+// Where a ball on the line first touches the tip: in a round end, its centre; in a point, all but the tip itself.
+double last_center(const SurfaceQuery& surface, const Polyline& line, double step) {
+  constexpr double kTouches = 0.9;
+  double s = 0.5 * line.length();
+  while (s < line.length() && surface.closest(line.at(s)).distance < kTouches * (line.length() - s)) s += step;
+  return std::min(s, line.length());
+}
+
 }  // namespace
 
-LimbTrace trace_limb(const SurfaceQuery& surface, const Polyline& branch, const BodyFrame& frame, int rays,
+LimbTrace trace_limb(const SurfaceQuery& surface, const Polyline& branch, LimbEnd end, const BodyFrame& frame, int rays,
                      const std::string& limb, const std::string& file) {
   const March march(surface, frame, rays);
   const double ball = surface.closest(branch.at(0)).distance;
@@ -163,7 +171,8 @@ LimbTrace trace_limb(const SurfaceQuery& surface, const Polyline& branch, const 
   // Wrists were seen at 0.71 and ankles at 0.76 of the way from the cut to the tip; past 0.85 fingers and toes are
   // thinner.
   const double tip = own.length() + (branch.points().back() - own.points().back()).norm();
-  trace.extremity = narrowest(own, sections, 0.5 * tip, 0.85 * tip);
+  trace.extremity =
+      end == LimbEnd::kTip ? last_center(surface, own, march.step()) : narrowest(own, sections, 0.5 * tip, 0.85 * tip);
 
   std::vector<Vec3> points = own.part(0, trace.extremity).points();
   const double from = branch.closest(points.back()) + march.step();

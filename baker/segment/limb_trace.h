@@ -16,13 +16,13 @@ struct LimbTrace {
   Polyline line;     // from the innermost section of the limb's own to the tip
   Vec3 direction;    // along the line at its start
   double radius;     // the longest ray of the section there
-  double extremity;  // arc length of the narrowest section before hand or foot: wrist or ankle
+  double extremity;  // arc length of the narrowest section before hand or foot: wrist or ankle; where a tail's last ball stands
 };
 
 // `branch` comes from the torso. The limb starts outside the torso's maximal ball at the junction, at the innermost
 // section all of whose rays end on a wall about as far as the others do: further in, rays escape past armpit or crotch.
 // Throws Error(kSegmentation) where there is no such section.
-LimbTrace trace_limb(const SurfaceQuery& surface, const Polyline& branch, const BodyFrame& frame, int rays,
+LimbTrace trace_limb(const SurfaceQuery& surface, const Polyline& branch, LimbEnd end, const BodyFrame& frame, int rays,
                      const std::string& limb, const std::string& file);
 
 // Heights along frame.up from frame.origin.

@@ -7,7 +7,9 @@
 #include "mesh/error.h"
 #include "mesh/surface_query.h"
 #include "segment/limb_trace.h"
+#include "segment/limbed_plan.h"
 #include "segment/shortest_loop.h"
+#include "segment/trunk.h"
 
 namespace spherechain::baker {
 namespace {
@@ -171,6 +173,52 @@ double arc_at_height(const Polyline& line, const BodyFrame& frame, double height
   return std::min(s, line.length());
 }
 
+BodyPlan find_plan(const Mesh& mesh, const SegmentSettings& settings, const std::string& file) {
+  const CurveSkeleton skeleton = extract_curve_skeleton(mesh);
+  const bool automatic = settings.body == BodyKind::kUnknown;
+  if (settings.body == BodyKind::kBiped || (automatic && looks_like_biped(skeleton))) {
+    return find_body_plan(mesh, skeleton, settings.facing, file);
+  }
+  try {
+    return find_limbed_plan(mesh, skeleton, !automatic, settings.facing, file);
+  } catch (const Error&) {
+    // Most characters are bipeds: what is missing of one says more.
+    if (automatic && count_ends(skeleton) <= 5) return find_body_plan(mesh, skeleton, settings.facing, file);
+    throw;
+  }
+}
+
+// Where the limbs start is known better than where the skeleton forks: the torso's axis is taken from there.
+void place_torso(Regions& regions, const BodyPlan& plan, const Mesh& mesh) {
+  Vec3 hip = middle_of_starts(regions, 0, plan.spine.points().front());
+  Vec3 chest = middle_of_starts(regions, 1, plan.spine.points().back());
+  if (plan.limbs.size() > 4) place_along(regions, hip, chest);
+  regions.frame = with_up(plan.frame, chest - hip, mesh);
+  regions.hip = in_symmetry_plane(regions.frame, hip);
+  regions.chest = in_symmetry_plane(regions.frame, chest);
+  std::vector<Vec3> spine = plan.spine.points();
+  spine.insert(spine.end(), plan.head.points().begin(), plan.head.points().end());
+  regions.spine = Polyline(std::move(spine));
+  regions.spine_chest = plan.spine.length();
+}
+
+void end_torso(Regions& regions, const BodyPlan& plan, const Mesh& mesh, const SurfaceQuery& surface, int rays,
+               const std::string& file) {
+  if (is_biped(regions)) {
+    regions.torso = find_torso_ends(surface, regions.hip, regions.chest, regions.frame, rays, file);
+  } else {
+    const SurfaceQuery trunk(mesh, triangles_of_region(regions, regions.torso_region()));
+    regions.hip = middle_of_trunk(trunk, regions.frame, regions.hip);
+    regions.chest = middle_of_trunk(trunk, regions.frame, regions.chest);
+    // The neck leaves the trunk's maximal ball at the chest.
+    const double ball = surface.closest(plan.spine.points().back()).distance;
+    const bool has_head = plan.head.length() > ball;
+    const Vec3 neck = has_head ? plan.head.at(ball) : regions.chest;
+    regions.torso = ends_by_skin(mesh, regions, has_head ? &neck : nullptr);
+  }
+  regions.spine_neck = arc_at_height(regions.spine, regions.frame, regions.torso.neck);
+}
+
 }  // namespace
 
 std::vector<Index> triangles_of_region(const Regions& regions, std::uint8_t region) {
@@ -194,36 +242,31 @@ Regions segment(const Character& character, const SegmentSettings& settings) {
                                              std::to_string(open) +
                                              " edges are open or shared by more than two triangles; close its holes)");
   }
-  const BodyPlan plan = find_body_plan(mesh, extract_curve_skeleton(mesh), settings.facing, character.file);
+  const BodyPlan plan = find_plan(mesh, settings, character.file);
   const SurfaceQuery surface(mesh);
 
   Regions regions;
   regions.provider = "shape";
   regions.facing = plan.facing;
+  regions.has_torso = !plan.spine.points().empty();
   std::vector<LimbTrace> traces;
   for (const BodyPlan::Limb& limb : plan.limbs) {
-    traces.push_back(trace_limb(surface, limb.line, plan.frame, settings.rays, in_words(limb.name), character.file));
+    traces.push_back(
+        trace_limb(surface, limb.line, limb.end, plan.frame, settings.rays, in_words(limb.name), character.file));
     regions.limbs.push_back({limb.name, limb.side, limb.along, traces.back().line, traces.back().extremity});
   }
-  // Where the limbs start is known better than where the skeleton forks: the torso's axis is taken from there.
-  const auto start = [&](std::size_t i) { return regions.limbs[i].line.at(0); };
-  const Vec3 chest = 0.5 * (start(0) + start(1)), hip = 0.5 * (start(2) + start(3));
-  regions.frame = with_up(plan.frame, chest - hip, mesh);
-  regions.hip = in_symmetry_plane(regions.frame, hip);
-  regions.chest = in_symmetry_plane(regions.frame, chest);
-  regions.torso = find_torso_ends(surface, regions.hip, regions.chest, regions.frame, settings.rays, character.file);
-  std::vector<Vec3> spine = plan.spine.points();
-  spine.insert(spine.end(), plan.head.points().begin(), plan.head.points().end());
-  regions.spine = Polyline(std::move(spine));
-  regions.spine_chest = plan.spine.length();
-  regions.spine_neck = arc_at_height(regions.spine, regions.frame, regions.torso.neck);
-
-  const LimbLabeller labeller(mesh, traces, regions.frame.height);
-  regions.of_triangle.assign(mesh.triangles.size(), regions.torso_region());
-  for (std::uint8_t i = 0; i < regions.limbs.size(); ++i) {
-    labeller.label(i, surface.closest(regions.limbs[i].line.points().back()).triangle, regions.of_triangle);
+  regions.of_triangle.assign(mesh.triangles.size(), regions.has_torso ? regions.torso_region() : std::uint8_t{0});
+  if (regions.has_torso) {
+    place_torso(regions, plan, mesh);
+    const LimbLabeller labeller(mesh, traces, regions.frame.height);
+    for (std::uint8_t i = 0; i < regions.limbs.size(); ++i) {
+      labeller.label(i, surface.closest(regions.limbs[i].line.points().back()).triangle, regions.of_triangle);
+    }
+    join_islands(mesh, labeller.neighbours(), regions.count(), regions.of_triangle);
+    end_torso(regions, plan, mesh, surface, settings.rays, character.file);
+  } else {
+    regions.frame = plan.frame;
   }
-  join_islands(mesh, labeller.neighbours(), regions.count(), regions.of_triangle);
   regions.of_skin = label_skin(character, surface, regions.of_triangle);
   return regions;
 }

@@ -8,6 +8,7 @@
 
 #include "import/import.h"
 #include "mesh/polyline.h"
+#include "roles/roles.h"
 #include "segment/body_plan.h"
 #include "segment/limb_trace.h"
 
@@ -54,6 +55,8 @@ bool is_biped(const Regions& regions);
 inline constexpr std::uint8_t kTorso = 4;
 
 struct SegmentSettings {
+  // Biped or quadruped; unknown: a biped where the long branches are one's, else as many limbs as there are.
+  BodyKind body = BodyKind::kUnknown;
   int rays = 80;               // N_r
   std::optional<Vec3> facing;  // overrides what the feet say
 };

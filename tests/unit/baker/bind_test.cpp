@@ -196,3 +196,35 @@ TEST_CASE("pairs that overlap at rest without being neighbours are kept, with a 
     CHECK(!std::binary_search(bake.binding.ignored.begin(), bake.binding.ignored.end(), std::pair(near.a, near.b)));
   }
 }
+
+TEST_CASE("a sphere in a spike beyond all triangles is carried from near its place, by weights that stay small") {
+  Mesh mesh;
+  std::vector<Index> triangles;
+  // Rings of a cone's lower part: all centroids lie below the sphere.
+  for (int i = 0; i < 24; ++i) {
+    const double angle = 0.7 * i, z = 0.02 * i, r = 1 - z;
+    for (const double turn : {0.0, 0.3, 0.15}) {
+      mesh.positions.emplace_back(r * std::cos(angle + turn), r * std::sin(angle + turn), turn == 0.15 ? z + 0.1 : z);
+    }
+    const auto first = static_cast<Index>(3 * i);
+    mesh.triangles.push_back({first, first + 1, first + 2});
+    triangles.push_back(static_cast<Index>(i));
+  }
+  const FittedSphere spike{{Vec3(0, 0, 1.6), 0.2}, 0, -1, Side::kNone, Vec3::UnitZ(), true};
+  REQUIRE(choose_pivots(mesh, triangles, spike, Vec3::UnitX(), RefitRule::kCalibrated, 8).empty());
+  const std::vector<BoundPivot> pivots = choose_nearest_pivots(mesh, triangles, spike, Vec3::UnitX(), 8);
+  REQUIRE(pivots.size() >= 4);
+  double sum = 0, magnitudes = 0;
+  Vec3 center = Vec3::Zero(), mean = Vec3::Zero();
+  for (const BoundPivot& pivot : pivots) {
+    sum += pivot.weight;
+    magnitudes += std::abs(pivot.weight);
+    center += pivot.weight * triangle_centroid(mesh, pivot.triangle);
+    mean += triangle_centroid(mesh, pivot.triangle) / static_cast<double>(pivots.size());
+  }
+  CHECK(sum == doctest::Approx(1));
+  CHECK(magnitudes <= 1.5 + 1e-9);
+  CHECK((center - spike.ball.center).norm() < (mean - spike.ball.center).norm());
+  // Drawn straight towards the pivots' mean.
+  CHECK((center - mean).normalized().dot((spike.ball.center - mean).normalized()) > 1 - 1e-9);
+}

@@ -55,6 +55,19 @@ TEST_CASE("a rigged person in open pieces is segmented by the rig, and left is l
   for (const auto& ids : bake.spheres.of_region) CHECK(ids.size() >= 4);
 }
 
+TEST_CASE("clothes that meet in a seam leave the hips to the torso: both legs are alike") {
+  const Bake& bake = person_in_pieces();
+  std::array<double, 5> area{};
+  for (std::size_t t = 0; t < bake.character.skin.triangles.size(); ++t) {
+    area[bake.regions.of_skin[t]] += triangle_area(bake.character.skin, t);
+  }
+  CHECK(std::abs(area[2] / area[3] - 1) < 0.05);
+  const auto& torso = bake.spheres.of_region[kTorso];
+  const double lowest =
+      (bake.spheres.spheres[torso[0]].ball.center - bake.regions.frame.origin).dot(bake.regions.frame.up);
+  CHECK(lowest < 0.6 * bake.regions.frame.height);
+}
+
 TEST_CASE("a rig without a trunk is refused as no body") {
   const Character& character = person_in_pieces().character;
   Roles none;
