@@ -102,10 +102,22 @@ Status verify(const void* data, std::size_t size, Message& message) {
 
 }  // namespace
 
-Status Asset::open(const void* data, std::size_t size, char* message, std::size_t message_size) noexcept {
-  *this = Asset();
+std::uint32_t abi_version() noexcept { return SC_ABI_VERSION; }
+
+Status Asset::open_with_abi(std::uint32_t abi_version, void* asset, const void* data, std::size_t size, char* message,
+                            std::size_t message_size) noexcept {
   Message sentence(message, message_size);
-  const Status status = verify(data, size, sentence);
+  if (abi_version != SC_ABI_VERSION) {
+    sentence.wrong("compiled with spherechain's headers of ABI version %" PRIu32 ", linked with its library of %d",
+                   abi_version, SC_ABI_VERSION);
+    return Status::kWrongAbi;
+  }
+  return static_cast<Asset*>(asset)->open_verified(data, size, sentence);
+}
+
+Status Asset::open_verified(const void* data, std::size_t size, Message& message) noexcept {
+  *this = Asset();
+  const Status status = verify(data, size, message);
   if (status != Status::kOk) {
     return status;
   }

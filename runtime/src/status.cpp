@@ -48,6 +48,8 @@ const char* to_string(Status status) noexcept {
       return "there are fewer bone matrices than the asset has bones";
     case Status::kTooFewMorphs:
       return "there are fewer morph weights than the asset has morph targets";
+    case Status::kWrongAbi:
+      return "the program was compiled with the headers of another version of the library";
   }
   return "unknown status";
 }

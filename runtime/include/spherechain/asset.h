@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "spherechain/abi.h"
 #include "spherechain/bone_tables.h"
 #include "spherechain/status.h"
 #include "spherechain/types.h"
@@ -13,6 +14,8 @@ namespace spherechain {
 inline constexpr std::size_t kAssetAlignment = 8;   // bytes; malloc, new and mmap all give at least this
 inline constexpr std::uint32_t kFormatVersion = 1;  // the newest format this runtime reads
 inline constexpr std::uint32_t kMaxSphereCount = 65535;
+
+class Message;
 
 enum class Side : std::uint8_t { kNone = 0, kLeft = 1, kRight = 2 };
 enum class RefitRule : std::uint8_t { kPaper = 0, kCalibrated = 1 };
@@ -105,14 +108,17 @@ struct AssetInfo {
 // What is promised for hostile bytes: open() reads only inside [data, data + size), returns a Status other than kOk, or
 // leaves an Asset every accessor and every job of the runtime can use without reading or writing out of bounds, without
 // a division by zero, an endless loop or an allocation. It promises nothing about the sense of the figures in it.
-class Asset {
+class SPHERECHAIN_API Asset {
  public:
   // Verifies `size` bytes at `data` and makes this a view of them. On failure the Asset is closed (is_open() is false)
   // and, where `message` is not null, a sentence that names what is wrong is written there, cut to `message_size` bytes
   // with the final zero; 160 are enough. On success the message is empty. Costs about one pass over the bytes, also for
   // hostile ones; allocates nothing, and needs some 10 KiB of stack.
-  // kOk, kNullArgument, kMisaligned, kTruncated, kWrongIdentifier, kUnsupportedVersion or kCorrupt.
-  Status open(const void* data, std::size_t size, char* message = nullptr, std::size_t message_size = 0) noexcept;
+  // kOk, kNullArgument, kMisaligned, kTruncated, kWrongIdentifier, kUnsupportedVersion, kCorrupt, or kWrongAbi where
+  // this header is not of the library's version: then trust nothing else of it.
+  Status open(const void* data, std::size_t size, char* message = nullptr, std::size_t message_size = 0) noexcept {
+    return open_with_abi(SC_ABI_VERSION, this, data, size, message, message_size);
+  }
 
   bool is_open() const noexcept { return root_ != nullptr; }
 
@@ -156,6 +162,11 @@ class Asset {
   RefitRule refit_rule() const noexcept;
 
  private:
+  // The Asset is handed over as memory: with another version it may be of another size.
+  static Status open_with_abi(std::uint32_t abi_version, void* asset, const void* data, std::size_t size, char* message,
+                              std::size_t message_size) noexcept;
+  Status open_verified(const void* data, std::size_t size, Message& message) noexcept;
+
   const void* root_ = nullptr;
   Span<const RestSphere> spheres_;
   Span<const Pivot> pivots_;
@@ -169,18 +180,23 @@ class Asset {
   BoneTables bone_tables_;
 };
 
+// SC_ABI_VERSION of the library itself.
+SPHERECHAIN_API std::uint32_t abi_version() noexcept;
+
 // A 64-bit FNV-1a over the bit patterns (low byte first) of x, y, z of each position, negative zero taken as zero: what
 // AssetInfo::source_rest_hash holds for the rest pose. `stride` in bytes between positions; a multiple of 4, at
 // least 12.
-std::uint64_t hash_positions(const float* positions, std::size_t count, std::size_t stride = 12) noexcept;
+SPHERECHAIN_API std::uint64_t hash_positions(const float* positions, std::size_t count,
+                                             std::size_t stride = 12) noexcept;
 
 // kOk where `positions` (source order, rest pose) is the buffer the asset was baked from; positions past the source's
 // vertex count are not looked at. Else kWrongSource, or kNullArgument, kNotOpen, kBadStride, kTooFewVertices.
-Status check_source(const Asset& asset, const float* positions, std::size_t count, std::size_t stride = 12) noexcept;
+SPHERECHAIN_API Status check_source(const Asset& asset, const float* positions, std::size_t count,
+                                    std::size_t stride = 12) noexcept;
 
 // The same for one buffer of the source's file, `positions` as the file has them: kOk where source_parts()[part] is
 // that buffer. kBadArgument where there is no such part.
-Status check_source_part(const Asset& asset, std::size_t part, const float* positions, std::size_t count,
-                         std::size_t stride = 12) noexcept;
+SPHERECHAIN_API Status check_source_part(const Asset& asset, std::size_t part, const float* positions,
+                                         std::size_t count, std::size_t stride = 12) noexcept;
 
 }  // namespace spherechain

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "spherechain/abi.h"
 #include "spherechain/asset.h"
 #include "spherechain/filter.h"
 #include "spherechain/status.h"
@@ -41,7 +42,7 @@ struct Contact {
 //
 // Fill in the fields and call run(). Allocates nothing, takes no lock; jobs with other outputs may run at the same
 // time.
-struct ContactJob {
+struct SPHERECHAIN_API ContactJob {
   const Asset* asset = nullptr;    // open
   Span<const Sphere> spheres;      // at least asset->spheres().size: those the pairs were found among
   Span<const Pair> pairs;          // from DetectJob, or any a < b

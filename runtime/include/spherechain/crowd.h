@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "spherechain/abi.h"
 #include "spherechain/asset.h"
 #include "spherechain/filter.h"
 #include "spherechain/refit_bones.h"
@@ -22,7 +23,7 @@ struct TaskHook {
 };
 
 // Scratch memory of one CrowdJob at a time, owned by the caller.
-struct CrowdContext {
+struct SPHERECHAIN_API CrowdContext {
   Span<std::uint64_t> words;
 
   // Words needed for a job of `task_count` tasks; what they hold does not matter. A human and one task: some 45 KiB.
@@ -44,7 +45,7 @@ struct CrowdPair {
 //
 // Fill in the fields and call run(). Allocates nothing, takes no lock; jobs with other outputs and contexts may run at
 // the same time.
-struct CrowdJob {
+struct SPHERECHAIN_API CrowdJob {
   const Asset* asset = nullptr;     // open
   const Sphere* spheres = nullptr;  // instance i's are spheres[i * stride] and on, from refits with the same `radius`
   std::size_t instance_count = 0;   // below 2^32

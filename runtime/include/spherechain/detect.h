@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "spherechain/abi.h"
 #include "spherechain/asset.h"
 #include "spherechain/filter.h"
 #include "spherechain/simd.h"
@@ -13,7 +14,7 @@
 namespace spherechain {
 
 // Scratch memory of one DetectJob at a time, owned by the caller. Only M1 needs it (to report each pair once).
-struct DetectContext {
+struct SPHERECHAIN_API DetectContext {
   Span<std::uint64_t> words;
 
   // Words needed for `asset`: one bit a pair of spheres.
@@ -41,7 +42,7 @@ struct ChainPair {
 //
 // Fill in the fields and call run(). Allocates nothing, takes no lock; jobs with other outputs and contexts may run at
 // the same time.
-struct DetectJob {
+struct SPHERECHAIN_API DetectJob {
   const Asset* asset = nullptr;  // open
   Span<const Sphere> spheres;    // at least asset->spheres().size, from RefitJob with the same `radius`
   RadiusKind radius = RadiusKind::kDetect;

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 
+#include "spherechain/abi.h"
 #include "spherechain/asset.h"
 #include "spherechain/status.h"
 #include "spherechain/types.h"
@@ -29,7 +30,7 @@ enum class VertexSet : std::uint8_t { kSource = 0, kPivots = 1 };
 // Asset::source_parts() entry's first_vertex on; check_source_part() tells whether it is the right one.
 //
 // Fill in the fields and call run(). Allocates nothing, takes no lock; jobs on other buffers may run at the same time.
-struct RefitJob {
+struct SPHERECHAIN_API RefitJob {
   const Asset* asset = nullptr;      // open
   const float* positions = nullptr;  // x, y, z of each vertex of the set, in any space with the asset's scale
   std::size_t vertex_count = 0;      // at least info().source_vertex_count, or pivot_vertices().size

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "spherechain/abi.h"
 #include "spherechain/asset.h"
 #include "spherechain/simd.h"
 #include "spherechain/status.h"
@@ -62,7 +63,7 @@ struct BoneMatrices {
 //
 // Fill in the fields and call run(). Allocates nothing, takes no lock; jobs on other buffers may run at the same time.
 // Fastest where the asset's bytes start at a multiple of 64.
-struct RefitBonesJob {
+struct SPHERECHAIN_API RefitBonesJob {
   const Asset* asset = nullptr;     // open
   BoneMatrices bones;               // at least asset->bone_count()
   Span<const float> morph_weights;  // empty where nothing morphs, or at least asset->morph_count()

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "spherechain/abi.h"
 #include "spherechain/status.h"
 #include "spherechain/types.h"
 
@@ -24,19 +25,19 @@ enum class Target : std::uint8_t {
 };
 
 // "scalar", "sse2", "ssse3", "avx2", "avx512", "neon"; "best"; never null, also for values that do not exist.
-const char* to_string(Target target) noexcept;
+SPHERECHAIN_API const char* to_string(Target target) noexcept;
 
 // The targets this build has and this machine runs, best first; the last is kScalar. Never empty, never kBest.
-Span<const Target> supported_targets() noexcept;
+SPHERECHAIN_API Span<const Target> supported_targets() noexcept;
 
 // What kBest stands for here.
 inline Target best_target() noexcept { return supported_targets()[0]; }
 
 // The target of that name. kOk; kNullArgument; kUnsupportedTarget where nothing supported has that name ("best" is one
 // that does); `target` is written only with kOk.
-Status find_target(const char* name, Target& target) noexcept;
+SPHERECHAIN_API Status find_target(const char* name, Target& target) noexcept;
 
 // Floats a vector register of that target holds: 1, 4, 8 or 16; 0 where it is not supported.
-std::size_t lanes_of(Target target) noexcept;
+SPHERECHAIN_API std::size_t lanes_of(Target target) noexcept;
 
 }  // namespace spherechain

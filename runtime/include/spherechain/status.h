@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "spherechain/abi.h"
+
 namespace spherechain {
 
 // What every operation of the runtime returns. Values are never reassigned; new ones are appended.
@@ -26,9 +28,10 @@ enum class Status : int {
   kNotInAsset = 18,         // the asset lacks the tables the job reads: of an older baker, or of a source without bones
   kTooFewBones = 19,        // fewer bone matrices than the asset has bones
   kTooFewMorphs = 20,       // morph weights, but fewer than the asset has morph targets
+  kWrongAbi = 21,           // the program was compiled with the headers of another version of the library
 };
 
 // A short English sentence without a final stop. Never null, also for values that do not exist.
-const char* to_string(Status status) noexcept;
+SPHERECHAIN_API const char* to_string(Status status) noexcept;
 
 }  // namespace spherechain

@@ -13,8 +13,8 @@ foreach(source ${sources})
   foreach(line IN LISTS lines)
     string(REGEX REPLACE "^[^<\"]*[<\"]([^>\"]*)[>\"].*$" "\\1" included "${line}")
     if(included MATCHES "(^|/)(${forbidden})" OR
-       # Public headers: the standard library, which has no slash and no .h, and each other.
-       (source MATCHES "/include/spherechain/" AND NOT included MATCHES "^(spherechain/[a-z_]+\\.h|[a-z]+)$"))
+       # Public headers: the standard library, which has no slash, and of C two headers; and each other.
+       (source MATCHES "/include/spherechain/" AND NOT included MATCHES "^(spherechain/[a-z_]+\\.h|[a-z]+|std(def|int)\\.h)$"))
       message(NOTICE "${source} includes ${included}")
       set(found TRUE)
     endif()
