@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "character.h"
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <memory>
+
+#include "mesh/error.h"
+#include "motion/capture.h"
+#include "motion/poses.h"
+
+namespace spherechain::bench {
+namespace {
+
+using baker::Deformation;
+
+constexpr const char* kModels = "/usr/share/assimp/models/";
+
+void check(Status status, const char* what) {
+  if (status != Status::kOk) {
+    throw baker::Error(baker::ExitCode::kInternal, std::string(what) + ": " + to_string(status));
+  }
+}
+
+std::vector<std::unique_ptr<baker::Motion>> motions_of(const baker::Bake& bake) {
+  std::vector<std::unique_ptr<baker::Motion>> out;
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(SPHERECHAIN_SAMPLES "/poses")) {
+    if (entry.path().extension() == ".json") {
+      files.push_back(entry.path());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  for (const auto& file : files) {
+    out.push_back(std::make_unique<baker::BezierMotion>(bake.joints, bake.regions.frame,
+                                                        baker::read_pose_motion(file, bake.joints)));
+  }
+  for (const char* name : {"01_01.bvh", "01_03.bvh", "Boxing_Toes.bvh"}) {
+    out.push_back(std::make_unique<baker::CaptureMotion>(
+        baker::read_capture(std::filesystem::path(kModels) / "BVH" / name), body_of(bake.joints, bake.regions.frame)));
+  }
+  return out;
+}
+
+std::vector<Deformation> poses_of(const baker::Bake& bake, std::size_t count) {
+  const auto motions = motions_of(bake);
+  std::vector<Deformation> out;
+  for (std::size_t m = 0; m < motions.size(); ++m) {
+    const std::size_t frames = count * (m + 1) / motions.size() - count * m / motions.size();
+    for (std::size_t i = 0; i < frames; ++i) {
+      out.push_back(motions[m]->at(static_cast<double>(i + 1) / static_cast<double>(frames)));
+    }
+  }
+  return out;
+}
+
+std::vector<float> palette(const Deformation& pose) {
+  std::vector<float> out;
+  for (const baker::Affine& bone : pose.bones) {
+    for (Eigen::Index row = 0; row < 3; ++row) {
+      for (Eigen::Index column = 0; column < 4; ++column) {
+        out.push_back(static_cast<float>(bone.matrix()(row, column)));
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+std::vector<float> PosedCharacter::mesh(std::size_t pose) const {
+  std::vector<float> out;
+  out.reserve(3 * bake.character.source_positions.size());
+  for (const baker::Vec3& v : deform(bake.character.source_positions, bake.rig_weights, poses[pose].bones)) {
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      out.push_back(static_cast<float>(v[axis]));
+    }
+  }
+  return out;
+}
+
+void load(PosedCharacter& character, const std::string& name, const std::string& settings, std::size_t pose_count) {
+  character.name = name;
+  character.bake = baker::bake(std::string(kModels) + "Collada/human.zae",
+                               baker::make_settings("balanced", settings, "the benchmark's settings"), {});
+  const auto& asset = character.bake.asset;
+  constexpr std::size_t kLine = 64;
+  character.bytes.resize((asset.size() + 2 * kLine) / sizeof(std::uint64_t));
+  auto* start = reinterpret_cast<std::uint8_t*>(character.bytes.data());
+  start += (kLine - reinterpret_cast<std::uintptr_t>(start) % kLine) % kLine;
+  std::memcpy(start, asset.data(), asset.size());
+  check(character.asset.open(start, asset.size()), "the baked asset");
+  character.poses = poses_of(character.bake, pose_count);
+  for (const Deformation& pose : character.poses) {
+    character.matrices.push_back(palette(pose));
+    character.spheres.emplace_back(character.asset.spheres().size);
+    RefitBonesJob job;
+    job.asset = &character.asset;
+    job.bones = character.bones(character.matrices.size() - 1);
+    job.spheres = {character.spheres.back().data(), character.spheres.back().size()};
+    check(job.run(), "refit from bones");
+  }
+}
+
+}  // namespace spherechain::bench
