@@ -34,10 +34,17 @@ void visit(const aiScene& scene, const aiNode& node, int parent, std::vector<con
     out.chains.push_back(std::move(chain));
     chain.clear();
     for (unsigned m = 0; m < node.mNumMeshes; ++m) {
+      if (node.mMeshes[m] >= scene.mNumMeshes || scene.mMeshes[node.mMeshes[m]] == nullptr) {
+        throw Error(ExitCode::kFile, file + ": node '" + node.mName.C_Str() + "' has a mesh that does not exist");
+      }
       out.instances.push_back({scene.mMeshes[node.mMeshes[m]], node.mMeshes[m], index, out.world[index], 0, 0});
     }
   }
-  for (unsigned c = 0; c < node.mNumChildren; ++c) visit(scene, *node.mChildren[c], self, chain, file, out);
+  for (unsigned c = 0; c < node.mNumChildren; ++c) {
+    // Importers leave gaps for objects they drop.
+    if (node.mChildren[c] == nullptr) continue;
+    visit(scene, *node.mChildren[c], self, chain, file, out);
+  }
 }
 
 // What a skeleton at rest does to a mesh beyond its node's transform, which most formats leave out of a skin: other

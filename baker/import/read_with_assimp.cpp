@@ -4,10 +4,14 @@
 #include <assimp/scene.h>
 
 #include <assimp/Importer.hpp>
+#include <cstdint>
+#include <new>
+#include <string_view>
 
 #include "import/assimp_scene.h"
 #include "import/check_bvh.h"
 #include "import/import.h"
+#include "import/memory_limit.h"
 #include "mesh/error.h"
 #include "spherechain/asset.h"
 
@@ -45,6 +49,42 @@ void append(const MeshInstance& instance, const std::string& name, SourceMesh& o
   ++out.meshes;
 }
 
+// Assimp's triangulation ends the program over a face without corners.
+void check_faces(const aiScene& scene, const std::string& file) {
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene.mMeshes[m];
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      if (mesh.mFaces[f].mNumIndices > 0) continue;
+      throw Error(ExitCode::kFile, file + ": face " + std::to_string(f) + " of mesh '" + mesh.mName.C_Str() +
+                                       "' has no corners (the file is cut off, or its counts are wrong)");
+    }
+  }
+}
+
+// In bounded memory: no format here packs a character tighter than this.
+const aiScene* read_scene(Assimp::Importer& importer, const std::filesystem::path& path) {
+  constexpr std::uint64_t kLeast = std::uint64_t{1} << 30, kPerByte = 500;
+  std::error_code unknown;
+  const std::uintmax_t size = std::filesystem::file_size(path, unknown);
+  const std::string name = path.string();
+  const MemoryLimit limit(kLeast + (unknown ? 0 : kPerByte * size));
+  const auto too_much = [&] {
+    return Error(ExitCode::kFile, name + ": needs more memory than " + std::to_string(size) +
+                                      " bytes can fill (the file is cut off, or its counts are wrong)");
+  };
+  try {
+    const aiScene* scene = importer.ReadFile(name, 0);
+    if (scene == nullptr && std::string_view(importer.GetErrorString()).find("bad_alloc") != std::string_view::npos) {
+      throw too_much();
+    }
+    if (scene == nullptr) return nullptr;
+    check_faces(*scene, name);
+    return importer.ApplyPostProcessing(aiProcess_Triangulate);
+  } catch (const std::bad_alloc&) {
+    throw too_much();
+  }
+}
+
 }  // namespace
 
 SourceMesh read_with_assimp(const std::filesystem::path& path) {
@@ -52,8 +92,8 @@ SourceMesh read_with_assimp(const std::filesystem::path& path) {
   Assimp::Importer importer;
   // Sticks that importers put where a file has bones and no mesh are no character.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
-  const aiScene* scene = importer.ReadFile(path.string(), aiProcess_Triangulate);
   const std::string name = path.string();
+  const aiScene* scene = read_scene(importer, path);
   if (scene == nullptr)
     throw Error(ExitCode::kFile, name + ": not a mesh or motion that assimp reads (" + importer.GetErrorString() + ")");
   SourceMesh out;

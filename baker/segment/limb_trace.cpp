@@ -68,10 +68,11 @@ class March {
 
   // Appends sections from the last one on, each step along the last part of the line, until one is not closed or `stop`
   // says so. The last step is halved until the end is known to a hundredth of a step.
+  // A ring of a tube has no end: no line is twice as long as its branch.
   template <typename Stop>
-  void run(std::vector<Section>& sections, Vec3 direction, const Stop& stop) const {
+  void run(std::vector<Section>& sections, Vec3 direction, double branch, const Stop& stop) const {
     double length = step_;
-    while (length > 0.01 * step_) {
+    while (length > 0.01 * step_ && static_cast<double>(sections.size()) * step_ < 2 * (branch + window_)) {
       const Vec3 last = sections.back().center;
       const auto earlier = std::find_if(sections.rbegin(), sections.rend(),
                                         [&](const Section& s) { return (last - s.center).norm() >= window_; });
@@ -155,9 +156,9 @@ LimbTrace trace_limb(const SurfaceQuery& surface, const Polyline& branch, LimbEn
   // Out to hand or foot, then in from there, so that both directions follow a line of sections.
   const auto never = [](const Vec3&) { return false; };
   std::vector<Section> sections{*start};
-  march.run(sections, outward, never);
+  march.run(sections, outward, branch.length(), never);
   std::reverse(sections.begin(), sections.end());
-  march.run(sections, -outward, [&](const Vec3& p) { return (p - branch.at(0)).norm() < ball; });
+  march.run(sections, -outward, branch.length(), [&](const Vec3& p) { return (p - branch.at(0)).norm() < ball; });
   std::reverse(sections.begin(), sections.end());
 
   LimbTrace trace;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "mesh/error.h"
 #include "mesh/surface_query.h"
@@ -173,7 +174,22 @@ double arc_at_height(const Polyline& line, const BodyFrame& frame, double height
   return std::min(s, line.length());
 }
 
+// All but a ball around its centroid: CGAL's skeleton of one may take for ever.
+bool is_ball(const Mesh& mesh) {
+  constexpr double kRound = 0.7;
+  const Vec3 centroid = surface_centroid(mesh);
+  double least = std::numeric_limits<double>::max(), most = 0;
+  for (const Vec3& p : mesh.positions) {
+    least = std::min(least, (p - centroid).norm());
+    most = std::max(most, (p - centroid).norm());
+  }
+  return least > kRound * most;
+}
+
 BodyPlan find_plan(const Mesh& mesh, const SegmentSettings& settings, const std::string& file) {
+  if (is_ball(mesh)) {
+    throw Error(ExitCode::kSegmentation, file + ": the shape is a ball: arms and legs are missing");
+  }
   const CurveSkeleton skeleton = extract_curve_skeleton(mesh);
   const bool automatic = settings.body == BodyKind::kUnknown;
   if (settings.body == BodyKind::kBiped || (automatic && looks_like_biped(skeleton))) {

@@ -2,6 +2,7 @@
 #include "import/import.h"
 
 #include <doctest/doctest.h>
+#include <sys/resource.h>
 
 #include <cmath>
 #include <filesystem>
@@ -71,6 +72,17 @@ TEST_CASE("what is no character is refused with the file's name and the cause") 
   CHECK(contains(refusal(folder.write("nan.obj", std::string("v nan 0 0\n") + kTetrahedron)), "not finite"));
   CHECK(contains(refusal(folder.write("inf.obj", std::string("v 0 inf 0\n") + kTetrahedron)), "not finite"));
   CHECK(refusal(folder.write("range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\n")) != "accepted");
+}
+
+TEST_CASE("files that importers stumble over are refused or read, in bounded memory") {
+  // Debian's assimp-testmodels: counts of 10^9 in 300 bytes, and an importer that leaves one of two objects out.
+  CHECK(refusal("/usr/share/assimp/models/invalid/OutOfMemory.off") != "accepted");
+  rusage usage{};
+  REQUIRE(getrusage(RUSAGE_SELF, &usage) == 0);
+#if !defined(__SANITIZE_ADDRESS__)
+  CHECK(usage.ru_maxrss < 2 * 1024 * 1024);  // KiB
+#endif
+  CHECK(import_character("/usr/share/assimp/models/RAW/WithColor.raw").source_triangles.size() == 2);
 }
 
 TEST_CASE("indices out of range and positions beyond single precision are refused whatever the importer") {

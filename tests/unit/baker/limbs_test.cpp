@@ -167,6 +167,19 @@ TEST_CASE("a snake is one tubular chain from the tail's tip to the head") {
   CHECK(chains.chains[0].spheres.size() == spheres.spheres.size());
 }
 
+TEST_CASE("a ring is walked round once, and a ball is no character") {
+  std::vector<Tube> ring;
+  const auto at = [](int i) { return Vec3(std::cos(0.4 * i), 0, std::sin(0.4 * i)); };
+  for (int i = 0; i < 16; ++i) ring.push_back({at(i), at(i + 1), 0.1, 0.1});
+  try {
+    const Regions regions = segmented(melt(ring, 0.05));
+    for (const Limb& limb : regions.limbs) CHECK(limb.line.length() < 4 * 6.3);
+  } catch (const Error& error) {
+    CHECK(error.code() == ExitCode::kSegmentation);
+  }
+  CHECK(error_of(ball_mesh(24), BodyKind::kUnknown).find("ball") != std::string::npos);
+}
+
 TEST_CASE("a human with a long tail keeps arms and legs, and the tail is a limb") {
   std::vector<Tube> tubes{{{0, 1.0, 0}, {0, 1.4, 0}, 0.15, 0.15},     // trunk
                           {{0, 1.45, 0}, {0, 1.62, 0}, 0.06, 0.06},   // neck
