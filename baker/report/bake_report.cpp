@@ -217,12 +217,13 @@ std::string bake_report_text(const Bake& bake) {
   const Mesh& mesh = bake.character.body;
   const double mm = 1000 * bake.character.metres_per_unit;
   std::string out =
-      fmt::format("{}: {} triangles ({} body), {} components, {:.3f} m tall; {}\n", bake.character.file,
+      fmt::format("{}: {} triangles ({} body), {} components, {:.3f} m {}; {}\n", bake.character.file,
                   bake.character.source_triangles.size(), mesh.triangles.size(), bake.character.report.components,
-                  bake.regions.frame.height * bake.character.metres_per_unit, bake.regions.facing);
-  out += fmt::format("\n{:<10} {:>9} {:>7}\n", "region", "triangles", "spheres");
+                  bake.regions.frame.height * bake.character.metres_per_unit,
+                  bake.regions.name(0).ends_with("arm") ? "tall" : "long", bake.regions.facing);
+  out += fmt::format("\n{:<14} {:>9} {:>7}\n", "region", "triangles", "spheres");
   for (std::size_t r = 0; r < bake.regions.count(); ++r) {
-    out += fmt::format("{:<10} {:>9} {:>7}\n", bake.regions.name(r),
+    out += fmt::format("{:<14} {:>9} {:>7}\n", bake.regions.name(r),
                        std::count(bake.regions.of_skin.begin(), bake.regions.of_skin.end(), r),
                        bake.spheres.of_region[r].size());
   }

@@ -56,7 +56,7 @@ struct RoleWriter {
     for (std::size_t k = 0; k < order.size(); ++k) {
       const LimbPath& path = body.paths[order[k]];
       const bool is_left = path.side == NamedSide::kLeft;
-      const bool arm = path.family == Family::kArm || (top && roles.kind == BodyKind::kQuadruped);
+      const bool arm = path.family == Family::kArm || (top && roles.kind != BodyKind::kOther);
       std::string kind = arm ? "arm" : "leg";
       if (roles.kind == BodyKind::kQuadruped) kind = top ? "foreleg" : "hindleg";
       const std::string side = is_left ? "left_" : "right_";

@@ -236,6 +236,25 @@ TEST_CASE("inspect --roles prints each node's role and why, --roles FILE overrul
   CHECK(to_json(settings).find(R"("roles":{"Neck":"head"})") != std::string::npos);
 }
 
+TEST_CASE("--body says what a body with two pairs of limbs is, goes before the settings, and plays") {
+  const TemporaryFolder folder;
+  const fs::path asset = folder.path / "beast.sphc", config = folder.write("config.json", R"({"body": "biped"})");
+  const std::string beast = "/usr/share/assimp/models/X/Testwuson.X";
+  REQUIRE(run(fmt::format("bake {} -o {} --body quadruped --config {}", beast, asset.string(), config.string())).code ==
+          0);
+  const json inspected = json::parse(run(fmt::format("inspect {} --json", asset.string())).out);
+  CHECK(inspected["regions"][0]["name"] == "left_foreleg");
+  CHECK(inspected["regions"][4]["name"] == "tail");
+  const Run play = run(fmt::format("play {} --source {}", asset.string(), beast));
+  CHECK_MESSAGE(play.code == 0, play.error);
+  REQUIRE(run(fmt::format("bake {} -o {} --config {}", beast, asset.string(), config.string())).code == 0);
+  CHECK(json::parse(run(fmt::format("inspect {} --json", asset.string())).out)["regions"][0]["name"] == "left_arm");
+  CHECK(run(fmt::format("bake {} -o {} --body centaur", beast, asset.string())).code == 2);
+  check_error(run(fmt::format("bake {} -o {} --config {}", beast, asset.string(),
+                              folder.write("wrong.json", R"({"body": "centaur"})").string())),
+              3, {"wrong.json", "body", "quadruped"});
+}
+
 TEST_CASE("usage errors end with 2") {
   check_error(run(""), 2, {"--help"});
   check_error(run("bake"), 2, {});
