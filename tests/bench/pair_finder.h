@@ -56,6 +56,10 @@ using PairFinders = std::vector<std::unique_ptr<PairFinder>>;
 
 // The runtime's: lists, bits, counts; M2 and M1.
 PairFinders runtime_finders(const Asset& asset);
+PairFinders bullet_finders(const Asset& asset);
+PairFinders cgal_finders(const Asset& asset);
+PairFinders embree_finders(const Asset& asset);
 PairFinders fcl_finders(const Asset& asset);
+PairFinders ode_finders(const Asset& asset);
 
 }  // namespace spherechain::bench

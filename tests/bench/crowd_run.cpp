@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "crowd_run.h"
+
+#include <atomic>
+#include <stdexcept>
+#include <thread>
+
+#include "spherechain/detect.h"
+
+namespace spherechain::bench {
+namespace {
+
+constexpr std::size_t kTasksAThread = 16;   // so that none waits long for the last
+constexpr std::size_t kPairsInstance = 64;  // room, over the crowd
+
+}  // namespace
+
+CrowdRun::CrowdRun(const PosedCharacter& character, std::size_t instance_count, std::size_t thread_count)
+    : thread_count_(thread_count), counts_(instance_count), pairs_(kPairsInstance * instance_count) {
+  for (std::size_t i = 0; i < instance_count; ++i) {
+    const auto& pose = character.matrices[i % character.matrices.size()];
+    matrices_.insert(matrices_.end(), pose.begin(), pose.end());
+  }
+  const std::size_t task_count = thread_count == 1 ? 1 : kTasksAThread * thread_count;
+  words_.resize(CrowdContext::words_needed(character.asset, task_count));
+  bits_.resize(instance_count * DetectJob::bit_words(character.asset));
+  context_.words = {words_.data(), words_.size()};
+  job_.asset = &character.asset;
+  job_.instance_count = instance_count;
+  job_.bones = character.bones(0);
+  job_.bones.data = matrices_.data();
+  job_.instance_stride = matrices_.size() / instance_count * sizeof(float);
+  job_.context = &context_;
+  job_.task_count = task_count;
+  job_.counts = {counts_.data(), counts_.size()};
+  job_.pairs = {pairs_.data(), pairs_.size()};
+  if (thread_count > 1) {
+    job_.bits = {bits_.data(), bits_.size()};  // else the list would cost another test of all pairs
+    job_.hook = {&CrowdRun::on_threads, this};
+  }
+}
+
+void CrowdRun::on_threads(void* self_pointer, std::size_t count, void (*task)(void*, std::size_t), void* data) {
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < count; i = next++) {
+      task(data, i);
+    }
+  };
+  std::vector<std::thread> threads;
+  for (std::size_t t = 1; t < static_cast<CrowdRun*>(self_pointer)->thread_count_; ++t) {
+    threads.emplace_back(work);
+  }
+  work();
+  for (std::thread& thread : threads) {
+    thread.join();
+  }
+}
+
+void CrowdRun::run() {
+  if (job_.run() != Status::kOk) {
+    throw std::logic_error("the crowd did not run");
+  }
+}
+
+bool CrowdRun::has_the_pairs_of(const PosedCharacter& character) const {
+  std::vector<std::vector<Pair>> expected;
+  std::vector<Pair> buffer(character.asset.spheres().size * character.asset.spheres().size);
+  for (const auto& spheres : character.spheres) {
+    DetectJob job;
+    job.asset = &character.asset;
+    job.spheres = {spheres.data(), spheres.size()};
+    job.pairs = {buffer.data(), buffer.size()};
+    if (job.run() != Status::kOk) {
+      return false;
+    }
+    expected.emplace_back(buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(job.pair_count));
+  }
+  std::size_t at = 0;
+  for (std::uint32_t i = 0; i < job_.instance_count; ++i) {
+    for (const Pair& pair : expected[i % expected.size()]) {
+      if (at == job_.pair_count || !(pairs_[at] == CrowdPair{i, pair})) {
+        return false;
+      }
+      ++at;
+    }
+  }
+  return at == job_.pair_count;
+}
+
+}  // namespace spherechain::bench
