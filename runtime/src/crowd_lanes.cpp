@@ -4,7 +4,6 @@
 #include <cfloat>
 
 #include "arithmetic.h"
-#include "overlap.h"
 #include "simd.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -18,6 +17,9 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::ScalableTag<float>;
 using Vector = hn::Vec<Floats>;
+
+// Two radii up to this have a sum whose square is finite.
+constexpr float kHugeRadius = 9e18F;
 
 struct LaneSphere {
   Vector x, y, z, radius;

@@ -83,6 +83,8 @@ class TestedTile {
   std::size_t first_column() const { return tile_.first_column; }
   std::size_t first_row() const { return tile_.first_row; }
   std::size_t row_count() const { return tile_.row_count; }
+  // See Tile. Of the words listed some may have lost their bits.
+  Span<const std::uint8_t> hits() const { return {tile_.hits, tile_.hit_count}; }
   std::size_t test_count() const { return tile_.test_count; }
   const std::uint64_t (*bits() const)[kTileWords] { return bits_; }
   const Tile& tile() const { return tile_; }
@@ -96,8 +98,7 @@ class TestedTile {
   Tile tile_;
   Span<const NearPair> near_;  // those of the columns
   const Sphere* column_spheres_ = nullptr;
-  bool column_is_huge_ = false;
-  SphereColumns columns_;
+  SphereColumns columns_, rows_;  // rows_: where they are others
   Sphere padded_columns_[kTileSize], padded_rows_[kTileSize];
   std::uint64_t bits_[kTileSize][kTileWords];
 };
@@ -107,7 +108,14 @@ class ColumnOrder {
  public:
   ColumnOrder() { clear(); }
   void clear();
-  void count(const std::uint64_t (*bits)[kTileWords], std::size_t rows);
+  void count(const std::uint64_t (*bits)[kTileWords], std::size_t rows) {
+    for (std::size_t r = 0; r < rows; ++r) {
+      for (std::size_t w = 0; w < kTileWords; ++w) {
+        count_word(bits[r][w], w);
+      }
+    }
+  }
+  void count_word(std::uint64_t word, std::size_t w);
   std::size_t total() const { return total_; }
   // From counts to the place each column's entries begin at.
   void begin_at(std::size_t place);
@@ -115,11 +123,15 @@ class ColumnOrder {
   void place(const std::uint64_t (*bits)[kTileWords], std::size_t rows, const Put& put) {
     for (std::size_t r = 0; r < rows; ++r) {
       for (std::size_t w = 0; w < kTileWords; ++w) {
-        for (std::uint64_t word = bits[r][w]; word != 0; word &= word - 1) {
-          const std::size_t column = 64 * w + lowest_bit(word);
-          put(at_[column]++, column, r);
-        }
+        place_word(bits[r][w], w, r, put);
       }
+    }
+  }
+  template <typename Put>
+  void place_word(std::uint64_t word, std::size_t w, std::size_t r, const Put& put) {
+    for (; word != 0; word &= word - 1) {
+      const std::size_t column = 64 * w + lowest_bit(word);
+      put(at_[column]++, column, r);
     }
   }
 

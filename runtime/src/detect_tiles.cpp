@@ -34,9 +34,12 @@ void list_columns(TestedTile& tile, std::size_t n, ColumnOrder& order, Output<Pa
     if (!is_one_tile) {
       tile.run(first_row);
     }
-    order.place(tile.bits(), tile.row_count(), [&](std::size_t at, std::size_t column, std::size_t row) {
-      pairs.put(at, pair_of(tile, column, row));
-    });
+    for (const std::size_t hit : tile.hits()) {
+      const std::size_t r = hit / kTileWords, w = hit % kTileWords;
+      order.place_word(tile.bits()[r][w], w, r, [&](std::size_t at, std::size_t column, std::size_t row) {
+        pairs.put(at, pair_of(tile, column, row));
+      });
+    }
   }
 }
 
@@ -74,7 +77,7 @@ void TestedTile::set_columns(std::size_t first) {
   tile_.first_column = first;
   tile_.column_count = std::min(scene_.size() - first, kTileSize);
   column_spheres_ = block(first, tile_.column_count, padded_columns_);
-  column_is_huge_ = fill_columns(scene_.target, column_spheres_, tile_.column_count, columns_);
+  fill_columns(scene_.target, column_spheres_, tile_.column_count, column_spheres_[0], columns_);
   enable(first, tile_.enabled_columns);
   const auto from = [](const NearPair& near, std::size_t a) { return near.a < a; };
   const NearPair* begin = std::lower_bound(scene_.near.begin(), scene_.near.end(), first, from);
@@ -84,16 +87,16 @@ void TestedTile::set_columns(std::size_t first) {
 
 void TestedTile::run(std::size_t first_row, std::uint64_t (*wanted)[kTileWords]) {
   tile_.columns = &columns_;
+  tile_.column_spheres = column_spheres_;
   tile_.first_row = first_row;
   tile_.row_count = std::min(scene_.size() - first_row, kTileSize);
-  tile_.any_huge = column_is_huge_;
   if (first_row == tile_.first_column) {
-    tile_.rows = column_spheres_;
+    tile_.rows = &columns_;
+    tile_.row_spheres = column_spheres_;
   } else {
-    tile_.rows = block(first_row, tile_.row_count, padded_rows_);
-    for (std::size_t r = 0; r < tile_.row_count; ++r) {
-      tile_.any_huge |= std::abs(tile_.rows[r].radius) > kHugeRadius;
-    }
+    tile_.rows = &rows_;
+    tile_.row_spheres = block(first_row, tile_.row_count, padded_rows_);
+    fill_columns(scene_.target, tile_.row_spheres, tile_.row_count, column_spheres_[0], rows_);
   }
   enable(first_row, tile_.enabled_rows);
   tile_.ignored = scene_.ignored.data;
@@ -104,13 +107,26 @@ void TestedTile::run(std::size_t first_row, std::uint64_t (*wanted)[kTileWords])
   drop_near();
 }
 
-// Without a branch on what is found: about half of the near pairs overlap.
+// First which near pairs overlap, without a branch: about half of them do, ever other ones.
 void TestedTile::drop_near() {
-  for (const NearPair& near : near_) {
-    const std::size_t row = near.b - tile_.first_row;
-    if (row < tile_.row_count) {
+  constexpr std::size_t kAtATime = 64;
+  for (std::size_t first = 0; first < near_.size; first += kAtATime) {
+    const std::size_t end = std::min(near_.size, first + kAtATime);
+    std::size_t overlapping[kAtATime];
+    std::size_t count = 0;
+    for (std::size_t i = first; i < end; ++i) {
+      const std::size_t row = near_[i].b - tile_.first_row;
+      if (row < tile_.row_count) {
+        const std::size_t column = near_[i].a - tile_.first_column;
+        overlapping[count] = i;
+        count += (bits_[row][column / 64] >> (column % 64)) & 1U;
+      }
+    }
+    for (std::size_t k = 0; k < count; ++k) {
+      const NearPair& near = near_[overlapping[k]];
+      const std::size_t row = near.b - tile_.first_row;
       const std::size_t column = near.a - tile_.first_column;
-      const bool is_far = !within_reach(column_spheres_[column], tile_.rows[row], near.reach);
+      const bool is_far = !within_reach(column_spheres_[column], tile_.row_spheres[row], near.reach);
       bits_[row][column / 64] &= ~(std::uint64_t{is_far} << (column % 64));
     }
   }
@@ -122,15 +138,11 @@ void ColumnOrder::clear() {
   std::memset(at_, 0, sizeof at_);
 }
 
-void ColumnOrder::count(const std::uint64_t (*bits)[kTileWords], std::size_t rows) {
-  for (std::size_t r = 0; r < rows; ++r) {
-    for (std::size_t w = 0; w < kTileWords; ++w) {
-      columns_[w] |= bits[r][w];
-      for (std::uint64_t word = bits[r][w]; word != 0; word &= word - 1) {
-        ++at_[64 * w + lowest_bit(word)];
-        ++total_;
-      }
-    }
+void ColumnOrder::count_word(std::uint64_t word, std::size_t w) {
+  columns_[w] |= word;
+  for (; word != 0; word &= word - 1) {
+    ++at_[64 * w + lowest_bit(word)];
+    ++total_;
   }
 }
 
@@ -154,10 +166,14 @@ void detect_all(const Scene& scene, Result& result) {
     order.clear();
     for (std::size_t first_row = first; first_row < n; first_row += kTileSize) {
       tile.run(first_row);
-      order.count(tile.bits(), tile.row_count());
       result.tests += tile.test_count();
-      if (result.bits.size > 0 && !result.first_only) {
-        copy_bits(tile.bits(), tile.row_count(), first, first_row, result.bits);
+      const bool copies = result.bits.size > 0 && !result.first_only;
+      for (const std::size_t hit : tile.hits()) {
+        const std::size_t r = hit / kTileWords, w = hit % kTileWords;
+        order.count_word(tile.bits()[r][w], w);
+        if (copies && tile.bits()[r][w] != 0) {
+          copy_row(tile.bits()[r][w], first + 64 * w, first_row + r, result.bits);
+        }
       }
     }
     if (result.pairs.buffer.size > 0 && order.total() > 0) {

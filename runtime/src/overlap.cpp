@@ -32,57 +32,109 @@ HWY_INLINE std::uint64_t bits_of(hn::Mask<Floats> mask) {
   return bits;
 }
 
-// The spheres of a whole vector; true where one is huge.
-HWY_INLINE bool fill_vector(const float* spheres, SphereColumns& columns, std::size_t i) {
+// The spheres of a whole vector. Returns what their extents raise the lanes of `extent` to.
+HWY_INLINE Vector fill_vector(const float* spheres, const Sphere& origin, Vector extent, SphereColumns& columns,
+                              std::size_t i) {
   constexpr Floats kFloats;
   Vector x, y, z, radius;
   hn::LoadInterleaved4(kFloats, spheres, x, y, z, radius);
+  x = hn::Sub(x, hn::Set(kFloats, origin.x));
+  y = hn::Sub(y, hn::Set(kFloats, origin.y));
+  z = hn::Sub(z, hn::Set(kFloats, origin.z));
+  const Vector squared_radius = hn::Mul(radius, radius);
+  const Vector squared_length = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
   hn::Store(x, kFloats, columns.x + i);
   hn::Store(y, kFloats, columns.y + i);
   hn::Store(z, kFloats, columns.z + i);
   hn::Store(radius, kFloats, columns.radius + i);
-  return !hn::AllFalse(kFloats, hn::Gt(hn::Abs(radius), hn::Set(kFloats, kHugeRadius)));
+  hn::Store(hn::Mul(hn::Set(kFloats, 0.5F), hn::Sub(squared_length, squared_radius)), kFloats, columns.power + i);
+  const Vector own = hn::Add(squared_length, squared_radius);
+  // NaN becomes infinite, so that it stays.
+  const Vector known = hn::IfThenElse(hn::Le(own, hn::Set(kFloats, FLT_MAX)), own, hn::Inf(kFloats));
+  return hn::Max(extent, known);
 }
 
-bool fill(const Sphere* spheres, std::size_t count, SphereColumns& columns) {
+void fill(const Sphere* spheres, std::size_t count, const Sphere& origin, SphereColumns& columns) {
   constexpr Floats kFloats;
   const std::size_t lanes = hn::Lanes(kFloats);
-  bool any_huge = false;
+  Vector extent = hn::Zero(kFloats);
   std::size_t i = 0;
   for (; i + lanes <= count; i += lanes) {
-    any_huge |= fill_vector(&spheres[i].x, columns, i);
+    extent = fill_vector(&spheres[i].x, origin, extent, columns, i);
   }
-  if (i < count) {
-    Sphere rest[hn::MaxLanes(kFloats)] = {};  // the lanes past the end are never asked for
-    std::memcpy(rest, spheres + i, (count - i) * sizeof(Sphere));
-    any_huge |= fill_vector(&rest[0].x, columns, i);
+  for (; i < count || i % kBlock != 0; i += lanes) {
+    Sphere rest[hn::MaxLanes(kFloats)];  // the lanes past the end are never asked for
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      rest[lane] = i + lane < count ? spheres[i + lane] : origin;
+    }
+    extent = fill_vector(&rest[0].x, origin, extent, columns, i);
   }
-  return any_huge;
+  HWY_ALIGN float lane_extents[hn::MaxLanes(kFloats)];
+  hn::Store(extent, kFloats, lane_extents);
+  columns.extent = 0;
+  for (const float lane : lane_extents) {
+    columns.extent = lane > columns.extent ? lane : columns.extent;
+  }
 }
 
-// The columns [first, first + count), at most 64, against one sphere. Bits from `count` on are anything.
-template <bool kCheckFinite>
-HWY_INLINE std::uint64_t test_row(const SphereColumns& columns, std::size_t first, std::size_t count, const Sphere& p) {
+// How much a pair's test below may be off. With p and q as the tile has them, h(p) = (|p|^2 - rp^2) / 2 and u = 2^-24,
+//   h(p) + h(q) - p.q - rp rq = (|p - q|^2 - (rp + rq)^2) / 2,
+// which is below 0 where spheres touch. With G at least |p|^2 + rp^2 of every sphere, computing it costs 13 u G at
+// most: 2 for each h, 7 for the sum of products (fused or not), each below 1.5 G, 1 for the comparison's side and 1 for
+// terms of second order; moving the spheres to the tile's origin costs 4; and that the rule's own squares are rounded,
+// by 8 u (rp + rq)^2 <= 32 u G, costs half of that. 33 u G in all, of which we allow 64; and 2^-120 for what underflows
+// or is flushed to 0. So no pair is missed; what the rule then says no to are the few within that margin.
+HWY_INLINE float margin_of(float extent) { return 0x1p-18F * extent + 0x1p-120F; }
+
+// Up to this extent nothing above, nor of the rule, overflows.
+constexpr float kMostExtent = 1e36F;
+
+// The first row that has pairs with the column of the tile and those after it: of the pairs (a, b) only those with a <
+// b.
+HWY_INLINE std::size_t first_row_of(const Tile& tile, std::size_t column) {
+  const std::size_t after = tile.first_column + column + 1;
+  return after > tile.first_row ? after - tile.first_row : 0;
+}
+
+// Sets at least the bits of the pairs that touch; and of other pairs, those of the columns after the row too.
+HWY_INLINE void find_candidates(const Tile& tile, float extent) {
   constexpr Floats kFloats;
-  const Vector px = hn::Set(kFloats, p.x);
-  const Vector py = hn::Set(kFloats, p.y);
-  const Vector pz = hn::Set(kFloats, p.z);
-  const Vector pr = hn::Set(kFloats, p.radius);
-  std::uint64_t bits = 0;
-  for (std::size_t i = 0; i < count; i += hn::Lanes(kFloats)) {
-    const Vector dx = hn::Sub(px, hn::Load(kFloats, columns.x + first + i));
-    const Vector dy = hn::Sub(py, hn::Load(kFloats, columns.y + first + i));
-    const Vector dz = hn::Sub(pz, hn::Load(kFloats, columns.z + first + i));
-    const Vector s = hn::Add(pr, hn::Load(kFloats, columns.radius + first + i));
-    const Vector squared_reach = hn::Mul(s, s);
-    const Vector d2 = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
-    hn::Mask<Floats> overlap = hn::Lt(d2, squared_reach);
-    if (kCheckFinite) {
-      overlap = hn::And(overlap, hn::Le(squared_reach, hn::Set(kFloats, FLT_MAX)));
+  constexpr std::size_t kLanes = hn::MaxLanes(kFloats);
+  constexpr std::size_t kParts = kBlock / kLanes;
+  const SphereColumns& columns = *tile.columns;
+  const SphereColumns& rows = *tile.rows;
+  const Vector margin = hn::Set(kFloats, margin_of(extent));
+  const std::size_t row_count = tile.row_count;
+  std::memset(tile.bits, 0, row_count * sizeof tile.bits[0]);
+  for (std::size_t first = 0; first < tile.column_count; first += kBlock) {
+    Vector x[kParts], y[kParts], z[kParts], radius[kParts], start[kParts];
+    for (std::size_t part = 0; part < kParts; ++part) {
+      const std::size_t at = first + part * kLanes;
+      x[part] = hn::Load(kFloats, columns.x + at);
+      y[part] = hn::Load(kFloats, columns.y + at);
+      z[part] = hn::Load(kFloats, columns.z + at);
+      radius[part] = hn::Load(kFloats, columns.radius + at);
+      start[part] = hn::Sub(margin, hn::Load(kFloats, columns.power + at));
     }
-    bits |= bits_of(overlap) << i;
+    auto* out = reinterpret_cast<std::uint8_t*>(tile.bits) + first / 8;
+    for (std::size_t r = first_row_of(tile, first); r < row_count; ++r) {
+      const Vector px = hn::Set(kFloats, rows.x[r]);
+      const Vector py = hn::Set(kFloats, rows.y[r]);
+      const Vector pz = hn::Set(kFloats, rows.z[r]);
+      const Vector pr = hn::Set(kFloats, rows.radius[r]);
+      const Vector power = hn::Set(kFloats, rows.power[r]);
+      std::uint64_t bits = 0;
+      for (std::size_t part = 0; part < kParts; ++part) {
+        Vector sum = hn::MulAdd(px, x[part], start[part]);
+        sum = hn::MulAdd(py, y[part], sum);
+        sum = hn::MulAdd(pz, z[part], sum);
+        sum = hn::MulAdd(pr, radius[part], sum);
+        bits |= bits_of(hn::Gt(sum, power)) << (part * kLanes);
+      }
+      const auto block = static_cast<std::uint16_t>(bits);
+      std::memcpy(out + r * sizeof tile.bits[0], &block, sizeof block);
+    }
   }
-  return bits;
 }
 
 // 64 bits from the `at`th on; those past the end are 0.
@@ -93,38 +145,96 @@ HWY_INLINE std::uint64_t bits_at(const std::uint64_t* words, std::size_t size, s
   return (words[word] >> shift) | ((next << 1) << (63 - shift));
 }
 
-template <bool kCheckFinite>
-HWY_INLINE std::size_t test_rows(const Tile& tile) {
-  std::size_t tests = 0;
-  for (std::size_t r = 0; r < tile.row_count; ++r) {
-    const std::size_t b = tile.first_row + r;
-    const bool is_enabled = ((tile.enabled_rows[r / 64] >> (r % 64)) & 1U) != 0;
-    // Of the pairs (a, b) only those with a < b.
-    const std::size_t below = b > tile.first_column ? b - tile.first_column : 0;
-    const std::size_t count = is_enabled ? (below < tile.column_count ? below : tile.column_count) : 0;
-    for (std::size_t word = 0; word < kTileWords; ++word) {
-      const std::size_t first = 64 * word;
-      if (first >= count) {
-        tile.bits[r][word] = 0;
-        if (tile.wanted != nullptr) {
-          tile.wanted[r][word] = 0;
-        }
-        continue;
-      }
-      const std::size_t in_word = count - first < 64 ? count - first : 64;
-      std::uint64_t wanted = tile.enabled_columns[word] & (~std::uint64_t{0} >> (64 - in_word));
-      wanted &= ~bits_at(tile.ignored, tile.ignored_words, b * (b - 1) / 2 + tile.first_column + first);
-      tests += hwy::PopCount(wanted);
-      if (tile.wanted != nullptr) {
-        tile.wanted[r][word] = wanted;
-      }
-      tile.bits[r][word] = wanted & test_row<kCheckFinite>(*tile.columns, first, in_word, tile.rows[r]);
+HWY_INLINE void take_all_as_candidates(Tile& tile) {
+  std::memset(tile.bits, 0, tile.row_count * sizeof tile.bits[0]);
+  for (std::size_t word = 0; 64 * word < tile.column_count; ++word) {
+    for (std::size_t r = first_row_of(tile, 64 * word); r < tile.row_count; ++r) {
+      tile.bits[r][word] = ~std::uint64_t{0};
     }
   }
-  return tests;
 }
 
-void test(Tile& tile) { tile.test_count = tile.any_huge ? test_rows<true>(tile) : test_rows<false>(tile); }
+// Leaves the bits of pairs that are wanted, and lists the words that have some. What the loops read is copied first:
+// for all the compiler knows, writing bits could change it.
+template <bool kStoresWanted>
+HWY_INLINE void keep_wanted(Tile& tile) {
+  const std::size_t row_count = tile.row_count, column_count = tile.column_count, ignored_words = tile.ignored_words;
+  const std::uint64_t* const ignored = tile.ignored;
+  std::uint64_t(*const bits)[kTileWords] = tile.bits;
+  std::uint64_t(*const wanted_bits)[kTileWords] = tile.wanted;
+  std::uint8_t* const hits = tile.hits;
+  std::uint64_t enabled_rows[kTileWords];
+  std::memcpy(enabled_rows, tile.enabled_rows, sizeof enabled_rows);
+  if (kStoresWanted) {
+    std::memset(wanted_bits, 0, row_count * sizeof wanted_bits[0]);
+  }
+  std::size_t test_count = 0, hit_count = 0;
+  for (std::size_t word = 0; 64 * word < column_count; ++word) {
+    const std::size_t columns_left = column_count - 64 * word;
+    const std::size_t most = columns_left < 64 ? columns_left : 64;
+    const std::uint64_t enabled_columns = tile.enabled_columns[word];
+    const std::size_t first_column = tile.first_column + 64 * word;
+    std::size_t r = first_row_of(tile, 64 * word);
+    std::size_t below = tile.first_row + r - first_column;
+    std::size_t bit = (tile.first_row + r) * (tile.first_row + r - 1) / 2 + first_column;
+    for (; r < row_count; ++r) {
+      const std::size_t count = below < most ? below : most;
+      const std::uint64_t row = 0 - ((enabled_rows[r / 64] >> (r % 64)) & 1U);
+      const std::uint64_t wanted =
+          row & enabled_columns & (~std::uint64_t{0} >> (64 - count)) & ~bits_at(ignored, ignored_words, bit);
+      bit += first_column + below;  // the row's own number
+      ++below;
+      test_count += hwy::PopCount(wanted);
+      if (kStoresWanted) {
+        wanted_bits[r][word] = wanted;
+      }
+      const std::uint64_t kept = bits[r][word] & wanted;
+      bits[r][word] = kept;
+      hits[hit_count] = static_cast<std::uint8_t>(kTileWords * r + word);
+      hit_count += kept != 0 ? 1 : 0;
+    }
+  }
+  tile.test_count = test_count;
+  tile.hit_count = hit_count;
+}
+
+// The rule, as the header of the job states it.
+HWY_INLINE bool overlap(const Sphere& p, const Sphere& q) {
+  const float dx = p.x - q.x;
+  const float dy = p.y - q.y;
+  const float dz = p.z - q.z;
+  const float s = p.radius + q.radius;
+  const float squared_reach = s * s;
+  return ((dx * dx + dy * dy) + dz * dz < squared_reach) & (squared_reach <= FLT_MAX);
+}
+
+HWY_INLINE void keep_touching(Tile& tile) {
+  for (std::size_t i = 0; i < tile.hit_count; ++i) {
+    const std::size_t r = tile.hits[i] / kTileWords, word = tile.hits[i] % kTileWords;
+    std::uint64_t touching = 0;
+    for (std::uint64_t left = tile.bits[r][word]; left != 0; left &= left - 1) {
+      const std::size_t column = hwy::Num0BitsBelowLS1Bit_Nonzero64(left);
+      const bool found = overlap(tile.column_spheres[64 * word + column], tile.row_spheres[r]);
+      touching |= std::uint64_t{found} << column;
+    }
+    tile.bits[r][word] = touching;
+  }
+}
+
+void test(Tile& tile) {
+  const float extent = tile.rows->extent > tile.columns->extent ? tile.rows->extent : tile.columns->extent;
+  if (extent <= kMostExtent) {
+    find_candidates(tile, extent);
+  } else {
+    take_all_as_candidates(tile);
+  }
+  if (tile.wanted == nullptr) {
+    keep_wanted<false>(tile);
+  } else {
+    keep_wanted<true>(tile);
+  }
+  keep_touching(tile);
+}
 
 MaskedCount count(const Tile& tile, const std::uint64_t (&mask)[kTileWords]) {
   MaskedCount result;
@@ -154,8 +264,9 @@ SPHERECHAIN_KERNELS(count);
 
 }  // namespace
 
-bool fill_columns(Target resolved, const Sphere* spheres, std::size_t count, SphereColumns& columns) {
-  return fill_kernels[index_of(resolved)](spheres, count, columns);
+void fill_columns(Target resolved, const Sphere* spheres, std::size_t count, const Sphere& origin,
+                  SphereColumns& columns) {
+  fill_kernels[index_of(resolved)](spheres, count, origin, columns);
 }
 
 void test_tile(Target resolved, Tile& tile) { test_kernels[index_of(resolved)](tile); }
