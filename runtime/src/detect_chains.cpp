@@ -103,8 +103,9 @@ void detect_in_one_tile(const Scene& scene, Result& result) {
     if (counted.touching == 0) {
       continue;
     }
-    for (const std::uint32_t row : members) {
-      for (std::size_t w = 0; w < kTileWords; ++w) {
+    for (const std::size_t hit : tile.hits()) {
+      const std::size_t row = hit / kTileWords, w = hit % kTileWords;
+      if (((mask[row / 64] >> (row % 64)) & 1U) != 0) {
         unique[row][w] |= tile.bits()[row][w] & mask[w];
       }
     }

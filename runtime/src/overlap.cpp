@@ -243,9 +243,13 @@ MaskedCount count(const Tile& tile, const std::uint64_t (&mask)[kTileWords]) {
       const std::size_t r = 64 * half + hwy::Num0BitsBelowLS1Bit_Nonzero64(rows);
       for (std::size_t word = 0; word <= half; ++word) {  // a row's columns are before it
         result.wanted += hwy::PopCount(tile.wanted[r][word] & mask[word]);
-        result.touching += hwy::PopCount(tile.bits[r][word] & mask[word]);
       }
     }
+  }
+  for (std::size_t i = 0; i < tile.hit_count; ++i) {
+    const std::size_t r = tile.hits[i] / kTileWords, word = tile.hits[i] % kTileWords;
+    const std::uint64_t row = 0 - ((mask[r / 64] >> (r % 64)) & 1U);
+    result.touching += hwy::PopCount(tile.bits[r][word] & mask[word] & row);
   }
   return result;
 }

@@ -364,7 +364,7 @@ SPHERECHAIN_API size_t sc_detect_scratch_words(const sc_asset* asset);
 SPHERECHAIN_API size_t sc_detect_bit_words(const sc_asset* asset);
 
 /* SC_OK, SC_OVERFLOW (the first entries are written), SC_NULL_ARGUMENT, SC_WRONG_ABI, SC_TOO_FEW_SPHERES,
- * SC_CONTEXT_TOO_SMALL, SC_BAD_ARGUMENT, SC_UNSUPPORTED_TARGET, SC_BAD_FILTER, SC_SHARED_MEMORY. 14 KiB of stack. */
+ * SC_CONTEXT_TOO_SMALL, SC_BAD_ARGUMENT, SC_UNSUPPORTED_TARGET, SC_BAD_FILTER, SC_SHARED_MEMORY. 18 KiB of stack. */
 SPHERECHAIN_API sc_status sc_detect(sc_detect_job* job);
 
 /* ---- What to do about it ---- */
