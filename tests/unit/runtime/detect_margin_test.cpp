@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// Detection looks for candidates with a margin for its rounding. Here pairs are where that matters: a few roundings
+// from touching, of spheres large and small, near the origin and far from it.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <set>
+
+#include "jobs.h"
+#include "tiny_asset.h"
+
+namespace spherechain::test {
+namespace {
+
+float squared(float v) { return v * v; }
+
+bool touch(const Sphere& p, const Sphere& q) {
+  const float d2 = (squared(p.x - q.x) + squared(p.y - q.y)) + squared(p.z - q.z);
+  return d2 < squared(p.radius + q.radius);
+}
+
+// Couples of spheres within about `roundings` roundings of touching; the couples strewn over a box of 20 radii.
+std::vector<Sphere> couples(std::size_t count, float scale, float offset, float roundings, std::mt19937& random) {
+  std::vector<Sphere> out;
+  while (out.size() < count) {
+    const auto coordinate = [&] { return scale * (offset + uniform(random, -10, 10)); };
+    const Sphere p{coordinate(), coordinate(), coordinate(), scale * uniform(random, 0.1F, 2)};
+    const float radius = scale * uniform(random, 0.1F, 2);
+    const float x = uniform(random, -1, 1), y = uniform(random, -1, 1), z = uniform(random, -1, 1);
+    const float away = 1 + roundings * uniform(random, -1, 1) * 0x1p-24F;
+    const float step = (p.radius + radius) / std::sqrt(x * x + y * y + z * z) * away;
+    out.push_back(p);
+    out.push_back({p.x + step * x, p.y + step * y, p.z + step * z, radius});
+  }
+  out.resize(count);
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("pairs a few roundings from touching are judged by the formula alone, at any scale and place") {
+  std::mt19937 random(7);
+  std::size_t reported = 0, close = 0;
+  for (const std::size_t n : {2U, 30U, 128U, 150U}) {
+    TinyAsset tiny = random_asset(n, static_cast<unsigned>(n));
+    tiny.parts.near_fit.clear();
+    tiny.parts.near_detect.clear();
+    const OpenedAsset opened(tiny.parts);
+    const std::set<Pair> ignored(tiny.ignored_pairs.begin(), tiny.ignored_pairs.end());
+    for (const float scale : {1e-22F, 1e-18F, 1e-3F, 1.0F, 1e4F, 1e15F, 1e17F, 1e18F}) {
+      for (const float offset : {0.0F, 3.0F, 1000.0F}) {
+        CAPTURE(n);
+        CAPTURE(scale);
+        CAPTURE(offset);
+        const std::vector<Sphere> spheres = couples(n, scale, offset, 3, random);
+        std::vector<Pair> expected;
+        for (std::uint32_t a = 0; a < n; ++a) {
+          for (std::uint32_t b = a + 1; b < n; ++b) {
+            if (touch(spheres[a], spheres[b]) && ignored.count({a, b}) == 0) {
+              expected.push_back({a, b});
+              close += a % 2 == 0 && b == a + 1 ? 1 : 0;
+            }
+          }
+        }
+        reported += expected.size();
+        for (const Target target : supported_targets()) {
+          CAPTURE(to_string(target));
+          CHECK(detect(opened.asset, spheres, Method::kM2, RadiusKind::kDetect, target).pairs == expected);
+        }
+      }
+    }
+  }
+  CHECK(close > 500);  // of the couples, about half
+  CHECK(reported > close);
+}
+
+}  // namespace spherechain::test
