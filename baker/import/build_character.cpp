@@ -75,8 +75,12 @@ void check_positions(const SourceMesh& source, const std::string& name) {
 }  // namespace
 
 bool is_whole(const Character& character) {
-  constexpr double kMost = 0.6;  // of the area: eyes, teeth and a belt are the rest
-  return count_open_edges(character.body) == 0 && surface_area(character.body) > kMost * surface_area(character.skin);
+  return count_open_edges(character.body) == 0 && surface_area(character.body) > kMostOfSkin * surface_area(character.skin);
+}
+
+bool is_part_of_skin(const Character& character) {
+  const std::vector<Index>& source = character.body_source_triangle;
+  return std::any_of(source.begin(), source.end(), [](Index t) { return t != kNoIndex; });
 }
 
 void take_all_pieces(Character& character) {

@@ -54,9 +54,10 @@ struct Character {
   std::vector<Index> skin_source_triangle;  // a triangle of skin -> its number in the source
   std::vector<Index> skin_of_source;        // source vertex -> vertex of skin, kNoIndex where no triangle uses it
 
-  // The surface that is segmented and fitted: the skin's largest connected piece.
+  // The surface that is segmented and fitted: the skin's largest connected piece, or a closed surface made of the skin
+  // or around it.
   Mesh body;
-  std::vector<Index> body_source_triangle;  // a triangle of body -> its number in the source
+  std::vector<Index> body_source_triangle;  // a triangle of body -> its number in the source, kNoIndex where it is new
   std::vector<Index> body_of_source;        // source vertex -> vertex of body, kNoIndex where it is on none
 
   double metres_per_unit = 1;
@@ -68,8 +69,14 @@ struct Character {
 // not finite, an index is out of range, or all positions coincide.
 Character import_character(const std::filesystem::path& path, const ImportOptions& options = {});
 
+// Share of the skin's area above which a piece of it is the body: eyes, teeth and a belt are the rest.
+inline constexpr double kMostOfSkin = 0.6;
+
 // Whether the body is closed, and most of the skin.
 bool is_whole(const Character& character);
+
+// Whether the body's triangles are the skin's, or parts of them; else it is a surface of its own around the skin.
+bool is_part_of_skin(const Character& character);
 
 // Makes the body all of the skin, its pieces as they are: for characters of many pieces, none of which is a body.
 void take_all_pieces(Character& character);

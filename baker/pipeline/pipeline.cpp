@@ -33,16 +33,20 @@ void stage(Bake& out, const Progress& progress, const char* name, const Run& run
 }
 
 // A closed biped is segmented by its shape, which knows armpit and crotch best; all else by its rig, where there is
-// one.
+// one, or by a closed surface made for it.
 void run_segment(Bake& out) {
   const bool rigged = !out.roles.limbs.empty() && !out.character.rig.weights.empty();
   const bool whole = is_whole(out.character);
-  if (!rigged || (whole && out.roles.kind == BodyKind::kBiped)) {
+  if (!rigged) {
+    out.regions = segment_closed(out.character, out.settings.segment, out.closing);
+    return;
+  }
+  if (whole && out.roles.kind == BodyKind::kBiped) {
     try {
       out.regions = segment(out.character, out.settings.segment);
       return;
     } catch (const Error& error) {
-      if (!rigged || error.code() != ExitCode::kSegmentation) throw;
+      if (error.code() != ExitCode::kSegmentation) throw;
     }
   }
   const BodyKind wanted = out.settings.segment.body;
@@ -92,6 +96,10 @@ Bake bake(const std::filesystem::path& input, const BakeSettings& settings, cons
     out.roles = find_roles(out.character.rig, out.character.source_positions, settings.roles, settings.segment.body);
   });
   stage(out, progress, "segment", [&] { run_segment(out); });
+  if (out.closing.seconds > 0) {
+    out.times.back().seconds -= out.closing.seconds;
+    out.times.insert(out.times.end() - 1, {"wrap", out.closing.seconds});
+  }
   run_fit(out, progress);
   run_after_fit(out, progress);
   return out;
@@ -104,6 +112,7 @@ Bake rebake(const Bake& bake, const BakeSettings& settings) {
   out.regions = bake.regions;
   out.joints = bake.joints;
   out.rig_weights = bake.rig_weights;
+  out.closing = bake.closing;
   if (settings.fit == bake.settings.fit) {
     out.spheres = bake.spheres;
   } else {

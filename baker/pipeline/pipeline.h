@@ -16,6 +16,7 @@
 #include "rig/rig.h"
 #include "roles/roles.h"
 #include "segment/segment.h"
+#include "wrap/closed_body.h"
 
 namespace spherechain::baker {
 
@@ -58,6 +59,7 @@ struct Bake {
   Character character;
   Roles roles;  // of the nodes of character.rig
   Regions regions;
+  ClosingReport closing;
   Spheres spheres;
   Chains chains;
   Binding binding;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "report/report.h"
 #include "write/version.h"
@@ -13,7 +14,49 @@ namespace {
 
 using nlohmann::ordered_json;
 
+const char* name_of(BodySource body) {
+  return body == BodySource::kSkin ? "skin" : body == BodySource::kRepaired ? "repaired" : "wrapped";
+}
+
 ordered_json to_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+
+// The skin's triangles that the body's are not made of.
+std::size_t count_other_triangles(const Character& character) {
+  std::set<Index> body(character.body_source_triangle.begin(), character.body_source_triangle.end());
+  body.erase(kNoIndex);
+  return character.skin.triangles.size() - body.size();
+}
+
+ordered_json closing_section(const ClosingReport& closing) {
+  ordered_json out{{"body", name_of(closing.body)},
+                   {"welded_by_tolerance", closing.welded},
+                   {"t_junctions_split", closing.t_junctions},
+                   {"triangles_turned", closing.turned},
+                   {"edges_parted", closing.parted},
+                   {"holes_closed", closing.holes},
+                   {"seconds", closing.seconds}};
+  if (closing.body == BodySource::kWrapped) {
+    out["wrap"] = {{"alpha", closing.alpha},
+                   {"offset", closing.offset},
+                   {"triangles", closing.triangles},
+                   {"thin_area", closing.thin},
+                   {"holes_closed_first", closing.holes_first},
+                   {"tried", closing.wraps}};
+  }
+  return out;
+}
+
+// What was done for a closed body, a line; nothing where it was one.
+std::string closing_line(const ClosingReport& closing) {
+  if (closing.body == BodySource::kSkin) return {};
+  std::string line = fmt::format(
+      "not one closed surface: {} vertices all but coincide, {} T-junctions, {} triangles turned, {} edges of more "
+      "than two triangles, {} holes; ",
+      closing.welded, closing.t_junctions, closing.turned, closing.parted, closing.holes);
+  if (closing.body == BodySource::kRepaired) return line + fmt::format("repaired in {:.1f} s\n", closing.seconds);
+  return line + fmt::format("wrapped with alpha = diameter / {:.0f} ({} triangles, {} tried) in {:.1f} s\n",
+                            1 / closing.alpha, closing.triangles, closing.wraps, closing.seconds);
+}
 
 ordered_json import_section(const Bake& bake) {
   const ImportReport& report = bake.character.report;
@@ -25,7 +68,7 @@ ordered_json import_section(const Bake& bake) {
           {"welded_vertices", report.welded_vertices},
           {"body_vertices", bake.character.body.positions.size()},
           {"body_triangles", bake.character.body.triangles.size()},
-          {"other_triangles", bake.character.skin.triangles.size() - bake.character.body.triangles.size()},
+          {"other_triangles", count_other_triangles(bake.character)},
           {"degenerate_dropped", report.degenerate_dropped},
           {"duplicates_dropped", report.duplicates_dropped},
           {"points_and_lines_dropped", report.points_and_lines_dropped},
@@ -202,6 +245,7 @@ std::string bake_report_json(const Bake& bake) {
                             {"source", {{"file", bake.character.file}, {"sha256", bake.character.sha256}}},
                             {"settings", ordered_json::parse(to_json(bake.settings))},
                             {"import", import_section(bake)},
+                            {"closing", closing_section(bake.closing)},
                             {"segment", segment_section(bake)},
                             {"counts", counts_section(bake)},
                             {"fit", fit_section(bake)},
@@ -221,6 +265,7 @@ std::string bake_report_text(const Bake& bake) {
                   bake.character.source_triangles.size(), mesh.triangles.size(), bake.character.report.components,
                   bake.regions.frame.height * bake.character.metres_per_unit,
                   bake.regions.name(0).ends_with("arm") ? "tall" : "long", bake.regions.facing);
+  out += closing_line(bake.closing);
   out += fmt::format("\n{:<14} {:>9} {:>7}\n", "region", "triangles", "spheres");
   for (std::size_t r = 0; r < bake.regions.count(); ++r) {
     out += fmt::format("{:<14} {:>9} {:>7}\n", bake.regions.name(r),

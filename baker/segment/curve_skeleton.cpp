@@ -12,7 +12,7 @@
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/extract_mean_curvature_flow_skeleton.h>
 
-#include "segment/canonical_mesh.h"
+#include "mesh/canonical_mesh.h"
 
 namespace spherechain::baker {
 

@@ -7,6 +7,7 @@
 
 #include "mesh/error.h"
 #include "mesh/surface_query.h"
+#include "segment/label_skin.h"
 #include "segment/limb_trace.h"
 #include "segment/limbed_plan.h"
 #include "segment/shortest_loop.h"
@@ -16,8 +17,6 @@ namespace spherechain::baker {
 namespace {
 
 using Neighbours = std::vector<std::array<Index, 3>>;
-
-constexpr std::uint8_t kNoRegion = 255;
 
 // Half the width of the strip around a cut in which the loop may run, as a fraction of the height.
 constexpr double kStripHalfWidth = 0.015;
@@ -130,31 +129,6 @@ void join_islands(const Mesh& mesh, const Neighbours& neighbours, std::size_t re
     const auto most = static_cast<std::uint8_t>(std::max_element(votes.begin(), votes.end()) - votes.begin());
     for (const Index t : pieces[id]) labels[t] = most;
   }
-}
-
-// The skin's pieces that are not the body (eyes) go as a whole to the region they are nearest to.
-std::vector<std::uint8_t> label_skin(const Character& character, const SurfaceQuery& surface,
-                                     const std::vector<std::uint8_t>& body) {
-  const Mesh& skin = character.skin;
-  std::vector<std::uint8_t> of_source(character.source_triangles.size(), kNoRegion);
-  for (std::size_t t = 0; t < body.size(); ++t) of_source[character.body_source_triangle[t]] = body[t];
-  const Components pieces = connected_components(skin);
-  std::vector<Vec3> centroid(pieces.count, Vec3::Zero());
-  std::vector<double> area(pieces.count, 0.0);
-  for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
-    centroid[pieces.of_triangle[t]] += triangle_area(skin, t) * triangle_centroid(skin, t);
-    area[pieces.of_triangle[t]] += triangle_area(skin, t);
-  }
-  std::vector<std::uint8_t> of_piece;
-  for (Index piece = 0; piece < pieces.count; ++piece) {
-    of_piece.push_back(body[surface.closest(centroid[piece] / area[piece]).triangle]);
-  }
-  std::vector<std::uint8_t> labels;
-  for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
-    const std::uint8_t own = of_source[character.skin_source_triangle[t]];
-    labels.push_back(own == kNoRegion ? of_piece[pieces.of_triangle[t]] : own);
-  }
-  return labels;
 }
 
 std::string in_words(std::string name) {

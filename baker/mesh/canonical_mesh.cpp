@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "segment/canonical_mesh.h"
+#include "mesh/canonical_mesh.h"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "wrap/closed_body.h"
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+
+#include "mesh/error.h"
+#include "mesh/surface_query.h"
+#include "wrap/alpha_wrap.h"
+#include "wrap/close_cracks.h"
+#include "wrap/stitch.h"
+
+namespace spherechain::baker {
+namespace {
+
+// Of the skin's diameter: what single precision and exporters' rounding leave between vertices that were one.
+constexpr double kCrack = 1e-4;
+
+class Stopwatch {
+ public:
+  explicit Stopwatch(double& seconds) : seconds_(seconds), start_(std::chrono::steady_clock::now()) {}
+  ~Stopwatch() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  double& seconds_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+// The piece with the largest area, and where its vertices and triangles came from.
+struct Piece {
+  Mesh mesh;
+  std::vector<Index> of_vertex, of_triangle;
+};
+
+Piece largest_piece(const Mesh& mesh) {
+  const Components components = connected_components(mesh);
+  std::vector<double> area(components.count, 0.0);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) area[components.of_triangle[t]] += triangle_area(mesh, t);
+  const auto largest = static_cast<Index>(std::max_element(area.begin(), area.end()) - area.begin());
+  Piece piece;
+  std::vector<Index> place(mesh.positions.size(), kNoIndex);
+  for (Index t = 0; t < mesh.triangles.size(); ++t) {
+    if (components.of_triangle[t] != largest) continue;
+    Triangle corners = mesh.triangles[t];
+    for (Index& v : corners) {
+      if (place[v] == kNoIndex) {
+        place[v] = static_cast<Index>(piece.mesh.positions.size());
+        piece.mesh.positions.push_back(mesh.positions[v]);
+        piece.of_vertex.push_back(v);
+      }
+      v = place[v];
+    }
+    piece.mesh.triangles.push_back(corners);
+    piece.of_triangle.push_back(t);
+  }
+  return piece;
+}
+
+double volume(const Mesh& mesh) {
+  const Vec3 origin = mesh.positions[0];
+  double sum = 0;
+  for (const Triangle& t : mesh.triangles) {
+    const Vec3 a = mesh.positions[t[0]] - origin, b = mesh.positions[t[1]] - origin, c = mesh.positions[t[2]] - origin;
+    sum += a.dot(b.cross(c)) / 6;
+  }
+  return sum;
+}
+
+double crack_of(const Mesh& skin) { return kCrack * diameter(skin); }
+
+// Behind thin parts of a wrap there is its other side: cloth, or the wrap has got in and lines the skin.
+double thin_share(const Mesh& wrap, double offset) {
+  const SurfaceQuery surface(wrap);
+  double thin = 0, all = 0;
+  for (std::size_t t = 0; t < wrap.triangles.size(); ++t) {
+    const double area = triangle_area(wrap, t);
+    all += area;
+    const Vec3 inwards = -triangle_cross(wrap, t).normalized();
+    const auto hit = surface.first_hit(triangle_centroid(wrap, t) + 1e-3 * offset * inwards, inwards);
+    if (hit && hit->distance < 3 * offset) thin += area;
+  }
+  return all > 0 ? thin / all : 1;
+}
+
+struct Try {
+  double fineness;  // the skin's diameter over alpha
+  bool holes_first;
+};
+
+// A wrap's offset, as a fraction of alpha, and the part of it that is left: with none, opposite sides of thin parts
+// would coincide.
+constexpr double kOffset = 0.05;
+constexpr double kOffsetLeft = 0.1;
+
+class Wrapper {
+ public:
+  Wrapper(Character& character, ClosingReport& report)
+      : character_(character), report_(report), diameter_(diameter(character.skin)) {}
+
+  // Nothing where the wrap would be, or is, of more triangles than a character's.
+  bool wrap(const Try& with) {
+    const Stopwatch stopwatch(report_.seconds);
+    const double alpha = diameter_ / with.fineness, offset = kOffset * alpha;
+    const Mesh& skin = with.holes_first ? closed_skin() : character_.skin;
+    Mesh surface = largest_piece(alpha_wrap(skin, alpha, offset)).mesh;
+    ++report_.wraps;
+    if (surface.triangles.size() > kMostTriangles) return false;
+    report_.alpha = 1 / with.fineness;
+    report_.offset = kOffset / with.fineness;
+    report_.holes_first = with.holes_first;
+    report_.triangles = surface.triangles.size();
+    report_.thin = thin_share(surface, offset);
+    const SurfaceQuery query(skin);
+    for (Vec3& p : surface.positions) {
+      const SurfaceHit nearest = query.closest(p);
+      if (nearest.distance < 2 * offset) p += (1 - kOffsetLeft) * (nearest.point - p);
+    }
+    character_.body = std::move(surface);
+    character_.body_source_triangle.assign(character_.body.triangles.size(), kNoIndex);
+    character_.body_of_source.assign(character_.source_positions.size(), kNoIndex);
+    return true;
+  }
+
+  static constexpr std::size_t kMostTriangles = 100'000;
+
+ private:
+  const Mesh& closed_skin() {
+    if (!closed_skin_) closed_skin_ = stitch(close_cracks(character_.skin, crack_of(character_.skin)).mesh).mesh;
+    return *closed_skin_;
+  }
+
+  Character& character_;
+  ClosingReport& report_;
+  double diameter_;
+  std::optional<Mesh> closed_skin_;
+};
+
+// Looks for the wrap to segment. On a human the balls are of 14, 9, 20, 30 and 45 mm: at 20 mm armpit and crotch are
+// webbed enough to see, at 30 mm the arms of an A-pose may have grown to the body.
+class WrapSearch {
+ public:
+  WrapSearch(Character& character, const SegmentSettings& settings, ClosingReport& report, std::optional<Error> error)
+      : character_(character), settings_(settings), report_(report), wrapper_(character, report), error_(error) {}
+
+  Regions run() {
+    report_.body = BodySource::kWrapped;
+    // A coarse wrap is quick, and tells a character from a cloud of triangles.
+    constexpr double kCoarse = 40, kFine = 130, kFinest = 200;
+    constexpr double kGrowth = kFine / kCoarse * kFine / kCoarse;
+    if (!wrapper_.wrap({kCoarse, false}) ||
+        kGrowth * static_cast<double>(report_.triangles) > static_cast<double>(Wrapper::kMostTriangles)) {
+      throw Error(ExitCode::kSegmentation, character_.file +
+                                               ": no surface can be seen around its triangles "
+                                               "(a character has a skin, if one of many pieces)");
+    }
+    const Outcome first = attempt({kFine, false});
+    if (first == Outcome::kLeaks) {
+      // Through holes wider than the ball: closed by a fan, or too narrow for the next one.
+      for (const Try& with : {Try{kFine, true}, Try{90, false}, Try{60, false}, Try{60, true}, Try{kCoarse, true}}) {
+        if (attempt(with) == Outcome::kGood) break;
+      }
+    } else if (first == Outcome::kFails) {
+      for (const double fineness : {kFinest, 90.0, 60.0}) {
+        if (attempt({fineness, false}) != Outcome::kFails) break;
+      }
+    }
+    if (best_) return take_best();
+    throw error_ ? *error_
+                 : Error(ExitCode::kSegmentation, character_.file +
+                                                      ": its surface does not hold together: it has "
+                                                      "holes as wide as its limbs (close them)");
+  }
+
+ private:
+  enum class Outcome : std::uint8_t { kGood, kLeaks, kFails };
+
+  struct Result {
+    Regions regions;
+    Mesh body;
+    ClosingReport report;
+  };
+
+  Outcome attempt(const Try& with) {
+    // A cape and hair are thin too, and no matter; with more than this the wrap lines the skin from inside.
+    constexpr double kGood = 0.02, kMost = 0.3;
+    if (!wrapper_.wrap(with)) return Outcome::kFails;
+    if (report_.thin > kMost) return Outcome::kLeaks;
+    try {
+      Regions regions = segment(character_, settings_);
+      if (!best_ || report_.thin < best_->report.thin) best_ = Result{std::move(regions), character_.body, report_};
+      return report_.thin <= kGood ? Outcome::kGood : Outcome::kLeaks;
+    } catch (const Error& caught) {
+      if (caught.code() != ExitCode::kSegmentation) throw;
+      if (!error_) error_ = caught;
+      return report_.thin <= kGood ? Outcome::kFails : Outcome::kLeaks;
+    }
+  }
+
+  Regions take_best() {
+    best_->report.wraps = report_.wraps;
+    best_->report.seconds = report_.seconds;
+    report_ = best_->report;
+    character_.body = std::move(best_->body);
+    character_.body_source_triangle.assign(character_.body.triangles.size(), kNoIndex);
+    return std::move(best_->regions);
+  }
+
+  Character& character_;
+  const SegmentSettings& settings_;
+  ClosingReport& report_;
+  Wrapper wrapper_;
+  std::optional<Result> best_;
+  std::optional<Error> error_;  // the first: of the body, or of the finest wrap
+};
+
+}  // namespace
+
+bool repair_body(Character& character, ClosingReport& report) {
+  const Stopwatch stopwatch(report.seconds);
+  const Mesh& skin = character.skin;
+  const Uncracked uncracked = close_cracks(skin, crack_of(skin));
+  const Stitched stitched = stitch(uncracked.mesh);
+  report.welded = uncracked.welded;
+  report.t_junctions = uncracked.t_junctions;
+  report.turned = stitched.turned;
+  report.parted = stitched.parted;
+  report.holes = stitched.holes;
+
+  Piece piece = largest_piece(stitched.mesh);
+  double area = 0;
+  std::vector<Index> source_triangle;
+  for (std::size_t t = 0; t < piece.of_triangle.size(); ++t) {
+    const Index of_uncracked = stitched.of_triangle[piece.of_triangle[t]];
+    const bool fan = of_uncracked == kNoIndex;
+    source_triangle.push_back(fan ? kNoIndex : character.skin_source_triangle[uncracked.of_triangle[of_uncracked]]);
+    if (!fan) area += triangle_area(piece.mesh, t);
+  }
+  if (count_open_edges(piece.mesh) > 0 || area <= kMostOfSkin * surface_area(skin)) return false;
+  if (volume(piece.mesh) < 0) {
+    for (Triangle& t : piece.mesh.triangles) std::swap(t[1], t[2]);
+  }
+  std::vector<Index> of_skin(skin.positions.size(), kNoIndex);
+  for (Index v = 0; v < piece.of_vertex.size(); ++v) {
+    const Index welded = stitched.of_vertex[piece.of_vertex[v]];
+    if (welded != kNoIndex && of_skin[welded] == kNoIndex) of_skin[welded] = v;
+  }
+  for (std::size_t v = 0; v < character.source_positions.size(); ++v) {
+    const Index on_skin = character.skin_of_source[v];
+    character.body_of_source[v] = on_skin == kNoIndex ? kNoIndex : of_skin[uncracked.welded_to[on_skin]];
+  }
+  character.body = std::move(piece.mesh);
+  character.body_source_triangle = std::move(source_triangle);
+  report.body = BodySource::kRepaired;
+  return true;
+}
+
+Regions segment_closed(Character& character, const SegmentSettings& settings, ClosingReport& report) {
+  // Past this share of the skin nothing is left that a wrap could add.
+  constexpr double kAll = 0.98;
+  std::optional<Error> error;
+  if (is_whole(character) || repair_body(character, report)) {
+    try {
+      return segment(character, settings);
+    } catch (const Error& caught) {
+      const bool all = surface_area(character.body) > kAll * surface_area(character.skin);
+      if (caught.code() != ExitCode::kSegmentation || (all && report.body == BodySource::kSkin)) throw;
+      error = caught;
+    }
+  }
+  return WrapSearch(character, settings, report, error).run();
+}
+
+}  // namespace spherechain::baker
