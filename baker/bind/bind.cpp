@@ -8,6 +8,7 @@
 #include <string>
 
 #include "mesh/error.h"
+#include "mesh/surface_query.h"
 
 namespace spherechain::baker {
 namespace {
@@ -36,26 +37,54 @@ std::vector<std::uint32_t> assign_triangles(const Mesh& mesh, const std::vector<
 }
 
 // Triangles of pieces too small to be body (eyes, teeth, buttons): they may move on their own, so they carry no sphere.
-std::vector<bool> small_pieces(const Mesh& skin) {
-  constexpr double kSmall = 0.01;  // of the area
+// Where much of the skin is in such pieces (armour, a robot), those that lie on the body are the body.
+std::vector<bool> loose_triangles(const Character& character, double height) {
+  constexpr double kSmall = 0.01, kMuch = 0.2;  // of the area
+  constexpr double kOnBody = 0.005;             // of the height
+  const Mesh& skin = character.skin;
   const Components pieces = connected_components(skin);
   std::vector<double> area(pieces.count, 0.0);
   for (std::size_t t = 0; t < skin.triangles.size(); ++t) area[pieces.of_triangle[t]] += triangle_area(skin, t);
   const double total = surface_area(skin);
-  std::vector<bool> small;
-  for (const Index piece : pieces.of_triangle) small.push_back(area[piece] < kSmall * total);
-  return small;
+  std::vector<bool> loose;
+  double small = 0;
+  for (const double a : area) {
+    loose.push_back(a < kSmall * total);
+    if (loose.back()) small += a;
+  }
+  if (small > kMuch * total) {
+    const SurfaceQuery body(character.body);
+    std::vector<double> distance(pieces.count, 0.0);
+    for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
+      const Index piece = pieces.of_triangle[t];
+      if (loose[piece])
+        distance[piece] += triangle_area(skin, t) / area[piece] * body.closest(triangle_centroid(skin, t)).distance;
+    }
+    for (std::size_t piece = 0; piece < loose.size(); ++piece) {
+      if (distance[piece] < kOnBody * height) loose[piece] = false;
+    }
+  }
+  std::vector<bool> of_triangle;
+  for (const Index piece : pieces.of_triangle) of_triangle.push_back(loose[piece]);
+  return of_triangle;
 }
 
-// Neighbours on the body: linked, or with touching regions.
-std::set<IdPair> find_ignored(const Mesh& mesh, const Spheres& spheres, const std::vector<std::uint32_t>& owner) {
-  std::set<IdPair> ignored(spheres.links.begin(), spheres.links.end());
+// Pairs whose triangles share an edge.
+void add_touching(const Mesh& mesh, const std::vector<std::uint32_t>& owner, std::set<IdPair>& pairs) {
   const std::vector<std::array<Index, 3>> neighbours = triangle_neighbours(mesh);
   for (std::size_t t = 0; t < neighbours.size(); ++t) {
     for (const Index n : neighbours[t]) {
-      if (n != kNoIndex && owner[t] != owner[n]) ignored.insert(std::minmax(owner[t], owner[n]));
+      if (n != kNoIndex && owner[t] != owner[n]) pairs.insert(std::minmax(owner[t], owner[n]));
     }
   }
+}
+
+// Neighbours on the body: linked, or with touching regions, on the skin or, across its gaps, on the body.
+std::set<IdPair> find_ignored(const Character& character, const Regions& regions, const Spheres& spheres,
+                              const std::vector<std::uint32_t>& owner) {
+  std::set<IdPair> ignored(spheres.links.begin(), spheres.links.end());
+  add_touching(character.skin, owner, ignored);
+  add_touching(character.body, assign_triangles(character.body, regions.of_triangle, spheres), ignored);
   return ignored;
 }
 
@@ -183,7 +212,7 @@ Binding bind_spheres(const Character& character, const Regions& regions, const S
   out.sphere_of_triangle = assign_triangles(skin, regions.of_skin, spheres);
 
   std::vector<std::vector<Index>> surrounding(spheres.spheres.size());
-  const std::vector<bool> loose = small_pieces(skin);
+  const std::vector<bool> loose = loose_triangles(character, regions.frame.height);
   for (Index t = 0; t < out.sphere_of_triangle.size(); ++t) {
     if (!loose[t]) surrounding[out.sphere_of_triangle[t]].push_back(t);
   }
@@ -199,7 +228,7 @@ Binding bind_spheres(const Character& character, const Regions& regions, const S
     }
     out.spheres.push_back(std::move(bound));
   }
-  const std::set<IdPair> ignored = find_ignored(skin, spheres, out.sphere_of_triangle);
+  const std::set<IdPair> ignored = find_ignored(character, regions, spheres, out.sphere_of_triangle);
   out.ignored.assign(ignored.begin(), ignored.end());
   const std::set<IdPair> close = next_but_one(spheres);
   out.near_fit = find_near(out.spheres, ignored, close, settings.near_fraction, nullptr);

@@ -147,14 +147,13 @@ class WrapSearch {
 
   Regions run() {
     report_.body = BodySource::kWrapped;
-    // A coarse wrap is quick, and tells a character from a cloud of triangles.
     constexpr double kCoarse = 40, kFine = 130, kFinest = 200;
-    constexpr double kGrowth = kFine / kCoarse * kFine / kCoarse;
-    if (!wrapper_.wrap({kCoarse, false}) ||
-        kGrowth * static_cast<double>(report_.triangles) > static_cast<double>(Wrapper::kMostTriangles)) {
+    // A coarse wrap is quick, and tells a character from a cloud of triangles.
+    if (!is_one_shape({kCoarse, false}) ||
+        (report_.thin > kMostThin && (!is_one_shape({kCoarse, true}) || report_.thin > kMostThin))) {
       throw Error(ExitCode::kSegmentation, character_.file +
-                                               ": no surface can be seen around its triangles "
-                                               "(a character has a skin, if one of many pieces)");
+                                               ": its triangles enclose no body (a character has a skin, "
+                                               "if one of many pieces)");
     }
     const Outcome first = attempt({kFine, false});
     if (first == Outcome::kLeaks) {
@@ -177,6 +176,20 @@ class WrapSearch {
  private:
   enum class Outcome : std::uint8_t { kGood, kLeaks, kFails };
 
+  // A cape and hair are thin too, and no matter; with more than this the wrap lines the skin from inside.
+  static constexpr double kMostThin = 0.3;
+
+  bool is_one_shape(const Try& with) {
+    // Of the area: a human's wrap has 3,300 triangles at 40, and finer ones grow with the square.
+    constexpr std::size_t kMostTriangles = 9'000;
+    constexpr std::ptrdiff_t kMostHandles = 10;
+    if (!wrapper_.wrap(with)) return false;
+    const Mesh& mesh = character_.body;
+    const auto faces = static_cast<std::ptrdiff_t>(mesh.triangles.size());
+    const std::ptrdiff_t handles = 1 - (static_cast<std::ptrdiff_t>(mesh.positions.size()) - faces / 2) / 2;
+    return mesh.triangles.size() <= kMostTriangles && handles <= kMostHandles;
+  }
+
   struct Result {
     Regions regions;
     Mesh body;
@@ -184,10 +197,9 @@ class WrapSearch {
   };
 
   Outcome attempt(const Try& with) {
-    // A cape and hair are thin too, and no matter; with more than this the wrap lines the skin from inside.
-    constexpr double kGood = 0.02, kMost = 0.3;
+    constexpr double kGood = 0.02;
     if (!wrapper_.wrap(with)) return Outcome::kFails;
-    if (report_.thin > kMost) return Outcome::kLeaks;
+    if (report_.thin > kMostThin) return Outcome::kLeaks;
     try {
       Regions regions = segment(character_, settings_);
       if (!best_ || report_.thin < best_->report.thin) best_ = Result{std::move(regions), character_.body, report_};
@@ -266,7 +278,7 @@ Regions segment_closed(Character& character, const SegmentSettings& settings, Cl
       return segment(character, settings);
     } catch (const Error& caught) {
       const bool all = surface_area(character.body) > kAll * surface_area(character.skin);
-      if (caught.code() != ExitCode::kSegmentation || (all && report.body == BodySource::kSkin)) throw;
+      if (caught.code() != ExitCode::kSegmentation || all) throw;
       error = caught;
     }
   }
