@@ -75,7 +75,8 @@ void check_positions(const SourceMesh& source, const std::string& name) {
 }  // namespace
 
 bool is_whole(const Character& character) {
-  return count_open_edges(character.body) == 0 && surface_area(character.body) > kMostOfSkin * surface_area(character.skin);
+  return count_open_edges(character.body) == 0 &&
+         surface_area(character.body) > kMostOfSkin * surface_area(character.skin);
 }
 
 bool is_part_of_skin(const Character& character) {

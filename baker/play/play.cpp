@@ -10,6 +10,7 @@
 #include "motion/clip.h"
 #include "motion/poses.h"
 #include "motion/sequence.h"
+#include "wrap/closed_body.h"
 
 namespace spherechain::baker {
 namespace {
@@ -114,6 +115,7 @@ void AnimatedAsset::use_skin() {
 }
 
 void AnimatedAsset::use_rig(const std::vector<Joint>& joints) {
+  if (character_.rig.bones.empty()) close_body(character_);  // the one whose weights the bake took
   weights_ = rig_weights(character_, joints);
   for (const Joint& joint : joints) bone_names_.push_back(joint.name);
 }

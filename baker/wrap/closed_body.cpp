@@ -69,6 +69,12 @@ double volume(const Mesh& mesh) {
   return sum;
 }
 
+// What is left then a wrap could not make a limb of.
+bool is_all_of_skin(const Character& character) {
+  constexpr double kAll = 0.98;
+  return surface_area(character.body) > kAll * surface_area(character.skin);
+}
+
 double crack_of(const Mesh& skin) { return kCrack * diameter(skin); }
 
 // Behind thin parts of a wrap there is its other side: cloth, or the wrap has got in and lines the skin.
@@ -270,19 +276,22 @@ bool repair_body(Character& character, ClosingReport& report) {
 }
 
 Regions segment_closed(Character& character, const SegmentSettings& settings, ClosingReport& report) {
-  // Past this share of the skin nothing is left that a wrap could add.
-  constexpr double kAll = 0.98;
   std::optional<Error> error;
   if (is_whole(character) || repair_body(character, report)) {
     try {
       return segment(character, settings);
     } catch (const Error& caught) {
-      const bool all = surface_area(character.body) > kAll * surface_area(character.skin);
-      if (caught.code() != ExitCode::kSegmentation || all) throw;
+      if (caught.code() != ExitCode::kSegmentation || is_all_of_skin(character)) throw;
       error = caught;
     }
   }
   return WrapSearch(character, settings, report, error).run();
+}
+
+void close_body(Character& character) {
+  if (is_whole(character) && is_all_of_skin(character)) return;
+  ClosingReport report;
+  segment_closed(character, {}, report);
 }
 
 }  // namespace spherechain::baker

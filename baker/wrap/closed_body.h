@@ -42,4 +42,7 @@ bool repair_body(Character& character, ClosingReport& report);
 // segmented. Throws Error(kSegmentation) where none is a biped.
 Regions segment_closed(Character& character, const SegmentSettings& settings, ClosingReport& report);
 
+// Makes the body what segment_closed makes of it, for what depends on nothing else (bone heat).
+void close_body(Character& character);
+
 }  // namespace spherechain::baker

@@ -6,6 +6,7 @@
 #include "mesh/error.h"
 #include "motion/poses.h"
 #include "picture.h"
+#include "wrap/closed_body.h"
 
 using namespace spherechain;
 using namespace spherechain::baker;
@@ -27,8 +28,9 @@ std::vector<VertexWeights> rigid_ends(const std::vector<Joint>& joints) {
 }
 
 void draw(const Options& options) {
-  const Character character = import_character(options.character);
-  const Regions regions = segment(character, {});
+  Character character = import_character(options.character);
+  ClosingReport closing;
+  const Regions regions = segment_closed(character, {}, closing);
   const std::vector<Joint> joints = place_joints(character, regions);
   std::vector<Vec3> ends;
   for (const Joint& joint : joints) ends.insert(ends.end(), {joint.position, joint.tail});
