@@ -38,8 +38,8 @@ struct ClosingReport {
 bool repair_body(Character& character, ClosingReport& report);
 
 // Segments by shape a character in any state: as it is where its body is whole, else its repaired body, else wraps of
-// its skin, the first whose gaps are closed and in which limbs and torso are apart. The body becomes what was
-// segmented. Throws Error(kSegmentation) where none is a biped.
+// its skin, the first whose gaps are closed and in which limbs and torso are apart. Where the settings do not say what
+// body it is, a biped is preferred. The body becomes what was segmented. Throws Error(kSegmentation) where none can be.
 Regions segment_closed(Character& character, const SegmentSettings& settings, ClosingReport& report);
 
 // Makes the body what segment_closed makes of it, for what depends on nothing else (bone heat).
