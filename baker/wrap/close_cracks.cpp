@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "wrap/close_cracks.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -127,9 +128,14 @@ bool split_pass(Uncracked& out, double tolerance) {
     const Triangle& v = mesh.triangles[side.triangle];
     length += (mesh.positions[v[side.k]] - mesh.positions[v[(side.k + 1) % 3]]).norm();
   }
-  const double cell = std::max(length / static_cast<double>(sides.size()), 2 * tolerance);
+  const std::vector<Index> border = vertices_of(mesh, sides);
+  Eigen::AlignedBox3d box;
+  for (const Index v : border) box.extend(mesh.positions[v]);
+  // On a surface as large as its edges are long; in a cloud of large triangles about one vertex to a cube.
+  const double cell = std::max(2 * tolerance, std::min(length / static_cast<double>(sides.size()),
+                                                       box.diagonal().norm() / std::cbrt(border.size())));
   Grid grid(cell);
-  for (const Index v : vertices_of(mesh, sides)) grid.add(mesh.positions[v], v);
+  for (const Index v : border) grid.add(mesh.positions[v], v);
 
   std::vector<bool> was_split(mesh.triangles.size(), false);
   bool any = false;

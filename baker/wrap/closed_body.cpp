@@ -158,42 +158,42 @@ class WrapSearch {
 
   Regions run() {
     report_.body = BodySource::kWrapped;
-    constexpr double kCoarse = 40, kFine = 130, kFinest = 200;
     // A coarse wrap is quick, and tells a character from a cloud of triangles.
-    if (!is_one_shape({kCoarse, false}) ||
-        (report_.thin > kMostThin && (!is_one_shape({kCoarse, true}) || report_.thin > kMostThin))) {
-      throw Error(ExitCode::kSegmentation, character_.file +
-                                               ": its triangles enclose no body (a character has a skin, "
-                                               "if one of many pieces)");
-    }
-    const Outcome first = attempt({kFine, false});
-    if (first == Outcome::kLeaks) {
-      // Through holes wider than the ball: closed by a fan, or too narrow for the next one.
-      for (const Try& with : {Try{kFine, true}, Try{90, false}, Try{60, false}, Try{60, true}, Try{kCoarse, true}}) {
+    constexpr Try kCoarse{60, false};
+    if (!is_one_shape(kCoarse)) refuse();
+    if (report_.thin > kMostThin) {
+      // Through holes wider than the ball, and finer wraps would be slow: holes closed by fans, or larger balls.
+      for (const Try& with : {Try{60, true}, Try{90, true}, Try{40, false}, Try{40, true}}) {
         if (attempt(with) == Outcome::kGood) break;
       }
-    } else if (first == Outcome::kFails) {
-      for (const double fineness : {kFinest, 90.0, 60.0}) {
-        if (attempt({fineness, false}) != Outcome::kFails) break;
+    } else {
+      const Outcome first = attempt({130, false});
+      for (const double fineness : {200.0, 90.0, 60.0}) {
+        if (first == Outcome::kGood || (first == Outcome::kLeaks && fineness > 130)) continue;
+        if (attempt({fineness, false}) == Outcome::kGood) break;
       }
     }
     if (best_) return take_best();
-    throw error_ ? *error_
-                 : Error(ExitCode::kSegmentation, character_.file +
-                                                      ": its surface does not hold together: it has "
-                                                      "holes as wide as its limbs (close them)");
+    if (error_) throw *error_;
+    refuse();
   }
 
  private:
   enum class Outcome : std::uint8_t { kGood, kLeaks, kFails };
 
+  [[noreturn]] void refuse() const {
+    throw Error(ExitCode::kSegmentation, character_.file +
+                                             ": its triangles enclose no body (close the holes that are "
+                                             "as wide as its limbs)");
+  }
+
   // A cape and hair are thin too, and no matter; with more than this the wrap lines the skin from inside.
   static constexpr double kMostThin = 0.3;
 
   bool is_one_shape(const Try& with) {
-    // Of the area: a human's wrap has 3,300 triangles at 40, and finer ones grow with the square.
-    constexpr std::size_t kMostTriangles = 9'000;
-    constexpr std::ptrdiff_t kMostHandles = 10;
+    // Of the area: a human's wrap has 5,600 triangles at 60, and finer ones grow with the square.
+    constexpr std::size_t kMostTriangles = 20'000;
+    constexpr std::ptrdiff_t kMostHandles = 20;
     if (!wrapper_.wrap(with)) return false;
     const Mesh& mesh = character_.body;
     const auto faces = static_cast<std::ptrdiff_t>(mesh.triangles.size());
