@@ -42,7 +42,7 @@ struct BothApis {
 
 template <typename C, typename Cpp>
 bool same_bytes(const std::vector<C>& c, const std::vector<Cpp>& cpp) {
-  return c.size() == cpp.size() && std::memcmp(c.data(), cpp.data(), c.size() * sizeof(C)) == 0;
+  return c.size() == cpp.size() && (c.empty() || std::memcmp(c.data(), cpp.data(), c.size() * sizeof(C)) == 0);
 }
 
 template <typename Cpp>
