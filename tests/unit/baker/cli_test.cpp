@@ -236,7 +236,8 @@ TEST_CASE("inspect --roles prints each node's role and why, --roles FILE overrul
   CHECK(to_json(settings).find(R"("roles":{"Neck":"head"})") != std::string::npos);
 }
 
-TEST_CASE("--body says what a body with two pairs of limbs is, goes before the settings, and plays") {
+TEST_CASE("--body says what a body with two pairs of limbs is, goes before the settings, and plays" *
+          doctest::test_suite("many bakes")) {
   const TemporaryFolder folder;
   const fs::path asset = folder.path / "beast.sphc", config = folder.write("config.json", R"({"body": "biped"})");
   const std::string beast = "/usr/share/assimp/models/X/Testwuson.X";

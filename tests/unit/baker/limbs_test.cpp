@@ -62,7 +62,8 @@ const std::vector<std::string> kQuadruped{"left_foreleg", "right_foreleg", "left
 
 }  // namespace
 
-TEST_CASE("a quadruped without a rig has forelegs, hind legs, neck, tail and trunk, and left is left") {
+TEST_CASE("a quadruped without a rig has forelegs, hind legs, neck, tail and trunk, and left is left" *
+          doctest::test_suite("many bakes")) {
   const Regions regions = segmented(quadruped());
   REQUIRE(names(regions) == kQuadruped);
   CHECK(regions.frame.left.dot(Vec3::UnitX()) > 0.999);
@@ -77,7 +78,7 @@ TEST_CASE("a quadruped without a rig has forelegs, hind legs, neck, tail and tru
   CHECK(regions.limbs[5].line.points().back().z() < -0.8);
 }
 
-TEST_CASE("a quadruped's spheres follow the tubes it is made of") {
+TEST_CASE("a quadruped's spheres follow the tubes it is made of" * doctest::test_suite("many bakes")) {
   const Regions regions = segmented(quadruped());
   const Spheres spheres = fitted(quadruped(), regions);
   for (std::size_t i = 0; i < spheres.spheres.size(); ++i) {
@@ -96,7 +97,8 @@ TEST_CASE("a quadruped's spheres follow the tubes it is made of") {
   CHECK(build_chains(spheres, limbs).chains.size() == 6 * 5 / 2);
 }
 
-TEST_CASE("a quadruped is the same in other units, turned, and with its triangles in another order") {
+TEST_CASE("a quadruped is the same in other units, turned, and with its triangles in another order" *
+          doctest::test_suite("many bakes")) {
   const Regions usual = segmented(quadruped());
   SourceMesh turned = quadruped();
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(2.1, Vec3(1, -2, 0.5).normalized()).toRotationMatrix();
@@ -112,7 +114,8 @@ TEST_CASE("a quadruped is the same in other units, turned, and with its triangle
   CHECK(std::abs(other.frame.height / usual.frame.height / 100 - 1) < 0.01);
 }
 
-TEST_CASE("a facing direction turns a quadruped round: head is tail and left is right") {
+TEST_CASE("a facing direction turns a quadruped round: head is tail and left is right" *
+          doctest::test_suite("many bakes")) {
   SegmentSettings settings;
   settings.facing = -Vec3::UnitZ();
   const Regions turned = segmented(quadruped(), settings);
@@ -122,7 +125,8 @@ TEST_CASE("a facing direction turns a quadruped round: head is tail and left is 
   CHECK_THROWS_WITH_AS(segmented(quadruped(), settings), doctest::Contains("facing direction"), Error);
 }
 
-TEST_CASE("what the body is taken for can be said: a human goes on all fours, and a quadruped is no biped") {
+TEST_CASE("what the body is taken for can be said: a human goes on all fours, and a quadruped is no biped" *
+          doctest::test_suite("many bakes")) {
   CHECK(error_of(quadruped(), BodyKind::kBiped).find("biped") != std::string::npos);
   CHECK(error_of(melt(six_legged_tubes(), 0.03), BodyKind::kQuadruped).find("quadruped") != std::string::npos);
   SegmentSettings settings;
@@ -133,7 +137,8 @@ TEST_CASE("what the body is taken for can be said: a human goes on all fours, an
   CHECK(regions.name(3) == "right_hindleg");
 }
 
-TEST_CASE("a six-legged creature has three pairs from the front, each where it leaves the trunk") {
+TEST_CASE("a six-legged creature has three pairs from the front, each where it leaves the trunk" *
+          doctest::test_suite("many bakes")) {
   const SourceMesh mesh = melt(six_legged_tubes(), 0.03);
   const Regions regions = segmented(mesh);
   REQUIRE(names(regions) == std::vector<std::string>{"left_leg_1", "right_leg_1", "left_leg_2", "right_leg_2",
@@ -167,7 +172,7 @@ TEST_CASE("a snake is one tubular chain from the tail's tip to the head") {
   CHECK(chains.chains[0].spheres.size() == spheres.spheres.size());
 }
 
-TEST_CASE("a ring is walked round once, and a ball is no character") {
+TEST_CASE("a ring is walked round once, and a ball is no character" * doctest::test_suite("many bakes")) {
   std::vector<Tube> ring;
   const auto at = [](int i) { return Vec3(std::cos(0.4 * i), 0, std::sin(0.4 * i)); };
   for (int i = 0; i < 16; ++i) ring.push_back({at(i), at(i + 1), 0.1, 0.1});
@@ -180,7 +185,7 @@ TEST_CASE("a ring is walked round once, and a ball is no character") {
   CHECK(error_of(ball_mesh(24), BodyKind::kUnknown).find("ball") != std::string::npos);
 }
 
-TEST_CASE("a human with a long tail keeps arms and legs, and the tail is a limb") {
+TEST_CASE("a human with a long tail keeps arms and legs, and the tail is a limb" * doctest::test_suite("many bakes")) {
   std::vector<Tube> tubes{{{0, 1.0, 0}, {0, 1.4, 0}, 0.15, 0.15},     // trunk
                           {{0, 1.45, 0}, {0, 1.62, 0}, 0.06, 0.06},   // neck
                           {{0, 1.68, 0}, {0, 1.76, 0.01}, 0.1, 0.1},  // head

@@ -186,28 +186,27 @@ TEST_CASE("cracks, T-junctions, flipped faces and holes are repaired, and the re
   }
 }
 
-TEST_CASE("a body in 60 pieces with gaps between them is wrapped" * doctest::test_suite("wrapped bodies")) {
+TEST_CASE("a body in 60 pieces with gaps between them is wrapped" * doctest::test_suite("many bakes")) {
   BrokenBody broken = intact_body();
   cut_into_pieces(broken, 60, 0.03);
   check("60 pieces", broken, kWrappedWell);
 }
 
-TEST_CASE("a body in 400 pieces with gaps between them, some flipped, is wrapped" *
-          doctest::test_suite("wrapped bodies")) {
+TEST_CASE("a body in 400 pieces with gaps between them, some flipped, is wrapped" * doctest::test_suite("many bakes")) {
   BrokenBody broken = intact_body();
   cut_into_pieces(broken, 400, 0.05);
   flip(broken, 0.05);
   check("400 pieces", broken, kWrappedWell);
 }
 
-TEST_CASE("an inner surface changes nothing that is seen from outside" * doctest::test_suite("wrapped bodies")) {
+TEST_CASE("an inner surface changes nothing that is seen from outside" * doctest::test_suite("many bakes")) {
   BrokenBody broken = intact_body();
   add_inner_surface(broken, 0.002);
   punch(broken, 0.01);
   check("two surfaces", broken, kWrappedWell);
 }
 
-TEST_CASE("eyes, and a shell of hair, on a torn body are of its torso" * doctest::test_suite("wrapped bodies")) {
+TEST_CASE("eyes, and a shell of hair, on a torn body are of its torso" * doctest::test_suite("many bakes")) {
   BrokenBody broken = intact_body();
   add_hair(broken, 0.01);
   tear(broken, 5e-4);
@@ -220,7 +219,7 @@ TEST_CASE("eyes, and a shell of hair, on a torn body are of its torso" * doctest
   }
 }
 
-TEST_CASE("a limb cut off and left open is still said to be missing" * doctest::test_suite("wrapped bodies")) {
+TEST_CASE("a limb cut off and left open is still said to be missing" * doctest::test_suite("many bakes")) {
   BrokenBody broken = intact_body();
   std::size_t kept = 0;
   for (std::size_t t = 0; t < broken.source.triangles.size(); ++t) {
@@ -233,7 +232,7 @@ TEST_CASE("a limb cut off and left open is still said to be missing" * doctest::
                        Error);
 }
 
-TEST_CASE("triangles that are no character are refused with a sentence" * doctest::test_suite("wrapped bodies")) {
+TEST_CASE("triangles that are no character are refused with a sentence" * doctest::test_suite("many bakes")) {
   for (const auto& [count, size] :
        {std::pair<std::size_t, double>(1, 1), {2, 0.5}, {50, 0.5}, {1000, 0.03}, {1000, 1}}) {
     CAPTURE(count);
@@ -298,7 +297,7 @@ TEST_CASE("surfaces that share an edge are taken apart there, and a hole is clos
   CHECK(std::count(stitched.of_triangle.begin(), stitched.of_triangle.end(), kNoIndex) == 1);
 }
 
-TEST_CASE("what is found in pieces does not depend on units, pose or order" * doctest::test_suite("wrapped bodies")) {
+TEST_CASE("what is found in pieces does not depend on units, pose or order" * doctest::test_suite("many bakes")) {
   BrokenBody broken = intact_body();
   cut_into_pieces(broken, 60, 0.03);
   const Closed before = close(broken.source);
