@@ -178,9 +178,9 @@ std::string inspect_text(const Asset& asset) {
   out += fmt::format("bones    {}, {} morph targets; refit from them: {} terms, {} of morphs, {} bytes\n",
                      asset.bone_count(), asset.morph_count(), tables.terms.size, tables.morph_terms.size,
                      bytes_of(tables));
-  out += fmt::format("\n{:<12} {:>9} {:>7}\n", "region", "triangles", "spheres");
+  out += fmt::format("\n{:<14} {:>9} {:>7}\n", "region", "triangles", "spheres");
   for (std::size_t r = 0; r < asset.region_count(); ++r) {
-    out += fmt::format("{:<12} {:>9} {:>7}\n", asset.region(r).name, asset.region(r).triangle_count,
+    out += fmt::format("{:<14} {:>9} {:>7}\n", asset.region(r).name, asset.region(r).triangle_count,
                        spheres_in_region(asset, r));
   }
   for (std::size_t c = 0; c < asset.chain_count(); ++c) {

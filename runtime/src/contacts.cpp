@@ -53,11 +53,6 @@ Contact contact_of(const ContactJob& job, const Pair& pair) {
   return contact;
 }
 
-template <typename T>
-bool is_missing(const Span<T>& span) {
-  return span.data == nullptr && span.size > 0;
-}
-
 bool shares_memory(const ContactJob& job) {
   const MemoryRange written[] = {range_of(job.contacts)};
   const MemoryRange read[] = {range_of(job.spheres), range_of(job.pairs), range_of(job.asset->spheres()),

@@ -204,11 +204,6 @@ void run_tasks(Crowd& crowd) {
   }
 }
 
-template <typename T>
-bool is_missing(const Span<T>& span) {
-  return span.data == nullptr && span.size > 0;
-}
-
 // What the bones of one instance take.
 std::size_t instance_bytes(const CrowdJob& job) {
   return (job.asset->bone_count() - 1) * job.bones.stride + size_of(job.bones.layout);

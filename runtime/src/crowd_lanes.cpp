@@ -76,13 +76,7 @@ HWY_INLINE std::uint64_t overlap(const LaneSphere& p, const LaneSphere& q, float
     const Vector t = hn::Mul(hn::Set(kFloats, reach), s);
     touching = hn::And(touching, hn::Lt(d2, hn::Mul(t, t)));
   }
-#if HWY_TARGET == HWY_AVX3
-  std::uint16_t bits = 0;
-#else
-  std::uint8_t bits = 0;
-#endif
-  hn::StoreMaskBits(kFloats, touching, reinterpret_cast<std::uint8_t*>(&bits));
-  return bits;
+  return bits_of(touching);
 }
 
 // Few lanes touch: each on its own.

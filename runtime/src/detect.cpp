@@ -11,11 +11,6 @@
 namespace spherechain {
 namespace {
 
-template <typename T>
-bool is_missing(const Span<T>& span) {
-  return span.data == nullptr && span.size > 0;
-}
-
 // Does what is written share memory with anything else?
 bool shares_memory(const DetectJob& job) {
   const std::size_t n = job.asset->spheres().size;

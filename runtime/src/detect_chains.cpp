@@ -11,8 +11,9 @@
 namespace spherechain {
 namespace {
 
-// Bits in the order of sorted pairs, read off upwards.
-void list_pairs(Span<const std::uint64_t> seen, std::size_t n, Output<Pair>& pairs) {
+// Calls use(a, b) for the pairs of bits in the order of sorted pairs, upwards.
+template <typename Use>
+void for_each_pair(Span<const std::uint64_t> seen, std::size_t n, const Use& use) {
   std::size_t a = 0;
   for (std::size_t w = 0; w < seen.size; ++w) {
     for (std::uint64_t word = seen[w]; word != 0; word &= word - 1) {
@@ -20,20 +21,7 @@ void list_pairs(Span<const std::uint64_t> seen, std::size_t n, Output<Pair>& pai
       while (bit >= row_begin(a + 1, n)) {
         ++a;
       }
-      pairs.add({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(a + 1 + (bit - row_begin(a, n)))});
-    }
-  }
-}
-
-void reorder_bits(Span<const std::uint64_t> seen, std::size_t n, Span<std::uint64_t> bits) {
-  std::size_t a = 0;
-  for (std::size_t w = 0; w < seen.size; ++w) {
-    for (std::uint64_t word = seen[w]; word != 0; word &= word - 1) {
-      const std::size_t bit = w * 64 + lowest_bit(word);
-      while (bit >= row_begin(a + 1, n)) {
-        ++a;
-      }
-      set_bit(bits, ignored_bit(a, a + 1 + (bit - row_begin(a, n))));
+      use(a, a + 1 + (bit - row_begin(a, n)));
     }
   }
 }
@@ -158,10 +146,12 @@ void detect_chains(const Scene& scene, Span<std::uint64_t> seen, Result& result)
     return detect_in_one_tile(scene, result);
   }
   detect_pair_by_pair(scene, seen, result);
-  list_pairs({seen.data, seen.size}, scene.size(), result.pairs);
-  if (result.bits.size > 0) {
-    reorder_bits({seen.data, seen.size}, scene.size(), result.bits);
-  }
+  for_each_pair({seen.data, seen.size}, scene.size(), [&](std::size_t a, std::size_t b) {
+    result.pairs.add({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
+    if (result.bits.size > 0) {
+      set_bit(result.bits, ignored_bit(a, b));
+    }
+  });
 }
 
 }  // namespace spherechain

@@ -4,15 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "memory.h"
 #include "triangle_bits.h"
 
 namespace spherechain {
 namespace {
-
-template <typename T>
-bool is_missing(const Span<T>& span) {
-  return span.data == nullptr && span.size > 0;
-}
 
 void assign_pair(Filter& filter, std::uint32_t p, std::uint32_t q, bool ignored) {
   assign_bit(filter.ignored, ignored_bit(std::min(p, q), std::max(p, q)), ignored);

@@ -26,3 +26,26 @@
 #include <hwy/foreach_target.h>
 #endif
 #include <hwy/highway.h>
+
+#include <cstdint>
+
+HWY_BEFORE_NAMESPACE();
+namespace spherechain {
+namespace HWY_NAMESPACE {
+
+// Lane i as bit i.
+HWY_INLINE std::uint64_t bits_of(hwy::HWY_NAMESPACE::Mask<hwy::HWY_NAMESPACE::ScalableTag<float>> mask) {
+  constexpr hwy::HWY_NAMESPACE::ScalableTag<float> kFloats;
+#if HWY_TARGET == HWY_AVX3
+  std::uint16_t bits = 0;
+#else
+  std::uint8_t bits = 0;
+#endif
+  static_assert(hwy::HWY_NAMESPACE::MaxLanes(kFloats) <= 8 * sizeof bits, "a bit a lane");
+  hwy::HWY_NAMESPACE::StoreMaskBits(kFloats, mask, reinterpret_cast<std::uint8_t*>(&bits));
+  return bits;
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace spherechain
+HWY_AFTER_NAMESPACE();

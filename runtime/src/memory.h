@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Do a caller's buffers lie on top of each other?
+// Are a caller's buffers there, and do they lie on top of each other?
 #pragma once
 
 #include <cstddef>
@@ -8,6 +8,11 @@
 #include "spherechain/types.h"
 
 namespace spherechain {
+
+template <typename T>
+bool is_missing(const Span<T>& span) {
+  return span.data == nullptr && span.size > 0;
+}
 
 struct MemoryRange {
   std::uintptr_t begin = 0, end = 0;

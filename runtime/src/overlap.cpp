@@ -19,19 +19,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::ScalableTag<float>;
 using Vector = hn::Vec<Floats>;
 
-// Lane i as bit i.
-HWY_INLINE std::uint64_t bits_of(hn::Mask<Floats> mask) {
-  constexpr Floats kFloats;
-#if HWY_TARGET == HWY_AVX3
-  std::uint16_t bits = 0;
-#else
-  std::uint8_t bits = 0;
-#endif
-  static_assert(hn::MaxLanes(kFloats) <= 8 * sizeof bits, "a bit a lane");
-  hn::StoreMaskBits(kFloats, mask, reinterpret_cast<std::uint8_t*>(&bits));
-  return bits;
-}
-
 // The spheres of a whole vector. Returns what their extents raise the lanes of `extent` to.
 HWY_INLINE Vector fill_vector(const float* spheres, const Sphere& origin, Vector extent, SphereColumns& columns,
                               std::size_t i) {

@@ -9,7 +9,7 @@ namespace spherechain {
 
 Status check_bone_inputs(const Asset* asset, const BoneMatrices& bones, Span<const float> morph_weights,
                          RadiusKind radius) {
-  if (asset == nullptr || bones.data == nullptr || (morph_weights.data == nullptr && morph_weights.size > 0)) {
+  if (asset == nullptr || bones.data == nullptr || is_missing(morph_weights)) {
     return Status::kNullArgument;
   }
   if (!asset->is_open()) {

@@ -59,8 +59,7 @@ struct SPHERECHAIN_API DetectJob {
   // Out. Counts are what there is, also where a buffer was too small for it.
   std::size_t pair_count = 0;        // unique pairs; first_only: 0 or 1
   std::size_t chain_pair_count = 0;  // M1: overlaps with their repeats; M2: equal to pair_count
-  std::size_t test_count =
-      0;  // distance tests: pairs not ignored; M1: with repeats; first_only: up to where it stopped
+  std::size_t test_count = 0;        // pairs not ignored; M1: with repeats; first_only: up to where it stopped
 
   static std::size_t bit_words(const Asset& asset) noexcept;
 
