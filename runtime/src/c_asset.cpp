@@ -4,8 +4,10 @@
 #include <new>
 
 #include "c_api.h"
+#include "memory.h"
 #include "message.h"
 #include "spherechain/simd.h"
+#include "stride.h"
 
 using namespace spherechain;
 
@@ -80,6 +82,9 @@ sc_status check_index(const sc_asset* asset, std::size_t (*count)(const Asset&),
   if (asset == nullptr || out == nullptr) {
     return SC_NULL_ARGUMENT;
   }
+  if (!asset->view.is_open()) {
+    return SC_NOT_OPEN;
+  }
   return index < count(asset->view) ? SC_OK : SC_BAD_ARGUMENT;
 }
 
@@ -130,6 +135,9 @@ sc_status sc_asset_get_info(const sc_asset* asset, sc_asset_info* info) {
   }
   if (info->struct_size != sizeof(sc_asset_info)) {
     return SC_WRONG_ABI;
+  }
+  if (!asset->view.is_open()) {
+    return SC_NOT_OPEN;
   }
   const Asset& view = asset->view;
   const AssetInfo from = view.info();
@@ -251,7 +259,8 @@ sc_status sc_asset_bone(const sc_asset* asset, size_t index, sc_bone* bone) {
 }
 
 const char* sc_asset_morph_name(const sc_asset* asset, size_t index) {
-  return asset != nullptr && index < asset->view.morph_count() ? asset->view.morph_name(index) : nullptr;
+  const bool is_open = asset != nullptr && asset->view.is_open();
+  return is_open && index < asset->view.morph_count() ? asset->view.morph_name(index) : nullptr;
 }
 
 sc_status sc_check_source(const sc_asset* asset, const float* positions, size_t count, size_t stride) {
@@ -264,7 +273,8 @@ sc_status sc_check_source_part(const sc_asset* asset, size_t part, const float* 
 }
 
 uint64_t sc_hash_positions(const float* positions, size_t count, size_t stride) {
-  return hash_positions(positions, count, stride);
+  const bool is_readable = positions != nullptr && !any_misaligned(positions) && is_valid_stride(stride);
+  return is_readable ? hash_positions(positions, count, stride) : 0;
 }
 
 size_t sc_supported_targets(sc_target* targets, size_t capacity) {

@@ -67,6 +67,9 @@ Status check(const ContactJob& job) {
   if (!job.asset->is_open()) {
     return Status::kNotOpen;
   }
+  if (any_misaligned(job.spheres.data, job.pairs.data, job.contacts.data)) {
+    return Status::kMisaligned;
+  }
   const std::size_t n = job.asset->spheres().size;
   if (job.spheres.size < n) {
     return Status::kTooFewSpheres;

@@ -265,6 +265,10 @@ Status check(const CrowdJob& job, std::size_t stride) {
       is_missing(job.pairs)) {
     return Status::kNullArgument;
   }
+  if (any_misaligned(job.spheres, job.bones.data, job.morph_weights.data, job.context->words.data, job.counts.data,
+                     job.bits.data, job.pairs.data)) {
+    return Status::kMisaligned;
+  }
   if (!sizes_fit(job, stride)) {
     return Status::kBadArgument;
   }

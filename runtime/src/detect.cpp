@@ -33,6 +33,9 @@ Status check(const DetectJob& job, Target& resolved) {
   if (!job.asset->is_open()) {
     return Status::kNotOpen;
   }
+  if (any_misaligned(job.spheres.data, job.pairs.data, job.bits.data)) {
+    return Status::kMisaligned;
+  }
   if ((job.radius != RadiusKind::kFit && job.radius != RadiusKind::kDetect) ||
       (job.method != Method::kM1 && job.method != Method::kM2) || (job.first_only && job.method == Method::kM1) ||
       (job.bits.size > 0 && job.bits.size != DetectJob::bit_words(*job.asset))) {
@@ -44,6 +47,9 @@ Status check(const DetectJob& job, Target& resolved) {
   if (job.method == Method::kM1) {
     if (job.context == nullptr || is_missing(job.context->words) || is_missing(job.chain_pairs)) {
       return Status::kNullArgument;
+    }
+    if (any_misaligned(job.context->words.data, job.chain_pairs.data)) {
+      return Status::kMisaligned;
     }
     if (job.context->words.size < DetectContext::words_needed(*job.asset)) {
       return Status::kContextTooSmall;

@@ -27,6 +27,9 @@ Status check_filter(const Asset& asset, const Filter& filter) noexcept {
   if (is_missing(filter.ignored) || is_missing(filter.disabled) || is_missing(filter.padding)) {
     return Status::kNullArgument;
   }
+  if (any_misaligned(filter.ignored.data, filter.disabled.data, filter.padding.data)) {
+    return Status::kMisaligned;
+  }
   const bool fits = filter.ignored.size == Filter::ignored_words(asset) &&
                     (filter.disabled.size == 0 || filter.disabled.size == Filter::disabled_words(asset)) &&
                     (filter.padding.size == 0 || filter.padding.size == asset.spheres().size);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Are a caller's buffers there, and do they lie on top of each other?
+// Are a caller's buffers there, aligned as their type, and do they lie on top of each other?
 #pragma once
 
 #include <cstddef>
@@ -12,6 +12,12 @@ namespace spherechain {
 template <typename T>
 bool is_missing(const Span<T>& span) {
   return span.data == nullptr && span.size > 0;
+}
+
+// Null is aligned.
+template <typename... T>
+bool any_misaligned(const T*... data) {
+  return (... | (reinterpret_cast<std::uintptr_t>(data) % alignof(T) != 0));
 }
 
 struct MemoryRange {

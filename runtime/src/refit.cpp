@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "arithmetic.h"
+#include "memory.h"
 #include "stride.h"
 
 namespace spherechain {
@@ -59,6 +60,13 @@ float radius_of(const RestSphere& rest, float mean, RefitRule rule, RadiusKind k
   return kind == RadiusKind::kFit ? mean : mean * (rest.detect_radius / rest.radius);
 }
 
+// Do the spheres lie on top of the positions that are read?
+bool shares_memory(const RefitJob& job, std::size_t vertices) {
+  const auto first = reinterpret_cast<std::uintptr_t>(job.positions);
+  const MemoryRange positions{first, vertices == 0 ? first : first + (vertices - 1) * job.stride + 3 * sizeof(float)};
+  return any_shared({range_of(Span<Sphere>{job.spheres.data, job.asset->spheres().size})}, {positions});
+}
+
 }  // namespace
 
 Status RefitJob::run() const noexcept {
@@ -67,6 +75,9 @@ Status RefitJob::run() const noexcept {
   }
   if (!asset->is_open()) {
     return Status::kNotOpen;
+  }
+  if (any_misaligned(positions, spheres.data)) {
+    return Status::kMisaligned;
   }
   if ((radius != RadiusKind::kFit && radius != RadiusKind::kDetect) ||
       (vertices != VertexSet::kSource && vertices != VertexSet::kPivots)) {
@@ -79,12 +90,16 @@ Status RefitJob::run() const noexcept {
   if (packed && asset->packed_pivots().size == 0) {
     return Status::kNotInAsset;
   }
-  if (vertex_count < (packed ? asset->pivot_vertices().size : asset->info().source_vertex_count)) {
+  const std::size_t wanted = packed ? asset->pivot_vertices().size : asset->info().source_vertex_count;
+  if (vertex_count < wanted) {
     return Status::kTooFewVertices;
   }
   const Span<const RestSphere> rest = asset->spheres();
   if (spheres.size < rest.size) {
     return Status::kTooFewSpheres;
+  }
+  if (shares_memory(*this, wanted)) {
+    return Status::kSharedMemory;
   }
 
   const VertexBuffer buffer{positions, stride};

@@ -15,6 +15,9 @@ Status check_bone_inputs(const Asset* asset, const BoneMatrices& bones, Span<con
   if (!asset->is_open()) {
     return Status::kNotOpen;
   }
+  if (any_misaligned(bones.data, morph_weights.data)) {
+    return Status::kMisaligned;
+  }
   if ((radius != RadiusKind::kFit && radius != RadiusKind::kDetect) || size_of(bones.layout) == 0) {
     return Status::kBadArgument;
   }
@@ -62,6 +65,9 @@ Status RefitBonesJob::run() const noexcept {
   }
   if (spheres.data == nullptr) {
     return Status::kNullArgument;
+  }
+  if (any_misaligned(spheres.data)) {
+    return Status::kMisaligned;
   }
   const std::size_t count = asset->spheres().size;
   if (spheres.size < count) {

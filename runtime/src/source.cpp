@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "arithmetic.h"
+#include "memory.h"
 #include "spherechain/asset.h"
 #include "stride.h"
 
@@ -29,6 +30,9 @@ std::uint64_t hash_positions(const float* positions, std::size_t count, std::siz
 namespace {
 
 Status check(const float* positions, std::size_t count, std::size_t stride, std::size_t wanted, std::uint64_t hash) {
+  if (any_misaligned(positions)) {
+    return Status::kMisaligned;
+  }
   if (!is_valid_stride(stride)) {
     return Status::kBadStride;
   }

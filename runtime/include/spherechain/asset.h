@@ -190,7 +190,8 @@ SPHERECHAIN_API std::uint64_t hash_positions(const float* positions, std::size_t
                                              std::size_t stride = 12) noexcept;
 
 // kOk where `positions` (source order, rest pose) is the buffer the asset was baked from; positions past the source's
-// vertex count are not looked at. Else kWrongSource, or kNullArgument, kNotOpen, kBadStride, kTooFewVertices.
+// vertex count are not looked at. Else kWrongSource, or kNullArgument, kNotOpen, kMisaligned, kBadStride,
+// kTooFewVertices.
 SPHERECHAIN_API Status check_source(const Asset& asset, const float* positions, std::size_t count,
                                     std::size_t stride = 12) noexcept;
 

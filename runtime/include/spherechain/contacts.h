@@ -54,8 +54,8 @@ struct SPHERECHAIN_API ContactJob {
   std::size_t deepest = 0;        // the pair of the greatest depth above 0, the first of several; contact_count: none
 
   // kOk; kOverflow where `contacts` was not empty and too small: the first are written; kNullArgument, kNotOpen,
-  // kTooFewSpheres, kBadFilter, kBadArgument (a pair of spheres that do not exist, or a >= b), kSharedMemory: nothing
-  // is written, the counts keep their values.
+  // kTooFewSpheres, kBadFilter, kBadArgument (a pair of spheres that do not exist, or a >= b), kMisaligned,
+  // kSharedMemory: nothing is written, the counts keep their values.
   Status run() noexcept;
 };
 

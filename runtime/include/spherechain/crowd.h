@@ -75,7 +75,7 @@ struct SPHERECHAIN_API CrowdJob {
   // kOk; kOverflow where `pairs` was not empty and too small (the first are written); kNullArgument, kNotOpen,
   // kBadStride, kNotInAsset, kTooFewBones, kTooFewMorphs, kTooFewSpheres (a stride below the asset's spheres),
   // kContextTooSmall, kBadArgument (both spheres and bones; a count or a buffer's size that does not fit),
-  // kUnsupportedTarget, kBadFilter, kSharedMemory: nothing is written, the count keeps its value.
+  // kUnsupportedTarget, kBadFilter, kMisaligned, kSharedMemory: nothing is written, the count keeps its value.
   Status run() noexcept;
 };
 

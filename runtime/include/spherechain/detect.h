@@ -65,8 +65,8 @@ struct SPHERECHAIN_API DetectJob {
 
   // Uses some 18 KiB of stack. kOk; kOverflow where `pairs` or `chain_pairs` was not empty and too small (the first
   // entries are written, the counts say what is needed); kNullArgument, kNotOpen, kTooFewSpheres, kContextTooSmall,
-  // kBadArgument, kUnsupportedTarget, kBadFilter, kSharedMemory (what is written overlaps anything else): nothing is
-  // written, the counts keep their values.
+  // kBadArgument, kUnsupportedTarget, kBadFilter, kMisaligned, kSharedMemory (what is written overlaps anything else):
+  // nothing is written, the counts keep their values.
   Status run() noexcept;
 };
 

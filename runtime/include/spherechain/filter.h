@@ -27,9 +27,9 @@ struct SPHERECHAIN_API Filter {
   static std::size_t disabled_words(const Asset& asset) noexcept;
 };
 
-// All of these: kOk; kNotOpen; kNullArgument where a buffer has a size and no memory; kBadFilter where one has not the
-// size the asset asks for, or is empty and the function writes to it; kBadArgument where a sphere, region or figure
-// does not exist. Nothing is written unless kOk. kOk from check_filter is all that DetectJob asks.
+// All of these: kOk; kNotOpen; kNullArgument where a buffer has a size and no memory; kMisaligned; kBadFilter where one
+// has not the size the asset asks for, or is empty and the function writes to it; kBadArgument where a sphere, region
+// or figure does not exist. Nothing is written unless kOk. kOk from check_filter is all that DetectJob asks.
 SPHERECHAIN_API Status check_filter(const Asset& asset, const Filter& filter) noexcept;
 
 // The asset's own pairs; every sphere enabled, no padding.

@@ -40,8 +40,8 @@ struct SPHERECHAIN_API RefitJob {
   Span<Sphere> spheres;  // out: at least asset->spheres().size; further entries are left alone
 
   // kOk, kNullArgument, kNotOpen, kTooFewVertices, kTooFewSpheres, kBadStride, kBadArgument or, for kPivots,
-  // kNotInAsset; nothing is written unless kOk. Positions that are not finite give spheres that are not finite, and
-  // those touch nothing.
+  // kNotInAsset, kMisaligned, kSharedMemory; nothing is written unless kOk. Positions that are not finite give spheres
+  // that are not finite, and those touch nothing.
   Status run() const noexcept;
 };
 

@@ -72,8 +72,8 @@ struct SPHERECHAIN_API RefitBonesJob {
   Span<Sphere> spheres;  // out: at least asset->spheres().size; further entries are left alone
 
   // kOk, kNullArgument, kNotOpen, kBadArgument, kBadStride, kNotInAsset, kTooFewBones, kTooFewMorphs, kTooFewSpheres,
-  // kUnsupportedTarget or kSharedMemory; nothing is written unless kOk. Matrices and weights that are not finite give
-  // spheres that are not finite, and those touch nothing.
+  // kUnsupportedTarget, kMisaligned or kSharedMemory; nothing is written unless kOk. Matrices and weights that are not
+  // finite give spheres that are not finite, and those touch nothing.
   Status run() const noexcept;
 };
 

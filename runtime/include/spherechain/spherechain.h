@@ -10,7 +10,8 @@
  * Threads  Every function may run on any number of threads at once, as long as none writes what another reads: share
  *          one asset and one filter, give each job outputs and scratch memory of its own.
  * Errors   An sc_status; nothing is written unless SC_OK, or SC_OVERFLOW where a count says how much there is. Null
- *          pointers, sizes, strides, indices and enum values are checked. What is not finite touches nothing.
+ *          pointers, sizes, strides, indices and enum values are checked. What is not finite touches nothing. Any
+ *          function may also give SC_MISALIGNED, and SC_NOT_OPEN for an asset whose sc_asset_open failed.
  * Structs  A job's first field is its size, which the SC_..._INIT macros fill in: a job of another size is refused with
  *          SC_WRONG_ABI. Start from the macro, or set every field. Fields named `reserved` are 0.
  */
@@ -30,7 +31,7 @@ typedef int32_t sc_status;
 enum {
   SC_OK = 0,
   SC_NULL_ARGUMENT = 1,       /* a required pointer is null */
-  SC_MISALIGNED = 2,          /* an asset's bytes, or the memory of its handle, do not start at a multiple of 8 */
+  SC_MISALIGNED = 2,          /* memory not aligned as its type; an asset's bytes and its handle's memory, to 8 */
   SC_TRUNCATED = 3,           /* fewer bytes than any asset has */
   SC_WRONG_IDENTIFIER = 4,    /* not a .sphc file */
   SC_UNSUPPORTED_VERSION = 5, /* written by a newer (or never released) format */
@@ -237,7 +238,8 @@ SPHERECHAIN_API sc_status sc_check_source(const sc_asset* asset, const float* po
 SPHERECHAIN_API sc_status sc_check_source_part(const sc_asset* asset, size_t part, const float* positions, size_t count,
                                                size_t stride);
 
-/* What source_rest_hash and a part's hash are made by; 0 is no error. `positions` of `count` vertices. */
+/* What source_rest_hash and a part's hash are made by; `positions` of `count` vertices. 0 where they are null or
+ * misaligned, or the stride is none. */
 SPHERECHAIN_API uint64_t sc_hash_positions(const float* positions, size_t count, size_t stride);
 
 /* ---- Spheres that follow the character ---- */
@@ -258,7 +260,7 @@ typedef struct sc_refit_job {
   { sizeof(sc_refit_job), NULL, NULL, 0, 12, SC_VERTICES_SOURCE, SC_RADIUS_DETECT, NULL, 0 }
 
 /* SC_OK, SC_NULL_ARGUMENT, SC_WRONG_ABI, SC_TOO_FEW_VERTICES, SC_TOO_FEW_SPHERES, SC_BAD_STRIDE, SC_BAD_ARGUMENT,
- * SC_NOT_IN_ASSET. */
+ * SC_NOT_IN_ASSET, SC_SHARED_MEMORY. */
 SPHERECHAIN_API sc_status sc_refit(const sc_refit_job* job);
 
 typedef struct sc_bone_matrices {

@@ -9,7 +9,7 @@ namespace spherechain {
 enum class Status : int {
   kOk = 0,
   kNullArgument = 1,        // a required pointer is null
-  kMisaligned = 2,          // the asset's bytes do not start at a multiple of kAssetAlignment
+  kMisaligned = 2,          // memory that is not aligned as its type; an asset's bytes, to kAssetAlignment
   kTruncated = 3,           // fewer bytes than any asset has
   kWrongIdentifier = 4,     // not a .sphc file
   kUnsupportedVersion = 5,  // written by a newer (or never released) format
