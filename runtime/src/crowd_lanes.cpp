@@ -43,17 +43,17 @@ HWY_INLINE bool transpose(const LaneBatch& batch) {
     for (std::size_t lane = 0; lane < batch.count; ++lane) {
       row[lane] = batch.spheres[lane * batch.stride + i];
     }
-    LaneSphere s;
-    hn::LoadInterleaved4(kFloats, &row[0].x, s.x, s.y, s.z, s.radius);
+    Vector x, y, z, radius;  // no LaneSphere: its own constructor would not be compiled for this target
+    hn::LoadInterleaved4(kFloats, &row[0].x, x, y, z, radius);
     if (batch.padding != nullptr) {
-      s.radius = hn::Add(s.radius, hn::Set(kFloats, batch.padding[i]));
+      radius = hn::Add(radius, hn::Set(kFloats, batch.padding[i]));
     }
-    any_huge |= !hn::AllFalse(kFloats, hn::Gt(hn::Abs(s.radius), hn::Set(kFloats, kHugeRadius)));
+    any_huge |= !hn::AllFalse(kFloats, hn::Gt(hn::Abs(radius), hn::Set(kFloats, kHugeRadius)));
     float* at = batch.lanes + 4 * n * i;
-    hn::Store(s.x, kFloats, at);
-    hn::Store(s.y, kFloats, at + n);
-    hn::Store(s.z, kFloats, at + 2 * n);
-    hn::Store(s.radius, kFloats, at + 3 * n);
+    hn::Store(x, kFloats, at);
+    hn::Store(y, kFloats, at + n);
+    hn::Store(z, kFloats, at + 2 * n);
+    hn::Store(radius, kFloats, at + 3 * n);
   }
   return any_huge;
 }

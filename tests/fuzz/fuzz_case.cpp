@@ -70,6 +70,7 @@ bool draw_asset(Case& c) {
 
 void fill_figures(Case& c, float* figures, std::size_t count) {
   using Limits = std::numeric_limits<float>;
+  // The tail: where nothing is infinite yet, but squares are, or nearly.
   const float hostile[] = {Limits::quiet_NaN(),
                            -Limits::quiet_NaN(),
                            Limits::infinity(),
@@ -86,12 +87,15 @@ void fill_figures(Case& c, float* figures, std::size_t count) {
                            1e-20F,
                            1e-38F,
                            4.0F};
+  constexpr std::uint32_t kCount = sizeof hostile / sizeof hostile[0], kTail = 6;
+  const std::uint32_t first = c.random.one_in(2) ? kTail : 0;
   const std::uint32_t modes[] = {0, 0, 1000, 40, 4, 1};
   const std::uint32_t mode = c.random.pick(modes);
-  const float scales[] = {1.0F, 1.0F, 0.5F, 1e-3F, 1e4F};
+  const float scales[] = {1.0F, 1.0F, 0.5F, 1e-3F, 1e4F, 8e18F};
   const float scale = c.random.pick(scales);
   for (std::size_t i = 0; i < count; ++i) {
-    figures[i] = mode > 0 && c.random.one_in(mode) ? c.random.pick(hostile) : scale * c.random.figure();
+    figures[i] =
+        mode > 0 && c.random.one_in(mode) ? hostile[first + c.random.below(kCount - first)] : scale * c.random.figure();
   }
 }
 

@@ -68,8 +68,12 @@ int main(int argc, char** argv) {
                 tallies[i].overflowed, tallies[i].refused);
     checked = checked && tallies[i].ran > 0 && tallies[i].refused > 0;
   }
-  std::printf("%llu cases from seed %llu on, %zu assets\n", static_cast<unsigned long long>(made),
+  std::printf("%llu cases from seed %llu on, %zu assets, targets:", static_cast<unsigned long long>(made),
               static_cast<unsigned long long>(seed), asset_count());
+  for (const spherechain::Target target : spherechain::supported_targets()) {
+    std::printf(" %s", to_string(target));
+  }
+  std::puts("");
   if (!checked && made >= 1000) {
     std::fputs("fuzz_jobs: something never ran or was never refused, so nothing was checked\n", stderr);
     return 1;
