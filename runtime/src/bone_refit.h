@@ -12,7 +12,7 @@ namespace spherechain {
 // What the kernel reads: bare arrays, for it is compiled once a target and may use no inline function of the headers.
 struct BoneRefitInputs {
   const RestSphere* rest;
-  std::size_t sphere_count;
+  std::size_t sphere_count, group_count;
   const PivotLanes* weights;
   const std::uint32_t* term_counts;
   const std::uint32_t* term_bones;

@@ -42,6 +42,7 @@ BoneRefitInputs bone_refit_inputs(const Asset& asset, const BoneMatrices& bones,
   BoneRefitInputs in{};
   in.rest = asset.spheres().data;
   in.sphere_count = asset.spheres().size;
+  in.group_count = tables.term_counts.size;
   in.weights = tables.weights.data;
   in.term_counts = tables.term_counts.data;
   in.term_bones = tables.term_bones.data;

@@ -3,6 +3,8 @@
 // a fixed tree. Four spheres at a time, so that trees and radii fill vectors too. What passes from one step to the next
 // goes over the stack: its lines are in the first cache, and the steps of four spheres overlap with those of the next
 // four.
+#include <cstring>
+
 #include "arithmetic.h"
 #include "bone_refit.h"
 #include "simd.h"
@@ -21,6 +23,23 @@ using Lanes8 = hn::CappedTag<float, kPivotLanes>;
 using Lanes4 = hn::CappedTag<float, 4>;
 constexpr std::size_t kChunk = 4;  // spheres
 
+// Where in the tables a group's terms start.
+struct TermPlace {
+  std::size_t term, morph_term;
+};
+
+}  // namespace HWY_NAMESPACE
+}  // namespace spherechain
+HWY_AFTER_NAMESPACE();
+
+#if HWY_TARGET == HWY_AVX3
+#include "refit_bones_wide.h"
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace spherechain {
+namespace HWY_NAMESPACE {
+
 // out[i] = tree(v[i]), as the header of the job says.
 HWY_INLINE void sum_lanes(const float (&v)[kChunk][kPivotLanes], float (&out)[kChunk]) {
 #if HWY_TARGET == HWY_SCALAR
@@ -37,11 +56,6 @@ HWY_INLINE void sum_lanes(const float (&v)[kChunk][kPivotLanes], float (&out)[kC
 #endif
 }
 
-// Where in the tables a group's terms start.
-struct TermPlace {
-  std::size_t term, morph_term;
-};
-
 // Eight lanes one at a time are much code, twice as slow where it is inlined.
 #undef SPHERECHAIN_MOVE_GROUP
 #if HWY_TARGET == HWY_SCALAR
@@ -57,10 +71,10 @@ SPHERECHAIN_MOVE_GROUP void move_group(const BoneRefitInputs& in, std::size_t gr
   const Lanes8 d;
   using V = hn::Vec<Lanes8>;
   constexpr std::size_t kParts = kPivotLanes / hn::MaxLanes(Lanes8());
-  V p[3][kParts];
+  V left[3][kParts], right[3][kParts];
   for (std::size_t row = 0; row < 3; ++row) {
     for (std::size_t part = 0; part < kParts; ++part) {
-      p[row][part] = hn::Zero(d);
+      left[row][part] = right[row][part] = hn::Zero(d);
     }
   }
   for (const std::size_t end = at.term + in.term_counts[group]; at.term < end; ++at.term) {
@@ -80,9 +94,9 @@ SPHERECHAIN_MOVE_GROUP void move_group(const BoneRefitInputs& in, std::size_t gr
         const V weight = hn::Set(d, in.morph_weights[in.morph_targets[at.morph_term]]);
         for (std::size_t part = 0; part < kParts; ++part) {
           const std::size_t lane = part * hn::MaxLanes(d);
-          x[part] = hn::Add(x[part], hn::Mul(weight, hn::LoadU(d, morph.x + lane)));
-          y[part] = hn::Add(y[part], hn::Mul(weight, hn::LoadU(d, morph.y + lane)));
-          z[part] = hn::Add(z[part], hn::Mul(weight, hn::LoadU(d, morph.z + lane)));
+          x[part] = fused(d, weight, hn::LoadU(d, morph.x + lane), x[part]);
+          y[part] = fused(d, weight, hn::LoadU(d, morph.y + lane), y[part]);
+          z[part] = fused(d, weight, hn::LoadU(d, morph.z + lane), z[part]);
         }
       }
     }
@@ -92,14 +106,14 @@ SPHERECHAIN_MOVE_GROUP void move_group(const BoneRefitInputs& in, std::size_t gr
       const V m0 = hn::Set(d, m[0]), m1 = hn::Set(d, m[kColumn]), m2 = hn::Set(d, m[2 * kColumn]),
               m3 = hn::Set(d, m[3 * kColumn]);
       for (std::size_t part = 0; part < kParts; ++part) {
-        p[row][part] = hn::Add(p[row][part], hn::Add(hn::Add(hn::Mul(m0, x[part]), hn::Mul(m1, y[part])),
-                                                     hn::Add(hn::Mul(m2, z[part]), hn::Mul(m3, w[part]))));
+        left[row][part] = fused(d, m2, z[part], fused(d, m0, x[part], left[row][part]));
+        right[row][part] = fused(d, m3, w[part], fused(d, m1, y[part], right[row][part]));
       }
     }
   }
   for (std::size_t row = 0; row < 3; ++row) {
     for (std::size_t part = 0; part < kParts; ++part) {
-      hn::Store(p[row][part], d, out[row] + part * hn::MaxLanes(d));
+      hn::Store(hn::Add(left[row][part], right[row][part]), d, out[row] + part * hn::MaxLanes(d));
     }
   }
 }
@@ -111,8 +125,9 @@ HWY_INLINE void share(const float (&p)[3][kPivotLanes], const float* weights, bo
   for (std::size_t lane = 0; lane < kPivotLanes; lane += hn::MaxLanes(d)) {
     const auto weight = hn::LoadU(d, weights + lane);
     for (std::size_t row = 0; row < 3; ++row) {
-      const auto product = hn::Mul(weight, hn::Load(d, p[row] + lane));
-      hn::Store(is_first ? product : hn::Add(hn::Load(d, s[row][i] + lane), product), d, s[row][i] + lane);
+      const auto moved = hn::Load(d, p[row] + lane);
+      hn::Store(is_first ? hn::Mul(weight, moved) : fused(d, weight, moved, hn::Load(d, s[row][i] + lane)), d,
+                s[row][i] + lane);
     }
   }
 }
@@ -126,7 +141,7 @@ HWY_INLINE void add_distances(const float (&p)[3][kPivotLanes], const float (&ce
     const auto dx = hn::Sub(hn::Load(d, p[0] + lane), x);
     const auto dy = hn::Sub(hn::Load(d, p[1] + lane), y);
     const auto dz = hn::Sub(hn::Load(d, p[2] + lane), z);
-    auto distance = hn::Sqrt(hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz)));
+    auto distance = hn::Sqrt(fused(d, dz, dz, fused(d, dy, dy, hn::Mul(dx, dx))));
     if (used < kPivotLanes) {
       distance = hn::IfThenElseZero(hn::FirstN(d, used > lane ? used - lane : 0), distance);
     }
@@ -136,6 +151,11 @@ HWY_INLINE void add_distances(const float (&p)[3][kPivotLanes], const float (&ce
 
 template <std::size_t kRow, std::size_t kColumn, bool kMorphs>
 HWY_INLINE void refit_all(const BoneRefitInputs& in, Sphere* spheres) {
+#if HWY_TARGET == HWY_AVX3
+  if (in.group_count == in.sphere_count) {
+    return wide::refit_all<kRow, kColumn, kMorphs>(in, spheres);
+  }
+#endif
   const bool calibrated = in.rule == RefitRule::kCalibrated, fit = in.radius == RadiusKind::kFit;
   std::size_t group = 0;
   TermPlace at{0, 0};

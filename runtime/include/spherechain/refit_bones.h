@@ -50,14 +50,17 @@ struct BoneMatrices {
 // from the rest pose to the same "world", the identity where that is the rest pose's space.
 // A pose that blends others linearly, a Bezier curve of poses, is as linear in the matrices: blend those.
 //
-// The arithmetic is fixed, in single precision without contraction, so that every backend gives the same spheres, bit
-// for bit. Of a group of eight pivots (see BoneTables), for each lane:
-//   term   x = x0 + w_0 x_0, + w_1 x_1 ... over the term's morph terms, in order, w their targets' weights; so y and z
-//   p      for each row m of a bone's matrix: ((m0*x + m1*y) + (m2*z + m3*w)), summed over the terms in order from 0
-//   s      a * p, a the pivot's share of the centre, summed over the sphere's groups in order from the first's
+// The arithmetic is fixed, in single precision, so that every backend gives the same spheres, bit for bit. fma(a, b, c)
+// is a*b + c rounded once, on machines without such an instruction too; nothing else is contracted. Of a group of eight
+// pivots (see BoneTables), for each lane:
+//   term   x = fma(weight, x_t, x) for each of the term's morph terms t, in order, of their targets' weights; so y and
+//   z p      for each row m of a bone's matrix: even + odd, which start at 0 and take up term after term:
+//          even = fma(m2, z, fma(m0, x, even)), odd = fma(m3, w, fma(m1, y, odd))
+//   s      a * p of the sphere's first group, a the pivot's share of the centre; then s = fma(a, p, s) of each further
+//          one
 // and of a sphere
 //   centre the sum over the lanes of s; with tree(v) = (((v0 + v4) + (v2 + v6)) + ((v1 + v5) + (v3 + v7)))
-//   d      sqrt((dx*dx + dy*dy) + dz*dz) of p - centre, 0 in a spare lane, summed over the groups in order
+//   d      sqrt(fma(dz, dz, fma(dy, dy, dx*dx))) of p - centre, 0 in a spare lane, summed over the groups in order
 //   mean   tree(d) / float(K)
 // and the radius follows from the mean as in RefitJob.
 //

@@ -19,7 +19,7 @@ enum class Target : std::uint8_t {
   kScalar = 1,  // every build has it, every machine runs it
   kSse2 = 2,    // not with the Highway of Debian 12
   kSsse3 = 3,
-  kAvx2 = 4,    // with BMI2 and FMA, though no multiply-add is fused
+  kAvx2 = 4,    // with BMI2 and FMA
   kAvx512 = 5,  // F, VL, DQ, BW, CD
   kNeon = 6,
 };
