@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The runtime and its tests for 64-bit ARM, by Debian's cross compiler, run by qemu: NEON must give what x86 gives, down to the
-# golden hashes. `scripts/neon.sh [argument of test_runtime ...]`. Needs g++-aarch64-linux-gnu and qemu-user, which it installs
+# golden hashes (tests/golden). `scripts/neon.sh [argument of test_runtime ...]`. Needs g++-aarch64-linux-gnu and qemu-user, which it installs
 # where it may; not part of test.sh.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -18,6 +18,7 @@ cmake --preset release -B build/neon -DSPHERECHAIN_BAKER=OFF -DSPHERECHAIN_VIEWE
   -DCMAKE_SYSTEM_NAME=Linux -DCMAKE_SYSTEM_PROCESSOR=aarch64 \
   -DCMAKE_C_COMPILER=aarch64-linux-gnu-gcc -DCMAKE_CXX_COMPILER=aarch64-linux-gnu-g++ -DCMAKE_EXE_LINKER_FLAGS=-static \
   ${CMAKE_CXX_COMPILER_LAUNCHER:+-DCMAKE_CXX_COMPILER_LAUNCHER=$CMAKE_CXX_COMPILER_LAUNCHER} >/dev/null
-cmake --build build/neon --target test_runtime fuzz_jobs
+cmake --build build/neon --target test_runtime golden fuzz_jobs
 qemu-aarch64 build/neon/bin/test_runtime "$@"
+qemu-aarch64 build/neon/bin/golden tests/golden
 qemu-aarch64 build/neon/bin/fuzz_jobs --cases 2400

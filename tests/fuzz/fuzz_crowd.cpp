@@ -96,6 +96,7 @@ void draw_spheres(Case& c, CrowdJob& job) {
 }
 
 void draw_bones(Case& c, CrowdJob& job) {
+  job.stride = c.random.below(3);  // of spheres: of no consequence
   job.bones.layout = static_cast<MatrixLayout>(c.random.below(4));
   job.bones.stride = size_of(job.bones.layout) + 4 * c.random.below(3);
   job.bones.count = c.asset.bone_count();

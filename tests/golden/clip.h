@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// The doll and its clip, made by whole numbers, quotients and products alone: no function of a mathematical library,
+// which are not the same everywhere.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "spherechain/asset.h"
+
+namespace spherechain::test {
+
+inline constexpr std::size_t kFrames = 256;
+
+struct Doll {
+  // From the folder's doll.obj and doll.sphc. On failure `error` says why.
+  explicit Doll(const std::string& folder);
+  Doll(const Doll&) = delete;
+  Doll& operator=(const Doll&) = delete;
+
+  std::string error;
+  std::vector<std::uint64_t> bytes;
+  Asset asset;
+  std::vector<float> rest;            // x, y, z of each corner of each triangle: the source's vertices
+  std::vector<std::size_t> joint_of;  // the one that moves the vertex
+};
+
+// Rows of 3 by 4, one matrix a bone: arms swing across and in front of the body, legs cross, the spine bends, each at
+// its own pace.
+std::vector<std::array<float, 12>> matrices_at(const Asset& asset, std::size_t frame);
+
+// The mesh under those, each vertex moved by one joint.
+std::vector<float> positions_at(const Doll& doll, const std::vector<std::array<float, 12>>& matrices);
+
+}  // namespace spherechain::test
