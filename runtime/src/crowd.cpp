@@ -6,6 +6,7 @@
 #include "arithmetic.h"
 #include "bone_refit.h"
 #include "crowd_lanes.h"
+#include "crowd_refit.h"
 #include "memory.h"
 #include "simd.h"
 #include "spherechain/detect.h"
@@ -23,15 +24,16 @@ struct Layout {
         near_words(
             words_for(std::max(asset.near_pairs(RadiusKind::kFit).size, asset.near_pairs(RadiusKind::kDetect).size))),
         lane_words(asset.spheres().size * 4 * kMostLanes / 2),
-        sphere_words(asset.spheres().size * kMostLanes * sizeof(Sphere) / sizeof(std::uint64_t)),
+        bone_words(asset.bone_count() * kMatrixFloats * kMostLanes / 2),
+        morph_words(asset.morph_count() * kMostLanes / 2),
         order_words(1 + asset.spheres().size / 2 + 1) {}
 
   std::size_t bit_words, near_words;
-  std::size_t lane_words;    // a task
-  std::size_t sphere_words;  // a task: refitted from bones
-  std::size_t order_words;   // a task: its total, and a place a sphere
+  std::size_t lane_words;               // a task
+  std::size_t bone_words, morph_words;  // a task: matrices and weights, one instance a lane
+  std::size_t order_words;              // a task: its total, and a place a sphere
   std::size_t task_words() const {
-    return kAlignmentWords + lane_words + sphere_words + kMostLanes * bit_words + order_words;
+    return kAlignmentWords + lane_words + bone_words + morph_words + kMostLanes * bit_words + order_words;
   }
   std::size_t shared_words() const { return bit_words + near_words; }
 };
@@ -122,17 +124,14 @@ void list_instance(const std::uint64_t* bits, const Crowd& crowd, std::size_t in
   });
 }
 
-// One after the other, as the test of a batch wants them.
-void refit_instances(const Crowd& crowd, std::size_t first, std::size_t count, Sphere* spheres) {
+// Instances [first, first + batch.count).
+void refit_instances(const Crowd& crowd, std::size_t first, LaneRefit& batch) {
   const CrowdJob& job = crowd.job;
-  BoneRefitInputs inputs = crowd.bones;
-  for (std::size_t i = 0; i < count; ++i) {
-    inputs.matrices = job.bones.data + (first + i) * (job.instance_stride / sizeof(float));
-    if (crowd.bones.morph_weights != nullptr) {
-      inputs.morph_weights = crowd.bones.morph_weights + (first + i) * job.asset->morph_count();
-    }
-    refit_from_bones(inputs, crowd.target, spheres + i * job.asset->spheres().size);
+  batch.inputs.matrices = job.bones.data + first * batch.instance_stride;
+  if (crowd.bones.morph_weights != nullptr) {
+    batch.inputs.morph_weights = crowd.bones.morph_weights + first * batch.morph_count;
   }
+  refit_lanes(crowd.target, batch);
 }
 
 // A task's instances, a register's lanes at a time.
@@ -145,8 +144,7 @@ void run_task(void* data, std::size_t task) {
   const std::size_t words = crowd.layout.bit_words;
   std::uint64_t* scratch = crowd.scratch_of(task);
   auto* places = reinterpret_cast<std::uint32_t*>(scratch + 1);
-  auto* refitted = reinterpret_cast<Sphere*>(scratch + crowd.layout.order_words);
-  std::uint64_t* own_bits = scratch + crowd.layout.order_words + crowd.layout.sphere_words;
+  std::uint64_t* own_bits = scratch + crowd.layout.order_words;
   const auto unaligned = reinterpret_cast<std::uintptr_t>(own_bits + kMostLanes * words);
   constexpr std::uintptr_t kAlignment = 8 * kAlignmentWords;
 
@@ -160,6 +158,15 @@ void run_task(void* data, std::size_t task) {
   batch.lanes = reinterpret_cast<float*>((unaligned + kAlignment - 1) / kAlignment * kAlignment);
   batch.bit_words = words;
 
+  LaneRefit refit;
+  refit.inputs = crowd.bones;
+  refit.bone_count = job.asset->bone_count();
+  refit.morph_count = job.asset->morph_count();
+  refit.instance_stride = job.instance_stride / sizeof(float);
+  refit.lanes = batch.lanes;
+  refit.matrices = batch.lanes + 2 * crowd.layout.lane_words;
+  refit.morph_weights = refit.matrices + 2 * crowd.layout.bone_words;
+
   const bool lists = job.pairs.size > 0 && (crowd.list_only || crowd.task_count == 1);
   const std::size_t end = crowd.first_of(task + 1);
   std::uint64_t total = 0;
@@ -168,12 +175,13 @@ void run_task(void* data, std::size_t task) {
     place += job.counts[i];
   }
   for (std::size_t first = crowd.first_of(task); first < end; first += crowd.lanes) {
-    batch.spheres = job.bones.data != nullptr ? refitted : job.spheres + first * crowd.stride;
-    batch.count = std::min(crowd.lanes, end - first);
+    batch.spheres = job.bones.data != nullptr ? nullptr : job.spheres + first * crowd.stride;
+    refit.count = batch.count = std::min(crowd.lanes, end - first);
+    refit.next_count = std::min(crowd.lanes, end - first - batch.count);
     batch.bits = job.bits.size > 0 ? job.bits.data + first * words : own_bits;
     if (!crowd.list_only || job.bits.size == 0) {
       if (job.bones.data != nullptr) {
-        refit_instances(crowd, first, batch.count, refitted);
+        refit_instances(crowd, first, refit);
       }
       std::fill(batch.bits, batch.bits + batch.count * words, std::uint64_t{0});
       test_lanes(crowd.target, batch);

@@ -33,23 +33,30 @@ HWY_INLINE LaneSphere load(const float* lanes, std::size_t sphere) {
           hn::Load(kFloats, at + 3 * n)};
 }
 
-// From one instance after the other to one a lane. True where a radius is huge.
+// From one instance after the other to one a lane, and padded. True where a radius is huge.
 HWY_INLINE bool transpose(const LaneBatch& batch) {
   constexpr Floats kFloats;
   const std::size_t n = hn::Lanes(kFloats);
   bool any_huge = false;
   Sphere row[hn::MaxLanes(kFloats)] = {};
   for (std::size_t i = 0; i < batch.sphere_count; ++i) {
-    for (std::size_t lane = 0; lane < batch.count; ++lane) {
-      row[lane] = batch.spheres[lane * batch.stride + i];
-    }
+    float* at = batch.lanes + 4 * n * i;
     Vector x, y, z, radius;  // no LaneSphere: its own constructor would not be compiled for this target
-    hn::LoadInterleaved4(kFloats, &row[0].x, x, y, z, radius);
+    if (batch.spheres == nullptr) {
+      x = hn::Load(kFloats, at);
+      y = hn::Load(kFloats, at + n);
+      z = hn::Load(kFloats, at + 2 * n);
+      radius = hn::Load(kFloats, at + 3 * n);
+    } else {
+      for (std::size_t lane = 0; lane < batch.count; ++lane) {
+        row[lane] = batch.spheres[lane * batch.stride + i];
+      }
+      hn::LoadInterleaved4(kFloats, &row[0].x, x, y, z, radius);
+    }
     if (batch.padding != nullptr) {
       radius = hn::Add(radius, hn::Set(kFloats, batch.padding[i]));
     }
     any_huge |= !hn::AllFalse(kFloats, hn::Gt(hn::Abs(radius), hn::Set(kFloats, kHugeRadius)));
-    float* at = batch.lanes + 4 * n * i;
     hn::Store(x, kFloats, at);
     hn::Store(y, kFloats, at + n);
     hn::Store(z, kFloats, at + 2 * n);

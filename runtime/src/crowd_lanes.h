@@ -15,13 +15,13 @@ inline constexpr std::size_t kMostLanes = 16;
 
 // Instances [0, count), count at most the target's lanes.
 struct LaneBatch {
-  const Sphere* spheres = nullptr;
+  const Sphere* spheres = nullptr;  // null: `lanes` has them already
   std::size_t stride = 0, count = 0, sphere_count = 0;
   const float* padding = nullptr;         // may be null
   const std::uint64_t* wanted = nullptr;  // a bit a pair, in the order of Asset::ignored(): to be tested; no near pair
   Span<const NearPair> near;
   const std::uint64_t* near_wanted = nullptr;  // a bit each
-  float* lanes = nullptr;                      // scratch, aligned to 64 bytes: 4 * kMostLanes floats a sphere
+  float* lanes = nullptr;  // scratch, aligned to 64 bytes: x, y, z and radius of each sphere, a register each
   // Out. Each instance's table of bits, bit_words each; the words are 0 before.
   std::uint64_t* bits = nullptr;
   std::size_t bit_words = 0;

@@ -161,6 +161,9 @@ TEST_CASE("a crowd takes a filter as a single job does") {
 
 TEST_CASE("bones in, pairs out: a crowd of skeletons gives the pairs of its refitted spheres, morphed or not") {
   TinyAsset tiny = random_asset(60, 8);
+  give_pivots(tiny, 5, 19, 2);  // three groups of eight, the last with spare lanes
+  give_pivots(tiny, 7, 1, 3);
+  give_pivots(tiny, 8, 16, 4);
   add_bones(tiny, 9, 8);
   const OpenedAsset opened(tiny.parts);
   REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
@@ -234,6 +237,46 @@ TEST_CASE("bones in, pairs out: a crowd of skeletons gives the pairs of its refi
   run.job.bones = {matrices.data(), 9, MatrixLayout::kRowMajor3x4, 48};
   run.job.instance_stride = kStride;
   CHECK(run.job.run() == Status::kNotInAsset);
+}
+
+TEST_CASE("a crowd takes matrices of every layout, and reads none but theirs") {
+  TinyAsset tiny = random_asset(40, 9);
+  add_bones(tiny, 5, 9);
+  const OpenedAsset opened(tiny.parts);
+  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
+  constexpr std::size_t kInstances = 21;
+  std::vector<CrowdPair> wanted;
+  for (const MatrixLayout layout : {MatrixLayout::kRowMajor3x4, MatrixLayout::kRowMajor4x4,
+                                    MatrixLayout::kColumnMajor4x4, MatrixLayout::kColumnMajor3x4}) {
+    const std::size_t floats = size_of(layout) / 4;
+    std::vector<float> matrices(kInstances * 5 * floats, std::numeric_limits<float>::quiet_NaN());
+    for (std::size_t i = 0; i < kInstances; ++i) {
+      const std::vector<Matrix> own = random_matrices(5, static_cast<unsigned>(i));
+      for (std::size_t at = 0; at < 5 * 12; ++at) {
+        const std::size_t row = at % 12 / 4, column = at % 4;
+        const std::size_t place = layout == MatrixLayout::kColumnMajor4x4   ? 4 * column + row
+                                  : layout == MatrixLayout::kColumnMajor3x4 ? 3 * column + row
+                                                                            : 4 * row + column;
+        matrices[(i * 5 + at / 12) * floats + place] = own[at / 12][at % 12];
+      }
+    }
+    for (const Target target : supported_targets()) {
+      std::mt19937 random(1);
+      const Crowd crowd(opened.asset, kInstances, 0, random);
+      Run run(crowd, 1);
+      std::vector<CrowdPair> pairs(kInstances * 40 * 40);
+      run.job.spheres = nullptr;
+      run.job.bones = {matrices.data(), 5, layout, size_of(layout)};
+      run.job.instance_stride = 5 * size_of(layout);
+      run.job.target = target;
+      run.job.pairs = {pairs.data(), pairs.size()};
+      REQUIRE(run.job.run() == Status::kOk);
+      pairs.resize(run.job.pair_count);
+      if (wanted.empty()) wanted = pairs;
+      CHECK(pairs.size() > 20);
+      CHECK(pairs == wanted);
+    }
+  }
 }
 
 TEST_CASE("a crowd's overflow writes the first pairs and says how many there are") {

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: MIT
+// A matrix's figure is a register, one instance a lane; a pivot's is the same for all of them.
+#include "crowd_refit.h"
+
+#include <hwy/cache_control.h>
+
+#include <cstring>
+
+#include "arithmetic.h"
+#include "simd.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "crowd_refit.cpp"
+#include "highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace spherechain {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::ScalableTag<float>;
+using Vector = hn::Vec<Floats>;
+constexpr std::size_t kLanes = hn::MaxLanes(Floats());
+
+// Pivots at a time: three sums each, four figures of the matrix and of the pivot; targets of sixteen registers have
+// those.
+constexpr std::size_t kAtATime = 4;
+
+// Four figures of each instance, `stride` floats apart; 0 for the instances that are not there.
+HWY_INLINE void load_four(const float* from, std::size_t stride, std::size_t count, Vector (&out)[4]) {
+  HWY_ALIGN float rows[kLanes][4] = {};
+  for (std::size_t lane = 0; lane < count; ++lane) {
+    std::memcpy(rows[lane], from + lane * stride, sizeof rows[lane]);
+  }
+  hn::LoadInterleaved4(Floats(), rows[0], out[0], out[1], out[2], out[3]);
+}
+
+// By bone, row and column.
+HWY_INLINE void transpose(const LaneRefit& batch) {
+  constexpr Floats kFloats;
+  const MatrixLayout layout = batch.inputs.layout;
+  const bool by_rows = layout == MatrixLayout::kRowMajor3x4 || layout == MatrixLayout::kRowMajor4x4;
+  const std::size_t quads = layout == MatrixLayout::kColumnMajor4x4 ? 4 : 3;
+  std::size_t places[16];  // of a matrix's figures, as they come
+  for (std::size_t i = 0; i < 4 * quads; ++i) {
+    const std::size_t column_size = quads == 4 ? 4 : 3;
+    const std::size_t row = i % column_size, column = i / column_size;
+    places[i] = by_rows ? i : row < 3 ? 4 * row + column : kMatrixFloats;
+  }
+  for (std::size_t bone = 0; bone < batch.bone_count; ++bone) {
+    const float* matrix = batch.inputs.matrices + bone * batch.inputs.stride;
+    float* const out = batch.matrices + bone * kMatrixFloats * kLanes;
+    for (std::size_t quad = 0; quad < quads; ++quad) {
+      Vector figures[4];
+      load_four(matrix + 4 * quad, batch.instance_stride, batch.count, figures);
+      for (std::size_t i = 0; i < 4; ++i) {
+        const std::size_t place = places[4 * quad + i];
+        if (place < kMatrixFloats) {
+          hn::Store(figures[i], kFloats, out + place * kLanes);
+        }
+      }
+    }
+  }
+  if (batch.inputs.morph_weights != nullptr) {
+    for (std::size_t target = 0; target < batch.morph_count; ++target) {
+      float* const out = batch.morph_weights + target * kLanes;
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        out[lane] = lane < batch.count ? batch.inputs.morph_weights[lane * batch.morph_count + target] : 0;
+      }
+    }
+  }
+}
+
+struct GroupPlace {
+  std::size_t term, morph_term;
+};
+
+// What the columns kFirst and kFirst + 2 of a term's matrix add to pivots [first, first + kAtATime) of its group.
+template <bool kMorphs, std::size_t kFirst>
+HWY_INLINE void add_columns(const LaneRefit& batch, const GroupPlace& at, std::size_t first,
+                            Vector (&sums)[3][kAtATime]) {
+  constexpr Floats kFloats;
+  const BoneRefitInputs& in = batch.inputs;
+  const BoneTerm& term = in.terms[at.term];
+  const float* matrix = batch.matrices + in.term_bones[at.term] * kMatrixFloats * kLanes;
+  const float* const columns[] = {term.x + first, term.y + first, term.z + first, term.w + first};
+  for (std::size_t column = kFirst; column < 4; column += 2) {
+    const Vector m0 = hn::Load(kFloats, matrix + column * kLanes),
+                 m1 = hn::Load(kFloats, matrix + (4 + column) * kLanes),
+                 m2 = hn::Load(kFloats, matrix + (8 + column) * kLanes);
+    for (std::size_t k = 0; k < kAtATime; ++k) {
+      Vector q = hn::Set(kFloats, columns[column][k]);
+      if (kMorphs && column < 3) {
+        for (std::size_t i = 0; i < in.morph_term_counts[at.term]; ++i) {
+          const MorphTerm& morph = in.morph_terms[at.morph_term + i];
+          const float* const deltas[] = {morph.x, morph.y, morph.z};
+          const float* weight = batch.morph_weights + in.morph_targets[at.morph_term + i] * kLanes;
+          q = fused(kFloats, hn::Load(kFloats, weight), hn::Set(kFloats, deltas[column][first + k]), q);
+        }
+      }
+      sums[0][k] = fused(kFloats, m0, q, sums[0][k]);
+      sums[1][k] = fused(kFloats, m1, q, sums[1][k]);
+      sums[2][k] = fused(kFloats, m2, q, sums[2][k]);
+    }
+  }
+}
+
+// The sums over a group's terms of two columns. Returns where the next group starts.
+template <bool kMorphs, std::size_t kFirst>
+HWY_INLINE GroupPlace sum_columns(const LaneRefit& batch, GroupPlace at, std::size_t end, std::size_t first,
+                                  Vector (&sums)[3][kAtATime]) {
+  constexpr Floats kFloats;
+  for (std::size_t k = 0; k < kAtATime; ++k) {
+    sums[0][k] = sums[1][k] = sums[2][k] = hn::Zero(kFloats);
+  }
+  for (; at.term < end; ++at.term) {
+    add_columns<kMorphs, kFirst>(batch, at, first, sums);
+    at.morph_term += kMorphs ? batch.inputs.morph_term_counts[at.term] : 0;
+  }
+  return at;
+}
+
+// The centroids of a group's first `used` pivots; those of spare lanes are 0.
+template <bool kMorphs>
+HWY_INLINE void move_group(const LaneRefit& batch, std::size_t group, std::size_t used, GroupPlace& at,
+                           Vector (&out)[3][kPivotLanes]) {
+  constexpr Floats kFloats;
+  const std::size_t end = at.term + batch.inputs.term_counts[group];
+  GroupPlace next = at;
+  for (std::size_t first = 0; first < kPivotLanes; first += kAtATime) {
+    if (first >= used) {
+      for (std::size_t k = 0; k < kAtATime; ++k) {
+        out[0][first + k] = out[1][first + k] = out[2][first + k] = hn::Zero(kFloats);
+      }
+      continue;
+    }
+    Vector even[3][kAtATime];
+    sum_columns<kMorphs, 0>(batch, at, end, first, even);
+    for (std::size_t k = 0; k < kAtATime; ++k) {
+      for (std::size_t row = 0; row < 3; ++row) {
+        out[row][first + k] = even[row][k];
+      }
+    }
+    Vector odd[3][kAtATime];
+    next = sum_columns<kMorphs, 1>(batch, at, end, first, odd);
+    for (std::size_t k = 0; k < kAtATime; ++k) {
+      for (std::size_t row = 0; row < 3; ++row) {
+        out[row][first + k] = hn::Add(out[row][first + k], odd[row][k]);
+      }
+    }
+  }
+  at = next;
+}
+
+HWY_INLINE Vector tree(const Vector (&v)[kPivotLanes]) {
+  return hn::Add(hn::Add(hn::Add(v[0], v[4]), hn::Add(v[2], v[6])), hn::Add(hn::Add(v[1], v[5]), hn::Add(v[3], v[7])));
+}
+
+// Fetches the matrices of the next call's instances, a few lines of the cache at a time.
+class Fetcher {
+ public:
+  HWY_INLINE explicit Fetcher(const LaneRefit& batch)
+      : next_(batch.inputs.matrices + batch.count * batch.instance_stride),
+        stride_(batch.instance_stride),
+        size_((batch.bone_count - 1) * batch.inputs.stride + kMatrixFloats),
+        left_(batch.next_count),
+        step_((batch.next_count * (size_ / kLine + 1) + batch.inputs.sphere_count - 1) / batch.inputs.sphere_count) {}
+
+  HWY_INLINE void fetch() {
+    for (std::size_t i = 0; i < step_ && left_ > 0; ++i) {
+      hwy::Prefetch(next_ + at_);
+      at_ += kLine;
+      if (at_ >= size_) {
+        at_ = 0;
+        next_ += stride_;
+        --left_;
+      }
+    }
+  }
+
+ private:
+  static constexpr std::size_t kLine = 16;  // floats
+  const float* next_;
+  std::size_t stride_, size_, left_, step_, at_ = 0;
+};
+
+// The header of RefitBonesJob has the arithmetic.
+template <bool kMorphs>
+HWY_INLINE void refit_all(const LaneRefit& batch) {
+  constexpr Floats kFloats;
+  const BoneRefitInputs& in = batch.inputs;
+  const bool calibrated = in.rule == RefitRule::kCalibrated, fit = in.radius == RadiusKind::kFit;
+  std::size_t group = 0;
+  GroupPlace at{0, 0};
+  Fetcher fetcher(batch);
+  for (std::size_t i = 0; i < in.sphere_count; ++i) {
+    fetcher.fetch();
+    const RestSphere& rest = in.rest[i];
+    const std::size_t pivot_count = rest.pivot_count, first_group = group;
+    const GroupPlace start = at;
+    Vector p[3][kPivotLanes], shares[3][kPivotLanes], distances[kPivotLanes], center[3];
+    for (std::size_t k = 0; k < pivot_count; k += kPivotLanes, ++group) {
+      move_group<kMorphs>(batch, group, pivot_count - k, at, p);
+      for (std::size_t lane = 0; lane < kPivotLanes; ++lane) {
+        const Vector weight = hn::Set(kFloats, in.weights[group].values[lane]);
+        for (std::size_t row = 0; row < 3; ++row) {
+          const Vector pivot = p[row][lane];
+          shares[row][lane] = k == 0 ? hn::Mul(weight, pivot) : fused(kFloats, weight, pivot, shares[row][lane]);
+        }
+      }
+    }
+    for (std::size_t row = 0; row < 3; ++row) {
+      center[row] = tree(shares[row]);
+    }
+    GroupPlace again = start;
+    for (std::size_t k = 0; k < pivot_count; k += kPivotLanes) {
+      if (pivot_count > kPivotLanes) {  // there is no memory to keep any number of centroids in
+        move_group<kMorphs>(batch, first_group + k / kPivotLanes, pivot_count - k, again, p);
+      }
+      for (std::size_t lane = 0; lane < kPivotLanes; ++lane) {
+        const Vector dx = hn::Sub(p[0][lane], center[0]), dy = hn::Sub(p[1][lane], center[1]),
+                     dz = hn::Sub(p[2][lane], center[2]);
+        const Vector square = fused(kFloats, dz, dz, fused(kFloats, dy, dy, hn::Mul(dx, dx)));
+        const Vector distance = k + lane < pivot_count ? hn::Sqrt(square) : hn::Zero(kFloats);
+        distances[lane] = k == 0 ? distance : hn::Add(distances[lane], distance);
+      }
+    }
+    const Vector mean = hn::Div(tree(distances), hn::Set(kFloats, static_cast<float>(pivot_count)));
+    const float wanted = fit ? rest.radius : rest.detect_radius;
+    const Vector radius = calibrated
+                              ? hn::Mul(hn::Set(kFloats, wanted), hn::Div(mean, hn::Set(kFloats, rest.pivot_spread)))
+                              : hn::Mul(mean, hn::Set(kFloats, wanted / rest.radius));
+    float* const out = batch.lanes + 4 * kLanes * i;
+    hn::Store(center[0], kFloats, out);
+    hn::Store(center[1], kFloats, out + kLanes);
+    hn::Store(center[2], kFloats, out + 2 * kLanes);
+    hn::Store(radius, kFloats, out + 3 * kLanes);
+  }
+}
+
+void refit_batch(const LaneRefit& batch) {
+  transpose(batch);
+  if (batch.inputs.morph_weights == nullptr) {
+    refit_all<false>(batch);
+  } else {
+    refit_all<true>(batch);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace spherechain
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace spherechain {
+namespace {
+
+SPHERECHAIN_KERNELS(refit_batch);
+
+}  // namespace
+
+void refit_lanes(Target resolved, const LaneRefit& batch) { refit_batch_kernels[index_of(resolved)](batch); }
+
+}  // namespace spherechain
+#endif
