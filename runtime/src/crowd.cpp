@@ -23,7 +23,7 @@ struct Layout {
       : bit_words(DetectJob::bit_words(asset)),
         near_words(
             words_for(std::max(asset.near_pairs(RadiusKind::kFit).size, asset.near_pairs(RadiusKind::kDetect).size))),
-        lane_words(asset.spheres().size * 4 * kMostLanes / 2),
+        lane_words(asset.spheres().size * kLaneFigures * kMostLanes / 2),
         bone_words(asset.bone_count() * kMatrixFloats * kMostLanes / 2),
         morph_words(asset.morph_count() * kMostLanes / 2),
         order_words(1 + asset.spheres().size / 2 + 1) {}
@@ -124,6 +124,14 @@ void list_instance(const std::uint64_t* bits, const Crowd& crowd, std::size_t in
   });
 }
 
+// Few pairs, listed as they were found.
+void list_few(Span<Pair> found, const Crowd& crowd, std::size_t instance, std::size_t at) {
+  std::sort(found.begin(), found.end());
+  for (std::size_t i = 0; i < found.size && at + i < crowd.job.pairs.size; ++i) {
+    crowd.job.pairs[at + i] = {static_cast<std::uint32_t>(instance), found[i]};
+  }
+}
+
 // Instances [first, first + batch.count).
 void refit_instances(const Crowd& crowd, std::size_t first, LaneRefit& batch) {
   const CrowdJob& job = crowd.job;
@@ -179,7 +187,8 @@ void run_task(void* data, std::size_t task) {
     refit.count = batch.count = std::min(crowd.lanes, end - first);
     refit.next_count = std::min(crowd.lanes, end - first - batch.count);
     batch.bits = job.bits.size > 0 ? job.bits.data + first * words : own_bits;
-    if (!crowd.list_only || job.bits.size == 0) {
+    const bool tests = !crowd.list_only || job.bits.size == 0;
+    if (tests) {
       if (job.bones.data != nullptr) {
         refit_instances(crowd, first, refit);
       }
@@ -192,7 +201,11 @@ void run_task(void* data, std::size_t task) {
         job.counts[first + lane] = batch.pair_counts[lane];
       }
       if (lists && job.counts[first + lane] > 0) {
-        list_instance(batch.bits + lane * words, crowd, first + lane, place, places);
+        if (tests && batch.pair_counts[lane] <= kMostListed) {
+          list_few({batch.listed[lane], batch.pair_counts[lane]}, crowd, first + lane, place);
+        } else {
+          list_instance(batch.bits + lane * words, crowd, first + lane, place, places);
+        }
         place += job.counts[first + lane];
       }
     }

@@ -12,20 +12,26 @@
 namespace spherechain {
 
 inline constexpr std::size_t kMostLanes = 16;
+// A sphere's registers: x, y, z, radius; and seen from the instance's first sphere x, y, z and -power, as
+// SphereColumns.
+inline constexpr std::size_t kLaneFigures = 8;
+// Up to this many pairs of an instance are listed as they are found.
+inline constexpr std::size_t kMostListed = 64;
 
 // Instances [0, count), count at most the target's lanes.
 struct LaneBatch {
-  const Sphere* spheres = nullptr;  // null: `lanes` has them already
+  const Sphere* spheres = nullptr;  // null: the first four of a sphere's `lanes` have them already
   std::size_t stride = 0, count = 0, sphere_count = 0;
   const float* padding = nullptr;         // may be null
   const std::uint64_t* wanted = nullptr;  // a bit a pair, in the order of Asset::ignored(): to be tested; no near pair
   Span<const NearPair> near;
   const std::uint64_t* near_wanted = nullptr;  // a bit each
-  float* lanes = nullptr;  // scratch, aligned to 64 bytes: x, y, z and radius of each sphere, a register each
+  float* lanes = nullptr;                      // scratch, aligned to 64 bytes: kLaneFigures registers a sphere
   // Out. Each instance's table of bits, bit_words each; the words are 0 before.
   std::uint64_t* bits = nullptr;
   std::size_t bit_words = 0;
   std::uint32_t pair_counts[kMostLanes] = {};
+  Pair listed[kMostLanes][kMostListed];  // each instance's pairs in some order, where there are not more
 };
 
 void test_lanes(Target resolved, LaneBatch& batch);

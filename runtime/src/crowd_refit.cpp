@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "arithmetic.h"
+#include "crowd_lanes.h"
 #include "simd.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -231,7 +232,7 @@ HWY_INLINE void refit_all(const LaneRefit& batch) {
     const Vector radius = calibrated
                               ? hn::Mul(hn::Set(kFloats, wanted), hn::Div(mean, hn::Set(kFloats, rest.pivot_spread)))
                               : hn::Mul(mean, hn::Set(kFloats, wanted / rest.radius));
-    float* const out = batch.lanes + 4 * kLanes * i;
+    float* const out = batch.lanes + kLaneFigures * kLanes * i;
     hn::Store(center[0], kFloats, out);
     hn::Store(center[1], kFloats, out + kLanes);
     hn::Store(center[2], kFloats, out + 2 * kLanes);

@@ -70,11 +70,9 @@ void fill(const Sphere* spheres, std::size_t count, const Sphere& origin, Sphere
 // most: 2 for each h, 7 for the sum of products (fused or not), each below 1.5 G, 1 for the comparison's side and 1 for
 // terms of second order; moving the spheres to the tile's origin costs 4; and that the rule's own squares are rounded,
 // by 8 u (rp + rq)^2 <= 32 u G, costs half of that. 33 u G in all, of which we allow 64; and 2^-120 for what underflows
-// or is flushed to 0. So no pair is missed; what the rule then says no to are the few within that margin.
-HWY_INLINE float margin_of(float extent) { return 0x1p-18F * extent + 0x1p-120F; }
-
-// Up to this extent nothing above, nor of the rule, overflows.
-constexpr float kMostExtent = 1e36F;
+// or is flushed to 0. So no pair is missed; what the rule then says no to are the few within that margin. Up to
+// kMostExtent nothing above, nor of the rule, overflows.
+HWY_INLINE float margin_of(float extent) { return kMarginOfExtent * extent + kLeastMargin; }
 
 // The first row that has pairs with the column of the tile and those after it: of the pairs (a, b) only those with a <
 // b.

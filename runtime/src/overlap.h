@@ -43,6 +43,9 @@ struct Tile {
   std::size_t hit_count = 0;
 };
 
+// What a test by multiply-adds may be off, and up to which extent it is of use: overlap.cpp has the proof.
+inline constexpr float kMarginOfExtent = 0x1p-18F, kLeastMargin = 0x1p-120F, kMostExtent = 1e36F;
+
 // Of the spheres in `mask`, the bits of `wanted` and those of `bits` between two of them, counted.
 struct MaskedCount {
   std::size_t wanted = 0, touching = 0;
