@@ -30,11 +30,11 @@ HWY_INLINE Vector fill_vector(const float* spheres, const Sphere& origin, Vector
   z = hn::Sub(z, hn::Set(kFloats, origin.z));
   const Vector squared_radius = hn::Mul(radius, radius);
   const Vector squared_length = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
-  hn::Store(x, kFloats, columns.x + i);
-  hn::Store(y, kFloats, columns.y + i);
-  hn::Store(z, kFloats, columns.z + i);
-  hn::Store(radius, kFloats, columns.radius + i);
-  hn::Store(hn::Mul(hn::Set(kFloats, 0.5F), hn::Sub(squared_length, squared_radius)), kFloats, columns.power + i);
+  hn::StoreU(x, kFloats, columns.x + i);
+  hn::StoreU(y, kFloats, columns.y + i);
+  hn::StoreU(z, kFloats, columns.z + i);
+  hn::StoreU(radius, kFloats, columns.radius + i);
+  hn::StoreU(hn::Mul(hn::Set(kFloats, 0.5F), hn::Sub(squared_length, squared_radius)), kFloats, columns.power + i);
   const Vector own = hn::Add(squared_length, squared_radius);
   // NaN becomes infinite, so that it stays.
   const Vector known = hn::IfThenElse(hn::Le(own, hn::Set(kFloats, FLT_MAX)), own, hn::Inf(kFloats));
@@ -49,19 +49,22 @@ void fill(const Sphere* spheres, std::size_t count, const Sphere& origin, Sphere
   for (; i + lanes <= count; i += lanes) {
     extent = fill_vector(&spheres[i].x, origin, extent, columns, i);
   }
-  for (; i < count || i % kBlock != 0; i += lanes) {
-    Sphere rest[hn::MaxLanes(kFloats)];  // the lanes past the end are never asked for
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      rest[lane] = i + lane < count ? spheres[i + lane] : origin;
+  const std::size_t whole = i;
+  for (; i < count || i % kBlock != 0; i += lanes) {  // the lanes past the end are never asked for
+    for (float* column : {columns.x, columns.y, columns.z, columns.radius, columns.power}) {
+      hn::Store(hn::Zero(kFloats), kFloats, column + i);
     }
-    extent = fill_vector(&rest[0].x, origin, extent, columns, i);
   }
-  HWY_ALIGN float lane_extents[hn::MaxLanes(kFloats)];
-  hn::Store(extent, kFloats, lane_extents);
-  columns.extent = 0;
-  for (const float lane : lane_extents) {
-    columns.extent = lane > columns.extent ? lane : columns.extent;
+  if (whole < count && count >= lanes) {
+    extent = fill_vector(&spheres[count - lanes].x, origin, extent, columns, count - lanes);
+  } else if (whole < count) {
+    Sphere rest[hn::MaxLanes(kFloats)];
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      rest[lane] = lane < count ? spheres[lane] : origin;
+    }
+    extent = fill_vector(&rest[0].x, origin, extent, columns, 0);
   }
+  columns.extent = hn::GetLane(hn::MaxOfLanes(kFloats, extent));
 }
 
 // How much a pair's test below may be off. With p and q as the tile has them, h(p) = (|p|^2 - rp^2) / 2 and u = 2^-24,
@@ -80,6 +83,8 @@ HWY_INLINE std::size_t first_row_of(const Tile& tile, std::size_t column) {
   const std::size_t after = tile.first_column + column + 1;
   return after > tile.first_row ? after - tile.first_row : 0;
 }
+
+#if HWY_TARGET != HWY_AVX3
 
 // Sets at least the bits of the pairs that touch; and of other pairs, those of the columns after the row too.
 HWY_INLINE void find_candidates(const Tile& tile, float extent) {
@@ -122,11 +127,13 @@ HWY_INLINE void find_candidates(const Tile& tile, float extent) {
   }
 }
 
-// 64 bits from the `at`th on; those past the end are 0.
+#endif
+
+// 64 bits from the `at`th on; those past the end are any.
 HWY_INLINE std::uint64_t bits_at(const std::uint64_t* words, std::size_t size, std::size_t at) {
   const std::size_t word = at / 64;
   const std::size_t shift = at % 64;
-  const std::uint64_t next = word + 1 < size ? words[word + 1] : 0;
+  const std::uint64_t next = words[word + (word + 1 < size ? 1 : 0)];
   return (words[word] >> shift) | ((next << 1) << (63 - shift));
 }
 
@@ -183,6 +190,133 @@ HWY_INLINE void keep_wanted(Tile& tile) {
   tile.hit_count = hit_count;
 }
 
+#if HWY_TARGET == HWY_AVX3
+
+// Counts of what test_rows found so far.
+struct Found {
+  std::size_t tests, hits;
+};
+
+// find_candidates and keep_wanted of rows [r, end) and the first kBlocks blocks of the word's columns, which the
+// registers hold all of.
+template <std::size_t kBlocks, bool kStoresWanted, bool kAllEnabled>
+HWY_INLINE void test_rows(const Tile& tile, std::size_t word, std::size_t r, std::size_t end, Vector margin,
+                          std::uint8_t* hits, Found& found) {
+  constexpr Floats kFloats;
+  static_assert(hn::MaxLanes(kFloats) == kBlock, "a block a register");
+  Vector x[kBlocks], y[kBlocks], z[kBlocks], radius[kBlocks], start[kBlocks];
+  for (std::size_t block = 0; block < kBlocks; ++block) {
+    const std::size_t at = 64 * word + block * kBlock;
+    x[block] = hn::Load(kFloats, tile.columns->x + at);
+    y[block] = hn::Load(kFloats, tile.columns->y + at);
+    z[block] = hn::Load(kFloats, tile.columns->z + at);
+    radius[block] = hn::Load(kFloats, tile.columns->radius + at);
+    start[block] = hn::Sub(margin, hn::Load(kFloats, tile.columns->power + at));
+  }
+  const SphereColumns& rows = *tile.rows;
+  const std::uint64_t* const ignored = tile.ignored;
+  const std::size_t ignored_words = tile.ignored_words;
+  std::uint64_t(*const bits)[kTileWords] = tile.bits;
+  const std::size_t columns_left = tile.column_count - 64 * word;
+  const std::size_t most = columns_left < 64 ? columns_left : 64;
+  const std::size_t first_column = tile.first_column + 64 * word;
+  std::size_t below = tile.first_row + r - first_column;
+  std::size_t bit = (tile.first_row + r) * (tile.first_row + r - 1) / 2 + first_column;
+  std::size_t test_count = found.tests, hit_count = found.hits;
+  for (; r < end; ++r) {
+    const Vector px = hn::Set(kFloats, rows.x[r]), py = hn::Set(kFloats, rows.y[r]), pz = hn::Set(kFloats, rows.z[r]),
+                 pr = hn::Set(kFloats, rows.radius[r]), power = hn::Set(kFloats, rows.power[r]);
+    __mmask16 near[4] = {};
+    for (std::size_t block = 0; block < kBlocks; ++block) {
+      Vector sum = hn::MulAdd(px, x[block], start[block]);
+      sum = hn::MulAdd(py, y[block], sum);
+      sum = hn::MulAdd(pz, z[block], sum);
+      sum = hn::MulAdd(pr, radius[block], sum);
+      near[block] = hn::Gt(sum, power).raw;
+    }
+    const std::uint64_t candidates =
+        kBlocks == 1 ? near[0] : _mm512_kunpackd(_mm512_kunpackw(near[3], near[2]), _mm512_kunpackw(near[1], near[0]));
+    const std::size_t count = below < most ? below : most;
+    std::uint64_t wanted = (~std::uint64_t{0} >> (64 - count)) & ~bits_at(ignored, ignored_words, bit);
+    if (!kAllEnabled) {
+      wanted &= tile.enabled_columns[word] & (0 - ((tile.enabled_rows[r / 64] >> (r % 64)) & 1U));
+    }
+    bit += first_column + below;  // the row's own number
+    ++below;
+    test_count += hwy::PopCount(wanted);
+    if (kStoresWanted) {
+      tile.wanted[r][word] = wanted;
+    }
+    const std::uint64_t kept = candidates & wanted;
+    bits[r][word] = kept;
+    hits[hit_count] = static_cast<std::uint8_t>(kTileWords * r + word);
+    hit_count += kept != 0 ? 1 : 0;
+  }
+  found.tests = test_count;
+  found.hits = hit_count;
+}
+
+// Rows with as many columns before them that they fill the same number of blocks are tested together.
+template <bool kStoresWanted, bool kAllEnabled>
+HWY_INLINE void find_in_registers(Tile& tile, float extent) {
+  const Vector margin = hn::Set(Floats(), margin_of(extent));
+  std::memset(tile.bits, 0, tile.row_count * sizeof tile.bits[0]);
+  if (kStoresWanted) {
+    std::memset(tile.wanted, 0, tile.row_count * sizeof tile.wanted[0]);
+  }
+  Found found{0, 0};
+  for (std::size_t word = 0; 64 * word < tile.column_count; ++word) {
+    const std::size_t columns_left = tile.column_count - 64 * word;
+    const std::size_t blocks = columns_left < 64 ? (columns_left + kBlock - 1) / kBlock : 64 / kBlock;
+    std::size_t r = first_row_of(tile, 64 * word);
+    for (std::size_t block = 1; block <= blocks; ++block) {
+      const std::size_t next = first_row_of(tile, 64 * word + block * kBlock);
+      const std::size_t end = block == blocks || next > tile.row_count ? tile.row_count : next;
+      if (r >= end) {
+        continue;
+      }
+      switch (block) {
+        case 1:
+          test_rows<1, kStoresWanted, kAllEnabled>(tile, word, r, end, margin, tile.hits, found);
+          break;
+        case 2:
+          test_rows<2, kStoresWanted, kAllEnabled>(tile, word, r, end, margin, tile.hits, found);
+          break;
+        case 3:
+          test_rows<3, kStoresWanted, kAllEnabled>(tile, word, r, end, margin, tile.hits, found);
+          break;
+        default:
+          test_rows<4, kStoresWanted, kAllEnabled>(tile, word, r, end, margin, tile.hits, found);
+          break;
+      }
+      r = end;
+    }
+  }
+  tile.test_count = found.tests;
+  tile.hit_count = found.hits;
+}
+
+template <bool kStoresWanted>
+HWY_INLINE void find_wanted(Tile& tile, float extent) {
+  const std::uint64_t enabled =
+      tile.enabled_columns[0] & tile.enabled_columns[1] & tile.enabled_rows[0] & tile.enabled_rows[1];
+  if (~enabled == 0) {
+    find_in_registers<kStoresWanted, true>(tile, extent);
+  } else {
+    find_in_registers<kStoresWanted, false>(tile, extent);
+  }
+}
+
+#else
+
+template <bool kStoresWanted>
+HWY_INLINE void find_wanted(Tile& tile, float extent) {
+  find_candidates(tile, extent);
+  keep_wanted<kStoresWanted>(tile);
+}
+
+#endif
+
 // The rule, as the header of the job states it.
 HWY_INLINE bool overlap(const Sphere& p, const Sphere& q) {
   const float dx = p.x - q.x;
@@ -206,19 +340,24 @@ HWY_INLINE void keep_touching(Tile& tile) {
   }
 }
 
-void test(Tile& tile) {
+template <bool kStoresWanted>
+HWY_INLINE void test_with(Tile& tile) {
   const float extent = tile.rows->extent > tile.columns->extent ? tile.rows->extent : tile.columns->extent;
   if (extent <= kMostExtent) {
-    find_candidates(tile, extent);
+    find_wanted<kStoresWanted>(tile, extent);
   } else {
     take_all_as_candidates(tile);
-  }
-  if (tile.wanted == nullptr) {
-    keep_wanted<false>(tile);
-  } else {
-    keep_wanted<true>(tile);
+    keep_wanted<kStoresWanted>(tile);
   }
   keep_touching(tile);
+}
+
+void test(Tile& tile) {
+  if (tile.wanted == nullptr) {
+    test_with<false>(tile);
+  } else {
+    test_with<true>(tile);
+  }
 }
 
 MaskedCount count(const Tile& tile, const std::uint64_t (&mask)[kTileWords]) {
