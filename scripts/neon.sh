@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# The runtime and its tests for 64-bit ARM, by Debian's cross compiler, run by qemu: NEON must give what x86 gives, down to the
-# golden hashes (tests/golden). `scripts/neon.sh [argument of test_runtime ...]`. Needs g++-aarch64-linux-gnu and qemu-user, which it installs
-# where it may; not part of test.sh.
+# The runtime's tests, its golden hashes (tests/golden) and some fuzzing for 64-bit ARM, by Debian's cross compiler, run by qemu:
+# NEON must give what x86 gives. `scripts/neon.sh [argument of test_runtime ...]`. Installs g++-aarch64-linux-gnu and qemu-user
+# where it may. A few minutes, nearly all of it compilation, so test.sh does without.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 

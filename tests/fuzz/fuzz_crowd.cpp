@@ -153,7 +153,7 @@ void spoil_crowd(Case& c, CrowdCall& call, std::uint32_t way, Spoiled& spoiled) 
       job.counts = {nullptr, job.instance_count};
       return spoiled.with(Status::kNullArgument);
     case 8:
-      if (job.instance_count > 1) {
+      if (job.instance_count > 1 && job.instance_count < 1000) {  // not spoiled above
         job.counts = {c.arena.add<std::uint32_t>(job.instance_count), c.random.up_to(job.instance_count - 2) + 1};
         spoiled.with(Status::kBadArgument);
       }
