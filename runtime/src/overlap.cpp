@@ -327,17 +327,27 @@ HWY_INLINE bool overlap(const Sphere& p, const Sphere& q) {
   return ((dx * dx + dy * dy) + dz * dz < squared_reach) & (squared_reach <= FLT_MAX);
 }
 
+// The words of `hits` that have bits left stay listed.
 HWY_INLINE void keep_touching(Tile& tile) {
-  for (std::size_t i = 0; i < tile.hit_count; ++i) {
-    const std::size_t r = tile.hits[i] / kTileWords, word = tile.hits[i] % kTileWords;
+  const Sphere* const column_spheres = tile.column_spheres;
+  const Sphere* const row_spheres = tile.row_spheres;
+  std::uint64_t(*const bits)[kTileWords] = tile.bits;
+  std::uint8_t* const hits = tile.hits;
+  const std::size_t candidate_count = tile.hit_count;
+  std::size_t hit_count = 0;
+  for (std::size_t i = 0; i < candidate_count; ++i) {
+    const std::size_t hit = hits[i], r = hit / kTileWords, word = hit % kTileWords;
+    const Sphere row = row_spheres[r];
     std::uint64_t touching = 0;
-    for (std::uint64_t left = tile.bits[r][word]; left != 0; left &= left - 1) {
+    for (std::uint64_t left = bits[r][word]; left != 0; left &= left - 1) {
       const std::size_t column = hwy::Num0BitsBelowLS1Bit_Nonzero64(left);
-      const bool found = overlap(tile.column_spheres[64 * word + column], tile.row_spheres[r]);
-      touching |= std::uint64_t{found} << column;
+      touching |= std::uint64_t{overlap(column_spheres[64 * word + column], row)} << column;
     }
-    tile.bits[r][word] = touching;
+    bits[r][word] = touching;
+    hits[hit_count] = static_cast<std::uint8_t>(hit);
+    hit_count += touching != 0 ? 1 : 0;
   }
+  tile.hit_count = hit_count;
 }
 
 template <bool kStoresWanted>
