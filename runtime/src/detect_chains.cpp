@@ -44,11 +44,17 @@ bool overlap(const Scene& scene, const Pair& pair) {
 
 using TileBits = std::uint64_t[kTileSize][kTileWords];
 
+// Both words in registers: in memory each sphere would wait for the one before.
 void mask_of(Span<const std::uint32_t> members, std::uint64_t (&mask)[kTileWords]) {
-  std::memset(mask, 0, sizeof mask);
+  static_assert(kTileWords == 2, "a low and a high word");
+  std::uint64_t low = 0, high = 0;
   for (const std::uint32_t sphere : members) {
-    mask[sphere / 64] |= std::uint64_t{1} << (sphere % 64);
+    const std::uint64_t bit = std::uint64_t{1} << (sphere % 64), is_high = sphere / 64;
+    low |= bit & (is_high - 1);
+    high |= bit & (0 - is_high);
   }
+  mask[0] = low;
+  mask[1] = high;
 }
 
 // The raw list of one chain: by its first sphere's place in the chain, then the second's.
@@ -81,8 +87,10 @@ void detect_in_one_tile(const Scene& scene, Result& result) {
   TileBits wanted;
   tile.set_columns(0);
   tile.run(0, wanted);
-  TileBits unique{};
-  for (std::size_t c = 0; c < scene.asset->chain_count(); ++c) {
+  TileBits unique;
+  std::memset(unique, 0, scene.size() * sizeof unique[0]);
+  const std::size_t chain_count = scene.asset->chain_count();
+  for (std::size_t c = 0; c < chain_count; ++c) {
     const Span<const std::uint32_t> members = scene.asset->chain(c).spheres;
     std::uint64_t mask[kTileWords];
     mask_of(members, mask);
@@ -103,12 +111,17 @@ void detect_in_one_tile(const Scene& scene, Result& result) {
     result.chain_pairs.count += counted.touching;
   }
   ColumnOrder order;
-  order.count(unique, scene.size());
+  for (const std::size_t hit : tile.hits()) {
+    order.count_word(unique[hit / kTileWords][hit % kTileWords], hit % kTileWords);
+  }
   if (result.pairs.buffer.size > 0) {
     order.begin_at(0);
-    order.place(unique, scene.size(), [&](std::size_t at, std::size_t a, std::size_t b) {
-      result.pairs.put(at, {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
-    });
+    for (const std::size_t hit : tile.hits()) {
+      const std::size_t row = hit / kTileWords, w = hit % kTileWords;
+      order.place_word(unique[row][w], w, row, [&](std::size_t at, std::size_t a, std::size_t b) {
+        result.pairs.put(at, {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
+      });
+    }
   }
   result.pairs.count = order.total();
   if (result.bits.size > 0) {
