@@ -122,15 +122,24 @@ HWY_INLINE GroupPlace sum_columns(const LaneRefit& batch, GroupPlace at, std::si
   return at;
 }
 
-// The centroids of a group's first `used` pivots; those of spare lanes are 0.
+// Two of the distances whose squares `roots` holds.
+HWY_INLINE void take_roots(std::size_t first, Vector (&roots)[kPivotLanes]) {
+  roots[first] = hn::Sqrt(roots[first]);
+  roots[first + 1] = hn::Sqrt(roots[first + 1]);
+}
+
+// The centroids of a group's first `used` pivots; those of spare lanes are 0. Meanwhile takes the square roots of eight
+// other figures, a few at a time: the unit that takes them is slow, and a register's worth of instances waits for none.
 template <bool kMorphs>
 HWY_INLINE void move_group(const LaneRefit& batch, std::size_t group, std::size_t used, GroupPlace& at,
-                           Vector (&out)[3][kPivotLanes]) {
+                           Vector (&roots)[kPivotLanes], Vector (&out)[3][kPivotLanes]) {
   constexpr Floats kFloats;
   const std::size_t end = at.term + batch.inputs.term_counts[group];
   GroupPlace next = at;
   for (std::size_t first = 0; first < kPivotLanes; first += kAtATime) {
     if (first >= used) {
+      take_roots(first, roots);
+      take_roots(first + 2, roots);
       for (std::size_t k = 0; k < kAtATime; ++k) {
         out[0][first + k] = out[1][first + k] = out[2][first + k] = hn::Zero(kFloats);
       }
@@ -143,6 +152,7 @@ HWY_INLINE void move_group(const LaneRefit& batch, std::size_t group, std::size_
         out[row][first + k] = even[row][k];
       }
     }
+    take_roots(first, roots);
     Vector odd[3][kAtATime];
     next = sum_columns<kMorphs, 1>(batch, at, end, first, odd);
     for (std::size_t k = 0; k < kAtATime; ++k) {
@@ -150,6 +160,7 @@ HWY_INLINE void move_group(const LaneRefit& batch, std::size_t group, std::size_
         out[row][first + k] = hn::Add(out[row][first + k], odd[row][k]);
       }
     }
+    take_roots(first + 2, roots);
   }
   at = next;
 }
@@ -186,23 +197,54 @@ class Fetcher {
   std::size_t stride_, size_, left_, step_, at_ = 0;
 };
 
-// The header of RefitBonesJob has the arithmetic.
+// A sphere's radius from its pivots' distances, summed over its groups.
+HWY_INLINE void finish(const LaneRefit& batch, std::size_t sphere, const Vector (&distances)[kPivotLanes]) {
+  constexpr Floats kFloats;
+  const BoneRefitInputs& in = batch.inputs;
+  const RestSphere& rest = in.rest[sphere];
+  const Vector mean = hn::Div(tree(distances), hn::Set(kFloats, static_cast<float>(rest.pivot_count)));
+  const float wanted = in.radius == RadiusKind::kFit ? rest.radius : rest.detect_radius;
+  const Vector radius = in.rule == RefitRule::kCalibrated
+                            ? hn::Mul(hn::Set(kFloats, wanted), hn::Div(mean, hn::Set(kFloats, rest.pivot_spread)))
+                            : hn::Mul(mean, hn::Set(kFloats, wanted / rest.radius));
+  hn::Store(radius, kFloats, batch.lanes + kLaneFigures * kLanes * sphere + 3 * kLanes);
+}
+
+// The squares of a group's distances from the centre; 0 for spare lanes.
+HWY_INLINE void square_distances(const Vector (&p)[3][kPivotLanes], const Vector (&center)[3], std::size_t used,
+                                 Vector (&squares)[kPivotLanes]) {
+  constexpr Floats kFloats;
+  for (std::size_t lane = 0; lane < kPivotLanes; ++lane) {
+    const Vector dx = hn::Sub(p[0][lane], center[0]), dy = hn::Sub(p[1][lane], center[1]),
+                 dz = hn::Sub(p[2][lane], center[2]);
+    squares[lane] = lane < used ? fused(kFloats, dz, dz, fused(kFloats, dy, dy, hn::Mul(dx, dx))) : hn::Zero(kFloats);
+  }
+}
+
+// The header of RefitBonesJob has the arithmetic. The distances of a sphere of one group are taken while the next
+// sphere is moved.
 template <bool kMorphs>
 HWY_INLINE void refit_all(const LaneRefit& batch) {
   constexpr Floats kFloats;
   const BoneRefitInputs& in = batch.inputs;
-  const bool calibrated = in.rule == RefitRule::kCalibrated, fit = in.radius == RadiusKind::kFit;
   std::size_t group = 0;
   GroupPlace at{0, 0};
   Fetcher fetcher(batch);
+  Vector p[3][kPivotLanes], shares[3][kPivotLanes], center[3], roots[kPivotLanes], distances[kPivotLanes];
+  for (Vector& root : roots) {
+    root = hn::Zero(kFloats);
+  }
+  bool is_waiting = false;  // the sphere before, for its `roots`
   for (std::size_t i = 0; i < in.sphere_count; ++i) {
     fetcher.fetch();
-    const RestSphere& rest = in.rest[i];
-    const std::size_t pivot_count = rest.pivot_count, first_group = group;
+    const std::size_t pivot_count = in.rest[i].pivot_count, first_group = group;
     const GroupPlace start = at;
-    Vector p[3][kPivotLanes], shares[3][kPivotLanes], distances[kPivotLanes], center[3];
     for (std::size_t k = 0; k < pivot_count; k += kPivotLanes, ++group) {
-      move_group<kMorphs>(batch, group, pivot_count - k, at, p);
+      move_group<kMorphs>(batch, group, pivot_count - k, at, roots, p);
+      if (is_waiting) {
+        finish(batch, i - 1, roots);
+        is_waiting = false;
+      }
       for (std::size_t lane = 0; lane < kPivotLanes; ++lane) {
         const Vector weight = hn::Set(kFloats, in.weights[group].values[lane]);
         for (std::size_t row = 0; row < 3; ++row) {
@@ -211,36 +253,39 @@ HWY_INLINE void refit_all(const LaneRefit& batch) {
         }
       }
     }
+    float* const out = batch.lanes + kLaneFigures * kLanes * i;
     for (std::size_t row = 0; row < 3; ++row) {
       center[row] = tree(shares[row]);
+      hn::Store(center[row], kFloats, out + row * kLanes);
+    }
+    if (pivot_count <= kPivotLanes) {
+      square_distances(p, center, pivot_count, roots);
+      is_waiting = true;
+      continue;
     }
     GroupPlace again = start;
-    for (std::size_t k = 0; k < pivot_count; k += kPivotLanes) {
-      if (pivot_count > kPivotLanes) {  // there is no memory to keep any number of centroids in
-        move_group<kMorphs>(batch, first_group + k / kPivotLanes, pivot_count - k, again, p);
-      }
+    for (std::size_t k = 0; k < pivot_count; k += kPivotLanes) {  // there is no memory to keep any number of them in
+      move_group<kMorphs>(batch, first_group + k / kPivotLanes, pivot_count - k, again, roots, p);
+      square_distances(p, center, pivot_count - k, roots);
       for (std::size_t lane = 0; lane < kPivotLanes; ++lane) {
-        const Vector dx = hn::Sub(p[0][lane], center[0]), dy = hn::Sub(p[1][lane], center[1]),
-                     dz = hn::Sub(p[2][lane], center[2]);
-        const Vector square = fused(kFloats, dz, dz, fused(kFloats, dy, dy, hn::Mul(dx, dx)));
-        const Vector distance = k + lane < pivot_count ? hn::Sqrt(square) : hn::Zero(kFloats);
+        const Vector distance = hn::Sqrt(roots[lane]);
         distances[lane] = k == 0 ? distance : hn::Add(distances[lane], distance);
       }
     }
-    const Vector mean = hn::Div(tree(distances), hn::Set(kFloats, static_cast<float>(pivot_count)));
-    const float wanted = fit ? rest.radius : rest.detect_radius;
-    const Vector radius = calibrated
-                              ? hn::Mul(hn::Set(kFloats, wanted), hn::Div(mean, hn::Set(kFloats, rest.pivot_spread)))
-                              : hn::Mul(mean, hn::Set(kFloats, wanted / rest.radius));
-    float* const out = batch.lanes + kLaneFigures * kLanes * i;
-    hn::Store(center[0], kFloats, out);
-    hn::Store(center[1], kFloats, out + kLanes);
-    hn::Store(center[2], kFloats, out + 2 * kLanes);
-    hn::Store(radius, kFloats, out + 3 * kLanes);
+    finish(batch, i, distances);
+  }
+  if (is_waiting) {
+    for (std::size_t first = 0; first < kPivotLanes; first += 2) {
+      take_roots(first, roots);
+    }
+    finish(batch, in.sphere_count - 1, roots);
   }
 }
 
 void refit_batch(const LaneRefit& batch) {
+  if (batch.inputs.sphere_count == 0) {
+    return;
+  }
   transpose(batch);
   if (batch.inputs.morph_weights == nullptr) {
     refit_all<false>(batch);
