@@ -231,8 +231,8 @@ HWY_INLINE void refit_all(const LaneRefit& batch) {
   GroupPlace at{0, 0};
   Fetcher fetcher(batch);
   Vector p[3][kPivotLanes], shares[3][kPivotLanes], center[3], roots[kPivotLanes], distances[kPivotLanes];
-  for (Vector& root : roots) {
-    root = hn::Zero(kFloats);
+  for (std::size_t lane = 0; lane < kPivotLanes; ++lane) {
+    roots[lane] = distances[lane] = shares[0][lane] = shares[1][lane] = shares[2][lane] = hn::Zero(kFloats);
   }
   bool is_waiting = false;  // the sphere before, for its `roots`
   for (std::size_t i = 0; i < in.sphere_count; ++i) {
