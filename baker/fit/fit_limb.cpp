@@ -38,7 +38,10 @@ class LimbMarch {
   // The largest sphere around a point of the ring's plane that does not leave the skin: it touches.
   Ball sphere_at(double s) const {
     const Ring ring = cast(s);
-    Vec3 center = ring.section_centroid();
+    const Vec3 middle = ring.section_centroid();
+    Vec3 center = middle;
+    // Where the limb's own skin is open, the way out has no end: the section's does.
+    const double reach = ring.median_distance();
     double radius = skin_.closest(center).distance;
     // A compass search: the distance to the skin has one maximum in a section as round as a limb's.
     for (double step = 0.25 * radius; step > 1e-4 * radius;) {
@@ -46,7 +49,7 @@ class LimbMarch {
       for (const Vec3& direction : {ring.u, ring.v, Vec3(-ring.u), Vec3(-ring.v)}) {
         const Vec3 candidate = center + step * direction;
         const double distance = skin_.closest(candidate).distance;
-        if (distance > radius) {
+        if (distance > radius && (candidate - middle).norm() <= reach) {
           center = candidate;
           radius = distance;
           moved = true;

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "mesh/error.h"
 #include "motion/capture.h"
 #include "motion/clip.h"
 #include "motion/poses.h"
 #include "motion/sequence.h"
+#include "pipeline/pipeline.h"
 #include "wrap/closed_body.h"
 
 namespace spherechain::baker {
@@ -28,11 +28,9 @@ std::vector<Joint> joints_of(const Asset& asset) {
   return joints;
 }
 
-// What the source was read with when the asset was baked: other options give other vertices.
-ImportOptions import_options(const Asset& asset) {
-  const auto settings = nlohmann::json::parse(asset.info().settings, nullptr, false);
-  const auto attachments = settings.find("attachments");
-  return {attachments != settings.end() && *attachments == true};
+// What the asset was baked with: other options read other vertices, and another body may be closed.
+BakeSettings settings_of(const Asset& asset, const std::string& file) {
+  return make_settings("balanced", asset.info().settings, file);
 }
 
 }  // namespace
@@ -45,7 +43,10 @@ std::string MotionChoice::name() const {
 
 AnimatedAsset::AnimatedAsset(const std::string& asset, const std::string& source, const MotionChoice& motion,
                              const FrameChoice& frames)
-    : file_(open_asset(asset)), character_(import_character(source, import_options(file_.asset))), fps_(frames.fps) {
+    : file_(open_asset(asset)), fps_(frames.fps) {
+  const BakeSettings settings = settings_of(file_.asset, asset);
+  segment_settings_ = settings.segment;
+  character_ = import_character(source, settings.import);
   const std::vector<float> rest = pack(character_.source_positions);
   if (const Status status = check_source(file_.asset, rest.data(), rest.size() / 3); status != Status::kOk) {
     throw Error(ExitCode::kFile,
@@ -115,7 +116,9 @@ void AnimatedAsset::use_skin() {
 }
 
 void AnimatedAsset::use_rig(const std::vector<Joint>& joints) {
-  if (character_.rig.bones.empty()) close_body(character_);  // the one whose weights the bake took
+  if (character_.rig.bones.empty()) {
+    close_body(character_, segment_settings_);  // the one whose weights the bake took
+  }
   weights_ = rig_weights(character_, joints);
   for (const Joint& joint : joints) bone_names_.push_back(joint.name);
 }

@@ -9,7 +9,7 @@
 #include "motion/motion.h"
 #include "play/asset_file.h"
 #include "rig/rig.h"
-#include "segment/body_plan.h"
+#include "segment/segment.h"
 
 namespace spherechain::baker {
 
@@ -60,6 +60,7 @@ class AnimatedAsset {
 
   AssetFile file_;
   Character character_;
+  SegmentSettings segment_settings_;  // those of the bake
   std::vector<VertexWeights> weights_;
   std::vector<std::string> bone_names_;
   std::unique_ptr<Motion> motion_;

@@ -129,6 +129,9 @@ std::vector<Joint> place_joints(const Character& character, const Regions& regio
     chain(side, static_cast<int>(joints.size()) - 1, limbs[i], {"shoulder", "elbow", "wrist"});
   }
   for (const std::size_t i : {2U, 3U}) chain(i == 2 ? "left_" : "right_", 0, limbs[i], {"hip", "knee", "ankle"});
+  for (Joint& joint : joints) {
+    for (Vec3* p : {&joint.position, &joint.tail}) *p = p->cast<float>().cast<double>();
+  }
   return joints;
 }
 

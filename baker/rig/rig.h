@@ -18,7 +18,8 @@ struct Joint {
 };
 
 // Joints of a character without a skeleton, from its regions' centre lines: pelvis, spine, chest, neck, head, and on
-// either side (left_, right_) clavicle, shoulder, elbow, wrist, hip, knee, ankle.
+// either side (left_, right_) clavicle, shoulder, elbow, wrist, hip, knee, ankle. In single precision, as the asset has
+// them: its readers get the same weights from them.
 std::vector<Joint> place_joints(const Character& character, const Regions& regions);
 
 // Bone-heat weights of every vertex of a closed mesh (Baran and Popovic 2007, section 4). They depend on nothing else:

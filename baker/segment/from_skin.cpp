@@ -7,6 +7,7 @@
 
 #include "mesh/ring.h"
 #include "mesh/surface_query.h"
+#include "segment/islands.h"
 
 namespace spherechain::baker {
 namespace {
@@ -15,11 +16,11 @@ constexpr std::uint8_t kNoLimb = SkinRegions::kNoLimb;
 constexpr std::uint8_t kUnknown = 254;  // nothing moves it
 
 constexpr int kRays = 40;
-constexpr double kStep = 0.005;    // of the limb's length
+constexpr int kSteps = 200;        // along the limb
 constexpr double kWindow = 0.02;   // either side, for its direction
 constexpr double kOwnRays = 0.95;  // share of a ring's rays that meet the limb's own skin where it stands free
 constexpr double kShortest = 0.2;  // of the free part's length, of a limb before its hand or foot
-constexpr double kStartsBy = 0.5;  // of the limb's length: one that stands free nowhere before is cut at its joint
+constexpr int kStartsBy = 120;     // of its steps: a limb that stands free nowhere before is cut at its joint
 
 // Limb of each bone of the rig.
 std::vector<std::uint8_t> limb_of_bone(const SourceRig& rig, const Roles& roles) {
@@ -63,80 +64,37 @@ std::vector<std::uint8_t> dominant_limbs(const SourceRig& rig, const Roles& role
   return labels;
 }
 
-using Neighbours = std::vector<std::array<Index, 3>>;
-
-// Triangles joined over shared edges: where clothes meet in a seam of three triangles an edge, each is a part.
-std::vector<Index> parts_of(const Neighbours& neighbours) {
-  std::vector<Index> part(neighbours.size(), kNoIndex);
-  Index count = 0;
-  std::vector<Index> stack;
-  for (Index seed = 0; seed < neighbours.size(); ++seed) {
-    if (part[seed] != kNoIndex) continue;
-    part[seed] = count;
-    stack.push_back(seed);
-    while (!stack.empty()) {
-      const Index t = stack.back();
-      stack.pop_back();
-      for (const Index n : neighbours[t]) {
-        if (n == kNoIndex || part[n] != kNoIndex) continue;
-        part[n] = count;
-        stack.push_back(n);
-      }
-    }
-    ++count;
-  }
-  return part;
-}
-
-// On each part of the mesh, keeps each region's largest piece; every other piece joins the region it shares most of its
-// border with.
+// On each part of the mesh, keeps each region's largest island; every other one joins the region it shares most of its
+// border with. A part is what hangs together over edges: where clothes meet in a seam of three triangles an edge, each
+// is one.
 void join_islands(const Mesh& mesh, const Neighbours& neighbours, std::vector<std::uint8_t>& labels) {
-  std::vector<Index> piece_of(labels.size(), kNoIndex);
-  std::vector<std::vector<Index>> pieces;
-  for (Index seed = 0; seed < labels.size(); ++seed) {
-    if (piece_of[seed] != kNoIndex) continue;
-    const auto id = static_cast<Index>(pieces.size());
-    pieces.push_back({seed});
-    piece_of[seed] = id;
-    for (std::size_t head = 0; head < pieces[id].size(); ++head) {
-      for (const Index n : neighbours[pieces[id][head]]) {
-        if (n == kNoIndex || piece_of[n] != kNoIndex || labels[n] != labels[seed]) continue;
-        piece_of[n] = id;
-        pieces[id].push_back(n);
-      }
-    }
-  }
-  const std::vector<Index> parts = parts_of(neighbours);
+  const Islands islands = find_islands(mesh, neighbours, labels);
+  const std::vector<Index> parts =
+      find_islands(mesh, neighbours, std::vector<std::uint8_t>(labels.size(), 0)).of_triangle;
   using Region = std::pair<Index, std::uint8_t>;  // on a part
-  const auto region_of = [&](Index t) { return Region(parts[t], labels[t]); };
+  const auto region_of = [&](Index id) {
+    const Index t = islands.triangles[id][0];
+    return Region(parts[t], labels[t]);
+  };
   std::map<Region, std::pair<double, Index>> largest;
-  for (Index id = 0; id < pieces.size(); ++id) {
-    double area = 0;
-    for (const Index t : pieces[id]) area += triangle_area(mesh, t);
-    auto& kept = largest[region_of(pieces[id][0])];
-    if (area > kept.first) kept = {area, id};
+  for (Index id = 0; id < islands.triangles.size(); ++id) {
+    auto& kept = largest[region_of(id)];
+    if (islands.area[id] > kept.first) kept = {islands.area[id], id};
   }
   // From the largest on, so that an island in an island joins what its surroundings have become.
-  std::vector<Index> islands;
-  for (Index id = 0; id < pieces.size(); ++id) {
-    const Region region = region_of(pieces[id][0]);
-    if (region.second == kUnknown || largest[region].second != id) islands.push_back(id);
+  std::vector<Index> joining;
+  for (Index id = 0; id < islands.triangles.size(); ++id) {
+    const Region region = region_of(id);
+    if (region.second == kUnknown || largest[region].second != id) joining.push_back(id);
   }
-  std::stable_sort(islands.begin(), islands.end(),
-                   [&](Index l, Index r) { return pieces[l].size() > pieces[r].size(); });
-  for (const Index id : islands) {
-    std::map<std::uint8_t, double> border;
-    for (const Index t : pieces[id]) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Index n = neighbours[t][k];
-        if (n == kNoIndex || piece_of[n] == id || labels[n] == kUnknown) continue;
-        const Triangle& corners = mesh.triangles[t];
-        border[labels[n]] += (mesh.positions[corners[k]] - mesh.positions[corners[(k + 1) % 3]]).norm();
-      }
-    }
-    const auto longest = std::max_element(border.begin(), border.end(),
-                                          [](const auto& l, const auto& r) { return l.second < r.second; });
-    for (const Index t : pieces[id]) labels[t] = longest == border.end() ? kNoLimb : longest->first;
+  std::stable_sort(joining.begin(), joining.end(),
+                   [&](Index l, Index r) { return islands.triangles[l].size() > islands.triangles[r].size(); });
+  for (const Index id : joining) {
+    std::array<double, 256> border = border_lengths(mesh, neighbours, islands, labels, id);
+    border[kUnknown] = 0;
+    const auto longest = std::max_element(border.begin(), border.end());
+    const std::uint8_t label = *longest > 0 ? static_cast<std::uint8_t>(longest - border.begin()) : kNoLimb;
+    for (const Index t : islands.triangles[id]) labels[t] = label;
   }
 }
 
@@ -194,12 +152,12 @@ SkinLimb centre_line(const Mesh& mesh, const std::vector<Index>& own, const Role
   return {line, wrist < centred.size() ? line.closest(centred[wrist]) : line.length()};
 }
 
-// Arc length of the first ring that meets (almost) nothing but the limb; 0 where there is none in its first half.
+// Arc length of the first ring that meets (almost) nothing but the limb; 0 where there is none soon enough.
 double free_start(const SurfaceQuery& surface, const std::vector<std::uint8_t>& labels, std::uint8_t limb,
                   const Polyline& line, const Vec3& reference) {
   const double length = line.length();
-  for (int k = 0; k * kStep < kStartsBy; ++k) {
-    const double s = k * kStep * length;
+  for (int k = 0; k < kStartsBy; ++k) {
+    const double s = k * length / kSteps;
     const Ring ring = ring_at(surface, line.at(s), line.tangent(s, kWindow * length), reference);
     const auto own = std::count_if(ring.hits.begin(), ring.hits.end(),
                                    [&](const auto& hit) { return hit && labels[hit->triangle] == limb; });

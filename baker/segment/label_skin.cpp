@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "segment/islands.h"
+
 namespace spherechain::baker {
 namespace {
 
@@ -62,51 +64,26 @@ std::uint8_t nearest_label(const Character& character, const SurfaceQuery& surfa
 void join_small_islands(const Mesh& skin, std::vector<std::uint8_t>& labels) {
   constexpr double kSmall = 0.25;
   const Components pieces = connected_components(skin);
-  const std::vector<std::array<Index, 3>> neighbours = triangle_neighbours(skin);
-  std::vector<Index> island_of(labels.size(), kNoIndex);
-  std::vector<std::vector<Index>> islands;
-  std::vector<double> area;
+  const Neighbours neighbours = triangle_neighbours(skin);
+  const Islands islands = find_islands(skin, neighbours, labels);
+  const auto piece_of = [&](Index id) { return pieces.of_triangle[islands.triangles[id][0]]; };
+  const auto label_of = [&](Index id) { return labels[islands.triangles[id][0]]; };
   std::vector<std::array<double, 256>> largest(pieces.count);
   for (auto& of_region : largest) of_region.fill(0);
-  for (Index seed = 0; seed < labels.size(); ++seed) {
-    if (island_of[seed] != kNoIndex) continue;
-    const auto id = static_cast<Index>(islands.size());
-    islands.push_back({seed});
-    area.push_back(0);
-    island_of[seed] = id;
-    for (std::size_t head = 0; head < islands[id].size(); ++head) {
-      area[id] += triangle_area(skin, islands[id][head]);
-      for (const Index n : neighbours[islands[id][head]]) {
-        if (n == kNoIndex || island_of[n] != kNoIndex || labels[n] != labels[seed]) continue;
-        island_of[n] = id;
-        islands[id].push_back(n);
-      }
-    }
-    double& most = largest[pieces.of_triangle[seed]][labels[seed]];
-    most = std::max(most, area[id]);
+  for (Index id = 0; id < islands.area.size(); ++id) {
+    double& most = largest[piece_of(id)][label_of(id)];
+    most = std::max(most, islands.area[id]);
   }
   std::vector<Index> order;
-  for (Index id = 0; id < islands.size(); ++id) {
-    const Index seed = islands[id][0];
-    if (area[id] < kSmall * largest[pieces.of_triangle[seed]][labels[seed]]) order.push_back(id);
+  for (Index id = 0; id < islands.area.size(); ++id) {
+    if (islands.area[id] < kSmall * largest[piece_of(id)][label_of(id)]) order.push_back(id);
   }
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return area[a] < area[b]; });
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return islands.area[a] < islands.area[b]; });
   for (const Index id : order) {
-    std::array<double, 256> border{};
-    double total = 0;
-    for (const Index t : islands[id]) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Index n = neighbours[t][k];
-        if (n == kNoIndex || island_of[n] == id) continue;
-        const Triangle& v = skin.triangles[t];
-        const double length = (skin.positions[v[k]] - skin.positions[v[(k + 1) % 3]]).norm();
-        border[labels[n]] += length;
-        total += length;
-      }
-    }
-    if (!(total > 0)) continue;
-    const auto most = static_cast<std::uint8_t>(std::max_element(border.begin(), border.end()) - border.begin());
-    for (const Index t : islands[id]) labels[t] = most;
+    const std::array<double, 256> border = border_lengths(skin, neighbours, islands, labels, id);
+    const auto most = std::max_element(border.begin(), border.end());
+    if (!(*most > 0)) continue;
+    for (const Index t : islands.triangles[id]) labels[t] = static_cast<std::uint8_t>(most - border.begin());
   }
 }
 

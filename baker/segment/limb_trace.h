@@ -16,7 +16,8 @@ struct LimbTrace {
   Polyline line;     // from the innermost section of the limb's own to the tip
   Vec3 direction;    // along the line at its start
   double radius;     // the longest ray of the section there
-  double extremity;  // arc length of the narrowest section before hand or foot: wrist or ankle; where a tail's last ball stands
+  double extremity;  // arc length of the narrowest section before hand or foot: wrist or ankle; where a tail's last
+                     // ball stands
 };
 
 // `branch` comes from the torso. The limb starts outside the torso's maximal ball at the junction, at the innermost

@@ -7,6 +7,7 @@
 
 #include "mesh/error.h"
 #include "mesh/surface_query.h"
+#include "segment/islands.h"
 #include "segment/label_skin.h"
 #include "segment/limb_trace.h"
 #include "segment/limbed_plan.h"
@@ -15,8 +16,6 @@
 
 namespace spherechain::baker {
 namespace {
-
-using Neighbours = std::vector<std::array<Index, 3>>;
 
 // Half the width of the strip around a cut in which the loop may run, as a fraction of the height.
 constexpr double kStripHalfWidth = 0.015;
@@ -88,46 +87,30 @@ class LimbLabeller {
   double half_width_;
 };
 
-// Keeps each region's largest piece; every other piece joins the region it borders on most.
+// Keeps each region's largest island; every other one joins the region it borders on most.
 void join_islands(const Mesh& mesh, const Neighbours& neighbours, std::size_t regions,
                   std::vector<std::uint8_t>& labels) {
-  std::vector<Index> piece(labels.size(), kNoIndex);
-  std::vector<std::vector<Index>> pieces;
-  for (Index seed = 0; seed < labels.size(); ++seed) {
-    if (piece[seed] != kNoIndex) continue;
-    const auto id = static_cast<Index>(pieces.size());
-    pieces.push_back({seed});
-    piece[seed] = id;
-    for (std::size_t head = 0; head < pieces[id].size(); ++head) {
-      for (const Index n : neighbours[pieces[id][head]]) {
-        if (n == kNoIndex || piece[n] != kNoIndex || labels[n] != labels[seed]) continue;
-        piece[n] = id;
-        pieces[id].push_back(n);
-      }
-    }
-  }
+  const Islands islands = find_islands(mesh, neighbours, labels);
   std::vector<double> largest(regions, 0.0);
   std::vector<Index> keep(regions, kNoIndex);
-  for (Index id = 0; id < pieces.size(); ++id) {
-    double area = 0;
-    for (const Index t : pieces[id]) area += triangle_area(mesh, t);
-    const std::uint8_t region = labels[pieces[id][0]];
-    if (area > largest[region]) {
-      largest[region] = area;
+  for (Index id = 0; id < islands.triangles.size(); ++id) {
+    const std::uint8_t region = labels[islands.triangles[id][0]];
+    if (islands.area[id] > largest[region]) {
+      largest[region] = islands.area[id];
       keep[region] = id;
     }
   }
-  for (Index id = 0; id < pieces.size(); ++id) {
-    const std::uint8_t region = labels[pieces[id][0]];
+  for (Index id = 0; id < islands.triangles.size(); ++id) {
+    const std::uint8_t region = labels[islands.triangles[id][0]];
     if (keep[region] == id) continue;
     std::vector<int> votes(regions, 0);
-    for (const Index t : pieces[id]) {
+    for (const Index t : islands.triangles[id]) {
       for (const Index n : neighbours[t]) {
-        if (n != kNoIndex && piece[n] != id) ++votes[labels[n]];
+        if (n != kNoIndex && islands.of_triangle[n] != id) ++votes[labels[n]];
       }
     }
     const auto most = static_cast<std::uint8_t>(std::max_element(votes.begin(), votes.end()) - votes.begin());
-    for (const Index t : pieces[id]) labels[t] = most;
+    for (const Index t : islands.triangles[id]) labels[t] = most;
   }
 }
 

@@ -315,10 +315,10 @@ Regions segment_closed(Character& character, const SegmentSettings& settings, Cl
   return WrapSearch(character, settings, report, error).run();
 }
 
-void close_body(Character& character) {
+void close_body(Character& character, const SegmentSettings& settings) {
   if (is_whole(character) && is_all_of_skin(character)) return;
   ClosingReport report;
-  segment_closed(character, {}, report);
+  segment_closed(character, settings, report);
 }
 
 }  // namespace spherechain::baker

@@ -42,7 +42,7 @@ bool repair_body(Character& character, ClosingReport& report);
 // body it is, a biped is preferred. The body becomes what was segmented. Throws Error(kSegmentation) where none can be.
 Regions segment_closed(Character& character, const SegmentSettings& settings, ClosingReport& report);
 
-// Makes the body what segment_closed makes of it, for what depends on nothing else (bone heat).
-void close_body(Character& character);
+// Makes the body what segment_closed makes of it, for what depends on nothing else (bone heat). Throws as it does.
+void close_body(Character& character, const SegmentSettings& settings);
 
 }  // namespace spherechain::baker

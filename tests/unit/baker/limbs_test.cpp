@@ -156,7 +156,7 @@ TEST_CASE("a six-legged creature has three pairs from the front, each where it l
   }
 }
 
-TEST_CASE("a snake is one tubular chain from the tail's tip to the head") {
+TEST_CASE("a snake is one tubular chain from the tail's tip to the head" * doctest::test_suite("many bakes")) {
   const SourceMesh mesh = melt(snake_tubes(), 0.02);
   const Regions regions = segmented(mesh);
   REQUIRE(names(regions) == std::vector<std::string>{"body"});
