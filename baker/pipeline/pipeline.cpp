@@ -9,6 +9,7 @@
 
 #include "mesh/error.h"
 #include "segment/by_rig.h"
+#include "segment/islands.h"
 #include "write/write.h"
 
 namespace spherechain::baker {
@@ -32,30 +33,20 @@ void stage(Bake& out, const Progress& progress, const char* name, const Run& run
   out.times.push_back({name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
 }
 
-// A closed biped is segmented by its shape, which knows armpit and crotch best; all else by its rig, where there is
-// one, or by a closed surface made for it.
-void run_segment(Bake& out) {
-  const bool rigged = !out.roles.limbs.empty() && !out.character.rig.weights.empty();
-  const bool whole = is_whole(out.character);
-  if (!rigged) {
-    out.regions = segment_closed(out.character, out.settings.segment, out.closing);
-    return;
+// Whether less than half of the limbs' skin is of its limb's largest piece: then sections have gaps wherever they are.
+bool is_in_shards(const Mesh& skin, const Regions& regions) {
+  constexpr double kHangsTogether = 0.5;  // of the limbs' area
+  const Islands islands = find_islands(skin, triangle_neighbours(skin), regions.of_skin);
+  std::vector<double> largest(regions.limbs.size(), 0.0);
+  double all = 0, hangs_together = 0;
+  for (std::size_t i = 0; i < islands.area.size(); ++i) {
+    const std::uint8_t region = regions.of_skin[islands.triangles[i][0]];
+    if (region == regions.torso_region()) continue;
+    all += islands.area[i];
+    largest[region] = std::max(largest[region], islands.area[i]);
   }
-  if (whole && out.roles.kind == BodyKind::kBiped) {
-    try {
-      out.regions = segment(out.character, out.settings.segment);
-      return;
-    } catch (const Error& error) {
-      if (error.code() != ExitCode::kSegmentation) throw;
-    }
-  }
-  const BodyKind wanted = out.settings.segment.body;
-  if (wanted != BodyKind::kUnknown && out.roles.kind != wanted) {
-    throw Error(ExitCode::kSegmentation, out.character.file + ": the rig's limbs are no " + body_kind_name(wanted) +
-                                             "'s (inspect --roles says what its joints are)");
-  }
-  if (!whole) take_all_pieces(out.character);
-  out.regions = segment_by_rig(out.character, out.roles);
+  for (const double area : largest) hangs_together += area;
+  return hangs_together < kHangsTogether * all;
 }
 
 void run_after_fit(Bake& out, const Progress& progress) {
@@ -77,8 +68,8 @@ void run_after_fit(Bake& out, const Progress& progress) {
     out.bones = bind_bones(out.character, out.binding, out.joints, out.rig_weights);
   });
   stage(out, progress, "write", [&] {
-    out.asset =
-        serialize({out.character, out.regions, out.spheres, out.chains, out.binding, out.joints, out.bones, to_json(settings)});
+    out.asset = serialize(
+        {out.character, out.regions, out.spheres, out.chains, out.binding, out.joints, out.bones, to_json(settings)});
   });
 }
 
@@ -88,6 +79,28 @@ void run_fit(Bake& out, const Progress& progress) {
 
 }  // namespace
 
+Regions segment_character(Character& character, const Roles& roles, const SegmentSettings& settings,
+                          ClosingReport& closing) {
+  if (roles.limbs.empty() || character.rig.weights.empty()) return segment_closed(character, settings, closing);
+  const bool whole = is_whole(character);
+  if (whole && roles.kind == BodyKind::kBiped) {
+    try {
+      return segment(character, settings);
+    } catch (const Error& error) {
+      if (error.code() != ExitCode::kSegmentation) throw;
+    }
+  }
+  if (settings.body != BodyKind::kUnknown && roles.kind != settings.body) {
+    throw Error(ExitCode::kSegmentation, character.file + ": the rig's limbs are no " + body_kind_name(settings.body) +
+                                             "'s (inspect --roles says what its joints are)");
+  }
+  if (whole) return segment_by_rig(character, roles);
+  take_all_pieces(character);
+  Regions of_pieces = segment_by_rig(character, roles);
+  if (!is_in_shards(character.skin, of_pieces) || !wrap_body(character, closing)) return of_pieces;
+  return segment_by_rig(character, roles);
+}
+
 Bake bake(const std::filesystem::path& input, const BakeSettings& settings, const Progress& progress) {
   Bake out;
   out.settings = settings;
@@ -95,7 +108,8 @@ Bake bake(const std::filesystem::path& input, const BakeSettings& settings, cons
   stage(out, progress, "roles", [&] {
     out.roles = find_roles(out.character.rig, out.character.source_positions, settings.roles, settings.segment.body);
   });
-  stage(out, progress, "segment", [&] { run_segment(out); });
+  stage(out, progress, "segment",
+        [&] { out.regions = segment_character(out.character, out.roles, settings.segment, out.closing); });
   if (out.closing.seconds > 0) {
     out.times.back().seconds -= out.closing.seconds;
     out.times.insert(out.times.end() - 1, {"wrap", out.closing.seconds});

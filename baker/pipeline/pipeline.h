@@ -70,6 +70,11 @@ struct Bake {
   std::vector<StageTime> times;
 };
 
+// The stage `segment`. A closed biped is segmented by its shape, which knows armpit and crotch best; all else by its rig,
+// where there is one, or by a closed surface made for it. The body becomes what was segmented.
+Regions segment_character(Character& character, const Roles& roles, const SegmentSettings& settings,
+                          ClosingReport& closing);
+
 // Runs every stage. `progress` is told each stage's name before it runs; it may be empty.
 Bake bake(const std::filesystem::path& input, const BakeSettings& settings,
           const std::function<void(const std::string&)>& progress);

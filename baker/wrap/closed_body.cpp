@@ -101,6 +101,9 @@ struct Try {
 constexpr double kOffset = 0.05;
 constexpr double kOffsetLeft = 0.1;
 
+// A cape and hair are thin too, and no matter; with more than this the wrap lines the skin from inside.
+constexpr double kMostThin = 0.3;
+
 class Wrapper {
  public:
   Wrapper(Character& character, ClosingReport& report)
@@ -186,9 +189,6 @@ class WrapSearch {
                                              ": its triangles enclose no body (close the holes that are "
                                              "as wide as its limbs)");
   }
-
-  // A cape and hair are thin too, and no matter; with more than this the wrap lines the skin from inside.
-  static constexpr double kMostThin = 0.3;
 
   bool is_one_shape(const Try& with) {
     // Of the area: a human's wrap has 5,600 triangles at 60, and finer ones grow with the square.
@@ -284,6 +284,21 @@ bool repair_body(Character& character, ClosingReport& report) {
   character.body_source_triangle = std::move(source_triangle);
   report.body = BodySource::kRepaired;
   return true;
+}
+
+bool wrap_body(Character& character, ClosingReport& report) {
+  Character wrapped = character;
+  ClosingReport of_wrap = report;
+  of_wrap.body = BodySource::kWrapped;
+  Wrapper wrapper(wrapped, of_wrap);
+  for (const double fineness : {130.0, 90.0, 60.0}) {
+    if (!wrapper.wrap({fineness, false}) || of_wrap.thin > kMostThin) continue;
+    character = std::move(wrapped);
+    report = of_wrap;
+    return true;
+  }
+  report.seconds = of_wrap.seconds;
+  return false;
 }
 
 Regions segment_closed(Character& character, const SegmentSettings& settings, ClosingReport& report) {

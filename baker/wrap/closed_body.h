@@ -37,6 +37,10 @@ struct ClosingReport {
 // holes. Where that is not closed or not most of the skin it returns false, and the body stays as it was.
 bool repair_body(Character& character, ClosingReport& report);
 
+// Makes the body a wrap of the skin, where a rig says what its regions are. Where the holes are so wide that every wrap
+// lines the skin from inside it returns false, and the body stays as it was.
+bool wrap_body(Character& character, ClosingReport& report);
+
 // Segments by shape a character in any state: as it is where its body is whole, else its repaired body, else wraps of
 // its skin, the first whose gaps are closed and in which limbs and torso are apart. Where the settings do not say what
 // body it is, a biped is preferred. The body becomes what was segmented. Throws Error(kSegmentation) where none can be.

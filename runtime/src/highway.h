@@ -22,6 +22,11 @@
 #define HWY_BROKEN_EMU128 1
 #endif
 
+// Highway's own assertions, on in builds without optimisation, call hwy::Abort of libhwy.
+#if !defined(HWY_IS_DEBUG_BUILD)
+#define HWY_IS_DEBUG_BUILD 0
+#endif
+
 #if defined(HWY_TARGET_INCLUDE)
 #include <hwy/foreach_target.h>
 #endif

@@ -12,6 +12,7 @@
 #include <numeric>
 #include <random>
 
+#include "baked_human.h"
 #include "bind/bind.h"
 #include "broken_body.h"
 #include "closed_shapes.h"
@@ -153,7 +154,59 @@ SourceMesh random_triangles(std::size_t count, double size, unsigned seed) {
   return mesh;
 }
 
+// Its joints as a file's skeleton: a node and a bone each.
+SourceRig rig_of(const std::vector<Joint>& joints) {
+  SourceRig rig;
+  for (const Joint& joint : joints) {
+    Node node;
+    node.name = joint.name;
+    node.parent = joint.parent;
+    node.translation = joint.parent < 0
+                           ? joint.position
+                           : Vec3(joint.position - joints[static_cast<std::size_t>(joint.parent)].position);
+    node.local.translation() = node.translation;
+    Affine inverse_bind = Affine::Identity();
+    inverse_bind.translation() = -joint.position;
+    rig.bones.push_back({static_cast<Index>(rig.nodes.size()), inverse_bind});
+    rig.nodes.push_back(node);
+  }
+  return rig;
+}
+
 }  // namespace
+
+TEST_CASE("a rigged body in 60 pieces, none as large as a limb, is segmented by its rig on a wrap" *
+          doctest::test_suite("many bakes")) {
+  BrokenBody broken = intact_body();
+  const std::vector<Triangle> intact_corners = broken.source.triangles;
+  const std::vector<Joint>& joints = baked_human().joints;
+  const std::vector<VertexWeights> weights =
+      bone_heat_weights({broken.source.positions, broken.source.triangles}, joints);
+  cut_into_pieces(broken, 60, 0.03);
+  broken.source.rig = rig_of(joints);
+  broken.source.rig.weights.resize(broken.source.positions.size());
+  for (std::size_t t = 0; t < intact_corners.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      broken.source.rig.weights[broken.source.triangles[t][k]] = weights[intact_corners[t][k]];
+    }
+  }
+
+  Closed closed;
+  closed.character = build_character(broken.source, "rigged.obj");
+  const Roles roles = find_roles(closed.character.rig, closed.character.source_positions);
+  closed.regions = segment_character(closed.character, roles, {}, closed.report);
+  CHECK(closed.regions.provider == "rig");
+  CHECK(closed.report.body == BodySource::kWrapped);
+  CHECK(count_open_edges(closed.character.body) == 0);
+  closed.spheres = fit_spheres(closed.character, closed.regions, {});
+  const double equal = agreement(broken, closed);
+  CHECK(equal >= 0.95);
+  const Distance distance = distance_from_intact(closed);
+  CHECK(distance.mean <= 0.01);
+  CHECK(distance.max <= 0.04);
+  MESSAGE(fmt::format("{:.2f} % of the area agrees; spheres off by {:.2f} % of the height, at most {:.2f} %",
+                      100 * equal, 100 * distance.mean, 100 * distance.max));
+}
 
 TEST_CASE("a closed surface of one piece is left as it is") {
   const Closed closed = close(intact_body().source);
