@@ -163,6 +163,7 @@ class WrapSearch {
     report_.body = BodySource::kWrapped;
     // A coarse wrap is quick, and tells a character from a cloud of triangles.
     constexpr Try kCoarse{60, false};
+    constexpr double kOfHuman = 6000;  // triangles at 60; stouter bodies have more, and shorter limbs to tell apart
     if (!is_one_shape(kCoarse)) refuse();
     if (report_.thin > kMostThin) {
       // Through holes wider than the ball, and finer wraps would be slow: holes closed by fans, or larger balls.
@@ -170,9 +171,12 @@ class WrapSearch {
         if (attempt(with) == Outcome::kGood) break;
       }
     } else {
-      const Outcome first = attempt({130, false});
+      const double usual = 130 * std::min(1.0, std::sqrt(kOfHuman / static_cast<double>(report_.triangles)));
+      const Outcome first = attempt({usual, false});
+      const double finest =
+          usual * std::sqrt(static_cast<double>(Wrapper::kMostTriangles) / static_cast<double>(report_.triangles));
       for (const double fineness : {200.0, 90.0, 60.0}) {
-        if (first == Outcome::kGood || (first == Outcome::kLeaks && fineness > 130)) continue;
+        if (first == Outcome::kGood || (first == Outcome::kLeaks && fineness > usual) || fineness > finest) continue;
         if (attempt({fineness, false}) == Outcome::kGood) break;
       }
     }
