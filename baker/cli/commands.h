@@ -32,6 +32,14 @@ struct PlayOptions {
 };
 ExitCode run_play(const PlayOptions& options);
 
+struct ValidateOptions {
+  std::string asset, source, json;
+  MotionChoice motion;
+  FrameChoice frames;
+  std::string mode = "m2", radius = "detect";
+};
+ExitCode run_validate(const ValidateOptions& options);
+
 struct ViewOptions {
   std::string asset, source, output, report;
   MotionChoice motion;

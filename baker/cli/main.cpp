@@ -107,6 +107,19 @@ int main(int argc, char** argv) {
   play_command->add_option("--json", play.json, "JSON file to write");
   play_command->callback([&] { run = [&] { return run_play(play); }; });
 
+  ValidateOptions validate;
+  CLI::App* validate_command =
+      app.add_subcommand("validate", "Compare the reported pairs with the exact intersections of the deformed mesh");
+  validate_command->add_option("ASSET", validate.asset, "Asset (.sphc)")->required();
+  validate_command->add_option("--source", validate.source, "The mesh it was baked from")->required();
+  add_motion(*validate_command, validate.motion, validate.frames);
+  validate_command->add_option("--mode", validate.mode, "Overlap test: chains or all spheres")
+      ->check(CLI::IsMember({"m1", "m2"}))
+      ->capture_default_str();
+  add_radius(*validate_command, validate.radius);
+  validate_command->add_option("--json", validate.json, "JSON file to write");
+  validate_command->callback([&] { run = [&] { return run_validate(validate); }; });
+
   ViewOptions view;
   CLI::App* view_command = app.add_subcommand("view", "Write a page that shows an asset on its source in motion");
   view_command->add_option("ASSET", view.asset, "Asset (.sphc)")->required();

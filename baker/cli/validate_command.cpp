@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include "cli/commands.h"
+#include "cli/outputs.h"
+#include "cli/progress.h"
+#include "play/target.h"
+#include "report/validation.h"
+#include "truth/validate.h"
+#include "write/write.h"
+
+namespace spherechain::baker {
+
+ExitCode run_validate(const ValidateOptions& options) {
+  if (!options.json.empty()) check_folder(options.json);
+  ValidateSettings settings;
+  settings.radius = options.radius == "fit" ? RadiusKind::kFit : RadiusKind::kDetect;
+  settings.method = options.mode == "m1" ? Method::kM1 : Method::kM2;
+  settings.target = choose_target("auto");
+  const AnimatedAsset animated(options.asset, options.source, options.motion, options.frames);
+  Validation validation;
+  {
+    Progress progress("validate " + options.asset + ":");
+    validation = validate(animated, settings, [&](int done) {
+      progress.show(fmt::format("{} of {} frames", done, animated.frame_count()));
+    });
+  }
+  if (!options.json.empty()) write_atomically(options.json, validation_json(validation, animated, settings));
+  fmt::print("{}", validation_text(validation, animated, settings));
+  if (!options.json.empty()) fmt::print("wrote {}\n", options.json);
+  return ExitCode::kDone;
+}
+
+}  // namespace spherechain::baker

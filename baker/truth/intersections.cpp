@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "truth/intersections.h"
+
+#include <CGAL/Bbox_3.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Simple_cartesian.h>
+#include <CGAL/box_intersection_d.h>
+
+#include <algorithm>
+
+namespace spherechain::baker {
+namespace {
+
+using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, Index>;
+
+template <typename Kernel>
+typename Kernel::Triangle_3 triangle_at(const Surface& surface, const std::vector<float>& positions, Index place) {
+  const auto corner = [&](std::size_t k) {
+    const float* p = &positions[std::size_t{3} * surface.corners[place][k]];
+    return typename Kernel::Point_3(p[0], p[1], p[2]);
+  };
+  return {corner(0), corner(1), corner(2)};
+}
+
+}  // namespace
+
+Intersections find_intersections(const Surface& surface, const std::vector<float>& positions) {
+  using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+  Intersections out;
+  std::vector<Kernel::Triangle_3> triangles;
+  std::vector<Box> boxes;
+  triangles.reserve(surface.corners.size());
+  boxes.reserve(surface.corners.size());
+  for (Index i = 0; i < surface.corners.size(); ++i) {
+    triangles.push_back(triangle_at<Kernel>(surface, positions, i));
+    if (triangles[i].is_degenerate()) {
+      ++out.degenerate;
+    } else {
+      boxes.emplace_back(triangles[i].bbox(), i);
+    }
+  }
+  const auto meet = [&](const Box& l, const Box& r) {
+    const Index a = std::min(l.info(), r.info()), b = std::max(l.info(), r.info());
+    if (are_neighbours(surface.welded[a], surface.welded[b])) return;
+    if (!CGAL::do_intersect(triangles[a], triangles[b])) return;
+    out.pairs.push_back({surface.source_triangle[a], surface.source_triangle[b]});
+  };
+  CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), meet);
+  std::sort(out.pairs.begin(), out.pairs.end());
+  return out;
+}
+
+bool any_closer(const Surface& surface, const std::vector<float>& positions, const std::vector<Index>& one,
+                const std::vector<Index>& other, double distance) {
+  using Kernel = CGAL::Simple_cartesian<double>;
+  const auto boxed = [&](const std::vector<Index>& places) {
+    std::vector<std::pair<CGAL::Bbox_3, Index>> out;
+    for (const Index place : places) out.emplace_back(triangle_at<Kernel>(surface, positions, place).bbox(), place);
+    return out;
+  };
+  const auto apart = [&](const CGAL::Bbox_3& l, const CGAL::Bbox_3& r) {
+    for (int k = 0; k < 3; ++k) {
+      if (l.min(k) - r.max(k) >= distance || r.min(k) - l.max(k) >= distance) return true;
+    }
+    return false;
+  };
+  // Each list trimmed by the other's box.
+  std::vector<std::pair<CGAL::Bbox_3, Index>> left = boxed(one), right = boxed(other);
+  for (int round = 0; round < 2; ++round) {
+    CGAL::Bbox_3 whole;
+    for (const auto& [box, place] : right) whole += box;
+    std::erase_if(left, [&](const auto& entry) { return apart(entry.first, whole); });
+    std::swap(left, right);
+    if (left.empty() || right.empty()) return false;
+  }
+  for (const auto& [left_box, a] : left) {
+    const Kernel::Triangle_3 triangle = triangle_at<Kernel>(surface, positions, a);
+    for (const auto& [right_box, b] : right) {
+      if (!apart(left_box, right_box) &&
+          CGAL::squared_distance(triangle, triangle_at<Kernel>(surface, positions, b)) < distance * distance) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace spherechain::baker

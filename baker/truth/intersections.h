@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The plain interface to CGAL's exact predicates.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "truth/surface.h"
+
+namespace spherechain::baker {
+
+struct Intersections {
+  std::vector<TrianglePair> pairs;  // sorted
+  std::size_t degenerate = 0;       // triangles without area, which intersect nothing
+};
+
+// Every pair of a surface's triangles that have a point in common, neighbours left out: decided exactly for the
+// positions (x, y, z of each source vertex) as they are; touching and lying in one plane count. May run in several
+// threads.
+Intersections find_intersections(const Surface& surface, const std::vector<float>& positions);
+
+// Whether a triangle of the one list (places in the surface) is closer than `distance` to one of the other.
+bool any_closer(const Surface& surface, const std::vector<float>& positions, const std::vector<Index>& one,
+                const std::vector<Index>& other, double distance);
+
+}  // namespace spherechain::baker

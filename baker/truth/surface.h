@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "import/import.h"
+#include "spherechain/asset.h"
+
+namespace spherechain::baker {
+
+// Two triangles, numbered as in the source file, a < b.
+struct TrianglePair {
+  Index a, b;
+
+  friend constexpr auto operator<=>(const TrianglePair&, const TrianglePair&) = default;
+};
+
+// The triangles an asset's spheres own, in the order of their source numbers, whatever the asset's order.
+struct Surface {
+  std::vector<Index> source_triangle;         // ascending
+  std::vector<Triangle> corners;              // source vertices
+  std::vector<Triangle> welded;               // the same corners as vertices of Character::skin
+  std::vector<std::uint32_t> sphere;          // that owns it
+  std::vector<Index> of_source;               // source triangle -> its place above, kNoIndex where no sphere owns it
+  std::vector<std::vector<Index>> of_sphere;  // a sphere's triangles, by their place above
+};
+
+// Throws Error(kInternal) where the asset's triangles are not some of the character's.
+Surface surface_of(const Asset& asset, const Character& character);
+
+// Whether two triangles share a corner at rest: neighbours on the mesh, never a contact.
+bool are_neighbours(const Triangle& a, const Triangle& b);
+
+// Whether the asset never reports a pair of spheres.
+bool is_ignored(const Asset& asset, std::uint32_t a, std::uint32_t b);
+
+}  // namespace spherechain::baker

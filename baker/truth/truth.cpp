@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "truth/truth.h"
+
+#include <algorithm>
+#include <map>
+
+namespace spherechain::baker {
+
+FrameTruth judge(const Intersections& found, const std::vector<TrianglePair>& rest_pairs, const Surface& surface,
+                 const Asset& asset) {
+  FrameTruth out;
+  out.raw_pairs = found.pairs.size();
+  out.degenerate = found.degenerate;
+  std::map<Pair, std::vector<TrianglePair>> contacts;
+  for (const TrianglePair& pair : found.pairs) {
+    const auto [a, b] =
+        std::minmax({surface.sphere[surface.of_source[pair.a]], surface.sphere[surface.of_source[pair.b]]});
+    if (std::binary_search(rest_pairs.begin(), rest_pairs.end(), pair)) {
+      ++out.rest;
+    } else if (a == b) {
+      ++out.same_sphere;
+    } else if (is_ignored(asset, a, b)) {
+      ++out.ignored;
+    } else {
+      out.pairs.push_back(pair);
+      contacts[{a, b}].push_back(pair);
+    }
+  }
+  for (auto& [spheres, triangles] : contacts) out.contacts.push_back({spheres, std::move(triangles)});
+  return out;
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "spherechain/types.h"
+#include "truth/intersections.h"
+
+namespace spherechain::baker {
+
+// A pair of spheres and the true triangle pairs between their surrounding regions.
+struct SphereContact {
+  Pair spheres;
+  std::vector<TrianglePair> triangles;
+};
+
+// What intersects in a frame. Out of scope are, in this order and each pair once, those that intersect in the rest pose
+// too, those within one sphere's region, and those of spheres whose pair the asset ignores.
+struct FrameTruth {
+  std::size_t raw_pairs = 0;
+  std::size_t rest = 0, same_sphere = 0, ignored = 0;
+  std::size_t degenerate = 0;           // triangles without area in this pose
+  std::vector<TrianglePair> pairs;      // the rest: the true pairs, sorted
+  std::vector<SphereContact> contacts;  // the same by spheres, sorted
+};
+
+// `rest_pairs`: those of the rest pose, sorted.
+FrameTruth judge(const Intersections& found, const std::vector<TrianglePair>& rest_pairs, const Surface& surface,
+                 const Asset& asset);
+
+}  // namespace spherechain::baker

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "play/play.h"
+#include "spherechain/detect.h"
+#include "truth/score.h"
+
+namespace spherechain::baker {
+
+// A reported pair counts as right where the regions are nearer than this; a fraction of the height.
+inline constexpr double kCloseSurface = 0.003;
+
+struct ValidateSettings {
+  RadiusKind radius = RadiusKind::kDetect;
+  Method method = Method::kM2;
+  Target target = Target::kScalar;
+};
+
+// A contact that was not reported.
+struct Miss {
+  int frame;
+  Pair spheres;
+  std::size_t triangle_pairs;
+  double depth;  // mesh units, see truth/depth.h
+};
+
+// The runtime's pairs against the truth, over all frames of a motion.
+struct Validation {
+  std::size_t raw_pairs = 0, rest = 0, same_sphere = 0, ignored = 0, degenerate = 0;  // see FrameTruth
+  Score score;                                                                        // of the method asked for
+  std::vector<Miss> misses;                                                           // the deepest first
+};
+
+// The same whatever the number of threads. `progress` is told how many frames are done, one call at a time.
+Validation validate(const AnimatedAsset& animated, const ValidateSettings& settings,
+                    const std::function<void(int)>& progress);
+
+}  // namespace spherechain::baker

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What truly intersects, against CGAL's own search and against shapes where it is known; and the score kept of it.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "baked_human.h"
+#include "mesh_self_intersections.h"
+#include "truth/depth.h"
+#include "truth/intersections.h"
+#include "truth/score.h"
+#include "truth/truth.h"
+
+using namespace spherechain::baker;
+using spherechain::Asset;
+using spherechain::Pair;
+
+namespace {
+
+// Triangles of which each is a source triangle, a skin triangle and a region of its own: `corners` of shared vertices.
+Surface loose_surface(const std::vector<Triangle>& corners, const std::vector<std::uint32_t>& spheres) {
+  Surface surface;
+  for (Index t = 0; t < corners.size(); ++t) {
+    surface.source_triangle.push_back(t);
+    surface.of_source.push_back(t);
+    surface.corners.push_back(corners[t]);
+    surface.welded.push_back(corners[t]);
+    surface.sphere.push_back(spheres[t]);
+    surface.of_sphere.resize(std::max<std::size_t>(surface.of_sphere.size(), spheres[t] + 1));
+    surface.of_sphere[spheres[t]].push_back(t);
+  }
+  return surface;
+}
+
+const std::vector<Triangle> kTwo{{0, 1, 2}, {3, 4, 5}};
+const std::vector<float> kFloor{0, 0, 0, 4, 0, 0, 0, 4, 0};  // the first of them; the second follows
+
+std::vector<float> with_floor(const std::vector<float>& second) {
+  std::vector<float> positions = kFloor;
+  positions.insert(positions.end(), second.begin(), second.end());
+  return positions;
+}
+
+bool meets_floor(const std::vector<float>& second) {
+  const Intersections found = find_intersections(loose_surface(kTwo, {0, 1}), with_floor(second));
+  CHECK(found.degenerate == 0);
+  return found.pairs == std::vector<TrianglePair>{{0, 1}};
+}
+
+}  // namespace
+
+TEST_CASE("the posed human's intersections are those CGAL finds in its skin, but for pairs with a common vertex") {
+  const Bake& bake = baked_human();
+  const Character& character = bake.character;
+  const Surface surface = surface_of(open_asset_of(bake), character);
+  CHECK(surface.corners.size() == character.skin.triangles.size());
+  const std::vector<float> positions = pack(posed_human("arms_crossed.json"));
+
+  Mesh posed = character.skin;
+  for (Index v = 0; v < character.skin_of_source.size(); ++v) {
+    if (character.skin_of_source[v] == kNoIndex) continue;
+    posed.positions[character.skin_of_source[v]] = {positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]};
+  }
+  std::vector<TrianglePair> reference;
+  for (const auto& [a, b] : mesh_self_intersections(posed)) {
+    if (are_neighbours(posed.triangles[a], posed.triangles[b])) continue;
+    const auto [s, t] = std::minmax({character.skin_source_triangle[a], character.skin_source_triangle[b]});
+    reference.push_back({s, t});
+  }
+  std::sort(reference.begin(), reference.end());
+  CHECK(reference.size() > 100);
+  CHECK(find_intersections(surface, positions).pairs == reference);
+}
+
+TEST_CASE("what touches or lies in one plane intersects, what is one step of a float away does not") {
+  const float up = std::numeric_limits<float>::denorm_min();
+  CHECK(meets_floor({1, 1, -1, 1, 1, 1, 2, 1, 1}));
+  CHECK(meets_floor({1, 1, 0, 1, 1, 1, 2, 1, 1}));     // a corner on the face
+  CHECK(meets_floor({1, 1, 0, 2, 1, 0, 1, 2, 0}));     // inside it, in its plane
+  CHECK(meets_floor({-1, -1, 0, 0, 0, 0, -1, 0, 0}));  // corner on corner
+  CHECK(!meets_floor({1, 1, up, 1, 1, 1, 2, 1, 1}));
+  CHECK(!meets_floor({1, 1, up, 2, 1, up, 1, 2, up}));
+}
+
+TEST_CASE("a triangle without area intersects nothing and is counted; neighbours are no contact") {
+  const Intersections line = find_intersections(loose_surface(kTwo, {0, 1}), with_floor({1, 1, -1, 1, 1, 0, 1, 1, 1}));
+  CHECK(line.pairs.empty());
+  CHECK(line.degenerate == 1);
+
+  Surface surface = loose_surface(kTwo, {0, 1});
+  const std::vector<float> crossing = with_floor({1, 1, -1, 1, 1, 1, 2, 1, 1});
+  REQUIRE(find_intersections(surface, crossing).pairs.size() == 1);
+  surface.welded[1][2] = 0;  // one position at rest
+  CHECK(find_intersections(surface, crossing).pairs.empty());
+}
+
+TEST_CASE("how near two regions are is the distance of their faces, edges and corners") {
+  const Surface surface = loose_surface(kTwo, {0, 1});
+  const auto closer = [&](const std::vector<float>& second, double distance) {
+    const bool there = any_closer(surface, with_floor(second), {0}, {1}, distance);
+    CHECK(any_closer(surface, with_floor(second), {1}, {0}, distance) == there);
+    return there;
+  };
+  for (const std::vector<float>& second : {std::vector<float>{1, 1, 0.5F, 1, 1, 3, 2, 1, 3},  // a corner over the face
+                                           std::vector<float>{1, -0.5F, -2, 1, -0.5F, 2, 1, -3, 0},    // edge to edge
+                                           std::vector<float>{1, 1, 0.5F, 2, 1, 0.5F, 1, 2, 0.5F}}) {  // parallel
+    CHECK(closer(second, 0.51));
+    CHECK(!closer(second, 0.49));
+  }
+  CHECK(closer({1, 1, -1, 1, 1, 1, 2, 1, 1}, 1e-9));
+}
+
+// A square of 8 by 8 units in z = 0 that faces up, and a slim spike that hangs from z = 5 down to `tip`.
+struct SpikeOverFloor {
+  std::vector<Triangle> corners;
+  std::vector<std::uint32_t> spheres;
+  std::vector<float> positions;
+
+  explicit SpikeOverFloor(const Vec3& tip) {
+    for (int y = 0; y <= 8; ++y) {
+      for (int x = 0; x <= 8; ++x) add({x - 4.0, y - 4.0, 0});
+    }
+    for (Index y = 0; y < 8; ++y) {
+      for (Index x = 0; x < 8; ++x) {
+        const Index v = 9 * y + x;
+        corners.push_back({v, v + 1, v + 10});
+        corners.push_back({v, v + 10, v + 9});
+      }
+    }
+    spheres.assign(corners.size(), 0);
+    const auto first = static_cast<Index>(positions.size() / 3);
+    add(tip);
+    for (const auto& [x, y] : {std::pair(0.1, 0.0), std::pair(-0.1, 0.1), std::pair(-0.1, -0.1)}) {
+      add({tip.x() + x, tip.y() + y, 5});
+    }
+    corners.push_back({first, first + 2, first + 1});
+    corners.push_back({first, first + 3, first + 2});
+    corners.push_back({first, first + 1, first + 3});
+    spheres.insert(spheres.end(), 3, 1);
+  }
+
+  double depth() const {
+    const Surface surface = loose_surface(corners, spheres);
+    return penetration({{0, 1}, find_intersections(surface, positions).pairs}, surface, positions);
+  }
+
+ private:
+  void add(const Vec3& p) {
+    for (int k = 0; k < 3; ++k) positions.push_back(static_cast<float>(p[k]));
+  }
+};
+
+TEST_CASE("depth is how far a vertex lies behind the other region, whatever its triangles' size") {
+  CHECK(SpikeOverFloor({0.3, 0.2, -1.5}).depth() == doctest::Approx(1.5));  // behind a face
+  CHECK(SpikeOverFloor({0.5, 0.0, -1.5}).depth() == doctest::Approx(1.5));  // behind an edge
+  CHECK(SpikeOverFloor({0.0, 0.0, -1.5}).depth() == doctest::Approx(1.5));  // behind a vertex
+  CHECK(SpikeOverFloor({0.3, 0.2, -0.001}).depth() == doctest::Approx(0.001));
+  CHECK(SpikeOverFloor({0.3, 0.2, 0.5}).depth() == 0);
+  CHECK(SpikeOverFloor({9, 9, -1.5}).depth() == 0);  // beside it
+}
+
+TEST_CASE("what is at rest too, of one sphere or of an ignored pair is counted and left out, each pair once") {
+  const Bake& bake = baked_human();
+  const Asset asset = open_asset_of(bake);
+  const Surface surface = surface_of(asset, bake.character);
+  const auto first = [&](std::uint32_t sphere) { return surface.source_triangle[surface.of_sphere[sphere].front()]; };
+  const auto last = [&](std::uint32_t sphere) { return surface.source_triangle[surface.of_sphere[sphere].back()]; };
+  const auto pair_of = [](Index a, Index b) { return TrianglePair{std::min(a, b), std::max(a, b)}; };
+  const auto [a, b] = bake.binding.ignored.front();
+  std::uint32_t c = b + 1;
+  while (is_ignored(asset, a, c)) ++c;
+  const TrianglePair same = pair_of(first(a), last(a)), same_at_rest = pair_of(first(b), last(b)),
+                     ignored = pair_of(first(a), first(b)), one = pair_of(first(a), first(c)),
+                     two = pair_of(last(a), last(c)), at_rest = pair_of(first(a), last(c));
+  Intersections found{{same, same_at_rest, ignored, one, two, at_rest}, 0};
+  std::sort(found.pairs.begin(), found.pairs.end());
+  std::vector<TrianglePair> rest{at_rest, same_at_rest};
+  std::sort(rest.begin(), rest.end());
+
+  const FrameTruth truth = judge(found, rest, surface, asset);
+  CHECK(truth.raw_pairs == 6);
+  CHECK(truth.rest == 2);
+  CHECK(truth.same_sphere == 1);
+  CHECK(truth.ignored == 1);
+  CHECK(truth.pairs.size() == 2);
+  REQUIRE(truth.contacts.size() == 1);
+  CHECK(truth.contacts[0].spheres == Pair{std::min(a, c), std::max(a, c)});
+  CHECK(truth.contacts[0].triangles == truth.pairs);
+}
+
+TEST_CASE("a score counts triangle pairs, frames and reported spheres as the contract says") {
+  FrameTruth truth;
+  truth.pairs = {{1, 2}, {1, 3}, {4, 5}};
+  truth.contacts = {{{0, 1}, {{1, 2}, {1, 3}}}, {{0, 2}, {{4, 5}}}};
+  const auto score = [&](const std::vector<Pair>& reported) {
+    return score_frame(
+        truth, reported,
+        [](const Pair& pair) {
+          return pair == Pair{5, 6};
+        },
+        [](const SphereContact& contact) { return static_cast<double>(contact.spheres.b); });
+  };
+  const Score some = score({{0, 1}, {5, 6}, {7, 8}});
+  CHECK(some.pair_recall() == doctest::Approx(2.0 / 3));
+  CHECK(some.precision() == doctest::Approx(2.0 / 3));  // {5, 6} is close
+  CHECK(some.frame_any_recall() == 1);
+  CHECK(some.frame_all_recall() == 0);
+  CHECK(some.missed_depth == 2);
+  Score both = score({{0, 1}, {0, 2}});
+  CHECK(both.frame_all_recall() == 1);
+  CHECK(both.missed_depth == 0);
+  both.add(score({}));
+  CHECK(both.pair_recall() == 0.5);
+  CHECK(both.frame_any_recall() == 0.5);
+  CHECK(both.reported_per_frame() == 1);
+  CHECK(both.precision() == 1);
+  CHECK(both.missed_depth == 2);
+  truth = {};
+  CHECK(score({}).pair_recall() == 1);
+  CHECK(score({}).true_frames == 0);
+}
