@@ -6,6 +6,7 @@
 #include "cli/progress.h"
 #include "play/target.h"
 #include "report/validation.h"
+#include "truth/truth_cache.h"
 #include "truth/validate.h"
 #include "write/write.h"
 
@@ -17,6 +18,7 @@ ExitCode run_validate(const ValidateOptions& options) {
   settings.radius = options.radius == "fit" ? RadiusKind::kFit : RadiusKind::kDetect;
   settings.method = options.mode == "m1" ? Method::kM1 : Method::kM2;
   settings.target = choose_target("auto");
+  settings.cache = cache_folder();
   const AnimatedAsset animated(options.asset, options.source, options.motion, options.frames);
   Validation validation;
   {

@@ -8,7 +8,7 @@
 
 #include "play/player.h"
 #include "truth/depth.h"
-#include "truth/intersections.h"
+#include "truth/truth_cache.h"
 
 namespace spherechain::baker {
 namespace {
@@ -28,10 +28,11 @@ std::vector<Pair> reported_pairs(const Asset& asset, const std::vector<float>& p
 }
 
 Frame validate_frame(const AnimatedAsset& animated, int index, const Surface& surface,
-                     const std::vector<TrianglePair>& rest_pairs, const ValidateSettings& settings) {
+                     const CachedIntersections& intersections, const std::vector<TrianglePair>& rest_pairs,
+                     const ValidateSettings& settings) {
   const std::vector<float> positions = pack(animated.positions(animated.deformation(index)));
   Frame frame;
-  frame.truth = judge(find_intersections(surface, positions), rest_pairs, surface, animated.asset());
+  frame.truth = judge(intersections.find(positions), rest_pairs, surface, animated.asset());
   const double close = kCloseSurface * animated.frame().height;
   frame.score = score_frame(
       frame.truth, reported_pairs(animated.asset(), positions, settings),
@@ -51,13 +52,13 @@ Frame validate_frame(const AnimatedAsset& animated, int index, const Surface& su
 Validation validate(const AnimatedAsset& animated, const ValidateSettings& settings,
                     const std::function<void(int)>& progress) {
   const Surface surface = surface_of(animated.asset(), animated.character());
-  const std::vector<TrianglePair> rest_pairs =
-      find_intersections(surface, pack(animated.character().source_positions)).pairs;
+  const CachedIntersections intersections(surface, settings.cache);
+  const std::vector<TrianglePair> rest_pairs = intersections.find(pack(animated.character().source_positions)).pairs;
   std::vector<Frame> frames(static_cast<std::size_t>(animated.frame_count()));
   std::mutex mutex;
   int done = 0;
   tbb::parallel_for(0, animated.frame_count(), [&](int i) {
-    frames[static_cast<std::size_t>(i)] = validate_frame(animated, i, surface, rest_pairs, settings);
+    frames[static_cast<std::size_t>(i)] = validate_frame(animated, i, surface, intersections, rest_pairs, settings);
     const std::lock_guard lock(mutex);
     progress(++done);
   });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct ValidateSettings {
   RadiusKind radius = RadiusKind::kDetect;
   Method method = Method::kM2;
   Target target = Target::kScalar;
+  std::filesystem::path cache;  // see truth_cache.h; empty: none
 };
 
 // A contact that was not reported.

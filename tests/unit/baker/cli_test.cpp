@@ -169,6 +169,45 @@ TEST_CASE("play --json has the contract's fields; at rest nothing touches, hands
   CHECK(one["target"] == "scalar");
 }
 
+TEST_CASE("validate --json has the contract's fields, the same with a cache and without") {
+  const TemporaryFolder folder;
+  const fs::path out = folder.path / "validate.json", cache = folder.path / "cache";
+  const auto validate = [&](const std::string& more, const std::string& cached) {
+    const Run done =
+        run(fmt::format("validate {} --source {} --poses {} --frames 3 --json {} {}", baked_files().asset.string(),
+                        kHumanFile, pose("arms_crossed.json"), out.string(), more),
+            "SPHERECHAIN_CACHE=" + cached);
+    REQUIRE_MESSAGE(done.code == 0, done.error);
+    CHECK(done.out.find("pair recall") != std::string::npos);
+    return json::parse(contents(out));
+  };
+  const json found = validate("", "off");
+  CHECK(found["frames"] == 3);
+  CHECK(found["radius"] == "detect");
+  const json& left_out = found["out_of_scope"];
+  for (const char* why : {"rest", "same_sphere", "ignored"}) CHECK(left_out[why] > 0);
+  CHECK(found["raw_pairs"] == left_out["rest"].get<int>() + left_out["same_sphere"].get<int>() +
+                                  left_out["ignored"].get<int>() + found["truth_pairs"].get<int>());
+  CHECK(found["truth_pairs"] > 0);
+  for (const char* share : {"pair_recall", "frame_any_recall", "frame_all_recall", "precision"}) {
+    CHECK(found[share] >= 0);
+    CHECK(found[share] <= 1);
+  }
+  CHECK(found["frame_any_recall"] == 1);
+  CHECK(found["reported_per_frame"] > 0);
+  CHECK(found["missed_depth"] >= 0);
+  CHECK(found["missed_depth"] < 0.1);
+
+  CHECK(validate("", cache.string()) == found);
+  CHECK(files_in(cache) == 3);  // frame 0 is the rest pose
+  CHECK(validate("", cache.string()) == found);
+  CHECK(files_in(cache) == 3);
+  const json chains = validate("--mode m1 --radius fit", cache.string());
+  CHECK(chains["truth_pairs"] == found["truth_pairs"]);
+  CHECK(chains["radius"] == "fit");
+  CHECK(chains["pair_recall"] <= found["pair_recall"]);
+}
+
 TEST_CASE("SPHERECHAIN_TARGET names the instructions to play with; one that is not there is a usage error") {
   const TemporaryFolder folder;
   const fs::path out = folder.path / "play.json";
@@ -262,6 +301,8 @@ TEST_CASE("usage errors end with 2") {
   check_error(run("frobnicate"), 2, {});
   check_error(run(fmt::format("bake {} -o x.sphc --profile fancy", kHumanFile)), 2, {"fancy"});
   check_error(run(fmt::format("play {} --source {} --mode m3", baked_files().asset.string(), kHumanFile)), 2, {"m3"});
+  check_error(run(fmt::format("validate {} --source {} --mode both", baked_files().asset.string(), kHumanFile)), 2,
+              {"both"});
   check_error(run(fmt::format("play {} --source {} --frames 0", baked_files().asset.string(), kHumanFile)), 2, {});
   CHECK(run("--help").code == 0);
   CHECK(run("bake --help").out.find("--report") != std::string::npos);
@@ -283,7 +324,11 @@ TEST_CASE("files that cannot be read end with 3, name the file and the cause, an
   check_error(run(fmt::format("play {} --source {}", baked_files().asset.string(), junk)), 3, {"junk.obj"});
   check_error(run(fmt::format("play {} --source {} --poses {}", baked_files().asset.string(), kHumanFile, junk)), 3,
               {"junk.obj"});
+  check_error(run(fmt::format("validate {} --source {}", baked_files().asset.string(), junk)), 3, {"junk.obj"});
   CHECK(files_in(folder.path) == before);
+  check_error(run(fmt::format("validate {} --source {} --frames 1 --json /nowhere/out.json",
+                              baked_files().asset.string(), kHumanFile)),
+              3, {"/nowhere/out.json"});
   check_error(run(fmt::format("bake {} -o /nowhere/out.sphc", kHumanFile)), 3, {"/nowhere/out.sphc"});
 }
 

@@ -7,10 +7,12 @@
 
 #include "baked_human.h"
 #include "mesh_self_intersections.h"
+#include "temporary_folder.h"
 #include "truth/depth.h"
 #include "truth/intersections.h"
 #include "truth/score.h"
 #include "truth/truth.h"
+#include "truth/truth_cache.h"
 
 using namespace spherechain::baker;
 using spherechain::Asset;
@@ -109,6 +111,44 @@ TEST_CASE("how near two regions are is the distance of their faces, edges and co
     CHECK(!closer(second, 0.49));
   }
   CHECK(closer({1, 1, -1, 1, 1, 1, 2, 1, 1}, 1e-9));
+}
+
+TEST_CASE("intersections are found once a pose and kept in files; a broken file is not believed and is replaced") {
+  namespace fs = std::filesystem;
+  const TemporaryFolder folder;
+  const fs::path cache = folder.path / "a/b";
+  const Surface surface = loose_surface(kTwo, {0, 1});
+  const std::vector<float> crossing = with_floor({1, 1, -1, 1, 1, 1, 2, 1, 1}),
+                           apart = with_floor({1, 1, 1, 1, 1, 2, 2, 1, 2});
+  const auto find = [&](const std::vector<float>& positions) {
+    return CachedIntersections(surface, cache).find(positions).pairs;
+  };
+  const auto files = [&] { return std::vector<fs::path>(fs::directory_iterator(cache), fs::directory_iterator()); };
+  REQUIRE(find(crossing).size() == 1);
+  REQUIRE(files().size() == 1);
+  const fs::path crossing_file = files()[0];
+  CHECK(find(crossing).size() == 1);
+  CHECK(files().size() == 1);
+  CHECK(find(apart).empty());
+  REQUIRE(files().size() == 2);
+  const fs::path apart_file = files()[files()[0] == crossing_file ? 1 : 0];
+
+  const auto size = fs::file_size(crossing_file);
+  fs::resize_file(crossing_file, size - 1);
+  CHECK(find(crossing).size() == 1);
+  CHECK(fs::file_size(crossing_file) == size);
+  folder.write("a/b/" + crossing_file.filename().string(), "hello");
+  CHECK(find(crossing).size() == 1);
+  CHECK(fs::file_size(crossing_file) == size);
+  // A whole file is believed: the search was not made again.
+  fs::copy_file(apart_file, crossing_file, fs::copy_options::overwrite_existing);
+  CHECK(find(crossing).empty());
+  // The spheres are not in the key, the triangles are.
+  CHECK(CachedIntersections(loose_surface(kTwo, {1, 0}), cache).find(crossing).pairs.empty());
+  CHECK(CachedIntersections(loose_surface({{1, 0, 2}, {3, 4, 5}}, {0, 1}), cache).find(crossing).pairs.size() == 1);
+  // A folder that cannot be, and none.
+  CHECK(CachedIntersections(surface, apart_file / "c").find(crossing).pairs.size() == 1);
+  CHECK(CachedIntersections(surface, {}).find(crossing).pairs.size() == 1);
 }
 
 // A square of 8 by 8 units in z = 0 that faces up, and a slim spike that hangs from z = 5 down to `tip`.
