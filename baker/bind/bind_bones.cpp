@@ -114,6 +114,16 @@ std::vector<MovingBone> bones_of(const Character& character, const std::vector<J
   return out;
 }
 
+bool any_rests(const Character& character, const std::vector<VertexWeights>& weights) {
+  if (weights.empty()) return true;
+  for (const Index t : character.skin_source_triangle) {
+    for (const Index v : character.source_triangles[t]) {
+      if (weights[v].weight[0] <= 0) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 BoneBinding bind_bones(const Character& character, const Binding& binding, const std::vector<Joint>& joints,
@@ -124,15 +134,14 @@ BoneBinding bind_bones(const Character& character, const Binding& binding, const
   if (out.bones.empty() && out.morphs.empty()) return out;
 
   const auto rest_bone = static_cast<Index>(out.bones.size());
-  const Binder binder(character, binding, character.rig.bones.empty() ? rig_weights : character.rig.weights, rest_bone);
-  bool any_rests = out.bones.empty();
+  const std::vector<VertexWeights>& weights = character.rig.bones.empty() ? rig_weights : character.rig.weights;
+  if (any_rests(character, weights)) out.bones.push_back({"rest", Affine::Identity(), true});
+  const Binder binder(character, binding, weights, rest_bone);
   for (const BoundSphere& sphere : binding.spheres) {
     for (std::size_t first = 0; first < sphere.pivots.size(); first += kGroupSize) {
       out.groups.push_back(binder.group(&sphere.pivots[first], std::min(kGroupSize, sphere.pivots.size() - first)));
-      any_rests = any_rests || out.groups.back().parts.back().bone == rest_bone;
     }
   }
-  if (any_rests) out.bones.push_back({"rest", Affine::Identity(), true});
   return out;
 }
 

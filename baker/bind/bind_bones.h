@@ -43,6 +43,11 @@ struct BoneBinding {
   std::vector<MovingBone> bones;  // empty where nothing moves the source
   std::vector<std::string> morphs;
   std::vector<PivotGroup> groups;  // a sphere's pivots by eights, in sphere order
+
+  // Where vertices hang that no bone moves: there is a bone of that number where the skin has any.
+  Index rest_bone() const {
+    return static_cast<Index>(bones.size() - (!bones.empty() && bones.back().is_rest ? 1 : 0));
+  }
 };
 
 // `rig_weights` are of every source vertex, to `joints`; they count where the source has no bones of its own.

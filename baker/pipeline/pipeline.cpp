@@ -67,9 +67,11 @@ void run_after_fit(Bake& out, const Progress& progress) {
     }
     out.bones = bind_bones(out.character, out.binding, out.joints, out.rig_weights);
   });
+  stage(out, progress, "leaves",
+        [&] { out.leaves = make_leaves(out.character, out.binding, out.bones, out.rig_weights, settings.leaves); });
   stage(out, progress, "write", [&] {
-    out.asset = serialize(
-        {out.character, out.regions, out.spheres, out.chains, out.binding, out.joints, out.bones, to_json(settings)});
+    out.asset = serialize({out.character, out.regions, out.spheres, out.chains, out.binding, out.joints, out.bones,
+                           out.leaves, to_json(settings)});
   });
 }
 

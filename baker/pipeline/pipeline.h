@@ -13,6 +13,7 @@
 #include "chains/chains.h"
 #include "fit/fit.h"
 #include "import/import.h"
+#include "leaves/leaves.h"
 #include "rig/rig.h"
 #include "roles/roles.h"
 #include "segment/segment.h"
@@ -33,6 +34,7 @@ struct BakeSettings {
   SegmentSettings segment;
   FitSettings fit;
   BindSettings bind;
+  LeafSettings leaves;
   Targets targets;
 };
 
@@ -66,6 +68,7 @@ struct Bake {
   std::vector<Joint> joints;
   std::vector<VertexWeights> rig_weights;  // to the joints, of every source vertex; none where the source has bones
   BoneBinding bones;
+  Leaves leaves;
   std::vector<std::uint8_t> asset;
   std::vector<StageTime> times;
 };

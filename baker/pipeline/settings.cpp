@@ -131,6 +131,12 @@ BakeSettings make_settings(const std::string& profile, const std::string& text, 
   reader.integer("pivots", settings.bind.pivots, paper ? 2 : 4, 16);
   reader.number("detect_quantile", settings.bind.detect_quantile, 0, 1);
   reader.number("near_fraction", settings.bind.near_fraction, 0, 0.99);
+  if (const json* leaves = reader.object("leaves")) {
+    if (!leaves->is_object()) reader.fail("leaves", "is not an object");
+    Reader inner(*leaves, file + ": leaves");
+    inner.integer("triangles", settings.leaves.triangles, 4, 64);
+    inner.done();
+  }
   if (const json* targets = reader.object("targets")) {
     if (!targets->is_object()) reader.fail("targets", "is not an object");
     Reader inner(*targets, file + ": targets");
@@ -165,6 +171,7 @@ std::string to_json(const BakeSettings& settings) {
   out["pivots"] = settings.bind.pivots;
   out["detect_quantile"] = settings.bind.detect_quantile;
   out["near_fraction"] = settings.bind.near_fraction;
+  out["leaves"] = {{"triangles", settings.leaves.triangles}};
   json targets = json::object();
   if (settings.targets.max_spheres) targets["max_spheres"] = *settings.targets.max_spheres;
   if (settings.targets.max_mean_abs_f) targets["max_mean_abs_f"] = *settings.targets.max_mean_abs_f;

@@ -6,6 +6,7 @@
 #include "sphere_chains_generated.h"
 #include "spherechain/asset.h"
 #include "write/bone_tables.h"
+#include "write/surface_table.h"
 #include "write/version.h"
 #include "write/write.h"
 
@@ -19,23 +20,21 @@ schema::Vec3 to_schema(const Vec3& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }
 
-// Source triangles grouped by sphere, in source order within a group.
+// Source triangles grouped by sphere, in it by leaf, and in source order within a leaf.
 struct SurroundingTriangles {
   std::vector<std::uint32_t> triangles;
   std::vector<std::uint32_t> first, count;
 };
 
 SurroundingTriangles group_triangles(const AssetSource& in) {
-  std::vector<std::vector<std::uint32_t>> groups(in.spheres.spheres.size());
-  for (std::size_t t = 0; t < in.binding.sphere_of_triangle.size(); ++t) {
-    groups[in.binding.sphere_of_triangle[t]].push_back(in.character.skin_source_triangle[t]);
-  }
   SurroundingTriangles out;
-  for (std::vector<std::uint32_t>& group : groups) {
-    std::sort(group.begin(), group.end());
+  auto leaf = in.leaves.leaves.begin();
+  for (std::uint32_t s = 0; s < in.spheres.spheres.size(); ++s) {
     out.first.push_back(static_cast<std::uint32_t>(out.triangles.size()));
-    out.count.push_back(static_cast<std::uint32_t>(group.size()));
-    out.triangles.insert(out.triangles.end(), group.begin(), group.end());
+    for (; leaf != in.leaves.leaves.end() && leaf->sphere == s; ++leaf) {
+      for (const Index t : leaf->triangles) out.triangles.push_back(in.character.skin_source_triangle[t]);
+    }
+    out.count.push_back(static_cast<std::uint32_t>(out.triangles.size()) - out.first.back());
   }
   return out;
 }
@@ -110,6 +109,7 @@ std::vector<std::uint8_t> serialize(const AssetSource& in) {
   }
   const PackedPivots packed = pack_pivots(pivots);
   const auto bone_refit = create_bone_refit(builder, in.bones);
+  const auto surface = create_surface(builder, in.character, in.bones, in.leaves);
   const std::vector<std::uint64_t> ignored = ignored_bits(in);
   const std::vector<schema::NearPair> near_fit = to_schema(in.binding.near_fit),
                                       near_detect = to_schema(in.binding.near_detect);
@@ -140,7 +140,7 @@ std::vector<std::uint8_t> serialize(const AssetSource& in) {
                                 in.binding.rule == RefitRule::kPaper ? schema::Refit::paper : schema::Refit::calibrated,
                                 fit, &regions, &spheres, &pivots, &triangles.triangles, &chains,
                                 static_cast<std::uint32_t>(in.chains.entries_table1), &ignored, &near_fit, &near_detect,
-                                &joints, &packed.vertices, &packed.pivots, bone_refit),
+                                &joints, &packed.vertices, &packed.pivots, bone_refit, surface),
       schema::AssetIdentifier());
   std::vector<std::uint8_t> bytes(builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize());
 

@@ -10,6 +10,7 @@
 #include "bind/bind.h"
 #include "bind/bind_bones.h"
 #include "chains/chains.h"
+#include "leaves/leaves.h"
 #include "rig/rig.h"
 
 namespace spherechain::baker {
@@ -23,6 +24,7 @@ struct AssetSource {
   const Binding& binding;
   const std::vector<Joint>& joints;
   const BoneBinding& bones;
+  const Leaves& leaves;
   std::string settings;  // canonical JSON
 };
 

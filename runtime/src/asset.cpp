@@ -36,6 +36,20 @@ static_assert(kSameLayout<PivotLanes, schema::Lanes> && kSameLayout<BoneTerm, sc
 static_assert(kSameLayout<MorphTerm, schema::MorphTerm> && offsetof(MorphTerm, y) == 32 &&
               offsetof(MorphTerm, z) == 64);
 
+static_assert(kSameLayout<BallLanes, schema::BallLanes> && offsetof(BallLanes, y) == 32 &&
+              offsetof(BallLanes, z) == 64 && offsetof(BallLanes, radius) == 96);
+static_assert(kSameLayout<CoverTerm, schema::CoverTerm> && offsetof(CoverTerm, deviations) == 32);
+static_assert(kSameLayout<Leaf, schema::Leaf> && offsetof(Leaf, first_triangle) == 4 &&
+              offsetof(Leaf, first_vertex) == 8 && offsetof(Leaf, first_bone) == 12 &&
+              offsetof(Leaf, triangle_count) == 16 && offsetof(Leaf, vertex_count) == 18 &&
+              offsetof(Leaf, bone_count) == 20 && offsetof(Leaf, reserved) == 22);
+static_assert(kSameLayout<SurfaceVertex, schema::SurfaceVertex> && offsetof(SurfaceVertex, first_influence) == 12 &&
+              offsetof(SurfaceVertex, first_morph) == 16 && offsetof(SurfaceVertex, influence_count) == 20 &&
+              offsetof(SurfaceVertex, morph_count) == 22);
+static_assert(kSameLayout<Influence, schema::Influence> && offsetof(Influence, weight) == 4);
+static_assert(kSameLayout<MorphDelta, schema::MorphDelta> && offsetof(MorphDelta, delta) == 4);
+static_assert(kSameLayout<TrianglePair, schema::TrianglePair> && offsetof(TrianglePair, b) == 4);
+
 constexpr std::size_t kHeaderSize = 8;  // the root's offset and the identifier
 constexpr std::size_t kMinSize = kHeaderSize + sizeof(schema::Sphere) + sizeof(schema::Pivot);
 constexpr std::size_t kMaxSize = FLATBUFFERS_MAX_BUFFER_SIZE - 1;
@@ -62,6 +76,30 @@ BoneTables tables_of(const schema::BoneRefit& refit) {
   tables.morph_targets = view<std::uint32_t>(*refit.morph_targets());
   tables.morph_terms = view<MorphTerm>(*refit.morph_terms());
   return tables;
+}
+
+Surface surface_of(const schema::Surface& stored) {
+  Surface surface;
+  surface.leaves = view<Leaf>(*stored.leaves());
+  surface.leaf_balls = view<BallLanes>(*stored.leaf_balls());
+  surface.leaf_vertices = view<std::uint32_t>(*stored.leaf_vertices());
+  surface.leaf_bones = view<std::uint32_t>(*stored.leaf_bones());
+  surface.corners = view<std::uint8_t>(*stored.corners());
+  surface.vertices = view<SurfaceVertex>(*stored.vertices());
+  surface.source_vertices = view<std::uint32_t>(*stored.source_vertices());
+  surface.welds = view<std::uint32_t>(*stored.welds());
+  surface.influences = view<Influence>(*stored.influences());
+  surface.morphs = view<MorphDelta>(*stored.morphs());
+  surface.cover_term_counts = view<std::uint32_t>(*stored.cover_term_counts());
+  surface.cover_term_bones = view<std::uint32_t>(*stored.cover_term_bones());
+  surface.cover_terms = view<CoverTerm>(*stored.cover_terms());
+  surface.cover_morph_counts = view<std::uint32_t>(*stored.cover_morph_counts());
+  surface.cover_morph_targets = view<std::uint32_t>(*stored.cover_morph_targets());
+  surface.cover_morphs = view<BallLanes>(*stored.cover_morphs());
+  if (stored.rest_contacts() != nullptr) {
+    surface.rest_contacts = view<TrianglePair>(*stored.rest_contacts());
+  }
+  return surface;
 }
 
 Status verify(const void* data, std::size_t size, Message& message) {
@@ -139,6 +177,9 @@ Status Asset::open_verified(const void* data, std::size_t size, Message& message
   }
   if (root.bone_refit() != nullptr) {
     bone_tables_ = tables_of(*root.bone_refit());
+  }
+  if (root.surface() != nullptr) {
+    surface_ = surface_of(*root.surface());
   }
   return Status::kOk;
 }

@@ -9,6 +9,7 @@
 #include "bone_checks.h"
 #include "sphere_chains_generated.h"
 #include "spherechain/asset.h"
+#include "surface_checks.h"
 #include "triangle_bits.h"
 
 namespace spherechain {
@@ -314,7 +315,8 @@ bool values_are_valid(const schema::Asset& root, std::size_t size, Message& mess
          check_triangles(root, message) && check_spheres(root, message) && check_chains(root, size, message) &&
          check_ignored(root, message) && check_near(*root.near_fit(), "near_fit", root.spheres()->size(), message) &&
          check_near(*root.near_detect(), "near_detect", root.spheres()->size(), message) &&
-         check_joints(root, message) && bone_values_are_valid(root, message);
+         check_joints(root, message) && bone_values_are_valid(root, message) &&
+         surface_values_are_valid(root, size, message);
 }
 
 std::size_t count_ignored(const schema::Asset& root) {

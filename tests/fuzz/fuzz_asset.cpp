@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "tiny_bones.h"
+#include "tiny_surface.h"
 #include "use_fully.h"
 
 namespace spherechain::test {
@@ -143,7 +143,8 @@ int main(int argc, char** argv) {
     for (const std::size_t spheres : {1U, 7U}) {
       const std::string name = "synthetic, " + std::to_string(spheres) + " spheres";
       TinyAsset tiny = random_asset(spheres, 1);
-      add_bones(tiny, 4, 2);
+      const TinySkin skin = add_bones(tiny, 4, 2);
+      add_surface(tiny, &skin, 3);
       sound = Fuzzer(build(tiny.parts)).run(name.c_str(), stride) && sound;
     }
   }

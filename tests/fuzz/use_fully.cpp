@@ -26,6 +26,37 @@ void read(Span<T> span) {
   sink = sink + sum;
 }
 
+void read_surface(const Asset& asset) {
+  const Surface& surface = asset.surface();
+  read(surface.leaves);
+  read(surface.leaf_balls);
+  read(surface.leaf_vertices);
+  read(surface.leaf_bones);
+  read(surface.corners);
+  read(surface.vertices);
+  read(surface.source_vertices);
+  read(surface.welds);
+  read(surface.influences);
+  read(surface.morphs);
+  read(surface.cover_term_counts);
+  read(surface.cover_term_bones);
+  read(surface.cover_terms);
+  read(surface.cover_morph_counts);
+  read(surface.cover_morph_targets);
+  read(surface.cover_morphs);
+  read(surface.rest_contacts);
+  // What a narrow phase would do: leaf by leaf, corner by corner, to the source's vertex.
+  std::size_t sum = 0;
+  for (const Leaf& leaf : surface.leaves) {
+    for (std::uint32_t corner = 0; corner < 3U * leaf.triangle_count; ++corner) {
+      const std::uint8_t slot = surface.corners[std::size_t{3} * leaf.first_triangle + corner];
+      sum += surface.source_vertices[surface.leaf_vertices[leaf.first_vertex + slot]];
+    }
+    sum += asset.spheres()[leaf.sphere].region;
+  }
+  sink = sink + sum;
+}
+
 void read_all(const Asset& asset) {
   const AssetInfo info = asset.info();
   for (const char* text : {info.writer, info.settings, info.settings_sha256, info.source_file, info.source_sha256}) {
@@ -62,6 +93,7 @@ void read_all(const Asset& asset) {
   }
   read(asset.pivot_vertices());
   read(asset.packed_pivots());
+  read_surface(asset);
   // What a narrow phase would do with the surrounding regions.
   for (const RestSphere& sphere : asset.spheres()) {
     read(Span<const std::uint32_t>{asset.triangles().data + sphere.first_triangle, sphere.triangle_count});

@@ -30,6 +30,19 @@ schema::Lanes stored(const PivotLanes& l) { return schema::Lanes(lanes(l.values)
 schema::BoneTerm stored(const BoneTerm& t) { return {lanes(t.x), lanes(t.y), lanes(t.z), lanes(t.w)}; }
 schema::MorphTerm stored(const MorphTerm& t) { return {lanes(t.x), lanes(t.y), lanes(t.z)}; }
 
+schema::Leaf stored(const Leaf& l) {
+  return {l.sphere,         l.first_triangle, l.first_vertex, l.first_bone,
+          l.triangle_count, l.vertex_count,   l.bone_count,   l.reserved};
+}
+schema::BallLanes stored(const BallLanes& b) { return {lanes(b.x), lanes(b.y), lanes(b.z), lanes(b.radius)}; }
+schema::CoverTerm stored(const CoverTerm& t) { return {lanes(t.weights), lanes(t.deviations)}; }
+schema::SurfaceVertex stored(const SurfaceVertex& v) {
+  return {stored(v.position), v.first_influence, v.first_morph, v.influence_count, v.morph_count};
+}
+schema::Influence stored(const Influence& i) { return {i.bone, i.weight}; }
+schema::MorphDelta stored(const MorphDelta& m) { return {m.target, stored(m.delta)}; }
+schema::TrianglePair stored(const TrianglePair& p) { return {p.a, p.b}; }
+
 template <typename Stored, typename View>
 auto struct_vector(fb::FlatBufferBuilder& builder, const std::vector<View>& views) {
   std::vector<Stored> values;
@@ -103,6 +116,32 @@ fb::Offset<schema::BoneRefit> build_bone_refit(fb::FlatBufferBuilder& builder, c
                                  morph_term_counts, morph_targets, morph_terms);
 }
 
+fb::Offset<schema::Surface> build_surface(fb::FlatBufferBuilder& builder, const SurfaceParts& in) {
+  if (in.leaves.empty()) {
+    return 0;
+  }
+  const auto leaves = struct_vector<schema::Leaf>(builder, in.leaves);
+  const auto balls = struct_vector<schema::BallLanes>(builder, in.leaf_balls);
+  const auto leaf_vertices = builder.CreateVector(in.leaf_vertices);
+  const auto leaf_bones = builder.CreateVector(in.leaf_bones);
+  const auto corners = builder.CreateVector(in.corners);
+  const auto vertices = struct_vector<schema::SurfaceVertex>(builder, in.vertices);
+  const auto source_vertices = builder.CreateVector(in.source_vertices);
+  const auto welds = builder.CreateVector(in.welds);
+  const auto influences = struct_vector<schema::Influence>(builder, in.influences);
+  const auto morphs = struct_vector<schema::MorphDelta>(builder, in.morphs);
+  const auto term_counts = builder.CreateVector(in.cover_term_counts);
+  const auto term_bones = builder.CreateVector(in.cover_term_bones);
+  const auto terms = struct_vector<schema::CoverTerm>(builder, in.cover_terms);
+  const auto morph_counts = builder.CreateVector(in.cover_morph_counts);
+  const auto morph_targets = builder.CreateVector(in.cover_morph_targets);
+  const auto cover_morphs = struct_vector<schema::BallLanes>(builder, in.cover_morphs);
+  const auto rest_contacts = struct_vector<schema::TrianglePair>(builder, in.rest_contacts);
+  return schema::CreateSurface(builder, leaves, balls, leaf_vertices, leaf_bones, corners, vertices, source_vertices,
+                               welds, influences, morphs, term_counts, term_bones, terms, morph_counts, morph_targets,
+                               cover_morphs, rest_contacts);
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> build(const AssetParts& parts) {
@@ -141,11 +180,12 @@ std::vector<std::uint8_t> build(const AssetParts& parts) {
                             ? Pivots()
                             : struct_vector<schema::Pivot>(builder, parts.packed_pivots);
   const auto bone_refit = build_bone_refit(builder, parts);
+  const auto surface = build_surface(builder, parts.surface);
   schema::FinishAssetBuffer(
       builder, schema::CreateAsset(builder, parts.format_version, provenance, source, frame,
                                    static_cast<schema::Refit>(parts.refit), fit, region_vector, spheres, pivots,
                                    triangles, chains, parts.chain_entries_table1, ignored, near_fit, near_detect,
-                                   joints, pivot_vertices, packed, bone_refit));
+                                   joints, pivot_vertices, packed, bone_refit, surface));
   return {builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize()};
 }
 

@@ -46,6 +46,22 @@ struct BoneRefitParts {
   std::vector<MorphTerm> morph_terms;
 };
 
+struct SurfaceParts {
+  std::vector<Leaf> leaves;
+  std::vector<BallLanes> leaf_balls;
+  std::vector<std::uint32_t> leaf_vertices, leaf_bones;
+  std::vector<std::uint8_t> corners;
+  std::vector<SurfaceVertex> vertices;
+  std::vector<std::uint32_t> source_vertices, welds;
+  std::vector<Influence> influences;
+  std::vector<MorphDelta> morphs;
+  std::vector<std::uint32_t> cover_term_counts, cover_term_bones;
+  std::vector<CoverTerm> cover_terms;
+  std::vector<std::uint32_t> cover_morph_counts, cover_morph_targets;
+  std::vector<BallLanes> cover_morphs;
+  std::vector<TrianglePair> rest_contacts;
+};
+
 // Everything an asset holds, to be changed before build().
 struct AssetParts {
   std::uint32_t format_version = kFormatVersion;
@@ -76,6 +92,7 @@ struct AssetParts {
   std::vector<std::uint32_t> pivot_vertices;
   std::vector<Pivot> packed_pivots;
   BoneRefitParts bone_refit;  // left out where it has no weights
+  SurfaceParts surface;       // left out where it has no leaves
 
   // Ways of breaking an asset that no value above can express.
   std::string without;              // a struct to leave out: "frame.up", "fit.phi1", "joints.tail", "packed_pivots" ...

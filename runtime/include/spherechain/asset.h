@@ -7,6 +7,7 @@
 #include "spherechain/abi.h"
 #include "spherechain/bone_tables.h"
 #include "spherechain/status.h"
+#include "spherechain/surface.h"
 #include "spherechain/types.h"
 
 namespace spherechain {
@@ -126,7 +127,7 @@ class SPHERECHAIN_API Asset {
   AssetInfo info() const noexcept;
   Span<const RestSphere> spheres() const noexcept { return spheres_; }
   Span<const Pivot> pivots() const noexcept { return pivots_; }
-  // Source triangle numbers, grouped by sphere: see RestSphere::first_triangle.
+  // Source triangle numbers, grouped by sphere (RestSphere::first_triangle) and in it by leaf (Leaf::first_triangle).
   Span<const std::uint32_t> triangles() const noexcept { return triangles_; }
   // Triangular bit table, bit b(b-1)/2 + a for a < b: 1 where the pair is never reported.
   Span<const std::uint64_t> ignored() const noexcept { return ignored_; }
@@ -158,6 +159,9 @@ class SPHERECHAIN_API Asset {
   Span<const std::uint32_t> pivot_vertices() const noexcept { return pivot_vertices_; }
   // pivots(), their corners numbered in pivot_vertices().
   Span<const Pivot> packed_pivots() const noexcept { return packed_pivots_; }
+  // What exact contacts are found in. All empty in assets of older bakers.
+  const Surface& surface() const noexcept { return surface_; }
+  std::size_t leaf_count() const noexcept { return surface_.leaves.size; }
   // info().refit, for less.
   RefitRule refit_rule() const noexcept;
 
@@ -178,6 +182,7 @@ class SPHERECHAIN_API Asset {
   Span<const std::uint32_t> pivot_vertices_;
   Span<const Pivot> packed_pivots_;
   BoneTables bone_tables_;
+  Surface surface_;
 };
 
 // SC_ABI_VERSION of the library itself.

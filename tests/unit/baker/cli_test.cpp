@@ -89,7 +89,7 @@ TEST_CASE("bake writes the same bytes as the library, a report and a table, and 
   }
   std::set<std::string> stages;
   for (const json& stage : report["stages"]) stages.insert(stage["stage"].get<std::string>());
-  CHECK(stages == std::set<std::string>{"import", "roles", "segment", "fit", "chains", "bind", "rig", "write"});
+  CHECK(stages == std::set<std::string>{"import", "roles", "segment", "fit", "chains", "bind", "rig", "leaves", "write"});
 }
 
 TEST_CASE("inspect --json has the contract's fields and agrees with itself") {

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "leaves/leaves.h"
+
+namespace spherechain::baker {
+namespace {
+
+float round_up(double value) {
+  const auto rounded = static_cast<float>(value);
+  return rounded < value ? std::nextafter(rounded, std::numeric_limits<float>::infinity()) : rounded;
+}
+
+// The smallest ball, about a float centre, with a float radius.
+Ball ball_around(const Mesh& points) {
+  std::vector<Index> all(points.positions.size());
+  for (Index i = 0; i < all.size(); ++i) all[i] = i;
+  const Vec3 center = minimum_enclosing_ball(points, all).center.cast<float>().cast<double>();
+  double radius = 0;
+  for (const Vec3& p : points.positions) radius = std::max(radius, (p - center).norm());
+  // The norm in double precision is off by a few units in its last place.
+  return {center, round_up(radius * (1 + 1e-15))};
+}
+
+std::vector<LeafBone> bones_of(const std::vector<SurfaceVertex>& vertices, const Leaf& leaf) {
+  struct Range {
+    float least = 1, most = 0;
+    std::size_t count = 0;
+  };
+  std::map<Index, Range> ranges;
+  for (const Index v : leaf.vertices) {
+    for (const Influence& influence : vertices[v].influences) {
+      Range& range = ranges[influence.bone];
+      range.least = std::min(range.least, influence.weight);
+      range.most = std::max(range.most, influence.weight);
+      ++range.count;
+    }
+  }
+  double sum = 0;
+  for (auto& [bone, range] : ranges) {
+    if (range.count < leaf.vertices.size()) range.least = 0;
+    sum += (double{range.least} + range.most) / 2;
+  }
+  std::vector<LeafBone> out;
+  for (const auto& [bone, range] : ranges) {
+    const auto weight = static_cast<float>((double{range.least} + range.most) / 2 / sum);
+    const double deviation = std::max(double{range.most} - weight, weight - double{range.least});
+    out.push_back({bone, weight, round_up(deviation)});
+  }
+  return out;
+}
+
+std::vector<LeafMorph> morphs_of(const std::vector<SurfaceVertex>& vertices, const Leaf& leaf) {
+  std::map<Index, Mesh> deltas;
+  for (const Index v : leaf.vertices) {
+    for (const MorphDelta& morph : vertices[v].morphs) deltas[morph.target].positions.push_back(morph.delta);
+  }
+  std::vector<LeafMorph> out;
+  for (auto& [target, points] : deltas) {
+    if (points.positions.size() < leaf.vertices.size()) points.positions.push_back(Vec3::Zero());
+    out.push_back({target, ball_around(points)});
+  }
+  return out;
+}
+
+}  // namespace
+
+void bound_leaf(const Character& character, const std::vector<SurfaceVertex>& vertices, Leaf& leaf) {
+  Mesh points;
+  for (const Index v : leaf.vertices) points.positions.push_back(character.source_positions[vertices[v].source]);
+  leaf.ball = ball_around(points);
+  leaf.bones = bones_of(vertices, leaf);
+  leaf.morphs = morphs_of(vertices, leaf);
+}
+
+}  // namespace spherechain::baker

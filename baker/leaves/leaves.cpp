@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "leaves/leaves.h"
+
+#include <algorithm>
+#include <map>
+
+namespace spherechain::baker {
+namespace {
+
+std::vector<Leaf> cluster_regions(const Character& character, const Binding& binding, std::size_t most) {
+  std::vector<std::vector<Index>> regions(binding.spheres.size());
+  for (Index t = 0; t < binding.sphere_of_triangle.size(); ++t) regions[binding.sphere_of_triangle[t]].push_back(t);
+  std::vector<Leaf> out;
+  for (std::uint32_t s = 0; s < regions.size(); ++s) {
+    for (std::vector<Index>& cluster : cluster_triangles(character.skin, regions[s], most)) {
+      std::sort(cluster.begin(), cluster.end(), [&](Index a, Index b) {
+        return character.skin_source_triangle[a] < character.skin_source_triangle[b];
+      });
+      Leaf& leaf = out.emplace_back();
+      leaf.sphere = s;
+      leaf.triangles = std::move(cluster);
+    }
+  }
+  return out;
+}
+
+// Numbers the vertices anew, leaf by leaf: most of a leaf's are one after another in memory then.
+void order_vertices(const Character& character, Leaves& out) {
+  std::vector<SurfaceVertex> vertices;
+  std::vector<Index> number(out.vertices.size(), kNoIndex);
+  for (Leaf& leaf : out.leaves) {
+    for (const Index t : leaf.triangles) {
+      for (const Index v : character.source_triangles[character.skin_source_triangle[t]]) {
+        leaf.vertices.push_back(out.vertex_of_source[v]);
+      }
+    }
+    std::sort(leaf.vertices.begin(), leaf.vertices.end());
+    leaf.vertices.erase(std::unique(leaf.vertices.begin(), leaf.vertices.end()), leaf.vertices.end());
+    for (Index& v : leaf.vertices) {
+      if (number[v] == kNoIndex) {
+        number[v] = static_cast<Index>(vertices.size());
+        vertices.push_back(std::move(out.vertices[v]));
+      }
+      v = number[v];
+    }
+    std::sort(leaf.vertices.begin(), leaf.vertices.end());
+  }
+  for (Index& v : out.vertex_of_source) {
+    if (v != kNoIndex) v = number[v];
+  }
+  std::map<Index, Index> lowest;  // of a vertex of the skin
+  for (Index v = 0; v < vertices.size(); ++v) vertices[v].weld = lowest.try_emplace(vertices[v].weld, v).first->second;
+  out.vertices = std::move(vertices);
+}
+
+}  // namespace
+
+Leaves make_leaves(const Character& character, const Binding& binding, const BoneBinding& bones,
+                   const std::vector<VertexWeights>& rig_weights, const LeafSettings& settings) {
+  Leaves out;
+  out.leaves = cluster_regions(character, binding, static_cast<std::size_t>(settings.triangles));
+  out.vertices = surface_vertices(character, bones, rig_weights, out.vertex_of_source);
+  order_vertices(character, out);
+  for (Leaf& leaf : out.leaves) bound_leaf(character, out.vertices, leaf);
+  return out;
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The part of an asset that leaf bounds and exact contacts read.
+#pragma once
+
+#include "leaves/leaves.h"
+#include "sphere_chains_generated.h"
+
+namespace spherechain::baker {
+
+flatbuffers::Offset<schema::Surface> create_surface(flatbuffers::FlatBufferBuilder& builder, const Character& character,
+                                                    const BoneBinding& bones, const Leaves& leaves);
+
+}  // namespace spherechain::baker

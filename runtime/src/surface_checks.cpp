@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: MIT
+#include "surface_checks.h"
+
+#include <algorithm>
+#include <cinttypes>
+#include <cmath>
+#include <limits>
+
+#include "sphere_chains_generated.h"
+#include "spherechain/surface.h"
+
+namespace spherechain {
+namespace {
+
+using Lanes = flatbuffers::Array<float, kLeafLanes>;
+constexpr std::uint32_t kLanes = kLeafLanes;
+using Numbers = flatbuffers::Vector<std::uint32_t>;
+
+bool has_size(std::uint64_t size, std::uint64_t wanted, const char* name, const char* of, Message& message) {
+  return size == wanted || message.wrong("surface.%s: %" PRIu64 " of them, but %" PRIu64 " %s", name, size, wanted, of);
+}
+
+bool wrong_at(const char* name, std::uint32_t i, const char* what, Message& message) {
+  return message.wrong("surface.%s[%" PRIu32 "]: %s", name, i, what);
+}
+
+bool is_finite(const schema::Vec3& v) { return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z()); }
+
+// Whether `used` lanes are finite and at least `least`, and the spare ones 0.
+bool lanes_are_valid(const Lanes& lanes, std::uint32_t used, float least) {
+  for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+    const float value = lanes.Get(lane);
+    if (lane < used ? !(std::isfinite(value) && value >= least) : value != 0.0F) {
+      return false;
+    }
+  }
+  return true;
+}
+
+constexpr float kLowest = std::numeric_limits<float>::lowest();
+
+bool ball_is_valid(const schema::BallLanes& balls, std::uint32_t used) {
+  return lanes_are_valid(*balls.x(), used, kLowest) && lanes_are_valid(*balls.y(), used, kLowest) &&
+         lanes_are_valid(*balls.z(), used, kLowest) && lanes_are_valid(*balls.radius(), used, 0.0F);
+}
+
+// `count` numbers from `first` on are below `limit` and ascend.
+bool check_run(const Numbers& numbers, std::uint32_t first, std::uint32_t count, std::uint32_t limit, const char* name,
+               Message& message) {
+  for (std::uint32_t i = first; i < first + count; ++i) {
+    if (numbers.Get(i) >= limit) {
+      return message.wrong("surface.%s[%" PRIu32 "]: %" PRIu32 " is past the %" PRIu32, name, i, numbers.Get(i), limit);
+    }
+    if (i > first && numbers.Get(i) <= numbers.Get(i - 1)) {
+      return wrong_at(name, i, "not above the one before it", message);
+    }
+  }
+  return true;
+}
+
+std::uint32_t bone_count(const schema::Asset& root) {
+  return root.bone_refit() == nullptr ? 0 : root.bone_refit()->bones()->size();
+}
+
+std::uint32_t morph_count(const schema::Asset& root) {
+  return root.bone_refit() == nullptr ? 0 : root.bone_refit()->morphs()->size();
+}
+
+bool check_influences(const schema::Asset& root, std::uint32_t v, Message& message) {
+  const schema::Surface& surface = *root.surface();
+  const schema::SurfaceVertex& vertex = *surface.vertices()->Get(v);
+  const std::uint32_t bones = bone_count(root);
+  const std::uint32_t end = vertex.first_influence() + vertex.influence_count();
+  for (std::uint32_t i = vertex.first_influence(); i < end; ++i) {
+    const schema::Influence& influence = *surface.influences()->Get(i);
+    if (influence.bone() >= bones) {
+      return message.wrong("surface.influences[%" PRIu32 "].bone: %" PRIu32 " is past the %" PRIu32 " bones", i,
+                           influence.bone(), bones);
+    }
+    if (i > vertex.first_influence() && influence.bone() <= surface.influences()->Get(i - 1)->bone()) {
+      return wrong_at("influences", i, "its bone is not above the one before it", message);
+    }
+    if (!(influence.weight() > 0.0F && influence.weight() <= 1.0F)) {
+      return wrong_at("influences", i, "its weight is not above 0 and at most 1", message);
+    }
+  }
+  return true;
+}
+
+bool check_morphs(const schema::Asset& root, std::uint32_t v, Message& message) {
+  const schema::Surface& surface = *root.surface();
+  const schema::SurfaceVertex& vertex = *surface.vertices()->Get(v);
+  const std::uint32_t end = vertex.first_morph() + vertex.morph_count();
+  for (std::uint32_t i = vertex.first_morph(); i < end; ++i) {
+    const schema::MorphDelta& morph = *surface.morphs()->Get(i);
+    if (morph.target() >= morph_count(root)) {
+      return message.wrong("surface.morphs[%" PRIu32 "].target: %" PRIu32 " is past the %" PRIu32 " morph targets", i,
+                           morph.target(), morph_count(root));
+    }
+    if (i > vertex.first_morph() && morph.target() <= surface.morphs()->Get(i - 1)->target()) {
+      return wrong_at("morphs", i, "its target is not above the one before it", message);
+    }
+    if (!is_finite(morph.delta())) {
+      return wrong_at("morphs", i, "its delta is not finite", message);
+    }
+  }
+  return true;
+}
+
+bool check_vertices(const schema::Asset& root, Message& message) {
+  const schema::Surface& surface = *root.surface();
+  const std::uint32_t count = surface.vertices()->size();
+  if (!has_size(surface.source_vertices()->size(), count, "source_vertices", "vertices", message) ||
+      !has_size(surface.welds()->size(), count, "welds", "vertices", message)) {
+    return false;
+  }
+  const bool moves = bone_count(root) > 0;
+  std::uint64_t influences = 0, morphs = 0;
+  for (std::uint32_t v = 0; v < count; ++v) {
+    const schema::SurfaceVertex& vertex = *surface.vertices()->Get(v);
+    if (!is_finite(vertex.position())) {
+      return wrong_at("vertices", v, "its position is not finite", message);
+    }
+    if (moves ? vertex.influence_count() == 0 || vertex.influence_count() > kMaxInfluences
+              : vertex.influence_count() != 0) {
+      return wrong_at("vertices", v, "it hangs on no bone, on too many, or there are none", message);
+    }
+    if (vertex.first_influence() != influences || vertex.first_morph() != morphs) {
+      return wrong_at("vertices", v, "its influences or morphs do not start where the last vertex' end", message);
+    }
+    influences += vertex.influence_count();
+    morphs += vertex.morph_count();
+    if (influences > surface.influences()->size() || morphs > surface.morphs()->size()) {
+      return wrong_at("vertices", v, "its influences or morphs are past the end", message);
+    }
+    if (!check_influences(root, v, message) || !check_morphs(root, v, message)) {
+      return false;
+    }
+    if (surface.source_vertices()->Get(v) >= root.source()->vertex_count()) {
+      return message.wrong("surface.source_vertices[%" PRIu32 "]: %" PRIu32 " is past the %" PRIu32
+                           " vertices of the source",
+                           v, surface.source_vertices()->Get(v), root.source()->vertex_count());
+    }
+    const std::uint32_t weld = surface.welds()->Get(v);
+    if (weld > v || surface.welds()->Get(weld) != weld) {
+      return wrong_at("welds", v, "not the lowest vertex of its place", message);
+    }
+  }
+  return has_size(surface.influences()->size(), influences, "influences", "that the vertices have", message) &&
+         has_size(surface.morphs()->size(), morphs, "morphs", "that the vertices have", message);
+}
+
+// The bones of a leaf's vertices are the leaf's.
+bool check_leaf_bones(const schema::Surface& surface, std::uint32_t l, Message& message) {
+  const schema::Leaf& leaf = *surface.leaves()->Get(l);
+  const std::uint32_t* first = surface.leaf_bones()->data() + leaf.first_bone();
+  const std::uint32_t* last = first + leaf.bone_count();
+  for (std::uint32_t slot = leaf.first_vertex(); slot < leaf.first_vertex() + leaf.vertex_count(); ++slot) {
+    const schema::SurfaceVertex& vertex = *surface.vertices()->Get(surface.leaf_vertices()->Get(slot));
+    for (std::uint32_t i = 0; i < vertex.influence_count(); ++i) {
+      if (!std::binary_search(first, last, surface.influences()->Get(vertex.first_influence() + i)->bone())) {
+        return wrong_at("leaves", l, "a bone of a vertex is not among its bones", message);
+      }
+    }
+  }
+  return true;
+}
+
+bool check_corners(const schema::Surface& surface, const schema::Leaf& leaf, Message& message) {
+  for (std::uint32_t t = leaf.first_triangle(); t < leaf.first_triangle() + leaf.triangle_count(); ++t) {
+    const unsigned a = surface.corners()->Get(3 * t);
+    const unsigned b = surface.corners()->Get(3 * t + 1);
+    const unsigned c = surface.corners()->Get(3 * t + 2);
+    if (std::max({a, b, c}) >= leaf.vertex_count() || a == b || b == c || c == a) {
+      return message.wrong("surface.corners: triangle %" PRIu32 " has a corner that its leaf has not, or one twice", t);
+    }
+  }
+  return true;
+}
+
+// Where the next leaf's runs start.
+struct Next {
+  std::uint64_t vertex = 0, bone = 0, morphs_of_slots = 0;
+};
+
+bool check_leaf(const schema::Asset& root, std::uint32_t l, Next& next, Message& message) {
+  const schema::Surface& surface = *root.surface();
+  const schema::Leaf& leaf = *surface.leaves()->Get(l);
+  if (leaf.vertex_count() == 0 || leaf.vertex_count() > kMaxLeafVertices || leaf.reserved() != 0) {
+    return wrong_at("leaves", l, "its vertex_count is not 1 to 255, or reserved is not 0", message);
+  }
+  if ((leaf.bone_count() > 0) != (bone_count(root) > 0)) {
+    return wrong_at("leaves", l, "it hangs on no bone, or there are none", message);
+  }
+  if (leaf.first_vertex() != next.vertex || leaf.first_bone() != next.bone) {
+    return wrong_at("leaves", l, "its vertices or bones do not start where the last leaf's end", message);
+  }
+  next.vertex += leaf.vertex_count();
+  next.bone += leaf.bone_count();
+  if (next.vertex > surface.leaf_vertices()->size() || next.bone > surface.leaf_bones()->size()) {
+    return wrong_at("leaves", l, "its vertices or bones are past the end", message);
+  }
+  if (!check_run(*surface.leaf_vertices(), leaf.first_vertex(), leaf.vertex_count(), surface.vertices()->size(),
+                 "leaf_vertices", message) ||
+      !check_run(*surface.leaf_bones(), leaf.first_bone(), leaf.bone_count(), bone_count(root), "leaf_bones",
+                 message)) {
+    return false;
+  }
+  for (std::uint32_t slot = leaf.first_vertex(); slot < next.vertex; ++slot) {
+    next.morphs_of_slots += surface.vertices()->Get(surface.leaf_vertices()->Get(slot))->morph_count();
+  }
+  return check_leaf_bones(surface, l, message) && check_corners(surface, leaf, message);
+}
+
+bool check_leaves(const schema::Asset& root, std::size_t size, Message& message) {
+  const schema::Surface& surface = *root.surface();
+  if (!has_size(surface.corners()->size(), std::uint64_t{3} * root.triangles()->size(), "corners",
+                "that the triangles have", message)) {
+    return false;
+  }
+  const std::uint32_t count = surface.leaves()->size();
+  std::uint32_t l = 0;
+  Next next;
+  for (std::uint32_t s = 0; s < root.spheres()->size(); ++s) {
+    const schema::Sphere& sphere = *root.spheres()->Get(s);
+    const std::uint64_t end = std::uint64_t{sphere.first_triangle()} + sphere.triangle_count();
+    for (std::uint64_t triangle = sphere.first_triangle(); triangle < end; ++l) {
+      if (l == count || surface.leaves()->Get(l)->sphere() != s || surface.leaves()->Get(l)->triangle_count() == 0 ||
+          surface.leaves()->Get(l)->first_triangle() != triangle ||
+          triangle + surface.leaves()->Get(l)->triangle_count() > end) {
+        return message.wrong("surface.leaves[%" PRIu32 "]: the leaves do not tile the triangles of sphere %" PRIu32, l,
+                             s);
+      }
+      if (!check_leaf(root, l, next, message)) {
+        return false;
+      }
+      triangle += surface.leaves()->Get(l)->triangle_count();
+    }
+  }
+  // Vertices with many morphs in many leaves would let a small file ask for a very long pose.
+  if (next.morphs_of_slots > size) {
+    return message.wrong("surface.leaf_vertices: they have %" PRIu64 " morphs", next.morphs_of_slots);
+  }
+  return has_size(count, l, "leaves", "that spheres have", message) &&
+         has_size(surface.leaf_vertices()->size(), next.vertex, "leaf_vertices", "that the leaves have", message) &&
+         has_size(surface.leaf_bones()->size(), next.bone, "leaf_bones", "that the leaves have", message);
+}
+
+// The lanes of a group that stand for leaves.
+std::uint32_t lanes_of(const schema::Surface& surface, std::uint32_t group) {
+  return std::min(kLanes, surface.leaves()->size() - kLanes * group);
+}
+
+// A group's entries each, one group after another, that name bones or morph targets.
+template <typename IsValid>
+bool check_groups(const Numbers& counts, const Numbers& names, std::uint32_t limit, const char* counts_name,
+                  const char* names_name, const IsValid& is_valid, Message& message) {
+  std::uint64_t next = 0;
+  for (std::uint32_t group = 0; group < counts.size(); ++group) {
+    const auto first = static_cast<std::uint32_t>(next);
+    next += counts.Get(group);
+    if (next > names.size()) {
+      return wrong_at(counts_name, group, "its entries are past the end", message);
+    }
+    if (!check_run(names, first, counts.Get(group), limit, names_name, message)) {
+      return false;
+    }
+    for (auto i = first; i < next; ++i) {
+      if (!is_valid(group, i)) {
+        return wrong_at(names_name, i, "its lanes are not finite, below 0, or a spare one is not 0", message);
+      }
+    }
+  }
+  return has_size(names.size(), next, names_name, "that the groups have", message);
+}
+
+bool check_cover(const schema::Asset& root, Message& message) {
+  const schema::Surface& surface = *root.surface();
+  const std::uint32_t groups = (surface.leaves()->size() + kLanes - 1) / kLanes;
+  if (!has_size(surface.leaf_balls()->size(), groups, "leaf_balls", "groups of leaves", message) ||
+      !has_size(surface.cover_term_counts()->size(), bone_count(root) == 0 ? 0 : groups, "cover_term_counts",
+                "groups of leaves that move", message) ||
+      !has_size(surface.cover_terms()->size(), surface.cover_term_bones()->size(), "cover_terms", "cover_term_bones",
+                message) ||
+      !has_size(surface.cover_morphs()->size(), surface.cover_morph_targets()->size(), "cover_morphs",
+                "cover_morph_targets", message)) {
+    return false;
+  }
+  if (surface.cover_morph_counts()->size() != 0 &&
+      !has_size(surface.cover_morph_counts()->size(), groups, "cover_morph_counts", "groups of leaves", message)) {
+    return false;
+  }
+  for (std::uint32_t group = 0; group < groups; ++group) {
+    if (!ball_is_valid(*surface.leaf_balls()->Get(group), lanes_of(surface, group))) {
+      return wrong_at("leaf_balls", group, "not finite, a radius below 0, or a spare lane that is not 0", message);
+    }
+  }
+  const auto term_is_valid = [&](std::uint32_t group, std::uint32_t i) {
+    const schema::CoverTerm& term = *surface.cover_terms()->Get(i);
+    return lanes_are_valid(*term.weights(), lanes_of(surface, group), 0.0F) &&
+           lanes_are_valid(*term.deviations(), lanes_of(surface, group), 0.0F);
+  };
+  const auto morph_is_valid = [&](std::uint32_t group, std::uint32_t i) {
+    return ball_is_valid(*surface.cover_morphs()->Get(i), lanes_of(surface, group));
+  };
+  return check_groups(*surface.cover_term_counts(), *surface.cover_term_bones(), bone_count(root), "cover_term_counts",
+                      "cover_term_bones", term_is_valid, message) &&
+         check_groups(*surface.cover_morph_counts(), *surface.cover_morph_targets(), morph_count(root),
+                      "cover_morph_counts", "cover_morph_targets", morph_is_valid, message);
+}
+
+bool check_rest_contacts(const schema::Asset& root, Message& message) {
+  const auto* pairs = root.surface()->rest_contacts();
+  if (pairs == nullptr) {
+    return true;
+  }
+  for (std::uint32_t i = 0; i < pairs->size(); ++i) {
+    const TrianglePair pair{pairs->Get(i)->a(), pairs->Get(i)->b()};
+    if (pair.a >= pair.b || pair.b >= root.source()->triangle_count()) {
+      return wrong_at("rest_contacts", i, "a is not below b, or b is past the source's triangles", message);
+    }
+    if (i > 0 && !(TrianglePair{pairs->Get(i - 1)->a(), pairs->Get(i - 1)->b()} < pair)) {
+      return wrong_at("rest_contacts", i, "not sorted, or there twice", message);
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+bool surface_values_are_valid(const schema::Asset& root, std::size_t size, Message& message) {
+  return root.surface() == nullptr || (check_vertices(root, message) && check_leaves(root, size, message) &&
+                                       check_cover(root, message) && check_rest_contacts(root, message));
+}
+
+}  // namespace spherechain
