@@ -1,7 +1,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+
 #include "spherechain/abi.h"
+#include "spherechain/asset.h"
+#include "spherechain/filter.h"
+#include "spherechain/refit_bones.h"
+#include "spherechain/simd.h"
+#include "spherechain/status.h"
+#include "spherechain/surface.h"
 #include "spherechain/types.h"
 
 namespace spherechain {
@@ -20,5 +29,70 @@ struct TriangleOverlap {
 
 // Of triangles that intersect.
 SPHERECHAIN_API TriangleOverlap overlap_triangles(const Vec3 (&a)[3], const Vec3 (&b)[3]) noexcept;
+
+// Two triangles that intersect, and where.
+struct TriangleContact {
+  TrianglePair triangles;
+  TriangleOverlap overlap;
+
+  friend constexpr bool operator<(const TriangleContact& l, const TriangleContact& r) {
+    return l.triangles < r.triangles;
+  }
+};
+
+// What the surrounding regions of two spheres have in common.
+struct SphereContact {
+  Pair spheres;
+  std::uint32_t count;      // pairs of triangles; >= 1
+  TriangleContact deepest;  // of those the one of the greatest depth, of several the least pair
+
+  friend constexpr bool operator<(const SphereContact& l, const SphereContact& r) { return l.spheres < r.spheres; }
+};
+
+// Scratch memory of one TriangleContactJob at a time, owned by the caller. Keeps nothing from one run to the next.
+struct SPHERECHAIN_API TriangleContactContext {
+  Span<std::uint64_t> words;
+
+  // Words needed for `asset`: about 20 bytes a vertex of the source. 0 where it has no surface.
+  static std::size_t words_needed(const Asset& asset) noexcept;
+};
+
+// Which triangles of the skin intersect: all of them, none else, exactly. Spheres and radii play no part in it: the
+// job goes from boxes of surrounding regions to boxes of leaves to triangles, and decides in exact arithmetic.
+//
+// Left out are triangles of one sphere, and of spheres that the asset or the filter ignores or disables (its padding is
+// of no effect); triangles that share a position at rest, which are neighbours on the skin; and those that intersect in
+// the rest pose (Surface::rest_contacts).
+//
+// The positions are what the caller gives; or, where `positions` is null, what the job skins from bones, and then only
+// of the leaves that could touch another. Any position that is not finite makes its triangles intersect nothing.
+// The contacts are the same on every target.
+//
+// Fill in the fields and call run(). Allocates nothing, takes no lock; jobs with other outputs and contexts may run at
+// the same time.
+struct SPHERECHAIN_API TriangleContactJob {
+  const Asset* asset = nullptr;      // open, with a surface
+  const float* positions = nullptr;  // deformed vertices in the source's order, x y z after another; or null
+  std::size_t vertex_count = 0;      // at least asset->info().source_vertex_count
+  std::size_t stride = 12;           // bytes from one vertex to the next; a multiple of 4, at least 12
+  BoneMatrices bones;                // without positions: as in RefitBonesJob
+  Span<const float> morph_weights;   // without positions: as in RefitBonesJob
+  Target target = Target::kBest;
+  const Filter* filter = nullptr;             // null: the asset's ignored pairs
+  TriangleContactContext* context = nullptr;  // required
+  Span<TrianglePair> pairs;                   // out: source triangle numbers, sorted, each once; may be empty
+  Span<TriangleContact> contacts;             // out: the same with where they intersect; may be empty
+  Span<SphereContact> sphere_contacts;        // out: sorted by their spheres, each pair once; may be empty
+
+  // Out. Counts are what there is, also where a buffer was too small for it.
+  std::size_t pair_count = 0;  // of triangles
+  std::size_t sphere_contact_count = 0;
+
+  // kOk; kOverflow where a buffer was not empty and too small (the first entries of the sorted list are written, the
+  // counts say what is needed); kNullArgument, kNotOpen, kNotInAsset, kTooFewVertices, kBadStride, kTooFewBones,
+  // kTooFewMorphs, kContextTooSmall, kBadArgument, kUnsupportedTarget, kBadFilter, kMisaligned, kSharedMemory (what is
+  // written overlaps anything else): nothing is written, the counts keep their values.
+  Status run() noexcept;
+};
 
 }  // namespace spherechain

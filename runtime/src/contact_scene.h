@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// What the stages of a TriangleContactJob hand to each other.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "exact_triangles.h"
+#include "spherechain/simd.h"
+#include "spherechain/surface.h"
+#include "spherechain/types.h"
+
+namespace spherechain {
+
+// Vectors of any target may be read, and written, this far past the end of what is there.
+inline constexpr std::size_t kContactPadding = 16;
+
+// Boxes coordinate by coordinate.
+struct BoxColumns {
+  float* low[3];
+  float* high[3];
+};
+
+// Which source positions there are.
+struct ContactPositions {
+  const float* data = nullptr;  // null: none
+  std::size_t count = 0, stride = 0;
+};
+
+struct ContactScene {
+  const Surface* surface = nullptr;
+  std::size_t sphere_count = 0;
+  Span<const std::uint64_t> ignored, disabled;  // the latter may be empty
+  ContactPositions positions;
+  // Scratch memory.
+  BoxColumns spheres, leaves;
+  std::uint32_t* first_leaf = nullptr;  // a sphere's, and the end
+  std::uint8_t* is_loaded = nullptr;    // a leaf's: are its vertices below?
+  float* vertices[3] = {};              // of leaf i from vertex_place(i) on
+
+  std::size_t vertex_place(std::size_t leaf) const {
+    return surface->leaves[leaf].first_vertex + kContactPadding * leaf;
+  }
+};
+
+// Where triangles that intersect go. In a file of its own, for kernels must not call templates of the standard library.
+class ContactCollector;
+
+// Two triangles of two leaves whose boxes touch, and whose planes may cross: the decision.
+struct Candidate {
+  std::size_t leaf_a, leaf_b;
+  std::size_t triangle_a, triangle_b;  // in Asset::triangles()
+  TriangleCorners a, b;
+};
+void begin_spheres(ContactCollector& collector, Pair spheres);
+void decide(ContactCollector& collector, const Candidate& candidate);
+
+// Hands all candidates that there are, and a few more, to the collector.
+void find_candidates(Target resolved, const ContactScene& scene, ContactCollector& collector);
+
+}  // namespace spherechain
