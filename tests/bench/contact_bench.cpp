@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Goal P6 (docs/performance.md): exact triangle contacts. First that all find the same, then how long it takes.
+#include <fmt/format.h>
+#include <time.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <exception>
+#include <random>
+#include <stdexcept>
+
+#include "contact_finder.h"
+#include "spherechain/simd.h"
+#include "table.h"
+
+using namespace spherechain;
+using namespace spherechain::bench;
+
+namespace {
+
+using Pairs = std::vector<TrianglePair>;
+
+// Nanoseconds this thread has run: waiting for a core of a shared machine does not count.
+double now() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return 1e9 * static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec);
+}
+
+double mean(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+Pairs sorted(Pairs pairs) {
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+struct Contestant {
+  std::unique_ptr<ContactFinder> finder;
+  int passes;
+  bool is_peer;
+  std::vector<std::vector<double>> times;  // by pose, of each pass
+  std::size_t missing = 0, extra = 0;      // against CGAL, over all poses
+
+  // Over the poses for which `wanted` is 1: each one's median, and its minimum.
+  template <typename Reduce>
+  Times reduce(const std::vector<bool>& wanted, const Reduce& of_all) const {
+    std::vector<double> medians, minima;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      if (wanted[i]) {
+        std::vector<double> pass = times[i];
+        std::sort(pass.begin(), pass.end());
+        medians.push_back(pass[pass.size() / 2]);
+        minima.push_back(pass[0]);
+      }
+    }
+    return {of_all(medians), of_all(minima)};
+  }
+};
+
+class ContactBench {
+ public:
+  ContactBench(std::size_t pose_count, int passes, bool with_peers, const std::string& settings) {
+    load(human_, "human", settings, pose_count);
+    mesh_ = std::make_unique<ContactMesh>(human_);
+    for (std::size_t i = 0; i < human_.poses.size(); ++i) {
+      poses_.push_back({human_.mesh(i), human_.bones(i)});
+    }
+    const auto add = [&](ContactFinders finders, int count, bool is_peer) {
+      for (auto& finder : finders) contestants_.push_back({std::move(finder), count, is_peer, {}});
+    };
+    add(runtime_contact_finders(*mesh_), passes, false);
+    add(cgal_contact_finders(*mesh_), with_peers ? 3 : 0, true);
+    if (with_peers) {
+      add(embree_contact_finders(*mesh_), 3, true);
+      add(fcl_contact_finders(*mesh_), 1, true);
+    }
+    compare();
+    time_all();
+  }
+
+  Table table() {
+    Table out;
+    const std::vector<bool> all(poses_.size(), true);
+    std::vector<bool> free;
+    std::size_t pairs = 0, free_count = 0;
+    for (const Pairs& expected : expected_) {
+      free.push_back(expected.empty());
+      free_count += expected.empty() ? 1 : 0;
+      pairs += expected.size();
+    }
+    out.context = {machine(),
+                   fmt::format("target {}, {} poses of assimp-testmodels' human.zae, {} of them without a contact; "
+                               "{} triangles in {} leaves of {} spheres",
+                               to_string(best_target()), poses_.size(), free_count, mesh_->source_triangles.size(),
+                               human_.asset.leaf_count(), human_.asset.spheres().size),
+                   fmt::format("contacts over all poses: {} pairs of triangles (CGAL)", pairs)};
+    const auto worst = [](const std::vector<double>& v) { return *std::max_element(v.begin(), v.end()); };
+    struct Figures {
+      Times mean, worst, free;
+    };
+    std::vector<Figures> figures;
+    for (const Contestant& c : contestants_) {
+      if (c.passes == 0) continue;
+      figures.push_back({c.reduce(all, mean), c.reduce(all, worst), free_count > 0 ? c.reduce(free, mean) : Times{}});
+      const Figures& f = figures.back();
+      out.rows.push_back(
+          {"P6", c.finder->name + ", mean", f.mean, fmt::format("{} missing, {} extra", c.missing, c.extra)});
+      out.rows.push_back({"P6", c.finder->name + ", worst pose", f.worst, ""});
+      out.rows.push_back({"P6", c.finder->name + ", no contact", f.free, ""});
+    }
+    std::size_t own = 0;
+    for (std::size_t i = 0; i < contestants_.size() && !contestants_[i].is_peer; ++i, ++own) {
+      const std::string& name = contestants_[i].finder->name;
+      const auto goal = [&](const std::string& what, const char* unit, double reached, double wanted, bool at_least) {
+        out.goals.push_back({"P6 " + name + ": " + what, unit, reached, wanted, at_least});
+      };
+      goal("no contact", "us", figures[i].free.median / 1e3, 10, false);
+      for (std::size_t k = 0; k < figures.size(); ++k) {
+        const std::string& peer = contestants_[k].finder->name;
+        if (peer.rfind("CGAL", 0) == 0) {
+          goal("mean over CGAL's", "x", figures[k].mean.median / figures[i].mean.median, 1000, true);
+          goal("worst over CGAL's", "x", figures[k].worst.median / figures[i].worst.median, 200, true);
+        } else if (peer.rfind("Embree", 0) == 0) {
+          goal("mean over Embree's", "x", figures[k].mean.median / figures[i].mean.median, 100, true);
+        }
+      }
+    }
+    return out;
+  }
+
+ private:
+  void compare() {
+    for (Contestant& c : contestants_) {
+      if (c.finder->name.rfind("CGAL", 0) == 0) {
+        for (const ContactPose& pose : poses_) {
+          c.finder->find(pose);
+          expected_.push_back(sorted(c.finder->pairs()));
+        }
+      }
+    }
+    for (Contestant& c : contestants_) {
+      for (std::size_t i = 0; i < poses_.size(); ++i) {
+        c.finder->find(poses_[i]);
+        const Pairs found = sorted(c.finder->pairs());
+        Pairs both;
+        std::set_intersection(found.begin(), found.end(), expected_[i].begin(), expected_[i].end(),
+                              std::back_inserter(both));
+        c.missing += expected_[i].size() - both.size();
+        c.extra += found.size() - both.size();
+      }
+      if (!c.is_peer && c.missing + c.extra > 0) {
+        throw std::runtime_error(fmt::format("{}: {} pairs missing, {} extra", c.finder->name, c.missing, c.extra));
+      }
+    }
+  }
+
+  // One pass over the poses at a time, in an order drawn at random over all passes of all contestants.
+  void time_all() {
+    std::vector<Contestant*> order;
+    for (Contestant& c : contestants_) {
+      c.times.resize(poses_.size());
+      order.insert(order.end(), static_cast<std::size_t>(c.passes), &c);
+    }
+    std::shuffle(order.begin(), order.end(), std::mt19937(1));
+    for (Contestant* c : order) {
+      for (std::size_t i = 0; i < poses_.size(); ++i) {
+        const double start = now();
+        c->finder->find(poses_[i]);
+        c->times[i].push_back(now() - start);
+      }
+    }
+  }
+
+  PosedCharacter human_;
+  std::unique_ptr<ContactMesh> mesh_;
+  std::vector<ContactPose> poses_;
+  std::vector<Pairs> expected_;
+  std::vector<Contestant> contestants_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Times exact triangle contacts against peers: goal P6"};
+  std::size_t pose_count = 121;
+  int passes = 31;
+  bool alone = false;
+  std::string json, settings = "{}";
+  app.add_option("--poses", pose_count, "Real poses, over eleven motions")->capture_default_str();
+  app.add_option("--passes", passes, "Of the runtime over the poses; peers make 3, FCL 1")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100000));
+  app.add_flag("--alone", alone, "Without timing peers");
+  app.add_option("--settings", settings, "JSON: the bake's")->capture_default_str();
+  app.add_option("--json", json, "File to write the table to as well");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    const Table table = std::make_unique<ContactBench>(pose_count, passes, !alone, settings)->table();
+    table.print();
+    if (!json.empty()) {
+      table.write_json(json);
+    }
+    return 0;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "spherechain_bench_contacts: {}\n", error.what());
+    return 1;
+  }
+}
