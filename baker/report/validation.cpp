@@ -16,6 +16,71 @@ constexpr std::size_t kWorstMisses = 20;
 const char* radius_name(RadiusKind radius) { return radius == RadiusKind::kFit ? "fit" : "detect"; }
 const char* method_name(Method method) { return method == Method::kM1 ? "m1" : "m2"; }
 
+// The shares of a score, as the contract names them.
+ordered_json score_json(const Score& score) {
+  return {{"pair_recall", score.pair_recall()},
+          {"frame_any_recall", score.frame_any_recall()},
+          {"frame_all_recall", score.frame_all_recall()},
+          {"precision", score.precision()},
+          {"reported_per_frame", score.reported_per_frame()}};
+}
+
+ordered_json groups_json(const std::vector<PairGroup>& groups) {
+  ordered_json out = ordered_json::array();
+  for (const PairGroup& group : groups) {
+    out.push_back({{"name", group.name},
+                   {"truth_pairs", group.true_pairs},
+                   {"found_pairs", group.found_pairs},
+                   {"reported", group.reported}});
+  }
+  return out;
+}
+
+// The points whose radius, or whose rest-distance rule, is another.
+ordered_json curve_json(const std::vector<CurvePoint>& curve, bool radius) {
+  ordered_json out = ordered_json::array();
+  for (const CurvePoint& point : curve) {
+    if (radius == point.change.near_fraction.has_value()) continue;
+    ordered_json entry;
+    if (radius) {
+      entry["scale"] = point.change.scale;
+    } else {
+      entry["near_fraction"] = *point.change.near_fraction;
+    }
+    entry["m1"] = score_json(point.m1);
+    entry["m2"] = score_json(point.m2);
+    out.push_back(std::move(entry));
+  }
+  return out;
+}
+
+std::string groups_text(const std::string& title, const std::vector<PairGroup>& groups) {
+  std::string out = fmt::format("\n{:<28} {:>8} {:>8} {:>10}\n", title, "true", "found", "reported");
+  for (const PairGroup& group : groups) {
+    out +=
+        fmt::format("  {:<26} {:>8} {:>8} {:>10}\n", group.name, group.true_pairs, group.found_pairs, group.reported);
+  }
+  return out;
+}
+
+std::string curve_row(const std::string& name, const Score& m1, const Score& m2) {
+  return fmt::format("  {:<16} {:>9.4f} {:>9.4f} {:>9.2f}   {:>9.4f} {:>9.4f} {:>9.2f}\n", name, m2.pair_recall(),
+                     m2.precision(), m2.reported_per_frame(), m1.pair_recall(), m1.precision(),
+                     m1.reported_per_frame());
+}
+
+std::string curve_text(const Validation& validation) {
+  std::string out = fmt::format("\n{:<18} {:>9} {:>9} {:>9}   {:>9} {:>9} {:>9}\n", "", "M2 recall", "precision",
+                                "a frame", "M1 recall", "precision", "a frame");
+  out += curve_row("as it is", validation.m1, validation.m2);
+  for (const CurvePoint& point : validation.curve) {
+    const std::string name = point.change.near_fraction ? fmt::format("near at {:.1f}", *point.change.near_fraction)
+                                                        : fmt::format("radius x {:.1f}", point.change.scale);
+    out += curve_row(name, point.m1, point.m2);
+  }
+  return out;
+}
+
 std::size_t shown_misses(const Validation& validation) { return std::min(validation.misses.size(), kWorstMisses); }
 
 }  // namespace
@@ -30,17 +95,21 @@ std::string validation_json(const Validation& validation, const AnimatedAsset& a
       {"out_of_scope",
        {{"rest", validation.rest}, {"same_sphere", validation.same_sphere}, {"ignored", validation.ignored}}},
       {"truth_pairs", score.true_pairs},
-      {"pair_recall", score.pair_recall()},
-      {"frame_any_recall", score.frame_any_recall()},
-      {"frame_all_recall", score.frame_all_recall()},
-      {"precision", score.precision()},
-      {"reported_per_frame", score.reported_per_frame()},
+  };
+  out.update(score_json(score));
+  out.update({
       {"missed_depth", score.missed_depth / height},
       {"radius", radius_name(settings.radius)},
       {"mode", method_name(settings.method)},
       {"truth_frames", score.true_frames},
       {"degenerate_triangles", validation.degenerate},
-  };
+  });
+  out["m1"] = score_json(validation.m1);
+  out["m2"] = score_json(validation.m2);
+  out["by_region"] = groups_json(validation.by_region);
+  out["by_chain"] = groups_json(validation.by_chain);
+  out["radius_curve"] = curve_json(validation.curve, true);
+  out["near_curve"] = curve_json(validation.curve, false);
   out["worst_misses"] = ordered_json::array();
   for (std::size_t i = 0; i < shown_misses(validation); ++i) {
     const Miss& miss = validation.misses[i];
@@ -75,6 +144,9 @@ std::string validation_text(const Validation& validation, const AnimatedAsset& a
     out += fmt::format("  {:>5}  {:>3} - {:<3} {:>5}  {:.2f}\n", miss.frame, miss.spheres.a, miss.spheres.b,
                        miss.triangle_pairs, 100 * miss.depth / height);
   }
+  out += groups_text("between regions", validation.by_region);
+  out += groups_text("by chain", validation.by_chain);
+  out += curve_text(validation);
   return out;
 }
 

@@ -4,6 +4,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <iterator>
+#include <map>
 #include <mutex>
 
 #include "play/player.h"
@@ -15,35 +17,60 @@ namespace {
 
 struct Frame {
   FrameTruth truth;
-  Score score;
+  std::vector<Pair> reported;
+  Score score, m1, m2;
   std::vector<Miss> misses;
+  std::vector<CurvePoint> curve;
 };
 
-std::vector<Pair> reported_pairs(const Asset& asset, const std::vector<float>& positions,
-                                 const ValidateSettings& settings) {
-  Player player(asset, settings.radius, settings.method == Method::kM1, settings.method == Method::kM2,
-                settings.target);
+// What all frames share.
+struct Context {
+  const AnimatedAsset& animated;
+  const ValidateSettings& settings;
+  Surface surface = surface_of(animated.asset(), animated.character());
+  CachedIntersections intersections{surface, settings.cache};
+  std::vector<TrianglePair> rest_pairs = intersections.find(pack(animated.character().source_positions)).pairs;
+  Curve curve{animated.asset(), settings.radius};
+};
+
+// What the runtime reports.
+std::vector<Pair> reported_pairs(Player& player, const std::vector<float>& positions) {
   player.run(positions);
   return {player.pairs().begin(), player.pairs().end()};
 }
 
-Frame validate_frame(const AnimatedAsset& animated, int index, const Surface& surface,
-                     const CachedIntersections& intersections, const std::vector<TrianglePair>& rest_pairs,
-                     const ValidateSettings& settings) {
+Frame validate_frame(const Context& context, int index) {
+  const AnimatedAsset& animated = context.animated;
+  const Surface& surface = context.surface;
+  const ValidateSettings& settings = context.settings;
   const std::vector<float> positions = pack(animated.positions(animated.deformation(index)));
-  Frame frame;
-  frame.truth = judge(intersections.find(positions), rest_pairs, surface, animated.asset());
   const double close = kCloseSurface * animated.frame().height;
-  frame.score = score_frame(
-      frame.truth, reported_pairs(animated.asset(), positions, settings),
-      [&](const Pair& pair) {
-        return any_closer(surface, positions, surface.of_sphere[pair.a], surface.of_sphere[pair.b], close);
-      },
-      [&](const SphereContact& contact) {
-        frame.misses.push_back(
-            {index, contact.spheres, contact.triangles.size(), penetration(contact, surface, positions)});
-        return frame.misses.back().depth;
-      });
+  std::map<Pair, bool> known_close;
+  const auto is_close = [&](const Pair& pair) {
+    const auto [entry, is_new] = known_close.try_emplace(pair, false);
+    if (is_new) {
+      entry->second = any_closer(surface, positions, surface.of_sphere[pair.a], surface.of_sphere[pair.b], close);
+    }
+    return entry->second;
+  };
+  const auto no_depth = [](const SphereContact&) { return 0.0; };
+  const auto depth_of = [&](Frame& frame, const SphereContact& contact) {
+    const double depth = penetration(contact, surface, positions);
+    frame.misses.push_back({index, contact.spheres, contact.triangles.size(), depth});
+    return depth;
+  };
+
+  Frame frame;
+  frame.truth = judge(context.intersections.find(positions), context.rest_pairs, surface, animated.asset());
+  Player m1(animated.asset(), settings.radius, true, false, settings.target),
+      m2(animated.asset(), settings.radius, false, true, settings.target);
+  const std::vector<Pair> m1_pairs = reported_pairs(m1, positions), m2_pairs = reported_pairs(m2, positions);
+  frame.reported = settings.method == Method::kM1 ? m1_pairs : m2_pairs;
+  frame.score = score_frame(frame.truth, frame.reported, is_close,
+                            [&](const SphereContact& contact) { return depth_of(frame, contact); });
+  frame.m1 = score_frame(frame.truth, m1_pairs, is_close, no_depth);
+  frame.m2 = score_frame(frame.truth, m2_pairs, is_close, no_depth);
+  frame.curve = context.curve.measure(m2.spheres(), frame.truth, is_close);
   return frame;
 }
 
@@ -51,18 +78,18 @@ Frame validate_frame(const AnimatedAsset& animated, int index, const Surface& su
 
 Validation validate(const AnimatedAsset& animated, const ValidateSettings& settings,
                     const std::function<void(int)>& progress) {
-  const Surface surface = surface_of(animated.asset(), animated.character());
-  const CachedIntersections intersections(surface, settings.cache);
-  const std::vector<TrianglePair> rest_pairs = intersections.find(pack(animated.character().source_positions)).pairs;
+  const Context context{animated, settings};
   std::vector<Frame> frames(static_cast<std::size_t>(animated.frame_count()));
   std::mutex mutex;
   int done = 0;
   tbb::parallel_for(0, animated.frame_count(), [&](int i) {
-    frames[static_cast<std::size_t>(i)] = validate_frame(animated, i, surface, intersections, rest_pairs, settings);
+    frames[static_cast<std::size_t>(i)] = validate_frame(context, i);
     const std::lock_guard lock(mutex);
     progress(++done);
   });
   Validation out;
+  RegionGroups regions(animated.asset());
+  ChainGroups chains(animated.asset());
   for (const Frame& frame : frames) {
     out.raw_pairs += frame.truth.raw_pairs;
     out.rest += frame.truth.rest;
@@ -70,8 +97,16 @@ Validation validate(const AnimatedAsset& animated, const ValidateSettings& setti
     out.ignored += frame.truth.ignored;
     out.degenerate += frame.truth.degenerate;
     out.score.add(frame.score);
+    out.m1.add(frame.m1);
+    out.m2.add(frame.m2);
+    add(out.curve, frame.curve);
+    regions.add(frame.truth, frame.reported);
+    chains.add(frame.truth, frame.reported);
     out.misses.insert(out.misses.end(), frame.misses.begin(), frame.misses.end());
   }
+  std::copy_if(regions.groups().begin(), regions.groups().end(), std::back_inserter(out.by_region),
+               [](const PairGroup& group) { return group.true_pairs > 0 || group.reported > 0; });
+  out.by_chain = chains.groups();
   std::stable_sort(out.misses.begin(), out.misses.end(),
                    [](const Miss& l, const Miss& r) { return l.depth > r.depth; });
   return out;

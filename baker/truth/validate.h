@@ -7,7 +7,8 @@
 
 #include "play/play.h"
 #include "spherechain/detect.h"
-#include "truth/score.h"
+#include "truth/curve.h"
+#include "truth/groups.h"
 
 namespace spherechain::baker {
 
@@ -34,6 +35,10 @@ struct Validation {
   std::size_t raw_pairs = 0, rest = 0, same_sphere = 0, ignored = 0, degenerate = 0;  // see FrameTruth
   Score score;                                                                        // of the method asked for
   std::vector<Miss> misses;                                                           // the deepest first
+  Score m1, m2;                                                                       // depth not measured
+  std::vector<CurvePoint> curve;
+  // Of the method asked for. Regions without any pair are left out.
+  std::vector<PairGroup> by_region, by_chain;
 };
 
 // The same whatever the number of threads. `progress` is told how many frames are done, one call at a time.

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "truth/pair_rule.h"
+#include "truth/score.h"
+
+namespace spherechain::baker {
+
+// What would be reported under another rule: over all spheres, and by the pairs that share a chain.
+struct CurvePoint {
+  RuleChange change;
+  Score m1, m2;
+};
+
+// The radius scaled from 0.8 to 2, then near pairs at 0.5 to 1 of their distance at rest.
+class Curve {
+ public:
+  Curve(const Asset& asset, RadiusKind radius);
+
+  // One frame; the depth of what is missed is not measured. `spheres` are refitted at the curve's radius.
+  std::vector<CurvePoint> measure(const std::vector<Sphere>& spheres, const FrameTruth& truth,
+                                  const std::function<bool(const Pair&)>& is_close) const;
+
+ private:
+  ChainMembers chains_;
+  std::vector<RuleChange> changes_;
+  std::vector<PairRule> rules_;
+};
+
+// Adds one frame to what came before; `sum` may be empty.
+void add(std::vector<CurvePoint>& sum, const std::vector<CurvePoint>& frame);
+
+}  // namespace spherechain::baker

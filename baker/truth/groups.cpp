@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "truth/groups.h"
+
+#include <algorithm>
+
+namespace spherechain::baker {
+namespace {
+
+bool contains(const std::vector<Pair>& sorted, const Pair& pair) {
+  return std::binary_search(sorted.begin(), sorted.end(), pair);
+}
+
+void count(PairGroup& group, const SphereContact& contact, bool found) {
+  group.true_pairs += contact.triangles.size();
+  if (found) group.found_pairs += contact.triangles.size();
+}
+
+}  // namespace
+
+RegionGroups::RegionGroups(const Asset& asset) : regions_(asset.region_count()) {
+  for (const RestSphere& sphere : asset.spheres()) region_of_.push_back(sphere.region);
+  for (std::size_t a = 0; a < regions_; ++a) {
+    for (std::size_t b = 0; b < regions_; ++b) {
+      groups_.push_back({std::string(asset.region(a).name) + " - " + asset.region(b).name});
+    }
+  }
+}
+
+PairGroup& RegionGroups::of(const Pair& pair) {
+  const auto [a, b] = std::minmax(region_of_[pair.a], region_of_[pair.b]);
+  return groups_[a * regions_ + b];
+}
+
+void RegionGroups::add(const FrameTruth& truth, const std::vector<Pair>& reported) {
+  for (const SphereContact& contact : truth.contacts) {
+    count(of(contact.spheres), contact, contains(reported, contact.spheres));
+  }
+  for (const Pair& pair : reported) ++of(pair).reported;
+}
+
+ChainGroups::ChainGroups(const Asset& asset) : chains_(asset) {
+  for (std::size_t c = 0; c < chains_.chain_count(); ++c) groups_.push_back({chains_.name(c)});
+  groups_.push_back({"no chain"});
+}
+
+std::vector<PairGroup*> ChainGroups::of(const Pair& pair) {
+  std::vector<PairGroup*> out;
+  for (std::size_t c = 0; c < chains_.chain_count(); ++c) {
+    if (chains_.holds(c, pair)) out.push_back(&groups_[c]);
+  }
+  if (out.empty()) out.push_back(&groups_.back());
+  return out;
+}
+
+void ChainGroups::add(const FrameTruth& truth, const std::vector<Pair>& reported) {
+  for (const SphereContact& contact : truth.contacts) {
+    const bool found = contains(reported, contact.spheres);
+    for (PairGroup* group : of(contact.spheres)) count(*group, contact, found);
+  }
+  for (const Pair& pair : reported) {
+    for (PairGroup* group : of(pair)) ++group->reported;
+  }
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "truth/pair_rule.h"
+#include "truth/truth.h"
+
+namespace spherechain::baker {
+
+// A part of all pairs: what is true, what of it is found, what is reported.
+struct PairGroup {
+  std::string name;
+  std::size_t true_pairs = 0, found_pairs = 0;  // triangle pairs
+  std::size_t reported = 0;                     // sphere pairs
+};
+
+// Two regions: "left_arm - torso", every pair of them, in the asset's order.
+class RegionGroups {
+ public:
+  explicit RegionGroups(const Asset& asset);
+  void add(const FrameTruth& truth, const std::vector<Pair>& reported);
+  const std::vector<PairGroup>& groups() const { return groups_; }
+
+ private:
+  PairGroup& of(const Pair& pair);
+
+  std::vector<std::size_t> region_of_;
+  std::size_t regions_;
+  std::vector<PairGroup> groups_;
+};
+
+// A chain each, a pair in all that hold both of its spheres; the last is "no chain".
+class ChainGroups {
+ public:
+  explicit ChainGroups(const Asset& asset);
+  void add(const FrameTruth& truth, const std::vector<Pair>& reported);
+  const std::vector<PairGroup>& groups() const { return groups_; }
+
+ private:
+  std::vector<PairGroup*> of(const Pair& pair);
+
+  ChainMembers chains_;
+  std::vector<PairGroup> groups_;
+};
+
+}  // namespace spherechain::baker

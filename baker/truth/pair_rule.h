@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "spherechain/asset.h"
+#include "spherechain/detect.h"
+
+namespace spherechain::baker {
+
+// Which pairs an asset would report with other radii or another rule for pairs that overlap at rest. The asset's own:
+//   a pair       |ca - cb| < ra + rb
+//   a near pair  that, and |ca - cb| < reach * (ra + rb)
+struct RuleChange {
+  double scale = 1;  // of every radius; near pairs keep the distance they are reported at
+  // Near pairs are reported closer than this part of their distance at rest, whatever the asset says.
+  std::optional<double> near_fraction;
+};
+
+// A plain loop over all spheres, apart from the runtime: with no change it reports what M2 does, bit for bit.
+//
+// Pairs that overlap at rest at a larger scale, but do not at 1, become near pairs: at the asset's own part of their
+// distance at rest (the median over its near pairs; 0.7 where it has none).
+class PairRule {
+ public:
+  PairRule(const Asset& asset, RadiusKind radius, const RuleChange& change);
+
+  // Of spheres refitted at the same kind of radius; sorted.
+  std::vector<Pair> pairs(const std::vector<Sphere>& spheres) const;
+
+ private:
+  struct Entry {
+    Pair pair;
+    float reach;  // infinite where it is no near pair
+  };
+  float scale_;
+  std::vector<Entry> entries_;  // pairs that are not ignored, sorted
+};
+
+// Which spheres share a chain: what M1 tests.
+class ChainMembers {
+ public:
+  explicit ChainMembers(const Asset& asset);
+
+  std::size_t chain_count() const { return names_.size(); }
+  const std::string& name(std::size_t chain) const { return names_[chain]; }
+  bool holds(std::size_t chain, const Pair& pair) const { return in_[chain][pair.a] && in_[chain][pair.b]; }
+  bool share_one(const Pair& pair) const;
+  std::vector<Pair> sharing(const std::vector<Pair>& pairs) const;  // M1's of M2's
+
+ private:
+  std::vector<std::string> names_;
+  std::vector<std::vector<bool>> in_;
+};
+
+}  // namespace spherechain::baker

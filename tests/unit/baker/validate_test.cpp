@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Other rules for what is reported, against the runtime and against a bake that was made with them; and a whole run.
+#include <doctest/doctest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <set>
+
+#include "baked_human.h"
+#include "human.h"
+#include "jobs.h"
+#include "report/validation.h"
+#include "temporary_folder.h"
+#include "truth/groups.h"
+#include "truth/pair_rule.h"
+#include "truth/validate.h"
+
+using namespace spherechain::baker;
+using spherechain::Asset;
+using spherechain::Method;
+using spherechain::Pair;
+using spherechain::RadiusKind;
+using spherechain::Sphere;
+using spherechain::test::detect;
+using spherechain::test::refit;
+
+namespace {
+
+std::vector<Sphere> spheres_at(const Asset& asset, const std::vector<Vec3>& positions, RadiusKind kind) {
+  return refit(asset, pack(positions), kind).spheres;
+}
+
+std::vector<Sphere> scaled(std::vector<Sphere> spheres, float scale) {
+  for (Sphere& sphere : spheres) sphere.radius *= scale;
+  return spheres;
+}
+
+// Pairs whose spheres, scaled, overlap at rest: a near rule may hold for them.
+std::set<Pair> overlapping_at_rest(const Asset& asset, float scale) {
+  std::vector<Sphere> rest =
+      scaled(spheres_at(asset, baked_human().character.source_positions, RadiusKind::kDetect), scale);
+  std::set<Pair> out;
+  for (std::uint32_t b = 0; b < rest.size(); ++b) {
+    for (std::uint32_t a = 0; a < b; ++a) {
+      const double dx = rest[a].x - rest[b].x, dy = rest[a].y - rest[b].y, dz = rest[a].z - rest[b].z;
+      if (std::sqrt(dx * dx + dy * dy + dz * dz) < 1.001 * (rest[a].radius + rest[b].radius)) out.insert({a, b});
+    }
+  }
+  for (const spherechain::NearPair& near : asset.near_pairs(RadiusKind::kDetect)) out.insert({near.a, near.b});
+  return out;
+}
+
+bool contains(const std::vector<Pair>& pairs, const Pair& pair) {
+  return std::binary_search(pairs.begin(), pairs.end(), pair);
+}
+
+}  // namespace
+
+TEST_CASE("the plain rule reports what the runtime does, M1 and M2, at either radius in every fifth frame") {
+  const Asset asset = open_asset_of(baked_human());
+  const ChainMembers chains(asset);
+  for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
+    const PairRule rule(asset, kind, {});
+    std::size_t pairs = 0;
+    for (std::size_t i = 0; i < animation_frames().size(); i += 5) {
+      const std::vector<Sphere> spheres = spheres_at(asset, animation_frames()[i].positions, kind);
+      const std::vector<Pair> found = rule.pairs(spheres);
+      CHECK(found == detect(asset, spheres, Method::kM2, kind).pairs);
+      CHECK(chains.sharing(found) == detect(asset, spheres, Method::kM1, kind).pairs);
+      pairs += found.size();
+    }
+    CHECK(pairs > 0);
+  }
+}
+
+TEST_CASE("with another part of the rest distance the rule reports what a bake with that setting does") {
+  BakeSettings settings = baked_human().settings;
+  settings.bind.near_fraction = 0.95;
+  const Bake other = rebake(baked_human(), settings);
+  const Asset asset = open_asset_of(baked_human()), other_asset = open_asset_of(other);
+  const PairRule rule(asset, RadiusKind::kDetect, {1, 0.95});
+  std::size_t more = 0;
+  for (std::size_t i = 0; i < animation_frames().size(); i += 5) {
+    const std::vector<Sphere> spheres = spheres_at(asset, animation_frames()[i].positions, RadiusKind::kDetect);
+    const std::vector<Pair> found = rule.pairs(spheres);
+    CHECK(found == detect(other_asset, spheres, Method::kM2, RadiusKind::kDetect).pairs);
+    more += found.size() - detect(asset, spheres, Method::kM2, RadiusKind::kDetect).pairs.size();
+  }
+  CHECK(more > 0);
+}
+
+TEST_CASE("with larger radii more is reported, near pairs at their distance as before, and nothing at rest") {
+  const Asset asset = open_asset_of(baked_human());
+  const PairRule rule(asset, RadiusKind::kDetect, {1.5, {}});
+  const std::set<Pair> near = overlapping_at_rest(asset, 1.5F);
+  std::size_t free = 0;
+  for (std::size_t i = 0; i < animation_frames().size(); i += 5) {
+    const std::vector<Sphere> spheres = spheres_at(asset, animation_frames()[i].positions, RadiusKind::kDetect);
+    const std::vector<Pair> found = rule.pairs(spheres),
+                            before = detect(asset, spheres, Method::kM2, RadiusKind::kDetect).pairs,
+                            large = detect(asset, scaled(spheres, 1.5F), Method::kM2, RadiusKind::kDetect).pairs;
+    for (const Pair& pair : large) {
+      if (near.count(pair) == 0) CHECK(contains(found, pair));
+    }
+    for (const Pair& pair : found) {
+      if (near.count(pair) == 0) CHECK(contains(large, pair));
+      free += near.count(pair) == 0 && !contains(before, pair) ? 1u : 0u;
+    }
+    for (const spherechain::NearPair& own : asset.near_pairs(RadiusKind::kDetect)) {
+      CHECK(contains(found, {own.a, own.b}) == contains(before, {own.a, own.b}));
+    }
+  }
+  CHECK(free > 0);
+  const std::vector<Sphere> rest = spheres_at(asset, baked_human().character.source_positions, RadiusKind::kDetect);
+  for (const double scale : {0.8, 1.0, 1.5, 2.0}) {
+    CHECK(PairRule(asset, RadiusKind::kDetect, {scale, {}}).pairs(rest).empty());
+  }
+}
+
+TEST_CASE("every true and every reported pair is between two regions, and in each chain that holds both spheres") {
+  const Asset asset = open_asset_of(baked_human());
+  const std::vector<Sphere> spheres = spheres_at(asset, posed_human("arms_crossed.json"), RadiusKind::kDetect);
+  const std::vector<Pair> reported = detect(asset, spheres, Method::kM2, RadiusKind::kDetect).pairs;
+  REQUIRE(reported.size() > 2);
+  FrameTruth truth;
+  truth.contacts = {{reported[0], {{1, 2}, {1, 3}}}, {{0, 1}, {{7, 9}}}};
+  RegionGroups regions(asset);
+  ChainGroups chains(asset);
+  regions.add(truth, reported);
+  chains.add(truth, reported);
+  PairGroup sum;
+  for (const PairGroup& group : regions.groups()) {
+    sum.true_pairs += group.true_pairs;
+    sum.found_pairs += group.found_pairs;
+    sum.reported += group.reported;
+  }
+  CHECK(sum.true_pairs == 3);
+  CHECK(sum.found_pairs == 2);
+  CHECK(sum.reported == reported.size());
+  for (std::size_t c = 0; c < asset.chain_count(); ++c) {
+    const std::set<std::uint32_t> in(asset.chain(c).spheres.begin(), asset.chain(c).spheres.end());
+    const auto inside = std::count_if(reported.begin(), reported.end(),
+                                      [&](const Pair& pair) { return in.count(pair.a) + in.count(pair.b) == 2; });
+    CHECK(chains.groups()[c].reported == static_cast<std::size_t>(inside));
+  }
+}
+
+TEST_CASE("a validation is the same with one thread and with many") {
+  const TemporaryFolder folder;
+  const Bake& bake = baked_human();
+  const std::string asset = folder.write("human.sphc", std::string(bake.asset.begin(), bake.asset.end())).string();
+  const AnimatedAsset animated(asset, kHumanFile,
+                               {std::string(SPHERECHAIN_SAMPLES) + "/poses/arms_crossed.json", {}, {}}, {4, 30});
+  const auto run = [&](std::size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    int last = 0;
+    const Validation found = validate(animated, {}, [&](int done) {
+      CHECK(done == last + 1);
+      last = done;
+    });
+    CHECK(last == 4);
+    return validation_json(found, animated, {});
+  };
+  const std::string one = run(1);
+  CHECK(run(4) == one);
+}
