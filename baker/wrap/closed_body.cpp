@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <optional>
 
 #include "mesh/error.h"
@@ -295,7 +296,12 @@ bool wrap_body(Character& character, ClosingReport& report) {
   ClosingReport of_wrap = report;
   of_wrap.body = BodySource::kWrapped;
   Wrapper wrapper(wrapped, of_wrap);
-  for (const double fineness : {130.0, 90.0, 60.0}) {
+  // As fine as the limbs need: stout bodies, which have more skin for their size, less so than a human.
+  constexpr double kOfHuman = 0.46;  // area over diameter squared
+  constexpr double kCoarsest = 90;
+  const double stoutness = surface_area(character.skin) / std::pow(diameter(character.skin), 2);
+  const double usual = std::max(kCoarsest, 130 * std::min(1.0, std::sqrt(kOfHuman / stoutness)));
+  for (const double fineness : {usual, 0.7 * usual, 0.46 * usual}) {
     if (!wrapper.wrap({fineness, false}) || of_wrap.thin > kMostThin) continue;
     character = std::move(wrapped);
     report = of_wrap;
