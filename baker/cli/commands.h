@@ -37,6 +37,7 @@ struct ValidateOptions {
   MotionChoice motion;
   FrameChoice frames;
   std::string mode = "m2", radius = "detect";
+  bool contacts = false;
 };
 ExitCode run_validate(const ValidateOptions& options);
 

@@ -117,6 +117,7 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"m1", "m2"}))
       ->capture_default_str();
   add_radius(*validate_command, validate.radius);
+  validate_command->add_flag("--contacts", validate.contacts, "Compare the narrow phase's triangle pairs too");
   validate_command->add_option("--json", validate.json, "JSON file to write");
   validate_command->callback([&] { run = [&] { return run_validate(validate); }; });
 

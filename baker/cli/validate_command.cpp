@@ -18,6 +18,7 @@ ExitCode run_validate(const ValidateOptions& options) {
   settings.radius = options.radius == "fit" ? RadiusKind::kFit : RadiusKind::kDetect;
   settings.method = options.mode == "m1" ? Method::kM1 : Method::kM2;
   settings.target = choose_target("auto");
+  settings.contacts = options.contacts;
   settings.cache = cache_folder();
   const AnimatedAsset animated(options.asset, options.source, options.motion, options.frames);
   Validation validation;

@@ -43,7 +43,7 @@ std::string MotionChoice::name() const {
 
 AnimatedAsset::AnimatedAsset(const std::string& asset, const std::string& source, const MotionChoice& motion,
                              const FrameChoice& frames)
-    : file_(open_asset(asset)), fps_(frames.fps) {
+    : asset_name_(asset), file_(open_asset(asset)), fps_(frames.fps) {
   const BakeSettings settings = settings_of(file_.asset, asset);
   segment_settings_ = settings.segment;
   character_ = import_character(source, settings.import);

@@ -35,6 +35,7 @@ class AnimatedAsset {
   AnimatedAsset(const std::string& asset, const std::string& source, const MotionChoice& motion,
                 const FrameChoice& frames);
 
+  const std::string& file() const { return asset_name_; }  // the asset's, as it was given
   const Asset& asset() const { return file_.asset; }
   const Character& character() const { return character_; }
   BodyFrame frame() const;
@@ -58,6 +59,7 @@ class AnimatedAsset {
   void play_capture(const std::string& source, const std::string& file);
   void play_clips(const std::string& source, const std::string& wanted);
 
+  std::string asset_name_;
   AssetFile file_;
   Character character_;
   SegmentSettings segment_settings_;  // those of the bake

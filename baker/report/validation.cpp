@@ -104,6 +104,10 @@ std::string validation_json(const Validation& validation, const AnimatedAsset& a
       {"truth_frames", score.true_frames},
       {"degenerate_triangles", validation.degenerate},
   });
+  if (settings.contacts) {
+    out["contacts_missing"] = validation.contacts.missing;
+    out["contacts_extra"] = validation.contacts.extra;
+  }
   out["m1"] = score_json(validation.m1);
   out["m2"] = score_json(validation.m2);
   out["by_region"] = groups_json(validation.by_region);
@@ -138,6 +142,10 @@ std::string validation_text(const Validation& validation, const AnimatedAsset& a
   out += fmt::format("precision        {:.4f}\n", score.precision());
   out += fmt::format("reported         {:.2f} pairs a frame\n", score.reported_per_frame());
   out += fmt::format("missed depth     {:.2f} % of the height\n", 100 * score.missed_depth / height);
+  if (settings.contacts) {
+    out +=
+        fmt::format("contacts         {} missing, {} extra\n", validation.contacts.missing, validation.contacts.extra);
+  }
   if (!validation.misses.empty()) out += "\nworst misses: frame, spheres, triangle pairs, depth in % of the height\n";
   for (std::size_t i = 0; i < std::min<std::size_t>(shown_misses(validation), 5); ++i) {
     const Miss& miss = validation.misses[i];

@@ -11,7 +11,7 @@ Curve::Curve(const Asset& asset, RadiusKind radius) : chains_(asset) {
 
 std::vector<CurvePoint> Curve::measure(const std::vector<Sphere>& spheres, const FrameTruth& truth,
                                        const std::function<bool(const Pair&)>& is_close) const {
-  const auto no_depth = [](const SphereContact&) { return 0.0; };
+  const auto no_depth = [](const TrueContact&) { return 0.0; };
   std::vector<CurvePoint> points;
   for (std::size_t i = 0; i < rules_.size(); ++i) {
     const std::vector<Pair> pairs = rules_[i].pairs(spheres);

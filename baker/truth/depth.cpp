@@ -22,7 +22,7 @@ Vec3 vertex_at(const std::vector<float>& positions, Index v) {
   return {p[0], p[1], p[2]};
 }
 
-Corners corners_at(const Surface& surface, const std::vector<float>& positions, Index place) {
+Corners corners_at(const TruthSurface& surface, const std::vector<float>& positions, Index place) {
   Corners out;
   for (std::size_t k = 0; k < 3; ++k) out[k] = vertex_at(positions, surface.corners[place][k]);
   return out;
@@ -66,7 +66,7 @@ Vec3 nearest_weights(const Corners& t, const Vec3& p) {
   return best;
 }
 
-Mesh region_mesh(const Surface& surface, const std::vector<float>& positions, std::uint32_t sphere) {
+Mesh region_mesh(const TruthSurface& surface, const std::vector<float>& positions, std::uint32_t sphere) {
   Mesh mesh;
   for (const Index place : surface.of_sphere[sphere]) {
     const auto first = static_cast<Index>(mesh.positions.size());
@@ -79,7 +79,7 @@ Mesh region_mesh(const Surface& surface, const std::vector<float>& positions, st
 // One surrounding region, deformed, that points can be behind of.
 class Patch {
  public:
-  Patch(const Surface& surface, const std::vector<float>& positions, std::uint32_t sphere)
+  Patch(const TruthSurface& surface, const std::vector<float>& positions, std::uint32_t sphere)
       : query_(region_mesh(surface, positions, sphere)) {
     for (const Index place : surface.of_sphere[sphere]) {
       triangles_.push_back(corners_at(surface, positions, place));
@@ -141,7 +141,8 @@ class Patch {
   std::set<Edge> border_;
 };
 
-double deepest(const Surface& surface, const std::vector<float>& positions, std::uint32_t of, const Patch& behind) {
+double deepest(const TruthSurface& surface, const std::vector<float>& positions, std::uint32_t of,
+               const Patch& behind) {
   std::set<Index> seen;
   double depth = 0;
   for (const Index place : surface.of_sphere[of]) {
@@ -154,7 +155,7 @@ double deepest(const Surface& surface, const std::vector<float>& positions, std:
 
 }  // namespace
 
-double penetration(const SphereContact& contact, const Surface& surface, const std::vector<float>& positions) {
+double penetration(const TrueContact& contact, const TruthSurface& surface, const std::vector<float>& positions) {
   double depth = 0;
   for (const TrianglePair& pair : contact.triangles) {
     const Corners a = corners_at(surface, positions, surface.of_source[pair.a]),

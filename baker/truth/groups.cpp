@@ -10,7 +10,7 @@ bool contains(const std::vector<Pair>& sorted, const Pair& pair) {
   return std::binary_search(sorted.begin(), sorted.end(), pair);
 }
 
-void count(PairGroup& group, const SphereContact& contact, bool found) {
+void count(PairGroup& group, const TrueContact& contact, bool found) {
   group.true_pairs += contact.triangles.size();
   if (found) group.found_pairs += contact.triangles.size();
 }
@@ -32,7 +32,7 @@ PairGroup& RegionGroups::of(const Pair& pair) {
 }
 
 void RegionGroups::add(const FrameTruth& truth, const std::vector<Pair>& reported) {
-  for (const SphereContact& contact : truth.contacts) {
+  for (const TrueContact& contact : truth.contacts) {
     count(of(contact.spheres), contact, contains(reported, contact.spheres));
   }
   for (const Pair& pair : reported) ++of(pair).reported;
@@ -53,7 +53,7 @@ std::vector<PairGroup*> ChainGroups::of(const Pair& pair) {
 }
 
 void ChainGroups::add(const FrameTruth& truth, const std::vector<Pair>& reported) {
-  for (const SphereContact& contact : truth.contacts) {
+  for (const TrueContact& contact : truth.contacts) {
     const bool found = contains(reported, contact.spheres);
     for (PairGroup* group : of(contact.spheres)) count(*group, contact, found);
   }

@@ -14,7 +14,7 @@ namespace {
 using Box = CGAL::Box_intersection_d::Box_with_info_d<double, 3, Index>;
 
 template <typename Kernel>
-typename Kernel::Triangle_3 triangle_at(const Surface& surface, const std::vector<float>& positions, Index place) {
+typename Kernel::Triangle_3 triangle_at(const TruthSurface& surface, const std::vector<float>& positions, Index place) {
   const auto corner = [&](std::size_t k) {
     const float* p = &positions[std::size_t{3} * surface.corners[place][k]];
     return typename Kernel::Point_3(p[0], p[1], p[2]);
@@ -24,7 +24,7 @@ typename Kernel::Triangle_3 triangle_at(const Surface& surface, const std::vecto
 
 }  // namespace
 
-Intersections find_intersections(const Surface& surface, const std::vector<float>& positions) {
+Intersections find_intersections(const TruthSurface& surface, const std::vector<float>& positions) {
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
   Intersections out;
   std::vector<Kernel::Triangle_3> triangles;
@@ -50,7 +50,7 @@ Intersections find_intersections(const Surface& surface, const std::vector<float
   return out;
 }
 
-bool any_closer(const Surface& surface, const std::vector<float>& positions, const std::vector<Index>& one,
+bool any_closer(const TruthSurface& surface, const std::vector<float>& positions, const std::vector<Index>& one,
                 const std::vector<Index>& other, double distance) {
   using Kernel = CGAL::Simple_cartesian<double>;
   const auto boxed = [&](const std::vector<Index>& places) {

@@ -17,10 +17,10 @@ struct Intersections {
 // Every pair of a surface's triangles that have a point in common, neighbours left out: decided exactly for the
 // positions (x, y, z of each source vertex) as they are; touching and lying in one plane count. May run in several
 // threads.
-Intersections find_intersections(const Surface& surface, const std::vector<float>& positions);
+Intersections find_intersections(const TruthSurface& surface, const std::vector<float>& positions);
 
 // Whether a triangle of the one list (places in the surface) is closer than `distance` to one of the other.
-bool any_closer(const Surface& surface, const std::vector<float>& positions, const std::vector<Index>& one,
+bool any_closer(const TruthSurface& surface, const std::vector<float>& positions, const std::vector<Index>& one,
                 const std::vector<Index>& other, double distance);
 
 }  // namespace spherechain::baker

@@ -27,12 +27,12 @@ void Score::add(const Score& other) {
 
 Score score_frame(const FrameTruth& truth, const std::vector<Pair>& reported,
                   const std::function<bool(const Pair&)>& is_close,
-                  const std::function<double(const SphereContact&)>& depth_of) {
+                  const std::function<double(const TrueContact&)>& depth_of) {
   Score score;
   score.frames = 1;
   score.true_pairs = truth.pairs.size();
   score.reported = reported.size();
-  for (const SphereContact& contact : truth.contacts) {
+  for (const TrueContact& contact : truth.contacts) {
     if (std::binary_search(reported.begin(), reported.end(), contact.spheres)) {
       score.found_pairs += contact.triangles.size();
       ++score.right;
@@ -40,7 +40,7 @@ Score score_frame(const FrameTruth& truth, const std::vector<Pair>& reported,
       score.missed_depth = std::max(score.missed_depth, depth_of(contact));
     }
   }
-  const auto before = [](const SphereContact& contact, const Pair& pair) { return contact.spheres < pair; };
+  const auto before = [](const TrueContact& contact, const Pair& pair) { return contact.spheres < pair; };
   for (const Pair& pair : reported) {
     const auto at = std::lower_bound(truth.contacts.begin(), truth.contacts.end(), pair, before);
     const bool is_true = at != truth.contacts.end() && at->spheres == pair;

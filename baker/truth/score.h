@@ -34,6 +34,6 @@ struct Score {
 // contacts.
 Score score_frame(const FrameTruth& truth, const std::vector<Pair>& reported,
                   const std::function<bool(const Pair&)>& is_close,
-                  const std::function<double(const SphereContact&)>& depth_of);
+                  const std::function<double(const TrueContact&)>& depth_of);
 
 }  // namespace spherechain::baker

@@ -7,8 +7,8 @@
 
 namespace spherechain::baker {
 
-Surface surface_of(const Asset& asset, const Character& character) {
-  Surface out;
+TruthSurface surface_of(const Asset& asset, const Character& character) {
+  TruthSurface out;
   const Span<const std::uint32_t> triangles = asset.triangles();
   const Span<const RestSphere> spheres = asset.spheres();
   std::vector<std::uint32_t> owner(character.source_triangles.size(), kNoIndex);

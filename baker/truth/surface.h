@@ -6,18 +6,12 @@
 
 #include "import/import.h"
 #include "spherechain/asset.h"
+#include "spherechain/surface.h"
 
 namespace spherechain::baker {
 
-// Two triangles, numbered as in the source file, a < b.
-struct TrianglePair {
-  Index a, b;
-
-  friend constexpr auto operator<=>(const TrianglePair&, const TrianglePair&) = default;
-};
-
 // The triangles an asset's spheres own, in the order of their source numbers, whatever the asset's order.
-struct Surface {
+struct TruthSurface {
   std::vector<Index> source_triangle;         // ascending
   std::vector<Triangle> corners;              // source vertices
   std::vector<Triangle> welded;               // the same corners as vertices of Character::skin
@@ -27,7 +21,7 @@ struct Surface {
 };
 
 // Throws Error(kInternal) where the asset's triangles are not some of the character's.
-Surface surface_of(const Asset& asset, const Character& character);
+TruthSurface surface_of(const Asset& asset, const Character& character);
 
 // Whether two triangles share a corner at rest: neighbours on the mesh, never a contact.
 bool are_neighbours(const Triangle& a, const Triangle& b);

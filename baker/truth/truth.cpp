@@ -6,7 +6,7 @@
 
 namespace spherechain::baker {
 
-FrameTruth judge(const Intersections& found, const std::vector<TrianglePair>& rest_pairs, const Surface& surface,
+FrameTruth judge(const Intersections& found, const std::vector<TrianglePair>& rest_pairs, const TruthSurface& surface,
                  const Asset& asset) {
   FrameTruth out;
   out.raw_pairs = found.pairs.size();

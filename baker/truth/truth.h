@@ -9,7 +9,7 @@
 namespace spherechain::baker {
 
 // A pair of spheres and the true triangle pairs between their surrounding regions.
-struct SphereContact {
+struct TrueContact {
   Pair spheres;
   std::vector<TrianglePair> triangles;
 };
@@ -19,13 +19,13 @@ struct SphereContact {
 struct FrameTruth {
   std::size_t raw_pairs = 0;
   std::size_t rest = 0, same_sphere = 0, ignored = 0;
-  std::size_t degenerate = 0;           // triangles without area in this pose
-  std::vector<TrianglePair> pairs;      // the rest: the true pairs, sorted
-  std::vector<SphereContact> contacts;  // the same by spheres, sorted
+  std::size_t degenerate = 0;         // triangles without area in this pose
+  std::vector<TrianglePair> pairs;    // the rest: the true pairs, sorted
+  std::vector<TrueContact> contacts;  // the same by spheres, sorted
 };
 
 // `rest_pairs`: those of the rest pose, sorted.
-FrameTruth judge(const Intersections& found, const std::vector<TrianglePair>& rest_pairs, const Surface& surface,
+FrameTruth judge(const Intersections& found, const std::vector<TrianglePair>& rest_pairs, const TruthSurface& surface,
                  const Asset& asset);
 
 }  // namespace spherechain::baker

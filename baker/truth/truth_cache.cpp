@@ -85,7 +85,7 @@ fs::path cache_folder() {
   return {};
 }
 
-CachedIntersections::CachedIntersections(const Surface& surface, fs::path folder)
+CachedIntersections::CachedIntersections(const TruthSurface& surface, fs::path folder)
     : surface_(surface), folder_(std::move(folder)) {
   if (folder_.empty()) return;
   std::string bytes(kFormat);

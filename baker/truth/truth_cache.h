@@ -19,12 +19,12 @@ std::filesystem::path cache_folder();
 class CachedIntersections {
  public:
   // `surface` must outlive it. An empty folder keeps nothing.
-  CachedIntersections(const Surface& surface, std::filesystem::path folder);
+  CachedIntersections(const TruthSurface& surface, std::filesystem::path folder);
 
   Intersections find(const std::vector<float>& positions) const;
 
  private:
-  const Surface& surface_;
+  const TruthSurface& surface_;
   std::filesystem::path folder_;
   std::string surface_key_;
 };

@@ -8,6 +8,7 @@
 #include <map>
 #include <mutex>
 
+#include "mesh/error.h"
 #include "play/player.h"
 #include "truth/depth.h"
 #include "truth/truth_cache.h"
@@ -21,13 +22,14 @@ struct Frame {
   Score score, m1, m2;
   std::vector<Miss> misses;
   std::vector<CurvePoint> curve;
+  ContactErrors contacts;
 };
 
 // What all frames share.
 struct Context {
   const AnimatedAsset& animated;
   const ValidateSettings& settings;
-  Surface surface = surface_of(animated.asset(), animated.character());
+  TruthSurface surface = surface_of(animated.asset(), animated.character());
   CachedIntersections intersections{surface, settings.cache};
   std::vector<TrianglePair> rest_pairs = intersections.find(pack(animated.character().source_positions)).pairs;
   Curve curve{animated.asset(), settings.radius};
@@ -41,7 +43,7 @@ std::vector<Pair> reported_pairs(Player& player, const std::vector<float>& posit
 
 Frame validate_frame(const Context& context, int index) {
   const AnimatedAsset& animated = context.animated;
-  const Surface& surface = context.surface;
+  const TruthSurface& surface = context.surface;
   const ValidateSettings& settings = context.settings;
   const std::vector<float> positions = pack(animated.positions(animated.deformation(index)));
   const double close = kCloseSurface * animated.frame().height;
@@ -53,8 +55,8 @@ Frame validate_frame(const Context& context, int index) {
     }
     return entry->second;
   };
-  const auto no_depth = [](const SphereContact&) { return 0.0; };
-  const auto depth_of = [&](Frame& frame, const SphereContact& contact) {
+  const auto no_depth = [](const TrueContact&) { return 0.0; };
+  const auto depth_of = [&](Frame& frame, const TrueContact& contact) {
     const double depth = penetration(contact, surface, positions);
     frame.misses.push_back({index, contact.spheres, contact.triangles.size(), depth});
     return depth;
@@ -67,10 +69,13 @@ Frame validate_frame(const Context& context, int index) {
   const std::vector<Pair> m1_pairs = reported_pairs(m1, positions), m2_pairs = reported_pairs(m2, positions);
   frame.reported = settings.method == Method::kM1 ? m1_pairs : m2_pairs;
   frame.score = score_frame(frame.truth, frame.reported, is_close,
-                            [&](const SphereContact& contact) { return depth_of(frame, contact); });
+                            [&](const TrueContact& contact) { return depth_of(frame, contact); });
   frame.m1 = score_frame(frame.truth, m1_pairs, is_close, no_depth);
   frame.m2 = score_frame(frame.truth, m2_pairs, is_close, no_depth);
   frame.curve = context.curve.measure(m2.spheres(), frame.truth, is_close);
+  if (settings.contacts) {
+    frame.contacts = compare(find_contacts(animated.asset(), positions, settings.target), frame.truth.pairs);
+  }
   return frame;
 }
 
@@ -78,6 +83,9 @@ Frame validate_frame(const Context& context, int index) {
 
 Validation validate(const AnimatedAsset& animated, const ValidateSettings& settings,
                     const std::function<void(int)>& progress) {
+  if (settings.contacts && animated.asset().leaf_count() == 0) {
+    throw Error(ExitCode::kFile, animated.file() + ": has no leaves to find contacts with (bake it again)");
+  }
   const Context context{animated, settings};
   std::vector<Frame> frames(static_cast<std::size_t>(animated.frame_count()));
   std::mutex mutex;
@@ -100,6 +108,8 @@ Validation validate(const AnimatedAsset& animated, const ValidateSettings& setti
     out.m1.add(frame.m1);
     out.m2.add(frame.m2);
     add(out.curve, frame.curve);
+    out.contacts.missing += frame.contacts.missing;
+    out.contacts.extra += frame.contacts.extra;
     regions.add(frame.truth, frame.reported);
     chains.add(frame.truth, frame.reported);
     out.misses.insert(out.misses.end(), frame.misses.begin(), frame.misses.end());

@@ -7,6 +7,7 @@
 
 #include "play/play.h"
 #include "spherechain/detect.h"
+#include "truth/contacts.h"
 #include "truth/curve.h"
 #include "truth/groups.h"
 
@@ -19,6 +20,7 @@ struct ValidateSettings {
   RadiusKind radius = RadiusKind::kDetect;
   Method method = Method::kM2;
   Target target = Target::kScalar;
+  bool contacts = false;        // the narrow phase too
   std::filesystem::path cache;  // see truth_cache.h; empty: none
 };
 
@@ -35,7 +37,8 @@ struct Validation {
   std::size_t raw_pairs = 0, rest = 0, same_sphere = 0, ignored = 0, degenerate = 0;  // see FrameTruth
   Score score;                                                                        // of the method asked for
   std::vector<Miss> misses;                                                           // the deepest first
-  Score m1, m2;                                                                       // depth not measured
+  ContactErrors contacts;
+  Score m1, m2;  // depth not measured
   std::vector<CurvePoint> curve;
   // Of the method asked for. Regions without any pair are left out.
   std::vector<PairGroup> by_region, by_chain;

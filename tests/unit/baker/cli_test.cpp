@@ -89,7 +89,8 @@ TEST_CASE("bake writes the same bytes as the library, a report and a table, and 
   }
   std::set<std::string> stages;
   for (const json& stage : report["stages"]) stages.insert(stage["stage"].get<std::string>());
-  CHECK(stages == std::set<std::string>{"import", "roles", "segment", "fit", "chains", "bind", "rig", "leaves", "write"});
+  CHECK(stages ==
+        std::set<std::string>{"import", "roles", "segment", "fit", "chains", "bind", "rig", "leaves", "write"});
 }
 
 TEST_CASE("inspect --json has the contract's fields and agrees with itself") {
@@ -202,6 +203,12 @@ TEST_CASE("validate --json has the contract's fields, the same with a cache and 
   CHECK(files_in(cache) == 3);  // frame 0 is the rest pose
   CHECK(validate("", cache.string()) == found);
   CHECK(files_in(cache) == 3);
+  json contacts = validate("--contacts", cache.string());
+  CHECK(contacts["contacts_missing"] == 0);
+  CHECK(contacts["contacts_extra"] == 0);
+  contacts.erase("contacts_missing");
+  contacts.erase("contacts_extra");
+  CHECK(contacts == found);
   const json chains = validate("--mode m1 --radius fit", cache.string());
   CHECK(chains["truth_pairs"] == found["truth_pairs"]);
   CHECK(chains["radius"] == "fit");

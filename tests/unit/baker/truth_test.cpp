@@ -17,12 +17,13 @@
 using namespace spherechain::baker;
 using spherechain::Asset;
 using spherechain::Pair;
+using spherechain::TrianglePair;
 
 namespace {
 
 // Triangles of which each is a source triangle, a skin triangle and a region of its own: `corners` of shared vertices.
-Surface loose_surface(const std::vector<Triangle>& corners, const std::vector<std::uint32_t>& spheres) {
-  Surface surface;
+TruthSurface loose_surface(const std::vector<Triangle>& corners, const std::vector<std::uint32_t>& spheres) {
+  TruthSurface surface;
   for (Index t = 0; t < corners.size(); ++t) {
     surface.source_triangle.push_back(t);
     surface.of_source.push_back(t);
@@ -55,7 +56,7 @@ bool meets_floor(const std::vector<float>& second) {
 TEST_CASE("the posed human's intersections are those CGAL finds in its skin, but for pairs with a common vertex") {
   const Bake& bake = baked_human();
   const Character& character = bake.character;
-  const Surface surface = surface_of(open_asset_of(bake), character);
+  const TruthSurface surface = surface_of(open_asset_of(bake), character);
   CHECK(surface.corners.size() == character.skin.triangles.size());
   const std::vector<float> positions = pack(posed_human("arms_crossed.json"));
 
@@ -90,7 +91,7 @@ TEST_CASE("a triangle without area intersects nothing and is counted; neighbours
   CHECK(line.pairs.empty());
   CHECK(line.degenerate == 1);
 
-  Surface surface = loose_surface(kTwo, {0, 1});
+  TruthSurface surface = loose_surface(kTwo, {0, 1});
   const std::vector<float> crossing = with_floor({1, 1, -1, 1, 1, 1, 2, 1, 1});
   REQUIRE(find_intersections(surface, crossing).pairs.size() == 1);
   surface.welded[1][2] = 0;  // one position at rest
@@ -98,7 +99,7 @@ TEST_CASE("a triangle without area intersects nothing and is counted; neighbours
 }
 
 TEST_CASE("how near two regions are is the distance of their faces, edges and corners") {
-  const Surface surface = loose_surface(kTwo, {0, 1});
+  const TruthSurface surface = loose_surface(kTwo, {0, 1});
   const auto closer = [&](const std::vector<float>& second, double distance) {
     const bool there = any_closer(surface, with_floor(second), {0}, {1}, distance);
     CHECK(any_closer(surface, with_floor(second), {1}, {0}, distance) == there);
@@ -117,7 +118,7 @@ TEST_CASE("intersections are found once a pose and kept in files; a broken file 
   namespace fs = std::filesystem;
   const TemporaryFolder folder;
   const fs::path cache = folder.path / "a/b";
-  const Surface surface = loose_surface(kTwo, {0, 1});
+  const TruthSurface surface = loose_surface(kTwo, {0, 1});
   const std::vector<float> crossing = with_floor({1, 1, -1, 1, 1, 1, 2, 1, 1}),
                            apart = with_floor({1, 1, 1, 1, 1, 2, 2, 1, 2});
   const auto find = [&](const std::vector<float>& positions) {
@@ -181,7 +182,7 @@ struct SpikeOverFloor {
   }
 
   double depth() const {
-    const Surface surface = loose_surface(corners, spheres);
+    const TruthSurface surface = loose_surface(corners, spheres);
     return penetration({{0, 1}, find_intersections(surface, positions).pairs}, surface, positions);
   }
 
@@ -203,7 +204,7 @@ TEST_CASE("depth is how far a vertex lies behind the other region, whatever its 
 TEST_CASE("what is at rest too, of one sphere or of an ignored pair is counted and left out, each pair once") {
   const Bake& bake = baked_human();
   const Asset asset = open_asset_of(bake);
-  const Surface surface = surface_of(asset, bake.character);
+  const TruthSurface surface = surface_of(asset, bake.character);
   const auto first = [&](std::uint32_t sphere) { return surface.source_triangle[surface.of_sphere[sphere].front()]; };
   const auto last = [&](std::uint32_t sphere) { return surface.source_triangle[surface.of_sphere[sphere].back()]; };
   const auto pair_of = [](Index a, Index b) { return TrianglePair{std::min(a, b), std::max(a, b)}; };
@@ -239,7 +240,7 @@ TEST_CASE("a score counts triangle pairs, frames and reported spheres as the con
         [](const Pair& pair) {
           return pair == Pair{5, 6};
         },
-        [](const SphereContact& contact) { return static_cast<double>(contact.spheres.b); });
+        [](const TrueContact& contact) { return static_cast<double>(contact.spheres.b); });
   };
   const Score some = score({{0, 1}, {5, 6}, {7, 8}});
   CHECK(some.pair_recall() == doctest::Approx(2.0 / 3));

@@ -145,6 +145,13 @@ TEST_CASE("every true and every reported pair is between two regions, and in eac
   }
 }
 
+TEST_CASE("contacts that one list has and the other has not are missing or extra") {
+  const ContactErrors errors = compare({{1, 2}, {1, 4}, {3, 4}, {5, 6}}, {{1, 2}, {1, 3}, {3, 4}, {7, 8}, {7, 9}});
+  CHECK(errors.missing == 3);
+  CHECK(errors.extra == 2);
+  CHECK(compare({}, {}).missing == 0);
+}
+
 TEST_CASE("a validation is the same with one thread and with many") {
   const TemporaryFolder folder;
   const Bake& bake = baked_human();

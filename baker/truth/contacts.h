@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "spherechain/asset.h"
+#include "spherechain/simd.h"
+#include "spherechain/surface.h"
+
+namespace spherechain::baker {
+
+// The triangle pairs the runtime's narrow phase finds in deformed source vertices (x, y, z after another); sorted. The
+// asset must have leaves.
+std::vector<TrianglePair> find_contacts(const Asset& asset, const std::vector<float>& positions, Target target);
+
+// What two sorted lists do not have in common.
+struct ContactErrors {
+  std::size_t missing = 0;  // true, not found
+  std::size_t extra = 0;    // found, not true
+};
+ContactErrors compare(const std::vector<TrianglePair>& found, const std::vector<TrianglePair>& truth);
+
+}  // namespace spherechain::baker
