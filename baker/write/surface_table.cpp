@@ -81,16 +81,51 @@ struct Runs {
   std::vector<schema::Leaf> leaves;
   std::vector<std::uint32_t> vertices, bones;
   std::vector<std::uint8_t> corners;
+  std::vector<float> positions, weights;
+  std::vector<schema::SlotMorph> morphs;
 };
+
+void add_slots(const Character& character, const Leaves& in, const Leaf& leaf, Runs& out) {
+  const std::size_t slots = (leaf.vertices.size() + kLanes - 1) / kLanes * kLanes;
+  // The slots beyond the vertices repeat the last.
+  const auto vertex_in = [&](std::size_t slot) -> const SurfaceVertex& {
+    return in.vertices[leaf.vertices[std::min(slot, leaf.vertices.size() - 1)]];
+  };
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    for (std::size_t slot = 0; slot < slots; ++slot) {
+      out.positions.push_back(static_cast<float>(character.source_positions[vertex_in(slot).source][axis]));
+    }
+  }
+  for (const LeafBone& bone : leaf.bones) {
+    for (std::size_t slot = 0; slot < slots; ++slot) {
+      const std::vector<Influence>& influences = vertex_in(slot).influences;
+      const auto found = std::ranges::find(influences, bone.bone, &Influence::bone);
+      out.weights.push_back(found == influences.end() ? 0.0F : found->weight);
+    }
+  }
+  for (const LeafMorph& leaf_morph : leaf.morphs) {
+    for (std::size_t slot = 0; slot < slots; ++slot) {
+      const std::vector<MorphDelta>& morphs = vertex_in(slot).morphs;
+      const auto found = std::ranges::find(morphs, leaf_morph.target, &MorphDelta::target);
+      if (found == morphs.end()) continue;
+      out.morphs.emplace_back(leaf_morph.target, static_cast<std::uint32_t>(slot), to_schema(found->delta));
+    }
+  }
+}
 
 Runs runs_of(const Character& character, const Leaves& in) {
   Runs out;
   for (const Leaf& leaf : in.leaves) {
-    out.leaves.emplace_back(
-        leaf.sphere, static_cast<std::uint32_t>(out.corners.size() / 3),
-        static_cast<std::uint32_t>(out.vertices.size()), static_cast<std::uint32_t>(out.bones.size()),
-        static_cast<std::uint16_t>(leaf.triangles.size()), static_cast<std::uint16_t>(leaf.vertices.size()),
-        static_cast<std::uint16_t>(leaf.bones.size()), std::uint16_t{0});
+    const auto size_of = [](const auto& run) { return static_cast<std::uint32_t>(run.size()); };
+    const std::uint32_t first_triangle = size_of(out.corners) / 3, first_vertex = size_of(out.vertices),
+                        first_bone = size_of(out.bones), first_slot = size_of(out.positions) / 3,
+                        first_weight = size_of(out.weights), first_morph = size_of(out.morphs);
+    add_slots(character, in, leaf, out);
+    out.leaves.emplace_back(leaf.sphere, first_triangle, first_vertex, first_bone, first_slot, first_weight,
+                            first_morph, size_of(out.morphs) - first_morph,
+                            static_cast<std::uint16_t>(leaf.triangles.size()),
+                            static_cast<std::uint16_t>(leaf.vertices.size()),
+                            static_cast<std::uint16_t>(leaf.bones.size()), std::uint16_t{0});
     out.vertices.insert(out.vertices.end(), leaf.vertices.begin(), leaf.vertices.end());
     for (const LeafBone& bone : leaf.bones) out.bones.push_back(bone.bone);
     for (const Index t : leaf.triangles) {
@@ -103,33 +138,15 @@ Runs runs_of(const Character& character, const Leaves& in) {
   return out;
 }
 
-struct Vertices {
-  std::vector<schema::SurfaceVertex> vertices;
-  std::vector<std::uint32_t> sources, welds;
-  std::vector<schema::Influence> influences;
-  std::vector<schema::MorphDelta> morphs;
-};
-
-Vertices vertices_of(const Character& character, const std::vector<SurfaceVertex>& in) {
-  Vertices out;
-  for (const SurfaceVertex& vertex : in) {
-    out.vertices.emplace_back(
-        to_schema(character.source_positions[vertex.source]), static_cast<std::uint32_t>(out.influences.size()),
-        static_cast<std::uint32_t>(out.morphs.size()), static_cast<std::uint16_t>(vertex.influences.size()),
-        static_cast<std::uint16_t>(vertex.morphs.size()));
-    out.sources.push_back(vertex.source);
-    out.welds.push_back(vertex.weld);
-    for (const Influence& influence : vertex.influences) out.influences.emplace_back(influence.bone, influence.weight);
-    for (const MorphDelta& morph : vertex.morphs) out.morphs.emplace_back(morph.target, to_schema(morph.delta));
-  }
-  return out;
-}
-
 // Lanes that start at a multiple of their own size never straddle two cache lines.
 template <typename Struct>
 auto aligned_vector(flatbuffers::FlatBufferBuilder& builder, const std::vector<Struct>& values) {
   builder.ForceVectorAlignment(values.size(), sizeof(Struct), sizeof(Eight));
   return builder.CreateVectorOfStructs(values);
+}
+auto aligned_floats(flatbuffers::FlatBufferBuilder& builder, const std::vector<float>& values) {
+  builder.ForceVectorAlignment(values.size(), sizeof(float), sizeof(Eight));
+  return builder.CreateVector(values);
 }
 
 }  // namespace
@@ -137,26 +154,30 @@ auto aligned_vector(flatbuffers::FlatBufferBuilder& builder, const std::vector<S
 flatbuffers::Offset<schema::Surface> create_surface(flatbuffers::FlatBufferBuilder& builder, const Character& character,
                                                     const BoneBinding& bones, const Leaves& leaves) {
   const Runs runs = runs_of(character, leaves);
-  const Vertices vertices = vertices_of(character, leaves.vertices);
   const Groups groups = group_leaves(leaves.leaves, !bones.bones.empty());
+  std::vector<std::uint32_t> sources, welds;
+  for (const SurfaceVertex& vertex : leaves.vertices) {
+    sources.push_back(vertex.source);
+    welds.push_back(vertex.weld);
+  }
   const auto leaves_at = builder.CreateVectorOfStructs(runs.leaves);
   const auto balls_at = aligned_vector(builder, groups.balls);
   const auto leaf_vertices_at = builder.CreateVector(runs.vertices);
   const auto leaf_bones_at = builder.CreateVector(runs.bones);
   const auto corners_at = builder.CreateVector(runs.corners);
-  const auto vertices_at = builder.CreateVectorOfStructs(vertices.vertices);
-  const auto sources_at = builder.CreateVector(vertices.sources);
-  const auto welds_at = builder.CreateVector(vertices.welds);
-  const auto influences_at = builder.CreateVectorOfStructs(vertices.influences);
-  const auto morphs_at = builder.CreateVectorOfStructs(vertices.morphs);
+  const auto sources_at = builder.CreateVector(sources);
+  const auto welds_at = builder.CreateVector(welds);
+  const auto positions_at = aligned_floats(builder, runs.positions);
+  const auto weights_at = aligned_floats(builder, runs.weights);
+  const auto morphs_at = builder.CreateVectorOfStructs(runs.morphs);
   const auto term_counts_at = builder.CreateVector(groups.term_counts);
   const auto term_bones_at = builder.CreateVector(groups.term_bones);
   const auto terms_at = aligned_vector(builder, groups.terms);
   const auto morph_counts_at = builder.CreateVector(groups.morph_counts);
   const auto morph_targets_at = builder.CreateVector(groups.morph_targets);
   const auto cover_morphs_at = aligned_vector(builder, groups.morphs);
-  return schema::CreateSurface(builder, leaves_at, balls_at, leaf_vertices_at, leaf_bones_at, corners_at, vertices_at,
-                               sources_at, welds_at, influences_at, morphs_at, term_counts_at, term_bones_at, terms_at,
+  return schema::CreateSurface(builder, leaves_at, balls_at, leaf_vertices_at, leaf_bones_at, corners_at, sources_at,
+                               welds_at, positions_at, weights_at, morphs_at, term_counts_at, term_bones_at, terms_at,
                                morph_counts_at, morph_targets_at, cover_morphs_at);
 }
 

@@ -41,13 +41,12 @@ static_assert(kSameLayout<BallLanes, schema::BallLanes> && offsetof(BallLanes, y
 static_assert(kSameLayout<CoverTerm, schema::CoverTerm> && offsetof(CoverTerm, deviations) == 32);
 static_assert(kSameLayout<Leaf, schema::Leaf> && offsetof(Leaf, first_triangle) == 4 &&
               offsetof(Leaf, first_vertex) == 8 && offsetof(Leaf, first_bone) == 12 &&
-              offsetof(Leaf, triangle_count) == 16 && offsetof(Leaf, vertex_count) == 18 &&
-              offsetof(Leaf, bone_count) == 20 && offsetof(Leaf, reserved) == 22);
-static_assert(kSameLayout<SurfaceVertex, schema::SurfaceVertex> && offsetof(SurfaceVertex, first_influence) == 12 &&
-              offsetof(SurfaceVertex, first_morph) == 16 && offsetof(SurfaceVertex, influence_count) == 20 &&
-              offsetof(SurfaceVertex, morph_count) == 22);
-static_assert(kSameLayout<Influence, schema::Influence> && offsetof(Influence, weight) == 4);
-static_assert(kSameLayout<MorphDelta, schema::MorphDelta> && offsetof(MorphDelta, delta) == 4);
+              offsetof(Leaf, first_slot) == 16 && offsetof(Leaf, first_weight) == 20 &&
+              offsetof(Leaf, first_morph) == 24 && offsetof(Leaf, morph_count) == 28 &&
+              offsetof(Leaf, triangle_count) == 32 && offsetof(Leaf, vertex_count) == 34 &&
+              offsetof(Leaf, bone_count) == 36 && offsetof(Leaf, reserved) == 38);
+static_assert(kSameLayout<SlotMorph, schema::SlotMorph> && offsetof(SlotMorph, slot) == 4 &&
+              offsetof(SlotMorph, delta) == 8);
 static_assert(kSameLayout<TrianglePair, schema::TrianglePair> && offsetof(TrianglePair, b) == 4);
 
 constexpr std::size_t kHeaderSize = 8;  // the root's offset and the identifier
@@ -85,11 +84,11 @@ Surface surface_of(const schema::Surface& stored) {
   surface.leaf_vertices = view<std::uint32_t>(*stored.leaf_vertices());
   surface.leaf_bones = view<std::uint32_t>(*stored.leaf_bones());
   surface.corners = view<std::uint8_t>(*stored.corners());
-  surface.vertices = view<SurfaceVertex>(*stored.vertices());
   surface.source_vertices = view<std::uint32_t>(*stored.source_vertices());
   surface.welds = view<std::uint32_t>(*stored.welds());
-  surface.influences = view<Influence>(*stored.influences());
-  surface.morphs = view<MorphDelta>(*stored.morphs());
+  surface.slot_positions = view<float>(*stored.slot_positions());
+  surface.slot_weights = view<float>(*stored.slot_weights());
+  surface.slot_morphs = view<SlotMorph>(*stored.slot_morphs());
   surface.cover_term_counts = view<std::uint32_t>(*stored.cover_term_counts());
   surface.cover_term_bones = view<std::uint32_t>(*stored.cover_term_bones());
   surface.cover_terms = view<CoverTerm>(*stored.cover_terms());

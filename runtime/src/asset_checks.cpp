@@ -316,7 +316,7 @@ bool values_are_valid(const schema::Asset& root, std::size_t size, Message& mess
          check_ignored(root, message) && check_near(*root.near_fit(), "near_fit", root.spheres()->size(), message) &&
          check_near(*root.near_detect(), "near_detect", root.spheres()->size(), message) &&
          check_joints(root, message) && bone_values_are_valid(root, message) &&
-         surface_values_are_valid(root, size, message);
+         surface_values_are_valid(root, message);
 }
 
 std::size_t count_ignored(const schema::Asset& root) {

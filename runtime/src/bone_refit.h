@@ -4,6 +4,7 @@
 
 #include <cstddef>
 
+#include "memory.h"
 #include "spherechain/refit_bones.h"
 #include "spherechain/simd.h"
 
@@ -32,6 +33,9 @@ struct BoneRefitInputs {
 // kOk where RefitBonesJob may run on these, its target and outputs aside.
 Status check_bone_inputs(const Asset* asset, const BoneMatrices& bones, Span<const float> morph_weights,
                          RadiusKind radius);
+
+// The memory of the first `count` of them, at least one, whose layout and stride are checked.
+MemoryRange range_of_matrices(const BoneMatrices& bones, std::size_t count);
 
 // Of arguments that are checked.
 BoneRefitInputs bone_refit_inputs(const Asset& asset, const BoneMatrices& bones, Span<const float> morph_weights,

@@ -59,6 +59,11 @@ BoneRefitInputs bone_refit_inputs(const Asset& asset, const BoneMatrices& bones,
   return in;
 }
 
+MemoryRange range_of_matrices(const BoneMatrices& bones, std::size_t count) {
+  const auto first = reinterpret_cast<std::uintptr_t>(bones.data);
+  return {first, first + (count - 1) * bones.stride + size_of(bones.layout)};
+}
+
 Status RefitBonesJob::run() const noexcept {
   const Status status = check_bone_inputs(asset, bones, morph_weights, radius);
   if (status != Status::kOk) {
@@ -78,10 +83,8 @@ Status RefitBonesJob::run() const noexcept {
   if (!resolve_target(target, resolved)) {
     return Status::kUnsupportedTarget;
   }
-  const auto first_matrix = reinterpret_cast<std::uintptr_t>(bones.data);
-  const MemoryRange matrices{first_matrix,
-                             first_matrix + (asset->bone_count() - 1) * bones.stride + size_of(bones.layout)};
-  if (any_shared({range_of(Span<Sphere>{spheres.data, count})}, {matrices, range_of(morph_weights)})) {
+  if (any_shared({range_of(Span<Sphere>{spheres.data, count})},
+                 {range_of_matrices(bones, asset->bone_count()), range_of(morph_weights)})) {
     return Status::kSharedMemory;
   }
   refit_from_bones(bone_refit_inputs(*asset, bones, morph_weights, radius), resolved, spheres.data);

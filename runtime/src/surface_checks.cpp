@@ -14,6 +14,7 @@ namespace {
 
 using Lanes = flatbuffers::Array<float, kLeafLanes>;
 constexpr std::uint32_t kLanes = kLeafLanes;
+constexpr std::uint32_t kSlots = kSlotLanes;
 using Numbers = flatbuffers::Vector<std::uint32_t>;
 
 bool has_size(std::uint64_t size, std::uint64_t wanted, const char* name, const char* of, Message& message) {
@@ -25,6 +26,13 @@ bool wrong_at(const char* name, std::uint32_t i, const char* what, Message& mess
 }
 
 bool is_finite(const schema::Vec3& v) { return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z()); }
+
+// Whether a leaf's run of `count` starts where the last one ended, at `next`, and ends in the table; moves `next` on.
+bool take_run(std::uint64_t first, std::uint64_t count, std::uint64_t size, std::uint64_t& next) {
+  const bool follows = first == next;
+  next += count;
+  return follows && next <= size;
+}
 
 // Whether `used` lanes are finite and at least `least`, and the spare ones 0.
 bool lanes_are_valid(const Lanes& lanes, std::uint32_t used, float least) {
@@ -66,76 +74,13 @@ std::uint32_t morph_count(const schema::Asset& root) {
   return root.bone_refit() == nullptr ? 0 : root.bone_refit()->morphs()->size();
 }
 
-bool check_influences(const schema::Asset& root, std::uint32_t v, Message& message) {
-  const schema::Surface& surface = *root.surface();
-  const schema::SurfaceVertex& vertex = *surface.vertices()->Get(v);
-  const std::uint32_t bones = bone_count(root);
-  const std::uint32_t end = vertex.first_influence() + vertex.influence_count();
-  for (std::uint32_t i = vertex.first_influence(); i < end; ++i) {
-    const schema::Influence& influence = *surface.influences()->Get(i);
-    if (influence.bone() >= bones) {
-      return message.wrong("surface.influences[%" PRIu32 "].bone: %" PRIu32 " is past the %" PRIu32 " bones", i,
-                           influence.bone(), bones);
-    }
-    if (i > vertex.first_influence() && influence.bone() <= surface.influences()->Get(i - 1)->bone()) {
-      return wrong_at("influences", i, "its bone is not above the one before it", message);
-    }
-    if (!(influence.weight() > 0.0F && influence.weight() <= 1.0F)) {
-      return wrong_at("influences", i, "its weight is not above 0 and at most 1", message);
-    }
-  }
-  return true;
-}
-
-bool check_morphs(const schema::Asset& root, std::uint32_t v, Message& message) {
-  const schema::Surface& surface = *root.surface();
-  const schema::SurfaceVertex& vertex = *surface.vertices()->Get(v);
-  const std::uint32_t end = vertex.first_morph() + vertex.morph_count();
-  for (std::uint32_t i = vertex.first_morph(); i < end; ++i) {
-    const schema::MorphDelta& morph = *surface.morphs()->Get(i);
-    if (morph.target() >= morph_count(root)) {
-      return message.wrong("surface.morphs[%" PRIu32 "].target: %" PRIu32 " is past the %" PRIu32 " morph targets", i,
-                           morph.target(), morph_count(root));
-    }
-    if (i > vertex.first_morph() && morph.target() <= surface.morphs()->Get(i - 1)->target()) {
-      return wrong_at("morphs", i, "its target is not above the one before it", message);
-    }
-    if (!is_finite(morph.delta())) {
-      return wrong_at("morphs", i, "its delta is not finite", message);
-    }
-  }
-  return true;
-}
-
 bool check_vertices(const schema::Asset& root, Message& message) {
   const schema::Surface& surface = *root.surface();
-  const std::uint32_t count = surface.vertices()->size();
-  if (!has_size(surface.source_vertices()->size(), count, "source_vertices", "vertices", message) ||
-      !has_size(surface.welds()->size(), count, "welds", "vertices", message)) {
+  const std::uint32_t count = surface.source_vertices()->size();
+  if (!has_size(surface.welds()->size(), count, "welds", "source_vertices", message)) {
     return false;
   }
-  const bool moves = bone_count(root) > 0;
-  std::uint64_t influences = 0, morphs = 0;
   for (std::uint32_t v = 0; v < count; ++v) {
-    const schema::SurfaceVertex& vertex = *surface.vertices()->Get(v);
-    if (!is_finite(vertex.position())) {
-      return wrong_at("vertices", v, "its position is not finite", message);
-    }
-    if (moves ? vertex.influence_count() == 0 || vertex.influence_count() > kMaxInfluences
-              : vertex.influence_count() != 0) {
-      return wrong_at("vertices", v, "it hangs on no bone, on too many, or there are none", message);
-    }
-    if (vertex.first_influence() != influences || vertex.first_morph() != morphs) {
-      return wrong_at("vertices", v, "its influences or morphs do not start where the last vertex' end", message);
-    }
-    influences += vertex.influence_count();
-    morphs += vertex.morph_count();
-    if (influences > surface.influences()->size() || morphs > surface.morphs()->size()) {
-      return wrong_at("vertices", v, "its influences or morphs are past the end", message);
-    }
-    if (!check_influences(root, v, message) || !check_morphs(root, v, message)) {
-      return false;
-    }
     if (surface.source_vertices()->Get(v) >= root.source()->vertex_count()) {
       return message.wrong("surface.source_vertices[%" PRIu32 "]: %" PRIu32 " is past the %" PRIu32
                            " vertices of the source",
@@ -146,21 +91,38 @@ bool check_vertices(const schema::Asset& root, Message& message) {
       return wrong_at("welds", v, "not the lowest vertex of its place", message);
     }
   }
-  return has_size(surface.influences()->size(), influences, "influences", "that the vertices have", message) &&
-         has_size(surface.morphs()->size(), morphs, "morphs", "that the vertices have", message);
+  return true;
 }
 
-// The bones of a leaf's vertices are the leaf's.
-bool check_leaf_bones(const schema::Surface& surface, std::uint32_t l, Message& message) {
+bool check_slots(const schema::Surface& surface, std::uint32_t l, std::uint32_t slots, Message& message) {
   const schema::Leaf& leaf = *surface.leaves()->Get(l);
-  const std::uint32_t* first = surface.leaf_bones()->data() + leaf.first_bone();
-  const std::uint32_t* last = first + leaf.bone_count();
-  for (std::uint32_t slot = leaf.first_vertex(); slot < leaf.first_vertex() + leaf.vertex_count(); ++slot) {
-    const schema::SurfaceVertex& vertex = *surface.vertices()->Get(surface.leaf_vertices()->Get(slot));
-    for (std::uint32_t i = 0; i < vertex.influence_count(); ++i) {
-      if (!std::binary_search(first, last, surface.influences()->Get(vertex.first_influence() + i)->bone())) {
-        return wrong_at("leaves", l, "a bone of a vertex is not among its bones", message);
-      }
+  const float* positions = surface.slot_positions()->data() + std::size_t{3} * leaf.first_slot();
+  if (!std::all_of(positions, positions + std::size_t{3} * slots, [](float p) { return std::isfinite(p); })) {
+    return wrong_at("leaves", l, "a position in its slots is not finite", message);
+  }
+  const float* weights = surface.slot_weights()->data() + leaf.first_weight();
+  if (!std::all_of(weights, weights + std::size_t{slots} * leaf.bone_count(),
+                   [](float w) { return w >= 0.0F && w <= 1.0F; })) {
+    return wrong_at("leaves", l, "a weight in its slots is not from 0 to 1", message);
+  }
+  return true;
+}
+
+bool check_morphs(const schema::Asset& root, const schema::Leaf& leaf, std::uint32_t slots, Message& message) {
+  const auto& morphs = *root.surface()->slot_morphs();
+  for (std::uint32_t i = leaf.first_morph(); i < leaf.first_morph() + leaf.morph_count(); ++i) {
+    const schema::SlotMorph& morph = *morphs.Get(i);
+    if (morph.target() >= morph_count(root)) {
+      return message.wrong("surface.slot_morphs[%" PRIu32 "].target: %" PRIu32 " is past the %" PRIu32 " morph targets",
+                           i, morph.target(), morph_count(root));
+    }
+    if (morph.slot() >= slots || !is_finite(morph.delta())) {
+      return wrong_at("slot_morphs", i, "its slot is past the leaf's, or its delta not finite", message);
+    }
+    if (i > leaf.first_morph() &&
+        (morph.target() < morphs.Get(i - 1)->target() ||
+         (morph.target() == morphs.Get(i - 1)->target() && morph.slot() <= morphs.Get(i - 1)->slot()))) {
+      return wrong_at("slot_morphs", i, "not sorted, or there twice", message);
     }
   }
   return true;
@@ -180,7 +142,7 @@ bool check_corners(const schema::Surface& surface, const schema::Leaf& leaf, Mes
 
 // Where the next leaf's runs start.
 struct Next {
-  std::uint64_t vertex = 0, bone = 0, morphs_of_slots = 0;
+  std::uint64_t vertex = 0, bone = 0, slot = 0, weight = 0, morph = 0;
 };
 
 bool check_leaf(const schema::Asset& root, std::uint32_t l, Next& next, Message& message) {
@@ -192,27 +154,24 @@ bool check_leaf(const schema::Asset& root, std::uint32_t l, Next& next, Message&
   if ((leaf.bone_count() > 0) != (bone_count(root) > 0)) {
     return wrong_at("leaves", l, "it hangs on no bone, or there are none", message);
   }
-  if (leaf.first_vertex() != next.vertex || leaf.first_bone() != next.bone) {
-    return wrong_at("leaves", l, "its vertices or bones do not start where the last leaf's end", message);
+  const std::uint32_t slots = (leaf.vertex_count() + kSlots - 1) / kSlots * kSlots;
+  if (!take_run(leaf.first_vertex(), leaf.vertex_count(), surface.leaf_vertices()->size(), next.vertex) ||
+      !take_run(leaf.first_bone(), leaf.bone_count(), surface.leaf_bones()->size(), next.bone) ||
+      !take_run(leaf.first_slot(), slots, surface.slot_positions()->size() / 3, next.slot) ||
+      !take_run(leaf.first_weight(), std::uint64_t{slots} * leaf.bone_count(), surface.slot_weights()->size(),
+                next.weight) ||
+      !take_run(leaf.first_morph(), leaf.morph_count(), surface.slot_morphs()->size(), next.morph)) {
+    return wrong_at("leaves", l, "a run of it does not start where the last leaf's ends, or is past the end", message);
   }
-  next.vertex += leaf.vertex_count();
-  next.bone += leaf.bone_count();
-  if (next.vertex > surface.leaf_vertices()->size() || next.bone > surface.leaf_bones()->size()) {
-    return wrong_at("leaves", l, "its vertices or bones are past the end", message);
-  }
-  if (!check_run(*surface.leaf_vertices(), leaf.first_vertex(), leaf.vertex_count(), surface.vertices()->size(),
-                 "leaf_vertices", message) ||
-      !check_run(*surface.leaf_bones(), leaf.first_bone(), leaf.bone_count(), bone_count(root), "leaf_bones",
-                 message)) {
-    return false;
-  }
-  for (std::uint32_t slot = leaf.first_vertex(); slot < next.vertex; ++slot) {
-    next.morphs_of_slots += surface.vertices()->Get(surface.leaf_vertices()->Get(slot))->morph_count();
-  }
-  return check_leaf_bones(surface, l, message) && check_corners(surface, leaf, message);
+  return check_run(*surface.leaf_vertices(), leaf.first_vertex(), leaf.vertex_count(),
+                   surface.source_vertices()->size(), "leaf_vertices", message) &&
+         check_run(*surface.leaf_bones(), leaf.first_bone(), leaf.bone_count(), bone_count(root), "leaf_bones",
+                   message) &&
+         check_slots(surface, l, slots, message) && check_morphs(root, leaf, slots, message) &&
+         check_corners(surface, leaf, message);
 }
 
-bool check_leaves(const schema::Asset& root, std::size_t size, Message& message) {
+bool check_leaves(const schema::Asset& root, Message& message) {
   const schema::Surface& surface = *root.surface();
   if (!has_size(surface.corners()->size(), std::uint64_t{3} * root.triangles()->size(), "corners",
                 "that the triangles have", message)) {
@@ -237,13 +196,12 @@ bool check_leaves(const schema::Asset& root, std::size_t size, Message& message)
       triangle += surface.leaves()->Get(l)->triangle_count();
     }
   }
-  // Vertices with many morphs in many leaves would let a small file ask for a very long pose.
-  if (next.morphs_of_slots > size) {
-    return message.wrong("surface.leaf_vertices: they have %" PRIu64 " morphs", next.morphs_of_slots);
-  }
   return has_size(count, l, "leaves", "that spheres have", message) &&
          has_size(surface.leaf_vertices()->size(), next.vertex, "leaf_vertices", "that the leaves have", message) &&
-         has_size(surface.leaf_bones()->size(), next.bone, "leaf_bones", "that the leaves have", message);
+         has_size(surface.leaf_bones()->size(), next.bone, "leaf_bones", "that the leaves have", message) &&
+         has_size(surface.slot_positions()->size(), 3 * next.slot, "slot_positions", "that the leaves have", message) &&
+         has_size(surface.slot_weights()->size(), next.weight, "slot_weights", "that the leaves have", message) &&
+         has_size(surface.slot_morphs()->size(), next.morph, "slot_morphs", "that the leaves have", message);
 }
 
 // The lanes of a group that stand for leaves.
@@ -328,8 +286,8 @@ bool check_rest_contacts(const schema::Asset& root, Message& message) {
 
 }  // namespace
 
-bool surface_values_are_valid(const schema::Asset& root, std::size_t size, Message& message) {
-  return root.surface() == nullptr || (check_vertices(root, message) && check_leaves(root, size, message) &&
+bool surface_values_are_valid(const schema::Asset& root, Message& message) {
+  return root.surface() == nullptr || (check_vertices(root, message) && check_leaves(root, message) &&
                                        check_cover(root, message) && check_rest_contacts(root, message));
 }
 

@@ -2,8 +2,6 @@
 // The part of asset_checks.h that sees to the surface and its leaves.
 #pragma once
 
-#include <cstddef>
-
 #include "message.h"
 
 namespace spherechain {
@@ -13,6 +11,6 @@ struct Asset;
 }
 
 // `root` is valid already but for its surface. As values_are_valid().
-bool surface_values_are_valid(const schema::Asset& root, std::size_t size, Message& message);
+bool surface_values_are_valid(const schema::Asset& root, Message& message);
 
 }  // namespace spherechain

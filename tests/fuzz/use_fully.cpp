@@ -33,11 +33,11 @@ void read_surface(const Asset& asset) {
   read(surface.leaf_vertices);
   read(surface.leaf_bones);
   read(surface.corners);
-  read(surface.vertices);
   read(surface.source_vertices);
   read(surface.welds);
-  read(surface.influences);
-  read(surface.morphs);
+  read(surface.slot_positions);
+  read(surface.slot_weights);
+  read(surface.slot_morphs);
   read(surface.cover_term_counts);
   read(surface.cover_term_bones);
   read(surface.cover_terms);
@@ -125,6 +125,13 @@ bool detect_all_ways(const Asset& asset, const std::vector<Sphere>& spheres) {
   return true;
 }
 
+bool cover_and_skin(const Asset& asset, const BoneMatrices& bones, const std::vector<float>& morph_weights) {
+  const Status wanted = asset.bone_count() == 0 || asset.leaf_count() == 0 ? Status::kNotInAsset : Status::kOk;
+  return (cover(asset, bones, morph_weights).status == wanted || broken("a cover job failed")) &&
+         (asset.info().source_vertex_count > kMaxVertexCount || asset.info().source_vertex_count == 0 ||
+          skin(asset, bones, morph_weights).status == wanted || broken("a skin job failed"));
+}
+
 // With matrices and weights in blocks of exactly as many as the asset has.
 bool refit_bones_all_ways(const Asset& asset) {
   std::mt19937 random(2);
@@ -144,7 +151,7 @@ bool refit_bones_all_ways(const Asset& asset) {
       }
     }
   }
-  return true;
+  return cover_and_skin(asset, bones, {}) && cover_and_skin(asset, bones, morph_weights);
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "jobs.h"
 
+#include <limits>
+
 namespace spherechain::test {
 
 Refitted refit(const Asset& asset, const std::vector<float>& positions, RadiusKind radius, std::size_t stride) {
@@ -26,6 +28,36 @@ Refitted refit_bones(const Asset& asset, const BoneMatrices& bones, const std::v
   job.morph_weights = {morph_weights.data(), morph_weights.size()};
   job.radius = radius;
   job.spheres = {result.spheres.data(), result.spheres.size()};
+  result.status = job.run();
+  return result;
+}
+
+Covered cover(const Asset& asset, const BoneMatrices& bones, const std::vector<float>& morph_weights, Target target) {
+  Covered result{Status::kOk, std::vector<Sphere>(asset.leaf_count()), std::vector<Sphere>(asset.spheres().size)};
+  CoverJob job;
+  job.asset = &asset;
+  job.bones = bones;
+  job.morph_weights = {morph_weights.data(), morph_weights.size()};
+  job.target = target;
+  job.leaves = {result.leaves.data(), result.leaves.size()};
+  job.spheres = {result.spheres.data(), result.spheres.size()};
+  result.status = job.run();
+  return result;
+}
+
+SkinnedSurface skin(const Asset& asset, const BoneMatrices& bones, const std::vector<float>& morph_weights,
+                    Target target, std::size_t stride) {
+  const std::size_t count = asset.info().source_vertex_count;
+  SkinnedSurface result{Status::kOk, std::vector<float>((count - 1) * stride / sizeof(float) + 3,
+                                                        std::numeric_limits<float>::quiet_NaN())};
+  SkinJob job;
+  job.asset = &asset;
+  job.bones = bones;
+  job.morph_weights = {morph_weights.data(), morph_weights.size()};
+  job.target = target;
+  job.positions = result.positions.data();
+  job.vertex_count = count;
+  job.stride = stride;
   result.status = job.run();
   return result;
 }

@@ -6,9 +6,11 @@
 #include <cstring>
 #include <vector>
 
+#include "spherechain/cover.h"
 #include "spherechain/detect.h"
 #include "spherechain/refit.h"
 #include "spherechain/refit_bones.h"
+#include "spherechain/skin.h"
 
 namespace spherechain::test {
 
@@ -22,6 +24,20 @@ Refitted refit(const Asset& asset, const std::vector<float>& positions, RadiusKi
 
 Refitted refit_bones(const Asset& asset, const BoneMatrices& bones, const std::vector<float>& morph_weights,
                      RadiusKind radius, Target target = Target::kBest);
+
+struct Covered {
+  Status status;
+  std::vector<Sphere> leaves, spheres;
+};
+Covered cover(const Asset& asset, const BoneMatrices& bones, const std::vector<float>& morph_weights,
+              Target target = Target::kBest);
+
+struct SkinnedSurface {
+  Status status;
+  std::vector<float> positions;  // NaN where nothing was written
+};
+SkinnedSurface skin(const Asset& asset, const BoneMatrices& bones, const std::vector<float>& morph_weights,
+                    Target target = Target::kBest, std::size_t stride = 12);
 
 struct Detected {
   Status status;

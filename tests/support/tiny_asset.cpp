@@ -31,16 +31,12 @@ schema::BoneTerm stored(const BoneTerm& t) { return {lanes(t.x), lanes(t.y), lan
 schema::MorphTerm stored(const MorphTerm& t) { return {lanes(t.x), lanes(t.y), lanes(t.z)}; }
 
 schema::Leaf stored(const Leaf& l) {
-  return {l.sphere,         l.first_triangle, l.first_vertex, l.first_bone,
-          l.triangle_count, l.vertex_count,   l.bone_count,   l.reserved};
+  return {l.sphere,      l.first_triangle, l.first_vertex,   l.first_bone,   l.first_slot, l.first_weight,
+          l.first_morph, l.morph_count,    l.triangle_count, l.vertex_count, l.bone_count, l.reserved};
 }
 schema::BallLanes stored(const BallLanes& b) { return {lanes(b.x), lanes(b.y), lanes(b.z), lanes(b.radius)}; }
 schema::CoverTerm stored(const CoverTerm& t) { return {lanes(t.weights), lanes(t.deviations)}; }
-schema::SurfaceVertex stored(const SurfaceVertex& v) {
-  return {stored(v.position), v.first_influence, v.first_morph, v.influence_count, v.morph_count};
-}
-schema::Influence stored(const Influence& i) { return {i.bone, i.weight}; }
-schema::MorphDelta stored(const MorphDelta& m) { return {m.target, stored(m.delta)}; }
+schema::SlotMorph stored(const SlotMorph& m) { return {m.target, m.slot, stored(m.delta)}; }
 schema::TrianglePair stored(const TrianglePair& p) { return {p.a, p.b}; }
 
 template <typename Stored, typename View>
@@ -125,11 +121,11 @@ fb::Offset<schema::Surface> build_surface(fb::FlatBufferBuilder& builder, const 
   const auto leaf_vertices = builder.CreateVector(in.leaf_vertices);
   const auto leaf_bones = builder.CreateVector(in.leaf_bones);
   const auto corners = builder.CreateVector(in.corners);
-  const auto vertices = struct_vector<schema::SurfaceVertex>(builder, in.vertices);
   const auto source_vertices = builder.CreateVector(in.source_vertices);
   const auto welds = builder.CreateVector(in.welds);
-  const auto influences = struct_vector<schema::Influence>(builder, in.influences);
-  const auto morphs = struct_vector<schema::MorphDelta>(builder, in.morphs);
+  const auto positions = builder.CreateVector(in.slot_positions);
+  const auto weights = builder.CreateVector(in.slot_weights);
+  const auto morphs = struct_vector<schema::SlotMorph>(builder, in.slot_morphs);
   const auto term_counts = builder.CreateVector(in.cover_term_counts);
   const auto term_bones = builder.CreateVector(in.cover_term_bones);
   const auto terms = struct_vector<schema::CoverTerm>(builder, in.cover_terms);
@@ -137,8 +133,8 @@ fb::Offset<schema::Surface> build_surface(fb::FlatBufferBuilder& builder, const 
   const auto morph_targets = builder.CreateVector(in.cover_morph_targets);
   const auto cover_morphs = struct_vector<schema::BallLanes>(builder, in.cover_morphs);
   const auto rest_contacts = struct_vector<schema::TrianglePair>(builder, in.rest_contacts);
-  return schema::CreateSurface(builder, leaves, balls, leaf_vertices, leaf_bones, corners, vertices, source_vertices,
-                               welds, influences, morphs, term_counts, term_bones, terms, morph_counts, morph_targets,
+  return schema::CreateSurface(builder, leaves, balls, leaf_vertices, leaf_bones, corners, source_vertices, welds,
+                               positions, weights, morphs, term_counts, term_bones, terms, morph_counts, morph_targets,
                                cover_morphs, rest_contacts);
 }
 

@@ -51,10 +51,9 @@ struct SurfaceParts {
   std::vector<BallLanes> leaf_balls;
   std::vector<std::uint32_t> leaf_vertices, leaf_bones;
   std::vector<std::uint8_t> corners;
-  std::vector<SurfaceVertex> vertices;
   std::vector<std::uint32_t> source_vertices, welds;
-  std::vector<Influence> influences;
-  std::vector<MorphDelta> morphs;
+  std::vector<float> slot_positions, slot_weights;
+  std::vector<SlotMorph> slot_morphs;
   std::vector<std::uint32_t> cover_term_counts, cover_term_bones;
   std::vector<CoverTerm> cover_terms;
   std::vector<std::uint32_t> cover_morph_counts, cover_morph_targets;

@@ -37,93 +37,102 @@ Point position_of(const TinyAsset& tiny, std::uint32_t v) {
   return {tiny.rest[std::size_t{3} * v], tiny.rest[std::size_t{3} * v + 1], tiny.rest[std::size_t{3} * v + 2]};
 }
 
-void add_vertex(const TinyAsset& tiny, const TinySkin* skin, std::uint32_t v, SurfaceParts& out) {
-  const Point p = position_of(tiny, v);
-  SurfaceVertex vertex{{p[0], p[1], p[2]},
-                       static_cast<std::uint32_t>(out.influences.size()),
-                       static_cast<std::uint32_t>(out.morphs.size()),
-                       0,
-                       0};
-  if (skin != nullptr) {
-    for (const auto& [bone, weight] : skin->weights[v]) {
-      out.influences.push_back({bone, static_cast<float>(weight)});
-    }
-    for (const auto& [target, delta] : skin->morphs[v]) {
-      out.morphs.push_back({target, {delta[0], delta[1], delta[2]}});
-    }
-    vertex.influence_count = static_cast<std::uint16_t>(skin->weights[v].size());
-    vertex.morph_count = static_cast<std::uint16_t>(skin->morphs[v].size());
+float weight_of(const TinySkin& skin, std::uint32_t v, std::uint32_t bone) {
+  double sum = 0;
+  for (const auto& [b, weight] : skin.weights[v]) {
+    sum += b == bone ? weight : 0;
   }
-  out.source_vertices.push_back(v);
-  out.welds.push_back(static_cast<std::uint32_t>(out.welds.size()));
-  out.vertices.push_back(vertex);
+  return static_cast<float>(sum);
+}
+
+// What fills the slots of `sources`, which are a multiple of eight.
+void add_slots(const TinyAsset& tiny, const TinySkin* skin, const std::vector<std::uint32_t>& sources, Leaf& leaf,
+               SurfaceParts& out) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const std::uint32_t v : sources) {
+      out.slot_positions.push_back(position_of(tiny, v)[axis]);
+    }
+  }
+  if (skin == nullptr) {
+    return;
+  }
+  std::map<std::uint32_t, std::vector<SlotMorph>> morphs;
+  std::map<std::uint32_t, bool> bones;
+  for (std::uint32_t slot = 0; slot < sources.size(); ++slot) {
+    for (const auto& [bone, weight] : skin->weights[sources[slot]]) {
+      bones[bone] = true;
+    }
+    for (const auto& [target, delta] : skin->morphs[sources[slot]]) {
+      morphs[target].push_back({target, slot, {delta[0], delta[1], delta[2]}});
+    }
+  }
+  for (const auto& [bone, used] : bones) {
+    out.leaf_bones.push_back(bone);
+    for (const std::uint32_t v : sources) {
+      out.slot_weights.push_back(weight_of(*skin, v, bone));
+    }
+  }
+  for (const auto& [target, of_target] : morphs) {
+    out.slot_morphs.insert(out.slot_morphs.end(), of_target.begin(), of_target.end());
+  }
+  leaf.bone_count = static_cast<std::uint16_t>(bones.size());
+  leaf.morph_count = static_cast<std::uint32_t>(out.slot_morphs.size()) - leaf.first_morph;
 }
 
 // The triangles of the asset have vertices of their own: 3t, 3t + 1, 3t + 2.
 void add_leaf(const TinyAsset& tiny, const TinySkin* skin, std::uint32_t sphere, std::uint32_t first,
               std::uint32_t count, SurfaceParts& out) {
-  Leaf leaf{sphere,
-            first,
-            static_cast<std::uint32_t>(out.leaf_vertices.size()),
-            static_cast<std::uint32_t>(out.leaf_bones.size()),
-            static_cast<std::uint16_t>(count),
-            static_cast<std::uint16_t>(3 * count),
-            0,
-            0};
-  std::map<std::uint32_t, bool> bones;
+  const auto size_of = [](const auto& run) { return static_cast<std::uint32_t>(run.size()); };
+  Leaf leaf{};
+  leaf.sphere = sphere;
+  leaf.first_triangle = first;
+  leaf.first_vertex = size_of(out.leaf_vertices);
+  leaf.first_bone = size_of(out.leaf_bones);
+  leaf.first_slot = size_of(out.slot_positions) / 3;
+  leaf.first_weight = size_of(out.slot_weights);
+  leaf.first_morph = size_of(out.slot_morphs);
+  leaf.triangle_count = static_cast<std::uint16_t>(count);
+  leaf.vertex_count = static_cast<std::uint16_t>(3 * count);
+  std::vector<std::uint32_t> sources;
   for (std::uint32_t corner = 0; corner < 3 * count; ++corner) {
-    const std::uint32_t v = 3 * tiny.parts.triangles[first + corner / 3] + corner % 3;
-    out.leaf_vertices.push_back(static_cast<std::uint32_t>(out.vertices.size()));
+    sources.push_back(3 * tiny.parts.triangles[first + corner / 3] + corner % 3);
+    out.leaf_vertices.push_back(size_of(out.source_vertices));
     out.corners.push_back(static_cast<std::uint8_t>(corner));
-    add_vertex(tiny, skin, v, out);
-    for (std::uint32_t i = out.vertices.back().first_influence; i < out.influences.size(); ++i) {
-      bones[out.influences[i].bone] = true;
-    }
+    out.welds.push_back(size_of(out.source_vertices));
+    out.source_vertices.push_back(sources.back());
   }
-  for (const auto& [bone, used] : bones) {
-    out.leaf_bones.push_back(bone);
-  }
-  leaf.bone_count = static_cast<std::uint16_t>(bones.size());
+  sources.resize(slot_count(leaf), sources.back());
+  add_slots(tiny, skin, sources, leaf, out);
   out.leaves.push_back(leaf);
 }
 
+// Mean weights: they add up to 1 by themselves.
 void add_terms(const SurfaceParts& in, const Leaf& leaf, std::size_t lane, std::map<std::uint32_t, CoverTerm>& terms) {
-  std::map<std::uint32_t, std::vector<double>> weights;
-  for (std::uint32_t i = 0; i < leaf.vertex_count; ++i) {
-    const SurfaceVertex& vertex = in.vertices[in.leaf_vertices[leaf.first_vertex + i]];
-    for (std::uint32_t k = 0; k < vertex.influence_count; ++k) {
-      const Influence& influence = in.influences[vertex.first_influence + k];
-      weights[influence.bone].push_back(influence.weight);
-    }
-  }
-  // Mean weights: they add up to 1 by themselves.
-  for (auto& [bone, of_bone] : weights) {
-    of_bone.resize(leaf.vertex_count, 0.0);
+  for (std::size_t b = 0; b < leaf.bone_count; ++b) {
+    const float* weights = &in.slot_weights[leaf.first_weight + b * slot_count(leaf)];
     double mean = 0, deviation = 0;
-    for (const double weight : of_bone) {
-      mean += weight / leaf.vertex_count;
+    for (std::size_t slot = 0; slot < leaf.vertex_count; ++slot) {
+      mean += double{weights[slot]} / leaf.vertex_count;
     }
     const auto stored = static_cast<float>(mean);
-    for (const double weight : of_bone) {
-      deviation = std::max(deviation, std::abs(weight - stored));
+    for (std::size_t slot = 0; slot < leaf.vertex_count; ++slot) {
+      deviation = std::max(deviation, std::abs(double{weights[slot]} - stored));
     }
-    terms[bone].weights[lane] = stored;
-    terms[bone].deviations[lane] = static_cast<float>(deviation * 1.000001);
+    CoverTerm& term = terms[in.leaf_bones[leaf.first_bone + b]];
+    term.weights[lane] = stored;
+    term.deviations[lane] = static_cast<float>(deviation * 1.000001);
   }
 }
 
 void add_morphs(const SurfaceParts& in, const Leaf& leaf, std::size_t lane,
                 std::map<std::uint32_t, BallLanes>& morphs) {
   std::map<std::uint32_t, std::vector<Point>> deltas;
-  for (std::uint32_t i = 0; i < leaf.vertex_count; ++i) {
-    const SurfaceVertex& vertex = in.vertices[in.leaf_vertices[leaf.first_vertex + i]];
-    for (std::uint32_t k = 0; k < vertex.morph_count; ++k) {
-      const MorphDelta& morph = in.morphs[vertex.first_morph + k];
-      deltas[morph.target].push_back({morph.delta.x, morph.delta.y, morph.delta.z});
-    }
+  for (std::uint32_t i = leaf.first_morph; i < leaf.first_morph + leaf.morph_count; ++i) {
+    const SlotMorph& morph = in.slot_morphs[i];
+    std::vector<Point>& points = deltas.try_emplace(morph.target, slot_count(leaf), Point{}).first->second;
+    points[morph.slot] = {morph.delta.x, morph.delta.y, morph.delta.z};
   }
-  for (auto& [target, points] : deltas) {
-    points.resize(leaf.vertex_count, Point{});
+  for (const auto& [target, points] : deltas) {
     set_ball(points, lane, morphs[target]);
   }
 }
@@ -143,7 +152,7 @@ void add_groups(const TinyAsset& tiny, SurfaceParts& out) {
       add_terms(out, leaf, lane, terms);
       add_morphs(out, leaf, lane, morphs);
     }
-    if (!out.influences.empty()) {
+    if (!out.slot_weights.empty()) {
       out.cover_term_counts.push_back(static_cast<std::uint32_t>(terms.size()));
     }
     for (const auto& [bone, term] : terms) {

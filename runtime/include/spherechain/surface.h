@@ -10,7 +10,7 @@ namespace spherechain {
 
 inline constexpr std::size_t kLeafLanes = 8;          // leaves that are bounded together
 inline constexpr std::size_t kMaxLeafVertices = 255;  // so that a corner is a byte
-inline constexpr std::size_t kMaxInfluences = 64;     // bones of a vertex; spherechain's baker writes up to 8
+inline constexpr std::size_t kSlotLanes = 8;          // a leaf's slots are a multiple of it
 
 // Eight balls, one a lane. Spare lanes are 0.
 struct BallLanes {
@@ -24,37 +24,30 @@ struct CoverTerm {
 };
 
 // A cluster of triangles of one surrounding region. The leaves of sphere 0 come first, and so on; a sphere's leaves
-// tile its run of Asset::triangles().
+// tile its run of Asset::triangles(). A slot is a place for a vertex of the leaf.
 struct Leaf {
   std::uint32_t sphere;
   std::uint32_t first_triangle;  // into Asset::triangles()
   std::uint32_t first_vertex;    // into Surface::leaf_vertices
   std::uint32_t first_bone;      // into Surface::leaf_bones
+  std::uint32_t first_slot;      // a third of the place in Surface::slot_positions
+  std::uint32_t first_weight;    // into Surface::slot_weights
+  std::uint32_t first_morph;     // into Surface::slot_morphs
+  std::uint32_t morph_count;
   std::uint16_t triangle_count;  // >= 1
   std::uint16_t vertex_count;    // 1 to kMaxLeafVertices
   std::uint16_t bone_count;      // >= 1; 0 where nothing moves the source
   std::uint16_t reserved;
 };
 
-// How a surface vertex moves: its rest position and the sum of morph weight * delta, by the sum of weight * the bone's
-// matrix.
-struct SurfaceVertex {
-  Vec3 position;                  // rest
-  std::uint32_t first_influence;  // into Surface::influences
-  std::uint32_t first_morph;      // into Surface::morphs
-  std::uint16_t influence_count;  // 1 to kMaxInfluences; 0 where nothing moves the source
-  std::uint16_t morph_count;
-};
+// As many as vertices, up to the next multiple of kSlotLanes; those beyond repeat the last vertex.
+constexpr std::size_t slot_count(const Leaf& leaf) noexcept {
+  return (leaf.vertex_count + kSlotLanes - 1) / kSlotLanes * kSlotLanes;
+}
 
-// A bone's part in a surface vertex: bones ascending in a vertex, weights in (0, 1] that add up to 1.
-struct Influence {
-  std::uint32_t bone;
-  float weight;
-};
-
-// What a morph target of weight 1 adds to a rest position: targets ascending in a vertex.
-struct MorphDelta {
-  std::uint32_t target;
+// What a morph target of weight 1 adds to the rest position in a slot.
+struct SlotMorph {
+  std::uint32_t target, slot;
   Vec3 delta;
 };
 
@@ -70,19 +63,20 @@ struct TrianglePair {
 };
 
 // The triangles of Asset::triangles(), in that order, as what exact contacts are found in. A surface vertex stands for
-// all source vertices that have its rest position and move as it does; a corner is the place of a surface vertex in
-// its leaf's run of leaf_vertices. Groups are of eight leaves one after another, the last filled up with spare lanes.
+// all source vertices that have its rest position and move as it does; a corner is the slot of a surface vertex in its
+// leaf. Two triangles are neighbours where a corner's weld is the same. Groups are of eight leaves one after another,
+// the last filled up with spare lanes.
 struct Surface {
   Span<const Leaf> leaves;
-  Span<const BallLanes> leaf_balls;         // a group's: around the leaf's vertices at rest, without its morphs
-  Span<const std::uint32_t> leaf_vertices;  // surface vertices: ascending in a leaf
-  Span<const std::uint32_t> leaf_bones;     // of the leaf's vertices: ascending in a leaf
-  Span<const std::uint8_t> corners;         // three a triangle of Asset::triangles(), in the source's order
-  Span<const SurfaceVertex> vertices;
+  Span<const BallLanes> leaf_balls;           // a group's: around the leaf's vertices at rest, without its morphs
+  Span<const std::uint32_t> leaf_vertices;    // the surface vertex in a slot: ascending in a leaf
+  Span<const std::uint32_t> leaf_bones;       // bones that move a leaf's vertices: ascending in a leaf
+  Span<const std::uint8_t> corners;           // three a triangle of Asset::triangles(), in the source's order
   Span<const std::uint32_t> source_vertices;  // a surface vertex' lowest source vertex
-  Span<const std::uint32_t> welds;  // the lowest surface vertex at the same rest position: its own number, or less
-  Span<const Influence> influences;
-  Span<const MorphDelta> morphs;
+  Span<const std::uint32_t> welds;    // the lowest surface vertex at the same rest position: at most its own number
+  Span<const float> slot_positions;   // at rest: of a leaf all x, all y, all z
+  Span<const float> slot_weights;     // of a leaf its first bone's in all slots, its second's ...; they add up to 1
+  Span<const SlotMorph> slot_morphs;  // of a leaf sorted by target, then slot
   Span<const std::uint32_t> cover_term_counts;  // a group's; empty where nothing moves the source
   Span<const std::uint32_t> cover_term_bones;   // a term's, ascending in a group
   Span<const CoverTerm> cover_terms;
