@@ -110,6 +110,12 @@ std::string validation_json(const Validation& validation, const AnimatedAsset& a
   }
   out["m1"] = score_json(validation.m1);
   out["m2"] = score_json(validation.m2);
+  if (validation.capsules > 0) {
+    out["capsules"] = {{"count", validation.capsules}};
+    out["capsules"].update(score_json(validation.capsule_score));
+    out["capsules"]["own_truth_pairs"] = validation.capsule_own_score.true_pairs;
+    out["capsules"]["own_pair_recall"] = validation.capsule_own_score.pair_recall();
+  }
   out["by_region"] = groups_json(validation.by_region);
   out["by_chain"] = groups_json(validation.by_chain);
   out["radius_curve"] = curve_json(validation.curve, true);
@@ -151,6 +157,14 @@ std::string validation_text(const Validation& validation, const AnimatedAsset& a
     const Miss& miss = validation.misses[i];
     out += fmt::format("  {:>5}  {:>3} - {:<3} {:>5}  {:.2f}\n", miss.frame, miss.spheres.a, miss.spheres.b,
                        miss.triangle_pairs, 100 * miss.depth / height);
+  }
+  if (validation.capsules > 0) {
+    const Score& rival = validation.capsule_score;
+    out += fmt::format(
+        "\na capsule a bone ({}): pair recall {:.4f}, precision {:.4f}, {:.2f} pairs a frame; of the {} pairs it could "
+        "find {:.4f}\n",
+        validation.capsules, rival.pair_recall(), rival.precision(), rival.reported_per_frame(),
+        validation.capsule_own_score.true_pairs, validation.capsule_own_score.pair_recall());
   }
   out += groups_text("between regions", validation.by_region);
   out += groups_text("by chain", validation.by_chain);

@@ -7,7 +7,7 @@
 namespace spherechain::baker {
 
 FrameTruth judge(const Intersections& found, const std::vector<TrianglePair>& rest_pairs, const TruthSurface& surface,
-                 const Asset& asset) {
+                 const std::function<bool(std::uint32_t, std::uint32_t)>& is_ignored) {
   FrameTruth out;
   out.raw_pairs = found.pairs.size();
   out.degenerate = found.degenerate;
@@ -19,7 +19,7 @@ FrameTruth judge(const Intersections& found, const std::vector<TrianglePair>& re
       ++out.rest;
     } else if (a == b) {
       ++out.same_sphere;
-    } else if (is_ignored(asset, a, b)) {
+    } else if (is_ignored(a, b)) {
       ++out.ignored;
     } else {
       out.pairs.push_back(pair);

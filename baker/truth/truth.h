@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "spherechain/types.h"
@@ -24,8 +25,8 @@ struct FrameTruth {
   std::vector<TrueContact> contacts;  // the same by spheres, sorted
 };
 
-// `rest_pairs`: those of the rest pose, sorted.
+// `rest_pairs`: those of the rest pose, sorted. `is_ignored` is asked about two owners of the surface's triangles.
 FrameTruth judge(const Intersections& found, const std::vector<TrianglePair>& rest_pairs, const TruthSurface& surface,
-                 const Asset& asset);
+                 const std::function<bool(std::uint32_t, std::uint32_t)>& is_ignored);
 
 }  // namespace spherechain::baker

@@ -10,6 +10,7 @@
 
 #include "mesh/error.h"
 #include "play/player.h"
+#include "truth/capsules.h"
 #include "truth/depth.h"
 #include "truth/truth_cache.h"
 
@@ -23,6 +24,7 @@ struct Frame {
   std::vector<Miss> misses;
   std::vector<CurvePoint> curve;
   ContactErrors contacts;
+  Score capsules, own_capsules;
 };
 
 // What all frames share.
@@ -33,7 +35,46 @@ struct Context {
   CachedIntersections intersections{surface, settings.cache};
   std::vector<TrianglePair> rest_pairs = intersections.find(pack(animated.character().source_positions)).pairs;
   Curve curve{animated.asset(), settings.radius};
+  CapsuleRagdoll ragdoll{animated, surface};
 };
+
+// Answers, each found once, to whether two owners' triangles are closer than `distance`.
+class Closeness {
+ public:
+  Closeness(const TruthSurface& surface, const std::vector<float>& positions, double distance)
+      : surface_(surface), positions_(positions), distance_(distance) {}
+
+  bool operator()(const Pair& pair) {
+    const auto [entry, is_new] = known_.try_emplace(pair, false);
+    if (is_new) {
+      entry->second =
+          any_closer(surface_, positions_, surface_.of_sphere[pair.a], surface_.of_sphere[pair.b], distance_);
+    }
+    return entry->second;
+  }
+
+ private:
+  const TruthSurface& surface_;
+  const std::vector<float>& positions_;
+  double distance_;
+  std::map<Pair, bool> known_;
+};
+
+double no_depth(const TrueContact&) { return 0; }
+
+void score_ragdoll(const Context& context, const Intersections& found, const std::vector<float>& positions,
+                   const Deformation& deformation, Frame& frame) {
+  const CapsuleRagdoll& ragdoll = context.ragdoll;
+  // Whole meshes as poses have nothing a capsule could hang on.
+  if (ragdoll.capsules().empty() || !deformation.positions.empty()) return;
+  Closeness closeness(ragdoll.surface(), positions, kCloseSurface * context.animated.frame().height);
+  const auto is_close = [&](const Pair& pair) { return closeness(pair); };
+  const std::vector<Pair> pairs = ragdoll.pairs(deformation);
+  frame.capsules = score_frame(ragdoll.by_capsules(frame.truth), pairs, is_close, no_depth);
+  const FrameTruth own = judge(found, context.rest_pairs, ragdoll.surface(),
+                               [&](std::uint32_t a, std::uint32_t b) { return ragdoll.is_ignored(a, b); });
+  frame.own_capsules = score_frame(own, pairs, is_close, no_depth);
+}
 
 // What the runtime reports.
 std::vector<Pair> reported_pairs(Player& player, const std::vector<float>& positions) {
@@ -45,17 +86,11 @@ Frame validate_frame(const Context& context, int index) {
   const AnimatedAsset& animated = context.animated;
   const TruthSurface& surface = context.surface;
   const ValidateSettings& settings = context.settings;
-  const std::vector<float> positions = pack(animated.positions(animated.deformation(index)));
-  const double close = kCloseSurface * animated.frame().height;
-  std::map<Pair, bool> known_close;
-  const auto is_close = [&](const Pair& pair) {
-    const auto [entry, is_new] = known_close.try_emplace(pair, false);
-    if (is_new) {
-      entry->second = any_closer(surface, positions, surface.of_sphere[pair.a], surface.of_sphere[pair.b], close);
-    }
-    return entry->second;
-  };
-  const auto no_depth = [](const TrueContact&) { return 0.0; };
+  const Deformation deformation = animated.deformation(index);
+  const std::vector<float> positions = pack(animated.positions(deformation));
+  const Intersections found = context.intersections.find(positions);
+  Closeness closeness(surface, positions, kCloseSurface * animated.frame().height);
+  const auto is_close = [&](const Pair& pair) { return closeness(pair); };
   const auto depth_of = [&](Frame& frame, const TrueContact& contact) {
     const double depth = penetration(contact, surface, positions);
     frame.misses.push_back({index, contact.spheres, contact.triangles.size(), depth});
@@ -63,7 +98,8 @@ Frame validate_frame(const Context& context, int index) {
   };
 
   Frame frame;
-  frame.truth = judge(context.intersections.find(positions), context.rest_pairs, surface, animated.asset());
+  frame.truth = judge(found, context.rest_pairs, surface,
+                      [&](std::uint32_t a, std::uint32_t b) { return is_ignored(animated.asset(), a, b); });
   Player m1(animated.asset(), settings.radius, true, false, settings.target),
       m2(animated.asset(), settings.radius, false, true, settings.target);
   const std::vector<Pair> m1_pairs = reported_pairs(m1, positions), m2_pairs = reported_pairs(m2, positions);
@@ -73,6 +109,7 @@ Frame validate_frame(const Context& context, int index) {
   frame.m1 = score_frame(frame.truth, m1_pairs, is_close, no_depth);
   frame.m2 = score_frame(frame.truth, m2_pairs, is_close, no_depth);
   frame.curve = context.curve.measure(m2.spheres(), frame.truth, is_close);
+  score_ragdoll(context, found, positions, deformation, frame);
   if (settings.contacts) {
     frame.contacts = compare(find_contacts(animated.asset(), positions, settings.target), frame.truth.pairs);
   }
@@ -108,6 +145,8 @@ Validation validate(const AnimatedAsset& animated, const ValidateSettings& setti
     out.m1.add(frame.m1);
     out.m2.add(frame.m2);
     add(out.curve, frame.curve);
+    out.capsule_score.add(frame.capsules);
+    out.capsule_own_score.add(frame.own_capsules);
     out.contacts.missing += frame.contacts.missing;
     out.contacts.extra += frame.contacts.extra;
     regions.add(frame.truth, frame.reported);
@@ -116,6 +155,7 @@ Validation validate(const AnimatedAsset& animated, const ValidateSettings& setti
   }
   std::copy_if(regions.groups().begin(), regions.groups().end(), std::back_inserter(out.by_region),
                [](const PairGroup& group) { return group.true_pairs > 0 || group.reported > 0; });
+  if (out.capsule_score.frames > 0) out.capsules = context.ragdoll.capsules().size();
   out.by_chain = chains.groups();
   std::stable_sort(out.misses.begin(), out.misses.end(),
                    [](const Miss& l, const Miss& r) { return l.depth > r.depth; });

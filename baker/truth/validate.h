@@ -40,6 +40,9 @@ struct Validation {
   ContactErrors contacts;
   Score m1, m2;  // depth not measured
   std::vector<CurvePoint> curve;
+  // A capsule ragdoll on the same truth; and on its own, which has nothing within one capsule or between ignored ones.
+  std::size_t capsules = 0;  // 0 where no bones move the source
+  Score capsule_score, capsule_own_score;
   // Of the method asked for. Regions without any pair are left out.
   std::vector<PairGroup> by_region, by_chain;
 };

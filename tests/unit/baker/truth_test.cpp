@@ -219,7 +219,7 @@ TEST_CASE("what is at rest too, of one sphere or of an ignored pair is counted a
   std::vector<TrianglePair> rest{at_rest, same_at_rest};
   std::sort(rest.begin(), rest.end());
 
-  const FrameTruth truth = judge(found, rest, surface, asset);
+  const FrameTruth truth = judge(found, rest, surface, [&](auto l, auto r) { return is_ignored(asset, l, r); });
   CHECK(truth.raw_pairs == 6);
   CHECK(truth.rest == 2);
   CHECK(truth.same_sphere == 1);
