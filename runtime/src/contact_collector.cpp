@@ -52,7 +52,11 @@ bool ContactCollector::share_a_position(const Candidate& candidate) const {
 
 void ContactCollector::decide(const Candidate& candidate) {
   const TriangleCorners *a = &candidate.a, *b = &candidate.b;
-  if (!finite_triangles_intersect(*a, *b) || !is_finite(*a) || !is_finite(*b) || share_a_position(candidate)) {
+  // Neighbours first: of them the exact test would need its exact arithmetic.
+  if (share_a_position(candidate)) {
+    return;
+  }
+  if (!candidate.meets && (!finite_triangles_intersect(*a, *b) || !is_finite(*a) || !is_finite(*b))) {
     return;
   }
   TriangleContact contact{};

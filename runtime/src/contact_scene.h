@@ -35,12 +35,6 @@ struct ContactScene {
   // Scratch memory.
   BoxColumns spheres, leaves;
   std::uint32_t* first_leaf = nullptr;  // a sphere's, and the end
-  std::uint8_t* is_loaded = nullptr;    // a leaf's: are its vertices below?
-  float* vertices[3] = {};              // of leaf i from vertex_place(i) on
-
-  std::size_t vertex_place(std::size_t leaf) const {
-    return surface->leaves[leaf].first_vertex + kContactPadding * leaf;
-  }
 };
 
 // Where triangles that intersect go. In a file of its own, for kernels must not call templates of the standard library.
@@ -51,6 +45,7 @@ struct Candidate {
   std::size_t leaf_a, leaf_b;
   std::size_t triangle_a, triangle_b;  // in Asset::triangles()
   TriangleCorners a, b;
+  bool meets;  // is known to: no more to decide
 };
 void begin_spheres(ContactCollector& collector, Pair spheres);
 void decide(ContactCollector& collector, const Candidate& candidate);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "spherechain/triangle_contacts.h"
 
-#include <cstring>
-
 #include "arithmetic.h"
 #include "contact_collector.h"
 #include "memory.h"
@@ -42,11 +40,8 @@ void lay_out(const Asset& asset, Scratch& scratch, ContactScene& scene) {
     for (float** column : {&scene.leaves.low[axis], &scene.leaves.high[axis]}) {
       *column = scratch.take<float>(surface.leaves.size + kContactPadding);
     }
-    scene.vertices[axis] =
-        scratch.take<float>(surface.leaf_vertices.size + kContactPadding * (surface.leaves.size + 1));
   }
   scene.first_leaf = scratch.take<std::uint32_t>(scene.sphere_count + 1);
-  scene.is_loaded = scratch.take<std::uint8_t>(surface.leaves.size);
 }
 
 Status check_vertices(const TriangleContactJob& job) {
@@ -121,7 +116,6 @@ ContactScene scene_of(const TriangleContactJob& job) {
   }
   scene.positions = {job.positions, job.asset->info().source_vertex_count, job.stride};
   const Span<const Leaf> leaves = job.asset->surface().leaves;
-  std::memset(scene.is_loaded, 0, leaves.size);
   std::size_t leaf = 0;
   for (std::size_t sphere = 0; sphere <= scene.sphere_count; ++sphere) {
     while (leaf < leaves.size && leaves[leaf].sphere < sphere) {

@@ -83,7 +83,8 @@ struct BoxProbe {
   }
 };
 
-// The leaf's box from the source's positions, whose corners are not copied.
+#if HWY_TARGET == HWY_SCALAR
+
 HWY_INLINE Box box_of_leaf(const ContactScene& scene, const Leaf& leaf) {
   const Surface& surface = *scene.surface;
   Box box{{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
@@ -97,6 +98,44 @@ HWY_INLINE Box box_of_leaf(const ContactScene& scene, const Leaf& leaf) {
   }
   return box;
 }
+
+#else
+
+// Four at a time, for the minima of one wait for each other. A position is loaded as three lanes: after the last one of
+// the buffer may be no more memory.
+HWY_INLINE Box box_of_leaf(const ContactScene& scene, const Leaf& leaf) {
+  constexpr hn::CappedTag<float, 4> kFour;
+  constexpr std::size_t kAtATime = 4;
+  const auto three = hn::FirstN(kFour, 3);
+  hn::Vec<hn::CappedTag<float, 4> > low[kAtATime], high[kAtATime];
+  for (std::size_t k = 0; k < kAtATime; ++k) {
+    low[k] = hn::Set(kFour, FLT_MAX);
+    high[k] = hn::Set(kFour, -FLT_MAX);
+  }
+  const std::uint32_t* vertices = scene.surface->leaf_vertices.data + leaf.first_vertex;
+  const std::uint32_t* source = scene.surface->source_vertices.data;
+  const float* positions = scene.positions.data;
+  const std::size_t stride = scene.positions.stride / sizeof(float), count = leaf.vertex_count;
+  std::size_t i = 0;
+  for (; i + kAtATime <= count; i += kAtATime) {
+    for (std::size_t k = 0; k < kAtATime; ++k) {
+      const auto p = hn::MaskedLoad(three, kFour, positions + source[vertices[i + k]] * stride);
+      low[k] = hn::Min(p, low[k]);
+      high[k] = hn::Max(p, high[k]);
+    }
+  }
+  for (; i < count; ++i) {
+    const auto p = hn::MaskedLoad(three, kFour, positions + source[vertices[i]] * stride);
+    low[0] = hn::Min(p, low[0]);
+    high[0] = hn::Max(p, high[0]);
+  }
+  HWY_ALIGN float lows[4], highs[4];
+  hn::Store(hn::Min(hn::Min(low[0], low[1]), hn::Min(low[2], low[3])), kFour, lows);
+  hn::Store(hn::Max(hn::Max(high[0], high[1]), hn::Max(high[2], high[3])), kFour, highs);
+  return {{lows[0], lows[1], lows[2]}, {highs[0], highs[1], highs[2]}};
+}
+
+#endif
 
 // Sphere boxes around those of their leaves.
 HWY_INLINE void unite_leaves(const ContactScene& scene) {
@@ -113,33 +152,13 @@ HWY_INLINE void unite_leaves(const ContactScene& scene) {
   }
 }
 
-HWY_INLINE void load_leaf(const ContactScene& scene, std::size_t i) {
-  if (scene.is_loaded[i] != 0) {
-    return;
-  }
-  scene.is_loaded[i] = 1;
-  const Surface& surface = *scene.surface;
-  const Leaf& leaf = surface.leaves[i];
-  const std::size_t place = scene.vertex_place(i);
-  const std::uint32_t* vertices = surface.leaf_vertices.data + leaf.first_vertex;
-  float *x = scene.vertices[0] + place, *y = scene.vertices[1] + place, *z = scene.vertices[2] + place;
-  for (std::size_t v = 0; v < leaf.vertex_count; ++v) {
-    const float* p = vertex_at(scene.positions.data, surface.source_vertices[vertices[v]], scene.positions.stride);
-    x[v] = p[0];
-    y[v] = p[1];
-    z[v] = p[2];
-  }
-}
+constexpr std::size_t kBlock = 64;  // triangles: a bit each
 
-constexpr std::size_t kBatch = 128;  // triangles of a leaf that are looked at together
-
-// Triangles of a leaf that touch some box, coordinate by coordinate. Spare lanes up to a vector are dirt.
-struct Trimmed {
-  std::size_t leaf, count;
-  std::uint32_t triangles[kBatch + kContactPadding];  // in Asset::triangles()
-  float corners[3][3][kBatch + kContactPadding];      // by corner, by axis
-  float low[3][kBatch + kContactPadding], high[3][kBatch + kContactPadding];
-  Box box;  // of all
+// Up to kBlock triangles of a leaf, coordinate by coordinate. Spare lanes up to a vector are dirt.
+struct Block {
+  std::size_t leaf, first, count;                 // of Asset::triangles()
+  float corners[3][3][kBlock + kContactPadding];  // by corner, by axis
+  float low[3][kBlock + kContactPadding], high[3][kBlock + kContactPadding];
 
   TriangleCorners corners_of(std::size_t i) const {
     TriangleCorners out;
@@ -150,33 +169,26 @@ struct Trimmed {
   }
 };
 
-using Codes = std::int32_t[256 + kContactPadding];
-
-// Of each vertex of the leaf, the sides of the box that it is beyond of: a bit a side.
-HWY_INLINE void find_sides(const ContactScene& scene, std::size_t leaf, const Box& box, Codes& codes) {
+// The leaf's triangles from its `first` on.
+HWY_NOINLINE void load_block(const ContactScene& scene, std::size_t leaf_index, std::size_t first, Block& out) {
   constexpr Floats kFloats;
-  const hn::Rebind<std::int32_t, Floats> integers;
-  const std::size_t place = scene.vertex_place(leaf), count = scene.surface->leaves[leaf].vertex_count;
-  const BoxProbe probe(box);
-  for (std::size_t i = 0; i < count; i += kLanes) {
-    auto code = hn::Zero(integers);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const Vector p = hn::LoadU(kFloats, scene.vertices[axis] + place + i);
-      const int below = 1 << (2 * axis), above = 2 << (2 * axis);
-      code = hn::Or(code,
-                    hn::IfThenElseZero(hn::RebindMask(integers, hn::Lt(p, probe.low[axis])), hn::Set(integers, below)));
-      code = hn::Or(
-          code, hn::IfThenElseZero(hn::RebindMask(integers, hn::Gt(p, probe.high[axis])), hn::Set(integers, above)));
+  const Surface& surface = *scene.surface;
+  const Leaf& leaf = surface.leaves[leaf_index];
+  out.leaf = leaf_index;
+  out.first = leaf.first_triangle + first;
+  out.count = leaf.triangle_count - first < kBlock ? leaf.triangle_count - first : kBlock;
+  const std::uint8_t* slots = surface.corners.data + 3 * out.first;
+  const std::uint32_t* vertices = surface.leaf_vertices.data + leaf.first_vertex;
+  for (std::size_t i = 0; i < out.count; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float* p =
+          vertex_at(scene.positions.data, surface.source_vertices[vertices[slots[3 * i + k]]], scene.positions.stride);
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        out.corners[k][axis][i] = p[axis];
+      }
     }
-    hn::StoreU(code, integers, codes + i);
   }
-}
-
-// The boxes of the triangles, and of all of them.
-HWY_INLINE void bound(Trimmed& out) {
-  constexpr Floats kFloats;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    float least = FLT_MAX, most = -FLT_MAX;
     for (std::size_t i = 0; i < out.count; i += kLanes) {
       const Vector a = hn::LoadU(kFloats, out.corners[0][axis] + i);
       const Vector b = hn::LoadU(kFloats, out.corners[1][axis] + i);
@@ -184,41 +196,18 @@ HWY_INLINE void bound(Trimmed& out) {
       hn::StoreU(hn::Min(hn::Min(a, b), c), kFloats, out.low[axis] + i);
       hn::StoreU(hn::Max(hn::Max(a, b), c), kFloats, out.high[axis] + i);
     }
-    for (std::size_t i = 0; i < out.count; ++i) {
-      least = out.low[axis][i] < least ? out.low[axis][i] : least;
-      most = out.high[axis][i] > most ? out.high[axis][i] : most;
-    }
-    out.box.low[axis] = least;
-    out.box.high[axis] = most;
   }
 }
 
-// Of the leaf's triangles [first, end), end at most kBatch more, those not all beyond one side of a box.
-HWY_INLINE void trim(const ContactScene& scene, std::size_t leaf_index, std::size_t first, std::size_t end,
-                     const Codes& codes, Trimmed& out) {
-  const Leaf& leaf = scene.surface->leaves[leaf_index];
-  const std::uint8_t* slots = scene.surface->corners.data + 3 * std::size_t{leaf.first_triangle};
-  out.leaf = leaf_index;
-  std::size_t count = 0;
-  for (std::size_t t = first; t < end; ++t) {
-    const std::int32_t beyond = codes[slots[3 * t]] & codes[slots[3 * t + 1]] & codes[slots[3 * t + 2]];
-    out.triangles[count] = static_cast<std::uint32_t>(t);
-    count += beyond == 0 ? 1 : 0;
+// Of the block's triangles those whose boxes touch.
+HWY_INLINE std::uint64_t touching(const Block& block, const BoxProbe& probe) {
+  const float* const lows[3] = {block.low[0], block.low[1], block.low[2]};
+  const float* const highs[3] = {block.high[0], block.high[1], block.high[2]};
+  std::uint64_t misses = 0;
+  for (std::size_t i = 0; i < block.count; i += kLanes) {
+    misses |= bits_of(probe.misses(lows, highs, i)) << i;
   }
-  out.count = count;
-  const std::size_t place = scene.vertex_place(leaf_index);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint8_t* own = slots + 3 * std::size_t{out.triangles[i]};
-    out.triangles[i] += leaf.first_triangle;
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        out.corners[k][axis][i] = scene.vertices[axis][place + own[k]];
-      }
-    }
-  }
-  if (count > 0) {
-    bound(out);
-  }
+  return ~misses & (~std::uint64_t{0} >> (64 - block.count));
 }
 
 struct Vector3 {
@@ -236,16 +225,6 @@ HWY_INLINE Vector dot_product(const Vector3& a, const Vector3& b) {
   return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
 }
 
-// Are three points beyond the plane through `at`, on one side of it, for certain?
-HWY_INLINE hn::Mask<Floats> all_beyond(const Vector3& at, const Vector3& normal, const Vector3 (&points)[3],
-                                       Vector error) {
-  const Vector d0 = dot_product(normal, subtract(points[0], at));
-  const Vector d1 = dot_product(normal, subtract(points[1], at));
-  const Vector d2 = dot_product(normal, subtract(points[2], at));
-  const Vector least = hn::Min(hn::Min(d0, d1), d2), most = hn::Max(hn::Max(d0, d1), d2);
-  return hn::Or(hn::Gt(least, error), hn::Lt(most, hn::Neg(error)));
-}
-
 // The bound of exact_orientation.h for single precision, where u = 2^-24; and what underflow may add, of subnormal
 // figures taken as zero: six products, each off by 2^-126 times an extent. Infinite where something could overflow, and
 // then nothing is certain.
@@ -258,14 +237,62 @@ HWY_INLINE Vector plane_error(const Vector3& extent) {
   return hn::IfThenElse(fits, hn::Add(rounding, underflow), hn::Inf(kFloats));
 }
 
-HWY_INLINE Vector3 corner_at(const Trimmed& many, std::size_t corner, std::size_t i) {
+HWY_INLINE Vector3 corner_at(const Block& many, std::size_t corner, std::size_t i) {
   constexpr Floats kFloats;
   return {hn::LoadU(kFloats, many.corners[corner][0] + i), hn::LoadU(kFloats, many.corners[corner][1] + i),
           hn::LoadU(kFloats, many.corners[corner][2] + i)};
 }
 
-// One triangle against a vector of them: those whose planes part them for certain.
-HWY_INLINE hn::Mask<Floats> parted_by_planes(const Trimmed& few, std::size_t one, const Trimmed& many, std::size_t i) {
+using LaneMask = hn::Mask<Floats>;
+
+HWY_INLINE Vector3 choose(LaneMask mask, const Vector3& yes, const Vector3& no) {
+  return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
+}
+
+// Three corners against a plane: distances times the length of its normal.
+struct Sides {
+  Vector distances[3];
+
+  HWY_INLINE Sides(const Vector3& at, const Vector3& normal, const Vector3 (&corners)[3]) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      distances[k] = dot_product(normal, subtract(corners[k], at));
+    }
+  }
+  // All on one side, for certain.
+  HWY_INLINE LaneMask miss(Vector error) const {
+    const Vector least = hn::Min(hn::Min(distances[0], distances[1]), distances[2]);
+    const Vector most = hn::Max(hn::Max(distances[0], distances[1]), distances[2]);
+    return hn::Or(hn::Gt(least, error), hn::Lt(most, hn::Neg(error)));
+  }
+  // None is on a side that is not certain.
+  HWY_INLINE LaneMask known(Vector error) const {
+    return hn::And(hn::And(hn::Gt(hn::Abs(distances[0]), error), hn::Gt(hn::Abs(distances[1]), error)),
+                   hn::Gt(hn::Abs(distances[2]), error));
+  }
+  // Of known sides: turns the corners until the one that is alone on its side is the first. Returns where that is
+  // below.
+  HWY_INLINE LaneMask put_alone_first(Vector3 (&corners)[3]) const {
+    constexpr Floats kFloats;
+    const Vector zero = hn::Zero(kFloats);
+    const LaneMask below[3] = {hn::Lt(distances[0], zero), hn::Lt(distances[1], zero), hn::Lt(distances[2], zero)};
+    const LaneMask third = hn::Not(hn::Xor(below[0], below[1]));  // the first two are together
+    const LaneMask second = hn::Not(hn::Xor(below[0], below[2]));
+    const Vector3 c0 = corners[0], c1 = corners[1], c2 = corners[2];
+    corners[0] = choose(third, c2, choose(second, c1, c0));
+    corners[1] = choose(third, c0, choose(second, c2, c1));
+    corners[2] = choose(third, c1, choose(second, c0, c2));
+    const Vector alone = hn::IfThenElse(third, distances[2], hn::IfThenElse(second, distances[1], distances[0]));
+    return hn::Lt(alone, zero);
+  }
+};
+
+// What single precision can tell of pairs of triangles.
+struct Verdicts {
+  std::uint64_t apart, meeting;
+};
+
+// One triangle against a vector of them, as exact_crossing.h does it.
+HWY_INLINE Verdicts judge(const Block& few, std::size_t one, const Block& many, std::size_t i) {
   constexpr Floats kFloats;
   Vector3 a[3], b[3];
   for (std::size_t k = 0; k < 3; ++k) {
@@ -280,16 +307,29 @@ HWY_INLINE hn::Mask<Floats> parted_by_planes(const Trimmed& few, std::size_t one
     extents[axis] = hn::Sub(high, low);
   }
   const Vector error = plane_error({extents[0], extents[1], extents[2]});
-  const Vector3 normal_a = cross_product(subtract(a[1], a[0]), subtract(a[2], a[0]));
-  const Vector3 normal_b = cross_product(subtract(b[1], b[0]), subtract(b[2], b[0]));
-  return hn::Or(all_beyond(a[0], normal_a, b, error), all_beyond(b[0], normal_b, a, error));
+  const Sides of_b(a[0], cross_product(subtract(a[1], a[0]), subtract(a[2], a[0])), b);
+  const Sides of_a(b[0], cross_product(subtract(b[1], b[0]), subtract(b[2], b[0])), a);
+  const LaneMask missed = hn::Or(of_b.miss(error), of_a.miss(error));
+  const LaneMask known = hn::AndNot(missed, hn::And(of_b.known(error), of_a.known(error)));
+  const LaneMask a_turns_b = of_a.put_alone_first(a), b_turns_a = of_b.put_alone_first(b);
+  const Vector3 q = choose(b_turns_a, a[2], a[1]), r = choose(b_turns_a, a[1], a[2]);
+  const Vector3 v = choose(a_turns_b, b[2], b[1]), w = choose(a_turns_b, b[1], b[2]);
+  const Vector3 u = subtract(b[0], a[0]);
+  const Vector begins = dot_product(cross_product(subtract(q, a[0]), u), subtract(v, a[0]));
+  const Vector ends = dot_product(cross_product(subtract(r, a[0]), u), subtract(w, a[0]));
+  const Vector negative = hn::Neg(error);
+  const LaneMask before = hn::Or(hn::Gt(begins, error), hn::Lt(ends, negative));
+  const LaneMask meet = hn::And(hn::Lt(begins, negative), hn::Gt(ends, error));
+  return {bits_of(hn::Or(missed, hn::And(known, before))), bits_of(hn::And(known, meet))};
 }
 
-// Each of `few` against all of `many`.
-HWY_INLINE void pair_triangles(const Trimmed& few, const Trimmed& many, ContactCollector& collector) {
+// Each of the triangles `ones` of `few` against all `others` of `many`.
+HWY_NOINLINE void pair_triangles(const Block& few, std::uint64_t ones, const Block& many, std::uint64_t others,
+                                 ContactCollector& collector) {
   const float* const lows[3] = {many.low[0], many.low[1], many.low[2]};
   const float* const highs[3] = {many.high[0], many.high[1], many.high[2]};
-  for (std::size_t one = 0; one < few.count; ++one) {
+  for (; ones != 0; ones &= ones - 1) {
+    const std::size_t one = lowest_bit(ones);
     Box box;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       box.low[axis] = few.low[axis][one];
@@ -297,73 +337,101 @@ HWY_INLINE void pair_triangles(const Trimmed& few, const Trimmed& many, ContactC
     }
     const BoxProbe probe(box);
     for (std::size_t i = 0; i < many.count; i += kLanes) {
-      const std::size_t left = many.count - i;
-      const std::uint64_t lanes = ~std::uint64_t{0} >> (64 - (left < kLanes ? left : kLanes));
-      std::uint64_t bits = ~bits_of(probe.misses(lows, highs, i)) & lanes;
+      std::uint64_t bits = (others >> i) & (~std::uint64_t{0} >> (64 - kLanes));
       if (bits == 0) {
         continue;
       }
-      bits &= ~bits_of(parted_by_planes(few, one, many, i));
-      for (; bits != 0; bits &= bits - 1) {
-        const std::size_t other = i + lowest_bit(bits);
-        decide(collector, {few.leaf, many.leaf, few.triangles[one], many.triangles[other], few.corners_of(one),
-                           many.corners_of(other)});
+      bits &= ~bits_of(probe.misses(lows, highs, i));
+      if (bits == 0) {
+        continue;
+      }
+      const Verdicts verdicts = judge(few, one, many, i);
+      for (bits &= ~verdicts.apart; bits != 0; bits &= bits - 1) {
+        const std::size_t lane = lowest_bit(bits);
+        decide(collector, {few.leaf, many.leaf, few.first + one, many.first + i + lane, few.corners_of(one),
+                           many.corners_of(i + lane), ((verdicts.meeting >> lane) & 1U) != 0});
       }
     }
   }
 }
 
-HWY_NOINLINE void pair_leaves(const ContactScene& scene, std::size_t a, std::size_t b, ContactCollector& collector) {
-  load_leaf(scene, a);
-  load_leaf(scene, b);
-  const std::size_t count_a = scene.surface->leaves[a].triangle_count;
-  const std::size_t count_b = scene.surface->leaves[b].triangle_count;
-  Codes codes_a, codes_b;
-  Trimmed of_a, of_b;
-  find_sides(scene, a, box_at(scene.leaves, b), codes_a);
-  for (std::size_t first = 0; first < count_a; first += kBatch) {
-    trim(scene, a, first, first + kBatch < count_a ? first + kBatch : count_a, codes_a, of_a);
-    if (of_a.count == 0) {
+// The box of some of a block's triangles.
+HWY_INLINE Box box_of(const Block& block, std::uint64_t triangles) {
+  Box box{{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
+  for (; triangles != 0; triangles &= triangles - 1) {
+    const std::size_t i = lowest_bit(triangles);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float low = block.low[axis][i], high = block.high[axis][i];
+      box.low[axis] = low < box.low[axis] ? low : box.low[axis];
+      box.high[axis] = high > box.high[axis] ? high : box.high[axis];
+    }
+  }
+  return box;
+}
+
+HWY_INLINE void pair_block(const ContactScene& scene, const Block& block, std::size_t leaf,
+                           ContactCollector& collector) {
+  const Box leaf_box = box_at(scene.leaves, leaf);
+  const std::uint64_t ones = touching(block, BoxProbe(leaf_box));
+  if (ones == 0) {
+    return;
+  }
+  const Box box = box_of(block, ones);
+  const BoxProbe probe(box);
+  const std::size_t count = scene.surface->leaves[leaf].triangle_count;
+  for (std::size_t first = 0; first < count; first += kBlock) {
+    Block other;
+    load_block(scene, leaf, first, other);
+    const std::uint64_t others = touching(other, probe);
+    if (others == 0) {
       continue;
     }
-    find_sides(scene, b, of_a.box, codes_b);
-    for (std::size_t first_b = 0; first_b < count_b; first_b += kBatch) {
-      trim(scene, b, first_b, first_b + kBatch < count_b ? first_b + kBatch : count_b, codes_b, of_b);
-      if (of_b.count == 0) {
-        continue;
-      }
-      const bool is_less = of_a.count < of_b.count;
-      pair_triangles(is_less ? of_a : of_b, is_less ? of_b : of_a, collector);
+    if (hwy::PopCount(ones) < hwy::PopCount(others)) {
+      pair_triangles(block, ones, other, others, collector);
+    } else {
+      pair_triangles(other, others, block, ones, collector);
     }
   }
 }
 
 HWY_INLINE void pair_spheres(const ContactScene& scene, std::size_t a, std::size_t b, ContactCollector& collector) {
-  const BoxProbe probe_a(box_at(scene.spheres, a)), probe_b(box_at(scene.spheres, b));
-  const std::size_t end_a = scene.first_leaf[a + 1], end_b = scene.first_leaf[b + 1];
+  const BoxProbe probe_b(box_at(scene.spheres, b));
+  const std::size_t end_a = scene.first_leaf[a + 1], first_b = scene.first_leaf[b], end_b = scene.first_leaf[b + 1];
   for (std::size_t i = scene.first_leaf[a]; i < end_a; i += kLanes) {
     for (std::uint64_t bits = probe_b.touching(scene.leaves, i, end_a - i); bits != 0; bits &= bits - 1) {
       const std::size_t leaf = i + lowest_bit(bits);
       const BoxProbe probe(box_at(scene.leaves, leaf));
-      for (std::size_t j = scene.first_leaf[b]; j < end_b; j += kLanes) {
-        for (std::uint64_t others = probe.touching(scene.leaves, j, end_b - j); others != 0; others &= others - 1) {
-          pair_leaves(scene, leaf, j + lowest_bit(others), collector);
+      const std::size_t count = scene.surface->leaves[leaf].triangle_count;
+      for (std::size_t first = 0; first < count; first += kBlock) {
+        Block block;
+        bool is_loaded = false;
+        for (std::size_t j = first_b; j < end_b; j += kLanes) {
+          for (std::uint64_t others = probe.touching(scene.leaves, j, end_b - j); others != 0; others &= others - 1) {
+            if (!is_loaded) {
+              load_block(scene, leaf, first, block);
+              is_loaded = true;
+            }
+            pair_block(scene, block, j + lowest_bit(others), collector);
+          }
         }
       }
     }
   }
-  (void)probe_a;
 }
 
 HWY_INLINE bool is_enabled(const ContactScene& scene, std::size_t sphere) {
   return scene.disabled.size == 0 || !test_bit(scene.disabled, sphere);
 }
 
-void find(const ContactScene& scene, ContactCollector& collector) {
+HWY_NOINLINE void bound_leaves(const ContactScene& scene) {
   const Surface& surface = *scene.surface;
   for (std::size_t i = 0; i < surface.leaves.size; ++i) {
     put_box(scene.leaves, i, box_of_leaf(scene, surface.leaves[i]));
   }
+}
+
+void find(const ContactScene& scene, ContactCollector& collector) {
+  bound_leaves(scene);
   unite_leaves(scene);
   for (std::size_t a = 0; a < scene.sphere_count; ++a) {
     if (!is_enabled(scene, a)) {
