@@ -65,6 +65,16 @@ std::size_t bytes_of(const BoneTables& tables) {
          bytes(tables.morph_term_counts) + bytes(tables.morph_targets) + bytes(tables.morph_terms);
 }
 
+std::size_t bytes_of(const Surface& surface) {
+  const auto bytes = [](const auto& span) { return span.size * sizeof(span[0]); };
+  return bytes(surface.leaves) + bytes(surface.leaf_balls) + bytes(surface.leaf_vertices) + bytes(surface.leaf_bones) +
+         bytes(surface.corners) + bytes(surface.source_vertices) + bytes(surface.welds) +
+         bytes(surface.slot_positions) + bytes(surface.slot_weights) + bytes(surface.slot_morphs) +
+         bytes(surface.cover_term_counts) + bytes(surface.cover_term_bones) + bytes(surface.cover_terms) +
+         bytes(surface.cover_morph_counts) + bytes(surface.cover_morph_targets) + bytes(surface.cover_morphs) +
+         bytes(surface.rest_contacts);
+}
+
 ordered_json sphere_json(const Asset& asset, std::size_t i) {
   const RestSphere& sphere = asset.spheres()[i];
   ordered_json pivots = ordered_json::array();
@@ -157,6 +167,11 @@ std::string inspect_json(const Asset& asset) {
         {"terms", tables.terms.size},
         {"morph_terms", tables.morph_terms.size},
         {"bytes", bytes_of(tables)}}},
+      {"surface",
+       {{"leaves", asset.leaf_count()},
+        {"vertices", asset.surface().source_vertices.size},
+        {"rest_contacts", asset.surface().rest_contacts.size},
+        {"bytes", bytes_of(asset.surface())}}},
       {"pivot_vertices", asset.pivot_vertices().size},
       {"fit",
        {{"phi1", to_json(info.phi1)}, {"phi1_adjusted", to_json(info.phi1_adjusted)}, {"phi2", to_json(info.phi2)}}}};
@@ -178,6 +193,9 @@ std::string inspect_text(const Asset& asset) {
   out += fmt::format("bones    {}, {} morph targets; refit from them: {} terms, {} of morphs, {} bytes\n",
                      asset.bone_count(), asset.morph_count(), tables.terms.size, tables.morph_terms.size,
                      bytes_of(tables));
+  out +=
+      fmt::format("surface  {} leaves, {} vertices, {} contacts at rest, {} bytes\n", asset.leaf_count(),
+                  asset.surface().source_vertices.size, asset.surface().rest_contacts.size, bytes_of(asset.surface()));
   out += fmt::format("\n{:<14} {:>9} {:>7}\n", "region", "triangles", "spheres");
   for (std::size_t r = 0; r < asset.region_count(); ++r) {
     out += fmt::format("{:<14} {:>9} {:>7}\n", asset.region(r).name, asset.region(r).triangle_count,

@@ -6,6 +6,7 @@
 #include "sphere_chains_generated.h"
 #include "spherechain/asset.h"
 #include "write/bone_tables.h"
+#include "write/rest_contacts.h"
 #include "write/surface_table.h"
 #include "write/version.h"
 #include "write/write.h"
@@ -83,9 +84,7 @@ schema::FitError fit_error(const AssetSource& in, Ball TorsoFit::*which) {
   return {static_cast<float>(sum.mean_abs), static_cast<float>(sum.max_abs)};
 }
 
-}  // namespace
-
-std::vector<std::uint8_t> serialize(const AssetSource& in) {
+std::vector<std::uint8_t> bytes_of(const AssetSource& in, const std::vector<TrianglePair>& rest_contacts) {
   flatbuffers::FlatBufferBuilder builder(1 << 20);
   const SurroundingTriangles triangles = group_triangles(in);
   std::vector<schema::Sphere> spheres;
@@ -109,7 +108,7 @@ std::vector<std::uint8_t> serialize(const AssetSource& in) {
   }
   const PackedPivots packed = pack_pivots(pivots);
   const auto bone_refit = create_bone_refit(builder, in.bones);
-  const auto surface = create_surface(builder, in.character, in.bones, in.leaves);
+  const auto surface = create_surface(builder, in.character, in.bones, in.leaves, rest_contacts);
   const std::vector<std::uint64_t> ignored = ignored_bits(in);
   const std::vector<schema::NearPair> near_fit = to_schema(in.binding.near_fit),
                                       near_detect = to_schema(in.binding.near_detect);
@@ -142,7 +141,15 @@ std::vector<std::uint8_t> serialize(const AssetSource& in) {
                                 static_cast<std::uint32_t>(in.chains.entries_table1), &ignored, &near_fit, &near_detect,
                                 &joints, &packed.vertices, &packed.pivots, bone_refit, surface),
       schema::AssetIdentifier());
-  std::vector<std::uint8_t> bytes(builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize());
+  return {builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize()};
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> serialize(const AssetSource& in) {
+  std::vector<std::uint8_t> bytes = bytes_of(in, {});
+  const std::vector<TrianglePair> rest_contacts = find_rest_contacts(bytes, pack(in.character.source_positions));
+  if (!rest_contacts.empty()) bytes = bytes_of(in, rest_contacts);
 
   Asset check;
   char message[256];

@@ -152,7 +152,8 @@ auto aligned_floats(flatbuffers::FlatBufferBuilder& builder, const std::vector<f
 }  // namespace
 
 flatbuffers::Offset<schema::Surface> create_surface(flatbuffers::FlatBufferBuilder& builder, const Character& character,
-                                                    const BoneBinding& bones, const Leaves& leaves) {
+                                                    const BoneBinding& bones, const Leaves& leaves,
+                                                    const std::vector<TrianglePair>& rest_contacts) {
   const Runs runs = runs_of(character, leaves);
   const Groups groups = group_leaves(leaves.leaves, !bones.bones.empty());
   std::vector<std::uint32_t> sources, welds;
@@ -176,9 +177,12 @@ flatbuffers::Offset<schema::Surface> create_surface(flatbuffers::FlatBufferBuild
   const auto morph_counts_at = builder.CreateVector(groups.morph_counts);
   const auto morph_targets_at = builder.CreateVector(groups.morph_targets);
   const auto cover_morphs_at = aligned_vector(builder, groups.morphs);
+  std::vector<schema::TrianglePair> pairs;
+  for (const TrianglePair& pair : rest_contacts) pairs.emplace_back(pair.a, pair.b);
+  const auto rest_contacts_at = builder.CreateVectorOfStructs(pairs);
   return schema::CreateSurface(builder, leaves_at, balls_at, leaf_vertices_at, leaf_bones_at, corners_at, sources_at,
                                welds_at, positions_at, weights_at, morphs_at, term_counts_at, term_bones_at, terms_at,
-                               morph_counts_at, morph_targets_at, cover_morphs_at);
+                               morph_counts_at, morph_targets_at, cover_morphs_at, rest_contacts_at);
 }
 
 }  // namespace spherechain::baker

@@ -4,10 +4,12 @@
 
 #include "leaves/leaves.h"
 #include "sphere_chains_generated.h"
+#include "spherechain/surface.h"
 
 namespace spherechain::baker {
 
 flatbuffers::Offset<schema::Surface> create_surface(flatbuffers::FlatBufferBuilder& builder, const Character& character,
-                                                    const BoneBinding& bones, const Leaves& leaves);
+                                                    const BoneBinding& bones, const Leaves& leaves,
+                                                    const std::vector<TrianglePair>& rest_contacts);
 
 }  // namespace spherechain::baker

@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Leaves of baked characters: what they are made of, and that their balls hold in any pose.
+#include "leaves/leaves.h"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "baked_human.h"
+#include "jobs.h"
+#include "motion/clip.h"
+#include "motion/poses.h"
+#include "random_poses.h"
+#include "truth/intersections.h"
+
+using namespace spherechain::baker;
+using spherechain::Status;
+using spherechain::test::Covered;
+using spherechain::test::PoseKind;
+using Matrices = std::vector<spherechain::test::Matrix>;
+
+namespace {
+
+constexpr const char* kPerson = "/usr/share/assimp/models/X/BCN_Epileptic.X";
+
+const Bake& baked_person() {
+  static const Bake result = bake(kPerson, make_settings("balanced", "{}", "test"), {});
+  return result;
+}
+
+// The same character with three morph targets, and every fifth vertex on no bone.
+const Bake& morphing_person() {
+  static const Bake result = [] {
+    Bake out = baked_person();
+    SourceRig& rig = out.character.rig;
+    const double height = out.regions.frame.height;
+    for (int m = 0; m < 3; ++m) {
+      Morph morph{"grows " + std::to_string(m), {}, {}, 0};
+      for (Index v = 0; v < out.character.source_positions.size(); ++v) {
+        if (v % 3 == static_cast<Index>(m)) continue;
+        morph.vertices.push_back(v);
+        morph.deltas.push_back(0.05 * height * Vec3(std::sin(v), std::cos(3.0 * v), m - 1));
+      }
+      rig.morphs.push_back(std::move(morph));
+    }
+    for (std::size_t v = 0; v < rig.weights.size(); v += 5) rig.weights[v] = {};
+    return rebake(out, out.settings);
+  }();
+  return result;
+}
+
+// Linear blend skinning in double precision from the character's own weights: nothing of the leaves.
+std::vector<Vec3> skinned(const Bake& bake, const Matrices& matrices, const std::vector<float>& morph_weights) {
+  const Character& character = bake.character;
+  std::vector<Vec3> rest = character.source_positions;
+  for (std::size_t m = 0; m < character.rig.morphs.size() && !morph_weights.empty(); ++m) {
+    const Morph& morph = character.rig.morphs[m];
+    for (std::size_t i = 0; i < morph.vertices.size(); ++i) {
+      rest[morph.vertices[i]] += double{morph_weights[m]} * morph.deltas[i];
+    }
+  }
+  std::vector<Eigen::Matrix<double, 3, 4>> bones;
+  for (const auto& m : matrices) {
+    bones.emplace_back(Eigen::Map<const Eigen::Matrix<float, 3, 4, Eigen::RowMajor>>(m.data()).cast<double>());
+  }
+  const std::vector<VertexWeights>& weights = character.rig.bones.empty() ? bake.rig_weights : character.rig.weights;
+  std::vector<Vec3> out;
+  for (std::size_t v = 0; v < rest.size(); ++v) {
+    Vec3 sum = Vec3::Zero();
+    if (weights[v].weight[0] <= 0) sum = bones.back() * rest[v].homogeneous();
+    for (std::size_t k = 0; k < kMaxInfluences && weights[v].weight[k] > 0; ++k) {
+      sum += weights[v].weight[k] * (bones[weights[v].joint[k]] * rest[v].homogeneous());
+    }
+    out.push_back(sum);
+  }
+  return out;
+}
+
+struct Checked {
+  std::size_t poses = 0, balls = 0, outside = 0;
+  double ratio = 0;     // sum over the balls of radius / distance of the farthest vertex
+  double skinning = 0;  // the largest distance of SkinJob's vertex from the double precision one, of the height
+};
+
+void check_pose(const Bake& bake, const spherechain::Asset& asset, const Matrices& matrices,
+                const std::vector<float>& morph_weights, Checked& out) {
+  const spherechain::BoneMatrices view{matrices[0].data(), matrices.size()};
+  const Covered covered = spherechain::test::cover(asset, view, morph_weights);
+  const auto by_job = spherechain::test::skin(asset, view, morph_weights);
+  REQUIRE(covered.status == Status::kOk);
+  REQUIRE(by_job.status == Status::kOk);
+  const std::vector<Vec3> mesh = skinned(bake, matrices, morph_weights);
+  ++out.poses;
+  for (std::size_t l = 0; l < asset.leaf_count(); ++l) {
+    const spherechain::Sphere& ball = covered.leaves[l];
+    double farthest = 0;
+    // Of the leaf's triangles as the source has them.
+    for (const Index t : bake.leaves.leaves[l].triangles) {
+      for (const Index v : bake.character.source_triangles[bake.character.skin_source_triangle[t]]) {
+        farthest = std::max(farthest, (mesh[v] - Vec3(ball.x, ball.y, ball.z)).norm());
+      }
+    }
+    ++out.balls;
+    out.outside += farthest > ball.radius ? 1 : 0;
+    out.ratio += ball.radius / farthest;
+  }
+  for (const SurfaceVertex& vertex : bake.leaves.vertices) {
+    const float* p = &by_job.positions[std::size_t{3} * vertex.source];
+    out.skinning = std::max(out.skinning, (mesh[vertex.source] - Vec3(p[0], p[1], p[2])).norm());
+  }
+}
+
+Checked check_random_poses(const Bake& bake, int poses, PoseKind kind, unsigned seed) {
+  const spherechain::Asset asset = open_asset_of(bake);
+  std::mt19937 random(seed);
+  const auto height = static_cast<float>(bake.regions.frame.height);
+  Checked out;
+  for (int i = 0; i < poses; ++i) {
+    const Matrices matrices = spherechain::test::random_pose(asset.bone_count(), kind, height, random);
+    check_pose(bake, asset, matrices, spherechain::test::random_morph_weights(asset.morph_count(), random), out);
+  }
+  return out;
+}
+
+// In the poses of a motion, as a game would pass them.
+Checked check_frames(const Bake& bake, const std::vector<Deformation>& frames) {
+  const spherechain::Asset asset = open_asset_of(bake);
+  Checked out;
+  for (const Deformation& frame : frames) {
+    Matrices matrices;
+    for (std::size_t b = 0; b < asset.bone_count(); ++b) {
+      const Affine bone = b < frame.bones.size() ? frame.bones[b] : Affine::Identity();
+      spherechain::test::Matrix& matrix = matrices.emplace_back();
+      Eigen::Map<Eigen::Matrix<float, 3, 4, Eigen::RowMajor>>(matrix.data()) = bone.matrix().cast<float>();
+    }
+    check_pose(bake, asset, matrices, {frame.morphs.begin(), frame.morphs.end()}, out);
+  }
+  return out;
+}
+
+void report(const std::string& what, const Checked& checked, double height) {
+  MESSAGE(fmt::format("{}: {} poses, {} balls, {:.3f} x the tight radius; skinning off by {:.1e} of the height", what,
+                      checked.poses, checked.balls, checked.ratio / static_cast<double>(checked.balls),
+                      checked.skinning / height));
+  CHECK(checked.outside == 0);
+}
+
+}  // namespace
+
+TEST_CASE("every triangle of the skin is in one leaf of its own sphere, of even size and no more than 64") {
+  for (const Bake* bake : {&baked_human(), &baked_person()}) {
+    std::vector<int> leaves_of_triangle(bake->character.skin.triangles.size(), 0);
+    std::map<std::uint32_t, std::vector<std::size_t>> sizes;
+    for (const Leaf& leaf : bake->leaves.leaves) {
+      sizes[leaf.sphere].push_back(leaf.triangles.size());
+      for (const Index t : leaf.triangles) {
+        ++leaves_of_triangle[t];
+        CHECK(bake->binding.sphere_of_triangle[t] == leaf.sphere);
+      }
+    }
+    CHECK(std::ranges::all_of(leaves_of_triangle, [](int count) { return count == 1; }));
+    for (const auto& [sphere, of_sphere] : sizes) {
+      const std::size_t all = std::accumulate(of_sphere.begin(), of_sphere.end(), std::size_t{0});
+      CHECK(of_sphere.size() == (all + 63) / 64);
+      CHECK(std::ranges::max(of_sphere) - std::ranges::min(of_sphere) <= 1);
+    }
+  }
+}
+
+TEST_CASE("a surface vertex stands for the source vertices at its place that move as it does") {
+  const Bake& bake = morphing_person();
+  const Character& character = bake.character;
+  const auto moves = [&](Index v) {
+    std::map<Index, float> weights;
+    for (std::size_t k = 0; k < kMaxInfluences; ++k) {
+      const double weight = character.rig.weights[v].weight[k];
+      if (weight > 0) weights[character.rig.weights[v].joint[k]] += static_cast<float>(weight);
+    }
+    std::vector<float> deltas;
+    for (const Morph& morph : character.rig.morphs) {
+      const auto found = std::ranges::lower_bound(morph.vertices, v);
+      const bool is_there = found != morph.vertices.end() && *found == v;
+      for (Eigen::Index i = 0; i < 3; ++i) {
+        deltas.push_back(
+            is_there ? static_cast<float>(morph.deltas[static_cast<std::size_t>(found - morph.vertices.begin())][i])
+                     : 0.0F);
+      }
+    }
+    return std::pair(weights, deltas);
+  };
+  std::size_t split = 0;
+  std::set<Index> used;
+  for (const Index t : character.skin_source_triangle) {
+    for (const Index v : character.source_triangles[t]) used.insert(v);
+  }
+  std::map<Index, std::vector<Index>> of_place;
+  for (const Index v : used) of_place[character.skin_of_source[v]].push_back(v);
+  for (const auto& [place, vertices] : of_place) {
+    for (const Index v : vertices) {
+      const SurfaceVertex& surface = bake.leaves.vertices[bake.leaves.vertex_of_source[v]];
+      CHECK(surface.source <= v);
+      CHECK(moves(surface.source) == moves(v));
+      const Index first = bake.leaves.vertex_of_source[vertices[0]];
+      CHECK(bake.leaves.vertices[first].weld == surface.weld);
+      CHECK((first == bake.leaves.vertex_of_source[v]) == (moves(vertices[0]) == moves(v)));
+      split += first != bake.leaves.vertex_of_source[v] ? 1 : 0;
+    }
+  }
+  CHECK(split > 0);  // the morphs pull seams apart
+}
+
+TEST_CASE("the corners of the asset's triangles are the source's") {
+  for (const Bake* bake : {&baked_human(), &morphing_person()}) {
+    const spherechain::Asset asset = open_asset_of(*bake);
+    const spherechain::Surface& surface = asset.surface();
+    for (const spherechain::Leaf& leaf : surface.leaves) {
+      for (std::uint32_t t = leaf.first_triangle; t < leaf.first_triangle + leaf.triangle_count; ++t) {
+        const Triangle& corners = bake->character.source_triangles[asset.triangles()[t]];
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::uint32_t vertex = surface.leaf_vertices[leaf.first_vertex + surface.corners[3 * t + k]];
+          REQUIRE(bake->leaves.vertex_of_source[corners[k]] == vertex);
+          REQUIRE(bake->character.source_positions[surface.source_vertices[vertex]] ==
+                  bake->character.source_positions[corners[k]]);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("contacts at rest are CGAL's intersections of the rest pose between different spheres") {
+  std::size_t all = 0;
+  for (const Bake* bake : {&baked_human(), &baked_person()}) {
+    const spherechain::Asset asset = open_asset_of(*bake);
+    const TruthSurface surface = surface_of(asset, bake->character);
+    std::vector<spherechain::TrianglePair> expected;
+    for (const auto& pair : find_intersections(surface, pack(bake->character.source_positions)).pairs) {
+      const auto sphere_of = [&](std::uint32_t t) { return surface.sphere[surface.of_source[t]]; };
+      if (sphere_of(pair.a) != sphere_of(pair.b)) expected.push_back(pair);
+    }
+    const auto& found = asset.surface().rest_contacts;
+    CHECK(std::vector<spherechain::TrianglePair>(found.begin(), found.end()) == expected);
+    all += expected.size();
+  }
+  CHECK(all > 0);
+}
+
+TEST_CASE("leaves.triangles is how many triangles a leaf has at most") {
+  const Bake small = rebake(baked_person(), make_settings("balanced", R"({"leaves": {"triangles": 16}})", "test"));
+  CHECK(small.leaves.leaves.size() > 2 * baked_person().leaves.leaves.size());
+  for (const Leaf& leaf : small.leaves.leaves) CHECK(leaf.triangles.size() <= 16);
+  CHECK(to_json(small.settings).find(R"("leaves":{"triangles":16})") != std::string::npos);
+  CHECK(open_asset_of(small).leaf_count() == small.leaves.leaves.size());
+}
+
+TEST_CASE("in any pose, of turned, stretched, sheared and mirrored bones, every vertex is in its leaf's ball") {
+  const char* names[] = {"gentle", "rigid", "scaled", "sheared", "mirrored", "any"};
+  for (const PoseKind kind : spherechain::test::kPoseKinds) {
+    const auto seed = static_cast<unsigned>(kind);
+    for (const auto& [name, bake, poses] :
+         {std::tuple{"human", &baked_human(), 40}, std::tuple{"person", &baked_person(), 150},
+          std::tuple{"morphing person", &morphing_person(), 150}}) {
+      const Checked checked = check_random_poses(*bake, poses, kind, seed);
+      report(fmt::format("{}, {}", name, names[seed]), checked, bake->regions.frame.height);
+    }
+  }
+}
+
+TEST_CASE("over poses and clips every vertex is in its leaf's ball, and SkinJob puts it where skinning does") {
+  std::vector<Deformation> frames;
+  for (const char* name : {"animation_arms.json", "animation_legs.json", "deep_squat.json"}) {
+    const PoseMotion poses =
+        read_pose_motion(std::string(SPHERECHAIN_SAMPLES) + "/poses/" + name, baked_human().joints);
+    const BezierMotion motion(baked_human().joints, baked_human().regions.frame, poses);
+    for (int i = 0; i < 30; ++i) frames.push_back(motion.at(i / 29.0));
+  }
+  const Checked human = check_frames(baked_human(), frames);
+  report("human, poses", human, baked_human().regions.frame.height);
+  CHECK(human.skinning < 1e-5 * baked_human().regions.frame.height);
+
+  frames.clear();
+  for (const Clip& clip : baked_person().character.rig.clips) {
+    const ClipMotion motion(baked_person().character.rig, {&clip});
+    for (int i = 0; i < 40; ++i) frames.push_back(motion.at(i / 39.0));
+  }
+  const Checked person = check_frames(baked_person(), frames);
+  report("person, clips", person, baked_person().regions.frame.height);
+  CHECK(person.skinning < 1e-5 * baked_person().regions.frame.height);
+}
+
+TEST_CASE("characters of SPHERECHAIN_TEST_DATA: in any pose every vertex is in its leaf's ball") {
+  const char* folder = std::getenv("SPHERECHAIN_TEST_DATA");
+  if (folder == nullptr) {
+    MESSAGE("skipped: SPHERECHAIN_TEST_DATA names no folder of rigged characters");
+    return;
+  }
+  for (const auto& file : std::filesystem::directory_iterator(folder)) {
+    if (file.path().extension() != ".glb" && file.path().extension() != ".gltf") continue;
+    const Bake bake = spherechain::baker::bake(file.path(), make_settings("balanced", "{}", "test"), {});
+    for (const PoseKind kind : spherechain::test::kPoseKinds) {
+      const Checked checked = check_random_poses(bake, 30, kind, 7);
+      report(fmt::format("{}, kind {}", bake.character.file, static_cast<int>(kind)), checked,
+             bake.regions.frame.height);
+    }
+    std::vector<Deformation> frames;
+    for (const Clip& clip : bake.character.rig.clips) {
+      const ClipMotion motion(bake.character.rig, {&clip});
+      for (int i = 0; i < 25; ++i) frames.push_back(motion.at(i / 24.0));
+    }
+    if (frames.empty()) continue;
+    const Checked checked = check_frames(bake, frames);
+    report(bake.character.file + ", clips", checked, bake.regions.frame.height);
+    CHECK(checked.skinning < 1e-5 * bake.regions.frame.height);
+  }
+}
