@@ -17,6 +17,40 @@ HWY_INLINE float fused_one(float a, float b, float c) {
 #endif
 }
 
+// kParts registers of slots from `slot` on.
+template <std::size_t kParts, class D>
+HWY_INLINE void move_slots(D d, const SkinInputs& in, const Leaf& leaf, std::size_t slots, std::size_t slot,
+                           const float* const (&rest)[3], float* const (&out)[3]) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  constexpr std::size_t kWidth = hn::MaxLanes(D());
+  hn::Vec<D> p[3][kParts], a[3][kParts];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t part = 0; part < kParts; ++part) {
+      p[axis][part] = hn::LoadU(d, rest[axis] + slot + part * kWidth);
+      a[axis][part] = hn::Zero(d);
+    }
+  }
+  const std::uint32_t* const bones = in.leaf_bones + leaf.first_bone;
+  const float* weights = in.slot_weights + leaf.first_weight + slot;
+  const std::size_t row_step = in.row, column_step = in.column;
+  for (std::size_t bone = 0; bone < leaf.bone_count; ++bone, weights += slots) {
+    const float* row = in.matrices + bones[bone] * in.stride;
+    for (std::size_t axis = 0; axis < 3; ++axis, row += row_step) {
+      const auto m0 = hn::Set(d, row[0]), m1 = hn::Set(d, row[column_step]), m2 = hn::Set(d, row[2 * column_step]),
+                 m3 = hn::Set(d, row[3 * column_step]);
+      for (std::size_t part = 0; part < kParts; ++part) {
+        const auto moved = fused(d, m2, p[2][part], fused(d, m1, p[1][part], fused(d, m0, p[0][part], m3)));
+        a[axis][part] = fused(d, hn::LoadU(d, weights + part * kWidth), moved, a[axis][part]);
+      }
+    }
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t part = 0; part < kParts; ++part) {
+      hn::Store(a[axis][part], d, out[axis] + slot + part * kWidth);
+    }
+  }
+}
+
 // x, y, z: room for kMaxLeafSlots, aligned for the target's registers. As many are written as the leaf has slots: those
 // beyond its vertices repeat the last one.
 HWY_INLINE void skin_leaf(const SkinInputs& in, const Leaf& leaf, float* HWY_RESTRICT x, float* HWY_RESTRICT y,
@@ -46,26 +80,20 @@ HWY_INLINE void skin_leaf(const SkinInputs& in, const Leaf& leaf, float* HWY_RES
       }
     }
   }
-  const float* const weights = in.slot_weights + leaf.first_weight;
-  const std::uint32_t* const bones = in.leaf_bones + leaf.first_bone;
-  for (std::size_t slot = 0; slot < slots; slot += hn::MaxLanes(d)) {
-    const auto px = hn::LoadU(d, rest[0] + slot), py = hn::LoadU(d, rest[1] + slot), pz = hn::LoadU(d, rest[2] + slot);
-    auto ax = hn::Zero(d), ay = hn::Zero(d), az = hn::Zero(d);
-    for (std::size_t bone = 0; bone < leaf.bone_count; ++bone) {
-      const float* const m = in.matrices + bones[bone] * in.stride;
-      const auto weight = hn::LoadU(d, weights + bone * slots + slot);
-      const auto row = [&](const float* r) HWY_ATTR {
-        return fused(
-            d, hn::Set(d, r[2 * in.column]), pz,
-            fused(d, hn::Set(d, r[in.column]), py, fused(d, hn::Set(d, r[0]), px, hn::Set(d, r[3 * in.column]))));
-      };
-      ax = fused(d, weight, row(m), ax);
-      ay = fused(d, weight, row(m + in.row), ay);
-      az = fused(d, weight, row(m + 2 * in.row), az);
-    }
-    hn::Store(ax, d, x + slot);
-    hn::Store(ay, d, y + slot);
-    hn::Store(az, d, z + slot);
+  float* const out[3] = {x, y, z};
+  std::size_t slot = 0;
+#if HWY_TARGET == HWY_AVX3
+  const hn::CappedTag<float, 2 * kSlotLanes> wide;
+  for (; slot + 2 * kSlotLanes <= slots; slot += 2 * kSlotLanes) {
+    move_slots<1>(wide, in, leaf, slots, slot, rest, out);
+  }
+#elif HWY_TARGET == HWY_AVX2
+  for (; slot + 2 * kSlotLanes <= slots; slot += 2 * kSlotLanes) {
+    move_slots<2>(d, in, leaf, slots, slot, rest, out);
+  }
+#endif
+  for (; slot < slots; slot += hn::MaxLanes(d)) {
+    move_slots<1>(d, in, leaf, slots, slot, rest, out);
   }
 }
 
