@@ -135,13 +135,9 @@ BoundSphere carried(const Mesh& mesh, const FittedSphere& sphere, RefitRule rule
   return bound;
 }
 
-// A region may reach far beyond its sphere (head, hands, feet): no farther than what closes the waists between
-// neighbours of equal size, r sqrt(1 + (1 - PD)^2).
-double detect_ratio(const Mesh& mesh, const std::vector<Index>& surrounding, const Ball& ball,
-                    const BindSettings& settings) {
-  const double waist = std::sqrt(1 + std::pow(1 - settings.penetration_depth, 2));
-  const double quantile = area_quantile(mesh, surrounding, ball.center, settings.detect_quantile);
-  return std::clamp(quantile / ball.radius, 1.0, waist);
+// Never below the fit radius: a sphere's region may lie all inside it.
+double detect_ratio(const Mesh& mesh, const std::vector<Index>& surrounding, const Ball& ball, double quantile) {
+  return std::max(1.0, area_quantile(mesh, surrounding, ball.center, quantile) / ball.radius);
 }
 
 BoundSphere bind_sphere(const Mesh& mesh, const std::vector<Index>& surrounding, const FittedSphere& sphere,
@@ -160,34 +156,13 @@ BoundSphere bind_sphere(const Mesh& mesh, const std::vector<Index>& surrounding,
     pivots = choose_nearest_pivots(mesh, triangles_around(mesh, sphere, 8), sphere, reference, settings.pivots);
   }
   BoundSphere bound = carried(mesh, sphere, settings.rule, std::move(pivots));
-  bound.detect_radius = detect_ratio(mesh, surrounding, sphere.ball, settings) * bound.rest.radius;
+  bound.detect_radius = detect_ratio(mesh, surrounding, sphere.ball, settings.detect_quantile) * bound.rest.radius;
   return bound;
 }
 
-// Spheres of a region with one between them: at detect radius a bend of 60 degrees at that one already makes them
-// overlap.
-std::set<IdPair> next_but_one(const Spheres& spheres) {
-  std::vector<std::vector<std::uint32_t>> linked(spheres.spheres.size());
-  for (const auto& [a, b] : spheres.links) {
-    if (spheres.spheres[a].region != spheres.spheres[b].region) continue;
-    linked[a].push_back(b);
-    linked[b].push_back(a);
-  }
-  std::set<IdPair> pairs;
-  for (const std::vector<std::uint32_t>& around : linked) {
-    for (const std::uint32_t a : around) {
-      for (const std::uint32_t b : around) {
-        if (a < b) pairs.emplace(a, b);
-      }
-    }
-  }
-  return pairs;
-}
-
+// Pairs that touch at rest, or would soon, are reported where they have come nearer than that.
 std::vector<BoundPair> find_near(const std::vector<BoundSphere>& spheres, const std::set<IdPair>& ignored,
-                                 const std::set<IdPair>& close, double fraction, double BoundSphere::*detect) {
-  // Pairs that all but touch at rest are near too: rounding must not report them.
-  constexpr double kMargin = 1 + 1e-4;
+                                 double fraction, double BoundSphere::*detect) {
   std::vector<BoundPair> near;
   for (std::uint32_t a = 0; a < spheres.size(); ++a) {
     for (std::uint32_t b = a + 1; b < spheres.size(); ++b) {
@@ -196,7 +171,7 @@ std::vector<BoundPair> find_near(const std::vector<BoundSphere>& spheres, const 
       const double sum =
           detect ? spheres[a].*detect + spheres[b].*detect : spheres[a].rest.radius + spheres[b].rest.radius;
       const double reach = fraction * distance / sum;
-      if (reach < 1 && (distance < kMargin * sum || close.count({a, b}) > 0)) near.push_back({a, b, reach});
+      if (reach < 1) near.push_back({a, b, reach});
     }
   }
   return near;
@@ -230,9 +205,8 @@ Binding bind_spheres(const Character& character, const Regions& regions, const S
   }
   const std::set<IdPair> ignored = find_ignored(character, regions, spheres, out.sphere_of_triangle);
   out.ignored.assign(ignored.begin(), ignored.end());
-  const std::set<IdPair> close = next_but_one(spheres);
-  out.near_fit = find_near(out.spheres, ignored, close, settings.near_fraction, nullptr);
-  out.near_detect = find_near(out.spheres, ignored, close, settings.near_fraction, &BoundSphere::detect_radius);
+  out.near_fit = find_near(out.spheres, ignored, settings.near_fraction, nullptr);
+  out.near_detect = find_near(out.spheres, ignored, settings.near_fraction, &BoundSphere::detect_radius);
   return out;
 }
 

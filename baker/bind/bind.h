@@ -38,15 +38,14 @@ struct Binding {
       sphere_of_triangle;  // a triangle of Character::skin -> the sphere whose surrounding region it is in
   std::vector<BoundSphere> spheres;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> ignored;  // a < b, sorted
-  std::vector<BoundPair> near_fit, near_detect;                  // overlap at rest or next but one, not ignored; sorted
+  std::vector<BoundPair> near_fit, near_detect;  // not ignored, and touching when a little nearer than at rest; sorted
 };
 
 struct BindSettings {
   RefitRule rule = RefitRule::kCalibrated;
-  int pivots = 8;                   // of a sphere; calibrated: more where so many are ill-posed
-  double penetration_depth = 0.30;  // that of the fit: bounds the detect radius
-  double detect_quantile = 0.6;     // of the surrounding region's area, by distance from the centre
-  double near_fraction = 0.7;       // of the rest distance: see near_fit
+  int pivots = 8;                // of a sphere; calibrated: more where so many are ill-posed
+  double detect_quantile = 0.9;  // of the surrounding region's area, by distance from the centre
+  double near_fraction = 0.75;   // of the rest distance: see near_fit
 };
 
 // Throws Error(kSegmentation) where a sphere finds no pivots.

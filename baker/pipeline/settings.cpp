@@ -114,7 +114,6 @@ BakeSettings make_settings(const std::string& profile, const std::string& text, 
   reader.integer("rays", settings.fit.rays, 8, 4096);
   settings.segment.rays = settings.fit.rays;
   reader.number("penetration_depth", settings.fit.penetration_depth, 0, 0.9);
-  settings.bind.penetration_depth = settings.fit.penetration_depth;
   reader.number("delta", settings.fit.delta, 1e-4, 0.2);
   reader.number("limb_step", settings.fit.limb_step, 1e-4, 0.05);
   reader.integer("spheres_per_level", settings.fit.spheres_per_level, 1, 3);

@@ -43,8 +43,8 @@ struct RestSphere {
   std::uint16_t reserved;
 };
 
-// Spheres a < b that overlap at rest without being neighbours, or are next but one on the body: reported only when
-// closer than reach * (ra + rb).
+// Spheres a < b that touch at rest without being neighbours, or would when a little nearer: reported only when closer
+// than reach * (ra + rb).
 struct NearPair {
   std::uint32_t a, b;
   float reach;  // [0, 1)

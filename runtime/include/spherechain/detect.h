@@ -29,7 +29,7 @@ struct ChainPair {
 };
 
 // Which spheres touch: the overlap test of the paper's section 5.2, (|ca - cb|)^2 < (ra + rb)^2, ignored pairs left
-// out. Pairs that overlap at rest without being neighbours (near pairs) are reported where |ca - cb| < reach * (ra +
+// out. Pairs that touch at rest, or all but touch (near pairs), are reported where |ca - cb| < reach * (ra +
 // rb).
 //
 // The arithmetic is fixed, in single precision without contraction, so that every backend reports the same pairs, bit
