@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-3.0-or-later
+// SPDX-License-Identifier: MIT
 // Bakes, validates and judges what README.md calls gates; a gate that fails prints the commands that show it.
 #include <fmt/format.h>
 #include <sys/wait.h>

@@ -1,0 +1,206 @@
+#!/usr/bin/env node
+// Bakes and validates, and prints docs/accuracy.md:
+//   scripts/accuracy.mjs build/release/bin/spherechain [CHARACTER.glb]... > docs/accuracy.md
+// The MakeHuman body of assimp-testmodels with its three recordings and the poses of samples/poses; each further character
+// with its own clips.
+import { spawnSync } from "node:child_process";
+import { mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { basename, dirname, join } from "node:path";
+import { fileURLToPath } from "node:url";
+
+const [tool, ...characters] = process.argv.slice(2);
+if (!tool) {
+  console.error("usage: accuracy.mjs SPHERECHAIN [CHARACTER]...");
+  process.exit(2);
+}
+const kFrames = 60;
+const models = "/usr/share/assimp/models", human = `${models}/Collada/human.zae`;
+const poses = join(dirname(fileURLToPath(import.meta.url)), "../samples/poses");
+const folder = mkdtempSync(join(tmpdir(), "accuracy-"));
+
+function run(...args) {
+  const result = spawnSync(tool, args, { encoding: "utf8", maxBuffer: 1 << 28 });
+  if (result.status === 0) return result.stdout;
+  console.error((result.stderr ?? "").trim() || `exit ${result.status ?? result.signal}`);
+  process.exit(1);
+}
+
+const assets = new Map();
+function asset(mesh, profile) {
+  const key = mesh + profile;
+  if (!assets.has(key)) {
+    const file = join(folder, `${assets.size}.sphc`);
+    run("bake", mesh, "-o", file, "--profile", profile);
+    assets.set(key, file);
+  }
+  return assets.get(key);
+}
+
+// Scores of several runs as one: each has counts, so that shares can be taken of the sums.
+const counted = (found, score) => ({
+  frames: found.frames,
+  truth: found.truth_pairs,
+  found: found.truth_pairs * score.pair_recall,
+  trueFrames: found.truth_frames,
+  any: found.truth_frames * score.frame_any_recall,
+  all: found.truth_frames * score.frame_all_recall,
+  reported: found.frames * score.reported_per_frame,
+  right: found.frames * score.reported_per_frame * score.precision,
+});
+const sum = (list) => list.reduce((total, one) => {
+  for (const [key, value] of Object.entries(one)) total[key] = (total[key] ?? 0) + value;
+  return total;
+}, {});
+const share = (part, whole) => (whole > 0 ? part / whole : 1);
+const recall = (s) => share(s.found, s.truth), precision = (s) => share(s.right, s.reported);
+
+// A row of the tables: a mesh with one motion, or with several that count as one.
+function validate(row, profile, radius) {
+  return row.motions.map((motion) => {
+    const json = join(folder, "found.json");
+    run("validate", asset(row.mesh, profile), "--source", row.mesh, ...motion, "--frames", String(kFrames),
+      "--radius", radius, "--contacts", "--json", json);
+    return JSON.parse(readFileSync(json, "utf8"));
+  });
+}
+
+const rows = ["Boxing_Toes", "01_01", "01_03"].map((name) => ({
+  name: `human.zae + ${name}.bvh`, mesh: human, motions: [["--motion", `${models}/BVH/${name}.bvh`]],
+}));
+rows.push({
+  name: "human.zae, samples/poses", mesh: human,
+  motions: readdirSync(poses).filter((f) => f.endsWith(".json")).sort().map((f) => ["--poses", join(poses, f)]),
+});
+for (const file of characters) rows.push({ name: basename(file), mesh: file, motions: [[]] });
+for (const row of rows) {
+  row.detect = validate(row, "balanced", "detect");
+  row.fit = validate(row, "balanced", "fit");
+  row.paper = validate(row, "paper", "fit");
+}
+const spheres = (mesh, profile) => JSON.parse(run("inspect", asset(mesh, profile), "--json")).sphere_count;
+const counts = { balanced: spheres(human, "balanced"), paper: spheres(human, "paper") };
+rmSync(folder, { recursive: true });
+
+const line = (cells) => `| ${cells.join(" | ")} |`;
+function table(head, body) {
+  return [line(head), line(head.map(() => "---")), ...body.map(line)].join("\n");
+}
+const percent = (x) => (100 * x).toFixed(1);
+const scored = (s) => [percent(recall(s)), percent(precision(s)), (s.reported / s.frames).toFixed(1)];
+const of = (list, pick) => sum(list.map((found) => counted(found, pick(found))));
+
+function methods(row) {
+  const variants = [
+    ["spheres, detect radius", row.detect, (f) => f.m2],
+    ["the same, chains alone (M1)", row.detect, (f) => f.m1],
+    ["spheres, fit radius", row.fit, (f) => f.m2],
+    ["profile `paper`, fit radius", row.paper, (f) => f.m2],
+  ];
+  if (row.detect.every((f) => f.capsules)) variants.push(["a capsule a bone", row.detect, (f) => f.capsules]);
+  return variants.map(([name, list, pick]) => {
+    const s = of(list, pick);
+    const depth = pick(list[0]) === list[0].m2 ? percent(Math.max(...list.map((f) => f.missed_depth))) : "";
+    return [row.name, name, s.truth, ...scored(s), percent(share(s.any, s.trueFrames)), percent(share(s.all, s.trueFrames)), depth];
+  });
+}
+
+function scope(row) {
+  const total = (pick) => row.detect.reduce((n, f) => n + pick(f), 0);
+  const raw = total((f) => f.raw_pairs), truth = total((f) => f.truth_pairs);
+  const posed = raw - total((f) => f.out_of_scope.rest);  // those that the motion makes
+  return [row.name, total((f) => f.frames), raw, total((f) => f.out_of_scope.rest), total((f) => f.out_of_scope.same_sphere),
+    total((f) => f.out_of_scope.ignored), truth, percent(share(posed - truth, posed))];
+}
+
+function curve(kind, label) {
+  const points = rows[0].detect[0][kind].map((point, i) => {
+    const at = (row) => of(row.detect, (f) => f[kind][i].m2);
+    return [label(point), ...rows.flatMap((row) => [`${percent(recall(at(row)))} / ${percent(precision(at(row)))} / ${(at(row).reported / at(row).frames).toFixed(1)}`])];
+  });
+  return table(["", ...rows.map((row) => row.name)], points);
+}
+
+function groups(kind) {
+  const totals = new Map();
+  for (const found of rows.flatMap((row) => row.detect)) {
+    for (const group of found[kind]) {
+      const t = totals.get(group.name) ?? { truth: 0, found: 0, reported: 0 };
+      totals.set(group.name, { truth: t.truth + group.truth_pairs, found: t.found + group.found_pairs, reported: t.reported + group.reported });
+    }
+  }
+  return table(["", "true triangle pairs", "found %", "sphere pairs reported"],
+    [...totals].map(([name, t]) => [name, t.truth, percent(share(t.found, t.truth)), t.reported]));
+}
+
+const everything = (pick, list = (row) => row.detect) => sum(rows.map((row) => of(list(row), pick)));
+const m1 = everything((f) => f.m1), m2 = everything((f) => f.m2);
+const contacts = rows.flatMap((row) => row.detect).reduce((t, f) =>
+  ({ frames: t.frames + f.frames, missing: t.missing + f.contacts_missing, extra: t.extra + f.contacts_extra }), { frames: 0, missing: 0, extra: 0 });
+const missedByChains = m2.found - m1.found;
+
+console.log(`# Accuracy: what is found, what is missed
+
+Made by one command, with \`spherechain validate\`:
+
+\`\`\`
+scripts/accuracy.mjs build/release/bin/spherechain [CHARACTER.glb]... > docs/accuracy.md
+\`\`\`
+
+${kFrames} frames of each motion, evenly spread; of \`samples/poses\` each file, all together. The truth are the pairs of triangles that
+intersect in the deformed mesh, decided exactly (CGAL). **Recall**: the part of the true triangle pairs whose spheres are reported.
+**Precision**: the part of the reported sphere pairs that have a true pair, or whose regions are nearer than 0.3 % of the height.
+**Any**, **all**: frames with a true pair in which one, in which each of them is found. **Missed depth**: how deep the worst contact
+goes that is not reported, in % of the height: the farthest that a vertex of one sphere's region lies behind the other's. Shares in
+%.
+
+## Spheres, chains and capsules
+
+Profile \`balanced\` puts ${counts.balanced} spheres into the human, \`paper\` ${counts.paper}, none of them in head, hands and feet. A capsule a bone is what
+games have instead: fitted to the triangles its bone moves most, along their principal axis, the radius the same 0.6 quantile by area;
+neighbours on the skeleton are ignored, and what overlaps at rest is reported closer than 0.7 of its distance there. It is measured on
+the spheres' truth; pairs within one capsule or between neighbours it cannot find.
+
+${table(["motion", "method", "true pairs", "recall", "precision", "pairs a frame", "any", "all", "missed depth"], rows.flatMap(methods))}
+
+What chains alone miss of the true triangle pairs that all spheres find: ${Math.round(missedByChains)} of ${Math.round(m2.found)} (${percent(share(missedByChains, m2.found))} %).
+
+## Which to choose
+
+- **Everything that must not be missed**: the exact triangle contacts (\`TriangleContactJob\`). They do not go through the spheres' radii:
+  of the ${m2.truth} true pairs below they miss ${contacts.missing}, and report ${contacts.extra} others (\`validate --contacts\`, ${contacts.frames} frames).
+- **A cheap alarm for a crowd, or what to look at first**: profile \`balanced\` and the detect radius.
+- **Few false alarms, contacts that are felt**: the fit radius. It leaves the waists between spheres open and misses what goes in there.
+- **The paper's figures**: profile \`paper\`. Hands, feet and head then belong to wrists, ankles and chest, and most of their contacts are missed.
+- M1 is for those who have the chains already; M2 costs less on a CPU and misses nothing that M1 finds.
+
+## What is out of scope
+
+Before anything is compared, three classes are left out, in this order: what intersects in the rest pose too (eyes in their sockets, a mouth), what is
+within one sphere's region (a fold of one sphere), and what is between ignored spheres, neighbours on the body (elbow, knee, armpit,
+fingers). The last column is what that leaves out of those that motion makes.
+
+${table(["motion", "frames", "intersecting pairs", "at rest too", "one sphere", "ignored spheres", "true", "left out %"], rows.map(scope))}
+
+## Over the radius
+
+Recall / precision / pairs a frame when every detect radius is scaled; pairs that overlap at rest at that radius are reported when
+closer than the same part of their rest distance.
+
+${curve("radius_curve", (p) => `x ${p.scale.toFixed(1)}`)}
+
+## Over the rest-distance rule
+
+The same when pairs that overlap at rest, or have one sphere between them, are reported closer than this part of their rest distance.
+
+${curve("near_curve", (p) => p.near_fraction.toFixed(1))}
+
+## Where
+
+All motions together, at the detect radius.
+
+${groups("by_region")}
+
+A pair is in each chain that holds both of its spheres.
+
+${groups("by_chain")}`);
