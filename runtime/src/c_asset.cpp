@@ -56,6 +56,10 @@ static_assert(offsetof(RestSphere, radius) == offsetof(sc_rest_sphere, radius) &
               offsetof(RestSphere, region) == offsetof(sc_rest_sphere, region) &&
               offsetof(RestSphere, side) == offsetof(sc_rest_sphere, side) &&
               offsetof(RestSphere, level) == offsetof(sc_rest_sphere, level));
+static_assert(offsetof(Leaf, first_triangle) == offsetof(sc_leaf, first_triangle) &&
+              offsetof(Leaf, morph_count) == offsetof(sc_leaf, morph_count) &&
+              offsetof(Leaf, triangle_count) == offsetof(sc_leaf, triangle_count) &&
+              offsetof(Leaf, bone_count) == offsetof(sc_leaf, bone_count));
 static_assert(offsetof(Pivot, weight) == offsetof(sc_pivot, weight) &&
               offsetof(NearPair, reach) == offsetof(sc_near_pair, reach) &&
               offsetof(SourcePart, first_vertex) == offsetof(sc_source_part, first_vertex) &&
@@ -149,6 +153,7 @@ sc_status sc_asset_get_info(const sc_asset* asset, sc_asset_info* info) {
   to.joint_count = view.joint_count();
   to.bone_count = view.bone_count();
   to.morph_count = view.morph_count();
+  to.leaf_count = view.leaf_count();
   to.ignored_pair_count = view.ignored_count();
   to.writer = from.writer;
   to.settings = from.settings;
@@ -216,6 +221,11 @@ const uint32_t* sc_asset_pivot_vertices(const sc_asset* asset, size_t* count) {
 const sc_pivot* sc_asset_packed_pivots(const sc_asset* asset, size_t* count) {
   return give<sc_pivot, Pivot>(
       asset, [](const Asset& view) { return view.packed_pivots(); }, count);
+}
+
+const sc_leaf* sc_asset_leaves(const sc_asset* asset, size_t* count) {
+  return give<sc_leaf, Leaf>(
+      asset, [](const Asset& view) { return view.surface().leaves; }, count);
 }
 
 sc_status sc_asset_region(const sc_asset* asset, size_t index, sc_region* region) {

@@ -2,9 +2,11 @@
 // The C API's jobs: a C++ job filled in, run, and its counts handed back.
 #include "c_api.h"
 #include "spherechain/contacts.h"
+#include "spherechain/cover.h"
 #include "spherechain/crowd.h"
 #include "spherechain/detect.h"
 #include "spherechain/refit.h"
+#include "spherechain/skin.h"
 
 using namespace spherechain;
 
@@ -58,6 +60,35 @@ sc_status sc_refit_bones(const sc_refit_bones_job* job) {
   refit.target = to_enum<Target>(job->target);
   refit.spheres = to_span<Sphere>(job->spheres, job->sphere_count);
   return to_c(refit.run());
+}
+
+sc_status sc_cover(const sc_cover_job* job) {
+  if (const sc_status status = check_job(job); status != SC_OK) {
+    return status;
+  }
+  CoverJob cover;
+  cover.asset = &job->asset->view;
+  cover.bones = to_cpp(job->bones);
+  cover.morph_weights = {job->morph_weights, job->morph_weight_count};
+  cover.target = to_enum<Target>(job->target);
+  cover.leaves = to_span<Sphere>(job->leaves, job->leaf_count);
+  cover.spheres = to_span<Sphere>(job->spheres, job->sphere_count);
+  return to_c(cover.run());
+}
+
+sc_status sc_skin(const sc_skin_job* job) {
+  if (const sc_status status = check_job(job); status != SC_OK) {
+    return status;
+  }
+  SkinJob skin;
+  skin.asset = &job->asset->view;
+  skin.bones = to_cpp(job->bones);
+  skin.morph_weights = {job->morph_weights, job->morph_weight_count};
+  skin.target = to_enum<Target>(job->target);
+  skin.positions = job->positions;
+  skin.vertex_count = job->vertex_count;
+  skin.stride = job->stride;
+  return to_c(skin.run());
 }
 
 size_t sc_detect_scratch_words(const sc_asset* asset) {

@@ -36,6 +36,10 @@ struct GroupPlace {
   std::size_t term, morph;
 };
 
+// As hn::Max and hn::Min, but what comes of a NaN is the same on every target.
+HWY_INLINE V larger(V a, V b) { return hn::IfThenElse(hn::Gt(b, a), b, a); }
+HWY_INLINE V smaller(V a, V b) { return hn::IfThenElse(hn::Lt(b, a), b, a); }
+
 HWY_INLINE V dot(V ax, V ay, V az, V bx, V by, V bz) {
   constexpr Lanes8 d;
   return fused(d, az, bz, fused(d, ay, by, hn::Mul(ax, bx)));
@@ -80,7 +84,7 @@ HWY_INLINE V norm_of(const V (&r)[3][3]) {
   const V first = hn::Add(hn::Add(gram[0][0], gram[0][1]), gram[0][2]);
   const V second = hn::Add(hn::Add(gram[1][0], gram[1][1]), gram[1][2]);
   const V third = hn::Add(hn::Add(gram[2][0], gram[2][1]), gram[2][2]);
-  return hn::Sqrt(hn::Max(hn::Max(first, second), third));
+  return hn::Sqrt(larger(larger(first, second), third));
 }
 
 // One register's lanes of a group of leaves.
@@ -137,8 +141,8 @@ HWY_INLINE void cover_lanes(const CoverInputs& in, std::size_t group, const Grou
       size = bone_size(in, bone);
     }
     const V norm = hn::Set(d, size.norm);
-    most = hn::Max(most, hn::IfThenElseZero(moves, fused(d, rho, norm, distance)));
-    largest = hn::Max(largest, hn::IfThenElseZero(moves, fused(d, norm, extent, hn::Set(d, size.translation))));
+    most = larger(most, hn::IfThenElseZero(moves, fused(d, rho, norm, distance)));
+    largest = larger(largest, hn::IfThenElseZero(moves, fused(d, norm, extent, hn::Set(d, size.translation))));
     blend = fused(d, deviation, fused(d, hn::Sqrt(turn), rho, distance), blend);
     deviations = hn::Add(deviations, deviation);
   }
@@ -149,7 +153,7 @@ HWY_INLINE void cover_lanes(const CoverInputs& in, std::size_t group, const Grou
   hn::Store(m[0], d, out[0] + lane);
   hn::Store(m[1], d, out[1] + lane);
   hn::Store(m[2], d, out[2] + lane);
-  hn::Store(fused(d, factor, largest, hn::Min(most, blend)), d, out[3] + lane);
+  hn::Store(fused(d, factor, largest, smaller(most, blend)), d, out[3] + lane);
 }
 
 void cover_leaves(const CoverInputs& in, Sphere* leaves) {

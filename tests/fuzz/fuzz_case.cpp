@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 
-#include "tiny_bones.h"
+#include "tiny_surface.h"
 
 namespace spherechain::test {
 namespace {
@@ -22,8 +22,12 @@ std::vector<std::vector<std::uint8_t>> make_assets() {
       give_pivots(tiny, 0, 9, n);
       tiny.parts.refit = 0;
     }
+    TinySkin skin;
     if (n != 12) {
-      add_bones(tiny, 1 + n % 6, n);
+      skin = add_bones(tiny, 1 + n % 6, n);
+    }
+    if (n % 2 == 0 || n % 5 == 0) {  // one without bones, several with
+      add_surface(tiny, n == 12 ? nullptr : &skin, 1 + n % 4);
     }
     assets.push_back(build(tiny.parts));
   }
@@ -107,6 +111,20 @@ std::size_t draw_capacity(Case& c, std::size_t there_are) {
 Target draw_target(Case& c) {
   const Span<const Target> targets = supported_targets();
   return c.random.one_in(3) ? Target::kBest : targets[c.random.up_to(targets.size - 1)];
+}
+
+BoneMatrices draw_bones(Case& c) {
+  BoneMatrices bones;
+  bones.layout = static_cast<MatrixLayout>(c.random.below(4));
+  bones.stride = size_of(bones.layout) + 4 * (c.random.one_in(2) ? 0 : c.random.below(6));
+  const std::size_t least = c.asset.bone_count();
+  bones.count = least + (c.random.one_in(2) ? 0 : c.random.below(3));
+  const std::size_t floats =
+      bones.count == 0 ? 0 : ((bones.count - 1) * bones.stride + size_of(bones.layout)) / sizeof(float);
+  float* data = c.arena.add<float>(floats);
+  fill_figures(c, data, floats);
+  bones.data = data;
+  return bones;
 }
 
 Filter draw_filter(Case& c) {

@@ -10,6 +10,7 @@
 #include "random.h"
 #include "spherechain/asset.h"
 #include "spherechain/filter.h"
+#include "spherechain/refit_bones.h"
 #include "spherechain/simd.h"
 #include "spherechain/spherechain.h"
 
@@ -59,6 +60,9 @@ inline std::int32_t draw_c_none(Case& c, std::int32_t first) {
   const std::int32_t numbers[] = {first, -1, 255, 256, 257, 0x7FFFFFFF, -0x7FFFFFFF - 1, 0x10001};
   return c.random.pick(numbers);
 }
+
+// As many as the asset has bones, or some more, in any layout and stride; the last one ends with its last element.
+BoneMatrices draw_bones(Case& c);
 
 // The same memory, askew: still inside the arena.
 template <typename T>
@@ -138,6 +142,8 @@ void fuzz_open(Case& c);
 void fuzz_accessors(Case& c);
 void fuzz_refit(Case& c);
 void fuzz_refit_bones(Case& c);
+void fuzz_cover(Case& c);
+void fuzz_skin(Case& c);
 void fuzz_filter(Case& c);
 void fuzz_detect(Case& c);
 void fuzz_contacts(Case& c);

@@ -21,7 +21,8 @@ struct Kind {
 constexpr Kind kKinds[] = {{"open", fuzz_open},         {"accessors", fuzz_accessors},
                            {"refit", fuzz_refit},       {"refit from bones", fuzz_refit_bones},
                            {"filter", fuzz_filter},     {"detect", fuzz_detect},
-                           {"contacts", fuzz_contacts}, {"crowd", fuzz_crowd}};
+                           {"contacts", fuzz_contacts}, {"crowd", fuzz_crowd},
+                           {"cover", fuzz_cover},       {"skin", fuzz_skin}};
 constexpr std::size_t kKindCount = sizeof kKinds / sizeof kKinds[0];
 
 bool read_number(int argc, char** argv, int& i, const char* name, std::uint64_t& number) {

@@ -63,21 +63,6 @@ void spoil_refit(Case& c, RefitJob& job, sc_refit_job& c_job, std::size_t needed
   }
 }
 
-// Matrices that start `stride` bytes apart and end with the last one's last element.
-BoneMatrices draw_bones(Case& c) {
-  BoneMatrices bones;
-  bones.layout = static_cast<MatrixLayout>(c.random.below(4));
-  bones.stride = size_of(bones.layout) + 4 * (c.random.one_in(2) ? 0 : c.random.below(6));
-  const std::size_t least = c.asset.bone_count();
-  bones.count = least + (c.random.one_in(2) ? 0 : c.random.below(3));
-  const std::size_t floats =
-      bones.count == 0 ? 0 : ((bones.count - 1) * bones.stride + size_of(bones.layout)) / sizeof(float);
-  float* data = c.arena.add<float>(floats);
-  fill_figures(c, data, floats);
-  bones.data = data;
-  return bones;
-}
-
 void spoil_refit_bones(Case& c, RefitBonesJob& job, sc_refit_bones_job& c_job, std::uint32_t way, Spoiled& spoiled) {
   switch (way) {
     case 0:

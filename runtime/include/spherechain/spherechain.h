@@ -141,6 +141,7 @@ typedef struct sc_asset_info {
   size_t joint_count; /* of the automatic rig; 0 where the source brings its own */
   size_t bone_count;  /* matrices of a refit from bones; 0 where nothing moves the source */
   size_t morph_count;
+  size_t leaf_count; /* of sc_asset_leaves; 0 in assets of older bakers */
   size_t ignored_pair_count;
   const char *writer, *settings, *settings_sha256, *source_file, *source_sha256;
   uint64_t source_rest_hash;
@@ -197,6 +198,18 @@ SPHERECHAIN_API const sc_source_part* sc_asset_source_parts(const sc_asset* asse
 /* Source vertices that pivots have corners at, ascending; and the pivots with their corners numbered in that list. */
 SPHERECHAIN_API const uint32_t* sc_asset_pivot_vertices(const sc_asset* asset, size_t* count);
 SPHERECHAIN_API const sc_pivot* sc_asset_packed_pivots(const sc_asset* asset, size_t* count);
+
+/* A cluster of triangles of one sphere: its own run of sc_asset_triangles. The other fields are places in tables that
+ * the C++ API alone shows. */
+typedef struct sc_leaf {
+  uint32_t sphere;
+  uint32_t first_triangle;
+  uint32_t first_vertex, first_bone, first_slot, first_weight, first_morph, morph_count;
+  uint16_t triangle_count; /* >= 1 */
+  uint16_t vertex_count;   /* 1 to 255 */
+  uint16_t bone_count, reserved;
+} sc_leaf;
+SPHERECHAIN_API const sc_leaf* sc_asset_leaves(const sc_asset* asset, size_t* count);
 
 typedef struct sc_region {
   const char* name;
@@ -294,6 +307,51 @@ typedef struct sc_refit_bones_job {
 /* SC_OK, SC_NULL_ARGUMENT, SC_WRONG_ABI, SC_BAD_ARGUMENT, SC_BAD_STRIDE, SC_NOT_IN_ASSET, SC_TOO_FEW_BONES,
  * SC_TOO_FEW_MORPHS, SC_TOO_FEW_SPHERES, SC_UNSUPPORTED_TARGET, SC_SHARED_MEMORY. */
 SPHERECHAIN_API sc_status sc_refit_bones(const sc_refit_bones_job* job);
+
+/* ---- The skin itself, from bones alone ---- */
+
+/* Balls that contain the skin in the pose, whatever it is: one around the vertices of each leaf, a cluster of at most
+ * 64 triangles. Proven for finite matrices and weights, turned, stretched, sheared or mirrored, roundings and all. */
+typedef struct sc_cover_job {
+  size_t struct_size;
+  const sc_asset* asset;
+  sc_bone_matrices bones;     /* as in sc_refit_bones_job */
+  const float* morph_weights; /* null where nothing morphs */
+  size_t morph_weight_count;  /* 0, or at least info.morph_count */
+  sc_target target;
+  uint32_t reserved;
+  sc_sphere* leaves;   /* out */
+  size_t leaf_count;   /* entries there: at least info.leaf_count; more are left alone */
+  sc_sphere* spheres;  /* out: balls around the leaves of each sphere; null where they are not wanted */
+  size_t sphere_count; /* 0, or at least info.sphere_count */
+} sc_cover_job;
+#define SC_COVER_JOB_INIT \
+  { sizeof(sc_cover_job), NULL, {NULL, 0, 48, SC_ROW_MAJOR_3X4, 0}, NULL, 0, SC_TARGET_BEST, 0, NULL, 0, NULL, 0 }
+
+/* SC_OK, SC_NULL_ARGUMENT, SC_WRONG_ABI, SC_BAD_ARGUMENT, SC_BAD_STRIDE, SC_NOT_IN_ASSET, SC_TOO_FEW_BONES,
+ * SC_TOO_FEW_MORPHS, SC_TOO_FEW_SPHERES, SC_UNSUPPORTED_TARGET, SC_SHARED_MEMORY. */
+SPHERECHAIN_API sc_status sc_cover(const sc_cover_job* job);
+
+/* Where the skin's vertices are: linear blend skinning of the asset's own copy of the mesh. Of source vertices at one
+ * place that move alike only the lowest is written. */
+typedef struct sc_skin_job {
+  size_t struct_size;
+  const sc_asset* asset;
+  sc_bone_matrices bones;     /* as in sc_refit_bones_job */
+  const float* morph_weights; /* null where nothing morphs */
+  size_t morph_weight_count;  /* 0, or at least info.morph_count */
+  sc_target target;
+  uint32_t reserved;
+  float* positions;    /* out: x y z of vertices of the source; others are left alone */
+  size_t vertex_count; /* at least info.source_vertex_count */
+  size_t stride;       /* bytes from one position to the next; a multiple of 4, at least 12 */
+} sc_skin_job;
+#define SC_SKIN_JOB_INIT \
+  { sizeof(sc_skin_job), NULL, {NULL, 0, 48, SC_ROW_MAJOR_3X4, 0}, NULL, 0, SC_TARGET_BEST, 0, NULL, 0, 12 }
+
+/* SC_OK, SC_NULL_ARGUMENT, SC_WRONG_ABI, SC_BAD_ARGUMENT, SC_BAD_STRIDE, SC_NOT_IN_ASSET, SC_TOO_FEW_BONES,
+ * SC_TOO_FEW_MORPHS, SC_TOO_FEW_VERTICES, SC_UNSUPPORTED_TARGET, SC_SHARED_MEMORY. */
+SPHERECHAIN_API sc_status sc_skin(const sc_skin_job* job);
 
 /* ---- What detection leaves out ---- */
 

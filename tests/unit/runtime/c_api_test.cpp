@@ -6,20 +6,22 @@
 #include <doctest/doctest.h>
 
 #include <cstring>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "jobs.h"
 #include "spherechain/contacts.h"
 #include "spherechain/crowd.h"
-#include "tiny_bones.h"
+#include "tiny_surface.h"
 
 namespace spherechain::test {
 namespace {
 
 // One asset, seen through both APIs.
 struct BothApis {
-  BothApis() : tiny(random_asset(70, 5)), skin(add_bones(tiny, 8, 6)), opened(tiny.parts) {
+  BothApis()
+      : tiny(random_asset(70, 5)), skin(add_bones(tiny, 8, 6)), opened((add_surface(tiny, &skin, 4), tiny.parts)) {
     memory.resize(sc_asset_size() / 8 + 1);
     status = sc_asset_open(SC_ABI_VERSION, memory.data(), sc_asset_size(), opened.bytes.data(), opened.bytes.size(),
                            &asset, message, sizeof message);
@@ -69,6 +71,7 @@ TEST_CASE("C: an asset opens in the caller's memory and says what the C++ one sa
   CHECK(info.joint_count == view.joint_count());
   CHECK(info.bone_count == 8);
   CHECK(info.morph_count == 3);
+  CHECK(info.leaf_count == 70);
   CHECK(info.ignored_pair_count == view.ignored_count());
   CHECK(info.writer == expected.writer);
   CHECK(info.settings == expected.settings);
@@ -98,6 +101,7 @@ TEST_CASE("C: an asset opens in the caller's memory and says what the C++ one sa
   CHECK(is_same(sc_asset_source_parts(both.asset, &count), view.source_parts()));
   CHECK(is_same(sc_asset_pivot_vertices(both.asset, &count), view.pivot_vertices()));
   CHECK(is_same(sc_asset_packed_pivots(both.asset, &count), view.packed_pivots()));
+  CHECK(is_same(sc_asset_leaves(both.asset, &count), view.surface().leaves));
 
   sc_region region;
   sc_chain chain;
@@ -251,6 +255,53 @@ TEST_CASE("C: both refits give the C++ API's spheres") {
     bones.bones.count = 7;
     CHECK(sc_refit_bones(&bones) == SC_TOO_FEW_BONES);
   }
+}
+
+TEST_CASE("C: cover and skin give what the C++ jobs give") {
+  const BothApis both;
+  std::vector<float> wide;  // strides and morph weights of its own, so that each field counts
+  for (const Matrix& matrix : both.matrices) {
+    wide.insert(wide.end(), matrix.begin(), matrix.end());
+    wide.insert(wide.end(), 3, 0.0F);
+  }
+  const std::vector<float> morph_weights{0.25F, -0.5F, 1.0F};
+  const BoneMatrices rows{both.matrices[0].data(), both.matrices.size()};
+  std::vector<sc_sphere> leaves(70), spheres(70);
+  sc_cover_job cover_job = SC_COVER_JOB_INIT;
+  cover_job.asset = both.asset;
+  cover_job.bones = {wide.data(), 8, 60, SC_ROW_MAJOR_3X4, 0};
+  cover_job.morph_weights = morph_weights.data();
+  cover_job.morph_weight_count = 3;
+  cover_job.leaves = leaves.data();
+  cover_job.leaf_count = leaves.size();
+  REQUIRE(sc_cover(&cover_job) == SC_OK);
+  CHECK(same_bytes(leaves, cover(both.opened.asset, rows, morph_weights).leaves));
+  cover_job.spheres = spheres.data();
+  cover_job.sphere_count = spheres.size();
+  cover_job.target = SC_TARGET_SCALAR;
+  REQUIRE(sc_cover(&cover_job) == SC_OK);
+  CHECK(same_bytes(spheres, cover(both.opened.asset, rows, morph_weights).spheres));
+  cover_job.leaf_count = 69;
+  CHECK(sc_cover(&cover_job) == SC_TOO_FEW_SPHERES);
+  CHECK(sc_cover(nullptr) == SC_NULL_ARGUMENT);
+
+  const SkinnedSurface expected = skin(both.opened.asset, rows, morph_weights, Target::kBest, 16);
+  std::vector<float> positions(expected.positions.size(), std::numeric_limits<float>::quiet_NaN());
+  sc_skin_job skin_job = SC_SKIN_JOB_INIT;
+  skin_job.asset = both.asset;
+  skin_job.bones = cover_job.bones;
+  skin_job.morph_weights = morph_weights.data();
+  skin_job.morph_weight_count = 3;
+  skin_job.positions = positions.data();
+  skin_job.vertex_count = both.opened.asset.info().source_vertex_count;
+  skin_job.stride = 16;
+  skin_job.target = SC_TARGET_SCALAR;
+  REQUIRE(sc_skin(&skin_job) == SC_OK);
+  CHECK(same_bits(positions, expected.positions));
+  skin_job.vertex_count -= 1;
+  CHECK(sc_skin(&skin_job) == SC_TOO_FEW_VERTICES);
+  skin_job.struct_size += 1;
+  CHECK(sc_skin(&skin_job) == SC_WRONG_ABI);
 }
 
 TEST_CASE("C: numbers that no enum has are refused, also those that are a value when cut to a byte") {
