@@ -111,10 +111,14 @@ std::string validation_json(const Validation& validation, const AnimatedAsset& a
   out["m1"] = score_json(validation.m1);
   out["m2"] = score_json(validation.m2);
   if (validation.capsules > 0) {
-    out["capsules"] = {{"count", validation.capsules}};
-    out["capsules"].update(score_json(validation.capsule_score));
-    out["capsules"]["own_truth_pairs"] = validation.capsule_own_score.true_pairs;
-    out["capsules"]["own_pair_recall"] = validation.capsule_own_score.pair_recall();
+    out["capsules"] = {{"count", validation.capsules}, {"curve", ordered_json::array()}};
+    for (const CapsulePoint& point : validation.capsule_curve) {
+      ordered_json entry{{"quantile", point.quantile}};
+      entry.update(score_json(point.score));
+      entry["own_truth_pairs"] = point.own.true_pairs;
+      entry["own_pair_recall"] = point.own.pair_recall();
+      out["capsules"]["curve"].push_back(std::move(entry));
+    }
   }
   out["by_region"] = groups_json(validation.by_region);
   out["by_chain"] = groups_json(validation.by_chain);
@@ -159,12 +163,13 @@ std::string validation_text(const Validation& validation, const AnimatedAsset& a
                        miss.triangle_pairs, 100 * miss.depth / height);
   }
   if (validation.capsules > 0) {
-    const Score& rival = validation.capsule_score;
-    out += fmt::format(
-        "\na capsule a bone ({}): pair recall {:.4f}, precision {:.4f}, {:.2f} pairs a frame; of the {} pairs it could "
-        "find {:.4f}\n",
-        validation.capsules, rival.pair_recall(), rival.precision(), rival.reported_per_frame(),
-        validation.capsule_own_score.true_pairs, validation.capsule_own_score.pair_recall());
+    out += fmt::format("\n{:<18} {:>9} {:>9} {:>9}   {:>9}\n", fmt::format("{} capsules", validation.capsules),
+                       "recall", "precision", "a frame", "own truth");
+    for (const CapsulePoint& point : validation.capsule_curve) {
+      out += fmt::format("  {:<16} {:>9.4f} {:>9.4f} {:>9.2f}   {:>9.4f}\n",
+                         fmt::format("quantile {:.1f}", point.quantile), point.score.pair_recall(),
+                         point.score.precision(), point.score.reported_per_frame(), point.own.pair_recall());
+    }
   }
   out += groups_text("between regions", validation.by_region);
   out += groups_text("by chain", validation.by_chain);

@@ -10,7 +10,7 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr double kQuantile = 0.6, kNearFraction = 0.7;
+constexpr double kNearFraction = 0.75;
 
 double distance_to_segment(const Vec3& p, const Vec3& from, const Vec3& to) {
   const Vec3 along = to - from;
@@ -31,11 +31,11 @@ double axis_distance(const Capsule& a, const Capsule& b) {
                    distance_to_segment(b.from, a.from, a.to), distance_to_segment(b.to, a.from, a.to)});
 }
 
-double quantile(const std::vector<double>& values, const std::vector<double>& areas) {
+double area_quantile(const std::vector<double>& values, const std::vector<double>& areas, double share) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t l, std::size_t r) { return values[l] < values[r]; });
-  const double wanted = kQuantile * std::accumulate(areas.begin(), areas.end(), 0.0);
+  const double wanted = share * std::accumulate(areas.begin(), areas.end(), 0.0);
   double sum = 0;
   for (const std::size_t i : order) {
     sum += areas[i];
@@ -85,7 +85,7 @@ Capsule moved(const Capsule& capsule, const std::vector<Affine>& bones, std::siz
 
 }  // namespace
 
-Capsule fit_capsule(const std::vector<Vec3>& points, const std::vector<double>& areas) {
+Capsule fit_capsule(const std::vector<Vec3>& points, const std::vector<double>& areas, double quantile) {
   const double total = std::accumulate(areas.begin(), areas.end(), 0.0);
   Vec3 center = Vec3::Zero();
   for (std::size_t i = 0; i < points.size(); ++i) center += areas[i] / total * points[i];
@@ -102,7 +102,7 @@ Capsule fit_capsule(const std::vector<Vec3>& points, const std::vector<double>& 
     high = std::max(high, along);
     distances.push_back((p - center - along * axis).norm());
   }
-  const double radius = quantile(distances, areas);
+  const double radius = area_quantile(distances, areas, quantile);
   low += radius;
   high -= radius;
   if (low > high) low = high = (low + high) / 2;
@@ -110,13 +110,14 @@ Capsule fit_capsule(const std::vector<Vec3>& points, const std::vector<double>& 
   for (std::size_t i = 0; i < points.size(); ++i) {
     distances[i] = distance_to_segment(points[i], capsule.from, capsule.to);
   }
-  capsule.radius = quantile(distances, areas);
+  capsule.radius = area_quantile(distances, areas, quantile);
   return capsule;
 }
 
 double gap(const Capsule& a, const Capsule& b) { return axis_distance(a, b) - a.radius - b.radius; }
 
-CapsuleRagdoll::CapsuleRagdoll(const AnimatedAsset& animated, const TruthSurface& surface) : surface_(surface) {
+CapsuleRagdoll::CapsuleRagdoll(const AnimatedAsset& animated, const TruthSurface& surface, double quantile)
+    : surface_(surface) {
   const std::size_t bones = animated.bone_names().size();
   if (bones == 0 || animated.weights().empty()) return;
   const Character& character = animated.character();
@@ -138,7 +139,7 @@ CapsuleRagdoll::CapsuleRagdoll(const AnimatedAsset& animated, const TruthSurface
       surface_.sphere[place] = static_cast<std::uint32_t>(capsules_.size());
     }
     capsule_of[bone] = capsules_.size();
-    capsules_.push_back(fit_capsule(points, areas));
+    capsules_.push_back(fit_capsule(points, areas, quantile));
     bone_.push_back(bone);
     surface_.of_sphere.push_back(std::move(places));
   }
@@ -163,8 +164,7 @@ std::vector<Pair> CapsuleRagdoll::pairs(const Deformation& deformation) const {
   for (std::uint32_t a = 0; a < now.size(); ++a) {
     for (std::uint32_t b = a + 1; b < now.size(); ++b) {
       if (is_ignored(a, b) || gap(now[a], now[b]) >= 0) continue;
-      const bool near = gap(capsules_[a], capsules_[b]) < 0;
-      if (near && axis_distance(now[a], now[b]) >= kNearFraction * axis_distance(capsules_[a], capsules_[b])) continue;
+      if (axis_distance(now[a], now[b]) >= kNearFraction * axis_distance(capsules_[a], capsules_[b])) continue;
       out.push_back({a, b});
     }
   }

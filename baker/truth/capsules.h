@@ -15,20 +15,20 @@ struct Capsule {
   double radius;
 };
 
-// Around points that each stand for some area: along their principal axis, the radius the 0.6 quantile of their
-// distances by area (as the spheres' detect radius), its ends where the points end.
-Capsule fit_capsule(const std::vector<Vec3>& points, const std::vector<double>& areas);
+// Around points that each stand for some area: along their principal axis, its ends where the points end, its radius
+// this quantile, by area, of their distances (as a sphere's detect radius).
+Capsule fit_capsule(const std::vector<Vec3>& points, const std::vector<double>& areas, double quantile);
 
 // Negative where they overlap.
 double gap(const Capsule& a, const Capsule& b);
 
 // What games have instead of spheres on chains: a capsule a bone, around the triangles that the bone moves most.
-// Bones that follow one another on the skeleton are ignored; those that overlap at rest are reported when closer than
-// 0.7 of their rest distance, axis to axis.
+// Bones that follow one another on the skeleton are ignored; as for spheres, others are reported where they have come
+// nearer than 0.75 of their distance at rest, axis to axis.
 class CapsuleRagdoll {
  public:
   // Empty where no bones move the source.
-  CapsuleRagdoll(const AnimatedAsset& animated, const TruthSurface& surface);
+  CapsuleRagdoll(const AnimatedAsset& animated, const TruthSurface& surface, double quantile);
 
   const std::vector<Capsule>& capsules() const { return capsules_; }
   // The same triangles, each owned by a capsule in place of a sphere.

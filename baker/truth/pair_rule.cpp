@@ -11,7 +11,7 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr double kUsualFraction = 0.7;
+constexpr double kUsualFraction = 0.75;
 constexpr float kNever = std::numeric_limits<float>::infinity();
 
 double rest_radius(const RestSphere& sphere, RadiusKind kind) {
@@ -39,7 +39,6 @@ double own_fraction(const Asset& asset, RadiusKind kind) {
 
 PairRule::PairRule(const Asset& asset, RadiusKind radius, const RuleChange& change)
     : scale_(static_cast<float>(change.scale)) {
-  constexpr double kMargin = 1 + 1e-4;  // what all but touches at rest is near, as the bake has it
   const double fraction = change.near_fraction.value_or(own_fraction(asset, radius));
   const Span<const RestSphere> spheres = asset.spheres();
   const Span<const NearPair> near = asset.near_pairs(radius);
@@ -51,12 +50,13 @@ PairRule::PairRule(const Asset& asset, RadiusKind radius, const RuleChange& chan
       const double sum = rest_radius(spheres[a], radius) + rest_radius(spheres[b], radius);
       const NearPair* own = std::lower_bound(near.begin(), near.end(), Pair{a, b}, before);
       const bool is_own = own != near.end() && own->a == a && own->b == b;
+      // At scale 1 the asset says which pairs are near; one it does not list is none.
       float reach = kNever;
       if (is_own && !change.near_fraction) {
         reach = own->reach / scale_;
-      } else if (is_own || distance < kMargin * change.scale * sum) {
-        // At scale 1 the asset says which pairs are near; one it does not list is none.
-        if (is_own || change.scale > 1) reach = static_cast<float>(fraction * distance / (change.scale * sum));
+      } else if (const double part = fraction * distance / (change.scale * sum);
+                 part < 1 && (change.near_fraction || change.scale > 1)) {
+        reach = static_cast<float>(part);
       }
       entries_.push_back({{a, b}, reach});
     }

@@ -10,19 +10,18 @@
 
 namespace spherechain::baker {
 
-// Which pairs an asset would report with other radii or another rule for pairs that overlap at rest. The asset's own:
+// Which pairs an asset would report with other radii, or another rule for what is near at rest. The asset's own:
 //   a pair       |ca - cb| < ra + rb
-//   a near pair  that, and |ca - cb| < reach * (ra + rb)
+//   a near pair  that, and |ca - cb| < reach * (ra + rb): come nearer than a part of its distance at rest
 struct RuleChange {
-  double scale = 1;  // of every radius; near pairs keep the distance they are reported at
-  // Near pairs are reported closer than this part of their distance at rest, whatever the asset says.
-  std::optional<double> near_fraction;
+  double scale = 1;                     // of every radius; near pairs keep the distance they are reported at
+  std::optional<double> near_fraction;  // the part of the distance at rest, whatever the asset says
 };
 
 // A plain loop over all spheres, apart from the runtime: with no change it reports what M2 does, bit for bit.
 //
-// Pairs that overlap at rest at a larger scale, but do not at 1, become near pairs: at the asset's own part of their
-// distance at rest (the median over its near pairs; 0.7 where it has none).
+// Where larger radii would report a pair sooner than at the asset's own part of its distance at rest, it becomes a near
+// pair. That part is the median over the asset's near pairs; 0.75 where it has none.
 class PairRule {
  public:
   PairRule(const Asset& asset, RadiusKind radius, const RuleChange& change);

@@ -24,7 +24,7 @@ struct Frame {
   std::vector<Miss> misses;
   std::vector<CurvePoint> curve;
   ContactErrors contacts;
-  Score capsules, own_capsules;
+  std::vector<CapsulePoint> capsules;
 };
 
 // What all frames share.
@@ -35,7 +35,15 @@ struct Context {
   CachedIntersections intersections{surface, settings.cache};
   std::vector<TrianglePair> rest_pairs = intersections.find(pack(animated.character().source_positions)).pairs;
   Curve curve{animated.asset(), settings.radius};
-  CapsuleRagdoll ragdoll{animated, surface};
+  std::vector<std::pair<double, CapsuleRagdoll>> ragdolls = make_ragdolls();
+
+  std::vector<std::pair<double, CapsuleRagdoll>> make_ragdolls() const {
+    std::vector<std::pair<double, CapsuleRagdoll>> out;
+    for (int tenths = 5; tenths <= 10; ++tenths) {
+      out.emplace_back(tenths / 10.0, CapsuleRagdoll(animated, surface, tenths / 10.0));
+    }
+    return out;
+  }
 };
 
 // Answers, each found once, to whether two owners' triangles are closer than `distance`.
@@ -62,18 +70,35 @@ class Closeness {
 
 double no_depth(const TrueContact&) { return 0; }
 
-void score_ragdoll(const Context& context, const Intersections& found, const std::vector<float>& positions,
-                   const Deformation& deformation, Frame& frame) {
-  const CapsuleRagdoll& ragdoll = context.ragdoll;
+std::vector<CapsulePoint> score_ragdolls(const Context& context, const Intersections& found, const FrameTruth& truth,
+                                         const std::vector<float>& positions, const Deformation& deformation) {
+  // All of them own the same triangles.
+  const CapsuleRagdoll& any = context.ragdolls.front().second;
   // Whole meshes as poses have nothing a capsule could hang on.
-  if (ragdoll.capsules().empty() || !deformation.positions.empty()) return;
-  Closeness closeness(ragdoll.surface(), positions, kCloseSurface * context.animated.frame().height);
+  if (any.capsules().empty() || !deformation.positions.empty()) return {};
+  Closeness closeness(any.surface(), positions, kCloseSurface * context.animated.frame().height);
   const auto is_close = [&](const Pair& pair) { return closeness(pair); };
-  const std::vector<Pair> pairs = ragdoll.pairs(deformation);
-  frame.capsules = score_frame(ragdoll.by_capsules(frame.truth), pairs, is_close, no_depth);
-  const FrameTruth own = judge(found, context.rest_pairs, ragdoll.surface(),
-                               [&](std::uint32_t a, std::uint32_t b) { return ragdoll.is_ignored(a, b); });
-  frame.own_capsules = score_frame(own, pairs, is_close, no_depth);
+  const FrameTruth shared = any.by_capsules(truth),
+                   own = judge(found, context.rest_pairs, any.surface(),
+                               [&](std::uint32_t a, std::uint32_t b) { return any.is_ignored(a, b); });
+  std::vector<CapsulePoint> points;
+  for (const auto& [quantile, ragdoll] : context.ragdolls) {
+    const std::vector<Pair> pairs = ragdoll.pairs(deformation);
+    points.push_back(
+        {quantile, score_frame(shared, pairs, is_close, no_depth), score_frame(own, pairs, is_close, no_depth)});
+  }
+  return points;
+}
+
+void add(std::vector<CapsulePoint>& sum, const std::vector<CapsulePoint>& frame) {
+  if (sum.empty()) {
+    sum = frame;
+    return;
+  }
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    sum[i].score.add(frame[i].score);
+    sum[i].own.add(frame[i].own);
+  }
 }
 
 // What the runtime reports.
@@ -109,7 +134,7 @@ Frame validate_frame(const Context& context, int index) {
   frame.m1 = score_frame(frame.truth, m1_pairs, is_close, no_depth);
   frame.m2 = score_frame(frame.truth, m2_pairs, is_close, no_depth);
   frame.curve = context.curve.measure(m2.spheres(), frame.truth, is_close);
-  score_ragdoll(context, found, positions, deformation, frame);
+  frame.capsules = score_ragdolls(context, found, frame.truth, positions, deformation);
   if (settings.contacts) {
     frame.contacts = compare(find_contacts(animated.asset(), positions, settings.target), frame.truth.pairs);
   }
@@ -145,8 +170,7 @@ Validation validate(const AnimatedAsset& animated, const ValidateSettings& setti
     out.m1.add(frame.m1);
     out.m2.add(frame.m2);
     add(out.curve, frame.curve);
-    out.capsule_score.add(frame.capsules);
-    out.capsule_own_score.add(frame.own_capsules);
+    add(out.capsule_curve, frame.capsules);
     out.contacts.missing += frame.contacts.missing;
     out.contacts.extra += frame.contacts.extra;
     regions.add(frame.truth, frame.reported);
@@ -155,7 +179,7 @@ Validation validate(const AnimatedAsset& animated, const ValidateSettings& setti
   }
   std::copy_if(regions.groups().begin(), regions.groups().end(), std::back_inserter(out.by_region),
                [](const PairGroup& group) { return group.true_pairs > 0 || group.reported > 0; });
-  if (out.capsule_score.frames > 0) out.capsules = context.ragdoll.capsules().size();
+  if (!out.capsule_curve.empty()) out.capsules = context.ragdolls.front().second.capsules().size();
   out.by_chain = chains.groups();
   std::stable_sort(out.misses.begin(), out.misses.end(),
                    [](const Miss& l, const Miss& r) { return l.depth > r.depth; });

@@ -32,6 +32,13 @@ struct Miss {
   double depth;  // mesh units, see truth/depth.h
 };
 
+// A ragdoll of capsules of this quantile (truth/capsules.h): on the truth of the spheres, and on its own, which has
+// nothing within one capsule or between ignored ones.
+struct CapsulePoint {
+  double quantile;
+  Score score, own;
+};
+
 // The runtime's pairs against the truth, over all frames of a motion.
 struct Validation {
   std::size_t raw_pairs = 0, rest = 0, same_sphere = 0, ignored = 0, degenerate = 0;  // see FrameTruth
@@ -40,9 +47,8 @@ struct Validation {
   ContactErrors contacts;
   Score m1, m2;  // depth not measured
   std::vector<CurvePoint> curve;
-  // A capsule ragdoll on the same truth; and on its own, which has nothing within one capsule or between ignored ones.
-  std::size_t capsules = 0;  // 0 where no bones move the source
-  Score capsule_score, capsule_own_score;
+  std::size_t capsules = 0;  // of the ragdoll; 0 where no bones move the source
+  std::vector<CapsulePoint> capsule_curve;
   // Of the method asked for. Regions without any pair are left out.
   std::vector<PairGroup> by_region, by_chain;
 };

@@ -42,7 +42,7 @@ struct Ragdoll {
             folder.write("human.sphc", std::string(baked_human().asset.begin(), baked_human().asset.end())).string(),
             kHumanFile, {std::string(SPHERECHAIN_SAMPLES) + "/poses/" + pose, {}, {}}, {2, 30}),
         surface(surface_of(animated.asset(), animated.character())),
-        ragdoll(animated, surface) {}
+        ragdoll(animated, surface, 0.9) {}
 };
 
 }  // namespace
@@ -56,7 +56,7 @@ TEST_CASE("a capsule around a tube has the tube's axis, radius and length") {
       points.push_back(middle + ring / 10.0 * axis + 0.8 * (std::cos(angle) * side + std::sin(angle) * other));
     }
   }
-  const Capsule capsule = fit_capsule(points, std::vector<double>(points.size(), 0.25));
+  const Capsule capsule = fit_capsule(points, std::vector<double>(points.size(), 0.25), 0.6);
   CHECK(capsule.radius == doctest::Approx(0.8));
   const Vec3 along = capsule.to - capsule.from;
   CHECK(along.norm() == doctest::Approx(10 - 2 * 0.8));
@@ -78,7 +78,8 @@ TEST_CASE("a capsule's radius leaves out the far points, by their area") {
       areas.insert(areas.end(), 2, 1.0 / 9);
     }
   }
-  CHECK(fit_capsule(points, areas).radius == doctest::Approx(0.1));
+  CHECK(fit_capsule(points, areas, 0.6).radius == doctest::Approx(0.1));
+  CHECK(fit_capsule(points, areas, 0.95).radius > 0.4);
 }
 
 TEST_CASE("the gap between capsules is that between their axes less the radii") {
@@ -102,6 +103,11 @@ TEST_CASE("the human's capsules touch in no rest pose, and hands on hips bring t
   for (const std::vector<Index>& places : human.ragdoll.surface().of_sphere) owned += places.size();
   CHECK(owned == human.surface.corners.size());
   CHECK(human.ragdoll.pairs(human.animated.deformation(0)).empty());
+  bool overlap = false;
+  for (const Capsule& a : human.ragdoll.capsules()) {
+    for (const Capsule& b : human.ragdoll.capsules()) overlap = overlap || (&a != &b && gap(a, b) < 0);
+  }
+  CHECK(overlap);
   const std::vector<Pair> pairs = human.ragdoll.pairs(human.animated.deformation(1));
   CHECK(!pairs.empty());
   for (const Pair& pair : pairs) CHECK(!human.ragdoll.is_ignored(pair.a, pair.b));

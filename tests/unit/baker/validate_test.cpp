@@ -4,6 +4,7 @@
 #include <tbb/global_control.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "baked_human.h"
@@ -35,18 +36,18 @@ std::vector<Sphere> scaled(std::vector<Sphere> spheres, float scale) {
   return spheres;
 }
 
-// Pairs whose spheres, scaled, overlap at rest: a near rule may hold for them.
-std::set<Pair> overlapping_at_rest(const Asset& asset, float scale) {
-  std::vector<Sphere> rest =
+// Pairs that spheres so scaled would report sooner than at the baked part of their distance at rest.
+std::set<Pair> held_back(const Asset& asset, float scale) {
+  const std::vector<Sphere> rest =
       scaled(spheres_at(asset, baked_human().character.source_positions, RadiusKind::kDetect), scale);
   std::set<Pair> out;
   for (std::uint32_t b = 0; b < rest.size(); ++b) {
     for (std::uint32_t a = 0; a < b; ++a) {
       const double dx = rest[a].x - rest[b].x, dy = rest[a].y - rest[b].y, dz = rest[a].z - rest[b].z;
-      if (std::sqrt(dx * dx + dy * dy + dz * dz) < 1.001 * (rest[a].radius + rest[b].radius)) out.insert({a, b});
+      const double part = baked_human().settings.bind.near_fraction * std::sqrt(dx * dx + dy * dy + dz * dz);
+      if (part < 1.001 * (rest[a].radius + rest[b].radius)) out.insert({a, b});
     }
   }
-  for (const spherechain::NearPair& near : asset.near_pairs(RadiusKind::kDetect)) out.insert({near.a, near.b});
   return out;
 }
 
@@ -75,10 +76,10 @@ TEST_CASE("the plain rule reports what the runtime does, M1 and M2, at either ra
 
 TEST_CASE("with another part of the rest distance the rule reports what a bake with that setting does") {
   BakeSettings settings = baked_human().settings;
-  settings.bind.near_fraction = 0.95;
+  settings.bind.near_fraction = 0.9;
   const Bake other = rebake(baked_human(), settings);
   const Asset asset = open_asset_of(baked_human()), other_asset = open_asset_of(other);
-  const PairRule rule(asset, RadiusKind::kDetect, {1, 0.95});
+  const PairRule rule(asset, RadiusKind::kDetect, {1, 0.9});
   std::size_t more = 0;
   for (std::size_t i = 0; i < animation_frames().size(); i += 5) {
     const std::vector<Sphere> spheres = spheres_at(asset, animation_frames()[i].positions, RadiusKind::kDetect);
@@ -92,7 +93,7 @@ TEST_CASE("with another part of the rest distance the rule reports what a bake w
 TEST_CASE("with larger radii more is reported, near pairs at their distance as before, and nothing at rest") {
   const Asset asset = open_asset_of(baked_human());
   const PairRule rule(asset, RadiusKind::kDetect, {1.5, {}});
-  const std::set<Pair> near = overlapping_at_rest(asset, 1.5F);
+  const std::set<Pair> near = held_back(asset, 1.5F);
   std::size_t free = 0;
   for (std::size_t i = 0; i < animation_frames().size(); i += 5) {
     const std::vector<Sphere> spheres = spheres_at(asset, animation_frames()[i].positions, RadiusKind::kDetect);
