@@ -101,12 +101,23 @@ HWY_INLINE Box box_of_leaf(const ContactScene& scene, const Leaf& leaf) {
 
 #else
 
+// The fourth lane is 0. Where there are no masked loads of its own, Highway's reads the fourth float, and wants p
+// aligned.
+HWY_INLINE hn::Vec<hn::CappedTag<float, 4> > load_position(const float* p) {
+  constexpr hn::CappedTag<float, 4> kFour;
+#if HWY_TARGET == HWY_AVX2 || HWY_TARGET == HWY_AVX3
+  return hn::MaskedLoad(hn::FirstN(kFour, 3), kFour, p);
+#else
+  HWY_ALIGN const float lanes[4] = {p[0], p[1], p[2], 0};
+  return hn::Load(kFour, lanes);
+#endif
+}
+
 // Four at a time, for the minima of one wait for each other. A position is loaded as three lanes: after the last one of
 // the buffer may be no more memory.
 HWY_INLINE Box box_of_leaf(const ContactScene& scene, const Leaf& leaf) {
   constexpr hn::CappedTag<float, 4> kFour;
   constexpr std::size_t kAtATime = 4;
-  const auto three = hn::FirstN(kFour, 3);
   hn::Vec<hn::CappedTag<float, 4> > low[kAtATime], high[kAtATime];
   for (std::size_t k = 0; k < kAtATime; ++k) {
     low[k] = hn::Set(kFour, FLT_MAX);
@@ -119,13 +130,13 @@ HWY_INLINE Box box_of_leaf(const ContactScene& scene, const Leaf& leaf) {
   std::size_t i = 0;
   for (; i + kAtATime <= count; i += kAtATime) {
     for (std::size_t k = 0; k < kAtATime; ++k) {
-      const auto p = hn::MaskedLoad(three, kFour, positions + source[vertices[i + k]] * stride);
+      const auto p = load_position(positions + source[vertices[i + k]] * stride);
       low[k] = hn::Min(p, low[k]);
       high[k] = hn::Max(p, high[k]);
     }
   }
   for (; i < count; ++i) {
-    const auto p = hn::MaskedLoad(three, kFour, positions + source[vertices[i]] * stride);
+    const auto p = load_position(positions + source[vertices[i]] * stride);
     low[0] = hn::Min(p, low[0]);
     high[0] = hn::Max(p, high[0]);
   }

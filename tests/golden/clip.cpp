@@ -106,20 +106,21 @@ bool read_obj(const std::string& path, std::vector<float>& corners) {
 
 }  // namespace
 
-Doll::Doll(const std::string& folder) {
-  std::ifstream file(folder + "/doll.sphc", std::ios::binary);
-  const std::vector<char> read{std::istreambuf_iterator<char>(file), {}};
+Doll::Doll(const std::string& folder, const std::string& file) {
+  const std::string path = folder + "/" + file;
+  std::ifstream stream(path, std::ios::binary);
+  const std::vector<char> read{std::istreambuf_iterator<char>(stream), {}};
   bytes.resize((read.size() + 7) / 8);
   std::copy(read.begin(), read.end(), reinterpret_cast<char*>(bytes.data()));
   char message[160];
   if (asset.open(bytes.data(), read.size(), message, sizeof message) != Status::kOk) {
-    error = folder + "/doll.sphc: " + message;
+    error = path + ": " + message;
   } else if (!read_obj(folder + "/doll.obj", rest)) {
     error = folder + "/doll.obj: cannot be read";
   } else if (check_source(asset, rest.data(), rest.size() / 3) != Status::kOk) {
-    error = folder + "/doll.obj: not what doll.sphc was baked from";
+    error = folder + "/doll.obj: not what " + file + " was baked from";
   } else if (asset.joint_count() == 0 || asset.bone_count() != asset.joint_count()) {
-    error = folder + "/doll.sphc: not of an automatic rig";
+    error = path + ": not of an automatic rig";
   }
   for (std::size_t v = 0; error.empty() && v < rest.size() / 3; ++v) {
     const double p[3] = {rest[3 * v], rest[3 * v + 1], rest[3 * v + 2]};

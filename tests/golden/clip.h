@@ -16,8 +16,8 @@ namespace spherechain::test {
 inline constexpr std::size_t kFrames = 256;
 
 struct Doll {
-  // From the folder's doll.obj and doll.sphc. On failure `error` says why.
-  explicit Doll(const std::string& folder);
+  // From the folder's doll.obj and the asset `file` made of it. On failure `error` says why.
+  Doll(const std::string& folder, const std::string& file);
   Doll(const Doll&) = delete;
   Doll& operator=(const Doll&) = delete;
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // golden FOLDER [--print]
-// Spheres and pairs of a clip of 256 frames, by every job, on every target and in one to four threads, hashed, against
-// the folder's hashes.txt: the same on every machine, with every compiler and at every optimization level.
+// Spheres, pairs, leaves' balls, vertices and triangle contacts of a clip of 256 frames, by every job, on every target
+// and in one to four threads, hashed, against the folder's hashes.txt: the same on every machine, with every compiler
+// and at every optimization level.
 //
 // Where the runtime's arithmetic changes on purpose, write the hashes anew, look at which lines changed, and commit
 // both:
@@ -18,6 +19,7 @@
 #include "clip.h"
 #include "jobs.h"
 #include "spherechain/crowd.h"
+#include "spherechain/triangle_contacts.h"
 
 namespace {
 
@@ -220,7 +222,47 @@ void find_in_crowd(const Asset& asset, const std::vector<Palette>& clip, RadiusK
   table.add(std::string("M2 bones ") + name_of(radius), hash, "crowd, " + how);
 }
 
-Table hash_all(const Doll& doll) {
+std::vector<TrianglePair> contacts_of(const Doll& doll, const std::vector<float>& positions, Target target) {
+  std::vector<std::uint64_t> words(TriangleContactContext::words_needed(doll.asset), 0x5555555555555555U);
+  TriangleContactContext context{{words.data(), words.size()}};
+  std::vector<TrianglePair> pairs(20000);
+  TriangleContactJob job;
+  job.asset = &doll.asset;
+  job.positions = positions.data();
+  job.vertex_count = positions.size() / 3;
+  job.target = target;
+  job.context = &context;
+  job.pairs = {pairs.data(), pairs.size()};
+  pairs.resize(job.run() == Status::kOk ? job.pair_count : 0);
+  return pairs;
+}
+
+// Leaves' balls, the surface's vertices and exact contacts.
+void hash_surface(const Doll& doll, const std::vector<Palette>& clip, Table& table) {
+  for (const Target target : supported_targets()) {
+    Hash leaves, spheres, vertices, contacts;
+    for (const Palette& palette : clip) {
+      const BoneMatrices bones{palette[0].data(), palette.size()};
+      const Covered covered = cover(doll.asset, bones, {}, target);
+      leaves.add(covered.leaves);
+      spheres.add(covered.spheres);
+      const std::vector<float> skinned = skin(doll.asset, bones, {}, target).positions;
+      std::vector<Sphere> points;
+      for (const std::uint32_t v : doll.asset.surface().source_vertices) {
+        points.push_back({skinned[3 * v], skinned[3 * v + 1], skinned[3 * v + 2], 0});
+      }
+      vertices.add(points);
+      const std::vector<TrianglePair> pairs = contacts_of(doll, positions_at(doll, palette), target);
+      contacts.add_list(pairs, [&](const TrianglePair& pair) { contacts.add(Pair{pair.a, pair.b}); });
+    }
+    table.add("cover leaves", leaves, to_string(target));
+    table.add("cover spheres", spheres, to_string(target));
+    table.add("skinned vertices", vertices, to_string(target));
+    table.add("triangle contacts", contacts, to_string(target));
+  }
+}
+
+Table hash_all(const Doll& doll, const Doll& with_surface) {
   std::vector<Palette> clip;
   for (std::size_t frame = 0; frame < kFrames; ++frame) clip.push_back(matrices_at(doll.asset, frame));
   Table table;
@@ -234,6 +276,9 @@ Table hash_all(const Doll& doll) {
       }
     }
   }
+  clip.clear();
+  for (std::size_t frame = 0; frame < kFrames; ++frame) clip.push_back(matrices_at(with_surface.asset, frame));
+  hash_surface(with_surface, clip, table);
   return table;
 }
 
@@ -264,12 +309,14 @@ int main(int argc, char** argv) {
     std::fputs("usage: golden FOLDER [--print]\n", stderr);
     return 2;
   }
-  const Doll doll(argv[1]);
-  if (!doll.error.empty()) {
-    std::fprintf(stderr, "golden: error: %s\n", doll.error.c_str());
-    return 3;
+  const Doll doll(argv[1], "doll.sphc"), with_surface(argv[1], "doll_surface.sphc");
+  for (const Doll* opened : {&doll, &with_surface}) {
+    if (!opened->error.empty()) {
+      std::fprintf(stderr, "golden: error: %s\n", opened->error.c_str());
+      return 3;
+    }
   }
-  const Table table = hash_all(doll);
+  const Table table = hash_all(doll, with_surface);
   if (!prints) {
     return compare(table, std::string(argv[1]) + "/hashes.txt");
   }
