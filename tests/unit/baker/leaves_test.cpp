@@ -215,6 +215,19 @@ TEST_CASE("a surface vertex stands for the source vertices at its place that mov
   CHECK(split > 0);  // the morphs pull seams apart
 }
 
+TEST_CASE("weights and mid weights add up to 1 within two roundings: the balls' margin for them rests on it") {
+  constexpr double kTwoRoundings = 2.0 / (1 << 24);
+  for (const Bake* bake : {&baked_human(), &morphing_person()}) {
+    const auto is_off = [&](const auto& parts) {
+      double sum = -1;
+      for (const auto& part : parts) sum += part.weight;
+      return std::abs(sum) > kTwoRoundings;
+    };
+    CHECK(std::ranges::none_of(bake->leaves.vertices, is_off, &SurfaceVertex::influences));
+    CHECK(std::ranges::none_of(bake->leaves.leaves, is_off, &Leaf::bones));
+  }
+}
+
 TEST_CASE("the corners of the asset's triangles are the source's") {
   for (const Bake* bake : {&baked_human(), &morphing_person()}) {
     const spherechain::Asset asset = open_asset_of(*bake);
