@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "exact_triangles.h"
+#include "skin.h"
 #include "spherechain/simd.h"
 #include "spherechain/surface.h"
 #include "spherechain/types.h"
@@ -21,20 +22,22 @@ struct BoxColumns {
   float* high[3];
 };
 
-// Which source positions there are.
-struct ContactPositions {
-  const float* data = nullptr;  // null: none
-  std::size_t count = 0, stride = 0;
-};
-
+// Bare arrays, as in SkinInputs.
 struct ContactScene {
   const Surface* surface = nullptr;
   std::size_t sphere_count = 0;
   Span<const std::uint64_t> ignored, disabled;  // the latter may be empty
-  ContactPositions positions;
+  const float* positions = nullptr;             // the source's; null: from bones
+  std::size_t stride = 0;                       // floats
+  SkinInputs skin{};                            // from bones
   // Scratch memory.
   BoxColumns spheres, leaves;
   std::uint32_t* first_leaf = nullptr;  // a sphere's, and the end
+  // From bones.
+  Sphere* balls = nullptr;             // around the leaves
+  float* ball_columns[4] = {};         // the same by coordinates, the radius last
+  std::uint8_t* is_skinned = nullptr;  // a leaf's: is its box exact, and are its vertices below?
+  float* skinned = nullptr;            // x, y, z of the slots of a leaf, as in Surface::slot_positions
 };
 
 // Where triangles that intersect go. In a file of its own, for kernels must not call templates of the standard library.

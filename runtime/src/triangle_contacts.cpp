@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "spherechain/triangle_contacts.h"
 
+#include <cstring>
+
 #include "arithmetic.h"
+#include "bone_refit.h"
 #include "contact_collector.h"
 #include "memory.h"
 #include "simd.h"
+#include "spherechain/cover.h"
 #include "stride.h"
 #include "triangle_bits.h"
 
@@ -21,6 +25,14 @@ class Scratch {
     T* out = words_ == nullptr ? nullptr : reinterpret_cast<T*>(words_ + used_);
     used_ += (count * sizeof(T) + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t);
     return out;
+  }
+  // The same, from a multiple of 64 bytes on.
+  template <typename T>
+  T* take_aligned(std::size_t count) {
+    constexpr std::size_t kLine = 64 / sizeof(std::uint64_t);
+    const auto misplaced = reinterpret_cast<std::uintptr_t>(words_ + used_) / sizeof(std::uint64_t) % kLine;
+    used_ += words_ == nullptr ? kLine - 1 : (kLine - misplaced) % kLine;
+    return take<T>(count);
   }
   std::size_t used() const { return used_; }
 
@@ -42,9 +54,22 @@ void lay_out(const Asset& asset, Scratch& scratch, ContactScene& scene) {
     }
   }
   scene.first_leaf = scratch.take<std::uint32_t>(scene.sphere_count + 1);
+  if (asset.bone_count() == 0) {
+    return;
+  }
+  scene.balls = scratch.take<Sphere>(surface.leaves.size);
+  for (float*& column : scene.ball_columns) {
+    column = scratch.take<float>(surface.leaves.size + kContactPadding);
+  }
+  scene.is_skinned = scratch.take<std::uint8_t>(surface.leaves.size);
+  scene.skinned = scratch.take_aligned<float>(surface.slot_positions.size);
 }
 
-Status check_vertices(const TriangleContactJob& job) {
+// The vertices, or the bones.
+Status check_pose(const TriangleContactJob& job) {
+  if (job.positions == nullptr) {
+    return check_bone_inputs(job.asset, job.bones, job.morph_weights, RadiusKind::kFit);
+  }
   if (any_misaligned(job.positions)) {
     return Status::kMisaligned;
   }
@@ -57,18 +82,21 @@ Status check_vertices(const TriangleContactJob& job) {
 MemoryRange range_of_positions(const TriangleContactJob& job) {
   const auto begin = reinterpret_cast<std::uintptr_t>(job.positions);
   const std::size_t count = job.asset->info().source_vertex_count;
-  return job.positions == nullptr || count == 0
-             ? MemoryRange{}
-             : MemoryRange{begin, begin + (count - 1) * job.stride + 3 * sizeof(float)};
+  return count == 0 ? MemoryRange{} : MemoryRange{begin, begin + (count - 1) * job.stride + 3 * sizeof(float)};
 }
 
 bool shares_memory(const TriangleContactJob& job) {
   const Span<std::uint64_t> words{job.context->words.data, TriangleContactContext::words_needed(*job.asset)};
   const MemoryRange written[] = {range_of(job.pairs), range_of(job.contacts), range_of(job.sphere_contacts),
                                  range_of(words)};
-  const MemoryRange read[] = {range_of_positions(job), range_of(job.asset->triangles()), range_of(job.asset->ignored()),
-                              job.filter == nullptr ? MemoryRange{} : range_of(job.filter->ignored),
-                              job.filter == nullptr ? MemoryRange{} : range_of(job.filter->disabled)};
+  const bool from_bones = job.positions == nullptr;
+  const MemoryRange read[] = {
+      from_bones ? range_of_matrices(job.bones, job.asset->bone_count()) : range_of_positions(job),
+      from_bones ? range_of(job.morph_weights) : MemoryRange{},
+      range_of(job.asset->triangles()),
+      range_of(job.asset->ignored()),
+      job.filter == nullptr ? MemoryRange{} : range_of(job.filter->ignored),
+      job.filter == nullptr ? MemoryRange{} : range_of(job.filter->disabled)};
   return any_shared(written, read);
 }
 
@@ -86,7 +114,7 @@ Status check(const TriangleContactJob& job, Target& resolved) {
   if (job.asset->leaf_count() == 0) {
     return Status::kNotInAsset;
   }
-  const Status status = check_vertices(job);
+  const Status status = check_pose(job);
   if (status != Status::kOk) {
     return status;
   }
@@ -105,7 +133,20 @@ Status check(const TriangleContactJob& job, Target& resolved) {
   return shares_memory(job) ? Status::kSharedMemory : Status::kOk;
 }
 
-ContactScene scene_of(const TriangleContactJob& job) {
+// Bounds the leaves in the pose: what is left to do is told by the kernel.
+void cover(const TriangleContactJob& job, Target resolved, ContactScene& scene) {
+  CoverJob cover;
+  cover.asset = job.asset;
+  cover.bones = job.bones;
+  cover.morph_weights = job.morph_weights;
+  cover.target = resolved;
+  cover.leaves = {scene.balls, job.asset->leaf_count()};
+  (void)cover.run();  // checked already
+  scene.skin = skin_inputs(*job.asset, job.bones, job.morph_weights);
+  std::memset(scene.is_skinned, 0, job.asset->leaf_count());
+}
+
+ContactScene scene_of(const TriangleContactJob& job, Target resolved) {
   ContactScene scene;
   Scratch scratch(job.context->words.data);
   lay_out(*job.asset, scratch, scene);
@@ -114,7 +155,8 @@ ContactScene scene_of(const TriangleContactJob& job) {
     scene.ignored = {job.filter->ignored.data, job.filter->ignored.size};
     scene.disabled = {job.filter->disabled.data, job.filter->disabled.size};
   }
-  scene.positions = {job.positions, job.asset->info().source_vertex_count, job.stride};
+  scene.positions = job.positions;
+  scene.stride = job.stride / sizeof(float);
   const Span<const Leaf> leaves = job.asset->surface().leaves;
   std::size_t leaf = 0;
   for (std::size_t sphere = 0; sphere <= scene.sphere_count; ++sphere) {
@@ -122,6 +164,9 @@ ContactScene scene_of(const TriangleContactJob& job) {
       ++leaf;
     }
     scene.first_leaf[sphere] = static_cast<std::uint32_t>(leaf);
+  }
+  if (job.positions == nullptr) {
+    cover(job, resolved, scene);
   }
   return scene;
 }
@@ -144,7 +189,7 @@ Status TriangleContactJob::run() noexcept {
   if (status != Status::kOk) {
     return status;
   }
-  const ContactScene scene = scene_of(*this);
+  const ContactScene scene = scene_of(*this, resolved);
   ContactCollector collector(*asset, pairs, contacts, sphere_contacts);
   find_candidates(resolved, scene, collector);
   collector.finish();

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
-// From boxes of spheres to boxes of leaves to triangles. Boxes are exact: no bound here is off by a rounding, so that
-// which candidates come out may differ between targets, but none that intersects is ever missing.
+// From boxes of spheres to boxes of leaves to triangles. From bones, leaves' boxes are around their balls until they
+// are skinned; all other boxes are exact. Which candidates come out may differ between targets, but none that
+// intersects is ever missing.
 #include <cfloat>
 #include <cstring>
 
 #include "arithmetic.h"
 #include "contact_scene.h"
 #include "simd.h"
-#include "stride.h"
 #include "triangle_bits.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "triangle_contacts_kernel.cpp"
 #include "highway.h"
+#include "skin_leaf.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
@@ -86,11 +87,11 @@ struct BoxProbe {
 #if HWY_TARGET == HWY_SCALAR
 
 HWY_INLINE Box box_of_leaf(const ContactScene& scene, const Leaf& leaf) {
-  const Surface& surface = *scene.surface;
+  const std::uint32_t* source = scene.surface->source_vertices.data;
   Box box{{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
-  const std::uint32_t* vertices = surface.leaf_vertices.data + leaf.first_vertex;
+  const std::uint32_t* vertices = scene.surface->leaf_vertices.data + leaf.first_vertex;
   for (std::size_t i = 0; i < leaf.vertex_count; ++i) {
-    const float* p = vertex_at(scene.positions.data, surface.source_vertices[vertices[i]], scene.positions.stride);
+    const float* p = scene.positions + source[vertices[i]] * scene.stride;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       box.low[axis] = p[axis] < box.low[axis] ? p[axis] : box.low[axis];
       box.high[axis] = p[axis] > box.high[axis] ? p[axis] : box.high[axis];
@@ -125,8 +126,8 @@ HWY_INLINE Box box_of_leaf(const ContactScene& scene, const Leaf& leaf) {
   }
   const std::uint32_t* vertices = scene.surface->leaf_vertices.data + leaf.first_vertex;
   const std::uint32_t* source = scene.surface->source_vertices.data;
-  const float* positions = scene.positions.data;
-  const std::size_t stride = scene.positions.stride / sizeof(float), count = leaf.vertex_count;
+  const float* positions = scene.positions;
+  const std::size_t stride = scene.stride, count = leaf.vertex_count;
   std::size_t i = 0;
   for (; i + kAtATime <= count; i += kAtATime) {
     for (std::size_t k = 0; k < kAtATime; ++k) {
@@ -163,6 +164,87 @@ HWY_INLINE void unite_leaves(const ContactScene& scene) {
   }
 }
 
+// Boxes around the leaves' balls. A coordinate less the radius is rounded once, to at most 2^-24 of both: 2^-22 is
+// added.
+HWY_NOINLINE void bound_balls(const ContactScene& scene) {
+  constexpr Floats kFloats;
+  const std::size_t count = scene.surface->leaves.size;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Sphere& ball = scene.balls[i];
+    scene.ball_columns[0][i] = ball.x;
+    scene.ball_columns[1][i] = ball.y;
+    scene.ball_columns[2][i] = ball.z;
+    scene.ball_columns[3][i] = ball.radius;
+  }
+  for (std::size_t i = 0; i < count; i += kLanes) {
+    const Vector radius = hn::LoadU(kFloats, scene.ball_columns[3] + i);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Vector center = hn::LoadU(kFloats, scene.ball_columns[axis] + i);
+      const Vector margin = hn::Mul(hn::Add(hn::Abs(center), radius), hn::Set(kFloats, 0x1p-22F));
+      hn::StoreU(hn::Sub(hn::Sub(center, radius), margin), kFloats, scene.leaves.low[axis] + i);
+      hn::StoreU(hn::Add(hn::Add(center, radius), margin), kFloats, scene.leaves.high[axis] + i);
+    }
+  }
+}
+
+// Where a leaf's skinned vertices are.
+struct Slots {
+  float* axes[3];
+  std::size_t count;
+};
+
+HWY_INLINE Slots slots_of(const ContactScene& scene, const Leaf& leaf) {
+  const std::size_t count = (leaf.vertex_count + kSlotLanes - 1) / kSlotLanes * kSlotLanes;
+  float* first = scene.skinned + 3 * std::size_t{leaf.first_slot};
+  return {{first, first + count, first + 2 * count}, count};
+}
+
+// Where it is not yet: the leaf's vertices, and its own box in place of its ball's.
+HWY_NOINLINE void skin(const ContactScene& scene, std::size_t leaf_index) {
+  if (scene.is_skinned[leaf_index] != 0) {
+    return;
+  }
+  scene.is_skinned[leaf_index] = 1;
+  const Leaf& leaf = scene.surface->leaves.data[leaf_index];
+  const Slots slots = slots_of(scene, leaf);
+  skin_leaf(scene.skin, leaf, slots.axes[0], slots.axes[1], slots.axes[2]);
+  constexpr hn::CappedTag<float, kSlotLanes> kSlots;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    auto low = hn::Set(kSlots, FLT_MAX), high = hn::Set(kSlots, -FLT_MAX);
+    for (std::size_t i = 0; i < slots.count; i += hn::MaxLanes(kSlots)) {
+      const auto p = hn::LoadU(kSlots, slots.axes[axis] + i);
+      low = hn::Min(p, low);
+      high = hn::Max(p, high);
+    }
+    scene.leaves.low[axis][leaf_index] = hn::GetLane(hn::MinOfLanes(kSlots, low));
+    scene.leaves.high[axis][leaf_index] = hn::GetLane(hn::MaxOfLanes(kSlots, high));
+  }
+}
+
+// A ball against those of a vector: bit k where ball i + k may touch it. Of a sum of squares of rounded differences
+// 2^-20 is more than all roundings.
+struct BallProbe {
+  Vector center[3], radius;
+
+  HWY_INLINE BallProbe(const ContactScene& scene, std::size_t leaf) {
+    constexpr Floats kFloats;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      center[axis] = hn::Set(kFloats, scene.ball_columns[axis][leaf]);
+    }
+    radius = hn::Set(kFloats, scene.ball_columns[3][leaf]);
+  }
+  HWY_INLINE std::uint64_t touching(const ContactScene& scene, std::size_t i) const {
+    constexpr Floats kFloats;
+    const Vector x = hn::Sub(hn::LoadU(kFloats, scene.ball_columns[0] + i), center[0]);
+    const Vector y = hn::Sub(hn::LoadU(kFloats, scene.ball_columns[1] + i), center[1]);
+    const Vector z = hn::Sub(hn::LoadU(kFloats, scene.ball_columns[2] + i), center[2]);
+    const Vector reach = hn::Add(hn::LoadU(kFloats, scene.ball_columns[3] + i), radius);
+    const Vector squared = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
+    const Vector most = hn::Mul(hn::Mul(reach, reach), hn::Set(kFloats, 1 + 0x1p-20F));
+    return ~bits_of(hn::Gt(squared, most));
+  }
+};
+
 constexpr std::size_t kBlock = 64;  // triangles: a bit each
 
 // Up to kBlock triangles of a leaf, coordinate by coordinate. Spare lanes up to a vector are dirt.
@@ -184,18 +266,29 @@ struct Block {
 HWY_NOINLINE void load_block(const ContactScene& scene, std::size_t leaf_index, std::size_t first, Block& out) {
   constexpr Floats kFloats;
   const Surface& surface = *scene.surface;
-  const Leaf& leaf = surface.leaves[leaf_index];
+  const Leaf& leaf = surface.leaves.data[leaf_index];
   out.leaf = leaf_index;
   out.first = leaf.first_triangle + first;
   out.count = leaf.triangle_count - first < kBlock ? leaf.triangle_count - first : kBlock;
-  const std::uint8_t* slots = surface.corners.data + 3 * out.first;
-  const std::uint32_t* vertices = surface.leaf_vertices.data + leaf.first_vertex;
-  for (std::size_t i = 0; i < out.count; ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const float* p =
-          vertex_at(scene.positions.data, surface.source_vertices[vertices[slots[3 * i + k]]], scene.positions.stride);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        out.corners[k][axis][i] = p[axis];
+  const std::uint8_t* corners = surface.corners.data + 3 * out.first;
+  if (scene.positions != nullptr) {
+    const std::uint32_t* vertices = surface.leaf_vertices.data + leaf.first_vertex;
+    const std::uint32_t* source = surface.source_vertices.data;
+    for (std::size_t i = 0; i < out.count; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const float* p = scene.positions + source[vertices[corners[3 * i + k]]] * scene.stride;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          out.corners[k][axis][i] = p[axis];
+        }
+      }
+    }
+  } else {
+    const Slots slots = slots_of(scene, leaf);
+    for (std::size_t i = 0; i < out.count; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          out.corners[k][axis][i] = slots.axes[axis][corners[3 * i + k]];
+        }
       }
     }
   }
@@ -389,7 +482,7 @@ HWY_INLINE void pair_block(const ContactScene& scene, const Block& block, std::s
   }
   const Box box = box_of(block, ones);
   const BoxProbe probe(box);
-  const std::size_t count = scene.surface->leaves[leaf].triangle_count;
+  const std::size_t count = scene.surface->leaves.data[leaf].triangle_count;
   for (std::size_t first = 0; first < count; first += kBlock) {
     Block other;
     load_block(scene, leaf, first, other);
@@ -405,26 +498,67 @@ HWY_INLINE void pair_block(const ContactScene& scene, const Block& block, std::s
   }
 }
 
+// One leaf against those of a sphere: leaves [first, end).
+HWY_INLINE void pair_leaf(const ContactScene& scene, std::size_t leaf, std::size_t first, std::size_t end,
+                          ContactCollector& collector) {
+  const BoxProbe probe(box_at(scene.leaves, leaf));
+  const std::size_t count = scene.surface->leaves.data[leaf].triangle_count;
+  for (std::size_t triangle = 0; triangle < count; triangle += kBlock) {
+    Block block;
+    bool is_loaded = false;
+    for (std::size_t j = first; j < end; j += kLanes) {
+      for (std::uint64_t others = probe.touching(scene.leaves, j, end - j); others != 0; others &= others - 1) {
+        const std::size_t other = j + lowest_bit(others);
+        if (scene.positions == nullptr && scene.is_skinned[other] == 0) {
+          continue;  // their balls part them
+        }
+        if (!is_loaded) {
+          load_block(scene, leaf, triangle, block);
+          is_loaded = true;
+        }
+        pair_block(scene, block, other, collector);
+      }
+    }
+  }
+}
+
+// The same from bones: skins what its balls do not part.
+HWY_INLINE void pair_ball(const ContactScene& scene, std::size_t leaf, std::size_t first, std::size_t end,
+                          ContactCollector& collector) {
+  const BallProbe balls(scene, leaf);
+  bool any = false;
+  for (std::size_t j = first; j < end; j += kLanes) {
+    std::uint64_t others = BoxProbe(box_at(scene.leaves, leaf)).touching(scene.leaves, j, end - j);
+    if (others == 0) {
+      continue;
+    }
+    others &= balls.touching(scene, j);
+    if (others == 0) {
+      continue;
+    }
+    skin(scene, leaf);
+    const Box box = box_at(scene.leaves, leaf);
+    for (others &= BoxProbe(box).touching(scene.leaves, j, end - j); others != 0; others &= others - 1) {
+      const std::size_t other = j + lowest_bit(others);
+      skin(scene, other);
+      any |= box.touches(box_at(scene.leaves, other));
+    }
+  }
+  if (any) {
+    pair_leaf(scene, leaf, first, end, collector);
+  }
+}
+
 HWY_INLINE void pair_spheres(const ContactScene& scene, std::size_t a, std::size_t b, ContactCollector& collector) {
   const BoxProbe probe_b(box_at(scene.spheres, b));
   const std::size_t end_a = scene.first_leaf[a + 1], first_b = scene.first_leaf[b], end_b = scene.first_leaf[b + 1];
   for (std::size_t i = scene.first_leaf[a]; i < end_a; i += kLanes) {
     for (std::uint64_t bits = probe_b.touching(scene.leaves, i, end_a - i); bits != 0; bits &= bits - 1) {
       const std::size_t leaf = i + lowest_bit(bits);
-      const BoxProbe probe(box_at(scene.leaves, leaf));
-      const std::size_t count = scene.surface->leaves[leaf].triangle_count;
-      for (std::size_t first = 0; first < count; first += kBlock) {
-        Block block;
-        bool is_loaded = false;
-        for (std::size_t j = first_b; j < end_b; j += kLanes) {
-          for (std::uint64_t others = probe.touching(scene.leaves, j, end_b - j); others != 0; others &= others - 1) {
-            if (!is_loaded) {
-              load_block(scene, leaf, first, block);
-              is_loaded = true;
-            }
-            pair_block(scene, block, j + lowest_bit(others), collector);
-          }
-        }
+      if (scene.positions != nullptr) {
+        pair_leaf(scene, leaf, first_b, end_b, collector);
+      } else {
+        pair_ball(scene, leaf, first_b, end_b, collector);
       }
     }
   }
@@ -437,12 +571,16 @@ HWY_INLINE bool is_enabled(const ContactScene& scene, std::size_t sphere) {
 HWY_NOINLINE void bound_leaves(const ContactScene& scene) {
   const Surface& surface = *scene.surface;
   for (std::size_t i = 0; i < surface.leaves.size; ++i) {
-    put_box(scene.leaves, i, box_of_leaf(scene, surface.leaves[i]));
+    put_box(scene.leaves, i, box_of_leaf(scene, surface.leaves.data[i]));
   }
 }
 
 void find(const ContactScene& scene, ContactCollector& collector) {
-  bound_leaves(scene);
+  if (scene.positions != nullptr) {
+    bound_leaves(scene);
+  } else {
+    bound_balls(scene);
+  }
   unite_leaves(scene);
   for (std::size_t a = 0; a < scene.sphere_count; ++a) {
     if (!is_enabled(scene, a)) {

@@ -6,20 +6,20 @@
 namespace spherechain::bench {
 
 ContactMesh::ContactMesh(const PosedCharacter& character) : character(character) {
-  const baker::Character& source = character.bake.character;
-  std::map<std::uint32_t, std::uint32_t> weld_of_skin;
-  const auto owned = character.asset.spheres();
-  for (std::uint32_t sphere = 0; sphere < owned.size; ++sphere) {
-    for (std::uint32_t i = 0; i < owned[sphere].triangle_count; ++i) {
-      const std::uint32_t triangle = character.asset.triangles()[owned[sphere].first_triangle + i];
-      source_triangles.push_back(triangle);
-      spheres.push_back(sphere);
-      for (const std::uint32_t vertex : source.source_triangles[triangle]) {
-        corners.push_back(vertex);
+  const Surface& surface = character.asset.surface();
+  std::map<std::uint32_t, std::uint32_t> number_of_weld;
+  for (const Leaf& leaf : surface.leaves) {
+    for (std::uint32_t i = 0; i < leaf.triangle_count; ++i) {
+      const std::size_t triangle = std::size_t{leaf.first_triangle} + i;
+      source_triangles.push_back(character.asset.triangles()[triangle]);
+      spheres.push_back(leaf.sphere);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t vertex = surface.leaf_vertices[leaf.first_vertex + surface.corners[3 * triangle + k]];
+        corners.push_back(surface.source_vertices[vertex]);
         const auto [at, is_new] =
-            weld_of_skin.try_emplace(source.skin_of_source[vertex], static_cast<std::uint32_t>(vertices.size()));
+            number_of_weld.try_emplace(surface.welds[vertex], static_cast<std::uint32_t>(vertices.size()));
         if (is_new) {
-          vertices.push_back(vertex);
+          vertices.push_back(surface.source_vertices[vertex]);
         }
         welds.push_back(at->second);
       }

@@ -50,6 +50,7 @@ class RuntimeFinder : public ContactFinder {
 ContactFinders runtime_contact_finders(const ContactMesh& mesh) {
   ContactFinders out;
   out.push_back(std::make_unique<RuntimeFinder>(mesh.character.asset, false));
+  out.push_back(std::make_unique<RuntimeFinder>(mesh.character.asset, true));
   return out;
 }
 
