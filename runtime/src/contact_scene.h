@@ -33,11 +33,10 @@ struct ContactScene {
   // Scratch memory.
   BoxColumns spheres, leaves;
   std::uint32_t* first_leaf = nullptr;  // a sphere's, and the end
-  // From bones.
-  Sphere* balls = nullptr;             // around the leaves
-  float* ball_columns[4] = {};         // the same by coordinates, the radius last
-  std::uint8_t* is_skinned = nullptr;  // a leaf's: is its box exact, and are its vertices below?
-  float* skinned = nullptr;            // x, y, z of the slots of a leaf, as in Surface::slot_positions
+  std::uint8_t* is_loaded = nullptr;    // a leaf's: are its vertices below, and its box exact?
+  float* slots = nullptr;               // x, y, z of a leaf's vertices, as in Surface::slot_positions
+  Sphere* balls = nullptr;              // from bones: around the leaves
+  float* ball_columns[4] = {};          // the same by coordinates, the radius last
 };
 
 // Where triangles that intersect go. In a file of its own, for kernels must not call templates of the standard library.

@@ -54,6 +54,8 @@ void lay_out(const Asset& asset, Scratch& scratch, ContactScene& scene) {
     }
   }
   scene.first_leaf = scratch.take<std::uint32_t>(scene.sphere_count + 1);
+  scene.is_loaded = scratch.take<std::uint8_t>(surface.leaves.size);
+  scene.slots = scratch.take_aligned<float>(surface.slot_positions.size + kContactPadding);
   if (asset.bone_count() == 0) {
     return;
   }
@@ -61,8 +63,6 @@ void lay_out(const Asset& asset, Scratch& scratch, ContactScene& scene) {
   for (float*& column : scene.ball_columns) {
     column = scratch.take<float>(surface.leaves.size + kContactPadding);
   }
-  scene.is_skinned = scratch.take<std::uint8_t>(surface.leaves.size);
-  scene.skinned = scratch.take_aligned<float>(surface.slot_positions.size);
 }
 
 // The vertices, or the bones.
@@ -143,7 +143,6 @@ void cover(const TriangleContactJob& job, Target resolved, ContactScene& scene) 
   cover.leaves = {scene.balls, job.asset->leaf_count()};
   (void)cover.run();  // checked already
   scene.skin = skin_inputs(*job.asset, job.bones, job.morph_weights);
-  std::memset(scene.is_skinned, 0, job.asset->leaf_count());
 }
 
 ContactScene scene_of(const TriangleContactJob& job, Target resolved) {
@@ -158,6 +157,7 @@ ContactScene scene_of(const TriangleContactJob& job, Target resolved) {
   scene.positions = job.positions;
   scene.stride = job.stride / sizeof(float);
   const Span<const Leaf> leaves = job.asset->surface().leaves;
+  std::memset(scene.is_loaded, 0, leaves.size);
   std::size_t leaf = 0;
   for (std::size_t sphere = 0; sphere <= scene.sphere_count; ++sphere) {
     while (leaf < leaves.size && leaves[leaf].sphere < sphere) {

@@ -195,16 +195,34 @@ struct Slots {
 
 HWY_INLINE Slots slots_of(const ContactScene& scene, const Leaf& leaf) {
   const std::size_t count = (leaf.vertex_count + kSlotLanes - 1) / kSlotLanes * kSlotLanes;
-  float* first = scene.skinned + 3 * std::size_t{leaf.first_slot};
+  float* first = scene.slots + 3 * std::size_t{leaf.first_slot};
   return {{first, first + count, first + 2 * count}, count};
 }
 
-// Where it is not yet: the leaf's vertices, and its own box in place of its ball's.
-HWY_NOINLINE void skin(const ContactScene& scene, std::size_t leaf_index) {
-  if (scene.is_skinned[leaf_index] != 0) {
+// Where it is not yet: a leaf's vertices from the source's.
+HWY_NOINLINE void gather(const ContactScene& scene, std::size_t leaf_index) {
+  if (scene.is_loaded[leaf_index] != 0) {
     return;
   }
-  scene.is_skinned[leaf_index] = 1;
+  scene.is_loaded[leaf_index] = 1;
+  const Leaf& leaf = scene.surface->leaves.data[leaf_index];
+  const Slots slots = slots_of(scene, leaf);
+  const std::uint32_t* vertices = scene.surface->leaf_vertices.data + leaf.first_vertex;
+  const std::uint32_t* source = scene.surface->source_vertices.data;
+  for (std::size_t i = 0; i < leaf.vertex_count; ++i) {
+    const float* p = scene.positions + source[vertices[i]] * scene.stride;
+    slots.axes[0][i] = p[0];
+    slots.axes[1][i] = p[1];
+    slots.axes[2][i] = p[2];
+  }
+}
+
+// Where it is not yet: a leaf's vertices from the bones, and its own box in place of its ball's.
+HWY_NOINLINE void skin(const ContactScene& scene, std::size_t leaf_index) {
+  if (scene.is_loaded[leaf_index] != 0) {
+    return;
+  }
+  scene.is_loaded[leaf_index] = 1;
   const Leaf& leaf = scene.surface->leaves.data[leaf_index];
   const Slots slots = slots_of(scene, leaf);
   skin_leaf(scene.skin, leaf, slots.axes[0], slots.axes[1], slots.axes[2]);
@@ -247,11 +265,79 @@ struct BallProbe {
 
 constexpr std::size_t kBlock = 64;  // triangles: a bit each
 
-// Up to kBlock triangles of a leaf, coordinate by coordinate. Spare lanes up to a vector are dirt.
+// Of each vertex of the leaf, the sides of the box that it is beyond of: a bit a side. At least 16 codes, and a vector
+// more than there are vertices, can be written and read.
+using Codes = std::uint8_t[256 + 64];
+
+HWY_INLINE void find_sides(const ContactScene& scene, std::size_t leaf_index, const BoxProbe& box, Codes& codes) {
+  constexpr Floats kFloats;
+  const hn::Rebind<std::int32_t, Floats> integers;
+  const hn::Rebind<std::uint8_t, Floats> bytes;
+  const Slots slots = slots_of(scene, scene.surface->leaves.data[leaf_index]);
+  for (std::size_t i = 0; i < slots.count; i += kLanes) {
+    auto code = hn::Zero(integers);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Vector p = hn::LoadU(kFloats, slots.axes[axis] + i);
+      const auto below = hn::Set(integers, 1 << (2 * axis)), above = hn::Set(integers, 2 << (2 * axis));
+      code = hn::Or(code, hn::IfThenElseZero(hn::RebindMask(integers, hn::Lt(p, box.low[axis])), below));
+      code = hn::Or(code, hn::IfThenElseZero(hn::RebindMask(integers, hn::Gt(p, box.high[axis])), above));
+    }
+    hn::StoreU(hn::DemoteTo(bytes, code), bytes, codes + i);
+  }
+}
+
+#if HWY_TARGET == HWY_SCALAR
+
+// Of the triangles of these corners, at most kBlock, those not all beyond one side.
+HWY_INLINE std::uint64_t within(const std::uint8_t* corners, std::size_t count, std::size_t, const Codes& codes) {
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const int beyond = codes[corners[3 * i]] & codes[corners[3 * i + 1]] & codes[corners[3 * i + 2]];
+    bits |= std::uint64_t{beyond == 0} << i;
+  }
+  return bits;
+}
+
+#else
+
+// The same, a byte a triangle: codes are looked up in tables of sixteen.
+HWY_INLINE std::uint64_t within(const std::uint8_t* corners, std::size_t count, std::size_t vertex_count,
+                                const Codes& codes) {
+  constexpr hn::CappedTag<std::uint8_t, kBlock> kBytes;
+  HWY_ALIGN std::uint8_t own[3 * kBlock + 3 * hn::MaxLanes(kBytes)];
+  std::memcpy(own, corners, 3 * count);
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < count; i += hn::MaxLanes(kBytes)) {
+    hn::Vec<hn::CappedTag<std::uint8_t, kBlock> > corner[3];
+    hn::LoadInterleaved3(kBytes, own + 3 * i, corner[0], corner[1], corner[2]);
+    auto beyond = hn::Set(kBytes, std::uint8_t{0xFF});
+    for (std::size_t k = 0; k < 3; ++k) {
+      auto code = hn::Zero(kBytes);
+      const auto table = hn::And(corner[k], hn::Set(kBytes, std::uint8_t{0xF0}));
+      const auto place = hn::And(corner[k], hn::Set(kBytes, std::uint8_t{0x0F}));
+      for (std::size_t first = 0; first < vertex_count; first += 16) {
+        const auto found = hn::TableLookupBytes(hn::LoadDup128(kBytes, codes + first), place);
+        const auto is_here = hn::Eq(table, hn::Set(kBytes, static_cast<std::uint8_t>(first)));
+        code = hn::Or(code, hn::IfThenElseZero(is_here, found));
+      }
+      beyond = hn::And(beyond, code);
+    }
+    std::uint64_t some = 0;
+    hn::StoreMaskBits(kBytes, hn::Eq(beyond, hn::Zero(kBytes)), reinterpret_cast<std::uint8_t*>(&some));
+    bits |= some << i;
+  }
+  return bits & (~std::uint64_t{0} >> (64 - count));
+}
+
+#endif
+
+// Some triangles of a leaf, coordinate by coordinate. Spare lanes up to a vector are dirt.
 struct Block {
-  std::size_t leaf, first, count;                 // of Asset::triangles()
+  std::size_t leaf, count;
+  std::uint32_t triangles[kBlock];                // in Asset::triangles()
   float corners[3][3][kBlock + kContactPadding];  // by corner, by axis
   float low[3][kBlock + kContactPadding], high[3][kBlock + kContactPadding];
+  Box box;  // of all
 
   TriangleCorners corners_of(std::size_t i) const {
     TriangleCorners out;
@@ -262,56 +348,52 @@ struct Block {
   }
 };
 
-// The leaf's triangles from its `first` on.
-HWY_NOINLINE void load_block(const ContactScene& scene, std::size_t leaf_index, std::size_t first, Block& out) {
+// Of the leaf's triangles from `first` on, at most kBlock, those that touch the box but for what single corners tell.
+// False where there are none.
+HWY_NOINLINE bool load_block(const ContactScene& scene, std::size_t leaf_index, std::size_t first, const BoxProbe& box,
+                             Block& out) {
   constexpr Floats kFloats;
-  const Surface& surface = *scene.surface;
-  const Leaf& leaf = surface.leaves.data[leaf_index];
-  out.leaf = leaf_index;
-  out.first = leaf.first_triangle + first;
-  out.count = leaf.triangle_count - first < kBlock ? leaf.triangle_count - first : kBlock;
-  const std::uint8_t* corners = surface.corners.data + 3 * out.first;
-  if (scene.positions != nullptr) {
-    const std::uint32_t* vertices = surface.leaf_vertices.data + leaf.first_vertex;
-    const std::uint32_t* source = surface.source_vertices.data;
-    for (std::size_t i = 0; i < out.count; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const float* p = scene.positions + source[vertices[corners[3 * i + k]]] * scene.stride;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          out.corners[k][axis][i] = p[axis];
-        }
-      }
-    }
-  } else {
-    const Slots slots = slots_of(scene, leaf);
-    for (std::size_t i = 0; i < out.count; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          out.corners[k][axis][i] = slots.axes[axis][corners[3 * i + k]];
-        }
+  const Leaf& leaf = scene.surface->leaves.data[leaf_index];
+  const std::size_t first_triangle = leaf.first_triangle + first;
+  const std::size_t left = leaf.triangle_count - first;
+  const std::uint8_t* corners = scene.surface->corners.data + 3 * first_triangle;
+  HWY_ALIGN Codes codes;
+  find_sides(scene, leaf_index, box, codes);
+  std::size_t count = 0;
+  const Slots slots = slots_of(scene, leaf);
+  std::uint64_t bits = within(corners, left < kBlock ? left : kBlock, leaf.vertex_count, codes);
+  if (bits == 0) {
+    return false;
+  }
+  for (; bits != 0; bits &= bits - 1, ++count) {
+    const std::size_t i = lowest_bit(bits);
+    out.triangles[count] = static_cast<std::uint32_t>(first_triangle + i);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t slot = corners[3 * i + k];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        out.corners[k][axis][count] = slots.axes[axis][slot];
       }
     }
   }
+  out.leaf = leaf_index;
+  out.count = count;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = 0; i < out.count; i += kLanes) {
+    Vector least = hn::Set(kFloats, FLT_MAX), most = hn::Set(kFloats, -FLT_MAX);
+    for (std::size_t i = 0; i < count; i += kLanes) {
       const Vector a = hn::LoadU(kFloats, out.corners[0][axis] + i);
       const Vector b = hn::LoadU(kFloats, out.corners[1][axis] + i);
       const Vector c = hn::LoadU(kFloats, out.corners[2][axis] + i);
-      hn::StoreU(hn::Min(hn::Min(a, b), c), kFloats, out.low[axis] + i);
-      hn::StoreU(hn::Max(hn::Max(a, b), c), kFloats, out.high[axis] + i);
+      const Vector low = hn::Min(hn::Min(a, b), c), high = hn::Max(hn::Max(a, b), c);
+      hn::StoreU(low, kFloats, out.low[axis] + i);
+      hn::StoreU(high, kFloats, out.high[axis] + i);
+      const auto used = hn::FirstN(kFloats, count - i);
+      least = hn::IfThenElse(used, hn::Min(low, least), least);
+      most = hn::IfThenElse(used, hn::Max(high, most), most);
     }
+    out.box.low[axis] = hn::GetLane(hn::MinOfLanes(kFloats, least));
+    out.box.high[axis] = hn::GetLane(hn::MaxOfLanes(kFloats, most));
   }
-}
-
-// Of the block's triangles those whose boxes touch.
-HWY_INLINE std::uint64_t touching(const Block& block, const BoxProbe& probe) {
-  const float* const lows[3] = {block.low[0], block.low[1], block.low[2]};
-  const float* const highs[3] = {block.high[0], block.high[1], block.high[2]};
-  std::uint64_t misses = 0;
-  for (std::size_t i = 0; i < block.count; i += kLanes) {
-    misses |= bits_of(probe.misses(lows, highs, i)) << i;
-  }
-  return ~misses & (~std::uint64_t{0} >> (64 - block.count));
+  return true;
 }
 
 struct Vector3 {
@@ -427,13 +509,11 @@ HWY_INLINE Verdicts judge(const Block& few, std::size_t one, const Block& many, 
   return {bits_of(hn::Or(missed, hn::And(known, before))), bits_of(hn::And(known, meet))};
 }
 
-// Each of the triangles `ones` of `few` against all `others` of `many`.
-HWY_NOINLINE void pair_triangles(const Block& few, std::uint64_t ones, const Block& many, std::uint64_t others,
-                                 ContactCollector& collector) {
+// Each of `few` against all of `many`.
+HWY_NOINLINE void pair_triangles(const Block& few, const Block& many, ContactCollector& collector) {
   const float* const lows[3] = {many.low[0], many.low[1], many.low[2]};
   const float* const highs[3] = {many.high[0], many.high[1], many.high[2]};
-  for (; ones != 0; ones &= ones - 1) {
-    const std::size_t one = lowest_bit(ones);
+  for (std::size_t one = 0; one < few.count; ++one) {
     Box box;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       box.low[axis] = few.low[axis][one];
@@ -441,59 +521,43 @@ HWY_NOINLINE void pair_triangles(const Block& few, std::uint64_t ones, const Blo
     }
     const BoxProbe probe(box);
     for (std::size_t i = 0; i < many.count; i += kLanes) {
-      std::uint64_t bits = (others >> i) & (~std::uint64_t{0} >> (64 - kLanes));
-      if (bits == 0) {
-        continue;
-      }
-      bits &= ~bits_of(probe.misses(lows, highs, i));
+      const std::size_t left = many.count - i;
+      const std::uint64_t lanes = ~std::uint64_t{0} >> (64 - (left < kLanes ? left : kLanes));
+      std::uint64_t bits = ~bits_of(probe.misses(lows, highs, i)) & lanes;
       if (bits == 0) {
         continue;
       }
       const Verdicts verdicts = judge(few, one, many, i);
       for (bits &= ~verdicts.apart; bits != 0; bits &= bits - 1) {
         const std::size_t lane = lowest_bit(bits);
-        decide(collector, {few.leaf, many.leaf, few.first + one, many.first + i + lane, few.corners_of(one),
+        decide(collector, {few.leaf, many.leaf, few.triangles[one], many.triangles[i + lane], few.corners_of(one),
                            many.corners_of(i + lane), ((verdicts.meeting >> lane) & 1U) != 0});
       }
     }
   }
 }
 
-// The box of some of a block's triangles.
-HWY_INLINE Box box_of(const Block& block, std::uint64_t triangles) {
-  Box box{{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
-  for (; triangles != 0; triangles &= triangles - 1) {
-    const std::size_t i = lowest_bit(triangles);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const float low = block.low[axis][i], high = block.high[axis][i];
-      box.low[axis] = low < box.low[axis] ? low : box.low[axis];
-      box.high[axis] = high > box.high[axis] ? high : box.high[axis];
-    }
+// Two leaves whose boxes touch.
+HWY_NOINLINE void pair_leaves(const ContactScene& scene, std::size_t a, std::size_t b, ContactCollector& collector) {
+  if (scene.positions != nullptr) {
+    gather(scene, a);
+    gather(scene, b);
   }
-  return box;
-}
-
-HWY_INLINE void pair_block(const ContactScene& scene, const Block& block, std::size_t leaf,
-                           ContactCollector& collector) {
-  const Box leaf_box = box_at(scene.leaves, leaf);
-  const std::uint64_t ones = touching(block, BoxProbe(leaf_box));
-  if (ones == 0) {
-    return;
-  }
-  const Box box = box_of(block, ones);
-  const BoxProbe probe(box);
-  const std::size_t count = scene.surface->leaves.data[leaf].triangle_count;
-  for (std::size_t first = 0; first < count; first += kBlock) {
-    Block other;
-    load_block(scene, leaf, first, other);
-    const std::uint64_t others = touching(other, probe);
-    if (others == 0) {
+  const BoxProbe probe(box_at(scene.leaves, b));
+  const std::size_t count_a = scene.surface->leaves.data[a].triangle_count;
+  const std::size_t count_b = scene.surface->leaves.data[b].triangle_count;
+  Block block, other;
+  for (std::size_t first = 0; first < count_a; first += kBlock) {
+    if (!load_block(scene, a, first, probe, block)) {
       continue;
     }
-    if (hwy::PopCount(ones) < hwy::PopCount(others)) {
-      pair_triangles(block, ones, other, others, collector);
-    } else {
-      pair_triangles(other, others, block, ones, collector);
+    const BoxProbe block_probe(block.box);
+    for (std::size_t first_b = 0; first_b < count_b; first_b += kBlock) {
+      if (!load_block(scene, b, first_b, block_probe, other)) {
+        continue;
+      }
+      const bool is_less = block.count < other.count;
+      pair_triangles(is_less ? block : other, is_less ? other : block, collector);
     }
   }
 }
@@ -502,50 +566,33 @@ HWY_INLINE void pair_block(const ContactScene& scene, const Block& block, std::s
 HWY_INLINE void pair_leaf(const ContactScene& scene, std::size_t leaf, std::size_t first, std::size_t end,
                           ContactCollector& collector) {
   const BoxProbe probe(box_at(scene.leaves, leaf));
-  const std::size_t count = scene.surface->leaves.data[leaf].triangle_count;
-  for (std::size_t triangle = 0; triangle < count; triangle += kBlock) {
-    Block block;
-    bool is_loaded = false;
-    for (std::size_t j = first; j < end; j += kLanes) {
-      for (std::uint64_t others = probe.touching(scene.leaves, j, end - j); others != 0; others &= others - 1) {
-        const std::size_t other = j + lowest_bit(others);
-        if (scene.positions == nullptr && scene.is_skinned[other] == 0) {
-          continue;  // their balls part them
-        }
-        if (!is_loaded) {
-          load_block(scene, leaf, triangle, block);
-          is_loaded = true;
-        }
-        pair_block(scene, block, other, collector);
-      }
+  for (std::size_t j = first; j < end; j += kLanes) {
+    for (std::uint64_t bits = probe.touching(scene.leaves, j, end - j); bits != 0; bits &= bits - 1) {
+      pair_leaves(scene, leaf, j + lowest_bit(bits), collector);
     }
   }
 }
 
-// The same from bones: skins what its balls do not part.
+// The same from bones: what their balls do not part is skinned.
 HWY_INLINE void pair_ball(const ContactScene& scene, std::size_t leaf, std::size_t first, std::size_t end,
                           ContactCollector& collector) {
   const BallProbe balls(scene, leaf);
-  bool any = false;
+  BoxProbe probe(box_at(scene.leaves, leaf));
   for (std::size_t j = first; j < end; j += kLanes) {
-    std::uint64_t others = BoxProbe(box_at(scene.leaves, leaf)).touching(scene.leaves, j, end - j);
-    if (others == 0) {
-      continue;
+    std::uint64_t bits = probe.touching(scene.leaves, j, end - j);
+    bits &= bits == 0 ? 0 : balls.touching(scene, j);
+    if (bits != 0 && scene.is_loaded[leaf] == 0) {
+      skin(scene, leaf);
+      probe = BoxProbe(box_at(scene.leaves, leaf));
+      bits &= probe.touching(scene.leaves, j, end - j);
     }
-    others &= balls.touching(scene, j);
-    if (others == 0) {
-      continue;
-    }
-    skin(scene, leaf);
-    const Box box = box_at(scene.leaves, leaf);
-    for (others &= BoxProbe(box).touching(scene.leaves, j, end - j); others != 0; others &= others - 1) {
-      const std::size_t other = j + lowest_bit(others);
+    for (; bits != 0; bits &= bits - 1) {
+      const std::size_t other = j + lowest_bit(bits);
       skin(scene, other);
-      any |= box.touches(box_at(scene.leaves, other));
+      if (box_at(scene.leaves, leaf).touches(box_at(scene.leaves, other))) {
+        pair_leaves(scene, leaf, other, collector);
+      }
     }
-  }
-  if (any) {
-    pair_leaf(scene, leaf, first, end, collector);
   }
 }
 
