@@ -300,16 +300,14 @@ HWY_INLINE std::uint64_t within(const std::uint8_t* corners, std::size_t count, 
 
 #else
 
-// The same, a byte a triangle: codes are looked up in tables of sixteen.
+// The same, a byte a triangle: codes are looked up in tables of sixteen. Reads 3 * kBlock bytes whatever the count.
 HWY_INLINE std::uint64_t within(const std::uint8_t* corners, std::size_t count, std::size_t vertex_count,
                                 const Codes& codes) {
   constexpr hn::CappedTag<std::uint8_t, kBlock> kBytes;
-  HWY_ALIGN std::uint8_t own[3 * kBlock + 3 * hn::MaxLanes(kBytes)];
-  std::memcpy(own, corners, 3 * count);
   std::uint64_t bits = 0;
   for (std::size_t i = 0; i < count; i += hn::MaxLanes(kBytes)) {
     hn::Vec<hn::CappedTag<std::uint8_t, kBlock> > corner[3];
-    hn::LoadInterleaved3(kBytes, own + 3 * i, corner[0], corner[1], corner[2]);
+    hn::LoadInterleaved3(kBytes, corners + 3 * i, corner[0], corner[1], corner[2]);
     auto beyond = hn::Set(kBytes, std::uint8_t{0xFF});
     for (std::size_t k = 0; k < 3; ++k) {
       auto code = hn::Zero(kBytes);
@@ -361,7 +359,15 @@ HWY_NOINLINE bool load_block(const ContactScene& scene, std::size_t leaf_index, 
   find_sides(scene, leaf_index, box, codes);
   std::size_t count = 0;
   const Slots slots = slots_of(scene, leaf);
-  std::uint64_t bits = within(corners, left < kBlock ? left : kBlock, leaf.vertex_count, codes);
+  const std::uint8_t* known = corners;
+  std::uint8_t last[3 * kBlock];
+  if (3 * (first_triangle + kBlock) > scene.surface->corners.size) {  // the asset's last few
+    for (std::size_t i = 0; i < 3 * kBlock; ++i) {
+      last[i] = i < 3 * left ? corners[i] : std::uint8_t{0};
+    }
+    known = last;
+  }
+  std::uint64_t bits = within(known, left < kBlock ? left : kBlock, leaf.vertex_count, codes);
   if (bits == 0) {
     return false;
   }
@@ -477,8 +483,8 @@ struct Verdicts {
   std::uint64_t apart, meeting;
 };
 
-// One triangle against a vector of them, as exact_crossing.h does it.
-HWY_INLINE Verdicts judge(const Block& few, std::size_t one, const Block& many, std::size_t i) {
+// One triangle against a vector of them, as exact_crossing.h does it. Lanes that are not wanted may be left open.
+HWY_INLINE Verdicts judge(const Block& few, std::size_t one, const Block& many, std::size_t i, std::uint64_t wanted) {
   constexpr Floats kFloats;
   Vector3 a[3], b[3];
   for (std::size_t k = 0; k < 3; ++k) {
@@ -496,6 +502,10 @@ HWY_INLINE Verdicts judge(const Block& few, std::size_t one, const Block& many, 
   const Sides of_b(a[0], cross_product(subtract(a[1], a[0]), subtract(a[2], a[0])), b);
   const Sides of_a(b[0], cross_product(subtract(b[1], b[0]), subtract(b[2], b[0])), a);
   const LaneMask missed = hn::Or(of_b.miss(error), of_a.miss(error));
+  const std::uint64_t missed_bits = bits_of(missed);
+  if ((wanted & ~missed_bits) == 0) {
+    return {missed_bits, 0};
+  }
   const LaneMask known = hn::AndNot(missed, hn::And(of_b.known(error), of_a.known(error)));
   const LaneMask a_turns_b = of_a.put_alone_first(a), b_turns_a = of_b.put_alone_first(b);
   const Vector3 q = choose(b_turns_a, a[2], a[1]), r = choose(b_turns_a, a[1], a[2]);
@@ -506,7 +516,7 @@ HWY_INLINE Verdicts judge(const Block& few, std::size_t one, const Block& many, 
   const Vector negative = hn::Neg(error);
   const LaneMask before = hn::Or(hn::Gt(begins, error), hn::Lt(ends, negative));
   const LaneMask meet = hn::And(hn::Lt(begins, negative), hn::Gt(ends, error));
-  return {bits_of(hn::Or(missed, hn::And(known, before))), bits_of(hn::And(known, meet))};
+  return {missed_bits | bits_of(hn::And(known, before)), bits_of(hn::And(known, meet))};
 }
 
 // Each of `few` against all of `many`.
@@ -527,7 +537,7 @@ HWY_NOINLINE void pair_triangles(const Block& few, const Block& many, ContactCol
       if (bits == 0) {
         continue;
       }
-      const Verdicts verdicts = judge(few, one, many, i);
+      const Verdicts verdicts = judge(few, one, many, i, bits);
       for (bits &= ~verdicts.apart; bits != 0; bits &= bits - 1) {
         const std::size_t lane = lowest_bit(bits);
         decide(collector, {few.leaf, many.leaf, few.triangles[one], many.triangles[i + lane], few.corners_of(one),

@@ -3,9 +3,11 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <filesystem>
+#include <cmath>
+#include <limits>
 
 #include "moving_human.h"
+#include "spherechain/skin.h"
 #include "truth/intersections.h"
 #include "truth/truth.h"
 
@@ -74,4 +76,102 @@ TEST_CASE("the contacts of a body in motion are CGAL's: none missing, none extra
     CHECK(found.pairs == expected);
   }
   CHECK(total > 1000);
+}
+
+TEST_CASE("from bones the contacts are CGAL's of the positions the runtime skins, on every target") {
+  const MovingHuman& human = moving_human();
+  const Asset asset = human.asset();
+  std::size_t total = 0;
+  for (const auto& [name, deformation] : human.frames()) {
+    CAPTURE(name);
+    const std::vector<float> palette = human.palette(deformation);
+    SkinJob skin;
+    skin.asset = &asset;
+    skin.bones = {palette.data(), asset.bone_count()};
+    std::vector<float> positions = human.deformed(deformation);
+    skin.positions = positions.data();
+    skin.vertex_count = positions.size() / 3;
+    REQUIRE(skin.run() == Status::kOk);
+    const Pairs expected = expected_contacts(human, positions, asset);
+    total += expected.size();
+    for (const Target target : supported_targets()) {
+      CAPTURE(to_string(target));
+      TriangleContactJob job;
+      job.asset = &asset;
+      job.bones = skin.bones;
+      job.target = target;
+      CHECK(run(job).pairs == expected);
+      TriangleContactJob from_vertices = job_of(asset, positions);
+      from_vertices.target = target;
+      CHECK(run(from_vertices).pairs == expected);
+    }
+  }
+  CHECK(total > 1000);
+}
+
+TEST_CASE("summaries, segments and shortened lists agree with the list of all pairs") {
+  const MovingHuman& human = moving_human();
+  const Asset asset = human.asset();
+  std::size_t shortened = 0;
+  for (const auto& [name, deformation] : human.frames()) {
+    const std::vector<float> positions = human.deformed(deformation);
+    const Found all = run(job_of(asset, positions));
+    std::size_t counted = 0;
+    for (const SphereContact& contact : all.sphere_contacts) counted += contact.count;
+    CHECK(counted == all.pairs.size());
+    CHECK(std::is_sorted(all.sphere_contacts.begin(), all.sphere_contacts.end()));
+    float deepest = 0, deepest_of_spheres = 0;
+    for (std::size_t i = 0; i < all.pairs.size(); ++i) {
+      CHECK(all.contacts[i].triangles == all.pairs[i]);
+      deepest = std::max(deepest, all.contacts[i].overlap.depth);
+    }
+    for (const SphereContact& contact : all.sphere_contacts) {
+      deepest_of_spheres = std::max(deepest_of_spheres, contact.deepest.overlap.depth);
+    }
+    CHECK(deepest == deepest_of_spheres);
+    if (all.pairs.size() < 2) continue;
+    ++shortened;
+    std::vector<std::uint64_t> words(TriangleContactContext::words_needed(asset));
+    TriangleContactContext context{{words.data(), words.size()}};
+    Pairs first(all.pairs.size() / 2);
+    TriangleContactJob job = job_of(asset, positions);
+    job.context = &context;
+    job.pairs = {first.data(), first.size()};
+    CHECK(job.run() == Status::kOverflow);
+    CHECK(job.pair_count == all.pairs.size());
+    CHECK(std::equal(first.begin(), first.end(), all.pairs.begin()));
+  }
+  CHECK(shortened > 5);
+}
+
+TEST_CASE("positions that are not finite take their own triangles out, and nothing else") {
+  const MovingHuman& human = moving_human();
+  const Asset asset = human.asset();
+  const auto frames = human.frames();
+  for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    for (const auto& [name, deformation] : frames) {
+      std::vector<float> positions = human.deformed(deformation);
+      const Found sound = run(job_of(asset, positions));
+      if (sound.pairs.empty()) continue;
+      const auto& spoiled = human.bake.character.source_triangles[sound.pairs[0].a];
+      for (const auto vertex : spoiled) positions[3 * vertex + 1] = bad;
+      Pairs expected;
+      const auto is_touched = [&](std::uint32_t triangle) {
+        for (const auto vertex : human.bake.character.source_triangles[triangle]) {
+          for (std::size_t axis = 0; axis < 3; ++axis) {
+            if (!std::isfinite(positions[3 * vertex + axis])) return true;
+          }
+        }
+        return false;
+      };
+      for (const TrianglePair& pair : sound.pairs) {
+        if (!is_touched(pair.a) && !is_touched(pair.b)) expected.push_back(pair);
+      }
+      for (const Target target : supported_targets()) {
+        TriangleContactJob job = job_of(asset, positions);
+        job.target = target;
+        CHECK(run(job).pairs == expected);
+      }
+    }
+  }
 }
