@@ -34,7 +34,7 @@ struct ContactScene {
   BoxColumns spheres, leaves;
   std::uint32_t* first_leaf = nullptr;  // a sphere's, and the end
   std::uint8_t* is_loaded = nullptr;    // a leaf's: are its vertices below, and its box exact?
-  float* slots = nullptr;               // x, y, z of a leaf's vertices, as in Surface::slot_positions
+  float* slots = nullptr;               // x, y, z of a leaf's vertices, of leaf after leaf
   Sphere* balls = nullptr;              // from bones: around the leaves
   float* ball_columns[4] = {};          // the same by coordinates, the radius last
 };

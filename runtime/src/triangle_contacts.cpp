@@ -55,7 +55,8 @@ void lay_out(const Asset& asset, Scratch& scratch, ContactScene& scene) {
   }
   scene.first_leaf = scratch.take<std::uint32_t>(scene.sphere_count + 1);
   scene.is_loaded = scratch.take<std::uint8_t>(surface.leaves.size);
-  scene.slots = scratch.take_aligned<float>(surface.slot_positions.size + kContactPadding);
+  scene.slots = scratch.take_aligned<float>(surface.slot_positions.size +
+                                            3 * (kSlotLanes * surface.leaves.size + kContactPadding));
   if (asset.bone_count() == 0) {
     return;
   }

@@ -193,10 +193,16 @@ struct Slots {
   std::size_t count;
 };
 
-HWY_INLINE Slots slots_of(const ContactScene& scene, const Leaf& leaf) {
-  const std::size_t count = (leaf.vertex_count + kSlotLanes - 1) / kSlotLanes * kSlotLanes;
-  float* first = scene.slots + 3 * std::size_t{leaf.first_slot};
-  return {{first, first + count, first + 2 * count}, count};
+// Each axis starts at a multiple of kContactPadding floats. A leaf's slots, a multiple of half of that, are rounded up
+// to one: half of it for each leaf before is room enough.
+HWY_INLINE Slots slots_of(const ContactScene& scene, std::size_t leaf_index) {
+  static_assert(2 * kSlotLanes == kContactPadding, "half of it");
+  constexpr std::size_t kWhole = kContactPadding;
+  const Leaf& leaf = scene.surface->leaves.data[leaf_index];
+  const std::size_t room = (leaf.vertex_count + kWhole - 1) / kWhole * kWhole;
+  const std::size_t place = (leaf.first_slot + kSlotLanes * leaf_index + kWhole - 1) / kWhole * kWhole;
+  float* first = scene.slots + 3 * place;
+  return {{first, first + room, first + 2 * room}, (leaf.vertex_count + kSlotLanes - 1) / kSlotLanes * kSlotLanes};
 }
 
 // Where it is not yet: a leaf's vertices from the source's.
@@ -206,7 +212,7 @@ HWY_NOINLINE void gather(const ContactScene& scene, std::size_t leaf_index) {
   }
   scene.is_loaded[leaf_index] = 1;
   const Leaf& leaf = scene.surface->leaves.data[leaf_index];
-  const Slots slots = slots_of(scene, leaf);
+  const Slots slots = slots_of(scene, leaf_index);
   const std::uint32_t* vertices = scene.surface->leaf_vertices.data + leaf.first_vertex;
   const std::uint32_t* source = scene.surface->source_vertices.data;
   for (std::size_t i = 0; i < leaf.vertex_count; ++i) {
@@ -224,7 +230,7 @@ HWY_NOINLINE void skin(const ContactScene& scene, std::size_t leaf_index) {
   }
   scene.is_loaded[leaf_index] = 1;
   const Leaf& leaf = scene.surface->leaves.data[leaf_index];
-  const Slots slots = slots_of(scene, leaf);
+  const Slots slots = slots_of(scene, leaf_index);
   skin_leaf(scene.skin, leaf, slots.axes[0], slots.axes[1], slots.axes[2]);
   constexpr hn::CappedTag<float, kSlotLanes> kSlots;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -273,7 +279,7 @@ HWY_INLINE void find_sides(const ContactScene& scene, std::size_t leaf_index, co
   constexpr Floats kFloats;
   const hn::Rebind<std::int32_t, Floats> integers;
   const hn::Rebind<std::uint8_t, Floats> bytes;
-  const Slots slots = slots_of(scene, scene.surface->leaves.data[leaf_index]);
+  const Slots slots = slots_of(scene, leaf_index);
   for (std::size_t i = 0; i < slots.count; i += kLanes) {
     auto code = hn::Zero(integers);
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -358,7 +364,7 @@ HWY_NOINLINE bool load_block(const ContactScene& scene, std::size_t leaf_index, 
   HWY_ALIGN Codes codes;
   find_sides(scene, leaf_index, box, codes);
   std::size_t count = 0;
-  const Slots slots = slots_of(scene, leaf);
+  const Slots slots = slots_of(scene, leaf_index);
   const std::uint8_t* known = corners;
   std::uint8_t last[3 * kBlock];
   if (3 * (first_triangle + kBlock) > scene.surface->corners.size) {  // the asset's last few

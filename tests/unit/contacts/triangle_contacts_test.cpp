@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -20,12 +21,31 @@ using Pairs = std::vector<TrianglePair>;
 
 // CGAL's, less what the runtime leaves out.
 Pairs expected_contacts(const MovingHuman& human, const std::vector<float>& positions, const Asset& asset) {
-  static const baker::Surface surface = baker::surface_of(asset, human.bake.character);
-  static const std::vector<baker::TrianglePair> rest = baker::find_intersections(surface, human.rest_positions()).pairs;
-  const baker::FrameTruth truth = baker::judge(baker::find_intersections(surface, positions), rest, surface, asset);
+  static const baker::TruthSurface surface = baker::surface_of(asset, human.bake.character);
+  static const std::vector<TrianglePair> rest = baker::find_intersections(surface, human.rest_positions()).pairs;
+  const baker::FrameTruth truth =
+      baker::judge(baker::find_intersections(surface, positions), rest, surface,
+                   [&](std::uint32_t a, std::uint32_t b) { return baker::is_ignored(asset, a, b); });
   Pairs out;
   for (const auto& pair : truth.pairs) out.push_back({pair.a, pair.b});
   return out;
+}
+
+// The source vertices whose positions the runtime reads for a source triangle.
+std::array<std::uint32_t, 3> vertices_of(const Asset& asset, std::uint32_t source_triangle) {
+  const spherechain::Surface& surface = asset.surface();
+  for (const Leaf& leaf : surface.leaves) {
+    for (std::size_t t = leaf.first_triangle; t < std::size_t{leaf.first_triangle} + leaf.triangle_count; ++t) {
+      if (asset.triangles()[t] == source_triangle) {
+        const auto vertex = [&](std::size_t k) {
+          return surface.source_vertices[surface.leaf_vertices[leaf.first_vertex + surface.corners[3 * t + k]]];
+        };
+        return {vertex(0), vertex(1), vertex(2)};
+      }
+    }
+  }
+  FAIL("no such triangle");
+  return {};
 }
 
 struct Found {
@@ -153,11 +173,10 @@ TEST_CASE("positions that are not finite take their own triangles out, and nothi
       std::vector<float> positions = human.deformed(deformation);
       const Found sound = run(job_of(asset, positions));
       if (sound.pairs.empty()) continue;
-      const auto& spoiled = human.bake.character.source_triangles[sound.pairs[0].a];
-      for (const auto vertex : spoiled) positions[3 * vertex + 1] = bad;
+      for (const auto vertex : vertices_of(asset, sound.pairs[0].a)) positions[3 * vertex + 1] = bad;
       Pairs expected;
       const auto is_touched = [&](std::uint32_t triangle) {
-        for (const auto vertex : human.bake.character.source_triangles[triangle]) {
+        for (const auto vertex : vertices_of(asset, triangle)) {
           for (std::size_t axis = 0; axis < 3; ++axis) {
             if (!std::isfinite(positions[3 * vertex + axis])) return true;
           }
