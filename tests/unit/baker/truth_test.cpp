@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <limits>
 
 #include "baked_human.h"
@@ -141,6 +142,8 @@ TEST_CASE("intersections are found once a pose and kept in files; a broken file 
   folder.write("a/b/" + crossing_file.filename().string(), "hello");
   CHECK(find(crossing).size() == 1);
   CHECK(fs::file_size(crossing_file) == size);
+  std::fstream(crossing_file, std::ios::in | std::ios::out | std::ios::binary).seekp(-66, std::ios::end).put('x');
+  CHECK(find(crossing).front() == TrianglePair{0, 1});
   // A whole file is believed: the search was not made again.
   fs::copy_file(apart_file, crossing_file, fs::copy_options::overwrite_existing);
   CHECK(find(crossing).empty());
