@@ -42,7 +42,7 @@ struct ValidateOptions {
 ExitCode run_validate(const ValidateOptions& options);
 
 struct ViewOptions {
-  std::string asset, source, output, report;
+  std::string asset, source, output, report, validation;
   MotionChoice motion;
   FrameChoice frames;
   std::string radius = "detect";

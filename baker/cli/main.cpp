@@ -129,6 +129,7 @@ int main(int argc, char** argv) {
   add_motion(*view_command, view.motion, view.frames);
   add_radius(*view_command, view.radius);
   view_command->add_option("--report", view.report, "The report that bake wrote, to show in the page");
+  view_command->add_option("--validation", view.validation, "What validate --json wrote, to show in the page");
   view_command->add_flag("--force", view.force, "Replace an output file that is not a page");
   view_command->callback([&] { run = [&] { return run_view(view); }; });
 

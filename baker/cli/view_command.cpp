@@ -31,6 +31,16 @@ std::string read_report(const std::string& file) {
   return text;
 }
 
+std::string read_validation(const std::string& file) {
+  if (file.empty()) return {};
+  std::string text = read_file(file);
+  const nlohmann::json found = nlohmann::json::parse(text, nullptr, false);
+  if (!found.is_object() || !found.contains("worst_misses") || !found.contains("m2")) {
+    throw Error(ExitCode::kFile, file + ": is not what validate --json writes");
+  }
+  return text;
+}
+
 }  // namespace
 
 ExitCode run_view(const ViewOptions& options) {
@@ -39,6 +49,7 @@ ExitCode run_view(const ViewOptions& options) {
   PageOptions page;
   page.template_file = viewer_template().string();
   page.report = read_report(options.report);
+  page.validation = read_validation(options.validation);
   page.title = fs::path(options.asset).filename().string();
   page.radius = options.radius == "fit" ? RadiusKind::kFit : RadiusKind::kDetect;
   const AnimatedAsset animated(options.asset, options.source, options.motion, options.frames);

@@ -128,6 +128,10 @@ ordered_json pivot_triangles_json(const AnimatedAsset& animated) {
   return out;
 }
 
+ordered_json parsed_or_null(const std::string& text) {
+  return text.empty() ? ordered_json() : ordered_json::parse(text);
+}
+
 ordered_json ignored_json(const Asset& asset) {
   ordered_json out = ordered_json::array();
   std::size_t bit = 0;
@@ -201,7 +205,8 @@ std::string view_page(const AnimatedAsset& animated, const PageOptions& options,
                           {"sphere_f", sphere_f_json(animated)},
                           {"pivot_triangles", pivot_triangles_json(animated)},
                           {"ignored", ignored_json(animated.asset())},
-                          {"report", options.report.empty() ? ordered_json() : ordered_json::parse(options.report)},
+                          {"report", parsed_or_null(options.report)},
+                          {"validation", parsed_or_null(options.validation)},
                           {"motion", options.motion},
                           {"radius", options.radius == RadiusKind::kFit ? "fit" : "detect"},
                           {"frames", frames_json(animated, options, progress)}};

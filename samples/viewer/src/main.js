@@ -1,5 +1,6 @@
 import 'uplot/dist/uPlot.min.css';
 import './style.css';
+import { fillAccuracyPanel } from './accuracy_panel.js';
 import { fillBakePanel } from './bake_panel.js';
 import { fillCharts } from './charts.js';
 import { fillContacts } from './contacts.js';
@@ -167,13 +168,15 @@ function start(model) {
   }
 
   fillControls($('controls'), store, model);
-  fillContacts($('contacts'), store, model, (a, b) => {
+  const flyTo = (a, b) => {
     const { frame, radius } = store.state;
     stage?.flyTo(model.sphere(frame, a, radius), model.sphere(frame, b, radius));
-  });
+  };
+  fillContacts($('contacts'), store, model, flyTo);
   fillSpherePanel($('sphere'), store, model);
   const timeline = fillTimeline($('timeline'), store, model);
   fillCharts($('charts'), store, model);
+  fillAccuracyPanel($('accuracy'), store, model, flyTo);
   fillBakePanel($('bake'), model);
   bindTabs();
   const reset = () => {

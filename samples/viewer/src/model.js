@@ -86,6 +86,7 @@ export function readModel(text) {
     height: data.frame.height,
     inspect: data.inspect,
     report: data.report,
+    validation: data.validation ?? null,
     radius: data.radius,
     regions: data.inspect.regions.map((region) => ({ ...region, label: words(region.name) })),
     spheres,

@@ -230,6 +230,26 @@ test('the bake panel shows report and provenance', async () => {
   assert.match(await page.locator('#bake').innerText(), /stage\s+seconds/);
 });
 
+test('the worst misses lead to their frame', async () => {
+  const page = await fresh();
+  await page.locator('#tab-accuracy').click();
+  const { validation, play } = pages.arms;
+  assert.ok(validation.worst_misses.length > 1);
+  assert.ok((await page.locator('#accuracy').innerText()).includes(`${(100 * validation.m2.pair_recall).toFixed(2)} %`));
+  const misses = page.locator('.miss');
+  assert.equal(await misses.count(), validation.worst_misses.length);
+  const far = await picture(page);
+  for (const i of [1, 0]) {
+    await misses.nth(i).click();
+    const { time, spheres } = validation.worst_misses[i];
+    const frame = await page.evaluate(() => spherechainViewer.frame);
+    const away = (f) => Math.abs(play[f].time - time);
+    assert.ok(play.every((_, f) => away(frame) <= away(f)), `frame ${frame} is nearest to ${time} s`);
+    assert.match(await misses.nth(i).getAttribute('aria-label'), new RegExp(`^frame ${frame}: ${spheres[0]} .* and ${spheres[1]} `));
+  }
+  assert.ok((await compare(page, far, await picture(page))).differing > 0.05, 'flies there');
+});
+
 for (const [width, height] of [[1280, 720], [820, 1180]]) {
   test(`all is in place at ${width} x ${height}, light and dark`, async () => {
     const light = {};
@@ -252,7 +272,7 @@ for (const [width, height] of [[1280, 720], [820, 1180]]) {
           assert.ok(a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top, 'two panels overlap');
         }
       });
-      for (const tab of ['charts', 'bake', 'contacts']) {
+      for (const tab of ['charts', 'accuracy', 'bake', 'contacts']) {
         await page.locator(`#tab-${tab}`).click();
         const wide = await page
           .locator('#controls, #sphere, [role=tabpanel]:not([hidden]), header, .chip')
@@ -333,7 +353,7 @@ for (const [what, make] of Object.entries(odd)) {
   test(`the page lives with ${what}`, async () => {
     const opened = await open(browser, make(), { width: 1010, height: 400 });
     const { page } = opened;
-    for (const tab of ['charts', 'bake', 'contacts']) await page.locator(`#tab-${tab}`).click();
+    for (const tab of ['charts', 'accuracy', 'bake', 'contacts']) await page.locator(`#tab-${tab}`).click();
     for (const key of ['b', 'End', 'p', 'n', 'c', 'u', ' ', ' ', '2', '1']) await page.keyboard.press(key);
     const before = await picture(page);
     await page.keyboard.press('s');

@@ -14,9 +14,10 @@ export function makePages({ tool, human, poses, folder }) {
   run('bake', human, '-o', asset, '--report', file('report.json'));
   const motions = ['arms', 'legs'].map((name) => {
     const motion = ['--source', human, '--poses', join(poses, `animation_${name}.json`), '--frames', '40'];
-    run('view', asset, ...motion, '--report', file('report.json'), '-o', file(`${name}.html`));
+    run('validate', asset, ...motion.slice(0, -1), '9', '--radius', 'fit', '--json', file('validation.json'));
+    run('view', asset, ...motion, '--report', file('report.json'), '--validation', file('validation.json'), '-o', file(`${name}.html`));
     run('play', asset, ...motion, '--json', file(`${name}.json`));
-    return { page: file(`${name}.html`), play: readJson(`${name}.json`).frames };
+    return { page: file(`${name}.html`), play: readJson(`${name}.json`).frames, validation: readJson('validation.json') };
   });
   run('view', asset, '--source', human, '--frames', '1', '-o', file('rest.html'));
   return {

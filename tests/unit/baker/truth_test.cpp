@@ -113,6 +113,9 @@ TEST_CASE("how near two regions are is the distance of their faces, edges and co
     CHECK(!closer(second, 0.49));
   }
   CHECK(closer({1, 1, -1, 1, 1, 1, 2, 1, 1}, 1e-9));
+  // Beside the slanting edge: the boxes overlap.
+  CHECK(closer({3, 3, 0, 3, 3, 1, 3.5F, 3.5F, 0}, 1.42));
+  CHECK(!closer({3, 3, 0, 3, 3, 1, 3.5F, 3.5F, 0}, 1.41));
 }
 
 TEST_CASE("intersections are found once a pose and kept in files; a broken file is not believed and is replaced") {
