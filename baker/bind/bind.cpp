@@ -4,16 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 #include <string>
 
+#include "bind/neighbours.h"
 #include "mesh/error.h"
 #include "mesh/surface_query.h"
 
 namespace spherechain::baker {
 namespace {
-
-using IdPair = std::pair<std::uint32_t, std::uint32_t>;
 
 // Section 5.1: a triangle belongs to the sphere closest to it, here of its own region.
 std::vector<std::uint32_t> assign_triangles(const Mesh& mesh, const std::vector<std::uint8_t>& region_of_triangle,
@@ -69,22 +67,12 @@ std::vector<bool> loose_triangles(const Character& character, double height) {
   return of_triangle;
 }
 
-// Pairs whose triangles share an edge.
-void add_touching(const Mesh& mesh, const std::vector<std::uint32_t>& owner, std::set<IdPair>& pairs) {
-  const std::vector<std::array<Index, 3>> neighbours = triangle_neighbours(mesh);
-  for (std::size_t t = 0; t < neighbours.size(); ++t) {
-    for (const Index n : neighbours[t]) {
-      if (n != kNoIndex && owner[t] != owner[n]) pairs.insert(std::minmax(owner[t], owner[n]));
-    }
-  }
-}
-
-// Neighbours on the body: linked, or with touching regions, on the skin or, across its gaps, on the body.
-std::set<IdPair> find_ignored(const Character& character, const Regions& regions, const Spheres& spheres,
-                              const std::vector<std::uint32_t>& owner) {
-  std::set<IdPair> ignored(spheres.links.begin(), spheres.links.end());
-  add_touching(character.skin, owner, ignored);
-  add_touching(character.body, assign_triangles(character.body, regions.of_triangle, spheres), ignored);
+// Neighbours on the body: linked, or with neighbouring regions, on the skin or, across its gaps, on the body.
+SpherePairs find_ignored(const Character& character, const Regions& regions, const Spheres& spheres,
+                         const std::vector<std::uint32_t>& owner, double gap) {
+  SpherePairs ignored(spheres.links.begin(), spheres.links.end());
+  add_neighbours(character.skin, owner, gap, ignored);
+  add_neighbours(character.body, assign_triangles(character.body, regions.of_triangle, spheres), gap, ignored);
   return ignored;
 }
 
@@ -161,8 +149,8 @@ BoundSphere bind_sphere(const Mesh& mesh, const std::vector<Index>& surrounding,
 }
 
 // Pairs that touch at rest, or would soon, are reported where they have come nearer than that.
-std::vector<BoundPair> find_near(const std::vector<BoundSphere>& spheres, const std::set<IdPair>& ignored,
-                                 double fraction, double BoundSphere::*detect) {
+std::vector<BoundPair> find_near(const std::vector<BoundSphere>& spheres, const SpherePairs& ignored, double fraction,
+                                 double BoundSphere::*detect) {
   std::vector<BoundPair> near;
   for (std::uint32_t a = 0; a < spheres.size(); ++a) {
     for (std::uint32_t b = a + 1; b < spheres.size(); ++b) {
@@ -203,7 +191,8 @@ Binding bind_spheres(const Character& character, const Regions& regions, const S
     }
     out.spheres.push_back(std::move(bound));
   }
-  const std::set<IdPair> ignored = find_ignored(character, regions, spheres, out.sphere_of_triangle);
+  const SpherePairs ignored =
+      find_ignored(character, regions, spheres, out.sphere_of_triangle, settings.neighbour_gap * regions.frame.height);
   out.ignored.assign(ignored.begin(), ignored.end());
   out.near_fit = find_near(out.spheres, ignored, settings.near_fraction, nullptr);
   out.near_detect = find_near(out.spheres, ignored, settings.near_fraction, &BoundSphere::detect_radius);

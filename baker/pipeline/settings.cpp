@@ -130,6 +130,7 @@ BakeSettings make_settings(const std::string& profile, const std::string& text, 
   reader.integer("pivots", settings.bind.pivots, paper ? 2 : 4, 16);
   reader.number("detect_quantile", settings.bind.detect_quantile, 0, 1);
   reader.number("near_fraction", settings.bind.near_fraction, 0, 0.99);
+  reader.number("neighbour_gap", settings.bind.neighbour_gap, 0, 1);
   if (const json* leaves = reader.object("leaves")) {
     if (!leaves->is_object()) reader.fail("leaves", "is not an object");
     Reader inner(*leaves, file + ": leaves");
@@ -170,6 +171,7 @@ std::string to_json(const BakeSettings& settings) {
   out["pivots"] = settings.bind.pivots;
   out["detect_quantile"] = settings.bind.detect_quantile;
   out["near_fraction"] = settings.bind.near_fraction;
+  out["neighbour_gap"] = settings.bind.neighbour_gap;
   out["leaves"] = {{"triangles", settings.leaves.triangles}};
   json targets = json::object();
   if (settings.targets.max_spheres) targets["max_spheres"] = *settings.targets.max_spheres;

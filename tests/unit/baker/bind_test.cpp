@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bind/bind.h"
+#include "bind/neighbours.h"
 
 #include <doctest/doctest.h>
 
@@ -181,6 +182,51 @@ TEST_CASE("surrounding regions that share an edge are ignored, whatever the link
                              std::pair(*owners.begin(), *owners.rbegin())));
   }
   CHECK(shared > 100);
+}
+
+TEST_CASE("neighbours within a gap are counted along the mesh, not through space") {
+  // A strip of four regions, three squares long each, flat or folded in the middle so that its ends lie on each other.
+  for (const bool folded : {false, true}) {
+    Mesh strip;
+    std::vector<std::uint32_t> owner;
+    for (int x = 0; x <= 12; ++x) {
+      for (int y = 0; y <= 2; ++y) strip.positions.emplace_back(folded && x > 6 ? 12 - x : x, y, 0);
+    }
+    for (Index x = 0; x < 12; ++x) {
+      for (Index y = 0; y < 2; ++y) {
+        const Index v = 3 * x + y;
+        strip.triangles.push_back({v, v + 3, v + 1});
+        strip.triangles.push_back({v + 1, v + 3, v + 4});
+        owner.insert(owner.end(), 2, x / 3);
+      }
+    }
+    const auto within = [&](double gap) {
+      SpherePairs pairs;
+      add_neighbours(strip, owner, gap, pairs);
+      return pairs;
+    };
+    const SpherePairs touching{{0, 1}, {1, 2}, {2, 3}}, next_but_one{{0, 1}, {0, 2}, {1, 2}, {1, 3}, {2, 3}};
+    CHECK(within(0) == touching);
+    CHECK(within(2.9) == touching);
+    CHECK(within(3.1) == next_but_one);
+    CHECK(within(5.9) == next_but_one);
+    CHECK(within(6.1).size() == 6);
+  }
+}
+
+TEST_CASE("a gap makes more neighbours of a body, and none of what touches only in space") {
+  const Bake& bake = baked_human();
+  BindSettings settings;
+  settings.neighbour_gap = 0.03;
+  const auto wide = bind_spheres(bake.character, bake.regions, bake.spheres, settings).ignored;
+  CHECK(std::includes(wide.begin(), wide.end(), bake.binding.ignored.begin(), bake.binding.ignored.end()));
+  CHECK(wide.size() > bake.binding.ignored.size() + 10);
+  for (const auto& [a, b] : wide) {
+    const std::size_t one = bake.spheres.spheres[a].region, other = bake.spheres.spheres[b].region;
+    // The hands hang by the thighs, and are far from them all the same. Thighs do meet, at the crotch.
+    const bool with_arm = one < 2 || other < 2;
+    if (with_arm && one != other) CHECK((one == kTorso || other == kTorso));
+  }
 }
 
 TEST_CASE("every pair that is not ignored is reported only nearer than three quarters of its rest distance") {
