@@ -148,5 +148,6 @@ void fuzz_filter(Case& c);
 void fuzz_detect(Case& c);
 void fuzz_contacts(Case& c);
 void fuzz_crowd(Case& c);
+void fuzz_triangle_contacts(Case& c);
 
 }  // namespace spherechain::test

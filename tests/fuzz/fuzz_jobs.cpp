@@ -18,11 +18,17 @@ struct Kind {
   const char* name;
   void (*fuzz)(Case& c);
 };
-constexpr Kind kKinds[] = {{"open", fuzz_open},         {"accessors", fuzz_accessors},
-                           {"refit", fuzz_refit},       {"refit from bones", fuzz_refit_bones},
-                           {"filter", fuzz_filter},     {"detect", fuzz_detect},
-                           {"contacts", fuzz_contacts}, {"crowd", fuzz_crowd},
-                           {"cover", fuzz_cover},       {"skin", fuzz_skin}};
+constexpr Kind kKinds[] = {{"open", fuzz_open},
+                           {"accessors", fuzz_accessors},
+                           {"refit", fuzz_refit},
+                           {"refit from bones", fuzz_refit_bones},
+                           {"filter", fuzz_filter},
+                           {"detect", fuzz_detect},
+                           {"contacts", fuzz_contacts},
+                           {"crowd", fuzz_crowd},
+                           {"cover", fuzz_cover},
+                           {"skin", fuzz_skin},
+                           {"triangle contacts", fuzz_triangle_contacts}};
 constexpr std::size_t kKindCount = sizeof kKinds / sizeof kKinds[0];
 
 bool read_number(int argc, char** argv, int& i, const char* name, std::uint64_t& number) {
