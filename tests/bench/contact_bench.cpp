@@ -64,7 +64,7 @@ struct Contestant {
 
 class ContactBench {
  public:
-  ContactBench(std::size_t pose_count, int passes, bool with_peers, const std::string& settings) {
+  ContactBench(std::size_t pose_count, int passes, bool with_peers, bool with_fcl, const std::string& settings) {
     load(human_, "human", settings, pose_count);
     mesh_ = std::make_unique<ContactMesh>(human_);
     for (std::size_t i = 0; i < human_.poses.size(); ++i) {
@@ -77,6 +77,8 @@ class ContactBench {
     add(cgal_contact_finders(*mesh_), with_peers ? 3 : 0, true);
     if (with_peers) {
       add(embree_contact_finders(*mesh_), 3, true);
+    }
+    if (with_fcl) {
       add(fcl_contact_finders(*mesh_), 1, true);
     }
     compare();
@@ -206,18 +208,19 @@ int main(int argc, char** argv) {
   CLI::App app{"Times exact triangle contacts against peers: goal P6"};
   std::size_t pose_count = 121;
   int passes = 31;
-  bool alone = false;
+  bool alone = false, with_fcl = false;
   std::string json, settings = "{}";
   app.add_option("--poses", pose_count, "Real poses, over eleven motions")->capture_default_str();
   app.add_option("--passes", passes, "Of the runtime over the poses; peers make 3, FCL 1")
       ->capture_default_str()
       ->check(CLI::Range(1, 100000));
   app.add_flag("--alone", alone, "Without timing peers");
+  app.add_flag("--fcl", with_fcl, "With FCL, which takes seconds for some poses: choose few");
   app.add_option("--settings", settings, "JSON: the bake's")->capture_default_str();
   app.add_option("--json", json, "File to write the table to as well");
   CLI11_PARSE(app, argc, argv);
   try {
-    const Table table = std::make_unique<ContactBench>(pose_count, passes, !alone, settings)->table();
+    const Table table = std::make_unique<ContactBench>(pose_count, passes, !alone, with_fcl, settings)->table();
     table.print();
     if (!json.empty()) {
       table.write_json(json);
