@@ -107,6 +107,8 @@ std::string validation_json(const Validation& validation, const AnimatedAsset& a
   if (settings.contacts) {
     out["contacts_missing"] = validation.contacts.missing;
     out["contacts_extra"] = validation.contacts.extra;
+    out["contacts_from_bones"] = {{"missing", validation.contacts_from_bones.missing},
+                                  {"extra", validation.contacts_from_bones.extra}};
   }
   out["m1"] = score_json(validation.m1);
   out["m2"] = score_json(validation.m2);
@@ -153,8 +155,9 @@ std::string validation_text(const Validation& validation, const AnimatedAsset& a
   out += fmt::format("reported         {:.2f} pairs a frame\n", score.reported_per_frame());
   out += fmt::format("missed depth     {:.2f} % of the height\n", 100 * score.missed_depth / height);
   if (settings.contacts) {
-    out +=
-        fmt::format("contacts         {} missing, {} extra\n", validation.contacts.missing, validation.contacts.extra);
+    out += fmt::format("contacts         {} missing, {} extra; from bones {} missing, {} extra\n",
+                       validation.contacts.missing, validation.contacts.extra, validation.contacts_from_bones.missing,
+                       validation.contacts_from_bones.extra);
   }
   if (!validation.misses.empty()) out += "\nworst misses: frame, spheres, triangle pairs, depth in % of the height\n";
   for (std::size_t i = 0; i < std::min<std::size_t>(shown_misses(validation), 5); ++i) {

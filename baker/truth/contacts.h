@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include "import/import.h"
+#include "motion/motion.h"
 #include "spherechain/asset.h"
 #include "spherechain/simd.h"
 #include "spherechain/surface.h"
@@ -12,6 +14,14 @@ namespace spherechain::baker {
 // The triangle pairs the runtime's narrow phase finds in deformed source vertices (x, y, z after another); sorted. The
 // asset must have leaves.
 std::vector<TrianglePair> find_contacts(const Asset& asset, const std::vector<float>& positions, Target target);
+
+// The same from the matrices of bones and the morphs' weights alone, for an asset that bones move.
+struct ContactsFromBones {
+  std::vector<float> positions;     // where the runtime has the source vertices: what it decided on
+  std::vector<TrianglePair> pairs;  // sorted
+};
+ContactsFromBones find_contacts_from_bones(const Asset& asset, const Character& character,
+                                           const Deformation& deformation, Target target);
 
 // What two sorted lists do not have in common.
 struct ContactErrors {

@@ -23,7 +23,7 @@ struct Frame {
   Score score, m1, m2;
   std::vector<Miss> misses;
   std::vector<CurvePoint> curve;
-  ContactErrors contacts;
+  ContactErrors contacts, contacts_from_bones;
   std::vector<CapsulePoint> capsules;
 };
 
@@ -107,6 +107,11 @@ std::vector<Pair> reported_pairs(Player& player, const std::vector<float>& posit
   return {player.pairs().begin(), player.pairs().end()};
 }
 
+// Whole meshes as poses have no bones.
+bool moved_by_bones(const Asset& asset, const Deformation& deformation) {
+  return asset.bone_count() > 0 && deformation.positions.empty();
+}
+
 Frame validate_frame(const Context& context, int index) {
   const AnimatedAsset& animated = context.animated;
   const TruthSurface& surface = context.surface;
@@ -123,8 +128,8 @@ Frame validate_frame(const Context& context, int index) {
   };
 
   Frame frame;
-  frame.truth = judge(found, context.rest_pairs, surface,
-                      [&](std::uint32_t a, std::uint32_t b) { return is_ignored(animated.asset(), a, b); });
+  const auto ignored = [&](std::uint32_t a, std::uint32_t b) { return is_ignored(animated.asset(), a, b); };
+  frame.truth = judge(found, context.rest_pairs, surface, ignored);
   Player m1(animated.asset(), settings.radius, true, false, settings.target),
       m2(animated.asset(), settings.radius, false, true, settings.target);
   const std::vector<Pair> m1_pairs = reported_pairs(m1, positions), m2_pairs = reported_pairs(m2, positions);
@@ -137,6 +142,14 @@ Frame validate_frame(const Context& context, int index) {
   frame.capsules = score_ragdolls(context, found, frame.truth, positions, deformation);
   if (settings.contacts) {
     frame.contacts = compare(find_contacts(animated.asset(), positions, settings.target), frame.truth.pairs);
+    if (moved_by_bones(animated.asset(), deformation)) {
+      // Exact contacts of these very positions, which differ from the baker's by rounding.
+      const ContactsFromBones of_bones =
+          find_contacts_from_bones(animated.asset(), animated.character(), deformation, settings.target);
+      const FrameTruth truth =
+          judge(context.intersections.find(of_bones.positions), context.rest_pairs, surface, ignored);
+      frame.contacts_from_bones = compare(of_bones.pairs, truth.pairs);
+    }
   }
   return frame;
 }
@@ -173,6 +186,8 @@ Validation validate(const AnimatedAsset& animated, const ValidateSettings& setti
     add(out.capsule_curve, frame.capsules);
     out.contacts.missing += frame.contacts.missing;
     out.contacts.extra += frame.contacts.extra;
+    out.contacts_from_bones.missing += frame.contacts_from_bones.missing;
+    out.contacts_from_bones.extra += frame.contacts_from_bones.extra;
     regions.add(frame.truth, frame.reported);
     chains.add(frame.truth, frame.reported);
     out.misses.insert(out.misses.end(), frame.misses.begin(), frame.misses.end());

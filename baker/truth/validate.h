@@ -44,8 +44,9 @@ struct Validation {
   std::size_t raw_pairs = 0, rest = 0, same_sphere = 0, ignored = 0, degenerate = 0;  // see FrameTruth
   Score score;                                                                        // of the method asked for
   std::vector<Miss> misses;                                                           // the deepest first
-  ContactErrors contacts;
-  Score m1, m2;  // depth not measured
+  ContactErrors contacts;                                                             // from vertices
+  ContactErrors contacts_from_bones;  // from matrices alone, in the frames that bones move
+  Score m1, m2;                       // depth not measured
   std::vector<CurvePoint> curve;
   std::size_t capsules = 0;  // of the ragdoll; 0 where no bones move the source
   std::vector<CapsulePoint> capsule_curve;

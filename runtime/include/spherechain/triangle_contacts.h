@@ -53,7 +53,7 @@ struct SphereContact {
 struct SPHERECHAIN_API TriangleContactContext {
   Span<std::uint64_t> words;
 
-  // Words needed for `asset`: about 20 bytes a vertex of the source. 0 where it has no surface.
+  // Words needed for `asset`; 0 where it has no surface.
   static std::size_t words_needed(const Asset& asset) noexcept;
 };
 
@@ -65,8 +65,9 @@ struct SPHERECHAIN_API TriangleContactContext {
 // the rest pose (Surface::rest_contacts).
 //
 // The positions are what the caller gives; or, where `positions` is null, what the job skins from bones, and then only
-// of the leaves that could touch another. Any position that is not finite makes its triangles intersect nothing.
-// The contacts are the same on every target.
+// of the leaves that could touch another. Any position that is not finite makes its triangles intersect nothing; matrices
+// or weights that are not finite bound nothing, so contacts from them may be missing, and differ between targets. Else
+// the contacts are the same on every target.
 //
 // Fill in the fields and call run(). Allocates nothing, takes no lock; jobs with other outputs and contexts may run at
 // the same time.

@@ -206,6 +206,9 @@ TEST_CASE("validate --json has the contract's fields, the same with a cache and 
   json contacts = validate("--contacts", cache.string());
   CHECK(contacts["contacts_missing"] == 0);
   CHECK(contacts["contacts_extra"] == 0);
+  CHECK(contacts["contacts_from_bones"]["missing"] == 0);
+  CHECK(contacts["contacts_from_bones"]["extra"] == 0);
+  contacts.erase("contacts_from_bones");
   contacts.erase("contacts_missing");
   contacts.erase("contacts_extra");
   CHECK(contacts == found);
