@@ -126,10 +126,12 @@ bool detect_all_ways(const Asset& asset, const std::vector<Sphere>& spheres) {
 }
 
 bool cover_and_skin(const Asset& asset, const BoneMatrices& bones, const std::vector<float>& morph_weights) {
-  const Status wanted = asset.bone_count() == 0 || asset.leaf_count() == 0 ? Status::kNotInAsset : Status::kOk;
-  return (cover(asset, bones, morph_weights).status == wanted || broken("a cover job failed")) &&
-         (asset.info().source_vertex_count > kMaxVertexCount || asset.info().source_vertex_count == 0 ||
-          skin(asset, bones, morph_weights).status == wanted || broken("a skin job failed"));
+  // Without bones there is no matrix to point to: which refusal comes first is of no matter.
+  const bool wanted = asset.bone_count() > 0 && asset.leaf_count() > 0;
+  const bool has_vertices = asset.info().source_vertex_count > 0 && asset.info().source_vertex_count <= kMaxVertexCount;
+  return ((cover(asset, bones, morph_weights).status == Status::kOk) == wanted || broken("a cover job failed")) &&
+         (!has_vertices || (skin(asset, bones, morph_weights).status == Status::kOk) == wanted ||
+          broken("a skin job failed"));
 }
 
 // With matrices and weights in blocks of exactly as many as the asset has.
