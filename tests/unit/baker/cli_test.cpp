@@ -241,7 +241,7 @@ TEST_CASE("SPHERECHAIN_TARGET names the instructions to play with; one that is n
   CHECK(!fs::exists(out));
 }
 
-TEST_CASE("--extremities puts spheres in head, hands and feet in any profile") {
+TEST_CASE("--extremities puts spheres in head, hands and feet in any profile" * doctest::test_suite("many bakes")) {
   const TemporaryFolder folder;
   const fs::path out = folder.path / "out.sphc";
   REQUIRE(run(fmt::format("bake {} -o {} --profile paper --extremities", kHumanFile, out.string())).code == 0);
@@ -386,7 +386,8 @@ TEST_CASE("a mesh that cannot be segmented ends with 4") {
   CHECK(!fs::exists(folder.path / "t.sphc"));
 }
 
-TEST_CASE("a missed target ends with 5, says so, and writes the asset all the same") {
+TEST_CASE("a missed target ends with 5, says so, and writes the asset all the same" *
+          doctest::test_suite("many bakes")) {
   const TemporaryFolder folder;
   const auto config = folder.write("c.json", R"({"targets": {"max_spheres": 10, "min_covered_area": 0.01}})").string();
   const fs::path out = folder.path / "out.sphc", report = folder.path / "r.json";

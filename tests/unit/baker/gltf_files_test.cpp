@@ -63,7 +63,8 @@ double worst_distance(const std::vector<Vector3d>& a, const std::vector<Vector3d
 
 }  // namespace
 
-TEST_CASE("an asset baked with attachments finds the same source again, and fits the file's own buffers") {
+TEST_CASE("an asset baked with attachments finds the same source again, and fits the file's own buffers" *
+          doctest::test_suite("many bakes")) {
   const TemporaryFolder folder;
   const Glb glb = human_with_staff();
   const fs::path source = folder.write("staff.glb", glb.bytes()), asset = folder.path / "staff.sphc";

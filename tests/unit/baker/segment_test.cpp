@@ -104,7 +104,8 @@ TEST_CASE("the body's axes are found: this one stands along y, faces z, and its 
   CHECK(std::abs(frame.height - 1.66) < 0.01);
 }
 
-TEST_CASE("a facing direction in the settings overrides the feet and swaps left and right") {
+TEST_CASE("a facing direction in the settings overrides the feet and swaps left and right" *
+          doctest::test_suite("many bakes")) {
   SegmentSettings settings;
   settings.facing = -Vec3::UnitZ();
   const Regions turned = segment(baked_human().character, settings);

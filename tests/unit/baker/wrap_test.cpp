@@ -399,7 +399,8 @@ TEST_CASE("what is found in pieces does not depend on units, pose or order" * do
                       100 * worst / before.regions.frame.height));
 }
 
-TEST_CASE("a character is played on the body that its own settings closed, and by the weights of its bake") {
+TEST_CASE("a character is played on the body that its own settings closed, and by the weights of its bake" *
+          doctest::test_suite("many bakes")) {
   // Feet that point nowhere: without `facing` it cannot be segmented. And a triangle is missing.
   std::vector<Tube> tubes{{{0, 1.0, 0}, {0, 1.4, 0}, 0.15, 0.15},
                           {{0, 1.45, 0}, {0, 1.62, 0}, 0.06, 0.06},
