@@ -80,18 +80,10 @@ SpherePairs find_ignored(const Character& character, const Regions& regions, con
 // centroid.
 double area_quantile(const Mesh& mesh, const std::vector<Index>& triangles, const Vec3& center, double share) {
   std::vector<std::pair<double, double>> rings;
-  double total = 0;
   for (const Index t : triangles) {
     rings.emplace_back((triangle_centroid(mesh, t) - center).norm(), triangle_area(mesh, t));
-    total += rings.back().second;
   }
-  std::sort(rings.begin(), rings.end());
-  double sum = 0;
-  for (const auto& [distance, area] : rings) {
-    sum += area;
-    if (sum >= share * total) return distance;
-  }
-  return 0;
+  return weighted_quantile(std::move(rings), share);
 }
 
 // All triangles within some radii of a sphere's centre.

@@ -106,6 +106,18 @@ Vec3 surface_centroid(const Mesh& mesh) {
   return sum / surface_area(mesh);
 }
 
+double weighted_quantile(std::vector<std::pair<double, double>> weighted, double share) {
+  double total = 0;
+  for (const auto& [value, weight] : weighted) total += weight;
+  std::sort(weighted.begin(), weighted.end());
+  double sum = 0;
+  for (const auto& [value, weight] : weighted) {
+    sum += weight;
+    if (sum >= share * total) return value;
+  }
+  return weighted.empty() ? 0 : weighted.back().first;
+}
+
 double diameter(const Mesh& mesh) {
   const Vec3 centroid = surface_centroid(mesh);
   double farthest = 0;

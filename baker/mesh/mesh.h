@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace spherechain::baker {
@@ -42,6 +43,10 @@ std::size_t count_open_edges(const Mesh& mesh);
 // The centroid of the surface, each triangle weighted by its area.
 Vec3 surface_centroid(const Mesh& mesh);
 double surface_area(const Mesh& mesh);
+
+// The least value that, with all below it, has this share of the weights: of (value, weight) in any order. The largest
+// where rounding keeps the sum below the share; 0 where there are none.
+double weighted_quantile(std::vector<std::pair<double, double>> weighted, double share);
 
 // A size that no rotation or vertex order changes: twice the largest distance from the surface's centroid.
 double diameter(const Mesh& mesh);

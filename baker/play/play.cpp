@@ -144,4 +144,15 @@ std::vector<Vec3> AnimatedAsset::positions(const Deformation& deformation) const
                 deformation.bones);
 }
 
+std::vector<float> bone_palette(const Asset& asset, const Deformation& deformation) {
+  std::vector<float> out;
+  for (std::size_t b = 0; b < asset.bone_count(); ++b) {
+    const Affine bone = b < deformation.bones.size() ? deformation.bones[b] : Affine::Identity();
+    for (Eigen::Index row = 0; row < 3; ++row) {
+      for (Eigen::Index column = 0; column < 4; ++column) out.push_back(static_cast<float>(bone(row, column)));
+    }
+  }
+  return out;
+}
+
 }  // namespace spherechain::baker

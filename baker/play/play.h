@@ -72,4 +72,8 @@ class AnimatedAsset {
   double along(int frame) const { return frame_count_ > 1 ? static_cast<double>(frame) / (frame_count_ - 1) : 0.0; }
 };
 
+// What a game would hand to the runtime: rows of a 3 by 4 matrix for each of the asset's bones, the identity for what
+// hangs on none.
+std::vector<float> bone_palette(const Asset& asset, const Deformation& deformation);
+
 }  // namespace spherechain::baker

@@ -107,8 +107,9 @@ std::string validation_json(const Validation& validation, const AnimatedAsset& a
   if (settings.contacts) {
     out["contacts_missing"] = validation.contacts.missing;
     out["contacts_extra"] = validation.contacts.extra;
-    out["contacts_from_bones"] = {{"missing", validation.contacts_from_bones.missing},
-                                  {"extra", validation.contacts_from_bones.extra}};
+    if (const auto& from_bones = validation.contacts_from_bones) {
+      out["contacts_from_bones"] = {{"missing", from_bones->missing}, {"extra", from_bones->extra}};
+    }
   }
   out["m1"] = score_json(validation.m1);
   out["m2"] = score_json(validation.m2);
@@ -155,9 +156,12 @@ std::string validation_text(const Validation& validation, const AnimatedAsset& a
   out += fmt::format("reported         {:.2f} pairs a frame\n", score.reported_per_frame());
   out += fmt::format("missed depth     {:.2f} % of the height\n", 100 * score.missed_depth / height);
   if (settings.contacts) {
-    out += fmt::format("contacts         {} missing, {} extra; from bones {} missing, {} extra\n",
-                       validation.contacts.missing, validation.contacts.extra, validation.contacts_from_bones.missing,
-                       validation.contacts_from_bones.extra);
+    const auto errors = [](const ContactErrors& of) {
+      return fmt::format("{} missing, {} extra", of.missing, of.extra);
+    };
+    out += fmt::format(
+        "contacts         {}; from bones {}\n", errors(validation.contacts),
+        validation.contacts_from_bones ? errors(*validation.contacts_from_bones) : "not compared: none move it");
   }
   if (!validation.misses.empty()) out += "\nworst misses: frame, spheres, triangle pairs, depth in % of the height\n";
   for (std::size_t i = 0; i < std::min<std::size_t>(shown_misses(validation), 5); ++i) {

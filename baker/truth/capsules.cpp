@@ -7,10 +7,12 @@
 #include <map>
 #include <numeric>
 
+#include "bind/bind.h"
+
 namespace spherechain::baker {
 namespace {
 
-constexpr double kNearFraction = 0.75;
+constexpr double kNearFraction = BindSettings{}.near_fraction;  // the spheres' default
 
 double distance_to_segment(const Vec3& p, const Vec3& from, const Vec3& to) {
   const Vec3 along = to - from;
@@ -32,16 +34,9 @@ double axis_distance(const Capsule& a, const Capsule& b) {
 }
 
 double area_quantile(const std::vector<double>& values, const std::vector<double>& areas, double share) {
-  std::vector<std::size_t> order(values.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t l, std::size_t r) { return values[l] < values[r]; });
-  const double wanted = share * std::accumulate(areas.begin(), areas.end(), 0.0);
-  double sum = 0;
-  for (const std::size_t i : order) {
-    sum += areas[i];
-    if (sum >= wanted) return values[i];
-  }
-  return values[order.back()];
+  std::vector<std::pair<double, double>> weighted;
+  for (std::size_t i = 0; i < values.size(); ++i) weighted.emplace_back(values[i], areas[i]);
+  return weighted_quantile(std::move(weighted), share);
 }
 
 // The bone that moves a triangle most; one past the last where none does.

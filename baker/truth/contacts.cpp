@@ -4,11 +4,11 @@
 #include <algorithm>
 
 #include "mesh/error.h"
+#include "play/play.h"
 #include "spherechain/skin.h"
 #include "spherechain/triangle_contacts.h"
 
 namespace spherechain::baker {
-
 namespace {
 
 void check(Status status) {
@@ -25,18 +25,6 @@ std::vector<TrianglePair> run(TriangleContactJob job) {
   job.pairs = {pairs.data(), pairs.size()};
   check(job.run());
   return pairs;
-}
-
-// Rows of a 3 by 4 matrix a bone; what hangs on none stays at rest.
-std::vector<float> palette(const Asset& asset, const std::vector<Affine>& bones) {
-  std::vector<float> out;
-  for (std::size_t b = 0; b < asset.bone_count(); ++b) {
-    const Affine bone = b < bones.size() ? bones[b] : Affine::Identity();
-    for (Eigen::Index row = 0; row < 3; ++row) {
-      for (Eigen::Index column = 0; column < 4; ++column) out.push_back(static_cast<float>(bone(row, column)));
-    }
-  }
-  return out;
 }
 
 // SkinJob writes one of the source vertices that move alike: the others follow it.
@@ -67,7 +55,7 @@ std::vector<TrianglePair> find_contacts(const Asset& asset, const std::vector<fl
 
 ContactsFromBones find_contacts_from_bones(const Asset& asset, const Character& character,
                                            const Deformation& deformation, Target target) {
-  const std::vector<float> matrices = palette(asset, deformation.bones);
+  const std::vector<float> matrices = bone_palette(asset, deformation);
   std::vector<float> weights(deformation.morphs.begin(), deformation.morphs.end());
   weights.resize(asset.morph_count());
   ContactsFromBones out{pack(character.source_positions), {}};

@@ -6,12 +6,13 @@
 #include <iterator>
 #include <limits>
 
+#include "bind/bind.h"
 #include "truth/surface.h"
 
 namespace spherechain::baker {
 namespace {
 
-constexpr double kUsualFraction = 0.75;
+constexpr double kUsualFraction = BindSettings{}.near_fraction;
 constexpr float kNever = std::numeric_limits<float>::infinity();
 
 double rest_radius(const RestSphere& sphere, RadiusKind kind) {

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <map>
 #include <mutex>
+#include <optional>
 
 #include "mesh/error.h"
 #include "play/player.h"
@@ -23,7 +24,8 @@ struct Frame {
   Score score, m1, m2;
   std::vector<Miss> misses;
   std::vector<CurvePoint> curve;
-  ContactErrors contacts, contacts_from_bones;
+  ContactErrors contacts;
+  std::optional<ContactErrors> contacts_from_bones;
   std::vector<CapsulePoint> capsules;
 };
 
@@ -186,8 +188,11 @@ Validation validate(const AnimatedAsset& animated, const ValidateSettings& setti
     add(out.capsule_curve, frame.capsules);
     out.contacts.missing += frame.contacts.missing;
     out.contacts.extra += frame.contacts.extra;
-    out.contacts_from_bones.missing += frame.contacts_from_bones.missing;
-    out.contacts_from_bones.extra += frame.contacts_from_bones.extra;
+    if (frame.contacts_from_bones) {
+      if (!out.contacts_from_bones) out.contacts_from_bones.emplace();
+      out.contacts_from_bones->missing += frame.contacts_from_bones->missing;
+      out.contacts_from_bones->extra += frame.contacts_from_bones->extra;
+    }
     regions.add(frame.truth, frame.reported);
     chains.add(frame.truth, frame.reported);
     out.misses.insert(out.misses.end(), frame.misses.begin(), frame.misses.end());

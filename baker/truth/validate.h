@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "play/play.h"
@@ -45,8 +46,9 @@ struct Validation {
   Score score;                                                                        // of the method asked for
   std::vector<Miss> misses;                                                           // the deepest first
   ContactErrors contacts;                                                             // from vertices
-  ContactErrors contacts_from_bones;  // from matrices alone, in the frames that bones move
-  Score m1, m2;                       // depth not measured
+  // From matrices alone, in the frames that bones move; none where no frame is.
+  std::optional<ContactErrors> contacts_from_bones;
+  Score m1, m2;  // depth not measured
   std::vector<CurvePoint> curve;
   std::size_t capsules = 0;  // of the ragdoll; 0 where no bones move the source
   std::vector<CapsulePoint> capsule_curve;

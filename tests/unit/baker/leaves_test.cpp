@@ -13,6 +13,7 @@
 #include <set>
 
 #include "baked_human.h"
+#include "baked_person.h"
 #include "jobs.h"
 #include "motion/clip.h"
 #include "motion/poses.h"
@@ -26,34 +27,6 @@ using spherechain::test::PoseKind;
 using Matrices = std::vector<spherechain::test::Matrix>;
 
 namespace {
-
-constexpr const char* kPerson = "/usr/share/assimp/models/X/BCN_Epileptic.X";
-
-const Bake& baked_person() {
-  static const Bake result = bake(kPerson, make_settings("balanced", "{}", "test"), {});
-  return result;
-}
-
-// The same character with three morph targets, and every fifth vertex on no bone.
-const Bake& morphing_person() {
-  static const Bake result = [] {
-    Bake out = baked_person();
-    SourceRig& rig = out.character.rig;
-    const double height = out.regions.frame.height;
-    for (int m = 0; m < 3; ++m) {
-      Morph morph{"grows " + std::to_string(m), {}, {}, 0};
-      for (Index v = 0; v < out.character.source_positions.size(); ++v) {
-        if (v % 3 == static_cast<Index>(m)) continue;
-        morph.vertices.push_back(v);
-        morph.deltas.push_back(0.05 * height * Vec3(std::sin(v), std::cos(3.0 * v), m - 1));
-      }
-      rig.morphs.push_back(std::move(morph));
-    }
-    for (std::size_t v = 0; v < rig.weights.size(); v += 5) rig.weights[v] = {};
-    return rebake(out, out.settings);
-  }();
-  return result;
-}
 
 // Linear blend skinning in double precision from the character's own weights: nothing of the leaves.
 std::vector<Vec3> skinned(const Bake& bake, const Matrices& matrices, const std::vector<float>& morph_weights) {

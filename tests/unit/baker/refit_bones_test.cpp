@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "baked_human.h"
+#include "baked_person.h"
 #include "jobs.h"
 #include "motion/clip.h"
 #include "motion/poses.h"
@@ -22,7 +23,6 @@ using spherechain::test::refit;
 using spherechain::test::refit_bones;
 
 constexpr double kTolerance = 1e-5;  // of the height
-constexpr const char* kPerson = "/usr/share/assimp/models/X/BCN_Epileptic.X";
 
 // What a game would pass: matrices by columns, the rest bone's the identity.
 std::vector<float> palette(const spherechain::Asset& asset, const std::vector<Affine>& bones) {
@@ -77,11 +77,6 @@ std::vector<Deformation> frames_of_clips(const SourceRig& rig) {
   return out;
 }
 
-const Bake& baked_person() {
-  static const Bake result = bake(kPerson, make_settings("balanced", "{}", "test"), {});
-  return result;
-}
-
 }  // namespace
 
 TEST_CASE("on the automatic rig, along Bezier curves of poses, bones give the spheres of the skinned mesh") {
@@ -107,26 +102,13 @@ TEST_CASE("on a source's own skeleton, over its clips, bones give the spheres of
 }
 
 TEST_CASE("with morph targets, and vertices that no bone holds, bones give the spheres of the skinned mesh") {
-  Bake morphing = baked_person();
-  SourceRig& rig = morphing.character.rig;
-  const double height = morphing.regions.frame.height;
-  for (int m = 0; m < 3; ++m) {
-    Morph morph{"grows " + std::to_string(m), {}, {}, 0};
-    for (Index v = 0; v < morphing.character.source_positions.size(); ++v) {
-      if (v % 3 == static_cast<Index>(m)) continue;
-      morph.vertices.push_back(v);
-      morph.deltas.push_back(0.05 * height * Vec3(std::sin(v), std::cos(3.0 * v), m - 1));
-    }
-    rig.morphs.push_back(std::move(morph));
-  }
-  for (std::size_t v = 0; v < rig.weights.size(); v += 5) rig.weights[v] = {};
-  const Bake bake = rebake(morphing, morphing.settings);
+  const Bake& bake = morphing_person();
   const spherechain::Asset asset = open_asset_of(bake);
   REQUIRE(asset.morph_count() == 3);
   CHECK(std::string(asset.morph_name(1)) == "grows 1");
   REQUIRE(asset.bone(asset.bone_count() - 1).is_rest);
 
-  std::vector<Deformation> frames = frames_of_clips(rig);
+  std::vector<Deformation> frames = frames_of_clips(bake.character.rig);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const double t = static_cast<double>(i);
     frames[i].morphs = {std::sin(t), 0.5, std::cos(2 * t)};
@@ -139,7 +121,7 @@ TEST_CASE("with morph targets, and vertices that no bone holds, bones give the s
   const auto with = refit_bones(asset, view, {1, 0, 0}, RadiusKind::kFit),
              without = refit_bones(asset, view, {}, RadiusKind::kFit);
   const spherechain::Sphere &a = with.spheres[0], &b = without.spheres[0];
-  CHECK(std::hypot(a.x - b.x, a.y - b.y, a.z - b.z) > 0.01 * height);
+  CHECK(std::hypot(a.x - b.x, a.y - b.y, a.z - b.z) > 0.01 * bake.regions.frame.height);
 }
 
 TEST_CASE("the bones of an asset are the source's in order, or the automatic rig's") {

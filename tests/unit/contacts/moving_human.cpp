@@ -15,14 +15,6 @@ namespace {
 constexpr const char* kModels = "/usr/share/assimp/models/";
 constexpr int kCaptureFrames = 24;
 
-std::vector<float> pack(const std::vector<baker::Vec3>& positions) {
-  std::vector<float> out;
-  for (const baker::Vec3& v : positions) {
-    for (Eigen::Index axis = 0; axis < 3; ++axis) out.push_back(static_cast<float>(v[axis]));
-  }
-  return out;
-}
-
 }  // namespace
 
 const MovingHuman& moving_human() {
@@ -38,22 +30,10 @@ Asset MovingHuman::asset() const {
   return out;
 }
 
-std::vector<float> MovingHuman::rest_positions() const { return pack(bake.character.source_positions); }
+std::vector<float> MovingHuman::rest_positions() const { return baker::pack(bake.character.source_positions); }
 
 std::vector<float> MovingHuman::deformed(const baker::Deformation& deformation) const {
-  return pack(baker::deform(bake.character.source_positions, bake.rig_weights, deformation.bones));
-}
-
-std::vector<float> MovingHuman::palette(const baker::Deformation& deformation) const {
-  std::vector<float> out;
-  for (const baker::Affine& bone : deformation.bones) {
-    for (Eigen::Index row = 0; row < 3; ++row) {
-      for (Eigen::Index column = 0; column < 4; ++column) {
-        out.push_back(static_cast<float>(bone.matrix()(row, column)));
-      }
-    }
-  }
-  return out;
+  return baker::pack(baker::deform(bake.character.source_positions, bake.rig_weights, deformation.bones));
 }
 
 std::vector<MovingHuman::Frame> MovingHuman::frames() const {

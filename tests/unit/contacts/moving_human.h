@@ -24,8 +24,6 @@ struct MovingHuman {
   std::vector<Frame> frames() const;
   // x y z of each source vertex, rounded to float.
   std::vector<float> deformed(const baker::Deformation& deformation) const;
-  // The bones' matrices, three rows of four each.
-  std::vector<float> palette(const baker::Deformation& deformation) const;
 };
 
 // Baked once for all tests of a run.

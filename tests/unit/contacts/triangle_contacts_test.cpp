@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "moving_human.h"
+#include "play/play.h"
 #include "spherechain/skin.h"
 #include "truth/intersections.h"
 #include "truth/truth.h"
@@ -104,7 +105,7 @@ TEST_CASE("from bones the contacts are CGAL's of the positions the runtime skins
   std::size_t total = 0;
   for (const auto& [name, deformation] : human.frames()) {
     CAPTURE(name);
-    const std::vector<float> palette = human.palette(deformation);
+    const std::vector<float> palette = baker::bone_palette(asset, deformation);
     SkinJob skin;
     skin.asset = &asset;
     skin.bones = {palette.data(), asset.bone_count()};
