@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
-#include <memory>
 
 #include "mesh/error.h"
 #include "motion/capture.h"
@@ -15,32 +14,12 @@ namespace {
 
 using baker::Deformation;
 
-constexpr const char* kModels = "/usr/share/assimp/models/";
+constexpr const char* kCaptures = "/usr/share/assimp/models/BVH";
 
 void check(Status status, const char* what) {
   if (status != Status::kOk) {
     throw baker::Error(baker::ExitCode::kInternal, std::string(what) + ": " + to_string(status));
   }
-}
-
-std::vector<std::unique_ptr<baker::Motion>> motions_of(const baker::Bake& bake) {
-  std::vector<std::unique_ptr<baker::Motion>> out;
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(SPHERECHAIN_SAMPLES "/poses")) {
-    if (entry.path().extension() == ".json") {
-      files.push_back(entry.path());
-    }
-  }
-  std::sort(files.begin(), files.end());
-  for (const auto& file : files) {
-    out.push_back(std::make_unique<baker::BezierMotion>(bake.joints, bake.regions.frame,
-                                                        baker::read_pose_motion(file, bake.joints)));
-  }
-  for (const char* name : {"01_01.bvh", "01_03.bvh", "Boxing_Toes.bvh"}) {
-    out.push_back(std::make_unique<baker::CaptureMotion>(
-        baker::read_capture(std::filesystem::path(kModels) / "BVH" / name), body_of(bake.joints, bake.regions.frame)));
-  }
-  return out;
 }
 
 std::vector<Deformation> poses_of(const baker::Bake& bake, std::size_t count) {
@@ -49,7 +28,7 @@ std::vector<Deformation> poses_of(const baker::Bake& bake, std::size_t count) {
   for (std::size_t m = 0; m < motions.size(); ++m) {
     const std::size_t frames = count * (m + 1) / motions.size() - count * m / motions.size();
     for (std::size_t i = 0; i < frames; ++i) {
-      out.push_back(motions[m]->at(static_cast<double>(i + 1) / static_cast<double>(frames)));
+      out.push_back(motions[m].motion->at(static_cast<double>(i + 1) / static_cast<double>(frames)));
     }
   }
   return out;
@@ -69,6 +48,28 @@ std::vector<float> palette(const Deformation& pose) {
 
 }  // namespace
 
+std::vector<NamedMotion> motions_of(const baker::Bake& bake) {
+  std::vector<NamedMotion> out;
+  std::vector<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(SPHERECHAIN_SAMPLES "/poses")) {
+    if (entry.path().extension() == ".json") {
+      files.push_back(entry.path());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  for (const auto& file : files) {
+    out.push_back(
+        {file.stem().string(), std::make_unique<baker::BezierMotion>(bake.joints, bake.regions.frame,
+                                                                     baker::read_pose_motion(file, bake.joints))});
+  }
+  for (const std::string name : {"01_01", "01_03", "Boxing_Toes"}) {
+    const auto file = std::filesystem::path(kCaptures) / (name + ".bvh");
+    out.push_back({name, std::make_unique<baker::CaptureMotion>(baker::read_capture(file),
+                                                                body_of(bake.joints, bake.regions.frame))});
+  }
+  return out;
+}
+
 std::vector<float> PosedCharacter::mesh(std::size_t pose) const {
   std::vector<float> out;
   out.reserve(3 * bake.character.source_positions.size());
@@ -82,8 +83,7 @@ std::vector<float> PosedCharacter::mesh(std::size_t pose) const {
 
 void load(PosedCharacter& character, const std::string& name, const std::string& settings, std::size_t pose_count) {
   character.name = name;
-  character.bake = baker::bake(std::string(kModels) + "Collada/human.zae",
-                               baker::make_settings("balanced", settings, "the benchmark's settings"), {});
+  character.bake = baker::bake(kHuman, baker::make_settings("balanced", settings, "the benchmark's settings"), {});
   const auto& asset = character.bake.asset;
   constexpr std::size_t kLine = 64;
   character.bytes.resize((asset.size() + 2 * kLine) / sizeof(std::uint64_t));

@@ -2,6 +2,7 @@
 // What everything is timed on: a baked character in real poses.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,8 @@
 #include "spherechain/refit_bones.h"
 
 namespace spherechain::bench {
+
+inline constexpr const char* kHuman = "/usr/share/assimp/models/Collada/human.zae";
 
 struct PosedCharacter {
   std::string name;
@@ -27,6 +30,13 @@ struct PosedCharacter {
   // The deformed vertices in the order of the source, x y z after another.
   std::vector<float> mesh(std::size_t pose) const;
 };
+
+// The motions that load() takes its poses from, each named like its file.
+struct NamedMotion {
+  std::string name;
+  std::unique_ptr<baker::Motion> motion;
+};
+std::vector<NamedMotion> motions_of(const baker::Bake& bake);
 
 // assimp-testmodels' human.zae, baked with the profile "balanced" and `settings` (JSON) on top of it, in the poses of
 // samples/poses and of assimp-testmodels' three motion captures, as many of each that the poses are `pose_count`.

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Baked characters and their poses as plain files (pose_file.h), for machines that have a GPU and no baker.
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+
+#include "character.h"
+#include "mesh/error.h"
+#include "motion/clip.h"
+#include "motion/poses.h"
+#include "play/play.h"
+#include "pose_file.h"
+#include "write/write.h"
+
+using namespace spherechain;
+
+namespace {
+
+namespace fs = std::filesystem;
+using baker::Deformation;
+
+constexpr double kFramesASecond = 30;
+constexpr int kMostFrames = 1024, kPoseMotionFrames = 200, kPaperFrames = 40;
+constexpr std::size_t kMixedPoses = 1024;  // as spherechain_bench has them
+
+struct Options {
+  fs::path out = "out/gpu_data";
+  std::vector<fs::path> sources;
+};
+
+void append(std::string& bytes, const void* data, std::size_t size) {
+  bytes.append(static_cast<const char*>(data), size);
+}
+
+// NAME.sphc and NAME.poses.
+void write(const fs::path& folder, const std::string& name, const baker::Bake& bake,
+           const std::vector<Deformation>& poses) {
+  const std::vector<std::uint8_t>& bytes = bake.asset;
+  std::vector<std::uint64_t> aligned(bytes.size() / sizeof(std::uint64_t) + 1);
+  std::memcpy(aligned.data(), bytes.data(), bytes.size());
+  Asset asset;
+  if (const Status status = asset.open(aligned.data(), bytes.size()); status != Status::kOk) {
+    throw baker::Error(baker::ExitCode::kInternal, name + ": " + to_string(status));
+  }
+  const std::uint32_t counts[4] = {static_cast<std::uint32_t>(poses.size()),
+                                   static_cast<std::uint32_t>(asset.bone_count()),
+                                   static_cast<std::uint32_t>(asset.morph_count()), 0};
+  std::string file;
+  append(file, bench::kPoseMagic, sizeof bench::kPoseMagic);
+  append(file, counts, sizeof counts);
+  for (const Deformation& pose : poses) {
+    const std::vector<float> palette = baker::bone_palette(asset, pose);
+    append(file, palette.data(), palette.size() * sizeof(float));
+  }
+  for (const Deformation& pose : poses) {
+    for (std::size_t i = 0; i < asset.morph_count(); ++i) {
+      const float weight = i < pose.morphs.size() ? static_cast<float>(pose.morphs[i]) : 0.0F;
+      append(file, &weight, sizeof weight);
+    }
+  }
+  baker::write_atomically(folder / (name + ".sphc"), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  baker::write_atomically(folder / (name + ".poses"), file);
+  std::printf("%-28s %4zu spheres %4zu bones %3zu morphs %5zu poses\n", name.c_str(), asset.spheres().size,
+              asset.bone_count(), asset.morph_count(), poses.size());
+}
+
+// Evenly spaced, the start and the end among them.
+std::vector<Deformation> frames_of(const baker::Motion& motion, int count) {
+  std::vector<Deformation> out;
+  for (int i = 0; i < count; ++i) out.push_back(motion.at(static_cast<double>(i) / (count - 1)));
+  return out;
+}
+
+int frame_count(const baker::Motion& motion) {
+  return motion.duration() > 0 ? std::clamp(static_cast<int>(motion.duration() * kFramesASecond) + 1, 2, kMostFrames)
+                               : kPoseMotionFrames;
+}
+
+// The whole body and the one that the paper covers, each in the benchmarks' poses; the whole body in each clip too.
+void write_human(const fs::path& folder) {
+  bench::PosedCharacter human, body;
+  bench::load(human, "human", "{}", kMixedPoses);
+  write(folder, "human", human.bake, human.poses);
+  for (const bench::NamedMotion& clip : bench::motions_of(human.bake)) {
+    write(folder, "human_" + clip.name, human.bake, frames_of(*clip.motion, frame_count(*clip.motion)));
+  }
+  bench::load(body, "body", R"({"extremities": false})", kMixedPoses);
+  write(folder, "body", body.bake, body.poses);
+}
+
+// The paper's two animations on profile `paper`, and on a denser bake of it with about the 80 spheres that it states.
+void write_paper(const fs::path& folder) {
+  for (const auto& [name, settings] :
+       {std::pair("paper", "{}"), std::pair("paper_denser", R"({"penetration_depth": 0.6})")}) {
+    const baker::Bake bake = baker::bake(bench::kHuman, baker::make_settings("paper", settings, name), {});
+    for (const std::string animation : {"arms", "legs"}) {
+      const fs::path file = fs::path(SPHERECHAIN_SAMPLES "/poses") / ("animation_" + animation + ".json");
+      const baker::BezierMotion motion(bake.joints, bake.regions.frame, baker::read_pose_motion(file, bake.joints));
+      write(folder, std::string(name) + "_" + animation, bake, frames_of(motion, kPaperFrames));
+    }
+  }
+}
+
+// A file with clips of its own, all of them one after another.
+void write_source(const fs::path& folder, const fs::path& source) {
+  const baker::Bake bake = baker::bake(source, baker::make_settings("balanced", "{}", "balanced"), {});
+  std::vector<const baker::Clip*> clips;
+  for (const baker::Clip& clip : bake.character.rig.clips) clips.push_back(&clip);
+  if (clips.empty()) throw baker::Error(baker::ExitCode::kFile, source.string() + ": has no clip of its own");
+  const baker::ClipMotion motion(bake.character.rig, clips);
+  write(folder, source.stem().string(), bake, frames_of(motion, frame_count(motion)));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Characters and poses for the measurements on a GPU"};
+  Options options;
+  app.add_option("-o,--out", options.out, "folder to write")->capture_default_str();
+  app.add_option("--source", options.sources, "further files to bake, each with clips of its own");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    fs::create_directories(options.out);
+    write_paper(options.out);
+    write_human(options.out);
+    for (const fs::path& source : options.sources) write_source(options.out, source);
+  } catch (const baker::Error& error) {
+    std::cerr << "spherechain_gpu_data: error: " << error.what() << '\n';
+    return static_cast<int>(error.code());
+  } catch (const fs::filesystem_error& error) {
+    std::cerr << "spherechain_gpu_data: error: " << error.what() << '\n';
+    return static_cast<int>(baker::ExitCode::kFile);
+  }
+  return 0;
+}

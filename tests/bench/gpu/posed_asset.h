@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// NAME.sphc and NAME.poses together, for programs that run where no baker is.
+#pragma once
+
+#include <cstdint>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "pose_file.h"
+#include "spherechain/asset.h"
+
+namespace spherechain::bench {
+
+struct PosedAsset {
+  std::vector<std::uint64_t> bytes;
+  Asset asset;  // a view of `bytes`
+  PoseFile poses;
+};
+
+// False where one of the two is missing or broken, or they do not go together; `error` then says why.
+inline bool read_posed_asset(const std::string& folder, const std::string& name, PosedAsset& out, std::string& error) {
+  const std::string path = folder + "/" + name + ".sphc";
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  if (!in) {
+    error = path + ": cannot be read";
+    return false;
+  }
+  const auto size = static_cast<std::size_t>(in.tellg());
+  out.bytes.assign(size / sizeof(std::uint64_t) + 1, 0);
+  in.seekg(0);
+  in.read(reinterpret_cast<char*>(out.bytes.data()), static_cast<std::streamsize>(size));
+  if (!in) {
+    error = path + ": cannot be read to its end";
+    return false;
+  }
+  char message[160] = "";
+  if (out.asset.open(out.bytes.data(), size, message, sizeof message) != Status::kOk) {
+    error = path + ": " + message;
+    return false;
+  }
+  if (!read_pose_file(folder + "/" + name + ".poses", out.poses, error)) {
+    return false;
+  }
+  if (out.poses.bone_count != out.asset.bone_count() || out.poses.morph_count != out.asset.morph_count()) {
+    error = path + ": has other bones or morphs than the poses beside it";
+    return false;
+  }
+  return true;
+}
+
+}  // namespace spherechain::bench
