@@ -19,7 +19,7 @@ bool is_finite(const TriangleCorners& t) {
 }  // namespace
 
 void begin_spheres(ContactCollector& collector, Pair spheres) { collector.begin_spheres(spheres); }
-void decide(ContactCollector& collector, const Candidate& candidate) { collector.decide(candidate); }
+bool decide(ContactCollector& collector, const Candidate& candidate) { return collector.decide(candidate); }
 
 void ContactCollector::begin_spheres(Pair spheres) {
   end_spheres();
@@ -50,14 +50,14 @@ bool ContactCollector::share_a_position(const Candidate& candidate) const {
   return false;
 }
 
-void ContactCollector::decide(const Candidate& candidate) {
+bool ContactCollector::decide(const Candidate& candidate) {
   const TriangleCorners *a = &candidate.a, *b = &candidate.b;
   // Neighbours first: of them the exact test would need its exact arithmetic.
   if (share_a_position(candidate)) {
-    return;
+    return false;
   }
   if (!candidate.meets && (!finite_triangles_intersect(*a, *b) || !is_finite(*a) || !is_finite(*b))) {
-    return;
+    return false;
   }
   TriangleContact contact{};
   contact.triangles = {asset_.triangles()[candidate.triangle_a], asset_.triangles()[candidate.triangle_b]};
@@ -67,7 +67,7 @@ void ContactCollector::decide(const Candidate& candidate) {
   }
   const Span<const TrianglePair> rest = asset_.surface().rest_contacts;
   if (std::binary_search(rest.begin(), rest.end(), contact.triangles)) {
-    return;
+    return false;
   }
   pairs_.add(contact.triangles);
   if (measures_) {
@@ -79,6 +79,7 @@ void ContactCollector::decide(const Candidate& candidate) {
     }
   }
   ++current_.count;
+  return true;
 }
 
 void ContactCollector::finish() {

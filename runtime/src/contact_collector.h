@@ -51,7 +51,7 @@ class ContactCollector {
         measures_(contacts.size > 0 || sphere_contacts.size > 0) {}
 
   void begin_spheres(Pair spheres);
-  void decide(const Candidate& candidate);
+  bool decide(const Candidate& candidate);
   void finish();
 
   bool overflowed() const { return pairs_.overflowed() || contacts_.overflowed() || sphere_contacts_.overflowed(); }

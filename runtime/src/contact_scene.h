@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the stages of a TriangleContactJob hand to each other.
+// What the stages of a TriangleContactJob, and of a ConfirmJob, hand to each other.
 #pragma once
 
 #include <cstddef>
@@ -34,6 +34,7 @@ struct ContactScene {
   BoxColumns spheres, leaves;
   std::uint32_t* first_leaf = nullptr;  // a sphere's, and the end
   std::uint8_t* is_loaded = nullptr;    // a leaf's: are its vertices below, and its box exact?
+  std::uint8_t* is_bounded = nullptr;   // a sphere's, of a ConfirmJob: are its box and its leaves'?
   float* slots = nullptr;               // x, y, z of a leaf's vertices, of leaf after leaf
   Sphere* balls = nullptr;              // from bones: around the leaves
   float* ball_columns[4] = {};          // the same by coordinates, the radius last
@@ -50,9 +51,12 @@ struct Candidate {
   bool meets;  // is known to: no more to decide
 };
 void begin_spheres(ContactCollector& collector, Pair spheres);
-void decide(ContactCollector& collector, const Candidate& candidate);
+bool decide(ContactCollector& collector, const Candidate& candidate);  // is it a contact?
 
 // Hands all candidates that there are, and a few more, to the collector.
 void find_candidates(Target resolved, const ContactScene& scene, ContactCollector& collector);
+
+// Is there a contact between the regions of two spheres? Bounds what is not bounded yet.
+bool skins_touch(Target resolved, const ContactScene& scene, Pair spheres, ContactCollector& collector);
 
 }  // namespace spherechain

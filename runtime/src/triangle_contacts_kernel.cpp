@@ -149,19 +149,17 @@ HWY_INLINE Box box_of_leaf(const ContactScene& scene, const Leaf& leaf) {
 
 #endif
 
-// Sphere boxes around those of their leaves.
-HWY_INLINE void unite_leaves(const ContactScene& scene) {
-  for (std::size_t s = 0; s < scene.sphere_count; ++s) {
-    Box box{{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
-    for (std::size_t i = scene.first_leaf[s]; i < scene.first_leaf[s + 1]; ++i) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const float low = scene.leaves.low[axis][i], high = scene.leaves.high[axis][i];
-        box.low[axis] = low < box.low[axis] ? low : box.low[axis];
-        box.high[axis] = high > box.high[axis] ? high : box.high[axis];
-      }
+// A sphere's box around those of its leaves.
+HWY_INLINE void unite_leaves(const ContactScene& scene, std::size_t sphere) {
+  Box box{{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
+  for (std::size_t i = scene.first_leaf[sphere]; i < scene.first_leaf[sphere + 1]; ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float low = scene.leaves.low[axis][i], high = scene.leaves.high[axis][i];
+      box.low[axis] = low < box.low[axis] ? low : box.low[axis];
+      box.high[axis] = high > box.high[axis] ? high : box.high[axis];
     }
-    put_box(scene.spheres, s, box);
   }
+  put_box(scene.spheres, sphere, box);
 }
 
 // Boxes around the leaves' balls. A coordinate less the radius is rounded once, to at most 2^-24 of both: 2^-22 is
@@ -525,8 +523,10 @@ HWY_INLINE Verdicts judge(const Block& few, std::size_t one, const Block& many, 
   return {missed_bits | bits_of(hn::And(known, before)), bits_of(hn::And(known, meet))};
 }
 
-// Each of `few` against all of `many`.
-HWY_NOINLINE void pair_triangles(const Block& few, const Block& many, ContactCollector& collector) {
+// Each of `few` against all of `many`. Like all that pairs, true where that is enough: at the first contact, where
+// that is all that is asked for.
+template <bool kFirst>
+HWY_NOINLINE bool pair_triangles(const Block& few, const Block& many, ContactCollector& collector) {
   const float* const lows[3] = {many.low[0], many.low[1], many.low[2]};
   const float* const highs[3] = {many.high[0], many.high[1], many.high[2]};
   for (std::size_t one = 0; one < few.count; ++one) {
@@ -546,15 +546,25 @@ HWY_NOINLINE void pair_triangles(const Block& few, const Block& many, ContactCol
       const Verdicts verdicts = judge(few, one, many, i, bits);
       for (bits &= ~verdicts.apart; bits != 0; bits &= bits - 1) {
         const std::size_t lane = lowest_bit(bits);
-        decide(collector, {few.leaf, many.leaf, few.triangles[one], many.triangles[i + lane], few.corners_of(one),
-                           many.corners_of(i + lane), ((verdicts.meeting >> lane) & 1U) != 0});
+        const Candidate candidate{few.leaf,
+                                  many.leaf,
+                                  few.triangles[one],
+                                  many.triangles[i + lane],
+                                  few.corners_of(one),
+                                  many.corners_of(i + lane),
+                                  ((verdicts.meeting >> lane) & 1U) != 0};
+        if (decide(collector, candidate) && kFirst) {
+          return true;
+        }
       }
     }
   }
+  return false;
 }
 
 // Two leaves whose boxes touch.
-HWY_NOINLINE void pair_leaves(const ContactScene& scene, std::size_t a, std::size_t b, ContactCollector& collector) {
+template <bool kFirst>
+HWY_NOINLINE bool pair_leaves(const ContactScene& scene, std::size_t a, std::size_t b, ContactCollector& collector) {
   if (scene.positions != nullptr) {
     gather(scene, a);
     gather(scene, b);
@@ -573,20 +583,27 @@ HWY_NOINLINE void pair_leaves(const ContactScene& scene, std::size_t a, std::siz
         continue;
       }
       const bool is_less = block.count < other.count;
-      pair_triangles(is_less ? block : other, is_less ? other : block, collector);
+      if (pair_triangles<kFirst>(is_less ? block : other, is_less ? other : block, collector)) {
+        return true;
+      }
     }
   }
+  return false;
 }
 
 // One leaf against those of a sphere: leaves [first, end).
-HWY_INLINE void pair_leaf(const ContactScene& scene, std::size_t leaf, std::size_t first, std::size_t end,
+template <bool kFirst>
+HWY_INLINE bool pair_leaf(const ContactScene& scene, std::size_t leaf, std::size_t first, std::size_t end,
                           ContactCollector& collector) {
   const BoxProbe probe(box_at(scene.leaves, leaf));
   for (std::size_t j = first; j < end; j += kLanes) {
     for (std::uint64_t bits = probe.touching(scene.leaves, j, end - j); bits != 0; bits &= bits - 1) {
-      pair_leaves(scene, leaf, j + lowest_bit(bits), collector);
+      if (pair_leaves<kFirst>(scene, leaf, j + lowest_bit(bits), collector)) {
+        return true;
+      }
     }
   }
+  return false;
 }
 
 // The same from bones: what their balls do not part is skinned.
@@ -606,7 +623,7 @@ HWY_INLINE void pair_ball(const ContactScene& scene, std::size_t leaf, std::size
       const std::size_t other = j + lowest_bit(bits);
       skin(scene, other);
       if (box_at(scene.leaves, leaf).touches(box_at(scene.leaves, other))) {
-        pair_leaves(scene, leaf, other, collector);
+        pair_leaves<false>(scene, leaf, other, collector);
       }
     }
   }
@@ -619,12 +636,47 @@ HWY_INLINE void pair_spheres(const ContactScene& scene, std::size_t a, std::size
     for (std::uint64_t bits = probe_b.touching(scene.leaves, i, end_a - i); bits != 0; bits &= bits - 1) {
       const std::size_t leaf = i + lowest_bit(bits);
       if (scene.positions != nullptr) {
-        pair_leaf(scene, leaf, first_b, end_b, collector);
+        pair_leaf<false>(scene, leaf, first_b, end_b, collector);
       } else {
         pair_ball(scene, leaf, first_b, end_b, collector);
       }
     }
   }
+}
+
+// Exact boxes of a sphere's leaves and of all of them, where it has none yet.
+HWY_NOINLINE void bound_sphere(const ContactScene& scene, std::size_t sphere) {
+  if (scene.is_bounded[sphere] != 0) {
+    return;
+  }
+  scene.is_bounded[sphere] = 1;
+  for (std::size_t i = scene.first_leaf[sphere]; i < scene.first_leaf[sphere + 1]; ++i) {
+    if (scene.positions != nullptr) {
+      put_box(scene.leaves, i, box_of_leaf(scene, scene.surface->leaves.data[i]));
+    } else {
+      skin(scene, i);
+    }
+  }
+  unite_leaves(scene, sphere);
+}
+
+bool touch(const ContactScene& scene, std::size_t a, std::size_t b, ContactCollector& collector) {
+  bound_sphere(scene, a);
+  bound_sphere(scene, b);
+  const Box box_b = box_at(scene.spheres, b);
+  if (!box_at(scene.spheres, a).touches(box_b)) {
+    return false;
+  }
+  const BoxProbe probe(box_b);
+  const std::size_t end_a = scene.first_leaf[a + 1], first_b = scene.first_leaf[b], end_b = scene.first_leaf[b + 1];
+  for (std::size_t i = scene.first_leaf[a]; i < end_a; i += kLanes) {
+    for (std::uint64_t bits = probe.touching(scene.leaves, i, end_a - i); bits != 0; bits &= bits - 1) {
+      if (pair_leaf<true>(scene, i + lowest_bit(bits), first_b, end_b, collector)) {
+        return true;
+      }
+    }
+  }
+  return false;
 }
 
 HWY_INLINE bool is_enabled(const ContactScene& scene, std::size_t sphere) {
@@ -644,7 +696,9 @@ void find(const ContactScene& scene, ContactCollector& collector) {
   } else {
     bound_balls(scene);
   }
-  unite_leaves(scene);
+  for (std::size_t s = 0; s < scene.sphere_count; ++s) {
+    unite_leaves(scene, s);
+  }
   for (std::size_t a = 0; a < scene.sphere_count; ++a) {
     if (!is_enabled(scene, a)) {
       continue;
@@ -672,11 +726,16 @@ namespace spherechain {
 namespace {
 
 SPHERECHAIN_KERNELS(find);
+SPHERECHAIN_KERNELS(touch);
 
 }  // namespace
 
 void find_candidates(Target resolved, const ContactScene& scene, ContactCollector& collector) {
   find_kernels[index_of(resolved)](scene, collector);
+}
+
+bool skins_touch(Target resolved, const ContactScene& scene, Pair spheres, ContactCollector& collector) {
+  return touch_kernels[index_of(resolved)](scene, spheres.a, spheres.b, collector);
 }
 
 }  // namespace spherechain

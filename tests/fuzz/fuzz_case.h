@@ -149,5 +149,6 @@ void fuzz_detect(Case& c);
 void fuzz_contacts(Case& c);
 void fuzz_crowd(Case& c);
 void fuzz_triangle_contacts(Case& c);
+void fuzz_confirm(Case& c);
 
 }  // namespace spherechain::test

@@ -28,7 +28,8 @@ constexpr Kind kKinds[] = {{"open", fuzz_open},
                            {"crowd", fuzz_crowd},
                            {"cover", fuzz_cover},
                            {"skin", fuzz_skin},
-                           {"triangle contacts", fuzz_triangle_contacts}};
+                           {"triangle contacts", fuzz_triangle_contacts},
+                           {"confirm", fuzz_confirm}};
 constexpr std::size_t kKindCount = sizeof kKinds / sizeof kKinds[0];
 
 bool read_number(int argc, char** argv, int& i, const char* name, std::uint64_t& number) {

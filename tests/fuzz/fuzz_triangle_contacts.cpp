@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Exact contacts, from vertices and from bones; once more on another target.
+// Exact contacts, and pairs of spheres confirmed by them, from vertices and from bones; once more on another target.
 #include <algorithm>
 
 #include "fuzz_case.h"
+#include "spherechain/confirm.h"
 #include "spherechain/triangle_contacts.h"
 
 namespace spherechain::test {
@@ -49,36 +50,78 @@ void spoil(Case& c, TriangleContactJob& job, Filter& filter, std::uint32_t way, 
   }
 }
 
+void spoil(Case& c, ConfirmJob& job, std::uint32_t way, Spoiled& spoiled) {
+  switch (way) {
+    case 0:
+      job.asset = &c.closed;
+      return spoiled.with(Status::kNotOpen);
+    case 1:
+      job.context = nullptr;
+      return spoiled.with(Status::kNullArgument);
+    case 2:
+      job.candidates = {nullptr, 1};
+      return spoiled.with(Status::kNullArgument);
+    case 3:
+      job.pairs.data = c.arena.add<Pair>(job.pairs.size + 1);
+      put_askew(c, job.pairs.data);
+      return spoiled.with(Status::kMisaligned);
+    case 4: {
+      const auto bad = static_cast<std::uint32_t>(c.asset.spheres().size + c.random.below(1000));
+      Pair* pair = c.arena.add<Pair>(1);
+      *pair = c.random.one_in(2) ? Pair{bad, 0} : Pair{0, bad};
+      job.candidates = {pair, 1};
+      return spoiled.with(Status::kBadArgument);
+    }
+    default:
+      if (job.context != nullptr && job.pairs.size > 0) {
+        job.pairs.data = reinterpret_cast<Pair*>(job.context->words.data);
+        spoiled.with(Status::kSharedMemory);
+      }
+  }
+}
+
+// Of an asset with vertices.
+template <typename Job>
+void draw_pose(Case& c, Job& job) {
+  const std::size_t needed = c.asset.info().source_vertex_count;
+  if (c.asset.bone_count() > 0 && c.random.one_in(2)) {
+    float* matrices = c.arena.add<float>(12 * c.asset.bone_count());
+    std::generate(matrices, matrices + 12 * c.asset.bone_count(), [&] { return c.random.figure(); });
+    job.bones = {matrices, c.asset.bone_count()};
+    return;
+  }
+  job.stride = 12 + 4 * (c.random.one_in(2) ? 0 : c.random.below(8));
+  job.vertex_count = needed;
+  const std::size_t floats = (needed - 1) * job.stride / sizeof(float) + 3;
+  float* positions = c.arena.add<float>(floats);
+  fill_figures(c, positions, floats);
+  job.positions = positions;
+}
+
+// False where there is nothing to ask about, or too much.
+bool draw_skin(Case& c) {
+  if (!draw_asset(c)) {
+    return false;
+  }
+  const std::size_t vertices = c.asset.info().source_vertex_count;
+  return vertices > 0 && vertices <= kMostVertices &&
+         TriangleContactContext::words_needed(c.asset) <= (std::size_t{1} << 17);
+}
+
 }  // namespace
 
 void fuzz_triangle_contacts(Case& c) {
-  if (!draw_asset(c)) {
+  if (!draw_skin(c)) {
     return;
   }
-  const std::size_t needed = c.asset.info().source_vertex_count;
   const std::size_t words = TriangleContactContext::words_needed(c.asset);
-  if (needed == 0 || needed > kMostVertices || words > (std::size_t{1} << 17)) {
-    return;
-  }
   TriangleContactJob job;
   Spoiled spoiled;
   job.asset = &c.asset;
   job.target = draw_target(c);
   TriangleContactContext context{{c.arena.add<std::uint64_t>(words), words}};
   job.context = &context;
-  const bool from_bones = c.asset.bone_count() > 0 && c.random.one_in(2);
-  if (from_bones) {
-    float* matrices = c.arena.add<float>(12 * c.asset.bone_count());
-    std::generate(matrices, matrices + 12 * c.asset.bone_count(), [&] { return c.random.figure(); });
-    job.bones = {matrices, c.asset.bone_count()};
-  } else {
-    job.stride = 12 + 4 * (c.random.one_in(2) ? 0 : c.random.below(8));
-    job.vertex_count = needed;
-    const std::size_t floats = (needed - 1) * job.stride / sizeof(float) + 3;
-    float* positions = c.arena.add<float>(floats);
-    fill_figures(c, positions, floats);
-    job.positions = positions;
-  }
+  draw_pose(c, job);
   job.pairs.size = c.random.below(300);
   job.pairs.data = c.arena.add<TrianglePair>(job.pairs.size);
   job.contacts.size = c.random.below(300);
@@ -117,6 +160,52 @@ void fuzz_triangle_contacts(Case& c) {
   if (spoiled.count == 0) {
     c.expect(std::is_sorted(job.pairs.data, job.pairs.data + written), "pairs that are not sorted");
   }
+}
+
+void fuzz_confirm(Case& c) {
+  if (!draw_skin(c)) {
+    return;
+  }
+  const std::size_t words = TriangleContactContext::words_needed(c.asset), spheres = c.asset.spheres().size;
+  ConfirmJob job;
+  Spoiled spoiled;
+  job.asset = &c.asset;
+  job.target = draw_target(c);
+  TriangleContactContext context{{c.arena.add<std::uint64_t>(words), words}};
+  job.context = &context;
+  draw_pose(c, job);
+  if (spheres > 1) {
+    const std::size_t count = c.random.below(40);
+    Pair* candidates = c.arena.add<Pair>(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto a = static_cast<std::uint32_t>(c.random.below(static_cast<std::uint32_t>(spheres)));
+      const auto step = 1 + c.random.below(static_cast<std::uint32_t>(spheres - 1));
+      candidates[i] = {a, static_cast<std::uint32_t>((a + step) % spheres)};
+    }
+    job.candidates = {candidates, count};
+  }
+  job.pairs.size = c.random.below(20);
+  job.pairs.data = c.arena.add<Pair>(job.pairs.size);
+  if (c.asset.leaf_count() == 0) {
+    spoiled.with(Status::kNotInAsset);
+  } else {
+    spoil_some(c, 6, [&](std::uint32_t way) { spoil(c, job, way, spoiled); });
+  }
+  ConfirmJob again = job;
+  again.target = draw_target(c);
+  run_both(
+      c, spoiled, [&] { return job.run(); }, [&] { return again.run(); },
+      [&](Status) {
+        return std::vector<Bytes>{bytes_of(job.pairs.data, std::min(job.pairs.size, job.pair_count)),
+                                  bytes_of(context.words.data, words)};
+      },
+      [&](bool ran) {
+        if (ran) {
+          std::fill(context.words.begin(), context.words.end(), std::uint64_t{0});  // scratch: anything
+        }
+      });
+  c.expect(again.pair_count == job.pair_count, "the other target confirms something else");
+  c.expect(job.pair_count <= job.candidates.size || spoiled.count > 0, "more confirmed than asked about");
 }
 
 }  // namespace spherechain::test
