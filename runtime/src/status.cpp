@@ -50,6 +50,12 @@ const char* to_string(Status status) noexcept {
       return "there are fewer morph weights than the asset has morph targets";
     case Status::kWrongAbi:
       return "the program was compiled with the headers of another version of the library";
+    case Status::kNoDevice:
+      return "there is no CUDA device, or no driver for one";
+    case Status::kDeviceFailed:
+      return "the CUDA device or its driver reported an error";
+    case Status::kDeviceTooSmall:
+      return "the asset does not fit into the memory that the CUDA device has for a block";
   }
   return "unknown status";
 }

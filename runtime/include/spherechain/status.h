@@ -29,6 +29,9 @@ enum class Status : int {
   kTooFewBones = 19,        // fewer bone matrices than the asset has bones
   kTooFewMorphs = 20,       // morph weights, but fewer than the asset has morph targets
   kWrongAbi = 21,           // the program was compiled with the headers of another version of the library
+  kNoDevice = 22,           // no CUDA device, or no driver for one
+  kDeviceFailed = 23,       // the CUDA device or its driver reported an error
+  kDeviceTooSmall = 24,     // the asset does not fit into a block's memory on the CUDA device
 };
 
 // A short English sentence without a final stop. Never null, also for values that do not exist.

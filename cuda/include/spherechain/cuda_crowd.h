@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "spherechain/asset.h"
+#include "spherechain/crowd.h"
+#include "spherechain/filter.h"
+#include "spherechain/refit_bones.h"
+#include "spherechain/status.h"
+#include "spherechain/types.h"
+
+struct CUstream_st;  // a cudaStream_t points to one
+
+namespace spherechain::cuda {
+
+// What the kernels read of an asset, for one kind of radius and one filter. It is built on the CPU into the caller's
+// memory and then copied, as it is, to the device by the caller; both copies stay while jobs use them. Position
+// independent: any number of devices may hold a copy. To change the filter build and copy again.
+class CrowdTables {
+ public:
+  // Words that build() needs for that asset, whatever the filter.
+  static std::size_t words_needed(const Asset& asset) noexcept;
+
+  // `filter` null: the asset's ignored pairs, all spheres as they are. kOk, kNotOpen, kBadArgument, kNullArgument,
+  // kMisaligned, kBadFilter, kContextTooSmall (`memory`); on failure this is as it was. Allocates nothing.
+  Status build(const Asset& asset, RadiusKind radius, const Filter* filter, Span<std::uint64_t> memory) noexcept;
+
+  bool is_built() const noexcept { return words_ > 0; }
+  // How many words of `memory` were written: what is to be copied to the device, to a multiple of 16 bytes there.
+  std::size_t words() const noexcept { return words_; }
+  std::size_t sphere_count() const noexcept { return sphere_count_; }
+  std::size_t bone_count() const noexcept { return bone_count_; }  // the asset's; 0: crowds of spheres only
+  std::size_t morph_count() const noexcept { return morph_count_; }
+  std::size_t bit_words() const noexcept { return bit_words_; }  // DetectJob::bit_words
+  // Shared memory of a block, in bytes, of a job with those inputs and outputs; a device that has less (227 KiB on
+  // Hopper, 163 on Ampere, 99 on Ada, 64 on Turing) refuses the job with kDeviceTooSmall.
+  std::size_t shared_bytes(bool from_bones, bool with_morphs, bool with_bits, bool with_pairs) const noexcept;
+
+ private:
+  friend struct Access;  // cuda/src
+  std::size_t words_ = 0;
+  std::uint32_t sphere_count_ = 0, bone_count_ = 0, morph_count_ = 0, bit_words_ = 0;
+  std::uint32_t used_bone_count_ = 0, item_count_ = 0, near_count_ = 0;
+  std::uint32_t groups_at_ = 0, terms_at_ = 0, term_bones_at_ = 0, used_bones_at_ = 0, items_at_ = 0, near_at_ = 0;
+  std::uint32_t morph_counts_at_ = 0, morph_targets_at_ = 0, morph_terms_at_ = 0;  // words from the start
+  bool calibrated_ = false, has_padding_ = false, has_morphs_ = false;
+};
+
+// Instances of one asset. All pointers but `tables` are to memory the device can read or write; matrices, spheres and
+// bounds aligned to 16 bytes are read and written fastest.
+struct CrowdGroup {
+  const CrowdTables* tables = nullptr;           // on the host
+  const std::uint64_t* device_tables = nullptr;  // its words' copy on the device, aligned to 16 bytes
+  std::size_t instance_count = 0;
+
+  // Either: instance i's spheres are spheres[i * stride] and on, from refits with the tables' kind of radius.
+  const Sphere* spheres = nullptr;
+  std::size_t stride = 0;  // at least the asset's spheres, or 0: as many
+
+  // Or: instance 0's matrices, and the bytes from one instance's first matrix to the next's, a multiple of 4, at least
+  // what the asset's bones take. Morph weights: CrowdTables::morph_count() an instance, or null.
+  BoneMatrices bones;
+  std::size_t instance_stride = 0;
+  const float* morph_weights = nullptr;
+
+  // Out, each may be null.
+  Sphere* refitted = nullptr;       // with bones: as many an instance as the asset has, without the filter's padding
+  Sphere* bounds = nullptr;         // one an instance, around all its spheres with the filter's padding
+  std::uint32_t* counts = nullptr;  // pairs of each instance
+  std::uint64_t* bits = nullptr;    // CrowdTables::bit_words() words an instance, as DetectJob::bits
+
+  // Out: a list. Each instance's pairs follow one another, sorted; `starts` says where, for the instances come in any
+  // order. Needs counts, starts and pair_count.
+  CrowdPair* pairs = nullptr;
+  std::size_t pair_capacity = 0;
+  std::uint64_t* starts = nullptr;      // one an instance
+  std::uint64_t* pair_count = nullptr;  // how many there are; more than pair_capacity: those past it were left out
+};
+
+// Refit from bones and M2 of whole crowds in one launch: for each instance exactly the spheres of a RefitBonesJob and
+// the pairs of a DetectJob, bit for bit. A sphere that is not finite touches nothing.
+//
+// run() enqueues on `stream` (null: the default stream) of the current device one kernel and, for each group with
+// pairs, the clearing of its count, and returns; it allocates nothing, waits for nothing and may be captured into a
+// graph. Outputs may be read when the stream has got there; they must not share memory with inputs or each other.
+struct CrowdJob {
+  static constexpr std::size_t kMostGroups = 8;
+
+  Span<const CrowdGroup> groups;  // at most kMostGroups
+  CUstream_st* stream = nullptr;
+
+  // kOk, kNullArgument, kBadArgument (both spheres and bones, too many groups, a count that does not fit), kNotOpen
+  // (tables not built), kNotInAsset, kTooFewBones, kBadStride, kTooFewSpheres (a stride), kMisaligned, kNoDevice,
+  // kDeviceTooSmall: nothing was enqueued. kDeviceFailed: the device or its driver reported an error; see
+  // last_device_error().
+  Status run() const noexcept;
+};
+
+}  // namespace spherechain::cuda

@@ -1,0 +1,405 @@
+// SPDX-License-Identifier: MIT
+// The crowd's kernel, thread by thread, in steps with a barrier between them. It is compiled for the device, and by any
+// C++ compiler for the tests, which run a block's threads one after the other, step by step. The arithmetic is that of
+// refit_bones.h and detect.h: multiply-adds where fused() is written, and nowhere else.
+#pragma once
+
+#include <cfloat>
+#include <cmath>
+
+#include "crowd_view.h"
+
+namespace spherechain::cuda {
+
+SPHERECHAIN_HD float fused(float a, float b, float c) {
+#if defined(__CUDA_ARCH__)
+  return __fmaf_rn(a, b, c);
+#else
+  return std::fma(a, b, c);
+#endif
+}
+
+SPHERECHAIN_HD void add_to(std::uint32_t* shared, std::uint32_t value) {
+#if defined(__CUDA_ARCH__)
+  atomicAdd(shared, value);
+#else
+  *shared += value;
+#endif
+}
+
+SPHERECHAIN_HD void set_bits(std::uint32_t* shared, std::uint32_t value) {
+#if defined(__CUDA_ARCH__)
+  atomicOr(shared, value);
+#else
+  *shared |= value;
+#endif
+}
+
+SPHERECHAIN_HD std::uint64_t reserve(std::uint64_t* count, std::uint32_t value) {
+#if defined(__CUDA_ARCH__)
+  return atomicAdd(reinterpret_cast<unsigned long long*>(count), static_cast<unsigned long long>(value));
+#else
+  *count += value;
+  return *count - value;
+#endif
+}
+
+SPHERECHAIN_HD std::uint32_t lowest_bit(std::uint32_t word) {
+#if defined(__CUDA_ARCH__)
+  return __ffs(static_cast<int>(word)) - 1;
+#else
+  return static_cast<std::uint32_t>(__builtin_ctz(word));
+#endif
+}
+
+// Lanes past the last instance do as the last one does, and write nothing out.
+SPHERECHAIN_HD std::uint32_t instance_of(const GroupView& v, const Place& at, std::uint32_t lane) {
+  const std::uint32_t instance = at.block * kLanes + lane;
+  return instance < v.instance_count ? instance : v.instance_count - 1;
+}
+
+SPHERECHAIN_HD std::uint32_t instances_in(const GroupView& v, const Place& at) {
+  const std::uint32_t left = v.instance_count - at.block * kLanes;
+  return left < kLanes ? left : kLanes;
+}
+
+// Step 1: a warp an instance, so that its figures are read in the order they lie in.
+SPHERECHAIN_HD void load_matrices(const GroupView& v, const Shared& shared, const Place& at) {
+  for (std::uint32_t to = at.warp(); to < kLanes; to += at.warps()) {
+    const float* from = v.matrices + instance_of(v, at, to) * v.instance_stride;
+    if (v.wide_matrices) {
+      for (std::uint32_t i = at.lane(); i < 3 * v.used_bone_count; i += kLanes) {
+        const float* row = from + v.used_bones[i / 3] * v.bone_stride + i % 3 * v.steps.row;
+        shared.matrices[i * kPitch + to] = *reinterpret_cast<const Float4*>(row);
+      }
+    } else {
+      for (std::uint32_t i = at.lane(); i < 12 * v.used_bone_count; i += kLanes) {
+        const float* matrix = from + v.used_bones[i / 12] * v.bone_stride;
+        (&shared.matrices[i / 4 * kPitch + to].x)[i % 4] = matrix[i / 4 % 3 * v.steps.row + i % 4 * v.steps.column];
+      }
+    }
+  }
+  if (v.morph_weights != nullptr) {
+    for (std::uint32_t i = at.thread; i < kLanes * v.morph_count; i += at.threads) {
+      const std::uint32_t to = i / v.morph_count, target = i % v.morph_count;
+      shared.morph_weights[target * kPitch + to] =
+          v.morph_weights[std::size_t{instance_of(v, at, to)} * v.morph_count + target];
+    }
+  }
+}
+
+// Step 1 where the instances come as spheres.
+SPHERECHAIN_HD void load_spheres(const GroupView& v, const Shared& shared, const Place& at) {
+  for (std::uint32_t to = at.warp(); to < kLanes; to += at.warps()) {
+    const Sphere* from = v.spheres + instance_of(v, at, to) * v.sphere_stride;
+    for (std::uint32_t i = at.lane(); i < v.sphere_count; i += kLanes) {
+      if (v.wide_spheres) {
+        shared.spheres[i * kPitch + to] = *reinterpret_cast<const Float4*>(from + i);
+      } else {
+        shared.spheres[i * kPitch + to] = {from[i].x, from[i].y, from[i].z, from[i].radius};
+      }
+    }
+  }
+}
+
+// The centroids of a group's eight pivots.
+template <bool kMorphs>
+SPHERECHAIN_HD void move_group(const GroupView& v, const Shared& shared, std::uint32_t lane, const GroupEntry& group,
+                               float (&p)[3][kPivotLanes]) {
+  float even[3][kPivotLanes] = {}, odd[3][kPivotLanes] = {};
+  std::uint32_t morph_term = group.first_morph_term;
+  for (std::uint32_t t = group.first_term; t < group.first_term + group.term_count; ++t) {
+    const Float4* matrix = shared.matrices + 3 * v.term_bones[t] * kPitch + lane;
+    const Float4 rows[] = {matrix[0], matrix[kPitch], matrix[2 * kPitch]};
+    TermEntry q = v.terms[t];
+    if (kMorphs) {
+      for (std::uint32_t left = v.morph_counts[t]; left > 0; --left, ++morph_term) {
+        const float weight = shared.morph_weights[v.morph_targets[morph_term] * kPitch + lane];
+        const MorphTerm& morph = v.morph_terms[morph_term];
+        for (std::size_t k = 0; k < kPivotLanes; ++k) {
+          q.x[k] = fused(weight, morph.x[k], q.x[k]);
+          q.y[k] = fused(weight, morph.y[k], q.y[k]);
+          q.z[k] = fused(weight, morph.z[k], q.z[k]);
+        }
+      }
+    }
+    for (std::size_t k = 0; k < kPivotLanes; ++k) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        even[i][k] = fused(rows[i].z, q.z[k], fused(rows[i].x, q.x[k], even[i][k]));
+        odd[i][k] = fused(rows[i].w, q.w[k], fused(rows[i].y, q.y[k], odd[i][k]));
+      }
+    }
+  }
+  for (std::size_t k = 0; k < kPivotLanes; ++k) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      p[i][k] = even[i][k] + odd[i][k];
+    }
+  }
+}
+
+SPHERECHAIN_HD float tree(const float (&v)[kPivotLanes]) {
+  return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7]));
+}
+
+SPHERECHAIN_HD void add_shares(const GroupEntry& group, const float (&p)[3][kPivotLanes], bool is_first,
+                               float (&shares)[3][kPivotLanes]) {
+  for (std::size_t k = 0; k < kPivotLanes; ++k) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      shares[i][k] = is_first ? group.weights[k] * p[i][k] : fused(group.weights[k], p[i][k], shares[i][k]);
+    }
+  }
+}
+
+SPHERECHAIN_HD void add_distances(const float (&p)[3][kPivotLanes], const float (&center)[3], std::uint32_t used,
+                                  bool is_first, float (&distances)[kPivotLanes]) {
+  for (std::size_t k = 0; k < kPivotLanes; ++k) {
+    const float dx = p[0][k] - center[0], dy = p[1][k] - center[1], dz = p[2][k] - center[2];
+    const float distance = k < used ? sqrtf(fused(dz, dz, fused(dy, dy, dx * dx))) : 0.0F;
+    distances[k] = is_first ? distance : distances[k] + distance;
+  }
+}
+
+template <bool kMorphs>
+SPHERECHAIN_HD Float4 refit_sphere(const GroupView& v, const Shared& shared, std::uint32_t lane,
+                                   const SphereEntry& sphere) {
+  float p[3][kPivotLanes], shares[3][kPivotLanes], distances[kPivotLanes];
+  for (std::uint32_t g = 0; g < sphere.group_count; ++g) {
+    const GroupEntry& group = v.groups[sphere.first_group + g];
+    move_group<kMorphs>(v, shared, lane, group, p);
+    add_shares(group, p, g == 0, shares);
+  }
+  const float center[3] = {tree(shares[0]), tree(shares[1]), tree(shares[2])};
+  if (sphere.group_count == 1) {
+    add_distances(p, center, sphere.pivots, true, distances);
+  } else {
+    for (std::uint32_t g = 0; g < sphere.group_count; ++g) {
+      move_group<kMorphs>(v, shared, lane, v.groups[sphere.first_group + g], p);
+      add_distances(p, center, sphere.pivots - g * kPivotLanes, g == 0, distances);
+    }
+  }
+  const float mean = tree(distances) / sphere.pivot_count;
+  return {center[0], center[1], center[2], v.calibrated ? sphere.wanted * (mean / sphere.scale) : mean * sphere.wanted};
+}
+
+// Step 2: a warp a sphere.
+template <bool kMorphs>
+SPHERECHAIN_HD void refit_spheres(const GroupView& v, const Shared& shared, const Place& at) {
+  for (std::uint32_t i = at.warp(); i < v.sphere_count; i += at.warps()) {
+    shared.spheres[i * kPitch + at.lane()] = refit_sphere<kMorphs>(v, shared, at.lane(), v.sphere_entries[i]);
+  }
+}
+
+// Step 3.
+SPHERECHAIN_HD void clear_outputs(const GroupView& v, const Shared& shared, const Place& at) {
+  if (v.bits != nullptr || v.pairs != nullptr) {
+    const std::uint32_t tables = (v.bits != nullptr ? 1U : 0U) + (v.pairs != nullptr ? 1U : 0U);
+    for (std::uint32_t i = at.thread; i < tables * half_words(v) * kPitch; i += at.threads) {
+      shared.bits[i] = 0;
+    }
+  }
+  if (at.thread < kLanes) {
+    shared.counts[at.thread] = 0;
+  }
+}
+
+// A sphere for the test by multiply-adds: seen from the instance's first one, with `power`, less than half of radius^2
+// - |center|^2 by a margin. With G = |center|^2 + radius^2 of p and q, runtime/src/overlap.cpp shows that power(p) +
+// power(q)
+// + p.q + rp rq is off by 33 * 2^-24 G at most; each power is larger by 64 * 2^-24 of its sphere's share of G, and by
+// 2^-120 for what underflows, so that no pair is missed. A sphere that is too large for that, or not finite, may touch
+// anything.
+struct Candidate {
+  float x, y, z, radius, power;
+};
+
+SPHERECHAIN_HD Candidate candidate_of(const Float4& s, const Float4& origin) {
+  constexpr float kMargin = 0x1p-18F, kLeast = 0x1p-120F, kMostExtent = 1e36F;
+  Candidate out{s.x - origin.x, s.y - origin.y, s.z - origin.z, s.w, 0};
+  const float squared_length = fused(out.z, out.z, fused(out.y, out.y, out.x * out.x)), squared_radius = s.w * s.w;
+  out.power = fused(0.5F + kMargin, squared_radius, fused(kMargin - 0.5F, squared_length, kLeast));
+  if (!(squared_length + squared_radius <= kMostExtent)) {
+    out = {0, 0, 0, 0, INFINITY};
+  }
+  return out;
+}
+
+SPHERECHAIN_HD Float4 padded_sphere(const GroupView& v, const Shared& shared, std::uint32_t lane, std::uint32_t i) {
+  Float4 out = shared.spheres[i * kPitch + lane];
+  if (v.has_padding) {
+    out.w += v.sphere_entries[i].padding;
+  }
+  return out;
+}
+
+// detect.h's rule; `reach` 1 for pairs that are not near ones.
+SPHERECHAIN_HD bool touch(const Float4& p, const Float4& q, float reach) {
+  const float dx = p.x - q.x, dy = p.y - q.y, dz = p.z - q.z;
+  const float s = p.w + q.w, squared = s * s, t = reach * s;
+  return ((dx * dx + dy * dy) + dz * dz) < t * t && squared <= FLT_MAX;
+}
+
+SPHERECHAIN_HD void report(const GroupView& v, const Shared& shared, std::uint32_t lane, std::uint32_t a,
+                           std::uint32_t b) {
+  add_to(&shared.counts[lane], 1);
+  if (v.bits != nullptr) {
+    const std::uint32_t bit = b * (b - 1) / 2 + a;
+    set_bits(&shared.bits[bit / 32 * kPitch + lane], 1U << (bit % 32));
+  }
+  if (v.pairs != nullptr) {
+    const std::uint32_t bit = a * (2 * v.sphere_count - a - 1) / 2 + (b - a - 1);
+    set_bits(&shared.ordered_bits[bit / 32 * kPitch + lane], 1U << (bit % 32));
+  }
+}
+
+SPHERECHAIN_HD void test_item(const GroupView& v, const Shared& shared, std::uint32_t lane, const PairItem& item) {
+  const Float4 origin = shared.spheres[lane];
+  Candidate rows[kRows];
+  for (std::uint32_t r = 0; r < kRows; ++r) {
+    const std::uint32_t row = item.first_row + r;
+    rows[r] = candidate_of(padded_sphere(v, shared, lane, row < v.sphere_count ? row : 0), origin);
+  }
+  for (std::uint32_t c = 0; c < kColumns; ++c) {
+    const auto wanted = static_cast<std::uint32_t>(item.wanted >> (kRows * c)) & ((1U << kRows) - 1U);
+    if (wanted == 0) {
+      continue;
+    }
+    const std::uint32_t b = item.first_column + c;
+    const Float4 sphere = padded_sphere(v, shared, lane, b);
+    const Candidate column = candidate_of(sphere, origin);
+    std::uint32_t candidates = 0;
+    for (std::uint32_t r = 0; r < kRows; ++r) {
+      float sum = fused(rows[r].radius, column.radius, rows[r].power);
+      sum = fused(rows[r].x, column.x, sum);
+      sum = fused(rows[r].y, column.y, sum);
+      sum = fused(rows[r].z, column.z, sum);
+      candidates |= sum > -column.power ? 1U << r : 0U;
+    }
+    for (candidates &= wanted; candidates != 0; candidates &= candidates - 1) {
+      const std::uint32_t a = item.first_row + lowest_bit(candidates);
+      if (touch(padded_sphere(v, shared, lane, a), sphere, 1.0F)) {
+        report(v, shared, lane, a, b);
+      }
+    }
+  }
+}
+
+// Step 4: a warp an item, then a warp a near pair.
+SPHERECHAIN_HD void test_pairs(const GroupView& v, const Shared& shared, const Place& at) {
+  for (std::uint32_t i = at.warp(); i < v.item_count; i += at.warps()) {
+    test_item(v, shared, at.lane(), v.items[i]);
+  }
+  for (std::uint32_t i = at.warp(); i < v.near_count; i += at.warps()) {
+    const NearEntry near = v.near[i];
+    if (touch(padded_sphere(v, shared, at.lane(), near.a), padded_sphere(v, shared, at.lane(), near.b), near.reach)) {
+      report(v, shared, at.lane(), near.a, near.b);
+    }
+  }
+}
+
+// Around all spheres, from their centres' mean; a little larger than that, for what is rounded.
+SPHERECHAIN_HD Sphere bound_of(const GroupView& v, const Shared& shared, std::uint32_t lane) {
+  float x = 0, y = 0, z = 0, radius = 0;
+  for (std::uint32_t i = 0; i < v.sphere_count; ++i) {
+    const Float4 s = shared.spheres[i * kPitch + lane];
+    x += s.x;
+    y += s.y;
+    z += s.z;
+  }
+  const auto count = static_cast<float>(v.sphere_count);
+  x /= count;
+  y /= count;
+  z /= count;
+  for (std::uint32_t i = 0; i < v.sphere_count; ++i) {
+    const Float4 s = padded_sphere(v, shared, lane, i);
+    const float dx = s.x - x, dy = s.y - y, dz = s.z - z;
+    const float reach = sqrtf((dx * dx + dy * dy) + dz * dz) + s.w;
+    radius = reach <= radius ? radius : reach;  // a NaN stays
+  }
+  return {x, y, z, radius * (1.0F + 0x1p-20F)};
+}
+
+// Step 5: what an instance alone knows; a block's places in the list.
+SPHERECHAIN_HD void write_instances(const GroupView& v, const Shared& shared, const Place& at) {
+  const std::uint32_t lane = at.lane(), first = at.block * kLanes, count = instances_in(v, at);
+  if (at.warp() == 0 && lane < count && v.counts != nullptr) {
+    v.counts[first + lane] = shared.counts[lane];
+  }
+  if (at.thread == 0 && v.pairs != nullptr) {
+    std::uint32_t total = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      total += shared.counts[i];
+    }
+    std::uint64_t start = reserve(v.pair_count, total);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      shared.starts[i] = start;
+      v.starts[first + i] = start;
+      start += shared.counts[i];
+    }
+  }
+  if (at.warp() == 1 % at.warps() && lane < count && v.bounds != nullptr) {
+    v.bounds[first + lane] = bound_of(v, shared, lane);
+  }
+  if (v.refitted != nullptr) {
+    for (std::uint32_t from = at.warp(); from < count; from += at.warps()) {
+      Sphere* const to = v.refitted + std::size_t{first + from} * v.sphere_count;
+      for (std::uint32_t i = lane; i < v.sphere_count; i += kLanes) {
+        const Float4 s = shared.spheres[i * kPitch + from];
+        if (v.wide_refitted) {
+          *reinterpret_cast<Float4*>(to + i) = s;
+        } else {
+          to[i] = {s.x, s.y, s.z, s.w};
+        }
+      }
+    }
+  }
+  if (v.bits != nullptr) {
+    for (std::uint32_t from = at.warp(); from < count; from += at.warps()) {
+      std::uint64_t* const to = v.bits + std::size_t{first + from} * v.bit_words;
+      for (std::uint32_t i = lane; i < v.bit_words; i += kLanes) {
+        const std::uint32_t* own = shared.bits + 2 * i * kPitch + from;
+        to[i] = own[0] | std::uint64_t{own[kPitch]} << 32;
+      }
+    }
+  }
+}
+
+// Step 6: the list, a thread an instance.
+SPHERECHAIN_HD void write_pairs(const GroupView& v, const Shared& shared, const Place& at) {
+  if (v.pairs == nullptr || at.thread >= instances_in(v, at)) {
+    return;
+  }
+  const std::uint32_t lane = at.thread, n = v.sphere_count;
+  std::uint64_t place = shared.starts[lane];
+  std::uint32_t a = 0, row = 0, row_end = n - 1;  // of a's bits
+  for (std::uint32_t w = 0, left = shared.counts[lane]; left > 0; ++w) {
+    for (std::uint32_t word = shared.ordered_bits[w * kPitch + lane]; word != 0; word &= word - 1, --left) {
+      const std::uint32_t bit = 32 * w + lowest_bit(word);
+      while (bit >= row_end) {
+        ++a;
+        row = row_end;
+        row_end += n - 1 - a;
+      }
+      if (place < v.pair_capacity) {
+        v.pairs[place] = {at.block * kLanes + lane, {a, a + 1 + (bit - row)}};
+      }
+      ++place;
+    }
+  }
+}
+
+// A block. `run` runs a step for its threads and waits for all of them.
+template <bool kFromBones, bool kMorphs, typename Run>
+SPHERECHAIN_HD void run_block(const GroupView& v, const Shared& shared, const Run& run) {
+  if (kFromBones) {
+    run([&](const Place& at) { load_matrices(v, shared, at); });
+    run([&](const Place& at) { refit_spheres<kMorphs>(v, shared, at); });
+  } else {
+    run([&](const Place& at) { load_spheres(v, shared, at); });
+  }
+  run([&](const Place& at) { clear_outputs(v, shared, at); });
+  run([&](const Place& at) { test_pairs(v, shared, at); });
+  run([&](const Place& at) { write_instances(v, shared, at); });
+  run([&](const Place& at) { write_pairs(v, shared, at); });
+}
+
+}  // namespace spherechain::cuda

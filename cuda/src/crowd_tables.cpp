@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cstring>
+
+#include "crowd_access.h"
+
+namespace spherechain::cuda {
+namespace {
+
+constexpr std::size_t words_of(std::size_t bytes) { return (bytes + 15) / 16 * 2; }
+
+std::size_t triangle_words(std::size_t n) { return (n * (n - 1) / 2 + 63) / 64; }
+
+bool test(Span<const std::uint64_t> words, std::size_t bit) { return ((words[bit / 64] >> (bit % 64)) & 1U) != 0; }
+
+bool test_pair(Span<const std::uint64_t> words, std::size_t a, std::size_t b) {
+  return test(words, b * (b - 1) / 2 + a);
+}
+
+// Row blocks times column chunks, few of which are past the diagonal.
+std::size_t most_items(std::size_t n) {
+  std::size_t out = 0;
+  for (std::size_t row = 0; row + 1 < n; row += kRows) {
+    out += (n - 1 - row + kColumns - 1) / kColumns;
+  }
+  return out;
+}
+
+// Entries one after another, zero where nothing is written.
+class Memory {
+ public:
+  explicit Memory(Span<std::uint64_t> memory) : memory_(memory) {}
+
+  template <typename T>
+  T* take(std::size_t count, std::uint32_t& at) {
+    at = static_cast<std::uint32_t>(used_);
+    std::uint64_t* begin = memory_.data + used_;
+    used_ += words_of(count * sizeof(T));
+    std::fill(begin, memory_.data + used_, std::uint64_t{0});
+    return reinterpret_cast<T*>(begin);
+  }
+  std::size_t used() const { return used_; }
+
+ private:
+  Span<std::uint64_t> memory_;
+  std::size_t used_ = 0;
+};
+
+void fill_spheres(const Asset& asset, RadiusKind kind, const Filter* filter, SphereEntry* out) {
+  const bool calibrated = asset.refit_rule() == RefitRule::kCalibrated;
+  std::uint32_t group = 0;
+  for (std::size_t i = 0; i < asset.spheres().size; ++i) {
+    const RestSphere& rest = asset.spheres()[i];
+    const float wanted = kind == RadiusKind::kFit ? rest.radius : rest.detect_radius;
+    SphereEntry& entry = out[i];
+    entry.wanted = calibrated ? wanted : wanted / rest.radius;
+    entry.scale = rest.pivot_spread;
+    entry.pivots = rest.pivot_count;
+    entry.pivot_count = static_cast<float>(rest.pivot_count);
+    entry.padding = filter == nullptr || filter->padding.size == 0 ? 0.0F : filter->padding[i];
+    entry.first_group = group;
+    entry.group_count = static_cast<std::uint32_t>((rest.pivot_count + kPivotLanes - 1) / kPivotLanes);
+    group += entry.group_count;
+  }
+}
+
+void fill_groups(const BoneTables& tables, GroupEntry* out) {
+  std::uint32_t term = 0, morph_term = 0;
+  for (std::size_t g = 0; g < tables.term_counts.size; ++g) {
+    std::memcpy(out[g].weights, tables.weights[g].values, sizeof out[g].weights);
+    out[g].first_term = term;
+    out[g].term_count = tables.term_counts[g];
+    out[g].first_morph_term = morph_term;
+    for (std::uint32_t i = 0; i < tables.term_counts[g]; ++i, ++term) {
+      morph_term += tables.morph_term_counts.size > 0 ? tables.morph_term_counts[term] : 0;
+    }
+  }
+}
+
+void fill_terms(const BoneTables& tables, TermEntry* out) {
+  static_assert(sizeof(TermEntry) == sizeof(BoneTerm), "copied as they are");
+  for (std::size_t i = 0; i < tables.terms.size; ++i) {
+    std::memcpy(&out[i], &tables.terms[i], sizeof out[i]);
+  }
+}
+
+// Returns how many bones the terms use; `places` of those the others do not.
+std::uint32_t fill_bones(const BoneTables& tables, std::size_t bone_count, std::uint32_t* used,
+                         std::uint32_t* term_bones) {
+  std::uint32_t count = 0;
+  for (std::uint32_t bone = 0; bone < bone_count; ++bone) {
+    bool is_used = false;
+    for (std::size_t t = 0; t < tables.term_bones.size; ++t) {
+      if (tables.term_bones[t] == bone) {
+        term_bones[t] = count;
+        is_used = true;
+      }
+    }
+    if (is_used) {
+      used[count++] = bone;
+    }
+  }
+  return count;
+}
+
+struct Wanted {
+  Span<const std::uint64_t> ignored, disabled;
+  Span<const NearPair> near;
+
+  bool is_enabled(std::size_t i) const { return disabled.size == 0 || !test(disabled, i); }
+  bool operator()(std::uint32_t a, std::uint32_t b) const {
+    return !test_pair(ignored, a, b) && is_enabled(a) && is_enabled(b);
+  }
+  bool is_near(std::uint32_t a, std::uint32_t b) const {
+    const auto before = [](const NearPair& pair, const Pair& at) { return Pair{pair.a, pair.b} < at; };
+    const NearPair* found = std::lower_bound(near.begin(), near.end(), Pair{a, b}, before);
+    return found != near.end() && found->a == a && found->b == b;
+  }
+};
+
+std::uint32_t fill_items(const Wanted& wanted, std::uint32_t n, PairItem* out) {
+  std::uint32_t count = 0;
+  for (std::uint32_t row = 0; row + 1 < n; row += kRows) {
+    for (std::uint32_t column = row + 1; column < n; column += kColumns) {
+      PairItem item{row, column, 0};
+      for (std::uint32_t b = column; b < std::min(n, column + kColumns); ++b) {
+        for (std::uint32_t a = row; a < std::min(b, row + kRows); ++a) {
+          if (wanted(a, b) && !wanted.is_near(a, b)) {
+            item.wanted |= std::uint64_t{1} << (kRows * (b - column) + (a - row));
+          }
+        }
+      }
+      if (item.wanted != 0) {
+        out[count++] = item;
+      }
+    }
+  }
+  return count;
+}
+
+std::uint32_t fill_near(const Wanted& wanted, NearEntry* out) {
+  std::uint32_t count = 0;
+  for (const NearPair& pair : wanted.near) {
+    if (wanted(pair.a, pair.b)) {
+      out[count++] = {pair.a, pair.b, pair.reach, 0};
+    }
+  }
+  return count;
+}
+
+}  // namespace
+
+std::size_t CrowdTables::words_needed(const Asset& asset) noexcept {
+  if (!asset.is_open()) {
+    return 0;
+  }
+  const std::size_t n = asset.spheres().size;
+  const BoneTables& tables = asset.bone_tables();
+  const std::size_t near =
+      std::max(asset.near_pairs(RadiusKind::kFit).size, asset.near_pairs(RadiusKind::kDetect).size);
+  return words_of(n * sizeof(SphereEntry)) + words_of(tables.term_counts.size * sizeof(GroupEntry)) +
+         words_of(tables.terms.size * sizeof(TermEntry)) + 2 * words_of(tables.terms.size * sizeof(std::uint32_t)) +
+         words_of(asset.bone_count() * sizeof(std::uint32_t)) +
+         words_of(tables.morph_terms.size * sizeof(std::uint32_t)) +
+         words_of(tables.morph_terms.size * sizeof(MorphTerm)) + words_of(most_items(n) * sizeof(PairItem)) +
+         words_of(near * sizeof(NearEntry));
+}
+
+Status CrowdTables::build(const Asset& asset, RadiusKind radius, const Filter* filter,
+                          Span<std::uint64_t> memory) noexcept {
+  if (!asset.is_open()) {
+    return Status::kNotOpen;
+  }
+  if (radius != RadiusKind::kFit && radius != RadiusKind::kDetect) {
+    return Status::kBadArgument;
+  }
+  if (memory.data == nullptr) {
+    return Status::kNullArgument;
+  }
+  if (reinterpret_cast<std::uintptr_t>(memory.data) % alignof(std::uint64_t) != 0) {
+    return Status::kMisaligned;
+  }
+  if (filter != nullptr) {
+    const Status status = check_filter(asset, *filter);
+    if (status != Status::kOk) {
+      return status;
+    }
+  }
+  if (memory.size < words_needed(asset)) {
+    return Status::kContextTooSmall;
+  }
+  const BoneTables& tables = asset.bone_tables();
+  const auto n = static_cast<std::uint32_t>(asset.spheres().size);
+  Wanted wanted{asset.ignored(), {}, asset.near_pairs(radius)};
+  if (filter != nullptr) {
+    wanted.ignored = {filter->ignored.data, filter->ignored.size};
+    wanted.disabled = {filter->disabled.data, filter->disabled.size};
+  }
+  CrowdTables out;
+  Memory entries(memory);
+  std::uint32_t first = 0;
+  fill_spheres(asset, radius, filter, entries.take<SphereEntry>(n, first));
+  fill_groups(tables, entries.take<GroupEntry>(tables.term_counts.size, out.groups_at_));
+  fill_terms(tables, entries.take<TermEntry>(tables.terms.size, out.terms_at_));
+  auto* term_bones = entries.take<std::uint32_t>(tables.terms.size, out.term_bones_at_);
+  auto* used_bones = entries.take<std::uint32_t>(asset.bone_count(), out.used_bones_at_);
+  out.used_bone_count_ = fill_bones(tables, asset.bone_count(), used_bones, term_bones);
+  out.has_morphs_ = tables.morph_terms.size > 0;
+  if (out.has_morphs_) {
+    const auto copy = [&](const auto& from, auto* to) { std::copy(from.begin(), from.end(), to); };
+    copy(tables.morph_term_counts, entries.take<std::uint32_t>(tables.terms.size, out.morph_counts_at_));
+    copy(tables.morph_targets, entries.take<std::uint32_t>(tables.morph_targets.size, out.morph_targets_at_));
+    copy(tables.morph_terms, entries.take<MorphTerm>(tables.morph_terms.size, out.morph_terms_at_));
+  }
+  out.near_count_ = fill_near(wanted, entries.take<NearEntry>(wanted.near.size, out.near_at_));
+  out.item_count_ = fill_items(wanted, n, entries.take<PairItem>(most_items(n), out.items_at_));
+  out.words_ = entries.used();
+  out.sphere_count_ = n;
+  out.bone_count_ = static_cast<std::uint32_t>(asset.bone_count());
+  out.morph_count_ = static_cast<std::uint32_t>(asset.morph_count());
+  out.bit_words_ = static_cast<std::uint32_t>(triangle_words(n));
+  out.calibrated_ = asset.refit_rule() == RefitRule::kCalibrated;
+  out.has_padding_ = filter != nullptr && filter->padding.size > 0;
+  *this = out;
+  return Status::kOk;
+}
+
+GroupView Access::view(const CrowdTables& tables, const std::uint64_t* words) {
+  GroupView v{};
+  v.sphere_entries = reinterpret_cast<const SphereEntry*>(words);
+  v.groups = reinterpret_cast<const GroupEntry*>(words + tables.groups_at_);
+  v.terms = reinterpret_cast<const TermEntry*>(words + tables.terms_at_);
+  v.term_bones = reinterpret_cast<const std::uint32_t*>(words + tables.term_bones_at_);
+  v.used_bones = reinterpret_cast<const std::uint32_t*>(words + tables.used_bones_at_);
+  v.near = reinterpret_cast<const NearEntry*>(words + tables.near_at_);
+  v.items = reinterpret_cast<const PairItem*>(words + tables.items_at_);
+  if (tables.has_morphs_) {
+    v.morph_counts = reinterpret_cast<const std::uint32_t*>(words + tables.morph_counts_at_);
+    v.morph_targets = reinterpret_cast<const std::uint32_t*>(words + tables.morph_targets_at_);
+    v.morph_terms = reinterpret_cast<const MorphTerm*>(words + tables.morph_terms_at_);
+  }
+  v.sphere_count = tables.sphere_count_;
+  v.used_bone_count = tables.used_bone_count_;
+  v.item_count = tables.item_count_;
+  v.near_count = tables.near_count_;
+  v.morph_count = tables.morph_count_;
+  v.bit_words = tables.bit_words_;
+  v.calibrated = tables.calibrated_;
+  v.has_padding = tables.has_padding_;
+  return v;
+}
+
+std::size_t CrowdTables::shared_bytes(bool from_bones, bool with_morphs, bool with_bits,
+                                      bool with_pairs) const noexcept {
+  GroupView v = Access::view(*this, nullptr);
+  alignas(8) static unsigned char something[8];  // for what is asked is null or not
+  v.matrices = from_bones ? reinterpret_cast<const float*>(something) : nullptr;
+  v.morph_weights = with_morphs && has_morphs_ ? v.matrices : nullptr;
+  v.bits = with_bits ? reinterpret_cast<std::uint64_t*>(something) : nullptr;
+  v.pairs = with_pairs ? reinterpret_cast<CrowdPair*>(something) : nullptr;
+  return shared_layout(v).size;
+}
+
+}  // namespace spherechain::cuda

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+// What a block of the crowd's kernel sees: the tables' entries, a group's pointers, and its own shared memory.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "spherechain/cuda_crowd.h"
+
+#if defined(__CUDACC__)
+#define SPHERECHAIN_HD __host__ __device__ __forceinline__
+#else
+#define SPHERECHAIN_HD inline
+#endif
+
+namespace spherechain::cuda {
+
+inline constexpr std::uint32_t kLanes = 32;  // instances a block, one a lane
+inline constexpr std::uint32_t kPitch =
+    33;                                    // of shared arrays: neither a lane's nor an instance's figures share a bank
+inline constexpr std::uint32_t kRows = 8;  // spheres in registers
+inline constexpr std::uint32_t kColumns = 8;  // that an item tests them against
+
+struct alignas(16) Float4 {
+  float x, y, z, w;
+};
+
+struct alignas(16) SphereEntry {
+  float wanted, scale;  // calibrated: wanted * (mean / scale); paper: mean * wanted
+  float pivot_count;
+  float padding;
+  std::uint32_t first_group, group_count;
+  std::uint32_t pivots, unused;
+};
+
+struct alignas(16) GroupEntry {
+  float weights[kPivotLanes];
+  std::uint32_t first_term, term_count;
+  std::uint32_t first_morph_term, unused;
+};
+
+struct alignas(16) TermEntry {
+  float x[kPivotLanes], y[kPivotLanes], z[kPivotLanes], w[kPivotLanes];
+};
+
+// Bit kRows * c + r of `wanted`: sphere first_row + r is tested against first_column + c, which is the larger one.
+struct alignas(16) PairItem {
+  std::uint32_t first_row, first_column;
+  std::uint64_t wanted;
+};
+
+struct alignas(16) NearEntry {
+  std::uint32_t a, b;
+  float reach;
+  std::uint32_t unused;
+};
+
+// How a matrix' float at row i and column k lies: data[row * i + column * k].
+struct MatrixSteps {
+  std::uint32_t row, column;
+};
+
+struct GroupView {
+  const SphereEntry* sphere_entries;
+  const GroupEntry* groups;
+  const TermEntry* terms;
+  const std::uint32_t* term_bones;  // places among the used bones
+  const std::uint32_t* used_bones;
+  const std::uint32_t* morph_counts;  // null where nothing morphs
+  const std::uint32_t* morph_targets;
+  const MorphTerm* morph_terms;
+  const PairItem* items;
+  const NearEntry* near;
+  std::uint32_t sphere_count, used_bone_count, item_count, near_count, morph_count, bit_words;
+  bool calibrated, has_padding;
+
+  const Sphere* spheres;
+  const float* matrices;  // null where the instances come as spheres
+  const float* morph_weights;
+  std::size_t sphere_stride;
+  std::size_t bone_stride, instance_stride;  // floats
+  MatrixSteps steps;
+  bool wide_matrices, wide_spheres, wide_refitted;  // aligned for reads and writes of 16 bytes
+  std::uint32_t instance_count;
+
+  Sphere* refitted;
+  Sphere* bounds;
+  std::uint32_t* counts;
+  std::uint64_t* bits;
+  CrowdPair* pairs;
+  std::uint64_t pair_capacity;
+  std::uint64_t* starts;
+  std::uint64_t* pair_count;
+
+  std::uint32_t first_block;
+};
+
+// In bytes from the start of a block's shared memory. Matrices and morph weights are no longer needed when bits are
+// written, and lie in the same place.
+struct SharedLayout {
+  std::size_t matrices, morph_weights, bits, ordered_bits, spheres, counts, starts, size;
+};
+
+SPHERECHAIN_HD std::uint32_t half_words(const GroupView& v) { return 2 * v.bit_words; }
+
+SPHERECHAIN_HD SharedLayout shared_layout(const GroupView& v) {
+  const auto up = [](std::size_t bytes) { return (bytes + 15) / 16 * 16; };
+  SharedLayout out{};
+  const std::size_t matrices = v.matrices != nullptr ? std::size_t{3} * v.used_bone_count * kPitch * sizeof(Float4) : 0;
+  const std::size_t weights = v.morph_weights != nullptr ? std::size_t{v.morph_count} * kPitch * sizeof(float) : 0;
+  const std::size_t table = up(std::size_t{half_words(v)} * kPitch * sizeof(std::uint32_t));
+  out.morph_weights = matrices;
+  out.ordered_bits = v.bits != nullptr ? table : 0;
+  const std::size_t inputs = matrices + up(weights), outputs = out.ordered_bits + (v.pairs != nullptr ? table : 0);
+  out.spheres = inputs > outputs ? inputs : outputs;
+  out.counts = out.spheres + std::size_t{v.sphere_count} * kPitch * sizeof(Float4);
+  out.starts = out.counts + kLanes * sizeof(std::uint32_t);
+  out.size = out.starts + kLanes * sizeof(std::uint64_t);
+  return out;
+}
+
+// A block's thread: instance `instance`, whose work it shares with the threads of the same lane.
+struct Place {
+  std::uint32_t thread, threads, block;  // block: of the group
+
+  SPHERECHAIN_HD std::uint32_t lane() const { return thread % kLanes; }
+  SPHERECHAIN_HD std::uint32_t warp() const { return thread / kLanes; }
+  SPHERECHAIN_HD std::uint32_t warps() const { return threads / kLanes; }
+};
+
+struct Shared {
+  Float4* matrices;  // [3 * bone + row][lane]
+  float* morph_weights;
+  Float4* spheres;  // [sphere][lane]
+  std::uint32_t* bits;
+  std::uint32_t* ordered_bits;  // in the order of sorted pairs
+  std::uint32_t* counts;
+  std::uint64_t* starts;
+
+  SPHERECHAIN_HD Shared(void* memory, const SharedLayout& layout) {
+    auto* bytes = static_cast<unsigned char*>(memory);
+    matrices = reinterpret_cast<Float4*>(bytes + layout.matrices);
+    morph_weights = reinterpret_cast<float*>(bytes + layout.morph_weights);
+    spheres = reinterpret_cast<Float4*>(bytes + layout.spheres);
+    bits = reinterpret_cast<std::uint32_t*>(bytes + layout.bits);
+    ordered_bits = reinterpret_cast<std::uint32_t*>(bytes + layout.ordered_bits);
+    counts = reinterpret_cast<std::uint32_t*>(bytes + layout.counts);
+    starts = reinterpret_cast<std::uint64_t*>(bytes + layout.starts);
+  }
+};
+
+}  // namespace spherechain::cuda
