@@ -159,26 +159,43 @@ SPHERECHAIN_HD void add_distances(const float (&p)[3][kPivotLanes], const float 
   }
 }
 
+SPHERECHAIN_HD Float4 sphere_of(const GroupView& v, const SphereEntry& sphere, const float (&center)[3],
+                                const float (&distances)[kPivotLanes]) {
+  const float mean = tree(distances) / sphere.pivot_count;
+  return {center[0], center[1], center[2], v.calibrated ? sphere.wanted * (mean / sphere.scale) : mean * sphere.wanted};
+}
+
+// A sphere of more than eight pivots: there is no memory to keep any number of them in, so they are moved twice.
 template <bool kMorphs>
-SPHERECHAIN_HD Float4 refit_sphere(const GroupView& v, const Shared& shared, std::uint32_t lane,
-                                   const SphereEntry& sphere) {
-  float p[3][kPivotLanes], shares[3][kPivotLanes], distances[kPivotLanes];
+SPHERECHAIN_HD_RARE Float4 refit_large_sphere(const GroupView& v, const Shared& shared, std::uint32_t lane,
+                                              const SphereEntry& sphere) {
+  float p[3][kPivotLanes], shares[3][kPivotLanes] = {}, distances[kPivotLanes] = {};
   for (std::uint32_t g = 0; g < sphere.group_count; ++g) {
     const GroupEntry& group = v.groups[sphere.first_group + g];
     move_group<kMorphs>(v, shared, lane, group, p);
     add_shares(group, p, g == 0, shares);
   }
   const float center[3] = {tree(shares[0]), tree(shares[1]), tree(shares[2])};
-  if (sphere.group_count == 1) {
-    add_distances(p, center, sphere.pivots, true, distances);
-  } else {
-    for (std::uint32_t g = 0; g < sphere.group_count; ++g) {
-      move_group<kMorphs>(v, shared, lane, v.groups[sphere.first_group + g], p);
-      add_distances(p, center, sphere.pivots - g * kPivotLanes, g == 0, distances);
-    }
+  for (std::uint32_t g = 0; g < sphere.group_count; ++g) {
+    move_group<kMorphs>(v, shared, lane, v.groups[sphere.first_group + g], p);
+    add_distances(p, center, sphere.pivots - g * std::uint32_t{kPivotLanes}, g == 0, distances);
   }
-  const float mean = tree(distances) / sphere.pivot_count;
-  return {center[0], center[1], center[2], v.calibrated ? sphere.wanted * (mean / sphere.scale) : mean * sphere.wanted};
+  return sphere_of(v, sphere, center, distances);
+}
+
+template <bool kMorphs>
+SPHERECHAIN_HD Float4 refit_sphere(const GroupView& v, const Shared& shared, std::uint32_t lane,
+                                   const SphereEntry& sphere) {
+  if (sphere.group_count != 1) {
+    return refit_large_sphere<kMorphs>(v, shared, lane, sphere);
+  }
+  float p[3][kPivotLanes], shares[3][kPivotLanes] = {}, distances[kPivotLanes] = {};
+  const GroupEntry& group = v.groups[sphere.first_group];
+  move_group<kMorphs>(v, shared, lane, group, p);
+  add_shares(group, p, true, shares);
+  const float center[3] = {tree(shares[0]), tree(shares[1]), tree(shares[2])};
+  add_distances(p, center, sphere.pivots, true, distances);
+  return sphere_of(v, sphere, center, distances);
 }
 
 // Step 2: a warp a sphere.
@@ -191,10 +208,13 @@ SPHERECHAIN_HD void refit_spheres(const GroupView& v, const Shared& shared, cons
 
 // Step 3.
 SPHERECHAIN_HD void clear_outputs(const GroupView& v, const Shared& shared, const Place& at) {
-  if (v.bits != nullptr || v.pairs != nullptr) {
-    const std::uint32_t tables = (v.bits != nullptr ? 1U : 0U) + (v.pairs != nullptr ? 1U : 0U);
-    for (std::uint32_t i = at.thread; i < tables * half_words(v) * kPitch; i += at.threads) {
+  const std::uint32_t words = half_words(v) * kPitch;
+  for (std::uint32_t i = at.thread; i < words; i += at.threads) {
+    if (v.bits != nullptr) {
       shared.bits[i] = 0;
+    }
+    if (v.pairs != nullptr) {
+      shared.ordered_bits[i] = 0;
     }
   }
   if (at.thread < kLanes) {

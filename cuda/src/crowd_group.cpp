@@ -45,7 +45,8 @@ Status check(const CrowdGroup& group) {
   }
   const bool from_bones = group.bones.data != nullptr;
   if (group.device_tables == nullptr || (group.instance_count > 0 && group.spheres == nullptr && !from_bones) ||
-      (group.pairs != nullptr && (group.counts == nullptr || group.starts == nullptr || group.pair_count == nullptr))) {
+      (group.pairs != nullptr && group.pair_count == nullptr) ||
+      (group.pairs != nullptr && group.instance_count > 0 && (group.counts == nullptr || group.starts == nullptr))) {
     return Status::kNullArgument;
   }
   if ((from_bones && group.spheres != nullptr) || (!from_bones && group.refitted != nullptr) ||

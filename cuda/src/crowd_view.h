@@ -9,8 +9,10 @@
 
 #if defined(__CUDACC__)
 #define SPHERECHAIN_HD __host__ __device__ __forceinline__
+#define SPHERECHAIN_HD_RARE __host__ __device__ __noinline__  // so that its registers are not everyone's
 #else
 #define SPHERECHAIN_HD inline
+#define SPHERECHAIN_HD_RARE inline
 #endif
 
 namespace spherechain::cuda {

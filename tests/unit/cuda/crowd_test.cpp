@@ -1,0 +1,417 @@
+// SPDX-License-Identifier: MIT
+// A crowd on the device has the spheres and pairs of the CPU's jobs, bit for bit.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "crowd_runs.h"
+#include "jobs.h"
+#include "random_poses.h"
+#include "tiny_bones.h"
+
+namespace spherechain::test {
+namespace {
+
+struct Tables {
+  Tables(const Asset& asset, RadiusKind radius, const Filter* filter = nullptr)
+      : words(cuda::CrowdTables::words_needed(asset)) {
+    REQUIRE(tables.build(asset, radius, filter, {words.data(), words.size()}) == Status::kOk);
+    REQUIRE(tables.words() <= words.size());
+    words.resize(tables.words());
+  }
+  std::vector<std::uint64_t> words;
+  cuda::CrowdTables tables;
+};
+
+struct Expected {
+  std::vector<Sphere> spheres;
+  std::vector<std::uint32_t> counts;
+  std::vector<std::uint64_t> bits;
+  std::vector<Pair> pairs;  // instance after instance
+};
+
+void add_pairs(const Asset& asset, const std::vector<Sphere>& spheres, RadiusKind radius, const Filter* filter,
+               Expected& to) {
+  const Detected found = detect(asset, spheres, Method::kM2, radius, Target::kScalar, filter);
+  REQUIRE(found.status == Status::kOk);
+  to.counts.push_back(static_cast<std::uint32_t>(found.pairs.size()));
+  to.bits.insert(to.bits.end(), found.bits.begin(), found.bits.end());
+  to.pairs.insert(to.pairs.end(), found.pairs.begin(), found.pairs.end());
+}
+
+Expected pairs_of_spheres(const Asset& asset, const GroupInput& in, RadiusKind radius, const Filter* filter = nullptr) {
+  Expected out;
+  const std::size_t n = asset.spheres().size, stride = in.stride == 0 ? n : in.stride;
+  for (std::size_t i = 0; i < in.instance_count; ++i) {
+    const auto first = in.spheres.begin() + static_cast<std::ptrdiff_t>(i * stride);
+    add_pairs(asset, {first, first + static_cast<std::ptrdiff_t>(n)}, radius, filter, out);
+  }
+  return out;
+}
+
+Expected pairs_of_bones(const Asset& asset, const GroupInput& in, RadiusKind radius, const Filter* filter = nullptr) {
+  Expected out;
+  for (std::size_t i = 0; i < in.instance_count; ++i) {
+    const BoneMatrices bones{in.matrices.data() + in.offset + i * in.instance_stride / 4, in.bone_count, in.layout,
+                             in.bone_stride};
+    std::vector<float> weights;
+    if (!in.morph_weights.empty()) {
+      const auto first = in.morph_weights.begin() + static_cast<std::ptrdiff_t>(i * asset.morph_count());
+      weights.assign(first, first + static_cast<std::ptrdiff_t>(asset.morph_count()));
+    }
+    const Refitted refitted = refit_bones(asset, bones, weights, radius, Target::kScalar);
+    REQUIRE(refitted.status == Status::kOk);
+    out.spheres.insert(out.spheres.end(), refitted.spheres.begin(), refitted.spheres.end());
+    add_pairs(asset, refitted.spheres, radius, filter, out);
+  }
+  return out;
+}
+
+void check_pairs(const GroupInput& in, const GroupOutput& got, const Expected& wanted) {
+  CHECK(got.counts == wanted.counts);
+  if (in.wants_bits) CHECK(got.bits == wanted.bits);
+  if (in.pair_capacity == 0) return;
+  CHECK(got.pair_count == wanted.pairs.size());
+  std::vector<bool> taken(in.pair_capacity);
+  std::size_t before = 0;
+  bool same = true;
+  for (std::size_t i = 0; i < in.instance_count; ++i) {
+    for (std::size_t k = 0; k < wanted.counts[i]; ++k) {
+      const std::size_t place = got.starts[i] + k;
+      REQUIRE(place < wanted.pairs.size());
+      if (place < in.pair_capacity) {
+        same &= !taken[place] && got.pairs[place].instance == i && got.pairs[place].pair == wanted.pairs[before + k];
+        taken[place] = true;
+      }
+    }
+    before += wanted.counts[i];
+  }
+  CHECK(same);
+}
+
+GroupInput group_of(const Tables& tables, std::size_t instances) {
+  GroupInput in;
+  in.tables = &tables.tables;
+  in.words = tables.words;
+  in.instance_count = instances;
+  return in;
+}
+
+constexpr Sphere kGap{0, 0, 0, std::numeric_limits<float>::infinity()};  // between instances: never to be looked at
+
+// Some touch hardly at all, some are not finite or huge.
+std::vector<Sphere> spheres_of(std::size_t n, std::size_t instances, std::size_t stride, std::mt19937& random) {
+  std::vector<Sphere> out(instances * stride, kGap);
+  for (std::size_t i = 0; i < instances; ++i) {
+    std::vector<Sphere> one = random_spheres(n, random);
+    for (Sphere& sphere : one) sphere.radius *= i % 3 == 0 ? 0.1F : 1.0F;
+    if (i % 7 == 5) one[i % n].x = std::numeric_limits<float>::quiet_NaN();
+    if (i % 7 == 6) one[i % n].radius = i % 2 == 0 ? 3e38F : -kGap.radius;
+    if (i % 11 == 4) one[i % n].z = 1e30F;
+    std::copy(one.begin(), one.end(), out.begin() + static_cast<std::ptrdiff_t>(i * stride));
+  }
+  return out;
+}
+
+// `layout`'s matrices, an instance's of `kind`, with NaN wherever none of them is.
+void give_matrices(GroupInput& in, const Asset& asset, MatrixLayout layout, PoseKind kind, std::size_t gap,
+                   std::mt19937& random) {
+  const std::size_t bones = asset.bone_count(), floats = size_of(layout) / 4;
+  in.layout = layout;
+  in.bone_count = bones;
+  in.bone_stride = size_of(layout);
+  in.instance_stride = (bones * floats + gap) * 4;
+  in.matrices.assign(in.offset + in.instance_count * in.instance_stride / 4, std::nanf(""));
+  for (std::size_t i = 0; i < in.instance_count; ++i) {
+    const std::vector<Matrix> own = random_pose(bones, kind, 1.0F, random);
+    for (std::size_t at = 0; at < bones * 12; ++at) {
+      const std::size_t row = at % 12 / 4, column = at % 4;
+      const std::size_t place = layout == MatrixLayout::kColumnMajor4x4   ? 4 * column + row
+                                : layout == MatrixLayout::kColumnMajor3x4 ? 3 * column + row
+                                                                          : 4 * row + column;
+      in.matrices[in.offset + i * in.instance_stride / 4 + at / 12 * floats + place] = own[at / 12][at % 12];
+    }
+  }
+}
+
+// Pivots in one to three groups of eight, bones, morph targets.
+TinyAsset boned_asset(unsigned spheres, std::size_t bones, unsigned seed) {
+  TinyAsset tiny = random_asset(spheres, seed);
+  give_pivots(tiny, 5, 19, 2);
+  give_pivots(tiny, 7, 1, 3);
+  give_pivots(tiny, 8, 16, 4);
+  add_bones(tiny, bones, seed);
+  return tiny;
+}
+
+}  // namespace
+
+TEST_CASE("a crowd of spheres has each instance's pairs, whatever its size") {
+  for (const unsigned n : {1U, 2U, 9U, 12U, 64U, 75U, 140U}) {
+    std::mt19937 random(n);
+    const OpenedAsset opened(random_asset(n, n).parts);
+    for (const std::size_t instances : {1U, 3U, 32U, 33U, 70U}) {
+      CAPTURE(n);
+      CAPTURE(instances);
+      const RadiusKind radius = instances % 2 == 0 ? RadiusKind::kFit : RadiusKind::kDetect;
+      const Tables tables(opened.asset, radius);
+      GroupInput in = group_of(tables, instances);
+      in.stride = n + instances % 2;
+      in.spheres = spheres_of(n, instances, in.stride, random);
+      const Expected wanted = pairs_of_spheres(opened.asset, in, radius);
+      in.pair_capacity = wanted.pairs.size() + 1;
+      CrowdRun run = run_crowd({in});
+      REQUIRE(run.status == Status::kOk);
+      check_pairs(in, run.groups[0], wanted);
+      in.wants_bits = in.wants_spheres = false;
+      run = run_crowd({in});
+      REQUIRE(run.status == Status::kOk);
+      check_pairs(in, run.groups[0], wanted);
+      in.wants_bits = true;
+      in.pair_capacity = 0;
+      run = run_crowd({in});
+      REQUIRE(run.status == Status::kOk);
+      check_pairs(in, run.groups[0], wanted);
+    }
+  }
+}
+
+TEST_CASE("spheres that just touch, or just do not, near the origin and far from it, are told apart as on the CPU") {
+  constexpr unsigned kSpheres = 41;
+  TinyAsset tiny = random_asset(kSpheres, 3);
+  tiny.parts.ignored.assign(tiny.parts.ignored.size(), 0);
+  tiny.parts.near_detect.clear();
+  const OpenedAsset opened(tiny.parts);
+  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
+  const Tables tables(opened.asset, RadiusKind::kDetect);
+  std::mt19937 random(4);
+  for (const float away : {0.0F, 1.0F, 3e3F, 1e7F}) {
+    for (const float size : {1e-19F, 1e-3F, 1.0F, 1e16F}) {
+      CAPTURE(away);
+      CAPTURE(size);
+      GroupInput in = group_of(tables, 64);
+      for (std::size_t i = 0; i < in.instance_count; ++i) {
+        const float x = away * size, step = uniform(random, 0.5F, 1.5F) * size;
+        for (unsigned k = 0; k < kSpheres; ++k) {  // in a row, radii half of the steps but for a rounding or two
+          const float nudge = 1.0F + static_cast<float>(static_cast<int>(random() % 5) - 2) * 0x1p-24F;
+          in.spheres.push_back({x + step * static_cast<float>(k), x, -x, step * 0.5F * nudge});
+        }
+      }
+      in.pair_capacity = 64 * kSpheres * kSpheres;
+      const Expected wanted = pairs_of_spheres(opened.asset, in, RadiusKind::kDetect);
+      const CrowdRun run = run_crowd({in});
+      REQUIRE(run.status == Status::kOk);
+      check_pairs(in, run.groups[0], wanted);
+    }
+  }
+}
+
+TEST_CASE("bones in: the spheres and pairs are those of the CPU's refit, for every layout, alignment and morph") {
+  const OpenedAsset opened(boned_asset(60, 9, 8).parts);
+  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
+  std::mt19937 random(8);
+  std::size_t pairs = 0;
+  for (const MatrixLayout layout : {MatrixLayout::kRowMajor3x4, MatrixLayout::kRowMajor4x4,
+                                    MatrixLayout::kColumnMajor4x4, MatrixLayout::kColumnMajor3x4}) {
+    for (const std::size_t offset : {0U, 1U}) {
+      for (const RadiusKind radius : {RadiusKind::kFit, RadiusKind::kDetect}) {
+        for (const bool morphs : {false, true}) {
+          CAPTURE(static_cast<int>(layout));
+          CAPTURE(offset);
+          CAPTURE(morphs);
+          const Tables tables(opened.asset, radius);
+          GroupInput in = group_of(tables, 37);
+          in.offset = offset;
+          give_matrices(in, opened.asset, layout, kPoseKinds[(offset + 2 * morphs + pairs) % 6], 4 + offset, random);
+          if (morphs) in.morph_weights = random_morph_weights(37 * opened.asset.morph_count(), random);
+          const Expected wanted = pairs_of_bones(opened.asset, in, radius);
+          in.pair_capacity = wanted.pairs.size() + 3;
+          const CrowdRun run = run_crowd({in});
+          REQUIRE(run.status == Status::kOk);
+          CHECK(same_bits(run.groups[0].refitted, wanted.spheres));
+          check_pairs(in, run.groups[0], wanted);
+          pairs += wanted.pairs.size();
+        }
+      }
+    }
+  }
+  CHECK(pairs > 1000);
+}
+
+TEST_CASE("a crowd under the paper's refit rule has the CPU's spheres") {
+  TinyAsset tiny = boned_asset(30, 4, 3);
+  tiny.parts.refit = 0;
+  const OpenedAsset opened(tiny.parts);
+  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
+  std::mt19937 random(5);
+  for (const RadiusKind radius : {RadiusKind::kFit, RadiusKind::kDetect}) {
+    const Tables tables(opened.asset, radius);
+    GroupInput in = group_of(tables, 40);
+    give_matrices(in, opened.asset, MatrixLayout::kRowMajor3x4, PoseKind::kAny, 0, random);
+    const Expected wanted = pairs_of_bones(opened.asset, in, radius);
+    const CrowdRun run = run_crowd({in});
+    REQUIRE(run.status == Status::kOk);
+    CHECK(same_bits(run.groups[0].refitted, wanted.spheres));
+    check_pairs(in, run.groups[0], wanted);
+  }
+}
+
+TEST_CASE("a crowd takes a filter as a single job does, and the refitted spheres stay without its padding") {
+  constexpr std::uint32_t kSpheres = 70;
+  const OpenedAsset opened(boned_asset(kSpheres, 6, 5).parts);
+  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
+  std::mt19937 random(5);
+  std::vector<std::uint64_t> ignored(Filter::ignored_words(opened.asset)), disabled(2);
+  std::vector<float> padding(kSpheres);
+  Filter filter{{ignored.data(), ignored.size()}, {disabled.data(), 2}, {padding.data(), kSpheres}};
+  REQUIRE(reset_filter(opened.asset, filter) == Status::kOk);
+  for (std::uint32_t i = 0; i < kSpheres; ++i) {
+    if (random() % 4 == 0) REQUIRE(disable_sphere(opened.asset, filter, i) == Status::kOk);
+    REQUIRE(pad_sphere(opened.asset, filter, i, uniform(random, -0.05F, 0.3F)) == Status::kOk);
+    if (i > 0) {
+      const auto other = static_cast<std::uint32_t>(random() % i);
+      REQUIRE(ignore_pair(opened.asset, filter, i, other, random() % 2 == 0) == Status::kOk);
+    }
+  }
+  const Tables tables(opened.asset, RadiusKind::kDetect, &filter);
+  GroupInput in = group_of(tables, 50);
+  give_matrices(in, opened.asset, MatrixLayout::kRowMajor3x4, PoseKind::kGentle, 0, random);
+  const Expected wanted = pairs_of_bones(opened.asset, in, RadiusKind::kDetect, &filter);
+  CHECK(!wanted.pairs.empty());
+  in.pair_capacity = wanted.pairs.size();
+  const CrowdRun run = run_crowd({in});
+  REQUIRE(run.status == Status::kOk);
+  CHECK(same_bits(run.groups[0].refitted, wanted.spheres));
+  check_pairs(in, run.groups[0], wanted);
+}
+
+TEST_CASE("several assets, as bones and as spheres, share a launch") {
+  std::mt19937 random(9);
+  const OpenedAsset first(boned_asset(33, 5, 1).parts), second(random_asset(50, 2).parts),
+      third(boned_asset(9, 3, 4).parts);
+  REQUIRE(first.status == Status::kOk);
+  REQUIRE(third.status == Status::kOk);
+  const Tables a(first.asset, RadiusKind::kDetect), b(second.asset, RadiusKind::kFit),
+      c(third.asset, RadiusKind::kDetect);
+  std::vector<GroupInput> in = {group_of(a, 45), group_of(b, 65), group_of(c, 0), group_of(c, 31)};
+  give_matrices(in[0], first.asset, MatrixLayout::kRowMajor3x4, PoseKind::kRigid, 0, random);
+  in[1].spheres = spheres_of(50, 65, 50, random);
+  give_matrices(in[3], third.asset, MatrixLayout::kColumnMajor4x4, PoseKind::kScaled, 0, random);
+  in[3].morph_weights = random_morph_weights(31 * third.asset.morph_count(), random);
+  const Expected wanted[] = {pairs_of_bones(first.asset, in[0], RadiusKind::kDetect),
+                             pairs_of_spheres(second.asset, in[1], RadiusKind::kFit),
+                             {},
+                             pairs_of_bones(third.asset, in[3], RadiusKind::kDetect)};
+  for (std::size_t g = 0; g < in.size(); ++g) in[g].pair_capacity = wanted[g].pairs.size() + 5;
+  const CrowdRun run = run_crowd(in);
+  REQUIRE(run.status == Status::kOk);
+  for (std::size_t g = 0; g < in.size(); ++g) {
+    CAPTURE(g);
+    check_pairs(in[g], run.groups[g], wanted[g]);
+    CHECK(same_bits(run.groups[g].refitted, wanted[g].spheres));
+  }
+}
+
+TEST_CASE("a list that is too short is filled, nothing is written past it, and the count says what was needed") {
+  std::mt19937 random(6);
+  const OpenedAsset opened(random_asset(30, 6).parts);
+  const Tables tables(opened.asset, RadiusKind::kDetect);
+  GroupInput in = group_of(tables, 70);
+  in.spheres = spheres_of(30, 70, 30, random);
+  const Expected wanted = pairs_of_spheres(opened.asset, in, RadiusKind::kDetect);
+  REQUIRE(wanted.pairs.size() > 300);
+  in.pair_capacity = 200;
+  const CrowdRun run = run_crowd({in});
+  REQUIRE(run.status == Status::kOk);
+  check_pairs(in, run.groups[0], wanted);
+}
+
+TEST_CASE("an instance's bound contains its spheres, and is not much larger than their box") {
+  std::mt19937 random(7);
+  const OpenedAsset opened(boned_asset(40, 6, 2).parts);
+  const Tables tables(opened.asset, RadiusKind::kDetect);
+  GroupInput in = group_of(tables, 60);
+  give_matrices(in, opened.asset, MatrixLayout::kRowMajor3x4, PoseKind::kRigid, 0, random);
+  const CrowdRun run = run_crowd({in});
+  REQUIRE(run.status == Status::kOk);
+  for (std::size_t i = 0; i < 60; ++i) {
+    const Sphere& bound = run.groups[0].bounds[i];
+    double low[3] = {1e9, 1e9, 1e9}, high[3] = {-1e9, -1e9, -1e9};
+    for (std::size_t k = 0; k < 40; ++k) {
+      const Sphere& s = run.groups[0].refitted[i * 40 + k];
+      const double center[] = {s.x, s.y, s.z};
+      CHECK(std::hypot(double{s.x} - bound.x, double{s.y} - bound.y, double{s.z} - bound.z) + s.radius <= bound.radius);
+      for (int axis = 0; axis < 3; ++axis) {
+        low[axis] = std::min(low[axis], center[axis] - s.radius);
+        high[axis] = std::max(high[axis], center[axis] + s.radius);
+      }
+    }
+    CHECK(bound.radius <= std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]));
+  }
+}
+
+TEST_CASE("what cannot be run is refused, and nothing is written") {
+  std::mt19937 random(3);
+  const OpenedAsset opened(boned_asset(20, 4, 7).parts), boneless(random_asset(20, 7).parts);
+  const Tables tables(opened.asset, RadiusKind::kDetect), without(boneless.asset, RadiusKind::kDetect);
+  GroupInput good = group_of(tables, 5);
+  give_matrices(good, opened.asset, MatrixLayout::kRowMajor3x4, PoseKind::kRigid, 0, random);
+  REQUIRE(run_crowd({good}).status == Status::kOk);
+  const auto refused = [&](Status status, auto change) {
+    GroupInput in = good;
+    change(in);
+    const CrowdRun run = run_crowd({in});
+    CHECK(run.status == status);
+    for (const std::uint32_t count : run.groups[0].counts) CHECK(count == 0xDDDDDDDDU);
+  };
+  const cuda::CrowdTables empty;
+  refused(Status::kNullArgument, [](GroupInput& in) { in.tables = nullptr; });
+  refused(Status::kNotOpen, [&](GroupInput& in) { in.tables = &empty; });
+  refused(Status::kNullArgument, [](GroupInput& in) { in.words.clear(); });
+  refused(Status::kNullArgument, [](GroupInput& in) { in.matrices.clear(); });
+  refused(Status::kBadArgument, [&](GroupInput& in) { in.spheres.resize(100); });
+  refused(Status::kTooFewBones, [](GroupInput& in) { --in.bone_count; });
+  refused(Status::kBadStride, [](GroupInput& in) { in.bone_stride = 44; });
+  refused(Status::kBadStride, [](GroupInput& in) { in.instance_stride -= 4; });
+  refused(Status::kBadStride, [](GroupInput& in) { in.instance_stride += 2; });
+  refused(Status::kBadStride, [](GroupInput& in) { in.instance_stride = ~std::size_t{3}; });
+  refused(Status::kNotInAsset, [&](GroupInput& in) {
+    in.tables = &without.tables;
+    in.words = without.words;
+  });
+  refused(Status::kTooFewSpheres, [&](GroupInput& in) {
+    in.matrices.clear();
+    in.spheres.resize(100);
+    in.stride = 19;
+  });
+
+  cuda::CrowdTables again;
+  std::vector<std::uint64_t> words(cuda::CrowdTables::words_needed(opened.asset));
+  const Asset closed;
+  const auto build = [&](const Asset& asset, RadiusKind radius, const Filter* filter, std::uint64_t* data,
+                         std::size_t size) {
+    const Status status = again.build(asset, radius, filter, {data, size});
+    CHECK(!again.is_built());
+    return status;
+  };
+  const Filter bad{};
+  CHECK(build(closed, RadiusKind::kFit, nullptr, words.data(), words.size()) == Status::kNotOpen);
+  CHECK(build(opened.asset, static_cast<RadiusKind>(7), nullptr, words.data(), words.size()) == Status::kBadArgument);
+  CHECK(build(opened.asset, RadiusKind::kFit, nullptr, nullptr, words.size()) == Status::kNullArgument);
+  CHECK(build(opened.asset, RadiusKind::kFit, nullptr, words.data(), words.size() - 1) == Status::kContextTooSmall);
+  CHECK(build(opened.asset, RadiusKind::kFit, &bad, words.data(), words.size()) == Status::kBadFilter);
+}
+
+TEST_CASE("an asset too large for a block's memory is refused") {
+  const OpenedAsset opened(random_asset(700, 1).parts);
+  const Tables tables(opened.asset, RadiusKind::kDetect);
+  std::mt19937 random(1);
+  GroupInput in = group_of(tables, 2);
+  in.spheres = spheres_of(700, 2, 700, random);
+  CHECK(tables.tables.shared_bytes(false, false, true, false) > 227 * 1024);
+  CHECK(run_crowd({in}).status == Status::kDeviceTooSmall);
+}
+
+}  // namespace spherechain::test
