@@ -37,7 +37,7 @@ struct ValidateOptions {
   MotionChoice motion;
   FrameChoice frames;
   std::string mode = "m2", radius = "detect";
-  bool contacts = false;
+  bool contacts = false, spheres_alone = false;
 };
 ExitCode run_validate(const ValidateOptions& options);
 

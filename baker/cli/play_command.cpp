@@ -3,6 +3,7 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/commands.h"
 #include "cli/outputs.h"
@@ -20,7 +21,8 @@ using nlohmann::ordered_json;
 // What all frames together show.
 class Tally {
  public:
-  void add(int index, const FrameResult& result, const Player& player, const Asset& asset) {
+  void add(int index, const FrameResult& result, const Player& player,
+           const std::optional<Player::Confirmation>& confirmed, const Asset& asset) {
     ++frames_;
     last_ = result;
     refit_us_ += result.refit_us;
@@ -32,6 +34,12 @@ class Tally {
     const Span<const Pair> pairs = player.pairs();
     pairs_ += pairs.size;
     touching_ += pairs.size > 0 ? 1 : 0;
+    if (confirmed) {
+      is_confirmed_ = true;
+      confirmed_ += confirmed->pairs.size();
+      confirmed_frames_ += confirmed->pairs.empty() ? 0 : 1;
+      confirm_us_ += confirmed->us;
+    }
     std::map<std::pair<std::string, std::string>, bool> seen;
     for (const Pair& pair : pairs) {
       std::string a = asset.region(asset.spheres()[pair.a].region).name,
@@ -55,7 +63,13 @@ class Tally {
     if (last_.m2) {
       out += fmt::format("{:<6} {:>8} {:>10} {:>12} {:>10.2f}\n", "M2", last_.m2->tests, pairs, "", m2_us_ / n);
     }
-    out += fmt::format("(a frame, on average)\n\nframes with touching spheres: {} of {}\n", touching_, frames_);
+    if (is_confirmed_) {
+      out += fmt::format("{:<6} {:>8} {:>10.1f} {:>12} {:>10.2f}\n", "skin", "", static_cast<double>(confirmed_) / n,
+                         "", confirm_us_ / n);
+    }
+    out += "(a frame, on average)\n\n";
+    if (is_confirmed_) out += fmt::format("frames with touching skin: {} of {}\n", confirmed_frames_, frames_);
+    out += fmt::format("frames with touching spheres: {} of {}\n", touching_, frames_);
     for (const auto& [names, seen] : by_region_) {
       out += fmt::format("  {:<24} {:>3} frames, from frame {}\n", names.first + " - " + names.second, seen.second,
                          seen.first);
@@ -64,7 +78,10 @@ class Tally {
   }
 
  private:
-  int frames_ = 0, touching_ = 0;
+  int frames_ = 0, touching_ = 0, confirmed_frames_ = 0;
+  bool is_confirmed_ = false;
+  std::size_t confirmed_ = 0;
+  double confirm_us_ = 0;
   FrameResult last_;
   double refit_us_ = 0, m1_us_ = 0, m2_us_ = 0;
   std::size_t pairs_ = 0, m1_raw_ = 0;
@@ -85,9 +102,16 @@ ExitCode run_play(const PlayOptions& options) {
     Progress progress("play " + options.asset + ":");
     for (int i = 0; i < animated.frame_count(); ++i) {
       progress.show(fmt::format("frame {} of {}", i + 1, animated.frame_count()));
-      const FrameResult result = player.run(pack(animated.positions(animated.deformation(i))));
-      tally.add(i, result, player, animated.asset());
-      if (!options.json.empty()) frames.push_back(frame_json(animated, i, result, player));
+      const std::vector<float> positions = pack(animated.positions(animated.deformation(i)));
+      const FrameResult result = player.run(positions);
+      std::optional<Player::Confirmation> confirmed;
+      if (animated.asset().leaf_count() > 0) confirmed = player.confirm(positions);
+      tally.add(i, result, player, confirmed, animated.asset());
+      if (options.json.empty()) continue;
+      frames.push_back(frame_json(animated, i, result, player));
+      if (!confirmed) continue;
+      frames.back()["confirm_us"] = confirmed->us;
+      frames.back()["confirmed"] = pairs_json({confirmed->pairs.data(), confirmed->pairs.size()});
     }
   }
   if (!options.json.empty()) {

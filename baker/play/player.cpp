@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "mesh/error.h"
+#include "spherechain/confirm.h"
 
 namespace spherechain::baker {
 namespace {
@@ -56,7 +57,8 @@ Player::Player(const Asset& asset, RadiusKind radius, bool m1, bool m2, Target t
       target_(target),
       spheres_(asset.spheres().size),
       pairs_(spheres_.size() * (spheres_.size() - 1) / 2),
-      words_(DetectContext::words_needed(asset)) {}
+      words_(DetectContext::words_needed(asset)),
+      contact_words_(TriangleContactContext::words_needed(asset)) {}
 
 FrameResult Player::run(const std::vector<float>& positions) {
   const RefitJob refit = refit_job(asset_, positions, radius_, spheres_);
@@ -65,6 +67,22 @@ FrameResult Player::run(const std::vector<float>& positions) {
   if (m1_) result.m1 = detect(Method::kM1);
   if (m2_) result.m2 = detect(Method::kM2);
   return result;
+}
+
+Player::Confirmation Player::confirm(const std::vector<float>& positions) {
+  Confirmation out{std::vector<Pair>(pair_count_), 0};
+  TriangleContactContext context{{contact_words_.data(), contact_words_.size()}};
+  ConfirmJob job;
+  job.asset = &asset_;
+  job.positions = positions.data();
+  job.vertex_count = positions.size() / 3;
+  job.target = target_;
+  job.candidates = {pairs_.data(), pair_count_};
+  job.context = &context;
+  job.pairs = {out.pairs.data(), out.pairs.size()};
+  out.us = median_us([&] { check(job.run()); });
+  out.pairs.resize(job.pair_count);
+  return out;
 }
 
 Detection Player::detect(Method method) {

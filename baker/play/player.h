@@ -32,6 +32,14 @@ class Player {
   // `positions` are the deformed source vertices.
   FrameResult run(const std::vector<float>& positions);
 
+  // Of the last frame, run with these positions: the pairs below whose skins intersect, and what that costs. The asset
+  // must have leaves.
+  struct Confirmation {
+    std::vector<Pair> pairs;
+    double us;  // median of a few runs
+  };
+  Confirmation confirm(const std::vector<float>& positions);
+
   // Of the last frame: the refitted spheres, and the pairs the last method found (M1 and M2 report the same, but that
   // M1 leaves out pairs in no common chain).
   const std::vector<Sphere>& spheres() const { return spheres_; }
@@ -46,7 +54,7 @@ class Player {
   Target target_;
   std::vector<Sphere> spheres_;
   std::vector<Pair> pairs_;
-  std::vector<std::uint64_t> words_;
+  std::vector<std::uint64_t> words_, contact_words_;
   std::size_t pair_count_ = 0;
 };
 

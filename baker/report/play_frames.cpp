@@ -5,6 +5,12 @@
 
 namespace spherechain::baker {
 
+nlohmann::ordered_json pairs_json(Span<const Pair> pairs) {
+  nlohmann::ordered_json out = nlohmann::ordered_json::array();
+  for (const Pair& pair : pairs) out.push_back({pair.a, pair.b});
+  return out;
+}
+
 nlohmann::ordered_json frame_json(const AnimatedAsset& animated, int index, const FrameResult& result,
                                   const Player& player) {
   nlohmann::ordered_json out{{"index", index}, {"time", animated.time(index)}, {"refit_us", result.refit_us}};
@@ -13,8 +19,7 @@ nlohmann::ordered_json frame_json(const AnimatedAsset& animated, int index, cons
     out["m1"] = {{"tests", m1->tests}, {"pairs", m1->raw_pairs}, {"unique_pairs", m1->pairs}, {"us", m1->us}};
   }
   if (const auto& m2 = result.m2) out["m2"] = {{"tests", m2->tests}, {"pairs", m2->pairs}, {"us", m2->us}};
-  out["pairs"] = nlohmann::ordered_json::array();
-  for (const Pair& pair : player.pairs()) out["pairs"].push_back({pair.a, pair.b});
+  out["pairs"] = pairs_json(player.pairs());
   return out;
 }
 

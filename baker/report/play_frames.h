@@ -8,6 +8,8 @@
 
 namespace spherechain::baker {
 
+nlohmann::ordered_json pairs_json(Span<const Pair> pairs);
+
 // One entry of `play --json`'s `frames`; `player` has just run it.
 nlohmann::ordered_json frame_json(const AnimatedAsset& animated, int index, const FrameResult& result,
                                   const Player& player);

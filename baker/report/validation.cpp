@@ -101,6 +101,7 @@ std::string validation_json(const Validation& validation, const AnimatedAsset& a
       {"missed_depth", score.missed_depth / height},
       {"radius", radius_name(settings.radius)},
       {"mode", method_name(settings.method)},
+      {"confirmed", confirms(animated.asset(), settings)},
       {"truth_frames", score.true_frames},
       {"degenerate_triangles", validation.degenerate},
   });
@@ -143,8 +144,9 @@ std::string validation_text(const Validation& validation, const AnimatedAsset& a
                             const ValidateSettings& settings) {
   const double height = animated.frame().height;
   const Score& score = validation.score;
-  std::string out = fmt::format("{} frames, radius {}, {}\n\n", score.frames, radius_name(settings.radius),
-                                settings.method == Method::kM1 ? "M1" : "M2");
+  std::string out = fmt::format("{} frames, radius {}, {}{}\n\n", score.frames, radius_name(settings.radius),
+                                settings.method == Method::kM1 ? "M1" : "M2",
+                                confirms(animated.asset(), settings) ? ", confirmed by the skin" : "");
   out += fmt::format("triangle pairs that intersect   {:>8}\n", validation.raw_pairs);
   out += fmt::format("  at rest too                   {:>8}\n", validation.rest);
   out += fmt::format("  of one sphere                 {:>8}\n", validation.same_sphere);

@@ -24,7 +24,7 @@ double gap(const Capsule& a, const Capsule& b);
 
 // What games have instead of spheres on chains: a capsule a bone, around the triangles that the bone moves most.
 // Bones that follow one another on the skeleton are ignored; as for spheres, others are reported where they have come
-// nearer than 0.75 of their distance at rest, axis to axis.
+// nearer than 0.9 of their distance at rest, axis to axis.
 class CapsuleRagdoll {
  public:
   // Empty where no bones move the source.

@@ -21,7 +21,7 @@ struct RuleChange {
 // A plain loop over all spheres, apart from the runtime: with no change it reports what M2 does, bit for bit.
 //
 // Where larger radii would report a pair sooner than at the asset's own part of its distance at rest, it becomes a near
-// pair. That part is the median over the asset's near pairs; 0.75 where it has none.
+// pair. That part is the median over the asset's near pairs; 0.9 where it has none.
 class PairRule {
  public:
   PairRule(const Asset& asset, RadiusKind radius, const RuleChange& change);

@@ -103,8 +103,7 @@ void add(std::vector<CapsulePoint>& sum, const std::vector<CapsulePoint>& frame)
   }
 }
 
-// What the runtime reports.
-std::vector<Pair> reported_pairs(Player& player, const std::vector<float>& positions) {
+std::vector<Pair> touching_spheres(Player& player, const std::vector<float>& positions) {
   player.run(positions);
   return {player.pairs().begin(), player.pairs().end()};
 }
@@ -134,8 +133,11 @@ Frame validate_frame(const Context& context, int index) {
   frame.truth = judge(found, context.rest_pairs, surface, ignored);
   Player m1(animated.asset(), settings.radius, true, false, settings.target),
       m2(animated.asset(), settings.radius, false, true, settings.target);
-  const std::vector<Pair> m1_pairs = reported_pairs(m1, positions), m2_pairs = reported_pairs(m2, positions);
-  frame.reported = settings.method == Method::kM1 ? m1_pairs : m2_pairs;
+  const std::vector<Pair> m1_pairs = touching_spheres(m1, positions), m2_pairs = touching_spheres(m2, positions);
+  const bool is_m1 = settings.method == Method::kM1;
+  frame.reported = confirms(animated.asset(), settings) ? (is_m1 ? m1 : m2).confirm(positions).pairs
+                   : is_m1                              ? m1_pairs
+                                                        : m2_pairs;
   frame.score = score_frame(frame.truth, frame.reported, is_close,
                             [&](const TrueContact& contact) { return depth_of(frame, contact); });
   frame.m1 = score_frame(frame.truth, m1_pairs, is_close, no_depth);
@@ -157,6 +159,10 @@ Frame validate_frame(const Context& context, int index) {
 }
 
 }  // namespace
+
+bool confirms(const Asset& asset, const ValidateSettings& settings) {
+  return settings.confirm && asset.leaf_count() > 0;
+}
 
 Validation validate(const AnimatedAsset& animated, const ValidateSettings& settings,
                     const std::function<void(int)>& progress) {

@@ -22,6 +22,7 @@ struct ValidateSettings {
   Method method = Method::kM2;
   Target target = Target::kScalar;
   bool contacts = false;        // the narrow phase too
+  bool confirm = true;          // report those pairs alone whose skins intersect, of an asset with leaves
   std::filesystem::path cache;  // see truth_cache.h; empty: none
 };
 
@@ -40,21 +41,24 @@ struct CapsulePoint {
   Score score, own;
 };
 
-// The runtime's pairs against the truth, over all frames of a motion.
+// The runtime's pairs against the truth, over all frames of a motion. `score`, `misses` and the groups are of the pairs
+// reported: those of the method asked for, confirmed by the skin where that is asked for too.
 struct Validation {
   std::size_t raw_pairs = 0, rest = 0, same_sphere = 0, ignored = 0, degenerate = 0;  // see FrameTruth
-  Score score;                                                                        // of the method asked for
-  std::vector<Miss> misses;                                                           // the deepest first
-  ContactErrors contacts;                                                             // from vertices
+  Score score;
+  std::vector<Miss> misses;  // the deepest first
+  ContactErrors contacts;    // from vertices
   // From matrices alone, in the frames that bones move; none where no frame is.
   std::optional<ContactErrors> contacts_from_bones;
-  Score m1, m2;  // depth not measured
+  Score m1, m2;  // of all pairs of spheres that touch, confirmed or not; depth not measured
   std::vector<CurvePoint> curve;
   std::size_t capsules = 0;  // of the ragdoll; 0 where no bones move the source
   std::vector<CapsulePoint> capsule_curve;
-  // Of the method asked for. Regions without any pair are left out.
-  std::vector<PairGroup> by_region, by_chain;
+  std::vector<PairGroup> by_region, by_chain;  // regions without any pair are left out
 };
+
+// Whether validate() confirms.
+bool confirms(const Asset& asset, const ValidateSettings& settings);
 
 // The same whatever the number of threads. `progress` is told how many frames are done, one call at a time.
 Validation validate(const AnimatedAsset& animated, const ValidateSettings& settings,

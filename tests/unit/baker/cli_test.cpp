@@ -158,7 +158,14 @@ TEST_CASE("play --json has the contract's fields; at rest nothing touches, hands
     CHECK(frame["m2"]["pairs"] == frame["pairs"].size());
     CHECK(frame["m2"]["tests"] == both["frames"][0]["m2"]["tests"]);
     CHECK(frame["m1"].contains("us"));
+    CHECK(frame.contains("confirm_us"));
+    for (const json& pair : frame["confirmed"]) {
+      CHECK(std::find(frame["pairs"].begin(), frame["pairs"].end(), pair) != frame["pairs"].end());
+    }
   }
+  CHECK(both["frames"][0]["confirmed"].empty());
+  CHECK(!both["frames"][4]["confirmed"].empty());
+  CHECK(both["frames"][4]["confirmed"].size() < both["frames"][4]["pairs"].size());
   CHECK(both["frames"][0]["pairs"].empty());
   CHECK(!both["frames"][4]["pairs"].empty());
 
@@ -212,6 +219,14 @@ TEST_CASE("validate --json has the contract's fields, the same with a cache and 
   contacts.erase("contacts_missing");
   contacts.erase("contacts_extra");
   CHECK(contacts == found);
+  CHECK(found["confirmed"] == true);
+  CHECK(found["precision"] == 1);
+  CHECK(found["pair_recall"] == found["m2"]["pair_recall"]);
+  CHECK(found["reported_per_frame"] < found["m2"]["reported_per_frame"]);
+  const json alone = validate("--spheres-alone", cache.string());
+  CHECK(alone["confirmed"] == false);
+  for (const auto& [key, value] : alone["m2"].items()) CHECK(alone[key] == value);
+  CHECK(alone["m2"] == found["m2"]);
   const json chains = validate("--mode m1 --radius fit", cache.string());
   CHECK(chains["truth_pairs"] == found["truth_pairs"]);
   CHECK(chains["radius"] == "fit");
