@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+// The overlap tests of the paper's section 5.2 as it ran them on a GPU, thread by thread: each sphere against every
+// other, of the mesh or of a chain. Compiled for the device, and by any C++ compiler for the tests, which run one
+// thread after the other. Spheres, pairs and arithmetic are those of detect.h.
+#pragma once
+
+#include <cfloat>
+#include <cstddef>
+#include <cstdint>
+
+#include "spherechain/detect.h"
+
+#if defined(__CUDACC__)
+#define SPHERECHAIN_PAPER_BODY __host__ __device__ inline
+#else
+#define SPHERECHAIN_PAPER_BODY inline
+#endif
+
+namespace spherechain::cuda_paper {
+
+// One character, all of it in the memory of who runs the threads.
+struct Scene {
+  const Sphere* spheres;
+  std::uint32_t sphere_count;
+  const std::uint32_t* chain_begin;  // chain_count + 1 places in `members`
+  std::uint32_t chain_count;
+  const std::uint32_t* members;  // the chains' spheres, chain after chain
+  const std::uint64_t* ignored;  // as Asset::ignored()
+  const NearPair* near;          // sorted
+  std::uint32_t near_count;
+};
+
+// What is found, in no order: M1's raw list, a pair once for each chain that holds it; M2's pairs, as of chain 0.
+struct PairList {
+  ChainPair* entries;
+  std::uint32_t capacity;
+  std::uint32_t* count;  // goes on past `capacity`
+};
+
+SPHERECHAIN_PAPER_BODY void add_pair(const PairList& list, std::uint32_t chain, std::uint32_t i, std::uint32_t j) {
+#if defined(__CUDA_ARCH__)
+  const std::uint32_t at = atomicAdd(list.count, 1U);
+#else
+  const std::uint32_t at = (*list.count)++;
+#endif
+  if (at < list.capacity) {
+    list.entries[at] = ChainPair{chain, i < j ? Pair{i, j} : Pair{j, i}};
+  }
+}
+
+SPHERECHAIN_PAPER_BODY float squared_distance(const Sphere& p, const Sphere& q) {
+  const float dx = p.x - q.x;
+  const float dy = p.y - q.y;
+  const float dz = p.z - q.z;
+  return (dx * dx + dy * dy) + dz * dz;
+}
+
+SPHERECHAIN_PAPER_BODY bool overlap(const Sphere& p, const Sphere& q) {
+  const float s = p.radius + q.radius;
+  const float squared_reach = s * s;
+  return squared_distance(p, q) < squared_reach && squared_reach <= FLT_MAX;
+}
+
+// "Two spheres collide when they are not adjacent": spheres i and j, which overlap, unless their pair is left out, or
+// is a near one and not near enough.
+SPHERECHAIN_PAPER_BODY bool is_reported(const Scene& scene, std::uint32_t i, std::uint32_t j) {
+  const std::uint32_t a = i < j ? i : j, b = i < j ? j : i;
+  const std::uint64_t bit = std::uint64_t{b} * (b - 1) / 2 + a;
+  if (((scene.ignored[bit / 64] >> (bit % 64)) & 1U) != 0) {
+    return false;
+  }
+  std::uint32_t low = 0, high = scene.near_count;
+  while (low < high) {
+    const std::uint32_t middle = low + (high - low) / 2;
+    const NearPair& near = scene.near[middle];
+    if (near.a < a || (near.a == a && near.b < b)) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  if (low == scene.near_count || scene.near[low].a != a || scene.near[low].b != b) {
+    return true;
+  }
+  const Sphere &p = scene.spheres[a], &q = scene.spheres[b];
+  const float t = scene.near[low].reach * (p.radius + q.radius);
+  return squared_distance(p, q) < t * t;
+}
+
+// M2, m threads (the paper's Figure 11): sphere i against all of the mesh, m^2 tests in all.
+SPHERECHAIN_PAPER_BODY void test_sphere(const Scene& scene, std::uint32_t i, const PairList& list) {
+  if (i >= scene.sphere_count) {
+    return;
+  }
+  const Sphere p = scene.spheres[i];
+  for (std::uint32_t j = 0; j < scene.sphere_count; ++j) {
+    // Each pair is found from both sides, and listed from one.
+    if (overlap(p, scene.spheres[j]) && i < j && is_reported(scene, i, j)) {
+      add_pair(list, 0, i, j);
+    }
+  }
+}
+
+// M1, n_c times n threads: the sphere at a place of a chain against all of the chain. (The text says n^2 times as many
+// threads as chains, and O(n) time; a thread a sphere takes that time.)
+SPHERECHAIN_PAPER_BODY void test_place(const Scene& scene, std::uint32_t chain, std::uint32_t place,
+                                       const PairList& list) {
+  if (chain >= scene.chain_count) {
+    return;
+  }
+  const std::uint32_t* const members = scene.members + scene.chain_begin[chain];
+  const std::uint32_t n = scene.chain_begin[chain + 1] - scene.chain_begin[chain];
+  if (place >= n) {
+    return;
+  }
+  const std::uint32_t i = members[place];
+  const Sphere p = scene.spheres[i];
+  for (std::uint32_t other = 0; other < n; ++other) {
+    const std::uint32_t j = members[other];
+    if (overlap(p, scene.spheres[j]) && place < other && is_reported(scene, i, j)) {
+      add_pair(list, chain, i, j);
+    }
+  }
+}
+
+// M1, n_c threads: all of a chain against all of it.
+SPHERECHAIN_PAPER_BODY void test_chain(const Scene& scene, std::uint32_t chain, const PairList& list) {
+  if (chain >= scene.chain_count) {
+    return;
+  }
+  const std::uint32_t n = scene.chain_begin[chain + 1] - scene.chain_begin[chain];
+  for (std::uint32_t place = 0; place < n; ++place) {
+    test_place(scene, chain, place, list);
+  }
+}
+
+}  // namespace spherechain::cuda_paper

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#include "paper_case.h"
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+
+#include "spherechain/refit_bones.h"
+
+namespace spherechain::bench {
+namespace {
+
+constexpr std::size_t kRoom = 1 << 14;  // pairs, to begin with
+
+void check(Status status, const std::string& what) {
+  if (status != Status::kOk) {
+    throw std::runtime_error(what + ": " + to_string(status));
+  }
+}
+
+std::vector<std::vector<Sphere>> refit(const PosedAsset& character) {
+  std::vector<std::vector<Sphere>> out;
+  for (std::size_t pose = 0; pose < character.poses.pose_count; ++pose) {
+    out.emplace_back(character.asset.spheres().size);
+    RefitBonesJob job;
+    job.asset = &character.asset;
+    job.bones = {character.poses.matrices_of(pose), character.poses.bone_count};
+    job.morph_weights = {character.poses.morphs_of(pose), character.poses.morph_count};
+    job.radius = RadiusKind::kFit;
+    job.spheres = {out.back().data(), out.back().size()};
+    check(job.run(), "refit from bones");
+  }
+  return out;
+}
+
+bool by_chain(const ChainPair& l, const ChainPair& r) {
+  return l.chain != r.chain ? l.chain < r.chain : l.pair < r.pair;
+}
+
+}  // namespace
+
+PaperCase::PaperCase(const std::string& folder, const std::string& name_, std::uint32_t parts_)
+    : name(name_), parts(parts_) {
+  for (const std::string animation : {"arms", "legs"}) {
+    std::string error;
+    if (!read_posed_asset(folder, name + "_" + animation, whole, error)) {
+      throw std::runtime_error(error);
+    }
+    animations.push_back({animation, refit(whole)});
+  }
+  if (parts > 1) {
+    split = std::make_unique<SplitAsset>(whole.asset, parts);
+    for (PaperAnimation& animation : animations) {
+      for (std::vector<Sphere>& frame : animation.frames) {
+        frame = split->split(frame);
+      }
+    }
+  }
+  tables = std::make_unique<cuda_paper::Tables>(asset(), RadiusKind::kFit);
+}
+
+CpuRunner::CpuRunner(const PaperCase& paper_case)
+    : case_(paper_case), words_(DetectContext::words_needed(paper_case.asset())), pairs_(kRoom), chain_pairs_(kRoom) {}
+
+std::vector<ChainPair> CpuRunner::pairs(CpuMethod method, const std::vector<Sphere>& spheres) {
+  run(method, spheres);
+  if (found_ > chain_pairs_.size()) {
+    pairs_.resize(found_);
+    chain_pairs_.resize(found_);
+    run(method, spheres);
+  }
+  std::vector<ChainPair> out(chain_pairs_.begin(), chain_pairs_.begin() + found_);
+  if (method == CpuMethod::kM2) {
+    std::transform(pairs_.begin(), pairs_.begin() + found_, out.begin(), [](const Pair& p) { return ChainPair{0, p}; });
+  }
+  std::sort(out.begin(), out.end(), by_chain);
+  return out;
+}
+
+double CpuRunner::time(CpuMethod method, const std::vector<Sphere>& spheres) {
+  const auto start = std::chrono::steady_clock::now();
+  run(method, spheres);
+  return std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count();
+}
+
+void CpuRunner::run(CpuMethod method, const std::vector<Sphere>& spheres) {
+  switch (method) {
+    case CpuMethod::kM1:
+      return detect(Method::kM1, spheres);
+    case CpuMethod::kM2:
+      return detect(Method::kM2, spheres);
+    default:
+      return loop(method, spheres);
+  }
+}
+
+void CpuRunner::detect(Method method, const std::vector<Sphere>& spheres) {
+  DetectContext context{{words_.data(), words_.size()}};
+  DetectJob job;
+  job.asset = &case_.asset();
+  job.spheres = {spheres.data(), spheres.size()};
+  job.radius = RadiusKind::kFit;
+  job.method = method;
+  job.target = Target::kScalar;
+  job.context = &context;
+  job.pairs = {pairs_.data(), pairs_.size()};
+  job.chain_pairs = {chain_pairs_.data(), chain_pairs_.size()};
+  const Status status = job.run();
+  if (status != Status::kOverflow) {
+    check(status, "overlaps on the CPU");
+  }
+  found_ = static_cast<std::uint32_t>(job.chain_pair_count);
+}
+
+void CpuRunner::loop(CpuMethod method, const std::vector<Sphere>& spheres) {
+  const cuda_paper::Scene scene = case_.tables->scene(spheres.data());
+  found_ = 0;
+  const cuda_paper::PairList list{chain_pairs_.data(), static_cast<std::uint32_t>(chain_pairs_.size()), &found_};
+  if (method == CpuMethod::kM1Loops) {
+    for (std::uint32_t chain = 0; chain < scene.chain_count; ++chain) {
+      test_chain(scene, chain, list);
+    }
+  } else {
+    for (std::uint32_t i = 0; i < scene.sphere_count; ++i) {
+      test_sphere(scene, i, list);
+    }
+  }
+}
+
+}  // namespace spherechain::bench
