@@ -97,12 +97,27 @@ size_t sc_detect_scratch_words(const sc_asset* asset) {
 
 size_t sc_detect_bit_words(const sc_asset* asset) { return asset == nullptr ? 0 : DetectJob::bit_words(asset->view); }
 
+size_t sc_detect_table_words(const sc_asset* asset) {
+  return asset == nullptr ? 0 : DetectTable::words_needed(asset->view);
+}
+
+sc_status sc_prepare_detect(const sc_asset* asset, sc_radius radius, const sc_filter* filter, uint64_t* table,
+                            size_t table_words) {
+  if (asset == nullptr) {
+    return SC_NULL_ARGUMENT;
+  }
+  const FilterView view(filter);
+  DetectTable out{{table, table_words}};
+  return to_c(prepare_detect(asset->view, to_enum<RadiusKind>(radius), view.get(), out));
+}
+
 sc_status sc_detect(sc_detect_job* job) {
   if (const sc_status status = check_job(job); status != SC_OK) {
     return status;
   }
   const FilterView filter(job->filter);
   DetectContext context{{job->scratch, job->scratch_words}};
+  const DetectTable table{{job->table, job->table_words}};
   DetectJob detect;
   detect.asset = &job->asset->view;
   detect.spheres = to_span<const Sphere>(job->spheres, job->sphere_count);
@@ -110,6 +125,7 @@ sc_status sc_detect(sc_detect_job* job) {
   detect.method = to_enum<Method>(job->method);
   detect.target = to_enum<Target>(job->target);
   detect.filter = filter.get();
+  detect.table = job->table == nullptr ? nullptr : &table;
   detect.first_only = job->first_only != 0;
   detect.context = job->scratch == nullptr ? nullptr : &context;
   detect.pairs = to_span<Pair>(job->pairs, job->pair_capacity);

@@ -19,14 +19,16 @@ bool shares_memory(const DetectJob& job) {
       range_of(job.pairs), range_of(job.bits), is_m1 ? range_of(job.chain_pairs) : MemoryRange{},
       is_m1 ? range_of(Span<std::uint64_t>{job.context->words.data, DetectContext::words_needed(*job.asset)})
             : MemoryRange{}};
-  const MemoryRange read[] = {range_of(Span<const Sphere>{job.spheres.data, n}), range_of(job.asset->ignored()),
+  const MemoryRange read[] = {range_of(Span<const Sphere>{job.spheres.data, n}),
+                              range_of(job.asset->ignored()),
+                              job.table == nullptr ? MemoryRange{} : range_of(job.table->words),
                               job.filter == nullptr ? MemoryRange{} : range_of(job.filter->ignored),
                               job.filter == nullptr ? MemoryRange{} : range_of(job.filter->disabled),
                               job.filter == nullptr ? MemoryRange{} : range_of(job.filter->padding)};
   return any_shared(written, read);
 }
 
-Status check(const DetectJob& job, Target& resolved) {
+Status check(const DetectJob& job, Target& resolved, PairRows& rows) {
   if (job.asset == nullptr || job.spheres.data == nullptr || is_missing(job.pairs) || is_missing(job.bits)) {
     return Status::kNullArgument;
   }
@@ -61,14 +63,24 @@ Status check(const DetectJob& job, Target& resolved) {
       return status;
     }
   }
+  if (job.table != nullptr) {
+    const Status status = read_table(*job.asset, job.radius, *job.table, rows);
+    if (status != Status::kOk) {
+      return status;
+    }
+  }
   if (!resolve_target(job.target, resolved)) {
     return Status::kUnsupportedTarget;
   }
   return shares_memory(job) ? Status::kSharedMemory : Status::kOk;
 }
 
-Scene scene_of(const DetectJob& job, Target resolved) {
-  Scene scene{job.asset, job.spheres.data, job.asset->near_pairs(job.radius), job.asset->ignored(), {}, {}, resolved};
+Scene scene_of(const DetectJob& job, Target resolved, const PairRows& rows) {
+  Scene scene{job.asset, job.spheres.data, job.asset->near_pairs(job.radius), job.asset->ignored(), {}, {},
+              resolved,  nullptr};
+  if (job.table != nullptr && scene.size() <= kTileSize) {
+    scene.rows = &rows;
+  }
   if (job.filter != nullptr) {
     scene.ignored = {job.filter->ignored.data, job.filter->ignored.size};
     scene.disabled = {job.filter->disabled.data, job.filter->disabled.size};
@@ -101,11 +113,12 @@ std::size_t DetectJob::bit_words(const Asset& asset) noexcept { return words_for
 
 Status DetectJob::run() noexcept {
   Target resolved{};
-  const Status status = check(*this, resolved);
+  PairRows rows;
+  const Status status = check(*this, resolved, rows);
   if (status != Status::kOk) {
     return status;
   }
-  const Scene scene = scene_of(*this, resolved);
+  const Scene scene = scene_of(*this, resolved, rows);
   Result result{{pairs}, {chain_pairs}, bits, first_only, 0};
   std::fill(bits.begin(), bits.end(), std::uint64_t{0});
   if (method == Method::kM1) {

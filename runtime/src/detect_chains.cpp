@@ -42,35 +42,39 @@ bool overlap(const Scene& scene, const Pair& pair) {
   return !is_near || within_reach(p, q, found->reach);
 }
 
-using TileBits = std::uint64_t[kTileSize][kTileWords];
-
-// Both words in registers: in memory each sphere would wait for the one before.
-void mask_of(Span<const std::uint32_t> members, std::uint64_t (&mask)[kTileWords]) {
-  static_assert(kTileWords == 2, "a low and a high word");
-  std::uint64_t low = 0, high = 0;
-  for (const std::uint32_t sphere : members) {
-    const std::uint64_t bit = std::uint64_t{1} << (sphere % 64), is_high = sphere / 64;
-    low |= bit & (is_high - 1);
-    high |= bit & (0 - is_high);
+std::size_t count_bits(std::uint64_t word) {  // few
+  std::size_t count = 0;
+  for (; word != 0; word &= word - 1) {
+    ++count;
   }
-  mask[0] = low;
-  mask[1] = high;
+  return count;
+}
+
+// Of the tile's pairs, how many have both spheres in the mask.
+std::size_t count_masked(const TestedTile& tile, const TileWords& mask) {
+  std::size_t count = 0;
+  for (const std::size_t hit : tile.hits()) {
+    const std::size_t r = hit / kTileWords, w = hit % kTileWords;
+    const std::uint64_t row = 0 - ((mask.words[r / 64] >> (r % 64)) & 1U);
+    count += count_bits(tile.bits()[r].words[w] & mask.words[w] & row);
+  }
+  return count;
 }
 
 // The raw list of one chain: by its first sphere's place in the chain, then the second's.
-void list_chain(const TestedTile& tile, std::uint32_t chain, Span<const std::uint32_t> members,
-                const std::uint64_t (&mask)[kTileWords], Output<ChainPair>& pairs) {
+void list_chain(const TestedTile& tile, std::uint32_t chain, Span<const std::uint32_t> members, const TileWords& mask,
+                Output<ChainPair>& pairs) {
   std::uint8_t place_of[kTileSize];
   for (std::size_t i = 0; i < members.size; ++i) {
     place_of[members[i]] = static_cast<std::uint8_t>(i);
   }
-  TileBits by_place{};
+  TileWords by_place[kTileSize] = {};
   for (const std::uint32_t row : members) {
     for (std::size_t w = 0; w < kTileWords; ++w) {
-      for (std::uint64_t word = tile.bits()[row][w] & mask[w]; word != 0; word &= word - 1) {
+      for (std::uint64_t word = tile.bits()[row].words[w] & mask.words[w]; word != 0; word &= word - 1) {
         const std::uint8_t p = place_of[64 * w + lowest_bit(word)];
         const std::uint8_t q = place_of[row];
-        by_place[std::max(p, q)][std::min(p, q) / 64] |= std::uint64_t{1} << (std::min(p, q) % 64);
+        by_place[std::max(p, q)].words[std::min(p, q) / 64] |= std::uint64_t{1} << (std::min(p, q) % 64);
       }
     }
   }
@@ -84,49 +88,37 @@ void list_chain(const TestedTile& tile, std::uint32_t chain, Span<const std::uin
 
 void detect_in_one_tile(const Scene& scene, Result& result) {
   TestedTile tile(scene);
-  TileBits wanted;
   tile.set_columns(0);
-  tile.run(0, wanted);
-  TileBits unique;
-  std::memset(unique, 0, scene.size() * sizeof unique[0]);
-  const std::size_t chain_count = scene.asset->chain_count();
+  tile.set_rows(0);
+  TileWords wanted[kTileSize], plain[kTileSize];
+  if (scene.rows != nullptr) {
+    tile.choose(scene.rows->chain_wanted, scene.rows->chain_plain);
+    result.tests = scene.rows->chain_test_count;
+  } else {
+    tile.choose_all();
+    result.tests = fill_chain_rows(scene.target, *scene.asset, tile.wanted(), tile.plain(), wanted, plain, nullptr);
+    tile.choose(wanted, plain);
+  }
+  tile.run();
+  const bool lists = result.chain_pairs.buffer.size > 0;
+  const std::size_t chain_count = tile.hits().size == 0 ? 0 : scene.asset->chain_count();
   for (std::size_t c = 0; c < chain_count; ++c) {
-    const Span<const std::uint32_t> members = scene.asset->chain(c).spheres;
-    std::uint64_t mask[kTileWords];
-    mask_of(members, mask);
-    const MaskedCount counted = count_masked(scene.target, tile.tile(), mask);
-    result.tests += counted.wanted;
-    if (counted.touching == 0) {
-      continue;
-    }
-    for (const std::size_t hit : tile.hits()) {
-      const std::size_t row = hit / kTileWords, w = hit % kTileWords;
-      if (((mask[row / 64] >> (row % 64)) & 1U) != 0) {
-        unique[row][w] |= tile.bits()[row][w] & mask[w];
-      }
-    }
-    if (result.chain_pairs.buffer.size > 0) {
+    const Span<const std::uint32_t> members =
+        scene.rows == nullptr || lists ? scene.asset->chain(c).spheres : Span<const std::uint32_t>{};
+    const TileWords mask = scene.rows == nullptr ? chain_mask(members) : scene.rows->chains[c];
+    const std::size_t touching = count_masked(tile, mask);
+    if (lists && touching > 0) {
       list_chain(tile, static_cast<std::uint32_t>(c), members, mask, result.chain_pairs);
     }
-    result.chain_pairs.count += counted.touching;
+    result.chain_pairs.count += touching;
   }
   ColumnOrder order;
-  for (const std::size_t hit : tile.hits()) {
-    order.count_word(unique[hit / kTileWords][hit % kTileWords], hit % kTileWords);
-  }
+  count_tile(tile, order, result);
   if (result.pairs.buffer.size > 0) {
     order.begin_at(0);
-    for (const std::size_t hit : tile.hits()) {
-      const std::size_t row = hit / kTileWords, w = hit % kTileWords;
-      order.place_word(unique[row][w], w, row, [&](std::size_t at, std::size_t a, std::size_t b) {
-        result.pairs.put(at, {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
-      });
-    }
+    list_tile(tile, order, result.pairs);
   }
   result.pairs.count = order.total();
-  if (result.bits.size > 0) {
-    copy_bits(unique, scene.size(), 0, 0, result.bits);
-  }
 }
 
 // Assets of more than a tile, pair by pair; `seen` has a bit a pair, in the order of sorted pairs.

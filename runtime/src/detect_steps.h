@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "overlap.h"
+#include "pair_rows.h"
 #include "spherechain/detect.h"
 #include "triangle_bits.h"
 
@@ -39,6 +40,7 @@ struct Scene {
   Span<const std::uint64_t> disabled;  // may be empty
   Span<const float> padding;           // may be empty
   Target target;                       // resolved
+  const PairRows* rows;                // null: worked out tile by tile
 
   std::size_t size() const { return asset->spheres().size; }
   bool is_enabled(std::size_t i) const { return disabled.size == 0 || !test_bit(disabled, i); }
@@ -77,30 +79,29 @@ class TestedTile {
   explicit TestedTile(const Scene& scene) : scene_(scene) {}
 
   void set_columns(std::size_t first);
-  // `wanted`, where it is not null, has room for kTileSize rows: see Tile.
-  void run(std::size_t first_row, std::uint64_t (*wanted)[kTileWords] = nullptr);
+  void set_rows(std::size_t first);
+  // Which pairs to look at, see Tile: those given, or what the scene leaves; then returns how many.
+  void choose(const TileWords* wanted, const TileWords* plain);
+  std::size_t choose_all();
+  void run() { test_tile(scene_.target, tile_); }
 
-  std::size_t first_column() const { return tile_.first_column; }
-  std::size_t first_row() const { return tile_.first_row; }
-  std::size_t row_count() const { return tile_.row_count; }
-  // See Tile. Of the words listed some may have lost their bits.
+  std::size_t first_column() const { return tile_.place.first_column; }
+  std::size_t first_row() const { return tile_.place.first_row; }
+  const TileWords* wanted() const { return tile_.wanted; }
+  const TileWords* plain() const { return tile_.plain; }
+  // See Tile.
   Span<const std::uint8_t> hits() const { return {tile_.hits, tile_.hit_count}; }
-  std::size_t test_count() const { return tile_.test_count; }
-  const std::uint64_t (*bits() const)[kTileWords] { return bits_; }
-  const Tile& tile() const { return tile_; }
+  const TileWords* bits() const { return bits_; }
 
  private:
   const Sphere* block(std::size_t first, std::size_t count, Sphere* copy) const;
-  void enable(std::size_t first, std::uint64_t* words) const;
-  void drop_near();
 
   const Scene& scene_;
   Tile tile_;
-  Span<const NearPair> near_;  // those of the columns
   const Sphere* column_spheres_ = nullptr;
   SphereColumns columns_, rows_;  // rows_: where they are others
   Sphere padded_columns_[kTileSize], padded_rows_[kTileSize];
-  std::uint64_t bits_[kTileSize][kTileWords];
+  TileWords wanted_[kTileSize], plain_[kTileSize], bits_[kTileSize];
 };
 
 // Orders a tile's bits by column, then row: the order of a sorted list.
@@ -108,10 +109,10 @@ class ColumnOrder {
  public:
   ColumnOrder() { clear(); }
   void clear();
-  void count(const std::uint64_t (*bits)[kTileWords], std::size_t rows) {
+  void count(const TileWords* bits, std::size_t rows) {
     for (std::size_t r = 0; r < rows; ++r) {
       for (std::size_t w = 0; w < kTileWords; ++w) {
-        count_word(bits[r][w], w);
+        count_word(bits[r].words[w], w);
       }
     }
   }
@@ -120,10 +121,10 @@ class ColumnOrder {
   // From counts to the place each column's entries begin at.
   void begin_at(std::size_t place);
   template <typename Put>
-  void place(const std::uint64_t (*bits)[kTileWords], std::size_t rows, const Put& put) {
+  void place(const TileWords* bits, std::size_t rows, const Put& put) {
     for (std::size_t r = 0; r < rows; ++r) {
       for (std::size_t w = 0; w < kTileWords; ++w) {
-        place_word(bits[r][w], w, r, put);
+        place_word(bits[r].words[w], w, r, put);
       }
     }
   }
@@ -141,9 +142,10 @@ class ColumnOrder {
   std::uint32_t at_[kTileSize];
 };
 
-// The pairs (first_column + c, first_row + r) of a tile's bits into a table in the order of Asset::ignored().
-void copy_bits(const std::uint64_t (*bits)[kTileWords], std::size_t rows, std::size_t first_column,
-               std::size_t first_row, Span<std::uint64_t> table);
+// A tested tile's pairs: into `order`, and into the result's bits; then, once `order` knows where they begin, into the
+// list.
+void count_tile(const TestedTile& tile, ColumnOrder& order, Result& result);
+void list_tile(const TestedTile& tile, ColumnOrder& order, Output<Pair>& pairs);
 
 void detect_all(const Scene& scene, Result& result);
 

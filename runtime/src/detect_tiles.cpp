@@ -20,11 +20,6 @@ void copy_row(std::uint64_t word, std::size_t first, std::size_t b, Span<std::ui
   }
 }
 
-// A pair's column and row, given where the tile is.
-Pair pair_of(const TestedTile& tile, std::size_t column, std::size_t row) {
-  return {static_cast<std::uint32_t>(tile.first_column() + column), static_cast<std::uint32_t>(tile.first_row() + row)};
-}
-
 // The pairs of the columns set, which are sorted among themselves. Tiles are tested again where there are several:
 // there is no memory for all their bits.
 void list_columns(TestedTile& tile, std::size_t n, ColumnOrder& order, Output<Pair>& pairs) {
@@ -32,29 +27,15 @@ void list_columns(TestedTile& tile, std::size_t n, ColumnOrder& order, Output<Pa
   const bool is_one_tile = tile.first_row() == tile.first_column();
   for (std::size_t first_row = tile.first_column(); first_row < n; first_row += kTileSize) {
     if (!is_one_tile) {
-      tile.run(first_row);
+      tile.set_rows(first_row);
+      tile.choose_all();
+      tile.run();
     }
-    for (const std::size_t hit : tile.hits()) {
-      const std::size_t r = hit / kTileWords, w = hit % kTileWords;
-      order.place_word(tile.bits()[r][w], w, r, [&](std::size_t at, std::size_t column, std::size_t row) {
-        pairs.put(at, pair_of(tile, column, row));
-      });
-    }
+    list_tile(tile, order, pairs);
   }
 }
 
 }  // namespace
-
-void copy_bits(const std::uint64_t (*bits)[kTileWords], std::size_t rows, std::size_t first_column,
-               std::size_t first_row, Span<std::uint64_t> table) {
-  for (std::size_t r = 0; r < rows; ++r) {
-    for (std::size_t w = 0; w < kTileWords; ++w) {
-      if (bits[r][w] != 0) {
-        copy_row(bits[r][w], first_column + 64 * w, first_row + r, table);
-      }
-    }
-  }
-}
 
 const Sphere* TestedTile::block(std::size_t first, std::size_t count, Sphere* copy) const {
   if (scene_.padding.size == 0) {
@@ -66,70 +47,45 @@ const Sphere* TestedTile::block(std::size_t first, std::size_t count, Sphere* co
   return copy;
 }
 
-void TestedTile::enable(std::size_t first, std::uint64_t* words) const {
-  for (std::size_t w = 0; w < kTileWords; ++w) {
-    const std::size_t word = first / 64 + w;
-    words[w] = word < scene_.disabled.size ? ~scene_.disabled[word] : ~std::uint64_t{0};
+void TestedTile::set_columns(std::size_t first) {
+  tile_.place.first_column = first;
+  tile_.place.column_count = std::min(scene_.size() - first, kTileSize);
+  column_spheres_ = block(first, tile_.place.column_count, padded_columns_);
+  fill_columns(scene_.target, column_spheres_, tile_.place.column_count, column_spheres_[0], columns_);
+  tile_.columns = &columns_;
+  tile_.column_spheres = column_spheres_;
+  tile_.bits = bits_;
+  tile_.is_whole = scene_.size() <= kTileSize;
+  tile_.near = scene_.near;
+  if (!tile_.is_whole) {
+    const auto from = [](const NearPair& near, std::size_t a) { return near.a < a; };
+    const NearPair* begin = std::lower_bound(scene_.near.begin(), scene_.near.end(), first, from);
+    const NearPair* end = std::lower_bound(begin, scene_.near.end(), first + tile_.place.column_count, from);
+    tile_.near = {begin, static_cast<std::size_t>(end - begin)};
   }
 }
 
-void TestedTile::set_columns(std::size_t first) {
-  tile_.first_column = first;
-  tile_.column_count = std::min(scene_.size() - first, kTileSize);
-  column_spheres_ = block(first, tile_.column_count, padded_columns_);
-  fill_columns(scene_.target, column_spheres_, tile_.column_count, column_spheres_[0], columns_);
-  enable(first, tile_.enabled_columns);
-  const auto from = [](const NearPair& near, std::size_t a) { return near.a < a; };
-  const NearPair* begin = std::lower_bound(scene_.near.begin(), scene_.near.end(), first, from);
-  const NearPair* end = std::lower_bound(begin, scene_.near.end(), first + tile_.column_count, from);
-  near_ = {begin, static_cast<std::size_t>(end - begin)};
-}
-
-void TestedTile::run(std::size_t first_row, std::uint64_t (*wanted)[kTileWords]) {
-  tile_.columns = &columns_;
-  tile_.column_spheres = column_spheres_;
-  tile_.first_row = first_row;
-  tile_.row_count = std::min(scene_.size() - first_row, kTileSize);
-  if (first_row == tile_.first_column) {
+void TestedTile::set_rows(std::size_t first) {
+  tile_.place.first_row = first;
+  tile_.place.row_count = std::min(scene_.size() - first, kTileSize);
+  if (first == tile_.place.first_column) {
     tile_.rows = &columns_;
     tile_.row_spheres = column_spheres_;
   } else {
     tile_.rows = &rows_;
-    tile_.row_spheres = block(first_row, tile_.row_count, padded_rows_);
-    fill_columns(scene_.target, tile_.row_spheres, tile_.row_count, column_spheres_[0], rows_);
+    tile_.row_spheres = block(first, tile_.place.row_count, padded_rows_);
+    fill_columns(scene_.target, tile_.row_spheres, tile_.place.row_count, column_spheres_[0], rows_);
   }
-  enable(first_row, tile_.enabled_rows);
-  tile_.ignored = scene_.ignored.data;
-  tile_.ignored_words = scene_.ignored.size;
-  tile_.bits = bits_;
-  tile_.wanted = wanted;
-  test_tile(scene_.target, tile_);
-  drop_near();
 }
 
-// First which near pairs overlap, without a branch: about half of them do, ever other ones.
-void TestedTile::drop_near() {
-  constexpr std::size_t kAtATime = 64;
-  for (std::size_t first = 0; first < near_.size; first += kAtATime) {
-    const std::size_t end = std::min(near_.size, first + kAtATime);
-    std::size_t overlapping[kAtATime];
-    std::size_t count = 0;
-    for (std::size_t i = first; i < end; ++i) {
-      const std::size_t row = near_[i].b - tile_.first_row;
-      if (row < tile_.row_count) {
-        const std::size_t column = near_[i].a - tile_.first_column;
-        overlapping[count] = i;
-        count += (bits_[row][column / 64] >> (column % 64)) & 1U;
-      }
-    }
-    for (std::size_t k = 0; k < count; ++k) {
-      const NearPair& near = near_[overlapping[k]];
-      const std::size_t row = near.b - tile_.first_row;
-      const std::size_t column = near.a - tile_.first_column;
-      const bool is_far = !within_reach(column_spheres_[column], tile_.row_spheres[row], near.reach);
-      bits_[row][column / 64] &= ~(std::uint64_t{is_far} << (column % 64));
-    }
-  }
+void TestedTile::choose(const TileWords* wanted, const TileWords* plain) {
+  tile_.wanted = wanted;
+  tile_.plain = plain;
+}
+
+std::size_t TestedTile::choose_all() {
+  choose(wanted_, plain_);
+  return fill_rows(scene_.target, {scene_.ignored, scene_.disabled, tile_.near}, tile_.place, wanted_, plain_);
 }
 
 void ColumnOrder::clear() {
@@ -157,6 +113,28 @@ void ColumnOrder::begin_at(std::size_t place) {
   }
 }
 
+void count_tile(const TestedTile& tile, ColumnOrder& order, Result& result) {
+  const bool copies = result.bits.size > 0 && !result.first_only;
+  for (const std::size_t hit : tile.hits()) {
+    const std::size_t r = hit / kTileWords, w = hit % kTileWords;
+    const std::uint64_t word = tile.bits()[r].words[w];
+    order.count_word(word, w);
+    if (copies) {
+      copy_row(word, tile.first_column() + 64 * w, tile.first_row() + r, result.bits);
+    }
+  }
+}
+
+void list_tile(const TestedTile& tile, ColumnOrder& order, Output<Pair>& pairs) {
+  for (const std::size_t hit : tile.hits()) {
+    const std::size_t r = hit / kTileWords, w = hit % kTileWords;
+    order.place_word(tile.bits()[r].words[w], w, r, [&](std::size_t at, std::size_t column, std::size_t row) {
+      pairs.put(at, {static_cast<std::uint32_t>(tile.first_column() + column),
+                     static_cast<std::uint32_t>(tile.first_row() + row)});
+    });
+  }
+}
+
 void detect_all(const Scene& scene, Result& result) {
   const std::size_t n = scene.size();
   TestedTile tile(scene);
@@ -165,16 +143,15 @@ void detect_all(const Scene& scene, Result& result) {
     tile.set_columns(first);
     order.clear();
     for (std::size_t first_row = first; first_row < n; first_row += kTileSize) {
-      tile.run(first_row);
-      result.tests += tile.test_count();
-      const bool copies = result.bits.size > 0 && !result.first_only;
-      for (const std::size_t hit : tile.hits()) {
-        const std::size_t r = hit / kTileWords, w = hit % kTileWords;
-        order.count_word(tile.bits()[r][w], w);
-        if (copies && tile.bits()[r][w] != 0) {
-          copy_row(tile.bits()[r][w], first + 64 * w, first_row + r, result.bits);
-        }
+      tile.set_rows(first_row);
+      if (scene.rows != nullptr) {
+        tile.choose(scene.rows->wanted, scene.rows->plain);
+        result.tests += scene.rows->test_count;
+      } else {
+        result.tests += tile.choose_all();
       }
+      tile.run();
+      count_tile(tile, order, result);
     }
     if (result.pairs.buffer.size > 0 && order.total() > 0) {
       list_columns(tile, n, order, result.pairs);

@@ -12,13 +12,19 @@ enum class Output { kList, kBits };
 
 class RuntimeFinder : public PairFinder {
  public:
-  RuntimeFinder(const Asset& asset, std::string name, Method method, Output output)
+  RuntimeFinder(const Asset& asset, std::string name, Method method, Output output, bool has_table = true)
       : PairFinder(std::move(name), method == Method::kM1 ? Found::kInChains : Found::kExactly),
         sphere_count_(asset.spheres().size),
         pairs_(output == Output::kList ? sphere_count_ * sphere_count_ : 0),
         bits_(output == Output::kBits ? DetectJob::bit_words(asset) : 0),
         words_(DetectContext::words_needed(asset)),
-        context_{{words_.data(), words_.size()}} {
+        context_{{words_.data(), words_.size()}},
+        table_words_(DetectTable::words_needed(asset)),
+        table_{{table_words_.data(), table_words_.size()}} {
+    if (prepare_detect(asset, job_.radius, nullptr, table_) != Status::kOk) {
+      throw std::logic_error(this->name);
+    }
+    job_.table = has_table ? &table_ : nullptr;
     job_.asset = &asset;
     job_.method = method;
     job_.context = &context_;
@@ -54,6 +60,8 @@ class RuntimeFinder : public PairFinder {
   std::vector<Pair> pairs_;
   std::vector<std::uint64_t> bits_, words_;
   DetectContext context_;
+  std::vector<std::uint64_t> table_words_;
+  DetectTable table_;
   DetectJob job_;
 };
 
@@ -64,6 +72,11 @@ PairFinders runtime_finders(const Asset& asset) {
   out.push_back(std::make_unique<RuntimeFinder>(asset, "spherechain M2, pair list", Method::kM2, Output::kList));
   out.push_back(std::make_unique<RuntimeFinder>(asset, "spherechain M2, bits", Method::kM2, Output::kBits));
   out.push_back(std::make_unique<RuntimeFinder>(asset, "spherechain M1, pair list", Method::kM1, Output::kList));
+  for (const Method method : {Method::kM2, Method::kM1}) {
+    out.push_back(std::make_unique<RuntimeFinder>(
+        asset, method == Method::kM2 ? "spherechain M2, list, no table" : "spherechain M1, list, no table", method,
+        Output::kList, false));
+  }
   return out;
 }
 

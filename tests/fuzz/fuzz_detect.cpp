@@ -87,10 +87,31 @@ Found find(const Case& c, const DetectJob& job) {
 struct DetectCall {
   DetectJob job;
   DetectContext context;
+  DetectTable table;
   Filter filter;
   sc_detect_job c_job = SC_DETECT_JOB_INIT;
   sc_filter c_filter{};
 };
+
+void spoil_table(Case& c, DetectCall& call, std::uint32_t way, Spoiled& spoiled) {
+  DetectJob& job = call.job;
+  switch (way) {
+    case 0:
+      call.table.words.size = c.random.up_to(DetectTable::words_needed(c.asset) - 1);
+      return spoiled.with(Status::kContextTooSmall);
+    case 1:
+      put_askew(c, call.table.words.data);
+      return spoiled.with(Status::kMisaligned);
+    case 2:
+      call.table.words[c.random.below(4)] ^= 1;  // what it is of
+      return spoiled.with(Status::kBadArgument);
+    default:
+      if (job.bits.size > 0) {
+        put_over(c, job.bits.data, bytes_of(call.table.words.data, call.table.words.size));
+        spoiled.with(Status::kSharedMemory);
+      }
+  }
+}
 
 void spoil_detect(Case& c, DetectCall& call, std::uint32_t way, Spoiled& spoiled) {
   DetectJob& job = call.job;
@@ -183,11 +204,14 @@ void spoil_detect(Case& c, DetectCall& call, std::uint32_t way, Spoiled& spoiled
         spoiled.with(Status::kNullArgument);
       }
       return;
-    default:
+    case 19:
       if (is_m1 && c.n > 1) {
         put_over(c, call.context.words.data, spheres);
         spoiled.with(Status::kSharedMemory);
       }
+      return;
+    default:
+      return job.table == nullptr ? void() : spoil_table(c, call, way - 20, spoiled);
   }
 }
 
@@ -196,6 +220,8 @@ void fill_in_c(const DetectCall& call, sc_detect_job& out) {
   out.spheres = reinterpret_cast<const sc_sphere*>(job.spheres.data);
   out.sphere_count = job.spheres.size;
   out.filter = job.filter == nullptr ? nullptr : &call.c_filter;
+  out.table = job.table == nullptr ? nullptr : call.table.words.data;
+  out.table_words = call.table.words.size;
   out.scratch = job.context == nullptr ? nullptr : call.context.words.data;
   out.scratch_words = call.context.words.size;
   out.pairs = reinterpret_cast<sc_pair*>(job.pairs.data);
@@ -250,6 +276,12 @@ void fuzz_detect(Case& c) {
     call.filter = draw_filter(c);
     job.filter = &call.filter;
   }
+  if (c.random.one_in(2)) {
+    call.table.words.size = DetectTable::words_needed(c.asset);
+    call.table.words.data = c.arena.add<std::uint64_t>(call.table.words.size);
+    c.expect(prepare_detect(c.asset, job.radius, job.filter, call.table) == Status::kOk, "a table");
+    job.table = &call.table;
+  }
   const Found found = find(c, job);
   const bool is_m1 = job.method == Method::kM1;
   job.first_only = !is_m1 && c.random.one_in(4);
@@ -270,7 +302,7 @@ void fuzz_detect(Case& c) {
   call.c_job.target = static_cast<sc_target>(draw_target(c));
   call.c_job.first_only = job.first_only ? 1 : 0;
   Spoiled spoiled;
-  spoil_some(c, 20, [&](std::uint32_t way) { spoil_detect(c, call, way, spoiled); });
+  spoil_some(c, 24, [&](std::uint32_t way) { spoil_detect(c, call, way, spoiled); });
   call.c_filter = to_c(call.filter);
   fill_in_c(call, call.c_job);
   job.pair_count = job.chain_pair_count = job.test_count = 77;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "jobs.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace spherechain::test {
@@ -62,6 +63,30 @@ SkinnedSurface skin(const Asset& asset, const BoneMatrices& bones, const std::ve
   return result;
 }
 
+namespace {
+
+// With a table the job finds all that it found without: `job` has run and `expected` is its buffers.
+bool is_same_by_table(DetectJob job, const Filter* filter, const Detected& expected) {
+  std::vector<std::uint64_t> words(DetectTable::words_needed(*job.asset), ~std::uint64_t{0});  // dirty on purpose
+  DetectTable table{{words.data(), words.size()}};
+  if (prepare_detect(*job.asset, job.radius, filter, table) != Status::kOk) {
+    return false;
+  }
+  Detected found = expected;
+  std::fill(found.pairs.begin(), found.pairs.end(), Pair{77, 77});
+  std::fill(found.chain_pairs.begin(), found.chain_pairs.end(), ChainPair{77, {77, 77}});
+  std::fill(found.bits.begin(), found.bits.end(), ~std::uint64_t{0});
+  job.table = &table;
+  job.pairs.data = found.pairs.data();
+  job.chain_pairs.data = found.chain_pairs.data();
+  job.bits.data = found.bits.data();
+  return job.run() == Status::kOk && job.pair_count == expected.pairs.size() && job.test_count == expected.test_count &&
+         same_bits(found.pairs, expected.pairs) && same_bits(found.chain_pairs, expected.chain_pairs) &&
+         same_bits(found.bits, expected.bits);
+}
+
+}  // namespace
+
 Detected detect(const Asset& asset, const std::vector<Sphere>& spheres, Method method, RadiusKind radius, Target target,
                 const Filter* filter) {
   std::vector<std::uint64_t> words(DetectContext::words_needed(asset), ~std::uint64_t{0});  // dirty on purpose
@@ -86,6 +111,9 @@ Detected detect(const Asset& asset, const std::vector<Sphere>& spheres, Method m
   job.chain_pairs = {result.chain_pairs.data(), result.chain_pairs.size()};
   result.status = job.run();
   result.test_count = job.test_count;
+  if (result.status == Status::kOk && !is_same_by_table(job, filter, result)) {
+    result.status = Status::kCorrupt;
+  }
   return result;
 }
 

@@ -47,7 +47,8 @@ struct Detected {
   std::size_t test_count;
 };
 
-// Runs twice: to count, then with buffers of exactly that many.
+// Runs three times: to count, then with buffers of exactly that many, then with a table. kCorrupt where that finds
+// something else.
 Detected detect(const Asset& asset, const std::vector<Sphere>& spheres, Method method, RadiusKind radius,
                 Target target = Target::kBest, const Filter* filter = nullptr);
 

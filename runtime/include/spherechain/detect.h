@@ -6,6 +6,7 @@
 
 #include "spherechain/abi.h"
 #include "spherechain/asset.h"
+#include "spherechain/detect_table.h"
 #include "spherechain/filter.h"
 #include "spherechain/simd.h"
 #include "spherechain/status.h"
@@ -48,7 +49,10 @@ struct SPHERECHAIN_API DetectJob {
   RadiusKind radius = RadiusKind::kDetect;
   Method method = Method::kM2;
   Target target = Target::kBest;
-  const Filter* filter = nullptr;    // null: the asset's ignored pairs, all spheres as they are
+  const Filter* filter = nullptr;  // null: the asset's ignored pairs, all spheres as they are
+  // Null, or from prepare_detect with this asset and radius: faster, the same pairs. Then it, not `filter`, says which
+  // pairs are ignored and spheres disabled; `filter` adds its padding.
+  const DetectTable* table = nullptr;
   bool first_only = false;           // M2: stop at the first pair of the sorted list
   DetectContext* context = nullptr;  // M1: required
   Span<Pair> pairs;                  // out: sorted by (a, b), each once; may be empty to count only
@@ -63,7 +67,7 @@ struct SPHERECHAIN_API DetectJob {
 
   static std::size_t bit_words(const Asset& asset) noexcept;
 
-  // Uses some 18 KiB of stack. kOk; kOverflow where `pairs` or `chain_pairs` was not empty and too small (the first
+  // Uses some 22 KiB of stack. kOk; kOverflow where `pairs` or `chain_pairs` was not empty and too small (the first
   // entries are written, the counts say what is needed); kNullArgument, kNotOpen, kTooFewSpheres, kContextTooSmall,
   // kBadArgument, kUnsupportedTarget, kBadFilter, kMisaligned, kSharedMemory (what is written overlaps anything else):
   // nothing is written, the counts keep their values.

@@ -402,7 +402,9 @@ typedef struct sc_detect_job {
   sc_target target;
   int32_t first_only;      /* M2: not 0 stops at the first pair of the sorted list */
   const sc_filter* filter; /* null: what the asset says */
-  uint64_t* scratch;       /* M1: required, sc_detect_scratch_words(); M2: null */
+  uint64_t* table;    /* from sc_prepare_detect with this asset and radius: faster, the same pairs; or null. Then */
+  size_t table_words; /* it says which pairs and spheres are left out, and `filter` adds its padding */
+  uint64_t* scratch;  /* M1: required, sc_detect_scratch_words(); M2: null */
   size_t scratch_words;
   sc_pair* pairs; /* out: sorted by (a, b), each once; may be null */
   size_t pair_capacity;
@@ -417,14 +419,21 @@ typedef struct sc_detect_job {
 #define SC_DETECT_JOB_INIT                                                                                           \
   {                                                                                                                  \
     sizeof(sc_detect_job), NULL, NULL, 0, SC_RADIUS_DETECT, SC_METHOD_M2, SC_TARGET_BEST, 0, NULL, NULL, 0, NULL, 0, \
-        NULL, 0, NULL, 0, 0, 0, 0                                                                                    \
+        NULL, 0, NULL, 0, NULL, 0, 0, 0, 0                                                                           \
   }
 
 SPHERECHAIN_API size_t sc_detect_scratch_words(const sc_asset* asset);
 SPHERECHAIN_API size_t sc_detect_bit_words(const sc_asset* asset);
+SPHERECHAIN_API size_t sc_detect_table_words(const sc_asset* asset);
+
+/* Which pairs to look at, worked out once for any number of sc_detect with this asset, radius and filter (null: what
+ * the asset says); again where the filter is edited. SC_OK, SC_NULL_ARGUMENT, SC_MISALIGNED, SC_BAD_ARGUMENT,
+ * SC_CONTEXT_TOO_SMALL, SC_BAD_FILTER, SC_SHARED_MEMORY. */
+SPHERECHAIN_API sc_status sc_prepare_detect(const sc_asset* asset, sc_radius radius, const sc_filter* filter,
+                                            uint64_t* table, size_t table_words);
 
 /* SC_OK, SC_OVERFLOW (the first entries are written), SC_NULL_ARGUMENT, SC_WRONG_ABI, SC_TOO_FEW_SPHERES,
- * SC_CONTEXT_TOO_SMALL, SC_BAD_ARGUMENT, SC_UNSUPPORTED_TARGET, SC_BAD_FILTER, SC_SHARED_MEMORY. 18 KiB of stack. */
+ * SC_CONTEXT_TOO_SMALL, SC_BAD_ARGUMENT, SC_UNSUPPORTED_TARGET, SC_BAD_FILTER, SC_SHARED_MEMORY. 22 KiB of stack. */
 SPHERECHAIN_API sc_status sc_detect(sc_detect_job* job);
 
 /* ---- What to do about it ---- */

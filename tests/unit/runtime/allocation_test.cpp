@@ -28,6 +28,8 @@ TEST_CASE("open, both refits, detect, filters, contacts and crowds allocate noth
   std::uint32_t crowd_count = 0;
   CrowdContext crowd_context{{crowd_words.data(), crowd_words.size()}};
   DetectContext context{{words.data(), words.size()}};
+  std::vector<std::uint64_t> table_words(DetectTable::words_needed(opened.asset));
+  DetectTable table{{table_words.data(), table_words.size()}};
   RefitJob refit;
   refit.positions = tiny.rest.data();
   refit.vertex_count = tiny.parts.vertex_count;
@@ -62,11 +64,13 @@ TEST_CASE("open, both refits, detect, filters, contacts and crowds allocate noth
   const Status filter_status = reset_filter(asset, filter);
   const Status edit_status = ignore_regions(asset, filter, 0, 1);
   detect.filter = &filter;
+  const Status table_status = prepare_detect(asset, detect.radius, &filter, table);
   Status target_status = Status::kOk;
   for (const Target target : supported_targets()) {
     for (const Method method : {Method::kM1, Method::kM2}) {
       detect.target = target;
       detect.method = method;
+      detect.table = target == Target::kScalar ? nullptr : &table;
       target_status = target_status == Status::kOk ? detect.run() : target_status;
     }
   }
@@ -98,6 +102,7 @@ TEST_CASE("open, both refits, detect, filters, contacts and crowds allocate noth
   CHECK(m1_status == Status::kOk);
   CHECK(filter_status == Status::kOk);
   CHECK(edit_status == Status::kOk);
+  CHECK(table_status == Status::kOk);
   CHECK(target_status == Status::kOk);
   CHECK(contact_status == Status::kOk);
   CHECK(crowd_status == Status::kOk);

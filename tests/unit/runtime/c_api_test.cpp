@@ -147,6 +147,7 @@ TEST_CASE("C: no index leads out of the asset, and a null asset is named") {
   CHECK(sc_asset_near_pairs(both.asset, 2, &count) == nullptr);
   CHECK(sc_detect_scratch_words(nullptr) == 0);
   CHECK(sc_detect_bit_words(nullptr) == 0);
+  CHECK(sc_detect_table_words(nullptr) == 0);
   CHECK(sc_filter_ignored_words(nullptr) == 0);
   CHECK(sc_filter_disabled_words(nullptr) == 0);
   CHECK(sc_crowd_scratch_words(nullptr, 1) == 0);
@@ -168,7 +169,7 @@ TEST_CASE("C: open says what is wrong with the bytes, the memory or the version,
   CHECK(open(SC_ABI_VERSION + 1, memory, sc_asset_size(), size) == SC_WRONG_ABI);
   CHECK(both.asset == nullptr);
   CHECK(std::string(both.message) ==
-        "compiled with spherechain's headers of ABI version 3, linked with its library of 2");
+        "compiled with spherechain's headers of ABI version 4, linked with its library of 3");
   CHECK(open(SC_ABI_VERSION, nullptr, sc_asset_size(), size) == SC_NULL_ARGUMENT);
   CHECK(std::string(both.message) == "memory: null");
   CHECK(open(SC_ABI_VERSION, memory + 4, sc_asset_size(), size) == SC_MISALIGNED);

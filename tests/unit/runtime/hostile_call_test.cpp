@@ -71,6 +71,7 @@ TEST_CASE("every job refuses a misaligned buffer") {
       [](RefitBonesJob& j) { j.spheres.data = askew(j.spheres.data); });
 
   DetectContext context{{s.words.data(), 4}}, askew_context{{askew(s.words.data()), 4}};
+  const DetectTable askew_table{{askew(s.words.data()), 4}};
   DetectJob detect;
   detect.asset = refit.asset;
   detect.spheres = {s.spheres.data(), 20};
@@ -81,7 +82,7 @@ TEST_CASE("every job refuses a misaligned buffer") {
   detect.chain_pairs = {&chain_pair, 0};
   check_each(
       detect, [](DetectJob& j) { j.spheres.data = askew(j.spheres.data); },
-      [](DetectJob& j) { j.bits.data = askew(j.bits.data); },
+      [&](DetectJob& j) { j.table = &askew_table; }, [](DetectJob& j) { j.bits.data = askew(j.bits.data); },
       [&](DetectJob& j) { j.pairs.data = askew(s.pairs.data()); },
       [](DetectJob& j) { j.chain_pairs.data = askew(j.chain_pairs.data); },
       [&](DetectJob& j) { j.context = &askew_context; });

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// Spheres into registers, and the rule of detect.h for listed pairs, a register of them at a time. For files of
+// kernels, after highway.h; no include guard, for each target wants it again.
+#include <cfloat>
+
+#include "overlap.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace spherechain {
+namespace HWY_NAMESPACE {
+
+constexpr std::size_t kListLanes = hwy::HWY_NAMESPACE::MaxLanes(hwy::HWY_NAMESPACE::ScalableTag<float>());
+
+#if HWY_TARGET != HWY_SCALAR
+
+// Block b of 128 bits is the sphere `sphere_at(4 * b)`.
+template <typename D, typename SphereAt>
+HWY_INLINE hwy::HWY_NAMESPACE::Vec<D> load_blocks(D d, const SphereAt& sphere_at) {
+  namespace hn = hwy::HWY_NAMESPACE;
+#if HWY_TARGET == HWY_AVX3  // four loads; halves put together would be shuffled
+  __m512 spheres = _mm512_castps128_ps512(_mm_loadu_ps(&sphere_at(0).x));
+  spheres = _mm512_insertf32x4(spheres, _mm_loadu_ps(&sphere_at(4).x), 1);
+  spheres = _mm512_insertf32x4(spheres, _mm_loadu_ps(&sphere_at(8).x), 2);
+  spheres = _mm512_insertf32x4(spheres, _mm_loadu_ps(&sphere_at(12).x), 3);
+  (void)d;
+  return hn::Vec<D>{spheres};
+#elif HWY_TARGET == HWY_AVX2
+  const hn::Half<D> half;
+  return hn::Combine(d, hn::LoadU(half, &sphere_at(4).x), hn::LoadU(half, &sphere_at(0).x));
+#else
+  return hn::LoadU(d, &sphere_at(0).x);
+#endif
+}
+
+// From vectors whose block b is sphere 4 b + i, for i of 0 to 3, to one a figure, sphere by sphere: in each block four
+// by four figures are turned about.
+template <typename D, typename V>
+HWY_INLINE void turn(D d, V v0, V v1, V v2, V v3, V& x, V& y, V& z, V& radius) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  const V low02 = hn::InterleaveLower(d, v0, v2), low13 = hn::InterleaveLower(d, v1, v3),
+          high02 = hn::InterleaveUpper(d, v0, v2), high13 = hn::InterleaveUpper(d, v1, v3);
+  x = hn::InterleaveLower(d, low02, low13);
+  y = hn::InterleaveUpper(d, low02, low13);
+  z = hn::InterleaveLower(d, high02, high13);
+  radius = hn::InterleaveUpper(d, high02, high13);
+}
+
+template <typename D>
+HWY_INLINE hwy::HWY_NAMESPACE::Vec<D> load_reaches(D d, const NearPair* pairs) {
+  namespace hn = hwy::HWY_NAMESPACE;
+  const auto* words = reinterpret_cast<const float*>(pairs);
+#if HWY_TARGET == HWY_AVX3
+  (void)d;
+  const __m512i low = _mm512_setr_epi32(2, 5, 8, 11, 14, 17, 20, 23, 26, 29, 0, 0, 0, 0, 0, 0);
+  const __m512i high = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 16, 19, 22, 25, 28, 31);
+  const __m512 first = _mm512_permutex2var_ps(_mm512_loadu_ps(words), low, _mm512_loadu_ps(words + 16));
+  return hn::Vec<D>{_mm512_permutex2var_ps(first, high, _mm512_loadu_ps(words + 32))};
+#else
+  hn::Vec<D> a, b, reach;
+  hn::LoadInterleaved3(d, words, a, b, reach);
+  return reach;
+#endif
+}
+
+#endif
+
+// kListLanes pairs, a bit each: a counts from the columns' first sphere, b from the rows'. With a reach of 1 the rule
+// for near pairs is that for all others.
+HWY_INLINE std::uint64_t test_listed(const Sphere* column_spheres, const Sphere* row_spheres, const NearPair* pairs) {
+#if HWY_TARGET == HWY_SCALAR
+  const Sphere &p = column_spheres[pairs->a], &q = row_spheres[pairs->b];
+  const float dx = p.x - q.x;
+  const float dy = p.y - q.y;
+  const float dz = p.z - q.z;
+  const float s = p.radius + q.radius;
+  const float t = pairs->reach * s;
+  const float d2 = (dx * dx + dy * dy) + dz * dz;
+  return d2 < s * s && s * s <= FLT_MAX && d2 < t * t ? 1 : 0;
+#else
+  namespace hn = hwy::HWY_NAMESPACE;
+  const hn::ScalableTag<float> d;
+  using V = hn::Vec<hn::ScalableTag<float> >;
+  // p - (x, y, z, -radius) is three differences and a sum, rounded as the rule's are.
+  HWY_ALIGN static constexpr float kSign[16] = {0, 0, 0, -0.0F, 0, 0, 0, -0.0F, 0, 0, 0, -0.0F, 0, 0, 0, -0.0F};
+  const V sign = hn::Load(d, kSign);
+  const auto differences = [&](std::size_t i) HWY_ATTR {
+    const V p = load_blocks(d, [&](std::size_t k) -> const Sphere& { return column_spheres[pairs[k + i].a]; });
+    const V q = load_blocks(d, [&](std::size_t k) -> const Sphere& { return row_spheres[pairs[k + i].b]; });
+    return hn::Sub(p, hn::Xor(q, sign));
+  };
+  V dx, dy, dz, s;
+  turn(d, differences(0), differences(1), differences(2), differences(3), dx, dy, dz, s);
+  const V d2 = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
+  const V s2 = hn::Mul(s, s), t = hn::Mul(load_reaches(d, pairs), s);
+  const auto touches = hn::And(hn::Lt(d2, s2), hn::Lt(d2, hn::Mul(t, t)));
+  return bits_of(hn::And(touches, hn::Le(s2, hn::Set(d, FLT_MAX))));
+#endif
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace spherechain
+HWY_AFTER_NAMESPACE();

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+// Tables of the pairs to look at: jobs with one find what jobs without find (jobs.h compares them for every test of
+// pairs), and none is taken for another's.
+#include <doctest/doctest.h>
+
+#include "jobs.h"
+#include "tiny_asset.h"
+
+namespace spherechain::test {
+namespace {
+
+struct OwnedTable {
+  OwnedTable(const Asset& asset, RadiusKind radius, const Filter* filter = nullptr)
+      : words(DetectTable::words_needed(asset)), table{{words.data(), words.size()}} {
+    REQUIRE(prepare_detect(asset, radius, filter, table) == Status::kOk);
+  }
+  std::vector<std::uint64_t> words;
+  DetectTable table;
+};
+
+struct OwnedFilter {
+  explicit OwnedFilter(const Asset& asset)
+      : ignored(Filter::ignored_words(asset)),
+        disabled(Filter::disabled_words(asset)),
+        padding(asset.spheres().size),
+        filter{{ignored.data(), ignored.size()}, {disabled.data(), disabled.size()}, {padding.data(), padding.size()}} {
+    REQUIRE(reset_filter(asset, filter) == Status::kOk);
+  }
+  std::vector<std::uint64_t> ignored, disabled;
+  std::vector<float> padding;
+  Filter filter;
+};
+
+DetectJob job_of(const Asset& asset, const std::vector<Sphere>& spheres, const DetectTable& table) {
+  DetectJob job;
+  job.asset = &asset;
+  job.spheres = {spheres.data(), spheres.size()};
+  job.table = &table;
+  return job;
+}
+
+}  // namespace
+
+TEST_CASE("a table keeps the filter it was prepared with, and a job adds its own filter's padding") {
+  const OpenedAsset opened(random_asset(6, 1).parts);
+  const std::vector<Sphere> heap(6, {0, 0, 0, 1});
+  OwnedFilter owned(opened.asset);
+  for (std::uint32_t b = 1; b < 6; ++b) {
+    for (std::uint32_t a = 0; a < b; ++a) CHECK(ignore_pair(opened.asset, owned.filter, a, b, b != 5) == Status::kOk);
+  }
+  CHECK(disable_sphere(opened.asset, owned.filter, 4) == Status::kOk);
+  const OwnedTable of_filter(opened.asset, RadiusKind::kDetect, &owned.filter);
+  DetectJob job = job_of(opened.asset, heap, of_filter.table);
+  REQUIRE(job.run() == Status::kOk);
+  CHECK(job.pair_count == 4);  // (0, 5) to (3, 5)
+  CHECK(job.test_count == 4);
+  CHECK(reset_filter(opened.asset, owned.filter) == Status::kOk);
+  job.filter = &owned.filter;
+  REQUIRE(job.run() == Status::kOk);
+  CHECK(job.pair_count == 4);
+  CHECK(pad_sphere(opened.asset, owned.filter, 5, -2.0F) == Status::kOk);
+  REQUIRE(job.run() == Status::kOk);
+  CHECK(job.pair_count == 0);  // radii 1 and -1
+  const OwnedTable again(opened.asset, RadiusKind::kDetect, &owned.filter);
+  job.table = &again.table;
+  REQUIRE(job.run() == Status::kOk);
+  CHECK(job.test_count == 15 - random_asset(6, 1).ignored_pairs.size());
+}
+
+TEST_CASE("a table of another asset or radius, or cut short, is refused") {
+  const OpenedAsset opened(random_asset(20, 1).parts), other(random_asset(20, 2).parts);
+  const std::vector<Sphere> heap(20, {0, 0, 0, 1});
+  const OwnedTable table(opened.asset, RadiusKind::kDetect);
+  DetectJob job = job_of(opened.asset, heap, table.table);
+  CHECK(job.run() == Status::kOk);
+  job.radius = RadiusKind::kFit;
+  CHECK(job.run() == Status::kBadArgument);
+  job.radius = RadiusKind::kDetect;
+  job.asset = &other.asset;
+  CHECK(job.run() == Status::kBadArgument);
+  job.asset = &opened.asset;
+  DetectTable changed = table.table;
+  job.table = &changed;
+  for (const std::size_t size : {table.words.size() - 1, std::size_t{1}, std::size_t{0}}) {
+    changed.words.size = size;
+    CHECK(job.run() == Status::kContextTooSmall);
+  }
+  changed.words.data = nullptr;
+  CHECK(job.run() == Status::kNullArgument);
+}
+
+TEST_CASE("an asset opened where another one lay does not take its table") {
+  const TinyAsset first = random_asset(20, 1);
+  TinyAsset second = random_asset(20, 1);
+  second.parts.chains.push_back(second.parts.chains[0]);
+  OpenedAsset opened(first.parts);
+  const OwnedTable table(opened.asset, RadiusKind::kDetect);
+  const OpenedAsset later(second.parts);
+  const std::vector<Sphere> heap(20, {0, 0, 0, 1});
+  std::vector<std::uint64_t> words = table.words;
+  const OwnedTable of_later(later.asset, RadiusKind::kDetect);
+  words[0] = of_later.words[0];  // as if at the same address
+  const DetectTable stale{{words.data(), words.size()}};
+  CHECK(job_of(later.asset, heap, stale).run() == Status::kBadArgument);
+}
+
+TEST_CASE("prepare_detect refuses what it cannot fill and writes nothing then") {
+  const OpenedAsset opened(random_asset(20, 1).parts);
+  const Asset closed;
+  OwnedFilter owned(opened.asset);
+  std::vector<std::uint64_t> words(DetectTable::words_needed(opened.asset), 7);
+  const auto status_of = [&](const Asset& asset, RadiusKind radius, std::uint64_t* data, std::size_t size) {
+    DetectTable table{{data, size}};
+    return prepare_detect(asset, radius, &owned.filter, table);
+  };
+  const std::size_t size = words.size();
+  CHECK(status_of(closed, RadiusKind::kFit, words.data(), size) == Status::kNotOpen);
+  CHECK(status_of(opened.asset, static_cast<RadiusKind>(2), words.data(), size) == Status::kBadArgument);
+  CHECK(status_of(opened.asset, RadiusKind::kFit, words.data(), size - 1) == Status::kContextTooSmall);
+  CHECK(status_of(opened.asset, RadiusKind::kFit, nullptr, size) == Status::kNullArgument);
+  auto* askew = reinterpret_cast<std::uint64_t*>(reinterpret_cast<char*>(words.data()) + 4);
+  CHECK(status_of(opened.asset, RadiusKind::kFit, askew, size) == Status::kMisaligned);
+  owned.filter.ignored.data = words.data();
+  CHECK(status_of(opened.asset, RadiusKind::kFit, words.data(), size) == Status::kSharedMemory);
+  owned.filter.ignored.size = 1;
+  CHECK(status_of(opened.asset, RadiusKind::kFit, words.data(), size) == Status::kBadFilter);
+  CHECK(words == std::vector<std::uint64_t>(size, 7));
+}
+
+TEST_CASE("a job writes over no table") {
+  const OpenedAsset opened(random_asset(20, 1).parts);
+  const std::vector<Sphere> heap(20, {0, 0, 0, 1});
+  const OwnedTable table(opened.asset, RadiusKind::kDetect);
+  const std::vector<std::uint64_t> before = table.words;
+  DetectJob job = job_of(opened.asset, heap, table.table);
+  job.bits = {table.table.words.data + 8, DetectJob::bit_words(opened.asset)};
+  CHECK(job.run() == Status::kSharedMemory);
+  CHECK(table.words == before);
+}
+
+}  // namespace spherechain::test
