@@ -25,6 +25,8 @@ ordered_json score_json(const Score& score) {
           {"reported_per_frame", score.reported_per_frame()}};
 }
 
+ordered_json errors_json(const ContactErrors& errors) { return {{"missing", errors.missing}, {"extra", errors.extra}}; }
+
 ordered_json groups_json(const std::vector<PairGroup>& groups) {
   ordered_json out = ordered_json::array();
   for (const PairGroup& group : groups) {
@@ -109,7 +111,11 @@ std::string validation_json(const Validation& validation, const AnimatedAsset& a
     out["contacts_missing"] = validation.contacts.missing;
     out["contacts_extra"] = validation.contacts.extra;
     if (const auto& from_bones = validation.contacts_from_bones) {
-      out["contacts_from_bones"] = {{"missing", from_bones->missing}, {"extra", from_bones->extra}};
+      out["contacts_from_bones"] = errors_json(*from_bones);
+    }
+    out["neighbour_contacts"] = errors_json(validation.neighbour_contacts);
+    if (const auto& from_bones = validation.neighbour_contacts_from_bones) {
+      out["neighbour_contacts_from_bones"] = errors_json(*from_bones);
     }
   }
   out["m1"] = score_json(validation.m1);
@@ -161,9 +167,13 @@ std::string validation_text(const Validation& validation, const AnimatedAsset& a
     const auto errors = [](const ContactErrors& of) {
       return fmt::format("{} missing, {} extra", of.missing, of.extra);
     };
-    out += fmt::format(
-        "contacts         {}; from bones {}\n", errors(validation.contacts),
-        validation.contacts_from_bones ? errors(*validation.contacts_from_bones) : "not compared: none move it");
+    const auto line = [&](const char* name, const ContactErrors& contacts,
+                          const std::optional<ContactErrors>& from_bones) {
+      return fmt::format("{:<17}{}; from bones {}\n", name, errors(contacts),
+                         from_bones ? errors(*from_bones) : "not compared: none move it");
+    };
+    out += line("contacts", validation.contacts, validation.contacts_from_bones);
+    out += line("of neighbours", validation.neighbour_contacts, validation.neighbour_contacts_from_bones);
   }
   if (!validation.misses.empty()) out += "\nworst misses: frame, spheres, triangle pairs, depth in % of the height\n";
   for (std::size_t i = 0; i < std::min<std::size_t>(shown_misses(validation), 5); ++i) {

@@ -44,11 +44,13 @@ void follow(const Asset& asset, std::vector<float>& positions, const std::vector
 
 }  // namespace
 
-std::vector<TrianglePair> find_contacts(const Asset& asset, const std::vector<float>& positions, Target target) {
+std::vector<TrianglePair> find_contacts(const Asset& asset, const std::vector<float>& positions, ContactScope scope,
+                                        Target target) {
   TriangleContactJob job;
   job.asset = &asset;
   job.positions = positions.data();
   job.vertex_count = positions.size() / 3;
+  job.scope = scope;
   job.target = target;
   return run(job);
 }
@@ -58,7 +60,7 @@ ContactsFromBones find_contacts_from_bones(const Asset& asset, const Character& 
   const std::vector<float> matrices = bone_palette(asset, deformation);
   std::vector<float> weights(deformation.morphs.begin(), deformation.morphs.end());
   weights.resize(asset.morph_count());
-  ContactsFromBones out{pack(character.source_positions), {}};
+  ContactsFromBones out{pack(character.source_positions), {}, {}};
   SkinJob skin;
   skin.asset = &asset;
   skin.bones = {matrices.data(), asset.bone_count()};
@@ -74,6 +76,8 @@ ContactsFromBones find_contacts_from_bones(const Asset& asset, const Character& 
   job.morph_weights = skin.morph_weights;
   job.target = target;
   out.pairs = run(job);
+  job.scope = ContactScope::kNeighbours;
+  out.neighbours = run(job);
   return out;
 }
 

@@ -19,8 +19,10 @@ FrameTruth judge(const Intersections& found, const std::vector<TrianglePair>& re
       ++out.rest;
     } else if (a == b) {
       ++out.same_sphere;
+      out.neighbours.push_back(pair);
     } else if (is_ignored(a, b)) {
       ++out.ignored;
+      out.neighbours.push_back(pair);
     } else {
       out.pairs.push_back(pair);
       contacts[{a, b}].push_back(pair);

@@ -24,8 +24,8 @@ struct Frame {
   Score score, m1, m2;
   std::vector<Miss> misses;
   std::vector<CurvePoint> curve;
-  ContactErrors contacts;
-  std::optional<ContactErrors> contacts_from_bones;
+  ContactErrors contacts, neighbour_contacts;
+  std::optional<ContactErrors> contacts_from_bones, neighbour_contacts_from_bones;
   std::vector<CapsulePoint> capsules;
 };
 
@@ -103,6 +103,17 @@ void add(std::vector<CapsulePoint>& sum, const std::vector<CapsulePoint>& frame)
   }
 }
 
+void add(ContactErrors& sum, const ContactErrors& frame) {
+  sum.missing += frame.missing;
+  sum.extra += frame.extra;
+}
+
+void add(std::optional<ContactErrors>& sum, const std::optional<ContactErrors>& frame) {
+  if (!frame) return;
+  if (!sum) sum.emplace();
+  add(*sum, *frame);
+}
+
 std::vector<Pair> touching_spheres(Player& player, const std::vector<float>& positions) {
   player.run(positions);
   return {player.pairs().begin(), player.pairs().end()};
@@ -145,7 +156,11 @@ Frame validate_frame(const Context& context, int index) {
   frame.curve = context.curve.measure(m2.spheres(), frame.truth, is_close);
   frame.capsules = score_ragdolls(context, found, frame.truth, positions, deformation);
   if (settings.contacts) {
-    frame.contacts = compare(find_contacts(animated.asset(), positions, settings.target), frame.truth.pairs);
+    const auto found = [&](ContactScope scope) {
+      return find_contacts(animated.asset(), positions, scope, settings.target);
+    };
+    frame.contacts = compare(found(ContactScope::kApart), frame.truth.pairs);
+    frame.neighbour_contacts = compare(found(ContactScope::kNeighbours), frame.truth.neighbours);
     if (moved_by_bones(animated.asset(), deformation)) {
       // Exact contacts of these very positions, which differ from the baker's by rounding.
       const ContactsFromBones of_bones =
@@ -153,6 +168,7 @@ Frame validate_frame(const Context& context, int index) {
       const FrameTruth truth =
           judge(context.intersections.find(of_bones.positions), context.rest_pairs, surface, ignored);
       frame.contacts_from_bones = compare(of_bones.pairs, truth.pairs);
+      frame.neighbour_contacts_from_bones = compare(of_bones.neighbours, truth.neighbours);
     }
   }
   return frame;
@@ -192,13 +208,10 @@ Validation validate(const AnimatedAsset& animated, const ValidateSettings& setti
     out.m2.add(frame.m2);
     add(out.curve, frame.curve);
     add(out.capsule_curve, frame.capsules);
-    out.contacts.missing += frame.contacts.missing;
-    out.contacts.extra += frame.contacts.extra;
-    if (frame.contacts_from_bones) {
-      if (!out.contacts_from_bones) out.contacts_from_bones.emplace();
-      out.contacts_from_bones->missing += frame.contacts_from_bones->missing;
-      out.contacts_from_bones->extra += frame.contacts_from_bones->extra;
-    }
+    add(out.contacts, frame.contacts);
+    add(out.neighbour_contacts, frame.neighbour_contacts);
+    add(out.contacts_from_bones, frame.contacts_from_bones);
+    add(out.neighbour_contacts_from_bones, frame.neighbour_contacts_from_bones);
     regions.add(frame.truth, frame.reported);
     chains.add(frame.truth, frame.reported);
     out.misses.insert(out.misses.end(), frame.misses.begin(), frame.misses.end());

@@ -47,9 +47,10 @@ struct Validation {
   std::size_t raw_pairs = 0, rest = 0, same_sphere = 0, ignored = 0, degenerate = 0;  // see FrameTruth
   Score score;
   std::vector<Miss> misses;  // the deepest first
-  ContactErrors contacts;    // from vertices
-  // From matrices alone, in the frames that bones move; none where no frame is.
-  std::optional<ContactErrors> contacts_from_bones;
+  // The narrow phase's errors: from vertices; and from matrices alone in the frames that bones move, none where no
+  // frame is.
+  ContactErrors contacts, neighbour_contacts;
+  std::optional<ContactErrors> contacts_from_bones, neighbour_contacts_from_bones;
   Score m1, m2;  // of all pairs of spheres that touch, confirmed or not; depth not measured
   std::vector<CurvePoint> curve;
   std::size_t capsules = 0;  // of the ragdoll; 0 where no bones move the source

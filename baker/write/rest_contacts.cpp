@@ -18,6 +18,7 @@ std::vector<TrianglePair> find_rest_contacts(const std::vector<std::uint8_t>& by
   job.positions = rest.data();
   job.vertex_count = rest.size() / 3;
   job.filter = &filter;
+  job.scope = ContactScope::kAll;
   job.context = &context;
   std::vector<TrianglePair> pairs;
   Status status = job.run();  // to count

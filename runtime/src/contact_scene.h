@@ -27,6 +27,7 @@ struct ContactScene {
   const Surface* surface = nullptr;
   std::size_t sphere_count = 0;
   Span<const std::uint64_t> ignored, disabled;  // the latter may be empty
+  bool apart = true, neighbours = false;        // which of them to pair: see ContactScope
   const float* positions = nullptr;             // the source's; null: from bones
   std::size_t stride = 0;                       // floats
   SkinInputs skin{};                            // from bones

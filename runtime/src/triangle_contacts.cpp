@@ -50,6 +50,9 @@ Status check(const TriangleContactJob& job, Target& resolved) {
   if (job.context->words.size < TriangleContactContext::words_needed(*job.asset)) {
     return Status::kContextTooSmall;
   }
+  if (job.scope != ContactScope::kApart && job.scope != ContactScope::kNeighbours && job.scope != ContactScope::kAll) {
+    return Status::kBadArgument;
+  }
   if (!resolve_target(job.target, resolved)) {
     return Status::kUnsupportedTarget;
   }
@@ -81,6 +84,8 @@ Status TriangleContactJob::run() noexcept {
     scene.ignored = {filter->ignored.data, filter->ignored.size};
     scene.disabled = {filter->disabled.data, filter->disabled.size};
   }
+  scene.apart = scope != ContactScope::kNeighbours;
+  scene.neighbours = scope != ContactScope::kApart;
   if (positions == nullptr) {
     cover(*this, resolved, scene);
   }

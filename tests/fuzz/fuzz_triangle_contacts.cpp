@@ -42,6 +42,9 @@ void spoil(Case& c, TriangleContactJob& job, Filter& filter, std::uint32_t way, 
         spoiled.with(Status::kTooFewVertices);
       }
       return;
+    case 7:
+      job.scope = draw_none<ContactScope>(c, 3);
+      return spoiled.with(Status::kBadArgument);
     default:
       if (job.context != nullptr && job.pairs.size > 0) {
         job.pairs.data = reinterpret_cast<TrianglePair*>(job.context->words.data);
@@ -136,7 +139,10 @@ void fuzz_triangle_contacts(Case& c) {
   if (c.asset.leaf_count() == 0) {
     spoiled.with(Status::kNotInAsset);
   } else {
-    spoil_some(c, 8, [&](std::uint32_t way) { spoil(c, job, filter, way, spoiled); });
+    spoil_some(c, 9, [&](std::uint32_t way) { spoil(c, job, filter, way, spoiled); });
+  }
+  if (spoiled.count == 0) {
+    job.scope = static_cast<ContactScope>(c.random.below(3));
   }
   TriangleContactJob again = job;
   again.target = draw_target(c);

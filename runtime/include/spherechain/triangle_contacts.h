@@ -40,13 +40,20 @@ struct TriangleContact {
   }
 };
 
-// What the surrounding regions of two spheres have in common.
+// What the surrounding regions of two spheres have in common, or one's region with itself.
 struct SphereContact {
-  Pair spheres;
+  Pair spheres;             // a < b; a = b within one region
   std::uint32_t count;      // pairs of triangles; >= 1
   TriangleContact deepest;  // of those the one of the greatest depth, of several the least pair
 
   friend constexpr bool operator<(const SphereContact& l, const SphereContact& r) { return l.spheres < r.spheres; }
+};
+
+// Which triangles a TriangleContactJob pairs, by the spheres whose surrounding regions they are of.
+enum class ContactScope : std::uint8_t {
+  kApart = 0,       // of two spheres that are not ignored: what touches that is no neighbour on the body
+  kNeighbours = 1,  // of one sphere, and of two that are ignored: folds at elbow, knee, armpit and fingers
+  kAll = 2,
 };
 
 // Scratch memory of one TriangleContactJob at a time, owned by the caller. Keeps nothing from one run to the next.
@@ -60,14 +67,15 @@ struct SPHERECHAIN_API TriangleContactContext {
 // Which triangles of the skin intersect: all of them, none else, exactly. Spheres and radii play no part in it: the
 // job goes from boxes of surrounding regions to boxes of leaves to triangles, and decides in exact arithmetic.
 //
-// Left out are triangles of one sphere, and of spheres that the asset or the filter ignores or disables (its padding is
-// of no effect); triangles that share a position at rest, which are neighbours on the skin; and those that intersect in
-// the rest pose (Surface::rest_contacts).
+// Left out are triangles of spheres outside the scope, by the pairs that the asset or the filter ignores, and of
+// spheres that the filter disables (its padding is of no effect); triangles that share a position at rest, which are
+// neighbours on the skin; and those that intersect in the rest pose (Surface::rest_contacts). Neighbours' contacts take
+// longer: ten times and more, for all that lies side by side has to be told apart.
 //
 // The positions are what the caller gives; or, where `positions` is null, what the job skins from bones, and then only
-// of the leaves that could touch another. Any position that is not finite makes its triangles intersect nothing; matrices
-// or weights that are not finite bound nothing, so contacts from them may be missing, and differ between targets. Else
-// the contacts are the same on every target.
+// of the leaves that could touch another. Any position that is not finite makes its triangles intersect nothing;
+// matrices or weights that are not finite bound nothing, so contacts from them may be missing, and differ between
+// targets. Else the contacts are the same on every target.
 //
 // Fill in the fields and call run(). Allocates nothing, takes no lock; jobs with other outputs and contexts may run at
 // the same time.
@@ -80,6 +88,7 @@ struct SPHERECHAIN_API TriangleContactJob {
   Span<const float> morph_weights;   // without positions: as in RefitBonesJob
   Target target = Target::kBest;
   const Filter* filter = nullptr;             // null: the asset's ignored pairs
+  ContactScope scope = ContactScope::kApart;  // neighbours' contacts are a class of their own
   TriangleContactContext* context = nullptr;  // required
   Span<TrianglePair> pairs;                   // out: source triangle numbers, sorted, each once; may be empty
   Span<TriangleContact> contacts;             // out: the same with where they intersect; may be empty

@@ -215,6 +215,11 @@ TEST_CASE("validate --json has the contract's fields, the same with a cache and 
   CHECK(contacts["contacts_extra"] == 0);
   CHECK(contacts["contacts_from_bones"]["missing"] == 0);
   CHECK(contacts["contacts_from_bones"]["extra"] == 0);
+  for (const char* from : {"neighbour_contacts", "neighbour_contacts_from_bones"}) {
+    CHECK(contacts[from]["missing"] == 0);
+    CHECK(contacts[from]["extra"] == 0);
+    contacts.erase(from);
+  }
   contacts.erase("contacts_from_bones");
   contacts.erase("contacts_missing");
   contacts.erase("contacts_extra");

@@ -20,16 +20,17 @@ namespace {
 
 using Pairs = std::vector<TrianglePair>;
 
-// CGAL's, less what the runtime leaves out.
-Pairs expected_contacts(const MovingHuman& human, const std::vector<float>& positions, const Asset& asset) {
+// CGAL's, sorted into the scopes.
+baker::FrameTruth truth_of(const MovingHuman& human, const std::vector<float>& positions, const Asset& asset) {
   static const baker::TruthSurface surface = baker::surface_of(asset, human.bake.character);
   static const std::vector<TrianglePair> rest = baker::find_intersections(surface, human.rest_positions()).pairs;
-  const baker::FrameTruth truth =
-      baker::judge(baker::find_intersections(surface, positions), rest, surface,
-                   [&](std::uint32_t a, std::uint32_t b) { return baker::is_ignored(asset, a, b); });
-  Pairs out;
-  for (const auto& pair : truth.pairs) out.push_back({pair.a, pair.b});
-  return out;
+  return baker::judge(baker::find_intersections(surface, positions), rest, surface,
+                      [&](std::uint32_t a, std::uint32_t b) { return baker::is_ignored(asset, a, b); });
+}
+
+// Of spheres that are not ignored.
+Pairs expected_contacts(const MovingHuman& human, const std::vector<float>& positions, const Asset& asset) {
+  return truth_of(human, positions, asset).pairs;
 }
 
 // The source vertices whose positions the runtime reads for a source triangle.
@@ -128,6 +129,68 @@ TEST_CASE("from bones the contacts are CGAL's of the positions the runtime skins
     }
   }
   CHECK(total > 1000);
+}
+
+TEST_CASE("contacts of neighbours are CGAL's, from vertices and from bones, and with the others they are all") {
+  const MovingHuman& human = moving_human();
+  const Asset asset = human.asset();
+  std::size_t total = 0, within = 0;
+  const auto frames = human.frames();
+  for (std::size_t i = 0; i < frames.size(); i += 3) {
+    CAPTURE(frames[i].name);
+    const std::vector<float> palette = baker::bone_palette(asset, frames[i].deformation);
+    std::vector<float> positions = human.deformed(frames[i].deformation);
+    SkinJob skin;
+    skin.asset = &asset;
+    skin.bones = {palette.data(), asset.bone_count()};
+    skin.positions = positions.data();
+    skin.vertex_count = positions.size() / 3;
+    REQUIRE(skin.run() == Status::kOk);
+    const baker::FrameTruth truth = truth_of(human, positions, asset);
+    Pairs all;
+    std::merge(truth.pairs.begin(), truth.pairs.end(), truth.neighbours.begin(), truth.neighbours.end(),
+               std::back_inserter(all));
+    total += truth.neighbours.size();
+    for (const Target target : supported_targets()) {
+      CAPTURE(to_string(target));
+      TriangleContactJob vertices = job_of(asset, positions), bones;
+      bones.asset = &asset;
+      bones.bones = skin.bones;
+      for (TriangleContactJob* job : {&vertices, &bones}) {
+        job->target = target;
+        job->scope = ContactScope::kNeighbours;
+        const Found found = run(*job);
+        CHECK(found.pairs == truth.neighbours);
+        for (const SphereContact& contact : found.sphere_contacts) {
+          const auto [a, b] = contact.spheres;
+          CHECK((a == b || baker::is_ignored(asset, a, b)));
+          within += a == b ? contact.count : 0;
+        }
+        job->scope = ContactScope::kAll;
+        CHECK(run(*job).pairs == all);
+      }
+    }
+  }
+  CHECK(total > 500);
+  CHECK(within > 500);
+}
+
+TEST_CASE("at rest nothing intersects that the asset does not list, whatever the scope") {
+  const MovingHuman& human = moving_human();
+  const Asset asset = human.asset();
+  const std::vector<float> rest = human.rest_positions();
+  REQUIRE(asset.surface().rest_contacts.size > 0);
+  for (const ContactScope scope : {ContactScope::kApart, ContactScope::kNeighbours, ContactScope::kAll}) {
+    TriangleContactJob job = job_of(asset, rest);
+    job.scope = scope;
+    CHECK(run(job).pairs.empty());
+  }
+  std::vector<std::uint64_t> words(TriangleContactContext::words_needed(asset));
+  TriangleContactContext context{{words.data(), words.size()}};
+  TriangleContactJob job = job_of(asset, rest);
+  job.context = &context;
+  job.scope = static_cast<ContactScope>(3);
+  CHECK(job.run() == Status::kBadArgument);
 }
 
 TEST_CASE("summaries, segments and shortened lists agree with the list of all pairs") {
