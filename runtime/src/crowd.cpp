@@ -124,11 +124,18 @@ void list_instance(const std::uint64_t* bits, const Crowd& crowd, std::size_t in
   });
 }
 
-// Few pairs, listed as they were found.
-void list_few(Span<Pair> found, const Crowd& crowd, std::size_t instance, std::size_t at) {
-  std::sort(found.begin(), found.end());
+// Few pairs, listed as they were found: they are put in order one by one.
+void list_few(Span<std::uint32_t> found, const Crowd& crowd, std::size_t instance, std::size_t at) {
+  for (std::size_t i = 1; i < found.size; ++i) {
+    const std::uint32_t pair = found[i];
+    std::size_t place = i;
+    for (; place > 0 && found[place - 1] > pair; --place) {
+      found[place] = found[place - 1];
+    }
+    found[place] = pair;
+  }
   for (std::size_t i = 0; i < found.size && at + i < crowd.job.pairs.size; ++i) {
-    crowd.job.pairs[at + i] = {static_cast<std::uint32_t>(instance), found[i]};
+    crowd.job.pairs[at + i] = {static_cast<std::uint32_t>(instance), {found[i] >> 16, found[i] & 0xFFFFU}};
   }
 }
 

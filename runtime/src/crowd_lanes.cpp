@@ -6,10 +6,12 @@
 #include "arithmetic.h"
 #include "overlap.h"
 #include "simd.h"
+#include "triangle_bits.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "crowd_lanes.cpp"
 #include "highway.h"
+#include "sphere_registers.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
@@ -51,10 +53,18 @@ HWY_INLINE Vector prepare(const LaneBatch& batch, bool& any_huge) {
       z = hn::Load(kFloats, at + 2 * n);
       radius = hn::Load(kFloats, at + 3 * n);
     } else {
-      for (std::size_t lane = 0; lane < batch.count; ++lane) {
-        row[lane] = batch.spheres[lane * batch.stride + i];
+      const Sphere* const first = batch.spheres + i;
+      const std::size_t stride = batch.stride;
+      if (batch.count == n) {
+        load_spheres(
+            kFloats, [&](std::size_t lane) -> const Sphere& { return first[lane * stride]; }, x, y, z, radius);
+      } else {
+        for (std::size_t lane = 0; lane < batch.count; ++lane) {
+          row[lane] = first[lane * stride];
+        }
+        load_spheres(
+            kFloats, [&](std::size_t lane) -> const Sphere& { return row[lane]; }, x, y, z, radius);
       }
-      hn::LoadInterleaved4(kFloats, &row[0].x, x, y, z, radius);
       hn::Store(x, kFloats, at);
       hn::Store(y, kFloats, at + n);
       hn::Store(z, kFloats, at + 2 * n);
@@ -77,7 +87,7 @@ HWY_INLINE Vector prepare(const LaneBatch& batch, bool& any_huge) {
     hn::Store(x, kFloats, at + 4 * n);
     hn::Store(y, kFloats, at + 5 * n);
     hn::Store(z, kFloats, at + 6 * n);
-    hn::Store(hn::Mul(hn::Set(kFloats, 0.5F), hn::Sub(squared_radius, squared_length)), kFloats, at + 7 * n);
+    hn::Store(hn::Sub(squared_radius, hn::Mul(hn::Set(kFloats, 0.5F), squared_length)), kFloats, at + 7 * n);
     const Vector own = hn::Add(squared_length, squared_radius);
     extent = hn::Max(extent, hn::IfThenElse(hn::Le(own, hn::Set(kFloats, FLT_MAX)), own, hn::Inf(kFloats)));
   }
@@ -112,62 +122,62 @@ HWY_INLINE void report(LaneBatch& batch, std::uint64_t lanes, std::uint32_t a, s
   for (; lanes != 0; lanes &= lanes - 1) {
     const std::size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero64(lanes);
     batch.bits[lane * batch.bit_words + bit / 64] |= std::uint64_t{1} << (bit % 64);
-    const std::size_t place = batch.pair_counts[lane]++ % kMostListed;
-    batch.listed[lane][place].a = a;
-    batch.listed[lane][place].b = b;
+    batch.listed[lane][batch.pair_counts[lane]++ % kMostListed] = a << 16 | b;
   }
 }
 
-// A pair and the lanes that may touch.
-struct Candidate {
-  std::uint32_t a, b;
-  std::uint64_t lanes;
+// A sphere as candidates are found by: what its lanes' least sum is.
+struct Row {
+  Vector x, y, z, least;
 };
 
-// All wanted pairs but near ones: as a tile's, first four multiply-adds with a margin for what they may be off.
+HWY_INLINE Vector sum_of(Vector x, Vector y, Vector z, Vector start, const Row& row) {
+  return hn::MulAdd(row.z, z, hn::MulAdd(row.y, y, hn::MulAdd(row.x, x, start)));
+}
+
+// All wanted pairs but near ones: as a tile's, first three multiply-adds with a margin for what they may be off. Two
+// rows of the table at a time, so that half the columns are loaded; few of the pairs are candidates.
 HWY_INLINE void find_touching(LaneBatch& batch, Vector margin) {
   constexpr Floats kFloats;
-  const std::size_t n = hn::Lanes(kFloats);
+  const std::size_t n = hn::Lanes(kFloats), sphere_count = batch.sphere_count, bit_words = batch.bit_words;
   const std::uint64_t in_use = (std::uint64_t{1} << batch.count) - 1;
-  constexpr std::size_t kWordBits = 64;
-  Candidate candidates[2 * kWordBits];
-  std::size_t count = 0;
-  std::size_t b = 0, row = 0, row_end = 0;  // the bits of b in the table
-  Vector x = hn::Zero(kFloats), y = x, z = x, radius = x, least = x;
-  for (std::size_t w = 0; w < batch.bit_words; ++w) {
-    for (std::uint64_t wanted = batch.wanted[w]; wanted != 0; wanted &= wanted - 1) {
-      const std::size_t bit = kWordBits * w + hwy::Num0BitsBelowLS1Bit_Nonzero64(wanted);
-      if (bit >= row_end) {
-        do {
-          row = row_end;
-          ++b;
-          row_end += b;
-        } while (bit >= row_end);
-        const float* own = batch.lanes + kLaneFigures * n * b;
-        radius = hn::Load(kFloats, own + 3 * n);
-        x = hn::Load(kFloats, own + 4 * n);
-        y = hn::Load(kFloats, own + 5 * n);
-        z = hn::Load(kFloats, own + 6 * n);
-        least = hn::Sub(hn::Neg(hn::Load(kFloats, own + 7 * n)), margin);
+  const float* const lanes = batch.lanes;
+  const std::uint64_t* const wanted = batch.wanted;
+  const auto load_row = [&](std::size_t b) HWY_ATTR {
+    const float* const own = lanes + kLaneFigures * n * b;
+    Row row;
+    row.x = hn::Load(kFloats, own + 4 * n);
+    row.y = hn::Load(kFloats, own + 5 * n);
+    row.z = hn::Load(kFloats, own + 6 * n);
+    row.least = hn::Sub(hn::Neg(hn::Load(kFloats, own + 7 * n)), margin);
+    return row;
+  };
+  const auto test = [&](std::size_t a, std::size_t b) HWY_ATTR {
+    report(batch, in_use & overlap<false, false>(load(lanes, a), load(lanes, b), 1.0F), static_cast<std::uint32_t>(a),
+           static_cast<std::uint32_t>(b));
+  };
+  for (std::size_t b = 1; b < sphere_count; b += 2) {
+    const std::size_t next = b + 1 < sphere_count ? b + 1 : b;
+    const Row low = load_row(b), high = load_row(next);
+    for (std::size_t first = 0; first < next; first += 64) {
+      const std::uint64_t of_low = row_bits(wanted, bit_words, first, b),
+                          of_high = next == b ? 0 : row_bits(wanted, bit_words, first, next);
+      for (std::uint64_t left = of_low | of_high; left != 0; left &= left - 1) {
+        const std::size_t i = hwy::Num0BitsBelowLS1Bit_Nonzero64(left), a = first + i;
+        const float* const other = lanes + kLaneFigures * n * a;
+        const Vector x = hn::Load(kFloats, other + 4 * n), y = hn::Load(kFloats, other + 5 * n),
+                     z = hn::Load(kFloats, other + 6 * n), start = hn::Load(kFloats, other + 7 * n);
+        const auto is_low = hn::Gt(sum_of(x, y, z, start, low), low.least),
+                   is_high = hn::Gt(sum_of(x, y, z, start, high), high.least);
+        if (HWY_UNLIKELY(!hn::AllFalse(kFloats, hn::Or(is_low, is_high)))) {
+          if (((of_low >> i) & 1U) != 0 && !hn::AllFalse(kFloats, is_low)) {
+            test(a, b);
+          }
+          if (((of_high >> i) & 1U) != 0 && !hn::AllFalse(kFloats, is_high)) {
+            test(a, next);
+          }
+        }
       }
-      const float* other = batch.lanes + kLaneFigures * n * (bit - row);
-      Vector sum = hn::MulAdd(radius, hn::Load(kFloats, other + 3 * n), hn::Load(kFloats, other + 7 * n));
-      sum = hn::MulAdd(x, hn::Load(kFloats, other + 4 * n), sum);
-      sum = hn::MulAdd(y, hn::Load(kFloats, other + 5 * n), sum);
-      sum = hn::MulAdd(z, hn::Load(kFloats, other + 6 * n), sum);
-      Candidate& candidate = candidates[count];
-      candidate.a = static_cast<std::uint32_t>(bit - row);
-      candidate.b = static_cast<std::uint32_t>(b);
-      candidate.lanes = in_use & bits_of(hn::Gt(sum, least));
-      count += candidate.lanes != 0 ? 1 : 0;
-    }
-    if (count >= kWordBits || w + 1 == batch.bit_words) {
-      for (std::size_t i = 0; i < count; ++i) {
-        const std::uint32_t a = candidates[i].a, other = candidates[i].b;
-        report(batch, candidates[i].lanes & overlap<false, false>(load(batch.lanes, a), load(batch.lanes, other), 1.0F),
-               a, other);
-      }
-      count = 0;
     }
   }
 }

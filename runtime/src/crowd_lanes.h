@@ -31,7 +31,7 @@ struct LaneBatch {
   std::uint64_t* bits = nullptr;
   std::size_t bit_words = 0;
   std::uint32_t pair_counts[kMostLanes] = {};
-  Pair listed[kMostLanes][kMostListed];  // each instance's pairs in some order, where there are not more
+  std::uint32_t listed[kMostLanes][kMostListed];  // each instance's pairs as 2^16 a + b, in some order, if not more
 };
 
 void test_lanes(Target resolved, LaneBatch& batch);

@@ -10,7 +10,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "overlap.cpp"
 #include "highway.h"
-#include "listed_overlap.h"
+#include "sphere_registers.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
@@ -25,14 +25,8 @@ HWY_INLINE Vector fill_vector(const Sphere* spheres, const Sphere& origin, Vecto
                               std::size_t i) {
   constexpr Floats kFloats;
   Vector x, y, z, radius;
-#if HWY_TARGET == HWY_SCALAR
-  hn::LoadInterleaved4(kFloats, &spheres->x, x, y, z, radius);
-#else
-  const auto blocks = [&](std::size_t i) HWY_ATTR {
-    return load_blocks(kFloats, [&](std::size_t k) -> const Sphere& { return spheres[k + i]; });
-  };
-  turn(kFloats, blocks(0), blocks(1), blocks(2), blocks(3), x, y, z, radius);
-#endif
+  load_spheres(
+      kFloats, [&](std::size_t k) -> const Sphere& { return spheres[k]; }, x, y, z, radius);
   x = hn::Sub(x, hn::Set(kFloats, origin.x));
   y = hn::Sub(y, hn::Set(kFloats, origin.y));
   z = hn::Sub(z, hn::Set(kFloats, origin.z));

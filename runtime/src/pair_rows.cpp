@@ -15,14 +15,6 @@ HWY_BEFORE_NAMESPACE();
 namespace spherechain {
 namespace HWY_NAMESPACE {
 
-// 64 bits from the `at`th on; those past the end are any.
-HWY_INLINE std::uint64_t bits_at(const std::uint64_t* words, std::size_t size, std::size_t at) {
-  const std::size_t word = at / 64;
-  const std::size_t shift = at % 64;
-  const std::uint64_t next = words[word + (word + 1 < size ? 1 : 0)];
-  return (words[word] >> shift) | ((next << 1) << (63 - shift));
-}
-
 // Fills rows of both tables; `enabled` are the tile's columns' and rows' bits.
 std::size_t choose(const PairChoice& choice, const TilePlace& place, const TileWords& enabled_columns,
                    const TileWords& enabled_rows, TileWords* wanted, TileWords* plain) {

@@ -35,6 +35,23 @@ constexpr std::size_t ignored_bit(std::size_t a, std::size_t b) { return b * (b 
 constexpr std::size_t row_begin(std::size_t a, std::size_t n) { return a * (2 * n - a - 1) / 2; }
 constexpr std::size_t sorted_bit(std::size_t a, std::size_t b, std::size_t n) { return row_begin(a, n) + (b - a - 1); }
 
+// 64 bits from the `at`th on; those past the end are any.
+inline std::uint64_t bits_at(const std::uint64_t* words, std::size_t size, std::size_t at) {
+  const std::size_t word = at / 64;
+  const std::size_t shift = at % 64;
+  const std::uint64_t next = words[word + (word + 1 < size ? 1 : 0)];
+  return (words[word] >> shift) | ((next << 1) << (63 - shift));
+}
+
+// Of a table by ignored_bit, the bits of b's pairs with first to first + 63, as far as those are below b.
+inline std::uint64_t row_bits(const std::uint64_t* words, std::size_t size, std::size_t first, std::size_t b) {
+  if (first >= b) {
+    return 0;
+  }
+  const std::size_t count = b - first < 64 ? b - first : 64;
+  return bits_at(words, size, ignored_bit(first, b)) & (~std::uint64_t{0} >> (64 - count));
+}
+
 // `word` is not 0.
 inline unsigned lowest_bit(std::uint64_t word) {
 #if defined(_MSC_VER)

@@ -64,6 +64,19 @@ HWY_INLINE hwy::HWY_NAMESPACE::Vec<D> load_reaches(D d, const NearPair* pairs) {
 
 #endif
 
+// A register's worth of spheres, the ith of them `sphere_at(i)`.
+template <typename D, typename SphereAt, typename V>
+HWY_INLINE void load_spheres(D d, const SphereAt& sphere_at, V& x, V& y, V& z, V& radius) {
+#if HWY_TARGET == HWY_SCALAR
+  hwy::HWY_NAMESPACE::LoadInterleaved4(d, &sphere_at(0).x, x, y, z, radius);
+#else
+  const auto blocks = [&](std::size_t i) HWY_ATTR {
+    return load_blocks(d, [&](std::size_t k) -> const Sphere& { return sphere_at(k + i); });
+  };
+  turn(d, blocks(0), blocks(1), blocks(2), blocks(3), x, y, z, radius);
+#endif
+}
+
 // kListLanes pairs, a bit each: a counts from the columns' first sphere, b from the rows'. With a reach of 1 the rule
 // for near pairs is that for all others.
 HWY_INLINE std::uint64_t test_listed(const Sphere* column_spheres, const Sphere* row_spheres, const NearPair* pairs) {
