@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "experiments.h"
+#include "gpu_time.h"
 
 namespace spherechain::paper {
 
@@ -14,6 +15,7 @@ struct Results {
   Table running_time;
   SweepTables sweep;
   Table quality;
+  GpuTime gpu;          // empty where no GPU was at hand
   std::string machine;  // one line: processor, cores, compiler
 };
 
@@ -28,6 +30,11 @@ inline constexpr double kStatedSpheres = 80, kSummedSpheres = 46, kStatedChain =
 
 inline constexpr const char *kHolds = "holds", *kInPart = "holds in part", *kFails = "does not hold",
                             *kNotRun = "not run";
+
+struct Verdict {
+  std::string verdict, finding;
+};
+inline const char* graded(bool all, bool some) { return all ? kHolds : some ? kInPart : kFails; }
 
 // claims.csv: id, where, the paper says, rule, verdict, finding.
 Table judge_claims(const Results& results);

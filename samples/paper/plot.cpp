@@ -55,9 +55,9 @@ Axis linear_axis(double low, double high, double from, double to, int count, dou
 Axis log_axis(double low, double high, double from, double to) {
   Axis axis{low / 1.15, high * 1.15, from, to, true, {}};
   for (double decade = std::pow(10, std::floor(std::log10(axis.low))); decade < axis.high; decade *= 10) {
-    const bool narrow = axis.high < 4 * axis.low;
+    const bool narrow = axis.high<4 * axis.low, wide = axis.high> 150 * axis.low;
     for (int digit = 1; digit < 10; ++digit) {
-      const bool labelled = narrow || digit == 1 || digit == 2 || digit == 5;
+      const bool labelled = narrow || digit == 1 || (!wide && (digit == 2 || digit == 5));
       if (labelled && digit * decade >= axis.low && digit * decade <= axis.high) axis.ticks.push_back(digit * decade);
     }
   }

@@ -41,6 +41,43 @@ struct Section {
   std::vector<ShownTable> tables;
 };
 
+Section gpu_section(const Results& results) {
+  Section out{"Figure 16: time of a frame on a GPU", {}, {}, {}};
+  if (results.gpu.frames.empty()) {
+    out.text.push_back("Not run: it takes a machine with a GPU (`spherechain_figure16`).");
+    return out;
+  }
+  out.text = {
+      "The paper's own mappings (`cuda/paper`), one character: M2 with a thread a sphere, which it tests against all "
+      "of "
+      "the mesh (m^2 tests); M1 with a thread a chain, and with a thread a sphere of a chain, against all of the chain "
+      "(n_c n^2). " +
+          results.gpu.machine + ", by `" + results.gpu.command +
+          "`. The kernel alone is timed by CUDA events; its launch by the host's clock, with the count back; with "
+          "copies, "
+          "the frame's spheres are taken there first and the pairs brought back. Before anything is timed the pairs "
+          "are "
+          "compared with the CPU's. Every time is the median of its repetitions; launches of more than 0.1 s are timed "
+          "on "
+          "every 20th frame.",
+      "The two least counts are the bakes \"ours, profile paper\" and \"ours, denser\" below. In the others each "
+      "sphere "
+      "of the first is replaced by smaller ones inside it, of its volume together, in every chain that holds it; their "
+      "pairs are "
+      "ignored, or near, as the two spheres' pair is. The CPU's times are the runtime's scalar jobs and the same "
+      "threads' bodies in a loop (loops), one core of the same machine."};
+  out.figures = {gpu_time_figure(results), gpu_count_figure(results)};
+  Table medians = gpu_medians(results.gpu);
+  for (auto& row : medians.rows) row[2].word = gpu_label(row[2].word);
+  out.tables = {show(medians, {{"spheres", "Spheres"},
+                               {"method", "Method"},
+                               {"overlaps", "Overlaps", 1},
+                               {"kernel_us", "us, kernel or job", 2},
+                               {"launch_us", "with launch", 2},
+                               {"frame_us", "with launch and copies", 2}})};
+  return out;
+}
+
 std::vector<Section> sections(const Results& results) {
   std::vector<Section> out;
   out.push_back({"What the paper claims",
@@ -80,6 +117,7 @@ std::vector<Section> sections(const Results& results) {
         ". In every repetition each frame and method takes its turn; a time is the median of the repetitions."},
        {running_time_figure(results)},
        {}});
+  out.push_back(gpu_section(results));
   out.push_back({"46 or 80 spheres",
                  {"Table 1 puts every limb in three chains, L and R in two each, T in three, D in one: 3x + 2t + 3|T| "
                   "+ |D| entries "
@@ -212,9 +250,9 @@ std::string markdown(const ShownTable& table) {
 }
 
 std::vector<Table> tables(const Results& results) {
-  return {judge_claims(results),     derive_defaults(results), results.accuracy.rays,
-          results.accuracy.spheres,  results.sweep.accuracy,   results.running_time,
-          compare_readings(results), results.sweep.sweep,      results.quality};
+  return {judge_claims(results),  derive_defaults(results), results.accuracy.rays,     results.accuracy.spheres,
+          results.sweep.accuracy, results.running_time,     compare_readings(results), results.sweep.sweep,
+          results.quality,        results.gpu.frames,       gpu_medians(results.gpu)};
 }
 
 }  // namespace
