@@ -215,7 +215,7 @@ void test_batch(LaneBatch& batch) {
   }
   bool any_huge = false;
   const Vector extent = prepare(batch, any_huge);
-  if (!any_huge && hn::AllTrue(kFloats, hn::Le(extent, hn::Set(kFloats, kMostExtent)))) {
+  if (!any_huge && hn::AllTrue(kFloats, hn::Le(extent, hn::Set(kFloats, FLT_MAX)))) {
     find_touching(batch, hn::Add(hn::Mul(hn::Set(kFloats, kMarginOfExtent), extent), hn::Set(kFloats, kLeastMargin)));
     find_near<false>(batch);
   } else {

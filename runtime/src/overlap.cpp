@@ -73,11 +73,11 @@ void fill(const Sphere* spheres, std::size_t count, const Sphere& origin, Sphere
 // which is below 0 where spheres touch; and little above it where they do not, as long as their radii are alike. With G
 // at least |p|^2 + rp^2 of every sphere, computing it costs 14 u G at most: 2 for each h, 8 for the sum of products
 // (fused or not: its parts are below 2 G, the products together below G), 1 for the comparison's side and 1 for terms
-// of second order; moving the spheres to the tile's origin costs 4; and that the rule's own squares are rounded, by 8 u
-// (rp
-// + rq)^2 <= 32 u G, costs half of that. 34 u G in all, of which we allow 64; and 2^-120 for what underflows or is
-// flushed to 0. So no pair is missed; what the rule then says no to are few. Up to kMostExtent nothing above, nor of
-// the rule, overflows.
+// of second order; moving the spheres to the tile's origin costs 4; and that the rule's own squares are rounded, by
+// 8 u (rp + rq)^2 <= 32 u G, costs half of that. 34 u G in all, of which we allow 64; and 2^-120 for what underflows or
+// is flushed to 0. So no pair is missed; what the rule then says no to are few.
+// Nor is one missed for overflow, as long as G is finite: each h is, and where two spheres touch, -h(q) and some of the
+// products are together at least rq^2 - G (px qx >= -(px - qx)^2 / 4, and so on). So sums overflow upwards, if at all.
 HWY_INLINE float margin_of(float extent) { return kMarginOfExtent * extent + kLeastMargin; }
 
 // Sets at least the bits of the pairs that touch; and of other pairs, some of the columns after the row too.
@@ -233,7 +233,7 @@ HWY_INLINE void list_hits(const WordSet& hits, Tile& tile) {
 
 void test(Tile& tile) {
   const float extent = tile.rows->extent > tile.columns->extent ? tile.rows->extent : tile.columns->extent;
-  if (extent <= kMostExtent) {
+  if (extent <= FLT_MAX) {
     std::memset(static_cast<void*>(tile.bits), 0, padded_rows(tile.place.row_count) * sizeof(TileWords));
     find_candidates(tile, extent);
   } else {

@@ -60,8 +60,8 @@ struct Tile {
   std::size_t hit_count = 0;
 };
 
-// What a test by multiply-adds may be off: overlap.cpp has the proof.
-inline constexpr float kMarginOfExtent = 0x1p-18F, kLeastMargin = 0x1p-120F, kMostExtent = 1e36F;
+// What a test by multiply-adds may be off, where the extent is finite: overlap.cpp has the proof.
+inline constexpr float kMarginOfExtent = 0x1p-18F, kLeastMargin = 0x1p-120F;
 
 // Up to kTileSize spheres.
 void fill_columns(Target resolved, const Sphere* spheres, std::size_t count, const Sphere& origin,

@@ -1,16 +1,37 @@
 // SPDX-License-Identifier: MIT
 // Detection looks for candidates with a margin for its rounding. Here pairs are where that matters: a few roundings
-// from touching, of spheres large and small, near the origin and far from it.
+// from touching, of spheres large and small, near the origin and far from it, and so far that squares are infinite.
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <set>
 
 #include "jobs.h"
+#include "spherechain/crowd.h"
 #include "tiny_asset.h"
 
 namespace spherechain::test {
 namespace {
+
+// What a crowd of this one instance finds.
+std::vector<Pair> in_crowd(const Asset& asset, const std::vector<Sphere>& spheres, Target target) {
+  std::vector<std::uint64_t> words(CrowdContext::words_needed(asset, 1));
+  std::vector<CrowdPair> found(spheres.size() * spheres.size());
+  std::uint32_t count = 0;
+  CrowdContext context{{words.data(), words.size()}};
+  CrowdJob job;
+  job.asset = &asset;
+  job.spheres = spheres.data();
+  job.instance_count = 1;
+  job.target = target;
+  job.context = &context;
+  job.counts = {&count, 1};
+  job.pairs = {found.data(), found.size()};
+  REQUIRE(job.run() == Status::kOk);
+  std::vector<Pair> pairs;
+  for (std::size_t i = 0; i < job.pair_count; ++i) pairs.push_back(found[i].pair);
+  return pairs;
+}
 
 float squared(float v) { return v * v; }
 
@@ -47,7 +68,7 @@ TEST_CASE("pairs a few roundings from touching are judged by the formula alone, 
     tiny.parts.near_detect.clear();
     const OpenedAsset opened(tiny.parts);
     const std::set<Pair> ignored(tiny.ignored_pairs.begin(), tiny.ignored_pairs.end());
-    for (const float scale : {1e-22F, 1e-18F, 1e-3F, 1.0F, 1e4F, 1e15F, 1e17F, 1e18F}) {
+    for (const float scale : {1e-22F, 1e-18F, 1e-3F, 1.0F, 1e4F, 1e15F, 1e17F, 3e17F, 5e17F, 1e18F}) {
       for (const float offset : {0.0F, 3.0F, 1000.0F}) {
         CAPTURE(n);
         CAPTURE(scale);
@@ -66,12 +87,43 @@ TEST_CASE("pairs a few roundings from touching are judged by the formula alone, 
         for (const Target target : supported_targets()) {
           CAPTURE(to_string(target));
           CHECK(detect(opened.asset, spheres, Method::kM2, RadiusKind::kDetect, target).pairs == expected);
+          CHECK(in_crowd(opened.asset, spheres, target) == expected);
         }
       }
     }
   }
   CHECK(close > 500);  // of the couples, about half
   CHECK(reported > close);
+}
+
+TEST_CASE("spheres touch as well where the squares of their coordinates are infinite") {
+  TinyAsset tiny = random_asset(40, 1);
+  tiny.parts.ignored.assign(tiny.parts.ignored.size(), 0);
+  tiny.parts.near_detect.clear();
+  const OpenedAsset opened(tiny.parts);
+  for (const float far : {1e18F, 1e19F, 1.8e19F, 1.9e19F, 1e20F, 1e30F, 3e38F}) {
+    std::vector<Sphere> spheres(40, {0, 0, 0, 1});
+    std::vector<Pair> expected;
+    for (std::uint32_t i = 0; i < 20; ++i) {
+      // Two at each place along an axis, far from all others.
+      const float at = far / static_cast<float>(i % 7 + 1), sign = i % 2 == 0 ? 1.0F : -1.0F;
+      Sphere sphere{0, 0, 0, 1};
+      (i % 3 == 0 ? sphere.x : i % 3 == 1 ? sphere.y : sphere.z) = i == 0 ? 0 : sign * at;
+      spheres[2 * i] = spheres[2 * i + 1] = sphere;
+    }
+    for (std::uint32_t a = 0; a < 40; ++a) {
+      for (std::uint32_t b = a + 1; b < 40; ++b) {
+        if (touch(spheres[a], spheres[b])) expected.push_back({a, b});
+      }
+    }
+    REQUIRE(expected.size() >= 20);
+    for (const Target target : supported_targets()) {
+      CAPTURE(far);
+      CAPTURE(to_string(target));
+      CHECK(detect(opened.asset, spheres, Method::kM2, RadiusKind::kDetect, target).pairs == expected);
+      CHECK(in_crowd(opened.asset, spheres, target) == expected);
+    }
+  }
 }
 
 }  // namespace spherechain::test
