@@ -78,7 +78,7 @@ HWY_INLINE void load_spheres(D d, const SphereAt& sphere_at, V& x, V& y, V& z, V
 }
 
 // kListLanes pairs, a bit each: a counts from the columns' first sphere, b from the rows'. With a reach of 1 the rule
-// for near pairs is that for all others.
+// for near pairs is that for all others, and one below 1 only ever narrows that, also after rounding.
 HWY_INLINE std::uint64_t test_listed(const Sphere* column_spheres, const Sphere* row_spheres, const NearPair* pairs) {
 #if HWY_TARGET == HWY_SCALAR
   const Sphere &p = column_spheres[pairs->a], &q = row_spheres[pairs->b];
@@ -88,7 +88,7 @@ HWY_INLINE std::uint64_t test_listed(const Sphere* column_spheres, const Sphere*
   const float s = p.radius + q.radius;
   const float t = pairs->reach * s;
   const float d2 = (dx * dx + dy * dy) + dz * dz;
-  return d2 < s * s && s * s <= FLT_MAX && d2 < t * t ? 1 : 0;
+  return d2 < t * t && s * s <= FLT_MAX ? 1 : 0;
 #else
   namespace hn = hwy::HWY_NAMESPACE;
   const hn::ScalableTag<float> d;
@@ -105,8 +105,7 @@ HWY_INLINE std::uint64_t test_listed(const Sphere* column_spheres, const Sphere*
   turn(d, differences(0), differences(1), differences(2), differences(3), dx, dy, dz, s);
   const V d2 = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
   const V s2 = hn::Mul(s, s), t = hn::Mul(load_reaches(d, pairs), s);
-  const auto touches = hn::And(hn::Lt(d2, s2), hn::Lt(d2, hn::Mul(t, t)));
-  return bits_of(hn::And(touches, hn::Le(s2, hn::Set(d, FLT_MAX))));
+  return bits_of(hn::And(hn::Lt(d2, hn::Mul(t, t)), hn::Le(s2, hn::Set(d, FLT_MAX))));
 #endif
 }
 
