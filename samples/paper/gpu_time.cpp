@@ -60,7 +60,9 @@ GpuTime read_gpu_time(const std::filesystem::path& file) {
 }
 
 Table gpu_medians(const GpuTime& time) {
-  Table out{"figure16_medians", {"spheres", "parts", "method", "overlaps", "kernel_us", "launch_us", "frame_us"}, {}};
+  Table out{"figure16_medians",
+            {"spheres", "parts", "method", "frames", "overlaps", "kernel_us", "launch_us", "frame_us"},
+            {}};
   std::vector<double> counts = time.frames.numbers("spheres");
   std::sort(counts.begin(), counts.end());
   counts.erase(std::unique(counts.begin(), counts.end()), counts.end());
@@ -68,7 +70,7 @@ Table gpu_medians(const GpuTime& time) {
     const Table spheres = time.frames.where("spheres", count);
     for (const std::string& method : spheres.words("method")) {
       const Table t = spheres.where("method", method);
-      std::vector<Cell> row{count, t.number(0, "parts"), method, mean(t.numbers("overlaps"))};
+      std::vector<Cell> row{count, t.number(0, "parts"), method, t.rows.size(), mean(t.numbers("overlaps"))};
       for (const char* column : kTimes) {
         const double value = median(t.numbers(column));
         row.push_back(std::isnan(value) ? Cell() : Cell(value));

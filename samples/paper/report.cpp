@@ -71,6 +71,7 @@ Section gpu_section(const Results& results) {
   for (auto& row : medians.rows) row[2].word = gpu_label(row[2].word);
   out.tables = {show(medians, {{"spheres", "Spheres"},
                                {"method", "Method"},
+                               {"frames", "Frames"},
                                {"overlaps", "Overlaps", 1},
                                {"kernel_us", "us, kernel or job", 2},
                                {"launch_us", "with launch", 2},

@@ -80,6 +80,7 @@ class Runner {
     job.spheres = {spheres_.data(), spheres_.size()};
     job.radius = RadiusKind::kFit;
     job.method = method;
+    job.target = Target::kScalar;
     job.context = &context;
     job.pairs = {pairs_.data(), pairs_.size()};
     check(job.run());

@@ -28,13 +28,15 @@ struct Times {
 };
 
 Table medians_of(const std::vector<Times>& methods, double overhead) {
-  Table out{"figure16_medians", {"spheres", "parts", "method", "overlaps", "kernel_us", "launch_us", "frame_us"}, {}};
+  Table out{"figure16_medians",
+            {"spheres", "parts", "method", "frames", "overlaps", "kernel_us", "launch_us", "frame_us"},
+            {}};
   const double spheres[3] = {50, 84, 10000};
   for (int i = 0; i < 3; ++i) {
     for (const Times& t : methods) {
       const bool gpu = std::string(t.method).rfind("gpu", 0) == 0;
       using spherechain::paper::Cell;
-      out.add({spheres[i], i == 2 ? 200 : 1, t.method, 1, t.kernel[i], gpu ? Cell(t.kernel[i] + overhead) : Cell(),
+      out.add({spheres[i], i == 2 ? 200 : 1, t.method, 80, 1, t.kernel[i], gpu ? Cell(t.kernel[i] + overhead) : Cell(),
                gpu ? Cell(t.kernel[i] + overhead) : Cell()});
     }
   }
@@ -92,6 +94,8 @@ TEST_CASE("medians are over the frames of both animations, and a CPU's method ha
   CHECK(cpu.number(0, "kernel_us") == doctest::Approx(2.8e5 * 1.015));
   CHECK(std::isnan(cpu.number(0, "frame_us")));
   CHECK(cpu.number(0, "parts") == 200);
+  CHECK(cpu.number(0, "frames") == 4);
+  CHECK(m2.number(0, "frames") == 6);
 }
 
 TEST_CASE("M1 is faster on the GPU where its better kernel leads by a twentieth at the paper's counts, by both times") {
