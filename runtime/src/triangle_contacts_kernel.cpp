@@ -152,8 +152,12 @@ HWY_INLINE void pair_within(const ContactScene& scene, std::size_t sphere, Conta
 }
 
 HWY_INLINE void pair_spheres(const ContactScene& scene, std::size_t a, std::size_t b, ContactCollector& collector) {
-  const BoxProbe probe_b(box_at(scene.spheres, b));
   const std::size_t end_a = scene.first_leaf[a + 1], first_b = scene.first_leaf[b], end_b = scene.first_leaf[b + 1];
+  const BoxProbe probe_a(box_at(scene.spheres, a));
+  if (end_b - first_b <= kLanes && probe_a.touching(scene.leaves, first_b, end_b - first_b) == 0) {
+    return;  // most spheres whose boxes touch
+  }
+  const BoxProbe probe_b(box_at(scene.spheres, b));
   for (std::size_t i = scene.first_leaf[a]; i < end_a; i += kLanes) {
     for (std::uint64_t bits = probe_b.touching(scene.leaves, i, end_a - i); bits != 0; bits &= bits - 1) {
       const std::size_t leaf = i + lowest_bit(bits);
