@@ -42,14 +42,6 @@ bool overlap(const Scene& scene, const Pair& pair) {
   return !is_near || within_reach(p, q, found->reach);
 }
 
-std::size_t count_bits(std::uint64_t word) {  // few
-  std::size_t count = 0;
-  for (; word != 0; word &= word - 1) {
-    ++count;
-  }
-  return count;
-}
-
 // Of the tile's pairs, how many have both spheres in the mask.
 std::size_t count_masked(const TestedTile& tile, const TileWords& mask) {
   std::size_t count = 0;
@@ -112,13 +104,7 @@ void detect_in_one_tile(const Scene& scene, Result& result) {
     }
     result.chain_pairs.count += touching;
   }
-  ColumnOrder order;
-  count_tile(tile, order, result);
-  if (result.pairs.buffer.size > 0) {
-    order.begin_at(0);
-    list_tile(tile, order, result.pairs);
-  }
-  result.pairs.count = order.total();
+  report(tile, result);
 }
 
 // Assets of more than a tile, pair by pair; `seen` has a bit a pair, in the order of sorted pairs.

@@ -142,10 +142,8 @@ class ColumnOrder {
   std::uint32_t at_[kTileSize];
 };
 
-// A tested tile's pairs: into `order`, and into the result's bits; then, once `order` knows where they begin, into the
-// list.
-void count_tile(const TestedTile& tile, ColumnOrder& order, Result& result);
-void list_tile(const TestedTile& tile, ColumnOrder& order, Output<Pair>& pairs);
+// The pairs of a tested tile, the only one: counted, listed and into the result's bits.
+void report(const TestedTile& tile, Result& result);
 
 void detect_all(const Scene& scene, Result& result);
 

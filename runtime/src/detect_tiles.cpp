@@ -8,35 +8,6 @@
 #include "detect_steps.h"
 
 namespace spherechain {
-namespace {
-
-// The pairs (first + i, b) whose bits are in `word`, into a table in the order of Asset::ignored().
-void copy_row(std::uint64_t word, std::size_t first, std::size_t b, Span<std::uint64_t> table) {
-  const std::size_t at = ignored_bit(first, b);
-  table[at / 64] |= word << (at % 64);
-  const std::uint64_t rest = at % 64 == 0 ? 0 : word >> (64 - at % 64);
-  if (rest != 0) {
-    table[at / 64 + 1] |= rest;
-  }
-}
-
-// The pairs of the columns set, which are sorted among themselves. Tiles are tested again where there are several:
-// there is no memory for all their bits.
-void list_columns(TestedTile& tile, std::size_t n, ColumnOrder& order, Output<Pair>& pairs) {
-  order.begin_at(pairs.count);
-  const bool is_one_tile = tile.first_row() == tile.first_column();
-  for (std::size_t first_row = tile.first_column(); first_row < n; first_row += kTileSize) {
-    if (!is_one_tile) {
-      tile.set_rows(first_row);
-      tile.choose_all();
-      tile.run();
-    }
-    list_tile(tile, order, pairs);
-  }
-}
-
-}  // namespace
-
 const Sphere* TestedTile::block(std::size_t first, std::size_t count, Sphere* copy) const {
   if (scene_.padding.size == 0) {
     return scene_.spheres + first;
@@ -113,18 +84,33 @@ void ColumnOrder::begin_at(std::size_t place) {
   }
 }
 
-void count_tile(const TestedTile& tile, ColumnOrder& order, Result& result) {
-  const bool copies = result.bits.size > 0 && !result.first_only;
-  for (const std::size_t hit : tile.hits()) {
-    const std::size_t r = hit / kTileWords, w = hit % kTileWords;
-    const std::uint64_t word = tile.bits()[r].words[w];
-    order.count_word(word, w);
-    if (copies) {
-      copy_row(word, tile.first_column() + 64 * w, tile.first_row() + r, result.bits);
-    }
+namespace {
+
+// The pairs (first + i, b) whose bits are in `word`, into a table in the order of Asset::ignored().
+void copy_row(std::uint64_t word, std::size_t first, std::size_t b, Span<std::uint64_t> table) {
+  const std::size_t at = ignored_bit(first, b);
+  table[at / 64] |= word << (at % 64);
+  const std::uint64_t rest = at % 64 == 0 ? 0 : word >> (64 - at % 64);
+  if (rest != 0) {
+    table[at / 64 + 1] |= rest;
   }
 }
 
+// A tested tile's pairs: into `order`.
+void count_tile(const TestedTile& tile, ColumnOrder& order) {
+  for (const std::size_t hit : tile.hits()) {
+    order.count_word(tile.bits()[hit / kTileWords].words[hit % kTileWords], hit % kTileWords);
+  }
+}
+
+void copy_tile(const TestedTile& tile, Span<std::uint64_t> table) {
+  for (const std::size_t hit : tile.hits()) {
+    const std::size_t r = hit / kTileWords, w = hit % kTileWords;
+    copy_row(tile.bits()[r].words[w], tile.first_column() + 64 * w, tile.first_row() + r, table);
+  }
+}
+
+// And into the list, once `order` knows where they begin.
 void list_tile(const TestedTile& tile, ColumnOrder& order, Output<Pair>& pairs) {
   for (const std::size_t hit : tile.hits()) {
     const std::size_t r = hit / kTileWords, w = hit % kTileWords;
@@ -135,8 +121,89 @@ void list_tile(const TestedTile& tile, ColumnOrder& order, Output<Pair>& pairs) 
   }
 }
 
+// The pairs of the columns set, which are sorted among themselves. Tiles are tested again where there are several:
+// there is no memory for all their bits.
+void list_columns(TestedTile& tile, std::size_t n, ColumnOrder& order, Output<Pair>& pairs) {
+  order.begin_at(pairs.count);
+  const bool is_one_tile = tile.first_row() == tile.first_column();
+  for (std::size_t first_row = tile.first_column(); first_row < n; first_row += kTileSize) {
+    if (!is_one_tile) {
+      tile.set_rows(first_row);
+      tile.choose_all();
+      tile.run();
+    }
+    list_tile(tile, order, pairs);
+  }
+}
+
+// Few pairs, as most poses have, are put in order one by one. False where there are more.
+bool list_few(const TestedTile& tile, Output<Pair>& out) {
+  constexpr std::size_t kFew = 32, kShift = 16;
+  std::uint32_t pairs[kFew];
+  std::size_t count = 0;
+  for (const std::size_t hit : tile.hits()) {
+    const std::size_t b = tile.first_row() + hit / kTileWords, first = tile.first_column() + 64 * (hit % kTileWords);
+    for (std::uint64_t word = tile.bits()[hit / kTileWords].words[hit % kTileWords]; word != 0; word &= word - 1) {
+      if (count == kFew) {
+        return false;
+      }
+      const auto pair = static_cast<std::uint32_t>((first + lowest_bit(word)) << kShift | b);
+      std::size_t place = count++;
+      for (; place > 0 && pairs[place - 1] > pair; --place) {
+        pairs[place] = pairs[place - 1];
+      }
+      pairs[place] = pair;
+    }
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    out.put(i, {pairs[i] >> kShift, pairs[i] & ((std::uint32_t{1} << kShift) - 1)});
+  }
+  out.count = count;
+  return true;
+}
+
+}  // namespace
+
+void report(const TestedTile& tile, Result& result) {
+  if (result.bits.size > 0 && !result.first_only) {
+    copy_tile(tile, result.bits);
+  }
+  if (result.pairs.buffer.size == 0) {
+    for (const std::size_t hit : tile.hits()) {
+      result.pairs.count += count_bits(tile.bits()[hit / kTileWords].words[hit % kTileWords]);
+    }
+  } else if (!list_few(tile, result.pairs)) {
+    ColumnOrder order;
+    count_tile(tile, order);
+    order.begin_at(0);
+    list_tile(tile, order, result.pairs);
+    result.pairs.count = order.total();
+  }
+}
+
+namespace {
+
+void detect_in_one_tile(const Scene& scene, Result& result) {
+  TestedTile tile(scene);
+  tile.set_columns(0);
+  tile.set_rows(0);
+  if (scene.rows != nullptr) {
+    tile.choose(scene.rows->wanted, scene.rows->plain);
+    result.tests = scene.rows->test_count;
+  } else {
+    result.tests = tile.choose_all();
+  }
+  tile.run();
+  report(tile, result);
+}
+
+}  // namespace
+
 void detect_all(const Scene& scene, Result& result) {
   const std::size_t n = scene.size();
+  if (n <= kTileSize) {
+    return detect_in_one_tile(scene, result);
+  }
   TestedTile tile(scene);
   ColumnOrder order;
   for (std::size_t first = 0; first < n; first += kTileSize) {
@@ -144,14 +211,12 @@ void detect_all(const Scene& scene, Result& result) {
     order.clear();
     for (std::size_t first_row = first; first_row < n; first_row += kTileSize) {
       tile.set_rows(first_row);
-      if (scene.rows != nullptr) {
-        tile.choose(scene.rows->wanted, scene.rows->plain);
-        result.tests += scene.rows->test_count;
-      } else {
-        result.tests += tile.choose_all();
-      }
+      result.tests += tile.choose_all();
       tile.run();
-      count_tile(tile, order, result);
+      count_tile(tile, order);
+      if (result.bits.size > 0 && !result.first_only) {
+        copy_tile(tile, result.bits);
+      }
     }
     if (result.pairs.buffer.size > 0 && order.total() > 0) {
       list_columns(tile, n, order, result.pairs);

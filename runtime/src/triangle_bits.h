@@ -63,4 +63,13 @@ inline unsigned lowest_bit(std::uint64_t word) {
 #endif
 }
 
+// Of a word that has few.
+inline std::size_t count_bits(std::uint64_t word) {
+  std::size_t count = 0;
+  for (; word != 0; word &= word - 1) {
+    ++count;
+  }
+  return count;
+}
+
 }  // namespace spherechain
