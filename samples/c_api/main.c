@@ -84,7 +84,10 @@ int main(int argc, char** argv) {
   sc_contact contacts[kPairs];
   sc_refit_bones_job refit = SC_REFIT_BONES_JOB_INIT;
   sc_detect_job detect = SC_DETECT_JOB_INIT;
+  sc_confirm_job confirm = SC_CONFIRM_JOB_INIT;
   sc_contact_job contact = SC_CONTACT_JOB_INIT;
+  uint64_t* scratch;
+  sc_pair skins[kPairs];
   sc_filter filter = {NULL, 0, NULL, 0, NULL, 0};
   sc_status status;
   char message[160];
@@ -117,7 +120,7 @@ int main(int argc, char** argv) {
     return fail(argv[1], "no memory");
   }
 
-  swing_left_arm(asset, &info, -0.73F, palette);
+  swing_left_arm(asset, &info, -0.8F, palette);
   refit.asset = asset;
   refit.bones.data = palette;
   refit.bones.count = info.bone_count;
@@ -132,6 +135,19 @@ int main(int argc, char** argv) {
   detect.pair_capacity = kPairs;
   status = status == SC_OK ? sc_detect(&detect) : status;
 
+  /* Spheres touch before skins do: those that the triangles confirm, where the asset has them. */
+  confirm.asset = asset;
+  confirm.bones = refit.bones;
+  confirm.candidates = pairs;
+  confirm.candidate_count = detect.pair_count;
+  confirm.pairs = skins;
+  confirm.pair_capacity = kPairs;
+  confirm.scratch_words = sc_triangle_contact_scratch_words(asset);
+  confirm.scratch = scratch = malloc(confirm.scratch_words * sizeof *scratch);
+  if (status == SC_OK && scratch != NULL && confirm.scratch_words > 0) {
+    status = sc_confirm(&confirm);
+  }
+
   contact.asset = asset;
   contact.spheres = spheres;
   contact.sphere_count = sphere_count;
@@ -144,6 +160,7 @@ int main(int argc, char** argv) {
     return fail(argv[1], sc_status_string(status));
   }
   printf("%lu pairs touch\n", (unsigned long)detect.pair_count);
+  printf("%lu of them with their skin\n", (unsigned long)confirm.pair_count);
   if (contact.deepest < contact.contact_count) {
     const sc_contact* deepest = &contacts[contact.deepest];
     printf("deepest: spheres %lu and %lu, %.1f %% of the height\n", (unsigned long)deepest->pair.a,
@@ -164,6 +181,7 @@ int main(int argc, char** argv) {
       printf("%s and %s ignored: %lu pairs\n", region_a.name, region_b.name, (unsigned long)detect.pair_count);
     }
   }
+  free(scratch);
   free(ignored);
   free(palette);
   free(spheres);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Exact contacts, and pairs of spheres confirmed by them, from vertices and from bones; once more on another target.
+// Exact contacts, and pairs of spheres confirmed by them, from vertices and from bones; once more through the C API, on
+// another target.
 #include <algorithm>
 
 #include "fuzz_case.h"
@@ -101,6 +102,22 @@ void draw_pose(Case& c, Job& job) {
   job.positions = positions;
 }
 
+// The same call on another target.
+template <typename CJob, typename Job>
+CJob to_c_job(Case& c, const Job& job, CJob out) {
+  out.asset = job.asset == &c.closed ? c.c_closed : c.c_asset;
+  out.positions = job.positions;
+  out.vertex_count = job.vertex_count;
+  out.stride = job.stride;
+  out.bones = {job.bones.data, job.bones.count, job.bones.stride, static_cast<sc_matrix_layout>(job.bones.layout), 0};
+  out.morph_weights = job.morph_weights.data;
+  out.morph_weight_count = job.morph_weights.size;
+  out.target = static_cast<sc_target>(draw_target(c));
+  out.scratch = job.context == nullptr ? nullptr : job.context->words.data;
+  out.scratch_words = job.context == nullptr ? 0 : job.context->words.size;
+  return out;
+}
+
 // False where there is nothing to ask about, or too much.
 bool draw_skin(Case& c) {
   if (!draw_asset(c)) {
@@ -144,10 +161,18 @@ void fuzz_triangle_contacts(Case& c) {
   if (spoiled.count == 0) {
     job.scope = static_cast<ContactScope>(c.random.below(3));
   }
-  TriangleContactJob again = job;
-  again.target = draw_target(c);
+  sc_triangle_contact_job c_job = to_c_job(c, job, sc_triangle_contact_job SC_TRIANGLE_CONTACT_JOB_INIT);
+  const sc_filter c_filter = to_c(filter);
+  c_job.filter = job.filter == nullptr ? nullptr : &c_filter;
+  c_job.scope = static_cast<sc_contact_scope>(job.scope);
+  c_job.pairs = reinterpret_cast<sc_triangle_pair*>(job.pairs.data);
+  c_job.pair_capacity = job.pairs.size;
+  c_job.contacts = reinterpret_cast<sc_triangle_contact*>(job.contacts.data);
+  c_job.contact_capacity = job.contacts.size;
+  c_job.sphere_contacts = reinterpret_cast<sc_sphere_contact*>(job.sphere_contacts.data);
+  c_job.sphere_contact_capacity = job.sphere_contacts.size;
   run_both(
-      c, spoiled, [&] { return job.run(); }, [&] { return again.run(); },
+      c, spoiled, [&] { return job.run(); }, [&] { return sc_triangle_contacts(&c_job); },
       [&](Status) {
         return std::vector<Bytes>{
             bytes_of(job.pairs.data, std::min(job.pairs.size, job.pair_count)),
@@ -160,8 +185,8 @@ void fuzz_triangle_contacts(Case& c) {
           std::fill(context.words.begin(), context.words.end(), std::uint64_t{0});  // scratch: anything
         }
       });
-  c.expect(again.pair_count == job.pair_count && again.sphere_contact_count == job.sphere_contact_count,
-           "the other target counts something else");
+  c.expect(c_job.pair_count == job.pair_count && c_job.sphere_contact_count == job.sphere_contact_count,
+           "the C API, or another target, counts something else");
   const std::size_t written = std::min(job.pairs.size, job.pair_count);
   if (spoiled.count == 0) {
     c.expect(std::is_sorted(job.pairs.data, job.pairs.data + written), "pairs that are not sorted");
@@ -197,10 +222,13 @@ void fuzz_confirm(Case& c) {
   } else {
     spoil_some(c, 6, [&](std::uint32_t way) { spoil(c, job, way, spoiled); });
   }
-  ConfirmJob again = job;
-  again.target = draw_target(c);
+  sc_confirm_job c_job = to_c_job(c, job, sc_confirm_job SC_CONFIRM_JOB_INIT);
+  c_job.candidates = reinterpret_cast<const sc_pair*>(job.candidates.data);
+  c_job.candidate_count = job.candidates.size;
+  c_job.pairs = reinterpret_cast<sc_pair*>(job.pairs.data);
+  c_job.pair_capacity = job.pairs.size;
   run_both(
-      c, spoiled, [&] { return job.run(); }, [&] { return again.run(); },
+      c, spoiled, [&] { return job.run(); }, [&] { return sc_confirm(&c_job); },
       [&](Status) {
         return std::vector<Bytes>{bytes_of(job.pairs.data, std::min(job.pairs.size, job.pair_count)),
                                   bytes_of(context.words.data, words)};
@@ -210,7 +238,7 @@ void fuzz_confirm(Case& c) {
           std::fill(context.words.begin(), context.words.end(), std::uint64_t{0});  // scratch: anything
         }
       });
-  c.expect(again.pair_count == job.pair_count, "the other target confirms something else");
+  c.expect(c_job.pair_count == job.pair_count, "the C API, or another target, confirms something else");
   c.expect(job.pair_count <= job.candidates.size || spoiled.count > 0, "more confirmed than asked about");
 }
 

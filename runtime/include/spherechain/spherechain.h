@@ -472,6 +472,99 @@ typedef struct sc_contact_job {
  * SC_BAD_ARGUMENT (a pair that cannot be), SC_SHARED_MEMORY. */
 SPHERECHAIN_API sc_status sc_contacts(sc_contact_job* job);
 
+/* ---- Which triangles of the skin intersect ---- */
+
+/* Of two spheres that are not ignored; of one sphere, or of two that are ignored (folds of an elbow); all. */
+typedef int32_t sc_contact_scope;
+enum { SC_CONTACTS_APART = 0, SC_CONTACTS_OF_NEIGHBOURS = 1, SC_CONTACTS_ALL = 2 };
+
+/* Source triangles, a < b. */
+typedef struct sc_triangle_pair {
+  uint32_t a, b;
+} sc_triangle_pair;
+
+/* What two triangles have in common. */
+typedef struct sc_triangle_contact {
+  sc_triangle_pair triangles;
+  sc_vec3 from, to; /* the segment; of triangles in one plane the longest piece of an edge in the other triangle */
+  sc_vec3 normal;   /* unit length, of one of the two planes */
+  float depth;      /* how far one triangle must move along it to part them */
+} sc_triangle_contact;
+
+typedef struct sc_sphere_contact {
+  sc_pair spheres; /* a < b; a = b within one region */
+  uint32_t count;  /* pairs of triangles; at least 1 */
+  sc_triangle_contact deepest;
+} sc_sphere_contact;
+
+/* All pairs of triangles that intersect, none else, decided exactly, but for those that share a position at rest or
+ * intersect there. Spheres and radii play no part. From deformed vertices, or from bones where `positions` is null. */
+typedef struct sc_triangle_contact_job {
+  size_t struct_size;
+  const sc_asset* asset;
+  const float* positions;     /* deformed vertices in the source's order, x y z after another; or null */
+  size_t vertex_count;        /* at least info.source_vertex_count */
+  size_t stride;              /* bytes from one vertex to the next; a multiple of 4, at least 12 */
+  sc_bone_matrices bones;     /* without positions: as in sc_refit_bones_job */
+  const float* morph_weights; /* null where nothing morphs */
+  size_t morph_weight_count;  /* 0, or at least info.morph_count */
+  sc_target target;
+  sc_contact_scope scope;
+  const sc_filter* filter; /* null: what the asset says; padding is of no effect */
+  uint64_t* scratch;       /* required: sc_triangle_contact_scratch_words() */
+  size_t scratch_words;
+  sc_triangle_pair* pairs; /* out: sorted, each once; may be null */
+  size_t pair_capacity;
+  sc_triangle_contact* contacts; /* out: the same with where they intersect; may be null */
+  size_t contact_capacity;
+  sc_sphere_contact* sphere_contacts; /* out: sorted by their spheres; may be null */
+  size_t sphere_contact_capacity;
+  size_t pair_count; /* out: pairs of triangles there are, also after SC_OVERFLOW */
+  size_t sphere_contact_count;
+} sc_triangle_contact_job;
+#define SC_TRIANGLE_CONTACT_JOB_INIT                                                                                 \
+  {                                                                                                                  \
+    sizeof(sc_triangle_contact_job), NULL, NULL, 0, 12, {NULL, 0, 48, SC_ROW_MAJOR_3X4, 0}, NULL, 0, SC_TARGET_BEST, \
+        SC_CONTACTS_APART, NULL, NULL, 0, NULL, 0, NULL, 0, NULL, 0, 0, 0                                            \
+  }
+
+/* Words for either of the two jobs; 0 for a null asset, and for one without a surface. */
+SPHERECHAIN_API size_t sc_triangle_contact_scratch_words(const sc_asset* asset);
+
+/* SC_OK, SC_OVERFLOW (the first entries are written), SC_NULL_ARGUMENT, SC_WRONG_ABI, SC_NOT_IN_ASSET,
+ * SC_TOO_FEW_VERTICES, SC_BAD_STRIDE, SC_TOO_FEW_BONES, SC_TOO_FEW_MORPHS, SC_CONTEXT_TOO_SMALL, SC_BAD_ARGUMENT,
+ * SC_UNSUPPORTED_TARGET, SC_BAD_FILTER, SC_MISALIGNED, SC_SHARED_MEMORY. */
+SPHERECHAIN_API sc_status sc_triangle_contacts(sc_triangle_contact_job* job);
+
+/* Of some pairs of spheres, those whose skins intersect: what is true of sc_detect's alarm. The pose as above. */
+typedef struct sc_confirm_job {
+  size_t struct_size;
+  const sc_asset* asset;
+  const float* positions;
+  size_t vertex_count;
+  size_t stride;
+  sc_bone_matrices bones;
+  const float* morph_weights;
+  size_t morph_weight_count;
+  sc_target target;
+  uint32_t reserved;
+  const sc_pair* candidates; /* from sc_detect, or any two spheres; in any order, ignored ones are answered too */
+  size_t candidate_count;
+  uint64_t* scratch; /* required: sc_triangle_contact_scratch_words() */
+  size_t scratch_words;
+  sc_pair* pairs; /* out: those confirmed, in the candidates' order; may be null */
+  size_t pair_capacity;
+  size_t pair_count; /* out: those confirmed, also after SC_OVERFLOW */
+} sc_confirm_job;
+#define SC_CONFIRM_JOB_INIT                                                                                          \
+  {                                                                                                                  \
+    sizeof(sc_confirm_job), NULL, NULL, 0, 12, {NULL, 0, 48, SC_ROW_MAJOR_3X4, 0}, NULL, 0, SC_TARGET_BEST, 0, NULL, \
+        0, NULL, 0, NULL, 0, 0                                                                                       \
+  }
+
+/* As sc_triangle_contacts, but without SC_BAD_FILTER; SC_BAD_ARGUMENT also for a candidate that is no two spheres. */
+SPHERECHAIN_API sc_status sc_confirm(sc_confirm_job* job);
+
 /* ---- Many instances of one asset ---- */
 
 typedef struct sc_crowd_pair {

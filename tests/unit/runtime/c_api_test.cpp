@@ -5,14 +5,17 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "jobs.h"
+#include "spherechain/confirm.h"
 #include "spherechain/contacts.h"
 #include "spherechain/crowd.h"
+#include "spherechain/triangle_contacts.h"
 #include "tiny_surface.h"
 
 namespace spherechain::test {
@@ -303,6 +306,90 @@ TEST_CASE("C: cover and skin give what the C++ jobs give") {
   CHECK(sc_skin(&skin_job) == SC_TOO_FEW_VERTICES);
   skin_job.struct_size += 1;
   CHECK(sc_skin(&skin_job) == SC_WRONG_ABI);
+}
+
+TEST_CASE("C: triangle contacts, and pairs confirmed by them, are those of the C++ jobs") {
+  const BothApis both;
+  const Asset& asset = both.opened.asset;
+  // All regions at the same place: much intersects.
+  std::vector<float> positions(4 * asset.info().source_vertex_count);
+  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = static_cast<float>(i * i % 97) / 97;
+  std::vector<std::uint64_t> words(TriangleContactContext::words_needed(asset)),
+      c_words(sc_triangle_contact_scratch_words(both.asset));
+  REQUIRE(words.size() == c_words.size());
+  TriangleContactContext context{{words.data(), words.size()}};
+  TriangleContactJob job;
+  job.asset = &asset;
+  job.positions = positions.data();
+  job.vertex_count = positions.size() / 4;
+  job.stride = 16;
+  job.context = &context;
+  job.scope = ContactScope::kAll;
+  REQUIRE(job.run() == Status::kOk);
+  REQUIRE(job.pair_count > 10);
+  REQUIRE(job.sphere_contact_count > 1);
+  std::vector<TriangleContact> contacts(job.pair_count);
+  std::vector<SphereContact> sphere_contacts(job.sphere_contact_count);
+  job.contacts = {contacts.data(), contacts.size()};
+  job.sphere_contacts = {sphere_contacts.data(), sphere_contacts.size()};
+  REQUIRE(job.run() == Status::kOk);
+
+  sc_triangle_contact_job c_job = SC_TRIANGLE_CONTACT_JOB_INIT;
+  c_job.asset = both.asset;
+  c_job.positions = positions.data();
+  c_job.vertex_count = positions.size() / 4;
+  c_job.stride = 16;
+  c_job.scope = SC_CONTACTS_ALL;
+  c_job.scratch = c_words.data();
+  c_job.scratch_words = c_words.size();
+  std::vector<sc_triangle_pair> c_pairs(job.pair_count);
+  std::vector<sc_triangle_contact> c_contacts(job.pair_count);
+  std::vector<sc_sphere_contact> c_sphere_contacts(job.sphere_contact_count);
+  c_job.pairs = c_pairs.data();
+  c_job.pair_capacity = c_pairs.size();
+  c_job.contacts = c_contacts.data();
+  c_job.contact_capacity = c_contacts.size();
+  c_job.sphere_contacts = c_sphere_contacts.data();
+  c_job.sphere_contact_capacity = c_sphere_contacts.size();
+  REQUIRE(sc_triangle_contacts(&c_job) == SC_OK);
+  CHECK(c_job.pair_count == job.pair_count);
+  CHECK(c_job.sphere_contact_count == job.sphere_contact_count);
+  CHECK(same_bytes(c_contacts, contacts));
+  CHECK(same_bytes(c_sphere_contacts, sphere_contacts));
+  for (std::size_t i = 0; i < c_pairs.size(); ++i) CHECK(c_pairs[i].b == contacts[i].triangles.b);
+  c_job.pair_capacity = 1;
+  CHECK(sc_triangle_contacts(&c_job) == SC_OVERFLOW);
+  c_job.scope = 256;
+  CHECK(sc_triangle_contacts(&c_job) == SC_BAD_ARGUMENT);
+  c_job.scratch = nullptr;
+  CHECK(sc_triangle_contacts(&c_job) == SC_NULL_ARGUMENT);
+  CHECK(sc_triangle_contact_scratch_words(nullptr) == 0);
+
+  std::vector<sc_pair> candidates, expected;
+  for (std::uint32_t b = 1; b < asset.spheres().size; ++b) {
+    for (std::uint32_t a = 0; a < b; ++a) {
+      candidates.push_back({a, b});
+      const auto is_it = [&](const SphereContact& contact) { return contact.spheres == Pair{a, b}; };
+      if (std::any_of(sphere_contacts.begin(), sphere_contacts.end(), is_it)) expected.push_back({a, b});
+    }
+  }
+  std::vector<sc_pair> confirmed(expected.size());
+  sc_confirm_job confirm = SC_CONFIRM_JOB_INIT;
+  confirm.asset = both.asset;
+  confirm.positions = positions.data();
+  confirm.vertex_count = positions.size() / 4;
+  confirm.stride = 16;
+  confirm.candidates = candidates.data();
+  confirm.candidate_count = candidates.size();
+  confirm.scratch = c_words.data();
+  confirm.scratch_words = c_words.size();
+  confirm.pairs = confirmed.data();
+  confirm.pair_capacity = confirmed.size();
+  REQUIRE(sc_confirm(&confirm) == SC_OK);
+  CHECK(confirm.pair_count == expected.size());
+  CHECK(same_bytes(confirmed, expected));
+  confirm.struct_size -= 1;
+  CHECK(sc_confirm(&confirm) == SC_WRONG_ABI);
 }
 
 TEST_CASE("C: numbers that no enum has are refused, also those that are a value when cut to a byte") {
