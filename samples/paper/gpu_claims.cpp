@@ -15,7 +15,7 @@ namespace {
 constexpr double kLead = 0.95;  // less of the other's time than that is a lead
 constexpr double kMany = 10000, kAbout = 0.9;
 
-const Verdict kNoGpu{kNotRun, "Needs a GPU: spherechain_figure16."};
+Verdict without_gpu() { return {kNotRun, "Needs a GPU: spherechain_figure16."}; }
 
 // The least of some methods' times at a sphere count; infinite where none of them was timed.
 double fastest(const Table& medians, double spheres, const char* column, std::initializer_list<const char*> methods) {
@@ -36,7 +36,7 @@ std::vector<double> counts_of(const Table& medians) {
 }  // namespace
 
 Verdict judge_gpu_m1_faster(const Table& medians) {
-  if (medians.empty()) return kNoGpu;
+  if (medians.empty()) return without_gpu();
   const auto is_stated = [&](double spheres) {
     return spheres == medians.number(nearest_count(medians, kSummedSpheres), "spheres") ||
            spheres == medians.number(nearest_count(medians, kStatedSpheres), "spheres");
@@ -64,7 +64,7 @@ Verdict judge_gpu_m1_faster(const Table& medians) {
 }
 
 Verdict judge_gpu_needs_many(const Table& medians) {
-  if (medians.empty()) return kNoGpu;
+  if (medians.empty()) return without_gpu();
   bool behind_below = true, behind_first = false, ahead_last = false;
   std::string finding = "Fastest kernel with launch and copies against the fastest of the runtime's scalar jobs:";
   const std::vector<double> counts = counts_of(medians);

@@ -202,6 +202,7 @@ double add_times(Json& series, const std::string& name, const Timed& timed, doub
   std::vector<double> medians, minima;
   for (const auto& repetitions : timed.times) {
     std::vector<double> values;
+    values.reserve(repetitions.size());
     for (const cuda_paper::Times& times : repetitions) {
       values.push_back(times.*member);
     }

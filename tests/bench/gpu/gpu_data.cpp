@@ -69,6 +69,7 @@ void write(const fs::path& folder, const std::string& name, const baker::Bake& b
 // Evenly spaced, the start and the end among them.
 std::vector<Deformation> frames_of(const baker::Motion& motion, int count) {
   std::vector<Deformation> out;
+  out.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) out.push_back(motion.at(static_cast<double>(i) / (count - 1)));
   return out;
 }

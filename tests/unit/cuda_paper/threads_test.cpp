@@ -90,9 +90,9 @@ constexpr RadiusKind kRadii[] = {RadiusKind::kFit, RadiusKind::kDetect};
 TEST_CASE("the paper's threads find the pairs of M1 and M2, in every chain that holds them") {
   std::mt19937 random(11);
   std::size_t overlaps = 0;
-  for (const std::size_t n : {1, 2, 3, 17, 50, 64, 65, 84, 128, 129, 200}) {
+  for (const unsigned n : {1U, 2U, 3U, 17U, 50U, 64U, 65U, 84U, 128U, 129U, 200U}) {
     CAPTURE(n);
-    const OpenedAsset opened(random_asset(n, static_cast<unsigned>(n)).parts);
+    const OpenedAsset opened(random_asset(n, n).parts);
     REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
     for (const RadiusKind radius : kRadii) {
       for (int draw = 0; draw < 4; ++draw) {
