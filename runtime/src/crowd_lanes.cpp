@@ -145,12 +145,8 @@ HWY_INLINE void find_touching(LaneBatch& batch, Vector margin) {
   const std::uint64_t* const wanted = batch.wanted;
   const auto load_row = [&](std::size_t b) HWY_ATTR {
     const float* const own = lanes + kLaneFigures * n * b;
-    Row row;
-    row.x = hn::Load(kFloats, own + 4 * n);
-    row.y = hn::Load(kFloats, own + 5 * n);
-    row.z = hn::Load(kFloats, own + 6 * n);
-    row.least = hn::Sub(hn::Neg(hn::Load(kFloats, own + 7 * n)), margin);
-    return row;
+    return Row{hn::Load(kFloats, own + 4 * n), hn::Load(kFloats, own + 5 * n), hn::Load(kFloats, own + 6 * n),
+               hn::Sub(hn::Neg(hn::Load(kFloats, own + 7 * n)), margin)};
   };
   const auto test = [&](std::size_t a, std::size_t b) HWY_ATTR {
     report(batch, in_use & overlap<false, false>(load(lanes, a), load(lanes, b), 1.0F), static_cast<std::uint32_t>(a),
