@@ -433,7 +433,7 @@ SPHERECHAIN_API sc_status sc_prepare_detect(const sc_asset* asset, sc_radius rad
                                             uint64_t* table, size_t table_words);
 
 /* SC_OK, SC_OVERFLOW (the first entries are written), SC_NULL_ARGUMENT, SC_WRONG_ABI, SC_TOO_FEW_SPHERES,
- * SC_CONTEXT_TOO_SMALL, SC_BAD_ARGUMENT, SC_UNSUPPORTED_TARGET, SC_BAD_FILTER, SC_SHARED_MEMORY. 22 KiB of stack. */
+ * SC_CONTEXT_TOO_SMALL, SC_BAD_ARGUMENT, SC_UNSUPPORTED_TARGET, SC_BAD_FILTER, SC_SHARED_MEMORY. 24 KiB of stack. */
 SPHERECHAIN_API sc_status sc_detect(sc_detect_job* job);
 
 /* ---- What to do about it ---- */
