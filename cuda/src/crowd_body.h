@@ -52,6 +52,37 @@ SPHERECHAIN_HD std::uint32_t lowest_bit(std::uint32_t word) {
 #endif
 }
 
+// The bits of `word` moved up by one, the sign of `value` below them.
+SPHERECHAIN_HD std::uint32_t shift_in_sign(std::uint32_t word, float value) {
+#if defined(__CUDA_ARCH__)
+  return __funnelshift_l(__float_as_uint(value), word, 1);
+#else
+  return word << 1 | (value < 0 ? 1U : 0U);  // a NaN the device computes has no sign
+#endif
+}
+
+// Lanes that went different ways go on together; for speed alone.
+SPHERECHAIN_HD void rejoin() {
+#if defined(__CUDA_ARCH__)
+  __syncwarp();
+#endif
+}
+
+SPHERECHAIN_HD_RARE float any_root(float x) { return sqrtf(x); }
+
+// What sqrtf does where `x` is from kLeastRoot to FLT_MAX, without its test for that.
+inline constexpr float kLeastRoot = 0x1p-100F;
+SPHERECHAIN_HD float usual_root(float x) {
+#if defined(__CUDA_ARCH__)
+  float inverse;
+  asm("rsqrt.approx.f32 %0, %1;" : "=f"(inverse) : "f"(x));
+  const float root = x * inverse;
+  return __fmaf_rn(__fmaf_rn(-root, root, x), 0.5F * inverse, root);
+#else
+  return sqrtf(x);
+#endif
+}
+
 // Lanes past the last instance do as the last one does, and write nothing out.
 SPHERECHAIN_HD std::uint32_t instance_of(const GroupView& v, const Place& at, std::uint32_t lane) {
   const std::uint32_t instance = at.block * kLanes + lane;
@@ -63,19 +94,23 @@ SPHERECHAIN_HD std::uint32_t instances_in(const GroupView& v, const Place& at) {
   return left < kLanes ? left : kLanes;
 }
 
-// Step 1: a warp an instance, so that its figures are read in the order they lie in.
+// Step 1: each warp takes some instances, so that their figures are read in the order they lie in.
 SPHERECHAIN_HD void load_matrices(const GroupView& v, const Shared& shared, const Place& at) {
-  for (std::uint32_t to = at.warp(); to < kLanes; to += at.warps()) {
-    const float* from = v.matrices + instance_of(v, at, to) * v.instance_stride;
-    if (v.wide_matrices) {
-      for (std::uint32_t i = at.lane(); i < 3 * v.used_bone_count; i += kLanes) {
-        const float* row = from + v.used_bones[i / 3] * v.bone_stride + i % 3 * v.steps.row;
-        shared.matrices[i * kPitch + to] = *reinterpret_cast<const Float4*>(row);
+  if (v.wide_matrices) {
+    for (std::uint32_t i = at.lane(); i < 3 * v.used_bone_count; i += kLanes) {
+      const std::size_t row = v.used_bones[i / 3] * v.bone_stride + i % 3 * v.steps.row;
+      for (std::uint32_t to = at.warp(); to < kLanes; to += at.warps()) {
+        const float* from = v.matrices + instance_of(v, at, to) * v.instance_stride;
+        shared.matrices[i * kPitch + to] = *reinterpret_cast<const Float4*>(from + row);
       }
-    } else {
-      for (std::uint32_t i = at.lane(); i < 12 * v.used_bone_count; i += kLanes) {
-        const float* matrix = from + v.used_bones[i / 12] * v.bone_stride;
-        (&shared.matrices[i / 4 * kPitch + to].x)[i % 4] = matrix[i / 4 % 3 * v.steps.row + i % 4 * v.steps.column];
+    }
+  } else {
+    for (std::uint32_t i = at.lane(); i < 12 * v.used_bone_count; i += kLanes) {
+      const std::size_t figure =
+          v.used_bones[i / 12] * v.bone_stride + i / 4 % 3 * v.steps.row + i % 4 * v.steps.column;
+      for (std::uint32_t to = at.warp(); to < kLanes; to += at.warps()) {
+        const float* from = v.matrices + instance_of(v, at, to) * v.instance_stride;
+        (&shared.matrices[i / 4 * kPitch + to].x)[i % 4] = from[figure];
       }
     }
   }
@@ -90,14 +125,18 @@ SPHERECHAIN_HD void load_matrices(const GroupView& v, const Shared& shared, cons
 
 // Step 1 where the instances come as spheres.
 SPHERECHAIN_HD void load_spheres(const GroupView& v, const Shared& shared, const Place& at) {
-  for (std::uint32_t to = at.warp(); to < kLanes; to += at.warps()) {
-    const Sphere* from = v.spheres + instance_of(v, at, to) * v.sphere_stride;
-    for (std::uint32_t i = at.lane(); i < v.sphere_count; i += kLanes) {
+  for (std::uint32_t i = at.lane(); i < v.sphere_count; i += kLanes) {
+    const float padding = v.has_padding ? v.sphere_entries[i].padding : 0.0F;
+    for (std::uint32_t to = at.warp(); to < kLanes; to += at.warps()) {
+      const Sphere* from = v.spheres + instance_of(v, at, to) * v.sphere_stride + i;
+      Float4 sphere;
       if (v.wide_spheres) {
-        shared.spheres[i * kPitch + to] = *reinterpret_cast<const Float4*>(from + i);
+        sphere = *reinterpret_cast<const Float4*>(from);
       } else {
-        shared.spheres[i * kPitch + to] = {from[i].x, from[i].y, from[i].z, from[i].radius};
+        sphere = {from->x, from->y, from->z, from->radius};
       }
+      sphere.w += padding;
+      shared.spheres[i * kPitch + to] = sphere;
     }
   }
 }
@@ -152,16 +191,25 @@ SPHERECHAIN_HD void add_shares(const GroupEntry& group, const float (&p)[3][kPiv
 
 SPHERECHAIN_HD void add_distances(const float (&p)[3][kPivotLanes], const float (&center)[3], std::uint32_t used,
                                   bool is_first, float (&distances)[kPivotLanes]) {
+  float squares[kPivotLanes], least = FLT_MAX, most = 0;
   for (std::size_t k = 0; k < kPivotLanes; ++k) {
     const float dx = p[0][k] - center[0], dy = p[1][k] - center[1], dz = p[2][k] - center[2];
-    const float distance = k < used ? sqrtf(fused(dz, dz, fused(dy, dy, dx * dx))) : 0.0F;
+    squares[k] = k < used ? fused(dz, dz, fused(dy, dy, dx * dx)) : 1.0F;
+    least = fminf(least, squares[k]);
+    most = fmaxf(most, squares[k]);
+  }
+  const bool is_usual = least >= kLeastRoot && most <= FLT_MAX;
+  for (std::size_t k = 0; k < kPivotLanes; ++k) {
+    float distance = is_usual ? usual_root(squares[k]) : any_root(squares[k]);
+    distance = k < used ? distance : 0.0F;
     distances[k] = is_first ? distance : distances[k] + distance;
   }
 }
 
 SPHERECHAIN_HD Float4 sphere_of(const GroupView& v, const SphereEntry& sphere, const float (&center)[3],
                                 const float (&distances)[kPivotLanes]) {
-  const float mean = tree(distances) / sphere.pivot_count;
+  const float sum = tree(distances);
+  const float mean = sphere.pivot_share != 0 ? sum * sphere.pivot_share : sum / sphere.pivot_count;
   return {center[0], center[1], center[2], v.calibrated ? sphere.wanted * (mean / sphere.scale) : mean * sphere.wanted};
 }
 
@@ -198,57 +246,57 @@ SPHERECHAIN_HD Float4 refit_sphere(const GroupView& v, const Shared& shared, std
   return sphere_of(v, sphere, center, distances);
 }
 
-// Step 2: a warp a sphere.
+// Step 2: a warp a sphere, dealt out there and back, from those with most terms on.
 template <bool kMorphs>
 SPHERECHAIN_HD void refit_spheres(const GroupView& v, const Shared& shared, const Place& at) {
-  for (std::uint32_t i = at.warp(); i < v.sphere_count; i += at.warps()) {
-    shared.spheres[i * kPitch + at.lane()] = refit_sphere<kMorphs>(v, shared, at.lane(), v.sphere_entries[i]);
+  const std::uint32_t lane = at.lane();
+  const bool is_written = v.refitted != nullptr && lane < instances_in(v, at);
+  for (std::uint32_t first = 0, round = 0; first < v.sphere_count; first += at.warps(), ++round) {
+    const std::uint32_t place = first + (round % 2 == 0 ? at.warp() : at.warps() - 1 - at.warp());
+    if (place >= v.sphere_count) {
+      continue;
+    }
+    const std::uint32_t i = v.sphere_order[place];
+    Float4 sphere = refit_sphere<kMorphs>(v, shared, lane, v.sphere_entries[i]);
+    if (is_written) {
+      Sphere* const to = v.refitted + std::size_t{at.block * kLanes + lane} * v.sphere_count + i;
+      *to = {sphere.x, sphere.y, sphere.z, sphere.w};
+    }
+    sphere.w += v.has_padding ? v.sphere_entries[i].padding : 0.0F;
+    shared.spheres[i * kPitch + lane] = sphere;
+    rejoin();
   }
 }
 
-// Step 3.
-SPHERECHAIN_HD void clear_outputs(const GroupView& v, const Shared& shared, const Place& at) {
+// A sphere for the test by multiply-adds, seen from the instance's first one: `power` is half of radius^2 - |center|^2,
+// and a margin. With G = |center|^2 + radius^2 of p and q, runtime/src/overlap.cpp shows that power(p) + power(q) + p.q
+// + rp rq is off by 33 * 2^-24 G at most; each power is larger by 64 * 2^-24 of its own sphere's share of G, and by
+// 2^-120 for what underflows: so where two spheres touch the sum is above 0. For what is too large for that, or not
+// finite, it is infinite or no number, and not below 0 either.
+SPHERECHAIN_HD float power_of(const Float4& s, const Float4& origin) {
+  constexpr float kMargin = 0x1p-18F, kLeast = 0x1p-120F, kMostExtent = 1e36F;
+  const float x = s.x - origin.x, y = s.y - origin.y, z = s.z - origin.z;
+  const float squared_length = fused(z, z, fused(y, y, x * x)), squared_radius = s.w * s.w;
+  const float power = fused(0.5F + kMargin, squared_radius, fused(kMargin - 0.5F, squared_length, kLeast));
+  return squared_length + squared_radius <= kMostExtent ? power : INFINITY;
+}
+
+// Step 3: a warp a sphere; and the outputs' bits, which lie where the matrices were.
+SPHERECHAIN_HD void prepare_pairs(const GroupView& v, const Shared& shared, const Place& at) {
+  const Float4 origin = shared.spheres[at.lane()];
+  for (std::uint32_t i = at.warp(); i < v.sphere_count; i += at.warps()) {
+    shared.powers[i * kPitch + at.lane()] = power_of(shared.spheres[i * kPitch + at.lane()], origin);
+  }
   const std::uint32_t words = half_words(v) * kPitch;
-  for (std::uint32_t i = at.thread; i < words; i += at.threads) {
-    if (v.bits != nullptr) {
-      shared.bits[i] = 0;
-    }
-    if (v.pairs != nullptr) {
-      shared.ordered_bits[i] = 0;
-    }
+  for (std::uint32_t i = at.thread; v.bits != nullptr && i < words; i += at.threads) {
+    shared.bits[i] = 0;
+  }
+  for (std::uint32_t i = at.thread; v.pairs != nullptr && i < words; i += at.threads) {
+    shared.ordered_bits[i] = 0;
   }
   if (at.thread < kLanes) {
     shared.counts[at.thread] = 0;
   }
-}
-
-// A sphere for the test by multiply-adds: seen from the instance's first one, with `power`, less than half of radius^2
-// - |center|^2 by a margin. With G = |center|^2 + radius^2 of p and q, runtime/src/overlap.cpp shows that power(p) +
-// power(q)
-// + p.q + rp rq is off by 33 * 2^-24 G at most; each power is larger by 64 * 2^-24 of its sphere's share of G, and by
-// 2^-120 for what underflows, so that no pair is missed. A sphere that is too large for that, or not finite, may touch
-// anything.
-struct Candidate {
-  float x, y, z, radius, power;
-};
-
-SPHERECHAIN_HD Candidate candidate_of(const Float4& s, const Float4& origin) {
-  constexpr float kMargin = 0x1p-18F, kLeast = 0x1p-120F, kMostExtent = 1e36F;
-  Candidate out{s.x - origin.x, s.y - origin.y, s.z - origin.z, s.w, 0};
-  const float squared_length = fused(out.z, out.z, fused(out.y, out.y, out.x * out.x)), squared_radius = s.w * s.w;
-  out.power = fused(0.5F + kMargin, squared_radius, fused(kMargin - 0.5F, squared_length, kLeast));
-  if (!(squared_length + squared_radius <= kMostExtent)) {
-    out = {0, 0, 0, 0, INFINITY};
-  }
-  return out;
-}
-
-SPHERECHAIN_HD Float4 padded_sphere(const GroupView& v, const Shared& shared, std::uint32_t lane, std::uint32_t i) {
-  Float4 out = shared.spheres[i * kPitch + lane];
-  if (v.has_padding) {
-    out.w += v.sphere_entries[i].padding;
-  }
-  return out;
 }
 
 // detect.h's rule; `reach` 1 for pairs that are not near ones.
@@ -271,48 +319,64 @@ SPHERECHAIN_HD void report(const GroupView& v, const Shared& shared, std::uint32
   }
 }
 
-SPHERECHAIN_HD void test_item(const GroupView& v, const Shared& shared, std::uint32_t lane, const PairItem& item) {
-  const Float4 origin = shared.spheres[lane];
-  Candidate rows[kRows];
-  for (std::uint32_t r = 0; r < kRows; ++r) {
-    const std::uint32_t row = item.first_row + r;
-    rows[r] = candidate_of(padded_sphere(v, shared, lane, row < v.sphere_count ? row : 0), origin);
-  }
-  for (std::uint32_t c = 0; c < kColumns; ++c) {
-    const auto wanted = static_cast<std::uint32_t>(item.wanted >> (kRows * c)) & ((1U << kRows) - 1U);
-    if (wanted == 0) {
-      continue;
-    }
-    const std::uint32_t b = item.first_column + c;
-    const Float4 sphere = padded_sphere(v, shared, lane, b);
-    const Candidate column = candidate_of(sphere, origin);
-    std::uint32_t candidates = 0;
-    for (std::uint32_t r = 0; r < kRows; ++r) {
-      float sum = fused(rows[r].radius, column.radius, rows[r].power);
-      sum = fused(rows[r].x, column.x, sum);
-      sum = fused(rows[r].y, column.y, sum);
-      sum = fused(rows[r].z, column.z, sum);
-      candidates |= sum > -column.power ? 1U << r : 0U;
-    }
-    for (candidates &= wanted; candidates != 0; candidates &= candidates - 1) {
-      const std::uint32_t a = item.first_row + lowest_bit(candidates);
-      if (touch(padded_sphere(v, shared, lane, a), sphere, 1.0F)) {
-        report(v, shared, lane, a, b);
-      }
+// Pairs that the test by multiply-adds cannot tell apart from touching ones.
+SPHERECHAIN_HD void test_candidates(const GroupView& v, const Shared& shared, std::uint32_t lane,
+                                    std::uint32_t candidates, std::uint32_t first_row, std::uint32_t first_column) {
+  for (; candidates != 0; candidates &= candidates - 1) {
+    const std::uint32_t at = kHalfItem - 1 - lowest_bit(candidates);
+    const std::uint32_t a = first_row + at % kRows, b = first_column + at / kRows;
+    if (touch(shared.spheres[a * kPitch + lane], shared.spheres[b * kPitch + lane], 1.0F)) {
+      report(v, shared, lane, a, b);
     }
   }
 }
 
+SPHERECHAIN_HD void test_item(const GroupView& v, const Shared& shared, std::uint32_t lane, const PairItem& item) {
+  const Float4 origin = shared.spheres[lane];
+  const auto seen_from_origin = [&](std::uint32_t i) {
+    const Float4 s = shared.spheres[i * kPitch + lane];
+    return Float4{s.x - origin.x, s.y - origin.y, s.z - origin.z, s.w};
+  };
+  const std::uint32_t last = v.sphere_count - 1;
+  Float4 rows[kRows];
+  float powers[kRows];
+  for (std::uint32_t r = 0; r < kRows; ++r) {
+    const std::uint32_t a = item.first_row + r < last ? item.first_row + r : last;
+    rows[r] = seen_from_origin(a);
+    powers[r] = shared.powers[a * kPitch + lane];
+  }
+  std::uint32_t apart[2] = {0, 0};
+  SPHERECHAIN_UNROLL
+  for (std::uint32_t c = 0; c < kColumns; ++c) {
+    const std::uint32_t b = item.first_column + c < last ? item.first_column + c : last;
+    const Float4 column = seen_from_origin(b);
+    const float power = shared.powers[b * kPitch + lane];
+    SPHERECHAIN_UNROLL
+    for (std::uint32_t r = 0; r < kRows; ++r) {
+      float sum = fused(rows[r].w, column.w, powers[r] + power);
+      sum = fused(rows[r].x, column.x, sum);
+      sum = fused(rows[r].y, column.y, sum);
+      sum = fused(rows[r].z, column.z, sum);
+      apart[c / kHalfColumns] = shift_in_sign(apart[c / kHalfColumns], sum);
+    }
+  }
+  test_candidates(v, shared, lane, ~apart[0] & item.wanted[0], item.first_row, item.first_column);
+  test_candidates(v, shared, lane, ~apart[1] & item.wanted[1], item.first_row, item.first_column + kHalfColumns);
+  rejoin();
+}
+
 // Step 4: a warp an item, then a warp a near pair.
 SPHERECHAIN_HD void test_pairs(const GroupView& v, const Shared& shared, const Place& at) {
+  const std::uint32_t lane = at.lane();
   for (std::uint32_t i = at.warp(); i < v.item_count; i += at.warps()) {
-    test_item(v, shared, at.lane(), v.items[i]);
+    test_item(v, shared, lane, v.items[i]);
   }
   for (std::uint32_t i = at.warp(); i < v.near_count; i += at.warps()) {
     const NearEntry near = v.near[i];
-    if (touch(padded_sphere(v, shared, at.lane(), near.a), padded_sphere(v, shared, at.lane(), near.b), near.reach)) {
-      report(v, shared, at.lane(), near.a, near.b);
+    if (touch(shared.spheres[near.a * kPitch + lane], shared.spheres[near.b * kPitch + lane], near.reach)) {
+      report(v, shared, lane, near.a, near.b);
     }
+    rejoin();
   }
 }
 
@@ -330,7 +394,7 @@ SPHERECHAIN_HD Sphere bound_of(const GroupView& v, const Shared& shared, std::ui
   y /= count;
   z /= count;
   for (std::uint32_t i = 0; i < v.sphere_count; ++i) {
-    const Float4 s = padded_sphere(v, shared, lane, i);
+    const Float4 s = shared.spheres[i * kPitch + lane];
     const float dx = s.x - x, dy = s.y - y, dz = s.z - z;
     const float reach = sqrtf((dx * dx + dy * dy) + dz * dz) + s.w;
     radius = reach <= radius ? radius : reach;  // a NaN stays
@@ -358,19 +422,6 @@ SPHERECHAIN_HD void write_instances(const GroupView& v, const Shared& shared, co
   }
   if (at.warp() == 1 % at.warps() && lane < count && v.bounds != nullptr) {
     v.bounds[first + lane] = bound_of(v, shared, lane);
-  }
-  if (v.refitted != nullptr) {
-    for (std::uint32_t from = at.warp(); from < count; from += at.warps()) {
-      Sphere* const to = v.refitted + std::size_t{first + from} * v.sphere_count;
-      for (std::uint32_t i = lane; i < v.sphere_count; i += kLanes) {
-        const Float4 s = shared.spheres[i * kPitch + from];
-        if (v.wide_refitted) {
-          *reinterpret_cast<Float4*>(to + i) = s;
-        } else {
-          to[i] = {s.x, s.y, s.z, s.w};
-        }
-      }
-    }
   }
   if (v.bits != nullptr) {
     for (std::uint32_t from = at.warp(); from < count; from += at.warps()) {
@@ -416,7 +467,7 @@ SPHERECHAIN_HD void run_block(const GroupView& v, const Shared& shared, const Ru
   } else {
     run([&](const Place& at) { load_spheres(v, shared, at); });
   }
-  run([&](const Place& at) { clear_outputs(v, shared, at); });
+  run([&](const Place& at) { prepare_pairs(v, shared, at); });
   run([&](const Place& at) { test_pairs(v, shared, at); });
   run([&](const Place& at) { write_instances(v, shared, at); });
   run([&](const Place& at) { write_pairs(v, shared, at); });

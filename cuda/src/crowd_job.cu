@@ -26,6 +26,10 @@ struct RunStep {
   }
 };
 
+// What the groups of a launch have in common; kAny has all the ways in one, and is the slowest.
+enum class Input { kSpheres, kBones, kAny };
+
+template <Input kInput>
 __global__ void __launch_bounds__(kThreads, kBlocksAtOnce) run_crowd(const __grid_constant__ Groups groups) {
   extern __shared__ Float4 memory[];
   std::uint32_t g = 0;
@@ -35,17 +39,35 @@ __global__ void __launch_bounds__(kThreads, kBlocksAtOnce) run_crowd(const __gri
   const GroupView& v = groups.views[g];
   const Shared shared(memory, shared_layout(v));
   const RunStep run{{threadIdx.x, kThreads, blockIdx.x - v.first_block}};
-  if (v.matrices == nullptr) {
+  if (kInput == Input::kSpheres || (kInput == Input::kAny && v.matrices == nullptr)) {
     run_block<false, false>(v, shared, run);
-  } else if (v.morph_weights == nullptr) {
+  } else if (kInput == Input::kBones || v.morph_weights == nullptr) {
     run_block<true, false>(v, shared, run);
   } else {
     run_block<true, true>(v, shared, run);
   }
 }
 
+using Kernel = void (*)(Groups);
+
+Input input_of(const GroupView& v) {
+  return v.matrices == nullptr ? Input::kSpheres : v.morph_weights == nullptr ? Input::kBones : Input::kAny;
+}
+
+Kernel kernel_of(const Groups& groups) {
+  const Input input = input_of(groups.views[0]);
+  for (std::uint32_t g = 1; g < groups.count; ++g) {
+    if (input_of(groups.views[g]) != input) {
+      return run_crowd<Input::kAny>;
+    }
+  }
+  return input == Input::kSpheres ? run_crowd<Input::kSpheres>
+         : input == Input::kBones ? run_crowd<Input::kBones>
+                                  : run_crowd<Input::kAny>;
+}
+
 // More than a launch gets without asking. Asking costs no more than looking it up would.
-Status allow_shared_memory(std::size_t bytes) {
+Status allow_shared_memory(Kernel kernel, std::size_t bytes) {
   constexpr std::size_t kAlways = 48 * 1024;
   if (bytes <= kAlways) {
     return Status::kOk;
@@ -59,7 +81,7 @@ Status allow_shared_memory(std::size_t bytes) {
     return Status::kDeviceTooSmall;
   }
   if (error == cudaSuccess) {
-    error = cudaFuncSetAttribute(run_crowd, cudaFuncAttributeMaxDynamicSharedMemorySize, most);
+    error = cudaFuncSetAttribute(kernel, cudaFuncAttributeMaxDynamicSharedMemorySize, most);
   }
   return status_of(error);
 }
@@ -90,7 +112,8 @@ Status CrowdJob::run() const noexcept {
       ++all.count;
     }
   }
-  Status status = allow_shared_memory(bytes);
+  const Kernel kernel = kernel_of(all);
+  Status status = allow_shared_memory(kernel, bytes);
   for (const CrowdGroup& group : groups) {
     if (status == Status::kOk && group.pairs != nullptr) {
       status = status_of(cudaMemsetAsync(group.pair_count, 0, sizeof *group.pair_count, stream));
@@ -99,7 +122,7 @@ Status CrowdJob::run() const noexcept {
   if (status != Status::kOk || all.count == 0) {
     return status;
   }
-  run_crowd<<<blocks, kThreads, bytes, stream>>>(all);
+  kernel<<<blocks, kThreads, bytes, stream>>>(all);
   return status_of(cudaGetLastError());
 }
 

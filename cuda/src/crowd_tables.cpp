@@ -57,6 +57,8 @@ void fill_spheres(const Asset& asset, RadiusKind kind, const Filter* filter, Sph
     entry.scale = rest.pivot_spread;
     entry.pivots = rest.pivot_count;
     entry.pivot_count = static_cast<float>(rest.pivot_count);
+    const bool is_power_of_two = (rest.pivot_count & (rest.pivot_count - 1)) == 0;
+    entry.pivot_share = is_power_of_two ? 1.0F / entry.pivot_count : 0.0F;
     entry.padding = filter == nullptr || filter->padding.size == 0 ? 0.0F : filter->padding[i];
     entry.first_group = group;
     entry.group_count = static_cast<std::uint32_t>((rest.pivot_count + kPivotLanes - 1) / kPivotLanes);
@@ -82,6 +84,22 @@ void fill_terms(const BoneTables& tables, TermEntry* out) {
   for (std::size_t i = 0; i < tables.terms.size; ++i) {
     std::memcpy(&out[i], &tables.terms[i], sizeof out[i]);
   }
+}
+
+void fill_order(const SphereEntry* spheres, std::size_t n, const GroupEntry* groups, std::size_t group_count,
+                std::uint32_t* order) {
+  const auto cost = [&](std::uint32_t i) {
+    std::uint32_t terms = 0;
+    for (std::uint32_t g = 0; g < spheres[i].group_count && spheres[i].first_group + g < group_count; ++g) {
+      terms += groups[spheres[i].first_group + g].term_count;
+    }
+    return terms;
+  };
+  for (std::uint32_t i = 0; i < n; ++i) {
+    order[i] = i;
+  }
+  std::sort(order, order + n,
+            [&](std::uint32_t l, std::uint32_t r) { return cost(l) != cost(r) ? cost(l) > cost(r) : l < r; });
 }
 
 // Returns how many bones the terms use; `places` of those the others do not.
@@ -122,15 +140,16 @@ std::uint32_t fill_items(const Wanted& wanted, std::uint32_t n, PairItem* out) {
   std::uint32_t count = 0;
   for (std::uint32_t row = 0; row + 1 < n; row += kRows) {
     for (std::uint32_t column = row + 1; column < n; column += kColumns) {
-      PairItem item{row, column, 0};
+      PairItem item{row, column, {0, 0}};
       for (std::uint32_t b = column; b < std::min(n, column + kColumns); ++b) {
         for (std::uint32_t a = row; a < std::min(b, row + kRows); ++a) {
           if (wanted(a, b) && !wanted.is_near(a, b)) {
-            item.wanted |= std::uint64_t{1} << (kRows * (b - column) + (a - row));
+            const std::uint32_t c = b - column, at = kRows * (c % kHalfColumns) + (a - row);
+            item.wanted[c / kHalfColumns] |= 1U << (kHalfItem - 1 - at);
           }
         }
       }
-      if (item.wanted != 0) {
+      if ((item.wanted[0] | item.wanted[1]) != 0) {
         out[count++] = item;
       }
     }
@@ -158,8 +177,9 @@ std::size_t CrowdTables::words_needed(const Asset& asset) noexcept {
   const BoneTables& tables = asset.bone_tables();
   const std::size_t near =
       std::max(asset.near_pairs(RadiusKind::kFit).size, asset.near_pairs(RadiusKind::kDetect).size);
-  return words_of(n * sizeof(SphereEntry)) + words_of(tables.term_counts.size * sizeof(GroupEntry)) +
-         words_of(tables.terms.size * sizeof(TermEntry)) + 2 * words_of(tables.terms.size * sizeof(std::uint32_t)) +
+  return words_of(n * sizeof(SphereEntry)) + words_of(n * sizeof(std::uint32_t)) +
+         words_of(tables.term_counts.size * sizeof(GroupEntry)) + words_of(tables.terms.size * sizeof(TermEntry)) +
+         2 * words_of(tables.terms.size * sizeof(std::uint32_t)) +
          words_of(asset.bone_count() * sizeof(std::uint32_t)) +
          words_of(tables.morph_terms.size * sizeof(std::uint32_t)) +
          words_of(tables.morph_terms.size * sizeof(MorphTerm)) + words_of(most_items(n) * sizeof(PairItem)) +
@@ -199,8 +219,11 @@ Status CrowdTables::build(const Asset& asset, RadiusKind radius, const Filter* f
   CrowdTables out;
   Memory entries(memory);
   std::uint32_t first = 0;
-  fill_spheres(asset, radius, filter, entries.take<SphereEntry>(n, first));
-  fill_groups(tables, entries.take<GroupEntry>(tables.term_counts.size, out.groups_at_));
+  auto* spheres = entries.take<SphereEntry>(n, first);
+  fill_spheres(asset, radius, filter, spheres);
+  auto* groups = entries.take<GroupEntry>(tables.term_counts.size, out.groups_at_);
+  fill_groups(tables, groups);
+  fill_order(spheres, n, groups, tables.term_counts.size, entries.take<std::uint32_t>(n, out.order_at_));
   fill_terms(tables, entries.take<TermEntry>(tables.terms.size, out.terms_at_));
   auto* term_bones = entries.take<std::uint32_t>(tables.terms.size, out.term_bones_at_);
   auto* used_bones = entries.take<std::uint32_t>(asset.bone_count(), out.used_bones_at_);
@@ -228,6 +251,7 @@ Status CrowdTables::build(const Asset& asset, RadiusKind radius, const Filter* f
 GroupView Access::view(const CrowdTables& tables, const std::uint64_t* words) {
   GroupView v{};
   v.sphere_entries = reinterpret_cast<const SphereEntry*>(words);
+  v.sphere_order = reinterpret_cast<const std::uint32_t*>(words + tables.order_at_);
   v.groups = reinterpret_cast<const GroupEntry*>(words + tables.groups_at_);
   v.terms = reinterpret_cast<const TermEntry*>(words + tables.terms_at_);
   v.term_bones = reinterpret_cast<const std::uint32_t*>(words + tables.term_bones_at_);

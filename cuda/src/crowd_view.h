@@ -9,10 +9,16 @@
 
 #if defined(__CUDACC__)
 #define SPHERECHAIN_HD __host__ __device__ __forceinline__
-#define SPHERECHAIN_HD_RARE __host__ __device__ __noinline__  // so that its registers are not everyone's
+#define SPHERECHAIN_HD_RARE inline __host__ __device__ __noinline__  // so that its registers are not everyone's
 #else
 #define SPHERECHAIN_HD inline
 #define SPHERECHAIN_HD_RARE inline
+#endif
+
+#if defined(__CUDA_ARCH__)
+#define SPHERECHAIN_UNROLL _Pragma("unroll")
+#else
+#define SPHERECHAIN_UNROLL
 #endif
 
 namespace spherechain::cuda {
@@ -30,9 +36,10 @@ struct alignas(16) Float4 {
 struct alignas(16) SphereEntry {
   float wanted, scale;  // calibrated: wanted * (mean / scale); paper: mean * wanted
   float pivot_count;
+  float pivot_share;  // 1 / pivot_count where that is exact, or 0
   float padding;
   std::uint32_t first_group, group_count;
-  std::uint32_t pivots, unused;
+  std::uint32_t pivots;
 };
 
 struct alignas(16) GroupEntry {
@@ -45,11 +52,13 @@ struct alignas(16) TermEntry {
   float x[kPivotLanes], y[kPivotLanes], z[kPivotLanes], w[kPivotLanes];
 };
 
-// Bit kRows * c + r of `wanted`: sphere first_row + r is tested against first_column + c, which is the larger one.
+// Bit kHalfItem - 1 - (kRows * c + r) of half[h]: sphere first_row + r is tested against first_column + c + h * 4,
+// which is the larger one.
 struct alignas(16) PairItem {
   std::uint32_t first_row, first_column;
-  std::uint64_t wanted;
+  std::uint32_t wanted[2];
 };
+inline constexpr std::uint32_t kHalfItem = 32, kHalfColumns = kHalfItem / kRows;
 
 struct alignas(16) NearEntry {
   std::uint32_t a, b;
@@ -64,6 +73,7 @@ struct MatrixSteps {
 
 struct GroupView {
   const SphereEntry* sphere_entries;
+  const std::uint32_t* sphere_order;  // those with most terms first
   const GroupEntry* groups;
   const TermEntry* terms;
   const std::uint32_t* term_bones;  // places among the used bones
@@ -82,7 +92,7 @@ struct GroupView {
   std::size_t sphere_stride;
   std::size_t bone_stride, instance_stride;  // floats
   MatrixSteps steps;
-  bool wide_matrices, wide_spheres, wide_refitted;  // aligned for reads and writes of 16 bytes
+  bool wide_matrices, wide_spheres;  // aligned for reads and writes of 16 bytes
   std::uint32_t instance_count;
 
   Sphere* refitted;
@@ -100,7 +110,7 @@ struct GroupView {
 // In bytes from the start of a block's shared memory. Matrices and morph weights are no longer needed when bits are
 // written, and lie in the same place.
 struct SharedLayout {
-  std::size_t matrices, morph_weights, bits, ordered_bits, spheres, counts, starts, size;
+  std::size_t matrices, morph_weights, bits, ordered_bits, spheres, powers, counts, starts, size;
 };
 
 SPHERECHAIN_HD std::uint32_t half_words(const GroupView& v) { return 2 * v.bit_words; }
@@ -115,7 +125,8 @@ SPHERECHAIN_HD SharedLayout shared_layout(const GroupView& v) {
   out.ordered_bits = v.bits != nullptr ? table : 0;
   const std::size_t inputs = matrices + up(weights), outputs = out.ordered_bits + (v.pairs != nullptr ? table : 0);
   out.spheres = inputs > outputs ? inputs : outputs;
-  out.counts = out.spheres + std::size_t{v.sphere_count} * kPitch * sizeof(Float4);
+  out.powers = out.spheres + std::size_t{v.sphere_count} * kPitch * sizeof(Float4);
+  out.counts = out.powers + up(std::size_t{v.sphere_count} * kPitch * sizeof(float));
   out.starts = out.counts + kLanes * sizeof(std::uint32_t);
   out.size = out.starts + kLanes * sizeof(std::uint64_t);
   return out;
@@ -133,7 +144,8 @@ struct Place {
 struct Shared {
   Float4* matrices;  // [3 * bone + row][lane]
   float* morph_weights;
-  Float4* spheres;  // [sphere][lane]
+  Float4* spheres;  // [sphere][lane], with the filter's padding
+  float* powers;    // [sphere][lane]
   std::uint32_t* bits;
   std::uint32_t* ordered_bits;  // in the order of sorted pairs
   std::uint32_t* counts;
@@ -146,6 +158,7 @@ struct Shared {
     spheres = reinterpret_cast<Float4*>(bytes + layout.spheres);
     bits = reinterpret_cast<std::uint32_t*>(bytes + layout.bits);
     ordered_bits = reinterpret_cast<std::uint32_t*>(bytes + layout.ordered_bits);
+    powers = reinterpret_cast<float*>(bytes + layout.powers);
     counts = reinterpret_cast<std::uint32_t*>(bytes + layout.counts);
     starts = reinterpret_cast<std::uint64_t*>(bytes + layout.starts);
   }

@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: MIT
+// Goal P5: crowds on the GPU, against the CPU, a neighbour's mapping and what the device can do at most. One command,
+// one table: spherechain_bench_gpu FOLDER, a folder that spherechain_gpu_data wrote. Every figure is of one run, passes
+// in random order, pairs and spheres compared with the CPU's first.
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <random>
+#include <string>
+#include <thread>
+
+#include "ceilings.h"
+#include "device_crowd.h"
+#include "spherechain/cuda_device.h"
+
+namespace {
+
+using namespace spherechain;
+using namespace spherechain::bench;
+
+constexpr std::size_t kInstances = 65536, kPasses = 41, kLaunches = 8;
+
+struct Times {
+  std::vector<double> values;
+
+  void add(double value) { values.push_back(value); }
+  double median() const {
+    std::vector<double> sorted = values;
+    std::sort(sorted.begin(), sorted.end());
+    return sorted[sorted.size() / 2];
+  }
+  double least() const { return *std::min_element(values.begin(), values.end()); }
+};
+
+double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+// Every character of the folder, both radii, in launches of all its poses.
+bool check_all(const std::vector<std::string>& names, const std::string& folder) {
+  bool all_right = true;
+  std::printf("%-24s %6s %8s %8s %10s  against the CPU: spheres, counts, bits, list\n", "character", "poses", "spheres",
+              "radius", "pairs");
+  for (const std::string& name : names) {
+    PosedAsset posed;
+    std::string error;
+    if (!read_posed_asset(folder, name, posed, error)) {
+      std::fprintf(stderr, "spherechain_bench_gpu: %s\n", error.c_str());
+      std::exit(3);
+    }
+    if (posed.poses.pose_count == 0) {
+      continue;
+    }
+    for (const RadiusKind radius : {RadiusKind::kFit, RadiusKind::kDetect}) {
+      const Reference reference = refit_and_detect(posed, radius);
+      DeviceCrowd crowd(posed, reference, radius, posed.poses.pose_count);
+      constexpr unsigned kAll =
+          DeviceCrowd::kCounts | DeviceCrowd::kBits | DeviceCrowd::kList | DeviceCrowd::kSpheres | DeviceCrowd::kBounds;
+      crowd.enqueue(true, kAll, posed.poses.pose_count);
+      bool is_right = crowd.is_right(kAll);
+      crowd.enqueue(false, kAll & ~DeviceCrowd::kSpheres, posed.poses.pose_count);
+      is_right &= crowd.is_right(kAll & ~DeviceCrowd::kSpheres);
+      std::size_t pairs = 0;
+      for (const std::uint32_t count : reference.counts) {
+        pairs += count;
+      }
+      std::printf("%-24s %6zu %8zu %8s %10zu  %s\n", name.c_str(), posed.poses.pose_count, posed.asset.spheres().size,
+                  radius == RadiusKind::kFit ? "fit" : "detect", pairs, is_right ? "equal, bit for bit" : "DIFFERENT");
+      all_right &= is_right;
+    }
+  }
+  return all_right;
+}
+
+struct Contestant {
+  std::string name;
+  std::function<void()> enqueue;
+  double bytes = 0;  // an instance
+  Times times;       // nanoseconds an instance
+};
+
+// Bones in, counts and bits out, on the CPU. Nanoseconds an instance.
+class HostCrowd {
+ public:
+  HostCrowd(const PosedAsset& posed, std::size_t instances, std::size_t threads)
+      : threads_(threads), tasks_(4 * threads), words_(CrowdContext::words_needed(posed.asset, tasks_)) {
+    const std::size_t size = posed.poses.bone_count * kMatrixFloats;
+    matrices_.resize(instances * size);
+    for (std::size_t i = 0; i < instances; ++i) {
+      std::copy_n(posed.poses.matrices_of(i % posed.poses.pose_count), size, &matrices_[i * size]);
+    }
+    counts_.resize(instances);
+    bits_.resize(instances * DetectJob::bit_words(posed.asset));
+    context_.words = {words_.data(), words_.size()};
+    job_.asset = &posed.asset;
+    job_.bones = {matrices_.data(), posed.poses.bone_count, MatrixLayout::kRowMajor3x4, 48};
+    job_.instance_stride = size * sizeof(float);
+    job_.context = &context_;
+    job_.task_count = tasks_;
+    job_.hook = {run_on_threads, &threads_};
+  }
+
+  double time(std::size_t instances) {
+    job_.instance_count = instances;
+    job_.counts = {counts_.data(), instances};
+    job_.bits = {bits_.data(), instances * (bits_.size() / counts_.size())};
+    const double begin = seconds();
+    if (job_.run() != Status::kOk) {
+      std::exit(1);
+    }
+    return (seconds() - begin) * 1e9 / static_cast<double>(instances);
+  }
+
+ private:
+  static void run_on_threads(void* user, std::size_t count, void (*task)(void*, std::size_t), void* data) {
+    const std::size_t threads = *static_cast<std::size_t*>(user);
+    std::atomic<std::size_t> next{0};
+    const auto work = [&] {
+      for (std::size_t i = next++; i < count; i = next++) {
+        task(data, i);
+      }
+    };
+    std::vector<std::thread> others;
+    for (std::size_t t = 1; t < threads; ++t) {
+      others.emplace_back(work);
+    }
+    work();
+    for (std::thread& other : others) {
+      other.join();
+    }
+  }
+
+  std::size_t threads_, tasks_;
+  std::vector<std::uint64_t> words_, bits_;
+  std::vector<float> matrices_;
+  std::vector<std::uint32_t> counts_;
+  CrowdContext context_;
+  spherechain::CrowdJob job_;
+};
+
+struct Ceilings {
+  double bytes_a_second, multiply_adds_a_second;
+};
+
+Ceilings measure_ceilings(int multiprocessors) {
+  constexpr std::size_t kBytes = std::size_t{1} << 31;
+  DeviceArray<char> from(kBytes), to(kBytes);
+  DeviceArray<float> sink(1);
+  DeviceClock clock;
+  Times copy, multiply;
+  double operations = 0;
+  for (int pass = 0; pass < 9; ++pass) {
+    clock.start();
+    must(cudaMemcpyAsync(to.data(), from.data(), kBytes, cudaMemcpyDeviceToDevice));
+    copy.add(clock.stop());
+    clock.start();
+    operations = enqueue_multiply_adds(multiprocessors, sink.data());
+    must(cudaGetLastError());
+    multiply.add(clock.stop());
+  }
+  return {2.0 * kBytes / copy.least() * 1e3, operations / multiply.least() * 1e3};
+}
+
+// Does the goal's line, and says so.
+void judge(const char* what, double value, const char* unit, bool is_met, const char* goal) {
+  std::printf("  P5 %-58s %8.2f %s  goal: %s  %s\n", what, value, unit, goal, is_met ? "met" : "MISSED");
+}
+
+bool bench_character(const std::string& folder, const std::string& name, const Ceilings& ceilings, bool has_goals) {
+  PosedAsset posed;
+  std::string error;
+  if (!read_posed_asset(folder, name, posed, error)) {
+    std::fprintf(stderr, "spherechain_bench_gpu: %s\n", error.c_str());
+    std::exit(3);
+  }
+  const Reference reference = refit_and_detect(posed, RadiusKind::kDetect);
+  DeviceCrowd crowd(posed, reference, RadiusKind::kDetect, kInstances);
+  const std::size_t n = posed.asset.spheres().size;
+
+  std::vector<IndexPair> wanted;
+  for (std::size_t b = 1; b < n; ++b) {
+    for (std::size_t a = 0; a < b; ++a) {
+      const std::size_t bit = b * (b - 1) / 2 + a;
+      if ((posed.asset.ignored()[bit / 64] >> (bit % 64) & 1U) == 0) {
+        wanted.push_back({static_cast<std::int16_t>(a), static_cast<std::int16_t>(b)});
+      }
+    }
+  }
+  const DeviceArray<IndexPair> pairs(wanted);
+  const DeviceArray<Deepest> deepest(kInstances);
+
+  using Crowd = DeviceCrowd;
+  std::vector<Contestant> all;
+  const auto add = [&](const char* text, bool from_bones, unsigned outputs) {
+    all.push_back({text,
+                   [&crowd, from_bones, outputs] { crowd.enqueue(from_bones, outputs, kInstances); },
+                   static_cast<double>(crowd.bytes_moved(from_bones, outputs)),
+                   {}});
+    crowd.enqueue(from_bones, outputs, kInstances);
+    return crowd.is_right(outputs);
+  };
+  bool is_right = add("bones in, counts and bits out", true, Crowd::kCounts | Crowd::kBits);
+  is_right &= add("bones in, counts out", true, Crowd::kCounts);
+  is_right &= add("bones in, counts and list out", true, Crowd::kCounts | Crowd::kList);
+  is_right &= add("bones in, counts, bits, spheres, bounds out", true,
+                  Crowd::kCounts | Crowd::kBits | Crowd::kSpheres | Crowd::kBounds);
+  is_right &= add("spheres in, counts and bits out", false, Crowd::kCounts | Crowd::kBits);
+  is_right &= add("spheres in, counts out", false, Crowd::kCounts);
+  all.push_back({"spheres in, deepest pair out: a block a character",
+                 [&] {
+                   enqueue_block_a_character(crowd.spheres(), n, kInstances, pairs.data(), wanted.size(),
+                                             deepest.data());
+                   must(cudaGetLastError());
+                 },
+                 static_cast<double>(n * sizeof(Sphere) + sizeof(Deepest)),
+                 {}});
+  if (!is_right) {
+    return false;
+  }
+
+  DeviceClock clock;
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < kPasses * all.size(); ++i) {
+    order.push_back(i % all.size());
+  }
+  std::shuffle(order.begin(), order.end(), std::mt19937(1));
+  for (const Contestant& one : all) {
+    one.enqueue();  // warm
+  }
+  for (const std::size_t i : order) {
+    clock.start();
+    for (std::size_t launch = 0; launch < kLaunches; ++launch) {
+      all[i].enqueue();
+    }
+    all[i].times.add(clock.stop() * 1e6 / (kInstances * kLaunches));
+  }
+  std::printf(
+      "\n%s: %zu spheres, %zu bones, %zu pairs tested (%zu of them near pairs), %zu characters in 1,024 poses\n",
+      name.c_str(), n, posed.asset.bone_count(), wanted.size(), posed.asset.near_pairs(RadiusKind::kDetect).size,
+      kInstances);
+  std::printf("  %-58s %9s %9s %16s %18s\n", "ns a character", "median", "min", "bytes, of copy", "pair tests/s");
+  for (const Contestant& one : all) {
+    const double median = one.times.median();
+    std::printf("  %-58s %9.3f %9.3f %7.0f, %5.1f %% %14.2f e12\n", one.name.c_str(), median, one.times.least(),
+                one.bytes, 100 * one.bytes / median * 1e9 / ceilings.bytes_a_second,
+                static_cast<double>(wanted.size()) / median * 1e9 / 1e12);
+  }
+  const double fused = all[0].times.median(), detect = all[4].times.median(), block = all[6].times.median();
+  std::size_t terms = posed.asset.bone_tables().terms.size;
+  const double least_operations = static_cast<double>(terms * 96 + wanted.size() * 4);
+  std::printf(
+      "  multiply-adds of refit and pair tests alone: %.0f a character, %.3f ns at the device's ceiling (%.0f %% of "
+      "the fused time)\n",
+      least_operations, least_operations / ceilings.multiply_adds_a_second * 1e9,
+      100 * least_operations / ceilings.multiply_adds_a_second * 1e9 / fused);
+  if (has_goals) {
+    judge("bones in, pairs out, fused", fused, "ns", fused <= 3, "at most 3");
+    judge("spheres in, pairs out", detect, "ns", detect <= 1.5, "at most 1.5");
+    judge("over a block a character (cuRobo's mapping)", block / detect, "x ", block / detect >= 5, "at least 5");
+  }
+
+  const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
+  HostCrowd one_core(posed, 16384, 1), all_cores(posed, 16384, cores);
+  Times one, many;
+  for (int pass = 0; pass < 7; ++pass) {
+    one.add(one_core.time(16384));
+    many.add(all_cores.time(16384));
+  }
+  std::printf(
+      "  the CPU's CrowdJob (%s), counts and bits: 1 core %.0f ns, %zu threads %.1f ns a character: %.0f and %.0f "
+      "times the GPU's\n",
+      to_string(best_target()), one.median(), cores, many.median(), one.median() / fused, many.median() / fused);
+
+  std::printf("  %-12s %14s %24s %14s %14s   us a call, bones in, counts and bits out\n", "characters", "GPU, events",
+              "GPU, launch to finish", "1 core", "all cores");
+  for (std::size_t count = 1; count <= kInstances; count *= 4) {
+    Times device, host, single, multiple;
+    for (int pass = 0; pass < 21; ++pass) {
+      clock.start();
+      crowd.enqueue(true, Crowd::kCounts | Crowd::kBits, count);
+      device.add(clock.stop() * 1e3);
+      const double begin = seconds();
+      crowd.enqueue(true, Crowd::kCounts | Crowd::kBits, count);
+      must(cudaDeviceSynchronize());
+      host.add((seconds() - begin) * 1e6);
+      if (count <= 16384 && pass < 7) {
+        single.add(one_core.time(count) * static_cast<double>(count) / 1e3);
+        multiple.add(all_cores.time(count) * static_cast<double>(count) / 1e3);
+      }
+    }
+    std::printf("  %-12zu %14.1f %24.1f", count, device.median(), host.median());
+    if (!single.values.empty()) {
+      std::printf(" %14.1f %14.1f", single.median(), multiple.median());
+    }
+    std::printf("\n");
+  }
+  return true;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: spherechain_bench_gpu FOLDER (that spherechain_gpu_data wrote)\n");
+    return 2;
+  }
+  if (cuda::check_device() != Status::kOk) {
+    std::fprintf(stderr, "spherechain_bench_gpu: no CUDA device: %s\n", cuda::last_device_error());
+    return 1;
+  }
+  std::vector<std::string> names;
+  std::error_code failure;
+  for (const auto& entry : std::filesystem::directory_iterator(argv[1], failure)) {
+    if (entry.path().extension() == ".poses") {
+      names.push_back(entry.path().stem().string());
+    }
+  }
+  std::sort(names.begin(), names.end());
+  const auto has = [&](const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
+  if (!has("human") || !has("body")) {
+    std::fprintf(stderr,
+                 "spherechain_bench_gpu: %s: has no human.poses and body.poses (spherechain_gpu_data -o FOLDER)\n",
+                 argv[1]);
+    return 3;
+  }
+  cudaDeviceProp properties{};
+  must(cudaGetDeviceProperties(&properties, 0));
+  int driver = 0;
+  must(cudaDriverGetVersion(&driver));
+  std::printf("%s, %d multiprocessors, CUDA driver %d.%d\n", properties.name, properties.multiProcessorCount,
+              driver / 1000, driver % 1000 / 10);
+  if (!check_all(names, argv[1])) {
+    std::fprintf(stderr, "spherechain_bench_gpu: the GPU's results differ from the CPU's\n");
+    return 1;
+  }
+  const Ceilings ceilings = measure_ceilings(properties.multiProcessorCount);
+  std::printf("\nceilings: copy %.2f TB/s (read and written), %.1f T multiply-adds/s\n", ceilings.bytes_a_second / 1e12,
+              ceilings.multiply_adds_a_second / 1e12);
+  return bench_character(argv[1], "human", ceilings, true) && bench_character(argv[1], "body", ceilings, true) ? 0 : 1;
+}

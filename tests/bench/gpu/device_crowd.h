@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// A crowd whose inputs and outputs are on the device: instance i is in pose i of the file, again and again.
+#pragma once
+
+#include <memory>
+
+#include "device.h"
+#include "posed_asset.h"
+#include "spherechain/cuda_crowd.h"
+#include "spherechain/detect.h"
+
+namespace spherechain::bench {
+
+// What the CPU's jobs make of each pose, with detect or fit radii.
+struct Reference {
+  std::vector<Sphere> spheres;        // pose after pose
+  std::vector<std::uint32_t> counts;  // a pose each
+  std::vector<std::uint64_t> bits;    // bit words a pose
+};
+Reference refit_and_detect(const PosedAsset& posed, RadiusKind radius);
+
+class DeviceCrowd {
+ public:
+  DeviceCrowd(const PosedAsset& posed, const Reference& reference, RadiusKind radius, std::size_t instances);
+
+  enum Output : unsigned { kCounts = 1, kBits = 2, kList = 4, kSpheres = 8, kBounds = 16 };
+  // One launch on the default stream: of the first `instances`, from bones or from spheres. Two sets of inputs take
+  // turns, so that none is still in the device's cache from the launch before.
+  void enqueue(bool from_bones, unsigned outputs, std::size_t instances);
+
+  // Pairs and spheres of the last launch of all instances against the reference, bit for bit; prints what differs.
+  bool is_right(unsigned outputs) const;
+
+  const Sphere* spheres() const { return spheres_[0].data(); }
+  std::size_t bytes_moved(bool from_bones, unsigned outputs) const;  // an instance: inputs read once, outputs written
+
+ private:
+  const PosedAsset& posed_;
+  const Reference& reference_;
+  std::size_t instances_, launches_ = 0;
+  std::vector<std::uint64_t> words_;
+  cuda::CrowdTables tables_;
+  std::unique_ptr<DeviceArray<std::uint64_t>> device_tables_;
+  std::vector<DeviceArray<float>> matrices_, weights_;
+  std::vector<DeviceArray<Sphere>> spheres_;
+  DeviceArray<Sphere> refitted_, bounds_;
+  DeviceArray<std::uint32_t> counts_;
+  DeviceArray<std::uint64_t> bits_, starts_, pair_count_;
+  DeviceArray<CrowdPair> pairs_;
+};
+
+}  // namespace spherechain::bench

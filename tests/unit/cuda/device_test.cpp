@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// What only a device shows: streams, and graphs.
+#include <cuda_runtime_api.h>
+#include <doctest/doctest.h>
+
+#include <vector>
+
+#include "jobs.h"
+#include "spherechain/cuda_crowd.h"
+#include "spherechain/cuda_device.h"
+#include "tiny_asset.h"
+
+namespace spherechain::test {
+
+long long count_wrong_roots();  // count_wrong_roots.cu
+
+namespace {
+
+template <typename T>
+T* on_device(const std::vector<T>& from) {
+  void* to = nullptr;
+  REQUIRE(cudaMalloc(&to, from.size() * sizeof(T)) == cudaSuccess);
+  REQUIRE(cudaMemcpy(to, from.data(), from.size() * sizeof(T), cudaMemcpyHostToDevice) == cudaSuccess);
+  return static_cast<T*>(to);
+}
+
+}  // namespace
+
+TEST_CASE("the kernel's square root is the rounded one for every float it is used for") {
+  CHECK(count_wrong_roots() == 0);
+}
+
+TEST_CASE("a job is captured into a graph, and each replay finds the pairs of the spheres as they are then") {
+  constexpr std::size_t kSpheres = 40, kInstances = 100;
+  std::mt19937 random(2);
+  const OpenedAsset opened(random_asset(kSpheres, 2).parts);
+  std::vector<std::uint64_t> words(cuda::CrowdTables::words_needed(opened.asset));
+  cuda::CrowdTables tables;
+  REQUIRE(tables.build(opened.asset, RadiusKind::kDetect, nullptr, {words.data(), words.size()}) == Status::kOk);
+
+  cuda::CrowdGroup group;
+  group.tables = &tables;
+  group.device_tables = on_device(words);
+  group.instance_count = kInstances;
+  auto* spheres = on_device(std::vector<Sphere>(kSpheres * kInstances));
+  group.spheres = spheres;
+  group.counts = on_device(std::vector<std::uint32_t>(kInstances));
+  group.starts = on_device(std::vector<std::uint64_t>(kInstances));
+  group.pairs = on_device(std::vector<CrowdPair>(kInstances * 1000));
+  group.pair_capacity = kInstances * 1000;
+  group.pair_count = on_device(std::vector<std::uint64_t>(1));
+
+  cudaStream_t stream = nullptr;
+  REQUIRE(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking) == cudaSuccess);
+  const cuda::CrowdJob job{{&group, 1}, stream};
+  cudaGraph_t graph = nullptr;
+  REQUIRE(cudaStreamBeginCapture(stream, cudaStreamCaptureModeGlobal) == cudaSuccess);
+  REQUIRE(job.run() == Status::kOk);
+  REQUIRE(cudaStreamEndCapture(stream, &graph) == cudaSuccess);
+  cudaGraphExec_t replayed = nullptr;
+  REQUIRE(cudaGraphInstantiate(&replayed, graph, 0) == cudaSuccess);
+
+  for (int replay = 0; replay < 3; ++replay) {
+    std::vector<Sphere> all;
+    std::vector<std::uint32_t> wanted;
+    std::size_t total = 0;
+    for (std::size_t i = 0; i < kInstances; ++i) {
+      const std::vector<Sphere> one = random_spheres(kSpheres, random);
+      all.insert(all.end(), one.begin(), one.end());
+      const Detected found = detect(opened.asset, one, Method::kM2, RadiusKind::kDetect, Target::kScalar);
+      wanted.push_back(static_cast<std::uint32_t>(found.pairs.size()));
+      total += found.pairs.size();
+    }
+    REQUIRE(cudaMemcpyAsync(spheres, all.data(), all.size() * sizeof(Sphere), cudaMemcpyHostToDevice, stream) ==
+            cudaSuccess);
+    REQUIRE(cudaGraphLaunch(replayed, stream) == cudaSuccess);
+    REQUIRE(cudaStreamSynchronize(stream) == cudaSuccess);
+    std::vector<std::uint32_t> counts(kInstances);
+    std::uint64_t count = 0;
+    cudaMemcpy(counts.data(), group.counts, kInstances * sizeof counts[0], cudaMemcpyDeviceToHost);
+    cudaMemcpy(&count, group.pair_count, sizeof count, cudaMemcpyDeviceToHost);
+    CHECK(counts == wanted);
+    CHECK(count == total);
+  }
+  cudaGraphExecDestroy(replayed);
+  cudaGraphDestroy(graph);
+  cudaStreamDestroy(stream);
+  for (const void* memory : {static_cast<const void*>(group.device_tables), static_cast<const void*>(spheres),
+                             static_cast<const void*>(group.counts), static_cast<const void*>(group.starts),
+                             static_cast<const void*>(group.pairs), static_cast<const void*>(group.pair_count)}) {
+    cudaFree(const_cast<void*>(memory));
+  }
+}
+
+}  // namespace spherechain::test
