@@ -6,6 +6,7 @@
 
 #include <cfloat>
 #include <cmath>
+#include <cstring>
 
 #include "crowd_view.h"
 
@@ -61,14 +62,33 @@ SPHERECHAIN_HD std::uint32_t shift_in_sign(std::uint32_t word, float value) {
 #endif
 }
 
-// Lanes that went different ways go on together; for speed alone.
-SPHERECHAIN_HD void rejoin() {
+// Whether it is so for any lane of the warp, or of those that run together: lanes stay together in loops that ask it.
+SPHERECHAIN_HD bool any_lane(bool is_so) {
 #if defined(__CUDA_ARCH__)
-  __syncwarp();
+  return __any_sync(0xFFFFFFFFU, is_so) != 0;
+#else
+  return is_so;
 #endif
 }
 
-SPHERECHAIN_HD_RARE float any_root(float x) { return sqrtf(x); }
+SPHERECHAIN_HD void raise_to(std::uint32_t* shared, float value) {  // value >= 0
+#if defined(__CUDA_ARCH__)
+  atomicMax(shared, __float_as_uint(value));
+#else
+  float own = 0;
+  std::memcpy(&own, shared, sizeof own);
+  own = own < value ? value : own;
+  std::memcpy(shared, &own, sizeof own);
+#endif
+}
+
+SPHERECHAIN_HD std::uint32_t count_bits(std::uint32_t word) {
+#if defined(__CUDA_ARCH__)
+  return static_cast<std::uint32_t>(__popc(word));
+#else
+  return static_cast<std::uint32_t>(__builtin_popcount(word));
+#endif
+}
 
 // What sqrtf does where `x` is from kLeastRoot to FLT_MAX, without its test for that.
 inline constexpr float kLeastRoot = 0x1p-100F;
@@ -126,17 +146,13 @@ SPHERECHAIN_HD void load_matrices(const GroupView& v, const Shared& shared, cons
 // Step 1 where the instances come as spheres.
 SPHERECHAIN_HD void load_spheres(const GroupView& v, const Shared& shared, const Place& at) {
   for (std::uint32_t i = at.lane(); i < v.sphere_count; i += kLanes) {
-    const float padding = v.has_padding ? v.sphere_entries[i].padding : 0.0F;
     for (std::uint32_t to = at.warp(); to < kLanes; to += at.warps()) {
       const Sphere* from = v.spheres + instance_of(v, at, to) * v.sphere_stride + i;
-      Float4 sphere;
       if (v.wide_spheres) {
-        sphere = *reinterpret_cast<const Float4*>(from);
+        shared.spheres[i * kPitch + to] = *reinterpret_cast<const Float4*>(from);
       } else {
-        sphere = {from->x, from->y, from->z, from->radius};
+        shared.spheres[i * kPitch + to] = {from->x, from->y, from->z, from->radius};
       }
-      sphere.w += padding;
-      shared.spheres[i * kPitch + to] = sphere;
     }
   }
 }
@@ -146,9 +162,10 @@ template <bool kMorphs>
 SPHERECHAIN_HD void move_group(const GroupView& v, const Shared& shared, std::uint32_t lane, const GroupEntry& group,
                                float (&p)[3][kPivotLanes]) {
   float even[3][kPivotLanes] = {}, odd[3][kPivotLanes] = {};
-  std::uint32_t morph_term = group.first_morph_term;
-  for (std::uint32_t t = group.first_term; t < group.first_term + group.term_count; ++t) {
-    const Float4* matrix = shared.matrices + 3 * v.term_bones[t] * kPitch + lane;
+  std::uint32_t morph_term = group.first_morph_term, next_bone = v.term_bones[group.first_term];
+  for (std::uint32_t t = group.first_term, end = t + group.term_count; t < end; ++t) {
+    const Float4* matrix = shared.matrices + 3 * next_bone * kPitch + lane;
+    next_bone = v.term_bones[t + 1];
     const Float4 rows[] = {matrix[0], matrix[kPitch], matrix[2 * kPitch]};
     TermEntry q = v.terms[t];
     if (kMorphs) {
@@ -189,34 +206,19 @@ SPHERECHAIN_HD void add_shares(const GroupEntry& group, const float (&p)[3][kPiv
   }
 }
 
-SPHERECHAIN_HD void add_distances(const float (&p)[3][kPivotLanes], const float (&center)[3], std::uint32_t used,
-                                  bool is_first, float (&distances)[kPivotLanes]) {
-  float squares[kPivotLanes], least = FLT_MAX, most = 0;
-  for (std::size_t k = 0; k < kPivotLanes; ++k) {
-    const float dx = p[0][k] - center[0], dy = p[1][k] - center[1], dz = p[2][k] - center[2];
-    squares[k] = k < used ? fused(dz, dz, fused(dy, dy, dx * dx)) : 1.0F;
-    least = fminf(least, squares[k]);
-    most = fmaxf(most, squares[k]);
-  }
-  const bool is_usual = least >= kLeastRoot && most <= FLT_MAX;
-  for (std::size_t k = 0; k < kPivotLanes; ++k) {
-    float distance = is_usual ? usual_root(squares[k]) : any_root(squares[k]);
-    distance = k < used ? distance : 0.0F;
-    distances[k] = is_first ? distance : distances[k] + distance;
-  }
+SPHERECHAIN_HD float squared_distance(const float (&p)[3][kPivotLanes], const float (&center)[3], std::size_t k) {
+  const float dx = p[0][k] - center[0], dy = p[1][k] - center[1], dz = p[2][k] - center[2];
+  return fused(dz, dz, fused(dy, dy, dx * dx));
 }
 
-SPHERECHAIN_HD Float4 sphere_of(const GroupView& v, const SphereEntry& sphere, const float (&center)[3],
-                                const float (&distances)[kPivotLanes]) {
-  const float sum = tree(distances);
-  const float mean = sphere.pivot_share != 0 ? sum * sphere.pivot_share : sum / sphere.pivot_count;
-  return {center[0], center[1], center[2], v.calibrated ? sphere.wanted * (mean / sphere.scale) : mean * sphere.wanted};
+SPHERECHAIN_HD float radius_of(const GroupView& v, const SphereEntry& sphere, float mean) {
+  return v.calibrated ? sphere.wanted * (mean / sphere.scale) : mean * sphere.wanted;
 }
 
-// A sphere of more than eight pivots: there is no memory to keep any number of them in, so they are moved twice.
+// Any number of pivots. There is no memory to keep any number of them in, so they are moved twice.
 template <bool kMorphs>
-SPHERECHAIN_HD_RARE Float4 refit_large_sphere(const GroupView& v, const Shared& shared, std::uint32_t lane,
-                                              const SphereEntry& sphere) {
+SPHERECHAIN_HD_RARE Float4 refit_any_sphere(const GroupView& v, const Shared& shared, std::uint32_t lane,
+                                            const SphereEntry& sphere) {
   float p[3][kPivotLanes], shares[3][kPivotLanes] = {}, distances[kPivotLanes] = {};
   for (std::uint32_t g = 0; g < sphere.group_count; ++g) {
     const GroupEntry& group = v.groups[sphere.first_group + g];
@@ -226,45 +228,72 @@ SPHERECHAIN_HD_RARE Float4 refit_large_sphere(const GroupView& v, const Shared& 
   const float center[3] = {tree(shares[0]), tree(shares[1]), tree(shares[2])};
   for (std::uint32_t g = 0; g < sphere.group_count; ++g) {
     move_group<kMorphs>(v, shared, lane, v.groups[sphere.first_group + g], p);
-    add_distances(p, center, sphere.pivots - g * std::uint32_t{kPivotLanes}, g == 0, distances);
+    for (std::size_t k = 0; k < kPivotLanes; ++k) {
+      const bool is_used = g * kPivotLanes + k < sphere.pivot_count;
+      const float distance = is_used ? sqrtf(squared_distance(p, center, k)) : 0.0F;
+      distances[k] = g == 0 ? distance : distances[k] + distance;
+    }
   }
-  return sphere_of(v, sphere, center, distances);
+  const float mean = tree(distances) / static_cast<float>(sphere.pivot_count);
+  return {center[0], center[1], center[2], radius_of(v, sphere, mean)};
 }
 
+SPHERECHAIN_HD_RARE float any_root(float x) { return sqrtf(x); }
+
+// The same for eight pivots, which is what the baker gives a sphere.
 template <bool kMorphs>
-SPHERECHAIN_HD Float4 refit_sphere(const GroupView& v, const Shared& shared, std::uint32_t lane,
-                                   const SphereEntry& sphere) {
-  if (sphere.group_count != 1) {
-    return refit_large_sphere<kMorphs>(v, shared, lane, sphere);
-  }
-  float p[3][kPivotLanes], shares[3][kPivotLanes] = {}, distances[kPivotLanes] = {};
-  const GroupEntry& group = v.groups[sphere.first_group];
-  move_group<kMorphs>(v, shared, lane, group, p);
-  add_shares(group, p, true, shares);
+SPHERECHAIN_HD Float4 refit_usual_sphere(const GroupView& v, const Shared& shared, std::uint32_t lane,
+                                         const SphereEntry& sphere) {
+  float p[3][kPivotLanes], shares[3][kPivotLanes] = {}, distances[kPivotLanes];
+  move_group<kMorphs>(v, shared, lane, sphere.group, p);
+  add_shares(sphere.group, p, true, shares);
   const float center[3] = {tree(shares[0]), tree(shares[1]), tree(shares[2])};
-  add_distances(p, center, sphere.pivots, true, distances);
-  return sphere_of(v, sphere, center, distances);
+  float least = FLT_MAX, most = 0;
+  for (std::size_t k = 0; k < kPivotLanes; ++k) {
+    distances[k] = squared_distance(p, center, k);
+    least = fminf(least, distances[k]);
+    most = fmaxf(most, distances[k]);
+  }
+  if (least >= kLeastRoot && most <= FLT_MAX) {
+    for (std::size_t k = 0; k < kPivotLanes; ++k) {
+      distances[k] = usual_root(distances[k]);
+    }
+  } else {
+    for (std::size_t k = 0; k < kPivotLanes; ++k) {
+      distances[k] = any_root(distances[k]);
+    }
+  }
+  static_assert(kPivotLanes == 8, "the quotient is exact");
+  const float mean = tree(distances) * 0.125F;
+  return {center[0], center[1], center[2], radius_of(v, sphere, mean)};
 }
 
-// Step 2: a warp a sphere, dealt out there and back, from those with most terms on.
+// Step 2: a warp a sphere, dealt out there and back.
 template <bool kMorphs>
 SPHERECHAIN_HD void refit_spheres(const GroupView& v, const Shared& shared, const Place& at) {
-  const std::uint32_t lane = at.lane();
-  const bool is_written = v.refitted != nullptr && lane < instances_in(v, at);
   for (std::uint32_t first = 0, round = 0; first < v.sphere_count; first += at.warps(), ++round) {
     const std::uint32_t place = first + (round % 2 == 0 ? at.warp() : at.warps() - 1 - at.warp());
-    if (place >= v.sphere_count) {
-      continue;
+    if (place < v.sphere_count) {
+      const SphereEntry& sphere = v.sphere_entries[place];
+      shared.spheres[sphere.sphere * kPitch + at.lane()] =
+          sphere.pivot_count == kPivotLanes ? refit_usual_sphere<kMorphs>(v, shared, at.lane(), sphere)
+                                            : refit_any_sphere<kMorphs>(v, shared, at.lane(), sphere);
     }
-    const std::uint32_t i = v.sphere_order[place];
-    Float4 sphere = refit_sphere<kMorphs>(v, shared, lane, v.sphere_entries[i]);
-    if (is_written) {
-      Sphere* const to = v.refitted + std::size_t{at.block * kLanes + lane} * v.sphere_count + i;
-      *to = {sphere.x, sphere.y, sphere.z, sphere.w};
+  }
+}
+
+// Step 3, where they are asked for: a warp an instance.
+SPHERECHAIN_HD void write_spheres(const GroupView& v, const Shared& shared, const Place& at) {
+  for (std::uint32_t from = at.warp(); from < instances_in(v, at); from += at.warps()) {
+    Sphere* const to = v.refitted + std::size_t{at.block * kLanes + from} * v.sphere_count;
+    for (std::uint32_t i = at.lane(); i < v.sphere_count; i += kLanes) {
+      const Float4 s = shared.spheres[i * kPitch + from];
+      if (v.wide_refitted) {
+        *reinterpret_cast<Float4*>(to + i) = s;
+      } else {
+        to[i] = {s.x, s.y, s.z, s.w};
+      }
     }
-    sphere.w += v.has_padding ? v.sphere_entries[i].padding : 0.0F;
-    shared.spheres[i * kPitch + lane] = sphere;
-    rejoin();
   }
 }
 
@@ -281,11 +310,31 @@ SPHERECHAIN_HD float power_of(const Float4& s, const Float4& origin) {
   return squared_length + squared_radius <= kMostExtent ? power : INFINITY;
 }
 
-// Step 3: a warp a sphere; and the outputs' bits, which lie where the matrices were.
+// Step 4: a warp a sphere; and the outputs' bits, which lie where the matrices were.
 SPHERECHAIN_HD void prepare_pairs(const GroupView& v, const Shared& shared, const Place& at) {
-  const Float4 origin = shared.spheres[at.lane()];
+  const std::uint32_t lane = at.lane();
+  float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  const Float4 origin = shared.spheres[lane];
   for (std::uint32_t i = at.warp(); i < v.sphere_count; i += at.warps()) {
-    shared.powers[i * kPitch + at.lane()] = power_of(shared.spheres[i * kPitch + at.lane()], origin);
+    Float4 sphere = shared.spheres[i * kPitch + lane];
+    if (v.has_padding) {
+      sphere.w += v.paddings[i];
+      shared.spheres[i * kPitch + lane].w = sphere.w;
+    }
+    shared.powers[i * kPitch + lane] = power_of(sphere, origin);
+    if (v.bounds != nullptr) {
+      const float center[] = {sphere.x, sphere.y, sphere.z};
+      for (int axis = 0; axis < 3; ++axis) {
+        low[axis] = fminf(low[axis], center[axis]);
+        high[axis] = fmaxf(high[axis], center[axis]);
+      }
+    }
+  }
+  if (v.bounds != nullptr) {
+    for (std::uint32_t axis = 0; axis < 3; ++axis) {
+      shared.boxes[(2 * axis * kMostWarps + at.warp()) * kLanes + lane] = low[axis];
+      shared.boxes[((2 * axis + 1) * kMostWarps + at.warp()) * kLanes + lane] = high[axis];
+    }
   }
   const std::uint32_t words = half_words(v) * kPitch;
   for (std::uint32_t i = at.thread; v.bits != nullptr && i < words; i += at.threads) {
@@ -295,7 +344,10 @@ SPHERECHAIN_HD void prepare_pairs(const GroupView& v, const Shared& shared, cons
     shared.ordered_bits[i] = 0;
   }
   if (at.thread < kLanes) {
-    shared.counts[at.thread] = 0;
+    shared.counts[lane] = 0;
+    if (v.bounds != nullptr) {
+      shared.radii[lane] = 0;
+    }
   }
 }
 
@@ -322,35 +374,39 @@ SPHERECHAIN_HD void report(const GroupView& v, const Shared& shared, std::uint32
 // Pairs that the test by multiply-adds cannot tell apart from touching ones.
 SPHERECHAIN_HD void test_candidates(const GroupView& v, const Shared& shared, std::uint32_t lane,
                                     std::uint32_t candidates, std::uint32_t first_row, std::uint32_t first_column) {
-  for (; candidates != 0; candidates &= candidates - 1) {
-    const std::uint32_t at = kHalfItem - 1 - lowest_bit(candidates);
-    const std::uint32_t a = first_row + at % kRows, b = first_column + at / kRows;
-    if (touch(shared.spheres[a * kPitch + lane], shared.spheres[b * kPitch + lane], 1.0F)) {
-      report(v, shared, lane, a, b);
+  while (any_lane(candidates != 0)) {
+    if (candidates != 0) {
+      const std::uint32_t at = kHalfItem - 1 - lowest_bit(candidates);
+      const std::uint32_t a = first_row + at % kRows, b = first_column + at / kRows;
+      candidates &= candidates - 1;
+      if (touch(shared.spheres[a * kPitch + lane], shared.spheres[b * kPitch + lane], 1.0F)) {
+        report(v, shared, lane, a, b);
+      }
     }
   }
 }
 
+// Rows and columns past the last sphere are whatever lies there: no pair with them is wanted.
 SPHERECHAIN_HD void test_item(const GroupView& v, const Shared& shared, std::uint32_t lane, const PairItem& item) {
   const Float4 origin = shared.spheres[lane];
-  const auto seen_from_origin = [&](std::uint32_t i) {
-    const Float4 s = shared.spheres[i * kPitch + lane];
+  const auto seen_from_origin = [&](const Float4& s) {
     return Float4{s.x - origin.x, s.y - origin.y, s.z - origin.z, s.w};
   };
-  const std::uint32_t last = v.sphere_count - 1;
+  const std::uint32_t first_row = item.first_row * kPitch + lane, first_column = item.first_column * kPitch + lane;
+  const Float4 *row_spheres = shared.spheres + first_row, *column_spheres = shared.spheres + first_column;
+  const float *row_powers = shared.powers + first_row, *column_powers = shared.powers + first_column;
   Float4 rows[kRows];
   float powers[kRows];
+  SPHERECHAIN_UNROLL
   for (std::uint32_t r = 0; r < kRows; ++r) {
-    const std::uint32_t a = item.first_row + r < last ? item.first_row + r : last;
-    rows[r] = seen_from_origin(a);
-    powers[r] = shared.powers[a * kPitch + lane];
+    rows[r] = seen_from_origin(row_spheres[r * kPitch]);
+    powers[r] = row_powers[r * kPitch];
   }
   std::uint32_t apart[2] = {0, 0};
   SPHERECHAIN_UNROLL
   for (std::uint32_t c = 0; c < kColumns; ++c) {
-    const std::uint32_t b = item.first_column + c < last ? item.first_column + c : last;
-    const Float4 column = seen_from_origin(b);
-    const float power = shared.powers[b * kPitch + lane];
+    const Float4 column = seen_from_origin(column_spheres[c * kPitch]);
+    const float power = column_powers[c * kPitch];
     SPHERECHAIN_UNROLL
     for (std::uint32_t r = 0; r < kRows; ++r) {
       float sum = fused(rows[r].w, column.w, powers[r] + power);
@@ -362,66 +418,80 @@ SPHERECHAIN_HD void test_item(const GroupView& v, const Shared& shared, std::uin
   }
   test_candidates(v, shared, lane, ~apart[0] & item.wanted[0], item.first_row, item.first_column);
   test_candidates(v, shared, lane, ~apart[1] & item.wanted[1], item.first_row, item.first_column + kHalfColumns);
-  rejoin();
 }
 
-// Step 4: a warp an item, then a warp a near pair.
+SPHERECHAIN_HD void test_near(const GroupView& v, const Shared& shared, std::uint32_t lane, const NearEntry& near) {
+  if (touch(shared.spheres[near.a * kPitch + lane], shared.spheres[near.b * kPitch + lane], near.reach)) {
+    report(v, shared, lane, near.a, near.b);
+  }
+}
+
+// The middle of the box around all centres, and how far the warp's own spheres reach from there.
+SPHERECHAIN_HD Vec3 middle_of(const Shared& shared, const Place& at) {
+  float middle[3];
+  for (std::uint32_t axis = 0; axis < 3; ++axis) {
+    float low = INFINITY, high = -INFINITY;
+    for (std::uint32_t warp = 0; warp < at.warps(); ++warp) {
+      low = fminf(low, shared.boxes[(2 * axis * kMostWarps + warp) * kLanes + at.lane()]);
+      high = fmaxf(high, shared.boxes[((2 * axis + 1) * kMostWarps + warp) * kLanes + at.lane()]);
+    }
+    middle[axis] = 0.5F * low + 0.5F * high;
+  }
+  return {middle[0], middle[1], middle[2]};
+}
+
+SPHERECHAIN_HD void reach_spheres(const GroupView& v, const Shared& shared, const Place& at) {
+  const Vec3 middle = middle_of(shared, at);
+  float most = 0;
+  for (std::uint32_t i = at.warp(); i < v.sphere_count; i += at.warps()) {
+    const Float4 s = shared.spheres[i * kPitch + at.lane()];
+    const float dx = s.x - middle.x, dy = s.y - middle.y, dz = s.z - middle.z;
+    most = fmaxf(most, sqrtf((dx * dx + dy * dy) + dz * dz) + s.w);
+  }
+  raise_to(&shared.radii[at.lane()], most * (1.0F + 0x1p-20F));  // for what was rounded
+}
+
+// Step 5: a warp an item, then a warp a near pair, the first of them for warps that had an item less.
 SPHERECHAIN_HD void test_pairs(const GroupView& v, const Shared& shared, const Place& at) {
-  const std::uint32_t lane = at.lane();
-  for (std::uint32_t i = at.warp(); i < v.item_count; i += at.warps()) {
+  const std::uint32_t lane = at.lane(), warp = at.warp(), warps = at.warps();
+  for (std::uint32_t i = warp; i < v.item_count; i += warps) {
     test_item(v, shared, lane, v.items[i]);
   }
-  for (std::uint32_t i = at.warp(); i < v.near_count; i += at.warps()) {
-    const NearEntry near = v.near[i];
-    if (touch(shared.spheres[near.a * kPitch + lane], shared.spheres[near.b * kPitch + lane], near.reach)) {
-      report(v, shared, lane, near.a, near.b);
-    }
-    rejoin();
+  constexpr std::uint32_t kNearOfAnItem = 16;  // that cost as much
+  const std::uint32_t busy = v.item_count % warps, idle = busy == 0 ? 0 : warps - busy;
+  const std::uint32_t most = idle * kNearOfAnItem, early = most < v.near_count ? most : v.near_count;
+  for (std::uint32_t i = warp - busy; warp >= busy && i < early; i += idle) {
+    test_near(v, shared, lane, v.near[i]);
+  }
+  for (std::uint32_t i = early + warp; i < v.near_count; i += warps) {
+    test_near(v, shared, lane, v.near[i]);
+  }
+  if (v.bounds != nullptr) {
+    reach_spheres(v, shared, at);
   }
 }
 
-// Around all spheres, from their centres' mean; a little larger than that, for what is rounded.
-SPHERECHAIN_HD Sphere bound_of(const GroupView& v, const Shared& shared, std::uint32_t lane) {
-  float x = 0, y = 0, z = 0, radius = 0;
-  for (std::uint32_t i = 0; i < v.sphere_count; ++i) {
-    const Float4 s = shared.spheres[i * kPitch + lane];
-    x += s.x;
-    y += s.y;
-    z += s.z;
-  }
-  const auto count = static_cast<float>(v.sphere_count);
-  x /= count;
-  y /= count;
-  z /= count;
-  for (std::uint32_t i = 0; i < v.sphere_count; ++i) {
-    const Float4 s = shared.spheres[i * kPitch + lane];
-    const float dx = s.x - x, dy = s.y - y, dz = s.z - z;
-    const float reach = sqrtf((dx * dx + dy * dy) + dz * dz) + s.w;
-    radius = reach <= radius ? radius : reach;  // a NaN stays
-  }
-  return {x, y, z, radius * (1.0F + 0x1p-20F)};
+// The words of the ordered bits that a warp lists.
+struct Part {
+  std::uint32_t first, last;
+};
+
+SPHERECHAIN_HD Part part_of(const GroupView& v, const Place& at, std::uint32_t warp) {
+  const std::uint32_t each = (half_words(v) + at.warps() - 1) / at.warps(), first = warp * each;
+  return {first, first + each < half_words(v) ? first + each : half_words(v)};
 }
 
-// Step 5: what an instance alone knows; a block's places in the list.
+// Step 6: what an instance alone knows; the block's place in the list, and each warp's part of it.
 SPHERECHAIN_HD void write_instances(const GroupView& v, const Shared& shared, const Place& at) {
   const std::uint32_t lane = at.lane(), first = at.block * kLanes, count = instances_in(v, at);
-  if (at.warp() == 0 && lane < count && v.counts != nullptr) {
+  if (at.thread < count && v.counts != nullptr) {
     v.counts[first + lane] = shared.counts[lane];
   }
-  if (at.thread == 0 && v.pairs != nullptr) {
-    std::uint32_t total = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      total += shared.counts[i];
-    }
-    std::uint64_t start = reserve(v.pair_count, total);
-    for (std::uint32_t i = 0; i < count; ++i) {
-      shared.starts[i] = start;
-      v.starts[first + i] = start;
-      start += shared.counts[i];
-    }
-  }
-  if (at.warp() == 1 % at.warps() && lane < count && v.bounds != nullptr) {
-    v.bounds[first + lane] = bound_of(v, shared, lane);
+  if (at.thread < count && v.bounds != nullptr) {
+    const Vec3 middle = middle_of(shared, at);
+    float radius = 0;
+    std::memcpy(&radius, &shared.radii[lane], sizeof radius);
+    v.bounds[first + lane] = {middle.x, middle.y, middle.z, radius};
   }
   if (v.bits != nullptr) {
     for (std::uint32_t from = at.warp(); from < count; from += at.warps()) {
@@ -432,28 +502,52 @@ SPHERECHAIN_HD void write_instances(const GroupView& v, const Shared& shared, co
       }
     }
   }
+  if (v.pairs != nullptr) {
+    if (at.thread == 0) {
+      std::uint32_t total = 0;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        total += shared.counts[i];
+      }
+      *shared.start = reserve(v.pair_count, total);
+    }
+    const Part part = part_of(v, at, at.warp());
+    std::uint32_t own = 0;
+    for (std::uint32_t w = part.first; w < part.last; ++w) {
+      own += count_bits(shared.ordered_bits[w * kPitch + lane]);
+    }
+    shared.parts[at.warp() * kLanes + lane] = own;
+  }
 }
 
-// Step 6: the list, a thread an instance.
+// Step 7: the list, a lane an instance and a warp a part.
 SPHERECHAIN_HD void write_pairs(const GroupView& v, const Shared& shared, const Place& at) {
-  if (v.pairs == nullptr || at.thread >= instances_in(v, at)) {
+  const std::uint32_t lane = at.lane(), instance = at.block * kLanes + lane;
+  if (lane >= instances_in(v, at)) {
     return;
   }
-  const std::uint32_t lane = at.thread, n = v.sphere_count;
-  std::uint64_t place = shared.starts[lane];
-  std::uint32_t a = 0, row = 0, row_end = n - 1;  // of a's bits
-  for (std::uint32_t w = 0, left = shared.counts[lane]; left > 0; ++w) {
-    for (std::uint32_t word = shared.ordered_bits[w * kPitch + lane]; word != 0; word &= word - 1, --left) {
+  std::uint64_t place = *shared.start;
+  for (std::uint32_t i = 0; i < lane; ++i) {
+    place += shared.counts[i];
+  }
+  if (at.warp() == 0) {
+    v.starts[instance] = place;
+  }
+  for (std::uint32_t warp = 0; warp < at.warp(); ++warp) {
+    place += shared.parts[warp * kLanes + lane];
+  }
+  const Part part = part_of(v, at, at.warp());
+  std::uint32_t a = 0, row = 0, row_end = v.sphere_count - 1;  // of a's bits
+  for (std::uint32_t w = part.first; w < part.last; ++w) {
+    for (std::uint32_t word = shared.ordered_bits[w * kPitch + lane]; word != 0; word &= word - 1, ++place) {
       const std::uint32_t bit = 32 * w + lowest_bit(word);
       while (bit >= row_end) {
         ++a;
         row = row_end;
-        row_end += n - 1 - a;
+        row_end += v.sphere_count - 1 - a;
       }
       if (place < v.pair_capacity) {
-        v.pairs[place] = {at.block * kLanes + lane, {a, a + 1 + (bit - row)}};
+        v.pairs[place] = {instance, {a, a + 1 + (bit - row)}};
       }
-      ++place;
     }
   }
 }
@@ -467,10 +561,15 @@ SPHERECHAIN_HD void run_block(const GroupView& v, const Shared& shared, const Ru
   } else {
     run([&](const Place& at) { load_spheres(v, shared, at); });
   }
+  if (kFromBones && v.refitted != nullptr) {
+    run([&](const Place& at) { write_spheres(v, shared, at); });
+  }
   run([&](const Place& at) { prepare_pairs(v, shared, at); });
   run([&](const Place& at) { test_pairs(v, shared, at); });
   run([&](const Place& at) { write_instances(v, shared, at); });
-  run([&](const Place& at) { write_pairs(v, shared, at); });
+  if (v.pairs != nullptr) {
+    run([&](const Place& at) { write_pairs(v, shared, at); });
+  }
 }
 
 }  // namespace spherechain::cuda

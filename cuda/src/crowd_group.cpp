@@ -96,6 +96,7 @@ Status view_group(const CrowdGroup& group, GroupView& view) {
   view.wide_matrices = view.steps.column == 1 && is_aligned(group.bones.data, alignof(Float4)) &&
                        group.bones.stride % sizeof(Float4) == 0 && group.instance_stride % sizeof(Float4) == 0;
   view.refitted = group.refitted;
+  view.wide_refitted = is_aligned(group.refitted, alignof(Float4));
   view.bounds = group.bounds;
   view.counts = group.counts;
   view.bits = group.bits;

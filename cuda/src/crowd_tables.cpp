@@ -46,26 +46,6 @@ class Memory {
   std::size_t used_ = 0;
 };
 
-void fill_spheres(const Asset& asset, RadiusKind kind, const Filter* filter, SphereEntry* out) {
-  const bool calibrated = asset.refit_rule() == RefitRule::kCalibrated;
-  std::uint32_t group = 0;
-  for (std::size_t i = 0; i < asset.spheres().size; ++i) {
-    const RestSphere& rest = asset.spheres()[i];
-    const float wanted = kind == RadiusKind::kFit ? rest.radius : rest.detect_radius;
-    SphereEntry& entry = out[i];
-    entry.wanted = calibrated ? wanted : wanted / rest.radius;
-    entry.scale = rest.pivot_spread;
-    entry.pivots = rest.pivot_count;
-    entry.pivot_count = static_cast<float>(rest.pivot_count);
-    const bool is_power_of_two = (rest.pivot_count & (rest.pivot_count - 1)) == 0;
-    entry.pivot_share = is_power_of_two ? 1.0F / entry.pivot_count : 0.0F;
-    entry.padding = filter == nullptr || filter->padding.size == 0 ? 0.0F : filter->padding[i];
-    entry.first_group = group;
-    entry.group_count = static_cast<std::uint32_t>((rest.pivot_count + kPivotLanes - 1) / kPivotLanes);
-    group += entry.group_count;
-  }
-}
-
 void fill_groups(const BoneTables& tables, GroupEntry* out) {
   std::uint32_t term = 0, morph_term = 0;
   for (std::size_t g = 0; g < tables.term_counts.size; ++g) {
@@ -86,20 +66,28 @@ void fill_terms(const BoneTables& tables, TermEntry* out) {
   }
 }
 
-void fill_order(const SphereEntry* spheres, std::size_t n, const GroupEntry* groups, std::size_t group_count,
-                std::uint32_t* order) {
-  const auto cost = [&](std::uint32_t i) {
-    std::uint32_t terms = 0;
-    for (std::uint32_t g = 0; g < spheres[i].group_count && spheres[i].first_group + g < group_count; ++g) {
-      terms += groups[spheres[i].first_group + g].term_count;
+void fill_spheres(const Asset& asset, RadiusKind kind, const GroupEntry* groups, SphereEntry* out) {
+  const bool calibrated = asset.refit_rule() == RefitRule::kCalibrated, has_groups = asset.bone_count() > 0;
+  std::uint32_t group = 0;
+  for (std::uint32_t i = 0; i < asset.spheres().size; ++i) {
+    const RestSphere& rest = asset.spheres()[i];
+    const float wanted = kind == RadiusKind::kFit ? rest.radius : rest.detect_radius;
+    SphereEntry& entry = out[i];
+    entry.sphere = i;
+    entry.pivot_count = rest.pivot_count;
+    entry.first_group = group;
+    entry.group_count = static_cast<std::uint32_t>((rest.pivot_count + kPivotLanes - 1) / kPivotLanes);
+    if (has_groups) {
+      entry.group = groups[group];
     }
-    return terms;
-  };
-  for (std::uint32_t i = 0; i < n; ++i) {
-    order[i] = i;
+    entry.wanted = calibrated ? wanted : wanted / rest.radius;
+    entry.scale = rest.pivot_spread;
+    group += entry.group_count;
   }
-  std::sort(order, order + n,
-            [&](std::uint32_t l, std::uint32_t r) { return cost(l) != cost(r) ? cost(l) > cost(r) : l < r; });
+  const auto cost = [](const SphereEntry& entry) { return entry.group_count * (2 + entry.group.term_count); };
+  std::sort(out, out + asset.spheres().size, [&](const SphereEntry& l, const SphereEntry& r) {
+    return cost(l) != cost(r) ? cost(l) > cost(r) : l.sphere < r.sphere;
+  });
 }
 
 // Returns how many bones the terms use; `places` of those the others do not.
@@ -177,9 +165,9 @@ std::size_t CrowdTables::words_needed(const Asset& asset) noexcept {
   const BoneTables& tables = asset.bone_tables();
   const std::size_t near =
       std::max(asset.near_pairs(RadiusKind::kFit).size, asset.near_pairs(RadiusKind::kDetect).size);
-  return words_of(n * sizeof(SphereEntry)) + words_of(n * sizeof(std::uint32_t)) +
+  return words_of(n * sizeof(SphereEntry)) + words_of(n * sizeof(float)) +
          words_of(tables.term_counts.size * sizeof(GroupEntry)) + words_of(tables.terms.size * sizeof(TermEntry)) +
-         2 * words_of(tables.terms.size * sizeof(std::uint32_t)) +
+         2 * words_of((tables.terms.size + 1) * sizeof(std::uint32_t)) +
          words_of(asset.bone_count() * sizeof(std::uint32_t)) +
          words_of(tables.morph_terms.size * sizeof(std::uint32_t)) +
          words_of(tables.morph_terms.size * sizeof(MorphTerm)) + words_of(most_items(n) * sizeof(PairItem)) +
@@ -220,12 +208,15 @@ Status CrowdTables::build(const Asset& asset, RadiusKind radius, const Filter* f
   Memory entries(memory);
   std::uint32_t first = 0;
   auto* spheres = entries.take<SphereEntry>(n, first);
-  fill_spheres(asset, radius, filter, spheres);
+  auto* paddings = entries.take<float>(n, out.paddings_at_);
+  if (filter != nullptr && filter->padding.size > 0) {
+    std::copy(filter->padding.begin(), filter->padding.end(), paddings);
+  }
   auto* groups = entries.take<GroupEntry>(tables.term_counts.size, out.groups_at_);
   fill_groups(tables, groups);
-  fill_order(spheres, n, groups, tables.term_counts.size, entries.take<std::uint32_t>(n, out.order_at_));
+  fill_spheres(asset, radius, groups, spheres);
   fill_terms(tables, entries.take<TermEntry>(tables.terms.size, out.terms_at_));
-  auto* term_bones = entries.take<std::uint32_t>(tables.terms.size, out.term_bones_at_);
+  auto* term_bones = entries.take<std::uint32_t>(tables.terms.size + 1, out.term_bones_at_);
   auto* used_bones = entries.take<std::uint32_t>(asset.bone_count(), out.used_bones_at_);
   out.used_bone_count_ = fill_bones(tables, asset.bone_count(), used_bones, term_bones);
   out.has_morphs_ = tables.morph_terms.size > 0;
@@ -251,7 +242,7 @@ Status CrowdTables::build(const Asset& asset, RadiusKind radius, const Filter* f
 GroupView Access::view(const CrowdTables& tables, const std::uint64_t* words) {
   GroupView v{};
   v.sphere_entries = reinterpret_cast<const SphereEntry*>(words);
-  v.sphere_order = reinterpret_cast<const std::uint32_t*>(words + tables.order_at_);
+  v.paddings = reinterpret_cast<const float*>(words + tables.paddings_at_);
   v.groups = reinterpret_cast<const GroupEntry*>(words + tables.groups_at_);
   v.terms = reinterpret_cast<const TermEntry*>(words + tables.terms_at_);
   v.term_bones = reinterpret_cast<const std::uint32_t*>(words + tables.term_bones_at_);
@@ -281,6 +272,7 @@ std::size_t CrowdTables::shared_bytes(bool from_bones, bool with_morphs, bool wi
   v.matrices = from_bones ? reinterpret_cast<const float*>(something) : nullptr;
   v.morph_weights = with_morphs && has_morphs_ ? v.matrices : nullptr;
   v.bits = with_bits ? reinterpret_cast<std::uint64_t*>(something) : nullptr;
+  v.bounds = reinterpret_cast<Sphere*>(something);
   v.pairs = with_pairs ? reinterpret_cast<CrowdPair*>(something) : nullptr;
   return shared_layout(v).size;
 }

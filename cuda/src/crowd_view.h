@@ -33,19 +33,19 @@ struct alignas(16) Float4 {
   float x, y, z, w;
 };
 
-struct alignas(16) SphereEntry {
-  float wanted, scale;  // calibrated: wanted * (mean / scale); paper: mean * wanted
-  float pivot_count;
-  float pivot_share;  // 1 / pivot_count where that is exact, or 0
-  float padding;
-  std::uint32_t first_group, group_count;
-  std::uint32_t pivots;
-};
-
 struct alignas(16) GroupEntry {
   float weights[kPivotLanes];
   std::uint32_t first_term, term_count;
   std::uint32_t first_morph_term, unused;
+};
+
+// Those whose refit costs most come first.
+struct alignas(16) SphereEntry {
+  std::uint32_t sphere, pivot_count;
+  std::uint32_t first_group, group_count;
+  GroupEntry group;     // the first one
+  float wanted, scale;  // calibrated: wanted * (mean / scale); paper: mean * wanted
+  float unused[2];
 };
 
 struct alignas(16) TermEntry {
@@ -73,10 +73,10 @@ struct MatrixSteps {
 
 struct GroupView {
   const SphereEntry* sphere_entries;
-  const std::uint32_t* sphere_order;  // those with most terms first
+  const float* paddings;
   const GroupEntry* groups;
   const TermEntry* terms;
-  const std::uint32_t* term_bones;  // places among the used bones
+  const std::uint32_t* term_bones;  // places among the used bones, and one more for who looks ahead
   const std::uint32_t* used_bones;
   const std::uint32_t* morph_counts;  // null where nothing morphs
   const std::uint32_t* morph_targets;
@@ -92,7 +92,7 @@ struct GroupView {
   std::size_t sphere_stride;
   std::size_t bone_stride, instance_stride;  // floats
   MatrixSteps steps;
-  bool wide_matrices, wide_spheres;  // aligned for reads and writes of 16 bytes
+  bool wide_matrices, wide_spheres, wide_refitted;  // aligned for reads and writes of 16 bytes
   std::uint32_t instance_count;
 
   Sphere* refitted;
@@ -107,10 +107,12 @@ struct GroupView {
   std::uint32_t first_block;
 };
 
+inline constexpr std::uint32_t kMostWarps = 8;
+
 // In bytes from the start of a block's shared memory. Matrices and morph weights are no longer needed when bits are
 // written, and lie in the same place.
 struct SharedLayout {
-  std::size_t matrices, morph_weights, bits, ordered_bits, spheres, powers, counts, starts, size;
+  std::size_t matrices, morph_weights, bits, ordered_bits, spheres, powers, counts, parts, boxes, radii, size;
 };
 
 SPHERECHAIN_HD std::uint32_t half_words(const GroupView& v) { return 2 * v.bit_words; }
@@ -125,10 +127,14 @@ SPHERECHAIN_HD SharedLayout shared_layout(const GroupView& v) {
   out.ordered_bits = v.bits != nullptr ? table : 0;
   const std::size_t inputs = matrices + up(weights), outputs = out.ordered_bits + (v.pairs != nullptr ? table : 0);
   out.spheres = inputs > outputs ? inputs : outputs;
-  out.powers = out.spheres + std::size_t{v.sphere_count} * kPitch * sizeof(Float4);
-  out.counts = out.powers + up(std::size_t{v.sphere_count} * kPitch * sizeof(float));
-  out.starts = out.counts + kLanes * sizeof(std::uint32_t);
-  out.size = out.starts + kLanes * sizeof(std::uint64_t);
+  // An item looks at whole rows and columns, past the last sphere too.
+  const std::size_t spheres = std::size_t{v.sphere_count} + kColumns;
+  out.powers = out.spheres + spheres * kPitch * sizeof(Float4);
+  out.counts = out.powers + up(spheres * kPitch * sizeof(float));
+  out.parts = out.counts + kLanes * sizeof(std::uint32_t);
+  out.boxes = out.parts + (v.pairs != nullptr ? (kMostWarps * kLanes + 4) * sizeof(std::uint32_t) : 0);
+  out.radii = out.boxes + (v.bounds != nullptr ? 6 * kMostWarps * kLanes * sizeof(float) : 0);
+  out.size = out.radii + (v.bounds != nullptr ? kLanes * sizeof(std::uint32_t) : 0);
   return out;
 }
 
@@ -149,7 +155,10 @@ struct Shared {
   std::uint32_t* bits;
   std::uint32_t* ordered_bits;  // in the order of sorted pairs
   std::uint32_t* counts;
-  std::uint64_t* starts;
+  std::uint64_t* start;  // the block's place in the list
+  std::uint32_t* parts;  // [warp][lane]: pairs in each warp's part of the ordered bits
+  float* boxes;          // [axis, low or high][warp][lane] around centres
+  std::uint32_t* radii;  // of bounds: floats of no sign, which are ordered as their bits are
 
   SPHERECHAIN_HD Shared(void* memory, const SharedLayout& layout) {
     auto* bytes = static_cast<unsigned char*>(memory);
@@ -160,7 +169,10 @@ struct Shared {
     ordered_bits = reinterpret_cast<std::uint32_t*>(bytes + layout.ordered_bits);
     powers = reinterpret_cast<float*>(bytes + layout.powers);
     counts = reinterpret_cast<std::uint32_t*>(bytes + layout.counts);
-    starts = reinterpret_cast<std::uint64_t*>(bytes + layout.starts);
+    start = reinterpret_cast<std::uint64_t*>(bytes + layout.parts);
+    parts = reinterpret_cast<std::uint32_t*>(bytes + layout.parts) + 4;
+    boxes = reinterpret_cast<float*>(bytes + layout.boxes);
+    radii = reinterpret_cast<std::uint32_t*>(bytes + layout.radii);
   }
 };
 

@@ -43,7 +43,7 @@ class CrowdTables {
   std::size_t words_ = 0;
   std::uint32_t sphere_count_ = 0, bone_count_ = 0, morph_count_ = 0, bit_words_ = 0;
   std::uint32_t used_bone_count_ = 0, item_count_ = 0, near_count_ = 0;
-  std::uint32_t groups_at_ = 0, order_at_ = 0, terms_at_ = 0, term_bones_at_ = 0, used_bones_at_ = 0, items_at_ = 0,
+  std::uint32_t paddings_at_ = 0, groups_at_ = 0, terms_at_ = 0, term_bones_at_ = 0, used_bones_at_ = 0, items_at_ = 0,
                 near_at_ = 0;
   std::uint32_t morph_counts_at_ = 0, morph_targets_at_ = 0, morph_terms_at_ = 0;  // words from the start
   bool calibrated_ = false, has_padding_ = false, has_morphs_ = false;
@@ -67,8 +67,8 @@ struct CrowdGroup {
   const float* morph_weights = nullptr;
 
   // Out, each may be null.
-  Sphere* refitted = nullptr;       // with bones: as many an instance as the asset has, without the filter's padding
-  Sphere* bounds = nullptr;         // one an instance, around all its spheres with the filter's padding
+  Sphere* refitted = nullptr;  // with bones: as many an instance as the asset has, without the filter's padding
+  Sphere* bounds = nullptr;    // one an instance, around its spheres with the filter's padding; no numbers are left out
   std::uint32_t* counts = nullptr;  // pairs of each instance
   std::uint64_t* bits = nullptr;    // CrowdTables::bit_words() words an instance, as DetectJob::bits
 
