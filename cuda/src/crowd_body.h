@@ -103,6 +103,37 @@ SPHERECHAIN_HD float usual_root(float x) {
 #endif
 }
 
+// What a warp is to do next: on the device each warp that asks gets the next place; the tests' warps, whose threads run
+// one after another, take turns.
+SPHERECHAIN_HD std::uint32_t deal(std::uint32_t* dealt, const Place& at, std::uint32_t round) {
+#if defined(__CUDA_ARCH__)
+  std::uint32_t place = 0;
+  if (at.lane() == 0) {
+    place = atomicAdd(dealt, 1U);
+  }
+  return __shfl_sync(0xFFFFFFFFU, place, 0);
+#else
+  (void)dealt;
+  return round * at.warps() + at.warp();
+#endif
+}
+
+// Past the first cache, where the tables are. arrive() before the barrier that makes the copies seen.
+SPHERECHAIN_HD void copy_past_cache(Float4* shared, const float* from) {
+#if defined(__CUDA_ARCH__)
+  const auto to = static_cast<std::uint32_t>(__cvta_generic_to_shared(shared));
+  asm volatile("cp.async.cg.shared.global [%0], [%1], 16;" ::"r"(to), "l"(from) : "memory");
+#else
+  std::memcpy(shared, from, sizeof *shared);
+#endif
+}
+
+SPHERECHAIN_HD void arrive() {
+#if defined(__CUDA_ARCH__)
+  asm volatile("cp.async.wait_all;" ::: "memory");
+#endif
+}
+
 // Lanes past the last instance do as the last one does, and write nothing out.
 SPHERECHAIN_HD std::uint32_t instance_of(const GroupView& v, const Place& at, std::uint32_t lane) {
   const std::uint32_t instance = at.block * kLanes + lane;
@@ -114,6 +145,12 @@ SPHERECHAIN_HD std::uint32_t instances_in(const GroupView& v, const Place& at) {
   return left < kLanes ? left : kLanes;
 }
 
+SPHERECHAIN_HD void start_dealing(const Shared& shared, const Place& at) {
+  if (at.thread < 2) {
+    shared.dealt[at.thread] = 0;
+  }
+}
+
 // Step 1: each warp takes some instances, so that their figures are read in the order they lie in.
 SPHERECHAIN_HD void load_matrices(const GroupView& v, const Shared& shared, const Place& at) {
   if (v.wide_matrices) {
@@ -121,7 +158,7 @@ SPHERECHAIN_HD void load_matrices(const GroupView& v, const Shared& shared, cons
       const std::size_t row = v.used_bones[i / 3] * v.bone_stride + i % 3 * v.steps.row;
       for (std::uint32_t to = at.warp(); to < kLanes; to += at.warps()) {
         const float* from = v.matrices + instance_of(v, at, to) * v.instance_stride;
-        shared.matrices[i * kPitch + to] = *reinterpret_cast<const Float4*>(from + row);
+        copy_past_cache(&shared.matrices[i * kPitch + to], from + row);
       }
     }
   } else {
@@ -141,6 +178,7 @@ SPHERECHAIN_HD void load_matrices(const GroupView& v, const Shared& shared, cons
           v.morph_weights[std::size_t{instance_of(v, at, to)} * v.morph_count + target];
     }
   }
+  arrive();
 }
 
 // Step 1 where the instances come as spheres.
@@ -149,48 +187,65 @@ SPHERECHAIN_HD void load_spheres(const GroupView& v, const Shared& shared, const
     for (std::uint32_t to = at.warp(); to < kLanes; to += at.warps()) {
       const Sphere* from = v.spheres + instance_of(v, at, to) * v.sphere_stride + i;
       if (v.wide_spheres) {
-        shared.spheres[i * kPitch + to] = *reinterpret_cast<const Float4*>(from);
+        copy_past_cache(&shared.spheres[i * kPitch + to], &from->x);
       } else {
         shared.spheres[i * kPitch + to] = {from->x, from->y, from->z, from->radius};
       }
     }
   }
+  arrive();
 }
 
-// The centroids of a group's eight pivots.
-template <bool kMorphs>
-SPHERECHAIN_HD void move_group(const GroupView& v, const Shared& shared, std::uint32_t lane, const GroupEntry& group,
-                               float (&p)[3][kPivotLanes]) {
-  float even[3][kPivotLanes] = {}, odd[3][kPivotLanes] = {};
+inline constexpr std::size_t kHalf = kPivotLanes / 2;  // pivots at a time: more want more registers than there are
+
+// The centroids of pivots [kFirst, kFirst + kHalf) of a group.
+template <bool kMorphs, std::size_t kFirst>
+SPHERECHAIN_HD void move_half(const GroupView& v, const Shared& shared, std::uint32_t lane, const GroupEntry& group,
+                              float (&p)[3][kPivotLanes]) {
+  float even[3][kHalf] = {}, odd[3][kHalf] = {};
   std::uint32_t morph_term = group.first_morph_term, next_bone = v.term_bones[group.first_term];
   for (std::uint32_t t = group.first_term, end = t + group.term_count; t < end; ++t) {
     const Float4* matrix = shared.matrices + 3 * next_bone * kPitch + lane;
     next_bone = v.term_bones[t + 1];
     const Float4 rows[] = {matrix[0], matrix[kPitch], matrix[2 * kPitch]};
-    TermEntry q = v.terms[t];
+    const TermEntry& term = v.terms[t];
+    float q[4][kHalf];
+    for (std::size_t k = 0; k < kHalf; ++k) {
+      q[0][k] = term.x[kFirst + k];
+      q[1][k] = term.y[kFirst + k];
+      q[2][k] = term.z[kFirst + k];
+      q[3][k] = term.w[kFirst + k];
+    }
     if (kMorphs) {
       for (std::uint32_t left = v.morph_counts[t]; left > 0; --left, ++morph_term) {
         const float weight = shared.morph_weights[v.morph_targets[morph_term] * kPitch + lane];
         const MorphTerm& morph = v.morph_terms[morph_term];
-        for (std::size_t k = 0; k < kPivotLanes; ++k) {
-          q.x[k] = fused(weight, morph.x[k], q.x[k]);
-          q.y[k] = fused(weight, morph.y[k], q.y[k]);
-          q.z[k] = fused(weight, morph.z[k], q.z[k]);
+        for (std::size_t k = 0; k < kHalf; ++k) {
+          q[0][k] = fused(weight, morph.x[kFirst + k], q[0][k]);
+          q[1][k] = fused(weight, morph.y[kFirst + k], q[1][k]);
+          q[2][k] = fused(weight, morph.z[kFirst + k], q[2][k]);
         }
       }
     }
-    for (std::size_t k = 0; k < kPivotLanes; ++k) {
+    for (std::size_t k = 0; k < kHalf; ++k) {
       for (std::size_t i = 0; i < 3; ++i) {
-        even[i][k] = fused(rows[i].z, q.z[k], fused(rows[i].x, q.x[k], even[i][k]));
-        odd[i][k] = fused(rows[i].w, q.w[k], fused(rows[i].y, q.y[k], odd[i][k]));
+        even[i][k] = fused(rows[i].z, q[2][k], fused(rows[i].x, q[0][k], even[i][k]));
+        odd[i][k] = fused(rows[i].w, q[3][k], fused(rows[i].y, q[1][k], odd[i][k]));
       }
     }
   }
-  for (std::size_t k = 0; k < kPivotLanes; ++k) {
+  for (std::size_t k = 0; k < kHalf; ++k) {
     for (std::size_t i = 0; i < 3; ++i) {
-      p[i][k] = even[i][k] + odd[i][k];
+      p[i][kFirst + k] = even[i][k] + odd[i][k];
     }
   }
+}
+
+template <bool kMorphs>
+SPHERECHAIN_HD void move_group(const GroupView& v, const Shared& shared, std::uint32_t lane, const GroupEntry& group,
+                               float (&p)[3][kPivotLanes]) {
+  move_half<kMorphs, 0>(v, shared, lane, group, p);
+  move_half<kMorphs, kHalf>(v, shared, lane, group, p);
 }
 
 SPHERECHAIN_HD float tree(const float (&v)[kPivotLanes]) {
@@ -268,17 +323,16 @@ SPHERECHAIN_HD Float4 refit_usual_sphere(const GroupView& v, const Shared& share
   return {center[0], center[1], center[2], radius_of(v, sphere, mean)};
 }
 
-// Step 2: a warp a sphere, dealt out there and back.
+// Step 2: a warp a sphere, the dearest first.
 template <bool kMorphs>
 SPHERECHAIN_HD void refit_spheres(const GroupView& v, const Shared& shared, const Place& at) {
-  for (std::uint32_t first = 0, round = 0; first < v.sphere_count; first += at.warps(), ++round) {
-    const std::uint32_t place = first + (round % 2 == 0 ? at.warp() : at.warps() - 1 - at.warp());
-    if (place < v.sphere_count) {
-      const SphereEntry& sphere = v.sphere_entries[place];
-      shared.spheres[sphere.sphere * kPitch + at.lane()] =
-          sphere.pivot_count == kPivotLanes ? refit_usual_sphere<kMorphs>(v, shared, at.lane(), sphere)
-                                            : refit_any_sphere<kMorphs>(v, shared, at.lane(), sphere);
-    }
+  std::uint32_t place = deal(&shared.dealt[0], at, 0);
+  for (std::uint32_t round = 1; place < v.sphere_count; ++round) {
+    const SphereEntry& sphere = v.sphere_entries[place];
+    place = deal(&shared.dealt[0], at, round);
+    shared.spheres[sphere.sphere * kPitch + at.lane()] = sphere.pivot_count == kPivotLanes
+                                                             ? refit_usual_sphere<kMorphs>(v, shared, at.lane(), sphere)
+                                                             : refit_any_sphere<kMorphs>(v, shared, at.lane(), sphere);
   }
 }
 
@@ -386,7 +440,6 @@ SPHERECHAIN_HD void test_candidates(const GroupView& v, const Shared& shared, st
   }
 }
 
-// Rows and columns past the last sphere are whatever lies there: no pair with them is wanted.
 SPHERECHAIN_HD void test_item(const GroupView& v, const Shared& shared, std::uint32_t lane, const PairItem& item) {
   const Float4 origin = shared.spheres[lane];
   const auto seen_from_origin = [&](const Float4& s) {
@@ -451,20 +504,23 @@ SPHERECHAIN_HD void reach_spheres(const GroupView& v, const Shared& shared, cons
   raise_to(&shared.radii[at.lane()], most * (1.0F + 0x1p-20F));  // for what was rounded
 }
 
-// Step 5: a warp an item, then a warp a near pair, the first of them for warps that had an item less.
+// Step 5: a warp an item, then a warp some near pairs.
 SPHERECHAIN_HD void test_pairs(const GroupView& v, const Shared& shared, const Place& at) {
-  const std::uint32_t lane = at.lane(), warp = at.warp(), warps = at.warps();
-  for (std::uint32_t i = warp; i < v.item_count; i += warps) {
-    test_item(v, shared, lane, v.items[i]);
+  constexpr std::uint32_t kNearAtATime = 8;
+  const std::uint32_t lane = at.lane();
+  std::uint32_t place = deal(&shared.dealt[1], at, 0), round = 1;
+  for (; place < v.item_count; ++round) {
+    const PairItem item = v.items[place];
+    place = deal(&shared.dealt[1], at, round);
+    test_item(v, shared, lane, item);
   }
-  constexpr std::uint32_t kNearOfAnItem = 16;  // that cost as much
-  const std::uint32_t busy = v.item_count % warps, idle = busy == 0 ? 0 : warps - busy;
-  const std::uint32_t most = idle * kNearOfAnItem, early = most < v.near_count ? most : v.near_count;
-  for (std::uint32_t i = warp - busy; warp >= busy && i < early; i += idle) {
-    test_near(v, shared, lane, v.near[i]);
-  }
-  for (std::uint32_t i = early + warp; i < v.near_count; i += warps) {
-    test_near(v, shared, lane, v.near[i]);
+  for (; (place - v.item_count) * kNearAtATime < v.near_count; ++round) {
+    const std::uint32_t first = (place - v.item_count) * kNearAtATime;
+    const std::uint32_t end = first + kNearAtATime < v.near_count ? first + kNearAtATime : v.near_count;
+    place = deal(&shared.dealt[1], at, round);
+    for (std::uint32_t i = first; i < end; ++i) {
+      test_near(v, shared, lane, v.near[i]);
+    }
   }
   if (v.bounds != nullptr) {
     reach_spheres(v, shared, at);
@@ -556,10 +612,16 @@ SPHERECHAIN_HD void write_pairs(const GroupView& v, const Shared& shared, const 
 template <bool kFromBones, bool kMorphs, typename Run>
 SPHERECHAIN_HD void run_block(const GroupView& v, const Shared& shared, const Run& run) {
   if (kFromBones) {
-    run([&](const Place& at) { load_matrices(v, shared, at); });
+    run([&](const Place& at) {
+      start_dealing(shared, at);
+      load_matrices(v, shared, at);
+    });
     run([&](const Place& at) { refit_spheres<kMorphs>(v, shared, at); });
   } else {
-    run([&](const Place& at) { load_spheres(v, shared, at); });
+    run([&](const Place& at) {
+      start_dealing(shared, at);
+      load_spheres(v, shared, at);
+    });
   }
   if (kFromBones && v.refitted != nullptr) {
     run([&](const Place& at) { write_spheres(v, shared, at); });

@@ -9,9 +9,7 @@ namespace spherechain::cuda {
 namespace {
 
 constexpr std::uint32_t kThreads = kMostWarps * kLanes;
-
-// Blocks of a multiprocessor at once: leaves a thread 80 or 128 registers.
-constexpr std::uint32_t blocks_at_once(bool from_bones) { return from_bones ? 2 : 3; }
+constexpr std::uint32_t kBlocksAtOnce = 3;  // a multiprocessor: leaves a thread 80 registers
 
 struct Groups {
   GroupView views[CrowdJob::kMostGroups];
@@ -32,8 +30,7 @@ struct RunStep {
 enum class Input { kSpheres, kBones, kAny };
 
 template <Input kInput>
-__global__ void __launch_bounds__(kThreads, blocks_at_once(kInput != Input::kSpheres))
-    run_crowd(const __grid_constant__ Groups groups) {
+__global__ void __launch_bounds__(kThreads, kBlocksAtOnce) run_crowd(const __grid_constant__ Groups groups) {
   extern __shared__ Float4 memory[];
   std::uint32_t g = 0;
   while (g + 1 < groups.count && blockIdx.x >= groups.views[g + 1].first_block) {

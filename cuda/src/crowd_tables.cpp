@@ -124,15 +124,17 @@ struct Wanted {
   }
 };
 
+// The last rows and columns are those of the last eight spheres, some of them again: no pair is wanted twice.
 std::uint32_t fill_items(const Wanted& wanted, std::uint32_t n, PairItem* out) {
+  const std::uint32_t last = n < kColumns ? 0 : n - kColumns;
   std::uint32_t count = 0;
   for (std::uint32_t row = 0; row + 1 < n; row += kRows) {
     for (std::uint32_t column = row + 1; column < n; column += kColumns) {
-      PairItem item{row, column, {0, 0}};
+      PairItem item{std::min(row, last), std::min(column, last), {0, 0}};
       for (std::uint32_t b = column; b < std::min(n, column + kColumns); ++b) {
         for (std::uint32_t a = row; a < std::min(b, row + kRows); ++a) {
           if (wanted(a, b) && !wanted.is_near(a, b)) {
-            const std::uint32_t c = b - column, at = kRows * (c % kHalfColumns) + (a - row);
+            const std::uint32_t c = b - item.first_column, at = kRows * (c % kHalfColumns) + (a - item.first_row);
             item.wanted[c / kHalfColumns] |= 1U << (kHalfItem - 1 - at);
           }
         }

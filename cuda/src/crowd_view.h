@@ -109,29 +109,34 @@ struct GroupView {
 
 inline constexpr std::uint32_t kMostWarps = 8;
 
-// In bytes from the start of a block's shared memory. Matrices and morph weights are no longer needed when bits are
-// written, and lie in the same place.
+// In bytes from the start of a block's shared memory. Matrices and morph weights are no longer needed when pairs are
+// tested: what that needs lies in the same place.
 struct SharedLayout {
-  std::size_t matrices, morph_weights, bits, ordered_bits, spheres, powers, counts, parts, boxes, radii, size;
+  std::size_t matrices, morph_weights, powers, bits, ordered_bits, spheres, counts, dealt, parts, boxes, radii, size;
 };
 
 SPHERECHAIN_HD std::uint32_t half_words(const GroupView& v) { return 2 * v.bit_words; }
+
+// An item has eight rows and columns, also where there are fewer spheres.
+SPHERECHAIN_HD std::uint32_t sphere_places(const GroupView& v) {
+  return v.sphere_count < kColumns ? kColumns : v.sphere_count;
+}
 
 SPHERECHAIN_HD SharedLayout shared_layout(const GroupView& v) {
   const auto up = [](std::size_t bytes) { return (bytes + 15) / 16 * 16; };
   SharedLayout out{};
   const std::size_t matrices = v.matrices != nullptr ? std::size_t{3} * v.used_bone_count * kPitch * sizeof(Float4) : 0;
   const std::size_t weights = v.morph_weights != nullptr ? std::size_t{v.morph_count} * kPitch * sizeof(float) : 0;
+  const std::size_t powers = up(std::size_t{sphere_places(v)} * kPitch * sizeof(float));
   const std::size_t table = up(std::size_t{half_words(v)} * kPitch * sizeof(std::uint32_t));
   out.morph_weights = matrices;
-  out.ordered_bits = v.bits != nullptr ? table : 0;
-  const std::size_t inputs = matrices + up(weights), outputs = out.ordered_bits + (v.pairs != nullptr ? table : 0);
-  out.spheres = inputs > outputs ? inputs : outputs;
-  // An item looks at whole rows and columns, past the last sphere too.
-  const std::size_t spheres = std::size_t{v.sphere_count} + kColumns;
-  out.powers = out.spheres + spheres * kPitch * sizeof(Float4);
-  out.counts = out.powers + up(spheres * kPitch * sizeof(float));
-  out.parts = out.counts + kLanes * sizeof(std::uint32_t);
+  out.bits = powers;
+  out.ordered_bits = out.bits + (v.bits != nullptr ? table : 0);
+  const std::size_t before = matrices + up(weights), after = out.ordered_bits + (v.pairs != nullptr ? table : 0);
+  out.spheres = before > after ? before : after;
+  out.counts = out.spheres + std::size_t{sphere_places(v)} * kPitch * sizeof(Float4);
+  out.dealt = out.counts + kLanes * sizeof(std::uint32_t);
+  out.parts = out.dealt + 4 * sizeof(std::uint32_t);
   out.boxes = out.parts + (v.pairs != nullptr ? (kMostWarps * kLanes + 4) * sizeof(std::uint32_t) : 0);
   out.radii = out.boxes + (v.bounds != nullptr ? 6 * kMostWarps * kLanes * sizeof(float) : 0);
   out.size = out.radii + (v.bounds != nullptr ? kLanes * sizeof(std::uint32_t) : 0);
@@ -155,6 +160,7 @@ struct Shared {
   std::uint32_t* bits;
   std::uint32_t* ordered_bits;  // in the order of sorted pairs
   std::uint32_t* counts;
+  std::uint32_t* dealt;  // spheres to refit, then pairs to test
   std::uint64_t* start;  // the block's place in the list
   std::uint32_t* parts;  // [warp][lane]: pairs in each warp's part of the ordered bits
   float* boxes;          // [axis, low or high][warp][lane] around centres
@@ -169,6 +175,7 @@ struct Shared {
     ordered_bits = reinterpret_cast<std::uint32_t*>(bytes + layout.ordered_bits);
     powers = reinterpret_cast<float*>(bytes + layout.powers);
     counts = reinterpret_cast<std::uint32_t*>(bytes + layout.counts);
+    dealt = reinterpret_cast<std::uint32_t*>(bytes + layout.dealt);
     start = reinterpret_cast<std::uint64_t*>(bytes + layout.parts);
     parts = reinterpret_cast<std::uint32_t*>(bytes + layout.parts) + 4;
     boxes = reinterpret_cast<float*>(bytes + layout.boxes);
