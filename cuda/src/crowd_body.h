@@ -90,12 +90,12 @@ SPHERECHAIN_HD std::uint32_t count_bits(std::uint32_t word) {
 #endif
 }
 
-// What sqrtf does where `x` is from kLeastRoot to FLT_MAX, without its test for that.
-inline constexpr float kLeastRoot = 0x1p-100F;
+// What sqrtf does where `x` is from kLeastRoot to kMostRoot, without its test for that.
+inline constexpr float kLeastRoot = 0x1p-100F, kMostRoot = 0x1p100F;
 SPHERECHAIN_HD float usual_root(float x) {
 #if defined(__CUDA_ARCH__)
   float inverse;
-  asm("rsqrt.approx.f32 %0, %1;" : "=f"(inverse) : "f"(x));
+  asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(inverse) : "f"(x));
   const float root = x * inverse;
   return __fmaf_rn(__fmaf_rn(-root, root, x), 0.5F * inverse, root);
 #else
@@ -132,6 +132,14 @@ SPHERECHAIN_HD void arrive() {
 #if defined(__CUDA_ARCH__)
   asm volatile("cp.async.wait_all;" ::: "memory");
 #endif
+}
+
+// a / b rounded once, from share = 1 / b, for b from kLeastScale to 1 / kLeastScale and a root of usual_root, or a mean
+// of such. The first quotient is off by less than two units in the last place, the second by less than one; what it
+// leaves is exact, and so the third is a / b rounded (Markstein's theorem).
+SPHERECHAIN_HD float usual_quotient(float a, float b, float share) {
+  const float first = a * share, second = fused(fused(-b, first, a), share, first);
+  return fused(fused(-b, second, a), share, second);
 }
 
 // Lanes past the last instance do as the last one does, and write nothing out.
@@ -196,56 +204,73 @@ SPHERECHAIN_HD void load_spheres(const GroupView& v, const Shared& shared, const
   arrive();
 }
 
-inline constexpr std::size_t kHalf = kPivotLanes / 2;  // pivots at a time: more want more registers than there are
+// Four pivots at a time: eight want more registers than leave three blocks to a multiprocessor.
+struct HalfSums {
+  float even[3][kHalf], odd[3][kHalf];
+};
 
-// The centroids of pivots [kFirst, kFirst + kHalf) of a group.
-template <bool kMorphs, std::size_t kFirst>
-SPHERECHAIN_HD void move_half(const GroupView& v, const Shared& shared, std::uint32_t lane, const GroupEntry& group,
-                              float (&p)[3][kPivotLanes]) {
-  float even[3][kHalf] = {}, odd[3][kHalf] = {};
-  std::uint32_t morph_term = group.first_morph_term, next_bone = v.term_bones[group.first_term];
-  for (std::uint32_t t = group.first_term, end = t + group.term_count; t < end; ++t) {
-    const Float4* matrix = shared.matrices + 3 * next_bone * kPitch + lane;
-    next_bone = v.term_bones[t + 1];
-    const Float4 rows[] = {matrix[0], matrix[kPitch], matrix[2 * kPitch]};
-    const TermEntry& term = v.terms[t];
-    float q[4][kHalf];
-    for (std::size_t k = 0; k < kHalf; ++k) {
-      q[0][k] = term.x[kFirst + k];
-      q[1][k] = term.y[kFirst + k];
-      q[2][k] = term.z[kFirst + k];
-      q[3][k] = term.w[kFirst + k];
-    }
-    if (kMorphs) {
-      for (std::uint32_t left = v.morph_counts[t]; left > 0; --left, ++morph_term) {
-        const float weight = shared.morph_weights[v.morph_targets[morph_term] * kPitch + lane];
-        const MorphTerm& morph = v.morph_terms[morph_term];
-        for (std::size_t k = 0; k < kHalf; ++k) {
-          q[0][k] = fused(weight, morph.x[kFirst + k], q[0][k]);
-          q[1][k] = fused(weight, morph.y[kFirst + k], q[1][k]);
-          q[2][k] = fused(weight, morph.z[kFirst + k], q[2][k]);
-        }
-      }
-    }
-    for (std::size_t k = 0; k < kHalf; ++k) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        even[i][k] = fused(rows[i].z, q[2][k], fused(rows[i].x, q[0][k], even[i][k]));
-        odd[i][k] = fused(rows[i].w, q[3][k], fused(rows[i].y, q[1][k], odd[i][k]));
-      }
-    }
-  }
+template <bool kIsFirst>
+SPHERECHAIN_HD void add_term(const Float4 (&rows)[3], const float (&q)[4][kHalf], HalfSums& sums) {
+  SPHERECHAIN_UNROLL
   for (std::size_t k = 0; k < kHalf; ++k) {
+    SPHERECHAIN_UNROLL
     for (std::size_t i = 0; i < 3; ++i) {
-      p[i][kFirst + k] = even[i][k] + odd[i][k];
+      float &even = sums.even[i][k], &odd = sums.odd[i][k];
+      even = fused(rows[i].z, q[2][k], fused(rows[i].x, q[0][k], kIsFirst ? 0.0F : even));
+      odd = fused(rows[i].w, q[3][k], fused(rows[i].y, q[1][k], kIsFirst ? 0.0F : odd));
     }
   }
 }
 
+struct TermPlace {
+  std::uint32_t term, morph_term;
+  std::uint32_t matrix;  // of the term
+};
+
+template <bool kMorphs, bool kIsFirst>
+SPHERECHAIN_HD void take_term(const GroupView& v, const Shared& shared, std::uint32_t lane, std::uint32_t half,
+                              TermPlace& at, HalfSums& sums) {
+  const auto* matrices = reinterpret_cast<const unsigned char*>(shared.matrices + lane);
+  const auto* matrix = reinterpret_cast<const Float4*>(matrices + at.matrix);
+  const HalfTerm& term = v.terms[2 * at.term + half];
+  const Float4 rows[] = {matrix[0], matrix[kPitch], matrix[2 * kPitch]}, x = term.x, y = term.y, z = term.z, w = term.w;
+  at.matrix = v.term_matrices[at.term + 1];
+  float q[4][kHalf] = {{x.x, x.y, x.z, x.w}, {y.x, y.y, y.z, y.w}, {z.x, z.y, z.z, z.w}, {w.x, w.y, w.z, w.w}};
+  if (kMorphs) {
+    for (std::uint32_t left = v.morph_counts[at.term]; left > 0; --left, ++at.morph_term) {
+      const float weight = shared.morph_weights[v.morph_targets[at.morph_term] * kPitch + lane];
+      const MorphTerm& morph = v.morph_terms[at.morph_term];
+      for (std::size_t k = 0; k < kHalf; ++k) {
+        q[0][k] = fused(weight, morph.x[kHalf * half + k], q[0][k]);
+        q[1][k] = fused(weight, morph.y[kHalf * half + k], q[1][k]);
+        q[2][k] = fused(weight, morph.z[kHalf * half + k], q[2][k]);
+      }
+    }
+  }
+  ++at.term;
+  add_term<kIsFirst>(rows, q, sums);
+}
+
+// The centroids of a group's eight pivots.
 template <bool kMorphs>
 SPHERECHAIN_HD void move_group(const GroupView& v, const Shared& shared, std::uint32_t lane, const GroupEntry& group,
                                float (&p)[3][kPivotLanes]) {
-  move_half<kMorphs, 0>(v, shared, lane, group, p);
-  move_half<kMorphs, kHalf>(v, shared, lane, group, p);
+  const std::uint32_t end = group.first_term + group.term_count;
+  SPHERECHAIN_UNROLL
+  for (std::uint32_t half = 0; half < 2; ++half) {
+    TermPlace at{group.first_term, group.first_morph_term, v.term_matrices[group.first_term]};
+    HalfSums sums;
+    take_term<kMorphs, true>(v, shared, lane, half, at, sums);
+    while (at.term < end) {
+      take_term<kMorphs, false>(v, shared, lane, half, at, sums);
+    }
+    SPHERECHAIN_UNROLL
+    for (std::size_t k = 0; k < kHalf; ++k) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        p[i][kHalf * half + k] = sums.even[i][k] + sums.odd[i][k];
+      }
+    }
+  }
 }
 
 SPHERECHAIN_HD float tree(const float (&v)[kPivotLanes]) {
@@ -254,9 +279,11 @@ SPHERECHAIN_HD float tree(const float (&v)[kPivotLanes]) {
 
 SPHERECHAIN_HD void add_shares(const GroupEntry& group, const float (&p)[3][kPivotLanes], bool is_first,
                                float (&shares)[3][kPivotLanes]) {
+  const Float4 low = group.weights[0], high = group.weights[1];
+  const float weights[] = {low.x, low.y, low.z, low.w, high.x, high.y, high.z, high.w};
   for (std::size_t k = 0; k < kPivotLanes; ++k) {
     for (std::size_t i = 0; i < 3; ++i) {
-      shares[i][k] = is_first ? group.weights[k] * p[i][k] : fused(group.weights[k], p[i][k], shares[i][k]);
+      shares[i][k] = is_first ? weights[k] * p[i][k] : fused(weights[k], p[i][k], shares[i][k]);
     }
   }
 }
@@ -268,6 +295,12 @@ SPHERECHAIN_HD float squared_distance(const float (&p)[3][kPivotLanes], const fl
 
 SPHERECHAIN_HD float radius_of(const GroupView& v, const SphereEntry& sphere, float mean) {
   return v.calibrated ? sphere.wanted * (mean / sphere.scale) : mean * sphere.wanted;
+}
+
+SPHERECHAIN_HD float usual_radius(const GroupView& v, const SphereEntry& sphere, float mean) {
+  return v.calibrated && sphere.scale_share != 0
+             ? sphere.wanted * usual_quotient(mean, sphere.scale, sphere.scale_share)
+             : radius_of(v, sphere, mean);
 }
 
 // Any number of pivots. There is no memory to keep any number of them in, so they are moved twice.
@@ -309,18 +342,17 @@ SPHERECHAIN_HD Float4 refit_usual_sphere(const GroupView& v, const Shared& share
     least = fminf(least, distances[k]);
     most = fmaxf(most, distances[k]);
   }
-  if (least >= kLeastRoot && most <= FLT_MAX) {
+  static_assert(kPivotLanes == 8, "the mean is exactly an eighth");
+  if (least >= kLeastRoot && most <= kMostRoot) {
     for (std::size_t k = 0; k < kPivotLanes; ++k) {
       distances[k] = usual_root(distances[k]);
     }
-  } else {
-    for (std::size_t k = 0; k < kPivotLanes; ++k) {
-      distances[k] = any_root(distances[k]);
-    }
+    return {center[0], center[1], center[2], usual_radius(v, sphere, tree(distances) * 0.125F)};
   }
-  static_assert(kPivotLanes == 8, "the quotient is exact");
-  const float mean = tree(distances) * 0.125F;
-  return {center[0], center[1], center[2], radius_of(v, sphere, mean)};
+  for (std::size_t k = 0; k < kPivotLanes; ++k) {
+    distances[k] = any_root(distances[k]);
+  }
+  return {center[0], center[1], center[2], radius_of(v, sphere, tree(distances) * 0.125F)};
 }
 
 // Step 2: a warp a sphere, the dearest first.
@@ -351,16 +383,18 @@ SPHERECHAIN_HD void write_spheres(const GroupView& v, const Shared& shared, cons
   }
 }
 
-// A sphere for the test by multiply-adds, seen from the instance's first one: `power` is half of radius^2 - |center|^2,
-// and a margin. With G = |center|^2 + radius^2 of p and q, runtime/src/overlap.cpp shows that power(p) + power(q) + p.q
-// + rp rq is off by 33 * 2^-24 G at most; each power is larger by 64 * 2^-24 of its own sphere's share of G, and by
-// 2^-120 for what underflows: so where two spheres touch the sum is above 0. For what is too large for that, or not
-// finite, it is infinite or no number, and not below 0 either.
+// Half of what radii r add to the squared reach of two spheres is at most rp^2 + rq^2. So with p and q seen from the
+// instance's first sphere, and power(p) = rp^2 - |p|^2 / 2,
+//   power(p) + power(q) + p.q >= ((rp + rq)^2 - |p - q|^2) / 2,
+// which is above 0 where they touch. With G = |p|^2 + rp^2 of both, runtime/src/overlap.cpp shows of a sum much as this
+// one that it is off by 33 * 2^-24 G at most; here each power adds 2 more. Each is larger by 64 * 2^-24 of its own
+// sphere's share of G, and by 2^-120 for what underflows: so the computed sum is above 0 too. For what is too large for
+// that, or not finite, it is infinite or no number, and not below 0 either.
 SPHERECHAIN_HD float power_of(const Float4& s, const Float4& origin) {
   constexpr float kMargin = 0x1p-18F, kLeast = 0x1p-120F, kMostExtent = 1e36F;
   const float x = s.x - origin.x, y = s.y - origin.y, z = s.z - origin.z;
   const float squared_length = fused(z, z, fused(y, y, x * x)), squared_radius = s.w * s.w;
-  const float power = fused(0.5F + kMargin, squared_radius, fused(kMargin - 0.5F, squared_length, kLeast));
+  const float power = fused(1.0F + kMargin, squared_radius, fused(kMargin - 0.5F, squared_length, kLeast));
   return squared_length + squared_radius <= kMostExtent ? power : INFINITY;
 }
 
@@ -426,13 +460,17 @@ SPHERECHAIN_HD void report(const GroupView& v, const Shared& shared, std::uint32
 }
 
 // Pairs that the test by multiply-adds cannot tell apart from touching ones.
-SPHERECHAIN_HD void test_candidates(const GroupView& v, const Shared& shared, std::uint32_t lane,
-                                    std::uint32_t candidates, std::uint32_t first_row, std::uint32_t first_column) {
-  while (any_lane(candidates != 0)) {
-    if (candidates != 0) {
-      const std::uint32_t at = kHalfItem - 1 - lowest_bit(candidates);
-      const std::uint32_t a = first_row + at % kRows, b = first_column + at / kRows;
-      candidates &= candidates - 1;
+SPHERECHAIN_HD void test_candidates(const GroupView& v, const Shared& shared, std::uint32_t lane, const PairItem& item,
+                                    std::uint32_t (&candidates)[2]) {
+  while (any_lane((candidates[0] | candidates[1]) != 0)) {
+    if ((candidates[0] | candidates[1]) != 0) {
+      const bool is_first = candidates[0] != 0;
+      const std::uint32_t word = is_first ? candidates[0] : candidates[1];
+      const std::uint32_t at = kHalfItem - 1 - lowest_bit(word);
+      candidates[0] = is_first ? word & (word - 1) : 0;
+      candidates[1] = is_first ? candidates[1] : word & (word - 1);
+      const std::uint32_t a = item.first_row + at % kRows;
+      const std::uint32_t b = item.first_column + at / kRows + (is_first ? 0 : kHalfColumns);
       if (touch(shared.spheres[a * kPitch + lane], shared.spheres[b * kPitch + lane], 1.0F)) {
         report(v, shared, lane, a, b);
       }
@@ -442,35 +480,31 @@ SPHERECHAIN_HD void test_candidates(const GroupView& v, const Shared& shared, st
 
 SPHERECHAIN_HD void test_item(const GroupView& v, const Shared& shared, std::uint32_t lane, const PairItem& item) {
   const Float4 origin = shared.spheres[lane];
-  const auto seen_from_origin = [&](const Float4& s) {
-    return Float4{s.x - origin.x, s.y - origin.y, s.z - origin.z, s.w};
-  };
   const std::uint32_t first_row = item.first_row * kPitch + lane, first_column = item.first_column * kPitch + lane;
   const Float4 *row_spheres = shared.spheres + first_row, *column_spheres = shared.spheres + first_column;
   const float *row_powers = shared.powers + first_row, *column_powers = shared.powers + first_column;
+  const auto seen_from_origin = [&](const Float4& s, float power) {
+    return Float4{s.x - origin.x, s.y - origin.y, s.z - origin.z, power};
+  };
   Float4 rows[kRows];
-  float powers[kRows];
   SPHERECHAIN_UNROLL
   for (std::uint32_t r = 0; r < kRows; ++r) {
-    rows[r] = seen_from_origin(row_spheres[r * kPitch]);
-    powers[r] = row_powers[r * kPitch];
+    rows[r] = seen_from_origin(row_spheres[r * kPitch], row_powers[r * kPitch]);
   }
   std::uint32_t apart[2] = {0, 0};
   SPHERECHAIN_UNROLL
   for (std::uint32_t c = 0; c < kColumns; ++c) {
-    const Float4 column = seen_from_origin(column_spheres[c * kPitch]);
-    const float power = column_powers[c * kPitch];
+    const Float4 column = seen_from_origin(column_spheres[c * kPitch], column_powers[c * kPitch]);
     SPHERECHAIN_UNROLL
     for (std::uint32_t r = 0; r < kRows; ++r) {
-      float sum = fused(rows[r].w, column.w, powers[r] + power);
-      sum = fused(rows[r].x, column.x, sum);
+      float sum = fused(rows[r].x, column.x, rows[r].w + column.w);
       sum = fused(rows[r].y, column.y, sum);
       sum = fused(rows[r].z, column.z, sum);
       apart[c / kHalfColumns] = shift_in_sign(apart[c / kHalfColumns], sum);
     }
   }
-  test_candidates(v, shared, lane, ~apart[0] & item.wanted[0], item.first_row, item.first_column);
-  test_candidates(v, shared, lane, ~apart[1] & item.wanted[1], item.first_row, item.first_column + kHalfColumns);
+  std::uint32_t candidates[2] = {~apart[0] & item.wanted[0], ~apart[1] & item.wanted[1]};
+  test_candidates(v, shared, lane, item, candidates);
 }
 
 SPHERECHAIN_HD void test_near(const GroupView& v, const Shared& shared, std::uint32_t lane, const NearEntry& near) {

@@ -49,6 +49,7 @@ class Memory {
 void fill_groups(const BoneTables& tables, GroupEntry* out) {
   std::uint32_t term = 0, morph_term = 0;
   for (std::size_t g = 0; g < tables.term_counts.size; ++g) {
+    static_assert(sizeof out[g].weights == sizeof tables.weights[g].values, "copied as they are");
     std::memcpy(out[g].weights, tables.weights[g].values, sizeof out[g].weights);
     out[g].first_term = term;
     out[g].term_count = tables.term_counts[g];
@@ -59,10 +60,14 @@ void fill_groups(const BoneTables& tables, GroupEntry* out) {
   }
 }
 
-void fill_terms(const BoneTables& tables, TermEntry* out) {
-  static_assert(sizeof(TermEntry) == sizeof(BoneTerm), "copied as they are");
-  for (std::size_t i = 0; i < tables.terms.size; ++i) {
-    std::memcpy(&out[i], &tables.terms[i], sizeof out[i]);
+void fill_terms(const BoneTables& tables, HalfTerm* out) {
+  for (const BoneTerm& term : tables.terms) {
+    for (std::size_t first = 0; first < kPivotLanes; first += kHalf, ++out) {
+      std::memcpy(&out->x, term.x + first, sizeof out->x);
+      std::memcpy(&out->y, term.y + first, sizeof out->y);
+      std::memcpy(&out->z, term.z + first, sizeof out->z);
+      std::memcpy(&out->w, term.w + first, sizeof out->w);
+    }
   }
 }
 
@@ -82,6 +87,7 @@ void fill_spheres(const Asset& asset, RadiusKind kind, const GroupEntry* groups,
     }
     entry.wanted = calibrated ? wanted : wanted / rest.radius;
     entry.scale = rest.pivot_spread;
+    entry.scale_share = entry.scale >= kLeastScale && entry.scale <= 1 / kLeastScale ? 1 / entry.scale : 0;
     group += entry.group_count;
   }
   const auto cost = [](const SphereEntry& entry) { return entry.group_count * (2 + entry.group.term_count); };
@@ -90,15 +96,15 @@ void fill_spheres(const Asset& asset, RadiusKind kind, const GroupEntry* groups,
   });
 }
 
-// Returns how many bones the terms use; `places` of those the others do not.
+// Returns how many bones the terms use.
 std::uint32_t fill_bones(const BoneTables& tables, std::size_t bone_count, std::uint32_t* used,
-                         std::uint32_t* term_bones) {
+                         std::uint32_t* term_matrices) {
   std::uint32_t count = 0;
   for (std::uint32_t bone = 0; bone < bone_count; ++bone) {
     bool is_used = false;
     for (std::size_t t = 0; t < tables.term_bones.size; ++t) {
       if (tables.term_bones[t] == bone) {
-        term_bones[t] = count;
+        term_matrices[t] = static_cast<std::uint32_t>(3 * count * kPitch * sizeof(Float4));
         is_used = true;
       }
     }
@@ -168,7 +174,7 @@ std::size_t CrowdTables::words_needed(const Asset& asset) noexcept {
   const std::size_t near =
       std::max(asset.near_pairs(RadiusKind::kFit).size, asset.near_pairs(RadiusKind::kDetect).size);
   return words_of(n * sizeof(SphereEntry)) + words_of(n * sizeof(float)) +
-         words_of(tables.term_counts.size * sizeof(GroupEntry)) + words_of(tables.terms.size * sizeof(TermEntry)) +
+         words_of(tables.term_counts.size * sizeof(GroupEntry)) + words_of(tables.terms.size * 2 * sizeof(HalfTerm)) +
          2 * words_of((tables.terms.size + 1) * sizeof(std::uint32_t)) +
          words_of(asset.bone_count() * sizeof(std::uint32_t)) +
          words_of(tables.morph_terms.size * sizeof(std::uint32_t)) +
@@ -217,10 +223,10 @@ Status CrowdTables::build(const Asset& asset, RadiusKind radius, const Filter* f
   auto* groups = entries.take<GroupEntry>(tables.term_counts.size, out.groups_at_);
   fill_groups(tables, groups);
   fill_spheres(asset, radius, groups, spheres);
-  fill_terms(tables, entries.take<TermEntry>(tables.terms.size, out.terms_at_));
-  auto* term_bones = entries.take<std::uint32_t>(tables.terms.size + 1, out.term_bones_at_);
+  fill_terms(tables, entries.take<HalfTerm>(2 * tables.terms.size, out.terms_at_));
+  auto* term_matrices = entries.take<std::uint32_t>(tables.terms.size + 1, out.term_matrices_at_);
   auto* used_bones = entries.take<std::uint32_t>(asset.bone_count(), out.used_bones_at_);
-  out.used_bone_count_ = fill_bones(tables, asset.bone_count(), used_bones, term_bones);
+  out.used_bone_count_ = fill_bones(tables, asset.bone_count(), used_bones, term_matrices);
   out.has_morphs_ = tables.morph_terms.size > 0;
   if (out.has_morphs_) {
     const auto copy = [&](const auto& from, auto* to) { std::copy(from.begin(), from.end(), to); };
@@ -246,8 +252,8 @@ GroupView Access::view(const CrowdTables& tables, const std::uint64_t* words) {
   v.sphere_entries = reinterpret_cast<const SphereEntry*>(words);
   v.paddings = reinterpret_cast<const float*>(words + tables.paddings_at_);
   v.groups = reinterpret_cast<const GroupEntry*>(words + tables.groups_at_);
-  v.terms = reinterpret_cast<const TermEntry*>(words + tables.terms_at_);
-  v.term_bones = reinterpret_cast<const std::uint32_t*>(words + tables.term_bones_at_);
+  v.terms = reinterpret_cast<const HalfTerm*>(words + tables.terms_at_);
+  v.term_matrices = reinterpret_cast<const std::uint32_t*>(words + tables.term_matrices_at_);
   v.used_bones = reinterpret_cast<const std::uint32_t*>(words + tables.used_bones_at_);
   v.near = reinterpret_cast<const NearEntry*>(words + tables.near_at_);
   v.items = reinterpret_cast<const PairItem*>(words + tables.items_at_);

@@ -33,8 +33,10 @@ struct alignas(16) Float4 {
   float x, y, z, w;
 };
 
+inline constexpr std::size_t kHalf = kPivotLanes / 2;
+
 struct alignas(16) GroupEntry {
-  float weights[kPivotLanes];
+  Float4 weights[2];
   std::uint32_t first_term, term_count;
   std::uint32_t first_morph_term, unused;
 };
@@ -45,11 +47,13 @@ struct alignas(16) SphereEntry {
   std::uint32_t first_group, group_count;
   GroupEntry group;     // the first one
   float wanted, scale;  // calibrated: wanted * (mean / scale); paper: mean * wanted
-  float unused[2];
+  float scale_share;    // 1 / scale where usual_quotient may be used, or 0
+  float unused;
 };
 
-struct alignas(16) TermEntry {
-  float x[kPivotLanes], y[kPivotLanes], z[kPivotLanes], w[kPivotLanes];
+// What a bone adds to four pivots: BoneTerm by halves.
+struct alignas(16) HalfTerm {
+  Float4 x, y, z, w;
 };
 
 // Bit kHalfItem - 1 - (kRows * c + r) of half[h]: sphere first_row + r is tested against first_column + c + h * 4,
@@ -58,6 +62,7 @@ struct alignas(16) PairItem {
   std::uint32_t first_row, first_column;
   std::uint32_t wanted[2];
 };
+inline constexpr float kLeastScale = 0x1p-60F;  // and its inverse: see usual_quotient
 inline constexpr std::uint32_t kHalfItem = 32, kHalfColumns = kHalfItem / kRows;
 
 struct alignas(16) NearEntry {
@@ -75,8 +80,9 @@ struct GroupView {
   const SphereEntry* sphere_entries;
   const float* paddings;
   const GroupEntry* groups;
-  const TermEntry* terms;
-  const std::uint32_t* term_bones;  // places among the used bones, and one more for who looks ahead
+  const HalfTerm* terms;  // two a term
+  // Where shared memory has a term's matrix, in bytes; and one more for who looks ahead.
+  const std::uint32_t* term_matrices;
   const std::uint32_t* used_bones;
   const std::uint32_t* morph_counts;  // null where nothing morphs
   const std::uint32_t* morph_targets;

@@ -43,8 +43,8 @@ class CrowdTables {
   std::size_t words_ = 0;
   std::uint32_t sphere_count_ = 0, bone_count_ = 0, morph_count_ = 0, bit_words_ = 0;
   std::uint32_t used_bone_count_ = 0, item_count_ = 0, near_count_ = 0;
-  std::uint32_t paddings_at_ = 0, groups_at_ = 0, terms_at_ = 0, term_bones_at_ = 0, used_bones_at_ = 0, items_at_ = 0,
-                near_at_ = 0;
+  std::uint32_t paddings_at_ = 0, groups_at_ = 0, terms_at_ = 0, term_matrices_at_ = 0, used_bones_at_ = 0,
+                items_at_ = 0, near_at_ = 0;
   std::uint32_t morph_counts_at_ = 0, morph_targets_at_ = 0, morph_terms_at_ = 0;  // words from the start
   bool calibrated_ = false, has_padding_ = false, has_morphs_ = false;
 };

@@ -17,10 +17,10 @@ __global__ void compare_roots(unsigned first, unsigned last, unsigned long long*
 
 }  // namespace
 
-// Over all floats from kLeastRoot to FLT_MAX; -1 where the device fails.
+// Over all floats from kLeastRoot to kMostRoot; -1 where the device fails.
 long long count_wrong_roots() {
   unsigned first = 0, last = 0;
-  const float least = cuda::kLeastRoot, most = FLT_MAX;
+  const float least = cuda::kLeastRoot, most = cuda::kMostRoot;
   static_assert(sizeof first == sizeof least, "");
   memcpy(&first, &least, sizeof first);
   memcpy(&last, &most, sizeof last);

@@ -11,7 +11,7 @@
 namespace spherechain::test {
 namespace {
 
-constexpr std::uint32_t kThreads = 96;             // not the device's number: nothing may depend on it
+constexpr std::uint32_t kThreads = 96;            // not the device's number: nothing may depend on it
 constexpr std::size_t kSharedBytes = 227 * 1024;  // Hopper's
 
 std::vector<std::uint32_t> shuffled(std::uint32_t count, std::mt19937& random) {
