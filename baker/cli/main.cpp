@@ -101,8 +101,8 @@ int main(int argc, char** argv) {
   play_command
       ->add_option("--backend", play.backend,
                    "How it is computed: auto is simd, with the best instructions this machine has, where "
-                   "SPHERECHAIN_TARGET names no others")
-      ->check(CLI::IsMember({"auto", "scalar", "simd"}))
+                   "SPHERECHAIN_TARGET names no others; cuda plays all frames at once on a GPU, M2 alone, from bones")
+      ->check(CLI::IsMember({"auto", "scalar", "simd", "cuda"}))
       ->capture_default_str();
   play_command->add_option("--json", play.json, "JSON file to write");
   play_command->callback([&] { run = [&] { return run_play(play); }; });

@@ -8,6 +8,8 @@
 #include "cli/commands.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
+#include "mesh/error.h"
+#include "play/cuda_frames.h"
 #include "play/player.h"
 #include "play/target.h"
 #include "report/play_frames.h"
@@ -50,10 +52,10 @@ class Tally {
     for (const auto& [names, yes] : seen) ++by_region_.try_emplace(names, index, 0).first->second.second;
   }
 
-  std::string text(const std::string& radius, Target target) const {
+  std::string text(const std::string& radius, const std::string& backend) const {
     const double n = frames_;
     const std::string pairs = fmt::format("{:.1f}", static_cast<double>(pairs_) / n);
-    std::string out = fmt::format("{} frames, radius {}, backend {}\n\n", frames_, radius, backend_text(target));
+    std::string out = fmt::format("{} frames, radius {}, backend {}\n\n", frames_, radius, backend);
     out += fmt::format("{:<6} {:>8} {:>10} {:>12} {:>10}\n", "", "tests", "pairs", "raw pairs", "us");
     out += fmt::format("{:<6} {:>8} {:>10} {:>12} {:>10.2f}\n", "refit", "", "", "", refit_us_ / n);
     if (last_.m1) {
@@ -92,10 +94,14 @@ class Tally {
 
 ExitCode run_play(const PlayOptions& options) {
   if (!options.json.empty()) check_folder(options.json);
-  const Target target = choose_target(options.backend);
+  const bool on_cuda = options.backend == "cuda";
+  if (on_cuda && options.mode == "m1") throw Error(ExitCode::kUsage, "--backend cuda: has no M1 (--mode m2)");
+  const Target target = choose_target(on_cuda ? "auto" : options.backend);
+  const RadiusKind radius = options.radius == "fit" ? RadiusKind::kFit : RadiusKind::kDetect;
   const AnimatedAsset animated(options.asset, options.source, options.motion, options.frames);
-  Player player(animated.asset(), options.radius == "fit" ? RadiusKind::kFit : RadiusKind::kDetect,
-                options.mode != "m2", options.mode != "m1", target);
+  CudaFrames cuda;
+  if (on_cuda) cuda = play_on_cuda(animated, radius);
+  Player player(animated.asset(), radius, options.mode != "m2", options.mode != "m1", target);
   Tally tally;
   ordered_json frames = ordered_json::array();
   {
@@ -103,7 +109,13 @@ ExitCode run_play(const PlayOptions& options) {
     for (int i = 0; i < animated.frame_count(); ++i) {
       progress.show(fmt::format("frame {} of {}", i + 1, animated.frame_count()));
       const std::vector<float> positions = pack(animated.positions(animated.deformation(i)));
-      const FrameResult result = player.run(positions);
+      FrameResult result;
+      if (on_cuda) {
+        CudaFrame& frame = cuda.frames[static_cast<std::size_t>(i)];
+        result.m2 = player.take(std::move(frame.spheres), frame.pairs, cuda.us);
+      } else {
+        result = player.run(positions);
+      }
       std::optional<Player::Confirmation> confirmed;
       if (animated.asset().leaf_count() > 0) confirmed = player.confirm(positions);
       tally.add(i, result, player, confirmed, animated.asset());
@@ -115,13 +127,13 @@ ExitCode run_play(const PlayOptions& options) {
     }
   }
   if (!options.json.empty()) {
-    const ordered_json out{{"backend", backend_name(target)},
-                           {"target", to_string(target)},
+    const ordered_json out{{"backend", on_cuda ? "cuda" : backend_name(target)},
+                           {"target", on_cuda ? "cuda" : to_string(target)},
                            {"radius", options.radius},
                            {"frames", std::move(frames)}};
     write_atomically(options.json, out.dump(1) + "\n");
   }
-  fmt::print("{}", tally.text(options.radius, target));
+  fmt::print("{}", tally.text(options.radius, on_cuda ? "cuda (refit and M2 in one)" : backend_text(target)));
   if (!options.json.empty()) fmt::print("wrote {}\n", options.json);
   return ExitCode::kDone;
 }

@@ -69,6 +69,13 @@ FrameResult Player::run(const std::vector<float>& positions) {
   return result;
 }
 
+Detection Player::take(std::vector<Sphere> spheres, const std::vector<Pair>& pairs, double us) {
+  spheres_ = std::move(spheres);
+  pair_count_ = pairs.size();
+  std::copy(pairs.begin(), pairs.end(), pairs_.begin());
+  return {pairs_.size() - asset_.ignored_count(), pair_count_, pair_count_, us};
+}
+
 Player::Confirmation Player::confirm(const std::vector<float>& positions) {
   Confirmation out{std::vector<Pair>(pair_count_), 0};
   TriangleContactContext context{{contact_words_.data(), contact_words_.size()}};

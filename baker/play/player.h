@@ -32,6 +32,9 @@ class Player {
   // `positions` are the deformed source vertices.
   FrameResult run(const std::vector<float>& positions);
 
+  // Takes a frame that was computed elsewhere for its last one. Returns M2's part of it, `us` as given.
+  Detection take(std::vector<Sphere> spheres, const std::vector<Pair>& pairs, double us);
+
   // Of the last frame, run with these positions: the pairs below whose skins intersect, and what that costs. The asset
   // must have leaves.
   struct Confirmation {

@@ -32,7 +32,10 @@ static_assert(SC_OK == static_cast<int>(Status::kOk) && SC_NULL_ARGUMENT == stat
               SC_NOT_IN_ASSET == static_cast<int>(Status::kNotInAsset) &&
               SC_TOO_FEW_BONES == static_cast<int>(Status::kTooFewBones) &&
               SC_TOO_FEW_MORPHS == static_cast<int>(Status::kTooFewMorphs) &&
-              SC_WRONG_ABI == static_cast<int>(Status::kWrongAbi));
+              SC_WRONG_ABI == static_cast<int>(Status::kWrongAbi) &&
+              SC_NO_DEVICE == static_cast<int>(Status::kNoDevice) &&
+              SC_DEVICE_FAILED == static_cast<int>(Status::kDeviceFailed) &&
+              SC_DEVICE_TOO_SMALL == static_cast<int>(Status::kDeviceTooSmall));
 static_assert(SC_TARGET_BEST == static_cast<int>(Target::kBest) &&
               SC_TARGET_SCALAR == static_cast<int>(Target::kScalar) &&
               SC_TARGET_SSE2 == static_cast<int>(Target::kSse2) &&

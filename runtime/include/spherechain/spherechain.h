@@ -50,7 +50,10 @@ enum {
   SC_NOT_IN_ASSET = 18,       /* of an older baker, or of a source without bones */
   SC_TOO_FEW_BONES = 19,      /* fewer bone matrices than the asset has bones */
   SC_TOO_FEW_MORPHS = 20,     /* morph weights, but fewer than the asset has morph targets */
-  SC_WRONG_ABI = 21           /* compiled with the headers of another version of the library */
+  SC_WRONG_ABI = 21,          /* compiled with the headers of another version of the library */
+  SC_NO_DEVICE = 22,          /* no CUDA device, or no driver for one */
+  SC_DEVICE_FAILED = 23,      /* the CUDA device or its driver reported an error */
+  SC_DEVICE_TOO_SMALL = 24    /* the asset does not fit into a block's memory on the CUDA device */
 };
 
 /* A short English sentence without a final stop; never null, also for values that do not exist. */

@@ -177,6 +177,28 @@ TEST_CASE("play --json has the contract's fields; at rest nothing touches, hands
   CHECK(one["target"] == "scalar");
 }
 
+TEST_CASE(
+    "play --backend cuda finds M2's pairs on a GPU; where there is none it says so, exits with 1 and writes nothing") {
+  const TemporaryFolder folder;
+  const fs::path out = folder.path / "play.json";
+  const auto play = [&](const std::string& more) {
+    return fmt::format("play {} --source {} --poses {} --frames 5 --json {} {}", baked_files().asset.string(),
+                       kHumanFile, pose("arms_crossed.json"), out.string(), more);
+  };
+  check_error(run(play("--backend cuda --mode m1")), 2, {"--backend cuda: has no M1 (--mode m2)"});
+  const Run on_gpu = run(play("--backend cuda"));
+  if (on_gpu.code != 0) {
+    check_error(on_gpu, 1, {"--backend cuda: ", "CUDA", "--backend auto needs no GPU"});
+    CHECK(!fs::exists(out));
+    return;
+  }
+  const json cuda = json::parse(contents(out));
+  REQUIRE(run(play("--mode m2")).code == 0);
+  const json simd = json::parse(contents(out));
+  CHECK(cuda["backend"] == "cuda");
+  for (std::size_t i = 0; i < 5; ++i) CHECK(cuda["frames"][i]["pairs"] == simd["frames"][i]["pairs"]);
+}
+
 TEST_CASE("validate --json has the contract's fields, the same with a cache and without") {
   const TemporaryFolder folder;
   const fs::path out = folder.path / "validate.json", cache = folder.path / "cache";

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "play/cuda_frames.h"
+
+#include "mesh/error.h"
+
+#if defined(SPHERECHAIN_CUDA)
+#include "spherechain/cuda_device.h"
+#include "spherechain/cuda_host_crowd.h"
+#endif
+
+namespace spherechain::baker {
+
+#if defined(SPHERECHAIN_CUDA)
+
+namespace {
+
+void check(Status status) {
+  if (status != Status::kOk) {
+    throw Error(ExitCode::kInternal, std::string("--backend cuda: ") + to_string(status) + " (" +
+                                         cuda::last_device_error() + "; --backend auto needs no GPU)");
+  }
+}
+
+}  // namespace
+
+CudaFrames play_on_cuda(const AnimatedAsset& animated, RadiusKind radius) {
+  const Asset& asset = animated.asset();
+  if (asset.bone_count() == 0) {
+    throw Error(ExitCode::kFile, animated.file() + ": has no bones, which --backend cuda refits from (bake it again)");
+  }
+  check(cuda::check_device());
+  const auto count = static_cast<std::size_t>(animated.frame_count());
+  std::vector<float> matrices, weights;
+  for (int i = 0; i < animated.frame_count(); ++i) {
+    const Deformation deformation = animated.deformation(i);
+    const std::vector<float> palette = bone_palette(asset, deformation);
+    matrices.insert(matrices.end(), palette.begin(), palette.end());
+    std::vector<float> morphs(deformation.morphs.begin(), deformation.morphs.end());
+    morphs.resize(asset.morph_count());
+    weights.insert(weights.end(), morphs.begin(), morphs.end());
+  }
+  const std::size_t n = asset.spheres().size, most = n * (n - 1) / 2;
+  std::vector<Sphere> spheres(n * count);
+  std::vector<std::uint32_t> counts(count);
+  std::vector<CrowdPair> pairs(most * count + 1);
+  cuda::HostCrowd crowd;
+  check(crowd.open(asset, radius, nullptr, count, pairs.size()));
+  crowd.bones = {matrices.data(), asset.bone_count(), MatrixLayout::kRowMajor3x4, 48};
+  crowd.instance_stride = asset.bone_count() * 48;
+  crowd.morph_weights = asset.morph_count() > 0 ? weights.data() : nullptr;
+  crowd.instance_count = count;
+  crowd.spheres = spheres.data();
+  crowd.counts = counts.data();
+  crowd.pairs = pairs.data();
+  check(crowd.run());  // the first launch loads the kernel
+  check(crowd.run());
+  CudaFrames out{std::vector<CudaFrame>(count), 1000.0 * crowd.device_milliseconds / static_cast<double>(count)};
+  const CrowdPair* pair = pairs.data();
+  for (std::size_t i = 0; i < count; ++i) {
+    out.frames[i].spheres.assign(&spheres[i * n], &spheres[i * n] + n);
+    for (std::uint32_t k = 0; k < counts[i]; ++k) out.frames[i].pairs.push_back((pair++)->pair);
+  }
+  return out;
+}
+
+#else
+
+CudaFrames play_on_cuda(const AnimatedAsset&, RadiusKind) {
+  throw Error(
+      ExitCode::kInternal,
+      "--backend cuda: this build has no CUDA (configure with SPHERECHAIN_CUDA=ON; --backend auto needs no GPU)");
+}
+
+#endif
+
+}  // namespace spherechain::baker
