@@ -19,9 +19,9 @@ if(NOT CMAKE_CUDA_COMPILER)
     set(CMAKE_CUDA_COMPILER ${SPHERECHAIN_NVCC})
   endif()
 endif()
-# Turing to Hopper, and PTX for what comes after; a tree for one machine says -DCMAKE_CUDA_ARCHITECTURES=native or 90.
+# Turing to Hopper (Ampere's code runs on Ada too), and PTX for what comes after; a tree for one machine says -DCMAKE_CUDA_ARCHITECTURES=native or 90.
 if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES)
-  set(CMAKE_CUDA_ARCHITECTURES 75-real 80-real 86-real 89-real 90)
+  set(CMAKE_CUDA_ARCHITECTURES 75-real 80-real 90)
 endif()
 check_language(CUDA)
 if(CMAKE_CUDA_COMPILER)

@@ -118,18 +118,24 @@ SPHERECHAIN_HD std::uint32_t deal(std::uint32_t* dealt, const Place& at, std::ui
 #endif
 }
 
-// Past the first cache, where the tables are. arrive() before the barrier that makes the copies seen.
-SPHERECHAIN_HD void copy_past_cache(Float4* shared, const float* from) {
 #if defined(__CUDA_ARCH__)
+#define SPHERECHAIN_COPIES_PAST_CACHE (__CUDA_ARCH__ >= 800)
+#else
+#define SPHERECHAIN_COPIES_PAST_CACHE 0
+#endif
+
+// From Ampere on past the first cache, where the tables are. arrive() before the barrier that makes the copies seen.
+SPHERECHAIN_HD void copy_past_cache(Float4* shared, const float* from) {
+#if SPHERECHAIN_COPIES_PAST_CACHE
   const auto to = static_cast<std::uint32_t>(__cvta_generic_to_shared(shared));
   asm volatile("cp.async.cg.shared.global [%0], [%1], 16;" ::"r"(to), "l"(from) : "memory");
 #else
-  std::memcpy(shared, from, sizeof *shared);
+  *shared = *reinterpret_cast<const Float4*>(from);
 #endif
 }
 
 SPHERECHAIN_HD void arrive() {
-#if defined(__CUDA_ARCH__)
+#if SPHERECHAIN_COPIES_PAST_CACHE
   asm volatile("cp.async.wait_all;" ::: "memory");
 #endif
 }

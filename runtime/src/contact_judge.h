@@ -91,12 +91,12 @@ struct Verdicts {
 // One triangle against a vector of them, as exact_crossing.h does it. Lanes that are not wanted may be left open.
 HWY_INLINE Verdicts judge(const Block& few, std::size_t one, const Block& many, std::size_t i, std::uint64_t wanted) {
   constexpr Floats kFloats;
-  Vector3 a[3], b[3];
-  for (std::size_t k = 0; k < 3; ++k) {
-    a[k] = {hn::Set(kFloats, few.corners[k][0][one]), hn::Set(kFloats, few.corners[k][1][one]),
-            hn::Set(kFloats, few.corners[k][2][one])};
-    b[k] = corner_at(many, k, i);
-  }
+  const auto own_corner = [&](std::size_t k) HWY_ATTR {
+    return Vector3{hn::Set(kFloats, few.corners[k][0][one]), hn::Set(kFloats, few.corners[k][1][one]),
+                   hn::Set(kFloats, few.corners[k][2][one])};
+  };
+  Vector3 a[3] = {own_corner(0), own_corner(1), own_corner(2)};
+  Vector3 b[3] = {corner_at(many, 0, i), corner_at(many, 1, i), corner_at(many, 2, i)};
   Vector extents[3];
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const Vector low = hn::Min(hn::Set(kFloats, few.low[axis][one]), hn::LoadU(kFloats, many.low[axis] + i));
