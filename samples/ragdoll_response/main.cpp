@@ -38,7 +38,12 @@ class Character {
         asset_(asset),
         spheres_(asset.spheres().size),
         pairs_(1024),
-        contacts_(pairs_.size()) {}
+        contacts_(pairs_.size()),
+        ignored_(Filter::ignored_words(asset)) {
+    filter_.ignored = {ignored_.data(), ignored_.size()};
+    reset_filter(asset, filter_);
+    ignore_hops(asset, filter_, 2);  // a limb that bends nears its own next spheres: a fold, not a contact
+  }
 
   Palette palette;
 
@@ -52,6 +57,7 @@ class Character {
     DetectJob detect;
     detect.asset = &asset_;
     detect.spheres = {spheres_.data(), spheres_.size()};
+    detect.filter = &filter_;
     detect.pairs = {pairs_.data(), pairs_.size()};
     status = status == Status::kOk ? detect.run() : status;
     contact_count_ = detect.pair_count < pairs_.size() ? detect.pair_count : pairs_.size();
@@ -74,6 +80,8 @@ class Character {
   std::vector<Sphere> spheres_;
   std::vector<Pair> pairs_;
   std::vector<Contact> contacts_;
+  std::vector<std::uint64_t> ignored_;
+  Filter filter_;
   std::size_t contact_count_ = 0;
   float deepest_ = 0.0F;
 };
