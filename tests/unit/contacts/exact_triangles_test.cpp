@@ -126,7 +126,7 @@ void draw_triangles(Random& random, Corners& a, Corners& b) {
 }  // namespace
 
 TEST_CASE("the side of a plane is that of exact rationals: random, degenerate, subnormal, huge, nearly in the plane" *
-          doctest::test_suite("a million draws")) {
+          doctest::test_suite("long runs")) {
   Random random(1);
   int counts[3] = {};
   for (int i = 0; i < 200000; ++i) {
@@ -155,7 +155,7 @@ TEST_CASE("the side of a line is that of exact rationals") {
 }
 
 TEST_CASE("a million pairs of triangles intersect where CGAL says so: any, touching, in one plane, nearly so" *
-          doctest::test_suite("a million draws")) {
+          doctest::test_suite("long runs")) {
   Random random(3);
   int intersecting = 0, different = 0;
   for (int i = 0; i < 1000000; ++i) {

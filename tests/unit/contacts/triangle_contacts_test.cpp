@@ -131,7 +131,8 @@ TEST_CASE("from bones the contacts are CGAL's of the positions the runtime skins
   CHECK(total > 1000);
 }
 
-TEST_CASE("contacts of neighbours are CGAL's, from vertices and from bones, and with the others they are all") {
+TEST_CASE("contacts of neighbours are CGAL's, from vertices and from bones, and with the others they are all" *
+          doctest::test_suite("long runs")) {
   const MovingHuman& human = moving_human();
   const Asset asset = human.asset();
   std::size_t total = 0, within = 0;
