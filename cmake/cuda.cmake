@@ -1,10 +1,10 @@
 # SPHERECHAIN_CUDA: AUTO takes a CUDA compiler where there is one, ON fails without, OFF does not look. Sets
 # SPHERECHAIN_CUDA_FOUND.
-set(default OFF)
+set(spherechain_cuda_default OFF)
 if(PROJECT_IS_TOP_LEVEL)
-  set(default AUTO)
+  set(spherechain_cuda_default AUTO)
 endif()
-set(SPHERECHAIN_CUDA ${default} CACHE STRING "Build the CUDA backend: AUTO (where a CUDA compiler is found), ON or OFF")
+set(SPHERECHAIN_CUDA ${spherechain_cuda_default} CACHE STRING "Build the CUDA backend: AUTO (where a CUDA compiler is found), ON or OFF")
 set_property(CACHE SPHERECHAIN_CUDA PROPERTY STRINGS AUTO ON OFF)
 set(SPHERECHAIN_CUDA_FOUND FALSE)
 if(NOT SPHERECHAIN_CUDA)

@@ -3,13 +3,12 @@
 #include <cstring>
 
 #include "crowd_access.h"
+#include "spherechain/detect.h"
 
 namespace spherechain::cuda {
 namespace {
 
 constexpr std::size_t words_of(std::size_t bytes) { return (bytes + 15) / 16 * 2; }
-
-std::size_t triangle_words(std::size_t n) { return (n * (n - 1) / 2 + 63) / 64; }
 
 bool test(Span<const std::uint64_t> words, std::size_t bit) { return ((words[bit / 64] >> (bit % 64)) & 1U) != 0; }
 
@@ -240,7 +239,7 @@ Status CrowdTables::build(const Asset& asset, RadiusKind radius, const Filter* f
   out.sphere_count_ = n;
   out.bone_count_ = static_cast<std::uint32_t>(asset.bone_count());
   out.morph_count_ = static_cast<std::uint32_t>(asset.morph_count());
-  out.bit_words_ = static_cast<std::uint32_t>(triangle_words(n));
+  out.bit_words_ = static_cast<std::uint32_t>(DetectJob::bit_words(asset));
   out.calibrated_ = asset.refit_rule() == RefitRule::kCalibrated;
   out.has_padding_ = filter != nullptr && filter->padding.size > 0;
   *this = out;

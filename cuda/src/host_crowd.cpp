@@ -7,6 +7,7 @@
 #include <new>
 #include <vector>
 
+#include "crowd_access.h"
 #include "device_error.h"
 #include "spherechain/cuda_device.h"
 
@@ -145,8 +146,12 @@ Status HostCrowd::run() noexcept {
   if (bones.data == nullptr) {
     return Status::kNullArgument;
   }
+  GroupView checked;  // before anything is worked out from the arguments
+  if (const Status refused = view_group(group, checked); refused != Status::kOk) {
+    return refused;
+  }
   const std::size_t floats =
-      ((instance_count - 1) * instance_stride + (bones.count - 1) * bones.stride + size_of(bones.layout)) /
+      ((instance_count - 1) * instance_stride + (tables_.bone_count() - 1) * bones.stride + size_of(bones.layout)) /
       sizeof(float);
   const bool has_weights = morph_weights != nullptr && tables_.morph_count() > 0;
   const CrowdJob job{{&group, 1}, nullptr};
