@@ -119,7 +119,7 @@ int main(int argc, char** argv) {
   add_radius(*validate_command, validate.radius);
   validate_command->add_flag("--contacts", validate.contacts, "Compare the narrow phase's triangle pairs too");
   validate_command->add_flag("--spheres-alone", validate.spheres_alone,
-                             "Count every pair of spheres that touch as reported, not only those whose skins do");
+                             "Report the spheres that touch, not those whose skins intersect");
   validate_command->add_option("--json", validate.json, "JSON file to write");
   validate_command->callback([&] { run = [&] { return run_validate(validate); }; });
 

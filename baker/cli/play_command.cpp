@@ -23,8 +23,8 @@ using nlohmann::ordered_json;
 // What all frames together show.
 class Tally {
  public:
-  void add(int index, const FrameResult& result, const Player& player,
-           const std::optional<Player::Confirmation>& confirmed, const Asset& asset) {
+  void add(int index, const FrameResult& result, const Player& player, const std::optional<Player::SkinDetection>& skin,
+           const Asset& asset) {
     ++frames_;
     last_ = result;
     refit_us_ += result.refit_us;
@@ -36,11 +36,11 @@ class Tally {
     const Span<const Pair> pairs = player.pairs();
     pairs_ += pairs.size;
     touching_ += pairs.size > 0 ? 1 : 0;
-    if (confirmed) {
-      is_confirmed_ = true;
-      confirmed_ += confirmed->pairs.size();
-      confirmed_frames_ += confirmed->pairs.empty() ? 0 : 1;
-      confirm_us_ += confirmed->us;
+    if (skin) {
+      has_skin_ = true;
+      skin_pairs_ += skin->pairs.size();
+      skin_frames_ += skin->pairs.empty() ? 0 : 1;
+      skin_us_ += skin->us;
     }
     std::map<std::pair<std::string, std::string>, bool> seen;
     for (const Pair& pair : pairs) {
@@ -65,12 +65,12 @@ class Tally {
     if (last_.m2) {
       out += fmt::format("{:<6} {:>8} {:>10} {:>12} {:>10.2f}\n", "M2", last_.m2->tests, pairs, "", m2_us_ / n);
     }
-    if (is_confirmed_) {
-      out += fmt::format("{:<6} {:>8} {:>10.1f} {:>12} {:>10.2f}\n", "skin", "", static_cast<double>(confirmed_) / n,
-                         "", confirm_us_ / n);
+    if (has_skin_) {
+      out += fmt::format("{:<6} {:>8} {:>10.1f} {:>12} {:>10.2f}\n", "skin", "", static_cast<double>(skin_pairs_) / n,
+                         "", skin_us_ / n);
     }
     out += "(a frame, on average)\n\n";
-    if (is_confirmed_) out += fmt::format("frames with touching skin: {} of {}\n", confirmed_frames_, frames_);
+    if (has_skin_) out += fmt::format("frames with touching skin: {} of {}\n", skin_frames_, frames_);
     out += fmt::format("frames with touching spheres: {} of {}\n", touching_, frames_);
     for (const auto& [names, seen] : by_region_) {
       out += fmt::format("  {:<24} {:>3} frames, from frame {}\n", names.first + " - " + names.second, seen.second,
@@ -80,10 +80,10 @@ class Tally {
   }
 
  private:
-  int frames_ = 0, touching_ = 0, confirmed_frames_ = 0;
-  bool is_confirmed_ = false;
-  std::size_t confirmed_ = 0;
-  double confirm_us_ = 0;
+  int frames_ = 0, touching_ = 0, skin_frames_ = 0;
+  bool has_skin_ = false;
+  std::size_t skin_pairs_ = 0;
+  double skin_us_ = 0;
   FrameResult last_;
   double refit_us_ = 0, m1_us_ = 0, m2_us_ = 0;
   std::size_t pairs_ = 0, m1_raw_ = 0;
@@ -116,14 +116,14 @@ ExitCode run_play(const PlayOptions& options) {
       } else {
         result = player.run(positions);
       }
-      std::optional<Player::Confirmation> confirmed;
-      if (animated.asset().leaf_count() > 0) confirmed = player.confirm(positions);
-      tally.add(i, result, player, confirmed, animated.asset());
+      std::optional<Player::SkinDetection> skin;
+      if (animated.asset().leaf_count() > 0) skin = player.detect_skin(positions);
+      tally.add(i, result, player, skin, animated.asset());
       if (options.json.empty()) continue;
       frames.push_back(frame_json(animated, i, result, player));
-      if (!confirmed) continue;
-      frames.back()["confirm_us"] = confirmed->us;
-      frames.back()["confirmed"] = pairs_json({confirmed->pairs.data(), confirmed->pairs.size()});
+      if (!skin) continue;
+      frames.back()["skin_us"] = skin->us;
+      frames.back()["skin_pairs"] = pairs_json({skin->pairs.data(), skin->pairs.size()});
     }
   }
   if (!options.json.empty()) {

@@ -19,7 +19,7 @@ ExitCode run_validate(const ValidateOptions& options) {
   settings.method = options.mode == "m1" ? Method::kM1 : Method::kM2;
   settings.target = choose_target("auto");
   settings.contacts = options.contacts;
-  settings.confirm = !options.spheres_alone;
+  settings.skin = !options.spheres_alone;
   settings.cache = cache_folder();
   const AnimatedAsset animated(options.asset, options.source, options.motion, options.frames);
   Validation validation;

@@ -5,7 +5,7 @@
 #include <chrono>
 
 #include "mesh/error.h"
-#include "spherechain/confirm.h"
+#include "spherechain/detect_skin.h"
 
 namespace spherechain::baker {
 namespace {
@@ -76,15 +76,14 @@ Detection Player::take(std::vector<Sphere> spheres, const std::vector<Pair>& pai
   return {pairs_.size() - asset_.ignored_count(), pair_count_, pair_count_, us};
 }
 
-Player::Confirmation Player::confirm(const std::vector<float>& positions) {
-  Confirmation out{std::vector<Pair>(pair_count_), 0};
+Player::SkinDetection Player::detect_skin(const std::vector<float>& positions) {
+  SkinDetection out{std::vector<Pair>(pairs_.size()), 0};
   TriangleContactContext context{{contact_words_.data(), contact_words_.size()}};
-  ConfirmJob job;
+  DetectSkinJob job;
   job.asset = &asset_;
   job.positions = positions.data();
   job.vertex_count = positions.size() / 3;
   job.target = target_;
-  job.candidates = {pairs_.data(), pair_count_};
   job.context = &context;
   job.pairs = {out.pairs.data(), out.pairs.size()};
   out.us = median_us([&] { check(job.run()); });

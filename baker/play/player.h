@@ -35,13 +35,13 @@ class Player {
   // Takes a frame that was computed elsewhere for its last one. Returns M2's part of it, `us` as given.
   Detection take(std::vector<Sphere> spheres, const std::vector<Pair>& pairs, double us);
 
-  // Of the last frame, run with these positions: the pairs below whose skins intersect, and what that costs. The asset
-  // must have leaves.
-  struct Confirmation {
+  // The pairs of spheres whose skins intersect, whether the spheres touch or not, and what finding them costs. The
+  // asset must have leaves.
+  struct SkinDetection {
     std::vector<Pair> pairs;
     double us;  // median of a few runs
   };
-  Confirmation confirm(const std::vector<float>& positions);
+  SkinDetection detect_skin(const std::vector<float>& positions);
 
   // Of the last frame: the refitted spheres, and the pairs the last method found (M1 and M2 report the same, but that
   // M1 leaves out pairs in no common chain).

@@ -103,7 +103,7 @@ std::string validation_json(const Validation& validation, const AnimatedAsset& a
       {"missed_depth", score.missed_depth / height},
       {"radius", radius_name(settings.radius)},
       {"mode", method_name(settings.method)},
-      {"confirmed", confirms(animated.asset(), settings)},
+      {"skin", reports_skin(animated.asset(), settings)},
       {"truth_frames", score.true_frames},
       {"degenerate_triangles", validation.degenerate},
   });
@@ -118,8 +118,10 @@ std::string validation_json(const Validation& validation, const AnimatedAsset& a
       out["neighbour_contacts_from_bones"] = errors_json(*from_bones);
     }
   }
-  out["m1"] = score_json(validation.m1);
-  out["m2"] = score_json(validation.m2);
+  for (const auto& [name, spheres] : {std::pair{"m1", &validation.m1}, std::pair{"m2", &validation.m2}}) {
+    out[name] = score_json(*spheres);
+    out[name]["missed_depth"] = spheres->missed_depth / height;
+  }
   if (validation.capsules > 0) {
     out["capsules"] = {{"count", validation.capsules}, {"curve", ordered_json::array()}};
     for (const CapsulePoint& point : validation.capsule_curve) {
@@ -152,7 +154,7 @@ std::string validation_text(const Validation& validation, const AnimatedAsset& a
   const Score& score = validation.score;
   std::string out = fmt::format("{} frames, radius {}, {}{}\n\n", score.frames, radius_name(settings.radius),
                                 settings.method == Method::kM1 ? "M1" : "M2",
-                                confirms(animated.asset(), settings) ? ", confirmed by the skin" : "");
+                                reports_skin(animated.asset(), settings) ? ", reported by the skin" : "");
   out += fmt::format("triangle pairs that intersect   {:>8}\n", validation.raw_pairs);
   out += fmt::format("  at rest too                   {:>8}\n", validation.rest);
   out += fmt::format("  of one sphere                 {:>8}\n", validation.same_sphere);

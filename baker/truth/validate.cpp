@@ -133,11 +133,7 @@ Frame validate_frame(const Context& context, int index) {
   const Intersections found = context.intersections.find(positions);
   Closeness closeness(surface, positions, kCloseSurface * animated.frame().height);
   const auto is_close = [&](const Pair& pair) { return closeness(pair); };
-  const auto depth_of = [&](Frame& frame, const TrueContact& contact) {
-    const double depth = penetration(contact, surface, positions);
-    frame.misses.push_back({index, contact.spheres, contact.triangles.size(), depth});
-    return depth;
-  };
+  const auto depth_of = [&](const TrueContact& contact) { return penetration(contact, surface, positions); };
 
   Frame frame;
   const auto ignored = [&](std::uint32_t a, std::uint32_t b) { return is_ignored(animated.asset(), a, b); };
@@ -146,13 +142,15 @@ Frame validate_frame(const Context& context, int index) {
       m2(animated.asset(), settings.radius, false, true, settings.target);
   const std::vector<Pair> m1_pairs = touching_spheres(m1, positions), m2_pairs = touching_spheres(m2, positions);
   const bool is_m1 = settings.method == Method::kM1;
-  frame.reported = confirms(animated.asset(), settings) ? (is_m1 ? m1 : m2).confirm(positions).pairs
-                   : is_m1                              ? m1_pairs
-                                                        : m2_pairs;
-  frame.score = score_frame(frame.truth, frame.reported, is_close,
-                            [&](const TrueContact& contact) { return depth_of(frame, contact); });
-  frame.m1 = score_frame(frame.truth, m1_pairs, is_close, no_depth);
-  frame.m2 = score_frame(frame.truth, m2_pairs, is_close, no_depth);
+  frame.reported = reports_skin(animated.asset(), settings) ? m2.detect_skin(positions).pairs
+                   : is_m1                                  ? m1_pairs
+                                                            : m2_pairs;
+  frame.score = score_frame(frame.truth, frame.reported, is_close, [&](const TrueContact& contact) {
+    frame.misses.push_back({index, contact.spheres, contact.triangles.size(), depth_of(contact)});
+    return frame.misses.back().depth;
+  });
+  frame.m1 = score_frame(frame.truth, m1_pairs, is_close, depth_of);
+  frame.m2 = score_frame(frame.truth, m2_pairs, is_close, depth_of);
   frame.curve = context.curve.measure(m2.spheres(), frame.truth, is_close);
   frame.capsules = score_ragdolls(context, found, frame.truth, positions, deformation);
   if (settings.contacts) {
@@ -176,8 +174,8 @@ Frame validate_frame(const Context& context, int index) {
 
 }  // namespace
 
-bool confirms(const Asset& asset, const ValidateSettings& settings) {
-  return settings.confirm && asset.leaf_count() > 0;
+bool reports_skin(const Asset& asset, const ValidateSettings& settings) {
+  return settings.skin && asset.leaf_count() > 0;
 }
 
 Validation validate(const AnimatedAsset& animated, const ValidateSettings& settings,

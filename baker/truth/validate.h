@@ -21,8 +21,8 @@ struct ValidateSettings {
   RadiusKind radius = RadiusKind::kDetect;
   Method method = Method::kM2;
   Target target = Target::kScalar;
-  bool contacts = false;        // the narrow phase too
-  bool confirm = true;          // report those pairs alone whose skins intersect, of an asset with leaves
+  bool contacts = false;  // the narrow phase too
+  bool skin = true;       // report the pairs whose skins intersect, of an asset with leaves; else those that touch
   std::filesystem::path cache;  // see truth_cache.h; empty: none
 };
 
@@ -42,7 +42,7 @@ struct CapsulePoint {
 };
 
 // The runtime's pairs against the truth, over all frames of a motion. `score`, `misses` and the groups are of the pairs
-// reported: those of the method asked for, confirmed by the skin where that is asked for too.
+// reported: those whose skins intersect, or those of the method asked for.
 struct Validation {
   std::size_t raw_pairs = 0, rest = 0, same_sphere = 0, ignored = 0, degenerate = 0;  // see FrameTruth
   Score score;
@@ -51,15 +51,15 @@ struct Validation {
   // frame is.
   ContactErrors contacts, neighbour_contacts;
   std::optional<ContactErrors> contacts_from_bones, neighbour_contacts_from_bones;
-  Score m1, m2;  // of all pairs of spheres that touch, confirmed or not; depth not measured
+  Score m1, m2;  // of all pairs of spheres that touch
   std::vector<CurvePoint> curve;
   std::size_t capsules = 0;  // of the ragdoll; 0 where no bones move the source
   std::vector<CapsulePoint> capsule_curve;
   std::vector<PairGroup> by_region, by_chain;  // regions without any pair are left out
 };
 
-// Whether validate() confirms.
-bool confirms(const Asset& asset, const ValidateSettings& settings);
+// Whether validate() reports the skin's pairs.
+bool reports_skin(const Asset& asset, const ValidateSettings& settings);
 
 // The same whatever the number of threads. `progress` is told how many frames are done, one call at a time.
 Validation validate(const AnimatedAsset& animated, const ValidateSettings& settings,

@@ -2,6 +2,7 @@
 // The C API's jobs on the triangles of the skin.
 #include "c_api.h"
 #include "spherechain/confirm.h"
+#include "spherechain/detect_skin.h"
 #include "spherechain/triangle_contacts.h"
 
 using namespace spherechain;
@@ -20,7 +21,7 @@ static_assert(kOverlap + offsetof(TriangleOverlap, from) == offsetof(sc_triangle
 static_assert(offsetof(SphereContact, count) == offsetof(sc_sphere_contact, count) &&
               offsetof(SphereContact, deepest) == offsetof(sc_sphere_contact, deepest));
 
-// The pose, as both jobs have it.
+// The pose, as all these jobs have it.
 template <typename Cpp, typename C>
 void set_pose(Cpp& out, const C& job) {
   out.asset = &job.asset->view;
@@ -59,6 +60,23 @@ sc_status sc_triangle_contacts(sc_triangle_contact_job* job) {
   const Status status = contacts.run();
   job->pair_count = contacts.pair_count;
   job->sphere_contact_count = contacts.sphere_contact_count;
+  return to_c(status);
+}
+
+sc_status sc_detect_skin(sc_detect_skin_job* job) {
+  if (const sc_status status = check_job(job); status != SC_OK) {
+    return status;
+  }
+  const FilterView filter(job->filter);
+  TriangleContactContext context{{job->scratch, job->scratch_words}};
+  DetectSkinJob detect;
+  set_pose(detect, *job);
+  detect.filter = filter.get();
+  detect.context = job->scratch == nullptr ? nullptr : &context;
+  detect.pairs = to_span<Pair>(job->pairs, job->pair_capacity);
+  detect.pair_count = job->pair_count;
+  const Status status = detect.run();
+  job->pair_count = detect.pair_count;
   return to_c(status);
 }
 

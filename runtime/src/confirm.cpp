@@ -63,7 +63,7 @@ Status ConfirmJob::run() noexcept {
     return status;
   }
   const ContactScene scene = scene_of(pose_of(*this), context->words);
-  ContactCollector collector(*asset, {}, {}, {});
+  ContactCollector collector(*asset, {}, {}, {}, {});
   std::size_t count = 0;
   for (const Pair& candidate : candidates) {
     if (!skins_touch(resolved, scene, candidate, collector)) {

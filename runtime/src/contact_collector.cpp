@@ -29,6 +29,7 @@ void ContactCollector::begin_spheres(Pair spheres) {
 void ContactCollector::end_spheres() {
   if (current_.count > 0) {
     sphere_contacts_.add(current_);
+    spheres_.add(current_.spheres);
   }
   current_ = {};
 }
@@ -87,6 +88,7 @@ void ContactCollector::finish() {
   pairs_.finish();
   contacts_.finish();
   sphere_contacts_.finish();
+  spheres_.finish();
 }
 
 }  // namespace spherechain

@@ -43,18 +43,21 @@ class LeastEntries {
 class ContactCollector {
  public:
   ContactCollector(const Asset& asset, Span<TrianglePair> pairs, Span<TriangleContact> contacts,
-                   Span<SphereContact> sphere_contacts)
+                   Span<SphereContact> sphere_contacts, Span<Pair> spheres)
       : asset_(asset),
         pairs_(pairs),
         contacts_(contacts),
         sphere_contacts_(sphere_contacts),
+        spheres_(spheres),
         measures_(contacts.size > 0 || sphere_contacts.size > 0) {}
 
   void begin_spheres(Pair spheres);
   bool decide(const Candidate& candidate);
   void finish();
 
-  bool overflowed() const { return pairs_.overflowed() || contacts_.overflowed() || sphere_contacts_.overflowed(); }
+  bool overflowed() const {
+    return pairs_.overflowed() || contacts_.overflowed() || sphere_contacts_.overflowed() || spheres_.overflowed();
+  }
   std::size_t pair_count() const { return pairs_.count(); }
   std::size_t sphere_contact_count() const { return sphere_contacts_.count(); }
 
@@ -66,6 +69,7 @@ class ContactCollector {
   LeastEntries<TrianglePair> pairs_;
   LeastEntries<TriangleContact> contacts_;
   LeastEntries<SphereContact> sphere_contacts_;
+  LeastEntries<Pair> spheres_;
   bool measures_;
   SphereContact current_{};
 };

@@ -5,6 +5,7 @@
 #include <initializer_list>
 
 #include "bone_refit.h"
+#include "spherechain/cover.h"
 #include "stride.h"
 
 namespace spherechain {
@@ -114,6 +115,25 @@ ContactScene scene_of(const ContactPose& pose, Span<std::uint64_t> words) {
   }
   if (pose.positions == nullptr) {
     scene.skin = skin_inputs(*pose.asset, pose.bones, pose.morph_weights);
+  }
+  return scene;
+}
+
+ContactScene scene_of_all(const ContactPose& pose, const Filter* filter, Target resolved, Span<std::uint64_t> words) {
+  ContactScene scene = scene_of(pose, words);
+  scene.ignored = pose.asset->ignored();
+  if (filter != nullptr) {
+    scene.ignored = {filter->ignored.data, filter->ignored.size};
+    scene.disabled = {filter->disabled.data, filter->disabled.size};
+  }
+  if (pose.positions == nullptr) {
+    CoverJob cover;
+    cover.asset = pose.asset;
+    cover.bones = pose.bones;
+    cover.morph_weights = pose.morph_weights;
+    cover.target = resolved;
+    cover.leaves = {scene.balls, pose.asset->leaf_count()};
+    (void)cover.run();  // checked already
   }
   return scene;
 }

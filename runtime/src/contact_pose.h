@@ -7,6 +7,7 @@
 #include "contact_scene.h"
 #include "memory.h"
 #include "spherechain/asset.h"
+#include "spherechain/filter.h"
 #include "spherechain/refit_bones.h"
 #include "spherechain/triangle_contacts.h"
 
@@ -37,5 +38,9 @@ PoseRanges ranges_of(const ContactPose& pose);
 
 // Of a checked pose, with enough words: nothing is ignored or disabled, no leaf is bounded.
 ContactScene scene_of(const ContactPose& pose, Span<std::uint64_t> words);
+
+// The same for all pairs of spheres but those ignored or disabled, by the asset or by a checked filter; from bones
+// with a ball around each leaf.
+ContactScene scene_of_all(const ContactPose& pose, const Filter* filter, Target resolved, Span<std::uint64_t> words);
 
 }  // namespace spherechain

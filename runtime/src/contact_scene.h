@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the stages of a TriangleContactJob, and of a ConfirmJob, hand to each other.
+// What the stages of a TriangleContactJob, a DetectSkinJob and a ConfirmJob hand to each other.
 #pragma once
 
 #include <cstddef>
@@ -56,6 +56,9 @@ bool decide(ContactCollector& collector, const Candidate& candidate);  // is it 
 
 // Hands all candidates that there are, and a few more, to the collector.
 void find_candidates(Target resolved, const ContactScene& scene, ContactCollector& collector);
+
+// The same, but of each two spheres no more once one candidate is a contact.
+void find_spheres(Target resolved, const ContactScene& scene, ContactCollector& collector);
 
 // Is there a contact between the regions of two spheres? Bounds what is not bounded yet.
 bool skins_touch(Target resolved, const ContactScene& scene, Pair spheres, ContactCollector& collector);

@@ -4,7 +4,6 @@
 #include "contact_collector.h"
 #include "contact_pose.h"
 #include "simd.h"
-#include "spherechain/cover.h"
 
 namespace spherechain {
 namespace {
@@ -59,17 +58,6 @@ Status check(const TriangleContactJob& job, Target& resolved) {
   return shares_memory(job) ? Status::kSharedMemory : Status::kOk;
 }
 
-// Bounds the leaves in the pose: what is left to do is told by the kernel.
-void cover(const TriangleContactJob& job, Target resolved, ContactScene& scene) {
-  CoverJob cover;
-  cover.asset = job.asset;
-  cover.bones = job.bones;
-  cover.morph_weights = job.morph_weights;
-  cover.target = resolved;
-  cover.leaves = {scene.balls, job.asset->leaf_count()};
-  (void)cover.run();  // checked already
-}
-
 }  // namespace
 
 Status TriangleContactJob::run() noexcept {
@@ -78,18 +66,10 @@ Status TriangleContactJob::run() noexcept {
   if (status != Status::kOk) {
     return status;
   }
-  ContactScene scene = scene_of(pose_of(*this), context->words);
-  scene.ignored = asset->ignored();
-  if (filter != nullptr) {
-    scene.ignored = {filter->ignored.data, filter->ignored.size};
-    scene.disabled = {filter->disabled.data, filter->disabled.size};
-  }
+  ContactScene scene = scene_of_all(pose_of(*this), filter, resolved, context->words);
   scene.apart = scope != ContactScope::kNeighbours;
   scene.neighbours = scope != ContactScope::kApart;
-  if (positions == nullptr) {
-    cover(*this, resolved, scene);
-  }
-  ContactCollector collector(*asset, pairs, contacts, sphere_contacts);
+  ContactCollector collector(*asset, pairs, contacts, sphere_contacts, {});
   find_candidates(resolved, scene, collector);
   collector.finish();
   pair_count = collector.pair_count();

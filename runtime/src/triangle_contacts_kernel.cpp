@@ -114,7 +114,8 @@ HWY_INLINE bool pair_leaf(const ContactScene& scene, std::size_t leaf, std::size
 }
 
 // The same from bones: what their balls do not part is skinned.
-HWY_INLINE void pair_ball(const ContactScene& scene, std::size_t leaf, std::size_t first, std::size_t end,
+template <bool kFirst>
+HWY_INLINE bool pair_ball(const ContactScene& scene, std::size_t leaf, std::size_t first, std::size_t end,
                           ContactCollector& collector) {
   const BallProbe balls(scene, leaf);
   BoxProbe probe(box_at(scene.leaves, leaf));
@@ -130,10 +131,13 @@ HWY_INLINE void pair_ball(const ContactScene& scene, std::size_t leaf, std::size
       const std::size_t other = j + lowest_bit(bits);
       skin(scene, other);
       if (box_at(scene.leaves, leaf).touches(box_at(scene.leaves, other))) {
-        pair_leaves<false>(scene, leaf, other, collector);
+        if (pair_leaves<kFirst>(scene, leaf, other, collector)) {
+          return true;
+        }
       }
     }
   }
+  return false;
 }
 
 // The leaves of one sphere.
@@ -146,11 +150,12 @@ HWY_INLINE void pair_within(const ContactScene& scene, std::size_t sphere, Conta
     } else {
       skin(scene, leaf);
       pair_leaves<false>(scene, leaf, leaf, collector);
-      pair_ball(scene, leaf, leaf + 1, end, collector);
+      pair_ball<false>(scene, leaf, leaf + 1, end, collector);
     }
   }
 }
 
+template <bool kFirst>
 HWY_INLINE void pair_spheres(const ContactScene& scene, std::size_t a, std::size_t b, ContactCollector& collector) {
   const std::size_t end_a = scene.first_leaf[a + 1], first_b = scene.first_leaf[b], end_b = scene.first_leaf[b + 1];
   const BoxProbe probe_a(box_at(scene.spheres, a));
@@ -161,10 +166,9 @@ HWY_INLINE void pair_spheres(const ContactScene& scene, std::size_t a, std::size
   for (std::size_t i = scene.first_leaf[a]; i < end_a; i += kLanes) {
     for (std::uint64_t bits = probe_b.touching(scene.leaves, i, end_a - i); bits != 0; bits &= bits - 1) {
       const std::size_t leaf = i + lowest_bit(bits);
-      if (scene.positions != nullptr) {
-        pair_leaf<false>(scene, leaf, first_b, end_b, collector);
-      } else {
-        pair_ball(scene, leaf, first_b, end_b, collector);
+      if (scene.positions != nullptr ? pair_leaf<kFirst>(scene, leaf, first_b, end_b, collector)
+                                     : pair_ball<kFirst>(scene, leaf, first_b, end_b, collector)) {
+        return;
       }
     }
   }
@@ -209,7 +213,8 @@ HWY_INLINE bool is_enabled(const ContactScene& scene, std::size_t sphere) {
   return scene.disabled.size == 0 || !test_bit(scene.disabled, sphere);
 }
 
-void find(const ContactScene& scene, ContactCollector& collector) {
+template <bool kFirst>
+HWY_INLINE void find(const ContactScene& scene, ContactCollector& collector) {
   if (scene.positions != nullptr) {
     bound_leaves(scene);
   } else {
@@ -234,12 +239,15 @@ void find(const ContactScene& scene, ContactCollector& collector) {
         const std::size_t b = first + lowest_bit(bits);
         if (is_enabled(scene, b) && (test_bit(scene.ignored, ignored_bit(a, b)) ? scene.neighbours : scene.apart)) {
           begin_spheres(collector, {sphere, static_cast<std::uint32_t>(b)});
-          pair_spheres(scene, a, b, collector);
+          pair_spheres<kFirst>(scene, a, b, collector);
         }
       }
     }
   }
 }
+
+void find_all(const ContactScene& scene, ContactCollector& collector) { find<false>(scene, collector); }
+void find_first(const ContactScene& scene, ContactCollector& collector) { find<true>(scene, collector); }
 
 }  // namespace HWY_NAMESPACE
 }  // namespace spherechain
@@ -249,13 +257,18 @@ HWY_AFTER_NAMESPACE();
 namespace spherechain {
 namespace {
 
-SPHERECHAIN_KERNELS(find);
+SPHERECHAIN_KERNELS(find_all);
+SPHERECHAIN_KERNELS(find_first);
 SPHERECHAIN_KERNELS(touch);
 
 }  // namespace
 
 void find_candidates(Target resolved, const ContactScene& scene, ContactCollector& collector) {
-  find_kernels[index_of(resolved)](scene, collector);
+  find_all_kernels[index_of(resolved)](scene, collector);
+}
+
+void find_spheres(Target resolved, const ContactScene& scene, ContactCollector& collector) {
+  find_first_kernels[index_of(resolved)](scene, collector);
 }
 
 bool skins_touch(Target resolved, const ContactScene& scene, Pair spheres, ContactCollector& collector) {

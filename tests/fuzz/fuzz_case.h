@@ -149,6 +149,7 @@ void fuzz_detect(Case& c);
 void fuzz_contacts(Case& c);
 void fuzz_crowd(Case& c);
 void fuzz_triangle_contacts(Case& c);
+void fuzz_detect_skin(Case& c);
 void fuzz_confirm(Case& c);
 
 }  // namespace spherechain::test

@@ -29,6 +29,7 @@ constexpr Kind kKinds[] = {{"open", fuzz_open},
                            {"cover", fuzz_cover},
                            {"skin", fuzz_skin},
                            {"triangle contacts", fuzz_triangle_contacts},
+                           {"detect skin", fuzz_detect_skin},
                            {"confirm", fuzz_confirm}};
 constexpr std::size_t kKindCount = sizeof kKinds / sizeof kKinds[0];
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Exact contacts, and pairs of spheres confirmed by them, from vertices and from bones; once more through the C API, on
-// another target.
+// Exact contacts, and pairs of spheres found and confirmed by them, from vertices and from bones; once more through the
+// C API, on another target.
 #include <algorithm>
 
 #include "fuzz_case.h"
 #include "spherechain/confirm.h"
+#include "spherechain/detect_skin.h"
 #include "spherechain/triangle_contacts.h"
 
 namespace spherechain::test {
@@ -49,6 +50,36 @@ void spoil(Case& c, TriangleContactJob& job, Filter& filter, std::uint32_t way, 
     default:
       if (job.context != nullptr && job.pairs.size > 0) {
         job.pairs.data = reinterpret_cast<TrianglePair*>(job.context->words.data);
+        spoiled.with(Status::kSharedMemory);
+      }
+  }
+}
+
+void spoil(Case& c, DetectSkinJob& job, Filter& filter, std::uint32_t way, Spoiled& spoiled) {
+  switch (way) {
+    case 0:
+      job.asset = &c.closed;
+      return spoiled.with(Status::kNotOpen);
+    case 1:
+      job.context = nullptr;
+      return spoiled.with(Status::kNullArgument);
+    case 2:
+      job.filter = &filter;
+      if (filter.ignored.data == nullptr) filter = draw_filter(c);
+      return spoil_filter(c, filter, spoiled);
+    case 3:
+      job.pairs.data = c.arena.add<Pair>(job.pairs.size + 1);
+      put_askew(c, job.pairs.data);
+      return spoiled.with(Status::kMisaligned);
+    case 4:
+      if (job.context != nullptr) {
+        job.context->words.size = c.random.up_to(job.context->words.size - 1);
+        spoiled.with(Status::kContextTooSmall);
+      }
+      return;
+    default:
+      if (job.context != nullptr && job.pairs.size > 0) {
+        job.pairs.data = reinterpret_cast<Pair*>(job.context->words.data);
         spoiled.with(Status::kSharedMemory);
       }
   }
@@ -187,6 +218,53 @@ void fuzz_triangle_contacts(Case& c) {
       });
   c.expect(c_job.pair_count == job.pair_count && c_job.sphere_contact_count == job.sphere_contact_count,
            "the C API, or another target, counts something else");
+  const std::size_t written = std::min(job.pairs.size, job.pair_count);
+  if (spoiled.count == 0) {
+    c.expect(std::is_sorted(job.pairs.data, job.pairs.data + written), "pairs that are not sorted");
+  }
+}
+
+void fuzz_detect_skin(Case& c) {
+  if (!draw_skin(c)) {
+    return;
+  }
+  const std::size_t words = TriangleContactContext::words_needed(c.asset);
+  DetectSkinJob job;
+  Spoiled spoiled;
+  job.asset = &c.asset;
+  job.target = draw_target(c);
+  TriangleContactContext context{{c.arena.add<std::uint64_t>(words), words}};
+  job.context = &context;
+  draw_pose(c, job);
+  job.pairs.size = c.random.below(20);
+  job.pairs.data = c.arena.add<Pair>(job.pairs.size);
+  Filter filter;
+  if (c.random.one_in(2)) {
+    filter = draw_filter(c);
+    job.filter = &filter;
+  }
+  if (c.asset.leaf_count() == 0) {
+    spoiled.with(Status::kNotInAsset);
+  } else {
+    spoil_some(c, 6, [&](std::uint32_t way) { spoil(c, job, filter, way, spoiled); });
+  }
+  sc_detect_skin_job c_job = to_c_job(c, job, sc_detect_skin_job SC_DETECT_SKIN_JOB_INIT);
+  const sc_filter c_filter = to_c(filter);
+  c_job.filter = job.filter == nullptr ? nullptr : &c_filter;
+  c_job.pairs = reinterpret_cast<sc_pair*>(job.pairs.data);
+  c_job.pair_capacity = job.pairs.size;
+  run_both(
+      c, spoiled, [&] { return job.run(); }, [&] { return sc_detect_skin(&c_job); },
+      [&](Status) {
+        return std::vector<Bytes>{bytes_of(job.pairs.data, std::min(job.pairs.size, job.pair_count)),
+                                  bytes_of(context.words.data, words)};
+      },
+      [&](bool ran) {
+        if (ran) {
+          std::fill(context.words.begin(), context.words.end(), std::uint64_t{0});  // scratch: anything
+        }
+      });
+  c.expect(c_job.pair_count == job.pair_count, "the C API, or another target, finds something else");
   const std::size_t written = std::min(job.pairs.size, job.pair_count);
   if (spoiled.count == 0) {
     c.expect(std::is_sorted(job.pairs.data, job.pairs.data + written), "pairs that are not sorted");

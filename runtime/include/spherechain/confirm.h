@@ -19,7 +19,7 @@ namespace spherechain {
 // vertices of the spheres named are read or skinned.
 //
 // Made for the pairs that DetectJob reports: spheres are an alarm, this is what is true of it. What spheres miss it
-// does not find; TriangleContactJob does, at a higher price.
+// does not find; DetectSkinJob does.
 //
 // The pose is given as in TriangleContactJob. The same pairs on every target, of whatever is finite.
 //

@@ -531,13 +531,42 @@ typedef struct sc_triangle_contact_job {
         SC_CONTACTS_APART, NULL, NULL, 0, NULL, 0, NULL, 0, NULL, 0, 0, 0                                            \
   }
 
-/* Words for either of the two jobs; 0 for a null asset, and for one without a surface. */
+/* Words for each of the three jobs here; 0 for a null asset, and for one without a surface. */
 SPHERECHAIN_API size_t sc_triangle_contact_scratch_words(const sc_asset* asset);
 
 /* SC_OK, SC_OVERFLOW (the first entries are written), SC_NULL_ARGUMENT, SC_WRONG_ABI, SC_NOT_IN_ASSET,
  * SC_TOO_FEW_VERTICES, SC_BAD_STRIDE, SC_TOO_FEW_BONES, SC_TOO_FEW_MORPHS, SC_CONTEXT_TOO_SMALL, SC_BAD_ARGUMENT,
  * SC_UNSUPPORTED_TARGET, SC_BAD_FILTER, SC_MISALIGNED, SC_SHARED_MEMORY. */
 SPHERECHAIN_API sc_status sc_triangle_contacts(sc_triangle_contact_job* job);
+
+/* Which spheres' skins intersect: the spheres of sc_triangle_contacts' contacts between spheres that are not ignored, for
+ * less. Whether spheres touch plays no part. The pose as above. */
+typedef struct sc_detect_skin_job {
+  size_t struct_size;
+  const sc_asset* asset;
+  const float* positions;
+  size_t vertex_count;
+  size_t stride;
+  sc_bone_matrices bones;
+  const float* morph_weights;
+  size_t morph_weight_count;
+  sc_target target;
+  uint32_t reserved;
+  const sc_filter* filter; /* null: what the asset says; padding is of no effect */
+  uint64_t* scratch;       /* required: sc_triangle_contact_scratch_words() */
+  size_t scratch_words;
+  sc_pair* pairs; /* out: sorted, each once; may be null */
+  size_t pair_capacity;
+  size_t pair_count; /* out: those there are, also after SC_OVERFLOW */
+} sc_detect_skin_job;
+#define SC_DETECT_SKIN_JOB_INIT                                                                                      \
+  {                                                                                                                  \
+    sizeof(sc_detect_skin_job), NULL, NULL, 0, 12, {NULL, 0, 48, SC_ROW_MAJOR_3X4, 0}, NULL, 0, SC_TARGET_BEST, 0,   \
+        NULL, NULL, 0, NULL, 0, 0                                                                                    \
+  }
+
+/* As sc_triangle_contacts. */
+SPHERECHAIN_API sc_status sc_detect_skin(sc_detect_skin_job* job);
 
 /* Of some pairs of spheres, those whose skins intersect: what is true of sc_detect's alarm. The pose as above. */
 typedef struct sc_confirm_job {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pairs of spheres confirmed by the skin, against the list of all triangle contacts.
+// Pairs of spheres whose skins intersect, searched for and confirmed, against the list of all triangle contacts.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 #include "moving_human.h"
 #include "play/play.h"
 #include "spherechain/confirm.h"
+#include "spherechain/detect_skin.h"
 #include "spherechain/filter.h"
 
 using namespace spherechain;
@@ -30,15 +31,14 @@ void set_pose(Job& job, const std::vector<float>& positions) {
   job.vertex_count = positions.size() / 3;
 }
 
-// Of the spheres with a triangle contact, whether they are ignored or not: those of the candidates, in their order.
+// The spheres with a triangle contact, sorted.
 template <typename SetPose>
-std::vector<Pair> expected_pairs(const Asset& asset, const std::vector<Pair>& candidates, const SetPose& set) {
-  std::vector<std::uint64_t> words(TriangleContactContext::words_needed(asset)), none(Filter::ignored_words(asset));
+std::vector<Pair> contact_spheres(const Asset& asset, const Filter* filter, const SetPose& set) {
+  std::vector<std::uint64_t> words(TriangleContactContext::words_needed(asset));
   TriangleContactContext context{{words.data(), words.size()}};
-  const Filter filter{{none.data(), none.size()}, {}, {}};
   TriangleContactJob job;
   job.asset = &asset;
-  job.filter = &filter;
+  job.filter = filter;
   job.context = &context;
   set(job);
   REQUIRE(job.run() == Status::kOk);
@@ -46,9 +46,19 @@ std::vector<Pair> expected_pairs(const Asset& asset, const std::vector<Pair>& ca
   job.sphere_contacts = {contacts.data(), contacts.size()};
   REQUIRE(job.run() == Status::kOk);
   std::vector<Pair> out;
-  std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(out), [&](const Pair& pair) {
-    return std::any_of(contacts.begin(), contacts.end(), [&](const SphereContact& c) { return c.spheres == pair; });
-  });
+  for (const SphereContact& contact : contacts) out.push_back(contact.spheres);
+  return out;
+}
+
+// Of the candidates, in their order, those with a triangle contact, whether they are ignored or not.
+template <typename SetPose>
+std::vector<Pair> expected_pairs(const Asset& asset, const std::vector<Pair>& candidates, const SetPose& set) {
+  std::vector<std::uint64_t> none(Filter::ignored_words(asset));
+  const Filter filter{{none.data(), none.size()}, {}, {}};
+  const std::vector<Pair> touching = contact_spheres(asset, &filter, set);
+  std::vector<Pair> out;
+  std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(out),
+               [&](const Pair& pair) { return std::find(touching.begin(), touching.end(), pair) != touching.end(); });
   return out;
 }
 
@@ -70,7 +80,93 @@ std::vector<Pair> confirmed_pairs(const Asset& asset, const std::vector<Pair>& c
   return out;
 }
 
+template <typename SetPose>
+std::vector<Pair> skin_pairs(const Asset& asset, const Filter* filter, Target target, const SetPose& set) {
+  std::vector<std::uint64_t> words(TriangleContactContext::words_needed(asset), 0x5555555555555555U);
+  TriangleContactContext context{{words.data(), words.size()}};
+  DetectSkinJob job;
+  job.asset = &asset;
+  job.filter = filter;
+  job.target = target;
+  job.context = &context;
+  set(job);
+  REQUIRE(job.run() == Status::kOk);
+  std::vector<Pair> out(job.pair_count);
+  job.pairs = {out.data(), out.size()};
+  REQUIRE(job.run() == Status::kOk);
+  return out;
+}
+
 }  // namespace
+
+TEST_CASE("the skin's pairs are the spheres of all triangle contacts, from vertices and from bones, on every target") {
+  const MovingHuman& human = moving_human();
+  const Asset asset = human.asset();
+  std::size_t total = 0;
+  for (const auto& [name, deformation] : human.frames()) {
+    CAPTURE(name);
+    const std::vector<float> positions = human.deformed(deformation), palette = baker::bone_palette(asset, deformation);
+    const auto by_vertices = [&](auto& job) { set_pose(job, positions); };
+    const auto by_bones = [&](auto& job) { job.bones = {palette.data(), asset.bone_count()}; };
+    const std::vector<Pair> expected = contact_spheres(asset, nullptr, by_vertices),
+                            expected_of_bones = contact_spheres(asset, nullptr, by_bones);
+    total += expected.size();
+    for (const Target target : supported_targets()) {
+      CAPTURE(to_string(target));
+      CHECK(skin_pairs(asset, nullptr, target, by_vertices) == expected);
+      CHECK(skin_pairs(asset, nullptr, target, by_bones) == expected_of_bones);
+    }
+  }
+  CHECK(total > 20);
+}
+
+TEST_CASE("the skin's pairs heed a filter's ignored pairs and its disabled spheres") {
+  const MovingHuman& human = moving_human();
+  const Asset asset = human.asset();
+  const auto frames = human.frames();
+  const std::vector<float> positions = human.deformed(frames.back().deformation);
+  const auto set = [&](auto& job) { set_pose(job, positions); };
+  std::vector<std::uint64_t> ignored(Filter::ignored_words(asset)), disabled(Filter::disabled_words(asset));
+  Filter filter{{ignored.data(), ignored.size()}, {disabled.data(), disabled.size()}, {}};
+  std::vector<Pair> expected = skin_pairs(asset, nullptr, Target::kBest, set);
+  REQUIRE(expected.size() > 2);
+  REQUIRE(reset_filter(asset, filter) == Status::kOk);
+  CHECK(skin_pairs(asset, &filter, Target::kBest, set) == expected);
+  const Pair first = expected[0], last = expected.back();
+  REQUIRE(ignore_pair(asset, filter, first.a, first.b) == Status::kOk);
+  REQUIRE(disable_sphere(asset, filter, last.b) == Status::kOk);
+  expected.erase(std::remove_if(expected.begin(), expected.end(),
+                                [&](const Pair& p) { return p == first || p.a == last.b || p.b == last.b; }),
+                 expected.end());
+  CHECK(skin_pairs(asset, &filter, Target::kBest, set) == expected);
+}
+
+TEST_CASE("a search of the skin's pairs without room writes the first ones and says how much it needs") {
+  const MovingHuman& human = moving_human();
+  const Asset asset = human.asset();
+  const auto frames = human.frames();
+  const std::vector<float> positions = human.deformed(frames.back().deformation);
+  const auto set = [&](auto& job) { set_pose(job, positions); };
+  const std::vector<Pair> expected = contact_spheres(asset, nullptr, set);
+  REQUIRE(expected.size() > 1);
+  std::vector<std::uint64_t> words(TriangleContactContext::words_needed(asset));
+  TriangleContactContext context{{words.data(), words.size()}};
+  std::vector<Pair> out(expected.size() - 1);
+  DetectSkinJob job;
+  job.asset = &asset;
+  job.context = &context;
+  job.pairs = {out.data(), out.size()};
+  set(job);
+  CHECK(job.run() == Status::kOverflow);
+  CHECK(job.pair_count == expected.size());
+  CHECK(std::equal(out.begin(), out.end(), expected.begin()));
+  job.pair_count = 77;
+  job.pairs = {reinterpret_cast<Pair*>(words.data()), 1};
+  CHECK(job.run() == Status::kSharedMemory);
+  context.words.size -= 1;
+  CHECK(job.run() == Status::kContextTooSmall);
+  CHECK(job.pair_count == 77);
+}
 
 TEST_CASE("confirmed are the pairs of spheres with a triangle contact, from vertices and from bones, on every target") {
   const MovingHuman& human = moving_human();

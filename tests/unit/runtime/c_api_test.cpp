@@ -308,7 +308,7 @@ TEST_CASE("C: cover and skin give what the C++ jobs give") {
   CHECK(sc_skin(&skin_job) == SC_WRONG_ABI);
 }
 
-TEST_CASE("C: triangle contacts, and pairs confirmed by them, are those of the C++ jobs") {
+TEST_CASE("C: triangle contacts, pairs found and confirmed by them, are those of the C++ jobs") {
   const BothApis both;
   const Asset& asset = both.opened.asset;
   // All regions at the same place: much intersects.
@@ -365,6 +365,24 @@ TEST_CASE("C: triangle contacts, and pairs confirmed by them, are those of the C
   CHECK(sc_triangle_contacts(&c_job) == SC_NULL_ARGUMENT);
   CHECK(sc_triangle_contact_scratch_words(nullptr) == 0);
 
+  std::vector<std::uint64_t> none(sc_filter_ignored_words(both.asset));
+  const sc_filter filter{none.data(), none.size(), nullptr, 0, nullptr, 0};
+  std::vector<sc_pair> of_skin(job.sphere_contact_count);
+  sc_detect_skin_job detect = SC_DETECT_SKIN_JOB_INIT;
+  detect.asset = both.asset;
+  detect.positions = positions.data();
+  detect.vertex_count = positions.size() / 4;
+  detect.stride = 16;
+  detect.filter = &filter;
+  detect.scratch = c_words.data();
+  detect.scratch_words = c_words.size();
+  detect.pairs = of_skin.data();
+  detect.pair_capacity = of_skin.size();
+  REQUIRE(sc_detect_skin(&detect) == SC_OK);
+  of_skin.resize(detect.pair_count);
+  detect.struct_size -= 1;
+  CHECK(sc_detect_skin(&detect) == SC_WRONG_ABI);
+
   std::vector<sc_pair> candidates, expected;
   for (std::uint32_t b = 1; b < asset.spheres().size; ++b) {
     for (std::uint32_t a = 0; a < b; ++a) {
@@ -388,6 +406,9 @@ TEST_CASE("C: triangle contacts, and pairs confirmed by them, are those of the C
   REQUIRE(sc_confirm(&confirm) == SC_OK);
   CHECK(confirm.pair_count == expected.size());
   CHECK(same_bytes(confirmed, expected));
+  const auto is_less = [](const sc_pair& l, const sc_pair& r) { return l.a != r.a ? l.a < r.a : l.b < r.b; };
+  std::sort(expected.begin(), expected.end(), is_less);
+  CHECK(same_bytes(of_skin, expected));
   confirm.struct_size -= 1;
   CHECK(sc_confirm(&confirm) == SC_WRONG_ABI);
 }
