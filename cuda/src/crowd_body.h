@@ -4,35 +4,73 @@
 // refit_bones.h and detect.h: multiply-adds where fused() is written, and nowhere else.
 #pragma once
 
+#include "crowd_cover.h"
 #include "crowd_outputs.h"
 #include "crowd_pairs.h"
 #include "crowd_refit.h"
 
 namespace spherechain::cuda {
 
+// Where a group's spheres come from.
+enum class Way { kSpheres, kBones, kMorphs, kCovers };
+
+SPHERECHAIN_HD Way way_of(const GroupView& v) {
+  return v.cover_entries != nullptr   ? Way::kCovers
+         : v.matrices == nullptr      ? Way::kSpheres
+         : v.morph_weights == nullptr ? Way::kBones
+                                      : Way::kMorphs;
+}
+
 // A block. `run` runs a step for its threads and waits for all of them.
-template <bool kFromBones, bool kMorphs, typename Run>
+template <Way kWay, typename Run>
 SPHERECHAIN_HD void run_block(const GroupView& v, const Shared& shared, const Run& run) {
-  if (kFromBones) {
-    run([&](const Place& at) {
-      start_dealing(shared, at);
-      load_matrices(v, shared, at);
-    });
-    run([&](const Place& at) { refit_spheres<kMorphs>(v, shared, at); });
-  } else {
-    run([&](const Place& at) {
-      start_dealing(shared, at);
+  constexpr bool kCovers = kWay == Way::kCovers;
+  run([&](const Place& at) {
+    start_dealing(shared, at);
+    if (kWay == Way::kSpheres) {
       load_spheres(v, shared, at);
-    });
+    } else {
+      load_matrices(v, shared, at);
+    }
+  });
+  if (kCovers) {
+    run([&](const Place& at) { size_bones(v, shared, at); });
+    run([&](const Place& at) { cover_spheres(v, shared, at); });
+  } else if (kWay != Way::kSpheres) {
+    run([&](const Place& at) { refit_spheres<kWay == Way::kMorphs>(v, shared, at); });
   }
-  if (kFromBones && v.refitted != nullptr) {
-    run([&](const Place& at) { write_spheres(v, shared, at); });
+  if (kWay != Way::kSpheres && v.refitted != nullptr) {
+    run([&](const Place& at) { kCovers ? write_covers(v, shared, at) : write_spheres(v, shared, at); });
   }
-  run([&](const Place& at) { prepare_pairs(v, shared, at); });
-  run([&](const Place& at) { test_pairs(v, shared, at); });
+  run([&](const Place& at) { prepare_pairs<kCovers>(v, shared, at); });
+  run([&](const Place& at) { test_pairs<kCovers>(v, shared, at); });
   run([&](const Place& at) { write_instances(v, shared, at); });
   if (v.pairs != nullptr) {
     run([&](const Place& at) { write_pairs(v, shared, at); });
+  }
+}
+
+template <typename Run>
+SPHERECHAIN_HD void run_any_block(const GroupView& v, const Shared& shared, const Run& run) {
+  switch (way_of(v)) {
+    case Way::kSpheres:
+      return run_block<Way::kSpheres>(v, shared, run);
+    case Way::kBones:
+      return run_block<Way::kBones>(v, shared, run);
+    case Way::kMorphs:
+      return run_block<Way::kMorphs>(v, shared, run);
+    case Way::kCovers:
+      return run_block<Way::kCovers>(v, shared, run);
+  }
+}
+
+// What a block of its launch does where the memory is in scratch. `run` is made for a block of the group.
+template <typename MakeRun>
+SPHERECHAIN_HD void run_blocks_in_scratch(const GroupView& v, std::uint32_t first, const MakeRun& make_run) {
+  const SharedLayout layout = shared_layout(v);
+  const Shared memory(v.scratch + first * layout.size, layout);
+  for (std::uint32_t block = first; block < blocks_of(v); block += v.scratch_blocks) {
+    run_any_block(v, memory, make_run(block));
   }
 }
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+
 #include "crowd_access.h"
 
 namespace spherechain::cuda {
@@ -49,14 +51,15 @@ Status check(const CrowdGroup& group) {
       (group.pairs != nullptr && group.instance_count > 0 && (group.counts == nullptr || group.starts == nullptr))) {
     return Status::kNullArgument;
   }
-  if ((from_bones && group.spheres != nullptr) || (!from_bones && group.refitted != nullptr) ||
-      (!from_bones && group.morph_weights != nullptr) || group.instance_count > kMostInstances ||
-      group.stride > kMostInstances) {
+  const bool has_covers = group.tables->leaf_count() > 0;
+  if ((has_covers ? group.spheres != nullptr : group.leaves != nullptr) || (from_bones && group.spheres != nullptr) ||
+      (!from_bones && group.refitted != nullptr) || (!from_bones && group.morph_weights != nullptr) ||
+      group.instance_count > kMostInstances || group.stride > kMostInstances) {
     return Status::kBadArgument;
   }
-  if (!is_aligned(group.device_tables, 16) ||
-      !all_aligned(group.spheres, group.bones.data, group.morph_weights, group.refitted, group.bounds, group.counts,
-                   group.bits, group.pairs, group.starts, group.pair_count)) {
+  if (!is_aligned(group.device_tables, 16) || !is_aligned(static_cast<const char*>(group.scratch), 16) ||
+      !all_aligned(group.spheres, group.bones.data, group.morph_weights, group.refitted, group.leaves, group.bounds,
+                   group.counts, group.bits, group.pairs, group.starts, group.pair_count)) {
     return Status::kMisaligned;
   }
   if (!from_bones && group.stride != 0 && group.stride < group.tables->sphere_count()) {
@@ -89,7 +92,7 @@ Status view_group(const CrowdGroup& group, GroupView& view) {
   view.sphere_stride = group.stride == 0 ? view.sphere_count : group.stride;
   view.wide_spheres = is_aligned(group.spheres, alignof(Float4));
   view.matrices = group.bones.data;
-  view.morph_weights = view.morph_counts == nullptr ? nullptr : group.morph_weights;
+  view.morph_weights = view.has_morphs ? group.morph_weights : nullptr;
   view.bone_stride = group.bones.stride / sizeof(float);
   view.instance_stride = group.instance_stride / sizeof(float);
   view.steps = steps_of(group.bones.layout);
@@ -97,6 +100,8 @@ Status view_group(const CrowdGroup& group, GroupView& view) {
                        group.bones.stride % sizeof(Float4) == 0 && group.instance_stride % sizeof(Float4) == 0;
   view.refitted = group.refitted;
   view.wide_refitted = is_aligned(group.refitted, alignof(Float4));
+  view.leaves = group.leaves;
+  view.wide_leaves = is_aligned(group.leaves, alignof(Float4));
   view.bounds = group.bounds;
   view.counts = group.counts;
   view.bits = group.bits;
@@ -104,6 +109,54 @@ Status view_group(const CrowdGroup& group, GroupView& view) {
   view.pair_capacity = group.pair_capacity;
   view.starts = group.starts;
   view.pair_count = group.pair_count;
+  view.scratch = static_cast<unsigned char*>(group.scratch);
+  view.scratch_bytes = group.scratch_bytes;
+  return Status::kOk;
+}
+
+Status view_groups(Span<const CrowdGroup> groups, Launch& all) {
+  if (groups.data == nullptr && groups.size > 0) {
+    return Status::kNullArgument;
+  }
+  if (groups.size > CrowdJob::kMostGroups) {
+    return Status::kBadArgument;
+  }
+  all.count = 0;
+  for (const CrowdGroup& group : groups) {
+    const Status status = view_group(group, all.views[all.count]);
+    if (status != Status::kOk) {
+      return status;
+    }
+    all.count += group.instance_count > 0 ? 1U : 0U;
+  }
+  return Status::kOk;
+}
+
+Status plan_launches(const Launch& all, std::size_t most_shared_bytes, LaunchPlan& plan) {
+  plan = {};
+  for (std::uint32_t g = 0; g < all.count; ++g) {
+    GroupView view = all.views[g];
+    const std::size_t bytes = shared_layout(view).size;
+    if (bytes <= most_shared_bytes) {
+      view.first_block = plan.shared_blocks;
+      plan.shared_blocks += blocks_of(view);
+      plan.shared_bytes = std::max(plan.shared_bytes, bytes);
+      plan.in_shared.views[plan.in_shared.count++] = view;
+      continue;
+    }
+    if (view.scratch == nullptr) {
+      return Status::kDeviceTooSmall;
+    }
+    if (view.scratch_bytes < bytes) {
+      return Status::kContextTooSmall;
+    }
+    const std::size_t blocks = std::min<std::size_t>(view.scratch_bytes / bytes, blocks_of(view));
+    view.wide_matrices = view.wide_spheres = false;  // those are copied into shared memory by an instruction of its own
+    view.scratch_blocks = static_cast<std::uint32_t>(blocks);
+    view.first_block = plan.scratch_blocks;
+    plan.scratch_blocks += view.scratch_blocks;
+    plan.in_scratch.views[plan.in_scratch.count++] = view;
+  }
   return Status::kOk;
 }
 

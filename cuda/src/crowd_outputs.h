@@ -40,7 +40,7 @@ SPHERECHAIN_HD void write_instances(const GroupView& v, const Shared& shared, co
   }
   if (v.pairs != nullptr) {
     if (at.thread == 0) {
-      std::uint32_t total = 0;
+      std::uint64_t total = 0;
       for (std::uint32_t i = 0; i < count; ++i) {
         total += shared.counts[i];
       }

@@ -21,15 +21,25 @@ SPHERECHAIN_HD float power_of(const Float4& s, const Float4& origin) {
   return squared_length + squared_radius <= kMostExtent ? power : INFINITY;
 }
 
+// Covers are so much larger in the test that what it rounds parts no two that touch: the squared distance is off by 5
+// roundings at most, the squared sum of radii by 5 with this one.
+inline constexpr float kCoverShare = 1.0F + 0x1p-20F;
+
 // Step 4: a warp a sphere; and the outputs' bits, which lie where the matrices were.
+template <bool kCovers>
 SPHERECHAIN_HD void prepare_pairs(const GroupView& v, const Shared& shared, const Place& at) {
   const std::uint32_t lane = at.lane();
   float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   const Float4 origin = shared.spheres[lane];
   for (std::uint32_t i = at.warp(); i < v.sphere_count; i += at.warps()) {
     Float4 sphere = shared.spheres[i * kPitch + lane];
+    if (kCovers) {
+      sphere.w *= kCoverShare;
+    }
     if (v.has_padding) {
       sphere.w += v.paddings[i];
+    }
+    if (kCovers || v.has_padding) {
       shared.spheres[i * kPitch + lane].w = sphere.w;
     }
     shared.powers[i * kPitch + lane] = power_of(sphere, origin);
@@ -69,6 +79,12 @@ SPHERECHAIN_HD bool touch(const Float4& p, const Float4& q, float reach) {
   return ((dx * dx + dy * dy) + dz * dz) < t * t && squared <= FLT_MAX;
 }
 
+// Covers: unless they are surely apart, which those that are not finite never are.
+SPHERECHAIN_HD bool may_touch(const Float4& p, const Float4& q) {
+  const float dx = p.x - q.x, dy = p.y - q.y, dz = p.z - q.z, s = p.w + q.w;
+  return !((dx * dx + dy * dy) + dz * dz > s * s);
+}
+
 SPHERECHAIN_HD void report(const GroupView& v, const Shared& shared, std::uint32_t lane, std::uint32_t a,
                            std::uint32_t b) {
   add_to(&shared.counts[lane], 1);
@@ -83,6 +99,7 @@ SPHERECHAIN_HD void report(const GroupView& v, const Shared& shared, std::uint32
 }
 
 // Pairs that the test by multiply-adds cannot tell apart from touching ones.
+template <bool kCovers>
 SPHERECHAIN_HD void test_candidates(const GroupView& v, const Shared& shared, std::uint32_t lane, const PairItem& item,
                                     std::uint32_t (&candidates)[2]) {
   while (any_lane((candidates[0] | candidates[1]) != 0)) {
@@ -94,13 +111,15 @@ SPHERECHAIN_HD void test_candidates(const GroupView& v, const Shared& shared, st
       candidates[1] = is_first ? candidates[1] : word & (word - 1);
       const std::uint32_t a = item.first_row + at % kRows;
       const std::uint32_t b = item.first_column + at / kRows + (is_first ? 0 : kHalfColumns);
-      if (touch(shared.spheres[a * kPitch + lane], shared.spheres[b * kPitch + lane], 1.0F)) {
+      const Float4 p = shared.spheres[a * kPitch + lane], q = shared.spheres[b * kPitch + lane];
+      if (kCovers ? may_touch(p, q) : touch(p, q, 1.0F)) {
         report(v, shared, lane, a, b);
       }
     }
   }
 }
 
+template <bool kCovers>
 SPHERECHAIN_HD void test_item(const GroupView& v, const Shared& shared, std::uint32_t lane, const PairItem& item) {
   const Float4 origin = shared.spheres[lane];
   const std::uint32_t first_row = item.first_row * kPitch + lane, first_column = item.first_column * kPitch + lane;
@@ -127,7 +146,7 @@ SPHERECHAIN_HD void test_item(const GroupView& v, const Shared& shared, std::uin
     }
   }
   std::uint32_t candidates[2] = {~apart[0] & item.wanted[0], ~apart[1] & item.wanted[1]};
-  test_candidates(v, shared, lane, item, candidates);
+  test_candidates<kCovers>(v, shared, lane, item, candidates);
 }
 
 SPHERECHAIN_HD void test_near(const GroupView& v, const Shared& shared, std::uint32_t lane, const NearEntry& near) {
@@ -162,6 +181,7 @@ SPHERECHAIN_HD void reach_spheres(const GroupView& v, const Shared& shared, cons
 }
 
 // Step 5: a warp an item, then a warp some near pairs.
+template <bool kCovers>
 SPHERECHAIN_HD void test_pairs(const GroupView& v, const Shared& shared, const Place& at) {
   constexpr std::uint32_t kNearAtATime = 8;
   const std::uint32_t lane = at.lane();
@@ -169,7 +189,7 @@ SPHERECHAIN_HD void test_pairs(const GroupView& v, const Shared& shared, const P
   for (; place < v.item_count; ++round) {
     const PairItem item = v.items[place];
     place = deal(&shared.dealt[1], at, round);
-    test_item(v, shared, lane, item);
+    test_item<kCovers>(v, shared, lane, item);
   }
   for (; (place - v.item_count) * kNearAtATime < v.near_count; ++round) {
     const std::uint32_t first = (place - v.item_count) * kNearAtATime;

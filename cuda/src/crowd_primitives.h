@@ -34,7 +34,7 @@ SPHERECHAIN_HD void set_bits(std::uint32_t* shared, std::uint32_t value) {
 #endif
 }
 
-SPHERECHAIN_HD std::uint64_t reserve(std::uint64_t* count, std::uint32_t value) {
+SPHERECHAIN_HD std::uint64_t reserve(std::uint64_t* count, std::uint64_t value) {
 #if defined(__CUDA_ARCH__)
   return atomicAdd(reinterpret_cast<unsigned long long*>(count), static_cast<unsigned long long>(value));
 #else

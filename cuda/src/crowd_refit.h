@@ -232,17 +232,20 @@ SPHERECHAIN_HD void refit_spheres(const GroupView& v, const Shared& shared, cons
   }
 }
 
+SPHERECHAIN_HD void write_sphere(Sphere* to, const Float4& s, bool is_wide) {
+  if (is_wide) {
+    *reinterpret_cast<Float4*>(to) = s;
+  } else {
+    *to = {s.x, s.y, s.z, s.w};
+  }
+}
+
 // Step 3, where they are asked for: a warp an instance.
 SPHERECHAIN_HD void write_spheres(const GroupView& v, const Shared& shared, const Place& at) {
   for (std::uint32_t from = at.warp(); from < instances_in(v, at); from += at.warps()) {
     Sphere* const to = v.refitted + std::size_t{at.block * kLanes + from} * v.sphere_count;
     for (std::uint32_t i = at.lane(); i < v.sphere_count; i += kLanes) {
-      const Float4 s = shared.spheres[i * kPitch + from];
-      if (v.wide_refitted) {
-        *reinterpret_cast<Float4*>(to + i) = s;
-      } else {
-        to[i] = {s.x, s.y, s.z, s.w};
-      }
+      write_sphere(to + i, shared.spheres[i * kPitch + from], v.wide_refitted);
     }
   }
 }

@@ -3,47 +3,10 @@
 #include <cstring>
 
 #include "crowd_access.h"
-#include "spherechain/detect.h"
+#include "crowd_table_parts.h"
 
 namespace spherechain::cuda {
 namespace {
-
-constexpr std::size_t words_of(std::size_t bytes) { return (bytes + 15) / 16 * 2; }
-
-bool test(Span<const std::uint64_t> words, std::size_t bit) { return ((words[bit / 64] >> (bit % 64)) & 1U) != 0; }
-
-bool test_pair(Span<const std::uint64_t> words, std::size_t a, std::size_t b) {
-  return test(words, b * (b - 1) / 2 + a);
-}
-
-// Row blocks times column chunks, few of which are past the diagonal.
-std::size_t most_items(std::size_t n) {
-  std::size_t out = 0;
-  for (std::size_t row = 0; row + 1 < n; row += kRows) {
-    out += (n - 1 - row + kColumns - 1) / kColumns;
-  }
-  return out;
-}
-
-// Entries one after another, zero where nothing is written.
-class Memory {
- public:
-  explicit Memory(Span<std::uint64_t> memory) : memory_(memory) {}
-
-  template <typename T>
-  T* take(std::size_t count, std::uint32_t& at) {
-    at = static_cast<std::uint32_t>(used_);
-    std::uint64_t* begin = memory_.data + used_;
-    used_ += words_of(count * sizeof(T));
-    std::fill(begin, memory_.data + used_, std::uint64_t{0});
-    return reinterpret_cast<T*>(begin);
-  }
-  std::size_t used() const { return used_; }
-
- private:
-  Span<std::uint64_t> memory_;
-  std::size_t used_ = 0;
-};
 
 void fill_groups(const BoneTables& tables, GroupEntry* out) {
   std::uint32_t term = 0, morph_term = 0;
@@ -95,66 +58,15 @@ void fill_spheres(const Asset& asset, RadiusKind kind, const GroupEntry* groups,
   });
 }
 
-// Returns how many bones the terms use.
-std::uint32_t fill_bones(const BoneTables& tables, std::size_t bone_count, std::uint32_t* used,
-                         std::uint32_t* term_matrices) {
-  std::uint32_t count = 0;
-  for (std::uint32_t bone = 0; bone < bone_count; ++bone) {
-    bool is_used = false;
-    for (std::size_t t = 0; t < tables.term_bones.size; ++t) {
-      if (tables.term_bones[t] == bone) {
-        term_matrices[t] = static_cast<std::uint32_t>(3 * count * kPitch * sizeof(Float4));
-        is_used = true;
-      }
-    }
-    if (is_used) {
-      used[count++] = bone;
-    }
-  }
-  return count;
+bool is_near(Span<const NearPair> near, std::uint32_t a, std::uint32_t b) {
+  const auto before = [](const NearPair& pair, const Pair& at) { return Pair{pair.a, pair.b} < at; };
+  const NearPair* found = std::lower_bound(near.begin(), near.end(), Pair{a, b}, before);
+  return found != near.end() && found->a == a && found->b == b;
 }
 
-struct Wanted {
-  Span<const std::uint64_t> ignored, disabled;
-  Span<const NearPair> near;
-
-  bool is_enabled(std::size_t i) const { return disabled.size == 0 || !test(disabled, i); }
-  bool operator()(std::uint32_t a, std::uint32_t b) const {
-    return !test_pair(ignored, a, b) && is_enabled(a) && is_enabled(b);
-  }
-  bool is_near(std::uint32_t a, std::uint32_t b) const {
-    const auto before = [](const NearPair& pair, const Pair& at) { return Pair{pair.a, pair.b} < at; };
-    const NearPair* found = std::lower_bound(near.begin(), near.end(), Pair{a, b}, before);
-    return found != near.end() && found->a == a && found->b == b;
-  }
-};
-
-// The last rows and columns are those of the last eight spheres, some of them again: no pair is wanted twice.
-std::uint32_t fill_items(const Wanted& wanted, std::uint32_t n, PairItem* out) {
-  const std::uint32_t last = n < kColumns ? 0 : n - kColumns;
+std::uint32_t fill_near(const WantedPairs& wanted, Span<const NearPair> near, NearEntry* out) {
   std::uint32_t count = 0;
-  for (std::uint32_t row = 0; row + 1 < n; row += kRows) {
-    for (std::uint32_t column = row + 1; column < n; column += kColumns) {
-      PairItem item{std::min(row, last), std::min(column, last), {0, 0}};
-      for (std::uint32_t b = column; b < std::min(n, column + kColumns); ++b) {
-        for (std::uint32_t a = row; a < std::min(b, row + kRows); ++a) {
-          if (wanted(a, b) && !wanted.is_near(a, b)) {
-            const std::uint32_t c = b - item.first_column, at = kRows * (c % kHalfColumns) + (a - item.first_row);
-            item.wanted[c / kHalfColumns] |= 1U << (kHalfItem - 1 - at);
-          }
-        }
-      }
-      if ((item.wanted[0] | item.wanted[1]) != 0) {
-        out[count++] = item;
-      }
-    }
-  }
-  return count;
-}
-
-std::uint32_t fill_near(const Wanted& wanted, NearEntry* out) {
-  std::uint32_t count = 0;
-  for (const NearPair& pair : wanted.near) {
+  for (const NearPair& pair : near) {
     if (wanted(pair.a, pair.b)) {
       out[count++] = {pair.a, pair.b, pair.reach, 0};
     }
@@ -163,6 +75,25 @@ std::uint32_t fill_near(const Wanted& wanted, NearEntry* out) {
 }
 
 }  // namespace
+
+Status check_build(const Asset& asset, const Filter* filter, Span<std::uint64_t> memory, std::size_t words) {
+  if (!asset.is_open()) {
+    return Status::kNotOpen;
+  }
+  if (memory.data == nullptr) {
+    return Status::kNullArgument;
+  }
+  if (reinterpret_cast<std::uintptr_t>(memory.data) % alignof(std::uint64_t) != 0) {
+    return Status::kMisaligned;
+  }
+  if (filter != nullptr) {
+    const Status status = check_filter(asset, *filter);
+    if (status != Status::kOk) {
+      return status;
+    }
+  }
+  return memory.size < words ? Status::kContextTooSmall : Status::kOk;
+}
 
 std::size_t CrowdTables::words_needed(const Asset& asset) noexcept {
   if (!asset.is_open()) {
@@ -183,49 +114,30 @@ std::size_t CrowdTables::words_needed(const Asset& asset) noexcept {
 
 Status CrowdTables::build(const Asset& asset, RadiusKind radius, const Filter* filter,
                           Span<std::uint64_t> memory) noexcept {
-  if (!asset.is_open()) {
-    return Status::kNotOpen;
-  }
-  if (radius != RadiusKind::kFit && radius != RadiusKind::kDetect) {
+  if (asset.is_open() && radius != RadiusKind::kFit && radius != RadiusKind::kDetect) {
     return Status::kBadArgument;
   }
-  if (memory.data == nullptr) {
-    return Status::kNullArgument;
-  }
-  if (reinterpret_cast<std::uintptr_t>(memory.data) % alignof(std::uint64_t) != 0) {
-    return Status::kMisaligned;
-  }
-  if (filter != nullptr) {
-    const Status status = check_filter(asset, *filter);
-    if (status != Status::kOk) {
-      return status;
-    }
-  }
-  if (memory.size < words_needed(asset)) {
-    return Status::kContextTooSmall;
+  const Status status = check_build(asset, filter, memory, words_needed(asset));
+  if (status != Status::kOk) {
+    return status;
   }
   const BoneTables& tables = asset.bone_tables();
   const auto n = static_cast<std::uint32_t>(asset.spheres().size);
-  Wanted wanted{asset.ignored(), {}, asset.near_pairs(radius)};
-  if (filter != nullptr) {
-    wanted.ignored = {filter->ignored.data, filter->ignored.size};
-    wanted.disabled = {filter->disabled.data, filter->disabled.size};
-  }
   CrowdTables out;
-  Memory entries(memory);
+  TableMemory entries(memory);
   std::uint32_t first = 0;
   auto* spheres = entries.take<SphereEntry>(n, first);
-  auto* paddings = entries.take<float>(n, out.paddings_at_);
-  if (filter != nullptr && filter->padding.size > 0) {
-    std::copy(filter->padding.begin(), filter->padding.end(), paddings);
-  }
+  fill_paddings(filter, entries.take<float>(n, out.paddings_at_));
   auto* groups = entries.take<GroupEntry>(tables.term_counts.size, out.groups_at_);
   fill_groups(tables, groups);
   fill_spheres(asset, radius, groups, spheres);
   fill_terms(tables, entries.take<HalfTerm>(2 * tables.terms.size, out.terms_at_));
   auto* term_matrices = entries.take<std::uint32_t>(tables.terms.size + 1, out.term_matrices_at_);
   auto* used_bones = entries.take<std::uint32_t>(asset.bone_count(), out.used_bones_at_);
-  out.used_bone_count_ = fill_bones(tables, asset.bone_count(), used_bones, term_matrices);
+  out.used_bone_count_ =
+      fill_bones(tables.term_bones, asset.bone_count(), used_bones, [&](std::size_t t, std::uint32_t bone) {
+        term_matrices[t] = static_cast<std::uint32_t>(3 * bone * kPitch * sizeof(Float4));
+      });
   out.has_morphs_ = tables.morph_terms.size > 0;
   if (out.has_morphs_) {
     const auto copy = [&](const auto& from, auto* to) { std::copy(from.begin(), from.end(), to); };
@@ -233,8 +145,11 @@ Status CrowdTables::build(const Asset& asset, RadiusKind radius, const Filter* f
     copy(tables.morph_targets, entries.take<std::uint32_t>(tables.morph_targets.size, out.morph_targets_at_));
     copy(tables.morph_terms, entries.take<MorphTerm>(tables.morph_terms.size, out.morph_terms_at_));
   }
-  out.near_count_ = fill_near(wanted, entries.take<NearEntry>(wanted.near.size, out.near_at_));
-  out.item_count_ = fill_items(wanted, n, entries.take<PairItem>(most_items(n), out.items_at_));
+  const WantedPairs wanted(asset, filter);
+  const Span<const NearPair> near = asset.near_pairs(radius);
+  out.near_count_ = fill_near(wanted, near, entries.take<NearEntry>(near.size, out.near_at_));
+  out.item_count_ = fill_items(n, entries.take<PairItem>(most_items(n), out.items_at_),
+                               [&](auto a, auto b) { return wanted(a, b) && !is_near(near, a, b); });
   out.words_ = entries.used();
   out.sphere_count_ = n;
   out.bone_count_ = static_cast<std::uint32_t>(asset.bone_count());
@@ -254,9 +169,17 @@ GroupView Access::view(const CrowdTables& tables, const std::uint64_t* words) {
   v.terms = reinterpret_cast<const HalfTerm*>(words + tables.terms_at_);
   v.term_matrices = reinterpret_cast<const std::uint32_t*>(words + tables.term_matrices_at_);
   v.used_bones = reinterpret_cast<const std::uint32_t*>(words + tables.used_bones_at_);
+  if (tables.leaf_count_ > 0) {
+    v.cover_entries = reinterpret_cast<const CoverEntry*>(words + tables.covers_at_);
+    v.leaf_entries = reinterpret_cast<const LeafEntry*>(words + tables.leaves_at_);
+    v.leaf_terms = reinterpret_cast<const LeafTerm*>(words + tables.leaf_terms_at_);
+    v.leaf_morphs = reinterpret_cast<const LeafMorph*>(words + tables.leaf_morphs_at_);
+    v.leaf_count = tables.leaf_count_;
+  }
   v.near = reinterpret_cast<const NearEntry*>(words + tables.near_at_);
   v.items = reinterpret_cast<const PairItem*>(words + tables.items_at_);
-  if (tables.has_morphs_) {
+  v.has_morphs = tables.has_morphs_;
+  if (tables.has_morphs_ && tables.leaf_count_ == 0) {
     v.morph_counts = reinterpret_cast<const std::uint32_t*>(words + tables.morph_counts_at_);
     v.morph_targets = reinterpret_cast<const std::uint32_t*>(words + tables.morph_targets_at_);
     v.morph_terms = reinterpret_cast<const MorphTerm*>(words + tables.morph_terms_at_);

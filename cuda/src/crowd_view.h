@@ -71,6 +71,38 @@ struct alignas(16) NearEntry {
   std::uint32_t unused;
 };
 
+// Covers: of a sphere's leaves those that come after each other; the spheres with most of them first.
+struct alignas(16) CoverEntry {
+  Vec3 rest;  // of a sphere without leaves
+  std::uint32_t sphere;
+  std::uint32_t first_leaf, leaf_count;
+  std::uint32_t unused[2];
+};
+
+struct alignas(16) LeafEntry {
+  Float4 ball;  // at rest
+  std::uint32_t first_term, term_count;
+  std::uint32_t first_morph, morph_count;
+};
+
+// CoverTerm, of one leaf.
+struct alignas(16) LeafTerm {
+  float weight, deviation;
+  std::uint32_t bone;  // of those used
+  std::uint32_t unused;
+};
+
+struct alignas(16) LeafMorph {
+  Float4 ball;  // around the deltas
+  std::uint32_t target;
+  std::uint32_t unused[3];
+};
+
+// How large a bone's matrix is, as runtime/src/cover_kernel.h has it.
+struct alignas(8) BoneSize {
+  float norm, translation;
+};
+
 // How a matrix' float at row i and column k lies: data[row * i + column * k].
 struct MatrixSteps {
   std::uint32_t row, column;
@@ -89,8 +121,12 @@ struct GroupView {
   const MorphTerm* morph_terms;
   const PairItem* items;
   const NearEntry* near;
-  std::uint32_t sphere_count, used_bone_count, item_count, near_count, morph_count, bit_words;
-  bool calibrated, has_padding;
+  const CoverEntry* cover_entries;  // null but in tables of covers
+  const LeafEntry* leaf_entries;
+  const LeafTerm* leaf_terms;
+  const LeafMorph* leaf_morphs;
+  std::uint32_t sphere_count, used_bone_count, item_count, near_count, morph_count, bit_words, leaf_count;
+  bool calibrated, has_padding, has_morphs;
 
   const Sphere* spheres;
   const float* matrices;  // null where the instances come as spheres
@@ -98,10 +134,11 @@ struct GroupView {
   std::size_t sphere_stride;
   std::size_t bone_stride, instance_stride;  // floats
   MatrixSteps steps;
-  bool wide_matrices, wide_spheres, wide_refitted;  // aligned for reads and writes of 16 bytes
+  bool wide_matrices, wide_spheres, wide_refitted, wide_leaves;  // aligned for reads and writes of 16 bytes
   std::uint32_t instance_count;
 
   Sphere* refitted;
+  Sphere* leaves;
   Sphere* bounds;
   std::uint32_t* counts;
   std::uint64_t* bits;
@@ -110,15 +147,23 @@ struct GroupView {
   std::uint64_t* starts;
   std::uint64_t* pair_count;
 
+  // Blocks with memory in scratch take turns: that many at once.
+  unsigned char* scratch;
+  std::size_t scratch_bytes;
+  std::uint32_t scratch_blocks;
+
   std::uint32_t first_block;
 };
 
+SPHERECHAIN_HD std::uint32_t blocks_of(const GroupView& v) { return (v.instance_count + kLanes - 1) / kLanes; }
+
 inline constexpr std::uint32_t kMostWarps = 8;
 
-// In bytes from the start of a block's shared memory. Matrices and morph weights are no longer needed when pairs are
-// tested: what that needs lies in the same place.
+// In bytes from the start of a block's shared memory. Matrices, morph weights and sizes of bones are no longer needed
+// when pairs are tested: what that needs lies in the same place.
 struct SharedLayout {
-  std::size_t matrices, morph_weights, powers, bits, ordered_bits, spheres, counts, dealt, parts, boxes, radii, size;
+  std::size_t matrices, morph_weights, bone_sizes, powers, bits, ordered_bits, spheres, counts, dealt, parts, boxes,
+      radii, size;
 };
 
 SPHERECHAIN_HD std::uint32_t half_words(const GroupView& v) { return 2 * v.bit_words; }
@@ -135,10 +180,13 @@ SPHERECHAIN_HD SharedLayout shared_layout(const GroupView& v) {
   const std::size_t weights = v.morph_weights != nullptr ? std::size_t{v.morph_count} * kPitch * sizeof(float) : 0;
   const std::size_t powers = up(std::size_t{sphere_places(v)} * kPitch * sizeof(float));
   const std::size_t table = up(std::size_t{half_words(v)} * kPitch * sizeof(std::uint32_t));
+  const std::size_t sizes =
+      v.cover_entries != nullptr ? up(std::size_t{v.used_bone_count} * kPitch * sizeof(BoneSize)) : 0;
   out.morph_weights = matrices;
+  out.bone_sizes = matrices + up(weights);
   out.bits = powers;
   out.ordered_bits = out.bits + (v.bits != nullptr ? table : 0);
-  const std::size_t before = matrices + up(weights), after = out.ordered_bits + (v.pairs != nullptr ? table : 0);
+  const std::size_t before = out.bone_sizes + sizes, after = out.ordered_bits + (v.pairs != nullptr ? table : 0);
   out.spheres = before > after ? before : after;
   out.counts = out.spheres + std::size_t{sphere_places(v)} * kPitch * sizeof(Float4);
   out.dealt = out.counts + kLanes * sizeof(std::uint32_t);
@@ -161,8 +209,9 @@ struct Place {
 struct Shared {
   Float4* matrices;  // [3 * bone + row][lane]
   float* morph_weights;
-  Float4* spheres;  // [sphere][lane], with the filter's padding
-  float* powers;    // [sphere][lane]
+  BoneSize* bone_sizes;  // [bone][lane]
+  Float4* spheres;       // [sphere][lane], with the filter's padding
+  float* powers;         // [sphere][lane]
   std::uint32_t* bits;
   std::uint32_t* ordered_bits;  // in the order of sorted pairs
   std::uint32_t* counts;
@@ -176,6 +225,7 @@ struct Shared {
     auto* bytes = static_cast<unsigned char*>(memory);
     matrices = reinterpret_cast<Float4*>(bytes + layout.matrices);
     morph_weights = reinterpret_cast<float*>(bytes + layout.morph_weights);
+    bone_sizes = reinterpret_cast<BoneSize*>(bytes + layout.bone_sizes);
     spheres = reinterpret_cast<Float4*>(bytes + layout.spheres);
     bits = reinterpret_cast<std::uint32_t*>(bytes + layout.bits);
     ordered_bits = reinterpret_cast<std::uint32_t*>(bytes + layout.ordered_bits);

@@ -18,8 +18,8 @@ class HostCrowd {
   ~HostCrowd() { close(); }
 
   // Allocates on the device what up to `instances` and `pair_capacity` pairs in all take; drops what was open. What
-  // CrowdTables::build returns; kNotInAsset where the asset has no bones; kBadArgument for no instances or no pairs; kNoDevice,
-  // kDeviceFailed. Closed on failure.
+  // CrowdTables::build returns; kNotInAsset where the asset has no bones; kBadArgument for no instances or no pairs;
+  // kNoDevice, kDeviceFailed. Closed on failure.
   Status open(const Asset& asset, RadiusKind radius, const Filter* filter, std::size_t instances,
               std::size_t pair_capacity) noexcept;
   void close() noexcept;

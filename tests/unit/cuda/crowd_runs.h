@@ -20,12 +20,13 @@ struct GroupInput {
   std::size_t offset = 0, bone_count = 0, bone_stride = 48, instance_stride = 0;
   MatrixLayout layout = MatrixLayout::kRowMajor3x4;
   std::vector<float> morph_weights;
-  bool wants_bits = true, wants_spheres = true;
+  bool wants_bits = true, wants_spheres = true, wants_leaves = false;
   std::size_t pair_capacity = 0;  // 0: no list
+  std::size_t scratch_bytes = 0;  // a multiple of 16
 };
 
 struct GroupOutput {
-  std::vector<Sphere> refitted, bounds;
+  std::vector<Sphere> refitted, leaves, bounds;
   std::vector<std::uint32_t> counts;
   std::vector<std::uint64_t> bits, starts;
   std::vector<CrowdPair> pairs;  // as many as the capacity, dirty where nothing was written

@@ -6,31 +6,11 @@
 #include <cstring>
 #include <limits>
 
-#include "crowd_runs.h"
+#include "crowd_cases.h"
 #include "jobs.h"
-#include "random_poses.h"
-#include "tiny_bones.h"
 
 namespace spherechain::test {
 namespace {
-
-struct Tables {
-  Tables(const Asset& asset, RadiusKind radius, const Filter* filter = nullptr)
-      : words(cuda::CrowdTables::words_needed(asset)) {
-    REQUIRE(tables.build(asset, radius, filter, {words.data(), words.size()}) == Status::kOk);
-    REQUIRE(tables.words() <= words.size());
-    words.resize(tables.words());
-  }
-  std::vector<std::uint64_t> words;
-  cuda::CrowdTables tables;
-};
-
-struct Expected {
-  std::vector<Sphere> spheres;
-  std::vector<std::uint32_t> counts;
-  std::vector<std::uint64_t> bits;
-  std::vector<Pair> pairs;  // instance after instance
-};
 
 void add_pairs(const Asset& asset, const std::vector<Sphere>& spheres, RadiusKind radius, const Filter* filter,
                Expected& to) {
@@ -54,96 +34,13 @@ Expected pairs_of_spheres(const Asset& asset, const GroupInput& in, RadiusKind r
 Expected pairs_of_bones(const Asset& asset, const GroupInput& in, RadiusKind radius, const Filter* filter = nullptr) {
   Expected out;
   for (std::size_t i = 0; i < in.instance_count; ++i) {
-    const BoneMatrices bones{in.matrices.data() + in.offset + i * in.instance_stride / 4, in.bone_count, in.layout,
-                             in.bone_stride};
-    std::vector<float> weights;
-    if (!in.morph_weights.empty()) {
-      const auto first = in.morph_weights.begin() + static_cast<std::ptrdiff_t>(i * asset.morph_count());
-      weights.assign(first, first + static_cast<std::ptrdiff_t>(asset.morph_count()));
-    }
-    const Refitted refitted = refit_bones(asset, bones, weights, radius, Target::kScalar);
+    const Refitted refitted =
+        refit_bones(asset, bones_of(in, i), morph_weights_of(in, asset, i), radius, Target::kScalar);
     REQUIRE(refitted.status == Status::kOk);
     out.spheres.insert(out.spheres.end(), refitted.spheres.begin(), refitted.spheres.end());
     add_pairs(asset, refitted.spheres, radius, filter, out);
   }
   return out;
-}
-
-void check_pairs(const GroupInput& in, const GroupOutput& got, const Expected& wanted) {
-  CHECK(got.counts == wanted.counts);
-  if (in.wants_bits) CHECK(got.bits == wanted.bits);
-  if (in.pair_capacity == 0) return;
-  CHECK(got.pair_count == wanted.pairs.size());
-  std::vector<bool> taken(in.pair_capacity);
-  std::size_t before = 0;
-  bool same = true;
-  for (std::size_t i = 0; i < in.instance_count; ++i) {
-    for (std::size_t k = 0; k < wanted.counts[i]; ++k) {
-      const std::size_t place = got.starts[i] + k;
-      REQUIRE(place < wanted.pairs.size());
-      if (place < in.pair_capacity) {
-        same &= !taken[place] && got.pairs[place].instance == i && got.pairs[place].pair == wanted.pairs[before + k];
-        taken[place] = true;
-      }
-    }
-    before += wanted.counts[i];
-  }
-  CHECK(same);
-}
-
-GroupInput group_of(const Tables& tables, std::size_t instances) {
-  GroupInput in;
-  in.tables = &tables.tables;
-  in.words = tables.words;
-  in.instance_count = instances;
-  return in;
-}
-
-constexpr Sphere kGap{0, 0, 0, std::numeric_limits<float>::infinity()};  // between instances: never to be looked at
-
-// Some touch hardly at all, some are not finite or huge.
-std::vector<Sphere> spheres_of(std::size_t n, std::size_t instances, std::size_t stride, std::mt19937& random) {
-  std::vector<Sphere> out(instances * stride, kGap);
-  for (std::size_t i = 0; i < instances; ++i) {
-    std::vector<Sphere> one = random_spheres(n, random);
-    for (Sphere& sphere : one) sphere.radius *= i % 3 == 0 ? 0.1F : 1.0F;
-    if (i % 7 == 5) one[i % n].x = std::numeric_limits<float>::quiet_NaN();
-    if (i % 7 == 6) one[i % n].radius = i % 2 == 0 ? 3e38F : -kGap.radius;
-    if (i % 11 == 4) one[i % n].z = 1e30F;
-    std::copy(one.begin(), one.end(), out.begin() + static_cast<std::ptrdiff_t>(i * stride));
-  }
-  return out;
-}
-
-// `layout`'s matrices, an instance's of `kind`, with NaN wherever none of them is.
-void give_matrices(GroupInput& in, const Asset& asset, MatrixLayout layout, PoseKind kind, std::size_t gap,
-                   std::mt19937& random) {
-  const std::size_t bones = asset.bone_count(), floats = size_of(layout) / 4;
-  in.layout = layout;
-  in.bone_count = bones;
-  in.bone_stride = size_of(layout);
-  in.instance_stride = (bones * floats + gap) * 4;
-  in.matrices.assign(in.offset + in.instance_count * in.instance_stride / 4, std::nanf(""));
-  for (std::size_t i = 0; i < in.instance_count; ++i) {
-    const std::vector<Matrix> own = random_pose(bones, kind, 1.0F, random);
-    for (std::size_t at = 0; at < bones * 12; ++at) {
-      const std::size_t row = at % 12 / 4, column = at % 4;
-      const std::size_t place = layout == MatrixLayout::kColumnMajor4x4   ? 4 * column + row
-                                : layout == MatrixLayout::kColumnMajor3x4 ? 3 * column + row
-                                                                          : 4 * row + column;
-      in.matrices[in.offset + i * in.instance_stride / 4 + at / 12 * floats + place] = own[at / 12][at % 12];
-    }
-  }
-}
-
-// Pivots in one to three groups of eight, bones, morph targets.
-TinyAsset boned_asset(unsigned spheres, std::size_t bones, unsigned seed) {
-  TinyAsset tiny = random_asset(spheres, seed);
-  give_pivots(tiny, 5, 19, 2);
-  give_pivots(tiny, 7, 1, 3);
-  give_pivots(tiny, 8, 16, 4);
-  add_bones(tiny, bones, seed);
-  return tiny;
 }
 
 }  // namespace
@@ -404,14 +301,73 @@ TEST_CASE("what cannot be run is refused, and nothing is written") {
   CHECK(build(opened.asset, RadiusKind::kFit, &bad, words.data(), words.size()) == Status::kBadFilter);
 }
 
-TEST_CASE("an asset too large for a block's memory is refused") {
+TEST_CASE("an asset too large for a block's shared memory is refused without scratch, and with less than a block's") {
   const OpenedAsset opened(random_asset(700, 1).parts);
   const Tables tables(opened.asset, RadiusKind::kDetect);
   std::mt19937 random(1);
   GroupInput in = group_of(tables, 2);
   in.spheres = spheres_of(700, 2, 700, random);
-  CHECK(tables.tables.shared_bytes(false, false, true, false) > 227 * 1024);
+  const std::size_t block = tables.tables.shared_bytes(false, false, true, false);
+  CHECK(block > 227 * 1024);
+  CHECK(block % 16 == 0);
   CHECK(run_crowd({in}).status == Status::kDeviceTooSmall);
+  in.wants_spheres = true;
+  in.scratch_bytes = block - 16;
+  const CrowdRun run = run_crowd({in});
+  CHECK(run.status == Status::kContextTooSmall);
+  CHECK(run.groups[0].counts[0] == 0xDDDDDDDDU);
+}
+
+TEST_CASE("a crowd of hundreds of spheres runs from scratch, however many blocks of it there is room for") {
+  for (const unsigned n : {216U, 1100U}) {
+    const OpenedAsset opened(random_asset(n, n).parts);
+    const Tables tables(opened.asset, RadiusKind::kDetect);
+    std::mt19937 random(n);
+    const std::size_t instances = n > 1000 ? 2 : 100;
+    GroupInput in = group_of(tables, instances);
+    in.spheres = spheres_of(n, instances, n, random);
+    const Expected wanted = pairs_of_spheres(opened.asset, in, RadiusKind::kDetect);
+    in.pair_capacity = wanted.pairs.size() + 1;
+    const std::size_t block = tables.tables.shared_bytes(false, false, true, true);
+    for (const std::size_t blocks : {1U, 3U, 9U}) {
+      CAPTURE(n);
+      CAPTURE(blocks);
+      if (n > 1000 && blocks > 1) continue;
+      in.scratch_bytes = blocks * block + 16;
+      const CrowdRun run = run_crowd({in});
+      REQUIRE(run.status == Status::kOk);
+      check_pairs(in, run.groups[0], wanted);
+    }
+  }
+}
+
+TEST_CASE("large assets run from bones too, with morphs and beside small ones") {
+  const OpenedAsset large(boned_asset(240, 7, 3).parts), small(boned_asset(20, 5, 2).parts);
+  const Tables a(large.asset, RadiusKind::kDetect), b(small.asset, RadiusKind::kFit);
+  std::mt19937 random(6);
+  for (const bool morphs : {false, true}) {
+    std::vector<GroupInput> in = {group_of(a, 65), group_of(b, 40), group_of(a, 33)};
+    give_matrices(in[0], large.asset, MatrixLayout::kRowMajor3x4, PoseKind::kGentle, 0, random);
+    give_matrices(in[1], small.asset, MatrixLayout::kRowMajor3x4, PoseKind::kGentle, 0, random);
+    give_matrices(in[2], large.asset, MatrixLayout::kColumnMajor3x4, PoseKind::kRigid, 0, random);
+    if (morphs) in[0].morph_weights = random_morph_weights(65 * large.asset.morph_count(), random);
+    const Expected wanted[] = {pairs_of_bones(large.asset, in[0], RadiusKind::kDetect),
+                               pairs_of_bones(small.asset, in[1], RadiusKind::kFit),
+                               pairs_of_bones(large.asset, in[2], RadiusKind::kDetect)};
+    const std::size_t block = a.tables.shared_bytes(true, morphs, true, true);
+    CHECK(block > 227 * 1024);
+    for (std::size_t g = 0; g < in.size(); ++g) {
+      in[g].pair_capacity = wanted[g].pairs.size() + 1;
+      in[g].scratch_bytes = (g + 1) * block;
+    }
+    const CrowdRun run = run_crowd(in);
+    REQUIRE(run.status == Status::kOk);
+    for (std::size_t g = 0; g < in.size(); ++g) {
+      CAPTURE(g);
+      CHECK(same_bits(run.groups[g].refitted, wanted[g].spheres));
+      check_pairs(in[g], run.groups[g], wanted[g]);
+    }
+  }
 }
 
 }  // namespace spherechain::test

@@ -60,7 +60,7 @@ struct Buffers {
 };
 
 struct Outputs {
-  const Buffer &refitted, &bounds, &counts, &bits, &starts, &pairs, &pair_count;
+  const Buffer &refitted, &leaves, &bounds, &counts, &bits, &starts, &pairs, &pair_count;
 };
 
 }  // namespace
@@ -84,10 +84,12 @@ CrowdRun run_crowd(const std::vector<GroupInput>& groups) {
     const std::size_t words = in.wants_bits && in.tables != nullptr ? in.tables->bit_words() * count : 0;
     const Outputs& out = outputs.emplace_back(
         Outputs{buffers.take<Sphere>(in.wants_spheres && !in.matrices.empty() ? n * count : 0),
+                buffers.take<Sphere>(in.wants_leaves && in.tables != nullptr ? in.tables->leaf_count() * count : 0),
                 buffers.take<Sphere>(in.wants_spheres ? count : 0), buffers.take<std::uint32_t>(count),
                 buffers.take<std::uint64_t>(words), buffers.take<std::uint64_t>(count),
                 buffers.take<CrowdPair>(in.pair_capacity), buffers.take<std::uint64_t>(1)});
     group.refitted = out.refitted.data<Sphere>();
+    group.leaves = out.leaves.data<Sphere>();
     group.bounds = out.bounds.data<Sphere>();
     group.counts = out.counts.data<std::uint32_t>();
     group.bits = out.bits.data<std::uint64_t>();
@@ -95,6 +97,8 @@ CrowdRun run_crowd(const std::vector<GroupInput>& groups) {
     group.pairs = out.pairs.data<CrowdPair>();
     group.pair_capacity = in.pair_capacity;
     group.pair_count = out.pair_count.data<std::uint64_t>();
+    group.scratch = buffers.take<unsigned char>(in.scratch_bytes).data<void>();
+    group.scratch_bytes = in.scratch_bytes;
   }
   const cuda::CrowdJob job{{device.data(), device.size()}, nullptr};
   CrowdRun run{job.run(), std::vector<GroupOutput>(groups.size())};
@@ -102,6 +106,7 @@ CrowdRun run_crowd(const std::vector<GroupInput>& groups) {
   for (std::size_t g = 0; g < groups.size(); ++g) {
     GroupOutput& to = run.groups[g];
     outputs[g].refitted.get(to.refitted);
+    outputs[g].leaves.get(to.leaves);
     outputs[g].bounds.get(to.bounds);
     outputs[g].counts.get(to.counts);
     outputs[g].bits.get(to.bits);

@@ -21,26 +21,30 @@ std::vector<std::uint32_t> shuffled(std::uint32_t count, std::mt19937& random) {
   return order;
 }
 
+struct RunStep {
+  std::mt19937& random;
+  std::uint32_t block;
+
+  template <typename Step>
+  void operator()(const Step& step) const {
+    for (const std::uint32_t thread : shuffled(kThreads, random)) step(cuda::Place{thread, kThreads, block});
+  }
+};
+
 // Blocks one after another, and within each step the threads, in any order: what needs a barrier and has none shows.
-Status run_blocks(const cuda::GroupView& view, std::mt19937& random) {
+void run_in_shared(const cuda::GroupView& view, std::mt19937& random) {
   const cuda::SharedLayout layout = cuda::shared_layout(view);
-  if (layout.size > kSharedBytes) return Status::kDeviceTooSmall;
   for (const std::uint32_t block : shuffled(cuda::blocks_of(view), random)) {
     std::vector<cuda::Float4> memory(layout.size / sizeof(cuda::Float4));  // exactly, for sanitizers
     std::memset(memory.data(), kDirty, layout.size);
-    const cuda::Shared shared(memory.data(), layout);
-    const auto run = [&](const auto& step) {
-      for (const std::uint32_t thread : shuffled(kThreads, random)) step(cuda::Place{thread, kThreads, block});
-    };
-    if (view.matrices == nullptr) {
-      cuda::run_block<false, false>(view, shared, run);
-    } else if (view.morph_weights == nullptr) {
-      cuda::run_block<true, false>(view, shared, run);
-    } else {
-      cuda::run_block<true, true>(view, shared, run);
-    }
+    cuda::run_any_block(view, cuda::Shared(memory.data(), layout), RunStep{random, block});
   }
-  return Status::kOk;
+}
+
+void run_in_scratch(const cuda::GroupView& view, std::mt19937& random) {
+  for (const std::uint32_t first : shuffled(view.scratch_blocks, random)) {
+    cuda::run_blocks_in_scratch(view, first, [&](std::uint32_t block) { return RunStep{random, block}; });
+  }
 }
 
 template <typename T>
@@ -84,6 +88,7 @@ CrowdRun run_crowd(const std::vector<GroupInput>& groups) {
     group.morph_weights = in.morph_weights.empty() ? nullptr : in.morph_weights.data();
     const std::size_t n = in.tables == nullptr ? 0 : in.tables->sphere_count(), count = in.instance_count;
     group.refitted = take(to.refitted, in.wants_spheres && !in.matrices.empty() ? n * count : 0);
+    group.leaves = take(to.leaves, in.wants_leaves && in.tables != nullptr ? in.tables->leaf_count() * count : 0);
     group.bounds = take(to.bounds, in.wants_spheres ? count : 0);
     group.counts = take(to.counts, count);
     group.bits = take(to.bits, in.wants_bits && in.tables != nullptr ? in.tables->bit_words() * count : 0);
@@ -92,10 +97,18 @@ CrowdRun run_crowd(const std::vector<GroupInput>& groups) {
     group.pair_capacity = in.pair_capacity;
     group.pair_count = &to.pair_count;
 
-    cuda::GroupView view{};
-    out.status = cuda::view_group(group, view);
-    if (out.status == Status::kOk && view.instance_count > 0) out.status = run_blocks(view, random);
+    std::vector<Chunk> scratch(in.scratch_bytes / sizeof(Chunk));
+    if (in.scratch_bytes > 0) std::memset(scratch.data(), kDirty, in.scratch_bytes);
+    group.scratch = in.scratch_bytes > 0 ? scratch.data() : nullptr;
+    group.scratch_bytes = in.scratch_bytes;
+
+    cuda::Launch all;
+    cuda::LaunchPlan plan;
+    out.status = cuda::view_groups({&group, 1}, all);
+    if (out.status == Status::kOk) out.status = cuda::plan_launches(all, kSharedBytes, plan);
     if (out.status != Status::kOk) return out;
+    if (plan.in_shared.count > 0) run_in_shared(plan.in_shared.views[0], random);
+    if (plan.in_scratch.count > 0) run_in_scratch(plan.in_scratch.views[0], random);
   }
   return out;
 }

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+// What all tables are built of: entries one after another, and the pairs that are tested.
+#pragma once
+
+#include <algorithm>
+
+#include "crowd_view.h"
+#include "spherechain/detect.h"
+
+namespace spherechain::cuda {
+
+constexpr std::size_t words_of(std::size_t bytes) { return (bytes + 15) / 16 * 2; }
+
+// Entries one after another, zero where nothing is written.
+class TableMemory {
+ public:
+  explicit TableMemory(Span<std::uint64_t> memory) : memory_(memory) {}
+
+  template <typename T>
+  T* take(std::size_t count, std::uint32_t& at) {
+    at = static_cast<std::uint32_t>(used_);
+    std::uint64_t* begin = memory_.data + used_;
+    used_ += words_of(count * sizeof(T));
+    std::fill(begin, memory_.data + used_, std::uint64_t{0});
+    return reinterpret_cast<T*>(begin);
+  }
+  std::size_t used() const { return used_; }
+
+ private:
+  Span<std::uint64_t> memory_;
+  std::size_t used_ = 0;
+};
+
+inline bool test_bit(Span<const std::uint64_t> words, std::size_t bit) {
+  return ((words[bit / 64] >> (bit % 64)) & 1U) != 0;
+}
+
+// By the filter, or where there is none by what the asset ignores.
+struct WantedPairs {
+  Span<const std::uint64_t> ignored, disabled;
+
+  WantedPairs(const Asset& asset, const Filter* filter) : ignored(asset.ignored()) {
+    if (filter != nullptr) {
+      ignored = {filter->ignored.data, filter->ignored.size};
+      disabled = {filter->disabled.data, filter->disabled.size};
+    }
+  }
+  bool is_enabled(std::size_t i) const { return disabled.size == 0 || !test_bit(disabled, i); }
+  bool operator()(std::uint32_t a, std::uint32_t b) const {
+    return !test_bit(ignored, std::size_t{b} * (b - 1) / 2 + a) && is_enabled(a) && is_enabled(b);
+  }
+};
+
+// Row blocks times column chunks, few of which are past the diagonal.
+inline std::size_t most_items(std::size_t n) {
+  std::size_t out = 0;
+  for (std::size_t row = 0; row + 1 < n; row += kRows) {
+    out += (n - 1 - row + kColumns - 1) / kColumns;
+  }
+  return out;
+}
+
+// The last rows and columns are those of the last eight spheres, some of them again: no pair is wanted twice.
+template <typename Wanted>
+std::uint32_t fill_items(std::uint32_t n, PairItem* out, const Wanted& wanted) {
+  const std::uint32_t last = n < kColumns ? 0 : n - kColumns;
+  std::uint32_t count = 0;
+  for (std::uint32_t row = 0; row + 1 < n; row += kRows) {
+    for (std::uint32_t column = row + 1; column < n; column += kColumns) {
+      PairItem item{std::min(row, last), std::min(column, last), {0, 0}};
+      for (std::uint32_t b = column; b < std::min(n, column + kColumns); ++b) {
+        for (std::uint32_t a = row; a < std::min(b, row + kRows); ++a) {
+          if (wanted(a, b)) {
+            const std::uint32_t c = b - item.first_column, at = kRows * (c % kHalfColumns) + (a - item.first_row);
+            item.wanted[c / kHalfColumns] |= 1U << (kHalfItem - 1 - at);
+          }
+        }
+      }
+      if ((item.wanted[0] | item.wanted[1]) != 0) {
+        out[count++] = item;
+      }
+    }
+  }
+  return count;
+}
+
+inline void fill_paddings(const Filter* filter, float* out) {
+  if (filter != nullptr && filter->padding.size > 0) {
+    std::copy(filter->padding.begin(), filter->padding.end(), out);
+  }
+}
+
+// The bones that an array of terms names, ascending, each once. Returns how many; `index_of_bone` is told of each.
+template <typename Told>
+std::uint32_t fill_bones(Span<const std::uint32_t> term_bones, std::size_t bone_count, std::uint32_t* used,
+                         const Told& index_of_bone) {
+  std::uint32_t count = 0;
+  for (std::uint32_t bone = 0; bone < bone_count; ++bone) {
+    bool is_used = false;
+    for (std::size_t t = 0; t < term_bones.size; ++t) {
+      if (term_bones[t] == bone) {
+        index_of_bone(t, count);
+        is_used = true;
+      }
+    }
+    if (is_used) {
+      used[count++] = bone;
+    }
+  }
+  return count;
+}
+
+// What may be wrong with the arguments of any build().
+Status check_build(const Asset& asset, const Filter* filter, Span<std::uint64_t> memory, std::size_t words);
+
+}  // namespace spherechain::cuda

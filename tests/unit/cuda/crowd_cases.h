@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// Assets and inputs that the crowd's tests share.
+#pragma once
+
+#include "crowd_runs.h"
+#include "random_poses.h"
+
+namespace spherechain::test {
+
+struct Tables {
+  Tables(const Asset& asset, RadiusKind radius, const Filter* filter = nullptr);
+  struct Covers {};
+  Tables(const Asset& asset, Covers covers, const Filter* filter = nullptr);
+
+  std::vector<std::uint64_t> words;
+  cuda::CrowdTables tables;
+};
+
+GroupInput group_of(const Tables& tables, std::size_t instances);
+
+// Some touch hardly at all, some are not finite or huge.
+std::vector<Sphere> spheres_of(std::size_t n, std::size_t instances, std::size_t stride, std::mt19937& random);
+
+// Puts the matrix as its layout has it at `to`.
+void put_matrix(const Matrix& matrix, MatrixLayout layout, float* to);
+
+// `layout`'s matrices, an instance's of `kind`, with NaN wherever none of them is.
+void give_matrices(GroupInput& in, const Asset& asset, MatrixLayout layout, PoseKind kind, std::size_t gap,
+                   std::mt19937& random);
+
+// Pivots in one to three groups of eight, bones, morph targets.
+TinyAsset boned_asset(unsigned spheres, std::size_t bones, unsigned seed);
+
+// Instance `i`'s.
+BoneMatrices bones_of(const GroupInput& in, std::size_t i);
+std::vector<float> morph_weights_of(const GroupInput& in, const Asset& asset, std::size_t i);
+
+struct Expected {
+  std::vector<Sphere> spheres;
+  std::vector<std::uint32_t> counts;
+  std::vector<std::uint64_t> bits;
+  std::vector<Pair> pairs;  // instance after instance
+};
+
+// Counts, bits and list.
+void check_pairs(const GroupInput& in, const GroupOutput& got, const Expected& wanted);
+
+}  // namespace spherechain::test
