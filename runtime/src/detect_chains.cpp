@@ -133,6 +133,9 @@ void detect_pair_by_pair(const Scene& scene, Span<std::uint64_t> seen, Result& r
 }  // namespace
 
 void detect_chains(const Scene& scene, Span<std::uint64_t> seen, Result& result) {
+  if (scene.rows != nullptr && result.chain_pairs.buffer.size == 0 && detect_listed(scene, true, result)) {
+    return;
+  }
   if (scene.size() <= kTileSize) {
     return detect_in_one_tile(scene, result);
   }

@@ -49,6 +49,8 @@ struct Scene {
     s.radius += padding.size == 0 ? 0.0F : padding[i];
     return s;
   }
+  // Padded spheres: those of the scene where nothing is padded, or in `copy`.
+  const Sphere* block(std::size_t first, std::size_t count, Sphere* copy) const;
 };
 
 struct Result {
@@ -94,8 +96,6 @@ class TestedTile {
   const TileWords* bits() const { return bits_; }
 
  private:
-  const Sphere* block(std::size_t first, std::size_t count, Sphere* copy) const;
-
   const Scene& scene_;
   Tile tile_;
   const Sphere* column_spheres_ = nullptr;
@@ -146,6 +146,10 @@ class ColumnOrder {
 void report(const TestedTile& tile, Result& result);
 
 void detect_all(const Scene& scene, Result& result);
+
+// What detect_all, or detect_chains where no list of chain pairs is wanted, finds: of a scene with rows. False where
+// that is not done, because there are too many pairs or spheres are too large: then `result` is as it was.
+bool detect_listed(const Scene& scene, bool in_chains, Result& result);
 
 // `seen` has a bit a pair, in the order of sorted pairs.
 void detect_chains(const Scene& scene, Span<std::uint64_t> seen, Result& result);

@@ -8,12 +8,13 @@
 #include "detect_steps.h"
 
 namespace spherechain {
-const Sphere* TestedTile::block(std::size_t first, std::size_t count, Sphere* copy) const {
-  if (scene_.padding.size == 0) {
-    return scene_.spheres + first;
+
+const Sphere* Scene::block(std::size_t first, std::size_t count, Sphere* copy) const {
+  if (padding.size == 0) {
+    return spheres + first;
   }
   for (std::size_t i = 0; i < count; ++i) {
-    copy[i] = scene_.sphere(first + i);
+    copy[i] = sphere(first + i);
   }
   return copy;
 }
@@ -21,7 +22,7 @@ const Sphere* TestedTile::block(std::size_t first, std::size_t count, Sphere* co
 void TestedTile::set_columns(std::size_t first) {
   tile_.place.first_column = first;
   tile_.place.column_count = std::min(scene_.size() - first, kTileSize);
-  column_spheres_ = block(first, tile_.place.column_count, padded_columns_);
+  column_spheres_ = scene_.block(first, tile_.place.column_count, padded_columns_);
   fill_columns(scene_.target, column_spheres_, tile_.place.column_count, column_spheres_[0], columns_);
   tile_.columns = &columns_;
   tile_.column_spheres = column_spheres_;
@@ -44,7 +45,7 @@ void TestedTile::set_rows(std::size_t first) {
     tile_.row_spheres = column_spheres_;
   } else {
     tile_.rows = &rows_;
-    tile_.row_spheres = block(first, tile_.place.row_count, padded_rows_);
+    tile_.row_spheres = scene_.block(first, tile_.place.row_count, padded_rows_);
     fill_columns(scene_.target, tile_.row_spheres, tile_.place.row_count, column_spheres_[0], rows_);
   }
 }
@@ -201,6 +202,9 @@ void detect_in_one_tile(const Scene& scene, Result& result) {
 
 void detect_all(const Scene& scene, Result& result) {
   const std::size_t n = scene.size();
+  if (scene.rows != nullptr && detect_listed(scene, false, result)) {
+    return;
+  }
   if (n <= kTileSize) {
     return detect_in_one_tile(scene, result);
   }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "overlap.h"
 
-#include <cfloat>
 #include <cstring>
 
 #include "arithmetic.h"
@@ -10,111 +9,27 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "overlap.cpp"
 #include "highway.h"
-#include "sphere_registers.h"
+#include "sphere_columns.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using Floats = hn::ScalableTag<float>;
-using Vector = hn::Vec<Floats>;
-
-// The spheres of a whole vector. Returns what their extents raise the lanes of `extent` to.
-HWY_INLINE Vector fill_vector(const Sphere* spheres, const Sphere& origin, Vector extent, SphereColumns& columns,
-                              std::size_t i) {
-  constexpr Floats kFloats;
-  Vector x, y, z, radius;
-  load_spheres(
-      kFloats, [&](std::size_t k) -> const Sphere& { return spheres[k]; }, x, y, z, radius);
-  x = hn::Sub(x, hn::Set(kFloats, origin.x));
-  y = hn::Sub(y, hn::Set(kFloats, origin.y));
-  z = hn::Sub(z, hn::Set(kFloats, origin.z));
-  const Vector squared_radius = hn::Mul(radius, radius);
-  const Vector squared_length = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
-  hn::StoreU(x, kFloats, columns.x + i);
-  hn::StoreU(y, kFloats, columns.y + i);
-  hn::StoreU(z, kFloats, columns.z + i);
-  hn::StoreU(hn::Sub(hn::Mul(hn::Set(kFloats, 0.5F), squared_length), squared_radius), kFloats, columns.power + i);
-  const Vector own = hn::Add(squared_length, squared_radius);
-  // NaN becomes infinite, so that it stays.
-  const Vector known = hn::IfThenElse(hn::Le(own, hn::Set(kFloats, FLT_MAX)), own, hn::Inf(kFloats));
-  return hn::Max(extent, known);
-}
 
 void fill(const Sphere* spheres, std::size_t count, const Sphere& origin, SphereColumns& columns) {
-  constexpr Floats kFloats;
-  const std::size_t lanes = hn::Lanes(kFloats);
-  Vector extent = hn::Zero(kFloats);
-  std::size_t i = 0;
-  for (; i + lanes <= count; i += lanes) {
-    extent = fill_vector(spheres + i, origin, extent, columns, i);
-  }
-  const std::size_t whole = i;
-  for (; i < count || i % kBlock != 0; i += lanes) {  // the lanes past the end are never asked for
-    for (float* column : {columns.x, columns.y, columns.z, columns.power}) {
-      hn::Store(hn::Zero(kFloats), kFloats, column + i);
-    }
-  }
-  if (whole < count && count >= lanes) {
-    extent = fill_vector(spheres + (count - lanes), origin, extent, columns, count - lanes);
-  } else if (whole < count) {
-    Sphere rest[hn::MaxLanes(kFloats)];
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      rest[lane] = lane < count ? spheres[lane] : origin;
-    }
-    extent = fill_vector(rest, origin, extent, columns, 0);
-  }
-  columns.extent = hn::GetLane(hn::MaxOfLanes(kFloats, extent));
+  columns.is_finite = fill_all(spheres, count, origin, columns);
 }
 
-// How much a pair's test below may be off. With p and q as the tile has them, h(p) = |p|^2 / 2 - rp^2 and u = 2^-24,
-//   h(p) + h(q) - p.q = (|p - q|^2 - (rp + rq)^2) / 2 - (rp - rq)^2 / 2,
-// which is below 0 where spheres touch; and little above it where they do not, as long as their radii are alike. With G
-// at least |p|^2 + rp^2 of every sphere, computing it costs 14 u G at most: 2 for each h, 8 for the sum of products
-// (fused or not: its parts are below 2 G, the products together below G), 1 for the comparison's side and 1 for terms
-// of second order; moving the spheres to the tile's origin costs 4; and that the rule's own squares are rounded, by
-// 8 u (rp + rq)^2 <= 32 u G, costs half of that. 34 u G in all, of which we allow 64; and 2^-120 for what underflows or
-// is flushed to 0. So no pair is missed; what the rule then says no to are few.
-// Nor is one missed for overflow, as long as G is finite: each h is, and where two spheres touch, -h(q) and some of the
-// products are together at least rq^2 - G (px qx >= -(px - qx)^2 / 4, and so on). So sums overflow upwards, if at all.
-HWY_INLINE float margin_of(float extent) { return kMarginOfExtent * extent + kLeastMargin; }
-
 // Sets at least the bits of the pairs that touch; and of other pairs, some of the columns after the row too.
-HWY_INLINE void find_candidates(const Tile& tile, float extent) {
-  constexpr Floats kFloats;
-  constexpr std::size_t kLanes = hn::MaxLanes(kFloats);
-  constexpr std::size_t kParts = kBlock / kLanes;
-  const SphereColumns& columns = *tile.columns;
-  const SphereColumns& rows = *tile.rows;
-  const Vector margin = hn::Set(kFloats, margin_of(extent));
-  const std::size_t row_count = tile.place.row_count;
-  for (std::size_t first = 0; first < tile.place.column_count; first += kBlock) {
-    Vector x[kParts], y[kParts], z[kParts], start[kParts];
-    for (std::size_t part = 0; part < kParts; ++part) {
-      const std::size_t at = first + part * kLanes;
-      x[part] = hn::Load(kFloats, columns.x + at);
-      y[part] = hn::Load(kFloats, columns.y + at);
-      z[part] = hn::Load(kFloats, columns.z + at);
-      start[part] = hn::Sub(margin, hn::Load(kFloats, columns.power + at));
-    }
-    auto* out = reinterpret_cast<std::uint8_t*>(tile.bits) + first / 8;
-    for (std::size_t r = first_row_of(tile.place, first); r < row_count; ++r) {
-      const Vector px = hn::Set(kFloats, rows.x[r]);
-      const Vector py = hn::Set(kFloats, rows.y[r]);
-      const Vector pz = hn::Set(kFloats, rows.z[r]);
-      const Vector power = hn::Set(kFloats, rows.power[r]);
-      std::uint64_t bits = 0;
-      for (std::size_t part = 0; part < kParts; ++part) {
-        Vector sum = hn::MulAdd(px, x[part], start[part]);
-        sum = hn::MulAdd(py, y[part], sum);
-        sum = hn::MulAdd(pz, z[part], sum);
-        bits |= bits_of(hn::Gt(sum, power)) << (part * kLanes);
-      }
-      const auto block = static_cast<std::uint16_t>(bits);
-      std::memcpy(out + r * sizeof(TileWords), &block, sizeof block);
-    }
-  }
+HWY_INLINE void find_candidates(const Tile& tile) {
+  auto* const bits = reinterpret_cast<std::uint8_t*>(tile.bits);
+  for_candidates(
+      *tile.columns, tile.place.column_count, *tile.rows, tile.place.row_count,
+      [&](std::size_t first) { return first_row_of(tile.place, first); },
+      [&](std::size_t r, std::size_t first, std::uint16_t block) {
+        std::memcpy(bits + r * sizeof(TileWords) + first / 8, &block, sizeof block);
+      });
 }
 
 // Some of a tile's words, as bits.
@@ -130,12 +45,17 @@ HWY_INLINE WordSet keep_plain(const Tile& tile) {
   std::uint64_t* const bits = tile.bits->words;
   const std::uint64_t* const plain = tile.plain->words;
   const std::size_t count = kTileWords * padded_rows(tile.place.row_count);
-  for (std::size_t i = 0; i < count; i += kLanes) {
-    const auto kept = hn::And(hn::LoadU(kWords, bits + i), hn::LoadU(kWords, plain + i));
-    hn::StoreU(kept, kWords, bits + i);
-    std::uint8_t mask[8] = {};
-    hn::StoreMaskBits(kWords, hn::Ne(kept, hn::Zero(kWords)), mask);
-    out.words[i / 64] |= std::uint64_t{mask[0]} << (i % 64);
+  for (std::size_t first = 0; first < count; first += 64) {
+    const std::size_t end = count - first < 64 ? count - first : 64;
+    std::uint64_t any = 0;
+    for (std::size_t i = 0; i < end; i += kLanes) {
+      const auto kept = hn::And(hn::LoadU(kWords, bits + first + i), hn::LoadU(kWords, plain + first + i));
+      hn::StoreU(kept, kWords, bits + first + i);
+      std::uint8_t mask[8] = {};
+      hn::StoreMaskBits(kWords, hn::Ne(kept, hn::Zero(kWords)), mask);
+      any |= std::uint64_t{mask[0]} << i;
+    }
+    out.words[first / 64] = any;
   }
   return out;
 }
@@ -232,10 +152,9 @@ HWY_INLINE void list_hits(const WordSet& hits, Tile& tile) {
 }
 
 void test(Tile& tile) {
-  const float extent = tile.rows->extent > tile.columns->extent ? tile.rows->extent : tile.columns->extent;
-  if (extent <= FLT_MAX) {
+  if (tile.rows->is_finite && tile.columns->is_finite) {
     std::memset(static_cast<void*>(tile.bits), 0, padded_rows(tile.place.row_count) * sizeof(TileWords));
-    find_candidates(tile, extent);
+    find_candidates(tile);
   } else {
     std::memset(static_cast<void*>(tile.bits), 0xFF, padded_rows(tile.place.row_count) * sizeof(TileWords));
   }

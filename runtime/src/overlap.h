@@ -19,11 +19,11 @@ struct TileWords {
   std::uint64_t words[kTileWords];
 };
 
-// Spheres coordinate by coordinate, as vectors want them: seen from `origin`, with half of |center|^2, less radius^2.
-// The entries up to the next multiple of kBlock are there too, and are 0.
+// Spheres coordinate by coordinate, as vectors want them: seen from `origin`, with half of |center|^2, less radius^2
+// and a margin for what tests may be off. The entries up to the next multiple of kBlock are there too, and are 0.
 struct alignas(64) SphereColumns {
   float x[kTileSize], y[kTileSize], z[kTileSize], power[kTileSize];
-  float extent;  // at least |center|^2 + radius^2 of each; not finite, or NaN, where one is not
+  bool is_finite;  // else of no use: |center|^2 + radius^2 of some sphere is not
 };
 inline constexpr std::size_t kBlock = 16;  // columns tested at a time: a multiple of each target's lanes
 
@@ -60,7 +60,8 @@ struct Tile {
   std::size_t hit_count = 0;
 };
 
-// What a test by multiply-adds may be off, where the extent is finite: overlap.cpp has the proof.
+// What a sphere's |center|^2 + radius^2 adds to what a test by multiply-adds may be off: sphere_columns.h has the
+// proof.
 inline constexpr float kMarginOfExtent = 0x1p-18F, kLeastMargin = 0x1p-120F;
 
 // Up to kTileSize spheres.

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "listed_pairs.h"
 #include "overlap.h"
 #include "spherechain/asset.h"
 #include "spherechain/detect_table.h"
@@ -36,6 +37,9 @@ struct PairRows {
   const TileWords *wanted = nullptr, *plain = nullptr;
   const TileWords *chain_wanted = nullptr, *chain_plain = nullptr;
   const TileWords* chains = nullptr;
+  PairLists lists, chain_lists;
+  const std::uint64_t* members = nullptr;  // by sphere, member_words each: a bit a chain that has it
+  std::size_t member_words = 0;
 };
 
 // kOk; kNullArgument, kMisaligned, kContextTooSmall; kBadArgument where it was not prepared for this.

@@ -45,6 +45,8 @@ HWY_INLINE void turn(D d, V v0, V v1, V v2, V v3, V& x, V& y, V& z, V& radius) {
   radius = hn::InterleaveUpper(d, high02, high13);
 }
 
+#endif
+
 template <typename D>
 HWY_INLINE hwy::HWY_NAMESPACE::Vec<D> load_reaches(D d, const NearPair* pairs) {
   namespace hn = hwy::HWY_NAMESPACE;
@@ -62,8 +64,6 @@ HWY_INLINE hwy::HWY_NAMESPACE::Vec<D> load_reaches(D d, const NearPair* pairs) {
 #endif
 }
 
-#endif
-
 // A register's worth of spheres, the ith of them `sphere_at(i)`.
 template <typename D, typename SphereAt, typename V>
 HWY_INLINE void load_spheres(D d, const SphereAt& sphere_at, V& x, V& y, V& z, V& radius) {
@@ -77,36 +77,63 @@ HWY_INLINE void load_spheres(D d, const SphereAt& sphere_at, V& x, V& y, V& z, V
 #endif
 }
 
-// kListLanes pairs, a bit each: a counts from the columns' first sphere, b from the rows'. With a reach of 1 the rule
-// for near pairs is that for all others, and one below 1 only ever narrows that, also after rounding.
-HWY_INLINE std::uint64_t test_listed(const Sphere* column_spheres, const Sphere* row_spheres, const NearPair* pairs) {
-#if HWY_TARGET == HWY_SCALAR
-  const Sphere &p = column_spheres[pairs->a], &q = row_spheres[pairs->b];
-  const float dx = p.x - q.x;
-  const float dy = p.y - q.y;
-  const float dz = p.z - q.z;
-  const float s = p.radius + q.radius;
-  const float t = pairs->reach * s;
-  const float d2 = (dx * dx + dy * dy) + dz * dz;
-  return d2 < t * t && s * s <= FLT_MAX ? 1 : 0;
+// A register's worth of spheres that follow each other.
+template <typename D, typename V>
+HWY_INLINE void load_next_spheres(D d, const Sphere* spheres, V& x, V& y, V& z, V& radius) {
+#if HWY_TARGET == HWY_AVX3  // eight spheres' figures together first: whole registers, and half the shuffles
+  namespace hn = hwy::HWY_NAMESPACE;
+  HWY_ALIGN static constexpr std::int32_t kXy[16] = {0, 4, 8, 12, 16, 20, 24, 28, 1, 5, 9, 13, 17, 21, 25, 29};
+  HWY_ALIGN static constexpr std::int32_t kZr[16] = {2, 6, 10, 14, 18, 22, 26, 30, 3, 7, 11, 15, 19, 23, 27, 31};
+  const __m512i first = _mm512_load_si512(kXy), second = _mm512_load_si512(kZr);
+  const float* const figures = &spheres->x;
+  const __m512 v0 = _mm512_loadu_ps(figures), v1 = _mm512_loadu_ps(figures + 16), v2 = _mm512_loadu_ps(figures + 32),
+               v3 = _mm512_loadu_ps(figures + 48);
+  const V low_xy{_mm512_permutex2var_ps(v0, first, v1)}, low_zr{_mm512_permutex2var_ps(v0, second, v1)};
+  const V high_xy{_mm512_permutex2var_ps(v2, first, v3)}, high_zr{_mm512_permutex2var_ps(v2, second, v3)};
+  x = hn::ConcatLowerLower(d, high_xy, low_xy);
+  y = hn::ConcatUpperUpper(d, high_xy, low_xy);
+  z = hn::ConcatLowerLower(d, high_zr, low_zr);
+  radius = hn::ConcatUpperUpper(d, high_zr, low_zr);
 #else
+  load_spheres(
+      d, [&](std::size_t k) -> const Sphere& { return spheres[k]; }, x, y, z, radius);
+#endif
+}
+
+// The rule for kListLanes pairs, spheres p and q of each. With a reach of 1 the rule for near pairs is that for all
+// others, and one below 1 only ever narrows that, also after rounding.
+template <typename P, typename Q, typename V>
+HWY_INLINE hwy::HWY_NAMESPACE::Mask<hwy::HWY_NAMESPACE::ScalableTag<float>> touching(const P& p_at, const Q& q_at,
+                                                                                     V reaches) {
   namespace hn = hwy::HWY_NAMESPACE;
   const hn::ScalableTag<float> d;
-  using V = hn::Vec<hn::ScalableTag<float> >;
+#if HWY_TARGET == HWY_SCALAR
+  const Sphere &p = p_at(0), &q = q_at(0);
+  const V dx = hn::Set(d, p.x - q.x), dy = hn::Set(d, p.y - q.y), dz = hn::Set(d, p.z - q.z);
+  const V s = hn::Set(d, p.radius + q.radius);
+#else
   // p - (x, y, z, -radius) is three differences and a sum, rounded as the rule's are.
   HWY_ALIGN static constexpr float kSign[16] = {0, 0, 0, -0.0F, 0, 0, 0, -0.0F, 0, 0, 0, -0.0F, 0, 0, 0, -0.0F};
   const V sign = hn::Load(d, kSign);
   const auto differences = [&](std::size_t i) HWY_ATTR {
-    const V p = load_blocks(d, [&](std::size_t k) -> const Sphere& { return column_spheres[pairs[k + i].a]; });
-    const V q = load_blocks(d, [&](std::size_t k) -> const Sphere& { return row_spheres[pairs[k + i].b]; });
+    const V p = load_blocks(d, [&](std::size_t k) -> const Sphere& { return p_at(k + i); });
+    const V q = load_blocks(d, [&](std::size_t k) -> const Sphere& { return q_at(k + i); });
     return hn::Sub(p, hn::Xor(q, sign));
   };
   V dx, dy, dz, s;
   turn(d, differences(0), differences(1), differences(2), differences(3), dx, dy, dz, s);
-  const V d2 = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
-  const V s2 = hn::Mul(s, s), t = hn::Mul(load_reaches(d, pairs), s);
-  return bits_of(hn::And(hn::Lt(d2, hn::Mul(t, t)), hn::Le(s2, hn::Set(d, FLT_MAX))));
 #endif
+  const V d2 = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
+  const V s2 = hn::Mul(s, s), t = hn::Mul(reaches, s);
+  return hn::And(hn::Lt(d2, hn::Mul(t, t)), hn::Le(s2, hn::Set(d, FLT_MAX)));
+}
+
+// kListLanes pairs, a bit each: a counts from the columns' first sphere, b from the rows'.
+HWY_INLINE std::uint64_t test_listed(const Sphere* column_spheres, const Sphere* row_spheres, const NearPair* pairs) {
+  const hwy::HWY_NAMESPACE::ScalableTag<float> d;
+  return bits_of(touching([&](std::size_t k) -> const Sphere& { return column_spheres[pairs[k].a]; },
+                          [&](std::size_t k) -> const Sphere& { return row_spheres[pairs[k].b]; },
+                          load_reaches(d, pairs)));
 }
 
 }  // namespace HWY_NAMESPACE

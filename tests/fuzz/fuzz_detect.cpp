@@ -103,7 +103,7 @@ void spoil_table(Case& c, DetectCall& call, std::uint32_t way, Spoiled& spoiled)
       put_askew(c, call.table.words.data);
       return spoiled.with(Status::kMisaligned);
     case 2:
-      call.table.words[c.random.below(4)] ^= 1;  // what it is of
+      call.table.words[c.random.below(5)] ^= 1;  // what it is of
       return spoiled.with(Status::kBadArgument);
     default:
       if (job.bits.size > 0) {

@@ -80,9 +80,22 @@ bool is_same_by_table(DetectJob job, const Filter* filter, const Detected& expec
   job.pairs.data = found.pairs.data();
   job.chain_pairs.data = found.chain_pairs.data();
   job.bits.data = found.bits.data();
-  return job.run() == Status::kOk && job.pair_count == expected.pairs.size() && job.test_count == expected.test_count &&
-         same_bits(found.pairs, expected.pairs) && same_bits(found.chain_pairs, expected.chain_pairs) &&
-         same_bits(found.bits, expected.bits);
+  const auto is_same = [&](Status status) {
+    return job.run() == status && job.pair_count == expected.pairs.size() && job.test_count == expected.test_count &&
+           (job.method == Method::kM2 || job.chain_pair_count == expected.chain_pairs.size()) &&
+           same_bits(found.pairs, expected.pairs) && same_bits(found.bits, expected.bits);
+  };
+  if (!is_same(Status::kOk) || !same_bits(found.chain_pairs, expected.chain_pairs)) {
+    return false;
+  }
+  // A list of chain pairs takes another way than none; and a list one short is as far as it goes the same.
+  job.chain_pairs = {};
+  if (!is_same(Status::kOk) || job.pairs.size < 2) {
+    return job.pairs.size < 2;
+  }
+  found.pairs.back() = expected.pairs.back();
+  --job.pairs.size;
+  return is_same(Status::kOverflow);
 }
 
 }  // namespace

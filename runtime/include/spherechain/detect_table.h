@@ -17,7 +17,7 @@ namespace spherechain {
 struct SPHERECHAIN_API DetectTable {
   Span<std::uint64_t> words;
 
-  // Words needed for `asset`: some 8 a sphere; few where it has more than 128 spheres, for which a table saves nothing.
+  // Words needed for `asset`: some 16 a sphere; few where it has more than 128 spheres, for which a table saves nothing.
   static std::size_t words_needed(const Asset& asset) noexcept;
 };
 

@@ -3,6 +3,8 @@
 // pairs), and none is taken for another's.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 #include "jobs.h"
 #include "tiny_asset.h"
 
@@ -102,6 +104,63 @@ TEST_CASE("an asset opened where another one lay does not take its table") {
   words[0] = of_later.words[0];  // as if at the same address
   const DetectTable stale{{words.data(), words.size()}};
   CHECK(job_of(later.asset, heap, stale).run() == Status::kBadArgument);
+}
+
+TEST_CASE("a table of an asset with fewer near pairs is not taken for one of more, however long it is") {
+  TinyAsset first = random_asset(20, 1);
+  first.parts.near_fit.clear();
+  first.parts.near_detect.clear();
+  TinyAsset second = first;
+  second.parts.near_detect = {{2, 5, 0.5F}};
+  const OpenedAsset opened(first.parts);
+  const OpenedAsset later(second.parts);
+  const OwnedTable table(opened.asset, RadiusKind::kDetect), of_later(later.asset, RadiusKind::kDetect);
+  std::vector<std::uint64_t> words = table.words;
+  words.resize(of_later.words.size() + words.size());
+  words[0] = of_later.words[0];  // as if at the same address
+  const std::vector<Sphere> heap(20, {0, 0, 0, 1});
+  const DetectTable stale{{words.data(), words.size()}};
+  CHECK(job_of(later.asset, heap, stale).run() == Status::kBadArgument);
+}
+
+TEST_CASE("a table finds as many pairs as there are, whether they fit the runtime's short list or not") {
+  TinyAsset tiny = random_asset(128, 1);
+  tiny.parts.ignored.assign(tiny.parts.ignored.size(), 0);
+  tiny.parts.near_fit.clear();
+  tiny.parts.near_detect.clear();
+  for (const bool has_near : {false, true}) {
+    for (std::uint32_t b = 1; has_near && b < 11; ++b) {  // of a heap of eleven, all pairs but the first sphere's
+      for (std::uint32_t a = 1; a < b; ++a) tiny.parts.near_detect.push_back({a, b, 0.5F});
+    }
+    std::sort(tiny.parts.near_detect.begin(), tiny.parts.near_detect.end(),
+              [](const NearPair& l, const NearPair& r) { return l.a != r.a ? l.a < r.a : l.b < r.b; });
+    const OpenedAsset opened(tiny.parts);
+    std::vector<Sphere> spheres;
+    for (std::size_t i = 0; i < 128; ++i) spheres.push_back({i < 11 ? 0.0F : 10.0F * static_cast<float>(i), 0, 0, 1});
+    for (std::size_t couples = 0; couples < 20; ++couples) {
+      CAPTURE(couples);
+      if (couples > 0) spheres[127 - couples].x = spheres[10 + couples].x;
+      for (const Target target : supported_targets()) {
+        // detect() compares with what a job with a table finds.
+        const Detected found = detect(opened.asset, spheres, Method::kM2, RadiusKind::kDetect, target);
+        CHECK(found.status == Status::kOk);
+        CHECK(found.pairs.size() == 55 + couples);
+        CHECK(detect(opened.asset, spheres, Method::kM1, RadiusKind::kDetect, target).status == Status::kOk);
+      }
+    }
+  }
+}
+
+TEST_CASE("more chains than a word has bits are counted with a table as well") {
+  TinyAsset tiny = random_asset(30, 3);
+  const std::size_t own = tiny.parts.chains.size();
+  while (tiny.parts.chains.size() < 150) tiny.parts.chains.push_back(tiny.parts.chains[tiny.parts.chains.size() % own]);
+  const OpenedAsset opened(tiny.parts);
+  std::vector<Sphere> spheres;
+  for (std::size_t i = 0; i < 30; ++i) spheres.push_back({static_cast<float>(i % 10), 0, 0, 0.4F});
+  const Detected found = detect(opened.asset, spheres, Method::kM1, RadiusKind::kDetect);
+  CHECK(found.status == Status::kOk);
+  CHECK(found.chain_pairs.size() > 64);
 }
 
 TEST_CASE("prepare_detect refuses what it cannot fill and writes nothing then") {

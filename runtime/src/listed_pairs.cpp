@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: MIT
+#include "listed_pairs.h"
+
+#include <cstring>
+
+#include "arithmetic.h"
+#include "simd.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "listed_pairs.cpp"
+#include "highway.h"
+#include "sphere_columns.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace spherechain {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Floats = hn::ScalableTag<float>;
+using Pairs = hn::ScalableTag<std::int32_t>;  // numbers below 2^31, for spheres are below kTileSize
+
+// Adds those of kListLanes pairs that touch and whose number is below `count`. False where there are too many.
+HWY_INLINE bool test_pairs(const Sphere* spheres, const ListedPair* pairs, hn::Vec<Floats> reaches, std::size_t count,
+                           FoundPairs& found) {
+  constexpr Floats kFloats;
+  constexpr Pairs kPairs;
+  auto touch = touching([&](std::size_t k) -> const Sphere& { return spheres[pairs[k].a]; },
+                        [&](std::size_t k) -> const Sphere& { return spheres[pairs[k].b]; }, reaches);
+  touch = hn::And(touch, hn::FirstN(kFloats, count));
+  const auto numbers = hn::LoadU(kPairs, reinterpret_cast<const std::int32_t*>(pairs));
+  const auto own = hn::RebindMask(kPairs, touch);
+  hn::StoreU(hn::Compress(numbers, own), kPairs, reinterpret_cast<std::int32_t*>(found.pairs + found.count));
+  found.count += hn::CountTrue(kPairs, own);
+  return found.count <= kMostPairs;
+}
+
+// The bits of the strips that have wanted candidates, of a group; the others' are taken from `candidates`.
+HWY_INLINE std::uint64_t keep_wanted(const std::uint16_t* wanted, std::uint16_t* candidates) {
+  const hn::ScalableTag<std::uint16_t> kStrips;
+  constexpr std::size_t kLanes = hn::MaxLanes(kStrips);
+  std::uint64_t any = 0;
+  for (std::size_t i = 0; i < kStripGroup; i += kLanes) {
+    const auto kept = hn::And(hn::Load(kStrips, candidates + i), hn::LoadU(kStrips, wanted + i));
+    hn::Store(kept, kStrips, candidates + i);
+    std::uint64_t bits = 0;
+    hn::StoreMaskBits(kStrips, hn::Ne(kept, hn::Zero(kStrips)), reinterpret_cast<std::uint8_t*>(&bits));
+    any |= bits << i;
+  }
+  return any;
+}
+
+bool find(const Sphere* spheres, std::size_t count, const PairLists& lists, FoundPairs& found) {
+  constexpr Floats kFloats;
+  found.count = 0;
+  SphereColumns columns;
+  if (count == 0 || !fill_all(spheres, count, spheres[0], columns)) {
+    return count == 0;
+  }
+  HWY_ALIGN std::uint16_t candidates[padded_strips(kTileSize) + kStripGroup];
+  const std::size_t strip_count = strips_of(count);
+  std::memset(candidates + strip_count / kStripGroup * kStripGroup, 0, kStripGroup * sizeof *candidates);
+  std::uint16_t* end = candidates;
+  for_candidates(
+      columns, count, columns, count, [](std::size_t first) { return first + 1; },
+      [&](std::size_t, std::size_t, std::uint16_t strip) { *end++ = strip; });
+  // What candidates need of memory arrives meanwhile.
+  for (std::size_t i = 0; i < lists.near_count; i += kListLanes) {
+    if (!test_pairs(spheres, lists.near + i, hn::LoadU(kFloats, lists.reaches + i), kListLanes, found)) {
+      return false;
+    }
+  }
+  ListedPair listed[kMostPairs + kBlock];
+  std::size_t listed_count = 0;
+  for (std::size_t first = 0; first < strip_count; first += kStripGroup) {
+    std::uint64_t strips = keep_wanted(lists.wanted + first, candidates + first);
+    for (; strips != 0; strips &= strips - 1) {
+      const std::size_t strip = first + hwy::Num0BitsBelowLS1Bit_Nonzero64(strips);
+      const ListedPair place = lists.strips[strip];
+      if (listed_count > kMostPairs) {
+        return false;
+      }
+      for (std::uint64_t left = candidates[strip]; left != 0; left &= left - 1) {
+        listed[listed_count].a = static_cast<std::uint16_t>(place.a + hwy::Num0BitsBelowLS1Bit_Nonzero64(left));
+        listed[listed_count].b = place.b;
+        ++listed_count;
+      }
+    }
+  }
+  if (listed_count > kMostPairs) {
+    return false;
+  }
+  for (std::size_t i = 0; i < kListLanes; ++i) {
+    listed[listed_count + i].a = listed[listed_count + i].b = 0;
+  }
+  for (std::size_t i = 0; i < listed_count; i += kListLanes) {
+    if (!test_pairs(spheres, listed + i, hn::Set(kFloats, 1.0F), listed_count - i, found)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// Each pair's place is the number of those before it.
+void sort(FoundPairs& found, Pair* list, std::size_t size) {
+  constexpr Pairs kPairs;
+  auto* const numbers = reinterpret_cast<std::int32_t*>(found.pairs);
+  hn::StoreU(hn::Set(kPairs, 0x7FFFFFFF), kPairs, numbers + found.count);
+  for (std::size_t i = 0; i < found.count; ++i) {
+    const auto own = hn::Set(kPairs, numbers[i]);
+    std::size_t place = 0;
+    for (std::size_t k = 0; k < found.count; k += hn::MaxLanes(kPairs)) {
+      place += hn::CountTrue(kPairs, hn::Lt(hn::Load(kPairs, numbers + k), own));
+    }
+    if (place < size) {
+      list[place].a = found.pairs[i].a;
+      list[place].b = found.pairs[i].b;
+    }
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace spherechain
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace spherechain {
+namespace {
+
+SPHERECHAIN_KERNELS(find);
+SPHERECHAIN_KERNELS(sort);
+
+}  // namespace
+
+bool find_listed(Target resolved, const Sphere* spheres, std::size_t count, const PairLists& lists, FoundPairs& found) {
+  return find_kernels[index_of(resolved)](spheres, count, lists, found);
+}
+
+void list_in_order(Target resolved, FoundPairs& found, Span<Pair> list) {
+  sort_kernels[index_of(resolved)](found, list.data, list.size);
+}
+
+}  // namespace spherechain
+#endif
