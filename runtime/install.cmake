@@ -8,7 +8,9 @@ install(TARGETS spherechain_runtime EXPORT spherechain
   RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT sdk)
 install(DIRECTORY include/spherechain DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT sdk)
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT sdk)
-install(EXPORT spherechain NAMESPACE spherechain:: FILE spherechainConfig.cmake DESTINATION ${package} COMPONENT sdk)
+install(EXPORT spherechain NAMESPACE spherechain:: FILE spherechainTargets.cmake DESTINATION ${package} COMPONENT sdk)
+configure_file(spherechainConfig.cmake.in spherechainConfig.cmake COPYONLY)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/spherechainConfig.cmake DESTINATION ${package} COMPONENT sdk)
 
 # Before 1.0 a minor version may break what the one before it had.
 write_basic_package_version_file(spherechainConfigVersion.cmake COMPATIBILITY SameMinorVersion)

@@ -4,6 +4,8 @@
 #   installed  KIND: the stranger finds it with find_package
 #   pkg_config KIND: the stranger's two programs by one compiler line each, the C one without the C++ library
 #   wrong_abi  KIND=shared: programs compiled with the headers of another version must say so and stop
+#   cuda       the stranger finds this build's crowds on the GPU by find_package, by pkg-config, and a sentence where there are none
+#   nested_cuda  after nested, NAME=nested: with a copy of cuda/ besides, built for one kind of device
 #   nested     WORK/NAME: the stranger has a copy of runtime/ and schemas/ inside, built with COMPILER_C and COMPILER_CXX
 set(expected "60 spheres, ${PAIRS} pairs\n")
 
@@ -19,6 +21,15 @@ function(check_pairs program)
   if(NOT result EQUAL 0 OR NOT output STREQUAL expected)
     message(FATAL_ERROR "${program}: exit ${result}, \"${output}${error}\" instead of \"${expected}\"")
   endif()
+endfunction()
+
+# What crowds on the GPU find, or that there is none.
+function(check_crowd program)
+  execute_process(COMMAND ${program} ${ASSET} RESULT_VARIABLE result OUTPUT_VARIABLE output ERROR_VARIABLE error)
+  if(NOT result EQUAL 0 OR NOT (output STREQUAL expected OR output MATCHES "^60 spheres, no CUDA device: .+\n$"))
+    message(FATAL_ERROR "${program}: exit ${result}, \"${output}${error}\" instead of \"${expected}\" or \"no CUDA device: ...\"")
+  endif()
+  message(STATUS "${output}")
 endfunction()
 
 function(configure source build)
@@ -45,7 +56,8 @@ if(CASE STREQUAL install)
     if(KIND STREQUAL shared)
       set(is_shared ON)
     endif()
-    configure(${ROOT} ${tree} -D BUILD_SHARED_LIBS=${is_shared} -D SPHERECHAIN_BAKER=OFF -D SPHERECHAIN_TESTS=OFF)
+    configure(${ROOT} ${tree} -D BUILD_SHARED_LIBS=${is_shared} -D SPHERECHAIN_BAKER=OFF -D SPHERECHAIN_TESTS=OFF
+      -D SPHERECHAIN_CUDA=OFF)
     run(${CMAKE_COMMAND} --build ${tree})
   endif()
   run(${CMAKE_COMMAND} -E rm -rf ${prefix})
@@ -100,6 +112,39 @@ elseif(CASE STREQUAL pkg_config OR CASE STREQUAL wrong_abi)
       endif()
     endif()
   endforeach()
+elseif(CASE STREQUAL cuda)
+  set(prefix ${WORK}/cuda)
+  set(stranger ${WORK}/stranger_cuda)
+  run(${CMAKE_COMMAND} -E rm -rf ${prefix} ${stranger})
+  run(${CMAKE_COMMAND} --install ${BUILD} --component sdk --prefix ${prefix})
+  # Installed without: a sentence says so.
+  execute_process(COMMAND ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/stranger -B ${stranger}_without -D CROWDS_ON_GPU=ON
+    -D CMAKE_PREFIX_PATH=${prefix} -D CMAKE_FIND_USE_PACKAGE_REGISTRY=OFF RESULT_VARIABLE result OUTPUT_QUIET ERROR_VARIABLE error)
+  string(REGEX REPLACE "[ \n]+" " " error "${error}")
+  if(result EQUAL 0 OR NOT error MATCHES "the component cuda is not installed there")
+    message(FATAL_ERROR "found a component that is not there, or did not say what is missing: ${error}")
+  endif()
+  run(${CMAKE_COMMAND} --install ${BUILD} --component cuda --prefix ${prefix})
+  configure(${CMAKE_CURRENT_LIST_DIR}/stranger ${stranger} -D CROWDS_ON_GPU=ON -D CMAKE_PREFIX_PATH=${prefix}
+    -D CMAKE_FIND_USE_PACKAGE_REGISTRY=OFF)
+  run(${CMAKE_COMMAND} --build ${stranger})
+  check_crowd(${stranger}/stranger_cuda)
+  file(GLOB_RECURSE pc ${prefix}/*/spherechain-cuda.pc)
+  cmake_path(GET pc PARENT_PATH pc_folder)
+  set(ENV{PKG_CONFIG_PATH} ${pc_folder})
+  execute_process(COMMAND pkg-config --cflags --libs spherechain-cuda OUTPUT_VARIABLE flags COMMAND_ERROR_IS_FATAL ANY
+    OUTPUT_STRIP_TRAILING_WHITESPACE)
+  separate_arguments(flags UNIX_COMMAND "${flags}")
+  run(${COMPILER_CXX} -std=c++17 ${CMAKE_CURRENT_LIST_DIR}/stranger/stranger_cuda.cpp -o ${stranger}/by_pkg_config ${flags})
+  check_crowd(${stranger}/by_pkg_config)
+elseif(CASE STREQUAL nested_cuda)
+  set(TYPE Debug)
+  set(stranger ${WORK}/stranger_nested)
+  file(COPY ${ROOT}/cuda DESTINATION ${WORK}/nested_copy)
+  configure(${CMAKE_CURRENT_LIST_DIR}/stranger ${stranger} -D CROWDS_ON_GPU=ON -D SPHERECHAIN_CUDA=ON
+    -D CMAKE_CUDA_ARCHITECTURES=80-real -D CMAKE_CUDA_COMPILER_LAUNCHER=${LAUNCHER})
+  run(${CMAKE_COMMAND} --build ${stranger} --target stranger_cuda)
+  check_crowd(${stranger}/stranger_cuda)
 elseif(CASE STREQUAL nested)
   set(TYPE Debug)  # quick to compile, and the pairs are the same at every optimisation level
   set(copy ${WORK}/${NAME}_copy)

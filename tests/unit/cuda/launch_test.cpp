@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: MIT
+// What is launched where: what the emulated runs cannot show.
+#include <doctest/doctest.h>
+
+#include "crowd_access.h"
+#include "crowd_cases.h"
+
+namespace spherechain::test {
+namespace {
+
+struct Group {
+  explicit Group(const Tables& tables, std::size_t instances) {
+    group.tables = &tables.tables;
+    group.device_tables = reinterpret_cast<const std::uint64_t*>(memory);
+    group.spheres = reinterpret_cast<const Sphere*>(memory);
+    group.instance_count = instances;
+  }
+  alignas(16) unsigned char memory[16] = {};  // named, not read
+  cuda::CrowdGroup group;
+};
+
+}  // namespace
+
+TEST_CASE("groups go to shared memory where it is large enough, and else to as many blocks of scratch as fit") {
+  const OpenedAsset large(random_asset(300, 1).parts), small(random_asset(20, 2).parts);
+  const Tables a(large.asset, RadiusKind::kFit), b(small.asset, RadiusKind::kFit);
+  Group groups[] = {Group(b, 33), Group(a, 100), Group(b, 0), Group(a, 31), Group(b, 64)};
+  const std::size_t block = [&] {  // without bits
+    cuda::GroupView view;
+    REQUIRE(cuda::view_group(groups[1].group, view) == Status::kOk);
+    return cuda::shared_layout(view).size;
+  }();
+  std::vector<cuda::CrowdGroup> all;
+  for (Group& one : groups) {
+    one.group.scratch = one.memory;
+    one.group.scratch_bytes = 3 * block + 16;
+    all.push_back(one.group);
+  }
+  cuda::Launch views;
+  cuda::LaunchPlan plan;
+  REQUIRE(cuda::view_groups({all.data(), all.size()}, views) == Status::kOk);
+  CHECK(views.count == 4);
+  REQUIRE(cuda::plan_launches(views, block - 1, plan) == Status::kOk);
+  REQUIRE(plan.in_shared.count == 2);
+  CHECK(plan.in_shared.views[1].first_block == 2);
+  CHECK(plan.in_shared.views[0].wide_spheres);
+  CHECK(plan.shared_blocks == 4);
+  CHECK(plan.shared_bytes < block / 10);
+  REQUIRE(plan.in_scratch.count == 2);
+  CHECK(plan.in_scratch.views[0].scratch_blocks == 3);  // of 4
+  CHECK(plan.in_scratch.views[1].scratch_blocks == 1);
+  CHECK(plan.in_scratch.views[1].first_block == 3);
+  CHECK(plan.scratch_blocks == 4);
+  for (std::uint32_t g = 0; g < 2; ++g) {  // the instruction for wide copies is one to shared memory
+    CHECK(!plan.in_scratch.views[g].wide_spheres);
+    CHECK(!plan.in_scratch.views[g].wide_matrices);
+  }
+  REQUIRE(cuda::plan_launches(views, block, plan) == Status::kOk);
+  CHECK(plan.in_shared.count == 4);
+  CHECK(plan.in_scratch.count == 0);
+  CHECK(plan.shared_bytes == block);
+}
+
+TEST_CASE("too many groups, none at all and a null list are told apart") {
+  const OpenedAsset small(random_asset(9, 2).parts);
+  const Tables tables(small.asset, RadiusKind::kFit);
+  const Group group(tables, 1);
+  std::vector<cuda::CrowdGroup> all(cuda::CrowdJob::kMostGroups + 1, group.group);
+  cuda::Launch views;
+  CHECK(cuda::view_groups({all.data(), all.size()}, views) == Status::kBadArgument);
+  CHECK(cuda::view_groups({all.data(), all.size() - 1}, views) == Status::kOk);
+  CHECK(cuda::view_groups({nullptr, 1}, views) == Status::kNullArgument);
+  CHECK(cuda::view_groups({}, views) == Status::kOk);
+  CHECK(views.count == 0);
+}
+
+}  // namespace spherechain::test
