@@ -30,9 +30,12 @@ constexpr std::size_t kAtATime = 4;
 
 // Four figures of each instance, `stride` floats apart; 0 for the instances that are not there.
 HWY_INLINE void load_four(const float* from, std::size_t stride, std::size_t count, Vector (&out)[4]) {
-  HWY_ALIGN float rows[kLanes][4] = {};
+  HWY_ALIGN float rows[kLanes][4];
   for (std::size_t lane = 0; lane < count; ++lane) {
     std::memcpy(rows[lane], from + lane * stride, sizeof rows[lane]);
+  }
+  for (std::size_t lane = count; lane < kLanes; ++lane) {
+    rows[lane][0] = rows[lane][1] = rows[lane][2] = rows[lane][3] = 0;
   }
   hn::LoadInterleaved4(Floats(), rows[0], out[0], out[1], out[2], out[3]);
 }

@@ -46,6 +46,7 @@ Status check(const DetectJob& job, Target& resolved, PairRows& rows) {
   if (job.spheres.size < job.asset->spheres().size) {
     return Status::kTooFewSpheres;
   }
+  fetch(range_of(Span<const Sphere>{job.spheres.data, job.asset->spheres().size}));
   if (job.method == Method::kM1) {
     if (job.context == nullptr || is_missing(job.context->words) || is_missing(job.chain_pairs)) {
       return Status::kNullArgument;

@@ -10,8 +10,8 @@ namespace {
 std::size_t count_in_chains(const PairRows& rows, const FoundPairs& found) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < found.count; ++i) {
-    const std::uint64_t* const of_a = rows.members + found.pairs[i].a * rows.member_words;
-    const std::uint64_t* const of_b = rows.members + found.pairs[i].b * rows.member_words;
+    const std::uint64_t* const of_a = rows.members + found.pairs[i].a / sizeof(Sphere) * rows.member_words;
+    const std::uint64_t* const of_b = rows.members + found.pairs[i].b / sizeof(Sphere) * rows.member_words;
     for (std::size_t w = 0; w < rows.member_words; ++w) {
       count += count_bits(of_a[w] & of_b[w]);
     }
@@ -36,7 +36,7 @@ bool detect_listed(const Scene& scene, bool in_chains, Result& result) {
   }
   if (result.bits.size > 0 && !result.first_only) {
     for (std::size_t i = 0; i < found.count; ++i) {
-      set_bit(result.bits, ignored_bit(found.pairs[i].a, found.pairs[i].b));
+      set_bit(result.bits, ignored_bit(found.pairs[i].a / sizeof(Sphere), found.pairs[i].b / sizeof(Sphere)));
     }
   }
   if (result.pairs.buffer.size > 0) {

@@ -84,15 +84,14 @@ void fill_strips(std::size_t n, const Content& content) {
   const std::size_t padded = padded_strips(n);
   std::fill(content.strips, content.strips + padded, ListedPair{});
   std::size_t strip = 0;
-  for (std::size_t first = 0; first < n; first += kBlock) {
-    for (std::size_t row = first + 1; row < n; ++row, ++strip) {
-      content.strips[strip] = {static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(first)};
-      for (std::size_t i = 0; i < kListSets; ++i) {
-        content.wanted[i][strip] =
-            static_cast<std::uint16_t>(content.sets[2 * i + 1][row].words[first / 64] >> (first % 64));
-      }
+  for_each_strip(n, [&](std::size_t row, std::size_t first) {
+    content.strips[strip] = listed_pair(first, row);
+    for (std::size_t i = 0; i < kListSets; ++i) {
+      content.wanted[i][strip] =
+          static_cast<std::uint16_t>(content.sets[2 * i + 1][row].words[first / 64] >> (first % 64));
     }
-  }
+    ++strip;
+  });
   for (std::size_t i = 0; i < kListSets; ++i) {
     std::fill(content.wanted[i] + strip, content.wanted[i] + padded, std::uint16_t{0});
   }
@@ -103,7 +102,7 @@ std::size_t fill_near(Span<const NearPair> near, const TileWords* rows, ListedPa
   std::size_t count = 0;
   for (const NearPair& pair : near) {
     if (((rows[pair.b].words[pair.a / 64] >> (pair.a % 64)) & 1U) != 0) {
-      pairs[count] = {static_cast<std::uint16_t>(pair.b), static_cast<std::uint16_t>(pair.a)};
+      pairs[count] = listed_pair(pair.a, pair.b);
       reaches[count++] = pair.reach;
     }
   }

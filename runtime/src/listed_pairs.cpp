@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "listed_pairs.h"
 
-#include <cstring>
-
 #include "arithmetic.h"
 #include "simd.h"
 
@@ -17,15 +15,17 @@ namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::ScalableTag<float>;
-using Pairs = hn::ScalableTag<std::int32_t>;  // numbers below 2^31, for spheres are below kTileSize
+using Pairs = hn::ScalableTag<std::int32_t>;  // numbers below 2^31: offsets are of kTileSize spheres
 
 // Adds those of kListLanes pairs that touch and whose number is below `count`. False where there are too many.
 HWY_INLINE bool test_pairs(const Sphere* spheres, const ListedPair* pairs, hn::Vec<Floats> reaches, std::size_t count,
                            FoundPairs& found) {
   constexpr Floats kFloats;
   constexpr Pairs kPairs;
-  auto touch = touching([&](std::size_t k) -> const Sphere& { return spheres[pairs[k].a]; },
-                        [&](std::size_t k) -> const Sphere& { return spheres[pairs[k].b]; }, reaches);
+  const auto* const bytes = reinterpret_cast<const char*>(spheres);
+  const auto at = [&](std::size_t offset) -> const Sphere& { return *reinterpret_cast<const Sphere*>(bytes + offset); };
+  auto touch = touching([&](std::size_t k) -> const Sphere& { return at(pairs[k].a); },
+                        [&](std::size_t k) -> const Sphere& { return at(pairs[k].b); }, reaches);
   touch = hn::And(touch, hn::FirstN(kFloats, count));
   const auto numbers = hn::LoadU(kPairs, reinterpret_cast<const std::int32_t*>(pairs));
   const auto own = hn::RebindMask(kPairs, touch);
@@ -49,6 +49,13 @@ HWY_INLINE std::uint64_t keep_wanted(const std::uint16_t* wanted, std::uint16_t*
   return any;
 }
 
+HWY_INLINE void clear_group(std::uint16_t* candidates) {
+  const hn::ScalableTag<std::uint16_t> kStrips;
+  for (std::size_t i = 0; i < kStripGroup; i += hn::MaxLanes(kStrips)) {
+    hn::Store(hn::Zero(kStrips), kStrips, candidates + i);
+  }
+}
+
 bool find(const Sphere* spheres, std::size_t count, const PairLists& lists, FoundPairs& found) {
   constexpr Floats kFloats;
   found.count = 0;
@@ -58,11 +65,10 @@ bool find(const Sphere* spheres, std::size_t count, const PairLists& lists, Foun
   }
   HWY_ALIGN std::uint16_t candidates[padded_strips(kTileSize) + kStripGroup];
   const std::size_t strip_count = strips_of(count);
-  std::memset(candidates + strip_count / kStripGroup * kStripGroup, 0, kStripGroup * sizeof *candidates);
-  std::uint16_t* end = candidates;
+  clear_group(candidates + strip_count / kStripGroup * kStripGroup);
   for_candidates(
       columns, count, columns, count, [](std::size_t first) { return first + 1; },
-      [&](std::size_t, std::size_t, std::uint16_t strip) { *end++ = strip; });
+      [&](std::size_t strip, std::size_t, std::size_t, std::uint16_t bits) { candidates[strip] = bits; });
   // What candidates need of memory arrives meanwhile.
   for (std::size_t i = 0; i < lists.near_count; i += kListLanes) {
     if (!test_pairs(spheres, lists.near + i, hn::LoadU(kFloats, lists.reaches + i), kListLanes, found)) {
@@ -80,7 +86,8 @@ bool find(const Sphere* spheres, std::size_t count, const PairLists& lists, Foun
         return false;
       }
       for (std::uint64_t left = candidates[strip]; left != 0; left &= left - 1) {
-        listed[listed_count].a = static_cast<std::uint16_t>(place.a + hwy::Num0BitsBelowLS1Bit_Nonzero64(left));
+        listed[listed_count].a =
+            static_cast<std::uint16_t>(place.a + sizeof(Sphere) * hwy::Num0BitsBelowLS1Bit_Nonzero64(left));
         listed[listed_count].b = place.b;
         ++listed_count;
       }
@@ -112,8 +119,8 @@ void sort(FoundPairs& found, Pair* list, std::size_t size) {
       place += hn::CountTrue(kPairs, hn::Lt(hn::Load(kPairs, numbers + k), own));
     }
     if (place < size) {
-      list[place].a = found.pairs[i].a;
-      list[place].b = found.pairs[i].b;
+      list[place].a = static_cast<std::uint32_t>(found.pairs[i].a / sizeof(Sphere));
+      list[place].b = static_cast<std::uint32_t>(found.pairs[i].b / sizeof(Sphere));
     }
   }
 }

@@ -12,29 +12,44 @@
 
 namespace spherechain {
 
-// Spheres a < b. As one number of 32 bits, which vectors take it for, pairs are in order: the runtime knows machines of
-// that byte order only, as the asset does.
+// Spheres a < b, by the bytes from the first sphere to them: that spares a shift a load. As one number of 32 bits,
+// which vectors take it for, pairs are in order: the runtime knows machines of that byte order only, as the asset does.
 struct ListedPair {
   std::uint16_t b, a;
 };
+constexpr ListedPair listed_pair(std::size_t a, std::size_t b) {
+  return {static_cast<std::uint16_t>(b * sizeof(Sphere)), static_cast<std::uint16_t>(a * sizeof(Sphere))};
+}
 
 // A strip: a sphere, and kBlock spheres of which some are before it.
 constexpr std::size_t strips_of(std::size_t sphere_count) {
   const std::size_t blocks = sphere_count < 2 ? 0 : (sphere_count - 1 + kBlock - 1) / kBlock;
   return blocks == 0 ? 0 : blocks * (sphere_count - 1) - blocks * (blocks - 1) / 2 * kBlock;
 }
+// Calls use(row, first) for each, in order: by two blocks, row and block.
+template <typename Use>
+void for_each_strip(std::size_t sphere_count, const Use& use) {
+  for (std::size_t first = 0; first < sphere_count; first += 2 * kBlock) {
+    for (std::size_t row = first + 1; row < sphere_count; ++row) {
+      use(row, first);
+      if (row > first + kBlock) {
+        use(row, first + kBlock);
+      }
+    }
+  }
+}
 inline constexpr std::size_t kStripGroup = 64;
 constexpr std::size_t padded_strips(std::size_t sphere_count) {
   return (strips_of(sphere_count) + kStripGroup - 1) / kStripGroup * kStripGroup;
 }
 
-// What to look at. Strips by block, then sphere.
+// What to look at.
 struct PairLists {
-  const std::uint16_t* wanted = nullptr;  // by strip, a bit a sphere: pairs but near ones; 0 in the padding
-  const ListedPair* strips = nullptr;     // the block's first sphere as a, the sphere as b
-  const ListedPair* near = nullptr;       // near_count is a multiple of kBlock, filled up by pairs that never touch
-  const float* reaches = nullptr;
-  std::size_t near_count = 0;
+  const std::uint16_t* wanted;  // by strip, a bit a sphere: pairs but near ones; 0 in the padding
+  const ListedPair* strips;     // the block's first sphere as a, the sphere as b
+  const ListedPair* near;       // near_count is a multiple of kBlock, filled up by pairs that never touch
+  const float* reaches;
+  std::size_t near_count;
 };
 
 inline constexpr std::size_t kMostPairs = 64;

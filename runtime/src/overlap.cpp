@@ -27,7 +27,7 @@ HWY_INLINE void find_candidates(const Tile& tile) {
   for_candidates(
       *tile.columns, tile.place.column_count, *tile.rows, tile.place.row_count,
       [&](std::size_t first) { return first_row_of(tile.place, first); },
-      [&](std::size_t r, std::size_t first, std::uint16_t block) {
+      [&](std::size_t, std::size_t r, std::size_t first, std::uint16_t block) {
         std::memcpy(bits + r * sizeof(TileWords) + first / 8, &block, sizeof block);
       });
 }

@@ -31,15 +31,15 @@ TileWords chain_mask(Span<const std::uint32_t> members);
 std::size_t fill_chain_rows(Target resolved, const Asset& asset, const TileWords* wanted, const TileWords* plain,
                             TileWords* chain_wanted, TileWords* chain_plain, TileWords* masks);
 
-// A DetectTable's content, of a character of one tile.
+// A DetectTable's content, of a character of one tile. No default values: setting them would be a good part of a job.
 struct PairRows {
-  std::size_t test_count = 0, chain_test_count = 0;
-  const TileWords *wanted = nullptr, *plain = nullptr;
-  const TileWords *chain_wanted = nullptr, *chain_plain = nullptr;
-  const TileWords* chains = nullptr;
+  std::size_t test_count, chain_test_count;
+  const TileWords *wanted, *plain;
+  const TileWords *chain_wanted, *chain_plain;
+  const TileWords* chains;
   PairLists lists, chain_lists;
-  const std::uint64_t* members = nullptr;  // by sphere, member_words each: a bit a chain that has it
-  std::size_t member_words = 0;
+  const std::uint64_t* members;  // by sphere, member_words each: a bit a chain that has it
+  std::size_t member_words;
 };
 
 // kOk; kNullArgument, kMisaligned, kContextTooSmall; kBadArgument where it was not prepared for this.

@@ -73,39 +73,64 @@ HWY_INLINE bool fill_all(const Sphere* spheres, std::size_t count, const Sphere&
 // each h is, and where two spheres touch, -h(q) and some of the products are together at least rq^2 - G (px qx >= -(px
 // - qx)^2 / 4, and so on). So sums overflow upwards, if at all.
 //
-// Calls use(row, first, bits) for the rows from first_row(first) on of each kBlock columns from `first` on: at least
-// the bits of the pairs that touch.
-template <typename FirstRow, typename Use>
-HWY_INLINE void for_candidates(const SphereColumns& columns, std::size_t column_count, const SphereColumns& rows,
-                               std::size_t row_count, const FirstRow& first_row, const Use& use) {
+// Of kBlocks blocks of kBlock columns from `first` on, calls use(place, row, first, bits) of each for the rows [begin,
+// end), with at least the bits of the pairs that touch. Places follow each other from `place` on by block, and are
+// `step` apart by row.
+template <std::size_t kBlocks, typename Use>
+HWY_INLINE void for_rows(const SphereColumns& columns, std::size_t first, const SphereColumns& rows, std::size_t begin,
+                         std::size_t end, std::size_t place, std::size_t step, const Use& use) {
   namespace hn = hwy::HWY_NAMESPACE;
   constexpr hn::ScalableTag<float> kFloats;
   using V = hn::Vec<hn::ScalableTag<float>>;
   constexpr std::size_t kLanes = hn::MaxLanes(kFloats);
   constexpr std::size_t kParts = kBlock / kLanes;
-  for (std::size_t first = 0; first < column_count; first += kBlock) {
-    V x[kParts], y[kParts], z[kParts], start[kParts];
+  V x[kBlocks][kParts], y[kBlocks][kParts], z[kBlocks][kParts], start[kBlocks][kParts];
+  for (std::size_t block = 0; block < kBlocks; ++block) {
     for (std::size_t part = 0; part < kParts; ++part) {
-      const std::size_t at = first + part * kLanes;
-      x[part] = hn::Load(kFloats, columns.x + at);
-      y[part] = hn::Load(kFloats, columns.y + at);
-      z[part] = hn::Load(kFloats, columns.z + at);
-      start[part] = hn::Neg(hn::Load(kFloats, columns.power + at));
+      const std::size_t at = first + block * kBlock + part * kLanes;
+      x[block][part] = hn::Load(kFloats, columns.x + at);
+      y[block][part] = hn::Load(kFloats, columns.y + at);
+      z[block][part] = hn::Load(kFloats, columns.z + at);
+      start[block][part] = hn::Neg(hn::Load(kFloats, columns.power + at));
     }
-    for (std::size_t r = first_row(first); r < row_count; ++r) {
-      const V px = hn::Set(kFloats, rows.x[r]);
-      const V py = hn::Set(kFloats, rows.y[r]);
-      const V pz = hn::Set(kFloats, rows.z[r]);
-      const V power = hn::Set(kFloats, rows.power[r]);
+  }
+  for (std::size_t r = begin; r < end; ++r, place += step) {
+    const V px = hn::Set(kFloats, rows.x[r]);
+    const V py = hn::Set(kFloats, rows.y[r]);
+    const V pz = hn::Set(kFloats, rows.z[r]);
+    const V power = hn::Set(kFloats, rows.power[r]);
+    for (std::size_t block = 0; block < kBlocks; ++block) {
       std::uint64_t bits = 0;
       for (std::size_t part = 0; part < kParts; ++part) {
-        V sum = hn::MulAdd(px, x[part], start[part]);
-        sum = hn::MulAdd(py, y[part], sum);
-        sum = hn::MulAdd(pz, z[part], sum);
+        V sum = hn::MulAdd(px, x[block][part], start[block][part]);
+        sum = hn::MulAdd(py, y[block][part], sum);
+        sum = hn::MulAdd(pz, z[block][part], sum);
         bits |= bits_of(hn::Gt(sum, power)) << (part * kLanes);
       }
-      use(r, first, static_cast<std::uint16_t>(bits));
+      use(place + block, r, first + block * kBlock, static_cast<std::uint16_t>(bits));
     }
+  }
+}
+
+// The same for all columns, a block's rows from first_row(first) on: by two blocks, row and block. Where registers are
+// wide there are enough of them for two blocks, and what is loaded of a row serves both.
+template <typename FirstRow, typename Use>
+HWY_INLINE void for_candidates(const SphereColumns& columns, std::size_t column_count, const SphereColumns& rows,
+                               std::size_t row_count, const FirstRow& first_row, const Use& use) {
+  constexpr bool kIsWide = kListLanes == kBlock;
+  std::size_t place = 0;
+  for (std::size_t first = 0; first < column_count; first += 2 * kBlock) {
+    const std::size_t next = first + kBlock, begin = first_row(first);
+    const std::size_t both = next < column_count && first_row(next) < row_count ? first_row(next) : row_count;
+    for_rows<1>(columns, first, rows, begin, both, place, 1, use);
+    place += begin < both ? both - begin : 0;
+    if (kIsWide) {
+      for_rows<kIsWide ? 2 : 1>(columns, first, rows, both, row_count, place, 2, use);
+    } else {
+      for_rows<1>(columns, first, rows, both, row_count, place, 2, use);
+      for_rows<1>(columns, next, rows, both, row_count, place + 1, 2, use);
+    }
+    place += 2 * (row_count - both);
   }
 }
 
