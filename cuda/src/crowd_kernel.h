@@ -15,6 +15,14 @@ static_assert(sizeof(Launch) <= 4096, "what a kernel's arguments may take");
 inline constexpr std::uint32_t kThreads = kMostWarps * kLanes;
 inline constexpr std::uint32_t kBlocksAtOnce = 3;  // a multiprocessor: leaves a thread 80 registers
 
+// Not by <<<>>>, whose error is told apart from an older one of the program's only by who asks each time.
+inline Status launch(void (*kernel)(Launch), const Launch& groups, std::uint32_t blocks, std::size_t shared_bytes,
+                     cudaStream_t stream) {
+  void* arguments[] = {const_cast<Launch*>(&groups)};
+  return status_of(cudaLaunchKernel(reinterpret_cast<const void*>(kernel), dim3(blocks), dim3(kThreads), arguments,
+                                    shared_bytes, stream));
+}
+
 struct RunStep {
   Place at;
 

@@ -14,8 +14,7 @@ __global__ void __launch_bounds__(kThreads) run_crowd_in_scratch(const __grid_co
 }  // namespace
 
 Status launch_in_scratch(const LaunchPlan& plan, CUstream_st* stream) {
-  run_crowd_in_scratch<<<plan.scratch_blocks, kThreads, 0, stream>>>(plan.in_scratch);
-  return status_of(cudaGetLastError());
+  return launch(run_crowd_in_scratch, plan.in_scratch, plan.scratch_blocks, 0, stream);
 }
 
 }  // namespace spherechain::cuda

@@ -53,8 +53,7 @@ Status launch_in_shared(const LaunchPlan& plan, std::size_t most_shared_bytes, C
       return status;
     }
   }
-  kernel<<<plan.shared_blocks, kThreads, plan.shared_bytes, stream>>>(plan.in_shared);
-  return status_of(cudaGetLastError());
+  return launch(kernel, plan.in_shared, plan.shared_blocks, plan.shared_bytes, stream);
 }
 
 }  // namespace spherechain::cuda

@@ -4,7 +4,7 @@
 #include <cuda_runtime_api.h>
 
 #include <algorithm>
-#include <new>
+#include <exception>
 #include <vector>
 
 #include "crowd_access.h"
@@ -25,8 +25,13 @@ class Array {
   Status allocate(std::size_t size) {
     cudaFree(data_);
     data_ = nullptr;
-    size_ = size;
-    return size == 0 ? Status::kOk : status_of(cudaMalloc(reinterpret_cast<void**>(&data_), size * sizeof(T)));
+    size_ = 0;
+    if (size == 0) {
+      return Status::kOk;
+    }
+    const Status status = status_of(cudaMalloc(reinterpret_cast<void**>(&data_), size * sizeof(T)));
+    size_ = status == Status::kOk ? size : 0;
+    return status;
   }
   // At least as large.
   Status reserve(std::size_t size) { return size <= size_ ? Status::kOk : allocate(size); }
@@ -56,8 +61,11 @@ Status first_failure(const Steps&... steps) {
 
 struct HostCrowd::Memory {
   ~Memory() {
-    cudaEventDestroy(begin);
-    cudaEventDestroy(end);
+    for (const cudaEvent_t event : {begin, end}) {
+      if (event != nullptr) {
+        cudaEventDestroy(event);
+      }
+    }
   }
   std::vector<std::uint64_t> words;
   Array<std::uint64_t> tables, starts, pair_count;
@@ -65,11 +73,48 @@ struct HostCrowd::Memory {
   Array<Sphere> spheres;
   Array<std::uint32_t> counts;
   Array<CrowdPair> pairs;
+  Array<unsigned char> scratch;
+  std::size_t scratch_bytes = 0;
   cudaEvent_t begin = nullptr, end = nullptr;
   std::vector<std::uint64_t> starts_there;
   std::vector<std::uint32_t> counts_there;
   std::vector<CrowdPair> pairs_there;
 };
+
+// The host's memory: where there is not as much, that is told as the device's is.
+Status HostCrowd::allocate_here(const Asset& asset, std::size_t instances, std::size_t pair_capacity) noexcept {
+  try {
+    memory_ = new Memory;
+    memory_->words.resize(CrowdTables::words_needed(asset));
+    memory_->starts_there.resize(instances);
+    memory_->counts_there.resize(instances);
+    memory_->pairs_there.resize(pair_capacity);
+  } catch (const std::exception&) {
+    return status_of(cudaErrorMemoryAllocation);
+  }
+  return Status::kOk;
+}
+
+// For assets too large for the device's shared memory; the rest gets none.
+Status HostCrowd::allocate_scratch(std::size_t instances) noexcept {
+  constexpr std::size_t kMostBytes = std::size_t{1} << 30;  // but for a single block, which may need more
+  int device = 0, most_shared = 0, multiprocessors = 0;
+  Status status = status_of(cudaGetDevice(&device));
+  if (status == Status::kOk) {
+    status = status_of(cudaDeviceGetAttribute(&most_shared, cudaDevAttrMaxSharedMemoryPerBlockOptin, device));
+  }
+  if (status == Status::kOk) {
+    status = status_of(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device));
+  }
+  const std::size_t block = tables_.shared_bytes(true, tables_.morph_count() > 0, false, true);
+  if (status != Status::kOk || block <= static_cast<std::size_t>(most_shared)) {
+    return status;
+  }
+  const std::size_t useful =
+      std::min<std::size_t>(2 * static_cast<std::size_t>(multiprocessors), (instances + 31) / 32);
+  memory_->scratch_bytes = block * std::max<std::size_t>(1, std::min(useful, kMostBytes / block));
+  return memory_->scratch.allocate(memory_->scratch_bytes);
+}
 
 void HostCrowd::close() noexcept {
   delete memory_;
@@ -86,30 +131,25 @@ Status HostCrowd::open(const Asset& asset, RadiusKind radius, const Filter* filt
   if (asset.bone_count() == 0) {
     return Status::kNotInAsset;
   }
-  if (instances == 0 || pair_capacity == 0) {
+  constexpr std::size_t kMostInstances = 0x7FFFFFFF;  // CrowdJob's
+  if (instances == 0 || instances > kMostInstances || pair_capacity == 0) {
     return Status::kBadArgument;
   }
-  Status status = check_device();
-  if (status != Status::kOk) {
-    return status;
-  }
-  memory_ = new Memory;
-  Memory& m = *memory_;
-  m.words.resize(CrowdTables::words_needed(asset));
-  m.starts_there.resize(instances);
-  m.counts_there.resize(instances);
-  m.pairs_there.resize(pair_capacity);
+  Status status = allocate_here(asset, instances, pair_capacity);
   const std::size_t n = asset.spheres().size;
   status = first_failure(
+      [&] { return status; },
       [&] {
-        return tables_.build(asset, radius, filter, {m.words.data(), m.words.size()});
+        return tables_.build(asset, radius, filter, {memory_->words.data(), memory_->words.size()});
       },
-      [&] { return m.tables.allocate(m.words.size()); }, [&] { return m.tables.put(m.words.data(), tables_.words()); },
-      [&] { return m.spheres.allocate(instances * n); }, [&] { return m.counts.allocate(instances); },
-      [&] { return m.starts.allocate(instances); }, [&] { return m.pair_count.allocate(1); },
-      [&] { return m.pairs.allocate(pair_capacity); },
-      [&] { return m.weights.allocate(instances * tables_.morph_count()); },
-      [&] { return status_of(cudaEventCreate(&m.begin)); }, [&] { return status_of(cudaEventCreate(&m.end)); });
+      [&] { return check_device(); }, [&] { return memory_->tables.allocate(memory_->words.size()); },
+      [&] { return memory_->tables.put(memory_->words.data(), tables_.words()); },
+      [&] { return memory_->spheres.allocate(instances * n); }, [&] { return memory_->counts.allocate(instances); },
+      [&] { return memory_->starts.allocate(instances); }, [&] { return memory_->pair_count.allocate(1); },
+      [&] { return memory_->pairs.allocate(pair_capacity); },
+      [&] { return memory_->weights.allocate(instances * tables_.morph_count()); },
+      [&] { return allocate_scratch(instances); }, [&] { return status_of(cudaEventCreate(&memory_->begin)); },
+      [&] { return status_of(cudaEventCreate(&memory_->end)); });
   if (status != Status::kOk) {
     close();
     return status;
@@ -139,6 +179,8 @@ Status HostCrowd::run() noexcept {
   group.pairs = m.pairs.data();
   group.pair_capacity = pair_capacity_;
   group.pair_count = m.pair_count.data();
+  group.scratch = m.scratch.data();
+  group.scratch_bytes = m.scratch_bytes;
   pair_count = 0;
   if (instance_count == 0) {
     return Status::kOk;

@@ -17,9 +17,10 @@ class HostCrowd {
   HostCrowd& operator=(const HostCrowd&) = delete;
   ~HostCrowd() { close(); }
 
-  // Allocates on the device what up to `instances` and `pair_capacity` pairs in all take; drops what was open. What
-  // CrowdTables::build returns; kNotInAsset where the asset has no bones; kBadArgument for no instances or no pairs;
-  // kNoDevice, kDeviceFailed. Closed on failure.
+  // Allocates on the device what up to `instances` and `pair_capacity` pairs in all take, scratch for a large asset
+  // too; drops what was open. What CrowdTables::build returns; kNotInAsset where the asset has no bones; kBadArgument
+  // for no instances, more than 2^31 - 1, or no pairs; kNoDevice; kDeviceFailed, also where there is not as much
+  // memory, here or there. Closed on failure.
   Status open(const Asset& asset, RadiusKind radius, const Filter* filter, std::size_t instances,
               std::size_t pair_capacity) noexcept;
   void close() noexcept;
@@ -45,6 +46,9 @@ class HostCrowd {
 
  private:
   struct Memory;
+  Status allocate_here(const Asset& asset, std::size_t instances, std::size_t pair_capacity) noexcept;
+  Status allocate_scratch(std::size_t instances) noexcept;
+
   Memory* memory_ = nullptr;
   CrowdTables tables_;
   std::size_t instances_ = 0, pair_capacity_ = 0;

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+#include "emulated_blocks.h"
+
+#include <algorithm>
+#include <cstring>
+#include <numeric>
+
+#include "crowd_body.h"
+
+namespace spherechain::test {
+namespace {
+
+constexpr std::uint32_t kThreads = 96;  // not the device's number: nothing may depend on it
+
+std::vector<std::uint32_t> shuffled(std::uint32_t count, std::mt19937& random) {
+  std::vector<std::uint32_t> order(count);
+  std::iota(order.begin(), order.end(), 0U);
+  std::shuffle(order.begin(), order.end(), random);
+  return order;
+}
+
+struct RunStep {
+  std::mt19937& random;
+  std::uint32_t block;
+
+  template <typename Step>
+  void operator()(const Step& step) const {
+    for (const std::uint32_t thread : shuffled(kThreads, random)) step(cuda::Place{thread, kThreads, block});
+  }
+};
+
+}  // namespace
+
+void run_in_shared(const cuda::GroupView& view, std::mt19937& random) {
+  const cuda::SharedLayout layout = cuda::shared_layout(view);
+  for (const std::uint32_t block : shuffled(cuda::blocks_of(view), random)) {
+    std::vector<cuda::Float4> memory(layout.size / sizeof(cuda::Float4));  // exactly, for sanitizers
+    std::memset(memory.data(), kDirty, layout.size);
+    cuda::run_any_block(view, cuda::Shared(memory.data(), layout), RunStep{random, block});
+  }
+}
+
+void run_in_scratch(const cuda::GroupView& view, std::mt19937& random) {
+  for (const std::uint32_t first : shuffled(view.scratch_blocks, random)) {
+    cuda::run_blocks_in_scratch(view, first, [&](std::uint32_t block) { return RunStep{random, block}; });
+  }
+}
+
+}  // namespace spherechain::test
