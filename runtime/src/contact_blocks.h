@@ -79,10 +79,11 @@ HWY_INLINE std::uint64_t within(const std::uint8_t* corners, std::size_t count, 
 // Some triangles of a leaf, coordinate by coordinate. Spare lanes up to a vector are dirt.
 struct Block {
   std::size_t leaf, count;
-  std::uint32_t triangles[kBlock];                // in Asset::triangles()
-  float corners[3][3][kBlock + kContactPadding];  // by corner, by axis
+  std::uint32_t triangles[kBlock + kContactPadding];  // in Asset::triangles()
+  float corners[3][3][kBlock + kContactPadding];      // by corner, by axis
   float low[3][kBlock + kContactPadding], high[3][kBlock + kContactPadding];
-  Box box;  // of all
+  Box box;                                           // of all
+  std::uint32_t welds[3][kBlock + kContactPadding];  // the corners'; only of a scene with neighbours
 
   TriangleCorners corners_of(std::size_t i) const {
     TriangleCorners out;
@@ -106,6 +107,7 @@ HWY_NOINLINE bool load_block(const ContactScene& scene, std::size_t leaf_index, 
   find_sides(scene, leaf_index, box, codes);
   std::size_t count = 0;
   const Slots slots = slots_of(scene, leaf_index);
+  const std::uint32_t* vertices = scene.surface->leaf_vertices.data + leaf.first_vertex;
   const std::uint8_t* known = corners;
   std::uint8_t last[3 * kBlock];
   if (3 * (first_triangle + kBlock) > scene.surface->corners.size) {  // the asset's last few
@@ -125,6 +127,9 @@ HWY_NOINLINE bool load_block(const ContactScene& scene, std::size_t leaf_index, 
       const std::size_t slot = corners[3 * i + k];
       for (std::size_t axis = 0; axis < 3; ++axis) {
         out.corners[k][axis][count] = slots.axes[axis][slot];
+      }
+      if (scene.neighbours) {
+        out.welds[k][count] = scene.surface->welds.data[vertices[slot]];
       }
     }
   }

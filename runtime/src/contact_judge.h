@@ -14,12 +14,13 @@ struct Vector3 {
 HWY_INLINE Vector3 subtract(const Vector3& a, const Vector3& b) {
   return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
 }
+// Fused where the target can: the bound below holds either way.
 HWY_INLINE Vector3 cross_product(const Vector3& a, const Vector3& b) {
-  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)), hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
-          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
+  return {hn::NegMulAdd(a.z, b.y, hn::Mul(a.y, b.z)), hn::NegMulAdd(a.x, b.z, hn::Mul(a.z, b.x)),
+          hn::NegMulAdd(a.y, b.x, hn::Mul(a.x, b.y))};
 }
 HWY_INLINE Vector dot_product(const Vector3& a, const Vector3& b) {
-  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
+  return hn::MulAdd(a.z, b.z, hn::MulAdd(a.y, b.y, hn::Mul(a.x, b.x)));
 }
 
 // The bound of exact_orientation.h for single precision, where u = 2^-24; and what underflow may add, of subnormal
@@ -34,11 +35,22 @@ HWY_INLINE Vector plane_error(const Vector3& extent) {
   return hn::IfThenElse(fits, hn::Add(rounding, underflow), hn::Inf(kFloats));
 }
 
-HWY_INLINE Vector3 corner_at(const Block& many, std::size_t corner, std::size_t i) {
-  constexpr Floats kFloats;
-  return {hn::LoadU(kFloats, many.corners[corner][0] + i), hn::LoadU(kFloats, many.corners[corner][1] + i),
-          hn::LoadU(kFloats, many.corners[corner][2] + i)};
-}
+// Some of a register of triangles of a block, in any order.
+struct Taken {
+  const Block* block;
+  std::size_t first;  // of the register
+  hn::Vec<hn::Rebind<std::int32_t, Floats> > which;
+
+  HWY_INLINE Taken(const Block& from, std::size_t begin, const std::int32_t* places)
+      : block(&from), first(begin), which(hn::LoadU(hn::Rebind<std::int32_t, Floats>(), places)) {}
+  HWY_INLINE Vector of(const float* column) const {
+    constexpr Floats kFloats;
+    return hn::TableLookupLanes(hn::LoadU(kFloats, column + first), hn::IndicesFromVec(kFloats, which));
+  }
+  HWY_INLINE Vector3 corner(std::size_t k) const {
+    return {of(block->corners[k][0]), of(block->corners[k][1]), of(block->corners[k][2])};
+  }
+};
 
 using LaneMask = hn::Mask<Floats>;
 
@@ -88,19 +100,14 @@ struct Verdicts {
   std::uint64_t apart, meeting;
 };
 
-// One triangle against a vector of them, as exact_crossing.h does it. Lanes that are not wanted may be left open.
-HWY_INLINE Verdicts judge(const Block& few, std::size_t one, const Block& many, std::size_t i, std::uint64_t wanted) {
-  constexpr Floats kFloats;
-  const auto own_corner = [&](std::size_t k) HWY_ATTR {
-    return Vector3{hn::Set(kFloats, few.corners[k][0][one]), hn::Set(kFloats, few.corners[k][1][one]),
-                   hn::Set(kFloats, few.corners[k][2][one])};
-  };
-  Vector3 a[3] = {own_corner(0), own_corner(1), own_corner(2)};
-  Vector3 b[3] = {corner_at(many, 0, i), corner_at(many, 1, i), corner_at(many, 2, i)};
+// Each lane's two triangles, as exact_crossing.h does it. Lanes that are not wanted may be left open.
+HWY_INLINE Verdicts judge(const Taken& first, const Taken& second, std::uint64_t wanted) {
+  Vector3 a[3] = {first.corner(0), first.corner(1), first.corner(2)};
+  Vector3 b[3] = {second.corner(0), second.corner(1), second.corner(2)};
   Vector extents[3];
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const Vector low = hn::Min(hn::Set(kFloats, few.low[axis][one]), hn::LoadU(kFloats, many.low[axis] + i));
-    const Vector high = hn::Max(hn::Set(kFloats, few.high[axis][one]), hn::LoadU(kFloats, many.high[axis] + i));
+    const Vector low = hn::Min(first.of(first.block->low[axis]), second.of(second.block->low[axis]));
+    const Vector high = hn::Max(first.of(first.block->high[axis]), second.of(second.block->high[axis]));
     extents[axis] = hn::Sub(high, low);
   }
   const Vector error = plane_error({extents[0], extents[1], extents[2]});

@@ -27,14 +27,9 @@ HWY_INLINE Slots slots_of(const ContactScene& scene, std::size_t leaf_index) {
   return {{first, first + room, first + 2 * room}, (leaf.vertex_count + kSlotLanes - 1) / kSlotLanes * kSlotLanes};
 }
 
-// Where it is not yet: a leaf's vertices from the source's.
-HWY_NOINLINE void gather(const ContactScene& scene, std::size_t leaf_index) {
-  if (scene.is_loaded[leaf_index] != 0) {
-    return;
-  }
-  scene.is_loaded[leaf_index] = 1;
-  const Leaf& leaf = scene.surface->leaves.data[leaf_index];
-  const Slots slots = slots_of(scene, leaf_index);
+#if HWY_TARGET == HWY_SCALAR
+
+HWY_INLINE void copy_vertices(const ContactScene& scene, const Leaf& leaf, const Slots& slots) {
   const std::uint32_t* vertices = scene.surface->leaf_vertices.data + leaf.first_vertex;
   const std::uint32_t* source = scene.surface->source_vertices.data;
   for (std::size_t i = 0; i < leaf.vertex_count; ++i) {
@@ -42,6 +37,37 @@ HWY_NOINLINE void gather(const ContactScene& scene, std::size_t leaf_index) {
     slots.axes[0][i] = p[0];
     slots.axes[1][i] = p[1];
     slots.axes[2][i] = p[2];
+  }
+}
+
+#else
+
+// Four at a time, turned; the last ones repeat the last vertex.
+HWY_INLINE void copy_vertices(const ContactScene& scene, const Leaf& leaf, const Slots& slots) {
+  constexpr hn::CappedTag<float, 4> kFour;
+  const std::uint32_t* vertices = scene.surface->leaf_vertices.data + leaf.first_vertex;
+  const std::uint32_t* source = scene.surface->source_vertices.data;
+  const std::size_t last = leaf.vertex_count - std::size_t{1};
+  const auto vertex = [&](std::size_t i) HWY_ATTR {
+    return load_position(scene.positions + source[vertices[i < last ? i : last]] * scene.stride);
+  };
+  for (std::size_t i = 0; i <= last; i += 4) {
+    const auto a = vertex(i), b = vertex(i + 1), c = vertex(i + 2), d = vertex(i + 3);
+    const auto xy_ac = hn::InterleaveLower(kFour, a, c), xy_bd = hn::InterleaveLower(kFour, b, d);
+    const auto z_ac = hn::InterleaveUpper(kFour, a, c), z_bd = hn::InterleaveUpper(kFour, b, d);
+    hn::Store(hn::InterleaveLower(kFour, xy_ac, xy_bd), kFour, slots.axes[0] + i);
+    hn::Store(hn::InterleaveUpper(kFour, xy_ac, xy_bd), kFour, slots.axes[1] + i);
+    hn::Store(hn::InterleaveLower(kFour, z_ac, z_bd), kFour, slots.axes[2] + i);
+  }
+}
+
+#endif
+
+// Where it is not yet: a leaf's vertices from the source's.
+HWY_NOINLINE void gather(const ContactScene& scene, std::size_t leaf_index) {
+  if (scene.is_loaded[leaf_index] == 0) {
+    scene.is_loaded[leaf_index] = 1;
+    copy_vertices(scene, scene.surface->leaves.data[leaf_index], slots_of(scene, leaf_index));
   }
 }
 

@@ -25,44 +25,107 @@ HWY_BEFORE_NAMESPACE();
 namespace spherechain {
 namespace HWY_NAMESPACE {
 
-// Each of `few` against all of `many`; of one leaf, each two of its triangles once. Like all that pairs, true where
-// that is enough: at the first contact, where that is all that is asked for.
-template <bool kFirst>
-HWY_NOINLINE bool pair_triangles(const Block& few, const Block& many, ContactCollector& collector) {
-  const float* const lows[3] = {many.low[0], many.low[1], many.low[2]};
-  const float* const highs[3] = {many.high[0], many.high[1], many.high[2]};
-  for (std::size_t one = 0; one < few.count; ++one) {
+using Places = hn::Rebind<std::int32_t, Floats>;
+
+// Pairs of triangles of a register of one block and a register of another, by their places there.
+struct PlacePairs {
+  std::size_t count = 0;
+  std::int32_t a[kLanes * kLanes + kLanes], b[kLanes * kLanes + kLanes];  // vectors are written past the end
+
+  HWY_INLINE void add(std::size_t one, hn::Mask<Floats> others) {
+    constexpr Places kPlaces;
+    hn::StoreU(hn::Set(kPlaces, static_cast<std::int32_t>(one)), kPlaces, a + count);
+    count += hn::CompressStore(hn::Iota(kPlaces, 0), hn::RebindMask(kPlaces, others), kPlaces, b + count);
+  }
+  HWY_INLINE void finish() {
+    constexpr Places kPlaces;
+    hn::StoreU(hn::Zero(kPlaces), kPlaces, a + count);
+    hn::StoreU(hn::Zero(kPlaces), kPlaces, b + count);
+  }
+};
+
+// Lane k: triangle j + k of `other` has a corner where one of `block` has one at rest.
+HWY_INLINE hn::Mask<Floats> sharing(const Block& block, std::size_t one, const Block& other, std::size_t j) {
+  constexpr Floats kFloats;
+  constexpr hn::Rebind<std::uint32_t, Floats> kWelds;
+  const auto first = hn::LoadU(kWelds, other.welds[0] + j), second = hn::LoadU(kWelds, other.welds[1] + j),
+             third = hn::LoadU(kWelds, other.welds[2] + j);
+  const auto holding = [&](std::size_t k) HWY_ATTR {
+    const auto own = hn::Set(kWelds, block.welds[k][one]);
+    return hn::Or(hn::Or(hn::Eq(first, own), hn::Eq(second, own)), hn::Eq(third, own));
+  };
+  return hn::RebindMask(kFloats, hn::Or(hn::Or(holding(0), holding(1)), holding(2)));
+}
+
+// The triangles of two registers of the blocks whose boxes touch; of one leaf each two once. Of neighbours most that
+// lies side by side shares a corner, which the collector would tell too, one by one.
+HWY_INLINE void find_places(const Block& block, std::size_t i, const Block& other, std::size_t j, bool neighbours,
+                            PlacePairs& out) {
+  constexpr Floats kFloats;
+  constexpr hn::Rebind<std::uint32_t, Floats> kTriangles;
+  const float* const lows[3] = {other.low[0], other.low[1], other.low[2]};
+  const float* const highs[3] = {other.high[0], other.high[1], other.high[2]};
+  const std::size_t end = block.count - i < kLanes ? block.count : i + kLanes;
+  const auto used = hn::FirstN(kFloats, other.count - j);
+  for (std::size_t one = i; one < end; ++one) {
     Box box;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      box.low[axis] = few.low[axis][one];
-      box.high[axis] = few.high[axis][one];
+      box.low[axis] = block.low[axis][one];
+      box.high[axis] = block.high[axis][one];
     }
-    const BoxProbe probe(box);
-    for (std::size_t i = 0; i < many.count; i += kLanes) {
-      const std::size_t left = many.count - i;
-      const std::uint64_t lanes = ~std::uint64_t{0} >> (64 - (left < kLanes ? left : kLanes));
-      std::uint64_t bits = ~bits_of(probe.misses(lows, highs, i)) & lanes;
-      if (few.leaf == many.leaf) {  // triangles ascend
-        while (bits != 0 && many.triangles[i + lowest_bit(bits)] <= few.triangles[one]) {
-          bits &= bits - 1;
-        }
+    auto apart = BoxProbe(box).misses(lows, highs, j);
+    if (neighbours) {
+      apart = hn::Or(apart, sharing(block, one, other, j));
+    }
+    if (block.leaf == other.leaf) {
+      const auto triangles = hn::LoadU(kTriangles, other.triangles + j);
+      const auto later = hn::Gt(triangles, hn::Set(kTriangles, block.triangles[one]));
+      apart = hn::Or(apart, hn::Not(hn::RebindMask(kFloats, later)));
+    }
+    out.add(one - i, hn::AndNot(apart, used));
+  }
+  out.finish();
+}
+
+// Like all that pairs, true where that is enough: at the first contact, where that is all that is asked for.
+template <bool kFirst>
+HWY_NOINLINE bool pair_registers(const Block& block, std::size_t i, const Block& other, std::size_t j, bool neighbours,
+                                 ContactCollector& collector) {
+  PlacePairs places;
+  find_places(block, i, other, j, neighbours, places);
+  for (std::size_t k = 0; k < places.count; k += kLanes) {
+    const std::size_t left = places.count - k;
+    std::uint64_t bits = ~std::uint64_t{0} >> (64 - (left < kLanes ? left : kLanes));
+    const Verdicts verdicts = judge(Taken(block, i, places.a + k), Taken(other, j, places.b + k), bits);
+    for (bits &= ~verdicts.apart; bits != 0; bits &= bits - 1) {
+      const std::size_t lane = lowest_bit(bits);
+      const std::size_t one = i + static_cast<std::size_t>(places.a[k + lane]);
+      const std::size_t two = j + static_cast<std::size_t>(places.b[k + lane]);
+      const Candidate candidate{block.leaf,
+                                other.leaf,
+                                block.triangles[one],
+                                other.triangles[two],
+                                block.corners_of(one),
+                                other.corners_of(two),
+                                ((verdicts.meeting >> lane) & 1U) != 0};
+      if (decide(collector, candidate) && kFirst) {
+        return true;
       }
-      if (bits == 0) {
-        continue;
+    }
+  }
+  return false;
+}
+
+template <bool kFirst>
+HWY_INLINE bool pair_triangles(const Block& block, const Block& other, bool neighbours, ContactCollector& collector) {
+  for (std::size_t i = 0; i < block.count; i += kLanes) {
+    for (std::size_t j = 0; j < other.count; j += kLanes) {
+      const std::size_t last = (other.count - j < kLanes ? other.count : j + kLanes) - 1;
+      if (block.leaf == other.leaf && other.triangles[last] <= block.triangles[i]) {
+        continue;  // each two triangles of a leaf once
       }
-      const Verdicts verdicts = judge(few, one, many, i, bits);
-      for (bits &= ~verdicts.apart; bits != 0; bits &= bits - 1) {
-        const std::size_t lane = lowest_bit(bits);
-        const Candidate candidate{few.leaf,
-                                  many.leaf,
-                                  few.triangles[one],
-                                  many.triangles[i + lane],
-                                  few.corners_of(one),
-                                  many.corners_of(i + lane),
-                                  ((verdicts.meeting >> lane) & 1U) != 0};
-        if (decide(collector, candidate) && kFirst) {
-          return true;
-        }
+      if (pair_registers<kFirst>(block, i, other, j, neighbours, collector)) {
+        return true;
       }
     }
   }
@@ -89,8 +152,7 @@ HWY_NOINLINE bool pair_leaves(const ContactScene& scene, std::size_t a, std::siz
       if (!load_block(scene, b, first_b, block_probe, other)) {
         continue;
       }
-      const bool is_less = block.count < other.count;
-      if (pair_triangles<kFirst>(is_less ? block : other, is_less ? other : block, collector)) {
+      if (pair_triangles<kFirst>(block, other, scene.neighbours, collector)) {
         return true;
       }
     }

@@ -57,8 +57,9 @@ struct TrianglePair {
 
   friend constexpr bool operator==(const TrianglePair& l, const TrianglePair& r) { return l.a == r.a && l.b == r.b; }
   friend constexpr bool operator!=(const TrianglePair& l, const TrianglePair& r) { return !(l == r); }
+  // By one comparison: lists of contacts are sorted every frame.
   friend constexpr bool operator<(const TrianglePair& l, const TrianglePair& r) {
-    return l.a != r.a ? l.a < r.a : l.b < r.b;
+    return (std::uint64_t{l.a} << 32 | l.b) < (std::uint64_t{r.a} << 32 | r.b);
   }
 };
 
