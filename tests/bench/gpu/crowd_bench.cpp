@@ -4,15 +4,14 @@
 // in random order, pairs and spheres compared with the CPU's first.
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <filesystem>
-#include <functional>
-#include <random>
 #include <string>
 #include <thread>
 
 #include "ceilings.h"
+#include "contestants.h"
 #include "device_crowd.h"
+#include "further_modes.h"
 #include "spherechain/cuda_device.h"
 
 namespace {
@@ -20,27 +19,15 @@ namespace {
 using namespace spherechain;
 using namespace spherechain::bench;
 
-constexpr std::size_t kInstances = 65536, kPasses = 41, kLaunches = 8;
+const char* name_of(CrowdKind kind) {
+  return kind == CrowdKind::kFit ? "fit" : kind == CrowdKind::kDetect ? "detect" : "cover";
+}
 
-struct Times {
-  std::vector<double> values;
-
-  void add(double value) { values.push_back(value); }
-  double median() const {
-    std::vector<double> sorted = values;
-    std::sort(sorted.begin(), sorted.end());
-    return sorted[sorted.size() / 2];
-  }
-  double least() const { return *std::min_element(values.begin(), values.end()); }
-};
-
-double seconds() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-
-// Every character of the folder, both radii, in launches of all its poses.
+// Every character of the folder, both radii and covers, in launches of all its poses.
 bool check_all(const std::vector<std::string>& names, const std::string& folder) {
   bool all_right = true;
-  std::printf("%-24s %6s %8s %8s %10s  against the CPU: spheres, counts, bits, list\n", "character", "poses", "spheres",
-              "radius", "pairs");
+  std::printf("%-24s %6s %8s %8s %10s  against the CPU: spheres or balls, counts, bits, list\n", "character", "poses",
+              "spheres", "radius", "pairs");
   for (const std::string& name : names) {
     PosedAsset posed;
     std::string error;
@@ -51,33 +38,31 @@ bool check_all(const std::vector<std::string>& names, const std::string& folder)
     if (posed.poses.pose_count == 0) {
       continue;
     }
-    for (const RadiusKind radius : {RadiusKind::kFit, RadiusKind::kDetect}) {
-      const Reference reference = refit_and_detect(posed, radius);
-      DeviceCrowd crowd(posed, reference, radius, posed.poses.pose_count);
-      constexpr unsigned kAll =
-          DeviceCrowd::kCounts | DeviceCrowd::kBits | DeviceCrowd::kList | DeviceCrowd::kSpheres | DeviceCrowd::kBounds;
-      crowd.enqueue(true, kAll, posed.poses.pose_count);
-      bool is_right = crowd.is_right(kAll);
-      crowd.enqueue(false, kAll & ~DeviceCrowd::kSpheres, posed.poses.pose_count);
-      is_right &= crowd.is_right(kAll & ~DeviceCrowd::kSpheres);
+    for (const CrowdKind kind : {CrowdKind::kFit, CrowdKind::kDetect, CrowdKind::kCovers}) {
+      if (kind == CrowdKind::kCovers && posed.asset.leaf_count() == 0) {
+        continue;
+      }
+      const Reference reference = reference_of(posed, kind);
+      DeviceCrowd crowd(posed, reference, kind, posed.poses.pose_count);
+      const unsigned outputs = DeviceCrowd::kCounts | DeviceCrowd::kBits | DeviceCrowd::kBounds |
+                               (kind == CrowdKind::kCovers ? DeviceCrowd::kLeaves : DeviceCrowd::kList);
+      crowd.enqueue(true, outputs | DeviceCrowd::kSpheres, posed.poses.pose_count);
+      bool is_right = crowd.is_right(outputs | DeviceCrowd::kSpheres);
+      if (kind != CrowdKind::kCovers) {
+        crowd.enqueue(false, outputs, posed.poses.pose_count);
+        is_right &= crowd.is_right(outputs);
+      }
       std::size_t pairs = 0;
       for (const std::uint32_t count : reference.counts) {
         pairs += count;
       }
       std::printf("%-24s %6zu %8zu %8s %10zu  %s\n", name.c_str(), posed.poses.pose_count, posed.asset.spheres().size,
-                  radius == RadiusKind::kFit ? "fit" : "detect", pairs, is_right ? "equal, bit for bit" : "DIFFERENT");
+                  name_of(kind), pairs, is_right ? "equal, bit for bit" : "DIFFERENT");
       all_right &= is_right;
     }
   }
   return all_right;
 }
-
-struct Contestant {
-  std::string name;
-  std::function<void()> enqueue;
-  double bytes = 0;  // an instance
-  Times times;       // nanoseconds an instance
-};
 
 // Bones in, counts and bits out, on the CPU. Nanoseconds an instance.
 class HostCrowd {
@@ -138,10 +123,6 @@ class HostCrowd {
   spherechain::CrowdJob job_;
 };
 
-struct Ceilings {
-  double bytes_a_second, multiply_adds_a_second;
-};
-
 Ceilings measure_ceilings(int multiprocessors) {
   constexpr std::size_t kBytes = std::size_t{1} << 31;
   DeviceArray<char> from(kBytes), to(kBytes);
@@ -173,8 +154,8 @@ bool bench_character(const std::string& folder, const std::string& name, const C
     std::fprintf(stderr, "spherechain_bench_gpu: %s\n", error.c_str());
     std::exit(3);
   }
-  const Reference reference = refit_and_detect(posed, RadiusKind::kDetect);
-  DeviceCrowd crowd(posed, reference, RadiusKind::kDetect, kInstances);
+  const Reference reference = reference_of(posed, CrowdKind::kDetect);
+  DeviceCrowd crowd(posed, reference, CrowdKind::kDetect, kInstances);
   const std::size_t n = posed.asset.spheres().size;
 
   std::vector<IndexPair> wanted;
@@ -218,33 +199,12 @@ bool bench_character(const std::string& folder, const std::string& name, const C
     return false;
   }
 
-  DeviceClock clock;
-  std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < kPasses * all.size(); ++i) {
-    order.push_back(i % all.size());
-  }
-  std::shuffle(order.begin(), order.end(), std::mt19937(1));
-  for (const Contestant& one : all) {
-    one.enqueue();  // warm
-  }
-  for (const std::size_t i : order) {
-    clock.start();
-    for (std::size_t launch = 0; launch < kLaunches; ++launch) {
-      all[i].enqueue();
-    }
-    all[i].times.add(clock.stop() * 1e6 / (kInstances * kLaunches));
-  }
+  measure(all, kInstances);
   std::printf(
       "\n%s: %zu spheres, %zu bones, %zu pairs tested (%zu of them near pairs), %zu characters in 1,024 poses\n",
       name.c_str(), n, posed.asset.bone_count(), wanted.size(), posed.asset.near_pairs(RadiusKind::kDetect).size,
       kInstances);
-  std::printf("  %-58s %9s %9s %16s %18s\n", "ns a character", "median", "min", "bytes, of copy", "pair tests/s");
-  for (const Contestant& one : all) {
-    const double median = one.times.median();
-    std::printf("  %-58s %9.3f %9.3f %7.0f, %5.1f %% %14.2f e12\n", one.name.c_str(), median, one.times.least(),
-                one.bytes, 100 * one.bytes / median * 1e9 / ceilings.bytes_a_second,
-                static_cast<double>(wanted.size()) / median * 1e9 / 1e12);
-  }
+  print_table(all, static_cast<double>(wanted.size()), ceilings);
   const double fused = all[0].times.median(), detect = all[4].times.median(), block = all[6].times.median();
   std::size_t terms = posed.asset.bone_tables().terms.size;
   const double least_operations = static_cast<double>(terms * 96 + wanted.size() * 4);
@@ -259,6 +219,7 @@ bool bench_character(const std::string& folder, const std::string& name, const C
     judge("over a block a character (cuRobo's mapping)", block / detect, "x ", block / detect >= 5, "at least 5");
   }
 
+  DeviceClock clock;
   const std::size_t cores = std::max(1U, std::thread::hardware_concurrency());
   HostCrowd one_core(posed, 16384, 1), all_cores(posed, 16384, cores);
   Times one, many;
@@ -336,5 +297,11 @@ int main(int argc, char** argv) {
   const Ceilings ceilings = measure_ceilings(properties.multiProcessorCount);
   std::printf("\nceilings: copy %.2f TB/s (read and written), %.1f T multiply-adds/s\n", ceilings.bytes_a_second / 1e12,
               ceilings.multiply_adds_a_second / 1e12);
-  return bench_character(argv[1], "human", ceilings, true) && bench_character(argv[1], "body", ceilings, true) ? 0 : 1;
+  const bool is_right = bench_character(argv[1], "human", ceilings, true) &&
+                        bench_character(argv[1], "body", ceilings, true) && bench_covers(argv[1], "human", ceilings) &&
+                        bench_large(argv[1], "human", 14, ceilings) && bench_large(argv[1], "human", 4, ceilings);
+  if (!is_right) {
+    std::fprintf(stderr, "spherechain_bench_gpu: the GPU's results differ from the CPU's\n");
+  }
+  return is_right ? 0 : 1;
 }

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "device_crowd.h"
 
+#include <algorithm>
 #include <cstring>
 
+#include "spherechain/cover.h"
 #include "spherechain/cuda_device.h"
 
 namespace spherechain::bench {
 namespace {
 
-constexpr std::size_t kMostListed = 32;  // an instance, on average
 constexpr std::size_t kSets = 2;
 
 void must_be_ok(Status status, const char* what) {
@@ -24,6 +25,15 @@ std::size_t pose_of(std::size_t instance, std::size_t poses) {
   return instance * kStep % poses;
 }
 
+// At least one.
+std::size_t pair_count(const Reference& reference, std::size_t instances) {
+  std::size_t sum = 1;
+  for (std::size_t i = 0; i < instances; ++i) {
+    sum += reference.counts[pose_of(i, reference.counts.size())];
+  }
+  return sum;
+}
+
 template <typename T>
 std::vector<T> repeated(const std::vector<T>& poses, std::size_t pose_size, std::size_t instances) {
   std::vector<T> out(instances * pose_size);
@@ -34,61 +44,142 @@ std::vector<T> repeated(const std::vector<T>& poses, std::size_t pose_size, std:
   return out;
 }
 
+RadiusKind radius_of(CrowdKind kind) { return kind == CrowdKind::kFit ? RadiusKind::kFit : RadiusKind::kDetect; }
+
+BoneMatrices bones_of(const PosedAsset& posed, std::size_t pose) {
+  return {posed.poses.matrices_of(pose), posed.poses.bone_count};
+}
+
+Span<const float> morphs_of(const PosedAsset& posed, std::size_t pose) {
+  return posed.poses.morph_count == 0 ? Span<const float>{}
+                                      : Span<const float>{posed.poses.morphs_of(pose), posed.poses.morph_count};
+}
+
+void cover(const PosedAsset& posed, std::size_t pose, Reference& out) {
+  const std::size_t n = posed.asset.spheres().size, leaves = posed.asset.leaf_count();
+  CoverJob job;
+  job.asset = &posed.asset;
+  job.bones = bones_of(posed, pose);
+  job.morph_weights = morphs_of(posed, pose);
+  job.leaves = {&out.leaves[pose * leaves], leaves};
+  job.spheres = {&out.spheres[pose * n], n};
+  must_be_ok(job.run(), "CoverJob");
+}
+
+// All pairs of covers that are not surely apart, one by one.
+void find_candidates(const PosedAsset& posed, Reference& out) {
+  constexpr float kShare = 1.0F + 0x1p-20F;
+  const std::size_t n = posed.asset.spheres().size, words = DetectJob::bit_words(posed.asset);
+  std::vector<bool> has_skin(n);
+  for (const Leaf& leaf : posed.asset.surface().leaves) {
+    has_skin[leaf.sphere] = true;
+  }
+  out.counts.resize(posed.poses.pose_count);
+  out.bits.resize(posed.poses.pose_count * words);
+  for (std::size_t i = 0; i < posed.poses.pose_count; ++i) {
+    const Sphere* spheres = &out.spheres[i * n];
+    for (std::size_t b = 1; b < n; ++b) {
+      for (std::size_t a = 0; a < b; ++a) {
+        const std::size_t bit = b * (b - 1) / 2 + a;
+        const Sphere &p = spheres[a], &q = spheres[b];
+        const float dx = p.x - q.x, dy = p.y - q.y, dz = p.z - q.z, s = p.radius * kShare + q.radius * kShare;
+        if (has_skin[a] && has_skin[b] && (posed.asset.ignored()[bit / 64] >> (bit % 64) & 1U) == 0 &&
+            (dx * dx + dy * dy) + dz * dz <= s * s) {
+          ++out.counts[i];
+          out.bits[i * words + bit / 64] |= std::uint64_t{1} << (bit % 64);
+        }
+      }
+    }
+  }
+}
+
+// For assets too large for shared memory: two blocks a multiprocessor.
+std::size_t scratch_bytes(const cuda::CrowdTables& tables, bool from_bones, std::size_t instances) {
+  cudaDeviceProp properties{};
+  must(cudaGetDeviceProperties(&properties, 0));
+  const std::size_t block = tables.shared_bytes(from_bones, false, true, true);
+  const std::size_t blocks =
+      std::min((instances + 31) / 32, 2 * static_cast<std::size_t>(properties.multiProcessorCount));
+  return block <= properties.sharedMemPerBlockOptin ? 1 : blocks * block;
+}
+
 }  // namespace
 
-Reference refit_and_detect(const PosedAsset& posed, RadiusKind radius) {
-  const std::size_t n = posed.asset.spheres().size, poses = posed.poses.pose_count;
-  Reference out;
-  out.spheres.resize(n * poses);
-  for (std::size_t i = 0; i < poses; ++i) {
-    RefitBonesJob refit;
-    refit.asset = &posed.asset;
-    refit.bones.data = posed.poses.matrices_of(i);
-    refit.bones.count = posed.poses.bone_count;
-    if (posed.poses.morph_count > 0) {
-      refit.morph_weights = {posed.poses.morphs_of(i), posed.poses.morph_count};
-    }
-    refit.radius = radius;
-    refit.spheres = {&out.spheres[i * n], n};
-    must_be_ok(refit.run(), "RefitBonesJob");
-  }
-  out.counts.resize(poses);
-  out.bits.resize(poses * DetectJob::bit_words(posed.asset));
+void detect(const PosedAsset& posed, CrowdKind kind, Reference& reference) {
+  const std::size_t poses = posed.poses.pose_count;
+  reference.counts.resize(poses);
+  reference.bits.resize(poses * DetectJob::bit_words(posed.asset));
   std::vector<std::uint64_t> words(CrowdContext::words_needed(posed.asset, 1));
   CrowdContext context{{words.data(), words.size()}};
   spherechain::CrowdJob detect;
   detect.asset = &posed.asset;
-  detect.spheres = out.spheres.data();
+  detect.spheres = reference.spheres.data();
   detect.instance_count = poses;
-  detect.radius = radius;
+  detect.radius = radius_of(kind);
   detect.context = &context;
-  detect.counts = {out.counts.data(), poses};
-  detect.bits = {out.bits.data(), out.bits.size()};
+  detect.counts = {reference.counts.data(), poses};
+  detect.bits = {reference.bits.data(), reference.bits.size()};
   must_be_ok(detect.run(), "CrowdJob");
+}
+
+Reference reference_of(const PosedAsset& posed, CrowdKind kind) {
+  const std::size_t n = posed.asset.spheres().size, poses = posed.poses.pose_count;
+  Reference out;
+  out.spheres.resize(n * poses);
+  if (kind == CrowdKind::kCovers) {
+    out.leaves.resize(posed.asset.leaf_count() * poses);
+    for (std::size_t i = 0; i < poses; ++i) {
+      cover(posed, i, out);
+    }
+    find_candidates(posed, out);
+    return out;
+  }
+  for (std::size_t i = 0; i < poses; ++i) {
+    RefitBonesJob refit;
+    refit.asset = &posed.asset;
+    refit.bones = bones_of(posed, i);
+    refit.morph_weights = morphs_of(posed, i);
+    refit.radius = radius_of(kind);
+    refit.spheres = {&out.spheres[i * n], n};
+    must_be_ok(refit.run(), "RefitBonesJob");
+  }
+  detect(posed, kind, out);
   return out;
 }
 
-DeviceCrowd::DeviceCrowd(const PosedAsset& posed, const Reference& reference, RadiusKind radius, std::size_t instances)
+DeviceCrowd::DeviceCrowd(const PosedAsset& posed, const Reference& reference, CrowdKind kind, std::size_t instances)
     : posed_(posed),
       reference_(reference),
       instances_(instances),
-      words_(cuda::CrowdTables::words_needed(posed.asset)),
+      words_(kind == CrowdKind::kCovers ? cuda::CrowdTables::cover_words_needed(posed.asset)
+                                        : cuda::CrowdTables::words_needed(posed.asset)),
       refitted_(instances * posed.asset.spheres().size),
       bounds_(instances),
+      leaves_(kind == CrowdKind::kCovers ? instances * posed.asset.leaf_count() : 1),
       counts_(instances),
       bits_(instances * DetectJob::bit_words(posed.asset)),
       starts_(instances),
       pair_count_(1),
-      pairs_(instances * kMostListed) {
-  must_be_ok(tables_.build(posed.asset, radius, nullptr, {words_.data(), words_.size()}), "CrowdTables");
+      pairs_(kind == CrowdKind::kCovers ? 1 : pair_count(reference, instances)),
+      scratch_([&] {
+        const Span<std::uint64_t> memory{words_.data(), words_.size()};
+        must_be_ok(kind == CrowdKind::kCovers ? tables_.build_covers(posed.asset, nullptr, memory)
+                                              : tables_.build(posed.asset, radius_of(kind), nullptr, memory),
+                   "CrowdTables");
+        return scratch_bytes(tables_, posed.poses.bone_count > 0, instances);
+      }()) {
   device_tables_ = std::make_unique<DeviceArray<std::uint64_t>>(words_);
   const PoseFile& poses = posed.poses;
   for (std::size_t set = 0; set < kSets; ++set) {  // the same instances: what comes out must be the same
-    matrices_.emplace_back(repeated(poses.matrices, poses.bone_count * kMatrixFloats, instances));
+    if (poses.bone_count > 0) {
+      matrices_.emplace_back(repeated(poses.matrices, poses.bone_count * kMatrixFloats, instances));
+    }
     if (poses.morph_count > 0) {
       weights_.emplace_back(repeated(poses.morph_weights, poses.morph_count, instances));
     }
-    spheres_.emplace_back(repeated(reference.spheres, posed.asset.spheres().size, instances));
+    if (kind != CrowdKind::kCovers) {
+      spheres_.emplace_back(repeated(reference.spheres, posed.asset.spheres().size, instances));
+    }
   }
 }
 
@@ -108,6 +199,7 @@ void DeviceCrowd::enqueue(bool from_bones, unsigned outputs, std::size_t instanc
   }
   const auto take = [&](Output output, auto* pointer) { return (outputs & output) != 0 ? pointer : nullptr; };
   group.refitted = from_bones ? take(kSpheres, refitted_.data()) : nullptr;
+  group.leaves = take(kLeaves, leaves_.data());
   group.bounds = take(kBounds, bounds_.data());
   group.counts = take(kCounts, counts_.data());
   group.bits = take(kBits, bits_.data());
@@ -115,6 +207,8 @@ void DeviceCrowd::enqueue(bool from_bones, unsigned outputs, std::size_t instanc
   group.starts = take(kList, starts_.data());
   group.pair_count = take(kList, pair_count_.data());
   group.pair_capacity = pairs_.size();
+  group.scratch = scratch_.data();
+  group.scratch_bytes = scratch_.size();
   const cuda::CrowdJob job{{&group, 1}, nullptr};
   must_be_ok(job.run(), "cuda::CrowdJob");
 }
@@ -138,6 +232,9 @@ bool DeviceCrowd::is_right(unsigned outputs) const {
   }
   if ((outputs & kSpheres) != 0) {
     compare("spheres", refitted_.host(), reference_.spheres, n);
+  }
+  if ((outputs & kLeaves) != 0) {
+    compare("leaves", leaves_.host(), reference_.leaves, posed_.asset.leaf_count());
   }
   if ((outputs & kList) != 0) {  // as bits again, each pair once
     const std::vector<CrowdPair> pairs = pairs_.host();
@@ -167,6 +264,7 @@ std::size_t DeviceCrowd::bytes_moved(bool from_bones, unsigned outputs) const {
   out += (outputs & kCounts) != 0 ? sizeof(std::uint32_t) : 0;
   out += (outputs & kBits) != 0 ? DetectJob::bit_words(posed_.asset) * 8 : 0;
   out += (outputs & kSpheres) != 0 ? n * sizeof(Sphere) : 0;
+  out += (outputs & kLeaves) != 0 ? posed_.asset.leaf_count() * sizeof(Sphere) : 0;
   out += (outputs & kBounds) != 0 ? sizeof(Sphere) : 0;
   return out;
 }

@@ -5,10 +5,11 @@
 
 #include <vector>
 
+#include "crowd_cases.h"
 #include "jobs.h"
 #include "spherechain/cuda_crowd.h"
 #include "spherechain/cuda_device.h"
-#include "tiny_asset.h"
+#include "spherechain/cuda_host_crowd.h"
 
 namespace spherechain::test {
 
@@ -89,6 +90,39 @@ TEST_CASE("a job is captured into a graph, and each replay finds the pairs of th
                              static_cast<const void*>(group.counts), static_cast<const void*>(group.starts),
                              static_cast<const void*>(group.pairs), static_cast<const void*>(group.pair_count)}) {
     cudaFree(const_cast<void*>(memory));
+  }
+}
+
+TEST_CASE("a host crowd on the device gives the CPU's spheres and sorted pairs, from shared memory and from scratch") {
+  for (const unsigned spheres : {40U, 300U}) {
+    constexpr std::size_t kInstances = 70;
+    const OpenedAsset opened(boned_asset(spheres, 6, 2).parts);
+    std::mt19937 random(3);
+    GroupInput in;
+    in.instance_count = kInstances;
+    give_matrices(in, opened.asset, MatrixLayout::kColumnMajor4x4, PoseKind::kGentle, 0, random);
+    std::vector<Sphere> wanted, refitted(spheres * kInstances);
+    std::vector<CrowdPair> wanted_pairs;
+    for (std::uint32_t i = 0; i < kInstances; ++i) {
+      const Refitted one = refit_bones(opened.asset, bones_of(in, i), {}, RadiusKind::kDetect);
+      wanted.insert(wanted.end(), one.spheres.begin(), one.spheres.end());
+      for (const Pair& pair : detect(opened.asset, one.spheres, Method::kM2, RadiusKind::kDetect).pairs) {
+        wanted_pairs.push_back({i, pair});
+      }
+    }
+    std::vector<CrowdPair> pairs(wanted_pairs.size());
+    cuda::HostCrowd crowd;
+    REQUIRE(crowd.open(opened.asset, RadiusKind::kDetect, nullptr, kInstances, pairs.size()) == Status::kOk);
+    crowd.bones = bones_of(in, 0);
+    crowd.instance_stride = in.instance_stride;
+    crowd.instance_count = kInstances;
+    crowd.spheres = refitted.data();
+    crowd.pairs = pairs.data();
+    REQUIRE(crowd.run() == Status::kOk);
+    CHECK(same_bits(refitted, wanted));
+    CHECK(crowd.pair_count == wanted_pairs.size());
+    CHECK(same_bits(pairs, wanted_pairs));
+    CHECK(crowd.device_milliseconds > 0);
   }
 }
 

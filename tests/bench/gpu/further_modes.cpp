@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+#include "further_modes.h"
+
+#include "device_crowd.h"
+#include "split_spheres.h"
+
+namespace spherechain::bench {
+namespace {
+
+PosedAsset read(const std::string& folder, const std::string& name) {
+  PosedAsset posed;
+  std::string error;
+  if (!read_posed_asset(folder, name, posed, error)) {
+    std::fprintf(stderr, "spherechain_bench_gpu: %s\n", error.c_str());
+    std::exit(3);
+  }
+  return posed;
+}
+
+// A launch that is checked now and measured later.
+bool add(DeviceCrowd& crowd, const char* text, bool from_bones, unsigned outputs, std::size_t instances,
+         std::vector<Contestant>& all) {
+  all.push_back({text,
+                 [&crowd, from_bones, outputs, instances] { crowd.enqueue(from_bones, outputs, instances); },
+                 static_cast<double>(crowd.bytes_moved(from_bones, outputs)),
+                 {}});
+  crowd.enqueue(from_bones, outputs, instances);
+  return crowd.is_right(outputs);
+}
+
+double pairs_tested(const Asset& asset) {
+  const std::size_t n = asset.spheres().size;
+  std::size_t count = 0;
+  for (std::size_t bit = 0; bit < n * (n - 1) / 2; ++bit) {
+    count += (asset.ignored()[bit / 64] >> (bit % 64) & 1U) == 0 ? 1U : 0U;
+  }
+  return static_cast<double>(count);
+}
+
+double mean_count(const Reference& reference) {
+  double sum = 0;
+  for (const std::uint32_t count : reference.counts) {
+    sum += count;
+  }
+  return sum / static_cast<double>(reference.counts.size());
+}
+
+}  // namespace
+
+bool bench_covers(const std::string& folder, const std::string& name, const Ceilings& ceilings) {
+  const PosedAsset posed = read(folder, name);
+  const double begin = seconds();
+  const Reference reference = reference_of(posed, CrowdKind::kCovers);
+  const double cpu = (seconds() - begin) * 1e9 / static_cast<double>(posed.poses.pose_count);
+  DeviceCrowd crowd(posed, reference, CrowdKind::kCovers, kInstances);
+  using Crowd = DeviceCrowd;
+  std::vector<Contestant> all;
+  const bool is_right =
+      add(crowd, "covers: bones in, counts out", true, Crowd::kCounts, kInstances, all) &&
+      add(crowd, "covers: bones in, counts and bits out", true, Crowd::kCounts | Crowd::kBits, kInstances, all) &&
+      add(crowd, "covers: bones in, counts, bits, balls, bounds out", true,
+          Crowd::kCounts | Crowd::kBits | Crowd::kSpheres | Crowd::kBounds, kInstances, all) &&
+      add(crowd, "covers: bones in, counts, bits, leaves out", true, Crowd::kCounts | Crowd::kBits | Crowd::kLeaves,
+          kInstances, all);
+  if (!is_right) {
+    return false;
+  }
+  measure(all, kInstances);
+  std::printf("\n%s: covers, %zu leaves of %zu spheres, %.1f candidates a character of %.0f pairs\n", name.c_str(),
+              posed.asset.leaf_count(), posed.asset.spheres().size, mean_count(reference), pairs_tested(posed.asset));
+  print_table(all, pairs_tested(posed.asset), ceilings);
+  std::printf("  the CPU's CoverJob and a plain test of all pairs, 1 core: %.0f ns a character\n", cpu);
+  return true;
+}
+
+bool bench_large(const std::string& folder, const std::string& name, std::uint32_t parts, const Ceilings& ceilings) {
+  constexpr std::size_t kLarge = 4096, kPoses = 64;
+  const PosedAsset whole = read(folder, name);
+  const Reference reference_of_whole = reference_of(whole, CrowdKind::kFit);
+  const SplitAsset split(whole.asset, parts);
+  PosedAsset posed;
+  posed.asset = split.asset();
+  posed.poses.pose_count = std::min(kPoses, whole.poses.pose_count);
+  Reference reference;
+  for (std::size_t i = 0; i < posed.poses.pose_count; ++i) {
+    const auto first =
+        reference_of_whole.spheres.begin() +
+        static_cast<std::ptrdiff_t>(i * whole.poses.pose_count / posed.poses.pose_count * whole.asset.spheres().size);
+    const std::vector<Sphere> spheres =
+        split.split({first, first + static_cast<std::ptrdiff_t>(whole.asset.spheres().size)});
+    reference.spheres.insert(reference.spheres.end(), spheres.begin(), spheres.end());
+  }
+  const double begin = seconds();
+  detect(posed, CrowdKind::kFit, reference);
+  const double cpu = (seconds() - begin) * 1e9 / static_cast<double>(posed.poses.pose_count);
+  DeviceCrowd crowd(posed, reference, CrowdKind::kFit, kLarge);
+  std::vector<Contestant> all;
+  if (!add(crowd, "large: spheres in, counts out", false, DeviceCrowd::kCounts, kLarge, all) ||
+      !add(crowd, "large: spheres in, counts and bits out", false, DeviceCrowd::kCounts | DeviceCrowd::kBits, kLarge,
+           all)) {
+    return false;
+  }
+  measure(all, kLarge);
+  std::printf("\n%s in parts: %zu spheres, %.1f pairs, %zu characters, %zu blocks at once of %.1f MB in scratch\n",
+              name.c_str(), posed.asset.spheres().size, mean_count(reference), kLarge, crowd.scratch_blocks(),
+              static_cast<double>(crowd.block_bytes()) / 1e6);
+  print_table(all, pairs_tested(posed.asset), ceilings);
+  std::printf("  the CPU's CrowdJob, 1 core: %.0f ns a character\n", cpu);
+  return true;
+}
+
+}  // namespace spherechain::bench
