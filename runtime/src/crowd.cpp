@@ -124,21 +124,6 @@ void list_instance(const std::uint64_t* bits, const Crowd& crowd, std::size_t in
   });
 }
 
-// Few pairs, listed as they were found: they are put in order one by one.
-void list_few(Span<std::uint32_t> found, const Crowd& crowd, std::size_t instance, std::size_t at) {
-  for (std::size_t i = 1; i < found.size; ++i) {
-    const std::uint32_t pair = found[i];
-    std::size_t place = i;
-    for (; place > 0 && found[place - 1] > pair; --place) {
-      found[place] = found[place - 1];
-    }
-    found[place] = pair;
-  }
-  for (std::size_t i = 0; i < found.size && at + i < crowd.job.pairs.size; ++i) {
-    crowd.job.pairs[at + i] = {static_cast<std::uint32_t>(instance), {found[i] >> 16, found[i] & 0xFFFFU}};
-  }
-}
-
 // Instances [first, first + batch.count).
 void refit_instances(const Crowd& crowd, std::size_t first, LaneRefit& batch) {
   const CrowdJob& job = crowd.job;
@@ -209,7 +194,9 @@ void run_task(void* data, std::size_t task) {
       }
       if (lists && job.counts[first + lane] > 0) {
         if (tests && batch.pair_counts[lane] <= kMostListed) {
-          list_few({batch.listed[lane], batch.pair_counts[lane]}, crowd, first + lane, place);
+          const std::size_t room = job.pairs.size > place ? job.pairs.size - place : 0;
+          list_in_order(crowd.target, batch.listed[lane], batch.pair_counts[lane],
+                        static_cast<std::uint32_t>(first + lane), {job.pairs.data + (room == 0 ? 0 : place), room});
         } else {
           list_instance(batch.bits + lane * words, crowd, first + lane, place, places);
         }

@@ -220,6 +220,24 @@ void test_batch(LaneBatch& batch) {
   }
 }
 
+// Each pair's place is the number of those before it.
+void order(const std::uint32_t* listed, std::size_t count, std::uint32_t instance, CrowdPair* out, std::size_t room) {
+  const hn::ScalableTag<std::uint32_t> kPairs;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto own = hn::Set(kPairs, listed[i]);
+    std::size_t place = 0;
+    for (std::size_t k = 0; k < count; k += hn::MaxLanes(kPairs)) {
+      const auto before = hn::Lt(hn::LoadU(kPairs, listed + k), own);
+      place += hn::CountTrue(kPairs, hn::And(before, hn::FirstN(kPairs, count - k)));
+    }
+    if (place < room) {
+      out[place].instance = instance;
+      out[place].pair.a = listed[i] >> 16;
+      out[place].pair.b = listed[i] & 0xFFFFU;
+    }
+  }
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace spherechain
 HWY_AFTER_NAMESPACE();
@@ -229,10 +247,16 @@ namespace spherechain {
 namespace {
 
 SPHERECHAIN_KERNELS(test_batch);
+SPHERECHAIN_KERNELS(order);
 
 }  // namespace
 
 void test_lanes(Target resolved, LaneBatch& batch) { test_batch_kernels[index_of(resolved)](batch); }
+
+void list_in_order(Target resolved, const std::uint32_t (&listed)[kMostListed], std::size_t count,
+                   std::uint32_t instance, Span<CrowdPair> list) {
+  order_kernels[index_of(resolved)](listed, count, instance, list.data, list.size);
+}
 
 }  // namespace spherechain
 #endif

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "spherechain/asset.h"
+#include "spherechain/crowd.h"
 #include "spherechain/simd.h"
 #include "spherechain/types.h"
 
@@ -35,5 +36,9 @@ struct LaneBatch {
 };
 
 void test_lanes(Target resolved, LaneBatch& batch);
+
+// The first `count` pairs of an instance, into the list in order, as many as it holds.
+void list_in_order(Target resolved, const std::uint32_t (&listed)[kMostListed], std::size_t count,
+                   std::uint32_t instance, Span<CrowdPair> list);
 
 }  // namespace spherechain

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "listed_pairs.h"
 
+#include <cstring>
+
 #include "arithmetic.h"
 #include "simd.h"
 
@@ -56,6 +58,27 @@ HWY_INLINE void clear_group(std::uint16_t* candidates) {
   }
 }
 
+// The pairs of a strip whose bits are in `wanted`. Returns how many; writes kBlock entries.
+HWY_INLINE std::size_t list_strip(const ListedPair& strip, std::uint16_t wanted, ListedPair* listed) {
+#if HWY_TARGET == HWY_AVX3  // one register: no loop, whose end would be guessed wrong
+  constexpr Pairs kPairs;
+  const auto mask = hn::LoadMaskBits(kPairs, reinterpret_cast<const std::uint8_t*>(&wanted));
+  std::int32_t first = 0;
+  std::memcpy(&first, &strip, sizeof first);
+  const auto steps = hn::Mul(hn::Iota(kPairs, 0), hn::Set(kPairs, sizeof(Sphere) << 16));
+  const auto numbers = hn::Add(hn::Set(kPairs, first), steps);
+  hn::StoreU(hn::Compress(numbers, mask), kPairs, reinterpret_cast<std::int32_t*>(listed));
+  return hn::CountTrue(kPairs, mask);
+#else
+  std::size_t count = 0;
+  for (std::uint64_t left = wanted; left != 0; left &= left - 1, ++count) {
+    listed[count].a = static_cast<std::uint16_t>(strip.a + sizeof(Sphere) * hwy::Num0BitsBelowLS1Bit_Nonzero64(left));
+    listed[count].b = strip.b;
+  }
+  return count;
+#endif
+}
+
 bool find(const Sphere* spheres, std::size_t count, const PairLists& lists, FoundPairs& found) {
   constexpr Floats kFloats;
   found.count = 0;
@@ -81,16 +104,10 @@ bool find(const Sphere* spheres, std::size_t count, const PairLists& lists, Foun
     std::uint64_t strips = keep_wanted(lists.wanted + first, candidates + first);
     for (; strips != 0; strips &= strips - 1) {
       const std::size_t strip = first + hwy::Num0BitsBelowLS1Bit_Nonzero64(strips);
-      const ListedPair place = lists.strips[strip];
       if (listed_count > kMostPairs) {
         return false;
       }
-      for (std::uint64_t left = candidates[strip]; left != 0; left &= left - 1) {
-        listed[listed_count].a =
-            static_cast<std::uint16_t>(place.a + sizeof(Sphere) * hwy::Num0BitsBelowLS1Bit_Nonzero64(left));
-        listed[listed_count].b = place.b;
-        ++listed_count;
-      }
+      listed_count += list_strip(lists.strips[strip], candidates[strip], listed + listed_count);
     }
   }
   if (listed_count > kMostPairs) {

@@ -52,7 +52,7 @@ struct PairLists {
   std::size_t near_count;
 };
 
-inline constexpr std::size_t kMostPairs = 64;
+inline constexpr std::size_t kMostPairs = 128;
 struct alignas(64) FoundPairs {
   ListedPair pairs[kMostPairs + kBlock];  // in any order
   std::size_t count = 0;

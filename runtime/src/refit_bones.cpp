@@ -69,6 +69,7 @@ Status RefitBonesJob::run() const noexcept {
   if (status != Status::kOk) {
     return status;
   }
+  fetch(range_of_matrices(bones, asset->bone_count()));
   if (spheres.data == nullptr) {
     return Status::kNullArgument;
   }

@@ -129,22 +129,22 @@ TEST_CASE("a table finds as many pairs as there are, whether they fit the runtim
   tiny.parts.near_fit.clear();
   tiny.parts.near_detect.clear();
   for (const bool has_near : {false, true}) {
-    for (std::uint32_t b = 1; has_near && b < 11; ++b) {  // of a heap of eleven, all pairs but the first sphere's
+    for (std::uint32_t b = 1; has_near && b < 16; ++b) {  // of a heap of sixteen, all pairs but the first sphere's
       for (std::uint32_t a = 1; a < b; ++a) tiny.parts.near_detect.push_back({a, b, 0.5F});
     }
     std::sort(tiny.parts.near_detect.begin(), tiny.parts.near_detect.end(),
               [](const NearPair& l, const NearPair& r) { return l.a != r.a ? l.a < r.a : l.b < r.b; });
     const OpenedAsset opened(tiny.parts);
     std::vector<Sphere> spheres;
-    for (std::size_t i = 0; i < 128; ++i) spheres.push_back({i < 11 ? 0.0F : 10.0F * static_cast<float>(i), 0, 0, 1});
+    for (std::size_t i = 0; i < 128; ++i) spheres.push_back({i < 16 ? 0.0F : 10.0F * static_cast<float>(i), 0, 0, 1});
     for (std::size_t couples = 0; couples < 20; ++couples) {
       CAPTURE(couples);
-      if (couples > 0) spheres[127 - couples].x = spheres[10 + couples].x;
+      if (couples > 0) spheres[127 - couples].x = spheres[15 + couples].x;
       for (const Target target : supported_targets()) {
         // detect() compares with what a job with a table finds.
         const Detected found = detect(opened.asset, spheres, Method::kM2, RadiusKind::kDetect, target);
         CHECK(found.status == Status::kOk);
-        CHECK(found.pairs.size() == 55 + couples);
+        CHECK(found.pairs.size() == 120 + couples);
         CHECK(detect(opened.asset, spheres, Method::kM1, RadiusKind::kDetect, target).status == Status::kOk);
       }
     }
