@@ -4,11 +4,11 @@
 // in random order, pairs and spheres compared with the CPU's first.
 #include <algorithm>
 #include <atomic>
-#include <filesystem>
 #include <string>
 #include <thread>
 
 #include "ceilings.h"
+#include "check_crowds.h"
 #include "contestants.h"
 #include "device_crowd.h"
 #include "further_modes.h"
@@ -18,51 +18,6 @@ namespace {
 
 using namespace spherechain;
 using namespace spherechain::bench;
-
-const char* name_of(CrowdKind kind) {
-  return kind == CrowdKind::kFit ? "fit" : kind == CrowdKind::kDetect ? "detect" : "cover";
-}
-
-// Every character of the folder, both radii and covers, in launches of all its poses.
-bool check_all(const std::vector<std::string>& names, const std::string& folder) {
-  bool all_right = true;
-  std::printf("%-24s %6s %8s %8s %10s  against the CPU: spheres or balls, counts, bits, list\n", "character", "poses",
-              "spheres", "radius", "pairs");
-  for (const std::string& name : names) {
-    PosedAsset posed;
-    std::string error;
-    if (!read_posed_asset(folder, name, posed, error)) {
-      std::fprintf(stderr, "spherechain_bench_gpu: %s\n", error.c_str());
-      std::exit(3);
-    }
-    if (posed.poses.pose_count == 0) {
-      continue;
-    }
-    for (const CrowdKind kind : {CrowdKind::kFit, CrowdKind::kDetect, CrowdKind::kCovers}) {
-      if (kind == CrowdKind::kCovers && posed.asset.leaf_count() == 0) {
-        continue;
-      }
-      const Reference reference = reference_of(posed, kind);
-      DeviceCrowd crowd(posed, reference, kind, posed.poses.pose_count);
-      const unsigned outputs = DeviceCrowd::kCounts | DeviceCrowd::kBits | DeviceCrowd::kBounds |
-                               (kind == CrowdKind::kCovers ? DeviceCrowd::kLeaves : DeviceCrowd::kList);
-      crowd.enqueue(true, outputs | DeviceCrowd::kSpheres, posed.poses.pose_count);
-      bool is_right = crowd.is_right(outputs | DeviceCrowd::kSpheres);
-      if (kind != CrowdKind::kCovers) {
-        crowd.enqueue(false, outputs, posed.poses.pose_count);
-        is_right &= crowd.is_right(outputs);
-      }
-      std::size_t pairs = 0;
-      for (const std::uint32_t count : reference.counts) {
-        pairs += count;
-      }
-      std::printf("%-24s %6zu %8zu %8s %10zu  %s\n", name.c_str(), posed.poses.pose_count, posed.asset.spheres().size,
-                  name_of(kind), pairs, is_right ? "equal, bit for bit" : "DIFFERENT");
-      all_right &= is_right;
-    }
-  }
-  return all_right;
-}
 
 // Bones in, counts and bits out, on the CPU. Nanoseconds an instance.
 class HostCrowd {
@@ -269,14 +224,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "spherechain_bench_gpu: no CUDA device: %s\n", cuda::last_device_error());
     return 1;
   }
-  std::vector<std::string> names;
-  std::error_code failure;
-  for (const auto& entry : std::filesystem::directory_iterator(argv[1], failure)) {
-    if (entry.path().extension() == ".poses") {
-      names.push_back(entry.path().stem().string());
-    }
-  }
-  std::sort(names.begin(), names.end());
+  const std::vector<std::string> names = characters_in(argv[1]);
   const auto has = [&](const char* name) { return std::find(names.begin(), names.end(), name) != names.end(); };
   if (!has("human") || !has("body")) {
     std::fprintf(stderr,
@@ -290,7 +238,7 @@ int main(int argc, char** argv) {
   must(cudaDriverGetVersion(&driver));
   std::printf("%s, %d multiprocessors, CUDA driver %d.%d\n", properties.name, properties.multiProcessorCount,
               driver / 1000, driver % 1000 / 10);
-  if (!check_all(names, argv[1])) {
+  if (!check_crowds(names, argv[1])) {
     std::fprintf(stderr, "spherechain_bench_gpu: the GPU's results differ from the CPU's\n");
     return 1;
   }

@@ -31,6 +31,11 @@ cudaError_t call() {
 
 using namespace spherechain::test;
 
+cudaError_t cudaGetDeviceProperties(cudaDeviceProp* properties, int) {
+  *properties = {fake_device.multiprocessors, static_cast<std::size_t>(fake_device.most_shared_bytes)};
+  return call();
+}
+
 cudaError_t cudaGetDeviceCount(int* count) {
   *count = fake_device.count;
   return call();
@@ -77,10 +82,14 @@ cudaError_t cudaMemcpy(void* to, const void* from, std::size_t bytes, cudaMemcpy
   return cudaSuccess;
 }
 
-cudaError_t cudaMemsetAsync(void* memory, int value, std::size_t bytes, cudaStream_t) {
+cudaError_t cudaMemset(void* memory, int value, std::size_t bytes) {
   const cudaError_t error = call();
   if (error == cudaSuccess) std::memset(memory, value, bytes);
   return error;
+}
+
+cudaError_t cudaMemsetAsync(void* memory, int value, std::size_t bytes, cudaStream_t) {
+  return cudaMemset(memory, value, bytes);
 }
 
 cudaError_t cudaEventCreate(cudaEvent_t* event) {

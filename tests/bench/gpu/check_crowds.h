@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+// Crowds of every character and clip against the CPU's jobs, bit for bit.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace spherechain::bench {
+
+// Sorted names of what spherechain_gpu_data wrote there.
+std::vector<std::string> characters_in(const std::string& folder);
+
+// Both radii and covers, in launches of all poses of a character. Prints a line for each.
+bool check_crowds(const std::vector<std::string>& names, const std::string& folder);
+
+}  // namespace spherechain::bench
