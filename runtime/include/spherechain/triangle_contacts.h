@@ -70,7 +70,7 @@ struct SPHERECHAIN_API TriangleContactContext {
 // Left out are triangles of spheres outside the scope, by the pairs that the asset or the filter ignores, and of
 // spheres that the filter disables (its padding is of no effect); triangles that share a position at rest, which are
 // neighbours on the skin; and those that intersect in the rest pose (Surface::rest_contacts). Neighbours' contacts take
-// a hundred times as long (docs/performance.md), for all that lies side by side has to be told apart.
+// forty times as long (docs/performance.md), for all that lies side by side has to be told apart.
 //
 // The positions are what the caller gives; or, where `positions` is null, what the job skins from bones, and then only
 // of the leaves that could touch another. Any position that is not finite makes its triangles intersect nothing;
