@@ -13,11 +13,13 @@
 namespace spherechain {
 
 // Which pairs of an asset are looked at, worked out once for any number of DetectJobs, which then need not: they take
-// half the time. In memory of the caller's, which stays as prepare_detect left it; any number of jobs may share one.
+// less than half the time. In memory of the caller's, which stays as prepare_detect left it; any number of jobs may
+// share one.
 struct SPHERECHAIN_API DetectTable {
   Span<std::uint64_t> words;
 
-  // Words needed for `asset`: some 16 a sphere; few where it has more than 128 spheres, for which a table saves nothing.
+  // Words needed for `asset`: some 16 a sphere; few where it has more than 128 spheres, for which a table saves
+  // nothing.
   static std::size_t words_needed(const Asset& asset) noexcept;
 };
 
