@@ -16,7 +16,7 @@ namespace spherechain::baker {
 namespace {
 
 // Of the limb's last sphere: a heel's point is no start for a chain of growing spheres.
-constexpr double kThin = 0.25;
+constexpr double kThinExtremity = 0.25;
 
 // The skin across an axis. Positions `s` are along it, in the mesh's own space.
 class Sections {
@@ -207,7 +207,7 @@ std::vector<FittedSphere> fit_hand_or_foot(const Mesh& mesh, const Regions& regi
   const bool turns = axis.dot(end.normal) < 0.7;
   const auto inside = [&](double s) {
     const auto ball = sections.at(s);
-    return ball && s - sections.low() >= ball->radius && ball->radius >= kThin * last.radius &&
+    return ball && s - sections.low() >= ball->radius && ball->radius >= kThinExtremity * last.radius &&
            (turns || penetration_depth(last, *ball) <= settings.penetration_depth);
   };
   const auto start = first_where(sections.low(), sections.high(), step, inside);

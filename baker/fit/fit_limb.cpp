@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kOwnSkin = 0.95, kLeastSkin = 0.6;  // of the rays
 // Of the limb's thickest sphere: a tail's tip, where spheres would go on getting smaller without end.
-constexpr double kThin = 0.2;
+constexpr double kThinEnd = 0.2;
 
 class LimbMarch {
  public:
@@ -87,7 +87,7 @@ std::vector<FittedSphere> fit_limb(const Mesh& mesh, const Regions& regions, std
   // The first ring on the limb's own skin; a few large triangles with a border of teeth may have none, and then the
   // ring that has most of it.
   double s = 0, most = 0;
-  const double thin = kThin * march.sphere_at(0.5 * end).radius;
+  const double thin = kThinEnd * march.sphere_at(0.5 * end).radius;
   for (double at = 0; at < end && most < kOwnSkin; at += step) {
     const double share = march.sphere_at(at).radius < thin ? 0 : march.own_share(at);
     if (share <= most) continue;
@@ -111,14 +111,14 @@ std::vector<FittedSphere> fit_limb(const Mesh& mesh, const Regions& regions, std
   while (const auto next = first_where(s, end, step, far_enough)) {
     s = *next;
     last = march.sphere_at(s);
-    if (last.radius < kThin * thickest) return spheres;
+    if (last.radius < kThinEnd * thickest) return spheres;
     thickest = std::max(thickest, last.radius);
     place(s, last);
   }
   // The closing pair overlaps by whatever is left.
   if (march.own_share(end) < kLeastSkin) return spheres;
   const Ball closing = march.sphere_at(end);
-  if (closing.radius >= kThin * thickest && penetration_depth(last, closing) < kClosingDepth) place(end, closing);
+  if (closing.radius >= kThinEnd * thickest && penetration_depth(last, closing) < kClosingDepth) place(end, closing);
   return spheres;
 }
 

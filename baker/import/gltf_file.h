@@ -12,6 +12,9 @@ namespace spherechain::baker {
 // More vertices, triangles, keys or displacements than this are no character, but a file that wants memory.
 inline constexpr std::size_t kMaxGltfElements = std::size_t{1} << 23;
 
+// tinygltf's indices are int; -1 is none, which no vector has.
+inline std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
 // A glTF file in memory: its structure, in which every index leads to something, and its buffers. No image is read.
 struct GltfFile {
   std::string name;  // what errors call it

@@ -11,8 +11,6 @@ namespace {
 // Of the figures of two transforms that mean the same. Exporters invert their matrices in single precision.
 constexpr double kSame = 1e-5;
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
 bool invertible(const Affine& a) {
   const double size = a.linear().cwiseAbs().maxCoeff();
   return size > 0 && std::abs(a.linear().determinant()) > 1e-12 * size * size * size;

@@ -12,8 +12,6 @@
 namespace spherechain::baker {
 namespace {
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
-
 // The skins of the scene's meshes. The one that moves most vertices leads: its mesh space becomes the rest space.
 std::vector<int> skins_of_scene(const GltfFile& file, const GltfNodes& nodes) {
   std::map<int, std::size_t> vertices;

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "report/report.h"
+#include "report/vec3_json.h"
 #include "write/version.h"
 
 namespace spherechain::baker {
@@ -17,8 +18,6 @@ using nlohmann::ordered_json;
 const char* name_of(BodySource body) {
   return body == BodySource::kSkin ? "skin" : body == BodySource::kRepaired ? "repaired" : "wrapped";
 }
-
-ordered_json to_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 // The skin's triangles that the body's are not made of.
 std::size_t count_other_triangles(const Character& character) {

@@ -12,6 +12,7 @@
 #include "play/target.h"
 #include "report/play_frames.h"
 #include "report/report.h"
+#include "report/vec3_json.h"
 
 namespace spherechain::baker {
 namespace {
@@ -36,8 +37,6 @@ std::string base64(const std::vector<T>& values) {
   }
   return out;
 }
-
-ordered_json to_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 // The skin's weights in 16 bits; a vertex's sum stays exact.
 ordered_json weights_json(const std::vector<VertexWeights>& weights) {

@@ -24,7 +24,7 @@ using Elements = std::vector<std::array<T, N>>;
 std::array<float, 3> to_float(const Vec3& v) {
   return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
 }
-std::vector<double> to_json(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
+std::vector<double> to_numbers(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 
 template <typename T>
 constexpr int component_type() {
@@ -219,7 +219,7 @@ tinygltf::Node root_node(const Bake& bake) {
   const Eigen::Quaterniond q = Eigen::Quaterniond(to_own).normalized();
   tinygltf::Node node;
   node.name = "character";
-  node.translation = to_json(-scale * (to_own * frame.origin));
+  node.translation = to_numbers(-scale * (to_own * frame.origin));
   node.rotation = {q.x(), q.y(), q.z(), q.w()};
   node.scale = {scale, scale, scale};
   return node;
@@ -233,8 +233,8 @@ int add_joints(tinygltf::Model& model, const std::vector<Joint>& joints, int roo
     tinygltf::Node node;
     node.name = joint.name;
     const bool top = joint.parent < 0;
-    node.translation =
-        to_json(top ? joint.position : Vec3(joint.position - joints[static_cast<std::size_t>(joint.parent)].position));
+    node.translation = to_numbers(top ? joint.position
+                                      : Vec3(joint.position - joints[static_cast<std::size_t>(joint.parent)].position));
     const int parent = top ? root : skin.joints[static_cast<std::size_t>(joint.parent)];
     skin.joints.push_back(add_node(model, std::move(node), parent));
     const std::array<float, 3> p = to_float(joint.position);
@@ -277,12 +277,12 @@ void add_spheres(tinygltf::Model& model, const Bake& bake, const std::vector<Ver
       node.mesh = mesh;
       node.scale = std::vector<double>(3, sphere.rest.radius);
       if (bake.joints.empty()) {
-        node.translation = to_json(sphere.rest.center);
+        node.translation = to_numbers(sphere.rest.center);
         add_node(model, std::move(node), root);
         continue;
       }
       const std::size_t joint = carrier(sphere, bake.character.skin, weights, bake.joints.size());
-      node.translation = to_json(sphere.rest.center - bake.joints[joint].position);
+      node.translation = to_numbers(sphere.rest.center - bake.joints[joint].position);
       add_node(model, std::move(node), joint_nodes[joint]);
     }
   }

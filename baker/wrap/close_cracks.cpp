@@ -12,13 +12,13 @@
 namespace spherechain::baker {
 namespace {
 
-struct Side {
+struct BorderSide {
   Index triangle;
   std::size_t k;  // from corner k to the next
 };
 
 // The sides no other triangle has.
-std::vector<Side> border_sides(const Mesh& mesh) {
+std::vector<BorderSide> border_sides(const Mesh& mesh) {
   std::unordered_map<std::uint64_t, int> count;
   const auto key = [&](const Triangle& v, std::size_t k) {
     const auto [low, high] = std::minmax(v[k], v[(k + 1) % 3]);
@@ -27,7 +27,7 @@ std::vector<Side> border_sides(const Mesh& mesh) {
   for (const Triangle& v : mesh.triangles) {
     for (std::size_t k = 0; k < 3; ++k) ++count[key(v, k)];
   }
-  std::vector<Side> sides;
+  std::vector<BorderSide> sides;
   for (Index t = 0; t < mesh.triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
       if (count[key(mesh.triangles[t], k)] == 1) sides.push_back({t, k});
@@ -74,9 +74,9 @@ class Grid {
   std::unordered_map<std::uint64_t, std::vector<Index>> cubes_;
 };
 
-std::vector<Index> vertices_of(const Mesh& mesh, const std::vector<Side>& sides) {
+std::vector<Index> vertices_of(const Mesh& mesh, const std::vector<BorderSide>& sides) {
   std::vector<Index> vertices;
-  for (const Side& side : sides) {
+  for (const BorderSide& side : sides) {
     vertices.push_back(mesh.triangles[side.triangle][side.k]);
     vertices.push_back(mesh.triangles[side.triangle][(side.k + 1) % 3]);
   }
@@ -121,10 +121,10 @@ void weld(Uncracked& out, double tolerance) {
 // Once for each triangle and pass: a triangle with vertices on two of its sides needs another.
 bool split_pass(Uncracked& out, double tolerance) {
   Mesh& mesh = out.mesh;
-  const std::vector<Side> sides = border_sides(mesh);
+  const std::vector<BorderSide> sides = border_sides(mesh);
   if (sides.empty()) return false;
   double length = 0;
-  for (const Side& side : sides) {
+  for (const BorderSide& side : sides) {
     const Triangle& v = mesh.triangles[side.triangle];
     length += (mesh.positions[v[side.k]] - mesh.positions[v[(side.k + 1) % 3]]).norm();
   }
@@ -139,7 +139,7 @@ bool split_pass(Uncracked& out, double tolerance) {
 
   std::vector<bool> was_split(mesh.triangles.size(), false);
   bool any = false;
-  for (const Side& side : sides) {
+  for (const BorderSide& side : sides) {
     if (was_split[side.triangle]) continue;
     const Triangle corners = mesh.triangles[side.triangle];
     const Index a = corners[side.k], b = corners[(side.k + 1) % 3], c = corners[(side.k + 2) % 3];

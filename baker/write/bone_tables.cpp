@@ -3,23 +3,14 @@
 
 #include <algorithm>
 
+#include "write/schema_values.h"
+
 namespace spherechain::baker {
 namespace {
 
 static_assert(sizeof(schema::Lanes) == sizeof(GroupLanes));
 
-flatbuffers::span<const float, kGroupSize> span_of(const GroupLanes& lanes) {
-  return flatbuffers::span<const float, kGroupSize>(lanes.data(), kGroupSize);
-}
-
-// Lanes that start at a multiple of their own size never straddle two cache lines.
-template <typename Struct>
-auto aligned_vector(flatbuffers::FlatBufferBuilder& builder, const std::vector<Struct>& values) {
-  builder.ForceVectorAlignment(values.size(), sizeof(Struct), sizeof(GroupLanes));
-  return builder.CreateVectorOfStructs(values);
-}
-
-schema::Matrix to_schema(const Affine& affine) {
+schema::Matrix matrix_of(const Affine& affine) {
   std::array<float, 12> elements{};
   for (std::size_t i = 0; i < elements.size(); ++i) {
     elements[i] =
@@ -50,7 +41,7 @@ flatbuffers::Offset<schema::BoneRefit> create_bone_refit(flatbuffers::FlatBuffer
   if (in.bones.empty()) return 0;
   std::vector<flatbuffers::Offset<schema::Bone>> bones;
   for (const MovingBone& bone : in.bones) {
-    const schema::Matrix inverse_bind = to_schema(bone.inverse_bind);
+    const schema::Matrix inverse_bind = matrix_of(bone.inverse_bind);
     bones.push_back(schema::CreateBoneDirect(builder, bone.name.c_str(), &inverse_bind, bone.is_rest));
   }
   std::vector<schema::Lanes> weights;

@@ -7,6 +7,7 @@
 #include "spherechain/asset.h"
 #include "write/bone_tables.h"
 #include "write/rest_contacts.h"
+#include "write/schema_values.h"
 #include "write/surface_table.h"
 #include "write/version.h"
 #include "write/write.h"
@@ -16,10 +17,6 @@ namespace {
 
 static_assert(static_cast<int>(Side::kLeft) == static_cast<int>(schema::Side::left));
 static_assert(static_cast<int>(Side::kRight) == static_cast<int>(schema::Side::right));
-
-schema::Vec3 to_schema(const Vec3& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
-}
 
 // Source triangles grouped by sphere, in it by leaf, and in source order within a leaf.
 struct SurroundingTriangles {
@@ -67,7 +64,7 @@ std::vector<std::uint64_t> ignored_bits(const AssetSource& in) {
   return words;
 }
 
-std::vector<schema::NearPair> to_schema(const std::vector<BoundPair>& pairs) {
+std::vector<schema::NearPair> near_pairs_of(const std::vector<BoundPair>& pairs) {
   std::vector<schema::NearPair> out;
   for (const BoundPair& pair : pairs) out.emplace_back(pair.a, pair.b, static_cast<float>(pair.reach));
   return out;
@@ -110,8 +107,8 @@ std::vector<std::uint8_t> bytes_of(const AssetSource& in, const std::vector<Tria
   const auto bone_refit = create_bone_refit(builder, in.bones);
   const auto surface = create_surface(builder, in.character, in.bones, in.leaves, rest_contacts);
   const std::vector<std::uint64_t> ignored = ignored_bits(in);
-  const std::vector<schema::NearPair> near_fit = to_schema(in.binding.near_fit),
-                                      near_detect = to_schema(in.binding.near_detect);
+  const std::vector<schema::NearPair> near_fit = near_pairs_of(in.binding.near_fit),
+                                      near_detect = near_pairs_of(in.binding.near_detect);
 
   const std::string writer = std::string("spherechain ") + kVersion, settings_hash = sha256_of_text(in.settings);
   const auto provenance =

@@ -5,19 +5,13 @@
 #include <array>
 #include <map>
 
+#include "write/schema_values.h"
+
 namespace spherechain::baker {
 namespace {
 
 constexpr std::size_t kLanes = 8;
 using Eight = std::array<float, kLanes>;
-
-flatbuffers::span<const float, kLanes> span_of(const Eight& lanes) {
-  return flatbuffers::span<const float, kLanes>(lanes.data(), kLanes);
-}
-
-schema::Vec3 to_schema(const Vec3& v) {
-  return {static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
-}
 
 struct EightBalls {
   std::array<Eight, 4> values{};
@@ -138,12 +132,6 @@ Runs runs_of(const Character& character, const Leaves& in) {
   return out;
 }
 
-// Lanes that start at a multiple of their own size never straddle two cache lines.
-template <typename Struct>
-auto aligned_vector(flatbuffers::FlatBufferBuilder& builder, const std::vector<Struct>& values) {
-  builder.ForceVectorAlignment(values.size(), sizeof(Struct), sizeof(Eight));
-  return builder.CreateVectorOfStructs(values);
-}
 auto aligned_floats(flatbuffers::FlatBufferBuilder& builder, const std::vector<float>& values) {
   builder.ForceVectorAlignment(values.size(), sizeof(float), sizeof(Eight));
   return builder.CreateVector(values);

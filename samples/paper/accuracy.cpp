@@ -19,7 +19,7 @@ using baker::Ring;
 using baker::Side;
 
 constexpr std::array<const char*, 4> kFits{"phi1", "phi1_adjusted", "phi2", "phi2_rays"};
-constexpr std::size_t kAdjusted = 1, kEnclosing = 2;
+constexpr std::size_t kAdjustedFit = 1, kEnclosingFit = 2;
 
 // The disk of a level: where baker/fit puts it, its rays numbered from the front over the left.
 Ring cast_disk(const Bake& bake, const baker::SurfaceQuery& torso, double height) {
@@ -136,8 +136,8 @@ AccuracyTables measure_accuracy(const Study& study, const Bake& bake) {
     }
     std::vector<bool> adjusted, enclosing;
     for (std::size_t i = 0; i < half.size(); ++i) {
-      adjusted.push_back(f(kAdjusted, i) < f(kEnclosing, i));
-      enclosing.push_back(f(kEnclosing, i) < f(kAdjusted, i));
+      adjusted.push_back(f(kAdjustedFit, i) < f(kEnclosingFit, i));
+      enclosing.push_back(f(kEnclosingFit, i) < f(kAdjustedFit, i));
     }
     row.push_back(std::count(adjusted.begin(), adjusted.end(), true));
     row.push_back(std::count(enclosing.begin(), enclosing.end(), true));

@@ -16,6 +16,9 @@
 
 namespace spherechain::test {
 
+// A changed asset may ask for 2^32.
+inline constexpr std::size_t kMostVertices = 20000;
+
 // How often calls ended how.
 struct Tally {
   std::size_t ran = 0, overflowed = 0, refused = 0;

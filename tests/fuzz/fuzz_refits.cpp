@@ -9,8 +9,6 @@
 namespace spherechain::test {
 namespace {
 
-constexpr std::size_t kMostVertices = 20000;  // a changed asset may ask for 2^32
-
 void spoil_refit(Case& c, RefitJob& job, sc_refit_job& c_job, std::size_t needed, std::uint32_t way, Spoiled& spoiled) {
   switch (way) {
     case 0:

@@ -7,8 +7,6 @@
 namespace spherechain::test {
 namespace {
 
-constexpr std::size_t kMostVertices = 20000;  // a changed asset may ask for 2^32
-
 // What both jobs have in common.
 constexpr std::uint32_t kCommonWays = 9;
 template <typename Job, typename CJob>

@@ -11,8 +11,6 @@
 namespace spherechain::test {
 namespace {
 
-constexpr std::size_t kMostVertices = 20000;  // a changed asset may ask for more
-
 void spoil(Case& c, TriangleContactJob& job, Filter& filter, std::uint32_t way, Spoiled& spoiled) {
   switch (way) {
     case 0:

@@ -5,17 +5,16 @@
 #include <cmath>
 #include <numbers>
 
+#include "human.h"
 #include "import/import.h"
-#include "mesh/error.h"
 #include "motion/clip.h"
+#include "refusal.h"
 #include "temporary_folder.h"
 
 using namespace spherechain::baker;
 namespace fs = std::filesystem;
 
 namespace {
-
-const fs::path kModels = "/usr/share/assimp/models";
 
 std::vector<Vec3> posed(const SourceMesh& mesh, const std::string& clip, double seconds) {
   const auto found = std::find_if(mesh.rig.clips.begin(), mesh.rig.clips.end(),
@@ -36,19 +35,6 @@ double farthest(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
   }
   return most / box.diagonal().norm();
 }
-
-std::string refusal(const fs::path& file) {
-  try {
-    read_with_assimp(file);
-  } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::kFile);
-    CHECK(std::string(error.what()).find(file.string()) == 0);
-    return error.what();
-  }
-  return "accepted";
-}
-
-bool contains(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   const auto at = text.find(from);

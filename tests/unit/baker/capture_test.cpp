@@ -10,6 +10,7 @@
 #include <map>
 #include <sstream>
 
+#include "human.h"
 #include "mesh/error.h"
 #include "motion/clip.h"
 #include "rigged_human.h"
@@ -20,7 +21,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path kModels = "/usr/share/assimp/models";
 constexpr double kDegree = std::numbers::pi / 180;
 
 // A joint of a body in a T-pose, in metres: left, up, forward.

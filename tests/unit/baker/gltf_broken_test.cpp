@@ -7,26 +7,13 @@
 #include <limits>
 
 #include "gltf_reference.h"
-#include "mesh/error.h"
+#include "refusal.h"
 #include "temporary_folder.h"
 
 using namespace spherechain::baker;
 using nlohmann::json;
 
 namespace {
-
-std::string refusal(const std::filesystem::path& path) {
-  try {
-    import_character(path);
-  } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::kFile);
-    const std::string what = error.what();
-    CHECK(what.find(path.string()) == 0);
-    CHECK(what.find('\n') == std::string::npos);
-    return what;
-  }
-  return "accepted";
-}
 
 std::string refusal_of(const std::string& bytes) {
   const TemporaryFolder folder;

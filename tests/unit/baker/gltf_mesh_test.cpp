@@ -13,11 +13,6 @@ using nlohmann::json;
 
 namespace {
 
-SourceMesh read(const Glb& glb) {
-  const TemporaryFolder folder;
-  return read_with_tinygltf(folder.write("a.glb", glb.bytes()), {});
-}
-
 // One node with one mesh of one primitive.
 Glb one(const json& primitive, Glb glb) {
   glb.json["meshes"] = {{{"primitives", {primitive}}}};

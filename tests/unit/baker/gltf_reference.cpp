@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "gltf_reference.h"
 
+#include "temporary_folder.h"
+
 using Eigen::Affine3d;
 using Eigen::Vector3d;
 using nlohmann::json;
@@ -43,6 +45,11 @@ Affine3d world(const json& nodes, std::size_t n) {
 }
 
 }  // namespace
+
+SourceMesh read(const Glb& glb, bool attachments) {
+  const TemporaryFolder folder;
+  return read_with_tinygltf(folder.write("a.glb", glb.bytes()), {attachments});
+}
 
 std::vector<Vector3d> world_positions(const Glb& glb) {
   const json& nodes = glb.json["nodes"];

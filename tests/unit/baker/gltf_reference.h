@@ -6,6 +6,9 @@
 #include "glb_writer.h"
 #include "import/import.h"
 
+// What the reader makes of a file.
+spherechain::baker::SourceMesh read(const Glb& glb, bool attachments = false);
+
 // Where a file's vertices are in the world while its nodes stand as it says, straight from the specification's section
 // on skins, in the order of the nodes and their primitives: a reference with nothing of the reader in it. For files
 // whose accessors are plain (floats, 16-bit joints, nothing normalized or sparse).

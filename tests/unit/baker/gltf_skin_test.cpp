@@ -5,18 +5,12 @@
 #include <algorithm>
 
 #include "gltf_reference.h"
-#include "temporary_folder.h"
 
 using namespace spherechain::baker;
 using Eigen::Vector3d;
 using nlohmann::json;
 
 namespace {
-
-SourceMesh read(const Glb& glb, bool attachments = false) {
-  const TemporaryFolder folder;
-  return read_with_tinygltf(folder.write("a.glb", glb.bytes()), {attachments});
-}
 
 // Positions are floats in the file, some tens of units from the origin.
 constexpr double kTolerance = 1e-5;

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <filesystem>
+
 #include "import/import.h"
 #include "segment/segment.h"
 
-// Debian's assimp-testmodels: a MakeHuman body in an A-pose, 26,756 triangles, without a skeleton.
+// Debian's assimp-testmodels.
+inline const std::filesystem::path kModels = "/usr/share/assimp/models";
+
+// A MakeHuman body in an A-pose, 26,756 triangles, without a skeleton.
 inline constexpr const char* kHumanFile = "/usr/share/assimp/models/Collada/human.zae";
 
 struct HumanFixture {

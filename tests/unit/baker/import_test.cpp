@@ -10,27 +10,13 @@
 
 #include "closed_shapes.h"
 #include "human.h"
-#include "mesh/error.h"
+#include "refusal.h"
 #include "temporary_folder.h"
 
 using namespace spherechain::baker;
 namespace fs = std::filesystem;
 
 namespace {
-
-// The message of the error a file must end with.
-std::string refusal(const fs::path& path) {
-  try {
-    import_character(path);
-  } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::kFile);
-    CHECK(std::string(error.what()).find(path.string()) == 0);  // names the file
-    return error.what();
-  }
-  return "accepted";
-}
-
-bool contains(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
 
 const char* const kTetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
 

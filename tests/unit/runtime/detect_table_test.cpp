@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "jobs.h"
+#include "owned_filter.h"
 #include "tiny_asset.h"
 
 namespace spherechain::test {
@@ -18,19 +19,6 @@ struct OwnedTable {
   }
   std::vector<std::uint64_t> words;
   DetectTable table;
-};
-
-struct OwnedFilter {
-  explicit OwnedFilter(const Asset& asset)
-      : ignored(Filter::ignored_words(asset)),
-        disabled(Filter::disabled_words(asset)),
-        padding(asset.spheres().size),
-        filter{{ignored.data(), ignored.size()}, {disabled.data(), disabled.size()}, {padding.data(), padding.size()}} {
-    REQUIRE(reset_filter(asset, filter) == Status::kOk);
-  }
-  std::vector<std::uint64_t> ignored, disabled;
-  std::vector<float> padding;
-  Filter filter;
 };
 
 DetectJob job_of(const Asset& asset, const std::vector<Sphere>& spheres, const DetectTable& table) {

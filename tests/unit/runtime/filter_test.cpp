@@ -9,22 +9,17 @@
 #include <set>
 
 #include "jobs.h"
+#include "owned_filter.h"
 #include "tiny_asset.h"
 
 namespace spherechain::test {
 namespace {
 
-struct OwnedFilter {
-  explicit OwnedFilter(const Asset& asset)
-      : ignored(Filter::ignored_words(asset), ~std::uint64_t{0}),
-        disabled(Filter::disabled_words(asset), ~std::uint64_t{0}),
-        padding(asset.spheres().size, 99.0F) {
-    filter = {{ignored.data(), ignored.size()}, {disabled.data(), disabled.size()}, {padding.data(), padding.size()}};
-    REQUIRE(reset_filter(asset, filter) == Status::kOk);
-  }
-  std::vector<std::uint64_t> ignored, disabled;
-  std::vector<float> padding;
-  Filter filter;
+REQUIRE(reset_filter(asset, filter) == Status::kOk);
+}
+std::vector<std::uint64_t> ignored, disabled;
+std::vector<float> padding;
+Filter filter;
 };
 
 std::set<Pair> pairs_in(const std::vector<std::uint64_t>& table, std::uint32_t n) {
