@@ -41,14 +41,23 @@ void split(Item* items, std::size_t count, std::size_t leaves, std::vector<std::
   split(items + first_count, count - first_count, leaves - first_leaves, out);
 }
 
+std::size_t count_leaves(std::size_t triangles, const LeafSettings& settings) {
+  const auto most = static_cast<std::size_t>(settings.triangles);
+  const std::size_t fewest = (triangles + most - 1) / most;
+  if (settings.branching == 0) return fewest;
+  std::size_t count = 1;
+  while (count < fewest) count *= static_cast<std::size_t>(settings.branching);
+  return std::min(count, triangles);
+}
+
 }  // namespace
 
 std::vector<std::vector<Index>> cluster_triangles(const Mesh& mesh, const std::vector<Index>& triangles,
-                                                  std::size_t most) {
+                                                  const LeafSettings& settings) {
   std::vector<Item> items;
   for (const Index t : triangles) items.push_back({t, triangle_centroid(mesh, t)});
   std::vector<std::vector<Index>> out;
-  if (!items.empty()) split(items.data(), items.size(), (items.size() + most - 1) / most, out);
+  if (!items.empty()) split(items.data(), items.size(), count_leaves(items.size(), settings), out);
   return out;
 }
 

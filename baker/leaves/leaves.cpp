@@ -7,12 +7,12 @@
 namespace spherechain::baker {
 namespace {
 
-std::vector<Leaf> cluster_regions(const Character& character, const Binding& binding, std::size_t most) {
+std::vector<Leaf> cluster_regions(const Character& character, const Binding& binding, const LeafSettings& settings) {
   std::vector<std::vector<Index>> regions(binding.spheres.size());
   for (Index t = 0; t < binding.sphere_of_triangle.size(); ++t) regions[binding.sphere_of_triangle[t]].push_back(t);
   std::vector<Leaf> out;
   for (std::uint32_t s = 0; s < regions.size(); ++s) {
-    for (std::vector<Index>& cluster : cluster_triangles(character.skin, regions[s], most)) {
+    for (std::vector<Index>& cluster : cluster_triangles(character.skin, regions[s], settings)) {
       std::sort(cluster.begin(), cluster.end(), [&](Index a, Index b) {
         return character.skin_source_triangle[a] < character.skin_source_triangle[b];
       });
@@ -58,7 +58,7 @@ void order_vertices(const Character& character, Leaves& out) {
 Leaves make_leaves(const Character& character, const Binding& binding, const BoneBinding& bones,
                    const std::vector<VertexWeights>& rig_weights, const LeafSettings& settings) {
   Leaves out;
-  out.leaves = cluster_regions(character, binding, static_cast<std::size_t>(settings.triangles));
+  out.leaves = cluster_regions(character, binding, settings);
   out.vertices = surface_vertices(character, bones, rig_weights, out.vertex_of_source);
   order_vertices(character, out);
   for (Leaf& leaf : out.leaves) bound_leaf(character, out.vertices, leaf);

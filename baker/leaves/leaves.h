@@ -63,6 +63,9 @@ struct Leaves {
 
 struct LeafSettings {
   int triangles = 64;  // of a leaf, at most; 4 to 64
+  // 2, 4 or 8: spheres are roots, and what has more triangles than a leaf may have is divided into so many children, of
+  // which the lowest are the leaves. 0: the fewest leaves.
+  int branching = 0;
 };
 
 // `rig_weights` as in bind_bones().
@@ -71,10 +74,10 @@ Leaves make_leaves(const Character& character, const Binding& binding, const Bon
 
 // make_leaves' parts.
 
-// `triangles` cut into the fewest clusters of at most `most`, of even size, across where they are longest; in an order
-// in which neighbours are near each other.
+// `triangles` cut into the fewest clusters that the settings allow, of even size, across where they are longest; in an
+// order in which neighbours are near each other.
 std::vector<std::vector<Index>> cluster_triangles(const Mesh& mesh, const std::vector<Index>& triangles,
-                                                  std::size_t most);
+                                                  const LeafSettings& settings);
 
 // All source vertices that are corners of the skin, by source vertex; welds and places are the source's own yet.
 std::vector<SurfaceVertex> surface_vertices(const Character& character, const BoneBinding& bones,

@@ -135,6 +135,10 @@ BakeSettings make_settings(const std::string& profile, const std::string& text, 
     if (!leaves->is_object()) reader.fail("leaves", "is not an object");
     Reader inner(*leaves, file + ": leaves");
     inner.integer("triangles", settings.leaves.triangles, 4, 64);
+    inner.integer("branching", settings.leaves.branching, 0, 8);
+    if (const int b = settings.leaves.branching; b != 0 && b != 2 && b != 4 && b != 8) {
+      inner.fail("branching", "is not 0, 2, 4 or 8");
+    }
     inner.done();
   }
   if (const json* targets = reader.object("targets")) {
@@ -172,7 +176,7 @@ std::string to_json(const BakeSettings& settings) {
   out["detect_quantile"] = settings.bind.detect_quantile;
   out["near_fraction"] = settings.bind.near_fraction;
   out["neighbour_gap"] = settings.bind.neighbour_gap;
-  out["leaves"] = {{"triangles", settings.leaves.triangles}};
+  out["leaves"] = {{"triangles", settings.leaves.triangles}, {"branching", settings.leaves.branching}};
   json targets = json::object();
   if (settings.targets.max_spheres) targets["max_spheres"] = *settings.targets.max_spheres;
   if (settings.targets.max_mean_abs_f) targets["max_mean_abs_f"] = *settings.targets.max_mean_abs_f;

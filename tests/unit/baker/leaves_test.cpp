@@ -15,6 +15,7 @@
 #include "baked_human.h"
 #include "baked_person.h"
 #include "jobs.h"
+#include "mesh/error.h"
 #include "motion/clip.h"
 #include "motion/poses.h"
 #include "random_poses.h"
@@ -245,8 +246,34 @@ TEST_CASE("leaves.triangles is how many triangles a leaf has at most") {
   const Bake small = rebake(baked_person(), make_settings("balanced", R"({"leaves": {"triangles": 16}})", "test"));
   CHECK(small.leaves.leaves.size() > 2 * baked_person().leaves.leaves.size());
   for (const Leaf& leaf : small.leaves.leaves) CHECK(leaf.triangles.size() <= 16);
-  CHECK(to_json(small.settings).find(R"("leaves":{"triangles":16})") != std::string::npos);
+  CHECK(to_json(small.settings).find(R"("triangles":16)") != std::string::npos);
   CHECK(open_asset_of(small).leaf_count() == small.leaves.leaves.size());
+}
+
+TEST_CASE("leaves.branching is into how many children a sphere's triangles are divided until a leaf can have them") {
+  for (const std::size_t branching : {2, 4, 8}) {
+    CAPTURE(branching);
+    const Bake bake =
+        rebake(baked_person(),
+               make_settings("balanced", fmt::format(R"({{"leaves": {{"branching": {}}}}})", branching), "test"));
+    std::map<std::uint32_t, std::vector<std::size_t>> sizes;
+    for (const Leaf& leaf : bake.leaves.leaves) sizes[leaf.sphere].push_back(leaf.triangles.size());
+    std::set<std::size_t> counts;
+    for (const auto& [sphere, of_sphere] : sizes) {
+      const auto [least, most] = std::minmax_element(of_sphere.begin(), of_sphere.end());
+      CHECK(*most <= 64);
+      CHECK(*most - *least <= 1);
+      std::size_t children = of_sphere.size();
+      if (children > 1) CHECK(*most * branching > 64);  // one level less would not do
+      while (children % branching == 0) children /= branching;
+      CHECK(children == 1);
+      counts.insert(of_sphere.size());
+    }
+    CHECK(counts.size() > 1);
+    CHECK(open_asset_of(bake).leaf_count() == bake.leaves.leaves.size());
+  }
+  CHECK_THROWS_WITH_AS(make_settings("balanced", R"({"leaves": {"branching": 3}})", "test"),
+                       "test: leaves: setting 'branching' is not 0, 2, 4 or 8", Error);
 }
 
 TEST_CASE("in any pose, of turned, stretched, sheared and mirrored bones, every vertex is in its leaf's ball") {
