@@ -15,13 +15,6 @@
 namespace spherechain::test {
 namespace {
 
-REQUIRE(reset_filter(asset, filter) == Status::kOk);
-}
-std::vector<std::uint64_t> ignored, disabled;
-std::vector<float> padding;
-Filter filter;
-};
-
 std::set<Pair> pairs_in(const std::vector<std::uint64_t>& table, std::uint32_t n) {
   std::set<Pair> pairs;
   for (std::uint32_t b = 1; b < n; ++b) {
@@ -147,7 +140,7 @@ TEST_CASE("a filter that does not fit, or an edit of what is not there, is refus
   const OpenedAsset opened(random_asset(70, 1).parts);
   const Asset& asset = opened.asset;
   OwnedFilter owned(asset);
-  const OwnedFilter before = owned;
+  const OwnedFilter before(asset);
   const float nan = std::numeric_limits<float>::quiet_NaN();
   CHECK(ignore_pair(asset, owned.filter, 3, 3) == Status::kBadArgument);
   CHECK(ignore_pair(asset, owned.filter, 70, 3) == Status::kBadArgument);
