@@ -16,7 +16,7 @@ namespace spherechain::test {
 namespace {
 
 // Of coordinates of some units and sums of a dozen floats.
-constexpr double kRounding = 1e-5;
+constexpr double kBoneRounding = 1e-5;
 constexpr std::size_t kBones = 7;
 
 struct Skinned {
@@ -75,7 +75,7 @@ void check_close(const std::vector<Sphere>& spheres, const std::vector<Sphere>& 
   REQUIRE(spheres.size() == expected.size());
   for (std::size_t i = 0; i < spheres.size(); ++i) {
     INFO("sphere ", i);
-    CHECK(distance(spheres[i], expected[i]) < kRounding);
+    CHECK(distance(spheres[i], expected[i]) < kBoneRounding);
   }
 }
 
