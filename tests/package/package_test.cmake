@@ -56,6 +56,7 @@ if(CASE STREQUAL install)
     if(KIND STREQUAL shared)
       set(is_shared ON)
     endif()
+    set(TYPE Debug)  # quick to compile, and the pairs are the same at every optimisation level
     configure(${ROOT} ${tree} -D BUILD_SHARED_LIBS=${is_shared} -D SPHERECHAIN_BAKER=OFF -D SPHERECHAIN_TESTS=OFF
       -D SPHERECHAIN_CUDA=OFF)
     run(${CMAKE_COMMAND} --build ${tree})
