@@ -14,7 +14,7 @@ export function makePages({ tool, human, poses, folder }) {
   run('bake', human, '-o', asset, '--report', file('report.json'));
   const motions = ['arms', 'legs'].map((name) => {
     const motion = ['--source', human, '--poses', join(poses, `animation_${name}.json`), '--frames', '40'];
-    run('validate', asset, ...motion.slice(0, -1), '9', '--radius', 'fit', '--json', file('validation.json'));
+    run('validate', asset, ...motion.slice(0, -1), '9', '--radius', 'fit', '--spheres-alone', '--json', file('validation.json'));
     run('view', asset, ...motion, '--report', file('report.json'), '--validation', file('validation.json'), '-o', file(`${name}.html`));
     run('play', asset, ...motion, '--json', file(`${name}.json`));
     return { page: file(`${name}.html`), play: readJson(`${name}.json`).frames, validation: readJson('validation.json') };
