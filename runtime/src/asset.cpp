@@ -36,6 +36,12 @@ static_assert(kSameLayout<PivotLanes, schema::Lanes> && kSameLayout<BoneTerm, sc
 static_assert(kSameLayout<MorphTerm, schema::MorphTerm> && offsetof(MorphTerm, y) == 32 &&
               offsetof(MorphTerm, z) == 64);
 
+static_assert(kSameLayout<BonePair, schema::BonePair> && offsetof(BonePair, b) == 2);
+static_assert(kSameLayout<Moment, schema::Moment>);
+static_assert(kSameLayout<CenterTerm, schema::CenterTerm> && offsetof(CenterTerm, y) == 4 &&
+              offsetof(CenterTerm, z) == 8 && offsetof(CenterTerm, w) == 12);
+static_assert(kSameLayout<MomentBatch, schema::MomentBatch> && offsetof(MomentBatch, sphere_count) == 4);
+
 static_assert(kSameLayout<BallLanes, schema::BallLanes> && offsetof(BallLanes, y) == 32 &&
               offsetof(BallLanes, z) == 64 && offsetof(BallLanes, radius) == 96);
 static_assert(kSameLayout<CoverTerm, schema::CoverTerm> && offsetof(CoverTerm, deviations) == 32);
@@ -74,6 +80,21 @@ BoneTables tables_of(const schema::BoneRefit& refit) {
   tables.morph_term_counts = view<std::uint32_t>(*refit.morph_term_counts());
   tables.morph_targets = view<std::uint32_t>(*refit.morph_targets());
   tables.morph_terms = view<MorphTerm>(*refit.morph_terms());
+  return tables;
+}
+
+MomentTables moments_of(const schema::Moments& stored) {
+  MomentTables tables;
+  tables.origin = to_vec3(stored.origin());
+  tables.reference = stored.reference();
+  tables.batches = view<MomentBatch>(*stored.batches());
+  tables.pairs = view<BonePair>(*stored.pairs());
+  tables.spheres = view<std::uint32_t>(*stored.spheres());
+  tables.bone_counts = view<std::uint8_t>(*stored.bone_counts());
+  tables.bones = view<std::uint16_t>(*stored.bones());
+  tables.centers = view<CenterTerm>(*stored.centers());
+  tables.pair_places = view<std::uint8_t>(*stored.pair_places());
+  tables.moments = view<Moment>(*stored.moments());
   return tables;
 }
 
@@ -176,6 +197,9 @@ Status Asset::open_verified(const void* data, std::size_t size, Message& message
   }
   if (root.bone_refit() != nullptr) {
     bone_tables_ = tables_of(*root.bone_refit());
+    if (root.bone_refit()->moments() != nullptr) {
+      moment_tables_ = moments_of(*root.bone_refit()->moments());
+    }
   }
   if (root.surface() != nullptr) {
     surface_ = surface_of(*root.surface());

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "bone_checks.h"
+#include "moment_checks.h"
 #include "sphere_chains_generated.h"
 #include "spherechain/asset.h"
 #include "surface_checks.h"
@@ -59,7 +60,7 @@ bool check_frame(const schema::Frame& frame, Message& message) {
 
 bool check_header(const schema::Asset& root, Message& message) {
   const auto refit = static_cast<unsigned>(root.refit());
-  if (refit > static_cast<unsigned>(RefitRule::kCalibrated)) {
+  if (refit > static_cast<unsigned>(RefitRule::kMoments)) {
     return message.wrong("refit: %u is no known rule", refit);
   }
   return is_positive(root.source()->metres_per_unit(), "source.metres_per_unit", message) &&
@@ -316,7 +317,7 @@ bool values_are_valid(const schema::Asset& root, std::size_t size, Message& mess
          check_ignored(root, message) && check_near(*root.near_fit(), "near_fit", root.spheres()->size(), message) &&
          check_near(*root.near_detect(), "near_detect", root.spheres()->size(), message) &&
          check_joints(root, message) && bone_values_are_valid(root, message) &&
-         surface_values_are_valid(root, message);
+         moment_values_are_valid(root, message) && surface_values_are_valid(root, message);
 }
 
 std::size_t count_ignored(const schema::Asset& root) {

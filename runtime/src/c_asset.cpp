@@ -48,7 +48,8 @@ static_assert(SC_RADIUS_FIT == static_cast<int>(RadiusKind::kFit) &&
 static_assert(SC_SIDE_NONE == static_cast<int>(Side::kNone) && SC_SIDE_LEFT == static_cast<int>(Side::kLeft) &&
               SC_SIDE_RIGHT == static_cast<int>(Side::kRight));
 static_assert(SC_REFIT_PAPER == static_cast<int>(RefitRule::kPaper) &&
-              SC_REFIT_CALIBRATED == static_cast<int>(RefitRule::kCalibrated));
+              SC_REFIT_CALIBRATED == static_cast<int>(RefitRule::kCalibrated) &&
+              SC_REFIT_MOMENTS == static_cast<int>(RefitRule::kMoments));
 static_assert(offsetof(RestSphere, radius) == offsetof(sc_rest_sphere, radius) &&
               offsetof(RestSphere, detect_radius) == offsetof(sc_rest_sphere, detect_radius) &&
               offsetof(RestSphere, pivot_spread) == offsetof(sc_rest_sphere, pivot_spread) &&

@@ -19,7 +19,8 @@ inline constexpr std::uint32_t kMaxSphereCount = 65535;
 class Message;
 
 enum class Side : std::uint8_t { kNone = 0, kLeft = 1, kRight = 2 };
-enum class RefitRule : std::uint8_t { kPaper = 0, kCalibrated = 1 };
+// How centre and radius follow the pivots; see RefitJob.
+enum class RefitRule : std::uint8_t { kPaper = 0, kCalibrated = 1, kMoments = 2 };
 
 // One triangle that carries a sphere: vertex indices in the source file's order, and its share of the centre.
 struct Pivot {
@@ -32,7 +33,8 @@ struct RestSphere {
   Vec3 center;
   float radius;         // fit radius; > 0
   float detect_radius;  // >= 0
-  float pivot_spread;   // mean distance of the pivots' centroids from the refitted centre; > 0
+  float pivot_spread;   // mean (kMoments: root mean square) distance of the pivots' centroids from the refitted centre;
+                        // > 0
   std::uint32_t first_pivot;
   std::uint32_t first_triangle;
   std::uint32_t triangle_count;
@@ -155,6 +157,8 @@ class SPHERECHAIN_API Asset {
   const char* morph_name(std::size_t i) const noexcept;
   // Empty where bone_count() is 0.
   const BoneTables& bone_tables() const noexcept { return bone_tables_; }
+  // Of every sphere where refit_rule() is kMoments; else empty.
+  const MomentTables& moment_tables() const noexcept { return moment_tables_; }
   // The source vertices that pivots have corners at: ascending, each once. Empty in assets of older bakers.
   Span<const std::uint32_t> pivot_vertices() const noexcept { return pivot_vertices_; }
   // pivots(), their corners numbered in pivot_vertices().
@@ -182,6 +186,7 @@ class SPHERECHAIN_API Asset {
   Span<const std::uint32_t> pivot_vertices_;
   Span<const Pivot> packed_pivots_;
   BoneTables bone_tables_;
+  MomentTables moment_tables_;
   Surface surface_;
 };
 

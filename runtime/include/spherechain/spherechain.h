@@ -86,7 +86,7 @@ typedef int32_t sc_side;
 enum { SC_SIDE_NONE = 0, SC_SIDE_LEFT = 1, SC_SIDE_RIGHT = 2 };
 
 typedef int32_t sc_refit_rule;
-enum { SC_REFIT_PAPER = 0, SC_REFIT_CALIBRATED = 1 };
+enum { SC_REFIT_PAPER = 0, SC_REFIT_CALIBRATED = 1, SC_REFIT_MOMENTS = 2 };
 
 /* A buffer of all the source's vertices, or of sc_asset_pivot_vertices alone, in that order. */
 typedef int32_t sc_vertex_set;
