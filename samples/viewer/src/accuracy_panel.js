@@ -20,10 +20,12 @@ function table(head, rows) {
   );
 }
 
-function figures({ m1, m2, out_of_scope: out, raw_pairs: raw, truth_pairs: truth }) {
+function figures(validation) {
+  const { m1, m2, out_of_scope: out, raw_pairs: raw, truth_pairs: truth } = validation;
   const row = (name, score) => [name, share(score.pair_recall), share(score.precision), number(score.reported_per_frame)];
+  const rows = [...(validation.skin ? [row('skin', validation)] : []), row('M2', m2), row('M1', m1)];
   return [
-    h('section', {}, h('h3', {}, 'Reported pairs'), table(['', 'recall', 'precision', 'a frame'], [row('M2', m2), row('M1', m1)])),
+    h('section', {}, h('h3', {}, 'Reported pairs'), table(['', 'recall', 'precision', 'a frame'], rows)),
     h(
       'section',
       {},
@@ -98,7 +100,7 @@ export function fillAccuracyPanel(panel, store, model, flyTo) {
         'p',
         { class: 'note' },
         known.length === 0
-          ? `Nothing was missed at the ${validation.radius} radius.`
+          ? `Nothing was missed ${validation.skin ? 'by the skin' : `at the ${validation.radius} radius`}.`
           : `Contacts not reported at the ${validation.radius} radius, the deepest first; depth in % of the height.`,
       ),
       h('ol', { class: 'pairs', id: 'misses' }, known.map(row)),

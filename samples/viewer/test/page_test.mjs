@@ -251,6 +251,17 @@ test('the worst misses lead to their frame', async () => {
   assert.ok((await compare(page, far, await picture(page))).differing > 0.05, 'flies there');
 });
 
+test('of what the skin reports it is said that nothing was missed', async () => {
+  const skin = { skin: true, pair_recall: 1, precision: 1, reported_per_frame: 2.5, worst_misses: [] };
+  const opened = await open(browser, pages.variant('skin.html', (data) => Object.assign(data.validation, skin)));
+  await opened.page.locator('#tab-accuracy').click();
+  const said = await opened.page.locator('#accuracy').innerText();
+  assert.match(said, /skin\s+100[.0]* %\s+100[.0]* %\s+2[.]5/);
+  assert.match(said, /Nothing was missed by the skin/);
+  silent(opened);
+  await opened.close();
+});
+
 for (const [width, height] of [[1280, 720], [820, 1180]]) {
   test(`all is in place at ${width} x ${height}, light and dark`, async () => {
     const light = {};
