@@ -10,10 +10,26 @@
 
 namespace spherechain {
 
-// What the kernel reads: bare arrays, for it is compiled once a target and may use no inline function of the headers.
+// MomentTables as bare arrays. Only where the rule is kMoments.
+struct MomentInputs {
+  Vec3 origin;
+  std::uint32_t reference;
+  std::size_t batch_count;
+  const MomentBatch* batches;
+  const BonePair* pairs;
+  const std::uint32_t* spheres;
+  const std::uint8_t* bone_counts;
+  const std::uint16_t* bones;
+  const CenterTerm* centers;
+  const std::uint8_t* pair_places;
+  const Moment* moments;
+};
+
+// What the kernels read: bare arrays, for they are compiled once a target and may use no inline function of the
+// headers.
 struct BoneRefitInputs {
   const RestSphere* rest;
-  std::size_t sphere_count, group_count;
+  std::size_t sphere_count, group_count, bone_count;
   const PivotLanes* weights;
   const std::uint32_t* term_counts;
   const std::uint32_t* term_bones;
@@ -21,6 +37,7 @@ struct BoneRefitInputs {
   const std::uint32_t* morph_term_counts;
   const std::uint32_t* morph_targets;
   const MorphTerm* morph_terms;
+  MomentInputs moments;
   RefitRule rule;
 
   const float* matrices;
@@ -43,5 +60,9 @@ BoneRefitInputs bone_refit_inputs(const Asset& asset, const BoneMatrices& bones,
 
 // Refits all spheres of the asset. For further characters of one asset change `matrices` and `morph_weights`.
 void refit_from_bones(const BoneRefitInputs& inputs, Target resolved, Sphere* spheres);
+
+// The same, by the pivots (kPaper, kCalibrated) and by moments.
+void refit_from_pivots(const BoneRefitInputs& inputs, Target resolved, Sphere* spheres);
+void refit_from_moments(const BoneRefitInputs& inputs, Target resolved, Sphere* spheres);
 
 }  // namespace spherechain

@@ -25,7 +25,8 @@ Vec3 centroid(const VertexBuffer& vertices, const Pivot& pivot) {
   return {((a[0] + b[0]) + c[0]) * kThird, ((a[1] + b[1]) + c[1]) * kThird, ((a[2] + b[2]) + c[2]) * kThird};
 }
 
-// Centre, and in place of the radius the pivots' mean distance from it.
+// Centre, and in place of the radius the pivots' mean distance from it, or the root of the mean of its square.
+template <bool kSquared>
 Sphere mean_sphere(const VertexBuffer& vertices, Span<const Pivot> pivots) {
   // A sphere may have any number of pivots; of more than this the centroids are worked out twice.
   constexpr std::size_t kKept = 16;
@@ -47,14 +48,16 @@ Sphere mean_sphere(const VertexBuffer& vertices, Span<const Pivot> pivots) {
     const float dx = p.x - sphere.x;
     const float dy = p.y - sphere.y;
     const float dz = p.z - sphere.z;
-    sum += std::sqrt((dx * dx + dy * dy) + dz * dz);
+    const float squared = (dx * dx + dy * dy) + dz * dz;
+    sum += kSquared ? squared : std::sqrt(squared);
   }
-  sphere.radius = sum / static_cast<float>(pivots.size);
+  const float mean = sum / static_cast<float>(pivots.size);
+  sphere.radius = kSquared ? std::sqrt(mean) : mean;
   return sphere;
 }
 
 float radius_of(const RestSphere& rest, float mean, RefitRule rule, RadiusKind kind) {
-  if (rule == RefitRule::kCalibrated) {
+  if (rule != RefitRule::kPaper) {
     return (kind == RadiusKind::kFit ? rest.radius : rest.detect_radius) * (mean / rest.pivot_spread);
   }
   return kind == RadiusKind::kFit ? mean : mean * (rest.detect_radius / rest.radius);
@@ -106,7 +109,8 @@ Status RefitJob::run() const noexcept {
   const Pivot* pivots = (packed ? asset->packed_pivots() : asset->pivots()).data;
   const RefitRule rule = asset->refit_rule();
   for (std::size_t i = 0; i < rest.size; ++i) {
-    Sphere sphere = mean_sphere(buffer, {pivots + rest[i].first_pivot, rest[i].pivot_count});
+    const Span<const Pivot> own{pivots + rest[i].first_pivot, rest[i].pivot_count};
+    Sphere sphere = rule == RefitRule::kMoments ? mean_sphere<true>(buffer, own) : mean_sphere<false>(buffer, own);
     sphere.radius = radius_of(rest[i], sphere.radius, rule, radius);
     spheres[i] = sphere;
   }

@@ -36,6 +36,26 @@ Status check_bone_inputs(const Asset* asset, const BoneMatrices& bones, Span<con
   return Status::kOk;
 }
 
+namespace {
+
+MomentInputs moment_inputs(const MomentTables& tables) {
+  MomentInputs in{};
+  in.origin = tables.origin;
+  in.reference = tables.reference;
+  in.batch_count = tables.batches.size;
+  in.batches = tables.batches.data;
+  in.pairs = tables.pairs.data;
+  in.spheres = tables.spheres.data;
+  in.bone_counts = tables.bone_counts.data;
+  in.bones = tables.bones.data;
+  in.centers = tables.centers.data;
+  in.pair_places = tables.pair_places.data;
+  in.moments = tables.moments.data;
+  return in;
+}
+
+}  // namespace
+
 BoneRefitInputs bone_refit_inputs(const Asset& asset, const BoneMatrices& bones, Span<const float> morph_weights,
                                   RadiusKind radius) {
   const BoneTables& tables = asset.bone_tables();
@@ -43,6 +63,7 @@ BoneRefitInputs bone_refit_inputs(const Asset& asset, const BoneMatrices& bones,
   in.rest = asset.spheres().data;
   in.sphere_count = asset.spheres().size;
   in.group_count = tables.term_counts.size;
+  in.bone_count = asset.bone_count();
   in.weights = tables.weights.data;
   in.term_counts = tables.term_counts.data;
   in.term_bones = tables.term_bones.data;
@@ -51,6 +72,9 @@ BoneRefitInputs bone_refit_inputs(const Asset& asset, const BoneMatrices& bones,
   in.morph_targets = tables.morph_targets.data;
   in.morph_terms = tables.morph_terms.data;
   in.rule = asset.refit_rule();
+  if (in.rule == RefitRule::kMoments) {
+    in.moments = moment_inputs(asset.moment_tables());
+  }
   in.matrices = bones.data;
   in.stride = bones.stride / sizeof(float);
   in.layout = bones.layout;
@@ -62,6 +86,14 @@ BoneRefitInputs bone_refit_inputs(const Asset& asset, const BoneMatrices& bones,
 MemoryRange range_of_matrices(const BoneMatrices& bones, std::size_t count) {
   const auto first = reinterpret_cast<std::uintptr_t>(bones.data);
   return {first, first + (count - 1) * bones.stride + size_of(bones.layout)};
+}
+
+void refit_from_bones(const BoneRefitInputs& inputs, Target resolved, Sphere* spheres) {
+  if (inputs.rule == RefitRule::kMoments) {
+    refit_from_moments(inputs, resolved, spheres);
+  } else {
+    refit_from_pivots(inputs, resolved, spheres);
+  }
 }
 
 Status RefitBonesJob::run() const noexcept {

@@ -257,7 +257,7 @@ SPHERECHAIN_KERNELS(refit_bones);
 
 }  // namespace
 
-void refit_from_bones(const BoneRefitInputs& inputs, Target resolved, Sphere* spheres) {
+void refit_from_pivots(const BoneRefitInputs& inputs, Target resolved, Sphere* spheres) {
   refit_bones_kernels[index_of(resolved)](inputs, spheres);
 }
 
