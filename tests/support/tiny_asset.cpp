@@ -30,6 +30,13 @@ schema::Lanes stored(const PivotLanes& l) { return schema::Lanes(lanes(l.values)
 schema::BoneTerm stored(const BoneTerm& t) { return {lanes(t.x), lanes(t.y), lanes(t.z), lanes(t.w)}; }
 schema::MorphTerm stored(const MorphTerm& t) { return {lanes(t.x), lanes(t.y), lanes(t.z)}; }
 
+schema::MomentBatch stored(const MomentBatch& b) { return {b.pair_count, b.sphere_count}; }
+schema::BonePair stored(const BonePair& p) { return {p.a, p.b}; }
+schema::CenterTerm stored(const CenterTerm& t) { return {t.x, t.y, t.z, t.w}; }
+schema::Moment stored(const Moment& m) {
+  return schema::Moment(fb::span<const float, kMomentSize>(m.values, kMomentSize));
+}
+
 schema::Leaf stored(const Leaf& l) {
   return {l.sphere,      l.first_triangle, l.first_vertex,   l.first_bone,   l.first_slot, l.first_weight,
           l.first_morph, l.morph_count,    l.triangle_count, l.vertex_count, l.bone_count, l.reserved};
@@ -88,6 +95,24 @@ auto build_joints(fb::FlatBufferBuilder& builder, const AssetParts& parts) {
   return builder.CreateVector(joints);
 }
 
+fb::Offset<schema::Moments> build_moments(fb::FlatBufferBuilder& builder, const AssetParts& parts) {
+  const MomentParts& in = parts.bone_refit.moments;
+  if (in.batches.empty()) {
+    return 0;
+  }
+  const schema::Vec3 origin = stored(in.origin);
+  const auto batches = struct_vector<schema::MomentBatch>(builder, in.batches);
+  const auto pairs = struct_vector<schema::BonePair>(builder, in.pairs);
+  const auto spheres = builder.CreateVector(in.spheres);
+  const auto bone_counts = builder.CreateVector(in.bone_counts);
+  const auto bones = builder.CreateVector(in.bones);
+  const auto centers = struct_vector<schema::CenterTerm>(builder, in.centers);
+  const auto pair_places = builder.CreateVector(in.pair_places);
+  const auto moments = struct_vector<schema::Moment>(builder, in.moments);
+  return schema::CreateMoments(builder, parts.without == "moments.origin" ? nullptr : &origin, in.reference, batches,
+                               pairs, spheres, bone_counts, bones, centers, pair_places, moments);
+}
+
 fb::Offset<schema::BoneRefit> build_bone_refit(fb::FlatBufferBuilder& builder, const AssetParts& parts) {
   const BoneRefitParts& in = parts.bone_refit;
   if (in.weights.empty()) {
@@ -108,8 +133,9 @@ fb::Offset<schema::BoneRefit> build_bone_refit(fb::FlatBufferBuilder& builder, c
   const auto morph_term_counts = builder.CreateVector(in.morph_term_counts);
   const auto morph_targets = builder.CreateVector(in.morph_targets);
   const auto morph_terms = struct_vector<schema::MorphTerm>(builder, in.morph_terms);
+  const auto moments = build_moments(builder, parts);
   return schema::CreateBoneRefit(builder, bone_vector, morphs, weights, term_counts, term_bones, terms,
-                                 morph_term_counts, morph_targets, morph_terms);
+                                 morph_term_counts, morph_targets, morph_terms, moments);
 }
 
 fb::Offset<schema::Surface> build_surface(fb::FlatBufferBuilder& builder, const SurfaceParts& in) {

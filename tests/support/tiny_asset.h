@@ -36,6 +36,19 @@ struct BoneParts {
   bool is_rest = false;
 };
 
+struct MomentParts {
+  Vec3 origin{};
+  std::uint32_t reference = 0;
+  std::vector<MomentBatch> batches;
+  std::vector<BonePair> pairs;
+  std::vector<std::uint32_t> spheres;
+  std::vector<std::uint8_t> bone_counts;
+  std::vector<std::uint16_t> bones;
+  std::vector<CenterTerm> centers;
+  std::vector<std::uint8_t> pair_places;
+  std::vector<Moment> moments;
+};
+
 struct BoneRefitParts {
   std::vector<BoneParts> bones;
   std::vector<std::string> morphs;
@@ -44,6 +57,7 @@ struct BoneRefitParts {
   std::vector<BoneTerm> terms;
   std::vector<std::uint32_t> morph_term_counts, morph_targets;
   std::vector<MorphTerm> morph_terms;
+  MomentParts moments;  // left out where it has no batches
 };
 
 struct SurfaceParts {
