@@ -26,14 +26,17 @@ struct Layout {
         lane_words(asset.spheres().size * kLaneFigures * kMostLanes / 2),
         bone_words(asset.bone_count() * kMatrixFloats * kMostLanes / 2),
         morph_words(asset.morph_count() * kMostLanes / 2),
+        product_words(product_floats(asset.moment_tables()) / 2),
         order_words(1 + asset.spheres().size / 2 + 1) {}
 
   std::size_t bit_words, near_words;
   std::size_t lane_words;               // a task
   std::size_t bone_words, morph_words;  // a task: matrices and weights, one instance a lane
+  std::size_t product_words;            // a task: of matrices
   std::size_t order_words;              // a task: its total, and a place a sphere
   std::size_t task_words() const {
-    return kAlignmentWords + lane_words + bone_words + morph_words + kMostLanes * bit_words + order_words;
+    return kAlignmentWords + lane_words + bone_words + morph_words + product_words + kMostLanes * bit_words +
+           order_words;
   }
   std::size_t shared_words() const { return bit_words + near_words; }
 };
@@ -166,6 +169,7 @@ void run_task(void* data, std::size_t task) {
   refit.lanes = batch.lanes;
   refit.matrices = batch.lanes + 2 * crowd.layout.lane_words;
   refit.morph_weights = refit.matrices + 2 * crowd.layout.bone_words;
+  refit.products = refit.morph_weights + 2 * crowd.layout.morph_words;
 
   const bool lists = job.pairs.size > 0 && (crowd.list_only || crowd.task_count == 1);
   const std::size_t end = crowd.first_of(task + 1);

@@ -2,10 +2,6 @@
 // A matrix's figure is a register, one instance a lane; a pivot's is the same for all of them.
 #include "crowd_refit.h"
 
-#include <hwy/cache_control.h>
-
-#include <cstring>
-
 #include "arithmetic.h"
 #include "crowd_lanes.h"
 #include "simd.h"
@@ -13,6 +9,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "crowd_refit.cpp"
 #include "highway.h"
+#include "lane_matrices.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
@@ -28,50 +25,12 @@ constexpr std::size_t kLanes = hn::MaxLanes(Floats());
 // those.
 constexpr std::size_t kAtATime = 4;
 
-// Four figures of each instance, `stride` floats apart; 0 for the instances that are not there.
-HWY_INLINE void load_four(const float* from, std::size_t stride, std::size_t count, Vector (&out)[4]) {
-  HWY_ALIGN float rows[kLanes][4];
-  for (std::size_t lane = 0; lane < count; ++lane) {
-    std::memcpy(rows[lane], from + lane * stride, sizeof rows[lane]);
-  }
-  for (std::size_t lane = count; lane < kLanes; ++lane) {
-    rows[lane][0] = rows[lane][1] = rows[lane][2] = rows[lane][3] = 0;
-  }
-  hn::LoadInterleaved4(Floats(), rows[0], out[0], out[1], out[2], out[3]);
-}
-
-// By bone, row and column.
-HWY_INLINE void transpose(const LaneRefit& batch) {
-  constexpr Floats kFloats;
-  const MatrixLayout layout = batch.inputs.layout;
-  const bool by_rows = layout == MatrixLayout::kRowMajor3x4 || layout == MatrixLayout::kRowMajor4x4;
-  const std::size_t quads = layout == MatrixLayout::kColumnMajor4x4 ? 4 : 3;
-  std::size_t places[16];  // of a matrix's figures, as they come
-  for (std::size_t i = 0; i < 4 * quads; ++i) {
-    const std::size_t column_size = quads == 4 ? 4 : 3;
-    const std::size_t row = i % column_size, column = i / column_size;
-    places[i] = by_rows ? i : row < 3 ? 4 * row + column : kMatrixFloats;
-  }
-  for (std::size_t bone = 0; bone < batch.bone_count; ++bone) {
-    const float* matrix = batch.inputs.matrices + bone * batch.inputs.stride;
-    float* const out = batch.matrices + bone * kMatrixFloats * kLanes;
-    for (std::size_t quad = 0; quad < quads; ++quad) {
-      Vector figures[4];
-      load_four(matrix + 4 * quad, batch.instance_stride, batch.count, figures);
-      for (std::size_t i = 0; i < 4; ++i) {
-        const std::size_t place = places[4 * quad + i];
-        if (place < kMatrixFloats) {
-          hn::Store(figures[i], kFloats, out + place * kLanes);
-        }
-      }
-    }
-  }
-  if (batch.inputs.morph_weights != nullptr) {
-    for (std::size_t target = 0; target < batch.morph_count; ++target) {
-      float* const out = batch.morph_weights + target * kLanes;
-      for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        out[lane] = lane < batch.count ? batch.inputs.morph_weights[lane * batch.morph_count + target] : 0;
-      }
+// One instance a lane, as transpose() does with matrices.
+HWY_INLINE void transpose_morph_weights(const LaneRefit& batch) {
+  for (std::size_t target = 0; target < batch.morph_count; ++target) {
+    float* const out = batch.morph_weights + target * kLanes;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      out[lane] = lane < batch.count ? batch.inputs.morph_weights[lane * batch.morph_count + target] : 0;
     }
   }
 }
@@ -172,34 +131,6 @@ HWY_INLINE Vector tree(const Vector (&v)[kPivotLanes]) {
   return hn::Add(hn::Add(hn::Add(v[0], v[4]), hn::Add(v[2], v[6])), hn::Add(hn::Add(v[1], v[5]), hn::Add(v[3], v[7])));
 }
 
-// Fetches the matrices of the next call's instances, a few lines of the cache at a time.
-class Fetcher {
- public:
-  HWY_INLINE explicit Fetcher(const LaneRefit& batch)
-      : next_(batch.inputs.matrices + batch.count * batch.instance_stride),
-        stride_(batch.instance_stride),
-        size_((batch.bone_count - 1) * batch.inputs.stride + kMatrixFloats),
-        left_(batch.next_count),
-        step_((batch.next_count * (size_ / kLine + 1) + batch.inputs.sphere_count - 1) / batch.inputs.sphere_count) {}
-
-  HWY_INLINE void fetch() {
-    for (std::size_t i = 0; i < step_ && left_ > 0; ++i) {
-      hwy::Prefetch(next_ + at_);
-      at_ += kLine;
-      if (at_ >= size_) {
-        at_ = 0;
-        next_ += stride_;
-        --left_;
-      }
-    }
-  }
-
- private:
-  static constexpr std::size_t kLine = 16;  // floats
-  const float* next_;
-  std::size_t stride_, size_, left_, step_, at_ = 0;
-};
-
 // A sphere's radius from its pivots' distances, summed over its groups.
 HWY_INLINE void finish(const LaneRefit& batch, std::size_t sphere, const Vector (&distances)[kPivotLanes]) {
   constexpr Floats kFloats;
@@ -232,7 +163,7 @@ HWY_INLINE void refit_all(const LaneRefit& batch) {
   const BoneRefitInputs& in = batch.inputs;
   std::size_t group = 0;
   GroupPlace at{0, 0};
-  Fetcher fetcher(batch);
+  Fetcher fetcher(batch, in.sphere_count);
   Vector p[3][kPivotLanes], shares[3][kPivotLanes], center[3], roots[kPivotLanes], distances[kPivotLanes];
   for (std::size_t lane = 0; lane < kPivotLanes; ++lane) {
     roots[lane] = distances[lane] = shares[0][lane] = shares[1][lane] = shares[2][lane] = hn::Zero(kFloats);
@@ -293,6 +224,7 @@ void refit_batch(const LaneRefit& batch) {
   if (batch.inputs.morph_weights == nullptr) {
     refit_all<false>(batch);
   } else {
+    transpose_morph_weights(batch);
     refit_all<true>(batch);
   }
 }
@@ -309,7 +241,17 @@ SPHERECHAIN_KERNELS(refit_batch);
 
 }  // namespace
 
-void refit_lanes(Target resolved, const LaneRefit& batch) { refit_batch_kernels[index_of(resolved)](batch); }
+void refit_lanes_from_pivots(Target resolved, const LaneRefit& batch) {
+  refit_batch_kernels[index_of(resolved)](batch);
+}
+
+void refit_lanes(Target resolved, const LaneRefit& batch) {
+  if (batch.inputs.rule == RefitRule::kMoments) {
+    refit_lanes_from_moments(resolved, batch);
+  } else {
+    refit_lanes_from_pivots(resolved, batch);
+  }
+}
 
 }  // namespace spherechain
 #endif

@@ -14,9 +14,11 @@ struct LaneRefit {
   std::size_t instance_stride = 0;  // floats from one instance's matrices to the next's
   std::size_t count = 0;            // instances, at most the target's lanes
   std::size_t next_count = 0;  // instances that come after them, in the next call: fetched into the cache meanwhile
-  // Scratch, aligned to 64 bytes: kMatrixFloats * kMostLanes floats a bone, kMostLanes a morph target.
+  // Scratch, aligned to 64 bytes: kMatrixFloats * kMostLanes floats a bone, kMostLanes a morph target,
+  // product_floats() of the moments.
   float* matrices = nullptr;
   float* morph_weights = nullptr;
+  float* products = nullptr;
   float* lanes = nullptr;  // out: as LaneBatch has them
 };
 
@@ -24,5 +26,12 @@ inline constexpr std::size_t kMatrixFloats = 12;
 
 // The spheres that refit_from_bones gives each instance.
 void refit_lanes(Target resolved, const LaneRefit& batch);
+
+// The same, by the pivots (kPaper, kCalibrated) and by moments.
+void refit_lanes_from_pivots(Target resolved, const LaneRefit& batch);
+void refit_lanes_from_moments(Target resolved, const LaneRefit& batch);
+
+// Of LaneRefit::products; 0 where there are no moments.
+std::size_t product_floats(const MomentTables& moments);
 
 }  // namespace spherechain

@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: MIT
+// Refit by moments of as many instances as a register has lanes, one a lane. The header of RefitBonesJob has the
+// arithmetic. A batch's Gram matrices are made once for all of its spheres, two columns at a time: half of them fit
+// the first cache beside what else is read, and leave one register a sphere to be kept.
+#include "arithmetic.h"
+#include "crowd_lanes.h"
+#include "crowd_refit.h"
+#include "simd.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "crowd_moments.cpp"
+#include "highway.h"
+#include "lane_matrices.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace spherechain {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Floats = hn::ScalableTag<float>;
+using Vector = hn::Vec<Floats>;
+constexpr std::size_t kLanes = hn::MaxLanes(Floats());
+
+constexpr std::size_t kRows = 3, kColumns = 4;
+constexpr std::size_t kHalfProducts = 2 * kColumns;  // entries of a Gram matrix at a time: columns c and c + 2
+
+// Where a batch starts in the tables.
+struct BatchPlace {
+  std::size_t pair, sphere, bone, place;
+};
+
+HWY_INLINE float* matrix_of(const LaneRefit& batch, std::size_t bone) {
+  return batch.matrices + bone * kMatrixFloats * kLanes;
+}
+
+// The bone's image of the origin, into `out`.
+HWY_INLINE void move_origin(const float* matrix, const Vec3& origin, Vector (&out)[kRows]) {
+  constexpr Floats kFloats;
+  for (std::size_t row = 0; row < kRows; ++row) {
+    const float* const a = matrix + kColumns * kLanes * row;
+    Vector p = fused(kFloats, hn::Load(kFloats, a), hn::Set(kFloats, origin.x), hn::Load(kFloats, a + 3 * kLanes));
+    p = fused(kFloats, hn::Load(kFloats, a + kLanes), hn::Set(kFloats, origin.y), p);
+    out[row] = fused(kFloats, hn::Load(kFloats, a + 2 * kLanes), hn::Set(kFloats, origin.z), p);
+  }
+}
+
+// From bones' matrices to those relative to the origin and its image by the reference bone, which is handed back.
+HWY_INLINE void make_relative(const LaneRefit& batch, Vector (&reference)[kRows]) {
+  constexpr Floats kFloats;
+  const MomentInputs& tables = batch.inputs.moments;
+  move_origin(matrix_of(batch, tables.reference), tables.origin, reference);
+  for (std::size_t bone = 0; bone < batch.bone_count; ++bone) {
+    float* const matrix = matrix_of(batch, bone);
+    Vector image[kRows];
+    move_origin(matrix, tables.origin, image);
+    for (std::size_t row = 0; row < kRows; ++row) {
+      hn::Store(hn::Sub(image[row], reference[row]), kFloats, matrix + (kColumns * row + 3) * kLanes);
+    }
+  }
+}
+
+// Columns `first` and `first` + 2 of the Gram matrices of a batch's pairs, row by row.
+HWY_INLINE void multiply_pairs(const LaneRefit& batch, const BonePair* pairs, std::size_t count, std::size_t first) {
+  constexpr Floats kFloats;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float* const k = matrix_of(batch, pairs[i].a);
+    const float* const l = matrix_of(batch, pairs[i].b) + first * kLanes;
+    float* const out = batch.products + i * kHalfProducts * kLanes;
+    Vector left[kRows], right[kRows];
+    for (std::size_t m = 0; m < kRows; ++m) {
+      left[m] = hn::Load(kFloats, l + kColumns * m * kLanes);
+      right[m] = hn::Load(kFloats, l + (kColumns * m + 2) * kLanes);
+    }
+    for (std::size_t row = 0; row < kColumns; ++row) {
+      const Vector k0 = hn::Load(kFloats, k + row * kLanes), k1 = hn::Load(kFloats, k + (kColumns + row) * kLanes),
+                   k2 = hn::Load(kFloats, k + (2 * kColumns + row) * kLanes);
+      hn::Store(fused(kFloats, k2, left[2], fused(kFloats, k1, left[1], hn::Mul(k0, left[0]))), kFloats,
+                out + 2 * row * kLanes);
+      hn::Store(fused(kFloats, k2, right[2], fused(kFloats, k1, right[1], hn::Mul(k0, right[0]))), kFloats,
+                out + (2 * row + 1) * kLanes);
+    }
+  }
+}
+
+// What columns `first` and `first` + 2 add to the mean squared distances of kSpheres spheres of the same pairs, whose
+// moments follow each other: two columns of the halving tree.
+template <std::size_t kSpheres>
+HWY_INLINE void sum_pairs(const LaneRefit& batch, const std::uint8_t* places, std::size_t count, const Moment* moments,
+                          std::size_t first, Vector (&out)[kSpheres]) {
+  constexpr Floats kFloats;
+  Vector sums[kSpheres][kHalfProducts];
+  {
+    const float* const product = batch.products + places[0] * kHalfProducts * kLanes;
+    for (std::size_t i = 0; i < kHalfProducts; ++i) {
+      const Vector g = hn::Load(kFloats, product + i * kLanes);
+      for (std::size_t s = 0; s < kSpheres; ++s) {
+        const float* const moment = moments[s * count].values + first;
+        sums[s][i] = hn::Mul(hn::Set(kFloats, moment[2 * i]), g);
+      }
+    }
+  }
+  for (std::size_t pair = 1; pair < count; ++pair) {
+    const float* const product = batch.products + places[pair] * kHalfProducts * kLanes;
+    for (std::size_t i = 0; i < kHalfProducts; ++i) {
+      const Vector g = hn::Load(kFloats, product + i * kLanes);
+      for (std::size_t s = 0; s < kSpheres; ++s) {
+        const float* const moment = moments[s * count + pair].values + first;
+        sums[s][i] = fused(kFloats, hn::Set(kFloats, moment[2 * i]), g, sums[s][i]);
+      }
+    }
+  }
+  for (std::size_t s = 0; s < kSpheres; ++s) {
+    const Vector(&v)[kHalfProducts] = sums[s];
+    const Vector low = hn::Add(hn::Add(v[0], v[4]), hn::Add(v[2], v[6]));
+    const Vector high = hn::Add(hn::Add(v[1], v[5]), hn::Add(v[3], v[7]));
+    out[s] = hn::Add(low, high);
+  }
+}
+
+// Takes up a bone's share of a sphere's centre.
+template <bool kIsFirst>
+HWY_INLINE void add_bone(const float* matrix, const CenterTerm& term, Vector (&sums)[kRows][kColumns]) {
+  constexpr Floats kFloats;
+  const Vector u[kColumns] = {hn::Set(kFloats, term.x), hn::Set(kFloats, term.y), hn::Set(kFloats, term.z),
+                              hn::Set(kFloats, term.w)};
+  for (std::size_t row = 0; row < kRows; ++row) {
+    for (std::size_t column = 0; column < kColumns; ++column) {
+      const Vector c = hn::Load(kFloats, matrix + (kColumns * row + column) * kLanes);
+      sums[row][column] = kIsFirst ? hn::Mul(c, u[column]) : fused(kFloats, c, u[column], sums[row][column]);
+    }
+  }
+}
+
+HWY_INLINE void place_center(const LaneRefit& batch, const std::uint16_t* bones, const CenterTerm* terms,
+                             std::size_t count, const Vector (&reference)[kRows], float* out) {
+  constexpr Floats kFloats;
+  Vector sums[kRows][kColumns];
+  add_bone<true>(matrix_of(batch, bones[0]), terms[0], sums);
+  for (std::size_t i = 1; i < count; ++i) {
+    add_bone<false>(matrix_of(batch, bones[i]), terms[i], sums);
+  }
+  for (std::size_t row = 0; row < kRows; ++row) {
+    const Vector sum = hn::Add(hn::Add(sums[row][0], sums[row][2]), hn::Add(sums[row][1], sums[row][3]));
+    hn::Store(hn::Add(sum, reference[row]), kFloats, out + row * kLanes);
+  }
+}
+
+HWY_INLINE Vector radius_of(const LaneRefit& batch, std::size_t sphere, Vector sum) {
+  constexpr Floats kFloats;
+  const RestSphere& rest = batch.inputs.rest[sphere];
+  const float wanted = batch.inputs.radius == RadiusKind::kFit ? rest.radius : rest.detect_radius;
+  const Vector spread = hn::Sqrt(hn::IfThenZeroElse(hn::Lt(sum, hn::Zero(kFloats)), sum));
+  return hn::Mul(hn::Set(kFloats, wanted), spread);
+}
+
+HWY_INLINE bool have_same_pairs(const std::uint8_t* places, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    if (places[i] != places[count + i]) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// Half of the spheres' radii: their sums so far are kept where the radii go.
+template <bool kIsSecond>
+HWY_INLINE void sum_spheres(const LaneRefit& batch, const BatchPlace& start, std::size_t sphere_count,
+                            Fetcher& fetcher) {
+  constexpr Floats kFloats;
+  const MomentInputs& tables = batch.inputs.moments;
+  const std::size_t first = kIsSecond ? 1 : 0;
+  std::size_t place = start.place;
+  const auto finish = [&](std::size_t i, Vector sum) HWY_ATTR {
+    const std::size_t sphere = tables.spheres[i];
+    float* const radius = batch.lanes + (kLaneFigures * sphere + 3) * kLanes;
+    hn::Store(kIsSecond ? radius_of(batch, sphere, hn::Add(hn::Load(kFloats, radius), sum)) : sum, kFloats, radius);
+    fetcher.fetch();
+  };
+  for (std::size_t i = start.sphere; i < start.sphere + sphere_count;) {
+    const std::size_t bone_count = tables.bone_counts[i], count = bone_count * (bone_count + 1) / 2;
+    const std::uint8_t* const places = tables.pair_places + place;
+    const Moment* const moments = tables.moments + place;
+    if (i + 1 < start.sphere + sphere_count && tables.bone_counts[i + 1] == bone_count &&
+        have_same_pairs(places, count)) {
+      Vector sums[2];
+      sum_pairs(batch, places, count, moments, first, sums);
+      finish(i, sums[0]);
+      finish(i + 1, sums[1]);
+      i += 2;
+      place += 2 * count;
+    } else {
+      Vector sums[1];
+      sum_pairs(batch, places, count, moments, first, sums);
+      finish(i, sums[0]);
+      ++i;
+      place += count;
+    }
+  }
+}
+
+void refit_batch_by_moments(const LaneRefit& batch) {
+  const MomentInputs& tables = batch.inputs.moments;
+  transpose(batch);
+  Vector reference[kRows];
+  make_relative(batch, reference);
+  Fetcher fetcher(batch, 2 * batch.inputs.sphere_count);
+  BatchPlace at{0, 0, 0, 0};
+  for (std::size_t b = 0; b < tables.batch_count; ++b) {
+    const std::size_t pair_count = tables.batches[b].pair_count, sphere_count = tables.batches[b].sphere_count;
+    multiply_pairs(batch, tables.pairs + at.pair, pair_count, 0);
+    sum_spheres<false>(batch, at, sphere_count, fetcher);
+    multiply_pairs(batch, tables.pairs + at.pair, pair_count, 1);
+    sum_spheres<true>(batch, at, sphere_count, fetcher);
+    for (std::size_t i = 0; i < sphere_count; ++i) {
+      const std::size_t bone_count = tables.bone_counts[at.sphere];
+      place_center(batch, tables.bones + at.bone, tables.centers + at.bone, bone_count, reference,
+                   batch.lanes + kLaneFigures * kLanes * tables.spheres[at.sphere]);
+      ++at.sphere;
+      at.bone += bone_count;
+      at.place += bone_count * (bone_count + 1) / 2;
+    }
+    at.pair += pair_count;
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace spherechain
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace spherechain {
+namespace {
+
+SPHERECHAIN_KERNELS(refit_batch_by_moments);
+
+}  // namespace
+
+std::size_t product_floats(const MomentTables& moments) {
+  std::size_t most = 0;
+  for (const MomentBatch& batch : moments.batches) {
+    most = most < batch.pair_count ? batch.pair_count : most;
+  }
+  return kMomentSize / 2 * kMostLanes * most;
+}
+
+void refit_lanes_from_moments(Target resolved, const LaneRefit& batch) {
+  refit_batch_by_moments_kernels[index_of(resolved)](batch);
+}
+
+}  // namespace spherechain
+#endif
