@@ -68,7 +68,7 @@ struct SphereParts {
         sum += d * d;
       }
     }
-    return std::sqrt(sum / static_cast<double>(differences.size()));
+    return sum > 0 ? std::sqrt(sum / static_cast<double>(differences.size())) : 1;  // of one pivot: any
   }
 
   Moment moment(std::uint16_t k, std::uint16_t l, double spread) const {

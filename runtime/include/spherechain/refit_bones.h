@@ -51,8 +51,9 @@ struct BoneMatrices {
 // A pose that blends others linearly, a Bezier curve of poses, is as linear in the matrices: blend those.
 //
 // The arithmetic is fixed, in single precision, so that every backend gives the same spheres, bit for bit. fma(a, b, c)
-// is a*b + c rounded once, on machines without such an instruction too; nothing else is contracted. Of a group of eight
-// pivots (see BoneTables), for each lane:
+// is a*b + c rounded once, on machines without such an instruction too; nothing else is contracted.
+//
+// Under the refit rules kPaper and kCalibrated, of a group of eight pivots (see BoneTables), for each lane:
 //   term   x = fma(weight, x_t, x) for each of the term's morph terms t, in order, of their targets' weights; so y and
 //   z p      for each row m of a bone's matrix: even + odd, which start at 0 and take up term after term:
 //          even = fma(m2, z, fma(m0, x, even)), odd = fma(m3, w, fma(m1, y, odd))
@@ -63,6 +64,21 @@ struct BoneMatrices {
 //   d      sqrt(fma(dz, dz, fma(dy, dy, dx*dx))) of p - centre, 0 in a spare lane, summed over the groups in order
 //   mean   tree(d) / float(K)
 // and the radius follows from the mean as in RefitJob.
+//
+// Under kMoments (see MomentTables) no pivot is moved and morph weights change nothing. Of a bone whose matrix has the
+// rows (a0 a1 a2 t), m = 0, 1, 2; o the origin, "ref" the reference bone:
+//   p[m]    fma(a2, o.z, fma(a1, o.y, fma(a0, o.x, t)))
+//   C[m]    (a0, a1, a2, p[m] - p_ref[m])
+// of a pair of bones k, l, and r, c = 0 to 3:
+//   G[r][c] fma(Ck[2][r], Cl[2][c], fma(Ck[1][r], Cl[1][c], Ck[0][r] * Cl[0][c]))
+// of a sphere
+//   S[r][c] M[4r + c] * G[r][c] of its first pair, M the pair's moment; then fma(M[4r + c], G[r][c], S[r][c]) of each
+//           further one
+//   square  the sum of all sixteen by halves: v[i] + v[i + 8] of the 4r + c, so to eight, v[i] + v[i + 4] to four,
+//           v[i] + v[i + 2] to two and their sum
+//   radius  wanted * sqrt(square < 0 ? 0 : square), wanted the rest sphere's radius or detect_radius
+//   centre  for each row m: s[j] = C[m][j] * u[j] of its first bone, u its share (x, y, z, w) of the centre; then
+//           fma(C[m][j], u[j], s[j]) of each further one; ((s[0] + s[2]) + (s[1] + s[3])) + p_ref[m]
 //
 // Fill in the fields and call run(). Allocates nothing, takes no lock; jobs on other buffers may run at the same time.
 // Fastest where the asset's bytes start at a multiple of 64.

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "jobs.h"
+#include "spherechain/refit_bones.h"
+#include "tiny_moments.h"
+
+namespace spherechain::test {
+namespace {
+
+// Of coordinates of some units, and of a quadratic form in them.
+constexpr double kRounding = 2e-5;
+
+struct Skinned {
+  Skinned(std::size_t bone_count, std::size_t spheres, std::size_t batch_pairs = 48, bool has_large_spheres = true)
+      : tiny(random_asset(spheres, 31)), matrices(random_matrices(bone_count, 33)) {
+    for (std::size_t i = 0; i < spheres; ++i) {
+      const std::uint16_t counts[] = {2, 8, 1, 19, 4, 3, 16, 2};
+      give_pivots(tiny, i, has_large_spheres ? counts[i % 8] : std::uint16_t{2}, static_cast<unsigned>(i));
+    }
+    skin = add_bones(tiny, bone_count, 32);
+    add_moments(tiny, skin, batch_pairs);
+  }
+  const MomentParts& tables() const { return tiny.parts.bone_refit.moments; }
+
+  TinyAsset tiny;
+  TinySkin skin;
+  std::vector<Matrix> matrices;
+};
+
+Refitted refit_posed(const Asset& asset, const Skinned& s, RadiusKind radius, Target target = Target::kBest) {
+  return refit_bones(asset, {s.matrices[0].data(), s.matrices.size()}, {}, radius, target);
+}
+
+struct Rows {
+  float at[3][4];
+};
+
+float image_of_origin(const float* row, const Vec3& origin) {
+  return std::fma(row[2], origin.z, std::fma(row[1], origin.y, std::fma(row[0], origin.x, row[3])));
+}
+
+float halving_tree(std::vector<float> values) {
+  while (values.size() > 1) {
+    const std::size_t half = values.size() / 2;
+    for (std::size_t i = 0; i < half; ++i) {
+      values[i] = values[i] + values[i + half];
+    }
+    values.resize(half);
+  }
+  return values[0];
+}
+
+// The header's fixed arithmetic, to the last bit; sphere by sphere, with no batches.
+std::vector<Sphere> exact_spheres(const Skinned& s, RadiusKind kind) {
+  const MomentParts& tables = s.tables();
+  const Matrix& reference = s.matrices[tables.reference];
+  float shift[3];
+  for (std::size_t m = 0; m < 3; ++m) {
+    shift[m] = image_of_origin(reference.data() + 4 * m, tables.origin);
+  }
+  std::vector<Rows> moved;
+  for (const Matrix& matrix : s.matrices) {
+    Rows rows{};
+    for (std::size_t m = 0; m < 3; ++m) {
+      std::copy_n(matrix.data() + 4 * m, 3, rows.at[m]);
+      rows.at[m][3] = image_of_origin(matrix.data() + 4 * m, tables.origin) - shift[m];
+    }
+    moved.push_back(rows);
+  }
+  std::vector<Sphere> out(s.tiny.parts.spheres.size(), Sphere{-1, -1, -1, -1});
+  std::size_t bone = 0, moment = 0;
+  for (std::size_t i = 0; i < tables.spheres.size(); ++i) {
+    const std::size_t first = bone, end = bone + tables.bone_counts[i];
+    float center[3];
+    for (std::size_t m = 0; m < 3; ++m) {
+      float sums[4];
+      for (std::size_t j = 0; j < 4; ++j) {
+        for (std::size_t b = first; b < end; ++b) {
+          const CenterTerm& u = tables.centers[b];
+          const float share[] = {u.x, u.y, u.z, u.w};
+          const float value = moved[tables.bones[b]].at[m][j];
+          sums[j] = b == first ? value * share[j] : std::fma(value, share[j], sums[j]);
+        }
+      }
+      center[m] = ((sums[0] + sums[2]) + (sums[1] + sums[3])) + shift[m];
+    }
+    std::vector<float> sums;
+    for (std::size_t k = first; k < end; ++k) {
+      for (std::size_t l = k; l < end; ++l, ++moment) {
+        const Rows &left = moved[tables.bones[k]], &right = moved[tables.bones[l]];
+        for (std::size_t e = 0; e < kMomentSize; ++e) {
+          const std::size_t r = e / 4, c = e % 4;
+          const float low = std::fma(left.at[1][r], right.at[1][c], left.at[0][r] * right.at[0][c]);
+          const float gram = std::fma(left.at[2][r], right.at[2][c], low);
+          const float own = tables.moments[moment].values[e];
+          if (sums.size() < kMomentSize) {
+            sums.push_back(own * gram);
+          } else {
+            sums[e] = std::fma(own, gram, sums[e]);
+          }
+        }
+      }
+    }
+    bone = end;
+    const float squared = halving_tree(sums);
+    const RestSphere& rest = s.tiny.parts.spheres[tables.spheres[i]];
+    const float wanted = kind == RadiusKind::kFit ? rest.radius : rest.detect_radius;
+    out[tables.spheres[i]] = {center[0], center[1], center[2], wanted * std::sqrt(squared < 0 ? 0 : squared)};
+  }
+  return out;
+}
+
+void check_exact(const Skinned& s) {
+  const OpenedAsset opened(s.tiny.parts);
+  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
+  for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
+    const std::vector<Sphere> expected = exact_spheres(s, kind);
+    for (const Target target : supported_targets()) {
+      INFO(to_string(target), ", ", expected.size(), " spheres");
+      const Refitted result = refit_posed(opened.asset, s, kind, target);
+      CHECK(result.status == Status::kOk);
+      CHECK(same_bits(result.spheres, expected));
+    }
+  }
+}
+
+double distance(const Sphere& a, const Sphere& b) {
+  return std::max({std::abs(double{a.x} - double{b.x}), std::abs(double{a.y} - double{b.y}),
+                   std::abs(double{a.z} - double{b.z}), std::abs(double{a.radius} - double{b.radius})});
+}
+
+}  // namespace
+
+TEST_CASE("by moments, spheres from bones are those of the skinned mesh") {
+  const Skinned s(9, 24);
+  const OpenedAsset opened(s.tiny.parts);
+  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
+  const std::vector<float> mesh = skinned(s.tiny, s.skin, s.matrices, {});
+  for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
+    const Refitted result = refit_posed(opened.asset, s, kind), expected = refit(opened.asset, mesh, kind);
+    REQUIRE(result.status == Status::kOk);
+    REQUIRE(expected.status == Status::kOk);
+    for (std::size_t i = 0; i < result.spheres.size(); ++i) {
+      INFO("sphere ", i);
+      CHECK(distance(result.spheres[i], expected.spheres[i]) < kRounding);
+    }
+  }
+}
+
+TEST_CASE("by moments, on every target spheres from bones follow the fixed arithmetic of the header bit for bit") {
+  for (const std::size_t count : {1U, 2U, 3U, 15U, 16U, 17U, 33U, 50U}) {
+    check_exact(Skinned(9, count));
+  }
+}
+
+TEST_CASE("by moments, spheres fall into batches of any size, up to the largest there may be") {
+  const Skinned small(9, 40, 1);
+  CHECK(small.tables().batches.size() > 20);
+  check_exact(small);
+  const Skinned large(kMaxMomentBones, 40, kMaxMomentPairs);
+  const auto count_of = [](const MomentBatch& batch) { return batch.pair_count; };
+  std::vector<std::uint32_t> counts;
+  std::transform(large.tables().batches.begin(), large.tables().batches.end(), std::back_inserter(counts), count_of);
+  CHECK(*std::max_element(counts.begin(), counts.end()) > 240);
+  check_exact(large);
+}
+
+TEST_CASE("by moments, spheres of an asset with more bones than its stack has room for are the same") {
+  for (const std::size_t bones : {255U, 256U, 257U, 1000U}) {
+    check_exact(Skinned(bones, 40, 48, false));
+  }
+}
+
+}  // namespace spherechain::test
