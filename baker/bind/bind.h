@@ -11,8 +11,9 @@
 
 namespace spherechain::baker {
 
-// How centre and radius follow the pivots. paper: section 5.1; calibrated: exact at rest (see runtime/refit.h).
-enum class RefitRule : std::uint8_t { kPaper = 0, kCalibrated = 1 };
+// How centre and radius follow the pivots. paper: section 5.1; calibrated: exact at rest; moments: the same with root
+// mean squares (see runtime/refit.h). Never asked for: what a calibrated binding becomes where bones allow it.
+enum class RefitRule : std::uint8_t { kPaper = 0, kCalibrated = 1, kMoments = 2 };
 
 struct BoundPivot {
   Index triangle;  // of Character::skin
@@ -22,7 +23,7 @@ struct BoundPivot {
 struct BoundSphere {
   Ball rest;             // what refit gives in the rest pose: the fitted sphere, but for the paper's rule and spikes
   double detect_radius;  // rest
-  double spread;         // mean distance of the pivots' centroids from the centre at rest
+  double spread;         // mean distance of the pivots' centroids from the centre at rest; moments: root mean square
   std::vector<BoundPivot> pivots;
   double weight_sum;  // sum of |weight|: 1 means the centre lies inside the pivots' hull
 };
@@ -42,11 +43,11 @@ struct Binding {
 };
 
 struct BindSettings {
-  RefitRule rule = RefitRule::kCalibrated;
-  int pivots = 8;                // of a sphere; calibrated: more where so many are ill-posed
-  double detect_quantile = 0.9;  // of the surrounding region's area, by distance from the centre
-  double near_fraction = 0.9;    // of the rest distance: see near_fit
-  double neighbour_gap = 0;      // of the height: regions with a shorter way between them on the mesh are ignored too
+  RefitRule rule = RefitRule::kCalibrated;  // or kPaper
+  int pivots = 8;                           // of a sphere; calibrated: more where so many are ill-posed
+  double detect_quantile = 0.9;             // of the surrounding region's area, by distance from the centre
+  double near_fraction = 0.9;               // of the rest distance: see near_fit
+  double neighbour_gap = 0;  // of the height: regions with a shorter way between them on the mesh are ignored too
 };
 
 // Throws Error(kSegmentation) where a sphere finds no pivots.

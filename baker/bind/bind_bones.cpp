@@ -75,13 +75,7 @@ class Binder {
           moved.morphs.try_emplace(target, Vec3::Zero()).first->second += weight / 3 * delta;
         }
       };
-      if (weights_.empty() || weights_[v].weight[0] <= 0) {
-        move(rest_bone_, 1);
-        continue;
-      }
-      for (std::size_t k = 0; k < kMaxInfluences && weights_[v].weight[k] > 0; ++k) {
-        move(weights_[v].joint[k], weights_[v].weight[k]);
-      }
+      for (const BoneShare& share : bone_shares(weights_, v, rest_bone_)) move(share.bone, share.weight);
     }
     return out;
   }
@@ -126,6 +120,20 @@ bool any_rests(const Character& character, const std::vector<VertexWeights>& wei
 
 }  // namespace
 
+const std::vector<VertexWeights>& weights_to_bones(const Character& character,
+                                                   const std::vector<VertexWeights>& rig_weights) {
+  return character.rig.bones.empty() ? rig_weights : character.rig.weights;
+}
+
+std::vector<BoneShare> bone_shares(const std::vector<VertexWeights>& weights, Index vertex, Index rest_bone) {
+  if (weights.empty() || weights[vertex].weight[0] <= 0) return {{rest_bone, 1}};
+  std::vector<BoneShare> out;
+  for (std::size_t k = 0; k < kMaxInfluences && weights[vertex].weight[k] > 0; ++k) {
+    out.push_back({weights[vertex].joint[k], weights[vertex].weight[k]});
+  }
+  return out;
+}
+
 BoneBinding bind_bones(const Character& character, const Binding& binding, const std::vector<Joint>& joints,
                        const std::vector<VertexWeights>& rig_weights) {
   BoneBinding out;
@@ -134,7 +142,7 @@ BoneBinding bind_bones(const Character& character, const Binding& binding, const
   if (out.bones.empty() && out.morphs.empty()) return out;
 
   const auto rest_bone = static_cast<Index>(out.bones.size());
-  const std::vector<VertexWeights>& weights = character.rig.bones.empty() ? rig_weights : character.rig.weights;
+  const std::vector<VertexWeights>& weights = weights_to_bones(character, rig_weights);
   if (any_rests(character, weights)) out.bones.push_back({"rest", Affine::Identity(), true});
   const Binder binder(character, binding, weights, rest_bone);
   for (const BoundSphere& sphere : binding.spheres) {

@@ -50,6 +50,19 @@ struct BoneBinding {
   }
 };
 
+struct BoneShare {
+  Index bone;
+  double weight;
+};
+
+// The bones a source vertex hangs on; the rest bone where none moves it. Their weights add up to 1; a bone may be there
+// twice.
+std::vector<BoneShare> bone_shares(const std::vector<VertexWeights>& weights, Index vertex, Index rest_bone);
+
+// The source's own, or where it has no bones, the automatic rig's.
+const std::vector<VertexWeights>& weights_to_bones(const Character& character,
+                                                   const std::vector<VertexWeights>& rig_weights);
+
 // `rig_weights` are of every source vertex, to `joints`; they count where the source has no bones of its own.
 BoneBinding bind_bones(const Character& character, const Binding& binding, const std::vector<Joint>& joints,
                        const std::vector<VertexWeights>& rig_weights);

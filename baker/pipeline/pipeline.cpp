@@ -66,12 +66,13 @@ void run_after_fit(Bake& out, const Progress& progress) {
       if (out.character.rig.bones.empty()) out.rig_weights = rig_weights(out.character, out.joints);
     }
     out.bones = bind_bones(out.character, out.binding, out.joints, out.rig_weights);
+    out.moments = bind_moments(out.character, out.bones, out.rig_weights, out.binding);
   });
   stage(out, progress, "leaves",
         [&] { out.leaves = make_leaves(out.character, out.binding, out.bones, out.rig_weights, settings.leaves); });
   stage(out, progress, "write", [&] {
     out.asset = serialize({out.character, out.regions, out.spheres, out.chains, out.binding, out.joints, out.bones,
-                           out.leaves, to_json(settings)});
+                           out.moments, out.leaves, to_json(settings)});
   });
 }
 

@@ -10,6 +10,7 @@
 
 #include "bind/bind.h"
 #include "bind/bind_bones.h"
+#include "bind/bind_moments.h"
 #include "chains/chains.h"
 #include "fit/fit.h"
 #include "import/import.h"
@@ -68,13 +69,14 @@ struct Bake {
   std::vector<Joint> joints;
   std::vector<VertexWeights> rig_weights;  // to the joints, of every source vertex; none where the source has bones
   BoneBinding bones;
+  MomentBinding moments;
   Leaves leaves;
   std::vector<std::uint8_t> asset;
   std::vector<StageTime> times;
 };
 
-// The stage `segment`. A closed biped is segmented by its shape, which knows armpit and crotch best; all else by its rig,
-// where there is one, or by a closed surface made for it. The body becomes what was segmented.
+// The stage `segment`. A closed biped is segmented by its shape, which knows armpit and crotch best; all else by its
+// rig, where there is one, or by a closed surface made for it. The body becomes what was segmented.
 Regions segment_character(Character& character, const Roles& roles, const SegmentSettings& settings,
                           ClosingReport& closing);
 

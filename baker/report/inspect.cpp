@@ -23,6 +23,18 @@ const char* name_of(spherechain::Side side) {
   return "none";
 }
 
+const char* name_of(spherechain::RefitRule rule) {
+  switch (rule) {
+    case spherechain::RefitRule::kPaper:
+      return "paper";
+    case spherechain::RefitRule::kMoments:
+      return "moments";
+    case spherechain::RefitRule::kCalibrated:
+      break;
+  }
+  return "calibrated";
+}
+
 std::size_t count_ignored(const Asset& asset) {
   std::size_t count = 0;
   for (const std::uint64_t word : asset.ignored()) count += static_cast<std::size_t>(std::popcount(word));
@@ -63,6 +75,12 @@ std::size_t bytes_of(const BoneTables& tables) {
   const auto bytes = [](const auto& span) { return span.size * sizeof(span[0]); };
   return bytes(tables.weights) + bytes(tables.term_counts) + bytes(tables.term_bones) + bytes(tables.terms) +
          bytes(tables.morph_term_counts) + bytes(tables.morph_targets) + bytes(tables.morph_terms);
+}
+
+std::size_t bytes_of(const MomentTables& tables) {
+  const auto bytes = [](const auto& span) { return span.size * sizeof(span[0]); };
+  return bytes(tables.batches) + bytes(tables.pairs) + bytes(tables.spheres) + bytes(tables.bone_counts) +
+         bytes(tables.bones) + bytes(tables.centers) + bytes(tables.pair_places) + bytes(tables.moments);
 }
 
 std::size_t bytes_of(const Surface& surface) {
@@ -130,6 +148,7 @@ std::string inspect_json(const Asset& asset) {
   }
   for (std::size_t m = 0; m < asset.morph_count(); ++m) morphs.push_back(asset.morph_name(m));
   const BoneTables& tables = asset.bone_tables();
+  const MomentTables& moments = asset.moment_tables();
   const ordered_json out{
       {"format_version", info.format_version},
       {"writer", info.writer},
@@ -149,7 +168,7 @@ std::string inspect_json(const Asset& asset) {
         {"up", to_json(info.up)},
         {"forward", to_json(info.forward)},
         {"height", number(info.height)}}},
-      {"refit", info.refit == spherechain::RefitRule::kPaper ? "paper" : "calibrated"},
+      {"refit", name_of(info.refit)},
       {"sphere_count", asset.spheres().size},
       {"chain_entries", count_chain_entries(asset)},
       {"chain_entries_table1", info.chain_entries_table1},
@@ -167,6 +186,12 @@ std::string inspect_json(const Asset& asset) {
         {"terms", tables.terms.size},
         {"morph_terms", tables.morph_terms.size},
         {"bytes", bytes_of(tables)}}},
+      {"moment_tables",
+       {{"batches", moments.batches.size},
+        {"pairs", moments.pairs.size},
+        {"sphere_bones", moments.centers.size},
+        {"sphere_pairs", moments.moments.size},
+        {"bytes", bytes_of(moments)}}},
       {"surface",
        {{"leaves", asset.leaf_count()},
         {"vertices", asset.surface().source_vertices.size},
@@ -185,7 +210,7 @@ std::string inspect_text(const Asset& asset) {
   out += fmt::format("source   {} ({} vertices, {} triangles)\n         sha256 {}\n", info.source_file,
                      info.source_vertex_count, info.source_triangle_count, info.source_sha256);
   out += fmt::format("settings {}\n         sha256 {}\n", info.settings, info.settings_sha256);
-  out += fmt::format("refit    {}\n", info.refit == spherechain::RefitRule::kPaper ? "paper" : "calibrated");
+  out += fmt::format("refit    {}\n", name_of(info.refit));
   out += fmt::format("spheres  {}, {} chain entries ({} as Table 1 counts), {} pairs ignored, {} joints\n",
                      asset.spheres().size, count_chain_entries(asset), info.chain_entries_table1, count_ignored(asset),
                      asset.joint_count());
@@ -193,6 +218,11 @@ std::string inspect_text(const Asset& asset) {
   out += fmt::format("bones    {}, {} morph targets; refit from them: {} terms, {} of morphs, {} bytes\n",
                      asset.bone_count(), asset.morph_count(), tables.terms.size, tables.morph_terms.size,
                      bytes_of(tables));
+  if (const MomentTables& moments = asset.moment_tables(); moments.moments.size > 0) {
+    out += fmt::format("moments  {} batches of {} bone pairs; spheres: {} bones, {} pairs, {} bytes\n",
+                       moments.batches.size, moments.pairs.size, moments.centers.size, moments.moments.size,
+                       bytes_of(moments));
+  }
   out +=
       fmt::format("surface  {} leaves, {} vertices, {} contacts at rest, {} bytes\n", asset.leaf_count(),
                   asset.surface().source_vertices.size, asset.surface().rest_contacts.size, bytes_of(asset.surface()));

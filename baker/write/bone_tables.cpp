@@ -3,12 +3,14 @@
 
 #include <algorithm>
 
+#include "spherechain/bone_tables.h"
 #include "write/schema_values.h"
 
 namespace spherechain::baker {
 namespace {
 
 static_assert(sizeof(schema::Lanes) == sizeof(GroupLanes));
+static_assert(kMaxMomentBones == spherechain::kMaxMomentBones);
 
 schema::Matrix matrix_of(const Affine& affine) {
   std::array<float, 12> elements{};
@@ -17,6 +19,59 @@ schema::Matrix matrix_of(const Affine& affine) {
         static_cast<float>(affine.matrix()(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)));
   }
   return schema::Matrix(flatbuffers::span<const float, 12>(elements.data(), elements.size()));
+}
+
+schema::Moment moment_of(const Eigen::Matrix4d& moment) {
+  std::array<float, kMomentSize> values{};
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = static_cast<float>(moment(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)));
+  }
+  return schema::Moment(span_of(values));
+}
+
+schema::CenterTerm center_of(const Eigen::Vector4d& center) {
+  const Eigen::Vector4f single = center.cast<float>();
+  return {single.x(), single.y(), single.z(), single.w()};
+}
+
+flatbuffers::Offset<schema::Moments> create_moments(flatbuffers::FlatBufferBuilder& builder, const MomentBinding& in) {
+  if (in.batches.empty()) return 0;
+  std::vector<schema::MomentBatch> batches;
+  std::vector<schema::BonePair> pairs;
+  std::vector<std::uint32_t> spheres;
+  std::vector<std::uint8_t> bone_counts, places;
+  std::vector<std::uint16_t> bones;
+  std::vector<schema::CenterTerm> centers;
+  std::vector<schema::Moment> moments;
+  for (const MomentBatch& batch : in.batches) {
+    batches.emplace_back(static_cast<std::uint32_t>(batch.pairs.size()),
+                         static_cast<std::uint32_t>(batch.spheres.size()));
+    for (const BonePair& pair : batch.pairs) {
+      pairs.emplace_back(static_cast<std::uint16_t>(pair.a), static_cast<std::uint16_t>(pair.b));
+    }
+    for (const SphereMoments& sphere : batch.spheres) {
+      spheres.push_back(sphere.sphere);
+      bone_counts.push_back(static_cast<std::uint8_t>(sphere.bones.size()));
+      for (const Index bone : sphere.bones) bones.push_back(static_cast<std::uint16_t>(bone));
+      for (const Eigen::Vector4d& center : sphere.centers) centers.push_back(center_of(center));
+      places.insert(places.end(), sphere.places.begin(), sphere.places.end());
+      for (const Eigen::Matrix4d& moment : sphere.moments) moments.push_back(moment_of(moment));
+    }
+  }
+  const schema::Vec3 origin = to_schema(in.origin);
+  const auto batches_at = builder.CreateVectorOfStructs(batches);
+  const auto pairs_at = builder.CreateVectorOfStructs(pairs);
+  const auto spheres_at = builder.CreateVector(spheres);
+  const auto bone_counts_at = builder.CreateVector(bone_counts);
+  const auto bones_at = builder.CreateVector(bones);
+  // Nothing straddles two cache lines. (ForceVectorAlignment would do the same, but asserts 32 bytes at most.)
+  builder.PreAlign(centers.size() * sizeof(schema::CenterTerm), sizeof(schema::CenterTerm));
+  const auto centers_at = builder.CreateVectorOfStructs(centers);
+  const auto places_at = builder.CreateVector(places);
+  builder.PreAlign(moments.size() * sizeof(schema::Moment), sizeof(schema::Moment));
+  const auto moments_at = builder.CreateVectorOfStructs(moments);
+  return schema::CreateMoments(builder, &origin, in.reference, batches_at, pairs_at, spheres_at, bone_counts_at,
+                               bones_at, centers_at, places_at, moments_at);
 }
 
 }  // namespace
@@ -36,8 +91,8 @@ PackedPivots pack_pivots(const std::vector<schema::Pivot>& pivots) {
   return out;
 }
 
-flatbuffers::Offset<schema::BoneRefit> create_bone_refit(flatbuffers::FlatBufferBuilder& builder,
-                                                         const BoneBinding& in) {
+flatbuffers::Offset<schema::BoneRefit> create_bone_refit(flatbuffers::FlatBufferBuilder& builder, const BoneBinding& in,
+                                                         const MomentBinding& moments) {
   if (in.bones.empty()) return 0;
   std::vector<flatbuffers::Offset<schema::Bone>> bones;
   for (const MovingBone& bone : in.bones) {
@@ -71,8 +126,9 @@ flatbuffers::Offset<schema::BoneRefit> create_bone_refit(flatbuffers::FlatBuffer
   const auto morph_term_counts_at = builder.CreateVector(morph_term_counts);
   const auto morph_targets_at = builder.CreateVector(morph_targets);
   const auto morph_terms_at = aligned_vector(builder, morph_terms);
+  const auto moments_at = create_moments(builder, moments);
   return schema::CreateBoneRefit(builder, bones_at, morphs_at, weights_at, term_counts_at, term_bones_at, terms_at,
-                                 morph_term_counts_at, morph_targets_at, morph_terms_at);
+                                 morph_term_counts_at, morph_targets_at, morph_terms_at, moments_at);
 }
 
 }  // namespace spherechain::baker

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bind/bind_bones.h"
+#include "bind/bind_moments.h"
 #include "sphere_chains_generated.h"
 
 namespace spherechain::baker {
@@ -18,6 +19,6 @@ PackedPivots pack_pivots(const std::vector<schema::Pivot>& pivots);
 
 // None where nothing moves the source.
 flatbuffers::Offset<schema::BoneRefit> create_bone_refit(flatbuffers::FlatBufferBuilder& builder,
-                                                         const BoneBinding& bones);
+                                                         const BoneBinding& bones, const MomentBinding& moments);
 
 }  // namespace spherechain::baker

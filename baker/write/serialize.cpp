@@ -17,6 +17,9 @@ namespace {
 
 static_assert(static_cast<int>(Side::kLeft) == static_cast<int>(schema::Side::left));
 static_assert(static_cast<int>(Side::kRight) == static_cast<int>(schema::Side::right));
+static_assert(static_cast<int>(RefitRule::kPaper) == static_cast<int>(schema::Refit::paper) &&
+              static_cast<int>(RefitRule::kCalibrated) == static_cast<int>(schema::Refit::calibrated) &&
+              static_cast<int>(RefitRule::kMoments) == static_cast<int>(schema::Refit::moments));
 
 // Source triangles grouped by sphere, in it by leaf, and in source order within a leaf.
 struct SurroundingTriangles {
@@ -104,7 +107,7 @@ std::vector<std::uint8_t> bytes_of(const AssetSource& in, const std::vector<Tria
     joints.push_back(schema::CreateJointDirect(builder, joint.name.c_str(), joint.parent, &position, &tail));
   }
   const PackedPivots packed = pack_pivots(pivots);
-  const auto bone_refit = create_bone_refit(builder, in.bones);
+  const auto bone_refit = create_bone_refit(builder, in.bones, in.moments);
   const auto surface = create_surface(builder, in.character, in.bones, in.leaves, rest_contacts);
   const std::vector<std::uint64_t> ignored = ignored_bits(in);
   const std::vector<schema::NearPair> near_fit = near_pairs_of(in.binding.near_fit),
@@ -131,13 +134,12 @@ std::vector<std::uint8_t> bytes_of(const AssetSource& in, const std::vector<Tria
                          phi2 = fit_error(in, &TorsoFit::phi2);
   const auto fit = schema::CreateFit(builder, &phi1, &adjusted, &phi2);
 
-  builder.Finish(
-      schema::CreateAssetDirect(builder, kFormatVersion, provenance, source, frame,
-                                in.binding.rule == RefitRule::kPaper ? schema::Refit::paper : schema::Refit::calibrated,
-                                fit, &regions, &spheres, &pivots, &triangles.triangles, &chains,
-                                static_cast<std::uint32_t>(in.chains.entries_table1), &ignored, &near_fit, &near_detect,
-                                &joints, &packed.vertices, &packed.pivots, bone_refit, surface),
-      schema::AssetIdentifier());
+  builder.Finish(schema::CreateAssetDirect(
+                     builder, kFormatVersion, provenance, source, frame, static_cast<schema::Refit>(in.binding.rule),
+                     fit, &regions, &spheres, &pivots, &triangles.triangles, &chains,
+                     static_cast<std::uint32_t>(in.chains.entries_table1), &ignored, &near_fit, &near_detect, &joints,
+                     &packed.vertices, &packed.pivots, bone_refit, surface),
+                 schema::AssetIdentifier());
   return {builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize()};
 }
 

@@ -9,6 +9,7 @@
 
 #include "bind/bind.h"
 #include "bind/bind_bones.h"
+#include "bind/bind_moments.h"
 #include "chains/chains.h"
 #include "leaves/leaves.h"
 #include "rig/rig.h"
@@ -24,6 +25,7 @@ struct AssetSource {
   const Binding& binding;
   const std::vector<Joint>& joints;
   const BoneBinding& bones;
+  const MomentBinding& moments;
   const Leaves& leaves;
   std::string settings;  // canonical JSON
 };

@@ -91,7 +91,7 @@ TEST_CASE("a size no FlatBuffer can have is refused before anything is read") {
 
 TEST_CASE("a wrong header, frame or fit is refused") {
   check_each({
-      {"refit: 2 is no known rule", [](AssetParts& p) { p.refit = 2; }},
+      {"refit: 3 is no known rule", [](AssetParts& p) { p.refit = 3; }},
       {"source.metres_per_unit: 0", [](AssetParts& p) { p.metres_per_unit = 0; }},
       {"source.metres_per_unit: inf", [](AssetParts& p) { p.metres_per_unit = kInfinity; }},
       {"frame.height: nan", [](AssetParts& p) { p.height = kNan; }},

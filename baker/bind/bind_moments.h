@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "bind/bind_bones.h"
+
+namespace spherechain::baker {
+
+inline constexpr std::size_t kMaxMomentBones = 22;  // of a sphere: its pairs are numbered in a byte
+
+// Sphere by sphere, what bones add to its centre and to its mean squared distance (schemas/sphere_chains.fbs, Moments).
+struct SphereMoments {
+  std::uint32_t sphere;
+  std::vector<Index> bones;              // ascending; 1 to kMaxMomentBones
+  std::vector<Eigen::Vector4d> centers;  // of each bone
+  std::vector<Eigen::Matrix4d> moments;  // of each pair (b0, b0), (b0, b1) ..., (b1, b1) ...
+  std::vector<std::uint8_t> places;      // of each pair: in MomentBatch::pairs
+};
+
+struct BonePair {
+  Index a, b;  // a <= b
+
+  auto operator<=>(const BonePair&) const = default;
+};
+
+struct MomentBatch {
+  std::vector<BonePair> pairs;  // sorted, each once
+  std::vector<SphereMoments> spheres;
+};
+
+// For the runtime's refit from bones without the pivots. No batches: the rule is another.
+struct MomentBinding {
+  Vec3 origin = Vec3::Zero();
+  Index reference = 0;
+  std::vector<MomentBatch> batches;
+};
+
+// Takes a calibrated binding to the rule of moments, its spreads to root mean squares. Changes nothing and returns no
+// batches under the paper's rule, where nothing moves the source, where a morph target moves a pivot, and where a
+// sphere hangs on more bones than the runtime takes. `bones` and `rig_weights` are bind_bones()'.
+MomentBinding bind_moments(const Character& character, const BoneBinding& bones,
+                           const std::vector<VertexWeights>& rig_weights, Binding& binding);
+
+}  // namespace spherechain::baker
