@@ -5,6 +5,7 @@
 #pragma once
 
 #include "crowd_cover.h"
+#include "crowd_moments.h"
 #include "crowd_outputs.h"
 #include "crowd_pairs.h"
 #include "crowd_refit.h"
@@ -12,11 +13,12 @@
 namespace spherechain::cuda {
 
 // Where a group's spheres come from.
-enum class Way { kSpheres, kBones, kMorphs, kCovers };
+enum class Way { kSpheres, kBones, kMorphs, kMoments, kCovers };
 
 SPHERECHAIN_HD Way way_of(const GroupView& v) {
   return v.cover_entries != nullptr   ? Way::kCovers
          : v.matrices == nullptr      ? Way::kSpheres
+         : v.runs != nullptr          ? Way::kMoments
          : v.morph_weights == nullptr ? Way::kBones
                                       : Way::kMorphs;
 }
@@ -36,6 +38,9 @@ SPHERECHAIN_HD void run_block(const GroupView& v, const Shared& shared, const Ru
   if (kCovers) {
     run([&](const Place& at) { size_bones(v, shared, at); });
     run([&](const Place& at) { cover_spheres(v, shared, at); });
+  } else if (kWay == Way::kMoments) {
+    run([&](const Place& at) { center_matrices(v, shared, at); });
+    run([&](const Place& at) { refit_runs(v, shared, at); });
   } else if (kWay != Way::kSpheres) {
     run([&](const Place& at) { refit_spheres<kWay == Way::kMorphs>(v, shared, at); });
   }
@@ -59,6 +64,8 @@ SPHERECHAIN_HD void run_any_block(const GroupView& v, const Shared& shared, cons
       return run_block<Way::kBones>(v, shared, run);
     case Way::kMorphs:
       return run_block<Way::kMorphs>(v, shared, run);
+    case Way::kMoments:
+      return run_block<Way::kMoments>(v, shared, run);
     case Way::kCovers:
       return run_block<Way::kCovers>(v, shared, run);
   }

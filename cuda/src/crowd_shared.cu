@@ -35,10 +35,11 @@ Kernel kernel_of(const Launch& launch) {
       return run_mixed_crowd;
     }
   }
-  return way == Way::kSpheres  ? run_crowd<Way::kSpheres>
-         : way == Way::kBones  ? run_crowd<Way::kBones>
-         : way == Way::kCovers ? run_crowd<Way::kCovers>
-                               : run_mixed_crowd;
+  return way == Way::kSpheres   ? run_crowd<Way::kSpheres>
+         : way == Way::kBones   ? run_crowd<Way::kBones>
+         : way == Way::kMoments ? run_crowd<Way::kMoments>
+         : way == Way::kCovers  ? run_crowd<Way::kCovers>
+                                : run_mixed_crowd;
 }
 
 }  // namespace

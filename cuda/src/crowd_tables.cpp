@@ -95,21 +95,47 @@ Status check_build(const Asset& asset, const Filter* filter, Span<std::uint64_t>
   return memory.size < words ? Status::kContextTooSmall : Status::kOk;
 }
 
+std::size_t CrowdTables::pivot_words_needed(const Asset& asset) noexcept {
+  const BoneTables& tables = asset.bone_tables();
+  return words_of(asset.spheres().size * sizeof(SphereEntry)) + words_of(tables.term_counts.size * sizeof(GroupEntry)) +
+         words_of(tables.terms.size * 2 * sizeof(HalfTerm)) +
+         2 * words_of((tables.terms.size + 1) * sizeof(std::uint32_t)) +
+         words_of(asset.bone_count() * sizeof(std::uint32_t)) +
+         words_of(tables.morph_terms.size * sizeof(std::uint32_t)) +
+         words_of(tables.morph_terms.size * sizeof(MorphTerm));
+}
+
 std::size_t CrowdTables::words_needed(const Asset& asset) noexcept {
   if (!asset.is_open()) {
     return 0;
   }
   const std::size_t n = asset.spheres().size;
-  const BoneTables& tables = asset.bone_tables();
   const std::size_t near =
       std::max(asset.near_pairs(RadiusKind::kFit).size, asset.near_pairs(RadiusKind::kDetect).size);
-  return words_of(n * sizeof(SphereEntry)) + words_of(n * sizeof(float)) +
-         words_of(tables.term_counts.size * sizeof(GroupEntry)) + words_of(tables.terms.size * 2 * sizeof(HalfTerm)) +
-         2 * words_of((tables.terms.size + 1) * sizeof(std::uint32_t)) +
-         words_of(asset.bone_count() * sizeof(std::uint32_t)) +
-         words_of(tables.morph_terms.size * sizeof(std::uint32_t)) +
-         words_of(tables.morph_terms.size * sizeof(MorphTerm)) + words_of(most_items(n) * sizeof(PairItem)) +
-         words_of(near * sizeof(NearEntry));
+  return (has_moments(asset) ? moment_words_needed(asset) : pivot_words_needed(asset)) + words_of(n * sizeof(float)) +
+         words_of(most_items(n) * sizeof(PairItem)) + words_of(near * sizeof(NearEntry));
+}
+
+void CrowdTables::add_pivots(const Asset& asset, RadiusKind radius, TableMemory& entries) noexcept {
+  const BoneTables& tables = asset.bone_tables();
+  auto* spheres = entries.take<SphereEntry>(asset.spheres().size, sphere_entries_at_);
+  auto* groups = entries.take<GroupEntry>(tables.term_counts.size, groups_at_);
+  fill_groups(tables, groups);
+  fill_spheres(asset, radius, groups, spheres);
+  fill_terms(tables, entries.take<HalfTerm>(2 * tables.terms.size, terms_at_));
+  auto* term_matrices = entries.take<std::uint32_t>(tables.terms.size + 1, term_matrices_at_);
+  auto* used_bones = entries.take<std::uint32_t>(asset.bone_count(), used_bones_at_);
+  used_bone_count_ =
+      fill_bones(tables.term_bones, asset.bone_count(), used_bones, [&](std::size_t t, std::uint32_t bone) {
+        term_matrices[t] = static_cast<std::uint32_t>(3 * bone * kPitch * sizeof(Float4));
+      });
+  has_morphs_ = tables.morph_terms.size > 0;
+  if (has_morphs_) {
+    const auto copy = [&](const auto& from, auto* to) { std::copy(from.begin(), from.end(), to); };
+    copy(tables.morph_term_counts, entries.take<std::uint32_t>(tables.terms.size, morph_counts_at_));
+    copy(tables.morph_targets, entries.take<std::uint32_t>(tables.morph_targets.size, morph_targets_at_));
+    copy(tables.morph_terms, entries.take<MorphTerm>(tables.morph_terms.size, morph_terms_at_));
+  }
 }
 
 Status CrowdTables::build(const Asset& asset, RadiusKind radius, const Filter* filter,
@@ -121,30 +147,15 @@ Status CrowdTables::build(const Asset& asset, RadiusKind radius, const Filter* f
   if (status != Status::kOk) {
     return status;
   }
-  const BoneTables& tables = asset.bone_tables();
   const auto n = static_cast<std::uint32_t>(asset.spheres().size);
   CrowdTables out;
   TableMemory entries(memory);
-  std::uint32_t first = 0;
-  auto* spheres = entries.take<SphereEntry>(n, first);
-  fill_paddings(filter, entries.take<float>(n, out.paddings_at_));
-  auto* groups = entries.take<GroupEntry>(tables.term_counts.size, out.groups_at_);
-  fill_groups(tables, groups);
-  fill_spheres(asset, radius, groups, spheres);
-  fill_terms(tables, entries.take<HalfTerm>(2 * tables.terms.size, out.terms_at_));
-  auto* term_matrices = entries.take<std::uint32_t>(tables.terms.size + 1, out.term_matrices_at_);
-  auto* used_bones = entries.take<std::uint32_t>(asset.bone_count(), out.used_bones_at_);
-  out.used_bone_count_ =
-      fill_bones(tables.term_bones, asset.bone_count(), used_bones, [&](std::size_t t, std::uint32_t bone) {
-        term_matrices[t] = static_cast<std::uint32_t>(3 * bone * kPitch * sizeof(Float4));
-      });
-  out.has_morphs_ = tables.morph_terms.size > 0;
-  if (out.has_morphs_) {
-    const auto copy = [&](const auto& from, auto* to) { std::copy(from.begin(), from.end(), to); };
-    copy(tables.morph_term_counts, entries.take<std::uint32_t>(tables.terms.size, out.morph_counts_at_));
-    copy(tables.morph_targets, entries.take<std::uint32_t>(tables.morph_targets.size, out.morph_targets_at_));
-    copy(tables.morph_terms, entries.take<MorphTerm>(tables.morph_terms.size, out.morph_terms_at_));
+  if (has_moments(asset)) {
+    out.add_moments(asset, radius, entries);
+  } else {
+    out.add_pivots(asset, radius, entries);
   }
+  fill_paddings(filter, entries.take<float>(n, out.paddings_at_));
   const WantedPairs wanted(asset, filter);
   const Span<const NearPair> near = asset.near_pairs(radius);
   out.near_count_ = fill_near(wanted, near, entries.take<NearEntry>(near.size, out.near_at_));
@@ -163,7 +174,7 @@ Status CrowdTables::build(const Asset& asset, RadiusKind radius, const Filter* f
 
 GroupView Access::view(const CrowdTables& tables, const std::uint64_t* words) {
   GroupView v{};
-  v.sphere_entries = reinterpret_cast<const SphereEntry*>(words);
+  v.sphere_entries = reinterpret_cast<const SphereEntry*>(words + tables.sphere_entries_at_);
   v.paddings = reinterpret_cast<const float*>(words + tables.paddings_at_);
   v.groups = reinterpret_cast<const GroupEntry*>(words + tables.groups_at_);
   v.terms = reinterpret_cast<const HalfTerm*>(words + tables.terms_at_);
@@ -175,6 +186,15 @@ GroupView Access::view(const CrowdTables& tables, const std::uint64_t* words) {
     v.leaf_terms = reinterpret_cast<const LeafTerm*>(words + tables.leaf_terms_at_);
     v.leaf_morphs = reinterpret_cast<const LeafMorph*>(words + tables.leaf_morphs_at_);
     v.leaf_count = tables.leaf_count_;
+  }
+  if (tables.run_count_ > 0) {
+    v.runs = reinterpret_cast<const MomentRun*>(words + tables.runs_at_);
+    v.moment_steps = reinterpret_cast<const std::uint32_t*>(words + tables.moment_steps_at_);
+    v.moments = reinterpret_cast<const Float4*>(words + tables.moments_at_);
+    v.run_bones = reinterpret_cast<const std::uint32_t*>(words + tables.run_bones_at_);
+    v.center_terms = reinterpret_cast<const Float4*>(words + tables.center_terms_at_);
+    v.origin = tables.origin_;
+    v.run_count = tables.run_count_;
   }
   v.near = reinterpret_cast<const NearEntry*>(words + tables.near_at_);
   v.items = reinterpret_cast<const PairItem*>(words + tables.items_at_);

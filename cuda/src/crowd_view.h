@@ -98,6 +98,22 @@ struct alignas(16) LeafMorph {
   std::uint32_t unused[3];
 };
 
+// One or two spheres that a warp refits at once, by moments, and the pairs of bones that one of them has; the dearest
+// first.
+inline constexpr std::uint32_t kRunSpheres = 2;
+struct alignas(16) MomentRun {
+  std::uint32_t first_step, first_moment;  // of what follows in its own array
+  std::uint32_t first_bone, first_center;
+  std::uint32_t bone_count, sphere_count;
+  std::uint32_t are_equal;  // two spheres of the same bones
+  std::uint32_t unused;
+  std::uint32_t spheres[kRunSpheres];
+  float wanted[kRunSpheres];
+};
+// A pair of bones: where shared memory has the second one's matrix, in bytes, which end in four bits of zero; bit s is
+// set where the run's sphere s has both. Pairs go (0, 0), (0, 1) .., (1, 1) .., so that each is the first one's first.
+inline constexpr std::uint32_t kLastStep = 4, kMatrixMask = ~15U;  // of the first one's
+
 // How large a bone's matrix is, as runtime/src/cover_kernel.h has it.
 struct alignas(8) BoneSize {
   float norm, translation;
@@ -125,7 +141,13 @@ struct GroupView {
   const LeafEntry* leaf_entries;
   const LeafTerm* leaf_terms;
   const LeafMorph* leaf_morphs;
-  std::uint32_t sphere_count, used_bone_count, item_count, near_count, morph_count, bit_words, leaf_count;
+  const MomentRun* runs;  // null but where spheres follow bones by moments
+  const std::uint32_t* moment_steps;
+  const Float4* moments;           // by columns, four a sphere and step
+  const std::uint32_t* run_bones;  // as steps, without the last one's mark
+  const Float4* center_terms;
+  Vec3 origin;
+  std::uint32_t sphere_count, used_bone_count, item_count, near_count, morph_count, bit_words, leaf_count, run_count;
   bool calibrated, has_padding, has_morphs;
 
   const Sphere* spheres;
@@ -159,11 +181,11 @@ SPHERECHAIN_HD std::uint32_t blocks_of(const GroupView& v) { return (v.instance_
 
 inline constexpr std::uint32_t kMostWarps = 8;
 
-// In bytes from the start of a block's shared memory. Matrices, morph weights and sizes of bones are no longer needed
-// when pairs are tested: what that needs lies in the same place.
+// In bytes from the start of a block's shared memory. Matrices and what else is of bones are no longer needed when
+// pairs are tested: what that needs lies in the same place.
 struct SharedLayout {
-  std::size_t matrices, morph_weights, bone_sizes, powers, bits, ordered_bits, spheres, counts, dealt, parts, boxes,
-      radii, size;
+  std::size_t matrices, morph_weights, bone_sizes, reference, powers, bits, ordered_bits, spheres, counts, dealt, parts,
+      boxes, radii, size;
 };
 
 SPHERECHAIN_HD std::uint32_t half_words(const GroupView& v) { return 2 * v.bit_words; }
@@ -182,11 +204,14 @@ SPHERECHAIN_HD SharedLayout shared_layout(const GroupView& v) {
   const std::size_t table = up(std::size_t{half_words(v)} * kPitch * sizeof(std::uint32_t));
   const std::size_t sizes =
       v.cover_entries != nullptr ? up(std::size_t{v.used_bone_count} * kPitch * sizeof(BoneSize)) : 0;
+  const std::size_t reference =
+      v.matrices != nullptr && v.runs != nullptr ? up(std::size_t{3} * kPitch * sizeof(float)) : 0;
   out.morph_weights = matrices;
   out.bone_sizes = matrices + up(weights);
+  out.reference = out.bone_sizes + sizes;
   out.bits = powers;
   out.ordered_bits = out.bits + (v.bits != nullptr ? table : 0);
-  const std::size_t before = out.bone_sizes + sizes, after = out.ordered_bits + (v.pairs != nullptr ? table : 0);
+  const std::size_t before = out.reference + reference, after = out.ordered_bits + (v.pairs != nullptr ? table : 0);
   out.spheres = before > after ? before : after;
   out.counts = out.spheres + std::size_t{sphere_places(v)} * kPitch * sizeof(Float4);
   out.dealt = out.counts + kLanes * sizeof(std::uint32_t);
@@ -210,12 +235,13 @@ struct Shared {
   Float4* matrices;  // [3 * bone + row][lane]
   float* morph_weights;
   BoneSize* bone_sizes;  // [bone][lane]
+  float* reference;      // [axis][lane]: where the reference bone has the origin
   Float4* spheres;       // [sphere][lane], with the filter's padding
   float* powers;         // [sphere][lane]
   std::uint32_t* bits;
   std::uint32_t* ordered_bits;  // in the order of sorted pairs
   std::uint32_t* counts;
-  std::uint32_t* dealt;  // spheres to refit, then pairs to test
+  std::uint32_t* dealt;  // spheres or runs to refit, then pairs to test
   std::uint64_t* start;  // the block's place in the list
   std::uint32_t* parts;  // [warp][lane]: pairs in each warp's part of the ordered bits
   float* boxes;          // [axis, low or high][warp][lane] around centres
@@ -226,6 +252,7 @@ struct Shared {
     matrices = reinterpret_cast<Float4*>(bytes + layout.matrices);
     morph_weights = reinterpret_cast<float*>(bytes + layout.morph_weights);
     bone_sizes = reinterpret_cast<BoneSize*>(bytes + layout.bone_sizes);
+    reference = reinterpret_cast<float*>(bytes + layout.reference);
     spheres = reinterpret_cast<Float4*>(bytes + layout.spheres);
     bits = reinterpret_cast<std::uint32_t*>(bytes + layout.bits);
     ordered_bits = reinterpret_cast<std::uint32_t*>(bytes + layout.ordered_bits);

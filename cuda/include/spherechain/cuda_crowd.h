@@ -15,6 +15,8 @@ struct CUstream_st;  // a cudaStream_t points to one
 
 namespace spherechain::cuda {
 
+class TableMemory;
+
 // What the kernels read of an asset, for one kind of radius and one filter. It is built on the CPU into the caller's
 // memory and then copied, as it is, to the device by the caller; both copies stay while jobs use them. Position
 // independent: any number of devices may hold a copy. To change the filter build and copy again.
@@ -49,13 +51,21 @@ class CrowdTables {
 
  private:
   friend struct Access;  // cuda/src
+  static std::size_t pivot_words_needed(const Asset& asset) noexcept;
+  static std::size_t moment_words_needed(const Asset& asset) noexcept;
+  void add_pivots(const Asset& asset, RadiusKind radius, TableMemory& entries) noexcept;
+  void add_moments(const Asset& asset, RadiusKind radius, TableMemory& entries) noexcept;
+
   std::size_t words_ = 0;
   std::uint32_t sphere_count_ = 0, bone_count_ = 0, morph_count_ = 0, bit_words_ = 0;
   std::uint32_t used_bone_count_ = 0, item_count_ = 0, near_count_ = 0, leaf_count_ = 0;
-  std::uint32_t paddings_at_ = 0, groups_at_ = 0, terms_at_ = 0, term_matrices_at_ = 0, used_bones_at_ = 0,
-                items_at_ = 0, near_at_ = 0;
+  std::uint32_t sphere_entries_at_ = 0, paddings_at_ = 0, groups_at_ = 0, terms_at_ = 0, term_matrices_at_ = 0,
+                used_bones_at_ = 0, items_at_ = 0, near_at_ = 0;
   std::uint32_t morph_counts_at_ = 0, morph_targets_at_ = 0, morph_terms_at_ = 0;
-  std::uint32_t covers_at_ = 0, leaves_at_ = 0, leaf_terms_at_ = 0, leaf_morphs_at_ = 0;  // words from the start
+  std::uint32_t covers_at_ = 0, leaves_at_ = 0, leaf_terms_at_ = 0, leaf_morphs_at_ = 0;
+  std::uint32_t run_count_ = 0, runs_at_ = 0, moment_steps_at_ = 0, moments_at_ = 0, run_bones_at_ = 0,
+                center_terms_at_ = 0;  // words from the start
+  Vec3 origin_{};
   bool calibrated_ = false, has_padding_ = false, has_morphs_ = false;
 };
 

@@ -6,10 +6,22 @@
 #include <cmath>
 #include <limits>
 
+#include "jobs.h"
+#include "tiny_moments.h"
+
 namespace spherechain::test {
 namespace {
 
 constexpr Sphere kGap{0, 0, 0, std::numeric_limits<float>::infinity()};  // between instances: never to be looked at
+
+void add_pairs(const Asset& asset, const std::vector<Sphere>& spheres, RadiusKind radius, const Filter* filter,
+               Expected& to) {
+  const Detected found = detect(asset, spheres, Method::kM2, radius, Target::kScalar, filter);
+  REQUIRE(found.status == Status::kOk);
+  to.counts.push_back(static_cast<std::uint32_t>(found.pairs.size()));
+  to.bits.insert(to.bits.end(), found.bits.begin(), found.bits.end());
+  to.pairs.insert(to.pairs.end(), found.pairs.begin(), found.pairs.end());
+}
 
 }  // namespace
 
@@ -82,6 +94,18 @@ TinyAsset boned_asset(unsigned spheres, std::size_t bones, unsigned seed) {
   return tiny;
 }
 
+TinyAsset moment_asset(unsigned spheres, std::size_t bones, unsigned seed) {
+  TinyAsset tiny = random_asset(spheres, seed);
+  if (spheres > 8) {
+    give_pivots(tiny, 5, 19, 2);
+    give_pivots(tiny, 7, 1, 3);
+    give_pivots(tiny, 8, 16, 4);
+  }
+  TinySkin skin = add_bones(tiny, bones, seed);
+  add_moments(tiny, skin);
+  return tiny;
+}
+
 BoneMatrices bones_of(const GroupInput& in, std::size_t i) {
   return {in.matrices.data() + in.offset + i * in.instance_stride / 4, in.bone_count, in.layout, in.bone_stride};
 }
@@ -90,6 +114,28 @@ std::vector<float> morph_weights_of(const GroupInput& in, const Asset& asset, st
   const auto first = in.morph_weights.begin() + static_cast<std::ptrdiff_t>(i * asset.morph_count());
   return in.morph_weights.empty() ? std::vector<float>()
                                   : std::vector<float>(first, first + static_cast<std::ptrdiff_t>(asset.morph_count()));
+}
+
+Expected pairs_of_spheres(const Asset& asset, const GroupInput& in, RadiusKind radius, const Filter* filter) {
+  Expected out;
+  const std::size_t n = asset.spheres().size, stride = in.stride == 0 ? n : in.stride;
+  for (std::size_t i = 0; i < in.instance_count; ++i) {
+    const auto first = in.spheres.begin() + static_cast<std::ptrdiff_t>(i * stride);
+    add_pairs(asset, {first, first + static_cast<std::ptrdiff_t>(n)}, radius, filter, out);
+  }
+  return out;
+}
+
+Expected pairs_of_bones(const Asset& asset, const GroupInput& in, RadiusKind radius, const Filter* filter) {
+  Expected out;
+  for (std::size_t i = 0; i < in.instance_count; ++i) {
+    const Refitted refitted =
+        refit_bones(asset, bones_of(in, i), morph_weights_of(in, asset, i), radius, Target::kScalar);
+    REQUIRE(refitted.status == Status::kOk);
+    out.spheres.insert(out.spheres.end(), refitted.spheres.begin(), refitted.spheres.end());
+    add_pairs(asset, refitted.spheres, radius, filter, out);
+  }
+  return out;
 }
 
 void check_pairs(const GroupInput& in, const GroupOutput& got, const Expected& wanted) {

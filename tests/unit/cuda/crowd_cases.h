@@ -31,6 +31,9 @@ void give_matrices(GroupInput& in, const Asset& asset, MatrixLayout layout, Pose
 // Pivots in one to three groups of eight, bones, morph targets.
 TinyAsset boned_asset(unsigned spheres, std::size_t bones, unsigned seed);
 
+// The same under refit by moments, which no morph target of it moves.
+TinyAsset moment_asset(unsigned spheres, std::size_t bones, unsigned seed);
+
 // Instance `i`'s.
 BoneMatrices bones_of(const GroupInput& in, std::size_t i);
 std::vector<float> morph_weights_of(const GroupInput& in, const Asset& asset, std::size_t i);
@@ -41,6 +44,10 @@ struct Expected {
   std::vector<std::uint64_t> bits;
   std::vector<Pair> pairs;  // instance after instance
 };
+
+// By the CPU's jobs.
+Expected pairs_of_spheres(const Asset& asset, const GroupInput& in, RadiusKind radius, const Filter* filter = nullptr);
+Expected pairs_of_bones(const Asset& asset, const GroupInput& in, RadiusKind radius, const Filter* filter = nullptr);
 
 // Counts, bits and list.
 void check_pairs(const GroupInput& in, const GroupOutput& got, const Expected& wanted);

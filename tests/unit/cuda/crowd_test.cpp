@@ -10,41 +10,6 @@
 #include "jobs.h"
 
 namespace spherechain::test {
-namespace {
-
-void add_pairs(const Asset& asset, const std::vector<Sphere>& spheres, RadiusKind radius, const Filter* filter,
-               Expected& to) {
-  const Detected found = detect(asset, spheres, Method::kM2, radius, Target::kScalar, filter);
-  REQUIRE(found.status == Status::kOk);
-  to.counts.push_back(static_cast<std::uint32_t>(found.pairs.size()));
-  to.bits.insert(to.bits.end(), found.bits.begin(), found.bits.end());
-  to.pairs.insert(to.pairs.end(), found.pairs.begin(), found.pairs.end());
-}
-
-Expected pairs_of_spheres(const Asset& asset, const GroupInput& in, RadiusKind radius, const Filter* filter = nullptr) {
-  Expected out;
-  const std::size_t n = asset.spheres().size, stride = in.stride == 0 ? n : in.stride;
-  for (std::size_t i = 0; i < in.instance_count; ++i) {
-    const auto first = in.spheres.begin() + static_cast<std::ptrdiff_t>(i * stride);
-    add_pairs(asset, {first, first + static_cast<std::ptrdiff_t>(n)}, radius, filter, out);
-  }
-  return out;
-}
-
-Expected pairs_of_bones(const Asset& asset, const GroupInput& in, RadiusKind radius, const Filter* filter = nullptr) {
-  Expected out;
-  for (std::size_t i = 0; i < in.instance_count; ++i) {
-    const Refitted refitted =
-        refit_bones(asset, bones_of(in, i), morph_weights_of(in, asset, i), radius, Target::kScalar);
-    REQUIRE(refitted.status == Status::kOk);
-    out.spheres.insert(out.spheres.end(), refitted.spheres.begin(), refitted.spheres.end());
-    add_pairs(asset, refitted.spheres, radius, filter, out);
-  }
-  return out;
-}
-
-}  // namespace
-
 TEST_CASE("a crowd of spheres has each instance's pairs, whatever its size") {
   for (const unsigned n : {1U, 2U, 9U, 12U, 64U, 75U, 140U}) {
     std::mt19937 random(n);

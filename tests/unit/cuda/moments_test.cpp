@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: MIT
+// Refit by moments on the device has the spheres of the CPU's, bit for bit.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "crowd_cases.h"
+#include "jobs.h"
+
+namespace spherechain::test {
+namespace {
+
+void check(const GroupInput& in, const GroupOutput& got, const Expected& wanted) {
+  CHECK(same_bits(got.refitted, wanted.spheres));
+  check_pairs(in, got, wanted);
+}
+
+void run_and_check(GroupInput in, const Expected& wanted) {
+  in.pair_capacity = wanted.pairs.size() + 3;
+  const CrowdRun run = run_crowd({in});
+  REQUIRE(run.status == Status::kOk);
+  check(in, run.groups[0], wanted);
+}
+
+// A NaN is any NaN: the device has another one than the CPU.
+bool same_figure(float l, float r) { return (std::isnan(l) && std::isnan(r)) || std::memcmp(&l, &r, sizeof l) == 0; }
+
+bool same_figures(const Sphere& l, const Sphere& r) {
+  return same_figure(l.x, r.x) && same_figure(l.y, r.y) && same_figure(l.z, r.z) && same_figure(l.radius, r.radius);
+}
+
+}  // namespace
+
+TEST_CASE(
+    "by moments: the spheres and pairs are those of the CPU's refit, for few bones and many, few spheres and many") {
+  std::mt19937 random(8);
+  std::size_t pairs = 0;
+  for (const std::size_t bones : {1U, 2U, 3U, 9U, 20U}) {
+    for (const unsigned spheres : {1U, 2U, 60U}) {
+      CAPTURE(bones);
+      CAPTURE(spheres);
+      const OpenedAsset opened(moment_asset(spheres, bones, static_cast<unsigned>(bones)).parts);
+      REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
+      const RadiusKind radius = spheres == 2 ? RadiusKind::kFit : RadiusKind::kDetect;
+      const Tables tables(opened.asset, radius);
+      GroupInput in = group_of(tables, 37);
+      give_matrices(in, opened.asset, MatrixLayout::kRowMajor3x4, kPoseKinds[(bones + spheres) % 6], 0, random);
+      const Expected wanted = pairs_of_bones(opened.asset, in, radius);
+      run_and_check(in, wanted);
+      pairs += wanted.pairs.size();
+    }
+  }
+  CHECK(pairs > 1000);
+}
+
+TEST_CASE("by moments: every layout, alignment, radius and pose") {
+  const OpenedAsset opened(moment_asset(40, 5, 8).parts);
+  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
+  std::mt19937 random(9);
+  for (const MatrixLayout layout : {MatrixLayout::kRowMajor3x4, MatrixLayout::kRowMajor4x4,
+                                    MatrixLayout::kColumnMajor4x4, MatrixLayout::kColumnMajor3x4}) {
+    for (const std::size_t offset : {0U, 1U}) {
+      for (const RadiusKind radius : {RadiusKind::kFit, RadiusKind::kDetect}) {
+        for (const PoseKind pose : kPoseKinds) {
+          const Tables tables(opened.asset, radius);
+          GroupInput in = group_of(tables, 33);
+          in.offset = offset;
+          give_matrices(in, opened.asset, layout, pose, 4 + offset, random);
+          in.morph_weights = random_morph_weights(33 * opened.asset.morph_count(), random);  // which move nothing
+          run_and_check(in, pairs_of_bones(opened.asset, in, radius));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("by moments: a filter's padding stays out of the refitted spheres") {
+  constexpr std::uint32_t kSpheres = 50;
+  const OpenedAsset opened(moment_asset(kSpheres, 4, 5).parts);
+  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
+  std::mt19937 random(5);
+  std::vector<std::uint64_t> ignored(Filter::ignored_words(opened.asset)), disabled(1);
+  std::vector<float> padding(kSpheres);
+  Filter filter{{ignored.data(), ignored.size()}, {disabled.data(), 1}, {padding.data(), kSpheres}};
+  REQUIRE(reset_filter(opened.asset, filter) == Status::kOk);
+  for (std::uint32_t i = 0; i < kSpheres; ++i) {
+    if (random() % 4 == 0) REQUIRE(disable_sphere(opened.asset, filter, i) == Status::kOk);
+    REQUIRE(pad_sphere(opened.asset, filter, i, uniform(random, -0.05F, 0.3F)) == Status::kOk);
+  }
+  const Tables tables(opened.asset, RadiusKind::kDetect, &filter);
+  GroupInput in = group_of(tables, 50);
+  give_matrices(in, opened.asset, MatrixLayout::kRowMajor3x4, PoseKind::kGentle, 0, random);
+  const Expected wanted = pairs_of_bones(opened.asset, in, RadiusKind::kDetect, &filter);
+  CHECK(!wanted.pairs.empty());
+  run_and_check(in, wanted);
+}
+
+TEST_CASE("by moments: bones of any size, and none at all, have the CPU's radii") {
+  std::mt19937 random(4);
+  TinyAsset tiny = moment_asset(30, 3, 4);
+  for (std::size_t i = 0; i < 40; ++i) {  // mean squares below 0, which no bones make of themselves
+    for (float& value : tiny.parts.bone_refit.moments.moments[i].values) value = -value;
+  }
+  const OpenedAsset opened(tiny.parts);
+  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
+  const Tables tables(opened.asset, RadiusKind::kDetect);
+  for (const float scale : {0.0F, 1e-38F, 1e-25F, 1e-16F, 1e-14F, 1e14F, 1e16F}) {
+    CAPTURE(scale);
+    GroupInput in = group_of(tables, 20);
+    give_matrices(in, opened.asset, MatrixLayout::kRowMajor3x4, PoseKind::kRigid, 0, random);
+    for (float& figure : in.matrices) figure *= scale;
+    run_and_check(in, pairs_of_bones(opened.asset, in, RadiusKind::kDetect));
+  }
+}
+
+TEST_CASE("by moments: matrices that are not finite leave the other instances alone, and other bones' spheres") {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const TinyAsset tiny = moment_asset(60, 9, 6);
+  const OpenedAsset opened(tiny.parts);
+  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
+  const std::uint32_t reference = opened.asset.moment_tables().reference;
+  const Tables tables(opened.asset, RadiusKind::kDetect);
+  std::mt19937 random(6);
+  GroupInput in = group_of(tables, 40);
+  give_matrices(in, opened.asset, MatrixLayout::kRowMajor3x4, PoseKind::kGentle, 0, random);
+  const auto figure = [&](std::size_t instance, std::size_t bone, std::size_t i) -> float& {
+    return in.matrices[(instance * opened.asset.bone_count() + bone) * 12 + i];
+  };
+  figure(3, 0, 5) = std::nanf("");
+  figure(17, 2, 3) = kInfinity;
+  figure(21, reference, 7) = std::nanf("");
+  figure(39, 1, 0) = -kInfinity;
+  const Expected wanted = pairs_of_bones(opened.asset, in, RadiusKind::kDetect);
+  in.pair_capacity = wanted.pairs.size();
+  const CrowdRun run = run_crowd({in});
+  REQUIRE(run.status == Status::kOk);
+  check_pairs(in, run.groups[0], wanted);
+  std::size_t finite[40] = {};
+  bool same = true;
+  for (std::size_t i = 0; i < wanted.spheres.size(); ++i) {
+    same &= same_figures(run.groups[0].refitted[i], wanted.spheres[i]);
+    finite[i / 60] += std::isfinite(wanted.spheres[i].x) && std::isfinite(wanted.spheres[i].radius) ? 1U : 0U;
+  }
+  CHECK(same);
+  for (const std::size_t instance : {3U, 17U, 39U}) {
+    CHECK(finite[instance] > 0);
+    CHECK(finite[instance] < 60);
+  }
+  CHECK(finite[21] == 0);
+  CHECK(finite[0] == 60);
+}
+
+TEST_CASE("by moments: the reference may be a bone that moves no sphere") {
+  TinyAsset tiny = moment_asset(12, 2, 1);
+  BoneRefitParts& refit = tiny.parts.bone_refit;
+  refit.bones.insert(refit.bones.begin(), 2, refit.bones[0]);  // before the others, whose numbers change
+  for (std::uint32_t& bone : refit.term_bones) bone += 2;
+  for (std::uint16_t& bone : refit.moments.bones) bone += 2;
+  for (BonePair& pair : refit.moments.pairs)
+    pair = {static_cast<std::uint16_t>(pair.a + 2), static_cast<std::uint16_t>(pair.b + 2)};
+  refit.moments.reference = 1;
+  const OpenedAsset opened(tiny.parts);
+  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
+  const Tables tables(opened.asset, RadiusKind::kFit);
+  std::mt19937 random(2);
+  GroupInput in = group_of(tables, 5);
+  give_matrices(in, opened.asset, MatrixLayout::kRowMajor3x4, PoseKind::kRigid, 0, random);
+  run_and_check(in, pairs_of_bones(opened.asset, in, RadiusKind::kFit));
+}
+
+TEST_CASE("assets of all three rules, and one of spheres, share a launch; large ones by moments run from scratch") {
+  std::mt19937 random(9);
+  TinyAsset paper = boned_asset(30, 4, 3);
+  paper.parts.refit = 0;
+  const OpenedAsset first(moment_asset(33, 3, 1).parts), second(boned_asset(20, 5, 2).parts), third(paper.parts),
+      large(moment_asset(240, 7, 3).parts);
+  const Tables a(first.asset, RadiusKind::kDetect), b(second.asset, RadiusKind::kFit), c(third.asset, RadiusKind::kFit),
+      d(large.asset, RadiusKind::kDetect);
+  std::vector<GroupInput> in = {group_of(a, 45), group_of(b, 33), group_of(c, 20), group_of(d, 65), group_of(a, 20)};
+  const Asset* assets[] = {&first.asset, &second.asset, &third.asset, &large.asset, &first.asset};
+  for (std::size_t g = 0; g < 4; ++g) {
+    give_matrices(in[g], *assets[g], MatrixLayout::kRowMajor3x4, PoseKind::kGentle, 0, random);
+  }
+  in[1].morph_weights = random_morph_weights(33 * second.asset.morph_count(), random);
+  in[4].spheres = spheres_of(33, 20, 33, random);
+  std::vector<Expected> wanted;
+  for (std::size_t g = 0; g < in.size(); ++g) {
+    const RadiusKind radius = g == 1 || g == 2 ? RadiusKind::kFit : RadiusKind::kDetect;
+    wanted.push_back(g == 4 ? pairs_of_spheres(*assets[g], in[g], radius) : pairs_of_bones(*assets[g], in[g], radius));
+    in[g].pair_capacity = wanted[g].pairs.size() + 5;
+  }
+  const std::size_t block = d.tables.shared_bytes(true, false, true, true);
+  CHECK(block > 227 * 1024);
+  in[3].scratch_bytes = 2 * block;
+  const CrowdRun run = run_crowd(in);
+  REQUIRE(run.status == Status::kOk);
+  for (std::size_t g = 0; g < in.size(); ++g) {
+    CAPTURE(g);
+    check_pairs(in[g], run.groups[g], wanted[g]);
+    CHECK(same_bits(run.groups[g].refitted, wanted[g].spheres));
+  }
+}
+
+}  // namespace spherechain::test
