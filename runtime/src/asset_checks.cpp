@@ -9,6 +9,7 @@
 #include "bone_checks.h"
 #include "moment_checks.h"
 #include "sphere_chains_generated.h"
+#include "sphere_set.h"
 #include "spherechain/asset.h"
 #include "surface_checks.h"
 #include "triangle_bits.h"
@@ -193,22 +194,6 @@ bool check_spheres(const schema::Asset& root, Message& message) {
                        triangles_used, triangles);
 }
 
-// Marks the spheres of one chain at a time.
-class SphereSet {
- public:
-  bool insert(std::uint32_t sphere) {
-    std::uint64_t& word = words_[sphere / 64];
-    const std::uint64_t bit = std::uint64_t{1} << (sphere % 64);
-    const bool is_new = (word & bit) == 0;
-    word |= bit;
-    return is_new;
-  }
-  void erase(std::uint32_t sphere) { words_[sphere / 64] &= ~(std::uint64_t{1} << (sphere % 64)); }
-
- private:
-  std::uint64_t words_[kMaxSphereCount / 64 + 1] = {};  // 8 KiB of stack
-};
-
 bool check_chain(const schema::Asset& root, std::uint32_t c, SphereSet& seen, Message& message) {
   const schema::Chain& chain = *root.chains()->Get(c);
   for (std::uint32_t i = 0; i < chain.regions()->size(); ++i) {
@@ -236,7 +221,7 @@ bool check_chain(const schema::Asset& root, std::uint32_t c, SphereSet& seen, Me
 }
 
 bool check_chains(const schema::Asset& root, std::size_t size, Message& message) {
-  SphereSet seen;
+  SphereSet seen;  // in one chain at a time
   std::uint64_t bytes = 0;
   for (std::uint32_t c = 0; c < root.chains()->size(); ++c) {
     // Chains that share one array would let a small file ask for a very long check.

@@ -6,13 +6,14 @@
 #include <cstring>
 #include <limits>
 
+#include "tiny_moments.h"
 #include "tiny_surface.h"
 
 namespace spherechain::test {
 namespace {
 
-// Below, at and past a word, a tile and a register of spheres; groups of pivots that are not full, and several; with
-// and without what older bakers left out.
+// Below, at and past a word, a tile and a register of spheres; groups of pivots that are not full, and several; each
+// rule of refit; with and without what older bakers left out.
 std::vector<std::vector<std::uint8_t>> make_assets() {
   std::vector<std::vector<std::uint8_t>> assets;
   for (const unsigned n : {1U, 2U, 5U, 12U, 16U, 33U, 64U, 75U, 128U, 129U, 200U}) {
@@ -25,6 +26,9 @@ std::vector<std::vector<std::uint8_t>> make_assets() {
     TinySkin skin;
     if (n != 12) {
       skin = add_bones(tiny, 1 + n % 6, n);
+      if (n % 3 == 2) {
+        add_moments(tiny, skin, n % 2 == 0 ? 48 : 3);
+      }
     }
     if (n % 2 == 0 || n % 5 == 0) {  // one without bones, several with
       add_surface(tiny, n == 12 ? nullptr : &skin, 1 + n % 4);

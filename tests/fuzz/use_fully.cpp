@@ -26,6 +26,33 @@ void read(Span<T> span) {
   sink = sink + sum;
 }
 
+// As refit does: batch by batch, sphere by sphere, pair by pair, to the bones.
+void read_moments(const Asset& asset) {
+  const MomentTables& tables = asset.moment_tables();
+  read(tables.batches);
+  read(tables.centers);
+  read(tables.moments);
+  std::size_t sum = 0, first_pair = 0, sphere = 0, bone = 0, pair = 0;
+  for (const MomentBatch& batch : tables.batches) {
+    for (std::uint32_t left = batch.sphere_count; left > 0; --left, ++sphere) {
+      const std::size_t bones = tables.bone_counts[sphere];
+      sum += asset.spheres()[tables.spheres[sphere]].region;
+      for (const std::size_t end = bone + bones; bone < end; ++bone) {
+        sum += asset.bone(tables.bones[bone]).is_rest ? 1 : 0;
+      }
+      for (const std::size_t end = pair + bones * (bones + 1) / 2; pair < end; ++pair) {
+        const BonePair& of = tables.pairs[first_pair + tables.pair_places[pair]];
+        sum += asset.bone(of.a).is_rest == asset.bone(of.b).is_rest ? 1 : 0;
+      }
+    }
+    first_pair += batch.pair_count;
+  }
+  if (sphere > 0) {
+    sum += asset.bone(tables.reference).is_rest ? 1 : 0;
+  }
+  sink = sink + sum;
+}
+
 void read_surface(const Asset& asset) {
   const Surface& surface = asset.surface();
   read(surface.leaves);
@@ -93,6 +120,7 @@ void read_all(const Asset& asset) {
   }
   read(asset.pivot_vertices());
   read(asset.packed_pivots());
+  read_moments(asset);
   read_surface(asset);
   // What a narrow phase would do with the surrounding regions.
   for (const RestSphere& sphere : asset.spheres()) {

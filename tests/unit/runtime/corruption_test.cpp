@@ -8,7 +8,7 @@
 #include <string>
 
 #include "sphere_chains_generated.h"
-#include "tiny_bones.h"
+#include "tiny_moments.h"
 
 namespace spherechain::test {
 namespace {
@@ -17,7 +17,7 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 struct Corruption {
-  const char* message;  // what it must contain
+  std::string message;  // what it must start with
   std::function<void(AssetParts&)> apply;
 };
 
@@ -266,6 +266,104 @@ TEST_CASE("tables for refit from bones and from packed pivots that are not sound
           {"bone_refit.morph_terms[1]: not finite, or a spare", refit([](Refit& r) { r.morph_terms[1].y[5] = 1; })},
           {"bone_refit.morph_terms[1]: not finite", refit([](Refit& r) { r.morph_terms[1].z[2] = kInfinity; })},
       });
+}
+
+TEST_CASE("tables for refit by moments that are not sound are refused") {
+  TinyAsset tiny = random_asset(12, 1);
+  TinySkin skin = add_bones(tiny, 5, 3);
+  const std::vector<std::uint32_t> terms = tiny.parts.bone_refit.morph_term_counts;
+  const std::vector<std::uint32_t> targets = tiny.parts.bone_refit.morph_targets;
+  const std::vector<MorphTerm> morph_terms = tiny.parts.bone_refit.morph_terms;
+  add_moments(tiny, skin, 14);
+  using Moments = MomentParts;
+  const Moments& m = tiny.parts.bone_refit.moments;
+  // Several batches, several pairs in the first, several bones in the first sphere.
+  REQUIRE(m.batches.size() >= 2);
+  REQUIRE(m.batches[0].pair_count >= 3);
+  REQUIRE(m.bone_counts[0] >= 2);
+  const auto count = [](const auto& list) { return std::to_string(list.size()); };
+  const std::string in_first = std::to_string(m.batches[0].pair_count);
+
+  const auto change = [](auto apply) { return [apply](AssetParts& p) { apply(p.bone_refit.moments); }; };
+  const std::vector<std::pair<std::string, std::function<void(AssetParts&)>>> changes{
+      {": missing, but refit is moments", change([](Moments& t) { t = {}; })},
+      {": refit is another", [](AssetParts& p) { p.refit = 1; }},
+      {": refit is another", [](AssetParts& p) { p.refit = 0; }},
+      {".origin: missing", [](AssetParts& p) { p.without = "moments.origin"; }},
+      {".origin: not finite", change([](Moments& t) { t.origin.x = kNan; })},
+      {".origin: not finite", change([](Moments& t) { t.origin.y = kInfinity; })},
+      {".origin: not finite", change([](Moments& t) { t.origin.z = kNan; })},
+      {".reference: 5 is past the 5 bones", change([](Moments& t) { t.reference = 5; })},
+      {".reference: 4294967295 is", change([](Moments& t) { t.reference = 0xFFFFFFFFU; })},
+      {".batches[1].pair_count: 0 is not 1 to 256", change([](Moments& t) { t.batches[1].pair_count = 0; })},
+      {".batches[1].pair_count: 257 is not 1 to 256", change([](Moments& t) { t.batches[1].pair_count = 257; })},
+      {".batches[1].sphere_count: 0", change([](Moments& t) { t.batches[1].sphere_count = 0; })},
+      {".pairs: " + count(m.pairs) + " of them, but " + std::to_string(m.pairs.size() + 1) + " in the batches",
+       change([](Moments& t) { t.batches[1].pair_count += 1; })},
+      {".pairs: ", change([](Moments& t) { t.pairs.pop_back(); })},
+      {".pairs: ", change([](Moments& t) {
+         t.pairs.push_back({4, 4});
+       })},
+      {".spheres: 12 of them, but 13 in the batches", change([](Moments& t) { t.batches[1].sphere_count += 1; })},
+      {".spheres: 12 of them, but ", change([](Moments& t) { t.batches[1].sphere_count = 0xFFFFFFFFU; })},
+      {".spheres: 11 of them, but 12 in the asset", change([](Moments& t) { t.spheres.pop_back(); })},
+      {".spheres: 13 of them, but 12 in the asset", change([](Moments& t) {
+         t.spheres.push_back(0);
+         t.batches[1].sphere_count += 1;
+       })},
+      {".pairs[1].b: 5 is past the 5 bones", change([](Moments& t) { t.pairs[1].b = 5; })},
+      {".pairs[1]: a is above b", change([](Moments& t) {
+         t.pairs[1] = {3, 2};
+       })},
+      {".pairs[1]: not sorted, or there twice", change([](Moments& t) { t.pairs[1] = t.pairs[0]; })},
+      {".pairs[2]: not sorted, or there twice", change([](Moments& t) { std::swap(t.pairs[1], t.pairs[2]); })},
+      {".spheres[3]: 12 is past the 12 spheres", change([](Moments& t) { t.spheres[3] = 12; })},
+      {".spheres[3]: 4294967295 is past", change([](Moments& t) { t.spheres[3] = 0xFFFFFFFFU; })},
+      {".spheres[3]: " + std::to_string(m.spheres[1]) + " is there already",
+       change([](Moments& t) { t.spheres[3] = t.spheres[1]; })},
+      {".bone_counts: 11 of them, but 12 spheres", change([](Moments& t) { t.bone_counts.pop_back(); })},
+      {".bone_counts: 13 of them", change([](Moments& t) { t.bone_counts.push_back(1); })},
+      {".bone_counts[2]: 0 is not 1 to 22", change([](Moments& t) { t.bone_counts[2] = 0; })},
+      {".bone_counts[2]: 23 is not 1 to 22", change([](Moments& t) { t.bone_counts[2] = 23; })},
+      {".bones: " + count(m.bones) + " of them, but ", change([](Moments& t) { t.bone_counts[2] += 1; })},
+      {".bones: ", change([](Moments& t) { t.bones.pop_back(); })},
+      {".centers: ", change([](Moments& t) { t.centers.pop_back(); })},
+      {".centers: ", change([](Moments& t) { t.centers.push_back({}); })},
+      {".pair_places: ", change([](Moments& t) { t.pair_places.pop_back(); })},
+      {".pair_places: ", change([](Moments& t) { t.pair_places.push_back(0); })},
+      {".moments: ", change([](Moments& t) { t.moments.pop_back(); })},
+      {".moments: ", change([](Moments& t) { t.moments.push_back({}); })},
+      {".bones[0]: 5 is past the 5 bones", change([](Moments& t) { t.bones[0] = 5; })},
+      {".bones[1]: not above the one before it", change([](Moments& t) { t.bones[1] = t.bones[0]; })},
+      {".bones[1]: not above the one before it", change([](Moments& t) { std::swap(t.bones[0], t.bones[1]); })},
+      {".pair_places[1]: " + in_first + " is past its batch's " + in_first + " pairs",
+       change([](Moments& t) { t.pair_places[1] = static_cast<std::uint8_t>(t.batches[0].pair_count); })},
+      {".pair_places[1]: not the place of bones ", change([](Moments& t) { t.pair_places[1] = t.pair_places[0]; })},
+      {".centers[2]: not finite", change([](Moments& t) { t.centers[2].x = kNan; })},
+      {".centers[2]: not finite", change([](Moments& t) { t.centers[2].y = kInfinity; })},
+      {".centers[2]: not finite", change([](Moments& t) { t.centers[2].z = kNan; })},
+      {".centers[2]: not finite", change([](Moments& t) { t.centers[2].w = kNan; })},
+      {".moments[4]: not finite", change([](Moments& t) { t.moments[4].values[0] = kNan; })},
+      {".moments[4]: not finite", change([](Moments& t) { t.moments[4].values[15] = kInfinity; })},
+  };
+  std::vector<Corruption> corruptions;
+  for (const auto& [message, apply] : changes) {
+    corruptions.push_back({"bone_refit.moments" + message, apply});
+  }
+  corruptions.push_back({"bone_refit.morph_terms: ", [&](AssetParts& p) {
+                           p.bone_refit.morph_term_counts = terms;
+                           p.bone_refit.morph_targets = targets;
+                           p.bone_refit.morph_terms = morph_terms;
+                         }});
+  check_each(tiny.parts, corruptions);
+}
+
+TEST_CASE("an asset by moments without any tables of bones is refused") {
+  AssetParts parts = random_asset(12, 1).parts;
+  parts.refit = 2;
+  const OpenedAsset opened(parts);
+  CHECK(opened.status == Status::kCorrupt);
+  CHECK(opened.message == "bone_refit.moments: missing, but refit is moments");
 }
 
 TEST_CASE("an array of 64-bit words off its alignment is refused") {
