@@ -6,8 +6,8 @@
 
 #include <cstring>
 #include <limits>
-#include <thread>
 
+#include "crowds.h"
 #include "jobs.h"
 #include "tiny_bones.h"
 
@@ -52,36 +52,12 @@ struct Crowd {
   std::vector<Sphere> spheres;
 };
 
-// Buffers sized exactly and dirty.
-struct Run {
-  Run(const Crowd& crowd, std::size_t task_count)
-      : words(CrowdContext::words_needed(crowd.asset, task_count), 0xDDDDDDDDDDDDDDDDU), counts(crowd.instances, 7) {
-    context.words = {words.data(), words.size()};
-    job.asset = &crowd.asset;
+struct Run : CrowdBuffers {
+  Run(const Crowd& crowd, std::size_t task_count) : CrowdBuffers(crowd.asset, crowd.instances, task_count) {
     job.spheres = crowd.spheres.data();
-    job.instance_count = crowd.instances;
     job.stride = crowd.stride;
-    job.context = &context;
-    job.task_count = task_count;
-    job.counts = {counts.data(), counts.size()};
   }
-  std::vector<std::uint64_t> words;
-  CrowdContext context;
-  std::vector<std::uint32_t> counts;
-  CrowdJob job;
 };
-
-// Tasks on as many threads as `user` says, dealt out in turn, the last ones first.
-void on_threads(void* user, std::size_t count, void (*task)(void*, std::size_t), void* data) {
-  const std::size_t threads = *static_cast<std::size_t*>(user);
-  std::vector<std::thread> running;
-  for (std::size_t t = 0; t < threads; ++t) {
-    running.emplace_back([=] {
-      for (std::size_t i = t; i < count; i += threads) task(data, count - 1 - i);
-    });
-  }
-  for (std::thread& thread : running) thread.join();
-}
 
 }  // namespace
 

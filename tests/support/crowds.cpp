@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+#include "crowds.h"
+
+#include <thread>
+
+namespace spherechain::test {
+
+CrowdBuffers::CrowdBuffers(const Asset& asset, std::size_t instance_count, std::size_t task_count)
+    : words(CrowdContext::words_needed(asset, task_count), 0xDDDDDDDDDDDDDDDDU), counts(instance_count, 7) {
+  context.words = {words.data(), words.size()};
+  job.asset = &asset;
+  job.instance_count = instance_count;
+  job.context = &context;
+  job.task_count = task_count;
+  job.counts = {counts.data(), counts.size()};
+}
+
+void on_threads(void* user, std::size_t count, void (*task)(void*, std::size_t), void* data) {
+  const std::size_t threads = *static_cast<std::size_t*>(user);
+  std::vector<std::thread> running;
+  for (std::size_t t = 0; t < threads; ++t) {
+    running.emplace_back([=] {
+      for (std::size_t i = t; i < count; i += threads) task(data, count - 1 - i);
+    });
+  }
+  for (std::thread& thread : running) thread.join();
+}
+
+}  // namespace spherechain::test
