@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+// Four spheres of their sums. Included by refit_moments_kernel.cpp once a target; no include guard.
+
+HWY_BEFORE_NAMESPACE();
+namespace spherechain {
+namespace HWY_NAMESPACE {
+namespace moments {
+
+#if HWY_TARGET == HWY_AVX3
+
+HWY_INLINE void finish(const Chunk& chunk, std::size_t count, const Vector (&references)[kParts], Sphere* spheres) {
+  const Lanes16 d;
+  const Lanes4 four;
+  const hn::Repartition<double, Lanes16> doubles;
+  // Of two spheres: i + (i + 8).
+  const auto eights = [&](std::size_t i) HWY_ATTR {
+    const Vector a = hn::Load(d, chunk.squares[i]), b = hn::Load(d, chunk.squares[i + 1]);
+    return hn::Add(Vector{_mm512_shuffle_f32x4(a.raw, b.raw, 0x44)}, Vector{_mm512_shuffle_f32x4(a.raw, b.raw, 0xEE)});
+  };
+  const Vector low = eights(0), high = eights(2);
+  Vector sums = hn::Add(Vector{_mm512_shuffle_f32x4(low.raw, high.raw, 0x88)},
+                        Vector{_mm512_shuffle_f32x4(low.raw, high.raw, 0xDD)});  // four lanes a sphere
+  sums = hn::Add(sums, hn::Shuffle1032(sums));
+  sums = hn::Add(sums, hn::Shuffle2301(sums));
+  alignas(64) static constexpr std::int32_t kFirsts[kMomentSize] = {0, 4, 8, 12};
+  const hn::Half<Lanes16> half;
+  auto squared = hn::LowerHalf(four, hn::LowerHalf(half, hn::TableLookupLanes(sums, hn::SetTableIndices(d, kFirsts))));
+  squared = hn::IfThenZeroElse(hn::Lt(squared, hn::Zero(four)), squared);
+  const auto radius = hn::Mul(hn::Load(four, chunk.wanted), hn::Sqrt(squared));
+
+  // Of two spheres, of each row: columns j + (j + 2).
+  const auto twos = [&](std::size_t i) HWY_ATTR {
+    const auto a = hn::BitCast(doubles, hn::Load(d, chunk.centers[i]));
+    const auto b = hn::BitCast(doubles, hn::Load(d, chunk.centers[i + 1]));
+    return hn::Add(hn::BitCast(d, hn::InterleaveLower(doubles, a, b)),
+                   hn::BitCast(d, hn::InterleaveUpper(doubles, a, b)));
+  };
+  const Vector first = twos(0), second = twos(2);
+  const Vector even{_mm512_shuffle_ps(first.raw, second.raw, 0x88)};
+  const Vector odd{_mm512_shuffle_ps(first.raw, second.raw, 0xDD)};
+  Vector out = hn::Add(hn::Add(even, odd), hn::Broadcast<3>(references[0]));  // of four spheres x, y, z
+  alignas(64) static constexpr std::int32_t kFourth[kMomentSize] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3};
+  const auto radii = hn::ZeroExtendVector(d, hn::ZeroExtendVector(half, radius));
+  out = hn::IfThenElse(hn::Not(hn::FirstN(d, 12)), hn::TableLookupLanes(radii, hn::SetTableIndices(d, kFourth)), out);
+  alignas(64) static constexpr std::int32_t kTurned[kMomentSize] = {0, 4, 8,  12, 1, 5, 9,  13,
+                                                                    2, 6, 10, 14, 3, 7, 11, 15};
+  HWY_ALIGN Sphere turned[kChunk];
+  hn::Store(hn::TableLookupLanes(out, hn::SetTableIndices(d, kTurned)), d, &turned[0].x);
+  for (std::size_t i = 0; i < count; ++i) {
+    spheres[chunk.spheres[i]] = turned[i];
+  }
+}
+
+#else
+
+// The first two steps of the tree.
+HWY_INLINE void fold(const float* sums, float* out) {
+  const Lanes4 d;
+#if HWY_TARGET == HWY_AVX2
+  const Lanes16 half;
+  const Vector eight = hn::Add(hn::Load(half, sums), hn::Load(half, sums + 8));
+  hn::Store(hn::Add(hn::LowerHalf(d, eight), hn::UpperHalf(d, eight)), d, out);
+#else
+  for (std::size_t i = 0; i < 4; i += hn::MaxLanes(d)) {
+    const auto sum = [&](std::size_t k) HWY_ATTR { return hn::Add(hn::Load(d, sums + k), hn::Load(d, sums + k + 8)); };
+    hn::Store(hn::Add(sum(i), sum(i + 4)), d, out + i);
+  }
+#endif
+}
+
+// out[i] = (v[i][0] + v[i][2]) + (v[i][1] + v[i][3]), the v[i] `step` floats apart.
+HWY_INLINE void sum_four(const float* v, std::size_t step, float* out) {
+#if HWY_TARGET == HWY_SCALAR
+  for (std::size_t i = 0; i < kChunk; ++i, v += step) {
+    out[i] = (v[0] + v[2]) + (v[1] + v[3]);
+  }
+#else
+  const Lanes4 d;
+  const auto half = [&](std::size_t i) HWY_ATTR {
+    const auto a = hn::Load(d, v + i * step), b = hn::Load(d, v + (i + 1) * step);
+    return hn::Add(hn::ConcatLowerLower(d, b, a), hn::ConcatUpperUpper(d, b, a));
+  };
+  const auto low = half(0), high = half(2);
+  hn::Store(hn::Add(hn::ConcatEven(d, high, low), hn::ConcatOdd(d, high, low)), d, out);
+#endif
+}
+
+HWY_INLINE void finish(const Chunk& chunk, std::size_t count, const Vector (&reference)[kParts], Sphere* spheres) {
+  const Lanes4 d;
+  HWY_ALIGN float shift[kMomentSize];
+  for (std::size_t part = 0; part < kParts; ++part) {
+    hn::Store(reference[part], Lanes16(), shift + part * kLanes);
+  }
+  HWY_ALIGN float figures[4][kChunk], fours[kChunk][4];
+  for (std::size_t i = 0; i < kChunk; ++i) {
+    fold(chunk.squares[i], fours[i]);
+  }
+  for (std::size_t row = 0; row < 3; ++row) {
+    sum_four(chunk.centers[0] + 4 * row, kMomentSize, figures[row]);
+  }
+  sum_four(fours[0], 4, figures[3]);
+  HWY_ALIGN Sphere out[kChunk];
+  for (std::size_t i = 0; i < kChunk; i += hn::MaxLanes(d)) {
+    auto squared = hn::Load(d, figures[3] + i);
+    squared = hn::IfThenElse(hn::Lt(squared, hn::Zero(d)), hn::Zero(d), squared);
+    hn::StoreInterleaved4(hn::Add(hn::Load(d, figures[0] + i), hn::Set(d, shift[3])),
+                          hn::Add(hn::Load(d, figures[1] + i), hn::Set(d, shift[7])),
+                          hn::Add(hn::Load(d, figures[2] + i), hn::Set(d, shift[11])),
+                          hn::Mul(hn::Load(d, chunk.wanted + i), hn::Sqrt(squared)), d, &out[i].x);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    spheres[chunk.spheres[i]] = out[i];
+  }
+}
+
+#endif
+
+}  // namespace moments
+}  // namespace HWY_NAMESPACE
+}  // namespace spherechain
+HWY_AFTER_NAMESPACE();
