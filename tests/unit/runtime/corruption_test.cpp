@@ -316,6 +316,8 @@ TEST_CASE("tables for refit by moments that are not sound are refused") {
          t.pairs[1] = {3, 2};
        })},
       {".pairs[1]: not sorted, or there twice", change([](Moments& t) { t.pairs[1] = t.pairs[0]; })},
+      {".pairs[1]: not sorted, or there twice",
+       change([](Moments& t) { std::swap(t.pairs[0], t.pairs[t.batches[0].pair_count - 1]); })},
       {".pairs[2]: not sorted, or there twice", change([](Moments& t) { std::swap(t.pairs[1], t.pairs[2]); })},
       {".spheres[3]: 12 is past the 12 spheres", change([](Moments& t) { t.spheres[3] = 12; })},
       {".spheres[3]: 4294967295 is past", change([](Moments& t) { t.spheres[3] = 0xFFFFFFFFU; })},
