@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <map>
 
@@ -12,10 +11,6 @@ namespace {
 
 using Vec4 = Eigen::Vector4d;
 using Matrix4 = Eigen::Matrix4d;
-using Bones = std::vector<Index>;
-
-// A batch's Gram matrices take 64 bytes each: so many leave most of the first cache to the spheres' moments.
-constexpr std::size_t kBatchPairs = 48;
 
 // What each bone adds to each pivot of a sphere.
 using PivotParts = std::vector<std::map<Index, Vec4>>;
@@ -38,21 +33,13 @@ std::vector<PivotParts> parts_of(const Character& character, const Binding& bind
   return out;
 }
 
-Bones bones_of(const PivotParts& parts) {
-  Bones out;
+std::vector<Index> bones_of(const PivotParts& parts) {
+  std::vector<Index> out;
   for (const auto& part : parts) {
     for (const auto& entry : part) out.push_back(entry.first);
   }
   std::sort(out.begin(), out.end());
   out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
-}
-
-std::vector<BonePair> pairs_of(const Bones& bones) {
-  std::vector<BonePair> out;
-  for (std::size_t k = 0; k < bones.size(); ++k) {
-    for (std::size_t l = k; l < bones.size(); ++l) out.push_back({bones[k], bones[l]});
-  }
   return out;
 }
 
@@ -113,44 +100,6 @@ SphereMoments moments_of(std::uint32_t number, const BoundSphere& sphere, const 
       Matrix4 sum = Matrix4::Zero();
       for (std::size_t i = 0; i < parts.size(); ++i) sum += from_center[k][i] * from_center[l][i].transpose();
       out.moments.push_back((k == l ? 1 : 2) / unit * sum);
-    }
-  }
-  return out;
-}
-
-// Fills batches one after another: always with the bones that need the fewest new pairs, of those that share most.
-std::vector<MomentBatch> make_batches(const std::vector<SphereMoments>& spheres) {
-  std::map<Bones, std::vector<const SphereMoments*>> left;  // spheres of equal bones
-  for (const SphereMoments& sphere : spheres) left[sphere.bones].push_back(&sphere);
-  std::vector<MomentBatch> out;
-  while (!left.empty()) {
-    MomentBatch& batch = out.emplace_back();
-    for (auto next = left.begin(); next != left.end();) {
-      std::vector<BonePair> together;
-      std::ranges::set_union(batch.pairs, pairs_of(next->first), std::back_inserter(together));
-      batch.pairs = std::move(together);
-      for (const SphereMoments* sphere : next->second) batch.spheres.push_back(*sphere);
-      left.erase(next);
-
-      next = left.end();
-      std::pair<std::ptrdiff_t, std::ptrdiff_t> least{};
-      for (auto candidate = left.begin(); candidate != left.end(); ++candidate) {
-        const std::vector<BonePair> pairs = pairs_of(candidate->first);
-        std::vector<BonePair> added;
-        std::ranges::set_difference(pairs, batch.pairs, std::back_inserter(added));
-        if (!added.empty() && batch.pairs.size() + added.size() > kBatchPairs) continue;
-        const std::pair order{std::ssize(added), -std::ssize(pairs)};
-        if (next == left.end() || order < least) {
-          next = candidate;
-          least = order;
-        }
-      }
-    }
-    for (SphereMoments& sphere : batch.spheres) {
-      for (const BonePair& pair : pairs_of(sphere.bones)) {
-        const auto place = std::ranges::lower_bound(batch.pairs, pair);
-        sphere.places.push_back(static_cast<std::uint8_t>(place - batch.pairs.begin()));
-      }
     }
   }
   return out;

@@ -16,7 +16,7 @@ struct SphereMoments {
   std::vector<Index> bones;              // ascending; 1 to kMaxMomentBones
   std::vector<Eigen::Vector4d> centers;  // of each bone
   std::vector<Eigen::Matrix4d> moments;  // of each pair (b0, b0), (b0, b1) ..., (b1, b1) ...
-  std::vector<std::uint8_t> places;      // of each pair: in MomentBatch::pairs
+  std::vector<std::uint8_t> places;      // of each pair: in MomentBatch::pairs; make_batches()' work
 };
 
 struct BonePair {
@@ -29,6 +29,10 @@ struct MomentBatch {
   std::vector<BonePair> pairs;  // sorted, each once
   std::vector<SphereMoments> spheres;
 };
+
+// Spheres of equal bones side by side, and together those whose pairs are the same, for a batch's pairs are worked out
+// once: up to 48 pairs, which leaves room in the first cache, or one set of bones that has more.
+std::vector<MomentBatch> make_batches(const std::vector<SphereMoments>& spheres);
 
 // For the runtime's refit from bones without the pivots. No batches: the rule is another.
 struct MomentBinding {
