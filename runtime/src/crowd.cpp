@@ -21,24 +21,24 @@ constexpr std::size_t kAlignmentWords = 8;  // a cache line, and what a wide reg
 struct Layout {
   explicit Layout(const Asset& asset)
       : bit_words(DetectJob::bit_words(asset)),
-        near_words(
-            words_for(std::max(asset.near_pairs(RadiusKind::kFit).size, asset.near_pairs(RadiusKind::kDetect).size))),
         lane_words(asset.spheres().size * kLaneFigures * kMostLanes / 2),
         bone_words(asset.bone_count() * kMatrixFloats * kMostLanes / 2),
         morph_words(asset.morph_count() * kMostLanes / 2),
         product_words(product_floats(asset.moment_tables()) / 2),
+        candidate_words(candidate_places(asset.spheres().size) / 4 + 1),
         order_words(1 + asset.spheres().size / 2 + 1) {}
 
-  std::size_t bit_words, near_words;
+  std::size_t bit_words;
   std::size_t lane_words;               // a task
   std::size_t bone_words, morph_words;  // a task: matrices and weights, one instance a lane
   std::size_t product_words;            // a task: of matrices
+  std::size_t candidate_words;          // a task
   std::size_t order_words;              // a task: its total, and a place a sphere
   std::size_t task_words() const {
     return kAlignmentWords + lane_words + bone_words + morph_words + product_words + kMostLanes * bit_words +
-           order_words;
+           candidate_words + order_words;
   }
-  std::size_t shared_words() const { return bit_words + near_words; }
+  std::size_t shared_words() const { return 2 * bit_words; }
 };
 
 struct Crowd {
@@ -47,9 +47,9 @@ struct Crowd {
   Target target;  // resolved
   std::size_t stride, lanes, task_count;
   Span<const NearPair> near;
-  Span<std::uint64_t> wanted, near_wanted;
-  BoneRefitInputs bones = {};  // where the job has bones
-  bool list_only = false;      // the second pass
+  Span<std::uint64_t> wanted, is_near;  // bits in the order of sorted pairs
+  BoneRefitInputs bones = {};           // where the job has bones
+  bool list_only = false;               // the second pass
 
   std::uint64_t* scratch_of(std::size_t task) const {
     return job.context->words.data + layout.shared_words() + task * layout.task_words();
@@ -62,33 +62,35 @@ struct Crowd {
   }
 };
 
-// Which pairs are to be tested, and which of them as near pairs.
+// Which pairs are to be tested, and which are near pairs.
 void choose_pairs(Crowd& crowd) {
   const CrowdJob& job = crowd.job;
   const std::size_t n = job.asset->spheres().size;
   const Span<const std::uint64_t> own = job.asset->ignored();
-  const std::uint64_t* ignored = job.filter == nullptr ? own.data : job.filter->ignored.data;
-  for (std::size_t w = 0; w < crowd.wanted.size; ++w) {
-    crowd.wanted[w] = ~ignored[w];
-  }
-  if (pairs_of(n) % 64 != 0) {
-    crowd.wanted[crowd.wanted.size - 1] &= ~std::uint64_t{0} >> (64 - pairs_of(n) % 64);
+  const Span<const std::uint64_t> ignored =
+      job.filter == nullptr ? own : Span<const std::uint64_t>{job.filter->ignored.data, job.filter->ignored.size};
+  std::fill(crowd.wanted.begin(), crowd.wanted.end(), std::uint64_t{0});
+  std::fill(crowd.is_near.begin(), crowd.is_near.end(), std::uint64_t{0});
+  std::size_t bit = 0;
+  for (std::size_t a = 0; a + 1 < n; ++a) {
+    std::size_t ignored_at = ignored_bit(a, a + 1);
+    for (std::size_t b = a + 1; b < n; ignored_at += b++, ++bit) {
+      const std::uint64_t is_ignored = ignored[ignored_at / 64] >> (ignored_at % 64) & 1U;
+      crowd.wanted[bit / 64] |= (is_ignored ^ 1U) << (bit % 64);
+    }
   }
   if (job.filter != nullptr && job.filter->disabled.size > 0) {
     const Span<const std::uint64_t> disabled{job.filter->disabled.data, job.filter->disabled.size};
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t k = 0; k < n && test_bit(disabled, i); ++k) {
         if (k != i) {
-          assign_bit(crowd.wanted, ignored_bit(std::min(i, k), std::max(i, k)), false);
+          assign_bit(crowd.wanted, sorted_bit(std::min(i, k), std::max(i, k), n), false);
         }
       }
     }
   }
-  std::fill(crowd.near_wanted.begin(), crowd.near_wanted.end(), std::uint64_t{0});
-  for (std::size_t i = 0; i < crowd.near.size; ++i) {
-    const std::size_t bit = ignored_bit(crowd.near[i].a, crowd.near[i].b);
-    assign_bit(crowd.near_wanted, i, test_bit({crowd.wanted.data, crowd.wanted.size}, bit));
-    assign_bit(crowd.wanted, bit, false);
+  for (const NearPair& near : crowd.near) {
+    set_bit(crowd.is_near, sorted_bit(near.a, near.b, n));
   }
 }
 
@@ -127,6 +129,15 @@ void list_instance(const std::uint64_t* bits, const Crowd& crowd, std::size_t in
   });
 }
 
+// The same out of a list that is in order.
+void list_found(const std::uint32_t* listed, std::size_t count, std::uint32_t instance, std::size_t at,
+                Span<CrowdPair> pairs) {
+  const std::size_t room = at < pairs.size ? pairs.size - at : 0;
+  for (std::size_t i = 0; i < count && i < room; ++i) {
+    pairs[at + i] = {instance, {listed[i] >> 16, listed[i] & 0xFFFFU}};
+  }
+}
+
 // Instances [first, first + batch.count).
 void refit_instances(const Crowd& crowd, std::size_t first, LaneRefit& batch) {
   const CrowdJob& job = crowd.job;
@@ -147,7 +158,8 @@ void run_task(void* data, std::size_t task) {
   const std::size_t words = crowd.layout.bit_words;
   std::uint64_t* scratch = crowd.scratch_of(task);
   auto* places = reinterpret_cast<std::uint32_t*>(scratch + 1);
-  std::uint64_t* own_bits = scratch + crowd.layout.order_words;
+  auto* candidates = reinterpret_cast<std::uint16_t*>(scratch + crowd.layout.order_words);
+  std::uint64_t* own_bits = scratch + crowd.layout.order_words + crowd.layout.candidate_words;
   const auto unaligned = reinterpret_cast<std::uintptr_t>(own_bits + kMostLanes * words);
   constexpr std::uintptr_t kAlignment = 8 * kAlignmentWords;
 
@@ -156,10 +168,11 @@ void run_task(void* data, std::size_t task) {
   batch.sphere_count = job.asset->spheres().size;
   batch.padding = job.filter == nullptr ? nullptr : job.filter->padding.data;
   batch.wanted = crowd.wanted.data;
+  batch.is_near = crowd.is_near.data;
   batch.near = crowd.near;
-  batch.near_wanted = crowd.near_wanted.data;
   batch.lanes = reinterpret_cast<float*>((unaligned + kAlignment - 1) / kAlignment * kAlignment);
   batch.bit_words = words;
+  batch.candidates = candidates;
 
   LaneRefit refit;
   refit.inputs = crowd.bones;
@@ -178,33 +191,45 @@ void run_task(void* data, std::size_t task) {
   for (std::size_t i = 0; lists && i < crowd.first_of(task); ++i) {
     place += job.counts[i];
   }
+  // An instance of more pairs than are listed has them listed from bits: kept once they are wanted, for a crowd's poses
+  // are alike.
+  bool keeps_bits = job.bits.size > 0;
   for (std::size_t first = crowd.first_of(task); first < end; first += crowd.lanes) {
     batch.spheres = job.bones.data != nullptr ? nullptr : job.spheres + first * crowd.stride;
     refit.count = batch.count = std::min(crowd.lanes, end - first);
     refit.next_count = std::min(crowd.lanes, end - first - batch.count);
-    batch.bits = job.bits.size > 0 ? job.bits.data + first * words : own_bits;
-    const bool tests = !crowd.list_only || job.bits.size == 0;
-    if (tests) {
+    std::uint64_t* const bits = job.bits.size > 0 ? job.bits.data + first * words : own_bits;
+    const auto find = [&] {
       if (job.bones.data != nullptr) {
         refit_instances(crowd, first, refit);
       }
-      std::fill(batch.bits, batch.bits + batch.count * words, std::uint64_t{0});
+      batch.bits = keeps_bits ? bits : nullptr;
+      if (keeps_bits) {
+        std::fill(bits, bits + batch.count * words, std::uint64_t{0});
+      }
       test_lanes(crowd.target, batch);
+    };
+    const bool tests = !crowd.list_only || job.bits.size == 0;
+    if (tests) {
+      find();
+      if (lists && !keeps_bits && *std::max_element(batch.pair_counts, batch.pair_counts + batch.count) > kMostListed) {
+        keeps_bits = true;
+        find();
+      }
     }
     for (std::size_t lane = 0; lane < batch.count; ++lane) {
-      total += batch.pair_counts[lane];
+      const std::uint32_t instance = static_cast<std::uint32_t>(first + lane), own = batch.pair_counts[lane];
+      total += own;
       if (!crowd.list_only && job.counts.size > 0) {
-        job.counts[first + lane] = batch.pair_counts[lane];
+        job.counts[instance] = own;
       }
-      if (lists && job.counts[first + lane] > 0) {
-        if (tests && batch.pair_counts[lane] <= kMostListed) {
-          const std::size_t room = job.pairs.size > place ? job.pairs.size - place : 0;
-          list_in_order(crowd.target, batch.listed[lane], batch.pair_counts[lane],
-                        static_cast<std::uint32_t>(first + lane), {job.pairs.data + (room == 0 ? 0 : place), room});
+      if (lists && job.counts[instance] > 0) {
+        if (tests && own <= kMostListed) {
+          list_found(batch.listed[lane], own, instance, place, job.pairs);
         } else {
-          list_instance(batch.bits + lane * words, crowd, first + lane, place, places);
+          list_instance(bits + lane * words, crowd, instance, place, places);
         }
-        place += job.counts[first + lane];
+        place += job.counts[instance];
       }
     }
   }
@@ -345,7 +370,7 @@ Status CrowdJob::run() noexcept {
               task_count,
               asset->near_pairs(radius),
               {context->words.data, layout.bit_words},
-              {context->words.data + layout.bit_words, layout.near_words}};
+              {context->words.data + layout.bit_words, layout.bit_words}};
   if (has_bones && instance_count > 0) {
     crowd.bones = bone_refit_inputs(*asset, bones, morph_weights, radius);
   }

@@ -20,6 +20,7 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::ScalableTag<float>;
 using Vector = hn::Vec<Floats>;
+using Numbers = hn::RebindToSigned<Floats>;
 
 // Two radii up to this have a sum whose square is finite.
 constexpr float kHugeRadius = 9e18F;
@@ -94,148 +95,158 @@ HWY_INLINE Vector prepare(const LaneBatch& batch, bool& any_huge) {
   return extent;
 }
 
-// A bit a lane: where the spheres overlap, and are within reach of each other.
-template <bool kCheckFinite, bool kNear>
-HWY_INLINE std::uint64_t overlap(const LaneSphere& p, const LaneSphere& q, float reach) {
+// Where the spheres overlap, and are within reach of each other: a reach of 1 is none.
+template <bool kCheckFinite>
+HWY_INLINE hn::Mask<Floats> overlap(const LaneSphere& p, const LaneSphere& q, float reach) {
   constexpr Floats kFloats;
   const Vector dx = hn::Sub(p.x, q.x);
   const Vector dy = hn::Sub(p.y, q.y);
   const Vector dz = hn::Sub(p.z, q.z);
   const Vector s = hn::Add(p.radius, q.radius);
-  const Vector squared_reach = hn::Mul(s, s);
   const Vector d2 = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
-  hn::Mask<Floats> touching = hn::Lt(d2, squared_reach);
-  if (kCheckFinite) {
-    touching = hn::And(touching, hn::Le(squared_reach, hn::Set(kFloats, FLT_MAX)));
-  }
-  if (kNear) {
-    const Vector t = hn::Mul(hn::Set(kFloats, reach), s);
-    touching = hn::And(touching, hn::Lt(d2, hn::Mul(t, t)));
-  }
-  return bits_of(touching);
+  const Vector t = hn::Mul(hn::Set(kFloats, reach), s);
+  const hn::Mask<Floats> touching = hn::Lt(d2, hn::Mul(t, t));
+  return kCheckFinite ? hn::And(touching, hn::Le(hn::Mul(s, s), hn::Set(kFloats, FLT_MAX))) : touching;
 }
 
-// Few lanes touch: each on its own.
-HWY_INLINE void report(LaneBatch& batch, std::uint64_t lanes, std::uint32_t a, std::uint32_t b) {
-  const std::size_t below = b;
-  const std::size_t bit = below * (below - 1) / 2 + a;
-  for (; lanes != 0; lanes &= lanes - 1) {
-    const std::size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero64(lanes);
-    batch.bits[lane * batch.bit_words + bit / 64] |= std::uint64_t{1} << (bit % 64);
-    batch.listed[lane][batch.pair_counts[lane]++ % kMostListed] = a << 16 | b;
+// What is found of each lane's instance.
+struct Found {
+  LaneBatch& batch;
+  hn::Mask<Floats> in_use;
+  hn::Vec<Numbers> counts, lists;  // of pairs; where in the batch's lists the lane's own starts
+};
+
+// All lanes write, without a branch: those that do not touch write what the next pair, or nobody, overwrites.
+HWY_INLINE void report(Found& found, hn::Mask<Floats> touching, std::size_t a, std::size_t b) {
+  constexpr Numbers kNumbers;
+  const auto own = hn::RebindMask(kNumbers, hn::And(touching, found.in_use));
+  const auto place = hn::Add(found.lists, hn::Min(found.counts, hn::Set(kNumbers, kMostListed)));
+  hn::ScatterIndex(hn::Set(kNumbers, static_cast<std::int32_t>(a << 16 | b)), kNumbers,
+                   reinterpret_cast<std::int32_t*>(found.batch.listed[0]), place);
+  found.counts = hn::Sub(found.counts, hn::VecFromMask(kNumbers, own));
+  if (found.batch.bits != nullptr) {
+    const std::size_t bit = b * (b - 1) / 2 + a;
+    for (std::uint64_t left = bits_of(hn::And(touching, found.in_use)); left != 0; left &= left - 1) {
+      const std::size_t lane = hwy::Num0BitsBelowLS1Bit_Nonzero64(left);
+      found.batch.bits[lane * found.batch.bit_words + bit / 64] |= std::uint64_t{1} << (bit % 64);
+    }
+  }
+}
+
+// Which of 64 numbers are not 0.
+HWY_INLINE std::uint64_t any_bits(const std::uint16_t* numbers) {
+  const hn::ScalableTag<std::uint16_t> d;
+  std::uint64_t out = 0;
+  for (std::size_t i = 0; i < 64; i += hn::Lanes(d)) {
+    std::uint64_t bits = 0;
+    hn::StoreMaskBits(d, hn::Ne(hn::LoadU(d, numbers + i), hn::Zero(d)), reinterpret_cast<std::uint8_t*>(&bits));
+    out |= bits << i;
+  }
+  return out;
+}
+
+// A row of the table of pairs: sphere `a` and those after it.
+struct Row {
+  std::size_t a;
+  std::uint16_t* candidates;  // of each sphere after `a` with which it is wanted: a bit a lane
+};
+
+// Tests a row's pairs that are candidates in any lane, in order. `next_near`: the first near pair of the row, then of
+// the next one.
+template <bool kCheckFinite>
+HWY_INLINE void test_row(Found& found, const Row& row, std::size_t& next_near) {
+  const LaneBatch& batch = found.batch;
+  const LaneSphere own = load(batch.lanes, row.a);
+  for (std::size_t first = row.a + 1; first < batch.sphere_count; first += 64) {
+    const std::uint64_t near = sorted_row_bits(batch.is_near, batch.bit_words, row.a, first, batch.sphere_count);
+    std::uint64_t left = sorted_row_bits(batch.wanted, batch.bit_words, row.a, first, batch.sphere_count);
+    if (!kCheckFinite) {
+      left &= any_bits(row.candidates + first);
+    }
+    for (; left != 0; left &= left - 1) {
+      const std::uint64_t lowest = left & (~left + 1);
+      const std::size_t b = first + hwy::Num0BitsBelowLS1Bit_Nonzero64(left);
+      constexpr float kNoReach = 1;
+      const float* reach = &kNoReach;
+      if ((near & lowest) != 0) {
+        reach = &batch.near.data[next_near + hwy::PopCount(near & (lowest - 1))].reach;
+      }
+      report(found, overlap<kCheckFinite>(own, load(batch.lanes, b), *reach), row.a, b);
+    }
+    next_near += hwy::PopCount(near);
   }
 }
 
 // A sphere as candidates are found by: what its lanes' least sum is.
-struct Row {
+struct Seen {
   Vector x, y, z, least;
 };
 
-HWY_INLINE Vector sum_of(Vector x, Vector y, Vector z, Vector start, const Row& row) {
-  return hn::MulAdd(row.z, z, hn::MulAdd(row.y, y, hn::MulAdd(row.x, x, start)));
+HWY_INLINE hn::Mask<Floats> is_candidate(const Seen& own, Vector x, Vector y, Vector z, Vector start) {
+  return hn::Gt(hn::MulAdd(own.z, z, hn::MulAdd(own.y, y, hn::MulAdd(own.x, x, start))), own.least);
 }
 
-// All wanted pairs but near ones: as a tile's, first three multiply-adds with a margin for what they may be off. Two
-// rows of the table at a time, so that half the columns are loaded; few of the pairs are candidates.
-HWY_INLINE void find_touching(LaneBatch& batch, Vector margin) {
+// The candidates of two rows that follow each other, so that what is loaded of a sphere serves both: as a tile's, three
+// multiply-adds with a margin for what they may be off.
+HWY_INLINE void find_candidates(const LaneBatch& batch, Vector margin, const Row& low, const Row& high) {
   constexpr Floats kFloats;
-  const std::size_t n = hn::Lanes(kFloats), sphere_count = batch.sphere_count, bit_words = batch.bit_words;
-  const std::uint64_t in_use = (std::uint64_t{1} << batch.count) - 1;
-  const float* const lanes = batch.lanes;
-  const std::uint64_t* const wanted = batch.wanted;
-  const auto load_row = [&](std::size_t b) HWY_ATTR {
-    const float* const own = lanes + kLaneFigures * n * b;
-    return Row{hn::Load(kFloats, own + 4 * n), hn::Load(kFloats, own + 5 * n), hn::Load(kFloats, own + 6 * n),
-               hn::Sub(hn::Neg(hn::Load(kFloats, own + 7 * n)), margin)};
+  const std::size_t n = hn::Lanes(kFloats);
+  const auto seen = [&](std::size_t i) HWY_ATTR {
+    const float* const own = batch.lanes + kLaneFigures * n * i;
+    return Seen{hn::Load(kFloats, own + 4 * n), hn::Load(kFloats, own + 5 * n), hn::Load(kFloats, own + 6 * n),
+                hn::Sub(hn::Neg(hn::Load(kFloats, own + 7 * n)), margin)};
   };
-  const auto test = [&](std::size_t a, std::size_t b) HWY_ATTR {
-    report(batch, in_use & overlap<false, false>(load(lanes, a), load(lanes, b), 1.0F), static_cast<std::uint32_t>(a),
-           static_cast<std::uint32_t>(b));
-  };
-  for (std::size_t b = 1; b < sphere_count; b += 2) {
-    const std::size_t next = b + 1 < sphere_count ? b + 1 : b;
-    const Row low = load_row(b), high = load_row(next);
-    for (std::size_t first = 0; first < next; first += 64) {
-      const std::uint64_t of_low = row_bits(wanted, bit_words, first, b),
-                          of_high = next == b ? 0 : row_bits(wanted, bit_words, first, next);
-      for (std::uint64_t left = of_low | of_high; left != 0; left &= left - 1) {
-        const std::size_t i = hwy::Num0BitsBelowLS1Bit_Nonzero64(left), a = first + i;
-        const float* const other = lanes + kLaneFigures * n * a;
-        const Vector x = hn::Load(kFloats, other + 4 * n), y = hn::Load(kFloats, other + 5 * n),
-                     z = hn::Load(kFloats, other + 6 * n), start = hn::Load(kFloats, other + 7 * n);
-        const auto is_low = hn::Gt(sum_of(x, y, z, start, low), low.least),
-                   is_high = hn::Gt(sum_of(x, y, z, start, high), high.least);
-        if (HWY_UNLIKELY(!hn::AllFalse(kFloats, hn::Or(is_low, is_high)))) {
-          if (((of_low >> i) & 1U) != 0 && !hn::AllFalse(kFloats, is_low)) {
-            test(a, b);
-          }
-          if (((of_high >> i) & 1U) != 0 && !hn::AllFalse(kFloats, is_high)) {
-            test(a, next);
-          }
-        }
-      }
+  const Seen of_low = seen(low.a), of_high = seen(high.a);
+  for (std::size_t first = low.a + 1; first < batch.sphere_count; first += 64) {
+    std::uint64_t left = sorted_row_bits(batch.wanted, batch.bit_words, low.a, first, batch.sphere_count) |
+                         sorted_row_bits(batch.wanted, batch.bit_words, high.a, first, batch.sphere_count);
+    for (; left != 0; left &= left - 1) {
+      const std::size_t b = first + hwy::Num0BitsBelowLS1Bit_Nonzero64(left);
+      const float* const other = batch.lanes + kLaneFigures * n * b;
+      const Vector x = hn::Load(kFloats, other + 4 * n), y = hn::Load(kFloats, other + 5 * n),
+                   z = hn::Load(kFloats, other + 6 * n), start = hn::Load(kFloats, other + 7 * n);
+      hn::StoreMaskBits(kFloats, is_candidate(of_low, x, y, z, start),
+                        reinterpret_cast<std::uint8_t*>(low.candidates + b));
+      hn::StoreMaskBits(kFloats, is_candidate(of_high, x, y, z, start),
+                        reinterpret_cast<std::uint8_t*>(high.candidates + b));
     }
   }
 }
 
-// The same by the rule alone, for what is too large or not finite.
-HWY_INLINE void find_touching_by_rule(LaneBatch& batch) {
-  const std::uint64_t in_use = (std::uint64_t{1} << batch.count) - 1;
-  std::size_t bit = 0;
-  for (std::uint32_t b = 1; b < batch.sphere_count; ++b) {
-    for (std::uint32_t a = 0; a < b; ++a, ++bit) {
-      if (((batch.wanted[bit / 64] >> (bit % 64)) & 1U) != 0) {
-        report(batch, in_use & overlap<true, false>(load(batch.lanes, a), load(batch.lanes, b), 1.0F), a, b);
-      }
-    }
-  }
-}
-
+// In the order of sorted pairs, so that each lane's list is in order. Where a figure is not finite or too large, all
+// wanted pairs are tested by the rule.
 template <bool kCheckFinite>
-HWY_INLINE void find_near(LaneBatch& batch) {
-  const std::uint64_t in_use = (std::uint64_t{1} << batch.count) - 1;
-  for (std::size_t i = 0; i < batch.near.size; ++i) {
-    const NearPair& near = batch.near[i];
-    if (((batch.near_wanted[i / 64] >> (i % 64)) & 1U) != 0) {
-      const std::uint64_t lanes =
-          in_use & overlap<kCheckFinite, true>(load(batch.lanes, near.a), load(batch.lanes, near.b), near.reach);
-      report(batch, lanes, near.a, near.b);
+HWY_INLINE void find_pairs(Found& found, Vector margin) {
+  const LaneBatch& batch = found.batch;
+  const std::size_t row_size = candidate_row(batch.sphere_count);
+  for (std::size_t i = 0; i < 2 * row_size; ++i) {
+    batch.candidates[i] = 0;  // narrow targets write half of them
+  }
+  std::size_t next_near = 0;
+  for (std::size_t a = 0; a + 1 < batch.sphere_count; a += 2) {
+    const Row low{a, batch.candidates}, high{a + 1, batch.candidates + row_size};
+    if (!kCheckFinite) {
+      find_candidates(batch, margin, low, high);
     }
+    test_row<kCheckFinite>(found, low, next_near);
+    test_row<kCheckFinite>(found, high, next_near);
   }
 }
 
 void test_batch(LaneBatch& batch) {
   constexpr Floats kFloats;
-  for (std::uint32_t& count : batch.pair_counts) {
-    count = 0;
-  }
+  constexpr Numbers kNumbers;
   bool any_huge = false;
   const Vector extent = prepare(batch, any_huge);
+  Found found{batch, hn::FirstN(kFloats, batch.count), hn::Zero(kNumbers),
+              hn::Mul(hn::Iota(kNumbers, 0), hn::Set(kNumbers, kMostListed + 1))};
   if (!any_huge && hn::AllTrue(kFloats, hn::Le(extent, hn::Set(kFloats, FLT_MAX)))) {
-    find_touching(batch, hn::Add(hn::Mul(hn::Set(kFloats, kMarginOfExtent), extent), hn::Set(kFloats, kLeastMargin)));
-    find_near<false>(batch);
+    find_pairs<false>(found,
+                      hn::Add(hn::Mul(hn::Set(kFloats, kMarginOfExtent), extent), hn::Set(kFloats, kLeastMargin)));
   } else {
-    find_touching_by_rule(batch);
-    find_near<true>(batch);
+    find_pairs<true>(found, hn::Zero(kFloats));
   }
-}
-
-// Each pair's place is the number of those before it.
-void order(const std::uint32_t* listed, std::size_t count, std::uint32_t instance, CrowdPair* out, std::size_t room) {
-  const hn::ScalableTag<std::uint32_t> kPairs;
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto own = hn::Set(kPairs, listed[i]);
-    std::size_t place = 0;
-    for (std::size_t k = 0; k < count; k += hn::MaxLanes(kPairs)) {
-      const auto before = hn::Lt(hn::LoadU(kPairs, listed + k), own);
-      place += hn::CountTrue(kPairs, hn::And(before, hn::FirstN(kPairs, count - k)));
-    }
-    if (place < room) {
-      out[place].instance = instance;
-      out[place].pair.a = listed[i] >> 16;
-      out[place].pair.b = listed[i] & 0xFFFFU;
-    }
-  }
+  hn::StoreU(found.counts, kNumbers, reinterpret_cast<std::int32_t*>(batch.pair_counts));
 }
 
 }  // namespace HWY_NAMESPACE
@@ -247,16 +258,10 @@ namespace spherechain {
 namespace {
 
 SPHERECHAIN_KERNELS(test_batch);
-SPHERECHAIN_KERNELS(order);
 
 }  // namespace
 
 void test_lanes(Target resolved, LaneBatch& batch) { test_batch_kernels[index_of(resolved)](batch); }
-
-void list_in_order(Target resolved, const std::uint32_t (&listed)[kMostListed], std::size_t count,
-                   std::uint32_t instance, Span<CrowdPair> list) {
-  order_kernels[index_of(resolved)](listed, count, instance, list.data, list.size);
-}
 
 }  // namespace spherechain
 #endif

@@ -43,13 +43,16 @@ inline std::uint64_t bits_at(const std::uint64_t* words, std::size_t size, std::
   return (words[word] >> shift) | ((next << 1) << (63 - shift));
 }
 
-// Of a table by ignored_bit, the bits of b's pairs with first to first + 63, as far as those are below b.
-inline std::uint64_t row_bits(const std::uint64_t* words, std::size_t size, std::size_t first, std::size_t b) {
-  if (first >= b) {
+// Of a table by sorted_bit, the bits of a's pairs with first to first + 63, as far as those are after a. `first` is
+// before n and less than 64 before a.
+inline std::uint64_t sorted_row_bits(const std::uint64_t* words, std::size_t size, std::size_t a, std::size_t first,
+                                     std::size_t n) {
+  if (a + 1 == n) {
     return 0;
   }
-  const std::size_t count = b - first < 64 ? b - first : 64;
-  return bits_at(words, size, ignored_bit(first, b)) & (~std::uint64_t{0} >> (64 - count));
+  const std::uint64_t in_row = n - first < 64 ? ~std::uint64_t{0} >> (64 - (n - first)) : ~std::uint64_t{0};
+  return first > a ? bits_at(words, size, sorted_bit(a, first, n)) & in_row
+                   : bits_at(words, size, row_begin(a, n)) << (a + 1 - first) & in_row;
 }
 
 // `word` is not 0.
