@@ -25,8 +25,8 @@ enum class VertexSet : std::uint8_t { kSource = 0, kPivots = 1 };
 // The arithmetic is fixed, in single precision without contraction, so that every backend gives the same spheres, bit
 // for bit: p_k = ((a + b) + c) * (1.0f / 3); the sums over k start at 0 and run in pivot order; |d| = sqrt((dx*dx +
 // dy*dy) + dz*dz); mean = sum / float(K); radius = mean, or mean * (detect_radius / radius), under kPaper, and radius
-// or detect_radius, times (mean / pivot_spread), under kCalibrated. Under kMoments the sum is of (dx*dx + dy*dy) + dz*dz
-// itself, and sqrt(mean) stands where kCalibrated has the mean.
+// or detect_radius, times (mean / pivot_spread), under kCalibrated. Under kMoments the sum is of (dx*dx + dy*dy) +
+// dz*dz itself, and sqrt(mean) stands where kCalibrated has the mean.
 //
 // A game that holds the character in several vertex buffers copies them into one, each from its
 // Asset::source_parts() entry's first_vertex on; check_source_part() tells whether it is the right one.

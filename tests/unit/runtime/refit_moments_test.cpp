@@ -70,6 +70,9 @@ std::vector<Sphere> exact_spheres(const Skinned& s, RadiusKind kind) {
     for (std::size_t m = 0; m < 3; ++m) {
       std::copy_n(matrix.data() + 4 * m, 3, rows.at[m]);
       rows.at[m][3] = image_of_origin(matrix.data() + 4 * m, tables.origin) - shift[m];
+      for (float& value : rows.at[m]) {
+        value = std::abs(value) < 0x1p-62F ? 0.0F : value;
+      }
     }
     moved.push_back(rows);
   }
@@ -156,6 +159,26 @@ TEST_CASE("by moments, spheres from bones are those of the skinned mesh") {
 TEST_CASE("by moments, on every target spheres from bones follow the fixed arithmetic of the header bit for bit") {
   for (const std::size_t count : {1U, 2U, 3U, 15U, 16U, 17U, 33U, 50U}) {
     check_exact(Skinned(9, count));
+  }
+}
+
+TEST_CASE("by moments, what is less than 2^-62 in a matrix counts for nothing, on every target") {
+  for (const float scale : {0x1p-62F, 0x1.fffffep-63F, 0x1p-70F, 0x1p-140F}) {
+    Skinned s(9, 20);
+    std::uint32_t random = 5;
+    for (Matrix& m : s.matrices) {
+      for (std::size_t i = 0; i < m.size(); ++i) {
+        random = random * 1664525U + 1013904223U;
+        m[i] = random >> 30U == 0 ? (random >> 29U & 1U) == 0 ? scale : -scale : m[i] * scale * 0x1p+20F;
+      }
+    }
+    // Tables in units in which such matrices matter.
+    for (Moment& moment : s.tiny.parts.bone_refit.moments.moments) {
+      for (float& value : moment.values) {
+        value *= 0x1p+80F;
+      }
+    }
+    check_exact(s);
   }
 }
 
