@@ -132,8 +132,15 @@ TEST_CASE("inspect --json has the contract's fields and agrees with itself") {
   CHECK(asset["morphs"].empty());
   CHECK(asset["bone_tables"]["groups"] >= asset["sphere_count"]);
   CHECK(asset["bone_tables"]["terms"] >= asset["bone_tables"]["groups"]);
+  CHECK(asset["refit"] == "moments");
+  CHECK(asset["moment_tables"]["batches"] == baked_human().moments.batches.size());
+  CHECK(asset["moment_tables"]["pairs"] > asset["moment_tables"]["batches"]);
+  CHECK(asset["moment_tables"]["sphere_pairs"] > asset["moment_tables"]["sphere_bones"]);
   CHECK(asset["pivot_vertices"] > asset["sphere_count"]);
-  CHECK(run("inspect " + baked_files().asset.string()).out.find("zeta5") != std::string::npos);
+  const std::string text = run("inspect " + baked_files().asset.string()).out;
+  CHECK(text.find("refit    moments\n") != std::string::npos);
+  CHECK(text.find("\nmoments  ") != std::string::npos);
+  CHECK(text.find("zeta5") != std::string::npos);
 }
 
 TEST_CASE("play --json has the contract's fields; at rest nothing touches, hands on hips do") {
