@@ -39,6 +39,7 @@ SPHERECHAIN_HD void run_block(const GroupView& v, const Shared& shared, const Ru
     run([&](const Place& at) { size_bones(v, shared, at); });
     run([&](const Place& at) { cover_spheres(v, shared, at); });
   } else if (kWay == Way::kMoments) {
+    run([&](const Place& at) { find_reference(v, shared, at); });
     run([&](const Place& at) { center_matrices(v, shared, at); });
     run([&](const Place& at) { refit_runs(v, shared, at); });
   } else if (kWay != Way::kSpheres) {

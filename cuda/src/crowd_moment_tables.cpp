@@ -13,62 +13,229 @@ struct alignas(16) Member {
   std::uint32_t first_bone, first_pair;
 };
 
+constexpr std::uint32_t pairs_of(std::uint32_t bones) { return bones * (bones + 1) / 2; }
+
+// Those of most bones first, those of the same bones next to each other.
+void fill_members(const MomentTables& tables, Member* out) {
+  std::uint32_t bone = 0, pair = 0;
+  for (std::size_t i = 0; i < tables.spheres.size; ++i) {
+    const std::uint32_t count = tables.bone_counts[i];
+    out[i] = {tables.spheres[i], count, bone, pair};
+    bone += count;
+    pair += pairs_of(count);
+  }
+  std::sort(out, out + tables.spheres.size, [&](const Member& a, const Member& b) {
+    const std::uint16_t *l = tables.bones.data + a.first_bone, *r = tables.bones.data + b.first_bone;
+    if (a.bone_count != b.bone_count) {
+      return a.bone_count > b.bone_count;
+    }
+    const bool are_equal = std::equal(l, l + a.bone_count, r);
+    return are_equal ? a.sphere < b.sphere : std::lexicographical_compare(l, l + a.bone_count, r, r + b.bone_count);
+  });
+}
+
+std::uint32_t common_bones(const MomentTables& tables, const Member& a, const Member& b) {
+  const std::uint16_t *l = tables.bones.data + a.first_bone, *r = tables.bones.data + b.first_bone;
+  const std::uint16_t *l_end = l + a.bone_count, *r_end = r + b.bone_count;
+  std::uint32_t count = 0;
+  while (l < l_end && r < r_end) {
+    count += *l == *r ? 1U : 0U;
+    const bool next_left = *l <= *r, next_right = *r <= *l;
+    l += next_left ? 1 : 0;
+    r += next_right ? 1 : 0;
+  }
+  return count;
+}
+
+// Instructions of the kernel, about: a pair's Gram matrix; to ask which of two spheres has a pair; what else a run
+// takes.
+constexpr std::int64_t kGramCost = 48, kAskingCost = 4, kRunCost = 64;
+
+// What a run of both saves over one of each.
+std::int64_t saved(const MomentTables& tables, const Member& a, const Member& b) {
+  const std::int64_t common = pairs_of(common_bones(tables, a, b));
+  const std::int64_t all = pairs_of(a.bone_count) + pairs_of(b.bone_count) - common;
+  return common == 0 ? 0 : kGramCost * common + kRunCost - kAskingCost * all;
+}
+
+// The bones of a run's spheres, ascending, and each sphere's number of each.
+struct Union {
+  static constexpr std::uint32_t kMost = kRunSpheres * kMaxMomentBones, kNone = ~0U;
+  std::uint32_t count = 0;
+  std::uint16_t bones[kMost];
+  std::uint32_t numbers[kRunSpheres][kMost];
+
+  Union(const MomentTables& tables, const Member* members, std::uint32_t sphere_count) {
+    std::uint32_t next[kRunSpheres] = {};
+    const auto has_next = [&](std::uint32_t s) { return s < sphere_count && next[s] < members[s].bone_count; };
+    const auto next_bone = [&](std::uint32_t s) { return tables.bones[members[s].first_bone + next[s]]; };
+    for (;; ++count) {
+      bool is_any = false;
+      for (std::uint32_t s = 0; s < kRunSpheres; ++s) {
+        if (has_next(s)) {
+          bones[count] = is_any ? std::min(bones[count], next_bone(s)) : next_bone(s);
+          is_any = true;
+        }
+      }
+      if (!is_any) {
+        return;
+      }
+      for (std::uint32_t s = 0; s < kRunSpheres; ++s) {
+        numbers[s][count] = has_next(s) && next_bone(s) == bones[count] ? next[s]++ : kNone;
+      }
+    }
+  }
+};
+
+// Whether it is its own transpose, to the bit, as a bone's own moment is from the baker.
+bool is_symmetric(const Moment& moment) {
+  for (std::size_t row = 0; row < 4; ++row) {
+    for (std::size_t column = 0; column < row; ++column) {
+      if (std::memcmp(&moment.values[4 * row + column], &moment.values[4 * column + row], sizeof(float)) != 0) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
 class RunWriter {
  public:
   RunWriter(const Asset& asset, RadiusKind kind, const std::uint32_t* bone_indices)
       : tables_(asset.moment_tables()), rest_(asset.spheres()), kind_(kind), bone_indices_(bone_indices) {}
 
-  const std::uint16_t* bones_of(const Member& member) const { return tables_.bones.data + member.first_bone; }
-
-  bool are_equal(const Member& a, const Member& b) const {
-    return std::equal(bones_of(a), bones_of(a) + a.bone_count, bones_of(b), bones_of(b) + b.bone_count);
-  }
-  bool are_sorted(const Member& a, const Member& b) const {
-    const std::uint16_t *l = bones_of(a), *r = bones_of(b);
-    const bool equal = are_equal(a, b);
-    return equal ? a.sphere < b.sphere : std::lexicographical_compare(l, l + a.bone_count, r, r + b.bone_count);
+  bool has_two_bones(const Member& member) const {
+    return member.bone_count == 2 && is_symmetric(moment_of(member, 0, 0)) && is_symmetric(moment_of(member, 1, 1));
   }
 
-  // Writes a run of one or two of the same bones.
-  void add(const Member* members, std::uint32_t count) {
-    MomentRun& run = runs[run_count_++];
-    const std::uint32_t bones = members[0].bone_count, mask = (1U << count) - 1;
-    run = {step_count_, moment_count_, bone_count_, center_count_, bones, count, count == kRunSpheres ? 1U : 0U, 0, {},
-           {}};
-    for (std::uint32_t s = 0; s < count; ++s) {
-      const RestSphere& rest = rest_[members[s].sphere];
-      run.spheres[s] = members[s].sphere;
-      run.wanted[s] = kind_ == RadiusKind::kFit ? rest.radius : rest.detect_radius;
+  // All of them of the same two bones.
+  void add_two_bones(const Member* members, std::uint32_t count) {
+    MomentRun& run = start(members, count, kTwoBones);
+    run.bone_count = 2;
+    for (std::uint32_t i = 0; i < 2; ++i) {
+      run_bones[bone_count_++] = matrix_of(tables_.bones[members[0].first_bone + i]);
     }
-    std::uint32_t pair = 0;
-    for (std::uint32_t i = 0; i < bones; ++i) {
-      run_bones[bone_count_++] = matrix_of(members[0], i) | mask;
-      for (std::uint32_t s = 0; s < count; ++s) {
-        const CenterTerm& term = tables_.centers[members[s].first_bone + i];
-        center_terms[center_count_++] = {term.x, term.y, term.z, term.w};
+    for (std::uint32_t s = 0; s < count; ++s) {
+      add_center(members[s], 0);
+      add_center(members[s], 1);
+      auto* own = reinterpret_cast<float*>(moments + moment_count_);
+      put_own(moment_of(members[s], 0, 0), own);
+      put_own(moment_of(members[s], 1, 1), own + 10);
+      moment_count_ += kTwoBoneQuads - kPairQuads;
+      add_columns(moment_of(members[s], 0, 1));
+    }
+    run.cost = 3 * 3 + count * 5;
+  }
+
+  // One or two of any.
+  void add(const Member* members, std::uint32_t count) {
+    const Union all(tables_, members, count);
+    const bool are_equal = count == 2 && members[0].bone_count == all.count && members[1].bone_count == all.count;
+    MomentRun& run = start(members, count, are_equal ? kEqualBones : kAnyBones);
+    run.bone_count = all.count;
+    for (std::uint32_t i = 0; i < all.count; ++i) {
+      add_bone(all, i, members, count, run);
+      for (std::uint32_t j = i + 1; j < all.count; ++j) {
+        add_pair(all, i, j, members, count, 0);
       }
-      for (std::uint32_t j = i; j < bones; ++j, ++pair) {
-        steps[step_count_++] = matrix_of(members[0], j) | mask | (j + 1 == bones ? kLastStep : 0);
-        for (std::uint32_t s = 0; s < count; ++s) {
-          add_moment(tables_.moments[members[s].first_pair + pair]);
-        }
-      }
+      steps[step_count_ - 1] |= kLastOfBone;
+    }
+    steps[step_count_ - 1] |= kLastOfRun;
+    run.cost = 3 * (step_count_ - run.first_step);  // a Gram matrix is worth three times what a sphere makes of it
+    for (std::uint32_t s = 0; s < count; ++s) {
+      run.cost += pairs_of(members[s].bone_count);
     }
   }
 
   std::uint32_t run_count() const { return run_count_; }
 
   MomentRun* runs = nullptr;
+  RunSphere* spheres = nullptr;
   std::uint32_t* steps = nullptr;
   Float4* moments = nullptr;
   std::uint32_t* run_bones = nullptr;
   Float4* center_terms = nullptr;
 
  private:
-  std::uint32_t matrix_of(const Member& member, std::uint32_t i) const {
-    return static_cast<std::uint32_t>(3 * bone_indices_[bones_of(member)[i]] * kPitch * sizeof(Float4));
+  MomentRun& start(const Member* members, std::uint32_t count, std::uint32_t kind) {
+    MomentRun& run = runs[run_count_++];
+    run.first_step = step_count_;
+    run.first_moment = moment_count_;
+    run.first_bone = bone_count_;
+    run.first_center = center_count_;
+    run.first_sphere = sphere_count_;
+    run.sphere_count = count;
+    run.kind = kind;
+    for (std::uint32_t s = 0; s < count; ++s) {
+      const RestSphere& rest = rest_[members[s].sphere];
+      spheres[sphere_count_++] = {members[s].sphere, kind_ == RadiusKind::kFit ? rest.radius : rest.detect_radius};
+    }
+    return run;
   }
-  void add_moment(const Moment& moment) {
+
+  const Moment& moment_of(const Member& member, std::uint32_t k, std::uint32_t l) const {
+    const std::uint32_t before = pairs_of(member.bone_count) - pairs_of(member.bone_count - k);
+    return tables_.moments[member.first_pair + before + l - k];
+  }
+
+  std::uint32_t matrix_of(std::uint16_t bone) const {
+    return static_cast<std::uint32_t>(3 * bone_indices_[bone] * kPitch * sizeof(Float4));
+  }
+
+  void add_center(const Member& member, std::uint32_t number) {
+    const CenterTerm& term = tables_.centers[member.first_bone + number];
+    center_terms[center_count_++] = {term.x, term.y, term.z, term.w};
+  }
+
+  // The bone, and its own pair. Moments that are not symmetric, which the baker makes none of, are taken as of two
+  // bones.
+  void add_bone(const Union& all, std::uint32_t i, const Member* members, std::uint32_t count, MomentRun& run) {
+    std::uint32_t& bone = run_bones[bone_count_++] = matrix_of(all.bones[i]);
+    std::uint32_t& step = steps[step_count_++] = bone;
+    std::uint32_t others = 0;
+    for (std::uint32_t s = 0; s < count; ++s) {
+      const std::uint32_t k = all.numbers[s][i];
+      if (k != Union::kNone) {
+        bone |= 1U << s;
+        add_center(members[s], k);
+        const Moment& moment = moment_of(members[s], k, k);
+        if (is_symmetric(moment)) {
+          step |= 1U << s;
+          put_own(moment, reinterpret_cast<float*>(moments + moment_count_));
+          moment_count_ += kOwnQuads;
+        } else {
+          others |= 1U << s;
+        }
+      }
+    }
+    if (others != 0) {
+      run.kind = kAnyBones;
+      add_pair(all, i, i, members, count, ~others);
+    }
+  }
+
+  void add_pair(const Union& all, std::uint32_t i, std::uint32_t j, const Member* members, std::uint32_t count,
+                std::uint32_t without) {
+    std::uint32_t mask = 0;
+    for (std::uint32_t s = 0; s < count; ++s) {
+      const std::uint32_t k = all.numbers[s][i], l = all.numbers[s][j];
+      if (k != Union::kNone && l != Union::kNone && (without >> s & 1U) == 0) {
+        mask |= 1U << s;
+        add_columns(moment_of(members[s], k, l));
+      }
+    }
+    if (mask != 0) {
+      steps[step_count_++] = matrix_of(all.bones[j]) | mask;
+    }
+  }
+
+  static void put_own(const Moment& moment, float* to) {
+    for (std::size_t row = 0; row < 4; ++row) {
+      to = std::copy(moment.values + 5 * row, moment.values + 4 * row + 4, to);
+    }
+  }
+
+  void add_columns(const Moment& moment) {
     for (std::size_t column = 0; column < 4; ++column) {
       const float* values = moment.values + column;
       moments[moment_count_++] = {values[0], values[4], values[8], values[12]};
@@ -79,66 +246,103 @@ class RunWriter {
   Span<const RestSphere> rest_;
   RadiusKind kind_;
   const std::uint32_t* bone_indices_;
-  std::uint32_t run_count_ = 0, step_count_ = 0, moment_count_ = 0, bone_count_ = 0, center_count_ = 0;
+  std::uint32_t run_count_ = 0, step_count_ = 0, moment_count_ = 0, bone_count_ = 0, center_count_ = 0,
+                sphere_count_ = 0;
 };
 
-// Those of the same bones next to each other.
-void fill_members(const MomentTables& tables, const RunWriter& writer, Member* out) {
-  std::uint32_t bone = 0, pair = 0;
-  for (std::size_t i = 0; i < tables.spheres.size; ++i) {
-    const std::uint32_t count = tables.bone_counts[i];
-    out[i] = {tables.spheres[i], count, bone, pair};
-    bone += count;
-    pair += count * (count + 1) / 2;
-  }
-  std::sort(out, out + tables.spheres.size, [&](const Member& a, const Member& b) { return writer.are_sorted(a, b); });
+bool are_equal(const MomentTables& tables, const Member& a, const Member& b) {
+  return a.bone_count == b.bone_count && common_bones(tables, a, b) == a.bone_count;
 }
 
-std::uint32_t cost_of(const MomentRun& run) {
-  const std::uint32_t pairs = run.bone_count * (run.bone_count + 1) / 2;
-  return pairs * (3 + run.sphere_count);  // a Gram matrix is worth three times what a sphere makes of it
+// Takes those of two bones out, many at a time, then others of the same bones, by twos. Returns how many are left.
+std::size_t add_equal_runs(const MomentTables& tables, Member* members, RunWriter& writer) {
+  const std::size_t n = tables.spheres.size;
+  std::size_t left = 0;
+  for (std::size_t i = 0; i < n;) {
+    const bool are_two = writer.has_two_bones(members[i]);
+    const std::size_t most = are_two ? kMostRunSpheres : kRunSpheres;
+    std::uint32_t count = 1;
+    while (count < most && i + count < n && are_equal(tables, members[i], members[i + count]) &&
+           writer.has_two_bones(members[i + count]) == are_two) {
+      ++count;
+    }
+    if (are_two) {
+      writer.add_two_bones(members + i, count);
+    } else if (count == kRunSpheres) {
+      writer.add(members + i, count);
+    } else {
+      members[left++] = members[i];
+    }
+    i += count;
+  }
+  return left;
+}
+
+// The others, by twos where that is less work, of those near each other.
+void add_other_runs(const MomentTables& tables, Member* members, std::size_t count, RunWriter& writer) {
+  constexpr std::size_t kNear = 64;
+  for (Member* one = members; one < members + count; ++one) {
+    if (one->bone_count == 0) {
+      continue;  // taken already
+    }
+    Member* best = nullptr;
+    std::int64_t most = 0;
+    for (Member* other = one + 1; other < members + count && other < one + kNear; ++other) {
+      const std::int64_t own = other->bone_count == 0 ? 0 : saved(tables, *one, *other);
+      best = own > most ? other : best;
+      most = std::max(most, own);
+    }
+    Member run[kRunSpheres] = {*one, best != nullptr ? *best : *one};
+    writer.add(run, best != nullptr ? 2 : 1);
+    if (best != nullptr) {
+      best->bone_count = 0;
+    }
+  }
 }
 
 }  // namespace
 
 std::size_t CrowdTables::moment_words_needed(const Asset& asset) noexcept {
   const MomentTables& tables = asset.moment_tables();
-  const std::size_t n = tables.spheres.size;
-  return words_of(n * sizeof(Member)) + words_of(n * sizeof(MomentRun)) +
-         words_of((tables.moments.size + 1) * sizeof(std::uint32_t)) +
-         words_of(tables.moments.size * 4 * sizeof(Float4)) + words_of(tables.bones.size * sizeof(std::uint32_t)) +
-         words_of(tables.bones.size * sizeof(Float4)) + words_of((asset.bone_count() + 1) * sizeof(std::uint32_t)) +
-         words_of(asset.bone_count() * sizeof(std::uint32_t));
+  const std::size_t n = tables.spheres.size, bones = asset.bone_count();
+  return 2 * words_of(bones * sizeof(std::uint32_t)) + words_of(n * sizeof(Member)) + words_of(n * sizeof(MomentRun)) +
+         words_of(n * sizeof(RunSphere)) + words_of(2 * tables.moments.size * sizeof(std::uint32_t)) +
+         words_of(kPairQuads * tables.moments.size * sizeof(Float4)) +
+         words_of(tables.bones.size * sizeof(std::uint32_t)) + words_of(tables.bones.size * sizeof(Float4));
 }
 
 void CrowdTables::add_moments(const Asset& asset, RadiusKind radius, TableMemory& entries) noexcept {
   const MomentTables& tables = asset.moment_tables();
   const std::size_t n = tables.spheres.size;
   std::uint32_t unread = 0;
-  auto* used_bones = entries.take<std::uint32_t>(asset.bone_count() + 1, used_bones_at_);
+  auto* used_bones = entries.take<std::uint32_t>(asset.bone_count(), used_bones_at_);
   auto* bone_indices = entries.take<std::uint32_t>(asset.bone_count(), unread);
-  used_bone_count_ = fill_bones(tables.bones, asset.bone_count(), used_bones,
-                                [&](std::size_t t, std::uint32_t i) { bone_indices[tables.bones[t]] = i; });
-  used_bones[used_bone_count_++] = tables.reference;
-  RunWriter writer(asset, radius, bone_indices);
+  bone_indices[tables.reference] = 1;
+  for (const std::uint16_t bone : tables.bones) {
+    bone_indices[bone] = 1;
+  }
+  for (std::uint32_t bone = 0; bone < asset.bone_count(); ++bone) {
+    if (bone_indices[bone] != 0) {
+      bone_indices[bone] = used_bone_count_;
+      used_bones[used_bone_count_++] = bone;
+    }
+  }
+  reference_ = bone_indices[tables.reference];
+  origin_ = tables.origin;
   auto* members = entries.take<Member>(n, unread);
-  fill_members(tables, writer, members);
+  fill_members(tables, members);
+  RunWriter writer(asset, radius, bone_indices);
   writer.runs = entries.take<MomentRun>(n, runs_at_);
-  writer.steps = entries.take<std::uint32_t>(tables.moments.size + 1, moment_steps_at_);
-  writer.moments = entries.take<Float4>(4 * tables.moments.size, moments_at_);
+  writer.spheres = entries.take<RunSphere>(n, run_spheres_at_);
+  writer.steps = entries.take<std::uint32_t>(2 * tables.moments.size, moment_steps_at_);
+  writer.moments = entries.take<Float4>(kPairQuads * tables.moments.size, moments_at_);
   writer.run_bones = entries.take<std::uint32_t>(tables.bones.size, run_bones_at_);
   writer.center_terms = entries.take<Float4>(tables.bones.size, center_terms_at_);
-  for (std::size_t i = 0; i < n;) {
-    const bool are_two = i + 1 < n && writer.are_equal(members[i], members[i + 1]);
-    writer.add(members + i, are_two ? 2 : 1);
-    i += are_two ? 2 : 1;
-  }
+  add_other_runs(tables, members, add_equal_runs(tables, members, writer), writer);
   run_count_ = writer.run_count();
   std::sort(writer.runs, writer.runs + run_count_, [](const MomentRun& l, const MomentRun& r) {
-    const std::uint32_t left = cost_of(l), right = cost_of(r);
-    return left != right ? left > right : l.spheres[0] < r.spheres[0];
+    return l.cost != r.cost ? l.cost > r.cost : l.first_sphere < r.first_sphere;
   });
-  origin_ = tables.origin;
 }
 
 }  // namespace spherechain::cuda

@@ -11,23 +11,27 @@ SPHERECHAIN_HD float move_origin(const GroupView& v, const Float4& row) {
   return fused(row.z, v.origin.z, fused(row.y, v.origin.y, fused(row.x, v.origin.x, row.w)));
 }
 
-// Step 2: a warp a bone. Translations become those of the origin's image, seen from the reference bone's; of that bone
-// there is a matrix more, the last, which stays as it is.
-SPHERECHAIN_HD void center_matrices(const GroupView& v, const Shared& shared, const Place& at) {
-  const std::uint32_t last = v.used_bone_count - 1;
-  float reference[3];
-  SPHERECHAIN_UNROLL
-  for (std::uint32_t i = 0; i < 3; ++i) {
-    reference[i] = move_origin(v, shared.matrices[(3 * last + i) * kPitch + at.lane()]);
-    if (at.warp() == 0) {
-      shared.reference[i * kPitch + at.lane()] = reference[i];
+// Step 2: where the reference bone has the origin.
+SPHERECHAIN_HD void find_reference(const GroupView& v, const Shared& shared, const Place& at) {
+  if (at.warp() == 0) {
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      shared.reference[i * kPitch + at.lane()] =
+          move_origin(v, shared.matrices[(3 * v.reference + i) * kPitch + at.lane()]);
     }
   }
-  for (std::uint32_t bone = at.warp(); bone < last; bone += at.warps()) {
+}
+
+// What is too small to be squared is none.
+SPHERECHAIN_HD float flushed(float x) { return fabsf(x) < 0x1p-62F ? 0.0F : x; }
+
+// Step 3: translations become those of the origin's image, seen from the reference bone's. A warp a bone.
+SPHERECHAIN_HD void center_matrices(const GroupView& v, const Shared& shared, const Place& at) {
+  for (std::uint32_t bone = at.warp(); bone < v.used_bone_count; bone += at.warps()) {
     SPHERECHAIN_UNROLL
     for (std::uint32_t i = 0; i < 3; ++i) {
       Float4& row = shared.matrices[(3 * bone + i) * kPitch + at.lane()];
-      row.w = move_origin(v, row) - reference[i];
+      const float w = move_origin(v, row) - shared.reference[i * kPitch + at.lane()];
+      row = {flushed(row.x), flushed(row.y), flushed(row.z), flushed(w)};
     }
   }
 }
@@ -76,13 +80,45 @@ SPHERECHAIN_HD Gram gram_of(const Matrix& a) {
   return out;
 }
 
-// Of -0 to begin with, which adds nothing to what is added first, not even a sign.
 struct MomentSums {
   float at[4][4];
 };
+struct CenterSums {
+  float at[3][4];
+};
 
-// `columns`: of a moment.
-SPHERECHAIN_HD void add_moment(const Float4* columns, const Gram& gram, MomentSums& sums) {
+// Of -0, which adds nothing, not even a sign.
+template <std::size_t kRows>
+SPHERECHAIN_HD void clear(float (&sums)[kRows][4]) {
+  SPHERECHAIN_UNROLL
+  for (float(&row)[4] : sums) {
+    SPHERECHAIN_UNROLL
+    for (float& sum : row) {
+      sum = -0.0F;
+    }
+  }
+}
+
+// A bone's own.
+SPHERECHAIN_HD void add_own_moment(const float (&m)[10], const Gram& gram, MomentSums& sums) {
+  const float moment[4][4] = {
+      {m[0], m[1], m[2], m[3]}, {m[1], m[4], m[5], m[6]}, {m[2], m[5], m[7], m[8]}, {m[3], m[6], m[8], m[9]}};
+  SPHERECHAIN_UNROLL
+  for (std::size_t row = 0; row < 4; ++row) {
+    SPHERECHAIN_UNROLL
+    for (std::size_t column = 0; column < 4; ++column) {
+      sums.at[row][column] = fused(moment[row][column], gram.at[row][column], sums.at[row][column]);
+    }
+  }
+}
+
+SPHERECHAIN_HD void add_own_moment(const Float4* quads, const Gram& gram, MomentSums& sums) {
+  const Float4 a = quads[0], b = quads[1], c = quads[2];
+  add_own_moment({a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w, c.x, c.y}, gram, sums);
+}
+
+// Of two bones, by columns.
+SPHERECHAIN_HD void add_pair_moment(const Float4* columns, const Gram& gram, MomentSums& sums) {
   SPHERECHAIN_UNROLL
   for (std::size_t column = 0; column < 4; ++column) {
     const Float4 m = columns[column];
@@ -90,40 +126,6 @@ SPHERECHAIN_HD void add_moment(const Float4* columns, const Gram& gram, MomentSu
     sums.at[1][column] = fused(m.y, gram.at[1][column], sums.at[1][column]);
     sums.at[2][column] = fused(m.z, gram.at[2][column], sums.at[2][column]);
     sums.at[3][column] = fused(m.w, gram.at[3][column], sums.at[3][column]);
-  }
-}
-
-// Returns where the next pair's moments are.
-template <bool kEqual>
-SPHERECHAIN_HD const Float4* add_moments(const Float4* moments, std::uint32_t step, const Gram& gram,
-                                         MomentSums (&sums)[kRunSpheres]) {
-  SPHERECHAIN_UNROLL
-  for (std::uint32_t s = 0; s < kRunSpheres; ++s) {
-    if (kEqual || (step >> s & 1U) != 0) {
-      add_moment(moments, gram, sums[s]);
-      moments += 4;
-    }
-  }
-  return moments;
-}
-
-// A bone's matrix stays in registers while it is paired with those after it.
-template <bool kEqual>
-SPHERECHAIN_HD void add_pairs(const GroupView& v, const Shared& shared, std::uint32_t lane, const MomentRun& run,
-                              MomentSums (&sums)[kRunSpheres]) {
-  const std::uint32_t* steps = v.moment_steps + run.first_step;
-  const Float4* moments = v.moments + run.first_moment;
-  std::uint32_t step = *steps;
-  for (std::uint32_t bone = 0; bone < run.bone_count; ++bone) {
-    const Matrix a = matrix_at(shared, lane, step);
-    std::uint32_t next = *++steps;
-    moments = add_moments<kEqual>(moments, step, gram_of(a), sums);
-    while ((step & kLastStep) == 0) {
-      step = next;
-      next = *++steps;
-      moments = add_moments<kEqual>(moments, step, gram_of(a, matrix_at(shared, lane, step)), sums);
-    }
-    step = next;
   }
 }
 
@@ -143,10 +145,6 @@ SPHERECHAIN_HD float spread_of(float square) {
   return square >= kLeastRoot && square <= kMostRoot ? usual_root(square) : any_root(square < 0 ? 0.0F : square);
 }
 
-struct CenterSums {
-  float at[3][4];
-};
-
 SPHERECHAIN_HD void add_center(const Matrix& matrix, const Float4& term, CenterSums& sums) {
   const float terms[] = {term.x, term.y, term.z, term.w};
   SPHERECHAIN_UNROLL
@@ -158,16 +156,91 @@ SPHERECHAIN_HD void add_center(const Matrix& matrix, const Float4& term, CenterS
   }
 }
 
-template <bool kEqual>
-SPHERECHAIN_HD void add_centers(const GroupView& v, const Shared& shared, std::uint32_t lane, const MomentRun& run,
-                                CenterSums (&sums)[kRunSpheres]) {
-  const std::uint32_t* bones = v.run_bones + run.first_bone;
+SPHERECHAIN_HD float center_of(const Shared& shared, std::uint32_t lane, const CenterSums& sums, std::size_t row) {
+  const float(&own)[4] = sums.at[row];
+  return ((own[0] + own[2]) + (own[1] + own[3])) + shared.reference[row * kPitch + lane];
+}
+
+SPHERECHAIN_HD void store_sphere(const Shared& shared, std::uint32_t lane, std::uint32_t sphere, const CenterSums& sums,
+                                 float radius) {
+  shared.spheres[sphere * kPitch + lane] = {center_of(shared, lane, sums, 0), center_of(shared, lane, sums, 1),
+                                            center_of(shared, lane, sums, 2), radius};
+}
+
+// All Gram matrices stay in registers, and sphere after sphere takes what it needs of them.
+SPHERECHAIN_HD void refit_two_bones(const GroupView& v, const Shared& shared, std::uint32_t lane,
+                                    const MomentRun& run) {
+  const RunSphere* spheres = v.run_spheres + run.first_sphere;
+  const Matrix a = matrix_at(shared, lane, v.run_bones[run.first_bone]);
+  const Matrix b = matrix_at(shared, lane, v.run_bones[run.first_bone + 1]);
   const Float4* terms = v.center_terms + run.first_center;
-  for (std::uint32_t bone = 0; bone < run.bone_count; ++bone) {
-    const Matrix matrix = matrix_at(shared, lane, bones[bone]);
+  SPHERECHAIN_ONE_BY_ONE
+  for (std::uint32_t s = 0; s < run.sphere_count; ++s, terms += 2) {
+    CenterSums sums;
+    clear(sums.at);
+    add_center(a, terms[0], sums);
+    add_center(b, terms[1], sums);
+    store_sphere(shared, lane, spheres[s].sphere, sums, 0);
+  }
+  const Gram own_a = gram_of(a), own_b = gram_of(b), both = gram_of(a, b);
+  const Float4* quads = v.moments + run.first_moment;
+  SPHERECHAIN_ONE_BY_ONE
+  for (std::uint32_t s = 0; s < run.sphere_count; ++s, quads += kTwoBoneQuads) {
+    MomentSums sums;
+    clear(sums.at);
+    const Float4 m = quads[0], n = quads[1], o = quads[2], p = quads[3], q = quads[4];
+    add_own_moment({m.x, m.y, m.z, m.w, n.x, n.y, n.z, n.w, o.x, o.y}, own_a, sums);
+    add_pair_moment(quads + 5, both, sums);
+    add_own_moment({o.z, o.w, p.x, p.y, p.z, p.w, q.x, q.y, q.z, q.w}, own_b, sums);
+    const RunSphere sphere = spheres[s];
+    shared.spheres[sphere.sphere * kPitch + lane].w = sphere.wanted * spread_of(tree(sums));
+  }
+}
+
+// A bone's matrix stays in registers while it is paired with those after it.
+template <bool kEqual>
+SPHERECHAIN_HD void add_pairs(const GroupView& v, const Shared& shared, std::uint32_t lane, const MomentRun& run,
+                              MomentSums (&sums)[kRunSpheres]) {
+  const std::uint32_t* steps = v.moment_steps + run.first_step;
+  const Float4* quads = v.moments + run.first_moment;
+  std::uint32_t step = 0;
+  do {
+    step = *steps++;
+    const Matrix a = matrix_at(shared, lane, step);
+    const Gram own = gram_of(a);
     SPHERECHAIN_UNROLL
     for (std::uint32_t s = 0; s < kRunSpheres; ++s) {
-      if (kEqual || (bones[bone] >> s & 1U) != 0) {
+      if (kEqual || (step >> s & 1U) != 0) {
+        add_own_moment(quads, own, sums[s]);
+        quads += kOwnQuads;
+      }
+    }
+    while ((step & kLastOfBone) == 0) {
+      step = *steps++;
+      const Gram both = gram_of(a, matrix_at(shared, lane, step));
+      SPHERECHAIN_UNROLL
+      for (std::uint32_t s = 0; s < kRunSpheres; ++s) {
+        if (kEqual || (step >> s & 1U) != 0) {
+          add_pair_moment(quads, both, sums[s]);
+          quads += kPairQuads;
+        }
+      }
+    }
+  } while ((step & kLastOfRun) == 0);
+}
+
+template <bool kEqual>
+SPHERECHAIN_HD void add_bones(const GroupView& v, const Shared& shared, std::uint32_t lane, const MomentRun& run,
+                              CenterSums (&sums)[kRunSpheres]) {
+  const std::uint32_t* bones = v.run_bones + run.first_bone;
+  const Float4* terms = v.center_terms + run.first_center;
+  SPHERECHAIN_ONE_BY_ONE
+  for (std::uint32_t i = 0; i < run.bone_count; ++i) {
+    const std::uint32_t bone = bones[i];
+    const Matrix matrix = matrix_at(shared, lane, bone);
+    SPHERECHAIN_UNROLL
+    for (std::uint32_t s = 0; s < kRunSpheres; ++s) {
+      if (kEqual || (bone >> s & 1U) != 0) {
         add_center(matrix, *terms++, sums[s]);
       }
     }
@@ -176,49 +249,37 @@ SPHERECHAIN_HD void add_centers(const GroupView& v, const Shared& shared, std::u
 
 template <bool kEqual>
 SPHERECHAIN_HD void refit_run(const GroupView& v, const Shared& shared, std::uint32_t lane, const MomentRun& run) {
-  float radii[kRunSpheres];
+  float spreads[kRunSpheres];
   {
     MomentSums sums[kRunSpheres];
-    for (MomentSums& own : sums) {
-      for (float(&row)[4] : own.at) {
-        for (float& sum : row) {
-          sum = -0.0F;
-        }
-      }
-    }
+    clear(sums[0].at);
+    clear(sums[1].at);
     add_pairs<kEqual>(v, shared, lane, run, sums);
-    for (std::uint32_t s = 0; s < kRunSpheres; ++s) {
-      radii[s] = run.wanted[s] * spread_of(tree(sums[s]));
-    }
+    spreads[0] = spread_of(tree(sums[0]));
+    spreads[1] = spread_of(tree(sums[1]));
   }
   CenterSums centers[kRunSpheres];
-  for (CenterSums& own : centers) {
-    for (float(&row)[4] : own.at) {
-      for (float& sum : row) {
-        sum = -0.0F;
-      }
-    }
-  }
-  add_centers<kEqual>(v, shared, lane, run, centers);
+  clear(centers[0].at);
+  clear(centers[1].at);
+  add_bones<kEqual>(v, shared, lane, run, centers);
+  const RunSphere* spheres = v.run_spheres + run.first_sphere;
+  SPHERECHAIN_UNROLL
   for (std::uint32_t s = 0; s < kRunSpheres; ++s) {
     if (kEqual || s < run.sphere_count) {
-      float center[3];
-      for (std::uint32_t row = 0; row < 3; ++row) {
-        const float(&sums)[4] = centers[s].at[row];
-        center[row] = ((sums[0] + sums[2]) + (sums[1] + sums[3])) + shared.reference[row * kPitch + lane];
-      }
-      shared.spheres[run.spheres[s] * kPitch + lane] = {center[0], center[1], center[2], radii[s]};
+      store_sphere(shared, lane, spheres[s].sphere, centers[s], spheres[s].wanted * spreads[s]);
     }
   }
 }
 
-// Step 3: a warp a run of spheres, the dearest first.
+// Step 4: a warp a run of spheres, the dearest first.
 SPHERECHAIN_HD void refit_runs(const GroupView& v, const Shared& shared, const Place& at) {
   std::uint32_t place = deal(&shared.dealt[0], at, 0);
   for (std::uint32_t round = 1; place < v.run_count; ++round) {
     const MomentRun& run = v.runs[place];
     place = deal(&shared.dealt[0], at, round);
-    if (run.are_equal != 0) {
+    if (run.kind == kTwoBones) {
+      refit_two_bones(v, shared, at.lane(), run);
+    } else if (run.kind == kEqualBones) {
       refit_run<true>(v, shared, at.lane(), run);
     } else {
       refit_run<false>(v, shared, at.lane(), run);

@@ -91,8 +91,8 @@ inline void fill_paddings(const Filter* filter, float* out) {
 }
 
 // The bones that an array of terms names, ascending, each once. Returns how many; `index_of_bone` is told of each.
-template <typename Bone, typename Told>
-std::uint32_t fill_bones(Span<const Bone> term_bones, std::size_t bone_count, std::uint32_t* used,
+template <typename Told>
+std::uint32_t fill_bones(Span<const std::uint32_t> term_bones, std::size_t bone_count, std::uint32_t* used,
                          const Told& index_of_bone) {
   std::uint32_t count = 0;
   for (std::uint32_t bone = 0; bone < bone_count; ++bone) {

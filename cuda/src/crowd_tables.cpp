@@ -191,10 +191,12 @@ GroupView Access::view(const CrowdTables& tables, const std::uint64_t* words) {
     v.runs = reinterpret_cast<const MomentRun*>(words + tables.runs_at_);
     v.moment_steps = reinterpret_cast<const std::uint32_t*>(words + tables.moment_steps_at_);
     v.moments = reinterpret_cast<const Float4*>(words + tables.moments_at_);
+    v.run_spheres = reinterpret_cast<const RunSphere*>(words + tables.run_spheres_at_);
     v.run_bones = reinterpret_cast<const std::uint32_t*>(words + tables.run_bones_at_);
     v.center_terms = reinterpret_cast<const Float4*>(words + tables.center_terms_at_);
     v.origin = tables.origin_;
     v.run_count = tables.run_count_;
+    v.reference = tables.reference_;
   }
   v.near = reinterpret_cast<const NearEntry*>(words + tables.near_at_);
   v.items = reinterpret_cast<const PairItem*>(words + tables.items_at_);

@@ -17,8 +17,10 @@
 
 #if defined(__CUDA_ARCH__)
 #define SPHERECHAIN_UNROLL _Pragma("unroll")
+#define SPHERECHAIN_ONE_BY_ONE _Pragma("unroll 1")
 #else
 #define SPHERECHAIN_UNROLL
+#define SPHERECHAIN_ONE_BY_ONE
 #endif
 
 namespace spherechain::cuda {
@@ -98,21 +100,30 @@ struct alignas(16) LeafMorph {
   std::uint32_t unused[3];
 };
 
-// One or two spheres that a warp refits at once, by moments, and the pairs of bones that one of them has; the dearest
-// first.
-inline constexpr std::uint32_t kRunSpheres = 2;
+// Spheres that a warp refits at once, by moments. The dearest runs come first.
 struct alignas(16) MomentRun {
   std::uint32_t first_step, first_moment;  // of what follows in its own array
   std::uint32_t first_bone, first_center;
-  std::uint32_t bone_count, sphere_count;
-  std::uint32_t are_equal;  // two spheres of the same bones
-  std::uint32_t unused;
-  std::uint32_t spheres[kRunSpheres];
-  float wanted[kRunSpheres];
+  std::uint32_t first_sphere, sphere_count;
+  std::uint32_t bone_count, kind;
+  std::uint32_t cost;
 };
+// Of a run: many spheres of the same two bones; two spheres of the same bones; one or two of any.
+inline constexpr std::uint32_t kTwoBones = 0, kEqualBones = 1, kAnyBones = 2;
+inline constexpr std::uint32_t kRunSpheres = 2, kMostRunSpheres = 8;
+
+struct alignas(8) RunSphere {
+  std::uint32_t sphere;
+  float wanted;
+};
+
 // A pair of bones: where shared memory has the second one's matrix, in bytes, which end in four bits of zero; bit s is
-// set where the run's sphere s has both. Pairs go (0, 0), (0, 1) .., (1, 1) .., so that each is the first one's first.
-inline constexpr std::uint32_t kLastStep = 4, kMatrixMask = ~15U;  // of the first one's
+// set where the run's sphere s has both. Pairs go (0, 0), (0, 1) .., (1, 1) .., but for those that neither has.
+inline constexpr std::uint32_t kLastOfBone = 4, kLastOfRun = 8, kMatrixMask = ~15U;
+
+// A moment of a bone with itself, which is symmetric, and in this order: 00 01 02 03 11 12 13 22 23 33.
+inline constexpr std::uint32_t kOwnQuads = 3, kPairQuads = 4;  // of a moment, by fours
+inline constexpr std::uint32_t kTwoBoneQuads = 9;              // both bones' own, then the pair's
 
 // How large a bone's matrix is, as runtime/src/cover_kernel.h has it.
 struct alignas(8) BoneSize {
@@ -143,11 +154,13 @@ struct GroupView {
   const LeafMorph* leaf_morphs;
   const MomentRun* runs;  // null but where spheres follow bones by moments
   const std::uint32_t* moment_steps;
-  const Float4* moments;           // by columns, four a sphere and step
-  const std::uint32_t* run_bones;  // as steps, without the last one's mark
+  const Float4* moments;
+  const std::uint32_t* run_bones;  // as steps, without marks of the last
+  const RunSphere* run_spheres;
   const Float4* center_terms;
   Vec3 origin;
-  std::uint32_t sphere_count, used_bone_count, item_count, near_count, morph_count, bit_words, leaf_count, run_count;
+  std::uint32_t sphere_count, used_bone_count, item_count, near_count, morph_count, bit_words, leaf_count;
+  std::uint32_t run_count, reference;  // reference: of the bones used
   bool calibrated, has_padding, has_morphs;
 
   const Sphere* spheres;

@@ -63,7 +63,8 @@ class CrowdTables {
                 used_bones_at_ = 0, items_at_ = 0, near_at_ = 0;
   std::uint32_t morph_counts_at_ = 0, morph_targets_at_ = 0, morph_terms_at_ = 0;
   std::uint32_t covers_at_ = 0, leaves_at_ = 0, leaf_terms_at_ = 0, leaf_morphs_at_ = 0;
-  std::uint32_t run_count_ = 0, runs_at_ = 0, moment_steps_at_ = 0, moments_at_ = 0, run_bones_at_ = 0,
+  std::uint32_t run_count_ = 0, reference_ = 0, runs_at_ = 0, run_spheres_at_ = 0, moment_steps_at_ = 0,
+                moments_at_ = 0, run_bones_at_ = 0,
                 center_terms_at_ = 0;  // words from the start
   Vec3 origin_{};
   bool calibrated_ = false, has_padding_ = false, has_morphs_ = false;
