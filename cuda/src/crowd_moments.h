@@ -74,7 +74,9 @@ SPHERECHAIN_HD Gram gram_of(const Matrix& a) {
   for (std::size_t column = 0; column < 4; ++column) {
     SPHERECHAIN_UNROLL
     for (std::size_t row = 0; row <= column; ++row) {
-      out.at[row][column] = out.at[column][row] = gram_at(a, a, row, column);
+      float figure = gram_at(a, a, row, column);
+      make_once(figure);
+      out.at[row][column] = out.at[column][row] = figure;
     }
   }
   return out;

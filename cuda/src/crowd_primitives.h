@@ -101,6 +101,15 @@ SPHERECHAIN_HD float usual_root(float x) {
 #endif
 }
 
+// Keeps the compiler from working a figure out anew in each branch that wants it.
+SPHERECHAIN_HD void make_once(float& figure) {
+#if defined(__CUDA_ARCH__)
+  asm volatile("" : "+f"(figure));
+#else
+  (void)figure;
+#endif
+}
+
 // What a warp is to do next: on the device each warp that asks gets the next place; the tests' warps, whose threads run
 // one after another, take turns.
 SPHERECHAIN_HD std::uint32_t deal(std::uint32_t* dealt, const Place& at, std::uint32_t round) {
