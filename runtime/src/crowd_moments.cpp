@@ -34,28 +34,51 @@ HWY_INLINE float* matrix_of(const LaneRefit& batch, std::size_t bone) {
   return batch.matrices + bone * kMatrixFloats * kLanes;
 }
 
-// The bone's image of the origin, into `out`.
-HWY_INLINE void move_origin(const float* matrix, const Vec3& origin, Vector (&out)[kRows]) {
-  constexpr Floats kFloats;
-  for (std::size_t row = 0; row < kRows; ++row) {
-    const float* const a = matrix + kColumns * kLanes * row;
-    Vector p = fused(kFloats, hn::Load(kFloats, a), hn::Set(kFloats, origin.x), hn::Load(kFloats, a + 3 * kLanes));
-    p = fused(kFloats, hn::Load(kFloats, a + kLanes), hn::Set(kFloats, origin.y), p);
-    out[row] = fused(kFloats, hn::Load(kFloats, a + 2 * kLanes), hn::Set(kFloats, origin.z), p);
+// A bone's matrix, one figure a register.
+struct Matrix {
+  Vector rows[kRows][kColumns];
+};
+
+HWY_INLINE void load_matrix(const float* from, Matrix& matrix) {
+  for (std::size_t i = 0; i < kMatrixFloats; ++i) {
+    matrix.rows[i / kColumns][i % kColumns] = hn::Load(Floats(), from + i * kLanes);
   }
 }
+
+// The fourth column becomes the image of the origin.
+HWY_INLINE void move_origin(const Vec3& origin, Matrix& matrix) {
+  constexpr Floats kFloats;
+  for (Vector(&a)[kColumns] : matrix.rows) {
+    a[3] = fused(kFloats, a[0], hn::Set(kFloats, origin.x), a[3]);
+    a[3] = fused(kFloats, a[1], hn::Set(kFloats, origin.y), a[3]);
+    a[3] = fused(kFloats, a[2], hn::Set(kFloats, origin.z), a[3]);
+  }
+}
+
+// What is less than this counts for 0: products of smaller figures are no normal floats, and cost 150 cycles each.
+constexpr float kLeast = 0x1p-62F;
 
 // From bones' matrices to those relative to the origin and its image by the reference bone, which is handed back.
 HWY_INLINE void make_relative(const LaneRefit& batch, Vector (&reference)[kRows]) {
   constexpr Floats kFloats;
   const MomentInputs& tables = batch.inputs.moments;
-  move_origin(matrix_of(batch, tables.reference), tables.origin, reference);
+  Matrix matrix;
+  load_matrix(matrix_of(batch, tables.reference), matrix);
+  move_origin(tables.origin, matrix);
+  for (std::size_t row = 0; row < kRows; ++row) {
+    reference[row] = matrix.rows[row][3];
+  }
   for (std::size_t bone = 0; bone < batch.bone_count; ++bone) {
-    float* const matrix = matrix_of(batch, bone);
-    Vector image[kRows];
-    move_origin(matrix, tables.origin, image);
+    float* const out = matrix_of(batch, bone);
+    load_matrix(out, matrix);
+    move_origin(tables.origin, matrix);
     for (std::size_t row = 0; row < kRows; ++row) {
-      hn::Store(hn::Sub(image[row], reference[row]), kFloats, matrix + (kColumns * row + 3) * kLanes);
+      matrix.rows[row][3] = hn::Sub(matrix.rows[row][3], reference[row]);
+      for (std::size_t column = 0; column < kColumns; ++column) {
+        const Vector figure = matrix.rows[row][column];
+        hn::Store(hn::IfThenZeroElse(hn::Lt(hn::Abs(figure), hn::Set(kFloats, kLeast)), figure), kFloats,
+                  out + (kColumns * row + column) * kLanes);
+      }
     }
   }
 }
