@@ -86,7 +86,6 @@ std::vector<MomentBatch> make_batches(const std::vector<SphereMoments>& spheres)
   for (Cluster& cluster : merge(std::move(clusters))) {
     MomentBatch& batch = out.emplace_back();
     batch.pairs = std::move(cluster.pairs);
-    std::ranges::stable_sort(cluster.spheres, {}, &SphereMoments::bones);
     for (const SphereMoments* sphere : cluster.spheres) {
       batch.spheres.push_back(*sphere);
       for (const BonePair& pair : pairs_of(sphere->bones)) {
