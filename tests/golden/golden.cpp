@@ -86,7 +86,8 @@ const char* name_of(RadiusKind radius) { return radius == RadiusKind::kFit ? "fi
 using Palette = std::vector<std::array<float, 12>>;
 using Frames = std::vector<std::vector<Sphere>>;
 
-Frames from_vertices(const Doll& doll, const std::vector<Palette>& clip, RadiusKind radius, Table& table) {
+Frames from_vertices(const Doll& doll, const std::vector<Palette>& clip, RadiusKind radius, const std::string& name,
+                     Table& table) {
   Frames frames;
   Hash hash;
   for (const Palette& palette : clip) {
@@ -107,7 +108,7 @@ Frames from_vertices(const Doll& doll, const std::vector<Palette>& clip, RadiusK
     job.spheres = {spheres.data(), spheres.size()};
     table.expect(job.run() == Status::kOk && same_bits(spheres, frames.back()), "other spheres", "pivots' vertices");
   }
-  table.add(std::string("vertices ") + name_of(radius), hash, "vertices");
+  table.add(name + " " + name_of(radius), hash, "vertices");
   return frames;
 }
 
@@ -122,7 +123,8 @@ std::vector<float> transposed(const Palette& palette) {
   return out;
 }
 
-Frames from_bones(const Doll& doll, const std::vector<Palette>& clip, RadiusKind radius, Target target, Table& table) {
+Frames from_bones(const Doll& doll, const std::vector<Palette>& clip, RadiusKind radius, const std::string& name,
+                  Target target, Table& table) {
   Frames frames;
   Hash hash;
   for (const Palette& palette : clip) {
@@ -133,7 +135,7 @@ Frames from_bones(const Doll& doll, const std::vector<Palette>& clip, RadiusKind
     table.expect(same_bits(refit_bones(doll.asset, other, {}, radius, target).spheres, frames.back()), "other spheres",
                  std::string(to_string(target)) + ", matrices by columns");
   }
-  table.add(std::string("bones ") + name_of(radius), hash, to_string(target));
+  table.add(name + " " + name_of(radius), hash, to_string(target));
   return frames;
 }
 
@@ -185,8 +187,8 @@ void on_threads(void*, std::size_t count, void (*task)(void*, std::size_t), void
 }
 
 // The whole clip in one call, an instance a frame. Its hash is that of M2 from bones.
-void find_in_crowd(const Asset& asset, const std::vector<Palette>& clip, RadiusKind radius, Target target,
-                   std::size_t threads, Table& table) {
+void find_in_crowd(const Asset& asset, const std::vector<Palette>& clip, RadiusKind radius, const std::string& name,
+                   Target target, std::size_t threads, Table& table) {
   std::vector<float> matrices;
   for (const Palette& palette : clip) {
     for (const auto& m : palette) matrices.insert(matrices.end(), m.begin(), m.end());
@@ -219,7 +221,7 @@ void find_in_crowd(const Asset& asset, const std::vector<Palette>& clip, RadiusK
     table.expect(own.size() == counts[i], "another count of an instance", how);
     hash.add_list(own, [&](const Pair& pair) { hash.add(pair); });
   }
-  table.add(std::string("M2 bones ") + name_of(radius), hash, "crowd, " + how);
+  table.add("M2 " + name + " " + name_of(radius), hash, "crowd, " + how);
 }
 
 std::vector<TrianglePair> contacts_of(const Doll& doll, const std::vector<float>& positions, Target target) {
@@ -262,21 +264,27 @@ void hash_surface(const Doll& doll, const std::vector<Palette>& clip, Table& tab
   }
 }
 
-Table hash_all(const Doll& doll, const Doll& with_surface) {
+// Spheres and pairs under an asset's refit rule: their lines are named after what they come from.
+void hash_refits(const Doll& doll, const std::string& vertices, const std::string& bones, Table& table) {
   std::vector<Palette> clip;
   for (std::size_t frame = 0; frame < kFrames; ++frame) clip.push_back(matrices_at(doll.asset, frame));
-  Table table;
   for (const RadiusKind radius : {RadiusKind::kFit, RadiusKind::kDetect}) {
-    const Frames by_vertices = from_vertices(doll, clip, radius, table);
+    const Frames by_vertices = from_vertices(doll, clip, radius, vertices, table);
     for (const Target target : supported_targets()) {
-      find_pairs(doll.asset, by_vertices, radius, "vertices", target, table);
-      find_pairs(doll.asset, from_bones(doll, clip, radius, target, table), radius, "bones", target, table);
+      find_pairs(doll.asset, by_vertices, radius, vertices, target, table);
+      find_pairs(doll.asset, from_bones(doll, clip, radius, bones, target, table), radius, bones, target, table);
       for (std::size_t threads = 1; threads <= 4; ++threads) {
-        find_in_crowd(doll.asset, clip, radius, target, threads, table);
+        find_in_crowd(doll.asset, clip, radius, bones, target, threads, table);
       }
     }
   }
-  clip.clear();
+}
+
+Table hash_all(const Doll& doll, const Doll& by_moments, const Doll& with_surface) {
+  Table table;
+  hash_refits(doll, "vertices", "bones", table);
+  hash_refits(by_moments, "squares", "moments", table);
+  std::vector<Palette> clip;
   for (std::size_t frame = 0; frame < kFrames; ++frame) clip.push_back(matrices_at(with_surface.asset, frame));
   hash_surface(with_surface, clip, table);
   return table;
@@ -309,14 +317,15 @@ int main(int argc, char** argv) {
     std::fputs("usage: golden FOLDER [--print]\n", stderr);
     return 2;
   }
-  const Doll doll(argv[1], "doll.sphc"), with_surface(argv[1], "doll_surface.sphc");
-  for (const Doll* opened : {&doll, &with_surface}) {
+  const Doll doll(argv[1], "doll.sphc"), by_moments(argv[1], "doll_moments.sphc");
+  const Doll with_surface(argv[1], "doll_surface.sphc");
+  for (const Doll* opened : {&doll, &by_moments, &with_surface}) {
     if (!opened->error.empty()) {
       std::fprintf(stderr, "golden: error: %s\n", opened->error.c_str());
       return 3;
     }
   }
-  const Table table = hash_all(doll, with_surface);
+  const Table table = hash_all(doll, by_moments, with_surface);
   if (!prints) {
     return compare(table, std::string(argv[1]) + "/hashes.txt");
   }
