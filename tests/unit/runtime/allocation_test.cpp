@@ -6,7 +6,7 @@
 #include "spherechain/contacts.h"
 #include "spherechain/crowd.h"
 #include "spherechain/refit_bones.h"
-#include "tiny_bones.h"
+#include "tiny_moments.h"
 
 namespace spherechain::test {
 
@@ -111,6 +111,38 @@ TEST_CASE("open, both refits, detect, filters, contacts and crowds allocate noth
   CHECK(bad_status == Status::kCorrupt);
   CHECK(m2_pairs > 0);
   CHECK(before > 0);  // the counter does count
+}
+
+TEST_CASE("refit by moments allocates nothing, on any target, however many bones there are") {
+  for (const std::size_t bones : {9U, 300U}) {
+    TinyAsset tiny = random_asset(30, 1);
+    for (std::size_t i = 0; i < 30; ++i) {
+      give_pivots(tiny, i, 2, static_cast<unsigned>(i));
+    }
+    TinySkin skin = add_bones(tiny, bones, 2);
+    add_moments(tiny, skin);
+    const OpenedAsset opened(tiny.parts);
+    REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
+    const std::vector<Matrix> matrices = random_matrices(bones, 3);
+    std::vector<Sphere> spheres(30);
+    RefitBonesJob from_bones;
+    from_bones.asset = &opened.asset;
+    from_bones.bones = {matrices[0].data(), matrices.size()};
+    from_bones.spheres = {spheres.data(), spheres.size()};
+    RefitJob from_vertices;
+    from_vertices.asset = &opened.asset;
+    from_vertices.positions = tiny.rest.data();
+    from_vertices.vertex_count = tiny.parts.vertex_count;
+    from_vertices.spheres = from_bones.spheres;
+    const std::size_t before = allocation_count();
+    Status status = from_vertices.run();
+    for (const Target target : supported_targets()) {
+      from_bones.target = target;
+      status = status == Status::kOk ? from_bones.run() : status;
+    }
+    CHECK(allocation_count() == before);
+    CHECK(status == Status::kOk);
+  }
 }
 
 }  // namespace spherechain::test

@@ -2,11 +2,12 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "jobs.h"
+#include "palette.h"
 #include "spherechain/refit_bones.h"
 #include "tiny_moments.h"
 
@@ -133,6 +134,33 @@ void check_exact(const Skinned& s) {
   }
 }
 
+// RefitJob's fixed arithmetic, to the last bit.
+std::vector<Sphere> exact_spheres_of(const AssetParts& parts, const std::vector<float>& v, RadiusKind kind) {
+  std::vector<Sphere> out;
+  for (const RestSphere& rest : parts.spheres) {
+    std::vector<std::array<float, 3>> centroids;
+    float c[3] = {0, 0, 0};
+    for (std::size_t k = rest.first_pivot; k < rest.first_pivot + rest.pivot_count; ++k) {
+      const Pivot& pivot = parts.pivots[k];
+      std::array<float, 3>& p = centroids.emplace_back();
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const float sum = v[3 * pivot.a + axis] + v[3 * pivot.b + axis];
+        p[axis] = (sum + v[3 * pivot.c + axis]) * (1.0F / 3);
+        c[axis] = c[axis] + pivot.weight * p[axis];
+      }
+    }
+    float sum = 0;
+    for (const auto& p : centroids) {
+      const float dx = p[0] - c[0], dy = p[1] - c[1], dz = p[2] - c[2];
+      sum = sum + ((dx * dx + dy * dy) + dz * dz);
+    }
+    const float now = std::sqrt(sum / static_cast<float>(rest.pivot_count));
+    const float wanted = kind == RadiusKind::kFit ? rest.radius : rest.detect_radius;
+    out.push_back({c[0], c[1], c[2], wanted * (now / rest.pivot_spread)});
+  }
+  return out;
+}
+
 double distance(const Sphere& a, const Sphere& b) {
   return std::max({std::abs(double{a.x} - double{b.x}), std::abs(double{a.y} - double{b.y}),
                    std::abs(double{a.z} - double{b.z}), std::abs(double{a.radius} - double{b.radius})});
@@ -198,6 +226,81 @@ TEST_CASE("by moments, spheres of an asset with more bones than its stack has ro
   for (const std::size_t bones : {255U, 256U, 257U, 1000U}) {
     check_exact(Skinned(bones, 40, 48, false));
   }
+}
+
+TEST_CASE("by moments, spheres from vertices follow the fixed arithmetic of the header bit for bit") {
+  const Skinned s(9, 24);
+  const OpenedAsset opened(s.tiny.parts);
+  const std::vector<float> mesh = skinned(s.tiny, s.skin, s.matrices, {});
+  for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
+    const Refitted result = refit(opened.asset, mesh, kind);
+    CHECK(result.status == Status::kOk);
+    CHECK(same_bits(result.spheres, exact_spheres_of(s.tiny.parts, mesh, kind)));
+  }
+}
+
+TEST_CASE("by moments, every layout and stride of the matrices gives the same spheres, reading none but theirs") {
+  for (const std::size_t bones : {9U, 300U}) {
+    const Skinned s(bones, 20, 48, false);
+    const OpenedAsset opened(s.tiny.parts);
+    const Refitted expected = refit_posed(opened.asset, s, RadiusKind::kDetect);
+    for (const MatrixLayout layout : {MatrixLayout::kRowMajor3x4, MatrixLayout::kRowMajor4x4,
+                                      MatrixLayout::kColumnMajor4x4, MatrixLayout::kColumnMajor3x4}) {
+      for (const std::size_t padding : {0U, 4U, 52U}) {
+        const Palette palette(s.matrices, layout, size_of(layout) + padding);
+        for (const Target target : supported_targets()) {
+          INFO("layout ", static_cast<int>(layout), ", padding ", padding, ", ", to_string(target));
+          const Refitted result = refit_bones(opened.asset, palette.view(bones), {}, RadiusKind::kDetect, target);
+          CHECK(result.status == Status::kOk);
+          CHECK(same_bits(result.spheres, expected.spheres));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("by moments, matrices that are not finite give spheres that are not finite, and only those they move") {
+  for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    for (const bool is_reference : {false, true}) {
+      Skinned s(12, 40, 48, false);
+      const OpenedAsset opened(s.tiny.parts);
+      const std::size_t broken_bone = is_reference ? s.tables().reference : 0;
+      s.matrices[broken_bone][5] = bad;
+      for (const Target target : supported_targets()) {
+        const Refitted result = refit_posed(opened.asset, s, RadiusKind::kFit, target);
+        CHECK(result.status == Status::kOk);
+        std::size_t bone = 0, broken = 0;
+        for (std::size_t i = 0; i < s.tables().spheres.size(); ++i) {
+          const auto first = s.tables().bones.begin() + static_cast<std::ptrdiff_t>(bone);
+          bone += s.tables().bone_counts[i];
+          const auto last = s.tables().bones.begin() + static_cast<std::ptrdiff_t>(bone);
+          const bool moves = is_reference || std::find(first, last, broken_bone) != last;
+          const Sphere& sphere = result.spheres[s.tables().spheres[i]];
+          CHECK(std::isfinite(sphere.y) == !moves);
+          CHECK(std::isfinite(sphere.radius) == !moves);
+          broken += moves ? 1 : 0;
+        }
+        CHECK(broken > 0);
+        CHECK((broken < result.spheres.size()) == !is_reference);
+      }
+    }
+  }
+}
+
+TEST_CASE("by moments, refit leaves entries past the asset's spheres alone, and matrices past its bones unread") {
+  const Skinned s(9, 11);
+  const OpenedAsset opened(s.tiny.parts);
+  std::vector<Sphere> spheres(13, {7, 7, 7, 7});
+  std::vector<Matrix> matrices = s.matrices;
+  matrices.emplace_back().fill(std::numeric_limits<float>::quiet_NaN());
+  RefitBonesJob job;
+  job.asset = &opened.asset;
+  job.bones = {matrices[0].data(), matrices.size()};
+  job.spheres = {spheres.data(), spheres.size()};
+  CHECK(job.run() == Status::kOk);
+  CHECK(same_bits(std::vector<Sphere>(spheres.begin() + 11, spheres.end()), std::vector<Sphere>(2, {7, 7, 7, 7})));
+  spheres.resize(11);
+  CHECK(same_bits(spheres, refit_posed(opened.asset, s, RadiusKind::kDetect).spheres));
 }
 
 }  // namespace spherechain::test
