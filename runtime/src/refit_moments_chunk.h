@@ -44,10 +44,19 @@ HWY_INLINE void finish(const Chunk& chunk, std::size_t count, const Vector (&ref
   out = hn::IfThenElse(hn::Not(hn::FirstN(d, 12)), hn::TableLookupLanes(radii, hn::SetTableIndices(d, kFourth)), out);
   alignas(64) static constexpr std::int32_t kTurned[kMomentSize] = {0, 4, 8,  12, 1, 5, 9,  13,
                                                                     2, 6, 10, 14, 3, 7, 11, 15};
-  HWY_ALIGN Sphere turned[kChunk];
-  hn::Store(hn::TableLookupLanes(out, hn::SetTableIndices(d, kTurned)), d, &turned[0].x);
+  out = hn::TableLookupLanes(out, hn::SetTableIndices(d, kTurned));
+  if (count == kChunk) {
+    const std::uint32_t* to = chunk.spheres;
+    _mm_storeu_ps(&spheres[to[0]].x, _mm512_castps512_ps128(out.raw));
+    _mm_storeu_ps(&spheres[to[1]].x, _mm512_extractf32x4_ps(out.raw, 1));
+    _mm_storeu_ps(&spheres[to[2]].x, _mm512_extractf32x4_ps(out.raw, 2));
+    _mm_storeu_ps(&spheres[to[3]].x, _mm512_extractf32x4_ps(out.raw, 3));
+    return;
+  }
+  HWY_ALIGN Sphere last[kChunk];
+  hn::Store(out, d, &last[0].x);
   for (std::size_t i = 0; i < count; ++i) {
-    spheres[chunk.spheres[i]] = turned[i];
+    spheres[chunk.spheres[i]] = last[i];
   }
 }
 

@@ -161,6 +161,8 @@ HWY_INLINE void refit_all(const BoneRefitInputs& in, Sphere* spheres) {
   HWY_ALIGN Moment grams[kMaxMomentPairs];
   Chunk chunk = {};  // what the last one lacks is 0
   chunk.spheres = tables.spheres;
+  constexpr std::size_t kRestFloats = sizeof(RestSphere) / sizeof(float);
+  const float* radii = in.radius == RadiusKind::kFit ? &in.rest->radius : &in.rest->detect_radius;
   std::size_t filled = 0;
   Place at{tables.bones, tables.centers, tables.pair_places, tables.moments};
   const BonePair* pair = tables.pairs;
@@ -170,8 +172,7 @@ HWY_INLINE void refit_all(const BoneRefitInputs& in, Sphere* spheres) {
     pair += batch->pair_count;
     for (const std::uint8_t* last = bone_count + batch->sphere_count; bone_count < last; ++bone_count) {
       add_any_sphere(*bone_count, bones, grams, at, chunk.centers[filled], chunk.squares[filled]);
-      const RestSphere& rest = in.rest[chunk.spheres[filled]];
-      chunk.wanted[filled] = in.radius == RadiusKind::kFit ? rest.radius : rest.detect_radius;
+      chunk.wanted[filled] = radii[chunk.spheres[filled] * kRestFloats];
       if (++filled == kChunk) {
         finish(chunk, kChunk, bones.reference(), spheres);
         chunk.spheres += kChunk;

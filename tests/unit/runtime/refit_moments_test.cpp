@@ -210,6 +210,17 @@ TEST_CASE("by moments, what is less than 2^-62 in a matrix counts for nothing, o
   }
 }
 
+TEST_CASE("by moments, a squared spread that comes out below 0 counts for 0, on every target") {
+  Skinned s(9, 20);
+  for (Moment& moment : s.tiny.parts.bone_refit.moments.moments) {
+    for (float& value : moment.values) {
+      value = -value;
+    }
+  }
+  CHECK(exact_spheres(s, RadiusKind::kFit)[0].radius == 0);
+  check_exact(s);
+}
+
 TEST_CASE("by moments, spheres fall into batches of any size, up to the largest there may be") {
   const Skinned small(9, 40, 1);
   CHECK(small.tables().batches.size() > 20);
