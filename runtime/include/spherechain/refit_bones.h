@@ -81,8 +81,8 @@ struct BoneMatrices {
 //   centre  for each row m: s[j] = C[m][j] * u[j] of its first bone, u its share (x, y, z, w) of the centre; then
 //           fma(C[m][j], u[j], s[j]) of each further one; ((s[0] + s[2]) + (s[1] + s[3])) + p_ref[m]
 //
-// Fill in the fields and call run(). Allocates nothing, takes no lock; jobs on other buffers may run at the same time.
-// Fastest where the asset's bytes start at a multiple of 64.
+// Fill in the fields and call run(). Allocates nothing, needs some 36 KiB of stack, takes no lock; jobs on other
+// buffers may run at the same time. Fastest where the asset's bytes start at a multiple of 64.
 struct SPHERECHAIN_API RefitBonesJob {
   const Asset* asset = nullptr;     // open
   BoneMatrices bones;               // at least asset->bone_count()
