@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "bind/bind_bones.h"
@@ -19,11 +20,7 @@ struct SphereMoments {
   std::vector<std::uint8_t> places;      // of each pair: in MomentBatch::pairs; make_batches()' work
 };
 
-struct BonePair {
-  Index a, b;  // a <= b
-
-  auto operator<=>(const BonePair&) const = default;
-};
+using BonePair = std::pair<Index, Index>;  // first <= second
 
 struct MomentBatch {
   std::vector<BonePair> pairs;  // sorted, each once

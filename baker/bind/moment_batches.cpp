@@ -80,6 +80,7 @@ std::vector<MomentBatch> make_batches(const std::vector<SphereMoments>& spheres)
     cluster.spheres.push_back(&sphere);
   }
   std::vector<Cluster> clusters;
+  clusters.reserve(of_bones.size());
   for (auto& [bones, cluster] : of_bones) clusters.push_back(std::move(cluster));
 
   std::vector<MomentBatch> out;

@@ -47,7 +47,7 @@ flatbuffers::Offset<schema::Moments> create_moments(flatbuffers::FlatBufferBuild
     batches.emplace_back(static_cast<std::uint32_t>(batch.pairs.size()),
                          static_cast<std::uint32_t>(batch.spheres.size()));
     for (const BonePair& pair : batch.pairs) {
-      pairs.emplace_back(static_cast<std::uint16_t>(pair.a), static_cast<std::uint16_t>(pair.b));
+      pairs.emplace_back(static_cast<std::uint16_t>(pair.first), static_cast<std::uint16_t>(pair.second));
     }
     for (const SphereMoments& sphere : batch.spheres) {
       spheres.push_back(sphere.sphere);
