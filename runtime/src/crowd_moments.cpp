@@ -36,6 +36,7 @@ HWY_INLINE float* matrix_of(const LaneRefit& batch, std::size_t bone) {
 
 // A bone's matrix, one figure a register.
 struct Matrix {
+  HWY_INLINE Matrix() {}  // for the target: an implicit one is compiled for the build's own, which NEON refuses
   Vector rows[kRows][kColumns];
 };
 
