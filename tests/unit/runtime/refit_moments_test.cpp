@@ -15,7 +15,7 @@ namespace spherechain::test {
 namespace {
 
 // Of coordinates of some units, and of a quadratic form in them.
-constexpr double kRounding = 2e-5;
+constexpr double kMeshRounding = 2e-5;
 
 struct Skinned {
   Skinned(std::size_t bone_count, std::size_t spheres, std::size_t batch_pairs = 48, bool has_large_spheres = true)
@@ -179,7 +179,7 @@ TEST_CASE("by moments, spheres from bones are those of the skinned mesh") {
     REQUIRE(expected.status == Status::kOk);
     for (std::size_t i = 0; i < result.spheres.size(); ++i) {
       INFO("sphere ", i);
-      CHECK(distance(result.spheres[i], expected.spheres[i]) < kRounding);
+      CHECK(distance(result.spheres[i], expected.spheres[i]) < kMeshRounding);
     }
   }
 }
