@@ -38,8 +38,8 @@ TinyAsset make(const Shape& shape) {
   return tiny;
 }
 
-struct Crowd {
-  explicit Crowd(const Shape& shape)
+struct CrowdOfBones {
+  explicit CrowdOfBones(const Shape& shape)
       : tiny(make(shape)), opened(tiny.parts), sphere_count(shape.spheres), bone_count(shape.bones) {
     REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
     REQUIRE(opened.asset.refit_rule() == shape.rule);
@@ -120,15 +120,15 @@ std::pair<float, float> find_limit(const Sphere& a, const Sphere& b) {
 }  // namespace
 
 TEST_CASE("by moments, a crowd of skeletons gives the pairs of its refitted spheres") {
-  Crowd(Shape{}).check();
-  Crowd(Shape{60, 20}).check();
-  Crowd(Shape{40, 9, 1}).check();
-  Crowd(Shape{40, kMaxMomentBones, kMaxMomentPairs}).check();
-  Crowd(Shape{40, 300, 48, RefitRule::kMoments, false}).check();
+  CrowdOfBones(Shape{}).check();
+  CrowdOfBones(Shape{60, 20}).check();
+  CrowdOfBones(Shape{40, 9, 1}).check();
+  CrowdOfBones(Shape{40, kMaxMomentBones, kMaxMomentPairs}).check();
+  CrowdOfBones(Shape{40, 300, 48, RefitRule::kMoments, false}).check();
 }
 
 TEST_CASE("by moments, a crowd's spheres are those of a single refit to the last bit") {
-  Crowd crowd(Shape{});
+  CrowdOfBones crowd(Shape{});
   for (std::size_t i = 0; i < kInstances; i += 4) {  // some so small that figures of theirs count for 0
     for (std::size_t bone = 0; bone < crowd.bone_count; ++bone) {
       for (float& figure : crowd.matrices[i * crowd.bone_count + bone]) figure *= 0x1p-60F;
@@ -172,7 +172,7 @@ TEST_CASE("matrices that are not finite cost no other instance a pair, whatever 
     INFO("rule ", static_cast<int>(rule));
     Shape shape;
     shape.rule = rule;
-    Crowd crowd(shape);
+    CrowdOfBones crowd(shape);
     const std::vector<CrowdPair> before = crowd.expected();
     const float bad[] = {kNan, kInfinity, -kInfinity, 3e38F, -1e30F, 1e-40F};
     std::vector<bool> is_bad(kInstances);
