@@ -12,7 +12,7 @@ std::atomic<std::size_t> allocations{0};
 
 }  // namespace
 
-// Arrays and nothrow forms come through here too.
+// Arrays come through here too.
 void* operator new(std::size_t size) {
   ++allocations;
   void* memory = std::malloc(size == 0 ? 1 : size);
@@ -21,6 +21,8 @@ void* operator new(std::size_t size) {
   }
   return memory;
 }
+// A sanitizer has one of its own, which does not.
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return operator new(size); }
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
