@@ -21,8 +21,8 @@ SPHERECHAIN_HD void find_reference(const GroupView& v, const Shared& shared, con
   }
 }
 
-// What is too small to be squared is none.
-SPHERECHAIN_HD float flushed(float x) { return fabsf(x) < 0x1p-62F ? 0.0F : x; }
+// NaN stays.
+SPHERECHAIN_HD float without_least(float x) { return fabsf(x) < kLeastMatrixFigure ? 0.0F : x; }
 
 // Step 3: translations become those of the origin's image, seen from the reference bone's. A warp a bone.
 SPHERECHAIN_HD void center_matrices(const GroupView& v, const Shared& shared, const Place& at) {
@@ -31,7 +31,7 @@ SPHERECHAIN_HD void center_matrices(const GroupView& v, const Shared& shared, co
     for (std::uint32_t i = 0; i < 3; ++i) {
       Float4& row = shared.matrices[(3 * bone + i) * kPitch + at.lane()];
       const float w = move_origin(v, row) - shared.reference[i * kPitch + at.lane()];
-      row = {flushed(row.x), flushed(row.y), flushed(row.z), flushed(w)};
+      row = {without_least(row.x), without_least(row.y), without_least(row.z), without_least(w)};
     }
   }
 }

@@ -56,9 +56,6 @@ HWY_INLINE void move_origin(const Vec3& origin, Matrix& matrix) {
   }
 }
 
-// What is less than this counts for 0: products of smaller figures are no normal floats, and cost 150 cycles each.
-constexpr float kLeast = 0x1p-62F;
-
 // From bones' matrices to those relative to the origin and its image by the reference bone, which is handed back.
 HWY_INLINE void make_relative(const LaneRefit& batch, Vector (&reference)[kRows]) {
   constexpr Floats kFloats;
@@ -77,7 +74,7 @@ HWY_INLINE void make_relative(const LaneRefit& batch, Vector (&reference)[kRows]
       matrix.rows[row][3] = hn::Sub(matrix.rows[row][3], reference[row]);
       for (std::size_t column = 0; column < kColumns; ++column) {
         const Vector figure = matrix.rows[row][column];
-        hn::Store(hn::IfThenZeroElse(hn::Lt(hn::Abs(figure), hn::Set(kFloats, kLeast)), figure), kFloats,
+        hn::Store(hn::IfThenZeroElse(hn::Lt(hn::Abs(figure), hn::Set(kFloats, kLeastMatrixFigure)), figure), kFloats,
                   out + (kColumns * row + column) * kLanes);
       }
     }

@@ -128,13 +128,10 @@ HWY_INLINE void subtract_column(const Vector (&reference)[kParts], Vector (&rows
 
 #endif
 
-// What is less than this counts for 0, so that no product of two is too small for a normal float, which would cost some
-// 150 cycles: bones that stand still have such rounding errors beside their ones. NaN stays.
-constexpr float kLeast = 0x1p-62F;
-
+// NaN stays.
 HWY_INLINE Vector without_least(Vector v) {
   const Lanes16 d;
-  return hn::IfThenZeroElse(hn::Lt(hn::Abs(v), hn::Set(d, kLeast)), v);
+  return hn::IfThenZeroElse(hn::Lt(hn::Abs(v), hn::Set(d, kLeastMatrixFigure)), v);
 }
 
 // kKeeps: all of them, in memory; else each is moved when it is asked for.

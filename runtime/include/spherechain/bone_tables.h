@@ -42,6 +42,11 @@ inline constexpr std::size_t kMomentSize = 16;
 inline constexpr std::size_t kMaxMomentBones = 22;   // of a sphere
 inline constexpr std::size_t kMaxMomentPairs = 256;  // of a batch
 
+// Under RefitRule::kMoments a figure of a bone's matrix that is nearer to 0 than this counts for 0 (RefitBonesJob):
+// matrices of bones that stand still have such rounding errors beside their ones, and a product of two can be too small
+// for a normal float, which costs processors some 150 cycles.
+inline constexpr float kLeastMatrixFigure = 0x1p-62F;
+
 // Two bones that move pivots of one sphere, or one twice; a <= b < Asset::bone_count().
 struct BonePair {
   std::uint16_t a, b;

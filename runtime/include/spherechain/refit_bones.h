@@ -68,8 +68,8 @@ struct BoneMatrices {
 // Under kMoments (see MomentTables) no pivot is moved and morph weights change nothing. Of a bone whose matrix has the
 // rows (a0 a1 a2 t), m = 0, 1, 2; o the origin, "ref" the reference bone:
 //   p[m]    fma(a2, o.z, fma(a1, o.y, fma(a0, o.x, t)))
-//   C[m]    (a0, a1, a2, p[m] - p_ref[m]), of each 0 where it is less than 2^-62 and more than -2^-62: products of
-//           smaller ones, of the rounding errors in matrices of bones that stand still, would slow processors down
+//   C[m]    (a0, a1, a2, p[m] - p_ref[m]), of each 0 where it is less than 2^-62 and more than -2^-62
+//           (kLeastMatrixFigure)
 // of a pair of bones k, l, and r, c = 0 to 3:
 //   G[r][c] fma(Ck[2][r], Cl[2][c], fma(Ck[1][r], Cl[1][c], Ck[0][r] * Cl[0][c]))
 // of a sphere
