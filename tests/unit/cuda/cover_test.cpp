@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "../../golden/clip.h"
-#include "crowd_cases.h"
+#include "crowd_checks.h"
 #include "jobs.h"
 #include "spherechain/triangle_contacts.h"
 #include "tiny_surface.h"

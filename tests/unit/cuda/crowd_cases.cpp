@@ -6,7 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include "crowd_access.h"
 #include "jobs.h"
+#include "palette.h"
 #include "tiny_moments.h"
 
 namespace spherechain::test {
@@ -58,15 +60,6 @@ std::vector<Sphere> spheres_of(std::size_t n, std::size_t instances, std::size_t
     std::copy(one.begin(), one.end(), out.begin() + static_cast<std::ptrdiff_t>(i * stride));
   }
   return out;
-}
-
-void put_matrix(const Matrix& matrix, MatrixLayout layout, float* to) {
-  for (std::size_t at = 0; at < matrix.size(); ++at) {
-    const std::size_t row = at / 4, column = at % 4;
-    to[layout == MatrixLayout::kColumnMajor4x4   ? 4 * column + row
-       : layout == MatrixLayout::kColumnMajor3x4 ? 3 * column + row
-                                                 : 4 * row + column] = matrix[at];
-  }
 }
 
 void give_matrices(GroupInput& in, const Asset& asset, MatrixLayout layout, PoseKind kind, std::size_t gap,
@@ -138,26 +131,20 @@ Expected pairs_of_bones(const Asset& asset, const GroupInput& in, RadiusKind rad
   return out;
 }
 
-void check_pairs(const GroupInput& in, const GroupOutput& got, const Expected& wanted) {
-  CHECK(got.counts == wanted.counts);
-  if (in.wants_bits) CHECK(got.bits == wanted.bits);
-  if (in.pair_capacity == 0) return;
-  CHECK(got.pair_count == wanted.pairs.size());
-  std::vector<bool> taken(in.pair_capacity);
-  std::size_t before = 0;
-  bool same = true;
-  for (std::size_t i = 0; i < in.instance_count; ++i) {
-    for (std::size_t k = 0; k < wanted.counts[i]; ++k) {
-      const std::size_t place = got.starts[i] + k;
-      same &= place < wanted.pairs.size();
-      if (place < in.pair_capacity) {
-        same &= !taken[place] && got.pairs[place].instance == i && got.pairs[place].pair == wanted.pairs[before + k];
-        taken[place] = true;
-      }
+void edit_randomly(const Asset& asset, Filter& filter, std::mt19937& random) {
+  for (std::uint32_t i = 0; i < asset.spheres().size; ++i) {
+    if (random() % 4 == 0) REQUIRE(disable_sphere(asset, filter, i) == Status::kOk);
+    REQUIRE(pad_sphere(asset, filter, i, uniform(random, -0.05F, 0.3F)) == Status::kOk);
+    if (i > 0) {
+      const auto other = static_cast<std::uint32_t>(random() % i);
+      REQUIRE(ignore_pair(asset, filter, i, other, random() % 2 == 0) == Status::kOk);
     }
-    before += wanted.counts[i];
   }
-  CHECK(same);
+}
+
+void RunCounts::add(const Tables& tables) {
+  const cuda::GroupView view = cuda::Access::view(tables.tables, tables.words.data());
+  for (std::uint32_t i = 0; i < view.run_count; ++i) ++of_kind[view.runs[i].kind];
 }
 
 }  // namespace spherechain::test

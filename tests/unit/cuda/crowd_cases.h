@@ -21,9 +21,6 @@ GroupInput group_of(const Tables& tables, std::size_t instances);
 // Some touch hardly at all, some are not finite or huge.
 std::vector<Sphere> spheres_of(std::size_t n, std::size_t instances, std::size_t stride, std::mt19937& random);
 
-// Puts the matrix as its layout has it at `to`.
-void put_matrix(const Matrix& matrix, MatrixLayout layout, float* to);
-
 // `layout`'s matrices, an instance's of `kind`, with NaN wherever none of them is.
 void give_matrices(GroupInput& in, const Asset& asset, MatrixLayout layout, PoseKind kind, std::size_t gap,
                    std::mt19937& random);
@@ -49,7 +46,13 @@ struct Expected {
 Expected pairs_of_spheres(const Asset& asset, const GroupInput& in, RadiusKind radius, const Filter* filter = nullptr);
 Expected pairs_of_bones(const Asset& asset, const GroupInput& in, RadiusKind radius, const Filter* filter = nullptr);
 
-// Counts, bits and list.
-void check_pairs(const GroupInput& in, const GroupOutput& got, const Expected& wanted);
+// Disables some spheres, pads all, ignores some pairs and takes up others.
+void edit_randomly(const Asset& asset, Filter& filter, std::mt19937& random);
+
+// How many there are of each kind (kTwoBones, kEqualBones, kAnyBones).
+struct RunCounts {
+  std::size_t of_kind[3] = {};
+  void add(const Tables& tables);
+};
 
 }  // namespace spherechain::test

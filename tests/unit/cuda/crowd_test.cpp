@@ -6,8 +6,8 @@
 #include <cstring>
 #include <limits>
 
-#include "crowd_cases.h"
-#include "jobs.h"
+#include "crowd_checks.h"
+#include "owned_filter.h"
 
 namespace spherechain::test {
 TEST_CASE("a crowd of spheres has each instance's pairs, whatever its size") {
@@ -89,11 +89,7 @@ TEST_CASE("bones in: the spheres and pairs are those of the CPU's refit, for eve
           give_matrices(in, opened.asset, layout, kPoseKinds[(offset + 2 * morphs + pairs) % 6], 4 + offset, random);
           if (morphs) in.morph_weights = random_morph_weights(37 * opened.asset.morph_count(), random);
           const Expected wanted = pairs_of_bones(opened.asset, in, radius);
-          in.pair_capacity = wanted.pairs.size() + 3;
-          const CrowdRun run = run_crowd({in});
-          REQUIRE(run.status == Status::kOk);
-          CHECK(same_bits(run.groups[0].refitted, wanted.spheres));
-          check_pairs(in, run.groups[0], wanted);
+          run_and_check(in, wanted);
           pairs += wanted.pairs.size();
         }
       }
@@ -112,41 +108,22 @@ TEST_CASE("a crowd under the paper's refit rule has the CPU's spheres") {
     const Tables tables(opened.asset, radius);
     GroupInput in = group_of(tables, 40);
     give_matrices(in, opened.asset, MatrixLayout::kRowMajor3x4, PoseKind::kAny, 0, random);
-    const Expected wanted = pairs_of_bones(opened.asset, in, radius);
-    const CrowdRun run = run_crowd({in});
-    REQUIRE(run.status == Status::kOk);
-    CHECK(same_bits(run.groups[0].refitted, wanted.spheres));
-    check_pairs(in, run.groups[0], wanted);
+    run_and_check(in, pairs_of_bones(opened.asset, in, radius));
   }
 }
 
 TEST_CASE("a crowd takes a filter as a single job does, and the refitted spheres stay without its padding") {
-  constexpr std::uint32_t kSpheres = 70;
-  const OpenedAsset opened(boned_asset(kSpheres, 6, 5).parts);
+  const OpenedAsset opened(boned_asset(70, 6, 5).parts);
   REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
   std::mt19937 random(5);
-  std::vector<std::uint64_t> ignored(Filter::ignored_words(opened.asset)), disabled(2);
-  std::vector<float> padding(kSpheres);
-  Filter filter{{ignored.data(), ignored.size()}, {disabled.data(), 2}, {padding.data(), kSpheres}};
-  REQUIRE(reset_filter(opened.asset, filter) == Status::kOk);
-  for (std::uint32_t i = 0; i < kSpheres; ++i) {
-    if (random() % 4 == 0) REQUIRE(disable_sphere(opened.asset, filter, i) == Status::kOk);
-    REQUIRE(pad_sphere(opened.asset, filter, i, uniform(random, -0.05F, 0.3F)) == Status::kOk);
-    if (i > 0) {
-      const auto other = static_cast<std::uint32_t>(random() % i);
-      REQUIRE(ignore_pair(opened.asset, filter, i, other, random() % 2 == 0) == Status::kOk);
-    }
-  }
-  const Tables tables(opened.asset, RadiusKind::kDetect, &filter);
+  OwnedFilter owned(opened.asset);
+  edit_randomly(opened.asset, owned.filter, random);
+  const Tables tables(opened.asset, RadiusKind::kDetect, &owned.filter);
   GroupInput in = group_of(tables, 50);
   give_matrices(in, opened.asset, MatrixLayout::kRowMajor3x4, PoseKind::kGentle, 0, random);
-  const Expected wanted = pairs_of_bones(opened.asset, in, RadiusKind::kDetect, &filter);
+  const Expected wanted = pairs_of_bones(opened.asset, in, RadiusKind::kDetect, &owned.filter);
   CHECK(!wanted.pairs.empty());
-  in.pair_capacity = wanted.pairs.size();
-  const CrowdRun run = run_crowd({in});
-  REQUIRE(run.status == Status::kOk);
-  CHECK(same_bits(run.groups[0].refitted, wanted.spheres));
-  check_pairs(in, run.groups[0], wanted);
+  run_and_check(in, wanted);
 }
 
 TEST_CASE("several assets, as bones and as spheres, share a launch") {
@@ -162,18 +139,10 @@ TEST_CASE("several assets, as bones and as spheres, share a launch") {
   in[1].spheres = spheres_of(50, 65, 50, random);
   give_matrices(in[3], third.asset, MatrixLayout::kColumnMajor4x4, PoseKind::kScaled, 0, random);
   in[3].morph_weights = random_morph_weights(31 * third.asset.morph_count(), random);
-  const Expected wanted[] = {pairs_of_bones(first.asset, in[0], RadiusKind::kDetect),
-                             pairs_of_spheres(second.asset, in[1], RadiusKind::kFit),
-                             {},
-                             pairs_of_bones(third.asset, in[3], RadiusKind::kDetect)};
-  for (std::size_t g = 0; g < in.size(); ++g) in[g].pair_capacity = wanted[g].pairs.size() + 5;
-  const CrowdRun run = run_crowd(in);
-  REQUIRE(run.status == Status::kOk);
-  for (std::size_t g = 0; g < in.size(); ++g) {
-    CAPTURE(g);
-    check_pairs(in[g], run.groups[g], wanted[g]);
-    CHECK(same_bits(run.groups[g].refitted, wanted[g].spheres));
-  }
+  run_and_check(in, {pairs_of_bones(first.asset, in[0], RadiusKind::kDetect),
+                     pairs_of_spheres(second.asset, in[1], RadiusKind::kFit),
+                     {},
+                     pairs_of_bones(third.asset, in[3], RadiusKind::kDetect)});
 }
 
 TEST_CASE("a list that is too short is filled, nothing is written past it, and the count says what was needed") {
@@ -316,22 +285,12 @@ TEST_CASE("large assets run from bones too, with morphs and beside small ones") 
     give_matrices(in[1], small.asset, MatrixLayout::kRowMajor3x4, PoseKind::kGentle, 0, random);
     give_matrices(in[2], large.asset, MatrixLayout::kColumnMajor3x4, PoseKind::kRigid, 0, random);
     if (morphs) in[0].morph_weights = random_morph_weights(65 * large.asset.morph_count(), random);
-    const Expected wanted[] = {pairs_of_bones(large.asset, in[0], RadiusKind::kDetect),
-                               pairs_of_bones(small.asset, in[1], RadiusKind::kFit),
-                               pairs_of_bones(large.asset, in[2], RadiusKind::kDetect)};
     const std::size_t block = a.tables.shared_bytes(true, morphs, true, true);
     CHECK(block > 227 * 1024);
-    for (std::size_t g = 0; g < in.size(); ++g) {
-      in[g].pair_capacity = wanted[g].pairs.size() + 1;
-      in[g].scratch_bytes = (g + 1) * block;
-    }
-    const CrowdRun run = run_crowd(in);
-    REQUIRE(run.status == Status::kOk);
-    for (std::size_t g = 0; g < in.size(); ++g) {
-      CAPTURE(g);
-      CHECK(same_bits(run.groups[g].refitted, wanted[g].spheres));
-      check_pairs(in[g], run.groups[g], wanted[g]);
-    }
+    for (std::size_t g = 0; g < in.size(); ++g) in[g].scratch_bytes = (g + 1) * block;
+    run_and_check(in, {pairs_of_bones(large.asset, in[0], RadiusKind::kDetect),
+                       pairs_of_bones(small.asset, in[1], RadiusKind::kFit),
+                       pairs_of_bones(large.asset, in[2], RadiusKind::kDetect)});
   }
 }
 

@@ -118,6 +118,28 @@ TEST_CASE("a host crowd gives the CPU's spheres, counts and sorted pairs, run af
   check(got, poses, crowd.pair_count);
 }
 
+TEST_CASE("a host crowd by moments gives the CPU's, where a block's shared memory has room for it and where not") {
+  const OpenedAsset opened(moment_asset(60, 5, 6).parts);
+  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
+  for (const int most_shared_bytes : {227 * 1024, 30 * 1024}) {
+    const Device device;
+    fake_device.most_shared_bytes = most_shared_bytes;
+    cuda::HostCrowd crowd;
+    REQUIRE(crowd.open(opened.asset, RadiusKind::kDetect, nullptr, 100, kCapacity) == Status::kOk);
+    for (const std::size_t instances : {100U, 33U}) {
+      for (const bool morphs : {false, true}) {  // which move nothing
+        const Poses poses(opened.asset, instances, morphs, static_cast<unsigned>(instances));
+        const Results got = give(crowd, poses, kCapacity);
+        REQUIRE(crowd.run() == Status::kOk);
+        check(got, poses, crowd.pair_count);
+      }
+    }
+    const bool has_room = most_shared_bytes > 100 * 1024;
+    CHECK(fake_device.launches_in_shared == (has_room ? 4U : 0U));
+    CHECK(fake_device.launches_in_scratch == (has_room ? 0U : 4U));
+  }
+}
+
 TEST_CASE("a host crowd of fewer outputs gives those") {
   const Device device;
   const OpenedAsset opened(boned_asset(30, 4, 3).parts);

@@ -6,23 +6,12 @@
 #include <cstring>
 #include <limits>
 
-#include "crowd_cases.h"
+#include "crowd_checks.h"
 #include "jobs.h"
+#include "owned_filter.h"
 
 namespace spherechain::test {
 namespace {
-
-void check(const GroupInput& in, const GroupOutput& got, const Expected& wanted) {
-  CHECK(same_bits(got.refitted, wanted.spheres));
-  check_pairs(in, got, wanted);
-}
-
-void run_and_check(GroupInput in, const Expected& wanted) {
-  in.pair_capacity = wanted.pairs.size() + 3;
-  const CrowdRun run = run_crowd({in});
-  REQUIRE(run.status == Status::kOk);
-  check(in, run.groups[0], wanted);
-}
 
 // A NaN is any NaN: the device has another one than the CPU.
 bool same_figure(float l, float r) { return (std::isnan(l) && std::isnan(r)) || std::memcmp(&l, &r, sizeof l) == 0; }
@@ -37,6 +26,7 @@ TEST_CASE(
     "by moments: the spheres and pairs are those of the CPU's refit, for few bones and many, few spheres and many") {
   std::mt19937 random(8);
   std::size_t pairs = 0;
+  RunCounts runs;
   for (const std::size_t bones : {1U, 2U, 3U, 9U, 20U}) {
     for (const unsigned spheres : {1U, 2U, 60U}) {
       CAPTURE(bones);
@@ -45,6 +35,7 @@ TEST_CASE(
       REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
       const RadiusKind radius = spheres == 2 ? RadiusKind::kFit : RadiusKind::kDetect;
       const Tables tables(opened.asset, radius);
+      runs.add(tables);
       GroupInput in = group_of(tables, 37);
       give_matrices(in, opened.asset, MatrixLayout::kRowMajor3x4, kPoseKinds[(bones + spheres) % 6], 0, random);
       const Expected wanted = pairs_of_bones(opened.asset, in, radius);
@@ -53,6 +44,31 @@ TEST_CASE(
     }
   }
   CHECK(pairs > 1000);
+  for (const std::size_t count : runs.of_kind) CHECK(count > 10);
+}
+
+TEST_CASE("by moments: a bone's own moment need not be symmetric") {
+  std::mt19937 random(3);
+  for (const std::size_t bones : {2U, 3U, 12U}) {
+    CAPTURE(bones);
+    TinyAsset tiny = moment_asset(60, bones, 7);
+    MomentParts& moments = tiny.parts.bone_refit.moments;
+    std::size_t pair = 0, changed = 0;
+    for (const std::size_t count : moments.bone_counts) {
+      for (std::size_t k = 0; k < count; pair += count - k, ++k) {  // a bone's pairs begin with its own
+        if (random() % 3 != 0) continue;
+        moments.moments[pair].values[4 * (random() % 3) + 3] += 0.5F;
+        ++changed;
+      }
+    }
+    CHECK(changed > 10);
+    const OpenedAsset opened(tiny.parts);
+    REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
+    const Tables tables(opened.asset, RadiusKind::kDetect);
+    GroupInput in = group_of(tables, 37);
+    give_matrices(in, opened.asset, MatrixLayout::kRowMajor3x4, PoseKind::kScaled, 0, random);
+    run_and_check(in, pairs_of_bones(opened.asset, in, RadiusKind::kDetect));
+  }
 }
 
 TEST_CASE("by moments: every layout, alignment, radius and pose") {
@@ -77,22 +93,15 @@ TEST_CASE("by moments: every layout, alignment, radius and pose") {
 }
 
 TEST_CASE("by moments: a filter's padding stays out of the refitted spheres") {
-  constexpr std::uint32_t kSpheres = 50;
-  const OpenedAsset opened(moment_asset(kSpheres, 4, 5).parts);
+  const OpenedAsset opened(moment_asset(50, 4, 5).parts);
   REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
   std::mt19937 random(5);
-  std::vector<std::uint64_t> ignored(Filter::ignored_words(opened.asset)), disabled(1);
-  std::vector<float> padding(kSpheres);
-  Filter filter{{ignored.data(), ignored.size()}, {disabled.data(), 1}, {padding.data(), kSpheres}};
-  REQUIRE(reset_filter(opened.asset, filter) == Status::kOk);
-  for (std::uint32_t i = 0; i < kSpheres; ++i) {
-    if (random() % 4 == 0) REQUIRE(disable_sphere(opened.asset, filter, i) == Status::kOk);
-    REQUIRE(pad_sphere(opened.asset, filter, i, uniform(random, -0.05F, 0.3F)) == Status::kOk);
-  }
-  const Tables tables(opened.asset, RadiusKind::kDetect, &filter);
+  OwnedFilter owned(opened.asset);
+  edit_randomly(opened.asset, owned.filter, random);
+  const Tables tables(opened.asset, RadiusKind::kDetect, &owned.filter);
   GroupInput in = group_of(tables, 50);
   give_matrices(in, opened.asset, MatrixLayout::kRowMajor3x4, PoseKind::kGentle, 0, random);
-  const Expected wanted = pairs_of_bones(opened.asset, in, RadiusKind::kDetect, &filter);
+  const Expected wanted = pairs_of_bones(opened.asset, in, RadiusKind::kDetect, &owned.filter);
   CHECK(!wanted.pairs.empty());
   run_and_check(in, wanted);
 }
@@ -189,18 +198,11 @@ TEST_CASE("assets of all three rules, and one of spheres, share a launch; large 
   for (std::size_t g = 0; g < in.size(); ++g) {
     const RadiusKind radius = g == 1 || g == 2 ? RadiusKind::kFit : RadiusKind::kDetect;
     wanted.push_back(g == 4 ? pairs_of_spheres(*assets[g], in[g], radius) : pairs_of_bones(*assets[g], in[g], radius));
-    in[g].pair_capacity = wanted[g].pairs.size() + 5;
   }
   const std::size_t block = d.tables.shared_bytes(true, false, true, true);
   CHECK(block > 227 * 1024);
   in[3].scratch_bytes = 2 * block;
-  const CrowdRun run = run_crowd(in);
-  REQUIRE(run.status == Status::kOk);
-  for (std::size_t g = 0; g < in.size(); ++g) {
-    CAPTURE(g);
-    check_pairs(in[g], run.groups[g], wanted[g]);
-    CHECK(same_bits(run.groups[g].refitted, wanted[g].spheres));
-  }
+  run_and_check(in, wanted);
 }
 
 }  // namespace spherechain::test
