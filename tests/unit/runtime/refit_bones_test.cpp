@@ -9,9 +9,7 @@
 #include <iterator>
 #include <limits>
 
-#include "jobs.h"
-#include "palette.h"
-#include "tiny_bones.h"
+#include "posed_asset.h"
 
 namespace spherechain::test {
 namespace {
@@ -20,9 +18,9 @@ namespace {
 constexpr double kBoneRounding = 1e-5;
 constexpr std::size_t kBones = 7;
 
-struct Skinned {
-  explicit Skinned(std::uint8_t rule = 1, std::size_t spheres = 11, bool has_large_spheres = true)
-      : tiny(random_asset(spheres, 21)) {
+struct ByPivots : PosedAsset {
+  explicit ByPivots(std::uint8_t rule = 1, std::size_t spheres = 11, bool has_large_spheres = true) {
+    tiny = random_asset(spheres, 21);
     tiny.parts.refit = rule;
     if (has_large_spheres) {
       give_pivots(tiny, 2, 8, 1);
@@ -31,36 +29,15 @@ struct Skinned {
       give_pivots(tiny, 8, 16, 4);
     }
     skin = add_bones(tiny, kBones, 22);
+    matrices = random_matrices(kBones, 23);
+    morph_weights = {0.5F, 1.0F, -0.75F};
   }
-
-  TinyAsset tiny;
-  TinySkin skin;
-  std::vector<Matrix> matrices = random_matrices(kBones, 23);
-  std::vector<float> morph_weights = {0.5F, 1.0F, -0.75F};
 };
-
-Refitted refit_posed(const Asset& asset, const Skinned& s, RadiusKind radius, Target target = Target::kBest) {
-  const Palette palette(s.matrices, MatrixLayout::kRowMajor3x4, 48);
-  return refit_bones(asset, palette.view(kBones), s.morph_weights, radius, target);
-}
-
-double distance(const Sphere& a, const Sphere& b) {
-  return std::max({std::abs(double{a.x} - double{b.x}), std::abs(double{a.y} - double{b.y}),
-                   std::abs(double{a.z} - double{b.z}), std::abs(double{a.radius} - double{b.radius})});
-}
-
-void check_close(const std::vector<Sphere>& spheres, const std::vector<Sphere>& expected) {
-  REQUIRE(spheres.size() == expected.size());
-  for (std::size_t i = 0; i < spheres.size(); ++i) {
-    INFO("sphere ", i);
-    CHECK(distance(spheres[i], expected[i]) < kBoneRounding);
-  }
-}
 
 float tree(const float (&v)[kPivotLanes]) { return ((v[0] + v[4]) + (v[2] + v[6])) + ((v[1] + v[5]) + (v[3] + v[7])); }
 
 // The header's fixed arithmetic, to the last bit.
-std::vector<Sphere> exact_spheres(const Skinned& s, RadiusKind kind) {
+std::vector<Sphere> exact_by_pivots(const PosedAsset& s, RadiusKind kind) {
   const BoneRefitParts& tables = s.tiny.parts.bone_refit;
   std::vector<Sphere> out;
   std::size_t group = 0, term = 0, morph = 0;
@@ -111,43 +88,22 @@ std::vector<Sphere> exact_spheres(const Skinned& s, RadiusKind kind) {
   return out;
 }
 
-void check_exact(const Skinned& s) {
-  const OpenedAsset opened(s.tiny.parts);
-  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
-  for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
-    const std::vector<Sphere> expected = exact_spheres(s, kind);
-    for (const Target target : supported_targets()) {
-      INFO(to_string(target), ", ", expected.size(), " spheres");
-      const Refitted result = refit_posed(opened.asset, s, kind, target);
-      CHECK(result.status == Status::kOk);
-      CHECK(same_bits(result.spheres, expected));
-    }
-  }
-}
-
 }  // namespace
 
 TEST_CASE("spheres from bones and morph weights are those of the skinned mesh") {
   for (const std::uint8_t rule : {std::uint8_t{0}, std::uint8_t{1}}) {
-    Skinned s(rule);
-    const OpenedAsset opened(s.tiny.parts);
-    REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
-    for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
-      const std::vector<float> mesh = skinned(s.tiny, s.skin, s.matrices, s.morph_weights);
-      const Refitted result = refit_posed(opened.asset, s, kind);
-      REQUIRE(result.status == Status::kOk);
-      check_close(result.spheres, refit(opened.asset, mesh, kind).spheres);
-    }
+    check_against_mesh(ByPivots(rule), kBoneRounding);
   }
 }
 
 TEST_CASE("without morph weights nothing morphs, as with weights of 0") {
-  Skinned s;
+  ByPivots s;
   const OpenedAsset opened(s.tiny.parts);
   s.morph_weights.clear();
   const Refitted without = refit_posed(opened.asset, s, RadiusKind::kFit);
   REQUIRE(without.status == Status::kOk);
-  check_close(without.spheres, refit(opened.asset, skinned(s.tiny, s.skin, s.matrices, {}), RadiusKind::kFit).spheres);
+  const std::vector<float> mesh = skinned(s.tiny, s.skin, s.matrices, {});
+  check_close(without.spheres, refit(opened.asset, mesh, RadiusKind::kFit).spheres, kBoneRounding);
   s.morph_weights = {0, 0, 0};
   CHECK(same_bits(refit_posed(opened.asset, s, RadiusKind::kFit).spheres, without.spheres));
   s.morph_weights = {0, 1, 0};  // the target that moves nothing
@@ -159,8 +115,7 @@ TEST_CASE("without morph weights nothing morphs, as with weights of 0") {
 TEST_CASE("on every target spheres from bones follow the fixed arithmetic of the header bit for bit") {
   for (const std::uint8_t rule : {std::uint8_t{0}, std::uint8_t{1}}) {
     for (const std::size_t count : {9U, 10U, 11U, 12U}) {  // whole and broken chunks of spheres
-      const Skinned s(rule, count);
-      check_exact(s);
+      check_exact(ByPivots(rule, count), exact_by_pivots);
     }
   }
 }
@@ -168,8 +123,7 @@ TEST_CASE("on every target spheres from bones follow the fixed arithmetic of the
 TEST_CASE("spheres of at most eight pivots each follow that arithmetic too, however many they are") {
   for (const std::uint8_t rule : {std::uint8_t{0}, std::uint8_t{1}}) {
     for (const std::size_t count : {1U, 2U, 15U, 16U, 17U, 31U, 32U, 33U, 50U}) {
-      const Skinned s(rule, count, false);
-      check_exact(s);
+      check_exact(ByPivots(rule, count, false), exact_by_pivots);
     }
   }
 }
@@ -188,7 +142,7 @@ TEST_CASE("sums half way between two floats, and sums that are hardly a float, a
                  {0x1p-126F, 0x1p-23F, 0x1p-23F}};
   for (const bool has_large_spheres : {false, true}) {
     for (const auto& scale : kScales) {
-      Skinned s(1, 11, has_large_spheres);
+      ByPivots s(1, 11, has_large_spheres);
       std::uint32_t random = 7;
       const auto pick = [&] {
         random = random * 1664525U + 1013904223U;
@@ -208,35 +162,20 @@ TEST_CASE("sums half way between two floats, and sums that are hardly a float, a
           value = scale.matrix * pick();
         }
       }
-      check_exact(s);
+      check_exact(s, exact_by_pivots);
     }
   }
 }
 
 TEST_CASE("every layout and stride of the matrices gives the same spheres bit for bit, reading none but theirs") {
   for (const bool has_large_spheres : {false, true}) {
-    const Skinned s(1, 11, has_large_spheres);
-    const OpenedAsset opened(s.tiny.parts);
-    const Refitted expected = refit_posed(opened.asset, s, RadiusKind::kDetect);
-    for (const MatrixLayout layout : {MatrixLayout::kRowMajor3x4, MatrixLayout::kRowMajor4x4,
-                                      MatrixLayout::kColumnMajor4x4, MatrixLayout::kColumnMajor3x4}) {
-      for (const std::size_t padding : {0U, 4U, 52U}) {
-        const Palette palette(s.matrices, layout, size_of(layout) + padding);
-        for (const Target target : supported_targets()) {
-          const Refitted result =
-              refit_bones(opened.asset, palette.view(kBones), s.morph_weights, RadiusKind::kDetect, target);
-          INFO("layout ", static_cast<int>(layout), ", padding ", padding, ", ", to_string(target));
-          CHECK(result.status == Status::kOk);
-          CHECK(same_bits(result.spheres, expected.spheres));
-        }
-      }
-    }
+    check_layouts(ByPivots(1, 11, has_large_spheres));
   }
 }
 
 TEST_CASE("matrices and weights that are not finite give spheres that are not finite, and only those they move") {
   for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
-    Skinned s;
+    ByPivots s;
     const OpenedAsset opened(s.tiny.parts);
     s.matrices[0][5] = bad;
     const Refitted result = refit_posed(opened.asset, s, RadiusKind::kFit);
@@ -259,24 +198,11 @@ TEST_CASE("matrices and weights that are not finite give spheres that are not fi
 }
 
 TEST_CASE("refit from bones leaves entries past the asset's spheres alone, and matrices past its bones unread") {
-  const Skinned s;
-  const OpenedAsset opened(s.tiny.parts);
-  std::vector<Sphere> spheres(13, {7, 7, 7, 7});
-  std::vector<Matrix> matrices = s.matrices;
-  matrices.emplace_back().fill(std::numeric_limits<float>::quiet_NaN());
-  RefitBonesJob job;
-  job.asset = &opened.asset;
-  job.bones = {matrices[0].data(), matrices.size()};
-  job.morph_weights = {s.morph_weights.data(), s.morph_weights.size()};
-  job.spheres = {spheres.data(), spheres.size()};
-  CHECK(job.run() == Status::kOk);
-  CHECK(same_bits(std::vector<Sphere>(spheres.begin() + 11, spheres.end()), std::vector<Sphere>(2, {7, 7, 7, 7})));
-  spheres.resize(11);
-  CHECK(same_bits(spheres, refit_posed(opened.asset, s, RadiusKind::kDetect).spheres));
+  check_longer_arrays(ByPivots());
 }
 
 TEST_CASE("refit from bones refuses what it cannot use and writes nothing") {
-  const Skinned s;
+  const ByPivots s;
   const OpenedAsset opened(s.tiny.parts);
   const OpenedAsset old(random_asset(11, 21).parts);
   REQUIRE(old.status == Status::kOk);
@@ -316,7 +242,7 @@ TEST_CASE("refit from bones refuses what it cannot use and writes nothing") {
 }
 
 TEST_CASE("refit from bones refuses to write over its own inputs") {
-  const Skinned s;
+  const ByPivots s;
   const OpenedAsset opened(s.tiny.parts);
   constexpr std::size_t kOutput = 11 * 4, kInput = kBones * 12;  // floats
   std::vector<float> memory(2 * kOutput + kInput);
@@ -343,7 +269,7 @@ TEST_CASE("refit from bones refuses to write over its own inputs") {
 }
 
 TEST_CASE("an asset tells its bones and morph targets") {
-  const Skinned s;
+  const ByPivots s;
   const OpenedAsset opened(s.tiny.parts);
   REQUIRE(opened.asset.bone_count() == kBones);
   CHECK(std::string(opened.asset.bone(2).name) == "bone2");

@@ -6,9 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "jobs.h"
-#include "palette.h"
-#include "spherechain/refit_bones.h"
+#include "posed_asset.h"
 #include "tiny_moments.h"
 
 namespace spherechain::test {
@@ -17,9 +15,10 @@ namespace {
 // Of coordinates of some units, and of a quadratic form in them.
 constexpr double kMeshRounding = 2e-5;
 
-struct Skinned {
-  Skinned(std::size_t bone_count, std::size_t spheres, std::size_t batch_pairs = 48, bool has_large_spheres = true)
-      : tiny(random_asset(spheres, 31)), matrices(random_matrices(bone_count, 33)) {
+struct ByMoments : PosedAsset {
+  ByMoments(std::size_t bone_count, std::size_t spheres, std::size_t batch_pairs = 48, bool has_large_spheres = true) {
+    tiny = random_asset(spheres, 31);
+    matrices = random_matrices(bone_count, 33);
     for (std::size_t i = 0; i < spheres; ++i) {
       const std::uint16_t counts[] = {2, 8, 1, 19, 4, 3, 16, 2};
       give_pivots(tiny, i, has_large_spheres ? counts[i % 8] : std::uint16_t{2}, static_cast<unsigned>(i));
@@ -28,15 +27,7 @@ struct Skinned {
     add_moments(tiny, skin, batch_pairs);
   }
   const MomentParts& tables() const { return tiny.parts.bone_refit.moments; }
-
-  TinyAsset tiny;
-  TinySkin skin;
-  std::vector<Matrix> matrices;
 };
-
-Refitted refit_posed(const Asset& asset, const Skinned& s, RadiusKind radius, Target target = Target::kBest) {
-  return refit_bones(asset, {s.matrices[0].data(), s.matrices.size()}, {}, radius, target);
-}
 
 struct Rows {
   float at[3][4];
@@ -58,8 +49,8 @@ float halving_tree(std::vector<float> values) {
 }
 
 // The header's fixed arithmetic, to the last bit; sphere by sphere, with no batches.
-std::vector<Sphere> exact_spheres(const Skinned& s, RadiusKind kind) {
-  const MomentParts& tables = s.tables();
+std::vector<Sphere> exact_by_moments(const PosedAsset& s, RadiusKind kind) {
+  const MomentParts& tables = s.tiny.parts.bone_refit.moments;
   const Matrix& reference = s.matrices[tables.reference];
   float shift[3];
   for (std::size_t m = 0; m < 3; ++m) {
@@ -120,22 +111,8 @@ std::vector<Sphere> exact_spheres(const Skinned& s, RadiusKind kind) {
   return out;
 }
 
-void check_exact(const Skinned& s) {
-  const OpenedAsset opened(s.tiny.parts);
-  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
-  for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
-    const std::vector<Sphere> expected = exact_spheres(s, kind);
-    for (const Target target : supported_targets()) {
-      INFO(to_string(target), ", ", expected.size(), " spheres");
-      const Refitted result = refit_posed(opened.asset, s, kind, target);
-      CHECK(result.status == Status::kOk);
-      CHECK(same_bits(result.spheres, expected));
-    }
-  }
-}
-
 // RefitJob's fixed arithmetic, to the last bit.
-std::vector<Sphere> exact_spheres_of(const AssetParts& parts, const std::vector<float>& v, RadiusKind kind) {
+std::vector<Sphere> exact_from_vertices(const AssetParts& parts, const std::vector<float>& v, RadiusKind kind) {
   std::vector<Sphere> out;
   for (const RestSphere& rest : parts.spheres) {
     std::vector<std::array<float, 3>> centroids;
@@ -161,38 +138,21 @@ std::vector<Sphere> exact_spheres_of(const AssetParts& parts, const std::vector<
   return out;
 }
 
-double distance(const Sphere& a, const Sphere& b) {
-  return std::max({std::abs(double{a.x} - double{b.x}), std::abs(double{a.y} - double{b.y}),
-                   std::abs(double{a.z} - double{b.z}), std::abs(double{a.radius} - double{b.radius})});
-}
-
 }  // namespace
 
 TEST_CASE("by moments, spheres from bones are those of the skinned mesh") {
-  const Skinned s(9, 24);
-  const OpenedAsset opened(s.tiny.parts);
-  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
-  const std::vector<float> mesh = skinned(s.tiny, s.skin, s.matrices, {});
-  for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
-    const Refitted result = refit_posed(opened.asset, s, kind), expected = refit(opened.asset, mesh, kind);
-    REQUIRE(result.status == Status::kOk);
-    REQUIRE(expected.status == Status::kOk);
-    for (std::size_t i = 0; i < result.spheres.size(); ++i) {
-      INFO("sphere ", i);
-      CHECK(distance(result.spheres[i], expected.spheres[i]) < kMeshRounding);
-    }
-  }
+  check_against_mesh(ByMoments(9, 24), kMeshRounding);
 }
 
 TEST_CASE("by moments, on every target spheres from bones follow the fixed arithmetic of the header bit for bit") {
   for (const std::size_t count : {1U, 2U, 3U, 15U, 16U, 17U, 33U, 50U}) {
-    check_exact(Skinned(9, count));
+    check_exact(ByMoments(9, count), exact_by_moments);
   }
 }
 
 TEST_CASE("by moments, what is less than 2^-62 in a matrix counts for nothing, on every target") {
   for (const float scale : {0x1p-62F, 0x1.fffffep-63F, 0x1p-70F, 0x1p-140F}) {
-    Skinned s(9, 20);
+    ByMoments s(9, 20);
     std::uint32_t random = 5;
     for (Matrix& m : s.matrices) {
       for (std::size_t i = 0; i < m.size(); ++i) {
@@ -206,74 +166,60 @@ TEST_CASE("by moments, what is less than 2^-62 in a matrix counts for nothing, o
         value *= 0x1p+80F;
       }
     }
-    check_exact(s);
+    check_exact(s, exact_by_moments);
   }
 }
 
 TEST_CASE("by moments, a squared spread that comes out below 0 counts for 0, on every target") {
-  Skinned s(9, 20);
+  ByMoments s(9, 20);
   for (Moment& moment : s.tiny.parts.bone_refit.moments.moments) {
     for (float& value : moment.values) {
       value = -value;
     }
   }
-  CHECK(exact_spheres(s, RadiusKind::kFit)[0].radius == 0);
-  check_exact(s);
+  CHECK(exact_by_moments(s, RadiusKind::kFit)[0].radius == 0);
+  check_exact(s, exact_by_moments);
 }
 
 TEST_CASE("by moments, spheres fall into batches of any size, up to the largest there may be") {
-  const Skinned small(9, 40, 1);
+  const ByMoments small(9, 40, 1);
   CHECK(small.tables().batches.size() > 20);
-  check_exact(small);
-  const Skinned large(kMaxMomentBones, 40, kMaxMomentPairs);
+  check_exact(small, exact_by_moments);
+  const ByMoments large(kMaxMomentBones, 40, kMaxMomentPairs);
   const auto count_of = [](const MomentBatch& batch) { return batch.pair_count; };
   std::vector<std::uint32_t> counts;
   std::transform(large.tables().batches.begin(), large.tables().batches.end(), std::back_inserter(counts), count_of);
   CHECK(*std::max_element(counts.begin(), counts.end()) > 240);
-  check_exact(large);
+  check_exact(large, exact_by_moments);
 }
 
 TEST_CASE("by moments, spheres of an asset with more bones than its stack has room for are the same") {
   for (const std::size_t bones : {255U, 256U, 257U, 1000U}) {
-    check_exact(Skinned(bones, 40, 48, false));
+    check_exact(ByMoments(bones, 40, 48, false), exact_by_moments);
   }
 }
 
 TEST_CASE("by moments, spheres from vertices follow the fixed arithmetic of the header bit for bit") {
-  const Skinned s(9, 24);
+  const ByMoments s(9, 24);
   const OpenedAsset opened(s.tiny.parts);
   const std::vector<float> mesh = skinned(s.tiny, s.skin, s.matrices, {});
   for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
     const Refitted result = refit(opened.asset, mesh, kind);
     CHECK(result.status == Status::kOk);
-    CHECK(same_bits(result.spheres, exact_spheres_of(s.tiny.parts, mesh, kind)));
+    CHECK(same_bits(result.spheres, exact_from_vertices(s.tiny.parts, mesh, kind)));
   }
 }
 
 TEST_CASE("by moments, every layout and stride of the matrices gives the same spheres, reading none but theirs") {
   for (const std::size_t bones : {9U, 300U}) {
-    const Skinned s(bones, 20, 48, false);
-    const OpenedAsset opened(s.tiny.parts);
-    const Refitted expected = refit_posed(opened.asset, s, RadiusKind::kDetect);
-    for (const MatrixLayout layout : {MatrixLayout::kRowMajor3x4, MatrixLayout::kRowMajor4x4,
-                                      MatrixLayout::kColumnMajor4x4, MatrixLayout::kColumnMajor3x4}) {
-      for (const std::size_t padding : {0U, 4U, 52U}) {
-        const Palette palette(s.matrices, layout, size_of(layout) + padding);
-        for (const Target target : supported_targets()) {
-          INFO("layout ", static_cast<int>(layout), ", padding ", padding, ", ", to_string(target));
-          const Refitted result = refit_bones(opened.asset, palette.view(bones), {}, RadiusKind::kDetect, target);
-          CHECK(result.status == Status::kOk);
-          CHECK(same_bits(result.spheres, expected.spheres));
-        }
-      }
-    }
+    check_layouts(ByMoments(bones, 20, 48, false));
   }
 }
 
 TEST_CASE("by moments, matrices that are not finite give spheres that are not finite, and only those they move") {
   for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
     for (const bool is_reference : {false, true}) {
-      Skinned s(12, 40, 48, false);
+      ByMoments s(12, 40, 48, false);
       const OpenedAsset opened(s.tiny.parts);
       const std::size_t broken_bone = is_reference ? s.tables().reference : 0;
       s.matrices[broken_bone][5] = bad;
@@ -299,19 +245,7 @@ TEST_CASE("by moments, matrices that are not finite give spheres that are not fi
 }
 
 TEST_CASE("by moments, refit leaves entries past the asset's spheres alone, and matrices past its bones unread") {
-  const Skinned s(9, 11);
-  const OpenedAsset opened(s.tiny.parts);
-  std::vector<Sphere> spheres(13, {7, 7, 7, 7});
-  std::vector<Matrix> matrices = s.matrices;
-  matrices.emplace_back().fill(std::numeric_limits<float>::quiet_NaN());
-  RefitBonesJob job;
-  job.asset = &opened.asset;
-  job.bones = {matrices[0].data(), matrices.size()};
-  job.spheres = {spheres.data(), spheres.size()};
-  CHECK(job.run() == Status::kOk);
-  CHECK(same_bits(std::vector<Sphere>(spheres.begin() + 11, spheres.end()), std::vector<Sphere>(2, {7, 7, 7, 7})));
-  spheres.resize(11);
-  CHECK(same_bits(spheres, refit_posed(opened.asset, s, RadiusKind::kDetect).spheres));
+  check_longer_arrays(ByMoments(9, 11));
 }
 
 }  // namespace spherechain::test
