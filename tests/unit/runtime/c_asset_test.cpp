@@ -90,6 +90,14 @@ TEST_CASE("C: an asset opens in the caller's memory and says what the C++ one sa
   CHECK(sc_asset_morph_name(both.asset, 1) == view.morph_name(1));
 }
 
+TEST_CASE("C: facts in a struct of another size are refused, and so is none") {
+  const BothApis both;
+  sc_asset_info info;
+  info.struct_size = sizeof info - 8;
+  CHECK(sc_asset_get_info(both.asset, &info) == SC_WRONG_ABI);
+  CHECK(sc_asset_get_info(both.asset, nullptr) == SC_NULL_ARGUMENT);
+}
+
 TEST_CASE("C: no index leads out of the asset, and a null asset is named") {
   const BothApis both;
   sc_region region;

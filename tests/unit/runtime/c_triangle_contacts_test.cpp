@@ -85,8 +85,6 @@ TEST_CASE("C: triangle contacts, pairs found and confirmed by them, are those of
   detect.pair_capacity = of_skin.size();
   REQUIRE(sc_detect_skin(&detect) == SC_OK);
   of_skin.resize(detect.pair_count);
-  detect.struct_size -= 1;
-  CHECK(sc_detect_skin(&detect) == SC_WRONG_ABI);
 
   std::vector<sc_pair> candidates, expected;
   for (std::uint32_t b = 1; b < asset.spheres().size; ++b) {
@@ -109,8 +107,6 @@ TEST_CASE("C: triangle contacts, pairs found and confirmed by them, are those of
   const auto is_less = [](const sc_pair& l, const sc_pair& r) { return l.a != r.a ? l.a < r.a : l.b < r.b; };
   std::sort(expected.begin(), expected.end(), is_less);
   CHECK(same_bytes(of_skin, expected));
-  confirm.struct_size -= 1;
-  CHECK(sc_confirm(&confirm) == SC_WRONG_ABI);
 }
 
 }  // namespace spherechain::test
