@@ -13,6 +13,7 @@
 #include "play/player.h"
 #include "play/target.h"
 #include "report/play_frames.h"
+#include "report/report.h"
 #include "write/write.h"
 
 namespace spherechain::baker {
@@ -52,10 +53,10 @@ class Tally {
     for (const auto& [names, yes] : seen) ++by_region_.try_emplace(names, index, 0).first->second.second;
   }
 
-  std::string text(const std::string& radius, const std::string& backend) const {
+  std::string text(const std::string& radius, const std::string& refit, const std::string& backend) const {
     const double n = frames_;
     const std::string pairs = fmt::format("{:.1f}", static_cast<double>(pairs_) / n);
-    std::string out = fmt::format("{} frames, radius {}, backend {}\n\n", frames_, radius, backend);
+    std::string out = fmt::format("{} frames, radius {}, refit {}, backend {}\n\n", frames_, radius, refit, backend);
     out += fmt::format("{:<6} {:>8} {:>10} {:>12} {:>10}\n", "", "tests", "pairs", "raw pairs", "us");
     out += fmt::format("{:<6} {:>8} {:>10} {:>12} {:>10.2f}\n", "refit", "", "", "", refit_us_ / n);
     if (last_.m1) {
@@ -126,14 +127,16 @@ ExitCode run_play(const PlayOptions& options) {
       frames.back()["skin_pairs"] = pairs_json({skin->pairs.data(), skin->pairs.size()});
     }
   }
+  const char* const refit = refit_name(animated.asset().refit_rule());
   if (!options.json.empty()) {
     const ordered_json out{{"backend", on_cuda ? "cuda" : backend_name(target)},
                            {"target", on_cuda ? "cuda" : to_string(target)},
                            {"radius", options.radius},
+                           {"refit", refit},
                            {"frames", std::move(frames)}};
     write_atomically(options.json, out.dump(1) + "\n");
   }
-  fmt::print("{}", tally.text(options.radius, on_cuda ? "cuda (refit and M2 in one)" : backend_text(target)));
+  fmt::print("{}", tally.text(options.radius, refit, on_cuda ? "cuda (refit and M2 in one)" : backend_text(target)));
   if (!options.json.empty()) fmt::print("wrote {}\n", options.json);
   return ExitCode::kDone;
 }

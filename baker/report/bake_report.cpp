@@ -19,10 +19,6 @@ const char* name_of(BodySource body) {
   return body == BodySource::kSkin ? "skin" : body == BodySource::kRepaired ? "repaired" : "wrapped";
 }
 
-const char* name_of(RefitRule rule) {
-  return rule == RefitRule::kPaper ? "paper" : rule == RefitRule::kMoments ? "moments" : "calibrated";
-}
-
 // The skin's triangles that the body's are not made of.
 std::size_t count_other_triangles(const Character& character) {
   std::set<Index> body(character.body_source_triangle.begin(), character.body_source_triangle.end());
@@ -222,7 +218,7 @@ ordered_json bind_section(const Bake& bake) {
   }
   const OwnerDistance owner = owner_distance(bake.character, bake.regions, bake.binding);
   const auto [fewest, most] = pivots_used(bake);
-  return {{"refit", name_of(bake.binding.rule)},
+  return {{"refit", refit_name(static_cast<spherechain::RefitRule>(bake.binding.rule))},
           {"pivots", {{"asked", bake.settings.bind.pivots}, {"fewest", fewest}, {"most", most}}},
           {"covered_area", covered_area(bake)},
           {"owner_distance", {{"mean", owner.mean}, {"p95", owner.p95}, {"max", owner.max}}},

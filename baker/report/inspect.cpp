@@ -23,18 +23,6 @@ const char* name_of(spherechain::Side side) {
   return "none";
 }
 
-const char* name_of(spherechain::RefitRule rule) {
-  switch (rule) {
-    case spherechain::RefitRule::kPaper:
-      return "paper";
-    case spherechain::RefitRule::kMoments:
-      return "moments";
-    case spherechain::RefitRule::kCalibrated:
-      break;
-  }
-  return "calibrated";
-}
-
 std::size_t count_ignored(const Asset& asset) {
   std::size_t count = 0;
   for (const std::uint64_t word : asset.ignored()) count += static_cast<std::size_t>(std::popcount(word));
@@ -113,6 +101,18 @@ ordered_json sphere_json(const Asset& asset, std::size_t i) {
 
 }  // namespace
 
+const char* refit_name(spherechain::RefitRule rule) {
+  switch (rule) {
+    case spherechain::RefitRule::kPaper:
+      return "paper";
+    case spherechain::RefitRule::kMoments:
+      return "moments";
+    case spherechain::RefitRule::kCalibrated:
+      break;
+  }
+  return "calibrated";
+}
+
 std::string inspect_json(const Asset& asset) {
   const AssetInfo info = asset.info();
   ordered_json parts = ordered_json::array();
@@ -168,7 +168,7 @@ std::string inspect_json(const Asset& asset) {
         {"up", to_json(info.up)},
         {"forward", to_json(info.forward)},
         {"height", number(info.height)}}},
-      {"refit", name_of(info.refit)},
+      {"refit", refit_name(info.refit)},
       {"sphere_count", asset.spheres().size},
       {"chain_entries", count_chain_entries(asset)},
       {"chain_entries_table1", info.chain_entries_table1},
@@ -210,7 +210,7 @@ std::string inspect_text(const Asset& asset) {
   out += fmt::format("source   {} ({} vertices, {} triangles)\n         sha256 {}\n", info.source_file,
                      info.source_vertex_count, info.source_triangle_count, info.source_sha256);
   out += fmt::format("settings {}\n         sha256 {}\n", info.settings, info.settings_sha256);
-  out += fmt::format("refit    {}\n", name_of(info.refit));
+  out += fmt::format("refit    {}\n", refit_name(info.refit));
   out += fmt::format("spheres  {}, {} chain entries ({} as Table 1 counts), {} pairs ignored, {} joints\n",
                      asset.spheres().size, count_chain_entries(asset), info.chain_entries_table1, count_ignored(asset),
                      asset.joint_count());

@@ -20,6 +20,9 @@ std::string bake_report_text(const Bake& bake);
 std::string inspect_json(const Asset& asset);
 std::string inspect_text(const Asset& asset);
 
+// "paper", "calibrated" or "moments".
+const char* refit_name(spherechain::RefitRule rule);
+
 // What each node of a rig is on the body and why, for people and as JSON.
 std::string roles_text(const SourceRig& rig, const Roles& roles);
 std::string roles_json(const SourceRig& rig, const Roles& roles);

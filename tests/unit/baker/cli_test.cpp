@@ -154,6 +154,7 @@ TEST_CASE("play --json has the contract's fields; at rest nothing touches, hands
   const json both = json::parse(contents(out));
   CHECK(both["backend"] == (spherechain::best_target() == spherechain::Target::kScalar ? "scalar" : "simd"));
   CHECK(both["target"] == spherechain::to_string(spherechain::best_target()));
+  CHECK(both["refit"] == "moments");
   REQUIRE(both["frames"].size() == 5);
   for (std::size_t i = 0; i < 5; ++i) {
     const json& frame = both["frames"][i];
@@ -174,7 +175,9 @@ TEST_CASE("play --json has the contract's fields; at rest nothing touches, hands
   CHECK(both["frames"][0]["pairs"].empty());
   CHECK(!both["frames"][4]["pairs"].empty());
 
-  REQUIRE(play("--frames 1 --mode m1 --radius fit --backend scalar").code == 0);
+  const Run scalar = play("--frames 1 --mode m1 --radius fit --backend scalar");
+  REQUIRE(scalar.code == 0);
+  CHECK(scalar.out.find("1 frames, radius fit, refit moments, backend scalar\n") == 0);
   const json one = json::parse(contents(out));
   CHECK(one["frames"][0].contains("m1"));
   CHECK(!one["frames"][0].contains("m2"));
