@@ -214,10 +214,11 @@ std::string inspect_text(const Asset& asset) {
   out += fmt::format("spheres  {}, {} chain entries ({} as Table 1 counts), {} pairs ignored, {} joints\n",
                      asset.spheres().size, count_chain_entries(asset), info.chain_entries_table1, count_ignored(asset),
                      asset.joint_count());
-  const BoneTables& tables = asset.bone_tables();
-  out += fmt::format("bones    {}, {} morph targets; refit from them: {} terms, {} of morphs, {} bytes\n",
-                     asset.bone_count(), asset.morph_count(), tables.terms.size, tables.morph_terms.size,
-                     bytes_of(tables));
+  out += fmt::format("bones    {}, {} morph targets\n", asset.bone_count(), asset.morph_count());
+  if (const BoneTables& tables = asset.bone_tables(); tables.terms.size > 0) {
+    out += fmt::format("pivots   {} terms of bones, {} of morphs, {} bytes\n", tables.terms.size,
+                       tables.morph_terms.size, bytes_of(tables));
+  }
   if (const MomentTables& moments = asset.moment_tables(); moments.moments.size > 0) {
     out += fmt::format("moments  {} batches of {} bone pairs; spheres: {} bones, {} pairs, {} bytes\n",
                        moments.batches.size, moments.pairs.size, moments.centers.size, moments.moments.size,

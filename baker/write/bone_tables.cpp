@@ -103,7 +103,8 @@ flatbuffers::Offset<schema::BoneRefit> create_bone_refit(flatbuffers::FlatBuffer
   std::vector<std::uint32_t> term_counts, term_bones, morph_term_counts, morph_targets;
   std::vector<schema::BoneTerm> terms;
   std::vector<schema::MorphTerm> morph_terms;
-  for (const PivotGroup& group : in.groups) {
+  const std::vector<PivotGroup> none;  // by moments, which need no pivots
+  for (const PivotGroup& group : moments.batches.empty() ? in.groups : none) {
     weights.emplace_back(span_of(group.weights));
     term_counts.push_back(static_cast<std::uint32_t>(group.parts.size()));
     for (const BonePart& part : group.parts) {

@@ -84,14 +84,23 @@ bool has_size(std::uint32_t size, std::uint64_t wanted, const char* name, const 
          message.wrong("bone_refit.%s: %" PRIu32 " of them, but %" PRIu64 " %s", name, size, wanted, of);
 }
 
+// Refit by moments does not read what moves the pivots: all of it may be left out.
+bool has_pivots(const schema::Asset& root, const schema::BoneRefit& refit) {
+  return root.refit() != schema::Refit::moments || refit.weights()->size() != 0;
+}
+
 bool check_weights(const schema::Asset& root, const schema::BoneRefit& refit, Message& message) {
+  const bool are_there = has_pivots(root, refit);
   std::uint64_t groups = 0;
   for (const schema::Sphere* sphere : *root.spheres()) {
-    groups += (sphere->pivot_count() + kPivotLanes - 1) / kPivotLanes;
+    groups += are_there ? (sphere->pivot_count() + kPivotLanes - 1) / kPivotLanes : 0;
   }
   if (!has_size(refit.weights()->size(), groups, "weights", "groups of pivots", message) ||
       !has_size(refit.term_counts()->size(), groups, "term_counts", "groups of pivots", message)) {
     return false;
+  }
+  if (!are_there) {
+    return true;
   }
   std::uint32_t group = 0;
   for (const schema::Sphere* sphere : *root.spheres()) {
@@ -187,8 +196,9 @@ bool bone_values_are_valid(const schema::Asset& root, Message& message) {
     return false;
   }
   const schema::BoneRefit* refit = root.bone_refit();
-  return refit == nullptr || (check_bones(*refit, message) && check_weights(root, *refit, message) &&
-                              check_structure(*refit, message) && check_lanes(root, *refit, message));
+  return refit == nullptr ||
+         (check_bones(*refit, message) && check_weights(root, *refit, message) && check_structure(*refit, message) &&
+          (!has_pivots(root, *refit) || check_lanes(root, *refit, message)));
 }
 
 }  // namespace spherechain

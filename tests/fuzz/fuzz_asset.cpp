@@ -141,14 +141,14 @@ int main(int argc, char** argv) {
   }
   bool sound = true;
   if (files.empty()) {
-    for (const std::size_t spheres : {1U, 6U, 7U}) {
-      const bool by_moments = spheres == 6;
+    for (const std::size_t spheres : {1U, 3U, 6U, 7U}) {
+      const bool by_moments = spheres == 3 || spheres == 6;
       const std::string name =
           "synthetic, " + std::to_string(spheres) + (by_moments ? " spheres by moments" : " spheres");
       TinyAsset tiny = random_asset(spheres, 1);
       TinySkin skin = add_bones(tiny, 4, 2);
       if (by_moments) {
-        add_moments(tiny, skin, 8);
+        add_moments(tiny, skin, 8, spheres == 3 ? PivotTables::kKept : PivotTables::kLeftOut);
       }
       add_surface(tiny, &skin, 3);
       sound = Fuzzer(build(tiny.parts)).run(name.c_str(), stride) && sound;

@@ -27,7 +27,7 @@ std::vector<std::vector<std::uint8_t>> make_assets() {
     if (n != 12) {
       skin = add_bones(tiny, 1 + n % 6, n);
       if (n % 3 == 2) {
-        add_moments(tiny, skin, n % 2 == 0 ? 48 : 3);
+        add_moments(tiny, skin, n % 2 == 0 ? 48 : 3, n % 8 == 0 ? PivotTables::kKept : PivotTables::kLeftOut);
       }
     }
     if (n % 2 == 0 || n % 5 == 0) {  // one without bones, several with

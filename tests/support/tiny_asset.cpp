@@ -115,7 +115,7 @@ fb::Offset<schema::Moments> build_moments(fb::FlatBufferBuilder& builder, const 
 
 fb::Offset<schema::BoneRefit> build_bone_refit(fb::FlatBufferBuilder& builder, const AssetParts& parts) {
   const BoneRefitParts& in = parts.bone_refit;
-  if (in.weights.empty()) {
+  if (in.weights.empty() && in.bones.empty()) {
     return 0;
   }
   std::vector<fb::Offset<schema::Bone>> bones;

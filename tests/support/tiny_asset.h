@@ -104,7 +104,7 @@ struct AssetParts {
   std::vector<JointParts> joints;
   std::vector<std::uint32_t> pivot_vertices;
   std::vector<Pivot> packed_pivots;
-  BoneRefitParts bone_refit;  // left out where it has no weights
+  BoneRefitParts bone_refit;  // left out where it has neither bones nor weights
   SurfaceParts surface;       // left out where it has no leaves
 
   // Ways of breaking an asset that no value above can express.

@@ -118,7 +118,7 @@ void add_sphere(const SphereParts& sphere, std::uint32_t i, double spread, const
 
 }  // namespace
 
-void add_moments(TinyAsset& tiny, TinySkin& skin, std::size_t batch_pairs) {
+void add_moments(TinyAsset& tiny, TinySkin& skin, std::size_t batch_pairs, PivotTables pivots) {
   AssetParts& parts = tiny.parts;
   parts.refit = static_cast<std::uint8_t>(RefitRule::kMoments);
   for (auto& morphs : skin.morphs) {
@@ -127,6 +127,12 @@ void add_moments(TinyAsset& tiny, TinySkin& skin, std::size_t batch_pairs) {
   parts.bone_refit.morph_term_counts.clear();
   parts.bone_refit.morph_targets.clear();
   parts.bone_refit.morph_terms.clear();
+  if (pivots == PivotTables::kLeftOut) {
+    parts.bone_refit.weights.clear();
+    parts.bone_refit.term_counts.clear();
+    parts.bone_refit.term_bones.clear();
+    parts.bone_refit.terms.clear();
+  }
 
   std::vector<SphereParts> spheres;
   std::vector<std::uint32_t> order;

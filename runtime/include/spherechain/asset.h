@@ -155,7 +155,8 @@ class SPHERECHAIN_API Asset {
   // The source's morph targets, in the source's order.
   std::size_t morph_count() const noexcept;
   const char* morph_name(std::size_t i) const noexcept;
-  // Empty where bone_count() is 0.
+  // Empty where bone_count() is 0. Where refit_rule() is kMoments nothing reads them: empty but in assets of older
+  // bakers.
   const BoneTables& bone_tables() const noexcept { return bone_tables_; }
   // Of every sphere where refit_rule() is kMoments; else empty.
   const MomentTables& moment_tables() const noexcept { return moment_tables_; }

@@ -27,7 +27,7 @@ struct MorphTerm {
 
 // What refit from bones reads, for those who write it anew for another machine; see RefitBonesJob for the arithmetic.
 // A sphere's pivots come in groups of eight, the last filled up with spare lanes; groups are in sphere order, a group's
-// terms and a term's morph terms one after another.
+// terms and a term's morph terms one after another. Asset::bone_tables() says where there are none.
 struct BoneTables {
   Span<const PivotLanes> weights;         // a group's: the pivots' shares of the centre
   Span<const std::uint32_t> term_counts;  // a group's; >= 1

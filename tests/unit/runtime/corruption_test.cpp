@@ -271,9 +271,6 @@ TEST_CASE("tables for refit from bones and from packed pivots that are not sound
 TEST_CASE("tables for refit by moments that are not sound are refused") {
   TinyAsset tiny = random_asset(12, 1);
   TinySkin skin = add_bones(tiny, 5, 3);
-  const std::vector<std::uint32_t> terms = tiny.parts.bone_refit.morph_term_counts;
-  const std::vector<std::uint32_t> targets = tiny.parts.bone_refit.morph_targets;
-  const std::vector<MorphTerm> morph_terms = tiny.parts.bone_refit.morph_terms;
   add_moments(tiny, skin, 14);
   using Moments = MomentParts;
   const Moments& m = tiny.parts.bone_refit.moments;
@@ -287,8 +284,6 @@ TEST_CASE("tables for refit by moments that are not sound are refused") {
   const auto change = [](auto apply) { return [apply](AssetParts& p) { apply(p.bone_refit.moments); }; };
   const std::vector<std::pair<std::string, std::function<void(AssetParts&)>>> changes{
       {": missing, but refit is moments", change([](Moments& t) { t = {}; })},
-      {": refit is another", [](AssetParts& p) { p.refit = 1; }},
-      {": refit is another", [](AssetParts& p) { p.refit = 0; }},
       {".origin: missing", [](AssetParts& p) { p.without = "moments.origin"; }},
       {".origin: not finite", change([](Moments& t) { t.origin.x = kNan; })},
       {".origin: not finite", change([](Moments& t) { t.origin.y = kInfinity; })},
@@ -352,12 +347,45 @@ TEST_CASE("tables for refit by moments that are not sound are refused") {
   for (const auto& [message, apply] : changes) {
     corruptions.push_back({"bone_refit.moments" + message, apply});
   }
-  corruptions.push_back({"bone_refit.morph_terms: ", [&](AssetParts& p) {
-                           p.bone_refit.morph_term_counts = terms;
-                           p.bone_refit.morph_targets = targets;
-                           p.bone_refit.morph_terms = morph_terms;
-                         }});
   check_each(tiny.parts, corruptions);
+}
+
+TEST_CASE("beside moments the pivots' tables are all there and sound, or none is") {
+  TinyAsset left_out = random_asset(12, 1);
+  TinySkin skin = add_bones(left_out, 5, 3);
+  TinyAsset kept = left_out;
+  const BoneRefitParts morphing = left_out.parts.bone_refit;
+  add_moments(left_out, skin, 14);
+  add_moments(kept, skin, 14, PivotTables::kKept);
+  using Refit = BoneRefitParts;
+  const auto refit = [](auto change) { return [change](AssetParts& p) { change(p.bone_refit); }; };
+  check_each(left_out.parts,
+             {
+                 {"bone_refit.weights: 0 of them, but 12 groups", [](AssetParts& p) { p.refit = 1; }},
+                 {"bone_refit.term_counts: 1 of them, but 0 groups", refit([](Refit& r) { r.term_counts = {0}; })},
+                 {"bone_refit.term_bones: 1 of them, but 0 terms", refit([](Refit& r) { r.term_bones = {0}; })},
+                 {"bone_refit.term_counts: they add up to 0, not to 1", refit([](Refit& r) {
+                    r.term_bones = {0};
+                    r.terms.emplace_back();
+                  })},
+                 {"bone_refit.morph_term_counts: they add up to 0, not to 1", refit([](Refit& r) {
+                    r.morph_targets = {0};
+                    r.morph_terms.emplace_back();
+                  })},
+             });
+  check_each(kept.parts, {
+                             {"bone_refit.moments: refit is another", [](AssetParts& p) { p.refit = 1; }},
+                             {"bone_refit.moments: refit is another", [](AssetParts& p) { p.refit = 0; }},
+                             {"bone_refit.weights: 11 of them, but 12", refit([](Refit& r) { r.weights.pop_back(); })},
+                             {"bone_refit.term_counts: 12 of them, but 0", refit([](Refit& r) { r.weights.clear(); })},
+                             {"bone_refit.term_counts: 0 of them", refit([](Refit& r) { r.term_counts.clear(); })},
+                             {"bone_refit.terms[2]: not finite", refit([](Refit& r) { r.terms[2].x[0] = kNan; })},
+                             {"bone_refit.morph_terms: ", refit([&](Refit& r) {
+                                r.morph_term_counts = morphing.morph_term_counts;
+                                r.morph_targets = morphing.morph_targets;
+                                r.morph_terms = morphing.morph_terms;
+                              })},
+                         });
 }
 
 TEST_CASE("an asset by moments without any tables of bones is refused") {

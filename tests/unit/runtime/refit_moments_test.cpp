@@ -16,7 +16,8 @@ namespace {
 constexpr double kMeshRounding = 2e-5;
 
 struct ByMoments : PosedAsset {
-  ByMoments(std::size_t bone_count, std::size_t spheres, std::size_t batch_pairs = 48, bool has_large_spheres = true) {
+  ByMoments(std::size_t bone_count, std::size_t spheres, std::size_t batch_pairs = 48, bool has_large_spheres = true,
+            PivotTables pivots = PivotTables::kLeftOut) {
     tiny = random_asset(spheres, 31);
     matrices = random_matrices(bone_count, 33);
     for (std::size_t i = 0; i < spheres; ++i) {
@@ -24,7 +25,7 @@ struct ByMoments : PosedAsset {
       give_pivots(tiny, i, has_large_spheres ? counts[i % 8] : std::uint16_t{2}, static_cast<unsigned>(i));
     }
     skin = add_bones(tiny, bone_count, 32);
-    add_moments(tiny, skin, batch_pairs);
+    add_moments(tiny, skin, batch_pairs, pivots);
   }
   const MomentParts& tables() const { return tiny.parts.bone_refit.moments; }
 };
@@ -197,6 +198,13 @@ TEST_CASE("by moments, spheres of an asset with more bones than its stack has ro
   for (const std::size_t bones : {255U, 256U, 257U, 1000U}) {
     check_exact(ByMoments(bones, 40, 48, false), exact_by_moments);
   }
+}
+
+TEST_CASE("by moments, an asset that has its pivots' tables too, as those of older bakers, gives the same spheres") {
+  const ByMoments s(9, 24), older(9, 24, 48, true, PivotTables::kKept);
+  CHECK(OpenedAsset(s.tiny.parts).asset.bone_tables().terms.size == 0);
+  CHECK(OpenedAsset(older.tiny.parts).asset.bone_tables().terms.size > 0);
+  check_exact(older, exact_by_moments);
 }
 
 TEST_CASE("by moments, spheres from vertices follow the fixed arithmetic of the header bit for bit") {
