@@ -4,7 +4,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "../../golden/clip.h"
 #include "crowd_checks.h"
@@ -14,8 +13,6 @@
 
 namespace spherechain::test {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // Sphere 3 has 24 leaves of a triangle each, 4 to 8 have none.
 TinyAsset covered_asset(unsigned spheres, std::size_t bones, unsigned seed) {

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "crowd_checks.h"
 #include "jobs.h"
@@ -125,7 +124,6 @@ TEST_CASE("by moments: bones of any size, and none at all, have the CPU's radii"
 }
 
 TEST_CASE("by moments: matrices that are not finite leave the other instances alone, and other bones' spheres") {
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
   const TinyAsset tiny = moment_asset(60, 9, 6);
   const OpenedAsset opened(tiny.parts);
   REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);

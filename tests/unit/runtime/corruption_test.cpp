@@ -13,9 +13,6 @@
 namespace spherechain::test {
 namespace {
 
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
 struct Corruption {
   std::string message;  // what it must start with
   std::function<void(AssetParts&)> apply;

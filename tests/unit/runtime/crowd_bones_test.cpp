@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <utility>
 
 #include "crowds.h"
@@ -167,7 +166,6 @@ TEST_CASE("by moments, a crowd's spheres are those of a single refit to the last
 }
 
 TEST_CASE("matrices that are not finite cost no other instance a pair, whatever the rule") {
-  constexpr float kInfinity = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
   for (const RefitRule rule : {RefitRule::kPaper, RefitRule::kCalibrated, RefitRule::kMoments}) {
     INFO("rule ", static_cast<int>(rule));
     Shape shape;

@@ -3,16 +3,12 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "jobs.h"
 #include "tiny_asset.h"
 
 namespace spherechain::test {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 // n spheres, nothing ignored, no near pairs, one chain of all.
 AssetParts plain_asset(std::uint32_t n) {

@@ -16,9 +16,10 @@ namespace {
 
 // Of coordinates of some units and sums of a dozen floats.
 constexpr double kBoneRounding = 1e-5;
-constexpr std::size_t kBones = 7;
 
 struct ByPivots : PosedAsset {
+  static constexpr std::size_t kBones = 7;
+
   explicit ByPivots(std::uint8_t rule = 1, std::size_t spheres = 11, bool has_large_spheres = true) {
     tiny = random_asset(spheres, 21);
     tiny.parts.refit = rule;
@@ -211,7 +212,7 @@ TEST_CASE("refit from bones refuses what it cannot use and writes nothing") {
   const Palette palette(s.matrices, MatrixLayout::kRowMajor4x4, 64);
   RefitBonesJob good;
   good.asset = &opened.asset;
-  good.bones = palette.view(kBones);
+  good.bones = palette.view(ByPivots::kBones);
   good.morph_weights = {s.morph_weights.data(), s.morph_weights.size()};
   good.spheres = {spheres.data(), spheres.size()};
   const Asset closed;
@@ -244,14 +245,14 @@ TEST_CASE("refit from bones refuses what it cannot use and writes nothing") {
 TEST_CASE("refit from bones refuses to write over its own inputs") {
   const ByPivots s;
   const OpenedAsset opened(s.tiny.parts);
-  constexpr std::size_t kOutput = 11 * 4, kInput = kBones * 12;  // floats
+  constexpr std::size_t kOutput = 11 * 4, kInput = ByPivots::kBones * 12;  // floats
   std::vector<float> memory(2 * kOutput + kInput);
   float* const input = memory.data() + kOutput;
   std::memcpy(input, s.matrices.data(), kInput * sizeof(float));
   const std::vector<float> before = memory;
   RefitBonesJob job;
   job.asset = &opened.asset;
-  job.bones = {input, kBones};
+  job.bones = {input, ByPivots::kBones};
   for (const std::size_t start : {std::size_t{4}, kOutput, kOutput + kInput - 4}) {
     job.spheres = {reinterpret_cast<Sphere*>(memory.data() + start), 11};
     CHECK(job.run() == Status::kSharedMemory);
@@ -271,12 +272,12 @@ TEST_CASE("refit from bones refuses to write over its own inputs") {
 TEST_CASE("an asset tells its bones and morph targets") {
   const ByPivots s;
   const OpenedAsset opened(s.tiny.parts);
-  REQUIRE(opened.asset.bone_count() == kBones);
+  REQUIRE(opened.asset.bone_count() == ByPivots::kBones);
   CHECK(std::string(opened.asset.bone(2).name) == "bone2");
   CHECK(opened.asset.bone(2).inverse_bind[3] == -2.0F);
   CHECK(opened.asset.bone(2).inverse_bind[10] == 1.0F);
-  CHECK(!opened.asset.bone(kBones - 2).is_rest);
-  CHECK(opened.asset.bone(kBones - 1).is_rest);
+  CHECK(!opened.asset.bone(ByPivots::kBones - 2).is_rest);
+  CHECK(opened.asset.bone(ByPivots::kBones - 1).is_rest);
   REQUIRE(opened.asset.morph_count() == 3);
   CHECK(std::string(opened.asset.morph_name(2)) == "morph2");
   const OpenedAsset old(random_asset(3, 1).parts);

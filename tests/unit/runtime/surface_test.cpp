@@ -3,7 +3,6 @@
 #include <doctest/doctest.h>
 
 #include <functional>
-#include <limits>
 #include <string>
 
 #include "jobs.h"
@@ -11,9 +10,6 @@
 
 namespace spherechain::test {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 template <typename T>
 std::vector<T> to_vector(Span<const T> span) {
