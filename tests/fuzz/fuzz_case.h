@@ -100,6 +100,14 @@ void spoil_some(Case& c, std::uint32_t ways, const Spoil& spoil) {
   }
 }
 
+// Ways 0 and 1 of any job: no asset, one that is not open.
+template <typename Job, typename CJob>
+void spoil_asset(Case& c, Job& job, CJob& c_job, std::uint32_t way, Spoiled& spoiled) {
+  job.asset = way == 0 ? nullptr : &c.closed;
+  c_job.asset = way == 0 ? nullptr : c.c_closed;
+  spoiled.with(way == 0 ? Status::kNullArgument : Status::kNotOpen);
+}
+
 // A sound filter, its buffers in the arena; one that is empty has dirt for its pointer's target.
 Filter draw_filter(Case& c);
 constexpr std::uint32_t kFilterWays = 8;

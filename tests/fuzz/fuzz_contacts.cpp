@@ -12,13 +12,8 @@ void spoil_contacts(Case& c, ContactJob& job, sc_contact_job& c_job, Pair* pairs
                     Spoiled& spoiled) {
   switch (way) {
     case 0:
-      job.asset = nullptr;
-      c_job.asset = nullptr;
-      return spoiled.with(Status::kNullArgument);
     case 1:
-      job.asset = &c.closed;
-      c_job.asset = c.c_closed;
-      return spoiled.with(Status::kNotOpen);
+      return spoil_asset(c, job, c_job, way, spoiled);
     case 2:
       job.spheres.data = nullptr;
       return spoiled.with(Status::kNullArgument);

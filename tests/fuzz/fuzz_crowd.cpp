@@ -122,13 +122,8 @@ void spoil_crowd(Case& c, CrowdCall& call, std::uint32_t way, Spoiled& spoiled) 
   const bool has_bones = job.bones.data != nullptr;
   switch (way) {
     case 0:
-      job.asset = nullptr;
-      call.c_job.asset = nullptr;
-      return spoiled.with(Status::kNullArgument);
     case 1:
-      job.asset = &c.closed;
-      call.c_job.asset = c.c_closed;
-      return spoiled.with(Status::kNotOpen);
+      return spoil_asset(c, job, call.c_job, way, spoiled);
     case 2:
       job.spheres = nullptr;
       job.bones.data = nullptr;

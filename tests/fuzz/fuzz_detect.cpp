@@ -119,13 +119,8 @@ void spoil_detect(Case& c, DetectCall& call, std::uint32_t way, Spoiled& spoiled
   const Bytes spheres = bytes_of(job.spheres.data, c.n);
   switch (way) {
     case 0:
-      job.asset = nullptr;
-      call.c_job.asset = nullptr;
-      return spoiled.with(Status::kNullArgument);
     case 1:
-      job.asset = &c.closed;
-      call.c_job.asset = c.c_closed;
-      return spoiled.with(Status::kNotOpen);
+      return spoil_asset(c, job, call.c_job, way, spoiled);
     case 2:
       job.spheres.data = nullptr;
       return spoiled.with(Status::kNullArgument);

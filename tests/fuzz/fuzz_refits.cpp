@@ -2,7 +2,7 @@
 // Refit from vertices and from bones.
 #include <cstring>
 
-#include "fuzz_case.h"
+#include "fuzz_bones.h"
 #include "spherechain/refit.h"
 #include "spherechain/refit_bones.h"
 
@@ -12,13 +12,8 @@ namespace {
 void spoil_refit(Case& c, RefitJob& job, sc_refit_job& c_job, std::size_t needed, std::uint32_t way, Spoiled& spoiled) {
   switch (way) {
     case 0:
-      job.asset = nullptr;
-      c_job.asset = nullptr;
-      return spoiled.with(Status::kNullArgument);
     case 1:
-      job.asset = &c.closed;
-      c_job.asset = c.c_closed;
-      return spoiled.with(Status::kNotOpen);
+      return spoil_asset(c, job, c_job, way, spoiled);
     case 2:
       job.positions = nullptr;
       return spoiled.with(Status::kNullArgument);
@@ -64,61 +59,23 @@ void spoil_refit(Case& c, RefitJob& job, sc_refit_job& c_job, std::size_t needed
 void spoil_refit_bones(Case& c, RefitBonesJob& job, sc_refit_bones_job& c_job, std::uint32_t way, Spoiled& spoiled) {
   switch (way) {
     case 0:
-      job.asset = nullptr;
-      c_job.asset = nullptr;
-      return spoiled.with(Status::kNullArgument);
-    case 1:
-      job.asset = &c.closed;
-      c_job.asset = c.c_closed;
-      return spoiled.with(Status::kNotOpen);
-    case 2:
-      job.bones.data = nullptr;
-      return spoiled.with(Status::kNullArgument);
-    case 3:
       job.spheres.data = nullptr;
       return spoiled.with(Status::kNullArgument);
-    case 4:
-      job.bones.count = c.random.up_to(c.asset.bone_count() - 1);
-      return spoiled.with(Status::kTooFewBones);
-    case 5:
+    case 1:
       job.spheres.size = c.random.up_to(c.n - 1);
       return spoiled.with(Status::kTooFewSpheres);
-    case 6: {
-      const std::size_t strides[] = {
-          0, 44, size_of(job.bones.layout) - 4, size_of(job.bones.layout) + 2, 999, ~std::size_t{0}};
-      job.bones.stride = c.random.pick(strides);
-      return spoiled.with(Status::kBadStride);
-    }
-    case 7:
+    case 2:
       job.radius = draw_none<RadiusKind>(c, 2);
       c_job.radius = draw_c_none(c, 2);
       return spoiled.with(Status::kBadArgument);
-    case 8:
-      job.bones.layout = draw_none<MatrixLayout>(c, 4);
-      c_job.bones.layout = draw_c_none(c, 4);
-      return spoiled.with(Status::kBadArgument);
-    case 9:
-      job.target = draw_none<Target>(c, 7);
-      c_job.target = draw_c_none(c, 7);
-      return spoiled.with(Status::kUnsupportedTarget);
-    case 10:
-      put_askew(c, job.bones.data);
-      return spoiled.with(Status::kMisaligned);
-    case 11:
+    case 3:
       put_askew(c, job.spheres.data);
       return spoiled.with(Status::kMisaligned);
-    case 12:
-      job.morph_weights = {nullptr, c.asset.morph_count() + 1};
-      return spoiled.with(Status::kNullArgument);
-    case 13:
-      if (c.asset.morph_count() > 1) {
-        job.morph_weights = {c.arena.add<float>(3), c.asset.morph_count() - 1};
-        spoiled.with(Status::kTooFewMorphs);
-      }
-      return;
-    default:
+    case 4:
       put_over(c, job.spheres.data, bytes_of(job.bones.data, 12));
       return spoiled.with(Status::kSharedMemory);
+    default:
+      spoil_bone_inputs(c, job, c_job, way - 5, spoiled);
   }
 }
 
@@ -171,35 +128,21 @@ void fuzz_refit_bones(Case& c) {
     return;
   }
   RefitBonesJob job;
-  job.asset = &c.asset;
-  job.bones = draw_bones(c);
+  draw_bone_inputs(c, job);
   job.radius = static_cast<RadiusKind>(c.random.below(2));
-  job.target = draw_target(c);
-  if (c.random.one_in(2)) {
-    job.morph_weights.size = c.asset.morph_count() + c.random.below(2);
-    float* weights = c.arena.add<float>(job.morph_weights.size);
-    fill_figures(c, weights, job.morph_weights.size);
-    job.morph_weights.data = weights;
-  }
   job.spheres.size = c.n + c.random.below(3);
   job.spheres.data = c.arena.add<Sphere>(job.spheres.size);
 
   sc_refit_bones_job c_job = SC_REFIT_BONES_JOB_INIT;
-  c_job.asset = c.c_asset;
-  c_job.bones.layout = static_cast<sc_matrix_layout>(job.bones.layout);
+  choose_bone_inputs(c, job, c_job);
   c_job.radius = static_cast<sc_radius>(job.radius);
-  c_job.target = static_cast<sc_target>(draw_target(c));
   Spoiled spoiled;
   if (c.asset.bone_count() == 0) {
     spoiled.with(Status::kNotInAsset);
   } else {
-    spoil_some(c, 15, [&](std::uint32_t way) { spoil_refit_bones(c, job, c_job, way, spoiled); });
+    spoil_some(c, 5 + kBoneWays, [&](std::uint32_t way) { spoil_refit_bones(c, job, c_job, way, spoiled); });
   }
-  c_job.bones.data = job.bones.data;
-  c_job.bones.count = job.bones.count;
-  c_job.bones.stride = job.bones.stride;
-  c_job.morph_weights = job.morph_weights.data;
-  c_job.morph_weight_count = job.morph_weights.size;
+  copy_bone_inputs(job, c_job);
   c_job.spheres = reinterpret_cast<sc_sphere*>(job.spheres.data);
   c_job.sphere_count = job.spheres.size;
   run_both(

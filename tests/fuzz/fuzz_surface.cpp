@@ -1,50 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Leaves' balls and the surface's vertices from bones.
-#include "fuzz_case.h"
+#include "fuzz_bones.h"
 #include "spherechain/cover.h"
 #include "spherechain/skin.h"
 
 namespace spherechain::test {
 namespace {
-
-// What both jobs have in common.
-constexpr std::uint32_t kCommonWays = 9;
-template <typename Job, typename CJob>
-void spoil_common(Case& c, Job& job, CJob& c_job, std::uint32_t way, Spoiled& spoiled) {
-  switch (way) {
-    case 0:
-      job.asset = nullptr;
-      c_job.asset = nullptr;
-      return spoiled.with(Status::kNullArgument);
-    case 1:
-      job.asset = &c.closed;
-      c_job.asset = c.c_closed;
-      return spoiled.with(Status::kNotOpen);
-    case 2:
-      job.bones.data = nullptr;
-      return spoiled.with(Status::kNullArgument);
-    case 3:
-      job.bones.count = c.random.up_to(c.asset.bone_count() - 1);
-      return spoiled.with(Status::kTooFewBones);
-    case 4:
-      job.bones.stride = size_of(job.bones.layout) - 4 * c.random.below(3) + 2;
-      return spoiled.with(Status::kBadStride);
-    case 5:
-      job.bones.layout = draw_none<MatrixLayout>(c, 4);
-      c_job.bones.layout = draw_c_none(c, 4);
-      return spoiled.with(Status::kBadArgument);
-    case 6:
-      job.target = draw_none<Target>(c, 7);
-      c_job.target = draw_c_none(c, 7);
-      return spoiled.with(Status::kUnsupportedTarget);
-    case 7:
-      put_askew(c, job.bones.data);
-      return spoiled.with(Status::kMisaligned);
-    default:
-      job.morph_weights = {nullptr, c.asset.morph_count() + 1};
-      return spoiled.with(Status::kNullArgument);
-  }
-}
 
 void spoil_cover(Case& c, CoverJob& job, sc_cover_job& c_job, std::uint32_t way, Spoiled& spoiled) {
   switch (way) {
@@ -67,7 +28,7 @@ void spoil_cover(Case& c, CoverJob& job, sc_cover_job& c_job, std::uint32_t way,
       job.spheres = {job.leaves.data, c.n};
       return spoiled.with(Status::kSharedMemory);
     default:
-      spoil_common(c, job, c_job, way - 6, spoiled);
+      spoil_bone_inputs(c, job, c_job, way - 6, spoiled);
   }
 }
 
@@ -91,37 +52,17 @@ void spoil_skin(Case& c, SkinJob& job, sc_skin_job& c_job, std::uint32_t way, Sp
       put_over(c, job.positions, bytes_of(job.bones.data, 12));
       return spoiled.with(Status::kSharedMemory);
     default:
-      spoil_common(c, job, c_job, way - 5, spoiled);
+      spoil_bone_inputs(c, job, c_job, way - 5, spoiled);
   }
 }
 
-// All of the inputs. False where the asset drawn has no surface or no bones, after which the call is expected to say
-// so.
-template <typename Job>
-bool draw_inputs(Case& c, Job& job, Spoiled& spoiled) {
-  job.asset = &c.asset;
-  job.bones = draw_bones(c);
-  job.target = draw_target(c);
-  if (c.random.one_in(2)) {
-    job.morph_weights.size = c.asset.morph_count() + c.random.below(2);
-    float* weights = c.arena.add<float>(job.morph_weights.size);
-    fill_figures(c, weights, job.morph_weights.size);
-    job.morph_weights.data = weights;
-  }
+// False where the asset drawn has no surface or no bones, after which the call is expected to say so.
+bool has_surface(const Case& c, Spoiled& spoiled) {
   const bool is_there = c.asset.bone_count() > 0 && c.asset.leaf_count() > 0;
   if (!is_there) {
     spoiled.with(Status::kNotInAsset);
   }
   return is_there;
-}
-
-template <typename Job, typename CJob>
-void copy_inputs(const Job& job, CJob& c_job) {
-  c_job.bones.data = job.bones.data;
-  c_job.bones.count = job.bones.count;
-  c_job.bones.stride = job.bones.stride;
-  c_job.morph_weights = job.morph_weights.data;
-  c_job.morph_weight_count = job.morph_weights.size;
 }
 
 }  // namespace
@@ -132,7 +73,8 @@ void fuzz_cover(Case& c) {
   }
   CoverJob job;
   Spoiled spoiled;
-  const bool is_there = draw_inputs(c, job, spoiled);
+  draw_bone_inputs(c, job);
+  const bool is_there = has_surface(c, spoiled);
   job.leaves.size = c.asset.leaf_count() + c.random.below(3);
   job.leaves.data = c.arena.add<Sphere>(job.leaves.size);
   if (c.random.one_in(2)) {
@@ -140,13 +82,11 @@ void fuzz_cover(Case& c) {
     job.spheres.data = c.arena.add<Sphere>(job.spheres.size);
   }
   sc_cover_job c_job = SC_COVER_JOB_INIT;
-  c_job.asset = c.c_asset;
-  c_job.bones.layout = static_cast<sc_matrix_layout>(job.bones.layout);
-  c_job.target = static_cast<sc_target>(draw_target(c));
+  choose_bone_inputs(c, job, c_job);
   if (is_there) {
-    spoil_some(c, 6 + kCommonWays, [&](std::uint32_t way) { spoil_cover(c, job, c_job, way, spoiled); });
+    spoil_some(c, 6 + kBoneWays, [&](std::uint32_t way) { spoil_cover(c, job, c_job, way, spoiled); });
   }
-  copy_inputs(job, c_job);
+  copy_bone_inputs(job, c_job);
   c_job.leaves = reinterpret_cast<sc_sphere*>(job.leaves.data);
   c_job.leaf_count = job.leaves.size;
   c_job.spheres = reinterpret_cast<sc_sphere*>(job.spheres.data);
@@ -177,7 +117,8 @@ void fuzz_skin(Case& c) {
   }
   SkinJob job;
   Spoiled spoiled;
-  const bool is_there = draw_inputs(c, job, spoiled);
+  draw_bone_inputs(c, job);
+  const bool is_there = has_surface(c, spoiled);
   job.stride = 12 + 4 * (c.random.one_in(2) ? 0 : c.random.below(8));
   job.vertex_count = needed + c.random.below(2);
   const std::size_t floats = (job.vertex_count - 1) * job.stride / sizeof(float) + 3;
@@ -185,13 +126,11 @@ void fuzz_skin(Case& c) {
   fill_figures(c, positions, floats);
   job.positions = positions;
   sc_skin_job c_job = SC_SKIN_JOB_INIT;
-  c_job.asset = c.c_asset;
-  c_job.bones.layout = static_cast<sc_matrix_layout>(job.bones.layout);
-  c_job.target = static_cast<sc_target>(draw_target(c));
+  choose_bone_inputs(c, job, c_job);
   if (is_there) {
-    spoil_some(c, 5 + kCommonWays, [&](std::uint32_t way) { spoil_skin(c, job, c_job, way, spoiled); });
+    spoil_some(c, 5 + kBoneWays, [&](std::uint32_t way) { spoil_skin(c, job, c_job, way, spoiled); });
   }
-  copy_inputs(job, c_job);
+  copy_bone_inputs(job, c_job);
   c_job.positions = job.positions;
   c_job.vertex_count = job.vertex_count;
   c_job.stride = job.stride;

@@ -113,17 +113,19 @@ TEST_CASE("a crowd under the paper's refit rule has the CPU's spheres") {
 }
 
 TEST_CASE("a crowd takes a filter as a single job does, and the refitted spheres stay without its padding") {
-  const OpenedAsset opened(boned_asset(70, 6, 5).parts);
-  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
-  std::mt19937 random(5);
-  OwnedFilter owned(opened.asset);
-  edit_randomly(opened.asset, owned.filter, random);
-  const Tables tables(opened.asset, RadiusKind::kDetect, &owned.filter);
-  GroupInput in = group_of(tables, 50);
-  give_matrices(in, opened.asset, MatrixLayout::kRowMajor3x4, PoseKind::kGentle, 0, random);
-  const Expected wanted = pairs_of_bones(opened.asset, in, RadiusKind::kDetect, &owned.filter);
-  CHECK(!wanted.pairs.empty());
-  run_and_check(in, wanted);
+  for (const TinyAsset& tiny : {boned_asset(70, 6, 5), moment_asset(50, 4, 5)}) {
+    const OpenedAsset opened(tiny.parts);
+    REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
+    std::mt19937 random(5);
+    OwnedFilter owned(opened.asset);
+    edit_randomly(opened.asset, owned.filter, random);
+    const Tables tables(opened.asset, RadiusKind::kDetect, &owned.filter);
+    GroupInput in = group_of(tables, 50);
+    give_matrices(in, opened.asset, MatrixLayout::kRowMajor3x4, PoseKind::kGentle, 0, random);
+    const Expected wanted = pairs_of_bones(opened.asset, in, RadiusKind::kDetect, &owned.filter);
+    CHECK(!wanted.pairs.empty());
+    run_and_check(in, wanted);
+  }
 }
 
 TEST_CASE("several assets, as bones and as spheres, share a launch") {

@@ -7,7 +7,6 @@
 
 #include "crowd_checks.h"
 #include "jobs.h"
-#include "owned_filter.h"
 
 namespace spherechain::test {
 namespace {
@@ -89,20 +88,6 @@ TEST_CASE("by moments: every layout, alignment, radius and pose") {
       }
     }
   }
-}
-
-TEST_CASE("by moments: a filter's padding stays out of the refitted spheres") {
-  const OpenedAsset opened(moment_asset(50, 4, 5).parts);
-  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
-  std::mt19937 random(5);
-  OwnedFilter owned(opened.asset);
-  edit_randomly(opened.asset, owned.filter, random);
-  const Tables tables(opened.asset, RadiusKind::kDetect, &owned.filter);
-  GroupInput in = group_of(tables, 50);
-  give_matrices(in, opened.asset, MatrixLayout::kRowMajor3x4, PoseKind::kGentle, 0, random);
-  const Expected wanted = pairs_of_bones(opened.asset, in, RadiusKind::kDetect, &owned.filter);
-  CHECK(!wanted.pairs.empty());
-  run_and_check(in, wanted);
 }
 
 TEST_CASE("by moments: bones of any size, and none at all, have the CPU's radii") {
