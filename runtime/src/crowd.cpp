@@ -69,16 +69,11 @@ void choose_pairs(Crowd& crowd) {
   const Span<const std::uint64_t> own = job.asset->ignored();
   const Span<const std::uint64_t> ignored =
       job.filter == nullptr ? own : Span<const std::uint64_t>{job.filter->ignored.data, job.filter->ignored.size};
-  std::fill(crowd.wanted.begin(), crowd.wanted.end(), std::uint64_t{0});
+  std::fill(crowd.wanted.begin(), crowd.wanted.end(), ~std::uint64_t{0});
   std::fill(crowd.is_near.begin(), crowd.is_near.end(), std::uint64_t{0});
-  std::size_t bit = 0;
-  for (std::size_t a = 0; a + 1 < n; ++a) {
-    std::size_t ignored_at = ignored_bit(a, a + 1);
-    for (std::size_t b = a + 1; b < n; ignored_at += b++, ++bit) {
-      const std::uint64_t is_ignored = ignored[ignored_at / 64] >> (ignored_at % 64) & 1U;
-      crowd.wanted[bit / 64] |= (is_ignored ^ 1U) << (bit % 64);
-    }
-  }
+  for_each_pair(ignored.data, n, [&](std::uint32_t a, std::uint32_t b) {  // few
+    assign_bit(crowd.wanted, sorted_bit(a, b, n), false);
+  });
   if (job.filter != nullptr && job.filter->disabled.size > 0) {
     const Span<const std::uint64_t> disabled{job.filter->disabled.data, job.filter->disabled.size};
     for (std::size_t i = 0; i < n; ++i) {
@@ -99,29 +94,15 @@ void choose_pairs(Crowd& crowd) {
 void list_instance(const std::uint64_t* bits, const Crowd& crowd, std::size_t instance, std::size_t at,
                    std::uint32_t* places) {
   const std::size_t n = crowd.job.asset->spheres().size;
-  const auto for_each = [&](auto use) {
-    std::size_t b = 1;
-    std::size_t row = 0;
-    for (std::size_t w = 0; w < crowd.layout.bit_words; ++w) {
-      for (std::uint64_t word = bits[w]; word != 0; word &= word - 1) {
-        const std::size_t bit = 64 * w + lowest_bit(word);
-        while (bit >= row + b) {
-          row += b;
-          ++b;
-        }
-        use(static_cast<std::uint32_t>(bit - row), static_cast<std::uint32_t>(b));
-      }
-    }
-  };
   std::fill(places, places + n, 0U);
-  for_each([&](std::uint32_t a, std::uint32_t) { ++places[a]; });
+  for_each_pair(bits, n, [&](std::uint32_t a, std::uint32_t) { ++places[a]; });
   std::uint32_t before = 0;
   for (std::size_t a = 0; a < n; ++a) {
     const std::uint32_t count = places[a];
     places[a] = before;
     before += count;
   }
-  for_each([&](std::uint32_t a, std::uint32_t b) {
+  for_each_pair(bits, n, [&](std::uint32_t a, std::uint32_t b) {
     const std::size_t place = at + places[a]++;
     if (place < crowd.job.pairs.size) {
       crowd.job.pairs[place] = {static_cast<std::uint32_t>(instance), {a, b}};

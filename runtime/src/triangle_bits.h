@@ -75,4 +75,23 @@ inline std::size_t count_bits(std::uint64_t word) {
   return count;
 }
 
+// The pairs whose bits are set in a table of n spheres by ignored_bit, b ascending and then a. Bits past the pairs are
+// not looked at.
+template <typename Use>
+void for_each_pair(const std::uint64_t* words, std::size_t n, const Use& use) {
+  const std::size_t count = pairs_of(n);
+  std::size_t b = 1, row = 0;
+  for (std::size_t first = 0; first < count; first += 64) {
+    std::uint64_t word = words[first / 64] & (~std::uint64_t{0} >> (count - first < 64 ? 64 - (count - first) : 0));
+    for (; word != 0; word &= word - 1) {
+      const std::size_t bit = first + lowest_bit(word);
+      while (bit >= row + b) {
+        row += b;
+        ++b;
+      }
+      use(static_cast<std::uint32_t>(bit - row), static_cast<std::uint32_t>(b));
+    }
+  }
+}
+
 }  // namespace spherechain

@@ -165,6 +165,18 @@ TEST_CASE("by moments, a crowd's spheres are those of a single refit to the last
   }
 }
 
+TEST_CASE("bits of a filter past its pairs count for nothing in a crowd") {
+  const CrowdOfBones crowd(Shape{});
+  OwnedFilter filter(crowd.opened.asset);
+  const std::size_t spare = 64 - crowd.sphere_count * (crowd.sphere_count - 1) / 2 % 64;
+  REQUIRE(spare < 64);
+  filter.ignored.back() |= ~std::uint64_t{0} << (64 - spare);
+  const std::vector<CrowdPair> wanted = crowd.expected();
+  for (const Target target : supported_targets()) {
+    CHECK(crowd.run(target, 1, &filter.filter) == wanted);
+  }
+}
+
 TEST_CASE("matrices that are not finite cost no other instance a pair, whatever the rule") {
   for (const RefitRule rule : {RefitRule::kPaper, RefitRule::kCalibrated, RefitRule::kMoments}) {
     INFO("rule ", static_cast<int>(rule));
