@@ -14,7 +14,7 @@ namespace spherechain::baker {
 
 namespace {
 
-void check(Status status) {
+void check_cuda(Status status) {
   if (status != Status::kOk) {
     throw Error(ExitCode::kInternal, std::string("--backend cuda: ") + to_string(status) + " (" +
                                          cuda::last_device_error() + "; --backend auto needs no GPU)");
@@ -28,7 +28,7 @@ CudaFrames play_on_cuda(const AnimatedAsset& animated, RadiusKind radius) {
   if (asset.bone_count() == 0) {
     throw Error(ExitCode::kFile, animated.file() + ": has no bones, which --backend cuda refits from (bake it again)");
   }
-  check(cuda::check_device());
+  check_cuda(cuda::check_device());
   const auto count = static_cast<std::size_t>(animated.frame_count());
   std::vector<float> matrices, weights;
   for (int i = 0; i < animated.frame_count(); ++i) {
@@ -44,7 +44,7 @@ CudaFrames play_on_cuda(const AnimatedAsset& animated, RadiusKind radius) {
   std::vector<std::uint32_t> counts(count);
   std::vector<CrowdPair> pairs(most * count + 1);
   cuda::HostCrowd crowd;
-  check(crowd.open(asset, radius, nullptr, count, pairs.size()));
+  check_cuda(crowd.open(asset, radius, nullptr, count, pairs.size()));
   crowd.bones = {matrices.data(), asset.bone_count(), MatrixLayout::kRowMajor3x4, 48};
   crowd.instance_stride = asset.bone_count() * 48;
   crowd.morph_weights = asset.morph_count() > 0 ? weights.data() : nullptr;
@@ -52,8 +52,8 @@ CudaFrames play_on_cuda(const AnimatedAsset& animated, RadiusKind radius) {
   crowd.spheres = spheres.data();
   crowd.counts = counts.data();
   crowd.pairs = pairs.data();
-  check(crowd.run());  // the first launch loads the kernel
-  check(crowd.run());
+  check_cuda(crowd.run());  // the first launch loads the kernel
+  check_cuda(crowd.run());
   CudaFrames out{std::vector<CudaFrame>(count), 1000.0 * crowd.device_milliseconds / static_cast<double>(count)};
   const CrowdPair* pair = pairs.data();
   for (std::size_t i = 0; i < count; ++i) {

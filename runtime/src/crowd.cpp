@@ -2,6 +2,7 @@
 #include "spherechain/crowd.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "arithmetic.h"
 #include "bone_refit.h"
@@ -51,6 +52,12 @@ struct Crowd {
   BoneRefitInputs bones = {};           // where the job has bones
   bool list_only = false;               // the second pass
 
+  // Of job.pairs, what a task lists into: its share, until all totals are known.
+  std::size_t list_begin(std::size_t task) const { return job.pairs.size / task_count * task; }
+  std::size_t list_end(std::size_t task) const {
+    return task + 1 == task_count || list_only ? job.pairs.size : list_begin(task + 1);
+  }
+
   std::uint64_t* scratch_of(std::size_t task) const {
     return job.context->words.data + layout.shared_words() + task * layout.task_words();
   }
@@ -59,6 +66,15 @@ struct Crowd {
     const std::size_t batches = (job.instance_count + lanes - 1) / lanes;
     return std::min(job.instance_count,
                     batches / task_count * task * lanes + std::min(task, batches % task_count) * lanes);
+  }
+  // Of a task that has run.
+  std::uint64_t pairs_of(std::size_t task) const { return scratch_of(task)[0]; }
+  std::uint64_t pairs_before(std::size_t task) const {
+    std::uint64_t sum = 0;
+    for (std::size_t i = 0; i < task; ++i) {
+      sum += pairs_of(i);
+    }
+    return sum;
   }
 };
 
@@ -89,10 +105,10 @@ void choose_pairs(Crowd& crowd) {
   }
 }
 
-// One instance's pairs into the list from place `at` on: a counting sort, for the table's order is by the larger
-// sphere.
+// One instance's pairs into `pairs` from place `at` on, as far as they fit: a counting sort, for the table's order is by
+// the larger sphere.
 void list_instance(const std::uint64_t* bits, const Crowd& crowd, std::size_t instance, std::size_t at,
-                   std::uint32_t* places) {
+                   Span<CrowdPair> pairs, std::uint32_t* places) {
   const std::size_t n = crowd.job.asset->spheres().size;
   std::fill(places, places + n, 0U);
   for_each_pair(bits, n, [&](std::uint32_t a, std::uint32_t) { ++places[a]; });
@@ -104,8 +120,8 @@ void list_instance(const std::uint64_t* bits, const Crowd& crowd, std::size_t in
   }
   for_each_pair(bits, n, [&](std::uint32_t a, std::uint32_t b) {
     const std::size_t place = at + places[a]++;
-    if (place < crowd.job.pairs.size) {
-      crowd.job.pairs[place] = {static_cast<std::uint32_t>(instance), {a, b}};
+    if (place < pairs.size) {
+      pairs[place] = {static_cast<std::uint32_t>(instance), {a, b}};
     }
   });
 }
@@ -165,13 +181,11 @@ void run_task(void* data, std::size_t task) {
   refit.morph_weights = refit.matrices + 2 * crowd.layout.bone_words;
   refit.products = refit.morph_weights + 2 * crowd.layout.morph_words;
 
-  const bool lists = job.pairs.size > 0 && (crowd.list_only || crowd.task_count == 1);
+  const bool lists = job.pairs.size > 0;
+  const Span<CrowdPair> pairs{job.pairs.data, crowd.list_end(task)};
   const std::size_t end = crowd.first_of(task + 1);
   std::uint64_t total = 0;
-  std::size_t place = 0;
-  for (std::size_t i = 0; lists && i < crowd.first_of(task); ++i) {
-    place += job.counts[i];
-  }
+  std::size_t place = crowd.list_only ? crowd.pairs_before(task) : crowd.list_begin(task);
   // An instance of more pairs than are listed has them listed from bits: kept once they are wanted, for a crowd's poses
   // are alike.
   bool keeps_bits = job.bits.size > 0;
@@ -206,9 +220,9 @@ void run_task(void* data, std::size_t task) {
       }
       if (lists && job.counts[instance] > 0) {
         if (tests && own <= kMostListed) {
-          list_found(batch.listed[lane], own, instance, place, job.pairs);
+          list_found(batch.listed[lane], own, instance, place, pairs);
         } else {
-          list_instance(bits + lane * words, crowd, instance, place, places);
+          list_instance(bits + lane * words, crowd, instance, place, pairs, places);
         }
         place += job.counts[instance];
       }
@@ -227,6 +241,22 @@ void run_tasks(Crowd& crowd) {
   for (std::size_t task = 0; task < crowd.task_count; ++task) {
     run_task(&crowd, task);
   }
+}
+
+// Brings the shares together. False where a task had more pairs than its share has room for.
+bool join_lists(const Crowd& crowd) {
+  for (std::size_t task = 0; task < crowd.task_count; ++task) {
+    if (crowd.pairs_of(task) > crowd.list_end(task) - crowd.list_begin(task)) {
+      return false;
+    }
+  }
+  CrowdPair* to = crowd.job.pairs.data;
+  for (std::size_t task = 0; task < crowd.task_count; ++task) {
+    const std::size_t count = crowd.pairs_of(task);
+    std::memmove(to, crowd.job.pairs.data + crowd.list_begin(task), count * sizeof(CrowdPair));
+    to += count;
+  }
+  return true;
 }
 
 // What the bones of one instance take.
@@ -360,11 +390,8 @@ Status CrowdJob::run() noexcept {
     crowd.scratch_of(task)[0] = 0;
   }
   run_tasks(crowd);
-  pair_count = 0;
-  for (std::size_t task = 0; task < task_count; ++task) {
-    pair_count += crowd.scratch_of(task)[0];
-  }
-  if (pairs.size > 0 && task_count > 1) {
+  pair_count = crowd.pairs_before(task_count);
+  if (pairs.size > 0 && task_count > 1 && !join_lists(crowd)) {
     crowd.list_only = true;
     run_tasks(crowd);
   }

@@ -23,7 +23,6 @@ CrowdRun::CrowdRun(const PosedCharacter& character, std::size_t instance_count, 
   }
   const std::size_t task_count = thread_count == 1 ? 1 : kTasksAThread * thread_count;
   words_.resize(CrowdContext::words_needed(character.asset, task_count));
-  bits_.resize(instance_count * DetectJob::bit_words(character.asset));
   context_.words = {words_.data(), words_.size()};
   job_.asset = &character.asset;
   job_.instance_count = instance_count;
@@ -35,7 +34,6 @@ CrowdRun::CrowdRun(const PosedCharacter& character, std::size_t instance_count, 
   job_.counts = {counts_.data(), counts_.size()};
   job_.pairs = {pairs_.data(), pairs_.size()};
   if (thread_count > 1) {
-    job_.bits = {bits_.data(), bits_.size()};  // else the list would cost another test of all pairs
     job_.hook = {&CrowdRun::on_threads, this};
   }
 }

@@ -25,7 +25,7 @@ class CrowdRun {
 
   std::size_t thread_count_;
   std::vector<float> matrices_;
-  std::vector<std::uint64_t> words_, bits_;
+  std::vector<std::uint64_t> words_;
   std::vector<std::uint32_t> counts_;
   std::vector<CrowdPair> pairs_;
   CrowdContext context_;

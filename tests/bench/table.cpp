@@ -21,9 +21,9 @@ void Table::print() const {
   for (const std::string& line : context) {
     fmt::print("{}\n", line);
   }
-  fmt::print("\n    {:<42} {:>10} {:>10}\n", "one character", "median", "min");
+  fmt::print("\n    {:<48} {:>10} {:>10}\n", "one character", "median", "min");
   for (const TableRow& row : rows) {
-    fmt::print("{}  {:<42} {:>10} {:>10}  {}\n", row.section, row.name, time_text(row.times.median),
+    fmt::print("{}  {:<48} {:>10} {:>10}  {}\n", row.section, row.name, time_text(row.times.median),
                time_text(row.times.min), row.note);
   }
   fmt::print("\n");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Google Benchmark times: each repetition of each contestant, in an order drawn at random over all of them, so that
-// what the machine does beside hits all alike. A repetition is one pass over the poses.
+// what the machine does beside hits all alike. A repetition is one pass over the poses, after one that is not timed.
 #pragma once
 
 #include <functional>

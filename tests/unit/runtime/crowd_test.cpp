@@ -77,13 +77,17 @@ TEST_CASE("a crowd's pairs are each instance's own, on every target, in any numb
           run.job.radius = radius;
           run.job.target = target;
           run.job.hook = {task_count == 9 ? nullptr : on_threads, &task_count};
-          std::vector<CrowdPair> pairs(wanted.pairs.size() + 1);
-          run.job.pairs = {pairs.data(), pairs.size()};
-          REQUIRE(run.job.run() == Status::kOk);
-          CHECK(run.job.pair_count == wanted.pairs.size());
-          CHECK(run.counts == wanted.counts);
-          pairs.pop_back();
-          CHECK(pairs == wanted.pairs);
+          std::vector<CrowdPair> pairs;
+          // Ample room, where each task's pairs fit its share; and little, where some do not.
+          for (const std::size_t room : {9 * wanted.pairs.size() + 9, wanted.pairs.size() + 1}) {
+            pairs.assign(room, {});
+            run.job.pairs = {pairs.data(), pairs.size()};
+            REQUIRE(run.job.run() == Status::kOk);
+            CHECK(run.job.pair_count == wanted.pairs.size());
+            CHECK(run.counts == wanted.counts);
+            pairs.resize(wanted.pairs.size());
+            CHECK(pairs == wanted.pairs);
+          }
 
           std::vector<std::uint64_t> bits(wanted.bits.size(), 5);
           std::fill(pairs.begin(), pairs.end(), CrowdPair{});
