@@ -8,36 +8,38 @@ namespace moments {
 
 #if HWY_TARGET == HWY_AVX3
 
-HWY_INLINE void finish(const Chunk& chunk, std::size_t count, const Vector (&references)[kParts], Sphere* spheres) {
+// Spheres `first` and on of the sums, `count` of them, to where `numbers` says.
+HWY_INLINE void finish(const Sums& sums, std::size_t first, std::size_t count, const std::uint32_t* numbers,
+                       const Vector (&references)[kParts], Sphere* spheres) {
   const Lanes16 d;
   const Lanes4 four;
   const hn::Repartition<double, Lanes16> doubles;
   // Of two spheres: i + (i + 8).
   const auto eights = [&](std::size_t i) HWY_ATTR {
-    const Vector a = hn::Load(d, chunk.squares[i]), b = hn::Load(d, chunk.squares[i + 1]);
+    const Vector a = hn::Load(d, sums.squares[first + i]), b = hn::Load(d, sums.squares[first + i + 1]);
     return hn::Add(Vector{_mm512_shuffle_f32x4(a.raw, b.raw, 0x44)}, Vector{_mm512_shuffle_f32x4(a.raw, b.raw, 0xEE)});
   };
   const Vector low = eights(0), high = eights(2);
-  Vector sums = hn::Add(Vector{_mm512_shuffle_f32x4(low.raw, high.raw, 0x88)},
-                        Vector{_mm512_shuffle_f32x4(low.raw, high.raw, 0xDD)});  // four lanes a sphere
-  sums = hn::Add(sums, hn::Shuffle1032(sums));
-  sums = hn::Add(sums, hn::Shuffle2301(sums));
+  Vector fours = hn::Add(Vector{_mm512_shuffle_f32x4(low.raw, high.raw, 0x88)},
+                         Vector{_mm512_shuffle_f32x4(low.raw, high.raw, 0xDD)});  // four lanes a sphere
+  fours = hn::Add(fours, hn::Shuffle1032(fours));
+  fours = hn::Add(fours, hn::Shuffle2301(fours));
   alignas(64) static constexpr std::int32_t kFirsts[kMomentSize] = {0, 4, 8, 12};
   const hn::Half<Lanes16> half;
-  auto squared = hn::LowerHalf(four, hn::LowerHalf(half, hn::TableLookupLanes(sums, hn::SetTableIndices(d, kFirsts))));
+  auto squared = hn::LowerHalf(four, hn::LowerHalf(half, hn::TableLookupLanes(fours, hn::SetTableIndices(d, kFirsts))));
   squared = hn::IfThenZeroElse(hn::Lt(squared, hn::Zero(four)), squared);
-  const auto radius = hn::Mul(hn::Load(four, chunk.wanted), hn::Sqrt(squared));
+  const auto radius = hn::Mul(hn::Load(four, sums.wanted + first), hn::Sqrt(squared));
 
   // Of two spheres, of each row: columns j + (j + 2).
   const auto twos = [&](std::size_t i) HWY_ATTR {
-    const auto a = hn::BitCast(doubles, hn::Load(d, chunk.centers[i]));
-    const auto b = hn::BitCast(doubles, hn::Load(d, chunk.centers[i + 1]));
+    const auto a = hn::BitCast(doubles, hn::Load(d, sums.centers[first + i]));
+    const auto b = hn::BitCast(doubles, hn::Load(d, sums.centers[first + i + 1]));
     return hn::Add(hn::BitCast(d, hn::InterleaveLower(doubles, a, b)),
                    hn::BitCast(d, hn::InterleaveUpper(doubles, a, b)));
   };
-  const Vector first = twos(0), second = twos(2);
-  const Vector even{_mm512_shuffle_ps(first.raw, second.raw, 0x88)};
-  const Vector odd{_mm512_shuffle_ps(first.raw, second.raw, 0xDD)};
+  const Vector lower = twos(0), upper = twos(2);
+  const Vector even{_mm512_shuffle_ps(lower.raw, upper.raw, 0x88)};
+  const Vector odd{_mm512_shuffle_ps(lower.raw, upper.raw, 0xDD)};
   Vector out = hn::Add(hn::Add(even, odd), hn::Broadcast<3>(references[0]));  // of four spheres x, y, z
   alignas(64) static constexpr std::int32_t kFourth[kMomentSize] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3};
   const auto radii = hn::ZeroExtendVector(d, hn::ZeroExtendVector(half, radius));
@@ -46,17 +48,16 @@ HWY_INLINE void finish(const Chunk& chunk, std::size_t count, const Vector (&ref
                                                                     2, 6, 10, 14, 3, 7, 11, 15};
   out = hn::TableLookupLanes(out, hn::SetTableIndices(d, kTurned));
   if (count == kChunk) {
-    const std::uint32_t* to = chunk.spheres;
-    _mm_storeu_ps(&spheres[to[0]].x, _mm512_castps512_ps128(out.raw));
-    _mm_storeu_ps(&spheres[to[1]].x, _mm512_extractf32x4_ps(out.raw, 1));
-    _mm_storeu_ps(&spheres[to[2]].x, _mm512_extractf32x4_ps(out.raw, 2));
-    _mm_storeu_ps(&spheres[to[3]].x, _mm512_extractf32x4_ps(out.raw, 3));
+    _mm_storeu_ps(&spheres[numbers[0]].x, _mm512_castps512_ps128(out.raw));
+    _mm_storeu_ps(&spheres[numbers[1]].x, _mm512_extractf32x4_ps(out.raw, 1));
+    _mm_storeu_ps(&spheres[numbers[2]].x, _mm512_extractf32x4_ps(out.raw, 2));
+    _mm_storeu_ps(&spheres[numbers[3]].x, _mm512_extractf32x4_ps(out.raw, 3));
     return;
   }
   HWY_ALIGN Sphere last[kChunk];
   hn::Store(out, d, &last[0].x);
   for (std::size_t i = 0; i < count; ++i) {
-    spheres[chunk.spheres[i]] = last[i];
+    spheres[numbers[i]] = last[i];
   }
 }
 
@@ -94,18 +95,19 @@ HWY_INLINE void sum_four(const float* v, std::size_t step, float* out) {
 #endif
 }
 
-HWY_INLINE void finish(const Chunk& chunk, std::size_t count, const Vector (&reference)[kParts], Sphere* spheres) {
+HWY_INLINE void finish(const Sums& sums, std::size_t first, std::size_t count, const std::uint32_t* numbers,
+                       const Vector (&references)[kParts], Sphere* spheres) {
   const Lanes4 d;
   HWY_ALIGN float shift[kMomentSize];
   for (std::size_t part = 0; part < kParts; ++part) {
-    hn::Store(reference[part], Lanes16(), shift + part * kLanes);
+    hn::Store(references[part], Lanes16(), shift + part * kLanes);
   }
   HWY_ALIGN float figures[4][kChunk], fours[kChunk][4];
   for (std::size_t i = 0; i < kChunk; ++i) {
-    fold(chunk.squares[i], fours[i]);
+    fold(sums.squares[first + i], fours[i]);
   }
   for (std::size_t row = 0; row < 3; ++row) {
-    sum_four(chunk.centers[0] + 4 * row, kMomentSize, figures[row]);
+    sum_four(sums.centers[first] + 4 * row, kMomentSize, figures[row]);
   }
   sum_four(fours[0], 4, figures[3]);
   HWY_ALIGN Sphere out[kChunk];
@@ -115,10 +117,10 @@ HWY_INLINE void finish(const Chunk& chunk, std::size_t count, const Vector (&ref
     hn::StoreInterleaved4(hn::Add(hn::Load(d, figures[0] + i), hn::Set(d, shift[3])),
                           hn::Add(hn::Load(d, figures[1] + i), hn::Set(d, shift[7])),
                           hn::Add(hn::Load(d, figures[2] + i), hn::Set(d, shift[11])),
-                          hn::Mul(hn::Load(d, chunk.wanted + i), hn::Sqrt(squared)), d, &out[i].x);
+                          hn::Mul(hn::Load(d, sums.wanted + first + i), hn::Sqrt(squared)), d, &out[i].x);
   }
   for (std::size_t i = 0; i < count; ++i) {
-    spheres[chunk.spheres[i]] = out[i];
+    spheres[numbers[i]] = out[i];
   }
 }
 

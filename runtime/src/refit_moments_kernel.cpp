@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The inner loop of refit from bones by moments. A lane is an element of a 4 by 4 matrix, so targets of any width work
 // alike. What passes from one step to the next goes over the stack, whose lines are in the first cache: the bones'
-// matrices, a batch's Gram matrices, the sums of four spheres.
+// matrices, a batch's Gram matrices, the sums of some spheres.
+#include <cstring>
+
 #include "arithmetic.h"
 #include "bone_refit.h"
 #include "simd.h"
@@ -22,7 +24,8 @@ using Lanes4 = hn::CappedTag<float, 4>;
 using Vector = hn::Vec<Lanes16>;
 constexpr std::size_t kLanes = hn::MaxLanes(Lanes16());
 constexpr std::size_t kParts = kMomentSize / kLanes;
-constexpr std::size_t kChunk = 4;        // spheres
+constexpr std::size_t kChunk = 4;        // spheres finished together
+constexpr std::size_t kSums = 32;        // spheres whose sums are kept: finished at once, none waits for its own sums
 constexpr std::size_t kKeptBones = 256;  // an asset of more has its matrices moved wherever they are read
 
 // A bone's matrix by rows of four, seen from the origin and the reference bone; and a fourth row, which no sum that is
@@ -31,12 +34,11 @@ struct Moved {
   HWY_ALIGN float rows[kMomentSize];
 };
 
-// Four spheres' sums: of each the centre's three rows of four columns, and the sixteen of its squared spread.
-struct Chunk {
-  HWY_ALIGN float centers[kChunk][kMomentSize];
-  HWY_ALIGN float squares[kChunk][kMomentSize];
-  HWY_ALIGN float wanted[kChunk];
-  const std::uint32_t* spheres;
+// Of spheres each: the centre's three rows of four columns, and the sixteen of its squared spread.
+struct Sums {
+  HWY_ALIGN float centers[kSums][kMomentSize];
+  HWY_ALIGN float squares[kSums][kMomentSize];
+  HWY_ALIGN float wanted[kSums];
 };
 
 // Where in the tables a sphere's figures start.
@@ -130,59 +132,113 @@ HWY_INLINE void add_sphere(std::size_t known_bones, const Bones<kKeeps>& bones, 
   at.moments += pair_count;
 }
 
+// Where the spheres' sums go, and what becomes of them.
 template <bool kKeeps>
-HWY_INLINE void add_any_sphere(std::size_t bone_count, const Bones<kKeeps>& bones, const Moment* grams, Place& at,
-                               float* center, float* square) {
-#if SPHERECHAIN_FUSES
-  switch (bone_count) {
-    case 1:
-      return add_sphere<1>(1, bones, grams, at, center, square);
-    case 2:
-      return add_sphere<2>(2, bones, grams, at, center, square);
-    case 3:
-      return add_sphere<3>(3, bones, grams, at, center, square);
-    case 4:
-      return add_sphere<4>(4, bones, grams, at, center, square);
-    case 5:
-      return add_sphere<5>(5, bones, grams, at, center, square);
-    case 6:
-      return add_sphere<6>(6, bones, grams, at, center, square);
-    default:
-      break;
+class Refit {
+ public:
+  HWY_INLINE Refit(const BoneRefitInputs& in, const Bones<kKeeps>& bones, Sphere* spheres)
+      : bones_(bones),
+        at_{in.moments.bones, in.moments.centers, in.moments.pair_places, in.moments.moments},
+        numbers_(in.moments.spheres),
+        radii_(in.radius == RadiusKind::kFit ? &in.rest->radius : &in.rest->detect_radius),
+        spheres_(spheres) {}
+
+  // The spheres of a batch, whose Gram matrices these are; `bone_counts` is theirs.
+  HWY_INLINE void add(const Moment* grams, const std::uint8_t* bone_counts, const std::uint8_t* end) {
+    while (bone_counts < end) {
+      bone_counts = add_any_run(grams, bone_counts, end);
+    }
   }
+
+  HWY_NOINLINE void finish_all() {
+    const std::size_t whole = count_ / kChunk * kChunk;
+    for (std::size_t i = 0; i < whole; i += kChunk) {
+      finish(sums_, i, kChunk, numbers_ + i, bones_.reference(), spheres_);
+    }
+    if (whole < count_) {
+      for (std::size_t i = count_; i < whole + kChunk; ++i) {
+        std::memset(sums_.centers[i], 0, sizeof sums_.centers[i]);
+        std::memset(sums_.squares[i], 0, sizeof sums_.squares[i]);
+        sums_.wanted[i] = 0;
+      }
+      finish(sums_, whole, count_ - whole, numbers_ + whole, bones_.reference(), spheres_);
+    }
+    numbers_ += count_;
+    count_ = 0;
+  }
+
+ private:
+  // From *bone_counts on those of as many bones. Returns the first that is of another number.
+  template <std::size_t kBones>
+  HWY_INLINE const std::uint8_t* add_run(const Moment* grams, const std::uint8_t* bone_counts,
+                                         const std::uint8_t* end) {
+    constexpr std::size_t kRestFloats = sizeof(RestSphere) / sizeof(float);
+    const std::size_t bone_count = *bone_counts;
+    Place at = at_;  // here and not in memory, where bytes are read that might be these
+    std::size_t count = count_;
+    do {
+      if (count == kSums) {
+        count_ = count;
+        finish_all();
+        count = 0;
+      }
+      sums_.wanted[count] = radii_[numbers_[count] * kRestFloats];
+      add_sphere<kBones>(bone_count, bones_, grams, at, sums_.centers[count], sums_.squares[count]);
+      ++count;
+      ++bone_counts;
+    } while (bone_counts < end && *bone_counts == bone_count);
+    at_ = at;
+    count_ = count;
+    return bone_counts;
+  }
+
+  HWY_INLINE const std::uint8_t* add_any_run(const Moment* grams, const std::uint8_t* bone_counts,
+                                             const std::uint8_t* end) {
+#if SPHERECHAIN_FUSES
+    switch (*bone_counts) {
+      case 1:
+        return add_run<1>(grams, bone_counts, end);
+      case 2:
+        return add_run<2>(grams, bone_counts, end);
+      case 3:
+        return add_run<3>(grams, bone_counts, end);
+      case 4:
+        return add_run<4>(grams, bone_counts, end);
+      case 5:
+        return add_run<5>(grams, bone_counts, end);
+      case 6:
+        return add_run<6>(grams, bone_counts, end);
+      default:
+        break;
+    }
 #endif
-  add_sphere<0>(bone_count, bones, grams, at, center, square);
-}
+    return add_run<0>(grams, bone_counts, end);
+  }
+
+  const Bones<kKeeps>& bones_;
+  Place at_;
+  const std::uint32_t* numbers_;  // of the spheres whose sums are kept
+  const float* radii_;
+  Sphere* spheres_;
+  std::size_t count_ = 0;
+  Sums sums_;
+};
 
 template <bool kKeeps>
 HWY_INLINE void refit_all(const BoneRefitInputs& in, Sphere* spheres) {
   const MomentInputs& tables = in.moments;
   const Bones<kKeeps> bones(in);
   HWY_ALIGN Moment grams[kMaxMomentPairs];
-  Chunk chunk = {};  // what the last one lacks is 0
-  chunk.spheres = tables.spheres;
-  constexpr std::size_t kRestFloats = sizeof(RestSphere) / sizeof(float);
-  const float* radii = in.radius == RadiusKind::kFit ? &in.rest->radius : &in.rest->detect_radius;
-  std::size_t filled = 0;
-  Place at{tables.bones, tables.centers, tables.pair_places, tables.moments};
+  Refit<kKeeps> refit(in, bones, spheres);
   const BonePair* pair = tables.pairs;
   const std::uint8_t* bone_count = tables.bone_counts;
   for (const MomentBatch *batch = tables.batches, *end = batch + tables.batch_count; batch < end; ++batch) {
     find_grams(pair, pair + batch->pair_count, bones, grams);
+    refit.add(grams, bone_count, bone_count + batch->sphere_count);
     pair += batch->pair_count;
-    for (const std::uint8_t* last = bone_count + batch->sphere_count; bone_count < last; ++bone_count) {
-      add_any_sphere(*bone_count, bones, grams, at, chunk.centers[filled], chunk.squares[filled]);
-      chunk.wanted[filled] = radii[chunk.spheres[filled] * kRestFloats];
-      if (++filled == kChunk) {
-        finish(chunk, kChunk, bones.reference(), spheres);
-        chunk.spheres += kChunk;
-        filled = 0;
-      }
-    }
+    bone_count += batch->sphere_count;
   }
-  if (filled > 0) {
-    finish(chunk, filled, bones.reference(), spheres);
-  }
+  refit.finish_all();
 }
 
 }  // namespace moments

@@ -26,7 +26,8 @@ struct RunStep {
 
   template <typename Step>
   void operator()(const Step& step) const {
-    std::uint32_t thread = random() % kThreads, distance = random() % kThreads;
+    std::uniform_int_distribution<std::uint32_t> any(0, kThreads - 1);
+    std::uint32_t thread = any(random), distance = any(random);
     while (std::gcd(distance, kThreads) != 1) ++distance;
     for (std::uint32_t i = 0; i < kThreads; ++i) {
       step(cuda::Place{thread, kThreads, block});
