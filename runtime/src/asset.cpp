@@ -195,7 +195,10 @@ Status Asset::open_verified(const void* data, std::size_t size, Message& message
     pivot_vertices_ = view<std::uint32_t>(*root.pivot_vertices());
     packed_pivots_ = view<Pivot>(*root.packed_pivots());
   }
+  refit_rule_ = static_cast<RefitRule>(root.refit());
   if (root.bone_refit() != nullptr) {
+    bone_count_ = root.bone_refit()->bones()->size();
+    morph_count_ = root.bone_refit()->morphs()->size();
     bone_tables_ = tables_of(*root.bone_refit());
     if (root.bone_refit()->moments() != nullptr) {
       moment_tables_ = moments_of(*root.bone_refit()->moments());
@@ -236,8 +239,6 @@ AssetInfo Asset::info() const noexcept {
   return info;
 }
 
-RefitRule Asset::refit_rule() const noexcept { return static_cast<RefitRule>(root_of(root_).refit()); }
-
 std::size_t Asset::region_count() const noexcept { return root_of(root_).regions()->size(); }
 
 RegionView Asset::region(std::size_t i) const noexcept {
@@ -262,19 +263,9 @@ JointView Asset::joint(std::size_t i) const noexcept {
   return {joint.name()->c_str(), joint.parent(), to_vec3(joint.position()), to_vec3(joint.tail())};
 }
 
-std::size_t Asset::bone_count() const noexcept {
-  const auto* refit = root_of(root_).bone_refit();
-  return refit == nullptr ? 0 : refit->bones()->size();
-}
-
 BoneView Asset::bone(std::size_t i) const noexcept {
   const schema::Bone& bone = *root_of(root_).bone_refit()->bones()->Get(static_cast<flatbuffers::uoffset_t>(i));
   return {bone.name()->c_str(), bone.inverse_bind()->elements()->data(), bone.is_rest()};
-}
-
-std::size_t Asset::morph_count() const noexcept {
-  const auto* refit = root_of(root_).bone_refit();
-  return refit == nullptr ? 0 : refit->morphs()->size();
 }
 
 const char* Asset::morph_name(std::size_t i) const noexcept {

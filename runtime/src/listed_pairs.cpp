@@ -124,20 +124,26 @@ bool find(const Sphere* spheres, std::size_t count, const PairLists& lists, Foun
   return true;
 }
 
-// Each pair's place is the number of those before it.
-void sort(FoundPairs& found, Pair* list, std::size_t size) {
+// Each pair's place is the number of those before it: of a register's pairs at once.
+void sort(const FoundPairs& found, Pair* list, std::size_t size) {
   constexpr Pairs kPairs;
-  auto* const numbers = reinterpret_cast<std::int32_t*>(found.pairs);
-  hn::StoreU(hn::Set(kPairs, 0x7FFFFFFF), kPairs, numbers + found.count);
-  for (std::size_t i = 0; i < found.count; ++i) {
-    const auto own = hn::Set(kPairs, numbers[i]);
-    std::size_t place = 0;
-    for (std::size_t k = 0; k < found.count; k += hn::MaxLanes(kPairs)) {
-      place += hn::CountTrue(kPairs, hn::Lt(hn::Load(kPairs, numbers + k), own));
+  constexpr std::size_t kLanes = hn::MaxLanes(kPairs);
+  const auto* const numbers = reinterpret_cast<const std::int32_t*>(found.pairs);
+  HWY_ALIGN std::uint32_t places[kLanes];
+  for (std::size_t first = 0; first < found.count; first += kLanes) {
+    const auto own = hn::Load(kPairs, numbers + first);
+    auto before = hn::Zero(kPairs);
+    for (std::size_t i = 0; i < found.count; ++i) {
+      before = hn::Sub(before, hn::VecFromMask(kPairs, hn::Lt(hn::Set(kPairs, numbers[i]), own)));
     }
-    if (place < size) {
-      list[place].a = static_cast<std::uint32_t>(found.pairs[i].a / sizeof(Sphere));
-      list[place].b = static_cast<std::uint32_t>(found.pairs[i].b / sizeof(Sphere));
+    hn::Store(before, kPairs, reinterpret_cast<std::int32_t*>(places));
+    const ListedPair* const pairs = found.pairs + first;
+    const std::size_t count = found.count - first < kLanes ? found.count - first : kLanes;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (places[i] < size) {
+        list[places[i]].a = static_cast<std::uint32_t>(pairs[i].a / sizeof(Sphere));
+        list[places[i]].b = static_cast<std::uint32_t>(pairs[i].b / sizeof(Sphere));
+      }
     }
   }
 }
@@ -159,7 +165,7 @@ bool find_listed(Target resolved, const Sphere* spheres, std::size_t count, cons
   return find_kernels[index_of(resolved)](spheres, count, lists, found);
 }
 
-void list_in_order(Target resolved, FoundPairs& found, Span<Pair> list) {
+void list_in_order(Target resolved, const FoundPairs& found, Span<Pair> list) {
   sort_kernels[index_of(resolved)](found, list.data, list.size);
 }
 

@@ -61,7 +61,7 @@ struct alignas(64) FoundPairs {
 // False where there are more than fit, or a sphere is not finite or too large: then `found` holds nothing of use.
 bool find_listed(Target resolved, const Sphere* spheres, std::size_t count, const PairLists& lists, FoundPairs& found);
 
-// Into the list, in order, as many as it holds. Overwrites what is past found.count.
-void list_in_order(Target resolved, FoundPairs& found, Span<Pair> list);
+// Into the list, in order, as many as it holds.
+void list_in_order(Target resolved, const FoundPairs& found, Span<Pair> list);
 
 }  // namespace spherechain

@@ -193,12 +193,16 @@ class Bones {
 
   template <std::size_t kColumn>
   HWY_INLINE void keep() {
+    // Here and not in memory, where what is stored might be these.
+    const Vec3 origin = in_.moments.origin;
+    const std::size_t stride = in_.stride;
     const float* matrix = in_.matrices;
-    for (std::size_t bone = 0; bone < in_.bone_count; ++bone, matrix += in_.stride) {
+    Moved* out = kept_;
+    for (const Moved* const end = kept_ + in_.bone_count; out < end; ++out, matrix += stride) {
       Vector rows[kParts];
       load_rows<kColumn>(matrix, rows);
-      move_origin(in_.moments.origin, rows);
-      store(rows, kept_[bone]);
+      move_origin(origin, rows);
+      store(rows, *out);
     }
   }
 

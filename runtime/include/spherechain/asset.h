@@ -150,10 +150,10 @@ class SPHERECHAIN_API Asset {
   // What RefitBonesJob takes matrices of, in this order: the source's bones in the source's order (one skin of a glTF:
   // its `joints`; a joint that several skins bind differently: a bone each), or the joints of the automatic rig. 0
   // where nothing moves the source, and in assets of older bakers.
-  std::size_t bone_count() const noexcept;
+  std::size_t bone_count() const noexcept { return bone_count_; }
   BoneView bone(std::size_t i) const noexcept;
   // The source's morph targets, in the source's order.
-  std::size_t morph_count() const noexcept;
+  std::size_t morph_count() const noexcept { return morph_count_; }
   const char* morph_name(std::size_t i) const noexcept;
   // Empty where bone_count() is 0. Where refit_rule() is kMoments nothing reads them: empty but in assets of older
   // bakers.
@@ -168,7 +168,7 @@ class SPHERECHAIN_API Asset {
   const Surface& surface() const noexcept { return surface_; }
   std::size_t leaf_count() const noexcept { return surface_.leaves.size; }
   // info().refit, for less.
-  RefitRule refit_rule() const noexcept;
+  RefitRule refit_rule() const noexcept { return refit_rule_; }
 
  private:
   // The Asset is handed over as memory: with another version it may be of another size.
@@ -181,7 +181,8 @@ class SPHERECHAIN_API Asset {
   Span<const Pivot> pivots_;
   Span<const std::uint32_t> triangles_;
   Span<const std::uint64_t> ignored_;
-  std::size_t ignored_count_ = 0;
+  std::size_t ignored_count_ = 0, bone_count_ = 0, morph_count_ = 0;
+  RefitRule refit_rule_ = RefitRule::kPaper;
   Span<const NearPair> near_fit_, near_detect_;
   Span<const SourcePart> source_parts_;
   Span<const std::uint32_t> pivot_vertices_;
