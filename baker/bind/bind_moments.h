@@ -28,7 +28,7 @@ struct MomentBatch {
 };
 
 // Spheres of equal bones side by side, and together those whose pairs are the same, for a batch's pairs are worked out
-// once: up to 48 pairs, which leaves room in the first cache, or one set of bones that has more.
+// once: up to 96 pairs, all of a human's, or one set of bones that has more.
 std::vector<MomentBatch> make_batches(const std::vector<SphereMoments>& spheres);
 
 // For the runtime's refit from bones without the pivots. No batches: the rule is another.

@@ -9,7 +9,7 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr std::size_t kBatchPairs = 48;
+constexpr std::size_t kBatchPairs = 96;
 
 using Pairs = std::vector<BonePair>;  // sorted
 

@@ -29,8 +29,8 @@ constexpr std::size_t kCrowd = 10000;
 constexpr std::size_t kProbeSteps = 1000, kProbeCalls = 100;
 constexpr std::size_t kLongProbeSteps = 2000000;  // milliseconds, as a crowd takes
 constexpr std::size_t kPosesInCache = 8;          // 7 KB of matrices
-constexpr double kSphereTolerance = 1e-5;  // of the height
-constexpr double kTestOperations = 8;      // floating-point operations of a pair test
+constexpr double kSphereTolerance = 1e-5;         // of the height
+constexpr double kTestOperations = 8;             // floating-point operations of a pair test
 
 const std::string kList = "spherechain M2, pair list";
 const std::string kBits = "spherechain M2, bits";
@@ -206,8 +206,8 @@ class Bench {
     row("P3", kVertexRefit);
     for (const PosedCharacter* c : {&human_, &body_}) {
       row("P3", bones_of(*c),
-          fmt::format("{} pivots, {} terms, {} bones", c->asset.pivots().size, c->asset.bone_tables().terms.size,
-                      c->asset.bone_count()));
+          fmt::format("{} bones, {} pairs of them, {} products of one with a moment", c->asset.bone_count(),
+                      c->asset.moment_tables().pairs.size, c->asset.moment_tables().moments.size));
       row("P3", bones_in_cache(*c), fmt::format("{} poses in turn", kPosesInCache));
     }
     for (const PosedCharacter* c : {&human_, &body_}) {

@@ -324,16 +324,16 @@ void fuzz_crowd(Case& c) {
       },
       [&] { return sc_crowd(&call.c_job); },
       [&](Status) {
-        return std::vector<Bytes>{
-            bytes_of(job.counts.data, std::min(job.counts.size, sound.instance_count)),
-            bytes_of(job.bits.data, job.bits.size),
-            bytes_of(job.pairs.data, std::min(job.pairs.size, is_dealt ? job.pair_count : job.pairs.size)),
-            bytes_of(call.context.words.data, call.context.words.size)};
+        return std::vector<Bytes>{bytes_of(job.counts.data, std::min(job.counts.size, sound.instance_count)),
+                                  bytes_of(job.bits.data, job.bits.size), bytes_of(job.pairs.data, job.pairs.size),
+                                  bytes_of(call.context.words.data, call.context.words.size)};
       },
-      // What scratch memory holds is of no consequence, and figures that no task worked out are none.
+      // What scratch memory and pairs past their number hold is of no consequence, and figures that no task worked out
+      // are none.
       [&](bool ran) {
         if (ran) std::fill(call.context.words.begin(), call.context.words.end(), std::uint64_t{0});
         if (ran && !is_dealt) std::fill(job.counts.begin(), job.counts.end(), 0U);
+        for (std::size_t i = job.pair_count; ran && is_dealt && i < job.pairs.size; ++i) job.pairs[i] = {};
       });
   c.expect(call.c_job.pair_count == job.pair_count, "the C API counts something else");
 }

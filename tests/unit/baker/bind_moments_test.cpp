@@ -210,7 +210,7 @@ TEST_CASE("batches have every sphere once, few pairs, none twice, and spheres of
     std::set<BonePair> distinct;
     std::size_t in_batches = 0, of_spheres = 0;
     for (const MomentBatch& batch : bake->moments.batches) {
-      CHECK(batch.pairs.size() <= 48);
+      CHECK(batch.pairs.size() <= 96);
       CHECK(std::ranges::is_sorted(batch.pairs));
       CHECK(std::ranges::adjacent_find(batch.pairs) == batch.pairs.end());
       in_batches += batch.pairs.size();
