@@ -25,6 +25,28 @@ Ball ball_around(const Mesh& points) {
   return {center, round_up(radius * (1 + 1e-15))};
 }
 
+// Around the points as the asset has them.
+Box box_around(const Mesh& points) {
+  Box out{Vec3::Zero(), Vec3::Zero(), 0};
+  std::vector<Vec3> from_center(points.positions.size());
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    std::vector<float> places;
+    for (const Vec3& p : points.positions) places.push_back(static_cast<float>(p[axis]));
+    const auto [low, high] = std::ranges::minmax(places);
+    const float center = (low + high) / 2;
+    out.center[axis] = center;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      from_center[i][axis] = double{places[i]} - double{center};
+      out.half[axis] = std::max(out.half[axis], std::abs(from_center[i][axis]));
+    }
+    out.half[axis] = round_up(out.half[axis]);
+  }
+  for (const Vec3& p : from_center) out.radius = std::max(out.radius, p.norm());
+  // The norm in double precision is off by a few units in its last place.
+  out.radius = round_up(out.radius * (1 + 1e-15));
+  return out;
+}
+
 std::vector<LeafBone> bones_of(const std::vector<SurfaceVertex>& vertices, const Leaf& leaf) {
   struct Range {
     float least = 1, most = 0;
@@ -72,6 +94,7 @@ void bound_leaf(const Character& character, const std::vector<SurfaceVertex>& ve
   Mesh points;
   for (const Index v : leaf.vertices) points.positions.push_back(character.source_positions[vertices[v].source]);
   leaf.ball = ball_around(points);
+  leaf.box = box_around(points);
   leaf.bones = bones_of(vertices, leaf);
   leaf.morphs = morphs_of(vertices, leaf);
 }

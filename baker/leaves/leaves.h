@@ -31,6 +31,12 @@ struct SurfaceVertex {
   std::vector<MorphDelta> morphs;     // targets ascending
 };
 
+// About a float centre, with float extents: contains its points to the last bit.
+struct Box {
+  Vec3 center, half;
+  double radius;  // how far from the centre they reach
+};
+
 // A bone's mid weight over a leaf's vertices, and the greatest distance of a weight from it. In single precision, as
 // the asset has them; a leaf's mid weights add up to 1.
 struct LeafBone {
@@ -48,10 +54,11 @@ struct LeafMorph {
 // to the last bit.
 struct Leaf {
   std::uint32_t sphere;
-  std::vector<Index> triangles;  // of Character::skin, in the order of their source triangles
-  std::vector<Index> vertices;   // of Leaves::vertices, ascending; at most 255
-  Ball ball{Vec3::Zero(), 0};    // around them at rest
-  std::vector<LeafBone> bones;   // ascending
+  std::vector<Index> triangles;            // of Character::skin, in the order of their source triangles
+  std::vector<Index> vertices;             // of Leaves::vertices, ascending; at most 255
+  Ball ball{Vec3::Zero(), 0};              // around them at rest
+  Box box{Vec3::Zero(), Vec3::Zero(), 0};  // the same, along the axes
+  std::vector<LeafBone> bones;             // ascending
   std::vector<LeafMorph> morphs;
 };
 
@@ -84,7 +91,7 @@ std::vector<SurfaceVertex> surface_vertices(const Character& character, const Bo
                                             const std::vector<VertexWeights>& rig_weights,
                                             std::vector<Index>& vertex_of_source);
 
-// Fills in a leaf's ball, bones and morphs from its vertices.
+// Fills in a leaf's ball, box, bones and morphs from its vertices.
 void bound_leaf(const Character& character, const std::vector<SurfaceVertex>& vertices, Leaf& leaf);
 
 }  // namespace spherechain::baker

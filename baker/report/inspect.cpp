@@ -78,7 +78,7 @@ std::size_t bytes_of(const Surface& surface) {
          bytes(surface.slot_positions) + bytes(surface.slot_weights) + bytes(surface.slot_morphs) +
          bytes(surface.cover_term_counts) + bytes(surface.cover_term_bones) + bytes(surface.cover_terms) +
          bytes(surface.cover_morph_counts) + bytes(surface.cover_morph_targets) + bytes(surface.cover_morphs) +
-         bytes(surface.rest_contacts);
+         bytes(surface.rest_contacts) + bytes(surface.leaf_boxes);
 }
 
 ordered_json sphere_json(const Asset& asset, std::size_t i) {

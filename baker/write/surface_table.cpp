@@ -27,6 +27,23 @@ struct EightBalls {
   }
 };
 
+struct EightBoxes {
+  std::array<Eight, 7> values{};
+
+  void set(std::size_t lane, const Box& box) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto axis = static_cast<Eigen::Index>(i);
+      values[i][lane] = static_cast<float>(box.center[axis]);
+      values[3 + i][lane] = static_cast<float>(box.half[axis]);
+    }
+    values[6][lane] = static_cast<float>(box.radius);
+  }
+  schema::BoxLanes stored() const {
+    return {span_of(values[0]), span_of(values[1]), span_of(values[2]), span_of(values[3]),
+            span_of(values[4]), span_of(values[5]), span_of(values[6])};
+  }
+};
+
 struct EightWeights {
   Eight weights{}, deviations{};
 };
@@ -34,6 +51,7 @@ struct EightWeights {
 // All that eight leaves, one after another, have in common.
 struct Groups {
   std::vector<schema::BallLanes> balls;
+  std::vector<schema::BoxLanes> boxes;
   std::vector<std::uint32_t> term_counts, term_bones, morph_counts, morph_targets;
   std::vector<schema::CoverTerm> terms;
   std::vector<schema::BallLanes> morphs;
@@ -43,11 +61,13 @@ Groups group_leaves(const std::vector<Leaf>& leaves, bool moves) {
   Groups out;
   for (std::size_t first = 0; first < leaves.size(); first += kLanes) {
     EightBalls balls;
+    EightBoxes boxes;
     std::map<Index, EightWeights> terms;
     std::map<Index, EightBalls> morphs;
     for (std::size_t lane = 0; lane < std::min(kLanes, leaves.size() - first); ++lane) {
       const Leaf& leaf = leaves[first + lane];
       balls.set(lane, leaf.ball);
+      boxes.set(lane, leaf.box);
       for (const LeafBone& bone : leaf.bones) {
         terms[bone.bone].weights[lane] = bone.weight;
         terms[bone.bone].deviations[lane] = bone.deviation;
@@ -55,6 +75,7 @@ Groups group_leaves(const std::vector<Leaf>& leaves, bool moves) {
       for (const LeafMorph& morph : leaf.morphs) morphs[morph.target].set(lane, morph.ball);
     }
     out.balls.push_back(balls.stored());
+    out.boxes.push_back(boxes.stored());
     if (moves) out.term_counts.push_back(static_cast<std::uint32_t>(terms.size()));
     for (const auto& [bone, term] : terms) {
       out.term_bones.push_back(bone);
@@ -151,6 +172,7 @@ flatbuffers::Offset<schema::Surface> create_surface(flatbuffers::FlatBufferBuild
   }
   const auto leaves_at = builder.CreateVectorOfStructs(runs.leaves);
   const auto balls_at = aligned_vector(builder, groups.balls);
+  const auto boxes_at = aligned_vector(builder, groups.boxes);
   const auto leaf_vertices_at = builder.CreateVector(runs.vertices);
   const auto leaf_bones_at = builder.CreateVector(runs.bones);
   const auto corners_at = builder.CreateVector(runs.corners);
@@ -170,7 +192,7 @@ flatbuffers::Offset<schema::Surface> create_surface(flatbuffers::FlatBufferBuild
   const auto rest_contacts_at = builder.CreateVectorOfStructs(pairs);
   return schema::CreateSurface(builder, leaves_at, balls_at, leaf_vertices_at, leaf_bones_at, corners_at, sources_at,
                                welds_at, positions_at, weights_at, morphs_at, term_counts_at, term_bones_at, terms_at,
-                               morph_counts_at, morph_targets_at, cover_morphs_at, rest_contacts_at);
+                               morph_counts_at, morph_targets_at, cover_morphs_at, rest_contacts_at, boxes_at);
 }
 
 }  // namespace spherechain::baker

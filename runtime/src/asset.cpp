@@ -119,6 +119,9 @@ Surface surface_of(const schema::Surface& stored) {
   if (stored.rest_contacts() != nullptr) {
     surface.rest_contacts = view<TrianglePair>(*stored.rest_contacts());
   }
+  if (stored.leaf_boxes() != nullptr) {
+    surface.leaf_boxes = view<BoxLanes>(*stored.leaf_boxes());
+  }
   return surface;
 }
 

@@ -52,6 +52,13 @@ bool ball_is_valid(const schema::BallLanes& balls, std::uint32_t used) {
          lanes_are_valid(*balls.z(), used, kLowest) && lanes_are_valid(*balls.radius(), used, 0.0F);
 }
 
+bool box_is_valid(const schema::BoxLanes& boxes, std::uint32_t used) {
+  return lanes_are_valid(*boxes.x(), used, kLowest) && lanes_are_valid(*boxes.y(), used, kLowest) &&
+         lanes_are_valid(*boxes.z(), used, kLowest) && lanes_are_valid(*boxes.half_x(), used, 0.0F) &&
+         lanes_are_valid(*boxes.half_y(), used, 0.0F) && lanes_are_valid(*boxes.half_z(), used, 0.0F) &&
+         lanes_are_valid(*boxes.radius(), used, 0.0F);
+}
+
 // `count` numbers from `first` on are below `limit` and ascend.
 bool check_run(const Numbers& numbers, std::uint32_t first, std::uint32_t count, std::uint32_t limit, const char* name,
                Message& message) {
@@ -267,6 +274,22 @@ bool check_cover(const schema::Asset& root, Message& message) {
                       "cover_morph_counts", "cover_morph_targets", morph_is_valid, message);
 }
 
+bool check_boxes(const schema::Surface& surface, Message& message) {
+  if (surface.leaf_boxes() == nullptr) {
+    return true;
+  }
+  const std::uint32_t groups = surface.leaf_balls()->size();
+  if (!has_size(surface.leaf_boxes()->size(), groups, "leaf_boxes", "groups of leaves", message)) {
+    return false;
+  }
+  for (std::uint32_t group = 0; group < groups; ++group) {
+    if (!box_is_valid(*surface.leaf_boxes()->Get(group), lanes_of(surface, group))) {
+      return wrong_at("leaf_boxes", group, "not finite, an extent below 0, or a spare lane that is not 0", message);
+    }
+  }
+  return true;
+}
+
 bool check_rest_contacts(const schema::Asset& root, Message& message) {
   const auto* pairs = root.surface()->rest_contacts();
   if (pairs == nullptr) {
@@ -287,8 +310,9 @@ bool check_rest_contacts(const schema::Asset& root, Message& message) {
 }  // namespace
 
 bool surface_values_are_valid(const schema::Asset& root, Message& message) {
-  return root.surface() == nullptr || (check_vertices(root, message) && check_leaves(root, message) &&
-                                       check_cover(root, message) && check_rest_contacts(root, message));
+  return root.surface() == nullptr ||
+         (check_vertices(root, message) && check_leaves(root, message) && check_cover(root, message) &&
+          check_boxes(*root.surface(), message) && check_rest_contacts(root, message));
 }
 
 }  // namespace spherechain

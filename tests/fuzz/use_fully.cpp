@@ -72,6 +72,7 @@ void read_surface(const Asset& asset) {
   read(surface.cover_morph_targets);
   read(surface.cover_morphs);
   read(surface.rest_contacts);
+  read(surface.leaf_boxes);
   // What a narrow phase would do: leaf by leaf, corner by corner, to the source's vertex.
   std::size_t sum = 0;
   for (const Leaf& leaf : surface.leaves) {

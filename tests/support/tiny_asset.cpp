@@ -42,6 +42,9 @@ schema::Leaf stored(const Leaf& l) {
           l.first_morph, l.morph_count,    l.triangle_count, l.vertex_count, l.bone_count, l.reserved};
 }
 schema::BallLanes stored(const BallLanes& b) { return {lanes(b.x), lanes(b.y), lanes(b.z), lanes(b.radius)}; }
+schema::BoxLanes stored(const BoxLanes& b) {
+  return {lanes(b.x), lanes(b.y), lanes(b.z), lanes(b.half_x), lanes(b.half_y), lanes(b.half_z), lanes(b.radius)};
+}
 schema::CoverTerm stored(const CoverTerm& t) { return {lanes(t.weights), lanes(t.deviations)}; }
 schema::SlotMorph stored(const SlotMorph& m) { return {m.target, m.slot, stored(m.delta)}; }
 schema::TrianglePair stored(const TrianglePair& p) { return {p.a, p.b}; }
@@ -159,9 +162,11 @@ fb::Offset<schema::Surface> build_surface(fb::FlatBufferBuilder& builder, const 
   const auto morph_targets = builder.CreateVector(in.cover_morph_targets);
   const auto cover_morphs = struct_vector<schema::BallLanes>(builder, in.cover_morphs);
   const auto rest_contacts = struct_vector<schema::TrianglePair>(builder, in.rest_contacts);
+  using Boxes = fb::Offset<fb::Vector<const schema::BoxLanes*>>;
+  const Boxes boxes = in.leaf_boxes.empty() ? Boxes() : struct_vector<schema::BoxLanes>(builder, in.leaf_boxes);
   return schema::CreateSurface(builder, leaves, balls, leaf_vertices, leaf_bones, corners, source_vertices, welds,
                                positions, weights, morphs, term_counts, term_bones, terms, morph_counts, morph_targets,
-                               cover_morphs, rest_contacts);
+                               cover_morphs, rest_contacts, boxes);
 }
 
 }  // namespace

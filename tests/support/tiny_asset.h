@@ -77,6 +77,7 @@ struct SurfaceParts {
   std::vector<std::uint32_t> cover_morph_counts, cover_morph_targets;
   std::vector<BallLanes> cover_morphs;
   std::vector<TrianglePair> rest_contacts;
+  std::vector<BoxLanes> leaf_boxes;  // left out where there are none
 };
 
 // Everything an asset holds, to be changed before build().

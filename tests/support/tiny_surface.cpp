@@ -106,6 +106,26 @@ void add_leaf(const TinyAsset& tiny, const TinySkin* skin, std::uint32_t sphere,
   out.leaves.push_back(leaf);
 }
 
+// About the middle, which is rounded; with room for the roundings of the extents.
+void set_box(const std::vector<Point>& points, std::size_t lane, BoxLanes& out) {
+  float* const centers[3] = {out.x, out.y, out.z};
+  float* const halves[3] = {out.half_x, out.half_y, out.half_z};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto less = [&](const Point& a, const Point& b) { return a[axis] < b[axis]; };
+    const auto [low, high] = std::minmax_element(points.begin(), points.end(), less);
+    const auto center = static_cast<float>((double{(*low)[axis]} + double{(*high)[axis]}) / 2);
+    centers[axis][lane] = center;
+    const double half = std::max(double{(*high)[axis]} - center, center - double{(*low)[axis]});
+    halves[axis][lane] = static_cast<float>(half * 1.000001);
+  }
+  double radius = 0;
+  for (const Point& p : points) {
+    radius = std::max(radius,
+                      std::hypot(double{p[0]} - out.x[lane], double{p[1]} - out.y[lane], double{p[2]} - out.z[lane]));
+  }
+  out.radius[lane] = static_cast<float>(radius * 1.000001);
+}
+
 // Mean weights: they add up to 1 by themselves.
 void add_terms(const SurfaceParts& in, const Leaf& leaf, std::size_t lane, std::map<std::uint32_t, CoverTerm>& terms) {
   for (std::size_t b = 0; b < leaf.bone_count; ++b) {
@@ -140,6 +160,7 @@ void add_morphs(const SurfaceParts& in, const Leaf& leaf, std::size_t lane,
 void add_groups(const TinyAsset& tiny, SurfaceParts& out) {
   for (std::size_t first = 0; first < out.leaves.size(); first += kLeafLanes) {
     BallLanes& balls = out.leaf_balls.emplace_back();
+    BoxLanes& boxes = out.leaf_boxes.emplace_back();
     std::map<std::uint32_t, CoverTerm> terms;
     std::map<std::uint32_t, BallLanes> morphs;
     for (std::size_t lane = 0; lane < std::min(kLeafLanes, out.leaves.size() - first); ++lane) {
@@ -149,6 +170,7 @@ void add_groups(const TinyAsset& tiny, SurfaceParts& out) {
         points.push_back(position_of(tiny, out.source_vertices[out.leaf_vertices[leaf.first_vertex + i]]));
       }
       set_ball(points, lane, balls);
+      set_box(points, lane, boxes);
       add_terms(out, leaf, lane, terms);
       add_morphs(out, leaf, lane, morphs);
     }

@@ -3,9 +3,9 @@
 #pragma once
 
 // The version of the library's binary interface: it changes with every change of a struct or function that programs
-// built before cannot live with, and is the number in the shared library's name (libspherechain.so.4). Asset::open and
+// built before cannot live with, and is the number in the shared library's name (libspherechain.so.6). Asset::open and
 // sc_asset_open take the caller's and refuse another: kWrongAbi, SC_WRONG_ABI.
-#define SC_ABI_VERSION 5
+#define SC_ABI_VERSION 6
 
 // Marks what a shared library gives out. SPHERECHAIN_SHARED is defined by the CMake target and by pkg-config where the
 // library is shared; SPHERECHAIN_BUILDING only while it is built. A static library gives out nothing, so that a plugin

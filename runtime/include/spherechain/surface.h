@@ -17,6 +17,14 @@ struct BallLanes {
   float x[kLeafLanes], y[kLeafLanes], z[kLeafLanes], radius[kLeafLanes];
 };
 
+// Eight boxes along the axes, one a lane: centres and half of the extents, and how far from the centre what is in it
+// reaches. Spare lanes are 0.
+struct BoxLanes {
+  float x[kLeafLanes], y[kLeafLanes], z[kLeafLanes];
+  float half_x[kLeafLanes], half_y[kLeafLanes], half_z[kLeafLanes];
+  float radius[kLeafLanes];
+};
+
 // What a bone has to do with eight leaves. 0 in lanes the bone does not move, and in spare ones.
 struct CoverTerm {
   float weights[kLeafLanes];     // w_b, the leaf's mid weights: over the bones they add up to 1
@@ -85,6 +93,7 @@ struct Surface {
   Span<const std::uint32_t> cover_morph_targets;  // an entry's of cover_morphs, ascending in a group
   Span<const BallLanes> cover_morphs;             // around the deltas of a leaf's vertices, 0 where a vertex has none
   Span<const TrianglePair> rest_contacts;         // triangles that intersect in the rest pose, sorted
+  Span<const BoxLanes> leaf_boxes;  // a group's: around the leaf's vertices at rest, without its morphs; may be empty
 };
 
 }  // namespace spherechain

@@ -202,6 +202,33 @@ TEST_CASE("weights and mid weights add up to 1 within two roundings: the balls' 
   }
 }
 
+TEST_CASE("at rest a leaf's box contains its vertices to the last bit, and they reach its sides") {
+  for (const Bake* bake : {&baked_human(), &morphing_person()}) {
+    const spherechain::Asset asset = open_asset_of(*bake);
+    const spherechain::Surface& surface = asset.surface();
+    for (std::size_t l = 0; l < surface.leaves.size; ++l) {
+      const spherechain::Leaf& leaf = surface.leaves[l];
+      const spherechain::BoxLanes& boxes = surface.leaf_boxes[l / spherechain::kLeafLanes];
+      const std::size_t lane = l % spherechain::kLeafLanes;
+      const Vec3 center(boxes.x[lane], boxes.y[lane], boxes.z[lane]);
+      const Vec3 half(boxes.half_x[lane], boxes.half_y[lane], boxes.half_z[lane]);
+      Vec3 reach = Vec3::Zero();
+      double farthest = 0;
+      for (std::size_t slot = 0; slot < leaf.vertex_count; ++slot) {
+        const float* p = surface.slot_positions.data + 3 * leaf.first_slot + slot;
+        const std::size_t slots = slot_count(leaf);
+        const Vec3 from_center = Vec3(p[0], p[slots], p[2 * slots]) - center;
+        reach = reach.cwiseMax(from_center.cwiseAbs());
+        farthest = std::max(farthest, from_center.norm());
+      }
+      REQUIRE((reach.array() <= half.array()).all());
+      REQUIRE((half.array() <= reach.array() * (1 + 1e-6)).all());
+      REQUIRE(farthest <= boxes.radius[lane]);
+      REQUIRE(boxes.radius[lane] <= farthest * (1 + 1e-6));
+    }
+  }
+}
+
 TEST_CASE("the corners of the asset's triangles are the source's") {
   for (const Bake* bake : {&baked_human(), &morphing_person()}) {
     const spherechain::Asset asset = open_asset_of(*bake);

@@ -42,6 +42,7 @@ void check_same(const Surface& surface, const SurfaceParts& parts) {
   CHECK(to_vector(surface.cover_morph_targets) == parts.cover_morph_targets);
   CHECK(same_bits(to_vector(surface.cover_morphs), parts.cover_morphs));
   CHECK(to_vector(surface.rest_contacts) == parts.rest_contacts);
+  CHECK(same_bits(to_vector(surface.leaf_boxes), parts.leaf_boxes));
 }
 
 }  // namespace
@@ -63,6 +64,15 @@ TEST_CASE("a surface that nothing moves has leaves, and no bones") {
   REQUIRE(opened.status == Status::kOk);
   CHECK(opened.asset.leaf_count() == 3);
   CHECK(opened.asset.surface().cover_terms.size == 0);
+  check_same(opened.asset.surface(), tiny.parts.surface);
+}
+
+TEST_CASE("a surface of an older baker has no boxes around its leaves") {
+  TinyAsset tiny = tiny_with_surface();
+  tiny.parts.surface.leaf_boxes.clear();
+  const OpenedAsset opened(tiny.parts);
+  REQUIRE(opened.status == Status::kOk);
+  CHECK(opened.asset.surface().leaf_boxes.size == 0);
   check_same(opened.asset.surface(), tiny.parts.surface);
 }
 
@@ -134,6 +144,12 @@ TEST_CASE("each wrong value of a surface is refused by its name") {
       {"surface.leaf_balls: 2 of them, but 3", [](S& s) { s.leaf_balls.pop_back(); }},
       {"surface.leaf_balls[1]: not finite", [](S& s) { s.leaf_balls[1].x[7] = kNan; }},
       {"surface.leaf_balls[1]: not finite", [](S& s) { s.leaf_balls[1].radius[0] = -1; }},
+      {"surface.leaf_boxes: 2 of them, but 3", [](S& s) { s.leaf_boxes.pop_back(); }},
+      {"surface.leaf_boxes[1]: not finite", [](S& s) { s.leaf_boxes[1].z[7] = kNan; }},
+      {"surface.leaf_boxes[1]: not finite", [](S& s) { s.leaf_boxes[1].half_x[0] = -1; }},
+      {"surface.leaf_boxes[0]: not finite", [](S& s) { s.leaf_boxes[0].half_y[3] = kInfinity; }},
+      {"surface.leaf_boxes[2]: not finite", [](S& s) { s.leaf_boxes[2].half_z[1] = kNan; }},
+      {"surface.leaf_boxes[2]: not finite", [](S& s) { s.leaf_boxes[2].radius[1] = -1; }},
       {"surface.cover_term_counts: 2 of them", [](S& s) { s.cover_term_counts.pop_back(); }},
       {"surface.cover_term_counts[1]: its entries are past", [](S& s) { s.cover_term_counts[1] = 0xFFFFFFFFU; }},
       {"surface.cover_term_bones: ", [](S& s) { s.cover_term_counts[2] -= 1; }},
@@ -178,6 +194,7 @@ TEST_CASE("a spare lane of a group of leaves that is not 0 is refused") {
     return OpenedAsset(parts).status == Status::kCorrupt;
   };
   CHECK(refuses([](SurfaceParts& s) { s.leaf_balls[0].y[3] = 1; }));
+  CHECK(refuses([](SurfaceParts& s) { s.leaf_boxes[0].half_x[5] = 1; }));
   CHECK(refuses([](SurfaceParts& s) { s.cover_terms[0].weights[7] = 1; }));
   CHECK(refuses([](SurfaceParts& s) { s.cover_morphs[0].radius[4] = 1; }));
 }
