@@ -11,8 +11,9 @@ namespace {
 bool shares_memory(const ConfirmJob& job) {
   const Span<std::uint64_t> words{job.context->words.data, TriangleContactContext::words_needed(*job.asset)};
   const PoseRanges pose = ranges_of(pose_of(job));
-  return any_shared({range_of(job.pairs), range_of(words)},
-                    {pose.points, pose.morph_weights, range_of(job.asset->triangles()), range_of(job.candidates)});
+  return any_shared(
+      {range_of(job.pairs), range_of(words)},
+      {pose.positions, pose.matrices, pose.morph_weights, range_of(job.asset->triangles()), range_of(job.candidates)});
 }
 
 bool name_spheres(Span<const Pair> pairs, std::size_t sphere_count) {
@@ -64,6 +65,9 @@ Status ConfirmJob::run() noexcept {
   }
   const ContactScene scene = scene_of(pose_of(*this), context->words);
   ContactCollector collector(*asset, {}, {}, {}, {});
+  if (scene.has_balls && candidates.size > 0) {
+    bound_leaves(resolved, scene);
+  }
   std::size_t count = 0;
   for (const Pair& candidate : candidates) {
     if (!skins_touch(resolved, scene, candidate, collector)) {

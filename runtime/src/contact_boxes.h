@@ -65,12 +65,15 @@ struct BoxProbe {
     }
     return out;
   }
-  // Bit k: box i + k touches; `count` boxes are left.
-  HWY_INLINE std::uint64_t touching(const BoxColumns& columns, std::size_t i, std::size_t count) const {
+  HWY_INLINE hn::Mask<Floats> misses(const BoxColumns& columns, std::size_t i) const {
     const float* const lows[3] = {columns.low[0], columns.low[1], columns.low[2]};
     const float* const highs[3] = {columns.high[0], columns.high[1], columns.high[2]};
+    return misses(lows, highs, i);
+  }
+  // Bit k: box i + k touches; `count` boxes are left.
+  HWY_INLINE std::uint64_t touching(const BoxColumns& columns, std::size_t i, std::size_t count) const {
     const std::uint64_t lanes = ~std::uint64_t{0} >> (64 - (count < kLanes ? count : kLanes));
-    return ~bits_of(misses(lows, highs, i)) & lanes;
+    return ~bits_of(misses(columns, i)) & lanes;
   }
 };
 
@@ -141,41 +144,21 @@ HWY_INLINE Box box_of_leaf(const ContactScene& scene, const Leaf& leaf) {
 
 // A sphere's box around those of its leaves.
 HWY_INLINE void unite_leaves(const ContactScene& scene, std::size_t sphere) {
-  Box box{{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
-  for (std::size_t i = scene.first_leaf[sphere]; i < scene.first_leaf[sphere + 1]; ++i) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const float low = scene.leaves.low[axis][i], high = scene.leaves.high[axis][i];
-      box.low[axis] = low < box.low[axis] ? low : box.low[axis];
-      box.high[axis] = high > box.high[axis] ? high : box.high[axis];
-    }
-  }
-  put_box(scene.spheres, sphere, box);
-}
-
-// Boxes around the leaves' balls. A coordinate less the radius is rounded once, to at most 2^-24 of both: 2^-22 is
-// added.
-HWY_NOINLINE void bound_balls(const ContactScene& scene) {
   constexpr Floats kFloats;
-  const std::size_t count = scene.surface->leaves.size;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Sphere& ball = scene.balls[i];
-    scene.ball_columns[0][i] = ball.x;
-    scene.ball_columns[1][i] = ball.y;
-    scene.ball_columns[2][i] = ball.z;
-    scene.ball_columns[3][i] = ball.radius;
-  }
-  for (std::size_t i = 0; i < count; i += kLanes) {
-    const Vector radius = hn::LoadU(kFloats, scene.ball_columns[3] + i);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const Vector center = hn::LoadU(kFloats, scene.ball_columns[axis] + i);
-      const Vector margin = hn::Mul(hn::Add(hn::Abs(center), radius), hn::Set(kFloats, 0x1p-22F));
-      hn::StoreU(hn::Sub(hn::Sub(center, radius), margin), kFloats, scene.leaves.low[axis] + i);
-      hn::StoreU(hn::Add(hn::Add(center, radius), margin), kFloats, scene.leaves.high[axis] + i);
+  const std::size_t end = scene.first_leaf[sphere + 1];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    Vector low = hn::Set(kFloats, FLT_MAX), high = hn::Set(kFloats, -FLT_MAX);
+    for (std::size_t i = scene.first_leaf[sphere]; i < end; i += kLanes) {
+      const auto used = hn::FirstN(kFloats, end - i);
+      low = hn::IfThenElse(used, hn::Min(hn::LoadU(kFloats, scene.leaves.low[axis] + i), low), low);
+      high = hn::IfThenElse(used, hn::Max(hn::LoadU(kFloats, scene.leaves.high[axis] + i), high), high);
     }
+    scene.spheres.low[axis][sphere] = hn::GetLane(hn::MinOfLanes(kFloats, low));
+    scene.spheres.high[axis][sphere] = hn::GetLane(hn::MaxOfLanes(kFloats, high));
   }
 }
 
-// A ball against those of a vector: bit k where ball i + k may touch it. Of a sum of squares of rounded differences
+// A ball against those of a vector: those that it surely does not touch. Of a sum of squares of rounded differences
 // 2^-20 is more than all roundings.
 struct BallProbe {
   Vector center[3], radius;
@@ -187,7 +170,7 @@ struct BallProbe {
     }
     radius = hn::Set(kFloats, scene.ball_columns[3][leaf]);
   }
-  HWY_INLINE std::uint64_t touching(const ContactScene& scene, std::size_t i) const {
+  HWY_INLINE hn::Mask<Floats> misses(const ContactScene& scene, std::size_t i) const {
     constexpr Floats kFloats;
     const Vector x = hn::Sub(hn::LoadU(kFloats, scene.ball_columns[0] + i), center[0]);
     const Vector y = hn::Sub(hn::LoadU(kFloats, scene.ball_columns[1] + i), center[1]);
@@ -195,7 +178,7 @@ struct BallProbe {
     const Vector reach = hn::Add(hn::LoadU(kFloats, scene.ball_columns[3] + i), radius);
     const Vector squared = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
     const Vector most = hn::Mul(hn::Mul(reach, reach), hn::Set(kFloats, 1 + 0x1p-20F));
-    return ~bits_of(hn::Gt(squared, most));
+    return hn::Gt(squared, most);
   }
 };
 

@@ -5,7 +5,6 @@
 #include <initializer_list>
 
 #include "bone_refit.h"
-#include "spherechain/cover.h"
 #include "stride.h"
 
 namespace spherechain {
@@ -52,12 +51,13 @@ void lay_out(const Asset& asset, Scratch& scratch, ContactScene& scene) {
   scene.first_leaf = scratch.take<std::uint32_t>(scene.sphere_count + 1);
   scene.is_loaded = scratch.take<std::uint8_t>(surface.leaves.size);
   scene.is_bounded = scratch.take<std::uint8_t>(scene.sphere_count);
+  scene.spans = scratch.take_aligned<float>(2 * kSpanLanes * surface.leaves.size);
   scene.slots = scratch.take_aligned<float>(surface.slot_positions.size +
                                             3 * (kSlotLanes * surface.leaves.size + kContactPadding));
   if (asset.bone_count() == 0) {
     return;
   }
-  scene.balls = scratch.take<Sphere>(surface.leaves.size);
+  scene.bone_sizes = scratch.take<BoneSize>(asset.bone_count());
   for (float*& column : scene.ball_columns) {
     column = scratch.take<float>(surface.leaves.size + kContactPadding);
   }
@@ -85,16 +85,25 @@ Status check_pose(const ContactPose& pose) {
   if (!is_valid_stride(pose.stride)) {
     return Status::kBadStride;
   }
-  return pose.vertex_count < pose.asset->info().source_vertex_count ? Status::kTooFewVertices : Status::kOk;
+  if (pose.vertex_count < pose.asset->info().source_vertex_count) {
+    return Status::kTooFewVertices;
+  }
+  return pose.bones.data == nullptr ? Status::kOk
+                                    : check_bone_inputs(pose.asset, pose.bones, pose.morph_weights, RadiusKind::kFit);
 }
 
 PoseRanges ranges_of(const ContactPose& pose) {
-  if (pose.positions == nullptr) {
-    return {range_of_matrices(pose.bones, pose.asset->bone_count()), range_of(pose.morph_weights)};
-  }
-  const auto begin = reinterpret_cast<std::uintptr_t>(pose.positions);
+  PoseRanges out{};
   const std::size_t count = pose.asset->info().source_vertex_count;
-  return {count == 0 ? MemoryRange{} : MemoryRange{begin, begin + (count - 1) * pose.stride + 3 * sizeof(float)}, {}};
+  if (pose.positions != nullptr && count > 0) {
+    const auto begin = reinterpret_cast<std::uintptr_t>(pose.positions);
+    out.positions = {begin, begin + (count - 1) * pose.stride + 3 * sizeof(float)};
+  }
+  if (pose.bones.data != nullptr) {
+    out.matrices = range_of_matrices(pose.bones, pose.asset->bone_count());
+    out.morph_weights = range_of(pose.morph_weights);
+  }
+  return out;
 }
 
 ContactScene scene_of(const ContactPose& pose, Span<std::uint64_t> words) {
@@ -113,27 +122,21 @@ ContactScene scene_of(const ContactPose& pose, Span<std::uint64_t> words) {
     }
     scene.first_leaf[sphere] = static_cast<std::uint32_t>(leaf);
   }
-  if (pose.positions == nullptr) {
+  if (pose.bones.data != nullptr) {
     scene.skin = skin_inputs(*pose.asset, pose.bones, pose.morph_weights);
+    scene.has_balls = true;
+    scene.cover =
+        cover_inputs(*pose.asset, pose.bones, pose.morph_weights, {scene.bone_sizes, pose.asset->bone_count()});
   }
   return scene;
 }
 
-ContactScene scene_of_all(const ContactPose& pose, const Filter* filter, Target resolved, Span<std::uint64_t> words) {
+ContactScene scene_of_all(const ContactPose& pose, const Filter* filter, Span<std::uint64_t> words) {
   ContactScene scene = scene_of(pose, words);
   scene.ignored = pose.asset->ignored();
   if (filter != nullptr) {
     scene.ignored = {filter->ignored.data, filter->ignored.size};
     scene.disabled = {filter->disabled.data, filter->disabled.size};
-  }
-  if (pose.positions == nullptr) {
-    CoverJob cover;
-    cover.asset = pose.asset;
-    cover.bones = pose.bones;
-    cover.morph_weights = pose.morph_weights;
-    cover.target = resolved;
-    cover.leaves = {scene.balls, pose.asset->leaf_count()};
-    (void)cover.run();  // checked already
   }
   return scene;
 }

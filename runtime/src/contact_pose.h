@@ -13,7 +13,7 @@
 
 namespace spherechain {
 
-// The vertices; or, where `positions` is null, the bones.
+// The vertices, or the bones, or both: then leaves are bounded by the bones.
 struct ContactPose {
   const Asset* asset;  // open, with a surface
   const float* positions;
@@ -32,15 +32,14 @@ Status check_pose(const ContactPose& pose);
 
 // What is read, of a pose that is checked.
 struct PoseRanges {
-  MemoryRange points, morph_weights;
+  MemoryRange positions, matrices, morph_weights;
 };
 PoseRanges ranges_of(const ContactPose& pose);
 
-// Of a checked pose, with enough words: nothing is ignored or disabled, no leaf is bounded.
+// Of a checked pose, with enough words: nothing is ignored or disabled, no leaf is bounded yet.
 ContactScene scene_of(const ContactPose& pose, Span<std::uint64_t> words);
 
-// The same for all pairs of spheres but those ignored or disabled, by the asset or by a checked filter; from bones
-// with a ball around each leaf.
-ContactScene scene_of_all(const ContactPose& pose, const Filter* filter, Target resolved, Span<std::uint64_t> words);
+// The same for all pairs of spheres but those ignored or disabled, by the asset or by a checked filter.
+ContactScene scene_of_all(const ContactPose& pose, const Filter* filter, Span<std::uint64_t> words);
 
 }  // namespace spherechain

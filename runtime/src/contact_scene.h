@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "cover_kernel.h"
 #include "exact_triangles.h"
 #include "skin.h"
 #include "spherechain/simd.h"
@@ -15,6 +16,10 @@ namespace spherechain {
 
 // Vectors of any target may be read, and written, this far past the end of what is there.
 inline constexpr std::size_t kContactPadding = 16;
+
+// Along which a leaf's vertices are spanned: the axes x, y and z and the diagonals of their planes, x + y, y + z, z +
+// x, x - y, y - z and z - x. Most leaves whose boxes touch are apart along a diagonal. And room for a vector.
+inline constexpr std::size_t kDirections = 9, kSpanLanes = 16;
 
 // Boxes coordinate by coordinate.
 struct BoxColumns {
@@ -29,16 +34,19 @@ struct ContactScene {
   Span<const std::uint64_t> ignored, disabled;  // the latter may be empty
   bool apart = true, neighbours = false;        // which of them to pair: see ContactScope
   const float* positions = nullptr;             // the source's; null: from bones
+  bool has_balls = false;                       // bounded by bones
   std::size_t stride = 0;                       // floats
   SkinInputs skin{};                            // from bones
+  CoverInputs cover{};                          // likewise
   // Scratch memory.
   BoxColumns spheres, leaves;
   std::uint32_t* first_leaf = nullptr;  // a sphere's, and the end
-  std::uint8_t* is_loaded = nullptr;    // a leaf's: are its vertices below, and its box exact?
+  std::uint8_t* is_loaded = nullptr;    // a leaf's: are its vertices and its span below?
   std::uint8_t* is_bounded = nullptr;   // a sphere's, of a ConfirmJob: are its box and its leaves'?
+  float* spans = nullptr;               // of leaf after leaf: the least in each direction, then the greatest
   float* slots = nullptr;               // x, y, z of a leaf's vertices, of leaf after leaf
-  Sphere* balls = nullptr;              // from bones: around the leaves
-  float* ball_columns[4] = {};          // the same by coordinates, the radius last
+  float* ball_columns[4] = {};          // from bones: around the leaves, by coordinates, the radius last
+  BoneSize* bone_sizes = nullptr;       // from bones
 };
 
 // Where triangles that intersect go. In a file of its own, for kernels must not call templates of the standard library.
@@ -60,7 +68,11 @@ void find_candidates(Target resolved, const ContactScene& scene, ContactCollecto
 // The same, but of each two spheres no more once one candidate is a contact.
 void find_spheres(Target resolved, const ContactScene& scene, ContactCollector& collector);
 
-// Is there a contact between the regions of two spheres? Bounds what is not bounded yet.
+// Bounds all leaves and spheres.
+void bound_leaves(Target resolved, const ContactScene& scene);
+
+// Is there a contact between the regions of two spheres? From positions bounds what is not bounded yet; by bones all
+// is.
 bool skins_touch(Target resolved, const ContactScene& scene, Pair spheres, ContactCollector& collector);
 
 }  // namespace spherechain

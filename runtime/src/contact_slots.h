@@ -38,11 +38,16 @@ HWY_INLINE void copy_vertices(const ContactScene& scene, const Leaf& leaf, const
     slots.axes[1][i] = p[1];
     slots.axes[2][i] = p[2];
   }
+  for (std::size_t i = leaf.vertex_count; i < slots.count; ++i) {
+    for (float* axis : slots.axes) {
+      axis[i] = axis[i - 1];
+    }
+  }
 }
 
 #else
 
-// Four at a time, turned; the last ones repeat the last vertex.
+// Four at a time, turned; the slots beyond the vertices repeat the last one.
 HWY_INLINE void copy_vertices(const ContactScene& scene, const Leaf& leaf, const Slots& slots) {
   constexpr hn::CappedTag<float, 4> kFour;
   const std::uint32_t* vertices = scene.surface->leaf_vertices.data + leaf.first_vertex;
@@ -51,7 +56,7 @@ HWY_INLINE void copy_vertices(const ContactScene& scene, const Leaf& leaf, const
   const auto vertex = [&](std::size_t i) HWY_ATTR {
     return load_position(scene.positions + source[vertices[i < last ? i : last]] * scene.stride);
   };
-  for (std::size_t i = 0; i <= last; i += 4) {
+  for (std::size_t i = 0; i < slots.count; i += 4) {
     const auto a = vertex(i), b = vertex(i + 1), c = vertex(i + 2), d = vertex(i + 3);
     const auto xy_ac = hn::InterleaveLower(kFour, a, c), xy_bd = hn::InterleaveLower(kFour, b, d);
     const auto z_ac = hn::InterleaveUpper(kFour, a, c), z_bd = hn::InterleaveUpper(kFour, b, d);
@@ -63,34 +68,135 @@ HWY_INLINE void copy_vertices(const ContactScene& scene, const Leaf& leaf, const
 
 #endif
 
-// Where it is not yet: a leaf's vertices from the source's.
-HWY_NOINLINE void gather(const ContactScene& scene, std::size_t leaf_index) {
-  if (scene.is_loaded[leaf_index] == 0) {
-    scene.is_loaded[leaf_index] = 1;
-    copy_vertices(scene, scene.surface->leaves.data[leaf_index], slots_of(scene, leaf_index));
+#if HWY_TARGET == HWY_SCALAR
+
+HWY_INLINE void put_span(const ContactScene& scene, std::size_t leaf_index) {
+  const Slots slots = slots_of(scene, leaf_index);
+  float* const low = scene.spans + 2 * kSpanLanes * leaf_index;
+  float* const high = low + kSpanLanes;
+  for (std::size_t k = 0; k < kSpanLanes; ++k) {
+    low[k] = k < kDirections ? FLT_MAX : 0;
+    high[k] = k < kDirections ? -FLT_MAX : 0;
+  }
+  for (std::size_t i = 0; i < slots.count; ++i) {
+    const float x = slots.axes[0][i], y = slots.axes[1][i], z = slots.axes[2][i];
+    const float along[kDirections] = {x, y, z, x + y, y + z, z + x, x - y, y - z, z - x};
+    for (std::size_t k = 0; k < kDirections; ++k) {
+      low[k] = along[k] < low[k] ? along[k] : low[k];
+      high[k] = along[k] > high[k] ? along[k] : high[k];
+    }
   }
 }
 
-// Where it is not yet: a leaf's vertices from the bones, and its own box in place of its ball's.
-HWY_NOINLINE void skin(const ContactScene& scene, std::size_t leaf_index) {
-  if (scene.is_loaded[leaf_index] != 0) {
-    return;
+#else
+
+struct Lesser {
+  template <class V>
+  HWY_INLINE V operator()(V a, V b) const {
+    return hn::Min(a, b);
   }
+};
+struct Greater {
+  template <class V>
+  HWY_INLINE V operator()(V a, V b) const {
+    return hn::Max(a, b);
+  }
+};
+
+// What is left of the lanes of each of four vectors.
+template <class Reduce>
+HWY_INLINE void reduce_four(const Vector* in, const Reduce& reduce, float* out) {
+  constexpr Floats kFloats;
+  constexpr hn::RepartitionToWide<hn::Rebind<std::uint32_t, Floats> > kPairs;
+  const auto two = [&](Vector a, Vector b) HWY_ATTR {
+    return hn::BitCast(kPairs, reduce(hn::InterleaveLower(kFloats, a, b), hn::InterleaveUpper(kFloats, a, b)));
+  };
+  const auto ab = two(in[0], in[1]), cd = two(in[2], in[3]);
+  const Vector blocks = reduce(hn::BitCast(kFloats, hn::InterleaveLower(kPairs, ab, cd)),
+                               hn::BitCast(kFloats, hn::InterleaveUpper(kPairs, ab, cd)));
+#if HWY_TARGET == HWY_AVX3
+  constexpr hn::CappedTag<float, 8> kHalf;
+  constexpr hn::CappedTag<float, 4> kFour;
+  const auto half = reduce(hn::LowerHalf(kHalf, blocks), hn::UpperHalf(kHalf, blocks));
+  hn::StoreU(reduce(hn::LowerHalf(kFour, half), hn::UpperHalf(kFour, half)), kFour, out);
+#elif HWY_TARGET == HWY_AVX2
+  constexpr hn::CappedTag<float, 4> kFour;
+  hn::StoreU(reduce(hn::LowerHalf(kFour, blocks), hn::UpperHalf(kFour, blocks)), kFour, out);
+#else
+  hn::StoreU(blocks, kFloats, out);
+#endif
+}
+
+HWY_INLINE void put_span(const ContactScene& scene, std::size_t leaf_index) {
+  constexpr Floats kFloats;
+  constexpr std::size_t kWhole = (kDirections + 3) / 4 * 4;
+  static_assert(kWhole + 4 == kSpanLanes, "the last four come twice");
+  const Slots slots = slots_of(scene, leaf_index);
+  Vector low[kWhole], high[kWhole];
+  for (std::size_t k = 0; k < kWhole; ++k) {
+    low[k] = hn::Set(kFloats, FLT_MAX);
+    high[k] = hn::Set(kFloats, -FLT_MAX);
+  }
+  for (std::size_t i = 0; i < slots.count; i += kLanes) {
+    // Lanes beyond the slots are given the last full register's, or slot 0's.
+    const auto used = hn::FirstN(kFloats, slots.count - i);
+    const auto column = [&](std::size_t axis) HWY_ATTR {
+      return hn::IfThenElse(used, hn::LoadU(kFloats, slots.axes[axis] + i), hn::Set(kFloats, slots.axes[axis][0]));
+    };
+    const Vector x = column(0), y = column(1), z = column(2);
+    const Vector along[kDirections] = {
+        x, y, z, hn::Add(x, y), hn::Add(y, z), hn::Add(z, x), hn::Sub(x, y), hn::Sub(y, z), hn::Sub(z, x)};
+    for (std::size_t k = 0; k < kDirections; ++k) {
+      low[k] = hn::Min(along[k], low[k]);
+      high[k] = hn::Max(along[k], high[k]);
+    }
+  }
+  for (std::size_t k = kDirections; k < kWhole; ++k) {
+    low[k] = low[0];
+    high[k] = high[0];
+  }
+  float* const out = scene.spans + 2 * kSpanLanes * leaf_index;
+  for (std::size_t k = 0; k < kSpanLanes; k += 4) {
+    const std::size_t from = k < kWhole ? k : kWhole - 4;
+    reduce_four(low + from, Lesser(), out + k);
+    reduce_four(high + from, Greater(), out + kSpanLanes + k);
+  }
+}
+
+#endif
+
+// Where they are not yet: a leaf's vertices, from the source's or from the bones, and how far they reach.
+HWY_NOINLINE void load(const ContactScene& scene, std::size_t leaf_index) {
   scene.is_loaded[leaf_index] = 1;
   const Leaf& leaf = scene.surface->leaves.data[leaf_index];
   const Slots slots = slots_of(scene, leaf_index);
-  skin_leaf(scene.skin, leaf, slots.axes[0], slots.axes[1], slots.axes[2]);
-  constexpr hn::CappedTag<float, kSlotLanes> kSlots;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    auto low = hn::Set(kSlots, FLT_MAX), high = hn::Set(kSlots, -FLT_MAX);
-    for (std::size_t i = 0; i < slots.count; i += hn::MaxLanes(kSlots)) {
-      const auto p = hn::LoadU(kSlots, slots.axes[axis] + i);
-      low = hn::Min(p, low);
-      high = hn::Max(p, high);
-    }
-    scene.leaves.low[axis][leaf_index] = hn::GetLane(hn::MinOfLanes(kSlots, low));
-    scene.leaves.high[axis][leaf_index] = hn::GetLane(hn::MaxOfLanes(kSlots, high));
+  if (scene.positions != nullptr) {
+    copy_vertices(scene, leaf, slots);
+  } else {
+    skin_leaf(scene.skin, leaf, slots.axes[0], slots.axes[1], slots.axes[2]);
   }
+  put_span(scene, leaf_index);
+}
+
+HWY_INLINE Box box_of_span(const ContactScene& scene, std::size_t leaf_index) {
+  const float* const low = scene.spans + 2 * kSpanLanes * leaf_index;
+  const float* const high = low + kSpanLanes;
+  return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+}
+
+// Do two leaves that are loaded reach as far as each other in all directions? A sum rounded once keeps the order of the
+// sums themselves, so nothing that touches is kept apart.
+HWY_INLINE bool spans_touch(const ContactScene& scene, std::size_t a, std::size_t b) {
+  constexpr hn::CappedTag<float, kSpanLanes> d;
+  const float* const one = scene.spans + 2 * kSpanLanes * a;
+  const float* const other = scene.spans + 2 * kSpanLanes * b;
+  auto apart = hn::Gt(hn::LoadU(d, one), hn::LoadU(d, other + kSpanLanes));
+  apart = hn::Or(apart, hn::Gt(hn::LoadU(d, other), hn::LoadU(d, one + kSpanLanes)));
+  for (std::size_t k = hn::MaxLanes(d); k < kSpanLanes; k += hn::MaxLanes(d)) {
+    apart = hn::Or(apart, hn::Gt(hn::LoadU(d, one + k), hn::LoadU(d, other + kSpanLanes + k)));
+    apart = hn::Or(apart, hn::Gt(hn::LoadU(d, other + k), hn::LoadU(d, one + kSpanLanes + k)));
+  }
+  return hn::AllFalse(d, apart);
 }
 
 }  // namespace HWY_NAMESPACE

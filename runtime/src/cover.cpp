@@ -52,33 +52,37 @@ void cover_spheres(const Asset& asset, const Sphere* leaves, Sphere* spheres) {
   }
 }
 
-CoverInputs inputs_of(const CoverJob& job, BoneSize (&sizes)[kSizesKept]) {
-  const Surface& surface = job.asset->surface();
+}  // namespace
+
+CoverInputs cover_inputs(const Asset& asset, const BoneMatrices& bones, Span<const float> morph_weights,
+                         Span<BoneSize> sizes) {
+  const Surface& surface = asset.surface();
   CoverInputs in{};
   in.leaf_count = surface.leaves.size;
   in.balls = surface.leaf_balls.data;
+  if (surface.leaf_boxes.size > 0) {
+    in.boxes = surface.leaf_boxes.data;
+  }
   in.term_counts = surface.cover_term_counts.data;
   in.term_bones = surface.cover_term_bones.data;
   in.terms = surface.cover_terms.data;
-  if (job.morph_weights.size > 0 && surface.cover_morph_counts.size > 0) {
+  if (morph_weights.size > 0 && surface.cover_morph_counts.size > 0) {
     in.morph_counts = surface.cover_morph_counts.data;
   }
   in.morph_targets = surface.cover_morph_targets.data;
   in.morphs = surface.cover_morphs.data;
-  in.matrices = job.bones.data;
-  in.stride = job.bones.stride / sizeof(float);
-  in.row = row_step(job.bones.layout);
-  in.column = column_step(job.bones.layout);
-  in.morph_weights = job.morph_weights.data;
-  in.sizes = sizes;
-  in.size_count = std::min(job.asset->bone_count(), kSizesKept);
+  in.matrices = bones.data;
+  in.stride = bones.stride / sizeof(float);
+  in.row = row_step(bones.layout);
+  in.column = column_step(bones.layout);
+  in.morph_weights = morph_weights.data;
+  in.sizes = sizes.data;
+  in.size_count = std::min(asset.bone_count(), sizes.size);
   for (std::size_t bone = 0; bone < in.size_count; ++bone) {
-    sizes[bone] = bone_size(in, bone);
+    sizes.data[bone] = bone_size(in, bone);
   }
   return in;
 }
-
-}  // namespace
 
 BoneSize bone_size(const CoverInputs& in, std::size_t bone) {
   const float* m = in.matrices + bone * in.stride;
@@ -126,7 +130,7 @@ Status CoverJob::run() const noexcept {
     return Status::kSharedMemory;
   }
   BoneSize sizes[kSizesKept];
-  cover_leaves_from_bones(inputs_of(*this, sizes), resolved, leaves.data);
+  cover_leaves_from_bones(cover_inputs(*asset, bones, morph_weights, {sizes, kSizesKept}), resolved, leaves.data);
   if (spheres.size > 0) {
     cover_spheres(*asset, leaves.data, spheres.data);
   }

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The inner loop of CoverJob.
+// The inner loop of CoverJob, and what else bounds leaves from bones reads.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
+#include "spherechain/refit_bones.h"
 #include "spherechain/simd.h"
 #include "spherechain/surface.h"
 #include "spherechain/types.h"
@@ -21,6 +22,7 @@ struct BoneSize {
 struct CoverInputs {
   std::size_t leaf_count;
   const BallLanes* balls;
+  const BoxLanes* boxes;  // null in assets of older bakers
   const std::uint32_t* term_counts;
   const std::uint32_t* term_bones;
   const CoverTerm* terms;
@@ -36,6 +38,10 @@ struct CoverInputs {
 };
 
 BoneSize bone_size(const CoverInputs& inputs, std::size_t bone);
+
+// Of arguments that have passed check_bone_inputs(). Sizes are worked out for as many bones as `sizes` has room for.
+CoverInputs cover_inputs(const Asset& asset, const BoneMatrices& bones, Span<const float> morph_weights,
+                         Span<BoneSize> sizes);
 
 // All leaves of the asset.
 void cover_leaves_from_bones(const CoverInputs& inputs, Target resolved, Sphere* leaves);

@@ -11,10 +11,11 @@ namespace {
 bool shares_memory(const DetectSkinJob& job) {
   const Span<std::uint64_t> words{job.context->words.data, TriangleContactContext::words_needed(*job.asset)};
   const PoseRanges pose = ranges_of(pose_of(job));
-  return any_shared({range_of(job.pairs), range_of(words)},
-                    {pose.points, pose.morph_weights, range_of(job.asset->triangles()), range_of(job.asset->ignored()),
-                     job.filter == nullptr ? MemoryRange{} : range_of(job.filter->ignored),
-                     job.filter == nullptr ? MemoryRange{} : range_of(job.filter->disabled)});
+  return any_shared(
+      {range_of(job.pairs), range_of(words)},
+      {pose.positions, pose.matrices, pose.morph_weights, range_of(job.asset->triangles()),
+       range_of(job.asset->ignored()), job.filter == nullptr ? MemoryRange{} : range_of(job.filter->ignored),
+       job.filter == nullptr ? MemoryRange{} : range_of(job.filter->disabled)});
 }
 
 Status check(const DetectSkinJob& job, Target& resolved) {
@@ -57,7 +58,7 @@ Status DetectSkinJob::run() noexcept {
   if (status != Status::kOk) {
     return status;
   }
-  const ContactScene scene = scene_of_all(pose_of(*this), filter, resolved, context->words);
+  const ContactScene scene = scene_of_all(pose_of(*this), filter, context->words);
   ContactCollector collector(*asset, {}, {}, {}, pairs);
   find_spheres(resolved, scene, collector);
   collector.finish();

@@ -57,6 +57,12 @@ HWY_INLINE std::uint64_t bits_of(hwy::HWY_NAMESPACE::Mask<hwy::HWY_NAMESPACE::Sc
   return bits;
 }
 
+// The other way round; further bits are any.
+HWY_INLINE hwy::HWY_NAMESPACE::Mask<hwy::HWY_NAMESPACE::ScalableTag<float>> mask_of(std::uint64_t bits) {
+  return hwy::HWY_NAMESPACE::LoadMaskBits(hwy::HWY_NAMESPACE::ScalableTag<float>(),
+                                          reinterpret_cast<const std::uint8_t*>(&bits));
+}
+
 #undef SPHERECHAIN_FUSES
 #if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_SSSE3 || HWY_TARGET == (1LL << 14)
 #define SPHERECHAIN_FUSES 0

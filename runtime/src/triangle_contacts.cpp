@@ -13,7 +13,8 @@ bool shares_memory(const TriangleContactJob& job) {
   const MemoryRange written[] = {range_of(job.pairs), range_of(job.contacts), range_of(job.sphere_contacts),
                                  range_of(words)};
   const PoseRanges pose = ranges_of(pose_of(job));
-  const MemoryRange read[] = {pose.points,
+  const MemoryRange read[] = {pose.positions,
+                              pose.matrices,
                               pose.morph_weights,
                               range_of(job.asset->triangles()),
                               range_of(job.asset->ignored()),
@@ -66,7 +67,7 @@ Status TriangleContactJob::run() noexcept {
   if (status != Status::kOk) {
     return status;
   }
-  ContactScene scene = scene_of_all(pose_of(*this), filter, resolved, context->words);
+  ContactScene scene = scene_of_all(pose_of(*this), filter, context->words);
   scene.apart = scope != ContactScope::kNeighbours;
   scene.neighbours = scope != ContactScope::kApart;
   ContactCollector collector(*asset, pairs, contacts, sphere_contacts, {});

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// From boxes of spheres to boxes of leaves to triangles. From bones, leaves' boxes are around their balls until they
-// are skinned; all other boxes are exact. Which candidates come out may differ between targets, but none that
-// intersects is ever missing.
+// From boxes of spheres to boxes of leaves to triangles. With bones, leaves' boxes are what leaf_bounds.h makes of
+// them, else exact. Pairs of leaves are listed, and decided together: loaded, skinned or copied, those that still seem
+// to touch along the axes and their diagonals, and paired triangle by triangle. Which candidates come out may differ
+// between targets, but none that intersects is ever missing.
 #include "arithmetic.h"
 #include "contact_scene.h"
 #include "simd.h"
@@ -15,6 +16,8 @@
 // One after another: each builds on those before.
 #include "contact_boxes.h"
 
+#include "leaf_bounds.h"
+
 #include "contact_slots.h"
 
 #include "contact_blocks.h"
@@ -27,22 +30,30 @@ namespace HWY_NAMESPACE {
 
 using Places = hn::Rebind<std::int32_t, Floats>;
 
-// Pairs of triangles of a register of one block and a register of another, by their places there.
-struct PlacePairs {
+// Pairs of numbers: one with some of a register of others. May be written to until it has no room for a register.
+template <std::size_t kRoom>
+struct PairList {
   std::size_t count = 0;
-  std::int32_t a[kLanes * kLanes + kLanes], b[kLanes * kLanes + kLanes];  // vectors are written past the end
+  std::int32_t a[kRoom + kLanes], b[kRoom + kLanes];  // vectors are written past the end
 
-  HWY_INLINE void add(std::size_t one, hn::Mask<Floats> others) {
+  HWY_INLINE void add(std::size_t one, std::size_t first, hn::Mask<Floats> others) {
     constexpr Places kPlaces;
     hn::StoreU(hn::Set(kPlaces, static_cast<std::int32_t>(one)), kPlaces, a + count);
-    count += hn::CompressStore(hn::Iota(kPlaces, 0), hn::RebindMask(kPlaces, others), kPlaces, b + count);
+    const auto numbers = hn::Add(hn::Iota(kPlaces, 0), hn::Set(kPlaces, static_cast<std::int32_t>(first)));
+    const auto which = hn::RebindMask(kPlaces, others);
+    hn::StoreU(hn::Compress(numbers, which), kPlaces, b + count);
+    count += hn::CountTrue(kPlaces, which);
   }
+  bool has_room() const { return count + kLanes <= kRoom; }
   HWY_INLINE void finish() {
     constexpr Places kPlaces;
     hn::StoreU(hn::Zero(kPlaces), kPlaces, a + count);
     hn::StoreU(hn::Zero(kPlaces), kPlaces, b + count);
   }
 };
+
+// Of triangles of a register of one block and a register of another, by their places there.
+using PlacePairs = PairList<kLanes * kLanes>;
 
 // Lane k: triangle j + k of `other` has a corner where one of `block` has one at rest.
 HWY_INLINE hn::Mask<Floats> sharing(const Block& block, std::size_t one, const Block& other, std::size_t j) {
@@ -82,7 +93,7 @@ HWY_INLINE void find_places(const Block& block, std::size_t i, const Block& othe
       const auto later = hn::Gt(triangles, hn::Set(kTriangles, block.triangles[one]));
       apart = hn::Or(apart, hn::Not(hn::RebindMask(kFloats, later)));
     }
-    out.add(one - i, hn::AndNot(apart, used));
+    out.add(one - i, 0, hn::AndNot(apart, used));
   }
   out.finish();
 }
@@ -132,14 +143,10 @@ HWY_INLINE bool pair_triangles(const Block& block, const Block& other, bool neig
   return false;
 }
 
-// Two leaves whose boxes touch; or one, with itself.
+// Two leaves that are loaded; or one, with itself.
 template <bool kFirst>
 HWY_NOINLINE bool pair_leaves(const ContactScene& scene, std::size_t a, std::size_t b, ContactCollector& collector) {
-  if (scene.positions != nullptr) {
-    gather(scene, a);
-    gather(scene, b);
-  }
-  const BoxProbe probe(box_at(scene.leaves, b));
+  const BoxProbe probe(box_of_span(scene, b));
   const std::size_t count_a = scene.surface->leaves.data[a].triangle_count;
   const std::size_t count_b = scene.surface->leaves.data[b].triangle_count;
   Block block, other;
@@ -160,65 +167,83 @@ HWY_NOINLINE bool pair_leaves(const ContactScene& scene, std::size_t a, std::siz
   return false;
 }
 
-// One leaf against those of a sphere: leaves [first, end).
+// Of leaves, waiting to be decided together.
+struct LeafPairs : PairList<512> {
+  Pair spheres{~0U, ~0U};  // whose leaves were paired last
+  bool touch = false;      // do they?
+};
+
+// Loads the leaves that are listed, and pairs those that then still seem to touch; of each two spheres only until a
+// contact, where the first one is all that is asked for.
 template <bool kFirst>
-HWY_INLINE bool pair_leaf(const ContactScene& scene, std::size_t leaf, std::size_t first, std::size_t end,
-                          ContactCollector& collector) {
-  const BoxProbe probe(box_at(scene.leaves, leaf));
-  for (std::size_t j = first; j < end; j += kLanes) {
-    for (std::uint64_t bits = probe.touching(scene.leaves, j, end - j); bits != 0; bits &= bits - 1) {
-      if (pair_leaves<kFirst>(scene, leaf, j + lowest_bit(bits), collector)) {
-        return true;
+HWY_NOINLINE void decide_leaves(const ContactScene& scene, LeafPairs& list, ContactCollector& collector) {
+  const auto load_all = [&](const std::int32_t* side) HWY_ATTR {
+    for (std::size_t k = 0; k < list.count; ++k) {
+      const auto leaf = static_cast<std::size_t>(side[k]);
+      if (scene.is_loaded[leaf] == 0) {
+        load(scene, leaf);
       }
     }
+  };
+  const auto keep = [&](const auto& touch) HWY_ATTR {
+    std::size_t left = 0;
+    for (std::size_t k = 0; k < list.count; ++k) {
+      const std::int32_t a = list.a[k], b = list.b[k];
+      list.a[left] = a;
+      list.b[left] = b;
+      left += touch(static_cast<std::size_t>(a), static_cast<std::size_t>(b)) ? 1 : 0;
+    }
+    list.count = left;
+  };
+  load_all(list.a);
+  keep([&](std::size_t a, std::size_t b) HWY_ATTR { return box_of_span(scene, a).touches(box_at(scene.leaves, b)); });
+  load_all(list.b);
+  keep([&](std::size_t a, std::size_t b) HWY_ATTR { return spans_touch(scene, a, b); });
+  for (std::size_t k = 0; k < list.count; ++k) {
+    const auto a = static_cast<std::size_t>(list.a[k]), b = static_cast<std::size_t>(list.b[k]);
+    const Pair spheres{scene.surface->leaves.data[a].sphere, scene.surface->leaves.data[b].sphere};
+    if (spheres.a != list.spheres.a || spheres.b != list.spheres.b) {
+      begin_spheres(collector, spheres);
+      list.spheres = spheres;
+      list.touch = false;
+    }
+    if (!kFirst || !list.touch) {
+      list.touch |= pair_leaves<kFirst>(scene, a, b, collector);
+    }
   }
-  return false;
+  list.count = 0;
 }
 
-// The same from bones: what their balls do not part is skinned.
+// One leaf against the leaves [first, end).
 template <bool kFirst>
-HWY_INLINE bool pair_ball(const ContactScene& scene, std::size_t leaf, std::size_t first, std::size_t end,
-                          ContactCollector& collector) {
-  const BallProbe balls(scene, leaf);
-  BoxProbe probe(box_at(scene.leaves, leaf));
+HWY_INLINE void list_leaf(const ContactScene& scene, std::size_t leaf, std::size_t first, std::size_t end,
+                          LeafPairs& list, ContactCollector& collector) {
+  constexpr Floats kFloats;
+  const BoxProbe boxes(box_at(scene.leaves, leaf));
   for (std::size_t j = first; j < end; j += kLanes) {
-    std::uint64_t bits = probe.touching(scene.leaves, j, end - j);
-    bits &= bits == 0 ? 0 : balls.touching(scene, j);
-    if (bits != 0 && scene.is_loaded[leaf] == 0) {
-      skin(scene, leaf);
-      probe = BoxProbe(box_at(scene.leaves, leaf));
-      bits &= probe.touching(scene.leaves, j, end - j);
+    auto apart = boxes.misses(scene.leaves, j);
+    if (scene.has_balls) {
+      apart = hn::Or(apart, BallProbe(scene, leaf).misses(scene, j));
     }
-    for (; bits != 0; bits &= bits - 1) {
-      const std::size_t other = j + lowest_bit(bits);
-      skin(scene, other);
-      if (box_at(scene.leaves, leaf).touches(box_at(scene.leaves, other))) {
-        if (pair_leaves<kFirst>(scene, leaf, other, collector)) {
-          return true;
-        }
-      }
+    list.add(leaf, j, hn::AndNot(apart, hn::FirstN(kFloats, end - j)));
+    if (!list.has_room()) {
+      decide_leaves<kFirst>(scene, list, collector);
     }
   }
-  return false;
 }
 
 // The leaves of one sphere.
-HWY_INLINE void pair_within(const ContactScene& scene, std::size_t sphere, ContactCollector& collector) {
+HWY_INLINE void list_within(const ContactScene& scene, std::size_t sphere, LeafPairs& list,
+                            ContactCollector& collector) {
   const std::size_t end = scene.first_leaf[sphere + 1];
   for (std::size_t leaf = scene.first_leaf[sphere]; leaf < end; ++leaf) {
-    if (scene.positions != nullptr) {
-      pair_leaves<false>(scene, leaf, leaf, collector);
-      pair_leaf<false>(scene, leaf, leaf + 1, end, collector);
-    } else {
-      skin(scene, leaf);
-      pair_leaves<false>(scene, leaf, leaf, collector);
-      pair_ball<false>(scene, leaf, leaf + 1, end, collector);
-    }
+    list_leaf<false>(scene, leaf, leaf, end, list, collector);
   }
 }
 
 template <bool kFirst>
-HWY_INLINE void pair_spheres(const ContactScene& scene, std::size_t a, std::size_t b, ContactCollector& collector) {
+HWY_INLINE void list_spheres(const ContactScene& scene, std::size_t a, std::size_t b, LeafPairs& list,
+                             ContactCollector& collector) {
   const std::size_t end_a = scene.first_leaf[a + 1], first_b = scene.first_leaf[b], end_b = scene.first_leaf[b + 1];
   const BoxProbe probe_a(box_at(scene.spheres, a));
   if (end_b - first_b <= kLanes && probe_a.touching(scene.leaves, first_b, end_b - first_b) == 0) {
@@ -227,11 +252,7 @@ HWY_INLINE void pair_spheres(const ContactScene& scene, std::size_t a, std::size
   const BoxProbe probe_b(box_at(scene.spheres, b));
   for (std::size_t i = scene.first_leaf[a]; i < end_a; i += kLanes) {
     for (std::uint64_t bits = probe_b.touching(scene.leaves, i, end_a - i); bits != 0; bits &= bits - 1) {
-      const std::size_t leaf = i + lowest_bit(bits);
-      if (scene.positions != nullptr ? pair_leaf<kFirst>(scene, leaf, first_b, end_b, collector)
-                                     : pair_ball<kFirst>(scene, leaf, first_b, end_b, collector)) {
-        return;
-      }
+      list_leaf<kFirst>(scene, i + lowest_bit(bits), first_b, end_b, list, collector);
     }
   }
 }
@@ -243,69 +264,88 @@ HWY_NOINLINE void bound_sphere(const ContactScene& scene, std::size_t sphere) {
   }
   scene.is_bounded[sphere] = 1;
   for (std::size_t i = scene.first_leaf[sphere]; i < scene.first_leaf[sphere + 1]; ++i) {
-    if (scene.positions != nullptr) {
-      put_box(scene.leaves, i, box_of_leaf(scene, scene.surface->leaves.data[i]));
-    } else {
-      skin(scene, i);
-    }
+    put_box(scene.leaves, i, box_of_leaf(scene, scene.surface->leaves.data[i]));
   }
   unite_leaves(scene, sphere);
 }
 
+// Boxes of all leaves and spheres.
+HWY_NOINLINE void bound_all(const ContactScene& scene) {
+  if (scene.has_balls) {
+    bound_leaves_by_bones(scene);
+  } else {
+    bound_leaves(scene);
+  }
+  for (std::size_t s = 0; s < scene.sphere_count; ++s) {
+    unite_leaves(scene, s);
+  }
+}
+
 bool touch(const ContactScene& scene, std::size_t a, std::size_t b, ContactCollector& collector) {
-  bound_sphere(scene, a);
-  bound_sphere(scene, b);
-  const Box box_b = box_at(scene.spheres, b);
-  if (!box_at(scene.spheres, a).touches(box_b)) {
+  if (!scene.has_balls) {
+    bound_sphere(scene, a);
+    bound_sphere(scene, b);
+  }
+  if (!box_at(scene.spheres, a).touches(box_at(scene.spheres, b))) {
     return false;
   }
-  const BoxProbe probe(box_b);
-  const std::size_t end_a = scene.first_leaf[a + 1], first_b = scene.first_leaf[b], end_b = scene.first_leaf[b + 1];
-  for (std::size_t i = scene.first_leaf[a]; i < end_a; i += kLanes) {
-    for (std::uint64_t bits = probe.touching(scene.leaves, i, end_a - i); bits != 0; bits &= bits - 1) {
-      if (pair_leaf<true>(scene, i + lowest_bit(bits), first_b, end_b, collector)) {
-        return true;
-      }
-    }
-  }
-  return false;
+  LeafPairs list;
+  list_spheres<true>(scene, a, b, list, collector);
+  decide_leaves<true>(scene, list, collector);
+  return list.touch;
 }
 
 HWY_INLINE bool is_enabled(const ContactScene& scene, std::size_t sphere) {
   return scene.disabled.size == 0 || !test_bit(scene.disabled, sphere);
 }
 
+// Of the spheres from `first` on those before b that the scope pairs with b.
+HWY_INLINE hn::Mask<Floats> paired(const ContactScene& scene, std::size_t first, std::size_t b) {
+  const std::uint64_t ignored = bits_at(scene.ignored.data, scene.ignored.size, ignored_bit(first, b));
+  std::uint64_t bits = (scene.neighbours ? ignored : 0) | (scene.apart ? ~ignored : 0);
+  if (scene.disabled.size > 0) {
+    bits &= ~bits_at(scene.disabled.data, scene.disabled.size, first);
+  }
+  const std::size_t count = b - first;
+  bits &= ~std::uint64_t{0} >> (64 - (count < kLanes ? count : kLanes));
+  return mask_of(bits);
+}
+
+// Spheres, waiting for their leaves to be paired.
+using SpherePairs = PairList<512>;
+
+template <bool kFirst>
+HWY_NOINLINE void pair_spheres(const ContactScene& scene, SpherePairs& spheres, LeafPairs& leaves,
+                               ContactCollector& collector) {
+  for (std::size_t k = 0; k < spheres.count; ++k) {
+    list_spheres<kFirst>(scene, static_cast<std::size_t>(spheres.b[k]), static_cast<std::size_t>(spheres.a[k]), leaves,
+                         collector);
+  }
+  spheres.count = 0;
+}
+
 template <bool kFirst>
 HWY_INLINE void find(const ContactScene& scene, ContactCollector& collector) {
-  if (scene.positions != nullptr) {
-    bound_leaves(scene);
-  } else {
-    bound_balls(scene);
-  }
-  for (std::size_t s = 0; s < scene.sphere_count; ++s) {
-    unite_leaves(scene, s);
-  }
-  for (std::size_t a = 0; a < scene.sphere_count; ++a) {
-    if (!is_enabled(scene, a)) {
+  bound_all(scene);
+  SpherePairs spheres;
+  LeafPairs leaves;
+  for (std::size_t b = 0; b < scene.sphere_count; ++b) {
+    if (!is_enabled(scene, b)) {
       continue;
     }
-    const auto sphere = static_cast<std::uint32_t>(a);
     if (scene.neighbours) {
-      begin_spheres(collector, {sphere, sphere});
-      pair_within(scene, a, collector);
+      list_within(scene, b, leaves, collector);
     }
-    const BoxProbe probe(box_at(scene.spheres, a));
-    for (std::size_t first = a + 1; first < scene.sphere_count; first += kLanes) {
-      std::uint64_t bits = probe.touching(scene.spheres, first, scene.sphere_count - first);
-      for (; bits != 0; bits &= bits - 1) {
-        const std::size_t b = first + lowest_bit(bits);
-        if (is_enabled(scene, b) && (test_bit(scene.ignored, ignored_bit(a, b)) ? scene.neighbours : scene.apart)) {
-          begin_spheres(collector, {sphere, static_cast<std::uint32_t>(b)});
-          pair_spheres<kFirst>(scene, a, b, collector);
-        }
+    const BoxProbe probe(box_at(scene.spheres, b));
+    for (std::size_t first = 0; first < b; first += kLanes) {
+      spheres.add(b, first, hn::AndNot(probe.misses(scene.spheres, first), paired(scene, first, b)));
+      if (!spheres.has_room()) {
+        pair_spheres<kFirst>(scene, spheres, leaves, collector);
       }
     }
   }
+  pair_spheres<kFirst>(scene, spheres, leaves, collector);
+  decide_leaves<kFirst>(scene, leaves, collector);
 }
 
 void find_all(const ContactScene& scene, ContactCollector& collector) { find<false>(scene, collector); }
@@ -322,6 +362,7 @@ namespace {
 SPHERECHAIN_KERNELS(find_all);
 SPHERECHAIN_KERNELS(find_first);
 SPHERECHAIN_KERNELS(touch);
+SPHERECHAIN_KERNELS(bound_all);
 
 }  // namespace
 
@@ -332,6 +373,8 @@ void find_candidates(Target resolved, const ContactScene& scene, ContactCollecto
 void find_spheres(Target resolved, const ContactScene& scene, ContactCollector& collector) {
   find_first_kernels[index_of(resolved)](scene, collector);
 }
+
+void bound_leaves(Target resolved, const ContactScene& scene) { bound_all_kernels[index_of(resolved)](scene); }
 
 bool skins_touch(Target resolved, const ContactScene& scene, Pair spheres, ContactCollector& collector) {
   return touch_kernels[index_of(resolved)](scene, spheres.a, spheres.b, collector);

@@ -16,7 +16,7 @@ namespace spherechain {
 // Of some pairs of spheres, those whose skins intersect: a triangle of the one's surrounding region has a point in
 // common with one of the other's. Exactly, as TriangleContactJob decides it, with its exceptions for neighbouring
 // triangles and for those that intersect in the rest pose; a pair is done with at its first contact, and only the
-// vertices of the spheres named are read or skinned.
+// vertices of the spheres named are read or skinned. With bones all leaves are bounded first, once a run.
 //
 // Made for the pairs that DetectJob reports: spheres are an alarm, this is what is true of it. What spheres miss it
 // does not find; DetectSkinJob does.
@@ -30,8 +30,8 @@ struct SPHERECHAIN_API ConfirmJob {
   const float* positions = nullptr;  // deformed vertices in the source's order, x y z after another; or null
   std::size_t vertex_count = 0;      // at least asset->info().source_vertex_count
   std::size_t stride = 12;           // bytes from one vertex to the next; a multiple of 4, at least 12
-  BoneMatrices bones;                // without positions: as in RefitBonesJob
-  Span<const float> morph_weights;   // without positions: as in RefitBonesJob
+  BoneMatrices bones;                // as in RefitBonesJob; beside positions they may be null
+  Span<const float> morph_weights;   // with bones: as in RefitBonesJob
   Target target = Target::kBest;
   Span<const Pair> candidates;  // two spheres each, not the same one; in any order, ignored ones are answered too
   TriangleContactContext* context = nullptr;  // required

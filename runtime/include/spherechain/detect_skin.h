@@ -32,8 +32,8 @@ struct SPHERECHAIN_API DetectSkinJob {
   const float* positions = nullptr;  // deformed vertices in the source's order, x y z after another; or null
   std::size_t vertex_count = 0;      // at least asset->info().source_vertex_count
   std::size_t stride = 12;           // bytes from one vertex to the next; a multiple of 4, at least 12
-  BoneMatrices bones;                // without positions: as in RefitBonesJob
-  Span<const float> morph_weights;   // without positions: as in RefitBonesJob
+  BoneMatrices bones;                // as in RefitBonesJob; beside positions they may be null
+  Span<const float> morph_weights;   // with bones: as in RefitBonesJob
   Target target = Target::kBest;
   const Filter* filter = nullptr;             // null: the asset's ignored pairs; padding is of no effect
   TriangleContactContext* context = nullptr;  // required

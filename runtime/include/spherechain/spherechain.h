@@ -501,14 +501,15 @@ typedef struct sc_sphere_contact {
 } sc_sphere_contact;
 
 /* All pairs of triangles that intersect, none else, decided exactly, but for those that share a position at rest or
- * intersect there. Spheres and radii play no part. From deformed vertices, or from bones where `positions` is null. */
+ * intersect there. Spheres and radii play no part. From deformed vertices, or from bones where `positions` is null;
+ * from both, bones that give those very positions but for rounding, for less than from vertices alone. */
 typedef struct sc_triangle_contact_job {
   size_t struct_size;
   const sc_asset* asset;
   const float* positions;     /* deformed vertices in the source's order, x y z after another; or null */
   size_t vertex_count;        /* at least info.source_vertex_count */
   size_t stride;              /* bytes from one vertex to the next; a multiple of 4, at least 12 */
-  sc_bone_matrices bones;     /* without positions: as in sc_refit_bones_job */
+  sc_bone_matrices bones;     /* as in sc_refit_bones_job; beside positions they may be null */
   const float* morph_weights; /* null where nothing morphs */
   size_t morph_weight_count;  /* 0, or at least info.morph_count */
   sc_target target;
@@ -539,8 +540,8 @@ SPHERECHAIN_API size_t sc_triangle_contact_scratch_words(const sc_asset* asset);
  * SC_UNSUPPORTED_TARGET, SC_BAD_FILTER, SC_MISALIGNED, SC_SHARED_MEMORY. */
 SPHERECHAIN_API sc_status sc_triangle_contacts(sc_triangle_contact_job* job);
 
-/* Which spheres' skins intersect: the spheres of sc_triangle_contacts' contacts between spheres that are not ignored, for
- * less. Whether spheres touch plays no part. The pose as above. */
+/* Which spheres' skins intersect: the spheres of sc_triangle_contacts' contacts between spheres that are not ignored,
+ * for less. Whether spheres touch plays no part. The pose as above. */
 typedef struct sc_detect_skin_job {
   size_t struct_size;
   const sc_asset* asset;
@@ -559,10 +560,10 @@ typedef struct sc_detect_skin_job {
   size_t pair_capacity;
   size_t pair_count; /* out: those there are, also after SC_OVERFLOW */
 } sc_detect_skin_job;
-#define SC_DETECT_SKIN_JOB_INIT                                                                                      \
-  {                                                                                                                  \
-    sizeof(sc_detect_skin_job), NULL, NULL, 0, 12, {NULL, 0, 48, SC_ROW_MAJOR_3X4, 0}, NULL, 0, SC_TARGET_BEST, 0,   \
-        NULL, NULL, 0, NULL, 0, 0                                                                                    \
+#define SC_DETECT_SKIN_JOB_INIT                                                                                    \
+  {                                                                                                                \
+    sizeof(sc_detect_skin_job), NULL, NULL, 0, 12, {NULL, 0, 48, SC_ROW_MAJOR_3X4, 0}, NULL, 0, SC_TARGET_BEST, 0, \
+        NULL, NULL, 0, NULL, 0, 0                                                                                  \
   }
 
 /* As sc_triangle_contacts. */

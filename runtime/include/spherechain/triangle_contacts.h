@@ -73,9 +73,12 @@ struct SPHERECHAIN_API TriangleContactContext {
 // forty times as long (docs/performance.md), for all that lies side by side has to be told apart.
 //
 // The positions are what the caller gives; or, where `positions` is null, what the job skins from bones, and then only
-// of the leaves that could touch another. Any position that is not finite makes its triangles intersect nothing;
-// matrices or weights that are not finite bound nothing, so contacts from them may be missing, and differ between
-// targets. Else the contacts are the same on every target.
+// of the leaves that could touch another. Who gives positions and bones spares the job reading all positions: leaves
+// are bounded by the bones. Then each position must be where its weights of the bones put it, to roundings of single
+// precision in whatever order: within (2 N + 8) u Q of there, in cover.h's words. What is not (cloth, corrected shapes,
+// weights of fewer bits) may touch unnoticed; what is found is true of the positions even so. Any position that is not
+// finite makes its triangles intersect nothing; matrices or weights that are not finite bound nothing, so contacts from
+// them may be missing, and differ between targets. Else the contacts are the same on every target.
 //
 // Fill in the fields and call run(). Allocates nothing, takes no lock; jobs with other outputs and contexts may run at
 // the same time.
@@ -84,8 +87,8 @@ struct SPHERECHAIN_API TriangleContactJob {
   const float* positions = nullptr;  // deformed vertices in the source's order, x y z after another; or null
   std::size_t vertex_count = 0;      // at least asset->info().source_vertex_count
   std::size_t stride = 12;           // bytes from one vertex to the next; a multiple of 4, at least 12
-  BoneMatrices bones;                // without positions: as in RefitBonesJob
-  Span<const float> morph_weights;   // without positions: as in RefitBonesJob
+  BoneMatrices bones;                // as in RefitBonesJob; beside positions they may be null
+  Span<const float> morph_weights;   // with bones: as in RefitBonesJob
   Target target = Target::kBest;
   const Filter* filter = nullptr;             // null: the asset's ignored pairs
   ContactScope scope = ContactScope::kApart;  // neighbours' contacts are a class of their own

@@ -108,6 +108,10 @@ TEST_CASE("the skin's pairs are the spheres of all triangle contacts, from verti
     const std::vector<float> positions = human.deformed(deformation), palette = baker::bone_palette(asset, deformation);
     const auto by_vertices = [&](auto& job) { set_pose(job, positions); };
     const auto by_bones = [&](auto& job) { job.bones = {palette.data(), asset.bone_count()}; };
+    const auto by_both = [&](auto& job) {
+      by_vertices(job);
+      by_bones(job);
+    };
     const std::vector<Pair> expected = contact_spheres(asset, nullptr, by_vertices),
                             expected_of_bones = contact_spheres(asset, nullptr, by_bones);
     total += expected.size();
@@ -115,6 +119,7 @@ TEST_CASE("the skin's pairs are the spheres of all triangle contacts, from verti
       CAPTURE(to_string(target));
       CHECK(skin_pairs(asset, nullptr, target, by_vertices) == expected);
       CHECK(skin_pairs(asset, nullptr, target, by_bones) == expected_of_bones);
+      CHECK(skin_pairs(asset, nullptr, target, by_both) == expected);
     }
   }
   CHECK(total > 20);
@@ -178,6 +183,10 @@ TEST_CASE("confirmed are the pairs of spheres with a triangle contact, from vert
     const std::vector<float> positions = human.deformed(deformation), palette = baker::bone_palette(asset, deformation);
     const auto by_vertices = [&](auto& job) { set_pose(job, positions); };
     const auto by_bones = [&](auto& job) { job.bones = {palette.data(), asset.bone_count()}; };
+    const auto by_both = [&](auto& job) {
+      by_vertices(job);
+      by_bones(job);
+    };
     const std::vector<Pair> expected = expected_pairs(asset, every, by_vertices),
                             expected_of_bones = expected_pairs(asset, every, by_bones);
     total += expected.size();
@@ -185,6 +194,7 @@ TEST_CASE("confirmed are the pairs of spheres with a triangle contact, from vert
       CAPTURE(to_string(target));
       CHECK(confirmed_pairs(asset, every, target, by_vertices) == expected);
       CHECK(confirmed_pairs(asset, every, target, by_bones) == expected_of_bones);
+      CHECK(confirmed_pairs(asset, every, target, by_both) == expected);
     }
     // Whatever else is asked about.
     for (const Pair& pair : expected) CHECK(confirmed_pairs(asset, {pair}, Target::kBest, by_vertices).size() == 1);

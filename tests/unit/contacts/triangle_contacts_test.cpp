@@ -100,7 +100,8 @@ TEST_CASE("the contacts of a body in motion are CGAL's: none missing, none extra
   CHECK(total > 1000);
 }
 
-TEST_CASE("from bones the contacts are CGAL's of the positions the runtime skins, on every target") {
+TEST_CASE(
+    "from bones, and from them and vertices, the contacts are CGAL's of what the runtime skins, on every target") {
   const MovingHuman& human = moving_human();
   const Asset asset = human.asset();
   std::size_t total = 0;
@@ -125,6 +126,8 @@ TEST_CASE("from bones the contacts are CGAL's of the positions the runtime skins
       CHECK(run(job).pairs == expected);
       TriangleContactJob from_vertices = job_of(asset, positions);
       from_vertices.target = target;
+      CHECK(run(from_vertices).pairs == expected);
+      from_vertices.bones = skin.bones;
       CHECK(run(from_vertices).pairs == expected);
     }
   }
