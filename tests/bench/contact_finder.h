@@ -53,7 +53,7 @@ struct ContactMesh {
 
 using ContactFinders = std::vector<std::unique_ptr<ContactFinder>>;
 
-// From vertices and from bones.
+// From vertices, from bones and from both.
 ContactFinders runtime_contact_finders(const ContactMesh& mesh);
 ContactFinders cgal_contact_finders(const ContactMesh& mesh);
 ContactFinders embree_contact_finders(const ContactMesh& mesh);

@@ -9,9 +9,10 @@ namespace {
 
 class RuntimeFinder : public ContactFinder {
  public:
-  RuntimeFinder(const Asset& asset, bool from_bones)
-      : ContactFinder(from_bones ? "spherechain from bones" : "spherechain from vertices"),
-        from_bones_(from_bones),
+  RuntimeFinder(const Asset& asset, const std::string& source, bool reads_vertices, bool reads_bones)
+      : ContactFinder("spherechain from " + source),
+        reads_vertices_(reads_vertices),
+        reads_bones_(reads_bones),
         words_(TriangleContactContext::words_needed(asset)),
         pairs_(1 << 16) {
     context_.words = {words_.data(), words_.size()};
@@ -21,9 +22,10 @@ class RuntimeFinder : public ContactFinder {
   }
 
   void find(const ContactPose& pose) override {
-    if (from_bones_) {
+    if (reads_bones_) {
       job_.bones = pose.bones;
-    } else {
+    }
+    if (reads_vertices_) {
       job_.positions = pose.positions.data();
       job_.vertex_count = pose.positions.size() / 3;
     }
@@ -38,7 +40,7 @@ class RuntimeFinder : public ContactFinder {
   }
 
  private:
-  bool from_bones_;
+  bool reads_vertices_, reads_bones_;
   std::vector<std::uint64_t> words_;
   TriangleContactContext context_;
   TriangleContactJob job_;
@@ -49,8 +51,10 @@ class RuntimeFinder : public ContactFinder {
 
 ContactFinders runtime_contact_finders(const ContactMesh& mesh) {
   ContactFinders out;
-  out.push_back(std::make_unique<RuntimeFinder>(mesh.character.asset, false));
-  out.push_back(std::make_unique<RuntimeFinder>(mesh.character.asset, true));
+  const Asset& asset = mesh.character.asset;
+  out.push_back(std::make_unique<RuntimeFinder>(asset, "vertices", true, false));
+  out.push_back(std::make_unique<RuntimeFinder>(asset, "bones", false, true));
+  out.push_back(std::make_unique<RuntimeFinder>(asset, "both", true, true));
   return out;
 }
 
