@@ -138,7 +138,7 @@ HWY_INLINE void put_span(const ContactScene& scene, std::size_t leaf_index) {
     high[k] = hn::Set(kFloats, -FLT_MAX);
   }
   for (std::size_t i = 0; i < slots.count; i += kLanes) {
-    // Lanes beyond the slots are given the last full register's, or slot 0's.
+    // Lanes beyond the slots are given slot 0.
     const auto used = hn::FirstN(kFloats, slots.count - i);
     const auto column = [&](std::size_t axis) HWY_ATTR {
       return hn::IfThenElse(used, hn::LoadU(kFloats, slots.axes[axis] + i), hn::Set(kFloats, slots.axes[axis][0]));
