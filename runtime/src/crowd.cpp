@@ -351,6 +351,9 @@ Status check(const CrowdJob& job, std::size_t stride) {
 }  // namespace
 
 std::size_t CrowdContext::words_needed(const Asset& asset, std::size_t task_count) noexcept {
+  if (!asset.is_open()) {
+    return 0;
+  }
   const Layout layout(asset);
   return layout.shared_words() + task_count * layout.task_words();
 }

@@ -141,7 +141,9 @@ Status check(const Asset& asset, RadiusKind radius, const Filter* filter, const 
 
 }  // namespace
 
-std::size_t DetectTable::words_needed(const Asset& asset) noexcept { return Content(nullptr, asset).size; }
+std::size_t DetectTable::words_needed(const Asset& asset) noexcept {
+  return asset.is_open() ? Content(nullptr, asset).size : 0;
+}
 
 Status prepare_detect(const Asset& asset, RadiusKind radius, const Filter* filter, DetectTable& table) noexcept {
   const Status status = check(asset, radius, filter, table);

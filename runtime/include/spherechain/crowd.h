@@ -27,7 +27,7 @@ struct SPHERECHAIN_API CrowdContext {
   Span<std::uint64_t> words;
 
   // Words needed for a job of `task_count` tasks; what they hold does not matter. A human of 73 spheres and 19 bones
-  // and one task: some 80 KiB.
+  // and one task: some 80 KiB. 0 where it is not open.
   static std::size_t words_needed(const Asset& asset, std::size_t task_count) noexcept;
 };
 

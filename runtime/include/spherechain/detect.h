@@ -18,7 +18,7 @@ namespace spherechain {
 struct SPHERECHAIN_API DetectContext {
   Span<std::uint64_t> words;
 
-  // Words needed for `asset`: one bit a pair of spheres.
+  // Words needed for `asset`: one bit a pair of spheres. 0 where it is not open.
   static std::size_t words_needed(const Asset& asset) noexcept;
 };
 
@@ -65,7 +65,7 @@ struct SPHERECHAIN_API DetectJob {
   std::size_t chain_pair_count = 0;  // M1: overlaps with their repeats; M2: equal to pair_count
   std::size_t test_count = 0;        // pairs not ignored; M1: with repeats; first_only: up to where it stopped
 
-  static std::size_t bit_words(const Asset& asset) noexcept;
+  static std::size_t bit_words(const Asset& asset) noexcept;  // 0 where the asset is not open
 
   // Uses some 24 KiB of stack. kOk; kOverflow where `pairs` or `chain_pairs` was not empty and too small (the first
   // entries are written, the counts say what is needed); kNullArgument, kNotOpen, kTooFewSpheres, kContextTooSmall,

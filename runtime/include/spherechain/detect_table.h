@@ -19,7 +19,7 @@ struct SPHERECHAIN_API DetectTable {
   Span<std::uint64_t> words;
 
   // Words needed for `asset`: some 16 a sphere; few where it has more than 128 spheres, for which a table saves
-  // nothing.
+  // nothing. 0 where it is not open.
   static std::size_t words_needed(const Asset& asset) noexcept;
 };
 

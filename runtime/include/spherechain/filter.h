@@ -23,6 +23,7 @@ struct SPHERECHAIN_API Filter {
   // negative. A radius that is not finite after it touches nothing; a near pair's reach counts with it.
   Span<float> padding;
 
+  // 0 where the asset is not open.
   static std::size_t ignored_words(const Asset& asset) noexcept;
   static std::size_t disabled_words(const Asset& asset) noexcept;
 };

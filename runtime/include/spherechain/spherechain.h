@@ -4,7 +4,8 @@
  * do the same and say more of the arithmetic behind it.
  *
  * Memory   All of it is the caller's; the library allocates nothing, keeps nothing between calls and starts no thread.
- *          Whatever must be sized can be asked first: sc_asset_size, sc_asset_get_info, the *_words functions.
+ *          Whatever must be sized can be asked first: sc_asset_size, sc_asset_get_info, the *_words functions, which
+ *          give 0 for an asset that is null or not open.
  *          Pointers that an asset gives out point into its bytes and live as long as those.
  * Units    Lengths are in the source's units (info.metres_per_unit), in the space of the vertices or matrices given.
  * Threads  Every function may run on any number of threads at once, as long as none writes what another reads: share
@@ -368,7 +369,7 @@ typedef struct sc_filter {
   size_t padding_count;
 } sc_filter;
 
-/* What the three sizes must be; 0 for a null asset. padding_count is info.sphere_count. */
+/* What the three sizes must be. padding_count is info.sphere_count. */
 SPHERECHAIN_API size_t sc_filter_ignored_words(const sc_asset* asset);
 SPHERECHAIN_API size_t sc_filter_disabled_words(const sc_asset* asset);
 
@@ -641,7 +642,7 @@ typedef struct sc_crowd_job {
         SC_TARGET_BEST, NULL, NULL, 0, NULL, NULL, 1, NULL, 0, NULL, 0, NULL, 0, 0                            \
   }
 
-/* Words for a job of `task_count` tasks; 0 for a null asset. */
+/* Words for a job of `task_count` tasks. */
 SPHERECHAIN_API size_t sc_crowd_scratch_words(const sc_asset* asset, size_t task_count);
 
 /* SC_OK, SC_OVERFLOW (the first are written), SC_NULL_ARGUMENT, SC_WRONG_ABI, SC_BAD_STRIDE, SC_NOT_IN_ASSET,

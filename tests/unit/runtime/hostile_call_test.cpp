@@ -10,6 +10,7 @@
 #include "spherechain/contacts.h"
 #include "spherechain/crowd.h"
 #include "spherechain/spherechain.h"
+#include "spherechain/triangle_contacts.h"
 #include "tiny_bones.h"
 
 namespace spherechain::test {
@@ -170,6 +171,32 @@ TEST_CASE("C: an asset that did not open has nothing, and says so") {
   CHECK(sc_asset_joint(closed, 0, &joint) == SC_NOT_OPEN);
   CHECK(sc_asset_bone(closed, 0, &bone) == SC_NOT_OPEN);
   CHECK(sc_asset_morph_name(closed, 0) == nullptr);
+}
+
+TEST_CASE("what is asked of an asset that is not open takes no words") {
+  const Asset closed;
+  CHECK(DetectContext::words_needed(closed) == 0);
+  CHECK(DetectJob::bit_words(closed) == 0);
+  CHECK(DetectTable::words_needed(closed) == 0);
+  CHECK(Filter::ignored_words(closed) == 0);
+  CHECK(Filter::disabled_words(closed) == 0);
+  CHECK(TriangleContactContext::words_needed(closed) == 0);
+  CHECK(CrowdContext::words_needed(closed, 1) == 0);
+  CHECK(CrowdContext::words_needed(closed, 0) == 0);
+
+  std::vector<std::uint64_t> memory(sc_asset_size() / 8 + 1);
+  const sc_asset* none = nullptr;
+  REQUIRE(sc_asset_open(SC_ABI_VERSION, memory.data(), 8 * memory.size(), memory.data(), 0, &none, nullptr, 0) ==
+          SC_TRUNCATED);
+  for (const sc_asset* asset : {none, reinterpret_cast<const sc_asset*>(memory.data())}) {
+    CHECK(sc_detect_scratch_words(asset) == 0);
+    CHECK(sc_detect_bit_words(asset) == 0);
+    CHECK(sc_detect_table_words(asset) == 0);
+    CHECK(sc_filter_ignored_words(asset) == 0);
+    CHECK(sc_filter_disabled_words(asset) == 0);
+    CHECK(sc_triangle_contact_scratch_words(asset) == 0);
+    CHECK(sc_crowd_scratch_words(asset, 1) == 0);
+  }
 }
 
 TEST_CASE("C: the hash of no positions is 0") {
