@@ -41,6 +41,11 @@ Status reset_filter(const Asset& asset, Filter& filter) noexcept {
   if (status != Status::kOk) {
     return status;
   }
+  const MemoryRange written[] = {range_of(filter.ignored), range_of(filter.disabled), range_of(filter.padding)};
+  const MemoryRange read[] = {range_of(asset.ignored())};
+  if (any_shared(written, read)) {
+    return Status::kSharedMemory;
+  }
   std::copy(asset.ignored().begin(), asset.ignored().end(), filter.ignored.begin());
   std::fill(filter.disabled.begin(), filter.disabled.end(), std::uint64_t{0});
   std::fill(filter.padding.begin(), filter.padding.end(), 0.0F);

@@ -187,3 +187,23 @@ TEST_CASE("a filter that does not fit, or an edit of what is not there, is refus
 }
 
 }  // namespace spherechain::test
+TEST_CASE("a filter whose buffers lie on each other, or on the asset's, is not reset") {
+  const OpenedAsset opened(random_asset(70, 1).parts);
+  const Asset& asset = opened.asset;
+  OwnedFilter owned(asset);
+  const std::vector<std::uint64_t> before(owned.ignored.size(), 5);
+  owned.ignored = before;
+  const auto is_refused = [&](auto change) {
+    Filter filter = owned.filter;
+    change(filter);
+    const Status status = reset_filter(asset, filter);
+    CHECK(owned.ignored == before);
+    return status == Status::kSharedMemory;
+  };
+  CHECK(is_refused([&](Filter& f) { f.padding.data = reinterpret_cast<float*>(owned.ignored.data()); }));
+  CHECK(is_refused([&](Filter& f) { f.disabled.data = owned.ignored.data() + owned.ignored.size() - 2; }));
+  CHECK(is_refused([&](Filter& f) { f.disabled.data = reinterpret_cast<std::uint64_t*>(owned.padding.data()); }));
+  CHECK(is_refused([&](Filter& f) { f.ignored.data = const_cast<std::uint64_t*>(asset.ignored().data); }));
+  CHECK(reset_filter(asset, owned.filter) == Status::kOk);
+}
+
