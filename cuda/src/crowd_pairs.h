@@ -38,6 +38,9 @@ SPHERECHAIN_HD void prepare_pairs(const GroupView& v, const Shared& shared, cons
     }
     if (v.has_padding) {
       sphere.w += v.paddings[i];
+      if (!kCovers && sphere.w < 0) {
+        sphere.w = NAN;  // touches nothing; a cover that is no number might touch anything, see may_touch
+      }
     }
     if (kCovers || v.has_padding) {
       shared.spheres[i * kPitch + lane].w = sphere.w;
@@ -79,10 +82,10 @@ SPHERECHAIN_HD bool touch(const Float4& p, const Float4& q, float reach) {
   return ((dx * dx + dy * dy) + dz * dz) < t * t && squared <= FLT_MAX;
 }
 
-// Covers: unless they are surely apart, which those that are not finite never are.
+// Covers: unless they are surely apart, which those that are not finite never are, or padded to below 0.
 SPHERECHAIN_HD bool may_touch(const Float4& p, const Float4& q) {
   const float dx = p.x - q.x, dy = p.y - q.y, dz = p.z - q.z, s = p.w + q.w;
-  return !((dx * dx + dy * dy) + dz * dz > s * s);
+  return !((dx * dx + dy * dy) + dz * dz > s * s) && !(p.w < 0) && !(q.w < 0);
 }
 
 SPHERECHAIN_HD void report(const GroupView& v, const Shared& shared, std::uint32_t lane, std::uint32_t a,

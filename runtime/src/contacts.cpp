@@ -6,6 +6,7 @@
 
 #include "arithmetic.h"
 #include "memory.h"
+#include "padded_radius.h"
 
 namespace spherechain {
 namespace {
@@ -17,7 +18,7 @@ constexpr float kSmallestDistance = 1e-19F;  // its square is still a normal flo
 Sphere sphere_at(const ContactJob& job, std::uint32_t i) {
   Sphere sphere = job.spheres[i];
   if (job.filter != nullptr && job.filter->padding.size > 0) {
-    sphere.radius += job.filter->padding[i];
+    sphere.radius = padded_radius(sphere.radius, job.filter->padding[i]);
   }
   return sphere;
 }

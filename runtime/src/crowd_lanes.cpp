@@ -72,6 +72,7 @@ HWY_INLINE Vector prepare(const LaneBatch& batch, bool& any_huge) {
     }
     if (batch.padding != nullptr) {
       radius = hn::Add(radius, hn::Set(kFloats, batch.padding[i]));
+      radius = hn::IfThenElse(hn::Lt(radius, hn::Zero(kFloats)), hn::NaN(kFloats), radius);  // as padded_radius.h
     }
     any_huge |= !hn::AllFalse(kFloats, hn::Gt(hn::Abs(radius), hn::Set(kFloats, kHugeRadius)));
     hn::Store(radius, kFloats, at + 3 * n);

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "overlap.h"
+#include "padded_radius.h"
 #include "pair_rows.h"
 #include "spherechain/detect.h"
 #include "triangle_bits.h"
@@ -46,7 +47,9 @@ struct Scene {
   bool is_enabled(std::size_t i) const { return disabled.size == 0 || !test_bit(disabled, i); }
   Sphere sphere(std::size_t i) const {
     Sphere s = spheres[i];
-    s.radius += padding.size == 0 ? 0.0F : padding[i];
+    if (padding.size > 0) {
+      s.radius = padded_radius(s.radius, padding[i]);
+    }
     return s;
   }
   // Padded spheres: those of the scene where nothing is padded, or in `copy`.

@@ -2,6 +2,7 @@
 // Detection, against the rule of its header pair by pair.
 #include <algorithm>
 #include <cfloat>
+#include <set>
 
 #include "fuzz_case.h"
 #include "spherechain/detect.h"
@@ -21,7 +22,9 @@ class Rule {
       : spheres_(job.spheres.data, job.spheres.data + c.n), reach_(c.n * c.n, -1.0F), out_(c.n * c.n) {
     const Filter* filter = job.filter;
     for (std::uint32_t i = 0; i < c.n; ++i) {
-      spheres_[i].radius += filter == nullptr || filter->padding.size == 0 ? 0.0F : filter->padding[i];
+      if (filter == nullptr || filter->padding.size == 0) continue;
+      spheres_[i].radius += filter->padding[i];
+      if (spheres_[i].radius < 0) gone_.insert(i);
     }
     for (const NearPair& near : c.asset.near_pairs(job.radius)) {
       reach_[near.a * c.n + near.b] = near.reach;
@@ -41,6 +44,7 @@ class Rule {
   bool is_out(std::size_t a, std::size_t b) const { return out_[a * spheres_.size() + b] != 0; }
 
   bool touch(std::size_t a, std::size_t b) const {
+    if (gone_.count(a) + gone_.count(b) > 0) return false;
     const Sphere &p = spheres_[a], &q = spheres_[b];
     const float x = p.x - q.x, y = p.y - q.y, z = p.z - q.z, s = p.radius + q.radius;
     const float d2 = (x * x + y * y) + z * z;
@@ -51,6 +55,7 @@ class Rule {
 
  private:
   std::vector<Sphere> spheres_;
+  std::set<std::size_t> gone_;  // padded to below 0
   std::vector<float> reach_;
   std::vector<std::uint8_t> out_;
 };

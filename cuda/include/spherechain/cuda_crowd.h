@@ -90,7 +90,9 @@ struct CrowdGroup {
   // Out, each may be null.
   Sphere* refitted = nullptr;  // with bones: as many an instance as the asset has, without the filter's padding
   Sphere* leaves = nullptr;    // with tables of covers: CrowdTables::leaf_count() an instance, CoverJob's balls
-  Sphere* bounds = nullptr;    // one an instance, around its spheres with the filter's padding; no numbers are left out
+  // One an instance, around its spheres with the filter's padding; no numbers are left out, and spheres padded to below
+  // 0 need not be in it.
+  Sphere* bounds = nullptr;
   std::uint32_t* counts = nullptr;  // pairs of each instance
   std::uint64_t* bits = nullptr;    // CrowdTables::bit_words() words an instance, as DetectJob::bits
 

@@ -38,7 +38,8 @@ struct Contact {
 //   point     ca + t * normal,  t = 0.5f * (max(-ra, d - rb) + min(ra, d + rb))
 //
 // Near pairs are measured like all others, by their full radii. Pairs that do not touch have no depth above 0 and no
-// severity; spheres that are not finite give figures that are not.
+// severity; spheres that are not finite give figures that are not, and one padded to below 0 a depth and a severity
+// that are no numbers. A radius below 0 without padding, which no refit gives, goes into the formulas as it is.
 //
 // Fill in the fields and call run(). Allocates nothing, takes no lock; jobs with other outputs may run at the same
 // time.

@@ -37,7 +37,8 @@ struct ChainPair {
 // for bit. With d2 = (dx*dx + dy*dy) + dz*dz, s = ra + rb:
 //   every pair   d2 < s*s  and  s*s <= FLT_MAX: what is not finite touches nothing
 //   a near pair  that, and  d2 < t*t  with  t = reach * s
-// A filter's padding is added to each radius first.
+// A filter's padding is added to each radius first: a sum below 0 touches nothing. Without padding a radius below 0,
+// which no refit gives, is taken into s as it is.
 //
 // Ask for what you need: pairs, bits, both, or neither to count. Bits alone are the cheapest, for they need no order.
 //

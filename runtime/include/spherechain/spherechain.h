@@ -365,7 +365,7 @@ typedef struct sc_filter {
   size_t ignored_words;
   uint64_t* disabled; /* bit i: sphere i touches nothing; null: all are enabled */
   size_t disabled_words;
-  float* padding; /* added to each sphere's radius; null: none */
+  float* padding; /* added to each sphere's radius; below 0 after it: touches nothing; null: none */
   size_t padding_count;
 } sc_filter;
 

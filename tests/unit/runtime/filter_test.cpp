@@ -71,7 +71,8 @@ TEST_CASE("any edits to a filter report what an asset baked that way would, on e
       } else {
         const float padding = uniform(random, -0.1F, 0.2F);
         REQUIRE(pad_sphere(opened.asset, owned.filter, a, padding) == Status::kOk);
-        padded[a].radius = spheres[a].radius + padding;
+        const float radius = spheres[a].radius + padding;
+        padded[a].radius = radius < 0 ? kNan : radius;
       }
     }
     CHECK(pairs_in(owned.ignored, n) == ignored);
@@ -186,7 +187,6 @@ TEST_CASE("a filter that does not fit, or an edit of what is not there, is refus
   CHECK(detect(asset, spheres, Method::kM2, RadiusKind::kFit, Target::kBest, &plain).status == Status::kOk);
 }
 
-}  // namespace spherechain::test
 TEST_CASE("a filter whose buffers lie on each other, or on the asset's, is not reset") {
   const OpenedAsset opened(random_asset(70, 1).parts);
   const Asset& asset = opened.asset;
@@ -207,3 +207,4 @@ TEST_CASE("a filter whose buffers lie on each other, or on the asset's, is not r
   CHECK(reset_filter(asset, owned.filter) == Status::kOk);
 }
 
+}  // namespace spherechain::test
