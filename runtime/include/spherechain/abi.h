@@ -3,7 +3,7 @@
 #pragma once
 
 // The version of the library's binary interface: it changes with every change of a struct or function that programs
-// built before cannot live with, and is the number in the shared library's name (libspherechain.so.6). Asset::open and
+// built before cannot live with, and is the number in the shared library's name, after .so. Asset::open and
 // sc_asset_open take the caller's and refuse another: kWrongAbi, SC_WRONG_ABI.
 #define SC_ABI_VERSION 6
 

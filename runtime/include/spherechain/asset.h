@@ -108,6 +108,9 @@ struct AssetInfo {
 // A verified view of an asset's bytes. It copies nothing: the bytes must outlive it, unchanged. Copying an Asset copies
 // the view. All members are const; any number of threads may read one Asset at once.
 //
+// No job may write to the bytes while they are open, or to the Asset. None finds out: kSharedMemory is of the job's own
+// buffers, and of those of the asset's tables at most that the job reads.
+//
 // What is promised for hostile bytes: open() reads only inside [data, data + size), returns a Status other than kOk, or
 // leaves an Asset every accessor and every job of the runtime can use without reading or writing out of bounds, without
 // a division by zero, an endless loop or an allocation. It promises nothing about the sense of the figures in it.

@@ -68,10 +68,10 @@ struct SPHERECHAIN_API DetectJob {
 
   static std::size_t bit_words(const Asset& asset) noexcept;  // 0 where the asset is not open
 
-  // Uses some 24 KiB of stack. kOk; kOverflow where `pairs` or `chain_pairs` was not empty and too small (the first
+  // Uses some 25 KiB of stack. kOk; kOverflow where `pairs` or `chain_pairs` was not empty and too small (the first
   // entries are written, the counts say what is needed); kNullArgument, kNotOpen, kTooFewSpheres, kContextTooSmall,
-  // kBadArgument, kUnsupportedTarget, kBadFilter, kMisaligned, kSharedMemory (what is written overlaps anything else):
-  // nothing is written, the counts keep their values.
+  // kBadArgument, kUnsupportedTarget, kBadFilter, kMisaligned, kSharedMemory (what is written overlaps another of these
+  // buffers): nothing is written, the counts keep their values.
   Status run() noexcept;
 };
 

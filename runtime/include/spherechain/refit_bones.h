@@ -81,7 +81,7 @@ struct BoneMatrices {
 //   centre  for each row m: s[j] = C[m][j] * u[j] of its first bone, u its share (x, y, z, w) of the centre; then
 //           fma(C[m][j], u[j], s[j]) of each further one; ((s[0] + s[2]) + (s[1] + s[3])) + p_ref[m]
 //
-// Fill in the fields and call run(). Allocates nothing, needs some 36 KiB of stack, takes no lock; jobs on other
+// Fill in the fields and call run(). Allocates nothing, needs some 40 KiB of stack, takes no lock; jobs on other
 // buffers may run at the same time. Fastest where the asset's bytes start at a multiple of 64.
 struct SPHERECHAIN_API RefitBonesJob {
   const Asset* asset = nullptr;     // open

@@ -6,7 +6,8 @@
  * Memory   All of it is the caller's; the library allocates nothing, keeps nothing between calls and starts no thread.
  *          Whatever must be sized can be asked first: sc_asset_size, sc_asset_get_info, the *_words functions, which
  *          give 0 for an asset that is null or not open.
- *          Pointers that an asset gives out point into its bytes and live as long as those.
+ *          Pointers that an asset gives out point into its bytes and live as long as those. While it is open nothing
+ *          may be written to its bytes or to the sc_asset; SC_SHARED_MEMORY does not tell.
  * Units    Lengths are in the source's units (info.metres_per_unit), in the space of the vertices or matrices given.
  * Threads  Every function may run on any number of threads at once, as long as none writes what another reads: share
  *          one asset and one filter, give each job outputs and scratch memory of its own.
@@ -47,7 +48,7 @@ enum {
   SC_BAD_ARGUMENT = 14,       /* an enum value or an index that does not exist */
   SC_UNSUPPORTED_TARGET = 15, /* an instruction set this build or this machine does not have */
   SC_BAD_FILTER = 16,         /* a filter's buffer has not the size the asset asks for */
-  SC_SHARED_MEMORY = 17,      /* a buffer that is written shares memory with another */
+  SC_SHARED_MEMORY = 17,      /* a buffer that is written shares memory with another of the call's */
   SC_NOT_IN_ASSET = 18,       /* of an older baker, or of a source without bones */
   SC_TOO_FEW_BONES = 19,      /* fewer bone matrices than the asset has bones */
   SC_TOO_FEW_MORPHS = 20,     /* morph weights, but fewer than the asset has morph targets */
@@ -121,7 +122,7 @@ typedef struct sc_pair {
 /* A verified view of a .sphc file's bytes, immutable. It lives in memory of the caller's and needs no closing. */
 typedef struct sc_asset sc_asset;
 
-/* Bytes of an sc_asset, some 300. */
+/* Bytes of an sc_asset: the same for any asset, and another number with another version of the library. */
 SPHERECHAIN_API size_t sc_asset_size(void);
 
 /* Verifies `size` bytes at `data`, aligned to 8, which must outlive the asset unchanged, and makes an sc_asset of the
@@ -438,7 +439,7 @@ SPHERECHAIN_API sc_status sc_prepare_detect(const sc_asset* asset, sc_radius rad
                                             uint64_t* table, size_t table_words);
 
 /* SC_OK, SC_OVERFLOW (the first entries are written), SC_NULL_ARGUMENT, SC_WRONG_ABI, SC_TOO_FEW_SPHERES,
- * SC_CONTEXT_TOO_SMALL, SC_BAD_ARGUMENT, SC_UNSUPPORTED_TARGET, SC_BAD_FILTER, SC_SHARED_MEMORY. 24 KiB of stack. */
+ * SC_CONTEXT_TOO_SMALL, SC_BAD_ARGUMENT, SC_UNSUPPORTED_TARGET, SC_BAD_FILTER, SC_SHARED_MEMORY. 25 KiB of stack. */
 SPHERECHAIN_API sc_status sc_detect(sc_detect_job* job);
 
 /* ---- What to do about it ---- */

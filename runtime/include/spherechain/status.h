@@ -24,7 +24,7 @@ enum class Status : int {
   kBadArgument = 14,        // an enum value or an index that does not exist
   kUnsupportedTarget = 15,  // this build or this machine does not have the instruction set asked for
   kBadFilter = 16,          // a Filter's buffer has not the size the asset asks for
-  kSharedMemory = 17,       // a buffer that is written shares memory with another
+  kSharedMemory = 17,       // a buffer that is written shares memory with another of the call's
   kNotInAsset = 18,         // the asset lacks the tables the job reads: of an older baker, or of a source without bones
   kTooFewBones = 19,        // fewer bone matrices than the asset has bones
   kTooFewMorphs = 20,       // morph weights, but fewer than the asset has morph targets
