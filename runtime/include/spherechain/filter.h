@@ -21,7 +21,7 @@ struct SPHERECHAIN_API Filter {
   Span<std::uint64_t> disabled;
   // Added to each sphere's radius, in the spheres' units; as many as the asset has spheres, or empty: none. May be
   // negative. A radius that is below 0 or not finite after it touches nothing; a near pair's reach counts with it. With
-  // one such radius DetectJob and CrowdJob take longer: disable what is to touch nothing.
+  // one such radius DetectJob and CrowdJob take several times as long: disable what is to touch nothing.
   Span<float> padding;
 
   // 0 where the asset is not open.
