@@ -13,30 +13,8 @@
 #include "write/write.h"
 
 namespace spherechain::baker {
-namespace {
 
 namespace fs = std::filesystem;
-
-// Two files that are one are most likely a slip; so is one of another kind in an output's place.
-void check_outputs(const BakeOptions& options) {
-  std::vector<std::pair<std::string, fs::path>> files{{"input", options.input}};
-  for (const auto& [name, file] : {std::pair("asset", &options.output), std::pair("report", &options.report),
-                                   std::pair("preview", &options.preview)}) {
-    if (file->empty()) continue;
-    check_folder(*file);
-    for (const auto& [other_name, other] : files) {
-      std::error_code ignored;
-      if (fs::equivalent(other, *file, ignored) || fs::weakly_canonical(other) == fs::weakly_canonical(*file)) {
-        throw Error(ExitCode::kUsage, *file + ": " + other_name + " and " + name + " are the same file");
-      }
-    }
-    files.emplace_back(name, *file);
-  }
-  check_replaceable(options.output, "SPHC", "an asset", options.force, 4);
-  check_replaceable(options.preview, "glTF", "a GLB file", options.force);
-}
-
-}  // namespace
 
 ExitCode run_bake(const BakeOptions& options) {
   BakeSettings settings =
@@ -46,7 +24,11 @@ ExitCode run_bake(const BakeOptions& options) {
   if (options.attachments) settings.import.attachments = true;
   if (!options.roles.empty()) settings.roles = parse_role_file(read_file(options.roles), options.roles);
   if (!fs::exists(options.input)) throw Error(ExitCode::kFile, options.input + ": no such file");
-  check_outputs(options);
+  check_outputs({{"INPUT", options.input}, {"--config", options.config}, {"--roles", options.roles}},
+                {{"-o", options.output}, {"--report", options.report}, {"--preview", options.preview}});
+  check_replaceable(options.output, "SPHC", "an asset", options.force, 4);
+  check_replaceable_json(options.report, options.force, "--force replaces it");
+  check_replaceable(options.preview, "glTF", "a GLB file", options.force);
 
   Bake result;
   std::string preview;

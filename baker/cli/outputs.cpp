@@ -8,9 +8,12 @@
 #include <filesystem>
 
 #include "mesh/error.h"
+#include "motion/sequence.h"
 #include "play/asset_file.h"
+#include "play/play.h"
 
 namespace spherechain::baker {
+namespace {
 
 namespace fs = std::filesystem;
 
@@ -25,18 +28,72 @@ void check_folder(const std::string& file) {
   }
 }
 
-void check_replaceable(const std::string& file, std::string_view magic, const std::string& kind, bool force,
-                       std::size_t offset) {
+bool same_file(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  if (fs::equivalent(a, b, error)) return true;
+  // One that is not there yet has no other mark than its place; a relative path of which nothing is there stays
+  // relative in weakly_canonical.
+  const fs::path place_a = fs::weakly_canonical(fs::absolute(a), error);
+  if (error) return false;
+  const fs::path place_b = fs::weakly_canonical(fs::absolute(b), error);
+  return !error && place_a == place_b;
+}
+
+// Does `file` hold `magic` at `offset`? So does an empty file, and one that is not there.
+bool begins_with(const std::string& file, std::string_view magic, std::size_t offset) {
   std::error_code ignored;
-  if (force || !fs::is_regular_file(file, ignored) || fs::file_size(file, ignored) == 0) return;
+  if (!fs::is_regular_file(file, ignored) || fs::file_size(file, ignored) == 0) return true;
   const std::string there = read_file(file);
   const auto same = [](char a, char b) {
     return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
   };
-  if (there.size() < offset + magic.size() ||
-      !std::equal(magic.begin(), magic.end(), there.begin() + static_cast<std::ptrdiff_t>(offset), same)) {
-    throw Error(ExitCode::kFile, file + ": exists and is not " + kind + " (--force replaces it)");
+  return there.size() >= offset + magic.size() &&
+         std::equal(magic.begin(), magic.end(), there.begin() + static_cast<std::ptrdiff_t>(offset), same);
+}
+
+void add_sequence(std::vector<CommandFile>& inputs, const char* name, const std::string& path) {
+  if (path.empty()) return;
+  inputs.push_back({name, path});
+  if (!is_sequence(path)) return;
+  for (const fs::path& mesh : sequence_files(path)) inputs.push_back({name, mesh.string()});
+}
+
+}  // namespace
+
+std::vector<CommandFile> with_motion(std::vector<CommandFile> inputs, const MotionChoice& motion) {
+  add_sequence(inputs, "--poses", motion.poses);
+  add_sequence(inputs, "--motion", motion.motion);
+  return inputs;
+}
+
+void check_outputs(const std::vector<CommandFile>& inputs, const std::vector<CommandFile>& outputs) {
+  std::vector<CommandFile> others = inputs;
+  for (const CommandFile& output : outputs) {
+    if (output.path.empty()) continue;
+    check_folder(output.path);
+    for (const CommandFile& other : others) {
+      if (!other.path.empty() && same_file(other.path, output.path)) {
+        throw Error(ExitCode::kUsage,
+                    output.path + ": " + other.name + " and " + output.name + " are the same file (name another)");
+      }
+    }
+    others.push_back(output);
   }
+}
+
+void check_replaceable(const std::string& file, std::string_view magic, const std::string& kind, bool force,
+                       std::size_t offset) {
+  if (force || begins_with(file, magic, offset)) return;
+  throw Error(ExitCode::kFile, file + ": exists and is not " + kind + " (--force replaces it)");
+}
+
+void check_replaceable_json(const std::string& file, bool force, const std::string& advice) {
+  if (force) return;
+  // The first key of what bake --report, play --json and validate --json write.
+  for (const char* start : {"{\n \"writer\":", "{\n \"backend\":", "{\n \"frames\":"}) {
+    if (begins_with(file, start, 0)) return;
+  }
+  throw Error(ExitCode::kFile, file + ": exists and is not what spherechain writes there (" + advice + ")");
 }
 
 }  // namespace spherechain::baker

@@ -3,17 +3,35 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace spherechain::baker {
 
-// What a command asks of a file it is going to write, before the work that takes seconds. They throw Error(kFile).
+struct MotionChoice;
 
-// The folder is there and writable.
-void check_folder(const std::string& file);
+// What a command asks of its files before the work that takes seconds.
+
+// A file that a command reads or writes, by the name that the usage has for it ("INPUT", "--report"). An empty path
+// stands for an option that was not given.
+struct CommandFile {
+  const char* name;
+  std::string path;
+};
+
+// `inputs` and what a motion is read from: its file, or each mesh of its sequence. Throws Error(kFile) where a sequence
+// has none.
+std::vector<CommandFile> with_motion(std::vector<CommandFile> inputs, const MotionChoice& motion);
+
+// No output is an input or another output, under whatever name or link: Error(kUsage) that names both. Each output's
+// folder is there and writable: Error(kFile).
+void check_outputs(const std::vector<CommandFile>& inputs, const std::vector<CommandFile>& outputs);
 
 // Nothing is lost to a slip: a file that is there already is of the same kind (its bytes from `offset` on are `magic`,
-// letters' case aside), or empty, or `force` is given.
+// letters' case aside), or empty, or `force` is given. Throws Error(kFile).
 void check_replaceable(const std::string& file, std::string_view magic, const std::string& kind, bool force,
                        std::size_t offset = 0);
+
+// The same for a report or a table in JSON: one of those that this tool writes. `advice` says what to do else.
+void check_replaceable_json(const std::string& file, bool force, const std::string& advice);
 
 }  // namespace spherechain::baker

@@ -94,7 +94,9 @@ class Tally {
 }  // namespace
 
 ExitCode run_play(const PlayOptions& options) {
-  if (!options.json.empty()) check_folder(options.json);
+  check_outputs(with_motion({{"ASSET", options.asset}, {"--source", options.source}}, options.motion),
+                {{"--json", options.json}});
+  check_replaceable_json(options.json, false, "delete it, or name another");
   const bool on_cuda = options.backend == "cuda";
   if (on_cuda && options.mode == "m1") throw Error(ExitCode::kUsage, "--backend cuda: has no M1 (--mode m2)");
   const Target target = choose_target(on_cuda ? "auto" : options.backend);

@@ -13,7 +13,9 @@
 namespace spherechain::baker {
 
 ExitCode run_validate(const ValidateOptions& options) {
-  if (!options.json.empty()) check_folder(options.json);
+  check_outputs(with_motion({{"ASSET", options.asset}, {"--source", options.source}}, options.motion),
+                {{"--json", options.json}});
+  check_replaceable_json(options.json, false, "delete it, or name another");
   ValidateSettings settings;
   settings.radius = options.radius == "fit" ? RadiusKind::kFit : RadiusKind::kDetect;
   settings.method = options.mode == "m1" ? Method::kM1 : Method::kM2;

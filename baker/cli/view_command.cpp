@@ -44,7 +44,12 @@ std::string read_validation(const std::string& file) {
 }  // namespace
 
 ExitCode run_view(const ViewOptions& options) {
-  check_folder(options.output);
+  check_outputs(with_motion({{"ASSET", options.asset},
+                             {"--source", options.source},
+                             {"--report", options.report},
+                             {"--validation", options.validation}},
+                            options.motion),
+                {{"-o", options.output}});
   check_replaceable(options.output, "<!doctype html", "a page", options.force);
   PageOptions page;
   page.template_file = viewer_template().string();

@@ -2,12 +2,8 @@
 // The command line as pipelines use it: exit codes, one-line errors, JSON, and what is left on disk.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
-#include <sys/wait.h>
 
 #include <algorithm>
-#include <cstdio>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -15,6 +11,7 @@
 #include "human.h"
 #include "spherechain/simd.h"
 #include "temporary_folder.h"
+#include "tool.h"
 
 namespace fs = std::filesystem;
 using nlohmann::json;
@@ -22,46 +19,13 @@ using spherechain::baker::kTorso;
 
 namespace {
 
-struct Run {
-  int code;
-  std::string out, error;
-};
-
-std::string contents(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-Run run(const std::string& arguments, const std::string& environment = {}) {
-  const TemporaryFolder folder;
-  const fs::path out = folder.path / "out", error = folder.path / "error";
-  const int status = std::system(
-      fmt::format("{} {} {} >{} 2>{}", environment, SPHERECHAIN_TOOL, arguments, out.string(), error.string()).c_str());
-  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents(out), contents(error)};
-}
-
-// One line, "spherechain: error: ...", that mentions what it should.
-void check_error(const Run& run, int code, const std::vector<std::string>& parts) {
-  CHECK_MESSAGE(run.code == code, run.error);
-  CHECK(run.error.rfind("spherechain: error: ", 0) == 0);
-  CHECK(std::count(run.error.begin(), run.error.end(), '\n') == 1);
-  for (const std::string& part : parts) CHECK_MESSAGE(run.error.find(part) != std::string::npos, run.error);
-}
-
-std::size_t files_in(const fs::path& folder) {
-  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
-}
-
-// The human, baked by the tool once a run.
-struct BakedFiles {
-  TemporaryFolder folder;
-  fs::path asset = folder.path / "human.sphc", report = folder.path / "report.json";
-  Run bake = run(fmt::format("bake {} -o {} --report {}", kHumanFile, asset.string(), report.string()));
-};
-const BakedFiles& baked_files() {
-  static const BakedFiles files;
-  return files;
-}
+using tool::BakedFiles;
+using tool::baked_files;
+using tool::check_error;
+using tool::contents;
+using tool::files_in;
+using tool::Run;
+using tool::run;
 
 std::string pose(const char* name) { return std::string(SPHERECHAIN_SAMPLES) + "/poses/" + name; }
 

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the command line writes over, and what it does not.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "human.h"
+#include "temporary_folder.h"
+#include "tool.h"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+using tool::baked_files;
+using tool::check_error;
+using tool::contents;
+using tool::files_in;
+using tool::run;
+
+// A command must end with 2, name both options, and leave all files of the folder as they are.
+void check_refused(const fs::path& folder, const std::string& arguments, const char* input, const char* output) {
+  CAPTURE(arguments);
+  std::vector<std::pair<fs::path, std::string>> before;
+  for (const fs::directory_entry& file : fs::directory_iterator(folder)) {
+    if (file.is_regular_file()) before.emplace_back(file.path(), contents(file.path()));
+  }
+  const std::size_t count = files_in(folder);
+  check_error(run(arguments), 2, {std::string(input) + " and " + output + " are the same file"});
+  for (const auto& [path, bytes] : before) CHECK(contents(path) == bytes);
+  CHECK(files_in(folder) == count);
+}
+
+// Nothing in it matters: what is refused for its name is refused before it is read.
+std::string touch(const TemporaryFolder& folder, const char* name) { return folder.write(name, "precious").string(); }
+
+}  // namespace
+
+TEST_CASE("no command writes over what it reads, with --force neither") {
+  const TemporaryFolder folder;
+  const std::string source = touch(folder, "human.glb"), asset = touch(folder, "human.sphc"),
+                    poses = touch(folder, "poses.json"), motion = touch(folder, "motion.bvh"),
+                    report = folder.write("report.json", "{}").string(),
+                    validation = folder.write("validation.json", "{}").string(),
+                    settings = folder.write("settings.json", "{}").string(), page = touch(folder, "page.html");
+  const auto refused = [&](const std::string& arguments, const char* input, const char* output) {
+    check_refused(folder.path, arguments, input, output);
+  };
+  const std::string bake = fmt::format("bake {} --force -o ", source), out = (folder.path / "out").string();
+  refused(bake + source, "INPUT", "-o");
+  refused(fmt::format("{}{} --report {}", bake, out, source), "INPUT", "--report");
+  refused(fmt::format("{}{} --preview {}", bake, out, source), "INPUT", "--preview");
+  for (const char* option : {"--config", "--roles"}) {
+    for (const char* output : {"--report", "--preview"}) {
+      refused(fmt::format("{}{} {} {} {} {}", bake, out, option, settings, output, settings), option, output);
+    }
+    refused(fmt::format("{}{} {} {}", bake, settings, option, settings), option, "-o");
+  }
+  refused(fmt::format("{}{} --report {}", bake, out, out), "-o", "--report");
+
+  for (const char* command : {"play", "validate"}) {
+    const std::string start = fmt::format("{} {} --source {} --json ", command, asset, source);
+    refused(start + asset, "ASSET", "--json");
+    refused(start + source, "--source", "--json");
+    refused(fmt::format("{}{} --poses {}", start, poses, poses), "--poses", "--json");
+    refused(fmt::format("{}{} --motion {}", start, motion, motion), "--motion", "--json");
+  }
+
+  const std::string view = fmt::format("view {} --source {} --force -o ", asset, source);
+  refused(view + asset, "ASSET", "-o");
+  refused(view + source, "--source", "-o");
+  refused(fmt::format("{}{} --report {}", view, report, report), "--report", "-o");
+  refused(fmt::format("{}{} --validation {}", view, validation, validation), "--validation", "-o");
+  refused(fmt::format("{}{} --poses {}", view, poses, poses), "--poses", "-o");
+}
+
+TEST_CASE("no command writes over a mesh of the sequence it plays, listed or in a folder") {
+  const TemporaryFolder folder;
+  fs::create_directory(folder.path / "frames");
+  const std::string mesh = folder.write("frames/1.obj", "precious").string();
+  const std::string list = folder.write("list.txt", "frames/1.obj\n").string();
+  for (const std::string& motion : {fmt::format("--motion {}/frames", folder.path.string()), "--poses " + list}) {
+    check_refused(folder.path / "frames", fmt::format("play a.sphc --source a.glb --json {} {}", mesh, motion),
+                  motion.rfind("--motion", 0) == 0 ? "--motion" : "--poses", "--json");
+  }
+}
+
+TEST_CASE("two names of one file are seen to be one: links, and files that are not there yet") {
+  const TemporaryFolder folder;
+  const std::string source = touch(folder, "human.glb");
+  fs::create_symlink("human.glb", folder.path / "link.glb");
+  fs::create_hard_link(source, folder.path / "hard.glb");
+  for (const char* link : {"link.glb", "hard.glb"}) {
+    check_refused(folder.path, fmt::format("play a.sphc --source {} --json {}/{}", source, folder.path.string(), link),
+                  "--source", "--json");
+  }
+  const fs::path here = fs::current_path();
+  fs::current_path(folder.path);
+  for (const char* report : {"./new.x", "new.x", "sub/../new.x", "../{}/new.x"}) {
+    const std::string path = fmt::format(fmt::runtime(report), folder.path.filename().string());
+    if (path.rfind("sub", 0) == 0) fs::create_directory("sub");
+    check_refused(folder.path, fmt::format("bake human.glb -o new.x --report {}", path), "-o", "--report");
+    check_refused(folder.path, fmt::format("bake human.glb -o {}/new.x --preview {}", folder.path.string(), path), "-o",
+                  "--preview");
+  }
+  fs::current_path(here);
+}
+
+TEST_CASE("reports and tables replace those that the tool wrote, and nothing else") {
+  const TemporaryFolder folder;
+  const std::string asset = baked_files().asset.string(), play = fmt::format("play {} --source {} ", asset, kHumanFile),
+                    validate = fmt::format("validate {} --source {} ", asset, kHumanFile);
+  const fs::path report = folder.path / "report.json";
+  fs::copy(baked_files().report, report);
+  // One after the other over the same file: what each writes, each replaces.
+  for (const std::string& command : {play, validate, play + "--mode m2 "}) {
+    const std::string before = contents(report);
+    const tool::Run done =
+        run(fmt::format("{} --frames 1 --json {}", command, report.string()), "SPHERECHAIN_CACHE=off");
+    CHECK_MESSAGE(done.code == 0, done.error);
+    CHECK(contents(report) != before);
+  }
+  const std::string thesis = folder.write("thesis.json", "{\"years\": 4}").string();
+  for (const std::string& command : {play, validate}) {
+    check_error(run(fmt::format("{} --json {}", command, thesis)), 3, {"thesis.json", "exists", "delete it"});
+  }
+  const std::string bake = fmt::format("bake {} -o {}/new.sphc --report ", kHumanFile, folder.path.string());
+  check_error(run(bake + thesis), 3, {"thesis.json", "exists", "--force"});
+  CHECK(contents(thesis) == "{\"years\": 4}");
+  CHECK(files_in(folder.path) == 2);
+}
