@@ -12,7 +12,7 @@ namespace spherechain::baker {
 
 void check_bvh(const std::filesystem::path& path) {
   constexpr std::size_t kMostNested = 500;
-  constexpr double kMostFrames = 1e7;
+  constexpr double kMostFrames = 1e7, kMostSeconds = 1000;
   const auto refuse = [&](const std::string& what) { throw Error(ExitCode::kFile, path.string() + ": " + what); };
   std::ifstream file(path);
   std::string word;
@@ -30,6 +30,12 @@ void check_bvh(const std::filesystem::path& path) {
   if (!(file >> word) || word != "Frames:" || !(file >> word)) refuse("ends before its motion");
   const double frames = std::strtod(word.c_str(), nullptr);
   if (!(frames >= 1 && frames <= kMostFrames)) refuse("has " + word + " frames (write 1 to 10 million)");
+  std::string frame, time;
+  if (!(file >> frame >> time >> word) || frame != "Frame" || time != "Time:") refuse("has no frame time");
+  const double seconds = std::strtod(word.c_str(), nullptr);
+  if (!(seconds > 0 && seconds <= kMostSeconds)) {
+    refuse("has a frame time of " + word + " (write seconds, more than 0 and at most 1000)");
+  }
 }
 
 }  // namespace spherechain::baker

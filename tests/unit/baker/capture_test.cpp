@@ -407,6 +407,12 @@ TEST_CASE("a capture that is broken is refused with the file's name and the caus
   CHECK(says(refusal(good.substr(0, good.find("MOTION"))), "ends before its motion"));
   CHECK(says(refusal(changed("Frames: 3", "Frames: 0")), "has 0 frames"));
   CHECK(says(refusal(changed("Frames: 3", "Frames: 4000000000")), "frames"));
+  for (const char* time : {"0", "0.0", "-0.5", "nan", "inf", "1e30", "soon"}) {
+    CAPTURE(time);
+    CHECK(says(refusal(changed("Frame Time: 0.5", std::string("Frame Time: ") + time)),
+               (std::string("frame time of ") + time).c_str()));
+  }
+  CHECK(says(refusal(changed("Frame Time: 0.5", "")), "has no frame time"));
   CHECK(says(refusal(changed("OFFSET 0.28 0 0", "OFFSET nan 0 0")), "not finite"));
   CHECK(says(refusal(changed("Frame Time: 0.5\n0 ", "Frame Time: 0.5\ninf ")), "not finite"));
   CHECK(says(refusal(changed("CHANNELS 6 Xposition", "CHANNELS 6 Wposition")), "channel"));
