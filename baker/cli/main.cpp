@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // spherechain: the command line tool. README.md has the contract.
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <functional>
 
@@ -27,6 +29,17 @@ int fail(ExitCode code, const std::string& message) {
   return static_cast<int>(code);
 }
 
+// CLI::Range takes what is neither too small nor too large, and nan is neither.
+std::string refuse_nan(const std::string& text) {
+  return std::isnan(std::strtod(text.c_str(), nullptr)) ? "Value " + text + " is not a number" : std::string();
+}
+
+// What is printed and cannot be written (a full disk, a closed file) is an output that cannot be written.
+int flush(int code) {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  return fail(ExitCode::kFile, "standard output: cannot be written");
+}
+
 // The choice of motion, the same for every command that animates.
 void add_motion(CLI::App& command, MotionChoice& motion, FrameChoice& frames) {
   CLI::Option_group& choice = *command.add_option_group(
@@ -40,7 +53,10 @@ void add_motion(CLI::App& command, MotionChoice& motion, FrameChoice& frames) {
       .add_option("--frames", frames.count,
                   "Number of frames, from the motion's start to its end (default: its own, or 40)")
       ->check(CLI::Range(1, 1000000));
-  command.add_option("--fps", frames.fps, "Frames a second")->check(CLI::Range(1e-3, 1e6))->capture_default_str();
+  command.add_option("--fps", frames.fps, "Frames a second")
+      ->check(CLI::Range(1e-3, 1e6))
+      ->check(refuse_nan)
+      ->capture_default_str();
 }
 
 void add_radius(CLI::App& command, std::string& radius) {
@@ -138,19 +154,20 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::CallForHelp& help) {
-    return app.exit(help);
+    return flush(app.exit(help));
   } catch (const CLI::CallForAllHelp& help) {
-    return app.exit(help);
+    return flush(app.exit(help));
   } catch (const CLI::CallForVersion& version) {
-    return app.exit(version);
+    return flush(app.exit(version));
   } catch (const CLI::ParseError& error) {
     return fail(ExitCode::kUsage, std::string(error.what()) + " (try spherechain --help)");
   }
   try {
-    return static_cast<int>(run());
+    return flush(static_cast<int>(run()));
   } catch (const Error& error) {
     return fail(error.code(), error.what());
   } catch (const std::exception& error) {
+    if (std::ferror(stdout) != 0) return flush(0);  // the library's own exception says no more
     return fail(ExitCode::kInternal, std::string("internal error: ") + error.what());
   }
 }

@@ -136,7 +136,7 @@ ExitCode run_play(const PlayOptions& options) {
                            {"radius", options.radius},
                            {"refit", refit},
                            {"frames", std::move(frames)}};
-    write_atomically(options.json, out.dump(1) + "\n");
+    write_atomically(options.json, out.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
   }
   fmt::print("{}", tally.text(options.radius, refit, on_cuda ? "cuda (refit and M2 in one)" : backend_text(target)));
   if (!options.json.empty()) fmt::print("wrote {}\n", options.json);

@@ -83,10 +83,16 @@ class Reader {
 };
 
 json parse(const std::string& text, const std::string& file) {
+  // The deepest of settings is in 'leaves' or 'targets'. What is deeper would be copied and printed on the stack.
+  constexpr int kMostNested = 8;
+  const auto shallow = [&](int depth, json::parse_event_t, const json&) {
+    if (depth > kMostNested) throw Error(ExitCode::kFile, file + ": is nested more deeply than settings are");
+    return true;
+  };
   try {
-    json parsed = json::parse(text);
+    json parsed = json::parse(text, shallow);
     if (parsed.is_object()) return parsed;
-  } catch (const json::parse_error& e) {
+  } catch (const json::exception& e) {
     throw Error(ExitCode::kFile, file + ": is not JSON (" + e.what() + ")");
   }
   throw Error(ExitCode::kFile, file + ": is not a JSON object");

@@ -253,7 +253,8 @@ std::string bake_report_json(const Bake& bake) {
                             {"stages", std::move(stages)},
                             {"total_seconds", total},
                             {"peak_memory_mb", peak_memory_mb()}};
-  return report.dump(1) + "\n";
+  // A file's name may hold any bytes; JSON must not.
+  return report.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
 std::string bake_report_text(const Bake& bake) {

@@ -145,7 +145,7 @@ std::string validation_json(const Validation& validation, const AnimatedAsset& a
                                    {"triangle_pairs", miss.triangle_pairs},
                                    {"depth", miss.depth / height}});
   }
-  return out.dump(1) + "\n";
+  return out.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
 std::string validation_text(const Validation& validation, const AnimatedAsset& animated,
