@@ -94,7 +94,49 @@ struct Block {
   }
 };
 
+// The triangles that have two corners in one place.
+HWY_INLINE std::uint64_t collapsed(const Block& block) {
+  constexpr Floats kFloats;
+  std::uint64_t bits = 0;
+  for (std::size_t i = 0; i < block.count; i += kLanes) {
+    auto ab = hn::FirstN(kFloats, block.count - i), bc = ab, ca = ab;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Vector a = hn::LoadU(kFloats, block.corners[0][axis] + i),
+                   b = hn::LoadU(kFloats, block.corners[1][axis] + i),
+                   c = hn::LoadU(kFloats, block.corners[2][axis] + i);
+      ab = hn::And(ab, hn::Eq(a, b));
+      bc = hn::And(bc, hn::Eq(b, c));
+      ca = hn::And(ca, hn::Eq(c, a));
+    }
+    bits |= bits_of(hn::Or(hn::Or(ab, bc), ca)) << i;
+  }
+  return bits;
+}
+
+// Takes these triangles out; the others stay in order.
+HWY_NOINLINE void remove(std::uint64_t triangles, bool neighbours, Block& block) {
+  std::size_t left = 0;
+  for (std::size_t i = 0; i < block.count; ++i) {
+    if (((triangles >> i) & 1U) != 0) {
+      continue;
+    }
+    block.triangles[left] = block.triangles[i];
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        block.corners[k][axis][left] = block.corners[k][axis][i];
+      }
+      if (neighbours) {
+        block.welds[k][left] = block.welds[k][i];
+      }
+    }
+    ++left;
+  }
+  block.count = left;
+}
+
 // Of the leaf's triangles from `first` on, at most kBlock, those that touch the box but for what single corners tell.
+// Degenerate ones intersect nothing: where two corners meet, as they do all over a pose too far off for its floats,
+// they are left out here, for to tell would take exact arithmetic, pair by pair.
 // False where there are none.
 HWY_NOINLINE bool load_block(const ContactScene& scene, std::size_t leaf_index, std::size_t first, const BoxProbe& box,
                              Block& out) {
@@ -135,6 +177,14 @@ HWY_NOINLINE bool load_block(const ContactScene& scene, std::size_t leaf_index, 
   }
   out.leaf = leaf_index;
   out.count = count;
+  const std::uint64_t gone = collapsed(out);
+  if (gone != 0) {
+    remove(gone, scene.neighbours, out);
+    count = out.count;
+    if (count == 0) {
+      return false;
+    }
+  }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     Vector least = hn::Set(kFloats, FLT_MAX), most = hn::Set(kFloats, -FLT_MAX);
     for (std::size_t i = 0; i < count; i += kLanes) {

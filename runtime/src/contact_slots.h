@@ -165,6 +165,20 @@ HWY_INLINE void put_span(const ContactScene& scene, std::size_t leaf_index) {
 
 #endif
 
+// A leaf shrunk to a point, or to a line along an axis, has only degenerate triangles, which intersect nothing: it
+// reaches nowhere. In a pose that takes all to one point each leaf would be paired with each.
+HWY_INLINE void drop_line(const ContactScene& scene, std::size_t leaf_index) {
+  float* const low = scene.spans + 2 * kSpanLanes * leaf_index;
+  float* const high = low + kSpanLanes;
+  const int flat_axes = (low[0] >= high[0] ? 1 : 0) + (low[1] >= high[1] ? 1 : 0) + (low[2] >= high[2] ? 1 : 0);
+  if (flat_axes >= 2) {
+    for (std::size_t k = 0; k < kSpanLanes; ++k) {
+      low[k] = FLT_MAX;
+      high[k] = -FLT_MAX;
+    }
+  }
+}
+
 // Where they are not yet: a leaf's vertices, from the source's or from the bones, and how far they reach.
 HWY_NOINLINE void load(const ContactScene& scene, std::size_t leaf_index) {
   scene.is_loaded[leaf_index] = 1;
@@ -176,6 +190,7 @@ HWY_NOINLINE void load(const ContactScene& scene, std::size_t leaf_index) {
     skin_leaf(scene.skin, leaf, slots.axes[0], slots.axes[1], slots.axes[2]);
   }
   put_span(scene, leaf_index);
+  drop_line(scene, leaf_index);
 }
 
 HWY_INLINE Box box_of_span(const ContactScene& scene, std::size_t leaf_index) {
