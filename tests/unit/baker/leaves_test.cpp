@@ -202,7 +202,7 @@ TEST_CASE("weights and mid weights add up to 1 within two roundings: the balls' 
   }
 }
 
-TEST_CASE("at rest a leaf's box contains its vertices to the last bit, and they reach its sides") {
+TEST_CASE("at rest a leaf's box and ball contain its vertices to the last bit, and they reach the box's sides") {
   for (const Bake* bake : {&baked_human(), &morphing_person()}) {
     const spherechain::Asset asset = open_asset_of(*bake);
     const spherechain::Surface& surface = asset.surface();
@@ -212,12 +212,15 @@ TEST_CASE("at rest a leaf's box contains its vertices to the last bit, and they 
       const std::size_t lane = l % spherechain::kLeafLanes;
       const Vec3 center(boxes.x[lane], boxes.y[lane], boxes.z[lane]);
       const Vec3 half(boxes.half_x[lane], boxes.half_y[lane], boxes.half_z[lane]);
+      const spherechain::BallLanes& balls = surface.leaf_balls[l / spherechain::kLeafLanes];
+      const Vec3 ball_center(balls.x[lane], balls.y[lane], balls.z[lane]);
       Vec3 reach = Vec3::Zero();
-      double farthest = 0;
+      double farthest = 0, farthest_of_ball = 0;
       for (std::size_t slot = 0; slot < leaf.vertex_count; ++slot) {
         const float* p = surface.slot_positions.data + 3 * leaf.first_slot + slot;
         const std::size_t slots = slot_count(leaf);
-        const Vec3 from_center = Vec3(p[0], p[slots], p[2 * slots]) - center;
+        const Vec3 vertex(p[0], p[slots], p[2 * slots]), from_center = vertex - center;
+        farthest_of_ball = std::max(farthest_of_ball, (vertex - ball_center).norm());
         reach = reach.cwiseMax(from_center.cwiseAbs());
         farthest = std::max(farthest, from_center.norm());
       }
@@ -225,6 +228,7 @@ TEST_CASE("at rest a leaf's box contains its vertices to the last bit, and they 
       REQUIRE((half.array() <= reach.array() * (1 + 1e-6)).all());
       REQUIRE(farthest <= boxes.radius[lane]);
       REQUIRE(boxes.radius[lane] <= farthest * (1 + 1e-6));
+      REQUIRE(farthest_of_ball <= balls.radius[lane]);
     }
   }
 }
