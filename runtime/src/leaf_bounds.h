@@ -43,6 +43,7 @@ struct GroupTerms {
 
 // What a group's leaves are at rest, morphed.
 struct GroupRest {
+  HWY_INLINE GroupRest() {}  // for the target: an implicit one is compiled for the build's own, which NEON refuses
   GroupVector center[3], half[3], radius;
 };
 

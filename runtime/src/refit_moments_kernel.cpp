@@ -156,7 +156,7 @@ class Refit {
       finish(sums_, i, kChunk, numbers_ + i, bones_.reference(), spheres_);
     }
     if (whole < count_) {
-      for (std::size_t i = count_; i < whole + kChunk; ++i) {
+      for (std::size_t i = count_; i < kSums && i % kChunk != 0; ++i) {  // what the last chunk lacks is 0
         std::memset(sums_.centers[i], 0, sizeof sums_.centers[i]);
         std::memset(sums_.squares[i], 0, sizeof sums_.squares[i]);
         sums_.wanted[i] = 0;
