@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <fstream>
 
 #include "mesh/error.h"
 #include "motion/sequence.h"
-#include "play/asset_file.h"
 #include "play/play.h"
 
 namespace spherechain::baker {
@@ -43,12 +43,12 @@ bool same_file(const fs::path& a, const fs::path& b) {
 bool begins_with(const std::string& file, std::string_view magic, std::size_t offset) {
   std::error_code ignored;
   if (!fs::is_regular_file(file, ignored) || fs::file_size(file, ignored) == 0) return true;
-  const std::string there = read_file(file);
+  std::string there(offset + magic.size(), '\0');
+  std::ifstream(file, std::ios::binary).read(there.data(), static_cast<std::streamsize>(there.size()));
   const auto same = [](char a, char b) {
     return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
   };
-  return there.size() >= offset + magic.size() &&
-         std::equal(magic.begin(), magic.end(), there.begin() + static_cast<std::ptrdiff_t>(offset), same);
+  return std::equal(magic.begin(), magic.end(), there.begin() + static_cast<std::ptrdiff_t>(offset), same);
 }
 
 void add_sequence(std::vector<CommandFile>& inputs, const char* name, const std::string& path) {

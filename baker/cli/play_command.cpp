@@ -12,6 +12,7 @@
 #include "play/cuda_frames.h"
 #include "play/player.h"
 #include "play/target.h"
+#include "report/json_text.h"
 #include "report/play_frames.h"
 #include "report/report.h"
 #include "write/write.h"
@@ -136,7 +137,7 @@ ExitCode run_play(const PlayOptions& options) {
                            {"radius", options.radius},
                            {"refit", refit},
                            {"frames", std::move(frames)}};
-    write_atomically(options.json, out.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n");
+    write_atomically(options.json, json_text(out, 1) + "\n");
   }
   fmt::print("{}", tally.text(options.radius, refit, on_cuda ? "cuda (refit and M2 in one)" : backend_text(target)));
   if (!options.json.empty()) fmt::print("wrote {}\n", options.json);

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "report/json_text.h"
 #include "report/report.h"
 #include "report/vec3_json.h"
 #include "write/version.h"
@@ -253,8 +254,7 @@ std::string bake_report_json(const Bake& bake) {
                             {"stages", std::move(stages)},
                             {"total_seconds", total},
                             {"peak_memory_mb", peak_memory_mb()}};
-  // A file's name may hold any bytes; JSON must not.
-  return report.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return json_text(report, 1) + "\n";
 }
 
 std::string bake_report_text(const Bake& bake) {

@@ -4,6 +4,7 @@
 #include <bit>
 #include <nlohmann/json.hpp>
 
+#include "report/json_text.h"
 #include "report/report.h"
 
 namespace spherechain::baker {
@@ -201,7 +202,7 @@ std::string inspect_json(const Asset& asset) {
       {"fit",
        {{"phi1", to_json(info.phi1)}, {"phi1_adjusted", to_json(info.phi1_adjusted)}, {"phi2", to_json(info.phi2)}}}};
   // A name in a foreign asset may hold any bytes; JSON must not.
-  return out.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return json_text(out, 1) + "\n";
 }
 
 std::string inspect_text(const Asset& asset) {

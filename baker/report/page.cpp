@@ -10,6 +10,7 @@
 #include "mesh/error.h"
 #include "play/player.h"
 #include "play/target.h"
+#include "report/json_text.h"
 #include "report/play_frames.h"
 #include "report/report.h"
 #include "report/vec3_json.h"
@@ -209,7 +210,7 @@ std::string view_page(const AnimatedAsset& animated, const PageOptions& options,
                           {"motion", options.motion},
                           {"radius", options.radius == RadiusKind::kFit ? "fit" : "detect"},
                           {"frames", frames_json(animated, options, progress)}};
-  std::string text = data.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  std::string text = json_text(data, -1);
   // Nothing in it may end the script.
   for (std::size_t i = text.find('<'); i != std::string::npos; i = text.find('<', i)) text.replace(i, 1, "\\u003c");
   return page.substr(0, at) + open + text + page.substr(at + open.size() + std::string("null").size());

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "report/json_text.h"
 #include "report/report.h"
 
 namespace spherechain::baker {
@@ -14,9 +15,7 @@ using nlohmann::ordered_json;
 std::string limb_name(const Roles& roles, int limb) { return limb < 0 ? "" : roles.limbs[limb].name; }
 
 // What a file calls a node may be no valid UTF-8: such bytes are replaced, as everywhere in a report.
-std::string dump(const ordered_json& json) {
-  return json.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
-}
+std::string dump(const ordered_json& json) { return json_text(json, 2) + "\n"; }
 
 }  // namespace
 

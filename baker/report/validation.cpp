@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/validation.h"
+#include "report/json_text.h"
 
 #include <fmt/format.h>
 
@@ -145,7 +146,7 @@ std::string validation_json(const Validation& validation, const AnimatedAsset& a
                                    {"triangle_pairs", miss.triangle_pairs},
                                    {"depth", miss.depth / height}});
   }
-  return out.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  return json_text(out, 1) + "\n";
 }
 
 std::string validation_text(const Validation& validation, const AnimatedAsset& animated,

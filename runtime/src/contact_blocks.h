@@ -136,8 +136,7 @@ HWY_NOINLINE void remove(std::uint64_t triangles, bool neighbours, Block& block)
 
 // Of the leaf's triangles from `first` on, at most kBlock, those that touch the box but for what single corners tell.
 // Degenerate ones intersect nothing: where two corners meet, as they do all over a pose too far off for its floats,
-// they are left out here, for to tell would take exact arithmetic, pair by pair.
-// False where there are none.
+// they are left out here, for to tell would take exact arithmetic, pair by pair. False where there are none.
 HWY_NOINLINE bool load_block(const ContactScene& scene, std::size_t leaf_index, std::size_t first, const BoxProbe& box,
                              Block& out) {
   constexpr Floats kFloats;

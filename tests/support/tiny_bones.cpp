@@ -156,24 +156,30 @@ std::vector<Matrix> random_matrices(std::size_t count, unsigned seed) {
   return matrices;
 }
 
+std::array<double, 3> moved(const TinyAsset& tiny, const TinySkin& skin, std::size_t vertex,
+                            const std::vector<Matrix>& matrices, const std::vector<float>& morph_weights) {
+  std::array<double, 3> rest{}, out{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    rest[axis] = double{tiny.rest[3 * vertex + axis]};
+    for (const auto& [target, delta] : skin.morphs[vertex]) {
+      rest[axis] += morph_weights.empty() ? 0 : double{morph_weights[target]} * double{delta[axis]};
+    }
+  }
+  for (const auto& [bone, weight] : skin.weights[vertex]) {
+    for (std::size_t row = 0; row < 3; ++row) {
+      const float* m = &matrices[bone][4 * row];
+      out[row] += weight * (double{m[0]} * rest[0] + double{m[1]} * rest[1] + double{m[2]} * rest[2] + double{m[3]});
+    }
+  }
+  return out;
+}
+
 std::vector<float> skinned(const TinyAsset& tiny, const TinySkin& skin, const std::vector<Matrix>& matrices,
                            const std::vector<float>& morph_weights) {
   std::vector<float> out;
   for (std::size_t v = 0; v < skin.weights.size(); ++v) {
-    std::array<double, 4> p{double{tiny.rest[3 * v]}, double{tiny.rest[3 * v + 1]}, double{tiny.rest[3 * v + 2]}, 1};
-    for (const auto& [target, delta] : skin.morphs[v]) {
-      for (std::size_t axis = 0; axis < 3 && !morph_weights.empty(); ++axis) {
-        p[axis] += double{morph_weights[target]} * double{delta[axis]};
-      }
-    }
-    for (std::size_t row = 0; row < 3; ++row) {
-      double sum = 0;
-      for (const auto& [bone, weight] : skin.weights[v]) {
-        for (std::size_t column = 0; column < 4; ++column) {
-          sum += weight * double{matrices[bone][4 * row + column]} * p[column];
-        }
-      }
-      out.push_back(static_cast<float>(sum));
+    for (const double figure : moved(tiny, skin, v, matrices, morph_weights)) {
+      out.push_back(static_cast<float>(figure));
     }
   }
   return out;

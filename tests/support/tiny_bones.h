@@ -27,7 +27,11 @@ TinySkin add_bones(TinyAsset& tiny, std::size_t bone_count, unsigned seed);
 // Turns, stretches and shifts, one a bone.
 std::vector<Matrix> random_matrices(std::size_t count, unsigned seed);
 
-// The deformed vertices, worked out in double precision.
+// Where a vertex goes, in double precision. `morph_weights` may be empty.
+std::array<double, 3> moved(const TinyAsset& tiny, const TinySkin& skin, std::size_t vertex,
+                            const std::vector<Matrix>& matrices, const std::vector<float>& morph_weights);
+
+// The deformed vertices, worked out so and rounded.
 std::vector<float> skinned(const TinyAsset& tiny, const TinySkin& skin, const std::vector<Matrix>& matrices,
                            const std::vector<float>& morph_weights);
 

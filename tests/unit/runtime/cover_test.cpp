@@ -27,25 +27,6 @@ struct Posable {
 
 BoneMatrices view(const std::vector<Matrix>& matrices) { return {matrices[0].data(), matrices.size()}; }
 
-// A vertex in double precision, from the skin the asset was made of.
-std::array<double, 3> moved(const Posable& p, std::uint32_t v, const std::vector<Matrix>& matrices,
-                            const std::vector<float>& morph_weights) {
-  std::array<double, 3> rest{}, out{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    rest[axis] = p.tiny.rest[3 * v + axis];
-    for (const auto& [target, delta] : p.skin.morphs[v]) {
-      rest[axis] += morph_weights.empty() ? 0 : double{morph_weights[target]} * double{delta[axis]};
-    }
-  }
-  for (const auto& [bone, weight] : p.skin.weights[v]) {
-    for (std::size_t row = 0; row < 3; ++row) {
-      const float* m = &matrices[bone][4 * row];
-      out[row] += weight * (double{m[0]} * rest[0] + double{m[1]} * rest[1] + double{m[2]} * rest[2] + double{m[3]});
-    }
-  }
-  return out;
-}
-
 double distance(const Sphere& ball, const std::array<double, 3>& p) {
   return std::hypot(p[0] - ball.x, p[1] - ball.y, p[2] - ball.z);
 }
@@ -80,7 +61,7 @@ TEST_CASE("in every pose every vertex, and where SkinJob puts it, is in its leaf
       for (std::size_t l = 0; l < opened.asset.leaf_count(); ++l) {
         double tight = 0;
         for (const std::uint32_t v : vertices_of(opened.asset, opened.asset.surface().leaves[l])) {
-          tight = std::max(tight, distance(covered.leaves[l], moved(p, v, matrices, weights)));
+          tight = std::max(tight, distance(covered.leaves[l], moved(p.tiny, p.skin, v, matrices, weights)));
           const float* s = &skinned.positions[std::size_t{3} * v];
           tight = std::max(tight, distance(covered.leaves[l], {double{s[0]}, double{s[1]}, double{s[2]}}));
         }
