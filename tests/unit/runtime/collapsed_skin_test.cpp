@@ -7,6 +7,7 @@
 #include <random>
 
 #include "jobs.h"
+#include "spherechain/triangle_contacts.h"
 #include "tiny_surface.h"
 
 namespace spherechain::test {
