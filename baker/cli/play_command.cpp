@@ -95,7 +95,7 @@ class Tally {
 }  // namespace
 
 ExitCode run_play(const PlayOptions& options) {
-  check_outputs(with_motion({{"ASSET", options.asset}, {"--source", options.source}}, options.motion),
+  check_outputs(with_motion(with_source({{"ASSET", options.asset}}, "--source", options.source), options.motion),
                 {{"--json", options.json}});
   check_replaceable_json(options.json, false, "delete it, or name another");
   const bool on_cuda = options.backend == "cuda";

@@ -3,10 +3,11 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
+#include <optional>
 
 #include "mesh/error.h"
+#include "write/temporary.h"
 #include "write/write.h"
 
 namespace spherechain::baker {
@@ -16,14 +17,14 @@ void write_atomically(const std::filesystem::path& path, std::string_view bytes)
   std::error_code ignored;
   const std::filesystem::file_status status = std::filesystem::status(path, ignored);
   const bool direct = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
-  const std::string temporary = direct ? path.string() : path.string() + ".tmp-" + std::to_string(::getpid());
+  std::optional<Temporary> temporary;
+  if (!direct) temporary.emplace(path);
 
   const auto fail = [&](const char* doing) {
-    const std::string why = std::strerror(errno);
-    if (!direct) ::unlink(temporary.c_str());
-    throw Error(ExitCode::kFile, path.string() + ": cannot be " + doing + " (" + why + ")");
+    throw Error(ExitCode::kFile, path.string() + ": cannot be " + doing + " (" + std::strerror(errno) + ")");
   };
-  const int file = ::open(temporary.c_str(), direct ? O_WRONLY : O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  const int file = direct ? ::open(path.c_str(), O_WRONLY)
+                          : ::open(temporary->path().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (file < 0) fail("created");
   for (std::size_t done = 0; done < bytes.size();) {
     const ::ssize_t n = ::write(file, bytes.data() + done, bytes.size() - done);
@@ -43,7 +44,7 @@ void write_atomically(const std::filesystem::path& path, std::string_view bytes)
     fail("written");
   }
   if (::close(file) != 0) fail("written");
-  if (!direct && std::rename(temporary.c_str(), path.c_str()) != 0) fail("replaced");
+  if (!direct && !temporary->rename_to_target()) fail("replaced");
 }
 
 }  // namespace spherechain::baker
