@@ -2,6 +2,7 @@
 // spherechain: the command line tool. README.md has the contract.
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -68,6 +69,7 @@ void add_radius(CLI::App& command, std::string& radius) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is one that cannot be written
   CLI::App app{"Self-collision of animated characters by sphere chains."};
   app.name("spherechain");
   app.set_version_flag("--version", std::string("spherechain ") + kVersion + "\ntargets: " + supported_targets_text());
@@ -160,7 +162,10 @@ int main(int argc, char** argv) {
   } catch (const CLI::CallForVersion& version) {
     return flush(app.exit(version));
   } catch (const CLI::ParseError& error) {
-    return fail(ExitCode::kUsage, std::string(error.what()) + " (try spherechain --help)");
+    // Of a command that it does not know the library says only that one is missing.
+    const std::vector<std::string> unknown = app.remaining();
+    const std::string what = unknown.empty() ? error.what() : "there is no command or option '" + unknown.front() + "'";
+    return fail(ExitCode::kUsage, what + " (try spherechain --help)");
   }
   try {
     return flush(static_cast<int>(run()));

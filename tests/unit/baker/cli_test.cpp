@@ -19,8 +19,8 @@ using spherechain::baker::kTorso;
 
 namespace {
 
-using tool::BakedFiles;
 using tool::baked_files;
+using tool::BakedFiles;
 using tool::check_error;
 using tool::contents;
 using tool::files_in;
@@ -311,6 +311,8 @@ TEST_CASE("--body says what a body with two pairs of limbs is, goes before the s
   CHECK(inspected["regions"][4]["name"] == "tail");
   const Run play = run(fmt::format("play {} --source {}", asset.string(), beast));
   CHECK_MESSAGE(play.code == 0, play.error);
+  check_error(run(fmt::format("play {} --source {} --poses {}", asset.string(), beast, pose("arms_crossed.json"))), 3,
+              {"arms_crossed.json: turns the joints of a biped, and ", "beast.sphc has none"});
   REQUIRE(run(fmt::format("bake {} -o {} --config {}", beast, asset.string(), config.string())).code == 0);
   CHECK(json::parse(run(fmt::format("inspect {} --json", asset.string())).out)["regions"][0]["name"] == "left_arm");
   CHECK(run(fmt::format("bake {} -o {} --body centaur", beast, asset.string())).code == 2);
@@ -322,7 +324,10 @@ TEST_CASE("--body says what a body with two pairs of limbs is, goes before the s
 TEST_CASE("usage errors end with 2") {
   check_error(run(""), 2, {"--help"});
   check_error(run("bake"), 2, {});
-  check_error(run("frobnicate"), 2, {});
+  check_error(run("frobnicate"), 2, {"'frobnicate'"});
+  check_error(run("--frobnicate"), 2, {"'--frobnicate'"});
+  check_error(run("frobnicate bake"), 2, {"'frobnicate'"});
+  check_error(run("bake in out"), 2, {});
   check_error(run(fmt::format("bake {} -o x.sphc --profile fancy", kHumanFile)), 2, {"fancy"});
   check_error(run(fmt::format("play {} --source {} --mode m3", baked_files().asset.string(), kHumanFile)), 2, {"m3"});
   check_error(run(fmt::format("validate {} --source {} --mode both", baked_files().asset.string(), kHumanFile)), 2,
