@@ -122,6 +122,7 @@ int main(int argc, char** argv) {
                    "SPHERECHAIN_TARGET names no others; cuda plays all frames at once on a GPU, M2 alone, from bones")
       ->check(CLI::IsMember({"auto", "scalar", "simd", "cuda"}))
       ->capture_default_str();
+  play_command->add_flag("--contacts", play.contacts, "List the triangles that intersect too");
   play_command->add_option("--json", play.json, "JSON file to write");
   play_command->callback([&] { run = [&] { return run_play(play); }; });
 

@@ -127,6 +127,11 @@ void AnimatedAsset::use_rig(const std::vector<Joint>& joints) {
   for (const Joint& joint : joints) bone_names_.push_back(joint.name);
 }
 
+void AnimatedAsset::check_leaves() const {
+  if (asset().leaf_count() > 0) return;
+  throw Error(ExitCode::kFile, asset_name_ + ": has no leaves, which --contacts needs (bake it again)");
+}
+
 BodyFrame AnimatedAsset::frame() const {
   const AssetInfo info = file_.asset.info();
   return {to_vec3(info.origin), to_vec3(info.left), to_vec3(info.up), to_vec3(info.forward),

@@ -9,6 +9,7 @@
 
 #include "baked_human.h"
 #include "human.h"
+#include "play/asset_file.h"
 #include "spherechain/simd.h"
 #include "temporary_folder.h"
 #include "tool.h"
@@ -137,6 +138,28 @@ TEST_CASE("play --json has the contract's fields; at rest nothing touches, hands
   CHECK(both["frames"][4]["skin_pairs"].size() < both["frames"][4]["pairs"].size());
   CHECK(both["frames"][0]["pairs"].empty());
   CHECK(!both["frames"][4]["pairs"].empty());
+
+  CHECK(!both["frames"][4].contains("contacts"));
+  const Run triangles = play(fmt::format("--contacts --poses {} --frames 5 --fps 10", pose("hands_on_hips.json")));
+  REQUIRE(triangles.code == 0);
+  CHECK(triangles.out.find("\ntriangles ") != std::string::npos);
+  const json listed = json::parse(contents(out));
+  const spherechain::baker::AssetFile file = spherechain::baker::open_asset(baked_files().asset.string());
+  std::vector<json> owner(file.asset.info().source_triangle_count);
+  for (std::size_t s = 0; s < file.asset.spheres().size; ++s) {
+    const spherechain::RestSphere& sphere = file.asset.spheres()[s];
+    for (std::uint32_t k = 0; k < sphere.triangle_count; ++k)
+      owner[file.asset.triangles()[sphere.first_triangle + k]] = s;
+  }
+  CHECK(listed["frames"][0]["contacts"].empty());
+  CHECK(listed["frames"][4].contains("contacts_us"));
+  std::set<json> skin_pairs;  // of the spheres whose triangles they are
+  for (const json& pair : listed["frames"][4]["contacts"]) {
+    const json &a = owner.at(pair[0].get<std::size_t>()), &b = owner.at(pair[1].get<std::size_t>());
+    skin_pairs.insert(a < b ? json{a, b} : json{b, a});
+  }
+  CHECK(skin_pairs ==
+        std::set<json>(listed["frames"][4]["skin_pairs"].begin(), listed["frames"][4]["skin_pairs"].end()));
 
   const Run scalar = play("--frames 1 --mode m1 --radius fit --backend scalar");
   REQUIRE(scalar.code == 0);
@@ -433,6 +456,14 @@ TEST_CASE("an output that is no asset is not overwritten without --force, nor is
   const auto input = folder.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").string();
   check_error(run(fmt::format("bake {} -o {} --force", input, input)), 2, {"same file"});
   CHECK(contents(input).rfind("v 0 0 0", 0) == 0);
+}
+
+TEST_CASE("contacts of triangles are asked of an asset that has leaves") {
+  const std::string golden = SPHERECHAIN_SAMPLES "/../tests/golden/";  // this asset is older than leaves
+  for (const char* command : {"play", "validate"}) {
+    check_error(run(fmt::format("{} {}doll.sphc --source {}doll.obj --frames 1 --contacts", command, golden, golden)),
+                3, {"doll.sphc", "has no leaves", "bake it again"});
+  }
 }
 
 TEST_CASE("an asset is refused for another mesh than its source") {
