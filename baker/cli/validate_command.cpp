@@ -24,7 +24,6 @@ ExitCode run_validate(const ValidateOptions& options) {
   settings.skin = !options.spheres_alone;
   settings.cache = cache_folder();
   const AnimatedAsset animated(options.asset, options.source, options.motion, options.frames);
-  if (options.contacts) animated.check_leaves();
   Validation validation;
   {
     Progress progress("validate " + options.asset + ":");

@@ -129,7 +129,7 @@ void AnimatedAsset::use_rig(const std::vector<Joint>& joints) {
 
 void AnimatedAsset::check_leaves() const {
   if (asset().leaf_count() > 0) return;
-  throw Error(ExitCode::kFile, asset_name_ + ": has no leaves, which --contacts needs (bake it again)");
+  throw Error(ExitCode::kFile, asset_name_ + ": has no leaves to find contacts with (bake it again)");
 }
 
 BodyFrame AnimatedAsset::frame() const {

@@ -458,6 +458,34 @@ TEST_CASE("an output that is no asset is not overwritten without --force, nor is
   CHECK(contents(input).rfind("v 0 0 0", 0) == 0);
 }
 
+TEST_CASE("docs/json.md names every key that is written") {
+  const std::string page = contents(SPHERECHAIN_SAMPLES "/../docs/json.md");
+  const TemporaryFolder folder;
+  const fs::path out = folder.path / "out.json";
+  const auto named = [&](const json& value, const auto& self) -> void {
+    if (!value.is_structured()) return;
+    for (const auto& [key, inner] : value.items()) {
+      if (value.is_object()) CHECK_MESSAGE(page.find("`" + key + "`") != std::string::npos, key);
+      if (key != "settings") self(inner, self);  // README.md has those
+    }
+  };
+  const auto written = [&](const char* command) {
+    const Run done = run(fmt::format("{} {} --source {} --poses {} --frames 2 --contacts --json {}", command,
+                                     baked_files().asset.string(), kHumanFile, pose("arms_crossed.json"), out.string()),
+                         "SPHERECHAIN_CACHE=off");
+    REQUIRE_MESSAGE(done.code == 0, done.error);
+    return json::parse(contents(out));
+  };
+  named(written("play"), named);
+  named(written("validate"), named);
+  named(json::parse(run(fmt::format("inspect {} --json", baked_files().asset.string())).out), named);
+  named(json::parse(run("inspect --json --roles /usr/share/assimp/models/X/Testwuson.X").out), named);
+  const json report = json::parse(contents(baked_files().report));
+  for (const auto& [key, value] : report.items()) {
+    CHECK_MESSAGE(page.find("`" + key + "`") != std::string::npos, key);
+  }
+}
+
 TEST_CASE("contacts of triangles are asked of an asset that has leaves") {
   const std::string golden = SPHERECHAIN_SAMPLES "/../tests/golden/";  // this asset is older than leaves
   for (const char* command : {"play", "validate"}) {
