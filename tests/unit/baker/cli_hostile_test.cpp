@@ -33,6 +33,27 @@ TEST_CASE("numbers that are none are usage errors") {
   CHECK(tool::files_in(folder.path) == 0);
 }
 
+TEST_CASE("an empty name, as of a script's variable that is not set, is a usage error and no option left out") {
+  const TemporaryFolder folder;
+  const std::string asset = baked_files().asset.string(), out = (folder.path / "out").string(),
+                    animated = fmt::format("{} --source {}", asset, kHumanFile);
+  for (const char* option : {"--config", "--roles", "--report", "--preview", "--output"}) {
+    const std::string output = option == std::string("--output") ? "" : "-o " + out;
+    check_error(run(fmt::format("bake {} {} {} ''", kHumanFile, output, option)), 2, {option, "empty"});
+  }
+  for (const char* option : {"--clip", "--poses", "--motion", "--json"}) {
+    check_error(run(fmt::format("play {} {} ''", animated, option)), 2, {option, "empty"});
+    check_error(run(fmt::format("validate {} {} ''", animated, option)), 2, {option, "empty"});
+  }
+  for (const char* option : {"--report", "--validation"})
+    check_error(run(fmt::format("view {} -o {} {} ''", animated, out, option)), 2, {option, "empty"});
+  check_error(run(fmt::format("bake '' -o {}", out)), 2, {"INPUT", "empty"});
+  check_error(run("inspect ''"), 2, {"ASSET", "empty"});
+  check_error(run(fmt::format("play '' --source {}", kHumanFile)), 2, {"ASSET", "empty"});
+  check_error(run(fmt::format("play {} --source ''", asset)), 2, {"--source", "empty"});
+  CHECK(tool::files_in(folder.path) == 0);
+}
+
 TEST_CASE("a file's name need not be UTF-8, the JSON about it is") {
   const TemporaryFolder folder;
   const fs::path source = folder.path / "caf\xe9.zae", asset = folder.path / "caf\xe9.sphc";
@@ -93,6 +114,9 @@ TEST_CASE("devices, pipes and folders are refused at once where a file is needed
     refused(fmt::format("play {} --source {}", file, kHumanFile), file);
   }
   CHECK(tool::files_in(folder.path) == 2);
+  // Materials are no reason to wait for one.
+  const std::string mesh = folder.write("t.obj", "mtllib pipe\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").string();
+  check_error(run(fmt::format("play {} --source {}", asset, mesh), "timeout 20"), 3, {"t.obj: is not the mesh"});
 }
 
 TEST_CASE("what is read once may come from a pipe") {
