@@ -12,6 +12,7 @@
 #include "motion/poses.h"
 #include "motion/sequence.h"
 #include "play/play.h"
+#include "write/write.h"
 
 namespace spherechain::baker {
 namespace {
@@ -21,6 +22,7 @@ namespace fs = std::filesystem;
 void check_folder(const std::string& file) {
   std::error_code ignored;
   if (fs::is_directory(file, ignored)) throw Error(ExitCode::kFile, file + ": cannot be written (it is a folder)");
+  if (is_written_directly(file)) return;
   const fs::path folder = fs::absolute(file, ignored).parent_path();
   if (!fs::is_directory(folder, ignored)) {
     throw Error(ExitCode::kFile, file + ": cannot be created (there is no folder " + folder.string() + ")");

@@ -119,6 +119,24 @@ TEST_CASE("no command writes over what its inputs are made of: a glTF's buffers 
   }
 }
 
+TEST_CASE("what goes to /dev/stdout goes to where that leads, and takes the name from nobody") {
+  const std::string play =
+      fmt::format("play {} --source {} --frames 1 --json ", baked_files().asset.string(), kHumanFile);
+  // By the name in /proc: there a tool that replaced it could do no harm.
+  REQUIRE(fs::is_symlink("/proc/self/fd/1"));
+  const tool::Run to_file = run(play + "/proc/self/fd/1");  // tool::run sends the output to a file
+  CHECK_MESSAGE(to_file.code == 0, to_file.error);
+  CHECK(to_file.out.rfind("{\n \"backend\": ", 0) == 0);
+  CHECK(to_file.out.find("\n}\n1 frames, radius detect") != std::string::npos);
+  const tool::Run to_pipe = run(play + "/proc/self/fd/1 | cat");
+  CHECK(to_pipe.out.find("\n}\n1 frames, radius detect") != std::string::npos);
+  const TemporaryFolder folder;
+  const std::string third = (folder.path / "third").string();
+  CHECK(run(fmt::format("{}/dev/fd/3 3>{}", play, third)).code == 0);
+  CHECK(contents(third).rfind("{\n \"backend\": ", 0) == 0);
+  CHECK(files_in(folder.path) == 1);
+}
+
 TEST_CASE("two names of one file are seen to be one: links, and files that are not there yet") {
   const TemporaryFolder folder;
   const std::string source = touch(folder, "human.glb");
