@@ -5,14 +5,10 @@
 #include <map>
 
 #include "leaves/leaves.h"
+#include "leaves/round_up.h"
 
 namespace spherechain::baker {
 namespace {
-
-float round_up(double value) {
-  const auto rounded = static_cast<float>(value);
-  return rounded < value ? std::nextafter(rounded, std::numeric_limits<float>::infinity()) : rounded;
-}
 
 // The smallest ball, about a float centre, with a float radius.
 Ball ball_around(const Mesh& points) {

@@ -53,6 +53,14 @@ void order_vertices(const Character& character, Leaves& out) {
   out.vertices = std::move(vertices);
 }
 
+std::vector<std::vector<Index>> vertices_of_spheres(std::size_t sphere_count, const std::vector<Leaf>& leaves) {
+  std::vector<std::vector<Index>> out(sphere_count);
+  for (const Leaf& leaf : leaves) {
+    out[leaf.sphere].insert(out[leaf.sphere].end(), leaf.vertices.begin(), leaf.vertices.end());
+  }
+  return out;
+}
+
 }  // namespace
 
 Leaves make_leaves(const Character& character, const Binding& binding, const BoneBinding& bones,
@@ -62,6 +70,9 @@ Leaves make_leaves(const Character& character, const Binding& binding, const Bon
   out.vertices = surface_vertices(character, bones, rig_weights, out.vertex_of_source);
   order_vertices(character, out);
   for (Leaf& leaf : out.leaves) bound_leaf(character, out.vertices, leaf);
+  if (!bones.bones.empty()) {
+    out.outlines = outline_spheres(character, out.vertices, vertices_of_spheres(binding.spheres.size(), out.leaves));
+  }
   return out;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -62,8 +63,24 @@ struct Leaf {
   std::vector<LeafMorph> morphs;
 };
 
+// How far the parts a bone has of vertices are off their means of an outline's points: |w (v - center; 1)|, in single
+// precision.
+struct OutlineBone {
+  Index bone;
+  std::array<float, 4> off;
+};
+
+// Points near whose hull a sphere's vertices stay in every pose (schema::Outline). Nothing where it has no leaves.
+struct Outline {
+  std::vector<Index> points;  // of Leaves::vertices; a multiple of 16, of which the last may be there often
+  std::vector<OutlineBone> bones;
+  Vec3 center = Vec3::Zero();  // exactly representable as float, as the next two
+  double radius = 0, slack = 0;
+};
+
 struct Leaves {
   std::vector<Leaf> leaves;             // in sphere order
+  std::vector<Outline> outlines;        // the spheres'; none where nothing moves the source
   std::vector<SurfaceVertex> vertices;  // in the order of the first leaf they are in
   std::vector<Index> vertex_of_source;  // kNoIndex where no triangle of the skin uses it
 };
@@ -90,6 +107,10 @@ std::vector<std::vector<Index>> cluster_triangles(const Mesh& mesh, const std::v
 std::vector<SurfaceVertex> surface_vertices(const Character& character, const BoneBinding& bones,
                                             const std::vector<VertexWeights>& rig_weights,
                                             std::vector<Index>& vertex_of_source);
+
+// `of_spheres`: the vertices of each sphere's leaves, in any order.
+std::vector<Outline> outline_spheres(const Character& character, const std::vector<SurfaceVertex>& vertices,
+                                     std::vector<std::vector<Index>> of_spheres);
 
 // Fills in a leaf's ball, box, bones and morphs from its vertices.
 void bound_leaf(const Character& character, const std::vector<SurfaceVertex>& vertices, Leaf& leaf);

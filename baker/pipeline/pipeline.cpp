@@ -97,11 +97,11 @@ Regions segment_character(Character& character, const Roles& roles, const Segmen
     throw Error(ExitCode::kSegmentation, character.file + ": the rig's limbs are no " + body_kind_name(settings.body) +
                                              "'s (inspect --roles says what its joints are)");
   }
-  if (whole) return segment_by_rig(character, roles, settings.facing);
+  if (whole) return segment_by_rig(character, roles);
   take_all_pieces(character);
-  Regions of_pieces = segment_by_rig(character, roles, settings.facing);
+  Regions of_pieces = segment_by_rig(character, roles);
   if (!is_in_shards(character.skin, of_pieces) || !wrap_body(character, closing)) return of_pieces;
-  return segment_by_rig(character, roles, settings.facing);
+  return segment_by_rig(character, roles);
 }
 
 Bake bake(const std::filesystem::path& input, const BakeSettings& settings, const Progress& progress) {

@@ -79,7 +79,8 @@ std::size_t bytes_of(const Surface& surface) {
          bytes(surface.slot_positions) + bytes(surface.slot_weights) + bytes(surface.slot_morphs) +
          bytes(surface.cover_term_counts) + bytes(surface.cover_term_bones) + bytes(surface.cover_terms) +
          bytes(surface.cover_morph_counts) + bytes(surface.cover_morph_targets) + bytes(surface.cover_morphs) +
-         bytes(surface.rest_contacts) + bytes(surface.leaf_boxes);
+         bytes(surface.rest_contacts) + bytes(surface.leaf_boxes) + bytes(surface.outlines) +
+         bytes(surface.outline_bones) + bytes(surface.outline_points) + bytes(surface.outline_weights);
 }
 
 ordered_json sphere_json(const Asset& asset, std::size_t i) {

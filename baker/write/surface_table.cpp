@@ -153,6 +153,40 @@ Runs runs_of(const Character& character, const Leaves& in) {
   return out;
 }
 
+struct Outlines {
+  std::vector<schema::Outline> outlines;
+  std::vector<schema::OutlineBone> bones;
+  std::vector<float> points, weights;
+};
+
+Outlines outlines_of(const Character& character, const Leaves& in) {
+  Outlines out;
+  std::uint32_t leaf = 0;
+  for (std::uint32_t s = 0; s < in.outlines.size(); ++s) {
+    const Outline& outline = in.outlines[s];
+    out.outlines.emplace_back(
+        leaf, static_cast<std::uint32_t>(out.bones.size()), static_cast<std::uint32_t>(out.points.size() / 3),
+        static_cast<std::uint32_t>(out.weights.size()), static_cast<std::uint16_t>(outline.bones.size()),
+        static_cast<std::uint16_t>(outline.points.size()), to_schema(outline.center),
+        static_cast<float>(outline.radius), static_cast<float>(outline.slack));
+    while (leaf < in.leaves.size() && in.leaves[leaf].sphere == s) ++leaf;
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      for (const Index v : outline.points) {
+        out.points.push_back(static_cast<float>(character.source_positions[in.vertices[v].source][axis]));
+      }
+    }
+    for (const OutlineBone& bone : outline.bones) {
+      out.bones.emplace_back(bone.bone, bone.off[0], bone.off[1], bone.off[2], bone.off[3]);
+      for (const Index v : outline.points) {
+        const std::vector<Influence>& influences = in.vertices[v].influences;
+        const auto found = std::ranges::find(influences, bone.bone, &Influence::bone);
+        out.weights.push_back(found == influences.end() ? 0.0F : found->weight);
+      }
+    }
+  }
+  return out;
+}
+
 auto aligned_floats(flatbuffers::FlatBufferBuilder& builder, const std::vector<float>& values) {
   builder.ForceVectorAlignment(values.size(), sizeof(float), sizeof(Eight));
   return builder.CreateVector(values);
@@ -190,9 +224,20 @@ flatbuffers::Offset<schema::Surface> create_surface(flatbuffers::FlatBufferBuild
   std::vector<schema::TrianglePair> pairs;
   for (const TrianglePair& pair : rest_contacts) pairs.emplace_back(pair.a, pair.b);
   const auto rest_contacts_at = builder.CreateVectorOfStructs(pairs);
+  flatbuffers::Offset<flatbuffers::Vector<const schema::Outline*>> outlines_at;
+  flatbuffers::Offset<flatbuffers::Vector<const schema::OutlineBone*>> outline_bones_at;
+  flatbuffers::Offset<flatbuffers::Vector<float>> outline_points_at, outline_weights_at;
+  if (!leaves.outlines.empty()) {
+    const Outlines outlines = outlines_of(character, leaves);
+    outlines_at = builder.CreateVectorOfStructs(outlines.outlines);
+    outline_bones_at = builder.CreateVectorOfStructs(outlines.bones);
+    outline_points_at = aligned_floats(builder, outlines.points);
+    outline_weights_at = aligned_floats(builder, outlines.weights);
+  }
   return schema::CreateSurface(builder, leaves_at, balls_at, leaf_vertices_at, leaf_bones_at, corners_at, sources_at,
                                welds_at, positions_at, weights_at, morphs_at, term_counts_at, term_bones_at, terms_at,
-                               morph_counts_at, morph_targets_at, cover_morphs_at, rest_contacts_at, boxes_at);
+                               morph_counts_at, morph_targets_at, cover_morphs_at, rest_contacts_at, boxes_at,
+                               outlines_at, outline_bones_at, outline_points_at, outline_weights_at);
 }
 
 }  // namespace spherechain::baker

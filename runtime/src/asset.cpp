@@ -122,6 +122,12 @@ Surface surface_of(const schema::Surface& stored) {
   if (stored.leaf_boxes() != nullptr) {
     surface.leaf_boxes = view<BoxLanes>(*stored.leaf_boxes());
   }
+  if (stored.outlines() != nullptr) {  // then all four are there
+    surface.outlines = view<Outline>(*stored.outlines());
+    surface.outline_bones = view<OutlineBone>(*stored.outline_bones());
+    surface.outline_points = view<float>(*stored.outline_points());
+    surface.outline_weights = view<float>(*stored.outline_weights());
+  }
   return surface;
 }
 

@@ -290,6 +290,80 @@ bool check_boxes(const schema::Surface& surface, Message& message) {
   return true;
 }
 
+// Where the next outline's runs start.
+struct NextOutline {
+  std::uint64_t bone = 0, point = 0, weight = 0;
+};
+
+bool check_outline(const schema::Asset& root, std::uint32_t s, std::uint32_t leaf, NextOutline& next,
+                   Message& message) {
+  const schema::Surface& surface = *root.surface();
+  const schema::Outline& outline = *surface.outlines()->Get(s);
+  const bool has_leaves = root.spheres()->Get(s)->triangle_count() > 0;
+  if (outline.first_leaf() != leaf || (outline.bone_count() > 0) != has_leaves ||
+      (outline.point_count() > 0) != has_leaves || outline.point_count() % kOutlineLanes != 0) {
+    return wrong_at("outlines", s,
+                    "not where its leaves start, or its counts are not those of a sphere with, or without", message);
+  }
+  if (!take_run(outline.first_bone(), outline.bone_count(), surface.outline_bones()->size(), next.bone) ||
+      !take_run(outline.first_point(), outline.point_count(), surface.outline_points()->size() / 3, next.point) ||
+      !take_run(outline.first_weight(), std::uint64_t{outline.bone_count()} * outline.point_count(),
+                surface.outline_weights()->size(), next.weight)) {
+    return wrong_at("outlines", s, "a run of it does not start where the last one's ends, or is past the end", message);
+  }
+  if (!is_finite(outline.center()) || !(std::isfinite(outline.radius()) && outline.radius() >= 0.0F) ||
+      !(std::isfinite(outline.slack()) && outline.slack() >= 0.0F)) {
+    return wrong_at("outlines", s, "its center, radius or slack is not finite, or below 0", message);
+  }
+  for (std::uint32_t i = outline.first_bone(); i < next.bone; ++i) {
+    const schema::OutlineBone& bone = *surface.outline_bones()->Get(i);
+    const float off[4] = {bone.x(), bone.y(), bone.z(), bone.w()};
+    if (bone.bone() >= bone_count(root) ||
+        !std::all_of(off, off + 4, [](float v) { return std::isfinite(v) && v >= 0.0F; })) {
+      return wrong_at("outline_bones", i, "past the bones, or a figure of it is not finite, or below 0", message);
+    }
+  }
+  return true;
+}
+
+bool check_outlines(const schema::Asset& root, Message& message) {
+  const schema::Surface& surface = *root.surface();
+  const bool all = surface.outlines() != nullptr && surface.outline_bones() != nullptr &&
+                   surface.outline_points() != nullptr && surface.outline_weights() != nullptr;
+  if (!all) {
+    return (surface.outlines() == nullptr && surface.outline_bones() == nullptr &&
+            surface.outline_points() == nullptr && surface.outline_weights() == nullptr) ||
+           message.wrong("surface.outlines: some of their four tables are missing");
+  }
+  const std::uint32_t count = root.spheres()->size();
+  if (!has_size(surface.outlines()->size(), count, "outlines", "spheres", message)) {
+    return false;
+  }
+  std::uint32_t leaf = 0;
+  NextOutline next;
+  for (std::uint32_t s = 0; s < count; ++s) {
+    if (!check_outline(root, s, leaf, next, message)) {
+      return false;
+    }
+    while (leaf < surface.leaves()->size() && surface.leaves()->Get(leaf)->sphere() == s) {
+      ++leaf;
+    }
+  }
+  const float* points = surface.outline_points()->data();
+  const float* weights = surface.outline_weights()->data();
+  if (!std::all_of(points, points + surface.outline_points()->size(), [](float p) { return std::isfinite(p); })) {
+    return message.wrong("surface.outline_points: one is not finite");
+  }
+  if (!std::all_of(weights, weights + surface.outline_weights()->size(),
+                   [](float w) { return w >= 0.0F && w <= 1.0F; })) {
+    return message.wrong("surface.outline_weights: one is not from 0 to 1");
+  }
+  return has_size(surface.outline_bones()->size(), next.bone, "outline_bones", "that the outlines have", message) &&
+         has_size(surface.outline_points()->size(), 3 * next.point, "outline_points", "that the outlines have",
+                  message) &&
+         has_size(surface.outline_weights()->size(), next.weight, "outline_weights", "that the outlines have", message);
+}
+
 bool check_rest_contacts(const schema::Asset& root, Message& message) {
   const auto* pairs = root.surface()->rest_contacts();
   if (pairs == nullptr) {
@@ -312,7 +386,7 @@ bool check_rest_contacts(const schema::Asset& root, Message& message) {
 bool surface_values_are_valid(const schema::Asset& root, Message& message) {
   return root.surface() == nullptr ||
          (check_vertices(root, message) && check_leaves(root, message) && check_cover(root, message) &&
-          check_boxes(*root.surface(), message) && check_rest_contacts(root, message));
+          check_boxes(*root.surface(), message) && check_outlines(root, message) && check_rest_contacts(root, message));
 }
 
 }  // namespace spherechain

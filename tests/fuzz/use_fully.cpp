@@ -73,6 +73,10 @@ void read_surface(const Asset& asset) {
   read(surface.cover_morphs);
   read(surface.rest_contacts);
   read(surface.leaf_boxes);
+  read(surface.outlines);
+  read(surface.outline_bones);
+  read(surface.outline_points);
+  read(surface.outline_weights);
   // What a narrow phase would do: leaf by leaf, corner by corner, to the source's vertex.
   std::size_t sum = 0;
   for (const Leaf& leaf : surface.leaves) {

@@ -13,6 +13,11 @@ namespace {
 namespace fb = flatbuffers;
 
 schema::Vec3 stored(const Vec3& v) { return {v.x, v.y, v.z}; }
+schema::Outline stored(const Outline& o) {
+  return {o.first_leaf,  o.first_bone,     o.first_point, o.first_weight, o.bone_count,
+          o.point_count, stored(o.center), o.radius,      o.slack};
+}
+schema::OutlineBone stored(const OutlineBone& b) { return {b.bone, b.x, b.y, b.z, b.w}; }
 schema::FitError stored(const FitError& e) { return {e.mean_abs_f, e.max_abs_f}; }
 schema::Pivot stored(const Pivot& p) { return {p.a, p.b, p.c, p.weight}; }
 schema::SourcePart stored(const SourcePart& p) { return {p.mesh, p.primitive, p.first_vertex, p.vertex_count, p.hash}; }
@@ -164,9 +169,19 @@ fb::Offset<schema::Surface> build_surface(fb::FlatBufferBuilder& builder, const 
   const auto rest_contacts = struct_vector<schema::TrianglePair>(builder, in.rest_contacts);
   using Boxes = fb::Offset<fb::Vector<const schema::BoxLanes*>>;
   const Boxes boxes = in.leaf_boxes.empty() ? Boxes() : struct_vector<schema::BoxLanes>(builder, in.leaf_boxes);
+  fb::Offset<fb::Vector<const schema::Outline*>> outlines;
+  fb::Offset<fb::Vector<const schema::OutlineBone*>> outline_bones;
+  fb::Offset<fb::Vector<float>> outline_points, outline_weights;
+  if (!in.outlines.empty()) {
+    outlines = struct_vector<schema::Outline>(builder, in.outlines);
+    outline_bones = struct_vector<schema::OutlineBone>(builder, in.outline_bones);
+    outline_points = builder.CreateVector(in.outline_points);
+    outline_weights = builder.CreateVector(in.outline_weights);
+  }
   return schema::CreateSurface(builder, leaves, balls, leaf_vertices, leaf_bones, corners, source_vertices, welds,
                                positions, weights, morphs, term_counts, term_bones, terms, morph_counts, morph_targets,
-                               cover_morphs, rest_contacts, boxes);
+                               cover_morphs, rest_contacts, boxes, outlines, outline_bones, outline_points,
+                               outline_weights);
 }
 
 }  // namespace

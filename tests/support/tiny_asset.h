@@ -78,6 +78,9 @@ struct SurfaceParts {
   std::vector<BallLanes> cover_morphs;
   std::vector<TrianglePair> rest_contacts;
   std::vector<BoxLanes> leaf_boxes;  // left out where there are none
+  std::vector<Outline> outlines;     // likewise, and then the next three too
+  std::vector<OutlineBone> outline_bones;
+  std::vector<float> outline_points, outline_weights;
 };
 
 // Everything an asset holds, to be changed before build().

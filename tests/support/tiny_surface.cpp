@@ -192,6 +192,84 @@ void add_groups(const TinyAsset& tiny, SurfaceParts& out) {
   }
 }
 
+// Of every second sphere all vertices are points, and nothing is off; of the others at most five, and the vertices'
+// shares are a fifth each.
+void add_outline(const TinyAsset& tiny, const TinySkin& skin, std::uint32_t s, SurfaceParts& out) {
+  const auto size_of = [](const auto& run) { return static_cast<std::uint32_t>(run.size()); };
+  Outline outline{};
+  while (outline.first_leaf < out.leaves.size() && out.leaves[outline.first_leaf].sphere < s) {
+    ++outline.first_leaf;
+  }
+  outline.first_bone = size_of(out.outline_bones);
+  outline.first_point = size_of(out.outline_points) / 3;
+  outline.first_weight = size_of(out.outline_weights);
+  std::vector<std::uint32_t> vertices;
+  std::map<std::uint32_t, bool> bones;
+  for (const Leaf& leaf : out.leaves) {
+    for (std::uint32_t i = 0; leaf.sphere == s && i < leaf.vertex_count; ++i) {
+      vertices.push_back(out.source_vertices[out.leaf_vertices[leaf.first_vertex + i]]);
+      for (const auto& [bone, weight] : skin.weights[vertices.back()]) {
+        bones[bone] = true;
+      }
+    }
+  }
+  if (vertices.empty()) {
+    out.outlines.push_back(outline);
+    return;
+  }
+  const bool all = s % 2 == 0;
+  std::vector<std::uint32_t> points(vertices.begin(), all ? vertices.end() : vertices.begin() + 5);
+  const std::size_t chosen = points.size();
+  points.resize((chosen + kOutlineLanes - 1) / kOutlineLanes * kOutlineLanes, points.back());
+  const Point center = position_of(tiny, vertices[0]);
+  outline.center = {center[0], center[1], center[2]};
+  const auto lifted = [&](std::uint32_t v, std::uint32_t bone) {
+    const Point p = position_of(tiny, v);
+    const double weight = weight_of(skin, v, bone);
+    return std::array<double, 4>{weight * (double{p[0]} - center[0]), weight * (double{p[1]} - center[1]),
+                                 weight * (double{p[2]} - center[2]), weight};
+  };
+  double radius = 0, slack = 0;
+  std::map<std::uint32_t, std::array<double, 4>> most;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    std::array<double, 4> sum{};
+    for (const auto& [bone, used] : bones) {
+      std::array<double, 4> off = lifted(vertices[i], bone);
+      for (std::size_t k = 0; k < chosen; ++k) {
+        const std::array<double, 4> part = lifted(points[k], bone);
+        const double share = all ? (k == i ? 1 : 0) : 1.0 / static_cast<double>(chosen);
+        for (std::size_t j = 0; j < 4; ++j) {
+          off[j] -= share * part[j];
+        }
+      }
+      for (std::size_t j = 0; j < 4; ++j) {
+        most[bone][j] = std::max(most[bone][j], std::abs(off[j]));
+        sum[j] += off[j];
+      }
+    }
+    slack = std::max(slack, std::hypot(sum[0], sum[1], sum[2]));
+    const Point p = position_of(tiny, vertices[i]);
+    radius = std::max(radius, std::hypot(double{p[0]} - center[0], double{p[1]} - center[1], double{p[2]} - center[2]));
+  }
+  const auto up = [](double value) { return static_cast<float>(value * 1.000001); };
+  outline.radius = up(radius);
+  outline.slack = up(slack);
+  outline.bone_count = static_cast<std::uint16_t>(bones.size());
+  outline.point_count = static_cast<std::uint16_t>(points.size());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const std::uint32_t v : points) {
+      out.outline_points.push_back(position_of(tiny, v)[axis]);
+    }
+  }
+  for (const auto& [bone, off] : most) {
+    out.outline_bones.push_back({bone, up(off[0]), up(off[1]), up(off[2]), up(off[3])});
+    for (const std::uint32_t v : points) {
+      out.outline_weights.push_back(weight_of(skin, v, bone));
+    }
+  }
+  out.outlines.push_back(outline);
+}
+
 }  // namespace
 
 void add_surface(TinyAsset& tiny, const TinySkin* skin, std::size_t triangles_of_leaf) {
@@ -205,6 +283,9 @@ void add_surface(TinyAsset& tiny, const TinySkin* skin, std::size_t triangles_of
     }
   }
   add_groups(tiny, out);
+  for (std::uint32_t s = 0; skin != nullptr && s < tiny.parts.spheres.size(); ++s) {
+    add_outline(tiny, *skin, s, out);
+  }
   out.rest_contacts = {{0, tiny.parts.triangle_count - 1}, {1, 2}};
 }
 

@@ -59,6 +59,30 @@ struct SlotMorph {
   Vec3 delta;
 };
 
+inline constexpr std::size_t kOutlineLanes = 16;  // an outline's points are a multiple of it
+
+// What keeps a sphere's triangles together in every pose: points near whose hull they stay, that move as vertices do.
+// For each vertex of the sphere there are shares of the points, at least 0, that add up to 1, so that the two vectors
+// w_b (v - center; 1), w_b a bone's weight, of the vertex and of its shares of the points are, coordinate by
+// coordinate, as close as OutlineBone says; and the sums over the bones of their first three as `slack` says.
+struct Outline {
+  std::uint32_t first_leaf;    // the sphere's
+  std::uint32_t first_bone;    // into Surface::outline_bones
+  std::uint32_t first_point;   // a third of the place in Surface::outline_points
+  std::uint32_t first_weight;  // into Surface::outline_weights
+  std::uint16_t bone_count;    // 0 where the sphere has no leaves
+  std::uint16_t point_count;   // a multiple of kOutlineLanes; likewise
+  Vec3 center;                 // rest
+  float radius;                // from there to the farthest vertex or point
+  float slack;
+};
+
+// The first of an outline's is the one that moves most of it.
+struct OutlineBone {
+  std::uint32_t bone;
+  float x, y, z, w;
+};
+
 // Source triangle numbers, a < b.
 struct TrianglePair {
   std::uint32_t a, b;
@@ -94,6 +118,12 @@ struct Surface {
   Span<const BallLanes> cover_morphs;             // around the deltas of a leaf's vertices, 0 where a vertex has none
   Span<const TrianglePair> rest_contacts;         // triangles that intersect in the rest pose, sorted
   Span<const BoxLanes> leaf_boxes;  // a group's: around the leaf's vertices at rest, without its morphs; may be empty
+
+  // Of the rest pose without morphs; empty in assets of older bakers, and where nothing moves the source.
+  Span<const Outline> outlines;           // a sphere's
+  Span<const OutlineBone> outline_bones;  // of outline after outline
+  Span<const float> outline_points;       // of an outline all x, all y, all z
+  Span<const float> outline_weights;      // of an outline its first bone's of all points, its second's ...
 };
 
 }  // namespace spherechain

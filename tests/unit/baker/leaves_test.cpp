@@ -10,6 +10,8 @@
 #include <filesystem>
 #include <map>
 #include <numeric>
+#include <random>
+#include <ranges>
 #include <set>
 
 #include "baked_human.h"
@@ -230,6 +232,73 @@ TEST_CASE("at rest a leaf's box and ball contain its vertices to the last bit, a
       REQUIRE(boxes.radius[lane] <= farthest * (1 + 1e-6));
       REQUIRE(farthest_of_ball <= balls.radius[lane]);
     }
+  }
+}
+
+TEST_CASE("without morphs a sphere's vertices are near the hull of its outline's points, as near as the asset says") {
+  std::mt19937 random(5);
+  std::normal_distribution<double> any;
+  for (const Bake* bake : {&baked_human(), &morphing_person()}) {
+    const spherechain::Asset asset = open_asset_of(*bake);
+    const spherechain::Surface& surface = asset.surface();
+    REQUIRE(surface.outlines.size == asset.spheres().size);
+    for (int pose = 0; pose < 24; ++pose) {
+      const Matrices matrices = spherechain::test::random_pose(
+          asset.bone_count(), spherechain::test::kPoseKinds[static_cast<std::size_t>(pose) % 6], 1, random);
+      const std::vector<Vec3> vertices = skinned(*bake, matrices, {});
+      std::vector<Eigen::Matrix<double, 3, 4>> bones;
+      for (const auto& m : matrices) {
+        bones.emplace_back(Eigen::Map<const Eigen::Matrix<float, 3, 4, Eigen::RowMajor>>(m.data()).cast<double>());
+      }
+      std::vector<std::vector<Vec3>> of_sphere(surface.outlines.size);
+      for (const spherechain::Leaf& leaf : surface.leaves) {
+        for (std::uint32_t i = 0; i < leaf.vertex_count; ++i) {
+          of_sphere[leaf.sphere].push_back(
+              vertices[surface.source_vertices[surface.leaf_vertices[leaf.first_vertex + i]]]);
+        }
+      }
+      for (std::size_t s = 0; s < surface.outlines.size; ++s) {
+        const spherechain::Outline& outline = surface.outlines[s];
+        const Eigen::Vector4d center(outline.center.x, outline.center.y, outline.center.z, 1);
+        std::vector<Vec3> points(outline.point_count, Vec3::Zero());
+        Vec3 strays = Vec3::Zero();
+        const Eigen::Matrix<double, 3, 4>& first = bones[surface.outline_bones[outline.first_bone].bone];
+        for (std::size_t b = 0; b < outline.bone_count; ++b) {
+          const spherechain::OutlineBone& bone = surface.outline_bones[outline.first_bone + b];
+          for (std::size_t k = 0; k < outline.point_count; ++k) {
+            const float* rest = surface.outline_points.data + std::size_t{3} * outline.first_point + k;
+            const Eigen::Vector4d point(rest[0], rest[outline.point_count], rest[2 * outline.point_count], 1);
+            points[k] += surface.outline_weights[outline.first_weight + b * outline.point_count + k] *
+                         (bones[bone.bone] * point);
+          }
+          const Eigen::Matrix<double, 3, 4> apart = bones[bone.bone] - first;
+          strays += apart.leftCols<3>().cwiseAbs() * Vec3(bone.x, bone.y, bone.z) +
+                    (apart * center).cwiseAbs() * static_cast<double>(bone.w);
+        }
+        const double stretch = first.leftCols<3>().jacobiSvd().singularValues()[0];
+        // Weights are off 1 by 2^-24 at most, twice, and coordinates are below 16.
+        const double margin = strays.norm() + stretch * static_cast<double>(outline.slack) + 4e-6;
+        for (int i = 0; i < 8; ++i) {
+          const Vec3 direction = Vec3(any(random), any(random), any(random)).normalized();
+          const auto along = [&](const Vec3& p) { return direction.dot(p); };
+          const double farthest = std::ranges::max(of_sphere[s] | std::views::transform(along));
+          const double reach = std::ranges::max(points | std::views::transform(along));
+          CAPTURE(s);
+          REQUIRE(farthest <= reach + margin);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("an outline is as near as it is meant to be, or has as many points as there may be") {
+  const spherechain::Asset asset = open_asset_of(baked_human());
+  const auto& outlines = asset.surface().outlines;
+  double radii = 0;
+  for (const spherechain::Outline& outline : outlines) radii += outline.radius;
+  for (const spherechain::Outline& outline : outlines) {
+    CHECK(outline.point_count <= 96);
+    if (outline.point_count < 96) CHECK(outline.slack <= 0.0301 * radii / static_cast<double>(outlines.size));
   }
 }
 

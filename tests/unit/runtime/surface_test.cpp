@@ -43,6 +43,10 @@ void check_same(const Surface& surface, const SurfaceParts& parts) {
   CHECK(same_bits(to_vector(surface.cover_morphs), parts.cover_morphs));
   CHECK(to_vector(surface.rest_contacts) == parts.rest_contacts);
   CHECK(same_bits(to_vector(surface.leaf_boxes), parts.leaf_boxes));
+  CHECK(same_bits(to_vector(surface.outlines), parts.outlines));
+  CHECK(same_bits(to_vector(surface.outline_bones), parts.outline_bones));
+  CHECK(same_bits(to_vector(surface.outline_points), parts.outline_points));
+  CHECK(same_bits(to_vector(surface.outline_weights), parts.outline_weights));
 }
 
 }  // namespace
@@ -74,6 +78,15 @@ TEST_CASE("a surface of an older baker has no boxes around its leaves") {
   REQUIRE(opened.status == Status::kOk);
   CHECK(opened.asset.surface().leaf_boxes.size == 0);
   check_same(opened.asset.surface(), tiny.parts.surface);
+}
+
+TEST_CASE("a surface of an older baker has no outlines of its spheres") {
+  TinyAsset tiny = tiny_with_surface();
+  tiny.parts.surface.outlines.clear();
+  const OpenedAsset opened(tiny.parts);
+  REQUIRE(opened.status == Status::kOk);
+  CHECK(opened.asset.surface().outlines.size == 0);
+  CHECK(opened.asset.surface().outline_weights.size == 0);
 }
 
 TEST_CASE("an asset without a surface opens and has no leaves") {
@@ -164,6 +177,34 @@ TEST_CASE("each wrong value of a surface is refused by its name") {
       {"surface.cover_morph_targets[1]: not above", [](S& s) { s.cover_morph_targets[1] = 0; }},
       {"surface.cover_morph_targets[1]: its lanes", [](S& s) { s.cover_morphs[1].radius[3] = -1; }},
       {"surface.cover_morphs: ", [](S& s) { s.cover_morphs.pop_back(); }},
+      {"surface.outlines: 11 of them, but 12", [](S& s) { s.outlines.pop_back(); }},
+      {"surface.outlines[1]: not where its leaves start", [](S& s) { s.outlines[1].first_leaf = 1; }},
+      {"surface.outlines[11]: not where its leaves start", [](S& s) { s.outlines[11].bone_count = 0; }},
+      {"surface.outlines[11]: not where its leaves start", [](S& s) { s.outlines[11].point_count = 0; }},
+      {"surface.outlines[2]: not where its leaves start", [](S& s) { s.outlines[2].point_count = 15; }},
+      {"surface.outlines[2]: a run of it", [](S& s) { s.outlines[2].first_bone -= 1; }},
+      {"surface.outlines[2]: a run of it", [](S& s) { s.outlines[2].first_point = 0xFFFFFFF0U; }},
+      {"surface.outlines[2]: a run of it", [](S& s) { s.outlines[2].first_weight += 16; }},
+      {"surface.outlines[11]: a run of it", [](S& s) { s.outlines[11].point_count = 0xFFF0; }},
+      {"surface.outlines[11]: a run of it", [](S& s) { s.outlines[11].bone_count = 0xFFFF; }},
+      {"surface.outlines[11]: a run of it", [](S& s) { s.outline_points.pop_back(); }},
+      {"surface.outlines[11]: a run of it", [](S& s) { s.outline_weights.pop_back(); }},
+      {"surface.outlines[3]: its center", [](S& s) { s.outlines[3].center.y = kNan; }},
+      {"surface.outlines[3]: its center", [](S& s) { s.outlines[3].radius = kInfinity; }},
+      {"surface.outlines[3]: its center", [](S& s) { s.outlines[3].radius = -1; }},
+      {"surface.outlines[3]: its center", [](S& s) { s.outlines[3].slack = kNan; }},
+      {"surface.outline_bones[4]: past the bones", [](S& s) { s.outline_bones[4].bone = 5; }},
+      {"surface.outline_bones[4]: past the bones", [](S& s) { s.outline_bones[4].x = kNan; }},
+      {"surface.outline_bones[4]: past the bones", [](S& s) { s.outline_bones[4].w = -1; }},
+      {"surface.outline_points: one is not finite", [](S& s) { s.outline_points[7] = kInfinity; }},
+      {"surface.outline_weights: one is not from 0 to 1", [](S& s) { s.outline_weights[7] = kNan; }},
+      {"surface.outline_weights: one is not from 0 to 1", [](S& s) { s.outline_weights[7] = 1.5F; }},
+      {"surface.outline_bones: ",
+       [](S& s) {
+         s.outline_bones.push_back({0, 0, 0, 0, 0});
+       }},
+      {"surface.outline_points: ", [](S& s) { s.outline_points.insert(s.outline_points.end(), 3, 0.0F); }},
+      {"surface.outline_weights: ", [](S& s) { s.outline_weights.push_back(0); }},
       {"surface.rest_contacts[1]: a is not below b",
        [](S& s) {
          s.rest_contacts[1] = {3, 3};
