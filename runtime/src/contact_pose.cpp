@@ -61,6 +61,62 @@ void lay_out(const Asset& asset, Scratch& scratch, ContactScene& scene) {
   for (float*& column : scene.ball_columns) {
     column = scratch.take<float>(surface.leaves.size + kContactPadding);
   }
+  if (surface.outlines.size == 0) {
+    return;
+  }
+  scene.group_terms = scratch.take<std::uint32_t>(surface.cover_term_counts.size);
+  scene.is_group_bounded = scratch.take<std::uint8_t>(surface.cover_term_counts.size);
+  scene.columns = scratch.take_aligned<float>(kColumnFloats * asset.bone_count());
+  scene.outlines = scratch.take_aligned<float>(surface.outline_points.size);
+  scene.outline_margins = scratch.take<float>(scene.sphere_count);
+}
+
+bool are_zero(Span<const float> weights) {
+  for (const float weight : weights) {
+    if (weight != 0.0F) {  // so is what is not a number
+      return false;
+    }
+  }
+  return true;
+}
+
+void find_first_leaves(const Surface& surface, ContactScene& scene) {
+  if (surface.outlines.size > 0) {
+    for (std::size_t sphere = 0; sphere < scene.sphere_count; ++sphere) {
+      scene.first_leaf[sphere] = surface.outlines[sphere].first_leaf;
+    }
+    scene.first_leaf[scene.sphere_count] = static_cast<std::uint32_t>(surface.leaves.size);
+    return;
+  }
+  std::size_t leaf = 0;
+  for (std::size_t sphere = 0; sphere <= scene.sphere_count; ++sphere) {
+    while (leaf < surface.leaves.size && surface.leaves[leaf].sphere < sphere) {
+      ++leaf;
+    }
+    scene.first_leaf[sphere] = static_cast<std::uint32_t>(leaf);
+  }
+}
+
+void prepare_outlines(const ContactPose& pose, ContactScene& scene) {
+  scene.has_outlines = true;
+  const Span<const std::uint32_t> term_counts = pose.asset->surface().cover_term_counts;
+  std::memset(scene.is_group_bounded, 0, term_counts.size);
+  std::uint32_t term = 0;
+  for (std::size_t group = 0; group < term_counts.size; ++group) {
+    scene.group_terms[group] = term;
+    term += term_counts[group];
+  }
+  const CoverInputs& in = scene.cover;
+  for (std::size_t bone = 0; bone < pose.asset->bone_count(); ++bone) {
+    const float* const matrix = in.matrices + bone * in.stride;
+    float* const columns = scene.columns + kColumnFloats * bone;
+    for (std::size_t j = 0; j < 4; ++j) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        columns[4 * j + i] = matrix[i * in.row + j * in.column];
+      }
+      columns[4 * j + 3] = 0;
+    }
+  }
 }
 
 }  // namespace
@@ -115,18 +171,15 @@ ContactScene scene_of(const ContactPose& pose, Span<std::uint64_t> words) {
   const Span<const Leaf> leaves = pose.asset->surface().leaves;
   std::memset(scene.is_loaded, 0, leaves.size);
   std::memset(scene.is_bounded, 0, scene.sphere_count);
-  std::size_t leaf = 0;
-  for (std::size_t sphere = 0; sphere <= scene.sphere_count; ++sphere) {
-    while (leaf < leaves.size && leaves[leaf].sphere < sphere) {
-      ++leaf;
-    }
-    scene.first_leaf[sphere] = static_cast<std::uint32_t>(leaf);
-  }
+  find_first_leaves(pose.asset->surface(), scene);
   if (pose.bones.data != nullptr) {
     scene.skin = skin_inputs(*pose.asset, pose.bones, pose.morph_weights);
     scene.has_balls = true;
     scene.cover =
         cover_inputs(*pose.asset, pose.bones, pose.morph_weights, {scene.bone_sizes, pose.asset->bone_count()});
+    if (scene.outlines != nullptr && (scene.cover.morph_counts == nullptr || are_zero(pose.morph_weights))) {
+      prepare_outlines(pose, scene);
+    }
   }
   return scene;
 }

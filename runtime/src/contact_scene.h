@@ -21,6 +21,9 @@ inline constexpr std::size_t kContactPadding = 16;
 // x, x - y, y - z and z - x. Most leaves whose boxes touch are apart along a diagonal. And room for a vector.
 inline constexpr std::size_t kDirections = 9, kSpanLanes = 16;
 
+// Of a bone's matrix by columns of four.
+inline constexpr std::size_t kColumnFloats = 16;
+
 // Boxes coordinate by coordinate.
 struct BoxColumns {
   float* low[3];
@@ -35,6 +38,7 @@ struct ContactScene {
   bool apart = true, neighbours = false;        // which of them to pair: see ContactScope
   const float* positions = nullptr;             // the source's; null: from bones
   bool has_balls = false;                       // bounded by bones
+  bool has_outlines = false;                    // and sphere by sphere first: leaves only as needed
   std::size_t stride = 0;                       // floats
   SkinInputs skin{};                            // from bones
   CoverInputs cover{};                          // likewise
@@ -42,11 +46,17 @@ struct ContactScene {
   BoxColumns spheres, leaves;
   std::uint32_t* first_leaf = nullptr;  // a sphere's, and the end
   std::uint8_t* is_loaded = nullptr;    // a leaf's: are its vertices and its span below?
-  std::uint8_t* is_bounded = nullptr;   // a sphere's, of a ConfirmJob: are its box and its leaves'?
+  std::uint8_t* is_bounded = nullptr;   // a sphere's: are its leaves' boxes there, and, of a ConfirmJob, its own?
   float* spans = nullptr;               // of leaf after leaf: the least in each direction, then the greatest
   float* slots = nullptr;               // x, y, z of a leaf's vertices, of leaf after leaf
   float* ball_columns[4] = {};          // from bones: around the leaves, by coordinates, the radius last
   BoneSize* bone_sizes = nullptr;       // from bones
+  // With outlines.
+  std::uint32_t* group_terms = nullptr;  // where in the cover's terms a group of leaves starts
+  std::uint8_t* is_group_bounded = nullptr;
+  float* columns = nullptr;          // of bone after bone four of four floats, the fourth the translation
+  float* outlines = nullptr;         // of sphere after sphere the points' x, y and z in the pose
+  float* outline_margins = nullptr;  // how far from the points' hull the sphere's vertices are at most
 };
 
 // Where triangles that intersect go. In a file of its own, for kernels must not call templates of the standard library.

@@ -214,6 +214,36 @@ HWY_INLINE bool spans_touch(const ContactScene& scene, std::size_t a, std::size_
   return hn::AllFalse(d, apart);
 }
 
+// Does a plane across the line of the middles of two leaves that are loaded part their vertices? Of the two sums of
+// three products each rounding is a unit in the last place of at most the sums of magnitudes, and eight are counted.
+HWY_NOINLINE bool plane_parts(const ContactScene& scene, std::size_t a, std::size_t b) {
+  constexpr Floats kFloats;
+  const Box box_a = box_of_span(scene, a), box_b = box_of_span(scene, b);
+  float direction[3], size = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float low = box_a.low[axis] < box_b.low[axis] ? box_a.low[axis] : box_b.low[axis];
+    const float high = box_a.high[axis] > box_b.high[axis] ? box_a.high[axis] : box_b.high[axis];
+    const float extent = -low > high ? -low : high;
+    const float along = (box_b.low[axis] + box_b.high[axis]) - (box_a.low[axis] + box_a.high[axis]);
+    direction[axis] = along;
+    size += (along < 0 ? -along : along) * extent;
+  }
+  const auto farthest = [&](std::size_t leaf, float sign) HWY_ATTR {
+    const Slots slots = slots_of(scene, leaf);
+    const Vector x = hn::Set(kFloats, sign * direction[0]), y = hn::Set(kFloats, sign * direction[1]),
+                 z = hn::Set(kFloats, sign * direction[2]);
+    Vector most = hn::Set(kFloats, -FLT_MAX);
+    for (std::size_t i = 0; i < slots.count; i += kLanes) {
+      const Vector first = hn::Mul(x, hn::LoadU(kFloats, slots.axes[0] + i));
+      const Vector along = hn::MulAdd(z, hn::LoadU(kFloats, slots.axes[2] + i),
+                                      hn::MulAdd(y, hn::LoadU(kFloats, slots.axes[1] + i), first));
+      most = hn::IfThenElse(hn::FirstN(kFloats, slots.count - i), hn::Max(along, most), most);
+    }
+    return hn::GetLane(hn::MaxOfLanes(kFloats, most));
+  };
+  return farthest(a, 1) + farthest(b, -1) < -(size * 0x1p-20F + 0x1p-100F);
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace spherechain
 HWY_AFTER_NAMESPACE();

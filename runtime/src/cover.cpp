@@ -88,10 +88,10 @@ BoneSize bone_size(const CoverInputs& in, std::size_t bone) {
   const float* m = in.matrices + bone * in.stride;
   float gram[3][3];
   for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
+    for (std::size_t j = i; j < 3; ++j) {
       const float* p = m + i * in.column;
       const float* q = m + j * in.column;
-      gram[i][j] = std::abs((p[0] * q[0] + p[in.row] * q[in.row]) + p[2 * in.row] * q[2 * in.row]);
+      gram[i][j] = gram[j][i] = std::abs((p[0] * q[0] + p[in.row] * q[in.row]) + p[2 * in.row] * q[2 * in.row]);
     }
   }
   float most = 0;

@@ -97,6 +97,9 @@ HWY_INLINE GroupVector extent_of_group(const CoverInputs& in, const GroupRest& r
   return out;
 }
 
+// Below this length squares run out of exponents: no bound is less.
+constexpr float kLeast = 0x1p-60F;
+
 // At least the spectral norm, but for rounding: the root of the greatest row sum of |R^T R|.
 HWY_INLINE GroupVector spectral_bound(const GroupVector (&r)[3][4]) {
   GroupVector sums[3];
@@ -107,7 +110,7 @@ HWY_INLINE GroupVector spectral_bound(const GroupVector (&r)[3][4]) {
   sums[0] = hn::Add(hn::Add(dot(0, 0), xy), zx);
   sums[1] = hn::Add(hn::Add(dot(1, 1), xy), yz);
   sums[2] = hn::Add(hn::Add(dot(2, 2), yz), zx);
-  return hn::Sqrt(hn::Max(hn::Max(sums[0], sums[1]), sums[2]));
+  return hn::Max(hn::Sqrt(hn::Max(hn::Max(sums[0], sums[1]), sums[2])), hn::Set(GroupLanes(), kLeast));
 }
 
 // One register's lanes of a group of leaves.
@@ -162,7 +165,7 @@ HWY_INLINE void bound_lanes(const ContactScene& scene, std::size_t group, const 
   const auto count = static_cast<float>(at.term_count + at.morph_count);
   const GroupVector factor =
       hn::MulAdd(hn::Set(d, kUnit * (128.0F + 32.0F * count)), deviations, hn::Set(d, kUnit * (64.0F + 8.0F * count)));
-  const GroupVector margin = hn::Mul(factor, most);
+  const GroupVector margin = hn::MulAdd(factor, most, hn::Set(d, kLeast));
   const GroupVector stray =
       hn::Sqrt(hn::MulAdd(strays[2], strays[2], hn::MulAdd(strays[1], strays[1], hn::Mul(strays[0], strays[0]))));
   const GroupVector radius = hn::Add(hn::MulAdd(rest.radius, spectral_bound(blend), stray), margin);
@@ -193,6 +196,26 @@ HWY_NOINLINE void bound_leaves_by_bones(const ContactScene& scene) {
     }
     at.term += at.term_count;
     at.morph += at.morph_count;
+  }
+}
+
+// The leaves of one sphere, where they are not bounded yet; with outlines, so no morph has a weight.
+HWY_NOINLINE void bound_sphere_by_bones(const ContactScene& scene, std::size_t sphere) {
+  if (scene.is_bounded[sphere] != 0) {
+    return;
+  }
+  scene.is_bounded[sphere] = 1;
+  const std::size_t end = (scene.first_leaf[sphere + 1] + kLeafLanes - 1) / kLeafLanes;
+  for (std::size_t group = scene.first_leaf[sphere] / kLeafLanes; group < end; ++group) {
+    if (scene.is_group_bounded[group] == 0) {
+      scene.is_group_bounded[group] = 1;
+      GroupTerms at{};
+      at.term = scene.group_terms[group];
+      at.term_count = scene.cover.term_counts[group];
+      for (std::size_t lane = 0; lane < kLeafLanes; lane += hn::MaxLanes(GroupLanes())) {
+        bound_lanes(scene, group, at, lane);
+      }
+    }
   }
 }
 

@@ -84,6 +84,9 @@ HWY_INLINE void skin_leaf(const SkinInputs& in, const Leaf& leaf, float* HWY_RES
   std::size_t slot = 0;
 #if HWY_TARGET == HWY_AVX3
   const hn::CappedTag<float, 2 * kSlotLanes> wide;
+  for (; slot + 4 * kSlotLanes <= slots; slot += 4 * kSlotLanes) {
+    move_slots<2>(wide, in, leaf, slots, slot, rest, out);
+  }
   for (; slot + 2 * kSlotLanes <= slots; slot += 2 * kSlotLanes) {
     move_slots<1>(wide, in, leaf, slots, slot, rest, out);
   }

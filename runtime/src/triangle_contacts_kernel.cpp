@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// From boxes of spheres to boxes of leaves to triangles. With bones, leaves' boxes are what leaf_bounds.h makes of
-// them, else exact. Pairs of leaves are listed, and decided together: loaded, skinned or copied, those that still seem
-// to touch along the axes and their diagonals, and paired triangle by triangle. Which candidates come out may differ
-// between targets, but none that intersects is ever missing.
+// From boxes of spheres to boxes of leaves to triangles. With bones, spheres' boxes are what outlines.h makes of them,
+// and a plane parts most spheres whose boxes touch; leaves' boxes are what leaf_bounds.h makes of them, else exact.
+// Pairs of leaves are listed, and decided together: loaded, skinned or copied, those that still seem to touch along the
+// axes, their diagonals and the line between them, and paired triangle by triangle. Which candidates come out may
+// differ between targets, but none that intersects is ever missing.
 #include "arithmetic.h"
 #include "contact_scene.h"
 #include "simd.h"
@@ -20,6 +21,8 @@
 
 #include "contact_slots.h"
 
+#include "outlines.h"
+
 #include "contact_blocks.h"
 
 #include "contact_judge.h"
@@ -36,15 +39,17 @@ struct PairList {
   std::size_t count = 0;
   std::int32_t a[kRoom + kLanes], b[kRoom + kLanes];  // vectors are written past the end
 
-  HWY_INLINE void add(std::size_t one, std::size_t first, hn::Mask<Floats> others) {
+  // Where `at` pairs are; gives how many are then. In a loop that is to stay in a register: what the vectors write
+  // could be `count`, for all that the compiler knows.
+  HWY_INLINE std::size_t put(std::size_t at, std::size_t one, std::size_t first, hn::Mask<Floats> others) {
     constexpr Places kPlaces;
-    hn::StoreU(hn::Set(kPlaces, static_cast<std::int32_t>(one)), kPlaces, a + count);
+    hn::StoreU(hn::Set(kPlaces, static_cast<std::int32_t>(one)), kPlaces, a + at);
     const auto numbers = hn::Add(hn::Iota(kPlaces, 0), hn::Set(kPlaces, static_cast<std::int32_t>(first)));
     const auto which = hn::RebindMask(kPlaces, others);
-    hn::StoreU(hn::Compress(numbers, which), kPlaces, b + count);
-    count += hn::CountTrue(kPlaces, which);
+    hn::StoreU(hn::Compress(numbers, which), kPlaces, b + at);
+    return at + hn::CountTrue(kPlaces, which);
   }
-  bool has_room() const { return count + kLanes <= kRoom; }
+  static bool has_room(std::size_t at) { return at + kLanes <= kRoom; }
   HWY_INLINE void finish() {
     constexpr Places kPlaces;
     hn::StoreU(hn::Zero(kPlaces), kPlaces, a + count);
@@ -78,6 +83,7 @@ HWY_INLINE void find_places(const Block& block, std::size_t i, const Block& othe
   const float* const highs[3] = {other.high[0], other.high[1], other.high[2]};
   const std::size_t end = block.count - i < kLanes ? block.count : i + kLanes;
   const auto used = hn::FirstN(kFloats, other.count - j);
+  std::size_t count = 0;
   for (std::size_t one = i; one < end; ++one) {
     Box box;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -93,8 +99,9 @@ HWY_INLINE void find_places(const Block& block, std::size_t i, const Block& othe
       const auto later = hn::Gt(triangles, hn::Set(kTriangles, block.triangles[one]));
       apart = hn::Or(apart, hn::Not(hn::RebindMask(kFloats, later)));
     }
-    out.add(one - i, 0, hn::AndNot(apart, used));
+    count = out.put(count, one - i, 0, hn::AndNot(apart, used));
   }
+  out.count = count;
   out.finish();
 }
 
@@ -199,6 +206,7 @@ HWY_NOINLINE void decide_leaves(const ContactScene& scene, LeafPairs& list, Cont
   keep([&](std::size_t a, std::size_t b) HWY_ATTR { return box_of_span(scene, a).touches(box_at(scene.leaves, b)); });
   load_all(list.b);
   keep([&](std::size_t a, std::size_t b) HWY_ATTR { return spans_touch(scene, a, b); });
+  keep([&](std::size_t a, std::size_t b) HWY_ATTR { return a == b || !plane_parts(scene, a, b); });
   for (std::size_t k = 0; k < list.count; ++k) {
     const auto a = static_cast<std::size_t>(list.a[k]), b = static_cast<std::size_t>(list.b[k]);
     const Pair spheres{scene.surface->leaves.data[a].sphere, scene.surface->leaves.data[b].sphere};
@@ -225,8 +233,8 @@ HWY_INLINE void list_leaf(const ContactScene& scene, std::size_t leaf, std::size
     if (scene.has_balls) {
       apart = hn::Or(apart, BallProbe(scene, leaf).misses(scene, j));
     }
-    list.add(leaf, j, hn::AndNot(apart, hn::FirstN(kFloats, end - j)));
-    if (!list.has_room()) {
+    list.count = list.put(list.count, leaf, j, hn::AndNot(apart, hn::FirstN(kFloats, end - j)));
+    if (!list.has_room(list.count)) {
       decide_leaves<kFirst>(scene, list, collector);
     }
   }
@@ -235,6 +243,9 @@ HWY_INLINE void list_leaf(const ContactScene& scene, std::size_t leaf, std::size
 // The leaves of one sphere.
 HWY_INLINE void list_within(const ContactScene& scene, std::size_t sphere, LeafPairs& list,
                             ContactCollector& collector) {
+  if (scene.has_outlines) {
+    bound_sphere_by_bones(scene, sphere);
+  }
   const std::size_t end = scene.first_leaf[sphere + 1];
   for (std::size_t leaf = scene.first_leaf[sphere]; leaf < end; ++leaf) {
     list_leaf<false>(scene, leaf, leaf, end, list, collector);
@@ -244,6 +255,10 @@ HWY_INLINE void list_within(const ContactScene& scene, std::size_t sphere, LeafP
 template <bool kFirst>
 HWY_INLINE void list_spheres(const ContactScene& scene, std::size_t a, std::size_t b, LeafPairs& list,
                              ContactCollector& collector) {
+  if (scene.has_outlines) {
+    bound_sphere_by_bones(scene, a);
+    bound_sphere_by_bones(scene, b);
+  }
   const std::size_t end_a = scene.first_leaf[a + 1], first_b = scene.first_leaf[b], end_b = scene.first_leaf[b + 1];
   const BoxProbe probe_a(box_at(scene.spheres, a));
   if (end_b - first_b <= kLanes && probe_a.touching(scene.leaves, first_b, end_b - first_b) == 0) {
@@ -271,6 +286,10 @@ HWY_NOINLINE void bound_sphere(const ContactScene& scene, std::size_t sphere) {
 
 // Boxes of all leaves and spheres.
 HWY_NOINLINE void bound_all(const ContactScene& scene) {
+  if (scene.has_outlines) {
+    bound_outlines(scene);
+    return;
+  }
   if (scene.has_balls) {
     bound_leaves_by_bones(scene);
   } else {
@@ -286,7 +305,8 @@ bool touch(const ContactScene& scene, std::size_t a, std::size_t b, ContactColle
     bound_sphere(scene, a);
     bound_sphere(scene, b);
   }
-  if (!box_at(scene.spheres, a).touches(box_at(scene.spheres, b))) {
+  if (!box_at(scene.spheres, a).touches(box_at(scene.spheres, b)) ||
+      (scene.has_outlines && outlines_apart(scene, a, b))) {
     return false;
   }
   LeafPairs list;
@@ -299,16 +319,15 @@ HWY_INLINE bool is_enabled(const ContactScene& scene, std::size_t sphere) {
   return scene.disabled.size == 0 || !test_bit(scene.disabled, sphere);
 }
 
-// Of the spheres from `first` on those before b that the scope pairs with b.
-HWY_INLINE hn::Mask<Floats> paired(const ContactScene& scene, std::size_t first, std::size_t b) {
+// Bit k: sphere first + k is before b, and the scope pairs the two.
+HWY_INLINE std::uint64_t paired(const ContactScene& scene, std::size_t first, std::size_t b) {
   const std::uint64_t ignored = bits_at(scene.ignored.data, scene.ignored.size, ignored_bit(first, b));
   std::uint64_t bits = (scene.neighbours ? ignored : 0) | (scene.apart ? ~ignored : 0);
   if (scene.disabled.size > 0) {
     bits &= ~bits_at(scene.disabled.data, scene.disabled.size, first);
   }
   const std::size_t count = b - first;
-  bits &= ~std::uint64_t{0} >> (64 - (count < kLanes ? count : kLanes));
-  return mask_of(bits);
+  return bits & (~std::uint64_t{0} >> (64 - (count < 64 ? count : 64)));
 }
 
 // Spheres, waiting for their leaves to be paired.
@@ -317,6 +336,16 @@ using SpherePairs = PairList<512>;
 template <bool kFirst>
 HWY_NOINLINE void pair_spheres(const ContactScene& scene, SpherePairs& spheres, LeafPairs& leaves,
                                ContactCollector& collector) {
+  if (scene.has_outlines) {
+    std::size_t left = 0;
+    for (std::size_t k = 0; k < spheres.count; ++k) {
+      const std::int32_t a = spheres.a[k], b = spheres.b[k];
+      spheres.a[left] = a;
+      spheres.b[left] = b;
+      left += outlines_apart(scene, static_cast<std::size_t>(a), static_cast<std::size_t>(b)) ? 0 : 1;
+    }
+    spheres.count = left;
+  }
   for (std::size_t k = 0; k < spheres.count; ++k) {
     list_spheres<kFirst>(scene, static_cast<std::size_t>(spheres.b[k]), static_cast<std::size_t>(spheres.a[k]), leaves,
                          collector);
@@ -329,6 +358,7 @@ HWY_INLINE void find(const ContactScene& scene, ContactCollector& collector) {
   bound_all(scene);
   SpherePairs spheres;
   LeafPairs leaves;
+  std::size_t count = 0;
   for (std::size_t b = 0; b < scene.sphere_count; ++b) {
     if (!is_enabled(scene, b)) {
       continue;
@@ -337,13 +367,20 @@ HWY_INLINE void find(const ContactScene& scene, ContactCollector& collector) {
       list_within(scene, b, leaves, collector);
     }
     const BoxProbe probe(box_at(scene.spheres, b));
-    for (std::size_t first = 0; first < b; first += kLanes) {
-      spheres.add(b, first, hn::AndNot(probe.misses(scene.spheres, first), paired(scene, first, b)));
-      if (!spheres.has_room()) {
+    std::uint64_t bits = 0;
+    for (std::size_t first = 0; first < b; first += kLanes, bits >>= kLanes) {
+      if (first % 64 == 0) {
+        bits = paired(scene, first, b);
+      }
+      count = spheres.put(count, b, first, hn::AndNot(probe.misses(scene.spheres, first), mask_of(bits)));
+      if (!spheres.has_room(count)) {
+        spheres.count = count;
         pair_spheres<kFirst>(scene, spheres, leaves, collector);
+        count = 0;
       }
     }
   }
+  spheres.count = count;
   pair_spheres<kFirst>(scene, spheres, leaves, collector);
   decide_leaves<kFirst>(scene, leaves, collector);
 }

@@ -16,7 +16,7 @@ namespace spherechain {
 // Of some pairs of spheres, those whose skins intersect: a triangle of the one's surrounding region has a point in
 // common with one of the other's. Exactly, as TriangleContactJob decides it, with its exceptions for neighbouring
 // triangles and for those that intersect in the rest pose; a pair is done with at its first contact, and only the
-// vertices of the spheres named are read or skinned. With bones all leaves are bounded first, once a run.
+// vertices of the spheres named are read or skinned. With bones all spheres are bounded first, once a run.
 //
 // Made for the pairs that DetectJob reports: spheres are an alarm, this is what is true of it. What spheres miss it
 // does not find; DetectSkinJob does.

@@ -65,7 +65,9 @@ struct SPHERECHAIN_API TriangleContactContext {
 };
 
 // Which triangles of the skin intersect: all of them, none else, exactly. Spheres and radii play no part in it: the
-// job goes from boxes of surrounding regions to boxes of leaves to triangles, and decides in exact arithmetic.
+// job goes from what bounds surrounding regions to boxes of leaves to triangles, and decides in exact arithmetic. With
+// bones, where all morph weights are 0, a region is bounded by the hull of some points (Surface::outlines), else by a
+// box.
 //
 // Left out are triangles of spheres outside the scope, by the pairs that the asset or the filter ignores, and of
 // spheres that the filter disables (its padding is of no effect); triangles that share a position at rest, which are
@@ -75,10 +77,11 @@ struct SPHERECHAIN_API TriangleContactContext {
 // The positions are what the caller gives; or, where `positions` is null, what the job skins from bones, and then only
 // of the leaves that could touch another. Who gives positions and bones spares the job reading all positions: leaves
 // are bounded by the bones. Then each position must be where its weights of the bones put it, to roundings of single
-// precision in whatever order: within (2 N + 8) u Q of there, in cover.h's words. What is not (cloth, corrected shapes,
-// weights of fewer bits) may touch unnoticed; what is found is true of the positions even so. Any position that is not
-// finite makes its triangles intersect nothing; matrices or weights that are not finite bound nothing, so contacts from
-// them may be missing, and differ between targets. Else the contacts are the same on every target.
+// precision in whatever order: within (2 N + 8) u Q of there, in cover.h's words, but N of its leaf alone. What is not
+// (cloth, corrected shapes, weights of fewer bits) may touch unnoticed; what is found is true of the positions even so.
+// Any position that is not finite makes its triangles intersect nothing; matrices or weights that are not finite bound
+// nothing, so contacts from them may be missing, and differ between targets. Else the contacts are the same on every
+// target.
 //
 // What it costs goes with the triangles that come close to others. Those that a pose shrinks to points, as a palette of
 // zeros does, are left out early; a pose millions of heights off, where floats hardly tell vertices apart, has most
