@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include <filesystem>
-
 #include "cli/commands.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
@@ -14,8 +12,6 @@
 
 namespace spherechain::baker {
 
-namespace fs = std::filesystem;
-
 ExitCode run_bake(const BakeOptions& options) {
   BakeSettings settings =
       make_settings(options.profile, options.config.empty() ? "{}" : read_file(options.config), options.config);
@@ -23,8 +19,8 @@ ExitCode run_bake(const BakeOptions& options) {
   if (!options.body.empty()) settings.segment.body = parse_body(options.body);
   if (options.attachments) settings.import.attachments = true;
   if (!options.roles.empty()) settings.roles = parse_role_file(read_file(options.roles), options.roles);
-  if (!fs::exists(options.input)) throw Error(ExitCode::kFile, options.input + ": no such file");
-  check_outputs({{"INPUT", options.input}, {"--config", options.config}, {"--roles", options.roles}},
+  check_regular_file(options.input);
+  check_outputs(with_source({{"--config", options.config}, {"--roles", options.roles}}, "INPUT", options.input),
                 {{"-o", options.output}, {"--report", options.report}, {"--preview", options.preview}});
   check_replaceable(options.output, "SPHC", "an asset", options.force, 4);
   check_replaceable_json(options.report, options.force, "--force replaces it");

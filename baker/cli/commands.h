@@ -29,6 +29,7 @@ struct PlayOptions {
   MotionChoice motion;
   FrameChoice frames;
   std::string mode = "both", radius = "detect", backend = "auto";
+  bool contacts = false;
 };
 ExitCode run_play(const PlayOptions& options);
 

@@ -2,6 +2,7 @@
 // spherechain: the command line tool. README.md has the contract.
 #include <CLI/CLI.hpp>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
@@ -34,6 +35,13 @@ std::string refuse_nan(const std::string& text) {
   return std::isnan(std::strtod(text.c_str(), nullptr)) ? "Value " + text + " is not a number" : std::string();
 }
 
+// A script's variable that is not set would else go for an option that is not given.
+std::string refuse_empty(const std::string& text) { return text.empty() ? "is empty" : std::string(); }
+
+CLI::Option* add_name(CLI::App& command, const std::string& option, std::string& name, const std::string& description) {
+  return command.add_option(option, name, description)->check(refuse_empty);
+}
+
 // What is printed and cannot be written (a full disk, a closed file) is an output that cannot be written.
 int flush(int code) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
@@ -44,10 +52,10 @@ int flush(int code) {
 void add_motion(CLI::App& command, MotionChoice& motion, FrameChoice& frames) {
   CLI::Option_group& choice = *command.add_option_group(
       "Motion", "What to play; without a choice all clips of the source's own, or the rest pose");
-  choice.add_option("--clip", motion.clip, "A clip of the source's own: its name or number");
-  choice.add_option("--poses", motion.poses, "Pose file, or a folder or .txt list of meshes that are poses");
-  choice.add_option("--motion", motion.motion,
-                    "File of motion capture (BVH, FBX, Collada), or folder or .txt list of meshes that are frames");
+  add_name(choice, "--clip", motion.clip, "A clip of the source's own: its name or number");
+  add_name(choice, "--poses", motion.poses, "Pose file, or a folder or .txt list of meshes that are poses");
+  add_name(choice, "--motion", motion.motion,
+           "File of motion capture (BVH, FBX, Collada), or folder or .txt list of meshes that are frames");
   choice.require_option(0, 1);
   command
       .add_option("--frames", frames.count,
@@ -68,6 +76,7 @@ void add_radius(CLI::App& command, std::string& radius) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is one that cannot be written
   CLI::App app{"Self-collision of animated characters by sphere chains."};
   app.name("spherechain");
   app.set_version_flag("--version", std::string("spherechain ") + kVersion + "\ntargets: " + supported_targets_text());
@@ -79,10 +88,10 @@ int main(int argc, char** argv) {
 
   BakeOptions bake;
   CLI::App* bake_command = app.add_subcommand("bake", "Turn a character into an asset");
-  bake_command->add_option("INPUT", bake.input, "glTF, or anything assimp reads")->required();
-  bake_command->add_option("-o,--output", bake.output, "Asset to write (.sphc)")->required();
-  bake_command->add_option("--config", bake.config, "JSON file that changes the profile's settings");
-  bake_command->add_option("--roles", bake.roles, "JSON file of roles by node name, before names and shape");
+  add_name(*bake_command, "INPUT", bake.input, "glTF, or anything assimp reads")->required();
+  add_name(*bake_command, "-o,--output", bake.output, "Asset to write (.sphc)")->required();
+  add_name(*bake_command, "--config", bake.config, "JSON file that changes the profile's settings");
+  add_name(*bake_command, "--roles", bake.roles, "JSON file of roles by node name, before names and shape");
   bake_command->add_option("--profile", bake.profile, "Where the settings start")
       ->check(CLI::IsMember({"paper", "balanced"}))
       ->capture_default_str();
@@ -93,22 +102,22 @@ int main(int argc, char** argv) {
   bake_command->add_flag("--extremities", bake.extremities,
                          "Spheres in head, hands and feet too (profile balanced has them)");
   bake_command->add_flag("--attachments", bake.attachments, "Keep rigid meshes that hang on joints: weapons, hats");
-  bake_command->add_option("--report", bake.report, "JSON report to write");
-  bake_command->add_option("--preview", bake.preview, "glTF binary to write: regions, joints and spheres");
+  add_name(*bake_command, "--report", bake.report, "JSON report to write");
+  add_name(*bake_command, "--preview", bake.preview, "glTF binary to write: regions, joints and spheres");
   bake_command->add_flag("--force", bake.force, "Replace an output file of another kind");
   bake_command->callback([&] { run = [&] { return run_bake(bake); }; });
 
   InspectOptions inspect;
   CLI::App* inspect_command = app.add_subcommand("inspect", "Print what an asset holds, or what a rig's joints are");
-  inspect_command->add_option("ASSET", inspect.asset, "Asset (.sphc); with --roles a character")->required();
+  add_name(*inspect_command, "ASSET", inspect.asset, "Asset (.sphc); with --roles a character")->required();
   inspect_command->add_flag("--roles", inspect.roles, "Print the role of each node of a character's rig, and why");
   inspect_command->add_flag("--json", inspect.json, "As JSON");
   inspect_command->callback([&] { run = [&] { return run_inspect(inspect); }; });
 
   PlayOptions play;
   CLI::App* play_command = app.add_subcommand("play", "Animate an asset's source and report which spheres touch");
-  play_command->add_option("ASSET", play.asset, "Asset (.sphc)")->required();
-  play_command->add_option("--source", play.source, "The mesh it was baked from")->required();
+  add_name(*play_command, "ASSET", play.asset, "Asset (.sphc)")->required();
+  add_name(*play_command, "--source", play.source, "The mesh it was baked from")->required();
   add_motion(*play_command, play.motion, play.frames);
   play_command->add_option("--mode", play.mode, "Overlap test: chains, all spheres, or both")
       ->check(CLI::IsMember({"m1", "m2", "both"}))
@@ -120,14 +129,15 @@ int main(int argc, char** argv) {
                    "SPHERECHAIN_TARGET names no others; cuda plays all frames at once on a GPU, M2 alone, from bones")
       ->check(CLI::IsMember({"auto", "scalar", "simd", "cuda"}))
       ->capture_default_str();
-  play_command->add_option("--json", play.json, "JSON file to write");
+  play_command->add_flag("--contacts", play.contacts, "List the triangles that intersect too");
+  add_name(*play_command, "--json", play.json, "JSON file to write");
   play_command->callback([&] { run = [&] { return run_play(play); }; });
 
   ValidateOptions validate;
   CLI::App* validate_command =
       app.add_subcommand("validate", "Compare the reported pairs with the exact intersections of the deformed mesh");
-  validate_command->add_option("ASSET", validate.asset, "Asset (.sphc)")->required();
-  validate_command->add_option("--source", validate.source, "The mesh it was baked from")->required();
+  add_name(*validate_command, "ASSET", validate.asset, "Asset (.sphc)")->required();
+  add_name(*validate_command, "--source", validate.source, "The mesh it was baked from")->required();
   add_motion(*validate_command, validate.motion, validate.frames);
   validate_command->add_option("--mode", validate.mode, "Overlap test: chains or all spheres")
       ->check(CLI::IsMember({"m1", "m2"}))
@@ -136,18 +146,18 @@ int main(int argc, char** argv) {
   validate_command->add_flag("--contacts", validate.contacts, "Compare the narrow phase's triangle pairs too");
   validate_command->add_flag("--spheres-alone", validate.spheres_alone,
                              "Report the spheres that touch, not those whose skins intersect");
-  validate_command->add_option("--json", validate.json, "JSON file to write");
+  add_name(*validate_command, "--json", validate.json, "JSON file to write");
   validate_command->callback([&] { run = [&] { return run_validate(validate); }; });
 
   ViewOptions view;
   CLI::App* view_command = app.add_subcommand("view", "Write a page that shows an asset on its source in motion");
-  view_command->add_option("ASSET", view.asset, "Asset (.sphc)")->required();
-  view_command->add_option("--source", view.source, "The mesh it was baked from")->required();
-  view_command->add_option("-o,--output", view.output, "Page to write (.html)")->required();
+  add_name(*view_command, "ASSET", view.asset, "Asset (.sphc)")->required();
+  add_name(*view_command, "--source", view.source, "The mesh it was baked from")->required();
+  add_name(*view_command, "-o,--output", view.output, "Page to write (.html)")->required();
   add_motion(*view_command, view.motion, view.frames);
   add_radius(*view_command, view.radius);
-  view_command->add_option("--report", view.report, "The report that bake wrote, to show in the page");
-  view_command->add_option("--validation", view.validation, "What validate --json wrote, to show in the page");
+  add_name(*view_command, "--report", view.report, "The report that bake wrote, to show in the page");
+  add_name(*view_command, "--validation", view.validation, "What validate --json wrote, to show in the page");
   view_command->add_flag("--force", view.force, "Replace an output file that is not a page");
   view_command->callback([&] { run = [&] { return run_view(view); }; });
 
@@ -160,7 +170,10 @@ int main(int argc, char** argv) {
   } catch (const CLI::CallForVersion& version) {
     return flush(app.exit(version));
   } catch (const CLI::ParseError& error) {
-    return fail(ExitCode::kUsage, std::string(error.what()) + " (try spherechain --help)");
+    // Of a command that it does not know the library says only that one is missing.
+    const std::vector<std::string> unknown = app.remaining();
+    const std::string what = unknown.empty() ? error.what() : "there is no command or option '" + unknown.front() + "'";
+    return fail(ExitCode::kUsage, what + " (try spherechain --help)");
   }
   try {
     return flush(static_cast<int>(run()));

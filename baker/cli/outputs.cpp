@@ -9,8 +9,10 @@
 #include <fstream>
 
 #include "mesh/error.h"
+#include "motion/poses.h"
 #include "motion/sequence.h"
 #include "play/play.h"
+#include "write/write.h"
 
 namespace spherechain::baker {
 namespace {
@@ -18,8 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 
 void check_folder(const std::string& file) {
-  const fs::path folder = fs::absolute(file).parent_path();
   std::error_code ignored;
+  if (fs::is_directory(file, ignored)) throw Error(ExitCode::kFile, file + ": cannot be written (it is a folder)");
+  if (is_written_directly(file)) return;
+  const fs::path folder = fs::absolute(file, ignored).parent_path();
   if (!fs::is_directory(folder, ignored)) {
     throw Error(ExitCode::kFile, file + ": cannot be created (there is no folder " + folder.string() + ")");
   }
@@ -33,9 +37,9 @@ bool same_file(const fs::path& a, const fs::path& b) {
   if (fs::equivalent(a, b, error)) return true;
   // One that is not there yet has no other mark than its place; a relative path of which nothing is there stays
   // relative in weakly_canonical.
-  const fs::path place_a = fs::weakly_canonical(fs::absolute(a), error);
+  const fs::path place_a = fs::weakly_canonical(fs::absolute(a, error), error);
   if (error) return false;
-  const fs::path place_b = fs::weakly_canonical(fs::absolute(b), error);
+  const fs::path place_b = fs::weakly_canonical(fs::absolute(b, error), error);
   return !error && place_a == place_b;
 }
 
@@ -51,18 +55,35 @@ bool begins_with(const std::string& file, std::string_view magic, std::size_t of
   return std::equal(magic.begin(), magic.end(), there.begin() + static_cast<std::ptrdiff_t>(offset), same);
 }
 
-void add_sequence(std::vector<CommandFile>& inputs, const char* name, const std::string& path) {
+using Files = std::vector<fs::path>;
+
+void add(std::vector<CommandFile>& inputs, const char* name, const Files& files) {
+  for (const fs::path& file : files) inputs.push_back({name, file.string()});
+}
+
+// `own_files` says what a mesh, or what the motion is in one file, is made of besides.
+void add_motion(std::vector<CommandFile>& inputs, const char* name, const std::string& path,
+                Files (*own_files)(const fs::path&)) {
   if (path.empty()) return;
   inputs.push_back({name, path});
-  if (!is_sequence(path)) return;
-  for (const fs::path& mesh : sequence_files(path)) inputs.push_back({name, mesh.string()});
+  if (!is_sequence(path)) return add(inputs, name, own_files(path));
+  for (const fs::path& mesh : sequence_files(path)) {
+    inputs.push_back({name, mesh.string()});
+    add(inputs, name, files_beside(mesh));
+  }
 }
 
 }  // namespace
 
+std::vector<CommandFile> with_source(std::vector<CommandFile> inputs, const char* name, const std::string& source) {
+  inputs.push_back({name, source});
+  add(inputs, name, files_beside(source));
+  return inputs;
+}
+
 std::vector<CommandFile> with_motion(std::vector<CommandFile> inputs, const MotionChoice& motion) {
-  add_sequence(inputs, "--poses", motion.poses);
-  add_sequence(inputs, "--motion", motion.motion);
+  add_motion(inputs, "--poses", motion.poses, files_of_poses);
+  add_motion(inputs, "--motion", motion.motion, files_beside);
   return inputs;
 }
 

@@ -18,8 +18,11 @@ struct CommandFile {
   std::string path;
 };
 
-// `inputs` and what a motion is read from: its file, or each mesh of its sequence. Throws Error(kFile) where a sequence
-// has none.
+// `inputs`, a source of that name, and the files that it names in turn.
+std::vector<CommandFile> with_source(std::vector<CommandFile> inputs, const char* name, const std::string& source);
+
+// `inputs` and what a motion is read from: its file, or each mesh of its sequence, and the files that those name in
+// turn. Throws Error(kFile) where a sequence has none.
 std::vector<CommandFile> with_motion(std::vector<CommandFile> inputs, const MotionChoice& motion);
 
 // No output is an input or another output, under whatever name or link: Error(kUsage) that names both. Each output's

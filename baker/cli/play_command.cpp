@@ -26,7 +26,7 @@ using nlohmann::ordered_json;
 class Tally {
  public:
   void add(int index, const FrameResult& result, const Player& player, const std::optional<Player::SkinDetection>& skin,
-           const Asset& asset) {
+           const std::optional<Player::TriangleDetection>& triangles, const Asset& asset) {
     ++frames_;
     last_ = result;
     refit_us_ += result.refit_us;
@@ -43,6 +43,11 @@ class Tally {
       skin_pairs_ += skin->pairs.size();
       skin_frames_ += skin->pairs.empty() ? 0 : 1;
       skin_us_ += skin->us;
+    }
+    if (triangles) {
+      has_triangles_ = true;
+      triangle_pairs_ += triangles->pairs.size();
+      triangle_us_ += triangles->us;
     }
     std::map<std::pair<std::string, std::string>, bool> seen;
     for (const Pair& pair : pairs) {
@@ -71,6 +76,10 @@ class Tally {
       out += fmt::format("{:<6} {:>8} {:>10.1f} {:>12} {:>10.2f}\n", "skin", "", static_cast<double>(skin_pairs_) / n,
                          "", skin_us_ / n);
     }
+    if (has_triangles_) {
+      out += fmt::format("{:<9} {:>5} {:>10.1f} {:>12} {:>10.2f}\n", "triangles", "",
+                         static_cast<double>(triangle_pairs_) / n, "", triangle_us_ / n);
+    }
     out += "(a frame, on average)\n\n";
     if (has_skin_) out += fmt::format("frames with touching skin: {} of {}\n", skin_frames_, frames_);
     out += fmt::format("frames with touching spheres: {} of {}\n", touching_, frames_);
@@ -83,9 +92,9 @@ class Tally {
 
  private:
   int frames_ = 0, touching_ = 0, skin_frames_ = 0;
-  bool has_skin_ = false;
-  std::size_t skin_pairs_ = 0;
-  double skin_us_ = 0;
+  bool has_skin_ = false, has_triangles_ = false;
+  std::size_t skin_pairs_ = 0, triangle_pairs_ = 0;
+  double skin_us_ = 0, triangle_us_ = 0;
   FrameResult last_;
   double refit_us_ = 0, m1_us_ = 0, m2_us_ = 0;
   std::size_t pairs_ = 0, m1_raw_ = 0;
@@ -95,7 +104,7 @@ class Tally {
 }  // namespace
 
 ExitCode run_play(const PlayOptions& options) {
-  check_outputs(with_motion({{"ASSET", options.asset}, {"--source", options.source}}, options.motion),
+  check_outputs(with_motion(with_source({{"ASSET", options.asset}}, "--source", options.source), options.motion),
                 {{"--json", options.json}});
   check_replaceable_json(options.json, false, "delete it, or name another");
   const bool on_cuda = options.backend == "cuda";
@@ -103,6 +112,8 @@ ExitCode run_play(const PlayOptions& options) {
   const Target target = choose_target(on_cuda ? "auto" : options.backend);
   const RadiusKind radius = options.radius == "fit" ? RadiusKind::kFit : RadiusKind::kDetect;
   const AnimatedAsset animated(options.asset, options.source, options.motion, options.frames);
+  const bool has_leaves = animated.asset().leaf_count() > 0;
+  if (options.contacts) animated.check_leaves();
   CudaFrames cuda;
   if (on_cuda) cuda = play_on_cuda(animated, radius);
   Player player(animated.asset(), radius, options.mode != "m2", options.mode != "m1", target);
@@ -121,13 +132,19 @@ ExitCode run_play(const PlayOptions& options) {
         result = player.run(positions);
       }
       std::optional<Player::SkinDetection> skin;
-      if (animated.asset().leaf_count() > 0) skin = player.detect_skin(positions);
-      tally.add(i, result, player, skin, animated.asset());
+      if (has_leaves) skin = player.detect_skin(positions);
+      std::optional<Player::TriangleDetection> triangles;
+      if (options.contacts) triangles = player.detect_triangles(positions);
+      tally.add(i, result, player, skin, triangles, animated.asset());
       if (options.json.empty()) continue;
       frames.push_back(frame_json(animated, i, result, player));
       if (!skin) continue;
       frames.back()["skin_us"] = skin->us;
       frames.back()["skin_pairs"] = pairs_json({skin->pairs.data(), skin->pairs.size()});
+      if (!triangles) continue;
+      frames.back()["contacts_us"] = triangles->us;
+      ordered_json& contacts = frames.back()["contacts"] = ordered_json::array();
+      for (const TrianglePair& pair : triangles->pairs) contacts.push_back({pair.a, pair.b});
     }
   }
   const char* const refit = refit_name(animated.asset().refit_rule());

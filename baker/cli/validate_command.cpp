@@ -13,7 +13,7 @@
 namespace spherechain::baker {
 
 ExitCode run_validate(const ValidateOptions& options) {
-  check_outputs(with_motion({{"ASSET", options.asset}, {"--source", options.source}}, options.motion),
+  check_outputs(with_motion(with_source({{"ASSET", options.asset}}, "--source", options.source), options.motion),
                 {{"--json", options.json}});
   check_replaceable_json(options.json, false, "delete it, or name another");
   ValidateSettings settings;

@@ -2,12 +2,12 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "cli/commands.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "report/page.h"
+#include "report/page_inputs.h"
 #include "write/write.h"
 
 namespace spherechain::baker {
@@ -24,40 +24,25 @@ fs::path viewer_template() {
   return page;
 }
 
-std::string read_report(const std::string& file) {
-  if (file.empty()) return {};
-  std::string text = read_file(file);
-  if (!nlohmann::json::accept(text)) throw Error(ExitCode::kFile, file + ": is not a bake report (not valid JSON)");
-  return text;
-}
-
-std::string read_validation(const std::string& file) {
-  if (file.empty()) return {};
-  std::string text = read_file(file);
-  const nlohmann::json found = nlohmann::json::parse(text, nullptr, false);
-  if (!found.is_object() || !found.contains("worst_misses") || !found.contains("m2")) {
-    throw Error(ExitCode::kFile, file + ": is not what validate --json writes");
-  }
-  return text;
-}
-
 }  // namespace
 
 ExitCode run_view(const ViewOptions& options) {
-  check_outputs(with_motion({{"ASSET", options.asset},
-                             {"--source", options.source},
-                             {"--report", options.report},
-                             {"--validation", options.validation}},
-                            options.motion),
-                {{"-o", options.output}});
+  check_outputs(
+      with_motion(
+          with_source({{"ASSET", options.asset}, {"--report", options.report}, {"--validation", options.validation}},
+                      "--source", options.source),
+          options.motion),
+      {{"-o", options.output}});
   check_replaceable(options.output, "<!doctype html", "a page", options.force);
   PageOptions page;
   page.template_file = viewer_template().string();
-  page.report = read_report(options.report);
-  page.validation = read_validation(options.validation);
   page.title = fs::path(options.asset).filename().string();
   page.radius = options.radius == "fit" ? RadiusKind::kFit : RadiusKind::kDetect;
   const AnimatedAsset animated(options.asset, options.source, options.motion, options.frames);
+  if (!options.report.empty()) page.report = read_bake_report(options.report, animated.asset(), options.asset);
+  if (!options.validation.empty()) {
+    page.validation = read_validation(options.validation, animated.asset(), options.asset);
+  }
   page.motion = options.motion.name().empty() ? animated.clip_at(0) : options.motion.name();
   if (page.motion.empty()) page.motion = "rest";
   page.fps = options.frames.fps;

@@ -4,12 +4,16 @@
 #include <cmath>
 #include <numeric>
 #include <set>
+#include <sstream>
 
 #include "import/import.h"
 #include "mesh/error.h"
 
 namespace spherechain::baker {
 namespace {
+
+// Of a character's diagonal: past these, squares of lengths leave what single precision and CGAL's inexact steps hold.
+constexpr double kLeastSize = 1e-6, kLargestSize = 1e12;
 
 bool same_position(const Vec3& a, const Vec3& b) { return a.x() == b.x() && a.y() == b.y() && a.z() == b.z(); }
 
@@ -127,6 +131,11 @@ Character build_character(const SourceMesh& source, const std::string& name) {
   }
   const double extent = box.diagonal().norm();
   if (extent <= 0) throw Error(ExitCode::kFile, name + ": has no size (all positions coincide)");
+  if (extent < kLeastSize || extent > kLargestSize) {
+    std::ostringstream size;
+    size << extent << " units across (a character is from " << kLeastSize << " to " << kLargestSize << ": scale it)";
+    throw Error(ExitCode::kFile, name + ": is " + size.str());
+  }
 
   const std::vector<Index> welded = weld(positions);
   // Sine of an angle no real triangle has: below it three corners lie on a line as far as floats can tell.

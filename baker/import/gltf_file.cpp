@@ -55,6 +55,13 @@ Container split_glb(std::string_view bytes, const GltfFile& file) {
   return parts;
 }
 
+Container split(std::string_view bytes, const GltfFile& file) {
+  return bytes.rfind("glTF", 0) == 0 ? split_glb(bytes, file) : Container{bytes, {}};
+}
+
+bool is_data(const std::string& uri) { return uri.rfind("data:", 0) == 0; }
+bool is_elsewhere(const std::string& uri) { return uri.find("://") != std::string::npos; }
+
 std::string percent_decoded(const std::string& uri) {
   std::string out;
   for (std::size_t i = 0; i < uri.size(); ++i) {
@@ -83,7 +90,7 @@ std::vector<unsigned char> buffer_bytes(const nlohmann::json& buffer, const std:
     return {binary.begin(), binary.begin() + static_cast<std::ptrdiff_t>(length)};
   }
   const auto uri = buffer["uri"].get<std::string>();
-  if (uri.rfind("data:", 0) == 0) {
+  if (is_data(uri)) {
     std::vector<unsigned char> bytes;
     std::string type;
     if (!tinygltf::DecodeDataURI(&bytes, type, uri, 0, false) && length > 0) {
@@ -93,7 +100,7 @@ std::vector<unsigned char> buffer_bytes(const nlohmann::json& buffer, const std:
     bytes.resize(length);
     return bytes;
   }
-  if (uri.find("://") != std::string::npos) file.fail(where + ".uri is not a file beside it: " + uri.substr(0, 80));
+  if (is_elsewhere(uri)) file.fail(where + ".uri is not a file beside it: " + uri.substr(0, 80));
   const fs::path path = folder / percent_decoded(uri);
   std::error_code error;
   if (!fs::is_regular_file(path, error)) file.fail("its buffer " + path.string() + " is missing");
@@ -114,12 +121,32 @@ bool no_image(tinygltf::Image*, int, std::string*, std::string*, int, int, const
 
 void GltfFile::fail(const std::string& what) const { throw Error(ExitCode::kFile, name + ": " + what); }
 
+std::vector<fs::path> files_of_gltf(const fs::path& path) {
+  nlohmann::json json;
+  try {
+    const GltfFile file{path.string(), {}};
+    const std::string bytes = read_bytes(path, file.name);
+    json = nlohmann::json::parse(split(bytes, file).json, nullptr, false);
+  } catch (const Error&) {
+    return {};
+  }
+  std::vector<fs::path> files;
+  for (const char* list : {"buffers", "images"}) {
+    if (!json.is_object() || !json.contains(list)) continue;
+    for (const nlohmann::json& entry : json[list]) {
+      if (!entry.is_object() || !entry.contains("uri") || !entry["uri"].is_string()) continue;
+      const auto uri = entry["uri"].get<std::string>();
+      if (!is_elsewhere(uri) && !is_data(uri)) files.push_back(path.parent_path() / percent_decoded(uri));
+    }
+  }
+  return files;
+}
+
 GltfFile open_gltf(const fs::path& path) {
   GltfFile file;
   file.name = path.string();
   const std::string bytes = read_bytes(path, file.name);
-  Container parts{bytes, {}};
-  if (bytes.rfind("glTF", 0) == 0) parts = split_glb(bytes, file);
+  const Container parts = split(bytes, file);
 
   nlohmann::json json = check_gltf_json(parts.json, file.name);
   // tinygltf would look for buffers in other places, too, and copy the binary chunk for whoever asks.

@@ -31,4 +31,7 @@ struct GltfFile {
 // Reads a .gltf or .glb, told apart by content, with the buffers beside it. Throws Error(kFile).
 GltfFile open_gltf(const std::filesystem::path& path);
 
+// The files beside it that its buffers and images are, there or not; none where it is no glTF.
+std::vector<std::filesystem::path> files_of_gltf(const std::filesystem::path& path);
+
 }  // namespace spherechain::baker

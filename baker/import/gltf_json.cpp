@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "import/json_depth.h"
 #include "mesh/error.h"
 
 namespace spherechain::baker {
@@ -254,25 +255,6 @@ void check_extensions(const json& root, const std::string& file) {
   }
 }
 
-// Of objects and lists in one another. (nlohmann's parser can count too, but then takes quadratic time.)
-int depth_of(std::string_view text) {
-  int depth = 0, deepest = 0;
-  bool quoted = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    if (quoted && c == '\\') {
-      ++i;
-    } else if (c == '"') {
-      quoted = !quoted;
-    } else if (!quoted && (c == '{' || c == '[')) {
-      deepest = std::max(deepest, ++depth);
-    } else if (!quoted && (c == '}' || c == ']')) {
-      --depth;
-    }
-  }
-  return deepest;
-}
-
 // Leaves of `extras` the names of morph targets, of extensions their names.
 void strip(json& value) {
   if (value.is_object()) {
@@ -296,7 +278,7 @@ void strip(json& value) {
 }  // namespace
 
 json check_gltf_json(std::string_view text, const std::string& file) {
-  if (depth_of(text) > kMaxDepth) throw Error(ExitCode::kFile, file + ": its JSON is nested too deeply");
+  if (json_depth(text) > kMaxDepth) throw Error(ExitCode::kFile, file + ": its JSON is nested too deeply");
   json all;
   try {
     all = json::parse(text);

@@ -5,22 +5,42 @@
 #include <cctype>
 #include <system_error>
 
+#include "import/gltf_file.h"
 #include "import/sha256.h"
 #include "mesh/error.h"
 
 namespace spherechain::baker {
+namespace {
 
-SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& options) {
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (!std::filesystem::exists(status)) throw Error(ExitCode::kFile, path.string() + ": no such file");
-  if (std::filesystem::is_directory(status)) throw Error(ExitCode::kFile, path.string() + ": is a folder, not a mesh");
+// Through assimp a glTF would lose its own vertex order and bind pose.
+bool is_gltf(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  // Through assimp a glTF would lose its own vertex order and bind pose.
-  const bool gltf = extension == ".glb" || extension == ".gltf";
-  return gltf ? read_with_tinygltf(path, options) : read_with_assimp(path);
+  return extension == ".glb" || extension == ".gltf";
+}
+
+}  // namespace
+
+void check_regular_file(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  const auto fail = [&](const std::string& what) { throw Error(ExitCode::kFile, path.string() + ": " + what); };
+  if (status.type() == std::filesystem::file_type::not_found) fail("no such file");
+  if (status.type() == std::filesystem::file_type::none) fail("cannot be read (" + error.message() + ")");
+  if (std::filesystem::is_directory(status)) fail("is a folder, not a file");
+  if (!std::filesystem::is_regular_file(status)) fail("is a pipe or a device, not a file");
+}
+
+std::vector<std::filesystem::path> files_beside(const std::filesystem::path& source) {
+  std::error_code ignored;
+  const bool is_file = std::filesystem::is_regular_file(source, ignored);
+  return is_file && is_gltf(source) ? files_of_gltf(source) : std::vector<std::filesystem::path>();
+}
+
+SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& options) {
+  check_regular_file(path);
+  return is_gltf(path) ? read_with_tinygltf(path, options) : read_with_assimp(path);
 }
 
 Character import_character(const std::filesystem::path& path, const ImportOptions& options) {

@@ -66,7 +66,7 @@ struct Character {
 };
 
 // Reads a character. Throws Error(kFile) where there is no such file, it is no mesh, it has no triangles, a position is
-// not finite, an index is out of range, or all positions coincide.
+// not finite, an index is out of range, or it is less than 1e-6 or more than 1e12 units across.
 Character import_character(const std::filesystem::path& path, const ImportOptions& options = {});
 
 // Share of the skin's area above which a piece of it is the body: eyes, teeth and a belt are the rest.
@@ -97,6 +97,13 @@ struct SourceMesh {
   double metres_per_unit = 1;
   Vec3 up_hint = Vec3::UnitY();
 };
+// What is read more than once must be a file on a disk: Error(kFile) for a folder, a pipe, a device, or nothing.
+void check_regular_file(const std::filesystem::path& path);
+
+// Files of its own that a source names: a glTF's buffers and images. None where it cannot be read, which read_source
+// says.
+std::vector<std::filesystem::path> files_beside(const std::filesystem::path& source);
+
 // As the importer of the file's format reads it; a file of motion has no mesh. Throws Error(kFile).
 SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& options = {});
 SourceMesh read_with_assimp(const std::filesystem::path& path);

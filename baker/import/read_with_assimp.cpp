@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <assimp/Importer.hpp>
 #include <cstdint>
+#include <filesystem>
 #include <new>
 #include <string_view>
 
@@ -49,6 +51,19 @@ void append(const MeshInstance& instance, const std::string& name, SourceMesh& o
   ++out.meshes;
 }
 
+// What a mesh's file names (its materials) is read where it is a file: assimp would wait for ever for a pipe's other
+// end.
+class FilesAlone : public Assimp::DefaultIOSystem {
+ public:
+  bool Exists(const char* path) const override {
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(path, ignored);
+  }
+  Assimp::IOStream* Open(const char* path, const char* mode) override {
+    return Exists(path) ? DefaultIOSystem::Open(path, mode) : nullptr;
+  }
+};
+
 // Assimp's triangulation ends the program over a face without corners.
 void check_faces(const aiScene& scene, const std::string& file) {
   for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
@@ -90,6 +105,7 @@ const aiScene* read_scene(Assimp::Importer& importer, const std::filesystem::pat
 SourceMesh read_with_assimp(const std::filesystem::path& path) {
   check_bvh(path);
   Assimp::Importer importer;
+  importer.SetIOHandler(new FilesAlone);  // which the importer deletes
   // Sticks that importers put where a file has bones and no mesh are no character.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   const std::string name = path.string();

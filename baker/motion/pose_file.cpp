@@ -104,7 +104,27 @@ void read_into(PoseMotion& motion, const fs::path& file, const std::vector<Joint
   open.pop_back();
 }
 
+void collect_files(const fs::path& file, std::vector<fs::path>& found) {
+  if (!is_file(file) || found.size() > kMostPoses) return;
+  std::error_code error;
+  const fs::path canonical = fs::canonical(file, error);
+  if (error || std::find(found.begin(), found.end(), canonical) != found.end()) return;
+  found.push_back(canonical);
+  std::ifstream stream(file);
+  const Json json = Json::parse(stream, nullptr, false);
+  if (!json.is_object() || !json.contains("poses")) return;
+  for (const Json& entry : json["poses"]) {
+    if (entry.is_string()) collect_files(file.parent_path() / entry.get<std::string>(), found);
+  }
+}
+
 }  // namespace
+
+std::vector<fs::path> files_of_poses(const fs::path& path) {
+  std::vector<fs::path> found;
+  collect_files(path, found);
+  return found;
+}
 
 PoseMotion read_pose_motion(const fs::path& path, const std::vector<Joint>& joints) {
   PoseMotion motion;

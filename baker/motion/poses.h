@@ -29,6 +29,9 @@ struct PoseMotion {
 // checked against `joints`.
 PoseMotion read_pose_motion(const std::filesystem::path& path, const std::vector<Joint>& joints);
 
+// A pose file and those it takes poses from, as far as they can be read.
+std::vector<std::filesystem::path> files_of_poses(const std::filesystem::path& path);
+
 // A pose as a transform a joint, its parents' included. Exactly none for a joint that nothing turns.
 std::vector<Affine> bones_of(const std::vector<Joint>& joints, const BodyFrame& frame, const Pose& pose);
 

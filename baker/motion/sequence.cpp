@@ -19,16 +19,20 @@ bool is_sequence(const fs::path& path) {
 
 std::vector<fs::path> sequence_files(const fs::path& folder_or_list) {
   std::vector<fs::path> files;
-  if (fs::is_directory(folder_or_list)) {
-    for (const auto& entry : fs::directory_iterator(folder_or_list)) {
+  std::error_code error;
+  if (fs::is_directory(folder_or_list, error)) {
+    for (fs::directory_iterator entry(folder_or_list, error), end; !error && entry != end; entry.increment(error)) {
       // Materials and pictures lie beside meshes.
-      const std::string extension = entry.path().extension().string();
+      const std::string extension = entry->path().extension().string();
       static constexpr const char* kBeside[] = {".mtl", ".png", ".jpg", ".jpeg", ".tga", ".txt", ".md", ".json"};
       const bool beside = std::find(std::begin(kBeside), std::end(kBeside), extension) != std::end(kBeside);
-      if (entry.is_regular_file() && !beside) files.push_back(entry.path());
+      std::error_code ignored;
+      if (entry->is_regular_file(ignored) && !beside) files.push_back(entry->path());
     }
+    if (error) throw Error(ExitCode::kFile, folder_or_list.string() + ": cannot be read (" + error.message() + ")");
     std::sort(files.begin(), files.end());
   } else {
+    check_regular_file(folder_or_list);
     std::ifstream list(folder_or_list);
     if (!list) throw Error(ExitCode::kFile, folder_or_list.string() + ": cannot be read");
     for (std::string line; std::getline(list, line);) {

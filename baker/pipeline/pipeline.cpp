@@ -97,11 +97,11 @@ Regions segment_character(Character& character, const Roles& roles, const Segmen
     throw Error(ExitCode::kSegmentation, character.file + ": the rig's limbs are no " + body_kind_name(settings.body) +
                                              "'s (inspect --roles says what its joints are)");
   }
-  if (whole) return segment_by_rig(character, roles);
+  if (whole) return segment_by_rig(character, roles, settings.facing);
   take_all_pieces(character);
-  Regions of_pieces = segment_by_rig(character, roles);
+  Regions of_pieces = segment_by_rig(character, roles, settings.facing);
   if (!is_in_shards(character.skin, of_pieces) || !wrap_body(character, closing)) return of_pieces;
-  return segment_by_rig(character, roles);
+  return segment_by_rig(character, roles, settings.facing);
 }
 
 Bake bake(const std::filesystem::path& input, const BakeSettings& settings, const Progress& progress) {

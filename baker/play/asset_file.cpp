@@ -6,14 +6,14 @@
 #include <fstream>
 #include <sstream>
 
+#include "import/import.h"
 #include "mesh/error.h"
 
 namespace spherechain::baker {
 
 std::string read_file(const std::string& path) {
   std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored)) throw Error(ExitCode::kFile, path + ": no such file");
-  if (std::filesystem::is_directory(path, ignored)) throw Error(ExitCode::kFile, path + ": is a folder");
+  if (!std::filesystem::is_fifo(path, ignored)) check_regular_file(path);
   std::ifstream in(path, std::ios::binary);
   std::ostringstream bytes;
   if (in.peek() != std::ifstream::traits_type::eof()) bytes << in.rdbuf();

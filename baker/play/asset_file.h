@@ -9,7 +9,7 @@
 
 namespace spherechain::baker {
 
-// Whole contents; throws Error(kFile).
+// Whole contents, of a file or a pipe; throws Error(kFile).
 std::string read_file(const std::string& path);
 
 // An asset and the bytes it views.

@@ -74,6 +74,10 @@ AnimatedAsset::AnimatedAsset(const std::string& asset, const std::string& source
 
 void AnimatedAsset::play_poses(const std::string& file) {
   const std::vector<Joint> joints = joints_of(file_.asset);
+  if (joints.empty()) {
+    throw Error(ExitCode::kFile, file + ": turns the joints of a biped, and " + asset_name_ +
+                                     " has none: it is of another body (--clip, --motion or meshes as poses move it)");
+  }
   motion_ = std::make_unique<BezierMotion>(joints, frame(), read_pose_motion(file, joints));
   use_rig(joints);
 }
@@ -121,6 +125,11 @@ void AnimatedAsset::use_rig(const std::vector<Joint>& joints) {
   }
   weights_ = rig_weights(character_, joints);
   for (const Joint& joint : joints) bone_names_.push_back(joint.name);
+}
+
+void AnimatedAsset::check_leaves() const {
+  if (asset().leaf_count() > 0) return;
+  throw Error(ExitCode::kFile, asset_name_ + ": has no leaves to find contacts with (bake it again)");
 }
 
 BodyFrame AnimatedAsset::frame() const {

@@ -38,6 +38,8 @@ class AnimatedAsset {
   const std::string& file() const { return asset_name_; }  // the asset's, as it was given
   const Asset& asset() const { return file_.asset; }
   const Character& character() const { return character_; }
+  // Throws Error(kFile) where the asset has no leaves, which contacts of triangles are found with.
+  void check_leaves() const;
   BodyFrame frame() const;
 
   // Of every source vertex; empty where nothing moves.

@@ -91,6 +91,21 @@ Player::SkinDetection Player::detect_skin(const std::vector<float>& positions) {
   return out;
 }
 
+Player::TriangleDetection Player::detect_triangles(const std::vector<float>& positions) {
+  TriangleContactContext context{{contact_words_.data(), contact_words_.size()}};
+  TriangleContactJob job;
+  job.asset = &asset_;
+  job.positions = positions.data();
+  job.vertex_count = positions.size() / 3;
+  job.target = target_;
+  job.context = &context;
+  check(job.run());  // to count
+  TriangleDetection out{std::vector<TrianglePair>(job.pair_count), 0};
+  job.pairs = {out.pairs.data(), out.pairs.size()};
+  out.us = median_us([&] { check(job.run()); });
+  return out;
+}
+
 Detection Player::detect(Method method) {
   DetectContext context{{words_.data(), words_.size()}};
   DetectJob job;

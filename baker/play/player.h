@@ -7,6 +7,7 @@
 
 #include "spherechain/detect.h"
 #include "spherechain/refit.h"
+#include "spherechain/triangle_contacts.h"
 
 namespace spherechain::baker {
 
@@ -42,6 +43,13 @@ class Player {
     double us;  // median of a few runs
   };
   SkinDetection detect_skin(const std::vector<float>& positions);
+
+  // The same for the triangles that intersect: numbers of the source's.
+  struct TriangleDetection {
+    std::vector<TrianglePair> pairs;
+    double us;
+  };
+  TriangleDetection detect_triangles(const std::vector<float>& positions);
 
   // Of the last frame: the refitted spheres, and the pairs the last method found (M1 and M2 report the same, but that
   // M1 leaves out pairs in no common chain).

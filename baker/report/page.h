@@ -11,8 +11,8 @@ namespace spherechain::baker {
 
 struct PageOptions {
   std::string title, motion;  // what the page calls them
-  std::string report;         // what `bake --report` wrote, as JSON; may be empty
-  std::string validation;     // what `validate --json` wrote; may be empty
+  std::string report;         // of read_bake_report; may be empty
+  std::string validation;     // of read_validation; may be empty
   std::string template_file;  // the viewer, as its build made it
   RadiusKind radius = RadiusKind::kDetect;
   double fps = 30;

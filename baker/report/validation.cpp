@@ -92,8 +92,11 @@ std::string validation_json(const Validation& validation, const AnimatedAsset& a
                             const ValidateSettings& settings) {
   const double height = animated.frame().height;
   const Score& score = validation.score;
+  const AssetInfo info = animated.asset().info();
   ordered_json out{
       {"frames", score.frames},
+      {"source", {{"file", info.source_file}, {"sha256", info.source_sha256}}},
+      {"settings_sha256", info.settings_sha256},
       {"raw_pairs", validation.raw_pairs},
       {"out_of_scope",
        {{"rest", validation.rest}, {"same_sphere", validation.same_sphere}, {"ignored", validation.ignored}}},

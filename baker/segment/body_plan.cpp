@@ -16,6 +16,8 @@ namespace {
 
 // Fingers are 4 % of the tree's longest path (hand to foot), a head is 14 %.
 constexpr double kShortestBranch = 0.07;
+// Cosine from which a direction tells one way along an axis from the other.
+constexpr double kAlong = 0.3;
 
 Polyline join(const Polyline& a, const Polyline& b) {
   std::vector<Vec3> points = a.points();
@@ -189,6 +191,13 @@ bool looks_like_biped(const CurveSkeleton& skeleton) {
                               [&](const Polyline& leg) { return alignment(leg, -chord(split->spine)) > kGoesOn; });
 }
 
+void check_facing(const Vec3& facing, const Vec3& axis, const char* name, const std::string& file) {
+  if (std::abs(facing.normalized().dot(axis.normalized())) >= kAlong) return;
+  throw FacingError(ExitCode::kSegmentation,
+                    file + ": the facing direction in the settings is not along the character's " + name +
+                        " (mend 'facing', or leave it out)");
+}
+
 BodyPlan find_body_plan(const Mesh& mesh, const CurveSkeleton& skeleton, const std::optional<Vec3>& facing,
                         const std::string& file) {
   const BranchTree tree = find_long_branches(skeleton, kShortestBranch);
@@ -215,11 +224,11 @@ BodyPlan find_body_plan(const Mesh& mesh, const CurveSkeleton& skeleton, const s
   plan.frame =
       orient(up, lateral_axis(mesh, across_arms.normalized() + across_legs.normalized()), facing.value_or(toes));
   plan.facing = facing ? "forward is the direction in the settings" : "forward is where the feet point";
-  const double clear = std::abs(plan.frame.forward.dot((facing ? *facing : toes).normalized()));
-  if (clear < 0.3) {
+  if (facing) {
+    check_facing(*facing, plan.frame.forward, "forward axis", file);
+  } else if (std::abs(plan.frame.forward.dot(toes.normalized())) < kAlong) {
     throw Error(ExitCode::kSegmentation,
-                file + (facing ? ": the facing direction in the settings is not along the character's forward axis"
-                               : ": the feet do not say which way the character faces (set 'facing' in the settings)"));
+                file + ": the feet do not say which way the character faces (set 'facing' in the settings)");
   }
   place(plan.frame, mesh);
   plan.spine = split->spine;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/error.h"
 #include "mesh/polyline.h"
 #include "segment/curve_skeleton.h"
 
@@ -57,6 +58,13 @@ std::size_t count_ends(const CurveSkeleton& skeleton);
 
 // Whether the long branches are a biped's: two go on from the lower end of the spine, three leave the upper one.
 bool looks_like_biped(const CurveSkeleton& skeleton);
+
+// The settings' facing direction is not along the axis that it is to choose a sign for.
+class FacingError : public Error {
+  using Error::Error;
+};
+// Throws FacingError where `facing` is more than 72 degrees away from `axis`, either way round; `name` says which axis.
+void check_facing(const Vec3& facing, const Vec3& axis, const char* name, const std::string& file);
 
 // `facing` overrides what the feet say: any vector with a part along the character's forward axis.
 // Throws Error(kSegmentation) where there are not five long branches, and says which is missing.

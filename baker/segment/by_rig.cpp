@@ -5,6 +5,7 @@
 
 #include "mesh/error.h"
 #include "mesh/surface_query.h"
+#include "segment/body_plan.h"
 #include "segment/from_skin.h"
 #include "segment/trunk.h"
 
@@ -26,7 +27,7 @@ Vec3 left_of(const Regions& regions) {
 
 }  // namespace
 
-Regions segment_by_rig(const Character& character, const Roles& roles) {
+Regions segment_by_rig(const Character& character, const Roles& roles, const std::optional<Vec3>& facing) {
   const auto fail = [&](const std::string& what) {
     throw Error(ExitCode::kSegmentation, character.file + ": " + what + " (inspect --roles says what its joints are)");
   };
@@ -56,6 +57,12 @@ Regions segment_by_rig(const Character& character, const Roles& roles) {
   if (!(left.cross(chest - hip).norm() > 0)) fail("the rig's limbs do not tell left, right and up apart");
   regions.frame.left = left.normalized();
   regions.frame = with_up(regions.frame, chest - hip, character.body);
+  if (facing) {
+    const bool biped = roles.kind == BodyKind::kBiped;
+    const Vec3& axis = biped ? regions.frame.forward : regions.frame.up;
+    check_facing(*facing, axis, biped ? "forward axis" : "trunk", character.file);
+    if (facing->dot(axis) < 0) fail("the facing direction in the settings is against what the rig's joints say");
+  }
   const auto in_plane = [&](const Vec3& p) {
     return Vec3(p - (p - regions.frame.origin).dot(regions.frame.left) * regions.frame.left);
   };

@@ -8,7 +8,8 @@
 namespace spherechain::baker {
 
 // Segments a character by its rig: any number of limbs, any number of pieces, which need not be closed. `roles` are
-// those of its rig. Throws Error(kSegmentation) where the rig moves no limbs with a trunk between them.
-Regions segment_by_rig(const Character& character, const Roles& roles);
+// those of its rig, which says where forward is. Throws Error(kSegmentation) where the rig moves no limbs with a trunk
+// between them, or `facing` says otherwise.
+Regions segment_by_rig(const Character& character, const Roles& roles, const std::optional<Vec3>& facing);
 
 }  // namespace spherechain::baker

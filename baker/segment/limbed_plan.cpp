@@ -223,6 +223,7 @@ class Finder {
     if (line.length() < kTube * radius) fail("the shape has no branches: arms and legs are missing");
     const Polyline reversed = line.reversed();
     const Vec3 along = line.points().back() - line.points().front();
+    if (facing) check_facing(*facing, along, "body", file_);
     const bool head_first = facing ? along.dot(*facing) < 0 : thickness(surface, reversed) > thickness(surface, line);
     if (head_first) line = reversed;
     BodyPlan plan;
@@ -292,7 +293,9 @@ class Finder {
       const Vec3 forward = facing.value_or(foot(pairs.back().a) + foot(pairs.back().b));
       plan.facing = facing ? "forward is the direction in the settings" : "forward is where the feet point";
       plan.frame.left = symmetry.plane.normal;
-      if (plan.frame.left.cross(trunk).dot(forward) < 0) plan.frame.left = -plan.frame.left;
+      const Vec3 ahead = plan.frame.left.cross(trunk);
+      if (facing) check_facing(*facing, ahead, "forward axis", file_);
+      if (ahead.dot(forward) < 0) plan.frame.left = -plan.frame.left;
     } else {
       if (heads_back(surface, symmetry, pairs, trunk, facing)) {
         trunk = -trunk;
@@ -320,9 +323,7 @@ class Finder {
   bool heads_back(const SurfaceQuery& surface, const Symmetry& symmetry, const std::vector<Limbs>& pairs,
                   const Vec3& trunk, const std::optional<Vec3>& facing) const {
     if (facing) {
-      if (std::abs(facing->normalized().dot(trunk)) < 0.3) {
-        fail("the facing direction in the settings is not along the character's trunk");
-      }
+      check_facing(*facing, trunk, "trunk", file_);
       return facing->dot(trunk) < 0;
     }
     double at_front = 0, at_back = 0, feet = 0;

@@ -154,6 +154,8 @@ BodyPlan find_plan(const Mesh& mesh, const SegmentSettings& settings, const std:
   }
   try {
     return find_limbed_plan(mesh, skeleton, !automatic, settings.facing, file);
+  } catch (const FacingError&) {
+    throw;
   } catch (const Error&) {
     // Most characters are bipeds: what is missing of one says more.
     if (automatic && count_ends(skeleton) <= 5) return find_body_plan(mesh, skeleton, settings.facing, file);

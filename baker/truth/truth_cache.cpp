@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "truth/truth_cache.h"
 
-#include <unistd.h>
-
-#include <atomic>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
@@ -12,6 +9,7 @@
 #include <string_view>
 
 #include "import/sha256.h"
+#include "write/temporary.h"
 
 namespace spherechain::baker {
 namespace {
@@ -60,14 +58,11 @@ std::optional<Intersections> read(const fs::path& file) {
 }
 
 void write(const fs::path& file, const std::string& bytes) {
-  static std::atomic<unsigned> count{0};  // two threads may have the same pose
-  const fs::path temporary = file.string() + ".tmp-" + std::to_string(::getpid()) + "-" + std::to_string(++count);
-  std::ofstream out(temporary, std::ios::binary);
+  Temporary temporary(file);
+  std::ofstream out(temporary.path(), std::ios::binary);
   out << bytes;
   out.close();
-  std::error_code failed;
-  if (out) fs::rename(temporary, file, failed);
-  if (!out || failed) fs::remove(temporary, failed);
+  if (out) temporary.rename_to_target();
 }
 
 std::string environment(const char* name) {

@@ -180,9 +180,7 @@ bool reports_skin(const Asset& asset, const ValidateSettings& settings) {
 
 Validation validate(const AnimatedAsset& animated, const ValidateSettings& settings,
                     const std::function<void(int)>& progress) {
-  if (settings.contacts && animated.asset().leaf_count() == 0) {
-    throw Error(ExitCode::kFile, animated.file() + ": has no leaves to find contacts with (bake it again)");
-  }
+  if (settings.contacts) animated.check_leaves();
   const Context context{animated, settings};
   std::vector<Frame> frames(static_cast<std::size_t>(animated.frame_count()));
   std::mutex mutex;

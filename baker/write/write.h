@@ -33,7 +33,11 @@ struct AssetSource {
 // The bytes of a .sphc file: the same for the same input. Throws Error(kInternal) should the runtime not open them.
 std::vector<std::uint8_t> serialize(const AssetSource& source);
 
-// Writes next to `path` and renames, so that `path` is either whole or untouched. Throws Error(kFile).
+// Whether bytes go straight to what `path` names: a pipe, a device, or what the program was started with under the name
+// of a descriptor (/dev/stdout), which a rename would take away from everybody.
+bool is_written_directly(const std::filesystem::path& path);
+
+// Else writes next to `path` and renames, so that `path` is either whole or untouched. Throws Error(kFile).
 void write_atomically(const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace spherechain::baker

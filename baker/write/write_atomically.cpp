@@ -1,29 +1,58 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
+#include <optional>
 
 #include "mesh/error.h"
+#include "write/temporary.h"
 #include "write/write.h"
 
 namespace spherechain::baker {
 
-void write_atomically(const std::filesystem::path& path, std::string_view bytes) {
-  // A pipe or a device (/dev/stdout) cannot be replaced by a rename: those are written to directly.
+namespace {
+
+namespace fs = std::filesystem;
+
+// /dev/stdout, /dev/fd/3, /proc/self/fd/3: links to whatever that is.
+bool names_descriptor(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_symlink(fs::symlink_status(path, error))) return false;
+  const std::string name = fs::absolute(path, error).lexically_normal().string();
+  return name.rfind("/dev/", 0) == 0 || name.rfind("/proc/", 0) == 0;
+}
+
+// Standard output goes on where it is: a file that is opened once more would begin anew.
+int open_directly(const fs::path& path) {
+  struct ::stat there {
+  }, standard{};
+  const bool is_standard = ::stat(path.c_str(), &there) == 0 && ::fstat(STDOUT_FILENO, &standard) == 0 &&
+                           there.st_dev == standard.st_dev && there.st_ino == standard.st_ino;
+  if (is_standard) return ::dup(STDOUT_FILENO);
+  return ::open(path.c_str(), S_ISREG(there.st_mode) ? O_WRONLY | O_TRUNC : O_WRONLY);
+}
+
+}  // namespace
+
+bool is_written_directly(const fs::path& path) {
   std::error_code ignored;
-  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
-  const bool direct = std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
-  const std::string temporary = direct ? path.string() : path.string() + ".tmp-" + std::to_string(::getpid());
+  const fs::file_status status = fs::status(path, ignored);
+  return fs::exists(status) && (!fs::is_regular_file(status) || names_descriptor(path));
+}
+
+void write_atomically(const fs::path& path, std::string_view bytes) {
+  const bool direct = is_written_directly(path);
+  std::optional<Temporary> temporary;
+  if (!direct) temporary.emplace(path);
 
   const auto fail = [&](const char* doing) {
-    const std::string why = std::strerror(errno);
-    if (!direct) ::unlink(temporary.c_str());
-    throw Error(ExitCode::kFile, path.string() + ": cannot be " + doing + " (" + why + ")");
+    throw Error(ExitCode::kFile, path.string() + ": cannot be " + doing + " (" + std::strerror(errno) + ")");
   };
-  const int file = ::open(temporary.c_str(), direct ? O_WRONLY : O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  const int file =
+      direct ? open_directly(path) : ::open(temporary->path().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (file < 0) fail("created");
   for (std::size_t done = 0; done < bytes.size();) {
     const ::ssize_t n = ::write(file, bytes.data() + done, bytes.size() - done);
@@ -43,7 +72,7 @@ void write_atomically(const std::filesystem::path& path, std::string_view bytes)
     fail("written");
   }
   if (::close(file) != 0) fail("written");
-  if (!direct && std::rename(temporary.c_str(), path.c_str()) != 0) fail("replaced");
+  if (!direct && !temporary->rename_to_target()) fail("replaced");
 }
 
 }  // namespace spherechain::baker

@@ -10,6 +10,17 @@
 namespace spherechain {
 namespace {
 
+// What each function that writes asks first.
+Status check_edit(const Asset& asset, const Filter& filter) {
+  const Status status = check_filter(asset, filter);
+  if (status != Status::kOk) {
+    return status;
+  }
+  const MemoryRange written[] = {range_of(filter.ignored), range_of(filter.disabled), range_of(filter.padding)};
+  const MemoryRange read[] = {range_of(asset.ignored())};
+  return any_shared(written, read) ? Status::kSharedMemory : Status::kOk;
+}
+
 void assign_pair(Filter& filter, std::uint32_t p, std::uint32_t q, bool ignored) {
   assign_bit(filter.ignored, ignored_bit(std::min(p, q), std::max(p, q)), ignored);
 }
@@ -37,14 +48,9 @@ Status check_filter(const Asset& asset, const Filter& filter) noexcept {
 }
 
 Status reset_filter(const Asset& asset, Filter& filter) noexcept {
-  const Status status = check_filter(asset, filter);
+  const Status status = check_edit(asset, filter);
   if (status != Status::kOk) {
     return status;
-  }
-  const MemoryRange written[] = {range_of(filter.ignored), range_of(filter.disabled), range_of(filter.padding)};
-  const MemoryRange read[] = {range_of(asset.ignored())};
-  if (any_shared(written, read)) {
-    return Status::kSharedMemory;
   }
   std::copy(asset.ignored().begin(), asset.ignored().end(), filter.ignored.begin());
   std::fill(filter.disabled.begin(), filter.disabled.end(), std::uint64_t{0});
@@ -53,7 +59,7 @@ Status reset_filter(const Asset& asset, Filter& filter) noexcept {
 }
 
 Status ignore_pair(const Asset& asset, Filter& filter, std::uint32_t a, std::uint32_t b, bool ignored) noexcept {
-  const Status status = check_filter(asset, filter);
+  const Status status = check_edit(asset, filter);
   if (status != Status::kOk) {
     return status;
   }
@@ -66,7 +72,7 @@ Status ignore_pair(const Asset& asset, Filter& filter, std::uint32_t a, std::uin
 
 Status ignore_regions(const Asset& asset, Filter& filter, std::size_t region, std::size_t other,
                       bool ignored) noexcept {
-  const Status status = check_filter(asset, filter);
+  const Status status = check_edit(asset, filter);
   if (status != Status::kOk) {
     return status;
   }
@@ -88,7 +94,7 @@ Status ignore_regions(const Asset& asset, Filter& filter, std::size_t region, st
 }
 
 Status ignore_hops(const Asset& asset, Filter& filter, std::size_t hops, bool ignored) noexcept {
-  const Status status = check_filter(asset, filter);
+  const Status status = check_edit(asset, filter);
   if (status != Status::kOk) {
     return status;
   }
@@ -105,7 +111,7 @@ Status ignore_hops(const Asset& asset, Filter& filter, std::size_t hops, bool ig
 }
 
 Status disable_sphere(const Asset& asset, Filter& filter, std::uint32_t sphere, bool disabled) noexcept {
-  const Status status = check_filter(asset, filter);
+  const Status status = check_edit(asset, filter);
   if (status != Status::kOk) {
     return status;
   }
@@ -120,7 +126,7 @@ Status disable_sphere(const Asset& asset, Filter& filter, std::uint32_t sphere, 
 }
 
 Status pad_sphere(const Asset& asset, Filter& filter, std::uint32_t sphere, float padding) noexcept {
-  const Status status = check_filter(asset, filter);
+  const Status status = check_edit(asset, filter);
   if (status != Status::kOk) {
     return status;
   }

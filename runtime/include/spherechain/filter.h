@@ -31,11 +31,11 @@ struct SPHERECHAIN_API Filter {
 
 // All of these: kOk; kNotOpen; kNullArgument where a buffer has a size and no memory; kMisaligned; kBadFilter where one
 // has not the size the asset asks for, or is empty and the function writes to it; kBadArgument where a sphere, region
-// or figure does not exist. Nothing is written unless kOk. kOk from check_filter is all that DetectJob asks.
+// or figure does not exist. Those that write: kSharedMemory where one of the buffers overlaps another, or the asset's
+// table. Nothing is written unless kOk. kOk from check_filter is all that DetectJob asks.
 SPHERECHAIN_API Status check_filter(const Asset& asset, const Filter& filter) noexcept;
 
-// The asset's own pairs; every sphere enabled, no padding. kSharedMemory where one of the buffers overlaps another, or
-// the asset's table.
+// The asset's own pairs; every sphere enabled, no padding.
 SPHERECHAIN_API Status reset_filter(const Asset& asset, Filter& filter) noexcept;
 
 // The rest of the pairs stay as they are. `ignored` false reports the pairs again, those the asset itself ignores too.

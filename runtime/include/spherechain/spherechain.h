@@ -374,9 +374,9 @@ typedef struct sc_filter {
 SPHERECHAIN_API size_t sc_filter_ignored_words(const sc_asset* asset);
 SPHERECHAIN_API size_t sc_filter_disabled_words(const sc_asset* asset);
 
-/* All of these: SC_OK, SC_NULL_ARGUMENT, SC_BAD_FILTER (also where a buffer to write is missing), SC_BAD_ARGUMENT. */
+/* All of these: SC_OK, SC_NULL_ARGUMENT, SC_BAD_FILTER (also where a buffer to write is missing), SC_BAD_ARGUMENT;
+ * and but for sc_check_filter SC_SHARED_MEMORY. */
 SPHERECHAIN_API sc_status sc_check_filter(const sc_asset* asset, const sc_filter* filter);
-/* And SC_SHARED_MEMORY. */
 SPHERECHAIN_API sc_status sc_reset_filter(const sc_asset* asset, sc_filter* filter);
 /* `ignored` 0 reports the pairs again. */
 SPHERECHAIN_API sc_status sc_ignore_pair(const sc_asset* asset, sc_filter* filter, uint32_t a, uint32_t b, int ignored);

@@ -262,6 +262,20 @@ test('of what the skin reports it is said that nothing was missed', async () => 
   await opened.close();
 });
 
+test('view refuses what is about another asset, or not whole, and writes no page', () => {
+  for (const [option, file, change] of [
+    ['--report', 'report.json', (data) => (data.source.sha256 = 'f'.repeat(64))],
+    ['--report', 'report.json', (data) => delete data.counts],
+    ['--validation', 'validation.json', (data) => (data.settings_sha256 = 'f'.repeat(64))],
+    ['--validation', 'validation.json', (data) => (data.worst_misses = [{ spheres: [0, 99999] }])],
+  ]) {
+    const { code, error, written } = pages.view(option, file, change);
+    assert.equal(code, 3, error);
+    assert.match(error, /^spherechain: error: .*changed[.]json: .*\n$/);
+    assert.ok(!written);
+  }
+});
+
 for (const [width, height] of [[1280, 720], [820, 1180]]) {
   test(`all is in place at ${width} x ${height}, light and dark`, async () => {
     const light = {};

@@ -1,6 +1,6 @@
 // The pages under test: made by the real tool, and variants of their data that the tool may write one day.
-import { execFileSync } from 'node:child_process';
-import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+import { execFileSync, spawnSync } from 'node:child_process';
+import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
 
 const DATA = /(<script id="spherechain-data" type="application\/json">)([^<]*)(<\/script>)/;
@@ -26,6 +26,16 @@ export function makePages({ tool, human, poses, folder }) {
     rest: file('rest.html'),
     inspect: JSON.parse(run('inspect', asset, '--json')),
     report: readJson('report.json'),
+    // What `view` says to a changed file of another command.
+    view(option, name, change) {
+      const data = readJson(name);
+      change(data);
+      writeFileSync(file('changed.json'), JSON.stringify(data));
+      rmSync(file('changed.html'), { force: true });
+      const words = ['view', asset, '--source', human, '--frames', '1', option, file('changed.json'), '-o', file('changed.html')];
+      const { status, stderr } = spawnSync(tool, words, { encoding: 'utf8' });
+      return { code: status, error: stderr, written: existsSync(file('changed.html')) };
+    },
     // A page with changed data.
     variant(name, change) {
       const html = readFileSync(motions[0].page, 'utf8');

@@ -68,12 +68,33 @@ TEST_CASE("clothes that meet in a seam leave the hips to the torso: both legs ar
   CHECK(lowest < 0.6 * bake.regions.frame.height);
 }
 
+TEST_CASE("a facing direction may say what the rig says; across it, or against it, it is refused") {
+  const Bake& bake = person_in_pieces();
+  const auto error_of = [&](const Vec3& facing) -> std::string {
+    try {
+      const Regions regions = segment_by_rig(bake.character, bake.roles, facing);
+      CHECK(regions.of_skin == segment_by_rig(bake.character, bake.roles, {}).of_skin);
+    } catch (const Error& error) {
+      CHECK(error.code() == ExitCode::kSegmentation);
+      CHECK(std::string(error.what()).find("BCN_Epileptic.X: ") == 0);
+      return error.what();
+    }
+    return "none";
+  };
+  const BodyFrame& frame = bake.regions.frame;
+  CHECK(error_of(3 * frame.forward + frame.left) == "none");
+  for (const Vec3& facing : {frame.left, frame.up, Vec3(-frame.left + 0.2 * frame.forward)}) {
+    CHECK(error_of(facing).find("facing direction in the settings is not along") != std::string::npos);
+  }
+  CHECK(error_of(-frame.forward).find("facing direction in the settings is against") != std::string::npos);
+}
+
 TEST_CASE("a rig without a trunk is refused as no body") {
   const Character& character = person_in_pieces().character;
   Roles none;
   none.of_node.resize(character.rig.nodes.size());
   try {
-    segment_by_rig(character, none);
+    segment_by_rig(character, none, {});
     FAIL("it was segmented");
   } catch (const Error& error) {
     CHECK(error.code() == ExitCode::kSegmentation);

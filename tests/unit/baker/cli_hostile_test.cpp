@@ -2,6 +2,7 @@
 // What a command line, a disk and a user's files may do to the tool: never an internal error.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <nlohmann/json.hpp>
 
@@ -29,6 +30,27 @@ TEST_CASE("numbers that are none are usage errors") {
                                 folder.path.string(), number)),
                 2, {std::string(number).substr(0, 5)});
   }
+  CHECK(tool::files_in(folder.path) == 0);
+}
+
+TEST_CASE("an empty name, as of a script's variable that is not set, is a usage error and no option left out") {
+  const TemporaryFolder folder;
+  const std::string asset = baked_files().asset.string(), out = (folder.path / "out").string(),
+                    animated = fmt::format("{} --source {}", asset, kHumanFile);
+  for (const char* option : {"--config", "--roles", "--report", "--preview", "--output"}) {
+    const std::string output = option == std::string("--output") ? "" : "-o " + out;
+    check_error(run(fmt::format("bake {} {} {} ''", kHumanFile, output, option)), 2, {option, "empty"});
+  }
+  for (const char* option : {"--clip", "--poses", "--motion", "--json"}) {
+    check_error(run(fmt::format("play {} {} ''", animated, option)), 2, {option, "empty"});
+    check_error(run(fmt::format("validate {} {} ''", animated, option)), 2, {option, "empty"});
+  }
+  for (const char* option : {"--report", "--validation"})
+    check_error(run(fmt::format("view {} -o {} {} ''", animated, out, option)), 2, {option, "empty"});
+  check_error(run(fmt::format("bake '' -o {}", out)), 2, {"INPUT", "empty"});
+  check_error(run("inspect ''"), 2, {"ASSET", "empty"});
+  check_error(run(fmt::format("play '' --source {}", kHumanFile)), 2, {"ASSET", "empty"});
+  check_error(run(fmt::format("play {} --source ''", asset)), 2, {"--source", "empty"});
   CHECK(tool::files_in(folder.path) == 0);
 }
 
@@ -64,6 +86,61 @@ TEST_CASE("settings that no settings are end with 3: numbers past the largest, o
   std::string lists = R"({"facing":)" + std::string(300000, '[') + std::string(300000, ']') + "}";
   check_error(bake_with(lists), 3, {"c.json", "nested"});
   CHECK(!fs::exists(folder.path / "out.sphc"));
+}
+
+TEST_CASE("devices, pipes and folders are refused at once where a file is needed") {
+  const TemporaryFolder folder;
+  const std::string pipe = (folder.path / "pipe").string(), list = (folder.path / "pipe.txt").string(),
+                    out = (folder.path / "out").string(), asset = baked_files().asset.string();
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  REQUIRE(::mkfifo(list.c_str(), 0600) == 0);
+  const auto refused = [&](const std::string& arguments, const std::string& file) {
+    CAPTURE(arguments);
+    check_error(run(arguments, "timeout 20"), 3, {file + ": is a "});
+  };
+  for (const std::string& file : {std::string("/dev/zero"), pipe, folder.path.string()}) {
+    refused(fmt::format("bake {} -o {}", file, out), file);
+    refused(fmt::format("inspect --roles {}", file), file);
+    refused(fmt::format("play {} --source {}", asset, file), file);
+    if (file == folder.path) continue;
+    refused(fmt::format("play {} --source {} --motion {}", asset, kHumanFile, file), file);
+    check_error(run(fmt::format("play {} --source {} --poses {}", asset, kHumanFile, file), "timeout 20"), 3, {file});
+  }
+  refused(fmt::format("play {} --source {} --poses {}", asset, kHumanFile, list), list);
+  for (const std::string& file : {std::string("/dev/zero"), folder.path.string()}) {
+    refused(fmt::format("bake {} -o {} --config {}", kHumanFile, out, file), file);
+    refused(fmt::format("bake {} -o {} --roles {}", kHumanFile, out, file), file);
+    refused(fmt::format("inspect {}", file), file);
+    refused(fmt::format("play {} --source {}", file, kHumanFile), file);
+  }
+  CHECK(tool::files_in(folder.path) == 2);
+  // Materials are no reason to wait for one.
+  const std::string mesh = folder.write("t.obj", "mtllib pipe\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").string();
+  check_error(run(fmt::format("play {} --source {}", asset, mesh), "timeout 20"), 3, {"t.obj: is not the mesh"});
+}
+
+TEST_CASE("what is read once may come from a pipe") {
+  const TemporaryFolder folder;
+  const std::string pipe = (folder.path / "pipe").string(), asset = baked_files().asset.string();
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  const tool::Run piped = run(fmt::format("inspect {} & cat {} >{}; wait $!", pipe, asset, pipe), "timeout 20");
+  CHECK_MESSAGE(piped.code == 0, piped.error);
+  CHECK(piped.out == run("inspect " + asset).out);
+}
+
+TEST_CASE("names too long for a file system and folders as outputs end with 3") {
+  const std::string name(300, 'x'), asset = baked_files().asset.string();
+  check_error(run(fmt::format("bake {}.obj -o out", name)), 3, {name, "too long"});
+  check_error(run(fmt::format("bake {} -o {}.sphc", kHumanFile, name)), 3, {name, "too long"});
+  check_error(run(fmt::format("inspect {}", name)), 3, {name, "too long"});
+  for (const char* option : {"--poses", "--motion"}) {
+    check_error(run(fmt::format("play {} --source {} {} {}", asset, kHumanFile, option, name)), 3, {name});
+    check_error(run(fmt::format("play {} --source {} {} {}.txt", asset, kHumanFile, option, name)), 3, {name});
+  }
+  const TemporaryFolder folder;
+  check_error(run(fmt::format("bake {} -o {}", kHumanFile, folder.path.string())), 3, {"it is a folder"});
+  check_error(run(fmt::format("play {} --source {} --json {}", asset, kHumanFile, folder.path.string())), 3,
+              {"it is a folder"});
 }
 
 TEST_CASE("what is printed and cannot be written ends with 3") {

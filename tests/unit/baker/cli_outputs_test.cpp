@@ -86,6 +86,57 @@ TEST_CASE("no command writes over a mesh of the sequence it plays, listed or in 
   }
 }
 
+TEST_CASE("no command writes over what its inputs are made of: a glTF's buffers and pictures, poses of other files") {
+  const TemporaryFolder folder;
+  const std::string gltf =
+      folder
+          .write("body.gltf", R"({"asset": {"version": "2.0"}, "images": [{"uri": "skin%20one.png"}, {"uri": 3}, 4],
+                     "buffers": [{"byteLength": 8, "uri": "body.bin"}, {"byteLength": 1, "uri": "data:;base64,AA=="}]})")
+          .string();
+  touch(folder, "body.bin");
+  touch(folder, "skin one.png");
+  const std::string poses = folder.write("poses.json", R"({"poses": ["more.json"]})").string();
+  folder.write("more.json", R"({"poses": ["most.json", "more.json", "none.json", {}]})");
+  touch(folder, "most.json");
+  folder.write("list.txt", "body.gltf\n");
+  const auto refused = [&](const std::string& arguments, const char* file, const char* input, const char* output) {
+    check_refused(folder.path, fmt::format("{} '{}/{}'", arguments, folder.path.string(), file), input, output);
+  };
+  for (const char* file : {"body.bin", "skin one.png"}) {
+    refused(fmt::format("bake {} --force -o", gltf), file, "INPUT", "-o");
+    refused(fmt::format("bake {} --force -o out --preview", gltf), file, "INPUT", "--preview");
+    for (const char* command : {"play", "validate"}) {
+      refused(fmt::format("{} a.sphc --source {} --json", command, gltf), file, "--source", "--json");
+      refused(fmt::format("{} a.sphc --source a.obj --motion {} --json", command, gltf), file, "--motion", "--json");
+      refused(fmt::format("{} a.sphc --source a.obj --poses {}/list.txt --json", command, folder.path.string()), file,
+              "--poses", "--json");
+    }
+    refused(fmt::format("view a.sphc --source {} --force -o", gltf), file, "--source", "-o");
+  }
+  for (const char* file : {"more.json", "most.json"}) {
+    refused(fmt::format("play a.sphc --source a.obj --poses {} --json", poses), file, "--poses", "--json");
+    refused(fmt::format("view a.sphc --source a.obj --poses {} --force -o", poses), file, "--poses", "-o");
+  }
+}
+
+TEST_CASE("what goes to /dev/stdout goes to where that leads, and takes the name from nobody") {
+  const std::string play =
+      fmt::format("play {} --source {} --frames 1 --json ", baked_files().asset.string(), kHumanFile);
+  // By the name in /proc: there a tool that replaced it could do no harm.
+  REQUIRE(fs::is_symlink("/proc/self/fd/1"));
+  const tool::Run to_file = run(play + "/proc/self/fd/1");  // tool::run sends the output to a file
+  CHECK_MESSAGE(to_file.code == 0, to_file.error);
+  CHECK(to_file.out.rfind("{\n \"backend\": ", 0) == 0);
+  CHECK(to_file.out.find("\n}\n1 frames, radius detect") != std::string::npos);
+  const tool::Run to_pipe = run(play + "/proc/self/fd/1 | cat");
+  CHECK(to_pipe.out.find("\n}\n1 frames, radius detect") != std::string::npos);
+  const TemporaryFolder folder;
+  const std::string third = (folder.path / "third").string();
+  CHECK(run(fmt::format("{}/dev/fd/3 3>{}", play, third)).code == 0);
+  CHECK(contents(third).rfind("{\n \"backend\": ", 0) == 0);
+  CHECK(files_in(folder.path) == 1);
+}
+
 TEST_CASE("two names of one file are seen to be one: links, and files that are not there yet") {
   const TemporaryFolder folder;
   const std::string source = touch(folder, "human.glb");

@@ -9,6 +9,7 @@
 
 #include "baked_human.h"
 #include "human.h"
+#include "play/asset_file.h"
 #include "spherechain/simd.h"
 #include "temporary_folder.h"
 #include "tool.h"
@@ -19,8 +20,8 @@ using spherechain::baker::kTorso;
 
 namespace {
 
-using tool::BakedFiles;
 using tool::baked_files;
+using tool::BakedFiles;
 using tool::check_error;
 using tool::contents;
 using tool::files_in;
@@ -137,6 +138,28 @@ TEST_CASE("play --json has the contract's fields; at rest nothing touches, hands
   CHECK(both["frames"][4]["skin_pairs"].size() < both["frames"][4]["pairs"].size());
   CHECK(both["frames"][0]["pairs"].empty());
   CHECK(!both["frames"][4]["pairs"].empty());
+
+  CHECK(!both["frames"][4].contains("contacts"));
+  const Run triangles = play(fmt::format("--contacts --poses {} --frames 5 --fps 10", pose("hands_on_hips.json")));
+  REQUIRE(triangles.code == 0);
+  CHECK(triangles.out.find("\ntriangles ") != std::string::npos);
+  const json listed = json::parse(contents(out));
+  const spherechain::baker::AssetFile file = spherechain::baker::open_asset(baked_files().asset.string());
+  std::vector<json> owner(file.asset.info().source_triangle_count);
+  for (std::size_t s = 0; s < file.asset.spheres().size; ++s) {
+    const spherechain::RestSphere& sphere = file.asset.spheres()[s];
+    for (std::uint32_t k = 0; k < sphere.triangle_count; ++k)
+      owner[file.asset.triangles()[sphere.first_triangle + k]] = s;
+  }
+  CHECK(listed["frames"][0]["contacts"].empty());
+  CHECK(listed["frames"][4].contains("contacts_us"));
+  std::set<json> skin_pairs;  // of the spheres whose triangles they are
+  for (const json& pair : listed["frames"][4]["contacts"]) {
+    const json &a = owner.at(pair[0].get<std::size_t>()), &b = owner.at(pair[1].get<std::size_t>());
+    skin_pairs.insert(a < b ? json{a, b} : json{b, a});
+  }
+  CHECK(skin_pairs ==
+        std::set<json>(listed["frames"][4]["skin_pairs"].begin(), listed["frames"][4]["skin_pairs"].end()));
 
   const Run scalar = play("--frames 1 --mode m1 --radius fit --backend scalar");
   REQUIRE(scalar.code == 0);
@@ -311,6 +334,8 @@ TEST_CASE("--body says what a body with two pairs of limbs is, goes before the s
   CHECK(inspected["regions"][4]["name"] == "tail");
   const Run play = run(fmt::format("play {} --source {}", asset.string(), beast));
   CHECK_MESSAGE(play.code == 0, play.error);
+  check_error(run(fmt::format("play {} --source {} --poses {}", asset.string(), beast, pose("arms_crossed.json"))), 3,
+              {"arms_crossed.json: turns the joints of a biped, and ", "beast.sphc has none"});
   REQUIRE(run(fmt::format("bake {} -o {} --config {}", beast, asset.string(), config.string())).code == 0);
   CHECK(json::parse(run(fmt::format("inspect {} --json", asset.string())).out)["regions"][0]["name"] == "left_arm");
   CHECK(run(fmt::format("bake {} -o {} --body centaur", beast, asset.string())).code == 2);
@@ -322,7 +347,10 @@ TEST_CASE("--body says what a body with two pairs of limbs is, goes before the s
 TEST_CASE("usage errors end with 2") {
   check_error(run(""), 2, {"--help"});
   check_error(run("bake"), 2, {});
-  check_error(run("frobnicate"), 2, {});
+  check_error(run("frobnicate"), 2, {"'frobnicate'"});
+  check_error(run("--frobnicate"), 2, {"'--frobnicate'"});
+  check_error(run("frobnicate bake"), 2, {"'frobnicate'"});
+  check_error(run("bake in out"), 2, {});
   check_error(run(fmt::format("bake {} -o x.sphc --profile fancy", kHumanFile)), 2, {"fancy"});
   check_error(run(fmt::format("play {} --source {} --mode m3", baked_files().asset.string(), kHumanFile)), 2, {"m3"});
   check_error(run(fmt::format("validate {} --source {} --mode both", baked_files().asset.string(), kHumanFile)), 2,
@@ -428,6 +456,42 @@ TEST_CASE("an output that is no asset is not overwritten without --force, nor is
   const auto input = folder.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").string();
   check_error(run(fmt::format("bake {} -o {} --force", input, input)), 2, {"same file"});
   CHECK(contents(input).rfind("v 0 0 0", 0) == 0);
+}
+
+TEST_CASE("docs/json.md names every key that is written") {
+  const std::string page = contents(SPHERECHAIN_SAMPLES "/../docs/json.md");
+  const TemporaryFolder folder;
+  const fs::path out = folder.path / "out.json";
+  const auto named = [&](const json& value, const auto& self) -> void {
+    if (!value.is_structured()) return;
+    for (const auto& [key, inner] : value.items()) {
+      if (value.is_object()) CHECK_MESSAGE(page.find("`" + key + "`") != std::string::npos, key);
+      if (key != "settings") self(inner, self);  // README.md has those
+    }
+  };
+  const auto written = [&](const char* command) {
+    const Run done = run(fmt::format("{} {} --source {} --poses {} --frames 2 --contacts --json {}", command,
+                                     baked_files().asset.string(), kHumanFile, pose("arms_crossed.json"), out.string()),
+                         "SPHERECHAIN_CACHE=off");
+    REQUIRE_MESSAGE(done.code == 0, done.error);
+    return json::parse(contents(out));
+  };
+  named(written("play"), named);
+  named(written("validate"), named);
+  named(json::parse(run(fmt::format("inspect {} --json", baked_files().asset.string())).out), named);
+  named(json::parse(run("inspect --json --roles /usr/share/assimp/models/X/Testwuson.X").out), named);
+  const json report = json::parse(contents(baked_files().report));
+  for (const auto& [key, value] : report.items()) {
+    CHECK_MESSAGE(page.find("`" + key + "`") != std::string::npos, key);
+  }
+}
+
+TEST_CASE("contacts of triangles are asked of an asset that has leaves") {
+  const std::string golden = SPHERECHAIN_SAMPLES "/../tests/golden/";  // this asset is older than leaves
+  for (const char* command : {"play", "validate"}) {
+    check_error(run(fmt::format("{} {}doll.sphc --source {}doll.obj --frames 1 --contacts", command, golden, golden)),
+                3, {"doll.sphc", "has no leaves", "bake it again"});
+  }
 }
 
 TEST_CASE("an asset is refused for another mesh than its source") {

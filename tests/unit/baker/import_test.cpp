@@ -80,6 +80,20 @@ TEST_CASE("indices out of range and positions beyond single precision are refuse
   CHECK_THROWS_WITH_AS(build_character(mesh, "x.obj"), doctest::Contains("single precision"), Error);
 }
 
+TEST_CASE("a character of a size that lengths cannot be squared in is refused, in any sensible unit it is read") {
+  const auto scaled = [](double by) {
+    SourceMesh mesh = ball_mesh(8);
+    for (Vec3& p : mesh.positions) p *= by;
+    return build_character(mesh, "x.obj");
+  };
+  for (const double by : {1e30, 1e13, 1e-7, 1e-20, 1e-38}) {
+    CAPTURE(by);
+    CHECK_THROWS_WITH_AS(scaled(by), doctest::Contains("x.obj: is "), Error);
+    CHECK_THROWS_WITH_AS(scaled(by), doctest::Contains("units across (a character is from 1e-06 to 1e+12"), Error);
+  }
+  for (const double by : {1e10, 1e-5}) CHECK(scaled(by).skin.triangles.size() == ball_mesh(8).triangles.size());
+}
+
 TEST_CASE("degenerate and duplicate triangles are dropped and counted, and split vertices welded") {
   const TemporaryFolder folder;
   // Two corners at one place, three on a line, one triangle twice (turned, and once inside out); vertex 5 repeats

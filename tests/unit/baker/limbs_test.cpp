@@ -170,6 +170,12 @@ TEST_CASE("a snake is one tubular chain from the tail's tip to the head" * docte
   const Chains chains = build_chains(spheres, {{0, Side::kNone, 0}});
   REQUIRE(chains.chains.size() == 1);
   CHECK(chains.chains[0].spheres.size() == spheres.spheres.size());
+
+  SegmentSettings settings;
+  settings.facing = -Vec3::UnitZ();
+  CHECK(segmented(mesh, settings).frame.up.z() < -0.5);
+  settings.facing = Vec3::UnitY();
+  CHECK_THROWS_WITH_AS(segmented(mesh, settings), doctest::Contains("facing direction"), Error);
 }
 
 TEST_CASE("a ring is walked round once, and a ball is no character" * doctest::test_suite("many bakes")) {
@@ -201,6 +207,15 @@ TEST_CASE("a human with a long tail keeps arms and legs, and the tail is a limb"
   CHECK(regions.frame.forward.dot(Vec3::UnitZ()) > 0.98);
   CHECK(regions.limbs[0].line.points().back().x() > 0.5);
   CHECK(regions.limbs[4].line.points().back().z() < -0.4);
+
+  SegmentSettings settings;
+  settings.facing = -Vec3::UnitZ();
+  CHECK(segmented(melt(tubes, 0.03), settings).frame.forward.dot(Vec3::UnitZ()) < -0.98);
+  settings.facing = Vec3::UnitX();
+  CHECK_THROWS_WITH_AS(segmented(melt(tubes, 0.03), settings), doctest::Contains("facing direction"), Error);
+  // Nor is it said of one without head and tail that these are missing.
+  tubes.erase(tubes.begin() + 1, tubes.begin() + 4);
+  CHECK_THROWS_WITH_AS(segmented(melt(tubes, 0.03), settings), doctest::Contains("facing direction"), Error);
 }
 
 TEST_CASE("a rigged beast in open pieces bakes with four legs and a tail, and left is left") {

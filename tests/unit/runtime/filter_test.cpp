@@ -4,7 +4,9 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <set>
 
@@ -187,18 +189,22 @@ TEST_CASE("a filter that does not fit, or an edit of what is not there, is refus
   CHECK(detect(asset, spheres, Method::kM2, RadiusKind::kFit, Target::kBest, &plain).status == Status::kOk);
 }
 
-TEST_CASE("a filter whose buffers lie on each other, or on the asset's, is not reset") {
+TEST_CASE("a filter whose buffers lie on each other, or on the asset's, is neither reset nor edited") {
   const OpenedAsset opened(random_asset(70, 1).parts);
   const Asset& asset = opened.asset;
   OwnedFilter owned(asset);
   const std::vector<std::uint64_t> before(owned.ignored.size(), 5);
   owned.ignored = before;
+  const std::vector<std::uint64_t> own(asset.ignored().begin(), asset.ignored().end());
   const auto is_refused = [&](auto change) {
     Filter filter = owned.filter;
     change(filter);
-    const Status status = reset_filter(asset, filter);
+    const Status all[] = {reset_filter(asset, filter),         ignore_pair(asset, filter, 0, 1),
+                          ignore_regions(asset, filter, 0, 1), ignore_hops(asset, filter, 1),
+                          disable_sphere(asset, filter, 0),    pad_sphere(asset, filter, 0, 1)};
     CHECK(owned.ignored == before);
-    return status == Status::kSharedMemory;
+    CHECK(std::equal(asset.ignored().begin(), asset.ignored().end(), own.begin()));
+    return std::count(std::begin(all), std::end(all), Status::kSharedMemory) == 6;
   };
   CHECK(is_refused([&](Filter& f) { f.padding.data = reinterpret_cast<float*>(owned.ignored.data()); }));
   CHECK(is_refused([&](Filter& f) { f.disabled.data = owned.ignored.data() + owned.ignored.size() - 2; }));
