@@ -192,7 +192,7 @@ bool looks_like_biped(const CurveSkeleton& skeleton) {
 }
 
 void check_facing(const Vec3& facing, const Vec3& axis, const char* name, const std::string& file) {
-  if (std::abs(facing.normalized().dot(axis.normalized())) >= kAlong) return;
+  if (std::abs(facing.stableNormalized().dot(axis.normalized())) >= kAlong) return;
   throw FacingError(ExitCode::kSegmentation,
                     file + ": the facing direction in the settings is not along the character's " + name +
                         " (mend 'facing', or leave it out)");
