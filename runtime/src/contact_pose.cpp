@@ -42,10 +42,10 @@ void lay_out(const Asset& asset, Scratch& scratch, ContactScene& scene) {
   scene.sphere_count = asset.spheres().size;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (float** column : {&scene.spheres.low[axis], &scene.spheres.high[axis]}) {
-      *column = scratch.take<float>(scene.sphere_count + kContactPadding);
+      *column = scratch.take_aligned<float>(scene.sphere_count + kContactPadding);
     }
     for (float** column : {&scene.leaves.low[axis], &scene.leaves.high[axis]}) {
-      *column = scratch.take<float>(surface.leaves.size + kContactPadding);
+      *column = scratch.take_aligned<float>(surface.leaves.size + kContactPadding);
     }
   }
   scene.first_leaf = scratch.take<std::uint32_t>(scene.sphere_count + 1);
@@ -59,7 +59,7 @@ void lay_out(const Asset& asset, Scratch& scratch, ContactScene& scene) {
   }
   scene.bone_sizes = scratch.take<BoneSize>(asset.bone_count());
   for (float*& column : scene.ball_columns) {
-    column = scratch.take<float>(surface.leaves.size + kContactPadding);
+    column = scratch.take_aligned<float>(surface.leaves.size + kContactPadding);
   }
   if (surface.outlines.size == 0) {
     return;

@@ -358,6 +358,7 @@ HWY_INLINE void find(const ContactScene& scene, ContactCollector& collector) {
   bound_all(scene);
   SpherePairs spheres;
   LeafPairs leaves;
+  const BoxColumns boxes = scene.spheres;  // in registers, for all that vectors may be written over
   std::size_t count = 0;
   for (std::size_t b = 0; b < scene.sphere_count; ++b) {
     if (!is_enabled(scene, b)) {
@@ -372,7 +373,7 @@ HWY_INLINE void find(const ContactScene& scene, ContactCollector& collector) {
       if (first % 64 == 0) {
         bits = paired(scene, first, b);
       }
-      count = spheres.put(count, b, first, hn::AndNot(probe.misses(scene.spheres, first), mask_of(bits)));
+      count = spheres.put(count, b, first, hn::AndNot(probe.misses(boxes, first), mask_of(bits)));
       if (!spheres.has_room(count)) {
         spheres.count = count;
         pair_spheres<kFirst>(scene, spheres, leaves, collector);
