@@ -14,6 +14,9 @@ struct Access {
 // kOk and the group as the kernel sees it, `first_block` aside; or what is wrong with it, as CrowdJob::run says.
 Status view_group(const CrowdGroup& group, GroupView& view);
 
+// Where a group's blocks have what.
+SharedLayout layout_of(const GroupView& view);
+
 // What one kernel is launched with.
 struct Launch {
   GroupView views[CrowdJob::kMostGroups];

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "crowd_cover.h"
+#include "crowd_instance.h"
 #include "crowd_moments.h"
 #include "crowd_outputs.h"
 #include "crowd_pairs.h"
@@ -23,17 +24,42 @@ SPHERECHAIN_HD Way way_of(const GroupView& v) {
                                       : Way::kMorphs;
 }
 
-// A block. `run` runs a step for its threads and waits for all of them.
+// Something that a warp does for an instance, if it is wanted.
+template <typename Step>
+struct OwnStep {
+  bool is_wanted;
+  Step run;
+};
+
+template <typename Step>
+SPHERECHAIN_HD OwnStep<Step> own_step(bool is_wanted, const Step& run) {
+  return {is_wanted, run};
+}
+
+// Where they come as spheres. `run` takes a warp through the steps for each of its instances, and waits for the warp
+// after each.
+template <typename Run>
+SPHERECHAIN_HD void run_sphere_block(const GroupView& v, const Shared& shared, const Run& run) {
+  run.for_instances(v, shared,  //
+                    own_step(true, [&](const Own& own) { load_spheres(v, own); }),
+                    own_step(v.has_padding, [&](const Own& own) { pad_spheres(v, own); }),
+                    own_step(v.bounds != nullptr, [&](const Own& own) { box_spheres(v, own); }),
+                    own_step(v.bounds != nullptr, [&](const Own& own) { join_boxes(own); }),
+                    own_step(true, [&](const Own& own) { see_spheres(v, own); }),
+                    own_step(true, [&](const Own& own) { find_pairs(v, own); }),
+                    own_step(true, [&](const Own& own) { decide_pairs(v, own); }),
+                    own_step(v.bounds != nullptr, [&](const Own& own) { reach_spheres(v, own); }),
+                    own_step(true, [&](const Own& own) { write_instance(v, own); }),
+                    own_step(v.pairs != nullptr, [&](const Own& own) { write_pairs(v, own); }));
+}
+
+// Where they come from bones. `run` runs a step for the block's threads and waits for all of them.
 template <Way kWay, typename Run>
-SPHERECHAIN_HD void run_block(const GroupView& v, const Shared& shared, const Run& run) {
+SPHERECHAIN_HD void run_bone_block(const GroupView& v, const Shared& shared, const Run& run) {
   constexpr bool kCovers = kWay == Way::kCovers;
   run([&](const Place& at) {
     start_dealing(shared, at);
-    if (kWay == Way::kSpheres) {
-      load_spheres(v, shared, at);
-    } else {
-      load_matrices(v, shared, at);
-    }
+    load_matrices(v, shared, at);
   });
   if (kCovers) {
     run([&](const Place& at) { size_bones(v, shared, at); });
@@ -42,10 +68,10 @@ SPHERECHAIN_HD void run_block(const GroupView& v, const Shared& shared, const Ru
     run([&](const Place& at) { find_reference(v, shared, at); });
     run([&](const Place& at) { center_matrices(v, shared, at); });
     run([&](const Place& at) { refit_runs(v, shared, at); });
-  } else if (kWay != Way::kSpheres) {
+  } else {
     run([&](const Place& at) { refit_spheres<kWay == Way::kMorphs>(v, shared, at); });
   }
-  if (kWay != Way::kSpheres && v.refitted != nullptr) {
+  if (v.refitted != nullptr) {
     run([&](const Place& at) { kCovers ? write_covers(v, shared, at) : write_spheres(v, shared, at); });
   }
   run([&](const Place& at) { prepare_pairs<kCovers>(v, shared, at); });
@@ -53,6 +79,15 @@ SPHERECHAIN_HD void run_block(const GroupView& v, const Shared& shared, const Ru
   run([&](const Place& at) { write_instances(v, shared, at); });
   if (v.pairs != nullptr) {
     run([&](const Place& at) { write_pairs(v, shared, at); });
+  }
+}
+
+template <Way kWay, typename Run>
+SPHERECHAIN_HD void run_block(const GroupView& v, const Shared& shared, const Run& run) {
+  if constexpr (kWay == Way::kSpheres) {
+    run_sphere_block(v, shared, run);
+  } else {
+    run_bone_block<kWay>(v, shared, run);
   }
 }
 
@@ -75,10 +110,11 @@ SPHERECHAIN_HD void run_any_block(const GroupView& v, const Shared& shared, cons
 // What a block of its launch does where the memory is in scratch. `run` is made for a block of the group.
 template <typename MakeRun>
 SPHERECHAIN_HD void run_blocks_in_scratch(const GroupView& v, std::uint32_t first, const MakeRun& make_run) {
-  const SharedLayout layout = shared_layout(v);
-  const Shared memory(v.scratch + first * layout.size, layout);
+  const Shared memory(v.scratch + std::size_t{first} * v.layout.size, v.layout);
   for (std::uint32_t block = first; block < blocks_of(v); block += v.scratch_blocks) {
-    run_any_block(v, memory, make_run(block));
+    const auto run = make_run(block);
+    run_any_block(v, memory, run);
+    run([](const Place&) {});
   }
 }
 

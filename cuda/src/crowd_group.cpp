@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "crowd_access.h"
+#include "crowd_own.h"
 
 namespace spherechain::cuda {
 namespace {
@@ -81,6 +82,61 @@ MatrixSteps steps_of(MatrixLayout layout) {
 
 }  // namespace
 
+namespace {
+
+// One thing after another.
+struct Bytes {
+  std::size_t used = 0;
+
+  void take(std::uint32_t& at, std::size_t bytes) {
+    at = static_cast<std::uint32_t>(used);
+    used += (bytes + 15) / 16 * 16;
+  }
+};
+
+SharedLayout layout_of_bones(const GroupView& v) {
+  constexpr std::size_t kFigures = kPitch * sizeof(float);
+  const std::size_t table = half_words(v) * kFigures;
+  SharedLayout out{};
+  Bytes before, after;
+  before.take(out.matrices, std::size_t{3} * v.used_bone_count * kPitch * sizeof(Float4));
+  before.take(out.morph_weights, v.morph_weights != nullptr ? v.morph_count * kFigures : 0);
+  before.take(out.bone_sizes, v.cover_entries != nullptr ? v.used_bone_count * kPitch * sizeof(BoneSize) : 0);
+  before.take(out.reference, v.runs != nullptr ? 3 * kFigures : 0);
+  after.take(out.powers, sphere_places(v) * kFigures);
+  after.take(out.bits, v.bits != nullptr ? table : 0);
+  after.take(out.ordered_bits, v.pairs != nullptr ? table : 0);
+  Bytes all{std::max(before.used, after.used)};
+  all.take(out.spheres, std::size_t{sphere_places(v)} * kPitch * sizeof(Float4));
+  all.take(out.counts, kLanes * sizeof(std::uint32_t));
+  all.take(out.dealt, 2 * sizeof(std::uint32_t));
+  all.take(out.parts, v.pairs != nullptr ? (kMostWarps * kLanes + 4) * sizeof(std::uint32_t) : 0);
+  all.take(out.boxes, v.bounds != nullptr ? 6 * kMostWarps * kLanes * sizeof(float) : 0);
+  all.take(out.radii, v.bounds != nullptr ? kLanes * sizeof(std::uint32_t) : 0);
+  out.size = static_cast<std::uint32_t>(all.used);
+  return out;
+}
+
+SharedLayout layout_of_spheres(const GroupView& v) {
+  const std::size_t places = std::size_t{units_of(v.sphere_count)} * kUnit;
+  SharedLayout out{};
+  Bytes own{sizeof(OwnState)};
+  own.take(out.own_seen, std::size_t{4} * seen_pitch(v) * sizeof(float));
+  own.take(out.own_powers, 2 * places * sizeof(float));
+  own.take(out.own_bits, v.bits != nullptr ? v.bit_words * sizeof(std::uint64_t) : 0);
+  own.take(out.own_ordered_bits, v.pairs != nullptr ? v.bit_words * sizeof(std::uint64_t) : 0);
+  own.take(out.own_boxes, v.bounds != nullptr ? kBoxFigures * kLanes * sizeof(float) : 0);
+  own.take(out.own_parts, v.pairs != nullptr ? kLanes * sizeof(std::uint32_t) : 0);
+  own.take(out.own_spheres, v.sphere_count * sizeof(Float4));
+  out.own_size = static_cast<std::uint32_t>(own.used);
+  out.size = kMostWarps * out.own_size;
+  return out;
+}
+
+}  // namespace
+
+SharedLayout layout_of(const GroupView& v) { return v.matrices != nullptr ? layout_of_bones(v) : layout_of_spheres(v); }
+
 Status view_group(const CrowdGroup& group, GroupView& view) {
   const Status status = check(group);
   if (status != Status::kOk) {
@@ -111,6 +167,7 @@ Status view_group(const CrowdGroup& group, GroupView& view) {
   view.pair_count = group.pair_count;
   view.scratch = static_cast<unsigned char*>(group.scratch);
   view.scratch_bytes = group.scratch_bytes;
+  view.layout = layout_of(view);
   return Status::kOk;
 }
 
@@ -136,7 +193,7 @@ Status plan_launches(const Launch& all, std::size_t most_shared_bytes, LaunchPla
   plan = {};
   for (std::uint32_t g = 0; g < all.count; ++g) {
     GroupView view = all.views[g];
-    const std::size_t bytes = shared_layout(view).size;
+    const std::size_t bytes = view.layout.size;
     if (bytes <= most_shared_bytes) {
       view.first_block = plan.shared_blocks;
       plan.shared_blocks += blocks_of(view);

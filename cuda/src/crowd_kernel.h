@@ -14,6 +14,11 @@ static_assert(sizeof(Launch) <= 4096, "what a kernel's arguments may take");
 
 inline constexpr std::uint32_t kThreads = kMostWarps * kLanes;
 inline constexpr std::uint32_t kBlocksAtOnce = 3;  // a multiprocessor: leaves a thread 80 registers
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ < 800
+inline constexpr std::uint32_t kSphereBlocksAtOnce = 4;  // Turing's 1024 threads
+#else
+inline constexpr std::uint32_t kSphereBlocksAtOnce = 5;  // 48
+#endif
 
 // Not by <<<>>>, whose error is told apart from an older one of the program's only by who asks each time.
 inline Status launch(void (*kernel)(Launch), const Launch& groups, std::uint32_t blocks, std::size_t shared_bytes,
@@ -30,6 +35,27 @@ struct RunStep {
   __device__ void operator()(const Step& step) const {
     step(at);
     __syncthreads();
+  }
+  template <typename... Steps>
+  __device__ void for_instances(const GroupView& v, const Shared& shared, const Steps&... steps) const {
+    Place here = at;
+    asm volatile(
+        ""
+        : "+r"(here.thread));  // or what follows from it would be kept in registers, or spilled, from the start
+    const std::uint32_t count = instances_in(v, here);
+    for (std::uint32_t place = here.warp(); place < count; place += kMostWarps) {
+      const Own own(v, shared, here, place);
+      (run_own(steps, own), ...);
+    }
+  }
+
+ private:
+  template <typename Step>
+  __device__ static void run_own(const Step& step, const Own& own) {
+    if (step.is_wanted) {
+      step.run(own);
+      __syncwarp();
+    }
   }
 };
 

@@ -9,8 +9,8 @@ namespace spherechain::cuda {
 // Half of what radii r add to the squared reach of two spheres is at most rp^2 + rq^2. So with p and q seen from the
 // instance's first sphere, and power(p) = rp^2 - |p|^2 / 2,
 //   power(p) + power(q) + p.q >= ((rp + rq)^2 - |p - q|^2) / 2,
-// which is above 0 where they touch. With G = |p|^2 + rp^2 of both, runtime/src/sphere_columns.h shows of a sum much as this
-// one that it is off by 33 * 2^-24 G at most; here each power adds 2 more. Each is larger by 64 * 2^-24 of its own
+// which is above 0 where they touch. With G = |p|^2 + rp^2 of both, runtime/src/sphere_columns.h shows of a sum much as
+// this one that it is off by 33 * 2^-24 G at most; here each power adds 2 more. Each is larger by 64 * 2^-24 of its own
 // sphere's share of G, and by 2^-120 for what underflows: so the computed sum is above 0 too. For what is too large for
 // that, or not finite, it is infinite or no number, and not below 0 either.
 SPHERECHAIN_HD float power_of(const Float4& s, const Float4& origin) {

@@ -26,6 +26,15 @@ SPHERECHAIN_HD void add_to(std::uint32_t* shared, std::uint32_t value) {
 #endif
 }
 
+// What it was before.
+SPHERECHAIN_HD std::uint32_t take_place(std::uint32_t* shared) {
+#if defined(__CUDA_ARCH__)
+  return atomicAdd(shared, 1U);
+#else
+  return (*shared)++;
+#endif
+}
+
 SPHERECHAIN_HD void set_bits(std::uint32_t* shared, std::uint32_t value) {
 #if defined(__CUDA_ARCH__)
   atomicOr(shared, value);
@@ -51,12 +60,42 @@ SPHERECHAIN_HD std::uint32_t lowest_bit(std::uint32_t word) {
 #endif
 }
 
+SPHERECHAIN_HD std::uint32_t lowest_bit(std::uint64_t word) {
+#if defined(__CUDA_ARCH__)
+  return __ffsll(static_cast<long long>(word)) - 1;
+#else
+  return static_cast<std::uint32_t>(__builtin_ctzll(word));
+#endif
+}
+
+SPHERECHAIN_HD std::uint32_t leading_zeros(std::uint32_t word) {
+#if defined(__CUDA_ARCH__)
+  return static_cast<std::uint32_t>(__clz(static_cast<int>(word)));
+#else
+  return static_cast<std::uint32_t>(__builtin_clz(word));
+#endif
+}
+
 // The bits of `word` moved up by one, the sign of `value` below them.
 SPHERECHAIN_HD std::uint32_t shift_in_sign(std::uint32_t word, float value) {
 #if defined(__CUDA_ARCH__)
   return __funnelshift_l(__float_as_uint(value), word, 1);
 #else
   return word << 1 | (value < 0 ? 1U : 0U);  // a NaN the device computes has no sign
+#endif
+}
+
+// The figure, nearer to 0, that the matrix units multiply; of what is no number, anything.
+SPHERECHAIN_HD float eleven_bits(float x) {
+  constexpr std::uint32_t kMask = ~0x1FFFU;
+#if defined(__CUDA_ARCH__)
+  return __uint_as_float(__float_as_uint(x) & kMask);
+#else
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, &x, sizeof bits);
+  bits &= kMask;
+  std::memcpy(&x, &bits, sizeof bits);
+  return x;
 #endif
 }
 
@@ -85,6 +124,14 @@ SPHERECHAIN_HD std::uint32_t count_bits(std::uint32_t word) {
   return static_cast<std::uint32_t>(__popc(word));
 #else
   return static_cast<std::uint32_t>(__builtin_popcount(word));
+#endif
+}
+
+SPHERECHAIN_HD std::uint32_t count_bits(std::uint64_t word) {
+#if defined(__CUDA_ARCH__)
+  return static_cast<std::uint32_t>(__popcll(word));
+#else
+  return static_cast<std::uint32_t>(__builtin_popcountll(word));
 #endif
 }
 

@@ -13,8 +13,8 @@ SPHERECHAIN_HD std::uint32_t instance_of(const GroupView& v, const Place& at, st
 }
 
 SPHERECHAIN_HD std::uint32_t instances_in(const GroupView& v, const Place& at) {
-  const std::uint32_t left = v.instance_count - at.block * kLanes;
-  return left < kLanes ? left : kLanes;
+  const std::uint32_t most = block_instances(v), left = v.instance_count - at.block * most;
+  return left < most ? left : most;
 }
 
 SPHERECHAIN_HD void start_dealing(const Shared& shared, const Place& at) {
@@ -48,21 +48,6 @@ SPHERECHAIN_HD void load_matrices(const GroupView& v, const Shared& shared, cons
       const std::uint32_t to = i / v.morph_count, target = i % v.morph_count;
       shared.morph_weights[target * kPitch + to] =
           v.morph_weights[std::size_t{instance_of(v, at, to)} * v.morph_count + target];
-    }
-  }
-  arrive();
-}
-
-// Step 1 where the instances come as spheres.
-SPHERECHAIN_HD void load_spheres(const GroupView& v, const Shared& shared, const Place& at) {
-  for (std::uint32_t i = at.lane(); i < v.sphere_count; i += kLanes) {
-    for (std::uint32_t to = at.warp(); to < kLanes; to += at.warps()) {
-      const Sphere* from = v.spheres + instance_of(v, at, to) * v.sphere_stride + i;
-      if (v.wide_spheres) {
-        copy_past_cache(&shared.spheres[i * kPitch + to], &from->x);
-      } else {
-        shared.spheres[i * kPitch + to] = {from->x, from->y, from->z, from->radius};
-      }
     }
   }
   arrive();

@@ -9,13 +9,14 @@ struct RunInShared {
   __device__ static void run(const Launch& launch, const Block& block) {
     extern __shared__ Float4 memory[];
     const GroupView& v = group_of_block(launch);
-    block(v, Shared(memory, shared_layout(v)), RunStep{{threadIdx.x, kThreads, blockIdx.x - v.first_block}});
+    block(v, Shared(memory, v.layout), RunStep{{threadIdx.x, kThreads, blockIdx.x - v.first_block}});
   }
 };
 
 // Where all groups of a launch go the same way.
 template <Way kWay>
-__global__ void __launch_bounds__(kThreads, kBlocksAtOnce) run_crowd(const __grid_constant__ Launch launch) {
+__global__ void __launch_bounds__(kThreads, kWay == Way::kSpheres ? kSphereBlocksAtOnce : kBlocksAtOnce)
+    run_crowd(const __grid_constant__ Launch launch) {
   RunInShared::run(
       launch, [](const GroupView& v, const Shared& shared, const RunStep& run) { run_block<kWay>(v, shared, run); });
 }

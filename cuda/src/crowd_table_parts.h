@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "crowd_view.h"
+#include "crowd_units.h"
 #include "spherechain/detect.h"
 
 namespace spherechain::cuda {
@@ -82,6 +82,52 @@ std::uint32_t fill_items(std::uint32_t n, PairItem* out, const Wanted& wanted) {
     }
   }
   return count;
+}
+
+inline std::size_t unit_words(std::size_t n) { return words_of_units(units_of(static_cast<std::uint32_t>(n))); }
+
+inline std::size_t words_of_pairs(std::size_t n) {
+  return words_of(unit_words(n) * kWordUnits * sizeof(std::uint32_t)) +
+         words_of(unit_words(n) * kLanes * sizeof(std::uint32_t));
+}
+
+// Where the units are, and which of their pairs each lane is to find: only those of a < b, both of them spheres there
+// are.
+template <typename Wanted>
+void fill_units(std::uint32_t n, std::uint32_t* places, std::uint32_t* words, const Wanted& wanted) {
+  std::uint32_t unit = 0;
+  for (std::uint32_t column = 0; column < n; column += kUnit) {
+    for (std::uint32_t row = 0; row <= column; row += kUnit, ++unit) {
+      places[unit] = row / kUnit | column / kUnit << 16;
+      for (std::uint32_t lane = 0; lane < kLanes; ++lane) {
+        for (std::uint32_t pair = 0; pair < kLanePairs; ++pair) {
+          const std::uint32_t a = row + row_of(lane, pair), b = column + column_of(lane, pair);
+          if (a < b && b < n && wanted(a, b)) {
+            words[unit / kWordUnits * kLanes + lane] |= 1U << (31 - unit % kWordUnits * kLanePairs - pair);
+          }
+        }
+      }
+    }
+  }
+}
+
+// The sphere in the middle: the nearer the others are to it, the less their distances lose by rounding.
+inline std::uint32_t middle_sphere(Span<const RestSphere> spheres) {
+  std::uint32_t best = 0;
+  float least = INFINITY;
+  for (std::uint32_t i = 0; i < spheres.size; ++i) {
+    float most = 0;
+    for (const RestSphere& other : spheres) {
+      const float dx = other.center.x - spheres[i].center.x, dy = other.center.y - spheres[i].center.y,
+                  dz = other.center.z - spheres[i].center.z;
+      most = std::max(most, dx * dx + dy * dy + dz * dz);
+    }
+    if (most < least) {
+      best = i;
+      least = most;
+    }
+  }
+  return best;
 }
 
 inline void fill_paddings(const Filter* filter, float* out) {

@@ -113,7 +113,7 @@ std::size_t CrowdTables::words_needed(const Asset& asset) noexcept {
   const std::size_t near =
       std::max(asset.near_pairs(RadiusKind::kFit).size, asset.near_pairs(RadiusKind::kDetect).size);
   return (has_moments(asset) ? moment_words_needed(asset) : pivot_words_needed(asset)) + words_of(n * sizeof(float)) +
-         words_of(most_items(n) * sizeof(PairItem)) + words_of(near * sizeof(NearEntry));
+         words_of(most_items(n) * sizeof(PairItem)) + words_of_pairs(n) + words_of(near * sizeof(NearEntry));
 }
 
 void CrowdTables::add_pivots(const Asset& asset, RadiusKind radius, TableMemory& entries) noexcept {
@@ -159,8 +159,11 @@ Status CrowdTables::build(const Asset& asset, RadiusKind radius, const Filter* f
   const WantedPairs wanted(asset, filter);
   const Span<const NearPair> near = asset.near_pairs(radius);
   out.near_count_ = fill_near(wanted, near, entries.take<NearEntry>(near.size, out.near_at_));
-  out.item_count_ = fill_items(n, entries.take<PairItem>(most_items(n), out.items_at_),
-                               [&](auto a, auto b) { return wanted(a, b) && !is_near(near, a, b); });
+  const auto is_tested = [&](auto a, auto b) { return wanted(a, b) && !is_near(near, a, b); };
+  out.item_count_ = fill_items(n, entries.take<PairItem>(most_items(n), out.items_at_), is_tested);
+  auto* unit_places = entries.take<std::uint32_t>(unit_words(n) * kWordUnits, out.unit_places_at_);
+  fill_units(n, unit_places, entries.take<std::uint32_t>(unit_words(n) * kLanes, out.wanted_at_), is_tested);
+  out.origin_sphere_ = middle_sphere(asset.spheres());
   out.words_ = entries.used();
   out.sphere_count_ = n;
   out.bone_count_ = static_cast<std::uint32_t>(asset.bone_count());
@@ -200,6 +203,9 @@ GroupView Access::view(const CrowdTables& tables, const std::uint64_t* words) {
   }
   v.near = reinterpret_cast<const NearEntry*>(words + tables.near_at_);
   v.items = reinterpret_cast<const PairItem*>(words + tables.items_at_);
+  v.unit_places = reinterpret_cast<const std::uint32_t*>(words + tables.unit_places_at_);
+  v.wanted = reinterpret_cast<const std::uint32_t*>(words + tables.wanted_at_);
+  v.origin_sphere = tables.origin_sphere_;
   v.has_morphs = tables.has_morphs_;
   if (tables.has_morphs_ && tables.leaf_count_ == 0) {
     v.morph_counts = reinterpret_cast<const std::uint32_t*>(words + tables.morph_counts_at_);
@@ -226,7 +232,7 @@ std::size_t CrowdTables::shared_bytes(bool from_bones, bool with_morphs, bool wi
   v.bits = with_bits ? reinterpret_cast<std::uint64_t*>(something) : nullptr;
   v.bounds = reinterpret_cast<Sphere*>(something);
   v.pairs = with_pairs ? reinterpret_cast<CrowdPair*>(something) : nullptr;
-  return shared_layout(v).size;
+  return layout_of(v).size;
 }
 
 }  // namespace spherechain::cuda

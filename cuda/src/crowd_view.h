@@ -27,9 +27,10 @@ namespace spherechain::cuda {
 
 inline constexpr std::uint32_t kLanes = 32;  // instances a block, one a lane
 inline constexpr std::uint32_t kPitch =
-    33;                                    // of shared arrays: neither a lane's nor an instance's figures share a bank
-inline constexpr std::uint32_t kRows = 8;  // spheres in registers
-inline constexpr std::uint32_t kColumns = 8;  // that an item tests them against
+    33;  // of shared arrays: neither a lane's nor an instance's figures share a bank
+inline constexpr std::uint32_t kFewInstances = 8;  // a block, where they come as spheres: one a warp
+inline constexpr std::uint32_t kRows = 8;          // spheres in registers
+inline constexpr std::uint32_t kColumns = 8;       // that an item tests them against
 
 struct alignas(16) Float4 {
   float x, y, z, w;
@@ -64,6 +65,16 @@ struct alignas(16) PairItem {
   std::uint32_t first_row, first_column;
   std::uint32_t wanted[2];
 };
+inline constexpr std::uint32_t kUnit = 16;  // spheres that matrix units test against as many
+// Unit c (c + 1) / 2 + r is that of rows 16 r and on and columns 16 c and on, r <= c; four units after each other are a
+// word. Each lane of a warp takes eight pairs of every unit, see row_of and column_of (crowd_units.h), and of every
+// word knows which of them are wanted.
+inline constexpr std::uint32_t kWordUnits = 4, kLanePairs = 8;
+SPHERECHAIN_HD std::uint32_t units_of(std::uint32_t spheres) { return (spheres + kUnit - 1) / kUnit; }
+SPHERECHAIN_HD std::uint32_t words_of_units(std::uint32_t units) {
+  return (units * (units + 1) / 2 + kWordUnits - 1) / kWordUnits;
+}
+
 inline constexpr float kLeastScale = 0x1p-60F;  // and its inverse: see usual_quotient
 inline constexpr std::uint32_t kHalfItem = 32, kHalfColumns = kHalfItem / kRows;
 
@@ -135,6 +146,21 @@ struct MatrixSteps {
   std::uint32_t row, column;
 };
 
+inline constexpr std::uint32_t kMostWarps = 8;
+inline constexpr std::uint32_t kQueued = 256;  // pairs that a warp may find before it decides
+inline constexpr std::uint32_t kBoxFigures = 6;
+
+// In bytes from the start of a block's shared memory.
+struct SharedLayout {
+  // Where instances come from bones. Matrices and what else is of bones are no longer needed when pairs are tested:
+  // what that needs lies in the same place.
+  std::uint32_t matrices, morph_weights, bone_sizes, reference, powers, bits, ordered_bits, spheres, counts, dealt,
+      parts, boxes, radii;
+  // Where they come as spheres, from the start of a warp's own.
+  std::uint32_t own_size, own_seen, own_powers, own_bits, own_ordered_bits, own_boxes, own_parts, own_spheres;
+  std::uint32_t size;
+};
+
 struct GroupView {
   const SphereEntry* sphere_entries;
   const float* paddings;
@@ -147,6 +173,8 @@ struct GroupView {
   const std::uint32_t* morph_targets;
   const MorphTerm* morph_terms;
   const PairItem* items;
+  const std::uint32_t* unit_places;  // r and, in the upper half, c of each unit of each word
+  const std::uint32_t* wanted;       // [word][lane]: bit 31 - i for the pair i
   const NearEntry* near;
   const CoverEntry* cover_entries;  // null but in tables of covers
   const LeafEntry* leaf_entries;
@@ -161,6 +189,7 @@ struct GroupView {
   Vec3 origin;
   std::uint32_t sphere_count, used_bone_count, item_count, near_count, morph_count, bit_words, leaf_count;
   std::uint32_t run_count, reference;  // reference: of the bones used
+  std::uint32_t origin_sphere;         // from which an instance's spheres are seen
   bool calibrated, has_padding, has_morphs;
 
   const Sphere* spheres;
@@ -188,18 +217,16 @@ struct GroupView {
   std::uint32_t scratch_blocks;
 
   std::uint32_t first_block;
+  SharedLayout layout;
 };
 
-SPHERECHAIN_HD std::uint32_t blocks_of(const GroupView& v) { return (v.instance_count + kLanes - 1) / kLanes; }
+SPHERECHAIN_HD std::uint32_t block_instances(const GroupView& v) {
+  return v.matrices != nullptr ? kLanes : kFewInstances;
+}
 
-inline constexpr std::uint32_t kMostWarps = 8;
-
-// In bytes from the start of a block's shared memory. Matrices and what else is of bones are no longer needed when
-// pairs are tested: what that needs lies in the same place.
-struct SharedLayout {
-  std::size_t matrices, morph_weights, bone_sizes, reference, powers, bits, ordered_bits, spheres, counts, dealt, parts,
-      boxes, radii, size;
-};
+SPHERECHAIN_HD std::uint32_t blocks_of(const GroupView& v) {
+  return (v.instance_count + block_instances(v) - 1) / block_instances(v);
+}
 
 SPHERECHAIN_HD std::uint32_t half_words(const GroupView& v) { return 2 * v.bit_words; }
 
@@ -208,34 +235,11 @@ SPHERECHAIN_HD std::uint32_t sphere_places(const GroupView& v) {
   return v.sphere_count < kColumns ? kColumns : v.sphere_count;
 }
 
-SPHERECHAIN_HD SharedLayout shared_layout(const GroupView& v) {
-  const auto up = [](std::size_t bytes) { return (bytes + 15) / 16 * 16; };
-  SharedLayout out{};
-  const std::size_t matrices = v.matrices != nullptr ? std::size_t{3} * v.used_bone_count * kPitch * sizeof(Float4) : 0;
-  const std::size_t weights = v.morph_weights != nullptr ? std::size_t{v.morph_count} * kPitch * sizeof(float) : 0;
-  const std::size_t powers = up(std::size_t{sphere_places(v)} * kPitch * sizeof(float));
-  const std::size_t table = up(std::size_t{half_words(v)} * kPitch * sizeof(std::uint32_t));
-  const std::size_t sizes =
-      v.cover_entries != nullptr ? up(std::size_t{v.used_bone_count} * kPitch * sizeof(BoneSize)) : 0;
-  const std::size_t reference =
-      v.matrices != nullptr && v.runs != nullptr ? up(std::size_t{3} * kPitch * sizeof(float)) : 0;
-  out.morph_weights = matrices;
-  out.bone_sizes = matrices + up(weights);
-  out.reference = out.bone_sizes + sizes;
-  out.bits = powers;
-  out.ordered_bits = out.bits + (v.bits != nullptr ? table : 0);
-  const std::size_t before = out.reference + reference, after = out.ordered_bits + (v.pairs != nullptr ? table : 0);
-  out.spheres = before > after ? before : after;
-  out.counts = out.spheres + std::size_t{sphere_places(v)} * kPitch * sizeof(Float4);
-  out.dealt = out.counts + kLanes * sizeof(std::uint32_t);
-  out.parts = out.dealt + 4 * sizeof(std::uint32_t);
-  out.boxes = out.parts + (v.pairs != nullptr ? (kMostWarps * kLanes + 4) * sizeof(std::uint32_t) : 0);
-  out.radii = out.boxes + (v.bounds != nullptr ? 6 * kMostWarps * kLanes * sizeof(float) : 0);
-  out.size = out.radii + (v.bounds != nullptr ? kLanes * sizeof(std::uint32_t) : 0);
-  return out;
-}
+// Of the rows in which a warp has the spheres as they are seen: no two lanes that read at once share a bank.
+SPHERECHAIN_HD std::uint32_t seen_pitch(const GroupView& v) { return units_of(v.sphere_count) * kUnit + kUnit / 2; }
 
-// A block's thread: instance `instance`, whose work it shares with the threads of the same lane.
+// A block's thread. Where instances come from bones a lane is one of them, and its threads share the work; where they
+// come as spheres a warp is.
 struct Place {
   std::uint32_t thread, threads, block;  // block: of the group
 
@@ -259,6 +263,7 @@ struct Shared {
   std::uint32_t* parts;  // [warp][lane]: pairs in each warp's part of the ordered bits
   float* boxes;          // [axis, low or high][warp][lane] around centres
   std::uint32_t* radii;  // of bounds: floats of no sign, which are ordered as their bits are
+  unsigned char* own;    // of each warp
 
   SPHERECHAIN_HD Shared(void* memory, const SharedLayout& layout) {
     auto* bytes = static_cast<unsigned char*>(memory);
@@ -276,6 +281,7 @@ struct Shared {
     parts = reinterpret_cast<std::uint32_t*>(bytes + layout.parts) + 4;
     boxes = reinterpret_cast<float*>(bytes + layout.boxes);
     radii = reinterpret_cast<std::uint32_t*>(bytes + layout.radii);
+    own = bytes;
   }
 };
 

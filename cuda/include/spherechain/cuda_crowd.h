@@ -60,7 +60,8 @@ class CrowdTables {
   std::uint32_t sphere_count_ = 0, bone_count_ = 0, morph_count_ = 0, bit_words_ = 0;
   std::uint32_t used_bone_count_ = 0, item_count_ = 0, near_count_ = 0, leaf_count_ = 0;
   std::uint32_t sphere_entries_at_ = 0, paddings_at_ = 0, groups_at_ = 0, terms_at_ = 0, term_matrices_at_ = 0,
-                used_bones_at_ = 0, items_at_ = 0, near_at_ = 0;
+                used_bones_at_ = 0, items_at_ = 0, near_at_ = 0, unit_places_at_ = 0, wanted_at_ = 0,
+                origin_sphere_ = 0;
   std::uint32_t morph_counts_at_ = 0, morph_targets_at_ = 0, morph_terms_at_ = 0;
   std::uint32_t covers_at_ = 0, leaves_at_ = 0, leaf_terms_at_ = 0, leaf_morphs_at_ = 0;
   std::uint32_t run_count_ = 0, reference_ = 0, runs_at_ = 0, run_spheres_at_ = 0, moment_steps_at_ = 0,

@@ -40,9 +40,48 @@ TEST_CASE("a crowd of spheres has each instance's pairs, whatever its size") {
   }
 }
 
-TEST_CASE("spheres that just touch, or just do not, near the origin and far from it, are told apart as on the CPU") {
-  constexpr unsigned kSpheres = 41;
-  TinyAsset tiny = random_asset(kSpheres, 3);
+TEST_CASE("a crowd of spheres that nearly all touch, more than a warp has room for, loses none") {
+  for (const unsigned n : {60U, 75U, 140U}) {
+    CAPTURE(n);
+    std::mt19937 random(n);
+    const OpenedAsset opened(random_asset(n, n).parts);
+    const Tables tables(opened.asset, RadiusKind::kDetect);
+    GroupInput in = group_of(tables, 40);
+    in.spheres = spheres_of(n, 40, n, random);
+    for (std::size_t i = 0; i < in.spheres.size(); ++i) in.spheres[i].radius *= i / n % 2 == 0 ? 1000.0F : 1.0F;
+    const Expected wanted = pairs_of_spheres(opened.asset, in, RadiusKind::kDetect);
+    CHECK(wanted.pairs.size() > std::size_t{15} * n * (n - 1) / 4);
+    in.pair_capacity = wanted.pairs.size();
+    const CrowdRun run = run_crowd({in});
+    REQUIRE(run.status == Status::kOk);
+    check_pairs(in, run.groups[0], wanted);
+  }
+}
+
+TEST_CASE("a crowd of spheres takes a filter; what is padded to below 0 touches nothing") {
+  for (const unsigned n : {20U, 60U, 75U}) {
+    CAPTURE(n);
+    std::mt19937 random(n);
+    const OpenedAsset opened(random_asset(n, n).parts);
+    OwnedFilter owned(opened.asset);
+    edit_randomly(opened.asset, owned.filter, random);
+    for (unsigned i = 0; i < n; i += 5) owned.padding[i] = -0.5F * static_cast<float>(1 + i % 3);
+    const Tables tables(opened.asset, RadiusKind::kDetect, &owned.filter);
+    GroupInput in = group_of(tables, 70);
+    in.spheres = spheres_of(n, 70, n, random);
+    const Expected wanted = pairs_of_spheres(opened.asset, in, RadiusKind::kDetect, &owned.filter);
+    CHECK(!wanted.pairs.empty());
+    in.pair_capacity = wanted.pairs.size() + 1;
+    const CrowdRun run = run_crowd({in});
+    REQUIRE(run.status == Status::kOk);
+    check_pairs(in, run.groups[0], wanted);
+  }
+}
+
+namespace {
+
+void check_touching(unsigned count) {
+  TinyAsset tiny = random_asset(count, 3);
   tiny.parts.ignored.assign(tiny.parts.ignored.size(), 0);
   tiny.parts.near_detect.clear();
   const OpenedAsset opened(tiny.parts);
@@ -56,17 +95,26 @@ TEST_CASE("spheres that just touch, or just do not, near the origin and far from
       GroupInput in = group_of(tables, 64);
       for (std::size_t i = 0; i < in.instance_count; ++i) {
         const float x = away * size, step = uniform(random, 0.5F, 1.5F) * size;
-        for (unsigned k = 0; k < kSpheres; ++k) {  // in a row, radii half of the steps but for a rounding or two
+        for (unsigned k = 0; k < count; ++k) {  // in a row, radii half of the steps but for a rounding or two
           const float nudge = 1.0F + static_cast<float>(static_cast<int>(random() % 5) - 2) * 0x1p-24F;
           in.spheres.push_back({x + step * static_cast<float>(k), x, -x, step * 0.5F * nudge});
         }
       }
-      in.pair_capacity = 64 * kSpheres * kSpheres;
+      in.pair_capacity = 64 * count * count;
       const Expected wanted = pairs_of_spheres(opened.asset, in, RadiusKind::kDetect);
       const CrowdRun run = run_crowd({in});
       REQUIRE(run.status == Status::kOk);
       check_pairs(in, run.groups[0], wanted);
     }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("spheres that just touch, or just do not, near the origin and far from it, are told apart as on the CPU") {
+  for (const unsigned spheres : {41U, 60U, 77U}) {
+    CAPTURE(spheres);
+    check_touching(spheres);
   }
 }
 

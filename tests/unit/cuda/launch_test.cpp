@@ -28,7 +28,7 @@ TEST_CASE("groups go to shared memory where it is large enough, and else to as m
   const std::size_t block = [&] {  // without bits
     cuda::GroupView view;
     REQUIRE(cuda::view_group(groups[1].group, view) == Status::kOk);
-    return cuda::shared_layout(view).size;
+    return cuda::layout_of(view).size;
   }();
   std::vector<cuda::CrowdGroup> all;
   for (Group& one : groups) {
@@ -42,15 +42,15 @@ TEST_CASE("groups go to shared memory where it is large enough, and else to as m
   CHECK(views.count == 4);
   REQUIRE(cuda::plan_launches(views, block - 1, plan) == Status::kOk);
   REQUIRE(plan.in_shared.count == 2);
-  CHECK(plan.in_shared.views[1].first_block == 2);
+  CHECK(plan.in_shared.views[1].first_block == 5);
   CHECK(plan.in_shared.views[0].wide_spheres);
-  CHECK(plan.shared_blocks == 4);
-  CHECK(plan.shared_bytes < block / 10);
+  CHECK(plan.shared_blocks == 13);  // of eight instances
+  CHECK(plan.shared_bytes < block / 5);
   REQUIRE(plan.in_scratch.count == 2);
-  CHECK(plan.in_scratch.views[0].scratch_blocks == 3);  // of 4
-  CHECK(plan.in_scratch.views[1].scratch_blocks == 1);
+  CHECK(plan.in_scratch.views[0].scratch_blocks == 3);  // of 13
+  CHECK(plan.in_scratch.views[1].scratch_blocks == 3);
   CHECK(plan.in_scratch.views[1].first_block == 3);
-  CHECK(plan.scratch_blocks == 4);
+  CHECK(plan.scratch_blocks == 6);
   for (std::uint32_t g = 0; g < 2; ++g) {  // the instruction for wide copies is one to shared memory
     CHECK(!plan.in_scratch.views[g].wide_spheres);
     CHECK(!plan.in_scratch.views[g].wide_matrices);

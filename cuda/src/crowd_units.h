@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: MIT
+// The crowd's kernel: which pairs are surely apart, sixteen spheres against sixteen at once, by a warp.
+#pragma once
+
+#include "crowd_own.h"
+#include "crowd_primitives.h"
+
+namespace spherechain::cuda {
+
+// Half of what radii r add to the squared reach of two spheres is at most rp^2 + rq^2. So with p and q seen from the
+// instance's origin, and power(p) = rp^2 - |p|^2 / 2,
+//   power(p) + power(q) + p.q >= ((rp + rq)^2 - |p - q|^2) / 2,
+// which is above 0 where they touch. All lose their bits past the eleventh, for matrix units that multiply such: a
+// product is off by 2^-9 of itself and hardly more, so p.q by 2^-10 (|p|^2 + |q|^2); a power above 0 by 2^-10 rp^2, one
+// below 0 only rises. The sum's own roundings, and those before, are below 2^-18 of G = |p|^2 + rp^2 of both
+// (runtime/src/sphere_columns.h shows of a sum much as this one 33 * 2^-24). So each power is larger by 2^-10 + 2^-16
+// of its own sphere's share of G, and by 2^-120 for what underflows: then the computed sum is above 0 too. For what is
+// too large for that, or not finite, the power and with it the sum is infinite or no number, and not below 0 either.
+SPHERECHAIN_HD Float4 see_sphere(const Float4& s, const Float4& origin) {
+  constexpr float kMargin = 0x1p-10F + 0x1p-16F, kLeast = 0x1p-120F, kMostExtent = 1e36F;
+  const float x = s.x - origin.x, y = s.y - origin.y, z = s.z - origin.z;
+  const float squared_length = fused(z, z, fused(y, y, x * x)), squared_radius = s.w * s.w;
+  const float power = fused(1.0F + kMargin, squared_radius, fused(kMargin - 0.5F, squared_length, kLeast));
+  return {eleven_bits(x), eleven_bits(y), eleven_bits(z),
+          squared_length + squared_radius <= kMostExtent ? eleven_bits(power) : INFINITY};
+}
+
+// Where a unit's sphere lies among the sixteen: spheres next to each other, which often touch the same others, are
+// different lanes' work.
+SPHERECHAIN_HD std::uint32_t place_of(std::uint32_t sphere) {
+  return sphere / kUnit * kUnit + sphere % 8 * 2 + sphere / 8 % 2;
+}
+
+// Lane 4 g + t has rows g and g + 8 of a unit, and columns 2 t, 2 t + 1, 2 t + 8 and 2 t + 9: as the matrix units leave
+// their sums.
+SPHERECHAIN_HD std::uint32_t row_of(std::uint32_t lane, std::uint32_t pair) { return lane / 4 + pair / 2 % 2 * 8; }
+SPHERECHAIN_HD std::uint32_t column_of(std::uint32_t lane, std::uint32_t pair) {
+  return lane % 4 * 2 + pair % 2 + pair / 4 % 2 * 8;
+}
+
+#if defined(__CUDA_ARCH__)
+#define SPHERECHAIN_MATRIX_UNITS (__CUDA_ARCH__ >= 800)
+#else
+#define SPHERECHAIN_MATRIX_UNITS 0
+#endif
+
+#if SPHERECHAIN_MATRIX_UNITS
+// A lane's part of units: rows are x, y, z, power and columns x, y, z, 1, whose powers are added.
+class Units {
+ public:
+  struct Rows {
+    float first, second;
+  };
+  struct Columns {
+    float first, second;
+    Float4 powers, second_powers;
+  };
+
+  __device__ __forceinline__ Units(const GroupView& v, const Own& own)
+      : figures_(own.seen + own.lane % 4 * seen_pitch(v) + own.lane / 4 * 2),
+        powers_(own.powers + own.lane % 4 * 4),
+        is_power_(own.lane % 4 == 3) {}
+
+  __device__ __forceinline__ Rows rows(std::uint32_t unit) const {
+    const float2 two = *reinterpret_cast<const float2*>(figures_ + unit * kUnit);
+    return {two.x, two.y};
+  }
+  __device__ __forceinline__ Columns columns(std::uint32_t unit, const Rows& same) const {
+    return {is_power_ ? 1.0F : same.first, is_power_ ? 1.0F : same.second,
+            *reinterpret_cast<const Float4*>(powers_ + unit * (2 * kUnit)),
+            *reinterpret_cast<const Float4*>(powers_ + unit * (2 * kUnit) + kUnit)};
+  }
+  __device__ __forceinline__ static void sum(const Rows& rows, const Columns& columns, float (&sums)[kLanePairs]) {
+    multiply(rows, columns.first, columns.powers, sums);
+    multiply(rows, columns.second, columns.second_powers, sums + 4);
+  }
+
+ private:
+  __device__ __forceinline__ static void multiply(const Rows& rows, float column, const Float4& powers, float* sums) {
+    asm("mma.sync.aligned.m16n8k4.row.col.f32.tf32.tf32.f32 {%0, %1, %2, %3}, {%4, %5}, {%6}, {%7, %8, %9, %10};"
+        : "=f"(sums[0]), "=f"(sums[1]), "=f"(sums[2]), "=f"(sums[3])
+        : "r"(__float_as_uint(rows.first)), "r"(__float_as_uint(rows.second)), "r"(__float_as_uint(column)),
+          "f"(powers.x), "f"(powers.y), "f"(powers.z), "f"(powers.w));
+  }
+
+  const float *figures_, *powers_;
+  bool is_power_;
+};
+#else
+class Units {
+ public:
+  struct Rows {
+    Float4 at[2];
+  };
+  struct Columns {
+    Float4 at[4];  // by pair % 2 and pair / 4
+  };
+
+  SPHERECHAIN_HD Units(const GroupView& v, const Own& own) : seen_(own.seen), pitch_(seen_pitch(v)), lane_(own.lane) {}
+
+  SPHERECHAIN_HD Rows rows(std::uint32_t unit) const {
+    return {{seen(unit, row_of(lane_, 0)), seen(unit, row_of(lane_, 2))}};
+  }
+  SPHERECHAIN_HD Columns columns(std::uint32_t unit, const Rows&) const {
+    return {{seen(unit, column_of(lane_, 0)), seen(unit, column_of(lane_, 1)), seen(unit, column_of(lane_, 4)),
+             seen(unit, column_of(lane_, 5))}};
+  }
+  SPHERECHAIN_HD static void sum(const Rows& rows, const Columns& columns, float (&sums)[kLanePairs]) {
+    SPHERECHAIN_UNROLL
+    for (std::uint32_t pair = 0; pair < kLanePairs; ++pair) {
+      const Float4 &p = rows.at[pair / 2 % 2], &q = columns.at[pair % 2 + pair / 4 * 2];
+      sums[pair] = fused(p.x, q.x, fused(p.y, q.y, fused(p.z, q.z, p.w + q.w)));
+    }
+  }
+
+ private:
+  SPHERECHAIN_HD Float4 seen(std::uint32_t unit, std::uint32_t sphere) const {
+    const float* x = seen_ + place_of(unit * kUnit + sphere);
+    return {x[0], x[pitch_], x[2 * pitch_], x[3 * pitch_]};
+  }
+
+  const float* seen_;
+  std::uint32_t pitch_, lane_;
+};
+#endif
+
+}  // namespace spherechain::cuda
