@@ -114,7 +114,7 @@ SPHERECHAIN_HD void run_blocks_in_scratch(const GroupView& v, std::uint32_t firs
   for (std::uint32_t block = first; block < blocks_of(v); block += v.scratch_blocks) {
     const auto run = make_run(block);
     run_any_block(v, memory, run);
-    run([](const Place&) {});
+    run([](const Place&) {});  // a warp that is done may not begin with what others still use
   }
 }
 

@@ -47,7 +47,7 @@ SPHERECHAIN_HD void see_spheres(const GroupView& v, const Own& own) {
   float* const seen_by_lane = own.seen + place_of(own.lane);
   float* const powers_by_lane = own.powers + own.lane / 2 * 4 + own.lane % 2;
   for_each_of(units_of(v.sphere_count) * kUnit, own.lane, [&](std::uint32_t i) {
-    const Float4 seen = see_sphere(own.spheres[(i < last ? i : last)], origin);
+    const Float4 seen = see_sphere(own.spheres[i < last ? i : last], origin);
     float *to = seen_by_lane + (i - own.lane), *powers = powers_by_lane + 2 * (i - own.lane);
     to[0] = seen.x;
     to[pitch] = seen.y;

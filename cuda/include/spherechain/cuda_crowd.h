@@ -44,9 +44,9 @@ class CrowdTables {
   std::size_t morph_count() const noexcept { return morph_count_; }
   std::size_t leaf_count() const noexcept { return leaf_count_; }  // the asset's, of tables of covers; else 0
   std::size_t bit_words() const noexcept { return bit_words_; }    // DetectJob::bit_words
-  // Memory of a block of 32 instances, in bytes, a multiple of 16, of a job with those inputs and outputs: shared
-  // memory where a block of the device has as much (227 KiB on Hopper, 163 on Ampere, 99 on Ada, 64 on Turing), else
-  // the group's scratch.
+  // Memory of a block (32 instances from bones, 8 of spheres), in bytes, a multiple of 16, of a job with those inputs
+  // and outputs: shared memory where a block of the device has as much (227 KiB on Hopper, 163 on Ampere, 99 on Ada, 64
+  // on Turing), else the group's scratch.
   std::size_t shared_bytes(bool from_bones, bool with_morphs, bool with_bits, bool with_pairs) const noexcept;
 
  private:
@@ -104,10 +104,10 @@ struct CrowdGroup {
   std::uint64_t* starts = nullptr;      // one an instance
   std::uint64_t* pair_count = nullptr;  // how many there are; more than pair_capacity: those past it were left out
 
-  // For assets too large for the device's shared memory (from about 210 spheres on Hopper): memory of the device,
-  // aligned to 16 bytes, CrowdTables::shared_bytes() for each block that is to run at once, of which two a
-  // multiprocessor are enough. No other group and no other job that may run at the same time may use it. Not touched
-  // where shared memory does.
+  // For assets too large for the device's shared memory (from about 210 spheres on Hopper where they come from bones,
+  // 400 where they do not): memory of the device, aligned to 16 bytes, CrowdTables::shared_bytes() for each block that
+  // is to run at once, of which two a multiprocessor are enough. No other group and no other job that may run at the
+  // same time may use it. Not touched where shared memory does.
   void* scratch = nullptr;
   std::size_t scratch_bytes = 0;
 };
