@@ -76,15 +76,22 @@ Detection Player::take(std::vector<Sphere> spheres, const std::vector<Pair>& pai
   return {pairs_.size() - asset_.ignored_count(), pair_count_, pair_count_, us};
 }
 
-Player::SkinDetection Player::detect_skin(const std::vector<float>& positions) {
-  SkinDetection out{std::vector<Pair>(pairs_.size()), 0};
-  TriangleContactContext context{{contact_words_.data(), contact_words_.size()}};
-  DetectSkinJob job;
+template <typename Job>
+Job Player::skin_job(const std::vector<float>& positions, TriangleContactContext& context) {
+  context.words = {contact_words_.data(), contact_words_.size()};
+  Job job;
   job.asset = &asset_;
   job.positions = positions.data();
   job.vertex_count = positions.size() / 3;
   job.target = target_;
   job.context = &context;
+  return job;
+}
+
+Player::SkinDetection Player::detect_skin(const std::vector<float>& positions) {
+  SkinDetection out{std::vector<Pair>(pairs_.size()), 0};
+  TriangleContactContext context;
+  auto job = skin_job<DetectSkinJob>(positions, context);
   job.pairs = {out.pairs.data(), out.pairs.size()};
   out.us = median_us([&] { check(job.run()); });
   out.pairs.resize(job.pair_count);
@@ -92,13 +99,8 @@ Player::SkinDetection Player::detect_skin(const std::vector<float>& positions) {
 }
 
 Player::TriangleDetection Player::detect_triangles(const std::vector<float>& positions) {
-  TriangleContactContext context{{contact_words_.data(), contact_words_.size()}};
-  TriangleContactJob job;
-  job.asset = &asset_;
-  job.positions = positions.data();
-  job.vertex_count = positions.size() / 3;
-  job.target = target_;
-  job.context = &context;
+  TriangleContactContext context;
+  auto job = skin_job<TriangleContactJob>(positions, context);
   check(job.run());  // to count
   TriangleDetection out{std::vector<TrianglePair>(job.pair_count), 0};
   job.pairs = {out.pairs.data(), out.pairs.size()};

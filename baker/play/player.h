@@ -58,6 +58,8 @@ class Player {
 
  private:
   Detection detect(Method method);
+  template <typename Job>
+  Job skin_job(const std::vector<float>& positions, TriangleContactContext& context);
 
   const Asset& asset_;
   RadiusKind radius_;

@@ -202,7 +202,6 @@ std::string inspect_json(const Asset& asset) {
       {"pivot_vertices", asset.pivot_vertices().size},
       {"fit",
        {{"phi1", to_json(info.phi1)}, {"phi1_adjusted", to_json(info.phi1_adjusted)}, {"phi2", to_json(info.phi2)}}}};
-  // A name in a foreign asset may hold any bytes; JSON must not.
   return json_text(out, 1) + "\n";
 }
 

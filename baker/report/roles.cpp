@@ -14,7 +14,6 @@ using nlohmann::ordered_json;
 
 std::string limb_name(const Roles& roles, int limb) { return limb < 0 ? "" : roles.limbs[limb].name; }
 
-// What a file calls a node may be no valid UTF-8: such bytes are replaced, as everywhere in a report.
 std::string dump(const ordered_json& json) { return json_text(json, 2) + "\n"; }
 
 }  // namespace

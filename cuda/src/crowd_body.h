@@ -110,7 +110,7 @@ SPHERECHAIN_HD void run_any_block(const GroupView& v, const Shared& shared, cons
 // What a block of its launch does where the memory is in scratch. `run` is made for a block of the group.
 template <typename MakeRun>
 SPHERECHAIN_HD void run_blocks_in_scratch(const GroupView& v, std::uint32_t first, const MakeRun& make_run) {
-  const Shared memory(v.scratch + std::size_t{first} * v.layout.size, v.layout);
+  const Shared memory(v.scratch + first * v.layout.size, v.layout);
   for (std::uint32_t block = first; block < blocks_of(v); block += v.scratch_blocks) {
     const auto run = make_run(block);
     run_any_block(v, memory, run);

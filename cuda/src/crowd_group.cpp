@@ -8,6 +8,7 @@ namespace spherechain::cuda {
 namespace {
 
 constexpr std::size_t kMostInstances = 0x7FFFFFFF;
+constexpr std::size_t kMostBlockBytes = 0xFFFFFFFF;  // which SharedLayout's places reach
 
 template <typename T>
 bool is_aligned(const T* pointer, std::size_t to) {
@@ -80,10 +81,6 @@ MatrixSteps steps_of(MatrixLayout layout) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 // One thing after another.
 struct Bytes {
   std::size_t used = 0;
@@ -113,7 +110,7 @@ SharedLayout layout_of_bones(const GroupView& v) {
   all.take(out.parts, v.pairs != nullptr ? (kMostWarps * kLanes + 4) * sizeof(std::uint32_t) : 0);
   all.take(out.boxes, v.bounds != nullptr ? 6 * kMostWarps * kLanes * sizeof(float) : 0);
   all.take(out.radii, v.bounds != nullptr ? kLanes * sizeof(std::uint32_t) : 0);
-  out.size = static_cast<std::uint32_t>(all.used);
+  out.size = all.used;
   return out;
 }
 
@@ -129,7 +126,7 @@ SharedLayout layout_of_spheres(const GroupView& v) {
   own.take(out.own_parts, v.pairs != nullptr ? kLanes * sizeof(std::uint32_t) : 0);
   own.take(out.own_spheres, v.sphere_count * sizeof(Float4));
   out.own_size = static_cast<std::uint32_t>(own.used);
-  out.size = kMostWarps * out.own_size;
+  out.size = kMostWarps * own.used;
   return out;
 }
 
@@ -201,7 +198,7 @@ Status plan_launches(const Launch& all, std::size_t most_shared_bytes, LaunchPla
       plan.in_shared.views[plan.in_shared.count++] = view;
       continue;
     }
-    if (view.scratch == nullptr) {
+    if (view.scratch == nullptr || bytes > kMostBlockBytes) {
       return Status::kDeviceTooSmall;
     }
     if (view.scratch_bytes < bytes) {

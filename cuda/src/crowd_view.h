@@ -158,7 +158,7 @@ struct SharedLayout {
       parts, boxes, radii;
   // Where they come as spheres, from the start of a warp's own.
   std::uint32_t own_size, own_seen, own_powers, own_bits, own_ordered_bits, own_boxes, own_parts, own_spheres;
-  std::uint32_t size;
+  std::size_t size;
 };
 
 struct GroupView {
