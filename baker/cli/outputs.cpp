@@ -19,11 +19,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void check_folder(const std::string& file) {
+// Of `place`, where `file` leads.
+void check_folder(const std::string& file, const fs::path& place) {
   std::error_code ignored;
   if (fs::is_directory(file, ignored)) throw Error(ExitCode::kFile, file + ": cannot be written (it is a folder)");
   if (is_written_directly(file)) return;
-  const fs::path folder = fs::absolute(file, ignored).parent_path();
+  const fs::path folder = fs::absolute(place, ignored).parent_path();
   if (!fs::is_directory(folder, ignored)) {
     throw Error(ExitCode::kFile, file + ": cannot be created (there is no folder " + folder.string() + ")");
   }
@@ -91,14 +92,15 @@ void check_outputs(const std::vector<CommandFile>& inputs, const std::vector<Com
   std::vector<CommandFile> others = inputs;
   for (const CommandFile& output : outputs) {
     if (output.path.empty()) continue;
-    check_folder(output.path);
+    const fs::path place = written_file(output.path);
+    check_folder(output.path, place);
     for (const CommandFile& other : others) {
-      if (!other.path.empty() && same_file(other.path, output.path)) {
+      if (!other.path.empty() && same_file(other.path, place)) {
         throw Error(ExitCode::kUsage,
                     output.path + ": " + other.name + " and " + output.name + " are the same file (name another)");
       }
     }
-    others.push_back(output);
+    others.push_back({output.name, place.string()});
   }
 }
 

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <climits>
 #include <cstdio>
+#include <functional>
 #include <string>
 
 namespace spherechain::baker {
@@ -41,10 +42,17 @@ std::mutex& one_at_a_time() {
   return mutex;
 }
 
+// No longer where the target's is as long as names may be; another than that of another target, for processes in two
+// containers may share a folder and be one number.
+std::string name_beside(const std::filesystem::path& target) {
+  const std::size_t hash = std::hash<std::string>()(target.filename().string());
+  return ".spherechain-" + std::to_string(hash) + "-" + std::to_string(::getpid()) + ".tmp";
+}
+
 }  // namespace
 
 Temporary::Temporary(const std::filesystem::path& target)
-    : only_one_(one_at_a_time()), target_(target), path_(target.string() + ".tmp-" + std::to_string(::getpid())) {
+    : only_one_(one_at_a_time()), target_(target), path_(target.parent_path() / name_beside(target)) {
   [[maybe_unused]] static const bool handled = handle_signals();
   const std::string& name = path_.native();
   if (name.size() >= doomed.size()) return;  // no file can be opened by such a name

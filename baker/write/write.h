@@ -37,7 +37,12 @@ std::vector<std::uint8_t> serialize(const AssetSource& source);
 // of a descriptor (/dev/stdout), which a rename would take away from everybody.
 bool is_written_directly(const std::filesystem::path& path);
 
-// Else writes next to `path` and renames, so that `path` is either whole or untouched. Throws Error(kFile).
+// The file that writing to `path` makes or replaces: where links lead, there or not; what is written directly is
+// itself. Throws Error(kFile) for links that the system does not follow.
+std::filesystem::path written_file(const std::filesystem::path& path);
+
+// Else writes next to that file and renames, so that it is either whole or untouched, and links to it stay. Throws
+// Error(kFile).
 void write_atomically(const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace spherechain::baker

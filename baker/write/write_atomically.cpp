@@ -40,13 +40,35 @@ int open_directly(const fs::path& path) {
 bool is_written_directly(const fs::path& path) {
   std::error_code ignored;
   const fs::file_status status = fs::status(path, ignored);
-  return fs::exists(status) && (!fs::is_regular_file(status) || names_descriptor(path));
+  return fs::exists(status) && (!fs::is_regular_file(status) || names_descriptor(written_file(path)));
+}
+
+fs::path written_file(const fs::path& path) {
+  const auto fail = [&] {
+    throw Error(ExitCode::kFile, path.string() + ": cannot be created (" + std::strerror(errno) + ")");
+  };
+  // What the system would not follow (a ring of links, a stranger's in /tmp) is not followed here.
+  struct ::stat there {};
+  if (::stat(path.c_str(), &there) != 0 && errno != ENOENT) fail();
+  constexpr int kMostLinks = 40;  // the system's own; those to nothing it has not counted
+  fs::path file = path;
+  for (int links = 0; !names_descriptor(file); ++links) {
+    std::error_code error;
+    const fs::path target = fs::read_symlink(file, error);
+    if (error) break;  // the end: no link
+    if (links == kMostLinks) {
+      errno = ELOOP;
+      fail();
+    }
+    file = file.parent_path() / target;
+  }
+  return file;
 }
 
 void write_atomically(const fs::path& path, std::string_view bytes) {
   const bool direct = is_written_directly(path);
   std::optional<Temporary> temporary;
-  if (!direct) temporary.emplace(path);
+  if (!direct) temporary.emplace(written_file(path));
 
   const auto fail = [&](const char* doing) {
     throw Error(ExitCode::kFile, path.string() + ": cannot be " + doing + " (" + std::strerror(errno) + ")");

@@ -131,10 +131,14 @@ TEST_CASE("what goes to /dev/stdout goes to where that leads, and takes the name
   const tool::Run to_pipe = run(play + "/proc/self/fd/1 | cat");
   CHECK(to_pipe.out.find("\n}\n1 frames, radius detect") != std::string::npos);
   const TemporaryFolder folder;
+  fs::create_symlink("/proc/self/fd/1", folder.path / "link");
+  const tool::Run by_link = run(fmt::format("{}{}/link", play, folder.path.string()));
+  CHECK(by_link.out.rfind("{\n \"backend\": ", 0) == 0);
+  CHECK(by_link.out.find("\n}\n1 frames, radius detect") != std::string::npos);
   const std::string third = (folder.path / "third").string();
   CHECK(run(fmt::format("{}/dev/fd/3 3>{}", play, third)).code == 0);
   CHECK(contents(third).rfind("{\n \"backend\": ", 0) == 0);
-  CHECK(files_in(folder.path) == 1);
+  CHECK(files_in(folder.path) == 2);
 }
 
 TEST_CASE("two names of one file are seen to be one: links, and files that are not there yet") {
@@ -156,6 +160,44 @@ TEST_CASE("two names of one file are seen to be one: links, and files that are n
                   "--preview");
   }
   fs::current_path(here);
+}
+
+TEST_CASE("an output that is a link to nothing yet is what it leads to") {
+  const TemporaryFolder folder;
+  touch(folder, "human.glb");
+  fs::create_symlink("new.x", folder.path / "link");
+  fs::create_symlink("new.x", folder.path / "another");
+  const std::string at = folder.path.string();
+  for (const auto& [output, report] : {std::pair("link", "new.x"), {"new.x", "link"}, {"link", "another"}}) {
+    check_refused(folder.path, fmt::format("bake {0}/human.glb -o {0}/{1} --report {0}/{2}", at, output, report), "-o",
+                  "--report");
+  }
+  fs::create_symlink("none/new.x", folder.path / "nowhere");
+  check_error(run(fmt::format("bake {0}/human.glb -o {0}/nowhere", at)), 3,
+              {"/nowhere: cannot be created (there is no folder ", "/none)"});
+}
+
+TEST_CASE("each output that is a link stays one, and what it leads to is replaced, if it is of the same kind") {
+  const TemporaryFolder folder;
+  const std::string at = folder.path.string();
+  for (const char* output : {"asset", "report", "preview"}) {
+    fs::create_symlink(std::string("new ") + output, folder.path / output);
+  }
+  const std::string bake = fmt::format("bake {} -o {}/asset --report {}/report", kHumanFile, at, at);
+  const tool::Run baked = run(fmt::format("{} --preview {}/preview", bake, at));
+  REQUIRE_MESSAGE(baked.code == 0, baked.error);
+  CHECK(contents(folder.path / "new asset") == contents(baked_files().asset));
+  CHECK(contents(folder.path / "new preview").rfind("glTF", 0) == 0);
+  const std::string report = contents(folder.path / "new report");
+  const std::string play = fmt::format("play {}/asset --source {} --frames 1 --json {}/", at, kHumanFile, at);
+  CHECK(run(play + "report").code == 0);
+  CHECK(contents(folder.path / "new report") != report);
+  for (const char* output : {"asset", "report", "preview"}) CHECK(fs::is_symlink(folder.path / output));
+  CHECK(files_in(folder.path) == 6);
+
+  folder.write("new asset", "precious");
+  check_error(run(bake), 3, {"/asset: exists and is not an asset"});
+  CHECK(contents(folder.path / "new asset") == "precious");
 }
 
 TEST_CASE("reports and tables replace those that the tool wrote, and nothing else") {

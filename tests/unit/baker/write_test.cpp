@@ -9,11 +9,15 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <filesystem>
 
 #include "human.h"
 #include "mesh/error.h"
 #include "temporary_folder.h"
 #include "tool.h"
+
+namespace fs = std::filesystem;
+using spherechain::baker::write_atomically;
 
 namespace {
 
@@ -23,7 +27,7 @@ const std::string& long_bytes() {
 }
 
 // How a child ended that was sent `signal` as soon as it had begun to write.
-int end_while_writing(const std::filesystem::path& target, int signal) {
+int end_while_writing(const fs::path& target, int signal) {
   const std::size_t before = tool::files_in(target.parent_path());
   const std::string& bytes = long_bytes();
   const pid_t child = ::fork();
@@ -31,7 +35,7 @@ int end_while_writing(const std::filesystem::path& target, int signal) {
     std::signal(signal, SIG_DFL);  // instead of the tests' own
     const rlimit no_core{0, 0};
     ::setrlimit(RLIMIT_CORE, &no_core);
-    spherechain::baker::write_atomically(target, bytes);
+    write_atomically(target, bytes);
     ::_exit(0);
   }
   REQUIRE(child > 0);
@@ -67,7 +71,7 @@ TEST_CASE("a signal that is ignored, as nohup does, stays so") {
   const pid_t child = ::fork();
   if (child == 0) {
     std::signal(SIGHUP, SIG_IGN);
-    spherechain::baker::write_atomically(folder.path / "out", "all of it");
+    write_atomically(folder.path / "out", "all of it");
     std::raise(SIGHUP);
     ::_exit(7);
   }
@@ -76,6 +80,73 @@ TEST_CASE("a signal that is ignored, as nohup does, stays so") {
   CHECK(WIFEXITED(status));
   CHECK(WEXITSTATUS(status) == 7);
   CHECK(tool::contents(folder.path / "out") == "all of it");
+}
+
+TEST_CASE("a link stays, and what it leads to is replaced whole: through other links, and where nothing is yet") {
+  const TemporaryFolder folder;
+  fs::create_directories(folder.path / "there/deep");
+  folder.write("there/old", "as it was");
+  fs::create_symlink("there/old", folder.path / "link");
+  fs::create_symlink(folder.path / "link", folder.path / "link of a link");
+  fs::create_symlink("there/deep", folder.path / "folder");
+  fs::create_symlink("../new", folder.path / "there/deep/dangling");
+  for (const auto& [link, leads_to] : std::initializer_list<std::pair<const char*, const char*>>{
+           {"link", "there/old"}, {"link of a link", "there/old"}, {"folder/dangling", "there/new"}}) {
+    for (const std::string bytes : {"first", "second"}) {
+      CAPTURE(link);
+      write_atomically(folder.path / link, bytes);
+      CHECK(fs::is_symlink(folder.path / link));
+      CHECK(!fs::is_symlink(folder.path / leads_to));
+      CHECK(tool::contents(folder.path / leads_to) == bytes);
+    }
+  }
+  CHECK(tool::files_in(folder.path) == 4);
+  CHECK(tool::files_in(folder.path / "there") == 3);
+  CHECK(tool::files_in(folder.path / "there/deep") == 1);
+}
+
+TEST_CASE("what a link leads to is as it was where it cannot be replaced") {
+  const TemporaryFolder folder;
+  folder.write("old", "as it was");
+  fs::create_symlink("old", folder.path / "link");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit little{16, 16};
+    ::setrlimit(RLIMIT_FSIZE, &little);
+    try {
+      write_atomically(folder.path / "link", "more than sixteen bytes");
+    } catch (const spherechain::baker::Error&) {
+      ::_exit(3);
+    }
+    ::_exit(0);
+  }
+  int status = 0;
+  REQUIRE(::waitpid(child, &status, 0) == child);
+  CHECK(WEXITSTATUS(status) == 3);
+  CHECK(tool::contents(folder.path / "link") == "as it was");
+  CHECK(tool::files_in(folder.path) == 2);
+}
+
+TEST_CASE("a ring of links is an error, and stays") {
+  const TemporaryFolder folder;
+  fs::create_symlink("b", folder.path / "a");
+  fs::create_symlink("a", folder.path / "b");
+  tool::check_error(tool::run(fmt::format("bake {} -o {}/a", kHumanFile, folder.path.string())), 3,
+                    {"/a: cannot be created (Too many levels of symbolic links)"});
+  CHECK(fs::is_symlink(folder.path / "a"));
+}
+
+TEST_CASE("a name may be as long as the file system takes, in letters of several bytes too") {
+  const TemporaryFolder folder;
+  std::string letters;
+  for (int i = 0; i < 85; ++i) letters += "\u20ac";
+  for (const std::string& name : {std::string(255, 'x'), letters}) {
+    REQUIRE(name.size() == 255);
+    write_atomically(folder.path / name, "all of it");
+    CHECK(tool::contents(folder.path / name) == "all of it");
+  }
+  CHECK(tool::files_in(folder.path) == 2);
 }
 
 TEST_CASE("a file that may not grow (ulimit -f) is one that cannot be written, and none stays") {
