@@ -6,17 +6,23 @@
 #include <system_error>
 
 #include "import/gltf_file.h"
+#include "import/obj_file.h"
 #include "import/sha256.h"
 #include "mesh/error.h"
 
 namespace spherechain::baker {
 namespace {
 
-// Through assimp a glTF would lose its own vertex order and bind pose.
-bool is_gltf(const std::filesystem::path& path) {
+std::string extension_of(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+// Through assimp a glTF would lose its own vertex order and bind pose.
+bool is_gltf(const std::filesystem::path& path) {
+  const std::string extension = extension_of(path);
   return extension == ".glb" || extension == ".gltf";
 }
 
@@ -34,8 +40,10 @@ void check_regular_file(const std::filesystem::path& path) {
 
 std::vector<std::filesystem::path> files_beside(const std::filesystem::path& source) {
   std::error_code ignored;
-  const bool is_file = std::filesystem::is_regular_file(source, ignored);
-  return is_file && is_gltf(source) ? files_of_gltf(source) : std::vector<std::filesystem::path>();
+  if (!std::filesystem::is_regular_file(source, ignored)) return {};
+  if (is_gltf(source)) return files_of_gltf(source);
+  if (extension_of(source) == ".obj") return files_of_obj(source);
+  return {};
 }
 
 SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& options) {

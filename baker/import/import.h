@@ -100,7 +100,7 @@ struct SourceMesh {
 // What is read more than once must be a file on a disk: Error(kFile) for a folder, a pipe, a device, or nothing.
 void check_regular_file(const std::filesystem::path& path);
 
-// Files of its own that a source names: a glTF's buffers and images. None where it cannot be read, which read_source
+// Files of its own that a source names: a glTF's buffers and images, an OBJ's materials. None where it cannot be read, which read_source
 // says.
 std::vector<std::filesystem::path> files_beside(const std::filesystem::path& source);
 

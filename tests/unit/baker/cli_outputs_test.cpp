@@ -119,6 +119,32 @@ TEST_CASE("no command writes over what its inputs are made of: a glTF's buffers 
   }
 }
 
+TEST_CASE("no command writes over the materials of an OBJ: named with blanks, several in a line, or as the OBJ is") {
+  const TemporaryFolder folder;
+  const std::string obj = folder
+                              .write("body.OBJ",
+                                     "# mtllib not.mtl\nv 0 0 0\r\n\tmtllib  my body.mtl \r\n"
+                                     "mtllib\tone.mtl two.mtl\nmtllibrary none.mtl\nmtllib")
+                              .string();
+  fs::create_directory(folder.path / "frames");
+  folder.write("frames/1.obj", "mtllib ../one.mtl\n");
+  const std::string at = folder.path.string();
+  for (const char* file : {"my body.mtl", "one.mtl", "two.mtl", "body.mtl"}) {
+    touch(folder, file);
+    const std::string material = fmt::format("'{}/{}'", at, file);
+    check_refused(folder.path, fmt::format("bake {} --force -o {}", obj, material), "INPUT", "-o");
+    check_refused(folder.path, fmt::format("bake {} --force -o out --report {}", obj, material), "INPUT", "--report");
+    check_refused(folder.path, fmt::format("view a.sphc --source {} --force -o {}", obj, material), "--source", "-o");
+  }
+  check_refused(folder.path, fmt::format("play a.sphc --source a.glb --motion {0}/frames --json {0}/one.mtl", at),
+                "--motion", "--json");
+  // The comment and the other word name nothing: this is refused for what is in the file.
+  for (const char* file : {"not.mtl", "none.mtl"}) {
+    touch(folder, file);
+    check_error(run(fmt::format("bake {} -o {}/{}", obj, at, file)), 3, {"exists and is not an asset"});
+  }
+}
+
 TEST_CASE("what goes to /dev/stdout goes to where that leads, and takes the name from nobody") {
   const std::string play =
       fmt::format("play {} --source {} --frames 1 --json ", baked_files().asset.string(), kHumanFile);
