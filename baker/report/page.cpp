@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/page.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -143,7 +145,21 @@ ordered_json ignored_json(const Asset& asset) {
   return out;
 }
 
-ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& options,
+// Throws where the page is too large: `still` bytes that are the same in however many frames, and `moving` of all of
+// them.
+void check_size(const AnimatedAsset& animated, double still, double moving, const PageOptions& options) {
+  const double most = static_cast<double>(options.most_bytes);
+  if (still + moving <= most) return;
+  const int frames = animated.frame_count();
+  const int fewer = still < most ? static_cast<int>(0.75 * frames * (most - still) / moving) : 0;
+  throw Error(ExitCode::kUsage,
+              fmt::format("{}: {} frames make a page of {:.1f} MB, of which browsers open {:.1f} MB ({})",
+                          animated.file(), frames, (still + moving) / 1e6, most / 1e6,
+                          fewer > 0 ? fmt::format("--frames {}", fewer) : "its mesh has too many triangles"));
+}
+
+// `still` is the size of the page without them.
+ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& options, double still,
                          const std::function<void(int)>& progress) {
   Player player(animated.asset(), options.radius, true, true, choose_target("auto"));
   std::vector<float> bones, vertices, spheres;
@@ -168,6 +184,9 @@ ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& optio
     for (std::size_t s = 0; s < fit.size(); ++s) {
       spheres.insert(spheres.end(), {fit[s].x, fit[s].y, fit[s].z, fit[s].radius, detect[s].radius});
     }
+    // Base64 has four letters for three bytes; what `play` adds is not known yet.
+    const double floats = static_cast<double>(spheres.size() + (vertices.empty() ? bones : vertices).size());
+    check_size(animated, still, floats * sizeof(float) * 4 / 3 / (i + 1) * animated.frame_count(), options);
   }
   ordered_json out{{"count", animated.frame_count()},
                    {"fps", options.fps},
@@ -192,27 +211,29 @@ std::string view_page(const AnimatedAsset& animated, const PageOptions& options,
     throw Error(ExitCode::kFile, options.template_file + ": is not the viewer's page (build it again)");
   }
   const BodyFrame frame = animated.frame();
-  const ordered_json data{{"title", options.title},
-                          {"frame",
-                           {{"origin", to_json(frame.origin)},
-                            {"left", to_json(frame.left)},
-                            {"up", to_json(frame.up)},
-                            {"forward", to_json(frame.forward)},
-                            {"height", frame.height}}},
-                          {"mesh", mesh_json(animated)},
-                          {"bones", animated.bone_names()},
-                          {"inspect", ordered_json::parse(inspect_json(animated.asset()))},
-                          {"sphere_f", sphere_f_json(animated)},
-                          {"pivot_triangles", pivot_triangles_json(animated)},
-                          {"ignored", ignored_json(animated.asset())},
-                          {"report", parsed_or_null(options.report)},
-                          {"validation", parsed_or_null(options.validation)},
-                          {"motion", options.motion},
-                          {"radius", options.radius == RadiusKind::kFit ? "fit" : "detect"},
-                          {"frames", frames_json(animated, options, progress)}};
+  ordered_json data{{"title", options.title},
+                    {"frame",
+                     {{"origin", to_json(frame.origin)},
+                      {"left", to_json(frame.left)},
+                      {"up", to_json(frame.up)},
+                      {"forward", to_json(frame.forward)},
+                      {"height", frame.height}}},
+                    {"mesh", mesh_json(animated)},
+                    {"bones", animated.bone_names()},
+                    {"inspect", ordered_json::parse(inspect_json(animated.asset()))},
+                    {"sphere_f", sphere_f_json(animated)},
+                    {"pivot_triangles", pivot_triangles_json(animated)},
+                    {"ignored", ignored_json(animated.asset())},
+                    {"report", parsed_or_null(options.report)},
+                    {"validation", parsed_or_null(options.validation)},
+                    {"motion", options.motion},
+                    {"radius", options.radius == RadiusKind::kFit ? "fit" : "detect"}};
+  const double still = static_cast<double>(page.size() + json_text(data, -1).size());
+  data["frames"] = frames_json(animated, options, still, progress);
   std::string text = json_text(data, -1);
   // Nothing in it may end the script.
   for (std::size_t i = text.find('<'); i != std::string::npos; i = text.find('<', i)) text.replace(i, 1, "\\u003c");
+  check_size(animated, still, static_cast<double>(page.size() + text.size()) - still, options);
   return page.substr(0, at) + open + text + page.substr(at + open.size() + std::string("null").size());
 }
 
