@@ -115,7 +115,9 @@ SPHERECHAIN_HD Float4 cover_leaf(const GroupView& v, const Shared& shared, std::
   constexpr float kUnit = 1.0F / 16777216.0F;
   const auto terms = static_cast<float>(count);
   const float factor = fused(kUnit * (64.0F + 16.0F * terms), deviations, kUnit * (64.0F + 8.0F * terms));
-  return {m[0], m[1], m[2], fused(factor, largest, smaller(most, blend))};
+  constexpr float kLost = 0x1p-60F;
+  const float lost = fused(kLost, rest.extent, kLost);
+  return {m[0], m[1], m[2], fused(factor, largest, smaller(most, blend)) + fused(deviations, lost, lost)};
 }
 
 SPHERECHAIN_HD bool is_written(const GroupView& v, const Place& at) { return at.lane() < instances_in(v, at); }
@@ -152,7 +154,7 @@ SPHERECHAIN_HD Float4 cover_sphere(const GroupView& v, const Shared& shared, con
       write_sphere(v.leaves + first + l, leaf, v.wide_leaves);
     }
   }
-  cover.w *= 1.0F + 8.0F / 16777216.0F;
+  cover.w = cover.w * (1.0F + 8.0F / 16777216.0F) + 0x1p-60F;
   return cover;
 }
 

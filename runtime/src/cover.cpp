@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t kSizesKept = 512;  // bones whose sizes are worked out once: 4 KiB of stack
 
 // Around the leaves [first, last) of one sphere: about the middle of their box. Its few roundings are each a unit in
-// the last place of what they are of: eight of those are added.
+// the last place of what they are of: eight of those are added, and what a root loses whose squares are too small.
 Sphere cover_of(const Sphere* first, const Sphere* last) {
   float low[3] = {first->x - first->radius, first->y - first->radius, first->z - first->radius};
   float high[3] = {first->x + first->radius, first->y + first->radius, first->z + first->radius};
@@ -35,7 +35,7 @@ Sphere cover_of(const Sphere* first, const Sphere* last) {
     const float dz = leaf->z - cover.z;
     cover.radius = std::max(cover.radius, std::sqrt((dx * dx + dy * dy) + dz * dz) + leaf->radius);
   }
-  cover.radius *= 1.0F + 8.0F / 16777216.0F;
+  cover.radius = cover.radius * (1.0F + 8.0F / 16777216.0F) + 0x1p-60F;
   return cover;
 }
 

@@ -13,6 +13,10 @@
 //   morphs: x, rho and the vertices, |R_b| times as much                               5 N + 10 N D, in place of the
 //   above
 // Together less than 64 + 8 N + (64 + 16 N) D. The first of the two bounds needs less.
+//
+// Below 2^-63 squares run out of exponents, and below 2^-126 there is 0 where the processor is told so. A root's sum of
+// up to 11 operations loses less than 11 * 2^-126 by that, so the root less than 2^-61: |R| and |R_b|, which rho and X
+// are multiplied by, |M_b x - m| and |R_b - R| rho, which are weighted by d_b. That is what kLost is for.
 #include "cover_kernel.h"
 
 #include "arithmetic.h"
@@ -30,6 +34,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 using Lanes8 = hn::CappedTag<float, kLeafLanes>;
 using V = hn::Vec<Lanes8>;
+
+constexpr float kLost = 0x1p-60F;
 
 // Where in the tables a group's entries start.
 struct GroupPlace {
@@ -153,7 +159,9 @@ HWY_INLINE void cover_lanes(const CoverInputs& in, std::size_t group, const Grou
   hn::Store(m[0], d, out[0] + lane);
   hn::Store(m[1], d, out[1] + lane);
   hn::Store(m[2], d, out[2] + lane);
-  hn::Store(fused(d, factor, largest, smaller(most, blend)), d, out[3] + lane);
+  const V lost = fused(d, hn::Set(d, kLost), extent, hn::Set(d, kLost));
+  hn::Store(hn::Add(fused(d, factor, largest, smaller(most, blend)), fused(d, deviations, lost, lost)), d,
+            out[3] + lane);
 }
 
 void cover_leaves(const CoverInputs& in, Sphere* leaves) {

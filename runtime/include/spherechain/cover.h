@@ -27,7 +27,9 @@ namespace spherechain {
 //
 // Roundings: with u = 2^-24, X = |x| + |y| + |z| + rho (and as much for each morph, times |a|), T_b = max |t_b|,
 // Q = max_b (|R_b| X + T_b), D = sum d_b, and N the bones and moving morph targets of the leaf's group of eight, the
-// radius is larger by u Q (64 + 8 N + (64 + 16 N) D): runtime/src/cover_kernel.cpp has the sum.
+// radius is larger by u Q (64 + 8 N + (64 + 16 N) D), for which runtime/src/cover_kernel.cpp has the sum. And by
+// 2^-60 (X + 1) (1 + D), for squares that are less than a float can be: poses shrunk to whatever size are covered too,
+// also where the processor takes subnormal floats as zero.
 //
 // The arithmetic is fixed, in single precision, so that every backend gives the same balls, bit for bit.
 //

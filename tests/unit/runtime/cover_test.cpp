@@ -11,6 +11,10 @@
 #include "random_poses.h"
 #include "tiny_surface.h"
 
+#ifdef __SSE__
+#include <xmmintrin.h>
+#endif
+
 namespace spherechain::test {
 namespace {
 
@@ -38,6 +42,70 @@ std::vector<std::uint32_t> vertices_of(const Asset& asset, const Leaf& leaf) {
     out.push_back(asset.surface().source_vertices[asset.surface().leaf_vertices[leaf.first_vertex + i]]);
   }
   return out;
+}
+
+// What games set on their threads: the processor takes subnormal floats as zero.
+struct NoSubnormals {
+#ifdef __SSE__
+  const unsigned before = _mm_getcsr();
+  NoSubnormals() { _mm_setcsr(before | 0x8040U); }
+  ~NoSubnormals() { _mm_setcsr(before); }
+#else
+  NoSubnormals() {}
+#endif
+  NoSubnormals(const NoSubnormals&) = delete;
+  NoSubnormals& operator=(const NoSubnormals&) = delete;
+};
+
+std::vector<Matrix> shrunk_pose(int number, float scale, std::mt19937& random) {
+  const PoseKind kind = kPoseKinds[static_cast<std::size_t>(number) % std::size(kPoseKinds)];
+  std::vector<Matrix> matrices = random_pose(kBones, kind, 2, random);
+  for (Matrix& matrix : matrices) {
+    for (std::size_t i = 0; i < matrix.size(); ++i) {
+      const bool is_translation = i % 4 == 3;  // kept by bones that are shrunk where they are
+      matrix[i] *= is_translation && number % 3 == 0 ? 1.0F : scale;
+    }
+  }
+  return matrices;
+}
+
+// Each vertex is in its leaf's ball, and that in its sphere's cover.
+void check_covered(const Posable& p, const Asset& asset, const std::vector<Matrix>& matrices,
+                   const std::vector<float>& weights) {
+  const SkinnedSurface skinned = skin(asset, view(matrices), weights);
+  const Covered covered = cover(asset, view(matrices), weights, Target::kScalar);
+  for (const Target target : supported_targets()) {
+    CHECK(same_bits(cover(asset, view(matrices), weights, target).leaves, covered.leaves));
+  }
+  for (std::size_t l = 0; l < asset.leaf_count(); ++l) {
+    CAPTURE(l);
+    const Leaf& leaf = asset.surface().leaves[l];
+    const Sphere &ball = covered.leaves[l], &sphere = covered.spheres[leaf.sphere];
+    for (const std::uint32_t v : vertices_of(asset, leaf)) {
+      const float* s = &skinned.positions[std::size_t{3} * v];
+      CHECK(distance(ball, moved(p.tiny, p.skin, v, matrices, weights)) <= double{ball.radius});
+      CHECK(distance(ball, {double{s[0]}, double{s[1]}, double{s[2]}}) <= double{ball.radius});
+    }
+    const std::array<double, 3> center{double{ball.x}, double{ball.y}, double{ball.z}};
+    CHECK(distance(sphere, center) + double{ball.radius} <= double{sphere.radius});
+  }
+}
+
+void check_shrunk_poses() {
+  for (unsigned seed = 1; seed <= 2; ++seed) {
+    const Posable p(seed);
+    const OpenedAsset opened(p.tiny.parts);
+    std::mt19937 random(seed);
+    for (int exponent = -10; exponent >= -44; --exponent) {
+      for (int pose = 0; pose < 10; ++pose) {
+        CAPTURE(exponent);
+        CAPTURE(pose);
+        const std::vector<Matrix> matrices = shrunk_pose(pose, static_cast<float>(std::pow(10.0, exponent)), random);
+        check_covered(p, opened.asset, matrices,
+                      pose % 2 == 0 ? std::vector<float>() : random_morph_weights(3, random));
+      }
+    }
+  }
 }
 
 }  // namespace
@@ -75,6 +143,14 @@ TEST_CASE("in every pose every vertex, and where SkinJob puts it, is in its leaf
     }
   }
   MESSAGE(balls, " balls: radius over the farthest vertex, mean ", ratio / static_cast<double>(balls));
+}
+
+TEST_CASE("poses shrunk to any size are covered too, on every target, and each sphere's leaves") {
+  SUBCASE("with subnormal floats") { check_shrunk_poses(); }
+  SUBCASE("where those are zero") {
+    const NoSubnormals set;
+    check_shrunk_poses();
+  }
 }
 
 TEST_CASE("where all bones move alike and rigidly the balls are those at rest, moved") {
