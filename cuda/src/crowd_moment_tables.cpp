@@ -13,7 +13,7 @@ struct alignas(16) Member {
   std::uint32_t first_bone, first_pair;
 };
 
-constexpr std::uint32_t pairs_of(std::uint32_t bones) { return bones * (bones + 1) / 2; }
+constexpr std::uint32_t pairs_of(std::uint32_t bones) { return static_cast<std::uint32_t>(pairs_of_bones(bones)); }
 
 // Those of most bones first, those of the same bones next to each other.
 void fill_members(const MomentTables& tables, Member* out) {
@@ -87,11 +87,11 @@ struct Union {
   }
 };
 
-// Whether it is its own transpose, to the bit, as a bone's own moment is from the baker.
-bool is_symmetric(const Moment& moment) {
+// Whether it is 0 below its diagonal, as a bone's own moment is from the baker.
+bool is_upper(const Moment& moment) {
   for (std::size_t row = 0; row < 4; ++row) {
     for (std::size_t column = 0; column < row; ++column) {
-      if (std::memcmp(&moment.values[4 * row + column], &moment.values[4 * column + row], sizeof(float)) != 0) {
+      if (moment.values[4 * row + column] != 0) {
         return false;
       }
     }
@@ -104,27 +104,34 @@ class RunWriter {
   RunWriter(const Asset& asset, RadiusKind kind, const std::uint32_t* bone_indices)
       : tables_(asset.moment_tables()), rest_(asset.spheres()), kind_(kind), bone_indices_(bone_indices) {}
 
-  bool has_two_bones(const Member& member) const {
-    return member.bone_count == 2 && is_symmetric(moment_of(member, 0, 0)) && is_symmetric(moment_of(member, 1, 1));
+  bool has_few_bones(const Member& member) const {
+    bool out = member.bone_count == 2 || member.bone_count == 3;
+    for (std::uint32_t k = 0; out && k < member.bone_count; ++k) {
+      out = is_upper(moment_of(member, k, k));
+    }
+    return out;
   }
 
-  // All of them of the same two bones.
-  void add_two_bones(const Member* members, std::uint32_t count) {
-    MomentRun& run = start(members, count, kTwoBones);
-    run.bone_count = 2;
-    for (std::uint32_t i = 0; i < 2; ++i) {
-      run_bones[bone_count_++] = matrix_of(tables_.bones[members[0].first_bone + i]);
+  // All of them of the same two bones, or three.
+  void add_few_bones(const Member* members, std::uint32_t count) {
+    const std::uint32_t bones = members[0].bone_count;
+    MomentRun& run = start(members, count, bones == 2 ? kTwoBones : kThreeBones);
+    run.bone_count = bones;
+    for (std::uint32_t k = 0; k < bones; ++k) {
+      run_bones[bone_count_++] = matrix_of(tables_.bones[members[0].first_bone + k]);
     }
     for (std::uint32_t s = 0; s < count; ++s) {
-      add_center(members[s], 0);
-      add_center(members[s], 1);
-      auto* own = reinterpret_cast<float*>(moments + moment_count_);
-      put_own(moment_of(members[s], 0, 0), own);
-      put_own(moment_of(members[s], 1, 1), own + 10);
-      moment_count_ += kTwoBoneQuads - kPairQuads;
-      add_columns(moment_of(members[s], 0, 1));
+      for (std::uint32_t k = 0; k < bones; ++k) {
+        add_center(members[s], k);
+      }
     }
-    run.cost = 3 * 3 + count * 5;
+    const std::uint32_t step = bones == 2 ? 1 : 2;
+    for (std::uint32_t first = 0; first < step; ++first) {
+      for (std::uint32_t s = 0; s < count; ++s) {
+        put_columns(members[s], first, step);
+      }
+    }
+    run.cost = static_cast<std::uint32_t>(3 * pairs_of(bones) + count * (bones == 2 ? 5 : 8));
   }
 
   // One or two of any.
@@ -187,7 +194,7 @@ class RunWriter {
     center_terms[center_count_++] = {term.x, term.y, term.z, term.w};
   }
 
-  // The bone, and its own pair. Moments that are not symmetric, which the baker makes none of, are taken as of two
+  // The bone, and its own pair. Moments with something below the diagonal, which older bakers made, are taken as of two
   // bones.
   void add_bone(const Union& all, std::uint32_t i, const Member* members, std::uint32_t count, MomentRun& run) {
     std::uint32_t& bone = run_bones[bone_count_++] = matrix_of(all.bones[i]);
@@ -199,7 +206,7 @@ class RunWriter {
         bone |= 1U << s;
         add_center(members[s], k);
         const Moment& moment = moment_of(members[s], k, k);
-        if (is_symmetric(moment)) {
+        if (is_upper(moment)) {
           step |= 1U << s;
           put_own(moment, reinterpret_cast<float*>(moments + moment_count_));
           moment_count_ += kOwnQuads;
@@ -229,6 +236,22 @@ class RunWriter {
     }
   }
 
+  // Some columns of all pairs of a sphere.
+  void put_columns(const Member& member, std::uint32_t first, std::uint32_t step) {
+    auto* to = reinterpret_cast<float*>(moments + moment_count_);
+    for (std::uint32_t k = 0; k < member.bone_count; ++k) {
+      for (std::uint32_t l = k; l < member.bone_count; ++l) {
+        const Moment& moment = moment_of(member, k, l);
+        for (std::uint32_t column = first; column < 4; column += step) {
+          for (std::size_t row = 0; row < rows_of_moment(k == l, column); ++row) {
+            *to++ = moment.values[4 * row + column];
+          }
+        }
+      }
+    }
+    moment_count_ += static_cast<std::uint32_t>(few_bone_quads(member.bone_count, first, step));
+  }
+
   static void put_own(const Moment& moment, float* to) {
     for (std::size_t row = 0; row < 4; ++row) {
       to = std::copy(moment.values + 5 * row, moment.values + 4 * row + 4, to);
@@ -254,20 +277,20 @@ bool are_equal(const MomentTables& tables, const Member& a, const Member& b) {
   return a.bone_count == b.bone_count && common_bones(tables, a, b) == a.bone_count;
 }
 
-// Takes those of two bones out, many at a time, then others of the same bones, by twos. Returns how many are left.
+// Takes those of few bones out, many at a time, then others of the same bones, by twos. Returns how many are left.
 std::size_t add_equal_runs(const MomentTables& tables, Member* members, RunWriter& writer) {
   const std::size_t n = tables.spheres.size;
   std::size_t left = 0;
   for (std::size_t i = 0; i < n;) {
-    const bool are_two = writer.has_two_bones(members[i]);
-    const std::size_t most = are_two ? kMostRunSpheres : kRunSpheres;
+    const bool are_few = writer.has_few_bones(members[i]);
+    const std::size_t most = are_few ? kMostRunSpheres : kRunSpheres;
     std::uint32_t count = 1;
     while (count < most && i + count < n && are_equal(tables, members[i], members[i + count]) &&
-           writer.has_two_bones(members[i + count]) == are_two) {
+           writer.has_few_bones(members[i + count]) == are_few) {
       ++count;
     }
-    if (are_two) {
-      writer.add_two_bones(members + i, count);
+    if (are_few) {
+      writer.add_few_bones(members + i, count);
     } else if (count == kRunSpheres) {
       writer.add(members + i, count);
     } else {

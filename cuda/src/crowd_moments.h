@@ -67,16 +67,20 @@ SPHERECHAIN_HD Gram gram_of(const Matrix& a, const Matrix& b) {
   return out;
 }
 
-// Of a bone with itself: symmetric, to the bit.
-SPHERECHAIN_HD Gram gram_of(const Matrix& a) {
-  Gram out;
+// Of a bone with itself, which is symmetric: 00 01 02 03 11 12 13 22 23 33.
+struct OwnGram {
+  float at[kOwnFigures];
+};
+
+SPHERECHAIN_HD OwnGram gram_of(const Matrix& a) {
+  OwnGram out;
+  float* figure = out.at;
   SPHERECHAIN_UNROLL
-  for (std::size_t column = 0; column < 4; ++column) {
+  for (std::size_t row = 0; row < 4; ++row) {
     SPHERECHAIN_UNROLL
-    for (std::size_t row = 0; row <= column; ++row) {
-      float figure = gram_at(a, a, row, column);
-      make_once(figure);
-      out.at[row][column] = out.at[column][row] = figure;
+    for (std::size_t column = row; column < 4; ++column, ++figure) {
+      *figure = gram_at(a, a, row, column);
+      make_once(*figure);
     }
   }
   return out;
@@ -101,22 +105,19 @@ SPHERECHAIN_HD void clear(float (&sums)[kRows][4]) {
   }
 }
 
-// A bone's own.
-SPHERECHAIN_HD void add_own_moment(const float (&m)[10], const Gram& gram, MomentSums& sums) {
-  const float moment[4][4] = {
-      {m[0], m[1], m[2], m[3]}, {m[1], m[4], m[5], m[6]}, {m[2], m[5], m[7], m[8]}, {m[3], m[6], m[8], m[9]}};
+// A bone's own. What is 0 adds nothing: a sum of zeros alone has no sign that the radius has, and where the figure
+// below the diagonal is not finite, the one above it is not either.
+SPHERECHAIN_HD void add_own_moment(const Float4* quads, const OwnGram& gram, MomentSums& sums) {
+  const Float4 a = quads[0], b = quads[1], c = quads[2];
+  const float moment[kOwnFigures] = {a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w, c.x, c.y};
+  std::size_t i = 0;
   SPHERECHAIN_UNROLL
   for (std::size_t row = 0; row < 4; ++row) {
     SPHERECHAIN_UNROLL
-    for (std::size_t column = 0; column < 4; ++column) {
-      sums.at[row][column] = fused(moment[row][column], gram.at[row][column], sums.at[row][column]);
+    for (std::size_t column = row; column < 4; ++column, ++i) {
+      sums.at[row][column] = fused(moment[i], gram.at[i], sums.at[row][column]);
     }
   }
-}
-
-SPHERECHAIN_HD void add_own_moment(const Float4* quads, const Gram& gram, MomentSums& sums) {
-  const Float4 a = quads[0], b = quads[1], c = quads[2];
-  add_own_moment({a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w, c.x, c.y}, gram, sums);
 }
 
 // Of two bones, by columns.
@@ -131,20 +132,21 @@ SPHERECHAIN_HD void add_pair_moment(const Float4* columns, const Gram& gram, Mom
   }
 }
 
+SPHERECHAIN_HD float sum_column(const MomentSums& sums, std::size_t column) {
+  return (sums.at[0][column] + sums.at[2][column]) + (sums.at[1][column] + sums.at[3][column]);
+}
+
 SPHERECHAIN_HD float tree(const MomentSums& sums) {
-  float halves[2][4];
-  SPHERECHAIN_UNROLL
-  for (std::size_t column = 0; column < 4; ++column) {
-    halves[0][column] = sums.at[0][column] + sums.at[2][column];
-    halves[1][column] = sums.at[1][column] + sums.at[3][column];
-  }
-  const auto quarter = [&](std::size_t column) { return halves[0][column] + halves[1][column]; };
-  return (quarter(0) + quarter(2)) + (quarter(1) + quarter(3));
+  return (sum_column(sums, 0) + sum_column(sums, 2)) + (sum_column(sums, 1) + sum_column(sums, 3));
+}
+
+SPHERECHAIN_HD_RARE float odd_spread(float square) {
+  return !(fabsf(square) <= FLT_MAX) ? NAN : sqrtf(square <= 0 ? 0.0F : square);
 }
 
 // In units of that at rest: about 1 but where bones are scaled.
 SPHERECHAIN_HD float spread_of(float square) {
-  return square >= kLeastRoot && square <= kMostRoot ? usual_root(square) : any_root(square < 0 ? 0.0F : square);
+  return square >= kLeastRoot && square <= kMostRoot ? usual_root(square) : odd_spread(square);
 }
 
 SPHERECHAIN_HD void add_center(const Matrix& matrix, const Float4& term, CenterSums& sums) {
@@ -169,33 +171,120 @@ SPHERECHAIN_HD void store_sphere(const Shared& shared, std::uint32_t lane, std::
                                             center_of(shared, lane, sums, 2), radius};
 }
 
-// All Gram matrices stay in registers, and sphere after sphere takes what it needs of them.
-SPHERECHAIN_HD void refit_two_bones(const GroupView& v, const Shared& shared, std::uint32_t lane,
-                                    const MomentRun& run) {
-  const RunSphere* spheres = v.run_spheres + run.first_sphere;
-  const Matrix a = matrix_at(shared, lane, v.run_bones[run.first_bone]);
-  const Matrix b = matrix_at(shared, lane, v.run_bones[run.first_bone + 1]);
-  const Float4* terms = v.center_terms + run.first_center;
-  SPHERECHAIN_ONE_BY_ONE
-  for (std::uint32_t s = 0; s < run.sphere_count; ++s, terms += 2) {
-    CenterSums sums;
-    clear(sums.at);
-    add_center(a, terms[0], sums);
-    add_center(b, terms[1], sums);
-    store_sphere(shared, lane, spheres[s].sphere, sums, 0);
+// Figures one after another, read by fours.
+class Figures {
+ public:
+  SPHERECHAIN_HD explicit Figures(const Float4* quads) : quads_(quads) {}
+
+  SPHERECHAIN_HD float next() {
+    const std::size_t i = read_++ % 4;
+    if (i == 0) {
+      quad_ = *quads_++;
+    }
+    return i == 0 ? quad_.x : i == 1 ? quad_.y : i == 2 ? quad_.z : quad_.w;
   }
-  const Gram own_a = gram_of(a), own_b = gram_of(b), both = gram_of(a, b);
-  const Float4* quads = v.moments + run.first_moment;
+
+ private:
+  const Float4* quads_;
+  Float4 quad_ = {};
+  std::size_t read_ = 0;
+};
+
+// Some columns of the Gram matrices of few bones stay in registers, and sphere after sphere takes what it needs of
+// them. Hands over what those columns add to its mean square.
+template <std::size_t kBones, std::size_t kFirst, std::size_t kStep, typename Take>
+SPHERECHAIN_HD void add_columns(const Shared& shared, std::uint32_t lane, const std::uint32_t* bones,
+                                const Float4* quads, std::uint32_t sphere_count, const Take& take) {
+  Gram grams[pairs_of_bones(kBones)];
+  {
+    Matrix matrices[kBones];
+    SPHERECHAIN_UNROLL
+    for (std::size_t k = 0; k < kBones; ++k) {
+      matrices[k] = matrix_at(shared, lane, bones[k]);
+    }
+    std::size_t pair = 0;
+    SPHERECHAIN_UNROLL
+    for (std::size_t k = 0; k < kBones; ++k) {
+      SPHERECHAIN_UNROLL
+      for (std::size_t l = k; l < kBones; ++l, ++pair) {
+        SPHERECHAIN_UNROLL
+        for (std::size_t column = kFirst; column < 4; column += kStep) {
+          SPHERECHAIN_UNROLL
+          for (std::size_t row = 0; row < rows_of_moment(k == l, column); ++row) {
+            float& figure = grams[pair].at[row][column] = gram_at(matrices[k], matrices[l], row, column);
+            make_once(figure);
+          }
+        }
+      }
+    }
+  }
   SPHERECHAIN_ONE_BY_ONE
-  for (std::uint32_t s = 0; s < run.sphere_count; ++s, quads += kTwoBoneQuads) {
+  for (std::uint32_t s = 0; s < sphere_count; ++s, quads += few_bone_quads(kBones, kFirst, kStep)) {
     MomentSums sums;
     clear(sums.at);
-    const Float4 m = quads[0], n = quads[1], o = quads[2], p = quads[3], q = quads[4];
-    add_own_moment({m.x, m.y, m.z, m.w, n.x, n.y, n.z, n.w, o.x, o.y}, own_a, sums);
-    add_pair_moment(quads + 5, both, sums);
-    add_own_moment({o.z, o.w, p.x, p.y, p.z, p.w, q.x, q.y, q.z, q.w}, own_b, sums);
-    const RunSphere sphere = spheres[s];
-    shared.spheres[sphere.sphere * kPitch + lane].w = sphere.wanted * spread_of(tree(sums));
+    Figures moment(quads);
+    std::size_t pair = 0;
+    SPHERECHAIN_UNROLL
+    for (std::size_t k = 0; k < kBones; ++k) {
+      SPHERECHAIN_UNROLL
+      for (std::size_t l = k; l < kBones; ++l, ++pair) {
+        SPHERECHAIN_UNROLL
+        for (std::size_t column = kFirst; column < 4; column += kStep) {
+          SPHERECHAIN_UNROLL
+          for (std::size_t row = 0; row < rows_of_moment(k == l, column); ++row) {
+            sums.at[row][column] = fused(moment.next(), grams[pair].at[row][column], sums.at[row][column]);
+          }
+        }
+      }
+    }
+    take(s, sums);
+  }
+}
+
+template <std::size_t kBones>
+SPHERECHAIN_HD void add_few_centers(const Shared& shared, std::uint32_t lane, const std::uint32_t* bones,
+                                    const Float4* terms, const RunSphere* spheres, std::uint32_t sphere_count) {
+  Matrix matrices[kBones];
+  SPHERECHAIN_UNROLL
+  for (std::size_t k = 0; k < kBones; ++k) {
+    matrices[k] = matrix_at(shared, lane, bones[k]);
+  }
+  SPHERECHAIN_ONE_BY_ONE
+  for (std::uint32_t s = 0; s < sphere_count; ++s, terms += kBones) {
+    CenterSums sums;
+    clear(sums.at);
+    SPHERECHAIN_UNROLL
+    for (std::size_t k = 0; k < kBones; ++k) {
+      add_center(matrices[k], terms[k], sums);
+    }
+    store_sphere(shared, lane, spheres[s].sphere, sums, 0);
+  }
+}
+
+// Spheres of the same two bones, or of the same three, whose Gram matrices take registers for half of their columns at
+// a time.
+template <std::size_t kBones>
+SPHERECHAIN_HD void refit_few_bones(const GroupView& v, const Shared& shared, std::uint32_t lane,
+                                    const MomentRun& run) {
+  const RunSphere* spheres = v.run_spheres + run.first_sphere;
+  const std::uint32_t count = run.sphere_count;
+  const auto radius_at = [&](std::uint32_t s) -> float& { return shared.spheres[spheres[s].sphere * kPitch + lane].w; };
+  const std::uint32_t* bones = v.run_bones + run.first_bone;
+  add_few_centers<kBones>(shared, lane, bones, v.center_terms + run.first_center, spheres, count);
+  const Float4* quads = v.moments + run.first_moment;
+  if (kBones == 2) {
+    add_columns<kBones, 0, 1>(shared, lane, bones, quads, count, [&](std::uint32_t s, const MomentSums& sums) {
+      radius_at(s) = spheres[s].wanted * spread_of(tree(sums));
+    });
+  } else {
+    add_columns<kBones, 0, 2>(shared, lane, bones, quads, count, [&](std::uint32_t s, const MomentSums& sums) {
+      radius_at(s) = sum_column(sums, 0) + sum_column(sums, 2);
+    });
+    quads += count * few_bone_quads(kBones, 0, 2);
+    add_columns<kBones, 1, 2>(shared, lane, bones, quads, count, [&](std::uint32_t s, const MomentSums& sums) {
+      float& radius = radius_at(s);
+      radius = spheres[s].wanted * spread_of(radius + (sum_column(sums, 1) + sum_column(sums, 3)));
+    });
   }
 }
 
@@ -209,7 +298,7 @@ SPHERECHAIN_HD void add_pairs(const GroupView& v, const Shared& shared, std::uin
   do {
     step = *steps++;
     const Matrix a = matrix_at(shared, lane, step);
-    const Gram own = gram_of(a);
+    const OwnGram own = gram_of(a);
     SPHERECHAIN_UNROLL
     for (std::uint32_t s = 0; s < kRunSpheres; ++s) {
       if (kEqual || (step >> s & 1U) != 0) {
@@ -280,7 +369,9 @@ SPHERECHAIN_HD void refit_runs(const GroupView& v, const Shared& shared, const P
     const MomentRun& run = v.runs[place];
     place = deal(&shared.dealt[0], at, round);
     if (run.kind == kTwoBones) {
-      refit_two_bones(v, shared, at.lane(), run);
+      refit_few_bones<2>(v, shared, at.lane(), run);
+    } else if (run.kind == kThreeBones) {
+      refit_few_bones<3>(v, shared, at.lane(), run);
     } else if (run.kind == kEqualBones) {
       refit_run<true>(v, shared, at.lane(), run);
     } else {

@@ -119,8 +119,8 @@ struct alignas(16) MomentRun {
   std::uint32_t bone_count, kind;
   std::uint32_t cost;
 };
-// Of a run: many spheres of the same two bones; two spheres of the same bones; one or two of any.
-inline constexpr std::uint32_t kTwoBones = 0, kEqualBones = 1, kAnyBones = 2;
+// Of a run: many spheres of the same two bones, or three; two spheres of the same bones; one or two of any.
+inline constexpr std::uint32_t kTwoBones = 0, kThreeBones = 1, kEqualBones = 2, kAnyBones = 3;
 inline constexpr std::uint32_t kRunSpheres = 2, kMostRunSpheres = 8;
 
 struct alignas(8) RunSphere {
@@ -132,9 +132,23 @@ struct alignas(8) RunSphere {
 // set where the run's sphere s has both. Pairs go (0, 0), (0, 1) .., (1, 1) .., but for those that neither has.
 inline constexpr std::uint32_t kLastOfBone = 4, kLastOfRun = 8, kMatrixMask = ~15U;
 
-// A moment of a bone with itself, which is symmetric, and in this order: 00 01 02 03 11 12 13 22 23 33.
+// A moment of a bone with itself, 0 below its diagonal: 00 01 02 03 11 12 13 22 23 33.
+inline constexpr std::uint32_t kOwnFigures = 10;
 inline constexpr std::uint32_t kOwnQuads = 3, kPairQuads = 4;  // of a moment, by fours
-inline constexpr std::uint32_t kTwoBoneQuads = 9;              // both bones' own, then the pair's
+
+SPHERECHAIN_HD constexpr std::size_t pairs_of_bones(std::size_t bones) { return bones * (bones + 1) / 2; }
+
+// Of a moment's column: all, or those not below the diagonal.
+SPHERECHAIN_HD constexpr std::size_t rows_of_moment(bool is_own, std::size_t column) { return is_own ? column + 1 : 4; }
+
+// Of a sphere of few bones: pair after pair, and in each column after column, `step` apart, what may not be 0.
+SPHERECHAIN_HD constexpr std::size_t few_bone_quads(std::size_t bones, std::size_t first_column, std::size_t step) {
+  std::size_t figures = 0;
+  for (std::size_t column = first_column; column < 4; column += step) {
+    figures += bones * rows_of_moment(true, column) + (pairs_of_bones(bones) - bones) * 4;
+  }
+  return (figures + 3) / 4;
+}
 
 // How large a bone's matrix is, as runtime/src/cover_kernel.h has it.
 struct alignas(8) BoneSize {

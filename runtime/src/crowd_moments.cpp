@@ -2,6 +2,9 @@
 // Refit by moments of as many instances as a register has lanes, one a lane. The header of RefitBonesJob has the
 // arithmetic. A batch's Gram matrices are made once for all of its spheres, two columns at a time: half of them fit
 // the first cache beside what else is read, and leave one register a sphere to be kept.
+#include <cfloat>
+#include <cmath>
+
 #include "arithmetic.h"
 #include "crowd_lanes.h"
 #include "crowd_refit.h"
@@ -171,8 +174,9 @@ HWY_INLINE Vector radius_of(const LaneRefit& batch, std::size_t sphere, Vector s
   constexpr Floats kFloats;
   const RestSphere& rest = batch.inputs.rest[sphere];
   const float wanted = batch.inputs.radius == RadiusKind::kFit ? rest.radius : rest.detect_radius;
-  const Vector spread = hn::Sqrt(hn::IfThenZeroElse(hn::Lt(sum, hn::Zero(kFloats)), sum));
-  return hn::Mul(hn::Set(kFloats, wanted), spread);
+  const Vector spread = hn::Sqrt(hn::IfThenZeroElse(hn::Le(sum, hn::Zero(kFloats)), sum));
+  const auto is_finite = hn::Le(hn::Abs(sum), hn::Set(kFloats, FLT_MAX));
+  return hn::Mul(hn::Set(kFloats, wanted), hn::IfThenElse(is_finite, spread, hn::Set(kFloats, NAN)));
 }
 
 HWY_INLINE bool have_same_pairs(const std::uint8_t* places, std::size_t count) {

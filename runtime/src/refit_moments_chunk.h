@@ -6,6 +6,13 @@ namespace spherechain {
 namespace HWY_NAMESPACE {
 namespace moments {
 
+HWY_INLINE hn::Vec<Lanes4> spread_of(hn::Vec<Lanes4> square) {
+  const Lanes4 d;
+  const auto is_finite = hn::Le(hn::Abs(square), hn::Set(d, FLT_MAX));
+  const auto root = hn::Sqrt(hn::IfThenZeroElse(hn::Le(square, hn::Zero(d)), square));
+  return hn::IfThenElse(is_finite, root, hn::Set(d, NAN));
+}
+
 #if HWY_TARGET == HWY_AVX3
 
 // Spheres `first` and on of the sums, `count` of them, to where `numbers` says.
@@ -26,9 +33,9 @@ HWY_INLINE void finish(const Sums& sums, std::size_t first, std::size_t count, c
   fours = hn::Add(fours, hn::Shuffle2301(fours));
   alignas(64) static constexpr std::int32_t kFirsts[kMomentSize] = {0, 4, 8, 12};
   const hn::Half<Lanes16> half;
-  auto squared = hn::LowerHalf(four, hn::LowerHalf(half, hn::TableLookupLanes(fours, hn::SetTableIndices(d, kFirsts))));
-  squared = hn::IfThenZeroElse(hn::Lt(squared, hn::Zero(four)), squared);
-  const auto radius = hn::Mul(hn::Load(four, sums.wanted + first), hn::Sqrt(squared));
+  const auto squared =
+      hn::LowerHalf(four, hn::LowerHalf(half, hn::TableLookupLanes(fours, hn::SetTableIndices(d, kFirsts))));
+  const auto radius = hn::Mul(hn::Load(four, sums.wanted + first), spread_of(squared));
 
   // Of two spheres, of each row: columns j + (j + 2).
   const auto twos = [&](std::size_t i) HWY_ATTR {
@@ -112,12 +119,11 @@ HWY_INLINE void finish(const Sums& sums, std::size_t first, std::size_t count, c
   sum_four(fours[0], 4, figures[3]);
   HWY_ALIGN Sphere out[kChunk];
   for (std::size_t i = 0; i < kChunk; i += hn::MaxLanes(d)) {
-    auto squared = hn::Load(d, figures[3] + i);
-    squared = hn::IfThenElse(hn::Lt(squared, hn::Zero(d)), hn::Zero(d), squared);
     hn::StoreInterleaved4(hn::Add(hn::Load(d, figures[0] + i), hn::Set(d, shift[3])),
                           hn::Add(hn::Load(d, figures[1] + i), hn::Set(d, shift[7])),
                           hn::Add(hn::Load(d, figures[2] + i), hn::Set(d, shift[11])),
-                          hn::Mul(hn::Load(d, sums.wanted + first + i), hn::Sqrt(squared)), d, &out[i].x);
+                          hn::Mul(hn::Load(d, sums.wanted + first + i), spread_of(hn::Load(d, figures[3] + i))), d,
+                          &out[i].x);
   }
   for (std::size_t i = 0; i < count; ++i) {
     spheres[numbers[i]] = out[i];

@@ -78,8 +78,8 @@ struct SphereParts {
       for (const auto& own : differences) {
         sum += own.at(k)[i / 4] * own.at(l)[i % 4];
       }
-      out.values[i] =
-          static_cast<float>((k == l ? 1 : 2) * sum / (static_cast<double>(differences.size()) * spread * spread));
+      const double times = k != l || i / 4 < i % 4 ? 2 : i / 4 == i % 4 ? 1 : 0;
+      out.values[i] = static_cast<float>(times * sum / (static_cast<double>(differences.size()) * spread * spread));
     }
     return out;
   }

@@ -53,7 +53,8 @@ struct BonePair {
 };
 
 // What a pair of bones adds to a sphere's mean squared distance of its pivots from the refitted centre, in units of
-// that at rest: the sum of values[4 r + c] times row r, column c of the pair's Gram matrix (RefitBonesJob).
+// that at rest: the sum of values[4 r + c] times row r, column c of the pair's Gram matrix (RefitBonesJob). A bone's own
+// Gram matrix is symmetric, and its moment is 0 below the diagonal, by bakers since 2026-11-23.
 struct Moment {
   float values[kMomentSize];
 };

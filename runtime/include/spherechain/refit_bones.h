@@ -77,7 +77,8 @@ struct BoneMatrices {
 //           further one
 //   square  the sum of all sixteen by halves: v[i] + v[i + 8] of the 4r + c, so to eight, v[i] + v[i + 4] to four,
 //           v[i] + v[i + 2] to two and their sum
-//   radius  wanted * sqrt(square < 0 ? 0 : square), wanted the rest sphere's radius or detect_radius
+//   radius  wanted * sqrt(square <= 0 ? 0 : square), wanted the rest sphere's radius or detect_radius; no number where
+//           square is not finite
 //   centre  for each row m: s[j] = C[m][j] * u[j] of its first bone, u its share (x, y, z, w) of the centre; then
 //           fma(C[m][j], u[j], s[j]) of each further one; ((s[0] + s[2]) + (s[1] + s[3])) + p_ref[m]
 //

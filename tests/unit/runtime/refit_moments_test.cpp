@@ -107,7 +107,8 @@ std::vector<Sphere> exact_by_moments(const PosedAsset& s, RadiusKind kind) {
     const float squared = halving_tree(sums);
     const RestSphere& rest = s.tiny.parts.spheres[tables.spheres[i]];
     const float wanted = kind == RadiusKind::kFit ? rest.radius : rest.detect_radius;
-    out[tables.spheres[i]] = {center[0], center[1], center[2], wanted * std::sqrt(squared < 0 ? 0 : squared)};
+    const float spread = std::isfinite(squared) ? std::sqrt(squared <= 0 ? 0 : squared) : std::nanf("");
+    out[tables.spheres[i]] = {center[0], center[1], center[2], wanted * spread};
   }
   return out;
 }
@@ -179,6 +180,16 @@ TEST_CASE("by moments, a squared spread that comes out below 0 counts for 0, on 
     }
   }
   CHECK(exact_by_moments(s, RadiusKind::kFit)[0].radius == 0);
+  check_exact(s, exact_by_moments);
+}
+
+TEST_CASE("by moments, a squared spread past the largest float makes a radius that is no number, on every target") {
+  ByMoments s(9, 20);
+  for (Matrix& m : s.matrices) {
+    for (float& figure : m) figure *= 0x1p+70F;
+  }
+  CHECK(std::isfinite(exact_by_moments(s, RadiusKind::kFit)[0].x));
+  CHECK(std::isnan(exact_by_moments(s, RadiusKind::kFit)[0].radius));
   check_exact(s, exact_by_moments);
 }
 
