@@ -146,8 +146,8 @@ Status view_group(const CrowdGroup& group, GroupView& view) {
   view.wide_spheres = is_aligned(group.spheres, alignof(Float4));
   view.matrices = group.bones.data;
   view.morph_weights = view.has_morphs ? group.morph_weights : nullptr;
-  view.bone_stride = group.bones.stride / sizeof(float);
-  view.instance_stride = group.instance_stride / sizeof(float);
+  view.bone_stride = static_cast<std::uint32_t>(group.bones.stride / sizeof(float));
+  view.instance_stride = static_cast<std::uint32_t>(group.instance_stride / sizeof(float));
   view.steps = steps_of(group.bones.layout);
   view.wide_matrices = view.steps.column == 1 && is_aligned(group.bones.data, alignof(Float4)) &&
                        group.bones.stride % sizeof(Float4) == 0 && group.instance_stride % sizeof(Float4) == 0;

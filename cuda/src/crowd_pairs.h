@@ -103,7 +103,8 @@ SPHERECHAIN_HD void report(const GroupView& v, const Shared& shared, std::uint32
 
 // Pairs that the test by multiply-adds cannot tell apart from touching ones.
 template <bool kCovers>
-SPHERECHAIN_HD void test_candidates(const GroupView& v, const Shared& shared, std::uint32_t lane, const PairItem& item,
+SPHERECHAIN_HD void test_candidates(const GroupView& v, const Shared& shared, std::uint32_t lane,
+                                    std::uint32_t first_row, std::uint32_t first_column,
                                     std::uint32_t (&candidates)[2]) {
   while (any_lane((candidates[0] | candidates[1]) != 0)) {
     if ((candidates[0] | candidates[1]) != 0) {
@@ -112,8 +113,8 @@ SPHERECHAIN_HD void test_candidates(const GroupView& v, const Shared& shared, st
       const std::uint32_t at = kHalfItem - 1 - lowest_bit(word);
       candidates[0] = is_first ? word & (word - 1) : 0;
       candidates[1] = is_first ? candidates[1] : word & (word - 1);
-      const std::uint32_t a = item.first_row + at % kRows;
-      const std::uint32_t b = item.first_column + at / kRows + (is_first ? 0 : kHalfColumns);
+      const std::uint32_t a = first_row + at % kRows;
+      const std::uint32_t b = first_column + at / kRows + (is_first ? 0 : kHalfColumns);
       const Float4 p = shared.spheres[a * kPitch + lane], q = shared.spheres[b * kPitch + lane];
       if (kCovers ? may_touch(p, q) : touch(p, q, 1.0F)) {
         report(v, shared, lane, a, b);
@@ -122,34 +123,39 @@ SPHERECHAIN_HD void test_candidates(const GroupView& v, const Shared& shared, st
   }
 }
 
+// A sphere as it is seen from the origin, with its power.
+SPHERECHAIN_HD Float4 seen_from(const Float4& origin, const Shared& shared, std::uint32_t place) {
+  const Float4 s = shared.spheres[place];
+  return {s.x - origin.x, s.y - origin.y, s.z - origin.z, shared.powers[place]};
+}
+
 template <bool kCovers>
 SPHERECHAIN_HD void test_item(const GroupView& v, const Shared& shared, std::uint32_t lane, const PairItem& item) {
   const Float4 origin = shared.spheres[lane];
-  const std::uint32_t first_row = item.first_row * kPitch + lane, first_column = item.first_column * kPitch + lane;
-  const Float4 *row_spheres = shared.spheres + first_row, *column_spheres = shared.spheres + first_column;
-  const float *row_powers = shared.powers + first_row, *column_powers = shared.powers + first_column;
-  const auto seen_from_origin = [&](const Float4& s, float power) {
-    return Float4{s.x - origin.x, s.y - origin.y, s.z - origin.z, power};
-  };
+  const std::uint32_t first_row = item.first_row, count = item.count;
   Float4 rows[kRows];
   SPHERECHAIN_UNROLL
   for (std::uint32_t r = 0; r < kRows; ++r) {
-    rows[r] = seen_from_origin(row_spheres[r * kPitch], row_powers[r * kPitch]);
+    rows[r] = seen_from(origin, shared, first_row * kPitch + lane + r * kPitch);
   }
-  std::uint32_t apart[2] = {0, 0};
-  SPHERECHAIN_UNROLL
-  for (std::uint32_t c = 0; c < kColumns; ++c) {
-    const Float4 column = seen_from_origin(column_spheres[c * kPitch], column_powers[c * kPitch]);
+  SPHERECHAIN_ONE_BY_ONE
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const PairColumns columns = item.columns[i];
+    std::uint32_t apart[2] = {0, 0};
     SPHERECHAIN_UNROLL
-    for (std::uint32_t r = 0; r < kRows; ++r) {
-      float sum = fused(rows[r].x, column.x, rows[r].w + column.w);
-      sum = fused(rows[r].y, column.y, sum);
-      sum = fused(rows[r].z, column.z, sum);
-      apart[c / kHalfColumns] = shift_in_sign(apart[c / kHalfColumns], sum);
+    for (std::uint32_t c = 0; c < kColumns; ++c) {
+      const Float4 column = seen_from(origin, shared, columns.first * kPitch + lane + c * kPitch);
+      SPHERECHAIN_UNROLL
+      for (std::uint32_t r = 0; r < kRows; ++r) {
+        float sum = fused(rows[r].x, column.x, rows[r].w + column.w);
+        sum = fused(rows[r].y, column.y, sum);
+        sum = fused(rows[r].z, column.z, sum);
+        apart[c / kHalfColumns] = shift_in_sign(apart[c / kHalfColumns], sum);
+      }
     }
+    std::uint32_t candidates[2] = {~apart[0] & columns.wanted[0], ~apart[1] & columns.wanted[1]};
+    test_candidates<kCovers>(v, shared, lane, first_row, columns.first, candidates);
   }
-  std::uint32_t candidates[2] = {~apart[0] & item.wanted[0], ~apart[1] & item.wanted[1]};
-  test_candidates<kCovers>(v, shared, lane, item, candidates);
 }
 
 SPHERECHAIN_HD void test_near(const GroupView& v, const Shared& shared, std::uint32_t lane, const NearEntry& near) {
@@ -190,7 +196,7 @@ SPHERECHAIN_HD void test_pairs(const GroupView& v, const Shared& shared, const P
   const std::uint32_t lane = at.lane();
   std::uint32_t place = deal(&shared.dealt[1], at, 0), round = 1;
   for (; place < v.item_count; ++round) {
-    const PairItem item = v.items[place];
+    const PairItem& item = v.items[place];
     place = deal(&shared.dealt[1], at, round);
     test_item<kCovers>(v, shared, lane, item);
   }

@@ -163,7 +163,7 @@ SPHERECHAIN_HD std::uint32_t deal(std::uint32_t* dealt, const Place& at, std::ui
 #if defined(__CUDA_ARCH__)
   std::uint32_t place = 0;
   if (at.lane() == 0) {
-    place = atomicAdd(dealt, 1U);
+    place = atomicInc(dealt, 0x7FFFFFFFU);  // atomicAdd would first count the lanes that add
   }
   return __shfl_sync(0xFFFFFFFFU, place, 0);
 #else

@@ -26,19 +26,25 @@ SPHERECHAIN_HD void start_dealing(const Shared& shared, const Place& at) {
 // Step 1: each warp takes some instances, so that their figures are read in the order they lie in.
 SPHERECHAIN_HD void load_matrices(const GroupView& v, const Shared& shared, const Place& at) {
   if (v.wide_matrices) {
+    const std::uint32_t last = instances_in(v, at) - 1;
+    const float* const first = v.matrices + std::size_t{at.block} * kLanes * v.instance_stride;
     for (std::uint32_t i = at.lane(); i < 3 * v.used_bone_count; i += kLanes) {
-      const std::size_t row = v.used_bones[i / 3] * v.bone_stride + i % 3 * v.steps.row;
-      for (std::uint32_t to = at.warp(); to < kLanes; to += at.warps()) {
-        const float* from = v.matrices + instance_of(v, at, to) * v.instance_stride;
-        copy_past_cache(&shared.matrices[i * kPitch + to], from + row);
+      const float* const row = first + (v.used_bones[i / 3] * v.bone_stride + i % 3 * v.steps.row);
+      Float4* const to = shared.matrices + i * kPitch;
+      SPHERECHAIN_UNROLL
+      for (std::uint32_t turn = 0; turn * at.warps() < kLanes; ++turn) {
+        const std::uint32_t place = turn * at.warps() + at.warp();
+        if (place < kLanes) {
+          copy_past_cache(to + place, row + std::size_t{place < last ? place : last} * v.instance_stride);
+        }
       }
     }
   } else {
     for (std::uint32_t i = at.lane(); i < 12 * v.used_bone_count; i += kLanes) {
-      const std::size_t figure =
+      const std::uint32_t figure =
           v.used_bones[i / 12] * v.bone_stride + i / 4 % 3 * v.steps.row + i % 4 * v.steps.column;
       for (std::uint32_t to = at.warp(); to < kLanes; to += at.warps()) {
-        const float* from = v.matrices + instance_of(v, at, to) * v.instance_stride;
+        const float* from = v.matrices + std::size_t{instance_of(v, at, to)} * v.instance_stride;
         (&shared.matrices[i / 4 * kPitch + to].x)[i % 4] = from[figure];
       }
     }

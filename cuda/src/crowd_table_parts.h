@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <tuple>
 
 #include "crowd_units.h"
 #include "spherechain/detect.h"
@@ -51,36 +52,54 @@ struct WantedPairs {
   }
 };
 
-// Row blocks times column chunks, few of which are past the diagonal.
+// Of each block of rows, with all columns that are past the first of them.
 inline std::size_t most_items(std::size_t n) {
+  constexpr std::size_t kAll = kColumns * kItemColumns;
   std::size_t out = 0;
   for (std::size_t row = 0; row + 1 < n; row += kRows) {
-    out += (n - 1 - row + kColumns - 1) / kColumns;
+    out += (n - 1 - row + kAll - 1) / kAll;
   }
   return out;
 }
 
-// The last rows and columns are those of the last eight spheres, some of them again: no pair is wanted twice.
+// Which of the pairs of eight spheres from `row` on with eight from `column` on are wanted. The last rows and columns
+// are those of the last eight spheres, some of them again: no pair is wanted twice.
 template <typename Wanted>
-std::uint32_t fill_items(std::uint32_t n, PairItem* out, const Wanted& wanted) {
-  const std::uint32_t last = n < kColumns ? 0 : n - kColumns;
-  std::uint32_t count = 0;
-  for (std::uint32_t row = 0; row + 1 < n; row += kRows) {
-    for (std::uint32_t column = row + 1; column < n; column += kColumns) {
-      PairItem item{std::min(row, last), std::min(column, last), {0, 0}};
-      for (std::uint32_t b = column; b < std::min(n, column + kColumns); ++b) {
-        for (std::uint32_t a = row; a < std::min(b, row + kRows); ++a) {
-          if (wanted(a, b)) {
-            const std::uint32_t c = b - item.first_column, at = kRows * (c % kHalfColumns) + (a - item.first_row);
-            item.wanted[c / kHalfColumns] |= 1U << (kHalfItem - 1 - at);
-          }
-        }
-      }
-      if ((item.wanted[0] | item.wanted[1]) != 0) {
-        out[count++] = item;
+PairColumns columns_of(std::uint32_t n, std::uint32_t row, std::uint32_t column, const Wanted& wanted) {
+  const std::uint32_t last = n < kColumns ? 0 : n - kColumns, first_row = std::min(row, last);
+  PairColumns out{std::min(column, last), {0, 0}, 0};
+  for (std::uint32_t b = column; b < std::min(n, column + kColumns); ++b) {
+    for (std::uint32_t a = row; a < std::min(b, row + kRows); ++a) {
+      if (wanted(a, b)) {
+        const std::uint32_t c = b - out.first, at = kRows * (c % kHalfColumns) + (a - first_row);
+        out.wanted[c / kHalfColumns] |= 1U << (kHalfItem - 1 - at);
       }
     }
   }
+  return out;
+}
+
+template <typename Wanted>
+std::uint32_t fill_items(std::uint32_t n, PairItem* out, const Wanted& wanted) {
+  std::uint32_t count = 0;
+  for (std::uint32_t row = 0; row + 1 < n; row += kRows) {
+    PairItem item{};
+    for (std::uint32_t column = row + 1; column < n; column += kColumns) {
+      const PairColumns columns = columns_of(n, row, column, wanted);
+      if ((columns.wanted[0] | columns.wanted[1]) != 0) {
+        item.columns[item.count++] = columns;
+      }
+      if (item.count > 0 && (item.count == kItemColumns || column + kColumns >= n)) {
+        item.first_row = n < kRows ? 0 : std::min(row, n - kRows);
+        out[count++] = item;
+        item = {};
+      }
+    }
+  }
+  std::sort(out, out + count, [](const PairItem& l, const PairItem& r) {
+    return l.count != r.count ? l.count > r.count
+                              : std::tie(l.first_row, l.columns[0].first) < std::tie(r.first_row, r.columns[0].first);
+  });
   return count;
 }
 

@@ -59,11 +59,19 @@ struct alignas(16) HalfTerm {
   Float4 x, y, z, w;
 };
 
-// Bit kHalfItem - 1 - (kRows * c + r) of half[h]: sphere first_row + r is tested against first_column + c + h * 4,
-// which is the larger one.
+// Bit kHalfItem - 1 - (kRows * c + r) of wanted[h]: sphere first_row + r is tested against first + c + h * 4, which is
+// the larger one.
+struct alignas(16) PairColumns {
+  std::uint32_t first, wanted[2];
+  std::uint32_t unused;
+};
+
+// Rows that a warp holds against some columns after others. Items of most columns come first.
+inline constexpr std::uint32_t kItemColumns = 3;
 struct alignas(16) PairItem {
-  std::uint32_t first_row, first_column;
-  std::uint32_t wanted[2];
+  std::uint32_t first_row, count;
+  std::uint32_t unused[2];
+  PairColumns columns[kItemColumns];
 };
 inline constexpr std::uint32_t kUnit = 16;  // spheres that matrix units test against as many
 // Unit c (c + 1) / 2 + r is that of rows 16 r and on and columns 16 c and on, r <= c; four units after each other are a
@@ -210,7 +218,7 @@ struct GroupView {
   const float* matrices;  // null where the instances come as spheres
   const float* morph_weights;
   std::size_t sphere_stride;
-  std::size_t bone_stride, instance_stride;  // floats
+  std::uint32_t bone_stride, instance_stride;  // floats
   MatrixSteps steps;
   bool wide_matrices, wide_spheres, wide_refitted, wide_leaves;  // aligned for reads and writes of 16 bytes
   std::uint32_t instance_count;
