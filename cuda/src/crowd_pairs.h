@@ -25,11 +25,28 @@ SPHERECHAIN_HD float power_of(const Float4& s, const Float4& origin) {
 // roundings at most, the squared sum of radii by 5 with this one.
 inline constexpr float kCoverShare = 1.0F + 0x1p-20F;
 
+// The box around the centres of the warp's own spheres.
+SPHERECHAIN_HD void box_spheres(const GroupView& v, const Shared& shared, const Place& at) {
+  const std::uint32_t lane = at.lane();
+  float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (std::uint32_t i = at.warp(); i < v.sphere_count; i += at.warps()) {
+    const Float4 sphere = shared.spheres[i * kPitch + lane];
+    const float center[] = {sphere.x, sphere.y, sphere.z};
+    for (int axis = 0; axis < 3; ++axis) {
+      low[axis] = fminf(low[axis], center[axis]);
+      high[axis] = fmaxf(high[axis], center[axis]);
+    }
+  }
+  for (std::uint32_t axis = 0; axis < 3; ++axis) {
+    shared.boxes[(2 * axis * kMostWarps + at.warp()) * kLanes + lane] = low[axis];
+    shared.boxes[((2 * axis + 1) * kMostWarps + at.warp()) * kLanes + lane] = high[axis];
+  }
+}
+
 // Step 4: a warp a sphere; and the outputs' bits, which lie where the matrices were.
 template <bool kCovers>
 SPHERECHAIN_HD void prepare_pairs(const GroupView& v, const Shared& shared, const Place& at) {
   const std::uint32_t lane = at.lane();
-  float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   const Float4 origin = shared.spheres[lane];
   for (std::uint32_t i = at.warp(); i < v.sphere_count; i += at.warps()) {
     Float4 sphere = shared.spheres[i * kPitch + lane];
@@ -46,19 +63,9 @@ SPHERECHAIN_HD void prepare_pairs(const GroupView& v, const Shared& shared, cons
       shared.spheres[i * kPitch + lane].w = sphere.w;
     }
     shared.powers[i * kPitch + lane] = power_of(sphere, origin);
-    if (v.bounds != nullptr) {
-      const float center[] = {sphere.x, sphere.y, sphere.z};
-      for (int axis = 0; axis < 3; ++axis) {
-        low[axis] = fminf(low[axis], center[axis]);
-        high[axis] = fmaxf(high[axis], center[axis]);
-      }
-    }
   }
   if (v.bounds != nullptr) {
-    for (std::uint32_t axis = 0; axis < 3; ++axis) {
-      shared.boxes[(2 * axis * kMostWarps + at.warp()) * kLanes + lane] = low[axis];
-      shared.boxes[((2 * axis + 1) * kMostWarps + at.warp()) * kLanes + lane] = high[axis];
-    }
+    box_spheres(v, shared, at);
   }
   const std::uint32_t words = half_words(v) * kPitch;
   for (std::uint32_t i = at.thread; v.bits != nullptr && i < words; i += at.threads) {
