@@ -76,6 +76,9 @@ SPHERECHAIN_HD void run_bone_block(const GroupView& v, const Shared& shared, con
   }
   run([&](const Place& at) { prepare_pairs<kCovers>(v, shared, at); });
   run([&](const Place& at) { test_pairs<kCovers>(v, shared, at); });
+  if (has_queue(v.sphere_count, kCovers)) {
+    run([&](const Place& at) { decide_queued(v, shared, at); });
+  }
   run([&](const Place& at) { write_instances(v, shared, at); });
   if (v.pairs != nullptr) {
     run([&](const Place& at) { write_pairs(v, shared, at); });

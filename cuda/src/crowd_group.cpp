@@ -103,10 +103,12 @@ SharedLayout layout_of_bones(const GroupView& v) {
   after.take(out.powers, sphere_places(v) * kFigures);
   after.take(out.bits, v.bits != nullptr ? table : 0);
   after.take(out.ordered_bits, v.pairs != nullptr ? table : 0);
+  const bool queues = has_queue(v.sphere_count, v.cover_entries != nullptr);
+  after.take(out.queue, queues ? kBlockQueued * sizeof(std::uint32_t) : 0);
   Bytes all{std::max(before.used, after.used)};
   all.take(out.spheres, std::size_t{sphere_places(v)} * kPitch * sizeof(Float4));
   all.take(out.counts, kLanes * sizeof(std::uint32_t));
-  all.take(out.dealt, 2 * sizeof(std::uint32_t));
+  all.take(out.dealt, 3 * sizeof(std::uint32_t));
   all.take(out.parts, v.pairs != nullptr ? (kMostWarps * kLanes + 4) * sizeof(std::uint32_t) : 0);
   all.take(out.boxes, v.bounds != nullptr ? 6 * kMostWarps * kLanes * sizeof(float) : 0);
   all.take(out.radii, v.bounds != nullptr ? kLanes * sizeof(std::uint32_t) : 0);

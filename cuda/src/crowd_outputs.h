@@ -17,7 +17,7 @@ SPHERECHAIN_HD Part part_of(const GroupView& v, const Place& at, std::uint32_t w
   return {first, first + each < half_words(v) ? first + each : half_words(v)};
 }
 
-// Step 6: what an instance alone knows; the block's place in the list, and each warp's part of it.
+// Step 7: what an instance alone knows; the block's place in the list, and each warp's part of it.
 SPHERECHAIN_HD void write_instances(const GroupView& v, const Shared& shared, const Place& at) {
   const std::uint32_t lane = at.lane(), first = at.block * kLanes, count = instances_in(v, at);
   if (at.thread < count && v.counts != nullptr) {
@@ -55,7 +55,7 @@ SPHERECHAIN_HD void write_instances(const GroupView& v, const Shared& shared, co
   }
 }
 
-// Step 7: the list, a lane an instance and a warp a part.
+// Step 8: the list, a lane an instance and a warp a part.
 SPHERECHAIN_HD void write_pairs(const GroupView& v, const Shared& shared, const Place& at) {
   const std::uint32_t lane = at.lane(), instance = at.block * kLanes + lane;
   if (lane >= instances_in(v, at)) {

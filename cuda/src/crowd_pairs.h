@@ -108,24 +108,65 @@ SPHERECHAIN_HD void report(const GroupView& v, const Shared& shared, std::uint32
   }
 }
 
-// Pairs that the test by multiply-adds cannot tell apart from touching ones.
+// Eight rows and columns, by their first ones.
+struct Corner {
+  std::uint32_t row, column;
+};
+
+// The pair of a bit of PairColumns::wanted[half].
+SPHERECHAIN_HD Pair pair_of_bit(const Corner& corner, std::uint32_t half, std::uint32_t bit) {
+  const std::uint32_t at = kHalfItem - 1 - bit;
+  return {corner.row + at % kRows, corner.column + at / kRows + half * kHalfColumns};
+}
+
 template <bool kCovers>
-SPHERECHAIN_HD void test_candidates(const GroupView& v, const Shared& shared, std::uint32_t lane,
-                                    std::uint32_t first_row, std::uint32_t first_column,
-                                    std::uint32_t (&candidates)[2]) {
+SPHERECHAIN_HD void decide(const GroupView& v, const Shared& shared, std::uint32_t lane, const Pair& pair) {
+  const Float4 p = shared.spheres[pair.a * kPitch + lane], q = shared.spheres[pair.b * kPitch + lane];
+  if (kCovers ? may_touch(p, q) : touch(p, q, 1.0F)) {
+    report(v, shared, lane, pair.a, pair.b);
+  }
+}
+
+// Each lane about its own.
+template <bool kCovers>
+SPHERECHAIN_HD void decide_at_once(const GroupView& v, const Shared& shared, std::uint32_t lane, const Corner& corner,
+                                   std::uint32_t (&candidates)[2]) {
   while (any_lane((candidates[0] | candidates[1]) != 0)) {
     if ((candidates[0] | candidates[1]) != 0) {
-      const bool is_first = candidates[0] != 0;
-      const std::uint32_t word = is_first ? candidates[0] : candidates[1];
-      const std::uint32_t at = kHalfItem - 1 - lowest_bit(word);
-      candidates[0] = is_first ? word & (word - 1) : 0;
-      candidates[1] = is_first ? candidates[1] : word & (word - 1);
-      const std::uint32_t a = first_row + at % kRows;
-      const std::uint32_t b = first_column + at / kRows + (is_first ? 0 : kHalfColumns);
-      const Float4 p = shared.spheres[a * kPitch + lane], q = shared.spheres[b * kPitch + lane];
-      if (kCovers ? may_touch(p, q) : touch(p, q, 1.0F)) {
-        report(v, shared, lane, a, b);
-      }
+      const std::uint32_t half = candidates[0] != 0 ? 0 : 1, word = candidates[0] != 0 ? candidates[0] : candidates[1];
+      candidates[0] = half == 0 ? word & (word - 1) : 0;
+      candidates[1] = half == 0 ? candidates[1] : word & (word - 1);
+      decide<kCovers>(v, shared, lane, pair_of_bit(corner, half, lowest_bit(word)));
+    }
+  }
+}
+
+SPHERECHAIN_HD std::uint32_t queue_entry(std::uint32_t lane, const Pair& pair) {
+  return (pair.b * kMostQueuedSpheres + pair.a) * kLanes + lane;
+}
+
+inline constexpr std::uint32_t kNoEntry = ~0U;  // of a sphere with itself
+
+// Few lanes have many candidates: all lanes decide about all of them later. Those of a lane for which there is no room
+// stay with it.
+SPHERECHAIN_HD void queue_candidates(const Shared& shared, std::uint32_t lane, const Corner& corner,
+                                     std::uint32_t (&candidates)[2]) {
+  const std::uint32_t count = count_bits(candidates[0]) + count_bits(candidates[1]);
+  if (count == 0) {
+    return;
+  }
+  std::uint32_t place = take_places(&shared.dealt[2], count);
+  if (place + count > kBlockQueued) {
+    for (; place < kBlockQueued; ++place) {
+      shared.queue[place] = kNoEntry;
+    }
+    return;
+  }
+  SPHERECHAIN_UNROLL
+  for (std::uint32_t half = 0; half < 2; ++half) {
+    SPHERECHAIN_ONE_BY_ONE
+    for (std::uint32_t& left = candidates[half]; left != 0; left &= left - 1) {
+      shared.queue[place++] = queue_entry(lane, pair_of_bit(corner, half, lowest_bit(left)));
     }
   }
 }
@@ -160,8 +201,15 @@ SPHERECHAIN_HD void test_item(const GroupView& v, const Shared& shared, std::uin
         apart[c / kHalfColumns] = shift_in_sign(apart[c / kHalfColumns], sum);
       }
     }
+    // What multiply-adds cannot tell apart from touching.
     std::uint32_t candidates[2] = {~apart[0] & columns.wanted[0], ~apart[1] & columns.wanted[1]};
-    test_candidates<kCovers>(v, shared, lane, first_row, columns.first, candidates);
+    if (any_lane((candidates[0] | candidates[1]) != 0)) {
+      const Corner corner{first_row, columns.first};
+      if (has_queue(v.sphere_count, kCovers)) {
+        queue_candidates(shared, lane, corner, candidates);
+      }
+      decide_at_once<kCovers>(v, shared, lane, corner, candidates);
+    }
   }
 }
 
@@ -217,6 +265,19 @@ SPHERECHAIN_HD void test_pairs(const GroupView& v, const Shared& shared, const P
   }
   if (v.bounds != nullptr) {
     reach_spheres(v, shared, at);
+  }
+}
+
+// Step 6: what was queued.
+SPHERECHAIN_HD void decide_queued(const GroupView& v, const Shared& shared, const Place& at) {
+  const std::uint32_t taken = shared.dealt[2], count = taken < kBlockQueued ? taken : kBlockQueued;
+  SPHERECHAIN_ONE_BY_ONE
+  for (std::uint32_t i = at.thread; i < count; i += at.threads) {
+    const std::uint32_t entry = shared.queue[i];
+    if (entry != kNoEntry) {
+      const std::uint32_t pair = entry / kLanes;
+      decide<false>(v, shared, entry % kLanes, {pair % kMostQueuedSpheres, pair / kMostQueuedSpheres});
+    }
   }
 }
 

@@ -35,6 +35,15 @@ SPHERECHAIN_HD std::uint32_t take_place(std::uint32_t* shared) {
 #endif
 }
 
+SPHERECHAIN_HD std::uint32_t take_places(std::uint32_t* shared, std::uint32_t count) {
+#if defined(__CUDA_ARCH__)
+  return atomicAdd(shared, count);
+#else
+  *shared += count;
+  return *shared - count;
+#endif
+}
+
 SPHERECHAIN_HD void set_bits(std::uint32_t* shared, std::uint32_t value) {
 #if defined(__CUDA_ARCH__)
   atomicOr(shared, value);

@@ -18,7 +18,7 @@ SPHERECHAIN_HD std::uint32_t instances_in(const GroupView& v, const Place& at) {
 }
 
 SPHERECHAIN_HD void start_dealing(const Shared& shared, const Place& at) {
-  if (at.thread < 2) {
+  if (at.thread < 3) {
     shared.dealt[at.thread] = 0;
   }
 }

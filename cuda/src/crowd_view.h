@@ -172,12 +172,19 @@ inline constexpr std::uint32_t kMostWarps = 8;
 inline constexpr std::uint32_t kQueued = 256;  // pairs that a warp may find before it decides
 inline constexpr std::uint32_t kBoxFigures = 6;
 
+// Where instances come from bones: pairs that a block may find before it decides, and of how many spheres at most, for
+// an entry has 32 bits.
+inline constexpr std::uint32_t kBlockQueued = 1024, kMostQueuedSpheres = 8192;
+SPHERECHAIN_HD bool has_queue(std::uint32_t sphere_count, bool covers) {
+  return !covers && sphere_count <= kMostQueuedSpheres;
+}
+
 // In bytes from the start of a block's shared memory.
 struct SharedLayout {
   // Where instances come from bones. Matrices and what else is of bones are no longer needed when pairs are tested:
   // what that needs lies in the same place.
-  std::uint32_t matrices, morph_weights, bone_sizes, reference, powers, bits, ordered_bits, spheres, counts, dealt,
-      parts, boxes, radii;
+  std::uint32_t matrices, morph_weights, bone_sizes, reference, powers, bits, ordered_bits, queue, spheres, counts,
+      dealt, parts, boxes, radii;
   // Where they come as spheres, from the start of a warp's own.
   std::uint32_t own_size, own_seen, own_powers, own_bits, own_ordered_bits, own_boxes, own_parts, own_spheres;
   std::size_t size;
@@ -280,7 +287,8 @@ struct Shared {
   std::uint32_t* bits;
   std::uint32_t* ordered_bits;  // in the order of sorted pairs
   std::uint32_t* counts;
-  std::uint32_t* dealt;  // spheres or runs to refit, then pairs to test
+  std::uint32_t* queue;  // a pair of one instance each, see queue_entry
+  std::uint32_t* dealt;  // spheres or runs to refit, then pairs to test; and how many are queued
   std::uint64_t* start;  // the block's place in the list
   std::uint32_t* parts;  // [warp][lane]: pairs in each warp's part of the ordered bits
   float* boxes;          // [axis, low or high][warp][lane] around centres
@@ -298,6 +306,7 @@ struct Shared {
     ordered_bits = reinterpret_cast<std::uint32_t*>(bytes + layout.ordered_bits);
     powers = reinterpret_cast<float*>(bytes + layout.powers);
     counts = reinterpret_cast<std::uint32_t*>(bytes + layout.counts);
+    queue = reinterpret_cast<std::uint32_t*>(bytes + layout.queue);
     dealt = reinterpret_cast<std::uint32_t*>(bytes + layout.dealt);
     start = reinterpret_cast<std::uint64_t*>(bytes + layout.parts);
     parts = reinterpret_cast<std::uint32_t*>(bytes + layout.parts) + 4;

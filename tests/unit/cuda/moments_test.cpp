@@ -121,6 +121,7 @@ TEST_CASE("by moments: matrices that are not finite leave the other instances al
     return in.matrices[(instance * opened.asset.bone_count() + bone) * 12 + i];
   };
   figure(3, 0, 5) = std::nanf("");
+  figure(8, 0, 0) = 1e30F;  // whose square is not finite
   figure(17, 2, 3) = kInfinity;
   figure(21, reference, 7) = std::nanf("");
   figure(39, 1, 0) = -kInfinity;
@@ -136,7 +137,7 @@ TEST_CASE("by moments: matrices that are not finite leave the other instances al
     finite[i / 60] += std::isfinite(wanted.spheres[i].x) && std::isfinite(wanted.spheres[i].radius) ? 1U : 0U;
   }
   CHECK(same);
-  for (const std::size_t instance : {3U, 17U, 39U}) {
+  for (const std::size_t instance : {3U, 8U, 17U, 39U}) {
     CHECK(finite[instance] > 0);
     CHECK(finite[instance] < 60);
   }
