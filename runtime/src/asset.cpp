@@ -83,6 +83,22 @@ BoneTables tables_of(const schema::BoneRefit& refit) {
   return tables;
 }
 
+bool is_upper(const Moment& moment) {
+  const float* m = moment.values;
+  return m[4] == 0 && m[8] == 0 && m[9] == 0 && m[12] == 0 && m[13] == 0 && m[14] == 0;
+}
+
+bool own_are_upper(const MomentTables& tables) {
+  const Moment* own = tables.moments.data;
+  bool out = true;
+  for (const std::uint8_t bones : tables.bone_counts) {
+    for (std::size_t left = bones; out && left > 0; own += left, --left) {
+      out = is_upper(*own);
+    }
+  }
+  return out;
+}
+
 MomentTables moments_of(const schema::Moments& stored) {
   MomentTables tables;
   tables.origin = to_vec3(stored.origin());
@@ -95,6 +111,7 @@ MomentTables moments_of(const schema::Moments& stored) {
   tables.centers = view<CenterTerm>(*stored.centers());
   tables.pair_places = view<std::uint8_t>(*stored.pair_places());
   tables.moments = view<Moment>(*stored.moments());
+  tables.own_are_upper = own_are_upper(tables);
   return tables;
 }
 

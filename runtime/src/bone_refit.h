@@ -14,6 +14,7 @@ namespace spherechain {
 struct MomentInputs {
   Vec3 origin;
   std::uint32_t reference;
+  bool own_are_upper;
   std::size_t batch_count;
   const MomentBatch* batches;
   const BonePair* pairs;

@@ -84,55 +84,87 @@ HWY_INLINE void make_relative(const LaneRefit& batch, Vector (&reference)[kRows]
   }
 }
 
-// Columns `first` and `first` + 2 of the Gram matrices of a batch's pairs, row by row.
-HWY_INLINE void multiply_pairs(const LaneRefit& batch, const BonePair* pairs, std::size_t count, std::size_t first) {
+// Whether row i / 2, column kFirst + 2 (i % 2) of a moment may be other than 0: of a bone's own, where all are 0 below
+// the diagonal, only those on it and above.
+template <std::size_t kFirst, bool kUpper>
+constexpr bool has_product(std::size_t i) {
+  return !kUpper || i / 2 <= kFirst + 2 * (i % 2);
+}
+
+// Columns kFirst and kFirst + 2 of a pair's Gram matrix, row by row; of a bone with itself by kUpper what has_product()
+// says.
+template <std::size_t kFirst, bool kUpper>
+HWY_INLINE void multiply_pair(const float* k, const float* l, float* out) {
   constexpr Floats kFloats;
-  for (std::size_t i = 0; i < count; ++i) {
-    const float* const k = matrix_of(batch, pairs[i].a);
-    const float* const l = matrix_of(batch, pairs[i].b) + first * kLanes;
-    float* const out = batch.products + i * kHalfProducts * kLanes;
-    Vector left[kRows], right[kRows];
-    for (std::size_t m = 0; m < kRows; ++m) {
-      left[m] = hn::Load(kFloats, l + kColumns * m * kLanes);
-      right[m] = hn::Load(kFloats, l + (kColumns * m + 2) * kLanes);
-    }
-    for (std::size_t row = 0; row < kColumns; ++row) {
-      const Vector k0 = hn::Load(kFloats, k + row * kLanes), k1 = hn::Load(kFloats, k + (kColumns + row) * kLanes),
-                   k2 = hn::Load(kFloats, k + (2 * kColumns + row) * kLanes);
+  Vector left[kRows], right[kRows];
+  for (std::size_t m = 0; m < kRows; ++m) {
+    left[m] = hn::Load(kFloats, l + (kColumns * m + kFirst) * kLanes);
+    right[m] = hn::Load(kFloats, l + (kColumns * m + kFirst + 2) * kLanes);
+  }
+  for (std::size_t row = 0; row < kColumns; ++row) {
+    const Vector k0 = hn::Load(kFloats, k + row * kLanes), k1 = hn::Load(kFloats, k + (kColumns + row) * kLanes),
+                 k2 = hn::Load(kFloats, k + (2 * kColumns + row) * kLanes);
+    if (has_product<kFirst, kUpper>(2 * row)) {
       hn::Store(fused(kFloats, k2, left[2], fused(kFloats, k1, left[1], hn::Mul(k0, left[0]))), kFloats,
                 out + 2 * row * kLanes);
+    }
+    if (has_product<kFirst, kUpper>(2 * row + 1)) {
       hn::Store(fused(kFloats, k2, right[2], fused(kFloats, k1, right[1], hn::Mul(k0, right[0]))), kFloats,
                 out + (2 * row + 1) * kLanes);
     }
   }
 }
 
-// What columns `first` and `first` + 2 add to the mean squared distances of kSpheres spheres of the same pairs, whose
-// moments follow each other: two columns of the halving tree.
-template <std::size_t kSpheres>
-HWY_INLINE void sum_pairs(const LaneRefit& batch, const std::uint8_t* places, std::size_t count, const Moment* moments,
-                          std::size_t first, Vector (&out)[kSpheres]) {
-  constexpr Floats kFloats;
-  Vector sums[kSpheres][kHalfProducts];
-  {
-    const float* const product = batch.products + places[0] * kHalfProducts * kLanes;
-    for (std::size_t i = 0; i < kHalfProducts; ++i) {
-      const Vector g = hn::Load(kFloats, product + i * kLanes);
-      for (std::size_t s = 0; s < kSpheres; ++s) {
-        const float* const moment = moments[s * count].values + first;
-        sums[s][i] = hn::Mul(hn::Set(kFloats, moment[2 * i]), g);
-      }
+template <std::size_t kFirst, bool kUpper>
+HWY_INLINE void multiply_pairs(const LaneRefit& batch, const BonePair* pairs, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const float *const k = matrix_of(batch, pairs[i].a), *const l = matrix_of(batch, pairs[i].b);
+    float* const out = batch.products + i * kHalfProducts * kLanes;
+    if (kUpper && pairs[i].a == pairs[i].b) {
+      multiply_pair<kFirst, true>(k, l, out);
+    } else {
+      multiply_pair<kFirst, false>(k, l, out);
     }
   }
-  for (std::size_t pair = 1; pair < count; ++pair) {
-    const float* const product = batch.products + places[pair] * kHalfProducts * kLanes;
-    for (std::size_t i = 0; i < kHalfProducts; ++i) {
-      const Vector g = hn::Load(kFloats, product + i * kLanes);
-      for (std::size_t s = 0; s < kSpheres; ++s) {
-        const float* const moment = moments[s * count + pair].values + first;
-        sums[s][i] = fused(kFloats, hn::Set(kFloats, moment[2 * i]), g, sums[s][i]);
+}
+
+// Takes a pair's products up into the sums of spheres whose moments are `step` apart. What is 0 adds nothing.
+template <std::size_t kSpheres, std::size_t kFirst, bool kUpper, bool kIsFirst>
+HWY_INLINE void add_pair(const float* product, const Moment* moments, std::size_t step,
+                         Vector (&sums)[kSpheres][kHalfProducts]) {
+  constexpr Floats kFloats;
+  for (std::size_t i = 0; i < kHalfProducts; ++i) {
+    if (!has_product<kFirst, kUpper>(i)) {
+      for (std::size_t s = 0; kIsFirst && s < kSpheres; ++s) {
+        sums[s][i] = hn::Set(kFloats, -0.0F);
       }
+      continue;
     }
+    const Vector g = hn::Load(kFloats, product + i * kLanes);
+    for (std::size_t s = 0; s < kSpheres; ++s) {
+      const Vector moment = hn::Set(kFloats, moments[s * step].values[kFirst + 2 * i]);
+      sums[s][i] = kIsFirst ? hn::Mul(moment, g) : fused(kFloats, moment, g, sums[s][i]);
+    }
+  }
+}
+
+// What columns kFirst and kFirst + 2 add to the mean squared distances of kSpheres spheres of the same bones, whose
+// moments follow each other: two columns of the halving tree.
+template <std::size_t kSpheres, std::size_t kFirst, bool kUpper>
+HWY_INLINE void sum_pairs(const LaneRefit& batch, const std::uint8_t* places, std::size_t bone_count,
+                          const Moment* moments, Vector (&out)[kSpheres]) {
+  const std::size_t count = bone_count * (bone_count + 1) / 2;
+  const auto product = [&](std::size_t pair)
+                           HWY_ATTR { return batch.products + places[pair] * kHalfProducts * kLanes; };
+  Vector sums[kSpheres][kHalfProducts];
+  add_pair<kSpheres, kFirst, kUpper, true>(product(0), moments, count, sums);
+  std::size_t pair = 1;
+  for (std::size_t others = bone_count - 1; pair < count; --others) {
+    for (const std::size_t end = pair + others; pair < end; ++pair) {
+      add_pair<kSpheres, kFirst, false, false>(product(pair), moments + pair, count, sums);
+    }
+    add_pair<kSpheres, kFirst, kUpper, false>(product(pair), moments + pair, count, sums);
+    ++pair;
   }
   for (std::size_t s = 0; s < kSpheres; ++s) {
     const Vector(&v)[kHalfProducts] = sums[s];
@@ -189,12 +221,12 @@ HWY_INLINE bool have_same_pairs(const std::uint8_t* places, std::size_t count) {
 }
 
 // Half of the spheres' radii: their sums so far are kept where the radii go.
-template <bool kIsSecond>
+template <bool kIsSecond, bool kUpper>
 HWY_INLINE void sum_spheres(const LaneRefit& batch, const BatchPlace& start, std::size_t sphere_count,
                             Fetcher& fetcher) {
   constexpr Floats kFloats;
   const MomentInputs& tables = batch.inputs.moments;
-  const std::size_t first = kIsSecond ? 1 : 0;
+  constexpr std::size_t kFirst = kIsSecond ? 1 : 0;
   std::size_t place = start.place;
   const auto finish = [&](std::size_t i, Vector sum) HWY_ATTR {
     const std::size_t sphere = tables.spheres[i];
@@ -209,14 +241,14 @@ HWY_INLINE void sum_spheres(const LaneRefit& batch, const BatchPlace& start, std
     if (i + 1 < start.sphere + sphere_count && tables.bone_counts[i + 1] == bone_count &&
         have_same_pairs(places, count)) {
       Vector sums[2];
-      sum_pairs(batch, places, count, moments, first, sums);
+      sum_pairs<2, kFirst, kUpper>(batch, places, bone_count, moments, sums);
       finish(i, sums[0]);
       finish(i + 1, sums[1]);
       i += 2;
       place += 2 * count;
     } else {
       Vector sums[1];
-      sum_pairs(batch, places, count, moments, first, sums);
+      sum_pairs<1, kFirst, kUpper>(batch, places, bone_count, moments, sums);
       finish(i, sums[0]);
       ++i;
       place += count;
@@ -224,7 +256,8 @@ HWY_INLINE void sum_spheres(const LaneRefit& batch, const BatchPlace& start, std
   }
 }
 
-void refit_batch_by_moments(const LaneRefit& batch) {
+template <bool kUpper>
+HWY_INLINE void refit_lanes(const LaneRefit& batch) {
   const MomentInputs& tables = batch.inputs.moments;
   transpose(batch);
   Vector reference[kRows];
@@ -233,10 +266,10 @@ void refit_batch_by_moments(const LaneRefit& batch) {
   BatchPlace at{0, 0, 0, 0};
   for (std::size_t b = 0; b < tables.batch_count; ++b) {
     const std::size_t pair_count = tables.batches[b].pair_count, sphere_count = tables.batches[b].sphere_count;
-    multiply_pairs(batch, tables.pairs + at.pair, pair_count, 0);
-    sum_spheres<false>(batch, at, sphere_count, fetcher);
-    multiply_pairs(batch, tables.pairs + at.pair, pair_count, 1);
-    sum_spheres<true>(batch, at, sphere_count, fetcher);
+    multiply_pairs<0, kUpper>(batch, tables.pairs + at.pair, pair_count);
+    sum_spheres<false, kUpper>(batch, at, sphere_count, fetcher);
+    multiply_pairs<1, kUpper>(batch, tables.pairs + at.pair, pair_count);
+    sum_spheres<true, kUpper>(batch, at, sphere_count, fetcher);
     for (std::size_t i = 0; i < sphere_count; ++i) {
       const std::size_t bone_count = tables.bone_counts[at.sphere];
       place_center(batch, tables.bones + at.bone, tables.centers + at.bone, bone_count, reference,
@@ -246,6 +279,14 @@ void refit_batch_by_moments(const LaneRefit& batch) {
       at.place += bone_count * (bone_count + 1) / 2;
     }
     at.pair += pair_count;
+  }
+}
+
+void refit_batch_by_moments(const LaneRefit& batch) {
+  if (batch.inputs.moments.own_are_upper) {
+    refit_lanes<true>(batch);
+  } else {
+    refit_lanes<false>(batch);
   }
 }
 

@@ -42,6 +42,7 @@ MomentInputs moment_inputs(const MomentTables& tables) {
   MomentInputs in{};
   in.origin = tables.origin;
   in.reference = tables.reference;
+  in.own_are_upper = tables.own_are_upper;
   in.batch_count = tables.batches.size;
   in.batches = tables.batches.data;
   in.pairs = tables.pairs.data;

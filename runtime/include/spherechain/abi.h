@@ -5,7 +5,7 @@
 // The version of the library's binary interface: it changes with every change of a struct or function that programs
 // built before cannot live with, and is the number in the shared library's name, after .so. Asset::open and
 // sc_asset_open take the caller's and refuse another: kWrongAbi, SC_WRONG_ABI.
-#define SC_ABI_VERSION 7
+#define SC_ABI_VERSION 8
 
 // Marks what a shared library gives out. SPHERECHAIN_SHARED is defined by the CMake target and by pkg-config where the
 // library is shared; SPHERECHAIN_BUILDING only while it is built. A static library gives out nothing, so that a plugin

@@ -54,7 +54,7 @@ struct BonePair {
 
 // What a pair of bones adds to a sphere's mean squared distance of its pivots from the refitted centre, in units of
 // that at rest: the sum of values[4 r + c] times row r, column c of the pair's Gram matrix (RefitBonesJob). A bone's own
-// Gram matrix is symmetric, and its moment is 0 below the diagonal, by bakers since 2026-11-23.
+// Gram matrix is symmetric: bakers since 2026-11-23 leave its moment 0 below the diagonal.
 struct Moment {
   float values[kMomentSize];
 };
@@ -83,6 +83,7 @@ struct MomentTables {
   Span<const CenterTerm> centers;        // of each of those bones
   Span<const std::uint8_t> pair_places;  // of each of a sphere's pairs: its place among its batch's pairs
   Span<const Moment> moments;            // of each of those; 64-byte aligned where the asset's bytes are
+  bool own_are_upper = false;            // whether each bone's own moments are 0 below the diagonal
 };
 
 }  // namespace spherechain
