@@ -99,11 +99,7 @@ SphereMoments moments_of(std::uint32_t number, const BoundSphere& sphere, const 
     for (std::size_t l = k; l < out.bones.size(); ++l) {
       Matrix4 sum = Matrix4::Zero();
       for (std::size_t i = 0; i < parts.size(); ++i) sum += from_center[k][i] * from_center[l][i].transpose();
-      // Of two bones for both orders of them; of one bone what is symmetric is summed above the diagonal alone.
-      if (k == l) sum.triangularView<Eigen::StrictlyLower>().setZero();
-      sum *= 2;
-      if (k == l) sum.diagonal() /= 2;
-      out.moments.push_back(sum / unit);
+      out.moments.push_back((k == l ? 1 : 2) / unit * sum);
     }
   }
   return out;

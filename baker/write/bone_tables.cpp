@@ -29,6 +29,13 @@ schema::Moment moment_of(const Eigen::Matrix4d& moment) {
   return schema::Moment(span_of(values));
 }
 
+// Symmetric, as the Gram matrix that it is taken with: what is below the diagonal goes above it.
+Eigen::Matrix4d upper_of(const Eigen::Matrix4d& moment) {
+  Eigen::Matrix4d out = 2 * moment;
+  out.diagonal() = moment.diagonal();
+  return out.triangularView<Eigen::Upper>();
+}
+
 schema::CenterTerm center_of(const Eigen::Vector4d& center) {
   const Eigen::Vector4f single = center.cast<float>();
   return {single.x(), single.y(), single.z(), single.w()};
@@ -55,7 +62,11 @@ flatbuffers::Offset<schema::Moments> create_moments(flatbuffers::FlatBufferBuild
       for (const Index bone : sphere.bones) bones.push_back(static_cast<std::uint16_t>(bone));
       for (const Eigen::Vector4d& center : sphere.centers) centers.push_back(center_of(center));
       places.insert(places.end(), sphere.places.begin(), sphere.places.end());
-      for (const Eigen::Matrix4d& moment : sphere.moments) moments.push_back(moment_of(moment));
+      for (std::size_t i = 0; i < sphere.moments.size(); ++i) {
+        const BonePair& pair = batch.pairs[sphere.places[i]];
+        const Eigen::Matrix4d& moment = sphere.moments[i];
+        moments.push_back(moment_of(pair.first == pair.second ? upper_of(moment) : moment));
+      }
     }
   }
   const schema::Vec3 origin = to_schema(in.origin);

@@ -367,5 +367,6 @@ TEST_CASE("the same input gives the same bytes, and moments that start at a mult
     return reinterpret_cast<const std::uint8_t*>(span.data) - bake.asset.data();
   };
   CHECK(place(asset.moment_tables().moments) % 64 == 0);
+  CHECK(asset.moment_tables().own_are_upper);
   CHECK(place(asset.moment_tables().centers) % 16 == 0);
 }
