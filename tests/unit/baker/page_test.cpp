@@ -27,7 +27,7 @@ Viewed view(int frames, std::size_t most_bytes = PageOptions().most_bytes) {
       folder.write("viewer.html", R"(<script id="spherechain-data" type="application/json">null</script>)").string();
   options.most_bytes = most_bytes;
   MotionChoice motion;
-  motion.poses = std::string(SPHERECHAIN_SAMPLES) + "/poses/arms_crossed.json";
+  motion.poses = tool::pose("arms_crossed.json");
   const AnimatedAsset animated(tool::baked_files().asset.string(), kHumanFile, motion, {frames, 30});
   Viewed out;
   try {

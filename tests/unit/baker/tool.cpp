@@ -41,6 +41,8 @@ std::size_t files_in(const fs::path& folder) {
   return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }
 
+std::string pose(const char* name) { return std::string(SPHERECHAIN_SAMPLES) + "/poses/" + name; }
+
 BakedFiles::BakedFiles()
     : asset(folder.path / "human.sphc"),
       report(folder.path / "report.json"),

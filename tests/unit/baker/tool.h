@@ -25,6 +25,9 @@ void check_error(const Run& run, int code, const std::vector<std::string>& parts
 std::string contents(const std::filesystem::path& path);
 std::size_t files_in(const std::filesystem::path& folder);
 
+// The path of one of samples/poses.
+std::string pose(const char* name);
+
 // The human, baked by the tool once a run.
 struct BakedFiles {
   BakedFiles();
