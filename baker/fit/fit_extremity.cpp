@@ -18,6 +18,9 @@ namespace {
 // Of the limb's last sphere: a heel's point is no start for a chain of growing spheres.
 constexpr double kThinExtremity = 0.25;
 
+// Of a step: where the skin is folded to nothing, spheres of no size would touch for ever.
+constexpr double kThinnest = 0.02;
+
 // The skin across an axis. Positions `s` are along it, in the mesh's own space.
 class Sections {
  public:
@@ -117,7 +120,7 @@ std::vector<Ball> march(const Sections& sections, double start, double step, dou
   std::vector<Ball> balls{*sections.at(start)};
   const auto far_enough = [&](double s) {
     const auto ball = sections.at(s);
-    return ball && penetration_depth(balls.back(), *ball) <= depth;
+    return ball && ball->radius >= kThinnest * step && penetration_depth(balls.back(), *ball) <= depth;
   };
   double s = start;
   while (const auto next = first_where(s, end, step, far_enough)) {

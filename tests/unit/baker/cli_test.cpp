@@ -249,6 +249,15 @@ TEST_CASE("a mesh that cannot be segmented ends with 4") {
   CHECK(!fs::exists(folder.path / "t.sphc"));
 }
 
+TEST_CASE("a bake comes to its end where a hand or foot is folded to nothing in between" *
+          doctest::test_suite("many bakes")) {
+  const TemporaryFolder folder;
+  check_error(run(fmt::format("bake {} -o {}/out.sphc", (kModels / "BLEND/MirroredCube_252.blend").string(),
+                              folder.path.string()),
+                  "timeout 200"),
+              4, {"MirroredCube_252.blend", "no section of the left_leg"});
+}
+
 TEST_CASE("a missed target ends with 5, says so, and writes the asset all the same" *
           doctest::test_suite("many bakes")) {
   const TemporaryFolder folder;
