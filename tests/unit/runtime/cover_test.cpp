@@ -69,6 +69,16 @@ std::vector<Matrix> shrunk_pose(int number, float scale, std::mt19937& random) {
   return matrices;
 }
 
+// Each sphere's cover contains its leaves' balls.
+void check_contains_leaves(const Asset& asset, const Covered& covered) {
+  for (std::size_t l = 0; l < asset.leaf_count(); ++l) {
+    const Sphere& leaf = covered.leaves[l];
+    const Sphere& sphere = covered.spheres[asset.surface().leaves[l].sphere];
+    CHECK(distance(sphere, {double{leaf.x}, double{leaf.y}, double{leaf.z}}) + double{leaf.radius} <=
+          double{sphere.radius});
+  }
+}
+
 // Each vertex is in its leaf's ball, and that in its sphere's cover.
 void check_covered(const Posable& p, const Asset& asset, const std::vector<Matrix>& matrices,
                    const std::vector<float>& weights) {
@@ -77,17 +87,43 @@ void check_covered(const Posable& p, const Asset& asset, const std::vector<Matri
   for (const Target target : supported_targets()) {
     CHECK(same_bits(cover(asset, view(matrices), weights, target).leaves, covered.leaves));
   }
+  check_contains_leaves(asset, covered);
   for (std::size_t l = 0; l < asset.leaf_count(); ++l) {
     CAPTURE(l);
     const Leaf& leaf = asset.surface().leaves[l];
-    const Sphere &ball = covered.leaves[l], &sphere = covered.spheres[leaf.sphere];
+    const Sphere& ball = covered.leaves[l];
     for (const std::uint32_t v : vertices_of(asset, leaf)) {
       const float* s = &skinned.positions[std::size_t{3} * v];
       CHECK(distance(ball, moved(p.tiny, p.skin, v, matrices, weights)) <= double{ball.radius});
       CHECK(distance(ball, {double{s[0]}, double{s[1]}, double{s[2]}}) <= double{ball.radius});
     }
-    const std::array<double, 3> center{double{ball.x}, double{ball.y}, double{ball.z}};
-    CHECK(distance(sphere, center) + double{ball.radius} <= double{sphere.radius});
+  }
+}
+
+// Balls that are alike, and as far from each other as a figure that has no square.
+void check_close_leaves() {
+  Posable p(7);
+  SurfaceParts& surface = p.tiny.parts.surface;
+  for (BallLanes& balls : surface.leaf_balls) {
+    for (std::size_t lane = 0; lane < kLeafLanes; ++lane) {
+      if (balls.radius[lane] == 0) {
+        continue;  // no leaf
+      }
+      balls.x[lane] = lane % 2 == 0 ? 1.0F : -1.0F;
+      balls.y[lane] = balls.z[lane] = 0;
+      balls.radius[lane] = 0.5F;
+    }
+  }
+  for (CoverTerm& term : surface.cover_terms) {
+    std::fill_n(term.deviations, kLeafLanes, 0.0F);
+  }
+  const OpenedAsset opened(p.tiny.parts);
+  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
+  for (int exponent = -60; exponent >= -80; --exponent) {
+    CAPTURE(exponent);
+    Matrix matrix{};
+    matrix[0] = matrix[5] = matrix[10] = std::ldexp(1.3F, exponent);
+    check_contains_leaves(opened.asset, cover(opened.asset, view(std::vector<Matrix>(kBones, matrix)), {}));
   }
 }
 
@@ -146,10 +182,14 @@ TEST_CASE("in every pose every vertex, and where SkinJob puts it, is in its leaf
 }
 
 TEST_CASE("poses shrunk to any size are covered too, on every target, and each sphere's leaves") {
-  SUBCASE("with subnormal floats") { check_shrunk_poses(); }
+  SUBCASE("with subnormal floats") {
+    check_shrunk_poses();
+    check_close_leaves();
+  }
   SUBCASE("where those are zero") {
     const NoSubnormals set;
     check_shrunk_poses();
+    check_close_leaves();
   }
 }
 
@@ -194,13 +234,7 @@ TEST_CASE("a sphere's cover contains its leaves' balls") {
   const OpenedAsset opened(p.tiny.parts);
   std::mt19937 random(8);
   for (const PoseKind kind : kPoseKinds) {
-    const Covered covered = cover(opened.asset, view(random_pose(kBones, kind, 2, random)), {});
-    for (std::size_t l = 0; l < opened.asset.leaf_count(); ++l) {
-      const Sphere& leaf = covered.leaves[l];
-      const Sphere& sphere = covered.spheres[opened.asset.surface().leaves[l].sphere];
-      CHECK(distance(sphere, {double{leaf.x}, double{leaf.y}, double{leaf.z}}) + double{leaf.radius} <=
-            double{sphere.radius});
-    }
+    check_contains_leaves(opened.asset, cover(opened.asset, view(random_pose(kBones, kind, 2, random)), {}));
   }
 }
 
