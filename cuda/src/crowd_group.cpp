@@ -117,7 +117,7 @@ SharedLayout layout_of_bones(const GroupView& v) {
 }
 
 SharedLayout layout_of_spheres(const GroupView& v) {
-  const std::size_t places = std::size_t{units_of(v.sphere_count)} * kUnit;
+  const std::size_t places = lanes_of(v.sphere_count);
   SharedLayout out{};
   Bytes own{sizeof(OwnState)};
   own.take(out.own_seen, std::size_t{4} * seen_pitch(v) * sizeof(float));
@@ -126,7 +126,7 @@ SharedLayout layout_of_spheres(const GroupView& v) {
   own.take(out.own_ordered_bits, v.pairs != nullptr ? v.bit_words * sizeof(std::uint64_t) : 0);
   own.take(out.own_boxes, v.bounds != nullptr ? kBoxFigures * kLanes * sizeof(float) : 0);
   own.take(out.own_parts, v.pairs != nullptr ? kLanes * sizeof(std::uint32_t) : 0);
-  own.take(out.own_spheres, v.sphere_count * sizeof(Float4));
+  own.take(out.own_spheres, places * sizeof(Float4));
   out.own_size = static_cast<std::uint32_t>(own.used);
   out.size = kMostWarps * own.used;
   return out;

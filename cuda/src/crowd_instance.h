@@ -19,15 +19,43 @@ SPHERECHAIN_HD void for_each_of(std::uint32_t count, std::uint32_t lane, const V
   }
 }
 
-// The instance's spheres, where they come as such.
+template <std::uint32_t kTurns, typename Visit>
+SPHERECHAIN_HD void take_turns(std::uint32_t lane, const Visit& visit) {
+  SPHERECHAIN_UNROLL
+  for (std::uint32_t turn = 0; turn < kTurns; ++turn) {
+    visit(turn * kLanes + lane);
+  }
+}
+
+// The same of as many as lanes_of() says: no lane asks whether there is that many. The usual numbers without a loop, so
+// that places are worked out once.
+template <typename Visit>
+SPHERECHAIN_HD void for_all_lanes_of(std::uint32_t count, std::uint32_t lane, const Visit& visit) {
+  const std::uint32_t turns = lanes_of(count) / kLanes;
+  if (turns == 2) {
+    take_turns<2>(lane, visit);
+  } else if (turns == 3) {
+    take_turns<3>(lane, visit);
+  } else {
+    SPHERECHAIN_ONE_BY_ONE
+    for (std::uint32_t turn = 0; turn < turns; ++turn) {
+      visit(turn * kLanes + lane);
+    }
+  }
+}
+
+// The instance's spheres, where they come as such. Past the last sphere it is the last once more.
 SPHERECHAIN_HD void load_spheres(const GroupView& v, const Own& own) {
   const Sphere* const from = v.spheres + own.instance * v.sphere_stride;
+  const std::uint32_t last = v.sphere_count - 1;
   if (v.wide_spheres) {
-    for_each_of(v.sphere_count, own.lane, [&](std::uint32_t i) { copy_past_cache(&own.spheres[i], &from[i].x); });
+    for_all_lanes_of(v.sphere_count, own.lane,
+                     [&](std::uint32_t i) { copy_past_cache(own.spheres + i, &from[i < last ? i : last].x); });
     arrive();
   } else {
-    for_each_of(v.sphere_count, own.lane, [&](std::uint32_t i) {
-      own.spheres[i] = {from[i].x, from[i].y, from[i].z, from[i].radius};
+    for_all_lanes_of(v.sphere_count, own.lane, [&](std::uint32_t i) {
+      const Sphere& sphere = from[i < last ? i : last];
+      own.spheres[i] = {sphere.x, sphere.y, sphere.z, sphere.radius};
     });
   }
 }
@@ -42,12 +70,12 @@ SPHERECHAIN_HD void pad_spheres(const GroupView& v, const Own& own) {
 
 // The spheres as the units are tested by them, and nothing found yet. Past the last sphere anything will do.
 SPHERECHAIN_HD void see_spheres(const GroupView& v, const Own& own) {
-  const std::uint32_t pitch = seen_pitch(v), last = v.sphere_count - 1;
+  const std::uint32_t pitch = seen_pitch(v);
   const Float4 origin = own.spheres[v.origin_sphere];
   float* const seen_by_lane = own.seen + place_of(own.lane);
   float* const powers_by_lane = own.powers + own.lane / 2 * 4 + own.lane % 2;
-  for_each_of(units_of(v.sphere_count) * kUnit, own.lane, [&](std::uint32_t i) {
-    const Float4 seen = see_sphere(own.spheres[i < last ? i : last], origin);
+  for_all_lanes_of(v.sphere_count, own.lane, [&](std::uint32_t i) {
+    const Float4 seen = see_sphere(own.spheres[i], origin);
     float *to = seen_by_lane + (i - own.lane), *powers = powers_by_lane + 2 * (i - own.lane);
     to[0] = seen.x;
     to[pitch] = seen.y;
@@ -68,45 +96,72 @@ SPHERECHAIN_HD void set_bit(std::uint64_t* words, std::uint32_t bit) {
   set_bits(reinterpret_cast<std::uint32_t*>(words) + bit / 32, 1U << (bit % 32));
 }
 
-SPHERECHAIN_HD void report(const GroupView& v, const Own& own, std::uint32_t a, std::uint32_t b) {
-  add_to(&own.state->count, 1);
+// Whether two touch, 1 or 0; its bits are set then.
+SPHERECHAIN_HD std::uint32_t decide(const GroupView& v, const Own& own, std::uint32_t a, std::uint32_t b, float reach) {
+  const Float4 p = own.spheres[a], q = own.spheres[b];
+  if (!touch(p, q, reach)) {
+    return 0;
+  }
   if (v.bits != nullptr) {
     set_bit(own.bits, b * (b - 1) / 2 + a);
   }
   if (v.pairs != nullptr) {
     set_bit(own.ordered_bits, a * (2 * v.sphere_count - a - 1) / 2 + (b - a - 1));
   }
-}
-
-SPHERECHAIN_HD void decide(const GroupView& v, const Own& own, std::uint32_t a, std::uint32_t b, float reach) {
-  const Float4 p = own.spheres[a], q = own.spheres[b];
-  if (touch(p, q, reach)) {
-    report(v, own, a, b);
-  }
+  return 1;
 }
 
 // Of OwnState::queue.
-SPHERECHAIN_HD void decide_queued(const GroupView& v, const Own& own, std::uint32_t entry) {
+SPHERECHAIN_HD std::uint32_t decide_queued(const GroupView& v, const Own& own, std::uint32_t entry) {
   const std::uint32_t place = v.unit_places[entry / (kLanes * kLanePairs)];
   const std::uint32_t pair = entry / kLanes % kLanePairs, lane = entry % kLanes;
-  decide(v, own, (place & 0xFFFFU) * kUnit + row_of(lane, pair), (place >> 16) * kUnit + column_of(lane, pair), 1.0F);
+  return decide(v, own, (place & 0xFFFFU) * kUnit + row_of(lane, pair), (place >> 16) * kUnit + column_of(lane, pair),
+                1.0F);
 }
 
-// Queues the pairs that a word's sums cannot tell apart from touching ones. Where the queue is full it says so, or
-// decides at once.
-template <bool kAtOnce>
-SPHERECHAIN_HD void queue_pairs(const GroupView& v, const Own& own, std::uint32_t word, std::uint32_t found) {
+SPHERECHAIN_HD std::uint32_t entry_of(const Own& own, std::uint32_t word, std::uint32_t pair) {
+  return (word * kWordUnits * kLanePairs + pair) * kLanes + own.lane;
+}
+
+// Queues the pairs that some words' sums cannot tell apart from touching ones; where the queue has no room for all of
+// the lane's, it says that it is full.
+template <std::uint32_t kWords>
+SPHERECHAIN_HD void queue_pairs(const Own& own, std::uint32_t (&found)[kWords]) {
+  std::uint32_t count = 0;
+  SPHERECHAIN_UNROLL
+  for (const std::uint32_t word : found) {
+    count += count_bits(word);
+  }
+  if (count == 0) {
+    return;
+  }
+  std::uint32_t place = take_places(&own.state->queued, count);
+  if (place + count > kQueued) {
+    own.state->is_full = 1;
+    return;
+  }
+  SPHERECHAIN_UNROLL
+  for (std::uint32_t word = 0; word < kWords; ++word) {
+    SPHERECHAIN_ONE_BY_ONE
+    for (std::uint32_t& left = found[word]; left != 0; ++place) {
+      const std::uint32_t pair = leading_zeros(left);
+      left ^= 0x80000000U >> pair;
+      own.state->queue[place] = entry_of(own, word, pair);
+    }
+  }
+}
+
+// The same of one word; what finds no room is decided at once.
+SPHERECHAIN_HD void queue_or_decide(const GroupView& v, const Own& own, std::uint32_t word, std::uint32_t found) {
   while (any_lane(found != 0)) {
     if (found != 0) {
       const std::uint32_t pair = leading_zeros(found), place = take_place(&own.state->queued);
-      const std::uint32_t entry = (word * kWordUnits * kLanePairs + pair) * kLanes + own.lane;
+      const std::uint32_t entry = entry_of(own, word, pair);
       found ^= 0x80000000U >> pair;
       if (place < kQueued) {
         own.state->queue[place] = entry;
-      } else if (kAtOnce) {
-        decide_queued(v, own, entry);
       } else {
-        own.state->is_full = 1;
+        add_to(&own.state->count, decide_queued(v, own, entry));
       }
     }
   }
@@ -124,11 +179,11 @@ template <std::uint32_t kUnits>
 SPHERECHAIN_HD void find_pairs_of(const GroupView& v, const Own& own) {
   constexpr std::uint32_t kAll = kUnits * (kUnits + 1) / 2, kWords = (kAll + kWordUnits - 1) / kWordUnits;
   const Units units(v, own);
-  std::uint32_t wanted[kWords], apart = 0, unit = 0;
+  std::uint32_t found[kWords], apart = 0, unit = 0;
   Units::Rows rows[kUnits];
   SPHERECHAIN_UNROLL
   for (std::uint32_t word = 0; word < kWords; ++word) {
-    wanted[word] = v.wanted[word * kLanes + own.lane];
+    found[word] = v.wanted[word * kLanes + own.lane];
   }
   SPHERECHAIN_UNROLL
   for (std::uint32_t r = 0; r < kUnits; ++r) {
@@ -144,10 +199,11 @@ SPHERECHAIN_HD void find_pairs_of(const GroupView& v, const Own& own) {
       shift_in(sums, apart);
       if (unit % kWordUnits == kWordUnits - 1 || unit == kAll - 1) {
         const std::uint32_t word = unit / kWordUnits, missing = kWordUnits - 1 - unit % kWordUnits;
-        queue_pairs<false>(v, own, word, ~(apart << missing * kLanePairs) & wanted[word]);
+        found[word] &= ~(apart << missing * kLanePairs);
       }
     }
   }
+  queue_pairs(own, found);
 }
 
 SPHERECHAIN_HD void find_pairs_of_any(const GroupView& v, const Own& own) {
@@ -163,7 +219,7 @@ SPHERECHAIN_HD void find_pairs_of_any(const GroupView& v, const Own& own) {
       Units::sum(units.rows(place & 0xFFFFU), units.columns(column, units.rows(column)), sums);
       shift_in(sums, apart);
     }
-    queue_pairs<true>(v, own, word, ~apart & wanted);
+    queue_or_decide(v, own, word, ~apart & wanted);
   }
 }
 
@@ -178,25 +234,27 @@ SPHERECHAIN_HD void find_pairs(const GroupView& v, const Own& own) {
   }
 }
 
-// What was queued, and the near pairs.
+// What was queued, and the near pairs, past the last of which those are that never touch.
 SPHERECHAIN_HD void decide_pairs(const GroupView& v, const Own& own) {
-  for_each_of(v.near_count, own.lane, [&](std::uint32_t i) {
+  std::uint32_t touching = 0;
+  for_all_lanes_of(v.near_count, own.lane, [&](std::uint32_t i) {
     const NearEntry near = v.near[i];
-    decide(v, own, near.a, near.b, near.reach);
+    touching += decide(v, own, near.a, near.b, near.reach);
   });
   if (own.state->is_full == 0) {
     const std::uint32_t queued = own.state->queued < kQueued ? own.state->queued : kQueued;
-    for_each_of(queued, own.lane, [&](std::uint32_t i) { decide_queued(v, own, own.state->queue[i]); });
+    for_each_of(queued, own.lane, [&](std::uint32_t i) { touching += decide_queued(v, own, own.state->queue[i]); });
   } else {  // those that were not queued are not known
     const std::uint32_t words = words_of_units(units_of(v.sphere_count));
     SPHERECHAIN_ONE_BY_ONE
     for (std::uint32_t word = 0; word < words; ++word) {
       SPHERECHAIN_ONE_BY_ONE
       for (std::uint32_t left = v.wanted[word * kLanes + own.lane]; left != 0; left &= left - 1) {
-        decide_queued(v, own, (word * 32 + 31 - lowest_bit(left)) * kLanes + own.lane);
+        touching += decide_queued(v, own, (word * 32 + 31 - lowest_bit(left)) * kLanes + own.lane);
       }
     }
   }
+  add_to(&own.state->count, touching);
 }
 
 // Of the box around all centres, what the lane sees of it.

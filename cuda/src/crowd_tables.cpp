@@ -64,6 +64,8 @@ bool is_near(Span<const NearPair> near, std::uint32_t a, std::uint32_t b) {
   return found != near.end() && found->a == a && found->b == b;
 }
 
+std::size_t near_places(std::size_t count) { return lanes_of(static_cast<std::uint32_t>(count)); }
+
 std::uint32_t fill_near(const WantedPairs& wanted, Span<const NearPair> near, NearEntry* out) {
   std::uint32_t count = 0;
   for (const NearPair& pair : near) {
@@ -113,7 +115,8 @@ std::size_t CrowdTables::words_needed(const Asset& asset) noexcept {
   const std::size_t near =
       std::max(asset.near_pairs(RadiusKind::kFit).size, asset.near_pairs(RadiusKind::kDetect).size);
   return (has_moments(asset) ? moment_words_needed(asset) : pivot_words_needed(asset)) + words_of(n * sizeof(float)) +
-         words_of(most_items(n) * sizeof(PairItem)) + words_of_pairs(n) + words_of(near * sizeof(NearEntry));
+         words_of(most_items(n) * sizeof(PairItem)) + words_of_pairs(n) +
+         words_of(near_places(near) * sizeof(NearEntry));
 }
 
 void CrowdTables::add_pivots(const Asset& asset, RadiusKind radius, TableMemory& entries) noexcept {
@@ -158,7 +161,7 @@ Status CrowdTables::build(const Asset& asset, RadiusKind radius, const Filter* f
   fill_paddings(filter, entries.take<float>(n, out.paddings_at_));
   const WantedPairs wanted(asset, filter);
   const Span<const NearPair> near = asset.near_pairs(radius);
-  out.near_count_ = fill_near(wanted, near, entries.take<NearEntry>(near.size, out.near_at_));
+  out.near_count_ = fill_near(wanted, near, entries.take<NearEntry>(near_places(near.size), out.near_at_));
   const auto is_tested = [&](auto a, auto b) { return wanted(a, b) && !is_near(near, a, b); };
   out.item_count_ = fill_items(n, entries.take<PairItem>(most_items(n), out.items_at_), is_tested);
   auto* unit_places = entries.take<std::uint32_t>(unit_words(n) * kWordUnits, out.unit_places_at_);

@@ -86,6 +86,7 @@ SPHERECHAIN_HD std::uint32_t words_of_units(std::uint32_t units) {
 inline constexpr float kLeastScale = 0x1p-60F;  // and its inverse: see usual_quotient
 inline constexpr std::uint32_t kHalfItem = 32, kHalfColumns = kHalfItem / kRows;
 
+// Tables have as many as lanes_of() says, the spare ones of reach 0.
 struct alignas(16) NearEntry {
   std::uint32_t a, b;
   float reach;
@@ -264,8 +265,11 @@ SPHERECHAIN_HD std::uint32_t sphere_places(const GroupView& v) {
   return v.sphere_count < kColumns ? kColumns : v.sphere_count;
 }
 
+// As many as all lanes take in turns.
+SPHERECHAIN_HD std::uint32_t lanes_of(std::uint32_t spheres) { return (spheres + kLanes - 1) / kLanes * kLanes; }
+
 // Of the rows in which a warp has the spheres as they are seen: no two lanes that read at once share a bank.
-SPHERECHAIN_HD std::uint32_t seen_pitch(const GroupView& v) { return units_of(v.sphere_count) * kUnit + kUnit / 2; }
+SPHERECHAIN_HD std::uint32_t seen_pitch(const GroupView& v) { return lanes_of(v.sphere_count) + kUnit / 2; }
 
 // A block's thread. Where instances come from bones a lane is one of them, and its threads share the work; where they
 // come as spheres a warp is.
