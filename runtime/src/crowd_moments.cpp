@@ -2,9 +2,6 @@
 // Refit by moments of as many instances as a register has lanes, one a lane. The header of RefitBonesJob has the
 // arithmetic. A batch's Gram matrices are made once for all of its spheres, two columns at a time: half of them fit
 // the first cache beside what else is read, and leave one register a sphere to be kept.
-#include <cfloat>
-#include <cmath>
-
 #include "arithmetic.h"
 #include "crowd_lanes.h"
 #include "crowd_refit.h"
@@ -206,9 +203,8 @@ HWY_INLINE Vector radius_of(const LaneRefit& batch, std::size_t sphere, Vector s
   constexpr Floats kFloats;
   const RestSphere& rest = batch.inputs.rest[sphere];
   const float wanted = batch.inputs.radius == RadiusKind::kFit ? rest.radius : rest.detect_radius;
-  const Vector spread = hn::Sqrt(hn::IfThenZeroElse(hn::Le(sum, hn::Zero(kFloats)), sum));
-  const auto is_finite = hn::Le(hn::Abs(sum), hn::Set(kFloats, FLT_MAX));
-  return hn::Mul(hn::Set(kFloats, wanted), hn::IfThenElse(is_finite, spread, hn::Set(kFloats, NAN)));
+  const Vector zero = hn::Zero(kFloats), root = hn::Sqrt(hn::IfThenZeroElse(hn::Le(sum, zero), sum));
+  return hn::Mul(hn::Set(kFloats, wanted), hn::MulAdd(sum, zero, root));  // no number where the sum is not finite
 }
 
 HWY_INLINE bool have_same_pairs(const std::uint8_t* places, std::size_t count) {

@@ -6,11 +6,10 @@ namespace spherechain {
 namespace HWY_NAMESPACE {
 namespace moments {
 
+// Of what is not finite, no number: 0 times it is none.
 HWY_INLINE hn::Vec<Lanes4> spread_of(hn::Vec<Lanes4> square) {
-  const Lanes4 d;
-  const auto is_finite = hn::Le(hn::Abs(square), hn::Set(d, FLT_MAX));
-  const auto root = hn::Sqrt(hn::IfThenZeroElse(hn::Le(square, hn::Zero(d)), square));
-  return hn::IfThenElse(is_finite, root, hn::Set(d, NAN));
+  const auto zero = hn::Zero(Lanes4());
+  return hn::MulAdd(square, zero, hn::Sqrt(hn::IfThenZeroElse(hn::Le(square, zero), square)));
 }
 
 #if HWY_TARGET == HWY_AVX3

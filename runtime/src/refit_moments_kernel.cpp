@@ -2,8 +2,6 @@
 // The inner loop of refit from bones by moments. A lane is an element of a 4 by 4 matrix, so targets of any width work
 // alike. What passes from one step to the next goes over the stack, whose lines are in the first cache: the bones'
 // matrices, a batch's Gram matrices, the sums of some spheres.
-#include <cfloat>
-#include <cmath>
 #include <cstring>
 
 #include "arithmetic.h"
