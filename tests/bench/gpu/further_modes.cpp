@@ -101,9 +101,14 @@ bool bench_large(const std::string& folder, const std::string& name, std::uint32
     return false;
   }
   measure(all, kLarge);
-  std::printf("\n%s in parts: %zu spheres, %.1f pairs, %zu characters, %zu blocks at once of %.1f MB in scratch\n",
-              name.c_str(), posed.asset.spheres().size, mean_count(reference), kLarge, crowd.scratch_blocks(),
+  std::printf("\n%s in parts: %zu spheres, %.1f pairs, %zu characters, blocks of %.1f MB in ", name.c_str(),
+              posed.asset.spheres().size, mean_count(reference), kLarge,
               static_cast<double>(crowd.block_bytes()) / 1e6);
+  if (crowd.scratch_blocks() == 0) {
+    std::printf("shared memory\n");
+  } else {
+    std::printf("scratch, %zu at once\n", crowd.scratch_blocks());
+  }
   print_table(all, pairs_tested(posed.asset), ceilings);
   std::printf("  the CPU's CrowdJob, 1 core: %.0f ns a character\n", cpu);
   return true;
