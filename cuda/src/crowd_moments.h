@@ -190,6 +190,25 @@ class Figures {
   std::size_t read_ = 0;
 };
 
+// Tells of some columns of all pairs of few bones, as few_bone_quads() counts them: the pair, its bones, row, column.
+template <std::size_t kBones, std::size_t kFirst, std::size_t kStep, typename Visit>
+SPHERECHAIN_HD void for_each_figure(const Visit& visit) {
+  std::size_t pair = 0;
+  SPHERECHAIN_UNROLL
+  for (std::size_t k = 0; k < kBones; ++k) {
+    SPHERECHAIN_UNROLL
+    for (std::size_t l = k; l < kBones; ++l, ++pair) {
+      SPHERECHAIN_UNROLL
+      for (std::size_t column = kFirst; column < 4; column += kStep) {
+        SPHERECHAIN_UNROLL
+        for (std::size_t row = 0; row < rows_of_moment(k == l, column); ++row) {
+          visit(pair, k, l, row, column);
+        }
+      }
+    }
+  }
+}
+
 // Some columns of the Gram matrices of few bones stay in registers, and sphere after sphere takes what it needs of
 // them. Hands over what those columns add to its mean square.
 template <std::size_t kBones, std::size_t kFirst, std::size_t kStep, typename Take>
@@ -202,41 +221,22 @@ SPHERECHAIN_HD void add_columns(const Shared& shared, std::uint32_t lane, const 
     for (std::size_t k = 0; k < kBones; ++k) {
       matrices[k] = matrix_at(shared, lane, bones[k]);
     }
-    std::size_t pair = 0;
-    SPHERECHAIN_UNROLL
-    for (std::size_t k = 0; k < kBones; ++k) {
-      SPHERECHAIN_UNROLL
-      for (std::size_t l = k; l < kBones; ++l, ++pair) {
-        SPHERECHAIN_UNROLL
-        for (std::size_t column = kFirst; column < 4; column += kStep) {
-          SPHERECHAIN_UNROLL
-          for (std::size_t row = 0; row < rows_of_moment(k == l, column); ++row) {
-            float& figure = grams[pair].at[row][column] = gram_at(matrices[k], matrices[l], row, column);
-            make_once(figure);
-          }
-        }
-      }
-    }
+    for_each_figure<kBones, kFirst, kStep>(
+        [&](std::size_t pair, std::size_t k, std::size_t l, std::size_t row, std::size_t column) {
+          float& figure = grams[pair].at[row][column] = gram_at(matrices[k], matrices[l], row, column);
+          make_once(figure);
+        });
   }
   SPHERECHAIN_ONE_BY_ONE
   for (std::uint32_t s = 0; s < sphere_count; ++s, quads += few_bone_quads(kBones, kFirst, kStep)) {
     MomentSums sums;
     clear(sums.at);
     Figures moment(quads);
-    std::size_t pair = 0;
-    SPHERECHAIN_UNROLL
-    for (std::size_t k = 0; k < kBones; ++k) {
-      SPHERECHAIN_UNROLL
-      for (std::size_t l = k; l < kBones; ++l, ++pair) {
-        SPHERECHAIN_UNROLL
-        for (std::size_t column = kFirst; column < 4; column += kStep) {
-          SPHERECHAIN_UNROLL
-          for (std::size_t row = 0; row < rows_of_moment(k == l, column); ++row) {
-            sums.at[row][column] = fused(moment.next(), grams[pair].at[row][column], sums.at[row][column]);
-          }
-        }
-      }
-    }
+    for_each_figure<kBones, kFirst, kStep>(
+        [&](std::size_t pair, std::size_t, std::size_t, std::size_t row, std::size_t column) {
+          float& sum = sums.at[row][column];
+          sum = fused(moment.next(), grams[pair].at[row][column], sum);
+        });
     take(s, sums);
   }
 }
