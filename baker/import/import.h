@@ -100,8 +100,8 @@ struct SourceMesh {
 // What is read more than once must be a file on a disk: Error(kFile) for a folder, a pipe, a device, or nothing.
 void check_regular_file(const std::filesystem::path& path);
 
-// Files of its own that a source names: a glTF's buffers and images, an OBJ's materials. None where it cannot be read, which read_source
-// says.
+// Files of its own that a source names: a glTF's buffers and images, an OBJ's materials. None where it cannot be read,
+// which read_source says.
 std::vector<std::filesystem::path> files_beside(const std::filesystem::path& source);
 
 // As the importer of the file's format reads it; a file of motion has no mesh. Throws Error(kFile).

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <cstring>
 
 #include "crowd_table_parts.h"
 
@@ -87,29 +86,13 @@ struct Union {
   }
 };
 
-// Whether it is 0 below its diagonal, as a bone's own moment is from the baker.
-bool is_upper(const Moment& moment) {
-  for (std::size_t row = 0; row < 4; ++row) {
-    for (std::size_t column = 0; column < row; ++column) {
-      if (moment.values[4 * row + column] != 0) {
-        return false;
-      }
-    }
-  }
-  return true;
-}
-
 class RunWriter {
  public:
   RunWriter(const Asset& asset, RadiusKind kind, const std::uint32_t* bone_indices)
       : tables_(asset.moment_tables()), rest_(asset.spheres()), kind_(kind), bone_indices_(bone_indices) {}
 
   bool has_few_bones(const Member& member) const {
-    bool out = member.bone_count == 2 || member.bone_count == 3;
-    for (std::uint32_t k = 0; out && k < member.bone_count; ++k) {
-      out = is_upper(moment_of(member, k, k));
-    }
-    return out;
+    return tables_.own_are_upper && (member.bone_count == 2 || member.bone_count == 3);
   }
 
   // All of them of the same two bones, or three.
@@ -138,12 +121,12 @@ class RunWriter {
   void add(const Member* members, std::uint32_t count) {
     const Union all(tables_, members, count);
     const bool are_equal = count == 2 && members[0].bone_count == all.count && members[1].bone_count == all.count;
-    MomentRun& run = start(members, count, are_equal ? kEqualBones : kAnyBones);
+    MomentRun& run = start(members, count, are_equal && tables_.own_are_upper ? kEqualBones : kAnyBones);
     run.bone_count = all.count;
     for (std::uint32_t i = 0; i < all.count; ++i) {
-      add_bone(all, i, members, count, run);
+      add_bone(all, i, members, count);
       for (std::uint32_t j = i + 1; j < all.count; ++j) {
-        add_pair(all, i, j, members, count, 0);
+        add_pair(all, i, j, members, count);
       }
       steps[step_count_ - 1] |= kLastOfBone;
     }
@@ -194,39 +177,32 @@ class RunWriter {
     center_terms[center_count_++] = {term.x, term.y, term.z, term.w};
   }
 
-  // The bone, and its own pair. Moments with something below the diagonal, which older bakers made, are taken as of two
-  // bones.
-  void add_bone(const Union& all, std::uint32_t i, const Member* members, std::uint32_t count, MomentRun& run) {
+  // The bone, and its own pair, which is taken as of two bones where moments may have something below the diagonal.
+  void add_bone(const Union& all, std::uint32_t i, const Member* members, std::uint32_t count) {
     std::uint32_t& bone = run_bones[bone_count_++] = matrix_of(all.bones[i]);
     std::uint32_t& step = steps[step_count_++] = bone;
-    std::uint32_t others = 0;
     for (std::uint32_t s = 0; s < count; ++s) {
       const std::uint32_t k = all.numbers[s][i];
       if (k != Union::kNone) {
         bone |= 1U << s;
         add_center(members[s], k);
-        const Moment& moment = moment_of(members[s], k, k);
-        if (is_upper(moment)) {
+        if (tables_.own_are_upper) {
           step |= 1U << s;
-          put_own(moment, reinterpret_cast<float*>(moments + moment_count_));
+          put_own(moment_of(members[s], k, k), reinterpret_cast<float*>(moments + moment_count_));
           moment_count_ += kOwnQuads;
-        } else {
-          others |= 1U << s;
         }
       }
     }
-    if (others != 0) {
-      run.kind = kAnyBones;
-      add_pair(all, i, i, members, count, ~others);
+    if (!tables_.own_are_upper) {
+      add_pair(all, i, i, members, count);
     }
   }
 
-  void add_pair(const Union& all, std::uint32_t i, std::uint32_t j, const Member* members, std::uint32_t count,
-                std::uint32_t without) {
+  void add_pair(const Union& all, std::uint32_t i, std::uint32_t j, const Member* members, std::uint32_t count) {
     std::uint32_t mask = 0;
     for (std::uint32_t s = 0; s < count; ++s) {
       const std::uint32_t k = all.numbers[s][i], l = all.numbers[s][j];
-      if (k != Union::kNone && l != Union::kNone && (without >> s & 1U) == 0) {
+      if (k != Union::kNone && l != Union::kNone) {
         mask |= 1U << s;
         add_columns(moment_of(members[s], k, l));
       }

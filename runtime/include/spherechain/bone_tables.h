@@ -53,8 +53,8 @@ struct BonePair {
 };
 
 // What a pair of bones adds to a sphere's mean squared distance of its pivots from the refitted centre, in units of
-// that at rest: the sum of values[4 r + c] times row r, column c of the pair's Gram matrix (RefitBonesJob). A bone's own
-// Gram matrix is symmetric: bakers since 2026-11-23 leave its moment 0 below the diagonal.
+// that at rest: the sum of values[4 r + c] times row r, column c of the pair's Gram matrix (RefitBonesJob).
+// A bone's own Gram matrix is symmetric: bakers since 2026-11-23 leave its moment 0 below the diagonal.
 struct Moment {
   float values[kMomentSize];
 };
