@@ -44,6 +44,12 @@ bool same_file(const fs::path& a, const fs::path& b) {
   return !error && place_a == place_b;
 }
 
+void check_other(const char* other, const fs::path& path, const CommandFile& output, const fs::path& place) {
+  if (!same_file(path, place)) return;
+  throw Error(ExitCode::kUsage,
+              output.path + ": " + other + " and " + output.name + " are the same file (name another)");
+}
+
 // Does `file` hold `magic` at `offset`? So does an empty file, and one that is not there.
 bool begins_with(const std::string& file, std::string_view magic, std::size_t offset) {
   std::error_code ignored;
@@ -56,51 +62,80 @@ bool begins_with(const std::string& file, std::string_view magic, std::size_t of
   return std::equal(magic.begin(), magic.end(), there.begin() + static_cast<std::ptrdiff_t>(offset), same);
 }
 
+// Whether it is what play --json, validate --json or bake --report wrote: by the first keys of these three.
+bool begins_as_table(const std::string& file) {
+  for (const char* start : {"{\n \"backend\":", "{\n \"frames\":", "{\n \"writer\":"}) {
+    if (begins_with(file, start, 0)) return true;
+  }
+  return false;
+}
+
+// Whether there is a file that a mesh may be read with: not what this tool writes for itself.
+bool may_be_read(const fs::path& file) {
+  std::error_code ignored;
+  if (!fs::is_regular_file(file, ignored)) return false;
+  const std::string name = file.string();
+  return fs::file_size(file, ignored) == 0 ||
+         !(begins_with(name, "SPHC", 4) || begins_with(name, "<!doctype html", 0) || begins_as_table(name));
+}
+
 using Files = std::vector<fs::path>;
 
 void add(std::vector<CommandFile>& inputs, const char* name, const Files& files) {
   for (const fs::path& file : files) inputs.push_back({name, file.string()});
 }
 
-// `own_files` says what a mesh, or what the motion is in one file, is made of besides.
-void add_motion(std::vector<CommandFile>& inputs, const char* name, const std::string& path,
-                Files (*own_files)(const fs::path&)) {
-  if (path.empty()) return;
+void add_mesh(std::vector<CommandFile>& inputs, const char* name, const fs::path& mesh) {
+  inputs.push_back({name, mesh.string(), true});
+  add(inputs, name, files_beside(mesh));
+}
+
+void add_sequence(std::vector<CommandFile>& inputs, const char* name, const std::string& path) {
   inputs.push_back({name, path});
-  if (!is_sequence(path)) return add(inputs, name, own_files(path));
-  for (const fs::path& mesh : sequence_files(path)) {
-    inputs.push_back({name, mesh.string()});
-    add(inputs, name, files_beside(mesh));
-  }
+  for (const fs::path& mesh : sequence_files(path)) add_mesh(inputs, name, mesh);
 }
 
 }  // namespace
 
 std::vector<CommandFile> with_source(std::vector<CommandFile> inputs, const char* name, const std::string& source) {
-  inputs.push_back({name, source});
-  add(inputs, name, files_beside(source));
+  add_mesh(inputs, name, source);
   return inputs;
 }
 
 std::vector<CommandFile> with_motion(std::vector<CommandFile> inputs, const MotionChoice& motion) {
-  add_motion(inputs, "--poses", motion.poses, files_of_poses);
-  add_motion(inputs, "--motion", motion.motion, files_beside);
+  if (is_sequence(motion.poses)) {
+    add_sequence(inputs, "--poses", motion.poses);
+  } else if (!motion.poses.empty()) {
+    inputs.push_back({"--poses", motion.poses});
+    add(inputs, "--poses", files_of_poses(motion.poses));
+  }
+  if (is_sequence(motion.motion)) {
+    add_sequence(inputs, "--motion", motion.motion);
+  } else if (!motion.motion.empty()) {
+    add_mesh(inputs, "--motion", motion.motion);
+  }
   return inputs;
 }
 
 void check_outputs(const std::vector<CommandFile>& inputs, const std::vector<CommandFile>& outputs) {
-  std::vector<CommandFile> others = inputs;
+  std::vector<CommandFile> others = inputs, replaced;
   for (const CommandFile& output : outputs) {
     if (output.path.empty()) continue;
     const fs::path place = written_file(output.path);
     check_folder(output.path, place);
     for (const CommandFile& other : others) {
-      if (!other.path.empty() && same_file(other.path, place)) {
-        throw Error(ExitCode::kUsage,
-                    output.path + ": " + other.name + " and " + output.name + " are the same file (name another)");
-      }
+      if (!other.path.empty()) check_other(other.name, other.path, output, place);
     }
     others.push_back({output.name, place.string()});
+    if (may_be_read(place)) replaced.push_back(output);
+  }
+  // To know what meshes are read with takes as long as reading them: not for what is made again and again.
+  if (replaced.empty()) return;
+  for (const CommandFile& input : inputs) {
+    if (!input.is_mesh) continue;
+    for (const fs::path& file : files_read_with(input.path)) {
+      for (const CommandFile& output : replaced) check_other(input.name, file, output, written_file(output.path));
+    }
   }
 }
 
@@ -111,11 +146,7 @@ void check_replaceable(const std::string& file, std::string_view magic, const st
 }
 
 void check_replaceable_json(const std::string& file, bool force, const std::string& advice) {
-  if (force) return;
-  // The first key of what bake --report, play --json and validate --json write.
-  for (const char* start : {"{\n \"writer\":", "{\n \"backend\":", "{\n \"frames\":"}) {
-    if (begins_with(file, start, 0)) return;
-  }
+  if (force || begins_as_table(file)) return;
   throw Error(ExitCode::kFile, file + ": exists and is not what spherechain writes there (" + advice + ")");
 }
 

@@ -16,6 +16,7 @@ struct MotionChoice;
 struct CommandFile {
   const char* name;
   std::string path;
+  bool is_mesh = false;  // or motion: an importer reads it, with files of the importer's choice
 };
 
 // `inputs`, a source of that name, and the files that it names in turn.
@@ -25,8 +26,9 @@ std::vector<CommandFile> with_source(std::vector<CommandFile> inputs, const char
 // turn. Throws Error(kFile) where a sequence has none.
 std::vector<CommandFile> with_motion(std::vector<CommandFile> inputs, const MotionChoice& motion);
 
-// No output is an input or another output, under whatever name or link: Error(kUsage) that names both. Each output's
-// folder is there and writable: Error(kFile).
+// No output is an input, a file that a mesh is read with, or another output, under whatever name or link: Error(kUsage)
+// that names both. Each output's folder is there and writable: Error(kFile). Where an output is there already, and not
+// of this tool's making, the meshes are read for it.
 void check_outputs(const std::vector<CommandFile>& inputs, const std::vector<CommandFile>& outputs);
 
 // Nothing is lost to a slip: a file that is there already is of the same kind (its bytes from `offset` on are `magic`,

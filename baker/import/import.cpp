@@ -46,6 +46,12 @@ std::vector<std::filesystem::path> files_beside(const std::filesystem::path& sou
   return {};
 }
 
+std::vector<std::filesystem::path> files_read_with(const std::filesystem::path& source) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(source, ignored) || is_gltf(source)) return {};  // files_beside has a glTF's
+  return files_read_with_assimp(source);
+}
+
 SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& options) {
   check_regular_file(path);
   return is_gltf(path) ? read_with_tinygltf(path, options) : read_with_assimp(path);

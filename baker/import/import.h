@@ -100,13 +100,18 @@ struct SourceMesh {
 // What is read more than once must be a file on a disk: Error(kFile) for a folder, a pipe, a device, or nothing.
 void check_regular_file(const std::filesystem::path& path);
 
-// Files of its own that a source names: a glTF's buffers and images, an OBJ's materials. None where it cannot be read,
-// which read_source says.
+// Files of its own that a source names, there or not: a glTF's buffers and images, an OBJ's materials. None where it
+// cannot be read, which read_source says.
 std::vector<std::filesystem::path> files_beside(const std::filesystem::path& source);
+
+// Files besides that a source is read with, in any format (skeletons, animations, materials, other meshes), and the
+// pictures its materials name. It takes as long as reading the source.
+std::vector<std::filesystem::path> files_read_with(const std::filesystem::path& source);
 
 // As the importer of the file's format reads it; a file of motion has no mesh. Throws Error(kFile).
 SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& options = {});
 SourceMesh read_with_assimp(const std::filesystem::path& path);
+std::vector<std::filesystem::path> files_read_with_assimp(const std::filesystem::path& path);
 SourceMesh read_with_tinygltf(const std::filesystem::path& path, const ImportOptions& options);
 
 // Checks, welds, cleans and splits what an importer read; `name` is what errors call the file.

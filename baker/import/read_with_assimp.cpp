@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/config.h>
+#include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cstdint>
 #include <filesystem>
@@ -19,6 +21,8 @@
 
 namespace spherechain::baker {
 namespace {
+
+using Files = std::vector<std::filesystem::path>;
 
 void append(const MeshInstance& instance, const std::string& name, SourceMesh& out) {
   const aiMesh& mesh = *instance.mesh;
@@ -55,13 +59,19 @@ void append(const MeshInstance& instance, const std::string& name, SourceMesh& o
 // end.
 class FilesAlone : public Assimp::DefaultIOSystem {
  public:
+  explicit FilesAlone(Files* opened) : opened_(opened) {}
   bool Exists(const char* path) const override {
     std::error_code ignored;
     return std::filesystem::is_regular_file(path, ignored);
   }
   Assimp::IOStream* Open(const char* path, const char* mode) override {
-    return Exists(path) ? DefaultIOSystem::Open(path, mode) : nullptr;
+    if (!Exists(path)) return nullptr;
+    if (opened_ != nullptr) opened_->push_back(path);
+    return DefaultIOSystem::Open(path, mode);
   }
+
+ private:
+  Files* opened_;
 };
 
 // Assimp's triangulation ends the program over a face without corners.
@@ -76,8 +86,13 @@ void check_faces(const aiScene& scene, const std::string& file) {
   }
 }
 
-// In bounded memory: no format here packs a character tighter than this.
-const aiScene* read_scene(Assimp::Importer& importer, const std::filesystem::path& path) {
+// In bounded memory: no format here packs a character tighter than this. `opened` gets the names of the files that it
+// takes, however it ends.
+const aiScene* read_scene(Assimp::Importer& importer, const std::filesystem::path& path, Files* opened = nullptr) {
+  check_bvh(path);
+  importer.SetIOHandler(new FilesAlone(opened));  // which the importer deletes
+  // Sticks that importers put where a file has bones and no mesh are no character.
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   constexpr std::uint64_t kLeast = std::uint64_t{1} << 30, kPerByte = 500;
   std::error_code unknown;
   const std::uintmax_t size = std::filesystem::file_size(path, unknown);
@@ -100,14 +115,39 @@ const aiScene* read_scene(Assimp::Importer& importer, const std::filesystem::pat
   }
 }
 
+// Pictures are never read. They are where the file says, or beside it, as where its author's disk is not at hand.
+void add_pictures(const aiMaterial& material, const std::filesystem::path& folder, Files& files) {
+  for (unsigned p = 0; p < material.mNumProperties; ++p) {
+    const aiMaterialProperty& property = *material.mProperties[p];
+    aiString name;
+    if (std::string_view(property.mKey.C_Str()) != _AI_MATKEY_TEXTURE_BASE ||
+        material.Get(_AI_MATKEY_TEXTURE_BASE, property.mSemantic, property.mIndex, name) != aiReturn_SUCCESS) {
+      continue;
+    }
+    std::string slashed = name.C_Str();
+    std::replace(slashed.begin(), slashed.end(), '\\', '/');
+    files.push_back(folder / slashed);
+    files.push_back(folder / std::filesystem::path(slashed).filename());
+  }
+}
+
 }  // namespace
 
+Files files_read_with_assimp(const std::filesystem::path& path) {
+  Files files;
+  try {
+    Assimp::Importer importer;
+    const aiScene* scene = read_scene(importer, path, &files);
+    for (unsigned m = 0; scene != nullptr && m < scene->mNumMaterials; ++m) {
+      add_pictures(*scene->mMaterials[m], path.parent_path(), files);
+    }
+  } catch (const Error&) {  // which read_source says
+  }
+  return files;
+}
+
 SourceMesh read_with_assimp(const std::filesystem::path& path) {
-  check_bvh(path);
   Assimp::Importer importer;
-  importer.SetIOHandler(new FilesAlone);  // which the importer deletes
-  // Sticks that importers put where a file has bones and no mesh are no character.
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   const std::string name = path.string();
   const aiScene* scene = read_scene(importer, path);
   if (scene == nullptr)

@@ -145,6 +145,56 @@ TEST_CASE("no command writes over the materials of an OBJ: named with blanks, se
   }
 }
 
+TEST_CASE("no command writes over what a mesh of any format is read with, nor over the pictures of its materials") {
+  const TemporaryFolder folder;
+  fs::create_directory(folder.path / "art");
+  const std::string at = folder.path.string();
+  // Ogre's mesh names its skeleton and a material, and the material's file, which is found by that name, a picture.
+  folder.write("ogre.mesh.xml", R"(<mesh><submeshes><submesh material="Cloth" usesharedvertices="false"
+      use32bitindexes="false" operationtype="triangle_list"><faces count="1"><face v1="0" v2="1" v3="2"/></faces>
+      <geometry vertexcount="3"><vertexbuffer positions="true"><vertex><position x="0" y="0" z="0"/></vertex><vertex>
+      <position x="1" y="0" z="0"/></vertex><vertex><position x="0" y="1" z="0"/></vertex></vertexbuffer></geometry>
+      </submesh></submeshes><skeletonlink name="joints.skeleton"/></mesh>)");
+  folder.write("joints.skeleton.xml", "<skeleton><bones/></skeleton>");
+  folder.write("Cloth.material",
+               "material Cloth\n{\ntechnique\n{\npass\n{\ntexture_unit\n{\ntexture cloth.png\n}\n}\n}\n}\n");
+  // Doom 3's mesh does not name its animation: it has the mesh's name.
+  folder.write("doom.md5mesh", "MD5Version 10\n");
+  folder.write("list.txt", "doom.md5mesh\n");
+  // X and OBJ name pictures as a disk of Windows has them, which is not this one.
+  folder.write("direct.x", R"(xof 0303txt 0032
+      Mesh { 3; 0;0;0;, 1;0;0;, 0;1;0;; 1; 3;0,1,2;; MeshMaterialList { 1; 1; 0;;
+      Material { 1;1;1;1;; 0; 0;0;0;; 0;0;0;; TextureFilename { "C:\\art\\far.png"; } } } })");
+  folder.write("wavefront.obj", "mtllib wavefront.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl c\nf 1 2 3\n");
+  folder.write("wavefront.mtl", "newmtl c\nmap_Kd art\\near.png\n");
+  for (const char* file : {"cloth.png", "doom.md5anim", "far.png", "art/near.png", "there"}) touch(folder, file);
+
+  for (const auto& [mesh, file] : {std::pair("ogre.mesh.xml", "joints.skeleton.xml"),
+                                   {"ogre.mesh.xml", "Cloth.material"},
+                                   {"ogre.mesh.xml", "cloth.png"},
+                                   {"doom.md5mesh", "doom.md5anim"},
+                                   {"direct.x", "far.png"},
+                                   {"wavefront.obj", "art/near.png"}}) {
+    const auto refused = [&](const std::string& arguments, const char* input, const char* output) {
+      check_refused(folder.path, fmt::format("{} {}/{}", arguments, at, file), input, output);
+    };
+    const std::string input = fmt::format("{}/{}", at, mesh);
+    refused(fmt::format("bake {} --force -o", input), "INPUT", "-o");
+    refused(fmt::format("bake {} --force -o out --preview {}/there --report", input, at), "INPUT", "--report");
+    refused(fmt::format("bake {} --force -o out --preview", input), "INPUT", "--preview");
+    refused(fmt::format("play a.sphc --source {} --json", input), "--source", "--json");
+    refused(fmt::format("validate a.sphc --source a.glb --motion {} --json", input), "--motion", "--json");
+    refused(fmt::format("view a.sphc --source {} --force -o", input), "--source", "-o");
+  }
+  check_refused(folder.path, fmt::format("play a.sphc --source a.glb --poses {0}/list.txt --json {0}/doom.md5anim", at),
+                "--poses", "--json");
+  folder.write("doom.md5anim", "");
+  check_refused(folder.path, fmt::format("bake {0}/doom.md5mesh -o {0}/doom.md5anim", at), "INPUT", "-o");
+  // A file that none of them is read with is refused for what is in it.
+  touch(folder, "other.png");
+  check_error(run(fmt::format("bake {0}/wavefront.obj -o {0}/other.png", at)), 3, {"exists and is not an asset"});
+}
+
 TEST_CASE("what goes to /dev/stdout goes to where that leads, and takes the name from nobody") {
   const std::string play =
       fmt::format("play {} --source {} --frames 1 --json ", baked_files().asset.string(), kHumanFile);
