@@ -12,10 +12,8 @@
 #include "play/cuda_frames.h"
 #include "play/player.h"
 #include "play/target.h"
-#include "report/json_text.h"
 #include "report/play_frames.h"
 #include "report/report.h"
-#include "write/write.h"
 
 namespace spherechain::baker {
 namespace {
@@ -118,7 +116,16 @@ ExitCode run_play(const PlayOptions& options) {
   if (on_cuda) cuda = play_on_cuda(animated, radius);
   Player player(animated.asset(), radius, options.mode != "m2", options.mode != "m1", target);
   Tally tally;
-  ordered_json frames = ordered_json::array();
+  const char* const refit = refit_name(animated.asset().refit_rule());
+  std::optional<PlayFile> file;
+  if (!options.json.empty()) {
+    file.emplace(options.json,
+                 ordered_json{{"backend", on_cuda ? "cuda" : backend_name(target)},
+                              {"target", on_cuda ? "cuda" : to_string(target)},
+                              {"radius", options.radius},
+                              {"refit", refit}},
+                 animated.frame_count());
+  }
   {
     Progress progress("play " + options.asset + ":");
     for (int i = 0; i < animated.frame_count(); ++i) {
@@ -136,25 +143,19 @@ ExitCode run_play(const PlayOptions& options) {
       std::optional<Player::TriangleDetection> triangles;
       if (options.contacts) triangles = player.detect_triangles(positions);
       tally.add(i, result, player, skin, triangles, animated.asset());
-      if (options.json.empty()) continue;
-      frames.push_back(frame_json(animated, i, result, player));
-      if (!skin) continue;
-      frames.back()["skin_us"] = skin->us;
-      frames.back()["skin_pairs"] = pairs_json({skin->pairs.data(), skin->pairs.size()});
-      if (!triangles) continue;
-      frames.back()["contacts_us"] = triangles->us;
-      ordered_json& contacts = frames.back()["contacts"] = ordered_json::array();
-      for (const TrianglePair& pair : triangles->pairs) contacts.push_back({pair.a, pair.b});
+      if (!file) continue;
+      ordered_json frame = frame_json(animated, i, result, player);
+      if (skin) {
+        frame["skin_us"] = skin->us;
+        frame["skin_pairs"] = pairs_json({skin->pairs.data(), skin->pairs.size()});
+      }
+      if (triangles) {
+        frame["contacts_us"] = triangles->us;
+        ordered_json& contacts = frame["contacts"] = ordered_json::array();
+        for (const TrianglePair& pair : triangles->pairs) contacts.push_back({pair.a, pair.b});
+      }
+      file->add(frame);
     }
-  }
-  const char* const refit = refit_name(animated.asset().refit_rule());
-  if (!options.json.empty()) {
-    const ordered_json out{{"backend", on_cuda ? "cuda" : backend_name(target)},
-                           {"target", on_cuda ? "cuda" : to_string(target)},
-                           {"radius", options.radius},
-                           {"refit", refit},
-                           {"frames", std::move(frames)}};
-    write_atomically(options.json, json_text(out, 1) + "\n");
   }
   fmt::print("{}", tally.text(options.radius, refit, on_cuda ? "cuda (refit and M2 in one)" : backend_text(target)));
   if (!options.json.empty()) fmt::print("wrote {}\n", options.json);

@@ -3,6 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "report/json_text.h"
+
 namespace spherechain::baker {
 
 nlohmann::ordered_json pairs_json(Span<const Pair> pairs) {
@@ -21,6 +23,25 @@ nlohmann::ordered_json frame_json(const AnimatedAsset& animated, int index, cons
   if (const auto& m2 = result.m2) out["m2"] = {{"tests", m2->tests}, {"pairs", m2->pairs}, {"us", m2->us}};
   out["pairs"] = pairs_json(player.pairs());
   return out;
+}
+
+PlayFile::PlayFile(const std::filesystem::path& path, const nlohmann::ordered_json& head, int frames)
+    : file_(path), left_(frames) {
+  std::string text = json_text(head, 1);
+  text.resize(text.size() - 2);  // the end, "\n}"
+  file_.write(text + ",\n \"frames\": [\n");
+}
+
+// Whole lines: a terminal that both the frames and the progress go to shows each on its own.
+void PlayFile::add(const nlohmann::ordered_json& frame) {
+  const std::string text = json_text(frame, 1);
+  std::string inner = "  ";
+  for (const char c : text) {
+    inner += c;
+    if (c == '\n') inner += "  ";
+  }
+  file_.write(inner + (--left_ > 0 ? ",\n" : "\n ]\n}\n"));
+  if (left_ == 0) file_.finish();
 }
 
 }  // namespace spherechain::baker

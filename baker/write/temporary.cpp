@@ -26,7 +26,7 @@ void delete_and_end(int signal) {
 }
 
 // What a program ignores (nohup) or handles stays as it is.
-bool handle_signals() {
+void handle_signals() {
   for (const int signal : {SIGHUP, SIGINT, SIGQUIT, SIGTERM}) {
     struct sigaction known {};
     if (::sigaction(signal, nullptr, &known) != 0 || known.sa_handler != SIG_DFL) continue;
@@ -34,7 +34,6 @@ bool handle_signals() {
     own.sa_handler = delete_and_end;
     ::sigaction(signal, &own, nullptr);
   }
-  return true;
 }
 
 std::mutex& one_at_a_time() {
@@ -53,7 +52,7 @@ std::string name_beside(const std::filesystem::path& target) {
 
 Temporary::Temporary(const std::filesystem::path& target)
     : only_one_(one_at_a_time()), target_(target), path_(target.parent_path() / name_beside(target)) {
-  [[maybe_unused]] static const bool handled = handle_signals();
+  handle_signals();
   const std::string& name = path_.native();
   if (name.size() >= doomed.size()) return;  // no file can be opened by such a name
   doomed.fill('\0');

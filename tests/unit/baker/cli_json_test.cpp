@@ -10,6 +10,7 @@
 #include "baked_human.h"
 #include "human.h"
 #include "play/asset_file.h"
+#include "report/play_frames.h"
 #include "spherechain/simd.h"
 #include "temporary_folder.h"
 #include "tool.h"
@@ -75,6 +76,29 @@ TEST_CASE("inspect --json has the contract's fields and agrees with itself") {
   CHECK(text.find("refit    moments\n") != std::string::npos);
   CHECK(text.find("\nmoments  ") != std::string::npos);
   CHECK(text.find("zeta5") != std::string::npos);
+}
+
+TEST_CASE("play --json is written frame by frame, and is the text that all of it at once would be") {
+  using nlohmann::ordered_json;
+  const TemporaryFolder folder;
+  const fs::path out = folder.path / "play.json";
+  const ordered_json head{{"backend", "simd"}, {"refit", "moments"}};
+  ordered_json whole = head;
+  // Names of clips are any bytes; lists may be empty, and lists of lists.
+  whole["frames"] = {{{"index", 0}, {"pairs", ordered_json::array()}, {"m2", {{"tests", 3}}}},
+                     {{"index", 1}, {"pairs", {{1, 2}, {3, 40}}}, {"clip", "a\nb \"c\", \xff {\n}"}},
+                     {{"index", 2}, {"time", 0.1}, {"pairs", {{1, 2}}}}};
+  const std::string text = whole.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+  spherechain::baker::PlayFile file(out, head, 3);
+  for (const ordered_json& frame : whole["frames"]) {
+    CHECK(!fs::exists(out));
+    file.add(frame);
+    REQUIRE(files_in(folder.path) == 1);
+    const std::string so_far = contents(fs::directory_iterator(folder.path)->path());
+    CHECK(text.rfind(so_far, 0) == 0);
+    CHECK(so_far.find(fmt::format("\"index\": {}", frame["index"].get<int>())) != std::string::npos);
+  }
+  CHECK(contents(out) == text);
 }
 
 TEST_CASE("play --json has the contract's fields; at rest nothing touches, hands on hips do") {

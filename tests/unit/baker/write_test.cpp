@@ -15,6 +15,7 @@
 #include "mesh/error.h"
 #include "temporary_folder.h"
 #include "tool.h"
+#include "write/atomic_file.h"
 
 namespace fs = std::filesystem;
 using spherechain::baker::write_atomically;
@@ -103,6 +104,24 @@ TEST_CASE("a link stays, and what it leads to is replaced whole: through other l
   CHECK(tool::files_in(folder.path) == 4);
   CHECK(tool::files_in(folder.path / "there") == 3);
   CHECK(tool::files_in(folder.path / "there/deep") == 1);
+}
+
+TEST_CASE("a file that is given up half-way is as it was, and so is its folder") {
+  const TemporaryFolder folder;
+  const fs::path target = folder.write("out", "as it was");
+  {
+    spherechain::baker::AtomicFile file(target);
+    file.write("half of");
+    CHECK(tool::files_in(folder.path) == 2);
+    CHECK(tool::contents(target) == "as it was");
+  }
+  CHECK(tool::files_in(folder.path) == 1);
+  CHECK(tool::contents(target) == "as it was");
+  spherechain::baker::AtomicFile file(target);
+  for (const char* piece : {"all", "", " of it"}) file.write(piece);
+  file.finish();
+  CHECK(tool::files_in(folder.path) == 1);
+  CHECK(tool::contents(target) == "all of it");
 }
 
 TEST_CASE("what a link leads to is as it was where it cannot be replaced") {

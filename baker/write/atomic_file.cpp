@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "write/atomic_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "mesh/error.h"
+#include "write/write.h"
+
+namespace spherechain::baker {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Standard output goes on where it is: a file that is opened once more would begin anew.
+int open_directly(const fs::path& path) {
+  struct ::stat there {
+  }, standard{};
+  const bool is_standard = ::stat(path.c_str(), &there) == 0 && ::fstat(STDOUT_FILENO, &standard) == 0 &&
+                           there.st_dev == standard.st_dev && there.st_ino == standard.st_ino;
+  if (is_standard) return ::dup(STDOUT_FILENO);
+  return ::open(path.c_str(), S_ISREG(there.st_mode) ? O_WRONLY | O_TRUNC : O_WRONLY);
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(const fs::path& path) : path_(path) {
+  if (is_written_directly(path)) {
+    file_ = open_directly(path);
+  } else {
+    temporary_.emplace(written_file(path));
+    file_ = ::open(temporary_->path().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  }
+  if (file_ < 0) fail("created");
+}
+
+AtomicFile::~AtomicFile() {
+  if (file_ >= 0) ::close(file_);
+}
+
+void AtomicFile::write(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ::ssize_t n = ::write(file_, bytes.data(), bytes.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) fail("written");
+    bytes.remove_prefix(static_cast<std::size_t>(n));
+  }
+}
+
+void AtomicFile::finish() {
+  if (temporary_ && ::fsync(file_) != 0) fail("written");
+  const int file = file_;
+  file_ = -1;
+  if (::close(file) != 0) fail("written");
+  if (temporary_ && !temporary_->rename_to_target()) fail("replaced");
+}
+
+void AtomicFile::fail(const char* doing) const {
+  throw Error(ExitCode::kFile, path_.string() + ": cannot be " + doing + " (" + std::strerror(errno) + ")");
+}
+
+}  // namespace spherechain::baker
