@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The crowd's kernel, thread by thread, in steps with a barrier between them. It is compiled for the device, and by any
-// C++ compiler for the tests, which run a block's threads one after the other, step by step. The arithmetic is that of
-// refit_bones.h and detect.h: multiply-adds where fused() is written, and nowhere else.
+// C++ compiler for the tests, which run a block's threads one after the other, step by step, or all at once. The
+// arithmetic is that of refit_bones.h and detect.h: multiply-adds where fused() is written, and nowhere else.
 #pragma once
 
 #include "crowd_cover.h"
@@ -110,14 +110,46 @@ SPHERECHAIN_HD void run_any_block(const GroupView& v, const Shared& shared, cons
   }
 }
 
+// Takes one thread through the steps. `Barriers`: block() and warp() wait for the threads of the block and of the warp.
+template <typename Barriers>
+struct RunThread {
+  Place at;
+  Barriers barriers;
+
+  template <typename Step>
+  SPHERECHAIN_HD void operator()(const Step& step) const {
+    step(at);
+    barriers.block();
+  }
+  template <typename... Steps>
+  SPHERECHAIN_HD void for_instances(const GroupView& v, const Shared& shared, const Steps&... steps) const {
+    Place here = at;
+    asm volatile(
+        ""
+        : "+r"(here.thread));  // or what follows from it would be kept in registers, or spilled, from the start
+    const std::uint32_t count = instances_in(v, here);
+    for (std::uint32_t place = here.warp(); place < count; place += here.warps()) {
+      const Own own(v, shared, here, place);
+      (run_own(steps, own), ...);
+    }
+  }
+
+ private:
+  template <typename Step>
+  SPHERECHAIN_HD void run_own(const Step& step, const Own& own) const {
+    if (step.is_wanted) {
+      step.run(own);
+      barriers.warp();
+    }
+  }
+};
+
 // What a block of its launch does where the memory is in scratch. `run` is made for a block of the group.
 template <typename MakeRun>
 SPHERECHAIN_HD void run_blocks_in_scratch(const GroupView& v, std::uint32_t first, const MakeRun& make_run) {
   const Shared memory(v.scratch + first * v.layout.size, v.layout);
   for (std::uint32_t block = first; block < blocks_of(v); block += v.scratch_blocks) {
-    const auto run = make_run(block);
-    run_any_block(v, memory, run);
-    run([](const Place&) {});  // a warp that is done may not begin with what others still use
+    run_any_block(v, memory, make_run(block));
   }
 }
 

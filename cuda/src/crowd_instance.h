@@ -88,8 +88,7 @@ SPHERECHAIN_HD void see_spheres(const GroupView& v, const Own& own) {
   if (v.pairs != nullptr) {
     for_each_of(v.bit_words, own.lane, [&](std::uint32_t i) { own.ordered_bits[i] = 0; });
   }
-  OwnState& state = *own.state;
-  state.count = state.radius = state.queued = state.is_full = 0;  // by all lanes
+  set_alike(own.state->found, Found{});
 }
 
 SPHERECHAIN_HD void set_bit(std::uint64_t* words, std::uint32_t bit) {
@@ -135,9 +134,9 @@ SPHERECHAIN_HD void queue_pairs(const Own& own, std::uint32_t (&found)[kWords]) 
   if (count == 0) {
     return;
   }
-  std::uint32_t place = take_places(&own.state->queued, count);
+  std::uint32_t place = take_places(&own.state->found.queued, count);
   if (place + count > kQueued) {
-    own.state->is_full = 1;
+    set_alike(own.state->found.is_full, 1U);
     return;
   }
   SPHERECHAIN_UNROLL
@@ -155,13 +154,13 @@ SPHERECHAIN_HD void queue_pairs(const Own& own, std::uint32_t (&found)[kWords]) 
 SPHERECHAIN_HD void queue_or_decide(const GroupView& v, const Own& own, std::uint32_t word, std::uint32_t found) {
   while (any_lane(found != 0)) {
     if (found != 0) {
-      const std::uint32_t pair = leading_zeros(found), place = take_place(&own.state->queued);
+      const std::uint32_t pair = leading_zeros(found), place = take_place(&own.state->found.queued);
       const std::uint32_t entry = entry_of(own, word, pair);
       found ^= 0x80000000U >> pair;
       if (place < kQueued) {
         own.state->queue[place] = entry;
       } else {
-        add_to(&own.state->count, decide_queued(v, own, entry));
+        add_to(&own.state->found.count, decide_queued(v, own, entry));
       }
     }
   }
@@ -241,8 +240,8 @@ SPHERECHAIN_HD void decide_pairs(const GroupView& v, const Own& own) {
     const NearEntry near = v.near[i];
     touching += decide(v, own, near.a, near.b, near.reach);
   });
-  if (own.state->is_full == 0) {
-    const std::uint32_t queued = own.state->queued < kQueued ? own.state->queued : kQueued;
+  if (own.state->found.is_full == 0) {
+    const std::uint32_t queued = own.state->found.queued < kQueued ? own.state->found.queued : kQueued;
     for_each_of(queued, own.lane, [&](std::uint32_t i) { touching += decide_queued(v, own, own.state->queue[i]); });
   } else {  // those that were not queued are not known
     const std::uint32_t words = words_of_units(units_of(v.sphere_count));
@@ -254,7 +253,7 @@ SPHERECHAIN_HD void decide_pairs(const GroupView& v, const Own& own) {
       }
     }
   }
-  add_to(&own.state->count, touching);
+  add_to(&own.state->found.count, touching);
 }
 
 // Of the box around all centres, what the lane sees of it.
@@ -299,7 +298,7 @@ SPHERECHAIN_HD void reach_spheres(const GroupView& v, const Own& own) {
     const float dx = s.x - middle.x, dy = s.y - middle.y, dz = s.z - middle.z;
     most = fmaxf(most, sqrtf((dx * dx + dy * dy) + dz * dz) + s.w);
   }
-  raise_to(&own.state->radius, most * (1.0F + 0x1p-20F));  // for what was rounded
+  raise_to(&own.state->found.radius, most * (1.0F + 0x1p-20F));  // for what was rounded
 }
 
 // The words of the ordered bits that a lane lists.
@@ -317,19 +316,19 @@ SPHERECHAIN_HD void write_instance(const GroupView& v, const Own& own) {
   if (v.bounds != nullptr) {
     const Vec3 middle = middle_of(own.state->box);
     float radius = 0;
-    std::memcpy(&radius, &own.state->radius, sizeof radius);
-    v.bounds[own.instance] = {middle.x, middle.y, middle.z, radius};  // each lane the same
+    std::memcpy(&radius, &own.state->found.radius, sizeof radius);
+    set_alike(v.bounds[own.instance], Sphere{middle.x, middle.y, middle.z, radius});
   }
   if (v.bits != nullptr) {
     std::uint64_t* const to = v.bits + std::size_t{own.instance} * v.bit_words;
     for_each_of(v.bit_words, own.lane, [&](std::uint32_t i) { to[i] = own.bits[i]; });
   }
   if (v.counts != nullptr) {
-    v.counts[own.instance] = own.state->count;  // each lane the same
+    set_alike(v.counts[own.instance], own.state->found.count);
   }
   if (v.pairs != nullptr) {
     if (own.lane == 0) {
-      v.starts[own.instance] = own.state->start = reserve(v.pair_count, own.state->count);
+      v.starts[own.instance] = own.state->start = reserve(v.pair_count, own.state->found.count);
     }
     const WordPart part = word_part(v, own.lane);
     std::uint32_t pairs = 0;

@@ -28,36 +28,11 @@ inline Status launch(void (*kernel)(Launch), const Launch& groups, std::uint32_t
                                     shared_bytes, stream));
 }
 
-struct RunStep {
-  Place at;
-
-  template <typename Step>
-  __device__ void operator()(const Step& step) const {
-    step(at);
-    __syncthreads();
-  }
-  template <typename... Steps>
-  __device__ void for_instances(const GroupView& v, const Shared& shared, const Steps&... steps) const {
-    Place here = at;
-    asm volatile(
-        ""
-        : "+r"(here.thread));  // or what follows from it would be kept in registers, or spilled, from the start
-    const std::uint32_t count = instances_in(v, here);
-    for (std::uint32_t place = here.warp(); place < count; place += kMostWarps) {
-      const Own own(v, shared, here, place);
-      (run_own(steps, own), ...);
-    }
-  }
-
- private:
-  template <typename Step>
-  __device__ static void run_own(const Step& step, const Own& own) {
-    if (step.is_wanted) {
-      step.run(own);
-      __syncwarp();
-    }
-  }
+struct DeviceBarriers {
+  __device__ void block() const { __syncthreads(); }
+  __device__ void warp() const { __syncwarp(); }
 };
+using RunStep = RunThread<DeviceBarriers>;
 
 __device__ inline const GroupView& group_of_block(const Launch& launch) {
   std::uint32_t g = 0;

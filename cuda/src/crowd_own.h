@@ -6,12 +6,15 @@
 
 namespace spherechain::cuda {
 
-// What a warp knows of the instance whose pairs it tests.
-struct alignas(16) OwnState {
-  std::uint64_t start;  // of the instance's list
-  std::uint32_t count;
+// What a warp has found of the instance whose pairs it tests.
+struct alignas(16) Found {
+  std::uint32_t count, queued, is_full;
   std::uint32_t radius;  // of bounds: a float of no sign, which is ordered as its bits are
-  std::uint32_t queued, is_full;
+};
+
+struct OwnState {
+  Found found;
+  std::uint64_t start;           // of the instance's list
   float box[kBoxFigures];        // around all centres: low, high
   std::uint32_t queue[kQueued];  // (unit * kLanePairs + pair) * kLanes + lane
 };

@@ -22,7 +22,7 @@ SPHERECHAIN_HD void add_to(std::uint32_t* shared, std::uint32_t value) {
 #if defined(__CUDA_ARCH__)
   atomicAdd(shared, value);
 #else
-  *shared += value;
+  __atomic_fetch_add(shared, value, __ATOMIC_RELAXED);
 #endif
 }
 
@@ -31,7 +31,7 @@ SPHERECHAIN_HD std::uint32_t take_place(std::uint32_t* shared) {
 #if defined(__CUDA_ARCH__)
   return atomicAdd(shared, 1U);
 #else
-  return (*shared)++;
+  return __atomic_fetch_add(shared, 1U, __ATOMIC_RELAXED);
 #endif
 }
 
@@ -39,8 +39,7 @@ SPHERECHAIN_HD std::uint32_t take_places(std::uint32_t* shared, std::uint32_t co
 #if defined(__CUDA_ARCH__)
   return atomicAdd(shared, count);
 #else
-  *shared += count;
-  return *shared - count;
+  return __atomic_fetch_add(shared, count, __ATOMIC_RELAXED);
 #endif
 }
 
@@ -48,7 +47,22 @@ SPHERECHAIN_HD void set_bits(std::uint32_t* shared, std::uint32_t value) {
 #if defined(__CUDA_ARCH__)
   atomicOr(shared, value);
 #else
-  *shared |= value;
+  __atomic_fetch_or(shared, value, __ATOMIC_RELAXED);
+#endif
+}
+
+// The same value by several lanes.
+template <typename T>
+SPHERECHAIN_HD void set_alike(T& to, T value) {
+#if defined(__CUDA_ARCH__)
+  to = value;
+#else
+  std::uint32_t words[sizeof value / sizeof(std::uint32_t)];
+  std::memcpy(words, &value, sizeof value);
+  auto* shared = reinterpret_cast<std::uint32_t*>(&to);
+  for (const std::uint32_t word : words) {
+    __atomic_store_n(shared++, word, __ATOMIC_RELAXED);
+  }
 #endif
 }
 
@@ -56,8 +70,7 @@ SPHERECHAIN_HD std::uint64_t reserve(std::uint64_t* count, std::uint64_t value) 
 #if defined(__CUDA_ARCH__)
   return atomicAdd(reinterpret_cast<unsigned long long*>(count), static_cast<unsigned long long>(value));
 #else
-  *count += value;
-  return *count - value;
+  return __atomic_fetch_add(count, value, __ATOMIC_RELAXED);
 #endif
 }
 
@@ -121,10 +134,10 @@ SPHERECHAIN_HD void raise_to(std::uint32_t* shared, float value) {  // value >= 
 #if defined(__CUDA_ARCH__)
   atomicMax(shared, __float_as_uint(value));
 #else
-  float own = 0;
-  std::memcpy(&own, shared, sizeof own);
-  own = own < value ? value : own;
-  std::memcpy(shared, &own, sizeof own);
+  std::uint32_t bits = 0, own = __atomic_load_n(shared, __ATOMIC_RELAXED);
+  std::memcpy(&bits, &value, sizeof bits);
+  while (own < bits && !__atomic_compare_exchange_n(shared, &own, bits, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+  }
 #endif
 }
 

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// The kernels' blocks by as many threads as they have, two blocks at the same time, with barriers where the kernel has
+// them: the thread sanitizer tells of two threads, or two blocks, that touch the same memory with nothing between.
+#include <algorithm>
+#include <barrier>
+#include <cstring>
+#include <memory>
+#include <thread>
+
+#include "crowd_body.h"
+#include "emulated_blocks.h"
+
+namespace spherechain::test {
+namespace {
+
+constexpr std::uint32_t kThreads = 64, kBlocksAtOnce = 2;
+
+struct Barriers {
+  std::barrier<>* of_block;
+  std::barrier<>* of_warp;
+
+  void block() const { of_block->arrive_and_wait(); }
+  void warp() const { of_warp->arrive_and_wait(); }
+};
+
+struct Team {
+  std::barrier<> block{kThreads};
+  std::barrier<> warps[kThreads / cuda::kLanes]{std::barrier<>{cuda::kLanes}, std::barrier<>{cuda::kLanes}};
+};
+
+// `run`(which team, how the thread runs the steps of its block).
+template <typename Run>
+void run_teams(const Run& run) {
+  Team teams[kBlocksAtOnce];
+  std::vector<std::jthread> threads;
+  for (std::uint32_t i = 0; i < kBlocksAtOnce * kThreads; ++i) {
+    threads.emplace_back([&, which = i / kThreads, thread = i % kThreads] {
+      const Barriers barriers{&teams[which].block, &teams[which].warps[thread / cuda::kLanes]};
+      run(which, [&](std::uint32_t block) { return cuda::RunThread<Barriers>{{thread, kThreads, block}, barriers}; });
+    });
+  }
+}
+
+}  // namespace
+
+void run_in_shared(const cuda::GroupView& view, std::mt19937&) {
+  const std::uint32_t blocks = cuda::blocks_of(view);
+  const std::size_t size = view.layout.size / sizeof(cuda::Float4);
+  std::vector<std::vector<cuda::Float4>> memories(blocks, std::vector<cuda::Float4>(size));
+  for (std::vector<cuda::Float4>& memory : memories) std::memset(memory.data(), kDirty, view.layout.size);
+  run_teams([&](std::uint32_t which, const auto& run_of) {
+    for (std::uint32_t block = which; block < blocks; block += kBlocksAtOnce) {
+      cuda::run_any_block(view, cuda::Shared(memories[block].data(), view.layout), run_of(block));
+    }
+  });
+}
+
+void run_in_scratch(const cuda::GroupView& view, std::mt19937&) {
+  run_teams([&](std::uint32_t which, const auto& run_of) {
+    for (std::uint32_t first = which; first < view.scratch_blocks; first += kBlocksAtOnce) {
+      cuda::run_blocks_in_scratch(view, first, run_of);
+    }
+  });
+}
+
+}  // namespace spherechain::test
