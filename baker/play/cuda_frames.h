@@ -17,8 +17,8 @@ struct CudaFrames {
   double us = 0;  // a frame, on the device: refit and detection in one
 };
 
-// All frames at once on the GPU, a character each, from bones. Throws Error(kInternal) where there is no CUDA device, or
-// this build has no CUDA; Error(kFile) where the asset has no bones.
+// All frames at once on the GPU, a character each, from bones. Throws Error(kInternal) where there is no CUDA device,
+// or this build has no CUDA; Error(kFile) where the asset has no bones.
 CudaFrames play_on_cuda(const AnimatedAsset& animated, RadiusKind radius);
 
 }  // namespace spherechain::baker

@@ -129,8 +129,8 @@ struct CrowdJob {
 
   // kOk, kNullArgument, kBadArgument (both spheres and bones, too many groups, a count that does not fit), kNotOpen
   // (tables not built), kNotInAsset, kTooFewBones, kBadStride, kTooFewSpheres (a stride), kMisaligned, kNoDevice,
-  // kDeviceTooSmall (a group that needs scratch has none, or 4 GiB or more a block), kContextTooSmall (less than a block's): nothing was
-  // enqueued. kDeviceFailed: the device or its driver reported an error; see last_device_error().
+  // kDeviceTooSmall (a group that needs scratch has none, or 4 GiB or more a block), kContextTooSmall (less than a
+  // block's): nothing was enqueued. kDeviceFailed: the device or its driver reported an error; see last_device_error().
   Status run() const noexcept;
 };
 

@@ -67,9 +67,9 @@ struct SPHERECHAIN_API CrowdJob {
 
   Span<std::uint32_t> counts;  // out: pairs of each instance; at least instance_count. May be empty without `pairs`
   Span<std::uint64_t> bits;    // out: DetectJob::bit_words() words an instance, as its `bits`; or empty
-  // Out: sorted by instance, then pair; may be empty. Each of several tasks lists into an equal share of it first; where
-  // one has more pairs than that, all cost a second pass: leave room for twice the pairs. What lies past pair_count is
-  // written too.
+  // Out: sorted by instance, then pair; may be empty. Each of several tasks lists into an equal share of it first;
+  // where one has more pairs than that, all cost a second pass: leave room for twice the pairs. What lies past
+  // pair_count is written too.
   Span<CrowdPair> pairs;
 
   // Out: how many pairs there are, also where `pairs` was too small.

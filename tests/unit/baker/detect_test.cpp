@@ -119,7 +119,9 @@ TEST_CASE("a hand behind the head touches the head") {
   CHECK(found > 0);
 }
 
-TEST_CASE("in all 80 frames and on every target M2 equals a brute force, and M1's pairs are some of M2's, counted chain by chain") {
+TEST_CASE(
+    "in all 80 frames and on every target M2 equals a brute force, and M1's pairs are some of M2's, counted chain by "
+    "chain") {
   for (const Bake* bake : {&baked_human(), &paper_baked_human()}) {
     const Asset asset = open_asset_of(*bake);
     for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
