@@ -85,7 +85,7 @@ Status check_build(const Asset& asset, const Filter* filter, Span<std::uint64_t>
   if (memory.data == nullptr) {
     return Status::kNullArgument;
   }
-  if (reinterpret_cast<std::uintptr_t>(memory.data) % alignof(std::uint64_t) != 0) {
+  if (reinterpret_cast<std::uintptr_t>(memory.data) % alignof(SphereEntry) != 0) {
     return Status::kMisaligned;
   }
   if (filter != nullptr) {
@@ -228,8 +228,8 @@ GroupView Access::view(const CrowdTables& tables, const std::uint64_t* words) {
 
 std::size_t CrowdTables::shared_bytes(bool from_bones, bool with_morphs, bool with_bits,
                                       bool with_pairs) const noexcept {
-  GroupView v = Access::view(*this, nullptr);
-  alignas(8) static unsigned char something[8];  // for what is asked is null or not
+  alignas(16) static unsigned char something[16];  // for what is asked, of tables too, is null or not
+  GroupView v = Access::view(*this, reinterpret_cast<const std::uint64_t*>(something));
   v.matrices = from_bones ? reinterpret_cast<const float*>(something) : nullptr;
   v.morph_weights = with_morphs && has_morphs_ ? v.matrices : nullptr;
   v.bits = with_bits ? reinterpret_cast<std::uint64_t*>(something) : nullptr;

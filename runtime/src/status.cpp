@@ -11,7 +11,7 @@ const char* to_string(Status status) noexcept {
     case Status::kNullArgument:
       return "a required pointer is null";
     case Status::kMisaligned:
-      return "the asset's bytes are not aligned to 8";
+      return "memory is not aligned as it has to be, an asset to 8 bytes";
     case Status::kTruncated:
       return "fewer bytes than any asset has";
     case Status::kWrongIdentifier:

@@ -68,5 +68,6 @@ for tool in memcheck synccheck initcheck racecheck; do
   grep "test cases" "$out/$tool.txt"
   tail -1 "$out/$tool.txt"
   grep -q "test cases: *[1-9]" "$out/$tool.txt" || { echo "no case ran"; exit 1; }
+  grep -qE "SUMMARY: 0 (errors|hazards displayed)" "$out/$tool.txt" || { echo "something was found, of whatever level"; exit 1; }
 done
 step "done: nothing wrong"

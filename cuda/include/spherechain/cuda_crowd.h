@@ -25,8 +25,9 @@ class CrowdTables {
   // Words that build() needs for that asset, whatever the filter.
   static std::size_t words_needed(const Asset& asset) noexcept;
 
-  // `filter` null: the asset's ignored pairs, all spheres as they are. kOk, kNotOpen, kBadArgument, kNullArgument,
-  // kMisaligned, kBadFilter, kContextTooSmall (`memory`); on failure this is as it was. Allocates nothing.
+  // `memory`: aligned to 16 bytes. `filter` null: the asset's ignored pairs, all spheres as they are. kOk, kNotOpen,
+  // kBadArgument, kNullArgument, kMisaligned, kBadFilter, kContextTooSmall (`memory`); on failure this is as it was.
+  // Allocates nothing.
   Status build(const Asset& asset, RadiusKind radius, const Filter* filter, Span<std::uint64_t> memory) noexcept;
 
   // The same for covers: groups with these tables are bounded as by a CoverJob. What they have for spheres are its

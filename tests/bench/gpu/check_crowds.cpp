@@ -49,11 +49,9 @@ bool check_crowds(const std::vector<std::string>& names, const std::string& fold
       DeviceCrowd crowd(posed, reference, kind, posed.poses.pose_count);
       const unsigned outputs = DeviceCrowd::kCounts | DeviceCrowd::kBits | DeviceCrowd::kBounds |
                                (kind == CrowdKind::kCovers ? DeviceCrowd::kLeaves : DeviceCrowd::kList);
-      crowd.enqueue(true, outputs | DeviceCrowd::kSpheres, posed.poses.pose_count);
-      bool is_right = crowd.is_right(outputs | DeviceCrowd::kSpheres);
+      bool is_right = crowd.runs_right(true, outputs | DeviceCrowd::kSpheres);
       if (kind != CrowdKind::kCovers) {
-        crowd.enqueue(false, outputs, posed.poses.pose_count);
-        is_right &= crowd.is_right(outputs);
+        is_right &= crowd.runs_right(false, outputs);
       }
       std::size_t pairs = 0;
       for (const std::uint32_t count : reference.counts) {

@@ -23,7 +23,7 @@ class DeviceArray {
   DeviceArray() = default;
   explicit DeviceArray(std::size_t size) : size_(size) {
     must(cudaMalloc(reinterpret_cast<void**>(&data_), size * sizeof(T)));
-    must(cudaMemset(data_, 0xDD, size * sizeof(T)));
+    spoil();
   }
   explicit DeviceArray(const std::vector<T>& from) : DeviceArray(from.size()) {
     must(cudaMemcpy(data_, from.data(), size_ * sizeof(T), cudaMemcpyHostToDevice));
@@ -34,6 +34,7 @@ class DeviceArray {
 
   T* data() const { return data_; }
   std::size_t size() const { return size_; }
+  void spoil() { must(cudaMemset(data_, 0xDD, size_ * sizeof(T))); }
   std::vector<T> host() const {
     std::vector<T> out(size_);
     must(cudaMemcpy(out.data(), data_, size_ * sizeof(T), cudaMemcpyDeviceToHost));

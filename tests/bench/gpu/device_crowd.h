@@ -34,16 +34,23 @@ class DeviceCrowd {
   // turns, so that none is still in the device's cache from the launch before.
   void enqueue(bool from_bones, unsigned outputs, std::size_t instances);
 
-  // Pairs and spheres of the last launch of all instances against the reference, bit for bit; prints what differs.
-  bool is_right(unsigned outputs) const;
+  // Launches all instances once, and holds what comes out against the reference, bit for bit; bounds must contain their
+  // spheres. Prints what differs.
+  bool runs_right(bool from_bones, unsigned outputs);
 
   // Memory of a block, and how many such are given to assets too large for shared memory: two a multiprocessor.
-  std::size_t block_bytes() const { return tables_.shared_bytes(!matrices_.empty(), false, true, true); }
+  std::size_t block_bytes() const { return tables_.shared_bytes(!matrices_.empty(), !weights_.empty(), true, true); }
   std::size_t scratch_blocks() const { return scratch_.size() / block_bytes(); }
   const Sphere* spheres() const { return spheres_[0].data(); }
   std::size_t bytes_moved(bool from_bones, unsigned outputs) const;  // an instance: inputs read once, outputs written
 
  private:
+  struct Wrong {
+    std::size_t count = 0;
+    void add(std::size_t instance, const char* what);  // prints the first few
+  };
+  std::vector<std::uint64_t> listed_bits(Wrong& wrong) const;
+
   const PosedAsset& posed_;
   const Reference& reference_;
   std::size_t instances_, launches_ = 0;

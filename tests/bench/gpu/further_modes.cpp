@@ -24,8 +24,7 @@ bool add(DeviceCrowd& crowd, const char* text, bool from_bones, unsigned outputs
                  [&crowd, from_bones, outputs, instances] { crowd.enqueue(from_bones, outputs, instances); },
                  static_cast<double>(crowd.bytes_moved(from_bones, outputs)),
                  {}});
-  crowd.enqueue(from_bones, outputs, instances);
-  return crowd.is_right(outputs);
+  return crowd.runs_right(from_bones, outputs);
 }
 
 double pairs_tested(const Asset& asset) {

@@ -261,15 +261,21 @@ TEST_CASE("covers of the doll's clip are CoverJob's") {
   check_covers(in, wanted);
 }
 
-TEST_CASE("covers of a large asset come from scratch") {
-  const OpenedAsset opened(covered_asset(250, 6, 9).parts);
-  const Tables tables(opened.asset, Tables::Covers{});
-  std::mt19937 random(8);
-  GroupInput in = group_of(tables, 65);
-  give_matrices(in, opened.asset, MatrixLayout::kRowMajor3x4, PoseKind::kGentle, 0, random);
-  in.scratch_bytes = 2 * tables.tables.shared_bytes(true, false, true, true);
-  CHECK(in.scratch_bytes > 2 * 227 * 1024);
-  check_covers(in, covers_of(opened.asset, in));
+TEST_CASE("covers of many spheres, or of many bones, come from scratch of as many bytes as shared_bytes says") {
+  for (const bool has_many_bones : {false, true}) {
+    const OpenedAsset opened((has_many_bones ? covered_asset(40, 200, 9) : covered_asset(250, 6, 9)).parts);
+    const Tables tables(opened.asset, Tables::Covers{});
+    std::mt19937 random(8);
+    GroupInput in = group_of(tables, 65);
+    give_matrices(in, opened.asset, MatrixLayout::kRowMajor3x4, PoseKind::kGentle, 0, random);
+    const std::size_t block = tables.tables.shared_bytes(true, false, true, true);
+    CHECK(block > 227 * 1024);
+    in.scratch_bytes = 2 * block;
+    check_covers(in, covers_of(opened.asset, in));
+    in.scratch_bytes = block - 16;
+    in.pair_capacity = 1;
+    CHECK(run_crowd({in}).status == Status::kContextTooSmall);
+  }
 }
 
 TEST_CASE("covers are refused where there are none, and as spheres") {

@@ -263,7 +263,8 @@ TEST_CASE("what cannot be run is refused, and nothing is written") {
   });
 
   cuda::CrowdTables again;
-  std::vector<std::uint64_t> words(cuda::CrowdTables::words_needed(opened.asset));
+  std::vector<std::uint64_t> words(cuda::CrowdTables::words_needed(opened.asset)), more(words.size() + 2);
+  std::uint64_t* const askew = more.data() + (reinterpret_cast<std::uintptr_t>(more.data()) % 16 == 0 ? 1 : 0);
   const Asset closed;
   const auto build = [&](const Asset& asset, RadiusKind radius, const Filter* filter, std::uint64_t* data,
                          std::size_t size) {
@@ -276,6 +277,7 @@ TEST_CASE("what cannot be run is refused, and nothing is written") {
   CHECK(build(opened.asset, static_cast<RadiusKind>(7), nullptr, words.data(), words.size()) == Status::kBadArgument);
   CHECK(build(opened.asset, RadiusKind::kFit, nullptr, nullptr, words.size()) == Status::kNullArgument);
   CHECK(build(opened.asset, RadiusKind::kFit, nullptr, words.data(), words.size() - 1) == Status::kContextTooSmall);
+  CHECK(build(opened.asset, RadiusKind::kFit, nullptr, askew, words.size()) == Status::kMisaligned);
   CHECK(build(opened.asset, RadiusKind::kFit, &bad, words.data(), words.size()) == Status::kBadFilter);
 }
 
