@@ -168,6 +168,8 @@ void find_pairs(const Asset& asset, const Frames& frames, RadiusKind radius, con
   for (const std::vector<Sphere>& spheres : frames) {
     const Detected by_chains = detect(asset, spheres, Method::kM1, radius, target);
     const Detected all = detect(asset, spheres, Method::kM2, radius, target);
+    table.expect(by_chains.status == Status::kOk && all.status == Status::kOk, "other pairs by a table",
+                 to_string(target));
     m1.add_list(by_chains.pairs, [&](const Pair& pair) { m1.add(pair); });
     m2.add_list(all.pairs, [&](const Pair& pair) { m2.add(pair); });
     chains.add_list(by_chains.chain_pairs,
@@ -194,7 +196,7 @@ void find_in_crowd(const Asset& asset, const std::vector<Palette>& clip, RadiusK
     for (const auto& m : palette) matrices.insert(matrices.end(), m.begin(), m.end());
   }
   std::vector<std::uint64_t> words(CrowdContext::words_needed(asset, threads), 0x5555555555555555U);
-  std::vector<std::uint64_t> bits(clip.size() * DetectJob::bit_words(asset));
+  std::vector<std::uint64_t> bits(clip.size() * DetectJob::bit_words(asset)), expected_bits(bits.size());
   std::vector<std::uint32_t> counts(clip.size());
   std::vector<CrowdPair> pairs(clip.size() * 1000);
   CrowdContext context{{words.data(), words.size()}};
@@ -220,7 +222,13 @@ void find_in_crowd(const Asset& asset, const std::vector<Palette>& clip, RadiusK
     for (; at < job.pair_count && pairs[at].instance == i; ++at) own.push_back(pairs[at].pair);
     table.expect(own.size() == counts[i], "another count of an instance", how);
     hash.add_list(own, [&](const Pair& pair) { hash.add(pair); });
+    for (const Pair& pair : own) {
+      const std::size_t bit = std::size_t{pair.b} * (pair.b - 1) / 2 + pair.a;
+      expected_bits[i * DetectJob::bit_words(asset) + bit / 64] |= std::uint64_t{1} << (bit % 64);
+    }
   }
+  table.expect(at == job.pair_count, "pairs of no instance", how);
+  table.expect(job.bits.size == 0 || bits == expected_bits, "other bits", how);
   table.add("M2 " + name + " " + name_of(radius), hash, "crowd, " + how);
 }
 
