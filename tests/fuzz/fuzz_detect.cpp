@@ -108,7 +108,8 @@ void spoil_table(Case& c, DetectCall& call, std::uint32_t way, Spoiled& spoiled)
       put_askew(c, call.table.words.data);
       return spoiled.with(Status::kMisaligned);
     case 2:
-      call.table.words[c.random.below(5)] ^= 1;  // what it is of
+      // What it is of: a byte, for it may lie askew by now.
+      reinterpret_cast<std::uint8_t*>(call.table.words.data)[sizeof(std::uint64_t) * c.random.below(5)] ^= 1;
       return spoiled.with(Status::kBadArgument);
     default:
       if (job.bits.size > 0) {
