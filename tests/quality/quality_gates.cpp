@@ -138,6 +138,7 @@ class Workshop {
 
   json validate(const Gate& gate) {
     const fs::path found = folder_ / "found.json";
+    fs::remove(found);  // the last gate's
     const std::string command = fmt::format("{} validate {} {} --json {} >/dev/null", SPHERECHAIN_TOOL,
                                             asset(gate).string(), gate.validate_options(), found.string());
     if (run(command) != 0) throw std::runtime_error("validate failed");
