@@ -76,7 +76,11 @@ bool CrowdRun::has_the_pairs_of(const PosedCharacter& character) const {
   }
   std::size_t at = 0;
   for (std::uint32_t i = 0; i < job_.instance_count; ++i) {
-    for (const Pair& pair : expected[i % expected.size()]) {
+    const std::vector<Pair>& own = expected[i % expected.size()];
+    if (counts_[i] != own.size()) {
+      return false;
+    }
+    for (const Pair& pair : own) {
       if (at == job_.pair_count || !(pairs_[at] == CrowdPair{i, pair})) {
         return false;
       }

@@ -3,6 +3,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <algorithm>
 #include <cstring>
 
 namespace spherechain::bench {
@@ -46,6 +47,24 @@ void MeshRefit::refit(std::size_t mesh) {
   rtcUpdateGeometryBuffer(scene_->geometry, RTC_BUFFER_TYPE_VERTEX, 0);
   rtcCommitGeometry(scene_->geometry);
   rtcCommitScene(scene_->scene);
+}
+
+bool MeshRefit::bounds(std::size_t mesh) const {
+  RTCBounds box;
+  rtcGetSceneBounds(scene_->scene, &box);
+  const float found[] = {box.lower_x, box.lower_y, box.lower_z, -box.upper_x, -box.upper_y, -box.upper_z};
+  const std::vector<float>& vertices = scene_->meshes[mesh];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    float low = vertices[axis], high = low;
+    for (std::size_t i = axis; i < vertices.size(); i += 3) {
+      low = std::min(low, vertices[i]);
+      high = std::max(high, vertices[i]);
+    }
+    if (found[axis] != low || found[3 + axis] != -high) {
+      return false;
+    }
+  }
+  return true;
 }
 
 }  // namespace spherechain::bench

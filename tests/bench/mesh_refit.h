@@ -17,6 +17,8 @@ class MeshRefit {
   MeshRefit(const PosedCharacter& character, const std::vector<std::vector<float>>& meshes);
   ~MeshRefit();
   void refit(std::size_t mesh);
+  // Is the tree's box that of this mesh?
+  bool bounds(std::size_t mesh) const;
 
  private:
   struct Scene;

@@ -73,6 +73,11 @@ void Timing::run_all() {
   Reporter reporter(*this);
   benchmark::RunSpecifiedBenchmarks(&reporter);
   benchmark::Shutdown();
+  for (const Row& row : rows_) {
+    if (!(row.times.min > 0)) {
+      throw std::runtime_error(row.name + ": not timed");
+    }
+  }
 }
 
 }  // namespace spherechain::bench
