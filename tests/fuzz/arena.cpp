@@ -91,6 +91,15 @@ bool Arena::kept_but(const std::vector<Bytes>& writable) {
   return kept;
 }
 
+void Arena::invert(const std::vector<Bytes>& ranges) {
+  for (const Bytes& range : ranges) {
+    const auto at = static_cast<std::size_t>(static_cast<const std::uint8_t*>(range.data) - memory_.data());
+    for (std::size_t i = 0; i < range.size; ++i) {
+      memory_[at + i] = static_cast<std::uint8_t>(~picture_[at + i]);
+    }
+  }
+}
+
 void Arena::restore() {
   set_guards(false);
   std::memcpy(memory_.data(), picture_.data(), used_);

@@ -39,6 +39,8 @@ class Arena {
   // Is everything outside of `writable` as in the picture?
   bool kept_but(const std::vector<Bytes>& writable);
   void restore();
+  // Every bit of what the picture has there: other dirt.
+  void invert(const std::vector<Bytes>& ranges);
 
  private:
   void* add_bytes(std::size_t size, std::size_t alignment);

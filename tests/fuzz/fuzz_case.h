@@ -116,10 +116,10 @@ sc_filter to_c(const Filter& filter);
 
 // Runs `cpp` and then `c_api`, which return statuses of the same call and write `outputs`, of which some may come to be
 // written. Checks the statuses against `spoiled`, all other memory against the picture, and the outputs of both, after
-// tidy(), against each other.
+// tidy(), against each other; `writes_all`: of the outputs, so that neither may leave there what was before.
 template <typename Cpp, typename CApi, typename Writable, typename Tidy>
 Status run_both(Case& c, const Spoiled& spoiled, const Cpp& cpp, const CApi& c_api, const Writable& writable,
-                const Tidy& tidy) {
+                const Tidy& tidy, bool writes_all = true) {
   const auto copy = [&](const std::vector<Bytes>& ranges) {
     std::vector<std::uint8_t> bytes;
     for (const Bytes& range : ranges) {
@@ -137,6 +137,7 @@ Status run_both(Case& c, const Spoiled& spoiled, const Cpp& cpp, const CApi& c_a
   tidy(ran);
   const std::vector<std::uint8_t> outputs = copy(changed);
   c.arena.restore();
+  if (writes_all) c.arena.invert(changed);
   c.expect(static_cast<Status>(c_api()) == status, "the C API says something else");
   c.expect(c.arena.kept_but(changed), "the C API wrote memory that must not be");
   tidy(ran);

@@ -334,7 +334,8 @@ void fuzz_crowd(Case& c) {
         if (ran) std::fill(call.context.words.begin(), call.context.words.end(), std::uint64_t{0});
         if (ran && !is_dealt) std::fill(job.counts.begin(), job.counts.end(), 0U);
         for (std::size_t i = job.pair_count; ran && is_dealt && i < job.pairs.size; ++i) job.pairs[i] = {};
-      });
+      },
+      is_dealt);
   c.expect(call.c_job.pair_count == job.pair_count, "the C API counts something else");
 }
 

@@ -141,7 +141,8 @@ void fuzz_skin(Case& c) {
         if (ran) {
           make_one_nan(positions, floats);
         }
-      });
+      },
+      false);  // not those that move as another does
 }
 
 }  // namespace spherechain::test
