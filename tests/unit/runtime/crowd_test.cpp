@@ -81,6 +81,7 @@ TEST_CASE("a crowd's pairs are each instance's own, on every target, in any numb
           // Ample room, where each task's pairs fit its share; and little, where some do not.
           for (const std::size_t room : {9 * wanted.pairs.size() + 9, wanted.pairs.size() + 1}) {
             pairs.assign(room, {});
+            run.counts.assign(instances, 7);
             run.job.pairs = {pairs.data(), pairs.size()};
             REQUIRE(run.job.run() == Status::kOk);
             CHECK(run.job.pair_count == wanted.pairs.size());
@@ -97,8 +98,17 @@ TEST_CASE("a crowd's pairs are each instance's own, on every target, in any numb
           CHECK(bits == wanted.bits);
           CHECK(pairs == wanted.pairs);
 
-          run.job.bits = {};
           run.job.pairs = {};
+          for (const bool with_bits : {true, false}) {
+            run.counts.assign(instances, 7);
+            bits.assign(bits.size(), 5);
+            run.job.bits.size = with_bits ? bits.size() : 0;
+            REQUIRE(run.job.run() == Status::kOk);
+            CHECK(run.counts == wanted.counts);
+            CHECK((!with_bits || bits == wanted.bits));
+          }
+
+          run.job.bits = {};
           run.job.counts = {};
           run.job.pair_count = 0;
           REQUIRE(run.job.run() == Status::kOk);
