@@ -229,8 +229,8 @@ void DeviceCrowd::enqueue(bool from_bones, unsigned outputs, std::size_t instanc
 
 bool DeviceCrowd::runs_right(bool from_bones, unsigned outputs) {
   const auto spoil = [](auto&... arrays) { (arrays.spoil(), ...); };
-  spoil(refitted_, bounds_, leaves_, counts_, bits_, starts_, pair_count_,
-        pairs_);  // by an earlier launch, perhaps right
+  // What an earlier launch left is right, perhaps.
+  spoil(refitted_, bounds_, leaves_, counts_, bits_, starts_, pair_count_, pairs_);
   enqueue(from_bones, outputs, instances_);
 
   const std::size_t poses = posed_.poses.pose_count, n = posed_.asset.spheres().size;

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The kernels' blocks by as many threads as they have, two blocks at the same time, with barriers where the kernel has
 // them: the thread sanitizer tells of two threads, or two blocks, that touch the same memory with nothing between.
-#include <algorithm>
 #include <barrier>
 #include <cstring>
-#include <memory>
 #include <thread>
+#include <vector>
 
 #include "crowd_body.h"
 #include "emulated_blocks.h"
