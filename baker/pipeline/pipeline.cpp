@@ -66,8 +66,9 @@ void run_after_fit(Bake& out, const Progress& progress) {
     out.bones = bind_bones(out.character, out.binding, out.joints, out.rig_weights);
     out.moments = bind_moments(out.character, out.bones, out.rig_weights, out.binding);
   });
-  stage(out, progress, "leaves",
-        [&] { out.leaves = make_leaves(out.character, out.binding, out.bones, out.rig_weights, settings.leaves); });
+  stage(out, progress, "leaves", [&] {
+    out.leaves = make_leaves(out.character, out.binding, out.bones, out.rig_weights, settings.leaves);
+  });
   stage(out, progress, "write", [&] {
     out.asset = serialize({out.character, out.regions, out.spheres, out.chains, out.binding, out.joints, out.bones,
                            out.moments, out.leaves, to_json(settings)});
@@ -98,9 +99,7 @@ Segmentation segment_character(Character& character, const Roles& roles, const S
   const auto by_rig = [&]() -> Attempt<Proposal> {
     Attempt<Regions> regions = segment_by_rig(character, roles, settings);
     if (!regions) return *(failure = regions.reason());
-    const bool in_shards =
-        !whole && out.closing.body != BodySource::kWrapped && limbs_are_in_shards(character.skin, *regions);
-    return Proposal{std::move(*regions), in_shards ? "most of the limbs' skin is in small pieces" : "", {}};
+    return Proposal{std::move(*regions), {}, {}};
   };
 
   // Shape knows a biped's armpit and crotch best, a rig knows all else.
@@ -121,8 +120,18 @@ Segmentation segment_character(Character& character, const Roles& roles, const S
       Strategy{"rig",
                [&]() -> Attempt<Proposal> {
                  if (!rigged) return does_not_apply("there is no rig with limbs");
-                 if (!whole) take_all_pieces(character);
+                 if (!whole) return does_not_apply("the skin is not one closed surface");
                  return by_rig();
+               }},
+      Strategy{"rig on all pieces of the skin",
+               [&]() -> Attempt<Proposal> {
+                 if (!rigged) return does_not_apply("there is no rig with limbs");
+                 take_all_pieces(character);
+                 Attempt<Proposal> proposal = by_rig();
+                 if (proposal && limbs_are_in_shards(character.skin, proposal->regions)) {
+                   proposal->reservation = "most of the limbs' skin is in small pieces";
+                 }
+                 return proposal;
                }},
       Strategy{"rig on a wrap",
                [&]() -> Attempt<Proposal> {

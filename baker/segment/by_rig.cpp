@@ -78,6 +78,10 @@ Attempt<Regions> segment_by_rig(const Character& character, const Roles& roles, 
     regions.of_triangle.push_back(std::min(region_of[limb], regions.torso_region()));
   for (const std::uint8_t limb : skin.of_skin)
     regions.of_skin.push_back(std::min(region_of[limb], regions.torso_region()));
+  for (std::uint8_t region = 0; region < regions.torso_region(); ++region) {
+    if (std::count(regions.of_triangle.begin(), regions.of_triangle.end(), region) > 0) continue;
+    return because("the rig's " + regions.name(region) + " moves no part of the body's largest piece");
+  }
   if (std::count(regions.of_triangle.begin(), regions.of_triangle.end(), regions.torso_region()) == 0) {
     return because("the rig's trunk moves no skin");
   }

@@ -198,9 +198,9 @@ TEST_CASE("a rigged body in 60 pieces, none as large as a limb, is segmented by 
   const Roles roles = find_roles(closed.character.rig, closed.character.source_positions);
   Segmentation found = segment_character(closed.character, roles, {});
   CHECK(found.choice.strategy == "rig on a wrap");
-  REQUIRE(found.choice.passed_over.size() == 3);
-  CHECK(found.choice.passed_over[2].strategy == "rig");
-  CHECK(found.choice.passed_over[2].reason.what == "most of the limbs' skin is in small pieces");
+  REQUIRE(found.choice.passed_over.size() == 4);
+  CHECK(found.choice.passed_over[3].strategy == "rig on all pieces of the skin");
+  CHECK(found.choice.passed_over[3].reason.what == "most of the limbs' skin is in small pieces");
   closed.regions = std::move(found.regions);
   closed.report = found.closing;
   CHECK(closed.regions.provider == "rig");
