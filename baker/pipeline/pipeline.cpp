@@ -66,12 +66,12 @@ void run_after_fit(Bake& out, const Progress& progress) {
     out.bones = bind_bones(out.character, out.binding, out.joints, out.rig_weights);
     out.moments = bind_moments(out.character, out.bones, out.rig_weights, out.binding);
   });
-  stage(out, progress, "leaves", [&] {
-    out.leaves = make_leaves(out.character, out.binding, out.bones, out.rig_weights, settings.leaves);
+  stage(out, progress, "clusters", [&] {
+    out.clusters = make_clusters(out.character, out.binding, out.bones, out.rig_weights, settings.clusters);
   });
   stage(out, progress, "write", [&] {
     out.asset = serialize({out.character, out.regions, out.spheres, out.chains, out.binding, out.joints, out.bones,
-                           out.moments, out.leaves, to_json(settings)});
+                           out.moments, out.clusters, to_json(settings)});
   });
 }
 

@@ -12,9 +12,9 @@
 #include "bind/bind_bones.h"
 #include "bind/bind_moments.h"
 #include "chains/chains.h"
+#include "clusters/clusters.h"
 #include "fit/fit.h"
 #include "import/import.h"
-#include "leaves/leaves.h"
 #include "mesh/attempt.h"
 #include "rig/rig.h"
 #include "roles/roles.h"
@@ -36,7 +36,7 @@ struct BakeSettings {
   SegmentSettings segment;
   FitSettings fit;
   BindSettings bind;
-  LeafSettings leaves;
+  ClusterSettings clusters;
   Targets targets;
 };
 
@@ -72,7 +72,7 @@ struct Bake {
   std::vector<VertexWeights> rig_weights;  // to the joints, of every source vertex; none where the source has bones
   BoneBinding bones;
   MomentBinding moments;
-  Leaves leaves;
+  Clusters clusters;
   std::vector<std::uint8_t> asset;
   std::vector<StageTime> times;
 };
