@@ -70,7 +70,7 @@ struct Character {
 Character import_character(const std::filesystem::path& path, const ImportOptions& options = {});
 
 // Share of the skin's area above which a piece of it is the body: eyes, teeth and a belt are the rest.
-inline constexpr double kMostOfSkin = 0.6;
+inline constexpr double kBodyShareMin = 0.6;
 
 // Whether the body is closed, and most of the skin.
 bool is_whole(const Character& character);

@@ -12,13 +12,14 @@
 #include "bind/bind_bones.h"
 #include "bind/bind_moments.h"
 #include "chains/chains.h"
+#include "clusters/clusters.h"
 #include "fit/fit.h"
 #include "import/import.h"
-#include "leaves/leaves.h"
+#include "mesh/attempt.h"
 #include "rig/rig.h"
 #include "roles/roles.h"
 #include "segment/segment.h"
-#include "wrap/closed_body.h"
+#include "wrap/closing_report.h"
 
 namespace spherechain::baker {
 
@@ -35,7 +36,7 @@ struct BakeSettings {
   SegmentSettings segment;
   FitSettings fit;
   BindSettings bind;
-  LeafSettings leaves;
+  ClusterSettings clusters;
   Targets targets;
 };
 
@@ -63,6 +64,7 @@ struct Bake {
   Roles roles;  // of the nodes of character.rig
   Regions regions;
   ClosingReport closing;
+  Choice segmented_by;
   Spheres spheres;
   Chains chains;
   Binding binding;
@@ -70,15 +72,24 @@ struct Bake {
   std::vector<VertexWeights> rig_weights;  // to the joints, of every source vertex; none where the source has bones
   BoneBinding bones;
   MomentBinding moments;
-  Leaves leaves;
+  Clusters clusters;
   std::vector<std::uint8_t> asset;
   std::vector<StageTime> times;
 };
 
-// The stage `segment`. A closed biped is segmented by its shape, which knows armpit and crotch best; all else by its
-// rig, where there is one, or by a closed surface made for it. The body becomes what was segmented.
-Regions segment_character(Character& character, const Roles& roles, const SegmentSettings& settings,
-                          ClosingReport& closing);
+// The result of the stages segment and wrap.
+struct Segmentation {
+  Regions regions;
+  ClosingReport closing;
+  Choice choice;
+};
+
+// Tries the strategies of segmentation in order: by shape, by rig, and both on a closed surface made of the skin. The
+// body becomes what was segmented. Throws Error(kSegmentation) where no strategy has a result.
+Segmentation segment_character(Character& character, const Roles& roles, const SegmentSettings& settings);
+
+// Makes the body what segment_character makes of it without a rig: for what depends on the body alone (bone heat).
+void close_body(Character& character, const SegmentSettings& settings);
 
 // Runs every stage. `progress` is told each stage's name before it runs; it may be empty.
 Bake bake(const std::filesystem::path& input, const BakeSettings& settings,

@@ -10,7 +10,6 @@
 #include "motion/poses.h"
 #include "motion/sequence.h"
 #include "pipeline/pipeline.h"
-#include "wrap/closed_body.h"
 
 namespace spherechain::baker {
 namespace {

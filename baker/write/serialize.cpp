@@ -29,10 +29,10 @@ struct SurroundingTriangles {
 
 SurroundingTriangles group_triangles(const AssetSource& in) {
   SurroundingTriangles out;
-  auto leaf = in.leaves.leaves.begin();
+  auto leaf = in.clusters.clusters.begin();
   for (std::uint32_t s = 0; s < in.spheres.spheres.size(); ++s) {
     out.first.push_back(static_cast<std::uint32_t>(out.triangles.size()));
-    for (; leaf != in.leaves.leaves.end() && leaf->sphere == s; ++leaf) {
+    for (; leaf != in.clusters.clusters.end() && leaf->sphere == s; ++leaf) {
       for (const Index t : leaf->triangles) out.triangles.push_back(in.character.skin_source_triangle[t]);
     }
     out.count.push_back(static_cast<std::uint32_t>(out.triangles.size()) - out.first.back());
@@ -108,7 +108,7 @@ std::vector<std::uint8_t> bytes_of(const AssetSource& in, const std::vector<Tria
   }
   const PackedPivots packed = pack_pivots(pivots);
   const auto bone_refit = create_bone_refit(builder, in.bones, in.moments);
-  const auto surface = create_surface(builder, in.character, in.bones, in.leaves, rest_contacts);
+  const auto surface = create_surface(builder, in.character, in.bones, in.clusters, rest_contacts);
   const std::vector<std::uint64_t> ignored = ignored_bits(in);
   const std::vector<schema::NearPair> near_fit = near_pairs_of(in.binding.near_fit),
                                       near_detect = near_pairs_of(in.binding.near_detect);

@@ -57,7 +57,7 @@ struct Groups {
   std::vector<schema::BallLanes> morphs;
 };
 
-Groups group_leaves(const std::vector<Leaf>& leaves, bool moves) {
+Groups group_leaves(const std::vector<Cluster>& leaves, bool moves) {
   Groups out;
   for (std::size_t first = 0; first < leaves.size(); first += kLanes) {
     EightBalls balls;
@@ -65,14 +65,14 @@ Groups group_leaves(const std::vector<Leaf>& leaves, bool moves) {
     std::map<Index, EightWeights> terms;
     std::map<Index, EightBalls> morphs;
     for (std::size_t lane = 0; lane < std::min(kLanes, leaves.size() - first); ++lane) {
-      const Leaf& leaf = leaves[first + lane];
+      const Cluster& leaf = leaves[first + lane];
       balls.set(lane, leaf.ball);
       boxes.set(lane, leaf.box);
-      for (const LeafBone& bone : leaf.bones) {
+      for (const ClusterBone& bone : leaf.bones) {
         terms[bone.bone].weights[lane] = bone.weight;
         terms[bone.bone].deviations[lane] = bone.deviation;
       }
-      for (const LeafMorph& morph : leaf.morphs) morphs[morph.target].set(lane, morph.ball);
+      for (const ClusterMorph& morph : leaf.morphs) morphs[morph.target].set(lane, morph.ball);
     }
     out.balls.push_back(balls.stored());
     out.boxes.push_back(boxes.stored());
@@ -100,7 +100,7 @@ struct Runs {
   std::vector<schema::SlotMorph> morphs;
 };
 
-void add_slots(const Character& character, const Leaves& in, const Leaf& leaf, Runs& out) {
+void add_slots(const Character& character, const Clusters& in, const Cluster& leaf, Runs& out) {
   const std::size_t slots = (leaf.vertices.size() + kLanes - 1) / kLanes * kLanes;
   // The slots beyond the vertices repeat the last.
   const auto vertex_in = [&](std::size_t slot) -> const SurfaceVertex& {
@@ -111,14 +111,14 @@ void add_slots(const Character& character, const Leaves& in, const Leaf& leaf, R
       out.positions.push_back(static_cast<float>(character.source_positions[vertex_in(slot).source][axis]));
     }
   }
-  for (const LeafBone& bone : leaf.bones) {
+  for (const ClusterBone& bone : leaf.bones) {
     for (std::size_t slot = 0; slot < slots; ++slot) {
       const std::vector<Influence>& influences = vertex_in(slot).influences;
       const auto found = std::ranges::find(influences, bone.bone, &Influence::bone);
       out.weights.push_back(found == influences.end() ? 0.0F : found->weight);
     }
   }
-  for (const LeafMorph& leaf_morph : leaf.morphs) {
+  for (const ClusterMorph& leaf_morph : leaf.morphs) {
     for (std::size_t slot = 0; slot < slots; ++slot) {
       const std::vector<MorphDelta>& morphs = vertex_in(slot).morphs;
       const auto found = std::ranges::find(morphs, leaf_morph.target, &MorphDelta::target);
@@ -128,9 +128,9 @@ void add_slots(const Character& character, const Leaves& in, const Leaf& leaf, R
   }
 }
 
-Runs runs_of(const Character& character, const Leaves& in) {
+Runs runs_of(const Character& character, const Clusters& in) {
   Runs out;
-  for (const Leaf& leaf : in.leaves) {
+  for (const Cluster& leaf : in.clusters) {
     const auto size_of = [](const auto& run) { return static_cast<std::uint32_t>(run.size()); };
     const std::uint32_t first_triangle = size_of(out.corners) / 3, first_vertex = size_of(out.vertices),
                         first_bone = size_of(out.bones), first_slot = size_of(out.positions) / 3,
@@ -142,7 +142,7 @@ Runs runs_of(const Character& character, const Leaves& in) {
                             static_cast<std::uint16_t>(leaf.vertices.size()),
                             static_cast<std::uint16_t>(leaf.bones.size()), std::uint16_t{0});
     out.vertices.insert(out.vertices.end(), leaf.vertices.begin(), leaf.vertices.end());
-    for (const LeafBone& bone : leaf.bones) out.bones.push_back(bone.bone);
+    for (const ClusterBone& bone : leaf.bones) out.bones.push_back(bone.bone);
     for (const Index t : leaf.triangles) {
       for (const Index v : character.source_triangles[character.skin_source_triangle[t]]) {
         const auto slot = std::lower_bound(leaf.vertices.begin(), leaf.vertices.end(), in.vertex_of_source[v]);
@@ -159,23 +159,23 @@ struct Outlines {
   std::vector<float> points, weights;
 };
 
-Outlines outlines_of(const Character& character, const Leaves& in) {
+Outlines outlines_of(const Character& character, const Clusters& in) {
   Outlines out;
   std::uint32_t leaf = 0;
-  for (std::uint32_t s = 0; s < in.outlines.size(); ++s) {
-    const Outline& outline = in.outlines[s];
+  for (std::uint32_t s = 0; s < in.hulls.size(); ++s) {
+    const Hull& outline = in.hulls[s];
     out.outlines.emplace_back(
         leaf, static_cast<std::uint32_t>(out.bones.size()), static_cast<std::uint32_t>(out.points.size() / 3),
         static_cast<std::uint32_t>(out.weights.size()), static_cast<std::uint16_t>(outline.bones.size()),
         static_cast<std::uint16_t>(outline.points.size()), to_schema(outline.center),
         static_cast<float>(outline.radius), static_cast<float>(outline.slack));
-    while (leaf < in.leaves.size() && in.leaves[leaf].sphere == s) ++leaf;
+    while (leaf < in.clusters.size() && in.clusters[leaf].sphere == s) ++leaf;
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       for (const Index v : outline.points) {
         out.points.push_back(static_cast<float>(character.source_positions[in.vertices[v].source][axis]));
       }
     }
-    for (const OutlineBone& bone : outline.bones) {
+    for (const HullBone& bone : outline.bones) {
       out.bones.emplace_back(bone.bone, bone.off[0], bone.off[1], bone.off[2], bone.off[3]);
       for (const Index v : outline.points) {
         const std::vector<Influence>& influences = in.vertices[v].influences;
@@ -198,12 +198,12 @@ auto aligned_floats(flatbuffers::FlatBufferBuilder& builder, const std::vector<f
 }  // namespace
 
 flatbuffers::Offset<schema::Surface> create_surface(flatbuffers::FlatBufferBuilder& builder, const Character& character,
-                                                    const BoneBinding& bones, const Leaves& leaves,
+                                                    const BoneBinding& bones, const Clusters& clusters,
                                                     const std::vector<TrianglePair>& rest_contacts) {
-  const Runs runs = runs_of(character, leaves);
-  const Groups groups = group_leaves(leaves.leaves, !bones.bones.empty());
+  const Runs runs = runs_of(character, clusters);
+  const Groups groups = group_leaves(clusters.clusters, !bones.bones.empty());
   std::vector<std::uint32_t> sources, welds;
-  for (const SurfaceVertex& vertex : leaves.vertices) {
+  for (const SurfaceVertex& vertex : clusters.vertices) {
     sources.push_back(vertex.source);
     welds.push_back(vertex.weld);
   }
@@ -230,8 +230,8 @@ flatbuffers::Offset<schema::Surface> create_surface(flatbuffers::FlatBufferBuild
   flatbuffers::Offset<flatbuffers::Vector<const schema::Outline*>> outlines_at;
   flatbuffers::Offset<flatbuffers::Vector<const schema::OutlineBone*>> outline_bones_at;
   flatbuffers::Offset<flatbuffers::Vector<float>> outline_points_at, outline_weights_at;
-  if (!leaves.outlines.empty()) {
-    const Outlines outlines = outlines_of(character, leaves);
+  if (!clusters.hulls.empty()) {
+    const Outlines outlines = outlines_of(character, clusters);
     outlines_at = builder.CreateVectorOfStructs(outlines.outlines);
     outline_bones_at = builder.CreateVectorOfStructs(outlines.bones);
     outline_points_at = aligned_floats(builder, outlines.points);

@@ -2,14 +2,14 @@
 // The part of an asset that leaf bounds and exact contacts read.
 #pragma once
 
-#include "leaves/leaves.h"
+#include "clusters/clusters.h"
 #include "sphere_chains_generated.h"
 #include "spherechain/surface.h"
 
 namespace spherechain::baker {
 
 flatbuffers::Offset<schema::Surface> create_surface(flatbuffers::FlatBufferBuilder& builder, const Character& character,
-                                                    const BoneBinding& bones, const Leaves& leaves,
+                                                    const BoneBinding& bones, const Clusters& clusters,
                                                     const std::vector<TrianglePair>& rest_contacts);
 
 }  // namespace spherechain::baker

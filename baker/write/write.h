@@ -11,7 +11,7 @@
 #include "bind/bind_bones.h"
 #include "bind/bind_moments.h"
 #include "chains/chains.h"
-#include "leaves/leaves.h"
+#include "clusters/clusters.h"
 #include "rig/rig.h"
 
 namespace spherechain::baker {
@@ -26,7 +26,7 @@ struct AssetSource {
   const std::vector<Joint>& joints;
   const BoneBinding& bones;
   const MomentBinding& moments;
-  const Leaves& leaves;
+  const Clusters& clusters;
   std::string settings;  // canonical JSON
 };
 

@@ -6,7 +6,7 @@
 
 namespace spherechain::baker {
 
-// The least float that is not below.
+// The smallest float that is not below `value`.
 inline float round_up(double value) {
   const auto rounded = static_cast<float>(value);
   return rounded < value ? std::nextafter(rounded, std::numeric_limits<float>::infinity()) : rounded;

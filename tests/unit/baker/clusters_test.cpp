@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Leaves of baked characters: what they are made of, and that their balls hold in any pose.
-#include "leaves/leaves.h"
+#include "clusters/clusters.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -31,7 +31,7 @@ using Matrices = std::vector<spherechain::test::Matrix>;
 
 namespace {
 
-// Linear blend skinning in double precision from the character's own weights: nothing of the leaves.
+// Linear blend skinning in double precision from the character's own weights: nothing of the clusters.
 std::vector<Vec3> skinned(const Bake& bake, const Matrices& matrices, const std::vector<float>& morph_weights) {
   const Character& character = bake.character;
   std::vector<Vec3> rest = character.source_positions;
@@ -76,8 +76,8 @@ void check_pose(const Bake& bake, const spherechain::Asset& asset, const Matrice
   for (std::size_t l = 0; l < asset.leaf_count(); ++l) {
     const spherechain::Sphere& ball = covered.leaves[l];
     double farthest = 0;
-    // Of the leaf's triangles as the source has them.
-    for (const Index t : bake.leaves.leaves[l].triangles) {
+    // Of the cluster's triangles as the source has them.
+    for (const Index t : bake.clusters.clusters[l].triangles) {
       for (const Index v : bake.character.source_triangles[bake.character.skin_source_triangle[t]]) {
         farthest = std::max(farthest, (mesh[v] - Vec3(ball.x, ball.y, ball.z)).norm());
       }
@@ -86,7 +86,7 @@ void check_pose(const Bake& bake, const spherechain::Asset& asset, const Matrice
     out.outside += farthest > ball.radius ? 1 : 0;
     out.ratio += ball.radius / farthest;
   }
-  for (const SurfaceVertex& vertex : bake.leaves.vertices) {
+  for (const SurfaceVertex& vertex : bake.clusters.vertices) {
     const float* p = &by_job.positions[std::size_t{3} * vertex.source];
     out.skinning = std::max(out.skinning, (mesh[vertex.source] - Vec3(p[0], p[1], p[2])).norm());
   }
@@ -129,18 +129,18 @@ void report(const std::string& what, const Checked& checked, double height) {
 
 }  // namespace
 
-TEST_CASE("every triangle of the skin is in one leaf of its own sphere, of even size and no more than 64") {
+TEST_CASE("every triangle of the skin is in one cluster of its own sphere, of even size and no more than 64") {
   for (const Bake* bake : {&baked_human(), &baked_person()}) {
-    std::vector<int> leaves_of_triangle(bake->character.skin.triangles.size(), 0);
+    std::vector<int> clusters_of_triangle(bake->character.skin.triangles.size(), 0);
     std::map<std::uint32_t, std::vector<std::size_t>> sizes;
-    for (const Leaf& leaf : bake->leaves.leaves) {
-      sizes[leaf.sphere].push_back(leaf.triangles.size());
-      for (const Index t : leaf.triangles) {
-        ++leaves_of_triangle[t];
-        CHECK(bake->binding.sphere_of_triangle[t] == leaf.sphere);
+    for (const Cluster& cluster : bake->clusters.clusters) {
+      sizes[cluster.sphere].push_back(cluster.triangles.size());
+      for (const Index t : cluster.triangles) {
+        ++clusters_of_triangle[t];
+        CHECK(bake->binding.sphere_of_triangle[t] == cluster.sphere);
       }
     }
-    CHECK(std::ranges::all_of(leaves_of_triangle, [](int count) { return count == 1; }));
+    CHECK(std::ranges::all_of(clusters_of_triangle, [](int count) { return count == 1; }));
     for (const auto& [sphere, of_sphere] : sizes) {
       const std::size_t all = std::accumulate(of_sphere.begin(), of_sphere.end(), std::size_t{0});
       CHECK(of_sphere.size() == (all + 63) / 64);
@@ -179,13 +179,13 @@ TEST_CASE("a surface vertex stands for the source vertices at its place that mov
   for (const Index v : used) of_place[character.skin_of_source[v]].push_back(v);
   for (const auto& [place, vertices] : of_place) {
     for (const Index v : vertices) {
-      const SurfaceVertex& surface = bake.leaves.vertices[bake.leaves.vertex_of_source[v]];
+      const SurfaceVertex& surface = bake.clusters.vertices[bake.clusters.vertex_of_source[v]];
       CHECK(surface.source <= v);
       CHECK(moves(surface.source) == moves(v));
-      const Index first = bake.leaves.vertex_of_source[vertices[0]];
-      CHECK(bake.leaves.vertices[first].weld == surface.weld);
-      CHECK((first == bake.leaves.vertex_of_source[v]) == (moves(vertices[0]) == moves(v)));
-      split += first != bake.leaves.vertex_of_source[v] ? 1 : 0;
+      const Index first = bake.clusters.vertex_of_source[vertices[0]];
+      CHECK(bake.clusters.vertices[first].weld == surface.weld);
+      CHECK((first == bake.clusters.vertex_of_source[v]) == (moves(vertices[0]) == moves(v)));
+      split += first != bake.clusters.vertex_of_source[v] ? 1 : 0;
     }
   }
   CHECK(split > 0);  // the morphs pull seams apart
@@ -199,12 +199,12 @@ TEST_CASE("weights and mid weights add up to 1 within two roundings: the balls' 
       for (const auto& part : parts) sum += part.weight;
       return std::abs(sum) > kTwoRoundings;
     };
-    CHECK(std::ranges::none_of(bake->leaves.vertices, is_off, &SurfaceVertex::influences));
-    CHECK(std::ranges::none_of(bake->leaves.leaves, is_off, &Leaf::bones));
+    CHECK(std::ranges::none_of(bake->clusters.vertices, is_off, &SurfaceVertex::influences));
+    CHECK(std::ranges::none_of(bake->clusters.clusters, is_off, &Cluster::bones));
   }
 }
 
-TEST_CASE("at rest a leaf's box and ball contain its vertices to the last bit, and they reach the box's sides") {
+TEST_CASE("at rest a cluster's box and ball contain its vertices to the last bit, and they reach the box's sides") {
   for (const Bake* bake : {&baked_human(), &morphing_person()}) {
     const spherechain::Asset asset = open_asset_of(*bake);
     const spherechain::Surface& surface = asset.surface();
@@ -235,7 +235,7 @@ TEST_CASE("at rest a leaf's box and ball contain its vertices to the last bit, a
   }
 }
 
-TEST_CASE("without morphs a sphere's vertices are near the hull of its outline's points, as near as the asset says") {
+TEST_CASE("without morphs a sphere's vertices are near its hull, as near as the asset says") {
   std::mt19937 random(5);
   std::normal_distribution<double> any;
   for (const Bake* bake : {&baked_human(), &morphing_person()}) {
@@ -291,7 +291,7 @@ TEST_CASE("without morphs a sphere's vertices are near the hull of its outline's
   }
 }
 
-TEST_CASE("an outline is as near as it is meant to be, or has as many points as there may be") {
+TEST_CASE("a hull is as near as it is meant to be, or has as many points as there may be") {
   const spherechain::Asset asset = open_asset_of(baked_human());
   const auto& outlines = asset.surface().outlines;
   double radii = 0;
@@ -311,7 +311,7 @@ TEST_CASE("the corners of the asset's triangles are the source's") {
         const Triangle& corners = bake->character.source_triangles[asset.triangles()[t]];
         for (std::size_t k = 0; k < 3; ++k) {
           const std::uint32_t vertex = surface.leaf_vertices[leaf.first_vertex + surface.corners[3 * t + k]];
-          REQUIRE(bake->leaves.vertex_of_source[corners[k]] == vertex);
+          REQUIRE(bake->clusters.vertex_of_source[corners[k]] == vertex);
           REQUIRE(bake->character.source_positions[surface.source_vertices[vertex]] ==
                   bake->character.source_positions[corners[k]]);
         }
@@ -342,22 +342,22 @@ TEST_CASE("contacts at rest are CGAL's intersections of the rest pose between tr
   CHECK(all > 0);
 }
 
-TEST_CASE("leaves.triangles is how many triangles a leaf has at most") {
-  const Bake small = rebake(baked_person(), make_settings("balanced", R"({"leaves": {"triangles": 16}})", "test"));
-  CHECK(small.leaves.leaves.size() > 2 * baked_person().leaves.leaves.size());
-  for (const Leaf& leaf : small.leaves.leaves) CHECK(leaf.triangles.size() <= 16);
+TEST_CASE("clusters.triangles is how many triangles a cluster has at most") {
+  const Bake small = rebake(baked_person(), make_settings("balanced", R"({"clusters": {"triangles": 16}})", "test"));
+  CHECK(small.clusters.clusters.size() > 2 * baked_person().clusters.clusters.size());
+  for (const Cluster& cluster : small.clusters.clusters) CHECK(cluster.triangles.size() <= 16);
   CHECK(to_json(small.settings).find(R"("triangles":16)") != std::string::npos);
-  CHECK(open_asset_of(small).leaf_count() == small.leaves.leaves.size());
+  CHECK(open_asset_of(small).leaf_count() == small.clusters.clusters.size());
 }
 
-TEST_CASE("leaves.branching is into how many children a sphere's triangles are divided until a leaf can have them") {
+TEST_CASE("clusters.branching is how many children a node of too many triangles is divided into") {
   for (const std::size_t branching : {2, 4, 8}) {
     CAPTURE(branching);
     const Bake bake =
         rebake(baked_person(),
-               make_settings("balanced", fmt::format(R"({{"leaves": {{"branching": {}}}}})", branching), "test"));
+               make_settings("balanced", fmt::format(R"({{"clusters": {{"branching": {}}}}})", branching), "test"));
     std::map<std::uint32_t, std::vector<std::size_t>> sizes;
-    for (const Leaf& leaf : bake.leaves.leaves) sizes[leaf.sphere].push_back(leaf.triangles.size());
+    for (const Cluster& cluster : bake.clusters.clusters) sizes[cluster.sphere].push_back(cluster.triangles.size());
     std::set<std::size_t> counts;
     for (const auto& [sphere, of_sphere] : sizes) {
       const auto [least, most] = std::minmax_element(of_sphere.begin(), of_sphere.end());
@@ -370,13 +370,13 @@ TEST_CASE("leaves.branching is into how many children a sphere's triangles are d
       counts.insert(of_sphere.size());
     }
     CHECK(counts.size() > 1);
-    CHECK(open_asset_of(bake).leaf_count() == bake.leaves.leaves.size());
+    CHECK(open_asset_of(bake).leaf_count() == bake.clusters.clusters.size());
   }
-  CHECK_THROWS_WITH_AS(make_settings("balanced", R"({"leaves": {"branching": 3}})", "test"),
-                       "test: leaves: setting 'branching' is not 0, 2, 4 or 8", Error);
+  CHECK_THROWS_WITH_AS(make_settings("balanced", R"({"clusters": {"branching": 3}})", "test"),
+                       "test: clusters: setting 'branching' is not 0, 2, 4 or 8", Error);
 }
 
-TEST_CASE("in any pose, of turned, stretched, sheared and mirrored bones, every vertex is in its leaf's ball") {
+TEST_CASE("in any pose, of turned, stretched, sheared and mirrored bones, every vertex is in its cluster's ball") {
   const char* names[] = {"gentle", "rigid", "scaled", "sheared", "mirrored", "any"};
   for (const PoseKind kind : spherechain::test::kPoseKinds) {
     const auto seed = static_cast<unsigned>(kind);
@@ -389,7 +389,7 @@ TEST_CASE("in any pose, of turned, stretched, sheared and mirrored bones, every 
   }
 }
 
-TEST_CASE("over poses and clips every vertex is in its leaf's ball, and SkinJob puts it where skinning does") {
+TEST_CASE("over poses and clips every vertex is in its cluster's ball, and SkinJob puts it where skinning does") {
   std::vector<Deformation> frames;
   for (const char* name : {"animation_arms.json", "animation_legs.json", "deep_squat.json"}) {
     const PoseMotion poses =
@@ -411,7 +411,7 @@ TEST_CASE("over poses and clips every vertex is in its leaf's ball, and SkinJob 
   CHECK(person.skinning < 1e-5 * baked_person().regions.frame.height);
 }
 
-TEST_CASE("characters of SPHERECHAIN_TEST_DATA: in any pose every vertex is in its leaf's ball") {
+TEST_CASE("characters of SPHERECHAIN_TEST_DATA: in any pose every vertex is in its cluster's ball") {
   const char* folder = std::getenv("SPHERECHAIN_TEST_DATA");
   if (folder == nullptr) {
     MESSAGE("skipped: SPHERECHAIN_TEST_DATA names no folder of rigged characters");

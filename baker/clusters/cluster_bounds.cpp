@@ -4,8 +4,8 @@
 #include <limits>
 #include <map>
 
-#include "leaves/leaves.h"
-#include "leaves/round_up.h"
+#include "clusters/clusters.h"
+#include "clusters/round_up.h"
 
 namespace spherechain::baker {
 namespace {
@@ -43,13 +43,13 @@ Box box_around(const Mesh& points) {
   return out;
 }
 
-std::vector<LeafBone> bones_of(const std::vector<SurfaceVertex>& vertices, const Leaf& leaf) {
+std::vector<ClusterBone> bones_of(const std::vector<SurfaceVertex>& vertices, const Cluster& cluster) {
   struct Range {
     float least = 1, most = 0;
     std::size_t count = 0;
   };
   std::map<Index, Range> ranges;
-  for (const Index v : leaf.vertices) {
+  for (const Index v : cluster.vertices) {
     for (const Influence& influence : vertices[v].influences) {
       Range& range = ranges[influence.bone];
       range.least = std::min(range.least, influence.weight);
@@ -59,10 +59,10 @@ std::vector<LeafBone> bones_of(const std::vector<SurfaceVertex>& vertices, const
   }
   double sum = 0;
   for (auto& [bone, range] : ranges) {
-    if (range.count < leaf.vertices.size()) range.least = 0;
+    if (range.count < cluster.vertices.size()) range.least = 0;
     sum += (double{range.least} + range.most) / 2;
   }
-  std::vector<LeafBone> out;
+  std::vector<ClusterBone> out;
   for (const auto& [bone, range] : ranges) {
     const auto weight = static_cast<float>((double{range.least} + range.most) / 2 / sum);
     const double deviation = std::max(double{range.most} - weight, weight - double{range.least});
@@ -71,14 +71,14 @@ std::vector<LeafBone> bones_of(const std::vector<SurfaceVertex>& vertices, const
   return out;
 }
 
-std::vector<LeafMorph> morphs_of(const std::vector<SurfaceVertex>& vertices, const Leaf& leaf) {
+std::vector<ClusterMorph> morphs_of(const std::vector<SurfaceVertex>& vertices, const Cluster& cluster) {
   std::map<Index, Mesh> deltas;
-  for (const Index v : leaf.vertices) {
+  for (const Index v : cluster.vertices) {
     for (const MorphDelta& morph : vertices[v].morphs) deltas[morph.target].positions.push_back(morph.delta);
   }
-  std::vector<LeafMorph> out;
+  std::vector<ClusterMorph> out;
   for (auto& [target, points] : deltas) {
-    if (points.positions.size() < leaf.vertices.size()) points.positions.push_back(Vec3::Zero());
+    if (points.positions.size() < cluster.vertices.size()) points.positions.push_back(Vec3::Zero());
     out.push_back({target, ball_around(points)});
   }
   return out;
@@ -86,13 +86,13 @@ std::vector<LeafMorph> morphs_of(const std::vector<SurfaceVertex>& vertices, con
 
 }  // namespace
 
-void bound_leaf(const Character& character, const std::vector<SurfaceVertex>& vertices, Leaf& leaf) {
+void bound_cluster(const Character& character, const std::vector<SurfaceVertex>& vertices, Cluster& cluster) {
   Mesh points;
-  for (const Index v : leaf.vertices) points.positions.push_back(character.source_positions[vertices[v].source]);
-  leaf.ball = ball_around(points);
-  leaf.box = box_around(points);
-  leaf.bones = bones_of(vertices, leaf);
-  leaf.morphs = morphs_of(vertices, leaf);
+  for (const Index v : cluster.vertices) points.positions.push_back(character.source_positions[vertices[v].source]);
+  cluster.ball = ball_around(points);
+  cluster.box = box_around(points);
+  cluster.bones = bones_of(vertices, cluster);
+  cluster.morphs = morphs_of(vertices, cluster);
 }
 
 }  // namespace spherechain::baker

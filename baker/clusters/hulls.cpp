@@ -4,18 +4,18 @@
 #include <map>
 #include <memory>
 
-#include "leaves/leaves.h"
-#include "leaves/round_up.h"
+#include "clusters/clusters.h"
+#include "clusters/round_up.h"
 
 namespace spherechain::baker {
 namespace {
 
-constexpr Eigen::Index kMostPoints = 96, kLanes = 16;  // of an outline; a multiple of these
-constexpr double kNear = 0.03;                         // of the spheres' mean radius: nearer to the hull is near enough
+constexpr Eigen::Index kPointsMax = 96, kLanes = 16;  // points of a hull at most; its points come in lanes
+constexpr double kNear = 0.03;  // of the spheres' mean radius: as near to the hull as this is near enough
 constexpr int kStepsAPoint = 12, kLastSteps = 200;
 constexpr double kRounding = 1e-13;  // more than double precision takes from shares and sums, of lengths of 1
 
-// A sphere's vertices, as the asset has them: where they are from the outline's centre, and their weights of its bones.
+// A sphere's vertices as the asset has them: their places, seen from the hull's centre, and their weights.
 struct Skin {
   std::vector<Index> vertices;
   std::vector<Index> bones;  // the one that moves most of them first
@@ -64,8 +64,8 @@ Skin skin_of(const Character& character, const std::vector<SurfaceVertex>& all, 
   return out;
 }
 
-// Points of many dimensions: where a vertex is, and what each bone but the first, which the others are seen from, moves
-// of it. A weight is worth the outline's radius: that is how far bones come apart.
+// Vertices as points of many dimensions: the place of a vertex, and its weighted place for each bone but the first one,
+// which the others are relative to. A weight counts as much as the hull's radius: that is how far bones come apart.
 Eigen::MatrixXd lift(const Skin& skin) {
   const auto bones = static_cast<Eigen::Index>(skin.bones.size());
   Eigen::MatrixXd out(4 * bones - 1, static_cast<Eigen::Index>(skin.vertices.size()));
@@ -81,12 +81,12 @@ Eigen::MatrixXd lift(const Skin& skin) {
   return out;
 }
 
-// The shares of the chosen points whose mean is nearest to each point, as far as steps of moving some of one's share to
-// another find it.
+// For each point the shares of the chosen points whose mean is nearest to it. Steps that move a part of one share to
+// another approach them.
 class NearestMeans {
  public:
   explicit NearestMeans(const Eigen::MatrixXd& points)
-      : points_(points), shares_(Eigen::MatrixXd::Zero(kMostPoints, points.cols())), slopes_(shares_) {}
+      : points_(points), shares_(Eigen::MatrixXd::Zero(kPointsMax, points.cols())), slopes_(shares_) {}
 
   Eigen::Index count() const { return static_cast<Eigen::Index>(chosen_.size()); }
   const std::vector<Eigen::Index>& chosen() const { return chosen_; }
@@ -137,11 +137,11 @@ class NearestMeans {
  private:
   const Eigen::MatrixXd& points_;
   std::vector<Eigen::Index> chosen_;
-  Eigen::Matrix<double, kMostPoints, kMostPoints> products_;
+  Eigen::Matrix<double, kPointsMax, kPointsMax> products_;
   Eigen::MatrixXd shares_, slopes_;  // a point's column: of the chosen ones
 };
 
-// The point farthest from the hull of those before is the next.
+// Chooses the point that is farthest from the hull of the points before, again and again.
 void choose_points(const Eigen::MatrixXd& points, double near, NearestMeans& means) {
   Eigen::VectorXd distances(points.cols());
   Eigen::Index farthest = 0;
@@ -157,13 +157,13 @@ void choose_points(const Eigen::MatrixXd& points, double near, NearestMeans& mea
       }
       if (distances[v] > distances[farthest]) farthest = v;
     }
-  } while (means.count() < std::min(kMostPoints, points.cols()) &&
+  } while (means.count() < std::min(kPointsMax, points.cols()) &&
            (means.count() % kLanes != 0 || distances[farthest] > near));
   for (Eigen::Index v = 0; v < points.cols(); ++v) means.improve(v, kLastSteps);
 }
 
-// How far off the vertices are from the means by their shares: the differences of w_b (v - center; 1), bone by bone.
-void measure(const Skin& skin, const NearestMeans& means, Outline& out) {
+// Measures how far the vertices are from their means: the differences of w_b (v - center; 1), bone by bone.
+void measure(const Skin& skin, const NearestMeans& means, Hull& out) {
   std::vector<Eigen::Vector4d> most(skin.bones.size(), Eigen::Vector4d::Zero());
   double slack = 0;
   for (std::size_t v = 0; v < skin.vertices.size(); ++v) {
@@ -187,8 +187,8 @@ void measure(const Skin& skin, const NearestMeans& means, Outline& out) {
   out.slack = round_up(slack + kRounding * skin.radius);
 }
 
-Outline outline_of(const Skin& skin, double near) {
-  Outline out;
+Hull hull_of(const Skin& skin, double near) {
+  Hull out;
   if (skin.vertices.empty()) return out;
   const Eigen::MatrixXd lifted = lift(skin);
   const auto means = std::make_unique<NearestMeans>(lifted);
@@ -203,8 +203,8 @@ Outline outline_of(const Skin& skin, double near) {
 
 }  // namespace
 
-std::vector<Outline> outline_spheres(const Character& character, const std::vector<SurfaceVertex>& vertices,
-                                     std::vector<std::vector<Index>> of_spheres) {
+std::vector<Hull> make_hulls(const Character& character, const std::vector<SurfaceVertex>& vertices,
+                             std::vector<std::vector<Index>> of_spheres) {
   std::vector<Skin> skins;
   double radii = 0;
   for (std::vector<Index>& of_sphere : of_spheres) {
@@ -212,8 +212,8 @@ std::vector<Outline> outline_spheres(const Character& character, const std::vect
     radii += skins.back().radius;
   }
   const double near = kNear * radii / static_cast<double>(skins.size());
-  std::vector<Outline> out;
-  for (const Skin& skin : skins) out.push_back(outline_of(skin, near));
+  std::vector<Hull> out;
+  for (const Skin& skin : skins) out.push_back(hull_of(skin, near));
   return out;
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
-#include "leaves/leaves.h"
+#include "clusters/clusters.h"
 
 namespace spherechain::baker {
 namespace {
@@ -25,23 +25,23 @@ Vec3 main_axis(const Item* items, std::size_t count) {
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().col(2);
 }
 
-void split(Item* items, std::size_t count, std::size_t leaves, std::vector<std::vector<Index>>& out) {
-  if (leaves == 1) {
-    std::vector<Index>& leaf = out.emplace_back();
-    for (std::size_t i = 0; i < count; ++i) leaf.push_back(items[i].triangle);
-    std::sort(leaf.begin(), leaf.end());
+void split(Item* items, std::size_t count, std::size_t clusters, std::vector<std::vector<Index>>& out) {
+  if (clusters == 1) {
+    std::vector<Index>& cluster = out.emplace_back();
+    for (std::size_t i = 0; i < count; ++i) cluster.push_back(items[i].triangle);
+    std::sort(cluster.begin(), cluster.end());
     return;
   }
   const Vec3 axis = main_axis(items, count);
   for (std::size_t i = 0; i < count; ++i) items[i].along = axis.dot(items[i].centroid);
-  const std::size_t first_leaves = leaves / 2, first_count = count * first_leaves / leaves;
+  const std::size_t first_clusters = clusters / 2, first_count = count * first_clusters / clusters;
   std::sort(items, items + count,
             [](const Item& a, const Item& b) { return std::tie(a.along, a.triangle) < std::tie(b.along, b.triangle); });
-  split(items, first_count, first_leaves, out);
-  split(items + first_count, count - first_count, leaves - first_leaves, out);
+  split(items, first_count, first_clusters, out);
+  split(items + first_count, count - first_count, clusters - first_clusters, out);
 }
 
-std::size_t count_leaves(std::size_t triangles, const LeafSettings& settings) {
+std::size_t count_clusters(std::size_t triangles, const ClusterSettings& settings) {
   const auto most = static_cast<std::size_t>(settings.triangles);
   const std::size_t fewest = (triangles + most - 1) / most;
   if (settings.branching == 0) return fewest;
@@ -53,11 +53,11 @@ std::size_t count_leaves(std::size_t triangles, const LeafSettings& settings) {
 }  // namespace
 
 std::vector<std::vector<Index>> cluster_triangles(const Mesh& mesh, const std::vector<Index>& triangles,
-                                                  const LeafSettings& settings) {
+                                                  const ClusterSettings& settings) {
   std::vector<Item> items;
   for (const Index t : triangles) items.push_back({t, triangle_centroid(mesh, t)});
   std::vector<std::vector<Index>> out;
-  if (!items.empty()) split(items.data(), items.size(), count_leaves(items.size(), settings), out);
+  if (!items.empty()) split(items.data(), items.size(), count_clusters(items.size(), settings), out);
   return out;
 }
 

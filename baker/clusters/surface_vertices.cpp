@@ -3,12 +3,12 @@
 #include <map>
 #include <tuple>
 
-#include "leaves/leaves.h"
+#include "clusters/clusters.h"
 
 namespace spherechain::baker {
 namespace {
 
-// In single precision, as the asset has them. A weight that single precision does not know is none.
+// In single precision, as the asset has them. Weights that are 0 in single precision are left out.
 std::vector<Influence> influences_of(const VertexWeights* weights, Index rest_bone) {
   std::map<Index, double> sums;
   for (std::size_t k = 0; weights != nullptr && k < kMaxInfluences && weights->weight[k] > 0; ++k) {
