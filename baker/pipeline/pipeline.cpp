@@ -63,6 +63,7 @@ void run_after_fit(Bake& out, const Progress& progress) {
       out.joints = place_joints(out.character, out.regions);
       if (out.character.rig.bones.empty()) out.rig_weights = rig_weights(out.character, out.joints);
     }
+    out.body_parts = find_body_parts(out.character, out.roles, out.regions, out.joints, out.rig_weights);
     out.bones = bind_bones(out.character, out.binding, out.joints, out.rig_weights);
     out.moments = bind_moments(out.character, out.bones, out.rig_weights, out.binding);
   });
@@ -215,6 +216,7 @@ Bake rebake(const Bake& bake, const BakeSettings& settings) {
   Bake out;
   out.settings = settings;
   out.character = bake.character;
+  out.roles = bake.roles;
   out.regions = bake.regions;
   out.joints = bake.joints;
   out.rig_weights = bake.rig_weights;
