@@ -107,7 +107,7 @@ Character build_character(const SourceMesh& source, const std::string& name) {
   check_positions(source, name);
   Character character;
   character.source_triangles = source.triangles;
-  character.parts = source.parts;
+  character.buffers = source.buffers;
   character.rig = source.rig;
   character.metres_per_unit = source.metres_per_unit;
   character.up_hint = source.up_hint;

@@ -64,7 +64,7 @@ void run_after_fit(Bake& out, const Progress& progress) {
       if (out.character.rig.bones.empty()) out.rig_weights = rig_weights(out.character, out.joints);
     }
     out.body_parts = find_body_parts(out.character, out.roles, out.regions, out.joints, out.rig_weights);
-    out.bones = bind_bones(out.character, out.binding, out.joints, out.rig_weights);
+    out.bones = bind_bones(out.character, out.joints, out.rig_weights);
     out.moments = bind_moments(out.character, out.bones, out.rig_weights, out.binding);
   });
   stage(out, progress, "clusters", [&] {
@@ -72,7 +72,7 @@ void run_after_fit(Bake& out, const Progress& progress) {
   });
   stage(out, progress, "write", [&] {
     out.asset = serialize({out.character, out.regions, out.spheres, out.chains, out.binding, out.joints, out.bones,
-                           out.moments, out.clusters, to_json(settings)});
+                           out.moments, out.body_parts, out.clusters, to_json(settings)});
   });
 }
 

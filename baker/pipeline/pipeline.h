@@ -41,7 +41,7 @@ struct BakeSettings {
   Targets targets;
 };
 
-// "paper" (the paper's refit on 4 pivots, no spheres in head, hands and feet) or "balanced" (calibrated refit,
+// "paper" (the paper's refit on 4 pivots, no spheres in head, hands and feet) or "balanced" (refit by moments,
 // extremities), changed by a JSON text. Throws Error(kFile)
 // that names `file` where the JSON is broken, has an unknown key or a value out of its range; Error(kUsage) for another
 // profile.

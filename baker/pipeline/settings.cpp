@@ -127,15 +127,15 @@ BakeSettings make_settings(const std::string& profile, const std::string& text, 
   reader.vector("facing", settings.segment.facing);
   reader.text("body", {"auto", "biped", "quadruped"},
               [&](const std::string& body) { settings.segment.body = parse_body(body); });
-  reader.text("refit", {"paper", "calibrated"}, [&](const std::string& rule) {
-    settings.bind.rule = rule == "paper" ? RefitRule::kPaper : RefitRule::kCalibrated;
+  reader.text("refit", {"paper", "moments"}, [&](const std::string& rule) {
+    settings.bind.rule = rule == "paper" ? RefitRule::kPaper : RefitRule::kMoments;
   });
   // One pivot is a centre without a radius; fewer than four cannot put a centre where they like.
   const bool paper = settings.bind.rule == RefitRule::kPaper;
   settings.bind.pivots = paper ? 4 : 8;
   reader.integer("pivots", settings.bind.pivots, paper ? 2 : 4, 16);
   reader.number("detect_quantile", settings.bind.detect_quantile, 0, 1);
-  reader.number("near_fraction", settings.bind.near_fraction, 0, 0.99);
+  reader.number("rest_scale", settings.bind.rest_scale, 0, 0.99);
   reader.number("neighbour_gap", settings.bind.neighbour_gap, 0, 1);
   if (const json* clusters = reader.object("clusters")) {
     if (!clusters->is_object()) reader.fail("clusters", "is not an object");
@@ -177,10 +177,10 @@ std::string to_json(const BakeSettings& settings) {
   out["facing"] = nullptr;
   if (const auto& facing = settings.segment.facing) out["facing"] = {facing->x(), facing->y(), facing->z()};
   out["body"] = settings.segment.body == BodyKind::kUnknown ? "auto" : body_kind_name(settings.segment.body);
-  out["refit"] = settings.bind.rule == RefitRule::kPaper ? "paper" : "calibrated";
+  out["refit"] = settings.bind.rule == RefitRule::kPaper ? "paper" : "moments";
   out["pivots"] = settings.bind.pivots;
   out["detect_quantile"] = settings.bind.detect_quantile;
-  out["near_fraction"] = settings.bind.near_fraction;
+  out["rest_scale"] = settings.bind.rest_scale;
   out["neighbour_gap"] = settings.bind.neighbour_gap;
   out["clusters"] = {{"triangles", settings.clusters.triangles}, {"branching", settings.clusters.branching}};
   json targets = json::object();

@@ -10,6 +10,7 @@
 #include "bind/bind.h"
 #include "bind/bind_bones.h"
 #include "bind/bind_moments.h"
+#include "bind/body_parts.h"
 #include "chains/chains.h"
 #include "clusters/clusters.h"
 #include "rig/rig.h"
@@ -26,6 +27,7 @@ struct AssetSource {
   const std::vector<Joint>& joints;
   const BoneBinding& bones;
   const MomentBinding& moments;
+  const BodyParts& parts;
   const Clusters& clusters;
   std::string settings;  // canonical JSON
 };

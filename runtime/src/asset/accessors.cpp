@@ -92,7 +92,7 @@ JointView AssetView::joint(std::size_t i) const noexcept {
 
 BoneView AssetView::bone(std::size_t i) const noexcept {
   const schema::Bone& bone = *at(*root_of(root_).bones(), i);
-  return {bone.name()->c_str(), bone.inverse_bind()->elements()->data(), bone.is_rest(), bone.part()};
+  return {bone.name()->c_str(), bone.inverse_bind()->elements()->data(), bone.is_rest()};
 }
 
 const char* AssetView::morph_name(std::size_t i) const noexcept { return at(*root_of(root_).morphs(), i)->c_str(); }

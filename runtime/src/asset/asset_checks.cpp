@@ -110,10 +110,6 @@ bool check_bones(const schema::Asset& root, Message& message) {
     if (bone.is_rest() && i + 1 != root.bones()->size()) {
       return message.wrong("bones[%" PRIu32 "].is_rest: not the last bone", i);
     }
-    if (bone.part() >= root.parts()->size()) {
-      return message.wrong("bones[%" PRIu32 "].part: %u is past the %" PRIu32 " parts", i, unsigned{bone.part()},
-                           root.parts()->size());
-    }
   }
   return true;
 }
@@ -122,9 +118,6 @@ bool check_parts(const schema::Asset& root, Message& message) {
   const std::uint32_t count = root.parts()->size(), bones = root.bones()->size();
   if (count == 0 || count > kMaxPartCount) {
     return message.wrong("parts: %" PRIu32 " of them, not 1 to %" PRIu32, count, kMaxPartCount);
-  }
-  if (bones == 0 && count != root.regions()->size()) {
-    return message.wrong("parts: not the regions, but nothing moves the source");
   }
   for (std::uint32_t i = 0; i < count; ++i) {
     const schema::Part& part = *root.parts()->Get(i);

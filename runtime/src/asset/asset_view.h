@@ -62,7 +62,6 @@ struct BoneView {
   const char* name;
   const float* inverse_bind;
   bool is_rest;
-  std::uint8_t part;
 };
 
 struct FitError {

@@ -75,6 +75,8 @@ SkinData skin_of(const schema::Skin& stored, const SkinSizes& sizes) {
   skin.morph_counts = view<std::uint16_t>(*stored.morph_counts());
   skin.rest_contacts = view<std::uint8_t>(*stored.rest_contacts());
   skin.hull_points = view<std::uint8_t>(*stored.hull_points());
+  skin.part_runs = view<std::uint8_t>(*stored.part_runs());
+  skin.part_run_ends = view<std::uint8_t>(*stored.part_run_ends());
   skin.corners = view<std::uint8_t>(*stored.corners());
   skin.influence_counts = view<std::uint8_t>(*stored.influence_counts());
   skin.clusters = view<PackedCluster>(*stored.clusters());

@@ -70,7 +70,7 @@ class Checker {
 
   bool run() {
     sizes_ = {};
-    return check_vertices() && check_influences() && check_morphs() && check_clusters() && check_triangles() &&
+    return check_vertices() && check_influences() && check_morphs() && check_clusters() && check_triangles() && check_parts() &&
            check_bounds() && check_hulls() && check_rest_contacts() && check_sizes();
   }
 
@@ -250,6 +250,18 @@ class Checker {
       }
     }
     return ends(triangles, "triangles");
+  }
+
+  bool check_parts() {
+    const Bytes& runs = *skin_.part_runs();
+    Stream ends_of_runs = stream_of(*skin_.part_run_ends());
+    std::uint32_t last = 0;
+    for (std::uint32_t i = 0, end = 0; i < runs.size(); ++i, last = end) {
+      if (!ends_of_runs.read(end) || end <= last || runs.Get(i) >= root_.parts()->size()) {
+        return wrong_at("part_runs", i, "past the parts, or its end is missing or not above the one before", message_);
+      }
+    }
+    return has_size(last, sizes_.triangles, "part_runs", "triangles", message_) && ends(ends_of_runs, "part_run_ends");
   }
 
   std::uint32_t lanes_of(std::uint32_t group) const { return std::min(kLanes, skin_.clusters()->size() - kLanes * group); }

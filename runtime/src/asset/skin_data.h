@@ -65,7 +65,8 @@ struct SkinData {
   SkinSizes sizes;
   Span<const std::uint8_t> triangles, cluster_vertices, cluster_bones, sources, welds;  // streams
   Span<const std::uint8_t> influence_bones, rest_contacts, hull_points;                 // likewise
-  Span<const std::uint8_t> corners, influence_counts;
+  Span<const std::uint8_t> part_run_ends;                                               // likewise
+  Span<const std::uint8_t> part_runs, corners, influence_counts;
   Span<const std::uint16_t> morph_counts;
   Span<const PackedCluster> clusters;
   Span<const float> positions, influence_weights;

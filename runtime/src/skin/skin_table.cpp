@@ -77,6 +77,7 @@ class Filler {
   void run() {
     fill_vertices();
     fill_clusters();
+    fill_parts();
     fill_hulls();
     Stream triangles(skin_.triangles), pairs(skin_.rest_contacts);
     for (std::uint32_t& triangle : out_.triangles) {
@@ -160,7 +161,6 @@ class Filler {
       }
       fill_slots(cluster);
       fill_morphs(cluster);
-      fill_parts(cluster);
       const auto slots = static_cast<std::uint32_t>(slot_count(cluster));
       left -= cluster.triangle_count;
       next.first_triangle += cluster.triangle_count;
@@ -208,24 +208,12 @@ class Filler {
     cluster.morph_count = static_cast<std::uint32_t>(end - first);
   }
 
-  // A triangle's part is that of the bone with the greatest sum of its corners' weights, of several the lowest.
-  void fill_parts(const Cluster& cluster) const {
-    const std::size_t slots = slot_count(cluster);
-    for (std::size_t t = cluster.first_triangle; t < cluster.first_triangle + std::size_t{cluster.triangle_count};
-         ++t) {
-      if (cluster.bone_count == 0) {
-        out_.parts[t] = asset_.spheres()[cluster.sphere].region;
-        continue;
-      }
-      const std::uint8_t* const corners = skin_.corners.data + 3 * t;
-      const float* weights = out_.slot_weights.data + cluster.first_weight;
-      float greatest = -1;
-      for (std::size_t k = 0; k < cluster.bone_count; ++k, weights += slots) {
-        const float sum = (weights[corners[0]] + weights[corners[1]]) + weights[corners[2]];
-        if (sum > greatest) {
-          greatest = sum;
-          out_.parts[t] = asset_.bone(out_.cluster_bones[cluster.first_bone + k]).part;
-        }
+  void fill_parts() const {
+    Stream ends(skin_.part_run_ends);
+    std::size_t triangle = 0;
+    for (const std::uint8_t part : skin_.part_runs) {
+      for (const std::size_t end = ends.next(); triangle < end; ++triangle) {
+        out_.parts[triangle] = part;
       }
     }
   }
