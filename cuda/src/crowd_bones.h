@@ -22,7 +22,7 @@ SPHERECHAIN_HD void load_matrices(const GroupView& v, const Shared& shared, cons
   if (at.thread < 3) {
     shared.dealt[at.thread] = 0;
   }
-  if (v.wide_matrices) {
+  if (v.wide_matrices && !v.in_scratch) {
     const std::uint32_t last = instances_in(v, at) - 1;
     const float* const first = v.matrices + std::size_t{at.block} * kLanes * v.instance_stride;
     for (std::uint32_t i = at.lane(); i < 3 * v.used_bone_count; i += kLanes) {

@@ -11,14 +11,9 @@ namespace {
 constexpr std::size_t kInstancesMax = 0x7FFFFFFF;
 constexpr std::size_t kUintMax = 0xFFFFFFFF;  // what strides and BlockLayout's offsets hold
 
-template <typename T>
-bool is_aligned(const T* pointer, std::size_t to) {
-  return reinterpret_cast<std::uintptr_t>(pointer) % to == 0;
-}
-
-template <typename... T>
-bool all_aligned(const T*... pointers) {
-  return (is_aligned(pointers, alignof(T)) && ...);
+template <typename... Pointers>
+bool are_aligned(std::size_t to, Pointers... pointers) {
+  return ((reinterpret_cast<std::uintptr_t>(pointers) % to == 0) && ...);
 }
 
 Status check_bones(const CrowdGroup& group) {
@@ -56,9 +51,9 @@ Status check(const CrowdGroup& group) {
       group.stride > kInstancesMax) {
     return Status::kBadArgument;
   }
-  if (!is_aligned(group.device_tables, 16) || !is_aligned(static_cast<const char*>(group.scratch), 16) ||
-      !all_aligned(group.spheres, group.bones.data, group.refitted, group.counts, group.bits, group.pairs, group.starts,
-                   group.pair_count)) {
+  if (!are_aligned(16, group.device_tables, group.spheres, group.refitted, group.scratch) ||
+      !are_aligned(8, group.bits, group.starts, group.pair_count) ||
+      !are_aligned(4, group.bones.data, group.counts, group.pairs)) {
     return Status::kMisaligned;
   }
   if (!from_bones && group.stride != 0 && group.stride < header_of(*group.tables).sphere_count) {
@@ -179,15 +174,13 @@ Status view_group(const CrowdGroup& group, GroupView& view) {
   view.instance_count = static_cast<std::uint32_t>(group.instance_count);
   view.spheres = group.spheres;
   view.sphere_stride = group.stride == 0 ? view.sphere_count : group.stride;
-  view.wide_spheres = is_aligned(group.spheres, alignof(Float4));
   view.matrices = group.bones.data;
   view.bone_stride = static_cast<std::uint32_t>(group.bones.stride / sizeof(float));
   view.instance_stride = static_cast<std::uint32_t>(group.instance_stride / sizeof(float));
   view.steps = steps_of(group.bones.layout);
-  view.wide_matrices = view.steps.column == 1 && is_aligned(group.bones.data, alignof(Float4)) &&
+  view.wide_matrices = view.steps.column == 1 && are_aligned(16, group.bones.data) &&
                        group.bones.stride % sizeof(Float4) == 0 && group.instance_stride % sizeof(Float4) == 0;
   view.refitted = group.refitted;
-  view.wide_refitted = is_aligned(group.refitted, alignof(Float4));
   view.counts = group.counts;
   view.bits = group.bits;
   view.pairs = group.pairs;
@@ -234,7 +227,7 @@ Status plan_launches(const GroupViews& all, std::size_t shared_bytes_max, Launch
       }
       blocks = std::min(view.scratch_bytes / bytes, blocks);
       view.scratch_blocks = static_cast<std::uint32_t>(blocks);
-      view.wide_matrices = view.wide_spheres = false;  // their instruction copies to shared memory only
+      view.in_scratch = true;
     }
     Launch& launch = plan[in_scratch ? Kernel::kScratch : view.matrices == nullptr ? Kernel::kSpheres : Kernel::kBones];
     view.first_block = launch.blocks;

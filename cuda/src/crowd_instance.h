@@ -47,14 +47,13 @@ SPHERECHAIN_HD void for_all_lanes_of(std::uint32_t count, std::uint32_t lane, co
 SPHERECHAIN_HD void load_spheres(const GroupView& v, const WarpInstance& w) {
   const Sphere* const from = v.spheres + w.instance * v.sphere_stride;
   const std::uint32_t last = v.sphere_count - 1;
-  if (v.wide_spheres) {
+  if (!v.in_scratch) {
     for_all_lanes_of(v.sphere_count, w.lane,
                      [&](std::uint32_t i) { copy_past_cache(w.spheres + i, &from[i < last ? i : last].x); });
     wait_for_copies();
   } else {
     for_all_lanes_of(v.sphere_count, w.lane, [&](std::uint32_t i) {
-      const Sphere& sphere = from[i < last ? i : last];
-      w.spheres[i] = {sphere.x, sphere.y, sphere.z, sphere.radius};
+      w.spheres[i] = reinterpret_cast<const Float4*>(from)[i < last ? i : last];
     });
   }
 }
@@ -116,15 +115,12 @@ SPHERECHAIN_HD std::uint32_t decide_queued(const GroupView& v, const WarpInstanc
                 1.0F);
 }
 
-SPHERECHAIN_HD std::uint32_t entry_of(const WarpInstance& w, std::uint32_t word, std::uint32_t pair) {
-  return (word * kWordUnits * kLanePairs + pair) * kLanes + w.lane;
-}
-
-// Queues the pairs that the quick test leaves in the lane's words. If there is no room for all of them, marks the queue
-// as full and queues none.
+// Puts the pairs that the quick test leaves in the lane's words, from `first` on, into the queue. Decides at once about
+// those that find no room.
 template <std::uint32_t kWords>
-SPHERECHAIN_HD void queue_pairs(const WarpInstance& w, std::uint32_t (&found)[kWords]) {
-  std::uint32_t count = 0;
+SPHERECHAIN_HD void queue_pairs(const GroupView& v, const WarpInstance& w, std::uint32_t first,
+                                std::uint32_t (&found)[kWords]) {
+  std::uint32_t count = 0, touching = 0;
   SPHERECHAIN_UNROLL
   for (const std::uint32_t word : found) {
     count += count_bits(word);
@@ -133,35 +129,22 @@ SPHERECHAIN_HD void queue_pairs(const WarpInstance& w, std::uint32_t (&found)[kW
     return;
   }
   std::uint32_t place = add_to(&w.state->found.queued, count);
-  if (place + count > kWarpQueued) {
-    set_alike(w.state->found.is_full, 1U);
-    return;
-  }
   SPHERECHAIN_UNROLL
   for (std::uint32_t word = 0; word < kWords; ++word) {
     SPHERECHAIN_ONE_BY_ONE
     for (std::uint32_t& left = found[word]; left != 0; ++place) {
       const std::uint32_t pair = leading_zeros(left);
+      const std::uint32_t entry = ((first + word) * kWordUnits * kLanePairs + pair) * kLanes + w.lane;
       left ^= 0x80000000U >> pair;
-      w.state->queue[place] = entry_of(w, word, pair);
-    }
-  }
-}
-
-// The same for one word, but decides at once about pairs that find no room.
-SPHERECHAIN_HD void queue_or_decide(const GroupView& v, const WarpInstance& w, std::uint32_t word,
-                                    std::uint32_t found) {
-  while (any_lane(found != 0)) {
-    if (found != 0) {
-      const std::uint32_t pair = leading_zeros(found), place = add_to(&w.state->found.queued, 1U);
-      const std::uint32_t entry = entry_of(w, word, pair);
-      found ^= 0x80000000U >> pair;
       if (place < kWarpQueued) {
         w.state->queue[place] = entry;
       } else {
-        add_to(&w.state->found.count, decide_queued(v, w, entry));
+        touching += decide_queued(v, w, entry);
       }
     }
+  }
+  if (touching > 0) {
+    add_to(&w.state->found.count, touching);
   }
 }
 
@@ -201,14 +184,13 @@ SPHERECHAIN_HD void find_pairs_of(const GroupView& v, const WarpInstance& w) {
       }
     }
   }
-  queue_pairs(w, found);
+  queue_pairs(v, w, 0, found);
 }
 
 SPHERECHAIN_HD void find_pairs_of_any(const GroupView& v, const WarpInstance& w) {
   const Units units(v, w);
   const std::uint32_t words = words_of_units(units_of(v.sphere_count));
   for (std::uint32_t word = 0; word < words; ++word) {
-    const std::uint32_t wanted = v.wanted[word * kLanes + w.lane];
     std::uint32_t apart = 0;
     SPHERECHAIN_UNROLL
     for (std::uint32_t unit = 0; unit < kWordUnits; ++unit) {
@@ -217,7 +199,9 @@ SPHERECHAIN_HD void find_pairs_of_any(const GroupView& v, const WarpInstance& w)
       Units::sum(units.rows(place & 0xFFFFU), units.columns(column, units.rows(column)), sums);
       shift_in(sums, apart);
     }
-    queue_or_decide(v, w, word, ~apart & wanted);
+    std::uint32_t found[] = {~apart & v.wanted[word * kLanes + w.lane]};
+    queue_pairs(v, w, word, found);
+    rejoin();
   }
 }
 
@@ -239,19 +223,8 @@ SPHERECHAIN_HD void decide_pairs(const GroupView& v, const WarpInstance& w) {
     const RestPair& pair = v.rest_pairs[i];
     touching += decide(v, w, pair.a, pair.b, pair.scale);
   });
-  if (w.state->found.is_full == 0) {
-    const std::uint32_t queued = w.state->found.queued < kWarpQueued ? w.state->found.queued : kWarpQueued;
-    for_each_of(queued, w.lane, [&](std::uint32_t i) { touching += decide_queued(v, w, w.state->queue[i]); });
-  } else {  // pairs that are missing in the queue may touch: decide about all
-    const std::uint32_t words = words_of_units(units_of(v.sphere_count));
-    SPHERECHAIN_ONE_BY_ONE
-    for (std::uint32_t word = 0; word < words; ++word) {
-      SPHERECHAIN_ONE_BY_ONE
-      for (std::uint32_t left = v.wanted[word * kLanes + w.lane]; left != 0; left &= left - 1) {
-        touching += decide_queued(v, w, (word * 32 + 31 - lowest_bit(left)) * kLanes + w.lane);
-      }
-    }
-  }
+  const std::uint32_t queued = w.state->found.queued < kWarpQueued ? w.state->found.queued : kWarpQueued;
+  for_each_of(queued, w.lane, [&](std::uint32_t i) { touching += decide_queued(v, w, w.state->queue[i]); });
   add_to(&w.state->found.count, touching);
 }
 
@@ -269,28 +242,8 @@ SPHERECHAIN_HD void write_instance(const GroupView& v, const WarpInstance& w) {
     if (w.lane == 0) {
       v.starts[w.instance] = w.state->start = add_to(v.pair_count, std::uint64_t{w.state->found.count});
     }
-    const Part part = part_of(v, w.lane, kLanes);
-    std::uint32_t pairs = 0;
-    for (std::uint32_t i = part.first; i < part.last; ++i) {
-      pairs += count_bits(w.ordered_bits[i]);
-    }
-    w.parts[w.lane] = pairs;
+    w.parts[w.lane] = count_pairs(w.ordered_bits, 1, part_of(v, w.lane, kLanes));
   }
-}
-
-// The pair that an ordered bit stands for. The pairs of sphere a begin at bit a (2 n - a - 1) / 2.
-SPHERECHAIN_HD Pair pair_at(std::uint32_t n, std::uint32_t bit) {
-  const auto first = [n](std::uint32_t a) { return a * (2 * n - a - 1) / 2; };
-  const float side = static_cast<float>(2 * n - 1);
-  const float guess = 0.5F * (side - sqrtf(fmaxf(0.0F, side * side - 8.0F * static_cast<float>(bit))));
-  auto a = static_cast<std::uint32_t>(fminf(fmaxf(guess, 0.0F), static_cast<float>(n - 2)));
-  while (first(a) > bit) {
-    --a;
-  }
-  while (first(a + 1) <= bit) {
-    ++a;
-  }
-  return {a, a + 1 + (bit - first(a))};
 }
 
 SPHERECHAIN_HD void write_pairs(const GroupView& v, const WarpInstance& w) {
@@ -301,14 +254,7 @@ SPHERECHAIN_HD void write_pairs(const GroupView& v, const WarpInstance& w) {
   for (std::uint32_t i = 0; i < w.lane; ++i) {
     place += w.parts[i];
   }
-  const Part part = part_of(v, w.lane, kLanes);
-  for (std::uint32_t i = part.first; i < part.last; ++i) {
-    for (std::uint32_t word = w.ordered_bits[i]; word != 0; word &= word - 1, ++place) {
-      if (place < v.pair_capacity) {
-        v.pairs[place] = {w.instance, pair_at(v.sphere_count, 32 * i + lowest_bit(word))};
-      }
-    }
-  }
+  list_pairs(v, w.ordered_bits, 1, part_of(v, w.lane, kLanes), w.instance, place);
 }
 
 }  // namespace spherechain::cuda

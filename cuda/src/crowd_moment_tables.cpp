@@ -117,8 +117,7 @@ class RunWriter {
   // One or two spheres of any bones.
   void add(const Member* members, std::uint32_t count) {
     const Union all(tables_, members, count);
-    const bool are_equal = count == 2 && members[0].bone_count == all.count && members[1].bone_count == all.count;
-    MomentRun& run = start(members, count, are_equal ? kEqualBones : kAnyBones);
+    MomentRun& run = start(members, count, kAnyBones);
     run.bone_count = all.count;
     for (std::uint32_t i = 0; i < all.count; ++i) {
       add_bone(all, i, members, count);
@@ -247,25 +246,20 @@ bool are_equal(const MomentTables& tables, const Member& a, const Member& b) {
   return a.bone_count == b.bone_count && common_bones(tables, a, b) == a.bone_count;
 }
 
-// Takes out spheres of the same few bones, many at a time, and others of the same bones, by twos. Returns how many
-// spheres are left.
-std::size_t add_equal_runs(const MomentTables& tables, Member* members, RunWriter& writer) {
+// Takes out the spheres of two or three bones, many of the same ones at a time. Returns how many spheres are left.
+std::size_t add_few_bone_runs(const MomentTables& tables, Member* members, RunWriter& writer) {
   const std::size_t n = tables.spheres.size;
   std::size_t left = 0;
   for (std::size_t i = 0; i < n;) {
-    const bool are_few = has_few_bones(members[i]);
-    const std::size_t most = are_few ? kRunSpheresMax : kRunSpheres;
+    if (!has_few_bones(members[i])) {
+      members[left++] = members[i++];
+      continue;
+    }
     std::uint32_t count = 1;
-    while (count < most && i + count < n && are_equal(tables, members[i], members[i + count])) {
+    while (count < kRunSpheresMax && i + count < n && are_equal(tables, members[i], members[i + count])) {
       ++count;
     }
-    if (are_few) {
-      writer.add_few_bones(members + i, count);
-    } else if (count == kRunSpheres) {
-      writer.add(members + i, count);
-    } else {
-      members[left++] = members[i];
-    }
+    writer.add_few_bones(members + i, count);
     i += count;
   }
   return left;
@@ -340,7 +334,7 @@ void add_moments(const Asset& asset, RadiusKind radius, TableMemory& memory, Tab
   writer.moments = memory.take<Float4>(kPairQuads * tables.moments.size, header.moments);
   writer.run_bones = memory.take<std::uint32_t>(tables.bones.size, header.run_bones);
   writer.center_terms = memory.take<Float4>(tables.bones.size, header.center_terms);
-  add_other_runs(tables, members, add_equal_runs(tables, members, writer), writer);
+  add_other_runs(tables, members, add_few_bone_runs(tables, members, writer), writer);
   header.run_count = writer.run_count();
   std::sort(writer.runs, writer.runs + header.run_count, [](const MomentRun& l, const MomentRun& r) {
     return l.cost != r.cost ? l.cost > r.cost : l.first_sphere < r.first_sphere;

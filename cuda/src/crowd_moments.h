@@ -249,7 +249,6 @@ SPHERECHAIN_HD void refit_few_bones(const GroupView& v, const Shared& shared, st
 }
 
 // A bone's matrix stays in registers while it is paired with those after it.
-template <bool kEqual>
 SPHERECHAIN_HD void add_pairs(const GroupView& v, const Shared& shared, std::uint32_t lane, const MomentRun& run,
                               MomentSums (&sums)[kRunSpheres]) {
   const std::uint32_t* steps = v.moment_steps + run.first_step;
@@ -261,7 +260,7 @@ SPHERECHAIN_HD void add_pairs(const GroupView& v, const Shared& shared, std::uin
     const SelfGram self = gram_of(a);
     SPHERECHAIN_UNROLL
     for (std::uint32_t s = 0; s < kRunSpheres; ++s) {
-      if (kEqual || (step >> s & 1U) != 0) {
+      if ((step >> s & 1U) != 0) {
         add_self_moment(quads, self, sums[s]);
         quads += kSelfQuads;
       }
@@ -271,7 +270,7 @@ SPHERECHAIN_HD void add_pairs(const GroupView& v, const Shared& shared, std::uin
       const Gram both = gram_of(a, matrix_at(shared, lane, step));
       SPHERECHAIN_UNROLL
       for (std::uint32_t s = 0; s < kRunSpheres; ++s) {
-        if (kEqual || (step >> s & 1U) != 0) {
+        if ((step >> s & 1U) != 0) {
           add_pair_moment(quads, both, sums[s]);
           quads += kPairQuads;
         }
@@ -280,7 +279,6 @@ SPHERECHAIN_HD void add_pairs(const GroupView& v, const Shared& shared, std::uin
   } while ((step & kLastOfRun) == 0);
 }
 
-template <bool kEqual>
 SPHERECHAIN_HD void add_bones(const GroupView& v, const Shared& shared, std::uint32_t lane, const MomentRun& run,
                               CenterSums (&sums)[kRunSpheres]) {
   const std::uint32_t* bones = v.run_bones + run.first_bone;
@@ -291,32 +289,31 @@ SPHERECHAIN_HD void add_bones(const GroupView& v, const Shared& shared, std::uin
     const Matrix matrix = matrix_at(shared, lane, bone);
     SPHERECHAIN_UNROLL
     for (std::uint32_t s = 0; s < kRunSpheres; ++s) {
-      if (kEqual || (bone >> s & 1U) != 0) {
+      if ((bone >> s & 1U) != 0) {
         add_center(matrix, *terms++, sums[s]);
       }
     }
   }
 }
 
-template <bool kEqual>
 SPHERECHAIN_HD void refit_run(const GroupView& v, const Shared& shared, std::uint32_t lane, const MomentRun& run) {
   float spreads[kRunSpheres];
   {
     MomentSums sums[kRunSpheres];
     clear(sums[0].at);
     clear(sums[1].at);
-    add_pairs<kEqual>(v, shared, lane, run, sums);
+    add_pairs(v, shared, lane, run, sums);
     spreads[0] = spread_of(tree(sums[0]));
     spreads[1] = spread_of(tree(sums[1]));
   }
   CenterSums centers[kRunSpheres];
   clear(centers[0].at);
   clear(centers[1].at);
-  add_bones<kEqual>(v, shared, lane, run, centers);
+  add_bones(v, shared, lane, run, centers);
   const RunSphere* spheres = v.run_spheres + run.first_sphere;
   SPHERECHAIN_UNROLL
   for (std::uint32_t s = 0; s < kRunSpheres; ++s) {
-    if (kEqual || s < run.sphere_count) {
+    if (s < run.sphere_count) {
       store_sphere(shared, lane, spheres[s].sphere, centers[s], spheres[s].wanted * spreads[s]);
     }
   }
@@ -332,19 +329,9 @@ SPHERECHAIN_HD void refit_runs(const GroupView& v, const Shared& shared, const P
       refit_few_bones<2>(v, shared, at.lane(), run);
     } else if (run.kind == kThreeBones) {
       refit_few_bones<3>(v, shared, at.lane(), run);
-    } else if (run.kind == kEqualBones) {
-      refit_run<true>(v, shared, at.lane(), run);
     } else {
-      refit_run<false>(v, shared, at.lane(), run);
+      refit_run(v, shared, at.lane(), run);
     }
-  }
-}
-
-SPHERECHAIN_HD void write_sphere(Sphere* to, const Float4& s, bool is_wide) {
-  if (is_wide) {
-    *reinterpret_cast<Float4*>(to) = s;
-  } else {
-    *to = {s.x, s.y, s.z, s.w};
   }
 }
 
@@ -353,7 +340,7 @@ SPHERECHAIN_HD void write_spheres(const GroupView& v, const Shared& shared, cons
   for (std::uint32_t from = at.warp(); from < instances_in(v, at); from += at.warps()) {
     Sphere* const to = v.refitted + std::size_t{at.block * kLanes + from} * v.sphere_count;
     for (std::uint32_t i = at.lane(); i < v.sphere_count; i += kLanes) {
-      write_sphere(to + i, shared.spheres[i * kPitch + from], v.wide_refitted);
+      *reinterpret_cast<Float4*>(to + i) = shared.spheres[i * kPitch + from];
     }
   }
 }

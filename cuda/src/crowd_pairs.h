@@ -88,45 +88,29 @@ SPHERECHAIN_HD void decide(const GroupView& v, const Shared& shared, std::uint32
   }
 }
 
-// Each lane decides about its own candidates.
-SPHERECHAIN_HD void decide_at_once(const GroupView& v, const Shared& shared, std::uint32_t lane, const Corner& corner,
-                                   std::uint32_t (&candidates)[2]) {
-  while (any_lane((candidates[0] | candidates[1]) != 0)) {
-    if ((candidates[0] | candidates[1]) != 0) {
-      const std::uint32_t half = candidates[0] != 0 ? 0 : 1, word = candidates[0] != 0 ? candidates[0] : candidates[1];
-      candidates[0] = half == 0 ? word & (word - 1) : 0;
-      candidates[1] = half == 0 ? candidates[1] : word & (word - 1);
-      decide(v, shared, lane, pair_of_bit(corner, half, lowest_bit(word)));
-    }
-  }
-}
-
 SPHERECHAIN_HD std::uint32_t queue_entry(std::uint32_t lane, const Pair& pair) {
   return (pair.b * kQueuedSpheresMax + pair.a) * kLanes + lane;
 }
 
-inline constexpr std::uint32_t kNoEntry = ~0U;  // no pair: a would be b
-
-// A few lanes have most of the candidates, so all lanes share them later. Where there is no room for all candidates of
-// a lane, they stay with it.
-SPHERECHAIN_HD void queue_candidates(const Shared& shared, std::uint32_t lane, const Corner& corner,
+// Puts a lane's candidates into the queue, for a few lanes have most of them and all lanes share the queue. Decides at
+// once about those that find no room.
+SPHERECHAIN_HD void queue_candidates(const GroupView& v, const Shared& shared, std::uint32_t lane, const Corner& corner,
                                      std::uint32_t (&candidates)[2]) {
   const std::uint32_t count = count_bits(candidates[0]) + count_bits(candidates[1]);
   if (count == 0) {
     return;
   }
-  std::uint32_t place = add_to(&shared.dealt[2], count);
-  if (place + count > kBlockQueued) {
-    for (; place < kBlockQueued; ++place) {
-      shared.queue[place] = kNoEntry;
-    }
-    return;
-  }
+  std::uint32_t place = has_queue(v.sphere_count) ? add_to(&shared.dealt[2], count) : kBlockQueued;
   SPHERECHAIN_UNROLL
   for (std::uint32_t half = 0; half < 2; ++half) {
     SPHERECHAIN_ONE_BY_ONE
-    for (std::uint32_t& left = candidates[half]; left != 0; left &= left - 1) {
-      shared.queue[place++] = queue_entry(lane, pair_of_bit(corner, half, lowest_bit(left)));
+    for (std::uint32_t& left = candidates[half]; left != 0; left &= left - 1, ++place) {
+      const Pair pair = pair_of_bit(corner, half, lowest_bit(left));
+      if (place < kBlockQueued) {
+        shared.queue[place] = queue_entry(lane, pair);
+      } else {
+        decide(v, shared, lane, pair);
+      }
     }
   }
 }
@@ -163,11 +147,8 @@ SPHERECHAIN_HD void test_item(const GroupView& v, const Shared& shared, std::uin
     // The pairs that the quick test leaves.
     std::uint32_t candidates[2] = {~apart[0] & columns.wanted[0], ~apart[1] & columns.wanted[1]};
     if (any_lane((candidates[0] | candidates[1]) != 0)) {
-      const Corner corner{first_row, columns.first};
-      if (has_queue(v.sphere_count)) {
-        queue_candidates(shared, lane, corner, candidates);
-      }
-      decide_at_once(v, shared, lane, corner, candidates);
+      queue_candidates(v, shared, lane, {first_row, columns.first}, candidates);
+      rejoin();
     }
   }
 }
@@ -201,11 +182,8 @@ SPHERECHAIN_HD void decide_queued(const GroupView& v, const Shared& shared, cons
   const std::uint32_t taken = shared.dealt[2], count = taken < kBlockQueued ? taken : kBlockQueued;
   SPHERECHAIN_ONE_BY_ONE
   for (std::uint32_t i = at.thread; i < count; i += at.threads) {
-    const std::uint32_t entry = shared.queue[i];
-    if (entry != kNoEntry) {
-      const std::uint32_t pair = entry / kLanes;
-      decide(v, shared, entry % kLanes, {pair % kQueuedSpheresMax, pair / kQueuedSpheresMax});
-    }
+    const std::uint32_t entry = shared.queue[i], pair = entry / kLanes;
+    decide(v, shared, entry % kLanes, {pair % kQueuedSpheresMax, pair / kQueuedSpheresMax});
   }
 }
 
@@ -217,6 +195,34 @@ struct Part {
 SPHERECHAIN_HD Part part_of(const GroupView& v, std::uint32_t worker, std::uint32_t workers) {
   const std::uint32_t each = (half_words(v) + workers - 1) / workers, first = worker * each;
   return {first, first + each < half_words(v) ? first + each : half_words(v)};
+}
+
+// The pairs in a part. `pitch`: from one half word to the next.
+SPHERECHAIN_HD std::uint32_t count_pairs(const std::uint32_t* ordered_bits, std::uint32_t pitch, const Part& part) {
+  std::uint32_t out = 0;
+  for (std::uint32_t i = part.first; i < part.last; ++i) {
+    out += count_bits(ordered_bits[i * pitch]);
+  }
+  return out;
+}
+
+// Lists the pairs in a part from `place` on.
+SPHERECHAIN_HD void list_pairs(const GroupView& v, const std::uint32_t* ordered_bits, std::uint32_t pitch,
+                               const Part& part, std::uint32_t instance, std::uint64_t place) {
+  std::uint32_t a = 0, row = 0, row_end = v.sphere_count - 1;  // the bits of a's pairs
+  for (std::uint32_t i = part.first; i < part.last; ++i) {
+    for (std::uint32_t word = ordered_bits[i * pitch]; word != 0; word &= word - 1, ++place) {
+      const std::uint32_t bit = 32 * i + lowest_bit(word);
+      while (bit >= row_end) {
+        ++a;
+        row = row_end;
+        row_end += v.sphere_count - 1 - a;
+      }
+      if (place < v.pair_capacity) {
+        v.pairs[place] = {instance, {a, a + 1 + (bit - row)}};
+      }
+    }
+  }
 }
 
 // Step 9: counts and bits, the block's place in the list, and the pairs in each warp's part of it.
@@ -242,12 +248,8 @@ SPHERECHAIN_HD void write_instances(const GroupView& v, const Shared& shared, co
       }
       *shared.start = add_to(v.pair_count, total);
     }
-    const Part part = part_of(v, at.warp(), at.warps());
-    std::uint32_t pairs = 0;
-    for (std::uint32_t w = part.first; w < part.last; ++w) {
-      pairs += count_bits(shared.ordered_bits[w * kPitch + lane]);
-    }
-    shared.parts[at.warp() * kLanes + lane] = pairs;
+    shared.parts[at.warp() * kLanes + lane] =
+        count_pairs(shared.ordered_bits + lane, kPitch, part_of(v, at.warp(), at.warps()));
   }
 }
 
@@ -267,21 +269,7 @@ SPHERECHAIN_HD void write_pairs(const GroupView& v, const Shared& shared, const 
   for (std::uint32_t warp = 0; warp < at.warp(); ++warp) {
     place += shared.parts[warp * kLanes + lane];
   }
-  const Part part = part_of(v, at.warp(), at.warps());
-  std::uint32_t a = 0, row = 0, row_end = v.sphere_count - 1;  // of a's bits
-  for (std::uint32_t w = part.first; w < part.last; ++w) {
-    for (std::uint32_t word = shared.ordered_bits[w * kPitch + lane]; word != 0; word &= word - 1, ++place) {
-      const std::uint32_t bit = 32 * w + lowest_bit(word);
-      while (bit >= row_end) {
-        ++a;
-        row = row_end;
-        row_end += v.sphere_count - 1 - a;
-      }
-      if (place < v.pair_capacity) {
-        v.pairs[place] = {instance, {a, a + 1 + (bit - row)}};
-      }
-    }
-  }
+  list_pairs(v, shared.ordered_bits + lane, kPitch, part_of(v, at.warp(), at.warps()), instance, place);
 }
 
 }  // namespace spherechain::cuda

@@ -111,13 +111,19 @@ SPHERECHAIN_HD float eleven_bits(float x) {
 #endif
 }
 
-// True if `is_so` is for any lane that runs with this one: the whole warp on the device, so that lanes stay together in
-// loops that ask it.
+// True if `is_so` is for any lane that runs with this one: on the device for any of the warp.
 SPHERECHAIN_HD bool any_lane(bool is_so) {
 #if defined(__CUDA_ARCH__)
   return __any_sync(0xFFFFFFFFU, is_so) != 0;
 #else
   return is_so;
+#endif
+}
+
+// Waits for the warp's other lanes: after a branch they would else go on one after another.
+SPHERECHAIN_HD void rejoin() {
+#if defined(__CUDA_ARCH__)
+  __syncwarp();
 #endif
 }
 

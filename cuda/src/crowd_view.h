@@ -83,8 +83,8 @@ struct alignas(16) MomentRun {
   std::uint32_t bone_count, kind;
   std::uint32_t cost;
 };
-// The kinds of runs: many spheres of the same two bones, or three; two spheres of the same bones; one or two spheres.
-inline constexpr std::uint32_t kTwoBones = 0, kThreeBones = 1, kEqualBones = 2, kAnyBones = 3;
+// The kinds of runs: many spheres of the same two bones, or of the same three; one or two spheres of any bones.
+inline constexpr std::uint32_t kTwoBones = 0, kThreeBones = 1, kAnyBones = 2;
 inline constexpr std::uint32_t kRunSpheres = 2, kRunSpheresMax = 8;
 
 struct alignas(8) RunSphere {
@@ -173,7 +173,8 @@ struct GroupView {
   std::size_t sphere_stride;
   std::uint32_t bone_stride, instance_stride;  // floats
   MatrixSteps steps;
-  bool wide_matrices, wide_spheres, wide_refitted;  // aligned for reads and writes of 16 bytes
+  bool wide_matrices;  // whose rows are read 16 bytes at a time
+  bool in_scratch;     // the block's memory is not shared memory
   std::uint32_t instance_count;
 
   Sphere* refitted;
@@ -255,8 +256,8 @@ struct Shared {
 
 // What a warp has found in its instance.
 struct alignas(16) Found {
-  std::uint32_t count, queued, is_full;  // is_full: not all that should be queued is
-  std::uint32_t unused;
+  std::uint32_t count, queued;  // touching pairs; pairs that are in the queue or found no room there
+  std::uint32_t unused[2];
 };
 
 struct WarpState {

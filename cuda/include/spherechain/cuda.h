@@ -31,8 +31,8 @@ const char* last_device_error() noexcept;
 // An asset in the form that the kernels read, for one kind of radius and one filter. To change the filter, build and
 // copy again.
 struct CrowdTables {
-  // Out. Copy these words to each device that runs the crowd, to an address that is a multiple of 16. They lie in the
-  // `memory` of build(), which must stay as long as the tables are used.
+  // Out. Copy these words to each device that runs the crowd. They lie in the `memory` of build(), which must stay as
+  // long as the tables are used.
   Span<const std::uint64_t> words;
 
   // How many words build() needs for this asset, whatever the filter. 0 if the asset is not open.
@@ -49,11 +49,12 @@ struct CrowdTables {
   std::size_t block_bytes(bool from_bones, bool with_bits, bool with_pairs) const noexcept;
 };
 
-// Instances of one asset. All pointers but `tables` point to memory that the device can access. Matrices and spheres
-// are read and written fastest at addresses that are multiples of 16.
+// Instances of one asset. All pointers but `tables` point to memory that the device can access; those to spheres,
+// tables and scratch to a multiple of 16, the others to a multiple of their type's size, as cudaMalloc gives them all.
+// Matrices are read fastest by rows and at multiples of 16.
 struct CrowdGroup {
   const CrowdTables* tables = nullptr;           // on the host
-  const std::uint64_t* device_tables = nullptr;  // the copy of tables->words on the device
+  const std::uint64_t* device_tables = nullptr;  // the copy of tables->words
   std::size_t instance_count = 0;                // below 2^31
 
   // In, as in a CrowdJob on the CPU: either spheres or bones. Bones need an asset that is refitted by moments.
@@ -74,9 +75,9 @@ struct CrowdGroup {
   std::uint64_t* starts = nullptr;      // one for each instance
   std::uint64_t* pair_count = nullptr;  // all pairs found; those past pair_capacity are not in the list
 
-  // Memory of the device for assets too large for its shared memory (on Hopper from about 210 spheres with bones, 400
-  // without), at an address that is a multiple of 16. Give CrowdTables::block_bytes() for each block that is to run at
-  // once; two blocks a multiprocessor are enough. Jobs that may run at the same time need scratch of their own.
+  // Memory for assets too large for the device's shared memory (on Hopper from about 210 spheres with bones, 400
+  // without). Give CrowdTables::block_bytes() for each block that is to run at once; two blocks a multiprocessor are
+  // enough. Jobs that may run at the same time need scratch of their own.
   void* scratch = nullptr;
   std::size_t scratch_bytes = 0;
 };

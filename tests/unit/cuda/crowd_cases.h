@@ -43,9 +43,9 @@ Expected pairs_of_bones(const Asset& asset, const GroupInput& in, RadiusKind rad
 // Disables some spheres, pads all, ignores some pairs and takes up others.
 void edit_randomly(const Asset& asset, Filter& filter, std::mt19937& random);
 
-// How many there are of each kind (kTwoBones, kThreeBones, kEqualBones, kAnyBones).
+// How many there are of each kind (kTwoBones, kThreeBones, kAnyBones).
 struct RunCounts {
-  std::size_t of_kind[4] = {};
+  std::size_t of_kind[3] = {};
   void add(const Tables& tables);
 };
 

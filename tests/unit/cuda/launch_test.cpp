@@ -45,7 +45,7 @@ TEST_CASE("groups go to shared memory where it is large enough, and else to as m
   REQUIRE(cuda::plan_launches(views, block - 1, plan) == Status::kOk);
   REQUIRE(plan[Kernel::kSpheres].count == 2);
   CHECK(plan[Kernel::kSpheres].views[1].first_block == 5);
-  CHECK(plan[Kernel::kSpheres].views[0].wide_spheres);
+  CHECK(!plan[Kernel::kSpheres].views[0].in_scratch);
   CHECK(plan[Kernel::kSpheres].blocks == 13);  // of eight instances
   CHECK(plan[Kernel::kSpheres].shared_bytes < block / 5);
   REQUIRE(plan[Kernel::kScratch].count == 2);
@@ -53,10 +53,7 @@ TEST_CASE("groups go to shared memory where it is large enough, and else to as m
   CHECK(plan[Kernel::kScratch].views[1].scratch_blocks == 3);
   CHECK(plan[Kernel::kScratch].views[1].first_block == 3);
   CHECK(plan[Kernel::kScratch].blocks == 6);
-  for (std::uint32_t g = 0; g < 2; ++g) {  // the instruction for wide copies is one to shared memory
-    CHECK(!plan[Kernel::kScratch].views[g].wide_spheres);
-    CHECK(!plan[Kernel::kScratch].views[g].wide_matrices);
-  }
+  CHECK(plan[Kernel::kScratch].views[0].in_scratch);
   views.views[1].instance_count = 1;  // as of an asset of more spheres than a block's places reach, with scratch for it
   views.views[1].sphere_count = 60000;
   views.views[1].bit_words = 60000U * 59999U / 128 + 1;
