@@ -6,25 +6,20 @@
 
 namespace spherechain::cuda {
 
-// Lanes past the last instance repeat the last one; their results are not written.
-SPHERECHAIN_HD std::uint32_t instance_of(const GroupView& v, const Place& at, std::uint32_t lane) {
-  const std::uint32_t instance = at.block * kLanes + lane;
-  return instance < v.instance_count ? instance : v.instance_count - 1;
-}
-
 SPHERECHAIN_HD std::uint32_t instances_in(const GroupView& v, const Place& at) {
   const std::uint32_t most = block_instances(v), left = v.instance_count - at.block * most;
   return left < most ? left : most;
 }
 
-// Step 1. Each warp takes some instances and reads their figures in the order in which they lie.
+// Step 1. Each warp takes some instances and reads their figures in the order in which they lie. Lanes past the last
+// instance repeat it; their results are not written.
 SPHERECHAIN_HD void load_matrices(const GroupView& v, const Shared& shared, const Place& at) {
   if (at.thread < 3) {
     shared.dealt[at.thread] = 0;
   }
+  const std::uint32_t last = instances_in(v, at) - 1;
+  const float* const first = v.matrices + std::size_t{at.block} * kLanes * v.instance_stride;
   if (v.wide_matrices && !v.in_scratch) {
-    const std::uint32_t last = instances_in(v, at) - 1;
-    const float* const first = v.matrices + std::size_t{at.block} * kLanes * v.instance_stride;
     for (std::uint32_t i = at.lane(); i < 3 * v.used_bone_count; i += kLanes) {
       const float* const row = first + (v.used_bones[i / 3] * v.bone_stride + i % 3 * v.steps.row);
       Float4* const to = shared.matrices + i * kPitch;
@@ -41,8 +36,8 @@ SPHERECHAIN_HD void load_matrices(const GroupView& v, const Shared& shared, cons
       const std::uint32_t figure =
           v.used_bones[i / 12] * v.bone_stride + i / 4 % 3 * v.steps.row + i % 4 * v.steps.column;
       for (std::uint32_t to = at.warp(); to < kLanes; to += at.warps()) {
-        const float* from = v.matrices + std::size_t{instance_of(v, at, to)} * v.instance_stride;
-        (&shared.matrices[i / 4 * kPitch + to].x)[i % 4] = from[figure];
+        (&shared.matrices[i / 4 * kPitch + to].x)[i % 4] =
+            first[std::size_t{to < last ? to : last} * v.instance_stride + figure];
       }
     }
   }

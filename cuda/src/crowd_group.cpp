@@ -63,14 +63,9 @@ Status check(const CrowdGroup& group) {
 }
 
 MatrixSteps steps_of(MatrixLayout layout) {
-  switch (layout) {
-    case MatrixLayout::kColumnMajor4x4:
-      return {1, 4};
-    case MatrixLayout::kColumnMajor3x4:
-      return {1, 3};
-    default:
-      return {4, 1};
-  }
+  return layout == MatrixLayout::kColumnMajor4x4   ? MatrixSteps{1, 4}
+         : layout == MatrixLayout::kColumnMajor3x4 ? MatrixSteps{1, 3}
+                                                   : MatrixSteps{4, 1};
 }
 
 // Places one after another.
@@ -193,7 +188,7 @@ Status view_group(const CrowdGroup& group, GroupView& view) {
   return Status::kOk;
 }
 
-Status view_groups(Span<const CrowdGroup> groups, GroupViews& all) {
+Status view_groups(Span<const CrowdGroup> groups, Launch& all) {
   if (groups.data == nullptr && groups.size > 0) {
     return Status::kNullArgument;
   }
@@ -211,7 +206,7 @@ Status view_groups(Span<const CrowdGroup> groups, GroupViews& all) {
   return Status::kOk;
 }
 
-Status plan_launches(const GroupViews& all, std::size_t shared_bytes_max, LaunchPlan& plan) {
+Status plan_launches(const Launch& all, std::size_t shared_bytes_max, LaunchPlan& plan) {
   plan = {};
   for (std::uint32_t g = 0; g < all.count; ++g) {
     GroupView view = all.views[g];

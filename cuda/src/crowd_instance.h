@@ -86,7 +86,8 @@ SPHERECHAIN_HD void see_spheres(const GroupView& v, const WarpInstance& w) {
   if (v.pairs != nullptr) {
     for_each_of(half_words(v), w.lane, [&](std::uint32_t i) { w.ordered_bits[i] = 0; });
   }
-  set_alike(w.state->found, Found{});
+  set_alike(w.state->count, 0);
+  set_alike(w.state->queued, 0);
 }
 
 // Returns 1 and sets the pair's bits if it touches, else 0.
@@ -128,14 +129,14 @@ SPHERECHAIN_HD void queue_pairs(const GroupView& v, const WarpInstance& w, std::
   if (count == 0) {
     return;
   }
-  std::uint32_t place = add_to(&w.state->found.queued, count);
+  std::uint32_t place = add_to(&w.state->queued, count);
   SPHERECHAIN_UNROLL
   for (std::uint32_t word = 0; word < kWords; ++word) {
     SPHERECHAIN_ONE_BY_ONE
     for (std::uint32_t& left = found[word]; left != 0; ++place) {
-      const std::uint32_t pair = leading_zeros(left);
+      const std::uint32_t pair = 31 - lowest_bit(left);
       const std::uint32_t entry = ((first + word) * kWordUnits * kLanePairs + pair) * kLanes + w.lane;
-      left ^= 0x80000000U >> pair;
+      left &= left - 1;
       if (place < kWarpQueued) {
         w.state->queue[place] = entry;
       } else {
@@ -144,7 +145,7 @@ SPHERECHAIN_HD void queue_pairs(const GroupView& v, const WarpInstance& w, std::
     }
   }
   if (touching > 0) {
-    add_to(&w.state->found.count, touching);
+    add_to(&w.state->count, touching);
   }
 }
 
@@ -223,9 +224,9 @@ SPHERECHAIN_HD void decide_pairs(const GroupView& v, const WarpInstance& w) {
     const RestPair& pair = v.rest_pairs[i];
     touching += decide(v, w, pair.a, pair.b, pair.scale);
   });
-  const std::uint32_t queued = w.state->found.queued < kWarpQueued ? w.state->found.queued : kWarpQueued;
+  const std::uint32_t queued = w.state->queued < kWarpQueued ? w.state->queued : kWarpQueued;
   for_each_of(queued, w.lane, [&](std::uint32_t i) { touching += decide_queued(v, w, w.state->queue[i]); });
-  add_to(&w.state->found.count, touching);
+  add_to(&w.state->count, touching);
 }
 
 // Writes counts and bits, reserves the instance's place in the list, and counts the pairs in each lane's part of it.
@@ -236,11 +237,11 @@ SPHERECHAIN_HD void write_instance(const GroupView& v, const WarpInstance& w) {
                 [&](std::uint32_t i) { to[i] = w.bits[2 * i] | std::uint64_t{w.bits[2 * i + 1]} << 32; });
   }
   if (v.counts != nullptr) {
-    set_alike(v.counts[w.instance], w.state->found.count);
+    set_alike(v.counts[w.instance], w.state->count);
   }
   if (v.pairs != nullptr) {
     if (w.lane == 0) {
-      v.starts[w.instance] = w.state->start = add_to(v.pair_count, std::uint64_t{w.state->found.count});
+      v.starts[w.instance] = w.state->start = add_to(v.pair_count, std::uint64_t{w.state->count});
     }
     w.parts[w.lane] = count_pairs(w.ordered_bits, 1, part_of(v, w.lane, kLanes));
   }

@@ -34,16 +34,12 @@ struct LaunchPlan {
   Launch& operator[](Kernel kernel) { return launches[static_cast<std::uint32_t>(kernel)]; }
 };
 
-// The views of the groups that have instances.
-struct GroupViews {
-  GroupView views[CrowdJob::kGroupsMax];
-  std::uint32_t count;
-};
-Status view_groups(Span<const CrowdGroup> groups, GroupViews& all);
+// Fills in the views of the groups that have instances.
+Status view_groups(Span<const CrowdGroup> groups, Launch& all);
 
-// Deals the groups to the kernels. `shared_bytes_max`: what a block of the device may have. Returns kOk,
+// Deals them to the kernels. `shared_bytes_max`: what a block of the device may have. Returns kOk,
 // kDeviceTooSmall or kContextTooSmall.
-Status plan_launches(const GroupViews& all, std::size_t shared_bytes_max, LaunchPlan& plan);
+Status plan_launches(const Launch& all, std::size_t shared_bytes_max, LaunchPlan& plan);
 
 // Enqueues a kernel. Returns kOk, kNoDevice or kDeviceFailed.
 Status enqueue(Kernel kernel, const Launch& launch, std::size_t shared_bytes_max, CUstream_st* stream);

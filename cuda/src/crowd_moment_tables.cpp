@@ -34,30 +34,6 @@ void fill_members(const MomentTables& tables, Member* out) {
   });
 }
 
-std::uint32_t common_bones(const MomentTables& tables, const Member& a, const Member& b) {
-  const std::uint16_t *l = tables.bones.data + a.first_bone, *r = tables.bones.data + b.first_bone;
-  const std::uint16_t *l_end = l + a.bone_count, *r_end = r + b.bone_count;
-  std::uint32_t count = 0;
-  while (l < l_end && r < r_end) {
-    count += *l == *r ? 1U : 0U;
-    const bool next_left = *l <= *r, next_right = *r <= *l;
-    l += next_left ? 1 : 0;
-    r += next_right ? 1 : 0;
-  }
-  return count;
-}
-
-// About how many instructions the kernel takes for a pair's Gram matrix, to ask which of two spheres has a pair, and
-// for the rest of a run.
-constexpr std::int64_t kGramCost = 48, kAskingCost = 4, kRunCost = 64;
-
-// What one run for both saves over two.
-std::int64_t saved(const MomentTables& tables, const Member& a, const Member& b) {
-  const std::int64_t common = pairs_of(common_bones(tables, a, b));
-  const std::int64_t all = pairs_of(a.bone_count) + pairs_of(b.bone_count) - common;
-  return common == 0 ? 0 : kGramCost * common + kRunCost - kAskingCost * all;
-}
-
 // The bones of a run's spheres, ascending, and the number that each has among a sphere's own bones.
 struct Union {
   static constexpr std::uint32_t kBonesMax = kRunSpheres * kMaxMomentBones, kNone = ~0U;
@@ -87,6 +63,18 @@ struct Union {
   }
 };
 
+// About how many instructions the kernel takes for a pair's Gram matrix, to ask which of two spheres has a pair, and
+// for the rest of a run.
+constexpr std::int64_t kGramCost = 48, kAskingCost = 4, kRunCost = 64;
+
+// What one run for both saves over two.
+std::int64_t saved(const MomentTables& tables, const Member& a, const Member& b) {
+  const Member both[] = {a, b};
+  const std::int64_t common = pairs_of(a.bone_count + b.bone_count - Union(tables, both, 2).count);
+  const std::int64_t all = pairs_of(a.bone_count) + pairs_of(b.bone_count) - common;
+  return common == 0 ? 0 : kGramCost * common + kRunCost - kAskingCost * all;
+}
+
 class RunWriter {
  public:
   RunWriter(const Asset& asset, RadiusKind kind, const std::uint32_t* bone_indices)
@@ -108,7 +96,7 @@ class RunWriter {
     const std::uint32_t step = bones == 2 ? 1 : 2;
     for (std::uint32_t first = 0; first < step; ++first) {
       for (std::uint32_t s = 0; s < count; ++s) {
-        put_columns(members[s], first, step);
+        add_columns(members[s], first, step);
       }
     }
     run.cost = static_cast<std::uint32_t>(3 * pairs_of(bones) + count * (bones == 2 ? 5 : 8));
@@ -183,8 +171,7 @@ class RunWriter {
         bone |= 1U << s;
         step |= 1U << s;
         add_center(members[s], k);
-        put_upper(moment_of(members[s], k, k), reinterpret_cast<float*>(moments + moment_count_));
-        moment_count_ += kSelfQuads;
+        add_moment(moment_of(members[s], k, k), true);
       }
     }
   }
@@ -195,7 +182,7 @@ class RunWriter {
       const std::uint32_t k = all.numbers[s][i], l = all.numbers[s][j];
       if (k != Union::kNone && l != Union::kNone) {
         mask |= 1U << s;
-        add_columns(moment_of(members[s], k, l));
+        add_moment(moment_of(members[s], k, l), false);
       }
     }
     if (mask != 0) {
@@ -203,33 +190,30 @@ class RunWriter {
     }
   }
 
-  // Some columns of all pairs of a sphere, see few_bone_quads().
-  void put_columns(const Member& member, std::uint32_t first, std::uint32_t step) {
+  // Columns of a moment, of those that are kept the rows one after another.
+  static float* put_columns(const Moment& moment, bool is_self, std::size_t first, std::size_t step, float* to) {
+    for (std::size_t column = first; column < 4; column += step) {
+      for (std::size_t row = 0; row < rows_of_moment(is_self, column); ++row) {
+        *to++ = moment.values[4 * row + column];
+      }
+    }
+    return to;
+  }
+
+  // Columns of all moments of a sphere of few bones.
+  void add_columns(const Member& member, std::uint32_t first, std::uint32_t step) {
     auto* to = reinterpret_cast<float*>(moments + moment_count_);
     for (std::uint32_t k = 0; k < member.bone_count; ++k) {
       for (std::uint32_t l = k; l < member.bone_count; ++l) {
-        const Moment& moment = moment_of(member, k, l);
-        for (std::uint32_t column = first; column < 4; column += step) {
-          for (std::size_t row = 0; row < rows_of_moment(k == l, column); ++row) {
-            *to++ = moment.values[4 * row + column];
-          }
-        }
+        to = put_columns(moment_of(member, k, l), k == l, first, step, to);
       }
     }
     moment_count_ += static_cast<std::uint32_t>(few_bone_quads(member.bone_count, first, step));
   }
 
-  static void put_upper(const Moment& moment, float* to) {
-    for (std::size_t row = 0; row < 4; ++row) {
-      to = std::copy(moment.values + 5 * row, moment.values + 4 * row + 4, to);
-    }
-  }
-
-  void add_columns(const Moment& moment) {
-    for (std::size_t column = 0; column < 4; ++column) {
-      const float* values = moment.values + column;
-      moments[moment_count_++] = {values[0], values[4], values[8], values[12]};
-    }
+  void add_moment(const Moment& moment, bool is_self) {
+    put_columns(moment, is_self, 0, 1, reinterpret_cast<float*>(moments + moment_count_));
+    moment_count_ += static_cast<std::uint32_t>(is_self ? few_bone_quads(1, 0, 1) : kPairQuads);
   }
 
   const MomentTables& tables_;
@@ -242,8 +226,9 @@ class RunWriter {
 
 bool has_few_bones(const Member& member) { return member.bone_count == 2 || member.bone_count == 3; }
 
-bool are_equal(const MomentTables& tables, const Member& a, const Member& b) {
-  return a.bone_count == b.bone_count && common_bones(tables, a, b) == a.bone_count;
+bool have_same_bones(const MomentTables& tables, const Member& a, const Member& b) {
+  const std::uint16_t *l = tables.bones.data + a.first_bone, *r = tables.bones.data + b.first_bone;
+  return std::equal(l, l + a.bone_count, r, r + b.bone_count);
 }
 
 // Takes out the spheres of two or three bones, many of the same ones at a time. Returns how many spheres are left.
@@ -256,7 +241,7 @@ std::size_t add_few_bone_runs(const MomentTables& tables, Member* members, RunWr
       continue;
     }
     std::uint32_t count = 1;
-    while (count < kRunSpheresMax && i + count < n && are_equal(tables, members[i], members[i + count])) {
+    while (count < kRunSpheresMax && i + count < n && have_same_bones(tables, members[i], members[i + count])) {
       ++count;
     }
     writer.add_few_bones(members + i, count);
@@ -287,11 +272,11 @@ void add_other_runs(const MomentTables& tables, Member* members, std::size_t cou
   }
 }
 
-}  // namespace
-
 bool has_moments(const Asset& asset) {
   return asset.refit_rule() == RefitRule::kMoments && asset.moment_tables().spheres.size > 0;
 }
+
+}  // namespace
 
 std::size_t moment_words(const Asset& asset) {
   if (!has_moments(asset)) {
@@ -307,6 +292,9 @@ std::size_t moment_words(const Asset& asset) {
 }
 
 void add_moments(const Asset& asset, RadiusKind radius, TableMemory& memory, TableHeader& header) {
+  if (!has_moments(asset)) {
+    return;
+  }
   const MomentTables& tables = asset.moment_tables();
   const std::size_t n = tables.spheres.size;
   std::uint32_t unread = 0;  // where arrays lie that the kernels do not read

@@ -26,25 +26,6 @@ SPHERECHAIN_HD Gram gram_of(const Matrix& a, const Matrix& b) {
   return out;
 }
 
-// A bone's Gram matrix with itself is symmetric: 00 01 02 03 11 12 13 22 23 33.
-struct SelfGram {
-  float at[kSelfFigures];
-};
-
-SPHERECHAIN_HD SelfGram gram_of(const Matrix& a) {
-  SelfGram out;
-  float* figure = out.at;
-  SPHERECHAIN_UNROLL
-  for (std::size_t row = 0; row < 4; ++row) {
-    SPHERECHAIN_UNROLL
-    for (std::size_t column = row; column < 4; ++column, ++figure) {
-      *figure = gram_at(a, a, row, column);
-      make_once(*figure);
-    }
-  }
-  return out;
-}
-
 struct MomentSums {
   float at[4][4];
 };
@@ -60,22 +41,6 @@ SPHERECHAIN_HD void clear(float (&sums)[kRows][4]) {
     SPHERECHAIN_UNROLL
     for (float& sum : row) {
       sum = -0.0F;
-    }
-  }
-}
-
-// A moment of a bone with itself. The figures below the diagonal are 0 and are left out. That changes no radius: the
-// sign of a sum of zeros does not matter, and where a figure below the diagonal is not finite, its twin above is not
-// either.
-SPHERECHAIN_HD void add_self_moment(const Float4* quads, const SelfGram& gram, MomentSums& sums) {
-  const Float4 a = quads[0], b = quads[1], c = quads[2];
-  const float moment[kSelfFigures] = {a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w, c.x, c.y};
-  std::size_t i = 0;
-  SPHERECHAIN_UNROLL
-  for (std::size_t row = 0; row < 4; ++row) {
-    SPHERECHAIN_UNROLL
-    for (std::size_t column = row; column < 4; ++column, ++i) {
-      sums.at[row][column] = fused(moment[i], gram.at[i], sums.at[row][column]);
     }
   }
 }
@@ -169,6 +134,25 @@ SPHERECHAIN_HD void for_each_figure(const Visit& visit) {
   }
 }
 
+// A bone's Gram matrix with itself, without the figures below the diagonal. Their moments are 0, and to leave them out
+// changes no radius: the sign of a sum of zeros does not matter, and where a figure below the diagonal is not finite,
+// its twin above is not either.
+SPHERECHAIN_HD Gram gram_of(const Matrix& a) {
+  Gram out;
+  for_each_figure<1, 0, 1>([&](std::size_t, std::size_t, std::size_t, std::size_t row, std::size_t column) {
+    out.at[row][column] = gram_at(a, a, row, column);
+    make_once(out.at[row][column]);
+  });
+  return out;
+}
+
+SPHERECHAIN_HD void add_self_moment(const Float4* quads, const Gram& gram, MomentSums& sums) {
+  Figures moment(quads);
+  for_each_figure<1, 0, 1>([&](std::size_t, std::size_t, std::size_t, std::size_t row, std::size_t column) {
+    sums.at[row][column] = fused(moment.next(), gram.at[row][column], sums.at[row][column]);
+  });
+}
+
 // Holds some columns of the Gram matrices of few bones in registers and goes through the spheres. Calls take(sphere,
 // the sums that these columns add to its mean square).
 template <std::size_t kBones, std::size_t kFirst, std::size_t kStep, typename Take>
@@ -257,12 +241,12 @@ SPHERECHAIN_HD void add_pairs(const GroupView& v, const Shared& shared, std::uin
   do {
     step = *steps++;
     const Matrix a = matrix_at(shared, lane, step);
-    const SelfGram self = gram_of(a);
+    const Gram self = gram_of(a);
     SPHERECHAIN_UNROLL
     for (std::uint32_t s = 0; s < kRunSpheres; ++s) {
       if ((step >> s & 1U) != 0) {
         add_self_moment(quads, self, sums[s]);
-        quads += kSelfQuads;
+        quads += few_bone_quads(1, 0, 1);
       }
     }
     while ((step & kLastOfBone) == 0) {

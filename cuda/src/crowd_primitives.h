@@ -49,17 +49,11 @@ SPHERECHAIN_HD void set_bits(std::uint32_t* to, std::uint32_t value) {
 }
 
 // For several lanes that write the same value.
-template <typename T>
-SPHERECHAIN_HD void set_alike(T& to, T value) {
+SPHERECHAIN_HD void set_alike(std::uint32_t& to, std::uint32_t value) {
 #if defined(__CUDA_ARCH__)
   to = value;
 #else
-  std::uint32_t words[sizeof value / sizeof(std::uint32_t)];
-  std::memcpy(words, &value, sizeof value);
-  auto* shared = reinterpret_cast<std::uint32_t*>(&to);
-  for (const std::uint32_t word : words) {
-    __atomic_store_n(shared++, word, __ATOMIC_RELAXED);
-  }
+  __atomic_store_n(&to, value, __ATOMIC_RELAXED);
 #endif
 }
 
@@ -69,14 +63,6 @@ SPHERECHAIN_HD std::uint32_t lowest_bit(std::uint32_t word) {
   return __ffs(static_cast<int>(word)) - 1;
 #else
   return static_cast<std::uint32_t>(__builtin_ctz(word));
-#endif
-}
-
-SPHERECHAIN_HD std::uint32_t leading_zeros(std::uint32_t word) {
-#if defined(__CUDA_ARCH__)
-  return static_cast<std::uint32_t>(__clz(static_cast<int>(word)));
-#else
-  return static_cast<std::uint32_t>(__builtin_clz(word));
 #endif
 }
 

@@ -184,9 +184,7 @@ Status CrowdTables::build(const Asset& asset, RadiusKind radius, const Filter* f
   header.bit_words = static_cast<std::uint32_t>(DetectJob::bit_words(asset));
   header.origin_sphere = middle_sphere(asset.spheres());
   header.has_padding = filter != nullptr && filter->padding.size > 0 ? 1 : 0;
-  if (has_moments(asset)) {
-    add_moments(asset, radius, arrays, header);
-  }
+  add_moments(asset, radius, arrays, header);
   auto* paddings = arrays.take<float>(n, header.paddings);
   if (header.has_padding != 0) {
     std::copy_n(filter->padding.begin(), n, paddings);

@@ -30,8 +30,8 @@ class TableMemory {
   std::size_t used_ = 0;
 };
 
-// Refit by moments. No words for an asset of another rule, which is then a crowd of spheres only.
-bool has_moments(const Asset& asset);
+// Refit by moments. An asset of another rule needs no words; nothing is added for it, and it is a crowd of spheres
+// only.
 std::size_t moment_words(const Asset& asset);
 void add_moments(const Asset& asset, RadiusKind radius, TableMemory& memory, TableHeader& header);
 

@@ -97,13 +97,11 @@ struct alignas(8) RunSphere {
 // these: bit s is set if sphere s of the run has both bones.
 inline constexpr std::uint32_t kLastOfBone = 4, kLastOfRun = 8, kMatrixMask = ~15U;
 
-// A bone's moment with itself is 0 below the diagonal, so ten figures are kept: 00 01 02 03 11 12 13 22 23 33.
-inline constexpr std::uint32_t kSelfFigures = 10;
-inline constexpr std::uint32_t kSelfQuads = 3, kPairQuads = 4;  // a moment's figures by fours
+inline constexpr std::uint32_t kPairQuads = 4;  // a moment of two bones, by fours
 
 SPHERECHAIN_HD constexpr std::size_t pairs_of_bones(std::size_t bones) { return bones * (bones + 1) / 2; }
 
-// How many rows of a moment's column are kept.
+// How many rows of a moment's column are kept: of a bone with itself, those not below the diagonal, which are 0.
 SPHERECHAIN_HD constexpr std::size_t rows_of_moment(bool is_self, std::size_t column) {
   return is_self ? column + 1 : 4;
 }
@@ -254,14 +252,8 @@ struct Shared {
   }
 };
 
-// What a warp has found in its instance.
-struct alignas(16) Found {
-  std::uint32_t count, queued;  // touching pairs; pairs that are in the queue or found no room there
-  std::uint32_t unused[2];
-};
-
-struct WarpState {
-  Found found;
+struct alignas(16) WarpState {
+  std::uint32_t count, queued;       // touching pairs; pairs that are in the queue or found no room there
   std::uint64_t start;               // of the instance's list
   std::uint32_t queue[kWarpQueued];  // (unit * kLanePairs + pair) * kLanes + lane
 };

@@ -43,7 +43,7 @@ Status check_device() noexcept {
 const char* last_device_error() noexcept { return cudaGetErrorString(last_error); }
 
 Status CrowdJob::run() const noexcept {
-  GroupViews all;
+  Launch all;
   LaunchPlan plan;
   std::size_t shared_bytes_max = 0;
   Status status = view_groups(groups, all);

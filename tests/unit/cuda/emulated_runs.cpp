@@ -62,7 +62,7 @@ CrowdRun run_crowd(const std::vector<GroupInput>& groups) {
     group.scratch = in.scratch_bytes > 0 ? scratch.data() : nullptr;
     group.scratch_bytes = in.scratch_bytes;
 
-    cuda::GroupViews all;
+    cuda::Launch all;
     cuda::LaunchPlan plan;
     out.status = cuda::view_groups({&group, 1}, all);
     if (out.status == Status::kOk) out.status = cuda::plan_launches(all, kSharedBytes, plan);

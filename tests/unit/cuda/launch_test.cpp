@@ -38,7 +38,7 @@ TEST_CASE("groups go to shared memory where it is large enough, and else to as m
     one.group.scratch_bytes = 3 * block + 16;
     all.push_back(one.group);
   }
-  cuda::GroupViews views;
+  cuda::Launch views;
   cuda::LaunchPlan plan;
   REQUIRE(cuda::view_groups({all.data(), all.size()}, views) == Status::kOk);
   CHECK(views.count == 4);
@@ -75,7 +75,7 @@ TEST_CASE("too many groups, none at all and a null list are told apart") {
   const Tables tables(small.asset, RadiusKind::kFit);
   const Group group(tables, 1);
   std::vector<cuda::CrowdGroup> all(cuda::CrowdJob::kGroupsMax + 1, group.group);
-  cuda::GroupViews views;
+  cuda::Launch views;
   CHECK(cuda::view_groups({all.data(), all.size()}, views) == Status::kBadArgument);
   CHECK(cuda::view_groups({all.data(), all.size() - 1}, views) == Status::kOk);
   CHECK(cuda::view_groups({nullptr, 1}, views) == Status::kNullArgument);
