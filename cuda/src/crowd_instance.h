@@ -2,7 +2,6 @@
 // The kernel for spheres: a warp takes an instance and its lanes share the pairs. By DetectJob's rule.
 #pragma once
 
-#include "crowd_pairs.h"
 #include "crowd_units.h"
 
 namespace spherechain::cuda {

@@ -16,8 +16,7 @@ BlockLayout layout_of(const GroupView& view);
 // Checks a group as CrowdJob::run says and fills in the view, except for its place in a launch.
 Status view_group(const CrowdGroup& group, GroupView& view);
 
-// The kernels: for groups of spheres, for groups of bones, and for groups of both kinds whose blocks' memory is
-// scratch.
+// The kernels: for groups of spheres, for groups of bones, and for groups of either whose memory is scratch.
 enum class Kernel : std::uint32_t { kSpheres, kBones, kScratch };
 inline constexpr std::uint32_t kKernels = 3;
 

@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: MIT
-// The kernel for bones: which spheres touch, by DetectJob's rule, and what is written about them. A lane is an
-// instance.
+// The kernel for bones: which spheres touch, by DetectJob's rule, and its outputs. A lane is an instance.
 #pragma once
 
 #include "crowd_bones.h"
 
 namespace spherechain::cuda {
 
-// A quick test that leaves no touching pair out. With p and q relative to the instance's first sphere, and
+// A quick test that leaves no touching pair out. With p and q relative to a sphere of the instance, and
 //   power(p) = rp^2 - |p|^2 / 2,
 // (rp + rq)^2 / 2 <= rp^2 + rq^2 gives
 //   power(p) + power(q) + p.q >= ((rp + rq)^2 - |p - q|^2) / 2,
-// which is above 0 for spheres that touch.
-// Roundings: with G = |p|^2 + rp^2 + |q|^2 + rq^2, runtime/src/sphere_columns.h shows that a sum much like this one is
-// off by at most 33 * 2^-24 G; each power adds 2 * 2^-24 G here. So each power is raised by 64 * 2^-24 of its sphere's
-// part of G, and by 2^-120 for underflow: the computed sum is then above 0 too. Where a figure is too large for that,
-// or not finite, the power is infinite and the sum infinite or NaN, which is not below 0 either.
-SPHERECHAIN_HD float power_of(const Float4& s, const Vec3& origin) {
-  constexpr float kMargin = 0x1p-18F, kLeast = 0x1p-120F, kMostExtent = 1e36F;
-  const float x = s.x - origin.x, y = s.y - origin.y, z = s.z - origin.z;
-  const float squared_length = fused(z, z, fused(y, y, x * x)), squared_radius = s.w * s.w;
-  const float power = fused(1.0F + kMargin, squared_radius, fused(kMargin - 0.5F, squared_length, kLeast));
-  return squared_length + squared_radius <= kMostExtent ? power : INFINITY;
+// which is above 0 for spheres that touch. So that the computed sum is above 0 too, each power is raised by `margin`
+// times |p|^2 + rp^2, which must be more than all roundings, and by 2^-120 for underflow. Where a figure is too large
+// for that, or not finite, the power is infinite and the sum infinite or NaN, which is not below 0 either.
+SPHERECHAIN_HD float power_of(const Vec3& p, float radius, float margin) {
+  constexpr float kUnderflow = 0x1p-120F, kExtentMax = 1e36F;
+  const float squared_length = fused(p.z, p.z, fused(p.y, p.y, p.x * p.x)), squared_radius = radius * radius;
+  const float power = fused(1.0F + margin, squared_radius, fused(margin - 0.5F, squared_length, kUnderflow));
+  return squared_length + squared_radius <= kExtentMax ? power : INFINITY;
 }
+
+// For multiply-adds. With G = |p|^2 + rp^2 + |q|^2 + rq^2, runtime/src/sphere_columns.h shows that a sum much like this
+// one is off by at most 33 * 2^-24 G; the powers add 4 * 2^-24 G here, and the margin is 64 * 2^-24.
+inline constexpr float kPowerMargin = 0x1p-18F;
 
 // Step 6, a warp a sphere: padding and powers. Also clears the outputs' bits, which lie where the matrices were.
 SPHERECHAIN_HD void prepare_pairs(const GroupView& v, const Shared& shared, const Place& at) {
@@ -36,7 +36,8 @@ SPHERECHAIN_HD void prepare_pairs(const GroupView& v, const Shared& shared, cons
       sphere.w = sphere.w < 0 ? NAN : sphere.w;  // touches nothing
       shared.spheres[i * kPitch + lane].w = sphere.w;
     }
-    shared.powers[i * kPitch + lane] = power_of(sphere, origin);
+    const Vec3 seen{sphere.x - origin.x, sphere.y - origin.y, sphere.z - origin.z};
+    shared.powers[i * kPitch + lane] = power_of(seen, sphere.w, kPowerMargin);
   }
   const std::uint32_t words = half_words(v) * kPitch;
   for (std::uint32_t i = at.thread; v.bits != nullptr && i < words; i += at.threads) {

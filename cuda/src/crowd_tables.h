@@ -30,8 +30,7 @@ class TableMemory {
   std::size_t used_ = 0;
 };
 
-// Refit by moments. An asset of another rule needs no words; nothing is added for it, and it is a crowd of spheres
-// only.
+// Refit by moments. An asset of another rule needs no words and gets none: it is a crowd of spheres only.
 std::size_t moment_words(const Asset& asset);
 void add_moments(const Asset& asset, RadiusKind radius, TableMemory& memory, TableHeader& header);
 

@@ -2,26 +2,18 @@
 // The kernel for spheres: which pairs are surely apart, sixteen spheres against sixteen at once, by a warp.
 #pragma once
 
-#include "crowd_primitives.h"
+#include "crowd_pairs.h"
 
 namespace spherechain::cuda {
 
-// The quick test of power_of() (crowd_pairs.h), for matrix units, which multiply figures of eleven bits. With p and q
-// relative to the instance's origin, which is the sphere in the middle of the others, and power(p) = rp^2 - |p|^2 / 2,
-//   power(p) + power(q) + p.q >= ((rp + rq)^2 - |p - q|^2) / 2,
-// which is above 0 for spheres that touch.
-// Roundings: a figure cut to eleven bits is off by 2^-10 of itself, so a product by hardly more than 2^-9 and p.q by
-// 2^-10 (|p|^2 + |q|^2). A power above 0 is off by 2^-10 rp^2; one below 0 only rises. All other roundings are below
-// 2^-18 of G = |p|^2 + rp^2 of both. So each power is raised by 2^-10 + 2^-16 of its sphere's part of G, and by 2^-120
-// for underflow: the computed sum is then above 0 too. Where a figure is too large for that, or not finite, the power
-// is infinite and the sum infinite or NaN, which is not below 0 either.
+// A sphere as matrix units take it, which multiply figures of eleven bits: relative to the sphere in the middle of the
+// others, and with its power. A figure cut to eleven bits is off by 2^-10 of itself, so a product by hardly more than
+// 2^-9 and p.q by 2^-10 (|p|^2 + |q|^2). A power above 0 is off by 2^-10 rp^2; one below 0 only rises. All other
+// roundings are below 2^-18 of |p|^2 + rp^2 of both.
 SPHERECHAIN_HD Float4 see_sphere(const Float4& s, const Float4& origin) {
-  constexpr float kMargin = 0x1p-10F + 0x1p-16F, kLeast = 0x1p-120F, kMostExtent = 1e36F;
-  const float x = s.x - origin.x, y = s.y - origin.y, z = s.z - origin.z;
-  const float squared_length = fused(z, z, fused(y, y, x * x)), squared_radius = s.w * s.w;
-  const float power = fused(1.0F + kMargin, squared_radius, fused(kMargin - 0.5F, squared_length, kLeast));
-  return {eleven_bits(x), eleven_bits(y), eleven_bits(z),
-          squared_length + squared_radius <= kMostExtent ? eleven_bits(power) : INFINITY};
+  constexpr float kMargin = 0x1p-10F + 0x1p-16F;
+  const Vec3 seen{s.x - origin.x, s.y - origin.y, s.z - origin.z};
+  return {eleven_bits(seen.x), eleven_bits(seen.y), eleven_bits(seen.z), eleven_bits(power_of(seen, s.w, kMargin))};
 }
 
 // The place of a sphere among its unit's sixteen. Neighbours, which often touch the same others, go to different lanes.
@@ -29,8 +21,7 @@ SPHERECHAIN_HD std::uint32_t place_of(std::uint32_t sphere) {
   return sphere / kUnit * kUnit + sphere % 8 * 2 + sphere / 8 % 2;
 }
 
-// As matrix units leave their sums, lane 4 g + t has rows g and g + 8 of a unit and columns 2 t, 2 t + 1, 2 t + 8 and
-// 2 t + 9.
+// As matrix units leave sums, lane 4 g + t has rows g, g + 8 of a unit and columns 2 t, 2 t + 1, 2 t + 8, 2 t + 9.
 SPHERECHAIN_HD std::uint32_t row_of(std::uint32_t lane, std::uint32_t pair) { return lane / 4 + pair / 2 % 2 * 8; }
 SPHERECHAIN_HD std::uint32_t column_of(std::uint32_t lane, std::uint32_t pair) {
   return lane % 4 * 2 + pair % 2 + pair / 4 % 2 * 8;
