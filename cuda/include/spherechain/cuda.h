@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Crowds on a CUDA device: bones or spheres in, touching pairs out. The device gives the same spheres and pairs as
-// RefitBonesJob and DetectJob on the CPU, bit for bit.
+// RefitBonesJob and DetectJob on the CPU, bit for bit (docs/arithmetic.md).
 //
 // A program that links this library starts on machines without a GPU or a driver; only its jobs need a device. No job
 // may run at the same time as another that writes to the same memory; apart from that all threads may call everything.
