@@ -69,7 +69,7 @@ void run_after_fit(Bake& out, const Progress& progress) {
     out.bones = bind_bones(out.character, out.binding, out.joints, out.rig_weights);
     out.moments = bind_moments(out.character, out.bones, out.rig_weights, out.binding);
   });
-  stage(out, progress, "leaves",
+  stage(out, progress, "clusters",
         [&] { out.leaves = make_leaves(out.character, out.binding, out.bones, out.rig_weights, settings.leaves); });
   stage(out, progress, "write", [&] {
     out.asset = serialize({out.character, out.regions, out.spheres, out.chains, out.binding, out.joints, out.bones,
