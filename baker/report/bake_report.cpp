@@ -217,8 +217,8 @@ ordered_json counts_section(const Bake& bake) {
           {"chains_tests", chains_tests},
           {"all_pairs_tests", n * (n - 1) / 2 - bake.binding.ignored.size()},
           {"ignored_pairs", bake.binding.ignored.size()},
-          {"rest_pairs_fit", bake.binding.near_fit.size()},
-          {"rest_pairs_detect", bake.binding.near_detect.size()}};
+          {"rest_pairs_fit", bake.binding.rest_fit.size()},
+          {"rest_pairs_detect", bake.binding.rest_detect.size()}};
 }
 
 // Fewest and most of a sphere.

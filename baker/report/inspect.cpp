@@ -25,21 +25,21 @@ const char* name_of(spherechain::Side side) {
   return "none";
 }
 
-std::size_t count_ignored(const Asset& asset) {
+std::size_t count_ignored(const OpenAsset& asset) {
   std::size_t count = 0;
-  for (const std::uint64_t word : asset.ignored()) count += static_cast<std::size_t>(std::popcount(word));
+  for (const std::uint64_t word : asset->ignored()) count += static_cast<std::size_t>(std::popcount(word));
   return count;
 }
 
-std::size_t count_chain_entries(const Asset& asset) {
+std::size_t count_chain_entries(const OpenAsset& asset) {
   std::size_t count = 0;
-  for (std::size_t i = 0; i < asset.chain_count(); ++i) count += asset.chain(i).spheres.size;
+  for (std::size_t i = 0; i < asset->chain_count(); ++i) count += asset->chain(i).spheres.size;
   return count;
 }
 
-std::size_t spheres_in_region(const Asset& asset, std::size_t region) {
+std::size_t spheres_in_region(const OpenAsset& asset, std::size_t region) {
   std::size_t count = 0;
-  for (const RestSphere& sphere : asset.spheres()) count += sphere.region == region ? 1 : 0;
+  for (const RestSphere& sphere : asset->spheres()) count += sphere.region == region ? 1 : 0;
   return count;
 }
 
@@ -50,10 +50,10 @@ ordered_json to_json(const FitError& e) {
   return {{"mean_abs_F", number(e.mean_abs_f)}, {"max_abs_F", number(e.max_abs_f)}};
 }
 
-ordered_json bones_json(const Asset& asset) {
+ordered_json bones_json(const OpenAsset& asset) {
   ordered_json bones = ordered_json::array();
-  for (std::size_t i = 0; i < asset.bone_count(); ++i) {
-    const BoneView bone = asset.bone(i);
+  for (std::size_t i = 0; i < asset->bone_count(); ++i) {
+    const BoneView bone = asset->bone(i);
     ordered_json inverse_bind = ordered_json::array();
     for (std::size_t e = 0; e < 12; ++e) inverse_bind.push_back(number(bone.inverse_bind[e]));
     bones.push_back({{"name", bone.name}, {"inverse_bind", std::move(inverse_bind)}, {"is_rest", bone.is_rest}});
@@ -84,18 +84,18 @@ std::size_t bytes_of(const Surface& surface) {
          bytes(surface.outline_bones) + bytes(surface.outline_points) + bytes(surface.outline_weights);
 }
 
-ordered_json sphere_json(const Asset& asset, std::size_t i) {
-  const RestSphere& sphere = asset.spheres()[i];
+ordered_json sphere_json(const OpenAsset& asset, std::size_t i) {
+  const RestSphere& sphere = asset->spheres()[i];
   ordered_json pivots = ordered_json::array();
   for (std::uint32_t k = 0; k < sphere.pivot_count; ++k) {
-    const Pivot& pivot = asset.pivots()[sphere.first_pivot + k];
+    const Pivot& pivot = asset->pivots()[sphere.first_pivot + k];
     pivots.push_back({{"vertices", {pivot.a, pivot.b, pivot.c}}, {"weight", number(pivot.weight)}});
   }
   return {{"id", i},
           {"center", to_json(sphere.center)},
           {"radius", number(sphere.radius)},
           {"detect_radius", number(sphere.detect_radius)},
-          {"region", asset.region(sphere.region).name},
+          {"region", asset->region(sphere.region).name},
           {"level", sphere.level},
           {"side", name_of(sphere.side)},
           {"triangles", sphere.triangle_count},
@@ -116,10 +116,10 @@ const char* refit_name(spherechain::RefitRule rule) {
   return "calibrated";
 }
 
-std::string inspect_json(const Asset& asset) {
-  const AssetInfo info = asset.info();
+std::string inspect_json(const OpenAsset& asset) {
+  const AssetInfo info = asset->info();
   ordered_json parts = ordered_json::array();
-  for (const spherechain::SourcePart& part : asset.source_parts()) {
+  for (const spherechain::sc_source_buffer& part : asset.source_buffers()) {
     parts.push_back({{"mesh", part.mesh},
                      {"primitive", part.primitive},
                      {"first_vertex", part.first_vertex},
@@ -128,30 +128,30 @@ std::string inspect_json(const Asset& asset) {
   }
   ordered_json regions = ordered_json::array(), spheres = ordered_json::array(), chains = ordered_json::array(),
                joints = ordered_json::array(), morphs = ordered_json::array();
-  for (std::size_t r = 0; r < asset.region_count(); ++r) {
-    regions.push_back({{"name", asset.region(r).name},
-                       {"triangles", asset.region(r).triangle_count},
+  for (std::size_t r = 0; r < asset->region_count(); ++r) {
+    regions.push_back({{"name", asset->region(r).name},
+                       {"triangles", asset->region(r).triangle_count},
                        {"spheres", spheres_in_region(asset, r)}});
   }
-  for (std::size_t i = 0; i < asset.spheres().size; ++i) spheres.push_back(sphere_json(asset, i));
-  for (std::size_t c = 0; c < asset.chain_count(); ++c) {
-    const ChainView chain = asset.chain(c);
+  for (std::size_t i = 0; i < asset->spheres().size; ++i) spheres.push_back(sphere_json(asset, i));
+  for (std::size_t c = 0; c < asset->chain_count(); ++c) {
+    const ChainView chain = asset->chain(c);
     ordered_json names = ordered_json::array();
-    for (const std::uint8_t r : chain.regions) names.push_back(asset.region(r).name);
+    for (const std::uint8_t r : chain.regions) names.push_back(asset->region(r).name);
     chains.push_back({{"name", chain.name},
                       {"regions", std::move(names)},
                       {"spheres", std::vector<std::uint32_t>(chain.spheres.begin(), chain.spheres.end())}});
   }
-  for (std::size_t j = 0; j < asset.joint_count(); ++j) {
-    const JointView joint = asset.joint(j);
+  for (std::size_t j = 0; j < asset->joint_count(); ++j) {
+    const JointView joint = asset->joint(j);
     joints.push_back({{"name", joint.name},
                       {"parent", joint.parent},
                       {"position", to_json(joint.position)},
                       {"tail", to_json(joint.tail)}});
   }
-  for (std::size_t m = 0; m < asset.morph_count(); ++m) morphs.push_back(asset.morph_name(m));
+  for (std::size_t m = 0; m < asset->morph_count(); ++m) morphs.push_back(asset->morph_name(m));
   const BoneTables& tables = asset.bone_tables();
-  const MomentTables& moments = asset.moment_tables();
+  const MomentTables& moments = asset->moment_tables();
   const ordered_json out{
       {"format_version", info.format_version},
       {"writer", info.writer},
@@ -172,12 +172,12 @@ std::string inspect_json(const Asset& asset) {
         {"forward", to_json(info.forward)},
         {"height", number(info.height)}}},
       {"refit", refit_name(info.refit)},
-      {"sphere_count", asset.spheres().size},
+      {"sphere_count", asset->spheres().size},
       {"chain_entries", count_chain_entries(asset)},
       {"chain_entries_table1", info.chain_entries_table1},
       {"ignored_pairs", count_ignored(asset)},
       {"rest_pairs",
-       {{"fit", asset.near_pairs(RadiusKind::kFit).size}, {"detect", asset.near_pairs(RadiusKind::kDetect).size}}},
+       {{"fit", asset->rest_pairs(SC_RADIUS_FIT).size}, {"detect", asset->rest_pairs(SC_RADIUS_DETECT).size}}},
       {"regions", std::move(regions)},
       {"parts", parts_json(part_rows(asset))},
       {"spheres", std::move(spheres)},
@@ -207,22 +207,22 @@ std::string inspect_json(const Asset& asset) {
   return json_text(out, 1) + "\n";
 }
 
-std::string inspect_text(const Asset& asset) {
-  const AssetInfo info = asset.info();
+std::string inspect_text(const OpenAsset& asset) {
+  const AssetInfo info = asset->info();
   std::string out = fmt::format("format {}, written by {}\n", info.format_version, info.writer);
   out += fmt::format("source   {} ({} vertices, {} triangles)\n         sha256 {}\n", info.source_file,
                      info.source_vertex_count, info.source_triangle_count, info.source_sha256);
   out += fmt::format("settings {}\n         sha256 {}\n", info.settings, info.settings_sha256);
   out += fmt::format("refit    {}\n", refit_name(info.refit));
   out += fmt::format("spheres  {}, {} chain entries ({} as Table 1 counts), {} pairs ignored, {} joints\n",
-                     asset.spheres().size, count_chain_entries(asset), info.chain_entries_table1, count_ignored(asset),
-                     asset.joint_count());
-  out += fmt::format("bones    {}, {} morph targets\n", asset.bone_count(), asset.morph_count());
+                     asset->spheres().size, count_chain_entries(asset), info.chain_entries_table1, count_ignored(asset),
+                     asset->joint_count());
+  out += fmt::format("bones    {}, {} morph targets\n", asset->bone_count(), asset->morph_count());
   if (const BoneTables& tables = asset.bone_tables(); tables.terms.size > 0) {
     out += fmt::format("pivots   {} terms of bones, {} of morphs, {} bytes\n", tables.terms.size,
                        tables.morph_terms.size, bytes_of(tables));
   }
-  if (const MomentTables& moments = asset.moment_tables(); moments.moments.size > 0) {
+  if (const MomentTables& moments = asset->moment_tables(); moments.moments.size > 0) {
     out += fmt::format("moments  {} batches of {} bone pairs; spheres: {} bones, {} pairs, {} bytes\n",
                        moments.batches.size, moments.pairs.size, moments.centers.size, moments.moments.size,
                        bytes_of(moments));
@@ -231,13 +231,13 @@ std::string inspect_text(const Asset& asset) {
       fmt::format("surface  {} clusters, {} vertices, {} contacts at rest, {} bytes\n", asset.leaf_count(),
                   asset.surface().source_vertices.size, asset.surface().rest_contacts.size, bytes_of(asset.surface()));
   out += fmt::format("\n{:<14} {:>9} {:>7}\n", "region", "triangles", "spheres");
-  for (std::size_t r = 0; r < asset.region_count(); ++r) {
-    out += fmt::format("{:<14} {:>9} {:>7}\n", asset.region(r).name, asset.region(r).triangle_count,
+  for (std::size_t r = 0; r < asset->region_count(); ++r) {
+    out += fmt::format("{:<14} {:>9} {:>7}\n", asset->region(r).name, asset->region(r).triangle_count,
                        spheres_in_region(asset, r));
   }
   out += parts_text(part_rows(asset));
-  for (std::size_t c = 0; c < asset.chain_count(); ++c) {
-    const ChainView chain = asset.chain(c);
+  for (std::size_t c = 0; c < asset->chain_count(); ++c) {
+    const ChainView chain = asset->chain(c);
     out += fmt::format("{}{:<8}", c == 0 ? "\n" : "", chain.name);
     for (const std::uint32_t i : chain.spheres) out += fmt::format(" {}", i);
     out += "\n";

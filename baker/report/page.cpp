@@ -65,12 +65,12 @@ ordered_json weights_json(const std::vector<VertexWeights>& weights) {
 
 ordered_json mesh_json(const AnimatedAsset& animated) {
   const Character& character = animated.character();
-  const Asset& asset = animated.asset();
+  const OpenAsset& asset = animated.asset();
   std::vector<std::uint32_t> corners;
   for (const Triangle& t : character.source_triangles) corners.insert(corners.end(), t.begin(), t.end());
   std::vector<std::uint16_t> owner(character.source_triangles.size(), 0xFFFF);
-  for (std::size_t i = 0; i < asset.spheres().size; ++i) {
-    const RestSphere& sphere = asset.spheres()[i];
+  for (std::size_t i = 0; i < asset->spheres().size; ++i) {
+    const RestSphere& sphere = asset->spheres()[i];
     for (std::uint32_t k = 0; k < sphere.triangle_count; ++k) {
       const std::uint32_t triangle = asset.triangles()[sphere.first_triangle + k];
       if (triangle < owner.size()) owner[triangle] = static_cast<std::uint16_t>(i);
@@ -86,9 +86,9 @@ ordered_json mesh_json(const AnimatedAsset& animated) {
 // F of the paper's section 3.2 over each sphere's surrounding region, at rest.
 ordered_json sphere_f_json(const AnimatedAsset& animated) {
   const Character& character = animated.character();
-  const Asset& asset = animated.asset();
+  const OpenAsset& asset = animated.asset();
   ordered_json out = ordered_json::array();
-  for (const RestSphere& sphere : asset.spheres()) {
+  for (const RestSphere& sphere : asset->spheres()) {
     std::set<Index> vertices;
     for (std::uint32_t k = 0; k < sphere.triangle_count; ++k) {
       const std::uint32_t triangle = asset.triangles()[sphere.first_triangle + k];
@@ -110,13 +110,13 @@ ordered_json sphere_f_json(const AnimatedAsset& animated) {
 
 // The pivots of each sphere as triangle numbers: corners tell which.
 ordered_json pivot_triangles_json(const AnimatedAsset& animated) {
-  const Asset& asset = animated.asset();
+  const OpenAsset& asset = animated.asset();
   const std::vector<Triangle>& triangles = animated.character().source_triangles;
   ordered_json out = ordered_json::array();
-  for (const RestSphere& sphere : asset.spheres()) {
+  for (const RestSphere& sphere : asset->spheres()) {
     ordered_json numbers = ordered_json::array();
     for (std::uint32_t p = 0; p < sphere.pivot_count; ++p) {
-      const Pivot& pivot = asset.pivots()[sphere.first_pivot + p];
+      const Pivot& pivot = asset->pivots()[sphere.first_pivot + p];
       for (std::uint32_t k = 0; k < sphere.triangle_count; ++k) {
         const std::uint32_t t = asset.triangles()[sphere.first_triangle + k];
         if (t < triangles.size() && triangles[t] == Triangle{pivot.a, pivot.b, pivot.c}) {
@@ -134,12 +134,12 @@ ordered_json parsed_or_null(const std::string& text) {
   return text.empty() ? ordered_json() : ordered_json::parse(text);
 }
 
-ordered_json ignored_json(const Asset& asset) {
+ordered_json ignored_json(const OpenAsset& asset) {
   ordered_json out = ordered_json::array();
   std::size_t bit = 0;
-  for (std::size_t b = 1; b < asset.spheres().size; ++b) {
+  for (std::size_t b = 1; b < asset->spheres().size; ++b) {
     for (std::size_t a = 0; a < b; ++a, ++bit) {
-      if (asset.ignored()[bit / 64] >> (bit % 64) & 1) out.push_back({a, b});
+      if (asset->ignored()[bit / 64] >> (bit % 64) & 1) out.push_back({a, b});
     }
   }
   return out;
@@ -179,8 +179,8 @@ ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& optio
       vertices.insert(vertices.end(), positions.begin(), positions.end());
     }
     play.push_back(frame_json(animated, i, result, player));
-    const std::vector<Sphere> fit = refit_spheres(animated.asset(), positions, RadiusKind::kFit),
-                              detect = refit_spheres(animated.asset(), positions, RadiusKind::kDetect);
+    const std::vector<Sphere> fit = refit_spheres(animated.asset(), positions, SC_RADIUS_FIT),
+                              detect = refit_spheres(animated.asset(), positions, SC_RADIUS_DETECT);
     for (std::size_t s = 0; s < fit.size(); ++s) {
       spheres.insert(spheres.end(), {fit[s].x, fit[s].y, fit[s].z, fit[s].radius, detect[s].radius});
     }
@@ -227,7 +227,7 @@ std::string view_page(const AnimatedAsset& animated, const PageOptions& options,
                     {"report", parsed_or_null(options.report)},
                     {"validation", parsed_or_null(options.validation)},
                     {"motion", options.motion},
-                    {"radius", options.radius == RadiusKind::kFit ? "fit" : "detect"}};
+                    {"radius", options.radius == SC_RADIUS_FIT ? "fit" : "detect"}};
   const double still = static_cast<double>(page.size() + json_text(data, -1).size());
   data["frames"] = frames_json(animated, options, still, progress);
   std::string text = json_text(data, -1);

@@ -34,10 +34,10 @@ std::vector<PartRow> part_rows(const BodyParts& parts, const std::vector<std::st
   return out;
 }
 
-std::vector<PartRow> part_rows(const Asset& asset) {
+std::vector<PartRow> part_rows(const OpenAsset& asset) {
   std::vector<PartRow> out;
-  for (std::size_t r = 0; r < asset.region_count(); ++r) {
-    PartRow row{asset.region(r).name, Side::kNone, {}, asset.region(r).triangle_count};
+  for (std::size_t r = 0; r < asset->region_count(); ++r) {
+    PartRow row{asset->region(r).name, Side::kNone, {}, asset->region(r).triangle_count};
     if (row.name.starts_with("left_")) row.side = Side::kLeft;
     if (row.name.starts_with("right_")) row.side = Side::kRight;
     std::replace(row.name.begin(), row.name.end(), '_', ' ');
