@@ -1,0 +1,52 @@
+import * as THREE from 'three';
+
+// Where the character is in the world: its own axes with its height as the unit, x to its left, y up, z forward, the feet at
+// y = 0. A character that travels is held in place where `follow` says so.
+
+export function toWorldMatrix({ origin, left, up, forward, height }) {
+  const axes = new THREE.Matrix4().set(...left, 0, ...up, 0, ...forward, 0, 0, 0, 0, 1);
+  return axes.premultiply(new THREE.Matrix4().makeScale(1 / height, 1 / height, 1 / height)).multiply(
+    new THREE.Matrix4().makeTranslation(-origin[0], -origin[1], -origin[2]),
+  );
+}
+
+// How far the character has gone from its place at rest, over the ground.
+function travel(model, home, frame) {
+  const { centers } = model.motion;
+  if (3 * frame + 2 >= centers.length) return [0, 0];
+  return [centers[3 * frame] - home.x, centers[3 * frame + 2] - home.z];
+}
+
+export function createFraming(model) {
+  const toWorld = toWorldMatrix(model.axes);
+  const point = new THREE.Vector3();
+  const rest = new THREE.Box3();
+  const home = new THREE.Vector3();
+  const { positions } = model.mesh;
+  for (let v = 0; v < positions.length; v += 3) {
+    rest.expandByPoint(point.fromArray(positions, v).applyMatrix4(toWorld));
+    home.addScaledVector(point, 3 / positions.length);
+  }
+  if (rest.isEmpty()) rest.set(new THREE.Vector3(-0.5, 0, -0.5), new THREE.Vector3(0.5, 1, 0.5));
+  const { boxes } = model.motion;
+
+  const offset = (frame, follow) => {
+    const [x, z] = follow ? travel(model, home, frame) : [0, 0];
+    return new THREE.Vector3(-x, 0, -z);
+  };
+  return {
+    toWorld,
+    offset,
+    // Of a clip's frames.
+    bounds({ first, count }, follow) {
+      if (boxes.length === 0) return rest.clone();
+      const out = new THREE.Box3();
+      for (let frame = first; frame < first + count; ++frame) {
+        const by = offset(frame, follow);
+        out.expandByPoint(point.fromArray(boxes, 6 * frame).add(by));
+        out.expandByPoint(point.fromArray(boxes, 6 * frame + 3).add(by));
+      }
+      return out;
+    },
+  };
+}
