@@ -52,6 +52,13 @@ const AnimatedAsset& checked(const AnimatedAsset& animated) {
 
 }  // namespace
 
+bool has_arms(const Asset& asset) {
+  for (std::size_t r = 0; r < asset.region_count(); ++r) {
+    if (std::string(asset.region(r).name).find("_arm") != std::string::npos) return true;
+  }
+  return false;
+}
+
 std::vector<PageSphere> page_spheres(const Asset& asset, const Character& character) {
   std::vector<PageSphere> out;
   for (const RestSphere& sphere : asset.spheres()) {

@@ -18,6 +18,9 @@ struct PageSphere {
   std::vector<std::uint32_t> pivots;     // of these the ones that carry it
   double mean_abs_f, max_abs_f;          // the paper's F (section 3.2) over the triangles' corners at rest; source units
 };
+// Whether the body is one with arms, which stands upright.
+bool has_arms(const Asset& asset);
+
 std::vector<PageSphere> page_spheres(const Asset& asset, const Character& character);
 
 inline constexpr std::uint8_t kNoPart = 255;

@@ -8,6 +8,7 @@
 #include "mesh/error.h"
 #include "page/base64.h"
 #include "page/from_runtime.h"
+#include "page/page_axes.h"
 #include "page/page_mesh.h"
 #include "page/page_motion.h"
 #include "report/json_text.h"
@@ -154,10 +155,11 @@ std::string view_page(const AnimatedAsset& animated, const PageOptions& options,
     throw Error(ExitCode::kFile, options.template_file + ": is not the viewer's page (build it again)");
   }
   const int frames = frames_of(animated);
+  const BodyFrame axes = page_axes(animated);
   const PageParts parts = page_parts(animated.asset(), animated.character());
   const std::vector<PageSphere> spheres = page_spheres(animated.asset(), animated.character());
   ordered_json data{{"title", options.title},
-                    {"axes", axes_json(animated.frame())},
+                    {"axes", axes_json(axes)},
                     {"parts", parts.names},
                     {"spheres", spheres_json(spheres)},
                     {"inspect", ordered_json::parse(inspect_json(animated.asset()))},
@@ -167,7 +169,7 @@ std::string view_page(const AnimatedAsset& animated, const PageOptions& options,
                     {"clips", clips_json(animated, options.motion, frames)},
                     {"mesh", page_mesh(animated, animated.character().source_positions, parts, spheres)}};
   const double still = static_cast<double>(page.size() + json_text(data, -1).size());
-  PageMotion motion(animated);
+  PageMotion motion(animated, axes);
   data["frames"] = frames_json(animated, frames, options, still, motion, progress);
   data["motion"] = motion.json();
   data["mesh"] = page_mesh(animated, motion.rest(), parts, spheres);

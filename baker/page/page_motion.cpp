@@ -39,12 +39,11 @@ void PageMotion::add(const Deformation& deformation, const std::vector<Vec3>& po
     const std::vector<float> packed = pack(positions);
     vertices_.insert(vertices_.end(), packed.begin(), packed.end());
   }
-  const BodyFrame frame = animated_.frame();
   Eigen::AlignedBox3d box;
   Vec3 sum = Vec3::Zero();
   for (const Vec3& p : positions) {
-    const Vec3 from = (p - frame.origin) / frame.height;
-    const Vec3 at(from.dot(frame.left), from.dot(frame.up), from.dot(frame.forward));
+    const Vec3 from = (p - axes_.origin) / axes_.height;
+    const Vec3 at(from.dot(axes_.left), from.dot(axes_.up), from.dot(axes_.forward));
     box.extend(at);
     sum += at;
   }

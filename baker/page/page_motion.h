@@ -21,7 +21,7 @@ std::vector<PageClip> page_clips(const AnimatedAsset& animated, const std::strin
 // What moves the mesh, frame by frame: bones and weights of morph targets, or the vertices themselves.
 class PageMotion {
  public:
-  explicit PageMotion(const AnimatedAsset& animated) : animated_(animated) {}
+  PageMotion(const AnimatedAsset& animated, const BodyFrame& axes) : animated_(animated), axes_(axes) {}
 
   // Frames in order. `positions` are those of the deformation.
   void add(const Deformation& deformation, const std::vector<Vec3>& positions);
@@ -37,9 +37,10 @@ class PageMotion {
   bool moves(std::size_t morph) const;
 
   const AnimatedAsset& animated_;
+  BodyFrame axes_;
   std::size_t frames_ = 0, morph_count_ = 0;
   std::vector<float> bones_, vertices_, morphs_;
-  std::vector<float> boxes_, centers_;  // of the character in its own axes, its height as the unit
+  std::vector<float> boxes_, centers_;  // of the character in the axes, their height as the unit
 };
 
 }  // namespace spherechain::baker

@@ -6,8 +6,8 @@ import * as THREE from 'three';
 const SIZE = 64;
 
 // Directions to look from, evenly spread, few from below.
-const DIRECTIONS = Array.from({ length: 48 }, (_, i) => {
-  const y = 0.95 - (1.35 * (i + 0.5)) / 48;
+const DIRECTIONS = Array.from({ length: 36 }, (_, i) => {
+  const y = 0.95 - (1.35 * (i + 0.5)) / 36;
   const turn = i * Math.PI * (3 - Math.sqrt(5));
   const across = Math.sqrt(1 - y * y);
   return new THREE.Vector3(across * Math.sin(turn), y, across * Math.cos(turn));

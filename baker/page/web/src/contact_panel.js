@@ -10,8 +10,8 @@ function runs(frames) {
     if (out.length > 0 && out.at(-1)[1] === frame - 1) out.at(-1)[1] = frame;
     else out.push([frame, frame]);
   }
-  const text = out.slice(0, 4).map(([a, b]) => (a === b ? `${a}` : `${a}–${b}`));
-  return text.join(', ') + (out.length > 4 ? ' …' : '');
+  const text = out.slice(0, 5).map(([a, b]) => (a === b ? `${a}` : `${a}–${b}`));
+  return text.join(', ') + (out.length > 5 ? ' …' : '');
 }
 
 export function fillContactPanel(panel, store, model, flyTo) {
@@ -71,7 +71,7 @@ export function fillContactPanel(panel, store, model, flyTo) {
     shown = at;
     const clip = model.clips[at];
     const found = model.contacts.over(clip.first, clip.count);
-    clipTitle.textContent = found.length === 0 ? `No contact in ${clip.name}` : `In the whole of ${clip.name}`;
+    clipTitle.textContent = found.length === 0 ? `No contact in ${clip.name}` : `In the whole of ${clip.name}, the longest first`;
     clipTitle.hidden = clipList.hidden = clip.count < 2;
     clipList.replaceChildren(...found.map(clipRow(clip)));
   });

@@ -37,16 +37,13 @@ export function createFraming(model) {
   return {
     toWorld,
     offset,
-    // Of a clip's frames.
-    bounds({ first, count }, follow) {
-      if (boxes.length === 0) return rest.clone();
-      const out = new THREE.Box3();
-      for (let frame = first; frame < first + count; ++frame) {
-        const by = offset(frame, follow);
-        out.expandByPoint(point.fromArray(boxes, 6 * frame).add(by));
-        out.expandByPoint(point.fromArray(boxes, 6 * frame + 3).add(by));
-      }
-      return out;
+    // The box around each of a clip's frames.
+    boxes({ first, count }, follow) {
+      if (boxes.length === 0) return [rest];
+      return Array.from({ length: count }, (_, i) => {
+        const [low, high] = [0, 3].map((k) => new THREE.Vector3().fromArray(boxes, 6 * (first + i) + k));
+        return new THREE.Box3(low, high).translate(offset(first + i, follow));
+      });
     },
   };
 }

@@ -73,6 +73,7 @@ const shown = {
   patches: false, // spheres' triangles in tones
   pivots: false,
   numbers: false,
+  oneClip: false, // on the timeline
   hiddenParts: new Set(),
   sets: new Set(),
   contact: null, // the key of the contact last gone to

@@ -25,7 +25,7 @@ export const LIGHT = `
     float fill = max(dot(n, normalize(vec3(0.8, 0.1, 0.35))), 0.0);
     float sky = 0.5 + 0.5 * n.y;
     float grazing = pow(1.0 - max(dot(n, e), 0.0), 3.0);
-    return 0.16 + 0.62 * key + 0.16 * fill + 0.14 * sky - 0.1 * grazing;
+    return 0.2 + 0.78 * key + 0.2 * fill + 0.18 * sky - 0.1 * grazing;
   }`;
 
 // A look is a colour and, in alpha, a kind: 0 hidden, 1/2 plain, 1 pointed at.

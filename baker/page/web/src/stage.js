@@ -18,7 +18,14 @@ export function createStage(canvas, model, store, { skinLayer, sphereLayer, cont
   const renderer = new THREE.WebGLRenderer({ canvas, context, antialias: true, alpha: true });
   const framing = createFraming(model);
   const clipNow = () => model.clips[model.clipAt(store.state.frame)];
-  let bounds = framing.bounds(clipNow(), store.state.follow);
+  let boxes = [];
+  const bounds = new THREE.Box3();
+  const measure = () => {
+    boxes = framing.boxes(clipNow(), store.state.follow);
+    bounds.makeEmpty();
+    for (const box of boxes) bounds.union(box);
+  };
+  measure();
   const unit = Math.max(...bounds.getSize(new THREE.Vector3()).toArray());
 
   const camera = new THREE.PerspectiveCamera(FIELD_OF_VIEW, 1, 0.01 * unit, 60 * unit);
@@ -100,7 +107,7 @@ export function createStage(canvas, model, store, { skinLayer, sphereLayer, cont
     invalidate();
   }
 
-  // The nearest eye in a direction that sees the whole box, from outside it.
+  // The nearest eye in a direction that sees every frame's box, from outside them.
   function eyeFor(direction) {
     const target = bounds.getCenter(new THREE.Vector3());
     const back = direction.clone().normalize();
@@ -109,14 +116,13 @@ export function createStage(canvas, model, store, { skinLayer, sphereLayer, cont
     const vertical = TAN * 0.92;
     const horizontal = vertical * camera.aspect;
     let distance = 0;
-    for (let corner = 0; corner < 8; ++corner) {
-      const p = new THREE.Vector3(
-        corner & 1 ? bounds.max.x : bounds.min.x,
-        corner & 2 ? bounds.max.y : bounds.min.y,
-        corner & 4 ? bounds.max.z : bounds.min.z,
-      ).sub(target);
-      const size = Math.max(Math.abs(p.dot(right)) / horizontal, Math.abs(p.dot(up)) / vertical);
-      distance = Math.max(distance, p.dot(back) + size);
+    const p = new THREE.Vector3();
+    for (const { min, max } of boxes) {
+      for (let corner = 0; corner < 8; ++corner) {
+        p.set(corner & 1 ? max.x : min.x, corner & 2 ? max.y : min.y, corner & 4 ? max.z : min.z).sub(target);
+        const size = Math.max(Math.abs(p.dot(right)) / horizontal, Math.abs(p.dot(up)) / vertical);
+        distance = Math.max(distance, p.dot(back) + size);
+      }
     }
     controls.maxDistance = Math.max(controls.maxDistance, 4 * distance);
     camera.far = Math.max(camera.far, 12 * distance);
@@ -173,7 +179,7 @@ export function createStage(canvas, model, store, { skinLayer, sphereLayer, cont
     const key = `${model.clipAt(frame)} ${follow}`;
     if (key === boundsKey) return;
     boundsKey = key;
-    bounds = framing.bounds(clipNow(), follow);
+    measure();
     if (framed) view(framed, false);
   });
 
