@@ -69,8 +69,8 @@ class Value {
 };
 
 json parse(const std::string& text, const std::string& file) {
-  constexpr int kMostNested = 16;  // a report has 6; the page's script and the JSON library go down by recursion
-  if (json_depth(text) > kMostNested) throw Error(ExitCode::kFile, file + ": its JSON is nested too deeply");
+  constexpr int kNestedMax = 16;  // a report has 6; the page's script and the JSON library go down by recursion
+  if (json_depth(text) > kNestedMax) throw Error(ExitCode::kFile, file + ": its JSON is nested too deeply");
   json out = json::parse(text, nullptr, false);
   if (!out.is_object()) throw Error(ExitCode::kFile, file + ": is not a JSON object");
   return out;
@@ -126,8 +126,8 @@ std::string read_validation(const std::string& file, const Asset& asset, const s
     refuse(file, asset_file, "it is of an asset with other settings");
   }
   check_score(validation);
-  check_score(validation["m1"]);
-  check_score(validation["m2"]);
+  check_score(validation["chains"]);
+  check_score(validation["all_pairs"]);
   validation["radius"].text();
   validation["skin"].flag();
   validation.numbers({"raw_pairs", "truth_pairs"});

@@ -60,7 +60,7 @@ std::string refusal(Reader read, const std::string& text) {
   return "accepted";
 }
 
-// "/m1/precision" -> "m1.precision", "/stages/0/seconds" -> "stages[0].seconds"
+// "/chains/precision" -> "chains.precision", "/stages/0/seconds" -> "stages[0].seconds"
 std::string dotted(const std::string& pointer) {
   std::string out;
   for (std::size_t i = 1, end = 0; i < pointer.size(); i = end + 1) {
@@ -115,12 +115,12 @@ TEST_CASE("a validation is shown only whole, and of spheres that the asset has")
                         "/pair_recall",
                         "/precision",
                         "/reported_per_frame",
-                        "/m1",
-                        "/m1/pair_recall",
-                        "/m1/precision",
-                        "/m2",
-                        "/m2/pair_recall",
-                        "/m2/reported_per_frame",
+                        "/chains",
+                        "/chains/pair_recall",
+                        "/chains/precision",
+                        "/all_pairs",
+                        "/all_pairs/pair_recall",
+                        "/all_pairs/reported_per_frame",
                         "/radius",
                         "/skin",
                         "/raw_pairs",

@@ -78,6 +78,9 @@ export function fillControls(panel, store, model) {
       slider(store, 'sphereOpacity', 'Opacity of the spheres'),
     ),
     legend(store),
+    h('h2', {}, 'Body parts', link('hiddenParts', 'show all')),
+    h('div', { class: 'parts' }, partToggles(store, model)),
+    h('h2', {}, 'Under the hood'),
     check(store, 'method', 'Method', 'M', (shown) => store.showMethod(shown)),
     h(
       'div',
@@ -93,7 +96,5 @@ export function fillControls(panel, store, model) {
       of('level').length > 0 && h('h2', {}, 'Torso levels and sides'),
       h('div', { class: 'chips' }, setToggles(store, of('level')), h('span', { class: 'gap' }), setToggles(store, of('side'))),
     ),
-    h('h2', {}, 'Body parts', link('hiddenParts', 'show all')),
-    h('div', { class: 'parts' }, partToggles(store, model)),
   );
 }

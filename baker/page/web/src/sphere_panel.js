@@ -6,7 +6,7 @@ import { CONTACT, FALSE_ALARM, regionColour } from './palette.js';
 
 export function legend(store) {
   const key = (colour, text) => h('span', { class: 'legend' }, h('span', { class: 'swatch', style: `background: ${colour}` }), text);
-  const box = h('div', { class: 'legends' }, key(CONTACT, 'its skin touches'), key(FALSE_ALARM, 'false alarm: only the spheres touch'));
+  const box = h('div', { class: 'legends' }, key(CONTACT, 'the skin touches too'), key(FALSE_ALARM, 'false alarm: only the spheres touch'));
   store.watch(['spheres', 'method'], ({ spheres, method }) => (box.hidden = !spheres && !method));
   return box;
 }
