@@ -142,7 +142,9 @@ test('each control changes the picture, and back', async () => {
     assert.ok(changed.differing > 0.0001, `${id}: ${changed.differing} of the picture changed`);
     await page.locator(`#${id}`).evaluate((control) => control.click());
     await away(page);
-    assert.equal((await compare(page, plain, await picture(page))).differing, 0, `${id} twice: as before`);
+    // Spheres equally far from the eye are drawn in any order.
+    const left = (await compare(page, plain, await picture(page))).differing;
+    assert.ok(left < Math.min(0.001, changed.differing / 2), `${id} twice: ${left} of the picture is not as before`);
   }
 });
 
