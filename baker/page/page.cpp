@@ -40,15 +40,15 @@ class FrameLists {
 class Costs {
  public:
   void add(const Detection& detection) {
-    tests_.push_back(detection.tests);
-    pairs_.push_back(detection.raw_pairs);
-    us_.push_back(detection.us);
+    tests_.push_back(static_cast<std::uint32_t>(detection.tests));
+    pairs_.push_back(static_cast<std::uint32_t>(detection.raw_pairs));
+    us_.push_back(static_cast<float>(detection.us));
   }
-  ordered_json json() const { return {{"tests", tests_}, {"pairs", pairs_}, {"us", us_}}; }
+  ordered_json json() const { return {{"tests", base64(tests_)}, {"pairs", base64(pairs_)}, {"us", base64(us_)}}; }
 
  private:
-  std::vector<std::size_t> tests_, pairs_;
-  std::vector<double> us_;
+  std::vector<std::uint32_t> tests_, pairs_;
+  std::vector<float> us_;
 };
 
 ordered_json parsed_or_null(const std::string& text) {
@@ -106,8 +106,7 @@ int frames_of(const AnimatedAsset& animated) {
 ordered_json frames_json(const AnimatedAsset& animated, int frames, const PageOptions& options, double still,
                          PageMotion& motion, const std::function<void(int)>& progress) {
   PageFrames runtime(animated, options.radius);
-  std::vector<float> times, spheres;
-  std::vector<double> refit_us, contacts_us;
+  std::vector<float> times, spheres, refit_us, contacts_us;
   FrameLists<std::array<std::uint32_t, 2>> contacts;
   FrameLists<std::array<std::uint16_t, 2>> fit_pairs, detect_pairs;
   Costs chains, all_pairs;
@@ -124,10 +123,11 @@ ordered_json frames_json(const AnimatedAsset& animated, int frames, const PageOp
     detect_pairs.add(frame.detect_pairs);
     chains.add(frame.chains);
     all_pairs.add(frame.all_pairs);
-    refit_us.push_back(frame.refit_us);
-    contacts_us.push_back(frame.contacts_us);
-    // Base64 has four letters for three bytes; the rest is small.
-    const std::size_t bytes = motion.bytes() + spheres.size() * sizeof(float) + contacts.bytes() + fit_pairs.bytes() +
+    refit_us.push_back(static_cast<float>(frame.refit_us));
+    contacts_us.push_back(static_cast<float>(frame.contacts_us));
+    // Base64 has four letters for three bytes.
+    constexpr std::size_t kFigures = 12 * sizeof(float);  // times, counts and costs of a frame
+    const std::size_t bytes = (times.size() * kFigures) + motion.bytes() + spheres.size() * sizeof(float) + contacts.bytes() + fit_pairs.bytes() +
                               detect_pairs.bytes();
     check_size(animated, frames, still, static_cast<double>(bytes) * 4 / 3 / (i + 1) * frames, options);
   }
@@ -138,8 +138,8 @@ ordered_json frames_json(const AnimatedAsset& animated, int frames, const PageOp
           {"contacts", contacts.json()},
           {"fit", fit_pairs.json()},
           {"detect", detect_pairs.json()},
-          {"contacts_us", contacts_us},
-          {"refit_us", refit_us},
+          {"contacts_us", base64(contacts_us)},
+          {"refit_us", base64(refit_us)},
           {"chains", chains.json()},
           {"all_pairs", all_pairs.json()}};
 }
@@ -169,7 +169,7 @@ std::string view_page(const AnimatedAsset& animated, const PageOptions& options,
                     {"clips", clips_json(animated, options.motion, frames)},
                     {"mesh", page_mesh(animated, animated.character().source_positions, parts, spheres)}};
   const double still = static_cast<double>(page.size() + json_text(data, -1).size());
-  PageMotion motion(animated, axes);
+  PageMotion motion(animated.character(), axes);
   data["frames"] = frames_json(animated, frames, options, still, motion, progress);
   data["motion"] = motion.json();
   data["mesh"] = page_mesh(animated, motion.rest(), parts, spheres);

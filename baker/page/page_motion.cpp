@@ -66,7 +66,7 @@ bool PageMotion::moves(std::size_t morph) const {
 std::vector<Vec3> PageMotion::rest() const {
   std::vector<double> still;
   for (std::size_t m = 0; m < morph_count_; ++m) still.push_back(moves(m) ? 0.0 : static_cast<double>(morphs_[m]));
-  return morph(animated_.character().source_positions, animated_.character().rig.morphs, still);
+  return morph(character_.source_positions, character_.rig.morphs, still);
 }
 
 ordered_json PageMotion::json() const {
@@ -79,7 +79,7 @@ ordered_json PageMotion::json() const {
   ordered_json& targets = out["morphs"] = ordered_json::array();
   for (std::size_t m = 0; m < morph_count_; ++m) {
     if (!moves(m)) continue;
-    const Morph& target = animated_.character().rig.morphs[m];
+    const Morph& target = character_.rig.morphs[m];
     std::vector<float> weights;
     for (std::size_t i = m; i < morphs_.size(); i += morph_count_) weights.push_back(morphs_[i]);
     targets.push_back({{"name", target.name},

@@ -21,7 +21,7 @@ std::vector<PageClip> page_clips(const AnimatedAsset& animated, const std::strin
 // What moves the mesh, frame by frame: bones and weights of morph targets, or the vertices themselves.
 class PageMotion {
  public:
-  PageMotion(const AnimatedAsset& animated, const BodyFrame& axes) : animated_(animated), axes_(axes) {}
+  PageMotion(const Character& character, const BodyFrame& axes) : character_(character), axes_(axes) {}
 
   // Frames in order. `positions` are those of the deformation.
   void add(const Deformation& deformation, const std::vector<Vec3>& positions);
@@ -36,7 +36,7 @@ class PageMotion {
  private:
   bool moves(std::size_t morph) const;
 
-  const AnimatedAsset& animated_;
+  const Character& character_;
   BodyFrame axes_;
   std::size_t frames_ = 0, morph_count_ = 0;
   std::vector<float> bones_, vertices_, morphs_;

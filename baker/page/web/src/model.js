@@ -75,6 +75,13 @@ function readMotion({ motion, frames }) {
   };
 }
 
+// Lists of a number a frame, as the charts want them.
+function readCosts({ chains, all_pairs: allPairs, refit_us: refit, contacts_us: skin }) {
+  const list = (text, Type) => [...decode(text, Type)];
+  const costs = ({ tests, pairs, us }) => ({ tests: list(tests, Uint32Array), pairs: list(pairs, Uint32Array), us: list(us, Float32Array) });
+  return { chains: costs(chains), allPairs: costs(allPairs), refit: list(refit, Float32Array), skin: list(skin, Float32Array) };
+}
+
 export function readModel(text) {
   const data = JSON.parse(text);
   if (data === null) return null;
@@ -123,7 +130,7 @@ export function readModel(text) {
     frameCount: Math.max(count, 1),
     fps: frames?.fps || 30,
     clips,
-    costs: count > 0 ? { chains: frames.chains, allPairs: frames.all_pairs, refit: frames.refit_us, skin: frames.contacts_us } : null,
+    costs: count > 0 ? readCosts(frames) : null,
     contacts: new Contacts(contactLists, partOf, partName),
 
     clipAt: (frame) => Math.max(clips.findLastIndex(({ first }) => first <= frame), 0),
