@@ -83,12 +83,6 @@ std::string frames_text(const AnimatedAsset& animated) {
   return clips > 1 ? fmt::format("{} clips, {} frames\n", clips, animated.frame_count()) : std::string();
 }
 
-std::vector<std::string> bone_names(const OpenAsset& asset) {
-  std::vector<std::string> names;
-  for (std::size_t b = 0; b < asset->bone_count(); ++b) names.emplace_back(asset->bone(b).name);
-  return names;
-}
-
 }  // namespace
 
 ExitCode run_play(const PlayOptions& options) {
@@ -113,10 +107,10 @@ ExitCode run_play(const PlayOptions& options) {
   if (!options.json.empty()) {
     file.emplace(options.json,
                  ordered_json{{"backend", on_cuda ? "cuda" : backend_name(target)},
-                              {"target", on_cuda ? "cuda" : to_string(target)},
+                              {"target", on_cuda ? "cuda" : sc_target_name(target)},
                               {"radius", options.radius},
                               {"refit", refit},
-                              {"parts", parts_json(part_rows(contacts.parts(), bone_names(animated.asset())))}},
+                              {"parts", parts_json(part_rows(animated.asset()))}},
                  animated.frame_count());
   }
   {

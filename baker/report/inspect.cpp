@@ -13,16 +13,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-const char* name_of(spherechain::Side side) {
-  switch (side) {
-    case spherechain::Side::kLeft:
-      return "left";
-    case spherechain::Side::kRight:
-      return "right";
-    case spherechain::Side::kNone:
-      break;
-  }
-  return "none";
+const char* side_name(std::uint8_t side) {
+  return side == SC_SIDE_LEFT ? "left" : side == SC_SIDE_RIGHT ? "right" : "none";
 }
 
 std::size_t count_ignored(const OpenAsset& asset) {
@@ -61,27 +53,21 @@ ordered_json bones_json(const OpenAsset& asset) {
   return bones;
 }
 
-std::size_t bytes_of(const BoneTables& tables) {
-  const auto bytes = [](const auto& span) { return span.size * sizeof(span[0]); };
-  return bytes(tables.weights) + bytes(tables.term_counts) + bytes(tables.term_bones) + bytes(tables.terms) +
-         bytes(tables.morph_term_counts) + bytes(tables.morph_targets) + bytes(tables.morph_terms);
-}
-
 std::size_t bytes_of(const MomentTables& tables) {
   const auto bytes = [](const auto& span) { return span.size * sizeof(span[0]); };
   return bytes(tables.batches) + bytes(tables.pairs) + bytes(tables.spheres) + bytes(tables.bone_counts) +
          bytes(tables.bones) + bytes(tables.centers) + bytes(tables.pair_places) + bytes(tables.moments);
 }
 
-std::size_t bytes_of(const Surface& surface) {
-  const auto bytes = [](const auto& span) { return span.size * sizeof(span[0]); };
-  return bytes(surface.leaves) + bytes(surface.leaf_balls) + bytes(surface.leaf_vertices) + bytes(surface.leaf_bones) +
-         bytes(surface.corners) + bytes(surface.source_vertices) + bytes(surface.welds) +
-         bytes(surface.slot_positions) + bytes(surface.slot_weights) + bytes(surface.slot_morphs) +
-         bytes(surface.cover_term_counts) + bytes(surface.cover_term_bones) + bytes(surface.cover_terms) +
-         bytes(surface.cover_morph_counts) + bytes(surface.cover_morph_targets) + bytes(surface.cover_morphs) +
-         bytes(surface.rest_contacts) + bytes(surface.leaf_boxes) + bytes(surface.outlines) +
-         bytes(surface.outline_bones) + bytes(surface.outline_points) + bytes(surface.outline_weights);
+// As the asset has it, packed.
+std::size_t bytes_of(const SkinData& skin) {
+  const auto bytes = [](const auto&... spans) { return (... + (spans.size * sizeof(spans[0]))); };
+  return bytes(skin.triangles, skin.cluster_vertices, skin.cluster_bones, skin.sources, skin.welds,
+               skin.influence_bones, skin.rest_contacts, skin.hull_points, skin.part_run_ends, skin.part_runs,
+               skin.corners, skin.influence_counts, skin.morph_counts, skin.clusters, skin.positions,
+               skin.influence_weights, skin.morphs, skin.boxes, skin.bounds_term_counts, skin.bounds_term_bones,
+               skin.bounds_terms, skin.bounds_morph_counts, skin.bounds_morph_targets, skin.bounds_morphs, skin.hulls,
+               skin.hull_bones);
 }
 
 ordered_json sphere_json(const OpenAsset& asset, std::size_t i) {
@@ -97,7 +83,7 @@ ordered_json sphere_json(const OpenAsset& asset, std::size_t i) {
           {"detect_radius", number(sphere.detect_radius)},
           {"region", asset->region(sphere.region).name},
           {"level", sphere.level},
-          {"side", name_of(sphere.side)},
+          {"side", side_name(sphere.side)},
           {"triangles", sphere.triangle_count},
           {"pivots", std::move(pivots)}};
 }
@@ -105,26 +91,19 @@ ordered_json sphere_json(const OpenAsset& asset, std::size_t i) {
 }  // namespace
 
 const char* refit_name(spherechain::RefitRule rule) {
-  switch (rule) {
-    case spherechain::RefitRule::kPaper:
-      return "paper";
-    case spherechain::RefitRule::kMoments:
-      return "moments";
-    case spherechain::RefitRule::kCalibrated:
-      break;
-  }
-  return "calibrated";
+  return rule == spherechain::RefitRule::kPaper ? "paper" : "moments";
 }
 
 std::string inspect_json(const OpenAsset& asset) {
   const AssetInfo info = asset->info();
-  ordered_json parts = ordered_json::array();
-  for (const spherechain::sc_source_buffer& part : asset.source_buffers()) {
-    parts.push_back({{"mesh", part.mesh},
-                     {"primitive", part.primitive},
-                     {"first_vertex", part.first_vertex},
-                     {"vertices", part.vertex_count},
-                     {"hash", fmt::format("{:016x}", part.hash)}});
+  const FitErrors fit = asset->fit();
+  ordered_json buffers = ordered_json::array();
+  for (const sc_source_buffer& buffer : asset->source_buffers()) {
+    buffers.push_back({{"mesh", buffer.mesh},
+                       {"primitive", buffer.primitive},
+                       {"first_vertex", buffer.first_vertex},
+                       {"vertices", buffer.vertex_count},
+                       {"hash", fmt::format("{:016x}", buffer.hash)}});
   }
   ordered_json regions = ordered_json::array(), spheres = ordered_json::array(), chains = ordered_json::array(),
                joints = ordered_json::array(), morphs = ordered_json::array();
@@ -150,31 +129,30 @@ std::string inspect_json(const OpenAsset& asset) {
                       {"tail", to_json(joint.tail)}});
   }
   for (std::size_t m = 0; m < asset->morph_count(); ++m) morphs.push_back(asset->morph_name(m));
-  const BoneTables& tables = asset.bone_tables();
   const MomentTables& moments = asset->moment_tables();
   const ordered_json out{
-      {"format_version", info.format_version},
+      {"format_version", kFormatVersion},
       {"writer", info.writer},
       {"settings", ordered_json::parse(info.settings, nullptr, false)},
       {"settings_sha256", info.settings_sha256},
       {"source",
        {{"file", info.source_file},
         {"sha256", info.source_sha256},
-        {"vertices", info.source_vertex_count},
-        {"triangles", info.source_triangle_count},
+        {"vertices", info.vertex_count},
+        {"triangles", info.triangle_count},
         {"rest_hash", fmt::format("{:016x}", info.source_rest_hash)},
         {"metres_per_unit", number(info.metres_per_unit)},
-        {"parts", std::move(parts)}}},
+        {"buffers", std::move(buffers)}}},
       {"frame",
        {{"origin", to_json(info.origin)},
         {"left", to_json(info.left)},
         {"up", to_json(info.up)},
         {"forward", to_json(info.forward)},
         {"height", number(info.height)}}},
-      {"refit", refit_name(info.refit)},
+      {"refit", refit_name(asset->refit_rule())},
       {"sphere_count", asset->spheres().size},
       {"chain_entries", count_chain_entries(asset)},
-      {"chain_entries_table1", info.chain_entries_table1},
+      {"chain_entries_table1", fit.chain_entries_table1},
       {"ignored_pairs", count_ignored(asset)},
       {"rest_pairs",
        {{"fit", asset->rest_pairs(SC_RADIUS_FIT).size}, {"detect", asset->rest_pairs(SC_RADIUS_DETECT).size}}},
@@ -185,51 +163,41 @@ std::string inspect_json(const OpenAsset& asset) {
       {"joints", std::move(joints)},
       {"bones", bones_json(asset)},
       {"morphs", std::move(morphs)},
-      {"bone_tables",
-       {{"groups", tables.weights.size},
-        {"terms", tables.terms.size},
-        {"morph_terms", tables.morph_terms.size},
-        {"bytes", bytes_of(tables)}}},
       {"moment_tables",
        {{"batches", moments.batches.size},
         {"pairs", moments.pairs.size},
         {"sphere_bones", moments.centers.size},
         {"sphere_pairs", moments.moments.size},
         {"bytes", bytes_of(moments)}}},
-      {"surface",
-       {{"clusters", asset.leaf_count()},
+      {"skin",
+       {{"clusters", asset.surface().clusters.size},
         {"vertices", asset.surface().source_vertices.size},
         {"rest_contacts", asset.surface().rest_contacts.size},
-        {"bytes", bytes_of(asset.surface())}}},
-      {"pivot_vertices", asset.pivot_vertices().size},
-      {"fit",
-       {{"phi1", to_json(info.phi1)}, {"phi1_adjusted", to_json(info.phi1_adjusted)}, {"phi2", to_json(info.phi2)}}}};
+        {"bytes", bytes_of(asset->skin())}}},
+      {"fit", {{"phi1", to_json(fit.phi1)}, {"phi1_adjusted", to_json(fit.phi1_adjusted)}, {"phi2", to_json(fit.phi2)}}}};
   return json_text(out, 1) + "\n";
 }
 
 std::string inspect_text(const OpenAsset& asset) {
   const AssetInfo info = asset->info();
-  std::string out = fmt::format("format {}, written by {}\n", info.format_version, info.writer);
+  const FitErrors fit = asset->fit();
+  std::string out = fmt::format("format {}, written by {}\n", kFormatVersion, info.writer);
   out += fmt::format("source   {} ({} vertices, {} triangles)\n         sha256 {}\n", info.source_file,
-                     info.source_vertex_count, info.source_triangle_count, info.source_sha256);
+                     info.vertex_count, info.triangle_count, info.source_sha256);
   out += fmt::format("settings {}\n         sha256 {}\n", info.settings, info.settings_sha256);
-  out += fmt::format("refit    {}\n", refit_name(info.refit));
+  out += fmt::format("refit    {}\n", refit_name(asset->refit_rule()));
   out += fmt::format("spheres  {}, {} chain entries ({} as Table 1 counts), {} pairs ignored, {} joints\n",
-                     asset->spheres().size, count_chain_entries(asset), info.chain_entries_table1, count_ignored(asset),
+                     asset->spheres().size, count_chain_entries(asset), fit.chain_entries_table1, count_ignored(asset),
                      asset->joint_count());
   out += fmt::format("bones    {}, {} morph targets\n", asset->bone_count(), asset->morph_count());
-  if (const BoneTables& tables = asset.bone_tables(); tables.terms.size > 0) {
-    out += fmt::format("pivots   {} terms of bones, {} of morphs, {} bytes\n", tables.terms.size,
-                       tables.morph_terms.size, bytes_of(tables));
-  }
   if (const MomentTables& moments = asset->moment_tables(); moments.moments.size > 0) {
     out += fmt::format("moments  {} batches of {} bone pairs; spheres: {} bones, {} pairs, {} bytes\n",
                        moments.batches.size, moments.pairs.size, moments.centers.size, moments.moments.size,
                        bytes_of(moments));
   }
-  out +=
-      fmt::format("surface  {} clusters, {} vertices, {} contacts at rest, {} bytes\n", asset.leaf_count(),
-                  asset.surface().source_vertices.size, asset.surface().rest_contacts.size, bytes_of(asset.surface()));
+  const Surface& surface = asset.surface();
+  out += fmt::format("skin     {} clusters, {} vertices, {} contacts at rest, {} bytes\n", surface.clusters.size,
+                     surface.source_vertices.size, surface.rest_contacts.size, bytes_of(asset->skin()));
   out += fmt::format("\n{:<14} {:>9} {:>7}\n", "region", "triangles", "spheres");
   for (std::size_t r = 0; r < asset->region_count(); ++r) {
     out += fmt::format("{:<14} {:>9} {:>7}\n", asset->region(r).name, asset->region(r).triangle_count,
@@ -243,7 +211,7 @@ std::string inspect_text(const OpenAsset& asset) {
     out += "\n";
   }
   out += fmt::format("\nmean |F| over the torso: phi1 {:.4g}, phi1' {:.4g}, phi2 {:.4g} (source units)\n",
-                     info.phi1.mean_abs_f, info.phi1_adjusted.mean_abs_f, info.phi2.mean_abs_f);
+                     fit.phi1.mean_abs_f, fit.phi1_adjusted.mean_abs_f, fit.phi2.mean_abs_f);
   return out;
 }
 

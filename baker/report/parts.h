@@ -19,10 +19,7 @@ struct PartRow {
   std::size_t triangles;
 };
 
-// `bones` are the names of the asset's.
-std::vector<PartRow> part_rows(const BodyParts& parts, const std::vector<std::string>& bones);
-
-// Those of an asset: its regions, until it stores its body parts.
+// Those of an asset.
 std::vector<PartRow> part_rows(const OpenAsset& asset);
 
 nlohmann::ordered_json parts_json(const std::vector<PartRow>& parts);

@@ -23,12 +23,12 @@ double rest_distance(const RestSphere& a, const RestSphere& b) {
   return std::hypot(double{a.center.x} - b.center.x, double{a.center.y} - b.center.y, double{a.center.z} - b.center.z);
 }
 
-// The part of the rest distance that the asset's near pairs are reported at.
+// The part of the rest distance that the asset's rest_pairs pairs are reported at.
 double own_fraction(const OpenAsset& asset, Radius kind) {
   std::vector<double> parts;
-  for (const RestPair& near : asset->rest_pairs(kind)) {
-    const RestSphere &a = asset->spheres()[rest_pairs.a], &b = asset->spheres()[rest_pairs.b];
-    parts.push_back(rest_pairs.rest_scale * (rest_radius(a, kind) + rest_radius(b, kind)) / rest_distance(a, b));
+  for (const RestPair& pair : asset->rest_pairs(kind)) {
+    const RestSphere &a = asset->spheres()[pair.a], &b = asset->spheres()[pair.b];
+    parts.push_back(pair.rest_scale * (rest_radius(a, kind) + rest_radius(b, kind)) / rest_distance(a, b));
   }
   if (parts.empty()) return kUsualFraction;
   const auto middle = parts.begin() + static_cast<std::ptrdiff_t>(parts.size() / 2);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What `view` takes from other commands: about the same asset, and all there that the page's script reads.
-#include "report/page_inputs.h"
+#include "page/page_inputs.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
