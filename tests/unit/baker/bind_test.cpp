@@ -235,7 +235,7 @@ TEST_CASE("every pair that is not ignored is reported only nearer than nine tent
   const Bake& bake = baked_human();
   const std::vector<BoundSphere>& spheres = bake.binding.spheres;
   std::map<std::pair<std::uint32_t, std::uint32_t>, double> reach;
-  for (const BoundPair& near : bake.binding.near_detect) reach[{near.a, near.b}] = near.reach;
+  for (const BoundPair& near : bake.binding.rest_detect) reach[{near.a, near.b}] = near.rest_scale;
   std::size_t at_rest = 0;
   for (std::uint32_t a = 0; a < spheres.size(); ++a) {
     for (std::uint32_t b = a + 1; b < spheres.size(); ++b) {

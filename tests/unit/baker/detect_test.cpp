@@ -33,8 +33,8 @@ std::vector<Pair> brute_force(const Bake& bake, const std::vector<Sphere>& spher
   const std::set<std::pair<std::uint32_t, std::uint32_t>> ignored(bake.binding.ignored.begin(),
                                                                   bake.binding.ignored.end());
   std::map<std::pair<std::uint32_t, std::uint32_t>, float> reach;
-  for (const BoundPair& near : kind == RadiusKind::kFit ? bake.binding.near_fit : bake.binding.near_detect) {
-    reach[{near.a, near.b}] = static_cast<float>(near.reach);
+  for (const BoundPair& near : kind == RadiusKind::kFit ? bake.binding.rest_fit : bake.binding.rest_detect) {
+    reach[{near.a, near.b}] = static_cast<float>(near.rest_scale);
   }
   std::vector<Pair> pairs;
   for (std::uint32_t a = 0; a < spheres.size(); ++a) {
