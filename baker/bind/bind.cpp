@@ -186,8 +186,8 @@ Binding bind_spheres(const Character& character, const Regions& regions, const S
   const SpherePairs ignored =
       find_ignored(character, regions, spheres, out.sphere_of_triangle, settings.neighbour_gap * regions.frame.height);
   out.ignored.assign(ignored.begin(), ignored.end());
-  out.near_fit = find_near(out.spheres, ignored, settings.near_fraction, nullptr);
-  out.near_detect = find_near(out.spheres, ignored, settings.near_fraction, &BoundSphere::detect_radius);
+  out.near_fit = find_near(out.spheres, ignored, settings.rest_fraction, nullptr);
+  out.near_detect = find_near(out.spheres, ignored, settings.rest_fraction, &BoundSphere::detect_radius);
   return out;
 }
 

@@ -46,7 +46,7 @@ struct BindSettings {
   RefitRule rule = RefitRule::kCalibrated;  // or kPaper
   int pivots = 8;                           // of a sphere; calibrated: more where so many are ill-posed
   double detect_quantile = 0.9;             // of the surrounding region's area, by distance from the centre
-  double near_fraction = 0.9;               // of the rest distance: see near_fit
+  double rest_fraction = 0.9;               // of the rest distance: see near_fit
   double neighbour_gap = 0;  // of the height: regions with a shorter way between them on the mesh are ignored too
 };
 

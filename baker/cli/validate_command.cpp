@@ -18,7 +18,7 @@ ExitCode run_validate(const ValidateOptions& options) {
   check_replaceable_json(options.json, false, "delete it, or name another");
   ValidateSettings settings;
   settings.radius = options.radius == "fit" ? RadiusKind::kFit : RadiusKind::kDetect;
-  settings.method = options.mode == "m1" ? Method::kM1 : Method::kM2;
+  settings.method = options.mode == "chains" ? Method::kM1 : Method::kM2;
   settings.target = choose_target("auto");
   settings.contacts = options.contacts;
   settings.skin = !options.spheres_alone;

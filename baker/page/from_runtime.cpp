@@ -73,20 +73,11 @@ std::vector<PageSphere> page_spheres(const Asset& asset, const Character& charac
   return out;
 }
 
-// The asset's regions, until it names body parts.
-PageParts page_parts(const Asset& asset, const Character& character) {
+PageParts page_parts(const AnimatedAsset& animated) {
+  const BodyParts found = animated.find_parts();
   PageParts out;
-  for (std::size_t r = 0; r < asset.region_count(); ++r) {
-    out.names.emplace_back(asset.region(r).name);
-    std::replace(out.names.back().begin(), out.names.back().end(), '_', ' ');
-  }
-  out.of_triangle.assign(character.source_triangles.size(), kNoPart);
-  for (const RestSphere& sphere : asset.spheres()) {
-    for (std::uint32_t k = 0; k < sphere.triangle_count; ++k) {
-      const std::uint32_t t = asset.triangles()[sphere.first_triangle + k];
-      if (t < out.of_triangle.size()) out.of_triangle[t] = sphere.region;
-    }
-  }
+  for (const BodyPart& part : found.parts) out.names.push_back(part.name);
+  out.of_triangle = found.of_triangle;
   return out;
 }
 
@@ -100,8 +91,8 @@ PageFrame PageFrames::run(const std::vector<float>& positions) {
   const FrameResult fit = fit_.run(positions), detect = detect_.run(positions);
   const FrameResult& timed = radius_ == RadiusKind::kFit ? fit : detect;
   out.refit_us = timed.refit_us;
-  out.chains = *timed.m1;
-  out.all_pairs = *timed.m2;
+  out.chains = *timed.chains;
+  out.all_pairs = *timed.all_pairs;
   out.fit_pairs = pairs_of(fit_);
   out.detect_pairs = pairs_of(detect_);
   for (std::size_t s = 0; s < fit_.spheres().size(); ++s) {

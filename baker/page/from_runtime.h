@@ -28,7 +28,7 @@ struct PageParts {
   std::vector<std::string> names;         // "left hand"
   std::vector<std::uint8_t> of_triangle;  // a source triangle's part, or kNoPart
 };
-PageParts page_parts(const Asset& asset, const Character& character);
+PageParts page_parts(const AnimatedAsset& animated);
 
 // What one frame shows. Triangles are source triangle numbers.
 struct PageFrame {

@@ -37,9 +37,6 @@ class Value {
   void number() const {
     if (!value_.is_number()) fail("is not a number");
   }
-  void flag() const {
-    if (!value_.is_boolean()) fail("is neither true nor false");
-  }
   const std::string& text() const {
     if (!value_.is_string()) fail("is not a text");
     return value_.get_ref<const std::string&>();
@@ -126,14 +123,13 @@ std::string read_validation(const std::string& file, const Asset& asset, const s
     refuse(file, asset_file, "it is of an asset with other settings");
   }
   check_score(validation);
-  check_score(validation["chains"]);
-  check_score(validation["all_pairs"]);
+  for (const char* of : {"skin", "all_pairs", "chains"}) check_score(validation[of]);
   validation["radius"].text();
-  validation["skin"].flag();
+  validation["reported"].text();
   validation.numbers({"raw_pairs", "truth_pairs"});
   validation["out_of_scope"].numbers({"rest", "same_sphere", "ignored"});
   validation["worst_misses"].each([&](const Value& miss) {
-    miss.numbers({"time", "triangle_pairs", "depth"});
+    miss.numbers({"time", "triangle_pairs", "overlap"});
     const Value spheres = miss["spheres"];
     spheres.each([&](const Value& sphere) { sphere.index(asset.spheres().size); });
     spheres.size(2);

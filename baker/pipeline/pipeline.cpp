@@ -65,10 +65,11 @@ void run_after_fit(Bake& out, const Progress& progress) {
       out.joints = place_joints(out.character, out.regions);
       if (out.character.rig.bones.empty()) out.rig_weights = rig_weights(out.character, out.joints);
     }
+    out.body_parts = find_body_parts(out.character, out.roles, out.regions, out.joints, out.rig_weights);
     out.bones = bind_bones(out.character, out.binding, out.joints, out.rig_weights);
     out.moments = bind_moments(out.character, out.bones, out.rig_weights, out.binding);
   });
-  stage(out, progress, "leaves",
+  stage(out, progress, "clusters",
         [&] { out.leaves = make_leaves(out.character, out.binding, out.bones, out.rig_weights, settings.leaves); });
   stage(out, progress, "write", [&] {
     out.asset = serialize({out.character, out.regions, out.spheres, out.chains, out.binding, out.joints, out.bones,
@@ -126,6 +127,7 @@ Bake rebake(const Bake& bake, const BakeSettings& settings) {
   Bake out;
   out.settings = settings;
   out.character = bake.character;
+  out.roles = bake.roles;
   out.regions = bake.regions;
   out.joints = bake.joints;
   out.rig_weights = bake.rig_weights;

@@ -11,6 +11,7 @@
 #include "bind/bind.h"
 #include "bind/bind_bones.h"
 #include "bind/bind_moments.h"
+#include "bind/body_parts.h"
 #include "chains/chains.h"
 #include "fit/fit.h"
 #include "import/import.h"
@@ -68,6 +69,7 @@ struct Bake {
   Binding binding;
   std::vector<Joint> joints;
   std::vector<VertexWeights> rig_weights;  // to the joints, of every source vertex; none where the source has bones
+  BodyParts body_parts;
   BoneBinding bones;
   MomentBinding moments;
   Leaves leaves;

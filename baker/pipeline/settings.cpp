@@ -83,7 +83,7 @@ class Reader {
 };
 
 json parse(const std::string& text, const std::string& file) {
-  // The deepest of settings is in 'leaves' or 'targets'. What is deeper would be copied and printed on the stack.
+  // The deepest of settings is in 'clusters' or 'targets'. What is deeper would be copied and printed on the stack.
   constexpr int kMostNested = 8;
   const auto shallow = [&](int depth, json::parse_event_t, const json&) {
     if (depth > kMostNested) throw Error(ExitCode::kFile, file + ": is nested more deeply than settings are");
@@ -135,11 +135,11 @@ BakeSettings make_settings(const std::string& profile, const std::string& text, 
   settings.bind.pivots = paper ? 4 : 8;
   reader.integer("pivots", settings.bind.pivots, paper ? 2 : 4, 16);
   reader.number("detect_quantile", settings.bind.detect_quantile, 0, 1);
-  reader.number("near_fraction", settings.bind.near_fraction, 0, 0.99);
+  reader.number("rest_fraction", settings.bind.rest_fraction, 0, 0.99);
   reader.number("neighbour_gap", settings.bind.neighbour_gap, 0, 1);
-  if (const json* leaves = reader.object("leaves")) {
-    if (!leaves->is_object()) reader.fail("leaves", "is not an object");
-    Reader inner(*leaves, file + ": leaves");
+  if (const json* clusters = reader.object("clusters")) {
+    if (!clusters->is_object()) reader.fail("clusters", "is not an object");
+    Reader inner(*clusters, file + ": clusters");
     inner.integer("triangles", settings.leaves.triangles, 4, 64);
     inner.integer("branching", settings.leaves.branching, 0, 8);
     if (const int b = settings.leaves.branching; b != 0 && b != 2 && b != 4 && b != 8) {
@@ -180,9 +180,9 @@ std::string to_json(const BakeSettings& settings) {
   out["refit"] = settings.bind.rule == RefitRule::kPaper ? "paper" : "calibrated";
   out["pivots"] = settings.bind.pivots;
   out["detect_quantile"] = settings.bind.detect_quantile;
-  out["near_fraction"] = settings.bind.near_fraction;
+  out["rest_fraction"] = settings.bind.rest_fraction;
   out["neighbour_gap"] = settings.bind.neighbour_gap;
-  out["leaves"] = {{"triangles", settings.leaves.triangles}, {"branching", settings.leaves.branching}};
+  out["clusters"] = {{"triangles", settings.leaves.triangles}, {"branching", settings.leaves.branching}};
   json targets = json::object();
   if (settings.targets.max_spheres) targets["max_spheres"] = *settings.targets.max_spheres;
   if (settings.targets.max_mean_abs_f) targets["max_mean_abs_f"] = *settings.targets.max_mean_abs_f;

@@ -15,8 +15,6 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr double kMostFrames = 1e6;
-
 Vec3 to_vec3(const spherechain::Vec3& v) { return {v.x, v.y, v.z}; }
 
 std::vector<Joint> joints_of(const Asset& asset) {
@@ -33,6 +31,29 @@ BakeSettings settings_of(const Asset& asset, const std::string& file) {
   return make_settings("balanced", asset.info().settings, file);
 }
 
+// Regions by name alone.
+Regions named_regions(const Asset& asset, const Character& character) {
+  Regions regions;
+  for (std::size_t r = 0; r < asset.region_count(); ++r) {
+    if (std::string(asset.region(r).name) == "torso") continue;
+    Limb limb;
+    limb.name = asset.region(r).name;
+    limb.side = limb.name.starts_with("left_")    ? Side::kLeft
+                : limb.name.starts_with("right_") ? Side::kRight
+                                                  : Side::kNone;
+    regions.limbs.push_back(limb);
+  }
+  std::vector<std::uint8_t> of_source(character.source_triangles.size(), regions.torso_region());
+  for (const RestSphere& sphere : asset.spheres()) {
+    for (std::uint32_t k = 0; k < sphere.triangle_count; ++k) {
+      const std::uint32_t t = asset.triangles()[sphere.first_triangle + k];
+      if (t < of_source.size()) of_source[t] = sphere.region;
+    }
+  }
+  for (const Index t : character.skin_source_triangle) regions.of_skin.push_back(of_source[t]);
+  return regions;
+}
+
 }  // namespace
 
 std::string MotionChoice::name() const {
@@ -45,6 +66,7 @@ AnimatedAsset::AnimatedAsset(const std::string& asset, const std::string& source
                              const FrameChoice& frames)
     : asset_name_(asset), file_(open_asset(asset)), fps_(frames.fps) {
   const BakeSettings settings = settings_of(file_.asset, asset);
+  roles_ = settings.roles;
   segment_settings_ = settings.segment;
   character_ = import_character(source, settings.import);
   const std::vector<float> rest = pack(character_.source_positions);
@@ -52,6 +74,7 @@ AnimatedAsset::AnimatedAsset(const std::string& asset, const std::string& source
     throw Error(ExitCode::kFile,
                 source + ": is not the mesh that " + asset + " was baked from (" + to_string(status) + ")");
   }
+  std::vector<const Clip*> clips;
   if (!motion.poses.empty() && !is_sequence(motion.poses)) {
     play_poses(motion.poses);
   } else if (!motion.poses.empty()) {
@@ -62,14 +85,10 @@ AnimatedAsset::AnimatedAsset(const std::string& asset, const std::string& source
     motion_ =
         std::make_unique<SequenceMotion>(character_, sequence_files(motion.motion), SequenceMotion::Path::kFrames);
   } else if (!motion.clip.empty() || !character_.rig.clips.empty()) {
-    play_clips(source, motion.clip);
+    clips = find_clips(source, motion.clip);
+    use_skin();
   }
-  frame_count_ = frames.count;
-  if (frame_count_ == 0 && motion_) frame_count_ = motion_->frame_count();
-  if (frame_count_ == 0 && motion_ && motion_->duration() > 0) {
-    frame_count_ = static_cast<int>(std::min(motion_->duration() * fps_ + 1e-6, kMostFrames)) + 1;
-  }
-  if (frame_count_ == 0) frame_count_ = 40;
+  frames_ = clips.empty() ? frames_of(motion_.get(), frames) : frames_of(character_.rig, clips, frames);
 }
 
 void AnimatedAsset::play_poses(const std::string& file) {
@@ -94,7 +113,7 @@ void AnimatedAsset::play_capture(const std::string& source, const std::string& f
 }
 
 // By name, or by number where no name is that; all of them where none is asked for.
-void AnimatedAsset::play_clips(const std::string& source, const std::string& wanted) {
+std::vector<const Clip*> AnimatedAsset::find_clips(const std::string& source, const std::string& wanted) const {
   const SourceRig& rig = character_.rig;
   std::vector<const Clip*> clips;
   std::string names;
@@ -110,8 +129,7 @@ void AnimatedAsset::play_clips(const std::string& source, const std::string& wan
                                      (names.empty() ? "it has none at all" : "it has " + names) + ")");
   }
   if (!wanted.empty()) clips.erase(clips.begin() + 1, clips.end());  // names need not differ
-  motion_ = std::make_unique<ClipMotion>(rig, clips);
-  use_skin();
+  return clips;
 }
 
 void AnimatedAsset::use_skin() {
@@ -129,7 +147,7 @@ void AnimatedAsset::use_rig(const std::vector<Joint>& joints) {
 
 void AnimatedAsset::check_leaves() const {
   if (asset().leaf_count() > 0) return;
-  throw Error(ExitCode::kFile, asset_name_ + ": has no leaves to find contacts with (bake it again)");
+  throw Error(ExitCode::kFile, asset_name_ + ": has no clusters to find contacts with (bake it again)");
 }
 
 BodyFrame AnimatedAsset::frame() const {
@@ -138,19 +156,32 @@ BodyFrame AnimatedAsset::frame() const {
           static_cast<double>(info.height)};
 }
 
-double AnimatedAsset::time(int frame) const {
-  const double duration = motion_ ? motion_->duration() : 0;
-  return duration > 0 ? along(frame) * duration : frame / fps_;
+Deformation AnimatedAsset::deformation(int frame) const {
+  const MotionFrame& at = frame_at(frame);
+  if (const Clip* clip = clips()[at.clip].clip) return sample(character_.rig, *clip, at.seconds);
+  return motion_ ? motion_->at(at.along) : Deformation();
 }
-
-std::string AnimatedAsset::clip_at(int frame) const { return motion_ ? motion_->clip_at(along(frame)) : std::string(); }
-
-Deformation AnimatedAsset::deformation(int frame) const { return motion_ ? motion_->at(along(frame)) : Deformation(); }
 
 std::vector<Vec3> AnimatedAsset::positions(const Deformation& deformation) const {
   if (!deformation.positions.empty()) return deformation.positions;
   return deform(morph(character_.source_positions, character_.rig.morphs, deformation.morphs), weights_,
                 deformation.bones);
+}
+
+// Of the regions only what names them is in the asset.
+BodyParts AnimatedAsset::find_parts() const {
+  const Roles roles = find_roles(character_.rig, character_.source_positions, roles_, segment_settings_.body);
+  const std::vector<Joint> joints = joints_of(asset());
+  std::vector<VertexWeights> weights;
+  if (character_.rig.bones.empty() && !joints.empty()) {
+    weights = weights_;
+    if (weights.empty()) {
+      Character closed = character_;
+      close_body(closed, segment_settings_);
+      weights = rig_weights(closed, joints);
+    }
+  }
+  return find_body_parts(character_, roles, named_regions(asset(), character_), joints, weights);
 }
 
 std::vector<float> bone_palette(const Asset& asset, const Deformation& deformation) {

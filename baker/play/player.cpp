@@ -5,7 +5,6 @@
 #include <chrono>
 
 #include "mesh/error.h"
-#include "spherechain/detect_skin.h"
 
 namespace spherechain::baker {
 namespace {
@@ -49,23 +48,30 @@ std::vector<Sphere> refit_spheres(const Asset& asset, const std::vector<float>& 
   return spheres;
 }
 
-Player::Player(const Asset& asset, RadiusKind radius, bool m1, bool m2, Target target)
+Player::Player(const Asset& asset, RadiusKind radius, bool chains, bool all_pairs, Target target)
     : asset_(asset),
       radius_(radius),
-      m1_(m1),
-      m2_(m2),
+      chains_(chains),
+      all_pairs_(all_pairs),
       target_(target),
       spheres_(asset.spheres().size),
       pairs_(spheres_.size() * (spheres_.size() - 1) / 2),
       words_(DetectContext::words_needed(asset)),
-      contact_words_(TriangleContactContext::words_needed(asset)) {}
+      contact_words_(TriangleContactContext::words_needed(asset)) {
+  for (std::uint32_t s = 0; s < asset.spheres().size; ++s) {
+    const RestSphere& sphere = asset.spheres()[s];
+    for (std::uint32_t k = 0; k < sphere.triangle_count; ++k) {
+      sphere_of_[asset.triangles()[sphere.first_triangle + k]] = s;
+    }
+  }
+}
 
 FrameResult Player::run(const std::vector<float>& positions) {
   const RefitJob refit = refit_job(asset_, positions, radius_, spheres_);
   FrameResult result;
   result.refit_us = median_us([&] { check(refit.run()); });
-  if (m1_) result.m1 = detect(Method::kM1);
-  if (m2_) result.m2 = detect(Method::kM2);
+  if (chains_) result.chains = detect(Method::kM1);
+  if (all_pairs_) result.all_pairs = detect(Method::kM2);
   return result;
 }
 
@@ -76,35 +82,30 @@ Detection Player::take(std::vector<Sphere> spheres, const std::vector<Pair>& pai
   return {pairs_.size() - asset_.ignored_count(), pair_count_, pair_count_, us};
 }
 
-template <typename Job>
-Job Player::skin_job(const std::vector<float>& positions, TriangleContactContext& context) {
+Player::TriangleDetection Player::detect_triangles(const std::vector<float>& positions) {
+  TriangleContactContext context;
   context.words = {contact_words_.data(), contact_words_.size()};
-  Job job;
+  TriangleContactJob job;
   job.asset = &asset_;
   job.positions = positions.data();
   job.vertex_count = positions.size() / 3;
   job.target = target_;
   job.context = &context;
-  return job;
-}
-
-Player::SkinDetection Player::detect_skin(const std::vector<float>& positions) {
-  SkinDetection out{std::vector<Pair>(pairs_.size()), 0};
-  TriangleContactContext context;
-  auto job = skin_job<DetectSkinJob>(positions, context);
-  job.pairs = {out.pairs.data(), out.pairs.size()};
-  out.us = median_us([&] { check(job.run()); });
-  out.pairs.resize(job.pair_count);
-  return out;
-}
-
-Player::TriangleDetection Player::detect_triangles(const std::vector<float>& positions) {
-  TriangleContactContext context;
-  auto job = skin_job<TriangleContactJob>(positions, context);
   check(job.run());  // to count
   TriangleDetection out{std::vector<TrianglePair>(job.pair_count), 0};
   job.pairs = {out.pairs.data(), out.pairs.size()};
   out.us = median_us([&] { check(job.run()); });
+  return out;
+}
+
+std::vector<Pair> Player::spheres_of(const std::vector<TrianglePair>& triangles) const {
+  std::vector<Pair> out;
+  for (const TrianglePair& pair : triangles) {
+    const auto [a, b] = std::minmax({sphere_of_.at(pair.a), sphere_of_.at(pair.b)});
+    out.push_back({a, b});
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
 }
 

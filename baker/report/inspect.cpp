@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "report/json_text.h"
+#include "report/parts.h"
 #include "report/report.h"
 
 namespace spherechain::baker {
@@ -175,9 +176,10 @@ std::string inspect_json(const Asset& asset) {
       {"chain_entries", count_chain_entries(asset)},
       {"chain_entries_table1", info.chain_entries_table1},
       {"ignored_pairs", count_ignored(asset)},
-      {"near_pairs",
+      {"rest_pairs",
        {{"fit", asset.near_pairs(RadiusKind::kFit).size}, {"detect", asset.near_pairs(RadiusKind::kDetect).size}}},
       {"regions", std::move(regions)},
+      {"parts", parts_json(part_rows(asset))},
       {"spheres", std::move(spheres)},
       {"chains", std::move(chains)},
       {"joints", std::move(joints)},
@@ -195,7 +197,7 @@ std::string inspect_json(const Asset& asset) {
         {"sphere_pairs", moments.moments.size},
         {"bytes", bytes_of(moments)}}},
       {"surface",
-       {{"leaves", asset.leaf_count()},
+       {{"clusters", asset.leaf_count()},
         {"vertices", asset.surface().source_vertices.size},
         {"rest_contacts", asset.surface().rest_contacts.size},
         {"bytes", bytes_of(asset.surface())}}},
@@ -226,13 +228,14 @@ std::string inspect_text(const Asset& asset) {
                        bytes_of(moments));
   }
   out +=
-      fmt::format("surface  {} leaves, {} vertices, {} contacts at rest, {} bytes\n", asset.leaf_count(),
+      fmt::format("surface  {} clusters, {} vertices, {} contacts at rest, {} bytes\n", asset.leaf_count(),
                   asset.surface().source_vertices.size, asset.surface().rest_contacts.size, bytes_of(asset.surface()));
   out += fmt::format("\n{:<14} {:>9} {:>7}\n", "region", "triangles", "spheres");
   for (std::size_t r = 0; r < asset.region_count(); ++r) {
     out += fmt::format("{:<14} {:>9} {:>7}\n", asset.region(r).name, asset.region(r).triangle_count,
                        spheres_in_region(asset, r));
   }
+  out += parts_text(part_rows(asset));
   for (std::size_t c = 0; c < asset.chain_count(); ++c) {
     const ChainView chain = asset.chain(c);
     out += fmt::format("{}{:<8}", c == 0 ? "\n" : "", chain.name);

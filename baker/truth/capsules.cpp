@@ -12,7 +12,7 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr double kNearFraction = BindSettings{}.near_fraction;  // the spheres' default
+constexpr double kNearFraction = BindSettings{}.rest_fraction;  // the spheres' default
 
 double distance_to_segment(const Vec3& p, const Vec3& from, const Vec3& to) {
   const Vec3 along = to - from;

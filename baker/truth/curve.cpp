@@ -27,8 +27,8 @@ void add(std::vector<CurvePoint>& sum, const std::vector<CurvePoint>& frame) {
     return;
   }
   for (std::size_t i = 0; i < frame.size(); ++i) {
-    sum[i].m1.add(frame[i].m1);
-    sum[i].m2.add(frame[i].m2);
+    sum[i].chains.add(frame[i].chains);
+    sum[i].all_pairs.add(frame[i].all_pairs);
   }
 }
 

@@ -12,7 +12,7 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr double kUsualFraction = BindSettings{}.near_fraction;
+constexpr double kUsualFraction = BindSettings{}.rest_fraction;
 constexpr float kNever = std::numeric_limits<float>::infinity();
 
 double rest_radius(const RestSphere& sphere, RadiusKind kind) {
@@ -40,7 +40,7 @@ double own_fraction(const Asset& asset, RadiusKind kind) {
 
 PairRule::PairRule(const Asset& asset, RadiusKind radius, const RuleChange& change)
     : scale_(static_cast<float>(change.scale)) {
-  const double fraction = change.near_fraction.value_or(own_fraction(asset, radius));
+  const double fraction = change.rest_fraction.value_or(own_fraction(asset, radius));
   const Span<const RestSphere> spheres = asset.spheres();
   const Span<const NearPair> near = asset.near_pairs(radius);
   const auto before = [](const NearPair& l, const Pair& r) { return Pair{l.a, l.b} < r; };
@@ -53,10 +53,10 @@ PairRule::PairRule(const Asset& asset, RadiusKind radius, const RuleChange& chan
       const bool is_own = own != near.end() && own->a == a && own->b == b;
       // At scale 1 the asset says which pairs are near; one it does not list is none.
       float reach = kNever;
-      if (is_own && !change.near_fraction) {
+      if (is_own && !change.rest_fraction) {
         reach = own->reach / scale_;
       } else if (const double part = fraction * distance / (change.scale * sum);
-                 part < 1 && (change.near_fraction || change.scale > 1)) {
+                 part < 1 && (change.rest_fraction || change.scale > 1)) {
         reach = static_cast<float>(part);
       }
       entries_.push_back({{a, b}, reach});

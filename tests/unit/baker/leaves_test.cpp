@@ -343,7 +343,7 @@ TEST_CASE("contacts at rest are CGAL's intersections of the rest pose between tr
 }
 
 TEST_CASE("leaves.triangles is how many triangles a leaf has at most") {
-  const Bake small = rebake(baked_person(), make_settings("balanced", R"({"leaves": {"triangles": 16}})", "test"));
+  const Bake small = rebake(baked_person(), make_settings("balanced", R"({"clusters": {"triangles": 16}})", "test"));
   CHECK(small.leaves.leaves.size() > 2 * baked_person().leaves.leaves.size());
   for (const Leaf& leaf : small.leaves.leaves) CHECK(leaf.triangles.size() <= 16);
   CHECK(to_json(small.settings).find(R"("triangles":16)") != std::string::npos);
@@ -355,7 +355,7 @@ TEST_CASE("leaves.branching is into how many children a sphere's triangles are d
     CAPTURE(branching);
     const Bake bake =
         rebake(baked_person(),
-               make_settings("balanced", fmt::format(R"({{"leaves": {{"branching": {}}}}})", branching), "test"));
+               make_settings("balanced", fmt::format(R"({{"clusters": {{"branching": {}}}}})", branching), "test"));
     std::map<std::uint32_t, std::vector<std::size_t>> sizes;
     for (const Leaf& leaf : bake.leaves.leaves) sizes[leaf.sphere].push_back(leaf.triangles.size());
     std::set<std::size_t> counts;
@@ -372,7 +372,7 @@ TEST_CASE("leaves.branching is into how many children a sphere's triangles are d
     CHECK(counts.size() > 1);
     CHECK(open_asset_of(bake).leaf_count() == bake.leaves.leaves.size());
   }
-  CHECK_THROWS_WITH_AS(make_settings("balanced", R"({"leaves": {"branching": 3}})", "test"),
+  CHECK_THROWS_WITH_AS(make_settings("balanced", R"({"clusters": {"branching": 3}})", "test"),
                        "test: leaves: setting 'branching' is not 0, 2, 4 or 8", Error);
 }
 

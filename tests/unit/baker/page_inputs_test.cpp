@@ -122,7 +122,9 @@ TEST_CASE("a validation is shown only whole, and of spheres that the asset has")
                         "/all_pairs/pair_recall",
                         "/all_pairs/reported_per_frame",
                         "/radius",
+                        "/reported",
                         "/skin",
+                        "/skin/precision",
                         "/raw_pairs",
                         "/truth_pairs",
                         "/out_of_scope",
@@ -133,7 +135,7 @@ TEST_CASE("a validation is shown only whole, and of spheres that the asset has")
                         "/worst_misses/0",
                         "/worst_misses/0/time",
                         "/worst_misses/0/triangle_pairs",
-                        "/worst_misses/0/depth",
+                        "/worst_misses/0/overlap",
                         "/worst_misses/0/spheres",
                         "/worst_misses/0/spheres/1"});
   for (const json& number : {json(-1), json(1.5), json(made().asset.asset.spheres().size)}) {

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bind/part_names.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
+
+#include "roles/names.h"
+
+namespace spherechain::baker {
+namespace {
+
+// Garments that people name by themselves. A breast, a pad or a plate belongs to what it hangs on.
+constexpr std::array<std::string_view, 11> kGarments{"skirt", "coat",  "cape",   "cloak",  "sleeve", "hood",
+                                                     "cloth", "armor", "armour", "ribbon", "belt"};
+
+// The parts of a limb by role: of a biped; of a quadruped.
+struct Segment {
+  std::string_view role, biped, quadruped;
+};
+constexpr std::array<Segment, 9> kSegments{{{"clavicle", "shoulder", "shoulder"},
+                                            {"shoulder", "upper arm", "upper foreleg"},
+                                            {"elbow", "forearm", "lower foreleg"},
+                                            {"wrist", "hand", "forefoot"},
+                                            {"finger", "hand", "forefoot"},
+                                            {"hip", "thigh", "upper hind leg"},
+                                            {"knee", "shin", "lower hind leg"},
+                                            {"ankle", "foot", "hind foot"},
+                                            {"toe", "foot", "hind foot"}}};
+
+std::string with_side(Side side, std::string_view word) {
+  return (side == Side::kLeft ? "left " : side == Side::kRight ? "right " : "") + std::string(word);
+}
+
+Side take_side(std::string_view& role) {
+  for (const auto& [prefix, side] :
+       {std::pair{std::string_view("left_"), Side::kLeft}, std::pair{std::string_view("right_"), Side::kRight}}) {
+    if (!role.starts_with(prefix)) continue;
+    role.remove_prefix(prefix.size());
+    return side;
+  }
+  return Side::kNone;
+}
+
+Side to_side(NamedSide side) {
+  return side == NamedSide::kLeft ? Side::kLeft : side == NamedSide::kRight ? Side::kRight : Side::kNone;
+}
+
+bool is_digit_or_end(Word word) {
+  return word == Word::kHand || word == Word::kFinger || word == Word::kFoot || word == Word::kToe;
+}
+
+// The part that a word of the body's middle means; empty for another word.
+std::string middle_part(Word word) {
+  switch (word) {
+    case Word::kPelvis:
+      return "hips";
+    case Word::kSpine:
+      return "abdomen";
+    case Word::kChest:
+      return "chest";
+    case Word::kNeck:
+      return "neck";
+    case Word::kHead:
+      return "head";
+    case Word::kTail:
+      return "tail";
+    default:
+      return {};
+  }
+}
+
+// The same of a role.
+std::string middle_part(const std::string& role) {
+  if (role == "pelvis") return "hips";
+  if (role == "spine") return "abdomen";
+  if (role == "chest" || role == "neck" || role == "head") return role;
+  return role.starts_with("tail") ? "tail" : "";
+}
+
+// Of the role of a limb's joint; empty where it is none.
+PartName limb_segment(std::string_view role, BodyKind kind) {
+  const Side side = take_side(role);
+  for (const Segment& segment : kSegments) {
+    if (side == Side::kNone || segment.role != role) continue;
+    return {with_side(side, kind == BodyKind::kQuadruped ? segment.quadruped : segment.biped), side};
+  }
+  return {};
+}
+
+bool is_numbered(const RoleLimb& limb) { return std::isdigit(static_cast<unsigned char>(limb.name.back())) != 0; }
+
+Side side_of(const RoleLimb& limb) { return limb.left ? Side::kLeft : Side::kRight; }
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+// A garment with bones of its own.
+PartName garment(const Hint& hint, const std::string& name) {
+  if (hint.word != Word::kCloth) return {};
+  const std::string text = lower(name);
+  for (const std::string_view word : kGarments) {
+    if (text.find(word) == std::string::npos) continue;
+    const Side side = word == "sleeve" ? to_side(hint.side) : Side::kNone;
+    return {with_side(side, word), side};
+  }
+  return {};
+}
+
+// Names the nodes of one rig, parents first.
+class Namer {
+ public:
+  Namer(const SourceRig& rig, const Roles& roles) : rig_(rig), roles_(roles) {
+    for (const RoleLimb& limb : roles.limbs) {
+      if (limb.name == "neck" || limb.name == "tail") continue;
+      has_limbs_ = true;
+      has_many_legs_ = has_many_legs_ || is_numbered(limb);
+    }
+  }
+
+  std::vector<PartName> run() {
+    for (std::size_t n = 0; n < rig_.nodes.size(); ++n) {
+      PartName own = own_part(static_cast<int>(n));
+      if (const int parent = rig_.nodes[n].parent; own.name.empty() && parent >= 0) {
+        own = parts_[static_cast<std::size_t>(parent)];
+        own.inherited = true;
+      }
+      parts_.push_back(std::move(own));
+    }
+    return std::move(parts_);
+  }
+
+ private:
+  // What the node's role and name say; empty where it belongs to its ancestor.
+  PartName own_part(int node) const {
+    const NodeRole& role = role_of(node);
+    const std::string& name = rig_.nodes[static_cast<std::size_t>(node)].name;
+    const Hint hint = read_name(name);
+    if (role.role == "attachment" || hangs_on_attachment(node)) return {name, parent_side(node)};
+    if (hint.word == Word::kArm && lower(name).find("wing") != std::string::npos) {
+      return {with_side(to_side(hint.side), "wing"), to_side(hint.side)};
+    }
+    if (PartName limb = limb_part(node, hint); !limb.name.empty()) return limb;
+    if (PartName trunk = middle(role, hint, name); !trunk.name.empty()) return trunk;
+    return role.role == "other" ? garment(hint, name) : PartName{};
+  }
+
+  PartName limb_part(int node, const Hint& hint) const {
+    const NodeRole& role = role_of(node);
+    PartName segment = limb_segment(role.role, roles_.kind);
+    if (role.limb < 0) return segment;
+    const RoleLimb& limb = roles_.limbs[static_cast<std::size_t>(role.limb)];
+    if (is_numbered(limb) && (role.role == "limb" || !segment.name.empty())) return numbered(node, limb);
+    // A rig without a hand has its fingers on the forearm.
+    if (role.role == "twist" && is_digit_or_end(hint.word) && !is_numbered(limb)) {
+      const bool foot = hint.word == Word::kFoot || hint.word == Word::kToe;
+      return limb_segment(std::string(limb.left ? "left_" : "right_") + (foot ? "ankle" : "wrist"), roles_.kind);
+    }
+    return segment;
+  }
+
+  // One of several legs or arms of a side: "left leg 2 thigh".
+  static PartName numbered(int node, const RoleLimb& limb) {
+    const auto at = std::find(limb.nodes.begin(), limb.nodes.end(), node) - limb.nodes.begin();
+    std::string name = limb.name;
+    std::replace(name.begin(), name.end(), '_', ' ');
+    const bool arm = name.find(" arm ") != std::string::npos;
+    const bool is_end = at == std::ssize(limb.nodes) || (limb.extremity >= 0 && at >= limb.extremity);
+    if (at == 0) return {name + (arm ? " upper arm" : " thigh"), side_of(limb)};
+    if (is_end) return {name + (arm ? " hand" : " foot"), side_of(limb)};
+    return {name + (arm ? " forearm" : " shin"), side_of(limb)};
+  }
+
+  PartName middle(const NodeRole& role, const Hint& hint, const std::string& name) const {
+    const std::string& r = role.role;
+    const bool trunk = r == "pelvis" || r == "spine" || r == "chest";
+    if (trunk || r == "neck" || r == "head") {
+      // Without limbs nothing tells where on the trunk a bone is; and a finger is no head, whatever the rig's shape.
+      if (is_digit_or_end(hint.word) || (trunk && !has_limbs_)) return {name};
+      if (has_many_legs_ && (r == "pelvis" || r == "spine")) return {"body"};
+      // Rigs disagree about where the hips end and the chest begins: an outspoken name decides.
+      if (r == "spine" && (hint.word == Word::kPelvis || hint.word == Word::kChest)) return {middle_part(hint.word)};
+    }
+    if (r == "eye" || r == "jaw" || r == "hair" || r == "head_part") return {"head"};
+    if (r != "other" || role.limb >= 0) return {middle_part(r)};
+    if (is_digit_or_end(hint.word)) return {name, to_side(hint.side)};
+    return {middle_part(hint.word)};
+  }
+
+  bool hangs_on_attachment(int node) const {
+    const int parent = rig_.nodes[static_cast<std::size_t>(node)].parent;
+    return parent >= 0 && role_of(parent).role == "attachment" && role_of(node).role == "other";
+  }
+  const NodeRole& role_of(int node) const { return roles_.of_node[static_cast<std::size_t>(node)]; }
+  Side parent_side(int node) const {
+    const int parent = rig_.nodes[static_cast<std::size_t>(node)].parent;
+    return parent < 0 ? Side::kNone : parts_[static_cast<std::size_t>(parent)].side;
+  }
+
+  const SourceRig& rig_;
+  const Roles& roles_;
+  bool has_limbs_ = false, has_many_legs_ = false;
+  std::vector<PartName> parts_;
+};
+
+}  // namespace
+
+std::vector<PartName> name_parts(const SourceRig& rig, const Roles& roles) { return Namer(rig, roles).run(); }
+
+PartName name_part(const std::string& joint) {
+  PartName limb = limb_segment(joint, BodyKind::kBiped);
+  return limb.name.empty() ? PartName{middle_part(joint)} : limb;
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "import/source_rig.h"
+#include "roles/roles.h"
+#include "segment/segment.h"
+
+namespace spherechain::baker {
+
+// What people call a part of the body, and the side it is on.
+struct PartName {
+  std::string name;
+  Side side = Side::kNone;
+  bool inherited = false;  // from the node's ancestor
+};
+
+// The part that each node of a rig belongs to. A name is empty where neither the node nor any ancestor has a role.
+std::vector<PartName> name_parts(const SourceRig& rig, const Roles& roles);
+
+// The part of a joint of the automatic rig.
+PartName name_part(const std::string& joint);
+
+}  // namespace spherechain::baker

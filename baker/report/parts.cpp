@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/parts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+namespace spherechain::baker {
+namespace {
+
+using nlohmann::ordered_json;
+
+const char* side_name(Side side) {
+  switch (side) {
+    case Side::kLeft:
+      return "left";
+    case Side::kRight:
+      return "right";
+    default:
+      return "none";
+  }
+}
+
+}  // namespace
+
+std::vector<PartRow> part_rows(const BodyParts& parts, const std::vector<std::string>& bones) {
+  std::vector<PartRow> out;
+  for (const BodyPart& part : parts.parts) {
+    const auto bone = static_cast<std::size_t>(part.bone);
+    out.push_back({part.name, part.side, part.bone >= 0 && bone < bones.size() ? bones[bone] : std::string(), 0});
+  }
+  for (const std::uint8_t part : parts.of_triangle) ++out[part].triangles;
+  return out;
+}
+
+std::vector<PartRow> part_rows(const Asset& asset) {
+  std::vector<PartRow> out;
+  for (std::size_t r = 0; r < asset.region_count(); ++r) {
+    PartRow row{asset.region(r).name, Side::kNone, {}, asset.region(r).triangle_count};
+    if (row.name.starts_with("left_")) row.side = Side::kLeft;
+    if (row.name.starts_with("right_")) row.side = Side::kRight;
+    std::replace(row.name.begin(), row.name.end(), '_', ' ');
+    out.push_back(std::move(row));
+  }
+  return out;
+}
+
+ordered_json parts_json(const std::vector<PartRow>& parts) {
+  ordered_json out = ordered_json::array();
+  for (const PartRow& part : parts) {
+    out.push_back({{"name", part.name},
+                   {"side", side_name(part.side)},
+                   {"bone", part.bone.empty() ? ordered_json() : ordered_json(part.bone)},
+                   {"triangles", part.triangles}});
+  }
+  return out;
+}
+
+std::string parts_text(const std::vector<PartRow>& parts) {
+  std::size_t widest = 4;
+  for (const PartRow& part : parts) widest = std::max(widest, part.name.size());
+  std::string out = fmt::format("\n{:<{}} {:>9}  {}\n", "part", widest, "triangles", "bone");
+  for (const PartRow& part : parts) {
+    out += fmt::format("{:<{}} {:>9}  {}\n", part.name, widest, part.triangles, part.bone.empty() ? "none" : part.bone);
+  }
+  return out;
+}
+
+}  // namespace spherechain::baker
