@@ -28,9 +28,11 @@ function drawNumbers(context, { model, x, base, height, perFrame, inRange }) {
 
 function drawClips(context, { model, x, base, inRange }) {
   if (model.clips.length < 2) return;
-  for (const clip of model.clips.filter(inRange)) {
-    const { name, first, count } = clip;
+  let marked = -Infinity;
+  for (const { name, first, count } of model.clips.filter(inRange)) {
     const left = x(first);
+    if (left < marked + 4) continue; // too near to tell apart
+    marked = left;
     const right = x(first + count);
     context.fillStyle = css('--muted');
     context.fillRect(left, 0, 1, base + 4);
