@@ -99,14 +99,17 @@ std::vector<Index> triangles_around(const Mesh& mesh, const FittedSphere& sphere
 BoundSphere carried(const Mesh& mesh, const FittedSphere& sphere, RefitRule rule, std::vector<BoundPivot> pivots) {
   BoundSphere bound{sphere.ball, 0, 0, std::move(pivots), 0};
   Vec3 center = Vec3::Zero();
+  double sum = 0;
   for (const BoundPivot& pivot : bound.pivots) {
     center += pivot.weight * triangle_centroid(mesh, pivot.triangle);
     bound.weight_sum += std::abs(pivot.weight);
   }
   for (const BoundPivot& pivot : bound.pivots) {
-    bound.spread +=
-        (triangle_centroid(mesh, pivot.triangle) - center).norm() / static_cast<double>(bound.pivots.size());
+    const double squared = (triangle_centroid(mesh, pivot.triangle) - center).squaredNorm();
+    sum += rule == RefitRule::kPaper ? std::sqrt(squared) : squared;
   }
+  const double mean = sum / static_cast<double>(bound.pivots.size());
+  bound.spread = rule == RefitRule::kPaper ? mean : std::sqrt(mean);
   if (rule == RefitRule::kPaper) {
     bound.rest = {center, bound.spread};
   } else if ((center - sphere.ball.center).norm() > 1e-6 * sphere.ball.radius) {
@@ -132,7 +135,7 @@ BoundSphere bind_sphere(const Mesh& mesh, const std::vector<Index>& surrounding,
   for (double radii = 2; pivots.empty() && radii <= 8; radii *= 2) {
     pivots = choose(triangles_around(mesh, sphere, radii));
   }
-  if (pivots.empty() && settings.rule == RefitRule::kCalibrated) {
+  if (pivots.empty() && settings.rule == RefitRule::kMoments) {
     pivots = choose_nearest_pivots(mesh, triangles_around(mesh, sphere, 8), sphere, reference, settings.pivots);
   }
   BoundSphere bound = carried(mesh, sphere, settings.rule, std::move(pivots));
@@ -141,20 +144,20 @@ BoundSphere bind_sphere(const Mesh& mesh, const std::vector<Index>& surrounding,
 }
 
 // Pairs that touch at rest, or would soon, are reported where they have come nearer than that.
-std::vector<BoundPair> find_near(const std::vector<BoundSphere>& spheres, const SpherePairs& ignored, double fraction,
+std::vector<BoundPair> find_rest_pairs(const std::vector<BoundSphere>& spheres, const SpherePairs& ignored, double fraction,
                                  double BoundSphere::*detect) {
-  std::vector<BoundPair> near;
+  std::vector<BoundPair> pairs;
   for (std::uint32_t a = 0; a < spheres.size(); ++a) {
     for (std::uint32_t b = a + 1; b < spheres.size(); ++b) {
       if (ignored.count({a, b}) > 0) continue;
       const double distance = (spheres[a].rest.center - spheres[b].rest.center).norm();
       const double sum =
           detect ? spheres[a].*detect + spheres[b].*detect : spheres[a].rest.radius + spheres[b].rest.radius;
-      const double reach = fraction * distance / sum;
-      if (reach < 1) near.push_back({a, b, reach});
+      const double rest_scale = fraction * distance / sum;
+      if (rest_scale < 1) pairs.push_back({a, b, rest_scale});
     }
   }
-  return near;
+  return pairs;
 }
 
 }  // namespace
@@ -186,8 +189,8 @@ Binding bind_spheres(const Character& character, const Regions& regions, const S
   const SpherePairs ignored =
       find_ignored(character, regions, spheres, out.sphere_of_triangle, settings.neighbour_gap * regions.frame.height);
   out.ignored.assign(ignored.begin(), ignored.end());
-  out.near_fit = find_near(out.spheres, ignored, settings.rest_fraction, nullptr);
-  out.near_detect = find_near(out.spheres, ignored, settings.rest_fraction, &BoundSphere::detect_radius);
+  out.rest_fit = find_rest_pairs(out.spheres, ignored, settings.rest_scale, nullptr);
+  out.rest_detect = find_rest_pairs(out.spheres, ignored, settings.rest_scale, &BoundSphere::detect_radius);
   return out;
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,9 +9,6 @@
 
 namespace spherechain::baker {
 
-inline constexpr std::size_t kGroupSize = 8;  // pivots that the runtime moves together
-using GroupLanes = std::array<float, kGroupSize>;
-
 // What moves a source: its own skeleton and skin, or where it has none, the automatic rig's.
 struct MovingBone {
   std::string name;
@@ -21,28 +16,10 @@ struct MovingBone {
   bool is_rest = false;  // no bone: for the vertices that none moves; the last, where there is one
 };
 
-struct MorphPart {
-  Index target;
-  std::array<GroupLanes, 3> delta;  // x, y, z
-};
-
-// Of a group's pivots: the sum over the triangle's corners of weight * (rest position; 1) / 3, for one bone.
-struct BonePart {
-  Index bone;
-  std::array<GroupLanes, 4> q;    // x, y, z, w
-  std::vector<MorphPart> morphs;  // targets ascending
-};
-
-struct PivotGroup {
-  GroupLanes weights{};         // the pivots' shares of the centre
-  std::vector<BonePart> parts;  // bones ascending; never empty
-};
-
-// For the runtime's refit without the mesh (runtime/refit_bones.h).
+// The bones and morph targets that move the source.
 struct BoneBinding {
   std::vector<MovingBone> bones;  // empty where nothing moves the source
   std::vector<std::string> morphs;
-  std::vector<PivotGroup> groups;  // a sphere's pivots by eights, in sphere order
 
   // Where vertices hang that no bone moves: there is a bone of that number where the skin has any.
   Index rest_bone() const {
@@ -64,7 +41,7 @@ const std::vector<VertexWeights>& weights_to_bones(const Character& character,
                                                    const std::vector<VertexWeights>& rig_weights);
 
 // `rig_weights` are of every source vertex, to `joints`; they count where the source has no bones of its own.
-BoneBinding bind_bones(const Character& character, const Binding& binding, const std::vector<Joint>& joints,
+BoneBinding bind_bones(const Character& character, const std::vector<Joint>& joints,
                        const std::vector<VertexWeights>& rig_weights);
 
 }  // namespace spherechain::baker

@@ -2,9 +2,10 @@
 #include "bind/bind_moments.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
+
+#include "mesh/error.h"
 
 namespace spherechain::baker {
 namespace {
@@ -43,14 +44,27 @@ std::vector<Index> bones_of(const PivotParts& parts) {
   return out;
 }
 
-bool allows_moments(const Binding& binding, const BoneBinding& bones) {
-  if (binding.rule != RefitRule::kCalibrated || bones.bones.empty() ||
-      bones.bones.size() > std::size_t{std::numeric_limits<std::uint16_t>::max()} + 1) {
-    return false;
+// A sphere on more bones than the runtime takes follows those that move it most; the rest of the weights goes to the
+// first of them.
+void keep_main_bones(PivotParts& parts) {
+  std::map<Index, double> moved;
+  for (const auto& part : parts) {
+    for (const auto& [bone, q] : part) moved[bone] += q.w();
   }
-  return std::ranges::all_of(bones.groups, [](const PivotGroup& group) {
-    return std::ranges::all_of(group.parts, [](const BonePart& part) { return part.morphs.empty(); });
-  });
+  if (moved.size() <= kMaxMomentBones) return;
+  std::vector<std::pair<double, Index>> order;
+  for (const auto& [bone, weight] : moved) order.emplace_back(-weight, bone);
+  std::ranges::sort(order);
+  const Index main = order.front().second;
+  for (std::size_t i = kMaxMomentBones; i < order.size(); ++i) {
+    for (auto& part : parts) {
+      const auto found = part.find(order[i].second);
+      if (found == part.end()) continue;
+      const Vec4 share = found->second;
+      part.erase(found);
+      part.try_emplace(main, Vec4::Zero()).first->second += share;
+    }
+  }
 }
 
 Vec3 middle_of_pivots(const Character& character, const Binding& binding) {
@@ -70,14 +84,6 @@ Index find_reference(const std::vector<PivotParts>& parts, std::size_t bone_coun
     }
   }
   return static_cast<Index>(std::ranges::max_element(moved) - moved.begin());
-}
-
-double root_mean_square_spread(const Mesh& skin, const BoundSphere& sphere) {
-  Vec3 center = Vec3::Zero();
-  for (const BoundPivot& pivot : sphere.pivots) center += pivot.weight * triangle_centroid(skin, pivot.triangle);
-  double sum = 0;
-  for (const BoundPivot& pivot : sphere.pivots) sum += (triangle_centroid(skin, pivot.triangle) - center).squaredNorm();
-  return std::sqrt(sum / static_cast<double>(sphere.pivots.size()));
 }
 
 SphereMoments moments_of(std::uint32_t number, const BoundSphere& sphere, const PivotParts& parts) {
@@ -108,20 +114,19 @@ SphereMoments moments_of(std::uint32_t number, const BoundSphere& sphere, const 
 }  // namespace
 
 MomentBinding bind_moments(const Character& character, const BoneBinding& bones,
-                           const std::vector<VertexWeights>& rig_weights, Binding& binding) {
+                           const std::vector<VertexWeights>& rig_weights, const Binding& binding) {
   MomentBinding out;
-  if (!allows_moments(binding, bones)) return out;
-  out.origin = middle_of_pivots(character, binding);
-  const std::vector<PivotParts> parts =
-      parts_of(character, binding, bones, weights_to_bones(character, rig_weights), out.origin);
-  if (std::ranges::any_of(parts, [](const PivotParts& sphere) { return bones_of(sphere).size() > kMaxMomentBones; })) {
-    return out;
+  if (binding.rule != RefitRule::kMoments || bones.bones.empty()) return out;
+  if (bones.bones.size() > std::size_t{std::numeric_limits<std::uint16_t>::max()} + 1) {
+    throw Error(ExitCode::kFile, character.file + ": has more than 65536 bones");
   }
+  out.origin = middle_of_pivots(character, binding);
+  std::vector<PivotParts> parts =
+      parts_of(character, binding, bones, weights_to_bones(character, rig_weights), out.origin);
+  std::ranges::for_each(parts, keep_main_bones);
   out.reference = find_reference(parts, bones.bones.size());
-  binding.rule = RefitRule::kMoments;
   std::vector<SphereMoments> spheres;
   for (std::uint32_t i = 0; i < binding.spheres.size(); ++i) {
-    binding.spheres[i].spread = root_mean_square_spread(character.skin, binding.spheres[i]);
     spheres.push_back(moments_of(i, binding.spheres[i], parts[i]));
   }
   out.batches = make_batches(spheres);

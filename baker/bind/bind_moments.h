@@ -31,17 +31,16 @@ struct MomentBatch {
 // once: up to 96 pairs, all of a human's, or one set of bones that has more.
 std::vector<MomentBatch> make_batches(const std::vector<SphereMoments>& spheres);
 
-// For the runtime's refit from bones without the pivots. No batches: the rule is another.
+// For the runtime's refit from bones without the pivots.
 struct MomentBinding {
   Vec3 origin = Vec3::Zero();
   Index reference = 0;
   std::vector<MomentBatch> batches;
 };
 
-// Takes a calibrated binding to the rule of moments, its spreads to root mean squares. Changes nothing and returns no
-// batches under the paper's rule, where nothing moves the source, where a morph target moves a pivot, and where a
-// sphere hangs on more bones than the runtime takes. `bones` and `rig_weights` are bind_bones()'.
+// No batches under the paper's rule, and where nothing moves the source. Morph targets move no sphere. `bones` and
+// `rig_weights` are bind_bones()'. Throws Error(kFile) where there are more bones than the asset can number.
 MomentBinding bind_moments(const Character& character, const BoneBinding& bones,
-                           const std::vector<VertexWeights>& rig_weights, Binding& binding);
+                           const std::vector<VertexWeights>& rig_weights, const Binding& binding);
 
 }  // namespace spherechain::baker

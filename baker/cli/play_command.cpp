@@ -83,12 +83,6 @@ std::string frames_text(const AnimatedAsset& animated) {
   return clips > 1 ? fmt::format("{} clips, {} frames\n", clips, animated.frame_count()) : std::string();
 }
 
-std::vector<std::string> bone_names(const Asset& asset) {
-  std::vector<std::string> names;
-  for (std::size_t b = 0; b < asset.bone_count(); ++b) names.emplace_back(asset.bone(b).name);
-  return names;
-}
-
 }  // namespace
 
 ExitCode run_play(const PlayOptions& options) {
@@ -100,23 +94,23 @@ ExitCode run_play(const PlayOptions& options) {
     throw Error(ExitCode::kUsage, "--backend cuda: does not test by chains (--mode all_pairs)");
   }
   const Target target = choose_target(on_cuda ? "auto" : options.backend);
-  const RadiusKind radius = options.radius == "fit" ? RadiusKind::kFit : RadiusKind::kDetect;
+  const Radius radius = options.radius == "fit" ? SC_RADIUS_FIT : SC_RADIUS_DETECT;
   const AnimatedAsset animated(options.asset, options.source, options.motion, options.frames);
-  animated.check_leaves();
+  animated.check_clusters();
   CudaFrames cuda;
   if (on_cuda) cuda = play_on_cuda(animated, radius);
   Player player(animated.asset(), radius, options.mode != "all_pairs", options.mode != "chains", target);
   PartContacts contacts(animated);
   Tally tally;
-  const char* const refit = refit_name(animated.asset().refit_rule());
+  const char* const refit = refit_name(animated.asset()->refit_rule());
   std::optional<PlayFile> file;
   if (!options.json.empty()) {
     file.emplace(options.json,
                  ordered_json{{"backend", on_cuda ? "cuda" : backend_name(target)},
-                              {"target", on_cuda ? "cuda" : to_string(target)},
+                              {"target", on_cuda ? "cuda" : sc_target_name(target)},
                               {"radius", options.radius},
                               {"refit", refit},
-                              {"parts", parts_json(part_rows(contacts.parts(), bone_names(animated.asset())))}},
+                              {"parts", parts_json(part_rows(animated.asset()))}},
                  animated.frame_count());
   }
   {

@@ -37,7 +37,7 @@ ExitCode run_view(const ViewOptions& options) {
   PageOptions page;
   page.template_file = viewer_template().string();
   page.title = fs::path(options.asset).filename().string();
-  page.radius = options.radius == "fit" ? RadiusKind::kFit : RadiusKind::kDetect;
+  page.radius = options.radius == "fit" ? SC_RADIUS_FIT : SC_RADIUS_DETECT;
   const AnimatedAsset animated(options.asset, options.source, options.motion, options.frames);
   if (!options.report.empty()) page.report = read_bake_report(options.report, animated.asset(), options.asset);
   if (!options.validation.empty()) {

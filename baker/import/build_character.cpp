@@ -80,7 +80,7 @@ void check_positions(const SourceMesh& source, const std::string& name) {
 
 bool is_whole(const Character& character) {
   return count_open_edges(character.body) == 0 &&
-         surface_area(character.body) > kMostOfSkin * surface_area(character.skin);
+         surface_area(character.body) > kBodyShareMin * surface_area(character.skin);
 }
 
 bool is_part_of_skin(const Character& character) {
@@ -107,7 +107,7 @@ Character build_character(const SourceMesh& source, const std::string& name) {
   check_positions(source, name);
   Character character;
   character.source_triangles = source.triangles;
-  character.parts = source.parts;
+  character.buffers = source.buffers;
   character.rig = source.rig;
   character.metres_per_unit = source.metres_per_unit;
   character.up_hint = source.up_hint;

@@ -28,10 +28,10 @@ struct ImportOptions {
 };
 
 // A vertex buffer of the file, as a game loads it: a run of the source's vertices.
-struct SourcePart {
+struct SourceBuffer {
   Index mesh = 0, primitive = 0;  // the file's numbers (assimp: the scene's mesh, and 0)
   Index first_vertex = 0, vertex_count = 0;
-  std::uint64_t hash = 0;  // spherechain::hash_positions of its positions in the file, before any node moves them
+  std::uint64_t hash = 0;  // sc_hash_positions of its positions in the file, before any node moves them
 };
 
 // A character as read, before any decision about its shape.
@@ -46,7 +46,7 @@ struct Character {
 
   std::vector<Vec3> source_positions;      // rest pose, exactly representable as float
   std::vector<Triangle> source_triangles;  // corners: source vertices
-  std::vector<SourcePart> parts;           // in the order of their vertices
+  std::vector<SourceBuffer> buffers;           // in the order of their vertices
   SourceRig rig;
 
   // All pieces, welded and cleaned: what spheres are bound to.
@@ -70,7 +70,7 @@ struct Character {
 Character import_character(const std::filesystem::path& path, const ImportOptions& options = {});
 
 // Share of the skin's area above which a piece of it is the body: eyes, teeth and a belt are the rest.
-inline constexpr double kMostOfSkin = 0.6;
+inline constexpr double kBodyShareMin = 0.6;
 
 // Whether the body is closed, and most of the skin.
 bool is_whole(const Character& character);
@@ -88,7 +88,7 @@ std::vector<float> pack(const std::vector<Vec3>& positions);
 struct SourceMesh {
   std::vector<Vec3> positions;
   std::vector<Triangle> triangles;
-  std::vector<SourcePart> parts;
+  std::vector<SourceBuffer> buffers;
   SourceRig rig;
   std::string importer;
   std::size_t meshes = 0;

@@ -27,9 +27,9 @@ using Files = std::vector<std::filesystem::path>;
 void append(const MeshInstance& instance, const std::string& name, SourceMesh& out) {
   const aiMesh& mesh = *instance.mesh;
   const Index base = instance.first_vertex;
-  out.parts.push_back(
+  out.buffers.push_back(
       {instance.number, 0, base, mesh.mNumVertices,
-       hash_positions(reinterpret_cast<const float*>(mesh.mVertices), mesh.mNumVertices, sizeof(aiVector3D))});
+       sc_hash_positions(reinterpret_cast<const float*>(mesh.mVertices), mesh.mNumVertices, sizeof(aiVector3D))});
   for (unsigned v = 0; v < mesh.mNumVertices; ++v)
     out.positions.push_back(instance.placement * to_vec3(mesh.mVertices[v]));
   // A mirroring transform turns triangles inside out.

@@ -70,7 +70,7 @@ class GltfReader {
     const tinygltf::Node& node = file_.model.nodes[n];
     const tinygltf::Mesh& mesh = file_.model.meshes[at(node.mesh)];
     const bool on_joint = skeleton_.has_skins() && skeleton_.joint_above(nodes_.of_file[n]) != kNoIndex;
-    std::map<std::pair<std::map<std::string, int>, std::vector<std::map<std::string, int>>>, SourcePart> shared;
+    std::map<std::pair<std::map<std::string, int>, std::vector<std::map<std::string, int>>>, SourceBuffer> shared;
     bool kept = false, dropped = false;
     for (std::size_t p = 0; p < mesh.primitives.size(); ++p) {
       const tinygltf::Primitive& primitive = mesh.primitives[p];
@@ -86,9 +86,9 @@ class GltfReader {
         const auto [known, is_new] = shared.try_emplace({primitive.attributes, primitive.targets});
         const Carrier carrier = carrier_of(n, skinned);
         if (is_new) known->second = add_vertices(primitive, carrier, n);
-        out_.parts.push_back(known->second);
-        out_.parts.back().mesh = static_cast<Index>(node.mesh);
-        out_.parts.back().primitive = static_cast<Index>(p);
+        out_.buffers.push_back(known->second);
+        out_.buffers.back().mesh = static_cast<Index>(node.mesh);
+        out_.buffers.back().primitive = static_cast<Index>(p);
         add_triangles(primitive, carrier, known->second);
       }
     }
@@ -105,13 +105,13 @@ class GltfReader {
     return {rigid.to_rest, nullptr, rigid.bone};
   }
 
-  SourcePart add_vertices(const tinygltf::Primitive& primitive, const Carrier& carrier, std::size_t n) {
+  SourceBuffer add_vertices(const tinygltf::Primitive& primitive, const Carrier& carrier, std::size_t n) {
     spend(file_.model.accessors[at(primitive.attributes.at("POSITION"))].count);
     const std::vector<Vec3> positions = read_positions(file_, primitive, where_);
-    SourcePart part;
+    SourceBuffer part;
     part.first_vertex = static_cast<Index>(out_.positions.size());
     part.vertex_count = static_cast<Index>(positions.size());
-    part.hash = hash_positions(pack(positions).data(), positions.size());
+    part.hash = sc_hash_positions(pack(positions).data(), positions.size(), 12);
     for (const Vec3& p : positions) out_.positions.push_back(carrier.to_rest * p);
 
     std::vector<VertexWeights>& all = out_.rig.weights;
@@ -130,7 +130,7 @@ class GltfReader {
     return part;
   }
 
-  void add_triangles(const tinygltf::Primitive& primitive, const Carrier& carrier, const SourcePart& part) {
+  void add_triangles(const tinygltf::Primitive& primitive, const Carrier& carrier, const SourceBuffer& part) {
     const std::vector<Triangle> triangles = read_triangles(file_, primitive, part.vertex_count, where_);
     spend(triangles.size());
     const bool mirrored = carrier.to_rest.linear().determinant() < 0;  // turns triangles inside out
@@ -141,7 +141,7 @@ class GltfReader {
   }
 
   // A node's morphs move the vertices of all its primitives.
-  void add_morphs(const tinygltf::Primitive& primitive, const Carrier& carrier, std::size_t n, const SourcePart& part) {
+  void add_morphs(const tinygltf::Primitive& primitive, const Carrier& carrier, std::size_t n, const SourceBuffer& part) {
     const tinygltf::Node& node = file_.model.nodes[n];
     const tinygltf::Mesh& mesh = file_.model.meshes[at(node.mesh)];
     GltfMorphs& morphs = morphs_of_node_[n];

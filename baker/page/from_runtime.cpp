@@ -27,9 +27,9 @@ void measure_f(PageSphere& out, const RestSphere& sphere, const Character& chara
 }
 
 // Pivots are told by their corners.
-void find_pivots(PageSphere& out, const RestSphere& sphere, const Asset& asset, const Character& character) {
+void find_pivots(PageSphere& out, const RestSphere& sphere, const OpenAsset& asset, const Character& character) {
   for (std::uint32_t p = 0; p < sphere.pivot_count; ++p) {
-    const Pivot& pivot = asset.pivots()[sphere.first_pivot + p];
+    const Pivot& pivot = asset->pivots()[sphere.first_pivot + p];
     const auto found = std::find_if(out.triangles.begin(), out.triangles.end(), [&](std::uint32_t t) {
       return character.source_triangles[t] == Triangle{pivot.a, pivot.b, pivot.c};
     });
@@ -46,25 +46,25 @@ std::vector<std::array<std::uint16_t, 2>> pairs_of(const Player& player) {
 }
 
 const AnimatedAsset& checked(const AnimatedAsset& animated) {
-  animated.check_leaves();
+  animated.check_clusters();
   return animated;
 }
 
 }  // namespace
 
-bool has_arms(const Asset& asset) {
-  for (std::size_t r = 0; r < asset.region_count(); ++r) {
-    if (std::string(asset.region(r).name).find("_arm") != std::string::npos) return true;
+bool has_arms(const OpenAsset& asset) {
+  for (std::size_t r = 0; r < asset->region_count(); ++r) {
+    if (std::string(asset->region(r).name).find("_arm") != std::string::npos) return true;
   }
   return false;
 }
 
-std::vector<PageSphere> page_spheres(const Asset& asset, const Character& character) {
+std::vector<PageSphere> page_spheres(const OpenAsset& asset, const Character& character) {
   std::vector<PageSphere> out;
-  for (const RestSphere& sphere : asset.spheres()) {
+  for (std::size_t s = 0; s < asset->spheres().size; ++s) {
+    const RestSphere& sphere = asset->spheres()[s];
     PageSphere& made = out.emplace_back();
-    for (std::uint32_t k = 0; k < sphere.triangle_count; ++k) {
-      const std::uint32_t t = asset.triangles()[sphere.first_triangle + k];
+    for (const std::uint32_t t : asset.triangles_of(s)) {
       if (t < character.source_triangles.size()) made.triangles.push_back(t);
     }
     find_pivots(made, sphere, asset, character);
@@ -73,23 +73,23 @@ std::vector<PageSphere> page_spheres(const Asset& asset, const Character& charac
   return out;
 }
 
-PageParts page_parts(const AnimatedAsset& animated) {
-  const BodyParts found = animated.find_parts();
+PageParts page_parts(const OpenAsset& asset) {
+  BodyParts parts = parts_of(asset);
   PageParts out;
-  for (const BodyPart& part : found.parts) out.names.push_back(part.name);
-  out.of_triangle = found.of_triangle;
+  for (const BodyPart& part : parts.parts) out.names.push_back(part.name);
+  out.of_triangle = std::move(parts.of_triangle);
   return out;
 }
 
-PageFrames::PageFrames(const AnimatedAsset& animated, RadiusKind radius)
+PageFrames::PageFrames(const AnimatedAsset& animated, Radius radius)
     : radius_(radius),
-      fit_(checked(animated).asset(), RadiusKind::kFit, true, true, choose_target("auto")),
-      detect_(animated.asset(), RadiusKind::kDetect, true, true, choose_target("auto")) {}
+      fit_(checked(animated).asset(), SC_RADIUS_FIT, true, true, choose_target("auto")),
+      detect_(animated.asset(), SC_RADIUS_DETECT, true, true, choose_target("auto")) {}
 
 PageFrame PageFrames::run(const std::vector<float>& positions) {
   PageFrame out;
   const FrameResult fit = fit_.run(positions), detect = detect_.run(positions);
-  const FrameResult& timed = radius_ == RadiusKind::kFit ? fit : detect;
+  const FrameResult& timed = radius_ == SC_RADIUS_FIT ? fit : detect;
   out.refit_us = timed.refit_us;
   out.chains = *timed.chains;
   out.all_pairs = *timed.all_pairs;
@@ -102,7 +102,7 @@ PageFrame PageFrames::run(const std::vector<float>& positions) {
   }
   const Player::TriangleDetection found = detect_.detect_triangles(positions);
   out.contacts_us = found.us;
-  for (const TrianglePair& pair : found.pairs) out.contacts.push_back({pair.a, pair.b});
+  for (const Pair& pair : found.pairs) out.contacts.push_back({pair.a, pair.b});
   return out;
 }
 

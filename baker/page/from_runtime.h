@@ -19,16 +19,16 @@ struct PageSphere {
   double mean_abs_f, max_abs_f;          // the paper's F (section 3.2) over the triangles' corners at rest; source units
 };
 // Whether the body is one with arms, which stands upright.
-bool has_arms(const Asset& asset);
+bool has_arms(const OpenAsset& asset);
 
-std::vector<PageSphere> page_spheres(const Asset& asset, const Character& character);
+std::vector<PageSphere> page_spheres(const OpenAsset& asset, const Character& character);
 
 inline constexpr std::uint8_t kNoPart = 255;
 struct PageParts {
   std::vector<std::string> names;         // "left hand"
   std::vector<std::uint8_t> of_triangle;  // a source triangle's part, or kNoPart
 };
-PageParts page_parts(const AnimatedAsset& animated);
+PageParts page_parts(const OpenAsset& asset);
 
 // What one frame shows. Triangles are source triangle numbers.
 struct PageFrame {
@@ -44,13 +44,13 @@ struct PageFrame {
 class PageFrames {
  public:
   // Throws Error(kFile) where the asset cannot tell contacts.
-  PageFrames(const AnimatedAsset& animated, RadiusKind radius);
+  PageFrames(const AnimatedAsset& animated, Radius radius);
 
   // `positions` are the deformed source vertices.
   PageFrame run(const std::vector<float>& positions);
 
  private:
-  RadiusKind radius_;
+  Radius radius_;
   Player fit_, detect_;
 };
 

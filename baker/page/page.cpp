@@ -126,8 +126,8 @@ ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& optio
     contacts_us.push_back(static_cast<float>(frame.contacts_us));
     // Base64 has four letters for three bytes.
     constexpr std::size_t kFigures = 14 * sizeof(float);  // times, counts and costs of a frame
-    const std::size_t bytes = (times.size() * kFigures) + motion.bytes() + spheres.size() * sizeof(float) + contacts.bytes() + fit_pairs.bytes() +
-                              detect_pairs.bytes();
+    const std::size_t bytes = times.size() * kFigures + motion.bytes() + spheres.size() * sizeof(float) +
+                              contacts.bytes() + fit_pairs.bytes() + detect_pairs.bytes();
     check_size(animated, still, static_cast<double>(bytes) * 4 / 3 / (i + 1) * frames, options);
   }
   return {{"count", frames},
@@ -156,7 +156,7 @@ std::string view_page(const AnimatedAsset& animated, const PageOptions& options,
     throw Error(ExitCode::kFile, options.template_file + ": is not the viewer's page (build it again)");
   }
   const BodyFrame axes = page_axes(animated);
-  const PageParts parts = page_parts(animated);
+  const PageParts parts = page_parts(animated.asset());
   const std::vector<PageSphere> spheres = page_spheres(animated.asset(), animated.character());
   ordered_json data{{"title", options.title},
                     {"axes", axes_json(axes)},
@@ -165,7 +165,7 @@ std::string view_page(const AnimatedAsset& animated, const PageOptions& options,
                     {"inspect", ordered_json::parse(inspect_json(animated.asset()))},
                     {"report", parsed_or_null(options.report)},
                     {"validation", parsed_or_null(options.validation)},
-                    {"radius", options.radius == RadiusKind::kFit ? "fit" : "detect"},
+                    {"radius", options.radius == SC_RADIUS_FIT ? "fit" : "detect"},
                     {"clips", clips_json(animated, options.motion)},
                     {"mesh", page_mesh(animated, animated.character().source_positions, parts, spheres)}};
   const double still = static_cast<double>(page.size() + json_text(data, -1).size());

@@ -16,7 +16,7 @@ struct PageOptions {
   std::string report;         // of read_bake_report; may be empty
   std::string validation;     // of read_validation; may be empty
   std::string template_file;  // the page without data, as its build made it
-  RadiusKind radius = RadiusKind::kDetect;
+  Radius radius = SC_RADIUS_DETECT;
   double fps = 30;
   std::size_t max_bytes = 512'000'000;  // Chromium reads no script of 2^29 letters or more
 };

@@ -77,10 +77,10 @@ json parse(const std::string& text, const std::string& file) {
   throw Error(ExitCode::kFile, file + ": is not about " + asset_file + ": " + what + " (give what was written for it)");
 }
 
-void check_source(const Value& root, const Asset& asset, const std::string& file, const std::string& asset_file) {
+void check_source(const Value& root, const OpenAsset& asset, const std::string& file, const std::string& asset_file) {
   const Value source = root["source"];
   const std::string &sha256 = source["sha256"].text(), &name = source["file"].text();
-  const AssetInfo info = asset.info();
+  const AssetInfo info = asset->info();
   if (sha256 != info.source_sha256) {
     refuse(file, asset_file,
            "their sources differ, " + name + " of sha256 " + sha256.substr(0, 64) + " and " + info.source_file +
@@ -92,13 +92,13 @@ void check_score(const Value& score) { score.numbers({"pair_recall", "precision"
 
 }  // namespace
 
-std::string read_bake_report(const std::string& file, const Asset& asset, const std::string& asset_file) {
+std::string read_bake_report(const std::string& file, const OpenAsset& asset, const std::string& asset_file) {
   std::string text = read_file(file);
   const json found = parse(text, file);
   const Value report(found, "", file, "bake --report");
   check_source(report, asset, file, asset_file);
   report["settings"].object();
-  if (found["settings"] != json::parse(asset.info().settings, nullptr, false)) {
+  if (found["settings"] != json::parse(asset->info().settings, nullptr, false)) {
     refuse(file, asset_file, "it was baked with other settings");
   }
   const Value counts = report["counts"];
@@ -114,12 +114,12 @@ std::string read_bake_report(const std::string& file, const Asset& asset, const 
   return text;
 }
 
-std::string read_validation(const std::string& file, const Asset& asset, const std::string& asset_file) {
+std::string read_validation(const std::string& file, const OpenAsset& asset, const std::string& asset_file) {
   std::string text = read_file(file);
   const json found = parse(text, file);
   const Value validation(found, "", file, "validate --json");
   check_source(validation, asset, file, asset_file);
-  if (validation["settings_sha256"].text() != asset.info().settings_sha256) {
+  if (validation["settings_sha256"].text() != asset->info().settings_sha256) {
     refuse(file, asset_file, "it is of an asset with other settings");
   }
   check_score(validation);
@@ -131,7 +131,7 @@ std::string read_validation(const std::string& file, const Asset& asset, const s
   validation["worst_misses"].each([&](const Value& miss) {
     miss.numbers({"time", "triangle_pairs", "overlap"});
     const Value spheres = miss["spheres"];
-    spheres.each([&](const Value& sphere) { sphere.index(asset.spheres().size); });
+    spheres.each([&](const Value& sphere) { sphere.index(asset->spheres().size); });
     spheres.size(2);
   });
   return text;

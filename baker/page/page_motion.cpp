@@ -17,7 +17,6 @@ void add(std::vector<float>& out, const Vec3& v) {
 }  // namespace
 
 void PageMotion::add(const Deformation& deformation, const std::vector<Vec3>& positions) {
-  ++frames_;
   for (const Affine& bone : deformation.bones) {
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 4; ++column) bones_.push_back(static_cast<float>(bone.matrix()(row, column)));

@@ -30,7 +30,7 @@ class PageMotion {
 
   const Character& character_;
   BodyFrame axes_;
-  std::size_t frames_ = 0, morph_count_ = 0;
+  std::size_t morph_count_ = 0;
   std::vector<float> bones_, vertices_, morphs_;
   std::vector<float> boxes_, centers_;  // of the character in the axes, their height as the unit
 };

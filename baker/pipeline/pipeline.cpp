@@ -1,27 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// One character through all stages.
 #include "pipeline/pipeline.h"
 
-#include <fmt/format.h>
-
-#include <algorithm>
+#include <array>
 #include <chrono>
-#include <cmath>
 
 #include "mesh/error.h"
+#include "pipeline/segment_wraps.h"
 #include "segment/by_rig.h"
-#include "segment/islands.h"
+#include "segment/by_shape.h"
+#include "wrap/repair_body.h"
+#include "wrap/wrap_skin.h"
 #include "write/write.h"
 
 namespace spherechain::baker {
 namespace {
-
-double mean_abs_f(const Bake& bake) {
-  double sum = 0;
-  for (const TorsoFit& fit : bake.spheres.torso) {
-    sum += f_error(fit.phi1_adjusted, bake.character.body, fit.vertices).mean_abs;
-  }
-  return bake.spheres.torso.empty() ? 0 : sum / static_cast<double>(bake.spheres.torso.size());
-}
 
 using Progress = std::function<void(const std::string&)>;
 
@@ -33,21 +26,26 @@ void stage(Bake& out, const Progress& progress, const char* name, const Run& run
   out.times.push_back({name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count()});
 }
 
-// Whether less than half of the limbs' skin is of its limb's largest piece: then sections have gaps wherever they are.
-bool is_in_shards(const Mesh& skin, const Regions& regions) {
-  constexpr double kHangsTogether = 0.5;  // of the limbs' area
-  const Islands islands = find_islands(skin, triangle_neighbours(skin), regions.of_skin);
-  std::vector<double> largest(regions.limbs.size(), 0.0);
-  double all = 0, hangs_together = 0;
-  for (std::size_t i = 0; i < islands.area.size(); ++i) {
-    const std::uint8_t region = regions.of_skin[islands.triangles[i][0]];
-    if (region == regions.torso_region()) continue;
-    all += islands.area[i];
-    largest[region] = std::max(largest[region], islands.area[i]);
-  }
-  for (const double area : largest) hangs_together += area;
-  return hangs_together < kHangsTogether * all;
-}
+// Regions that a strategy found. Where there is a reservation later strategies are tried, too; these regions are taken
+// where none of them has better ones.
+struct Proposal {
+  Regions regions;
+  std::string reservation;
+  std::string strategy;  // which variant, where the strategy has several
+};
+
+struct Strategy {
+  const char* name;
+  std::function<Attempt<Proposal>()> run;  // may change the body
+};
+
+// A proposal with a reservation, and what it was made on.
+struct Reserve {
+  Proposal proposal;
+  Mesh body;
+  std::vector<Index> body_source_triangle, body_of_source;
+  ClosingReport closing;
+};
 
 void run_after_fit(Bake& out, const Progress& progress) {
   const BakeSettings& settings = out.settings;
@@ -66,14 +64,15 @@ void run_after_fit(Bake& out, const Progress& progress) {
       if (out.character.rig.bones.empty()) out.rig_weights = rig_weights(out.character, out.joints);
     }
     out.body_parts = find_body_parts(out.character, out.roles, out.regions, out.joints, out.rig_weights);
-    out.bones = bind_bones(out.character, out.binding, out.joints, out.rig_weights);
+    out.bones = bind_bones(out.character, out.joints, out.rig_weights);
     out.moments = bind_moments(out.character, out.bones, out.rig_weights, out.binding);
   });
-  stage(out, progress, "clusters",
-        [&] { out.leaves = make_leaves(out.character, out.binding, out.bones, out.rig_weights, settings.leaves); });
+  stage(out, progress, "clusters", [&] {
+    out.clusters = make_clusters(out.character, out.binding, out.bones, out.rig_weights, settings.clusters);
+  });
   stage(out, progress, "write", [&] {
     out.asset = serialize({out.character, out.regions, out.spheres, out.chains, out.binding, out.joints, out.bones,
-                           out.moments, out.leaves, to_json(settings)});
+                           out.moments, out.body_parts, out.clusters, to_json(settings)});
   });
 }
 
@@ -83,26 +82,112 @@ void run_fit(Bake& out, const Progress& progress) {
 
 }  // namespace
 
-Regions segment_character(Character& character, const Roles& roles, const SegmentSettings& settings,
-                          ClosingReport& closing) {
-  if (roles.limbs.empty() || character.rig.weights.empty()) return segment_closed(character, settings, closing);
+Segmentation segment_character(Character& character, const Roles& roles, const SegmentSettings& settings) {
+  Segmentation out;
+  const bool rigged = !roles.limbs.empty() && !character.rig.weights.empty();
   const bool whole = is_whole(character);
-  if (whole && roles.kind == BodyKind::kBiped) {
-    try {
-      return segment(character, settings);
-    } catch (const Error& error) {
-      if (error.code() != ExitCode::kSegmentation) throw;
+  std::optional<Reason> failure;
+  std::optional<Reserve> reserve;
+
+  const auto does_not_apply = [](const char* what) { return Reason{what, Reason::Cause::kDoesNotApply}; };
+  const auto by_shape = [&]() -> Attempt<Proposal> {
+    Attempt<Regions> regions = segment_by_shape(character, settings);
+    if (!regions) return *(failure = regions.reason());
+    // A head of its own piece, and the rest is taken for a quadruped: a wrap around both tells more.
+    const bool complete = rigged || covers_skin(character) || is_expected(*regions, settings);
+    return Proposal{std::move(*regions), complete ? "" : "it is no biped, and pieces of the skin are left out", {}};
+  };
+  const auto by_rig = [&]() -> Attempt<Proposal> {
+    Attempt<Regions> regions = segment_by_rig(character, roles, settings);
+    if (!regions) return *(failure = regions.reason());
+    return Proposal{std::move(*regions), {}, {}};
+  };
+
+  // Shape knows a biped's armpit and crotch best, a rig knows all else.
+  const std::array strategies{
+      Strategy{"shape",
+               [&]() -> Attempt<Proposal> {
+                 if (!whole) return does_not_apply("the skin is not one closed surface");
+                 if (rigged && roles.kind != BodyKind::kBiped) return does_not_apply("the rig is not a biped's");
+                 return by_shape();
+               }},
+      Strategy{"shape of the repaired skin",
+               [&]() -> Attempt<Proposal> {
+                 if (whole) return does_not_apply("the skin needs no repair");
+                 if (rigged) return does_not_apply("a rig needs no closed surface");
+                 if (const auto reason = repair_body(character, out.closing)) return *reason;
+                 return by_shape();
+               }},
+      Strategy{"rig",
+               [&]() -> Attempt<Proposal> {
+                 if (!rigged) return does_not_apply("there is no rig with limbs");
+                 if (!whole) return does_not_apply("the skin is not one closed surface");
+                 return by_rig();
+               }},
+      Strategy{"rig on all pieces of the skin",
+               [&]() -> Attempt<Proposal> {
+                 if (!rigged) return does_not_apply("there is no rig with limbs");
+                 take_all_pieces(character);
+                 Attempt<Proposal> proposal = by_rig();
+                 if (proposal && limbs_are_in_shards(character.skin, proposal->regions)) {
+                   proposal->reservation = "most of the limbs' skin is in small pieces";
+                 }
+                 return proposal;
+               }},
+      Strategy{"rig on a wrap",
+               [&]() -> Attempt<Proposal> {
+                 if (!rigged) return does_not_apply("there is no rig with limbs");
+                 if (!reserve) return does_not_apply("a wrap does not change the rig");
+                 for (const WrapSize& size : wrap_sizes_of_limbs(character.skin)) {
+                   const Attempt<Wrap> wrap = wrap_skin(character.skin, size, out.closing);
+                   if (!wrap || wrap->lines_skin()) continue;
+                   use_wrap(character, *wrap, out.closing);
+                   return by_rig();
+                 }
+                 return Reason{"every wrap lines the skin from inside"};
+               }},
+      Strategy{"shape of a wrap",
+               [&]() -> Attempt<Proposal> {
+                 if (rigged) return does_not_apply("the rig decides");
+                 if (failure && covers_skin(character)) return does_not_apply("a wrap has no more limbs than the skin");
+                 Attempt<SegmentedWrap> found =
+                     segment_wraps(character, settings, failure, out.closing, out.choice.passed_over);
+                 if (!found) return *(failure = found.reason());
+                 const bool expected = is_expected(found->regions, settings);
+                 return Proposal{std::move(found->regions), expected ? "" : "it is no biped", found->strategy};
+               }},
+  };
+
+  const auto take = [&](Proposal& proposal) {
+    out.regions = std::move(proposal.regions);
+    out.choice.strategy = std::move(proposal.strategy);
+    return std::move(out);
+  };
+  for (const Strategy& strategy : strategies) {
+    Attempt<Proposal> proposal = strategy.run();
+    if (!proposal) {
+      out.choice.passed_over.push_back({strategy.name, proposal.reason()});
+      continue;
+    }
+    if (proposal->strategy.empty()) proposal->strategy = strategy.name;
+    if (proposal->reservation.empty()) return take(*proposal);
+    out.choice.passed_over.push_back({proposal->strategy, {proposal->reservation}});
+    if (!reserve) {
+      reserve = Reserve{std::move(*proposal), character.body, character.body_source_triangle, character.body_of_source,
+                        out.closing};
     }
   }
-  if (settings.body != BodyKind::kUnknown && roles.kind != settings.body) {
-    throw Error(ExitCode::kSegmentation, character.file + ": the rig's limbs are no " + body_kind_name(settings.body) +
-                                             "'s (inspect --roles says what its joints are)");
-  }
-  if (whole) return segment_by_rig(character, roles, settings.facing);
-  take_all_pieces(character);
-  Regions of_pieces = segment_by_rig(character, roles, settings.facing);
-  if (!is_in_shards(character.skin, of_pieces) || !wrap_body(character, closing)) return of_pieces;
-  return segment_by_rig(character, roles, settings.facing);
+  if (!reserve) throw Error(ExitCode::kSegmentation, character.file + ": " + failure->what);
+  character.body = std::move(reserve->body);
+  character.body_source_triangle = std::move(reserve->body_source_triangle);
+  character.body_of_source = std::move(reserve->body_of_source);
+  reserve->closing.seconds = out.closing.seconds;
+  out.closing = reserve->closing;
+  return take(reserve->proposal);
+}
+
+void close_body(Character& character, const SegmentSettings& settings) {
+  if (!is_whole(character) || !covers_skin(character)) segment_character(character, {}, settings);
 }
 
 Bake bake(const std::filesystem::path& input, const BakeSettings& settings, const Progress& progress) {
@@ -112,8 +197,12 @@ Bake bake(const std::filesystem::path& input, const BakeSettings& settings, cons
   stage(out, progress, "roles", [&] {
     out.roles = find_roles(out.character.rig, out.character.source_positions, settings.roles, settings.segment.body);
   });
-  stage(out, progress, "segment",
-        [&] { out.regions = segment_character(out.character, out.roles, settings.segment, out.closing); });
+  stage(out, progress, "segment", [&] {
+    Segmentation found = segment_character(out.character, out.roles, settings.segment);
+    out.regions = std::move(found.regions);
+    out.closing = found.closing;
+    out.segmented_by = std::move(found.choice);
+  });
   if (out.closing.seconds > 0) {
     out.times.back().seconds -= out.closing.seconds;
     out.times.insert(out.times.end() - 1, {"wrap", out.closing.seconds});
@@ -132,6 +221,7 @@ Bake rebake(const Bake& bake, const BakeSettings& settings) {
   out.joints = bake.joints;
   out.rig_weights = bake.rig_weights;
   out.closing = bake.closing;
+  out.segmented_by = bake.segmented_by;
   if (settings.fit == bake.settings.fit) {
     out.spheres = bake.spheres;
   } else {
@@ -139,49 +229,6 @@ Bake rebake(const Bake& bake, const BakeSettings& settings) {
   }
   run_after_fit(out, {});
   return out;
-}
-
-double covered_area(const Bake& bake) {
-  const Mesh& mesh = bake.character.skin;
-  double covered = 0, total = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const BoundSphere& sphere = bake.binding.spheres[bake.binding.sphere_of_triangle[t]];
-    const double area = triangle_area(mesh, t);
-    total += area;
-    if ((triangle_centroid(mesh, t) - sphere.rest.center).norm() <= sphere.detect_radius) covered += area;
-  }
-  return covered / total;
-}
-
-OwnerDistance owner_distance(const Character& character, const Regions& regions, const Binding& binding) {
-  std::vector<double> distances;
-  double sum = 0;
-  for (std::size_t t = 0; t < character.skin.triangles.size(); ++t) {
-    const Ball& ball = binding.spheres[binding.sphere_of_triangle[t]].rest;
-    distances.push_back(std::abs(signed_f(ball, triangle_centroid(character.skin, t))) / regions.frame.height);
-    sum += distances.back();
-  }
-  std::sort(distances.begin(), distances.end());
-  const auto count = static_cast<double>(distances.size());
-  return {sum / count, distances[static_cast<std::size_t>(0.95 * count)], distances.back()};
-}
-
-std::vector<std::string> missed_targets(const Bake& bake) {
-  const Targets& targets = bake.settings.targets;
-  std::vector<std::string> missed;
-  if (targets.max_spheres && bake.spheres.spheres.size() > *targets.max_spheres) {
-    missed.push_back(
-        fmt::format("max_spheres: {} asked, {} needed", *targets.max_spheres, bake.spheres.spheres.size()));
-  }
-  const double f = mean_abs_f(bake) / bake.regions.frame.height;
-  if (targets.max_mean_abs_f && f > *targets.max_mean_abs_f) {
-    missed.push_back(fmt::format("max_mean_abs_f: {:.4g} asked, {:.4g} reached", *targets.max_mean_abs_f, f));
-  }
-  const double covered = covered_area(bake);
-  if (targets.min_covered_area && covered < *targets.min_covered_area) {
-    missed.push_back(fmt::format("min_covered_area: {:.4g} asked, {:.4g} reached", *targets.min_covered_area, covered));
-  }
-  return missed;
 }
 
 }  // namespace spherechain::baker

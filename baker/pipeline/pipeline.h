@@ -13,13 +13,14 @@
 #include "bind/bind_moments.h"
 #include "bind/body_parts.h"
 #include "chains/chains.h"
+#include "clusters/clusters.h"
 #include "fit/fit.h"
 #include "import/import.h"
-#include "leaves/leaves.h"
+#include "mesh/attempt.h"
 #include "rig/rig.h"
 #include "roles/roles.h"
 #include "segment/segment.h"
-#include "wrap/closed_body.h"
+#include "wrap/closing_report.h"
 
 namespace spherechain::baker {
 
@@ -36,11 +37,11 @@ struct BakeSettings {
   SegmentSettings segment;
   FitSettings fit;
   BindSettings bind;
-  LeafSettings leaves;
+  ClusterSettings clusters;
   Targets targets;
 };
 
-// "paper" (the paper's refit on 4 pivots, no spheres in head, hands and feet) or "balanced" (calibrated refit,
+// "paper" (the paper's refit on 4 pivots, no spheres in head, hands and feet) or "balanced" (refit by moments,
 // extremities), changed by a JSON text. Throws Error(kFile)
 // that names `file` where the JSON is broken, has an unknown key or a value out of its range; Error(kUsage) for another
 // profile.
@@ -64,6 +65,7 @@ struct Bake {
   Roles roles;  // of the nodes of character.rig
   Regions regions;
   ClosingReport closing;
+  Choice segmented_by;
   Spheres spheres;
   Chains chains;
   Binding binding;
@@ -72,15 +74,24 @@ struct Bake {
   BodyParts body_parts;
   BoneBinding bones;
   MomentBinding moments;
-  Leaves leaves;
+  Clusters clusters;
   std::vector<std::uint8_t> asset;
   std::vector<StageTime> times;
 };
 
-// The stage `segment`. A closed biped is segmented by its shape, which knows armpit and crotch best; all else by its
-// rig, where there is one, or by a closed surface made for it. The body becomes what was segmented.
-Regions segment_character(Character& character, const Roles& roles, const SegmentSettings& settings,
-                          ClosingReport& closing);
+// The result of the stages segment and wrap.
+struct Segmentation {
+  Regions regions;
+  ClosingReport closing;
+  Choice choice;
+};
+
+// Tries the strategies of segmentation in order: by shape, by rig, and both on a closed surface made of the skin. The
+// body becomes what was segmented. Throws Error(kSegmentation) where no strategy has a result.
+Segmentation segment_character(Character& character, const Roles& roles, const SegmentSettings& settings);
+
+// Makes the body what segment_character makes of it without a rig: for what depends on the body alone (bone heat).
+void close_body(Character& character, const SegmentSettings& settings);
 
 // Runs every stage. `progress` is told each stage's name before it runs; it may be empty.
 Bake bake(const std::filesystem::path& input, const BakeSettings& settings,

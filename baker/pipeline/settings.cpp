@@ -84,9 +84,9 @@ class Reader {
 
 json parse(const std::string& text, const std::string& file) {
   // The deepest of settings is in 'clusters' or 'targets'. What is deeper would be copied and printed on the stack.
-  constexpr int kMostNested = 8;
+  constexpr int kNestedMax = 8;
   const auto shallow = [&](int depth, json::parse_event_t, const json&) {
-    if (depth > kMostNested) throw Error(ExitCode::kFile, file + ": is nested more deeply than settings are");
+    if (depth > kNestedMax) throw Error(ExitCode::kFile, file + ": is nested more deeply than settings are");
     return true;
   };
   try {
@@ -127,22 +127,22 @@ BakeSettings make_settings(const std::string& profile, const std::string& text, 
   reader.vector("facing", settings.segment.facing);
   reader.text("body", {"auto", "biped", "quadruped"},
               [&](const std::string& body) { settings.segment.body = parse_body(body); });
-  reader.text("refit", {"paper", "calibrated"}, [&](const std::string& rule) {
-    settings.bind.rule = rule == "paper" ? RefitRule::kPaper : RefitRule::kCalibrated;
+  reader.text("refit", {"paper", "moments"}, [&](const std::string& rule) {
+    settings.bind.rule = rule == "paper" ? RefitRule::kPaper : RefitRule::kMoments;
   });
   // One pivot is a centre without a radius; fewer than four cannot put a centre where they like.
   const bool paper = settings.bind.rule == RefitRule::kPaper;
   settings.bind.pivots = paper ? 4 : 8;
   reader.integer("pivots", settings.bind.pivots, paper ? 2 : 4, 16);
   reader.number("detect_quantile", settings.bind.detect_quantile, 0, 1);
-  reader.number("rest_fraction", settings.bind.rest_fraction, 0, 0.99);
+  reader.number("rest_scale", settings.bind.rest_scale, 0, 0.99);
   reader.number("neighbour_gap", settings.bind.neighbour_gap, 0, 1);
   if (const json* clusters = reader.object("clusters")) {
     if (!clusters->is_object()) reader.fail("clusters", "is not an object");
     Reader inner(*clusters, file + ": clusters");
-    inner.integer("triangles", settings.leaves.triangles, 4, 64);
-    inner.integer("branching", settings.leaves.branching, 0, 8);
-    if (const int b = settings.leaves.branching; b != 0 && b != 2 && b != 4 && b != 8) {
+    inner.integer("triangles", settings.clusters.triangles, 4, 64);
+    inner.integer("branching", settings.clusters.branching, 0, 8);
+    if (const int b = settings.clusters.branching; b != 0 && b != 2 && b != 4 && b != 8) {
       inner.fail("branching", "is not 0, 2, 4 or 8");
     }
     inner.done();
@@ -177,12 +177,12 @@ std::string to_json(const BakeSettings& settings) {
   out["facing"] = nullptr;
   if (const auto& facing = settings.segment.facing) out["facing"] = {facing->x(), facing->y(), facing->z()};
   out["body"] = settings.segment.body == BodyKind::kUnknown ? "auto" : body_kind_name(settings.segment.body);
-  out["refit"] = settings.bind.rule == RefitRule::kPaper ? "paper" : "calibrated";
+  out["refit"] = settings.bind.rule == RefitRule::kPaper ? "paper" : "moments";
   out["pivots"] = settings.bind.pivots;
   out["detect_quantile"] = settings.bind.detect_quantile;
-  out["rest_fraction"] = settings.bind.rest_fraction;
+  out["rest_scale"] = settings.bind.rest_scale;
   out["neighbour_gap"] = settings.bind.neighbour_gap;
-  out["clusters"] = {{"triangles", settings.leaves.triangles}, {"branching", settings.leaves.branching}};
+  out["clusters"] = {{"triangles", settings.clusters.triangles}, {"branching", settings.clusters.branching}};
   json targets = json::object();
   if (settings.targets.max_spheres) targets["max_spheres"] = *settings.targets.max_spheres;
   if (settings.targets.max_mean_abs_f) targets["max_mean_abs_f"] = *settings.targets.max_mean_abs_f;

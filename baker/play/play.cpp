@@ -10,48 +10,24 @@
 #include "motion/poses.h"
 #include "motion/sequence.h"
 #include "pipeline/pipeline.h"
-#include "wrap/closed_body.h"
 
 namespace spherechain::baker {
 namespace {
 
 Vec3 to_vec3(const spherechain::Vec3& v) { return {v.x, v.y, v.z}; }
 
-std::vector<Joint> joints_of(const Asset& asset) {
+std::vector<Joint> joints_of(const OpenAsset& asset) {
   std::vector<Joint> joints;
-  for (std::size_t i = 0; i < asset.joint_count(); ++i) {
-    const JointView joint = asset.joint(i);
+  for (std::size_t i = 0; i < asset->joint_count(); ++i) {
+    const JointView joint = asset->joint(i);
     joints.push_back({joint.name, joint.parent, to_vec3(joint.position), to_vec3(joint.tail)});
   }
   return joints;
 }
 
 // What the asset was baked with: other options read other vertices, and another body may be closed.
-BakeSettings settings_of(const Asset& asset, const std::string& file) {
-  return make_settings("balanced", asset.info().settings, file);
-}
-
-// Regions by name alone.
-Regions named_regions(const Asset& asset, const Character& character) {
-  Regions regions;
-  for (std::size_t r = 0; r < asset.region_count(); ++r) {
-    if (std::string(asset.region(r).name) == "torso") continue;
-    Limb limb;
-    limb.name = asset.region(r).name;
-    limb.side = limb.name.starts_with("left_")    ? Side::kLeft
-                : limb.name.starts_with("right_") ? Side::kRight
-                                                  : Side::kNone;
-    regions.limbs.push_back(limb);
-  }
-  std::vector<std::uint8_t> of_source(character.source_triangles.size(), regions.torso_region());
-  for (const RestSphere& sphere : asset.spheres()) {
-    for (std::uint32_t k = 0; k < sphere.triangle_count; ++k) {
-      const std::uint32_t t = asset.triangles()[sphere.first_triangle + k];
-      if (t < of_source.size()) of_source[t] = sphere.region;
-    }
-  }
-  for (const Index t : character.skin_source_triangle) regions.of_skin.push_back(of_source[t]);
-  return regions;
+BakeSettings settings_of(const OpenAsset& asset, const std::string& file) {
+  return make_settings("balanced", asset->info().settings, file);
 }
 
 }  // namespace
@@ -65,12 +41,13 @@ std::string MotionChoice::name() const {
 AnimatedAsset::AnimatedAsset(const std::string& asset, const std::string& source, const MotionChoice& motion,
                              const FrameChoice& frames)
     : asset_name_(asset), file_(open_asset(asset)), fps_(frames.fps) {
-  const BakeSettings settings = settings_of(file_.asset, asset);
+  const BakeSettings settings = settings_of(file_, asset);
   roles_ = settings.roles;
   segment_settings_ = settings.segment;
   character_ = import_character(source, settings.import);
   const std::vector<float> rest = pack(character_.source_positions);
-  if (const Status status = check_source(file_.asset, rest.data(), rest.size() / 3); status != Status::kOk) {
+  if (const Status status = sc_check_source(file_.handle(), SC_WHOLE_SOURCE, rest.data(), rest.size() / 3, 12);
+      status != SC_OK) {
     throw Error(ExitCode::kFile,
                 source + ": is not the mesh that " + asset + " was baked from (" + to_string(status) + ")");
   }
@@ -92,7 +69,7 @@ AnimatedAsset::AnimatedAsset(const std::string& asset, const std::string& source
 }
 
 void AnimatedAsset::play_poses(const std::string& file) {
-  const std::vector<Joint> joints = joints_of(file_.asset);
+  const std::vector<Joint> joints = joints_of(file_);
   if (joints.empty()) {
     throw Error(ExitCode::kFile, file + ": turns the joints of a biped, and " + asset_name_ +
                                      " has none: it is of another body (--clip, --motion or meshes as poses move it)");
@@ -107,7 +84,7 @@ void AnimatedAsset::play_capture(const std::string& source, const std::string& f
     motion_ = capture_motion(file, character_.rig, character_.source_positions, frame(), source);
     return use_skin();
   }
-  const std::vector<Joint> joints = joints_of(file_.asset);
+  const std::vector<Joint> joints = joints_of(file_);
   motion_ = std::make_unique<CaptureMotion>(read_capture(file), body_of(joints, frame()));
   use_rig(joints);
 }
@@ -145,13 +122,13 @@ void AnimatedAsset::use_rig(const std::vector<Joint>& joints) {
   for (const Joint& joint : joints) bone_names_.push_back(joint.name);
 }
 
-void AnimatedAsset::check_leaves() const {
-  if (asset().leaf_count() > 0) return;
+void AnimatedAsset::check_clusters() const {
+  if (asset().surface().clusters.size > 0) return;
   throw Error(ExitCode::kFile, asset_name_ + ": has no clusters to find contacts with (bake it again)");
 }
 
 BodyFrame AnimatedAsset::frame() const {
-  const AssetInfo info = file_.asset.info();
+  const AssetInfo info = file_->info();
   return {to_vec3(info.origin), to_vec3(info.left), to_vec3(info.up), to_vec3(info.forward),
           static_cast<double>(info.height)};
 }
@@ -168,25 +145,22 @@ std::vector<Vec3> AnimatedAsset::positions(const Deformation& deformation) const
                 deformation.bones);
 }
 
-// Of the regions only what names them is in the asset.
-BodyParts AnimatedAsset::find_parts() const {
-  const Roles roles = find_roles(character_.rig, character_.source_positions, roles_, segment_settings_.body);
-  const std::vector<Joint> joints = joints_of(asset());
-  std::vector<VertexWeights> weights;
-  if (character_.rig.bones.empty() && !joints.empty()) {
-    weights = weights_;
-    if (weights.empty()) {
-      Character closed = character_;
-      close_body(closed, segment_settings_);
-      weights = rig_weights(closed, joints);
-    }
+BodyParts parts_of(const OpenAsset& asset) {
+  constexpr std::uint8_t kNone = 255;
+  BodyParts out;
+  for (std::size_t i = 0; i < asset->part_count(); ++i) {
+    const sc_part part = asset->part(i);
+    out.parts.push_back({part.name, static_cast<Side>(part.side), part.bone});
   }
-  return find_body_parts(character_, roles, named_regions(asset(), character_), joints, weights);
+  out.of_triangle.assign(asset->info().triangle_count, kNone);
+  const Surface& surface = asset.surface();
+  for (std::size_t t = 0; t < surface.triangles.size; ++t) out.of_triangle[surface.triangles[t]] = surface.parts[t];
+  return out;
 }
 
-std::vector<float> bone_palette(const Asset& asset, const Deformation& deformation) {
+std::vector<float> bone_palette(const OpenAsset& asset, const Deformation& deformation) {
   std::vector<float> out;
-  for (std::size_t b = 0; b < asset.bone_count(); ++b) {
+  for (std::size_t b = 0; b < asset->bone_count(); ++b) {
     const Affine bone = b < deformation.bones.size() ? deformation.bones[b] : Affine::Identity();
     for (Eigen::Index row = 0; row < 3; ++row) {
       for (Eigen::Index column = 0; column < 4; ++column) out.push_back(static_cast<float>(bone(row, column)));

@@ -32,10 +32,10 @@ class AnimatedAsset {
                 const FrameChoice& frames);
 
   const std::string& file() const { return asset_name_; }  // the asset's, as it was given
-  const Asset& asset() const { return file_.asset; }
+  const OpenAsset& asset() const { return file_; }
   const Character& character() const { return character_; }
   // Throws Error(kFile) where the asset has no clusters, which skin contacts are found with.
-  void check_leaves() const;
+  void check_clusters() const;
   BodyFrame frame() const;
 
   // Of every source vertex; empty where nothing moves.
@@ -52,9 +52,6 @@ class AnimatedAsset {
   // The deformed source vertices of such a frame.
   std::vector<Vec3> positions(const Deformation& deformation) const;
 
-  // The body part of every source triangle, found as the bake finds it.
-  BodyParts find_parts() const;
-
  private:
   void play_poses(const std::string& file);
   void use_skin();  // the source's own
@@ -63,7 +60,7 @@ class AnimatedAsset {
   std::vector<const Clip*> find_clips(const std::string& source, const std::string& wanted) const;
 
   std::string asset_name_;
-  AssetFile file_;
+  OpenAsset file_;
   Character character_;
   RoleFile roles_;  // those of the bake
   SegmentSettings segment_settings_;
@@ -74,8 +71,11 @@ class AnimatedAsset {
   double fps_;
 };
 
+// The asset's body parts; 255 where a source triangle has none.
+BodyParts parts_of(const OpenAsset& asset);
+
 // What a game would hand to the runtime: rows of a 3 by 4 matrix for each of the asset's bones, the identity for what
 // hangs on none.
-std::vector<float> bone_palette(const Asset& asset, const Deformation& deformation);
+std::vector<float> bone_palette(const OpenAsset& asset, const Deformation& deformation);
 
 }  // namespace spherechain::baker

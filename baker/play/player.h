@@ -6,11 +6,15 @@
 #include <unordered_map>
 #include <vector>
 
+#include "play/asset_file.h"
 #include "spherechain/detect.h"
 #include "spherechain/refit.h"
-#include "spherechain/triangle_contacts.h"
+#include "spherechain/skin_contacts.h"
 
 namespace spherechain::baker {
+
+// The paper's two methods: chain by chain, and over all pairs, which is the product's.
+enum class Method { kChains, kAllPairs };
 
 // What one method found in a frame and what it cost.
 struct Detection {
@@ -19,7 +23,7 @@ struct Detection {
 };
 
 // The runtime's refit of the whole asset.
-std::vector<Sphere> refit_spheres(const Asset& asset, const std::vector<float>& positions, RadiusKind radius);
+std::vector<Sphere> refit_spheres(const OpenAsset& asset, const std::vector<float>& positions, Radius radius);
 
 struct FrameResult {
   double refit_us = 0;
@@ -29,7 +33,7 @@ struct FrameResult {
 // The runtime as a game uses it: buffers made once, then a refit and a detection a frame.
 class Player {
  public:
-  Player(const Asset& asset, RadiusKind radius, bool chains, bool all_pairs, Target target);
+  Player(const OpenAsset& asset, Radius radius, bool chains, bool all_pairs, Target target);
 
   // `positions` are the deformed source vertices.
   FrameResult run(const std::vector<float>& positions);
@@ -40,12 +44,12 @@ class Player {
   // Skin contacts: triangles that intersect, by their numbers in the source, and what finding them costs. The asset
   // must have clusters.
   struct TriangleDetection {
-    std::vector<TrianglePair> pairs;
+    std::vector<Pair> pairs;
     double us;  // median of a few runs
   };
   TriangleDetection detect_triangles(const std::vector<float>& positions);
   // The spheres that these triangles belong to: pairs a < b, sorted.
-  std::vector<Pair> spheres_of(const std::vector<TrianglePair>& triangles) const;
+  std::vector<Pair> spheres_of(const std::vector<Pair>& triangles) const;
 
   // Of the last frame: the refitted spheres, and the pairs the last method found (both report the same, but chains
   // leave out pairs in no common chain).
@@ -55,13 +59,13 @@ class Player {
  private:
   Detection detect(Method method);
 
-  const Asset& asset_;
-  RadiusKind radius_;
+  const OpenAsset& asset_;
+  Radius radius_;
   bool chains_, all_pairs_;
   Target target_;
   std::vector<Sphere> spheres_;
   std::vector<Pair> pairs_;
-  std::vector<std::uint64_t> words_, contact_words_;
+  std::vector<std::uint64_t> scratch_;
   std::unordered_map<std::uint32_t, std::uint32_t> sphere_of_;  // a source triangle -> its sphere
   std::size_t pair_count_ = 0;
 };

@@ -58,6 +58,16 @@ std::string closing_line(const ClosingReport& closing) {
                             1 / closing.alpha, closing.triangles, closing.wraps, closing.seconds);
 }
 
+// The strategies that were tried before the one that was taken, a line each; nothing where the first was taken.
+std::string passed_over_lines(const Choice& choice) {
+  std::string lines;
+  for (const PassedOver& passed : choice.passed_over) {
+    if (passed.reason.cause == Reason::Cause::kDoesNotApply) continue;
+    lines += fmt::format("segmented by {}, not by {}: {}\n", choice.strategy, passed.strategy, passed.reason.what);
+  }
+  return lines;
+}
+
 ordered_json import_section(const Bake& bake) {
   const ImportReport& report = bake.character.report;
   return {{"importer", report.importer},
@@ -98,8 +108,20 @@ ordered_json segment_section(const Bake& bake) {
     }
     regions.push_back(std::move(entry));
   }
-  return {{"provider", bake.regions.provider}, {"facing", bake.regions.facing}, {"height", frame.height},
-          {"left", to_json(frame.left)},       {"up", to_json(frame.up)},       {"forward", to_json(frame.forward)},
+  ordered_json passed_over = ordered_json::array();
+  for (const PassedOver& passed : bake.segmented_by.passed_over) {
+    passed_over.push_back({{"strategy", passed.strategy},
+                           {"tried", passed.reason.cause != Reason::Cause::kDoesNotApply},
+                           {"reason", passed.reason.what}});
+  }
+  return {{"provider", bake.regions.provider},
+          {"strategy", bake.segmented_by.strategy},
+          {"passed_over", std::move(passed_over)},
+          {"facing", bake.regions.facing},
+          {"height", frame.height},
+          {"left", to_json(frame.left)},
+          {"up", to_json(frame.up)},
+          {"forward", to_json(frame.forward)},
           {"regions", std::move(regions)}};
 }
 
@@ -195,8 +217,8 @@ ordered_json counts_section(const Bake& bake) {
           {"chains_tests", chains_tests},
           {"all_pairs_tests", n * (n - 1) / 2 - bake.binding.ignored.size()},
           {"ignored_pairs", bake.binding.ignored.size()},
-          {"rest_pairs_fit", bake.binding.near_fit.size()},
-          {"rest_pairs_detect", bake.binding.near_detect.size()}};
+          {"rest_pairs_fit", bake.binding.rest_fit.size()},
+          {"rest_pairs_detect", bake.binding.rest_detect.size()}};
 }
 
 // Fewest and most of a sphere.
@@ -266,6 +288,7 @@ std::string bake_report_text(const Bake& bake) {
                   bake.regions.frame.height * bake.character.metres_per_unit,
                   bake.regions.name(0).ends_with("arm") ? "tall" : "long", bake.regions.facing);
   out += closing_line(bake.closing);
+  out += passed_over_lines(bake.segmented_by);
   out += fmt::format("\n{:<14} {:>9} {:>7}\n", "region", "triangles", "spheres");
   for (std::size_t r = 0; r < bake.regions.count(); ++r) {
     out += fmt::format("{:<14} {:>9} {:>7}\n", bake.regions.name(r),

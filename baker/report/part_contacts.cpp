@@ -48,9 +48,9 @@ std::size_t PartContacts::part_of(std::uint32_t triangle) const {
   throw Error(ExitCode::kFile, animated_.file() + ": names triangles that its source does not have (bake it again)");
 }
 
-PartCounts PartContacts::add(int frame, const std::vector<TrianglePair>& triangles) {
+PartCounts PartContacts::add(int frame, const std::vector<Pair>& triangles) {
   PartCounts counts;
-  for (const TrianglePair& pair : triangles) ++counts[std::minmax({part_of(pair.a), part_of(pair.b)})];
+  for (const Pair& pair : triangles) ++counts[std::minmax({part_of(pair.a), part_of(pair.b)})];
   const MotionFrame& at = animated_.frame_at(frame);
   clips_.resize(animated_.clips().size());
   Clip& clip = clips_[at.clip];

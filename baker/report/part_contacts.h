@@ -10,7 +10,7 @@
 
 #include "bind/body_parts.h"
 #include "play/play.h"
-#include "spherechain/triangle_contacts.h"
+#include "spherechain/skin_contacts.h"
 
 namespace spherechain::baker {
 
@@ -21,10 +21,10 @@ using PartCounts = std::map<std::pair<std::size_t, std::size_t>, std::size_t>;
 class PartContacts {
  public:
   // `animated` must outlive it.
-  explicit PartContacts(const AnimatedAsset& animated) : animated_(animated), parts_(animated.find_parts()) {}
+  explicit PartContacts(const AnimatedAsset& animated) : animated_(animated), parts_(parts_of(animated.asset())) {}
 
   // Frames are added in order. Returns the frame's counts.
-  PartCounts add(int frame, const std::vector<TrianglePair>& triangles);
+  PartCounts add(int frame, const std::vector<Pair>& triangles);
 
   const std::string& name(std::size_t part) const { return parts_.parts[part].name; }
   const BodyParts& parts() const { return parts_; }

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "play/play.h"
+
 namespace spherechain::baker {
 namespace {
 
@@ -24,24 +26,16 @@ const char* side_name(Side side) {
 
 }  // namespace
 
-std::vector<PartRow> part_rows(const BodyParts& parts, const std::vector<std::string>& bones) {
+std::vector<PartRow> part_rows(const OpenAsset& asset) {
+  const BodyParts parts = parts_of(asset);
   std::vector<PartRow> out;
   for (const BodyPart& part : parts.parts) {
-    const auto bone = static_cast<std::size_t>(part.bone);
-    out.push_back({part.name, part.side, part.bone >= 0 && bone < bones.size() ? bones[bone] : std::string(), 0});
+    const bool has_bone = part.bone >= 0;
+    out.push_back(
+        {part.name, part.side, has_bone ? asset->bone(static_cast<std::size_t>(part.bone)).name : std::string(), 0});
   }
-  for (const std::uint8_t part : parts.of_triangle) ++out[part].triangles;
-  return out;
-}
-
-std::vector<PartRow> part_rows(const Asset& asset) {
-  std::vector<PartRow> out;
-  for (std::size_t r = 0; r < asset.region_count(); ++r) {
-    PartRow row{asset.region(r).name, Side::kNone, {}, asset.region(r).triangle_count};
-    if (row.name.starts_with("left_")) row.side = Side::kLeft;
-    if (row.name.starts_with("right_")) row.side = Side::kRight;
-    std::replace(row.name.begin(), row.name.end(), '_', ' ');
-    out.push_back(std::move(row));
+  for (const std::uint8_t part : parts.of_triangle) {
+    if (part < out.size()) ++out[part].triangles;
   }
   return out;
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "bind/body_parts.h"
-#include "spherechain/asset.h"
+#include "play/asset_file.h"
 
 namespace spherechain::baker {
 
@@ -19,11 +19,8 @@ struct PartRow {
   std::size_t triangles;
 };
 
-// `bones` are the names of the asset's.
-std::vector<PartRow> part_rows(const BodyParts& parts, const std::vector<std::string>& bones);
-
-// Those of an asset: its regions, until it stores its body parts.
-std::vector<PartRow> part_rows(const Asset& asset);
+// Those of an asset.
+std::vector<PartRow> part_rows(const OpenAsset& asset);
 
 nlohmann::ordered_json parts_json(const std::vector<PartRow>& parts);
 std::string parts_text(const std::vector<PartRow>& parts);

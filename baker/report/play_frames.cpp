@@ -42,7 +42,7 @@ ordered_json skin_json(const Player& player, const Player::TriangleDetection& sk
       {"us", skin.us}, {"parts", std::move(parts)}, {"sphere_pairs", pairs_json({spheres.data(), spheres.size()})}};
   if (list_triangles) {
     ordered_json& triangles = out["triangles"] = ordered_json::array();
-    for (const TrianglePair& pair : skin.pairs) triangles.push_back({pair.a, pair.b});
+    for (const Pair& pair : skin.pairs) triangles.push_back({pair.a, pair.b});
   }
   return out;
 }

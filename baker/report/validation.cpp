@@ -15,12 +15,12 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t kWorstMisses = 20;
 
-const char* radius_name(RadiusKind radius) { return radius == RadiusKind::kFit ? "fit" : "detect"; }
+const char* radius_name(Radius radius) { return radius == SC_RADIUS_FIT ? "fit" : "detect"; }
 
 // What the figures without a name of their own are of.
 const char* reported_name(const ValidateSettings& settings) {
   if (settings.skin) return "skin";
-  return settings.method == Method::kM1 ? "chains" : "all_pairs";
+  return settings.method == Method::kChains ? "chains" : "all_pairs";
 }
 
 ordered_json score_json(const Score& score) {
@@ -48,12 +48,12 @@ ordered_json groups_json(const std::vector<PairGroup>& groups) {
 ordered_json curve_json(const std::vector<CurvePoint>& curve, bool radius) {
   ordered_json out = ordered_json::array();
   for (const CurvePoint& point : curve) {
-    if (radius == point.change.rest_fraction.has_value()) continue;
+    if (radius == point.change.rest_scale.has_value()) continue;
     ordered_json entry;
     if (radius) {
       entry["scale"] = point.change.scale;
     } else {
-      entry["rest_fraction"] = *point.change.rest_fraction;
+      entry["rest_scale"] = *point.change.rest_scale;
     }
     entry["all_pairs"] = score_json(point.all_pairs);
     entry["chains"] = score_json(point.chains);
@@ -87,8 +87,8 @@ std::string curve_text(const Validation& validation) {
                      "precision", "a frame");
   out += curve_row("as it is", validation.chains, validation.all_pairs);
   for (const CurvePoint& point : validation.curve) {
-    const std::string name = point.change.rest_fraction
-                                 ? fmt::format("rest fraction {:.1f}", *point.change.rest_fraction)
+    const std::string name = point.change.rest_scale
+                                 ? fmt::format("rest fraction {:.1f}", *point.change.rest_scale)
                                  : fmt::format("radius x {:.1f}", point.change.scale);
     out += curve_row(name, point.chains, point.all_pairs);
   }
@@ -117,7 +117,7 @@ std::string validation_json(const Validation& validation, const AnimatedAsset& a
                             const ValidateSettings& settings) {
   const double height = animated.frame().height;
   const Score& score = validation.score;
-  const AssetInfo info = animated.asset().info();
+  const AssetInfo info = animated.asset()->info();
   ordered_json out{
       {"frames", score.frames},
       {"source", {{"file", info.source_file}, {"sha256", info.source_sha256}}},

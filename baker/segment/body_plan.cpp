@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "mesh/error.h"
 #include "segment/branches.h"
 
 namespace spherechain::baker {
@@ -107,13 +106,12 @@ void place(BodyFrame& frame, const Mesh& mesh) {
   frame.origin = centroid + (low - centroid.dot(frame.up)) * frame.up;
 }
 
-[[noreturn]] void fail(const std::string& file, const std::string& what) {
-  throw Error(ExitCode::kSegmentation,
-              file + ": " + what + " (a biped has five long branches: head, two arms, two legs)");
+Reason no_biped(const std::string& what) {
+  return {what + " (a biped has five long branches: head, two arms, two legs)"};
 }
 
-// With four tips, which of the five branches is missing?
-[[noreturn]] void fail_with_four(const BranchTree& tree, const std::optional<Vec3>& facing, const std::string& file) {
+// Which of the five branches is missing from a tree with four tips.
+Reason missing_branch(const BranchTree& tree, const std::optional<Vec3>& facing) {
   if (std::optional<Split> split = split_tree(tree, 2, 2)) {
     const auto legs_like = [](const std::vector<Polyline>& side, const Vec3& outward) {
       return alignment(side[0], outward) > 0.5 && alignment(side[1], outward) > 0.5;
@@ -126,12 +124,13 @@ void place(BodyFrame& frame, const Mesh& mesh) {
     if (legs_like(split->lower, -up)) {
       std::vector<Polyline>& top = split->upper;
       if (alignment(top[0], up) > alignment(top[1], up)) std::swap(top[0], top[1]);
-      if (alignment(top[1], up) < 0.5) fail(file, "the head is missing: nothing goes on from the chest but two arms");
+      if (alignment(top[1], up) < 0.5)
+        return no_biped("the head is missing: nothing goes on from the chest but two arms");
       const Polyline &arm = top[0], &leg_a = split->lower[0], &leg_b = split->lower[1];
       const Vec3 across = leg_a.points().back() - leg_b.points().back();
       const BodyFrame frame = orient(up, across, facing.value_or(toe_direction({&leg_a, &leg_b})));
       const bool left = (arm.points().back() - split->spine.points().back()).dot(frame.left) > 0;
-      fail(file, std::string("the ") + (left ? "right" : "left") + " arm is missing");
+      return no_biped(std::string("the ") + (left ? "right" : "left") + " arm is missing");
     }
   }
   // One junction, or no pair of legs: the longest branch runs through the torso into the only leg.
@@ -149,9 +148,9 @@ void place(BodyFrame& frame, const Mesh& mesh) {
     const BodyFrame frame = orient(up, across, facing.value_or(toe_direction({&leg})));
     const Vec3 middle = 0.5 * (others[0].points().back() + others[1].points().back());
     const bool left = (leg.points().back() - middle).dot(frame.left) > 0;
-    fail(file, std::string("the ") + (left ? "right" : "left") + " leg is missing");
+    return no_biped(std::string("the ") + (left ? "right" : "left") + " leg is missing");
   }
-  fail(file, "one of the long branches is missing: four are there");
+  return no_biped("one of the long branches is missing: four are there");
 }
 
 }  // namespace
@@ -191,24 +190,23 @@ bool looks_like_biped(const CurveSkeleton& skeleton) {
                               [&](const Polyline& leg) { return alignment(leg, -chord(split->spine)) > kGoesOn; });
 }
 
-void check_facing(const Vec3& facing, const Vec3& axis, const char* name, const std::string& file) {
-  if (std::abs(facing.stableNormalized().dot(axis.normalized())) >= kAlong) return;
-  throw FacingError(ExitCode::kSegmentation,
-                    file + ": the facing direction in the settings is not along the character's " + name +
-                        " (mend 'facing', or leave it out)");
+std::optional<Reason> check_facing(const std::optional<Vec3>& facing, const Vec3& axis, const char* name) {
+  if (!facing || std::abs(facing->stableNormalized().dot(axis.normalized())) >= kAlong) return std::nullopt;
+  return Reason{std::string("the facing direction in the settings is not along the character's ") + name +
+                    " (mend 'facing', or leave it out)",
+                Reason::Cause::kSettings};
 }
 
-BodyPlan find_body_plan(const Mesh& mesh, const CurveSkeleton& skeleton, const std::optional<Vec3>& facing,
-                        const std::string& file) {
+Attempt<BodyPlan> find_biped_plan(const Mesh& mesh, const CurveSkeleton& skeleton, const std::optional<Vec3>& facing) {
   const BranchTree tree = find_long_branches(skeleton, kShortestBranch);
   const std::size_t tips = tree.tip_count();
-  if (tips == 4) fail_with_four(tree, facing, file);
-  if (tips < 4) {
-    fail(file, "arms or legs are missing: the shape has " + std::to_string(tips) + " ends");
-  }
-  if (tips > 5) fail(file, "the shape has " + std::to_string(tips) + " long branches, which is no biped");
+  if (tips == 4) return missing_branch(tree, facing);
+  if (tips < 4) return no_biped("arms or legs are missing: the shape has " + std::to_string(tips) + " ends");
+  if (tips > 5) return no_biped("the shape has " + std::to_string(tips) + " long branches, which is no biped");
   std::optional<Split> split = split_tree(tree, 2, 3);
-  if (!split) fail(file, "the branches do not leave a torso: there is no hip with two legs and no chest with two arms");
+  if (!split) {
+    return no_biped("the branches do not leave a torso: there is no hip with two legs and no chest with two arms");
+  }
 
   const Vec3 up = chord(split->spine);
   std::vector<Polyline>& top = split->upper;
@@ -224,11 +222,9 @@ BodyPlan find_body_plan(const Mesh& mesh, const CurveSkeleton& skeleton, const s
   plan.frame =
       orient(up, lateral_axis(mesh, across_arms.normalized() + across_legs.normalized()), facing.value_or(toes));
   plan.facing = facing ? "forward is the direction in the settings" : "forward is where the feet point";
-  if (facing) {
-    check_facing(*facing, plan.frame.forward, "forward axis", file);
-  } else if (std::abs(plan.frame.forward.dot(toes.normalized())) < kAlong) {
-    throw Error(ExitCode::kSegmentation,
-                file + ": the feet do not say which way the character faces (set 'facing' in the settings)");
+  if (auto reason = check_facing(facing, plan.frame.forward, "forward axis")) return *reason;
+  if (!facing && std::abs(plan.frame.forward.dot(toes.normalized())) < kAlong) {
+    return Reason{"the feet do not say which way the character faces (set 'facing' in the settings)"};
   }
   place(plan.frame, mesh);
   plan.spine = split->spine;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "mesh/error.h"
+#include "mesh/attempt.h"
 #include "mesh/polyline.h"
 #include "segment/curve_skeleton.h"
 
@@ -59,16 +59,12 @@ std::size_t count_ends(const CurveSkeleton& skeleton);
 // Whether the long branches are a biped's: two go on from the lower end of the spine, three leave the upper one.
 bool looks_like_biped(const CurveSkeleton& skeleton);
 
-// The settings' facing direction is not along the axis that it is to choose a sign for.
-class FacingError : public Error {
-  using Error::Error;
-};
-// Throws FacingError where `facing` is more than 72 degrees away from `axis`, either way round; `name` says which axis.
-void check_facing(const Vec3& facing, const Vec3& axis, const char* name, const std::string& file);
+// `facing` chooses the sign of `axis`, whose name for people is `name`. Returns a reason where the two are more than 72
+// degrees apart, either way round.
+std::optional<Reason> check_facing(const std::optional<Vec3>& facing, const Vec3& axis, const char* name);
 
-// `facing` overrides what the feet say: any vector with a part along the character's forward axis.
-// Throws Error(kSegmentation) where there are not five long branches, and says which is missing.
-BodyPlan find_body_plan(const Mesh& mesh, const CurveSkeleton& skeleton, const std::optional<Vec3>& facing,
-                        const std::string& file);
+// The plan of a biped. `facing` overrides what the feet say: any vector with a part along the character's forward axis.
+// Without five long branches the reason says which one is missing.
+Attempt<BodyPlan> find_biped_plan(const Mesh& mesh, const CurveSkeleton& skeleton, const std::optional<Vec3>& facing);
 
 }  // namespace spherechain::baker

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "mesh/error.h"
 #include "mesh/surface_query.h"
 #include "segment/body_plan.h"
 #include "segment/from_skin.h"
+#include "segment/islands.h"
 #include "segment/trunk.h"
 
 namespace spherechain::baker {
@@ -27,11 +27,14 @@ Vec3 left_of(const Regions& regions) {
 
 }  // namespace
 
-Regions segment_by_rig(const Character& character, const Roles& roles, const std::optional<Vec3>& facing) {
-  const auto fail = [&](const std::string& what) {
-    throw Error(ExitCode::kSegmentation, character.file + ": " + what + " (inspect --roles says what its joints are)");
+Attempt<Regions> segment_by_rig(const Character& character, const Roles& roles, const SegmentSettings& settings) {
+  const auto because = [](const std::string& what) {
+    return Reason{what + " (inspect --roles says what its joints are)"};
   };
-  if (roles.trunk.empty()) fail("the rig has no trunk that limbs leave from");
+  if (settings.body != BodyKind::kUnknown && roles.kind != settings.body) {
+    return because(std::string("the rig's limbs are no ") + body_kind_name(settings.body) + "'s");
+  }
+  if (roles.trunk.empty()) return because("the rig has no trunk that limbs leave from");
   const std::vector<Vec3> joints = rest_positions(character.rig);
   const auto joint = [&](int node) { return joints[static_cast<std::size_t>(node)]; };
   const SkinRegions skin = segment_from_skin(character, roles);
@@ -47,21 +50,23 @@ Regions segment_by_rig(const Character& character, const Roles& roles, const std
     regions.limbs.push_back(
         {limb.name, side_of(limb), limb.top ? 1.0 : 0.0, skin.limbs[i].line, skin.limbs[i].extremity});
   }
-  if (regions.limbs.size() < 2) fail("the rig has fewer than two limbs that move skin");
+  if (regions.limbs.size() < 2) return because("the rig has fewer than two limbs that move skin");
 
   const Vec3 pelvis = joint(roles.trunk.front()), upper = joint(roles.trunk.back());
   const bool four = roles.kind == BodyKind::kBiped || roles.kind == BodyKind::kQuadruped;
   if (!four) place_along(regions, pelvis, upper);
   const Vec3 hip = middle_of_starts(regions, 0, pelvis), chest = middle_of_starts(regions, 1, upper);
   const Vec3 left = left_of(regions);
-  if (!(left.cross(chest - hip).norm() > 0)) fail("the rig's limbs do not tell left, right and up apart");
+  if (!(left.cross(chest - hip).norm() > 0)) {
+    return because("the rig's limbs do not tell left, right and up apart");
+  }
   regions.frame.left = left.normalized();
   regions.frame = with_up(regions.frame, chest - hip, character.body);
-  if (facing) {
-    const bool biped = roles.kind == BodyKind::kBiped;
-    const Vec3& axis = biped ? regions.frame.forward : regions.frame.up;
-    check_facing(*facing, axis, biped ? "forward axis" : "trunk", character.file);
-    if (facing->dot(axis) < 0) fail("the facing direction in the settings is against what the rig's joints say");
+  const bool biped = roles.kind == BodyKind::kBiped;
+  const Vec3& axis = biped ? regions.frame.forward : regions.frame.up;
+  if (auto reason = check_facing(settings.facing, axis, biped ? "forward axis" : "trunk")) return *reason;
+  if (settings.facing && settings.facing->dot(axis) < 0) {
+    return because("the facing direction in the settings is against what the rig's joints say");
   }
   const auto in_plane = [&](const Vec3& p) {
     return Vec3(p - (p - regions.frame.origin).dot(regions.frame.left) * regions.frame.left);
@@ -73,10 +78,14 @@ Regions segment_by_rig(const Character& character, const Roles& roles, const std
     regions.of_triangle.push_back(std::min(region_of[limb], regions.torso_region()));
   for (const std::uint8_t limb : skin.of_skin)
     regions.of_skin.push_back(std::min(region_of[limb], regions.torso_region()));
-  if (std::count(regions.of_triangle.begin(), regions.of_triangle.end(), regions.torso_region()) == 0) {
-    fail("the rig's trunk moves no skin");
+  for (std::uint8_t region = 0; region < regions.torso_region(); ++region) {
+    if (std::count(regions.of_triangle.begin(), regions.of_triangle.end(), region) > 0) continue;
+    return because("the rig's " + regions.name(region) + " moves no part of the body's largest piece");
   }
-  if (roles.kind != BodyKind::kBiped) {
+  if (std::count(regions.of_triangle.begin(), regions.of_triangle.end(), regions.torso_region()) == 0) {
+    return because("the rig's trunk moves no skin");
+  }
+  if (!biped) {
     const SurfaceQuery trunk(character.body, triangles_of_region(regions, regions.torso_region()));
     const auto height = [&](const Vec3& p) { return (p - regions.frame.origin).dot(regions.frame.up); };
     const auto centred = [&](const Vec3& p) {
@@ -100,6 +109,21 @@ Regions segment_by_rig(const Character& character, const Roles& roles, const std
   regions.spine_chest = regions.spine.closest(regions.chest);
   regions.spine_neck = regions.spine.closest(neck);
   return regions;
+}
+
+bool limbs_are_in_shards(const Mesh& skin, const Regions& regions) {
+  constexpr double kHangsTogether = 0.5;  // of the limbs' area
+  const Islands islands = find_islands(skin, triangle_neighbours(skin), regions.of_skin);
+  std::vector<double> largest(regions.limbs.size(), 0.0);
+  double all = 0, hangs_together = 0;
+  for (std::size_t i = 0; i < islands.area.size(); ++i) {
+    const std::uint8_t region = regions.of_skin[islands.triangles[i][0]];
+    if (region == regions.torso_region()) continue;
+    all += islands.area[i];
+    largest[region] = std::max(largest[region], islands.area[i]);
+  }
+  for (const double area : largest) hangs_together += area;
+  return hangs_together < kHangsTogether * all;
 }
 
 }  // namespace spherechain::baker

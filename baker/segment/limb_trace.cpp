@@ -5,7 +5,6 @@
 #include <cmath>
 #include <vector>
 
-#include "mesh/error.h"
 #include "mesh/ring.h"
 
 namespace spherechain::baker {
@@ -141,17 +140,14 @@ double last_center(const SurfaceQuery& surface, const Polyline& line, double ste
 
 }  // namespace
 
-LimbTrace trace_limb(const SurfaceQuery& surface, const Polyline& branch, LimbEnd end, const BodyFrame& frame, int rays,
-                     const std::string& limb, const std::string& file) {
+Attempt<LimbTrace> trace_limb(const SurfaceQuery& surface, const Polyline& branch, LimbEnd end, const BodyFrame& frame,
+                              int rays, const std::string& limb) {
   const March march(surface, frame, rays);
   const double ball = surface.closest(branch.at(0)).distance;
   const double middle = 0.5 * branch.length();
   const Vec3 outward = branch.tangent(middle, 0.5 * kDirectionWindow * frame.height);
   const auto start = march.section(branch.at(middle), outward);
-  if (!start) {
-    throw Error(ExitCode::kSegmentation,
-                file + ": the " + limb + " has no section of its own: it merges with the torso");
-  }
+  if (!start) return Reason{"the " + limb + " has no section of its own: it merges with the torso"};
 
   // Out to hand or foot, then in from there, so that both directions follow a line of sections.
   const auto never = [](const Vec3&) { return false; };
@@ -185,13 +181,13 @@ LimbTrace trace_limb(const SurfaceQuery& surface, const Polyline& branch, LimbEn
   return trace;
 }
 
-TorsoEnds find_torso_ends(const SurfaceQuery& surface, const Vec3& hip, const Vec3& chest, const BodyFrame& frame,
-                          int rays, const std::string& file) {
+Attempt<TorsoEnds> find_torso_ends(const SurfaceQuery& surface, const Vec3& hip, const Vec3& chest,
+                                   const BodyFrame& frame, int rays) {
   const auto height = [&](const Vec3& p) { return (p - frame.origin).dot(frame.up); };
   TorsoEnds ends{};
   // From well inside: between the legs' starts the skin may be just below.
   const auto floor = surface.first_hit(hip + 0.25 * (chest - hip), -frame.up);
-  if (!floor) throw Error(ExitCode::kSegmentation, file + ": the torso has no floor between the legs");
+  if (!floor) return Reason{"the torso has no floor between the legs"};
   ends.crotch = height(floor->point);
 
   // Up from the chest the body's width falls to the neck's and grows again to the head's.
@@ -220,9 +216,7 @@ TorsoEnds find_torso_ends(const SurfaceQuery& surface, const Vec3& hip, const Ve
     }
     center += 0.5 * (front + back) * frame.forward + step * frame.up;
   }
-  if (widths.empty() || widths[least] >= 0.5 * widths[0]) {
-    throw Error(ExitCode::kSegmentation, file + ": there is no neck between chest and head");
-  }
+  if (widths.empty() || widths[least] >= 0.5 * widths[0]) return Reason{"there is no neck between chest and head"};
   const double limit = 1.5 * widths[least];
   std::size_t base = least;
   while (base > 0 && widths[base] < limit) --base;

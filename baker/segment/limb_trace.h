@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <optional>
 #include <string>
 
+#include "mesh/attempt.h"
 #include "mesh/polyline.h"
 #include "mesh/surface_query.h"
 #include "segment/body_plan.h"
@@ -22,9 +22,9 @@ struct LimbTrace {
 
 // `branch` comes from the torso. The limb starts outside the torso's maximal ball at the junction, at the innermost
 // section all of whose rays end on a wall about as far as the others do: further in, rays escape past armpit or crotch.
-// Throws Error(kSegmentation) where there is no such section.
-LimbTrace trace_limb(const SurfaceQuery& surface, const Polyline& branch, LimbEnd end, const BodyFrame& frame, int rays,
-                     const std::string& limb, const std::string& file);
+// There is none where the branch has no such section; `limb` is its name for people.
+Attempt<LimbTrace> trace_limb(const SurfaceQuery& surface, const Polyline& branch, LimbEnd end, const BodyFrame& frame,
+                              int rays, const std::string& limb);
 
 // Heights along frame.up from frame.origin.
 struct TorsoEnds {
@@ -33,7 +33,7 @@ struct TorsoEnds {
 };
 
 // `hip` and `chest` are points inside the torso, between the legs' and between the arms' starts.
-TorsoEnds find_torso_ends(const SurfaceQuery& surface, const Vec3& hip, const Vec3& chest, const BodyFrame& frame,
-                          int rays, const std::string& file);
+Attempt<TorsoEnds> find_torso_ends(const SurfaceQuery& surface, const Vec3& hip, const Vec3& chest,
+                                   const BodyFrame& frame, int rays);
 
 }  // namespace spherechain::baker

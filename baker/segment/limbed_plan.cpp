@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "mesh/error.h"
 #include "mesh/surface_query.h"
 #include "segment/branches.h"
 
@@ -25,6 +24,8 @@ constexpr double kLongNeck = 0.75, kLongTail = 0.25;
 constexpr double kUpright = 0.7;
 // A tube's length in its radii, at least.
 constexpr double kTube = 6;
+
+constexpr const char* kNoBranches = "the shape has no branches: arms and legs are missing";
 
 struct Plane {
   Vec3 point, normal;
@@ -44,12 +45,11 @@ struct Symmetry {
 
 class Finder {
  public:
-  Finder(const Mesh& mesh, const CurveSkeleton& skeleton, bool four_legs, const std::string& file)
+  Finder(const Mesh& mesh, const CurveSkeleton& skeleton, bool four_legs)
       : mesh_(mesh),
         tree_(find_long_branches(skeleton, kShortestLimb)),
         points_(skeleton.points),
-        four_legs_(four_legs),
-        file_(file) {
+        four_legs_(four_legs) {
     for (Index node = 0; node < tree_.at.size(); ++node) {
       if (tree_.is_tip(node)) tips_.push_back(node);
     }
@@ -62,18 +62,21 @@ class Finder {
     size_ = diameter(mesh);
   }
 
-  [[noreturn]] void fail(const std::string& what) const { throw Error(ExitCode::kSegmentation, file_ + ": " + what); }
-
-  BodyPlan run(const std::optional<Vec3>& facing) const {
-    if (tips_.size() < 2) fail("the shape has no branches: arms and legs are missing");
+  Attempt<BodyPlan> run(const std::optional<Vec3>& facing) const {
+    if (tips_.size() < 2) return Reason{kNoBranches};
     if (tips_.size() == 2 && !four_legs_) return tube(facing);
     const Symmetry symmetry = find_symmetry();
-    if (symmetry.pairs.size() < 2) {
-      fail("arms or legs are missing: the shape has " + std::to_string(tips_.size()) + " ends, of which " +
-           std::to_string(2 * symmetry.pairs.size()) + " are limbs in pairs");
+    const std::size_t pairs = symmetry.pairs.size(), mated = 2 * pairs + symmetry.middle.size();
+    if (mated < tips_.size()) {
+      return Reason{"the long branches do not pair left and right: of " + std::to_string(tips_.size()) + " ends " +
+                    std::to_string(tips_.size() - mated) + " have no mate"};
     }
-    if (four_legs_ && symmetry.pairs.size() != 2) {
-      fail("a quadruped has two pairs of limbs: the shape has " + std::to_string(symmetry.pairs.size()));
+    if (pairs < 2) {
+      return Reason{"arms or legs are missing: the shape has " + std::to_string(tips_.size()) + " ends, of which " +
+                    std::to_string(2 * pairs) + " are limbs in pairs"};
+    }
+    if (four_legs_ && pairs != 2) {
+      return Reason{"a quadruped has two pairs of limbs: the shape has " + std::to_string(pairs)};
     }
     return limbed(symmetry, facing);
   }
@@ -194,10 +197,6 @@ class Finder {
       chosen = std::move(symmetry);
       chosen_score = scores[i];
     }
-    if (2 * chosen->pairs.size() + chosen->middle.size() < tips_.size()) {
-      fail("the long branches do not pair left and right: of " + std::to_string(tips_.size()) + " ends " +
-           std::to_string(tips_.size() - 2 * chosen->pairs.size() - chosen->middle.size()) + " have no mate");
-    }
     return *chosen;
   }
 
@@ -216,14 +215,14 @@ class Finder {
     return sum / kPoints;
   }
 
-  BodyPlan tube(const std::optional<Vec3>& facing) const {
+  Attempt<BodyPlan> tube(const std::optional<Vec3>& facing) const {
     const SurfaceQuery surface(mesh_);
     Polyline line = path(tips_[0], tips_[1]);
     const double radius = surface.closest(line.at(0.5 * line.length())).distance;
-    if (line.length() < kTube * radius) fail("the shape has no branches: arms and legs are missing");
+    if (line.length() < kTube * radius) return Reason{kNoBranches};
     const Polyline reversed = line.reversed();
     const Vec3 along = line.points().back() - line.points().front();
-    if (facing) check_facing(*facing, along, "body", file_);
+    if (auto reason = check_facing(facing, along, "body")) return *reason;
     const bool head_first = facing ? along.dot(*facing) < 0 : thickness(surface, reversed) > thickness(surface, line);
     if (head_first) line = reversed;
     BodyPlan plan;
@@ -248,7 +247,7 @@ class Finder {
     Polyline a, b;
   };
 
-  BodyPlan limbed(const Symmetry& symmetry, const std::optional<Vec3>& facing) const {
+  Attempt<BodyPlan> limbed(const Symmetry& symmetry, const std::optional<Vec3>& facing) const {
     const SurfaceQuery surface(mesh_);
     std::vector<Limbs> pairs;
     for (const Pair& pair : symmetry.pairs) {
@@ -267,7 +266,7 @@ class Finder {
         if (between.norm() > trunk.norm()) trunk = between;
       }
     }
-    if (!(trunk.norm() > 0)) fail("the limbs leave no trunk between them");
+    if (!(trunk.norm() > 0)) return Reason{"the limbs leave no trunk between them"};
     trunk.normalize();
     const auto order = [&] {
       std::sort(pairs.begin(), pairs.end(),
@@ -294,9 +293,10 @@ class Finder {
       plan.facing = facing ? "forward is the direction in the settings" : "forward is where the feet point";
       plan.frame.left = symmetry.plane.normal;
       const Vec3 ahead = plan.frame.left.cross(trunk);
-      if (facing) check_facing(*facing, ahead, "forward axis", file_);
+      if (auto reason = check_facing(facing, ahead, "forward axis")) return *reason;
       if (ahead.dot(forward) < 0) plan.frame.left = -plan.frame.left;
     } else {
+      if (auto reason = check_facing(facing, trunk, "trunk")) return *reason;
       if (heads_back(surface, symmetry, pairs, trunk, facing)) {
         trunk = -trunk;
         order();
@@ -322,10 +322,7 @@ class Finder {
   // Does `trunk` point away from the head?
   bool heads_back(const SurfaceQuery& surface, const Symmetry& symmetry, const std::vector<Limbs>& pairs,
                   const Vec3& trunk, const std::optional<Vec3>& facing) const {
-    if (facing) {
-      check_facing(*facing, trunk, "trunk", file_);
-      return facing->dot(trunk) < 0;
-    }
+    if (facing) return facing->dot(trunk) < 0;
     double at_front = 0, at_back = 0, feet = 0;
     const Vec3 middle = 0.5 * (pairs.front().at + pairs.back().at);
     for (const Index tip : symmetry.middle) {
@@ -379,7 +376,6 @@ class Finder {
   BranchTree tree_;
   const std::vector<Vec3>& points_;
   bool four_legs_;
-  const std::string& file_;
   std::vector<Index> tips_;
   std::vector<Vec3> samples_;  // along the branches, evenly
   double size_;
@@ -387,9 +383,9 @@ class Finder {
 
 }  // namespace
 
-BodyPlan find_limbed_plan(const Mesh& mesh, const CurveSkeleton& skeleton, bool four_legs,
-                          const std::optional<Vec3>& facing, const std::string& file) {
-  return Finder(mesh, skeleton, four_legs, file).run(facing);
+Attempt<BodyPlan> find_limbed_plan(const Mesh& mesh, const CurveSkeleton& skeleton, bool four_legs,
+                                   const std::optional<Vec3>& facing) {
+  return Finder(mesh, skeleton, four_legs).run(facing);
 }
 
 }  // namespace spherechain::baker

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 
 #include "segment/body_plan.h"
 
@@ -14,8 +13,8 @@ namespace spherechain::baker {
 // the trunk is a limb. A shape without branches is one tubular limb, "body", and has no spine.
 //
 // `four_legs`: two pairs, and neither is arms. `facing`: forward, for one that stands upright, else the way from the
-// hind legs to the head. Throws Error(kSegmentation) where the branches do not pair, or leave no trunk.
-BodyPlan find_limbed_plan(const Mesh& mesh, const CurveSkeleton& skeleton, bool four_legs,
-                          const std::optional<Vec3>& facing, const std::string& file);
+// hind legs to the head. There is none where the branches do not pair, or leave no trunk.
+Attempt<BodyPlan> find_limbed_plan(const Mesh& mesh, const CurveSkeleton& skeleton, bool four_legs,
+                                   const std::optional<Vec3>& facing);
 
 }  // namespace spherechain::baker

@@ -55,13 +55,11 @@ bool is_biped(const Regions& regions);
 inline constexpr std::uint8_t kTorso = 4;
 
 struct SegmentSettings {
-  // Biped or quadruped; unknown: a biped where the long branches are one's, else as many limbs as there are.
+  // Biped or quadruped. kUnknown: by shape, a biped where the long branches are those of one, else as many limbs as
+  // there are; by rig, what the rig's limbs are.
   BodyKind body = BodyKind::kUnknown;
   int rays = 80;               // N_r
   std::optional<Vec3> facing;  // overrides what the feet say
 };
-
-// Segments by shape alone. Throws Error(kSegmentation) where the body is not one closed surface or lacks a limb.
-Regions segment(const Character& character, const SegmentSettings& settings);
 
 }  // namespace spherechain::baker

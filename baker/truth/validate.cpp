@@ -35,7 +35,7 @@ struct Context {
   const ValidateSettings& settings;
   TruthSurface surface = surface_of(animated.asset(), animated.character());
   CachedIntersections intersections{surface, settings.cache};
-  std::vector<TrianglePair> rest_pairs = intersections.find(pack(animated.character().source_positions)).pairs;
+  std::vector<Pair> rest_pairs = intersections.find(pack(animated.character().source_positions)).pairs;
   Curve curve{animated.asset(), settings.radius};
   std::vector<std::pair<double, CapsuleRagdoll>> ragdolls = make_ragdolls();
 
@@ -120,8 +120,8 @@ std::vector<Pair> touching_spheres(Player& player, const std::vector<float>& pos
 }
 
 // Whole meshes as poses have no bones.
-bool moved_by_bones(const Asset& asset, const Deformation& deformation) {
-  return asset.bone_count() > 0 && deformation.positions.empty();
+bool moved_by_bones(const OpenAsset& asset, const Deformation& deformation) {
+  return asset->bone_count() > 0 && deformation.positions.empty();
 }
 
 Frame validate_frame(const Context& context, int index) {
@@ -143,7 +143,7 @@ Frame validate_frame(const Context& context, int index) {
   const std::vector<Pair> chains_pairs = touching_spheres(chains, positions),
                           all_pairs = touching_spheres(all, positions),
                           skin_pairs = all.spheres_of(all.detect_triangles(positions).pairs);
-  frame.reported = settings.skin ? skin_pairs : settings.method == Method::kM1 ? chains_pairs : all_pairs;
+  frame.reported = settings.skin ? skin_pairs : settings.method == Method::kChains ? chains_pairs : all_pairs;
   frame.score = score_frame(frame.truth, frame.reported, is_close, [&](const TrueContact& contact) {
     frame.misses.push_back({index, contact.spheres, contact.triangles.size(), depth_of(contact)});
     return frame.misses.back().overlap;
@@ -154,11 +154,11 @@ Frame validate_frame(const Context& context, int index) {
   frame.curve = context.curve.measure(all.spheres(), frame.truth, is_close);
   frame.capsules = score_ragdolls(context, found, frame.truth, positions, deformation);
   if (settings.contacts) {
-    const auto found = [&](ContactScope scope) {
+    const auto found = [&](Scope scope) {
       return find_contacts(animated.asset(), positions, scope, settings.target);
     };
-    frame.contacts = compare(found(ContactScope::kApart), frame.truth.pairs);
-    frame.neighbour_contacts = compare(found(ContactScope::kNeighbours), frame.truth.neighbours);
+    frame.contacts = compare(found(SC_SCOPE_APART), frame.truth.pairs);
+    frame.neighbour_contacts = compare(found(SC_SCOPE_NEIGHBOURS), frame.truth.neighbours);
     if (moved_by_bones(animated.asset(), deformation)) {
       // Exact contacts of these very positions, which differ from the baker's by rounding.
       const ContactsFromBones of_bones =
@@ -176,7 +176,7 @@ Frame validate_frame(const Context& context, int index) {
 
 Validation validate(const AnimatedAsset& animated, const ValidateSettings& settings,
                     const std::function<void(int)>& progress) {
-  animated.check_leaves();
+  animated.check_clusters();
   const Context context{animated, settings};
   std::vector<Frame> frames(static_cast<std::size_t>(animated.frame_count()));
   std::mutex mutex;

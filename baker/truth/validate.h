@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "play/play.h"
+#include "play/player.h"
 #include "spherechain/detect.h"
 #include "truth/contacts.h"
 #include "truth/curve.h"
@@ -18,9 +19,9 @@ namespace spherechain::baker {
 inline constexpr double kCloseSurface = 0.003;
 
 struct ValidateSettings {
-  RadiusKind radius = RadiusKind::kDetect;
-  Method method = Method::kM2;
-  Target target = Target::kScalar;
+  Radius radius = SC_RADIUS_DETECT;
+  Method method = Method::kAllPairs;
+  Target target = SC_TARGET_SCALAR;
   bool contacts = false;        // the narrow phase too
   bool skin = true;             // report the pairs whose skins intersect; else those of spheres that touch
   std::filesystem::path cache;  // see truth_cache.h; empty: none

@@ -22,7 +22,7 @@ inline schema::Vec3 to_schema(const Vec3& v) {
 // Lanes that start at a multiple of their own size never straddle two cache lines.
 template <typename Struct>
 auto aligned_vector(flatbuffers::FlatBufferBuilder& builder, const std::vector<Struct>& values) {
-  builder.ForceVectorAlignment(values.size(), sizeof(Struct), sizeof(schema::Lanes));
+  builder.ForceVectorAlignment(values.size(), sizeof(Struct), 8 * sizeof(float));
   return builder.CreateVectorOfStructs(values);
 }
 

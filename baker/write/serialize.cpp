@@ -4,11 +4,11 @@
 #include "import/sha256.h"
 #include "mesh/error.h"
 #include "sphere_chains_generated.h"
-#include "spherechain/asset.h"
-#include "write/bone_tables.h"
+#include "asset/asset_view.h"
+#include "write/moment_tables.h"
 #include "write/rest_contacts.h"
 #include "write/schema_values.h"
-#include "write/surface_table.h"
+#include "write/skin_packing.h"
 #include "write/version.h"
 #include "write/write.h"
 
@@ -18,37 +18,25 @@ namespace {
 static_assert(static_cast<int>(Side::kLeft) == static_cast<int>(schema::Side::left));
 static_assert(static_cast<int>(Side::kRight) == static_cast<int>(schema::Side::right));
 static_assert(static_cast<int>(RefitRule::kPaper) == static_cast<int>(schema::Refit::paper) &&
-              static_cast<int>(RefitRule::kCalibrated) == static_cast<int>(schema::Refit::calibrated) &&
               static_cast<int>(RefitRule::kMoments) == static_cast<int>(schema::Refit::moments));
 
-// Source triangles grouped by sphere, in it by leaf, and in source order within a leaf.
-struct SurroundingTriangles {
-  std::vector<std::uint32_t> triangles;
-  std::vector<std::uint32_t> first, count;
-};
-
-SurroundingTriangles group_triangles(const AssetSource& in) {
-  SurroundingTriangles out;
-  auto leaf = in.leaves.leaves.begin();
-  for (std::uint32_t s = 0; s < in.spheres.spheres.size(); ++s) {
-    out.first.push_back(static_cast<std::uint32_t>(out.triangles.size()));
-    for (; leaf != in.leaves.leaves.end() && leaf->sphere == s; ++leaf) {
-      for (const Index t : leaf->triangles) out.triangles.push_back(in.character.skin_source_triangle[t]);
-    }
-    out.count.push_back(static_cast<std::uint32_t>(out.triangles.size()) - out.first.back());
+std::vector<std::uint32_t> triangle_counts(const AssetSource& in) {
+  std::vector<std::uint32_t> out(in.spheres.spheres.size(), 0);
+  for (const Cluster& cluster : in.clusters.clusters) {
+    out[cluster.sphere] += static_cast<std::uint32_t>(cluster.triangles.size());
   }
   return out;
 }
 
-void add_spheres(const AssetSource& in, const SurroundingTriangles& triangles, std::vector<schema::Sphere>& spheres,
-                 std::vector<schema::Pivot>& pivots) {
+void add_spheres(const AssetSource& in, const std::vector<std::uint32_t>& triangle_counts,
+                 std::vector<schema::Sphere>& spheres, std::vector<schema::Pivot>& pivots) {
   for (std::size_t i = 0; i < in.spheres.spheres.size(); ++i) {
     const FittedSphere& fitted = in.spheres.spheres[i];
     const BoundSphere& bound = in.binding.spheres[i];
     spheres.emplace_back(
         to_schema(bound.rest.center), static_cast<float>(bound.rest.radius), static_cast<float>(bound.detect_radius),
-        static_cast<float>(bound.spread), static_cast<std::uint32_t>(pivots.size()), triangles.first[i],
-        triangles.count[i], static_cast<std::uint16_t>(bound.pivots.size()), fitted.region,
+        static_cast<float>(bound.spread), static_cast<std::uint32_t>(pivots.size()),
+        triangle_counts[i], static_cast<std::uint16_t>(bound.pivots.size()), fitted.region,
         static_cast<schema::Side>(fitted.side), static_cast<std::int16_t>(fitted.level), std::uint16_t{0});
     for (const BoundPivot& pivot : bound.pivots) {
       const Triangle& corners = in.character.source_triangles[in.character.skin_source_triangle[pivot.triangle]];
@@ -67,9 +55,9 @@ std::vector<std::uint64_t> ignored_bits(const AssetSource& in) {
   return words;
 }
 
-std::vector<schema::NearPair> near_pairs_of(const std::vector<BoundPair>& pairs) {
-  std::vector<schema::NearPair> out;
-  for (const BoundPair& pair : pairs) out.emplace_back(pair.a, pair.b, static_cast<float>(pair.reach));
+std::vector<schema::RestPair> rest_pairs_of(const std::vector<BoundPair>& pairs) {
+  std::vector<schema::RestPair> out;
+  for (const BoundPair& pair : pairs) out.emplace_back(pair.a, pair.b, static_cast<float>(pair.rest_scale));
   return out;
 }
 
@@ -84,17 +72,17 @@ schema::FitError fit_error(const AssetSource& in, Ball TorsoFit::*which) {
   return {static_cast<float>(sum.mean_abs), static_cast<float>(sum.max_abs)};
 }
 
-std::vector<std::uint8_t> bytes_of(const AssetSource& in, const std::vector<TrianglePair>& rest_contacts) {
+std::vector<std::uint8_t> bytes_of(const AssetSource& in, const std::vector<Pair>& rest_contacts) {
   flatbuffers::FlatBufferBuilder builder(1 << 20);
-  const SurroundingTriangles triangles = group_triangles(in);
+  const std::vector<std::uint32_t> counts = triangle_counts(in);
   std::vector<schema::Sphere> spheres;
   std::vector<schema::Pivot> pivots;
-  add_spheres(in, triangles, spheres, pivots);
+  add_spheres(in, counts, spheres, pivots);
 
   std::vector<flatbuffers::Offset<schema::Region>> regions;
   for (std::size_t r = 0; r < in.regions.count(); ++r) {
     std::uint32_t count = 0;
-    for (const std::uint32_t i : in.spheres.of_region[r]) count += triangles.count[i];
+    for (const std::uint32_t i : in.spheres.of_region[r]) count += counts[i];
     regions.push_back(schema::CreateRegionDirect(builder, in.regions.name(r).c_str(), count));
   }
   std::vector<flatbuffers::Offset<schema::Chain>> chains;
@@ -106,26 +94,31 @@ std::vector<std::uint8_t> bytes_of(const AssetSource& in, const std::vector<Tria
     const schema::Vec3 position = to_schema(joint.position), tail = to_schema(joint.tail);
     joints.push_back(schema::CreateJointDirect(builder, joint.name.c_str(), joint.parent, &position, &tail));
   }
-  const PackedPivots packed = pack_pivots(pivots);
-  const auto bone_refit = create_bone_refit(builder, in.bones, in.moments);
-  const auto surface = create_surface(builder, in.character, in.bones, in.leaves, rest_contacts);
+  std::vector<flatbuffers::Offset<schema::Part>> parts;
+  for (const BodyPart& part : in.parts.parts) {
+    parts.push_back(
+        schema::CreatePartDirect(builder, part.name.c_str(), static_cast<schema::Side>(part.side), part.bone));
+  }
+  const std::vector<flatbuffers::Offset<schema::Bone>> bones = create_bones(builder, in.bones);
+  const auto moments = create_moments(builder, in.moments);
+  const auto skin = create_skin(builder, in.character, in.bones, in.clusters, in.parts, rest_contacts);
   const std::vector<std::uint64_t> ignored = ignored_bits(in);
-  const std::vector<schema::NearPair> near_fit = near_pairs_of(in.binding.near_fit),
-                                      near_detect = near_pairs_of(in.binding.near_detect);
+  const std::vector<schema::RestPair> rest_fit = rest_pairs_of(in.binding.rest_fit),
+                                      rest_detect = rest_pairs_of(in.binding.rest_detect);
 
   const std::string writer = std::string("spherechain ") + kVersion, settings_hash = sha256_of_text(in.settings);
   const auto provenance =
       schema::CreateProvenanceDirect(builder, writer.c_str(), in.settings.c_str(), settings_hash.c_str());
-  std::vector<schema::SourcePart> parts;
-  for (const SourcePart& part : in.character.parts) {
-    parts.emplace_back(part.mesh, part.primitive, part.first_vertex, part.vertex_count, part.hash);
+  std::vector<schema::SourceBuffer> buffers;
+  for (const SourceBuffer& buffer : in.character.buffers) {
+    buffers.emplace_back(buffer.mesh, buffer.primitive, buffer.first_vertex, buffer.vertex_count, buffer.hash);
   }
   const auto source = schema::CreateSourceDirect(
       builder, in.character.file.c_str(), in.character.sha256.c_str(),
       static_cast<std::uint32_t>(in.character.source_positions.size()),
       static_cast<std::uint32_t>(in.character.source_triangles.size()),
-      hash_positions(pack(in.character.source_positions).data(), in.character.source_positions.size()),
-      static_cast<float>(in.character.metres_per_unit), &parts);
+      sc_hash_positions(pack(in.character.source_positions).data(), in.character.source_positions.size(), 12),
+      static_cast<float>(in.character.metres_per_unit), &buffers);
   const BodyFrame& f = in.regions.frame;
   const schema::Vec3 origin = to_schema(f.origin), left = to_schema(f.left), up = to_schema(f.up),
                      forward = to_schema(f.forward);
@@ -134,11 +127,22 @@ std::vector<std::uint8_t> bytes_of(const AssetSource& in, const std::vector<Tria
                          phi2 = fit_error(in, &TorsoFit::phi2);
   const auto fit = schema::CreateFit(builder, &phi1, &adjusted, &phi2);
 
-  builder.Finish(schema::CreateAssetDirect(
-                     builder, kFormatVersion, provenance, source, frame, static_cast<schema::Refit>(in.binding.rule),
-                     fit, &regions, &spheres, &pivots, &triangles.triangles, &chains,
-                     static_cast<std::uint32_t>(in.chains.entries_table1), &ignored, &near_fit, &near_detect, &joints,
-                     &packed.vertices, &packed.pivots, bone_refit, surface),
+  const auto morphs = builder.CreateVectorOfStrings(in.bones.morphs);
+  const auto regions_at = builder.CreateVector(regions);
+  const auto parts_at = builder.CreateVector(parts);
+  const auto spheres_at = builder.CreateVectorOfStructs(spheres);
+  const auto pivots_at = builder.CreateVectorOfStructs(pivots);
+  const auto chains_at = builder.CreateVector(chains);
+  const auto ignored_at = builder.CreateVector(ignored);
+  const auto rest_fit_at = builder.CreateVectorOfStructs(rest_fit);
+  const auto rest_detect_at = builder.CreateVectorOfStructs(rest_detect);
+  const auto joints_at = builder.CreateVector(joints);
+  const auto bones_at = builder.CreateVector(bones);
+  builder.Finish(schema::CreateAsset(builder, kFormatVersion, provenance, source, frame,
+                                     static_cast<schema::Refit>(in.binding.rule), fit, regions_at, parts_at, spheres_at,
+                                     pivots_at, chains_at, static_cast<std::uint32_t>(in.chains.entries_table1),
+                                     ignored_at, rest_fit_at, rest_detect_at, joints_at, bones_at, morphs, moments,
+                                     skin),
                  schema::AssetIdentifier());
   return {builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize()};
 }
@@ -147,12 +151,12 @@ std::vector<std::uint8_t> bytes_of(const AssetSource& in, const std::vector<Tria
 
 std::vector<std::uint8_t> serialize(const AssetSource& in) {
   std::vector<std::uint8_t> bytes = bytes_of(in, {});
-  const std::vector<TrianglePair> rest_contacts = find_rest_contacts(bytes, pack(in.character.source_positions));
+  const std::vector<Pair> rest_contacts = find_rest_contacts(bytes, pack(in.character.source_positions));
   if (!rest_contacts.empty()) bytes = bytes_of(in, rest_contacts);
 
-  Asset check;
+  sc_asset check;
   char message[256];
-  if (check.open(bytes.data(), bytes.size(), message, sizeof(message)) != Status::kOk) {
+  if (sc_asset_open(&check, SC_ABI_VERSION, bytes.data(), bytes.size(), message, sizeof(message)) != SC_OK) {
     throw Error(ExitCode::kInternal, in.character.file + ": the baked asset does not open: " + message);
   }
   return bytes;

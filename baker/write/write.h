@@ -10,8 +10,9 @@
 #include "bind/bind.h"
 #include "bind/bind_bones.h"
 #include "bind/bind_moments.h"
+#include "bind/body_parts.h"
 #include "chains/chains.h"
-#include "leaves/leaves.h"
+#include "clusters/clusters.h"
 #include "rig/rig.h"
 
 namespace spherechain::baker {
@@ -26,7 +27,8 @@ struct AssetSource {
   const std::vector<Joint>& joints;
   const BoneBinding& bones;
   const MomentBinding& moments;
-  const Leaves& leaves;
+  const BodyParts& parts;
+  const Clusters& clusters;
   std::string settings;  // canonical JSON
 };
 

@@ -6,7 +6,7 @@
 #include "mesh/error.h"
 #include "motion/poses.h"
 #include "picture.h"
-#include "wrap/closed_body.h"
+#include "pipeline/pipeline.h"
 
 using namespace spherechain;
 using namespace spherechain::baker;
@@ -29,8 +29,7 @@ std::vector<VertexWeights> rigid_ends(const std::vector<Joint>& joints) {
 
 void draw(const Options& options) {
   Character character = import_character(options.character);
-  ClosingReport closing;
-  const Regions regions = segment_closed(character, {}, closing);
+  const Regions regions = segment_character(character, {}, {}).regions;
   const std::vector<Joint> joints = place_joints(character, regions);
   std::vector<Vec3> ends;
   for (const Joint& joint : joints) ends.insert(ends.end(), {joint.position, joint.tail});

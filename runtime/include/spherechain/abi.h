@@ -1,15 +1,16 @@
-// SPDX-License-Identifier: MIT
-// What binds a program's headers to the library it is linked with. C99 and C++.
+/* SPDX-License-Identifier: MIT */
+/* How the headers bind to the library. C99 and C++17. */
 #pragma once
 
-// The version of the library's binary interface: it changes with every change of a struct or function that programs
-// built before cannot live with, and is the number in the shared library's name, after .so. Asset::open and
-// sc_asset_open take the caller's and refuse another: kWrongAbi, SC_WRONG_ABI.
-#define SC_ABI_VERSION 8
+#include <stddef.h>
+#include <stdint.h>
 
-// Marks what a shared library gives out. SPHERECHAIN_SHARED is defined by the CMake target and by pkg-config where the
-// library is shared; SPHERECHAIN_BUILDING only while it is built. A static library gives out nothing, so that a plugin
-// that contains one does not either.
+/* The version of the binary interface. It changes with every incompatible change of a struct or function.
+ * sc_asset_open() compares the program's number with the library's and refuses another (SC_WRONG_ABI). */
+#define SC_ABI_VERSION 9
+
+/* Marks what a shared library exports. The CMake target and pkg-config define SPHERECHAIN_SHARED where the library is
+ * shared; SPHERECHAIN_BUILDING is defined only while the library itself is built. */
 #if !defined(SPHERECHAIN_SHARED)
 #define SPHERECHAIN_API
 #elif !defined(_WIN32)
@@ -18,4 +19,19 @@
 #define SPHERECHAIN_API __declspec(dllexport)
 #else
 #define SPHERECHAIN_API __declspec(dllimport)
+#endif
+
+/* Every struct and enum is defined once, for C and C++ alike. All fields default to zero: C++ initialises them, C
+ * programs write `sc_detect_job job = {0};`. Enums are 32-bit integers on both sides. */
+#if defined(__cplusplus)
+#define SC_ZERO \
+  {}
+#define SC_NOEXCEPT noexcept
+#define SC_ENUM(name) enum name : int32_t
+#else
+#define SC_ZERO
+#define SC_NOEXCEPT
+#define SC_ENUM(name)   \
+  typedef int32_t name; \
+  enum
 #endif

@@ -1,78 +1,86 @@
-// SPDX-License-Identifier: MIT
+/* SPDX-License-Identifier: MIT */
+/* Q2: which spheres touch? A cheap alarm, about a microsecond: it gives false alarms and can miss contacts. The skin's
+ * answer is exact: skin_contacts.h. */
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-
-#include "spherechain/abi.h"
 #include "spherechain/asset.h"
-#include "spherechain/detect_table.h"
-#include "spherechain/filter.h"
-#include "spherechain/simd.h"
-#include "spherechain/status.h"
-#include "spherechain/types.h"
 
+/* What a detection leaves out, and what it adds to the spheres: the asset's own at first (sc_reset_filter), then edited
+ * by the caller. The buffers are the caller's. A job reads the filter while it runs: do not edit it then. */
+typedef struct sc_filter {
+  /* Bit b(b-1)/2 + a, a < b: this pair of spheres is ignored. sc_pair_words() words. */
+  uint64_t* ignored SC_ZERO;
+  size_t ignored_words SC_ZERO;
+  /* Bit i: sphere i touches nothing. sc_sphere_words() words; or null: all are enabled. */
+  uint64_t* disabled SC_ZERO;
+  size_t disabled_words SC_ZERO;
+  /* Added to each sphere's radius, in the spheres' units; as many as spheres; or null: none. May be negative. A radius
+   * that is below 0 or not finite after it touches nothing. Of no effect on skin contacts. */
+  float* padding SC_ZERO;
+  size_t padding_count SC_ZERO;
+} sc_filter;
+
+/* The overlap test of all pairs of spheres that are not ignored. Rest pairs, which touch at rest or nearly, are reported
+ * where they come closer than rest_scale times the sum of their radii (docs/arithmetic.md).
+ *
+ * Allocates nothing, takes no lock. Jobs on other outputs may run at the same time. Needs 25 KiB of stack. */
+typedef struct sc_detect_job {
+  const sc_asset* asset SC_ZERO; /* open */
+  const sc_sphere* spheres SC_ZERO;
+  size_t sphere_count SC_ZERO; /* at least the asset's */
+  sc_radius radius SC_ZERO;    /* of the spheres: which refit made them */
+  sc_target target SC_ZERO;
+  /* At most one of the two. A table from sc_prepare_detect(), with this asset and radius, is faster and holds the filter
+   * it was made with; neither: the asset's own ignored pairs. */
+  const uint64_t* table SC_ZERO;
+  const sc_filter* filter SC_ZERO;
+  sc_pair* pairs SC_ZERO; /* out: sorted, each once; null: count only */
+  size_t pair_capacity SC_ZERO;
+  uint64_t* bits SC_ZERO; /* out: bit b(b-1)/2 + a of each pair; sc_pair_words() words exactly; or null. Cheapest */
+  size_t bit_words SC_ZERO;
+  size_t pair_count SC_ZERO; /* out: how many there are, also where `pairs` is too small */
+#if defined(__cplusplus)
+  sc_status run() noexcept;
+#endif
+} sc_detect_job;
+
+#if defined(__cplusplus)
+extern "C" {
+#endif
+
+/* SC_OK; SC_OVERFLOW: the first pairs are written, pair_count says how many there are; SC_NULL, SC_MISALIGNED,
+ * SC_TOO_SMALL, SC_BAD_VALUE, SC_ALIASED, SC_NOT_OPEN, SC_UNSUPPORTED_TARGET: nothing is written. */
+SPHERECHAIN_API sc_status sc_detect(sc_detect_job* job) SC_NOEXCEPT;
+
+/* Words of a bit for each pair, and for each sphere. 0 where the asset is not open. */
+SPHERECHAIN_API size_t sc_pair_words(const sc_asset* asset) SC_NOEXCEPT;
+SPHERECHAIN_API size_t sc_sphere_words(const sc_asset* asset) SC_NOEXCEPT;
+
+/* Fills a table for detect jobs with this asset and radius, and with all that `filter` (or null) says now. Halves the
+ * time of a detection; any number of jobs may share it. `words` is the caller's, sc_detect_table_words() of them. */
+SPHERECHAIN_API size_t sc_detect_table_words(const sc_asset* asset) SC_NOEXCEPT;
+SPHERECHAIN_API sc_status sc_prepare_detect(const sc_asset* asset, sc_radius radius, const sc_filter* filter,
+                                            uint64_t* words, size_t word_count) SC_NOEXCEPT;
+
+/* These edit a filter's buffers. SC_BAD_VALUE where a sphere, part or figure does not exist; nothing is written then. */
+/* The asset's own pairs; every sphere enabled, no padding. */
+SPHERECHAIN_API sc_status sc_reset_filter(const sc_asset* asset, sc_filter* filter) SC_NOEXCEPT;
+/* `ignored` 0 reports the pair again, also where the asset itself ignores it. */
+SPHERECHAIN_API sc_status sc_ignore_pair(const sc_asset* asset, sc_filter* filter, uint32_t a, uint32_t b,
+                                         int ignored) SC_NOEXCEPT;
+/* Each pair of a sphere of one region with a sphere of the other; the same region twice: the pairs within it. */
+SPHERECHAIN_API sc_status sc_ignore_regions(const sc_asset* asset, sc_filter* filter, size_t region, size_t other,
+                                            int ignored) SC_NOEXCEPT;
+SPHERECHAIN_API sc_status sc_disable_sphere(const sc_asset* asset, sc_filter* filter, uint32_t sphere,
+                                            int disabled) SC_NOEXCEPT;
+SPHERECHAIN_API sc_status sc_pad_sphere(const sc_asset* asset, sc_filter* filter, uint32_t sphere,
+                                        float padding) SC_NOEXCEPT;
+
+#if defined(__cplusplus)
+}
+inline sc_status sc_detect_job::run() noexcept { return sc_detect(this); }
 namespace spherechain {
-
-// Scratch memory of one DetectJob at a time, owned by the caller. Only M1 needs it (to report each pair once).
-struct SPHERECHAIN_API DetectContext {
-  Span<std::uint64_t> words;
-
-  // Words needed for `asset`: one bit a pair of spheres. 0 where it is not open.
-  static std::size_t words_needed(const Asset& asset) noexcept;
-};
-
-// One overlap found by M1 as the paper counts it: a pair shows up once for every chain that holds both spheres. Within
-// a chain the first spheres' pairs come first: positions (0, 1), (0, 2) ... (1, 2) ..., whichever index is the smaller.
-struct ChainPair {
-  std::uint32_t chain;
-  Pair pair;
-};
-
-// Which spheres touch: the overlap test of the paper's section 5.2, (|ca - cb|)^2 < (ra + rb)^2, ignored pairs left
-// out. Pairs that touch at rest, or all but touch (near pairs), are reported where |ca - cb| < reach * (ra +
-// rb).
-//
-// The arithmetic is fixed, in single precision without contraction, so that every backend reports the same pairs, bit
-// for bit. With d2 = (dx*dx + dy*dy) + dz*dz, s = ra + rb:
-//   every pair   d2 < s*s  and  s*s <= FLT_MAX: what is not finite touches nothing
-//   a near pair  that, and  d2 < t*t  with  t = reach * s
-// A filter's padding is added to each radius first: a sum below 0 touches nothing. Without padding a radius below 0,
-// which no refit gives, is taken into s as it is.
-//
-// Ask for what you need: pairs, bits, both, or neither to count. Bits alone are the cheapest, for they need no order.
-//
-// Fill in the fields and call run(). Allocates nothing, takes no lock; jobs with other outputs and contexts may run at
-// the same time.
-struct SPHERECHAIN_API DetectJob {
-  const Asset* asset = nullptr;  // open
-  Span<const Sphere> spheres;    // at least asset->spheres().size, from RefitJob with the same `radius`
-  RadiusKind radius = RadiusKind::kDetect;
-  Method method = Method::kM2;
-  Target target = Target::kBest;
-  const Filter* filter = nullptr;  // null: the asset's ignored pairs, all spheres as they are
-  // Null, or from prepare_detect with this asset and radius: faster, the same pairs. Then it, not `filter`, says which
-  // pairs are ignored and spheres disabled; `filter` adds its padding.
-  const DetectTable* table = nullptr;
-  bool first_only = false;           // M2: stop at the first pair of the sorted list
-  DetectContext* context = nullptr;  // M1: required
-  Span<Pair> pairs;                  // out: sorted by (a, b), each once; may be empty to count only
-  // Out: bit b(b-1)/2 + a of each pair found, as in Asset::ignored(), the rest 0; bit_words() words exactly, or empty.
-  Span<std::uint64_t> bits;
-  Span<ChainPair> chain_pairs;  // out, M1: the raw list, chain by chain, in chain order within one; may be empty
-
-  // Out. Counts are what there is, also where a buffer was too small for it.
-  std::size_t pair_count = 0;        // unique pairs; first_only: 0 or 1
-  std::size_t chain_pair_count = 0;  // M1: overlaps with their repeats; M2: equal to pair_count
-  std::size_t test_count = 0;        // pairs not ignored; M1: with repeats; first_only: up to where it stopped
-
-  static std::size_t bit_words(const Asset& asset) noexcept;  // 0 where the asset is not open
-
-  // Uses some 25 KiB of stack. kOk; kOverflow where `pairs` or `chain_pairs` was not empty and too small (the first
-  // entries are written, the counts say what is needed); kNullArgument, kNotOpen, kTooFewSpheres, kContextTooSmall,
-  // kBadArgument, kUnsupportedTarget, kBadFilter, kMisaligned, kSharedMemory (what is written overlaps another of these
-  // buffers): nothing is written, the counts keep their values.
-  Status run() noexcept;
-};
-
+using Filter = sc_filter;
+using DetectJob = sc_detect_job;
 }  // namespace spherechain
+#endif

@@ -1,50 +1,39 @@
-// SPDX-License-Identifier: MIT
+/* SPDX-License-Identifier: MIT */
+/* Q1: where are the character's spheres in this pose? */
 #pragma once
 
-#include <cstddef>
+#include "spherechain/pose.h"
 
-#include "spherechain/abi.h"
-#include "spherechain/asset.h"
-#include "spherechain/status.h"
-#include "spherechain/types.h"
+/* Moves the spheres with the bones, or with the deformed vertices. From bones it never touches the mesh: a sphere's
+ * centre and radius are the moments of its pivots, which follow from the matrices (docs/arithmetic.md). Both ways give
+ * the same spheres but for rounding. Where the pose has both, bones are taken. Morph weights move no sphere.
+ *
+ * Allocates nothing, takes no lock. Jobs on other buffers may run at the same time. Needs 40 KiB of stack. */
+typedef struct sc_refit_job {
+  const sc_asset* asset SC_ZERO; /* open */
+  sc_pose pose SC_ZERO;          /* bones or vertices */
+  sc_radius radius SC_ZERO;
+  sc_target target SC_ZERO;
+  sc_sphere* spheres SC_ZERO; /* out: the asset's, in its order; in the pose's space */
+  size_t sphere_capacity SC_ZERO;
+#if defined(__cplusplus)
+  sc_status run() const noexcept;
+#endif
+} sc_refit_job;
 
+#if defined(__cplusplus)
+extern "C" {
+#endif
+
+/* SC_OK, or SC_NULL, SC_MISALIGNED, SC_TOO_SMALL, SC_BAD_STRIDE, SC_BAD_VALUE, SC_ALIASED, SC_NOT_OPEN,
+ * SC_NOT_IN_ASSET (bones, but the asset has none, or is of profile `paper`), SC_UNSUPPORTED_TARGET: then nothing is
+ * written. What is not finite gives spheres that are not finite; they touch nothing. */
+SPHERECHAIN_API sc_status sc_refit(const sc_refit_job* job) SC_NOEXCEPT;
+
+#if defined(__cplusplus)
+}
+inline sc_status sc_refit_job::run() const noexcept { return sc_refit(this); }
 namespace spherechain {
-
-// Which vertices a buffer holds: all of the source's, or only Asset::pivot_vertices(), in that order, for who skins no
-// more than those.
-enum class VertexSet : std::uint8_t { kSource = 0, kPivots = 1 };
-
-// Moves the spheres with the deformed skin: new centre and radius from the pivots' current positions (the paper's
-// section 5.1). With p_k the centroid of pivot k's corners and w_k its weight:
-//   centre = sum_k w_k p_k
-//   radius = mean_k |p_k - centre|                             refit rule kPaper
-//   radius = rest radius * mean_k |p_k - centre| / pivot_spread   refit rule kCalibrated: exact at rest
-//   radius = rest radius * sqrt(mean_k |p_k - centre|^2) / pivot_spread   refit rule kMoments: exact at rest
-// kDetect scales that radius by the sphere's rest ratio detect_radius / radius.
-//
-// The arithmetic is fixed, in single precision without contraction, so that every backend gives the same spheres, bit
-// for bit: p_k = ((a + b) + c) * (1.0f / 3); the sums over k start at 0 and run in pivot order; |d| = sqrt((dx*dx +
-// dy*dy) + dz*dz); mean = sum / float(K); radius = mean, or mean * (detect_radius / radius), under kPaper, and radius
-// or detect_radius, times (mean / pivot_spread), under kCalibrated. Under kMoments the sum is of (dx*dx + dy*dy) +
-// dz*dz itself, and sqrt(mean) stands where kCalibrated has the mean.
-//
-// A game that holds the character in several vertex buffers copies them into one, each from its
-// Asset::source_parts() entry's first_vertex on; check_source_part() tells whether it is the right one.
-//
-// Fill in the fields and call run(). Allocates nothing, takes no lock; jobs on other buffers may run at the same time.
-struct SPHERECHAIN_API RefitJob {
-  const Asset* asset = nullptr;      // open
-  const float* positions = nullptr;  // x, y, z of each vertex of the set, in any space with the asset's scale
-  std::size_t vertex_count = 0;      // at least info().source_vertex_count, or pivot_vertices().size
-  std::size_t stride = 12;           // bytes from one position to the next; a multiple of 4, at least 12
-  VertexSet vertices = VertexSet::kSource;
-  RadiusKind radius = RadiusKind::kDetect;
-  Span<Sphere> spheres;  // out: at least asset->spheres().size; further entries are left alone
-
-  // kOk, kNullArgument, kNotOpen, kTooFewVertices, kTooFewSpheres, kBadStride, kBadArgument or, for kPivots,
-  // kNotInAsset, kMisaligned, kSharedMemory; nothing is written unless kOk. Positions that are not finite give spheres
-  // that are not finite, and those touch nothing.
-  Status run() const noexcept;
-};
-
-}  // namespace spherechain
+using RefitJob = sc_refit_job;
+}
+#endif

@@ -184,7 +184,7 @@ TEST_CASE("other bodies get extremities too" * doctest::skip(std::getenv("SPHERE
     CAPTURE(file);
     const std::string path = std::string(std::getenv("SPHERECHAIN_TEST_DATA")) + "/" + file;
     const Character character = build_character(read_with_assimp(path), file);
-    const Regions regions = segment(character, {});
+    const Regions regions = *segment_by_shape(character, {});
     std::array<OwnerDistance, 2> distances{};
     for (const bool extremities : {false, true}) {
       FitSettings settings;

@@ -6,7 +6,7 @@ using namespace spherechain::baker;
 const HumanFixture& human() {
   static const HumanFixture fixture = [] {
     Character character = import_character(kHumanFile);
-    Regions regions = segment(character, {});
+    Regions regions = *segment_by_shape(character, {});
     return HumanFixture{std::move(character), std::move(regions)};
   }();
   return fixture;

@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "import/import.h"
-#include "segment/segment.h"
+#include "segment/by_shape.h"
 
 // Debian's assimp-testmodels.
 inline const std::filesystem::path kModels = "/usr/share/assimp/models";

@@ -51,7 +51,7 @@ Variant make_variant(const SourceMesh& original, const Change& change) {
     mesh.triangles[variant.triangle_place[t]] = {vertex_place[v[1]], vertex_place[v[2]], vertex_place[v[0]]};
   }
   variant.character = build_character(mesh, change.name);
-  variant.regions = segment(variant.character, {});
+  variant.regions = *segment_by_shape(variant.character, {});
   variant.spheres = fit_spheres(variant.character, variant.regions, {});
   return variant;
 }

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "rigged_human.h"
+#include "segment/by_shape.h"
 
 using namespace spherechain::baker;
 
@@ -69,7 +70,7 @@ TEST_CASE("joints turn, move and scale with the mesh") {
   const Eigen::Matrix3d rotation = Eigen::AngleAxisd(1.1, Vec3(1, -2, 0.5).normalized()).toRotationMatrix();
   const Vec3 shift(30, -200, 75);
   const Character other = moved(h.character, rotation, 100, shift);
-  const std::vector<Joint> joints = place_joints(other, segment(other, {}));
+  const std::vector<Joint> joints = place_joints(other, *segment_by_shape(other, {}));
   REQUIRE(joints.size() == h.joints.size());
   for (std::size_t j = 0; j < joints.size(); ++j) {
     INFO(joints[j].name);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "segment/segment.h"
+#include "segment/by_shape.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -27,13 +27,8 @@ double area_of(const Bake& bake, std::uint8_t region) {
 }
 
 std::string segmentation_error(const SourceMesh& source, const SegmentSettings& settings = {}) {
-  try {
-    segment(build_character(source, "test.obj"), settings);
-  } catch (const Error& error) {
-    CHECK(error.code() == ExitCode::kSegmentation);
-    return error.what();
-  }
-  return "no error";
+  const Attempt<Regions> regions = segment_by_shape(build_character(source, "test.obj"), settings);
+  return regions ? "no error" : regions.reason().what;
 }
 
 }  // namespace
@@ -108,7 +103,7 @@ TEST_CASE("a facing direction in the settings overrides the feet and swaps left 
           doctest::test_suite("many bakes")) {
   SegmentSettings settings;
   settings.facing = -Vec3::UnitZ();
-  const Regions turned = segment(baked_human().character, settings);
+  const Regions turned = *segment_by_shape(baked_human().character, settings);
   CHECK(turned.frame.forward.dot(Vec3::UnitZ()) < -0.999);
   const auto& usual = baked_human().regions.of_triangle;
   std::size_t swapped = 0;
@@ -116,7 +111,9 @@ TEST_CASE("a facing direction in the settings overrides the feet and swaps left 
   for (std::size_t t = 0; t < usual.size(); ++t) swapped += turned.of_triangle[t] == kSwap[usual[t]] ? 1u : 0u;
   CHECK(static_cast<double>(swapped) > 0.99 * static_cast<double>(usual.size()));
   settings.facing = Vec3::UnitX();
-  CHECK_THROWS_WITH_AS(segment(baked_human().character, settings), doctest::Contains("facing direction"), Error);
+  const Attempt<Regions> sideways = segment_by_shape(baked_human().character, settings);
+  REQUIRE_FALSE(sideways);
+  CHECK(sideways.reason().what.find("facing direction") != std::string::npos);
 }
 
 TEST_CASE("a body without a limb is refused by the missing limb's name") {

@@ -18,11 +18,11 @@
 #include "closed_shapes.h"
 #include "creatures.h"
 #include "mesh/error.h"
+#include "pipeline/pipeline.h"
 #include "play/play.h"
 #include "temporary_folder.h"
 #include "wrap/alpha_wrap.h"
 #include "wrap/close_cracks.h"
-#include "wrap/closed_body.h"
 #include "wrap/stitch.h"
 
 using namespace spherechain::baker;
@@ -40,7 +40,9 @@ Closed close(const SourceMesh& source, const std::string& name = "broken.obj") {
   Closed out;
   out.character = build_character(source, name);
   out.character.file = name;
-  out.regions = segment_closed(out.character, {}, out.report);
+  Segmentation found = segment_character(out.character, {}, {});
+  out.regions = std::move(found.regions);
+  out.report = found.closing;
   out.spheres = fit_spheres(out.character, out.regions, {});
   return out;
 }
@@ -194,7 +196,13 @@ TEST_CASE("a rigged body in 60 pieces, none as large as a limb, is segmented by 
   Closed closed;
   closed.character = build_character(broken.source, "rigged.obj");
   const Roles roles = find_roles(closed.character.rig, closed.character.source_positions);
-  closed.regions = segment_character(closed.character, roles, {}, closed.report);
+  Segmentation found = segment_character(closed.character, roles, {});
+  CHECK(found.choice.strategy == "rig on a wrap");
+  REQUIRE(found.choice.passed_over.size() == 4);
+  CHECK(found.choice.passed_over[3].strategy == "rig on all pieces of the skin");
+  CHECK(found.choice.passed_over[3].reason.what == "most of the limbs' skin is in small pieces");
+  closed.regions = std::move(found.regions);
+  closed.report = found.closing;
   CHECK(closed.regions.provider == "rig");
   CHECK(closed.report.body == BodySource::kWrapped);
   CHECK(count_open_edges(closed.character.body) == 0);

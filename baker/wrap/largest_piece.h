@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "mesh/mesh.h"
+
+namespace spherechain::baker {
+
+// The connected piece of a mesh with the largest area.
+struct Piece {
+  Mesh mesh;
+  std::vector<Index> of_vertex, of_triangle;  // its vertex or triangle -> the mesh's
+};
+
+Piece largest_piece(const Mesh& mesh);
+
+}  // namespace spherechain::baker

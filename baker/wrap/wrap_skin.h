@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+
+#include "mesh/attempt.h"
+#include "wrap/closing_report.h"
+
+namespace spherechain::baker {
+
+struct WrapSize {
+  double fineness;           // the skin's diameter over alpha
+  bool holes_first = false;  // the skin's holes are closed by fans before
+};
+
+// The largest closed surface around a skin in any state, drawn on to the skin where it is near.
+struct Wrap {
+  Mesh surface;
+  WrapSize size;
+  double thin;  // share of its area with nothing but offset behind it: cloth, or it has got inside through a hole
+
+  // Whether so much is thin that the wrap lines the skin from inside. Capes and hair are thin, too, but smaller.
+  bool lines_skin() const;
+};
+
+inline constexpr std::size_t kWrapTrianglesMax = 100'000;
+
+// Counts and times itself in `report`. There is no wrap of more than kWrapTrianglesMax triangles.
+Attempt<Wrap> wrap_skin(const Mesh& skin, const WrapSize& size, ClosingReport& report);
+
+// Makes the body the wrap, and says so in `report`.
+void use_wrap(Character& character, const Wrap& wrap, ClosingReport& report);
+
+// What to try in order where a rig says what the regions are: as fine as limbs need, then coarser against wide holes.
+// Stout bodies, which have more skin for their size, need less than a human.
+std::array<WrapSize, 3> wrap_sizes_of_limbs(const Mesh& skin);
+
+}  // namespace spherechain::baker

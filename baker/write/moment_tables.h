@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The bones of an asset, and what refit from bones reads.
+#pragma once
+
+#include <vector>
+
+#include "bind/bind_bones.h"
+#include "bind/bind_moments.h"
+#include "sphere_chains_generated.h"
+
+namespace spherechain::baker {
+
+std::vector<flatbuffers::Offset<schema::Bone>> create_bones(flatbuffers::FlatBufferBuilder& builder,
+                                                            const BoneBinding& bones);
+
+// None where there are no batches.
+flatbuffers::Offset<schema::Moments> create_moments(flatbuffers::FlatBufferBuilder& builder,
+                                                    const MomentBinding& moments);
+
+}  // namespace spherechain::baker

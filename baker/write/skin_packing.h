@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The part of an asset that cluster bounds and exact contacts read, packed without loss.
+#pragma once
+
+#include <vector>
+
+#include "bind/bind_bones.h"
+#include "bind/body_parts.h"
+#include "clusters/clusters.h"
+#include "sphere_chains_generated.h"
+#include "spherechain/types.h"
+
+namespace spherechain::baker {
+
+// `rest_contacts`: source triangles that intersect at rest, sorted.
+flatbuffers::Offset<schema::Skin> create_skin(flatbuffers::FlatBufferBuilder& builder, const Character& character,
+                                              const BoneBinding& bones, const Clusters& clusters,
+                                              const BodyParts& parts, const std::vector<Pair>& rest_contacts);
+
+}  // namespace spherechain::baker

@@ -1,0 +1,94 @@
+/* SPDX-License-Identifier: MIT */
+/* Q3: where does the skin penetrate itself? Exact: all triangles that intersect, and none else. */
+#pragma once
+
+#include "spherechain/detect.h"
+#include "spherechain/pose.h"
+
+/* Which triangles are paired, by the spheres that they belong to. */
+SC_ENUM(sc_scope){
+    SC_SCOPE_APART = 0,      /* of two spheres that are not ignored: no neighbours on the body */
+    SC_SCOPE_NEIGHBOURS = 1, /* of one sphere, or of two that are ignored: folds of elbow, knee, fingers. 40 times dearer */
+    SC_SCOPE_ALL = 2,
+};
+
+/* Two body parts whose skins intersect. */
+typedef struct sc_part_contact {
+  uint32_t part_a, part_b; /* part_a <= part_b; equal where a part meets itself */
+  uint32_t triangle_pairs; /* >= 1 */
+  sc_vec3 low, high;       /* a box around the triangles that intersect; the pose's space */
+} sc_part_contact;
+
+/* Two triangles that intersect. What ends with _a is of triangle_a. */
+typedef struct sc_triangle_contact {
+  uint32_t triangle_a, triangle_b; /* the source's numbers, triangle_a < triangle_b */
+  uint32_t sphere_a, sphere_b;
+  uint32_t part_a, part_b;
+  sc_vec3 from, to; /* the segment in which they cross; of triangles in one plane the longest piece of an edge inside
+                       the other triangle. Rounded */
+} sc_triangle_contact;
+
+/* The skin is where the vertices put it; without vertices the job skins what it needs from the bones. With both, the
+ * bones bound the search, and each vertex must be where its bone weights put it, up to rounding; else give vertices
+ * alone (docs/arithmetic.md).
+ *
+ * Left out: triangles that share a position at rest (neighbours), triangles that intersect in the rest pose, ignored
+ * pairs and disabled spheres of the filter.
+ *
+ * Allocates nothing, takes no lock. Jobs on other outputs and scratch memory may run at the same time. */
+typedef struct sc_skin_contact_job {
+  const sc_asset* asset SC_ZERO; /* open, with triangles */
+  sc_pose pose SC_ZERO;
+  sc_scope scope SC_ZERO;
+  sc_target target SC_ZERO;
+  int32_t spheres_only SC_ZERO; /* 1: find pairs of spheres alone; each ends at its first contact. Cheapest */
+  const uint64_t* skin_table SC_ZERO; /* from sc_prepare_skin(), of this asset */
+  const sc_filter* filter SC_ZERO;    /* null: the asset's ignored pairs */
+  /* Null, or: only these pairs of spheres, ignored or not. Sorted by (a, b), each once. Scope and filter must be zero */
+  const sc_pair* candidates SC_ZERO;
+  size_t candidate_count SC_ZERO;
+  uint64_t* scratch SC_ZERO; /* sc_skin_scratch_words() words; nothing is kept there between runs */
+  size_t scratch_words SC_ZERO;
+  /* Out. Lists are sorted, entries are listed once; null: count only. Counts say how many there are, also where a list
+   * is too small. With spheres_only there are no parts and no triangles. Triangles that are not listed cost less. */
+  sc_part_contact* parts SC_ZERO;
+  size_t part_capacity SC_ZERO;
+  sc_pair* spheres SC_ZERO; /* a = b: within one sphere's triangles */
+  size_t sphere_capacity SC_ZERO;
+  sc_triangle_contact* triangles SC_ZERO;
+  size_t triangle_capacity SC_ZERO;
+  size_t part_count SC_ZERO, sphere_count SC_ZERO, triangle_count SC_ZERO;
+#if defined(__cplusplus)
+  sc_status run() noexcept;
+#endif
+} sc_skin_contact_job;
+
+#if defined(__cplusplus)
+extern "C" {
+#endif
+
+/* SC_OK; SC_OVERFLOW: the first entries of the sorted list are written; SC_NULL, SC_MISALIGNED, SC_TOO_SMALL,
+ * SC_BAD_STRIDE, SC_BAD_VALUE, SC_ALIASED, SC_NOT_OPEN, SC_NOT_IN_ASSET, SC_UNSUPPORTED_TARGET: nothing is written.
+ * The same contacts on every target. A position that is not finite intersects nothing; matrices that are not finite
+ * may lose contacts. */
+SPHERECHAIN_API sc_status sc_find_skin_contacts(sc_skin_contact_job* job) SC_NOEXCEPT;
+
+/* Expands the asset's packed skin into `words`, sc_skin_table_words() of them, once. Any number of jobs may share the
+ * table; it must not change. 64-byte alignment is fastest. SC_OK, SC_NULL, SC_MISALIGNED, SC_TOO_SMALL, SC_NOT_OPEN,
+ * SC_NOT_IN_ASSET (the asset has no triangles). */
+SPHERECHAIN_API size_t sc_skin_table_words(const sc_asset* asset) SC_NOEXCEPT;
+SPHERECHAIN_API sc_status sc_prepare_skin(const sc_asset* asset, uint64_t* words, size_t word_count) SC_NOEXCEPT;
+
+/* Words of scratch memory; 0 where the asset is not open or has no triangles. */
+SPHERECHAIN_API size_t sc_skin_scratch_words(const sc_asset* asset) SC_NOEXCEPT;
+
+#if defined(__cplusplus)
+}
+inline sc_status sc_skin_contact_job::run() noexcept { return sc_find_skin_contacts(this); }
+namespace spherechain {
+using Scope = sc_scope;
+using PartContact = sc_part_contact;
+using TriangleContact = sc_triangle_contact;
+using SkinContactJob = sc_skin_contact_job;
+}  // namespace spherechain
+#endif

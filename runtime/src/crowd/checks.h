@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+
+#include "asset/asset_view.h"
+#include "spherechain/crowd.h"
+
+namespace spherechain {
+
+// Entries from one instance's spheres to the next's; bytes from one instance's bones.
+std::size_t sphere_stride(const AssetView& asset, const CrowdJob& job);
+std::size_t bone_stride(const AssetView& asset, const CrowdJob& job);
+inline std::size_t task_count(const CrowdJob& job) { return job.task_count == 0 ? 1 : job.task_count; }
+
+// Of an asset that is open; the target aside.
+Status check_crowd(const AssetView& asset, const CrowdJob& job);
+
+}  // namespace spherechain

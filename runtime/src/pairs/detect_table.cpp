@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <type_traits>
+
+#include "asset/memory.h"
+#include "asset/status.h"
+#include "pairs/filter.h"
+#include "pairs/pair_bits.h"
+#include "pairs/pair_rows.h"
+#include "pose/pose.h"
+#include "simd/simd.h"
+
+namespace spherechain {
+namespace {
+
+constexpr std::uint64_t kMagic = 0x6361747465646373;  // says that the words are a table
+enum Place : std::size_t { kIsTable, kAsset, kRadius, kSpheres, kRestRoom, kIsPadded, kRestPairs, kHeaderWords };
+
+bool is_one_tile(const AssetView& asset) { return asset.spheres().size <= kTileSize; }
+
+std::uint64_t key_of(const AssetView& asset) { return reinterpret_cast<std::uintptr_t>(asset.spheres().data); }
+
+std::size_t padded_rest_pairs(const AssetView& asset) {
+  const std::size_t most = std::max(asset.rest_pairs(SC_RADIUS_FIT).size, asset.rest_pairs(SC_RADIUS_DETECT).size);
+  return (most + kBlock - 1) / kBlock * kBlock;
+}
+
+// Where in a table's words what lies, and how many there are; of null words only how many. An asset of one tile has rows
+// and lists; a larger one, for which they would save nothing, its filter's bits.
+struct Content {
+  Content(std::uint64_t* words, const AssetView& asset) : size(kHeaderWords) {
+    const auto take = [&](auto*& content, std::size_t count) {
+      content = words == nullptr ? nullptr : reinterpret_cast<std::remove_reference_t<decltype(content)>>(words + size);
+      size += (count * sizeof *content + sizeof *words - 1) / sizeof *words;
+    };
+    const std::size_t n = asset.spheres().size;
+    if (is_one_tile(asset)) {
+      take(rows, padded_rows(n));
+      take(plain, padded_rows(n));
+      take(strips, padded_strips(n));
+      take(wanted, padded_strips(n));
+      take(rest_pairs, padded_rest_pairs(asset));
+      take(rest_scales, padded_rest_pairs(asset));
+    } else {
+      take(ignored, words_for(pairs_of(n)));
+      take(disabled, words_for(n));
+    }
+    take(padding, n);
+  }
+
+  std::size_t size;
+  TileWords *rows = nullptr, *plain = nullptr;
+  ListedPair *strips = nullptr, *rest_pairs = nullptr;
+  std::uint16_t* wanted = nullptr;
+  float *rest_scales = nullptr, *padding = nullptr;
+  std::uint64_t *ignored = nullptr, *disabled = nullptr;
+};
+
+void fill_strips(std::size_t n, const Content& content) {
+  const std::size_t padded = padded_strips(n);
+  std::fill(content.strips, content.strips + padded, ListedPair{});
+  std::size_t strip = 0;
+  for_each_strip(n, [&](std::size_t row, std::size_t first) {
+    content.strips[strip] = listed_pair(first, row);
+    content.wanted[strip] = static_cast<std::uint16_t>(content.plain[row].words[first / 64] >> (first % 64));
+    ++strip;
+  });
+  std::fill(content.wanted + strip, content.wanted + padded, std::uint16_t{0});
+}
+
+// The rest pairs that rows hold. Returns how many, filled up.
+std::size_t fill_rest_pairs(Span<const RestPair> from, const Content& content) {
+  std::size_t count = 0;
+  for (const RestPair& pair : from) {
+    if (((content.rows[pair.b].words[pair.a / 64] >> (pair.a % 64)) & 1U) != 0) {
+      content.rest_pairs[count] = listed_pair(pair.a, pair.b);
+      content.rest_scales[count++] = pair.rest_scale;
+    }
+  }
+  for (; count % kBlock != 0; ++count) {
+    content.rest_pairs[count] = {};
+    content.rest_scales[count] = 0;
+  }
+  return count;
+}
+
+Status check(const AssetView& asset, Radius radius, const Filter* filter, Span<std::uint64_t> words) {
+  if (words.data == nullptr || any_misaligned(words.data)) {
+    return refuse(words.data == nullptr ? SC_NULL : SC_MISALIGNED, SC_FIELD_TABLE);
+  }
+  if (!is_radius(radius)) {
+    return refuse(SC_BAD_VALUE, SC_FIELD_RADIUS);
+  }
+  const std::size_t needed = Content(nullptr, asset).size;
+  if (words.size < needed) {
+    return refuse(SC_TOO_SMALL, SC_FIELD_TABLE);
+  }
+  const Status status = filter == nullptr ? done() : check_filter(asset, *filter);
+  if (status != SC_OK) {
+    return status;
+  }
+  const FilterRanges ranges = ranges_of(filter);
+  return any_shared({range_of(Span<std::uint64_t>{words.data, needed})},
+                    {range_of(asset.ignored()), ranges.ignored, ranges.disabled, ranges.padding})
+             ? refuse(SC_ALIASED, SC_FIELD_TABLE)
+             : done();
+}
+
+void fill(const AssetView& asset, Radius radius, const Filter* filter, std::uint64_t* words) {
+  const std::size_t n = asset.spheres().size;
+  PairChoice choice{asset.ignored(), {}, asset.rest_pairs(radius)};
+  Span<const float> padding;
+  if (filter != nullptr) {
+    choice.ignored = {filter->ignored, filter->ignored_words};
+    choice.disabled = {filter->disabled, filter->disabled_words};
+    padding = {filter->padding, filter->padding_count};
+  }
+  const Content content(words, asset);
+  words[kIsTable] = kMagic;
+  words[kAsset] = key_of(asset);
+  words[kRadius] = static_cast<std::uint64_t>(radius);
+  words[kSpheres] = n;
+  words[kRestRoom] = padded_rest_pairs(asset);
+  words[kIsPadded] = padding.size > 0 ? 1 : 0;
+  words[kRestPairs] = 0;
+  std::fill(content.padding, content.padding + n, 0.0F);
+  std::copy(padding.begin(), padding.end(), content.padding);
+  if (is_one_tile(asset)) {
+    Target target{};
+    resolve_target(SC_TARGET_BEST, target);
+    fill_rows(target, choice, {0, n, 0, n}, content.rows, content.plain);
+    fill_strips(n, content);
+    words[kRestPairs] = fill_rest_pairs(choice.rest_pairs, content);
+  } else {
+    std::copy(choice.ignored.begin(), choice.ignored.end(), content.ignored);
+    std::fill(content.disabled, content.disabled + words_for(n), std::uint64_t{0});
+    std::copy(choice.disabled.begin(), choice.disabled.end(), content.disabled);
+  }
+}
+
+}  // namespace
+
+Status read_detect_table(const AssetView& asset, Radius radius, const std::uint64_t* words, DetectTable& out) {
+  if (any_misaligned(words)) {
+    return refuse(SC_MISALIGNED, SC_FIELD_TABLE);
+  }
+  // The bytes of another asset may have come to lie at the same address.
+  if (words[kIsTable] != kMagic || words[kAsset] != key_of(asset) ||
+      words[kRadius] != static_cast<std::uint64_t>(radius) || words[kSpheres] != asset.spheres().size ||
+      words[kRestRoom] != padded_rest_pairs(asset)) {
+    return refuse(SC_BAD_VALUE, SC_FIELD_TABLE);
+  }
+  const Content content(const_cast<std::uint64_t*>(words), asset);
+  const std::size_t n = asset.spheres().size;
+  out.size = content.size;
+  out.padding = {content.padding, words[kIsPadded] != 0 ? n : 0};
+  out.has_rows = is_one_tile(asset);
+  if (out.has_rows) {
+    out.rows = {content.rows,
+                content.plain,
+                {content.wanted, content.strips, content.rest_pairs, content.rest_scales, words[kRestPairs]}};
+  } else {
+    out.ignored = {content.ignored, words_for(pairs_of(n))};
+    out.disabled = {content.disabled, words_for(n)};
+  }
+  return done();
+}
+
+}  // namespace spherechain
+
+using namespace spherechain;
+
+extern "C" {
+
+size_t sc_detect_table_words(const sc_asset* asset) noexcept {
+  return sc_asset_is_open(asset) != 0 ? Content(nullptr, view_of(*asset)).size : 0;
+}
+
+sc_status sc_prepare_detect(const sc_asset* asset, sc_radius radius, const sc_filter* filter, uint64_t* words,
+                            size_t word_count) noexcept {
+  if (sc_asset_is_open(asset) == 0) {
+    return refuse(asset == nullptr ? SC_NULL : SC_NOT_OPEN, SC_FIELD_ASSET);
+  }
+  const Status status = check(view_of(*asset), radius, filter, {words, word_count});
+  if (status == SC_OK) {
+    fill(view_of(*asset), radius, filter, words);
+  }
+  return status;
+}
+
+}  // extern "C"

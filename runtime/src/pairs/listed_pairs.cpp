@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: MIT
+#include "pairs/listed_pairs.h"
+
+#include <cstring>
+
+#include "simd/arithmetic.h"
+#include "simd/simd.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "pairs/listed_pairs.cpp"
+#include "simd/highway.h"
+#include "pairs/sphere_columns.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace spherechain {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Floats = hn::ScalableTag<float>;
+using Pairs = hn::ScalableTag<std::int32_t>;  // numbers below 2^31: offsets are of kTileSize spheres
+
+// Adds those of kListLanes pairs that touch and whose number is below `count`. False where there are too many.
+HWY_INLINE bool test_pairs(const Sphere* spheres, const ListedPair* pairs, hn::Vec<Floats> rest_scales, std::size_t count,
+                           FoundPairs& found) {
+  constexpr Floats kFloats;
+  constexpr Pairs kPairs;
+  const auto* const bytes = reinterpret_cast<const char*>(spheres);
+  const auto at = [&](std::size_t offset) -> const Sphere& { return *reinterpret_cast<const Sphere*>(bytes + offset); };
+  auto touch = touching([&](std::size_t k) -> const Sphere& { return at(pairs[k].a); },
+                        [&](std::size_t k) -> const Sphere& { return at(pairs[k].b); }, rest_scales);
+  touch = hn::And(touch, hn::FirstN(kFloats, count));
+  const auto numbers = hn::LoadU(kPairs, reinterpret_cast<const std::int32_t*>(pairs));
+  const auto own = hn::RebindMask(kPairs, touch);
+  hn::StoreU(hn::Compress(numbers, own), kPairs, reinterpret_cast<std::int32_t*>(found.pairs + found.count));
+  found.count += hn::CountTrue(kPairs, own);
+  return found.count <= kMaxPairs;
+}
+
+// The bits of the strips that have wanted candidates, of a group; the others' are taken from `candidates`.
+HWY_INLINE std::uint64_t keep_wanted(const std::uint16_t* wanted, std::uint16_t* candidates) {
+  const hn::ScalableTag<std::uint16_t> kStrips;
+  constexpr std::size_t kLanes = hn::MaxLanes(kStrips);
+  std::uint64_t any = 0;
+  for (std::size_t i = 0; i < kStripGroup; i += kLanes) {
+    const auto kept = hn::And(hn::Load(kStrips, candidates + i), hn::LoadU(kStrips, wanted + i));
+    hn::Store(kept, kStrips, candidates + i);
+    std::uint64_t bits = 0;
+    hn::StoreMaskBits(kStrips, hn::Ne(kept, hn::Zero(kStrips)), reinterpret_cast<std::uint8_t*>(&bits));
+    any |= bits << i;
+  }
+  return any;
+}
+
+HWY_INLINE void clear_group(std::uint16_t* candidates) {
+  const hn::ScalableTag<std::uint16_t> kStrips;
+  for (std::size_t i = 0; i < kStripGroup; i += hn::MaxLanes(kStrips)) {
+    hn::Store(hn::Zero(kStrips), kStrips, candidates + i);
+  }
+}
+
+// The pairs of a strip whose bits are in `wanted`. Returns how many; writes kBlock entries.
+HWY_INLINE std::size_t list_strip(const ListedPair& strip, std::uint16_t wanted, ListedPair* listed) {
+#if HWY_TARGET == HWY_AVX3  // one register: no loop, whose end would be guessed wrong
+  constexpr Pairs kPairs;
+  const auto mask = hn::LoadMaskBits(kPairs, reinterpret_cast<const std::uint8_t*>(&wanted));
+  std::int32_t first = 0;
+  std::memcpy(&first, &strip, sizeof first);
+  const auto steps = hn::Mul(hn::Iota(kPairs, 0), hn::Set(kPairs, sizeof(Sphere) << 16));
+  const auto numbers = hn::Add(hn::Set(kPairs, first), steps);
+  hn::StoreU(hn::Compress(numbers, mask), kPairs, reinterpret_cast<std::int32_t*>(listed));
+  return hn::CountTrue(kPairs, mask);
+#else
+  std::size_t count = 0;
+  for (std::uint64_t left = wanted; left != 0; left &= left - 1, ++count) {
+    listed[count].a = static_cast<std::uint16_t>(strip.a + sizeof(Sphere) * hwy::Num0BitsBelowLS1Bit_Nonzero64(left));
+    listed[count].b = strip.b;
+  }
+  return count;
+#endif
+}
+
+bool find(const Sphere* spheres, std::size_t count, const PairLists& lists, FoundPairs& found) {
+  constexpr Floats kFloats;
+  found.count = 0;
+  SphereColumns columns;
+  if (count == 0 || !fill_all(spheres, count, spheres[0], columns)) {
+    return count == 0;
+  }
+  HWY_ALIGN std::uint16_t candidates[padded_strips(kTileSize) + kStripGroup];
+  const std::size_t strip_count = strips_of(count);
+  clear_group(candidates + strip_count / kStripGroup * kStripGroup);
+  for_candidates(
+      columns, count, columns, count, [](std::size_t first) { return first + 1; },
+      [&](std::size_t strip, std::size_t, std::size_t, std::uint16_t bits) { candidates[strip] = bits; });
+  // What candidates need of memory arrives meanwhile.
+  for (std::size_t i = 0; i < lists.rest_count; i += kListLanes) {
+    if (!test_pairs(spheres, lists.rest_pairs + i, hn::LoadU(kFloats, lists.rest_scales + i), kListLanes, found)) {
+      return false;
+    }
+  }
+  ListedPair listed[kMaxPairs + kBlock];
+  std::size_t listed_count = 0;
+  for (std::size_t first = 0; first < strip_count; first += kStripGroup) {
+    std::uint64_t strips = keep_wanted(lists.wanted + first, candidates + first);
+    for (; strips != 0; strips &= strips - 1) {
+      const std::size_t strip = first + hwy::Num0BitsBelowLS1Bit_Nonzero64(strips);
+      if (listed_count > kMaxPairs) {
+        return false;
+      }
+      listed_count += list_strip(lists.strips[strip], candidates[strip], listed + listed_count);
+    }
+  }
+  if (listed_count > kMaxPairs) {
+    return false;
+  }
+  for (std::size_t i = 0; i < kListLanes; ++i) {
+    listed[listed_count + i].a = listed[listed_count + i].b = 0;
+  }
+  for (std::size_t i = 0; i < listed_count; i += kListLanes) {
+    if (!test_pairs(spheres, listed + i, hn::Set(kFloats, 1.0F), listed_count - i, found)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+// Each pair's place is the number of those before it: of a register's pairs at once.
+void sort(const FoundPairs& found, Pair* list, std::size_t size) {
+  constexpr Pairs kPairs;
+  constexpr std::size_t kLanes = hn::MaxLanes(kPairs);
+  const auto* const numbers = reinterpret_cast<const std::int32_t*>(found.pairs);
+  HWY_ALIGN std::uint32_t places[kLanes];
+  for (std::size_t first = 0; first < found.count; first += kLanes) {
+    const auto own = hn::Load(kPairs, numbers + first);
+    auto before = hn::Zero(kPairs);
+    for (std::size_t i = 0; i < found.count; ++i) {
+      before = hn::Sub(before, hn::VecFromMask(kPairs, hn::Lt(hn::Set(kPairs, numbers[i]), own)));
+    }
+    hn::Store(before, kPairs, reinterpret_cast<std::int32_t*>(places));
+    const ListedPair* const pairs = found.pairs + first;
+    const std::size_t count = found.count - first < kLanes ? found.count - first : kLanes;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (places[i] < size) {
+        list[places[i]].a = static_cast<std::uint32_t>(pairs[i].a / sizeof(Sphere));
+        list[places[i]].b = static_cast<std::uint32_t>(pairs[i].b / sizeof(Sphere));
+      }
+    }
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace spherechain
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace spherechain {
+namespace {
+
+SPHERECHAIN_KERNELS(find);
+SPHERECHAIN_KERNELS(sort);
+
+}  // namespace
+
+bool find_listed(Target resolved, const Sphere* spheres, std::size_t count, const PairLists& lists, FoundPairs& found) {
+  return find_kernels[index_of(resolved)](spheres, count, lists, found);
+}
+
+void list_in_order(Target resolved, const FoundPairs& found, Span<Pair> list) {
+  sort_kernels[index_of(resolved)](found, list.data, list.size);
+}
+
+}  // namespace spherechain
+#endif

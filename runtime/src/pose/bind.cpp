@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+// From an engine's joints to the asset's bones, and whether the two agree.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "asset/message.h"
+#include "asset/status.h"
+#include "pose/pose.h"
+
+namespace spherechain {
+namespace {
+
+// What two inverse bind matrices, or places of a joint, may differ by: engines store them in halves of a unit in the
+// last place, exporters in six digits; another rest pose differs by far more.
+constexpr double kTolerance = 1e-3;
+
+// The greatest difference of two matrices: of the linear parts relative to the greatest figure, of the translations
+// relative to the character's height.
+struct Difference {
+  double linear, translation;
+};
+
+Difference difference_of(const float* rows, const BoneMatrices& other, double height) {
+  double greatest = 1e-30, linear = 0, translation = 0;
+  for (std::size_t r = 0; r < 3; ++r) {
+    for (std::size_t c = 0; c < 4; ++c) {
+      const double own = rows[4 * r + c], theirs = other.data[r * other.row + c * other.column];
+      if (c < 3) {
+        greatest = std::max(greatest, std::abs(own));
+        linear = std::max(linear, std::abs(own - theirs));
+      } else {
+        translation = std::max(translation, std::abs(own - theirs));
+      }
+    }
+  }
+  return {linear / greatest, translation / (greatest * height)};
+}
+
+bool agrees(const Difference& d) { return d.linear <= kTolerance && d.translation <= kTolerance; }
+
+BoneMatrices matrix_at(const float* data, MatrixLayout layout) {
+  Pose pose{};
+  pose.bones = data;
+  pose.bone_layout = layout;
+  return matrices_of(pose);
+}
+
+// Where matrix `bone` of a pose takes a point.
+void move(const BoneMatrices& bones, std::size_t bone, const Vec3& p, double (&out)[3]) {
+  const float* const m = bones.data + bone * bones.stride;
+  for (std::size_t r = 0; r < 3; ++r) {
+    const float* const row = m + r * bones.row;
+    out[r] = double{row[0]} * p.x + double{row[bones.column]} * p.y + double{row[2 * bones.column]} * p.z +
+             row[3 * bones.column];
+  }
+}
+
+}  // namespace
+}  // namespace spherechain
+
+using namespace spherechain;
+
+extern "C" {
+
+sc_status sc_bind_joints(const sc_asset* asset, const sc_bone* joints, size_t joint_count,
+                         sc_matrix_layout inverse_bind_layout, uint32_t* joint_of_bone, size_t capacity, char* message,
+                         size_t message_size) noexcept {
+  Message sentence(message, message_size);
+  if (sc_asset_is_open(asset) == 0) {
+    sentence.wrong("asset: not open");
+    return refuse(asset == nullptr ? SC_NULL : SC_NOT_OPEN, SC_FIELD_ASSET);
+  }
+  const AssetView& view = view_of(*asset);
+  if ((joints == nullptr && joint_count > 0) || joint_of_bone == nullptr) {
+    sentence.wrong("%s: null", joint_of_bone == nullptr ? "joint_of_bone" : "joints");
+    return refuse(SC_NULL, joint_of_bone == nullptr ? SC_FIELD_OUTPUT : SC_FIELD_JOINTS);
+  }
+  if (capacity < view.bone_count()) {
+    sentence.wrong("joint_of_bone: room for %zu bones, but the asset has %zu", capacity, view.bone_count());
+    return refuse(SC_TOO_SMALL, SC_FIELD_OUTPUT);
+  }
+  const double height = view.info().height;
+  for (std::size_t b = 0; b < view.bone_count(); ++b) {
+    const BoneView bone = view.bone(b);
+    joint_of_bone[b] = SC_NO_JOINT;
+    if (bone.is_rest) {
+      continue;
+    }
+    bool is_there = false;
+    Difference least{HUGE_VAL, HUGE_VAL};
+    for (std::size_t j = 0; j < joint_count && joint_of_bone[b] == SC_NO_JOINT; ++j) {
+      if (joints[j].name == nullptr || std::strcmp(joints[j].name, bone.name) != 0) {
+        continue;
+      }
+      is_there = true;
+      if (joints[j].inverse_bind == nullptr) {
+        joint_of_bone[b] = static_cast<std::uint32_t>(j);
+        continue;
+      }
+      if (size_of(inverse_bind_layout) == 0) {
+        sentence.wrong("inverse_bind_layout: not set, but joint \"%s\" has an inverse bind matrix", bone.name);
+        return refuse(SC_BAD_VALUE, SC_FIELD_BONE_LAYOUT);
+      }
+      const Difference d = difference_of(bone.inverse_bind, matrix_at(joints[j].inverse_bind, inverse_bind_layout), height);
+      if (agrees(d)) {
+        joint_of_bone[b] = static_cast<std::uint32_t>(j);
+      } else if (d.linear + d.translation < least.linear + least.translation) {
+        least = d;
+      }
+    }
+    if (joint_of_bone[b] != SC_NO_JOINT) {
+      continue;
+    }
+    if (!is_there) {
+      sentence.wrong("bone \"%s\" of the asset is no joint of this skeleton", bone.name);
+      return refuse(SC_NO_SUCH_BONE, SC_FIELD_JOINTS);
+    }
+    sentence.wrong("bone \"%s\": its inverse bind matrix differs from the asset's (axes by %.3g, place by %.3g of the "
+                   "height): another rest pose, unit or axis convention",
+                   bone.name, least.linear, least.translation);
+    return refuse(SC_OTHER_BIND, SC_FIELD_JOINTS);
+  }
+  return done();
+}
+
+sc_status sc_gather_bones(const sc_asset* asset, const uint32_t* joint_of_bone, const sc_pose* palette,
+                          float* bones) noexcept {
+  if (sc_asset_is_open(asset) == 0) {
+    return refuse(asset == nullptr ? SC_NULL : SC_NOT_OPEN, SC_FIELD_ASSET);
+  }
+  if (palette == nullptr || palette->bones == nullptr || joint_of_bone == nullptr || bones == nullptr) {
+    return refuse(SC_NULL, bones == nullptr ? SC_FIELD_OUTPUT : joint_of_bone == nullptr ? SC_FIELD_JOINTS : SC_FIELD_BONES);
+  }
+  if (any_misaligned(palette->bones, bones)) {
+    return refuse(SC_MISALIGNED, any_misaligned(bones) ? SC_FIELD_OUTPUT : SC_FIELD_BONES);
+  }
+  if (size_of(palette->bone_layout) == 0) {
+    return refuse(SC_BAD_VALUE, SC_FIELD_BONE_LAYOUT);
+  }
+  if (bone_stride(*palette) < size_of(palette->bone_layout) || bone_stride(*palette) % sizeof(float) != 0) {
+    return refuse(SC_BAD_STRIDE, SC_FIELD_BONE_STRIDE);
+  }
+  const std::size_t count = view_of(*asset).bone_count();
+  for (std::size_t b = 0; b < count; ++b) {
+    if (joint_of_bone[b] != SC_NO_JOINT && joint_of_bone[b] >= palette->bone_count) {
+      return refuse(SC_TOO_SMALL, SC_FIELD_BONE_COUNT);
+    }
+  }
+  const BoneMatrices from = matrices_of(*palette);
+  for (std::size_t b = 0; b < count; ++b) {
+    for (std::size_t i = 0; i < 12; ++i) {
+      const std::size_t row = i / 4, column = i % 4;
+      bones[12 * b + i] = joint_of_bone[b] == SC_NO_JOINT
+                              ? static_cast<float>(row == column)
+                              : from.data[joint_of_bone[b] * from.stride + row * from.row + column * from.column];
+    }
+  }
+  return done();
+}
+
+sc_status sc_check_rest_pose(const sc_asset* asset, const sc_pose* pose, char* message, size_t message_size) noexcept {
+  Message sentence(message, message_size);
+  if (asset == nullptr || pose == nullptr || sc_asset_is_open(asset) == 0) {
+    sentence.wrong("%s: null, or not open", pose == nullptr ? "pose" : "asset");
+    return refuse(asset == nullptr || pose == nullptr ? SC_NULL : SC_NOT_OPEN,
+                  pose == nullptr ? SC_FIELD_BONES : SC_FIELD_ASSET);
+  }
+  const AssetView& view = view_of(*asset);
+  const Status status = check_bones(view, *pose);
+  if (status != SC_OK) {
+    sentence.wrong("%s: %s", sc_field_name(status.field), sc_code_text(status.code));
+    return status;
+  }
+  // All matrices are the model's own: each moves the body's middle, and points a height off, where the first one does.
+  const BoneMatrices bones = matrices_of(*pose);
+  const AssetInfo info = view.info();
+  const float h = info.height;
+  const Vec3 o = info.origin;
+  const Vec3 points[] = {o, {o.x + h, o.y, o.z}, {o.x, o.y + h, o.z}, {o.x, o.y, o.z + h}};
+  double first[4][3], moved[3];
+  for (std::size_t i = 0; i < 4; ++i) {
+    move(bones, 0, points[i], first[i]);
+  }
+  double scale = 0;
+  for (std::size_t r = 0; r < 3; ++r) {
+    scale = std::max(scale, std::abs(first[2][r] - first[0][r]));
+  }
+  for (std::size_t b = 0; b < view.bone_count(); ++b) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      move(bones, b, points[i], moved);
+      for (std::size_t r = 0; r < 3; ++r) {
+        if (!(std::abs(moved[r] - first[i][r]) <= kTolerance * scale) && !view.bone(b).is_rest) {
+          sentence.wrong("bone \"%s\": its matrix is not that of \"%s\", as in the bind pose. Is this the bind pose? "
+                         "Are layout, order and inverse bind matrices right?",
+                         view.bone(b).name, view.bone(0).name);
+          return refuse(SC_OTHER_BIND, SC_FIELD_BONES);
+        }
+      }
+    }
+  }
+  return done();
+}
+
+}  // extern "C"

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: MIT
+// The short way: one block of memory that holds the asset's bytes, its binding, its tables and its outputs.
+#include "spherechain/character.h"
+
+#include <cstdlib>
+#include <cstring>
+#include <initializer_list>
+#include <new>
+
+#include "asset/message.h"
+#include "asset/status.h"
+#include "pose/pose.h"
+
+struct sc_character {
+  sc_asset asset;
+  void* bytes;
+  std::uint32_t* joint_of_bone;  // null: palettes come in the asset's order
+  float* bones;
+  std::uint64_t *skin_table, *scratch;
+  sc_part_contact* contacts;
+  std::size_t contact_capacity;
+};
+
+namespace spherechain {
+namespace {
+
+constexpr std::size_t kLine = 64;
+
+// Memory from a cache line on. The place that std::malloc gave stands before it.
+void* allocate(std::size_t size) {
+  void* const block = std::malloc(size + kLine + sizeof(void*));
+  if (block == nullptr) {
+    return nullptr;
+  }
+  const auto first = reinterpret_cast<std::uintptr_t>(block) + sizeof(void*);
+  void* const aligned = reinterpret_cast<void*>((first + kLine - 1) / kLine * kLine);
+  static_cast<void**>(aligned)[-1] = block;
+  return aligned;
+}
+
+void release(void* memory) {
+  if (memory != nullptr) {
+    std::free(static_cast<void**>(memory)[-1]);
+  }
+}
+
+template <typename T>
+bool allocate_array(T*& out, std::size_t count) {
+  out = static_cast<T*>(allocate(count * sizeof(T)));
+  return out != nullptr;
+}
+
+Status fill(sc_character& c, std::uint32_t abi, const void* data, std::size_t size, const sc_bone* joints,
+            std::size_t joint_count, sc_matrix_layout layout, char* message, std::size_t message_size) {
+  const Status no_memory = refuse(SC_NO_MEMORY, SC_FIELD_NONE);
+  c.bytes = allocate(size);
+  if (c.bytes == nullptr) {
+    return no_memory;
+  }
+  std::memcpy(c.bytes, data, size);
+  Status status = sc_asset_open(&c.asset, abi, c.bytes, size, message, message_size);
+  if (status != SC_OK) {
+    return status;
+  }
+  const AssetView& view = view_of(c.asset);
+  if (joints != nullptr) {
+    if (!allocate_array(c.joint_of_bone, view.bone_count()) || !allocate_array(c.bones, 12 * view.bone_count())) {
+      return no_memory;
+    }
+    status = sc_bind_joints(&c.asset, joints, joint_count, layout, c.joint_of_bone, view.bone_count(), message,
+                            message_size);
+    if (status != SC_OK) {
+      return status;
+    }
+  }
+  const std::size_t table_words = sc_skin_table_words(&c.asset);
+  c.contact_capacity = view.part_count() * (view.part_count() + 1) / 2;
+  if (!allocate_array(c.skin_table, table_words) || !allocate_array(c.scratch, sc_skin_scratch_words(&c.asset)) ||
+      !allocate_array(c.contacts, c.contact_capacity)) {
+    return no_memory;
+  }
+  return sc_prepare_skin(&c.asset, c.skin_table, table_words);
+}
+
+// The palette's bones in the asset's order.
+Status gather(sc_character& c, const sc_pose& palette, sc_pose& pose) {
+  pose = palette;
+  if (c.joint_of_bone == nullptr || palette.bones == nullptr) {
+    return done();
+  }
+  const Status status = sc_gather_bones(&c.asset, c.joint_of_bone, &palette, c.bones);
+  pose.bones = c.bones;
+  pose.bone_count = view_of(c.asset).bone_count();
+  pose.bone_layout = SC_ROWS_3X4;
+  pose.bone_stride = 0;
+  return status;
+}
+
+}  // namespace
+}  // namespace spherechain
+
+using namespace spherechain;
+
+extern "C" {
+
+sc_status sc_character_create(uint32_t abi, const void* data, size_t size, const sc_bone* joints, size_t joint_count,
+                              sc_matrix_layout inverse_bind_layout, sc_character** character, char* message,
+                              size_t message_size) noexcept {
+  Message sentence(message, message_size);
+  if (character == nullptr || data == nullptr) {
+    sentence.wrong("%s: null", character == nullptr ? "character" : "data");
+    return refuse(SC_NULL, character == nullptr ? SC_FIELD_OUTPUT : SC_FIELD_DATA);
+  }
+  *character = nullptr;
+  void* const memory = allocate(sizeof(sc_character));
+  Status status = refuse(SC_NO_MEMORY, SC_FIELD_NONE);
+  if (memory != nullptr) {
+    auto* const made = new (memory) sc_character{};
+    status = fill(*made, abi, data, size, joints, joint_count, inverse_bind_layout, message, message_size);
+    if (status == SC_OK) {
+      *character = made;
+      return status;
+    }
+    sc_character_destroy(made);
+  }
+  if (status == SC_NO_MEMORY) {
+    sentence.wrong("out of memory");
+  }
+  return status;
+}
+
+void sc_character_destroy(sc_character* character) noexcept {
+  if (character == nullptr) {
+    return;
+  }
+  for (void* memory : {character->bytes, static_cast<void*>(character->joint_of_bone),
+                       static_cast<void*>(character->bones), static_cast<void*>(character->skin_table),
+                       static_cast<void*>(character->scratch), static_cast<void*>(character->contacts)}) {
+    release(memory);
+  }
+  release(character);
+}
+
+const sc_asset* sc_character_asset(const sc_character* character) noexcept {
+  return character == nullptr ? nullptr : &character->asset;
+}
+
+sc_status sc_character_check_rest(sc_character* character, const sc_pose* palette, char* message,
+                                  size_t message_size) noexcept {
+  if (character == nullptr || palette == nullptr) {
+    return refuse(SC_NULL, character == nullptr ? SC_FIELD_NONE : SC_FIELD_BONES);
+  }
+  sc_pose pose{};
+  const Status status = gather(*character, *palette, pose);
+  return status == SC_OK ? sc_check_rest_pose(&character->asset, &pose, message, message_size) : status;
+}
+
+sc_status sc_character_contacts(sc_character* character, const sc_pose* palette, const sc_part_contact** contacts,
+                                size_t* count) noexcept {
+  if (character == nullptr || palette == nullptr || contacts == nullptr || count == nullptr) {
+    return refuse(SC_NULL, palette == nullptr ? SC_FIELD_BONES : SC_FIELD_OUTPUT);
+  }
+  *contacts = character->contacts;
+  *count = 0;
+  SkinContactJob job;
+  const Status gathered = gather(*character, *palette, job.pose);
+  if (gathered != SC_OK) {
+    return gathered;
+  }
+  job.asset = &character->asset;
+  job.skin_table = character->skin_table;
+  job.scratch = character->scratch;
+  job.scratch_words = sc_skin_scratch_words(&character->asset);
+  job.parts = character->contacts;
+  job.part_capacity = character->contact_capacity;
+  const Status status = job.run();
+  *count = status == SC_OK ? job.part_count : 0;
+  return status;
+}
+
+}  // extern "C"

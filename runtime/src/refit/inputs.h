@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// What refit by moments reads, as bare arrays: kernels are compiled once a target and may use no inline function of the
+// headers.
+#pragma once
+
+#include <cstddef>
+
+#include "pose/pose.h"
+
+namespace spherechain {
+
+struct MomentInputs {
+  Vec3 origin;
+  std::uint32_t reference;
+  std::size_t batch_count;
+  const MomentBatch* batches;
+  const BonePair* pairs;
+  const std::uint32_t* spheres;
+  const std::uint8_t* bone_counts;
+  const std::uint16_t* bones;
+  const CenterTerm* centers;
+  const std::uint8_t* pair_places;
+  const Moment* moments;
+};
+
+struct RefitInputs {
+  const RestSphere* rest;
+  std::size_t sphere_count, bone_count;
+  MomentInputs moments;
+  const float* matrices;
+  std::size_t stride;  // floats
+  MatrixLayout layout;
+  Radius radius;
+};
+
+// SC_OK where the pose's bones refit this open asset.
+Status check_refit_bones(const AssetView& asset, const Pose& pose, Radius radius);
+
+// Of a checked pose. For further characters of one asset change `matrices`.
+RefitInputs refit_inputs(const AssetView& asset, const Pose& pose, Radius radius);
+
+void refit_from_moments(const RefitInputs& inputs, Target resolved, Sphere* spheres);
+
+}  // namespace spherechain

@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: MIT
+// The inner loop of refit from bones by moments. A lane is an element of a 4 by 4 matrix, so targets of any width work
+// alike. What passes from one step to the next goes over the stack, whose lines are in the first cache: the bones'
+// matrices, a batch's Gram matrices, the sums of some spheres.
+#include <cstring>
+
+#include "simd/arithmetic.h"
+#include "refit/inputs.h"
+#include "simd/simd.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "refit/moments_kernel.cpp"
+#include "simd/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace spherechain {
+namespace HWY_NAMESPACE {
+namespace moments {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Lanes16 = hn::CappedTag<float, kMomentSize>;
+using Lanes4 = hn::CappedTag<float, 4>;
+using Vector = hn::Vec<Lanes16>;
+constexpr std::size_t kLanes = hn::MaxLanes(Lanes16());
+constexpr std::size_t kParts = kMomentSize / kLanes;
+constexpr std::size_t kChunk = 4;        // spheres finished together
+constexpr std::size_t kSums = 32;        // spheres whose sums are kept: finished at once, none waits for its own sums
+constexpr std::size_t kKeptBones = 256;  // an asset of more has its matrices moved wherever they are read
+
+// A bone's matrix by rows of four, seen from the origin and the reference bone; and a fourth row, which no sum that is
+// used reads.
+struct Moved {
+  HWY_ALIGN float rows[kMomentSize];
+};
+
+// Of spheres each: the centre's three rows of four columns, and the sixteen of its squared spread.
+struct Sums {
+  HWY_ALIGN float centers[kSums][kMomentSize];
+  HWY_ALIGN float squares[kSums][kMomentSize];
+  HWY_ALIGN float wanted[kSums];
+};
+
+// Where in the tables a sphere's figures start.
+struct Place {
+  const std::uint16_t* bones;
+  const CenterTerm* centers;
+  const std::uint8_t* pair_places;
+  const Moment* moments;
+};
+
+}  // namespace moments
+}  // namespace HWY_NAMESPACE
+}  // namespace spherechain
+HWY_AFTER_NAMESPACE();
+
+#include "refit/moments_bones.h"
+#include "refit/moments_chunk.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace spherechain {
+namespace HWY_NAMESPACE {
+namespace moments {
+
+// A batch's Gram matrices. Pairs of one bone follow each other: what of it falls on which lane is found once for them.
+template <bool kKeeps>
+HWY_INLINE void find_grams(const BonePair* pair, const BonePair* end, const Bones<kKeeps>& bones, Moment* gram) {
+  const Lanes16 d;
+  Moved left, right;
+  while (pair < end) {
+    const std::uint16_t a = pair->a;
+    const float* row = bones.of(a, left);
+    Vector spreads[3][kParts];
+    for (std::size_t part = 0; part < kParts; ++part) {
+      spreads[0][part] = spread(row, part);
+      spreads[1][part] = spread(row + 4, part);
+      spreads[2][part] = spread(row + 8, part);
+    }
+    do {
+      const float* other = bones.of(pair->b, right);
+      for (std::size_t part = 0; part < kParts; ++part) {
+        Vector sum = hn::Mul(spreads[0][part], repeat(other, part));
+        sum = fused(d, spreads[1][part], repeat(other + 4, part), sum);
+        sum = fused(d, spreads[2][part], repeat(other + 8, part), sum);
+        hn::StoreU(sum, d, gram->values + part * kLanes);
+      }
+      ++pair;
+      ++gram;
+    } while (pair < end && pair->a == a);
+  }
+}
+
+// A sphere's sums. Where the number of its bones is known, kBones, nothing is left to branch on.
+template <std::size_t kBones, bool kKeeps>
+HWY_INLINE void add_sphere(std::size_t known_bones, const Bones<kKeeps>& bones, const Moment* grams, Place& at,
+                           float* center_sums, float* squares) {
+  const Lanes16 d;
+  const std::size_t bone_count = kBones > 0 ? kBones : known_bones, pair_count = bone_count * (bone_count + 1) / 2;
+  Vector center[kParts], square[kParts];
+  for (std::size_t part = 0; part < kParts; ++part) {
+    const Vector gram = hn::LoadU(d, grams[at.pair_places[0]].values + part * kLanes);
+    square[part] = hn::Mul(gram, hn::LoadU(d, at.moments[0].values + part * kLanes));
+  }
+  HWY_UNROLL(32)
+  for (std::size_t i = 1; i < pair_count; ++i) {
+    const float *gram = grams[at.pair_places[i]].values, *moment = at.moments[i].values;
+    for (std::size_t part = 0; part < kParts; ++part) {
+      const Vector own = hn::LoadU(d, gram + part * kLanes);
+      square[part] = fused(d, own, hn::LoadU(d, moment + part * kLanes), square[part]);
+    }
+  }
+  Moved spare;
+  const float* first = bones.of(at.bones[0], spare);
+  for (std::size_t part = 0; part < kParts; ++part) {
+    center[part] = hn::Mul(hn::LoadU(d, first + part * kLanes), repeat(&at.centers[0].x, part));
+  }
+  HWY_UNROLL(32)
+  for (std::size_t i = 1; i < bone_count; ++i) {
+    const float* rows = bones.of(at.bones[i], spare);
+    for (std::size_t part = 0; part < kParts; ++part) {
+      const Vector share = repeat(&at.centers[i].x, part);  // x, y, z and w follow each other
+      center[part] = fused(d, share, hn::LoadU(d, rows + part * kLanes), center[part]);
+    }
+  }
+  for (std::size_t part = 0; part < kParts; ++part) {
+    hn::StoreU(center[part], d, center_sums + part * kLanes);
+    hn::StoreU(square[part], d, squares + part * kLanes);
+  }
+  at.bones += bone_count;
+  at.centers += bone_count;
+  at.pair_places += pair_count;
+  at.moments += pair_count;
+}
+
+// Where the spheres' sums go, and what becomes of them.
+template <bool kKeeps>
+class Refit {
+ public:
+  HWY_INLINE Refit(const RefitInputs& in, const Bones<kKeeps>& bones, Sphere* spheres)
+      : bones_(bones),
+        at_{in.moments.bones, in.moments.centers, in.moments.pair_places, in.moments.moments},
+        numbers_(in.moments.spheres),
+        radii_(in.radius == SC_RADIUS_FIT ? &in.rest->radius : &in.rest->detect_radius),
+        spheres_(spheres) {}
+
+  // The spheres of a batch, whose Gram matrices these are; `bone_counts` is theirs.
+  HWY_INLINE void add(const Moment* grams, const std::uint8_t* bone_counts, const std::uint8_t* end) {
+    while (bone_counts < end) {
+      bone_counts = add_any_run(grams, bone_counts, end);
+    }
+  }
+
+  HWY_NOINLINE void finish_all() {
+    const std::size_t whole = count_ / kChunk * kChunk;
+    for (std::size_t i = 0; i < whole; i += kChunk) {
+      finish(sums_, i, kChunk, numbers_ + i, bones_.reference(), spheres_);
+    }
+    if (whole < count_) {
+      for (std::size_t i = count_; i < kSums && i % kChunk != 0; ++i) {  // what the last chunk lacks is 0
+        std::memset(sums_.centers[i], 0, sizeof sums_.centers[i]);
+        std::memset(sums_.squares[i], 0, sizeof sums_.squares[i]);
+        sums_.wanted[i] = 0;
+      }
+      finish(sums_, whole, count_ - whole, numbers_ + whole, bones_.reference(), spheres_);
+    }
+    numbers_ += count_;
+    count_ = 0;
+  }
+
+ private:
+  // From *bone_counts on those of as many bones. Returns the first that is of another number.
+  template <std::size_t kBones>
+  HWY_INLINE const std::uint8_t* add_run(const Moment* grams, const std::uint8_t* bone_counts,
+                                         const std::uint8_t* end) {
+    constexpr std::size_t kRestFloats = sizeof(RestSphere) / sizeof(float);
+    const std::size_t bone_count = *bone_counts;
+    Place at = at_;  // here and not in memory, where bytes are read that might be these
+    std::size_t count = count_;
+    do {
+      if (count == kSums) {
+        count_ = count;
+        finish_all();
+        count = 0;
+      }
+      sums_.wanted[count] = radii_[numbers_[count] * kRestFloats];
+      add_sphere<kBones>(bone_count, bones_, grams, at, sums_.centers[count], sums_.squares[count]);
+      ++count;
+      ++bone_counts;
+    } while (bone_counts < end && *bone_counts == bone_count);
+    at_ = at;
+    count_ = count;
+    return bone_counts;
+  }
+
+  HWY_INLINE const std::uint8_t* add_any_run(const Moment* grams, const std::uint8_t* bone_counts,
+                                             const std::uint8_t* end) {
+#if SPHERECHAIN_FUSES
+    switch (*bone_counts) {
+      case 1:
+        return add_run<1>(grams, bone_counts, end);
+      case 2:
+        return add_run<2>(grams, bone_counts, end);
+      case 3:
+        return add_run<3>(grams, bone_counts, end);
+      case 4:
+        return add_run<4>(grams, bone_counts, end);
+      case 5:
+        return add_run<5>(grams, bone_counts, end);
+      case 6:
+        return add_run<6>(grams, bone_counts, end);
+      default:
+        break;
+    }
+#endif
+    return add_run<0>(grams, bone_counts, end);
+  }
+
+  const Bones<kKeeps>& bones_;
+  Place at_;
+  const std::uint32_t* numbers_;  // of the spheres whose sums are kept
+  const float* radii_;
+  Sphere* spheres_;
+  std::size_t count_ = 0;
+  Sums sums_;
+};
+
+template <bool kKeeps>
+HWY_INLINE void refit_all(const RefitInputs& in, Sphere* spheres) {
+  const MomentInputs& tables = in.moments;
+  const Bones<kKeeps> bones(in);
+  HWY_ALIGN Moment grams[kMaxMomentPairs];
+  Refit<kKeeps> refit(in, bones, spheres);
+  const BonePair* pair = tables.pairs;
+  const std::uint8_t* bone_count = tables.bone_counts;
+  for (const MomentBatch *batch = tables.batches, *end = batch + tables.batch_count; batch < end; ++batch) {
+    find_grams(pair, pair + batch->pair_count, bones, grams);
+    refit.add(grams, bone_count, bone_count + batch->sphere_count);
+    pair += batch->pair_count;
+    bone_count += batch->sphere_count;
+  }
+  refit.finish_all();
+}
+
+}  // namespace moments
+
+void refit_by_moments(const RefitInputs& in, Sphere* spheres) {
+  if (in.bone_count <= moments::kKeptBones) {
+    moments::refit_all<true>(in, spheres);
+  } else {
+    moments::refit_all<false>(in, spheres);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace spherechain
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace spherechain {
+namespace {
+
+SPHERECHAIN_KERNELS(refit_by_moments);
+
+}  // namespace
+
+void refit_from_moments(const RefitInputs& inputs, Target resolved, Sphere* spheres) {
+  refit_by_moments_kernels[index_of(resolved)](inputs, spheres);
+}
+
+}  // namespace spherechain
+#endif

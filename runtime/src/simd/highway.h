@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+// Google Highway, header only: nothing of libhwy is linked, for its table of chosen targets is one a process, and
+// Debian has it only as a shared library. A file of kernels starts with
+//
+//   #undef HWY_TARGET_INCLUDE
+//   #define HWY_TARGET_INCLUDE "simd/highway.h"
+//   #include "simd/highway.h"
+//
+// and is then compiled once a target, its kernels between HWY_BEFORE_NAMESPACE(); namespace spherechain { namespace
+// HWY_NAMESPACE { and HWY_AFTER_NAMESPACE();. What comes once goes between #if HWY_ONCE and #endif. Kernels call no
+// function of the standard library that is a template: one instantiated here would carry this target's instructions to
+// machines without them.
+//
+// No include guard: Highway wants to be included again for every target.
+
+#if !defined(HWY_DISABLED_TARGETS)
+// Of Highway's list, which grows, only the targets of spherechain::Target; by number where Highway 1.0.3 has no name:
+// SSE2 and NEON without AES.
+#define HWY_DISABLED_TARGETS (~(HWY_SCALAR | (1LL << 14) | HWY_SSSE3 | HWY_AVX2 | HWY_AVX3 | HWY_NEON | (1LL << 29)))
+// The scalar target is always there to compare with, and is the same one for every compiler.
+#define HWY_COMPILE_ALL_ATTAINABLE
+#define HWY_BROKEN_EMU128 1
+#endif
+
+// Highway's own assertions, on in builds without optimisation, call hwy::Abort of libhwy.
+#if !defined(HWY_IS_DEBUG_BUILD)
+#define HWY_IS_DEBUG_BUILD 0
+#endif
+
+#if defined(HWY_TARGET_INCLUDE)
+#include <hwy/foreach_target.h>
+#endif
+#include <hwy/highway.h>
+
+#include <cstdint>
+
+#include "simd/fused.h"
+
+#if defined(HWY_DISABLE_BMI2_FMA)
+#error "spherechain's AVX2 target fuses multiply-adds: HWY_DISABLE_BMI2_FMA would change its results"
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace spherechain {
+namespace HWY_NAMESPACE {
+
+// Lane i as bit i.
+HWY_INLINE std::uint64_t bits_of(hwy::HWY_NAMESPACE::Mask<hwy::HWY_NAMESPACE::ScalableTag<float>> mask) {
+  constexpr hwy::HWY_NAMESPACE::ScalableTag<float> kFloats;
+#if HWY_TARGET == HWY_AVX3
+  std::uint16_t bits = 0;
+#else
+  std::uint8_t bits = 0;
+#endif
+  static_assert(hwy::HWY_NAMESPACE::MaxLanes(kFloats) <= 8 * sizeof bits, "a bit a lane");
+  hwy::HWY_NAMESPACE::StoreMaskBits(kFloats, mask, reinterpret_cast<std::uint8_t*>(&bits));
+  return bits;
+}
+
+// The other way round; further bits are any.
+HWY_INLINE hwy::HWY_NAMESPACE::Mask<hwy::HWY_NAMESPACE::ScalableTag<float>> mask_of(std::uint64_t bits) {
+  return hwy::HWY_NAMESPACE::LoadMaskBits(hwy::HWY_NAMESPACE::ScalableTag<float>(),
+                                          reinterpret_cast<const std::uint8_t*>(&bits));
+}
+
+#undef SPHERECHAIN_FUSES
+#if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_SSSE3 || HWY_TARGET == (1LL << 14)
+#define SPHERECHAIN_FUSES 0
+#else
+#define SPHERECHAIN_FUSES 1
+#endif
+
+// a * b + c, rounded once on every target.
+template <typename D, typename V>
+HWY_INLINE V fused(D d, V a, V b, V c) {
+  namespace hn = hwy::HWY_NAMESPACE;
+#if SPHERECHAIN_FUSES
+  (void)d;
+  return hn::MulAdd(a, b, c);
+#elif HWY_TARGET == HWY_SCALAR
+  return hn::Set(d, fused_multiply_add(hn::GetLane(a), hn::GetLane(b), hn::GetLane(c)));
+#else  // as fused_multiply_add, two lanes at a time
+  static_assert(hn::MaxLanes(D()) == 4, "a whole register");
+  const hn::Repartition<double, D> doubles;
+  const hn::Repartition<std::int32_t, D> words;
+  const hn::Half<D> half;
+  const auto sum_of = [&](auto x, auto y, auto z) HWY_ATTR {
+    return hn::Add(hn::Mul(hn::PromoteTo(doubles, x), hn::PromoteTo(doubles, y)), hn::PromoteTo(doubles, z));
+  };
+  const auto low = sum_of(hn::LowerHalf(half, a), hn::LowerHalf(half, b), hn::LowerHalf(half, c));
+  const auto high = sum_of(hn::UpperHalf(half, a), hn::UpperHalf(half, b), hn::UpperHalf(half, c));
+  const auto low_words = hn::ConcatEven(words, hn::BitCast(words, high), hn::BitCast(words, low));
+  const auto high_words =
+      hn::And(hn::ConcatOdd(words, hn::BitCast(words, high), hn::BitCast(words, low)), hn::Set(words, 0x7FFFFFFF));
+  const auto is_half_way = hn::Eq(hn::And(low_words, hn::Set(words, 0x1FFFFFFF)), hn::Set(words, 0x10000000));
+  const auto is_small = hn::And(hn::Gt(high_words, hn::Zero(words)), hn::Gt(hn::Set(words, 0x38100000), high_words));
+  if (HWY_UNLIKELY(!hn::AllFalse(words, hn::Or(is_half_way, is_small)))) {
+    HWY_ALIGN float lanes[3][4];
+    hn::Store(a, d, lanes[0]);
+    hn::Store(b, d, lanes[1]);
+    hn::Store(c, d, lanes[2]);
+    for (std::size_t i = 0; i < 4; ++i) {
+      lanes[0][i] = fused_multiply_add_slow(lanes[0][i], lanes[1][i], lanes[2][i]);
+    }
+    return hn::Load(d, lanes[0]);
+  }
+  return hn::Combine(d, hn::DemoteTo(half, high), hn::DemoteTo(half, low));
+#endif
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace spherechain
+HWY_AFTER_NAMESPACE();

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: MIT
+// Cluster bounds: boxes and balls around clusters in a pose, from bones alone. Included by triangle_contacts_kernel.cpp once a target, after contact_boxes.h; no include guard.
+//
+// A cluster's vertices lie at rest in a box of centre c and half extents h, within rho of c. With the mid weights w_b, the
+// deviations d_b of the weights from them, M_b = (R_b; t_b) the bones' matrices, R = sum w_b R_b, t = sum w_b t_b and
+// m = R c + t, a vertex v = c + p whose weights are w_b + e_b is moved to
+//   sum (w_b + e_b) M_b v = m + R p + sum e_b ((M_b c - m) + (R_b - R) p) + sum e_b (m + R p),
+// the last of which is rounding, for the e_b add up to 0. So along axis i it is within
+//   sum_j |R|_ij h_j + s_i    of m_i,    s_i = sum_b d_b (|M_b c - m|_i + sum_j |R_b - R|_ij h_j),
+// and within rho |R| + |s| of m: the box is the lesser of the two, axis by axis. A morph target of weight a whose
+// deltas lie within r of e moves c by a e, and adds |a| r to h and rho.
+//
+// The margin for roundings, to first order, in units of u Q, u = 2^-24 and Q as in cover.h. N counts the group's bones
+// and moving morph targets, D = sum d_b. A product added to a sum is rounded twice where the target has no fma. Any
+// partial sum of a row of M_b v is at most Q, and of |R_b| h at most 1.8 Q, as |h| is at most 3^0.5 rho.
+//   a vertex, by SkinJob: 3 a row, one a bone               N + 4
+//   the same by who blends matrices first, or has no fma    2 N + 8, in place of that
+//   sum e_b, of at most 4 u: |m| + |R p|                    11
+//   m: the entries of R and t, 2 a bone; then 2 a product   2 N + 6
+//   |R| h: likewise, of 1.8 Q                               3.6 N + 11
+//   |M_b c - m|, weighted by d_b                            (2 N + 14) D
+//   |R_b - R| h, weighted by d_b                            (3.6 N + 25) D
+//   the sum s_i over the bones, 2 a bone, of 5.6 Q D        11.2 N D
+//   |s|, at most 3^0.5 times these three                    (29.1 N + 80) D, in place of them
+//   rho |R| in place of |R| h: Gram matrix, row sums, root  3.6 N + 20
+//   box and ball put together, low and high                 12 + 22 D
+//   morphs: c, h and rho, 2 each, moved by M_b and R        no more than a bone each
+// Together less than 64 + 8 N + (128 + 32 N) D.
+#include "skin/scene.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace spherechain {
+namespace HWY_NAMESPACE {
+
+using GroupLanes = hn::CappedTag<float, kClusterLanes>;
+using GroupVector = hn::Vec<GroupLanes>;
+
+// Where in the tables a group's entries start.
+struct GroupTerms {
+  std::size_t term, term_count, morph, morph_count;
+};
+
+// What a group's clusters are at rest, morphed.
+struct GroupRest {
+  HWY_INLINE GroupRest() {}  // for the target: an implicit one is compiled for the build's own, which NEON refuses
+  GroupVector center[3], half[3], radius;
+};
+
+HWY_INLINE GroupRest rest_of_group(const BoundsInputs& in, std::size_t group, const GroupTerms& at, std::size_t lane) {
+  constexpr GroupLanes d;
+  GroupRest out;
+  const BoxLanes& box = in.boxes[group];
+  const float* const columns[6] = {box.x, box.y, box.z, box.half_x, box.half_y, box.half_z};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    out.center[axis] = hn::LoadU(d, columns[axis] + lane);
+    out.half[axis] = hn::LoadU(d, columns[3 + axis] + lane);
+  }
+  out.radius = hn::LoadU(d, box.radius + lane);
+  for (std::size_t i = at.morph; i < at.morph + at.morph_count; ++i) {
+    const BallLanes& ball = in.morphs[i];
+    const GroupVector weight = hn::Set(d, in.morph_weights[in.morph_targets[i]]);
+    const GroupVector radius = hn::Mul(hn::Abs(weight), hn::LoadU(d, ball.radius + lane));
+    out.center[0] = hn::MulAdd(weight, hn::LoadU(d, ball.x + lane), out.center[0]);
+    out.center[1] = hn::MulAdd(weight, hn::LoadU(d, ball.y + lane), out.center[1]);
+    out.center[2] = hn::MulAdd(weight, hn::LoadU(d, ball.z + lane), out.center[2]);
+    for (GroupVector& half : out.half) {
+      half = hn::Add(half, radius);
+    }
+    out.radius = hn::Add(out.radius, radius);
+  }
+  return out;
+}
+
+// The X of Q: of the rest and of each morph's part of it, as these may cancel out.
+HWY_INLINE GroupVector extent_of_group(const BoundsInputs& in, const GroupRest& rest, const GroupTerms& at,
+                                       std::size_t lane) {
+  constexpr GroupLanes d;
+  GroupVector out =
+      hn::Add(hn::Add(hn::Abs(rest.center[0]), hn::Abs(rest.center[1])), hn::Add(hn::Abs(rest.center[2]), rest.radius));
+  for (std::size_t i = at.morph; i < at.morph + at.morph_count; ++i) {
+    const BallLanes& ball = in.morphs[i];
+    const GroupVector size = hn::Abs(hn::Set(d, in.morph_weights[in.morph_targets[i]]));
+    const GroupVector extent =
+        hn::Add(hn::Add(hn::Abs(hn::LoadU(d, ball.x + lane)), hn::Abs(hn::LoadU(d, ball.y + lane))),
+                hn::Add(hn::Abs(hn::LoadU(d, ball.z + lane)), hn::LoadU(d, ball.radius + lane)));
+    out = hn::MulAdd(hn::Set(d, 2.0F), hn::Mul(size, extent), out);  // once more for what it took from the sum above
+  }
+  return out;
+}
+
+// Below this length squares run out of exponents: no bound is less.
+constexpr float kMinLength = 0x1p-60F;
+
+// At least the spectral norm, but for rounding: the root of the greatest row sum of |R^T R|.
+HWY_INLINE GroupVector spectral_bound(const GroupVector (&r)[3][4]) {
+  GroupVector sums[3];
+  const auto dot = [&](std::size_t i, std::size_t j) HWY_ATTR {
+    return hn::Abs(hn::MulAdd(r[2][i], r[2][j], hn::MulAdd(r[1][i], r[1][j], hn::Mul(r[0][i], r[0][j]))));
+  };
+  const GroupVector xy = dot(0, 1), yz = dot(1, 2), zx = dot(2, 0);
+  sums[0] = hn::Add(hn::Add(dot(0, 0), xy), zx);
+  sums[1] = hn::Add(hn::Add(dot(1, 1), xy), yz);
+  sums[2] = hn::Add(hn::Add(dot(2, 2), yz), zx);
+  return hn::Max(hn::Sqrt(hn::Max(hn::Max(sums[0], sums[1]), sums[2])), hn::Set(GroupLanes(), kMinLength));
+}
+
+// One register's lanes of a group of clusters.
+HWY_INLINE void bound_lanes(const ContactScene& scene, std::size_t group, const GroupTerms& at, std::size_t lane) {
+  constexpr GroupLanes d;
+  const BoundsInputs& in = scene.bounds;
+  const GroupRest rest = rest_of_group(in, group, at, lane);
+  const GroupVector extent = extent_of_group(in, rest, at, lane);
+
+  GroupVector blend[3][4];
+  for (auto& row : blend) {
+    row[0] = row[1] = row[2] = row[3] = hn::Zero(d);
+  }
+  for (std::size_t t = at.term; t < at.term + at.term_count; ++t) {
+    const float* row = in.matrices + in.term_bones[t] * in.stride;
+    const GroupVector weight = hn::LoadU(d, in.terms[t].weights + lane);
+    for (std::size_t i = 0; i < 3; ++i, row += in.row) {
+      for (std::size_t j = 0; j < 4; ++j) {
+        blend[i][j] = hn::MulAdd(weight, hn::Set(d, row[j * in.column]), blend[i][j]);
+      }
+    }
+  }
+  const auto move = [&](GroupVector x, GroupVector y, GroupVector z, GroupVector t) HWY_ATTR {
+    return hn::MulAdd(z, rest.center[2], hn::MulAdd(y, rest.center[1], hn::MulAdd(x, rest.center[0], t)));
+  };
+  GroupVector center[3], strays[3];
+  for (std::size_t i = 0; i < 3; ++i) {
+    center[i] = move(blend[i][0], blend[i][1], blend[i][2], blend[i][3]);
+    strays[i] = hn::Zero(d);
+  }
+  GroupVector most = hn::Zero(d), deviations = hn::Zero(d);
+  for (std::size_t t = at.term; t < at.term + at.term_count; ++t) {
+    const std::size_t bone = in.term_bones[t];
+    const float* row = in.matrices + bone * in.stride;
+    const GroupVector deviation = hn::LoadU(d, in.terms[t].deviations + lane);
+    const auto moves = hn::Gt(hn::Add(deviation, hn::LoadU(d, in.terms[t].weights + lane)), hn::Zero(d));
+    const GroupVector size =
+        hn::MulAdd(hn::Set(d, in.sizes[bone].norm), extent, hn::Set(d, in.sizes[bone].translation));
+    most = hn::Max(most, hn::IfThenElseZero(moves, size));
+    deviations = hn::Add(deviations, deviation);
+    const auto strays_from_mid = hn::Gt(deviation, hn::Zero(d));  // else 0, though what it is to weight may overflow
+    for (std::size_t i = 0; i < 3; ++i, row += in.row) {
+      const GroupVector x = hn::Set(d, row[0]), y = hn::Set(d, row[in.column]), z = hn::Set(d, row[2 * in.column]);
+      GroupVector stray = hn::Abs(hn::Sub(move(x, y, z, hn::Set(d, row[3 * in.column])), center[i]));
+      stray = hn::MulAdd(hn::Abs(hn::Sub(x, blend[i][0])), rest.half[0], stray);
+      stray = hn::MulAdd(hn::Abs(hn::Sub(y, blend[i][1])), rest.half[1], stray);
+      stray = hn::MulAdd(hn::Abs(hn::Sub(z, blend[i][2])), rest.half[2], stray);
+      strays[i] = hn::MulAdd(deviation, hn::IfThenElseZero(strays_from_mid, stray), strays[i]);
+    }
+  }
+  constexpr float kUnit = 1.0F / 16777216.0F;
+  const auto count = static_cast<float>(at.term_count + at.morph_count);
+  const GroupVector factor =
+      hn::MulAdd(hn::Set(d, kUnit * (128.0F + 32.0F * count)), deviations, hn::Set(d, kUnit * (64.0F + 8.0F * count)));
+  const GroupVector margin = hn::MulAdd(factor, most, hn::Set(d, kMinLength));
+  const GroupVector stray =
+      hn::Sqrt(hn::MulAdd(strays[2], strays[2], hn::MulAdd(strays[1], strays[1], hn::Mul(strays[0], strays[0]))));
+  const GroupVector radius = hn::Add(hn::MulAdd(rest.radius, spectral_bound(blend), stray), margin);
+  const std::size_t first = group * kClusterLanes + lane;
+  for (std::size_t i = 0; i < 3; ++i) {
+    GroupVector half = strays[i];
+    for (std::size_t j = 0; j < 3; ++j) {
+      half = hn::MulAdd(hn::Abs(blend[i][j]), rest.half[j], half);
+    }
+    half = hn::Min(hn::Add(half, margin), radius);
+    const GroupVector low = hn::Sub(center[i], half), high = hn::Add(center[i], half);
+    // What is not a number, after an overflow, bounds nothing: a NaN would be lost on the way to the sphere's box.
+    hn::StoreU(hn::IfThenElse(hn::Eq(low, low), low, hn::Neg(hn::Inf(d))), d, scene.clusters.low[i] + first);
+    hn::StoreU(hn::IfThenElse(hn::Eq(high, high), high, hn::Inf(d)), d, scene.clusters.high[i] + first);
+    hn::StoreU(center[i], d, scene.ball_columns[i] + first);
+  }
+  hn::StoreU(radius, d, scene.ball_columns[3] + first);
+}
+
+HWY_NOINLINE void bound_clusters_by_bones(const ContactScene& scene) {
+  const BoundsInputs& in = scene.bounds;
+  GroupTerms at{};
+  for (std::size_t group = 0; group * kClusterLanes < in.cluster_count; ++group) {
+    at.term_count = in.term_counts[group];
+    at.morph_count = in.morph_counts == nullptr ? 0 : in.morph_counts[group];
+    for (std::size_t lane = 0; lane < kClusterLanes; lane += hn::MaxLanes(GroupLanes())) {
+      bound_lanes(scene, group, at, lane);
+    }
+    at.term += at.term_count;
+    at.morph += at.morph_count;
+  }
+}
+
+// The clusters of one sphere, where they are not bounded yet; with hulls, so no morph has a weight.
+HWY_NOINLINE void bound_sphere_by_bones(const ContactScene& scene, std::size_t sphere) {
+  if (scene.is_bounded[sphere] != 0) {
+    return;
+  }
+  scene.is_bounded[sphere] = 1;
+  const std::size_t end = (scene.first_cluster[sphere + 1] + kClusterLanes - 1) / kClusterLanes;
+  for (std::size_t group = scene.first_cluster[sphere] / kClusterLanes; group < end; ++group) {
+    if (scene.is_group_bounded[group] == 0) {
+      scene.is_group_bounded[group] = 1;
+      GroupTerms at{};
+      at.term = scene.group_terms[group];
+      at.term_count = scene.bounds.term_counts[group];
+      for (std::size_t lane = 0; lane < kClusterLanes; lane += hn::MaxLanes(GroupLanes())) {
+        bound_lanes(scene, group, at, lane);
+      }
+    }
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace spherechain
+HWY_AFTER_NAMESPACE();

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include "skin/exact_triangles.h"
+
+#include <cmath>
+
+#include "skin/exact_crossing.h"
+
+namespace spherechain {
+namespace {
+
+// A triangle seen along an axis from whichever side it goes round against the clock.
+struct FlatTriangle {
+  Vec2 p[3];
+};
+
+Vec2 flat(const Vec3& p, int axis) { return axis == 0 ? Vec2{p.y, p.z} : axis == 1 ? Vec2{p.z, p.x} : Vec2{p.x, p.y}; }
+
+// False where seen so it is a line.
+bool flatten(const TriangleCorners& t, int axis, FlatTriangle& out) {
+  const Vec2 a = flat(t.p[0], axis), b = flat(t.p[1], axis), c = flat(t.p[2], axis);
+  const int turn = side_of_line(a, b, c);
+  out = turn > 0 ? FlatTriangle{{a, b, c}} : FlatTriangle{{a, c, b}};
+  return turn != 0;
+}
+
+// Is all of `b` strictly outside of one of a's edges?
+bool has_separating_edge(const FlatTriangle& a, const FlatTriangle& b) {
+  for (int i = 0; i < 3; ++i) {
+    const Vec2 &from = a.p[i], &to = a.p[(i + 1) % 3];
+    if (side_of_line(from, to, b.p[0]) < 0 && side_of_line(from, to, b.p[1]) < 0 &&
+        side_of_line(from, to, b.p[2]) < 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// Of triangles in one plane, or of which one is degenerate: that one is a line along every axis.
+bool flat_triangles_intersect(const TriangleCorners& a, const TriangleCorners& b) {
+  for (int axis = 0; axis < 3; ++axis) {
+    FlatTriangle flat_a, flat_b;
+    if (flatten(a, axis, flat_a) && flatten(b, axis, flat_b)) {
+      return !has_separating_edge(flat_a, flat_b) && !has_separating_edge(flat_b, flat_a);
+    }
+  }
+  return false;
+}
+
+bool is_finite(const TriangleCorners& t) {
+  bool finite = true;
+  for (const Vec3& p : t.p) {
+    finite = finite && std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+  }
+  return finite;
+}
+
+}  // namespace
+
+bool finite_triangles_intersect(const TriangleCorners& a, const TriangleCorners& b) noexcept {
+  const double error = error_of(a, b);
+  Crossings crossings{};
+  if (!cross_each_other(a, b, error, crossings)) {
+    return false;
+  }
+  return are_in_one_plane(crossings) ? flat_triangles_intersect(a, b)
+                                     : pieces_of(a, b, crossings.a_in_b, crossings.b_in_a, error).overlap();
+}
+
+bool triangles_intersect(const TriangleCorners& a, const TriangleCorners& b) noexcept {
+  return is_finite(a) && is_finite(b) && finite_triangles_intersect(a, b);
+}
+
+}  // namespace spherechain

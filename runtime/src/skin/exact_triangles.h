@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// Do two triangles meet, and where.
+#pragma once
+
+#include "spherechain/types.h"
+
+namespace spherechain {
+
+struct TriangleCorners {
+  Vec3 p[3];
+};
+
+// Do two triangles have a point in common? Exactly, for all finite floats: touching counts, and so does overlap in one
+// plane. A degenerate triangle, its corners on one line, intersects nothing; neither does one that is not finite. Needs
+// the processor's default rounding, to nearest; where it takes subnormal floats as zero, so does this.
+bool triangles_intersect(const TriangleCorners& a, const TriangleCorners& b) noexcept;
+
+// The same of corners known to be finite.
+bool finite_triangles_intersect(const TriangleCorners& a, const TriangleCorners& b) noexcept;
+
+struct Segment {
+  Vec3 from, to;
+};
+
+// What two triangles that intersect have in common; of triangles in one plane the longest piece of an edge that lies in
+// the other triangle.
+Segment crossing_segment(const TriangleCorners& a, const TriangleCorners& b) noexcept;
+
+}  // namespace spherechain

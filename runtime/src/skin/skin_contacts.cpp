@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+#include "spherechain/skin_contacts.h"
+
+#include "asset/memory.h"
+#include "asset/status.h"
+#include "pairs/filter.h"
+#include "simd/simd.h"
+#include "skin/collector.h"
+#include "skin/scene_setup.h"
+
+namespace spherechain {
+namespace {
+
+template <typename T>
+Status check_list(const T* data, std::size_t size, sc_field field) {
+  return data == nullptr && size > 0 ? refuse(SC_NULL, field)
+         : any_misaligned(data)      ? refuse(SC_MISALIGNED, field)
+                                     : done();
+}
+
+// Sorted, each once, of two spheres each.
+Status check_candidates(const SkinContactJob& job, std::size_t sphere_count) {
+  const Status status = check_list(job.candidates, job.candidate_count, SC_FIELD_CANDIDATES);
+  if (status != SC_OK) {
+    return status;
+  }
+  for (std::size_t i = 0; i < job.candidate_count; ++i) {
+    const Pair& pair = job.candidates[i];
+    if (pair.a >= pair.b || pair.b >= sphere_count || (i > 0 && !(job.candidates[i - 1] < pair))) {
+      return refuse(SC_BAD_VALUE, SC_FIELD_CANDIDATES);
+    }
+  }
+  if (job.candidates == nullptr) {
+    return done();
+  }
+  return job.scope != SC_SCOPE_APART ? refuse(SC_BAD_VALUE, SC_FIELD_SCOPE)
+         : job.filter != nullptr     ? refuse(SC_BAD_VALUE, SC_FIELD_FILTER)
+                                     : done();
+}
+
+Status check_pose(const AssetView& asset, const Pose& pose) {
+  if (pose.vertices != nullptr) {
+    const Status status = check_vertices(asset, pose);
+    if (status != SC_OK || pose.bones == nullptr) {
+      return status;
+    }
+  }
+  return check_bones(asset, pose);
+}
+
+bool is_aliased(const SkinContactJob& job, const AssetView& asset) {
+  const FilterRanges filter = ranges_of(job.filter);
+  return any_shared(
+      {range_of(Span<sc_part_contact>{job.parts, job.part_capacity}),
+       range_of(Span<Pair>{job.spheres, job.sphere_capacity}),
+       range_of(Span<TriangleContact>{job.triangles, job.triangle_capacity}),
+       range_of(Span<std::uint64_t>{job.scratch, skin_scratch_words(asset)})},
+      {range_of_vertices(asset, job.pose), range_of_bones(asset, job.pose), range_of_morph_weights(asset, job.pose),
+       range_of(Span<const std::uint64_t>{job.skin_table, skin_table_words(asset)}), range_of(asset.ignored()),
+       range_of(Span<const Pair>{job.candidates, job.candidate_count}), filter.ignored, filter.disabled});
+}
+
+Status check(const SkinContactJob& job, Target& resolved, Surface& surface) {
+  if (job.asset == nullptr) {
+    return refuse(SC_NULL, SC_FIELD_ASSET);
+  }
+  const AssetView& asset = view_of(*job.asset);
+  if (!asset.is_open()) {
+    return refuse(SC_NOT_OPEN, SC_FIELD_ASSET);
+  }
+  if (asset.skin().sizes.clusters == 0) {
+    return refuse(SC_NOT_IN_ASSET, SC_FIELD_ASSET);
+  }
+  const Status statuses[] = {check_pose(asset, job.pose),
+                             read_skin_table(asset, job.skin_table, surface),
+                             job.filter == nullptr ? done() : check_filter(asset, *job.filter),
+                             check_list(job.scratch, 1, SC_FIELD_SCRATCH),
+                             check_list(job.parts, job.part_capacity, SC_FIELD_PARTS),
+                             check_list(job.spheres, job.sphere_capacity, SC_FIELD_SPHERES),
+                             check_list(job.triangles, job.triangle_capacity, SC_FIELD_TRIANGLES),
+                             check_candidates(job, asset.spheres().size)};
+  for (const Status& status : statuses) {
+    if (status != SC_OK) {
+      return status;
+    }
+  }
+  if (job.scratch_words < skin_scratch_words(asset)) {
+    return refuse(SC_TOO_SMALL, SC_FIELD_SCRATCH);
+  }
+  if (job.scope != SC_SCOPE_APART && job.scope != SC_SCOPE_NEIGHBOURS && job.scope != SC_SCOPE_ALL) {
+    return refuse(SC_BAD_VALUE, SC_FIELD_SCOPE);
+  }
+  if (!resolve_target(job.target, resolved)) {
+    return refuse(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET);
+  }
+  return is_aliased(job, asset) ? refuse(SC_ALIASED, SC_FIELD_OUTPUT) : done();
+}
+
+}  // namespace
+}  // namespace spherechain
+
+using namespace spherechain;
+
+extern "C" {
+
+size_t sc_skin_scratch_words(const sc_asset* asset) noexcept {
+  return asset == nullptr ? 0 : skin_scratch_words(view_of(*asset));
+}
+
+sc_status sc_find_skin_contacts(sc_skin_contact_job* job) noexcept {
+  if (job == nullptr) {
+    return refuse(SC_NULL, SC_FIELD_NONE);
+  }
+  Target resolved{};
+  Surface surface;
+  const Status status = check(*job, resolved, surface);
+  if (status != SC_OK) {
+    return status;
+  }
+  PartTable parts{};
+  ContactScene scene = scene_of(view_of(*job->asset), surface, job->pose, job->filter, job->scratch, parts);
+  scene.apart = job->scope != SC_SCOPE_NEIGHBOURS;
+  scene.neighbours = job->scope != SC_SCOPE_APART;
+  ContactCollector collector(surface, parts, *job);
+  const bool first_only = job->spheres_only != 0;
+  if (job->candidates == nullptr) {
+    find_candidates(resolved, scene, first_only, collector);
+  } else {
+    find_candidates_of(resolved, scene, {job->candidates, job->candidate_count}, first_only, collector);
+  }
+  return collector.finish(*job);
+}
+
+}  // extern "C"

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+#include "simd/arithmetic.h"
+#include "simd/simd.h"
+#include "skin/skin_inputs.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "skin/skin_kernel.cpp"
+#include "simd/highway.h"
+#include "skin/skin_cluster.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace spherechain {
+namespace HWY_NAMESPACE {
+
+void skin_all(const SkinInputs& in, const Surface& surface, float* positions, std::size_t stride) {
+  HWY_ALIGN float x[kMaxClusterSlots], y[kMaxClusterSlots], z[kMaxClusterSlots];
+  for (std::size_t i = 0; i < surface.clusters.size; ++i) {
+    const Cluster& cluster = surface.clusters.data[i];
+    skin_cluster(in, cluster, x, y, z);
+    for (std::size_t slot = 0; slot < cluster.vertex_count; ++slot) {
+      const std::uint32_t vertex = surface.cluster_vertices.data[cluster.first_vertex + slot];
+      float* out = positions + stride * surface.source_vertices.data[vertex];
+      out[0] = x[slot];
+      out[1] = y[slot];
+      out[2] = z[slot];
+    }
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace spherechain
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace spherechain {
+namespace {
+
+SPHERECHAIN_KERNELS(skin_all);
+
+}  // namespace
+
+void skin_surface(const Surface& surface, const Pose& pose, Target resolved, float* positions, std::size_t stride) {
+  skin_all_kernels[index_of(resolved)](skin_inputs(surface, pose), surface, positions, stride);
+}
+
+}  // namespace spherechain
+#endif
