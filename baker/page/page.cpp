@@ -89,7 +89,8 @@ void check_size(const AnimatedAsset& animated, double still, double moving, cons
   const int frames = animated.frame_count();
   const double max = static_cast<double>(options.max_bytes);
   if (still + moving <= max) return;
-  const int fewer = still < max ? static_cast<int>(0.75 * frames * (max - still) / moving) : 0;
+  // Later frames may have more contacts than those that were played.
+  const int fewer = still < max ? static_cast<int>(0.5 * frames * (max - still) / moving) : 0;
   throw Error(ExitCode::kUsage,
               fmt::format("{}: {} frames make a page of {:.1f} MB, of which browsers open {:.1f} MB ({})",
                           animated.file(), frames, (still + moving) / 1e6, max / 1e6,
