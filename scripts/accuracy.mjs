@@ -102,11 +102,11 @@ function bestQuantile(row) {
 
 function methods(row) {
   const variants = [
-    ["the skin", row.detect, (f) => f],
-    ["spheres, detect radius", row.detect, (f) => f.m2],
-    ["the same, along chains alone", row.detect, (f) => f.m1],
-    ["spheres, fit radius", row.fit, (f) => f.m2],
-    ["profile `paper`, fit radius", row.paper, (f) => f.m2],
+    ["the skin", row.detect, (f) => f.skin],
+    ["spheres, detect radius", row.detect, (f) => f.all_pairs],
+    ["the same, along chains alone", row.detect, (f) => f.chains],
+    ["spheres, fit radius", row.fit, (f) => f.all_pairs],
+    ["profile `paper`, fit radius", row.paper, (f) => f.all_pairs],
   ];
   if (hasCapsules(row)) {
     const best = bestQuantile(row);
@@ -114,7 +114,7 @@ function methods(row) {
   }
   return variants.map(([name, list, pick]) => {
     const s = of(list, pick);
-    const depths = list.map((f) => pick(f).missed_depth);
+    const depths = list.map((f) => pick(f).missed_overlap);
     const depth = depths[0] === undefined ? "" : percent(Math.max(...depths));
     return [row.name, name, s.truth, ...scored(s), percent(share(s.any, s.trueFrames)), percent(share(s.all, s.trueFrames)), depth];
   });
@@ -130,7 +130,7 @@ function scope(row) {
 
 function curve(kind, label) {
   const points = rows[0].detect[0][kind].map((point, i) => {
-    const at = (row) => of(row.detect, (f) => f[kind][i].m2);
+    const at = (row) => of(row.detect, (f) => f[kind][i].all_pairs);
     return [label(point), ...rows.flatMap((row) => [`${percent(recall(at(row)))} / ${percent(precision(at(row)))} / ${(at(row).reported / at(row).frames).toFixed(1)}`])];
   });
   return table(["", ...rows.map((row) => row.name)], points);
@@ -159,11 +159,11 @@ function groups(kind) {
 }
 
 const everything = (pick, list = (row) => row.detect) => sum(rows.map((row) => of(list(row), pick)));
-const skin = everything((f) => f), m1 = everything((f) => f.m1), m2 = everything((f) => f.m2);
-const fit = everything((f) => f.m2, (row) => row.fit), paper = everything((f) => f.m2, (row) => row.paper);
+const skin = everything((f) => f.skin), chains = everything((f) => f.chains), all = everything((f) => f.all_pairs);
+const fit = everything((f) => f.all_pairs, (row) => row.fit), paper = everything((f) => f.all_pairs, (row) => row.paper);
 const contacts = rows.flatMap((row) => row.detect).reduce((t, f) =>
   ({ frames: t.frames + f.frames, missing: t.missing + f.contacts_missing, extra: t.extra + f.contacts_extra }), { frames: 0, missing: 0, extra: 0 });
-const missedByChains = m2.found - m1.found;
+const missedByChains = all.found - chains.found;
 
 console.log(`# Accuracy
 
@@ -179,8 +179,8 @@ scripts/accuracy.mjs build/release/bin/spherechain [CHARACTER.glb]... > docs/acc
 2. ${kFrames} frames of each motion, evenly spread. \`samples/poses\` is eight files, taken together.
 3. **Recall** is the part of the true pairs whose spheres are reported. **Precision** is the part of the reported pairs of spheres that have a true
    pair, or whose triangles are closer than 0.3 % of the height. **Any** and **all** are frames with a true pair in which one, or each, is found.
-4. **Missed depth** is how deep the worst unreported contact goes, in % of the height: the farthest that a vertex of one sphere's triangles
-   lies behind the other's.
+4. **Missed overlap** is that of the worst unreported contact, in % of the height: the farthest that a vertex of one sphere's triangles lies
+   behind the other's.
 5. Profile \`balanced\` puts ${counts.balanced} spheres into the human. Profile \`paper\` puts ${counts.paper}, with none in head, hands and feet.
 6. A capsule a bone is what games have instead. It is fitted to the triangles that its bone moves most; its radius is a quantile of their distances.
    Neighbours on the skeleton are ignored, and others follow the rest rule of spheres. Its quantile is the best for that motion (harmonic mean of recall and
@@ -192,17 +192,17 @@ scripts/accuracy.mjs build/release/bin/spherechain [CHARACTER.glb]... > docs/acc
 | you need | take | recall | precision |
 |---|---|---|---|
 | nothing missed, nothing wrong | skin contacts (\`SkinContactJob\`) | ${percent(recall(skin))} | ${percent(precision(skin))} |
-| an alarm for a microsecond | spheres, detect radius | ${percent(recall(m2))} | ${percent(precision(m2))} |
+| an alarm for a microsecond | spheres, detect radius | ${percent(recall(all))} | ${percent(precision(all))} |
 | fewer false alarms for a microsecond | spheres, fit radius | ${percent(recall(fit))} | ${percent(precision(fit))} |
 | the paper's figures | profile \`paper\`, fit radius | ${percent(recall(paper))} | ${percent(precision(paper))} |
 
-The exact triangle contacts miss ${contacts.missing} of the ${m2.truth} true pairs below and report ${contacts.extra} others (\`validate --contacts\`, ${contacts.frames} frames).
-Tests along chains alone miss ${Math.round(missedByChains)} of the ${Math.round(m2.found)} true pairs that all pairs of spheres find (${percent(share(missedByChains, m2.found))} %).
+The exact triangle contacts miss ${contacts.missing} of the ${all.truth} true pairs below and report ${contacts.extra} others (\`validate --contacts\`, ${contacts.frames} frames).
+Tests along chains alone miss ${Math.round(missedByChains)} of the ${Math.round(all.found)} true pairs that all pairs of spheres find (${percent(share(missedByChains, all.found))} %).
 Bodies other than humans fit spheres less well: their spheres may miss half of the contacts. Their skin contacts are exact all the same.
 
 ## Skin, spheres, chains and capsules
 
-${table(["motion", "method", "true pairs", "recall", "precision", "pairs a frame", "any", "all", "missed depth"], rows.flatMap(methods))}
+${table(["motion", "method", "true pairs", "recall", "precision", "pairs a frame", "any", "all", "missed overlap"], rows.flatMap(methods))}
 
 ## What is out of scope
 
@@ -223,7 +223,7 @@ ${curve("radius_curve", (p) => `x ${p.scale.toFixed(1)}`)}
 
 The same for other values of the setting \`rest_scale\`.
 
-${curve("near_curve", (p) => p.near_fraction.toFixed(1))}
+${curve("rest_curve", (p) => p.rest_fraction.toFixed(1))}
 
 ## Capsules over their quantile
 
