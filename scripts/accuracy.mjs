@@ -223,7 +223,7 @@ ${curve("radius_curve", (p) => `x ${p.scale.toFixed(1)}`)}
 
 The same for other values of the setting \`rest_scale\`.
 
-${curve("rest_curve", (p) => p.rest_fraction.toFixed(1))}
+${curve("rest_curve", (p) => p.rest_scale.toFixed(1))}
 
 ## Capsules over their quantile
 

@@ -44,7 +44,7 @@ function bakeAndPlay(character) {
   const [mesh, motion] = character.split("+");
   const name = basename(mesh) + (motion ? ` + ${basename(motion)}` : "");
   const baked = run("bake", mesh, "-o", asset, "--report", report, "--force");
-  if (baked) return [name, baked];
+  if (baked) return [name, baked.replace(`${basename(mesh)}: `, "")];
   rmSync(played, { force: true });
   const play = run("play", asset, "--source", mesh, ...(motion ? ["--motion", motion] : []), "--json", played);
   if (play) return [name, play];
