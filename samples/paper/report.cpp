@@ -77,8 +77,7 @@ Section gpu_section(const Results& results) {
 std::vector<Section> sections(const Results& results) {
   std::vector<Section> out;
   out.push_back({"What the paper claims",
-                 {"A rule computes each verdict from the run's tables. The rule stands beside it."} {
-                     "Every verdict is computed from the run's tables by the rule beside it."},
+                 {"A rule computes each verdict from the run's tables. The rule stands beside it."},
                  {},
                  {show(judge_claims(results), {{"paper_says", "The paper says"},
                                                {"verdict", "Verdict"},
