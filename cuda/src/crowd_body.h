@@ -27,7 +27,7 @@ template <typename Run>
 SPHERECHAIN_HD void run_sphere_block(const GroupView& v, const Shared& shared, const Run& run) {
   run.for_instances(v, shared,  //
                     warp_step(true, [&](const WarpInstance& w) { load_spheres(v, w); }),
-                    warp_step(v.has_padding, [&](const WarpInstance& w) { pad_spheres(v, w); }),
+                    warp_step(v.has_padding != 0, [&](const WarpInstance& w) { pad_spheres(v, w); }),
                     warp_step(true, [&](const WarpInstance& w) { see_spheres(v, w); }),
                     warp_step(true, [&](const WarpInstance& w) { find_pairs(v, w); }),
                     warp_step(true, [&](const WarpInstance& w) { decide_pairs(v, w); }),

@@ -2,6 +2,7 @@
 // The kernel for bones: from the caller's matrices to the ones that moments are multiplied with.
 #pragma once
 
+#include "asset/moment_tables.h"
 #include "crowd_primitives.h"
 
 namespace spherechain::cuda {
@@ -59,7 +60,7 @@ SPHERECHAIN_HD void find_reference(const GroupView& v, const Shared& shared, con
 }
 
 // Figures nearer to 0 than that become 0. NaN stays.
-SPHERECHAIN_HD float without_least(float x) { return fabsf(x) < kLeastMatrixFigure ? 0.0F : x; }
+SPHERECHAIN_HD float without_tiny(float x) { return fabsf(x) < kMinMatrixFigure ? 0.0F : x; }
 
 // Step 3, a warp a bone. A translation becomes the origin's image, relative to the reference bone's.
 SPHERECHAIN_HD void center_matrices(const GroupView& v, const Shared& shared, const Place& at) {
@@ -68,7 +69,7 @@ SPHERECHAIN_HD void center_matrices(const GroupView& v, const Shared& shared, co
     for (std::uint32_t i = 0; i < 3; ++i) {
       Float4& row = shared.matrices[(3 * bone + i) * kPitch + at.lane()];
       const float w = move_origin(v, row) - shared.reference[i * kPitch + at.lane()];
-      row = {without_least(row.x), without_least(row.y), without_least(row.z), without_least(w)};
+      row = {without_tiny(row.x), without_tiny(row.y), without_tiny(row.z), without_tiny(w)};
     }
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a block of the crowd's kernels sees: the tables' entries, a group's pointers, and the block's own memory.
+// What a block of the crowd's kernels sees: the table's entries, a group's pointers, and the block's own memory.
 #pragma once
 
 #include <cstddef>
@@ -66,10 +66,10 @@ SPHERECHAIN_HD std::uint32_t words_of_units(std::uint32_t units) {
   return (units * (units + 1) / 2 + kWordUnits - 1) / kWordUnits;
 }
 
-// Pairs that touch at rest. There are as many as lanes_of() says; the spare ones have scale 0 and never touch.
-struct alignas(16) RestPair {
+// A RestPair. There are as many as lanes_of() says; the spare ones have scale 0 and never touch.
+struct alignas(16) RestPairItem {
   std::uint32_t a, b;
-  float scale;
+  float rest_scale;
   std::uint32_t unused;
 };
 
@@ -117,14 +117,19 @@ SPHERECHAIN_HD constexpr std::size_t few_bone_quads(std::size_t bones, std::size
 
 // ---- Views ----
 
-// Stands at the start of CrowdTables::words. Places are in words from there.
-struct TableHeader {
+struct TableFigures {
   std::uint32_t sphere_count, bone_count;  // bone_count: the asset's, or 0 if it is not refitted by moments
   std::uint32_t used_bone_count, item_count, rest_pair_count, run_count, bit_words;
   std::uint32_t reference;      // bone of MomentTables, among those used
   std::uint32_t origin_sphere;  // see see_sphere()
   std::uint32_t has_padding;
   Vec3 origin;
+};
+
+// Stands at the start of a table's words. Places are in words from there.
+inline constexpr std::uint32_t kTableMagic = 0x63756461;
+struct TableHeader : TableFigures {
+  std::uint32_t magic;
   std::uint32_t paddings, items, unit_places, wanted, rest_pairs;
   std::uint32_t used_bones, runs, run_spheres, moment_steps, moments, run_bones, center_terms;
 };
@@ -148,12 +153,12 @@ struct BlockLayout {
   std::size_t size;
 };
 
-struct GroupView {
+struct GroupView : TableFigures {
   const float* paddings;
   const PairItem* items;
   const std::uint32_t* unit_places;  // of each unit: r and, in the upper half, c
   const std::uint32_t* wanted;       // [word][lane]: bit 31 - i for the lane's pair i
-  const RestPair* rest_pairs;
+  const RestPairItem* rest_pairs;
   const std::uint32_t* used_bones;
   const MomentRun* runs;
   const std::uint32_t* moment_steps;
@@ -161,10 +166,6 @@ struct GroupView {
   const std::uint32_t* run_bones;  // as steps, without kLastOfBone and kLastOfRun
   const RunSphere* run_spheres;
   const Float4* center_terms;
-  Vec3 origin;
-  std::uint32_t sphere_count, used_bone_count, item_count, rest_pair_count, run_count, bit_words;
-  std::uint32_t reference, origin_sphere;
-  bool has_padding;
 
   const Sphere* spheres;
   const float* matrices;  // null if the instances come as spheres
