@@ -18,7 +18,7 @@ bool is_aligned(const void* pointer, std::size_t to) { return reinterpret_cast<s
 // As a whole, where it is 0 in the group.
 std::size_t stride_of(const CrowdGroup& group) {
   const TableHeader& header = header_of(group.table);
-  return group.instance_stride != 0     ? group.instance_stride
+  return group.instance_stride != 0    ? group.instance_stride
          : group.pose.bones != nullptr ? header.bone_count * bone_stride(group.pose)
                                        : header.sphere_count;
 }
@@ -80,12 +80,12 @@ Status check(const CrowdGroup& group) {
   if (group.spheres == nullptr && !from_bones && group.instance_count > 0) {
     return refuse(SC_NULL, SC_FIELD_SPHERES);
   }
-  const sc_field bad = group.instance_count > kInstancesMax             ? SC_FIELD_INSTANCES
-                       : group.pose.vertices != nullptr                 ? SC_FIELD_VERTICES
-                       : from_bones && group.spheres != nullptr         ? SC_FIELD_SPHERES
-                       : !from_bones && group.refitted != nullptr       ? SC_FIELD_OUTPUT
+  const sc_field bad = group.instance_count > kInstancesMax              ? SC_FIELD_INSTANCES
+                       : group.pose.vertices != nullptr                  ? SC_FIELD_VERTICES
+                       : from_bones && group.spheres != nullptr          ? SC_FIELD_SPHERES
+                       : !from_bones && group.refitted != nullptr        ? SC_FIELD_OUTPUT
                        : !from_bones && stride_of(group) > kInstancesMax ? SC_FIELD_INSTANCE_STRIDE
-                                                                        : SC_FIELD_NONE;
+                                                                         : SC_FIELD_NONE;
   if (bad != SC_FIELD_NONE) {
     return refuse(SC_BAD_VALUE, bad);
   }

@@ -6,9 +6,7 @@
 
 namespace spherechain::cuda {
 
-inline const TableHeader& header_of(const std::uint64_t* table) {
-  return *reinterpret_cast<const TableHeader*>(table);
-}
+inline const TableHeader& header_of(const std::uint64_t* table) { return *reinterpret_cast<const TableHeader*>(table); }
 
 // The memory of a block. Reads the view's counts, and which inputs and outputs there are.
 BlockLayout layout_of(const GroupView& view);

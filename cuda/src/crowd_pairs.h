@@ -20,8 +20,8 @@ SPHERECHAIN_HD float power_of(const Vec3& p, float radius, float margin) {
   return squared_length + squared_radius <= kExtentMax ? power : INFINITY;
 }
 
-// For multiply-adds. With G = |p|^2 + rp^2 + |q|^2 + rq^2, runtime/src/pairs/sphere_columns.h shows that a sum much like this
-// one is off by at most 33 * 2^-24 G; the powers add 4 * 2^-24 G here, and the margin is 64 * 2^-24.
+// For multiply-adds. With G = |p|^2 + rp^2 + |q|^2 + rq^2, runtime/src/pairs/sphere_columns.h shows that a sum much
+// like this one is off by at most 33 * 2^-24 G; the powers add 4 * 2^-24 G here, and the margin is 64 * 2^-24.
 inline constexpr float kPowerMargin = 0x1p-18F;
 
 // Step 6, a warp a sphere: padding and powers. Also clears the outputs' bits, which lie where the matrices were.

@@ -181,9 +181,8 @@ Status HostCrowd::run() noexcept {
     return refused;
   }
   const TableHeader& header = header_of(m.table);
-  const std::size_t floats =
-      (instance_count - 1) * checked.instance_stride +
-      ((header.bone_count - 1) * bone_stride(pose) + size_of(pose.bone_layout)) / sizeof(float);
+  const std::size_t floats = (instance_count - 1) * checked.instance_stride +
+                             ((header.bone_count - 1) * bone_stride(pose) + size_of(pose.bone_layout)) / sizeof(float);
   std::uint64_t found = 0;
   const Status status = first_failure(
       [&] { return m.matrices.reserve(floats); }, [&] { return m.matrices.put(pose.bones, floats); },

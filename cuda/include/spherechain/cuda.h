@@ -34,8 +34,8 @@ Status prepare_crowd(const Asset& asset, Radius radius, const Filter* filter, st
 std::size_t crowd_block_bytes(const std::uint64_t* table, bool from_bones, bool with_bits, bool with_pairs) noexcept;
 
 // Instances of one asset. All pointers but `table` point to memory that the device can access: spheres, device_table
-// and scratch at multiples of 16, the others at multiples of their type's size. cudaMalloc gives both. Matrices are read
-// fastest by rows and at multiples of 16.
+// and scratch at multiples of 16, the others at multiples of their type's size. cudaMalloc gives both. Matrices are
+// read fastest by rows and at multiples of 16.
 struct CrowdGroup {
   const std::uint64_t* table = nullptr;         // on the host, from prepare_crowd()
   const std::uint64_t* device_table = nullptr;  // its copy
@@ -70,10 +70,10 @@ inline constexpr std::size_t kCrowdGroupsMax = 8;  // of a call
 
 // Refits and tests whole crowds. A sphere that is not finite touches nothing.
 //
-// Enqueues work on `stream` of the current device (null: the default stream) and returns: one kernel for the groups that
-// come as spheres, one for those that come as bones, one for those that need scratch, and for each list the clearing of
-// its count. It allocates nothing, waits for nothing and may be captured into a graph. Outputs must overlap neither
-// inputs nor one another; read them when the stream has finished the work.
+// Enqueues work on `stream` of the current device (null: the default stream) and returns: one kernel for the groups
+// that come as spheres, one for those that come as bones, one for those that need scratch, and for each list the
+// clearing of its count. It allocates nothing, waits for nothing and may be captured into a graph. Outputs must overlap
+// neither inputs nor one another; read them when the stream has finished the work.
 //
 // SC_OK or, with nothing enqueued:
 //   SC_NULL, SC_MISALIGNED, SC_TOO_SMALL, SC_BAD_STRIDE and the field; of an incomplete list SC_FIELD_PAIRS or _COUNTS
