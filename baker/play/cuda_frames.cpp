@@ -22,9 +22,9 @@ void check_cuda(Status status) {
 
 }  // namespace
 
-CudaFrames play_on_cuda(const AnimatedAsset& animated, RadiusKind radius) {
-  const Asset& asset = animated.asset();
-  if (asset.bone_count() == 0 || asset.refit_rule() != RefitRule::kMoments) {
+CudaFrames play_on_cuda(const AnimatedAsset& animated, Radius radius) {
+  const OpenAsset& asset = animated.asset();
+  if (asset->bone_count() == 0 || asset->refit_rule() != RefitRule::kMoments) {
     throw Error(ExitCode::kFile,
                 animated.file() + ": has no bones by moments, which --backend cuda refits from (bake it by moments)");
   }
@@ -35,14 +35,14 @@ CudaFrames play_on_cuda(const AnimatedAsset& animated, RadiusKind radius) {
     const std::vector<float> palette = bone_palette(asset, animated.deformation(i));
     matrices.insert(matrices.end(), palette.begin(), palette.end());
   }
-  const std::size_t n = asset.spheres().size, most = n * (n - 1) / 2;
+  const std::size_t n = asset->spheres().size, most = n * (n - 1) / 2;
   std::vector<Sphere> spheres(n * count);
   std::vector<std::uint32_t> counts(count);
   std::vector<CrowdPair> pairs(most * count + 1);
   cuda::HostCrowd crowd;
   check_cuda(crowd.open(asset, radius, nullptr, count, pairs.size()));
-  crowd.bones = {matrices.data(), asset.bone_count(), MatrixLayout::kRowMajor3x4, 48};
-  crowd.instance_stride = asset.bone_count() * 48;
+  crowd.bones = {matrices.data(), asset->bone_count(), MatrixLayout::kRowMajor3x4, 48};
+  crowd.instance_stride = asset->bone_count() * 48;
   crowd.instance_count = count;
   crowd.spheres = spheres.data();
   crowd.counts = counts.data();
@@ -60,7 +60,7 @@ CudaFrames play_on_cuda(const AnimatedAsset& animated, RadiusKind radius) {
 
 #else
 
-CudaFrames play_on_cuda(const AnimatedAsset&, RadiusKind) {
+CudaFrames play_on_cuda(const AnimatedAsset&, Radius) {
   throw Error(
       ExitCode::kInternal,
       "--backend cuda: this build has no CUDA (configure with SPHERECHAIN_CUDA=ON; --backend auto needs no GPU)");
