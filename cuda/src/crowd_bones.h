@@ -8,7 +8,7 @@
 namespace spherechain::cuda {
 
 SPHERECHAIN_HD std::uint32_t instances_in(const GroupView& v, const Place& at) {
-  const std::uint32_t most = block_instances(v), left = v.instance_count - at.block * most;
+  const std::uint32_t most = block_instances(v), left = v.instances - at.block * most;
   return left < most ? left : most;
 }
 
@@ -19,26 +19,26 @@ SPHERECHAIN_HD void load_matrices(const GroupView& v, const Shared& shared, cons
     shared.dealt[at.thread] = 0;
   }
   const std::uint32_t last = instances_in(v, at) - 1;
-  const float* const first = v.matrices + std::size_t{at.block} * kLanes * v.instance_stride;
+  const float* const first = v.pose.bones + std::size_t{at.block} * kLanes * v.instance_floats;
   if (v.wide_matrices && !v.in_scratch) {
     for (std::uint32_t i = at.lane(); i < 3 * v.used_bone_count; i += kLanes) {
-      const float* const row = first + (v.used_bones[i / 3] * v.bone_stride + i % 3 * v.steps.row);
+      const float* const row = first + (v.used_bones[i / 3] * v.bone_floats + i % 3 * v.steps.row);
       Float4* const to = shared.matrices + i * kPitch;
       SPHERECHAIN_UNROLL
       for (std::uint32_t turn = 0; turn * at.warps() < kLanes; ++turn) {
         const std::uint32_t place = turn * at.warps() + at.warp();
         if (place < kLanes) {
-          copy_past_cache(to + place, row + std::size_t{place < last ? place : last} * v.instance_stride);
+          copy_past_cache(to + place, row + std::size_t{place < last ? place : last} * v.instance_floats);
         }
       }
     }
   } else {
     for (std::uint32_t i = at.lane(); i < 12 * v.used_bone_count; i += kLanes) {
       const std::uint32_t figure =
-          v.used_bones[i / 12] * v.bone_stride + i / 4 % 3 * v.steps.row + i % 4 * v.steps.column;
+          v.used_bones[i / 12] * v.bone_floats + i / 4 % 3 * v.steps.row + i % 4 * v.steps.column;
       for (std::uint32_t to = at.warp(); to < kLanes; to += at.warps()) {
         (&shared.matrices[i / 4 * kPitch + to].x)[i % 4] =
-            first[std::size_t{to < last ? to : last} * v.instance_stride + figure];
+            first[std::size_t{to < last ? to : last} * v.instance_floats + figure];
       }
     }
   }

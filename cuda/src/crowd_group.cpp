@@ -167,7 +167,9 @@ void view_table(const TableHeader& header, const std::uint64_t* words, GroupView
 
 }  // namespace
 
-BlockLayout layout_of(const GroupView& v) { return v.matrices != nullptr ? layout_of_bones(v) : layout_of_spheres(v); }
+BlockLayout layout_of(const GroupView& v) {
+  return v.pose.bones != nullptr ? layout_of_bones(v) : layout_of_spheres(v);
+}
 
 std::size_t crowd_block_bytes(const std::uint64_t* table, bool from_bones, bool with_bits, bool with_pairs) noexcept {
   alignas(16) static std::uint64_t something[2];  // it only matters what is null
@@ -176,7 +178,7 @@ std::size_t crowd_block_bytes(const std::uint64_t* table, bool from_bones, bool 
   }
   GroupView v{};
   view_table(header_of(table), something, v);
-  v.matrices = from_bones ? reinterpret_cast<const float*>(something) : nullptr;
+  v.pose.bones = from_bones ? reinterpret_cast<const float*>(something) : nullptr;
   v.bits = with_bits ? something : nullptr;
   v.pairs = with_pairs ? reinterpret_cast<CrowdPair*>(something) : nullptr;
   return layout_of(v).size;
@@ -188,27 +190,17 @@ Status view_group(const CrowdGroup& group, GroupView& view) {
     return status;
   }
   view = {};
+  static_cast<CrowdGroup&>(view) = group;
   view_table(header_of(group.table), group.device_table, view);
   const BoneMatrices matrices = matrices_of(group.pose);
   const std::size_t stride = stride_of(group);
-  view.instance_count = static_cast<std::uint32_t>(group.instance_count);
-  view.spheres = group.spheres;
+  view.instances = static_cast<std::uint32_t>(group.instance_count);
   view.sphere_stride = stride;
-  view.matrices = matrices.data;
-  view.bone_stride = static_cast<std::uint32_t>(matrices.stride);
-  view.instance_stride = static_cast<std::uint32_t>(stride / sizeof(float));
+  view.bone_floats = static_cast<std::uint32_t>(matrices.stride);
+  view.instance_floats = static_cast<std::uint32_t>(stride / sizeof(float));
   view.steps = {static_cast<std::uint32_t>(matrices.row), static_cast<std::uint32_t>(matrices.column)};
   view.wide_matrices = view.steps.column == 1 && is_aligned(matrices.data, 16) &&
                        matrices.stride * sizeof(float) % sizeof(Float4) == 0 && stride % sizeof(Float4) == 0;
-  view.refitted = group.refitted;
-  view.counts = group.counts;
-  view.bits = group.bits;
-  view.pairs = group.pairs;
-  view.pair_capacity = group.pair_capacity;
-  view.starts = group.starts;
-  view.pair_count = group.pair_count;
-  view.scratch = static_cast<unsigned char*>(group.scratch);
-  view.scratch_bytes = group.scratch_bytes;
   view.layout = layout_of(view);
   return done();
 }
@@ -246,7 +238,9 @@ Status plan_launches(const Launch& all, std::size_t shared_bytes_max, LaunchPlan
       view.scratch_blocks = static_cast<std::uint32_t>(blocks);
       view.in_scratch = true;
     }
-    Launch& launch = plan[in_scratch ? Kernel::kScratch : view.matrices == nullptr ? Kernel::kSpheres : Kernel::kBones];
+    Launch& launch = plan[in_scratch                   ? Kernel::kScratch
+                          : view.pose.bones == nullptr ? Kernel::kSpheres
+                                                       : Kernel::kBones];
     view.first_block = launch.blocks;
     launch.blocks += static_cast<std::uint32_t>(blocks);
     launch.shared_bytes = std::max(launch.shared_bytes, in_scratch ? 0 : bytes);

@@ -38,6 +38,12 @@ Status view_groups(const CrowdGroup* groups, std::size_t count, Launch& all);
 // SC_TOO_SMALL.
 Status plan_launches(const Launch& all, std::size_t shared_bytes_max, LaunchPlan& plan);
 
+struct DeviceLimits {
+  std::size_t shared_bytes_max;  // of a block
+  std::size_t multiprocessors;
+};
+Status find_limits(DeviceLimits& limits);  // of the current device
+
 // Enqueues a kernel. SC_OK, SC_NO_DEVICE or SC_DEVICE_FAILED.
 Status enqueue(Kernel kernel, const Launch& launch, std::size_t shared_bytes_max, CUstream_st* stream);
 

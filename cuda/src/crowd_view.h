@@ -153,7 +153,9 @@ struct BlockLayout {
   std::size_t size;
 };
 
-struct GroupView : TableFigures {
+// A group as the kernels read it.
+struct GroupView : TableFigures, CrowdGroup {
+  // The arrays of the table's copy on the device.
   const float* paddings;
   const PairItem* items;
   const std::uint32_t* unit_places;  // of each unit: r and, in the upper half, c
@@ -167,37 +169,24 @@ struct GroupView : TableFigures {
   const RunSphere* run_spheres;
   const Float4* center_terms;
 
-  const Sphere* spheres;
-  const float* matrices;  // null if the instances come as spheres
-  std::size_t sphere_stride;
-  std::uint32_t bone_stride, instance_stride;  // floats
+  std::uint32_t instances;                     // instance_count
+  std::size_t sphere_stride;                   // entries from one instance to the next
+  std::uint32_t bone_floats, instance_floats;  // from one matrix, one instance to the next
   MatrixSteps steps;
   bool wide_matrices;  // whose rows are read 16 bytes at a time
   bool in_scratch;     // the block's memory is not shared memory
-  std::uint32_t instance_count;
 
-  Sphere* refitted;
-  std::uint32_t* counts;
-  std::uint64_t* bits;
-  CrowdPair* pairs;
-  std::uint64_t pair_capacity;
-  std::uint64_t* starts;
-  std::uint64_t* pair_count;
-
-  unsigned char* scratch;
-  std::size_t scratch_bytes;
   std::uint32_t scratch_blocks;  // that run at once and take the group's blocks in turns
-
   std::uint32_t first_block;
   BlockLayout layout;
 };
 
 SPHERECHAIN_HD std::uint32_t block_instances(const GroupView& v) {
-  return v.matrices != nullptr ? kLanes : kSphereInstances;
+  return v.pose.bones != nullptr ? kLanes : kSphereInstances;
 }
 
 SPHERECHAIN_HD std::uint32_t blocks_of(const GroupView& v) {
-  return (v.instance_count + block_instances(v) - 1) / block_instances(v);
+  return (v.instances + block_instances(v) - 1) / block_instances(v);
 }
 
 SPHERECHAIN_HD std::uint32_t half_words(const GroupView& v) { return 2 * v.bit_words; }

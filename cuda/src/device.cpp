@@ -10,16 +10,6 @@ namespace {
 
 thread_local cudaError_t last_error = cudaSuccess;
 
-Status find_shared_bytes_max(std::size_t& bytes) {
-  int device = 0, most = 0;
-  cudaError_t error = cudaGetDevice(&device);
-  if (error == cudaSuccess) {
-    error = cudaDeviceGetAttribute(&most, cudaDevAttrMaxSharedMemoryPerBlockOptin, device);
-  }
-  bytes = static_cast<std::size_t>(most);
-  return status_of(error);
-}
-
 }  // namespace
 
 Status status_of(int cuda_error) {
@@ -34,6 +24,19 @@ Status status_of(int cuda_error) {
   return refuse(is_missing ? SC_NO_DEVICE : SC_DEVICE_FAILED, SC_FIELD_NONE);
 }
 
+Status find_limits(DeviceLimits& limits) {
+  int device = 0, bytes = 0, multiprocessors = 0;
+  cudaError_t error = cudaGetDevice(&device);
+  if (error == cudaSuccess) {
+    error = cudaDeviceGetAttribute(&bytes, cudaDevAttrMaxSharedMemoryPerBlockOptin, device);
+  }
+  if (error == cudaSuccess) {
+    error = cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device);
+  }
+  limits = {static_cast<std::size_t>(bytes), static_cast<std::size_t>(multiprocessors)};
+  return status_of(error);
+}
+
 Status check_device() noexcept {
   int count = 0;
   const cudaError_t error = cudaGetDeviceCount(&count);
@@ -45,13 +48,13 @@ const char* last_device_error() noexcept { return cudaGetErrorString(last_error)
 Status enqueue_crowds(const CrowdGroup* groups, std::size_t group_count, CUstream_st* stream) noexcept {
   Launch all;
   LaunchPlan plan;
-  std::size_t shared_bytes_max = 0;
+  DeviceLimits limits{};
   Status status = view_groups(groups, group_count, all);
   if (status == SC_OK && all.count > 0) {
-    status = find_shared_bytes_max(shared_bytes_max);
+    status = find_limits(limits);
   }
   if (status == SC_OK) {
-    status = plan_launches(all, shared_bytes_max, plan);
+    status = plan_launches(all, limits.shared_bytes_max, plan);
   }
   for (std::size_t g = 0; g < group_count && status == SC_OK; ++g) {
     if (groups[g].pairs != nullptr) {
@@ -60,7 +63,7 @@ Status enqueue_crowds(const CrowdGroup* groups, std::size_t group_count, CUstrea
   }
   for (std::uint32_t k = 0; k < kKernels && status == SC_OK; ++k) {
     if (plan.launches[k].count > 0) {
-      status = enqueue(static_cast<Kernel>(k), plan.launches[k], shared_bytes_max, stream);
+      status = enqueue(static_cast<Kernel>(k), plan.launches[k], limits.shared_bytes_max, stream);
     }
   }
   return status;

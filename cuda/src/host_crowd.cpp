@@ -99,18 +99,13 @@ Status HostCrowd::Memory::allocate_on_device(std::size_t instances, std::size_t 
 // enough for one.
 Status HostCrowd::Memory::allocate_scratch(std::size_t instances) {
   constexpr std::size_t kBytesMax = std::size_t{1} << 30;
-  int device = 0, shared_bytes_max = 0, multiprocessors = 0;
-  const Status status = first_failure(
-      [&] { return status_of(cudaGetDevice(&device)); },
-      [&] {
-        return status_of(cudaDeviceGetAttribute(&shared_bytes_max, cudaDevAttrMaxSharedMemoryPerBlockOptin, device));
-      },
-      [&] { return status_of(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device)); });
+  DeviceLimits limits{};
+  const Status status = find_limits(limits);
   const std::size_t block = crowd_block_bytes(table, true, false, true);
-  if (status != SC_OK || block <= static_cast<std::size_t>(shared_bytes_max)) {
+  if (status != SC_OK || block <= limits.shared_bytes_max) {
     return status;
   }
-  const std::size_t useful = std::min(2 * static_cast<std::size_t>(multiprocessors), (instances + kLanes - 1) / kLanes);
+  const std::size_t useful = std::min(2 * limits.multiprocessors, (instances + kLanes - 1) / kLanes);
   return scratch.reserve(block * std::clamp<std::size_t>(kBytesMax / block, 1, std::max<std::size_t>(useful, 1)));
 }
 
@@ -181,7 +176,7 @@ Status HostCrowd::run() noexcept {
     return refused;
   }
   const TableHeader& header = header_of(m.table);
-  const std::size_t floats = (instance_count - 1) * checked.instance_stride +
+  const std::size_t floats = (instance_count - 1) * checked.instance_floats +
                              ((header.bone_count - 1) * bone_stride(pose) + size_of(pose.bone_layout)) / sizeof(float);
   std::uint64_t found = 0;
   const Status status = first_failure(
