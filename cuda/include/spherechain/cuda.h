@@ -6,6 +6,9 @@
 // All threads may call everything at once, with other output memory.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+
 #include "spherechain/crowd.h"
 
 struct CUstream_st;  // a cudaStream_t points to one
