@@ -7,6 +7,7 @@
 
 #include "crowd_checks.h"
 #include "jobs.h"
+#include "palette.h"
 
 namespace spherechain::test {
 namespace {
@@ -55,6 +56,7 @@ TEST_CASE("by moments: every layout, alignment, radius and pose") {
           GroupInput in = group_of(opened.asset, radius, 33);
           in.offset = offset;
           give_matrices(in, opened.asset, layout, pose, 4 + offset, random);
+          in.pose.bone_stride = offset * floats_of(layout) * sizeof(float);  // said, or left to the layout
           run_and_check(in, pairs_of_bones(opened.asset, in, radius));
         }
       }
