@@ -6,7 +6,7 @@ if(NOT sources)
   message(FATAL_ERROR "no sources under ${ROOT}/runtime")
 endif()
 # The baker's folders, which its own includes start with, and the libraries only it may use.
-set(forbidden "baker/|(bind|chains|cli|fit|import|mesh|motion|report|rig|segment|truth|write)/|(assimp|CGAL|Eigen|fmt|nlohmann|oneapi|tbb)/|tiny_gltf|CLI/")
+set(forbidden "baker/|(bind|chains|cli|clusters|fit|import|measure|mesh|motion|page|pipeline|play|report|rig|roles|segment|truth|wrap|write)/|(assimp|CGAL|Eigen|fmt|nlohmann|oneapi|tbb)/|tiny_gltf|CLI/")
 set(found FALSE)
 foreach(source ${sources})
   file(STRINGS ${source} lines REGEX "^[ \t]*#[ \t]*include[ \t]*[<\"]")
