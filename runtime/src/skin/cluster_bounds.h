@@ -91,7 +91,8 @@ HWY_INLINE GroupVector extent_of_group(const BoundsInputs& in, const GroupRest& 
 // Below this length squares run out of exponents: no bound is less.
 constexpr float kMinLength = 0x1p-60F;
 
-// At least the spectral norm, but for rounding: the root of the greatest row sum of |R^T R|.
+// At least the spectral norm, but for rounding: the root of the greatest row sum of |R^T R|. Infinite where squares
+// overflow: without fma their sum is then no number, which a maximum would lose.
 HWY_INLINE GroupVector spectral_bound(const GroupVector (&r)[3][4]) {
   GroupVector sums[3];
   const auto dot = [&](std::size_t i, std::size_t j) HWY_ATTR {
@@ -101,7 +102,10 @@ HWY_INLINE GroupVector spectral_bound(const GroupVector (&r)[3][4]) {
   sums[0] = hn::Add(hn::Add(dot(0, 0), xy), zx);
   sums[1] = hn::Add(hn::Add(dot(1, 1), xy), yz);
   sums[2] = hn::Add(hn::Add(dot(2, 2), yz), zx);
-  return hn::Max(hn::Sqrt(hn::Max(hn::Max(sums[0], sums[1]), sums[2])), hn::Set(GroupLanes(), kMinLength));
+  constexpr GroupLanes d;
+  const GroupVector norm = hn::Max(hn::Sqrt(hn::Max(hn::Max(sums[0], sums[1]), sums[2])), hn::Set(d, kMinLength));
+  const GroupVector all = hn::Add(hn::Add(sums[0], sums[1]), sums[2]);
+  return hn::IfThenElse(hn::Eq(all, all), norm, hn::Inf(d));
 }
 
 // One register's lanes of a group of clusters.

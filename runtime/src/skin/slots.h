@@ -166,7 +166,7 @@ HWY_INLINE void put_span(const ContactScene& scene, std::size_t cluster_index) {
 #endif
 
 // A cluster shrunk to a point, or to a line along an axis, has only degenerate triangles, which intersect nothing: it
-// rest_scales nowhere. In a pose that takes all to one point each cluster would be paired with each.
+// reaches nowhere. In a pose that takes all to one point each cluster would be paired with each.
 HWY_INLINE void drop_line(const ContactScene& scene, std::size_t cluster_index) {
   float* const low = scene.spans + 2 * kSpanLanes * cluster_index;
   float* const high = low + kSpanLanes;

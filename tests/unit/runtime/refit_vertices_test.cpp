@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "jobs.h"
 #include "tiny_bones.h"
@@ -18,8 +17,8 @@ struct Expected {
   double x, y, z, radius;
 };
 
-// The header's formulas in double precision, written apart from the runtime.
-Expected expected_sphere(const AssetParts& parts, std::size_t i, const std::vector<float>& positions, RadiusKind kind) {
+// The rules of docs/arithmetic.md in double precision, written apart from the runtime.
+Expected expected_sphere(const AssetParts& parts, std::size_t i, const std::vector<float>& positions, Radius kind) {
   const RestSphere& rest = parts.spheres[i];
   std::vector<std::array<double, 3>> centroids;
   std::array<double, 3> center{};
@@ -35,18 +34,21 @@ Expected expected_sphere(const AssetParts& parts, std::size_t i, const std::vect
     centroids.push_back(p);
   }
   double mean = 0.0;
+  const bool is_paper = parts.refit == 0;
   for (const auto& p : centroids) {
-    mean += std::hypot(p[0] - center[0], p[1] - center[1], p[2] - center[2]) / rest.pivot_count;
+    const double distance = std::hypot(p[0] - center[0], p[1] - center[1], p[2] - center[2]);
+    mean += (is_paper ? distance : distance * distance) / rest.pivot_count;
   }
-  double radius = parts.refit == 0 ? mean : double{rest.radius} * mean / double{rest.pivot_spread};
-  if (kind == RadiusKind::kDetect) {
+  mean = is_paper ? mean : std::sqrt(mean);
+  double radius = is_paper ? mean : double{rest.radius} * mean / double{rest.pivot_spread};
+  if (kind == SC_RADIUS_DETECT) {
     radius *= double{rest.detect_radius} / double{rest.radius};
   }
   return {center[0], center[1], center[2], radius};
 }
 
-// The header's fixed arithmetic, to the last bit.
-Sphere exact_sphere(const AssetParts& parts, const RestSphere& rest, const std::vector<float>& v, RadiusKind kind) {
+// The fixed arithmetic, to the last bit.
+Sphere exact_sphere(const AssetParts& parts, const RestSphere& rest, const std::vector<float>& v, Radius kind) {
   std::vector<std::array<float, 3>> centroids;
   float c[3] = {0, 0, 0};
   for (std::size_t k = rest.first_pivot; k < rest.first_pivot + rest.pivot_count; ++k) {
@@ -62,13 +64,15 @@ Sphere exact_sphere(const AssetParts& parts, const RestSphere& rest, const std::
   float sum = 0;
   for (const auto& p : centroids) {
     const float dx = p[0] - c[0], dy = p[1] - c[1], dz = p[2] - c[2];
-    sum = sum + std::sqrt((dx * dx + dy * dy) + dz * dz);
+    const float squared = (dx * dx + dy * dy) + dz * dz;
+    sum = sum + (parts.refit == 0 ? std::sqrt(squared) : squared);
   }
-  const float mean = sum / static_cast<float>(rest.pivot_count);
-  const bool fit = kind == RadiusKind::kFit;
+  const float quotient = sum / static_cast<float>(rest.pivot_count);
+  const float mean = parts.refit == 0 ? quotient : std::sqrt(quotient);
+  const bool fit = kind == SC_RADIUS_FIT;
   const float paper = fit ? mean : mean * (rest.detect_radius / rest.radius);
-  const float calibrated = (fit ? rest.radius : rest.detect_radius) * (mean / rest.pivot_spread);
-  return {c[0], c[1], c[2], parts.refit == 0 ? paper : calibrated};
+  const float moments = (fit ? rest.radius : rest.detect_radius) * (mean / rest.pivot_spread);
+  return {c[0], c[1], c[2], parts.refit == 0 ? paper : moments};
 }
 
 void check_close(const Sphere& sphere, const Expected& expected, double tolerance) {
@@ -97,26 +101,17 @@ std::vector<float> deformed(std::vector<float> positions) {
   return positions;
 }
 
-RefitJob job_for(const Asset& asset, const std::vector<float>& positions, std::vector<Sphere>& spheres) {
-  RefitJob job;
-  job.asset = &asset;
-  job.positions = positions.data();
-  job.vertex_count = positions.size() / 3;
-  job.spheres = {spheres.data(), spheres.size()};
-  return job;
-}
-
 }  // namespace
 
-TEST_CASE("calibrated spheres are the rest spheres at rest") {
+TEST_CASE("by moments spheres are the rest spheres at rest") {
   const TinyAsset tiny = random_asset(9, 10);
   const OpenedAsset opened(tiny.parts);
-  for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
+  for (const Radius kind : {SC_RADIUS_FIT, SC_RADIUS_DETECT}) {
     const Refitted result = refit(opened.asset, tiny.rest, kind);
-    REQUIRE(result.status == Status::kOk);
+    REQUIRE(result.status == SC_OK);
     for (std::size_t i = 0; i < result.spheres.size(); ++i) {
       const RestSphere& rest = tiny.parts.spheres[i];
-      const float radius = kind == RadiusKind::kFit ? rest.radius : rest.detect_radius;
+      const float radius = kind == SC_RADIUS_FIT ? rest.radius : rest.detect_radius;
       check_close(result.spheres[i], {rest.center.x, rest.center.y, rest.center.z, radius}, kRounding);
     }
   }
@@ -126,21 +121,21 @@ TEST_CASE("the paper's radius is the mean distance of the pivots, whatever the r
   TinyAsset tiny = random_asset(9, 10);
   tiny.parts.refit = 0;
   const OpenedAsset opened(tiny.parts);
-  const Refitted fit = refit(opened.asset, tiny.rest, RadiusKind::kFit);
-  const Refitted detect = refit(opened.asset, tiny.rest, RadiusKind::kDetect);
+  const Refitted fit = refit(opened.asset, tiny.rest, SC_RADIUS_FIT);
+  const Refitted detect = refit(opened.asset, tiny.rest, SC_RADIUS_DETECT);
   for (std::size_t i = 0; i < fit.spheres.size(); ++i) {
     CHECK(fit.spheres[i].radius == doctest::Approx(tiny.parts.spheres[i].pivot_spread).epsilon(kRounding));
     CHECK(detect.spheres[i].radius == doctest::Approx(1.25 * double{fit.spheres[i].radius}).epsilon(kRounding));
   }
 }
 
-TEST_CASE("spheres follow any deformation by the formulas of the header") {
+TEST_CASE("spheres follow any deformation by the rules of docs/arithmetic.md") {
   for (const std::uint8_t rule : {std::uint8_t{0}, std::uint8_t{1}}) {
     const TinyAsset tiny = weighted_asset(rule);
     const OpenedAsset opened(tiny.parts);
-    REQUIRE(opened.status == Status::kOk);
+    REQUIRE(opened.status == SC_OK);
     const std::vector<float> positions = deformed(tiny.rest);
-    for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
+    for (const Radius kind : {SC_RADIUS_FIT, SC_RADIUS_DETECT}) {
       const Refitted result = refit(opened.asset, positions, kind);
       for (std::size_t i = 0; i < result.spheres.size(); ++i) {
         check_close(result.spheres[i], expected_sphere(tiny.parts, i, positions, kind), 2 * kRounding);
@@ -149,14 +144,14 @@ TEST_CASE("spheres follow any deformation by the formulas of the header") {
   }
 }
 
-TEST_CASE("spheres follow the fixed arithmetic of the header bit for bit") {
+TEST_CASE("spheres follow the fixed arithmetic bit for bit") {
   for (const std::uint8_t rule : {std::uint8_t{0}, std::uint8_t{1}}) {
     TinyAsset tiny = weighted_asset(rule);
     give_pivots(tiny, 3, 16, 1);
     give_pivots(tiny, 5, 17, 2);
     const OpenedAsset opened(tiny.parts);
     const std::vector<float> positions = deformed(tiny.rest);
-    for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
+    for (const Radius kind : {SC_RADIUS_FIT, SC_RADIUS_DETECT}) {
       std::vector<Sphere> expected;
       for (const RestSphere& rest : tiny.parts.spheres) {
         expected.push_back(exact_sphere(tiny.parts, rest, positions, kind));
@@ -171,7 +166,7 @@ TEST_CASE("spheres move, turn and grow with the body") {
     TinyAsset tiny = random_asset(9, 12);
     tiny.parts.refit = rule;
     const OpenedAsset opened(tiny.parts);
-    const Refitted rest = refit(opened.asset, tiny.rest, RadiusKind::kFit);
+    const Refitted rest = refit(opened.asset, tiny.rest, SC_RADIUS_FIT);
     constexpr float kScale = 2.5F;
     const auto move = [](float x, float y, float z) {  // a quarter turn about z, scaled, shifted
       return std::array<float, 3>{-kScale * y + 1.0F, kScale * x - 2.0F, kScale * z + 0.5F};
@@ -181,7 +176,7 @@ TEST_CASE("spheres move, turn and grow with the body") {
       const auto moved = move(positions[v], positions[v + 1], positions[v + 2]);
       std::copy(moved.begin(), moved.end(), positions.begin() + static_cast<std::ptrdiff_t>(v));
     }
-    const Refitted result = refit(opened.asset, positions, RadiusKind::kFit);
+    const Refitted result = refit(opened.asset, positions, SC_RADIUS_FIT);
     for (std::size_t i = 0; i < result.spheres.size(); ++i) {
       const auto center = move(rest.spheres[i].x, rest.spheres[i].y, rest.spheres[i].z);
       const Expected expected{center[0], center[1], center[2], double{kScale * rest.spheres[i].radius}};
@@ -193,95 +188,31 @@ TEST_CASE("spheres move, turn and grow with the body") {
 TEST_CASE("a stride skips what lies between positions, bit for bit") {
   const TinyAsset tiny = weighted_asset(1);
   const OpenedAsset opened(tiny.parts);
-  const Refitted packed = refit(opened.asset, tiny.rest, RadiusKind::kDetect);
+  const Refitted packed = refit(opened.asset, tiny.rest, SC_RADIUS_DETECT);
   for (const std::size_t stride : {16U, 20U, 32U}) {
     std::vector<float> padded;
     for (std::size_t v = 0; v < tiny.rest.size(); v += 3) {
       padded.insert(padded.end(), {tiny.rest[v], tiny.rest[v + 1], tiny.rest[v + 2]});
       padded.resize(padded.size() + stride / 4 - 3, 1e9F);
     }
-    const Refitted result = refit(opened.asset, padded, RadiusKind::kDetect, stride);
-    CHECK(result.status == Status::kOk);
+    const Refitted result = refit(opened.asset, padded, SC_RADIUS_DETECT, stride);
+    CHECK(result.status == SC_OK);
     CHECK(same_bits(result.spheres, packed.spheres));
   }
-}
-
-TEST_CASE("the pivots' vertices alone give the spheres of all vertices bit for bit") {
-  TinyAsset tiny = weighted_asset(1);
-  give_pivots(tiny, 4, 16, 1);
-  for (std::size_t k = 1; k < tiny.parts.pivots.size(); k += 2) {
-    tiny.parts.pivots[k].c = tiny.parts.pivots[k].a;  // some vertices are no pivot's
-  }
-  add_bones(tiny, 3, 3);
-  const OpenedAsset opened(tiny.parts);
-  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
-  const std::vector<float> positions = deformed(tiny.rest);
-  std::vector<float> packed;
-  for (const std::uint32_t v : opened.asset.pivot_vertices()) {
-    packed.insert(packed.end(), {positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]});
-  }
-  REQUIRE(packed.size() < positions.size());
-  std::vector<Sphere> spheres(9);
-  RefitJob job = job_for(opened.asset, packed, spheres);
-  job.vertices = VertexSet::kPivots;
-  CHECK(job.run() == Status::kOk);
-  CHECK(same_bits(spheres, refit(opened.asset, positions, RadiusKind::kDetect).spheres));
-  job.vertex_count -= 1;
-  CHECK(job.run() == Status::kTooFewVertices);
-  const OpenedAsset old(random_asset(9, 11).parts);
-  job.asset = &old.asset;
-  CHECK(job.run() == Status::kNotInAsset);
 }
 
 TEST_CASE("positions that are not finite give spheres that are not finite") {
   const TinyAsset tiny = random_asset(3, 13);
   const OpenedAsset opened(tiny.parts);
-  for (const float bad : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+  for (const float bad : {kNan, kInfinity}) {
     std::vector<float> positions = tiny.rest;
     positions[3 * tiny.parts.pivots[0].a] = bad;
-    const Refitted result = refit(opened.asset, positions, RadiusKind::kFit);
-    CHECK(result.status == Status::kOk);
+    const Refitted result = refit(opened.asset, positions, SC_RADIUS_FIT);
+    CHECK(result.status == SC_OK);
     CHECK(!std::isfinite(result.spheres[0].x));
     CHECK(std::isfinite(result.spheres[1].x));
     CHECK(std::isfinite(result.spheres[1].radius));
   }
-}
-
-TEST_CASE("refit leaves entries past the asset's spheres alone") {
-  const TinyAsset tiny = random_asset(3, 14);
-  const OpenedAsset opened(tiny.parts);
-  std::vector<Sphere> spheres(5, {7, 7, 7, 7});
-  CHECK(job_for(opened.asset, tiny.rest, spheres).run() == Status::kOk);
-  CHECK(spheres[2].x != 7.0F);
-  CHECK(same_bits(std::vector<Sphere>(spheres.begin() + 3, spheres.end()), std::vector<Sphere>(2, {7, 7, 7, 7})));
-}
-
-TEST_CASE("refit refuses what it cannot use and writes nothing") {
-  const TinyAsset tiny = random_asset(3, 15);
-  const OpenedAsset opened(tiny.parts);
-  const std::vector<Sphere> untouched(3, {7, 7, 7, 7});
-  std::vector<Sphere> spheres = untouched;
-  const RefitJob good = job_for(opened.asset, tiny.rest, spheres);
-  const Asset closed;
-  const auto status_of = [&](auto change) {
-    RefitJob job = good;
-    change(job);
-    return job.run();
-  };
-  CHECK(status_of([](RefitJob& j) { j.asset = nullptr; }) == Status::kNullArgument);
-  CHECK(status_of([](RefitJob& j) { j.positions = nullptr; }) == Status::kNullArgument);
-  CHECK(status_of([](RefitJob& j) { j.spheres.data = nullptr; }) == Status::kNullArgument);
-  CHECK(status_of([&](RefitJob& j) { j.asset = &closed; }) == Status::kNotOpen);
-  CHECK(status_of([](RefitJob& j) { j.vertex_count -= 1; }) == Status::kTooFewVertices);
-  CHECK(status_of([](RefitJob& j) { j.spheres.size -= 1; }) == Status::kTooFewSpheres);
-  CHECK(status_of([](RefitJob& j) { j.stride = 0; }) == Status::kBadStride);
-  CHECK(status_of([](RefitJob& j) { j.stride = 8; }) == Status::kBadStride);
-  CHECK(status_of([](RefitJob& j) { j.stride = 14; }) == Status::kBadStride);
-  CHECK(status_of([](RefitJob& j) { j.radius = static_cast<RadiusKind>(2); }) == Status::kBadArgument);
-  CHECK(status_of([](RefitJob& j) { j.vertices = static_cast<VertexSet>(2); }) == Status::kBadArgument);
-  CHECK(status_of([](RefitJob& j) { j.vertices = VertexSet::kPivots; }) == Status::kNotInAsset);
-  CHECK(same_bits(spheres, untouched));
-  CHECK(good.run() == Status::kOk);
 }
 
 }  // namespace spherechain::test
