@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Embree: its tree of the triangles' boxes refitted to the pose, then collided with itself. Embree has no triangle test:
-// the runtime's own tests the triangles of boxes that touch. On one thread.
+// Embree: its tree of the triangles' boxes refitted to the pose, then collided with itself. Embree has no triangle
+// test: the runtime's own tests the triangles of boxes that touch. On one thread.
 #include <embree3/rtcore.h>
 
 #include <algorithm>

@@ -105,8 +105,7 @@ class Bench {
     add_finders();
     add_crowds();
     timing_.add(
-        kProbe, kProbeCalls, [](std::size_t) { run_multiply_adds(kBest, kProbeSteps); },
-        kProbeSteps * kProbeChains);
+        kProbe, kProbeCalls, [](std::size_t) { run_multiply_adds(kBest, kProbeSteps); }, kProbeSteps * kProbeChains);
     timing_.add(
         kTwoProbes, 1,
         [](std::size_t) {
@@ -172,10 +171,11 @@ class Bench {
         job.pose.bones = c->matrices[i].data();
         check(job.run());
       });
-      timing_.add(bones_in_cache(*c), c->poses.size(), [c, job = job_of(*c, c->pose(0), spheres_)](std::size_t i) mutable {
-        job.pose.bones = c->matrices[i % kPosesInCache].data();
-        check(job.run());
-      });
+      timing_.add(bones_in_cache(*c), c->poses.size(),
+                  [c, job = job_of(*c, c->pose(0), spheres_)](std::size_t i) mutable {
+                    job.pose.bones = c->matrices[i % kPosesInCache].data();
+                    check(job.run());
+                  });
     }
   }
 
@@ -209,8 +209,7 @@ class Bench {
     }
     const std::size_t n = human_.sphere_count();
     const std::size_t pairs = n * (n - 1) / 2;
-    limit_ =
-        static_cast<double>(pairs) / static_cast<double>(lanes_of(kBest)) * kTestOperations * median(kProbe);
+    limit_ = static_cast<double>(pairs) / static_cast<double>(lanes_of(kBest)) * kTestOperations * median(kProbe);
     table_.rows.push_back({"P2",
                            "port limit of all pairs' tests",
                            {limit_, limit_},

@@ -36,9 +36,9 @@ class PairFinder {
 // Where peers keep their pairs. It has room for all of them, so that no peer allocates while it is timed.
 class PairList {
  public:
-  explicit PairList(const Asset& asset) : asset_(asset) { 
+  explicit PairList(const Asset& asset) : asset_(asset) {
     pairs_.reserve(view_of(asset).spheres().size * view_of(asset).spheres().size);
-   }
+  }
   void clear() { pairs_.clear(); }
   bool is_ignored(std::uint32_t a, std::uint32_t b) const {
     return a < b ? test_bit(view_of(asset_).ignored(), ignored_bit(a, b))
