@@ -8,7 +8,7 @@
 
 #include "baked_human.h"
 #include "human.h"
-#include "spherechain/simd.h"
+#include "simd/simd.h"
 #include "temporary_folder.h"
 #include "tool.h"
 
@@ -287,14 +287,6 @@ TEST_CASE("an output that is no asset is not overwritten without --force, nor is
   const auto input = folder.write("t.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").string();
   check_error(run(fmt::format("bake {} -o {} --force", input, input)), 2, {"same file"});
   CHECK(contents(input).rfind("v 0 0 0", 0) == 0);
-}
-
-TEST_CASE("skin contacts are asked of an asset that has clusters") {
-  const std::string golden = SPHERECHAIN_SAMPLES "/../tests/golden/";  // this asset is older than clusters
-  for (const char* command : {"play", "validate"}) {
-    check_error(run(fmt::format("{} {}doll.sphc --source {}doll.obj --frames 1 --contacts", command, golden, golden)),
-                3, {"doll.sphc", "has no clusters", "bake it again"});
-  }
 }
 
 TEST_CASE("an asset is refused for another mesh than its source") {
