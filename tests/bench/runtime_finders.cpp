@@ -65,9 +65,9 @@ class RuntimeFinder : public PairFinder {
 
 PairFinders runtime_finders(const Asset& asset) {
   PairFinders out;
-  out.push_back(std::make_unique<RuntimeFinder>(asset, "spherechain M2, pair list", Output::kList, true));
-  out.push_back(std::make_unique<RuntimeFinder>(asset, "spherechain M2, bits", Output::kBits, true));
-  out.push_back(std::make_unique<RuntimeFinder>(asset, "spherechain M2, list, no table", Output::kList, false));
+  out.push_back(std::make_unique<RuntimeFinder>(asset, "spherechain all pairs, list", Output::kList, true));
+  out.push_back(std::make_unique<RuntimeFinder>(asset, "spherechain all pairs, bits", Output::kBits, true));
+  out.push_back(std::make_unique<RuntimeFinder>(asset, "spherechain all pairs, list, no table", Output::kList, false));
   return out;
 }
 
