@@ -103,10 +103,10 @@ function bestQuantile(row) {
 function methods(row) {
   const variants = [
     ["the skin", row.detect, (f) => f],
-    ["spheres, detect radius", row.detect, (f) => f.m2],
-    ["the same, chains alone (M1)", row.detect, (f) => f.m1],
-    ["spheres, fit radius", row.fit, (f) => f.m2],
-    ["profile `paper`, fit radius", row.paper, (f) => f.m2],
+    ["spheres, detect radius", row.detect, (f) => f.all_pairs],
+    ["the same, chains alone", row.detect, (f) => f.chains],
+    ["spheres, fit radius", row.fit, (f) => f.all_pairs],
+    ["profile `paper`, fit radius", row.paper, (f) => f.all_pairs],
   ];
   if (hasCapsules(row)) {
     const best = bestQuantile(row);
@@ -114,7 +114,7 @@ function methods(row) {
   }
   return variants.map(([name, list, pick]) => {
     const s = of(list, pick);
-    const depths = list.map((f) => pick(f).missed_depth);
+    const depths = list.map((f) => pick(f).missed_overlap);
     const depth = depths[0] === undefined ? "" : percent(Math.max(...depths));
     return [row.name, name, s.truth, ...scored(s), percent(share(s.any, s.trueFrames)), percent(share(s.all, s.trueFrames)), depth];
   });
@@ -130,7 +130,7 @@ function scope(row) {
 
 function curve(kind, label) {
   const points = rows[0].detect[0][kind].map((point, i) => {
-    const at = (row) => of(row.detect, (f) => f[kind][i].m2);
+    const at = (row) => of(row.detect, (f) => f[kind][i].all_pairs);
     return [label(point), ...rows.flatMap((row) => [`${percent(recall(at(row)))} / ${percent(precision(at(row)))} / ${(at(row).reported / at(row).frames).toFixed(1)}`])];
   });
   return table(["", ...rows.map((row) => row.name)], points);
@@ -159,11 +159,11 @@ function groups(kind) {
 }
 
 const everything = (pick, list = (row) => row.detect) => sum(rows.map((row) => of(list(row), pick)));
-const skin = everything((f) => f), m1 = everything((f) => f.m1), m2 = everything((f) => f.m2);
-const fit = everything((f) => f.m2, (row) => row.fit), paper = everything((f) => f.m2, (row) => row.paper);
+const skin = everything((f) => f), chains = everything((f) => f.chains), all = everything((f) => f.all_pairs);
+const fit = everything((f) => f.all_pairs, (row) => row.fit), paper = everything((f) => f.all_pairs, (row) => row.paper);
 const contacts = rows.flatMap((row) => row.detect).reduce((t, f) =>
   ({ frames: t.frames + f.frames, missing: t.missing + f.contacts_missing, extra: t.extra + f.contacts_extra }), { frames: 0, missing: 0, extra: 0 });
-const missedByChains = m2.found - m1.found;
+const missedByChains = all.found - chains.found;
 
 console.log(`# Accuracy: what is found, what is missed
 
@@ -191,20 +191,20 @@ harmonic mean of recall and precision on that very motion; the spheres have one 
 
 ${table(["motion", "method", "true pairs", "recall", "precision", "pairs a frame", "any", "all", "missed depth"], rows.flatMap(methods))}
 
-What chains alone miss of the true triangle pairs that all spheres find: ${Math.round(missedByChains)} of ${Math.round(m2.found)} (${percent(share(missedByChains, m2.found))} %).
+What chains alone miss of the true triangle pairs that all spheres find: ${Math.round(missedByChains)} of ${Math.round(all.found)} (${percent(share(missedByChains, all.found))} %).
 
 ## Which to choose
 
 - **Everything that must not be missed**: the exact triangle contacts (\`TriangleContactJob\`). They do not go through the spheres' radii:
-  of the ${m2.truth} true pairs below they miss ${contacts.missing}, and report ${contacts.extra} others (\`validate --contacts\`, ${contacts.frames} frames).
+  of the ${all.truth} true pairs below they miss ${contacts.missing}, and report ${contacts.extra} others (\`validate --contacts\`, ${contacts.frames} frames).
 - **What to act on**: the pairs of spheres whose skins intersect (\`DetectSkinJob\`): recall ${percent(recall(skin))} %, precision
   ${percent(precision(skin))} %, ${(skin.reported / skin.frames).toFixed(1)} pairs a frame over all motions below, and the same on every other character of
   tests/quality/gates, for it goes by covers of the skin and not by radii; what it costs is in docs/performance.md (P6).
 - **What has to cost no more than a microsecond or two**: spheres that touch, at the detect radius; which of them are true, \`ConfirmJob\` tells. Of
-  other bodies than humans spheres may miss half (\`m2.pair_recall\` in tests/quality/gates: a fox .48, toys .59 to .72, and of Testwuson, whose
+  other bodies than humans spheres may miss half (\`all_pairs.pair_recall\` in tests/quality/gates: a fox .48, toys .59 to .72, and of Testwuson, whose
   spheres lie far from its skin, all).
-- **A cheap alarm, or what to look at first**: profile \`balanced\` and the detect radius: recall ${percent(recall(m2))} %, precision
-  ${percent(precision(m2))} % over all motions below.
+- **A cheap alarm, or what to look at first**: profile \`balanced\` and the detect radius: recall ${percent(recall(all))} %, precision
+  ${percent(precision(all))} % over all motions below.
 - **Fewer false alarms**: the fit radius, recall ${percent(recall(fit))} %, precision ${percent(precision(fit))} %. It leaves the waists between spheres open and misses
   what goes in there.
 - **The paper's figures**: profile \`paper\`. Recall ${percent(recall(paper))} %, precision ${percent(precision(paper))} %: hands, feet and head belong to wrists, ankles and chest, and
@@ -232,7 +232,7 @@ ${curve("radius_curve", (p) => `x ${p.scale.toFixed(1)}`)}
 
 The same when pairs must have come nearer than this part of their distance at rest.
 
-${curve("near_curve", (p) => p.near_fraction.toFixed(1))}
+${curve("rest_curve", (p) => p.rest_fraction.toFixed(1))}
 
 ## Capsules over their quantile
 

@@ -45,7 +45,7 @@ struct Binding {
 struct BindSettings {
   RefitRule rule = RefitRule::kMoments;
   int pivots = 8;                           // of a sphere; moments: more where so many are ill-posed
-  double detect_quantile = 0.9;             // of the triangles's area, by distance from the centre
+  double detect_quantile = 0.9;             // of the area of its triangles, by distance from the centre
   double rest_scale = 0.9;                  // of the rest distance: see rest_fit
   double neighbour_gap = 0;  // of the height: regions with a shorter way between them on the mesh are ignored too
 };

@@ -37,7 +37,7 @@ struct ValidateOptions {
   std::string asset, source, json;
   MotionChoice motion;
   FrameChoice frames;
-  std::string mode = "m2", radius = "detect";
+  std::string mode = "all_pairs", radius = "detect";
   bool contacts = false, spheres_alone = false;
 };
 ExitCode run_validate(const ValidateOptions& options);

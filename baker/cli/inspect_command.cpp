@@ -14,8 +14,8 @@ ExitCode run_inspect(const InspectOptions& options) {
     fmt::print("{}", options.json ? roles_json(character.rig, roles) : roles_text(character.rig, roles));
     return ExitCode::kDone;
   }
-  const AssetFile file = open_asset(options.asset);
-  fmt::print("{}", options.json ? inspect_json(file.asset) : inspect_text(file.asset));
+  const OpenAsset file = open_asset(options.asset);
+  fmt::print("{}", options.json ? inspect_json(file) : inspect_text(file));
   return ExitCode::kDone;
 }
 

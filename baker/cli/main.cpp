@@ -59,7 +59,7 @@ void add_motion(CLI::App& command, MotionChoice& motion, FrameChoice& frames) {
   choice.require_option(0, 1);
   command
       .add_option("--frames", frames.count,
-                  "Number of frames, from the motion's start to its end (default: its own, or 40)")
+                  "Number of frames, evenly spaced over all clips (default: each clip's own at --fps; 40 of poses)")
       ->check(CLI::Range(1, 1000000));
   command.add_option("--fps", frames.fps, "Frames a second")
       ->check(CLI::Range(1e-3, 1e6))
@@ -115,37 +115,39 @@ int main(int argc, char** argv) {
   inspect_command->callback([&] { run = [&] { return run_inspect(inspect); }; });
 
   PlayOptions play;
-  CLI::App* play_command = app.add_subcommand("play", "Animate an asset's source and report which spheres touch");
+  CLI::App* play_command =
+      app.add_subcommand("play", "Animate an asset's source and report which body parts touch, and when");
   add_name(*play_command, "ASSET", play.asset, "Asset (.sphc)")->required();
   add_name(*play_command, "--source", play.source, "The mesh it was baked from")->required();
   add_motion(*play_command, play.motion, play.frames);
-  play_command->add_option("--mode", play.mode, "Overlap test: chains, all spheres, or both")
-      ->check(CLI::IsMember({"m1", "m2", "both"}))
+  play_command->add_option("--mode", play.mode, "Test of the spheres: along chains, all pairs, or both")
+      ->check(CLI::IsMember({"all_pairs", "chains", "both"}))
       ->capture_default_str();
   add_radius(*play_command, play.radius);
   play_command
-      ->add_option("--backend", play.backend,
-                   "How it is computed: auto is simd, with the best instructions this machine has, where "
-                   "SPHERECHAIN_TARGET names no others; cuda plays all frames at once on a GPU, M2 alone, from bones")
+      ->add_option(
+          "--backend", play.backend,
+          "How it is computed: auto is simd, with the best instructions this machine has, where "
+          "SPHERECHAIN_TARGET names no others; cuda plays all frames at once on a GPU, all pairs alone, from bones")
       ->check(CLI::IsMember({"auto", "scalar", "simd", "cuda"}))
       ->capture_default_str();
-  play_command->add_flag("--contacts", play.contacts, "List the triangles that intersect too");
+  play_command->add_flag("--contacts", play.contacts, "List the triangles that intersect in the JSON, too");
   add_name(*play_command, "--json", play.json, "JSON file to write");
   play_command->callback([&] { run = [&] { return run_play(play); }; });
 
   ValidateOptions validate;
-  CLI::App* validate_command =
-      app.add_subcommand("validate", "Compare the reported pairs with the exact intersections of the deformed mesh");
+  CLI::App* validate_command = app.add_subcommand(
+      "validate", "Compare skin contacts and spheres with the exact intersections of the deformed mesh");
   add_name(*validate_command, "ASSET", validate.asset, "Asset (.sphc)")->required();
   add_name(*validate_command, "--source", validate.source, "The mesh it was baked from")->required();
   add_motion(*validate_command, validate.motion, validate.frames);
-  validate_command->add_option("--mode", validate.mode, "Overlap test: chains or all spheres")
-      ->check(CLI::IsMember({"m1", "m2"}))
+  validate_command->add_option("--mode", validate.mode, "Test of the spheres: along chains, or all pairs")
+      ->check(CLI::IsMember({"all_pairs", "chains"}))
       ->capture_default_str();
   add_radius(*validate_command, validate.radius);
   validate_command->add_flag("--contacts", validate.contacts, "Compare the narrow phase's triangle pairs too");
   validate_command->add_flag("--spheres-alone", validate.spheres_alone,
-                             "Report the spheres that touch, not those whose skins intersect");
+                             "Judge the spheres that touch, not those whose skins intersect");
   add_name(*validate_command, "--json", validate.json, "JSON file to write");
   validate_command->callback([&] { run = [&] { return run_validate(validate); }; });
 

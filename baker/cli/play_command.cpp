@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include <map>
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -12,6 +12,8 @@
 #include "play/cuda_frames.h"
 #include "play/player.h"
 #include "play/target.h"
+#include "report/part_contacts.h"
+#include "report/parts.h"
 #include "report/play_frames.h"
 #include "report/report.h"
 
@@ -20,84 +22,66 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// What all frames together show.
+// Means over all frames: what the spheres tell beside the skin, and what each costs.
 class Tally {
  public:
-  void add(int index, const FrameResult& result, const Player& player, const std::optional<Player::SkinDetection>& skin,
-           const std::optional<Player::TriangleDetection>& triangles, const Asset& asset) {
+  void add(const FrameResult& result, Span<const Pair> alarmed, const std::vector<Pair>& skin, double skin_us) {
     ++frames_;
     last_ = result;
     refit_us_ += result.refit_us;
-    if (result.m1) {
-      m1_us_ += result.m1->us;
-      m1_raw_ += result.m1->raw_pairs;
+    if (result.chains) {
+      chains_us_ += result.chains->us;
+      chains_pairs_ += result.chains->pairs;
     }
-    if (result.m2) m2_us_ += result.m2->us;
-    const Span<const Pair> pairs = player.pairs();
-    pairs_ += pairs.size;
-    touching_ += pairs.size > 0 ? 1 : 0;
-    if (skin) {
-      has_skin_ = true;
-      skin_pairs_ += skin->pairs.size();
-      skin_frames_ += skin->pairs.empty() ? 0 : 1;
-      skin_us_ += skin->us;
+    if (result.all_pairs) {
+      all_pairs_us_ += result.all_pairs->us;
+      all_pairs_ += result.all_pairs->pairs;
     }
-    if (triangles) {
-      has_triangles_ = true;
-      triangle_pairs_ += triangles->pairs.size();
-      triangle_us_ += triangles->us;
-    }
-    std::map<std::pair<std::string, std::string>, bool> seen;
-    for (const Pair& pair : pairs) {
-      std::string a = asset.region(asset.spheres()[pair.a].region).name,
-                  b = asset.region(asset.spheres()[pair.b].region).name;
-      if (b < a) std::swap(a, b);
-      seen[{a, b}] = true;
-    }
-    for (const auto& [names, yes] : seen) ++by_region_.try_emplace(names, index, 0).first->second.second;
+    skin_us_ += skin_us;
+    skin_ += skin.size();
+    alarmed_ += alarmed.size;
+    for (const Pair& pair : alarmed) confirmed_ += std::binary_search(skin.begin(), skin.end(), pair) ? 1 : 0;
   }
 
-  std::string text(const std::string& radius, const std::string& refit, const std::string& backend) const {
+  std::string spheres_text() const {
     const double n = frames_;
-    const std::string pairs = fmt::format("{:.1f}", static_cast<double>(pairs_) / n);
-    std::string out = fmt::format("{} frames, radius {}, refit {}, backend {}\n\n", frames_, radius, refit, backend);
-    out += fmt::format("{:<6} {:>8} {:>10} {:>12} {:>10}\n", "", "tests", "pairs", "raw pairs", "us");
-    out += fmt::format("{:<6} {:>8} {:>10} {:>12} {:>10.2f}\n", "refit", "", "", "", refit_us_ / n);
-    if (last_.m1) {
-      out += fmt::format("{:<6} {:>8} {:>10} {:>12.1f} {:>10.2f}\n", "M1", last_.m1->tests,
-                         last_.m2 ? std::string() : pairs, static_cast<double>(m1_raw_) / n, m1_us_ / n);
+    std::string out = fmt::format("spheres: {:.1f} pairs a frame as a cheap alarm", static_cast<double>(alarmed_) / n);
+    if (alarmed_ > 0) {
+      out += fmt::format("; the skin confirms {:.1f} of them ({:.0f} %)", static_cast<double>(confirmed_) / n,
+                         100.0 * static_cast<double>(confirmed_) / static_cast<double>(alarmed_));
     }
-    if (last_.m2) {
-      out += fmt::format("{:<6} {:>8} {:>10} {:>12} {:>10.2f}\n", "M2", last_.m2->tests, pairs, "", m2_us_ / n);
+    if (skin_ > confirmed_) {
+      out += fmt::format("; they miss {:.1f} that touch", static_cast<double>(skin_ - confirmed_) / n);
     }
-    if (has_skin_) {
-      out += fmt::format("{:<6} {:>8} {:>10.1f} {:>12} {:>10.2f}\n", "skin", "", static_cast<double>(skin_pairs_) / n,
-                         "", skin_us_ / n);
-    }
-    if (has_triangles_) {
-      out += fmt::format("{:<9} {:>5} {:>10.1f} {:>12} {:>10.2f}\n", "triangles", "",
-                         static_cast<double>(triangle_pairs_) / n, "", triangle_us_ / n);
-    }
-    out += "(a frame, on average)\n\n";
-    if (has_skin_) out += fmt::format("frames with touching skin: {} of {}\n", skin_frames_, frames_);
-    out += fmt::format("frames with touching spheres: {} of {}\n", touching_, frames_);
-    for (const auto& [names, seen] : by_region_) {
-      out += fmt::format("  {:<24} {:>3} frames, from frame {}\n", names.first + " - " + names.second, seen.second,
-                         seen.first);
-    }
-    return out;
+    return out + "\n";
+  }
+
+  std::string times_text() const {
+    const double n = frames_;
+    const auto row = [&](const char* name, const std::string& tests, const std::string& pairs, double us) {
+      return fmt::format("{:<10} {:>8} {:>10} {:>10.2f}\n", name, tests, pairs, us / n);
+    };
+    const auto mean = [&](std::size_t pairs) { return fmt::format("{:.1f}", static_cast<double>(pairs) / n); };
+    std::string out = fmt::format("{:<10} {:>8} {:>10} {:>10}\n", "a frame", "tests", "pairs", "us");
+    out += row("refit", "", "", refit_us_);
+    if (last_.chains) out += row("chains", std::to_string(last_.chains->tests), mean(chains_pairs_), chains_us_);
+    if (last_.all_pairs)
+      out += row("all pairs", std::to_string(last_.all_pairs->tests), mean(all_pairs_), all_pairs_us_);
+    return out + row("skin", "", mean(skin_), skin_us_);
   }
 
  private:
-  int frames_ = 0, touching_ = 0, skin_frames_ = 0;
-  bool has_skin_ = false, has_triangles_ = false;
-  std::size_t skin_pairs_ = 0, triangle_pairs_ = 0;
-  double skin_us_ = 0, triangle_us_ = 0;
+  int frames_ = 0;
   FrameResult last_;
-  double refit_us_ = 0, m1_us_ = 0, m2_us_ = 0;
-  std::size_t pairs_ = 0, m1_raw_ = 0;
-  std::map<std::pair<std::string, std::string>, std::pair<int, int>> by_region_;  // regions -> first frame, frames
+  double refit_us_ = 0, chains_us_ = 0, all_pairs_us_ = 0, skin_us_ = 0;
+  // Pairs of spheres; alarmed: by the last method that ran.
+  std::size_t chains_pairs_ = 0, all_pairs_ = 0, skin_ = 0, alarmed_ = 0, confirmed_ = 0;
 };
+
+std::string frames_text(const AnimatedAsset& animated) {
+  const std::size_t clips = animated.clips().size();
+  return clips > 1 ? fmt::format("{} clips, {} frames\n", clips, animated.frame_count()) : std::string();
+}
 
 }  // namespace
 
@@ -106,24 +90,27 @@ ExitCode run_play(const PlayOptions& options) {
                 {{"--json", options.json}});
   check_replaceable_json(options.json, false, "delete it, or name another");
   const bool on_cuda = options.backend == "cuda";
-  if (on_cuda && options.mode == "m1") throw Error(ExitCode::kUsage, "--backend cuda: has no M1 (--mode m2)");
+  if (on_cuda && options.mode == "chains") {
+    throw Error(ExitCode::kUsage, "--backend cuda: does not test by chains (--mode all_pairs)");
+  }
   const Target target = choose_target(on_cuda ? "auto" : options.backend);
-  const RadiusKind radius = options.radius == "fit" ? RadiusKind::kFit : RadiusKind::kDetect;
+  const Radius radius = options.radius == "fit" ? SC_RADIUS_FIT : SC_RADIUS_DETECT;
   const AnimatedAsset animated(options.asset, options.source, options.motion, options.frames);
-  const bool has_leaves = animated.asset().leaf_count() > 0;
-  if (options.contacts) animated.check_leaves();
+  animated.check_clusters();
   CudaFrames cuda;
   if (on_cuda) cuda = play_on_cuda(animated, radius);
-  Player player(animated.asset(), radius, options.mode != "m2", options.mode != "m1", target);
+  Player player(animated.asset(), radius, options.mode != "all_pairs", options.mode != "chains", target);
+  PartContacts contacts(animated);
   Tally tally;
-  const char* const refit = refit_name(animated.asset().refit_rule());
+  const char* const refit = refit_name(animated.asset()->refit_rule());
   std::optional<PlayFile> file;
   if (!options.json.empty()) {
     file.emplace(options.json,
                  ordered_json{{"backend", on_cuda ? "cuda" : backend_name(target)},
-                              {"target", on_cuda ? "cuda" : to_string(target)},
+                              {"target", on_cuda ? "cuda" : sc_target_name(target)},
                               {"radius", options.radius},
-                              {"refit", refit}},
+                              {"refit", refit},
+                              {"parts", parts_json(part_rows(animated.asset()))}},
                  animated.frame_count());
   }
   {
@@ -134,30 +121,23 @@ ExitCode run_play(const PlayOptions& options) {
       FrameResult result;
       if (on_cuda) {
         CudaFrame& frame = cuda.frames[static_cast<std::size_t>(i)];
-        result.m2 = player.take(std::move(frame.spheres), frame.pairs, cuda.us);
+        result.all_pairs = player.take(std::move(frame.spheres), frame.pairs, cuda.us);
       } else {
         result = player.run(positions);
       }
-      std::optional<Player::SkinDetection> skin;
-      if (has_leaves) skin = player.detect_skin(positions);
-      std::optional<Player::TriangleDetection> triangles;
-      if (options.contacts) triangles = player.detect_triangles(positions);
-      tally.add(i, result, player, skin, triangles, animated.asset());
+      const Player::TriangleDetection skin = player.detect_triangles(positions);
+      const PartCounts counts = contacts.add(i, skin.pairs);
+      tally.add(result, player.pairs(), player.spheres_of(skin.pairs), skin.us);
       if (!file) continue;
       ordered_json frame = frame_json(animated, i, result, player);
-      if (skin) {
-        frame["skin_us"] = skin->us;
-        frame["skin_pairs"] = pairs_json({skin->pairs.data(), skin->pairs.size()});
-      }
-      if (triangles) {
-        frame["contacts_us"] = triangles->us;
-        ordered_json& contacts = frame["contacts"] = ordered_json::array();
-        for (const TrianglePair& pair : triangles->pairs) contacts.push_back({pair.a, pair.b});
-      }
+      frame["skin"] = skin_json(player, skin, contacts, counts, options.contacts);
       file->add(frame);
     }
+    if (file) file->finish({{"clips", contacts.json()}});
   }
-  fmt::print("{}", tally.text(options.radius, refit, on_cuda ? "cuda (refit and M2 in one)" : backend_text(target)));
+  fmt::print("{}{}\n{}\n{}(radius {}, refit {}, backend {})\n", frames_text(animated),
+             contacts.text(options.motion.name()), tally.spheres_text(), tally.times_text(), options.radius, refit,
+             on_cuda ? "cuda: refit and all pairs in one" : backend_text(target));
   if (!options.json.empty()) fmt::print("wrote {}\n", options.json);
   return ExitCode::kDone;
 }

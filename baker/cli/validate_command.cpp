@@ -17,8 +17,8 @@ ExitCode run_validate(const ValidateOptions& options) {
                 {{"--json", options.json}});
   check_replaceable_json(options.json, false, "delete it, or name another");
   ValidateSettings settings;
-  settings.radius = options.radius == "fit" ? RadiusKind::kFit : RadiusKind::kDetect;
-  settings.method = options.mode == "m1" ? Method::kM1 : Method::kM2;
+  settings.radius = options.radius == "fit" ? SC_RADIUS_FIT : SC_RADIUS_DETECT;
+  settings.method = options.mode == "chains" ? Method::kChains : Method::kAllPairs;
   settings.target = choose_target("auto");
   settings.contacts = options.contacts;
   settings.skin = !options.spheres_alone;

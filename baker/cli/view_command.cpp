@@ -6,8 +6,8 @@
 #include "cli/commands.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
-#include "report/page.h"
-#include "report/page_inputs.h"
+#include "page/page.h"
+#include "page/page_inputs.h"
 #include "write/write.h"
 
 namespace spherechain::baker {
@@ -37,14 +37,13 @@ ExitCode run_view(const ViewOptions& options) {
   PageOptions page;
   page.template_file = viewer_template().string();
   page.title = fs::path(options.asset).filename().string();
-  page.radius = options.radius == "fit" ? RadiusKind::kFit : RadiusKind::kDetect;
+  page.radius = options.radius == "fit" ? SC_RADIUS_FIT : SC_RADIUS_DETECT;
   const AnimatedAsset animated(options.asset, options.source, options.motion, options.frames);
   if (!options.report.empty()) page.report = read_bake_report(options.report, animated.asset(), options.asset);
   if (!options.validation.empty()) {
     page.validation = read_validation(options.validation, animated.asset(), options.asset);
   }
-  page.motion = options.motion.name().empty() ? animated.clip_at(0) : options.motion.name();
-  if (page.motion.empty()) page.motion = "rest";
+  page.motion = options.motion.name().empty() ? "rest pose" : options.motion.name();
   page.fps = options.frames.fps;
   std::string html;
   {
@@ -53,6 +52,10 @@ ExitCode run_view(const ViewOptions& options) {
                      [&](int i) { progress.show(fmt::format("frame {} of {}", i + 1, animated.frame_count())); });
   }
   write_atomically(options.output, html);
+  if (html.size() > kLargePageBytes) {
+    fmt::print(stderr, "spherechain: warning: {}: {:.0f} MB take browsers long to open (fewer frames: --frames, one clip: --clip)\n",
+               options.output, static_cast<double>(html.size()) / 1e6);
+  }
   fmt::print("wrote {} ({:.1f} MB): open it in a browser\n", options.output, static_cast<double>(html.size()) / 1e6);
   return ExitCode::kDone;
 }

@@ -37,26 +37,22 @@ Deformation sample(const SourceRig& rig, const Clip& clip, double seconds) {
   return out;
 }
 
-double ClipMotion::duration() const {
+double ClipMotion::start(std::size_t clip) const {
   double sum = 0;
-  for (const Clip* clip : clips_) sum += length_of(*clip);
+  for (std::size_t c = 0; c < clip; ++c) sum += length_of(*clips_[c]);
   return sum;
 }
 
 ClipMotion::Place ClipMotion::place(double t) const {
   double left = t * duration();
-  for (const Clip* clip : clips_) {
-    if (left < length_of(*clip) || clip == clips_.back()) return {clip, left};
-    left -= length_of(*clip);
-  }
-  return {nullptr, 0};
+  std::size_t clip = 0;
+  while (clip + 1 < clips_.size() && left >= length_of(*clips_[clip])) left -= length_of(*clips_[clip++]);
+  return {clip, left};
 }
 
 Deformation ClipMotion::at(double t) const {
   const Place here = place(t);
-  return sample(rig_, *here.clip, here.seconds);
+  return sample(rig_, *clips_[here.clip], here.seconds);
 }
-
-std::string ClipMotion::clip_at(double t) const { return place(t).clip->name; }
 
 }  // namespace spherechain::baker

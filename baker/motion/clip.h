@@ -18,17 +18,17 @@ Deformation sample(const SourceRig& rig, const Clip& clip, double seconds);
 class ClipMotion : public Motion {
  public:
   ClipMotion(const SourceRig& rig, std::vector<const Clip*> clips) : rig_(rig), clips_(std::move(clips)) {}
-  Deformation at(double t) const override;
-  double duration() const override;
-  std::string clip_at(double t) const override;
-
- private:
   struct Place {
-    const Clip* clip;
-    double seconds;
+    std::size_t clip;  // its number
+    double seconds;    // from its start
   };
   Place place(double t) const;
+  double start(std::size_t clip) const;  // of a clip, in the motion's seconds
 
+  Deformation at(double t) const override;
+  double duration() const override { return start(clips_.size()); }
+
+ private:
   const SourceRig& rig_;
   std::vector<const Clip*> clips_;
 };

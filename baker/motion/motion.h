@@ -23,8 +23,6 @@ class Motion {
   virtual Deformation at(double t) const = 0;
   // Seconds; 0 where the motion has no pace of its own.
   virtual double duration() const { return 0; }
-  // The name of the clip that plays there, where there are several.
-  virtual std::string clip_at(double) const { return {}; }
   // Frames of its own, where it is made of frames; else 0.
   virtual int frame_count() const { return 0; }
 };

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <string>
+#include <string_view>
+#include <vector>
 
+#include "skin/skin_table.h"
 #include "spherechain/asset.h"
 
 namespace spherechain::baker {
@@ -12,12 +14,37 @@ namespace spherechain::baker {
 // Whole contents, of a file or a pipe; throws Error(kFile).
 std::string read_file(const std::string& path);
 
-// An asset and the bytes it views.
-struct AssetFile {
-  std::unique_ptr<std::uint64_t[]> bytes;  // aligned as open() wants
-  Asset asset;
+// An asset, the bytes it views, and its skin expanded. Moves, does not copy.
+class OpenAsset {
+ public:
+  // Throws Error(kFile) that says what is wrong with the bytes; `name` is for the message.
+  OpenAsset(std::string_view bytes, const std::string& name);
+  OpenAsset(OpenAsset&&) = default;
+  OpenAsset& operator=(OpenAsset&&) = default;
+
+  // The runtime's, and what it holds.
+  const sc_asset* handle() const { return &asset_; }
+  const AssetView* operator->() const { return &view_of(asset_); }
+  const AssetView& view() const { return view_of(asset_); }
+
+  const std::uint64_t* skin_table() const { return table_.data(); }
+  const Surface& surface() const { return surface_; }
+  // A sphere's source triangles.
+  Span<const std::uint32_t> triangles_of(std::size_t sphere) const;
+
+ private:
+  std::vector<std::uint64_t> bytes_;  // aligned as the runtime wants
+  sc_asset asset_;
+  std::vector<std::uint64_t> table_;
+  Surface surface_;
+  std::vector<std::size_t> first_triangles_;
 };
-// Throws Error(kFile) that says what is wrong with the file.
-AssetFile open_asset(const std::string& path);
+OpenAsset open_asset(const std::string& path);
+
+// "field: what is wrong with it".
+std::string to_string(const Status& status);
+
+// Throws Error(kInternal) where a call of the runtime failed that cannot.
+void check_runtime(const Status& status);
 
 }  // namespace spherechain::baker

@@ -4,8 +4,7 @@
 #include "mesh/error.h"
 
 #if defined(SPHERECHAIN_CUDA)
-#include "spherechain/cuda_device.h"
-#include "spherechain/cuda_host_crowd.h"
+#include "spherechain/cuda.h"
 #endif
 
 namespace spherechain::baker {
@@ -23,31 +22,27 @@ void check_cuda(Status status) {
 
 }  // namespace
 
-CudaFrames play_on_cuda(const AnimatedAsset& animated, RadiusKind radius) {
-  const Asset& asset = animated.asset();
-  if (asset.bone_count() == 0) {
-    throw Error(ExitCode::kFile, animated.file() + ": has no bones, which --backend cuda refits from (bake it again)");
+CudaFrames play_on_cuda(const AnimatedAsset& animated, Radius radius) {
+  const OpenAsset& asset = animated.asset();
+  if (asset->bone_count() == 0 || asset->refit_rule() != RefitRule::kMoments) {
+    throw Error(ExitCode::kFile,
+                animated.file() + ": has no bones by moments, which --backend cuda refits from (bake it by moments)");
   }
   check_cuda(cuda::check_device());
   const auto count = static_cast<std::size_t>(animated.frame_count());
-  std::vector<float> matrices, weights;
+  std::vector<float> matrices;
   for (int i = 0; i < animated.frame_count(); ++i) {
-    const Deformation deformation = animated.deformation(i);
-    const std::vector<float> palette = bone_palette(asset, deformation);
+    const std::vector<float> palette = bone_palette(asset, animated.deformation(i));
     matrices.insert(matrices.end(), palette.begin(), palette.end());
-    std::vector<float> morphs(deformation.morphs.begin(), deformation.morphs.end());
-    morphs.resize(asset.morph_count());
-    weights.insert(weights.end(), morphs.begin(), morphs.end());
   }
-  const std::size_t n = asset.spheres().size, most = n * (n - 1) / 2;
+  const std::size_t n = asset->spheres().size, most = n * (n - 1) / 2;
   std::vector<Sphere> spheres(n * count);
   std::vector<std::uint32_t> counts(count);
   std::vector<CrowdPair> pairs(most * count + 1);
   cuda::HostCrowd crowd;
   check_cuda(crowd.open(asset, radius, nullptr, count, pairs.size()));
-  crowd.bones = {matrices.data(), asset.bone_count(), MatrixLayout::kRowMajor3x4, 48};
-  crowd.instance_stride = asset.bone_count() * 48;
-  crowd.morph_weights = asset.morph_count() > 0 ? weights.data() : nullptr;
+  crowd.bones = {matrices.data(), asset->bone_count(), MatrixLayout::kRowMajor3x4, 48};
+  crowd.instance_stride = asset->bone_count() * 48;
   crowd.instance_count = count;
   crowd.spheres = spheres.data();
   crowd.counts = counts.data();
@@ -65,7 +60,7 @@ CudaFrames play_on_cuda(const AnimatedAsset& animated, RadiusKind radius) {
 
 #else
 
-CudaFrames play_on_cuda(const AnimatedAsset&, RadiusKind) {
+CudaFrames play_on_cuda(const AnimatedAsset&, Radius) {
   throw Error(
       ExitCode::kInternal,
       "--backend cuda: this build has no CUDA (configure with SPHERECHAIN_CUDA=ON; --backend auto needs no GPU)");

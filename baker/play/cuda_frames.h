@@ -19,6 +19,6 @@ struct CudaFrames {
 
 // All frames at once on the GPU, a character each, from bones. Throws Error(kInternal) where there is no CUDA device,
 // or this build has no CUDA; Error(kFile) where the asset has no bones.
-CudaFrames play_on_cuda(const AnimatedAsset& animated, RadiusKind radius);
+CudaFrames play_on_cuda(const AnimatedAsset& animated, Radius radius);
 
 }  // namespace spherechain::baker

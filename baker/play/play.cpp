@@ -14,22 +14,20 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr double kMostFrames = 1e6;
-
 Vec3 to_vec3(const spherechain::Vec3& v) { return {v.x, v.y, v.z}; }
 
-std::vector<Joint> joints_of(const Asset& asset) {
+std::vector<Joint> joints_of(const OpenAsset& asset) {
   std::vector<Joint> joints;
-  for (std::size_t i = 0; i < asset.joint_count(); ++i) {
-    const JointView joint = asset.joint(i);
+  for (std::size_t i = 0; i < asset->joint_count(); ++i) {
+    const JointView joint = asset->joint(i);
     joints.push_back({joint.name, joint.parent, to_vec3(joint.position), to_vec3(joint.tail)});
   }
   return joints;
 }
 
 // What the asset was baked with: other options read other vertices, and another body may be closed.
-BakeSettings settings_of(const Asset& asset, const std::string& file) {
-  return make_settings("balanced", asset.info().settings, file);
+BakeSettings settings_of(const OpenAsset& asset, const std::string& file) {
+  return make_settings("balanced", asset->info().settings, file);
 }
 
 }  // namespace
@@ -43,14 +41,17 @@ std::string MotionChoice::name() const {
 AnimatedAsset::AnimatedAsset(const std::string& asset, const std::string& source, const MotionChoice& motion,
                              const FrameChoice& frames)
     : asset_name_(asset), file_(open_asset(asset)), fps_(frames.fps) {
-  const BakeSettings settings = settings_of(file_.asset, asset);
+  const BakeSettings settings = settings_of(file_, asset);
+  roles_ = settings.roles;
   segment_settings_ = settings.segment;
   character_ = import_character(source, settings.import);
   const std::vector<float> rest = pack(character_.source_positions);
-  if (const Status status = check_source(file_.asset, rest.data(), rest.size() / 3); status != Status::kOk) {
+  if (const Status status = sc_check_source(file_.handle(), SC_WHOLE_SOURCE, rest.data(), rest.size() / 3, 12);
+      status != SC_OK) {
     throw Error(ExitCode::kFile,
                 source + ": is not the mesh that " + asset + " was baked from (" + to_string(status) + ")");
   }
+  std::vector<const Clip*> clips;
   if (!motion.poses.empty() && !is_sequence(motion.poses)) {
     play_poses(motion.poses);
   } else if (!motion.poses.empty()) {
@@ -61,18 +62,14 @@ AnimatedAsset::AnimatedAsset(const std::string& asset, const std::string& source
     motion_ =
         std::make_unique<SequenceMotion>(character_, sequence_files(motion.motion), SequenceMotion::Path::kFrames);
   } else if (!motion.clip.empty() || !character_.rig.clips.empty()) {
-    play_clips(source, motion.clip);
+    clips = find_clips(source, motion.clip);
+    use_skin();
   }
-  frame_count_ = frames.count;
-  if (frame_count_ == 0 && motion_) frame_count_ = motion_->frame_count();
-  if (frame_count_ == 0 && motion_ && motion_->duration() > 0) {
-    frame_count_ = static_cast<int>(std::min(motion_->duration() * fps_ + 1e-6, kMostFrames)) + 1;
-  }
-  if (frame_count_ == 0) frame_count_ = 40;
+  frames_ = clips.empty() ? frames_of(motion_.get(), frames) : frames_of(character_.rig, clips, frames);
 }
 
 void AnimatedAsset::play_poses(const std::string& file) {
-  const std::vector<Joint> joints = joints_of(file_.asset);
+  const std::vector<Joint> joints = joints_of(file_);
   if (joints.empty()) {
     throw Error(ExitCode::kFile, file + ": turns the joints of a biped, and " + asset_name_ +
                                      " has none: it is of another body (--clip, --motion or meshes as poses move it)");
@@ -87,13 +84,13 @@ void AnimatedAsset::play_capture(const std::string& source, const std::string& f
     motion_ = capture_motion(file, character_.rig, character_.source_positions, frame(), source);
     return use_skin();
   }
-  const std::vector<Joint> joints = joints_of(file_.asset);
+  const std::vector<Joint> joints = joints_of(file_);
   motion_ = std::make_unique<CaptureMotion>(read_capture(file), body_of(joints, frame()));
   use_rig(joints);
 }
 
 // By name, or by number where no name is that; all of them where none is asked for.
-void AnimatedAsset::play_clips(const std::string& source, const std::string& wanted) {
+std::vector<const Clip*> AnimatedAsset::find_clips(const std::string& source, const std::string& wanted) const {
   const SourceRig& rig = character_.rig;
   std::vector<const Clip*> clips;
   std::string names;
@@ -109,8 +106,7 @@ void AnimatedAsset::play_clips(const std::string& source, const std::string& wan
                                      (names.empty() ? "it has none at all" : "it has " + names) + ")");
   }
   if (!wanted.empty()) clips.erase(clips.begin() + 1, clips.end());  // names need not differ
-  motion_ = std::make_unique<ClipMotion>(rig, clips);
-  use_skin();
+  return clips;
 }
 
 void AnimatedAsset::use_skin() {
@@ -126,25 +122,22 @@ void AnimatedAsset::use_rig(const std::vector<Joint>& joints) {
   for (const Joint& joint : joints) bone_names_.push_back(joint.name);
 }
 
-void AnimatedAsset::check_leaves() const {
-  if (asset().leaf_count() > 0) return;
-  throw Error(ExitCode::kFile, asset_name_ + ": has no leaves to find contacts with (bake it again)");
+void AnimatedAsset::check_clusters() const {
+  if (asset().surface().clusters.size > 0) return;
+  throw Error(ExitCode::kFile, asset_name_ + ": has no clusters to find contacts with (bake it again)");
 }
 
 BodyFrame AnimatedAsset::frame() const {
-  const AssetInfo info = file_.asset.info();
+  const AssetInfo info = file_->info();
   return {to_vec3(info.origin), to_vec3(info.left), to_vec3(info.up), to_vec3(info.forward),
           static_cast<double>(info.height)};
 }
 
-double AnimatedAsset::time(int frame) const {
-  const double duration = motion_ ? motion_->duration() : 0;
-  return duration > 0 ? along(frame) * duration : frame / fps_;
+Deformation AnimatedAsset::deformation(int frame) const {
+  const MotionFrame& at = frame_at(frame);
+  if (const Clip* clip = clips()[at.clip].clip) return sample(character_.rig, *clip, at.seconds);
+  return motion_ ? motion_->at(at.along) : Deformation();
 }
-
-std::string AnimatedAsset::clip_at(int frame) const { return motion_ ? motion_->clip_at(along(frame)) : std::string(); }
-
-Deformation AnimatedAsset::deformation(int frame) const { return motion_ ? motion_->at(along(frame)) : Deformation(); }
 
 std::vector<Vec3> AnimatedAsset::positions(const Deformation& deformation) const {
   if (!deformation.positions.empty()) return deformation.positions;
@@ -152,9 +145,22 @@ std::vector<Vec3> AnimatedAsset::positions(const Deformation& deformation) const
                 deformation.bones);
 }
 
-std::vector<float> bone_palette(const Asset& asset, const Deformation& deformation) {
+BodyParts parts_of(const OpenAsset& asset) {
+  constexpr std::uint8_t kNone = 255;
+  BodyParts out;
+  for (std::size_t i = 0; i < asset->part_count(); ++i) {
+    const sc_part part = asset->part(i);
+    out.parts.push_back({part.name, static_cast<Side>(part.side), part.bone});
+  }
+  out.of_triangle.assign(asset->info().triangle_count, kNone);
+  const Surface& surface = asset.surface();
+  for (std::size_t t = 0; t < surface.triangles.size; ++t) out.of_triangle[surface.triangles[t]] = surface.parts[t];
+  return out;
+}
+
+std::vector<float> bone_palette(const OpenAsset& asset, const Deformation& deformation) {
   std::vector<float> out;
-  for (std::size_t b = 0; b < asset.bone_count(); ++b) {
+  for (std::size_t b = 0; b < asset->bone_count(); ++b) {
     const Affine bone = b < deformation.bones.size() ? deformation.bones[b] : Affine::Identity();
     for (Eigen::Index row = 0; row < 3; ++row) {
       for (Eigen::Index column = 0; column < 4; ++column) out.push_back(static_cast<float>(bone(row, column)));

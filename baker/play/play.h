@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "bind/body_parts.h"
 #include "import/import.h"
 #include "motion/motion.h"
 #include "play/asset_file.h"
+#include "play/motion_frames.h"
 #include "rig/rig.h"
 #include "segment/segment.h"
 
@@ -22,12 +24,6 @@ struct MotionChoice {
   std::string name() const;  // for people
 };
 
-// The frames of a motion: `count` 0 means as many as it has of its own, or as its duration has at `fps`, or 40.
-struct FrameChoice {
-  int count = 0;
-  double fps = 30;
-};
-
 // An asset, the mesh it was baked from, and the motion to play: what every command that animates starts with.
 class AnimatedAsset {
  public:
@@ -36,20 +32,22 @@ class AnimatedAsset {
                 const FrameChoice& frames);
 
   const std::string& file() const { return asset_name_; }  // the asset's, as it was given
-  const Asset& asset() const { return file_.asset; }
+  const OpenAsset& asset() const { return file_; }
   const Character& character() const { return character_; }
-  // Throws Error(kFile) where the asset has no leaves, which contacts of triangles are found with.
-  void check_leaves() const;
+  // Throws Error(kFile) where the asset has no clusters, which skin contacts are found with.
+  void check_clusters() const;
   BodyFrame frame() const;
 
   // Of every source vertex; empty where nothing moves.
   const std::vector<VertexWeights>& weights() const { return weights_; }
   const std::vector<std::string>& bone_names() const { return bone_names_; }
 
-  // Frames are evenly spaced: 0 is the motion's start, the last its end.
-  int frame_count() const { return frame_count_; }
-  double time(int frame) const;          // seconds
-  std::string clip_at(int frame) const;  // its name, where the motion is clips
+  int frame_count() const { return static_cast<int>(frames_.frames.size()); }
+  const MotionFrame& frame_at(int frame) const { return frames_.frames[static_cast<std::size_t>(frame)]; }
+  const std::vector<ClipFrames>& clips() const { return frames_.clips; }
+  double fps() const { return fps_; }
+  double time(int frame) const { return frame_at(frame).time; }
+  const std::string& clip_at(int frame) const { return clips()[frame_at(frame).clip].name; }
   Deformation deformation(int frame) const;
   // The deformed source vertices of such a frame.
   std::vector<Vec3> positions(const Deformation& deformation) const;
@@ -59,23 +57,25 @@ class AnimatedAsset {
   void use_skin();  // the source's own
   void use_rig(const std::vector<Joint>& joints);
   void play_capture(const std::string& source, const std::string& file);
-  void play_clips(const std::string& source, const std::string& wanted);
+  std::vector<const Clip*> find_clips(const std::string& source, const std::string& wanted) const;
 
   std::string asset_name_;
-  AssetFile file_;
+  OpenAsset file_;
   Character character_;
-  SegmentSettings segment_settings_;  // those of the bake
+  RoleFile roles_;  // those of the bake
+  SegmentSettings segment_settings_;
   std::vector<VertexWeights> weights_;
   std::vector<std::string> bone_names_;
-  std::unique_ptr<Motion> motion_;
-  int frame_count_ = 1;
+  std::unique_ptr<Motion> motion_;  // null where clips or nothing plays
+  MotionFrames frames_;
   double fps_;
-
-  double along(int frame) const { return frame_count_ > 1 ? static_cast<double>(frame) / (frame_count_ - 1) : 0.0; }
 };
+
+// The asset's body parts; 255 where a source triangle has none.
+BodyParts parts_of(const OpenAsset& asset);
 
 // What a game would hand to the runtime: rows of a 3 by 4 matrix for each of the asset's bones, the identity for what
 // hangs on none.
-std::vector<float> bone_palette(const Asset& asset, const Deformation& deformation);
+std::vector<float> bone_palette(const OpenAsset& asset, const Deformation& deformation);
 
 }  // namespace spherechain::baker

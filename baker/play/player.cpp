@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "mesh/error.h"
-#include "spherechain/detect_skin.h"
+#include "pairs/plain_detection.h"
 
 namespace spherechain::baker {
 namespace {
@@ -25,47 +24,46 @@ double median_us(const Run& run) {
   return times[2];
 }
 
-RefitJob refit_job(const Asset& asset, const std::vector<float>& positions, RadiusKind radius,
+RefitJob refit_job(const OpenAsset& asset, const std::vector<float>& positions, Radius radius,
                    std::vector<Sphere>& spheres) {
   RefitJob job;
-  job.asset = &asset;
-  job.positions = positions.data();
-  job.vertex_count = positions.size() / 3;
+  job.asset = asset.handle();
+  job.pose.vertices = positions.data();
+  job.pose.vertex_count = positions.size() / 3;
   job.radius = radius;
-  job.spheres = {spheres.data(), spheres.size()};
+  job.spheres = spheres.data();
+  job.sphere_capacity = spheres.size();
   return job;
-}
-
-void check(Status status) {
-  if (status != Status::kOk) throw Error(ExitCode::kInternal, to_string(status));
 }
 
 }  // namespace
 
-std::vector<Sphere> refit_spheres(const Asset& asset, const std::vector<float>& positions, RadiusKind radius) {
-  std::vector<Sphere> spheres(asset.spheres().size);
-  RefitJob job = refit_job(asset, positions, radius, spheres);
-  check(job.run());
+std::vector<Sphere> refit_spheres(const OpenAsset& asset, const std::vector<float>& positions, Radius radius) {
+  std::vector<Sphere> spheres(asset->spheres().size);
+  check_runtime(refit_job(asset, positions, radius, spheres).run());
   return spheres;
 }
 
-Player::Player(const Asset& asset, RadiusKind radius, bool m1, bool m2, Target target)
+Player::Player(const OpenAsset& asset, Radius radius, bool chains, bool all_pairs, Target target)
     : asset_(asset),
       radius_(radius),
-      m1_(m1),
-      m2_(m2),
+      chains_(chains),
+      all_pairs_(all_pairs),
       target_(target),
-      spheres_(asset.spheres().size),
+      spheres_(asset->spheres().size),
       pairs_(spheres_.size() * (spheres_.size() - 1) / 2),
-      words_(DetectContext::words_needed(asset)),
-      contact_words_(TriangleContactContext::words_needed(asset)) {}
+      scratch_(sc_skin_scratch_words(asset.handle())) {
+  for (std::uint32_t s = 0; s < asset->spheres().size; ++s) {
+    for (const std::uint32_t triangle : asset.triangles_of(s)) sphere_of_[triangle] = s;
+  }
+}
 
 FrameResult Player::run(const std::vector<float>& positions) {
   const RefitJob refit = refit_job(asset_, positions, radius_, spheres_);
   FrameResult result;
-  result.refit_us = median_us([&] { check(refit.run()); });
-  if (m1_) result.m1 = detect(Method::kM1);
-  if (m2_) result.m2 = detect(Method::kM2);
+  result.refit_us = median_us([&] { check_runtime(refit.run()); });
+  if (chains_) result.chains = detect(Method::kChains);
+  if (all_pairs_) result.all_pairs = detect(Method::kAllPairs);
   return result;
 }
 
@@ -73,54 +71,59 @@ Detection Player::take(std::vector<Sphere> spheres, const std::vector<Pair>& pai
   spheres_ = std::move(spheres);
   pair_count_ = pairs.size();
   std::copy(pairs.begin(), pairs.end(), pairs_.begin());
-  return {pairs_.size() - asset_.ignored_count(), pair_count_, pair_count_, us};
-}
-
-template <typename Job>
-Job Player::skin_job(const std::vector<float>& positions, TriangleContactContext& context) {
-  context.words = {contact_words_.data(), contact_words_.size()};
-  Job job;
-  job.asset = &asset_;
-  job.positions = positions.data();
-  job.vertex_count = positions.size() / 3;
-  job.target = target_;
-  job.context = &context;
-  return job;
-}
-
-Player::SkinDetection Player::detect_skin(const std::vector<float>& positions) {
-  SkinDetection out{std::vector<Pair>(pairs_.size()), 0};
-  TriangleContactContext context;
-  auto job = skin_job<DetectSkinJob>(positions, context);
-  job.pairs = {out.pairs.data(), out.pairs.size()};
-  out.us = median_us([&] { check(job.run()); });
-  out.pairs.resize(job.pair_count);
-  return out;
+  return {pairs_.size() - asset_->ignored_count(), pair_count_, pair_count_, us};
 }
 
 Player::TriangleDetection Player::detect_triangles(const std::vector<float>& positions) {
-  TriangleContactContext context;
-  auto job = skin_job<TriangleContactJob>(positions, context);
-  check(job.run());  // to count
-  TriangleDetection out{std::vector<TrianglePair>(job.pair_count), 0};
-  job.pairs = {out.pairs.data(), out.pairs.size()};
-  out.us = median_us([&] { check(job.run()); });
+  SkinContactJob job;
+  job.asset = asset_.handle();
+  job.pose.vertices = positions.data();
+  job.pose.vertex_count = positions.size() / 3;
+  job.target = target_;
+  job.skin_table = asset_.skin_table();
+  job.scratch = scratch_.data();
+  job.scratch_words = scratch_.size();
+  TriangleDetection out{};
+  out.us = median_us([&] { check_runtime(job.run()); });  // the product's question: body parts, no list
+  std::vector<TriangleContact> contacts(job.triangle_count);
+  job.triangles = contacts.data();
+  job.triangle_capacity = contacts.size();
+  check_runtime(job.run());
+  for (const TriangleContact& contact : contacts) out.pairs.push_back({contact.triangle_a, contact.triangle_b});
+  return out;
+}
+
+std::vector<Pair> Player::spheres_of(const std::vector<Pair>& triangles) const {
+  std::vector<Pair> out;
+  for (const Pair& pair : triangles) {
+    const auto [a, b] = std::minmax({sphere_of_.at(pair.a), sphere_of_.at(pair.b)});
+    out.push_back({a, b});
+  }
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
   return out;
 }
 
 Detection Player::detect(Method method) {
-  DetectContext context{{words_.data(), words_.size()}};
+  if (method == Method::kChains) {
+    const PlainDetection plain(asset_.view(), radius_);
+    PlainResult found;
+    const double us = median_us([&] { found = plain.chains(spheres_.data()); });
+    pair_count_ = found.pairs.size();
+    std::copy(found.pairs.begin(), found.pairs.end(), pairs_.begin());
+    return {found.test_count, pair_count_, found.chain_pairs.size(), us};
+  }
   DetectJob job;
-  job.asset = &asset_;
-  job.spheres = {spheres_.data(), spheres_.size()};
+  job.asset = asset_.handle();
+  job.spheres = spheres_.data();
+  job.sphere_count = spheres_.size();
   job.radius = radius_;
-  job.method = method;
   job.target = target_;
-  job.context = &context;
-  job.pairs = {pairs_.data(), pairs_.size()};
-  const double us = median_us([&] { check(job.run()); });
+  job.pairs = pairs_.data();
+  job.pair_capacity = pairs_.size();
+  const double us = median_us([&] { check_runtime(job.run()); });
   pair_count_ = job.pair_count;
-  return {job.test_count, job.pair_count, job.chain_pair_count, us};
+  return {pairs_.size() - asset_->ignored_count(), job.pair_count, job.pair_count, us};
 }
 
 }  // namespace spherechain::baker

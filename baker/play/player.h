@@ -3,71 +3,70 @@
 
 #include <array>
 #include <optional>
+#include <unordered_map>
 #include <vector>
 
+#include "play/asset_file.h"
 #include "spherechain/detect.h"
 #include "spherechain/refit.h"
-#include "spherechain/triangle_contacts.h"
+#include "spherechain/skin_contacts.h"
 
 namespace spherechain::baker {
 
+// The paper's two methods: chain by chain, and over all pairs, which is the product's.
+enum class Method { kChains, kAllPairs };
+
 // What one method found in a frame and what it cost.
 struct Detection {
-  std::size_t tests, pairs, raw_pairs;  // pairs: each once; raw: as the paper counts M1's, repeats over chains included
+  std::size_t tests, pairs, raw_pairs;  // pairs: each once; raw_pairs: with the repeats of pairs in several chains
   double us;                            // median of a few runs
 };
 
 // The runtime's refit of the whole asset.
-std::vector<Sphere> refit_spheres(const Asset& asset, const std::vector<float>& positions, RadiusKind radius);
+std::vector<Sphere> refit_spheres(const OpenAsset& asset, const std::vector<float>& positions, Radius radius);
 
 struct FrameResult {
   double refit_us = 0;
-  std::optional<Detection> m1, m2;
+  std::optional<Detection> chains, all_pairs;
 };
 
 // The runtime as a game uses it: buffers made once, then a refit and a detection a frame.
 class Player {
  public:
-  Player(const Asset& asset, RadiusKind radius, bool m1, bool m2, Target target);
+  Player(const OpenAsset& asset, Radius radius, bool chains, bool all_pairs, Target target);
 
   // `positions` are the deformed source vertices.
   FrameResult run(const std::vector<float>& positions);
 
-  // Takes a frame that was computed elsewhere for its last one. Returns M2's part of it, `us` as given.
+  // Takes a frame that was computed elsewhere for its last one. Returns all_pairs' part of it, `us` as given.
   Detection take(std::vector<Sphere> spheres, const std::vector<Pair>& pairs, double us);
 
-  // The pairs of spheres whose skins intersect, whether the spheres touch or not, and what finding them costs. The
-  // asset must have leaves.
-  struct SkinDetection {
+  // Skin contacts: triangles that intersect, by their numbers in the source, and what finding them costs. The asset
+  // must have clusters.
+  struct TriangleDetection {
     std::vector<Pair> pairs;
     double us;  // median of a few runs
   };
-  SkinDetection detect_skin(const std::vector<float>& positions);
-
-  // The same for the triangles that intersect: numbers of the source's.
-  struct TriangleDetection {
-    std::vector<TrianglePair> pairs;
-    double us;
-  };
   TriangleDetection detect_triangles(const std::vector<float>& positions);
+  // The spheres that these triangles belong to: pairs a < b, sorted.
+  std::vector<Pair> spheres_of(const std::vector<Pair>& triangles) const;
 
-  // Of the last frame: the refitted spheres, and the pairs the last method found (M1 and M2 report the same, but that
-  // M1 leaves out pairs in no common chain).
+  // Of the last frame: the refitted spheres, and the pairs the last method found (both report the same, but chains
+  // leave out pairs in no common chain).
   const std::vector<Sphere>& spheres() const { return spheres_; }
   Span<const Pair> pairs() const { return {pairs_.data(), pair_count_}; }
 
  private:
   Detection detect(Method method);
-  template <typename Job>
-  Job skin_job(const std::vector<float>& positions, TriangleContactContext& context);
 
-  const Asset& asset_;
-  RadiusKind radius_;
-  bool m1_, m2_;
+  const OpenAsset& asset_;
+  Radius radius_;
+  bool chains_, all_pairs_;
   Target target_;
   std::vector<Sphere> spheres_;
   std::vector<Pair> pairs_;
-  std::vector<std::uint64_t> words_, contact_words_;
+  std::vector<std::uint64_t> scratch_;
+  std::unordered_map<std::uint32_t, std::uint32_t> sphere_of_;  // a source triangle -> its sphere
   std::size_t pair_count_ = 0;
 };
 

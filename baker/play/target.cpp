@@ -4,29 +4,30 @@
 #include <cstdlib>
 
 #include "mesh/error.h"
+#include "simd/simd.h"
 
 namespace spherechain::baker {
 
 Target choose_target(const std::string& backend) {
-  if (backend == "scalar") return Target::kScalar;
+  if (backend == "scalar") return SC_TARGET_SCALAR;
   const char* wanted = std::getenv("SPHERECHAIN_TARGET");
-  Target target = Target::kBest;
-  if (wanted != nullptr && *wanted != '\0' && find_target(wanted, target) != Status::kOk) {
+  Target target = SC_TARGET_BEST;
+  if (wanted != nullptr && *wanted != '\0' && !find_target(wanted, target)) {
     throw Error(ExitCode::kUsage, std::string("SPHERECHAIN_TARGET: '") + wanted +
                                       "' is no target of this machine (it has " + supported_targets_text() + ")");
   }
-  return target == Target::kBest ? best_target() : target;
+  return target == SC_TARGET_BEST ? supported_targets()[0] : target;
 }
 
-const char* backend_name(Target target) { return target == Target::kScalar ? "scalar" : "simd"; }
+const char* backend_name(Target target) { return target == SC_TARGET_SCALAR ? "scalar" : "simd"; }
 
 std::string backend_text(Target target) {
-  return target == Target::kScalar ? "scalar" : std::string("simd (") + to_string(target) + ")";
+  return target == SC_TARGET_SCALAR ? "scalar" : std::string("simd (") + sc_target_name(target) + ")";
 }
 
 std::string supported_targets_text() {
   std::string text;
-  for (const Target target : supported_targets()) text += (text.empty() ? "" : ", ") + std::string(to_string(target));
+  for (const Target target : supported_targets()) text += (text.empty() ? "" : ", ") + std::string(sc_target_name(target));
   return text;
 }
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "spherechain/simd.h"
+#include "spherechain/types.h"
 
 namespace spherechain::baker {
 

@@ -198,7 +198,7 @@ std::string why_this_count(const Bake& bake) {
 
 ordered_json counts_section(const Bake& bake) {
   const std::size_t n = bake.spheres.spheres.size();
-  std::size_t m1_tests = 0;
+  std::size_t chains_tests = 0;
   const auto ignored = [&](std::uint32_t a, std::uint32_t b) {
     return std::binary_search(bake.binding.ignored.begin(), bake.binding.ignored.end(),
                               std::pair<std::uint32_t, std::uint32_t>(std::minmax(a, b)));
@@ -206,7 +206,7 @@ ordered_json counts_section(const Bake& bake) {
   for (const Chain& chain : bake.chains.chains) {
     for (std::size_t i = 0; i < chain.spheres.size(); ++i) {
       for (std::size_t j = i + 1; j < chain.spheres.size(); ++j)
-        m1_tests += ignored(chain.spheres[i], chain.spheres[j]) ? 0 : 1;
+        chains_tests += ignored(chain.spheres[i], chain.spheres[j]) ? 0 : 1;
     }
   }
   return {{"spheres", n},
@@ -214,11 +214,11 @@ ordered_json counts_section(const Bake& bake) {
           {"paper", {{"spheres_by_its_chain_counts", 46}, {"spheres_as_stated", 80}, {"chain_entries", 138}}},
           {"chain_entries", bake.chains.entries()},
           {"chain_entries_table1", bake.chains.entries_table1},
-          {"m1_tests", m1_tests},
-          {"m2_tests", n * (n - 1) / 2 - bake.binding.ignored.size()},
+          {"chains_tests", chains_tests},
+          {"all_pairs_tests", n * (n - 1) / 2 - bake.binding.ignored.size()},
           {"ignored_pairs", bake.binding.ignored.size()},
-          {"near_pairs_fit", bake.binding.near_fit.size()},
-          {"near_pairs_detect", bake.binding.near_detect.size()}};
+          {"rest_pairs_fit", bake.binding.rest_fit.size()},
+          {"rest_pairs_detect", bake.binding.rest_detect.size()}};
 }
 
 // Fewest and most of a sphere.

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "report/json_text.h"
+#include "report/parts.h"
 #include "report/report.h"
 
 namespace spherechain::baker {
@@ -12,33 +13,25 @@ namespace {
 
 using nlohmann::ordered_json;
 
-const char* name_of(spherechain::Side side) {
-  switch (side) {
-    case spherechain::Side::kLeft:
-      return "left";
-    case spherechain::Side::kRight:
-      return "right";
-    case spherechain::Side::kNone:
-      break;
-  }
-  return "none";
+const char* side_name(std::uint8_t side) {
+  return side == SC_SIDE_LEFT ? "left" : side == SC_SIDE_RIGHT ? "right" : "none";
 }
 
-std::size_t count_ignored(const Asset& asset) {
+std::size_t count_ignored(const OpenAsset& asset) {
   std::size_t count = 0;
-  for (const std::uint64_t word : asset.ignored()) count += static_cast<std::size_t>(std::popcount(word));
+  for (const std::uint64_t word : asset->ignored()) count += static_cast<std::size_t>(std::popcount(word));
   return count;
 }
 
-std::size_t count_chain_entries(const Asset& asset) {
+std::size_t count_chain_entries(const OpenAsset& asset) {
   std::size_t count = 0;
-  for (std::size_t i = 0; i < asset.chain_count(); ++i) count += asset.chain(i).spheres.size;
+  for (std::size_t i = 0; i < asset->chain_count(); ++i) count += asset->chain(i).spheres.size;
   return count;
 }
 
-std::size_t spheres_in_region(const Asset& asset, std::size_t region) {
+std::size_t spheres_in_region(const OpenAsset& asset, std::size_t region) {
   std::size_t count = 0;
-  for (const RestSphere& sphere : asset.spheres()) count += sphere.region == region ? 1 : 0;
+  for (const RestSphere& sphere : asset->spheres()) count += sphere.region == region ? 1 : 0;
   return count;
 }
 
@@ -49,21 +42,15 @@ ordered_json to_json(const FitError& e) {
   return {{"mean_abs_F", number(e.mean_abs_f)}, {"max_abs_F", number(e.max_abs_f)}};
 }
 
-ordered_json bones_json(const Asset& asset) {
+ordered_json bones_json(const OpenAsset& asset) {
   ordered_json bones = ordered_json::array();
-  for (std::size_t i = 0; i < asset.bone_count(); ++i) {
-    const BoneView bone = asset.bone(i);
+  for (std::size_t i = 0; i < asset->bone_count(); ++i) {
+    const BoneView bone = asset->bone(i);
     ordered_json inverse_bind = ordered_json::array();
     for (std::size_t e = 0; e < 12; ++e) inverse_bind.push_back(number(bone.inverse_bind[e]));
     bones.push_back({{"name", bone.name}, {"inverse_bind", std::move(inverse_bind)}, {"is_rest", bone.is_rest}});
   }
   return bones;
-}
-
-std::size_t bytes_of(const BoneTables& tables) {
-  const auto bytes = [](const auto& span) { return span.size * sizeof(span[0]); };
-  return bytes(tables.weights) + bytes(tables.term_counts) + bytes(tables.term_bones) + bytes(tables.terms) +
-         bytes(tables.morph_term_counts) + bytes(tables.morph_targets) + bytes(tables.morph_terms);
 }
 
 std::size_t bytes_of(const MomentTables& tables) {
@@ -72,31 +59,31 @@ std::size_t bytes_of(const MomentTables& tables) {
          bytes(tables.bones) + bytes(tables.centers) + bytes(tables.pair_places) + bytes(tables.moments);
 }
 
-std::size_t bytes_of(const Surface& surface) {
-  const auto bytes = [](const auto& span) { return span.size * sizeof(span[0]); };
-  return bytes(surface.leaves) + bytes(surface.leaf_balls) + bytes(surface.leaf_vertices) + bytes(surface.leaf_bones) +
-         bytes(surface.corners) + bytes(surface.source_vertices) + bytes(surface.welds) +
-         bytes(surface.slot_positions) + bytes(surface.slot_weights) + bytes(surface.slot_morphs) +
-         bytes(surface.cover_term_counts) + bytes(surface.cover_term_bones) + bytes(surface.cover_terms) +
-         bytes(surface.cover_morph_counts) + bytes(surface.cover_morph_targets) + bytes(surface.cover_morphs) +
-         bytes(surface.rest_contacts) + bytes(surface.leaf_boxes) + bytes(surface.outlines) +
-         bytes(surface.outline_bones) + bytes(surface.outline_points) + bytes(surface.outline_weights);
+// As the asset has it, packed.
+std::size_t bytes_of(const SkinData& skin) {
+  const auto bytes = [](const auto&... spans) { return (... + (spans.size * sizeof(spans[0]))); };
+  return bytes(skin.triangles, skin.cluster_vertices, skin.cluster_bones, skin.sources, skin.welds,
+               skin.influence_bones, skin.rest_contacts, skin.hull_points, skin.part_run_ends, skin.part_runs,
+               skin.corners, skin.influence_counts, skin.morph_counts, skin.clusters, skin.positions,
+               skin.influence_weights, skin.morphs, skin.boxes, skin.bounds_term_counts, skin.bounds_term_bones,
+               skin.bounds_terms, skin.bounds_morph_counts, skin.bounds_morph_targets, skin.bounds_morphs, skin.hulls,
+               skin.hull_bones);
 }
 
-ordered_json sphere_json(const Asset& asset, std::size_t i) {
-  const RestSphere& sphere = asset.spheres()[i];
+ordered_json sphere_json(const OpenAsset& asset, std::size_t i) {
+  const RestSphere& sphere = asset->spheres()[i];
   ordered_json pivots = ordered_json::array();
   for (std::uint32_t k = 0; k < sphere.pivot_count; ++k) {
-    const Pivot& pivot = asset.pivots()[sphere.first_pivot + k];
+    const Pivot& pivot = asset->pivots()[sphere.first_pivot + k];
     pivots.push_back({{"vertices", {pivot.a, pivot.b, pivot.c}}, {"weight", number(pivot.weight)}});
   }
   return {{"id", i},
           {"center", to_json(sphere.center)},
           {"radius", number(sphere.radius)},
           {"detect_radius", number(sphere.detect_radius)},
-          {"region", asset.region(sphere.region).name},
+          {"region", asset->region(sphere.region).name},
           {"level", sphere.level},
-          {"side", name_of(sphere.side)},
+          {"side", side_name(sphere.side)},
           {"triangles", sphere.triangle_count},
           {"pivots", std::move(pivots)}};
 }
@@ -104,143 +91,127 @@ ordered_json sphere_json(const Asset& asset, std::size_t i) {
 }  // namespace
 
 const char* refit_name(spherechain::RefitRule rule) {
-  switch (rule) {
-    case spherechain::RefitRule::kPaper:
-      return "paper";
-    case spherechain::RefitRule::kMoments:
-      return "moments";
-    case spherechain::RefitRule::kCalibrated:
-      break;
-  }
-  return "calibrated";
+  return rule == spherechain::RefitRule::kPaper ? "paper" : "moments";
 }
 
-std::string inspect_json(const Asset& asset) {
-  const AssetInfo info = asset.info();
-  ordered_json parts = ordered_json::array();
-  for (const spherechain::SourcePart& part : asset.source_parts()) {
-    parts.push_back({{"mesh", part.mesh},
-                     {"primitive", part.primitive},
-                     {"first_vertex", part.first_vertex},
-                     {"vertices", part.vertex_count},
-                     {"hash", fmt::format("{:016x}", part.hash)}});
+std::string inspect_json(const OpenAsset& asset) {
+  const AssetInfo info = asset->info();
+  const FitErrors fit = asset->fit();
+  ordered_json buffers = ordered_json::array();
+  for (const sc_source_buffer& buffer : asset->source_buffers()) {
+    buffers.push_back({{"mesh", buffer.mesh},
+                       {"primitive", buffer.primitive},
+                       {"first_vertex", buffer.first_vertex},
+                       {"vertices", buffer.vertex_count},
+                       {"hash", fmt::format("{:016x}", buffer.hash)}});
   }
   ordered_json regions = ordered_json::array(), spheres = ordered_json::array(), chains = ordered_json::array(),
                joints = ordered_json::array(), morphs = ordered_json::array();
-  for (std::size_t r = 0; r < asset.region_count(); ++r) {
-    regions.push_back({{"name", asset.region(r).name},
-                       {"triangles", asset.region(r).triangle_count},
+  for (std::size_t r = 0; r < asset->region_count(); ++r) {
+    regions.push_back({{"name", asset->region(r).name},
+                       {"triangles", asset->region(r).triangle_count},
                        {"spheres", spheres_in_region(asset, r)}});
   }
-  for (std::size_t i = 0; i < asset.spheres().size; ++i) spheres.push_back(sphere_json(asset, i));
-  for (std::size_t c = 0; c < asset.chain_count(); ++c) {
-    const ChainView chain = asset.chain(c);
+  for (std::size_t i = 0; i < asset->spheres().size; ++i) spheres.push_back(sphere_json(asset, i));
+  for (std::size_t c = 0; c < asset->chain_count(); ++c) {
+    const ChainView chain = asset->chain(c);
     ordered_json names = ordered_json::array();
-    for (const std::uint8_t r : chain.regions) names.push_back(asset.region(r).name);
+    for (const std::uint8_t r : chain.regions) names.push_back(asset->region(r).name);
     chains.push_back({{"name", chain.name},
                       {"regions", std::move(names)},
                       {"spheres", std::vector<std::uint32_t>(chain.spheres.begin(), chain.spheres.end())}});
   }
-  for (std::size_t j = 0; j < asset.joint_count(); ++j) {
-    const JointView joint = asset.joint(j);
+  for (std::size_t j = 0; j < asset->joint_count(); ++j) {
+    const JointView joint = asset->joint(j);
     joints.push_back({{"name", joint.name},
                       {"parent", joint.parent},
                       {"position", to_json(joint.position)},
                       {"tail", to_json(joint.tail)}});
   }
-  for (std::size_t m = 0; m < asset.morph_count(); ++m) morphs.push_back(asset.morph_name(m));
-  const BoneTables& tables = asset.bone_tables();
-  const MomentTables& moments = asset.moment_tables();
+  for (std::size_t m = 0; m < asset->morph_count(); ++m) morphs.push_back(asset->morph_name(m));
+  const MomentTables& moments = asset->moment_tables();
   const ordered_json out{
-      {"format_version", info.format_version},
+      {"format_version", kFormatVersion},
       {"writer", info.writer},
       {"settings", ordered_json::parse(info.settings, nullptr, false)},
       {"settings_sha256", info.settings_sha256},
       {"source",
        {{"file", info.source_file},
         {"sha256", info.source_sha256},
-        {"vertices", info.source_vertex_count},
-        {"triangles", info.source_triangle_count},
+        {"vertices", info.vertex_count},
+        {"triangles", info.triangle_count},
         {"rest_hash", fmt::format("{:016x}", info.source_rest_hash)},
         {"metres_per_unit", number(info.metres_per_unit)},
-        {"parts", std::move(parts)}}},
+        {"buffers", std::move(buffers)}}},
       {"frame",
        {{"origin", to_json(info.origin)},
         {"left", to_json(info.left)},
         {"up", to_json(info.up)},
         {"forward", to_json(info.forward)},
         {"height", number(info.height)}}},
-      {"refit", refit_name(info.refit)},
-      {"sphere_count", asset.spheres().size},
+      {"refit", refit_name(asset->refit_rule())},
+      {"sphere_count", asset->spheres().size},
       {"chain_entries", count_chain_entries(asset)},
-      {"chain_entries_table1", info.chain_entries_table1},
+      {"chain_entries_table1", fit.chain_entries_table1},
       {"ignored_pairs", count_ignored(asset)},
-      {"near_pairs",
-       {{"fit", asset.near_pairs(RadiusKind::kFit).size}, {"detect", asset.near_pairs(RadiusKind::kDetect).size}}},
+      {"rest_pairs",
+       {{"fit", asset->rest_pairs(SC_RADIUS_FIT).size}, {"detect", asset->rest_pairs(SC_RADIUS_DETECT).size}}},
       {"regions", std::move(regions)},
+      {"parts", parts_json(part_rows(asset))},
       {"spheres", std::move(spheres)},
       {"chains", std::move(chains)},
       {"joints", std::move(joints)},
       {"bones", bones_json(asset)},
       {"morphs", std::move(morphs)},
-      {"bone_tables",
-       {{"groups", tables.weights.size},
-        {"terms", tables.terms.size},
-        {"morph_terms", tables.morph_terms.size},
-        {"bytes", bytes_of(tables)}}},
       {"moment_tables",
        {{"batches", moments.batches.size},
         {"pairs", moments.pairs.size},
         {"sphere_bones", moments.centers.size},
         {"sphere_pairs", moments.moments.size},
         {"bytes", bytes_of(moments)}}},
-      {"surface",
-       {{"leaves", asset.leaf_count()},
+      {"skin",
+       {{"clusters", asset.surface().clusters.size},
         {"vertices", asset.surface().source_vertices.size},
         {"rest_contacts", asset.surface().rest_contacts.size},
-        {"bytes", bytes_of(asset.surface())}}},
-      {"pivot_vertices", asset.pivot_vertices().size},
-      {"fit",
-       {{"phi1", to_json(info.phi1)}, {"phi1_adjusted", to_json(info.phi1_adjusted)}, {"phi2", to_json(info.phi2)}}}};
+        {"bytes", bytes_of(asset->skin())}}},
+      {"fit", {{"phi1", to_json(fit.phi1)}, {"phi1_adjusted", to_json(fit.phi1_adjusted)}, {"phi2", to_json(fit.phi2)}}}};
   return json_text(out, 1) + "\n";
 }
 
-std::string inspect_text(const Asset& asset) {
-  const AssetInfo info = asset.info();
-  std::string out = fmt::format("format {}, written by {}\n", info.format_version, info.writer);
+std::string inspect_text(const OpenAsset& asset) {
+  const AssetInfo info = asset->info();
+  const FitErrors fit = asset->fit();
+  std::string out = fmt::format("format {}, written by {}\n", kFormatVersion, info.writer);
   out += fmt::format("source   {} ({} vertices, {} triangles)\n         sha256 {}\n", info.source_file,
-                     info.source_vertex_count, info.source_triangle_count, info.source_sha256);
+                     info.vertex_count, info.triangle_count, info.source_sha256);
   out += fmt::format("settings {}\n         sha256 {}\n", info.settings, info.settings_sha256);
-  out += fmt::format("refit    {}\n", refit_name(info.refit));
+  out += fmt::format("refit    {}\n", refit_name(asset->refit_rule()));
   out += fmt::format("spheres  {}, {} chain entries ({} as Table 1 counts), {} pairs ignored, {} joints\n",
-                     asset.spheres().size, count_chain_entries(asset), info.chain_entries_table1, count_ignored(asset),
-                     asset.joint_count());
-  out += fmt::format("bones    {}, {} morph targets\n", asset.bone_count(), asset.morph_count());
-  if (const BoneTables& tables = asset.bone_tables(); tables.terms.size > 0) {
-    out += fmt::format("pivots   {} terms of bones, {} of morphs, {} bytes\n", tables.terms.size,
-                       tables.morph_terms.size, bytes_of(tables));
-  }
-  if (const MomentTables& moments = asset.moment_tables(); moments.moments.size > 0) {
+                     asset->spheres().size, count_chain_entries(asset), fit.chain_entries_table1, count_ignored(asset),
+                     asset->joint_count());
+  out += fmt::format("bones    {}, {} morph targets\n", asset->bone_count(), asset->morph_count());
+  if (const MomentTables& moments = asset->moment_tables(); moments.moments.size > 0) {
     out += fmt::format("moments  {} batches of {} bone pairs; spheres: {} bones, {} pairs, {} bytes\n",
                        moments.batches.size, moments.pairs.size, moments.centers.size, moments.moments.size,
                        bytes_of(moments));
   }
-  out +=
-      fmt::format("surface  {} leaves, {} vertices, {} contacts at rest, {} bytes\n", asset.leaf_count(),
-                  asset.surface().source_vertices.size, asset.surface().rest_contacts.size, bytes_of(asset.surface()));
+  const Surface& surface = asset.surface();
+  out += fmt::format("skin     {} clusters, {} vertices, {} contacts at rest, {} bytes\n", surface.clusters.size,
+                     surface.source_vertices.size, surface.rest_contacts.size, bytes_of(asset->skin()));
   out += fmt::format("\n{:<14} {:>9} {:>7}\n", "region", "triangles", "spheres");
-  for (std::size_t r = 0; r < asset.region_count(); ++r) {
-    out += fmt::format("{:<14} {:>9} {:>7}\n", asset.region(r).name, asset.region(r).triangle_count,
+  for (std::size_t r = 0; r < asset->region_count(); ++r) {
+    out += fmt::format("{:<14} {:>9} {:>7}\n", asset->region(r).name, asset->region(r).triangle_count,
                        spheres_in_region(asset, r));
   }
-  for (std::size_t c = 0; c < asset.chain_count(); ++c) {
-    const ChainView chain = asset.chain(c);
+  out += parts_text(part_rows(asset));
+  for (std::size_t c = 0; c < asset->chain_count(); ++c) {
+    const ChainView chain = asset->chain(c);
     out += fmt::format("{}{:<8}", c == 0 ? "\n" : "", chain.name);
     for (const std::uint32_t i : chain.spheres) out += fmt::format(" {}", i);
     out += "\n";
   }
   out += fmt::format("\nmean |F| over the torso: phi1 {:.4g}, phi1' {:.4g}, phi2 {:.4g} (source units)\n",
-                     info.phi1.mean_abs_f, info.phi1_adjusted.mean_abs_f, info.phi2.mean_abs_f);
+                     fit.phi1.mean_abs_f, fit.phi1_adjusted.mean_abs_f, fit.phi2.mean_abs_f);
   return out;
 }
 

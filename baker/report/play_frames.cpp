@@ -7,25 +7,47 @@
 
 namespace spherechain::baker {
 
-nlohmann::ordered_json pairs_json(Span<const Pair> pairs) {
-  nlohmann::ordered_json out = nlohmann::ordered_json::array();
+using nlohmann::ordered_json;
+
+ordered_json pairs_json(Span<const Pair> pairs) {
+  ordered_json out = ordered_json::array();
   for (const Pair& pair : pairs) out.push_back({pair.a, pair.b});
   return out;
 }
 
-nlohmann::ordered_json frame_json(const AnimatedAsset& animated, int index, const FrameResult& result,
-                                  const Player& player) {
-  nlohmann::ordered_json out{{"index", index}, {"time", animated.time(index)}, {"refit_us", result.refit_us}};
-  if (const std::string clip = animated.clip_at(index); !clip.empty()) out["clip"] = clip;
-  if (const auto& m1 = result.m1) {
-    out["m1"] = {{"tests", m1->tests}, {"pairs", m1->raw_pairs}, {"unique_pairs", m1->pairs}, {"us", m1->us}};
+ordered_json frame_json(const AnimatedAsset& animated, int index, const FrameResult& result, const Player& player) {
+  ordered_json out{{"index", index}, {"time", animated.time(index)}};
+  if (const std::string& clip = animated.clip_at(index); !clip.empty()) out["clip"] = clip;
+  out["clip_frame"] = animated.frame_at(index).number;
+  out["refit_us"] = result.refit_us;
+  if (const auto& chains = result.chains) {
+    out["chains"] = {
+        {"tests", chains->tests}, {"pairs", chains->raw_pairs}, {"unique_pairs", chains->pairs}, {"us", chains->us}};
   }
-  if (const auto& m2 = result.m2) out["m2"] = {{"tests", m2->tests}, {"pairs", m2->pairs}, {"us", m2->us}};
+  if (const auto& all = result.all_pairs) {
+    out["all_pairs"] = {{"tests", all->tests}, {"pairs", all->pairs}, {"us", all->us}};
+  }
   out["pairs"] = pairs_json(player.pairs());
   return out;
 }
 
-PlayFile::PlayFile(const std::filesystem::path& path, const nlohmann::ordered_json& head, int frames)
+ordered_json skin_json(const Player& player, const Player::TriangleDetection& skin, const PartContacts& contacts,
+                       const PartCounts& counts, bool list_triangles) {
+  ordered_json parts = ordered_json::array();
+  for (const auto& [pair, count] : counts) {
+    parts.push_back({{"a", contacts.name(pair.first)}, {"b", contacts.name(pair.second)}, {"triangle_pairs", count}});
+  }
+  const std::vector<Pair> spheres = player.spheres_of(skin.pairs);
+  ordered_json out{
+      {"us", skin.us}, {"parts", std::move(parts)}, {"sphere_pairs", pairs_json({spheres.data(), spheres.size()})}};
+  if (list_triangles) {
+    ordered_json& triangles = out["triangles"] = ordered_json::array();
+    for (const Pair& pair : skin.pairs) triangles.push_back({pair.a, pair.b});
+  }
+  return out;
+}
+
+PlayFile::PlayFile(const std::filesystem::path& path, const ordered_json& head, int frames)
     : file_(path), left_(frames) {
   std::string text = json_text(head, 1);
   text.resize(text.size() - 2);  // the end, "\n}"
@@ -33,15 +55,19 @@ PlayFile::PlayFile(const std::filesystem::path& path, const nlohmann::ordered_js
 }
 
 // Whole lines: a terminal that both the frames and the progress go to shows each on its own.
-void PlayFile::add(const nlohmann::ordered_json& frame) {
+void PlayFile::add(const ordered_json& frame) {
   const std::string text = json_text(frame, 1);
   std::string inner = "  ";
   for (const char c : text) {
     inner += c;
     if (c == '\n') inner += "  ";
   }
-  file_.write(inner + (--left_ > 0 ? ",\n" : "\n ]\n}\n"));
-  if (left_ == 0) file_.finish();
+  file_.write(inner + (--left_ > 0 ? ",\n" : "\n ]"));
+}
+
+void PlayFile::finish(const ordered_json& tail) {
+  file_.write("," + json_text(tail, 1).substr(1) + "\n");
+  file_.finish();
 }
 
 }  // namespace spherechain::baker

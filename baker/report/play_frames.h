@@ -6,6 +6,7 @@
 
 #include "play/play.h"
 #include "play/player.h"
+#include "report/part_contacts.h"
 #include "write/atomic_file.h"
 
 namespace spherechain::baker {
@@ -16,12 +17,19 @@ nlohmann::ordered_json pairs_json(Span<const Pair> pairs);
 nlohmann::ordered_json frame_json(const AnimatedAsset& animated, int index, const FrameResult& result,
                                   const Player& player);
 
-// What `play --json` writes, `head`'s keys and then `frames`: frame by frame, for all of them may not fit in memory.
+// Its skin contacts, with the triangles where `list_triangles` is true.
+nlohmann::ordered_json skin_json(const Player& player, const Player::TriangleDetection& skin,
+                                 const PartContacts& contacts, const PartCounts& counts, bool list_triangles);
+
+// What `play --json` writes: the keys of `head`, then `frames`, then the keys of `tail`. It is written frame by
+// frame: all of them may not fit in memory.
 class PlayFile {
  public:
-  // Nothing is there before the last of `frames` frames, at least one, is added. Throws Error(kFile), as add does.
+  // The file is there after finish(), which comes after the last of `frames` frames, at least one. Throws Error(kFile),
+  // as the others do.
   PlayFile(const std::filesystem::path& path, const nlohmann::ordered_json& head, int frames);
   void add(const nlohmann::ordered_json& frame);
+  void finish(const nlohmann::ordered_json& tail);
 
  private:
   AtomicFile file_;

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "pipeline/pipeline.h"
-#include "spherechain/asset.h"
+#include "play/asset_file.h"
 
 namespace spherechain::baker {
 
@@ -17,8 +17,8 @@ std::string bake_report_json(const Bake& bake);
 std::string bake_report_text(const Bake& bake);
 
 // An asset's contents, as the command line contract has it; `text` for people.
-std::string inspect_json(const Asset& asset);
-std::string inspect_text(const Asset& asset);
+std::string inspect_json(const OpenAsset& asset);
+std::string inspect_text(const OpenAsset& asset);
 
 // "paper", "calibrated" or "moments".
 const char* refit_name(spherechain::RefitRule rule);

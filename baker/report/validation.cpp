@@ -15,10 +15,14 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t kWorstMisses = 20;
 
-const char* radius_name(RadiusKind radius) { return radius == RadiusKind::kFit ? "fit" : "detect"; }
-const char* method_name(Method method) { return method == Method::kM1 ? "m1" : "m2"; }
+const char* radius_name(Radius radius) { return radius == SC_RADIUS_FIT ? "fit" : "detect"; }
 
-// The shares of a score, as the contract names them.
+// What the figures without a name of their own are of.
+const char* reported_name(const ValidateSettings& settings) {
+  if (settings.skin) return "skin";
+  return settings.method == Method::kChains ? "chains" : "all_pairs";
+}
+
 ordered_json score_json(const Score& score) {
   return {{"pair_recall", score.pair_recall()},
           {"frame_any_recall", score.frame_any_recall()},
@@ -40,19 +44,19 @@ ordered_json groups_json(const std::vector<PairGroup>& groups) {
   return out;
 }
 
-// The points whose radius, or whose rest-distance rule, is another.
+// The points whose radius is another, or whose rest fraction.
 ordered_json curve_json(const std::vector<CurvePoint>& curve, bool radius) {
   ordered_json out = ordered_json::array();
   for (const CurvePoint& point : curve) {
-    if (radius == point.change.near_fraction.has_value()) continue;
+    if (radius == point.change.rest_scale.has_value()) continue;
     ordered_json entry;
     if (radius) {
       entry["scale"] = point.change.scale;
     } else {
-      entry["near_fraction"] = *point.change.near_fraction;
+      entry["rest_scale"] = *point.change.rest_scale;
     }
-    entry["m1"] = score_json(point.m1);
-    entry["m2"] = score_json(point.m2);
+    entry["all_pairs"] = score_json(point.all_pairs);
+    entry["chains"] = score_json(point.chains);
     out.push_back(std::move(entry));
   }
   return out;
@@ -67,22 +71,42 @@ std::string groups_text(const std::string& title, const std::vector<PairGroup>& 
   return out;
 }
 
-std::string curve_row(const std::string& name, const Score& m1, const Score& m2) {
-  return fmt::format("  {:<16} {:>9.4f} {:>9.4f} {:>9.2f}   {:>9.4f} {:>9.4f} {:>9.2f}\n", name, m2.pair_recall(),
-                     m2.precision(), m2.reported_per_frame(), m1.pair_recall(), m1.precision(),
-                     m1.reported_per_frame());
+std::string curve_row(const std::string& name, const Score& chains, const Score& all_pairs) {
+  std::string out = fmt::format("  {:<16}", name);
+  for (const Score* score : {&all_pairs, &chains}) {
+    out += fmt::format(" {:>9.4f} {:>9.4f} {:>9.2f}  ", score->pair_recall(), score->precision(),
+                       score->reported_per_frame());
+  }
+  out.resize(out.find_last_not_of(' ') + 1);
+  return out + "\n";
 }
 
 std::string curve_text(const Validation& validation) {
-  std::string out = fmt::format("\n{:<18} {:>9} {:>9} {:>9}   {:>9} {:>9} {:>9}\n", "", "M2 recall", "precision",
-                                "a frame", "M1 recall", "precision", "a frame");
-  out += curve_row("as it is", validation.m1, validation.m2);
+  std::string out = fmt::format("\n{:<18} {:<31}  {}\n", "spheres otherwise", "all pairs", "chains");
+  out += fmt::format("{:<18} {:>9} {:>9} {:>9}   {:>9} {:>9} {:>9}\n", "", "recall", "precision", "a frame", "recall",
+                     "precision", "a frame");
+  out += curve_row("as it is", validation.chains, validation.all_pairs);
   for (const CurvePoint& point : validation.curve) {
-    const std::string name = point.change.near_fraction ? fmt::format("near at {:.1f}", *point.change.near_fraction)
-                                                        : fmt::format("radius x {:.1f}", point.change.scale);
-    out += curve_row(name, point.m1, point.m2);
+    const std::string name = point.change.rest_scale
+                                 ? fmt::format("rest fraction {:.1f}", *point.change.rest_scale)
+                                 : fmt::format("radius x {:.1f}", point.change.scale);
+    out += curve_row(name, point.chains, point.all_pairs);
   }
   return out;
+}
+
+// The skin beside the spheres.
+std::string scores_text(const Validation& validation, double height) {
+  std::string out = fmt::format("{:<20} {:>11} {:>10} {:>10} {:>10} {:>10} {:>15}\n", "", "pair recall", "precision",
+                                "a frame", "any found", "all found", "missed overlap");
+  for (const auto& [name, score] :
+       {std::pair{"skin", &validation.skin}, std::pair{"spheres, all pairs", &validation.all_pairs},
+        std::pair{"spheres, chains", &validation.chains}}) {
+    out += fmt::format("{:<20} {:>11.4f} {:>10.4f} {:>10.2f} {:>10.4f} {:>10.4f} {:>13.2f} %\n", name,
+                       score->pair_recall(), score->precision(), score->reported_per_frame(), score->frame_any_recall(),
+                       score->frame_all_recall(), 100 * score->missed_overlap / height);
+  }
+  return out + "(overlap in % of the height; any, all: share of the frames with a true pair)\n";
 }
 
 std::size_t shown_misses(const Validation& validation) { return std::min(validation.misses.size(), kWorstMisses); }
@@ -93,7 +117,7 @@ std::string validation_json(const Validation& validation, const AnimatedAsset& a
                             const ValidateSettings& settings) {
   const double height = animated.frame().height;
   const Score& score = validation.score;
-  const AssetInfo info = animated.asset().info();
+  const AssetInfo info = animated.asset()->info();
   ordered_json out{
       {"frames", score.frames},
       {"source", {{"file", info.source_file}, {"sha256", info.source_sha256}}},
@@ -105,10 +129,9 @@ std::string validation_json(const Validation& validation, const AnimatedAsset& a
   };
   out.update(score_json(score));
   out.update({
-      {"missed_depth", score.missed_depth / height},
+      {"missed_overlap", score.missed_overlap / height},
       {"radius", radius_name(settings.radius)},
-      {"mode", method_name(settings.method)},
-      {"skin", reports_skin(animated.asset(), settings)},
+      {"reported", reported_name(settings)},
       {"truth_frames", score.true_frames},
       {"degenerate_triangles", validation.degenerate},
   });
@@ -123,9 +146,10 @@ std::string validation_json(const Validation& validation, const AnimatedAsset& a
       out["neighbour_contacts_from_bones"] = errors_json(*from_bones);
     }
   }
-  for (const auto& [name, spheres] : {std::pair{"m1", &validation.m1}, std::pair{"m2", &validation.m2}}) {
-    out[name] = score_json(*spheres);
-    out[name]["missed_depth"] = spheres->missed_depth / height;
+  for (const auto& [name, of] : {std::pair{"skin", &validation.skin}, std::pair{"all_pairs", &validation.all_pairs},
+                                 std::pair{"chains", &validation.chains}}) {
+    out[name] = score_json(*of);
+    out[name]["missed_overlap"] = of->missed_overlap / height;
   }
   if (validation.capsules > 0) {
     out["capsules"] = {{"count", validation.capsules}, {"curve", ordered_json::array()}};
@@ -140,15 +164,18 @@ std::string validation_json(const Validation& validation, const AnimatedAsset& a
   out["by_region"] = groups_json(validation.by_region);
   out["by_chain"] = groups_json(validation.by_chain);
   out["radius_curve"] = curve_json(validation.curve, true);
-  out["near_curve"] = curve_json(validation.curve, false);
+  out["rest_curve"] = curve_json(validation.curve, false);
   out["worst_misses"] = ordered_json::array();
   for (std::size_t i = 0; i < shown_misses(validation); ++i) {
     const Miss& miss = validation.misses[i];
     out["worst_misses"].push_back({{"frame", miss.frame},
                                    {"time", animated.time(miss.frame)},
+                                   {"clip_frame", animated.frame_at(miss.frame).number},
                                    {"spheres", {miss.spheres.a, miss.spheres.b}},
                                    {"triangle_pairs", miss.triangle_pairs},
-                                   {"depth", miss.depth / height}});
+                                   {"overlap", miss.overlap / height}});
+    if (const std::string& clip = animated.clip_at(miss.frame); !clip.empty())
+      out["worst_misses"].back()["clip"] = clip;
   }
   return json_text(out, 1) + "\n";
 }
@@ -157,19 +184,13 @@ std::string validation_text(const Validation& validation, const AnimatedAsset& a
                             const ValidateSettings& settings) {
   const double height = animated.frame().height;
   const Score& score = validation.score;
-  std::string out = fmt::format("{} frames, radius {}, {}{}\n\n", score.frames, radius_name(settings.radius),
-                                settings.method == Method::kM1 ? "M1" : "M2",
-                                reports_skin(animated.asset(), settings) ? ", reported by the skin" : "");
+  std::string out = fmt::format("{} frames, radius {}\n\n", score.frames, radius_name(settings.radius));
   out += fmt::format("triangle pairs that intersect   {:>8}\n", validation.raw_pairs);
   out += fmt::format("  at rest too                   {:>8}\n", validation.rest);
   out += fmt::format("  of one sphere                 {:>8}\n", validation.same_sphere);
   out += fmt::format("  of ignored spheres            {:>8}\n", validation.ignored);
   out += fmt::format("  true                          {:>8}  in {} frames\n\n", score.true_pairs, score.true_frames);
-  out += fmt::format("pair recall      {:.4f}\n", score.pair_recall());
-  out += fmt::format("frame recall     {:.4f} any, {:.4f} all\n", score.frame_any_recall(), score.frame_all_recall());
-  out += fmt::format("precision        {:.4f}\n", score.precision());
-  out += fmt::format("reported         {:.2f} pairs a frame\n", score.reported_per_frame());
-  out += fmt::format("missed depth     {:.2f} % of the height\n", 100 * score.missed_depth / height);
+  out += scores_text(validation, height);
   if (settings.contacts) {
     const auto errors = [](const ContactErrors& of) {
       return fmt::format("{} missing, {} extra", of.missing, of.extra);
@@ -182,11 +203,14 @@ std::string validation_text(const Validation& validation, const AnimatedAsset& a
     out += line("contacts", validation.contacts, validation.contacts_from_bones);
     out += line("of neighbours", validation.neighbour_contacts, validation.neighbour_contacts_from_bones);
   }
-  if (!validation.misses.empty()) out += "\nworst misses: frame, spheres, triangle pairs, depth in % of the height\n";
+  if (!validation.misses.empty()) {
+    out += fmt::format("\nworst misses of {}: frame, spheres, triangle pairs, overlap in % of the height\n",
+                       reported_name(settings));
+  }
   for (std::size_t i = 0; i < std::min<std::size_t>(shown_misses(validation), 5); ++i) {
     const Miss& miss = validation.misses[i];
     out += fmt::format("  {:>5}  {:>3} - {:<3} {:>5}  {:.2f}\n", miss.frame, miss.spheres.a, miss.spheres.b,
-                       miss.triangle_pairs, 100 * miss.depth / height);
+                       miss.triangle_pairs, 100 * miss.overlap / height);
   }
   if (validation.capsules > 0) {
     out += fmt::format("\n{:<18} {:>9} {:>9} {:>9}   {:>9}\n", fmt::format("{} capsules", validation.capsules),
@@ -197,7 +221,7 @@ std::string validation_text(const Validation& validation, const AnimatedAsset& a
                          point.score.precision(), point.score.reported_per_frame(), point.own.pair_recall());
     }
   }
-  out += groups_text("between regions", validation.by_region);
+  out += groups_text(fmt::format("{} between regions", reported_name(settings)), validation.by_region);
   out += groups_text("by chain", validation.by_chain);
   out += curve_text(validation);
   return out;

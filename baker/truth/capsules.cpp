@@ -12,7 +12,7 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr double kNearFraction = BindSettings{}.near_fraction;  // the spheres' default
+constexpr double kRestScale = BindSettings{}.rest_scale;  // the spheres' default
 
 double distance_to_segment(const Vec3& p, const Vec3& from, const Vec3& to) {
   const Vec3 along = to - from;
@@ -57,7 +57,7 @@ std::vector<std::size_t> bone_parents(const AnimatedAsset& animated) {
   const SourceRig& rig = animated.character().rig;
   if (rig.bones.empty()) {
     for (std::size_t i = 0; i < parents.size(); ++i) {
-      if (const int parent = animated.asset().joint(i).parent; parent >= 0) {
+      if (const int parent = animated.asset()->joint(i).parent; parent >= 0) {
         parents[i] = static_cast<std::size_t>(parent);
       }
     }
@@ -159,7 +159,7 @@ std::vector<Pair> CapsuleRagdoll::pairs(const Deformation& deformation) const {
   for (std::uint32_t a = 0; a < now.size(); ++a) {
     for (std::uint32_t b = a + 1; b < now.size(); ++b) {
       if (is_ignored(a, b) || gap(now[a], now[b]) >= 0) continue;
-      if (axis_distance(now[a], now[b]) >= kNearFraction * axis_distance(capsules_[a], capsules_[b])) continue;
+      if (axis_distance(now[a], now[b]) >= kRestScale * axis_distance(capsules_[a], capsules_[b])) continue;
       out.push_back({a, b});
     }
   }
@@ -168,8 +168,8 @@ std::vector<Pair> CapsuleRagdoll::pairs(const Deformation& deformation) const {
 
 FrameTruth CapsuleRagdoll::by_capsules(const FrameTruth& truth) const {
   FrameTruth out = truth;
-  std::map<Pair, std::vector<TrianglePair>> contacts;
-  for (const TrianglePair& pair : truth.pairs) {
+  std::map<Pair, std::vector<Pair>> contacts;
+  for (const Pair& pair : truth.pairs) {
     const auto [a, b] =
         std::minmax({surface_.sphere[surface_.of_source[pair.a]], surface_.sphere[surface_.of_source[pair.b]]});
     contacts[{a, b}].push_back(pair);

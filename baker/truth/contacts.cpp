@@ -3,39 +3,41 @@
 
 #include <algorithm>
 
-#include "mesh/error.h"
 #include "play/play.h"
-#include "spherechain/skin.h"
-#include "spherechain/triangle_contacts.h"
+#include "skin/skin_inputs.h"
+#include "spherechain/skin_contacts.h"
 
 namespace spherechain::baker {
 namespace {
 
-void check(Status status) {
-  if (status != Status::kOk) throw Error(ExitCode::kInternal, std::string("contacts: ") + to_string(status));
-}
-
-// `job` has the pose.
-std::vector<TrianglePair> run(TriangleContactJob job) {
-  std::vector<std::uint64_t> words(TriangleContactContext::words_needed(*job.asset));
-  TriangleContactContext context{{words.data(), words.size()}};
-  job.context = &context;
-  check(job.run());  // to count
-  std::vector<TrianglePair> pairs(job.pair_count);
-  job.pairs = {pairs.data(), pairs.size()};
-  check(job.run());
+std::vector<Pair> run(const OpenAsset& asset, const sc_pose& pose, Scope scope, Target target) {
+  std::vector<std::uint64_t> scratch(sc_skin_scratch_words(asset.handle()));
+  SkinContactJob job;
+  job.asset = asset.handle();
+  job.pose = pose;
+  job.scope = scope;
+  job.target = target;
+  job.skin_table = asset.skin_table();
+  job.scratch = scratch.data();
+  job.scratch_words = scratch.size();
+  check_runtime(job.run());  // to count
+  std::vector<TriangleContact> contacts(job.triangle_count);
+  job.triangles = contacts.data();
+  job.triangle_capacity = contacts.size();
+  check_runtime(job.run());
+  std::vector<Pair> pairs;
+  for (const TriangleContact& contact : contacts) pairs.push_back({contact.triangle_a, contact.triangle_b});
   return pairs;
 }
 
-// SkinJob writes one of the source vertices that move alike: the others follow it.
-void follow(const Asset& asset, std::vector<float>& positions, const std::vector<Triangle>& source_triangles) {
-  const Surface& surface = asset.surface();
-  for (const Leaf& leaf : surface.leaves) {
-    for (std::size_t k = leaf.first_triangle; k < leaf.first_triangle + leaf.triangle_count; ++k) {
+// Skinning writes one of the source vertices that move alike: the others follow it.
+void follow(const Surface& surface, std::vector<float>& positions, const std::vector<Triangle>& source_triangles) {
+  for (const spherechain::Cluster& cluster : surface.clusters) {
+    for (std::size_t k = cluster.first_triangle; k < cluster.first_triangle + cluster.triangle_count; ++k) {
       for (std::size_t corner = 0; corner < 3; ++corner) {
-        const Index
-            from = surface.source_vertices[surface.leaf_vertices[leaf.first_vertex + surface.corners[3 * k + corner]]],
-            to = source_triangles[asset.triangles()[k]][corner];
+        const std::size_t slot = cluster.first_vertex + surface.corners[3 * k + corner];
+        const Index from = surface.source_vertices[surface.cluster_vertices[slot]],
+                    to = source_triangles[surface.triangles[k]][corner];
         if (from != to) std::copy_n(&positions[3 * std::size_t{from}], 3, &positions[3 * std::size_t{to}]);
       }
     }
@@ -44,44 +46,34 @@ void follow(const Asset& asset, std::vector<float>& positions, const std::vector
 
 }  // namespace
 
-std::vector<TrianglePair> find_contacts(const Asset& asset, const std::vector<float>& positions, ContactScope scope,
-                                        Target target) {
-  TriangleContactJob job;
-  job.asset = &asset;
-  job.positions = positions.data();
-  job.vertex_count = positions.size() / 3;
-  job.scope = scope;
-  job.target = target;
-  return run(job);
+std::vector<Pair> find_contacts(const OpenAsset& asset, const std::vector<float>& positions, Scope scope,
+                                Target target) {
+  sc_pose pose;
+  pose.vertices = positions.data();
+  pose.vertex_count = positions.size() / 3;
+  return run(asset, pose, scope, target);
 }
 
-ContactsFromBones find_contacts_from_bones(const Asset& asset, const Character& character,
+ContactsFromBones find_contacts_from_bones(const OpenAsset& asset, const Character& character,
                                            const Deformation& deformation, Target target) {
   const std::vector<float> matrices = bone_palette(asset, deformation);
   std::vector<float> weights(deformation.morphs.begin(), deformation.morphs.end());
-  weights.resize(asset.morph_count());
+  weights.resize(asset->morph_count());
+  sc_pose pose;
+  pose.bones = matrices.data();
+  pose.bone_count = asset->bone_count();
+  pose.bone_layout = SC_ROWS_3X4;
+  pose.morph_weights = weights.empty() ? nullptr : weights.data();
+  pose.morph_weight_count = weights.size();
   ContactsFromBones out{pack(character.source_positions), {}, {}};
-  SkinJob skin;
-  skin.asset = &asset;
-  skin.bones = {matrices.data(), asset.bone_count()};
-  skin.morph_weights = {weights.data(), weights.size()};
-  skin.target = target;
-  skin.positions = out.positions.data();
-  skin.vertex_count = out.positions.size() / 3;
-  check(skin.run());
-  follow(asset, out.positions, character.source_triangles);
-  TriangleContactJob job;
-  job.asset = &asset;
-  job.bones = skin.bones;
-  job.morph_weights = skin.morph_weights;
-  job.target = target;
-  out.pairs = run(job);
-  job.scope = ContactScope::kNeighbours;
-  out.neighbours = run(job);
+  skin_surface(asset.surface(), pose, target, out.positions.data(), 3);
+  follow(asset.surface(), out.positions, character.source_triangles);
+  out.pairs = run(asset, pose, SC_SCOPE_APART, target);
+  out.neighbours = run(asset, pose, SC_SCOPE_NEIGHBOURS, target);
   return out;
 }
 
-ContactErrors compare(const std::vector<TrianglePair>& found, const std::vector<TrianglePair>& truth) {
+ContactErrors compare(const std::vector<Pair>& found, const std::vector<Pair>& truth) {
   std::size_t common = 0;
   for (auto f = found.begin(), t = truth.begin(); f != found.end() && t != truth.end();) {
     if (*f == *t) {

@@ -3,7 +3,7 @@
 
 namespace spherechain::baker {
 
-Curve::Curve(const Asset& asset, RadiusKind radius) : chains_(asset) {
+Curve::Curve(const OpenAsset& asset, Radius radius) : chains_(asset) {
   for (int tenths = 8; tenths <= 20; ++tenths) changes_.push_back({tenths / 10.0, {}});
   for (int tenths = 5; tenths <= 10; ++tenths) changes_.push_back({1, tenths / 10.0});
   for (const RuleChange& change : changes_) rules_.emplace_back(asset, radius, change);
@@ -27,8 +27,8 @@ void add(std::vector<CurvePoint>& sum, const std::vector<CurvePoint>& frame) {
     return;
   }
   for (std::size_t i = 0; i < frame.size(); ++i) {
-    sum[i].m1.add(frame[i].m1);
-    sum[i].m2.add(frame[i].m2);
+    sum[i].chains.add(frame[i].chains);
+    sum[i].all_pairs.add(frame[i].all_pairs);
   }
 }
 

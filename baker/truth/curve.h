@@ -12,13 +12,13 @@ namespace spherechain::baker {
 // What would be reported under another rule: over all spheres, and by the pairs that share a chain.
 struct CurvePoint {
   RuleChange change;
-  Score m1, m2;
+  Score chains, all_pairs;
 };
 
-// The radius scaled from 0.8 to 2, then near pairs at 0.5 to 1 of their distance at rest.
+// The radius scaled from 0.8 to 2, then rest pairs at 0.5 to 1 of their distance at rest.
 class Curve {
  public:
-  Curve(const Asset& asset, RadiusKind radius);
+  Curve(const OpenAsset& asset, Radius radius);
 
   // One frame; the depth of what is missed is not measured. `spheres` are refitted at the curve's radius.
   std::vector<CurvePoint> measure(const std::vector<Sphere>& spheres, const FrameTruth& truth,

@@ -157,7 +157,7 @@ double deepest(const TruthSurface& surface, const std::vector<float>& positions,
 
 double penetration(const TrueContact& contact, const TruthSurface& surface, const std::vector<float>& positions) {
   double depth = 0;
-  for (const TrianglePair& pair : contact.triangles) {
+  for (const Pair& pair : contact.triangles) {
     const Corners a = corners_at(surface, positions, surface.of_source[pair.a]),
                   b = corners_at(surface, positions, surface.of_source[pair.b]);
     depth = std::max(depth, std::min(poke(a, b), poke(b, a)));

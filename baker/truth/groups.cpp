@@ -17,11 +17,11 @@ void count(PairGroup& group, const TrueContact& contact, bool found) {
 
 }  // namespace
 
-RegionGroups::RegionGroups(const Asset& asset) : regions_(asset.region_count()) {
-  for (const RestSphere& sphere : asset.spheres()) region_of_.push_back(sphere.region);
+RegionGroups::RegionGroups(const OpenAsset& asset) : regions_(asset->region_count()) {
+  for (const RestSphere& sphere : asset->spheres()) region_of_.push_back(sphere.region);
   for (std::size_t a = 0; a < regions_; ++a) {
     for (std::size_t b = 0; b < regions_; ++b) {
-      groups_.push_back({std::string(asset.region(a).name) + " - " + asset.region(b).name});
+      groups_.push_back({std::string(asset->region(a).name) + " - " + asset->region(b).name});
     }
   }
 }
@@ -38,7 +38,7 @@ void RegionGroups::add(const FrameTruth& truth, const std::vector<Pair>& reporte
   for (const Pair& pair : reported) ++of(pair).reported;
 }
 
-ChainGroups::ChainGroups(const Asset& asset) : chains_(asset) {
+ChainGroups::ChainGroups(const OpenAsset& asset) : chains_(asset) {
   for (std::size_t c = 0; c < chains_.chain_count(); ++c) groups_.push_back({chains_.name(c)});
   groups_.push_back({"no chain"});
 }

@@ -19,7 +19,7 @@ struct PairGroup {
 // Two regions: "left_arm - torso", every pair of them, in the asset's order.
 class RegionGroups {
  public:
-  explicit RegionGroups(const Asset& asset);
+  explicit RegionGroups(const OpenAsset& asset);
   void add(const FrameTruth& truth, const std::vector<Pair>& reported);
   const std::vector<PairGroup>& groups() const { return groups_; }
 
@@ -34,7 +34,7 @@ class RegionGroups {
 // A chain each, a pair in all that hold both of its spheres; the last is "no chain".
 class ChainGroups {
  public:
-  explicit ChainGroups(const Asset& asset);
+  explicit ChainGroups(const OpenAsset& asset);
   void add(const FrameTruth& truth, const std::vector<Pair>& reported);
   const std::vector<PairGroup>& groups() const { return groups_; }
 

@@ -10,7 +10,7 @@
 namespace spherechain::baker {
 
 struct Intersections {
-  std::vector<TrianglePair> pairs;  // sorted
+  std::vector<Pair> pairs;  // sorted
   std::size_t degenerate = 0;       // triangles without area, which intersect nothing
 };
 

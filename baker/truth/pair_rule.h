@@ -5,26 +5,26 @@
 #include <string>
 #include <vector>
 
-#include "spherechain/asset.h"
+#include "play/asset_file.h"
 #include "spherechain/detect.h"
 
 namespace spherechain::baker {
 
 // Which pairs an asset would report with other radii, or another rule for what is near at rest. The asset's own:
 //   a pair       |ca - cb| < ra + rb
-//   a near pair  that, and |ca - cb| < reach * (ra + rb): come nearer than a part of its distance at rest
+//   a near pair  that, and |ca - cb| < rest_scale * (ra + rb): come nearer than a part of its distance at rest
 struct RuleChange {
   double scale = 1;                     // of every radius; near pairs keep the distance they are reported at
-  std::optional<double> near_fraction;  // the part of the distance at rest, whatever the asset says
+  std::optional<double> rest_scale;  // the part of the distance at rest, whatever the asset says
 };
 
-// A plain loop over all spheres, apart from the runtime: with no change it reports what M2 does, bit for bit.
+// A plain loop over all spheres, apart from the runtime: with no change it reports what the runtime does, bit for bit.
 //
 // Where larger radii would report a pair sooner than at the asset's own part of its distance at rest, it becomes a near
 // pair. That part is the median over the asset's near pairs; 0.9 where it has none.
 class PairRule {
  public:
-  PairRule(const Asset& asset, RadiusKind radius, const RuleChange& change);
+  PairRule(const OpenAsset& asset, Radius radius, const RuleChange& change);
 
   // Of spheres refitted at the same kind of radius; sorted.
   std::vector<Pair> pairs(const std::vector<Sphere>& spheres) const;
@@ -32,22 +32,22 @@ class PairRule {
  private:
   struct Entry {
     Pair pair;
-    float reach;  // infinite where it is no near pair
+    float rest_scale;  // infinite where it is no near pair
   };
   float scale_;
   std::vector<Entry> entries_;  // pairs that are not ignored, sorted
 };
 
-// Which spheres share a chain: what M1 tests.
+// Which spheres share a chain: what the runtime tests by chains.
 class ChainMembers {
  public:
-  explicit ChainMembers(const Asset& asset);
+  explicit ChainMembers(const OpenAsset& asset);
 
   std::size_t chain_count() const { return names_.size(); }
   const std::string& name(std::size_t chain) const { return names_[chain]; }
   bool holds(std::size_t chain, const Pair& pair) const { return in_[chain][pair.a] && in_[chain][pair.b]; }
   bool share_one(const Pair& pair) const;
-  std::vector<Pair> sharing(const std::vector<Pair>& pairs) const;  // M1's of M2's
+  std::vector<Pair> sharing(const std::vector<Pair>& pairs) const;  // those of spheres in a common chain
 
  private:
   std::vector<std::string> names_;

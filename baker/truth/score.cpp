@@ -22,7 +22,7 @@ void Score::add(const Score& other) {
   all_frames += other.all_frames;
   reported += other.reported;
   right += other.right;
-  missed_depth = std::max(missed_depth, other.missed_depth);
+  missed_overlap = std::max(missed_overlap, other.missed_overlap);
 }
 
 Score score_frame(const FrameTruth& truth, const std::vector<Pair>& reported,
@@ -37,7 +37,7 @@ Score score_frame(const FrameTruth& truth, const std::vector<Pair>& reported,
       score.found_pairs += contact.triangles.size();
       ++score.right;
     } else {
-      score.missed_depth = std::max(score.missed_depth, depth_of(contact));
+      score.missed_overlap = std::max(score.missed_overlap, depth_of(contact));
     }
   }
   const auto before = [](const TrueContact& contact, const Pair& pair) { return contact.spheres < pair; };

@@ -16,7 +16,7 @@ struct Score {
   std::size_t true_pairs = 0, found_pairs = 0;                  // triangle pairs
   std::size_t true_frames = 0, any_frames = 0, all_frames = 0;  // with a true pair, with one found, with all found
   std::size_t reported = 0, right = 0;                          // sphere pairs; right: with a true pair, or close
-  double missed_depth = 0;                                      // the worst; mesh units
+  double missed_overlap = 0;                                    // the worst; mesh units
 
   double pair_recall() const { return share(found_pairs, true_pairs); }
   double frame_any_recall() const { return share(any_frames, true_frames); }

@@ -7,14 +7,12 @@
 
 namespace spherechain::baker {
 
-TruthSurface surface_of(const Asset& asset, const Character& character) {
+TruthSurface surface_of(const OpenAsset& asset, const Character& character) {
   TruthSurface out;
-  const Span<const std::uint32_t> triangles = asset.triangles();
-  const Span<const RestSphere> spheres = asset.spheres();
+  const Span<const RestSphere> spheres = asset->spheres();
   std::vector<std::uint32_t> owner(character.source_triangles.size(), kNoIndex);
   for (std::uint32_t s = 0; s < spheres.size; ++s) {
-    for (std::uint32_t k = 0; k < spheres[s].triangle_count; ++k) {
-      const std::uint32_t t = triangles[spheres[s].first_triangle + k];
+    for (const std::uint32_t t : asset.triangles_of(s)) {
       if (t >= owner.size()) throw Error(ExitCode::kInternal, "a triangle of the asset is not in its source");
       owner[t] = s;
     }
@@ -41,10 +39,10 @@ bool are_neighbours(const Triangle& a, const Triangle& b) {
   return std::any_of(a.begin(), a.end(), [&](Index v) { return v == b[0] || v == b[1] || v == b[2]; });
 }
 
-bool is_ignored(const Asset& asset, std::uint32_t a, std::uint32_t b) {
+bool is_ignored(const OpenAsset& asset, std::uint32_t a, std::uint32_t b) {
   if (a > b) std::swap(a, b);
   const std::size_t bit = std::size_t{b} * (b - 1) / 2 + a;
-  return (asset.ignored()[bit / 64] >> (bit % 64) & 1) != 0;
+  return (asset->ignored()[bit / 64] >> (bit % 64) & 1) != 0;
 }
 
 }  // namespace spherechain::baker

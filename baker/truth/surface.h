@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "import/import.h"
-#include "spherechain/asset.h"
-#include "spherechain/surface.h"
+#include "play/asset_file.h"
+#include "spherechain/types.h"
 
 namespace spherechain::baker {
 
@@ -21,12 +21,12 @@ struct TruthSurface {
 };
 
 // Throws Error(kInternal) where the asset's triangles are not some of the character's.
-TruthSurface surface_of(const Asset& asset, const Character& character);
+TruthSurface surface_of(const OpenAsset& asset, const Character& character);
 
 // Whether two triangles share a corner at rest: neighbours on the mesh, never a contact.
 bool are_neighbours(const Triangle& a, const Triangle& b);
 
 // Whether the asset never reports a pair of spheres.
-bool is_ignored(const Asset& asset, std::uint32_t a, std::uint32_t b);
+bool is_ignored(const OpenAsset& asset, std::uint32_t a, std::uint32_t b);
 
 }  // namespace spherechain::baker

@@ -6,13 +6,13 @@
 
 namespace spherechain::baker {
 
-FrameTruth judge(const Intersections& found, const std::vector<TrianglePair>& rest_pairs, const TruthSurface& surface,
+FrameTruth judge(const Intersections& found, const std::vector<Pair>& rest_pairs, const TruthSurface& surface,
                  const std::function<bool(std::uint32_t, std::uint32_t)>& is_ignored) {
   FrameTruth out;
   out.raw_pairs = found.pairs.size();
   out.degenerate = found.degenerate;
-  std::map<Pair, std::vector<TrianglePair>> contacts;
-  for (const TrianglePair& pair : found.pairs) {
+  std::map<Pair, std::vector<Pair>> contacts;
+  for (const Pair& pair : found.pairs) {
     const auto [a, b] =
         std::minmax({surface.sphere[surface.of_source[pair.a]], surface.sphere[surface.of_source[pair.b]]});
     if (std::binary_search(rest_pairs.begin(), rest_pairs.end(), pair)) {

@@ -12,7 +12,7 @@ namespace spherechain::baker {
 // A pair of spheres and the true triangle pairs between their surrounding regions.
 struct TrueContact {
   Pair spheres;
-  std::vector<TrianglePair> triangles;
+  std::vector<Pair> triangles;
 };
 
 // What intersects in a frame. Out of scope are, in this order and each pair once, those that intersect in the rest pose
@@ -21,13 +21,13 @@ struct FrameTruth {
   std::size_t raw_pairs = 0;
   std::size_t rest = 0, same_sphere = 0, ignored = 0;
   std::size_t degenerate = 0;            // triangles without area in this pose
-  std::vector<TrianglePair> pairs;       // the rest: the true pairs, sorted
-  std::vector<TrianglePair> neighbours;  // those of one sphere and of ignored ones, sorted
+  std::vector<Pair> pairs;       // the rest: the true pairs, sorted
+  std::vector<Pair> neighbours;  // those of one sphere and of ignored ones, sorted
   std::vector<TrueContact> contacts;     // the same by spheres, sorted
 };
 
 // `rest_pairs`: those of the rest pose, sorted. `is_ignored` is asked about two owners of the surface's triangles.
-FrameTruth judge(const Intersections& found, const std::vector<TrianglePair>& rest_pairs, const TruthSurface& surface,
+FrameTruth judge(const Intersections& found, const std::vector<Pair>& rest_pairs, const TruthSurface& surface,
                  const std::function<bool(std::uint32_t, std::uint32_t)>& is_ignored);
 
 }  // namespace spherechain::baker

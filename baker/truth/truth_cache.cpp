@@ -36,17 +36,17 @@ std::string to_bytes(const Intersections& found) {
 constexpr std::size_t kHashSize = 64, kFixedSize = kFormat.size() + sizeof(std::uint64_t) + kHashSize;
 
 std::optional<Intersections> from_bytes(std::string_view bytes) {
-  if (bytes.size() < kFixedSize || (bytes.size() - kFixedSize) % sizeof(TrianglePair) != 0) return std::nullopt;
+  if (bytes.size() < kFixedSize || (bytes.size() - kFixedSize) % sizeof(Pair) != 0) return std::nullopt;
   const std::string_view content = bytes.substr(0, bytes.size() - kHashSize);
   if (!content.starts_with(kFormat) || sha256_of_text(content) != bytes.substr(content.size())) return std::nullopt;
   Intersections found;
   std::uint64_t degenerate = 0;
   std::memcpy(&degenerate, content.data() + kFormat.size(), sizeof(degenerate));
   found.degenerate = degenerate;
-  found.pairs.resize((bytes.size() - kFixedSize) / sizeof(TrianglePair));
+  found.pairs.resize((bytes.size() - kFixedSize) / sizeof(Pair));
   if (!found.pairs.empty()) {
     std::memcpy(found.pairs.data(), content.data() + kFormat.size() + sizeof(degenerate),
-                found.pairs.size() * sizeof(TrianglePair));
+                found.pairs.size() * sizeof(Pair));
   }
   return found;
 }

@@ -21,7 +21,7 @@ namespace {
 struct Frame {
   FrameTruth truth;
   std::vector<Pair> reported;
-  Score score, m1, m2;
+  Score score, skin, chains, all_pairs;
   std::vector<Miss> misses;
   std::vector<CurvePoint> curve;
   ContactErrors contacts, neighbour_contacts;
@@ -35,7 +35,7 @@ struct Context {
   const ValidateSettings& settings;
   TruthSurface surface = surface_of(animated.asset(), animated.character());
   CachedIntersections intersections{surface, settings.cache};
-  std::vector<TrianglePair> rest_pairs = intersections.find(pack(animated.character().source_positions)).pairs;
+  std::vector<Pair> rest_pairs = intersections.find(pack(animated.character().source_positions)).pairs;
   Curve curve{animated.asset(), settings.radius};
   std::vector<std::pair<double, CapsuleRagdoll>> ragdolls = make_ragdolls();
 
@@ -120,8 +120,8 @@ std::vector<Pair> touching_spheres(Player& player, const std::vector<float>& pos
 }
 
 // Whole meshes as poses have no bones.
-bool moved_by_bones(const Asset& asset, const Deformation& deformation) {
-  return asset.bone_count() > 0 && deformation.positions.empty();
+bool moved_by_bones(const OpenAsset& asset, const Deformation& deformation) {
+  return asset->bone_count() > 0 && deformation.positions.empty();
 }
 
 Frame validate_frame(const Context& context, int index) {
@@ -138,27 +138,27 @@ Frame validate_frame(const Context& context, int index) {
   Frame frame;
   const auto ignored = [&](std::uint32_t a, std::uint32_t b) { return is_ignored(animated.asset(), a, b); };
   frame.truth = judge(found, context.rest_pairs, surface, ignored);
-  Player m1(animated.asset(), settings.radius, true, false, settings.target),
-      m2(animated.asset(), settings.radius, false, true, settings.target);
-  const std::vector<Pair> m1_pairs = touching_spheres(m1, positions), m2_pairs = touching_spheres(m2, positions);
-  const bool is_m1 = settings.method == Method::kM1;
-  frame.reported = reports_skin(animated.asset(), settings) ? m2.detect_skin(positions).pairs
-                   : is_m1                                  ? m1_pairs
-                                                            : m2_pairs;
+  Player chains(animated.asset(), settings.radius, true, false, settings.target),
+      all(animated.asset(), settings.radius, false, true, settings.target);
+  const std::vector<Pair> chains_pairs = touching_spheres(chains, positions),
+                          all_pairs = touching_spheres(all, positions),
+                          skin_pairs = all.spheres_of(all.detect_triangles(positions).pairs);
+  frame.reported = settings.skin ? skin_pairs : settings.method == Method::kChains ? chains_pairs : all_pairs;
   frame.score = score_frame(frame.truth, frame.reported, is_close, [&](const TrueContact& contact) {
     frame.misses.push_back({index, contact.spheres, contact.triangles.size(), depth_of(contact)});
-    return frame.misses.back().depth;
+    return frame.misses.back().overlap;
   });
-  frame.m1 = score_frame(frame.truth, m1_pairs, is_close, depth_of);
-  frame.m2 = score_frame(frame.truth, m2_pairs, is_close, depth_of);
-  frame.curve = context.curve.measure(m2.spheres(), frame.truth, is_close);
+  frame.skin = score_frame(frame.truth, skin_pairs, is_close, depth_of);
+  frame.chains = score_frame(frame.truth, chains_pairs, is_close, depth_of);
+  frame.all_pairs = score_frame(frame.truth, all_pairs, is_close, depth_of);
+  frame.curve = context.curve.measure(all.spheres(), frame.truth, is_close);
   frame.capsules = score_ragdolls(context, found, frame.truth, positions, deformation);
   if (settings.contacts) {
-    const auto found = [&](ContactScope scope) {
+    const auto found = [&](Scope scope) {
       return find_contacts(animated.asset(), positions, scope, settings.target);
     };
-    frame.contacts = compare(found(ContactScope::kApart), frame.truth.pairs);
-    frame.neighbour_contacts = compare(found(ContactScope::kNeighbours), frame.truth.neighbours);
+    frame.contacts = compare(found(SC_SCOPE_APART), frame.truth.pairs);
+    frame.neighbour_contacts = compare(found(SC_SCOPE_NEIGHBOURS), frame.truth.neighbours);
     if (moved_by_bones(animated.asset(), deformation)) {
       // Exact contacts of these very positions, which differ from the baker's by rounding.
       const ContactsFromBones of_bones =
@@ -174,13 +174,9 @@ Frame validate_frame(const Context& context, int index) {
 
 }  // namespace
 
-bool reports_skin(const Asset& asset, const ValidateSettings& settings) {
-  return settings.skin && asset.leaf_count() > 0;
-}
-
 Validation validate(const AnimatedAsset& animated, const ValidateSettings& settings,
                     const std::function<void(int)>& progress) {
-  if (settings.contacts) animated.check_leaves();
+  animated.check_clusters();
   const Context context{animated, settings};
   std::vector<Frame> frames(static_cast<std::size_t>(animated.frame_count()));
   std::mutex mutex;
@@ -200,8 +196,9 @@ Validation validate(const AnimatedAsset& animated, const ValidateSettings& setti
     out.ignored += frame.truth.ignored;
     out.degenerate += frame.truth.degenerate;
     out.score.add(frame.score);
-    out.m1.add(frame.m1);
-    out.m2.add(frame.m2);
+    out.skin.add(frame.skin);
+    out.chains.add(frame.chains);
+    out.all_pairs.add(frame.all_pairs);
     add(out.curve, frame.curve);
     add(out.capsule_curve, frame.capsules);
     add(out.contacts, frame.contacts);
@@ -217,7 +214,7 @@ Validation validate(const AnimatedAsset& animated, const ValidateSettings& setti
   if (!out.capsule_curve.empty()) out.capsules = context.ragdolls.front().second.capsules().size();
   out.by_chain = chains.groups();
   std::stable_sort(out.misses.begin(), out.misses.end(),
-                   [](const Miss& l, const Miss& r) { return l.depth > r.depth; });
+                   [](const Miss& l, const Miss& r) { return l.overlap > r.overlap; });
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "play/play.h"
+#include "play/player.h"
 #include "spherechain/detect.h"
 #include "truth/contacts.h"
 #include "truth/curve.h"
@@ -18,11 +19,11 @@ namespace spherechain::baker {
 inline constexpr double kCloseSurface = 0.003;
 
 struct ValidateSettings {
-  RadiusKind radius = RadiusKind::kDetect;
-  Method method = Method::kM2;
-  Target target = Target::kScalar;
-  bool contacts = false;  // the narrow phase too
-  bool skin = true;       // report the pairs whose skins intersect, of an asset with leaves; else those that touch
+  Radius radius = SC_RADIUS_DETECT;
+  Method method = Method::kAllPairs;
+  Target target = SC_TARGET_SCALAR;
+  bool contacts = false;        // the narrow phase too
+  bool skin = true;             // report the pairs whose skins intersect; else those of spheres that touch
   std::filesystem::path cache;  // see truth_cache.h; empty: none
 };
 
@@ -31,7 +32,7 @@ struct Miss {
   int frame;
   Pair spheres;
   std::size_t triangle_pairs;
-  double depth;  // mesh units, see truth/depth.h
+  double overlap;  // mesh units, see truth/depth.h
 };
 
 // A ragdoll of capsules of this quantile (truth/capsules.h): on the truth of the spheres, and on its own, which has
@@ -51,17 +52,16 @@ struct Validation {
   // frame is.
   ContactErrors contacts, neighbour_contacts;
   std::optional<ContactErrors> contacts_from_bones, neighbour_contacts_from_bones;
-  Score m1, m2;  // of all pairs of spheres that touch
+  Score skin;               // of the pairs of spheres whose skins intersect
+  Score chains, all_pairs;  // of the pairs of spheres that touch
   std::vector<CurvePoint> curve;
   std::size_t capsules = 0;  // of the ragdoll; 0 where no bones move the source
   std::vector<CapsulePoint> capsule_curve;
   std::vector<PairGroup> by_region, by_chain;  // regions without any pair are left out
 };
 
-// Whether validate() reports the skin's pairs.
-bool reports_skin(const Asset& asset, const ValidateSettings& settings);
-
-// The same whatever the number of threads. `progress` is told how many frames are done, one call at a time.
+// The same whatever the number of threads. `progress` is told how many frames are done, one call at a time. Throws
+// Error(kFile) where the asset has no clusters.
 Validation validate(const AnimatedAsset& animated, const ValidateSettings& settings,
                     const std::function<void(int)>& progress);
 

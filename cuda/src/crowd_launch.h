@@ -1,15 +1,49 @@
 // SPDX-License-Identifier: MIT
-// The kernels, enqueued. kOk, kNoDevice or kDeviceFailed.
+// From a caller's groups to the launches of kernels.
 #pragma once
 
-#include "crowd_access.h"
-
-struct CUstream_st;
+#include "crowd_view.h"
 
 namespace spherechain::cuda {
 
-// `most_shared_bytes`: what a block of the device may have.
-Status launch_in_shared(const LaunchPlan& plan, std::size_t most_shared_bytes, CUstream_st* stream);
-Status launch_in_scratch(const LaunchPlan& plan, CUstream_st* stream);
+inline const TableHeader& header_of(const CrowdTables& tables) {
+  return *reinterpret_cast<const TableHeader*>(tables.words.data);
+}
+
+// The memory of a block. Reads the view's counts, and which inputs and outputs there are.
+BlockLayout layout_of(const GroupView& view);
+
+// Checks a group as CrowdJob::run says and fills in the view, except for its place in a launch.
+Status view_group(const CrowdGroup& group, GroupView& view);
+
+// The kernels: for groups of spheres, for groups of bones, and for groups of either whose memory is scratch.
+enum class Kernel : std::uint32_t { kSpheres, kBones, kScratch };
+inline constexpr std::uint32_t kKernels = 3;
+
+// The arguments of a kernel.
+struct Launch {
+  GroupView views[CrowdJob::kGroupsMax];
+  std::uint32_t count, blocks;
+  std::size_t shared_bytes;  // of a block: what the group that needs most takes
+};
+
+struct LaunchPlan {
+  Launch launches[kKernels];
+
+  Launch& operator[](Kernel kernel) { return launches[static_cast<std::uint32_t>(kernel)]; }
+};
+
+// Fills in the views of the groups that have instances.
+Status view_groups(Span<const CrowdGroup> groups, Launch& all);
+
+// Deals them to the kernels. `shared_bytes_max`: what a block of the device may have. Returns kOk,
+// kDeviceTooSmall or kContextTooSmall.
+Status plan_launches(const Launch& all, std::size_t shared_bytes_max, LaunchPlan& plan);
+
+// Enqueues a kernel. Returns kOk, kNoDevice or kDeviceFailed.
+Status enqueue(Kernel kernel, const Launch& launch, std::size_t shared_bytes_max, CUstream_st* stream);
+
+// kOk, kNoDevice or kDeviceFailed for a cudaError_t, which last_device_error() then tells.
+Status status_of(int cuda_error);
 
 }  // namespace spherechain::cuda

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
+// Deals an asset's spheres into runs (MomentRun) and lays out what the runs read.
 #include <algorithm>
 
-#include "crowd_table_parts.h"
+#include "crowd_tables.h"
 
 namespace spherechain::cuda {
 namespace {
 
-// Where the asset has a sphere's bones and pairs.
+// A sphere, and where its bones and pairs begin in the asset's tables.
 struct alignas(16) Member {
   std::uint32_t sphere, bone_count;
   std::uint32_t first_bone, first_pair;
@@ -14,7 +15,7 @@ struct alignas(16) Member {
 
 constexpr std::uint32_t pairs_of(std::uint32_t bones) { return static_cast<std::uint32_t>(pairs_of_bones(bones)); }
 
-// Those of most bones first, those of the same bones next to each other.
+// Spheres of most bones come first, spheres of the same bones next to each other.
 void fill_members(const MomentTables& tables, Member* out) {
   std::uint32_t bone = 0, pair = 0;
   for (std::size_t i = 0; i < tables.spheres.size; ++i) {
@@ -33,36 +34,12 @@ void fill_members(const MomentTables& tables, Member* out) {
   });
 }
 
-std::uint32_t common_bones(const MomentTables& tables, const Member& a, const Member& b) {
-  const std::uint16_t *l = tables.bones.data + a.first_bone, *r = tables.bones.data + b.first_bone;
-  const std::uint16_t *l_end = l + a.bone_count, *r_end = r + b.bone_count;
-  std::uint32_t count = 0;
-  while (l < l_end && r < r_end) {
-    count += *l == *r ? 1U : 0U;
-    const bool next_left = *l <= *r, next_right = *r <= *l;
-    l += next_left ? 1 : 0;
-    r += next_right ? 1 : 0;
-  }
-  return count;
-}
-
-// Instructions of the kernel, about: a pair's Gram matrix; to ask which of two spheres has a pair; what else a run
-// takes.
-constexpr std::int64_t kGramCost = 48, kAskingCost = 4, kRunCost = 64;
-
-// What a run of both saves over one of each.
-std::int64_t saved(const MomentTables& tables, const Member& a, const Member& b) {
-  const std::int64_t common = pairs_of(common_bones(tables, a, b));
-  const std::int64_t all = pairs_of(a.bone_count) + pairs_of(b.bone_count) - common;
-  return common == 0 ? 0 : kGramCost * common + kRunCost - kAskingCost * all;
-}
-
-// The bones of a run's spheres, ascending, and each sphere's number of each.
+// The bones of a run's spheres, ascending, and the number that each has among a sphere's own bones.
 struct Union {
-  static constexpr std::uint32_t kMost = kRunSpheres * kMaxMomentBones, kNone = ~0U;
+  static constexpr std::uint32_t kBonesMax = kRunSpheres * kMaxMomentBones, kNone = ~0U;
   std::uint32_t count = 0;
-  std::uint16_t bones[kMost];
-  std::uint32_t numbers[kRunSpheres][kMost];
+  std::uint16_t bones[kBonesMax];
+  std::uint32_t numbers[kRunSpheres][kBonesMax];
 
   Union(const MomentTables& tables, const Member* members, std::uint32_t sphere_count) {
     std::uint32_t next[kRunSpheres] = {};
@@ -86,16 +63,24 @@ struct Union {
   }
 };
 
+// About how many instructions the kernel takes for a pair's Gram matrix, to ask which of two spheres has a pair, and
+// for the rest of a run.
+constexpr std::int64_t kGramCost = 48, kAskingCost = 4, kRunCost = 64;
+
+// What one run for both saves over two.
+std::int64_t saved(const MomentTables& tables, const Member& a, const Member& b) {
+  const Member both[] = {a, b};
+  const std::int64_t common = pairs_of(a.bone_count + b.bone_count - Union(tables, both, 2).count);
+  const std::int64_t all = pairs_of(a.bone_count) + pairs_of(b.bone_count) - common;
+  return common == 0 ? 0 : kGramCost * common + kRunCost - kAskingCost * all;
+}
+
 class RunWriter {
  public:
   RunWriter(const Asset& asset, RadiusKind kind, const std::uint32_t* bone_indices)
       : tables_(asset.moment_tables()), rest_(asset.spheres()), kind_(kind), bone_indices_(bone_indices) {}
 
-  bool has_few_bones(const Member& member) const {
-    return tables_.own_are_upper && (member.bone_count == 2 || member.bone_count == 3);
-  }
-
-  // All of them of the same two bones, or three.
+  // Spheres that all have the same two bones, or three.
   void add_few_bones(const Member* members, std::uint32_t count) {
     const std::uint32_t bones = members[0].bone_count;
     MomentRun& run = start(members, count, bones == 2 ? kTwoBones : kThreeBones);
@@ -111,17 +96,16 @@ class RunWriter {
     const std::uint32_t step = bones == 2 ? 1 : 2;
     for (std::uint32_t first = 0; first < step; ++first) {
       for (std::uint32_t s = 0; s < count; ++s) {
-        put_columns(members[s], first, step);
+        add_columns(members[s], first, step);
       }
     }
     run.cost = static_cast<std::uint32_t>(3 * pairs_of(bones) + count * (bones == 2 ? 5 : 8));
   }
 
-  // One or two of any.
+  // One or two spheres of any bones.
   void add(const Member* members, std::uint32_t count) {
     const Union all(tables_, members, count);
-    const bool are_equal = count == 2 && members[0].bone_count == all.count && members[1].bone_count == all.count;
-    MomentRun& run = start(members, count, are_equal && tables_.own_are_upper ? kEqualBones : kAnyBones);
+    MomentRun& run = start(members, count, kAnyBones);
     run.bone_count = all.count;
     for (std::uint32_t i = 0; i < all.count; ++i) {
       add_bone(all, i, members, count);
@@ -177,7 +161,7 @@ class RunWriter {
     center_terms[center_count_++] = {term.x, term.y, term.z, term.w};
   }
 
-  // The bone, and its own pair, which is taken as of two bones where moments may have something below the diagonal.
+  // The bone, and its pair with itself.
   void add_bone(const Union& all, std::uint32_t i, const Member* members, std::uint32_t count) {
     std::uint32_t& bone = run_bones[bone_count_++] = matrix_of(all.bones[i]);
     std::uint32_t& step = steps[step_count_++] = bone;
@@ -185,16 +169,10 @@ class RunWriter {
       const std::uint32_t k = all.numbers[s][i];
       if (k != Union::kNone) {
         bone |= 1U << s;
+        step |= 1U << s;
         add_center(members[s], k);
-        if (tables_.own_are_upper) {
-          step |= 1U << s;
-          put_own(moment_of(members[s], k, k), reinterpret_cast<float*>(moments + moment_count_));
-          moment_count_ += kOwnQuads;
-        }
+        add_moment(moment_of(members[s], k, k), true);
       }
-    }
-    if (!tables_.own_are_upper) {
-      add_pair(all, i, i, members, count);
     }
   }
 
@@ -204,7 +182,7 @@ class RunWriter {
       const std::uint32_t k = all.numbers[s][i], l = all.numbers[s][j];
       if (k != Union::kNone && l != Union::kNone) {
         mask |= 1U << s;
-        add_columns(moment_of(members[s], k, l));
+        add_moment(moment_of(members[s], k, l), false);
       }
     }
     if (mask != 0) {
@@ -212,33 +190,30 @@ class RunWriter {
     }
   }
 
-  // Some columns of all pairs of a sphere.
-  void put_columns(const Member& member, std::uint32_t first, std::uint32_t step) {
+  // Columns of a moment, of those that are kept the rows one after another.
+  static float* put_columns(const Moment& moment, bool is_self, std::size_t first, std::size_t step, float* to) {
+    for (std::size_t column = first; column < 4; column += step) {
+      for (std::size_t row = 0; row < rows_of_moment(is_self, column); ++row) {
+        *to++ = moment.values[4 * row + column];
+      }
+    }
+    return to;
+  }
+
+  // Columns of all moments of a sphere of few bones.
+  void add_columns(const Member& member, std::uint32_t first, std::uint32_t step) {
     auto* to = reinterpret_cast<float*>(moments + moment_count_);
     for (std::uint32_t k = 0; k < member.bone_count; ++k) {
       for (std::uint32_t l = k; l < member.bone_count; ++l) {
-        const Moment& moment = moment_of(member, k, l);
-        for (std::uint32_t column = first; column < 4; column += step) {
-          for (std::size_t row = 0; row < rows_of_moment(k == l, column); ++row) {
-            *to++ = moment.values[4 * row + column];
-          }
-        }
+        to = put_columns(moment_of(member, k, l), k == l, first, step, to);
       }
     }
     moment_count_ += static_cast<std::uint32_t>(few_bone_quads(member.bone_count, first, step));
   }
 
-  static void put_own(const Moment& moment, float* to) {
-    for (std::size_t row = 0; row < 4; ++row) {
-      to = std::copy(moment.values + 5 * row, moment.values + 4 * row + 4, to);
-    }
-  }
-
-  void add_columns(const Moment& moment) {
-    for (std::size_t column = 0; column < 4; ++column) {
-      const float* values = moment.values + column;
-      moments[moment_count_++] = {values[0], values[4], values[8], values[12]};
-    }
+  void add_moment(const Moment& moment, bool is_self) {
+    put_columns(moment, is_self, 0, 1, reinterpret_cast<float*>(moments + moment_count_));
+    moment_count_ += static_cast<std::uint32_t>(is_self ? few_bone_quads(1, 0, 1) : kPairQuads);
   }
 
   const MomentTables& tables_;
@@ -249,35 +224,33 @@ class RunWriter {
                 sphere_count_ = 0;
 };
 
-bool are_equal(const MomentTables& tables, const Member& a, const Member& b) {
-  return a.bone_count == b.bone_count && common_bones(tables, a, b) == a.bone_count;
+bool has_few_bones(const Member& member) { return member.bone_count == 2 || member.bone_count == 3; }
+
+bool have_same_bones(const MomentTables& tables, const Member& a, const Member& b) {
+  const std::uint16_t *l = tables.bones.data + a.first_bone, *r = tables.bones.data + b.first_bone;
+  return std::equal(l, l + a.bone_count, r, r + b.bone_count);
 }
 
-// Takes those of few bones out, many at a time, then others of the same bones, by twos. Returns how many are left.
-std::size_t add_equal_runs(const MomentTables& tables, Member* members, RunWriter& writer) {
+// Takes out the spheres of two or three bones, many of the same ones at a time. Returns how many spheres are left.
+std::size_t add_few_bone_runs(const MomentTables& tables, Member* members, RunWriter& writer) {
   const std::size_t n = tables.spheres.size;
   std::size_t left = 0;
   for (std::size_t i = 0; i < n;) {
-    const bool are_few = writer.has_few_bones(members[i]);
-    const std::size_t most = are_few ? kMostRunSpheres : kRunSpheres;
+    if (!has_few_bones(members[i])) {
+      members[left++] = members[i++];
+      continue;
+    }
     std::uint32_t count = 1;
-    while (count < most && i + count < n && are_equal(tables, members[i], members[i + count]) &&
-           writer.has_few_bones(members[i + count]) == are_few) {
+    while (count < kRunSpheresMax && i + count < n && have_same_bones(tables, members[i], members[i + count])) {
       ++count;
     }
-    if (are_few) {
-      writer.add_few_bones(members + i, count);
-    } else if (count == kRunSpheres) {
-      writer.add(members + i, count);
-    } else {
-      members[left++] = members[i];
-    }
+    writer.add_few_bones(members + i, count);
     i += count;
   }
   return left;
 }
 
-// The others, by twos where that is less work, of those near each other.
+// The others, by twos where that is less work; only spheres near each other in the order are compared.
 void add_other_runs(const MomentTables& tables, Member* members, std::size_t count, RunWriter& writer) {
   constexpr std::size_t kNear = 64;
   for (Member* one = members; one < members + count; ++one) {
@@ -287,9 +260,9 @@ void add_other_runs(const MomentTables& tables, Member* members, std::size_t cou
     Member* best = nullptr;
     std::int64_t most = 0;
     for (Member* other = one + 1; other < members + count && other < one + kNear; ++other) {
-      const std::int64_t own = other->bone_count == 0 ? 0 : saved(tables, *one, *other);
-      best = own > most ? other : best;
-      most = std::max(most, own);
+      const std::int64_t saving = other->bone_count == 0 ? 0 : saved(tables, *one, *other);
+      best = saving > most ? other : best;
+      most = std::max(most, saving);
     }
     Member run[kRunSpheres] = {*one, best != nullptr ? *best : *one};
     writer.add(run, best != nullptr ? 2 : 1);
@@ -299,47 +272,59 @@ void add_other_runs(const MomentTables& tables, Member* members, std::size_t cou
   }
 }
 
+bool has_moments(const Asset& asset) {
+  return asset.refit_rule() == RefitRule::kMoments && asset.moment_tables().spheres.size > 0;
+}
+
 }  // namespace
 
-std::size_t CrowdTables::moment_words_needed(const Asset& asset) noexcept {
+std::size_t moment_words(const Asset& asset) {
+  if (!has_moments(asset)) {
+    return 0;
+  }
   const MomentTables& tables = asset.moment_tables();
-  const std::size_t n = tables.spheres.size, bones = asset.bone_count();
-  return 2 * words_of(bones * sizeof(std::uint32_t)) + words_of(n * sizeof(Member)) + words_of(n * sizeof(MomentRun)) +
-         words_of(n * sizeof(RunSphere)) + words_of(2 * tables.moments.size * sizeof(std::uint32_t)) +
+  const std::size_t n = tables.spheres.size;
+  return 2 * words_of(asset.bone_count() * sizeof(std::uint32_t)) + words_of(n * sizeof(Member)) +
+         words_of(n * sizeof(MomentRun)) + words_of(n * sizeof(RunSphere)) +
+         words_of(2 * tables.moments.size * sizeof(std::uint32_t)) +
          words_of(kPairQuads * tables.moments.size * sizeof(Float4)) +
          words_of(tables.bones.size * sizeof(std::uint32_t)) + words_of(tables.bones.size * sizeof(Float4));
 }
 
-void CrowdTables::add_moments(const Asset& asset, RadiusKind radius, TableMemory& entries) noexcept {
+void add_moments(const Asset& asset, RadiusKind radius, TableMemory& memory, TableHeader& header) {
+  if (!has_moments(asset)) {
+    return;
+  }
   const MomentTables& tables = asset.moment_tables();
   const std::size_t n = tables.spheres.size;
-  std::uint32_t unread = 0;
-  auto* used_bones = entries.take<std::uint32_t>(asset.bone_count(), used_bones_at_);
-  auto* bone_indices = entries.take<std::uint32_t>(asset.bone_count(), unread);
+  std::uint32_t unread = 0;  // where arrays lie that the kernels do not read
+  header.bone_count = static_cast<std::uint32_t>(asset.bone_count());
+  auto* used_bones = memory.take<std::uint32_t>(header.bone_count, header.used_bones);
+  auto* bone_indices = memory.take<std::uint32_t>(header.bone_count, unread);
   bone_indices[tables.reference] = 1;
   for (const std::uint16_t bone : tables.bones) {
     bone_indices[bone] = 1;
   }
-  for (std::uint32_t bone = 0; bone < asset.bone_count(); ++bone) {
+  for (std::uint32_t bone = 0; bone < header.bone_count; ++bone) {
     if (bone_indices[bone] != 0) {
-      bone_indices[bone] = used_bone_count_;
-      used_bones[used_bone_count_++] = bone;
+      bone_indices[bone] = header.used_bone_count;
+      used_bones[header.used_bone_count++] = bone;
     }
   }
-  reference_ = bone_indices[tables.reference];
-  origin_ = tables.origin;
-  auto* members = entries.take<Member>(n, unread);
+  header.reference = bone_indices[tables.reference];
+  header.origin = tables.origin;
+  auto* members = memory.take<Member>(n, unread);
   fill_members(tables, members);
   RunWriter writer(asset, radius, bone_indices);
-  writer.runs = entries.take<MomentRun>(n, runs_at_);
-  writer.spheres = entries.take<RunSphere>(n, run_spheres_at_);
-  writer.steps = entries.take<std::uint32_t>(2 * tables.moments.size, moment_steps_at_);
-  writer.moments = entries.take<Float4>(kPairQuads * tables.moments.size, moments_at_);
-  writer.run_bones = entries.take<std::uint32_t>(tables.bones.size, run_bones_at_);
-  writer.center_terms = entries.take<Float4>(tables.bones.size, center_terms_at_);
-  add_other_runs(tables, members, add_equal_runs(tables, members, writer), writer);
-  run_count_ = writer.run_count();
-  std::sort(writer.runs, writer.runs + run_count_, [](const MomentRun& l, const MomentRun& r) {
+  writer.runs = memory.take<MomentRun>(n, header.runs);
+  writer.spheres = memory.take<RunSphere>(n, header.run_spheres);
+  writer.steps = memory.take<std::uint32_t>(2 * tables.moments.size, header.moment_steps);
+  writer.moments = memory.take<Float4>(kPairQuads * tables.moments.size, header.moments);
+  writer.run_bones = memory.take<std::uint32_t>(tables.bones.size, header.run_bones);
+  writer.center_terms = memory.take<Float4>(tables.bones.size, header.center_terms);
+  add_other_runs(tables, members, add_few_bone_runs(tables, members, writer), writer);
+  header.run_count = writer.run_count();
+  std::sort(writer.runs, writer.runs + header.run_count, [](const MomentRun& l, const MomentRun& r) {
     return l.cost != r.cost ? l.cost > r.cost : l.first_sphere < r.first_sphere;
   });
 }

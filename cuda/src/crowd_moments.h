@@ -1,51 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The crowd's kernel: from matrices to spheres by moments. The arithmetic is that of RefitBonesJob under
-// RefitRule::kMoments.
+// The kernel for bones: from centred matrices to spheres, by moments. The arithmetic is RefitBonesJob's.
 #pragma once
 
-#include "crowd_refit.h"
+#include "crowd_bones.h"
 
 namespace spherechain::cuda {
-
-SPHERECHAIN_HD float move_origin(const GroupView& v, const Float4& row) {
-  return fused(row.z, v.origin.z, fused(row.y, v.origin.y, fused(row.x, v.origin.x, row.w)));
-}
-
-// Step 2: where the reference bone has the origin.
-SPHERECHAIN_HD void find_reference(const GroupView& v, const Shared& shared, const Place& at) {
-  if (at.warp() == 0) {
-    for (std::uint32_t i = 0; i < 3; ++i) {
-      shared.reference[i * kPitch + at.lane()] =
-          move_origin(v, shared.matrices[(3 * v.reference + i) * kPitch + at.lane()]);
-    }
-  }
-}
-
-// NaN stays.
-SPHERECHAIN_HD float without_least(float x) { return fabsf(x) < kLeastMatrixFigure ? 0.0F : x; }
-
-// Step 3: translations become those of the origin's image, seen from the reference bone's. A warp a bone.
-SPHERECHAIN_HD void center_matrices(const GroupView& v, const Shared& shared, const Place& at) {
-  for (std::uint32_t bone = at.warp(); bone < v.used_bone_count; bone += at.warps()) {
-    SPHERECHAIN_UNROLL
-    for (std::uint32_t i = 0; i < 3; ++i) {
-      Float4& row = shared.matrices[(3 * bone + i) * kPitch + at.lane()];
-      const float w = move_origin(v, row) - shared.reference[i * kPitch + at.lane()];
-      row = {without_least(row.x), without_least(row.y), without_least(row.z), without_least(w)};
-    }
-  }
-}
-
-struct Matrix {
-  float at[3][4];
-};
-
-SPHERECHAIN_HD Matrix matrix_at(const Shared& shared, std::uint32_t lane, std::uint32_t place) {
-  const auto* bytes = reinterpret_cast<const unsigned char*>(shared.matrices + lane);
-  const auto* rows = reinterpret_cast<const Float4*>(bytes + (place & kMatrixMask));
-  const Float4 x = rows[0], y = rows[kPitch], z = rows[2 * kPitch];
-  return {{{x.x, x.y, x.z, x.w}, {y.x, y.y, y.z, y.w}, {z.x, z.y, z.z, z.w}}};
-}
 
 struct Gram {
   float at[4][4];
@@ -67,25 +26,6 @@ SPHERECHAIN_HD Gram gram_of(const Matrix& a, const Matrix& b) {
   return out;
 }
 
-// Of a bone with itself, which is symmetric: 00 01 02 03 11 12 13 22 23 33.
-struct OwnGram {
-  float at[kOwnFigures];
-};
-
-SPHERECHAIN_HD OwnGram gram_of(const Matrix& a) {
-  OwnGram out;
-  float* figure = out.at;
-  SPHERECHAIN_UNROLL
-  for (std::size_t row = 0; row < 4; ++row) {
-    SPHERECHAIN_UNROLL
-    for (std::size_t column = row; column < 4; ++column, ++figure) {
-      *figure = gram_at(a, a, row, column);
-      make_once(*figure);
-    }
-  }
-  return out;
-}
-
 struct MomentSums {
   float at[4][4];
 };
@@ -93,7 +33,7 @@ struct CenterSums {
   float at[3][4];
 };
 
-// Of -0, which adds nothing, not even a sign.
+// To -0, which as a summand changes nothing, not even a sign.
 template <std::size_t kRows>
 SPHERECHAIN_HD void clear(float (&sums)[kRows][4]) {
   SPHERECHAIN_UNROLL
@@ -105,22 +45,7 @@ SPHERECHAIN_HD void clear(float (&sums)[kRows][4]) {
   }
 }
 
-// A bone's own. What is 0 adds nothing: a sum of zeros alone has no sign that the radius has, and where the figure
-// below the diagonal is not finite, the one above it is not either.
-SPHERECHAIN_HD void add_own_moment(const Float4* quads, const OwnGram& gram, MomentSums& sums) {
-  const Float4 a = quads[0], b = quads[1], c = quads[2];
-  const float moment[kOwnFigures] = {a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w, c.x, c.y};
-  std::size_t i = 0;
-  SPHERECHAIN_UNROLL
-  for (std::size_t row = 0; row < 4; ++row) {
-    SPHERECHAIN_UNROLL
-    for (std::size_t column = row; column < 4; ++column, ++i) {
-      sums.at[row][column] = fused(moment[i], gram.at[i], sums.at[row][column]);
-    }
-  }
-}
-
-// Of two bones, by columns.
+// A moment of two bones, by columns.
 SPHERECHAIN_HD void add_pair_moment(const Float4* columns, const Gram& gram, MomentSums& sums) {
   SPHERECHAIN_UNROLL
   for (std::size_t column = 0; column < 4; ++column) {
@@ -144,9 +69,9 @@ SPHERECHAIN_HD_RARE float odd_spread(float square) {
   return !(fabsf(square) <= FLT_MAX) ? NAN : sqrtf(square <= 0 ? 0.0F : square);
 }
 
-// In units of that at rest: about 1 but where bones are scaled.
+// The spread relative to rest: about 1 unless bones are scaled.
 SPHERECHAIN_HD float spread_of(float square) {
-  return square >= kLeastRoot && square <= kMostRoot ? usual_root(square) : odd_spread(square);
+  return square >= kRootMin && square <= kRootMax ? usual_root(square) : odd_spread(square);
 }
 
 SPHERECHAIN_HD void add_center(const Matrix& matrix, const Float4& term, CenterSums& sums) {
@@ -161,8 +86,8 @@ SPHERECHAIN_HD void add_center(const Matrix& matrix, const Float4& term, CenterS
 }
 
 SPHERECHAIN_HD float center_of(const Shared& shared, std::uint32_t lane, const CenterSums& sums, std::size_t row) {
-  const float(&own)[4] = sums.at[row];
-  return ((own[0] + own[2]) + (own[1] + own[3])) + shared.reference[row * kPitch + lane];
+  const float(&s)[4] = sums.at[row];
+  return ((s[0] + s[2]) + (s[1] + s[3])) + shared.reference[row * kPitch + lane];
 }
 
 SPHERECHAIN_HD void store_sphere(const Shared& shared, std::uint32_t lane, std::uint32_t sphere, const CenterSums& sums,
@@ -171,7 +96,7 @@ SPHERECHAIN_HD void store_sphere(const Shared& shared, std::uint32_t lane, std::
                                             center_of(shared, lane, sums, 2), radius};
 }
 
-// Figures one after another, read by fours.
+// Reads figures one after another, by fours.
 class Figures {
  public:
   SPHERECHAIN_HD explicit Figures(const Float4* quads) : quads_(quads) {}
@@ -190,7 +115,7 @@ class Figures {
   std::size_t read_ = 0;
 };
 
-// Tells of some columns of all pairs of few bones, as few_bone_quads() counts them: the pair, its bones, row, column.
+// Calls visit(pair, its two bones, row, column) for the figures that few_bone_quads() counts, in their order.
 template <std::size_t kBones, std::size_t kFirst, std::size_t kStep, typename Visit>
 SPHERECHAIN_HD void for_each_figure(const Visit& visit) {
   std::size_t pair = 0;
@@ -209,8 +134,27 @@ SPHERECHAIN_HD void for_each_figure(const Visit& visit) {
   }
 }
 
-// Some columns of the Gram matrices of few bones stay in registers, and sphere after sphere takes what it needs of
-// them. Hands over what those columns add to its mean square.
+// A bone's Gram matrix with itself, without the figures below the diagonal. Their moments are 0, and to leave them out
+// changes no radius: the sign of a sum of zeros does not matter, and where a figure below the diagonal is not finite,
+// its twin above is not either.
+SPHERECHAIN_HD Gram gram_of(const Matrix& a) {
+  Gram out;
+  for_each_figure<1, 0, 1>([&](std::size_t, std::size_t, std::size_t, std::size_t row, std::size_t column) {
+    out.at[row][column] = gram_at(a, a, row, column);
+    make_once(out.at[row][column]);
+  });
+  return out;
+}
+
+SPHERECHAIN_HD void add_self_moment(const Float4* quads, const Gram& gram, MomentSums& sums) {
+  Figures moment(quads);
+  for_each_figure<1, 0, 1>([&](std::size_t, std::size_t, std::size_t, std::size_t row, std::size_t column) {
+    sums.at[row][column] = fused(moment.next(), gram.at[row][column], sums.at[row][column]);
+  });
+}
+
+// Holds some columns of the Gram matrices of few bones in registers and goes through the spheres. Calls take(sphere,
+// the sums that these columns add to its mean square).
 template <std::size_t kBones, std::size_t kFirst, std::size_t kStep, typename Take>
 SPHERECHAIN_HD void add_columns(const Shared& shared, std::uint32_t lane, const std::uint32_t* bones,
                                 const Float4* quads, std::uint32_t sphere_count, const Take& take) {
@@ -261,8 +205,8 @@ SPHERECHAIN_HD void add_few_centers(const Shared& shared, std::uint32_t lane, co
   }
 }
 
-// Spheres of the same two bones, or of the same three, whose Gram matrices take registers for half of their columns at
-// a time.
+// Spheres of the same two bones, or of the same three. Of three bones the Gram matrices fill the registers with half of
+// their columns at a time.
 template <std::size_t kBones>
 SPHERECHAIN_HD void refit_few_bones(const GroupView& v, const Shared& shared, std::uint32_t lane,
                                     const MomentRun& run) {
@@ -289,7 +233,6 @@ SPHERECHAIN_HD void refit_few_bones(const GroupView& v, const Shared& shared, st
 }
 
 // A bone's matrix stays in registers while it is paired with those after it.
-template <bool kEqual>
 SPHERECHAIN_HD void add_pairs(const GroupView& v, const Shared& shared, std::uint32_t lane, const MomentRun& run,
                               MomentSums (&sums)[kRunSpheres]) {
   const std::uint32_t* steps = v.moment_steps + run.first_step;
@@ -298,12 +241,12 @@ SPHERECHAIN_HD void add_pairs(const GroupView& v, const Shared& shared, std::uin
   do {
     step = *steps++;
     const Matrix a = matrix_at(shared, lane, step);
-    const OwnGram own = gram_of(a);
+    const Gram self = gram_of(a);
     SPHERECHAIN_UNROLL
     for (std::uint32_t s = 0; s < kRunSpheres; ++s) {
-      if (kEqual || (step >> s & 1U) != 0) {
-        add_own_moment(quads, own, sums[s]);
-        quads += kOwnQuads;
+      if ((step >> s & 1U) != 0) {
+        add_self_moment(quads, self, sums[s]);
+        quads += few_bone_quads(1, 0, 1);
       }
     }
     while ((step & kLastOfBone) == 0) {
@@ -311,7 +254,7 @@ SPHERECHAIN_HD void add_pairs(const GroupView& v, const Shared& shared, std::uin
       const Gram both = gram_of(a, matrix_at(shared, lane, step));
       SPHERECHAIN_UNROLL
       for (std::uint32_t s = 0; s < kRunSpheres; ++s) {
-        if (kEqual || (step >> s & 1U) != 0) {
+        if ((step >> s & 1U) != 0) {
           add_pair_moment(quads, both, sums[s]);
           quads += kPairQuads;
         }
@@ -320,7 +263,6 @@ SPHERECHAIN_HD void add_pairs(const GroupView& v, const Shared& shared, std::uin
   } while ((step & kLastOfRun) == 0);
 }
 
-template <bool kEqual>
 SPHERECHAIN_HD void add_bones(const GroupView& v, const Shared& shared, std::uint32_t lane, const MomentRun& run,
                               CenterSums (&sums)[kRunSpheres]) {
   const std::uint32_t* bones = v.run_bones + run.first_bone;
@@ -331,38 +273,37 @@ SPHERECHAIN_HD void add_bones(const GroupView& v, const Shared& shared, std::uin
     const Matrix matrix = matrix_at(shared, lane, bone);
     SPHERECHAIN_UNROLL
     for (std::uint32_t s = 0; s < kRunSpheres; ++s) {
-      if (kEqual || (bone >> s & 1U) != 0) {
+      if ((bone >> s & 1U) != 0) {
         add_center(matrix, *terms++, sums[s]);
       }
     }
   }
 }
 
-template <bool kEqual>
 SPHERECHAIN_HD void refit_run(const GroupView& v, const Shared& shared, std::uint32_t lane, const MomentRun& run) {
   float spreads[kRunSpheres];
   {
     MomentSums sums[kRunSpheres];
     clear(sums[0].at);
     clear(sums[1].at);
-    add_pairs<kEqual>(v, shared, lane, run, sums);
+    add_pairs(v, shared, lane, run, sums);
     spreads[0] = spread_of(tree(sums[0]));
     spreads[1] = spread_of(tree(sums[1]));
   }
   CenterSums centers[kRunSpheres];
   clear(centers[0].at);
   clear(centers[1].at);
-  add_bones<kEqual>(v, shared, lane, run, centers);
+  add_bones(v, shared, lane, run, centers);
   const RunSphere* spheres = v.run_spheres + run.first_sphere;
   SPHERECHAIN_UNROLL
   for (std::uint32_t s = 0; s < kRunSpheres; ++s) {
-    if (kEqual || s < run.sphere_count) {
+    if (s < run.sphere_count) {
       store_sphere(shared, lane, spheres[s].sphere, centers[s], spheres[s].wanted * spreads[s]);
     }
   }
 }
 
-// Step 4: a warp a run of spheres, the dearest first.
+// Step 4, a warp a run.
 SPHERECHAIN_HD void refit_runs(const GroupView& v, const Shared& shared, const Place& at) {
   std::uint32_t place = deal(&shared.dealt[0], at, 0);
   for (std::uint32_t round = 1; place < v.run_count; ++round) {
@@ -372,10 +313,18 @@ SPHERECHAIN_HD void refit_runs(const GroupView& v, const Shared& shared, const P
       refit_few_bones<2>(v, shared, at.lane(), run);
     } else if (run.kind == kThreeBones) {
       refit_few_bones<3>(v, shared, at.lane(), run);
-    } else if (run.kind == kEqualBones) {
-      refit_run<true>(v, shared, at.lane(), run);
     } else {
-      refit_run<false>(v, shared, at.lane(), run);
+      refit_run(v, shared, at.lane(), run);
+    }
+  }
+}
+
+// Step 5, where refitted spheres are asked for: a warp an instance.
+SPHERECHAIN_HD void write_spheres(const GroupView& v, const Shared& shared, const Place& at) {
+  for (std::uint32_t from = at.warp(); from < instances_in(v, at); from += at.warps()) {
+    Sphere* const to = v.refitted + std::size_t{at.block * kLanes + from} * v.sphere_count;
+    for (std::uint32_t i = at.lane(); i < v.sphere_count; i += kLanes) {
+      *reinterpret_cast<Float4*>(to + i) = shared.spheres[i * kPitch + from];
     }
   }
 }

@@ -1,71 +1,43 @@
 // SPDX-License-Identifier: MIT
-// The crowd's kernel: which spheres touch, by the rule of detect.h.
+// The kernel for bones: which spheres touch, by DetectJob's rule, and its outputs. A lane is an instance.
 #pragma once
 
-#include "crowd_primitives.h"
+#include "crowd_bones.h"
 
 namespace spherechain::cuda {
 
-// Half of what radii r add to the squared reach of two spheres is at most rp^2 + rq^2. So with p and q seen from the
-// instance's first sphere, and power(p) = rp^2 - |p|^2 / 2,
+// A quick test that leaves no touching pair out. With p and q relative to a sphere of the instance, and
+//   power(p) = rp^2 - |p|^2 / 2,
+// (rp + rq)^2 / 2 <= rp^2 + rq^2 gives
 //   power(p) + power(q) + p.q >= ((rp + rq)^2 - |p - q|^2) / 2,
-// which is above 0 where they touch. With G = |p|^2 + rp^2 of both, runtime/src/sphere_columns.h shows of a sum much as
-// this one that it is off by 33 * 2^-24 G at most; here each power adds 2 more. Each is larger by 64 * 2^-24 of its own
-// sphere's share of G, and by 2^-120 for what underflows: so the computed sum is above 0 too. For what is too large for
-// that, or not finite, it is infinite or no number, and not below 0 either.
-SPHERECHAIN_HD float power_of(const Float4& s, const Float4& origin) {
-  constexpr float kMargin = 0x1p-18F, kLeast = 0x1p-120F, kMostExtent = 1e36F;
-  const float x = s.x - origin.x, y = s.y - origin.y, z = s.z - origin.z;
-  const float squared_length = fused(z, z, fused(y, y, x * x)), squared_radius = s.w * s.w;
-  const float power = fused(1.0F + kMargin, squared_radius, fused(kMargin - 0.5F, squared_length, kLeast));
-  return squared_length + squared_radius <= kMostExtent ? power : INFINITY;
+// which is above 0 for spheres that touch. So that the computed sum is above 0 too, each power is raised by `margin`
+// times |p|^2 + rp^2, which must be more than all roundings, and by 2^-120 for underflow. Where a figure is too large
+// for that, or not finite, the power is infinite and the sum infinite or NaN, which is not below 0 either.
+SPHERECHAIN_HD float power_of(const Vec3& p, float radius, float margin) {
+  constexpr float kUnderflow = 0x1p-120F, kExtentMax = 1e36F;
+  const float squared_length = fused(p.z, p.z, fused(p.y, p.y, p.x * p.x)), squared_radius = radius * radius;
+  const float power = fused(1.0F + margin, squared_radius, fused(margin - 0.5F, squared_length, kUnderflow));
+  return squared_length + squared_radius <= kExtentMax ? power : INFINITY;
 }
 
-// Covers are so much larger in the test that what it rounds parts no two that touch: the squared distance is off by 5
-// roundings at most, the squared sum of radii by 5 with this one.
-inline constexpr float kCoverShare = 1.0F + 0x1p-20F;
+// For multiply-adds. With G = |p|^2 + rp^2 + |q|^2 + rq^2, runtime/src/sphere_columns.h shows that a sum much like this
+// one is off by at most 33 * 2^-24 G; the powers add 4 * 2^-24 G here, and the margin is 64 * 2^-24.
+inline constexpr float kPowerMargin = 0x1p-18F;
 
-// The box around the centres of the warp's own spheres.
-SPHERECHAIN_HD void box_spheres(const GroupView& v, const Shared& shared, const Place& at) {
-  const std::uint32_t lane = at.lane();
-  float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-  for (std::uint32_t i = at.warp(); i < v.sphere_count; i += at.warps()) {
-    const Float4 sphere = shared.spheres[i * kPitch + lane];
-    const float center[] = {sphere.x, sphere.y, sphere.z};
-    for (int axis = 0; axis < 3; ++axis) {
-      low[axis] = fminf(low[axis], center[axis]);
-      high[axis] = fmaxf(high[axis], center[axis]);
-    }
-  }
-  for (std::uint32_t axis = 0; axis < 3; ++axis) {
-    shared.boxes[(2 * axis * kMostWarps + at.warp()) * kLanes + lane] = low[axis];
-    shared.boxes[((2 * axis + 1) * kMostWarps + at.warp()) * kLanes + lane] = high[axis];
-  }
-}
-
-// Step 4: a warp a sphere; and the outputs' bits, which lie where the matrices were.
-template <bool kCovers>
+// Step 6, a warp a sphere: padding and powers. Also clears the outputs' bits, which lie where the matrices were.
 SPHERECHAIN_HD void prepare_pairs(const GroupView& v, const Shared& shared, const Place& at) {
   const std::uint32_t lane = at.lane();
-  const Float4 origin = shared.spheres[lane];
+  const Float4& first = shared.spheres[lane];
+  const Vec3 origin{first.x, first.y, first.z};  // not the radius, which another thread may be padding
   for (std::uint32_t i = at.warp(); i < v.sphere_count; i += at.warps()) {
     Float4 sphere = shared.spheres[i * kPitch + lane];
-    if (kCovers) {
-      sphere.w *= kCoverShare;
-    }
     if (v.has_padding) {
       sphere.w += v.paddings[i];
-      if (!kCovers && sphere.w < 0) {
-        sphere.w = NAN;  // touches nothing; a cover that is no number might touch anything, see may_touch
-      }
-    }
-    if (kCovers || v.has_padding) {
+      sphere.w = sphere.w < 0 ? NAN : sphere.w;  // touches nothing
       shared.spheres[i * kPitch + lane].w = sphere.w;
     }
-    shared.powers[i * kPitch + lane] = power_of(sphere, origin);
-  }
-  if (v.bounds != nullptr) {
-    box_spheres(v, shared, at);
+    const Vec3 seen{sphere.x - origin.x, sphere.y - origin.y, sphere.z - origin.z};
+    shared.powers[i * kPitch + lane] = power_of(seen, sphere.w, kPowerMargin);
   }
   const std::uint32_t words = half_words(v) * kPitch;
   for (std::uint32_t i = at.thread; v.bits != nullptr && i < words; i += at.threads) {
@@ -76,28 +48,19 @@ SPHERECHAIN_HD void prepare_pairs(const GroupView& v, const Shared& shared, cons
   }
   if (at.thread < kLanes) {
     shared.counts[lane] = 0;
-    if (v.bounds != nullptr) {
-      shared.radii[lane] = 0;
-    }
   }
 }
 
-// detect.h's rule; `reach` 1 for pairs that are not near ones.
-SPHERECHAIN_HD bool touch(const Float4& p, const Float4& q, float reach) {
+// DetectJob's rule. `scale`: a rest pair's, else 1.
+SPHERECHAIN_HD bool touch(const Float4& p, const Float4& q, float scale) {
   const float dx = p.x - q.x, dy = p.y - q.y, dz = p.z - q.z;
-  const float s = p.w + q.w, squared = s * s, t = reach * s;
+  const float s = p.w + q.w, squared = s * s, t = scale * s;
   return ((dx * dx + dy * dy) + dz * dz) < t * t && squared <= FLT_MAX;
-}
-
-// Covers: unless they are surely apart, which those that are not finite never are, or padded to below 0.
-SPHERECHAIN_HD bool may_touch(const Float4& p, const Float4& q) {
-  const float dx = p.x - q.x, dy = p.y - q.y, dz = p.z - q.z, s = p.w + q.w;
-  return !((dx * dx + dy * dy) + dz * dz > s * s) && !(p.w < 0) && !(q.w < 0);
 }
 
 SPHERECHAIN_HD void report(const GroupView& v, const Shared& shared, std::uint32_t lane, std::uint32_t a,
                            std::uint32_t b) {
-  add_to(&shared.counts[lane], 1);
+  add_to(&shared.counts[lane], 1U);
   if (v.bits != nullptr) {
     const std::uint32_t bit = b * (b - 1) / 2 + a;
     set_bits(&shared.bits[bit / 32 * kPitch + lane], 1U << (bit % 32));
@@ -108,76 +71,57 @@ SPHERECHAIN_HD void report(const GroupView& v, const Shared& shared, std::uint32
   }
 }
 
-// Eight rows and columns, by their first ones.
+// The first of eight rows and of eight columns.
 struct Corner {
   std::uint32_t row, column;
 };
 
-// The pair of a bit of PairColumns::wanted[half].
+// The pair that a bit of PairColumns::wanted[half] stands for.
 SPHERECHAIN_HD Pair pair_of_bit(const Corner& corner, std::uint32_t half, std::uint32_t bit) {
   const std::uint32_t at = kHalfItem - 1 - bit;
   return {corner.row + at % kRows, corner.column + at / kRows + half * kHalfColumns};
 }
 
-template <bool kCovers>
 SPHERECHAIN_HD void decide(const GroupView& v, const Shared& shared, std::uint32_t lane, const Pair& pair) {
   const Float4 p = shared.spheres[pair.a * kPitch + lane], q = shared.spheres[pair.b * kPitch + lane];
-  if (kCovers ? may_touch(p, q) : touch(p, q, 1.0F)) {
+  if (touch(p, q, 1.0F)) {
     report(v, shared, lane, pair.a, pair.b);
   }
 }
 
-// Each lane about its own.
-template <bool kCovers>
-SPHERECHAIN_HD void decide_at_once(const GroupView& v, const Shared& shared, std::uint32_t lane, const Corner& corner,
-                                   std::uint32_t (&candidates)[2]) {
-  while (any_lane((candidates[0] | candidates[1]) != 0)) {
-    if ((candidates[0] | candidates[1]) != 0) {
-      const std::uint32_t half = candidates[0] != 0 ? 0 : 1, word = candidates[0] != 0 ? candidates[0] : candidates[1];
-      candidates[0] = half == 0 ? word & (word - 1) : 0;
-      candidates[1] = half == 0 ? candidates[1] : word & (word - 1);
-      decide<kCovers>(v, shared, lane, pair_of_bit(corner, half, lowest_bit(word)));
-    }
-  }
-}
-
 SPHERECHAIN_HD std::uint32_t queue_entry(std::uint32_t lane, const Pair& pair) {
-  return (pair.b * kMostQueuedSpheres + pair.a) * kLanes + lane;
+  return (pair.b * kQueuedSpheresMax + pair.a) * kLanes + lane;
 }
 
-inline constexpr std::uint32_t kNoEntry = ~0U;  // of a sphere with itself
-
-// Few lanes have many candidates: all lanes decide about all of them later. Those of a lane for which there is no room
-// stay with it.
-SPHERECHAIN_HD void queue_candidates(const Shared& shared, std::uint32_t lane, const Corner& corner,
+// Puts a lane's candidates into the queue, for a few lanes have most of them and all lanes share the queue. Decides at
+// once about those that find no room.
+SPHERECHAIN_HD void queue_candidates(const GroupView& v, const Shared& shared, std::uint32_t lane, const Corner& corner,
                                      std::uint32_t (&candidates)[2]) {
   const std::uint32_t count = count_bits(candidates[0]) + count_bits(candidates[1]);
   if (count == 0) {
     return;
   }
-  std::uint32_t place = take_places(&shared.dealt[2], count);
-  if (place + count > kBlockQueued) {
-    for (; place < kBlockQueued; ++place) {
-      shared.queue[place] = kNoEntry;
-    }
-    return;
-  }
+  std::uint32_t place = has_queue(v.sphere_count) ? add_to(&shared.dealt[2], count) : kBlockQueued;
   SPHERECHAIN_UNROLL
   for (std::uint32_t half = 0; half < 2; ++half) {
     SPHERECHAIN_ONE_BY_ONE
-    for (std::uint32_t& left = candidates[half]; left != 0; left &= left - 1) {
-      shared.queue[place++] = queue_entry(lane, pair_of_bit(corner, half, lowest_bit(left)));
+    for (std::uint32_t& left = candidates[half]; left != 0; left &= left - 1, ++place) {
+      const Pair pair = pair_of_bit(corner, half, lowest_bit(left));
+      if (place < kBlockQueued) {
+        shared.queue[place] = queue_entry(lane, pair);
+      } else {
+        decide(v, shared, lane, pair);
+      }
     }
   }
 }
 
-// A sphere as it is seen from the origin, with its power.
+// A sphere relative to the origin, with its power.
 SPHERECHAIN_HD Float4 seen_from(const Float4& origin, const Shared& shared, std::uint32_t place) {
   const Float4 s = shared.spheres[place];
   return {s.x - origin.x, s.y - origin.y, s.z - origin.z, shared.powers[place]};
 }
 
-template <bool kCovers>
 SPHERECHAIN_HD void test_item(const GroupView& v, const Shared& shared, std::uint32_t lane, const PairItem& item) {
   const Float4 origin = shared.spheres[lane];
   const std::uint32_t first_row = item.first_row, count = item.count;
@@ -201,84 +145,132 @@ SPHERECHAIN_HD void test_item(const GroupView& v, const Shared& shared, std::uin
         apart[c / kHalfColumns] = shift_in_sign(apart[c / kHalfColumns], sum);
       }
     }
-    // What multiply-adds cannot tell apart from touching.
+    // The pairs that the quick test leaves.
     std::uint32_t candidates[2] = {~apart[0] & columns.wanted[0], ~apart[1] & columns.wanted[1]};
     if (any_lane((candidates[0] | candidates[1]) != 0)) {
-      const Corner corner{first_row, columns.first};
-      if (has_queue(v.sphere_count, kCovers)) {
-        queue_candidates(shared, lane, corner, candidates);
-      }
-      decide_at_once<kCovers>(v, shared, lane, corner, candidates);
+      queue_candidates(v, shared, lane, {first_row, columns.first}, candidates);
+      rejoin();
     }
   }
 }
 
-SPHERECHAIN_HD void test_near(const GroupView& v, const Shared& shared, std::uint32_t lane, const NearEntry& near) {
-  if (touch(shared.spheres[near.a * kPitch + lane], shared.spheres[near.b * kPitch + lane], near.reach)) {
-    report(v, shared, lane, near.a, near.b);
-  }
-}
-
-// The middle of the box around all centres, and how far the warp's own spheres reach from there.
-SPHERECHAIN_HD Vec3 middle_of(const Shared& shared, const Place& at) {
-  float middle[3];
-  for (std::uint32_t axis = 0; axis < 3; ++axis) {
-    float low = INFINITY, high = -INFINITY;
-    for (std::uint32_t warp = 0; warp < at.warps(); ++warp) {
-      low = fminf(low, shared.boxes[(2 * axis * kMostWarps + warp) * kLanes + at.lane()]);
-      high = fmaxf(high, shared.boxes[((2 * axis + 1) * kMostWarps + warp) * kLanes + at.lane()]);
-    }
-    middle[axis] = 0.5F * low + 0.5F * high;
-  }
-  return {middle[0], middle[1], middle[2]};
-}
-
-SPHERECHAIN_HD void reach_spheres(const GroupView& v, const Shared& shared, const Place& at) {
-  const Vec3 middle = middle_of(shared, at);
-  float most = 0;
-  for (std::uint32_t i = at.warp(); i < v.sphere_count; i += at.warps()) {
-    const Float4 s = shared.spheres[i * kPitch + at.lane()];
-    const float dx = s.x - middle.x, dy = s.y - middle.y, dz = s.z - middle.z;
-    most = fmaxf(most, sqrtf((dx * dx + dy * dy) + dz * dz) + s.w);
-  }
-  raise_to(&shared.radii[at.lane()], most * (1.0F + 0x1p-20F));  // for what was rounded
-}
-
-// Step 5: a warp an item, then a warp some near pairs.
-template <bool kCovers>
+// Step 7: a warp an item, then a warp some rest pairs.
 SPHERECHAIN_HD void test_pairs(const GroupView& v, const Shared& shared, const Place& at) {
-  constexpr std::uint32_t kNearAtATime = 8;
+  constexpr std::uint32_t kRestPairsAtOnce = 8;
   const std::uint32_t lane = at.lane();
   std::uint32_t place = deal(&shared.dealt[1], at, 0), round = 1;
   for (; place < v.item_count; ++round) {
     const PairItem& item = v.items[place];
     place = deal(&shared.dealt[1], at, round);
-    test_item<kCovers>(v, shared, lane, item);
+    test_item(v, shared, lane, item);
   }
-  for (; (place - v.item_count) * kNearAtATime < v.near_count; ++round) {
-    const std::uint32_t first = (place - v.item_count) * kNearAtATime;
-    const std::uint32_t end = first + kNearAtATime < v.near_count ? first + kNearAtATime : v.near_count;
+  for (; (place - v.item_count) * kRestPairsAtOnce < v.rest_pair_count; ++round) {
+    const std::uint32_t first = (place - v.item_count) * kRestPairsAtOnce;
+    const std::uint32_t end =
+        first + kRestPairsAtOnce < v.rest_pair_count ? first + kRestPairsAtOnce : v.rest_pair_count;
     place = deal(&shared.dealt[1], at, round);
     for (std::uint32_t i = first; i < end; ++i) {
-      test_near(v, shared, lane, v.near[i]);
+      const RestPair& pair = v.rest_pairs[i];
+      if (touch(shared.spheres[pair.a * kPitch + lane], shared.spheres[pair.b * kPitch + lane], pair.scale)) {
+        report(v, shared, lane, pair.a, pair.b);
+      }
     }
-  }
-  if (v.bounds != nullptr) {
-    reach_spheres(v, shared, at);
   }
 }
 
-// Step 6: what was queued.
+// Step 8: the queue.
 SPHERECHAIN_HD void decide_queued(const GroupView& v, const Shared& shared, const Place& at) {
   const std::uint32_t taken = shared.dealt[2], count = taken < kBlockQueued ? taken : kBlockQueued;
   SPHERECHAIN_ONE_BY_ONE
   for (std::uint32_t i = at.thread; i < count; i += at.threads) {
-    const std::uint32_t entry = shared.queue[i];
-    if (entry != kNoEntry) {
-      const std::uint32_t pair = entry / kLanes;
-      decide<false>(v, shared, entry % kLanes, {pair % kMostQueuedSpheres, pair / kMostQueuedSpheres});
+    const std::uint32_t entry = shared.queue[i], pair = entry / kLanes;
+    decide(v, shared, entry % kLanes, {pair % kQueuedSpheresMax, pair / kQueuedSpheresMax});
+  }
+}
+
+// The part of the ordered bits that one of several workers lists, in half words.
+struct Part {
+  std::uint32_t first, last;
+};
+
+SPHERECHAIN_HD Part part_of(const GroupView& v, std::uint32_t worker, std::uint32_t workers) {
+  const std::uint32_t each = (half_words(v) + workers - 1) / workers, first = worker * each;
+  return {first, first + each < half_words(v) ? first + each : half_words(v)};
+}
+
+// The pairs in a part. `pitch`: from one half word to the next.
+SPHERECHAIN_HD std::uint32_t count_pairs(const std::uint32_t* ordered_bits, std::uint32_t pitch, const Part& part) {
+  std::uint32_t out = 0;
+  for (std::uint32_t i = part.first; i < part.last; ++i) {
+    out += count_bits(ordered_bits[i * pitch]);
+  }
+  return out;
+}
+
+// Lists the pairs in a part from `place` on.
+SPHERECHAIN_HD void list_pairs(const GroupView& v, const std::uint32_t* ordered_bits, std::uint32_t pitch,
+                               const Part& part, std::uint32_t instance, std::uint64_t place) {
+  std::uint32_t a = 0, row = 0, row_end = v.sphere_count - 1;  // the bits of a's pairs
+  for (std::uint32_t i = part.first; i < part.last; ++i) {
+    for (std::uint32_t word = ordered_bits[i * pitch]; word != 0; word &= word - 1, ++place) {
+      const std::uint32_t bit = 32 * i + lowest_bit(word);
+      while (bit >= row_end) {
+        ++a;
+        row = row_end;
+        row_end += v.sphere_count - 1 - a;
+      }
+      if (place < v.pair_capacity) {
+        v.pairs[place] = {instance, {a, a + 1 + (bit - row)}};
+      }
     }
   }
+}
+
+// Step 9: counts and bits, the block's place in the list, and the pairs in each warp's part of it.
+SPHERECHAIN_HD void write_instances(const GroupView& v, const Shared& shared, const Place& at) {
+  const std::uint32_t lane = at.lane(), first = at.block * kLanes, count = instances_in(v, at);
+  if (at.thread < count && v.counts != nullptr) {
+    v.counts[first + lane] = shared.counts[lane];
+  }
+  if (v.bits != nullptr) {
+    for (std::uint32_t from = at.warp(); from < count; from += at.warps()) {
+      std::uint64_t* const to = v.bits + std::size_t{first + from} * v.bit_words;
+      for (std::uint32_t i = lane; i < v.bit_words; i += kLanes) {
+        const std::uint32_t* halves = shared.bits + 2 * i * kPitch + from;
+        to[i] = halves[0] | std::uint64_t{halves[kPitch]} << 32;
+      }
+    }
+  }
+  if (v.pairs != nullptr) {
+    if (at.thread == 0) {
+      std::uint64_t total = 0;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        total += shared.counts[i];
+      }
+      *shared.start = add_to(v.pair_count, total);
+    }
+    shared.parts[at.warp() * kLanes + lane] =
+        count_pairs(shared.ordered_bits + lane, kPitch, part_of(v, at.warp(), at.warps()));
+  }
+}
+
+// Step 10: the list, a lane an instance and a warp a part.
+SPHERECHAIN_HD void write_pairs(const GroupView& v, const Shared& shared, const Place& at) {
+  const std::uint32_t lane = at.lane(), instance = at.block * kLanes + lane;
+  if (lane >= instances_in(v, at)) {
+    return;
+  }
+  std::uint64_t place = *shared.start;
+  for (std::uint32_t i = 0; i < lane; ++i) {
+    place += shared.counts[i];
+  }
+  if (at.warp() == 0) {
+    v.starts[instance] = place;
+  }
+  for (std::uint32_t warp = 0; warp < at.warp(); ++warp) {
+    place += shared.parts[warp * kLanes + lane];
+  }
+  list_pairs(v, shared.ordered_bits + lane, kPitch, part_of(v, at.warp(), at.warps()), instance, place);
 }
 
 }  // namespace spherechain::cuda

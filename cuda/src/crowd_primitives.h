@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the device has an instruction for, and a C++ compiler says otherwise.
+// Operations that the device has an instruction for and C++ spells differently. On the CPU the atomic ones are atomic
+// too: the tests may run a block's threads at the same time.
 #pragma once
 
 #include <cfloat>
@@ -8,8 +9,15 @@
 
 #include "crowd_view.h"
 
+#if defined(__CUDA_ARCH__)
+#define SPHERECHAIN_AMPERE (__CUDA_ARCH__ >= 800)
+#else
+#define SPHERECHAIN_AMPERE 0
+#endif
+
 namespace spherechain::cuda {
 
+// a * b + c, rounded once.
 SPHERECHAIN_HD float fused(float a, float b, float c) {
 #if defined(__CUDA_ARCH__)
   return __fmaf_rn(a, b, c);
@@ -18,62 +26,38 @@ SPHERECHAIN_HD float fused(float a, float b, float c) {
 #endif
 }
 
-SPHERECHAIN_HD void add_to(std::uint32_t* shared, std::uint32_t value) {
-#if defined(__CUDA_ARCH__)
-  atomicAdd(shared, value);
-#else
-  __atomic_fetch_add(shared, value, __ATOMIC_RELAXED);
-#endif
-}
-
-// What it was before.
-SPHERECHAIN_HD std::uint32_t take_place(std::uint32_t* shared) {
-#if defined(__CUDA_ARCH__)
-  return atomicAdd(shared, 1U);
-#else
-  return __atomic_fetch_add(shared, 1U, __ATOMIC_RELAXED);
-#endif
-}
-
-SPHERECHAIN_HD std::uint32_t take_places(std::uint32_t* shared, std::uint32_t count) {
-#if defined(__CUDA_ARCH__)
-  return atomicAdd(shared, count);
-#else
-  return __atomic_fetch_add(shared, count, __ATOMIC_RELAXED);
-#endif
-}
-
-SPHERECHAIN_HD void set_bits(std::uint32_t* shared, std::uint32_t value) {
-#if defined(__CUDA_ARCH__)
-  atomicOr(shared, value);
-#else
-  __atomic_fetch_or(shared, value, __ATOMIC_RELAXED);
-#endif
-}
-
-// The same value by several lanes.
+// Returns the value before. Also for 64 bits.
 template <typename T>
-SPHERECHAIN_HD void set_alike(T& to, T value) {
+SPHERECHAIN_HD T add_to(T* to, T value) {
+#if defined(__CUDA_ARCH__)
+  if constexpr (sizeof(T) == 8) {
+    return atomicAdd(reinterpret_cast<unsigned long long*>(to), static_cast<unsigned long long>(value));
+  } else {
+    return atomicAdd(to, value);
+  }
+#else
+  return __atomic_fetch_add(to, value, __ATOMIC_RELAXED);
+#endif
+}
+
+SPHERECHAIN_HD void set_bits(std::uint32_t* to, std::uint32_t value) {
+#if defined(__CUDA_ARCH__)
+  atomicOr(to, value);
+#else
+  __atomic_fetch_or(to, value, __ATOMIC_RELAXED);
+#endif
+}
+
+// For several lanes that write the same value.
+SPHERECHAIN_HD void set_alike(std::uint32_t& to, std::uint32_t value) {
 #if defined(__CUDA_ARCH__)
   to = value;
 #else
-  std::uint32_t words[sizeof value / sizeof(std::uint32_t)];
-  std::memcpy(words, &value, sizeof value);
-  auto* shared = reinterpret_cast<std::uint32_t*>(&to);
-  for (const std::uint32_t word : words) {
-    __atomic_store_n(shared++, word, __ATOMIC_RELAXED);
-  }
+  __atomic_store_n(&to, value, __ATOMIC_RELAXED);
 #endif
 }
 
-SPHERECHAIN_HD std::uint64_t reserve(std::uint64_t* count, std::uint64_t value) {
-#if defined(__CUDA_ARCH__)
-  return atomicAdd(reinterpret_cast<unsigned long long*>(count), static_cast<unsigned long long>(value));
-#else
-  return __atomic_fetch_add(count, value, __ATOMIC_RELAXED);
-#endif
-}
-
+// Of a word that is not 0.
 SPHERECHAIN_HD std::uint32_t lowest_bit(std::uint32_t word) {
 #if defined(__CUDA_ARCH__)
   return __ffs(static_cast<int>(word)) - 1;
@@ -82,32 +66,24 @@ SPHERECHAIN_HD std::uint32_t lowest_bit(std::uint32_t word) {
 #endif
 }
 
-SPHERECHAIN_HD std::uint32_t lowest_bit(std::uint64_t word) {
+SPHERECHAIN_HD std::uint32_t count_bits(std::uint32_t word) {
 #if defined(__CUDA_ARCH__)
-  return __ffsll(static_cast<long long>(word)) - 1;
+  return static_cast<std::uint32_t>(__popc(word));
 #else
-  return static_cast<std::uint32_t>(__builtin_ctzll(word));
+  return static_cast<std::uint32_t>(__builtin_popcount(word));
 #endif
 }
 
-SPHERECHAIN_HD std::uint32_t leading_zeros(std::uint32_t word) {
-#if defined(__CUDA_ARCH__)
-  return static_cast<std::uint32_t>(__clz(static_cast<int>(word)));
-#else
-  return static_cast<std::uint32_t>(__builtin_clz(word));
-#endif
-}
-
-// The bits of `word` moved up by one, the sign of `value` below them.
+// The bits of `word` moved up by one, with the sign of `value` below them.
 SPHERECHAIN_HD std::uint32_t shift_in_sign(std::uint32_t word, float value) {
 #if defined(__CUDA_ARCH__)
   return __funnelshift_l(__float_as_uint(value), word, 1);
 #else
-  return word << 1 | (value < 0 ? 1U : 0U);  // a NaN the device computes has no sign
+  return word << 1 | (value < 0 ? 1U : 0U);  // the sign bit of a NaN that the device computes is 0
 #endif
 }
 
-// The figure, nearer to 0, that the matrix units multiply; of what is no number, anything.
+// Rounds towards 0 to the eleven bits that the matrix units multiply; a NaN may become infinite.
 SPHERECHAIN_HD float eleven_bits(float x) {
   constexpr std::uint32_t kMask = ~0x1FFFU;
 #if defined(__CUDA_ARCH__)
@@ -121,7 +97,7 @@ SPHERECHAIN_HD float eleven_bits(float x) {
 #endif
 }
 
-// Whether it is so for any lane of the warp, or of those that run together: lanes stay together in loops that ask it.
+// True if `is_so` is for any lane that runs with this one: on the device for any of the warp.
 SPHERECHAIN_HD bool any_lane(bool is_so) {
 #if defined(__CUDA_ARCH__)
   return __any_sync(0xFFFFFFFFU, is_so) != 0;
@@ -130,35 +106,15 @@ SPHERECHAIN_HD bool any_lane(bool is_so) {
 #endif
 }
 
-SPHERECHAIN_HD void raise_to(std::uint32_t* shared, float value) {  // value >= 0
+// Waits for the warp's other lanes: after a branch they would else go on one after another.
+SPHERECHAIN_HD void rejoin() {
 #if defined(__CUDA_ARCH__)
-  atomicMax(shared, __float_as_uint(value));
-#else
-  std::uint32_t bits = 0, own = __atomic_load_n(shared, __ATOMIC_RELAXED);
-  std::memcpy(&bits, &value, sizeof bits);
-  while (own < bits && !__atomic_compare_exchange_n(shared, &own, bits, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
-  }
+  __syncwarp();
 #endif
 }
 
-SPHERECHAIN_HD std::uint32_t count_bits(std::uint32_t word) {
-#if defined(__CUDA_ARCH__)
-  return static_cast<std::uint32_t>(__popc(word));
-#else
-  return static_cast<std::uint32_t>(__builtin_popcount(word));
-#endif
-}
-
-SPHERECHAIN_HD std::uint32_t count_bits(std::uint64_t word) {
-#if defined(__CUDA_ARCH__)
-  return static_cast<std::uint32_t>(__popcll(word));
-#else
-  return static_cast<std::uint32_t>(__builtin_popcountll(word));
-#endif
-}
-
-// What sqrtf does where `x` is from kLeastRoot to kMostRoot, without its test for that.
-inline constexpr float kLeastRoot = 0x1p-100F, kMostRoot = 0x1p100F;
+// sqrtf(x) for kRootMin <= x <= kRootMax, without its test for other values. count_wrong_roots.cu tries every float.
+inline constexpr float kRootMin = 0x1p-100F, kRootMax = 0x1p100F;
 SPHERECHAIN_HD float usual_root(float x) {
 #if defined(__CUDA_ARCH__)
   float inverse;
@@ -170,7 +126,7 @@ SPHERECHAIN_HD float usual_root(float x) {
 #endif
 }
 
-// Keeps the compiler from working a figure out anew in each branch that wants it.
+// Keeps the compiler from computing a figure again in each branch that reads it.
 SPHERECHAIN_HD void make_once(float& figure) {
 #if defined(__CUDA_ARCH__)
   asm volatile("" : "+f"(figure));
@@ -179,8 +135,7 @@ SPHERECHAIN_HD void make_once(float& figure) {
 #endif
 }
 
-// What a warp is to do next: on the device each warp that asks gets the next place; the tests' warps, whose threads run
-// one after another, take turns.
+// The number of a warp's next piece of work. On the device the next one that nobody has; on the CPU warps take turns.
 SPHERECHAIN_HD std::uint32_t deal(std::uint32_t* dealt, const Place& at, std::uint32_t round) {
 #if defined(__CUDA_ARCH__)
   std::uint32_t place = 0;
@@ -194,15 +149,10 @@ SPHERECHAIN_HD std::uint32_t deal(std::uint32_t* dealt, const Place& at, std::ui
 #endif
 }
 
-#if defined(__CUDA_ARCH__)
-#define SPHERECHAIN_COPIES_PAST_CACHE (__CUDA_ARCH__ >= 800)
-#else
-#define SPHERECHAIN_COPIES_PAST_CACHE 0
-#endif
-
-// From Ampere on past the first cache, where the tables are. arrive() before the barrier that makes the copies seen.
+// Copies 16 bytes, from Ampere on past the first cache, where the tables are. Before the barrier that makes the copies
+// visible, call wait_for_copies().
 SPHERECHAIN_HD void copy_past_cache(Float4* shared, const float* from) {
-#if SPHERECHAIN_COPIES_PAST_CACHE
+#if SPHERECHAIN_AMPERE
   const auto to = static_cast<std::uint32_t>(__cvta_generic_to_shared(shared));
   asm volatile("cp.async.cg.shared.global [%0], [%1], 16;" ::"r"(to), "l"(from) : "memory");
 #else
@@ -210,18 +160,10 @@ SPHERECHAIN_HD void copy_past_cache(Float4* shared, const float* from) {
 #endif
 }
 
-SPHERECHAIN_HD void arrive() {
-#if SPHERECHAIN_COPIES_PAST_CACHE
+SPHERECHAIN_HD void wait_for_copies() {
+#if SPHERECHAIN_AMPERE
   asm volatile("cp.async.wait_all;" ::: "memory");
 #endif
-}
-
-// a / b rounded once, from share = 1 / b, for b from kLeastScale to 1 / kLeastScale and a root of usual_root, or a mean
-// of such. The first quotient is off by less than two units in the last place, the second by less than one; what it
-// leaves is exact, and so the third is a / b rounded (Markstein's theorem).
-SPHERECHAIN_HD float usual_quotient(float a, float b, float share) {
-  const float first = a * share, second = fused(fused(-b, first, a), share, first);
-  return fused(fused(-b, second, a), share, second);
 }
 
 }  // namespace spherechain::cuda

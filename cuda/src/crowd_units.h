@@ -1,51 +1,34 @@
 // SPDX-License-Identifier: MIT
-// The crowd's kernel: which pairs are surely apart, sixteen spheres against sixteen at once, by a warp.
+// The kernel for spheres: which pairs are surely apart, sixteen spheres against sixteen at once, by a warp.
 #pragma once
 
-#include "crowd_own.h"
-#include "crowd_primitives.h"
+#include "crowd_pairs.h"
 
 namespace spherechain::cuda {
 
-// Half of what radii r add to the squared reach of two spheres is at most rp^2 + rq^2. So with p and q seen from the
-// instance's origin, and power(p) = rp^2 - |p|^2 / 2,
-//   power(p) + power(q) + p.q >= ((rp + rq)^2 - |p - q|^2) / 2,
-// which is above 0 where they touch. All lose their bits past the eleventh, for matrix units that multiply such: a
-// product is off by 2^-9 of itself and hardly more, so p.q by 2^-10 (|p|^2 + |q|^2); a power above 0 by 2^-10 rp^2, one
-// below 0 only rises. The sum's own roundings, and those before, are below 2^-18 of G = |p|^2 + rp^2 of both
-// (runtime/src/sphere_columns.h shows of a sum much as this one 33 * 2^-24). So each power is larger by 2^-10 + 2^-16
-// of its own sphere's share of G, and by 2^-120 for what underflows: then the computed sum is above 0 too. For what is
-// too large for that, or not finite, the power and with it the sum is infinite or no number, and not below 0 either.
+// A sphere as matrix units take it, which multiply figures of eleven bits: relative to the sphere in the middle of the
+// others, and with its power. A figure cut to eleven bits is off by 2^-10 of itself, so a product by hardly more than
+// 2^-9 and p.q by 2^-10 (|p|^2 + |q|^2). A power above 0 is off by 2^-10 rp^2; one below 0 only rises. All other
+// roundings are below 2^-18 of |p|^2 + rp^2 of both.
 SPHERECHAIN_HD Float4 see_sphere(const Float4& s, const Float4& origin) {
-  constexpr float kMargin = 0x1p-10F + 0x1p-16F, kLeast = 0x1p-120F, kMostExtent = 1e36F;
-  const float x = s.x - origin.x, y = s.y - origin.y, z = s.z - origin.z;
-  const float squared_length = fused(z, z, fused(y, y, x * x)), squared_radius = s.w * s.w;
-  const float power = fused(1.0F + kMargin, squared_radius, fused(kMargin - 0.5F, squared_length, kLeast));
-  return {eleven_bits(x), eleven_bits(y), eleven_bits(z),
-          squared_length + squared_radius <= kMostExtent ? eleven_bits(power) : INFINITY};
+  constexpr float kMargin = 0x1p-10F + 0x1p-16F;
+  const Vec3 seen{s.x - origin.x, s.y - origin.y, s.z - origin.z};
+  return {eleven_bits(seen.x), eleven_bits(seen.y), eleven_bits(seen.z), eleven_bits(power_of(seen, s.w, kMargin))};
 }
 
-// Where a unit's sphere lies among the sixteen: spheres next to each other, which often touch the same others, are
-// different lanes' work.
+// The place of a sphere among its unit's sixteen. Neighbours, which often touch the same others, go to different lanes.
 SPHERECHAIN_HD std::uint32_t place_of(std::uint32_t sphere) {
   return sphere / kUnit * kUnit + sphere % 8 * 2 + sphere / 8 % 2;
 }
 
-// Lane 4 g + t has rows g and g + 8 of a unit, and columns 2 t, 2 t + 1, 2 t + 8 and 2 t + 9: as the matrix units leave
-// their sums.
+// As matrix units leave sums, lane 4 g + t has rows g, g + 8 of a unit and columns 2 t, 2 t + 1, 2 t + 8, 2 t + 9.
 SPHERECHAIN_HD std::uint32_t row_of(std::uint32_t lane, std::uint32_t pair) { return lane / 4 + pair / 2 % 2 * 8; }
 SPHERECHAIN_HD std::uint32_t column_of(std::uint32_t lane, std::uint32_t pair) {
   return lane % 4 * 2 + pair % 2 + pair / 4 % 2 * 8;
 }
 
-#if defined(__CUDA_ARCH__)
-#define SPHERECHAIN_MATRIX_UNITS (__CUDA_ARCH__ >= 800)
-#else
-#define SPHERECHAIN_MATRIX_UNITS 0
-#endif
-
-#if SPHERECHAIN_MATRIX_UNITS
-// A lane's part of units: rows are x, y, z, power and columns x, y, z, 1, whose powers are added.
+// A lane's part of the units. A row has x, y, z and its power, a column x, y, z and 1; the columns' powers are added.
+#if SPHERECHAIN_AMPERE
 class Units {
  public:
   struct Rows {
@@ -56,10 +39,10 @@ class Units {
     Float4 powers, second_powers;
   };
 
-  __device__ __forceinline__ Units(const GroupView& v, const Own& own)
-      : figures_(own.seen + own.lane % 4 * seen_pitch(v) + own.lane / 4 * 2),
-        powers_(own.powers + own.lane % 4 * 4),
-        is_power_(own.lane % 4 == 3) {}
+  __device__ __forceinline__ Units(const GroupView& v, const WarpInstance& w)
+      : figures_(w.seen + w.lane % 4 * seen_pitch(v) + w.lane / 4 * 2),
+        powers_(w.powers + w.lane % 4 * 4),
+        is_power_(w.lane % 4 == 3) {}
 
   __device__ __forceinline__ Rows rows(std::uint32_t unit) const {
     const float2 two = *reinterpret_cast<const float2*>(figures_ + unit * kUnit);
@@ -96,7 +79,8 @@ class Units {
     Float4 at[4];  // by pair % 2 and pair / 4
   };
 
-  SPHERECHAIN_HD Units(const GroupView& v, const Own& own) : seen_(own.seen), pitch_(seen_pitch(v)), lane_(own.lane) {}
+  SPHERECHAIN_HD Units(const GroupView& v, const WarpInstance& w)
+      : seen_(w.seen), pitch_(seen_pitch(v)), lane_(w.lane) {}
 
   SPHERECHAIN_HD Rows rows(std::uint32_t unit) const {
     return {{seen(unit, row_of(lane_, 0)), seen(unit, row_of(lane_, 2))}};

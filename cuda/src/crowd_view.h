@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// What a block of the crowd's kernel sees: the tables' entries, a group's pointers, and its own shared memory.
+// What a block of the crowd's kernels sees: the tables' entries, a group's pointers, and the block's own memory.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 
-#include "spherechain/cuda_crowd.h"
+#include "spherechain/cuda.h"
 
 #if defined(__CUDACC__)
 #define SPHERECHAIN_HD __host__ __device__ __forceinline__
-#define SPHERECHAIN_HD_RARE inline __host__ __device__ __noinline__  // so that its registers are not everyone's
+#define SPHERECHAIN_HD_RARE inline __host__ __device__ __noinline__  // keeps its registers out of the caller
 #else
 #define SPHERECHAIN_HD inline
 #define SPHERECHAIN_HD_RARE inline
@@ -25,215 +25,157 @@
 
 namespace spherechain::cuda {
 
-inline constexpr std::uint32_t kLanes = 32;  // instances a block, one a lane
-inline constexpr std::uint32_t kPitch =
-    33;  // of shared arrays: neither a lane's nor an instance's figures share a bank
-inline constexpr std::uint32_t kFewInstances = 8;  // a block, where they come as spheres: one a warp
-inline constexpr std::uint32_t kRows = 8;          // spheres in registers
-inline constexpr std::uint32_t kColumns = 8;       // that an item tests them against
+inline constexpr std::uint32_t kLanes = 32;
+inline constexpr std::uint32_t kWarpsMax = 8;         // of a block
+inline constexpr std::uint32_t kSphereInstances = 8;  // a block tests, if they come as spheres: one a warp
+// The pitch of arrays with a column for each instance of a block: neither neighbours in a row nor in a column share a
+// bank of shared memory.
+inline constexpr std::uint32_t kPitch = 33;
 
 struct alignas(16) Float4 {
   float x, y, z, w;
 };
 
-inline constexpr std::size_t kHalf = kPivotLanes / 2;
+// ---- Pairs of instances that come from bones: eight rows of spheres, in registers, against eight columns ----
 
-struct alignas(16) GroupEntry {
-  Float4 weights[2];
-  std::uint32_t first_term, term_count;
-  std::uint32_t first_morph_term, unused;
-};
+inline constexpr std::uint32_t kRows = 8, kColumns = 8;
+inline constexpr std::uint32_t kHalfItem = 32, kHalfColumns = kHalfItem / kRows;
 
-// Those whose refit costs most come first.
-struct alignas(16) SphereEntry {
-  std::uint32_t sphere, pivot_count;
-  std::uint32_t first_group, group_count;
-  GroupEntry group;     // the first one
-  float wanted, scale;  // calibrated: wanted * (mean / scale); paper: mean * wanted
-  float scale_share;    // 1 / scale where usual_quotient may be used, or 0
-  float unused;
-};
-
-// What a bone adds to four pivots: BoneTerm by halves.
-struct alignas(16) HalfTerm {
-  Float4 x, y, z, w;
-};
-
-// Bit kHalfItem - 1 - (kRows * c + r) of wanted[h]: sphere first_row + r is tested against first + c + h * 4, which is
-// the larger one.
+// Bit kHalfItem - 1 - (kRows * c + r) of wanted[h] is set if sphere first_row + r is tested against sphere
+// first + h * kHalfColumns + c, which is the larger index.
 struct alignas(16) PairColumns {
   std::uint32_t first, wanted[2];
   std::uint32_t unused;
 };
 
-// Rows that a warp holds against some columns after others. Items of most columns come first.
+// Rows that a warp tests against some columns after others. Items of most columns come first.
 inline constexpr std::uint32_t kItemColumns = 3;
 struct alignas(16) PairItem {
   std::uint32_t first_row, count;
   std::uint32_t unused[2];
   PairColumns columns[kItemColumns];
 };
-inline constexpr std::uint32_t kUnit = 16;  // spheres that matrix units test against as many
-// Unit c (c + 1) / 2 + r is that of rows 16 r and on and columns 16 c and on, r <= c; four units after each other are a
-// word. Each lane of a warp takes eight pairs of every unit, see row_of and column_of (crowd_units.h), and of every
-// word knows which of them are wanted.
-inline constexpr std::uint32_t kWordUnits = 4, kLanePairs = 8;
+
+// ---- Pairs of instances that come as spheres: units of 16 by 16, for the matrix units ----
+
+// Unit c (c + 1) / 2 + r has the rows from 16 r on and the columns from 16 c on, r <= c. Four units are a word, of
+// which each lane of a warp takes 32 bits: eight pairs of each unit, see row_of() and column_of().
+inline constexpr std::uint32_t kUnit = 16, kWordUnits = 4, kLanePairs = 8;
 SPHERECHAIN_HD std::uint32_t units_of(std::uint32_t spheres) { return (spheres + kUnit - 1) / kUnit; }
 SPHERECHAIN_HD std::uint32_t words_of_units(std::uint32_t units) {
   return (units * (units + 1) / 2 + kWordUnits - 1) / kWordUnits;
 }
 
-inline constexpr float kLeastScale = 0x1p-60F;  // and its inverse: see usual_quotient
-inline constexpr std::uint32_t kHalfItem = 32, kHalfColumns = kHalfItem / kRows;
-
-// Tables have as many as lanes_of() says, the spare ones of reach 0.
-struct alignas(16) NearEntry {
+// Pairs that touch at rest. There are as many as lanes_of() says; the spare ones have scale 0 and never touch.
+struct alignas(16) RestPair {
   std::uint32_t a, b;
-  float reach;
+  float scale;
   std::uint32_t unused;
 };
 
-// Covers: of a sphere's leaves those that come after each other; the spheres with most of them first.
-struct alignas(16) CoverEntry {
-  Vec3 rest;  // of a sphere without leaves
-  std::uint32_t sphere;
-  std::uint32_t first_leaf, leaf_count;
-  std::uint32_t unused[2];
-};
+// ---- Refit by moments ----
 
-struct alignas(16) LeafEntry {
-  Float4 ball;  // at rest
-  std::uint32_t first_term, term_count;
-  std::uint32_t first_morph, morph_count;
-};
-
-// CoverTerm, of one leaf.
-struct alignas(16) LeafTerm {
-  float weight, deviation;
-  std::uint32_t bone;  // of those used
-  std::uint32_t unused;
-};
-
-struct alignas(16) LeafMorph {
-  Float4 ball;  // around the deltas
-  std::uint32_t target;
-  std::uint32_t unused[3];
-};
-
-// Spheres that a warp refits at once, by moments. The dearest runs come first.
+// Spheres that a warp refits at once. The runs that take longest come first.
 struct alignas(16) MomentRun {
-  std::uint32_t first_step, first_moment;  // of what follows in its own array
+  std::uint32_t first_step, first_moment;  // the first of this run in each array
   std::uint32_t first_bone, first_center;
   std::uint32_t first_sphere, sphere_count;
   std::uint32_t bone_count, kind;
   std::uint32_t cost;
 };
-// Of a run: many spheres of the same two bones, or three; two spheres of the same bones; one or two of any.
-inline constexpr std::uint32_t kTwoBones = 0, kThreeBones = 1, kEqualBones = 2, kAnyBones = 3;
-inline constexpr std::uint32_t kRunSpheres = 2, kMostRunSpheres = 8;
+// The kinds of runs: many spheres of the same two bones, or of the same three; one or two spheres of any bones.
+inline constexpr std::uint32_t kTwoBones = 0, kThreeBones = 1, kAnyBones = 2;
+inline constexpr std::uint32_t kRunSpheres = 2, kRunSpheresMax = 8;
 
 struct alignas(8) RunSphere {
   std::uint32_t sphere;
-  float wanted;
+  float wanted;  // its radius at rest
 };
 
-// A pair of bones: where shared memory has the second one's matrix, in bytes, which end in four bits of zero; bit s is
-// set where the run's sphere s has both. Pairs go (0, 0), (0, 1) .., (1, 1) .., but for those that neither has.
+// A step is a pair of bones, in the order (0, 0), (0, 1) .., (1, 1) .., without those that no sphere of the run has.
+// Its word is the offset in bytes of the second bone's matrix in the block's memory, whose last four bits are 0, and in
+// these: bit s is set if sphere s of the run has both bones.
 inline constexpr std::uint32_t kLastOfBone = 4, kLastOfRun = 8, kMatrixMask = ~15U;
 
-// A moment of a bone with itself, 0 below its diagonal: 00 01 02 03 11 12 13 22 23 33.
-inline constexpr std::uint32_t kOwnFigures = 10;
-inline constexpr std::uint32_t kOwnQuads = 3, kPairQuads = 4;  // of a moment, by fours
+inline constexpr std::uint32_t kPairQuads = 4;  // a moment of two bones, by fours
 
 SPHERECHAIN_HD constexpr std::size_t pairs_of_bones(std::size_t bones) { return bones * (bones + 1) / 2; }
 
-// Of a moment's column: all, or those not below the diagonal.
-SPHERECHAIN_HD constexpr std::size_t rows_of_moment(bool is_own, std::size_t column) { return is_own ? column + 1 : 4; }
+// How many rows of a moment's column are kept: of a bone with itself, those not below the diagonal, which are 0.
+SPHERECHAIN_HD constexpr std::size_t rows_of_moment(bool is_self, std::size_t column) {
+  return is_self ? column + 1 : 4;
+}
 
-// Of a sphere of few bones: pair after pair, and in each column after column, `step` apart, what may not be 0.
-SPHERECHAIN_HD constexpr std::size_t few_bone_quads(std::size_t bones, std::size_t first_column, std::size_t step) {
+// The quads that a sphere of few bones has for the columns `first`, `first` + `step` ..: pair after pair.
+SPHERECHAIN_HD constexpr std::size_t few_bone_quads(std::size_t bones, std::size_t first, std::size_t step) {
   std::size_t figures = 0;
-  for (std::size_t column = first_column; column < 4; column += step) {
+  for (std::size_t column = first; column < 4; column += step) {
     figures += bones * rows_of_moment(true, column) + (pairs_of_bones(bones) - bones) * 4;
   }
   return (figures + 3) / 4;
 }
 
-// How large a bone's matrix is, as runtime/src/cover_kernel.h has it.
-struct alignas(8) BoneSize {
-  float norm, translation;
+// ---- Views ----
+
+// Stands at the start of CrowdTables::words. Places are in words from there.
+struct TableHeader {
+  std::uint32_t sphere_count, bone_count;  // bone_count: the asset's, or 0 if it is not refitted by moments
+  std::uint32_t used_bone_count, item_count, rest_pair_count, run_count, bit_words;
+  std::uint32_t reference;      // bone of MomentTables, among those used
+  std::uint32_t origin_sphere;  // see see_sphere()
+  std::uint32_t has_padding;
+  Vec3 origin;
+  std::uint32_t paddings, items, unit_places, wanted, rest_pairs;
+  std::uint32_t used_bones, runs, run_spheres, moment_steps, moments, run_bones, center_terms;
 };
 
-// How a matrix' float at row i and column k lies: data[row * i + column * k].
+// A matrix has row i, column k at data[row * i + column * k].
 struct MatrixSteps {
   std::uint32_t row, column;
 };
 
-inline constexpr std::uint32_t kMostWarps = 8;
-inline constexpr std::uint32_t kQueued = 256;  // pairs that a warp may find before it decides
-inline constexpr std::uint32_t kBoxFigures = 6;
+// Pairs that a block (from bones) or a warp (from spheres) may queue before it decides about them. A block's entry has
+// 32 bits for lane and pair: assets of more spheres have no queue.
+inline constexpr std::uint32_t kBlockQueued = 1024, kWarpQueued = 256, kQueuedSpheresMax = 8192;
+SPHERECHAIN_HD bool has_queue(std::uint32_t sphere_count) { return sphere_count <= kQueuedSpheresMax; }
 
-// Where instances come from bones: pairs that a block may find before it decides, and of how many spheres at most, for
-// an entry has 32 bits.
-inline constexpr std::uint32_t kBlockQueued = 1024, kMostQueuedSpheres = 8192;
-SPHERECHAIN_HD bool has_queue(std::uint32_t sphere_count, bool covers) {
-  return !covers && sphere_count <= kMostQueuedSpheres;
-}
-
-// In bytes from the start of a block's shared memory.
-struct SharedLayout {
-  // Where instances come from bones. Matrices and what else is of bones are no longer needed when pairs are tested:
-  // what that needs lies in the same place.
-  std::uint32_t matrices, morph_weights, bone_sizes, reference, powers, bits, ordered_bits, queue, spheres, counts,
-      dealt, parts, boxes, radii;
-  // Where they come as spheres, from the start of a warp's own.
-  std::uint32_t own_size, own_seen, own_powers, own_bits, own_ordered_bits, own_boxes, own_parts, own_spheres;
+// Offsets in bytes. The matrices are no longer needed when pairs are tested: bits and queue lie in the same place.
+struct BlockLayout {
+  // From bones: from the start of the block's memory.
+  std::uint32_t matrices, reference, powers, bits, ordered_bits, queue, spheres, counts, dealt, parts;
+  // From spheres: from the start of a warp's part, which has `warp_size` bytes.
+  std::uint32_t warp_size, warp_seen, warp_powers, warp_bits, warp_ordered_bits, warp_parts, warp_spheres;
   std::size_t size;
 };
 
 struct GroupView {
-  const SphereEntry* sphere_entries;
   const float* paddings;
-  const GroupEntry* groups;
-  const HalfTerm* terms;  // two a term
-  // Where shared memory has a term's matrix, in bytes; and one more for who looks ahead.
-  const std::uint32_t* term_matrices;
-  const std::uint32_t* used_bones;
-  const std::uint32_t* morph_counts;  // null where nothing morphs
-  const std::uint32_t* morph_targets;
-  const MorphTerm* morph_terms;
   const PairItem* items;
-  const std::uint32_t* unit_places;  // r and, in the upper half, c of each unit of each word
-  const std::uint32_t* wanted;       // [word][lane]: bit 31 - i for the pair i
-  const NearEntry* near;
-  const CoverEntry* cover_entries;  // null but in tables of covers
-  const LeafEntry* leaf_entries;
-  const LeafTerm* leaf_terms;
-  const LeafMorph* leaf_morphs;
-  const MomentRun* runs;  // null but where spheres follow bones by moments
+  const std::uint32_t* unit_places;  // of each unit: r and, in the upper half, c
+  const std::uint32_t* wanted;       // [word][lane]: bit 31 - i for the lane's pair i
+  const RestPair* rest_pairs;
+  const std::uint32_t* used_bones;
+  const MomentRun* runs;
   const std::uint32_t* moment_steps;
   const Float4* moments;
-  const std::uint32_t* run_bones;  // as steps, without marks of the last
+  const std::uint32_t* run_bones;  // as steps, without kLastOfBone and kLastOfRun
   const RunSphere* run_spheres;
   const Float4* center_terms;
   Vec3 origin;
-  std::uint32_t sphere_count, used_bone_count, item_count, near_count, morph_count, bit_words, leaf_count;
-  std::uint32_t run_count, reference;  // reference: of the bones used
-  std::uint32_t origin_sphere;         // from which an instance's spheres are seen
-  bool calibrated, has_padding, has_morphs;
+  std::uint32_t sphere_count, used_bone_count, item_count, rest_pair_count, run_count, bit_words;
+  std::uint32_t reference, origin_sphere;
+  bool has_padding;
 
   const Sphere* spheres;
-  const float* matrices;  // null where the instances come as spheres
-  const float* morph_weights;
+  const float* matrices;  // null if the instances come as spheres
   std::size_t sphere_stride;
   std::uint32_t bone_stride, instance_stride;  // floats
   MatrixSteps steps;
-  bool wide_matrices, wide_spheres, wide_refitted, wide_leaves;  // aligned for reads and writes of 16 bytes
+  bool wide_matrices;  // whose rows are read 16 bytes at a time
+  bool in_scratch;     // the block's memory is not shared memory
   std::uint32_t instance_count;
 
   Sphere* refitted;
-  Sphere* leaves;
-  Sphere* bounds;
   std::uint32_t* counts;
   std::uint64_t* bits;
   CrowdPair* pairs;
@@ -241,17 +183,16 @@ struct GroupView {
   std::uint64_t* starts;
   std::uint64_t* pair_count;
 
-  // Blocks with memory in scratch take turns: that many at once.
   unsigned char* scratch;
   std::size_t scratch_bytes;
-  std::uint32_t scratch_blocks;
+  std::uint32_t scratch_blocks;  // that run at once and take the group's blocks in turns
 
   std::uint32_t first_block;
-  SharedLayout layout;
+  BlockLayout layout;
 };
 
 SPHERECHAIN_HD std::uint32_t block_instances(const GroupView& v) {
-  return v.matrices != nullptr ? kLanes : kFewInstances;
+  return v.matrices != nullptr ? kLanes : kSphereInstances;
 }
 
 SPHERECHAIN_HD std::uint32_t blocks_of(const GroupView& v) {
@@ -265,14 +206,14 @@ SPHERECHAIN_HD std::uint32_t sphere_places(const GroupView& v) {
   return v.sphere_count < kColumns ? kColumns : v.sphere_count;
 }
 
-// As many as all lanes take in turns.
-SPHERECHAIN_HD std::uint32_t lanes_of(std::uint32_t spheres) { return (spheres + kLanes - 1) / kLanes * kLanes; }
+// Rounded up, so that all lanes of a warp take as many.
+SPHERECHAIN_HD std::uint32_t lanes_of(std::uint32_t count) { return (count + kLanes - 1) / kLanes * kLanes; }
 
-// Of the rows in which a warp has the spheres as they are seen: no two lanes that read at once share a bank.
+// The pitch of WarpInstance::seen: no two lanes that read at once share a bank.
 SPHERECHAIN_HD std::uint32_t seen_pitch(const GroupView& v) { return lanes_of(v.sphere_count) + kUnit / 2; }
 
-// A block's thread. Where instances come from bones a lane is one of them, and its threads share the work; where they
-// come as spheres a warp is.
+// A thread of a block. If instances come from bones, a lane is one of them and the warps share the work; if they come
+// as spheres, a warp is one of them and its lanes share the work.
 struct Place {
   std::uint32_t thread, threads, block;  // block: of the group
 
@@ -281,42 +222,65 @@ struct Place {
   SPHERECHAIN_HD std::uint32_t warps() const { return threads / kLanes; }
 };
 
+// A block's memory: shared memory, or a part of the group's scratch.
 struct Shared {
-  Float4* matrices;  // [3 * bone + row][lane]
-  float* morph_weights;
-  BoneSize* bone_sizes;  // [bone][lane]
-  float* reference;      // [axis][lane]: where the reference bone has the origin
-  Float4* spheres;       // [sphere][lane], with the filter's padding
-  float* powers;         // [sphere][lane]
-  std::uint32_t* bits;
-  std::uint32_t* ordered_bits;  // in the order of sorted pairs
-  std::uint32_t* counts;
-  std::uint32_t* queue;  // a pair of one instance each, see queue_entry
-  std::uint32_t* dealt;  // spheres or runs to refit, then pairs to test; and how many are queued
-  std::uint64_t* start;  // the block's place in the list
-  std::uint32_t* parts;  // [warp][lane]: pairs in each warp's part of the ordered bits
-  float* boxes;          // [axis, low or high][warp][lane] around centres
-  std::uint32_t* radii;  // of bounds: floats of no sign, which are ordered as their bits are
-  unsigned char* own;    // of each warp
+  unsigned char* bytes;
+  Float4* matrices;             // [3 * bone + row][lane]
+  float* reference;             // [axis][lane]: where the reference bone has the origin
+  Float4* spheres;              // [sphere][lane], with the filter's padding
+  float* powers;                // [sphere][lane], see power_of()
+  std::uint32_t* bits;          // [half word][lane]
+  std::uint32_t* ordered_bits;  // the same in the order of sorted pairs
+  std::uint32_t* counts;        // [lane]
+  std::uint32_t* queue;         // see queue_entry()
+  std::uint32_t* dealt;         // runs dealt, then pair items; and the length of the queue
+  std::uint64_t* start;         // the block's place in the list
+  std::uint32_t* parts;         // [warp][lane]: pairs in each warp's part of the ordered bits
 
-  SPHERECHAIN_HD Shared(void* memory, const SharedLayout& layout) {
-    auto* bytes = static_cast<unsigned char*>(memory);
+  SPHERECHAIN_HD Shared(void* memory, const BlockLayout& layout) : bytes(static_cast<unsigned char*>(memory)) {
     matrices = reinterpret_cast<Float4*>(bytes + layout.matrices);
-    morph_weights = reinterpret_cast<float*>(bytes + layout.morph_weights);
-    bone_sizes = reinterpret_cast<BoneSize*>(bytes + layout.bone_sizes);
     reference = reinterpret_cast<float*>(bytes + layout.reference);
     spheres = reinterpret_cast<Float4*>(bytes + layout.spheres);
+    powers = reinterpret_cast<float*>(bytes + layout.powers);
     bits = reinterpret_cast<std::uint32_t*>(bytes + layout.bits);
     ordered_bits = reinterpret_cast<std::uint32_t*>(bytes + layout.ordered_bits);
-    powers = reinterpret_cast<float*>(bytes + layout.powers);
     counts = reinterpret_cast<std::uint32_t*>(bytes + layout.counts);
     queue = reinterpret_cast<std::uint32_t*>(bytes + layout.queue);
     dealt = reinterpret_cast<std::uint32_t*>(bytes + layout.dealt);
     start = reinterpret_cast<std::uint64_t*>(bytes + layout.parts);
     parts = reinterpret_cast<std::uint32_t*>(bytes + layout.parts) + 4;
-    boxes = reinterpret_cast<float*>(bytes + layout.boxes);
-    radii = reinterpret_cast<std::uint32_t*>(bytes + layout.radii);
-    own = bytes;
+  }
+};
+
+struct alignas(16) WarpState {
+  std::uint32_t count, queued;       // touching pairs; pairs that are in the queue or found no room there
+  std::uint64_t start;               // of the instance's list
+  std::uint32_t queue[kWarpQueued];  // (unit * kLanePairs + pair) * kLanes + lane
+};
+
+// The instance that a warp tests, its part of the block's memory, and the lane. For instances that come as spheres.
+struct WarpInstance {
+  WarpState* state;
+  float* seen;    // [x, y, z, power][place_of(sphere)], see see_sphere()
+  float* powers;  // [pair of spheres][first, second, first, second]
+  std::uint32_t* bits;
+  std::uint32_t* ordered_bits;  // the same in the order of sorted pairs
+  std::uint32_t* parts;         // [lane]: pairs in each lane's part of the ordered bits
+  Float4* spheres;
+  std::uint32_t lane, instance;
+
+  // `place`: the instance's in its block.
+  SPHERECHAIN_HD WarpInstance(const GroupView& v, const Shared& shared, const Place& at, std::uint32_t place)
+      : lane(at.lane()), instance(at.block * kSphereInstances + place) {
+    const BlockLayout& layout = v.layout;
+    unsigned char* const bytes = shared.bytes + at.warp() * layout.warp_size;
+    state = reinterpret_cast<WarpState*>(bytes);
+    seen = reinterpret_cast<float*>(bytes + layout.warp_seen);
+    powers = reinterpret_cast<float*>(bytes + layout.warp_powers);
+    bits = reinterpret_cast<std::uint32_t*>(bytes + layout.warp_bits);
+    ordered_bits = reinterpret_cast<std::uint32_t*>(bytes + layout.warp_ordered_bits);
+    parts = reinterpret_cast<std::uint32_t*>(bytes + layout.warp_parts);
+    spheres = reinterpret_cast<Float4*>(bytes + layout.warp_spheres);
   }
 };
 

@@ -1,19 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "spherechain/cuda_host_crowd.h"
-
 #include <cuda_runtime_api.h>
 
 #include <algorithm>
 #include <exception>
 #include <vector>
 
-#include "crowd_access.h"
-#include "device_error.h"
-#include "spherechain/cuda_device.h"
+#include "crowd_launch.h"
 
 namespace spherechain::cuda {
 namespace {
 
+// An array on the device.
 template <typename T>
 class Array {
  public:
@@ -22,19 +19,18 @@ class Array {
   Array& operator=(const Array&) = delete;
   ~Array() { cudaFree(data_); }
 
-  Status allocate(std::size_t size) {
+  // At least that large; what it held is lost if it grows.
+  Status reserve(std::size_t size) {
+    if (size <= size_) {
+      return Status::kOk;
+    }
     cudaFree(data_);
     data_ = nullptr;
     size_ = 0;
-    if (size == 0) {
-      return Status::kOk;
-    }
     const Status status = status_of(cudaMalloc(reinterpret_cast<void**>(&data_), size * sizeof(T)));
     size_ = status == Status::kOk ? size : 0;
     return status;
   }
-  // At least as large.
-  Status reserve(std::size_t size) { return size <= size_ ? Status::kOk : allocate(size); }
   Status put(const T* from, std::size_t count) {
     return status_of(cudaMemcpy(data_, from, count * sizeof(T), cudaMemcpyHostToDevice));
   }
@@ -43,13 +39,14 @@ class Array {
                                        : status_of(cudaMemcpy(to, data_, count * sizeof(T), cudaMemcpyDeviceToHost));
   }
   T* data() const { return data_; }
+  std::size_t size() const { return size_; }
 
  private:
   T* data_ = nullptr;
   std::size_t size_ = 0;
 };
 
-// The first that is not kOk.
+// Runs the steps up to the first that is not kOk, and returns its status.
 template <typename... Steps>
 Status first_failure(const Steps&... steps) {
   Status status = Status::kOk;
@@ -67,109 +64,101 @@ struct HostCrowd::Memory {
       }
     }
   }
+
+  Status allocate_on_device(std::size_t instances, std::size_t pair_capacity);
+  Status allocate_scratch(std::size_t instances);
+
+  CrowdTables tables;
   std::vector<std::uint64_t> words;
-  Array<std::uint64_t> tables, starts, pair_count;
-  Array<float> matrices, weights;
+  Array<std::uint64_t> device_tables, starts, pair_count;
+  Array<float> matrices;
   Array<Sphere> spheres;
   Array<std::uint32_t> counts;
   Array<CrowdPair> pairs;
   Array<unsigned char> scratch;
-  std::size_t scratch_bytes = 0;
   cudaEvent_t begin = nullptr, end = nullptr;
-  std::vector<std::uint64_t> starts_there;
-  std::vector<std::uint32_t> counts_there;
-  std::vector<CrowdPair> pairs_there;
+  // Copies of the device's, of the size that open() was given.
+  std::vector<std::uint64_t> host_starts;
+  std::vector<std::uint32_t> host_counts;
+  std::vector<CrowdPair> host_pairs;
 };
 
-// The host's memory: where there is not as much, that is told as the device's is.
-Status HostCrowd::allocate_here(const Asset& asset, std::size_t instances, std::size_t pair_capacity) noexcept {
-  try {
-    memory_ = new Memory;
-    memory_->words.resize(CrowdTables::words_needed(asset));
-    memory_->starts_there.resize(instances);
-    memory_->counts_there.resize(instances);
-    memory_->pairs_there.resize(pair_capacity);
-  } catch (const std::exception&) {
-    return status_of(cudaErrorMemoryAllocation);
-  }
-  return Status::kOk;
+Status HostCrowd::Memory::allocate_on_device(std::size_t instances, std::size_t pair_capacity) {
+  return first_failure([&] { return check_device(); }, [&] { return device_tables.reserve(tables.words.size); },
+                       [&] { return device_tables.put(tables.words.data, tables.words.size); },
+                       [&] { return spheres.reserve(instances * header_of(tables).sphere_count); },
+                       [&] { return counts.reserve(instances); }, [&] { return starts.reserve(instances); },
+                       [&] { return pair_count.reserve(1); }, [&] { return pairs.reserve(pair_capacity); },
+                       [&] { return allocate_scratch(instances); }, [&] { return status_of(cudaEventCreate(&begin)); },
+                       [&] { return status_of(cudaEventCreate(&end)); });
 }
 
-// For assets too large for the device's shared memory; the rest gets none.
-Status HostCrowd::allocate_scratch(std::size_t instances) noexcept {
-  constexpr std::size_t kMostBytes = std::size_t{1} << 30;  // but for a single block, which may need more
-  int device = 0, most_shared = 0, multiprocessors = 0;
-  Status status = status_of(cudaGetDevice(&device));
-  if (status == Status::kOk) {
-    status = status_of(cudaDeviceGetAttribute(&most_shared, cudaDevAttrMaxSharedMemoryPerBlockOptin, device));
-  }
-  if (status == Status::kOk) {
-    status = status_of(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device));
-  }
-  const std::size_t block = tables_.shared_bytes(true, tables_.morph_count() > 0, false, true);
-  if (status != Status::kOk || block <= static_cast<std::size_t>(most_shared)) {
+// Only for assets too large for the device's shared memory: two blocks a multiprocessor, but at most 1 GiB if that is
+// enough for one.
+Status HostCrowd::Memory::allocate_scratch(std::size_t instances) {
+  constexpr std::size_t kBytesMax = std::size_t{1} << 30;
+  int device = 0, shared_bytes_max = 0, multiprocessors = 0;
+  const Status status = first_failure(
+      [&] { return status_of(cudaGetDevice(&device)); },
+      [&] {
+        return status_of(cudaDeviceGetAttribute(&shared_bytes_max, cudaDevAttrMaxSharedMemoryPerBlockOptin, device));
+      },
+      [&] { return status_of(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device)); });
+  const std::size_t block = tables.block_bytes(true, false, true);
+  if (status != Status::kOk || block <= static_cast<std::size_t>(shared_bytes_max)) {
     return status;
   }
-  const std::size_t useful =
-      std::min<std::size_t>(2 * static_cast<std::size_t>(multiprocessors), (instances + 31) / 32);
-  memory_->scratch_bytes = block * std::max<std::size_t>(1, std::min(useful, kMostBytes / block));
-  return memory_->scratch.allocate(memory_->scratch_bytes);
+  const std::size_t useful = std::min(2 * static_cast<std::size_t>(multiprocessors), (instances + kLanes - 1) / kLanes);
+  return scratch.reserve(block * std::clamp<std::size_t>(kBytesMax / block, 1, std::max<std::size_t>(useful, 1)));
 }
 
 void HostCrowd::close() noexcept {
   delete memory_;
   memory_ = nullptr;
-  instances_ = 0;
 }
 
 Status HostCrowd::open(const Asset& asset, RadiusKind radius, const Filter* filter, std::size_t instances,
                        std::size_t pair_capacity) noexcept {
   close();
-  if (!asset.is_open()) {
-    return Status::kNotOpen;
-  }
-  if (asset.bone_count() == 0) {
-    return Status::kNotInAsset;
-  }
-  constexpr std::size_t kMostInstances = 0x7FFFFFFF;  // CrowdJob's
-  if (instances == 0 || instances > kMostInstances || pair_capacity == 0) {
+  if (asset.is_open() && (instances == 0 || instances > 0x7FFFFFFF || pair_capacity == 0)) {
     return Status::kBadArgument;
   }
-  Status status = allocate_here(asset, instances, pair_capacity);
-  const std::size_t n = asset.spheres().size;
-  status = first_failure(
-      [&] { return status; },
-      [&] {
-        return tables_.build(asset, radius, filter, {memory_->words.data(), memory_->words.size()});
-      },
-      [&] { return check_device(); }, [&] { return memory_->tables.allocate(memory_->words.size()); },
-      [&] { return memory_->tables.put(memory_->words.data(), tables_.words()); },
-      [&] { return memory_->spheres.allocate(instances * n); }, [&] { return memory_->counts.allocate(instances); },
-      [&] { return memory_->starts.allocate(instances); }, [&] { return memory_->pair_count.allocate(1); },
-      [&] { return memory_->pairs.allocate(pair_capacity); },
-      [&] { return memory_->weights.allocate(instances * tables_.morph_count()); },
-      [&] { return allocate_scratch(instances); }, [&] { return status_of(cudaEventCreate(&memory_->begin)); },
-      [&] { return status_of(cudaEventCreate(&memory_->end)); });
+  Status status = Status::kOk;
+  try {
+    memory_ = new Memory;
+    memory_->words.resize(CrowdTables::words_needed(asset) + 1);
+    status = memory_->tables.build(asset, radius, filter, {memory_->words.data(), memory_->words.size()});
+    memory_->host_starts.resize(instances);
+    memory_->host_counts.resize(instances);
+    memory_->host_pairs.resize(pair_capacity);
+  } catch (const std::exception&) {
+    status = status_of(cudaErrorMemoryAllocation);
+  }
+  if (status == Status::kOk) {
+    status = header_of(memory_->tables).bone_count == 0 ? Status::kNotInAsset
+                                                        : memory_->allocate_on_device(instances, pair_capacity);
+  }
   if (status != Status::kOk) {
     close();
-    return status;
   }
-  instances_ = instances;
-  pair_capacity_ = pair_capacity;
-  return Status::kOk;
+  return status;
 }
 
 Status HostCrowd::run() noexcept {
+  pair_count = 0;
   if (!is_open()) {
     return Status::kNotOpen;
   }
-  if (instance_count > instances_) {
+  Memory& m = *memory_;
+  if (instance_count > m.host_counts.size()) {
     return Status::kBadArgument;
   }
-  Memory& m = *memory_;
+  if (instance_count == 0) {
+    return Status::kOk;
+  }
   CrowdGroup group;
-  group.tables = &tables_;
-  group.device_tables = m.tables.data();
+  group.tables = &m.tables;
+  group.device_tables = m.device_tables.data();
   group.instance_count = instance_count;
   group.bones = bones;
   group.instance_stride = instance_stride;
@@ -177,58 +166,49 @@ Status HostCrowd::run() noexcept {
   group.counts = m.counts.data();
   group.starts = m.starts.data();
   group.pairs = m.pairs.data();
-  group.pair_capacity = pair_capacity_;
+  group.pair_capacity = m.pairs.size();
   group.pair_count = m.pair_count.data();
   group.scratch = m.scratch.data();
-  group.scratch_bytes = m.scratch_bytes;
-  pair_count = 0;
-  if (instance_count == 0) {
-    return Status::kOk;
-  }
-  if (bones.data == nullptr) {
-    return Status::kNullArgument;
-  }
-  GroupView checked;  // before anything is worked out from the arguments
+  group.scratch_bytes = m.scratch.size();
+  GroupView checked;  // before anything is computed from the strides
   if (const Status refused = view_group(group, checked); refused != Status::kOk) {
     return refused;
   }
+  const TableHeader& header = header_of(m.tables);
   const std::size_t floats =
-      ((instance_count - 1) * instance_stride + (tables_.bone_count() - 1) * bones.stride + size_of(bones.layout)) /
+      ((instance_count - 1) * instance_stride + (header.bone_count - 1) * bones.stride + size_of(bones.layout)) /
       sizeof(float);
-  const bool has_weights = morph_weights != nullptr && tables_.morph_count() > 0;
   const CrowdJob job{{&group, 1}, nullptr};
   std::uint64_t found = 0;
   const Status status = first_failure(
       [&] { return m.matrices.reserve(floats); }, [&] { return m.matrices.put(bones.data, floats); },
-      [&] { return has_weights ? m.weights.put(morph_weights, instance_count * tables_.morph_count()) : Status::kOk; },
       [&] {
         group.bones.data = m.matrices.data();
-        group.morph_weights = has_weights ? m.weights.data() : nullptr;
         return status_of(cudaEventRecord(m.begin));
       },
       [&] { return job.run(); }, [&] { return status_of(cudaEventRecord(m.end)); },
       [&] { return status_of(cudaEventSynchronize(m.end)); },
       [&] { return status_of(cudaEventElapsedTime(&device_milliseconds, m.begin, m.end)); },
-      [&] { return m.counts.get(m.counts_there.data(), instance_count); },
-      [&] { return m.starts.get(m.starts_there.data(), instance_count); }, [&] { return m.pair_count.get(&found, 1); },
-      [&] { return m.spheres.get(spheres, spheres == nullptr ? 0 : instance_count * tables_.sphere_count()); });
+      [&] { return m.counts.get(m.host_counts.data(), instance_count); },
+      [&] { return m.starts.get(m.host_starts.data(), instance_count); }, [&] { return m.pair_count.get(&found, 1); },
+      [&] { return m.spheres.get(spheres, instance_count * header.sphere_count); });
   if (status != Status::kOk) {
     return status;
   }
   pair_count = static_cast<std::size_t>(found);
   if (counts != nullptr) {
-    std::copy_n(m.counts_there.begin(), instance_count, counts);
+    std::copy_n(m.host_counts.begin(), instance_count, counts);
   }
   if (pairs == nullptr) {
     return Status::kOk;
   }
-  if (pair_count > pair_capacity_) {
+  if (pair_count > m.pairs.size()) {
     return Status::kOverflow;
   }
-  const Status copied = m.pairs.get(m.pairs_there.data(), pair_count);
+  const Status copied = m.pairs.get(m.host_pairs.data(), pair_count);
   CrowdPair* to = pairs;
   for (std::size_t i = 0; i < instance_count && copied == Status::kOk; ++i) {
-    to = std::copy_n(m.pairs_there.begin() + static_cast<std::ptrdiff_t>(m.starts_there[i]), m.counts_there[i], to);
+    to = std::copy_n(m.host_pairs.begin() + static_cast<std::ptrdiff_t>(m.host_starts[i]), m.host_counts[i], to);
   }
   return copied;
 }

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Everything that only a GPU can show, on a machine that has one: the kernels' tests, goal P5 with covers and large assets,
+# Everything that only a GPU can show, on a machine that has one: the kernels' tests, goal P5 with large assets,
 # the paper's Figure 16, and compute-sanitizer's four tools. Under ten minutes, building included; the figures come first,
 # for the tools take longest. Stops at the first thing wrong, and says what that was. Results go to out/gpu (or $OUT);
 # docs/gpu.md says what was reached.

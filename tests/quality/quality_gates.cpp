@@ -50,7 +50,7 @@ json read_json(const fs::path& file) {
   return json::parse(in);
 }
 
-// "m1.pair_recall": a figure of `validate --json`.
+// "chains.pair_recall": a figure of `validate --json`.
 double figure(const json& found, const std::string& name) {
   std::string pointer = "/" + name;
   std::replace(pointer.begin(), pointer.end(), '.', '/');
@@ -88,7 +88,7 @@ class Gate {
     }
     if (!text("clip").empty()) out += " --clip " + quoted(text("clip"));
     if (gate_.contains("frames")) out += fmt::format(" --frames {}", gate_["frames"].get<int>());
-    out += fmt::format(" --radius {} --mode {}", gate_.value("radius", "detect"), gate_.value("mode", "m2"));
+    out += fmt::format(" --radius {} --mode {}", gate_.value("radius", "detect"), gate_.value("mode", "all_pairs"));
     return out + (gate_.value("contacts", false) ? " --contacts" : "");
   }
 

@@ -7,14 +7,6 @@
 #include "device_crowd.h"
 
 namespace spherechain::bench {
-namespace {
-
-const char* name_of(CrowdKind kind) {
-  return kind == CrowdKind::kFit ? "fit" : kind == CrowdKind::kDetect ? "detect" : "cover";
-}
-
-}  // namespace
-
 std::vector<std::string> characters_in(const std::string& folder) {
   std::vector<std::string> names;
   std::error_code failure;
@@ -29,8 +21,8 @@ std::vector<std::string> characters_in(const std::string& folder) {
 
 bool check_crowds(const std::vector<std::string>& names, const std::string& folder) {
   bool all_right = true;
-  std::printf("%-24s %6s %8s %8s %10s  against the CPU: spheres or balls, counts, bits, list\n", "character", "poses",
-              "spheres", "radius", "pairs");
+  std::printf("%-24s %6s %8s %8s %10s  against the CPU: spheres, counts, bits, list\n", "character", "poses", "spheres",
+              "radius", "pairs");
   for (const std::string& name : names) {
     PosedAsset posed;
     std::string error;
@@ -38,27 +30,21 @@ bool check_crowds(const std::vector<std::string>& names, const std::string& fold
       std::fprintf(stderr, "spherechain_bench_gpu: %s\n", error.c_str());
       std::exit(3);
     }
-    if (posed.poses.pose_count == 0) {
+    if (posed.poses.pose_count == 0 || posed.asset.refit_rule() != RefitRule::kMoments) {
       continue;
     }
-    for (const CrowdKind kind : {CrowdKind::kFit, CrowdKind::kDetect, CrowdKind::kCovers}) {
-      if (kind == CrowdKind::kCovers && posed.asset.leaf_count() == 0) {
-        continue;
-      }
-      const Reference reference = reference_of(posed, kind);
-      DeviceCrowd crowd(posed, reference, kind, posed.poses.pose_count);
-      const unsigned outputs = DeviceCrowd::kCounts | DeviceCrowd::kBits | DeviceCrowd::kBounds |
-                               (kind == CrowdKind::kCovers ? DeviceCrowd::kLeaves : DeviceCrowd::kList);
-      bool is_right = crowd.runs_right(true, outputs | DeviceCrowd::kSpheres);
-      if (kind != CrowdKind::kCovers) {
-        is_right &= crowd.runs_right(false, outputs);
-      }
+    for (const RadiusKind radius : {RadiusKind::kFit, RadiusKind::kDetect}) {
+      const Reference reference = reference_of(posed, radius);
+      DeviceCrowd crowd(posed, reference, radius, posed.poses.pose_count);
+      constexpr unsigned kOutputs = DeviceCrowd::kCounts | DeviceCrowd::kBits | DeviceCrowd::kList;
+      bool is_right = crowd.runs_right(true, kOutputs | DeviceCrowd::kSpheres);
+      is_right &= crowd.runs_right(false, kOutputs);
       std::size_t pairs = 0;
       for (const std::uint32_t count : reference.counts) {
         pairs += count;
       }
       std::printf("%-24s %6zu %8zu %8s %10zu  %s\n", name.c_str(), posed.poses.pose_count, posed.asset.spheres().size,
-                  name_of(kind), pairs, is_right ? "equal, bit for bit" : "DIFFERENT");
+                  radius == RadiusKind::kFit ? "fit" : "detect", pairs, is_right ? "equal, bit for bit" : "DIFFERENT");
       all_right &= is_right;
     }
   }

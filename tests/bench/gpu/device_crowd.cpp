@@ -5,8 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "spherechain/cover.h"
-#include "spherechain/cuda_device.h"
+#include "spherechain/cuda.h"
 
 namespace spherechain::bench {
 namespace {
@@ -45,67 +44,15 @@ std::vector<T> repeated(const std::vector<T>& poses, std::size_t pose_size, std:
   return out;
 }
 
-RadiusKind radius_of(CrowdKind kind) { return kind == CrowdKind::kFit ? RadiusKind::kFit : RadiusKind::kDetect; }
-
 BoneMatrices bones_of(const PosedAsset& posed, std::size_t pose) {
   return {posed.poses.matrices_of(pose), posed.poses.bone_count};
-}
-
-Span<const float> morphs_of(const PosedAsset& posed, std::size_t pose) {
-  return posed.poses.morph_count == 0 ? Span<const float>{}
-                                      : Span<const float>{posed.poses.morphs_of(pose), posed.poses.morph_count};
-}
-
-void cover(const PosedAsset& posed, std::size_t pose, Reference& out) {
-  const std::size_t n = posed.asset.spheres().size, leaves = posed.asset.leaf_count();
-  CoverJob job;
-  job.asset = &posed.asset;
-  job.bones = bones_of(posed, pose);
-  job.morph_weights = morphs_of(posed, pose);
-  job.leaves = {&out.leaves[pose * leaves], leaves};
-  job.spheres = {&out.spheres[pose * n], n};
-  must_be_ok(job.run(), "CoverJob");
-}
-
-// All pairs of covers that are not surely apart, one by one.
-void find_candidates(const PosedAsset& posed, Reference& out) {
-  constexpr float kShare = 1.0F + 0x1p-20F;
-  const std::size_t n = posed.asset.spheres().size, words = DetectJob::bit_words(posed.asset);
-  std::vector<bool> has_skin(n);
-  for (const Leaf& leaf : posed.asset.surface().leaves) {
-    has_skin[leaf.sphere] = true;
-  }
-  out.counts.resize(posed.poses.pose_count);
-  out.bits.resize(posed.poses.pose_count * words);
-  for (std::size_t i = 0; i < posed.poses.pose_count; ++i) {
-    const Sphere* spheres = &out.spheres[i * n];
-    for (std::size_t b = 1; b < n; ++b) {
-      for (std::size_t a = 0; a < b; ++a) {
-        const std::size_t bit = b * (b - 1) / 2 + a;
-        const Sphere &p = spheres[a], &q = spheres[b];
-        const float dx = p.x - q.x, dy = p.y - q.y, dz = p.z - q.z, s = p.radius * kShare + q.radius * kShare;
-        if (has_skin[a] && has_skin[b] && (posed.asset.ignored()[bit / 64] >> (bit % 64) & 1U) == 0 &&
-            (dx * dx + dy * dy) + dz * dz <= s * s) {
-          ++out.counts[i];
-          out.bits[i * words + bit / 64] |= std::uint64_t{1} << (bit % 64);
-        }
-      }
-    }
-  }
-}
-
-bool contains(const Sphere& bound, const Sphere* spheres, std::size_t count) {
-  return std::all_of(spheres, spheres + count, [&](const Sphere& s) {
-    const double x = s.x, y = s.y, z = s.z;
-    return std::hypot(x - bound.x, y - bound.y, z - bound.z) + s.radius <= bound.radius;
-  });
 }
 
 // For assets too large for shared memory: two blocks a multiprocessor.
 std::size_t scratch_bytes(const cuda::CrowdTables& tables, const PoseFile& poses, std::size_t instances) {
   cudaDeviceProp properties{};
   must(cudaGetDeviceProperties(&properties, 0));
-  const std::size_t block = tables.shared_bytes(poses.bone_count > 0, poses.morph_count > 0, true, true);
+  const std::size_t block = tables.block_bytes(poses.bone_count > 0, true, true);
   const std::size_t blocks =
       std::min((instances + 31) / 32, 2 * static_cast<std::size_t>(properties.multiProcessorCount));
   return block <= properties.sharedMemPerBlockOptin ? 1 : blocks * block;
@@ -113,7 +60,7 @@ std::size_t scratch_bytes(const cuda::CrowdTables& tables, const PoseFile& poses
 
 }  // namespace
 
-void detect(const PosedAsset& posed, CrowdKind kind, Reference& reference) {
+void detect(const PosedAsset& posed, RadiusKind radius, Reference& reference) {
   const std::size_t poses = posed.poses.pose_count;
   reference.counts.resize(poses);
   reference.bits.resize(poses * DetectJob::bit_words(posed.asset));
@@ -123,35 +70,26 @@ void detect(const PosedAsset& posed, CrowdKind kind, Reference& reference) {
   detect.asset = &posed.asset;
   detect.spheres = reference.spheres.data();
   detect.instance_count = poses;
-  detect.radius = radius_of(kind);
+  detect.radius = radius;
   detect.context = &context;
   detect.counts = {reference.counts.data(), poses};
   detect.bits = {reference.bits.data(), reference.bits.size()};
   must_be_ok(detect.run(), "CrowdJob");
 }
 
-Reference reference_of(const PosedAsset& posed, CrowdKind kind) {
+Reference reference_of(const PosedAsset& posed, RadiusKind radius) {
   const std::size_t n = posed.asset.spheres().size, poses = posed.poses.pose_count;
   Reference out;
   out.spheres.resize(n * poses);
-  if (kind == CrowdKind::kCovers) {
-    out.leaves.resize(posed.asset.leaf_count() * poses);
-    for (std::size_t i = 0; i < poses; ++i) {
-      cover(posed, i, out);
-    }
-    find_candidates(posed, out);
-    return out;
-  }
   for (std::size_t i = 0; i < poses; ++i) {
     RefitBonesJob refit;
     refit.asset = &posed.asset;
     refit.bones = bones_of(posed, i);
-    refit.morph_weights = morphs_of(posed, i);
-    refit.radius = radius_of(kind);
+    refit.radius = radius;
     refit.spheres = {&out.spheres[i * n], n};
     must_be_ok(refit.run(), "RefitBonesJob");
   }
-  detect(posed, kind, out);
+  detect(posed, radius, out);
   return out;
 }
 
@@ -161,25 +99,19 @@ void DeviceCrowd::Wrong::add(std::size_t instance, const char* what) {
   }
 }
 
-DeviceCrowd::DeviceCrowd(const PosedAsset& posed, const Reference& reference, CrowdKind kind, std::size_t instances)
+DeviceCrowd::DeviceCrowd(const PosedAsset& posed, const Reference& reference, RadiusKind radius, std::size_t instances)
     : posed_(posed),
       reference_(reference),
       instances_(instances),
-      words_(kind == CrowdKind::kCovers ? cuda::CrowdTables::cover_words_needed(posed.asset)
-                                        : cuda::CrowdTables::words_needed(posed.asset)),
+      words_(cuda::CrowdTables::words_needed(posed.asset)),
       refitted_(instances * posed.asset.spheres().size),
-      bounds_(instances),
-      leaves_(kind == CrowdKind::kCovers ? instances * posed.asset.leaf_count() : 1),
       counts_(instances),
       bits_(instances * DetectJob::bit_words(posed.asset)),
       starts_(instances),
       pair_count_(1),
-      pairs_(kind == CrowdKind::kCovers ? 1 : pair_count(reference, instances)),
+      pairs_(pair_count(reference, instances)),
       scratch_([&] {
-        const Span<std::uint64_t> memory{words_.data(), words_.size()};
-        must_be_ok(kind == CrowdKind::kCovers ? tables_.build_covers(posed.asset, nullptr, memory)
-                                              : tables_.build(posed.asset, radius_of(kind), nullptr, memory),
-                   "CrowdTables");
+        must_be_ok(tables_.build(posed.asset, radius, nullptr, {words_.data(), words_.size()}), "CrowdTables");
         return scratch_bytes(tables_, posed.poses, instances);
       }()) {
   device_tables_ = std::make_unique<DeviceArray<std::uint64_t>>(words_);
@@ -188,12 +120,7 @@ DeviceCrowd::DeviceCrowd(const PosedAsset& posed, const Reference& reference, Cr
     if (poses.bone_count > 0) {
       matrices_.emplace_back(repeated(poses.matrices, poses.bone_count * kMatrixFloats, instances));
     }
-    if (poses.morph_count > 0) {
-      weights_.emplace_back(repeated(poses.morph_weights, poses.morph_count, instances));
-    }
-    if (kind != CrowdKind::kCovers) {
-      spheres_.emplace_back(repeated(reference.spheres, posed.asset.spheres().size, instances));
-    }
+    spheres_.emplace_back(repeated(reference.spheres, posed.asset.spheres().size, instances));
   }
 }
 
@@ -207,14 +134,11 @@ void DeviceCrowd::enqueue(bool from_bones, unsigned outputs, std::size_t instanc
     const std::size_t bones = posed_.poses.bone_count;
     group.bones = {matrices_[set].data(), bones, MatrixLayout::kRowMajor3x4, 48};
     group.instance_stride = bones * 48;
-    group.morph_weights = weights_.empty() ? nullptr : weights_[set].data();
   } else {
     group.spheres = spheres_[set].data();
   }
   const auto take = [&](Output output, auto* pointer) { return (outputs & output) != 0 ? pointer : nullptr; };
   group.refitted = from_bones ? take(kSpheres, refitted_.data()) : nullptr;
-  group.leaves = take(kLeaves, leaves_.data());
-  group.bounds = take(kBounds, bounds_.data());
   group.counts = take(kCounts, counts_.data());
   group.bits = take(kBits, bits_.data());
   group.pairs = take(kList, pairs_.data());
@@ -230,7 +154,7 @@ void DeviceCrowd::enqueue(bool from_bones, unsigned outputs, std::size_t instanc
 bool DeviceCrowd::runs_right(bool from_bones, unsigned outputs) {
   const auto spoil = [](auto&... arrays) { (arrays.spoil(), ...); };
   // What an earlier launch left is right, perhaps.
-  spoil(refitted_, bounds_, leaves_, counts_, bits_, starts_, pair_count_, pairs_);
+  spoil(refitted_, counts_, bits_, starts_, pair_count_, pairs_);
   enqueue(from_bones, outputs, instances_);
 
   const std::size_t poses = posed_.poses.pose_count, n = posed_.asset.spheres().size;
@@ -251,17 +175,6 @@ bool DeviceCrowd::runs_right(bool from_bones, unsigned outputs) {
   }
   if ((outputs & kSpheres) != 0) {
     compare("spheres", refitted_.host(), reference_.spheres, n);
-  }
-  if ((outputs & kLeaves) != 0) {
-    compare("leaves", leaves_.host(), reference_.leaves, posed_.asset.leaf_count());
-  }
-  if ((outputs & kBounds) != 0 && reference_.leaves.empty()) {  // a ball around no skin is in none
-    const std::vector<Sphere> bounds = bounds_.host();
-    for (std::size_t i = 0; i < instances_; ++i) {
-      if (!contains(bounds[i], &reference_.spheres[pose_of(i, poses) * n], n)) {
-        wrong.add(i, "bounds");
-      }
-    }
   }
   if ((outputs & kList) != 0) {
     compare("listed pairs", listed_bits(wrong), reference_.bits, words);
@@ -297,12 +210,10 @@ std::vector<std::uint64_t> DeviceCrowd::listed_bits(Wrong& wrong) const {
 
 std::size_t DeviceCrowd::bytes_moved(bool from_bones, unsigned outputs) const {
   const std::size_t n = posed_.asset.spheres().size;
-  std::size_t out = from_bones ? posed_.poses.bone_count * 48 + posed_.poses.morph_count * 4 : n * sizeof(Sphere);
+  std::size_t out = from_bones ? posed_.poses.bone_count * 48 : n * sizeof(Sphere);
   out += (outputs & kCounts) != 0 ? sizeof(std::uint32_t) : 0;
   out += (outputs & kBits) != 0 ? DetectJob::bit_words(posed_.asset) * 8 : 0;
   out += (outputs & kSpheres) != 0 ? n * sizeof(Sphere) : 0;
-  out += (outputs & kLeaves) != 0 ? posed_.asset.leaf_count() * sizeof(Sphere) : 0;
-  out += (outputs & kBounds) != 0 ? sizeof(Sphere) : 0;
   return out;
 }
 

@@ -6,40 +6,35 @@
 
 #include "device.h"
 #include "posed_asset.h"
-#include "spherechain/cuda_crowd.h"
+#include "spherechain/cuda.h"
 #include "spherechain/detect.h"
 
 namespace spherechain::bench {
-
-// How a crowd's spheres follow from its bones.
-enum class CrowdKind { kFit, kDetect, kCovers };
 
 // What the CPU's jobs make of each pose.
 struct Reference {
   std::vector<Sphere> spheres;        // pose after pose
   std::vector<std::uint32_t> counts;  // a pose each
   std::vector<std::uint64_t> bits;    // bit words a pose
-  std::vector<Sphere> leaves;         // of covers
 };
-Reference reference_of(const PosedAsset& posed, CrowdKind kind);
-// Pairs of the reference's spheres, by fit or detect radius.
-void detect(const PosedAsset& posed, CrowdKind kind, Reference& reference);
+Reference reference_of(const PosedAsset& posed, RadiusKind radius);
+// Fills in the pairs of the reference's spheres.
+void detect(const PosedAsset& posed, RadiusKind radius, Reference& reference);
 
 class DeviceCrowd {
  public:
-  DeviceCrowd(const PosedAsset& posed, const Reference& reference, CrowdKind kind, std::size_t instances);
+  DeviceCrowd(const PosedAsset& posed, const Reference& reference, RadiusKind radius, std::size_t instances);
 
-  enum Output : unsigned { kCounts = 1, kBits = 2, kList = 4, kSpheres = 8, kBounds = 16, kLeaves = 32 };
+  enum Output : unsigned { kCounts = 1, kBits = 2, kList = 4, kSpheres = 8 };
   // One launch on the default stream: of the first `instances`, from bones or from spheres. Two sets of inputs take
   // turns, so that none is still in the device's cache from the launch before.
   void enqueue(bool from_bones, unsigned outputs, std::size_t instances);
 
-  // Launches all instances once, and holds what comes out against the reference, bit for bit; bounds must contain their
-  // spheres. Prints what differs.
+  // Launches all instances once and compares what comes out with the reference, bit for bit. Prints what differs.
   bool runs_right(bool from_bones, unsigned outputs);
 
   // Memory of a block, and how many such are given to assets too large for shared memory: two a multiprocessor.
-  std::size_t block_bytes() const { return tables_.shared_bytes(!matrices_.empty(), !weights_.empty(), true, true); }
+  std::size_t block_bytes() const { return tables_.block_bytes(!matrices_.empty(), true, true); }
   std::size_t scratch_blocks() const { return scratch_.size() / block_bytes(); }
   const Sphere* spheres() const { return spheres_[0].data(); }
   std::size_t bytes_moved(bool from_bones, unsigned outputs) const;  // an instance: inputs read once, outputs written
@@ -57,9 +52,9 @@ class DeviceCrowd {
   std::vector<std::uint64_t> words_;
   cuda::CrowdTables tables_;
   std::unique_ptr<DeviceArray<std::uint64_t>> device_tables_;
-  std::vector<DeviceArray<float>> matrices_, weights_;
+  std::vector<DeviceArray<float>> matrices_;
   std::vector<DeviceArray<Sphere>> spheres_;
-  DeviceArray<Sphere> refitted_, bounds_, leaves_;
+  DeviceArray<Sphere> refitted_;
   DeviceArray<std::uint32_t> counts_;
   DeviceArray<std::uint64_t> bits_, starts_, pair_count_;
   DeviceArray<CrowdPair> pairs_;

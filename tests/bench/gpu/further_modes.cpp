@@ -46,36 +46,10 @@ double mean_count(const Reference& reference) {
 
 }  // namespace
 
-bool bench_covers(const std::string& folder, const std::string& name, const Ceilings& ceilings) {
-  const PosedAsset posed = read(folder, name);
-  const double begin = seconds();
-  const Reference reference = reference_of(posed, CrowdKind::kCovers);
-  const double cpu = (seconds() - begin) * 1e9 / static_cast<double>(posed.poses.pose_count);
-  DeviceCrowd crowd(posed, reference, CrowdKind::kCovers, kInstances);
-  using Crowd = DeviceCrowd;
-  std::vector<Contestant> all;
-  const bool is_right =
-      add(crowd, "covers: bones in, counts out", true, Crowd::kCounts, kInstances, all) &&
-      add(crowd, "covers: bones in, counts and bits out", true, Crowd::kCounts | Crowd::kBits, kInstances, all) &&
-      add(crowd, "covers: bones in, counts, bits, balls, bounds out", true,
-          Crowd::kCounts | Crowd::kBits | Crowd::kSpheres | Crowd::kBounds, kInstances, all) &&
-      add(crowd, "covers: bones in, counts, bits, leaves out", true, Crowd::kCounts | Crowd::kBits | Crowd::kLeaves,
-          kInstances, all);
-  if (!is_right) {
-    return false;
-  }
-  measure(all, kInstances);
-  std::printf("\n%s: covers, %zu leaves of %zu spheres, %.1f candidates a character of %.0f pairs\n", name.c_str(),
-              posed.asset.leaf_count(), posed.asset.spheres().size, mean_count(reference), pairs_tested(posed.asset));
-  print_table(all, pairs_tested(posed.asset), ceilings);
-  std::printf("  the CPU's CoverJob and a plain test of all pairs, 1 core: %.0f ns a character\n", cpu);
-  return true;
-}
-
 bool bench_large(const std::string& folder, const std::string& name, std::uint32_t parts, const Ceilings& ceilings) {
   constexpr std::size_t kLarge = 4096, kPoses = 64;
   const PosedAsset whole = read(folder, name);
-  const Reference reference_of_whole = reference_of(whole, CrowdKind::kFit);
+  const Reference reference_of_whole = reference_of(whole, RadiusKind::kFit);
   const SplitAsset split(whole.asset, parts);
   PosedAsset posed;
   posed.asset = split.asset();
@@ -90,9 +64,9 @@ bool bench_large(const std::string& folder, const std::string& name, std::uint32
     reference.spheres.insert(reference.spheres.end(), spheres.begin(), spheres.end());
   }
   const double begin = seconds();
-  detect(posed, CrowdKind::kFit, reference);
+  detect(posed, RadiusKind::kFit, reference);
   const double cpu = (seconds() - begin) * 1e9 / static_cast<double>(posed.poses.pose_count);
-  DeviceCrowd crowd(posed, reference, CrowdKind::kFit, kLarge);
+  DeviceCrowd crowd(posed, reference, RadiusKind::kFit, kLarge);
   std::vector<Contestant> all;
   if (!add(crowd, "large: spheres in, counts out", false, DeviceCrowd::kCounts, kLarge, all) ||
       !add(crowd, "large: spheres in, counts and bits out", false, DeviceCrowd::kCounts | DeviceCrowd::kBits, kLarge,

@@ -12,6 +12,7 @@
 #include "motion/poses.h"
 #include "play/play.h"
 #include "pose_file.h"
+#include "spherechain/refit.h"
 #include "write/write.h"
 
 using namespace spherechain;
@@ -22,7 +23,7 @@ namespace fs = std::filesystem;
 using baker::Deformation;
 
 constexpr double kFramesASecond = 30;
-constexpr int kMostFrames = 1024, kPoseMotionFrames = 200, kPaperFrames = 40;
+constexpr int kFramesMax = 1024, kPoseMotionFrames = 200, kPaperFrames = 40;
 constexpr std::size_t kMixedPoses = 1024;  // as spherechain_bench has them
 
 struct Options {
@@ -32,6 +33,25 @@ struct Options {
 
 void append(std::string& bytes, const void* data, std::size_t size) {
   bytes.append(static_cast<const char*>(data), size);
+}
+
+// From the skin, of a character without bones of its own.
+std::vector<Sphere> refit(const Asset& asset, const baker::Bake& bake, const Deformation& pose) {
+  std::vector<float> positions;
+  for (const baker::Vec3& v : baker::deform(bake.character.source_positions, bake.rig_weights, pose.bones)) {
+    for (Eigen::Index axis = 0; axis < 3; ++axis) positions.push_back(static_cast<float>(v[axis]));
+  }
+  std::vector<Sphere> out(asset.spheres().size);
+  RefitJob job;
+  job.asset = &asset;
+  job.positions = positions.data();
+  job.vertex_count = positions.size() / 3;
+  job.radius = RadiusKind::kFit;
+  job.spheres = {out.data(), out.size()};
+  if (const Status status = job.run(); status != Status::kOk) {
+    throw baker::Error(baker::ExitCode::kInternal, std::string("refit: ") + to_string(status));
+  }
+  return out;
 }
 
 // NAME.sphc and NAME.poses.
@@ -44,26 +64,25 @@ void write(const fs::path& folder, const std::string& name, const baker::Bake& b
   if (const Status status = asset.open(aligned.data(), bytes.size()); status != Status::kOk) {
     throw baker::Error(baker::ExitCode::kInternal, name + ": " + to_string(status));
   }
-  const std::uint32_t counts[4] = {static_cast<std::uint32_t>(poses.size()),
-                                   static_cast<std::uint32_t>(asset.bone_count()),
-                                   static_cast<std::uint32_t>(asset.morph_count()), 0};
+  const bool has_moments = asset.refit_rule() == RefitRule::kMoments;
+  const std::size_t bones = has_moments ? asset.bone_count() : 0, spheres = has_moments ? 0 : asset.spheres().size;
+  const std::uint32_t counts[4] = {static_cast<std::uint32_t>(poses.size()), static_cast<std::uint32_t>(bones),
+                                   static_cast<std::uint32_t>(spheres), 0};
   std::string file;
   append(file, bench::kPoseMagic, sizeof bench::kPoseMagic);
   append(file, counts, sizeof counts);
   for (const Deformation& pose : poses) {
-    const std::vector<float> palette = baker::bone_palette(asset, pose);
-    append(file, palette.data(), palette.size() * sizeof(float));
-  }
-  for (const Deformation& pose : poses) {
-    for (std::size_t i = 0; i < asset.morph_count(); ++i) {
-      const float weight = i < pose.morphs.size() ? static_cast<float>(pose.morphs[i]) : 0.0F;
-      append(file, &weight, sizeof weight);
+    if (has_moments) {
+      const std::vector<float> palette = baker::bone_palette(asset, pose);
+      append(file, palette.data(), palette.size() * sizeof(float));
+    } else {
+      const std::vector<Sphere> refitted = refit(asset, bake, pose);
+      append(file, refitted.data(), refitted.size() * sizeof(Sphere));
     }
   }
   baker::write_atomically(folder / (name + ".sphc"), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   baker::write_atomically(folder / (name + ".poses"), file);
-  std::printf("%-28s %4zu spheres %4zu bones %3zu morphs %5zu poses\n", name.c_str(), asset.spheres().size,
-              asset.bone_count(), asset.morph_count(), poses.size());
+  std::printf("%-28s %4zu spheres %4zu bones %5zu poses\n", name.c_str(), asset.spheres().size, bones, poses.size());
 }
 
 // Evenly spaced, the start and the end among them.
@@ -75,7 +94,7 @@ std::vector<Deformation> frames_of(const baker::Motion& motion, int count) {
 }
 
 int frame_count(const baker::Motion& motion) {
-  return motion.duration() > 0 ? std::clamp(static_cast<int>(motion.duration() * kFramesASecond) + 1, 2, kMostFrames)
+  return motion.duration() > 0 ? std::clamp(static_cast<int>(motion.duration() * kFramesASecond) + 1, 2, kFramesMax)
                                : kPoseMotionFrames;
 }
 

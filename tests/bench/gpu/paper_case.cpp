@@ -5,8 +5,6 @@
 #include <chrono>
 #include <stdexcept>
 
-#include "spherechain/refit_bones.h"
-
 namespace spherechain::bench {
 namespace {
 
@@ -18,17 +16,14 @@ void check(Status status, const std::string& what) {
   }
 }
 
-std::vector<std::vector<Sphere>> refit(const PosedAsset& character) {
+std::vector<std::vector<Sphere>> frames_of(const PosedAsset& character) {
+  const PoseFile& poses = character.poses;
+  if (poses.sphere_count == 0) {
+    throw std::runtime_error("the poses hold no spheres (write them again with spherechain_gpu_data)");
+  }
   std::vector<std::vector<Sphere>> out;
-  for (std::size_t pose = 0; pose < character.poses.pose_count; ++pose) {
-    out.emplace_back(character.asset.spheres().size);
-    RefitBonesJob job;
-    job.asset = &character.asset;
-    job.bones = {character.poses.matrices_of(pose), character.poses.bone_count};
-    job.morph_weights = {character.poses.morphs_of(pose), character.poses.morph_count};
-    job.radius = RadiusKind::kFit;
-    job.spheres = {out.back().data(), out.back().size()};
-    check(job.run(), "refit from bones");
+  for (std::size_t pose = 0; pose < poses.pose_count; ++pose) {
+    out.emplace_back(poses.spheres_of(pose), poses.spheres_of(pose) + poses.sphere_count);
   }
   return out;
 }
@@ -46,7 +41,7 @@ PaperCase::PaperCase(const std::string& folder, const std::string& name_, std::u
     if (!read_posed_asset(folder, name + "_" + animation, whole, error)) {
       throw std::runtime_error(error);
     }
-    animations.push_back({animation, refit(whole)});
+    animations.push_back({animation, frames_of(whole)});
   }
   if (parts > 1) {
     split = std::make_unique<SplitAsset>(whole.asset, parts);

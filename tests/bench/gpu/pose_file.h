@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Poses of a character for machines without the baker: NAME.poses beside NAME.sphc, as spherechain_gpu_data writes
-// them. Little-endian: "SCPOSES1", then four 32-bit numbers (poses, bones, morphs, 0), then for each pose a matrix a
-// bone (12 floats, as RefitBonesJob takes them by default), then for each pose a weight a morph.
+// them. Little-endian: "SCPOSES2", then four 32-bit numbers (poses, bones, spheres, 0), then for each pose a matrix for
+// each bone (12 floats: three rows), then for each pose the refitted spheres with fit radii. Characters that are
+// refitted by moments have bones; the paper's characters have spheres, for only its own experiments refit by its rule.
 #pragma once
 
 #include <cstddef>
@@ -11,17 +12,20 @@
 #include <string>
 #include <vector>
 
+#include "spherechain/types.h"
+
 namespace spherechain::bench {
 
-inline constexpr char kPoseMagic[8] = {'S', 'C', 'P', 'O', 'S', 'E', 'S', '1'};
+inline constexpr char kPoseMagic[8] = {'S', 'C', 'P', 'O', 'S', 'E', 'S', '2'};
 inline constexpr std::size_t kMatrixFloats = 12;
 
 struct PoseFile {
-  std::size_t pose_count = 0, bone_count = 0, morph_count = 0;
-  std::vector<float> matrices, morph_weights;  // pose after pose
+  std::size_t pose_count = 0, bone_count = 0, sphere_count = 0;
+  std::vector<float> matrices;  // pose after pose
+  std::vector<Sphere> spheres;  // pose after pose
 
   const float* matrices_of(std::size_t pose) const { return matrices.data() + pose * bone_count * kMatrixFloats; }
-  const float* morphs_of(std::size_t pose) const { return morph_weights.data() + pose * morph_count; }
+  const Sphere* spheres_of(std::size_t pose) const { return spheres.data() + pose * sphere_count; }
 };
 
 // False where the file is not one; `error` then says why.
@@ -42,7 +46,7 @@ inline bool read_pose_file(const std::string& path, PoseFile& file, std::string&
     return false;
   }
   // Divided, for hostile counts would overflow a product.
-  const std::uint64_t pose_floats = std::uint64_t{counts[1]} * kMatrixFloats + counts[2];
+  const std::uint64_t pose_floats = std::uint64_t{counts[1]} * kMatrixFloats + std::uint64_t{counts[2]} * 4;
   const std::uint64_t floats = (size - sizeof magic - sizeof counts) / sizeof(float);
   if (pose_floats == 0 || size % sizeof(float) != 0 || floats % pose_floats != 0 || floats / pose_floats != counts[0]) {
     error = path + ": has not the size its counts ask for";
@@ -50,13 +54,13 @@ inline bool read_pose_file(const std::string& path, PoseFile& file, std::string&
   }
   file.pose_count = counts[0];
   file.bone_count = counts[1];
-  file.morph_count = counts[2];
+  file.sphere_count = counts[2];
   file.matrices.resize(file.pose_count * file.bone_count * kMatrixFloats);
-  file.morph_weights.resize(file.pose_count * file.morph_count);
+  file.spheres.resize(file.pose_count * file.sphere_count);
   in.read(reinterpret_cast<char*>(file.matrices.data()),
           static_cast<std::streamsize>(file.matrices.size() * sizeof(float)));
-  in.read(reinterpret_cast<char*>(file.morph_weights.data()),
-          static_cast<std::streamsize>(file.morph_weights.size() * sizeof(float)));
+  in.read(reinterpret_cast<char*>(file.spheres.data()),
+          static_cast<std::streamsize>(file.spheres.size() * sizeof(Sphere)));
   if (!in) {
     error = path + ": cannot be read to its end";
     return false;

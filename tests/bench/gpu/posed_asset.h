@@ -42,8 +42,9 @@ inline bool read_posed_asset(const std::string& folder, const std::string& name,
   if (!read_pose_file(folder + "/" + name + ".poses", out.poses, error)) {
     return false;
   }
-  if (out.poses.bone_count != out.asset.bone_count() || out.poses.morph_count != out.asset.morph_count()) {
-    error = path + ": has other bones or morphs than the poses beside it";
+  const std::size_t bones = out.poses.bone_count, spheres = out.poses.sphere_count;
+  if ((bones != 0 && bones != out.asset.bone_count()) || (spheres != 0 && spheres != out.asset.spheres().size)) {
+    error = path + ": has other bones or spheres than the poses beside it";
     return false;
   }
   return true;

@@ -2,9 +2,7 @@
 // A crowd of one on the GPU, and every function of its API. Without a device it says why and that is all: the program
 // links and runs everywhere.
 #include <spherechain/asset.h>
-#include <spherechain/cuda_crowd.h>
-#include <spherechain/cuda_device.h>
-#include <spherechain/cuda_host_crowd.h>
+#include <spherechain/cuda.h>
 
 #include <cstdint>
 #include <cstdio>
@@ -30,13 +28,10 @@ std::vector<std::uint64_t> read(const char* path) {
 // What a game does before its first frame, and a launch of nothing. Needs no device.
 bool prepare(const Asset& asset) {
   std::vector<std::uint64_t> words(cuda::CrowdTables::words_needed(asset));
-  cuda::CrowdTables tables, covers;
+  cuda::CrowdTables tables;
   const bool is_built = tables.build(asset, RadiusKind::kDetect, nullptr, {words.data(), words.size()}) == Status::kOk;
-  std::vector<std::uint64_t> more(cuda::CrowdTables::cover_words_needed(asset) + 1);
-  const Status status = covers.build_covers(asset, nullptr, {more.data(), more.size()});
   const cuda::CrowdJob job{};
-  return is_built && tables.shared_bytes(true, false, true, false) > 0 && job.run() == Status::kOk &&
-         (status == Status::kOk || status == Status::kNotInAsset);
+  return is_built && tables.block_bytes(true, true, false) > 0 && job.run() == Status::kOk;
 }
 
 }  // namespace

@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
 #include "baked_human.h"
 #include "human.h"
-#include "play/asset_file.h"
 #include "report/play_frames.h"
 #include "spherechain/simd.h"
 #include "temporary_folder.h"
@@ -54,6 +54,12 @@ TEST_CASE("inspect --json has the contract's fields and agrees with itself") {
   }
   CHECK(triangles == 28796);
   CHECK(in_regions == triangles);
+  std::size_t in_parts = 0;
+  for (const json& part : asset["parts"]) {
+    in_parts += part["triangles"].get<std::size_t>();
+    for (const char* key : {"name", "side", "bone"}) CHECK(part.contains(key));
+  }
+  CHECK(in_parts == triangles);
   REQUIRE(asset["chains"].size() == 6);
   for (const json& chain : asset["chains"]) entries += chain["spheres"].size();
   CHECK(asset["chain_entries"] == entries);
@@ -75,6 +81,7 @@ TEST_CASE("inspect --json has the contract's fields and agrees with itself") {
   const std::string text = run("inspect " + baked_files().asset.string()).out;
   CHECK(text.find("refit    moments\n") != std::string::npos);
   CHECK(text.find("\nmoments  ") != std::string::npos);
+  CHECK(text.find("\npart ") != std::string::npos);
   CHECK(text.find("zeta5") != std::string::npos);
 }
 
@@ -85,9 +92,11 @@ TEST_CASE("play --json is written frame by frame, and is the text that all of it
   const ordered_json head{{"backend", "simd"}, {"refit", "moments"}};
   ordered_json whole = head;
   // Names of clips are any bytes; lists may be empty, and lists of lists.
-  whole["frames"] = {{{"index", 0}, {"pairs", ordered_json::array()}, {"m2", {{"tests", 3}}}},
+  whole["frames"] = {{{"index", 0}, {"pairs", ordered_json::array()}, {"all_pairs", {{"tests", 3}}}},
                      {{"index", 1}, {"pairs", {{1, 2}, {3, 40}}}, {"clip", "a\nb \"c\", \xff {\n}"}},
                      {{"index", 2}, {"time", 0.1}, {"pairs", {{1, 2}}}}};
+  const ordered_json tail{{"clips", {{{"name", "walk"}, {"frames", {{1, 2}}}}}}};
+  whole.update(tail);
   const std::string text = whole.dump(1, ' ', false, ordered_json::error_handler_t::replace) + "\n";
   spherechain::baker::PlayFile file(out, head, 3);
   for (const ordered_json& frame : whole["frames"]) {
@@ -98,6 +107,8 @@ TEST_CASE("play --json is written frame by frame, and is the text that all of it
     CHECK(text.rfind(so_far, 0) == 0);
     CHECK(so_far.find(fmt::format("\"index\": {}", frame["index"].get<int>())) != std::string::npos);
   }
+  CHECK(!fs::exists(out));
+  file.finish(tail);
   CHECK(contents(out) == text);
 }
 
@@ -113,56 +124,111 @@ TEST_CASE("play --json has the contract's fields; at rest nothing touches, hands
   CHECK(both["backend"] == (spherechain::best_target() == spherechain::Target::kScalar ? "scalar" : "simd"));
   CHECK(both["target"] == spherechain::to_string(spherechain::best_target()));
   CHECK(both["refit"] == "moments");
+  CHECK(both["parts"].size() == baked_human().body_parts.parts.size());
+  CHECK(both["parts"][0] ==
+        json{{"name", "hips"}, {"side", "none"}, {"bone", "pelvis"}, {"triangles", both["parts"][0]["triangles"]}});
+  std::size_t triangles = 0;
+  for (const json& part : both["parts"]) triangles += part["triangles"].get<std::size_t>();
+  CHECK(triangles == baked_human().character.source_triangles.size());
   REQUIRE(both["frames"].size() == 5);
   for (std::size_t i = 0; i < 5; ++i) {
     const json& frame = both["frames"][i];
     CHECK(frame["index"] == i);
+    CHECK(frame["clip_frame"] == i);
     CHECK(frame["time"].get<double>() == doctest::Approx(0.1 * static_cast<double>(i)));
     CHECK(frame.contains("refit_us"));
-    CHECK(frame["m1"]["unique_pairs"] <= frame["m2"]["pairs"]);
-    CHECK(frame["m1"]["pairs"] >= frame["m1"]["unique_pairs"]);
-    CHECK(frame["m2"]["pairs"] == frame["pairs"].size());
-    CHECK(frame["m2"]["tests"] == both["frames"][0]["m2"]["tests"]);
-    CHECK(frame["m1"].contains("us"));
-    CHECK(frame.contains("skin_us"));
-    CHECK(std::is_sorted(frame["skin_pairs"].begin(), frame["skin_pairs"].end()));
+    CHECK(frame["chains"]["unique_pairs"] <= frame["all_pairs"]["pairs"]);
+    CHECK(frame["chains"]["pairs"] >= frame["chains"]["unique_pairs"]);
+    CHECK(frame["all_pairs"]["pairs"] == frame["pairs"].size());
+    CHECK(frame["all_pairs"]["tests"] == both["frames"][0]["all_pairs"]["tests"]);
+    CHECK(frame["chains"].contains("us"));
+    CHECK(frame["skin"].contains("us"));
+    CHECK(std::is_sorted(frame["skin"]["sphere_pairs"].begin(), frame["skin"]["sphere_pairs"].end()));
+    CHECK(!frame["skin"].contains("triangles"));
   }
-  CHECK(both["frames"][0]["skin_pairs"].empty());
-  CHECK(!both["frames"][4]["skin_pairs"].empty());
-  CHECK(both["frames"][4]["skin_pairs"].size() < both["frames"][4]["pairs"].size());
-  CHECK(both["frames"][0]["pairs"].empty());
-  CHECK(!both["frames"][4]["pairs"].empty());
+  const json &rest = both["frames"][0], &end = both["frames"][4];
+  CHECK(rest["skin"]["sphere_pairs"].empty());
+  CHECK(rest["skin"]["parts"].empty());
+  CHECK(!end["skin"]["sphere_pairs"].empty());
+  CHECK(end["skin"]["sphere_pairs"].size() < end["pairs"].size());
+  CHECK(rest["pairs"].empty());
+  CHECK(!end["pairs"].empty());
 
-  CHECK(!both["frames"][4].contains("contacts"));
-  const Run triangles = play(fmt::format("--contacts --poses {} --frames 5 --fps 10", pose("hands_on_hips.json")));
-  REQUIRE(triangles.code == 0);
-  CHECK(triangles.out.find("\ntriangles ") != std::string::npos);
+  const Run triangle_run = play(fmt::format("--contacts --poses {} --frames 5 --fps 10", pose("hands_on_hips.json")));
+  REQUIRE(triangle_run.code == 0);
   const json listed = json::parse(contents(out));
-  const spherechain::baker::AssetFile file = spherechain::baker::open_asset(baked_files().asset.string());
-  std::vector<json> owner(file.asset.info().source_triangle_count);
-  for (std::size_t s = 0; s < file.asset.spheres().size; ++s) {
-    const spherechain::RestSphere& sphere = file.asset.spheres()[s];
-    for (std::uint32_t k = 0; k < sphere.triangle_count; ++k)
-      owner[file.asset.triangles()[sphere.first_triangle + k]] = s;
+  const auto& sphere_of = baked_human().binding.sphere_of_triangle;
+  std::vector<std::size_t> owner(baked_human().character.source_triangles.size());
+  for (std::size_t t = 0; t < sphere_of.size(); ++t)
+    owner[baked_human().character.skin_source_triangle[t]] = sphere_of[t];
+  CHECK(listed["frames"][0]["skin"]["triangles"].empty());
+  std::set<json> spheres;  // whose triangles they are
+  std::map<std::pair<std::string, std::string>, std::size_t> parts;
+  const auto& body_parts = baked_human().body_parts;
+  for (const json& pair : listed["frames"][4]["skin"]["triangles"]) {
+    const auto a = pair[0].get<std::size_t>(), b = pair[1].get<std::size_t>();
+    spheres.insert(owner.at(a) < owner.at(b) ? json{owner[a], owner[b]} : json{owner[b], owner[a]});
+    const auto [first, second] = std::minmax(body_parts.of_triangle.at(a), body_parts.of_triangle.at(b));
+    ++parts[{body_parts.parts[first].name, body_parts.parts[second].name}];
   }
-  CHECK(listed["frames"][0]["contacts"].empty());
-  CHECK(listed["frames"][4].contains("contacts_us"));
-  std::set<json> skin_pairs;  // of the spheres whose triangles they are
-  for (const json& pair : listed["frames"][4]["contacts"]) {
-    const json &a = owner.at(pair[0].get<std::size_t>()), &b = owner.at(pair[1].get<std::size_t>());
-    skin_pairs.insert(a < b ? json{a, b} : json{b, a});
-  }
-  CHECK(skin_pairs ==
-        std::set<json>(listed["frames"][4]["skin_pairs"].begin(), listed["frames"][4]["skin_pairs"].end()));
+  const json& skin = listed["frames"][4]["skin"];
+  CHECK(spheres == std::set<json>(skin["sphere_pairs"].begin(), skin["sphere_pairs"].end()));
+  REQUIRE(skin["parts"].size() == parts.size());
+  for (const json& pair : skin["parts"]) CHECK(parts.at({pair["a"], pair["b"]}) == pair["triangle_pairs"]);
 
-  const Run scalar = play("--frames 1 --mode m1 --radius fit --backend scalar");
+  const Run scalar = play("--mode chains --radius fit --backend scalar");
   REQUIRE(scalar.code == 0);
-  CHECK(scalar.out.find("1 frames, radius fit, refit moments, backend scalar\n") == 0);
+  CHECK(scalar.out.find("rest pose: 1 frame at 30 fps. The skin does not intersect itself.\n") == 0);
+  CHECK(scalar.out.find("\n(radius fit, refit moments, backend scalar)\n") != std::string::npos);
   const json one = json::parse(contents(out));
-  CHECK(one["frames"][0].contains("m1"));
-  CHECK(!one["frames"][0].contains("m2"));
+  CHECK(one["frames"][0].contains("chains"));
+  CHECK(!one["frames"][0].contains("all_pairs"));
   CHECK(one["backend"] == "scalar");
   CHECK(one["target"] == "scalar");
+  CHECK(one["clips"][0]["contacts"].empty());
+}
+
+TEST_CASE("play tells which body parts touch, in which frames, and how the spheres do") {
+  const TemporaryFolder folder;
+  const fs::path out = folder.path / "play.json";
+  const Run play = run(fmt::format("play {} --source {} --json {} --poses {} --frames 9", baked_files().asset.string(),
+                                   kHumanFile, out.string(), pose("hands_on_hips.json")));
+  REQUIRE(play.code == 0);
+  const json found = json::parse(contents(out)), clip = found["clips"].at(0);
+  CHECK(found["clips"].size() == 1);
+  CHECK(clip["name"] == "");
+  CHECK(clip["frame_count"] == 9);
+  CHECK(clip["fps"] == 30);
+  REQUIRE(clip["contacts"].size() > 1);
+  std::set<int> with_contact;
+  for (const json& contact : clip["contacts"]) {
+    std::size_t most = 0;
+    std::set<int> frames, listed;
+    for (const json& frame : found["frames"]) {
+      for (const json& pair : frame["skin"]["parts"]) {
+        if (pair["a"] != contact["a"] || pair["b"] != contact["b"]) continue;
+        frames.insert(frame["clip_frame"].get<int>());
+        most = std::max(most, pair["triangle_pairs"].get<std::size_t>());
+      }
+    }
+    for (const json& run : contact["frames"]) {
+      for (int i = run[0].get<int>(); i <= run[1].get<int>(); ++i) listed.insert(i);
+    }
+    CHECK(listed == frames);
+    CHECK(contact["triangle_pairs_max"] == most);
+    CHECK(frames.count(contact["frame_of_max"].get<int>()) == 1);
+    with_contact.insert(frames.begin(), frames.end());
+    const std::string line = fmt::format("\n  {} ", contact["a"].get<std::string>());
+    CHECK_MESSAGE(play.out.find(line) != std::string::npos, line);
+  }
+  CHECK(clip["contact_frames"] == with_contact.size());
+  const std::string head =
+      fmt::format("motion hands_on_hips.json: 9 frames at 30 fps; skin contacts in {} frames\n", with_contact.size());
+  CHECK_MESSAGE(play.out.find(head) == 0, play.out);
+  CHECK(play.out.find("hand ") != std::string::npos);
+  CHECK(play.out.find("most triangle pairs ") != std::string::npos);
+  CHECK(play.out.find("\nspheres: ") != std::string::npos);
+  CHECK(play.out.find(" pairs a frame as a cheap alarm; the skin confirms ") != std::string::npos);
 }
 
 TEST_CASE("validate --json has the contract's fields, the same with a cache and without") {
@@ -174,7 +240,8 @@ TEST_CASE("validate --json has the contract's fields, the same with a cache and 
                         kHumanFile, pose("arms_crossed.json"), out.string(), more),
             "SPHERECHAIN_CACHE=" + cached);
     REQUIRE_MESSAGE(done.code == 0, done.error);
-    CHECK(done.out.find("pair recall") != std::string::npos);
+    for (const char* name : {"pair recall", "\nskin ", "\nspheres, all pairs ", "\nspheres, chains "})
+      CHECK_MESSAGE(done.out.find(name) != std::string::npos, name);
     return json::parse(contents(out));
   };
   const json found = validate("", "off");
@@ -191,9 +258,9 @@ TEST_CASE("validate --json has the contract's fields, the same with a cache and 
   }
   CHECK(found["frame_any_recall"] == 1);
   CHECK(found["reported_per_frame"] > 0);
-  CHECK(found["missed_depth"] == 0);
-  CHECK(found["m2"]["missed_depth"] >= 0);
-  CHECK(found["m2"]["missed_depth"] < 0.1);
+  CHECK(found["missed_overlap"] == 0);
+  CHECK(found["all_pairs"]["missed_overlap"] >= 0);
+  CHECK(found["all_pairs"]["missed_overlap"] < 0.1);
 
   CHECK(validate("", cache.string()) == found);
   CHECK(files_in(cache) == 3);  // frame 0 is the rest pose
@@ -213,18 +280,20 @@ TEST_CASE("validate --json has the contract's fields, the same with a cache and 
   contacts.erase("contacts_missing");
   contacts.erase("contacts_extra");
   CHECK(contacts == found);
-  CHECK(found["skin"] == true);
+  CHECK(found["reported"] == "skin");
+  for (const auto& [key, value] : found["skin"].items()) CHECK(found[key] == value);
   CHECK(found["precision"] == 1);
   CHECK(found["pair_recall"] == 1);
-  CHECK(found["reported_per_frame"] < found["m2"]["reported_per_frame"]);
+  CHECK(found["reported_per_frame"] < found["all_pairs"]["reported_per_frame"]);
   const json alone = validate("--spheres-alone", cache.string());
-  CHECK(alone["skin"] == false);
-  for (const auto& [key, value] : alone["m2"].items()) CHECK(alone[key] == value);
-  CHECK(alone["m2"] == found["m2"]);
-  const json chains = validate("--mode m1 --radius fit", cache.string());
+  CHECK(alone["reported"] == "all_pairs");
+  for (const auto& [key, value] : alone["all_pairs"].items()) CHECK(alone[key] == value);
+  for (const char* name : {"skin", "all_pairs", "chains"}) CHECK(alone[name] == found[name]);
+  const json chains = validate("--mode chains --radius fit --spheres-alone", cache.string());
+  CHECK(chains["reported"] == "chains");
   CHECK(chains["truth_pairs"] == found["truth_pairs"]);
   CHECK(chains["radius"] == "fit");
-  CHECK(chains["m1"]["pair_recall"] <= found["m2"]["pair_recall"]);
+  CHECK(chains["chains"]["pair_recall"] <= found["all_pairs"]["pair_recall"]);
 }
 
 TEST_CASE("docs/json.md names every key that is written") {

@@ -55,14 +55,15 @@ TEST_CASE("bake writes the same bytes as the library, a report and a table, and 
 }
 
 TEST_CASE(
-    "play --backend cuda finds M2's pairs on a GPU; where there is none it says so, exits with 1 and writes nothing") {
+    "play --backend cuda finds all pairs on a GPU; where there is none it says so, exits with 1 and writes nothing") {
   const TemporaryFolder folder;
   const fs::path out = folder.path / "play.json";
   const auto play = [&](const std::string& more) {
     return fmt::format("play {} --source {} --poses {} --frames 5 --json {} {}", baked_files().asset.string(),
                        kHumanFile, pose("arms_crossed.json"), out.string(), more);
   };
-  check_error(run(play("--backend cuda --mode m1")), 2, {"--backend cuda: has no M1 (--mode m2)"});
+  check_error(run(play("--backend cuda --mode chains")), 2,
+              {"--backend cuda: does not test by chains (--mode all_pairs)"});
   const Run on_gpu = run(play("--backend cuda"));
   if (on_gpu.code != 0) {
     check_error(on_gpu, 1, {"--backend cuda: ", "CUDA", "--backend auto needs no GPU"});
@@ -70,7 +71,7 @@ TEST_CASE(
     return;
   }
   const json cuda = json::parse(contents(out));
-  REQUIRE(run(play("--mode m2")).code == 0);
+  REQUIRE(run(play("--mode all_pairs")).code == 0);
   const json simd = json::parse(contents(out));
   CHECK(cuda["backend"] == "cuda");
   for (std::size_t i = 0; i < 5; ++i) CHECK(cuda["frames"][i]["pairs"] == simd["frames"][i]["pairs"]);
@@ -173,7 +174,7 @@ TEST_CASE("usage errors end with 2") {
   check_error(run("frobnicate bake"), 2, {"'frobnicate'"});
   check_error(run("bake in out"), 2, {});
   check_error(run(fmt::format("bake {} -o x.sphc --profile fancy", kHumanFile)), 2, {"fancy"});
-  check_error(run(fmt::format("play {} --source {} --mode m3", baked_files().asset.string(), kHumanFile)), 2, {"m3"});
+  check_error(run(fmt::format("play {} --source {} --mode m1", baked_files().asset.string(), kHumanFile)), 2, {"m1"});
   check_error(run(fmt::format("validate {} --source {} --mode both", baked_files().asset.string(), kHumanFile)), 2,
               {"both"});
   check_error(run(fmt::format("play {} --source {} --frames 0", baked_files().asset.string(), kHumanFile)), 2, {});
@@ -288,11 +289,11 @@ TEST_CASE("an output that is no asset is not overwritten without --force, nor is
   CHECK(contents(input).rfind("v 0 0 0", 0) == 0);
 }
 
-TEST_CASE("contacts of triangles are asked of an asset that has leaves") {
-  const std::string golden = SPHERECHAIN_SAMPLES "/../tests/golden/";  // this asset is older than leaves
+TEST_CASE("skin contacts are asked of an asset that has clusters") {
+  const std::string golden = SPHERECHAIN_SAMPLES "/../tests/golden/";  // this asset is older than clusters
   for (const char* command : {"play", "validate"}) {
     check_error(run(fmt::format("{} {}doll.sphc --source {}doll.obj --frames 1 --contacts", command, golden, golden)),
-                3, {"doll.sphc", "has no leaves", "bake it again"});
+                3, {"doll.sphc", "has no clusters", "bake it again"});
   }
 }
 

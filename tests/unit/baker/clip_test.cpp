@@ -90,7 +90,7 @@ TEST_CASE("a clip bends a skinned arm, whatever the scene's axes and units") {
     const std::vector<VertexWeights> weights{{{0}, {1}}, {{1}, {1}}, {{0, 1}, {0.5, 0.5}}};
     const ClipMotion motion(rig, {&clip});
     CHECK(motion.duration() == 2);
-    CHECK(motion.clip_at(0.5) == "bend");
+    CHECK(motion.place(0.5).seconds == 1);
     const std::vector<Vec3> start = deform(rest, weights, motion.at(0).bones),
                             end = deform(rest, weights, motion.at(1).bones);
     for (std::size_t v = 0; v < rest.size(); ++v) CHECK((start[v] - rest[v]).norm() < 1e-12);
@@ -106,8 +106,9 @@ TEST_CASE("clips play one after another, each from its own start") {
   const Clip first = bend(90), second{"still", 2, {}};
   const ClipMotion motion(rig, {&first, &second});
   CHECK(motion.duration() == 4);
-  CHECK(motion.clip_at(0.25) == "bend");
-  CHECK(motion.clip_at(0.75) == "still");
+  CHECK(motion.place(0.25).clip == 0);
+  CHECK(motion.place(0.75).clip == 1);
+  CHECK(motion.place(0.75).seconds == 1);
   CHECK(motion.at(0.75).bones[1].isApprox(Affine::Identity()));
   const ClipMotion other_way(rig, {&second, &first});
   CHECK(other_way.at(0.75).bones[1].isApprox(sample(rig, first, 1).bones[1]));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What `view` takes from other commands: about the same asset, and all there that the page's script reads.
-#include "report/page_inputs.h"
+#include "page/page_inputs.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -60,7 +60,7 @@ std::string refusal(Reader read, const std::string& text) {
   return "accepted";
 }
 
-// "/m1/precision" -> "m1.precision", "/stages/0/seconds" -> "stages[0].seconds"
+// "/chains/precision" -> "chains.precision", "/stages/0/seconds" -> "stages[0].seconds"
 std::string dotted(const std::string& pointer) {
   std::string out;
   for (std::size_t i = 1, end = 0; i < pointer.size(); i = end + 1) {
@@ -115,14 +115,16 @@ TEST_CASE("a validation is shown only whole, and of spheres that the asset has")
                         "/pair_recall",
                         "/precision",
                         "/reported_per_frame",
-                        "/m1",
-                        "/m1/pair_recall",
-                        "/m1/precision",
-                        "/m2",
-                        "/m2/pair_recall",
-                        "/m2/reported_per_frame",
+                        "/chains",
+                        "/chains/pair_recall",
+                        "/chains/precision",
+                        "/all_pairs",
+                        "/all_pairs/pair_recall",
+                        "/all_pairs/reported_per_frame",
                         "/radius",
+                        "/reported",
                         "/skin",
+                        "/skin/precision",
                         "/raw_pairs",
                         "/truth_pairs",
                         "/out_of_scope",
@@ -133,7 +135,7 @@ TEST_CASE("a validation is shown only whole, and of spheres that the asset has")
                         "/worst_misses/0",
                         "/worst_misses/0/time",
                         "/worst_misses/0/triangle_pairs",
-                        "/worst_misses/0/depth",
+                        "/worst_misses/0/overlap",
                         "/worst_misses/0/spheres",
                         "/worst_misses/0/spheres/1"});
   for (const json& number : {json(-1), json(1.5), json(made().asset.asset.spheres().size)}) {

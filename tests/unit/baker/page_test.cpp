@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // How large the page of `view` may become.
-#include "report/page.h"
+#include "page/page.h"
 
 #include <doctest/doctest.h>
 #include <fmt/format.h>
@@ -20,12 +20,12 @@ struct Viewed {
 };
 
 // The human's page with `frames` of a motion, in a template without a viewer.
-Viewed view(int frames, std::size_t most_bytes = PageOptions().most_bytes) {
+Viewed view(int frames, std::size_t max_bytes = PageOptions().max_bytes) {
   const TemporaryFolder folder;
   PageOptions options;
   options.template_file =
       folder.write("viewer.html", R"(<script id="spherechain-data" type="application/json">null</script>)").string();
-  options.most_bytes = most_bytes;
+  options.max_bytes = max_bytes;
   MotionChoice motion;
   motion.poses = tool::pose("arms_crossed.json");
   const AnimatedAsset animated(tool::baked_files().asset.string(), kHumanFile, motion, {frames, 30});

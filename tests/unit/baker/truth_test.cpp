@@ -253,16 +253,16 @@ TEST_CASE("a score counts triangle pairs, frames and reported spheres as the con
   CHECK(some.precision() == doctest::Approx(2.0 / 3));  // {5, 6} is close
   CHECK(some.frame_any_recall() == 1);
   CHECK(some.frame_all_recall() == 0);
-  CHECK(some.missed_depth == 2);
+  CHECK(some.missed_overlap == 2);
   Score both = score({{0, 1}, {0, 2}});
   CHECK(both.frame_all_recall() == 1);
-  CHECK(both.missed_depth == 0);
+  CHECK(both.missed_overlap == 0);
   both.add(score({}));
   CHECK(both.pair_recall() == 0.5);
   CHECK(both.frame_any_recall() == 0.5);
   CHECK(both.reported_per_frame() == 1);
   CHECK(both.precision() == 1);
-  CHECK(both.missed_depth == 2);
+  CHECK(both.missed_overlap == 2);
   truth = {};
   CHECK(score({}).pair_recall() == 1);
   CHECK(score({}).true_frames == 0);

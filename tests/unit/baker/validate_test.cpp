@@ -44,7 +44,7 @@ std::set<Pair> held_back(const Asset& asset, float scale) {
   for (std::uint32_t b = 0; b < rest.size(); ++b) {
     for (std::uint32_t a = 0; a < b; ++a) {
       const double dx = rest[a].x - rest[b].x, dy = rest[a].y - rest[b].y, dz = rest[a].z - rest[b].z;
-      const double part = baked_human().settings.bind.near_fraction * std::sqrt(dx * dx + dy * dy + dz * dz);
+      const double part = baked_human().settings.bind.rest_fraction * std::sqrt(dx * dx + dy * dy + dz * dz);
       if (part < 1.001 * (rest[a].radius + rest[b].radius)) out.insert({a, b});
     }
   }
@@ -76,7 +76,7 @@ TEST_CASE("the plain rule reports what the runtime does, M1 and M2, at either ra
 
 TEST_CASE("with another part of the rest distance the rule reports what a bake with that setting does") {
   BakeSettings settings = baked_human().settings;
-  settings.bind.near_fraction = 0.75;
+  settings.bind.rest_fraction = 0.75;
   const Bake other = rebake(baked_human(), settings);
   const Asset asset = open_asset_of(baked_human()), other_asset = open_asset_of(other);
   const PairRule rule(asset, RadiusKind::kDetect, {1, 0.75});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <cuda_runtime.h>
 
-#include "crowd_body.h"
+#include "crowd_primitives.h"
 
 namespace spherechain::test {
 namespace {
@@ -17,10 +17,10 @@ __global__ void compare_roots(unsigned first, unsigned last, unsigned long long*
 
 }  // namespace
 
-// Over all floats from kLeastRoot to kMostRoot; -1 where the device fails.
+// Over all floats from kRootMin to kRootMax; -1 where the device fails.
 long long count_wrong_roots() {
   unsigned first = 0, last = 0;
-  const float least = cuda::kLeastRoot, most = cuda::kMostRoot;
+  const float least = cuda::kRootMin, most = cuda::kRootMax;
   static_assert(sizeof first == sizeof least, "");
   memcpy(&first, &least, sizeof first);
   memcpy(&last, &most, sizeof last);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "crowd_access.h"
+#include "crowd_launch.h"
 #include "jobs.h"
 #include "palette.h"
 #include "tiny_moments.h"
@@ -30,14 +30,8 @@ void add_pairs(const Asset& asset, const std::vector<Sphere>& spheres, RadiusKin
 Tables::Tables(const Asset& asset, RadiusKind radius, const Filter* filter)
     : words(cuda::CrowdTables::words_needed(asset)) {
   REQUIRE(tables.build(asset, radius, filter, {words.data(), words.size()}) == Status::kOk);
-  REQUIRE(tables.words() <= words.size());
-  words.resize(tables.words());
-}
-
-Tables::Tables(const Asset& asset, Covers, const Filter* filter) : words(cuda::CrowdTables::cover_words_needed(asset)) {
-  REQUIRE(tables.build_covers(asset, filter, {words.data(), words.size()}) == Status::kOk);
-  REQUIRE(tables.words() <= words.size());
-  words.resize(tables.words());
+  REQUIRE(tables.words.size <= words.size());
+  words.resize(tables.words.size);
 }
 
 GroupInput group_of(const Tables& tables, std::size_t instances) {
@@ -78,15 +72,6 @@ void give_matrices(GroupInput& in, const Asset& asset, MatrixLayout layout, Pose
   }
 }
 
-TinyAsset boned_asset(unsigned spheres, std::size_t bones, unsigned seed) {
-  TinyAsset tiny = random_asset(spheres, seed);
-  give_pivots(tiny, 5, 19, 2);
-  give_pivots(tiny, 7, 1, 3);
-  give_pivots(tiny, 8, 16, 4);
-  add_bones(tiny, bones, seed);
-  return tiny;
-}
-
 TinyAsset moment_asset(unsigned spheres, std::size_t bones, unsigned seed) {
   TinyAsset tiny = random_asset(spheres, seed);
   if (spheres > 8) {
@@ -103,12 +88,6 @@ BoneMatrices bones_of(const GroupInput& in, std::size_t i) {
   return {in.matrices.data() + in.offset + i * in.instance_stride / 4, in.bone_count, in.layout, in.bone_stride};
 }
 
-std::vector<float> morph_weights_of(const GroupInput& in, const Asset& asset, std::size_t i) {
-  const auto first = in.morph_weights.begin() + static_cast<std::ptrdiff_t>(i * asset.morph_count());
-  return in.morph_weights.empty() ? std::vector<float>()
-                                  : std::vector<float>(first, first + static_cast<std::ptrdiff_t>(asset.morph_count()));
-}
-
 Expected pairs_of_spheres(const Asset& asset, const GroupInput& in, RadiusKind radius, const Filter* filter) {
   Expected out;
   const std::size_t n = asset.spheres().size, stride = in.stride == 0 ? n : in.stride;
@@ -122,8 +101,7 @@ Expected pairs_of_spheres(const Asset& asset, const GroupInput& in, RadiusKind r
 Expected pairs_of_bones(const Asset& asset, const GroupInput& in, RadiusKind radius, const Filter* filter) {
   Expected out;
   for (std::size_t i = 0; i < in.instance_count; ++i) {
-    const Refitted refitted =
-        refit_bones(asset, bones_of(in, i), morph_weights_of(in, asset, i), radius, Target::kScalar);
+    const Refitted refitted = refit_bones(asset, bones_of(in, i), {}, radius, Target::kScalar);
     REQUIRE(refitted.status == Status::kOk);
     out.spheres.insert(out.spheres.end(), refitted.spheres.begin(), refitted.spheres.end());
     add_pairs(asset, refitted.spheres, radius, filter, out);
@@ -143,8 +121,9 @@ void edit_randomly(const Asset& asset, Filter& filter, std::mt19937& random) {
 }
 
 void RunCounts::add(const Tables& tables) {
-  const cuda::GroupView view = cuda::Access::view(tables.tables, tables.words.data());
-  for (std::uint32_t i = 0; i < view.run_count; ++i) ++of_kind[view.runs[i].kind];
+  const cuda::TableHeader& header = cuda::header_of(tables.tables);
+  const auto* runs = reinterpret_cast<const cuda::MomentRun*>(&tables.words[header.runs]);
+  for (std::uint32_t i = 0; i < header.run_count; ++i) ++of_kind[runs[i].kind];
 }
 
 }  // namespace spherechain::test

@@ -9,8 +9,6 @@ namespace spherechain::test {
 
 struct Tables {
   Tables(const Asset& asset, RadiusKind radius, const Filter* filter = nullptr);
-  struct Covers {};
-  Tables(const Asset& asset, Covers covers, const Filter* filter = nullptr);
 
   std::vector<std::uint64_t> words;
   cuda::CrowdTables tables;
@@ -25,15 +23,11 @@ std::vector<Sphere> spheres_of(std::size_t n, std::size_t instances, std::size_t
 void give_matrices(GroupInput& in, const Asset& asset, MatrixLayout layout, PoseKind kind, std::size_t gap,
                    std::mt19937& random);
 
-// Pivots in one to three groups of eight, bones, morph targets.
-TinyAsset boned_asset(unsigned spheres, std::size_t bones, unsigned seed);
-
-// The same under refit by moments, which no morph target of it moves.
+// Refitted by moments; some spheres have fewer pivots than eight, and some more.
 TinyAsset moment_asset(unsigned spheres, std::size_t bones, unsigned seed);
 
 // Instance `i`'s.
 BoneMatrices bones_of(const GroupInput& in, std::size_t i);
-std::vector<float> morph_weights_of(const GroupInput& in, const Asset& asset, std::size_t i);
 
 struct Expected {
   std::vector<Sphere> spheres;
@@ -49,9 +43,9 @@ Expected pairs_of_bones(const Asset& asset, const GroupInput& in, RadiusKind rad
 // Disables some spheres, pads all, ignores some pairs and takes up others.
 void edit_randomly(const Asset& asset, Filter& filter, std::mt19937& random);
 
-// How many there are of each kind (kTwoBones, kThreeBones, kEqualBones, kAnyBones).
+// How many there are of each kind (kTwoBones, kThreeBones, kAnyBones).
 struct RunCounts {
-  std::size_t of_kind[4] = {};
+  std::size_t of_kind[3] = {};
   void add(const Tables& tables);
 };
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "spherechain/cuda_crowd.h"
+#include "crowd_launch.h"
 
 namespace spherechain::test {
 
@@ -19,14 +19,18 @@ struct GroupInput {
   std::vector<float> matrices;  // or these; from matrices[offset] on
   std::size_t offset = 0, bone_count = 0, bone_stride = 48, instance_stride = 0;
   MatrixLayout layout = MatrixLayout::kRowMajor3x4;
-  std::vector<float> morph_weights;
-  bool wants_bits = true, wants_spheres = true, wants_leaves = false;
+  bool wants_bits = true, wants_spheres = true;
   std::size_t pair_capacity = 0;  // 0: no list
   std::size_t scratch_bytes = 0;  // a multiple of 16
 };
 
+// Zeros if the tables are not built.
+inline cuda::TableHeader header_of(const GroupInput& in) {
+  return in.tables == nullptr || in.tables->words.size == 0 ? cuda::TableHeader{} : cuda::header_of(*in.tables);
+}
+
 struct GroupOutput {
-  std::vector<Sphere> refitted, leaves, bounds;
+  std::vector<Sphere> refitted;
   std::vector<std::uint32_t> counts;
   std::vector<std::uint64_t> bits, starts;
   std::vector<CrowdPair> pairs;  // as many as the capacity, dirty where nothing was written

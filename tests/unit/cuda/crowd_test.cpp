@@ -112,68 +112,24 @@ TEST_CASE("spheres that just touch, or just do not, near the origin and far from
   }
 }
 
-TEST_CASE("bones in: the spheres and pairs are those of the CPU's refit, for every layout, alignment and morph") {
-  const OpenedAsset opened(boned_asset(60, 9, 8).parts);
-  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
-  std::mt19937 random(8);
-  std::size_t pairs = 0;
-  for (const MatrixLayout layout : {MatrixLayout::kRowMajor3x4, MatrixLayout::kRowMajor4x4,
-                                    MatrixLayout::kColumnMajor4x4, MatrixLayout::kColumnMajor3x4}) {
-    for (const std::size_t offset : {0U, 1U}) {
-      for (const RadiusKind radius : {RadiusKind::kFit, RadiusKind::kDetect}) {
-        for (const bool morphs : {false, true}) {
-          CAPTURE(static_cast<int>(layout));
-          CAPTURE(offset);
-          CAPTURE(morphs);
-          const Tables tables(opened.asset, radius);
-          GroupInput in = group_of(tables, 37);
-          in.offset = offset;
-          give_matrices(in, opened.asset, layout, kPoseKinds[(offset + 2 * morphs + pairs) % 6], 4 + offset, random);
-          if (morphs) in.morph_weights = random_morph_weights(37 * opened.asset.morph_count(), random);
-          const Expected wanted = pairs_of_bones(opened.asset, in, radius);
-          run_and_check(in, wanted);
-          pairs += wanted.pairs.size();
-        }
-      }
-    }
-  }
-  CHECK(pairs > 1000);
-}
-
-TEST_CASE("a crowd under the paper's refit rule has the CPU's spheres") {
-  TinyAsset tiny = boned_asset(30, 4, 3);
-  tiny.parts.refit = 0;
-  const OpenedAsset opened(tiny.parts);
+TEST_CASE("a crowd takes a filter as a single job does, and the refitted spheres stay without its padding") {
+  const OpenedAsset opened(moment_asset(70, 6, 5).parts);
   REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
   std::mt19937 random(5);
-  for (const RadiusKind radius : {RadiusKind::kFit, RadiusKind::kDetect}) {
-    const Tables tables(opened.asset, radius);
-    GroupInput in = group_of(tables, 40);
-    give_matrices(in, opened.asset, MatrixLayout::kRowMajor3x4, PoseKind::kAny, 0, random);
-    run_and_check(in, pairs_of_bones(opened.asset, in, radius));
-  }
-}
-
-TEST_CASE("a crowd takes a filter as a single job does, and the refitted spheres stay without its padding") {
-  for (const TinyAsset& tiny : {boned_asset(70, 6, 5), moment_asset(50, 4, 5)}) {
-    const OpenedAsset opened(tiny.parts);
-    REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
-    std::mt19937 random(5);
-    OwnedFilter owned(opened.asset);
-    edit_randomly(opened.asset, owned.filter, random);
-    const Tables tables(opened.asset, RadiusKind::kDetect, &owned.filter);
-    GroupInput in = group_of(tables, 50);
-    give_matrices(in, opened.asset, MatrixLayout::kRowMajor3x4, PoseKind::kGentle, 0, random);
-    const Expected wanted = pairs_of_bones(opened.asset, in, RadiusKind::kDetect, &owned.filter);
-    CHECK(!wanted.pairs.empty());
-    run_and_check(in, wanted);
-  }
+  OwnedFilter owned(opened.asset);
+  edit_randomly(opened.asset, owned.filter, random);
+  const Tables tables(opened.asset, RadiusKind::kDetect, &owned.filter);
+  GroupInput in = group_of(tables, 50);
+  give_matrices(in, opened.asset, MatrixLayout::kRowMajor3x4, PoseKind::kGentle, 0, random);
+  const Expected wanted = pairs_of_bones(opened.asset, in, RadiusKind::kDetect, &owned.filter);
+  CHECK(!wanted.pairs.empty());
+  run_and_check(in, wanted);
 }
 
 TEST_CASE("several assets, as bones and as spheres, share a launch") {
   std::mt19937 random(9);
-  const OpenedAsset first(boned_asset(33, 5, 1).parts), second(random_asset(50, 2).parts),
-      third(boned_asset(9, 3, 4).parts);
+  const OpenedAsset first(moment_asset(33, 5, 1).parts), second(random_asset(50, 2).parts),
+      third(moment_asset(9, 3, 4).parts);
   REQUIRE(first.status == Status::kOk);
   REQUIRE(third.status == Status::kOk);
   const Tables a(first.asset, RadiusKind::kDetect), b(second.asset, RadiusKind::kFit),
@@ -182,7 +138,6 @@ TEST_CASE("several assets, as bones and as spheres, share a launch") {
   give_matrices(in[0], first.asset, MatrixLayout::kRowMajor3x4, PoseKind::kRigid, 0, random);
   in[1].spheres = spheres_of(50, 65, 50, random);
   give_matrices(in[3], third.asset, MatrixLayout::kColumnMajor4x4, PoseKind::kScaled, 0, random);
-  in[3].morph_weights = random_morph_weights(31 * third.asset.morph_count(), random);
   run_and_check(in, {pairs_of_bones(first.asset, in[0], RadiusKind::kDetect),
                      pairs_of_spheres(second.asset, in[1], RadiusKind::kFit),
                      {},
@@ -203,34 +158,14 @@ TEST_CASE("a list that is too short is filled, nothing is written past it, and t
   check_pairs(in, run.groups[0], wanted);
 }
 
-TEST_CASE("an instance's bound contains its spheres, and is not much larger than their box") {
-  std::mt19937 random(7);
-  const OpenedAsset opened(boned_asset(40, 6, 2).parts);
-  const Tables tables(opened.asset, RadiusKind::kDetect);
-  GroupInput in = group_of(tables, 60);
-  give_matrices(in, opened.asset, MatrixLayout::kRowMajor3x4, PoseKind::kRigid, 0, random);
-  const CrowdRun run = run_crowd({in});
-  REQUIRE(run.status == Status::kOk);
-  for (std::size_t i = 0; i < 60; ++i) {
-    const Sphere& bound = run.groups[0].bounds[i];
-    double low[3] = {1e9, 1e9, 1e9}, high[3] = {-1e9, -1e9, -1e9};
-    for (std::size_t k = 0; k < 40; ++k) {
-      const Sphere& s = run.groups[0].refitted[i * 40 + k];
-      const double center[] = {s.x, s.y, s.z};
-      CHECK(std::hypot(double{s.x} - bound.x, double{s.y} - bound.y, double{s.z} - bound.z) + s.radius <= bound.radius);
-      for (int axis = 0; axis < 3; ++axis) {
-        low[axis] = std::min(low[axis], center[axis] - s.radius);
-        high[axis] = std::max(high[axis], center[axis] + s.radius);
-      }
-    }
-    CHECK(bound.radius <= std::hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]));
-  }
-}
-
 TEST_CASE("what cannot be run is refused, and nothing is written") {
   std::mt19937 random(3);
-  const OpenedAsset opened(boned_asset(20, 4, 7).parts), boneless(random_asset(20, 7).parts);
-  const Tables tables(opened.asset, RadiusKind::kDetect), without(boneless.asset, RadiusKind::kDetect);
+  TinyAsset of_pivots = random_asset(20, 7);  // has bones, but another refit rule
+  add_bones(of_pivots, 4, 7);
+  const OpenedAsset opened(moment_asset(20, 4, 7).parts), boneless(random_asset(20, 7).parts), other(of_pivots.parts);
+  REQUIRE_MESSAGE(other.status == Status::kOk, other.message);
+  const Tables tables(opened.asset, RadiusKind::kDetect), without(boneless.asset, RadiusKind::kDetect),
+      without_moments(other.asset, RadiusKind::kDetect);
   GroupInput good = group_of(tables, 5);
   give_matrices(good, opened.asset, MatrixLayout::kRowMajor3x4, PoseKind::kRigid, 0, random);
   REQUIRE(run_crowd({good}).status == Status::kOk);
@@ -252,10 +187,12 @@ TEST_CASE("what cannot be run is refused, and nothing is written") {
   refused(Status::kBadStride, [](GroupInput& in) { in.instance_stride -= 4; });
   refused(Status::kBadStride, [](GroupInput& in) { in.instance_stride += 2; });
   refused(Status::kBadStride, [](GroupInput& in) { in.instance_stride = ~std::size_t{3}; });
-  refused(Status::kNotInAsset, [&](GroupInput& in) {
-    in.tables = &without.tables;
-    in.words = without.words;
-  });
+  for (const Tables* others : {&without, &without_moments}) {
+    refused(Status::kNotInAsset, [&](GroupInput& in) {
+      in.tables = &others->tables;
+      in.words = others->words;
+    });
+  }
   refused(Status::kTooFewSpheres, [&](GroupInput& in) {
     in.matrices.clear();
     in.spheres.resize(100);
@@ -269,7 +206,7 @@ TEST_CASE("what cannot be run is refused, and nothing is written") {
   const auto build = [&](const Asset& asset, RadiusKind radius, const Filter* filter, std::uint64_t* data,
                          std::size_t size) {
     const Status status = again.build(asset, radius, filter, {data, size});
-    CHECK(!again.is_built());
+    CHECK(again.words.size == 0);
     return status;
   };
   const Filter bad{};
@@ -287,7 +224,7 @@ TEST_CASE("an asset too large for a block's shared memory is refused without scr
   std::mt19937 random(1);
   GroupInput in = group_of(tables, 2);
   in.spheres = spheres_of(700, 2, 700, random);
-  const std::size_t block = tables.tables.shared_bytes(false, false, true, false);
+  const std::size_t block = tables.tables.block_bytes(false, true, false);
   CHECK(block > 227 * 1024);
   CHECK(block % 16 == 0);
   CHECK(run_crowd({in}).status == Status::kDeviceTooSmall);
@@ -308,7 +245,7 @@ TEST_CASE("a crowd of hundreds of spheres runs from scratch, however many blocks
     in.spheres = spheres_of(n, instances, n, random);
     const Expected wanted = pairs_of_spheres(opened.asset, in, RadiusKind::kDetect);
     in.pair_capacity = wanted.pairs.size() + 1;
-    const std::size_t block = tables.tables.shared_bytes(false, false, true, true);
+    const std::size_t block = tables.tables.block_bytes(false, true, true);
     for (const std::size_t blocks : {1U, 3U, 9U}) {
       CAPTURE(n);
       CAPTURE(blocks);
@@ -321,23 +258,24 @@ TEST_CASE("a crowd of hundreds of spheres runs from scratch, however many blocks
   }
 }
 
-TEST_CASE("large assets run from bones too, with morphs and beside small ones") {
-  const OpenedAsset large(boned_asset(240, 7, 3).parts), small(boned_asset(20, 5, 2).parts);
+TEST_CASE("large assets run from bones too, beside small ones and spheres") {
+  const OpenedAsset large(moment_asset(240, 7, 3).parts), small(moment_asset(20, 5, 2).parts);
   const Tables a(large.asset, RadiusKind::kDetect), b(small.asset, RadiusKind::kFit);
   std::mt19937 random(6);
-  for (const bool morphs : {false, true}) {
-    std::vector<GroupInput> in = {group_of(a, 65), group_of(b, 40), group_of(a, 33)};
-    give_matrices(in[0], large.asset, MatrixLayout::kRowMajor3x4, PoseKind::kGentle, 0, random);
-    give_matrices(in[1], small.asset, MatrixLayout::kRowMajor3x4, PoseKind::kGentle, 0, random);
-    give_matrices(in[2], large.asset, MatrixLayout::kColumnMajor3x4, PoseKind::kRigid, 0, random);
-    if (morphs) in[0].morph_weights = random_morph_weights(65 * large.asset.morph_count(), random);
-    const std::size_t block = a.tables.shared_bytes(true, morphs, true, true);
-    CHECK(block > 227 * 1024);
-    for (std::size_t g = 0; g < in.size(); ++g) in[g].scratch_bytes = (g + 1) * block;
-    run_and_check(in, {pairs_of_bones(large.asset, in[0], RadiusKind::kDetect),
-                       pairs_of_bones(small.asset, in[1], RadiusKind::kFit),
-                       pairs_of_bones(large.asset, in[2], RadiusKind::kDetect)});
-  }
+  std::vector<GroupInput> in = {group_of(a, 65), group_of(b, 40), group_of(a, 33), group_of(b, 20), group_of(a, 9)};
+  give_matrices(in[0], large.asset, MatrixLayout::kRowMajor3x4, PoseKind::kGentle, 0, random);
+  give_matrices(in[1], small.asset, MatrixLayout::kRowMajor3x4, PoseKind::kGentle, 0, random);
+  give_matrices(in[2], large.asset, MatrixLayout::kColumnMajor3x4, PoseKind::kRigid, 0, random);
+  in[3].spheres = spheres_of(20, 20, 20, random);
+  in[4].spheres = spheres_of(240, 9, 240, random);
+  const std::size_t block = a.tables.block_bytes(true, true, true);
+  CHECK(block > 227 * 1024);
+  for (std::size_t g = 0; g < in.size(); ++g) in[g].scratch_bytes = (g + 1) * block;
+  run_and_check(
+      in,
+      {pairs_of_bones(large.asset, in[0], RadiusKind::kDetect), pairs_of_bones(small.asset, in[1], RadiusKind::kFit),
+       pairs_of_bones(large.asset, in[2], RadiusKind::kDetect), pairs_of_spheres(small.asset, in[3], RadiusKind::kFit),
+       pairs_of_spheres(large.asset, in[4], RadiusKind::kDetect)});
 }
 
 }  // namespace spherechain::test

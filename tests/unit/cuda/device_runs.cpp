@@ -6,7 +6,6 @@
 #include <deque>
 
 #include "crowd_runs.h"
-#include "spherechain/cuda_device.h"
 
 namespace spherechain::test {
 namespace {
@@ -60,7 +59,7 @@ struct Buffers {
 };
 
 struct Outputs {
-  const Buffer &refitted, &leaves, &bounds, &counts, &bits, &starts, &pairs, &pair_count;
+  const Buffer &refitted, &counts, &bits, &starts, &pairs, &pair_count;
 };
 
 }  // namespace
@@ -79,18 +78,13 @@ CrowdRun run_crowd(const std::vector<GroupInput>& groups) {
     const float* matrices = buffers.put(in.matrices);
     if (!in.matrices.empty()) group.bones = {matrices + in.offset, in.bone_count, in.layout, in.bone_stride};
     group.instance_stride = in.instance_stride;
-    group.morph_weights = buffers.put(in.morph_weights);
-    const std::size_t n = in.tables == nullptr ? 0 : in.tables->sphere_count(), count = in.instance_count;
-    const std::size_t words = in.wants_bits && in.tables != nullptr ? in.tables->bit_words() * count : 0;
-    const Outputs& out = outputs.emplace_back(
-        Outputs{buffers.take<Sphere>(in.wants_spheres && !in.matrices.empty() ? n * count : 0),
-                buffers.take<Sphere>(in.wants_leaves && in.tables != nullptr ? in.tables->leaf_count() * count : 0),
-                buffers.take<Sphere>(in.wants_spheres ? count : 0), buffers.take<std::uint32_t>(count),
-                buffers.take<std::uint64_t>(words), buffers.take<std::uint64_t>(count),
-                buffers.take<CrowdPair>(in.pair_capacity), buffers.take<std::uint64_t>(1)});
+    const cuda::TableHeader header = header_of(in);
+    const std::size_t count = in.instance_count, words = in.wants_bits ? header.bit_words * count : 0;
+    const Outputs& out = outputs.emplace_back(Outputs{
+        buffers.take<Sphere>(in.wants_spheres && !in.matrices.empty() ? header.sphere_count * count : 0),
+        buffers.take<std::uint32_t>(count), buffers.take<std::uint64_t>(words), buffers.take<std::uint64_t>(count),
+        buffers.take<CrowdPair>(in.pair_capacity), buffers.take<std::uint64_t>(1)});
     group.refitted = out.refitted.data<Sphere>();
-    group.leaves = out.leaves.data<Sphere>();
-    group.bounds = out.bounds.data<Sphere>();
     group.counts = out.counts.data<std::uint32_t>();
     group.bits = out.bits.data<std::uint64_t>();
     group.starts = out.starts.data<std::uint64_t>();
@@ -106,8 +100,6 @@ CrowdRun run_crowd(const std::vector<GroupInput>& groups) {
   for (std::size_t g = 0; g < groups.size(); ++g) {
     GroupOutput& to = run.groups[g];
     outputs[g].refitted.get(to.refitted);
-    outputs[g].leaves.get(to.leaves);
-    outputs[g].bounds.get(to.bounds);
     outputs[g].counts.get(to.counts);
     outputs[g].bits.get(to.bits);
     outputs[g].starts.get(to.starts);

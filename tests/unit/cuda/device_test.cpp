@@ -7,9 +7,7 @@
 
 #include "crowd_cases.h"
 #include "jobs.h"
-#include "spherechain/cuda_crowd.h"
-#include "spherechain/cuda_device.h"
-#include "spherechain/cuda_host_crowd.h"
+#include "spherechain/cuda.h"
 
 namespace spherechain::test {
 
@@ -96,7 +94,7 @@ TEST_CASE("a job is captured into a graph, and each replay finds the pairs of th
 TEST_CASE("a host crowd on the device gives the CPU's spheres and sorted pairs, from shared memory and from scratch") {
   for (const unsigned spheres : {40U, 300U}) {
     constexpr std::size_t kInstances = 70;
-    const OpenedAsset opened(boned_asset(spheres, 6, 2).parts);
+    const OpenedAsset opened(moment_asset(spheres, 6, 2).parts);
     std::mt19937 random(3);
     GroupInput in;
     in.instance_count = kInstances;

@@ -36,15 +36,15 @@ struct RunStep {
   }
   template <typename... Steps>
   void for_instances(const cuda::GroupView& v, const cuda::Shared& shared, const Steps&... steps) const {
-    for (std::uint32_t first = 0; first < cuda::kFewInstances; first += kThreads / cuda::kLanes) {
-      const auto run_own = [&](const auto& step) {
+    for (std::uint32_t first = 0; first < cuda::kSphereInstances; first += kThreads / cuda::kLanes) {
+      const auto run_for_warp = [&](const auto& step) {
         if (!step.is_wanted) return;
         (*this)([&](const cuda::Place& at) {
           const std::uint32_t place = first + at.warp();
-          if (place < cuda::instances_in(v, at)) step.run(cuda::Own(v, shared, at, place));
+          if (place < cuda::instances_in(v, at)) step.run(cuda::WarpInstance(v, shared, at, place));
         });
       };
-      (run_own(steps), ...);
+      (run_for_warp(steps), ...);
     }
   }
 };
@@ -52,11 +52,11 @@ struct RunStep {
 }  // namespace
 
 void run_in_shared(const cuda::GroupView& view, std::mt19937& random) {
-  const cuda::SharedLayout& layout = view.layout;
+  const cuda::BlockLayout& layout = view.layout;
   for (const std::uint32_t block : shuffled(cuda::blocks_of(view), random)) {
     std::vector<cuda::Float4> memory(layout.size / sizeof(cuda::Float4));  // exactly, for sanitizers
     std::memset(memory.data(), kDirty, layout.size);
-    cuda::run_any_block(view, cuda::Shared(memory.data(), layout), RunStep{random, block});
+    cuda::run_block(view, cuda::Shared(memory.data(), layout), RunStep{random, block});
   }
 }
 

@@ -47,13 +47,11 @@ CrowdRun run_crowd(const std::vector<GroupInput>& groups) {
                      in.bone_stride};
     }
     group.instance_stride = in.instance_stride;
-    group.morph_weights = in.morph_weights.empty() ? nullptr : in.morph_weights.data();
-    const std::size_t n = in.tables == nullptr ? 0 : in.tables->sphere_count(), count = in.instance_count;
-    group.refitted = take(to.refitted, in.wants_spheres && !in.matrices.empty() ? n * count : 0);
-    group.leaves = take(to.leaves, in.wants_leaves && in.tables != nullptr ? in.tables->leaf_count() * count : 0);
-    group.bounds = take(to.bounds, in.wants_spheres ? count : 0);
+    const std::size_t count = in.instance_count;
+    const cuda::TableHeader header = header_of(in);
+    group.refitted = take(to.refitted, in.wants_spheres && !in.matrices.empty() ? header.sphere_count * count : 0);
     group.counts = take(to.counts, count);
-    group.bits = take(to.bits, in.wants_bits && in.tables != nullptr ? in.tables->bit_words() * count : 0);
+    group.bits = take(to.bits, in.wants_bits ? header.bit_words * count : 0);
     group.starts = take(to.starts, count);
     group.pairs = take(to.pairs, in.pair_capacity);
     group.pair_capacity = in.pair_capacity;
@@ -69,8 +67,8 @@ CrowdRun run_crowd(const std::vector<GroupInput>& groups) {
     out.status = cuda::view_groups({&group, 1}, all);
     if (out.status == Status::kOk) out.status = cuda::plan_launches(all, kSharedBytes, plan);
     if (out.status != Status::kOk) return out;
-    if (plan.in_shared.count > 0) run_in_shared(plan.in_shared.views[0], random);
-    if (plan.in_scratch.count > 0) run_in_scratch(plan.in_scratch.views[0], random);
+    for (std::uint32_t k = 0; k < cuda::kKernels; ++k)
+      run_kernel(static_cast<cuda::Kernel>(k), plan.launches[k], random);
   }
   return out;
 }

@@ -49,7 +49,7 @@ void run_in_shared(const cuda::GroupView& view, std::mt19937&) {
   for (std::vector<cuda::Float4>& memory : memories) std::memset(memory.data(), kDirty, view.layout.size);
   run_teams([&](std::uint32_t which, const auto& run_of) {
     for (std::uint32_t block = which; block < blocks; block += kBlocksAtOnce) {
-      cuda::run_any_block(view, cuda::Shared(memories[block].data(), view.layout), run_of(block));
+      cuda::run_block(view, cuda::Shared(memories[block].data(), view.layout), run_of(block));
     }
   });
 }

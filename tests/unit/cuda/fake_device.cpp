@@ -121,24 +121,13 @@ const char* cudaGetErrorString(cudaError_t error) {
 
 namespace spherechain::cuda {
 
-Status status_of(cudaError_t error);  // device_error.h
-
-Status launch_in_shared(const LaunchPlan& plan, std::size_t most_shared_bytes, CUstream_st*) {
-  ++fake_device.launches_in_shared;
+Status enqueue(Kernel kernel, const Launch& launch, std::size_t shared_bytes_max, CUstream_st*) {
+  ++fake_device.launches[static_cast<std::size_t>(kernel)];
   const Status status = status_of(call());
   if (status != Status::kOk) return status;
-  if (plan.shared_bytes > most_shared_bytes) return Status::kDeviceFailed;
+  if (launch.shared_bytes > shared_bytes_max) return Status::kDeviceFailed;
   std::mt19937 random(1);
-  for (std::uint32_t g = 0; g < plan.in_shared.count; ++g) run_in_shared(plan.in_shared.views[g], random);
-  return Status::kOk;
-}
-
-Status launch_in_scratch(const LaunchPlan& plan, CUstream_st*) {
-  ++fake_device.launches_in_scratch;
-  const Status status = status_of(call());
-  if (status != Status::kOk) return status;
-  std::mt19937 random(1);
-  for (std::uint32_t g = 0; g < plan.in_scratch.count; ++g) run_in_scratch(plan.in_scratch.views[g], random);
+  run_kernel(kernel, launch, random);
   return Status::kOk;
 }
 

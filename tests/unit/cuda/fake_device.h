@@ -14,10 +14,10 @@ struct FakeDevice {
   cudaError_t error = cudaSuccess;  // of the call after `calls_before_error` more, and of those after it
   std::size_t calls_before_error = 0;
 
-  std::size_t calls = 0;    // so far; freeing is none
-  std::size_t objects = 0;  // events, and pieces of memory, not freed
-  std::size_t bytes = 0;    // of the latter
-  std::size_t launches_in_shared = 0, launches_in_scratch = 0;
+  std::size_t calls = 0;         // so far; freeing is none
+  std::size_t objects = 0;       // events, and pieces of memory, not freed
+  std::size_t bytes = 0;         // of the latter
+  std::size_t launches[3] = {};  // by cuda::Kernel
 };
 extern FakeDevice fake_device;
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
 // HostCrowd and CrowdJob with a device that is fake but for its kernels.
-#include "spherechain/cuda_host_crowd.h"
-
 #include <doctest/doctest.h>
 
 #include <string>
@@ -9,7 +7,6 @@
 #include "crowd_cases.h"
 #include "fake_device.h"
 #include "jobs.h"
-#include "spherechain/cuda_device.h"
 
 namespace spherechain::test {
 
@@ -21,14 +18,12 @@ bool can_run(const char*& where) {
 namespace {
 
 struct Poses {
-  Poses(const Asset& asset, std::size_t instances, bool morphs, unsigned seed) : asset(asset), instances(instances) {
+  Poses(const Asset& asset, std::size_t instances, unsigned seed) : asset(asset), instances(instances) {
     std::mt19937 random(seed);
     input.instance_count = instances;
     give_matrices(input, asset, MatrixLayout::kRowMajor4x4, PoseKind::kGentle, 4, random);
-    if (morphs) input.morph_weights = random_morph_weights(instances * asset.morph_count(), random);
     for (std::size_t i = 0; i < instances; ++i) {
-      const Refitted refitted =
-          refit_bones(asset, bones_of(input, i), morph_weights_of(input, asset, i), RadiusKind::kDetect);
+      const Refitted refitted = refit_bones(asset, bones_of(input, i), {}, RadiusKind::kDetect);
       spheres.insert(spheres.end(), refitted.spheres.begin(), refitted.spheres.end());
       const Detected found = detect(asset, refitted.spheres, Method::kM2, RadiusKind::kDetect);
       counts.push_back(static_cast<std::uint32_t>(found.pairs.size()));
@@ -56,7 +51,6 @@ Results give(cuda::HostCrowd& crowd, const Poses& poses, std::size_t capacity) {
               std::vector<CrowdPair>(capacity, kUnwritten)};
   crowd.bones = bones_of(poses.input, 0);
   crowd.instance_stride = poses.input.instance_stride;
-  crowd.morph_weights = poses.input.morph_weights.empty() ? nullptr : poses.input.morph_weights.data();
   crowd.instance_count = poses.instances;
   crowd.spheres = out.spheres.data();
   crowd.counts = out.counts.data();
@@ -85,65 +79,43 @@ struct Device {
   }
 };
 
+std::size_t launches(cuda::Kernel kernel) { return fake_device.launches[static_cast<std::size_t>(kernel)]; }
+
 constexpr std::size_t kCapacity = 100000;
 
 }  // namespace
 
 TEST_CASE("a host crowd gives the CPU's spheres, counts and sorted pairs, run after run, of more and fewer instances") {
   const Device device;
-  const OpenedAsset opened(boned_asset(50, 6, 3).parts);
+  const OpenedAsset opened(moment_asset(50, 6, 3).parts);
   cuda::HostCrowd crowd;
   REQUIRE(crowd.open(opened.asset, RadiusKind::kDetect, nullptr, 100, kCapacity) == Status::kOk);
   CHECK(crowd.is_open());
   for (const std::size_t instances : {10U, 100U, 33U, 1U}) {
-    for (const bool morphs : {false, true}) {
-      const Poses poses(opened.asset, instances, morphs, static_cast<unsigned>(instances));
-      const Results got = give(crowd, poses, kCapacity);
-      REQUIRE(crowd.run() == Status::kOk);
-      check(got, poses, crowd.pair_count);
-      CHECK(crowd.device_milliseconds == 0.25F);
-    }
+    const Poses poses(opened.asset, instances, static_cast<unsigned>(instances));
+    const Results got = give(crowd, poses, kCapacity);
+    REQUIRE(crowd.run() == Status::kOk);
+    check(got, poses, crowd.pair_count);
+    CHECK(crowd.device_milliseconds == 0.25F);
   }
-  CHECK(fake_device.launches_in_shared == 8);
-  CHECK(fake_device.launches_in_scratch == 0);
+  CHECK(launches(cuda::Kernel::kBones) == 4);
+  CHECK(launches(cuda::Kernel::kScratch) == 0);
   crowd.instance_count = 0;
   CHECK(crowd.run() == Status::kOk);
   CHECK(crowd.pair_count == 0);
 
-  const OpenedAsset other(boned_asset(20, 3, 4).parts);
+  const OpenedAsset other(moment_asset(20, 3, 4).parts);
   REQUIRE(crowd.open(other.asset, RadiusKind::kDetect, nullptr, 5, 1000) == Status::kOk);
-  const Poses poses(other.asset, 5, false, 9);
+  const Poses poses(other.asset, 5, 9);
   const Results got = give(crowd, poses, 1000);
   REQUIRE(crowd.run() == Status::kOk);
   check(got, poses, crowd.pair_count);
 }
 
-TEST_CASE("a host crowd by moments gives the CPU's, where a block's shared memory has room for it and where not") {
-  const OpenedAsset opened(moment_asset(60, 5, 6).parts);
-  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
-  for (const int most_shared_bytes : {227 * 1024, 30 * 1024}) {
-    const Device device;
-    fake_device.most_shared_bytes = most_shared_bytes;
-    cuda::HostCrowd crowd;
-    REQUIRE(crowd.open(opened.asset, RadiusKind::kDetect, nullptr, 100, kCapacity) == Status::kOk);
-    for (const std::size_t instances : {100U, 33U}) {
-      for (const bool morphs : {false, true}) {  // which move nothing
-        const Poses poses(opened.asset, instances, morphs, static_cast<unsigned>(instances));
-        const Results got = give(crowd, poses, kCapacity);
-        REQUIRE(crowd.run() == Status::kOk);
-        check(got, poses, crowd.pair_count);
-      }
-    }
-    const bool has_room = most_shared_bytes > 100 * 1024;
-    CHECK(fake_device.launches_in_shared == (has_room ? 4U : 0U));
-    CHECK(fake_device.launches_in_scratch == (has_room ? 0U : 4U));
-  }
-}
-
 TEST_CASE("a host crowd of fewer outputs gives those") {
   const Device device;
-  const OpenedAsset opened(boned_asset(30, 4, 3).parts);
-  const Poses poses(opened.asset, 40, false, 2);
+  const OpenedAsset opened(moment_asset(30, 4, 3).parts);
+  const Poses poses(opened.asset, 40, 2);
   cuda::HostCrowd crowd;
   REQUIRE(crowd.open(opened.asset, RadiusKind::kDetect, nullptr, 40, 1) == Status::kOk);
   const Results got = give(crowd, poses, 1);
@@ -158,8 +130,8 @@ TEST_CASE("a host crowd of fewer outputs gives those") {
 
 TEST_CASE("more pairs than a host crowd has room for are counted, and none is written") {
   const Device device;
-  const OpenedAsset opened(boned_asset(30, 4, 3).parts);
-  const Poses poses(opened.asset, 40, false, 2);
+  const OpenedAsset opened(moment_asset(30, 4, 3).parts);
+  const Poses poses(opened.asset, 40, 2);
   REQUIRE(poses.pairs.size() > 100);
   cuda::HostCrowd crowd;
   REQUIRE(crowd.open(opened.asset, RadiusKind::kDetect, nullptr, 40, poses.pairs.size() - 1) == Status::kOk);
@@ -175,8 +147,8 @@ TEST_CASE("more pairs than a host crowd has room for are counted, and none is wr
 }
 
 TEST_CASE("a host crowd of a large asset has scratch, as much as there is room for") {
-  const OpenedAsset opened(boned_asset(60, 5, 6).parts);
-  const Poses poses(opened.asset, 150, true, 3);  // five blocks
+  const OpenedAsset opened(moment_asset(60, 5, 6).parts);
+  const Poses poses(opened.asset, 150, 3);  // five blocks
   for (const int multiprocessors : {1, 2, 100}) {
     const Device device;
     fake_device.most_shared_bytes = 30 * 1024;
@@ -186,14 +158,14 @@ TEST_CASE("a host crowd of a large asset has scratch, as much as there is room f
     const Results got = give(crowd, poses, kCapacity);
     REQUIRE(crowd.run() == Status::kOk);
     check(got, poses, crowd.pair_count);
-    CHECK(fake_device.launches_in_shared == 0);
-    CHECK(fake_device.launches_in_scratch == 1);
+    CHECK(launches(cuda::Kernel::kBones) == 0);
+    CHECK(launches(cuda::Kernel::kScratch) == 1);
   }
 }
 
 TEST_CASE("a host crowd refuses what it cannot run, before it asks the device, and writes nothing") {
   const Device device;
-  const OpenedAsset opened(boned_asset(20, 4, 3).parts), boneless(random_asset(20, 3).parts);
+  const OpenedAsset opened(moment_asset(20, 4, 3).parts), boneless(random_asset(20, 3).parts);
   const Asset closed;
   const Filter bad{};
   cuda::HostCrowd crowd;
@@ -213,7 +185,7 @@ TEST_CASE("a host crowd refuses what it cannot run, before it asks the device, a
   CHECK(fake_device.calls == 0);
 
   REQUIRE(open(opened.asset, nullptr, 10, 1000) == Status::kOk);
-  const Poses poses(opened.asset, 10, true, 1);
+  const Poses poses(opened.asset, 10, 1);
   const std::size_t calls = fake_device.calls;
   const auto refused = [&](Status status, auto change) {
     const Results got = give(crowd, poses, 1000);
@@ -239,7 +211,7 @@ TEST_CASE("a host crowd refuses what it cannot run, before it asks the device, a
 }
 
 TEST_CASE("where there is no device, or no driver for it, a host crowd says so and holds nothing") {
-  const OpenedAsset opened(boned_asset(20, 4, 3).parts);
+  const OpenedAsset opened(moment_asset(20, 4, 3).parts);
   for (const cudaError_t error :
        {cudaSuccess, cudaErrorNoDevice, cudaErrorInsufficientDriver, cudaErrorSystemDriverMismatch,
         cudaErrorNoKernelImageForDevice, cudaErrorSystemNotReady, cudaErrorCompatNotSupportedOnDevice}) {
@@ -255,8 +227,8 @@ TEST_CASE("where there is no device, or no driver for it, a host crowd says so a
 }
 
 TEST_CASE("each failure of the device is told, leaves nothing behind, and can be got over") {
-  const OpenedAsset opened(boned_asset(20, 4, 3).parts);
-  const Poses poses(opened.asset, 40, true, 5);
+  const OpenedAsset opened(moment_asset(20, 4, 3).parts);
+  const Poses poses(opened.asset, 40, 5);
   for (const int most_shared_bytes : {227 * 1024, 4 * 1024}) {
     const Device device;
     fake_device.most_shared_bytes = most_shared_bytes;
@@ -316,14 +288,14 @@ TEST_CASE(
   }
   const cuda::CrowdJob job{{groups.data(), groups.size()}, nullptr};
   REQUIRE(job.run() == Status::kOk);
-  CHECK(fake_device.launches_in_shared == 1);
+  CHECK(launches(cuda::Kernel::kSpheres) == 1);
   CHECK(pair_counts[0] > 100);
   CHECK(pair_counts[1] == 0);
   CHECK(pair_counts[2] == pair_counts[0]);
   fake_device.most_shared_bytes = 1024;
   REQUIRE(job.run() == Status::kOk);
-  CHECK(fake_device.launches_in_shared == 1);
-  CHECK(fake_device.launches_in_scratch == 1);
+  CHECK(launches(cuda::Kernel::kSpheres) == 1);
+  CHECK(launches(cuda::Kernel::kScratch) == 1);
   CHECK(pair_counts[2] == pair_counts[0]);
   groups[0].scratch = nullptr;
   pair_counts[0] = 5;

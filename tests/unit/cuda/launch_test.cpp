@@ -2,11 +2,13 @@
 // What is launched where: what the emulated runs cannot show.
 #include <doctest/doctest.h>
 
-#include "crowd_access.h"
 #include "crowd_cases.h"
+#include "crowd_launch.h"
 
 namespace spherechain::test {
 namespace {
+
+using cuda::Kernel;
 
 struct Group {
   explicit Group(const Tables& tables, std::size_t instances) {
@@ -41,41 +43,38 @@ TEST_CASE("groups go to shared memory where it is large enough, and else to as m
   REQUIRE(cuda::view_groups({all.data(), all.size()}, views) == Status::kOk);
   CHECK(views.count == 4);
   REQUIRE(cuda::plan_launches(views, block - 1, plan) == Status::kOk);
-  REQUIRE(plan.in_shared.count == 2);
-  CHECK(plan.in_shared.views[1].first_block == 5);
-  CHECK(plan.in_shared.views[0].wide_spheres);
-  CHECK(plan.shared_blocks == 13);  // of eight instances
-  CHECK(plan.shared_bytes < block / 5);
-  REQUIRE(plan.in_scratch.count == 2);
-  CHECK(plan.in_scratch.views[0].scratch_blocks == 3);  // of 13
-  CHECK(plan.in_scratch.views[1].scratch_blocks == 3);
-  CHECK(plan.in_scratch.views[1].first_block == 3);
-  CHECK(plan.scratch_blocks == 6);
-  for (std::uint32_t g = 0; g < 2; ++g) {  // the instruction for wide copies is one to shared memory
-    CHECK(!plan.in_scratch.views[g].wide_spheres);
-    CHECK(!plan.in_scratch.views[g].wide_matrices);
-  }
+  REQUIRE(plan[Kernel::kSpheres].count == 2);
+  CHECK(plan[Kernel::kSpheres].views[1].first_block == 5);
+  CHECK(!plan[Kernel::kSpheres].views[0].in_scratch);
+  CHECK(plan[Kernel::kSpheres].blocks == 13);  // of eight instances
+  CHECK(plan[Kernel::kSpheres].shared_bytes < block / 5);
+  REQUIRE(plan[Kernel::kScratch].count == 2);
+  CHECK(plan[Kernel::kScratch].views[0].scratch_blocks == 3);  // of 13
+  CHECK(plan[Kernel::kScratch].views[1].scratch_blocks == 3);
+  CHECK(plan[Kernel::kScratch].views[1].first_block == 3);
+  CHECK(plan[Kernel::kScratch].blocks == 6);
+  CHECK(plan[Kernel::kScratch].views[0].in_scratch);
   views.views[1].instance_count = 1;  // as of an asset of more spheres than a block's places reach, with scratch for it
   views.views[1].sphere_count = 60000;
   views.views[1].bit_words = 60000U * 59999U / 128 + 1;
   views.views[1].bits = reinterpret_cast<std::uint64_t*>(groups[1].memory);
   views.views[1].matrices = reinterpret_cast<const float*>(groups[1].memory);
-  const cuda::SharedLayout largest = views.views[1].layout = cuda::layout_of(views.views[1]);
+  const cuda::BlockLayout largest = views.views[1].layout = cuda::layout_of(views.views[1]);
   views.views[1].scratch_bytes = ~std::size_t{0};
   CHECK(largest.size > std::size_t{4} << 30);
   CHECK(cuda::plan_launches(views, block, plan) == Status::kDeviceTooSmall);
   REQUIRE(cuda::view_groups({all.data(), all.size()}, views) == Status::kOk);
   REQUIRE(cuda::plan_launches(views, block, plan) == Status::kOk);
-  CHECK(plan.in_shared.count == 4);
-  CHECK(plan.in_scratch.count == 0);
-  CHECK(plan.shared_bytes == block);
+  CHECK(plan[Kernel::kSpheres].count == 4);
+  CHECK(plan[Kernel::kScratch].count == 0);
+  CHECK(plan[Kernel::kSpheres].shared_bytes == block);
 }
 
 TEST_CASE("too many groups, none at all and a null list are told apart") {
   const OpenedAsset small(random_asset(9, 2).parts);
   const Tables tables(small.asset, RadiusKind::kFit);
   const Group group(tables, 1);
-  std::vector<cuda::CrowdGroup> all(cuda::CrowdJob::kMostGroups + 1, group.group);
+  std::vector<cuda::CrowdGroup> all(cuda::CrowdJob::kGroupsMax + 1, group.group);
   cuda::Launch views;
   CHECK(cuda::view_groups({all.data(), all.size()}, views) == Status::kBadArgument);
   CHECK(cuda::view_groups({all.data(), all.size() - 1}, views) == Status::kOk);

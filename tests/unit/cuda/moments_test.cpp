@@ -45,30 +45,6 @@ TEST_CASE(
   for (const std::size_t count : runs.of_kind) CHECK(count > 10);
 }
 
-TEST_CASE("by moments: a bone's own moment may have figures below its diagonal, as older bakers gave it") {
-  std::mt19937 random(3);
-  for (const std::size_t bones : {2U, 3U, 12U}) {
-    CAPTURE(bones);
-    TinyAsset tiny = moment_asset(60, bones, 7);
-    MomentParts& moments = tiny.parts.bone_refit.moments;
-    std::size_t pair = 0, changed = 0;
-    for (const std::size_t count : moments.bone_counts) {
-      for (std::size_t k = 0; k < count; pair += count - k, ++k) {  // a bone's pairs begin with its own
-        if (random() % 3 != 0) continue;
-        moments.moments[pair].values[12 + random() % 3] += 0.5F;
-        ++changed;
-      }
-    }
-    CHECK(changed > 10);
-    const OpenedAsset opened(tiny.parts);
-    REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
-    const Tables tables(opened.asset, RadiusKind::kDetect);
-    GroupInput in = group_of(tables, 37);
-    give_matrices(in, opened.asset, MatrixLayout::kRowMajor3x4, PoseKind::kScaled, 0, random);
-    run_and_check(in, pairs_of_bones(opened.asset, in, RadiusKind::kDetect));
-  }
-}
-
 TEST_CASE("by moments: every layout, alignment, radius and pose") {
   const OpenedAsset opened(moment_asset(40, 5, 8).parts);
   REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
@@ -82,7 +58,6 @@ TEST_CASE("by moments: every layout, alignment, radius and pose") {
           GroupInput in = group_of(tables, 33);
           in.offset = offset;
           give_matrices(in, opened.asset, layout, pose, 4 + offset, random);
-          in.morph_weights = random_morph_weights(33 * opened.asset.morph_count(), random);  // which move nothing
           run_and_check(in, pairs_of_bones(opened.asset, in, radius));
         }
       }
@@ -161,32 +136,6 @@ TEST_CASE("by moments: the reference may be a bone that moves no sphere") {
   GroupInput in = group_of(tables, 5);
   give_matrices(in, opened.asset, MatrixLayout::kRowMajor3x4, PoseKind::kRigid, 0, random);
   run_and_check(in, pairs_of_bones(opened.asset, in, RadiusKind::kFit));
-}
-
-TEST_CASE("assets of all three rules, and one of spheres, share a launch; large ones by moments run from scratch") {
-  std::mt19937 random(9);
-  TinyAsset paper = boned_asset(30, 4, 3);
-  paper.parts.refit = 0;
-  const OpenedAsset first(moment_asset(33, 3, 1).parts), second(boned_asset(20, 5, 2).parts), third(paper.parts),
-      large(moment_asset(240, 7, 3).parts);
-  const Tables a(first.asset, RadiusKind::kDetect), b(second.asset, RadiusKind::kFit), c(third.asset, RadiusKind::kFit),
-      d(large.asset, RadiusKind::kDetect);
-  std::vector<GroupInput> in = {group_of(a, 45), group_of(b, 33), group_of(c, 20), group_of(d, 65), group_of(a, 20)};
-  const Asset* assets[] = {&first.asset, &second.asset, &third.asset, &large.asset, &first.asset};
-  for (std::size_t g = 0; g < 4; ++g) {
-    give_matrices(in[g], *assets[g], MatrixLayout::kRowMajor3x4, PoseKind::kGentle, 0, random);
-  }
-  in[1].morph_weights = random_morph_weights(33 * second.asset.morph_count(), random);
-  in[4].spheres = spheres_of(33, 20, 33, random);
-  std::vector<Expected> wanted;
-  for (std::size_t g = 0; g < in.size(); ++g) {
-    const RadiusKind radius = g == 1 || g == 2 ? RadiusKind::kFit : RadiusKind::kDetect;
-    wanted.push_back(g == 4 ? pairs_of_spheres(*assets[g], in[g], radius) : pairs_of_bones(*assets[g], in[g], radius));
-  }
-  const std::size_t block = d.tables.shared_bytes(true, false, true, true);
-  CHECK(block > 227 * 1024);
-  in[3].scratch_bytes = 2 * block;
-  run_and_check(in, wanted);
 }
 
 }  // namespace spherechain::test

@@ -27,9 +27,9 @@ struct Folder {
   fs::path path;
 };
 
-std::string pose_bytes(std::uint32_t poses, std::uint32_t bones, std::uint32_t morphs, std::size_t floats) {
+std::string pose_bytes(std::uint32_t poses, std::uint32_t bones, std::uint32_t spheres, std::size_t floats) {
   std::string bytes(kPoseMagic, sizeof kPoseMagic);
-  const std::uint32_t counts[4] = {poses, bones, morphs, 0};
+  const std::uint32_t counts[4] = {poses, bones, spheres, 0};
   bytes.append(reinterpret_cast<const char*>(counts), sizeof counts);
   for (std::size_t i = 0; i < floats; ++i) {
     const auto value = static_cast<float>(i);
@@ -49,23 +49,23 @@ std::string error_of(const std::string& path) {
 
 TEST_CASE("a file of poses is read as it was written") {
   const Folder folder;
-  const std::string path = folder.write("a.poses", pose_bytes(3, 2, 5, 3 * (24 + 5)));
+  const std::string path = folder.write("a.poses", pose_bytes(3, 2, 5, 3 * (24 + 20)));
   PoseFile file;
   std::string error;
   REQUIRE_MESSAGE(read_pose_file(path, file, error), error);
   CHECK(file.pose_count == 3);
   CHECK(file.bone_count == 2);
-  CHECK(file.morph_count == 5);
+  CHECK(file.sphere_count == 5);
   CHECK(file.matrices_of(2)[23] == 71);
-  CHECK(file.morphs_of(0)[0] == 72);
-  CHECK(file.morphs_of(2)[4] == 86);
+  CHECK(file.spheres_of(0)[0].x == 72);
+  CHECK(file.spheres_of(2)[4].radius == 131);
 }
 
 TEST_CASE("a file that is no file of poses, or has another size than it says, is named and refused") {
   const Folder folder;
   const std::string good = pose_bytes(3, 2, 0, 72);
   CHECK(error_of((folder.path / "none").string()) == (folder.path / "none").string() + ": cannot be read");
-  for (const std::string& bytes : {std::string(), std::string("SCPOSES1"), std::string("SCPOSES2") + good.substr(8)}) {
+  for (const std::string& bytes : {std::string(), std::string("SCPOSES2"), std::string("SCPOSES1") + good.substr(8)}) {
     CHECK(error_of(folder.write("bad", bytes)) == (folder.path / "bad").string() + ": is no file of poses");
   }
   for (const std::string& bytes :

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "import/import.h"
+#include "play/play.h"
+#include "play/player.h"
+
+// All that the page takes from the asset and the runtime; no other file of this folder calls them.
+namespace spherechain::baker {
+
+struct PageSphere {
+  std::vector<std::uint32_t> triangles;  // source triangle numbers: those of the sphere
+  std::vector<std::uint32_t> pivots;     // of these the ones that carry it
+  double mean_abs_f, max_abs_f;          // the paper's F (section 3.2) over the triangles' corners at rest; source units
+};
+// Whether the body is one with arms, which stands upright.
+bool has_arms(const OpenAsset& asset);
+
+std::vector<PageSphere> page_spheres(const OpenAsset& asset, const Character& character);
+
+inline constexpr std::uint8_t kNoPart = 255;
+struct PageParts {
+  std::vector<std::string> names;         // "left hand"
+  std::vector<std::uint8_t> of_triangle;  // a source triangle's part, or kNoPart
+};
+PageParts page_parts(const OpenAsset& asset);
+
+// What one frame shows. Triangles are source triangle numbers.
+struct PageFrame {
+  std::vector<std::array<std::uint32_t, 2>> contacts;  // triangles of the skin that intersect
+  double contacts_us;
+  std::vector<float> spheres;                                 // a sphere's x, y, z, fit radius, detect radius
+  std::vector<std::array<std::uint16_t, 2>> fit_pairs;        // spheres that touch at these radii
+  std::vector<std::array<std::uint16_t, 2>> detect_pairs;
+  double refit_us;
+  Detection chains, all_pairs;  // at the radius the page starts with
+};
+
+class PageFrames {
+ public:
+  // Throws Error(kFile) where the asset cannot tell contacts.
+  PageFrames(const AnimatedAsset& animated, Radius radius);
+
+  // `positions` are the deformed source vertices.
+  PageFrame run(const std::vector<float>& positions);
+
+ private:
+  Radius radius_;
+  Player fit_, detect_;
+};
+
+}  // namespace spherechain::baker

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "page/page.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "mesh/error.h"
+#include "page/base64.h"
+#include "page/from_runtime.h"
+#include "page/page_axes.h"
+#include "page/page_mesh.h"
+#include "page/page_motion.h"
+#include "report/json_text.h"
+#include "report/report.h"
+#include "report/vec3_json.h"
+
+namespace spherechain::baker {
+namespace {
+
+using nlohmann::ordered_json;
+
+// Lists of a frame each, one after another: all entries, and how many each frame has.
+template <typename T>
+class FrameLists {
+ public:
+  void add(const std::vector<T>& list) {
+    counts_.push_back(static_cast<std::uint32_t>(list.size()));
+    entries_.insert(entries_.end(), list.begin(), list.end());
+  }
+  ordered_json json() const { return {{"counts", base64(counts_)}, {"entries", base64(entries_)}}; }
+  std::size_t bytes() const { return entries_.size() * sizeof(T); }
+
+ private:
+  std::vector<std::uint32_t> counts_;
+  std::vector<T> entries_;
+};
+
+// Tests, pairs and microseconds of each frame.
+class Costs {
+ public:
+  void add(const Detection& detection) {
+    tests_.push_back(static_cast<std::uint32_t>(detection.tests));
+    pairs_.push_back(static_cast<std::uint32_t>(detection.raw_pairs));
+    us_.push_back(static_cast<float>(detection.us));
+  }
+  ordered_json json() const { return {{"tests", base64(tests_)}, {"pairs", base64(pairs_)}, {"us", base64(us_)}}; }
+
+ private:
+  std::vector<std::uint32_t> tests_, pairs_;
+  std::vector<float> us_;
+};
+
+ordered_json parsed_or_null(const std::string& text) {
+  return text.empty() ? ordered_json() : ordered_json::parse(text);
+}
+
+ordered_json axes_json(const BodyFrame& frame) {
+  return {{"origin", to_json(frame.origin)},
+          {"left", to_json(frame.left)},
+          {"up", to_json(frame.up)},
+          {"forward", to_json(frame.forward)},
+          {"height", frame.height}};
+}
+
+ordered_json spheres_json(const std::vector<PageSphere>& spheres) {
+  ordered_json out = ordered_json::array();
+  for (const PageSphere& sphere : spheres) {
+    out.push_back({{"mean_abs_f", sphere.mean_abs_f}, {"max_abs_f", sphere.max_abs_f}, {"pivots", sphere.pivots}});
+  }
+  return out;
+}
+
+ordered_json clips_json(const AnimatedAsset& animated, const std::string& motion, int frames) {
+  ordered_json out = ordered_json::array();
+  for (const PageClip& clip : page_clips(animated, motion)) {
+    if (clip.first_frame >= frames) break;
+    out.push_back({{"name", clip.name},
+                   {"first", clip.first_frame},
+                   {"count", std::min(clip.frame_count, frames - clip.first_frame)}});
+  }
+  return out;
+}
+
+// Throws where the page is too large: `still` bytes that are the same in however many frames, and `moving` of all of
+// them.
+void check_size(const AnimatedAsset& animated, int frames, double still, double moving, const PageOptions& options) {
+  const double max = static_cast<double>(options.max_bytes);
+  if (still + moving <= max) return;
+  const int fewer = still < max ? static_cast<int>(0.75 * frames * (max - still) / moving) : 0;
+  throw Error(ExitCode::kUsage,
+              fmt::format("{}: {} frames make a page of {:.1f} MB, of which browsers open {:.1f} MB ({})",
+                          animated.file(), frames, (still + moving) / 1e6, max / 1e6,
+                          fewer > 0 ? fmt::format("--frames {}, or one clip by --clip", fewer)
+                                    : "its mesh has too many triangles"));
+}
+
+// A character that nothing moves shows one frame.
+int frames_of(const AnimatedAsset& animated) {
+  const Deformation first = animated.deformation(0);
+  const bool moves = !first.bones.empty() || !first.morphs.empty() || !first.positions.empty();
+  return moves ? animated.frame_count() : 1;
+}
+
+// `still` is the size of the page without them.
+ordered_json frames_json(const AnimatedAsset& animated, int frames, const PageOptions& options, double still,
+                         PageMotion& motion, const std::function<void(int)>& progress) {
+  PageFrames runtime(animated, options.radius);
+  std::vector<float> times, spheres, refit_us, contacts_us;
+  FrameLists<std::array<std::uint32_t, 2>> contacts;
+  FrameLists<std::array<std::uint16_t, 2>> fit_pairs, detect_pairs;
+  Costs chains, all_pairs;
+  for (int i = 0; i < frames; ++i) {
+    progress(i);
+    const Deformation deformation = animated.deformation(i);
+    const std::vector<Vec3> positions = animated.positions(deformation);
+    motion.add(deformation, positions);
+    const PageFrame frame = runtime.run(pack(positions));
+    times.push_back(static_cast<float>(animated.time(i)));
+    spheres.insert(spheres.end(), frame.spheres.begin(), frame.spheres.end());
+    contacts.add(frame.contacts);
+    fit_pairs.add(frame.fit_pairs);
+    detect_pairs.add(frame.detect_pairs);
+    chains.add(frame.chains);
+    all_pairs.add(frame.all_pairs);
+    refit_us.push_back(static_cast<float>(frame.refit_us));
+    contacts_us.push_back(static_cast<float>(frame.contacts_us));
+    // Base64 has four letters for three bytes.
+    constexpr std::size_t kFigures = 12 * sizeof(float);  // times, counts and costs of a frame
+    const std::size_t bytes = (times.size() * kFigures) + motion.bytes() + spheres.size() * sizeof(float) + contacts.bytes() + fit_pairs.bytes() +
+                              detect_pairs.bytes();
+    check_size(animated, frames, still, static_cast<double>(bytes) * 4 / 3 / (i + 1) * frames, options);
+  }
+  return {{"count", frames},
+          {"fps", options.fps},
+          {"times", base64(times)},
+          {"spheres", base64(spheres)},
+          {"contacts", contacts.json()},
+          {"fit", fit_pairs.json()},
+          {"detect", detect_pairs.json()},
+          {"contacts_us", base64(contacts_us)},
+          {"refit_us", base64(refit_us)},
+          {"chains", chains.json()},
+          {"all_pairs", all_pairs.json()}};
+}
+
+}  // namespace
+
+std::string view_page(const AnimatedAsset& animated, const PageOptions& options,
+                      const std::function<void(int)>& progress) {
+  const std::string page = read_file(options.template_file);
+  const std::string open = R"(<script id="spherechain-data" type="application/json">)", hole = "null</script>";
+  const std::size_t at = page.find(open + hole);
+  if (at == std::string::npos) {
+    throw Error(ExitCode::kFile, options.template_file + ": is not the viewer's page (build it again)");
+  }
+  const int frames = frames_of(animated);
+  const BodyFrame axes = page_axes(animated);
+  const PageParts parts = page_parts(animated.asset());
+  const std::vector<PageSphere> spheres = page_spheres(animated.asset(), animated.character());
+  ordered_json data{{"title", options.title},
+                    {"axes", axes_json(axes)},
+                    {"parts", parts.names},
+                    {"spheres", spheres_json(spheres)},
+                    {"inspect", ordered_json::parse(inspect_json(animated.asset()))},
+                    {"report", parsed_or_null(options.report)},
+                    {"validation", parsed_or_null(options.validation)},
+                    {"radius", options.radius == SC_RADIUS_FIT ? "fit" : "detect"},
+                    {"clips", clips_json(animated, options.motion, frames)},
+                    {"mesh", page_mesh(animated, animated.character().source_positions, parts, spheres)}};
+  const double still = static_cast<double>(page.size() + json_text(data, -1).size());
+  PageMotion motion(animated.character(), axes);
+  data["frames"] = frames_json(animated, frames, options, still, motion, progress);
+  data["motion"] = motion.json();
+  data["mesh"] = page_mesh(animated, motion.rest(), parts, spheres);
+  std::string text = json_text(data, -1);
+  // Nothing in it may end the script.
+  for (std::size_t i = text.find('<'); i != std::string::npos; i = text.find('<', i)) text.replace(i, 1, "\\u003c");
+  check_size(animated, frames, still, static_cast<double>(page.size() + text.size()) - still, options);
+  return page.substr(0, at) + open + text + page.substr(at + open.size() + std::string("null").size());
+}
+
+}  // namespace spherechain::baker

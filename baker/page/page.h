@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+
+#include "play/play.h"
+#include "spherechain/types.h"
+
+namespace spherechain::baker {
+
+struct PageOptions {
+  std::string title;
+  std::string motion;         // what the page calls a motion that is no clip
+  std::string report;         // of read_bake_report; may be empty
+  std::string validation;     // of read_validation; may be empty
+  std::string template_file;  // the page without data, as its build made it
+  Radius radius = SC_RADIUS_DETECT;
+  double fps = 30;
+  std::size_t max_bytes = 512'000'000;  // Chromium reads no script of 2^29 letters or more
+};
+
+// Above this many bytes a page takes browsers seconds to open.
+inline constexpr std::size_t kLargePageBytes = 50'000'000;
+
+// The page of `spherechain view`: the template with its data inside (baker/page/README.md describes them). `progress`
+// is told each frame before it is played. Throws Error(kFile) where the template is missing or no page, or where the
+// asset cannot tell contacts; Error(kUsage) where the page has more than `max_bytes`, before many frames are played if
+// their motion alone has.
+std::string view_page(const AnimatedAsset& animated, const PageOptions& options,
+                      const std::function<void(int)>& progress);
+
+}  // namespace spherechain::baker

@@ -1,0 +1,388 @@
+// The page of `spherechain view`, in headless Chromium: node main.mjs, with what the environment says (CMakeLists.txt).
+import assert from 'node:assert/strict';
+import { readFileSync, statSync } from 'node:fs';
+import { after, before, test } from 'node:test';
+import { compare, launch, open, picture, silent } from './browser.mjs';
+import { base64, makePages, unpack } from './pages.mjs';
+
+const { SPHERECHAIN_TOOL: tool, SPHERECHAIN_PAGE: template, SPHERECHAIN_HUMAN: human } = process.env;
+const { SPHERECHAIN_POSES: poses, SPHERECHAIN_CHROMIUM: chromium, SPHERECHAIN_OUT: folder } = process.env;
+
+let pages;
+let browser;
+let arms; // opened once: most tests only look at it, and reset it first
+before(async () => {
+  pages = makePages({ tool, human, poses, folder });
+  browser = await launch(chromium);
+  arms = await open(browser, pages.arms);
+});
+after(() => browser?.close());
+
+const TOUCHING = 8; // a frame with contacts
+const frame = (page) => page.evaluate(() => spherechainViewer.frame);
+const goTo = (page, number) => page.evaluate((n) => spherechainViewer.setFrame(n), number);
+const contacts = (page) => page.evaluate(() => spherechainViewer.contacts());
+const away = (page) => page.mouse.move(1270, 40);
+async function fresh() {
+  const { page } = arms;
+  await away(page);
+  await page.keyboard.press('Escape');
+  await page.locator('#reset').click();
+  await page.locator('#tab-contacts').click();
+  await goTo(page, 0);
+  return page;
+}
+
+test('the page is one file of less than 6 MB', () => {
+  assert.ok(statSync(pages.arms).size < 6e6);
+  assert.doesNotMatch(readFileSync(template, 'utf8'), /<(link|script|img)[^>]+(src|href)="(?!data:)/);
+});
+
+test('contacts are the triangles of the skin that play reports, the most first', async () => {
+  const page = await fresh();
+  assert.ok(pages.play[TOUCHING].contacts.length > 0);
+  for (const number of [0, TOUCHING, 19, 25, 39]) {
+    await goTo(page, number);
+    const listed = await contacts(page);
+    const triangles = (lists) => [...new Set(lists.flat())].sort((a, b) => a - b);
+    assert.deepEqual(triangles(listed.map((contact) => contact.triangles)), triangles(pages.play[number].contacts));
+    const rows = await page.locator('.contact').allInnerTexts();
+    assert.equal(rows.length, listed.length);
+    listed.forEach(({ name, triangles }, i) => {
+      assert.ok(rows[i].includes(name) && rows[i].includes(`${triangles.length} triangle`), rows[i]);
+      if (i > 0) assert.ok(triangles.length <= listed[i - 1].triangles.length);
+    });
+  }
+});
+
+test('contacts are marked in the picture, and nothing else is red', async () => {
+  const page = await fresh();
+  const quiet = await open(browser, pages.variant('quiet.html', (data) => (data.frames.contacts = { counts: '', entries: '' })));
+  for (const [number, least, most] of [[0, 0, 0], [TOUCHING, 0.0005, 0.02]]) {
+    await goTo(page, number);
+    await goTo(quiet.page, number);
+    const { differing } = await compare(page, await picture(quiet.page), await picture(page));
+    assert.ok(differing >= least && differing <= most, `${differing} of the picture tells of contacts in frame ${number}`);
+  }
+  silent(quiet);
+  await quiet.close();
+});
+
+test('a click on a contact flies to where it is seen', async () => {
+  const page = await fresh();
+  await goTo(page, TOUCHING);
+  const far = await picture(page);
+  await page.locator('.contact').first().click();
+  assert.equal(await page.locator('.contact').first().getAttribute('aria-pressed'), 'true');
+  const near = await picture(page);
+  assert.ok((await compare(page, far, near)).differing > 0.1);
+  await page.locator('#reset').click();
+  const entry = page.locator('.clip-contact').first();
+  await entry.click();
+  assert.equal(await frame(page), Number(await entry.getAttribute('data-frame')));
+});
+
+test('spheres are a layer, off at first, with their false alarms in another colour', async () => {
+  const page = await fresh();
+  await goTo(page, TOUCHING);
+  const skin = await picture(page);
+  assert.ok(!(await page.locator('#show-spheres').isChecked()));
+  await page.keyboard.press('b');
+  assert.ok((await compare(page, skin, await picture(page))).differing > 0.05);
+  await page.keyboard.press('m');
+  await page.locator('#tab-spheres').click();
+  const owner = unpack(readData(pages.arms).mesh.spheres, Uint16Array);
+  const real = new Set(pages.play[TOUCHING].contacts.map((pair) => pair.map((t) => owner[t]).sort((a, b) => a - b).join('-')));
+  const counts = {};
+  for (const radius of ['detect', 'fit']) {
+    await page.locator(`#radius-${radius}`).click();
+    const listed = await page.locator('#sphere-pairs .pair').evaluateAll((rows) =>
+      rows.map((row) => [row.dataset.pair, row.classList.contains('false-alarm'), parseFloat(row.querySelector('.depth').textContent)]),
+    );
+    if (radius === 'detect') assert.deepEqual(listed.map(([pair]) => pair).sort(), pages.play[TOUCHING].pairs.map((p) => p.join('-')).sort());
+    for (const [i, [pair, isFalse, depth]] of listed.entries()) {
+      assert.equal(isFalse, !real.has(pair), pair);
+      assert.ok(i === 0 || isFalse !== listed[i - 1][1] || depth <= listed[i - 1][2], 'the deepest first');
+    }
+    counts[radius] = listed.length;
+  }
+  assert.ok(counts.detect > counts.fit, JSON.stringify(counts));
+});
+
+const readData = (file) => JSON.parse(readFileSync(file, 'utf8').match(/id="spherechain-data" type="application\/json">([^<]*)</)[1]);
+
+test('nobody meets the words of the method before asking for it', async () => {
+  const page = await fresh();
+  const words = /zeta|ζ|\bphi|M1|M2|chain|level|pivot|radius|\bfit\b|detect/i;
+  const seen = async () => (await page.locator('body').innerText()).replace(/human\.sphc|spherechain [\d.]+/g, '');
+  await page.locator('#tab-bake').click();
+  assert.doesNotMatch(await seen(), words);
+  await page.keyboard.press('m');
+  assert.match(await seen(), words);
+  for (const tab of ['spheres', 'charts', 'accuracy', 'bake']) await page.locator(`#tab-${tab}`).click();
+  await page.keyboard.press('m');
+  assert.doesNotMatch(await seen(), words);
+});
+
+test('each control changes the picture, and back', async () => {
+  const page = await fresh();
+  await page.keyboard.press('m');
+  await page.keyboard.press('b');
+  await goTo(page, TOUCHING);
+  await away(page);
+  const plain = await picture(page);
+  const ids = await page
+    .locator('#controls :is(input[type=checkbox], button.part, button.chip)')
+    .evaluateAll((controls) => controls.map((control) => control.id));
+  const still = ['show-method', 'show-follow', 'show-spheres'];
+  for (const id of ids.filter((other) => !still.includes(other))) {
+    await page.locator(`#${id}`).click();
+    await away(page);
+    const changed = await compare(page, plain, await picture(page));
+    assert.ok(changed.differing > 0.0001, `${id}: ${changed.differing} of the picture changed`);
+    await page.locator(`#${id}`).evaluate((control) => control.click());
+    await away(page);
+    // Spheres equally far from the eye are drawn in any order.
+    const left = (await compare(page, plain, await picture(page))).differing;
+    assert.ok(left < Math.min(0.001, changed.differing / 2), `${id} twice: ${left} of the picture is not as before`);
+  }
+});
+
+test('the space key plays and pauses wherever the focus is, and switches no box', async () => {
+  const page = await fresh();
+  for (const control of ['#show-skin', '[data-view=side]', '#frame']) {
+    await page.locator(control).click();
+    const was = await page.locator('#show-skin').isChecked();
+    await page.keyboard.press(' ');
+    await page.waitForFunction((from) => spherechainViewer.frame !== from, await frame(page));
+    await page.keyboard.press(' ');
+    const stopped = await frame(page);
+    await page.waitForTimeout(150);
+    assert.equal(await frame(page), stopped);
+    assert.equal(await page.locator('#show-skin').isChecked(), was);
+  }
+  await page.locator('#show-skin').focus();
+  const was = await page.locator('#show-skin').isChecked();
+  await page.keyboard.press('Enter');
+  assert.equal(await page.locator('#show-skin').isChecked(), !was);
+});
+
+test('keys step through frames, and the help lists them', async () => {
+  const page = await fresh();
+  await page.keyboard.press('ArrowRight');
+  await page.keyboard.press('ArrowRight');
+  await page.keyboard.press('ArrowLeft');
+  assert.equal(await frame(page), 1);
+  await page.keyboard.press('End');
+  assert.equal(await frame(page), 39);
+  await page.keyboard.press('?');
+  assert.ok((await page.locator('#help tbody tr').count()) >= 19);
+  await page.keyboard.press('Escape');
+  assert.ok(!(await page.locator('#help').isVisible()));
+});
+
+test('several clips: a list, a header that follows, frames of the clip, playing within it', async () => {
+  const clips = [{ name: 'Walk', first: 0, count: 15 }, { name: 'Run', first: 15, count: 25 }];
+  const opened = await open(browser, pages.variant('clips.html', (data) => (data.clips = clips)));
+  const { page } = opened;
+  await page.locator('#clips').selectOption('1');
+  assert.equal(await frame(page), 15);
+  assert.match(await page.locator('.readout').innerText(), /frame 0 \/ 24/);
+  await page.keyboard.press('Escape');
+  await goTo(page, 14);
+  assert.match(await page.locator('#clips option:checked').innerText(), /^Walk · skin touches in \d+ of 15 frames/);
+  assert.match(await page.locator('.readout').innerText(), /frame 14 \/ 14/);
+  await page.locator('main').click({ position: { x: 5, y: 5 } });
+  await page.keyboard.press(' ');
+  await page.waitForFunction(() => spherechainViewer.frame < 5);
+  await page.keyboard.press(' ');
+  await page.locator('#one-clip').click();
+  assert.equal(await page.locator('#frame').getAttribute('max'), '14');
+  silent(opened);
+  await opened.close();
+});
+
+test('morph targets move the skin', async () => {
+  const moved = pages.variant('morphs.html', (data) => {
+    const count = unpack(data.mesh.positions, Float32Array).length / 3;
+    const deltas = new Float32Array(3 * count).map(() => data.axes.height / 4);
+    const weights = Float32Array.from({ length: 40 }, (_, i) => i / 39);
+    data.motion.morphs = [
+      { name: 'away', vertices: base64(Uint32Array.from({ length: count }, (_, v) => v)), deltas: base64(deltas), weights: base64(weights) },
+    ];
+  });
+  const opened = await open(browser, moved);
+  const plain = await fresh();
+  for (const [number, changes] of [[0, false], [39, true]]) {
+    await goTo(plain, number);
+    await goTo(opened.page, number);
+    const { differing } = await compare(plain, await picture(plain), await picture(opened.page));
+    assert.equal(differing > 0.02, changes, `frame ${number}: ${differing}`);
+  }
+  silent(opened);
+  await opened.close();
+});
+
+test('a sphere under the pointer shows its figures', async () => {
+  const page = await fresh();
+  await page.keyboard.press('b');
+  await page.keyboard.press('m');
+  const box = await page.locator('main').boundingBox();
+  const seen = new Set();
+  for (const y of [0.3, 0.45, 0.6, 0.75]) {
+    for (const x of [0.42, 0.46, 0.48, 0.52, 0.54, 0.58]) {
+      await page.mouse.move(box.x + x * box.width, box.y + y * box.height);
+      const id = await page.evaluate(() => spherechainViewer.hovered());
+      if (id === null || seen.has(id)) continue;
+      seen.add(id);
+      const text = await page.locator('[data-figure=radius]').innerText();
+      const { radius, region } = pages.inspect.spheres[id];
+      assert.ok(Math.abs(parseFloat(text) - radius) <= 6e-4 * radius, `sphere ${id}: ${text} is not ${radius}`);
+      assert.ok((await page.locator('#sphere h2').innerText()).startsWith(`Sphere ${id}, ${region.replace('_', ' ')}`));
+    }
+  }
+  assert.ok(seen.size >= 5, `${seen.size} spheres met`);
+});
+
+test('charts show what play measured, and a click on them seeks', async () => {
+  const page = await fresh();
+  await page.keyboard.press('m');
+  await page.locator('#tab-charts').click();
+  await page.locator('.chart canvas').nth(2).waitFor();
+  await goTo(page, 19);
+  const shown = (await page.locator('.key output').allInnerTexts()).map((text) => Number(text.replace(',', '')));
+  assert.equal(shown[3], pages.play[19].pairs.length);
+  assert.ok(shown.every((value) => value > 0));
+  const over = await page.locator('.chart .u-over').nth(1).boundingBox();
+  await page.mouse.click(over.x + (over.width * 10) / 39, over.y + over.height / 2);
+  assert.equal(await frame(page), 10);
+});
+
+test('the worst misses lead to their frame, and the bake is told whole', async () => {
+  const page = await fresh();
+  await page.keyboard.press('m');
+  await page.locator('#tab-accuracy').click();
+  const { validation } = pages;
+  assert.ok((await page.locator('#accuracy').innerText()).includes(`${(100 * validation.all_pairs.pair_recall).toFixed(2)} %`));
+  assert.equal(await page.locator('.miss').count(), validation.worst_misses.length);
+  await page.locator('.miss').first().click();
+  const distance = (number) => Math.abs(pages.play[number].time - validation.worst_misses[0].time);
+  const shown = await frame(page);
+  assert.ok(pages.play.every((_, number) => distance(shown) <= distance(number)));
+  await page.locator('#tab-bake').click();
+  const text = await page.locator('#bake').innerText();
+  for (const part of [pages.inspect.source.sha256, pages.inspect.writer, pages.report.counts.why]) assert.ok(text.includes(part), part);
+});
+
+test('view refuses what is about another asset, or not whole, and writes no page', () => {
+  for (const [option, file, change] of [
+    ['--report', 'report.json', (data) => (data.source.sha256 = 'f'.repeat(64))],
+    ['--validation', 'validation.json', (data) => (data.worst_misses = [{ spheres: [0, 99999] }])],
+  ]) {
+    const { code, error, written } = pages.view(option, file, change);
+    assert.equal(code, 3, error);
+    assert.match(error, /^spherechain: error: .*changed[.]json: .*\n$/);
+    assert.ok(!written);
+  }
+});
+
+for (const [width, height] of [[1440, 900], [800, 600], [820, 1180], [390, 844]]) {
+  test(`all is in place at ${width} x ${height}`, async () => {
+    const scheme = width === 800 ? 'dark' : 'light';
+    const opened = await open(browser, pages.arms, { width, height, scheme });
+    const { page } = opened;
+    await goTo(page, TOUCHING);
+    if (width < 1100 && width > 640) await page.locator('#show').click();
+    await page.locator('#show-method').click();
+    for (const tab of ['contacts', 'spheres', 'charts', 'accuracy', 'bake']) {
+      await page.locator(`#tab-${tab}`).click();
+      const wide = await page
+        .locator('body, header, main, #timeline, #results, #controls, [role=tabpanel]:not([hidden]), [role=tablist], .chip, .pair')
+        .evaluateAll((parts) => parts.filter((part) => part.scrollWidth > part.clientWidth + 1).map((part) => part.id || part.className));
+      assert.deepEqual(wide, [], `wider than its place, ${tab}`);
+    }
+    const main = await page.locator('main').boundingBox();
+    const results = await page.locator('#results').boundingBox();
+    assert.ok(main.y < 60 && main.height >= 0.5 * height && main.width >= Math.min(380, width), 'the picture comes first');
+    assert.ok(results.y >= main.y + main.height || results.x >= main.x + main.width);
+    for (const button of await page.locator('#views button').all()) {
+      const box = await button.boundingBox();
+      assert.ok(box.x >= main.x && box.x + box.width <= main.x + main.width, 'no view is cut off');
+    }
+    silent(opened);
+    await opened.close();
+  });
+}
+
+test('every control has a name', async () => {
+  const page = await fresh();
+  const nameless = await page
+    .locator('button, input, select, canvas:not([aria-hidden]), [role=tabpanel], aside')
+    .evaluateAll((all) =>
+      all
+        .filter((e) => !(e.ariaLabel || e.getAttribute('aria-labelledby') || e.labels?.[0]?.textContent || (e.tagName === 'BUTTON' && e.textContent)))
+        .filter((e) => !e.closest('.uplot'))
+        .map((e) => e.outerHTML.slice(0, 80)),
+    );
+  assert.deepEqual(nameless, []);
+});
+
+test('a page without WebGL says so and still lists contacts', async () => {
+  const init = () => {
+    const { getContext } = HTMLCanvasElement.prototype;
+    HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+      return kind === '2d' ? getContext.call(this, kind, ...rest) : null;
+    };
+  };
+  const opened = await open(browser, pages.arms, { init });
+  assert.ok(await opened.page.locator('#no-webgl').isVisible());
+  await goTo(opened.page, TOUCHING);
+  assert.ok((await opened.page.locator('.contact').count()) > 0);
+  silent(opened);
+  await opened.close();
+});
+
+const still = (data) => {
+  data.frames = { count: 0, fps: 30 };
+  data.motion = {};
+  data.clips = [];
+};
+const odd = {
+  'the rest pose only, without a report': () => pages.rest,
+  'no frames at all': () => pages.variant('no_frames.html', still),
+  'no skin weights': () => pages.variant('no_skin.html', (data) => Object.assign(data.mesh, { influences: 0, joints: '', weights: '' })),
+  'no spheres, no chains and no parts': () =>
+    pages.variant('no_spheres.html', (data) => {
+      still(data);
+      Object.assign(data.inspect, { spheres: [], chains: [], sphere_count: 0 });
+      Object.assign(data, { spheres: [], report: null, parts: [] });
+    }),
+  'frames of vertices': () =>
+    pages.variant('vertices.html', (data) => {
+      const rest = Buffer.from(data.mesh.positions, 'base64');
+      data.motion.vertices = Buffer.concat(Array(40).fill(rest)).toString('base64');
+    }),
+};
+for (const [what, make] of Object.entries(odd)) {
+  test(`the page lives with ${what}`, async () => {
+    const opened = await open(browser, make(), { width: 1010, height: 400 });
+    const { page } = opened;
+    await page.keyboard.press('m');
+    for (const tab of ['spheres', 'charts', 'accuracy', 'bake', 'contacts']) await page.locator(`#tab-${tab}`).click();
+    for (const key of ['b', 'End', 'p', 'n', 'c', 'u', ' ', ' ', '2', '1', 'b']) await page.keyboard.press(key);
+    const before = await picture(page);
+    await page.keyboard.press('s');
+    assert.ok((await compare(page, before, await picture(page))).differing > 0.001, 'skin is drawn');
+    silent(opened);
+    await opened.close();
+  });
+}
+
+test('the template says that it is one', async () => {
+  const opened = await open(browser, template);
+  assert.match(await opened.page.locator('body').innerText(), /template/);
+  silent(opened);
+  await opened.close();
+});
+
+test('nothing was written to the console in all this, and nothing asked for', () => silent(arms));

@@ -1,0 +1,52 @@
+// The pages under test: made by the real tool, and variants of their data.
+import { execFileSync, spawnSync } from 'node:child_process';
+import { existsSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+
+const DATA = /(<script id="spherechain-data" type="application\/json">)([^<]*)(<\/script>)/;
+
+export function makePages({ tool, human, poses, folder }) {
+  mkdirSync(folder, { recursive: true });
+  const file = (name) => join(folder, name);
+  const run = (...words) => execFileSync(tool, words, { encoding: 'utf8' });
+  const readJson = (name) => JSON.parse(readFileSync(file(name), 'utf8'));
+  const asset = file('human.sphc');
+  run('bake', human, '-o', asset, '--report', file('report.json'));
+  const motion = ['--source', human, '--poses', join(poses, 'animation_arms.json'), '--frames'];
+  const validate = ['--radius', 'fit', '--spheres-alone', '--json', file('validation.json')];
+  run('validate', asset, ...motion, '9', ...validate);
+  const given = ['--report', file('report.json'), '--validation', file('validation.json')];
+  run('view', asset, ...motion, '40', ...given, '-o', file('arms.html'));
+  run('play', asset, ...motion, '40', '--contacts', '--json', file('arms.json'));
+  run('view', asset, '--source', human, '-o', file('rest.html'));
+  return {
+    arms: file('arms.html'),
+    rest: file('rest.html'),
+    play: readJson('arms.json').frames,
+    inspect: JSON.parse(run('inspect', asset, '--json')),
+    report: readJson('report.json'),
+    validation: readJson('validation.json'),
+    // What `view` says to a changed file of another command.
+    view(option, name, change) {
+      const data = readJson(name);
+      change(data);
+      writeFileSync(file('changed.json'), JSON.stringify(data));
+      rmSync(file('changed.html'), { force: true });
+      const words = ['view', asset, '--source', human, '--frames', '1', option, file('changed.json'), '-o', file('changed.html')];
+      const { status, stderr } = spawnSync(tool, words, { encoding: 'utf8' });
+      return { code: status, error: stderr, written: existsSync(file('changed.html')) };
+    },
+    // The page of the arms with changed data.
+    variant(name, change) {
+      const html = readFileSync(file('arms.html'), 'utf8');
+      const data = JSON.parse(html.match(DATA)[2]);
+      change(data);
+      const text = JSON.stringify(data).replaceAll('<', '\\u003c');
+      writeFileSync(file(name), html.replace(DATA, (_, open, __, close) => open + text + close));
+      return file(name);
+    },
+  };
+}
+
+export const base64 = (array) => Buffer.from(array.buffer).toString('base64');
+export const unpack = (text, Type) => new Type(new Uint8Array(Buffer.from(text, 'base64')).buffer);

@@ -1,0 +1,10 @@
+# Makes PAGE of the sources in SOURCE, in FOLDER; makes none, and is content, where npm's packages cannot be had.
+include(${CMAKE_CURRENT_LIST_DIR}/npm_ci.cmake)
+npm_ci(${SOURCE} ${FOLDER} "The page of `spherechain view`" installed)
+file(REMOVE ${PAGE})  # one of other sources would show nonsense
+if(NOT installed)
+  return()
+endif()
+file(REMOVE_RECURSE ${FOLDER}/src)
+file(COPY ${SOURCE}/src ${SOURCE}/index.html ${SOURCE}/build.mjs DESTINATION ${FOLDER})
+execute_process(COMMAND ${NODE} ${FOLDER}/build.mjs ${PAGE} COMMAND_ERROR_IS_FATAL ANY)

@@ -1,0 +1,20 @@
+import { h } from './dom.js';
+
+// The clip that plays, and where there are several the list to choose from.
+export function fillClips(box, store, model) {
+  const { clips } = model;
+  if (clips.length < 2) {
+    box.append(h('span', { class: 'clip-name' }, clips[0].name));
+    return;
+  }
+  const touching = ({ first, count }) => {
+    let frames = 0;
+    for (let frame = first; frame < first + count; ++frame) frames += model.contacts.of(frame).length > 0 ? 1 : 0;
+    return frames;
+  };
+  const option = (clip, i) => h('option', { value: i }, `${clip.name} · skin touches in ${touching(clip)} of ${clip.count} frames`);
+  const choose = () => store.set({ frame: clips[select.value].first, contact: null });
+  const select = h('select', { id: 'clips', 'aria-label': 'Clip', onchange: choose }, clips.map(option));
+  box.append(select);
+  store.watch(['frame'], ({ frame }) => (select.value = model.clipAt(frame)));
+}

@@ -1,0 +1,100 @@
+import { h } from './dom.js';
+import { chainColour, regionColour } from './palette.js';
+import { legend } from './sphere_panel.js';
+
+// What is shown. Sets (chains, levels, sides) mark spheres: where any is chosen, all other spheres fade. What the paper's method
+// needs is behind a switch: class `method`.
+
+function check(store, key, label, shortcut, set = (value) => store.set({ [key]: value })) {
+  const input = h('input', { type: 'checkbox', id: `show-${key}`, onchange: () => set(input.checked) });
+  store.watch([key], (state) => (input.checked = state[key]));
+  return h('label', { class: 'check', title: `Key ${shortcut}` }, input, label);
+}
+
+function slider(store, key, label) {
+  const set = () => store.set({ [key]: Number(input.value) / 100 });
+  const input = h('input', { type: 'range', min: 0, max: 100, 'aria-label': label, id: `slide-${key}`, oninput: set });
+  store.watch([key], (state) => (input.value = Math.round(100 * state[key])));
+  return input;
+}
+
+const toggle = (store, key, item, properties, ...content) =>
+  h('button', { type: 'button', ...properties, onclick: () => store.toggle(key, item) }, ...content);
+
+function partToggles(store, model) {
+  const buttons = model.parts.map(({ part, name }) =>
+    toggle(store, 'hiddenParts', part, { class: 'part', id: `part-${part}`, title: `Show or hide: ${name}` }, name),
+  );
+  store.watch(['hiddenParts'], (state) =>
+    buttons.forEach((button, i) => button.setAttribute('aria-pressed', !state.hiddenParts.has(model.parts[i].part))),
+  );
+  return buttons;
+}
+
+const shortName = (region) => region.replace(/^left /, 'L ').replace(/^right /, 'R ');
+
+function setToggles(store, sets) {
+  const buttons = sets.map((set, i) =>
+    set.kind === 'chain'
+      ? toggle(
+          store,
+          'sets',
+          set.name,
+          { class: 'chip chain', id: `set-${set.name}`, title: `${set.name}: ${set.route.join(' – ')}`, 'aria-label': set.name },
+          h('span', { class: 'swatch', style: `background: ${chainColour(i)}` }),
+          h('b', {}, set.label),
+          h('span', { class: 'route' }, `${shortName(set.route[0])} – ${shortName(set.route.at(-1))}`),
+        )
+      : toggle(store, 'sets', set.name, { class: 'chip', id: `set-${set.label}`, title: set.name, 'aria-label': set.name }, set.label),
+  );
+  store.watch(['sets'], (state) =>
+    buttons.forEach((button, i) => button.setAttribute('aria-pressed', state.sets.has(sets[i].name))),
+  );
+  return buttons;
+}
+
+function regionKey(model) {
+  return model.regions.map((region, i) =>
+    h('div', { class: 'legend' }, h('span', { class: 'swatch', style: `background: ${regionColour(i)}` }), region.label, h('span', { class: 'count' }, `${region.spheres}`)),
+  );
+}
+
+export function fillControls(panel, store, model) {
+  const of = (kind) => model.sets.filter((set) => set.kind === kind);
+  const link = (key, text) => {
+    const button = h('button', { type: 'button', class: 'link', onclick: () => store.set({ [key]: new Set() }) }, text);
+    store.watch([key], (state) => (button.hidden = state[key].size === 0));
+    return button;
+  };
+  panel.replaceChildren(
+    h('h2', {}, 'Show'),
+    h('div', { class: 'row' }, check(store, 'skin', 'Skin', 'S'), slider(store, 'skinOpacity', 'Opacity of the skin')),
+    check(store, 'hiddenContacts', 'Contacts behind the skin', 'H'),
+    model.frameCount > 1 && check(store, 'follow', 'Hold the character in place', 'F'),
+    h(
+      'div',
+      { class: 'row' },
+      check(store, 'spheres', 'Spheres', 'B', (shown) => store.showSpheres(shown)),
+      slider(store, 'sphereOpacity', 'Opacity of the spheres'),
+    ),
+    legend(store),
+    h('h2', {}, 'Body parts', link('hiddenParts', 'show all')),
+    h('div', { class: 'parts' }, partToggles(store, model)),
+    h('h2', {}, 'Under the hood'),
+    check(store, 'method', 'Method', 'M', (shown) => store.showMethod(shown)),
+    h(
+      'div',
+      { class: 'method' },
+      h('h2', {}, 'Regions', h('span', { class: 'note' }, 'spheres')),
+      check(store, 'regions', 'In their colours', 'G'),
+      ...regionKey(model),
+      h('h2', {}, 'Marks'),
+      check(store, 'patches', "Spheres' triangles", 'U'),
+      h('div', { class: 'row' }, check(store, 'pivots', 'Pivots', 'P'), check(store, 'numbers', 'Numbers', 'N')),
+      of('chain').length > 0 && h('h2', {}, 'Chains', link('sets', 'show all')),
+      h('div', { class: 'chips chains' }, setToggles(store, of('chain'))),
+      of('level').length > 0 && h('h2', {}, 'Torso levels and sides'),
+      h('div', { class: 'chips' }, setToggles(store, of('level')), h('span', { class: 'gap' }), setToggles(store, of('side'))),
+    ),
+  );
+}

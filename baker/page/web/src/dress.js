@@ -1,0 +1,47 @@
+import { css } from './dom.js';
+import { CLAY, CONTACT, FALSE_ALARM, POINTED, regionColour, SPHERE, tone } from './palette.js';
+import { looks } from './skin_layer.js';
+
+function dressSkin(model, state, skinLayer) {
+  skinLayer.group.visible = state.skin;
+  skinLayer.uniforms.opacity.value = state.skinOpacity;
+  skinLayer.pose(state.frame);
+  skinLayer.skin.zones.forEach(({ sphere, part }, zone) => {
+    const region = model.spheres[sphere]?.region ?? -1;
+    const base = state.regions || state.patches ? regionColour(region) : CLAY;
+    if (state.hiddenParts.has(part)) skinLayer.setLook(zone, base, looks.HIDDEN);
+    else if (state.method && sphere === state.pointed) skinLayer.setLook(zone, POINTED, looks.POINTED);
+    else skinLayer.setLook(zone, state.patches ? tone(base, sphere) : base, looks.PLAIN);
+  });
+}
+
+function dressSpheres(model, state, sphereLayer, visible) {
+  const marked = new Set(model.sets.filter((set) => state.sets.has(set.name)).flatMap((set) => [...set.spheres]));
+  const alarms = new Map();
+  if (state.spheres) {
+    for (const { a, b, isFalse } of model.spherePairs(state.frame, state.radius)) {
+      for (const id of [a, b]) if (!isFalse || !alarms.has(id)) alarms.set(id, isFalse ? FALSE_ALARM : CONTACT);
+    }
+  }
+  visible.clear();
+  sphereLayer.group.visible = state.spheres;
+  sphereLayer.rimColour.set(css('--rim'));
+  model.spheres.forEach(({ region }, id) => {
+    const item = sphereLayer.items[id];
+    const faded = marked.size > 0 && !marked.has(id);
+    const alarm = alarms.get(id);
+    item.sphere = model.sphere(state.frame, id, state.radius);
+    item.colour.set(alarm ?? (state.regions ? regionColour(region) : SPHERE));
+    item.alpha = faded ? 0.1 : alarm ? Math.max(state.sphereOpacity, 0.9) : state.sphereOpacity;
+    item.rim = id === state.pointed ? 0.3 : alarm && !faded ? 0.16 : 0;
+    if (state.spheres && !faded) visible.add(id);
+  });
+}
+
+// Brings the layers to what the state says; `visible` becomes the spheres that are seen.
+export function dress(model, state, { skinLayer, sphereLayer, contactLayer }, visible) {
+  dressSkin(model, state, skinLayer);
+  dressSpheres(model, state, sphereLayer, visible);
+  contactLayer.hidden.visible = state.hiddenContacts;
+  contactLayer.fill(model.contacts.of(state.frame), state.contact, state.hiddenParts);
+}

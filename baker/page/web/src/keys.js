@@ -1,0 +1,58 @@
+import { h } from './dom.js';
+
+// Keyboard shortcuts, and the page that lists them.
+
+export function bindKeys(store, { timeline, stage, help, toggleTheme, reset, chains }) {
+  const flip = (key) => () => store.set({ [key]: !store.state[key] });
+  const method = (action) => () => store.state.method && action();
+  const allChains = () => store.set({ sets: new Set(chains.every((name) => store.state.sets.has(name)) ? [] : chains) });
+  const keys = [
+    ['Space', ' ', 'Play or pause', flip('playing')],
+    ['←', 'ArrowLeft', 'Previous frame', () => timeline.step(-1)],
+    ['→', 'ArrowRight', 'Next frame', () => timeline.step(1)],
+    ['Home', 'Home', 'First frame', () => timeline.step(-Infinity)],
+    ['End', 'End', 'Last frame', () => timeline.step(Infinity)],
+    ['1', '1', 'View from the front', () => stage?.view('front')],
+    ['2', '2', 'View from the side', () => stage?.view('side')],
+    ['3', '3', 'View from the back', () => stage?.view('back')],
+    ['4', '4', 'View from the top', () => stage?.view('top')],
+    ['0', '0', 'Reset', reset],
+    ['S', 's', 'Skin', flip('skin')],
+    ['H', 'h', 'Contacts behind the skin', flip('hiddenContacts')],
+    ['F', 'f', 'Hold the character in place', flip('follow')],
+    ['B', 'b', 'Spheres', () => store.showSpheres(!store.state.spheres)],
+    ['M', 'm', 'Method', () => store.showMethod(!store.state.method)],
+    ['G', 'g', 'Method: regions in their colours', method(flip('regions'))],
+    ['U', 'u', "Method: spheres' triangles", method(flip('patches'))],
+    ['P', 'p', 'Method: pivots', method(flip('pivots'))],
+    ['N', 'n', 'Method: numbers of spheres', method(flip('numbers'))],
+    ['C', 'c', 'Method: all chains', method(allChains)],
+    ['T', 't', 'Light or dark', toggleTheme],
+    ['Esc', 'Escape', 'Let go of the contact or sphere', () => store.set({ pinned: null, pointed: null, contact: null, alarm: null })],
+    ['?', '?', 'This list', () => help.showModal()],
+  ];
+  help.querySelector('tbody').append(
+    ...keys.map(([label, , what]) => h('tr', {}, h('th', { scope: 'row' }, h('kbd', {}, label)), h('td', {}, what))),
+  );
+  const isBox = ({ tagName, type }) => tagName === 'INPUT' && type === 'checkbox';
+  document.addEventListener('keydown', (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey || help.open) return;
+    // A control keeps the keys it has a use for, but a box leaves the space key to the player.
+    const { tagName, type } = event.target;
+    if (tagName === 'SELECT') return;
+    if (tagName === 'INPUT' && type === 'range' && /^(Arrow|Home|End)/.test(event.key)) return;
+    if (event.key === ' ' && ['BUTTON', 'SUMMARY'].includes(tagName)) return;
+    if (event.key === 'Enter' && isBox(event.target)) return event.target.click();
+    const found = keys.find(([, key]) => key === event.key || key === event.key.toLowerCase());
+    if (!found) return;
+    event.preventDefault();
+    found[3]();
+  });
+  // Browsers switch a box when the space key comes up.
+  document.addEventListener('keyup', (event) => event.key === ' ' && isBox(event.target) && event.preventDefault());
+  // After a click the keys belong to the page again.
+  document.addEventListener('click', ({ detail }) => {
+    const { activeElement: active } = document;
+    if (detail > 0 && ['BUTTON', 'SUMMARY'].includes(active?.tagName)) active.blur();
+  });
+}

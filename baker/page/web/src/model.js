@@ -1,0 +1,167 @@
+import { Contacts } from './contacts.js';
+import { decode, pairLists } from './frame_lists.js';
+
+// The page's data (see ../README.md) as the other modules use it. Lengths are in the source's units.
+
+const words = (name) => name.replaceAll('_', ' ');
+
+// zeta3 -> ζ3, as the paper writes it.
+const chainLabel = (name) => name.replace(/^zeta/, 'ζ');
+
+function readSpheres(data) {
+  const regionNames = data.inspect.regions.map((region) => region.name);
+  return data.inspect.spheres.map((sphere, i) => {
+    const inTorso = sphere.side !== 'none';
+    const place = inTorso ? ` ${sphere.side === 'left' ? 'L' : 'R'}${sphere.level}` : '';
+    return {
+      id: sphere.id,
+      name: words(sphere.region) + place,
+      region: regionNames.indexOf(sphere.region),
+      level: inTorso ? sphere.level : null,
+      side: inTorso ? sphere.side : null,
+      triangles: sphere.triangles,
+      rest: [...sphere.center, sphere.radius, sphere.detect_radius],
+      meanF: data.spheres?.[i]?.mean_abs_f ?? null,
+      maxF: data.spheres?.[i]?.max_abs_f ?? null,
+      pivots: data.spheres?.[i]?.pivots ?? [],
+      neighbours: new Set(),
+    };
+  });
+}
+
+// Named sets of spheres: chains, and the torso's levels and sides. T and D are the top and bottom level.
+function readSets(inspect, spheres) {
+  const chains = inspect.chains.map((chain) => ({
+    kind: 'chain',
+    name: chain.name,
+    label: chainLabel(chain.name),
+    route: chain.regions.map(words),
+    spheres: new Set(chain.spheres),
+    order: chain.spheres,
+  }));
+  const torso = spheres.filter((sphere) => sphere.level !== null);
+  const levels = [...new Set(torso.map((sphere) => sphere.level))].sort((a, b) => a - b);
+  const set = (kind, label, name, keep) => ({
+    kind,
+    label,
+    name,
+    spheres: new Set(torso.filter(keep).map((sphere) => sphere.id)),
+  });
+  const parts = levels.map((level) => set('level', `${level}`, `Torso level ${level}`, (s) => s.level === level));
+  if (levels.length > 0) {
+    parts.push(
+      set('side', 'L', 'L: left side of the torso', (s) => s.side === 'left'),
+      set('side', 'R', 'R: right side of the torso', (s) => s.side === 'right'),
+      set('side', 'T', 'T: top level of the torso', (s) => s.level === levels.at(-1)),
+      set('side', 'D', 'D: bottom level of the torso', (s) => s.level === levels[0]),
+    );
+  }
+  return [...chains, ...parts];
+}
+
+function readMotion({ motion, frames }) {
+  const bones = decode(motion?.bones, Float32Array);
+  return {
+    bones,
+    boneCount: frames?.count > 0 ? bones.length / (12 * frames.count) : 0,
+    vertices: motion?.vertices ? decode(motion.vertices, Float32Array) : null,
+    morphs: (motion?.morphs ?? []).map(({ vertices, deltas, weights }) => ({
+      vertices: decode(vertices, Uint32Array),
+      deltas: decode(deltas, Float32Array),
+      weights: decode(weights, Float32Array),
+    })),
+    boxes: decode(motion?.boxes, Float32Array),
+    centers: decode(motion?.centers, Float32Array),
+  };
+}
+
+// Lists of a number a frame, as the charts want them.
+function readCosts({ chains, all_pairs: allPairs, refit_us: refit, contacts_us: skin }) {
+  const list = (text, Type) => [...decode(text, Type)];
+  const costs = ({ tests, pairs, us }) => ({ tests: list(tests, Uint32Array), pairs: list(pairs, Uint32Array), us: list(us, Float32Array) });
+  return { chains: costs(chains), allPairs: costs(allPairs), refit: list(refit, Float32Array), skin: list(skin, Float32Array) };
+}
+
+export function readModel(text) {
+  const data = JSON.parse(text);
+  if (data === null) return null;
+  const spheres = readSpheres(data);
+  for (const { spheres: chain } of data.inspect.chains) {
+    for (let i = 1; i < chain.length; ++i) {
+      spheres[chain[i - 1]].neighbours.add(chain[i]);
+      spheres[chain[i]].neighbours.add(chain[i - 1]);
+    }
+  }
+  const { mesh, frames } = data;
+  const count = frames?.count ?? 0;
+  const moved = count > 0 ? decode(frames.spheres, Float32Array) : Float32Array.from(spheres.flatMap((s) => s.rest));
+  const kinds = ['fit', 'detect'];
+  const floats = 3 + kinds.length;
+  const touching = Object.fromEntries(kinds.map((kind) => [kind, pairLists(frames?.[kind], Uint16Array)]));
+  const times = decode(frames?.times, Float32Array);
+  const partOf = decode(mesh.parts, Uint8Array);
+  const sphereOf = decode(mesh.spheres, Uint16Array);
+  const partName = (part) => data.parts[part] ?? 'other parts';
+  const contactLists = pairLists(frames?.contacts, Uint32Array);
+  const clips = data.clips?.length > 0 ? data.clips : [{ name: 'rest pose', first: 0, count: 1 }];
+  return {
+    title: data.title,
+    axes: data.axes,
+    height: data.axes.height,
+    inspect: data.inspect,
+    report: data.report,
+    validation: data.validation ?? null,
+    radius: data.radius,
+    parts: [...new Set(partOf)].sort((a, b) => a - b).map((part) => ({ part, name: partName(part) })),
+    regions: data.inspect.regions.map((region) => ({ ...region, label: words(region.name) })),
+    spheres,
+    sets: readSets(data.inspect, spheres),
+    kinds,
+    mesh: {
+      positions: decode(mesh.positions, Float32Array),
+      triangles: decode(mesh.triangles, Uint32Array),
+      partOf,
+      sphereOf,
+      influences: mesh.influences ?? 0,
+      joints: decode(mesh.joints, Uint16Array),
+      weights: decode(mesh.weights, Uint16Array),
+    },
+    motion: readMotion(data),
+    frameCount: Math.max(count, 1),
+    fps: frames?.fps || 30,
+    clips,
+    costs: count > 0 ? readCosts(frames) : null,
+    contacts: new Contacts(contactLists, partOf, partName),
+
+    clipAt: (frame) => Math.max(clips.findLastIndex(({ first }) => first <= frame), 0),
+    time: (frame) => times[frame] ?? frame / (frames?.fps || 30),
+    // The sphere in a frame: [x, y, z, radius].
+    sphere(frame, i, kind) {
+      const at = (frame * spheres.length + i) * floats;
+      return [moved[at], moved[at + 1], moved[at + 2], moved[at + 3 + kinds.indexOf(kind)]];
+    },
+    // How deep two spheres are in each other: a length (<= 0: apart), and as the share PD of the sum of their radii.
+    depth(frame, a, b, kind) {
+      const p = this.sphere(frame, a, kind);
+      const q = this.sphere(frame, b, kind);
+      const depth = p[3] + q[3] - Math.hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
+      return { depth, share: depth / (p[3] + q[3]) };
+    },
+    // Pairs of spheres that touch: [{a, b, depth, isFalse}], the deepest first, false alarms after those whose skin touches.
+    spherePairs(frame, kind) {
+      const skin = contactLists.of(frame);
+      const real = new Set();
+      for (let i = 0; i < skin.length; i += 2) {
+        const [p, q] = [sphereOf[skin[i]], sphereOf[skin[i + 1]]];
+        real.add(Math.min(p, q) * 65536 + Math.max(p, q));
+      }
+      const pairs = touching[kind].of(frame);
+      const out = [];
+      for (let i = 0; i < pairs.length; i += 2) {
+        const [a, b] = [pairs[i], pairs[i + 1]];
+        out.push({ a, b, depth: this.depth(frame, a, b, kind).depth, isFalse: !real.has(a * 65536 + b) });
+      }
+      return out.sort((p, q) => p.isFalse - q.isFalse || q.depth - p.depth || p.a - q.a || p.b - q.b);
+    },
+  };
+}

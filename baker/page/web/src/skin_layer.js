@@ -1,0 +1,90 @@
+import * as THREE from 'three';
+
+// The skin: front-most surface only. Each vertex knows its zone; a texture with one texel a zone says how that zone looks, so
+// that a hover costs a few bytes.
+
+const vertexShader = `
+  attribute float zone;
+  uniform sampler2D looks;
+  varying vec4 look;
+  varying vec3 normalInView;
+  varying vec3 toEye;
+  void main() {
+    int i = int(zone);
+    look = texelFetch(looks, ivec2(i % 1024, i / 1024), 0);
+    vec4 p = modelViewMatrix * vec4(position, 1.0);
+    normalInView = normalMatrix * normal;
+    toEye = -p.xyz;
+    gl_Position = projectionMatrix * p;
+  }`;
+
+// How much light falls on a surface; n and e are unit vectors in view space, to the eye's side.
+export const LIGHT = `
+  float lightOn(vec3 n, vec3 e) {
+    float key = max(dot(n, normalize(vec3(-0.45, 0.7, 0.65))), 0.0);
+    float fill = max(dot(n, normalize(vec3(0.8, 0.1, 0.35))), 0.0);
+    float sky = 0.5 + 0.5 * n.y;
+    float grazing = pow(1.0 - max(dot(n, e), 0.0), 3.0);
+    return 0.2 + 0.78 * key + 0.2 * fill + 0.18 * sky - 0.1 * grazing;
+  }`;
+
+// A look is a colour and, in alpha, a kind: 0 hidden, 1/2 plain, 1 pointed at.
+const fragmentShader = `
+  uniform float opacity;
+  varying vec4 look;
+  varying vec3 normalInView;
+  varying vec3 toEye;
+  ${LIGHT}
+  void main() {
+    if (look.a < 0.1) discard;
+    vec3 n = normalize(normalInView);
+    vec3 e = normalize(toEye);
+    if (dot(n, e) < 0.0) n = -n;
+    float edge = pow(1.0 - dot(n, e), 3.0);
+    float alpha = opacity + (1.0 - opacity) * 0.55 * edge * smoothstep(0.0, 0.15, opacity);
+    if (look.a > 0.9) alpha = max(alpha, 0.62);
+    if (alpha < 0.004) discard;
+    gl_FragColor = vec4(look.rgb * lightOn(n, e), alpha);
+    #include <colorspace_fragment>
+  }`;
+
+export const looks = { HIDDEN: 0, PLAIN: 128, POINTED: 255 };
+
+export class SkinLayer {
+  constructor(skin) {
+    this.skin = skin;
+    const geometry = new THREE.BufferGeometry();
+    this.position = new THREE.BufferAttribute(skin.positions, 3).setUsage(THREE.DynamicDrawUsage);
+    this.normal = new THREE.BufferAttribute(skin.normals, 3).setUsage(THREE.DynamicDrawUsage);
+    geometry.setAttribute('position', this.position);
+    geometry.setAttribute('normal', this.normal);
+    geometry.setAttribute('zone', new THREE.BufferAttribute(skin.zone, 1));
+    geometry.setIndex(new THREE.BufferAttribute(skin.index, 1));
+
+    const rows = Math.ceil(Math.max(skin.zones.length, 1) / 1024);
+    this.texels = new Uint8Array(4 * 1024 * rows);
+    this.texture = new THREE.DataTexture(this.texels, 1024, rows);
+    this.texture.colorSpace = THREE.SRGBColorSpace;
+    this.uniforms = { looks: { value: this.texture }, opacity: { value: 1 } };
+    const material = (settings) =>
+      new THREE.ShaderMaterial({ vertexShader, fragmentShader, uniforms: this.uniforms, side: THREE.DoubleSide, ...settings });
+    this.depth = new THREE.Mesh(geometry, material({ colorWrite: false, transparent: true }));
+    const colour = new THREE.Mesh(geometry, material({ transparent: true, depthWrite: false }));
+    this.depth.renderOrder = 3;
+    colour.renderOrder = 4;
+    this.group = new THREE.Group().add(this.depth, colour);
+    for (const mesh of this.group.children) mesh.frustumCulled = false;
+  }
+
+  setLook(zone, colour, kind) {
+    const rgb = parseInt(colour.slice(1), 16);
+    this.texels.set([rgb >> 16, (rgb >> 8) & 255, rgb & 255, kind], 4 * zone);
+    this.texture.needsUpdate = true;
+  }
+
+  pose(frame) {
+    if (!this.skin.pose(frame)) return;
+    this.position.needsUpdate = true;
+    this.normal.needsUpdate = true;
+  }
+}

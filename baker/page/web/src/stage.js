@@ -1,0 +1,234 @@
+import * as THREE from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+import { createViewFinder } from './best_view.js';
+import { createFloor } from './floor.js';
+import { createFraming } from './framing.js';
+
+// The view of the character: renderer, camera, orbit controls.
+
+const VIEWS = { front: [0, 0.06, 1], side: [1, 0.06, 0], back: [0, 0.06, -1], top: [0, 1, 0.0001] };
+const FLIGHT_MS = 450;
+const FIELD_OF_VIEW = 26;
+const TAN = Math.tan(THREE.MathUtils.degToRad(FIELD_OF_VIEW / 2));
+
+// Null where the browser has no WebGL.
+export function createStage(canvas, model, store, { skinLayer, sphereLayer, contactLayer }) {
+  const context = canvas.getContext('webgl2', { antialias: true, alpha: true });
+  if (context === null) return null;
+  const renderer = new THREE.WebGLRenderer({ canvas, context, antialias: true, alpha: true });
+  const framing = createFraming(model);
+  const clipNow = () => model.clips[model.clipAt(store.state.frame)];
+  let boxes = [];
+  const bounds = new THREE.Box3();
+  const measure = () => {
+    boxes = framing.boxes(clipNow(), store.state.follow);
+    bounds.makeEmpty();
+    for (const box of boxes) bounds.union(box);
+  };
+  measure();
+  const unit = Math.max(...bounds.getSize(new THREE.Vector3()).toArray());
+
+  const camera = new THREE.PerspectiveCamera(FIELD_OF_VIEW, 1, 0.01 * unit, 60 * unit);
+  const controls = new OrbitControls(camera, canvas);
+  controls.enableDamping = true;
+  controls.dampingFactor = 0.15;
+  controls.minDistance = 0.1 * unit;
+  controls.maxDistance = 20 * unit;
+
+  const scene = new THREE.Scene();
+  const floor = createFloor(unit);
+  const character = new THREE.Group();
+  character.matrixAutoUpdate = false;
+  character.add(sphereLayer.group, skinLayer.group, contactLayer.group);
+  scene.add(floor.mesh, character);
+  const findView = createViewFinder(renderer, skinLayer, contactLayer, FIELD_OF_VIEW);
+
+  let beforeDraw = () => {};
+  let afterDraw = () => {};
+  let flight = null;
+  let framed = 'front'; // the preset that a change of size or clip keeps
+  let waiting = false;
+
+  function place() {
+    const { frame, follow } = store.state;
+    const offset = framing.offset(frame, follow);
+    character.matrix.makeTranslation(offset).multiply(framing.toWorld);
+    floor.uniforms.slide.value.set(-offset.x, -offset.z);
+  }
+  const toWorld = () => (place(), character.matrix);
+  const fromWorld = () => toWorld().clone().invert();
+
+  function draw(now) {
+    waiting = false;
+    if (flight) {
+      const t = Math.min((now - flight.start) / FLIGHT_MS, 1);
+      const ease = t * t * (3 - 2 * t);
+      controls.target.lerpVectors(flight.fromTarget, flight.toTarget, ease);
+      camera.position.lerpVectors(flight.fromPosition, flight.toPosition, ease);
+      if (t === 1) flight = null;
+    }
+    if (controls.update() || flight) invalidate();
+    place();
+    camera.updateMatrixWorld();
+    beforeDraw(camera.position.clone().applyMatrix4(fromWorld()));
+    renderer.render(scene, camera);
+    afterDraw(project());
+  }
+
+  function invalidate() {
+    if (waiting) return;
+    waiting = true;
+    requestAnimationFrame(draw);
+  }
+
+  // Source units -> CSS pixels of the canvas, with the depth for sorting.
+  function project() {
+    const matrix = camera.projectionMatrix.clone().multiply(camera.matrixWorldInverse).multiply(toWorld());
+    const p = new THREE.Vector3();
+    return (x, y, z) => {
+      p.set(x, y, z).applyMatrix4(matrix);
+      return { x: ((p.x + 1) / 2) * canvas.clientWidth, y: ((1 - p.y) / 2) * canvas.clientHeight, depth: p.z };
+    };
+  }
+
+  function go(toTarget, toPosition) {
+    if (matchMedia('(prefers-reduced-motion: reduce)').matches) {
+      controls.target.copy(toTarget);
+      camera.position.copy(toPosition);
+    } else {
+      flight = {
+        start: performance.now(),
+        fromTarget: controls.target.clone(),
+        fromPosition: camera.position.clone(),
+        toTarget,
+        toPosition,
+      };
+    }
+    invalidate();
+  }
+
+  // The nearest eye in a direction that sees every frame's box, from outside them.
+  function eyeFor(direction) {
+    const target = bounds.getCenter(new THREE.Vector3());
+    const back = direction.clone().normalize();
+    const right = new THREE.Vector3(0, 1, 0).cross(back).normalize();
+    const up = back.clone().cross(right);
+    const vertical = TAN * 0.92;
+    const horizontal = vertical * camera.aspect;
+    let distance = 0;
+    const p = new THREE.Vector3();
+    for (const { min, max } of boxes) {
+      for (let corner = 0; corner < 8; ++corner) {
+        p.set(corner & 1 ? max.x : min.x, corner & 2 ? max.y : min.y, corner & 4 ? max.z : min.z).sub(target);
+        const size = Math.max(Math.abs(p.dot(right)) / horizontal, Math.abs(p.dot(up)) / vertical);
+        distance = Math.max(distance, p.dot(back) + size);
+      }
+    }
+    controls.maxDistance = Math.max(controls.maxDistance, 4 * distance);
+    camera.far = Math.max(camera.far, 12 * distance);
+    camera.updateProjectionMatrix();
+    return { target, position: target.clone().addScaledVector(back, distance) };
+  }
+
+  function view(name, fly = true) {
+    framed = name;
+    const { target, position } = eyeFor(new THREE.Vector3(...VIEWS[name]));
+    if (fly) return go(target, position);
+    flight = null;
+    controls.target.copy(target);
+    camera.position.copy(position);
+    invalidate();
+  }
+
+  function resize() {
+    const { clientWidth: width, clientHeight: height } = canvas;
+    if (width === 0 || height === 0) return;
+    renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    renderer.setSize(width, height, false);
+    camera.aspect = width / height;
+    camera.updateProjectionMatrix();
+    if (framed) view(framed, false);
+    invalidate();
+  }
+
+  // Whether a point of the world is in a sphere of the frame shown.
+  function inSphere(eye) {
+    const { frame } = store.state;
+    const p = eye.clone().applyMatrix4(fromWorld());
+    return model.spheres.some((_, i) => {
+      const [x, y, z, r] = model.sphere(frame, i, 'detect');
+      return Math.hypot(p.x - x, p.y - y, p.z - z) < 1.1 * r;
+    });
+  }
+
+  // An eye in a direction that is outside all that moves, so in nothing.
+  function outside(center, back, distance) {
+    const ball = bounds.getBoundingSphere(new THREE.Sphere());
+    return center.clone().addScaledVector(back, Math.max(distance, ball.radius * 1.1 + center.distanceTo(ball.center)));
+  }
+
+  controls.addEventListener('start', () => {
+    framed = null;
+    flight = null;
+  });
+  controls.addEventListener('change', invalidate);
+  new ResizeObserver(resize).observe(canvas);
+  resize();
+  let boundsKey = '';
+  store.watch(['frame', 'follow'], ({ frame, follow }) => {
+    const key = `${model.clipAt(frame)} ${follow}`;
+    if (key === boundsKey) return;
+    boundsKey = key;
+    measure();
+    if (framed) view(framed, false);
+  });
+
+  return {
+    invalidate,
+    view,
+    onDraw(before, after) {
+      beforeDraw = before;
+      afterDraw = after;
+    },
+    setInk: (colour) => floor.uniforms.ink.value.set(colour),
+    pixelRatio: () => renderer.getPixelRatio(),
+
+    // The ray through a pixel, in source units.
+    ray(clientX, clientY) {
+      const box = canvas.getBoundingClientRect();
+      const at = new THREE.Vector2(
+        ((clientX - box.left) / box.width) * 2 - 1,
+        1 - ((clientY - box.top) / box.height) * 2,
+      );
+      const caster = new THREE.Raycaster();
+      caster.setFromCamera(at, camera);
+      return caster.ray.applyMatrix4(fromWorld());
+    },
+
+    // Looks at a ball of source units from where the outside of the chosen contact's triangles is seen best.
+    flyToContact(ball) {
+      framed = null;
+      const center = new THREE.Vector3(...ball).applyMatrix4(toWorld());
+      const distance = Math.max((1.5 * ball[3]) / model.height / TAN, 0.8 * unit);
+      const back = camera.position.clone().sub(controls.target).normalize();
+      const best = findView(toWorld(), center, distance, back, inSphere);
+      go(center, best ? center.clone().addScaledVector(best, distance) : outside(center, back, distance));
+    },
+
+    // Looks at two spheres from where both are seen side by side, turning as little as that takes.
+    flyToSpheres(p, q) {
+      framed = null;
+      const a = new THREE.Vector3(...p).applyMatrix4(toWorld());
+      const b = new THREE.Vector3(...q).applyMatrix4(toWorld());
+      const axis = b.clone().sub(a).normalize();
+      const target = a.clone().add(b).multiplyScalar(0.5);
+      const back = camera.position.clone().sub(controls.target).normalize();
+      const across = back.clone().addScaledVector(axis, -back.dot(axis));
+      if (across.length() > 0.2) back.copy(across).normalize();
+      const reach = (p[3] + q[3]) / model.height + a.distanceTo(b);
+      const distance = Math.max((1.6 * reach) / TAN, 0.5 * unit);
+      const eye = target.clone().addScaledVector(back, distance);
+      go(target, inSphere(eye) ? outside(target, back, distance) : eye);
+    },
+  };
+}

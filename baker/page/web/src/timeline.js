@@ -1,0 +1,135 @@
+import { css, fitCanvas, h } from './dom.js';
+import { plural } from './format.js';
+import { CONTACT, FALSE_ALARM } from './palette.js';
+
+// Play, step, scrub. A frame in which the skin touches has a bar, as high as there are triangles; with spheres shown, a frame
+// with false alarms has a mark below. Clips begin at a line with their name; frames are numbered in their clip.
+
+const INSET = 8; // half the slider's thumb: where its first and last value are
+const BASE = 15; // pixels for the numbers
+const TOP = 14; // and for the names of clips
+
+function drawNumbers(context, { model, x, base, height, perFrame, inRange }) {
+  const step = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000].find((s) => s * perFrame >= 36) ?? 10000;
+  for (const { first, count } of model.clips.filter(inRange)) {
+    if (count * perFrame < 30) continue;
+    const end = x(first + count - 1);
+    for (let frame = 0; frame < count; frame += step) {
+      const left = x(first + frame);
+      if (frame > 0 && end - left < 12 && first + count < model.frameCount) break;
+      context.fillStyle = css('--line');
+      context.fillRect(left, base, 1, 4);
+      context.fillStyle = css('--muted');
+      context.textAlign = frame === 0 ? 'left' : 'center';
+      context.fillText(`${frame}`, frame === 0 ? left - 2 : left, height);
+    }
+  }
+}
+
+function drawClips(context, { model, x, base, inRange }) {
+  if (model.clips.length < 2) return;
+  for (const clip of model.clips.filter(inRange)) {
+    const { name, first, count } = clip;
+    const left = x(first);
+    const right = x(first + count);
+    context.fillStyle = css('--muted');
+    context.fillRect(left, 0, 1, base + 4);
+    let text = name;
+    while (text.length > 1 && context.measureText(text).width > right - left - 8) text = `${text.slice(0, -2)}…`;
+    if (text.length < 6 && text !== name) continue;
+    context.textAlign = 'left';
+    context.fillText(text, left + 4, 11);
+  }
+}
+
+// The first and last frame of the track: of all clips, or of the one that is shown.
+function range(model, { frame, oneClip }) {
+  if (!oneClip) return [0, model.frameCount - 1];
+  const { first, count } = model.clips[model.clipAt(frame)];
+  return [first, first + count - 1];
+}
+
+function drawBars(canvas, model, state) {
+  const { context, width, height } = fitCanvas(canvas);
+  if (width === 0) return;
+  const [from, to] = range(model, state);
+  const perFrame = (width - 2 * INSET) / Math.max(to - from, 1);
+  const x = (frame) => INSET + (frame - from) * perFrame;
+  const inRange = ({ first, count }) => first <= to && first + count > from;
+  const clip = model.clips[model.clipAt(state.frame)];
+  if (model.clips.length > 1 && !state.oneClip) {
+    context.fillStyle = css('--hover');
+    context.fillRect(x(clip.first), 0, Math.max((clip.count - 1) * perFrame, 2), height - BASE);
+  }
+  const counts = Array.from({ length: model.frameCount }, (_, frame) => model.contacts.count(frame));
+  const most = Math.max(1, ...counts.slice(from, to + 1));
+  const base = height - BASE;
+  const top = model.clips.length > 1 ? TOP : 4;
+  context.fillStyle = css('--line');
+  context.fillRect(INSET, base, width - 2 * INSET, 1);
+  context.fillStyle = CONTACT;
+  const bar = Math.max(1, Math.min(14, perFrame * 0.7));
+  counts.forEach((count, frame) => {
+    const high = 3 + (count / most) * (base - top - 3);
+    if (count > 0 && frame >= from && frame <= to) context.fillRect(x(frame) - bar / 2, base - high, bar, high);
+  });
+  if (state.spheres) {
+    context.fillStyle = FALSE_ALARM;
+    for (let frame = from; frame <= to; ++frame) {
+      if (model.spherePairs(frame, state.radius).some(({ isFalse }) => isFalse)) context.fillRect(x(frame) - bar / 2, base + 1, bar, 3);
+    }
+  }
+  context.font = `10px ${css('--font')}`;
+  context.textBaseline = 'bottom';
+  drawNumbers(context, { model, x, base, height, perFrame, inRange });
+  drawClips(context, { model, x, base, inRange });
+}
+
+export function fillTimeline(panel, store, model) {
+  const last = model.frameCount - 1;
+  const go = (frame) => store.set({ frame: Math.min(Math.max(frame, 0), last), playing: false });
+  const button = (label, text, onclick) => h('button', { type: 'button', class: 'icon', 'aria-label': label, title: label, onclick }, text);
+  const play = button('Play', '▶', () => store.set({ playing: !store.state.playing }));
+  const buttons = [
+    button('Previous frame', '◀︎|', () => go(store.state.frame - 1)),
+    play,
+    button('Next frame', '|▶︎', () => go(store.state.frame + 1)),
+  ];
+  const bars = h('canvas', { 'aria-hidden': 'true' });
+  const zoom = h('button', { type: 'button', class: 'icon', id: 'one-clip', onclick: () => store.set({ oneClip: !store.state.oneClip }) });
+  if (model.clips.length > 1) buttons.push(zoom);
+  const input = h('input', { type: 'range', min: 0, max: last, id: 'frame', 'aria-label': 'Frame', oninput: () => go(Number(input.value)) });
+  const readout = h('output', { class: 'readout', for: 'frame' });
+  for (const control of [...buttons, input]) control.disabled = last === 0;
+  panel.append(h('div', { class: 'buttons' }, buttons), h('div', { class: 'track' }, bars, input), readout);
+
+  store.watch(['playing'], ({ playing }) => {
+    play.textContent = playing ? '❚❚' : '▶';
+    play.setAttribute('aria-label', playing ? 'Pause' : 'Play');
+    play.title = `${playing ? 'Pause' : 'Play'} (space)`;
+  });
+  store.watch(['frame'], ({ frame }) => {
+    const clip = model.clips[model.clipAt(frame)];
+    const touching = model.contacts.of(frame).length;
+    const number = frame - clip.first;
+    const text = touching > 0 ? plural(touching, 'contact') : 'no contact';
+    input.setAttribute('aria-valuetext', `${clip.name}, frame ${number}, ${text}`);
+    readout.replaceChildren(
+      last === 0 ? h('b', {}, 'One frame') : h('span', {}, 'frame ', h('b', {}, `${number}`), ` / ${clip.count - 1}`),
+      h('span', {}, `${(model.time(frame) - model.time(clip.first)).toFixed(2)} s`),
+      h('span', { class: touching > 0 ? 'warning' : '' }, text),
+    );
+  });
+  const draw = () => drawBars(bars, model, store.state);
+  let clip = -1;
+  store.watch(['theme', 'spheres', 'radius', 'oneClip'], draw);
+  store.watch(['frame', 'oneClip'], (state) => {
+    zoom.textContent = state.oneClip ? 'all clips' : 'this clip';
+    zoom.title = state.oneClip ? 'All clips on the timeline' : 'Only the clip that is shown on the timeline';
+    [input.min, input.max] = range(model, state);
+    input.value = state.frame;
+    if (clip !== (clip = model.clipAt(state.frame))) draw();
+  });
+  new ResizeObserver(draw).observe(bars);
+  return { step: (by) => last > 0 && go(store.state.frame + by), go };
+}

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "play/motion_frames.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace spherechain::baker {
+namespace {
+
+constexpr double kFramesMax = 1e6;
+constexpr int kPoseFrames = 40;
+
+// One every 1 / fps seconds, from 0 on.
+int own_frames(double seconds, double fps) {
+  return static_cast<int>(std::min(seconds * fps + 1e-6, kFramesMax - 1)) + 1;
+}
+
+int nearest_number(double seconds, double fps) {
+  return static_cast<int>(std::lround(std::min(seconds * fps, kFramesMax)));
+}
+
+double even_place(int frame, int count) { return count > 1 ? static_cast<double>(frame) / (count - 1) : 0.0; }
+
+class Builder {
+ public:
+  // `start` is the clip's, in the motion's seconds.
+  void open(const std::string& name, const Clip* clip, int own_count, double start) {
+    out.clips.push_back({name, clip, static_cast<int>(out.frames.size()), 0, own_count});
+    start_ = start;
+  }
+  void add(double seconds, int number, double along) {
+    ++out.clips.back().count;
+    out.frames.push_back({out.clips.size() - 1, number, seconds, start_ + seconds, along});
+  }
+
+  MotionFrames out;
+
+ private:
+  double start_ = 0;
+};
+
+}  // namespace
+
+MotionFrames frames_of(const SourceRig& rig, const std::vector<const Clip*>& clips, const FrameChoice& choice) {
+  const ClipMotion motion(rig, clips);
+  const double fps = choice.fps;
+  Builder builder;
+  const auto open = [&](std::size_t c) {
+    builder.open(clips[c]->name, clips[c], own_frames(clips[c]->duration, fps), motion.start(c));
+  };
+  if (choice.count == 0) {
+    for (std::size_t c = 0; c < clips.size(); ++c) {
+      open(c);
+      const int left = static_cast<int>(kFramesMax) - static_cast<int>(builder.out.frames.size());
+      const int count = std::min(builder.out.clips.back().own_count, left);
+      for (int i = 0; i < count; ++i) builder.add(i / fps, i, 0);
+    }
+    return std::move(builder.out);
+  }
+  std::size_t current = clips.size();
+  for (int i = 0; i < choice.count; ++i) {
+    const ClipMotion::Place place = motion.place(even_place(i, choice.count));
+    if (place.clip != current) open(current = place.clip);
+    builder.add(place.seconds, nearest_number(place.seconds, fps), 0);
+  }
+  return std::move(builder.out);
+}
+
+MotionFrames frames_of(const Motion* motion, const FrameChoice& choice) {
+  const double fps = choice.fps, duration = motion ? motion->duration() : 0;
+  const bool has_pace = duration > 0;
+  int own_count = motion == nullptr ? 1 : motion->frame_count();
+  if (own_count == 0) own_count = has_pace ? own_frames(duration, fps) : choice.count > 0 ? choice.count : kPoseFrames;
+  const int count = choice.count > 0 ? choice.count : own_count;
+  Builder builder;
+  builder.open({}, nullptr, own_count, 0);
+  for (int i = 0; i < count; ++i) {
+    double along = even_place(i, count);
+    if (!has_pace) {
+      builder.add(i / fps, static_cast<int>(std::lround(along * (own_count - 1))), along);
+      continue;
+    }
+    if (choice.count == 0) along = std::min(i / fps / duration, 1.0);
+    builder.add(along * duration, nearest_number(along * duration, fps), along);
+  }
+  return std::move(builder.out);
+}
+
+}  // namespace spherechain::baker

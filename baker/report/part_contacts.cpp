@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "report/part_contacts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "mesh/error.h"
+
+namespace spherechain::baker {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::size_t kRunsShownMax = 6;
+
+std::string runs_text(const std::vector<std::pair<int, int>>& runs) {
+  std::string out;
+  for (std::size_t i = 0; i < std::min(runs.size(), kRunsShownMax); ++i) {
+    const auto [first, last] = runs[i];
+    out += (i > 0 ? ", " : "") + (first == last ? fmt::format("{}", first) : fmt::format("{}-{}", first, last));
+  }
+  if (runs.size() > kRunsShownMax) out += fmt::format(" and {} more", runs.size() - kRunsShownMax);
+  return out;
+}
+
+// Pads every column but the last to its widest cell.
+std::string table(const std::vector<std::vector<std::string>>& rows) {
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
+  }
+  std::string out;
+  for (const auto& row : rows) {
+    out += "  ";
+    for (std::size_t k = 0; k + 1 < row.size(); ++k) out += fmt::format("{:{}}   ", row[k], widths[k]);
+    out += row.back() + "\n";
+  }
+  return out;
+}
+
+}  // namespace
+
+std::size_t PartContacts::part_of(std::uint32_t triangle) const {
+  if (triangle < parts_.of_triangle.size()) return parts_.of_triangle[triangle];
+  throw Error(ExitCode::kFile, animated_.file() + ": names triangles that its source does not have (bake it again)");
+}
+
+PartCounts PartContacts::add(int frame, const std::vector<Pair>& triangles) {
+  PartCounts counts;
+  for (const Pair& pair : triangles) ++counts[std::minmax({part_of(pair.a), part_of(pair.b)})];
+  const MotionFrame& at = animated_.frame_at(frame);
+  clips_.resize(animated_.clips().size());
+  Clip& clip = clips_[at.clip];
+  clip.contact_frames += counts.empty() ? 0 : 1;
+  const int before = frame > animated_.clips()[at.clip].first ? animated_.frame_at(frame - 1).number : -1;
+  for (const auto& [pair, count] : counts) {
+    Contact& contact = clip.contacts[pair];
+    if (contact.frames > 0 && contact.runs.back().second == before) {
+      contact.runs.back().second = at.number;
+    } else {
+      contact.runs.emplace_back(at.number, at.number);
+    }
+    ++contact.frames;
+    if (count > contact.triangle_pairs_max) {
+      contact.triangle_pairs_max = count;
+      contact.frame_of_max = at.number;
+    }
+  }
+  last_frame_ = frame;
+  return counts;
+}
+
+std::string PartContacts::head(std::size_t index, const std::string& motion) const {
+  const ClipFrames& frames = animated_.clips()[index];
+  std::string what = frames.clip != nullptr ? "clip " + frames.name : motion.empty() ? "rest pose" : "motion " + motion;
+  const std::string of = frames.count == frames.own_count ? "" : fmt::format(" of {}", frames.own_count);
+  const char* unit = frames.count == 1 && of.empty() ? "frame" : "frames";
+  what += fmt::format(": {}{} {} at {} fps", frames.count, of, unit, animated_.fps());
+  const int with_contact = clips_[index].contact_frames;
+  if (with_contact == 0) return what + ". The skin does not intersect itself.\n";
+  return what + fmt::format("; skin contacts in {} {}\n", with_contact, with_contact == 1 ? "frame" : "frames");
+}
+
+std::string PartContacts::rows(const Clip& clip) const {
+  std::vector<Row> order;
+  for (const auto& entry : clip.contacts) order.push_back(&entry);
+  std::stable_sort(order.begin(), order.end(), [](Row l, Row r) { return l->second.frames > r->second.frames; });
+  std::vector<std::vector<std::string>> cells;
+  for (const Row row : order) {
+    const auto [a, b] = row->first;
+    const Contact& contact = row->second;
+    const char* unit = contact.frames == 1 ? "frame " : "frames ";
+    cells.push_back({name(a), a == b ? "itself" : name(b), unit + runs_text(contact.runs),
+                     fmt::format("most triangle pairs {} at {}", contact.triangle_pairs_max, contact.frame_of_max)});
+  }
+  return table(cells);
+}
+
+std::string PartContacts::text(const std::string& motion) const {
+  std::string out;
+  for (std::size_t i = 0; i < clips_.size(); ++i) {
+    if (animated_.clips()[i].first > last_frame_) break;
+    out += head(i, motion) + rows(clips_[i]);
+  }
+  return out;
+}
+
+ordered_json PartContacts::json() const {
+  ordered_json out = ordered_json::array();
+  for (std::size_t i = 0; i < clips_.size(); ++i) {
+    const ClipFrames& frames = animated_.clips()[i];
+    ordered_json contacts = ordered_json::array();
+    for (const auto& [pair, contact] : clips_[i].contacts) {
+      contacts.push_back({{"a", name(pair.first)},
+                          {"b", name(pair.second)},
+                          {"frames", contact.runs},
+                          {"triangle_pairs_max", contact.triangle_pairs_max},
+                          {"frame_of_max", contact.frame_of_max}});
+    }
+    out.push_back({{"name", frames.name},
+                   {"first_frame", frames.first},
+                   {"frame_count", frames.count},
+                   {"own_frame_count", frames.own_count},
+                   {"fps", animated_.fps()},
+                   {"contact_frames", clips_[i].contact_frames},
+                   {"contacts", std::move(contacts)}});
+  }
+  return out;
+}
+
+}  // namespace spherechain::baker

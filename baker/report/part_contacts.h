@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bind/body_parts.h"
+#include "play/play.h"
+#include "spherechain/skin_contacts.h"
+
+namespace spherechain::baker {
+
+// Triangle pairs that intersect, counted by the two body parts they belong to: indices of BodyParts::parts, a <= b.
+using PartCounts = std::map<std::pair<std::size_t, std::size_t>, std::size_t>;
+
+// Which body parts' skins touch, clip by clip, in the clip's own frames.
+class PartContacts {
+ public:
+  // `animated` must outlive it.
+  explicit PartContacts(const AnimatedAsset& animated) : animated_(animated), parts_(parts_of(animated.asset())) {}
+
+  // Frames are added in order. Returns the frame's counts.
+  PartCounts add(int frame, const std::vector<Pair>& triangles);
+
+  const std::string& name(std::size_t part) const { return parts_.parts[part].name; }
+  const BodyParts& parts() const { return parts_; }
+
+  // The frames so far, a paragraph for each clip. `motion` names what is not made of clips.
+  std::string text(const std::string& motion) const;
+  // The same as a list of clips.
+  nlohmann::ordered_json json() const;
+
+ private:
+  // Two body parts in one clip.
+  struct Contact {
+    std::vector<std::pair<int, int>> runs;  // numbers of the first and the last frame of each
+    int frames = 0;
+    std::size_t triangle_pairs_max = 0;
+    int frame_of_max = 0;
+  };
+  using Contacts = std::map<std::pair<std::size_t, std::size_t>, Contact>;
+  struct Clip {
+    Contacts contacts;
+    int contact_frames = 0;
+  };
+  using Row = Contacts::const_pointer;
+
+  std::size_t part_of(std::uint32_t triangle) const;
+  std::string head(std::size_t clip, const std::string& motion) const;
+  std::string rows(const Clip& clip) const;
+
+  const AnimatedAsset& animated_;
+  BodyParts parts_;
+  std::vector<Clip> clips_;
+  int last_frame_ = -1;
+};
+
+}  // namespace spherechain::baker
