@@ -6,13 +6,14 @@
 namespace spherechain::test {
 
 CrowdBuffers::CrowdBuffers(const Asset& asset, std::size_t instance_count, std::size_t task_count)
-    : words(CrowdContext::words_needed(asset, task_count), 0xDDDDDDDDDDDDDDDDU), counts(instance_count, 7) {
-  context.words = {words.data(), words.size()};
+    : scratch(sc_crowd_scratch_words(&asset, task_count), 0xDDDDDDDDDDDDDDDDU), counts(instance_count, 7) {
   job.asset = &asset;
   job.instance_count = instance_count;
-  job.context = &context;
+  job.scratch = scratch.data();
+  job.scratch_words = scratch.size();
   job.task_count = task_count;
-  job.counts = {counts.data(), counts.size()};
+  job.counts = counts.data();
+  job.count_capacity = counts.size();
 }
 
 void on_threads(void* user, std::size_t count, void (*task)(void*, std::size_t), void* data) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a CrowdJob's caller owns.
+// What a crowd job's caller owns.
 #pragma once
 
 #include <cstddef>
@@ -10,19 +10,17 @@
 
 namespace spherechain::test {
 
-// Buffers sized exactly and dirty, and a job that has them. Whoever uses it says where its spheres or bones are.
+// Buffers sized exactly and dirty, and a job that has them. The user says where its spheres or bones are.
 struct CrowdBuffers {
   CrowdBuffers(const Asset& asset, std::size_t instance_count, std::size_t task_count);
   CrowdBuffers(const CrowdBuffers&) = delete;  // the job points into this
 
-  std::vector<std::uint64_t> words;
-  CrowdContext context;
+  std::vector<std::uint64_t> scratch;
   std::vector<std::uint32_t> counts;
   CrowdJob job;
 };
 
-// A TaskHook's parallel_for: tasks on as many threads as the std::size_t at `user` says, dealt out in turn, the last
-// ones first.
+// A parallel_for: tasks on as many threads as the std::size_t at `user` says, dealt out in turn, the last ones first.
 void on_threads(void* user, std::size_t count, void (*task)(void*, std::size_t), void* data);
 
 }  // namespace spherechain::test

@@ -4,130 +4,140 @@
 #include <algorithm>
 #include <limits>
 
-namespace spherechain::test {
+#include "simd/simd.h"
+#include "skin/skin_inputs.h"
 
-Refitted refit(const Asset& asset, const std::vector<float>& positions, RadiusKind radius, std::size_t stride) {
-  Refitted result{Status::kOk, std::vector<Sphere>(asset.spheres().size)};
+namespace spherechain::test {
+namespace {
+
+constexpr std::uint64_t kDirty = 0xDDDDDDDDDDDDDDDD;
+
+Refitted run_refit(const Asset& asset, const Pose& pose, Radius radius, Target target) {
+  Refitted result{{}, std::vector<Sphere>(sc_asset_get_info(&asset).sphere_count)};
   RefitJob job;
   job.asset = &asset;
-  job.positions = positions.data();
-  job.vertex_count = positions.size() * sizeof(float) / stride;
-  job.stride = stride;
+  job.pose = pose;
   job.radius = radius;
-  job.spheres = {result.spheres.data(), result.spheres.size()};
+  job.target = target;
+  job.spheres = result.spheres.data();
+  job.sphere_capacity = result.spheres.size();
   result.status = job.run();
   return result;
 }
 
-Refitted refit_bones(const Asset& asset, const BoneMatrices& bones, const std::vector<float>& morph_weights,
-                     RadiusKind radius, Target target) {
-  Refitted result{Status::kOk, std::vector<Sphere>(asset.spheres().size)};
-  RefitBonesJob job;
-  job.target = target;
-  job.asset = &asset;
-  job.bones = bones;
-  job.morph_weights = {morph_weights.data(), morph_weights.size()};
-  job.radius = radius;
-  job.spheres = {result.spheres.data(), result.spheres.size()};
-  result.status = job.run();
-  return result;
+}  // namespace
+
+Refitted refit(const Asset& asset, const std::vector<float>& vertices, Radius radius, std::size_t stride) {
+  Pose pose;
+  pose.vertices = vertices.data();
+  pose.vertex_count = vertices.size() * sizeof(float) / stride;
+  pose.vertex_stride = stride;
+  return run_refit(asset, pose, radius, SC_TARGET_BEST);
 }
 
-Covered cover(const Asset& asset, const BoneMatrices& bones, const std::vector<float>& morph_weights, Target target) {
-  Covered result{Status::kOk, std::vector<Sphere>(asset.leaf_count()), std::vector<Sphere>(asset.spheres().size)};
-  CoverJob job;
-  job.asset = &asset;
-  job.bones = bones;
-  job.morph_weights = {morph_weights.data(), morph_weights.size()};
-  job.target = target;
-  job.leaves = {result.leaves.data(), result.leaves.size()};
-  job.spheres = {result.spheres.data(), result.spheres.size()};
-  result.status = job.run();
-  return result;
-}
-
-SkinnedSurface skin(const Asset& asset, const BoneMatrices& bones, const std::vector<float>& morph_weights,
-                    Target target, std::size_t stride) {
-  const std::size_t count = asset.info().source_vertex_count;
-  SkinnedSurface result{Status::kOk, std::vector<float>((count - 1) * stride / sizeof(float) + 3,
-                                                        std::numeric_limits<float>::quiet_NaN())};
-  SkinJob job;
-  job.asset = &asset;
-  job.bones = bones;
-  job.morph_weights = {morph_weights.data(), morph_weights.size()};
-  job.target = target;
-  job.positions = result.positions.data();
-  job.vertex_count = count;
-  job.stride = stride;
-  result.status = job.run();
-  return result;
+Refitted refit(const Asset& asset, const Pose& pose, Radius radius, Target target) {
+  return run_refit(asset, pose, radius, target);
 }
 
 namespace {
 
 // With a table the job finds all that it found without: `job` has run and `expected` is its buffers.
-bool is_same_by_table(DetectJob job, const Filter* filter, const Detected& expected) {
-  std::vector<std::uint64_t> words(DetectTable::words_needed(*job.asset), ~std::uint64_t{0});  // dirty on purpose
-  DetectTable table{{words.data(), words.size()}};
-  if (prepare_detect(*job.asset, job.radius, filter, table) != Status::kOk) {
+bool is_same_by_table(DetectJob job, const Detected& expected) {
+  std::vector<std::uint64_t> table(sc_detect_table_words(job.asset), kDirty);
+  if (sc_prepare_detect(job.asset, job.radius, job.filter, table.data(), table.size()) != SC_OK) {
     return false;
   }
   Detected found = expected;
   std::fill(found.pairs.begin(), found.pairs.end(), Pair{77, 77});
-  std::fill(found.chain_pairs.begin(), found.chain_pairs.end(), ChainPair{77, {77, 77}});
-  std::fill(found.bits.begin(), found.bits.end(), ~std::uint64_t{0});
-  job.table = &table;
-  job.pairs.data = found.pairs.data();
-  job.chain_pairs.data = found.chain_pairs.data();
-  job.bits.data = found.bits.data();
-  const auto is_same = [&](Status status) {
-    return job.run() == status && job.pair_count == expected.pairs.size() && job.test_count == expected.test_count &&
-           (job.method == Method::kM2 || job.chain_pair_count == expected.chain_pairs.size()) &&
-           same_bits(found.pairs, expected.pairs) && same_bits(found.bits, expected.bits);
+  std::fill(found.bits.begin(), found.bits.end(), kDirty);
+  job.table = table.data();
+  job.filter = nullptr;
+  job.pairs = found.pairs.data();
+  job.bits = found.bits.data();
+  const auto is_same = [&](sc_code code) {
+    return job.run() == code && job.pair_count == expected.pairs.size() && same_bits(found.pairs, expected.pairs) &&
+           same_bits(found.bits, expected.bits);
   };
-  if (!is_same(Status::kOk) || !same_bits(found.chain_pairs, expected.chain_pairs)) {
-    return false;
+  if (!is_same(SC_OK) || job.pair_capacity < 2) {
+    return job.pair_capacity < 2;
   }
-  // A list of chain pairs takes another way than none; and a list one short is as far as it goes the same.
-  job.chain_pairs = {};
-  if (!is_same(Status::kOk) || job.pairs.size < 2) {
-    return job.pairs.size < 2;
-  }
+  // A list one short is as far as it goes the same.
   found.pairs.back() = expected.pairs.back();
-  --job.pairs.size;
-  return is_same(Status::kOverflow);
+  --job.pair_capacity;
+  return is_same(SC_OVERFLOW);
 }
 
 }  // namespace
 
-Detected detect(const Asset& asset, const std::vector<Sphere>& spheres, Method method, RadiusKind radius, Target target,
+Detected detect(const Asset& asset, const std::vector<Sphere>& spheres, Radius radius, Target target,
                 const Filter* filter) {
-  std::vector<std::uint64_t> words(DetectContext::words_needed(asset), ~std::uint64_t{0});  // dirty on purpose
-  DetectContext context{{words.data(), words.size()}};
   DetectJob job;
   job.asset = &asset;
-  job.spheres = {spheres.data(), spheres.size()};
+  job.spheres = spheres.data();
+  job.sphere_count = spheres.size();
   job.radius = radius;
-  job.method = method;
   job.target = target;
   job.filter = filter;
-  job.context = method == Method::kM1 ? &context : nullptr;
-  Detected result{job.run(), {}, {}, {}, 0};
-  if (result.status != Status::kOk) {
+  Detected result{job.run(), {}, {}};
+  if (result.status != SC_OK) {
     return result;
   }
   result.pairs.resize(job.pair_count);
-  result.chain_pairs.resize(method == Method::kM1 ? job.chain_pair_count : 0);
-  result.bits.assign(DetectJob::bit_words(asset), ~std::uint64_t{0});
-  job.bits = {result.bits.data(), result.bits.size()};
-  job.pairs = {result.pairs.data(), result.pairs.size()};
-  job.chain_pairs = {result.chain_pairs.data(), result.chain_pairs.size()};
+  result.bits.assign(sc_pair_words(&asset), kDirty);
+  job.bits = result.bits.data();
+  job.bit_words = result.bits.size();
+  job.pairs = result.pairs.data();
+  job.pair_capacity = result.pairs.size();
   result.status = job.run();
-  result.test_count = job.test_count;
-  if (result.status == Status::kOk && !is_same_by_table(job, filter, result)) {
-    result.status = Status::kCorrupt;
+  if (result.status == SC_OK && !is_same_by_table(job, result)) {
+    result.status = {SC_CORRUPT, SC_FIELD_TABLE};
   }
   return result;
+}
+
+PreparedSkin::PreparedSkin(const Asset& asset) : words(sc_skin_table_words(&asset), kDirty) {
+  status = sc_prepare_skin(&asset, words.data(), words.size());
+  if (status == SC_OK) {
+    status = read_skin_table(view_of(asset), words.data(), surface);
+  }
+}
+
+std::vector<float> skin(const Asset& asset, const Pose& pose, Target target) {
+  const PreparedSkin table(asset);
+  std::vector<float> vertices(3 * view_of(asset).vertex_count(), std::numeric_limits<float>::quiet_NaN());
+  Target resolved = target;
+  if (table.status == SC_OK && resolve_target(target, resolved)) {
+    skin_surface(table.surface, pose, resolved, vertices.data(), 3);
+  }
+  return vertices;
+}
+
+SkinContacts find_contacts(SkinContactJob job) {
+  const PreparedSkin table(*job.asset);
+  std::vector<std::uint64_t> scratch(sc_skin_scratch_words(job.asset), kDirty);
+  job.skin_table = table.words.data();
+  job.scratch = scratch.data();
+  job.scratch_words = scratch.size();
+  SkinContacts out;
+  out.status = job.run();
+  if (out.status != SC_OK) {
+    return out;
+  }
+  out.parts.resize(job.part_count);
+  out.spheres.resize(job.sphere_count);
+  out.triangles.resize(job.triangle_count);
+  job.parts = job.spheres_only != 0 ? nullptr : out.parts.data();
+  job.part_capacity = out.parts.size();
+  job.spheres = out.spheres.data();
+  job.sphere_capacity = out.spheres.size();
+  job.triangles = job.spheres_only != 0 ? nullptr : out.triangles.data();
+  job.triangle_capacity = out.triangles.size();
+  out.status = job.run();
+  if (out.status == SC_OK && (job.part_count != out.parts.size() || job.sphere_count != out.spheres.size() ||
+                              job.triangle_count != out.triangles.size())) {
+    out.status = {SC_CORRUPT, SC_FIELD_NONE};
+  }
+  return out;
 }
 
 }  // namespace spherechain::test

@@ -6,11 +6,9 @@
 #include <cstring>
 #include <vector>
 
-#include "spherechain/cover.h"
-#include "spherechain/detect.h"
-#include "spherechain/refit.h"
-#include "spherechain/refit_bones.h"
-#include "spherechain/skin.h"
+#include "simd/simd.h"
+#include "skin/skin_table.h"
+#include "spherechain/spherechain.h"
 
 namespace spherechain::test {
 
@@ -19,38 +17,43 @@ struct Refitted {
   std::vector<Sphere> spheres;
 };
 
-// `positions` are as many vertices as it has whole strides.
-Refitted refit(const Asset& asset, const std::vector<float>& positions, RadiusKind radius, std::size_t stride = 12);
-
-Refitted refit_bones(const Asset& asset, const BoneMatrices& bones, const std::vector<float>& morph_weights,
-                     RadiusKind radius, Target target = Target::kBest);
-
-struct Covered {
-  Status status;
-  std::vector<Sphere> leaves, spheres;
-};
-Covered cover(const Asset& asset, const BoneMatrices& bones, const std::vector<float>& morph_weights,
-              Target target = Target::kBest);
-
-struct SkinnedSurface {
-  Status status;
-  std::vector<float> positions;  // NaN where nothing was written
-};
-SkinnedSurface skin(const Asset& asset, const BoneMatrices& bones, const std::vector<float>& morph_weights,
-                    Target target = Target::kBest, std::size_t stride = 12);
+// From deformed vertices: as many as `vertices` has whole strides.
+Refitted refit(const Asset& asset, const std::vector<float>& vertices, Radius radius, std::size_t stride = 12);
+Refitted refit(const Asset& asset, const Pose& pose, Radius radius, Target target = SC_TARGET_BEST);
 
 struct Detected {
   Status status;
   std::vector<Pair> pairs;
-  std::vector<ChainPair> chain_pairs;
   std::vector<std::uint64_t> bits;
-  std::size_t test_count;
 };
 
-// Runs three times: to count, then with buffers of exactly that many, then with a table. kCorrupt where that finds
-// something else.
-Detected detect(const Asset& asset, const std::vector<Sphere>& spheres, Method method, RadiusKind radius,
-                Target target = Target::kBest, const Filter* filter = nullptr);
+// Runs to count, then with buffers of exactly that many, then with a table. SC_CORRUPT where that finds something else.
+Detected detect(const Asset& asset, const std::vector<Sphere>& spheres, Radius radius, Target target = SC_TARGET_BEST,
+                const Filter* filter = nullptr);
+
+// An asset's skin table. `status` is that of sc_prepare_skin(), or of reading the table.
+struct PreparedSkin {
+  explicit PreparedSkin(const Asset& asset);
+  PreparedSkin(const PreparedSkin&) = delete;  // the surface points into this
+
+  Status status;
+  std::vector<std::uint64_t> words;
+  Surface surface;
+};
+
+// All source vertices, three floats each; NaN where nothing was written.
+std::vector<float> skin(const Asset& asset, const Pose& pose, Target target = SC_TARGET_BEST);
+
+struct SkinContacts {
+  Status status;
+  std::vector<PartContact> parts;
+  std::vector<Pair> spheres;
+  std::vector<TriangleContact> triangles;
+};
+
+// Runs `job`, which needs no outputs, scratch memory or skin table, to count and then with exactly sized lists.
+// SC_CORRUPT where the runs find different things.
+SkinContacts find_contacts(SkinContactJob job);
 
 // Bit for bit, so that a NaN equals itself.
 template <typename T>

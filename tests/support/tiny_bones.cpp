@@ -9,9 +9,23 @@ namespace {
 
 constexpr std::uint32_t kMorphCount = 3, kIdleMorph = 1;
 
-TinySkin random_skin(std::size_t vertex_count, std::size_t bone_count, std::mt19937& random) {
+// The first vertex at the same position.
+std::size_t twin_of(const TinyAsset& tiny, std::size_t vertex) {
+  std::size_t twin = 0;
+  while (!std::equal(&tiny.rest[3 * twin], &tiny.rest[3 * twin] + 3, &tiny.rest[3 * vertex])) {
+    ++twin;
+  }
+  return twin;
+}
+
+TinySkin random_skin(const TinyAsset& tiny, std::size_t bone_count, std::mt19937& random) {
   TinySkin skin;
-  for (std::size_t v = 0; v < vertex_count; ++v) {
+  for (std::size_t v = 0; v < tiny.parts.vertex_count; ++v) {
+    if (const std::size_t twin = twin_of(tiny, v); twin != v && random() % 2 == 0) {
+      skin.weights.push_back(std::vector(skin.weights[twin]));
+      skin.morphs.push_back(std::vector(skin.morphs[twin]));
+      continue;
+    }
     std::map<std::uint32_t, double> weights;
     if (random() % 8 == 0 || bone_count == 1) {
       weights[static_cast<std::uint32_t>(bone_count - 1)] = 1;  // moved by no bone
@@ -38,75 +52,6 @@ TinySkin random_skin(std::size_t vertex_count, std::size_t bone_count, std::mt19
   return skin;
 }
 
-struct Sums {
-  std::array<std::array<double, kPivotLanes>, 4> q{};
-  std::map<std::uint32_t, std::array<std::array<double, kPivotLanes>, 3>> morphs;
-};
-
-void add_corner(const TinyAsset& tiny, const TinySkin& skin, std::uint32_t v, std::size_t lane,
-                std::map<std::uint32_t, Sums>& terms) {
-  for (const auto& [bone, weight] : skin.weights[v]) {
-    Sums& sums = terms[bone];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      sums.q[axis][lane] += weight * double{tiny.rest[3 * v + axis]} / 3;
-    }
-    sums.q[3][lane] += weight / 3;
-    for (const auto& [target, delta] : skin.morphs[v]) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        sums.morphs[target][axis][lane] += weight * double{delta[axis]} / 3;
-      }
-    }
-  }
-}
-
-void store(const std::array<double, kPivotLanes>& from, float (&to)[kPivotLanes]) {
-  std::transform(from.begin(), from.end(), to, [](double value) { return static_cast<float>(value); });
-}
-
-void add_group(const TinyAsset& tiny, const TinySkin& skin, std::size_t first, std::size_t count, BoneRefitParts& out) {
-  std::map<std::uint32_t, Sums> terms;
-  out.weights.push_back({});
-  for (std::size_t lane = 0; lane < count; ++lane) {
-    const Pivot& pivot = tiny.parts.pivots[first + lane];
-    out.weights.back().values[lane] = pivot.weight;
-    for (const std::uint32_t corner : {pivot.a, pivot.b, pivot.c}) {
-      add_corner(tiny, skin, corner, lane, terms);
-    }
-  }
-  out.term_counts.push_back(static_cast<std::uint32_t>(terms.size()));
-  for (const auto& [bone, sums] : terms) {
-    out.term_bones.push_back(bone);
-    BoneTerm& term = out.terms.emplace_back();
-    store(sums.q[0], term.x);
-    store(sums.q[1], term.y);
-    store(sums.q[2], term.z);
-    store(sums.q[3], term.w);
-    out.morph_term_counts.push_back(static_cast<std::uint32_t>(sums.morphs.size()));
-    for (const auto& [target, delta] : sums.morphs) {
-      out.morph_targets.push_back(target);
-      MorphTerm& morph = out.morph_terms.emplace_back();
-      store(delta[0], morph.x);
-      store(delta[1], morph.y);
-      store(delta[2], morph.z);
-    }
-  }
-}
-
-void add_packed(AssetParts& parts) {
-  for (const Pivot& pivot : parts.pivots) {
-    parts.pivot_vertices.insert(parts.pivot_vertices.end(), {pivot.a, pivot.b, pivot.c});
-  }
-  std::vector<std::uint32_t>& vertices = parts.pivot_vertices;
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
-  const auto number = [&](std::uint32_t v) {
-    return static_cast<std::uint32_t>(std::find(vertices.begin(), vertices.end(), v) - vertices.begin());
-  };
-  for (const Pivot& pivot : parts.pivots) {
-    parts.packed_pivots.push_back({number(pivot.a), number(pivot.b), number(pivot.c), pivot.weight});
-  }
-}
-
 }  // namespace
 
 void give_pivots(TinyAsset& tiny, std::size_t i, std::uint16_t count, unsigned seed) {
@@ -116,32 +61,32 @@ void give_pivots(TinyAsset& tiny, std::size_t i, std::uint16_t count, unsigned s
   sphere.pivot_count = count;
   float left = 1;
   for (std::uint16_t k = 0; k < count; ++k) {
-    const auto first = static_cast<std::uint32_t>(3 * (random() % tiny.parts.triangle_count));
+    const auto& [a, b, c] = tiny.corners[random() % tiny.corners.size()];
     const float weight = k + 1 < count ? uniform(random, -0.1F, 0.3F) : left;
     left -= weight;
-    tiny.parts.pivots.push_back({first, first + 1, first + 2, weight});
+    tiny.parts.pivots.push_back({a, b, c, weight});
   }
 }
 
 TinySkin add_bones(TinyAsset& tiny, std::size_t bone_count, unsigned seed) {
   std::mt19937 random(seed);
-  TinySkin skin = random_skin(tiny.parts.vertex_count, bone_count, random);
-  BoneRefitParts& refit = tiny.parts.bone_refit;
+  TinySkin skin = random_skin(tiny, bone_count, random);
   for (std::size_t b = 0; b < bone_count; ++b) {
     const bool is_rest = b + 1 == bone_count;
-    BoneParts bone{is_rest ? "rest" : "bone" + std::to_string(b), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, is_rest};
+    BoneEntry bone{is_rest ? "" : "bone" + std::to_string(b), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, is_rest};
     bone.inverse_bind[3] = is_rest ? 0.0F : -static_cast<float>(b);
-    refit.bones.push_back(bone);
+    tiny.parts.bones.push_back(bone);
+  }
+  for (std::size_t i = 0; i < tiny.parts.parts.size(); ++i) {
+    tiny.parts.parts[i].bone = static_cast<std::int32_t>(i % bone_count);
   }
   for (std::uint32_t m = 0; m < kMorphCount; ++m) {
-    refit.morphs.push_back("morph" + std::to_string(m));
+    tiny.parts.morphs.push_back("morph" + std::to_string(m));
   }
-  for (const RestSphere& sphere : tiny.parts.spheres) {
-    for (std::size_t k = 0; k < sphere.pivot_count; k += kPivotLanes) {
-      add_group(tiny, skin, sphere.first_pivot + k, std::min(kPivotLanes, sphere.pivot_count - k), refit);
-    }
+  tiny.parts.skin.hulls.resize(tiny.parts.spheres.size());  // of spheres without triangles
+  if (tiny.parts.refit == static_cast<std::uint8_t>(RefitRule::kMoments)) {
+    add_moments(tiny, skin);
   }
-  add_packed(tiny.parts);
   return skin;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A skeleton, a skin and morph targets for a synthetic asset.
+// A skeleton, bone weights and morph targets for a synthetic asset.
 #pragma once
 
 #include <array>
@@ -20,9 +20,13 @@ struct TinySkin {
 // Gives sphere `i` that many pivots, weights that add up to 1, from triangles of the whole asset.
 void give_pivots(TinyAsset& tiny, std::size_t i, std::uint16_t count, unsigned seed);
 
-// Adds `bone_count` bones, the last of them the rest bone, three morph targets, one of which moves nothing, and the
-// tables of refit from bones and from packed pivots. Vertices hang on up to three bones.
+// Adds `bone_count` bones, the last of them the rest bone, three morph targets, one of which moves nothing, and, where
+// that is the refit rule, moments. Vertices hang on up to three bones. Give pivots before.
 TinySkin add_bones(TinyAsset& tiny, std::size_t bone_count, unsigned seed);
+
+// Makes the tables of refit by moments, with batches filled up to that many pairs. No sphere may hang on more than
+// kMaxMomentBones. Sets the pivot spreads.
+void add_moments(TinyAsset& tiny, const TinySkin& skin, std::size_t batch_pairs = 48);
 
 // Turns, stretches and shifts, one a bone.
 std::vector<Matrix> random_matrices(std::size_t count, unsigned seed);

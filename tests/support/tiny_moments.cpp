@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "tiny_moments.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
+
+#include "tiny_bones.h"
 
 namespace spherechain::test {
 namespace {
@@ -118,22 +118,8 @@ void add_sphere(const SphereParts& sphere, std::uint32_t i, double spread, const
 
 }  // namespace
 
-void add_moments(TinyAsset& tiny, TinySkin& skin, std::size_t batch_pairs, PivotTables pivots) {
+void add_moments(TinyAsset& tiny, const TinySkin& skin, std::size_t batch_pairs) {
   AssetParts& parts = tiny.parts;
-  parts.refit = static_cast<std::uint8_t>(RefitRule::kMoments);
-  for (auto& morphs : skin.morphs) {
-    morphs.clear();
-  }
-  parts.bone_refit.morph_term_counts.clear();
-  parts.bone_refit.morph_targets.clear();
-  parts.bone_refit.morph_terms.clear();
-  if (pivots == PivotTables::kLeftOut) {
-    parts.bone_refit.weights.clear();
-    parts.bone_refit.term_counts.clear();
-    parts.bone_refit.term_bones.clear();
-    parts.bone_refit.terms.clear();
-  }
-
   std::vector<SphereParts> spheres;
   std::vector<std::uint32_t> order;
   for (RestSphere& sphere : parts.spheres) {
@@ -144,9 +130,9 @@ void add_moments(TinyAsset& tiny, TinySkin& skin, std::size_t batch_pairs, Pivot
   std::stable_sort(order.begin(), order.end(),
                    [&](std::uint32_t a, std::uint32_t b) { return spheres[a].bones < spheres[b].bones; });
 
-  MomentParts& out = parts.bone_refit.moments = {};
+  MomentParts& out = parts.moments = {};
   out.origin = kOrigin;
-  out.reference = static_cast<std::uint32_t>(parts.bone_refit.bones.size() / 2);
+  out.reference = static_cast<std::uint32_t>(parts.bones.size() / 2);
   for (std::size_t first = 0; first < order.size();) {
     PairSet pairs;
     std::size_t end = first;
