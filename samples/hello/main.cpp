@@ -15,9 +15,9 @@ static void play(const std::vector<char>& file, const samples::GltfCharacter& mo
   const std::vector<spherechain::Bone> joints = model.joints();  // your skeleton: names and inverse bind matrices
   spherechain::Character character;                              // allocates here, never in a frame
   char message[160];
-  check(
-      character.create(file.data(), file.size(), joints.data(), joints.size(), SC_COLUMNS_4X4, message, sizeof message),
-      message);
+  const spherechain::Status made =
+      character.create(file.data(), file.size(), joints.data(), joints.size(), SC_COLUMNS_4X4, message, sizeof message);
+  check(made, message);
   check(character.check_rest(samples::pose_of(model.rest_palette()), message, sizeof message), message);
 
   for (int frame = 0; frame <= 30 * model.duration(0); ++frame) {
