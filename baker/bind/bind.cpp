@@ -144,8 +144,8 @@ BoundSphere bind_sphere(const Mesh& mesh, const std::vector<Index>& surrounding,
 }
 
 // Pairs that touch at rest, or would soon, are reported where they have come nearer than that.
-std::vector<BoundPair> find_rest_pairs(const std::vector<BoundSphere>& spheres, const SpherePairs& ignored, double fraction,
-                                 double BoundSphere::*detect) {
+std::vector<BoundPair> find_rest_pairs(const std::vector<BoundSphere>& spheres, const SpherePairs& ignored,
+                                       double fraction, double BoundSphere::*detect) {
   std::vector<BoundPair> pairs;
   for (std::uint32_t a = 0; a < spheres.size(); ++a) {
     for (std::uint32_t b = a + 1; b < spheres.size(); ++b) {

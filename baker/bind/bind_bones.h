@@ -13,7 +13,7 @@ namespace spherechain::baker {
 struct MovingBone {
   std::string name;
   Affine inverse_bind;
-  bool is_rest = false;  // no bone: for the vertices that none moves; the last, where there is one
+  bool is_rest = false;  // stands for no bone: vertices that nothing moves hang on it; always the last
 };
 
 // The bones and morph targets that move the source.
@@ -21,7 +21,7 @@ struct BoneBinding {
   std::vector<MovingBone> bones;  // empty where nothing moves the source
   std::vector<std::string> morphs;
 
-  // Where vertices hang that no bone moves: there is a bone of that number where the skin has any.
+  // The number of the bone that unmoved vertices hang on. It is bones.size() where no vertex needs it.
   Index rest_bone() const {
     return static_cast<Index>(bones.size() - (!bones.empty() && bones.back().is_rest ? 1 : 0));
   }
@@ -32,11 +32,10 @@ struct BoneShare {
   double weight;
 };
 
-// The bones a source vertex hangs on; the rest bone where none moves it. Their weights add up to 1; a bone may be there
-// twice.
+// The bones that move a source vertex, or the rest bone. Their weights add up to 1; a bone may be listed twice.
 std::vector<BoneShare> bone_shares(const std::vector<VertexWeights>& weights, Index vertex, Index rest_bone);
 
-// The source's own, or where it has no bones, the automatic rig's.
+// The source's own weights, or those of the automatic rig where the source has no bones.
 const std::vector<VertexWeights>& weights_to_bones(const Character& character,
                                                    const std::vector<VertexWeights>& rig_weights);
 

@@ -11,13 +11,13 @@ namespace spherechain::baker {
 
 inline constexpr std::size_t kMaxMomentBones = 22;  // of a sphere: its pairs are numbered in a byte
 
-// Sphere by sphere, what bones add to its centre and to its mean squared distance (schemas/sphere_chains.fbs, Moments).
+// What bones add to a sphere's centre and to its mean squared distance (schemas/sphere_chains.fbs, Moments).
 struct SphereMoments {
   std::uint32_t sphere;
   std::vector<Index> bones;              // ascending; 1 to kMaxMomentBones
   std::vector<Eigen::Vector4d> centers;  // of each bone
   std::vector<Eigen::Matrix4d> moments;  // of each pair (b0, b0), (b0, b1) ..., (b1, b1) ...
-  std::vector<std::uint8_t> places;      // of each pair: in MomentBatch::pairs; make_batches()' work
+  std::vector<std::uint8_t> places;      // of each pair: in MomentBatch::pairs; make_batches() fills it in
 };
 
 using BonePair = std::pair<Index, Index>;  // first <= second
@@ -27,8 +27,9 @@ struct MomentBatch {
   std::vector<SphereMoments> spheres;
 };
 
-// Spheres of equal bones side by side, and together those whose pairs are the same, for a batch's pairs are worked out
-// once: up to 96 pairs, all of a human's, or one set of bones that has more.
+// Spheres that need the same pairs of bones share a batch, because a batch's pairs are computed once. Within it,
+// spheres with equal bones are side by side. A batch has up to 96 pairs (all of a human's), or one set of bones that
+// has more.
 std::vector<MomentBatch> make_batches(const std::vector<SphereMoments>& spheres);
 
 // For the runtime's refit from bones without the pivots.

@@ -2,7 +2,6 @@
 #include "bind/body_parts.h"
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <tuple>
 
@@ -13,6 +12,7 @@ namespace spherechain::baker {
 namespace {
 
 constexpr std::size_t kPartsMax = 255;
+constexpr std::size_t kNoPart = ~std::size_t{0};
 
 std::string in_words(std::string name) {
   std::replace(name.begin(), name.end(), '_', ' ');
@@ -71,43 +71,19 @@ std::vector<std::size_t> parts_of_joints(const std::vector<Joint>& joints, PartL
   return of_bone;
 }
 
-// The bone with the greatest sum of the corners' weights, the lowest of several; `rest_bone` stands for none.
-Index moved_most_by(const Triangle& corners, const std::vector<VertexWeights>& weights, Index rest_bone) {
-  std::map<Index, std::array<float, 3>> of_bone;
-  for (std::size_t corner = 0; corner < 3; ++corner) {
-    for (const BoneShare& share : bone_shares(weights, corners[corner], rest_bone)) {
-      of_bone[share.bone][corner] = static_cast<float>(share.weight);
+// The part whose bones move a triangle most, of several the first; kNoPart where that is none. Bones are summed by
+// part: twist bones share a limb's weight, fingers the hand's, and the strongest single bone may be the neighbour's.
+std::size_t moved_most(const Triangle& corners, const std::vector<VertexWeights>& weights,
+                       const std::vector<std::size_t>& part_of_bone) {
+  const auto rest_bone = static_cast<Index>(part_of_bone.size());
+  std::map<std::size_t, double> sums;
+  for (const Index v : corners) {
+    for (const BoneShare& share : bone_shares(weights, v, rest_bone)) {
+      sums[share.bone == rest_bone ? kNoPart : part_of_bone[share.bone]] += share.weight;
     }
   }
-  Index most = rest_bone;
-  float greatest = -1;
-  for (const auto& [bone, weight] : of_bone) {
-    const float sum = (weight[0] + weight[1]) + weight[2];
-    if (sum <= greatest) continue;
-    greatest = sum;
-    most = bone;
-  }
-  return most;
-}
-
-// Of each bone the one above it; kNoIndex where there is none.
-std::vector<Index> bone_parents(const Character& character, const std::vector<Joint>& joints) {
-  std::vector<Index> out;
-  const SourceRig& rig = character.rig;
-  if (rig.bones.empty()) {
-    for (const Joint& joint : joints) out.push_back(joint.parent < 0 ? kNoIndex : static_cast<Index>(joint.parent));
-    return out;
-  }
-  std::vector<Index> bone_of(rig.nodes.size(), kNoIndex);
-  for (Index b = static_cast<Index>(rig.bones.size()); b-- > 0;) bone_of[rig.bones[b].node] = b;
-  for (const Bone& bone : rig.bones) {
-    int node = rig.nodes[bone.node].parent;
-    while (node >= 0 && bone_of[static_cast<std::size_t>(node)] == kNoIndex) {
-      node = rig.nodes[static_cast<std::size_t>(node)].parent;
-    }
-    out.push_back(node < 0 ? kNoIndex : bone_of[static_cast<std::size_t>(node)]);
-  }
-  return out;
+  const auto less = [](const auto& l, const auto& r) { return l.second < r.second; };
+  return std::max_element(sums.begin(), sums.end(), less)->first;
 }
 
 // The region of each source triangle. A triangle that cleaning dropped takes that of a neighbour.
@@ -140,15 +116,6 @@ BodyParts parts_of_regions(const Character& character, const Regions& regions) {
   return out;
 }
 
-// The region of most triangles that no bone moves.
-std::size_t region_at_rest(const Character& character, const Regions& regions, const std::vector<Index>& bone_of,
-                           Index rest_bone) {
-  const std::vector<std::uint8_t> of_triangle = regions_of_source(character, regions);
-  std::vector<std::size_t> triangles(256, 0);
-  for (std::size_t t = 0; t < bone_of.size(); ++t) triangles[of_triangle[t]] += bone_of[t] == rest_bone ? 1 : 0;
-  return static_cast<std::size_t>(std::max_element(triangles.begin(), triangles.end()) - triangles.begin());
-}
-
 // The parts to keep: those with a triangle; of too many those with most, so that there is room for the rest.
 std::vector<std::size_t> kept_parts(const std::vector<BodyPart>& parts, const std::vector<std::size_t>& triangles) {
   std::vector<std::size_t> kept;
@@ -159,7 +126,7 @@ std::vector<std::size_t> kept_parts(const std::vector<BodyPart>& parts, const st
     std::stable_sort(kept.begin(), kept.end(), [&](auto l, auto r) { return triangles[l] > triangles[r]; });
     kept.resize(kPartsMax - 1);
   }
-  const auto key = [&](std::size_t i) { return std::tuple(parts[i].bone < 0, parts[i].bone); };
+  const auto key = [&](std::size_t i) { return std::tuple(parts[i].bone < 0, parts[i].bone, i); };
   std::sort(kept.begin(), kept.end(), [&](auto l, auto r) { return key(l) < key(r); });
   return kept;
 }
@@ -171,40 +138,32 @@ BodyParts find_body_parts(const Character& character, const Roles& roles, const 
   const std::vector<VertexWeights>& weights = weights_to_bones(character, rig_weights);
   if (weights.empty()) return parts_of_regions(character, regions);
   PartList list;
-  std::vector<std::size_t> of_bone =
+  const std::vector<std::size_t> of_bone =
       character.rig.bones.empty() ? parts_of_joints(joints, list) : parts_of_rig(character.rig, roles, list);
-  const auto rest_bone = static_cast<Index>(of_bone.size());
-  std::vector<Index> bone_of;
-  for (const Triangle& corners : character.source_triangles) {
-    bone_of.push_back(moved_most_by(corners, weights, rest_bone));
-  }
-  if (std::find(bone_of.begin(), bone_of.end(), rest_bone) != bone_of.end()) {
-    const std::size_t region = region_at_rest(character, regions, bone_of, rest_bone);
-    of_bone.push_back(list.add(in_words(regions.name(region)), side_of_region(regions, region), -1));
+  std::vector<std::uint8_t> of_region;  // found where a triangle asks for it
+  std::vector<std::size_t> of_triangle;
+  for (std::size_t t = 0; t < character.source_triangles.size(); ++t) {
+    std::size_t part = moved_most(character.source_triangles[t], weights, of_bone);
+    if (part == kNoPart) {
+      if (of_region.empty()) of_region = regions_of_source(character, regions);
+      part = list.add(in_words(regions.name(of_region[t])), side_of_region(regions, of_region[t]), -1);
+    }
+    of_triangle.push_back(part);
   }
   std::vector<std::size_t> triangles(list.parts().size(), 0);
-  for (const Index bone : bone_of) ++triangles[of_bone[bone]];
+  for (const std::size_t part : of_triangle) ++triangles[part];
 
   BodyParts out;
-  constexpr int kDropped = -1;
-  std::vector<int> place(list.parts().size(), kDropped);
-  for (const std::size_t i : kept_parts(list.parts(), triangles)) {
-    place[i] = static_cast<int>(out.parts.size());
+  std::vector<std::uint8_t> place(list.parts().size(), static_cast<std::uint8_t>(kPartsMax - 1));
+  const std::vector<std::size_t> kept = kept_parts(list.parts(), triangles);
+  for (const std::size_t i : kept) {
+    place[i] = static_cast<std::uint8_t>(out.parts.size());
     out.parts.push_back(list.parts()[i]);
   }
-  for (std::size_t i = 0; i < place.size(); ++i) {
-    if (triangles[i] == 0 || place[i] != kDropped) continue;
-    if (out.parts.size() < kPartsMax) out.parts.push_back({"rest of the body", Side::kNone, -1});
-    place[i] = static_cast<int>(kPartsMax) - 1;
+  for (const std::size_t part : of_triangle) out.of_triangle.push_back(place[part]);
+  if (std::count(triangles.begin(), triangles.end(), 0U) + std::ssize(kept) < std::ssize(triangles)) {
+    out.parts.push_back({"rest of the body", Side::kNone, -1});
   }
-  const std::vector<Index> parents = bone_parents(character, joints);
-  for (Index b = 0; b < rest_bone; ++b) {
-    Index bone = b;
-    while (bone != kNoIndex && place[of_bone[bone]] == kDropped) bone = parents[bone];
-    out.of_bone.push_back(static_cast<std::uint8_t>(bone == kNoIndex ? 0 : place[of_bone[bone]]));
-  }
-  if (of_bone.size() > rest_bone) out.of_rest = static_cast<std::uint8_t>(place[of_bone[rest_bone]]);
-  for (const Index bone : bone_of) out.of_triangle.push_back(static_cast<std::uint8_t>(place[of_bone[bone]]));
   return out;
 }
 

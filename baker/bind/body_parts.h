@@ -20,17 +20,15 @@ struct BodyPart {
 };
 
 struct BodyParts {
-  std::vector<BodyPart> parts;            // 1 to 255
-  std::vector<std::uint8_t> of_bone;      // a bone of the character, else a joint of the automatic rig -> in `parts`
-  std::uint8_t of_rest = 0;               // the part of what no bone moves
-  std::vector<std::uint8_t> of_triangle;  // a source triangle -> in `parts`
+  std::vector<BodyPart> parts;            // at most 255; those that follow bones come first, in the order of these
+  std::vector<std::uint8_t> of_triangle;  // a source triangle -> index in `parts`
 };
 
 // A bone's part follows from its role: a bone without a role belongs to its nearest ancestor with one. Garments and
 // attachments that have bones of their own are parts of their own; a bone without any role above it is a part of its
-// name. A triangle belongs to the part of the bone with the greatest sum of its corners' weights, in single precision;
-// of several, the lowest. Parts without a triangle are left out, and their bones belong to the next ancestor's part.
-// Where nothing moves the character, its regions are the parts, in their order.
+// name. A triangle belongs to the part whose bones move its corners most. Triangles that no bone moves take the name of
+// their region. Parts without a triangle are left out; only where nothing moves the character its regions, in their
+// order, are the parts.
 // `joints` and `rig_weights` are the automatic rig's, for a character without bones.
 BodyParts find_body_parts(const Character& character, const Roles& roles, const Regions& regions,
                           const std::vector<Joint>& joints, const std::vector<VertexWeights>& rig_weights);

@@ -19,19 +19,20 @@ struct Ball {
 struct FittedSphere {
   Ball ball;
   std::uint8_t region;
-  int level;       // torso: disk position from the bottom, the head's numbered on; limbs: -1
-  Side side;       // torso: which part of the disk; limbs, head, the middle of a level: none
+  int level;       // torso: the disk's number from the bottom, which the head continues; limbs: -1
+  Side side;       // torso: which part of the disk; limbs, head and the middle of a level: none
   Vec3 axis;       // unit direction of the chain here: along the limb towards its tip, up the torso
-  bool extremity;  // in head, hand or foot: past where the paper stops
+  bool extremity;  // in head, hand or foot, where the paper has no spheres
 };
 
-// The three fits of one torso sphere, judged on the same points: the vertices of its part of the disk's band, from
+// The three fits of one torso sphere. All are measured at the vertices of its part of the disk's band, which goes from
 // halfway to the level below to halfway to the level above. F = radius - |centre - vertex| (section 3.2).
 struct TorsoFit {
   Ball phi1, phi1_adjusted, phi2;
   std::vector<Index> vertices;  // of Character::body
 };
 
+// F of a vertex: positive inside the ball.
 double signed_f(const Ball& ball, const Vec3& vertex);
 
 struct FError {
@@ -39,16 +40,16 @@ struct FError {
 };
 FError f_error(const Ball& ball, const Mesh& mesh, const std::vector<Index>& vertices);
 
-// All spheres of the body. Torso first, level by level from the bottom, left before right (the paper's numbering), and
-// on through neck and head; then the limbs in region order, each from shoulder or hip to the tip of hand or foot.
+// All spheres of the body. The torso comes first, level by level from the bottom, left before right (the paper's
+// numbering), then neck and head, then the limbs in region order, each from shoulder or hip to its tip.
 struct Spheres {
   std::vector<FittedSphere> spheres;
   std::vector<std::vector<std::uint32_t>>
-      of_region;                      // in the order above; the torso, also where there is none, is last
-  std::vector<TorsoFit> torso;        // of spheres 0 ..: without the head
-  std::vector<double> level_heights;  // along frame.up from frame.origin: without the head's
-  // Next to each other on the body, a < b, sorted: along a limb, on the same or the next torso level, limb to torso,
-  // neck to torso.
+      of_region;                      // in the order above; the torso is last, and empty where there is none
+  std::vector<TorsoFit> torso;        // of spheres 0, 1, ... without the head
+  std::vector<double> level_heights;  // along frame.up from frame.origin; without the head
+  // Neighbours on the body, a < b, sorted: along a limb, on the same or the next torso level, limb and torso, neck and
+  // torso.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> links;
 
   std::uint8_t torso_region() const { return static_cast<std::uint8_t>(of_region.size() - 1); }
@@ -56,7 +57,7 @@ struct Spheres {
   int level_at(double along) const;
 };
 
-// Lengths are fractions of the character's height.
+// Lengths are fractions of the character's height; the letters are the paper's.
 struct FitSettings {
   int rays = 80;                    // N_r
   double penetration_depth = 0.30;  // PD of neighbours on a limb, and of torso levels
@@ -76,7 +77,7 @@ std::vector<FittedSphere> fit_limb(const Mesh& mesh, const Regions& regions, std
                                    const FitSettings& settings, const std::string& file);
 void fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& settings, const std::string& file,
                Spheres& out);
-// The hand or foot past the limb's last sphere: none where there is none.
+// Spheres of the hand or foot past the limb's last sphere; none where the limb ends there.
 std::vector<FittedSphere> fit_hand_or_foot(const Mesh& mesh, const Regions& regions, std::uint8_t region,
                                            const Ball& last, const FitSettings& settings);
 // Neck and head above the torso's top level; one sphere a level.
@@ -86,7 +87,7 @@ std::vector<FittedSphere> fit_head(const Mesh& mesh, const Regions& regions, con
 // phi2: the smallest sphere around the points (CGAL).
 Ball minimum_enclosing_ball(const Mesh& mesh, const std::vector<Index>& vertices);
 
-// Penetration depth of two neighbours: 0 they touch, 0.5 equal spheres half overlapped.
+// Penetration depth PD of two neighbours: 0 where they touch, 0.5 for equal spheres that overlap by half.
 double penetration_depth(const Ball& a, const Ball& b);
 
 }  // namespace spherechain::baker

@@ -11,7 +11,7 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr double kOwnSkin = 0.95, kLeastSkin = 0.6;  // of the rays
+constexpr double kSkinShareGood = 0.95, kSkinShareMin = 0.6;  // of the rays
 // Of the limb's thickest sphere: a tail's tip, where spheres would go on getting smaller without end.
 constexpr double kThinEnd = 0.2;
 
@@ -88,13 +88,13 @@ std::vector<FittedSphere> fit_limb(const Mesh& mesh, const Regions& regions, std
   // ring that has most of it.
   double s = 0, most = 0;
   const double thin = kThinEnd * march.sphere_at(0.5 * end).radius;
-  for (double at = 0; at < end && most < kOwnSkin; at += step) {
+  for (double at = 0; at < end && most < kSkinShareGood; at += step) {
     const double share = march.sphere_at(at).radius < thin ? 0 : march.own_share(at);
     if (share <= most) continue;
     most = share;
     s = at;
   }
-  if (most < kLeastSkin) {
+  if (most < kSkinShareMin) {
     throw Error(ExitCode::kSegmentation,
                 file + ": no section of the " + regions.name(region) + " is closed by its own skin");
   }
@@ -116,7 +116,7 @@ std::vector<FittedSphere> fit_limb(const Mesh& mesh, const Regions& regions, std
     place(s, last);
   }
   // The closing pair overlaps by whatever is left.
-  if (march.own_share(end) < kLeastSkin) return spheres;
+  if (march.own_share(end) < kSkinShareMin) return spheres;
   const Ball closing = march.sphere_at(end);
   if (closing.radius >= kThinEnd * thickest && penetration_depth(last, closing) < kClosingDepth) place(end, closing);
   return spheres;

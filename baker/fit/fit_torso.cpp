@@ -159,7 +159,7 @@ std::vector<Level> place_levels(const TorsoDisk& disk, const Regions& regions, c
   return levels;
 }
 
-// The heights between which a level's fits are judged: halfway to its neighbours, as far on the side without one, its
+// The heights between which a level's fits are measured: halfway to its neighbours, as far on the side without one, its
 // radius where it has none.
 std::pair<double, double> band_of(const std::vector<Level>& levels, std::size_t i) {
   const bool has_below = i > 0, has_above = i + 1 < levels.size();

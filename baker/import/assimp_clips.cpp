@@ -85,8 +85,8 @@ std::vector<double> on_arcs(std::vector<double> times) {
   for (std::size_t k = 0; k < times.size(); ++k) {
     out.push_back(times[k]);
     const double gap = k + 1 < times.size() ? times[k + 1] - times[k] : 0;
-    constexpr double kMost = 256;
-    const double steps = std::min(std::ceil(gap * 30), kMost);
+    constexpr double kStepsMax = 256;
+    const double steps = std::min(std::ceil(gap * 30), kStepsMax);
     for (double step = 1; step < steps; ++step) out.push_back(times[k] + gap * step / steps);
   }
   return out;

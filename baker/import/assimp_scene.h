@@ -26,8 +26,8 @@ struct MeshInstance {
 // An assimp scene as a flat list of nodes, parents before children. The rest positions are its world.
 struct AssimpScene {
   std::vector<Node> nodes;
-  // The scene's nodes each of them stands for, the last one of the same name. They are more than one in FBX, where
-  // assimp unfolds a node's pivots into a chain of nodes, which no clip of another file would fit.
+  // The scene's nodes that each node replaces; the last one has its name. There are several in FBX, where assimp
+  // unfolds a node's pivots into a chain of nodes that no clip of another file would fit.
   std::vector<std::vector<const aiNode*>> chains;
   std::vector<Affine> world;
   std::unordered_map<std::string, Index> by_name;  // the first of that name, as assimp refers to them
@@ -39,8 +39,8 @@ AssimpScene flatten(const aiScene& scene, const std::string& file);
 
 std::vector<Clip> read_clips(const aiScene& scene, const AssimpScene& flat, const std::string& file);
 
-// Skeleton, skin, morph targets and clips; empty where nothing moves a mesh. Throws Error(kFile) where a number of it
-// is not finite.
+// Skeleton, skin, morph targets and clips; empty where nothing moves a mesh. Throws Error(kFile) where a number is not
+// finite.
 SourceRig read_rig(const aiScene& scene, const AssimpScene& flat, const std::string& file);
 
 }  // namespace spherechain::baker

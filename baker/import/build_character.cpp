@@ -13,7 +13,7 @@ namespace spherechain::baker {
 namespace {
 
 // Of a character's diagonal: past these, squares of lengths leave what single precision and CGAL's inexact steps hold.
-constexpr double kLeastSize = 1e-6, kLargestSize = 1e12;
+constexpr double kSizeMin = 1e-6, kSizeMax = 1e12;
 
 bool same_position(const Vec3& a, const Vec3& b) { return a.x() == b.x() && a.y() == b.y() && a.z() == b.z(); }
 
@@ -131,9 +131,9 @@ Character build_character(const SourceMesh& source, const std::string& name) {
   }
   const double extent = box.diagonal().norm();
   if (extent <= 0) throw Error(ExitCode::kFile, name + ": has no size (all positions coincide)");
-  if (extent < kLeastSize || extent > kLargestSize) {
+  if (extent < kSizeMin || extent > kSizeMax) {
     std::ostringstream size;
-    size << extent << " units across (a character is from " << kLeastSize << " to " << kLargestSize << ": scale it)";
+    size << extent << " units across (a character is from " << kSizeMin << " to " << kSizeMax << ": scale it)";
     throw Error(ExitCode::kFile, name + ": is " + size.str());
   }
 

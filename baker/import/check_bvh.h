@@ -5,10 +5,9 @@
 
 namespace spherechain::baker {
 
-// assimp reads joints within joints on the stack, keeps a joint at hand while its children move it, and makes room for
-// as many frames as the file promises: a BVH file (HIERARCHY is its first word) that would bring it down is refused.
-// So is one whose frames take no time, or less, which it reads as it stands.
-// Throws Error(kFile).
+// Throws Error(kFile) for a BVH file (its first word is HIERARCHY) that would crash assimp or use up the memory: assimp
+// reads nested joints on the stack, and allocates as many frames as the file claims. Also for one whose frame time is
+// not positive, which assimp accepts.
 void check_bvh(const std::filesystem::path& path);
 
 }  // namespace spherechain::baker

@@ -79,7 +79,7 @@ std::vector<double> GltfFile::numbers(int index, int type, const std::vector<int
          list_of(components));
   }
   const auto width = static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type)));
-  if (accessor.count * width > 4 * kMaxGltfElements) {
+  if (accessor.count * width > 4 * kGltfElementsMax) {
     fail(where + ".count is " + std::to_string(accessor.count) + ", too many for a character");
   }
   const auto bytes =

@@ -65,7 +65,7 @@ class ClipReader {
                  std::to_string(a_key));
     }
     total_ += channel.times.size() + channel.values.size();
-    if (total_ > 8 * kMaxGltfElements) file_.fail(where_ + " and those before it have too many keys for a character");
+    if (total_ > 8 * kGltfElementsMax) file_.fail(where_ + " and those before it have too many keys for a character");
     drop_repeats(channel, a_key, sampler.input);
     return !channel.times.empty();
   }

@@ -12,8 +12,8 @@ struct GltfMorphs {
   Index first = 0, count = 0;
 };
 
-// The file's animations; a channel for weights becomes one a morph. Channels of no node, of another property or of
-// meshes that are not shown are left out, and animations without any other channel. Throws Error(kFile).
+// The file's animations. A channel for weights becomes one channel a morph. Channels without a node, of other
+// properties or of meshes that are not shown are skipped, and so are animations without channels. Throws Error(kFile).
 std::vector<Clip> read_clips(const GltfFile& file, const GltfNodes& nodes, const std::vector<GltfMorphs>& morphs);
 
 }  // namespace spherechain::baker

@@ -9,10 +9,10 @@
 
 namespace spherechain::baker {
 
-// More vertices, triangles, keys or displacements than this are no character, but a file that wants memory.
-inline constexpr std::size_t kMaxGltfElements = std::size_t{1} << 23;
+// The most vertices, triangles, keys or displacements that a character has. Files that claim more only cost memory.
+inline constexpr std::size_t kGltfElementsMax = std::size_t{1} << 23;
 
-// tinygltf's indices are int; -1 is none, which no vector has.
+// tinygltf's indices are int. -1 means none, which is past the end of every vector.
 inline std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
 // A glTF file in memory: its structure, in which every index leads to something, and its buffers. No image is read.
@@ -31,7 +31,7 @@ struct GltfFile {
 // Reads a .gltf or .glb, told apart by content, with the buffers beside it. Throws Error(kFile).
 GltfFile open_gltf(const std::filesystem::path& path);
 
-// The files beside it that its buffers and images are, there or not; none where it is no glTF.
+// The files of its buffers and images, whether they exist or not; none where the file is no glTF.
 std::vector<std::filesystem::path> files_of_gltf(const std::filesystem::path& path);
 
 }  // namespace spherechain::baker

@@ -14,9 +14,9 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kMaxDepth = 64;                              // recursion in tinygltf and here ends there
-constexpr std::size_t kMaxEntries = std::size_t{1} << 18;  // of one array; a rich character has some thousand accessors
-constexpr double kMaxCount = 2147483647.0;                 // bytes or elements; tinygltf keeps some of them as int
+constexpr int kDepthMax = 64;                              // recursion in tinygltf and here ends there
+constexpr std::size_t kEntriesMax = std::size_t{1} << 18;  // of one array; a rich character has some thousand accessors
+constexpr double kCountMax = 2147483647.0;                 // bytes or elements; tinygltf keeps some of them as int
 
 constexpr const char* kKept[] = {
     "asset", "extensionsUsed", "extensionsRequired", "buffers", "bufferViews", "accessors", "meshes",
@@ -46,7 +46,7 @@ class Object {
 
   // A whole number of bytes or elements. JSON knows no integers: 36.0 is one.
   void count(const char* key) const {
-    if (has(key)) whole(value_[key], key, kMaxCount);
+    if (has(key)) whole(value_[key], key, kCountMax);
   }
   // An index into the root's array `of`.
   void index(const char* key, const char* of) const {
@@ -98,7 +98,7 @@ class Object {
   json& array(const char* key) const {
     json& list = value_[key];
     if (!list.is_array()) fail(key, "is not a list");
-    if (list.size() > kMaxEntries)
+    if (list.size() > kEntriesMax)
       fail(key, "has " + std::to_string(list.size()) + " entries, too many for a character");
     return list;
   }
@@ -116,7 +116,7 @@ class Object {
     value = static_cast<std::uint64_t>(number);
   }
   void index_of(json& value, const std::string& key, const char* of) const {
-    whole(value, key, kMaxCount);
+    whole(value, key, kCountMax);
     const std::size_t size = root_.contains(of) && root_[of].is_array() ? root_[of].size() : 0;
     if (value.get<std::size_t>() >= size) {
       fail(key, "is " + value.dump() + ", but there are " + std::to_string(size) + " " + of);
@@ -278,7 +278,7 @@ void strip(json& value) {
 }  // namespace
 
 json check_gltf_json(std::string_view text, const std::string& file) {
-  if (json_depth(text) > kMaxDepth) throw Error(ExitCode::kFile, file + ": its JSON is nested too deeply");
+  if (json_depth(text) > kDepthMax) throw Error(ExitCode::kFile, file + ": its JSON is nested too deeply");
   json all;
   try {
     all = json::parse(text);

@@ -7,10 +7,10 @@
 
 namespace spherechain::baker {
 
-// A glTF's JSON with only what a character is made of: no images, materials or cameras, of `extras` only the names of
-// morph targets, of extensions only their names. Every member has its type and every index leads to something, so that
-// what reads it next need not ask; what buffers hold is another matter. Throws Error(kFile) that names `file` and the
-// place in it, also for an extension that is required and not known.
+// Returns the parts of a glTF's JSON that a character is made of: no images, materials or cameras; of `extras` the
+// names of morph targets; of extensions their names. Every member has its type and every index refers to something, so
+// that later readers need not check. The contents of buffers are not checked. Throws Error(kFile) that names `file` and
+// the place in it, also for a required extension that is unknown.
 nlohmann::json check_gltf_json(std::string_view text, const std::string& file);
 
 }  // namespace spherechain::baker

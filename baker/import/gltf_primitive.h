@@ -12,7 +12,7 @@ namespace spherechain::baker {
 
 // A primitive's parts, each as the file has it. `where` is what errors call the primitive; all throw Error(kFile).
 
-// Triangles or their strips and fans; the rest is points and lines, of which there are so many.
+// Whether it has triangles, or strips or fans of them. All else is points and lines, which the next function counts.
 bool has_triangles(const tinygltf::Primitive& primitive);
 std::size_t count_points_and_lines(const GltfFile& file, const tinygltf::Primitive& primitive);
 
@@ -22,12 +22,13 @@ std::vector<Triangle> read_triangles(const GltfFile& file, const tinygltf::Primi
 
 // Has joints and weights.
 bool is_skinned(const tinygltf::Primitive& primitive);
-// `bones` are those of the skin's joints. Weights sum to 1; a vertex that has none follows the first joint it names.
+// `bones`: the bones of the skin's joints. Weights add up to 1; a vertex without weights follows the first joint it
+// names.
 std::vector<VertexWeights> read_weights(const GltfFile& file, const tinygltf::Primitive& primitive,
                                         const std::vector<Index>& bones, std::size_t vertex_count,
                                         const std::string& where);
 
-// Of a morph target; empty where it leaves positions alone.
+// A morph target's displacements; empty where it does not move positions.
 std::vector<Vec3> read_displacements(const GltfFile& file, const std::map<std::string, int>& target,
                                      std::size_t vertex_count, const std::string& where);
 

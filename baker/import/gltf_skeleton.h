@@ -19,7 +19,7 @@ struct GltfNodes {
 // Throws Error(kFile) where a node has two parents or is its own ancestor.
 GltfNodes read_nodes(const GltfFile& file);
 
-// A skin in the rest space all skins share.
+// A skin. All skins share one rest space.
 struct GltfSkin {
   std::vector<Index> joints;            // nodes
   std::vector<Affine> inverse_bind;     // from the skin's own mesh space to the joint's
@@ -27,7 +27,7 @@ struct GltfSkin {
   std::vector<Index> bones;             // a joint's bone
 };
 
-// All that binds meshes to nodes. The rest space is the mesh space of one skin; without skins it is the scene's world.
+// Binds meshes to nodes. The rest space is the mesh space of one skin; without skins it is the scene's world.
 class GltfSkeleton {
  public:
   // `used` are the skins of the scene's meshes, the one that leads first.
@@ -41,7 +41,7 @@ class GltfSkeleton {
   // The joint at or above a node, kNoIndex where there is none.
   Index joint_above(Index node) const { return joint_above_[node]; }
 
-  // What carries a rigid mesh on a node.
+  // How a node carries a rigid mesh.
   struct Rigid {
     Affine to_rest;             // from the mesh's space to the rest space, in the bind pose of the joint above
     std::optional<Index> bone;  // none where the node squashes the mesh flat

@@ -69,22 +69,23 @@ struct Character {
 // not finite, an index is out of range, or it is less than 1e-6 or more than 1e12 units across.
 Character import_character(const std::filesystem::path& path, const ImportOptions& options = {});
 
-// Share of the skin's area above which a piece of it is the body: eyes, teeth and a belt are the rest.
+// A piece of the skin is the body where it has more than this share of the skin's area. Eyes, teeth and belts are
+// others.
 inline constexpr double kBodyShareMin = 0.6;
 
 // Whether the body is closed, and most of the skin.
 bool is_whole(const Character& character);
 
-// Whether the body's triangles are the skin's, or parts of them; else it is a surface of its own around the skin.
+// Whether the body's triangles are triangles of the skin, or parts of them. A wrap's are not.
 bool is_part_of_skin(const Character& character);
 
-// Makes the body all of the skin, its pieces as they are: for characters of many pieces, none of which is a body.
+// Makes the body all of the skin, its pieces as they are.
 void take_all_pieces(Character& character);
 
-// x y z after another, as the runtime takes them.
+// The positions as single floats x, y, z, as the runtime takes them.
 std::vector<float> pack(const std::vector<Vec3>& positions);
 
-// An importer's raw result: what assimp and tinygltf have in common.
+// An importer's raw result, the same type for assimp and tinygltf.
 struct SourceMesh {
   std::vector<Vec3> positions;
   std::vector<Triangle> triangles;
@@ -97,18 +98,18 @@ struct SourceMesh {
   double metres_per_unit = 1;
   Vec3 up_hint = Vec3::UnitY();
 };
-// What is read more than once must be a file on a disk: Error(kFile) for a folder, a pipe, a device, or nothing.
+// Throws Error(kFile) where the path is not a regular file: what is read more than once must be on a disk.
 void check_regular_file(const std::filesystem::path& path);
 
-// Files of its own that a source names, there or not: a glTF's buffers and images, an OBJ's materials. None where it
-// cannot be read, which read_source says.
+// The files that a source names, whether they exist or not: a glTF's buffers and images, an OBJ's materials. None where
+// it cannot be read; read_source tells why.
 std::vector<std::filesystem::path> files_beside(const std::filesystem::path& source);
 
-// Files besides that a source is read with, in any format (skeletons, animations, materials, other meshes), and the
-// pictures its materials name. It takes as long as reading the source.
+// All files that are read with a source of any format (skeletons, animations, materials, other meshes), and the
+// pictures that its materials name. It takes as long as reading the source.
 std::vector<std::filesystem::path> files_read_with(const std::filesystem::path& source);
 
-// As the importer of the file's format reads it; a file of motion has no mesh. Throws Error(kFile).
+// Reads a file with the importer of its format. A file of motion has no mesh. Throws Error(kFile).
 SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& options = {});
 SourceMesh read_with_assimp(const std::filesystem::path& path);
 std::vector<std::filesystem::path> files_read_with_assimp(const std::filesystem::path& path);

@@ -5,8 +5,8 @@
 
 namespace spherechain::baker {
 
-// How deep objects and lists are in one another, in a text that need not be JSON. (nlohmann's parser can count too, but
-// then takes quadratic time.)
+// How deeply objects and lists are nested in a text, which need not be JSON. (nlohmann's parser can count, too, but
+// takes quadratic time then.)
 int json_depth(std::string_view text);
 
 }  // namespace spherechain::baker

@@ -5,9 +5,9 @@
 
 namespace spherechain::baker {
 
-// While it lives, the process may take this much more memory than it has: past that, new throws std::bad_alloc. For
-// importers that believe whatever counts a file claims. Process-wide, so one at a time; where the system has no such
-// limit, or a sanitizer maps memory of its own, it does nothing.
+// While it exists, the process may allocate only this many bytes more; then `new` throws std::bad_alloc. It guards
+// importers that believe the counts in a file. It holds for the whole process: use one at a time. It does nothing where
+// the system has no such limit or a sanitizer maps memory of its own.
 class MemoryLimit {
  public:
   explicit MemoryLimit(std::uint64_t bytes);

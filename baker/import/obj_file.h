@@ -6,8 +6,8 @@
 
 namespace spherechain::baker {
 
-// The material libraries (.mtl) that an OBJ file names, there or not, and the one of its own name, which assimp reads
-// where those are not there.
+// The material libraries (.mtl) that an OBJ file names, whether they exist or not, and the one with the OBJ's own name,
+// which assimp reads where the others are missing.
 std::vector<std::filesystem::path> files_of_obj(const std::filesystem::path& path);
 
 }  // namespace spherechain::baker

@@ -93,11 +93,11 @@ const aiScene* read_scene(Assimp::Importer& importer, const std::filesystem::pat
   importer.SetIOHandler(new FilesAlone(opened));  // which the importer deletes
   // Sticks that importers put where a file has bones and no mesh are no character.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
-  constexpr std::uint64_t kLeast = std::uint64_t{1} << 30, kPerByte = 500;
+  constexpr std::uint64_t kMemoryMin = std::uint64_t{1} << 30, kPerByte = 500;
   std::error_code unknown;
   const std::uintmax_t size = std::filesystem::file_size(path, unknown);
   const std::string name = path.string();
-  const MemoryLimit limit(kLeast + (unknown ? 0 : kPerByte * size));
+  const MemoryLimit limit(kMemoryMin + (unknown ? 0 : kPerByte * size));
   const auto too_much = [&] {
     return Error(ExitCode::kFile, name + ": needs more memory than " + std::to_string(size) +
                                       " bytes can fill (the file is cut off, or its counts are wrong)");

@@ -177,7 +177,7 @@ class GltfReader {
   // Instances and shared accessors let a small file ask for much: stop before memory does.
   void spend(std::size_t elements) {
     spent_ += elements;
-    if (spent_ > kMaxGltfElements) file_.fail(where_ + " and those before it are too large for a character");
+    if (spent_ > kGltfElementsMax) file_.fail(where_ + " and those before it are too large for a character");
   }
 
   const GltfFile& file_;

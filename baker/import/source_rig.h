@@ -12,29 +12,30 @@ namespace spherechain::baker {
 
 using Affine = Eigen::AffineCompact3d;
 
-// Linear blend skinning of one vertex: the largest weights first, unused entries zero. They sum to 1, or are all zero
-// where nothing moves the vertex.
+// One vertex's weights for linear blend skinning, the largest first, unused entries zero. They add up to 1, or are all
+// zero where nothing moves the vertex.
 inline constexpr std::size_t kMaxInfluences = 8;
 struct VertexWeights {
   std::array<Index, kMaxInfluences> joint{};
   std::array<double, kMaxInfluences> weight{};
 };
 
-// A node of the file's scene at rest. `local` is what holds while nothing animates it; a channel replaces one of the
-// three parts, and then translation * rotation * scale holds.
+// A node of the file's scene at rest. `local` is its transform while nothing animates it. A channel replaces one of the
+// three parts; then the transform is translation * rotation * scale.
 struct Node {
   std::string name;
-  int parent = -1;  // before its children
+  int parent = -1;  // comes before its children
   Affine local = Affine::Identity();
   Vec3 translation = Vec3::Zero();
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   Vec3 scale = Vec3::Ones();
 };
 
-// Translation, rotation and scale of `local`; what it shears is lost to them.
+// Sets translation, rotation and scale from `local`. Shear is lost.
 void decompose(Node& node);
 
-// What vertex weights refer to. A vertex v of the rest pose moves to  to_rest * world(node) * inverse_bind * v.
+// A bone, which vertex weights refer to. It moves a vertex v of the rest pose to
+// to_rest * world(node) * inverse_bind * v.
 struct Bone {
   Index node;
   Affine inverse_bind;
@@ -60,8 +61,8 @@ struct Channel {
   std::vector<double> times, values;
 };
 
-// A channel's value at a time, held before its first and after its last key: 3 numbers, 4 (a unit quaternion, x y z w)
-// or 1, as its path says; the rest are 0.
+// A channel's value at a time: 3 numbers, 4 (a unit quaternion, x y z w) or 1, by its path; the rest are 0. Before the
+// first key it has the first value, after the last key the last.
 Eigen::Vector4d sample(const Channel& channel, double seconds);
 
 struct Clip {
@@ -70,7 +71,7 @@ struct Clip {
   std::vector<Channel> channels;
 };
 
-// The skeleton, skin and motion a file brings along; all empty where it brings none.
+// A file's skeleton, skin and motion; all empty where it has none.
 struct SourceRig {
   std::vector<Node> nodes;
   std::vector<Bone> bones;

@@ -73,7 +73,7 @@ SampledBody::SampledBody(const Mesh& body, std::size_t count) : surface_(body) {
   }
 }
 
-SphereQuality SampledBody::judge(const std::vector<Ball>& spheres, const Part& part) const {
+SphereQuality SampledBody::measure(const std::vector<Ball>& spheres, const Part& part) const {
   double volume = 0, covered = 0;
   for (const Sample& sample : inside_) {
     if (!part(sample.triangle)) continue;

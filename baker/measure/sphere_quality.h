@@ -11,7 +11,7 @@
 
 namespace spherechain::baker {
 
-// How well the union of some spheres stands for a body, or for a part of it. Lengths in the mesh's units.
+// How well the union of some spheres fills a body or a part of it. Lengths are in the mesh's units.
 struct SphereQuality {
   double coverage;           // share of the volume inside some sphere
   double outside;            // volume of the union outside the body, as a share of the part's volume
@@ -21,7 +21,7 @@ struct SphereQuality {
   double uncovered;          // share of the skin's area outside the union
 };
 
-// A closed body as points, drawn once and the same in every run, so that sphere sets compare.
+// A closed body as random points, the same in every run, so that sets of spheres can be compared.
 class SampledBody {
  public:
   // Draws until `count` points lie inside, and as many points of the skin.
@@ -29,7 +29,7 @@ class SampledBody {
 
   // A point belongs to the part its nearest triangle belongs to.
   using Part = std::function<bool(Index triangle)>;
-  SphereQuality judge(const std::vector<Ball>& spheres, const Part& part) const;
+  SphereQuality measure(const std::vector<Ball>& spheres, const Part& part) const;
 
  private:
   struct Sample {

@@ -7,9 +7,9 @@
 
 namespace spherechain::baker {
 
-// A copy of a mesh in its principal axes, vertices and triangles sorted by position: the same copy, bit for bit,
-// whatever the order of the original's vertices and triangles, and all but the last bits whatever its pose, place and
-// scale. Algorithms whose result depends on order (edge collapses) see one and the same mesh.
+// A copy of a mesh in its principal axes, with vertices and triangles sorted by position. It is meant for algorithms
+// whose result depends on order (edge collapses). The copy is the same to the bit whatever the order of the original's
+// vertices and triangles, and the same but for rounding whatever its orientation, place and scale.
 struct CanonicalMesh {
   Mesh mesh;
   Eigen::Matrix3d axes;  // columns: the canonical axes in the original's space

@@ -16,7 +16,7 @@ enum class ExitCode : int {
   kTargetMissed = 5,  // done, but a target in the settings was not met
 };
 
-// Anything the user can mend. what() is one line: "FILE: what is wrong (what to do)".
+// An error that the user can mend. what() is one line: "FILE: what is wrong (what to do)".
 class Error : public std::runtime_error {
  public:
   Error(ExitCode code, const std::string& message) : std::runtime_error(message), code_(code) {}

@@ -30,25 +30,27 @@ double triangle_area(const Mesh& mesh, std::size_t t);
 // triangles.
 std::vector<std::array<Index, 3>> triangle_neighbours(const Mesh& mesh);
 
-// Triangles joined through shared vertices: a label a triangle, 0 the component of the lowest triangle, and so on.
+// Connected components over shared vertices: a label for each triangle, numbered in the order of their lowest
+// triangles.
 struct Components {
   std::vector<Index> of_triangle;
   Index count = 0;
 };
 Components connected_components(const Mesh& mesh);
 
-// Edges that do not have exactly two triangles, one in each direction. 0 means closed and consistently oriented.
+// Counts the edges that do not have exactly two triangles, one in each direction. 0 means closed and consistently
+// oriented.
 std::size_t count_open_edges(const Mesh& mesh);
 
 // The centroid of the surface, each triangle weighted by its area.
 Vec3 surface_centroid(const Mesh& mesh);
 double surface_area(const Mesh& mesh);
 
-// The least value that, with all below it, has this share of the weights: of (value, weight) in any order. The largest
-// where rounding keeps the sum below the share; 0 where there are none.
+// The smallest value such that it and all smaller values have this share of the weights. `weighted`: (value, weight) in
+// any order. Returns the largest value where rounding keeps the sum below the share, and 0 without values.
 double weighted_quantile(std::vector<std::pair<double, double>> weighted, double share);
 
-// A size that no rotation or vertex order changes: twice the largest distance from the surface's centroid.
+// Twice the largest distance from the surface's centroid: a size that does not depend on orientation or vertex order.
 double diameter(const Mesh& mesh);
 
 }  // namespace spherechain::baker

@@ -7,7 +7,7 @@
 
 namespace spherechain::baker {
 
-// A curve as points; arc length is measured from its first point.
+// A curve through points. Arc lengths are measured from its first point.
 class Polyline {
  public:
   Polyline() = default;

@@ -9,7 +9,8 @@
 
 namespace spherechain::baker {
 
-// A disk of rays from one centre, the paper's section 3: what it meets is the cross-section around it.
+// Rays from one centre in all directions of a plane (the paper's section 3). Their hits are the cross-section around
+// it.
 struct Ring {
   Vec3 center, normal;
   Vec3 u, v;  // with `normal` a right-handed orthonormal frame; ray k points to cos(a) u + sin(a) v, a = 2 pi k / N_r
@@ -21,8 +22,8 @@ struct Ring {
   Vec3 section_centroid() const;
 };
 
-// `reference` is any vector not parallel to `normal`: ray 0 points to its part in the plane, so that rings turn with
-// the mesh.
+// `reference` is any vector that is not parallel to `normal`. Ray 0 points along its part in the plane, so that rings
+// turn with the mesh.
 Ring cast_ring(const SurfaceQuery& surface, const Vec3& center, const Vec3& normal, const Vec3& reference, int rays);
 
 }  // namespace spherechain::baker

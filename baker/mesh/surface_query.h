@@ -14,8 +14,8 @@ struct SurfaceHit {
   Index triangle;  // of the mesh
 };
 
-// Rays, segments and closest points against a mesh's triangles, or some of them (an AABB tree of CGAL). Keeps its own
-// copy of what it needs. Const calls may run in several threads.
+// Ray, segment and closest-point queries against a mesh's triangles, or some of them (CGAL's AABB tree). It keeps its
+// own copy of the triangles, of which there must be at least one. Const calls may run in several threads.
 class SurfaceQuery {
  public:
   explicit SurfaceQuery(const Mesh& mesh);

@@ -25,21 +25,21 @@ struct Capture {
 // Throws Error(kFile).
 Capture read_capture(const std::filesystem::path& file);
 
-// The body a capture moves: its joints by role, at rest, and which of them each bone of its skin goes with.
+// The body that a capture moves: its joints by role, at rest, and the joint that each bone of its skin follows.
 struct CaptureBody {
   BodyFrame frame;
   RoleJoints joints;
   std::vector<Index> joint_of_bone;
 };
-CaptureBody body_of(const std::vector<Joint>& joints, const BodyFrame& frame);  // a bone each
+CaptureBody body_of(const std::vector<Joint>& joints, const BodyFrame& frame);  // every joint is a bone
 // Throws Error(kFile) that begins with `file` where the skin's skeleton is not that of a biped.
 CaptureBody body_of(const SourceRig& rig, const std::vector<Vec3>& rest, const BodyFrame& frame,
                     const std::string& file);
 
-// A capture on a body of other proportions and another rest pose. Arms and legs are turned so that they are parallel to
-// the capture's while it rests, and from there on every joint turns as the capture's joint of the same role does; a
-// joint the capture has not stays straight. The pelvis travels in proportion to the legs, from where the body stands
-// and faces at rest; the feet come down to where they rest.
+// Plays a capture on a body of other proportions and another rest pose. First arms and legs are turned parallel to
+// those of the resting capture. Then every joint turns as the capture's joint of the same role does; joints that the
+// capture lacks stay straight. The pelvis starts where the body stands and travels in proportion to its legs; feet
+// reach the ground where they do at rest.
 class CaptureMotion : public Motion {
  public:
   // Throws Error(kFile) where the capture has no legs or no neck.
@@ -48,7 +48,7 @@ class CaptureMotion : public Motion {
   double duration() const override { return capture_.clip.duration; }
 
  private:
-  // What a joint of the body does: it turns as a node of the capture; with none, as its parent.
+  // The node of the capture that a joint turns with; without one it turns with its parent.
   struct Follower {
     int source = -1;
     Eigen::Matrix3d from_rest = Eigen::Matrix3d::Identity();  // the body at rest -> the node's own axes
@@ -66,8 +66,8 @@ class CaptureMotion : public Motion {
   double stride_, lift_ = 0;   // the body's leg length over the capture's; what brings the feet down
 };
 
-// What plays `file` on a character with a skin of its own: its clip by the names of its nodes where it has the skin's
-// very skeleton, and else by roles.
+// Plays `file` on a character with a skin of its own. Where its skeleton is the skin's own, nodes are matched by name,
+// else by role.
 std::unique_ptr<Motion> capture_motion(const std::filesystem::path& file, const SourceRig& rig,
                                        const std::vector<Vec3>& rest, const BodyFrame& frame,
                                        const std::string& character);

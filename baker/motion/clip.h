@@ -8,10 +8,10 @@
 
 namespace spherechain::baker {
 
-// Every node's transform into the scene, as `clip` has it at a time.
+// Every node's transform into the scene at a time of `clip`.
 std::vector<Affine> world_at(const SourceRig& rig, const Clip& clip, double seconds);
 
-// The rig's bones with the nodes as `clip` has them at a time. Morphs no channel moves keep their rest weight.
+// The rig's bones at a time of `clip`. Morphs without a channel keep their rest weight.
 Deformation sample(const SourceRig& rig, const Clip& clip, double seconds);
 
 // Clips of the file's own, one after another. The rig and its clips must outlive it.

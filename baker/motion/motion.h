@@ -8,11 +8,11 @@
 
 namespace spherechain::baker {
 
-// What deforms a character in one frame. Bones and morphs are linear in the rest positions, so that a page or a game
-// can do it too.
+// The pose of a character in one frame. Positions are linear in bones and morphs, so that a page or a game can skin,
+// too.
 struct Deformation {
-  std::vector<Affine> bones;    // rest -> deformed, a bone each
-  std::vector<double> morphs;   // a weight each
+  std::vector<Affine> bones;    // for each bone: rest -> deformed
+  std::vector<double> morphs;   // the weight of each morph
   std::vector<Vec3> positions;  // pose sequences only: the deformed source vertices themselves
 };
 
@@ -30,8 +30,8 @@ class Motion {
 // The rest positions displaced by morph targets.
 std::vector<Vec3> morph(std::vector<Vec3> rest, const std::vector<Morph>& morphs, const std::vector<double>& weights);
 
-// Linear blend skinning. `weights` has an entry a rest position; bones that are exactly the identity leave rest as it
-// is.
+// Linear blend skinning. `weights` has one entry for each rest position. Bones that are exactly the identity do not
+// change a bit.
 std::vector<Vec3> deform(const std::vector<Vec3>& rest, const std::vector<VertexWeights>& weights,
                          const std::vector<Affine>& bones);
 

@@ -14,8 +14,8 @@ namespace {
 using Json = nlohmann::json;
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostPoses = 1000;  // files that include files multiply
-constexpr double kMostDegrees = 180;      // farther round the interpolation would go the other way
+constexpr std::size_t kPosesMax = 1000;  // files that include files multiply
+constexpr double kDegreesMax = 180;      // farther round the interpolation would go the other way
 
 [[noreturn]] void fail(const fs::path& file, const std::string& what) {
   throw Error(ExitCode::kFile, file.string() + ": " + what);
@@ -45,7 +45,7 @@ Eigen::Quaterniond read_rotation(const fs::path& file, const std::string& joint,
   if (!three) fail(file, "the rotation of '" + joint + "' is not three numbers (write [x, y, z] in degrees)");
   const Vec3 degrees(value[0].get<double>(), value[1].get<double>(), value[2].get<double>());
   const double angle = degrees.norm();
-  if (!std::isfinite(angle) || angle > kMostDegrees) {
+  if (!std::isfinite(angle) || angle > kDegreesMax) {
     fail(file, "the rotation of '" + joint + "' is more than 180 degrees long (go there in two poses)");
   }
   if (angle == 0) return Eigen::Quaterniond::Identity();
@@ -99,13 +99,13 @@ void read_into(PoseMotion& motion, const fs::path& file, const std::vector<Joint
       fail(file,
            "an entry of 'poses' is neither an object of rotations nor the name of a pose file (write one of them)");
     }
-    if (motion.poses.size() > kMostPoses) fail(file, "has more than 1000 poses with what it includes (shorten it)");
+    if (motion.poses.size() > kPosesMax) fail(file, "has more than 1000 poses with what it includes (shorten it)");
   }
   open.pop_back();
 }
 
 void collect_files(const fs::path& file, std::vector<fs::path>& found) {
-  if (!is_file(file) || found.size() > kMostPoses) return;
+  if (!is_file(file) || found.size() > kPosesMax) return;
   std::error_code error;
   const fs::path canonical = fs::canonical(file, error);
   if (error || std::find(found.begin(), found.end(), canonical) != found.end()) return;

@@ -29,10 +29,10 @@ struct PoseMotion {
 // checked against `joints`.
 PoseMotion read_pose_motion(const std::filesystem::path& path, const std::vector<Joint>& joints);
 
-// A pose file and those it takes poses from, as far as they can be read.
+// A pose file and the files that it includes, as far as they can be read.
 std::vector<std::filesystem::path> files_of_poses(const std::filesystem::path& path);
 
-// A pose as a transform a joint, its parents' included. Exactly none for a joint that nothing turns.
+// The transform of each joint in a pose, parents included. Exactly the identity for joints that nothing turns.
 std::vector<Affine> bones_of(const std::vector<Joint>& joints, const BodyFrame& frame, const Pose& pose);
 
 // The animation of the paper's section 5.1: quadratic Bezier interpolation of the vertices between poses. A vertex is
@@ -43,7 +43,7 @@ class BezierMotion : public Motion {
   Deformation at(double t) const override;
 
  private:
-  std::vector<std::vector<Affine>> keys_;  // rest, control, pose 0, control, pose 1 ...: a stretch is three of them
+  std::vector<std::vector<Affine>> keys_;  // rest, control, pose 0, control, pose 1, ...: a curve has three of them
 };
 
 }  // namespace spherechain::baker

@@ -13,15 +13,14 @@ namespace spherechain::baker {
 struct RoleJoints {
   std::vector<Joint> joints;
   std::vector<Index> node;           // of each joint
-  std::vector<Index> joint_of_node;  // what each node moves with: its own joint or that of the nearest node above it;
-                                     // the first joint where there is none
+  std::vector<Index> joint_of_node;  // the joint that each node moves with: its own or that of the nearest node above;
+                                     // 0 where there is none
 
   int find(const std::string& role) const;  // the first joint of that role, -1 none
 };
 
-// `roles` and `positions` of every node. Roles beyond those of a body's joints (fingers, twists, hair) get no joint.
-// A bone ends at the joint that comes next in a body; a wrist's, an ankle's and a head's at the farthest node they
-// move.
+// `roles` and `positions` are those of every node. Roles that are no joints of a body (fingers, twists, hair) are left
+// out. A bone ends at the next joint of the body; that of a wrist, an ankle or the head at the farthest node it moves.
 RoleJoints joints_by_role(const std::vector<Node>& nodes, const std::vector<std::string>& roles,
                           const std::vector<Vec3>& positions);
 

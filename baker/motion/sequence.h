@@ -8,15 +8,15 @@
 
 namespace spherechain::baker {
 
-// The meshes of a pose sequence: those of a folder, by name, or those a text file lists, one a line, relative to it.
+// The meshes of a pose sequence: all in a folder, by name, or those in a text file, one a line, relative to that file.
 // Throws Error(kFile) where there are none.
 std::vector<std::filesystem::path> sequence_files(const std::filesystem::path& folder_or_list);
 
 // Whether a path can be a pose sequence: a folder or a .txt file.
 bool is_sequence(const std::filesystem::path& path);
 
-// A character given as whole meshes. All have the rest mesh's vertices and triangles, in the same order: Error(kFile)
-// that names the first that has not.
+// A motion given as whole meshes. All must have the rest mesh's vertices and triangles in the same order; Error(kFile)
+// names the first that has not.
 class SequenceMotion : public Motion {
  public:
   enum class Path {

@@ -56,13 +56,13 @@ void run_after_fit(Bake& out, const Progress& progress) {
     }
     out.chains = build_chains(out.spheres, limbs);
   });
-  stage(out, progress, "bind",
-        [&] { out.binding = bind_spheres(out.character, out.regions, out.spheres, settings.bind); });
   stage(out, progress, "rig", [&] {
-    if (is_biped(out.regions) && out.joints.empty()) {
-      out.joints = place_joints(out.character, out.regions);
-      if (out.character.rig.bones.empty()) out.rig_weights = rig_weights(out.character, out.joints);
-    }
+    if (!is_biped(out.regions) || !out.joints.empty()) return;
+    out.joints = place_joints(out.character, out.regions);
+    if (out.character.rig.bones.empty()) out.rig_weights = rig_weights(out.character, out.joints);
+  });
+  stage(out, progress, "bind", [&] {
+    out.binding = bind_spheres(out.character, out.regions, out.spheres, settings.bind);
     out.body_parts = find_body_parts(out.character, out.roles, out.regions, out.joints, out.rig_weights);
     out.bones = bind_bones(out.character, out.joints, out.rig_weights);
     out.moments = bind_moments(out.character, out.bones, out.rig_weights, out.binding);

@@ -24,6 +24,7 @@ class OpenAsset {
 
   // The runtime's, and what it holds.
   const sc_asset* handle() const { return &asset_; }
+  operator const sc_asset&() const { return asset_; }
   const AssetView* operator->() const { return &view_of(asset_); }
   const AssetView& view() const { return view_of(asset_); }
 

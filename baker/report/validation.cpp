@@ -72,7 +72,7 @@ std::string groups_text(const std::string& title, const std::vector<PairGroup>& 
 }
 
 std::string curve_row(const std::string& name, const Score& chains, const Score& all_pairs) {
-  std::string out = fmt::format("  {:<16}", name);
+  std::string out = fmt::format("  {:<18}", name);
   for (const Score* score : {&all_pairs, &chains}) {
     out += fmt::format(" {:>9.4f} {:>9.4f} {:>9.2f}  ", score->pair_recall(), score->precision(),
                        score->reported_per_frame());
@@ -82,8 +82,8 @@ std::string curve_row(const std::string& name, const Score& chains, const Score&
 }
 
 std::string curve_text(const Validation& validation) {
-  std::string out = fmt::format("\n{:<18} {:<31}  {}\n", "spheres otherwise", "all pairs", "chains");
-  out += fmt::format("{:<18} {:>9} {:>9} {:>9}   {:>9} {:>9} {:>9}\n", "", "recall", "precision", "a frame", "recall",
+  std::string out = fmt::format("\n{:<20} {:<31}  {}\n", "spheres otherwise", "all pairs", "chains");
+  out += fmt::format("{:<20} {:>9} {:>9} {:>9}   {:>9} {:>9} {:>9}\n", "", "recall", "precision", "a frame", "recall",
                      "precision", "a frame");
   out += curve_row("as it is", validation.chains, validation.all_pairs);
   for (const CurvePoint& point : validation.curve) {

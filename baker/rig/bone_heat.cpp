@@ -12,13 +12,14 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr double kHeat = 3.0;       // c in H = c / d^2
-constexpr double kSmallest = 1e-3;  // lighter weights are dropped: what is far does not move at all
-constexpr double kTie = 1e-6;       // relative difference of distances that is none
-constexpr double kUnseen = 1e-3;    // pull on a vertex that sees no bone: its neighbours know better
-constexpr double kFarthest = 2.0;   // a bone in sight but that much farther than the nearest is not the vertex's own
-constexpr double kInside = 1e-4;    // of the diameter: how far a line of sight starts below the skin
-constexpr double kGiveWay = 0.25;   // of the lead that the strongest joint on another branch has is taken off a weight
+constexpr double kHeat = 3.0;        // c in H = c / d^2
+constexpr double kWeightMin = 1e-3;  // lighter weights are dropped: what is far does not move at all
+constexpr double kTie = 1e-6;        // relative difference of distances that is none
+constexpr double kUnseen = 1e-3;     // pull on a vertex that sees no bone: its neighbours know better
+constexpr double kDistanceRatioMax =
+    2.0;                           // a bone in sight but that much farther than the nearest is not the vertex's own
+constexpr double kInside = 1e-4;   // of the diameter: how far a line of sight starts below the skin
+constexpr double kGiveWay = 0.25;  // of the lead that the strongest joint on another branch has is taken off a weight
 
 struct Bone {
   Vec3 from, to;
@@ -81,9 +82,9 @@ std::vector<Source> find_sources(const Mesh& mesh, const std::vector<Bone>& bone
     const Vec3 inside = p - kInside * size * normals[v];
     const double nearest = candidates.front().distance;
     const auto seen = std::find_if(candidates.begin(), candidates.end(), [&](const Candidate& c) {
-      return c.distance > kFarthest * nearest || !surface.crosses(inside, c.point);
+      return c.distance > kDistanceRatioMax * nearest || !surface.crosses(inside, c.point);
     });
-    const bool sees = seen != candidates.end() && seen->distance <= kFarthest * nearest;
+    const bool sees = seen != candidates.end() && seen->distance <= kDistanceRatioMax * nearest;
     const double distance = std::max(sees ? seen->distance : nearest, kInside * size);
     Source source{(sees ? 1.0 : kUnseen) * kHeat / (distance * distance), {}};
     for (const Candidate& c : candidates) {
@@ -171,7 +172,7 @@ Eigen::RowVectorXd give_way(const Eigen::RowVectorXd& row, const std::vector<std
 VertexWeights largest_four(const Eigen::RowVectorXd& row) {
   std::vector<Index> order;
   for (Index j = 0; j < row.size(); ++j) {
-    if (row[j] > kSmallest) order.push_back(j);
+    if (row[j] > kWeightMin) order.push_back(j);
   }
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return row[a] > row[b]; });
   const double fifth = order.size() > 4 && row[order[0]] > row[order[4]] ? row[order[4]] : 0.0;

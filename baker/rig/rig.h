@@ -10,24 +10,24 @@
 
 namespace spherechain::baker {
 
-// A joint turns what hangs on it about `position`; its bone is the segment from there to `tail`.
+// A joint turns its part of the body about `position`; its bone is the segment from there to `tail`.
 struct Joint {
   std::string name;
   int parent;  // -1 for the root; parents come before their children
   Vec3 position, tail;
 };
 
-// Joints of a character without a skeleton, from its regions' centre lines: pelvis, spine, chest, neck, head, and on
-// either side (left_, right_) clavicle, shoulder, elbow, wrist, hip, knee, ankle. In single precision, as the asset has
-// them: its readers get the same weights from them.
+// Places joints in a biped without a skeleton, from its regions' centre lines: pelvis, spine, chest, neck, head, and on
+// either side (left_, right_) clavicle, shoulder, elbow, wrist, hip, knee, ankle. Positions are rounded to single
+// precision, as in the asset: whoever reads the asset gets the same weights from them.
 std::vector<Joint> place_joints(const Character& character, const Regions& regions);
 
-// Bone-heat weights of every vertex of a closed mesh (Baran and Popovic 2007, section 4). They depend on nothing else:
-// the same mesh and joints give the same weights. At most four joints a vertex.
+// Bone-heat weights of every vertex of a closed mesh (Baran and Popovic 2007, section 4), at most four joints a vertex.
+// The same mesh and joints give the same weights.
 std::vector<VertexWeights> bone_heat_weights(const Mesh& mesh, const std::vector<Joint>& joints);
 
-// Weights of every source vertex: the body's by bone heat, the other pieces' (eyes) rigidly with the nearest body
-// vertex.
+// Weights of every source vertex. The body's come from bone heat; vertices of other pieces (eyes) take those of the
+// nearest vertex of the body.
 std::vector<VertexWeights> rig_weights(const Character& character, const std::vector<Joint>& joints);
 
 }  // namespace spherechain::baker

@@ -13,17 +13,17 @@ namespace spherechain::baker {
 struct Body {
   BodyKind kind = BodyKind::kUnknown;
   std::vector<LimbPath> paths;          // every one with its side
-  std::vector<std::string> side_notes;  // of `paths`: how the side was decided, where there is something to say
-  std::vector<int> path_of;             // node -> the one of `paths` that it is of or hangs on; -1 none
-  std::vector<int> upper, lower;        // of `paths`, arms or forelegs, legs or hind legs: from the front, left first
+  std::vector<std::string> side_notes;  // for each path: how its side was decided, or empty
+  std::vector<int> path_of;             // a node -> the path that it is on or below; -1 none
+  std::vector<int> upper, lower;  // paths of arms or forelegs, and of legs or hind legs: from the front, left first
   int pelvis = -1, chest = -1, head = -1;
   std::vector<int> trunk, neck_head;  // as in Roles
 };
 
 Body find_body(const Skeleton& skeleton, const std::vector<Hint>& hints, BodyKind wanted);
 
-// The node outside the limbs that speaks of something in the body's middle: by a role file, else the one fewest steps
-// from the root, then the heaviest. -1 none.
+// The node outside the limbs whose hint is `word`. Of several: the one in a role file, else the nearest to the root,
+// else the one with the largest weight. -1 none.
 int find_in_middle(const Skeleton& skeleton, const std::vector<Hint>& hints, const std::vector<int>& path_of,
                    Word word);
 

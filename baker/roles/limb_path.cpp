@@ -12,7 +12,7 @@ namespace {
 constexpr double kGirdleRatio = 0.6;
 
 // More than any creature has: such names mean something else.
-constexpr std::size_t kMostLimbs = 64;
+constexpr std::size_t kLimbsMax = 64;
 
 bool is_open(Word word) {
   return word == Word::kShoulder || word == Word::kHip || word == Word::kArm || word == Word::kLeg;
@@ -167,7 +167,7 @@ std::vector<int> find_tops(const Skeleton& s, const std::vector<Hint>& hints) {
     if (hints[n].side == NamedSide::kNone) same |= bit(family, NamedSide::kLeft) | bit(family, NamedSide::kRight);
     if ((above[n] & same) == 0) tops.push_back(n);
   }
-  if (tops.size() > kMostLimbs) return {};
+  if (tops.size() > kLimbsMax) return {};
   const auto key = [&](int n) {
     const Vec3& p = s.position[n];
     return std::tuple(is_girdle_or_upper(hints[n].word) ? kGirdle : rank_of(hints[n].word), s.names[n], p.x(), p.y(),

@@ -8,15 +8,15 @@
 
 namespace spherechain::baker {
 
-// How far down a limb a node is.
+// Which section of a limb a node belongs to, from the trunk outwards.
 enum Rank { kGirdle, kUpper, kLower, kExtremity, kDigit };
 
-// A limb as the hints tell: its joints from the trunk to the tip of its longest digit.
+// A limb by the hints: its joints from the trunk to the tip of its longest digit.
 struct LimbPath {
   Family family;
   NamedSide side;
   Place place;
-  std::vector<int> roots;  // where it leaves the trunk; more than one where an exporter tore the chain apart
+  std::vector<int> roots;  // where it leaves the trunk; several where an exporter tore the chain apart
   std::vector<int> nodes;
   std::vector<Rank> ranks;  // of `nodes`, ascending
 
@@ -25,7 +25,7 @@ struct LimbPath {
 
 std::vector<LimbPath> find_limb_paths(const Skeleton& skeleton, const std::vector<Hint>& hints);
 
-// The way down from a node: to the child whose limb words go on farthest, then to the farthest leaf.
+// The path from a node to a tip: by the children whose limb words go on farthest, then to the farthest tip.
 std::vector<int> main_path(const Skeleton& skeleton, const std::vector<Hint>& hints, int top, Family family);
 
 // In a chain of joints, the first of the two consecutive bones that are both long: upper arm or thigh.

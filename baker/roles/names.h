@@ -7,8 +7,8 @@ namespace spherechain::baker {
 
 enum class NamedSide { kNone, kLeft, kRight };
 
-// What a name speaks of. Where rigs disagree about a word it stays open until the chain of joints is known: a shoulder
-// is a clavicle or an upper arm, an arm an upper or a fore arm, a hip a pelvis or a thigh, a leg a thigh or a shin.
+// The part of the body that a name speaks of. Some words mean different joints in different rigs; the chain of joints
+// decides: shoulder (clavicle or upper arm), arm (upper or fore arm), hip (pelvis or thigh), leg (thigh or shin).
 enum class Word {
   kNone,
   kRoot,
@@ -54,7 +54,7 @@ struct Hint {
 
 Hint read_name(const std::string& name);
 
-// The hint that stands for a role of a role file; kNone with an empty reason where there is no such role.
+// The hint for a role of a role file. Its word is kNone and its reason empty where there is no such role.
 Hint hint_of_role(const std::string& role);
 
 enum class Family { kNone, kArm, kLeg };

@@ -12,23 +12,23 @@ namespace spherechain::baker {
 enum class BodyKind { kUnknown, kBiped, kQuadruped, kOther };
 const char* body_kind_name(BodyKind kind);
 
-// What a node of a rig is on the body.
-//
-// Roles, as the automatic rig calls its joints: pelvis, spine, chest, neck, head, and with left_ or right_ before them
-// clavicle, shoulder (of the upper arm), elbow, wrist, finger, hip (of the thigh), knee, ankle, toe. A body has one
-// node for each but spine, neck, finger and toe. A quadruped's forelegs are arms in this, its hind legs legs.
-// Further: tail_1 ..., limb (a joint of a limb that is neither arm nor leg), twist (part of a limb, follows its
-// joints), eye, jaw, hair, head_part, attachment, control (moves other nodes, not the skin), root, other.
+// What a node of a rig is on the body. Roles are named as the joints of the automatic rig:
+// - pelvis, spine, chest, neck, head,
+// - with left_ or right_ before: clavicle, shoulder (of the upper arm), elbow, wrist, finger, hip (of the thigh), knee,
+//   ankle, toe; a quadruped's forelegs count as arms,
+// - tail_1 ..., limb (a joint of a limb that is neither arm nor leg), twist (part of a limb, follows its joints), eye,
+//   jaw, hair, head_part, attachment, control (moves other nodes, not the skin), root, other.
+// Of the first two lists a body has one node each, but any number of spine, neck, finger and toe.
 struct NodeRole {
   std::string role;
-  int limb = -1;       // index in Roles::limbs; -1 trunk or head, clavicles too
+  int limb = -1;       // index in Roles::limbs; -1 for trunk, head and clavicles
   std::string reason;  // how it was decided, in words
 };
 
 struct RoleLimb {
   std::string name;  // left_arm, right_leg; left_foreleg, right_hindleg; left_leg_1 ... from the front; neck; tail
   bool left, top;    // top: hangs on the chest, or in front
-  std::vector<int> nodes;  // from the first joint of the limb proper (upper arm, thigh) to the tip, one way
+  std::vector<int> nodes;  // from the first joint of the limb proper (upper arm, thigh) down to one tip
   int extremity = -1;      // which of `nodes` is wrist or ankle; -1 none
   int girdle = -1;         // the node that joins it to the trunk (clavicle); -1 none
 };
@@ -41,23 +41,23 @@ struct Roles {
   std::vector<int> neck_head;   // from the chest to the head
 };
 
-// Roles that a person gave by hand, node name -> role. They go before names and shape.
+// Roles given by hand, node name -> role. They override names and shape.
 struct RoleFile {
   std::string file;  // for messages
   std::map<std::string, std::string> role_of;
 };
 
-// Reads a JSON object. Throws Error(kFile) where it is none or has a role that is none.
+// Reads a JSON object. Throws Error(kFile) where the text is no such object, or a role is unknown.
 RoleFile parse_role_file(const std::string& json, const std::string& file);
 
-// The roles of a rig's nodes. `positions`: the rest pose of the vertices that rig.weights belong to; empty without
-// skin. The result does not depend on the order of the nodes, nor on place, size and orientation.
-// `wanted`: what a body with two pairs of limbs is, however it stands; unknown: as it stands.
-// Throws Error(kFile) where the role file has a name that no node has.
+// The roles of a rig's nodes. The result does not depend on the order of the nodes, nor on place, size and orientation.
+// `positions`: the rest positions of the vertices that rig.weights belong to; empty without skin.
+// `wanted`: decides whether a body with two pairs of limbs is a biped or a quadruped; kUnknown: its pose decides.
+// Throws Error(kFile) where the role file names a node that does not exist.
 Roles find_roles(const SourceRig& rig, const std::vector<Vec3>& positions, const RoleFile& file = {},
                  BodyKind wanted = BodyKind::kUnknown);
 
-// Where each node is in the rest pose: by its inverse bind matrix, else by its place under its parent.
+// The position of each node in the rest pose: from its inverse bind matrix, else from its place under its parent.
 std::vector<Vec3> rest_positions(const SourceRig& rig);
 
 }  // namespace spherechain::baker

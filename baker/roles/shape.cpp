@@ -21,8 +21,8 @@ constexpr double kLong = 0.3;        // of the longest limb: shorter pairs are e
 constexpr double kPointsAway = 0.5;  // cosine from which legs point away from the arms
 
 // No character's rig has more; the search would take long.
-constexpr std::ptrdiff_t kMostNodes = 600;
-constexpr std::size_t kMostChildren = 40;
+constexpr std::ptrdiff_t kNodesMax = 600;
+constexpr std::size_t kChildrenMax = 40;
 
 struct Plane {
   Vec3 point, normal;
@@ -49,9 +49,9 @@ double asymmetry(const Skeleton& s, const Plane& plane, double worst) {
 std::optional<Plane> find_symmetry(const Skeleton& s) {
   std::optional<Plane> best;
   double least = kAsymmetry * s.size;
-  if (std::count(s.alive.begin(), s.alive.end(), true) > kMostNodes) return best;
+  if (std::count(s.alive.begin(), s.alive.end(), true) > kNodesMax) return best;
   for (int n = 0; n < s.count(); ++n) {
-    if (s.children[n].size() > kMostChildren) continue;
+    if (s.children[n].size() > kChildrenMax) continue;
     for (const int a : s.children[n]) {
       for (const int b : s.children[n]) {
         if (a >= b || !s.alive[a] || !s.alive[b]) continue;

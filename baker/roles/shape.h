@@ -8,9 +8,9 @@
 
 namespace spherechain::baker {
 
-// Hints for a rig whose names say nothing. Limbs are what leaves the rig's plane of symmetry in pairs and is long; of
-// two pairs, legs are the one that points away from the other, or on four legs the one nearer to the root. Without such
-// a plane or pairs there are no hints. Which side is left stays open.
+// Hints for a rig whose names say nothing. Limbs are long chains that leave the rig's plane of symmetry in pairs. Of
+// two pairs, the legs are the pair that points away from the other one, or on four legs the pair nearer to the root.
+// There are no hints without such a plane or pairs. The hints do not tell left from right.
 std::vector<Hint> hints_from_shape(const Skeleton& skeleton);
 
 }  // namespace spherechain::baker

@@ -16,17 +16,17 @@ struct Skeleton {
   std::vector<int> depth;  // steps from the root
   std::vector<Vec3> position;
   std::vector<double> weight;  // sum of the vertex weights
-  std::vector<Vec3> skin;      // centroid of what the node moves, by weight; its position where it moves nothing
-  // Moves skin, itself or through those under it. Where nothing has weights (motion capture) every node.
+  std::vector<Vec3> skin;      // weighted centroid of the vertices it moves; its position where it moves none
+  // Whether the node or one below it moves skin. True for all nodes where there are no weights (motion capture).
   std::vector<bool> alive;
-  std::vector<double> reach;  // longest way down to a leaf that is alive
-  std::vector<Vec3> tip;      // that leaf's position
-  double size = 0;            // largest distance from the mean of what is alive
+  std::vector<double> reach;  // length of the longest path down to a tip that is alive
+  std::vector<Vec3> tip;      // that tip's position
+  double size = 0;            // largest distance of a living node from their mean
 
   int count() const { return static_cast<int>(parent.size()); }
   int common_ancestor(int a, int b) const;  // -1 none
   std::vector<int> path(int from, int to) const;
-  // For every node what `of(node)` says, or what holds for its parent.
+  // For every node the value of `of`, or its parent's value where that is negative.
   template <typename Of>
   std::vector<int> inherited(const Of& of) const {
     std::vector<int> values(parent.size(), -1);

@@ -14,7 +14,7 @@ namespace spherechain::baker {
 namespace {
 
 // Fingers are 4 % of the tree's longest path (hand to foot), a head is 14 %.
-constexpr double kShortestBranch = 0.07;
+constexpr double kBranchLengthMin = 0.07;
 // Cosine from which a direction tells one way along an axis from the other.
 constexpr double kAlong = 0.3;
 
@@ -179,11 +179,11 @@ Vec3 lateral_axis(const Mesh& mesh, const Vec3& roughly) {
 }
 
 std::size_t count_ends(const CurveSkeleton& skeleton) {
-  return find_long_branches(skeleton, kShortestBranch).tip_count();
+  return find_long_branches(skeleton, kBranchLengthMin).tip_count();
 }
 
 bool looks_like_biped(const CurveSkeleton& skeleton) {
-  const BranchTree tree = find_long_branches(skeleton, kShortestBranch);
+  const BranchTree tree = find_long_branches(skeleton, kBranchLengthMin);
   const std::optional<Split> split = tree.tip_count() == 5 ? split_tree(tree, 2, 3) : std::nullopt;
   constexpr double kGoesOn = 0.5;
   return split && std::all_of(split->lower.begin(), split->lower.end(),
@@ -198,7 +198,7 @@ std::optional<Reason> check_facing(const std::optional<Vec3>& facing, const Vec3
 }
 
 Attempt<BodyPlan> find_biped_plan(const Mesh& mesh, const CurveSkeleton& skeleton, const std::optional<Vec3>& facing) {
-  const BranchTree tree = find_long_branches(skeleton, kShortestBranch);
+  const BranchTree tree = find_long_branches(skeleton, kBranchLengthMin);
   const std::size_t tips = tree.tip_count();
   if (tips == 4) return missing_branch(tree, facing);
   if (tips < 4) return no_biped("arms or legs are missing: the shape has " + std::to_string(tips) + " ends");

@@ -13,17 +13,17 @@
 
 namespace spherechain::baker {
 
-// The character's own axes, orthonormal and right-handed (left x up = forward). Found from its shape alone: they turn,
-// move and scale with the mesh, whatever the file's up axis.
+// The character's own axes, orthonormal and right-handed (left x up = forward). They are found from the body, not from
+// the file's axes: they turn, move and scale with the mesh.
 struct BodyFrame {
   Vec3 origin;  // in the plane of symmetry, at the height of the lowest vertex
   Vec3 left, up, forward;
-  double height;  // extent along `up`: the length every setting is a fraction of
+  double height;  // extent along `up`; lengths in settings are fractions of it
 };
 
 enum class Side : std::uint8_t { kNone = 0, kLeft = 1, kRight = 2 };
 
-// How a limb ends: narrowed to wrist, ankle or throat before hand, foot or head; or not at all, a tail.
+// How a limb ends. kHand: with a hand, foot or head behind its narrowest part. kTip: without one, as a tail does.
 enum class LimbEnd : std::uint8_t { kHand, kTip };
 
 // The long branches of a curve skeleton, each from the junction it leaves to its tip.
@@ -43,17 +43,17 @@ struct BodyPlan {
   std::vector<Limb> limbs;
 };
 
-// The axis of the plane of symmetry, near to `roughly`: a symmetric body has it as an exact principal axis; where the
-// pose hides that, it is `roughly` itself.
+// The normal of the plane of symmetry. That is the principal axis close to `roughly`, which is exact for a symmetric
+// body, or `roughly` itself where the pose is so uneven that there is none.
 Vec3 lateral_axis(const Mesh& mesh, const Vec3& roughly);
 
-// The frame with another up axis (its part across `left`); origin and height follow.
+// The frame with another up axis, made orthogonal to `left`. Origin and height follow.
 BodyFrame with_up(BodyFrame frame, const Vec3& up, const Mesh& mesh);
 
 // The regions of a biped, in order: R0 .. R4 of the paper.
 inline constexpr std::array<const char*, 5> kRegionNames{"left_arm", "right_arm", "left_leg", "right_leg", "torso"};
 
-// Ends of the long branches: a biped has five.
+// The number of ends of the long branches; a biped has five.
 std::size_t count_ends(const CurveSkeleton& skeleton);
 
 // Whether the long branches are a biped's: two go on from the lower end of the spine, three leave the upper one.

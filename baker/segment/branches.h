@@ -8,7 +8,7 @@
 
 namespace spherechain::baker {
 
-// The skeleton without its short branches (fingers, toes, ears, noise): a tree of long branches.
+// The long branches of a skeleton as a tree, without the short ones (fingers, toes, ears, noise).
 struct BranchTree {
   struct Branch {
     Index from, to;  // junction (or tip) at either end
@@ -16,7 +16,7 @@ struct BranchTree {
   };
   std::vector<Branch> branches;
   std::vector<std::vector<Index>>
-      at;  // node -> branches that end there; a tip has one, a junction three or more, else none
+      at;  // a node -> the branches that end there: one at a tip, three or more at a junction
 
   bool is_tip(Index node) const { return at[node].size() == 1; }
   std::size_t tip_count() const;

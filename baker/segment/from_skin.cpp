@@ -16,11 +16,11 @@ constexpr std::uint8_t kNoLimb = SkinRegions::kNoLimb;
 constexpr std::uint8_t kUnknown = 254;  // nothing moves it
 
 constexpr int kRays = 40;
-constexpr int kSteps = 200;        // along the limb
-constexpr double kWindow = 0.02;   // either side, for its direction
-constexpr double kOwnRays = 0.95;  // share of a ring's rays that meet the limb's own skin where it stands free
-constexpr double kShortest = 0.2;  // of the free part's length, of a limb before its hand or foot
-constexpr int kStartsBy = 120;     // of its steps: a limb that stands free nowhere before is cut at its joint
+constexpr int kSteps = 200;         // along the limb
+constexpr double kWindow = 0.02;    // either side, for its direction
+constexpr double kOwnRays = 0.95;   // share of a ring's rays that meet the limb's own skin where it stands free
+constexpr double kLengthMin = 0.2;  // of the free part's length, of a limb before its hand or foot
+constexpr int kStartsBy = 120;      // of its steps: a limb that stands free nowhere before is cut at its joint
 
 // Limb of each bone of the rig.
 std::vector<std::uint8_t> limb_of_bone(const SourceRig& rig, const Roles& roles) {
@@ -208,7 +208,7 @@ SkinRegions segment_from_skin(const Character& character, const Roles& roles) {
     // One that stands free from hand or foot on only is no more than that.
     const Polyline line = limb.line.part(start, limb.line.length());
     const double extremity = limb.extremity - start;
-    regions.limbs.back() = {line, extremity > kShortest * line.length() ? extremity : line.length()};
+    regions.limbs.back() = {line, extremity > kLengthMin * line.length() ? extremity : line.length()};
   }
   join_islands(mesh, neighbours, labels);
   if (wrapped) {

@@ -24,9 +24,9 @@ struct SkinRegions {
   std::vector<SkinLimb> limbs;                  // as in Roles::limbs; a limb that moves no skin has an empty line
 };
 
-// A triangle belongs to the limb whose joints move it most, from the first ring around the limb on that meets (almost)
-// nothing but the limb: armpit and crotch are the torso's. On each piece of the skin a region is connected.
-// The character has weights, and `roles` are those of its rig.
+// A triangle belongs to the limb whose joints move it most. A limb begins at the first ring of rays around it that
+// meets (almost) nothing else, so that armpit and crotch belong to the torso. On each piece of the skin a region is
+// connected. The character must have weights; `roles` are those of its rig.
 SkinRegions segment_from_skin(const Character& character, const Roles& roles);
 
 }  // namespace spherechain::baker

@@ -11,7 +11,7 @@ namespace spherechain::baker {
 
 using Neighbours = std::vector<std::array<Index, 3>>;  // as triangle_neighbours has them
 
-// Triangles of one label joined over shared edges: numbered by their lowest triangle.
+// Triangles of one label that are connected over edges. Islands are numbered in the order of their lowest triangles.
 struct Islands {
   std::vector<Index> of_triangle;
   std::vector<std::vector<Index>> triangles;  // of each island
@@ -19,7 +19,7 @@ struct Islands {
 };
 Islands find_islands(const Mesh& mesh, const Neighbours& neighbours, const std::vector<std::uint8_t>& labels);
 
-// How much of an island's border it shares with each label.
+// The length of the border that an island shares with each label.
 std::array<double, 256> border_lengths(const Mesh& mesh, const Neighbours& neighbours, const Islands& islands,
                                        const std::vector<std::uint8_t>& labels, Index island);
 

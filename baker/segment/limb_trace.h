@@ -10,14 +10,14 @@
 
 namespace spherechain::baker {
 
-// A limb's centre line by marching sections. The curve skeleton says where the limb's middle is and where its tip; all
-// between shoulder or hip and wrist or ankle comes from the sections alone, so that the skeleton's noise does not show.
+// A limb's centre line, by marching sections. The curve skeleton only gives the limb's middle and its tip. The line
+// from shoulder or hip to wrist or ankle comes from sections, so that it has none of the skeleton's noise.
 struct LimbTrace {
-  Polyline line;     // from the innermost section of the limb's own to the tip
+  Polyline line;     // from the innermost section that is all limb, to the tip
   Vec3 direction;    // along the line at its start
   double radius;     // the longest ray of the section there
-  double extremity;  // arc length of the narrowest section before hand or foot: wrist or ankle; where a tail's last
-                     // ball stands
+  double extremity;  // arc length of wrist or ankle, the narrowest section before hand or foot; of a tail: of the
+                     // centre of its last ball
 };
 
 // `branch` comes from the torso. The limb starts outside the torso's maximal ball at the junction, at the innermost

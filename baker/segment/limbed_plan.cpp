@@ -14,7 +14,7 @@ namespace spherechain::baker {
 namespace {
 
 // Of the tree's longest path: shorter branches are ears, horns, toes.
-constexpr double kShortestLimb = 0.1;
+constexpr double kLimbLengthMin = 0.1;
 // Of the mesh's diameter: how far a limb's mirrored tip may be from its mate's in an uneven pose, and a tail's from
 // itself; how much worse than the best a plane of symmetry may be.
 constexpr double kUneven = 0.2, kAsAlike = 0.01;
@@ -47,7 +47,7 @@ class Finder {
  public:
   Finder(const Mesh& mesh, const CurveSkeleton& skeleton, bool four_legs)
       : mesh_(mesh),
-        tree_(find_long_branches(skeleton, kShortestLimb)),
+        tree_(find_long_branches(skeleton, kLimbLengthMin)),
         points_(skeleton.points),
         four_legs_(four_legs) {
     for (Index node = 0; node < tree_.at.size(); ++node) {

@@ -7,13 +7,15 @@
 
 namespace spherechain::baker {
 
-// The plan of a body with any number of limbs, by its shape alone: the plane of symmetry first, then the long branches
-// as pairs across it and as curves in it. Two pairs are arms and legs where the lower one goes on from the trunk, else
-// forelegs and hind legs; more are left_leg_1, right_leg_1, ... from the front. A neck or a tail that is long beside
-// the trunk is a limb. A shape without branches is one tubular limb, "body", and has no spine.
+// The plan of a body with any number of limbs, by its shape alone. It finds the plane of symmetry first, then long
+// branches in pairs across that plane, and long curves in it:
+// - two pairs are arms and legs where the lower pair continues the trunk, else forelegs and hind legs,
+// - more pairs are left_leg_1, right_leg_1, ... from the front,
+// - a neck or a tail that is long compared with the trunk is a limb,
+// - a shape without branches is one tubular limb, "body", without a spine.
 //
-// `four_legs`: two pairs, and neither is arms. `facing`: forward, for one that stands upright, else the way from the
-// hind legs to the head. There is none where the branches do not pair, or leave no trunk.
+// `four_legs`: there are two pairs, and neither is arms. `facing`: forward where the body stands upright, else the
+// direction from the hind legs to the head. There is no result where branches do not pair or leave no trunk.
 Attempt<BodyPlan> find_limbed_plan(const Mesh& mesh, const CurveSkeleton& skeleton, bool four_legs,
                                    const std::optional<Vec3>& facing);
 

@@ -9,8 +9,8 @@ namespace spherechain::baker {
 
 using Colour = std::array<float, 3>;  // red, green, blue from 0 to 1, sRGB
 
-// Okabe and Ito's palette, which the colour-blind can tell apart, in the order of a biped's regions; more regions
-// take them in turn.
+// Okabe and Ito's palette, which colour-blind readers can tell apart, in the order of a biped's regions. Further
+// regions start again with the first colour.
 inline constexpr std::array<Colour, 5> kRegionColours{{
     {0.000f, 0.447f, 0.698f},  // blue: left arm
     {0.902f, 0.624f, 0.000f},  // orange: right arm

@@ -17,20 +17,20 @@ namespace spherechain::baker {
 struct Limb {
   std::string name;  // its region's
   Side side;         // of the torso; none: in the plane of symmetry (a tail)
-  double along;      // where it leaves the torso, from 0, the hip, to 1, the chest
+  double along;      // where it leaves the torso: 0 is the hip, 1 the chest
   Polyline line;     // centre line from the cut at shoulder or hip to the tip of hand or foot
-  double extremity;  // arc length of wrist or ankle: where hand or foot begin
+  double extremity;  // arc length of wrist or ankle, where hand or foot begins
 };
 
-// Which part of the body every triangle is. The limbs are regions 0 .. k - 1, then comes the torso, with neck and head:
-// a biped's are R0 .. R4 of the paper.
+// The region of every triangle. Limbs are regions 0 to k - 1; region k is the torso with neck and head. A biped's
+// regions are the paper's R0 to R4.
 struct Regions {
   BodyFrame frame;
   std::string provider;  // "shape" or "rig"
-  std::string facing;
+  std::string facing;    // how forward was decided, for people
   std::vector<Limb> limbs;
   bool has_torso = true;  // a snake has none
-  Vec3 hip, chest;        // in the plane of symmetry, between the legs' and between the arms' starts
+  Vec3 hip, chest;        // in the plane of symmetry: between the starts of the legs, and of the arms
   TorsoEnds torso;
   Polyline spine;                         // the skeleton's curve from hip to chest junction and on to the head's tip
   double spine_chest, spine_neck;         // arc lengths on `spine` of the chest junction and the neck's base

@@ -8,11 +8,12 @@
 
 namespace spherechain::baker {
 
-// Memory whose addresses depend only on the order of the calls: one block, handed out from its start, freed pieces of a
-// size reused last in, first out. ArenaAllocator draws on the one that lives: at most one a thread.
+// Memory whose addresses depend only on the order of the calls: one block that is handed out from its start. Freed
+// pieces are reused by size, last in, first out. ArenaAllocator uses the arena that exists; there may be one in each
+// thread.
 class SkeletonArena {
  public:
-  // A human of 26,756 triangles took 550 bytes a triangle; pages never touched cost nothing.
+  // A human of 26,756 triangles took 550 bytes a triangle. Pages that are never touched cost nothing.
   explicit SkeletonArena(std::size_t triangles)
       : capacity_((std::size_t{1} << 24) + 16384 * triangles), block_(new std::byte[capacity_]) {
     current_ = this;
@@ -25,7 +26,7 @@ class SkeletonArena {
 
   void* allocate(std::size_t size) {
     size = round_up(size);
-    if (size < kLargest && free_[size / kGrain] != nullptr) {
+    if (size < kSizeMax && free_[size / kGrain] != nullptr) {
       Free* piece = free_[size / kGrain];
       free_[size / kGrain] = piece->next;
       return piece;
@@ -37,7 +38,7 @@ class SkeletonArena {
 
   void deallocate(void* p, std::size_t size) {
     size = round_up(size);
-    if (size >= kLargest) return;
+    if (size >= kSizeMax) return;
     free_[size / kGrain] = new (p) Free{free_[size / kGrain]};
   }
 
@@ -45,13 +46,13 @@ class SkeletonArena {
   struct Free {
     Free* next;
   };
-  static constexpr std::size_t kGrain = 16, kLargest = 4096;
+  static constexpr std::size_t kGrain = 16, kSizeMax = 4096;
   static std::size_t round_up(std::size_t size) { return (size + kGrain - 1) / kGrain * kGrain; }
 
   static inline thread_local SkeletonArena* current_ = nullptr;
   std::size_t capacity_, used_ = 0;
   std::unique_ptr<std::byte[]> block_;
-  std::array<Free*, kLargest / kGrain> free_{};
+  std::array<Free*, kSizeMax / kGrain> free_{};
 };
 
 template <typename T>

@@ -106,12 +106,12 @@ void add_influences(std::vector<Influence> influences, Vertices& out) {
     out.counts.push_back(0);
     return;
   }
-  std::ranges::rotate(influences.begin(), std::ranges::max_element(influences, {}, &Influence::weight),
-                      std::ranges::max_element(influences, {}, &Influence::weight) + 1);
+  std::rotate(influences.begin(), std::ranges::max_element(influences, {}, &Influence::weight),
+              std::ranges::max_element(influences, {}, &Influence::weight) + 1);
   float others = 0;
   for (std::size_t k = 1; k < influences.size(); ++k) others += influences[k].weight;
-  const bool one_is_left_out = std::bit_cast<std::uint32_t>(1 - others) ==
-                               std::bit_cast<std::uint32_t>(influences.front().weight);
+  const bool one_is_left_out =
+      std::bit_cast<std::uint32_t>(1 - others) == std::bit_cast<std::uint32_t>(influences.front().weight);
   out.counts.push_back(static_cast<std::uint8_t>(influences.size() | (one_is_left_out ? kOneIsLeftOut : 0)));
   for (std::size_t k = 0; k < influences.size(); ++k) {
     out.bones.put(influences[k].bone);
@@ -187,8 +187,9 @@ struct PackedHulls {
 PackedHulls hulls_of(const Clusters& in) {
   PackedHulls out;
   for (const Hull& hull : in.hulls) {
-    out.hulls.emplace_back(static_cast<std::uint16_t>(hull.bones.size()), static_cast<std::uint16_t>(hull.points.size()),
-                           to_schema(hull.center), static_cast<float>(hull.radius), static_cast<float>(hull.slack));
+    out.hulls.emplace_back(static_cast<std::uint16_t>(hull.bones.size()),
+                           static_cast<std::uint16_t>(hull.points.size()), to_schema(hull.center),
+                           static_cast<float>(hull.radius), static_cast<float>(hull.slack));
     for (const HullBone& bone : hull.bones) {
       out.bones.emplace_back(bone.bone, bone.off[0], bone.off[1], bone.off[2], bone.off[3]);
     }
@@ -238,12 +239,11 @@ flatbuffers::Offset<schema::Skin> create_skin(flatbuffers::FlatBufferBuilder& bu
   const auto hulls_at = builder.CreateVectorOfStructs(hulls.hulls);
   const auto hull_bones_at = builder.CreateVectorOfStructs(hulls.bones);
   const auto hull_points_at = bytes(hulls.points);
-  return schema::CreateSkin(builder, static_cast<std::uint32_t>(clusters.vertices.size()), triangles_at, corners_at,
-                            parts_at, part_ends_at, clusters_at, cluster_vertices_at, cluster_bones_at, sources_at,
-                            welds_at, positions_at, counts_at, bones_at, weights_at, morph_counts_at, morphs_at,
-                            boxes_at, term_counts_at, term_bones_at, terms_at, bounds_morph_counts_at,
-                            bounds_morph_targets_at, bounds_morphs_at, contacts_at, hulls_at, hull_bones_at,
-                            hull_points_at);
+  return schema::CreateSkin(
+      builder, static_cast<std::uint32_t>(clusters.vertices.size()), triangles_at, corners_at, parts_at, part_ends_at,
+      clusters_at, cluster_vertices_at, cluster_bones_at, sources_at, welds_at, positions_at, counts_at, bones_at,
+      weights_at, morph_counts_at, morphs_at, boxes_at, term_counts_at, term_bones_at, terms_at, bounds_morph_counts_at,
+      bounds_morph_targets_at, bounds_morphs_at, contacts_at, hulls_at, hull_bones_at, hull_points_at);
 }
 
 }  // namespace spherechain::baker

@@ -101,9 +101,9 @@ Columns cover(const Study& study, const baker::SampledBody& samples, const Bake&
   for (const bool detect : {false, true}) {
     const std::vector<Ball> balls = balls_at(bake, detect);
     const std::string suffix = detect ? "_detect" : "_fit";
-    out.push_back({"uncovered_body" + suffix, samples.judge(balls, [](Index) { return true; }).uncovered});
+    out.push_back({"uncovered_body" + suffix, samples.measure(balls, [](Index) { return true; }).uncovered});
     out.push_back(
-        {"uncovered_core" + suffix, samples.judge(balls, [&](Index t) { return study.core()[t]; }).uncovered});
+        {"uncovered_core" + suffix, samples.measure(balls, [&](Index t) { return study.core()[t]; }).uncovered});
   }
   return out;
 }
@@ -256,7 +256,7 @@ Table measure_quality(const Study& study, const baker::SampledBody& samples, con
       {"torso", [&](Index t) { return study.core()[t] && regions.of_triangle[t] == baker::kTorso; }}};
   const auto add = [&](const std::string& set, const std::string& radius, const std::vector<Ball>& balls) {
     for (const auto& [part, inside] : parts) {
-      const baker::SphereQuality q = samples.judge(balls, inside);
+      const baker::SphereQuality q = samples.measure(balls, inside);
       out.add({set, radius, part, balls.size(), q.coverage, q.outside, q.volume_ratio, study.mm() * q.protrusion_p95,
                study.mm() * q.gap_mean, study.mm() * q.gap_p95, q.uncovered});
     }

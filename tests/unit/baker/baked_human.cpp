@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "baked_human.h"
 
-#include <doctest/doctest.h>
-
 #include "human.h"
 #include "motion/poses.h"
 
-using spherechain::Asset;
-using spherechain::Status;
 using namespace spherechain::baker;
 
 namespace {
@@ -36,11 +32,8 @@ const Bake& paper_baked_human() {
   return result;
 }
 
-Asset open_asset_of(const Bake& bake) {
-  Asset asset;
-  char message[256] = "";
-  REQUIRE_MESSAGE(asset.open(bake.asset.data(), bake.asset.size(), message, sizeof(message)) == Status::kOk, message);
-  return asset;
+OpenAsset open_asset_of(const Bake& bake) {
+  return OpenAsset({reinterpret_cast<const char*>(bake.asset.data()), bake.asset.size()}, "baked");
 }
 
 const std::vector<AnimationFrame>& animation_frames() {

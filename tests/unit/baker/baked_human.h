@@ -6,14 +6,14 @@
 
 #include "pipeline/pipeline.h"
 #include "play/play.h"
-#include "spherechain/asset.h"
+#include "play/asset_file.h"
 
 // The MakeHuman body baked once a run with each profile.
-const spherechain::baker::Bake& baked_human();        // balanced: calibrated refit, extremities
+const spherechain::baker::Bake& baked_human();        // balanced: refit by moments, extremities
 const spherechain::baker::Bake& paper_baked_human();  // paper: the paper's refit
 
 // Its asset, opened.
-spherechain::Asset open_asset_of(const spherechain::baker::Bake& bake);
+spherechain::baker::OpenAsset open_asset_of(const spherechain::baker::Bake& bake);
 
 // The deformed source vertices of the demo's two animations, 40 frames each, x y z after another.
 struct AnimationFrame {

@@ -74,7 +74,7 @@ TEST_CASE(
     }
   }
   for (const int count : {4, 16}) {
-    const std::vector<BoundSphere> spheres = bound(RefitRule::kCalibrated, count);
+    const std::vector<BoundSphere> spheres = bound(RefitRule::kMoments, count);
     std::size_t as_asked = 0;
     for (std::size_t i = 0; i < spheres.size(); ++i) {
       Vec3 center = Vec3::Zero();
@@ -102,12 +102,12 @@ TEST_CASE("four pivots in one plane are rejected as ill-posed, more are taken") 
   std::vector<Index> all(mesh.triangles.size());
   for (Index t = 0; t < all.size(); ++t) all[t] = t;
   const FittedSphere above{{{0, 0, 0.3}, 1}, 0, -1, Side::kNone, Vec3::UnitZ(), false};
-  CHECK(choose_pivots(mesh, all, above, Vec3::UnitX(), RefitRule::kCalibrated, 8).empty());
+  CHECK(choose_pivots(mesh, all, above, Vec3::UnitX(), RefitRule::kMoments, 8).empty());
   for (int i = 0; i < 16; ++i) {
     add({std::cos(0.4 * i), std::sin(0.4 * i), 0.7});
     all.push_back(static_cast<Index>(all.size()));
   }
-  const auto pivots = choose_pivots(mesh, all, above, Vec3::UnitX(), RefitRule::kCalibrated, 8);
+  const auto pivots = choose_pivots(mesh, all, above, Vec3::UnitX(), RefitRule::kMoments, 8);
   REQUIRE(pivots.size() >= 8);
   double magnitude = 0;
   for (const BoundPivot& pivot : pivots) magnitude += std::abs(pivot.weight);
@@ -235,7 +235,7 @@ TEST_CASE("every pair that is not ignored is reported only nearer than nine tent
   const Bake& bake = baked_human();
   const std::vector<BoundSphere>& spheres = bake.binding.spheres;
   std::map<std::pair<std::uint32_t, std::uint32_t>, double> reach;
-  for (const BoundPair& near : bake.binding.near_detect) reach[{near.a, near.b}] = near.reach;
+  for (const BoundPair& near : bake.binding.rest_detect) reach[{near.a, near.b}] = near.rest_scale;
   std::size_t at_rest = 0;
   for (std::uint32_t a = 0; a < spheres.size(); ++a) {
     for (std::uint32_t b = a + 1; b < spheres.size(); ++b) {
@@ -268,7 +268,7 @@ TEST_CASE("a sphere in a spike beyond all triangles is carried from near its pla
     triangles.push_back(static_cast<Index>(i));
   }
   const FittedSphere spike{{Vec3(0, 0, 1.6), 0.2}, 0, -1, Side::kNone, Vec3::UnitZ(), true};
-  REQUIRE(choose_pivots(mesh, triangles, spike, Vec3::UnitX(), RefitRule::kCalibrated, 8).empty());
+  REQUIRE(choose_pivots(mesh, triangles, spike, Vec3::UnitX(), RefitRule::kMoments, 8).empty());
   const std::vector<BoundPivot> pivots = choose_nearest_pivots(mesh, triangles, spike, Vec3::UnitX(), 8);
   REQUIRE(pivots.size() >= 4);
   double sum = 0, magnitudes = 0;

@@ -15,7 +15,7 @@
 
 using namespace spherechain::baker;
 using spherechain::Pair;
-using spherechain::TrianglePair;
+using spherechain::Pair;
 
 namespace {
 
@@ -118,7 +118,7 @@ TEST_CASE("the spheres' true pairs keep their number when they are sorted by cap
   const std::vector<Index>& first = human.ragdoll.surface().of_sphere[0];
   const std::vector<Index>& second = human.ragdoll.surface().of_sphere[1];
   const auto pair_of = [&](Index a, Index b) {
-    return TrianglePair{std::min(human.surface.source_triangle[a], human.surface.source_triangle[b]),
+    return Pair{std::min(human.surface.source_triangle[a], human.surface.source_triangle[b]),
                         std::max(human.surface.source_triangle[a], human.surface.source_triangle[b])};
   };
   FrameTruth truth;

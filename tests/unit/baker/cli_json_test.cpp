@@ -191,13 +191,13 @@ TEST_CASE("play --json has the contract's fields; at rest nothing touches, hands
 TEST_CASE("play tells which body parts touch, in which frames, and how the spheres do") {
   const TemporaryFolder folder;
   const fs::path out = folder.path / "play.json";
-  const Run play = run(fmt::format("play {} --source {} --json {} --poses {} --frames 9", baked_files().asset.string(),
-                                   kHumanFile, out.string(), pose("hands_on_hips.json")));
+  const Run play = run(fmt::format("play {} --source {} --json {} --poses {} --frames 20", baked_files().asset.string(),
+                                   kHumanFile, out.string(), pose("animation_arms.json")));
   REQUIRE(play.code == 0);
   const json found = json::parse(contents(out)), clip = found["clips"].at(0);
   CHECK(found["clips"].size() == 1);
   CHECK(clip["name"] == "");
-  CHECK(clip["frame_count"] == 9);
+  CHECK(clip["frame_count"] == 20);
   CHECK(clip["fps"] == 30);
   REQUIRE(clip["contacts"].size() > 1);
   std::set<int> with_contact;
@@ -223,7 +223,7 @@ TEST_CASE("play tells which body parts touch, in which frames, and how the spher
   }
   CHECK(clip["contact_frames"] == with_contact.size());
   const std::string head =
-      fmt::format("motion hands_on_hips.json: 9 frames at 30 fps; skin contacts in {} frames\n", with_contact.size());
+      fmt::format("motion animation_arms.json: 20 frames at 30 fps; skin contacts in {} frames\n", with_contact.size());
   CHECK_MESSAGE(play.out.find(head) == 0, play.out);
   CHECK(play.out.find("hand ") != std::string::npos);
   CHECK(play.out.find("most triangle pairs ") != std::string::npos);

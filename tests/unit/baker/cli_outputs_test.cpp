@@ -203,14 +203,14 @@ TEST_CASE("what goes to /dev/stdout goes to where that leads, and takes the name
   const tool::Run to_file = run(play + "/proc/self/fd/1");  // tool::run sends the output to a file
   CHECK_MESSAGE(to_file.code == 0, to_file.error);
   CHECK(to_file.out.rfind("{\n \"backend\": ", 0) == 0);
-  CHECK(to_file.out.find("\n}\n1 frames, radius detect") != std::string::npos);
+  CHECK(to_file.out.find("\n}\nrest pose: 1 frame") != std::string::npos);
   const tool::Run to_pipe = run(play + "/proc/self/fd/1 | cat");
-  CHECK(to_pipe.out.find("\n}\n1 frames, radius detect") != std::string::npos);
+  CHECK(to_pipe.out.find("\n}\nrest pose: 1 frame") != std::string::npos);
   const TemporaryFolder folder;
   fs::create_symlink("/proc/self/fd/1", folder.path / "link");
   const tool::Run by_link = run(fmt::format("{}{}/link", play, folder.path.string()));
   CHECK(by_link.out.rfind("{\n \"backend\": ", 0) == 0);
-  CHECK(by_link.out.find("\n}\n1 frames, radius detect") != std::string::npos);
+  CHECK(by_link.out.find("\n}\nrest pose: 1 frame") != std::string::npos);
   const std::string third = (folder.path / "third").string();
   CHECK(run(fmt::format("{}/dev/fd/3 3>{}", play, third)).code == 0);
   CHECK(contents(third).rfind("{\n \"backend\": ", 0) == 0);

@@ -289,14 +289,6 @@ TEST_CASE("an output that is no asset is not overwritten without --force, nor is
   CHECK(contents(input).rfind("v 0 0 0", 0) == 0);
 }
 
-TEST_CASE("skin contacts are asked of an asset that has clusters") {
-  const std::string golden = SPHERECHAIN_SAMPLES "/../tests/golden/";  // this asset is older than clusters
-  for (const char* command : {"play", "validate"}) {
-    check_error(run(fmt::format("{} {}doll.sphc --source {}doll.obj --frames 1 --contacts", command, golden, golden)),
-                3, {"doll.sphc", "has no clusters", "bake it again"});
-  }
-}
-
 TEST_CASE("an asset is refused for another mesh than its source") {
   const TemporaryFolder folder;
   const auto other =

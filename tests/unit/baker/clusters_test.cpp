@@ -24,7 +24,6 @@
 #include "truth/intersections.h"
 
 using namespace spherechain::baker;
-using spherechain::Status;
 using spherechain::test::Covered;
 using spherechain::test::PoseKind;
 using Matrices = std::vector<spherechain::test::Matrix>;
@@ -59,58 +58,34 @@ std::vector<Vec3> skinned(const Bake& bake, const Matrices& matrices, const std:
 }
 
 struct Checked {
-  std::size_t poses = 0, balls = 0, outside = 0;
-  double ratio = 0;     // sum over the balls of radius / distance of the farthest vertex
-  double skinning = 0;  // the largest distance of SkinJob's vertex from the double precision one, of the height
+  std::size_t poses = 0;
+  double skinning = 0;  // the largest distance of the runtime's vertex from the double precision one, of the height
 };
 
-void check_pose(const Bake& bake, const spherechain::Asset& asset, const Matrices& matrices,
+void check_pose(const Bake& bake, const OpenAsset& asset, const Matrices& matrices,
                 const std::vector<float>& morph_weights, Checked& out) {
-  const spherechain::BoneMatrices view{matrices[0].data(), matrices.size()};
-  const Covered covered = spherechain::test::cover(asset, view, morph_weights);
-  const auto by_job = spherechain::test::skin(asset, view, morph_weights);
-  REQUIRE(covered.status == Status::kOk);
-  REQUIRE(by_job.status == Status::kOk);
+  spherechain::Pose pose;
+  pose.bones = matrices[0].data();
+  pose.bone_count = matrices.size();
+  pose.bone_layout = SC_ROWS_3X4;
+  pose.morph_weights = morph_weights.empty() ? nullptr : morph_weights.data();
+  pose.morph_weight_count = morph_weights.size();
+  const std::vector<float> positions = spherechain::test::skin(asset, pose);
   const std::vector<Vec3> mesh = skinned(bake, matrices, morph_weights);
   ++out.poses;
-  for (std::size_t l = 0; l < asset.leaf_count(); ++l) {
-    const spherechain::Sphere& ball = covered.leaves[l];
-    double farthest = 0;
-    // Of the cluster's triangles as the source has them.
-    for (const Index t : bake.clusters.clusters[l].triangles) {
-      for (const Index v : bake.character.source_triangles[bake.character.skin_source_triangle[t]]) {
-        farthest = std::max(farthest, (mesh[v] - Vec3(ball.x, ball.y, ball.z)).norm());
-      }
-    }
-    ++out.balls;
-    out.outside += farthest > ball.radius ? 1 : 0;
-    out.ratio += ball.radius / farthest;
-  }
   for (const SurfaceVertex& vertex : bake.clusters.vertices) {
-    const float* p = &by_job.positions[std::size_t{3} * vertex.source];
+    const float* p = &positions[std::size_t{3} * vertex.source];
     out.skinning = std::max(out.skinning, (mesh[vertex.source] - Vec3(p[0], p[1], p[2])).norm());
   }
 }
 
-Checked check_random_poses(const Bake& bake, int poses, PoseKind kind, unsigned seed) {
-  const spherechain::Asset asset = open_asset_of(bake);
-  std::mt19937 random(seed);
-  const auto height = static_cast<float>(bake.regions.frame.height);
-  Checked out;
-  for (int i = 0; i < poses; ++i) {
-    const Matrices matrices = spherechain::test::random_pose(asset.bone_count(), kind, height, random);
-    check_pose(bake, asset, matrices, spherechain::test::random_morph_weights(asset.morph_count(), random), out);
-  }
-  return out;
-}
-
 // In the poses of a motion, as a game would pass them.
 Checked check_frames(const Bake& bake, const std::vector<Deformation>& frames) {
-  const spherechain::Asset asset = open_asset_of(bake);
+  const spherechain::baker::OpenAsset asset = open_asset_of(bake);
   Checked out;
   for (const Deformation& frame : frames) {
     Matrices matrices;
-    for (std::size_t b = 0; b < asset.bone_count(); ++b) {
+    for (std::size_t b = 0; b < asset->bone_count(); ++b) {
       const Affine bone = b < frame.bones.size() ? frame.bones[b] : Affine::Identity();
       spherechain::test::Matrix& matrix = matrices.emplace_back();
       Eigen::Map<Eigen::Matrix<float, 3, 4, Eigen::RowMajor>>(matrix.data()) = bone.matrix().cast<float>();
@@ -121,10 +96,9 @@ Checked check_frames(const Bake& bake, const std::vector<Deformation>& frames) {
 }
 
 void report(const std::string& what, const Checked& checked, double height) {
-  MESSAGE(fmt::format("{}: {} poses, {} balls, {:.3f} x the tight radius; skinning off by {:.1e} of the height", what,
-                      checked.poses, checked.balls, checked.ratio / static_cast<double>(checked.balls),
+  MESSAGE(fmt::format("{}: {} poses; skinning off by {:.1e} of the height", what, checked.poses,
                       checked.skinning / height));
-  CHECK(checked.outside == 0);
+  CHECK(checked.skinning < 1e-5 * height);
 }
 
 }  // namespace
@@ -204,25 +178,22 @@ TEST_CASE("weights and mid weights add up to 1 within two roundings: the balls' 
   }
 }
 
-TEST_CASE("at rest a cluster's box and ball contain its vertices to the last bit, and they reach the box's sides") {
+TEST_CASE("at rest a cluster's box contains its vertices to the last bit, and they reach the box's sides") {
   for (const Bake* bake : {&baked_human(), &morphing_person()}) {
-    const spherechain::Asset asset = open_asset_of(*bake);
+    const spherechain::baker::OpenAsset asset = open_asset_of(*bake);
     const spherechain::Surface& surface = asset.surface();
-    for (std::size_t l = 0; l < surface.leaves.size; ++l) {
-      const spherechain::Leaf& leaf = surface.leaves[l];
-      const spherechain::BoxLanes& boxes = surface.leaf_boxes[l / spherechain::kLeafLanes];
-      const std::size_t lane = l % spherechain::kLeafLanes;
+    for (std::size_t l = 0; l < surface.clusters.size; ++l) {
+      const spherechain::Cluster& cluster = surface.clusters[l];
+      const spherechain::BoxLanes& boxes = surface.boxes[l / spherechain::kClusterLanes];
+      const std::size_t lane = l % spherechain::kClusterLanes;
       const Vec3 center(boxes.x[lane], boxes.y[lane], boxes.z[lane]);
       const Vec3 half(boxes.half_x[lane], boxes.half_y[lane], boxes.half_z[lane]);
-      const spherechain::BallLanes& balls = surface.leaf_balls[l / spherechain::kLeafLanes];
-      const Vec3 ball_center(balls.x[lane], balls.y[lane], balls.z[lane]);
       Vec3 reach = Vec3::Zero();
-      double farthest = 0, farthest_of_ball = 0;
-      for (std::size_t slot = 0; slot < leaf.vertex_count; ++slot) {
-        const float* p = surface.slot_positions.data + 3 * leaf.first_slot + slot;
-        const std::size_t slots = slot_count(leaf);
+      double farthest = 0;
+      for (std::size_t slot = 0; slot < cluster.vertex_count; ++slot) {
+        const float* p = surface.slot_positions.data + 3 * cluster.first_slot + slot;
+        const std::size_t slots = slot_count(cluster);
         const Vec3 vertex(p[0], p[slots], p[2 * slots]), from_center = vertex - center;
-        farthest_of_ball = std::max(farthest_of_ball, (vertex - ball_center).norm());
         reach = reach.cwiseMax(from_center.cwiseAbs());
         farthest = std::max(farthest, from_center.norm());
       }
@@ -230,7 +201,6 @@ TEST_CASE("at rest a cluster's box and ball contain its vertices to the last bit
       REQUIRE((half.array() <= reach.array() * (1 + 1e-6)).all());
       REQUIRE(farthest <= boxes.radius[lane]);
       REQUIRE(boxes.radius[lane] <= farthest * (1 + 1e-6));
-      REQUIRE(farthest_of_ball <= balls.radius[lane]);
     }
   }
 }
@@ -239,36 +209,36 @@ TEST_CASE("without morphs a sphere's vertices are near its hull, as near as the 
   std::mt19937 random(5);
   std::normal_distribution<double> any;
   for (const Bake* bake : {&baked_human(), &morphing_person()}) {
-    const spherechain::Asset asset = open_asset_of(*bake);
+    const spherechain::baker::OpenAsset asset = open_asset_of(*bake);
     const spherechain::Surface& surface = asset.surface();
-    REQUIRE(surface.outlines.size == asset.spheres().size);
+    REQUIRE(surface.hulls.size == asset->spheres().size);
     for (int pose = 0; pose < 24; ++pose) {
       const Matrices matrices = spherechain::test::random_pose(
-          asset.bone_count(), spherechain::test::kPoseKinds[static_cast<std::size_t>(pose) % 6], 1, random);
+          asset->bone_count(), spherechain::test::kPoseKinds[static_cast<std::size_t>(pose) % 6], 1, random);
       const std::vector<Vec3> vertices = skinned(*bake, matrices, {});
       std::vector<Eigen::Matrix<double, 3, 4>> bones;
       for (const auto& m : matrices) {
         bones.emplace_back(Eigen::Map<const Eigen::Matrix<float, 3, 4, Eigen::RowMajor>>(m.data()).cast<double>());
       }
-      std::vector<std::vector<Vec3>> of_sphere(surface.outlines.size);
-      for (const spherechain::Leaf& leaf : surface.leaves) {
-        for (std::uint32_t i = 0; i < leaf.vertex_count; ++i) {
-          of_sphere[leaf.sphere].push_back(
-              vertices[surface.source_vertices[surface.leaf_vertices[leaf.first_vertex + i]]]);
+      std::vector<std::vector<Vec3>> of_sphere(surface.hulls.size);
+      for (const spherechain::Cluster& cluster : surface.clusters) {
+        for (std::uint32_t i = 0; i < cluster.vertex_count; ++i) {
+          of_sphere[cluster.sphere].push_back(
+              vertices[surface.source_vertices[surface.cluster_vertices[cluster.first_vertex + i]]]);
         }
       }
-      for (std::size_t s = 0; s < surface.outlines.size; ++s) {
-        const spherechain::Outline& outline = surface.outlines[s];
-        const Eigen::Vector4d center(outline.center.x, outline.center.y, outline.center.z, 1);
-        std::vector<Vec3> points(outline.point_count, Vec3::Zero());
+      for (std::size_t s = 0; s < surface.hulls.size; ++s) {
+        const spherechain::Hull& hull = surface.hulls[s];
+        const Eigen::Vector4d center(hull.center.x, hull.center.y, hull.center.z, 1);
+        std::vector<Vec3> points(hull.point_count, Vec3::Zero());
         Vec3 strays = Vec3::Zero();
-        const Eigen::Matrix<double, 3, 4>& first = bones[surface.outline_bones[outline.first_bone].bone];
-        for (std::size_t b = 0; b < outline.bone_count; ++b) {
-          const spherechain::OutlineBone& bone = surface.outline_bones[outline.first_bone + b];
-          for (std::size_t k = 0; k < outline.point_count; ++k) {
-            const float* rest = surface.outline_points.data + std::size_t{3} * outline.first_point + k;
-            const Eigen::Vector4d point(rest[0], rest[outline.point_count], rest[2 * outline.point_count], 1);
-            points[k] += surface.outline_weights[outline.first_weight + b * outline.point_count + k] *
+        const Eigen::Matrix<double, 3, 4>& first = bones[surface.hull_bones[hull.first_bone].bone];
+        for (std::size_t b = 0; b < hull.bone_count; ++b) {
+          const spherechain::HullBone& bone = surface.hull_bones[hull.first_bone + b];
+          for (std::size_t k = 0; k < hull.point_count; ++k) {
+            const float* rest = surface.hull_points.data + std::size_t{3} * hull.first_point + k;
+            const Eigen::Vector4d point(rest[0], rest[hull.point_count], rest[2 * hull.point_count], 1);
+            points[k] += surface.hull_weights[hull.first_weight + b * hull.point_count + k] *
                          (bones[bone.bone] * point);
           }
           const Eigen::Matrix<double, 3, 4> apart = bones[bone.bone] - first;
@@ -277,7 +247,7 @@ TEST_CASE("without morphs a sphere's vertices are near its hull, as near as the 
         }
         const double stretch = first.leftCols<3>().jacobiSvd().singularValues()[0];
         // Weights are off 1 by 2^-24 at most, twice, and coordinates are below 16.
-        const double margin = strays.norm() + stretch * static_cast<double>(outline.slack) + 4e-6;
+        const double margin = strays.norm() + stretch * static_cast<double>(hull.slack) + 4e-6;
         for (int i = 0; i < 8; ++i) {
           const Vec3 direction = Vec3(any(random), any(random), any(random)).normalized();
           const auto along = [&](const Vec3& p) { return direction.dot(p); };
@@ -292,25 +262,25 @@ TEST_CASE("without morphs a sphere's vertices are near its hull, as near as the 
 }
 
 TEST_CASE("a hull is as near as it is meant to be, or has as many points as there may be") {
-  const spherechain::Asset asset = open_asset_of(baked_human());
-  const auto& outlines = asset.surface().outlines;
+  const spherechain::baker::OpenAsset asset = open_asset_of(baked_human());
+  const auto& hulls = asset.surface().hulls;
   double radii = 0;
-  for (const spherechain::Outline& outline : outlines) radii += outline.radius;
-  for (const spherechain::Outline& outline : outlines) {
-    CHECK(outline.point_count <= 96);
-    if (outline.point_count < 96) CHECK(outline.slack <= 0.0301 * radii / static_cast<double>(outlines.size));
+  for (const spherechain::Hull& hull : hulls) radii += hull.radius;
+  for (const spherechain::Hull& hull : hulls) {
+    CHECK(hull.point_count <= 96);
+    if (hull.point_count < 96) CHECK(hull.slack <= 0.0301 * radii / static_cast<double>(hulls.size));
   }
 }
 
 TEST_CASE("the corners of the asset's triangles are the source's") {
   for (const Bake* bake : {&baked_human(), &morphing_person()}) {
-    const spherechain::Asset asset = open_asset_of(*bake);
+    const spherechain::baker::OpenAsset asset = open_asset_of(*bake);
     const spherechain::Surface& surface = asset.surface();
-    for (const spherechain::Leaf& leaf : surface.leaves) {
-      for (std::uint32_t t = leaf.first_triangle; t < leaf.first_triangle + leaf.triangle_count; ++t) {
-        const Triangle& corners = bake->character.source_triangles[asset.triangles()[t]];
+    for (const spherechain::Cluster& cluster : surface.clusters) {
+      for (std::uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangle_count; ++t) {
+        const Triangle& corners = bake->character.source_triangles[surface.triangles[t]];
         for (std::size_t k = 0; k < 3; ++k) {
-          const std::uint32_t vertex = surface.leaf_vertices[leaf.first_vertex + surface.corners[3 * t + k]];
+          const std::uint32_t vertex = surface.cluster_vertices[cluster.first_vertex + surface.corners[3 * t + k]];
           REQUIRE(bake->clusters.vertex_of_source[corners[k]] == vertex);
           REQUIRE(bake->character.source_positions[surface.source_vertices[vertex]] ==
                   bake->character.source_positions[corners[k]]);
@@ -323,9 +293,9 @@ TEST_CASE("the corners of the asset's triangles are the source's") {
 TEST_CASE("contacts at rest are CGAL's intersections of the rest pose between triangles without a common corner") {
   std::size_t all = 0;
   for (const Bake* bake : {&baked_human(), &baked_person()}) {
-    const spherechain::Asset asset = open_asset_of(*bake);
+    const spherechain::baker::OpenAsset asset = open_asset_of(*bake);
     const TruthSurface surface = surface_of(asset, bake->character);
-    std::vector<spherechain::TrianglePair> expected;
+    std::vector<spherechain::Pair> expected;
     for (const auto& pair : find_intersections(surface, pack(bake->character.source_positions)).pairs) {
       bool share_corner = false;
       for (const std::uint32_t a : bake->character.source_triangles[pair.a]) {
@@ -336,7 +306,7 @@ TEST_CASE("contacts at rest are CGAL's intersections of the rest pose between tr
       if (!share_corner) expected.push_back(pair);
     }
     const auto& found = asset.surface().rest_contacts;
-    CHECK(std::vector<spherechain::TrianglePair>(found.begin(), found.end()) == expected);
+    CHECK(std::vector<spherechain::Pair>(found.begin(), found.end()) == expected);
     all += expected.size();
   }
   CHECK(all > 0);
@@ -347,7 +317,7 @@ TEST_CASE("clusters.triangles is how many triangles a cluster has at most") {
   CHECK(small.clusters.clusters.size() > 2 * baked_person().clusters.clusters.size());
   for (const Cluster& cluster : small.clusters.clusters) CHECK(cluster.triangles.size() <= 16);
   CHECK(to_json(small.settings).find(R"("triangles":16)") != std::string::npos);
-  CHECK(open_asset_of(small).leaf_count() == small.clusters.clusters.size());
+  CHECK(open_asset_of(small).surface().clusters.size == small.clusters.clusters.size());
 }
 
 TEST_CASE("clusters.branching is how many children a node of too many triangles is divided into") {
@@ -370,26 +340,13 @@ TEST_CASE("clusters.branching is how many children a node of too many triangles 
       counts.insert(of_sphere.size());
     }
     CHECK(counts.size() > 1);
-    CHECK(open_asset_of(bake).leaf_count() == bake.clusters.clusters.size());
+    CHECK(open_asset_of(bake).surface().clusters.size == bake.clusters.clusters.size());
   }
   CHECK_THROWS_WITH_AS(make_settings("balanced", R"({"clusters": {"branching": 3}})", "test"),
                        "test: clusters: setting 'branching' is not 0, 2, 4 or 8", Error);
 }
 
-TEST_CASE("in any pose, of turned, stretched, sheared and mirrored bones, every vertex is in its cluster's ball") {
-  const char* names[] = {"gentle", "rigid", "scaled", "sheared", "mirrored", "any"};
-  for (const PoseKind kind : spherechain::test::kPoseKinds) {
-    const auto seed = static_cast<unsigned>(kind);
-    for (const auto& [name, bake, poses] :
-         {std::tuple{"human", &baked_human(), 40}, std::tuple{"person", &baked_person(), 150},
-          std::tuple{"morphing person", &morphing_person(), 150}}) {
-      const Checked checked = check_random_poses(*bake, poses, kind, seed);
-      report(fmt::format("{}, {}", name, names[seed]), checked, bake->regions.frame.height);
-    }
-  }
-}
-
-TEST_CASE("over poses and clips every vertex is in its cluster's ball, and SkinJob puts it where skinning does") {
+TEST_CASE("over poses and clips the runtime puts every vertex where skinning does") {
   std::vector<Deformation> frames;
   for (const char* name : {"animation_arms.json", "animation_legs.json", "deep_squat.json"}) {
     const PoseMotion poses =
@@ -399,7 +356,6 @@ TEST_CASE("over poses and clips every vertex is in its cluster's ball, and SkinJ
   }
   const Checked human = check_frames(baked_human(), frames);
   report("human, poses", human, baked_human().regions.frame.height);
-  CHECK(human.skinning < 1e-5 * baked_human().regions.frame.height);
 
   frames.clear();
   for (const Clip& clip : baked_person().character.rig.clips) {
@@ -408,10 +364,9 @@ TEST_CASE("over poses and clips every vertex is in its cluster's ball, and SkinJ
   }
   const Checked person = check_frames(baked_person(), frames);
   report("person, clips", person, baked_person().regions.frame.height);
-  CHECK(person.skinning < 1e-5 * baked_person().regions.frame.height);
 }
 
-TEST_CASE("characters of SPHERECHAIN_TEST_DATA: in any pose every vertex is in its cluster's ball") {
+TEST_CASE("characters of SPHERECHAIN_TEST_DATA: over clips the runtime puts every vertex where skinning does") {
   const char* folder = std::getenv("SPHERECHAIN_TEST_DATA");
   if (folder == nullptr) {
     MESSAGE("skipped: SPHERECHAIN_TEST_DATA names no folder of rigged characters");
@@ -420,11 +375,6 @@ TEST_CASE("characters of SPHERECHAIN_TEST_DATA: in any pose every vertex is in i
   for (const auto& file : std::filesystem::directory_iterator(folder)) {
     if (file.path().extension() != ".glb" && file.path().extension() != ".gltf") continue;
     const Bake bake = spherechain::baker::bake(file.path(), make_settings("balanced", "{}", "test"), {});
-    for (const PoseKind kind : spherechain::test::kPoseKinds) {
-      const Checked checked = check_random_poses(bake, 30, kind, 7);
-      report(fmt::format("{}, kind {}", bake.character.file, static_cast<int>(kind)), checked,
-             bake.regions.frame.height);
-    }
     std::vector<Deformation> frames;
     for (const Clip& clip : bake.character.rig.clips) {
       const ClipMotion motion(bake.character.rig, {&clip});
@@ -433,6 +383,5 @@ TEST_CASE("characters of SPHERECHAIN_TEST_DATA: in any pose every vertex is in i
     if (frames.empty()) continue;
     const Checked checked = check_frames(bake, frames);
     report(bake.character.file + ", clips", checked, bake.regions.frame.height);
-    CHECK(checked.skinning < 1e-5 * bake.regions.frame.height);
   }
 }

@@ -9,12 +9,11 @@
 
 #include "baked_human.h"
 #include "jobs.h"
+#include "pairs/plain_detection.h"
 
 using namespace spherechain::baker;
-using spherechain::Asset;
-using spherechain::Method;
 using spherechain::Pair;
-using spherechain::RadiusKind;
+using spherechain::Radius;
 using spherechain::Sphere;
 
 namespace {
@@ -23,18 +22,18 @@ using spherechain::test::detect;
 using spherechain::test::Detected;
 using spherechain::test::refit;
 
-std::vector<Pair> touching(const Bake& bake, const std::vector<Vec3>& positions, RadiusKind kind) {
-  const Asset asset = open_asset_of(bake);
-  return detect(asset, refit(asset, pack(positions), kind).spheres, Method::kM2, kind).pairs;
+std::vector<Pair> touching(const Bake& bake, const std::vector<Vec3>& positions, Radius kind) {
+  const OpenAsset asset = open_asset_of(bake);
+  return detect(asset, refit(asset, pack(positions), kind).spheres, kind).pairs;
 }
 
 // Written apart from the runtime: from the baker's own lists, with sets, in the arithmetic the headers fix.
-std::vector<Pair> brute_force(const Bake& bake, const std::vector<Sphere>& spheres, RadiusKind kind) {
+std::vector<Pair> brute_force(const Bake& bake, const std::vector<Sphere>& spheres, Radius kind) {
   const std::set<std::pair<std::uint32_t, std::uint32_t>> ignored(bake.binding.ignored.begin(),
                                                                   bake.binding.ignored.end());
   std::map<std::pair<std::uint32_t, std::uint32_t>, float> reach;
-  for (const BoundPair& near : kind == RadiusKind::kFit ? bake.binding.near_fit : bake.binding.near_detect) {
-    reach[{near.a, near.b}] = static_cast<float>(near.reach);
+  for (const BoundPair& near : kind == SC_RADIUS_FIT ? bake.binding.rest_fit : bake.binding.rest_detect) {
+    reach[{near.a, near.b}] = static_cast<float>(near.rest_scale);
   }
   std::vector<Pair> pairs;
   for (std::uint32_t a = 0; a < spheres.size(); ++a) {
@@ -67,14 +66,14 @@ std::size_t count_between(const Bake& bake, const std::vector<Pair>& pairs, std:
 
 TEST_CASE("at rest no pair is reported, with either radius and either refit") {
   for (const Bake* bake : {&baked_human(), &paper_baked_human()}) {
-    CHECK(touching(*bake, bake->character.source_positions, RadiusKind::kFit).empty());
-    CHECK(touching(*bake, bake->character.source_positions, RadiusKind::kDetect).empty());
+    CHECK(touching(*bake, bake->character.source_positions, SC_RADIUS_FIT).empty());
+    CHECK(touching(*bake, bake->character.source_positions, SC_RADIUS_DETECT).empty());
   }
 }
 
 TEST_CASE("hands on hips: each arm touches its own side of the torso or its own leg") {
   const Bake& bake = baked_human();
-  const std::vector<Pair> pairs = touching(bake, posed_human("hands_on_hips.json"), RadiusKind::kDetect);
+  const std::vector<Pair> pairs = touching(bake, posed_human("hands_on_hips.json"), SC_RADIUS_DETECT);
   CHECK(count_between(bake, pairs, 0, kTorso, Side::kLeft) > 0);
   CHECK(count_between(bake, pairs, 1, kTorso, Side::kRight) > 0);
   CHECK(count_between(bake, pairs, 0, kTorso, Side::kRight) == 0);
@@ -84,14 +83,14 @@ TEST_CASE("hands on hips: each arm touches its own side of the torso or its own 
 
 TEST_CASE("one leg over the other: leg touches leg, and no arm does") {
   const Bake& bake = baked_human();
-  const std::vector<Pair> pairs = touching(bake, posed_human("leg_over_leg.json"), RadiusKind::kDetect);
+  const std::vector<Pair> pairs = touching(bake, posed_human("leg_over_leg.json"), SC_RADIUS_DETECT);
   CHECK(count_between(bake, pairs, 2, 3) > 0);
   CHECK(count_between(bake, pairs, 0, 1) == 0);
 }
 
 TEST_CASE("arms crossed: arm touches arm or chest") {
   const Bake& bake = baked_human();
-  const std::vector<Pair> pairs = touching(bake, posed_human("arms_crossed.json"), RadiusKind::kDetect);
+  const std::vector<Pair> pairs = touching(bake, posed_human("arms_crossed.json"), SC_RADIUS_DETECT);
   CHECK(count_between(bake, pairs, 0, 1) + count_between(bake, pairs, 0, kTorso) > 0);
   CHECK(count_between(bake, pairs, 2, 3) == 0);
 }
@@ -100,7 +99,7 @@ TEST_CASE("in no frame does a hand touch its own arm, a foot its own leg or the 
   const Bake& bake = baked_human();
   std::size_t hands_touching = 0;
   for (const AnimationFrame& frame : animation_frames()) {
-    for (const Pair& pair : touching(bake, frame.positions, RadiusKind::kDetect)) {
+    for (const Pair& pair : touching(bake, frame.positions, SC_RADIUS_DETECT)) {
       const FittedSphere &a = bake.spheres.spheres[pair.a], &b = bake.spheres.spheres[pair.b];
       if (a.extremity || b.extremity) CHECK(a.region != b.region);
       if (a.region != b.region && (a.extremity || b.extremity)) ++hands_touching;
@@ -112,7 +111,7 @@ TEST_CASE("in no frame does a hand touch its own arm, a foot its own leg or the 
 TEST_CASE("a hand behind the head touches the head") {
   const Bake& bake = baked_human();
   std::size_t found = 0;
-  for (const Pair& pair : touching(bake, posed_human("hand_behind_head.json"), RadiusKind::kDetect)) {
+  for (const Pair& pair : touching(bake, posed_human("hand_behind_head.json"), SC_RADIUS_DETECT)) {
     const FittedSphere &a = bake.spheres.spheres[pair.a], &b = bake.spheres.spheres[pair.b];
     found += a.region == kTorso && a.extremity && b.region == 0 && b.extremity ? 1u : 0u;
   }
@@ -120,37 +119,37 @@ TEST_CASE("a hand behind the head touches the head") {
 }
 
 TEST_CASE(
-    "in all 80 frames and on every target M2 equals a brute force, and M1's pairs are some of M2's, counted chain by "
+    "in all 80 frames and on every target all pairs equal a brute force, and the chains' are some of them, counted chain by "
     "chain") {
   for (const Bake* bake : {&baked_human(), &paper_baked_human()}) {
-    const Asset asset = open_asset_of(*bake);
-    for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
-      std::size_t m1_total = 0, m2_total = 0, frames_touching = 0;
+    const OpenAsset asset = open_asset_of(*bake);
+    for (const Radius kind : {SC_RADIUS_FIT, SC_RADIUS_DETECT}) {
+      std::size_t chain_total = 0, all_total = 0, frames_touching = 0;
       for (const AnimationFrame& frame : animation_frames()) {
         const std::vector<Sphere> spheres = refit(asset, pack(frame.positions), kind).spheres;
-        const Detected m1 = detect(asset, spheres, Method::kM1, kind), m2 = detect(asset, spheres, Method::kM2, kind);
-        CHECK(m2.pairs == brute_force(*bake, spheres, kind));
+        const spherechain::PlainResult chains =
+            spherechain::PlainDetection(asset.view(), kind).chains(spheres.data());
+        const Detected all = detect(asset, spheres, kind);
+        CHECK(all.pairs == brute_force(*bake, spheres, kind));
         for (const spherechain::Target target : spherechain::supported_targets()) {
-          CHECK(detect(asset, spheres, Method::kM1, kind, target).pairs == m1.pairs);
-          CHECK(detect(asset, spheres, Method::kM2, kind, target).pairs == m2.pairs);
+          CHECK(detect(asset, spheres, kind, target).pairs == all.pairs);
         }
-        CHECK(std::is_sorted(m1.pairs.begin(), m1.pairs.end()));
-        CHECK(std::includes(m2.pairs.begin(), m2.pairs.end(), m1.pairs.begin(), m1.pairs.end()));
+        CHECK(std::includes(all.pairs.begin(), all.pairs.end(), chains.pairs.begin(), chains.pairs.end()));
         // The paper's count: for each chain, the pairs both of whose spheres it holds.
         std::size_t raw = 0;
         for (const Chain& chain : bake->chains.chains) {
           const std::set<std::uint32_t> in(chain.spheres.begin(), chain.spheres.end());
-          for (const Pair& pair : m2.pairs) raw += in.count(pair.a) > 0 && in.count(pair.b) > 0 ? 1u : 0u;
+          for (const Pair& pair : all.pairs) raw += in.count(pair.a) > 0 && in.count(pair.b) > 0 ? 1u : 0u;
         }
-        CHECK(m1.chain_pairs.size() == raw);
-        m1_total += m1.pairs.size();
-        m2_total += m2.pairs.size();
-        frames_touching += m2.pairs.empty() ? 0u : 1u;
+        CHECK(chains.chain_pairs.size() == raw);
+        chain_total += chains.pairs.size();
+        all_total += all.pairs.size();
+        frames_touching += all.pairs.empty() ? 0u : 1u;
       }
-      MESSAGE(fmt::format("{} refit, {} radius: {} of 80 frames touch, M1 finds {} of M2's {} pairs",
-                          bake == &baked_human() ? "calibrated" : "paper", kind == RadiusKind::kFit ? "fit" : "detect",
-                          frames_touching, m1_total, m2_total));
-      CHECK(m2_total > 0);
+      MESSAGE(fmt::format("{} refit, {} radius: {} of 80 frames touch, chains find {} of {} pairs",
+                          bake == &baked_human() ? "moments" : "paper", kind == SC_RADIUS_FIT ? "fit" : "detect",
+                          frames_touching, chain_total, all_total));
+      CHECK(all_total > 0);
     }
   }
 }

@@ -10,7 +10,7 @@
 #include "motion/clip.h"
 #include "pipeline/pipeline.h"
 #include "play/play.h"
-#include "spherechain/asset.h"
+#include "play/asset_file.h"
 #include "temporary_folder.h"
 
 using namespace spherechain::baker;
@@ -83,7 +83,7 @@ TEST_CASE("an asset baked with attachments finds the same source again, and fits
     std::memcpy(buffer.data(), glb.binary.data() + glb.json["bufferViews"][view]["byteOffset"].get<std::size_t>(),
                 sizeof(float) * buffer.size());
     const auto check = [&] { return check_source_part(animated.asset(), p, buffer.data(), parts[p].vertex_count); };
-    CHECK(check() == spherechain::Status::kOk);
+    CHECK(check() == SC_OK);
     buffer[5] += 0.01F;
     CHECK(check() == spherechain::Status::kWrongSource);
   }

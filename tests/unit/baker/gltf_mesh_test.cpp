@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "gltf_reference.h"
-#include "spherechain/asset.h"
+#include "play/asset_file.h"
 #include "temporary_folder.h"
 
 using namespace spherechain::baker;

@@ -21,15 +21,15 @@ const SampledBody& sampled_ball() {
   return body;
 }
 
-SphereQuality judge(const Ball& sphere) {
-  return sampled_ball().judge({sphere}, [](Index) { return true; });
+SphereQuality quality_of(const Ball& sphere) {
+  return sampled_ball().measure({sphere}, [](Index) { return true; });
 }
 
 }  // namespace
 
 // 10,000 samples: a share has a standard error of at most 0.005; the mesh's facets are 0.2 % inside the ball.
 TEST_CASE("a sphere of half the radius covers an eighth of the ball and leaves its skin half a radius away") {
-  const SphereQuality q = judge({Vec3(0, 0, 0), 0.5});
+  const SphereQuality q = quality_of({Vec3(0, 0, 0), 0.5});
   CHECK(q.coverage == doctest::Approx(0.125).epsilon(0.1));
   CHECK(q.outside == 0);
   CHECK(q.volume_ratio == q.coverage);
@@ -40,7 +40,7 @@ TEST_CASE("a sphere of half the radius covers an eighth of the ball and leaves i
 }
 
 TEST_CASE("a larger sphere covers the ball, sticks out by its shell, and leaves no skin uncovered") {
-  const SphereQuality q = judge({Vec3(0, 0, 0), 1.08});
+  const SphereQuality q = quality_of({Vec3(0, 0, 0), 1.08});
   CHECK(q.coverage == 1);
   CHECK(q.outside == doctest::Approx(std::pow(1.08, 3) - 1).epsilon(0.05));
   CHECK(q.protrusion_p95 == doctest::Approx(0.08).epsilon(0.1));
@@ -50,7 +50,7 @@ TEST_CASE("a larger sphere covers the ball, sticks out by its shell, and leaves 
 
 TEST_CASE("a part counts only what is nearest to its triangles") {
   const auto upper = [](Index t) { return triangle_centroid(unit_ball(), t).z() > 0; };
-  const SphereQuality q = sampled_ball().judge({{Vec3(0, 0, -0.5), 0.5}}, upper);  // touches the middle from below
+  const SphereQuality q = sampled_ball().measure({{Vec3(0, 0, -0.5), 0.5}}, upper);  // touches the middle from below
   CHECK(q.coverage < 0.01);
   CHECK(q.uncovered == 1);
 }
@@ -59,6 +59,6 @@ TEST_CASE("the same body gives the same samples") {
   const SampledBody again(unit_ball(), 10000);
   const Ball sphere{Vec3(0.3, 0.2, -0.1), 0.7};
   const auto all = [](Index) { return true; };
-  CHECK(again.judge({sphere}, all).coverage == sampled_ball().judge({sphere}, all).coverage);
-  CHECK(again.judge({sphere}, all).gap_mean == sampled_ball().judge({sphere}, all).gap_mean);
+  CHECK(again.measure({sphere}, all).coverage == sampled_ball().measure({sphere}, all).coverage);
+  CHECK(again.measure({sphere}, all).gap_mean == sampled_ball().measure({sphere}, all).gap_mean);
 }

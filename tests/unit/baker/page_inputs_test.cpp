@@ -22,7 +22,7 @@ namespace {
 using Reader = std::string (*)(const std::string&, const spherechain::Asset&, const std::string&);
 
 struct Made {
-  AssetFile asset = open_asset(tool::baked_files().asset.string());
+  OpenAsset asset = open_asset(tool::baked_files().asset.string());
   json report = json::parse(tool::contents(tool::baked_files().report)), validation;
 
   Made() {
@@ -49,7 +49,7 @@ std::string refusal(Reader read, const std::string& text) {
   const TemporaryFolder folder;
   const std::string file = folder.write("given.json", text).string();
   try {
-    const std::string given = read(file, made().asset.asset, "human.sphc");
+    const std::string given = read(file, made().asset, "human.sphc");
     CHECK(given == text);
   } catch (const Error& error) {
     CHECK(error.code() == ExitCode::kFile);
@@ -138,7 +138,7 @@ TEST_CASE("a validation is shown only whole, and of spheres that the asset has")
                         "/worst_misses/0/overlap",
                         "/worst_misses/0/spheres",
                         "/worst_misses/0/spheres/1"});
-  for (const json& number : {json(-1), json(1.5), json(made().asset.asset.spheres().size)}) {
+  for (const json& number : {json(-1), json(1.5), json(made().asset->spheres().size)}) {
     json broken = whole;
     broken["worst_misses"][0]["spheres"][1] = number;
     CHECK(refusal(read_validation, broken.dump()).find("worst_misses[0].spheres[1] is not the number of") == 0);

@@ -106,11 +106,11 @@ const Preview& human_preview() {
 }
 
 // Each sphere's name, worked out from the opened asset.
-std::vector<std::string> names_of_spheres(const spherechain::Asset& asset) {
+std::vector<std::string> names_of_spheres(const spherechain::baker::OpenAsset& asset) {
   std::map<std::string, int> count;
   std::vector<std::string> names;
-  for (const spherechain::RestSphere& sphere : asset.spheres()) {
-    const std::string region = asset.region(sphere.region).name;
+  for (const spherechain::RestSphere& sphere : asset->spheres()) {
+    const std::string region = asset->region(sphere.region).name;
     if (region == "torso") {
       std::string name = "torso_level_" + std::to_string(sphere.level);
       if (sphere.side == spherechain::Side::kLeft) name += "_left";
@@ -182,13 +182,13 @@ TEST_CASE("a preview has the skin, every joint and every sphere by its name, all
 
 TEST_CASE("a preview's spheres have the asset's centres and radii, in metres and the character's own axes") {
   const Bake& bake = baked_human();
-  const spherechain::Asset asset = open_asset_of(bake);
+  const spherechain::baker::OpenAsset asset = open_asset_of(bake);
   const std::vector<std::string> names = names_of_spheres(asset);
   const double tolerance = 1e-5 * height(bake);  // the asset's floats
   for (std::size_t i = 0; i < names.size(); ++i) {
     INFO(names[i]);
     const Affine3d world = human_preview().world(names[i]);
-    const spherechain::RestSphere& sphere = asset.spheres()[i];
+    const spherechain::RestSphere& sphere = asset->spheres()[i];
     CHECK((world.translation() - in_metres(bake, to_vec3(sphere.center))).norm() < tolerance);
     const double radius = static_cast<double>(sphere.radius) * bake.character.metres_per_unit;
     for (int k = 0; k < 3; ++k) CHECK(std::abs(world.linear().col(k).norm() - radius) < tolerance);
@@ -278,7 +278,7 @@ TEST_CASE("a preview is the same in metres whatever the file's units and axes") 
 TEST_CASE(
     "a joint turned in another tool takes the skin along, and its spheres to where the runtime's refit puts them") {
   const Bake& bake = baked_human();
-  const spherechain::Asset asset = open_asset_of(bake);
+  const spherechain::baker::OpenAsset asset = open_asset_of(bake);
   const std::vector<std::string> names = names_of_spheres(asset);
   const std::vector<VertexWeights> weights = rig_weights(bake.character, bake.joints);
   for (const char* name : {"left_elbow", "right_hip"}) {
@@ -294,7 +294,7 @@ TEST_CASE(
     refit.positions = buffer.data();
     refit.vertex_count = posed.size();
     refit.spheres = {spheres.data(), spheres.size()};
-    REQUIRE(refit.run() == spherechain::Status::kOk);
+    REQUIRE(refit.run() == SC_OK);
 
     Preview preview = human_preview();
     const Eigen::Quaterniond turn(Eigen::AngleAxisd(-1.0, bake.regions.frame.left));

@@ -11,7 +11,7 @@
 #include "measure/refit_error.h"
 
 using namespace spherechain::baker;
-using spherechain::RadiusKind;
+using spherechain::Radius;
 
 namespace {
 
@@ -37,12 +37,12 @@ struct Errors {
 };
 
 Errors refit_errors(const Bake& bake) {
-  const spherechain::Asset asset = open_asset_of(bake);
+  const spherechain::baker::OpenAsset asset = open_asset_of(bake);
   const std::vector<SkinFollower> followers = skin_followers(bake);
   Errors errors;
   for (const AnimationFrame& frame : animation_frames()) {
-    const auto result = refit(asset, pack(frame.positions), RadiusKind::kFit);
-    REQUIRE(result.status == spherechain::Status::kOk);
+    const auto result = refit(asset, pack(frame.positions), SC_RADIUS_FIT);
+    REQUIRE(result.status == SC_OK);
     for (std::size_t i = 0; i < result.spheres.size(); ++i) {
       const Ball best = followers[i].at(frame.positions);
       const spherechain::Sphere& s = result.spheres[i];
@@ -55,29 +55,29 @@ Errors refit_errors(const Bake& bake) {
 
 }  // namespace
 
-TEST_CASE("calibrated refit follows the best-fit sphere of the deformed surrounding region over both animations") {
+TEST_CASE("refit by moments follows the best-fit sphere of the deformed skin over both animations") {
   REQUIRE(animation_frames().size() == 80);
-  const Errors calibrated = refit_errors(baked_human()), paper = refit_errors(paper_baked_human());
+  const Errors moments = refit_errors(baked_human()), paper = refit_errors(paper_baked_human());
   const std::string header = fmt::format(
       "refit against a best-fit sphere, 80 frames (centre mm, radius %)\n{:<11} {:>6} {:>6} {:>6} {:>8} {:>6}\n", "",
       "mean", "p95", "max", "mean", "p95");
-  MESSAGE(header, calibrated.row("calibrated"), paper.row("paper"));
-  CHECK(Errors::mean(calibrated.center) < 3);
-  CHECK(Errors::p95(calibrated.center) < 10);
-  CHECK(Errors::mean(calibrated.radius) < 0.015);
+  MESSAGE(header, moments.row("moments"), paper.row("paper"));
+  CHECK(Errors::mean(moments.center) < 3);
+  CHECK(Errors::p95(moments.center) < 10);
+  CHECK(Errors::mean(moments.radius) < 0.015);
 }
 
-TEST_CASE("at rest the calibrated refit gives the baked spheres to 1e-5 of the height, and both radii") {
+TEST_CASE("at rest refit by moments gives the baked spheres to 1e-5 of the height, and both radii") {
   const Bake& bake = baked_human();
-  const spherechain::Asset asset = open_asset_of(bake);
+  const spherechain::baker::OpenAsset asset = open_asset_of(bake);
   const std::vector<float> rest = pack(bake.character.source_positions);
-  for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
+  for (const Radius kind : {SC_RADIUS_FIT, SC_RADIUS_DETECT}) {
     const auto result = refit(asset, rest, kind);
     double worst = 0;
     for (std::size_t i = 0; i < result.spheres.size(); ++i) {
       const spherechain::Sphere& s = result.spheres[i];
       const double wanted =
-          kind == RadiusKind::kFit ? bake.spheres.spheres[i].ball.radius : bake.binding.spheres[i].detect_radius;
+          kind == SC_RADIUS_FIT ? bake.spheres.spheres[i].ball.radius : bake.binding.spheres[i].detect_radius;
       worst = std::max({worst, (Vec3(s.x, s.y, s.z) - bake.spheres.spheres[i].ball.center).norm(),
                         std::abs(static_cast<double>(s.radius) - wanted)});
     }
@@ -87,9 +87,9 @@ TEST_CASE("at rest the calibrated refit gives the baked spheres to 1e-5 of the h
 
 TEST_CASE("the asset knows its own rest pose from any other buffer") {
   const Bake& bake = baked_human();
-  const spherechain::Asset asset = open_asset_of(bake);
+  const spherechain::baker::OpenAsset asset = open_asset_of(bake);
   std::vector<float> positions = pack(bake.character.source_positions);
-  CHECK(spherechain::check_source(asset, positions.data(), positions.size() / 3) == spherechain::Status::kOk);
+  CHECK(sc_check_source(asset.handle(), SC_WHOLE_SOURCE, positions.data(), positions.size() / 3, 12) == SC_OK);
   positions[3000] += 1e-3f;
-  CHECK(spherechain::check_source(asset, positions.data(), positions.size() / 3) == spherechain::Status::kWrongSource);
+  CHECK(sc_check_source(asset.handle(), SC_WHOLE_SOURCE, positions.data(), positions.size() / 3, 12) == SC_WRONG_SOURCE);
 }

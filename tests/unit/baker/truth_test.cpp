@@ -16,9 +16,8 @@
 #include "truth/truth_cache.h"
 
 using namespace spherechain::baker;
-using spherechain::Asset;
 using spherechain::Pair;
-using spherechain::TrianglePair;
+using spherechain::Pair;
 
 namespace {
 
@@ -49,7 +48,7 @@ std::vector<float> with_floor(const std::vector<float>& second) {
 bool meets_floor(const std::vector<float>& second) {
   const Intersections found = find_intersections(loose_surface(kTwo, {0, 1}), with_floor(second));
   CHECK(found.degenerate == 0);
-  return found.pairs == std::vector<TrianglePair>{{0, 1}};
+  return found.pairs == std::vector<Pair>{{0, 1}};
 }
 
 }  // namespace
@@ -66,7 +65,7 @@ TEST_CASE("the posed human's intersections are those CGAL finds in its skin, but
     if (character.skin_of_source[v] == kNoIndex) continue;
     posed.positions[character.skin_of_source[v]] = {positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]};
   }
-  std::vector<TrianglePair> reference;
+  std::vector<Pair> reference;
   for (const auto& [a, b] : mesh_self_intersections(posed)) {
     if (are_neighbours(posed.triangles[a], posed.triangles[b])) continue;
     const auto [s, t] = std::minmax({character.skin_source_triangle[a], character.skin_source_triangle[b]});
@@ -146,7 +145,7 @@ TEST_CASE("intersections are found once a pose and kept in files; a broken file 
   CHECK(find(crossing).size() == 1);
   CHECK(fs::file_size(crossing_file) == size);
   std::fstream(crossing_file, std::ios::in | std::ios::out | std::ios::binary).seekp(-66, std::ios::end).put('x');
-  CHECK(find(crossing).front() == TrianglePair{0, 1});
+  CHECK(find(crossing).front() == Pair{0, 1});
   // A whole file is believed: the search was not made again.
   fs::copy_file(apart_file, crossing_file, fs::copy_options::overwrite_existing);
   CHECK(find(crossing).empty());
@@ -209,20 +208,20 @@ TEST_CASE("depth is how far a vertex lies behind the other region, whatever its 
 
 TEST_CASE("what is at rest too, of one sphere or of an ignored pair is counted and left out, each pair once") {
   const Bake& bake = baked_human();
-  const Asset asset = open_asset_of(bake);
+  const OpenAsset asset = open_asset_of(bake);
   const TruthSurface surface = surface_of(asset, bake.character);
   const auto first = [&](std::uint32_t sphere) { return surface.source_triangle[surface.of_sphere[sphere].front()]; };
   const auto last = [&](std::uint32_t sphere) { return surface.source_triangle[surface.of_sphere[sphere].back()]; };
-  const auto pair_of = [](Index a, Index b) { return TrianglePair{std::min(a, b), std::max(a, b)}; };
+  const auto pair_of = [](Index a, Index b) { return Pair{std::min(a, b), std::max(a, b)}; };
   const auto [a, b] = bake.binding.ignored.front();
   std::uint32_t c = b + 1;
   while (is_ignored(asset, a, c)) ++c;
-  const TrianglePair same = pair_of(first(a), last(a)), same_at_rest = pair_of(first(b), last(b)),
+  const Pair same = pair_of(first(a), last(a)), same_at_rest = pair_of(first(b), last(b)),
                      ignored = pair_of(first(a), first(b)), one = pair_of(first(a), first(c)),
                      two = pair_of(last(a), last(c)), at_rest = pair_of(first(a), last(c));
   Intersections found{{same, same_at_rest, ignored, one, two, at_rest}, 0};
   std::sort(found.pairs.begin(), found.pairs.end());
-  std::vector<TrianglePair> rest{at_rest, same_at_rest};
+  std::vector<Pair> rest{at_rest, same_at_rest};
   std::sort(rest.begin(), rest.end());
 
   const FrameTruth truth = judge(found, rest, surface, [&](auto l, auto r) { return is_ignored(asset, l, r); });

@@ -10,6 +10,7 @@
 #include "baked_human.h"
 #include "human.h"
 #include "jobs.h"
+#include "pairs/plain_detection.h"
 #include "report/validation.h"
 #include "temporary_folder.h"
 #include "truth/groups.h"
@@ -17,17 +18,15 @@
 #include "truth/validate.h"
 
 using namespace spherechain::baker;
-using spherechain::Asset;
-using spherechain::Method;
 using spherechain::Pair;
-using spherechain::RadiusKind;
+using spherechain::Radius;
 using spherechain::Sphere;
 using spherechain::test::detect;
 using spherechain::test::refit;
 
 namespace {
 
-std::vector<Sphere> spheres_at(const Asset& asset, const std::vector<Vec3>& positions, RadiusKind kind) {
+std::vector<Sphere> spheres_at(const OpenAsset& asset, const std::vector<Vec3>& positions, Radius kind) {
   return refit(asset, pack(positions), kind).spheres;
 }
 
@@ -37,14 +36,14 @@ std::vector<Sphere> scaled(std::vector<Sphere> spheres, float scale) {
 }
 
 // Pairs that spheres so scaled would report sooner than at the baked part of their distance at rest.
-std::set<Pair> held_back(const Asset& asset, float scale) {
+std::set<Pair> held_back(const OpenAsset& asset, float scale) {
   const std::vector<Sphere> rest =
-      scaled(spheres_at(asset, baked_human().character.source_positions, RadiusKind::kDetect), scale);
+      scaled(spheres_at(asset, baked_human().character.source_positions, SC_RADIUS_DETECT), scale);
   std::set<Pair> out;
   for (std::uint32_t b = 0; b < rest.size(); ++b) {
     for (std::uint32_t a = 0; a < b; ++a) {
       const double dx = rest[a].x - rest[b].x, dy = rest[a].y - rest[b].y, dz = rest[a].z - rest[b].z;
-      const double part = baked_human().settings.bind.rest_fraction * std::sqrt(dx * dx + dy * dy + dz * dz);
+      const double part = baked_human().settings.bind.rest_scale * std::sqrt(dx * dx + dy * dy + dz * dz);
       if (part < 1.001 * (rest[a].radius + rest[b].radius)) out.insert({a, b});
     }
   }
@@ -57,17 +56,17 @@ bool contains(const std::vector<Pair>& pairs, const Pair& pair) {
 
 }  // namespace
 
-TEST_CASE("the plain rule reports what the runtime does, M1 and M2, at either radius in every fifth frame") {
-  const Asset asset = open_asset_of(baked_human());
+TEST_CASE("the plain rule reports what the runtime does, chains and all pairs, at either radius in every fifth frame") {
+  const OpenAsset asset = open_asset_of(baked_human());
   const ChainMembers chains(asset);
-  for (const RadiusKind kind : {RadiusKind::kFit, RadiusKind::kDetect}) {
+  for (const Radius kind : {SC_RADIUS_FIT, SC_RADIUS_DETECT}) {
     const PairRule rule(asset, kind, {});
     std::size_t pairs = 0;
     for (std::size_t i = 0; i < animation_frames().size(); i += 5) {
       const std::vector<Sphere> spheres = spheres_at(asset, animation_frames()[i].positions, kind);
       const std::vector<Pair> found = rule.pairs(spheres);
-      CHECK(found == detect(asset, spheres, Method::kM2, kind).pairs);
-      CHECK(chains.sharing(found) == detect(asset, spheres, Method::kM1, kind).pairs);
+      CHECK(found == detect(asset, spheres, kind).pairs);
+      CHECK(chains.sharing(found) == spherechain::PlainDetection(asset.view(), kind).chains(spheres.data()).pairs);
       pairs += found.size();
     }
     CHECK(pairs > 0);
@@ -76,30 +75,30 @@ TEST_CASE("the plain rule reports what the runtime does, M1 and M2, at either ra
 
 TEST_CASE("with another part of the rest distance the rule reports what a bake with that setting does") {
   BakeSettings settings = baked_human().settings;
-  settings.bind.rest_fraction = 0.75;
+  settings.bind.rest_scale = 0.75;
   const Bake other = rebake(baked_human(), settings);
-  const Asset asset = open_asset_of(baked_human()), other_asset = open_asset_of(other);
-  const PairRule rule(asset, RadiusKind::kDetect, {1, 0.75});
+  const OpenAsset asset = open_asset_of(baked_human()), other_asset = open_asset_of(other);
+  const PairRule rule(asset, SC_RADIUS_DETECT, {1, 0.75});
   std::size_t fewer = 0;
   for (std::size_t i = 0; i < animation_frames().size(); i += 5) {
-    const std::vector<Sphere> spheres = spheres_at(asset, animation_frames()[i].positions, RadiusKind::kDetect);
+    const std::vector<Sphere> spheres = spheres_at(asset, animation_frames()[i].positions, SC_RADIUS_DETECT);
     const std::vector<Pair> found = rule.pairs(spheres);
-    CHECK(found == detect(other_asset, spheres, Method::kM2, RadiusKind::kDetect).pairs);
-    fewer += detect(asset, spheres, Method::kM2, RadiusKind::kDetect).pairs.size() - found.size();
+    CHECK(found == detect(other_asset, spheres, SC_RADIUS_DETECT).pairs);
+    fewer += detect(asset, spheres, SC_RADIUS_DETECT).pairs.size() - found.size();
   }
   CHECK(fewer > 0);
 }
 
 TEST_CASE("with larger radii more is reported, near pairs at their distance as before, and nothing at rest") {
-  const Asset asset = open_asset_of(baked_human());
-  const PairRule rule(asset, RadiusKind::kDetect, {1.5, {}});
+  const OpenAsset asset = open_asset_of(baked_human());
+  const PairRule rule(asset, SC_RADIUS_DETECT, {1.5, {}});
   const std::set<Pair> near = held_back(asset, 1.5F);
   std::size_t free = 0;
   for (std::size_t i = 0; i < animation_frames().size(); i += 5) {
-    const std::vector<Sphere> spheres = spheres_at(asset, animation_frames()[i].positions, RadiusKind::kDetect);
+    const std::vector<Sphere> spheres = spheres_at(asset, animation_frames()[i].positions, SC_RADIUS_DETECT);
     const std::vector<Pair> found = rule.pairs(spheres),
-                            before = detect(asset, spheres, Method::kM2, RadiusKind::kDetect).pairs,
-                            large = detect(asset, scaled(spheres, 1.5F), Method::kM2, RadiusKind::kDetect).pairs;
+                            before = detect(asset, spheres, SC_RADIUS_DETECT).pairs,
+                            large = detect(asset, scaled(spheres, 1.5F), SC_RADIUS_DETECT).pairs;
     for (const Pair& pair : large) {
       if (near.count(pair) == 0) CHECK(contains(found, pair));
     }
@@ -107,21 +106,21 @@ TEST_CASE("with larger radii more is reported, near pairs at their distance as b
       if (near.count(pair) == 0) CHECK(contains(large, pair));
       free += near.count(pair) == 0 && !contains(before, pair) ? 1u : 0u;
     }
-    for (const spherechain::NearPair& own : asset.near_pairs(RadiusKind::kDetect)) {
+    for (const spherechain::RestPair& own : asset->rest_pairs(SC_RADIUS_DETECT)) {
       CHECK(contains(found, {own.a, own.b}) == contains(before, {own.a, own.b}));
     }
   }
   CHECK(free > 0);
-  const std::vector<Sphere> rest = spheres_at(asset, baked_human().character.source_positions, RadiusKind::kDetect);
+  const std::vector<Sphere> rest = spheres_at(asset, baked_human().character.source_positions, SC_RADIUS_DETECT);
   for (const double scale : {0.8, 1.0, 1.5, 2.0}) {
-    CHECK(PairRule(asset, RadiusKind::kDetect, {scale, {}}).pairs(rest).empty());
+    CHECK(PairRule(asset, SC_RADIUS_DETECT, {scale, {}}).pairs(rest).empty());
   }
 }
 
 TEST_CASE("every true and every reported pair is between two regions, and in each chain that holds both spheres") {
-  const Asset asset = open_asset_of(baked_human());
-  const std::vector<Sphere> spheres = spheres_at(asset, posed_human("arms_crossed.json"), RadiusKind::kDetect);
-  const std::vector<Pair> reported = detect(asset, spheres, Method::kM2, RadiusKind::kDetect).pairs;
+  const OpenAsset asset = open_asset_of(baked_human());
+  const std::vector<Sphere> spheres = spheres_at(asset, posed_human("arms_crossed.json"), SC_RADIUS_DETECT);
+  const std::vector<Pair> reported = detect(asset, spheres, SC_RADIUS_DETECT).pairs;
   REQUIRE(reported.size() > 2);
   FrameTruth truth;
   truth.contacts = {{reported[0], {{1, 2}, {1, 3}}}, {{0, 1}, {{7, 9}}}};
@@ -138,8 +137,8 @@ TEST_CASE("every true and every reported pair is between two regions, and in eac
   CHECK(sum.true_pairs == 3);
   CHECK(sum.found_pairs == 2);
   CHECK(sum.reported == reported.size());
-  for (std::size_t c = 0; c < asset.chain_count(); ++c) {
-    const std::set<std::uint32_t> in(asset.chain(c).spheres.begin(), asset.chain(c).spheres.end());
+  for (std::size_t c = 0; c < asset->chain_count(); ++c) {
+    const std::set<std::uint32_t> in(asset->chain(c).spheres.begin(), asset->chain(c).spheres.end());
     const auto inside = std::count_if(reported.begin(), reported.end(),
                                       [&](const Pair& pair) { return in.count(pair.a) + in.count(pair.b) == 2; });
     CHECK(chains.groups()[c].reported == static_cast<std::size_t>(inside));

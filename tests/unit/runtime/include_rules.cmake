@@ -1,25 +1,60 @@
 # SPDX-License-Identifier: MIT
-# cmake -D ROOT=<repository> -P include_rules.cmake: fails on an include that runtime/ or cuda/ must not have.
+# cmake -D ROOT=<repository> -P include_rules.cmake: fails on an include that runtime/, cuda/ or a stage of the baker must
+# not have.
+
+# The baker's folders. Each may include those before it and itself.
+set(stages mesh import roles segment wrap fit chains rig bind clusters write pipeline motion play truth measure report page
+  cli)
+
 file(GLOB_RECURSE sources ${ROOT}/runtime/*.h ${ROOT}/runtime/*.cpp ${ROOT}/runtime/*.cc ${ROOT}/runtime/*.inl
   ${ROOT}/cuda/*.h ${ROOT}/cuda/*.cuh ${ROOT}/cuda/*.cpp ${ROOT}/cuda/*.cu)
-if(NOT sources)
-  message(FATAL_ERROR "no sources under ${ROOT}/runtime")
+file(GLOB_RECURSE baker_sources ${ROOT}/baker/*.h ${ROOT}/baker/*.cpp)
+if(NOT sources OR NOT baker_sources)
+  message(FATAL_ERROR "no sources under ${ROOT}/runtime or ${ROOT}/baker")
 endif()
-# The baker's folders, which its own includes start with, and the libraries only it may use.
-set(forbidden "baker/|(bind|chains|cli|fit|import|mesh|motion|report|rig|segment|truth|write)/|(assimp|CGAL|Eigen|fmt|nlohmann|oneapi|tbb)/|tiny_gltf|CLI/")
 set(found FALSE)
-foreach(source ${sources})
+macro(refuse source included)
+  message(NOTICE "${source} includes ${included}")
+  set(found TRUE)
+endmacro()
+# The names in a file's include lines.
+function(includes_of source result)
   file(STRINGS ${source} lines REGEX "^[ \t]*#[ \t]*include[ \t]*[<\"]")
-  foreach(line IN LISTS lines)
-    string(REGEX REPLACE "^[^<\"]*[<\"]([^>\"]*)[>\"].*$" "\\1" included "${line}")
+  list(TRANSFORM lines REPLACE "^[^<\"]*[<\"]([^>\"]*)[>\"].*$" "\\1")
+  set(${result} ${lines} PARENT_SCOPE)
+endfunction()
+
+# Runtime and CUDA: nothing of the baker, and no library that only the baker may use.
+list(JOIN stages "|" baker_folders)
+set(forbidden "(baker|${baker_folders}|assimp|CGAL|Eigen|fmt|nlohmann|oneapi|tbb)/|tiny_gltf|CLI/")
+foreach(source ${sources})
+  includes_of(${source} all)
+  foreach(included IN LISTS all)
     if(included MATCHES "(^|/)(${forbidden})" OR
        # Public headers: the standard library, which has no slash, and of C two headers; and each other.
        (source MATCHES "/include/spherechain/" AND NOT included MATCHES "^(spherechain/[a-z_]+\\.h|[a-z]+|std(def|int)\\.h)$"))
-      message(NOTICE "${source} includes ${included}")
-      set(found TRUE)
+      refuse(${source} ${included})
     endif()
   endforeach()
 endforeach()
+
+foreach(source ${baker_sources})
+  file(RELATIVE_PATH path ${ROOT}/baker ${source})
+  string(REGEX REPLACE "/.*" "" stage ${path})
+  list(FIND stages ${stage} own)
+  if(own EQUAL -1)
+    message(FATAL_ERROR "baker/${stage} is missing in the list of stages of include_rules.cmake")
+  endif()
+  includes_of(${source} all)
+  foreach(included IN LISTS all)
+    string(REGEX REPLACE "/.*" "" other ${included})
+    list(FIND stages ${other} place)
+    if(place GREATER own)
+      refuse(${source} ${included})
+    endif()
+  endforeach()
+endforeach()
+
 if(found)
   message(FATAL_ERROR "an include that must not be there")
 endif()

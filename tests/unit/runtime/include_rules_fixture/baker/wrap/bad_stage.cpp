@@ -1,0 +1,3 @@
+// SPDX-License-Identifier: MIT
+#include "fit/fit.h"
+#include "segment/segment.h"
