@@ -41,7 +41,8 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    play(samples::read_file(argv[1]), samples::GltfCharacter(argv[2]));
+    const std::vector<char> file = samples::read_file(argv[1]);
+    play(file, samples::GltfCharacter(argv[2]));
   } catch (const std::exception& error) {
     std::fprintf(stderr, "hello: error: %s\n", error.what());
     return 3;
