@@ -1,8 +1,8 @@
 #!/usr/bin/env node
-// Bakes and validates, and prints docs/accuracy.md:
+// Bakes, validates and prints docs/accuracy.md:
 //   scripts/accuracy.mjs build/release/bin/spherechain [CHARACTER.glb]... > docs/accuracy.md
-// The MakeHuman body of assimp-testmodels with its three recordings and the poses of samples/poses; each further character
-// with its own clips.
+// Characters: the MakeHuman body of assimp-testmodels with three recordings and samples/poses; then each CHARACTER with
+// its own clips.
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, readdirSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -37,7 +37,7 @@ function asset(mesh, profile) {
   return assets.get(key);
 }
 
-// Scores of several runs as one: each has counts, so that shares can be taken of the sums.
+// Adds up several runs: counts, so that shares are shares of the sums.
 const counted = (found, score) => ({
   frames: found.frames,
   truth: found.truth_pairs,
@@ -55,7 +55,7 @@ const sum = (list) => list.reduce((total, one) => {
 const share = (part, whole) => (whole > 0 ? part / whole : 1);
 const recall = (s) => share(s.found, s.truth), precision = (s) => share(s.right, s.reported);
 
-// A row of the tables: a mesh with one motion, or with several that count as one.
+// One row of the tables: a mesh and one motion, or several motions taken together.
 function validate(row, profile, radius) {
   return row.motions.map((motion) => {
     const json = join(folder, "found.json");
@@ -90,7 +90,7 @@ const percent = (x) => (100 * x).toFixed(1);
 const scored = (s) => [percent(recall(s)), percent(precision(s)), (s.reported / s.frames).toFixed(1)];
 const of = (list, pick) => sum(list.map((found) => counted(found, pick(found))));
 
-// Of a ragdoll: the quantile with the greatest harmonic mean of recall and precision on this motion.
+// The ragdoll's quantile with the greatest harmonic mean of recall and precision on this motion.
 const hasCapsules = (row) => row.detect.every((f) => f.capsules);
 function bestQuantile(row) {
   const points = row.detect[0].capsules.curve.map((point, i) => {
@@ -102,9 +102,9 @@ function bestQuantile(row) {
 
 function methods(row) {
   const variants = [
-    ["the skin", row.detect, (f) => f],
+    ["the skin", row.detect, (f) => f.skin],
     ["spheres, detect radius", row.detect, (f) => f.all_pairs],
-    ["the same, chains alone", row.detect, (f) => f.chains],
+    ["the same, along chains alone", row.detect, (f) => f.chains],
     ["spheres, fit radius", row.fit, (f) => f.all_pairs],
     ["profile `paper`, fit radius", row.paper, (f) => f.all_pairs],
   ];
@@ -123,7 +123,7 @@ function methods(row) {
 function scope(row) {
   const total = (pick) => row.detect.reduce((n, f) => n + pick(f), 0);
   const raw = total((f) => f.raw_pairs), truth = total((f) => f.truth_pairs);
-  const posed = raw - total((f) => f.out_of_scope.rest);  // those that the motion makes
+  const posed = raw - total((f) => f.out_of_scope.rest);  // made by the motion
   return [row.name, total((f) => f.frames), raw, total((f) => f.out_of_scope.rest), total((f) => f.out_of_scope.same_sphere),
     total((f) => f.out_of_scope.ignored), truth, percent(share(posed - truth, posed))];
 }
@@ -159,94 +159,85 @@ function groups(kind) {
 }
 
 const everything = (pick, list = (row) => row.detect) => sum(rows.map((row) => of(list(row), pick)));
-const skin = everything((f) => f), chains = everything((f) => f.chains), all = everything((f) => f.all_pairs);
+const skin = everything((f) => f.skin), chains = everything((f) => f.chains), all = everything((f) => f.all_pairs);
 const fit = everything((f) => f.all_pairs, (row) => row.fit), paper = everything((f) => f.all_pairs, (row) => row.paper);
 const contacts = rows.flatMap((row) => row.detect).reduce((t, f) =>
   ({ frames: t.frames + f.frames, missing: t.missing + f.contacts_missing, extra: t.extra + f.contacts_extra }), { frames: 0, missing: 0, extra: 0 });
 const missedByChains = all.found - chains.found;
 
-console.log(`# Accuracy: what is found, what is missed
+console.log(`# Accuracy
 
-Made by one command, with \`spherechain validate\`:
+How many of the true contacts each method finds, and how many of its reports are right. Written by one command; do not edit:
 
 \`\`\`
 scripts/accuracy.mjs build/release/bin/spherechain [CHARACTER.glb]... > docs/accuracy.md
 \`\`\`
 
-${kFrames} frames of each motion, evenly spread; of \`samples/poses\` each file, all together. The truth are the pairs of triangles that
-intersect in the deformed mesh, decided exactly (CGAL). **Recall**: the part of the true triangle pairs whose spheres are reported.
-**Reported**: pairs of spheres that touch; or pairs of spheres whose **skins** intersect, a triangle of the one's region one of the
-other's, whether the spheres touch or not. **Precision**: the part of the reported sphere pairs that have a true pair, or whose regions are nearer than 0.3 % of the height.
-**Any**, **all**: frames with a true pair in which one, in which each of them is found. **Missed depth**: how deep the worst contact
-goes that is not reported, in % of the height: the farthest that a vertex of one sphere's region lies behind the other's. Shares in
-%.
+## Method
 
-## Skin, spheres, chains and capsules
-
-Profile \`balanced\` puts ${counts.balanced} spheres into the human, \`paper\` ${counts.paper}, none of them in head, hands and feet. A capsule a bone is what
-games have instead: fitted to the triangles its bone moves most, along their principal axis, its radius a quantile of their distances by
-area; neighbours on the skeleton are ignored, and others must, as spheres must, have come nearer than 0.9 of their distance at rest. It
-is measured on the spheres' truth: pairs within one capsule or between neighbours it cannot find. Its quantile is here the one with the best
-harmonic mean of recall and precision on that very motion; the spheres have one default for all.
-
-${table(["motion", "method", "true pairs", "recall", "precision", "pairs a frame", "any", "all", "missed depth"], rows.flatMap(methods))}
-
-What chains alone miss of the true triangle pairs that all spheres find: ${Math.round(missedByChains)} of ${Math.round(all.found)} (${percent(share(missedByChains, all.found))} %).
+1. The truth is every pair of triangles that intersects in the deformed mesh, decided exactly by CGAL (\`spherechain validate\`).
+2. ${kFrames} frames of each motion, evenly spread. \`samples/poses\` is eight files, taken together.
+3. **Recall** is the part of the true pairs whose spheres are reported. **Precision** is the part of the reported pairs of spheres that have a true
+   pair, or whose triangles are closer than 0.3 % of the height. **Any** and **all** are frames with a true pair in which one, or each, is found.
+4. **Missed overlap** is that of the worst unreported contact, in % of the height: the farthest that a vertex of one sphere's triangles lies
+   behind the other's.
+5. Profile \`balanced\` puts ${counts.balanced} spheres into the human. Profile \`paper\` puts ${counts.paper}, with none in head, hands and feet.
+6. A capsule a bone is what games have instead. It is fitted to the triangles that its bone moves most; its radius is a quantile of their distances.
+   Neighbours on the skeleton are ignored, and others follow the rest rule of spheres. Its quantile is the best for that motion (harmonic mean of recall and
+   precision); the spheres have one default for all.
+7. Shares are in %.
 
 ## Which to choose
 
-- **Everything that must not be missed**: the exact triangle contacts (\`TriangleContactJob\`). They do not go through the spheres' radii:
-  of the ${all.truth} true pairs below they miss ${contacts.missing}, and report ${contacts.extra} others (\`validate --contacts\`, ${contacts.frames} frames).
-- **What to act on**: the pairs of spheres whose skins intersect (\`DetectSkinJob\`): recall ${percent(recall(skin))} %, precision
-  ${percent(precision(skin))} %, ${(skin.reported / skin.frames).toFixed(1)} pairs a frame over all motions below, and the same on every other character of
-  tests/quality/gates, for it goes by covers of the skin and not by radii; what it costs is in docs/performance.md (P6).
-- **What has to cost no more than a microsecond or two**: spheres that touch, at the detect radius; which of them are true, \`ConfirmJob\` tells. Of
-  other bodies than humans spheres may miss half (\`all_pairs.pair_recall\` in tests/quality/gates: a fox .48, toys .59 to .72, and of Testwuson, whose
-  spheres lie far from its skin, all).
-- **A cheap alarm, or what to look at first**: profile \`balanced\` and the detect radius: recall ${percent(recall(all))} %, precision
-  ${percent(precision(all))} % over all motions below.
-- **Fewer false alarms**: the fit radius, recall ${percent(recall(fit))} %, precision ${percent(precision(fit))} %. It leaves the waists between spheres open and misses
-  what goes in there.
-- **The paper's figures**: profile \`paper\`. Recall ${percent(recall(paper))} %, precision ${percent(precision(paper))} %: hands, feet and head belong to wrists, ankles and chest, and
-  most of their contacts are missed.
-- M1 is for those who have the chains already; M2 costs less on a CPU and misses nothing that M1 finds.
+| you need | take | recall | precision |
+|---|---|---|---|
+| nothing missed, nothing wrong | skin contacts (\`SkinContactJob\`) | ${percent(recall(skin))} | ${percent(precision(skin))} |
+| an alarm for a microsecond | spheres, detect radius | ${percent(recall(all))} | ${percent(precision(all))} |
+| fewer false alarms for a microsecond | spheres, fit radius | ${percent(recall(fit))} | ${percent(precision(fit))} |
+| the paper's figures | profile \`paper\`, fit radius | ${percent(recall(paper))} | ${percent(precision(paper))} |
+
+The exact triangle contacts miss ${contacts.missing} of the ${all.truth} true pairs below and report ${contacts.extra} others (\`validate --contacts\`, ${contacts.frames} frames).
+Tests along chains alone miss ${Math.round(missedByChains)} of the ${Math.round(all.found)} true pairs that all pairs of spheres find (${percent(share(missedByChains, all.found))} %).
+Bodies other than humans fit spheres less well: their spheres may miss half of the contacts. Their skin contacts are exact all the same.
+
+## Skin, spheres, chains and capsules
+
+${table(["motion", "method", "true pairs", "recall", "precision", "pairs a frame", "any", "all", "missed overlap"], rows.flatMap(methods))}
 
 ## What is out of scope
 
-Before anything is compared, three classes are left out, in this order: what intersects in the rest pose too (eyes in their sockets, a mouth), what is
-within one sphere's region (a fold of one sphere), and what is between ignored spheres, neighbours on the body (elbow, knee, armpit,
-fingers). The last column is what that leaves out of those that motion makes. The last two are a class of their own for the exact
-contacts (\`ContactScope::kNeighbours\`); \`validate --contacts\` compares them with CGAL's too, and the gates of tests/quality keep what is missing
-and what is extra of both classes at 0.
+Three classes are left out before anything is compared, in this order: pairs that intersect at rest too (eyes in their sockets), pairs of one sphere's
+triangles, and pairs of neighbouring spheres (elbow, knee, armpit). The last column is the part of the pairs made by motion that this leaves out.
+The exact contacts offer the last two classes as a scope of their own. \`validate --contacts\` compares them with CGAL's too, and the gates of
+tests/quality keep the differences at 0.
 
-${table(["motion", "frames", "intersecting pairs", "at rest too", "one sphere", "ignored spheres", "true", "left out %"], rows.map(scope))}
+${table(["motion", "frames", "intersecting pairs", "at rest too", "one sphere", "neighbours", "true", "left out %"], rows.map(scope))}
 
 ## Over the radius
 
-Recall / precision / pairs a frame when every detect radius is scaled; pairs must have come nearer than the same part of their distance
-at rest.
+Recall / precision / pairs a frame if every detect radius is scaled.
 
 ${curve("radius_curve", (p) => `x ${p.scale.toFixed(1)}`)}
 
-## Over the rest-distance rule
+## Over the rest rule
 
-The same when pairs must have come nearer than this part of their distance at rest.
+The same for other values of the setting \`rest_scale\`.
 
-${curve("rest_curve", (p) => p.rest_fraction.toFixed(1))}
+${curve("rest_curve", (p) => p.rest_scale.toFixed(1))}
 
 ## Capsules over their quantile
 
-The number of capsules is behind the motion's name. In brackets the recall on what a ragdoll could find at all: without the true pairs
-within one capsule or between neighbours, with those within one sphere.
+The number of capsules stands behind the motion's name. The recall in brackets counts only what a ragdoll could find: it leaves out true pairs
+within one capsule or between neighbouring ones, and adds those within one sphere.
 
 ${capsuleCurve()}
 
 ## Where
 
-All motions together, the pairs whose skins intersect.
+All motions together, the pairs of spheres whose skins intersect, by region.
 
 ${groups("by_region")}
 
-A pair is in each chain that holds both of its spheres.
+The same by chain. A pair counts for each chain that holds both of its spheres.
 
 ${groups("by_chain")}`);

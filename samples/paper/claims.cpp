@@ -219,7 +219,7 @@ Verdict judge_pivots(const Results& results) {
   std::string finding;
   std::size_t better = 0, rules = 0;
   for (const auto& [series, name] :
-       {std::pair(kPivotsPaper, "the paper's rule"), std::pair(kPivotsCalibrated, "calibrated")}) {
+       {std::pair(kPivotsPaper, "the paper's rule"), std::pair(kPivotsMoments, "moments")}) {
     const Table t = results.sweep.sweep.where("series", series);
     if (t.empty()) continue;
     const std::vector<double> error = t.numbers("refit_sphere_p95_mm"), pivots = t.numbers("value");
@@ -413,7 +413,7 @@ Table derive_defaults(const Results& results) {
         }
         return best;
       });
-  add({"pivots", kPivotsCalibrated, static_cast<double>(current.bind.pivots), "refit_sphere_p95_mm", "mm",
+  add({"pivots", kPivotsMoments, static_cast<double>(current.bind.pivots), "refit_sphere_p95_mm", "mm",
        "The fewest within a tenth of the least 95th percentile of the refitted sphere's distance."},
       cheapest);
   return out;

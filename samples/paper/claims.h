@@ -22,7 +22,7 @@ struct Results {
 // The sweep's series. PD runs without head, hands and feet (profile paper) and with them (balanced).
 inline constexpr const char *kDepthPaper = "penetration_depth", *kDepthExtremities = "penetration_depth_extremities",
                             *kPerLevel = "spheres_per_level", *kDelta = "delta", *kPivotsPaper = "pivots_paper",
-                            *kPivotsCalibrated = "pivots_calibrated";
+                            *kPivotsMoments = "pivots_moments";
 
 // The numbers of the paper that disagree (design.md): six chains of 23 are 138 entries.
 inline constexpr double kStatedSpheres = 80, kSummedSpheres = 46, kStatedChain = 23, kChainCount = 6,

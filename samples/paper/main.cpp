@@ -52,10 +52,9 @@ std::vector<Setting> settings(bool quick) {
       quick ? Values{0.1, 0.3, 0.5} : Values{0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5});
   add(kPerLevel, "balanced", "spheres_per_level", {1, 2, 3});
   add(kDelta, "balanced", "delta", quick ? Values{0.005, 0.015, 0.03} : Values{0.0025, 0.005, 0.01, 0.015, 0.03, 0.06});
-  // One pivot is no sphere: its distance from the centre is nothing (paper), and no weights put the centre
-  // (calibrated).
+  // One pivot makes no sphere: it has no distance from the centre, and its weight cannot place the centre.
   add(kPivotsPaper, "balanced", "pivots", quick ? Values{4, 16} : Values{2, 4, 6, 8, 12, 16}, ",\"refit\":\"paper\"");
-  add(kPivotsCalibrated, "balanced", "pivots", quick ? Values{4, 8, 16} : Values{4, 6, 8, 12, 16});
+  add(kPivotsMoments, "balanced", "pivots", quick ? Values{4, 8, 16} : Values{4, 6, 8, 12, 16});
   return out;
 }
 

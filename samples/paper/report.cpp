@@ -48,24 +48,19 @@ Section gpu_section(const Results& results) {
     return out;
   }
   out.text = {
-      "The paper's own mappings (`cuda/paper`), one character: M2 with a thread a sphere, which it tests against all "
-      "of "
-      "the mesh (m^2 tests); M1 with a thread a chain, and with a thread a sphere of a chain, against all of the chain "
-      "(n_c n^2). " +
+      "The paper's own mappings (`cuda/paper`) for one character. M2: a thread tests one sphere against the whole mesh "
+      "(m^2 tests). M1: a thread takes one chain, or one sphere of a chain, and tests the whole chain (n_c n^2 tests). "
+      "Measured on: " +
           results.gpu.machine + ", by `" + results.gpu.command +
-          "`. The kernel alone is timed by CUDA events; its launch by the host's clock, with the count back; with "
-          "copies, "
-          "the frame's spheres are taken there first and the pairs brought back. Before anything is timed the pairs "
-          "are "
-          "compared with the CPU's. Every time is the median of its repetitions; launches of more than 0.1 s are timed "
-          "on "
-          "every 20th frame.",
-      "The two least counts are the bakes \"ours, profile paper\" and \"ours, denser\" below. In the others each "
-      "sphere "
-      "of the first is replaced by smaller ones inside it, of its volume together, in every chain that holds it; their "
-      "pairs are "
-      "ignored, or near, as the two spheres' pair is. The CPU's times are the runtime's scalar jobs and the same "
-      "threads' bodies in a loop (loops), one core of the same machine."};
+          "`. CUDA events time the kernel alone. The host's clock times its launch, with the count back. \"With "
+          "copies\" "
+          "also takes the frame's spheres there and brings the pairs back. The pairs are compared with the CPU's "
+          "before "
+          "anything is timed. Every time is a median; launches of more than 0.1 s are timed on every 20th frame.",
+      "The two smallest counts are the bakes \"ours, profile paper\" and \"ours, denser\" below. In the others each "
+      "sphere of the first is replaced by smaller ones inside it, with the same volume together, in every chain that "
+      "holds it. Their pairs are ignored, or are rest pairs, where the two spheres' pair is. The CPU's times are the "
+      "runtime's scalar jobs, and the same threads' bodies in a loop (loops), on one core of the same machine."};
   out.figures = {gpu_time_figure(results), gpu_count_figure(results)};
   Table medians = gpu_medians(results.gpu);
   for (auto& row : medians.rows) row[2].word = gpu_label(row[2].word);
@@ -82,7 +77,7 @@ Section gpu_section(const Results& results) {
 std::vector<Section> sections(const Results& results) {
   std::vector<Section> out;
   out.push_back({"What the paper claims",
-                 {"Every verdict is computed from the run's tables by the rule beside it."},
+                 {"A rule computes each verdict from the run's tables. The rule stands beside it."},
                  {},
                  {show(judge_claims(results), {{"paper_says", "The paper says"},
                                                {"verdict", "Verdict"},
@@ -91,15 +86,14 @@ std::vector<Section> sections(const Results& results) {
                                                {"where", "Where"}})}});
   out.push_back(
       {"Figure 13: the three fits of the torso",
-       {"phi1 is the sphere of the climbing disk, phi1' the same after the sphere adjustment, phi2 the minimum "
-        "enclosing "
-        "ball, read in two ways: around the vertices of the sphere's band of the torso (as the bake report has it), or "
-        "around the colliding points of the disk's rays alone. Eccentricity is that of the ellipse with the section's "
-        "second moments, 0 for a circle. Left and right spheres mirror each other, so that the eight are four shapes.",
-        "The paper finds on its body: sphere 0: phi2 better in the first half of the colliding points; sphere 1: phi1' "
-        "there; 2 and 3 like 0 and 1; 4: phi2 from r8; 5: phi2 in r0 to r25; 6: phi1' before r16; 7: phi1' after r16. "
-        "On "
-        "this one:"},
+       {"phi1 is the sphere of the climbing disk. phi1' is the same after the sphere adjustment. phi2 is the minimum "
+        "enclosing ball, read in two ways: around the vertices of the sphere's band of the torso (as the bake report "
+        "has it), or around the colliding points of the disk's rays. The eccentricity is that of the ellipse with the "
+        "section's second moments: 0 for a circle. Left and right spheres mirror each other, so eight spheres are four "
+        "shapes.",
+        "The paper finds on its body: sphere 0: phi2 is better in the first half of the colliding points; sphere 1: "
+        "phi1' is better there; 2 and 3 are like 0 and 1; 4: phi2 from r8; 5: phi2 in r0 to r25; 6: phi1' before r16; "
+        "7: phi1' after r16. On this body:"},
        {accuracy_figure(results), shape_figure(results)},
        {show(results.accuracy.spheres, {{"sphere", "Sphere"},
                                         {"level", "Level"},
@@ -115,16 +109,14 @@ std::vector<Section> sections(const Results& results) {
   out.push_back(
       {"Figure 15: time of a frame",
        {"The runtime's own jobs, scalar, on one core, at the paper's radius: " + results.machine +
-        ". In every repetition each frame and method takes its turn; a time is the median of the repetitions."},
+        ". Each frame and method takes its turn in every repetition. A time is the median of the repetitions."},
        {running_time_figure(results)},
        {}});
   out.push_back(gpu_section(results));
   out.push_back({"46 or 80 spheres",
-                 {"Table 1 puts every limb in three chains, L and R in two each, T in three, D in one: 3x + 2t + 3|T| "
-                  "+ |D| entries "
-                  "for x limb and t torso spheres. The paper's two numbers, 138 entries and 80 spheres, do not fit "
-                  "each other. Both "
-                  "readings, and bakes near them:"},
+                 {"Table 1 puts every limb in three chains, L and R in two each, T in three, D in one. So x limb and t "
+                  "torso spheres make 3x + 2t + 3|T| + |D| entries. The paper's two numbers, 138 entries and 80 "
+                  "spheres, do not fit each other. Here are both readings, and bakes close to them:"},
                  {sphere_count_figure(results)},
                  {show(compare_readings(results), {{"reading", "Reading"},
                                                    {"penetration_depth", "PD", 2},
@@ -140,11 +132,10 @@ std::vector<Section> sections(const Results& results) {
                                                    {"us_m2", "us M2", 2}})}});
   Section sweep{
       "What each setting costs and brings",
-      {"One setting at a time, the others at their defaults (profile balanced unless said otherwise). The share of "
-       "skin "
-       "outside the detect radius is what detect_quantile leaves, less what neighbours cover. A level's place is "
-       "found by bisection between two stops of the disk, so that delta only matters where it steps over one. One "
-       "pivot is no sphere: its distance from itself is nothing."},
+      {"One setting changes at a time; the others keep their defaults (profile balanced unless said otherwise). The "
+       "skin outside the detect radius is what detect_quantile leaves out, less what neighbours cover. A level's place "
+       "is found by bisection between two stops of the disk, so delta matters only where the disk steps over one. One "
+       "pivot makes no sphere, because it has no distance from itself."},
       {},
       {show(derive_defaults(results), {{"setting", "Setting"},
                                        {"current", "Default", 3},
@@ -161,15 +152,15 @@ std::vector<Section> sections(const Results& results) {
   add_sweep("spheres_per_level", "spheres a level N_s", {{kPerLevel, "", kMain}});
   add_sweep("delta", "delta (of the height)", {{kDelta, "", kMain}});
   add_sweep("pivots", "pivots",
-            {{kPivotsPaper, "the paper's refit", kOther}, {kPivotsCalibrated, "calibrated refit", kMain}});
+            {{kPivotsPaper, "the paper's refit", kOther}, {kPivotsMoments, "refit by moments", kMain}});
   out.push_back(std::move(sweep));
   out.push_back(
       {"Sphere sets by the field's measures",
-       {"10,000 points inside the body and 10,000 of its skin, the same for every set. Coverage: the volume inside "
-        "some "
-        "sphere; outside: the spheres' volume outside the skin, of the part's volume; volume ratio: their sum; "
-        "protrusion: how deep points of the spheres lie outside the skin; gap: how far the skin is from the spheres. "
-        "Body is all of it, core what the paper covers (without head, hands and feet), torso that of the core."},
+       {"All sets are measured at the same 10,000 points inside the body and 10,000 points of its skin. Coverage: the "
+        "volume inside some sphere. Outside: the spheres' volume outside the skin, of the part's volume. Volume ratio: "
+        "the sum of both. Protrusion: how deep points of the spheres lie outside the skin. Gap: how far the skin is "
+        "from the spheres. Body is all of it; core is what the paper covers (no head, hands and feet); torso is the "
+        "core's torso."},
        {quality_figure(results)},
        {show(results.quality, {{"set", "Set"},
                                {"radius", "Radius"},
@@ -288,12 +279,16 @@ void write_docs(const std::filesystem::path& file, const Results& results) {
   const std::filesystem::path folder = std::filesystem::path(file).replace_extension();
   std::filesystem::create_directories(folder);
   std::string page = fmt::format(
-      "# {}\n\nWritten by `scripts/paper.sh`; do not edit. \"Self-collision Detection using Sphere Chains\" on the "
-      "MakeHuman body of Debian's `assimp-testmodels`: profile `paper` is the paper's setting (N_r = 80, N_s = 2, "
-      "delta = "
-      "0.25 of its decimetres, PD = 30 %). The script's page, `out/paper/index.html`, shows the same with all figures, "
-      "and "
-      "the CSV files beside it hold every number.\n\n",
+      "# {}\n\nWritten by `scripts/paper.sh --docs docs/paper.md`; do not edit. It repeats the experiments of "
+      "\"Self-collision Detection using Sphere Chains\" and judges the paper's claims.\n\n"
+      "- The character is the MakeHuman body of Debian's `assimp-testmodels`. Two animations of 40 frames move its "
+      "arms "
+      "and its legs (`samples/poses`).\n"
+      "- Profile `paper` is the paper's setting: N_r = 80 rays, N_s = 2 spheres a level, delta = 0.25 of its "
+      "decimetres, PD = 30 %.\n"
+      "- M1 tests spheres along each chain. M2 tests every sphere against all others. Elsewhere in this project they "
+      "are called `chains` and `all_pairs`.\n"
+      "- The run also writes `out/paper/index.html`, with all figures, and a CSV file for each table.\n\n",
       kTitle);
   for (const Section& section : sections(results)) {
     page += "## " + section.title + "\n\n";

@@ -160,7 +160,7 @@ TEST_CASE("spheres a level, pivots: recomputed from sweep.csv") {
   CHECK(verdict("per_level") == graded(f[1] < f[0] && f[2] < f[1], f[1] < f[0]));
 
   int better = 0;
-  for (const char* series : {"pivots_paper", "pivots_calibrated"}) {
+  for (const char* series : {"pivots_paper", "pivots_moments"}) {
     const std::vector<Row> rows = only(sweep, "series", series);
     const double with_four = number(only(rows, "value", "4").front(), "refit_sphere_p95_mm");
     if (number(rows.back(), "refit_sphere_p95_mm") < 0.9 * with_four) ++better;
@@ -176,7 +176,7 @@ TEST_CASE("defaults: recomputed from sweep.csv") {
     return number(only(defaults, "setting", setting).front(), "follows");
   };
   for (const auto& [setting, series, error] : {std::tuple("spheres_per_level", "spheres_per_level", "torso_f_mean_mm"),
-                                               std::tuple("pivots", "pivots_calibrated", "refit_sphere_p95_mm")}) {
+                                               std::tuple("pivots", "pivots_moments", "refit_sphere_p95_mm")}) {
     const std::vector<Row> rows = only(sweep, "series", series);
     const std::vector<double> errors = numbers(rows, error);
     const double enough = 1.1 * *std::min_element(errors.begin(), errors.end());
