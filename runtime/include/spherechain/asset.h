@@ -89,7 +89,7 @@ SPHERECHAIN_API const char* sc_asset_morph_name(const sc_asset* asset, size_t in
 SPHERECHAIN_API const char* sc_asset_region_name(const sc_asset* asset, size_t index) SC_NOEXCEPT;
 SPHERECHAIN_API sc_source_buffer sc_asset_source_buffer(const sc_asset* asset, size_t index) SC_NOEXCEPT;
 
-/* A 64-bit FNV-1a over x, y, z of each position, negative zero taken as zero. `stride` in bytes. */
+/* A 64-bit FNV-1a over x, y, z of each position, negative zero taken as zero. `stride` in bytes; 0: 12. */
 SPHERECHAIN_API uint64_t sc_hash_positions(const float* positions, size_t count, size_t stride) SC_NOEXCEPT;
 
 #define SC_WHOLE_SOURCE ((size_t)-1)

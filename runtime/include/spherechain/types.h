@@ -40,7 +40,7 @@ SC_ENUM(sc_code){
     SC_OVERFLOW = 1,           /* an output buffer is too small; the job's counts say how many entries there are */
     SC_NULL = 2,               /* the field is required and null */
     SC_MISALIGNED = 3,         /* the field's memory is not aligned as its type */
-    SC_TOO_SMALL = 4,          /* the field has fewer entries than the call needs */
+    SC_TOO_SMALL = 4,          /* the field has fewer entries than the call needs, or a filter's buffer another number */
     SC_BAD_STRIDE = 5,         /* a stride below the size of an entry, or no multiple of 4 */
     SC_BAD_VALUE = 6,          /* the field has a value that does not exist */
     SC_ALIASED = 7,            /* the field is written and overlaps another buffer of the call */
