@@ -24,7 +24,7 @@ inline constexpr const char *kDepthPaper = "penetration_depth", *kDepthExtremiti
                             *kPerLevel = "spheres_per_level", *kDelta = "delta", *kPivotsPaper = "pivots_paper",
                             *kPivotsMoments = "pivots_moments";
 
-// The numbers of the paper that disagree (design.md): six chains of 23 are 138 entries.
+// The numbers of the paper that disagree (docs/paper.md): six chains of 23 are 138 entries.
 inline constexpr double kStatedSpheres = 80, kSummedSpheres = 46, kStatedChain = 23, kChainCount = 6,
                         kStatedDepth = 0.3;
 

@@ -66,7 +66,7 @@ Verdict judge_gpu_m1_faster(const Table& medians) {
 Verdict judge_gpu_needs_many(const Table& medians) {
   if (medians.empty()) return without_gpu();
   bool behind_below = true, behind_first = false, ahead_last = false;
-  std::string finding = "Fastest kernel with launch and copies against the fastest of the runtime's scalar jobs:";
+  std::string finding = "Fastest kernel with launch and copies against the faster of M1 and M2 on one core of the CPU:";
   const std::vector<double> counts = counts_of(medians);
   for (const double spheres : counts) {
     const double gpu = fastest(medians, spheres, "frame_us", {kGpuM1Chain, kGpuM1Sphere, kGpuM2Sphere});

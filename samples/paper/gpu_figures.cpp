@@ -33,8 +33,6 @@ std::string gpu_label(const std::string& method) {
          : method == kGpuEmpty    ? "an empty kernel"
          : method == kCpuM1       ? "M1 on the CPU"
          : method == kCpuM2       ? "M2 on the CPU"
-         : method == kCpuM1Loops  ? "M1 on the CPU, loops"
-         : method == kCpuM2Loops  ? "M2 on the CPU, loops"
                                   : method;
 }
 
@@ -74,8 +72,8 @@ Figure gpu_time_figure(const Results& results) {
 Figure gpu_count_figure(const Results& results) {
   Figure figure{"figure16_counts",
                 "Figure 16 over the number of spheres, medians over both animations. Left: the kernels alone; middle: "
-                "with launch and copies; right: a thread a sphere with launch and copies beside the runtime's "
-                "scalar jobs on one core.",
+                "with launch and copies; right: a thread a sphere with launch and copies beside one core of a "
+                "CPU.",
                 3,
                 300,
                 {}};

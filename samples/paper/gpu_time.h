@@ -22,7 +22,7 @@ struct GpuTime {
 // Methods as the file names them.
 inline constexpr const char *kGpuM1Chain = "gpu_m1_chain", *kGpuM1Sphere = "gpu_m1_sphere",
                             *kGpuM2Sphere = "gpu_m2_sphere", *kGpuEmpty = "gpu_empty", *kCpuM1 = "cpu_m1",
-                            *kCpuM2 = "cpu_m2", *kCpuM1Loops = "cpu_m1_loops", *kCpuM2Loops = "cpu_m2_loops";
+                            *kCpuM2 = "cpu_m2";
 
 // Empty where there is no such file. Throws Error(kFile) that names it where it is another one.
 GpuTime read_gpu_time(const std::filesystem::path& file);

@@ -59,8 +59,8 @@ Section gpu_section(const Results& results) {
           "anything is timed. Every time is a median; launches of more than 0.1 s are timed on every 20th frame.",
       "The two smallest counts are the bakes \"ours, profile paper\" and \"ours, denser\" below. In the others each "
       "sphere of the first is replaced by smaller ones inside it, with the same volume together, in every chain that "
-      "holds it. Their pairs are ignored, or are rest pairs, where the two spheres' pair is. The CPU's times are the "
-      "runtime's scalar jobs, and the same threads' bodies in a loop (loops), on one core of the same machine."};
+      "holds it. Their pairs are ignored, or are rest pairs, where the two spheres' pair is. The CPU's times are of "
+      "one core of the same machine: M1 takes the threads' own code in a loop, M2 is the product's scalar job."};
   out.figures = {gpu_time_figure(results), gpu_count_figure(results)};
   Table medians = gpu_medians(results.gpu);
   for (auto& row : medians.rows) row[2].word = gpu_label(row[2].word);
@@ -68,7 +68,7 @@ Section gpu_section(const Results& results) {
                                {"method", "Method"},
                                {"frames", "Frames"},
                                {"overlaps", "Overlaps", 1},
-                               {"kernel_us", "us, kernel or job", 2},
+                               {"kernel_us", "us, kernel or CPU", 2},
                                {"launch_us", "with launch", 2},
                                {"frame_us", "with launch and copies", 2}})};
   return out;
@@ -108,8 +108,10 @@ std::vector<Section> sections(const Results& results) {
                                         {"phi2_better_at", "phi2 better at"}})}});
   out.push_back(
       {"Figure 15: time of a frame",
-       {"The runtime's own jobs, scalar, on one core, at the paper's radius: " + results.machine +
-        ". Each frame and method takes its turn in every repetition. A time is the median of the repetitions."},
+       {"All times are of scalar code on one core, at the paper's radius: " + results.machine +
+        ". M1 and M2 are plain loops of one style (`runtime/src/pairs/plain_detection.h`), so that their times can be "
+        "compared. M1 is no part of the product. The product's refit and its all_pairs job, which finds what M2 finds, "
+        "stand beside them. Each frame and method takes its turn in every repetition. A time is the median of the repetitions."},
        {running_time_figure(results)},
        {}});
   out.push_back(gpu_section(results));

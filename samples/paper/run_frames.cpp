@@ -3,7 +3,8 @@
 
 #include <chrono>
 
-#include "mesh/error.h"
+#include "pairs/plain_detection.h"
+#include "play/asset_file.h"
 #include "spherechain/detect.h"
 #include "spherechain/refit.h"
 #include "statistics.h"
@@ -13,10 +14,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-void check(Status status) {
-  if (status != Status::kOk) throw baker::Error(baker::ExitCode::kInternal, to_string(status));
-}
-
 bool overlap(const Sphere& p, const Sphere& q) {
   const float dx = p.x - q.x, dy = p.y - q.y, dz = p.z - q.z, s = p.radius + q.radius;
   return (dx * dx + dy * dy) + dz * dz < s * s;
@@ -25,38 +22,38 @@ bool overlap(const Sphere& p, const Sphere& q) {
 // The buffers of a game that runs one asset.
 class Runner {
  public:
-  explicit Runner(const std::vector<std::uint8_t>& bytes) {
-    char message[256] = "";
-    if (asset_.open(bytes.data(), bytes.size(), message, sizeof message) != Status::kOk) {
-      throw baker::Error(baker::ExitCode::kInternal, message);
-    }
-    const std::size_t n = asset_.spheres().size;
-    spheres_.resize(n);
-    pairs_.resize(n * (n - 1) / 2);
-    words_.resize(DetectContext::words_needed(asset_));
-  }
+  explicit Runner(const std::vector<std::uint8_t>& bytes)
+      : asset_({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "a bake"),
+        spheres_(asset_->spheres().size),
+        pairs_(spheres_.size() * (spheres_.size() - 1) / 2) {}
 
-  Cost run(std::size_t method, const std::vector<float>& positions) {
+  Cost run(RunMethod method, const std::vector<float>& positions) {
     Cost cost;
     const auto start = Clock::now();
     switch (method) {
-      case 0:
+      case kRefit:
         refit(positions);
         break;
-      case 1:
-      case 2:
-        cost = detect(method == 1 ? Method::kM1 : Method::kM2);
+      case kM1:
+        cost = plain_chains();
         break;
-      case 3:
-        for (std::size_t c = 0; c < asset_.chain_count(); ++c) {
-          const Span<const std::uint32_t> chain = asset_.chain(c).spheres;
+      case kM2:
+        cost = plain_all_pairs();
+        break;
+      case kFullM1:
+        for (std::size_t c = 0; c < asset_->chain_count(); ++c) {
+          const Span<const std::uint32_t> chain = asset_->chain(c).spheres;
           compare_all(
               chain.size, [&](std::size_t i) { return spheres_[chain[i]]; }, cost);
         }
         break;
-      default:
+      case kFullM2:
         compare_all(
             spheres_.size(), [&](std::size_t i) { return spheres_[i]; }, cost);
+        break;
+      case kProduct:
+        cost = detect();
+        break;
     }
     cost.us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
     return cost;
@@ -65,26 +62,36 @@ class Runner {
  private:
   void refit(const std::vector<float>& positions) {
     RefitJob job;
-    job.asset = &asset_;
-    job.positions = positions.data();
-    job.vertex_count = positions.size() / 3;
-    job.radius = RadiusKind::kFit;
-    job.spheres = {spheres_.data(), spheres_.size()};
-    check(job.run());
+    job.asset = asset_.handle();
+    job.pose.vertices = positions.data();
+    job.pose.vertex_count = positions.size() / 3;
+    job.radius = SC_RADIUS_FIT;
+    job.spheres = spheres_.data();
+    job.sphere_capacity = spheres_.size();
+    baker::check_runtime(job.run());
   }
 
-  Cost detect(Method method) {
-    DetectContext context{{words_.data(), words_.size()}};
+  Cost plain_chains() const {
+    const PlainResult found = PlainDetection(asset_.view(), SC_RADIUS_FIT).chains(spheres_.data());
+    return {found.test_count, found.chain_pairs.size(), 0};
+  }
+
+  Cost plain_all_pairs() const {
+    const PlainResult found = PlainDetection(asset_.view(), SC_RADIUS_FIT).all_pairs(spheres_.data());
+    return {found.test_count, found.pairs.size(), 0};
+  }
+
+  Cost detect() {
     DetectJob job;
-    job.asset = &asset_;
-    job.spheres = {spheres_.data(), spheres_.size()};
-    job.radius = RadiusKind::kFit;
-    job.method = method;
-    job.target = Target::kScalar;
-    job.context = &context;
-    job.pairs = {pairs_.data(), pairs_.size()};
-    check(job.run());
-    return {job.test_count, job.chain_pair_count, 0};
+    job.asset = asset_.handle();
+    job.spheres = spheres_.data();
+    job.sphere_count = spheres_.size();
+    job.radius = SC_RADIUS_FIT;
+    job.target = SC_TARGET_SCALAR;
+    job.pairs = pairs_.data();
+    job.pair_capacity = pairs_.size();
+    baker::check_runtime(job.run());
+    return {pairs_.size() - asset_->ignored_count(), job.pair_count, 0};
   }
 
   template <typename At>
@@ -96,10 +103,9 @@ class Runner {
     cost.tests += n * n;
   }
 
-  Asset asset_;
+  baker::OpenAsset asset_;
   std::vector<Sphere> spheres_;
   std::vector<Pair> pairs_;
-  std::vector<std::uint64_t> words_;
 };
 
 }  // namespace
@@ -122,7 +128,7 @@ std::vector<std::vector<FrameCost>> run_frames(const std::vector<std::vector<std
     for (std::size_t a = 0; a < assets.size(); ++a) {
       for (std::size_t f = 0; f < frames.size(); ++f) {
         for (std::size_t m = 0; m < kMethods.size(); ++m) {
-          out[a][f].methods[m] = runners[a].run(m, positions[f]);
+          out[a][f].methods[m] = runners[a].run(static_cast<RunMethod>(m), positions[f]);
           times[a][f][m].push_back(out[a][f].methods[m].us);
         }
       }

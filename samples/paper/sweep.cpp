@@ -11,8 +11,8 @@
 
 #include "experiments.h"
 #include "measure/refit_error.h"
+#include "play/player.h"
 #include "run_frames.h"
-#include "spherechain/refit.h"
 #include "statistics.h"
 
 namespace spherechain::paper {
@@ -110,20 +110,11 @@ Columns cover(const Study& study, const baker::SampledBody& samples, const Bake&
 
 Columns refit_error(const Study& study, const Bake& bake) {
   const std::vector<baker::SkinFollower> followers = skin_followers(bake);
-  Asset asset;
-  if (asset.open(bake.asset.data(), bake.asset.size()) != Status::kOk) throw std::logic_error("a bake does not open");
-  std::vector<Sphere> spheres(followers.size());
+  const baker::OpenAsset asset({reinterpret_cast<const char*>(bake.asset.data()), bake.asset.size()}, "a bake");
   std::vector<double> center, radius, sphere;
   for (const Animation& animation : study.animations()) {
     for (const std::vector<Vec3>& frame : animation.frames) {
-      const std::vector<float> packed = baker::pack(frame);
-      RefitJob job;
-      job.asset = &asset;
-      job.positions = packed.data();
-      job.vertex_count = frame.size();
-      job.radius = RadiusKind::kFit;
-      job.spheres = {spheres.data(), spheres.size()};
-      if (job.run() != Status::kOk) throw std::logic_error("a bake does not refit");
+      const std::vector<Sphere> spheres = refit_spheres(asset, baker::pack(frame), SC_RADIUS_FIT);
       for (std::size_t s = 0; s < spheres.size(); ++s) {
         const Ball best = followers[s].at(frame);
         const Sphere& got = spheres[s];
@@ -141,7 +132,7 @@ Columns refit_error(const Study& study, const Bake& bake) {
 }
 
 Columns running_costs(const Study& study, const std::vector<FrameCost>& frames) {
-  Columns out{{"tests_m1", frames[0].methods[1].tests}, {"tests_m2", frames[0].methods[2].tests}};
+  Columns out{{"tests_m1", frames[0].methods[kM1].tests}, {"tests_m2", frames[0].methods[kM2].tests}};
   for (std::size_t m = 0; m < kMethods.size(); ++m) {
     std::string method = kMethods[m];
     std::transform(method.begin(), method.end(), method.begin(),
@@ -153,7 +144,7 @@ Columns running_costs(const Study& study, const std::vector<FrameCost>& frames) 
       us.push_back(frame.methods[m].us);
       us_of[frame.animation].push_back(frame.methods[m].us);
     }
-    if (m > 0) out.push_back({"overlaps_" + method, mean(overlaps)});
+    if (m != kRefit) out.push_back({"overlaps_" + method, mean(overlaps)});
     out.push_back({"us_" + method, median(us)});
     for (std::size_t a = 0; a < us_of.size(); ++a) {
       out.push_back({"us_" + method + "_" + study.animations()[a].name, median(us_of[a])});

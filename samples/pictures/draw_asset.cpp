@@ -13,8 +13,7 @@
 
 using namespace spherechain::baker;
 using namespace spherechain::pictures;
-using spherechain::Asset;
-using spherechain::RadiusKind;
+using spherechain::Radius;
 using Vec3 = spherechain::baker::Vec3;
 
 namespace {
@@ -26,28 +25,29 @@ struct Options {
   int frame = -1, height = 900;
 };
 
-std::set<std::uint32_t> touching(const Asset& asset, const std::vector<spherechain::Sphere>& spheres,
-                                 RadiusKind radius) {
+std::set<std::uint32_t> touching(const OpenAsset& asset, const std::vector<spherechain::Sphere>& spheres,
+                                 Radius radius) {
   std::vector<spherechain::Pair> pairs(spheres.size() * (spheres.size() - 1) / 2);
   spherechain::DetectJob job;
-  job.asset = &asset;
-  job.spheres = {spheres.data(), spheres.size()};
+  job.asset = asset.handle();
+  job.spheres = spheres.data();
+  job.sphere_count = spheres.size();
   job.radius = radius;
-  job.pairs = {pairs.data(), pairs.size()};
-  if (const auto status = job.run(); status != spherechain::Status::kOk)
-    throw Error(ExitCode::kInternal, to_string(status));
+  job.pairs = pairs.data();
+  job.pair_capacity = pairs.size();
+  check_runtime(job.run());
   std::set<std::uint32_t> ids;
   for (std::size_t i = 0; i < job.pair_count; ++i) {
     ids.insert({pairs[i].a, pairs[i].b});
-    std::cout << asset.region(asset.spheres()[pairs[i].a].region).name << ' ' << pairs[i].a << " - "
-              << asset.region(asset.spheres()[pairs[i].b].region).name << ' ' << pairs[i].b << '\n';
+    std::cout << asset->region(asset->spheres()[pairs[i].a].region).name << ' ' << pairs[i].a << " - "
+              << asset->region(asset->spheres()[pairs[i].b].region).name << ' ' << pairs[i].b << '\n';
   }
   return ids;
 }
 
 void draw(const Options& options) {
   const AnimatedAsset animated(options.asset, options.source, options.motion, options.frames);
-  const Asset& asset = animated.asset();
+  const OpenAsset& asset = animated.asset();
   const Character& character = animated.character();
   const std::vector<Vec3> positions = animated.positions(animated.deformation(
       options.frame < 0 ? animated.frame_count() - 1 : std::min(options.frame, animated.frame_count() - 1)));
@@ -57,11 +57,11 @@ void draw(const Options& options) {
   for (std::size_t v = 0; v < positions.size(); ++v) {
     if (character.skin_of_source[v] != kNoIndex) picture.mesh.positions[character.skin_of_source[v]] = positions[v];
   }
-  const RadiusKind radius = options.radius == "fit" ? RadiusKind::kFit : RadiusKind::kDetect;
+  const Radius radius = options.radius == "fit" ? SC_RADIUS_FIT : SC_RADIUS_DETECT;
   const std::vector<spherechain::Sphere> spheres = refit_spheres(asset, pack(positions), radius);
   const std::set<std::uint32_t> ids = touching(asset, spheres, radius);
   for (std::uint32_t i = 0; i < spheres.size(); ++i) {
-    const std::uint8_t region = asset.spheres()[i].region;
+    const std::uint8_t region = asset->spheres()[i].region;
     picture.spheres.push_back({Vec3(spheres[i].x, spheres[i].y, spheres[i].z), static_cast<double>(spheres[i].radius),
                                kRegionColours[region % kRegionColours.size()], ids.count(i) > 0});
   }

@@ -82,9 +82,9 @@ TEST_CASE("a file that is not the program's is refused by name, not taken for a 
 TEST_CASE("medians are over the frames of both animations, and a CPU's method has but one time") {
   const GpuTime time = read_gpu_time(SPHERECHAIN_MADE_UP_GPU_TIME);
   CHECK(time.machine.find("Made-up GPU, CUDA 1.1 (driver: CUDA 1.2)") == 0);
-  CHECK(time.frames.rows.size() == 2 * (24 + 24 + 19));
+  CHECK(time.frames.rows.size() == 2 * (18 + 18 + 15));
   const Table medians = gpu_medians(time);
-  CHECK(medians.rows.size() == 24);
+  CHECK(medians.rows.size() == 18);
   const Table m2 = medians.where("spheres", 84.0).where("method", "gpu_m2_sphere");
   // 8 us times 1, 10.1, 1.02 and 1.02, 1.03, 1.04; with copies the second is 1.01
   CHECK(m2.number(0, "kernel_us") == doctest::Approx(8 * 1.025));
@@ -117,7 +117,7 @@ TEST_CASE("many spheres are needed where the CPU leads below 10,000 and the GPU 
 
 TEST_CASE("the page of a run with a GPU's times has Figure 16, its machine and its verdicts") {
   const std::vector<Row> medians = read_csv("figure16_medians.csv"), claims = read_csv("claims.csv");
-  CHECK(medians.size() == 24);
+  CHECK(medians.size() == 18);
   CHECK(only(claims, "id", "gpu").front().at("verdict") == "holds");  // least lead, 50 spheres with copies: 12 of 13 us
   CHECK(only(claims, "id", "gpu_many").front().at("verdict") == "holds");
   const std::string markdown = read_output("paper.md"), page = read_output("index.html");

@@ -16,7 +16,7 @@ namespace {
 const nlohmann::json& paper_asset() {
   static const nlohmann::json inspected = [] {
     const auto file = spherechain::baker::open_asset(std::string(SPHERECHAIN_PAPER_OUT) + "/paper.sphc");
-    return nlohmann::json::parse(spherechain::baker::inspect_json(file.asset));
+    return nlohmann::json::parse(spherechain::baker::inspect_json(file));
   }();
   return inspected;
 }
@@ -134,8 +134,11 @@ TEST_CASE("figure 15 has every frame of both animations, with the tests that the
     }
   }
   // The full loops see every overlap from both sides, neighbours and the sphere itself included.
-  const std::vector<Row> m2 = only(all, "method", "M2"), full = only(all, "method", "M2 full");
+  const std::vector<Row> m2 = only(all, "method", "M2"), full = only(all, "method", "M2 full"),
+                         product = only(all, "method", "all_pairs");
+  REQUIRE(product.size() == m2.size());
   for (std::size_t f = 0; f < m2.size(); ++f) {
+    CHECK(product[f].at("overlaps") == m2[f].at("overlaps"));
     CHECK(number(full[f], "overlaps") >= 2 * number(m2[f], "overlaps") + paper_asset()["sphere_count"].get<double>());
   }
 }
