@@ -24,7 +24,6 @@
 #include "truth/intersections.h"
 
 using namespace spherechain::baker;
-using spherechain::test::Covered;
 using spherechain::test::PoseKind;
 using Matrices = std::vector<spherechain::test::Matrix>;
 
