@@ -97,8 +97,7 @@ PageFrame PageFrames::run(const std::vector<float>& positions) {
   out.detect_pairs = pairs_of(detect_);
   for (std::size_t s = 0; s < fit_.spheres().size(); ++s) {
     const Sphere& sphere = fit_.spheres()[s];
-    out.spheres.insert(out.spheres.end(),
-                       {sphere.x, sphere.y, sphere.z, sphere.radius, detect_.spheres()[s].radius});
+    out.spheres.insert(out.spheres.end(), {sphere.x, sphere.y, sphere.z, sphere.radius, detect_.spheres()[s].radius});
   }
   const Player::TriangleDetection found = detect_.detect_triangles(positions);
   out.contacts_us = found.us;

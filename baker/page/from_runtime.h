@@ -16,7 +16,7 @@ namespace spherechain::baker {
 struct PageSphere {
   std::vector<std::uint32_t> triangles;  // source triangle numbers: those of the sphere
   std::vector<std::uint32_t> pivots;     // of these the ones that carry it
-  double mean_abs_f, max_abs_f;          // the paper's F (section 3.2) over the triangles' corners at rest; source units
+  double mean_abs_f, max_abs_f;  // the paper's F (section 3.2) over the triangles' corners at rest; source units
 };
 // Whether the body is one with arms, which stands upright.
 bool has_arms(const OpenAsset& asset);
@@ -34,8 +34,8 @@ PageParts page_parts(const OpenAsset& asset);
 struct PageFrame {
   std::vector<std::array<std::uint32_t, 2>> contacts;  // triangles of the skin that intersect
   double contacts_us;
-  std::vector<float> spheres;                                 // a sphere's x, y, z, fit radius, detect radius
-  std::vector<std::array<std::uint16_t, 2>> fit_pairs;        // spheres that touch at these radii
+  std::vector<float> spheres;                           // a sphere's x, y, z, fit radius, detect radius
+  std::vector<std::array<std::uint16_t, 2>> fit_pairs;  // spheres that touch at these radii
   std::vector<std::array<std::uint16_t, 2>> detect_pairs;
   double refit_us;
   Detection chains, all_pairs;  // at the radius the page starts with

@@ -71,23 +71,26 @@ ordered_json spheres_json(const std::vector<PageSphere>& spheres) {
   return out;
 }
 
-ordered_json clips_json(const AnimatedAsset& animated, const std::string& motion, int frames) {
+ordered_json clips_json(const AnimatedAsset& animated, const std::string& motion) {
   ordered_json out = ordered_json::array();
-  for (const PageClip& clip : page_clips(animated, motion)) {
-    if (clip.first_frame >= frames) break;
-    out.push_back({{"name", clip.name},
-                   {"first", clip.first_frame},
-                   {"count", std::min(clip.frame_count, frames - clip.first_frame)}});
+  for (const ClipFrames& clip : animated.clips()) {
+    if (clip.count == 0) continue;
+    out.push_back({{"name", clip.name.empty() ? motion : clip.name},
+                   {"first", clip.first},
+                   {"count", clip.count},
+                   {"own_count", clip.own_count}});
   }
   return out;
 }
 
 // Throws where the page is too large: `still` bytes that are the same in however many frames, and `moving` of all of
 // them.
-void check_size(const AnimatedAsset& animated, int frames, double still, double moving, const PageOptions& options) {
+void check_size(const AnimatedAsset& animated, double still, double moving, const PageOptions& options) {
+  const int frames = animated.frame_count();
   const double max = static_cast<double>(options.max_bytes);
   if (still + moving <= max) return;
-  const int fewer = still < max ? static_cast<int>(0.75 * frames * (max - still) / moving) : 0;
+  // Later frames may have more contacts than those that were played.
+  const int fewer = still < max ? static_cast<int>(0.5 * frames * (max - still) / moving) : 0;
   throw Error(ExitCode::kUsage,
               fmt::format("{}: {} frames make a page of {:.1f} MB, of which browsers open {:.1f} MB ({})",
                           animated.file(), frames, (still + moving) / 1e6, max / 1e6,
@@ -95,18 +98,13 @@ void check_size(const AnimatedAsset& animated, int frames, double still, double 
                                     : "its mesh has too many triangles"));
 }
 
-// A character that nothing moves shows one frame.
-int frames_of(const AnimatedAsset& animated) {
-  const Deformation first = animated.deformation(0);
-  const bool moves = !first.bones.empty() || !first.morphs.empty() || !first.positions.empty();
-  return moves ? animated.frame_count() : 1;
-}
-
 // `still` is the size of the page without them.
-ordered_json frames_json(const AnimatedAsset& animated, int frames, const PageOptions& options, double still,
-                         PageMotion& motion, const std::function<void(int)>& progress) {
+ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& options, double still, PageMotion& motion,
+                         const std::function<void(int)>& progress) {
+  const int frames = animated.frame_count();
   PageFrames runtime(animated, options.radius);
-  std::vector<float> times, spheres, refit_us, contacts_us;
+  std::vector<std::uint32_t> numbers;
+  std::vector<float> times, seconds, spheres, refit_us, contacts_us;
   FrameLists<std::array<std::uint32_t, 2>> contacts;
   FrameLists<std::array<std::uint16_t, 2>> fit_pairs, detect_pairs;
   Costs chains, all_pairs;
@@ -116,6 +114,8 @@ ordered_json frames_json(const AnimatedAsset& animated, int frames, const PageOp
     const std::vector<Vec3> positions = animated.positions(deformation);
     motion.add(deformation, positions);
     const PageFrame frame = runtime.run(pack(positions));
+    numbers.push_back(static_cast<std::uint32_t>(animated.frame_at(i).number));
+    seconds.push_back(static_cast<float>(animated.frame_at(i).seconds));
     times.push_back(static_cast<float>(animated.time(i)));
     spheres.insert(spheres.end(), frame.spheres.begin(), frame.spheres.end());
     contacts.add(frame.contacts);
@@ -126,13 +126,15 @@ ordered_json frames_json(const AnimatedAsset& animated, int frames, const PageOp
     refit_us.push_back(static_cast<float>(frame.refit_us));
     contacts_us.push_back(static_cast<float>(frame.contacts_us));
     // Base64 has four letters for three bytes.
-    constexpr std::size_t kFigures = 12 * sizeof(float);  // times, counts and costs of a frame
-    const std::size_t bytes = (times.size() * kFigures) + motion.bytes() + spheres.size() * sizeof(float) + contacts.bytes() + fit_pairs.bytes() +
-                              detect_pairs.bytes();
-    check_size(animated, frames, still, static_cast<double>(bytes) * 4 / 3 / (i + 1) * frames, options);
+    constexpr std::size_t kFigures = 14 * sizeof(float);  // times, counts and costs of a frame
+    const std::size_t bytes = times.size() * kFigures + motion.bytes() + spheres.size() * sizeof(float) +
+                              contacts.bytes() + fit_pairs.bytes() + detect_pairs.bytes();
+    check_size(animated, still, static_cast<double>(bytes) * 4 / 3 / (i + 1) * frames, options);
   }
   return {{"count", frames},
           {"fps", options.fps},
+          {"numbers", base64(numbers)},
+          {"seconds", base64(seconds)},
           {"times", base64(times)},
           {"spheres", base64(spheres)},
           {"contacts", contacts.json()},
@@ -154,7 +156,6 @@ std::string view_page(const AnimatedAsset& animated, const PageOptions& options,
   if (at == std::string::npos) {
     throw Error(ExitCode::kFile, options.template_file + ": is not the viewer's page (build it again)");
   }
-  const int frames = frames_of(animated);
   const BodyFrame axes = page_axes(animated);
   const PageParts parts = page_parts(animated.asset());
   const std::vector<PageSphere> spheres = page_spheres(animated.asset(), animated.character());
@@ -166,17 +167,17 @@ std::string view_page(const AnimatedAsset& animated, const PageOptions& options,
                     {"report", parsed_or_null(options.report)},
                     {"validation", parsed_or_null(options.validation)},
                     {"radius", options.radius == SC_RADIUS_FIT ? "fit" : "detect"},
-                    {"clips", clips_json(animated, options.motion, frames)},
+                    {"clips", clips_json(animated, options.motion)},
                     {"mesh", page_mesh(animated, animated.character().source_positions, parts, spheres)}};
   const double still = static_cast<double>(page.size() + json_text(data, -1).size());
   PageMotion motion(animated.character(), axes);
-  data["frames"] = frames_json(animated, frames, options, still, motion, progress);
+  data["frames"] = frames_json(animated, options, still, motion, progress);
   data["motion"] = motion.json();
   data["mesh"] = page_mesh(animated, motion.rest(), parts, spheres);
   std::string text = json_text(data, -1);
   // Nothing in it may end the script.
   for (std::size_t i = text.find('<'); i != std::string::npos; i = text.find('<', i)) text.replace(i, 1, "\\u003c");
-  check_size(animated, frames, still, static_cast<double>(page.size() + text.size()) - still, options);
+  check_size(animated, still, static_cast<double>(page.size() + text.size()) - still, options);
   return page.substr(0, at) + open + text + page.substr(at + open.size() + std::string("null").size());
 }
 

@@ -16,18 +16,7 @@ void add(std::vector<float>& out, const Vec3& v) {
 
 }  // namespace
 
-std::vector<PageClip> page_clips(const AnimatedAsset& animated, const std::string& name) {
-  std::vector<PageClip> out;
-  for (int i = 0; i < animated.frame_count(); ++i) {
-    const std::string clip = animated.clip_at(i).empty() ? name : animated.clip_at(i);
-    if (out.empty() || out.back().name != clip) out.push_back({clip, i, 0});
-    ++out.back().frame_count;
-  }
-  return out;
-}
-
 void PageMotion::add(const Deformation& deformation, const std::vector<Vec3>& positions) {
-  ++frames_;
   for (const Affine& bone : deformation.bones) {
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 4; ++column) bones_.push_back(static_cast<float>(bone.matrix()(row, column)));

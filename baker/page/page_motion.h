@@ -1,22 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <array>
 #include <nlohmann/json_fwd.hpp>
-#include <string>
 #include <vector>
 
-#include "play/play.h"
+#include "import/import.h"
+#include "motion/motion.h"
+#include "segment/body_plan.h"
 
 namespace spherechain::baker {
-
-// A run of frames that one clip has.
-struct PageClip {
-  std::string name;
-  int first_frame, frame_count;
-};
-// One clip called `name` where the motion is not made of clips.
-std::vector<PageClip> page_clips(const AnimatedAsset& animated, const std::string& name);
 
 // What moves the mesh, frame by frame: bones and weights of morph targets, or the vertices themselves.
 class PageMotion {
@@ -38,7 +30,7 @@ class PageMotion {
 
   const Character& character_;
   BodyFrame axes_;
-  std::size_t frames_ = 0, morph_count_ = 0;
+  std::size_t morph_count_ = 0;
   std::vector<float> bones_, vertices_, morphs_;
   std::vector<float> boxes_, centers_;  // of the character in the axes, their height as the unit
 };

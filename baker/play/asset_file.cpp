@@ -38,8 +38,7 @@ OpenAsset::OpenAsset(std::string_view bytes, const std::string& name)
   const Status status =
       sc_asset_open(&asset_, SC_ABI_VERSION, bytes_.data(), bytes.size(), message, sizeof(message));
   if (status != SC_OK) {
-    throw Error(ExitCode::kFile, name + ": " + sc_code_text(status.code) +
-                                     (message[0] ? std::string(": ") + message : "") + " (bake it again)");
+    throw Error(ExitCode::kFile, name + ": " + sc_code_text(status.code) + ": " + message + " (bake it again)");
   }
   table_.resize(sc_skin_table_words(&asset_));
   if (!table_.empty()) {

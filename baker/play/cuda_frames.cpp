@@ -14,7 +14,7 @@ namespace spherechain::baker {
 namespace {
 
 void check_cuda(Status status) {
-  if (status != Status::kOk) {
+  if (status != SC_OK) {
     throw Error(ExitCode::kInternal, std::string("--backend cuda: ") + to_string(status) + " (" +
                                          cuda::last_device_error() + "; --backend auto needs no GPU)");
   }
@@ -26,7 +26,7 @@ CudaFrames play_on_cuda(const AnimatedAsset& animated, Radius radius) {
   const OpenAsset& asset = animated.asset();
   if (asset->bone_count() == 0 || asset->refit_rule() != RefitRule::kMoments) {
     throw Error(ExitCode::kFile,
-                animated.file() + ": has no bones by moments, which --backend cuda refits from (bake it by moments)");
+                animated.file() + ": has no bones that its spheres can be refitted from (bake it with profile balanced)");
   }
   check_cuda(cuda::check_device());
   const auto count = static_cast<std::size_t>(animated.frame_count());
@@ -40,9 +40,10 @@ CudaFrames play_on_cuda(const AnimatedAsset& animated, Radius radius) {
   std::vector<std::uint32_t> counts(count);
   std::vector<CrowdPair> pairs(most * count + 1);
   cuda::HostCrowd crowd;
-  check_cuda(crowd.open(asset, radius, nullptr, count, pairs.size()));
-  crowd.bones = {matrices.data(), asset->bone_count(), MatrixLayout::kRowMajor3x4, 48};
-  crowd.instance_stride = asset->bone_count() * 48;
+  check_cuda(crowd.open(*asset.handle(), radius, nullptr, count, pairs.size()));
+  crowd.pose.bones = matrices.data();
+  crowd.pose.bone_count = asset->bone_count();
+  crowd.pose.bone_layout = SC_ROWS_3X4;
   crowd.instance_count = count;
   crowd.spheres = spheres.data();
   crowd.counts = counts.data();

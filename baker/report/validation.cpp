@@ -44,7 +44,7 @@ ordered_json groups_json(const std::vector<PairGroup>& groups) {
   return out;
 }
 
-// The points whose radius is another, or whose rest fraction.
+// The points whose radius is another, or whose rest scale.
 ordered_json curve_json(const std::vector<CurvePoint>& curve, bool radius) {
   ordered_json out = ordered_json::array();
   for (const CurvePoint& point : curve) {
@@ -88,7 +88,7 @@ std::string curve_text(const Validation& validation) {
   out += curve_row("as it is", validation.chains, validation.all_pairs);
   for (const CurvePoint& point : validation.curve) {
     const std::string name = point.change.rest_scale
-                                 ? fmt::format("rest fraction {:.1f}", *point.change.rest_scale)
+                                 ? fmt::format("rest scale {:.1f}", *point.change.rest_scale)
                                  : fmt::format("radius x {:.1f}", point.change.scale);
     out += curve_row(name, point.chains, point.all_pairs);
   }

@@ -108,7 +108,7 @@ struct Runner::Memory {
         chain_begin(tables.chain_begin.data(), tables.chain_begin.size()),
         members(tables.members.data(), tables.members.size()),
         ignored(tables.asset->ignored().data, tables.asset->ignored().size),
-        near(tables.asset->near_pairs(tables.radius).data, tables.asset->near_pairs(tables.radius).size),
+        rest_pairs(tables.asset->rest_pairs(tables.radius).data, tables.asset->rest_pairs(tables.radius).size),
         entries(capacity),
         count(1),
         host_spheres(tables.sphere_count(), Buffer<Sphere>::Place::kHost),
@@ -119,13 +119,13 @@ struct Runner::Memory {
     scene.chain_begin = chain_begin.get();
     scene.members = members.get();
     scene.ignored = ignored.get();
-    scene.near = near.get();
+    scene.rest_pairs = rest_pairs.get();
   }
 
   Buffer<Sphere> spheres;
   Buffer<std::uint32_t> chain_begin, members;
   Buffer<std::uint64_t> ignored;
-  Buffer<NearPair> near;
+  Buffer<RestPair> rest_pairs;
   Buffer<ChainPair> entries;
   Buffer<std::uint32_t> count;
   Buffer<Sphere> host_spheres;

@@ -7,13 +7,12 @@
 #include <vector>
 
 #include "paper_threads.h"
-#include "spherechain/asset.h"
 
 namespace spherechain::cuda_paper {
 
 // The asset, open, must outlive it.
 struct Tables {
-  Tables(const Asset& asset_, RadiusKind radius_) : asset(&asset_), radius(radius_), chain_begin{0} {
+  Tables(const AssetView& asset_, Radius radius_) : asset(&asset_), radius(radius_), chain_begin{0} {
     for (std::size_t c = 0; c < asset->chain_count(); ++c) {
       const Span<const std::uint32_t> spheres = asset->chain(c).spheres;
       members.insert(members.end(), spheres.begin(), spheres.end());
@@ -27,13 +26,13 @@ struct Tables {
 
   // For threads on the host.
   Scene scene(const Sphere* spheres) const {
-    const Span<const NearPair> near = asset->near_pairs(radius);
+    const Span<const RestPair> rest = asset->rest_pairs(radius);
     return {spheres,        sphere_count(),        chain_begin.data(), chain_count(),
-            members.data(), asset->ignored().data, near.data,          static_cast<std::uint32_t>(near.size)};
+            members.data(), asset->ignored().data, rest.data,          static_cast<std::uint32_t>(rest.size)};
   }
 
-  const Asset* asset;
-  RadiusKind radius;
+  const AssetView* asset;
+  Radius radius;
   std::vector<std::uint32_t> chain_begin, members;
   std::uint32_t longest_chain = 0;
 };

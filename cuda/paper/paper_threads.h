@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // The overlap tests of the paper's section 5.2 as it ran them on a GPU, thread by thread: each sphere against every
 // other, of the mesh or of a chain. Compiled for the device, and by any C++ compiler for the tests, which run one
-// thread after the other. Spheres, pairs and arithmetic are those of detect.h.
+// thread after the other. Spheres, pairs and arithmetic are those of PlainDetection.
 #pragma once
 
 #include <cfloat>
 #include <cstddef>
 #include <cstdint>
 
-#include "spherechain/detect.h"
+#include "pairs/plain_detection.h"
 
 #if defined(__CUDACC__)
 #define SPHERECHAIN_PAPER_BODY __host__ __device__ inline
@@ -25,9 +25,9 @@ struct Scene {
   const std::uint32_t* chain_begin;  // chain_count + 1 places in `members`
   std::uint32_t chain_count;
   const std::uint32_t* members;  // the chains' spheres, chain after chain
-  const std::uint64_t* ignored;  // as Asset::ignored()
-  const NearPair* near;          // sorted
-  std::uint32_t near_count;
+  const std::uint64_t* ignored;  // as AssetView::ignored()
+  const RestPair* rest_pairs;    // sorted
+  std::uint32_t rest_pair_count;
 };
 
 // What is found, in no order: M1's raw list, a pair once for each chain that holds it; M2's pairs, as of chain 0.
@@ -57,33 +57,33 @@ SPHERECHAIN_PAPER_BODY float squared_distance(const Sphere& p, const Sphere& q) 
 
 SPHERECHAIN_PAPER_BODY bool overlap(const Sphere& p, const Sphere& q) {
   const float s = p.radius + q.radius;
-  const float squared_reach = s * s;
-  return squared_distance(p, q) < squared_reach && squared_reach <= FLT_MAX;
+  const float square = s * s;
+  return squared_distance(p, q) < square && square <= FLT_MAX;
 }
 
-// "Two spheres collide when they are not adjacent": spheres i and j, which overlap, unless their pair is left out, or
-// is a near one and not near enough.
+// "Two spheres collide when they are not adjacent": spheres i and j, which overlap, unless their pair is ignored, or
+// is a rest pair and not close enough.
 SPHERECHAIN_PAPER_BODY bool is_reported(const Scene& scene, std::uint32_t i, std::uint32_t j) {
   const std::uint32_t a = i < j ? i : j, b = i < j ? j : i;
   const std::uint64_t bit = std::uint64_t{b} * (b - 1) / 2 + a;
   if (((scene.ignored[bit / 64] >> (bit % 64)) & 1U) != 0) {
     return false;
   }
-  std::uint32_t low = 0, high = scene.near_count;
+  std::uint32_t low = 0, high = scene.rest_pair_count;
   while (low < high) {
     const std::uint32_t middle = low + (high - low) / 2;
-    const NearPair& near = scene.near[middle];
-    if (near.a < a || (near.a == a && near.b < b)) {
+    const RestPair& pair = scene.rest_pairs[middle];
+    if (pair.a < a || (pair.a == a && pair.b < b)) {
       low = middle + 1;
     } else {
       high = middle;
     }
   }
-  if (low == scene.near_count || scene.near[low].a != a || scene.near[low].b != b) {
+  if (low == scene.rest_pair_count || scene.rest_pairs[low].a != a || scene.rest_pairs[low].b != b) {
     return true;
   }
   const Sphere &p = scene.spheres[a], &q = scene.spheres[b];
-  const float t = scene.near[low].reach * (p.radius + q.radius);
+  const float t = scene.rest_pairs[low].rest_scale * (p.radius + q.radius);
   return squared_distance(p, q) < t * t;
 }
 

@@ -27,7 +27,7 @@ template <typename Run>
 SPHERECHAIN_HD void run_sphere_block(const GroupView& v, const Shared& shared, const Run& run) {
   run.for_instances(v, shared,  //
                     warp_step(true, [&](const WarpInstance& w) { load_spheres(v, w); }),
-                    warp_step(v.has_padding, [&](const WarpInstance& w) { pad_spheres(v, w); }),
+                    warp_step(v.has_padding != 0, [&](const WarpInstance& w) { pad_spheres(v, w); }),
                     warp_step(true, [&](const WarpInstance& w) { see_spheres(v, w); }),
                     warp_step(true, [&](const WarpInstance& w) { find_pairs(v, w); }),
                     warp_step(true, [&](const WarpInstance& w) { decide_pairs(v, w); }),
@@ -58,7 +58,7 @@ SPHERECHAIN_HD void run_bone_block(const GroupView& v, const Shared& shared, con
 
 template <typename Run>
 SPHERECHAIN_HD void run_block(const GroupView& v, const Shared& shared, const Run& run) {
-  if (v.matrices == nullptr) {
+  if (v.pose.bones == nullptr) {
     run_sphere_block(v, shared, run);
   } else {
     run_bone_block(v, shared, run);
@@ -101,7 +101,7 @@ struct RunThread {
 // makes the `run` of block b.
 template <typename MakeRun>
 SPHERECHAIN_HD void run_blocks_in_scratch(const GroupView& v, std::uint32_t first, const MakeRun& make_run) {
-  const Shared memory(v.scratch + first * v.layout.size, v.layout);
+  const Shared memory(static_cast<unsigned char*>(v.scratch) + first * v.layout.size, v.layout);
   for (std::uint32_t block = first; block < blocks_of(v); block += v.scratch_blocks) {
     run_block(v, memory, make_run(block));
   }

@@ -2,12 +2,13 @@
 // The kernel for bones: from the caller's matrices to the ones that moments are multiplied with.
 #pragma once
 
+#include "asset/moment_tables.h"
 #include "crowd_primitives.h"
 
 namespace spherechain::cuda {
 
 SPHERECHAIN_HD std::uint32_t instances_in(const GroupView& v, const Place& at) {
-  const std::uint32_t most = block_instances(v), left = v.instance_count - at.block * most;
+  const std::uint32_t most = block_instances(v), left = v.instances - at.block * most;
   return left < most ? left : most;
 }
 
@@ -18,26 +19,26 @@ SPHERECHAIN_HD void load_matrices(const GroupView& v, const Shared& shared, cons
     shared.dealt[at.thread] = 0;
   }
   const std::uint32_t last = instances_in(v, at) - 1;
-  const float* const first = v.matrices + std::size_t{at.block} * kLanes * v.instance_stride;
+  const float* const first = v.pose.bones + std::size_t{at.block} * kLanes * v.instance_floats;
   if (v.wide_matrices && !v.in_scratch) {
     for (std::uint32_t i = at.lane(); i < 3 * v.used_bone_count; i += kLanes) {
-      const float* const row = first + (v.used_bones[i / 3] * v.bone_stride + i % 3 * v.steps.row);
+      const float* const row = first + (v.used_bones[i / 3] * v.bone_floats + i % 3 * v.steps.row);
       Float4* const to = shared.matrices + i * kPitch;
       SPHERECHAIN_UNROLL
       for (std::uint32_t turn = 0; turn * at.warps() < kLanes; ++turn) {
         const std::uint32_t place = turn * at.warps() + at.warp();
         if (place < kLanes) {
-          copy_past_cache(to + place, row + std::size_t{place < last ? place : last} * v.instance_stride);
+          copy_past_cache(to + place, row + std::size_t{place < last ? place : last} * v.instance_floats);
         }
       }
     }
   } else {
     for (std::uint32_t i = at.lane(); i < 12 * v.used_bone_count; i += kLanes) {
       const std::uint32_t figure =
-          v.used_bones[i / 12] * v.bone_stride + i / 4 % 3 * v.steps.row + i % 4 * v.steps.column;
+          v.used_bones[i / 12] * v.bone_floats + i / 4 % 3 * v.steps.row + i % 4 * v.steps.column;
       for (std::uint32_t to = at.warp(); to < kLanes; to += at.warps()) {
         (&shared.matrices[i / 4 * kPitch + to].x)[i % 4] =
-            first[std::size_t{to < last ? to : last} * v.instance_stride + figure];
+            first[std::size_t{to < last ? to : last} * v.instance_floats + figure];
       }
     }
   }
@@ -59,7 +60,7 @@ SPHERECHAIN_HD void find_reference(const GroupView& v, const Shared& shared, con
 }
 
 // Figures nearer to 0 than that become 0. NaN stays.
-SPHERECHAIN_HD float without_least(float x) { return fabsf(x) < kLeastMatrixFigure ? 0.0F : x; }
+SPHERECHAIN_HD float without_tiny(float x) { return fabsf(x) < kMinMatrixFigure ? 0.0F : x; }
 
 // Step 3, a warp a bone. A translation becomes the origin's image, relative to the reference bone's.
 SPHERECHAIN_HD void center_matrices(const GroupView& v, const Shared& shared, const Place& at) {
@@ -68,7 +69,7 @@ SPHERECHAIN_HD void center_matrices(const GroupView& v, const Shared& shared, co
     for (std::uint32_t i = 0; i < 3; ++i) {
       Float4& row = shared.matrices[(3 * bone + i) * kPitch + at.lane()];
       const float w = move_origin(v, row) - shared.reference[i * kPitch + at.lane()];
-      row = {without_least(row.x), without_least(row.y), without_least(row.z), without_least(w)};
+      row = {without_tiny(row.x), without_tiny(row.y), without_tiny(row.z), without_tiny(w)};
     }
   }
 }

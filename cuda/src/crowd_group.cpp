@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Checks groups and deals them to kernels: all of CrowdJob::run that needs no device.
+// Checks groups and deals them to kernels: all of enqueue_crowds() that needs no device.
 #include <algorithm>
 #include <type_traits>
 
+#include "asset/status.h"
 #include "crowd_launch.h"
+#include "pose/pose.h"
 
 namespace spherechain::cuda {
 namespace {
@@ -11,61 +13,91 @@ namespace {
 constexpr std::size_t kInstancesMax = 0x7FFFFFFF;
 constexpr std::size_t kUintMax = 0xFFFFFFFF;  // what strides and BlockLayout's offsets hold
 
-template <typename... Pointers>
-bool are_aligned(std::size_t to, Pointers... pointers) {
-  return ((reinterpret_cast<std::uintptr_t>(pointers) % to == 0) && ...);
+bool is_aligned(const void* pointer, std::size_t to) { return reinterpret_cast<std::uintptr_t>(pointer) % to == 0; }
+
+// As a whole, where it is 0 in the group.
+std::size_t stride_of(const CrowdGroup& group) {
+  const TableHeader& header = header_of(group.table);
+  return group.instance_stride != 0    ? group.instance_stride
+         : group.pose.bones != nullptr ? header.bone_count * bone_stride(group.pose)
+                                       : header.sphere_count;
 }
 
 Status check_bones(const CrowdGroup& group) {
-  const std::size_t bones = header_of(*group.tables).bone_count, size = size_of(group.bones.layout);
-  const std::size_t stride = group.bones.stride, instance_stride = group.instance_stride;
+  const std::size_t bones = header_of(group.table).bone_count, size = size_of(group.pose.bone_layout);
+  const std::size_t stride = bone_stride(group.pose), instance_stride = stride_of(group);
   if (bones == 0) {
-    return Status::kNotInAsset;
+    return refuse(SC_NOT_IN_ASSET, SC_FIELD_BONES);
   }
   if (size == 0) {
-    return Status::kBadArgument;
+    return refuse(SC_BAD_VALUE, SC_FIELD_BONE_LAYOUT);
   }
-  if (group.bones.count < bones) {
-    return Status::kTooFewBones;
+  if (group.pose.bone_count < bones) {
+    return refuse(SC_TOO_SMALL, SC_FIELD_BONE_COUNT);
   }
-  const bool is_right = stride % sizeof(float) == 0 && stride >= size && stride <= kUintMax / bones &&
-                        instance_stride % sizeof(float) == 0 && instance_stride >= (bones - 1) * stride + size &&
+  if (stride % sizeof(float) != 0 || stride < size || stride > kUintMax / bones) {
+    return refuse(SC_BAD_STRIDE, SC_FIELD_BONE_STRIDE);
+  }
+  const bool is_right = instance_stride % sizeof(float) == 0 && instance_stride >= (bones - 1) * stride + size &&
                         instance_stride <= kUintMax;
-  return is_right ? Status::kOk : Status::kBadStride;
+  return is_right ? done() : refuse(SC_BAD_STRIDE, SC_FIELD_INSTANCE_STRIDE);
+}
+
+Status check_alignment(const CrowdGroup& group) {
+  const struct {
+    const void* pointer;
+    std::size_t to;
+    sc_field field;
+  } all[] = {{group.device_table, 16, SC_FIELD_TABLE}, {group.spheres, 16, SC_FIELD_SPHERES},
+             {group.pose.bones, 4, SC_FIELD_BONES},    {group.refitted, 16, SC_FIELD_OUTPUT},
+             {group.counts, 4, SC_FIELD_COUNTS},       {group.bits, 8, SC_FIELD_BITS},
+             {group.pairs, 4, SC_FIELD_PAIRS},         {group.starts, 8, SC_FIELD_PAIRS},
+             {group.pair_count, 8, SC_FIELD_PAIRS},    {group.scratch, 16, SC_FIELD_SCRATCH}};
+  for (const auto& one : all) {
+    if (!is_aligned(one.pointer, one.to)) {
+      return refuse(SC_MISALIGNED, one.field);
+    }
+  }
+  return done();
+}
+
+Status check_list(const CrowdGroup& group) {
+  const bool is_empty = group.instance_count == 0;
+  if (group.pair_count == nullptr || (group.starts == nullptr && !is_empty)) {
+    return refuse(SC_NULL, SC_FIELD_PAIRS);
+  }
+  return group.counts == nullptr && !is_empty ? refuse(SC_NULL, SC_FIELD_COUNTS) : done();
 }
 
 Status check(const CrowdGroup& group) {
-  if (group.tables == nullptr) {
-    return Status::kNullArgument;
+  if (group.table == nullptr || group.device_table == nullptr) {
+    return refuse(SC_NULL, SC_FIELD_TABLE);
   }
-  if (group.tables->words.size == 0) {
-    return Status::kNotOpen;
+  if (header_of(group.table).magic != kTableMagic) {
+    return refuse(SC_BAD_VALUE, SC_FIELD_TABLE);
   }
-  const bool from_bones = group.bones.data != nullptr, has_list = group.pairs != nullptr;
-  if (group.device_tables == nullptr || (has_list && group.pair_count == nullptr) ||
-      (group.instance_count > 0 && ((group.spheres == nullptr && !from_bones) ||
-                                    (has_list && (group.counts == nullptr || group.starts == nullptr))))) {
-    return Status::kNullArgument;
+  const bool from_bones = group.pose.bones != nullptr;
+  if (group.spheres == nullptr && !from_bones && group.instance_count > 0) {
+    return refuse(SC_NULL, SC_FIELD_SPHERES);
   }
-  if ((from_bones ? group.spheres != nullptr : group.refitted != nullptr) || group.instance_count > kInstancesMax ||
-      group.stride > kInstancesMax) {
-    return Status::kBadArgument;
+  const sc_field bad = group.instance_count > kInstancesMax              ? SC_FIELD_INSTANCES
+                       : group.pose.vertices != nullptr                  ? SC_FIELD_VERTICES
+                       : from_bones && group.spheres != nullptr          ? SC_FIELD_SPHERES
+                       : !from_bones && group.refitted != nullptr        ? SC_FIELD_OUTPUT
+                       : !from_bones && stride_of(group) > kInstancesMax ? SC_FIELD_INSTANCE_STRIDE
+                                                                         : SC_FIELD_NONE;
+  if (bad != SC_FIELD_NONE) {
+    return refuse(SC_BAD_VALUE, bad);
   }
-  if (!are_aligned(16, group.device_tables, group.spheres, group.refitted, group.scratch) ||
-      !are_aligned(8, group.bits, group.starts, group.pair_count) ||
-      !are_aligned(4, group.bones.data, group.counts, group.pairs)) {
-    return Status::kMisaligned;
+  Status status = check_alignment(group);
+  if (status == SC_OK && group.pairs != nullptr) {
+    status = check_list(group);
   }
-  if (!from_bones && group.stride != 0 && group.stride < header_of(*group.tables).sphere_count) {
-    return Status::kTooFewSpheres;
+  if (status == SC_OK && from_bones) {
+    status = check_bones(group);
   }
-  return from_bones ? check_bones(group) : Status::kOk;
-}
-
-MatrixSteps steps_of(MatrixLayout layout) {
-  return layout == MatrixLayout::kColumnMajor4x4   ? MatrixSteps{1, 4}
-         : layout == MatrixLayout::kColumnMajor3x4 ? MatrixSteps{1, 3}
-                                                   : MatrixSteps{4, 1};
+  const bool is_right = from_bones || stride_of(group) >= header_of(group.table).sphere_count;
+  return status != SC_OK || is_right ? status : refuse(SC_BAD_STRIDE, SC_FIELD_INSTANCE_STRIDE);
 }
 
 // Places one after another.
@@ -113,8 +145,8 @@ BlockLayout layout_of_spheres(const GroupView& v) {
   return out;
 }
 
-// The tables' entries, of the copy that lies at `words`.
-void view_tables(const TableHeader& header, const std::uint64_t* words, GroupView& v) {
+// The table's entries, of the copy that lies at `words`.
+void view_table(const TableHeader& header, const std::uint64_t* words, GroupView& v) {
   const auto point = [&](auto*& to, std::uint32_t place) {
     to = reinterpret_cast<std::remove_reference_t<decltype(to)>>(words + place);
   };
@@ -130,30 +162,23 @@ void view_tables(const TableHeader& header, const std::uint64_t* words, GroupVie
   point(v.run_bones, header.run_bones);
   point(v.run_spheres, header.run_spheres);
   point(v.center_terms, header.center_terms);
-  v.origin = header.origin;
-  v.sphere_count = header.sphere_count;
-  v.used_bone_count = header.used_bone_count;
-  v.item_count = header.item_count;
-  v.rest_pair_count = header.rest_pair_count;
-  v.run_count = header.run_count;
-  v.bit_words = header.bit_words;
-  v.reference = header.reference;
-  v.origin_sphere = header.origin_sphere;
-  v.has_padding = header.has_padding != 0;
+  static_cast<TableFigures&>(v) = header;
 }
 
 }  // namespace
 
-BlockLayout layout_of(const GroupView& v) { return v.matrices != nullptr ? layout_of_bones(v) : layout_of_spheres(v); }
+BlockLayout layout_of(const GroupView& v) {
+  return v.pose.bones != nullptr ? layout_of_bones(v) : layout_of_spheres(v);
+}
 
-std::size_t CrowdTables::block_bytes(bool from_bones, bool with_bits, bool with_pairs) const noexcept {
+std::size_t crowd_block_bytes(const std::uint64_t* table, bool from_bones, bool with_bits, bool with_pairs) noexcept {
   alignas(16) static std::uint64_t something[2];  // it only matters what is null
-  if (words.size == 0) {
+  if (table == nullptr || header_of(table).magic != kTableMagic) {
     return 0;
   }
   GroupView v{};
-  view_tables(header_of(*this), something, v);
-  v.matrices = from_bones ? reinterpret_cast<const float*>(something) : nullptr;
+  view_table(header_of(table), something, v);
+  v.pose.bones = from_bones ? reinterpret_cast<const float*>(something) : nullptr;
   v.bits = with_bits ? something : nullptr;
   v.pairs = with_pairs ? reinterpret_cast<CrowdPair*>(something) : nullptr;
   return layout_of(v).size;
@@ -161,49 +186,38 @@ std::size_t CrowdTables::block_bytes(bool from_bones, bool with_bits, bool with_
 
 Status view_group(const CrowdGroup& group, GroupView& view) {
   const Status status = check(group);
-  if (status != Status::kOk) {
+  if (status != SC_OK) {
     return status;
   }
   view = {};
-  view_tables(header_of(*group.tables), group.device_tables, view);
-  view.instance_count = static_cast<std::uint32_t>(group.instance_count);
-  view.spheres = group.spheres;
-  view.sphere_stride = group.stride == 0 ? view.sphere_count : group.stride;
-  view.matrices = group.bones.data;
-  view.bone_stride = static_cast<std::uint32_t>(group.bones.stride / sizeof(float));
-  view.instance_stride = static_cast<std::uint32_t>(group.instance_stride / sizeof(float));
-  view.steps = steps_of(group.bones.layout);
-  view.wide_matrices = view.steps.column == 1 && are_aligned(16, group.bones.data) &&
-                       group.bones.stride % sizeof(Float4) == 0 && group.instance_stride % sizeof(Float4) == 0;
-  view.refitted = group.refitted;
-  view.counts = group.counts;
-  view.bits = group.bits;
-  view.pairs = group.pairs;
-  view.pair_capacity = group.pair_capacity;
-  view.starts = group.starts;
-  view.pair_count = group.pair_count;
-  view.scratch = static_cast<unsigned char*>(group.scratch);
-  view.scratch_bytes = group.scratch_bytes;
+  static_cast<CrowdGroup&>(view) = group;
+  view_table(header_of(group.table), group.device_table, view);
+  const BoneMatrices matrices = matrices_of(group.pose);
+  const std::size_t stride = stride_of(group);
+  view.instances = static_cast<std::uint32_t>(group.instance_count);
+  view.sphere_stride = stride;
+  view.bone_floats = static_cast<std::uint32_t>(matrices.stride);
+  view.instance_floats = static_cast<std::uint32_t>(stride / sizeof(float));
+  view.steps = {static_cast<std::uint32_t>(matrices.row), static_cast<std::uint32_t>(matrices.column)};
+  view.wide_matrices = view.steps.column == 1 && is_aligned(matrices.data, 16) &&
+                       matrices.stride * sizeof(float) % sizeof(Float4) == 0 && stride % sizeof(Float4) == 0;
   view.layout = layout_of(view);
-  return Status::kOk;
+  return done();
 }
 
-Status view_groups(Span<const CrowdGroup> groups, Launch& all) {
-  if (groups.data == nullptr && groups.size > 0) {
-    return Status::kNullArgument;
-  }
-  if (groups.size > CrowdJob::kGroupsMax) {
-    return Status::kBadArgument;
+Status view_groups(const CrowdGroup* groups, std::size_t count, Launch& all) {
+  if (count > kCrowdGroupsMax || (groups == nullptr && count > 0)) {
+    return refuse(groups == nullptr ? SC_NULL : SC_BAD_VALUE, SC_FIELD_INSTANCES);
   }
   all.count = 0;
-  for (const CrowdGroup& group : groups) {
-    const Status status = view_group(group, all.views[all.count]);
-    if (status != Status::kOk) {
+  for (std::size_t g = 0; g < count; ++g) {
+    const Status status = view_group(groups[g], all.views[all.count]);
+    if (status != SC_OK) {
       return status;
     }
-    all.count += group.instance_count > 0 ? 1U : 0U;
+    all.count += groups[g].instance_count > 0 ? 1U : 0U;
   }
-  return Status::kOk;
+  return done();
 }
 
 Status plan_launches(const Launch& all, std::size_t shared_bytes_max, LaunchPlan& plan) {
@@ -215,22 +229,24 @@ Status plan_launches(const Launch& all, std::size_t shared_bytes_max, LaunchPlan
     std::size_t blocks = blocks_of(view);
     if (in_scratch) {
       if (view.scratch == nullptr || bytes > kUintMax) {
-        return Status::kDeviceTooSmall;
+        return refuse(SC_DEVICE_TOO_SMALL, SC_FIELD_SCRATCH);
       }
       if (view.scratch_bytes < bytes) {
-        return Status::kContextTooSmall;
+        return refuse(SC_TOO_SMALL, SC_FIELD_SCRATCH);
       }
       blocks = std::min(view.scratch_bytes / bytes, blocks);
       view.scratch_blocks = static_cast<std::uint32_t>(blocks);
       view.in_scratch = true;
     }
-    Launch& launch = plan[in_scratch ? Kernel::kScratch : view.matrices == nullptr ? Kernel::kSpheres : Kernel::kBones];
+    Launch& launch = plan[in_scratch                   ? Kernel::kScratch
+                          : view.pose.bones == nullptr ? Kernel::kSpheres
+                                                       : Kernel::kBones];
     view.first_block = launch.blocks;
     launch.blocks += static_cast<std::uint32_t>(blocks);
     launch.shared_bytes = std::max(launch.shared_bytes, in_scratch ? 0 : bytes);
     launch.views[launch.count++] = view;
   }
-  return Status::kOk;
+  return done();
 }
 
 }  // namespace spherechain::cuda

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The kernel for spheres: a warp takes an instance and its lanes share the pairs. By DetectJob's rule.
+// The kernel for spheres: a warp takes an instance and its lanes share the pairs. By sc_detect()'s rule.
 #pragma once
 
 #include "crowd_units.h"
@@ -220,8 +220,8 @@ SPHERECHAIN_HD void find_pairs(const GroupView& v, const WarpInstance& w) {
 SPHERECHAIN_HD void decide_pairs(const GroupView& v, const WarpInstance& w) {
   std::uint32_t touching = 0;
   for_all_lanes_of(v.rest_pair_count, w.lane, [&](std::uint32_t i) {
-    const RestPair& pair = v.rest_pairs[i];
-    touching += decide(v, w, pair.a, pair.b, pair.scale);
+    const RestPairItem& pair = v.rest_pairs[i];
+    touching += decide(v, w, pair.a, pair.b, pair.rest_scale);
   });
   const std::uint32_t queued = w.state->queued < kWarpQueued ? w.state->queued : kWarpQueued;
   for_each_of(queued, w.lane, [&](std::uint32_t i) { touching += decide_queued(v, w, w.state->queue[i]); });

@@ -6,14 +6,12 @@
 
 namespace spherechain::cuda {
 
-inline const TableHeader& header_of(const CrowdTables& tables) {
-  return *reinterpret_cast<const TableHeader*>(tables.words.data);
-}
+inline const TableHeader& header_of(const std::uint64_t* table) { return *reinterpret_cast<const TableHeader*>(table); }
 
 // The memory of a block. Reads the view's counts, and which inputs and outputs there are.
 BlockLayout layout_of(const GroupView& view);
 
-// Checks a group as CrowdJob::run says and fills in the view, except for its place in a launch.
+// Checks a group as enqueue_crowds() says and fills in the view, except for its place in a launch.
 Status view_group(const CrowdGroup& group, GroupView& view);
 
 // The kernels: for groups of spheres, for groups of bones, and for groups of either whose memory is scratch.
@@ -22,7 +20,7 @@ inline constexpr std::uint32_t kKernels = 3;
 
 // The arguments of a kernel.
 struct Launch {
-  GroupView views[CrowdJob::kGroupsMax];
+  GroupView views[kCrowdGroupsMax];
   std::uint32_t count, blocks;
   std::size_t shared_bytes;  // of a block: what the group that needs most takes
 };
@@ -34,16 +32,22 @@ struct LaunchPlan {
 };
 
 // Fills in the views of the groups that have instances.
-Status view_groups(Span<const CrowdGroup> groups, Launch& all);
+Status view_groups(const CrowdGroup* groups, std::size_t count, Launch& all);
 
-// Deals them to the kernels. `shared_bytes_max`: what a block of the device may have. Returns kOk,
-// kDeviceTooSmall or kContextTooSmall.
+// Deals them to the kernels. `shared_bytes_max`: what a block of the device may have. SC_OK, SC_DEVICE_TOO_SMALL or
+// SC_TOO_SMALL.
 Status plan_launches(const Launch& all, std::size_t shared_bytes_max, LaunchPlan& plan);
 
-// Enqueues a kernel. Returns kOk, kNoDevice or kDeviceFailed.
+struct DeviceLimits {
+  std::size_t shared_bytes_max;  // of a block
+  std::size_t multiprocessors;
+};
+Status find_limits(DeviceLimits& limits);  // of the current device
+
+// Enqueues a kernel. SC_OK, SC_NO_DEVICE or SC_DEVICE_FAILED.
 Status enqueue(Kernel kernel, const Launch& launch, std::size_t shared_bytes_max, CUstream_st* stream);
 
-// kOk, kNoDevice or kDeviceFailed for a cudaError_t, which last_device_error() then tells.
+// The same for a cudaError_t, which last_device_error() then tells.
 Status status_of(int cuda_error);
 
 }  // namespace spherechain::cuda

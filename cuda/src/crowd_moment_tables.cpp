@@ -77,8 +77,8 @@ std::int64_t saved(const MomentTables& tables, const Member& a, const Member& b)
 
 class RunWriter {
  public:
-  RunWriter(const Asset& asset, RadiusKind kind, const std::uint32_t* bone_indices)
-      : tables_(asset.moment_tables()), rest_(asset.spheres()), kind_(kind), bone_indices_(bone_indices) {}
+  RunWriter(const AssetView& asset, Radius radius, const std::uint32_t* bone_indices)
+      : tables_(asset.moment_tables()), rest_(asset.spheres()), radius_(radius), bone_indices_(bone_indices) {}
 
   // Spheres that all have the same two bones, or three.
   void add_few_bones(const Member* members, std::uint32_t count) {
@@ -142,7 +142,7 @@ class RunWriter {
     run.kind = kind;
     for (std::uint32_t s = 0; s < count; ++s) {
       const RestSphere& rest = rest_[members[s].sphere];
-      spheres[sphere_count_++] = {members[s].sphere, kind_ == RadiusKind::kFit ? rest.radius : rest.detect_radius};
+      spheres[sphere_count_++] = {members[s].sphere, radius_ == SC_RADIUS_FIT ? rest.radius : rest.detect_radius};
     }
     return run;
   }
@@ -218,7 +218,7 @@ class RunWriter {
 
   const MomentTables& tables_;
   Span<const RestSphere> rest_;
-  RadiusKind kind_;
+  Radius radius_;
   const std::uint32_t* bone_indices_;
   std::uint32_t run_count_ = 0, step_count_ = 0, moment_count_ = 0, bone_count_ = 0, center_count_ = 0,
                 sphere_count_ = 0;
@@ -258,11 +258,11 @@ void add_other_runs(const MomentTables& tables, Member* members, std::size_t cou
       continue;  // taken already
     }
     Member* best = nullptr;
-    std::int64_t most = 0;
+    std::int64_t best_saving = 0;
     for (Member* other = one + 1; other < members + count && other < one + kNear; ++other) {
       const std::int64_t saving = other->bone_count == 0 ? 0 : saved(tables, *one, *other);
-      best = saving > most ? other : best;
-      most = std::max(most, saving);
+      best = saving > best_saving ? other : best;
+      best_saving = std::max(best_saving, saving);
     }
     Member run[kRunSpheres] = {*one, best != nullptr ? *best : *one};
     writer.add(run, best != nullptr ? 2 : 1);
@@ -272,35 +272,29 @@ void add_other_runs(const MomentTables& tables, Member* members, std::size_t cou
   }
 }
 
-bool has_moments(const Asset& asset) {
-  return asset.refit_rule() == RefitRule::kMoments && asset.moment_tables().spheres.size > 0;
-}
-
 }  // namespace
 
-std::size_t moment_words(const Asset& asset) {
-  if (!has_moments(asset)) {
-    return 0;
-  }
+void add_moments(const AssetView& asset, Radius radius, TableMemory& memory, TableHeader& header) {
   const MomentTables& tables = asset.moment_tables();
   const std::size_t n = tables.spheres.size;
-  return 2 * words_of(asset.bone_count() * sizeof(std::uint32_t)) + words_of(n * sizeof(Member)) +
-         words_of(n * sizeof(MomentRun)) + words_of(n * sizeof(RunSphere)) +
-         words_of(2 * tables.moments.size * sizeof(std::uint32_t)) +
-         words_of(kPairQuads * tables.moments.size * sizeof(Float4)) +
-         words_of(tables.bones.size * sizeof(std::uint32_t)) + words_of(tables.bones.size * sizeof(Float4));
-}
-
-void add_moments(const Asset& asset, RadiusKind radius, TableMemory& memory, TableHeader& header) {
-  if (!has_moments(asset)) {
+  if (n == 0) {
     return;
   }
-  const MomentTables& tables = asset.moment_tables();
-  const std::size_t n = tables.spheres.size;
   std::uint32_t unread = 0;  // where arrays lie that the kernels do not read
   header.bone_count = static_cast<std::uint32_t>(asset.bone_count());
   auto* used_bones = memory.take<std::uint32_t>(header.bone_count, header.used_bones);
   auto* bone_indices = memory.take<std::uint32_t>(header.bone_count, unread);
+  auto* members = memory.take<Member>(n, unread);
+  RunWriter writer(asset, radius, bone_indices);
+  writer.runs = memory.take<MomentRun>(n, header.runs);
+  writer.spheres = memory.take<RunSphere>(n, header.run_spheres);
+  writer.steps = memory.take<std::uint32_t>(2 * tables.moments.size, header.moment_steps);
+  writer.moments = memory.take<Float4>(kPairQuads * tables.moments.size, header.moments);
+  writer.run_bones = memory.take<std::uint32_t>(tables.bones.size, header.run_bones);
+  writer.center_terms = memory.take<Float4>(tables.bones.size, header.center_terms);
+  if (memory.is_null()) {
+    return;
+  }
   bone_indices[tables.reference] = 1;
   for (const std::uint16_t bone : tables.bones) {
     bone_indices[bone] = 1;
@@ -313,15 +307,7 @@ void add_moments(const Asset& asset, RadiusKind radius, TableMemory& memory, Tab
   }
   header.reference = bone_indices[tables.reference];
   header.origin = tables.origin;
-  auto* members = memory.take<Member>(n, unread);
   fill_members(tables, members);
-  RunWriter writer(asset, radius, bone_indices);
-  writer.runs = memory.take<MomentRun>(n, header.runs);
-  writer.spheres = memory.take<RunSphere>(n, header.run_spheres);
-  writer.steps = memory.take<std::uint32_t>(2 * tables.moments.size, header.moment_steps);
-  writer.moments = memory.take<Float4>(kPairQuads * tables.moments.size, header.moments);
-  writer.run_bones = memory.take<std::uint32_t>(tables.bones.size, header.run_bones);
-  writer.center_terms = memory.take<Float4>(tables.bones.size, header.center_terms);
   add_other_runs(tables, members, add_few_bone_runs(tables, members, writer), writer);
   header.run_count = writer.run_count();
   std::sort(writer.runs, writer.runs + header.run_count, [](const MomentRun& l, const MomentRun& r) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The kernel for bones: from centred matrices to spheres, by moments. The arithmetic is RefitBonesJob's.
+// The kernel for bones: from centred matrices to spheres, by moments. The arithmetic is sc_refit()'s.
 #pragma once
 
 #include "crowd_bones.h"

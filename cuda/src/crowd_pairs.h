@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The kernel for bones: which spheres touch, by DetectJob's rule, and its outputs. A lane is an instance.
+// The kernel for bones: which spheres touch, by sc_detect()'s rule, and its outputs. A lane is an instance.
 #pragma once
 
 #include "crowd_bones.h"
@@ -20,8 +20,8 @@ SPHERECHAIN_HD float power_of(const Vec3& p, float radius, float margin) {
   return squared_length + squared_radius <= kExtentMax ? power : INFINITY;
 }
 
-// For multiply-adds. With G = |p|^2 + rp^2 + |q|^2 + rq^2, runtime/src/sphere_columns.h shows that a sum much like this
-// one is off by at most 33 * 2^-24 G; the powers add 4 * 2^-24 G here, and the margin is 64 * 2^-24.
+// For multiply-adds. With G = |p|^2 + rp^2 + |q|^2 + rq^2, runtime/src/pairs/sphere_columns.h shows that a sum much
+// like this one is off by at most 33 * 2^-24 G; the powers add 4 * 2^-24 G here, and the margin is 64 * 2^-24.
 inline constexpr float kPowerMargin = 0x1p-18F;
 
 // Step 6, a warp a sphere: padding and powers. Also clears the outputs' bits, which lie where the matrices were.
@@ -31,7 +31,7 @@ SPHERECHAIN_HD void prepare_pairs(const GroupView& v, const Shared& shared, cons
   const Vec3 origin{first.x, first.y, first.z};  // not the radius, which another thread may be padding
   for (std::uint32_t i = at.warp(); i < v.sphere_count; i += at.warps()) {
     Float4 sphere = shared.spheres[i * kPitch + lane];
-    if (v.has_padding) {
+    if (v.has_padding != 0) {
       sphere.w += v.paddings[i];
       sphere.w = sphere.w < 0 ? NAN : sphere.w;  // touches nothing
       shared.spheres[i * kPitch + lane].w = sphere.w;
@@ -51,7 +51,7 @@ SPHERECHAIN_HD void prepare_pairs(const GroupView& v, const Shared& shared, cons
   }
 }
 
-// DetectJob's rule. `scale`: a rest pair's, else 1.
+// sc_detect()'s rule. `scale`: a rest pair's, else 1.
 SPHERECHAIN_HD bool touch(const Float4& p, const Float4& q, float scale) {
   const float dx = p.x - q.x, dy = p.y - q.y, dz = p.z - q.z;
   const float s = p.w + q.w, squared = s * s, t = scale * s;
@@ -170,8 +170,8 @@ SPHERECHAIN_HD void test_pairs(const GroupView& v, const Shared& shared, const P
         first + kRestPairsAtOnce < v.rest_pair_count ? first + kRestPairsAtOnce : v.rest_pair_count;
     place = deal(&shared.dealt[1], at, round);
     for (std::uint32_t i = first; i < end; ++i) {
-      const RestPair& pair = v.rest_pairs[i];
-      if (touch(shared.spheres[pair.a * kPitch + lane], shared.spheres[pair.b * kPitch + lane], pair.scale)) {
+      const RestPairItem& pair = v.rest_pairs[i];
+      if (touch(shared.spheres[pair.a * kPitch + lane], shared.spheres[pair.b * kPitch + lane], pair.rest_scale)) {
         report(v, shared, lane, pair.a, pair.b);
       }
     }

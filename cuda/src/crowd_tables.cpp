@@ -1,47 +1,48 @@
 // SPDX-License-Identifier: MIT
-// CrowdTables::build, and the pairs that are tested.
+// prepare_crowd(), and the pairs that are tested.
 #include "crowd_tables.h"
 
-#include <algorithm>
 #include <tuple>
 
 #include "crowd_units.h"
-#include "spherechain/detect.h"
+#include "pairs/filter.h"
 
 namespace spherechain::cuda {
 namespace {
-
-bool test_bit(Span<const std::uint64_t> words, std::size_t bit) { return (words[bit / 64] >> (bit % 64) & 1U) != 0; }
 
 // Pairs that the filter, or without one the asset, does not ignore.
 struct WantedPairs {
   Span<const std::uint64_t> ignored, disabled;
 
-  WantedPairs(const Asset& asset, const Filter* filter) : ignored(asset.ignored()) {
+  WantedPairs(const AssetView& asset, const Filter* filter) : ignored(asset.ignored()) {
     if (filter != nullptr) {
-      ignored = {filter->ignored.data, filter->ignored.size};
-      disabled = {filter->disabled.data, filter->disabled.size};
+      ignored = {filter->ignored, filter->ignored_words};
+      disabled = {filter->disabled, filter->disabled_words};
     }
   }
   bool is_enabled(std::size_t i) const { return disabled.size == 0 || !test_bit(disabled, i); }
   bool operator()(std::uint32_t a, std::uint32_t b) const {
-    return !test_bit(ignored, std::size_t{b} * (b - 1) / 2 + a) && is_enabled(a) && is_enabled(b);
+    return !test_bit(ignored, ignored_bit(a, b)) && is_enabled(a) && is_enabled(b);
   }
 };
 
-std::size_t rest_places(std::size_t count) { return lanes_of(static_cast<std::uint32_t>(count)); }
-
-bool is_rest_pair(Span<const NearPair> rest, std::uint32_t a, std::uint32_t b) {
-  const auto before = [](const NearPair& pair, const Pair& at) { return Pair{pair.a, pair.b} < at; };
-  const NearPair* found = std::lower_bound(rest.begin(), rest.end(), Pair{a, b}, before);
+bool is_rest_pair(Span<const RestPair> rest, std::uint32_t a, std::uint32_t b) {
+  const auto before = [](const RestPair& pair, const Pair& at) { return Pair{pair.a, pair.b} < at; };
+  const RestPair* found = std::lower_bound(rest.begin(), rest.end(), Pair{a, b}, before);
   return found != rest.end() && found->a == a && found->b == b;
 }
 
-std::uint32_t fill_rest_pairs(const WantedPairs& wanted, Span<const NearPair> rest, RestPair* out) {
+// For either radius.
+std::uint32_t rest_pairs_max(const AssetView& asset) {
+  return lanes_of(static_cast<std::uint32_t>(
+      std::max(asset.rest_pairs(SC_RADIUS_FIT).size, asset.rest_pairs(SC_RADIUS_DETECT).size)));
+}
+
+std::uint32_t fill_rest_pairs(const WantedPairs& wanted, Span<const RestPair> rest, RestPairItem* out) {
   std::uint32_t count = 0;
-  for (const NearPair& pair : rest) {
+  for (const RestPair& pair : rest) {
     if (wanted(pair.a, pair.b)) {
-      out[count++] = {pair.a, pair.b, pair.reach, 0};
+      out[count++] = {pair.a, pair.b, pair.rest_scale, 0};
     }
   }
   return count;
@@ -122,83 +123,88 @@ void fill_units(std::uint32_t n, std::uint32_t* places, std::uint32_t* words, co
 // The sphere from which the farthest other one is nearest: seen from there, positions lose least by rounding.
 std::uint32_t middle_sphere(Span<const RestSphere> spheres) {
   std::uint32_t best = 0;
-  float least = INFINITY;
+  float smallest = INFINITY;
   for (std::uint32_t i = 0; i < spheres.size; ++i) {
-    float most = 0;
+    float farthest = 0;
     for (const RestSphere& other : spheres) {
       const float dx = other.center.x - spheres[i].center.x, dy = other.center.y - spheres[i].center.y,
                   dz = other.center.z - spheres[i].center.z;
-      most = std::max(most, dx * dx + dy * dy + dz * dz);
+      farthest = std::max(farthest, dx * dx + dy * dy + dz * dz);
     }
-    if (most < least) {
+    if (farthest < smallest) {
       best = i;
-      least = most;
+      smallest = farthest;
     }
   }
   return best;
 }
 
-Status check(const Asset& asset, RadiusKind radius, const Filter* filter, Span<std::uint64_t> memory) {
-  if (!asset.is_open()) {
-    return Status::kNotOpen;
+Status check(const Asset& asset, Radius radius, const Filter* filter, const std::uint64_t* words, std::size_t count) {
+  if (!view_of(asset).is_open()) {
+    return refuse(SC_NOT_OPEN, SC_FIELD_ASSET);
   }
-  if (radius != RadiusKind::kFit && radius != RadiusKind::kDetect) {
-    return Status::kBadArgument;
+  if (radius != SC_RADIUS_FIT && radius != SC_RADIUS_DETECT) {
+    return refuse(SC_BAD_VALUE, SC_FIELD_RADIUS);
   }
-  if (memory.data == nullptr) {
-    return Status::kNullArgument;
+  if (words == nullptr || reinterpret_cast<std::uintptr_t>(words) % alignof(Float4) != 0) {
+    return refuse(words == nullptr ? SC_NULL : SC_MISALIGNED, SC_FIELD_TABLE);
   }
-  if (reinterpret_cast<std::uintptr_t>(memory.data) % alignof(Float4) != 0) {
-    return Status::kMisaligned;
+  if (count < crowd_table_words(asset)) {
+    return refuse(SC_TOO_SMALL, SC_FIELD_TABLE);
   }
-  const Status status = filter != nullptr ? check_filter(asset, *filter) : Status::kOk;
-  return status == Status::kOk && memory.size < CrowdTables::words_needed(asset) ? Status::kContextTooSmall : status;
+  return filter != nullptr ? check_filter(view_of(asset), *filter) : done();
+}
+
+// Without memory only counts its words.
+void fill(const AssetView& asset, Radius radius, const Filter* filter, TableMemory& memory) {
+  const auto n = static_cast<std::uint32_t>(asset.spheres().size);
+  std::uint32_t start = 0;
+  TableHeader places{};
+  TableHeader* const words = memory.take<TableHeader>(1, start);
+  TableHeader& header = memory.is_null() ? places : *words;
+  add_moments(asset, radius, memory, header);
+  auto* const paddings = memory.take<float>(n, header.paddings);
+  auto* const rest_pairs = memory.take<RestPairItem>(rest_pairs_max(asset), header.rest_pairs);
+  auto* const items = memory.take<PairItem>(items_max(n), header.items);
+  auto* const unit_places = memory.take<std::uint32_t>(unit_words(n) * kWordUnits, header.unit_places);
+  auto* const unit_pairs = memory.take<std::uint32_t>(unit_words(n) * kLanes, header.wanted);
+  if (memory.is_null()) {
+    return;
+  }
+  header.magic = kTableMagic;
+  header.sphere_count = n;
+  header.bit_words = static_cast<std::uint32_t>(words_for(pairs_of(n)));
+  header.origin_sphere = middle_sphere(asset.spheres());
+  if (filter != nullptr && filter->padding_count > 0) {
+    header.has_padding = 1;
+    std::copy_n(filter->padding, n, paddings);
+  }
+  const WantedPairs wanted(asset, filter);
+  const Span<const RestPair> rest = asset.rest_pairs(radius);
+  const auto is_tested = [&](auto a, auto b) { return wanted(a, b) && !is_rest_pair(rest, a, b); };
+  header.rest_pair_count = fill_rest_pairs(wanted, rest, rest_pairs);
+  header.item_count = fill_items(n, items, is_tested);
+  fill_units(n, unit_places, unit_pairs, is_tested);
 }
 
 }  // namespace
 
-std::size_t CrowdTables::words_needed(const Asset& asset) noexcept {
-  if (!asset.is_open()) {
-    return 0;
+std::size_t crowd_table_words(const Asset& asset) noexcept {
+  TableMemory memory(nullptr);
+  if (view_of(asset).is_open()) {
+    fill(view_of(asset), SC_RADIUS_FIT, nullptr, memory);
   }
-  const std::size_t n = asset.spheres().size;
-  const std::size_t rest =
-      std::max(asset.near_pairs(RadiusKind::kFit).size, asset.near_pairs(RadiusKind::kDetect).size);
-  return words_of(sizeof(TableHeader)) + moment_words(asset) + words_of(n * sizeof(float)) +
-         words_of(rest_places(rest) * sizeof(RestPair)) + words_of(items_max(n) * sizeof(PairItem)) +
-         words_of(unit_words(n) * kWordUnits * sizeof(std::uint32_t)) +
-         words_of(unit_words(n) * kLanes * sizeof(std::uint32_t));
+  return memory.used();
 }
 
-Status CrowdTables::build(const Asset& asset, RadiusKind radius, const Filter* filter,
-                          Span<std::uint64_t> memory) noexcept {
-  const Status status = check(asset, radius, filter, memory);
-  if (status != Status::kOk) {
-    return status;
+Status prepare_crowd(const Asset& asset, Radius radius, const Filter* filter, std::uint64_t* words,
+                     std::size_t word_count) noexcept {
+  const Status status = check(asset, radius, filter, words, word_count);
+  if (status == SC_OK) {
+    TableMemory memory(words);
+    fill(view_of(asset), radius, filter, memory);
   }
-  const auto n = static_cast<std::uint32_t>(asset.spheres().size);
-  TableMemory arrays(memory);
-  std::uint32_t start = 0;
-  TableHeader& header = *arrays.take<TableHeader>(1, start);
-  header.sphere_count = n;
-  header.bit_words = static_cast<std::uint32_t>(DetectJob::bit_words(asset));
-  header.origin_sphere = middle_sphere(asset.spheres());
-  header.has_padding = filter != nullptr && filter->padding.size > 0 ? 1 : 0;
-  add_moments(asset, radius, arrays, header);
-  auto* paddings = arrays.take<float>(n, header.paddings);
-  if (header.has_padding != 0) {
-    std::copy_n(filter->padding.begin(), n, paddings);
-  }
-  const WantedPairs wanted(asset, filter);
-  const Span<const NearPair> rest = asset.near_pairs(radius);
-  header.rest_pair_count =
-      fill_rest_pairs(wanted, rest, arrays.take<RestPair>(rest_places(rest.size), header.rest_pairs));
-  const auto is_tested = [&](auto a, auto b) { return wanted(a, b) && !is_rest_pair(rest, a, b); };
-  header.item_count = fill_items(n, arrays.take<PairItem>(items_max(n), header.items), is_tested);
-  auto* unit_places = arrays.take<std::uint32_t>(unit_words(n) * kWordUnits, header.unit_places);
-  fill_units(n, unit_places, arrays.take<std::uint32_t>(unit_words(n) * kLanes, header.wanted), is_tested);
-  words = {memory.data, arrays.used()};
-  return Status::kOk;
+  return status;
 }
 
 }  // namespace spherechain::cuda

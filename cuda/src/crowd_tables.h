@@ -1,37 +1,39 @@
 // SPDX-License-Identifier: MIT
-// The parts that CrowdTables::build puts together.
+// The parts that prepare_crowd() puts together.
 #pragma once
 
 #include <algorithm>
 
+#include "asset/asset_view.h"
 #include "crowd_view.h"
 
 namespace spherechain::cuda {
 
-constexpr std::size_t words_of(std::size_t bytes) { return (bytes + 15) / 16 * 2; }
-
-// Arrays one after another in the caller's memory, zero where nothing is written.
+// Arrays one after another in the caller's memory, zero where nothing is written; without memory their size alone.
 class TableMemory {
  public:
-  explicit TableMemory(Span<std::uint64_t> memory) : memory_(memory) {}
+  explicit TableMemory(std::uint64_t* words) : words_(words) {}
+
+  bool is_null() const { return words_ == nullptr; }
+  std::size_t used() const { return used_; }  // words
 
   template <typename T>
   T* take(std::size_t count, std::uint32_t& at) {
     at = static_cast<std::uint32_t>(used_);
-    std::uint64_t* begin = memory_.data + used_;
-    used_ += words_of(count * sizeof(T));
-    std::fill(begin, memory_.data + used_, std::uint64_t{0});
-    return reinterpret_cast<T*>(begin);
+    used_ += (count * sizeof(T) + 15) / 16 * 2;
+    if (is_null()) {
+      return nullptr;
+    }
+    std::fill(words_ + at, words_ + used_, std::uint64_t{0});
+    return reinterpret_cast<T*>(words_ + at);
   }
-  std::size_t used() const { return used_; }
 
  private:
-  Span<std::uint64_t> memory_;
+  std::uint64_t* words_;
   std::size_t used_ = 0;
 };
 
-// Refit by moments. An asset of another rule needs no words and gets none: it is a crowd of spheres only.
-std::size_t moment_words(const Asset& asset);
-void add_moments(const Asset& asset, RadiusKind radius, TableMemory& memory, TableHeader& header);
+// Refit by moments. An asset without moments needs no words and gets none: it is a crowd of spheres only.
+void add_moments(const AssetView& asset, Radius radius, TableMemory& memory, TableHeader& header);
 
 }  // namespace spherechain::cuda

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a block of the crowd's kernels sees: the tables' entries, a group's pointers, and the block's own memory.
+// What a block of the crowd's kernels sees: the table's entries, a group's pointers, and the block's own memory.
 #pragma once
 
 #include <cstddef>
@@ -66,10 +66,10 @@ SPHERECHAIN_HD std::uint32_t words_of_units(std::uint32_t units) {
   return (units * (units + 1) / 2 + kWordUnits - 1) / kWordUnits;
 }
 
-// Pairs that touch at rest. There are as many as lanes_of() says; the spare ones have scale 0 and never touch.
-struct alignas(16) RestPair {
+// A RestPair. There are as many as lanes_of() says; the spare ones have scale 0 and never touch.
+struct alignas(16) RestPairItem {
   std::uint32_t a, b;
-  float scale;
+  float rest_scale;
   std::uint32_t unused;
 };
 
@@ -117,14 +117,19 @@ SPHERECHAIN_HD constexpr std::size_t few_bone_quads(std::size_t bones, std::size
 
 // ---- Views ----
 
-// Stands at the start of CrowdTables::words. Places are in words from there.
-struct TableHeader {
+struct TableFigures {
   std::uint32_t sphere_count, bone_count;  // bone_count: the asset's, or 0 if it is not refitted by moments
   std::uint32_t used_bone_count, item_count, rest_pair_count, run_count, bit_words;
   std::uint32_t reference;      // bone of MomentTables, among those used
   std::uint32_t origin_sphere;  // see see_sphere()
   std::uint32_t has_padding;
   Vec3 origin;
+};
+
+// Stands at the start of a table's words. Places are in words from there.
+inline constexpr std::uint32_t kTableMagic = 0x63756461;
+struct TableHeader : TableFigures {
+  std::uint32_t magic;
   std::uint32_t paddings, items, unit_places, wanted, rest_pairs;
   std::uint32_t used_bones, runs, run_spheres, moment_steps, moments, run_bones, center_terms;
 };
@@ -148,12 +153,14 @@ struct BlockLayout {
   std::size_t size;
 };
 
-struct GroupView {
+// A group as the kernels read it.
+struct GroupView : TableFigures, CrowdGroup {
+  // The arrays of the table's copy on the device.
   const float* paddings;
   const PairItem* items;
   const std::uint32_t* unit_places;  // of each unit: r and, in the upper half, c
   const std::uint32_t* wanted;       // [word][lane]: bit 31 - i for the lane's pair i
-  const RestPair* rest_pairs;
+  const RestPairItem* rest_pairs;
   const std::uint32_t* used_bones;
   const MomentRun* runs;
   const std::uint32_t* moment_steps;
@@ -161,42 +168,25 @@ struct GroupView {
   const std::uint32_t* run_bones;  // as steps, without kLastOfBone and kLastOfRun
   const RunSphere* run_spheres;
   const Float4* center_terms;
-  Vec3 origin;
-  std::uint32_t sphere_count, used_bone_count, item_count, rest_pair_count, run_count, bit_words;
-  std::uint32_t reference, origin_sphere;
-  bool has_padding;
 
-  const Sphere* spheres;
-  const float* matrices;  // null if the instances come as spheres
-  std::size_t sphere_stride;
-  std::uint32_t bone_stride, instance_stride;  // floats
+  std::uint32_t instances;                     // instance_count
+  std::size_t sphere_stride;                   // entries from one instance to the next
+  std::uint32_t bone_floats, instance_floats;  // from one matrix, one instance to the next
   MatrixSteps steps;
   bool wide_matrices;  // whose rows are read 16 bytes at a time
   bool in_scratch;     // the block's memory is not shared memory
-  std::uint32_t instance_count;
 
-  Sphere* refitted;
-  std::uint32_t* counts;
-  std::uint64_t* bits;
-  CrowdPair* pairs;
-  std::uint64_t pair_capacity;
-  std::uint64_t* starts;
-  std::uint64_t* pair_count;
-
-  unsigned char* scratch;
-  std::size_t scratch_bytes;
   std::uint32_t scratch_blocks;  // that run at once and take the group's blocks in turns
-
   std::uint32_t first_block;
   BlockLayout layout;
 };
 
 SPHERECHAIN_HD std::uint32_t block_instances(const GroupView& v) {
-  return v.matrices != nullptr ? kLanes : kSphereInstances;
+  return v.pose.bones != nullptr ? kLanes : kSphereInstances;
 }
 
 SPHERECHAIN_HD std::uint32_t blocks_of(const GroupView& v) {
-  return (v.instance_count + block_instances(v) - 1) / block_instances(v);
+  return (v.instances + block_instances(v) - 1) / block_instances(v);
 }
 
 SPHERECHAIN_HD std::uint32_t half_words(const GroupView& v) { return 2 * v.bit_words; }

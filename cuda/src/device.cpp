@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// What talks to CUDA's runtime for a CrowdJob.
+// What talks to CUDA's runtime for enqueue_crowds().
 #include <cuda_runtime_api.h>
 
+#include "asset/status.h"
 #include "crowd_launch.h"
 
 namespace spherechain::cuda {
@@ -9,29 +10,31 @@ namespace {
 
 thread_local cudaError_t last_error = cudaSuccess;
 
-Status find_shared_bytes_max(std::size_t& bytes) {
-  int device = 0, most = 0;
-  cudaError_t error = cudaGetDevice(&device);
-  if (error == cudaSuccess) {
-    error = cudaDeviceGetAttribute(&most, cudaDevAttrMaxSharedMemoryPerBlockOptin, device);
-  }
-  bytes = static_cast<std::size_t>(most);
-  return status_of(error);
-}
-
 }  // namespace
 
 Status status_of(int cuda_error) {
   const auto error = static_cast<cudaError_t>(cuda_error);
   if (error == cudaSuccess) {
-    return Status::kOk;
+    return done();
   }
   last_error = error;
-  return error == cudaErrorNoDevice || error == cudaErrorInsufficientDriver || error == cudaErrorSystemDriverMismatch ||
-                 error == cudaErrorNoKernelImageForDevice || error == cudaErrorSystemNotReady ||
-                 error == cudaErrorCompatNotSupportedOnDevice
-             ? Status::kNoDevice
-             : Status::kDeviceFailed;
+  const bool is_missing = error == cudaErrorNoDevice || error == cudaErrorInsufficientDriver ||
+                          error == cudaErrorSystemDriverMismatch || error == cudaErrorNoKernelImageForDevice ||
+                          error == cudaErrorSystemNotReady || error == cudaErrorCompatNotSupportedOnDevice;
+  return refuse(is_missing ? SC_NO_DEVICE : SC_DEVICE_FAILED, SC_FIELD_NONE);
+}
+
+Status find_limits(DeviceLimits& limits) {
+  int device = 0, bytes = 0, multiprocessors = 0;
+  cudaError_t error = cudaGetDevice(&device);
+  if (error == cudaSuccess) {
+    error = cudaDeviceGetAttribute(&bytes, cudaDevAttrMaxSharedMemoryPerBlockOptin, device);
+  }
+  if (error == cudaSuccess) {
+    error = cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device);
+  }
+  limits = {static_cast<std::size_t>(bytes), static_cast<std::size_t>(multiprocessors)};
+  return status_of(error);
 }
 
 Status check_device() noexcept {
@@ -42,25 +45,25 @@ Status check_device() noexcept {
 
 const char* last_device_error() noexcept { return cudaGetErrorString(last_error); }
 
-Status CrowdJob::run() const noexcept {
+Status enqueue_crowds(const CrowdGroup* groups, std::size_t group_count, CUstream_st* stream) noexcept {
   Launch all;
   LaunchPlan plan;
-  std::size_t shared_bytes_max = 0;
-  Status status = view_groups(groups, all);
-  if (status == Status::kOk && all.count > 0) {
-    status = find_shared_bytes_max(shared_bytes_max);
+  DeviceLimits limits{};
+  Status status = view_groups(groups, group_count, all);
+  if (status == SC_OK && all.count > 0) {
+    status = find_limits(limits);
   }
-  if (status == Status::kOk) {
-    status = plan_launches(all, shared_bytes_max, plan);
+  if (status == SC_OK) {
+    status = plan_launches(all, limits.shared_bytes_max, plan);
   }
-  for (const CrowdGroup& group : groups) {
-    if (status == Status::kOk && group.pairs != nullptr) {
-      status = status_of(cudaMemsetAsync(group.pair_count, 0, sizeof *group.pair_count, stream));
+  for (std::size_t g = 0; g < group_count && status == SC_OK; ++g) {
+    if (groups[g].pairs != nullptr) {
+      status = status_of(cudaMemsetAsync(groups[g].pair_count, 0, sizeof *groups[g].pair_count, stream));
     }
   }
-  for (std::uint32_t k = 0; k < kKernels && status == Status::kOk; ++k) {
+  for (std::uint32_t k = 0; k < kKernels && status == SC_OK; ++k) {
     if (plan.launches[k].count > 0) {
-      status = enqueue(static_cast<Kernel>(k), plan.launches[k], shared_bytes_max, stream);
+      status = enqueue(static_cast<Kernel>(k), plan.launches[k], limits.shared_bytes_max, stream);
     }
   }
   return status;

@@ -5,7 +5,9 @@
 #include <exception>
 #include <vector>
 
+#include "asset/status.h"
 #include "crowd_launch.h"
+#include "pose/pose.h"
 
 namespace spherechain::cuda {
 namespace {
@@ -22,20 +24,20 @@ class Array {
   // At least that large; what it held is lost if it grows.
   Status reserve(std::size_t size) {
     if (size <= size_) {
-      return Status::kOk;
+      return done();
     }
     cudaFree(data_);
     data_ = nullptr;
     size_ = 0;
     const Status status = status_of(cudaMalloc(reinterpret_cast<void**>(&data_), size * sizeof(T)));
-    size_ = status == Status::kOk ? size : 0;
+    size_ = status == SC_OK ? size : 0;
     return status;
   }
   Status put(const T* from, std::size_t count) {
     return status_of(cudaMemcpy(data_, from, count * sizeof(T), cudaMemcpyHostToDevice));
   }
   Status get(T* to, std::size_t count) const {
-    return count == 0 || to == nullptr ? Status::kOk
+    return count == 0 || to == nullptr ? done()
                                        : status_of(cudaMemcpy(to, data_, count * sizeof(T), cudaMemcpyDeviceToHost));
   }
   T* data() const { return data_; }
@@ -46,11 +48,11 @@ class Array {
   std::size_t size_ = 0;
 };
 
-// Runs the steps up to the first that is not kOk, and returns its status.
+// Runs the steps up to the first that is not SC_OK, and returns its status.
 template <typename... Steps>
 Status first_failure(const Steps&... steps) {
-  Status status = Status::kOk;
-  static_cast<void>(((status = steps(), status == Status::kOk) && ...));
+  Status status = done();
+  static_cast<void>(((status = steps(), status == SC_OK) && ...));
   return status;
 }
 
@@ -68,9 +70,9 @@ struct HostCrowd::Memory {
   Status allocate_on_device(std::size_t instances, std::size_t pair_capacity);
   Status allocate_scratch(std::size_t instances);
 
-  CrowdTables tables;
-  std::vector<std::uint64_t> words;
-  Array<std::uint64_t> device_tables, starts, pair_count;
+  std::vector<std::uint64_t> words;  // one more than the table has, for its alignment
+  std::uint64_t* table = nullptr;
+  Array<std::uint64_t> device_table, starts, pair_count;
   Array<float> matrices;
   Array<Sphere> spheres;
   Array<std::uint32_t> counts;
@@ -84,9 +86,9 @@ struct HostCrowd::Memory {
 };
 
 Status HostCrowd::Memory::allocate_on_device(std::size_t instances, std::size_t pair_capacity) {
-  return first_failure([&] { return check_device(); }, [&] { return device_tables.reserve(tables.words.size); },
-                       [&] { return device_tables.put(tables.words.data, tables.words.size); },
-                       [&] { return spheres.reserve(instances * header_of(tables).sphere_count); },
+  return first_failure([&] { return check_device(); }, [&] { return device_table.reserve(words.size() - 1); },
+                       [&] { return device_table.put(table, words.size() - 1); },
+                       [&] { return spheres.reserve(instances * header_of(table).sphere_count); },
                        [&] { return counts.reserve(instances); }, [&] { return starts.reserve(instances); },
                        [&] { return pair_count.reserve(1); }, [&] { return pairs.reserve(pair_capacity); },
                        [&] { return allocate_scratch(instances); }, [&] { return status_of(cudaEventCreate(&begin)); },
@@ -97,18 +99,13 @@ Status HostCrowd::Memory::allocate_on_device(std::size_t instances, std::size_t 
 // enough for one.
 Status HostCrowd::Memory::allocate_scratch(std::size_t instances) {
   constexpr std::size_t kBytesMax = std::size_t{1} << 30;
-  int device = 0, shared_bytes_max = 0, multiprocessors = 0;
-  const Status status = first_failure(
-      [&] { return status_of(cudaGetDevice(&device)); },
-      [&] {
-        return status_of(cudaDeviceGetAttribute(&shared_bytes_max, cudaDevAttrMaxSharedMemoryPerBlockOptin, device));
-      },
-      [&] { return status_of(cudaDeviceGetAttribute(&multiprocessors, cudaDevAttrMultiProcessorCount, device)); });
-  const std::size_t block = tables.block_bytes(true, false, true);
-  if (status != Status::kOk || block <= static_cast<std::size_t>(shared_bytes_max)) {
+  DeviceLimits limits{};
+  const Status status = find_limits(limits);
+  const std::size_t block = crowd_block_bytes(table, true, false, true);
+  if (status != SC_OK || block <= limits.shared_bytes_max) {
     return status;
   }
-  const std::size_t useful = std::min(2 * static_cast<std::size_t>(multiprocessors), (instances + kLanes - 1) / kLanes);
+  const std::size_t useful = std::min(2 * limits.multiprocessors, (instances + kLanes - 1) / kLanes);
   return scratch.reserve(block * std::clamp<std::size_t>(kBytesMax / block, 1, std::max<std::size_t>(useful, 1)));
 }
 
@@ -117,28 +114,29 @@ void HostCrowd::close() noexcept {
   memory_ = nullptr;
 }
 
-Status HostCrowd::open(const Asset& asset, RadiusKind radius, const Filter* filter, std::size_t instances,
+Status HostCrowd::open(const Asset& asset, Radius radius, const Filter* filter, std::size_t instances,
                        std::size_t pair_capacity) noexcept {
   close();
-  if (asset.is_open() && (instances == 0 || instances > 0x7FFFFFFF || pair_capacity == 0)) {
-    return Status::kBadArgument;
+  if (instances == 0 || instances > 0x7FFFFFFF || pair_capacity == 0) {
+    return refuse(SC_BAD_VALUE, pair_capacity == 0 ? SC_FIELD_PAIRS : SC_FIELD_INSTANCES);
   }
-  Status status = Status::kOk;
+  Status status = done();
   try {
     memory_ = new Memory;
-    memory_->words.resize(CrowdTables::words_needed(asset) + 1);
-    status = memory_->tables.build(asset, radius, filter, {memory_->words.data(), memory_->words.size()});
+    memory_->words.resize(crowd_table_words(asset) + 1);
+    memory_->table = memory_->words.data() + reinterpret_cast<std::uintptr_t>(memory_->words.data()) % 16 / 8;
+    status = prepare_crowd(asset, radius, filter, memory_->table, memory_->words.size() - 1);
     memory_->host_starts.resize(instances);
     memory_->host_counts.resize(instances);
     memory_->host_pairs.resize(pair_capacity);
   } catch (const std::exception&) {
-    status = status_of(cudaErrorMemoryAllocation);
+    status = refuse(SC_NO_MEMORY, SC_FIELD_NONE);
   }
-  if (status == Status::kOk) {
-    status = header_of(memory_->tables).bone_count == 0 ? Status::kNotInAsset
-                                                        : memory_->allocate_on_device(instances, pair_capacity);
+  if (status == SC_OK) {
+    status = header_of(memory_->table).bone_count == 0 ? refuse(SC_NOT_IN_ASSET, SC_FIELD_BONES)
+                                                       : memory_->allocate_on_device(instances, pair_capacity);
   }
-  if (status != Status::kOk) {
+  if (status != SC_OK) {
     close();
   }
   return status;
@@ -147,20 +145,23 @@ Status HostCrowd::open(const Asset& asset, RadiusKind radius, const Filter* filt
 Status HostCrowd::run() noexcept {
   pair_count = 0;
   if (!is_open()) {
-    return Status::kNotOpen;
+    return refuse(SC_NOT_OPEN, SC_FIELD_NONE);
   }
   Memory& m = *memory_;
   if (instance_count > m.host_counts.size()) {
-    return Status::kBadArgument;
+    return refuse(SC_BAD_VALUE, SC_FIELD_INSTANCES);
+  }
+  if (pose.bones == nullptr && instance_count > 0) {
+    return refuse(SC_NULL, SC_FIELD_BONES);
   }
   if (instance_count == 0) {
-    return Status::kOk;
+    return done();
   }
   CrowdGroup group;
-  group.tables = &m.tables;
-  group.device_tables = m.device_tables.data();
+  group.table = m.table;
+  group.device_table = m.device_table.data();
   group.instance_count = instance_count;
-  group.bones = bones;
+  group.pose = pose;
   group.instance_stride = instance_stride;
   group.refitted = spheres == nullptr ? nullptr : m.spheres.data();
   group.counts = m.counts.data();
@@ -171,28 +172,26 @@ Status HostCrowd::run() noexcept {
   group.scratch = m.scratch.data();
   group.scratch_bytes = m.scratch.size();
   GroupView checked;  // before anything is computed from the strides
-  if (const Status refused = view_group(group, checked); refused != Status::kOk) {
+  if (const Status refused = view_group(group, checked); refused != SC_OK) {
     return refused;
   }
-  const TableHeader& header = header_of(m.tables);
-  const std::size_t floats =
-      ((instance_count - 1) * instance_stride + (header.bone_count - 1) * bones.stride + size_of(bones.layout)) /
-      sizeof(float);
-  const CrowdJob job{{&group, 1}, nullptr};
+  const TableHeader& header = header_of(m.table);
+  const std::size_t floats = (instance_count - 1) * checked.instance_floats +
+                             ((header.bone_count - 1) * bone_stride(pose) + size_of(pose.bone_layout)) / sizeof(float);
   std::uint64_t found = 0;
   const Status status = first_failure(
-      [&] { return m.matrices.reserve(floats); }, [&] { return m.matrices.put(bones.data, floats); },
+      [&] { return m.matrices.reserve(floats); }, [&] { return m.matrices.put(pose.bones, floats); },
       [&] {
-        group.bones.data = m.matrices.data();
+        group.pose.bones = m.matrices.data();
         return status_of(cudaEventRecord(m.begin));
       },
-      [&] { return job.run(); }, [&] { return status_of(cudaEventRecord(m.end)); },
+      [&] { return enqueue_crowds(&group, 1, nullptr); }, [&] { return status_of(cudaEventRecord(m.end)); },
       [&] { return status_of(cudaEventSynchronize(m.end)); },
       [&] { return status_of(cudaEventElapsedTime(&device_milliseconds, m.begin, m.end)); },
       [&] { return m.counts.get(m.host_counts.data(), instance_count); },
       [&] { return m.starts.get(m.host_starts.data(), instance_count); }, [&] { return m.pair_count.get(&found, 1); },
       [&] { return m.spheres.get(spheres, instance_count * header.sphere_count); });
-  if (status != Status::kOk) {
+  if (status != SC_OK) {
     return status;
   }
   pair_count = static_cast<std::size_t>(found);
@@ -200,14 +199,14 @@ Status HostCrowd::run() noexcept {
     std::copy_n(m.host_counts.begin(), instance_count, counts);
   }
   if (pairs == nullptr) {
-    return Status::kOk;
+    return done();
   }
   if (pair_count > m.pairs.size()) {
-    return Status::kOverflow;
+    return refuse(SC_OVERFLOW, SC_FIELD_PAIRS);
   }
   const Status copied = m.pairs.get(m.host_pairs.data(), pair_count);
   CrowdPair* to = pairs;
-  for (std::size_t i = 0; i < instance_count && copied == Status::kOk; ++i) {
+  for (std::size_t i = 0; i < instance_count && copied == SC_OK; ++i) {
     to = std::copy_n(m.host_pairs.begin() + static_cast<std::ptrdiff_t>(m.host_starts[i]), m.host_counts[i], to);
   }
   return copied;

@@ -1,107 +1,102 @@
 // SPDX-License-Identifier: MIT
-// load_and_refit ASSET REST POSED: spheres from deformed vertices. REST and POSED are the source's vertices as they lie
-// in memory: x y z of each, 32-bit floats.
+// load_and_refit ASSET.sphc MODEL.glb: from deformed vertices, for engines that skin on the CPU or simulate the skin.
+#include <algorithm>
 #include <cstdio>
-#include <cstring>
-#include <fstream>
-#include <iterator>
-#include <vector>
+#include <stdexcept>
+#include <string>
 
-#include "spherechain/detect.h"
-#include "spherechain/refit.h"
+#include "gltf_pose.h"
+#include "spherechain/spherechain.h"
 
 using namespace spherechain;
 
 namespace {
 
-std::vector<char> read(const char* path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
+void check(Status status, const std::string& what) {
+  if (status != SC_OK)
+    throw std::runtime_error(what + ": " + sc_field_name(status.field) + ": " + sc_code_text(status.code));
 }
 
-std::vector<float> read_positions(const char* path) {
-  const std::vector<char> bytes = read(path);
-  std::vector<float> positions(bytes.size() / sizeof(float));
-  if (!positions.empty()) {
-    std::memcpy(positions.data(), bytes.data(), positions.size() * sizeof(float));
+// The asset's vertices are those of the file, buffer by buffer. Another order would give nonsense and no error, so the
+// buffers are compared once, as the file has them.
+void check_buffers(const Asset& asset, const samples::GltfCharacter& model) {
+  const AssetInfo info = sc_asset_get_info(&asset);
+  for (std::size_t i = 0; i < info.source_buffer_count; ++i) {
+    const sc_source_buffer buffer = sc_asset_source_buffer(&asset, i);
+    const std::vector<float>& positions = model.file_vertices(buffer.mesh, buffer.primitive);
+    if (sc_check_source(&asset, i, positions.data(), positions.size() / 3, 3 * sizeof(float)) != SC_OK) {
+      throw std::runtime_error("mesh " + std::to_string(buffer.mesh) + ", primitive " +
+                               std::to_string(buffer.primitive) + ": not what the asset was baked from");
+    }
   }
-  return positions;
 }
 
-int fail(const char* file, const char* what) {
-  std::fprintf(stderr, "load_and_refit: error: %s: %s\n", file, what);
-  return 3;
+// The vertices of all buffers, as the asset has them.
+std::vector<float> skin(const Asset& asset, const samples::GltfCharacter& model, const samples::Palette& palette) {
+  const AssetInfo info = sc_asset_get_info(&asset);
+  std::vector<float> vertices(3 * info.vertex_count);
+  for (std::size_t i = 0; i < info.source_buffer_count; ++i) {
+    const sc_source_buffer buffer = sc_asset_source_buffer(&asset, i);
+    const std::vector<float> positions = model.vertices(buffer.mesh, buffer.primitive, palette);
+    std::copy(positions.begin(), positions.end(), vertices.begin() + 3 * std::ptrdiff_t{buffer.first_vertex});
+  }
+  return vertices;
 }
 
-struct Found {
-  Status status;
-  std::size_t pairs;
-};
-
-Found refit_and_count(const Asset& asset, const std::vector<float>& positions, VertexSet vertices,
-                      std::vector<Sphere>& spheres) {
+std::size_t count_touching_spheres(const Asset& asset, const Pose& pose) {
+  std::vector<Sphere> spheres(sc_asset_get_info(&asset).sphere_count);
   RefitJob refit;
   refit.asset = &asset;
-  refit.positions = positions.data();
-  refit.vertex_count = positions.size() / 3;
-  refit.vertices = vertices;
-  refit.spheres = {spheres.data(), spheres.size()};
-  if (const Status status = refit.run(); status != Status::kOk) {
-    return {status, 0};
-  }
-  DetectJob detect;  // no buffer for pairs: counts
+  refit.pose = pose;
+  refit.spheres = spheres.data();
+  refit.sphere_capacity = spheres.size();
+  check(refit.run(), "refit");
+  DetectJob detect;  // no list of pairs: it counts
   detect.asset = &asset;
-  detect.spheres = {spheres.data(), spheres.size()};
-  const Status status = detect.run();
-  return {status, detect.pair_count};
+  detect.spheres = spheres.data();
+  detect.sphere_count = spheres.size();
+  check(detect.run(), "detect");
+  return detect.pair_count;
 }
 
-// Who skins on the CPU only for this skins the pivots' vertices alone.
-std::vector<float> pivots_alone(const Asset& asset, const std::vector<float>& positions) {
-  std::vector<float> packed;
-  for (const std::uint32_t vertex : asset.pivot_vertices()) {
-    packed.insert(packed.end(), positions.begin() + 3 * std::ptrdiff_t{vertex},
-                  positions.begin() + 3 * std::ptrdiff_t{vertex} + 3);
+void play(const std::vector<char>& file, const samples::GltfCharacter& model) {
+  Character character;
+  char message[160];
+  if (character.create(file.data(), file.size(), nullptr, 0, SC_LAYOUT_UNSET, message, sizeof message) != SC_OK) {
+    throw std::runtime_error(message);
   }
-  return packed;
+  const Asset& asset = character.asset();
+  check_buffers(asset, model);
+
+  for (int frame = 0; frame <= 5 * model.duration(0); ++frame) {
+    const std::vector<float> vertices = skin(asset, model, model.palette(0, frame / 5.0));
+    Pose pose;
+    pose.vertices = vertices.data();
+    pose.vertex_count = vertices.size() / 3;
+    const PartContact* contacts = nullptr;
+    std::size_t count = 0;
+    check(character.contacts(pose, contacts, count), "contacts");
+    std::printf("frame %d: %zu pairs of spheres, %zu pairs of body parts\n", frame, count_touching_spheres(asset, pose),
+                count);
+    for (std::size_t i = 0; i < count; ++i) {
+      std::printf("  %s in %s\n", character.part_name(contacts[i].part_a), character.part_name(contacts[i].part_b));
+    }
+  }
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 4) {
-    std::fputs("usage: load_and_refit ASSET.sphc REST.f32 POSED.f32\n", stderr);
+  if (argc != 3) {
+    std::fputs("usage: load_and_refit ASSET.sphc MODEL.glb\n", stderr);
     return 2;
   }
-  const std::vector<char> bytes = read(argv[1]);
-  if (bytes.empty()) {
-    return fail(argv[1], "cannot be read");
+  try {
+    const std::vector<char> file = samples::read_file(argv[1]);
+    play(file, samples::GltfCharacter(argv[2]));
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "load_and_refit: error: %s\n", error.what());
+    return 3;
   }
-  Asset asset;
-  char message[160];
-  if (asset.open(bytes.data(), bytes.size(), message, sizeof message) != Status::kOk) {
-    return fail(argv[1], message);
-  }
-
-  // A buffer in another order gives nonsense and no error: so ask, once, with the rest pose.
-  const std::vector<float> rest = read_positions(argv[2]);
-  if (const Status status = check_source(asset, rest.data(), rest.size() / 3); status != Status::kOk) {
-    return fail(argv[2], to_string(status));
-  }
-  const std::vector<float> posed = read_positions(argv[3]);
-
-  std::vector<Sphere> spheres(asset.spheres().size), packed_spheres(spheres.size());
-  const Found at_rest = refit_and_count(asset, rest, VertexSet::kSource, spheres);
-  const Found found = refit_and_count(asset, posed, VertexSet::kSource, spheres);
-  if (found.status != Status::kOk) {
-    return fail(argv[3], to_string(found.status));
-  }
-  const std::vector<float> packed = pivots_alone(asset, posed);
-  const Found by_pivots = refit_and_count(asset, packed, VertexSet::kPivots, packed_spheres);
-  std::printf("at rest %zu pairs, posed %zu\n", at_rest.pairs, found.pairs);
-  std::printf("from %zu of %u vertices %zu: %s spheres\n", packed.size() / 3, asset.info().source_vertex_count,
-              by_pivots.pairs,
-              std::memcmp(spheres.data(), packed_spheres.data(), spheres.size() * sizeof(Sphere)) == 0 ? "the very same"
-                                                                                                       : "other");
   return 0;
 }

@@ -32,10 +32,10 @@ class BulletFinder : public PairFinder {
         filter_(list_),
         dispatcher_(&configuration_),
         world_(&dispatcher_, &broad_phase_, &configuration_),
-        count_(asset.spheres().size) {
+        count_(view_of(asset).spheres().size) {
     broad_phase_.getOverlappingPairCache()->setOverlapFilterCallback(&filter_);
     for (std::size_t i = 0; i < count_; ++i) {
-      shapes_.push_back(std::make_unique<btSphereShape>(asset.spheres()[i].detect_radius));
+      shapes_.push_back(std::make_unique<btSphereShape>(view_of(asset).spheres()[i].detect_radius));
       objects_.push_back(std::make_unique<btCollisionObject>());
       objects_.back()->setCollisionShape(shapes_.back().get());
       objects_.back()->setUserIndex(static_cast<int>(i));

@@ -40,8 +40,8 @@ class CgalContacts : public ContactFinder {
     CGAL::Polygon_mesh_processing::self_intersections<CGAL::Sequential_tag>(surface_, std::back_inserter(found_));
   }
 
-  std::vector<TrianglePair> pairs() const override {
-    std::vector<TrianglePair> out;
+  std::vector<Pair> pairs() override {
+    std::vector<Pair> out;
     for (const auto& [f, g] : found_) {
       const std::uint32_t a = triangle_of_[f], b = triangle_of_[g];
       if (mesh_.is_wanted(a, b)) {

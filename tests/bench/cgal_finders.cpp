@@ -13,7 +13,9 @@ using Box = CGAL::Box_intersection_d::Box_with_info_d<float, 3, std::uint32_t>;
 class CgalFinder : public PairFinder {
  public:
   explicit CgalFinder(const Asset& asset)
-      : PairFinder("CGAL box_self_intersection_d", Found::kBoxes), list_(asset), boxes_(asset.spheres().size) {}
+      : PairFinder("CGAL box_self_intersection_d", Found::kBoxes),
+        list_(asset),
+        boxes_(view_of(asset).spheres().size) {}
 
   void find(const Sphere* spheres) override {
     for (std::uint32_t i = 0; i < boxes_.size(); ++i) {

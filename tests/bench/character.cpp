@@ -8,6 +8,7 @@
 #include "mesh/error.h"
 #include "motion/capture.h"
 #include "motion/poses.h"
+#include "spherechain/refit.h"
 
 namespace spherechain::bench {
 namespace {
@@ -17,8 +18,8 @@ using baker::Deformation;
 constexpr const char* kCaptures = "/usr/share/assimp/models/BVH";
 
 void check(Status status, const char* what) {
-  if (status != Status::kOk) {
-    throw baker::Error(baker::ExitCode::kInternal, std::string(what) + ": " + to_string(status));
+  if (status != SC_OK) {
+    throw baker::Error(baker::ExitCode::kInternal, std::string(what) + ": " + sc_code_text(status.code));
   }
 }
 
@@ -70,10 +71,18 @@ std::vector<NamedMotion> motions_of(const baker::Bake& bake) {
   return out;
 }
 
-std::vector<float> PosedCharacter::mesh(std::size_t pose) const {
+Pose PosedCharacter::pose(std::size_t i) const {
+  Pose out;
+  out.bones = matrices[i].data();
+  out.bone_count = view().bone_count();
+  out.bone_layout = SC_ROWS_3X4;
+  return out;
+}
+
+std::vector<float> PosedCharacter::mesh(std::size_t i) const {
   std::vector<float> out;
   out.reserve(3 * bake.character.source_positions.size());
-  for (const baker::Vec3& v : deform(bake.character.source_positions, bake.rig_weights, poses[pose].bones)) {
+  for (const baker::Vec3& v : deform(bake.character.source_positions, bake.rig_weights, poses[i].bones)) {
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       out.push_back(static_cast<float>(v[axis]));
     }
@@ -85,20 +94,19 @@ void load(PosedCharacter& character, const std::string& name, const std::string&
   character.name = name;
   character.bake = baker::bake(kHuman, baker::make_settings("balanced", settings, "the benchmark's settings"), {});
   const auto& asset = character.bake.asset;
-  constexpr std::size_t kLine = 64;
-  character.bytes.resize((asset.size() + 2 * kLine) / sizeof(std::uint64_t));
-  auto* start = reinterpret_cast<std::uint8_t*>(character.bytes.data());
-  start += (kLine - reinterpret_cast<std::uintptr_t>(start) % kLine) % kLine;
-  std::memcpy(start, asset.data(), asset.size());
-  check(character.asset.open(start, asset.size()), "the baked asset");
+  character.bytes = memory_for((asset.size() + 7) / 8);
+  std::memcpy(character.bytes.data(), asset.data(), asset.size());
+  check(sc_asset_open(&character.asset, SC_ABI_VERSION, character.bytes.data(), asset.size(), nullptr, 0),
+        "the baked asset");
   character.poses = poses_of(character.bake, pose_count);
   for (const Deformation& pose : character.poses) {
     character.matrices.push_back(palette(pose));
-    character.spheres.emplace_back(character.asset.spheres().size);
-    RefitBonesJob job;
+    character.spheres.emplace_back(character.sphere_count());
+    RefitJob job;
     job.asset = &character.asset;
-    job.bones = character.bones(character.matrices.size() - 1);
-    job.spheres = {character.spheres.back().data(), character.spheres.back().size()};
+    job.pose = character.pose(character.matrices.size() - 1);
+    job.spheres = character.spheres.back().data();
+    job.sphere_capacity = character.sphere_count();
     check(job.run(), "refit from bones");
   }
 }

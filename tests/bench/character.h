@@ -6,29 +6,37 @@
 #include <string>
 #include <vector>
 
+#include "asset/asset_view.h"
 #include "motion/motion.h"
 #include "pipeline/pipeline.h"
-#include "spherechain/asset.h"
-#include "spherechain/refit_bones.h"
+#include "spherechain/pose.h"
 
 namespace spherechain::bench {
 
 inline constexpr const char* kHuman = "/usr/share/assimp/models/Collada/human.zae";
 
+// Memory from a cache line on, as a game would place it.
+struct alignas(64) CacheLine {
+  std::uint64_t words[8];
+};
+using Memory = std::vector<CacheLine>;
+inline Memory memory_for(std::size_t words) { return Memory((words + 7) / 8); }
+
 struct PosedCharacter {
   std::string name;
   baker::Bake bake;
-  Asset asset;                               // a view of `bytes`
-  std::vector<std::uint64_t> bytes;          // aligned to 64 bytes from `asset_at` on
+  Asset asset;  // a view of `bytes`
+  Memory bytes;
   std::vector<baker::Deformation> poses;     // at least 1,024 by default
-  std::vector<std::vector<float>> matrices;  // a pose each: asset.bone_count() matrices of 3 by 4, by rows
+  std::vector<std::vector<float>> matrices;  // a pose each: a bone matrix each, SC_ROWS_3X4
   std::vector<std::vector<Sphere>> spheres;  // a pose each, refitted from those, with detect radii
 
-  BoneMatrices bones(std::size_t pose) const {
-    return {matrices[pose].data(), asset.bone_count(), MatrixLayout::kRowMajor3x4, 48};
-  }
+  const AssetView& view() const { return view_of(asset); }
+  std::size_t sphere_count() const { return view().spheres().size; }
+  // The bones alone.
+  Pose pose(std::size_t i) const;
   // The deformed vertices in the order of the source, x y z after another.
-  std::vector<float> mesh(std::size_t pose) const;
+  std::vector<float> mesh(std::size_t i) const;
 };
 
 // The motions that load() takes its poses from, each named like its file.
@@ -39,8 +47,7 @@ struct NamedMotion {
 std::vector<NamedMotion> motions_of(const baker::Bake& bake);
 
 // assimp-testmodels' human.zae, baked with the profile "balanced" and `settings` (JSON) on top of it, in the poses of
-// samples/poses and of assimp-testmodels' three motion captures, as many of each that the poses are `pose_count`.
-// Throws baker::Error.
+// samples/poses and of assimp-testmodels' three motion captures, `pose_count` in all. Throws baker::Error.
 void load(PosedCharacter& character, const std::string& name, const std::string& settings, std::size_t pose_count);
 
 }  // namespace spherechain::bench

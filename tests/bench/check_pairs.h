@@ -15,8 +15,8 @@ struct Agreement {
   std::string difference;      // empty: the sets are equal
 };
 
-// Over all poses: what `finder` found, the pairs of it kept that the runtime's rule reports, against a loop over all
-// pairs, written anew from detect.h. A finder of spheres that touch may also find none that do not.
+// Over all poses: the pairs that `finder` found and the runtime's rule reports, against the plain loop over all pairs.
+// A finder of spheres that touch must also find none that do not.
 Agreement check_pairs(const PosedCharacter& character, PairFinder& finder);
 
 }  // namespace spherechain::bench

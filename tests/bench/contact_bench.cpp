@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Goal P6 (docs/performance.md): exact triangle contacts. First that all find the same, then how long it takes.
+// Goal P6 (docs/performance.md): exact skin contacts. Checks that all contestants find the same, then times them.
 #include <fmt/format.h>
 #include <time.h>
 
@@ -11,8 +11,8 @@
 #include <stdexcept>
 
 #include "contact_finder.h"
-#include "spherechain/simd.h"
-#include "spherechain/skin.h"
+#include "simd/simd.h"
+#include "skin/skin_inputs.h"
 #include "table.h"
 
 using namespace spherechain;
@@ -20,11 +20,12 @@ using namespace spherechain::bench;
 
 namespace {
 
-using Pairs = std::vector<TrianglePair>;
+using Pairs = std::vector<Pair>;
 
+const Target kBest = supported_targets()[0];
 constexpr float kTolerance = 1e-5F;  // of the height
 
-// Nanoseconds this thread has run: waiting for a core of a shared machine does not count.
+// Nanoseconds this thread has run. Waiting for a core of a shared machine does not count.
 double now() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
@@ -42,10 +43,14 @@ Pairs sorted(Pairs pairs) {
   return pairs;
 }
 
+// The goals are for the product's question. Lists of triangles are the runtime's too.
+enum class Kind { kProduct, kTriangleList, kPeer };
+
 struct Contestant {
   std::unique_ptr<ContactFinder> finder;
   int passes;
-  bool is_peer, is_exact;
+  Kind kind;
+  bool is_exact;
   std::vector<std::vector<double>> times;  // by pose, of each pass
   std::size_t missing = 0, extra = 0;      // against CGAL, over all poses
 
@@ -71,18 +76,19 @@ class ContactBench {
     load(human_, "human", settings, pose_count);
     mesh_ = std::make_unique<ContactMesh>(human_);
     for (std::size_t i = 0; i < human_.poses.size(); ++i) {
-      poses_.push_back({skinned(i), human_.bones(i)});
+      poses_.push_back({skinned(i), human_.pose(i)});
     }
-    const auto add = [&](ContactFinders finders, int count, bool is_peer, bool is_exact = true) {
-      for (auto& finder : finders) contestants_.push_back({std::move(finder), count, is_peer, is_exact, {}});
+    const auto add = [&](ContactFinders finders, int count, Kind kind, bool is_exact = true) {
+      for (auto& finder : finders) contestants_.push_back({std::move(finder), count, kind, is_exact, {}});
     };
-    add(runtime_contact_finders(*mesh_), passes, false);
-    add(cgal_contact_finders(*mesh_), with_peers ? 3 : 0, true);
+    add(runtime_part_finders(*mesh_), passes, Kind::kProduct);
+    add(runtime_triangle_finders(*mesh_), passes, Kind::kTriangleList);
+    add(cgal_contact_finders(*mesh_), with_peers ? 3 : 0, Kind::kPeer);
     if (with_peers) {
-      add(embree_contact_finders(*mesh_), 3, true);
+      add(embree_contact_finders(*mesh_), 3, Kind::kPeer);
     }
     if (with_fcl) {
-      add(fcl_contact_finders(*mesh_), 1, true, false);
+      add(fcl_contact_finders(*mesh_), 1, Kind::kPeer, false);
     }
     compare();
     time_all();
@@ -100,9 +106,9 @@ class ContactBench {
     }
     out.context = {machine(),
                    fmt::format("target {}, {} poses of assimp-testmodels' human.zae, {} of them without a contact; "
-                               "{} triangles in {} leaves of {} spheres",
-                               to_string(best_target()), poses_.size(), free_count, mesh_->source_triangles.size(),
-                               human_.asset.leaf_count(), human_.asset.spheres().size),
+                               "{} triangles in {} clusters of {} spheres",
+                               sc_target_name(kBest), poses_.size(), free_count, mesh_->source_triangles.size(),
+                               mesh_->surface.clusters.size, human_.sphere_count()),
                    fmt::format("contacts over all poses: {} pairs of triangles (CGAL)", pairs)};
     const auto worst = [](const std::vector<double>& v) { return *std::max_element(v.begin(), v.end()); };
     struct Figures {
@@ -123,7 +129,7 @@ class ContactBench {
       }
     }
     for (const Figures& own : figures) {
-      if (own.of.is_peer) continue;
+      if (own.of.kind != Kind::kProduct) continue;
       const auto goal = [&](const std::string& what, const char* unit, double reached, double wanted, bool at_least) {
         out.goals.push_back({"P6 " + own.of.finder->name + ": " + what, unit, reached, wanted, at_least});
       };
@@ -144,21 +150,14 @@ class ContactBench {
   }
 
  private:
-  // By the runtime, so that the entrance from bones, which skins for itself, is asked about the very same positions.
+  // Skinned by the runtime, so that contacts from bones and from vertices are of the very same positions.
   std::vector<float> skinned(std::size_t pose) const {
     const std::vector<float> expected = human_.mesh(pose);
-    std::vector<float> out = expected;  // it writes the surface's vertices alone
-    SkinJob job;
-    job.asset = &human_.asset;
-    job.bones = human_.bones(pose);
-    job.positions = out.data();
-    job.vertex_count = out.size() / 3;
-    if (job.run() != Status::kOk) {
-      throw std::runtime_error("skinning failed");
-    }
-    // All are given these: where they are wrong, all agree.
+    std::vector<float> out = expected;  // the runtime writes the surface's vertices alone
+    skin_surface(mesh_->surface, human_.pose(pose), kBest, out.data(), 3);
+    // All contestants get these positions: a mistake here would be everyone's.
     for (std::size_t i = 0; i < out.size(); ++i) {
-      if (!(std::abs(out[i] - expected[i]) < kTolerance * human_.asset.info().height)) {
+      if (!(std::abs(out[i] - expected[i]) < kTolerance * human_.view().info().height)) {
         throw std::runtime_error("the skinned vertices are not the mesh's");
       }
     }
@@ -219,7 +218,7 @@ class ContactBench {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Times exact triangle contacts against peers: goal P6"};
+  CLI::App app{"Times exact skin contacts against peers: goal P6"};
   std::size_t pose_count = 121;
   int passes = 31;
   bool alone = false, with_fcl = false;

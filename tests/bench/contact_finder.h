@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who competes for goal P6: the triangles of a deformed mesh that intersect.
+// The contestants of goal P6: the triangles of a deformed mesh that intersect.
 #pragma once
 
 #include <memory>
@@ -8,23 +8,23 @@
 #include <vector>
 
 #include "character.h"
-#include "spherechain/surface.h"
+#include "skin/skin_table.h"
 
 namespace spherechain::bench {
 
-// What all are given: a character's surface, the asset's triangles in the source's order, and one pose of it.
+// What all contestants get: one pose of the character.
 struct ContactPose {
   std::vector<float> positions;  // of the source's vertices, x y z after another
-  BoneMatrices bones;            // that give them
+  Pose bones;                    // the bones that give these positions
 };
 
 class ContactFinder {
  public:
   virtual ~ContactFinder() = default;
-  // This is what is timed: from a pose to an array of pairs. Buffers are made before.
+  // The timed call. Buffers are made before.
   virtual void find(const ContactPose& pose) = 0;
-  // Of the last find(): source triangle numbers, a < b, in any order.
-  virtual std::vector<TrianglePair> pairs() const = 0;
+  // The source triangles that intersect in the pose of the last find(), a < b, in any order. Not timed.
+  virtual std::vector<Pair> pairs() = 0;
 
   const std::string name;
 
@@ -32,11 +32,11 @@ class ContactFinder {
   explicit ContactFinder(std::string name) : name(std::move(name)) {}
 };
 
-// What a peer needs of the surface.
+// The asset's skin as peers need it, and its expanded table as the runtime needs it.
 struct ContactMesh {
   explicit ContactMesh(const PosedCharacter& character);
 
-  // Of different spheres that are not ignored, and no neighbours: what the runtime looks for.
+  // Whether the runtime looks for this pair: of two spheres that are not ignored, and no neighbours.
   bool is_wanted(std::uint32_t a, std::uint32_t b) const;
   // The corner of a triangle (by its place in source_triangles) in a pose.
   const float* corner(const ContactPose& pose, std::size_t triangle, std::size_t k) const {
@@ -44,6 +44,8 @@ struct ContactMesh {
   }
 
   const PosedCharacter& character;
+  Memory skin_table;
+  Surface surface;  // a view of skin_table
   std::vector<std::uint32_t> source_triangles;
   std::vector<std::uint32_t> corners;   // source vertices, three a triangle
   std::vector<std::uint32_t> welds;     // the same corners: equal where they are at one place at rest
@@ -53,8 +55,10 @@ struct ContactMesh {
 
 using ContactFinders = std::vector<std::unique_ptr<ContactFinder>>;
 
-// From vertices, from bones and from both.
-ContactFinders runtime_contact_finders(const ContactMesh& mesh);
+// The product's question: which body parts touch, and in how many triangles. From vertices, from bones, from both.
+ContactFinders runtime_part_finders(const ContactMesh& mesh);
+// The same three with a list of the triangles and the segments in which they cross.
+ContactFinders runtime_triangle_finders(const ContactMesh& mesh);
 ContactFinders cgal_contact_finders(const ContactMesh& mesh);
 ContactFinders embree_contact_finders(const ContactMesh& mesh);
 ContactFinders fcl_contact_finders(const ContactMesh& mesh);

@@ -1,20 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <map>
+#include <stdexcept>
 
 #include "contact_finder.h"
+#include "pairs/pair_bits.h"
+#include "spherechain/skin_contacts.h"
 
 namespace spherechain::bench {
 
-ContactMesh::ContactMesh(const PosedCharacter& character) : character(character) {
-  const Surface& surface = character.asset.surface();
+ContactMesh::ContactMesh(const PosedCharacter& character)
+    : character(character), skin_table(memory_for(sc_skin_table_words(&character.asset))) {
+  std::uint64_t* const words = skin_table.data()->words;
+  if (sc_prepare_skin(&character.asset, words, sc_skin_table_words(&character.asset)) != SC_OK ||
+      read_skin_table(character.view(), words, surface) != SC_OK) {
+    throw std::runtime_error("the asset's skin cannot be prepared");
+  }
   std::map<std::uint32_t, std::uint32_t> number_of_weld;
-  for (const Leaf& leaf : surface.leaves) {
-    for (std::uint32_t i = 0; i < leaf.triangle_count; ++i) {
-      const std::size_t triangle = std::size_t{leaf.first_triangle} + i;
-      source_triangles.push_back(character.asset.triangles()[triangle]);
-      spheres.push_back(leaf.sphere);
+  for (const Cluster& cluster : surface.clusters) {
+    for (std::uint32_t i = 0; i < cluster.triangle_count; ++i) {
+      const std::size_t triangle = std::size_t{cluster.first_triangle} + i;
+      source_triangles.push_back(surface.triangles[triangle]);
+      spheres.push_back(cluster.sphere);
       for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t vertex = surface.leaf_vertices[leaf.first_vertex + surface.corners[3 * triangle + k]];
+        const std::uint32_t vertex = surface.cluster_vertices[cluster.first_vertex + surface.corners[3 * triangle + k]];
         corners.push_back(surface.source_vertices[vertex]);
         const auto [at, is_new] =
             number_of_weld.try_emplace(surface.welds[vertex], static_cast<std::uint32_t>(vertices.size()));
@@ -29,11 +37,7 @@ ContactMesh::ContactMesh(const PosedCharacter& character) : character(character)
 
 bool ContactMesh::is_wanted(std::uint32_t a, std::uint32_t b) const {
   const std::size_t low = std::min(spheres[a], spheres[b]), high = std::max(spheres[a], spheres[b]);
-  if (low == high) {
-    return false;
-  }
-  const std::size_t bit = high * (high - 1) / 2 + low;
-  if (((character.asset.ignored()[bit / 64] >> (bit % 64)) & 1U) != 0) {
+  if (low == high || test_bit(character.view().ignored(), ignored_bit(low, high))) {
     return false;
   }
   for (std::size_t i = 0; i < 3; ++i) {

@@ -22,19 +22,22 @@ CrowdRun::CrowdRun(const PosedCharacter& character, std::size_t instance_count, 
     matrices_.insert(matrices_.end(), pose.begin(), pose.end());
   }
   const std::size_t task_count = thread_count == 1 ? 1 : kTasksAThread * thread_count;
-  words_.resize(CrowdContext::words_needed(character.asset, task_count));
-  context_.words = {words_.data(), words_.size()};
+  words_.resize(sc_crowd_scratch_words(&character.asset, task_count));
   job_.asset = &character.asset;
   job_.instance_count = instance_count;
-  job_.bones = character.bones(0);
-  job_.bones.data = matrices_.data();
+  job_.pose = character.pose(0);
+  job_.pose.bones = matrices_.data();
   job_.instance_stride = matrices_.size() / instance_count * sizeof(float);
-  job_.context = &context_;
+  job_.scratch = words_.data();
+  job_.scratch_words = words_.size();
   job_.task_count = task_count;
-  job_.counts = {counts_.data(), counts_.size()};
-  job_.pairs = {pairs_.data(), pairs_.size()};
+  job_.counts = counts_.data();
+  job_.count_capacity = counts_.size();
+  job_.pairs = pairs_.data();
+  job_.pair_capacity = pairs_.size();
   if (thread_count > 1) {
-    job_.hook = {&CrowdRun::on_threads, this};
+    job_.parallel_for = &CrowdRun::on_threads;
+    job_.user = this;
   }
 }
 
@@ -56,20 +59,22 @@ void CrowdRun::on_threads(void* self_pointer, std::size_t count, void (*task)(vo
 }
 
 void CrowdRun::run() {
-  if (job_.run() != Status::kOk) {
+  if (job_.run() != SC_OK) {
     throw std::logic_error("the crowd did not run");
   }
 }
 
 bool CrowdRun::has_the_pairs_of(const PosedCharacter& character) const {
   std::vector<std::vector<Pair>> expected;
-  std::vector<Pair> buffer(character.asset.spheres().size * character.asset.spheres().size);
+  std::vector<Pair> buffer(character.sphere_count() * character.sphere_count());
   for (const auto& spheres : character.spheres) {
     DetectJob job;
     job.asset = &character.asset;
-    job.spheres = {spheres.data(), spheres.size()};
-    job.pairs = {buffer.data(), buffer.size()};
-    if (job.run() != Status::kOk) {
+    job.spheres = spheres.data();
+    job.sphere_count = spheres.size();
+    job.pairs = buffer.data();
+    job.pair_capacity = buffer.size();
+    if (job.run() != SC_OK) {
       return false;
     }
     expected.emplace_back(buffer.begin(), buffer.begin() + static_cast<std::ptrdiff_t>(job.pair_count));
@@ -81,7 +86,7 @@ bool CrowdRun::has_the_pairs_of(const PosedCharacter& character) const {
       return false;
     }
     for (const Pair& pair : own) {
-      if (at == job_.pair_count || !(pairs_[at] == CrowdPair{i, pair})) {
+      if (at == job_.pair_count || pairs_[at].instance != i || pairs_[at].pair != pair) {
         return false;
       }
       ++at;

@@ -9,15 +9,14 @@
 
 namespace spherechain::bench {
 
-// Goal P4: a crowd of one character in its poses, one after the other, each instance with matrices of its own; bones
-// in, pairs out.
+// Goal P4: a crowd of one character in its poses in turn. Each instance has matrices of its own: bones in, pairs out.
 class CrowdRun {
  public:
   CrowdRun(const PosedCharacter& character, std::size_t instance_count, std::size_t thread_count);
   CrowdRun(const CrowdRun&) = delete;  // the job points into this
 
   void run();
-  // Of the last run; whether each instance's are those of a DetectJob.
+  // Whether the last run found for each instance the pairs that a DetectJob finds.
   bool has_the_pairs_of(const PosedCharacter& character) const;
 
  private:
@@ -28,7 +27,6 @@ class CrowdRun {
   std::vector<std::uint64_t> words_;
   std::vector<std::uint32_t> counts_;
   std::vector<CrowdPair> pairs_;
-  CrowdContext context_;
   CrowdJob job_;
 };
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Embree: its tree of the triangles' boxes refitted to the pose, then collided with itself; the triangles of boxes that
-// touch are tested by the runtime's own function, for Embree has none. On one thread.
+// Embree: its tree of the triangles' boxes refitted to the pose, then collided with itself. Embree has no triangle
+// test: the runtime's own tests the triangles of boxes that touch. On one thread.
 #include <embree3/rtcore.h>
 
 #include <algorithm>
 
 #include "contact_finder.h"
-#include "spherechain/triangle_contacts.h"
+#include "skin/exact_triangles.h"
 
 namespace spherechain::bench {
 namespace {
@@ -41,7 +41,7 @@ class EmbreeContacts : public ContactFinder {
     rtcCollide(scene_, scene_, &EmbreeContacts::on_pairs, this);
   }
 
-  std::vector<TrianglePair> pairs() const override { return found_; }
+  std::vector<Pair> pairs() override { return found_; }
 
  private:
   static void bounds(const RTCBoundsFunctionArguments* arguments) {
@@ -66,26 +66,25 @@ class EmbreeContacts : public ContactFinder {
       if (a >= b || !self.mesh_.is_wanted(a, b)) {
         continue;
       }
-      Vec3 p[3], q[3];
-      self.copy(a, p);
-      self.copy(b, q);
-      if (triangles_intersect(p, q)) {
+      if (triangles_intersect(self.corners(a), self.corners(b))) {
         const std::uint32_t s = self.mesh_.source_triangles[a], t = self.mesh_.source_triangles[b];
         self.found_.push_back({std::min(s, t), std::max(s, t)});
       }
     }
   }
 
-  void copy(std::uint32_t triangle, Vec3 (&out)[3]) const {
+  TriangleCorners corners(std::uint32_t triangle) const {
+    TriangleCorners out{};
     for (std::size_t k = 0; k < 3; ++k) {
       const float* p = mesh_.corner(*pose_, triangle, k);
-      out[k] = {p[0], p[1], p[2]};
+      out.p[k] = {p[0], p[1], p[2]};
     }
+    return out;
   }
 
   const ContactMesh& mesh_;
   const ContactPose* pose_ = nullptr;
-  std::vector<TrianglePair> found_;
+  std::vector<Pair> found_;
   RTCDevice device_;
   RTCScene scene_;
   RTCGeometry geometry_;

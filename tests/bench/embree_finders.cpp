@@ -17,7 +17,7 @@ class EmbreeFinder : public PairFinder {
         geometry_(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_USER)) {
     rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_DYNAMIC);
     rtcSetSceneBuildQuality(scene_, RTC_BUILD_QUALITY_LOW);
-    rtcSetGeometryUserPrimitiveCount(geometry_, static_cast<unsigned>(asset.spheres().size));
+    rtcSetGeometryUserPrimitiveCount(geometry_, static_cast<unsigned>(view_of(asset).spheres().size));
     rtcSetGeometryUserData(geometry_, this);
     rtcSetGeometryBoundsFunction(geometry_, &EmbreeFinder::bounds, nullptr);
     rtcAttachGeometry(scene_, geometry_);

@@ -47,8 +47,8 @@ class FclContacts : public ContactFinder {
     fcl::collide<double>(model_.get(), none, model_.get(), none, request_, result_);
   }
 
-  std::vector<TrianglePair> pairs() const override {
-    std::vector<TrianglePair> out;
+  std::vector<Pair> pairs() override {
+    std::vector<Pair> out;
     for (std::size_t i = 0; i < result_.numContacts(); ++i) {
       const auto a = static_cast<std::uint32_t>(result_.getContact(i).b1);
       const auto b = static_cast<std::uint32_t>(result_.getContact(i).b2);

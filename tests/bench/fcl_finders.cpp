@@ -17,8 +17,8 @@ class FclFinder : public PairFinder {
                    tests_spheres ? Found::kTouching : Found::kBoxes),
         tests_spheres_(tests_spheres),
         list_(asset) {
-    for (std::size_t i = 0; i < asset.spheres().size; ++i) {
-      shapes_.push_back(std::make_shared<fcl::Sphered>(asset.spheres()[i].detect_radius));
+    for (std::size_t i = 0; i < view_of(asset).spheres().size; ++i) {
+      shapes_.push_back(std::make_shared<fcl::Sphered>(view_of(asset).spheres()[i].detect_radius));
       objects_.push_back(std::make_unique<fcl::CollisionObjectd>(shapes_.back()));
       objects_.back()->setUserData(reinterpret_cast<void*>(i));
       tree_.registerObject(objects_.back().get());

@@ -11,7 +11,7 @@ class OdeFinder : public PairFinder {
  public:
   OdeFinder(const Asset& asset, std::string name, dSpaceID space)
       : PairFinder(std::move(name), Found::kBoxes), list_(asset), space_(space) {
-    for (std::size_t i = 0; i < asset.spheres().size; ++i) {
+    for (std::size_t i = 0; i < view_of(asset).spheres().size; ++i) {
       geoms_.push_back(dCreateSphere(space_, 1));
       dGeomSetData(geoms_.back(), reinterpret_cast<void*>(i));
     }

@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Who competes for goals P1 and P2: the pairs of a pose, out of its spheres.
+// The contestants of goals P1 and P2: from a pose's spheres to the pairs that touch.
 #pragma once
 
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "spherechain/asset.h"
-#include "spherechain/types.h"
+#include "asset/asset_view.h"
+#include "pairs/pair_bits.h"
 
 namespace spherechain::bench {
 
-// What the pairs found are. All leave out the pairs that the asset ignores, by the means that the library has for it.
+// Which pairs a contestant finds. All leave out the asset's ignored pairs, each in its library's own way.
 enum class Found {
-  kExactly,   // the runtime's pairs, its rule for near pairs included
-  kInChains,  // those of them that some chain holds
+  kExactly,   // the runtime's pairs, its rule for rest pairs included
   kTouching,  // the spheres that touch, by the library's own arithmetic
   kBoxes,     // the spheres whose boxes touch, and maybe some more: a test of the spheres is still to come
 };
@@ -34,15 +33,16 @@ class PairFinder {
   PairFinder(std::string name, Found found) : name(std::move(name)), found(found) {}
 };
 
-// Peers keep theirs in this: room for all pairs, so that none ever allocates for them.
+// Where peers keep their pairs. It has room for all of them, so that no peer allocates while it is timed.
 class PairList {
  public:
-  explicit PairList(const Asset& asset) : asset_(asset) { pairs_.reserve(asset.spheres().size * asset.spheres().size); }
+  explicit PairList(const Asset& asset) : asset_(asset) {
+    pairs_.reserve(view_of(asset).spheres().size * view_of(asset).spheres().size);
+  }
   void clear() { pairs_.clear(); }
   bool is_ignored(std::uint32_t a, std::uint32_t b) const {
-    const std::uint32_t low = a < b ? a : b, high = a < b ? b : a;
-    const std::size_t bit = std::size_t{high} * (high - 1) / 2 + low;
-    return ((asset_.ignored()[bit / 64] >> (bit % 64)) & 1U) != 0;
+    return a < b ? test_bit(view_of(asset_).ignored(), ignored_bit(a, b))
+                 : test_bit(view_of(asset_).ignored(), ignored_bit(b, a));
   }
   void add(std::uint32_t a, std::uint32_t b) { pairs_.push_back(a < b ? Pair{a, b} : Pair{b, a}); }
   const std::vector<Pair>& pairs() const { return pairs_; }
@@ -54,7 +54,7 @@ class PairList {
 
 using PairFinders = std::vector<std::unique_ptr<PairFinder>>;
 
-// The runtime's: lists, bits, counts; M2 and M1.
+// The runtime's: a list, bits, and a list without a prepared table.
 PairFinders runtime_finders(const Asset& asset);
 PairFinders bullet_finders(const Asset& asset);
 PairFinders cgal_finders(const Asset& asset);

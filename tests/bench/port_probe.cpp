@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "port_probe.h"
 
-// The runtime's own choice of targets (runtime/src), so that the probe's vectors are those of its kernels.
-#include "simd.h"
+// The runtime's own choice of targets, so that the probe's vectors are those of its kernels.
+#include "simd/simd.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "port_probe.cpp"
-#include "highway.h"
+#include "simd/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {

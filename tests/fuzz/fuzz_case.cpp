@@ -6,18 +6,19 @@
 #include <cstring>
 #include <limits>
 
-#include "tiny_moments.h"
-#include "tiny_surface.h"
+#include "pose/pose.h"
+#include "simd/simd.h"
+#include "tiny_skin.h"
 
 namespace spherechain::test {
 namespace {
 
-// Below, at and past a word, a tile and a register of spheres; groups of pivots that are not full, and several; each
-// rule of refit; with and without what older bakers left out.
+// Below, at and past a word, a tile and a register of spheres; groups of pivots that are not full, and several; both
+// rules of refit; with and without bones, moments and a skin.
 std::vector<std::vector<std::uint8_t>> make_assets() {
   std::vector<std::vector<std::uint8_t>> assets;
   for (const unsigned n : {1U, 2U, 5U, 12U, 16U, 33U, 64U, 75U, 128U, 129U, 200U}) {
-    TinyAsset tiny = random_asset(n, n);
+    TinyAsset tiny = n % 2 == 0 ? random_asset(n, n) : random_band(n, n);
     if (n % 3 == 0) {
       give_pivots(tiny, n / 2, 19, n);
       give_pivots(tiny, 0, 9, n);
@@ -26,12 +27,9 @@ std::vector<std::vector<std::uint8_t>> make_assets() {
     TinySkin skin;
     if (n != 12) {
       skin = add_bones(tiny, 1 + n % 6, n);
-      if (n % 3 == 2) {
-        add_moments(tiny, skin, n % 2 == 0 ? 48 : 3, n % 8 == 0 ? PivotTables::kKept : PivotTables::kLeftOut);
-      }
     }
-    if (n % 2 == 0 || n % 5 == 0) {  // one without bones, several with
-      add_surface(tiny, n == 12 ? nullptr : &skin, 1 + n % 4);
+    if (n != 64) {
+      add_skin(tiny, n == 12 ? nullptr : &skin, 1 + n % 4);
     }
     assets.push_back(build(tiny.parts));
   }
@@ -63,17 +61,11 @@ bool draw_asset(Case& c) {
     const std::uint32_t word = c.random.pick(words);
     std::memcpy(data + at / 4 * 4, &word, sizeof word);
   }
-  auto* memory = c.arena.add<std::uint64_t>(sc_asset_size() / 8 + 1);
-  auto* closed = c.arena.add<std::uint64_t>(sc_asset_size() / 8 + 1);
-  const sc_asset* none = nullptr;
-  (void)sc_asset_open(SC_ABI_VERSION, closed, sc_asset_size(), data, 3, &none, nullptr, 0);
-  c.c_closed = reinterpret_cast<const sc_asset*>(closed);
-  const Status status = c.asset.open(data, bytes.size());
-  const sc_status c_status =
-      sc_asset_open(SC_ABI_VERSION, memory, sc_asset_size(), data, bytes.size(), &c.c_asset, nullptr, 0);
-  c.expect(none == nullptr && static_cast<Status>(c_status) == status, "open: the two APIs differ");
-  c.n = status == Status::kOk ? c.asset.spheres().size : 0;
-  return status == Status::kOk;
+  c.asset_bytes = {data, bytes.size()};
+  const Status status = sc_asset_open(&c.asset, SC_ABI_VERSION, data, bytes.size(), nullptr, 0);
+  c.expect(status == SC_OK || status.field == SC_FIELD_DATA, "open: a refusal without its field");
+  c.n = status == SC_OK ? c.view().spheres().size : 0;
+  return status == SC_OK;
 }
 
 void fill_figures(Case& c, float* figures, std::size_t count) {
@@ -113,83 +105,182 @@ std::size_t draw_capacity(Case& c, std::size_t there_are) {
 }
 
 Target draw_target(Case& c) {
-  const Span<const Target> targets = supported_targets();
-  return c.random.one_in(3) ? Target::kBest : targets[c.random.up_to(targets.size - 1)];
+  std::size_t count = 0;
+  const Target* const targets = sc_supported_targets(&count);
+  return c.random.one_in(3) ? SC_TARGET_BEST : targets[c.random.up_to(count - 1)];
 }
 
-BoneMatrices draw_bones(Case& c) {
-  BoneMatrices bones;
-  bones.layout = static_cast<MatrixLayout>(c.random.below(4));
-  bones.stride = size_of(bones.layout) + 4 * (c.random.one_in(2) ? 0 : c.random.below(6));
-  const std::size_t least = c.asset.bone_count();
-  bones.count = least + (c.random.one_in(2) ? 0 : c.random.below(3));
+void draw_bones(Case& c, Pose& pose) {
+  pose.bone_layout = static_cast<MatrixLayout>(1 + c.random.below(4));
+  pose.bone_stride = c.random.one_in(2) ? 0 : size_of(pose.bone_layout) + 4 * c.random.below(6);
+  pose.bone_count = c.view().bone_count() + (c.random.one_in(2) ? 0 : c.random.below(3));
+  const std::size_t bytes =
+      pose.bone_count == 0 ? 0 : (pose.bone_count - 1) * bone_stride(pose) + size_of(pose.bone_layout);
+  float* const bones = c.arena.add<float>(bytes / sizeof(float));
+  fill_figures(c, bones, bytes / sizeof(float));
+  pose.bones = bones;
+  if (c.random.one_in(2)) {
+    pose.morph_weight_count = c.view().morph_count() + c.random.below(2);
+    float* const weights = c.arena.add<float>(pose.morph_weight_count);
+    fill_figures(c, weights, pose.morph_weight_count);
+    pose.morph_weights = weights;
+  }
+}
+
+bool draw_vertices(Case& c, Pose& pose) {
+  if (c.view().vertex_count() > kMaxVertices) {
+    return false;
+  }
+  pose.vertex_count = c.view().vertex_count() + c.random.below(2);
+  pose.vertex_stride = c.random.one_in(2) ? 0 : 12 + 4 * c.random.below(8);
   const std::size_t floats =
-      bones.count == 0 ? 0 : ((bones.count - 1) * bones.stride + size_of(bones.layout)) / sizeof(float);
-  float* data = c.arena.add<float>(floats);
-  fill_figures(c, data, floats);
-  bones.data = data;
-  return bones;
+      pose.vertex_count == 0 ? 0 : (pose.vertex_count - 1) * vertex_stride(pose) / sizeof(float) + 3;
+  float* const vertices = c.arena.add<float>(floats);
+  fill_figures(c, vertices, floats);
+  pose.vertices = vertices;
+  return true;
+}
+
+void add_asset_ways(Case& c, const Asset*& asset, Ways& ways) {
+  ways.insert(ways.end(), {[&] { asset = nullptr, c.spoil(SC_NULL, SC_FIELD_ASSET); },
+                           [&] { asset = &c.closed, c.spoil(SC_NOT_OPEN, SC_FIELD_ASSET); }});
+}
+
+void add_bone_ways(Case& c, Pose& pose, Ways& ways) {
+  ways.insert(
+      ways.end(),
+      {[&] { pose.bone_count = c.random.up_to(c.view().bone_count() - 1), c.spoil(SC_TOO_SMALL, SC_FIELD_BONE_COUNT); },
+       [&] {
+         const std::size_t size = size_of(pose.bone_layout);
+         const std::size_t strides[] = {4, 44, size - 4, size + 2, 999, ~std::size_t{0}};
+         pose.bone_stride = c.random.pick(strides);
+         c.spoil(SC_BAD_STRIDE, SC_FIELD_BONE_STRIDE);
+       },
+       [&] {
+         pose.bone_layout = c.random.one_in(2) ? SC_LAYOUT_UNSET : draw_none<MatrixLayout>(c, 5);
+         c.spoil(SC_BAD_VALUE, SC_FIELD_BONE_LAYOUT);
+       },
+       [&] { put_askew(c, pose.bones), c.spoil(SC_MISALIGNED, SC_FIELD_BONES); },
+       [&] {
+         pose.morph_weights = nullptr;
+         pose.morph_weight_count = c.view().morph_count() + 1;
+         c.spoil(SC_NULL, SC_FIELD_MORPH_WEIGHTS);
+       },
+       [&] {
+         if (c.view().morph_count() > 1) {
+           pose.morph_weights = c.arena.add<float>(3);
+           pose.morph_weight_count = c.view().morph_count() - 1;
+           c.spoil(SC_TOO_SMALL, SC_FIELD_MORPH_WEIGHTS);
+         }
+       }});
+}
+
+void add_vertex_ways(Case& c, Pose& pose, Ways& ways) {
+  ways.insert(ways.end(), {[&] {
+                             if (c.view().vertex_count() > 0) {
+                               pose.vertex_count = c.random.one_in(2) ? c.view().vertex_count() - 1 : 0;
+                               c.spoil(SC_TOO_SMALL, SC_FIELD_VERTEX_COUNT);
+                             }
+                           },
+                           [&] {
+                             const std::size_t strides[] = {4, 8, 11, 13, 14, 18, ~std::size_t{0}, ~std::size_t{0} - 1};
+                             pose.vertex_stride = c.random.pick(strides);
+                             c.spoil(SC_BAD_STRIDE, SC_FIELD_VERTEX_STRIDE);
+                           },
+                           [&] { put_askew(c, pose.vertices), c.spoil(SC_MISALIGNED, SC_FIELD_VERTICES); }});
 }
 
 Filter draw_filter(Case& c) {
-  const std::size_t words = Filter::ignored_words(c.asset);
   Filter filter;
-  filter.ignored = {c.arena.add<std::uint64_t>(words), words};
-  for (std::uint64_t& word : filter.ignored) {
-    word = c.random.one_in(3) ? c.random.bits() & c.random.bits() : 0;
-  }
-  if (c.random.one_in(2)) {
-    filter.disabled.size = Filter::disabled_words(c.asset);
-    filter.disabled.data = c.arena.add<std::uint64_t>(filter.disabled.size);
-    for (std::uint64_t& word : filter.disabled) {
-      word = c.random.one_in(2) ? c.random.bits() & c.random.bits() & c.random.bits() : 0;
+  const auto thin = [&](std::uint64_t* words, std::size_t count, std::uint32_t one_in) {
+    for (std::size_t i = 0; i < count; ++i) {
+      words[i] = c.random.one_in(one_in) ? c.random.bits() & c.random.bits() & c.random.bits() : 0;
     }
+  };
+  filter.ignored_words = sc_pair_words(&c.asset);
+  filter.ignored = c.arena.add<std::uint64_t>(filter.ignored_words);
+  thin(filter.ignored, filter.ignored_words, 3);
+  if (c.random.one_in(2)) {
+    filter.disabled_words = sc_sphere_words(&c.asset);
+    filter.disabled = c.arena.add<std::uint64_t>(filter.disabled_words);
+    thin(filter.disabled, filter.disabled_words, 2);
   }
   if (c.random.one_in(2)) {
-    filter.padding = {c.arena.add<float>(c.n), c.n};
-    fill_figures(c, filter.padding.data, c.n);
+    filter.padding_count = c.n;
+    filter.padding = c.arena.add<float>(c.n);
+    fill_figures(c, filter.padding, c.n);
   }
   return filter;
 }
 
-void spoil_filter(Case& c, Filter& filter, Spoiled& spoiled) {
-  switch (c.random.below(kFilterWays)) {
+void spoil_filter(Case& c, Filter& filter) {
+  switch (c.random.below(7)) {
     case 0:
-      filter.ignored.size += 1;
-      return spoiled.with(Status::kBadFilter);
+      filter.ignored_words += 1;
+      return c.spoil(SC_TOO_SMALL, SC_FIELD_FILTER);
     case 1:  // as of another asset
-      if (filter.ignored.size > 0) {
-        filter.ignored.size /= 2;
-        spoiled.with(Status::kBadFilter);
+      if (filter.ignored_words > 0) {
+        filter.ignored_words /= 2;
+        c.spoil(SC_TOO_SMALL, SC_FIELD_FILTER);
       }
       return;
     case 2:
-      filter.ignored = {nullptr, filter.ignored.size + 1};
-      return spoiled.with(Status::kNullArgument);
+      filter.ignored = nullptr;
+      filter.ignored_words += 1;
+      return c.spoil(SC_NULL, SC_FIELD_FILTER);
     case 3:
-      filter.disabled = {c.arena.add<std::uint64_t>(9), Filter::disabled_words(c.asset) + 1};
-      return spoiled.with(Status::kBadFilter);
+      filter.disabled = c.arena.add<std::uint64_t>(9);
+      filter.disabled_words = sc_sphere_words(&c.asset) + 1;
+      return c.spoil(SC_TOO_SMALL, SC_FIELD_FILTER);
     case 4:
-      filter.disabled = {nullptr, Filter::disabled_words(c.asset)};
-      return spoiled.with(Status::kNullArgument);
+      filter.disabled = nullptr;
+      filter.disabled_words = sc_sphere_words(&c.asset);
+      return c.spoil(SC_NULL, SC_FIELD_FILTER);
     case 5:
-      filter.padding = {c.arena.add<float>(c.n + 1), c.n + 1};
-      return spoiled.with(Status::kBadFilter);
-    case 6:
-      if (c.n > 1) {
-        filter.padding = {c.arena.add<float>(c.n), c.n - 1};
-        spoiled.with(Status::kBadFilter);
-      }
-      return;
+      filter.padding = c.arena.add<float>(c.n + 1);
+      filter.padding_count = c.n + 1;
+      return c.spoil(SC_TOO_SMALL, SC_FIELD_FILTER);
     default:
-      put_askew(c, filter.ignored.data);
-      return spoiled.with(Status::kMisaligned);
+      put_askew(c, filter.ignored);
+      return c.spoil(SC_MISALIGNED, SC_FIELD_FILTER);
   }
 }
 
-sc_filter to_c(const Filter& filter) {
-  return {filter.ignored.data,  filter.ignored.size, filter.disabled.data,
-          filter.disabled.size, filter.padding.data, filter.padding.size};
+void spoil_some(Case& c, const Ways& ways) {
+  const auto count = static_cast<std::uint32_t>(ways.size());
+  const std::uint32_t times = c.random.one_in(2) ? 0 : c.random.one_in(5) ? 2 : 1;
+  const std::uint32_t first = c.random.below(count);
+  for (std::uint32_t i = 0; i < times; ++i) {
+    ways[i == 0 ? first : (first + 1 + c.random.below(count - 1)) % count]();
+  }
+}
+
+Status run_twice(Case& c, const Call& call) {
+  const auto copy = [&](const std::vector<Bytes>& ranges) {
+    std::vector<std::uint8_t> bytes;
+    for (const Bytes& range : ranges) {
+      const auto* data = static_cast<const std::uint8_t*>(range.data);
+      bytes.insert(bytes.end(), data, data + range.size);
+    }
+    return bytes;
+  };
+  c.arena.seal();
+  const Status status = call.run();
+  const bool ran = status == SC_OK || status == SC_OVERFLOW;
+  c.expect(c.spoiled == 0 ? ran : c.spoiled == 1 ? status == c.wanted : !ran, "another status");
+  c.expect(status == SC_OK || status.field != SC_FIELD_NONE, "a status without its field");
+  const std::vector<Bytes> changed = ran ? call.outputs() : std::vector<Bytes>();
+  c.expect(c.arena.kept_but(changed), "memory was written that must not be");
+  if (ran) call.tidy();
+  const std::vector<std::uint8_t> outputs = copy(changed);
+  c.arena.restore();
+  if (call.writes_all) c.arena.invert(changed);
+  c.expect(call.run() == status, "another status on another target");
+  c.expect(c.arena.kept_but(changed), "memory was written that must not be, on another target");
+  if (ran) call.tidy();
+  c.expect(copy(changed) == outputs, "another target gives something else");
+  (ran ? status == SC_OK ? c.tally.ran : c.tally.overflowed : c.tally.refused) += 1;
+  return status;
 }
 
 void make_one_nan(float* figures, std::size_t count) {

@@ -1,128 +1,240 @@
 // SPDX-License-Identifier: MIT
-// Contacts of any pairs.
+// Skin contacts: from vertices against all pairs of triangles, from bones on two targets.
 #include <algorithm>
+#include <map>
 
 #include "fuzz_case.h"
-#include "spherechain/contacts.h"
+#include "pose/pose.h"
+#include "skin/exact_triangles.h"
+#include "skin/skin_table.h"
 
 namespace spherechain::test {
 namespace {
 
-void spoil_contacts(Case& c, ContactJob& job, sc_contact_job& c_job, Pair* pairs, Filter& filter, std::uint32_t way,
-                    Spoiled& spoiled) {
-  switch (way) {
-    case 0:
-    case 1:
-      return spoil_asset(c, job, c_job, way, spoiled);
-    case 2:
-      job.spheres.data = nullptr;
-      return spoiled.with(Status::kNullArgument);
-    case 3:
-      job.spheres.size = c.random.up_to(c.n - 1);
-      return spoiled.with(Status::kTooFewSpheres);
-    case 4:
-      job.pairs = {nullptr, 1};
-      return spoiled.with(Status::kNullArgument);
-    case 5:
-      job.contacts = {nullptr, 1};
-      return spoiled.with(Status::kNullArgument);
-    case 6:
-      if (job.pairs.size > 0 && job.pairs.data == pairs) {
-        const auto n = static_cast<std::uint32_t>(c.n);
-        const Pair bad[] = {{0, n}, {n, n + 1}, {1, 1}, {1, 0}, {0xFFFFFFFFU, 0xFFFFFFFFU}, {0, 0xFFFFFFFFU}};
-        pairs[c.random.up_to(job.pairs.size - 1)] = c.random.pick(bad);
-        spoiled.with(Status::kBadArgument);
+constexpr std::size_t kMaxTested = 300;  // triangles: of more, all pairs take too long
+constexpr std::size_t kMaxWords = std::size_t{1} << 17;
+
+struct Triangle {
+  std::uint32_t number, sphere, part;
+  std::uint32_t welds[3];
+  TriangleCorners corners;
+};
+
+std::vector<Triangle> triangles_of(const Surface& surface, const Pose& pose) {
+  std::vector<Triangle> triangles;
+  for (const Cluster& cluster : surface.clusters) {
+    for (std::size_t i = cluster.first_triangle; i < cluster.first_triangle + cluster.triangle_count; ++i) {
+      Triangle t{surface.triangles[i], cluster.sphere, surface.parts[i], {}, {}};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t vertex = surface.cluster_vertices[cluster.first_vertex + surface.corners[3 * i + k]];
+        const float* const p = pose.vertices + surface.source_vertices[vertex] * (vertex_stride(pose) / sizeof(float));
+        t.welds[k] = surface.welds[vertex];
+        t.corners.p[k] = {p[0], p[1], p[2]};
       }
-      return;
-    case 7:
-      job.filter = &filter;
-      if (filter.ignored.data == nullptr) filter = draw_filter(c);
-      return spoil_filter(c, filter, spoiled);
-    case 8:
-      put_askew(c, job.spheres.data);
-      return spoiled.with(Status::kMisaligned);
-    case 9:
-      job.contacts.data = c.arena.add<Contact>(job.contacts.size + 1);
-      put_askew(c, job.contacts.data);
-      return spoiled.with(Status::kMisaligned);
-    default:
-      if (job.contacts.size > 0) {
-        put_over(c, job.contacts.data, bytes_of(job.spheres.data, c.n));
-        spoiled.with(Status::kSharedMemory);
+      triangles.push_back(t);
+    }
+  }
+  return triangles;
+}
+
+// Is this pair of spheres asked about?
+bool is_asked(const Case& c, const SkinContactJob& job, std::uint32_t p, std::uint32_t q) {
+  const std::uint32_t a = std::min(p, q), b = std::max(p, q);
+  if (job.candidates != nullptr) {
+    return std::binary_search(job.candidates, job.candidates + job.candidate_count, Pair{a, b});
+  }
+  const auto is_set = [](const std::uint64_t* words, std::size_t bit) {
+    return (words[bit / 64] >> (bit % 64) & 1) != 0;
+  };
+  const Filter* const f = job.filter;
+  if (f != nullptr && f->disabled_words > 0 && (is_set(f->disabled, a) || is_set(f->disabled, b))) {
+    return false;
+  }
+  const std::uint64_t* const ignored = f == nullptr ? c.view().ignored().data : f->ignored;
+  const bool are_neighbours = a == b || is_set(ignored, std::size_t{b} * (b - 1) / 2 + a);
+  return job.scope == SC_SCOPE_ALL || are_neighbours == (job.scope == SC_SCOPE_NEIGHBOURS);
+}
+
+std::map<Pair, std::pair<Triangle, Triangle>> all_contacts(const Case& c, const SkinContactJob& job,
+                                                           const Surface& surface) {
+  const std::vector<Triangle> triangles = triangles_of(surface, job.pose);
+  std::map<Pair, std::pair<Triangle, Triangle>> found;
+  for (const Triangle& a : triangles) {
+    for (const Triangle& b : triangles) {
+      const Pair pair{a.number, b.number};
+      if (a.number >= b.number || !is_asked(c, job, a.sphere, b.sphere)) continue;
+      const bool are_neighbours = std::any_of(a.welds, a.welds + 3, [&](std::uint32_t weld) {
+        return std::find(b.welds, b.welds + 3, weld) != b.welds + 3;
+      });
+      const auto& rest = surface.rest_contacts;
+      if (!are_neighbours && !std::binary_search(rest.begin(), rest.end(), pair) &&
+          triangles_intersect(a.corners, b.corners)) {
+        found.insert({pair, {a, b}});
       }
+    }
+  }
+  return found;
+}
+
+void check_contacts(Case& c, const SkinContactJob& job, const Surface& surface) {
+  std::vector<TriangleContact> triangles;
+  std::map<Pair, std::uint32_t> parts, spheres;
+  for (const auto& [pair, contact] : all_contacts(c, job, surface)) {
+    const auto& [a, b] = contact;
+    triangles.push_back({a.number, b.number, a.sphere, b.sphere, a.part, b.part, {}, {}});
+    ++parts[{std::min(a.part, b.part), std::max(a.part, b.part)}];
+    ++spheres[{std::min(a.sphere, b.sphere), std::max(a.sphere, b.sphere)}];
+  }
+  c.expect(job.sphere_count == spheres.size(), "the count of pairs of spheres");
+  auto sphere = spheres.begin();
+  for (std::size_t i = 0; i < std::min(job.sphere_capacity, spheres.size()); ++i, ++sphere) {
+    c.expect(job.spheres[i] == sphere->first, "a pair of spheres");
+  }
+  if (job.spheres_only != 0) {
+    return;
+  }
+  c.expect(job.triangle_count == triangles.size() && job.part_count == parts.size(), "the counts");
+  for (std::size_t i = 0; i < std::min(job.triangle_capacity, triangles.size()); ++i) {
+    const TriangleContact &l = job.triangles[i], &r = triangles[i];
+    c.expect(l.triangle_a == r.triangle_a && l.triangle_b == r.triangle_b && l.sphere_a == r.sphere_a &&
+                 l.sphere_b == r.sphere_b && l.part_a == r.part_a && l.part_b == r.part_b,
+             "a triangle contact");
+  }
+  auto part = parts.begin();
+  for (std::size_t i = 0; i < std::min(job.part_capacity, parts.size()); ++i, ++part) {
+    const PartContact& contact = job.parts[i];
+    c.expect(Pair{contact.part_a, contact.part_b} == part->first && contact.triangle_pairs == part->second,
+             "a contact of parts");
   }
 }
 
-// The deepest of the contacts written, where all are.
-void check_deepest(Case& c, const ContactJob& job) {
-  float greatest = 0;
-  std::size_t deepest = job.contact_count;
-  for (std::size_t i = 0; i < job.contact_count; ++i) {
-    if (job.contacts[i].depth > greatest) {
-      greatest = job.contacts[i].depth;
-      deepest = i;
+void draw_question(Case& c, SkinContactJob& job, Filter& filter) {
+  job.spheres_only = c.random.one_in(4) ? 1 : 0;
+  if (c.n > 1 && c.random.one_in(3)) {
+    std::vector<Pair> pairs;
+    for (std::size_t i = c.random.below(40); i > 0; --i) {
+      const std::size_t b = 1 + c.random.up_to(c.n - 2);
+      pairs.push_back({static_cast<std::uint32_t>(c.random.up_to(b - 1)), static_cast<std::uint32_t>(b)});
     }
-    c.expect(job.contacts[i].pair == job.pairs[i], "a contact of another pair");
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    Pair* const candidates = c.arena.add<Pair>(pairs.size());
+    std::copy(pairs.begin(), pairs.end(), candidates);
+    job.candidates = candidates;
+    job.candidate_count = pairs.size();
+    return;
   }
-  c.expect(job.deepest == deepest, "the deepest");
+  job.scope = static_cast<Scope>(c.random.below(3));
+  if (c.random.one_in(2)) {
+    filter = draw_filter(c);
+    job.filter = &filter;
+  }
+}
+
+Ways ways_of(Case& c, SkinContactJob& job, Filter& filter, Target& other) {
+  const std::size_t words = job.scratch_words;
+  Ways ways = {[&] { job.skin_table = nullptr, c.spoil(SC_NULL, SC_FIELD_SKIN_TABLE); },
+               [&] { put_askew(c, job.skin_table), c.spoil(SC_MISALIGNED, SC_FIELD_SKIN_TABLE); },
+               [&] {
+                 const_cast<std::uint64_t*>(job.skin_table)[c.random.below(2)] ^= 1;
+                 c.spoil(SC_BAD_VALUE, SC_FIELD_SKIN_TABLE);
+               },
+               [&] { job.scratch = nullptr, c.spoil(SC_NULL, SC_FIELD_SCRATCH); },
+               [&, words] { job.scratch_words = c.random.up_to(words - 1), c.spoil(SC_TOO_SMALL, SC_FIELD_SCRATCH); },
+               [&] { job.parts = nullptr, job.part_capacity = 1, c.spoil(SC_NULL, SC_FIELD_PARTS); },
+               [&] { job.spheres = nullptr, job.sphere_capacity = 1, c.spoil(SC_NULL, SC_FIELD_SPHERES); },
+               [&] {
+                 job.triangles = c.arena.add<TriangleContact>(9);
+                 put_askew(c, job.triangles);
+                 c.spoil(SC_MISALIGNED, SC_FIELD_TRIANGLES);
+               },
+               [&] { job.scope = draw_none<Scope>(c, 3), c.spoil(SC_BAD_VALUE, SC_FIELD_SCOPE); },
+               [&] { other = draw_none<Target>(c, 7), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
+               [&] {
+                 if (job.candidates != nullptr) {
+                   job.filter = &filter;
+                   filter = draw_filter(c);
+                   return c.spoil(SC_BAD_VALUE, SC_FIELD_FILTER);
+                 }
+                 if (job.filter == nullptr) filter = draw_filter(c);
+                 job.filter = &filter;
+                 spoil_filter(c, filter);
+               },
+               [&] {
+                 const auto n = static_cast<std::uint32_t>(c.n);
+                 const Pair bad[] = {{0, n}, {n, n + 1}, {1, 1}, {1, 0}, {0xFFFFFFFFU, 0xFFFFFFFFU}, {0, 0xFFFFFFFFU}};
+                 Pair* const candidates = c.arena.add<Pair>(1);
+                 *candidates = c.random.pick(bad);
+                 job.candidates = candidates;
+                 job.candidate_count = 1;
+                 c.spoil(SC_BAD_VALUE, SC_FIELD_CANDIDATES);
+               },
+               [&] { job.candidates = nullptr, job.candidate_count = 1, c.spoil(SC_NULL, SC_FIELD_CANDIDATES); },
+               [&] {
+                 if (job.sphere_capacity > 0 && put_over(c, job.spheres, bytes_of(job.scratch, job.scratch_words))) {
+                   c.spoil(SC_ALIASED, SC_FIELD_OUTPUT);
+                 }
+               }};
+  add_asset_ways(c, job.asset, ways);
+  if (job.pose.bones != nullptr) {
+    add_bone_ways(c, job.pose, ways);
+  } else {
+    add_vertex_ways(c, job.pose, ways);
+    ways.emplace_back([&] { job.pose.vertices = nullptr, c.spoil(SC_NULL, SC_FIELD_BONES); });
+  }
+  return ways;
 }
 
 }  // namespace
 
 void fuzz_contacts(Case& c) {
-  if (!draw_asset(c)) {
+  const std::size_t table_words = draw_asset(c) ? sc_skin_table_words(&c.asset) : 0;
+  if (table_words == 0 || table_words > kMaxWords || sc_skin_scratch_words(&c.asset) > kMaxWords) {
     return;
   }
-  ContactJob job;
+  SkinContactJob job;
   job.asset = &c.asset;
-  Sphere* spheres = c.arena.add<Sphere>(c.n);
-  fill_figures(c, &spheres->x, 4 * c.n);
-  if (c.random.one_in(3)) spheres[c.n - 1] = spheres[0];  // in one place
-  job.spheres = {spheres, c.n};
-  job.pairs.size = c.n < 2 ? 0 : c.random.below(40);
-  Pair* pairs = c.arena.add<Pair>(job.pairs.size);
-  for (std::size_t i = 0; i < job.pairs.size; ++i) {
-    const std::size_t b = 1 + c.random.up_to(c.n - 2);
-    pairs[i] = {static_cast<std::uint32_t>(c.random.up_to(b - 1)), static_cast<std::uint32_t>(b)};
+  const bool has_bones = c.view().bone_count() > 0 && c.random.one_in(2);
+  if (has_bones) {
+    draw_bones(c, job.pose);
+  } else if (!draw_vertices(c, job.pose)) {
+    return;
   }
-  job.pairs.data = pairs;
-  job.contacts.size = draw_capacity(c, job.pairs.size);
-  job.contacts.data = c.arena.add<Contact>(job.contacts.size);
+  std::uint64_t* const table = c.arena.add<std::uint64_t>(table_words);
+  c.expect(sc_prepare_skin(&c.asset, table, table_words) == SC_OK, "a skin table is refused");
+  job.skin_table = table;
+  Surface surface;
+  c.expect(read_skin_table(c.view(), table, surface) == SC_OK, "a skin table is not read");
   Filter filter;
-  if (c.random.one_in(2)) {
-    filter = draw_filter(c);
-    job.filter = &filter;
+  draw_question(c, job, filter);
+  job.scratch_words = sc_skin_scratch_words(&c.asset);
+  job.scratch = c.arena.add<std::uint64_t>(job.scratch_words);
+  job.sphere_capacity = c.random.below(30);
+  job.spheres = c.arena.add<Pair>(job.sphere_capacity);
+  job.part_capacity = c.random.below(20);
+  job.parts = c.arena.add<PartContact>(job.part_capacity);
+  job.triangle_capacity = c.random.below(300);
+  job.triangles = c.arena.add<TriangleContact>(job.triangle_capacity);
+  Target other = SC_TARGET_BEST;
+  spoil_some(c, ways_of(c, job, filter, other));
+
+  Call call;
+  call.run = [&] {
+    job.target = other == SC_TARGET_BEST ? draw_target(c) : other;
+    return job.run();
+  };
+  call.outputs = [&] {
+    return std::vector<Bytes>{bytes_of(job.parts, std::min(job.part_capacity, job.part_count)),
+                              bytes_of(job.spheres, std::min(job.sphere_capacity, job.sphere_count)),
+                              bytes_of(job.triangles, std::min(job.triangle_capacity, job.triangle_count)),
+                              bytes_of(job.scratch, job.scratch_words)};
+  };
+  call.tidy = [&] { std::fill_n(job.scratch, job.scratch_words, std::uint64_t{0}); };
+  const Status status = run_twice(c, call);
+  const bool ran = status == SC_OK || status == SC_OVERFLOW;
+  if (ran && !has_bones && surface.triangles.size <= kMaxTested) {
+    check_contacts(c, job, surface);
   }
-  sc_contact_job c_job = SC_CONTACT_JOB_INIT;
-  c_job.asset = c.c_asset;
-  Spoiled spoiled;
-  spoil_some(c, 11, [&](std::uint32_t way) { spoil_contacts(c, job, c_job, pairs, filter, way, spoiled); });
-  const sc_filter c_filter = to_c(filter);
-  c_job.spheres = reinterpret_cast<const sc_sphere*>(job.spheres.data);
-  c_job.sphere_count = job.spheres.size;
-  c_job.pairs = reinterpret_cast<const sc_pair*>(job.pairs.data);
-  c_job.pair_count = job.pairs.size;
-  c_job.filter = job.filter == nullptr ? nullptr : &c_filter;
-  c_job.contacts = reinterpret_cast<sc_contact*>(job.contacts.data);
-  c_job.contact_capacity = job.contacts.size;
-  job.contact_count = job.deepest = c_job.contact_count = c_job.deepest = 77;
-  run_both(
-      c, spoiled,
-      [&] {
-        const Status status = job.run();
-        const bool ran = status == Status::kOk || status == Status::kOverflow;
-        c.expect(job.contact_count == (ran ? job.pairs.size : 77), "the count of contacts");
-        c.expect((status == Status::kOverflow) == (ran && job.contacts.size > 0 && job.contacts.size < job.pairs.size),
-                 "overflow");
-        if (ran && job.contacts.size >= job.contact_count) check_deepest(c, job);
-        return status;
-      },
-      [&] { return sc_contacts(&c_job); },
-      [&](Status) {
-        return std::vector<Bytes>{bytes_of(job.contacts.data, std::min(job.contacts.size, job.contact_count))};
-      },
-      [](bool) {});
-  c.expect(c_job.contact_count == job.contact_count && c_job.deepest == job.deepest, "the C API counts something else");
 }
 
 }  // namespace spherechain::test

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // fuzz_jobs [--seed N] [--cases N] [--seconds N]
-// Calls every function of the runtime, through the C++ and the C API, with assets and arguments drawn at random: sound
-// ones, whose results are checked, and such as no caller should pass, which must give their status and write nothing.
+// Calls every function of the runtime with assets and arguments drawn at random: sound ones, whose results are checked,
+// and such as no caller should pass, which must give their status and field and write nothing.
 // Case i is drawn from seed N + i alone: --seed (N + i) --cases 1 makes it again.
 #include <chrono>
 #include <cstdio>
@@ -18,19 +18,9 @@ struct Kind {
   const char* name;
   void (*fuzz)(Case& c);
 };
-constexpr Kind kKinds[] = {{"open", fuzz_open},
-                           {"accessors", fuzz_accessors},
-                           {"refit", fuzz_refit},
-                           {"refit from bones", fuzz_refit_bones},
-                           {"filter", fuzz_filter},
-                           {"detect", fuzz_detect},
-                           {"contacts", fuzz_contacts},
-                           {"crowd", fuzz_crowd},
-                           {"cover", fuzz_cover},
-                           {"skin", fuzz_skin},
-                           {"triangle contacts", fuzz_triangle_contacts},
-                           {"detect skin", fuzz_detect_skin},
-                           {"confirm", fuzz_confirm}};
+constexpr Kind kKinds[] = {{"open", fuzz_open},       {"accessors", fuzz_accessors}, {"filter", fuzz_filter},
+                           {"prepare", fuzz_prepare}, {"character", fuzz_character}, {"refit", fuzz_refit},
+                           {"detect", fuzz_detect},   {"crowd", fuzz_crowd},         {"contacts", fuzz_contacts}};
 constexpr std::size_t kKindCount = sizeof kKinds / sizeof kKinds[0];
 
 bool read_number(int argc, char** argv, int& i, const char* name, std::uint64_t& number) {
@@ -79,8 +69,10 @@ int main(int argc, char** argv) {
   }
   std::printf("%llu cases from seed %llu on, %zu assets, targets:", static_cast<unsigned long long>(made),
               static_cast<unsigned long long>(seed), asset_count());
-  for (const spherechain::Target target : spherechain::supported_targets()) {
-    std::printf(" %s", to_string(target));
+  std::size_t target_count = 0;
+  const sc_target* const targets = sc_supported_targets(&target_count);
+  for (std::size_t i = 0; i < target_count; ++i) {
+    std::printf(" %s", sc_target_name(targets[i]));
   }
   std::puts("");
   if (!checked && made >= 1000) {

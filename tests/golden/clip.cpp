@@ -113,20 +113,21 @@ Doll::Doll(const std::string& folder, const std::string& file) {
   bytes.resize((read.size() + 7) / 8);
   std::copy(read.begin(), read.end(), reinterpret_cast<char*>(bytes.data()));
   char message[160];
-  if (asset.open(bytes.data(), read.size(), message, sizeof message) != Status::kOk) {
+  if (sc_asset_open(&asset, SC_ABI_VERSION, bytes.data(), read.size(), message, sizeof message) != SC_OK) {
     error = path + ": " + message;
   } else if (!read_obj(folder + "/doll.obj", rest)) {
     error = folder + "/doll.obj: cannot be read";
-  } else if (check_source(asset, rest.data(), rest.size() / 3) != Status::kOk) {
+  } else if (sc_check_source(&asset, SC_WHOLE_SOURCE, rest.data(), rest.size() / 3, 12) != SC_OK) {
     error = folder + "/doll.obj: not what " + file + " was baked from";
-  } else if (asset.joint_count() == 0 || asset.bone_count() != asset.joint_count()) {
+  } else if (view_of(asset).joint_count() == 0 || view_of(asset).bone_count() != view_of(asset).joint_count()) {
     error = path + ": not of an automatic rig";
   }
   for (std::size_t v = 0; error.empty() && v < rest.size() / 3; ++v) {
     const double p[3] = {rest[3 * v], rest[3 * v + 1], rest[3 * v + 2]};
     std::size_t nearest = 0;
-    for (std::size_t j = 1; j < asset.joint_count(); ++j) {
-      if (squared_distance(p, asset.joint(j)) < squared_distance(p, asset.joint(nearest))) nearest = j;
+    const AssetView& view = view_of(asset);
+    for (std::size_t j = 1; j < view.joint_count(); ++j) {
+      if (squared_distance(p, view.joint(j)) < squared_distance(p, view.joint(nearest))) nearest = j;
     }
     joint_of.push_back(nearest);
   }
@@ -135,8 +136,8 @@ Doll::Doll(const std::string& folder, const std::string& file) {
 std::vector<std::array<float, 12>> matrices_at(const Asset& asset, std::size_t frame) {
   std::vector<Matrix> world;
   std::vector<std::array<float, 12>> out;
-  for (std::size_t j = 0; j < asset.joint_count(); ++j) {
-    const JointView joint = asset.joint(j);
+  for (std::size_t j = 0; j < view_of(asset).joint_count(); ++j) {
+    const JointView joint = view_of(asset).joint(j);
     Matrix m = joint.parent < 0 ? kIdentity : world[static_cast<std::size_t>(joint.parent)];
     for (const Move& move : kMoves) {
       if (std::strcmp(move.joint, joint.name) == 0) {

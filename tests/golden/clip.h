@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The doll and its clip, made by whole numbers, quotients and products alone: no function of a mathematical library,
-// which are not the same everywhere.
+// The doll and its clip, made of whole numbers, quotients and products: functions of a mathematical library are not the
+// same everywhere.
 #pragma once
 
 #include <array>
@@ -9,14 +9,14 @@
 #include <string>
 #include <vector>
 
-#include "spherechain/asset.h"
+#include "asset/asset_view.h"
 
 namespace spherechain::test {
 
 inline constexpr std::size_t kFrames = 256;
 
 struct Doll {
-  // From the folder's doll.obj and the asset `file` made of it. On failure `error` says why.
+  // Reads the folder's doll.obj and `file`, an asset baked from it. On failure `error` says why.
   Doll(const std::string& folder, const std::string& file);
   Doll(const Doll&) = delete;
   Doll& operator=(const Doll&) = delete;
@@ -25,11 +25,11 @@ struct Doll {
   std::vector<std::uint64_t> bytes;
   Asset asset;
   std::vector<float> rest;            // x, y, z of each corner of each triangle: the source's vertices
-  std::vector<std::size_t> joint_of;  // the one that moves the vertex
+  std::vector<std::size_t> joint_of;  // the joint that moves each vertex
 };
 
-// Rows of 3 by 4, one matrix a bone: arms swing across and in front of the body, legs cross, the spine bends, each at
-// its own pace.
+// A matrix for each joint, SC_ROWS_3X4: arms swing across and in front of the body, legs cross, the spine bends, each
+// at its own pace.
 std::vector<std::array<float, 12>> matrices_at(const Asset& asset, std::size_t frame);
 
 // The mesh under those, each vertex moved by one joint.

@@ -1,119 +1,61 @@
 // SPDX-License-Identifier: MIT
 // golden FOLDER [--print]
-// Spheres, pairs, leaves' balls, vertices and triangle contacts of a clip of 256 frames, by every job, on every target
-// and in one to four threads, hashed, against the folder's hashes.txt: the same on every machine, with every compiler
-// and at every optimization level.
+// Hashes the spheres, pairs and skin contacts of a clip of 256 frames, by every job, on every target and in one to four
+// threads, and compares them with the folder's hashes.txt. They are the same on every machine, with every compiler and
+// at every optimization level.
 //
 // Where the runtime's arithmetic changes on purpose, write the hashes anew, look at which lines changed, and commit
 // both:
 //   build/release/bin/golden tests/golden --print > tests/golden/hashes.txt
-// Pairs should change hardly at all then: their count stands beside their hash.
-#include <algorithm>
-#include <cinttypes>
+// The counts beside the hashes of pairs and contacts should then hardly change.
 #include <cstdio>
 #include <cstring>
-#include <fstream>
-#include <sstream>
-#include <thread>
 
 #include "clip.h"
+#include "crowds.h"
+#include "hashes.h"
 #include "jobs.h"
-#include "spherechain/crowd.h"
-#include "spherechain/triangle_contacts.h"
+#include "pairs/pair_bits.h"
 
 namespace {
 
 using namespace spherechain;
 using namespace spherechain::test;
 
-// FNV-1a over words of 32 bits, low byte first.
-class Hash {
- public:
-  void add(std::uint32_t word) {
-    for (unsigned shift = 0; shift < 32; shift += 8) value_ = (value_ ^ (word >> shift & 0xFF)) * 1099511628211U;
-  }
-  void add(const std::vector<Sphere>& spheres) {
-    for (const Sphere& sphere : spheres) {
-      std::uint32_t words[4];
-      std::memcpy(words, &sphere, sizeof words);
-      for (const std::uint32_t word : words) add(word);
-    }
-    count_ += spheres.size();
-  }
-  void add(const Pair& pair) { add(pair.a), add(pair.b); }
-  // A frame's list and its end.
-  template <typename T, typename Add>
-  void add_list(const std::vector<T>& list, const Add& add_entry) {
-    for (const T& entry : list) add_entry(entry);
-    add(0xFFFFFFFFU);
-    count_ += list.size();
-  }
-  std::string line(const std::string& name) const {
-    char text[120];
-    std::snprintf(text, sizeof text, "%-28s %8zu %016" PRIx64, name.c_str(), count_, value_);
-    return text;
-  }
-
- private:
-  std::uint64_t value_ = 14695981039346656037U;
-  std::size_t count_ = 0;
-};
-
-struct Table {
-  std::vector<std::string> lines;
-  bool agrees = true;  // all ways of getting a line gave the same
-
-  // `how` names the way: a target, a number of threads.
-  void add(const std::string& name, const Hash& hash, const std::string& how) {
-    const std::string line = hash.line(name);
-    const auto same_name = [&](const std::string& other) { return other.compare(0, 29, line, 0, 29) == 0; };
-    const auto found = std::find_if(lines.begin(), lines.end(), same_name);
-    if (found == lines.end()) {
-      lines.push_back(line);
-    } else if (*found != line) {
-      std::fprintf(stderr, "golden: %s differs: %s, elsewhere %s\n", how.c_str(), line.c_str(), found->c_str());
-      agrees = false;
-    }
-  }
-  void expect(bool holds, const char* what, const std::string& how) {
-    if (!holds) std::fprintf(stderr, "golden: %s: %s\n", how.c_str(), what);
-    agrees = agrees && holds;
-  }
-};
-
-const char* name_of(RadiusKind radius) { return radius == RadiusKind::kFit ? "fit" : "detect"; }
-
 using Palette = std::vector<std::array<float, 12>>;
 using Frames = std::vector<std::vector<Sphere>>;
 
-Frames from_vertices(const Doll& doll, const std::vector<Palette>& clip, RadiusKind radius, const std::string& name,
-                     Table& table) {
+const char* name_of(Radius radius) { return radius == SC_RADIUS_FIT ? "fit" : "detect"; }
+
+Pose bones_of(const Palette& palette) {
+  Pose pose;
+  pose.bones = palette[0].data();
+  pose.bone_count = palette.size();
+  pose.bone_layout = SC_ROWS_3X4;
+  return pose;
+}
+
+Pose vertices_of(const std::vector<float>& vertices) {
+  Pose pose;
+  pose.vertices = vertices.data();
+  pose.vertex_count = vertices.size() / 3;
+  return pose;
+}
+
+Frames from_vertices(const Doll& doll, const std::vector<Palette>& clip, Radius radius, const std::string& name,
+                     HashTable& table) {
   Frames frames;
   Hash hash;
   for (const Palette& palette : clip) {
-    const std::vector<float> positions = positions_at(doll, palette);
-    frames.push_back(refit(doll.asset, positions, radius).spheres);
-    hash.add(frames.back());
-    std::vector<float> packed;
-    for (const std::uint32_t v : doll.asset.pivot_vertices()) {
-      packed.insert(packed.end(), {positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]});
-    }
-    RefitJob job;
-    job.asset = &doll.asset;
-    job.positions = packed.data();
-    job.vertex_count = packed.size() / 3;
-    job.vertices = VertexSet::kPivots;
-    job.radius = radius;
-    std::vector<Sphere> spheres(frames.back().size());
-    job.spheres = {spheres.data(), spheres.size()};
-    table.expect(job.run() == Status::kOk && same_bits(spheres, frames.back()), "other spheres", "pivots' vertices");
+    frames.push_back(refit(doll.asset, positions_at(doll, palette), radius).spheres);
+    hash.add_array(frames.back());
   }
-  table.add(name + " " + name_of(radius), hash, "vertices");
+  table.add("spheres " + name + " " + name_of(radius), hash, "vertices");
   return frames;
 }
 
-// `palette` as 16 floats by columns.
-std::vector<float> transposed(const Palette& palette) {
+// `palette` as SC_COLUMNS_4X4.
+std::vector<float> by_columns(const Palette& palette) {
   std::vector<float> out;
   for (const auto& m : palette) {
     for (std::size_t column = 0; column < 4; ++column) {
@@ -123,198 +65,180 @@ std::vector<float> transposed(const Palette& palette) {
   return out;
 }
 
-Frames from_bones(const Doll& doll, const std::vector<Palette>& clip, RadiusKind radius, const std::string& name,
-                  Target target, Table& table) {
+Frames from_bones(const Doll& doll, const std::vector<Palette>& clip, Radius radius, Target target, HashTable& table) {
   Frames frames;
   Hash hash;
   for (const Palette& palette : clip) {
-    frames.push_back(refit_bones(doll.asset, {palette[0].data(), palette.size()}, {}, radius, target).spheres);
-    hash.add(frames.back());
-    const std::vector<float> columns = transposed(palette);
-    const BoneMatrices other{columns.data(), palette.size(), MatrixLayout::kColumnMajor4x4, 64};
-    table.expect(same_bits(refit_bones(doll.asset, other, {}, radius, target).spheres, frames.back()), "other spheres",
-                 std::string(to_string(target)) + ", matrices by columns");
+    frames.push_back(refit(doll.asset, bones_of(palette), radius, target).spheres);
+    hash.add_array(frames.back());
+    const std::vector<float> columns = by_columns(palette);
+    Pose other = bones_of(palette);
+    other.bones = columns.data();
+    other.bone_layout = SC_COLUMNS_4X4;
+    table.expect(same_bits(refit(doll.asset, other, radius, target).spheres, frames.back()), "other spheres",
+                 std::string(sc_target_name(target)) + ", matrices by columns");
   }
-  table.add(name + " " + name_of(radius), hash, to_string(target));
+  table.add(std::string("spheres bones ") + name_of(radius), hash, sc_target_name(target));
   return frames;
 }
 
-// The same pairs as bits, as a count and as the first alone.
-void check_other_outputs(const Asset& asset, const std::vector<Sphere>& spheres, RadiusKind radius, Target target,
-                         const Detected& found, Table& table) {
-  std::vector<std::uint64_t> bits(DetectJob::bit_words(asset));
-  for (const Pair& pair : found.pairs) {
-    const std::size_t bit = std::size_t{pair.b} * (pair.b - 1) / 2 + pair.a;
-    bits[bit / 64] |= std::uint64_t{1} << (bit % 64);
-  }
-  table.expect(bits == found.bits, "other bits", to_string(target));
-  Pair first{};
-  DetectJob job;
-  job.asset = &asset;
-  job.spheres = {spheres.data(), spheres.size()};
-  job.radius = radius;
-  job.target = target;
-  table.expect(job.run() == Status::kOk && job.pair_count == found.pairs.size(), "another count", to_string(target));
-  job.first_only = true;
-  job.pairs = {&first, 1};
-  const std::size_t expected = std::min<std::size_t>(1, found.pairs.size());
-  table.expect(job.run() == Status::kOk && job.pair_count == expected && (expected == 0 || first == found.pairs[0]),
-               "another first pair", to_string(target));
+// The pairs as a detect job's bits.
+std::vector<std::uint64_t> bits_of(const Asset& asset, const std::vector<Pair>& pairs) {
+  std::vector<std::uint64_t> bits(sc_pair_words(&asset));
+  for (const Pair& pair : pairs) set_bit({bits.data(), bits.size()}, ignored_bit(pair.a, pair.b));
+  return bits;
 }
 
-void find_pairs(const Asset& asset, const Frames& frames, RadiusKind radius, const std::string& from, Target target,
-                Table& table) {
-  Hash m1, m2, chains;
+void find_pairs(const Asset& asset, const Frames& frames, Radius radius, const std::string& from, Target target,
+                HashTable& table) {
+  Hash hash;
   for (const std::vector<Sphere>& spheres : frames) {
-    const Detected by_chains = detect(asset, spheres, Method::kM1, radius, target);
-    const Detected all = detect(asset, spheres, Method::kM2, radius, target);
-    table.expect(by_chains.status == Status::kOk && all.status == Status::kOk, "other pairs by a table",
-                 to_string(target));
-    m1.add_list(by_chains.pairs, [&](const Pair& pair) { m1.add(pair); });
-    m2.add_list(all.pairs, [&](const Pair& pair) { m2.add(pair); });
-    chains.add_list(by_chains.chain_pairs,
-                    [&](const ChainPair& entry) { chains.add(entry.chain), chains.add(entry.pair); });
-    check_other_outputs(asset, spheres, radius, target, all, table);
+    const Detected found = detect(asset, spheres, radius, target);
+    table.expect(found.status == SC_OK, "other pairs by a table", sc_target_name(target));
+    table.expect(bits_of(asset, found.pairs) == found.bits, "other bits", sc_target_name(target));
+    hash.add_list(found.pairs);
   }
-  const std::string tail = " " + from + " " + name_of(radius);
-  table.add("M1" + tail, m1, to_string(target));
-  table.add("M1 by chain" + tail, chains, to_string(target));
-  table.add("M2" + tail, m2, to_string(target));
+  table.add("all_pairs " + from + " " + name_of(radius), hash, sc_target_name(target));
 }
 
-void on_threads(void*, std::size_t count, void (*task)(void*, std::size_t), void* data) {
-  std::vector<std::thread> threads;
-  for (std::size_t i = 0; i < count; ++i) threads.emplace_back(task, data, i);
-  for (std::thread& thread : threads) thread.join();
-}
-
-// The whole clip in one call, an instance a frame. Its hash is that of M2 from bones.
-void find_in_crowd(const Asset& asset, const std::vector<Palette>& clip, RadiusKind radius, const std::string& name,
-                   Target target, std::size_t threads, Table& table) {
+// The whole clip in one call, an instance a frame. Its hash is that of the pairs from bones.
+void find_in_crowd(const Asset& asset, const std::vector<Palette>& clip, Radius radius, Target target,
+                   std::size_t threads, HashTable& table) {
+  const std::size_t words = sc_pair_words(&asset);
   std::vector<float> matrices;
   for (const Palette& palette : clip) {
     for (const auto& m : palette) matrices.insert(matrices.end(), m.begin(), m.end());
   }
-  std::vector<std::uint64_t> words(CrowdContext::words_needed(asset, threads), 0x5555555555555555U);
-  std::vector<std::uint64_t> bits(clip.size() * DetectJob::bit_words(asset)), expected_bits(bits.size());
-  std::vector<std::uint32_t> counts(clip.size());
+  CrowdBuffers crowd(asset, clip.size(), threads);
+  std::vector<std::uint64_t> bits(clip.size() * words);
   std::vector<CrowdPair> pairs(clip.size() * 1000);
-  CrowdContext context{{words.data(), words.size()}};
-  CrowdJob job;
-  job.asset = &asset;
-  job.instance_count = clip.size();
-  job.bones = {matrices.data(), asset.bone_count()};
-  job.instance_stride = asset.bone_count() * 48;
-  job.radius = radius;
-  job.target = target;
-  job.context = &context;
-  job.hook.parallel_for = on_threads;
-  job.task_count = threads;
-  job.counts = {counts.data(), counts.size()};
-  job.pairs = {pairs.data(), pairs.size()};
-  if (threads % 2 == 0) job.bits = {bits.data(), bits.size()};
-  const std::string how = std::string(to_string(target)) + ", " + std::to_string(threads) + " threads";
-  table.expect(job.run() == Status::kOk, "the crowd fails", how);
+  crowd.job.pose = bones_of(clip[0]);
+  crowd.job.pose.bones = matrices.data();
+  crowd.job.radius = radius;
+  crowd.job.target = target;
+  crowd.job.parallel_for = on_threads;
+  crowd.job.user = &threads;
+  crowd.job.pairs = pairs.data();
+  crowd.job.pair_capacity = pairs.size();
+  if (threads % 2 == 0) {
+    crowd.job.bits = bits.data();
+    crowd.job.bit_words = bits.size();
+  }
+  const std::string how = std::string(sc_target_name(target)) + ", " + std::to_string(threads) + " threads";
+  table.expect(crowd.job.run() == SC_OK, "the crowd fails", how);
   Hash hash;
   std::size_t at = 0;
   for (std::size_t i = 0; i < clip.size(); ++i) {
     std::vector<Pair> own;
-    for (; at < job.pair_count && pairs[at].instance == i; ++at) own.push_back(pairs[at].pair);
-    table.expect(own.size() == counts[i], "another count of an instance", how);
-    hash.add_list(own, [&](const Pair& pair) { hash.add(pair); });
-    for (const Pair& pair : own) {
-      const std::size_t bit = std::size_t{pair.b} * (pair.b - 1) / 2 + pair.a;
-      expected_bits[i * DetectJob::bit_words(asset) + bit / 64] |= std::uint64_t{1} << (bit % 64);
-    }
+    for (; at < crowd.job.pair_count && pairs[at].instance == i; ++at) own.push_back(pairs[at].pair);
+    table.expect(own.size() == crowd.counts[i], "another count of an instance", how);
+    hash.add_list(own);
+    const std::vector<std::uint64_t> expected = bits_of(asset, own);
+    table.expect(crowd.job.bits == nullptr || std::memcmp(&bits[i * words], expected.data(), 8 * words) == 0,
+                 "other bits", how);
   }
-  table.expect(at == job.pair_count, "pairs of no instance", how);
-  table.expect(job.bits.size == 0 || bits == expected_bits, "other bits", how);
-  table.add("M2 " + name + " " + name_of(radius), hash, "crowd, " + how);
+  table.expect(at == crowd.job.pair_count, "pairs of no instance", how);
+  table.add(std::string("all_pairs bones ") + name_of(radius), hash, "crowd, " + how);
 }
 
-std::vector<TrianglePair> contacts_of(const Doll& doll, const std::vector<float>& positions, Target target) {
-  std::vector<std::uint64_t> words(TriangleContactContext::words_needed(doll.asset), 0x5555555555555555U);
-  TriangleContactContext context{{words.data(), words.size()}};
-  std::vector<TrianglePair> pairs(20000);
-  TriangleContactJob job;
-  job.asset = &doll.asset;
-  job.positions = positions.data();
-  job.vertex_count = positions.size() / 3;
-  job.target = target;
-  job.context = &context;
-  job.pairs = {pairs.data(), pairs.size()};
-  pairs.resize(job.run() == Status::kOk ? job.pair_count : 0);
-  return pairs;
-}
+// Triangles, the segments in which they cross, and body parts.
+struct ContactHashes {
+  Hash triangles, segments, parts;
 
-// Leaves' balls, the surface's vertices and exact contacts.
-void hash_surface(const Doll& doll, const std::vector<Palette>& clip, Table& table) {
+  void add(const SkinContacts& found) {
+    std::vector<Pair> pairs;
+    std::vector<Vec3> ends;
+    for (const TriangleContact& contact : found.triangles) {
+      pairs.push_back({contact.triangle_a, contact.triangle_b});
+      ends.insert(ends.end(), {contact.from, contact.to});
+    }
+    triangles.add_list(pairs);
+    segments.add_list(ends);
+    parts.add_list(found.parts);
+  }
+  void add_to(HashTable& table, const std::string& from, Target target) const {
+    table.add("triangle contacts " + from, triangles, sc_target_name(target));
+    table.add("crossing segments " + from, segments, sc_target_name(target));
+    table.add("part contacts " + from, parts, sc_target_name(target));
+  }
+};
+
+void hash_skin(const Doll& doll, const std::vector<Palette>& clip, HashTable& table) {
+  const PreparedSkin prepared(doll.asset);
   for (const Target target : supported_targets()) {
-    Hash leaves, spheres, vertices, contacts;
+    Hash positions;
+    ContactHashes by_vertices, by_bones;
     for (const Palette& palette : clip) {
-      const BoneMatrices bones{palette[0].data(), palette.size()};
-      const Covered covered = cover(doll.asset, bones, {}, target);
-      leaves.add(covered.leaves);
-      spheres.add(covered.spheres);
-      const std::vector<float> skinned = skin(doll.asset, bones, {}, target).positions;
+      const std::vector<float> skinned = skin(doll.asset, bones_of(palette), target);
       std::vector<Sphere> points;
-      for (const std::uint32_t v : doll.asset.surface().source_vertices) {
+      for (const std::uint32_t v : prepared.surface.source_vertices) {
         points.push_back({skinned[3 * v], skinned[3 * v + 1], skinned[3 * v + 2], 0});
       }
-      vertices.add(points);
-      const std::vector<TrianglePair> pairs = contacts_of(doll, positions_at(doll, palette), target);
-      contacts.add_list(pairs, [&](const TrianglePair& pair) { contacts.add(Pair{pair.a, pair.b}); });
+      positions.add_array(points);
+      const std::vector<float> vertices = positions_at(doll, palette);
+      SkinContactJob job;
+      job.asset = &doll.asset;
+      job.target = target;
+      job.pose = vertices_of(vertices);
+      by_vertices.add(find_contacts(job));
+      job.pose = bones_of(palette);
+      by_bones.add(find_contacts(job));
     }
-    table.add("cover leaves", leaves, to_string(target));
-    table.add("cover spheres", spheres, to_string(target));
-    table.add("skinned vertices", vertices, to_string(target));
-    table.add("triangle contacts", contacts, to_string(target));
+    table.add("skinned vertices", positions, sc_target_name(target));
+    by_vertices.add_to(table, "vertices", target);
+    by_bones.add_to(table, "bones", target);
   }
 }
 
-// Spheres and pairs under an asset's refit rule: their lines are named after what they come from.
-void hash_refits(const Doll& doll, const std::string& vertices, const std::string& bones, Table& table) {
+std::vector<Palette> clip_of(const Doll& doll) {
   std::vector<Palette> clip;
   for (std::size_t frame = 0; frame < kFrames; ++frame) clip.push_back(matrices_at(doll.asset, frame));
-  for (const RadiusKind radius : {RadiusKind::kFit, RadiusKind::kDetect}) {
-    const Frames by_vertices = from_vertices(doll, clip, radius, vertices, table);
+  return clip;
+}
+
+HashTable hash_all(const Doll& doll, const Doll& paper) {
+  HashTable table;
+  const std::vector<Palette> clip = clip_of(doll), paper_clip = clip_of(paper);
+  for (const Radius radius : {SC_RADIUS_FIT, SC_RADIUS_DETECT}) {
+    const Frames by_vertices = from_vertices(doll, clip, radius, "vertices", table);
+    const Frames by_paper = from_vertices(paper, paper_clip, radius, "paper", table);
     for (const Target target : supported_targets()) {
-      find_pairs(doll.asset, by_vertices, radius, vertices, target, table);
-      find_pairs(doll.asset, from_bones(doll, clip, radius, bones, target, table), radius, bones, target, table);
+      find_pairs(doll.asset, by_vertices, radius, "vertices", target, table);
+      find_pairs(paper.asset, by_paper, radius, "paper", target, table);
+      find_pairs(doll.asset, from_bones(doll, clip, radius, target, table), radius, "bones", target, table);
       for (std::size_t threads = 1; threads <= 4; ++threads) {
-        find_in_crowd(doll.asset, clip, radius, bones, target, threads, table);
+        find_in_crowd(doll.asset, clip, radius, target, threads, table);
       }
     }
   }
-}
-
-Table hash_all(const Doll& doll, const Doll& by_moments, const Doll& with_surface) {
-  Table table;
-  hash_refits(doll, "vertices", "bones", table);
-  hash_refits(by_moments, "squares", "moments", table);
-  std::vector<Palette> clip;
-  for (std::size_t frame = 0; frame < kFrames; ++frame) clip.push_back(matrices_at(with_surface.asset, frame));
-  hash_surface(with_surface, clip, table);
+  hash_skin(doll, clip, table);
   return table;
 }
 
-int compare(const Table& table, const std::string& path) {
-  std::ifstream file(path);
-  std::vector<std::string> wanted;
-  for (std::string line; std::getline(file, line);) wanted.push_back(line);
-  bool same = wanted.size() == table.lines.size();
-  for (std::size_t i = 0; i < std::max(wanted.size(), table.lines.size()); ++i) {
-    const std::string found = i < table.lines.size() ? table.lines[i] : "nothing";
-    const std::string expected = i < wanted.size() ? wanted[i] : "nothing";
-    if (found != expected) {
-      std::fprintf(stderr, "golden: found    %s\n        expected %s\n", found.c_str(), expected.c_str());
-      same = false;
-    }
+// The least bytes that look like an asset of that format: a root table whose only field is the version.
+std::vector<std::uint32_t> header_of_format(std::uint32_t version) {
+  std::vector<std::uint32_t> words(64);
+  words[0] = 16;           // the root table
+  words[1] = 0x43485053;   // "SPHC"
+  words[2] = 6 | 8 << 16;  // the table's layout: its own size, the table's,
+  words[3] = 4;            // and where the first field is
+  words[4] = 8;            // the layout is that far before the table
+  words[5] = version;
+  return words;
+}
+
+void check_versions(HashTable& table) {
+  for (const std::uint32_t version : {1U, kFormatVersion + 1}) {
+    const std::vector<std::uint32_t> old = header_of_format(version);
+    const std::string how = "format " + std::to_string(version);
+    Asset asset;
+    char message[160] = "";
+    const Status status = sc_asset_open(&asset, SC_ABI_VERSION, old.data(), 4 * old.size(), message, sizeof message);
+    table.expect(status == SC_OTHER_VERSION && !sc_asset_is_open(&asset), "not refused as another version", how);
+    table.expect(std::strstr(message, (std::to_string(version) + ", but this runtime reads").c_str()) != nullptr &&
+                     std::strstr(message, "bake it again") != nullptr,
+                 "the message does not say to bake it again", how);
   }
-  std::printf("%zu hashes over %zu frames on", table.lines.size(), kFrames);
-  for (const Target target : supported_targets()) std::printf(" %s", to_string(target));
-  std::printf(": %s\n", same && table.agrees ? "as they should be" : "not as they should be");
-  return same && table.agrees ? 0 : 1;
 }
 
 }  // namespace
@@ -325,18 +249,22 @@ int main(int argc, char** argv) {
     std::fputs("usage: golden FOLDER [--print]\n", stderr);
     return 2;
   }
-  const Doll doll(argv[1], "doll.sphc"), by_moments(argv[1], "doll_moments.sphc");
-  const Doll with_surface(argv[1], "doll_surface.sphc");
-  for (const Doll* opened : {&doll, &by_moments, &with_surface}) {
+  const Doll doll(argv[1], "doll.sphc"), paper(argv[1], "doll_paper.sphc");
+  for (const Doll* opened : {&doll, &paper}) {
     if (!opened->error.empty()) {
       std::fprintf(stderr, "golden: error: %s\n", opened->error.c_str());
       return 3;
     }
   }
-  const Table table = hash_all(doll, by_moments, with_surface);
-  if (!prints) {
-    return compare(table, std::string(argv[1]) + "/hashes.txt");
+  HashTable table = hash_all(doll, paper);
+  check_versions(table);
+  if (prints) {
+    for (const std::string& line : table.lines()) std::puts(line.c_str());
+    return table.agrees() ? 0 : 1;
   }
-  for (const std::string& line : table.lines) std::puts(line.c_str());
-  return table.agrees ? 0 : 1;
+  const bool is_right = table.is_that_of(std::string(argv[1]) + "/hashes.txt") && table.agrees();
+  std::printf("%zu hashes over %zu frames on", table.lines().size(), kFrames);
+  for (const Target target : supported_targets()) std::printf(" %s", sc_target_name(target));
+  std::printf(": %s\n", is_right ? "as they should be" : "not as they should be");
+  return is_right ? 0 : 1;
 }

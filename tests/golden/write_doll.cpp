@@ -1,12 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// write_doll OUT.obj: the source of the golden asset, a doll of melted tubes in T pose, y up, facing z. Its
-// coordinates are whole numbers, 512 a metre, so that every reader of the file gets the same.
+// write_doll FOLDER: writes the golden character. doll.obj is a doll of melted tubes in T pose, y up, facing z; its
+// coordinates are whole numbers, 512 a metre, so that every reader of the file gets the same. doll.sphc and
+// doll_paper.sphc are baked from it as `spherechain bake doll.obj --body biped` does it with either profile.
 #include <cmath>
 #include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <stdexcept>
 
 #include "creatures.h"
+#include "pipeline/pipeline.h"
 
 namespace {
+
+using namespace spherechain;
 
 std::vector<Tube> doll_tubes() {
   std::vector<Tube> tubes{{{0, 0.92, 0}, {0, 1.3, 0}, 0.13, 0.15},  // trunk
@@ -23,20 +31,49 @@ std::vector<Tube> doll_tubes() {
   return tubes;
 }
 
+void write_mesh(const std::filesystem::path& path) {
+  const baker::SourceMesh mesh = melt(doll_tubes(), 0.05);
+  std::FILE* file = std::fopen(path.c_str(), "w");
+  if (file == nullptr) {
+    throw std::runtime_error(path.string() + ": cannot be written");
+  }
+  for (const baker::Vec3& p : mesh.positions) {
+    std::fprintf(file, "v %.0f %.0f %.0f\n", std::round(512 * p.x()), std::round(512 * p.y()), std::round(512 * p.z()));
+  }
+  for (const baker::Triangle& t : mesh.triangles) {
+    std::fprintf(file, "f %u %u %u\n", t[0] + 1, t[1] + 1, t[2] + 1);
+  }
+  if (std::fclose(file) != 0) {
+    throw std::runtime_error(path.string() + ": cannot be written");
+  }
+}
+
+void write_asset(const std::filesystem::path& mesh, const char* profile, const std::filesystem::path& path) {
+  baker::BakeSettings settings = baker::make_settings(profile, "{}", "");
+  settings.segment.body = baker::parse_body("biped");
+  const std::vector<std::uint8_t> bytes = baker::bake(mesh, settings, {}).asset;
+  std::ofstream file(path, std::ios::binary);
+  file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  if (!file.flush()) {
+    throw std::runtime_error(path.string() + ": cannot be written");
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::FILE* file = argc == 2 ? std::fopen(argv[1], "w") : nullptr;
-  if (file == nullptr) {
-    std::fputs("usage: write_doll OUT.obj\n", stderr);
+  if (argc != 2) {
+    std::fputs("usage: write_doll FOLDER\n", stderr);
     return 2;
   }
-  const spherechain::baker::SourceMesh mesh = melt(doll_tubes(), 0.05);
-  for (const spherechain::baker::Vec3& p : mesh.positions) {
-    std::fprintf(file, "v %.0f %.0f %.0f\n", std::round(512 * p.x()), std::round(512 * p.y()), std::round(512 * p.z()));
+  try {
+    const std::filesystem::path folder = argv[1];
+    write_mesh(folder / "doll.obj");
+    write_asset(folder / "doll.obj", "balanced", folder / "doll.sphc");
+    write_asset(folder / "doll.obj", "paper", folder / "doll_paper.sphc");
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "write_doll: %s\n", error.what());
+    return 3;
   }
-  for (const spherechain::baker::Triangle& t : mesh.triangles) {
-    std::fprintf(file, "f %u %u %u\n", t[0] + 1, t[1] + 1, t[2] + 1);
-  }
-  return std::fclose(file) == 0 ? 0 : 3;
 }

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
-// write_tiny_asset OUT: a synthetic asset with bones, for programs that have no baker.
+// write_tiny_asset OUT: a synthetic asset with bones and a skin, for programs that have no baker.
 #include <fstream>
 
-#include "tiny_bones.h"
+#include "tiny_skin.h"
 
 int main(int argc, char** argv) {
   using namespace spherechain::test;
   TinyAsset tiny = random_asset(60, 1);
-  add_bones(tiny, 9, 2);
+  const TinySkin skin = add_bones(tiny, 9, 2);
+  add_moments(tiny, skin);
+  add_skin(tiny, &skin, 4);
   const std::vector<std::uint8_t> bytes = build(tiny.parts);
   std::ofstream file(argc > 1 ? argv[1] : "", std::ios::binary);
   file.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));

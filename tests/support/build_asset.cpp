@@ -30,10 +30,10 @@ class Builder {
     const auto provenance = schema::CreateProvenanceDirect(fb_, parts_.writer.c_str(), parts_.settings.c_str(),
                                                            parts_.settings_sha256.c_str());
     const auto source = source_table();
-    const auto frame =
-        schema::CreateFrame(fb_, unless<schema::Vec3>("frame.origin", parts_.origin),
-                            unless<schema::Vec3>("frame.left", parts_.left), unless<schema::Vec3>("frame.up", parts_.up),
-                            unless<schema::Vec3>("frame.forward", parts_.forward), parts_.height);
+    const auto frame = schema::CreateFrame(fb_, unless<schema::Vec3>("frame.origin", parts_.origin),
+                                           unless<schema::Vec3>("frame.left", parts_.left),
+                                           unless<schema::Vec3>("frame.up", parts_.up),
+                                           unless<schema::Vec3>("frame.forward", parts_.forward), parts_.height);
     const auto fit = schema::CreateFit(fb_, unless<schema::FitError>("fit.phi1", parts_.phi1),
                                        unless<schema::FitError>("fit.phi1_adjusted", parts_.phi1_adjusted),
                                        unless<schema::FitError>("fit.phi2", parts_.phi2));

@@ -98,8 +98,11 @@ void finish(TinyAsset& tiny, std::mt19937& random) {
   for (const char* name : {"left_arm", "right_arm", "left_leg", "right_leg", "torso"}) {
     parts.regions.push_back({name, static_cast<std::uint32_t>(parts.regions.size() + 10)});
   }
-  parts.parts = {{"left hand", SC_SIDE_LEFT}, {"right hand", SC_SIDE_RIGHT}, {"left foot", SC_SIDE_LEFT},
-                 {"right foot", SC_SIDE_RIGHT}, {"chest"}};
+  parts.parts = {{"left hand", SC_SIDE_LEFT},
+                 {"right hand", SC_SIDE_RIGHT},
+                 {"left foot", SC_SIDE_LEFT},
+                 {"right foot", SC_SIDE_RIGHT},
+                 {"chest"}};
   parts.joints = {{"hips", -1, {0, 1, 0}, {0, 1.25F, 0}},
                   {"spine", 0, {0, 1.25F, 0}, {0, 1.5F, 0}},
                   {"left_thigh", 0, {0.125F, 1, 0}, {0.125F, 0.5F, 0}}};

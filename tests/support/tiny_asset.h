@@ -128,9 +128,9 @@ std::vector<std::uint8_t> encode(const Numbers& numbers);
 // An asset and the source that it stands for.
 struct TinyAsset {
   AssetParts parts;
-  std::vector<float> rest;                          // x, y, z of each vertex in the rest pose
+  std::vector<float> rest;                            // x, y, z of each vertex in the rest pose
   std::vector<std::array<std::uint32_t, 3>> corners;  // of each triangle
-  std::vector<Numbers> triangles;                   // of each sphere; of no effect before add_skin()
+  std::vector<Numbers> triangles;                     // of each sphere; of no effect before add_skin()
   std::vector<std::uint8_t> part_of_triangle;
   std::vector<Pair> ignored_pairs;  // what parts.ignored says, as a list
 };

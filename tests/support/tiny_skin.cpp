@@ -20,8 +20,8 @@ struct Around {
       const auto less = [&](const Point& a, const Point& b) { return a[axis] < b[axis]; };
       const auto [low, high] = std::minmax_element(points.begin(), points.end(), less);
       center[axis] = static_cast<float>((double{(*low)[axis]} + double{(*high)[axis]}) / 2);
-      half[axis] = rounded_up(std::max(double{(*high)[axis]} - double{center[axis]},
-                                       double{center[axis]} - double{(*low)[axis]}));
+      half[axis] = rounded_up(
+          std::max(double{(*high)[axis]} - double{center[axis]}, double{center[axis]} - double{(*low)[axis]}));
     }
     double farthest = 0;
     for (const Point& p : points) {
@@ -120,7 +120,8 @@ class Packer {
       others += entry == greatest ? 0 : entry->second;
     }
     const bool leaves_out = greatest != vertex.weights.end() && 1 - others == greatest->second;
-    out_.influence_counts.push_back(static_cast<std::uint8_t>(vertex.weights.size() | (leaves_out ? kOneWeightLeftOut : 0U)));
+    out_.influence_counts.push_back(
+        static_cast<std::uint8_t>(vertex.weights.size() | (leaves_out ? kOneWeightLeftOut : 0U)));
     if (greatest != vertex.weights.end()) {
       out_.influence_bones.push_back(greatest->first);
     }
@@ -227,8 +228,11 @@ class Packer {
                                            double{p[2]} - double{center[2]}));
     }
     points.resize((points.size() + kHullLanes - 1) / kHullLanes * kHullLanes, points.back());
-    out_.hulls.push_back({static_cast<std::uint16_t>(bones.size()), static_cast<std::uint16_t>(points.size()),
-                          {center[0], center[1], center[2]}, rounded_up(radius), rounded_up(slack)});
+    out_.hulls.push_back({static_cast<std::uint16_t>(bones.size()),
+                          static_cast<std::uint16_t>(points.size()),
+                          {center[0], center[1], center[2]},
+                          rounded_up(radius),
+                          rounded_up(slack)});
     for (const auto& [bone, off] : offsets) {
       out_.hull_bones.push_back({bone, rounded_up(off[0]), rounded_up(off[1]), rounded_up(off[2]), rounded_up(off[3])});
     }

@@ -6,8 +6,8 @@
 
 namespace spherechain::test {
 
-// Cuts each sphere's triangles into clusters of at most that many (64 are allowed), and packs them. Two contacts at rest
-// are listed. `skin` is null for an asset without bones.
+// Cuts each sphere's triangles into clusters of at most that many (64 are allowed), and packs them. Two contacts at
+// rest are listed. `skin` is null for an asset without bones.
 void add_skin(TinyAsset& tiny, const TinySkin* skin, std::size_t triangles_of_cluster);
 
 }  // namespace spherechain::test

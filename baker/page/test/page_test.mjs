@@ -40,12 +40,14 @@ test('the page is one file of less than 6 MB', () => {
 
 test('contacts are the triangles of the skin that play reports, the most first', async () => {
   const page = await fresh();
-  assert.ok(pages.play[TOUCHING].contacts.length > 0);
+  assert.ok(pages.play[TOUCHING].skin.triangles.length > 0);
   for (const number of [0, TOUCHING, 19, 25, 39]) {
     await goTo(page, number);
     const listed = await contacts(page);
     const triangles = (lists) => [...new Set(lists.flat())].sort((a, b) => a - b);
-    assert.deepEqual(triangles(listed.map((contact) => contact.triangles)), triangles(pages.play[number].contacts));
+    assert.deepEqual(triangles(listed.map((contact) => contact.triangles)), triangles(pages.play[number].skin.triangles));
+    const { parts } = pages.play[number].skin;
+    assert.deepEqual(listed.map(({ name }) => name).sort(), parts.map(({ a, b }) => (a === b ? `${a} with itself` : `${a}, ${b}`)).sort());
     const rows = await page.locator('.contact').allInnerTexts();
     assert.equal(rows.length, listed.length);
     listed.forEach(({ name, triangles }, i) => {
@@ -92,7 +94,7 @@ test('spheres are a layer, off at first, with their false alarms in another colo
   await page.keyboard.press('m');
   await page.locator('#tab-spheres').click();
   const owner = unpack(readData(pages.arms).mesh.spheres, Uint16Array);
-  const real = new Set(pages.play[TOUCHING].contacts.map((pair) => pair.map((t) => owner[t]).sort((a, b) => a - b).join('-')));
+  const real = new Set(pages.play[TOUCHING].skin.triangles.map((pair) => pair.map((t) => owner[t]).sort((a, b) => a - b).join('-')));
   const counts = {};
   for (const radius of ['detect', 'fit']) {
     await page.locator(`#radius-${radius}`).click();
@@ -133,7 +135,7 @@ test('each control changes the picture, and back', async () => {
   const plain = await picture(page);
   const ids = await page
     .locator('#controls :is(input[type=checkbox], button.part, button.chip)')
-    .evaluateAll((controls) => controls.map((control) => control.id));
+    .evaluateAll((controls) => controls.filter((one) => !one.matches('.part') || one.textContent === 'head').map((one) => one.id));
   const still = ['show-method', 'show-follow', 'show-spheres'];
   for (const id of ids.filter((other) => !still.includes(other))) {
     await page.locator(`#${id}`).click();
@@ -182,8 +184,11 @@ test('keys step through frames, and the help lists them', async () => {
 });
 
 test('several clips: a list, a header that follows, frames of the clip, playing within it', async () => {
-  const clips = [{ name: 'Walk', first: 0, count: 15 }, { name: 'Run', first: 15, count: 25 }];
-  const opened = await open(browser, pages.variant('clips.html', (data) => (data.clips = clips)));
+  const clips = [{ name: 'Walk', first: 0, count: 15, own_count: 15 }, { name: 'Run', first: 15, count: 25, own_count: 25 }];
+  const opened = await open(browser, pages.variant('clips.html', (data) => {
+    data.clips = clips;
+    data.frames.numbers = base64(Uint32Array.from({ length: 40 }, (_, i) => (i < 15 ? i : i - 15)));
+  }));
   const { page } = opened;
   await page.locator('#clips').selectOption('1');
   assert.equal(await frame(page), 15);

@@ -66,8 +66,9 @@ extern "C" {
 /* The number that the library was built with. */
 SPHERECHAIN_API uint32_t sc_abi_version(void) SC_NOEXCEPT;
 
-/* Verifies `size` bytes at `data` and makes `asset` a view of them. On failure the asset is closed, and where `message`
- * is not null it receives a sentence that names what is wrong, cut to `message_size` bytes (160 are enough).
+/* Verifies `size` bytes at `data` and makes `asset` a view of them. On failure the asset is closed (with SC_WRONG_ABI it
+ * is left alone), and where `message` is not null it receives a sentence that names what is wrong, cut to `message_size`
+ * bytes (160 are enough).
  * Hostile bytes: reads only inside [data, data + size); what opens can be used by every function and job without a
  * read or write out of bounds, a division by zero or an endless loop. Costs about one pass over the bytes; allocates
  * nothing. Pass SC_ABI_VERSION for `abi`.
@@ -88,7 +89,7 @@ SPHERECHAIN_API const char* sc_asset_morph_name(const sc_asset* asset, size_t in
 SPHERECHAIN_API const char* sc_asset_region_name(const sc_asset* asset, size_t index) SC_NOEXCEPT;
 SPHERECHAIN_API sc_source_buffer sc_asset_source_buffer(const sc_asset* asset, size_t index) SC_NOEXCEPT;
 
-/* A 64-bit FNV-1a over x, y, z of each position, negative zero taken as zero. `stride` in bytes. */
+/* A 64-bit FNV-1a over x, y, z of each position, negative zero taken as zero. `stride` in bytes; 0: 12. */
 SPHERECHAIN_API uint64_t sc_hash_positions(const float* positions, size_t count, size_t stride) SC_NOEXCEPT;
 
 #define SC_WHOLE_SOURCE ((size_t)-1)

@@ -39,7 +39,8 @@ extern "C" {
  * SC_NO_JOINT for the bone without a name. Joints are matched by name; of several of one name, the one whose inverse
  * bind matrix is the asset's. Pass inverse bind matrices where the engine has them (null: not compared): a matrix that
  * differs by more than a thousandth, relative to its size, is another rest pose, unit or axis convention.
- * SC_NO_SUCH_BONE and SC_OTHER_BIND: the message names the bone, and what differs. */
+ * SC_NO_SUCH_BONE and SC_OTHER_BIND: the message names the bone, and what differs. On failure joint_of_bone holds
+ * nothing of use. */
 #define SC_NO_JOINT 0xFFFFFFFFu
 SPHERECHAIN_API sc_status sc_bind_joints(const sc_asset* asset, const sc_bone* joints, size_t joint_count,
                                          sc_matrix_layout inverse_bind_layout, uint32_t* joint_of_bone,
@@ -51,8 +52,9 @@ SPHERECHAIN_API sc_status sc_gather_bones(const sc_asset* asset, const uint32_t*
                                           float* bones) SC_NOEXCEPT;
 
 /* A self-check for the first run: `pose` is what the engine gives while the character stands in its bind pose. There
- * every bone's matrix is the same, the model's own. SC_OTHER_BIND: the message names the first bone whose matrix puts
- * a joint more than a thousandth of the height off. It finds transposed matrices, wrong layouts and orders. */
+ * every bone's matrix is the same, the model's own. SC_OTHER_BIND: the message names the first bone whose matrix moves
+ * the character otherwise, by more than a thousandth of its height. It finds wrong layouts and strides, matrices that
+ * lack the inverse bind matrix, and other rest poses. Wrong orders do not show in this pose: bind by name. */
 SPHERECHAIN_API sc_status sc_check_rest_pose(const sc_asset* asset, const sc_pose* pose, char* message,
                                              size_t message_size) SC_NOEXCEPT;
 

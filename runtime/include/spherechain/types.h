@@ -40,7 +40,7 @@ SC_ENUM(sc_code){
     SC_OVERFLOW = 1,           /* an output buffer is too small; the job's counts say how many entries there are */
     SC_NULL = 2,               /* the field is required and null */
     SC_MISALIGNED = 3,         /* the field's memory is not aligned as its type */
-    SC_TOO_SMALL = 4,          /* the field has fewer entries than the call needs */
+    SC_TOO_SMALL = 4,          /* the field has fewer entries than the call needs, or a filter's buffer another number */
     SC_BAD_STRIDE = 5,         /* a stride below the size of an entry, or no multiple of 4 */
     SC_BAD_VALUE = 6,          /* the field has a value that does not exist */
     SC_ALIASED = 7,            /* the field is written and overlaps another buffer of the call */
@@ -54,7 +54,7 @@ SC_ENUM(sc_code){
     SC_WRONG_SOURCE = 15,      /* these are not the vertices that the asset was baked from */
     SC_NO_SUCH_BONE = 16,      /* the skeleton lacks a bone of the asset */
     SC_OTHER_BIND = 17,        /* a bone's inverse bind matrix, or its place at rest, differs from the asset's */
-    SC_NO_MEMORY = 18,         /* an allocation failed (sc_character_create only) */
+    SC_NO_MEMORY = 18,         /* an allocation failed (sc_character_create and HostCrowd only) */
     SC_NO_DEVICE = 19,         /* no CUDA device, or no driver for one */
     SC_DEVICE_FAILED = 20,     /* the CUDA device or its driver reported an error */
     SC_DEVICE_TOO_SMALL = 21,  /* the asset does not fit into a block's memory on the CUDA device */

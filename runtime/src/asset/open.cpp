@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Verifies an asset's bytes and takes the views of them.
 #include <cinttypes>
+#include <cstring>
 #include <new>
 #include <type_traits>
 
@@ -95,24 +96,31 @@ SkinData skin_of(const schema::Skin& stored, const SkinSizes& sizes) {
   return skin;
 }
 
+// A number at any address: unverified offsets need not be aligned.
+template <typename T>
+T read(const std::uint8_t* bytes) {
+  T value{};
+  std::memcpy(&value, bytes, sizeof value);
+  return value;
+}
+
 // The version of bytes that have passed no verifier yet, read step by step within them. It is the root's first field.
 bool read_version(const void* data, std::size_t size, std::uint32_t& version) {
   const auto* const bytes = static_cast<const std::uint8_t*>(data);
-  const std::uint64_t root = flatbuffers::ReadScalar<flatbuffers::uoffset_t>(bytes);
+  const std::uint64_t root = read<flatbuffers::uoffset_t>(bytes);
   if (root + sizeof(flatbuffers::soffset_t) > size) {
     return false;
   }
-  const std::int64_t table =
-      static_cast<std::int64_t>(root) - flatbuffers::ReadScalar<flatbuffers::soffset_t>(bytes + root);
+  const std::int64_t table = static_cast<std::int64_t>(root) - read<flatbuffers::soffset_t>(bytes + root);
   constexpr std::int64_t kField = schema::Asset::VT_FORMAT_VERSION;
   if (table < 0 || static_cast<std::uint64_t>(table + kField) + sizeof(flatbuffers::voffset_t) > size) {
     return false;
   }
-  const std::uint64_t at = root + flatbuffers::ReadScalar<flatbuffers::voffset_t>(bytes + table + kField);
+  const std::uint64_t at = root + read<flatbuffers::voffset_t>(bytes + table + kField);
   if (at == root || at + sizeof version > size) {
     return false;
   }
-  version = flatbuffers::ReadScalar<std::uint32_t>(bytes + at);
+  version = read<std::uint32_t>(bytes + at);
   return true;
 }
 

@@ -16,8 +16,8 @@ uint64_t sc_hash_positions(const float* positions, size_t count, size_t stride) 
   constexpr std::uint64_t kOffsetBasis = 14695981039346656037ULL;
   constexpr std::uint64_t kPrime = 1099511628211ULL;
   std::uint64_t hash = kOffsetBasis;
-  for (std::size_t i = 0; i < count; ++i) {
-    const float* position = vertex_at(positions, i, stride);
+  for (std::size_t i = 0; i < count && positions != nullptr; ++i) {
+    const float* position = vertex_at(positions, i, stride == 0 ? 12 : stride);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const float value = position[axis] == 0.0F ? 0.0F : position[axis];
       std::uint32_t bits = 0;
@@ -42,7 +42,7 @@ sc_status sc_check_source(const sc_asset* asset, size_t buffer, const float* pos
   if (positions == nullptr || any_misaligned(positions)) {
     return refuse(positions == nullptr ? SC_NULL : SC_MISALIGNED, SC_FIELD_VERTICES);
   }
-  if (!is_valid_stride(stride)) {
+  if (stride != 0 && !is_valid_stride(stride)) {
     return refuse(SC_BAD_STRIDE, SC_FIELD_VERTEX_STRIDE);
   }
   const bool is_whole = buffer == SC_WHOLE_SOURCE;

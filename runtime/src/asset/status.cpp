@@ -31,7 +31,7 @@ const char* sc_code_text(sc_code code) noexcept {
     case SC_NOT_AN_ASSET:
       return "not a sphere chain asset";
     case SC_OTHER_VERSION:
-      return "an asset of another format version: bake it again";
+      return "an asset of another format version";
     case SC_CORRUPT:
       return "cut short or damaged";
     case SC_WRONG_ABI:

@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Matrices of as many instances as a register has lanes: from one instance after the other to one a lane. For files of
-// kernels, after highway.h; no include guard, for each target wants it again.
+// Matrices of as many instances as a register has lanes: from one instance after the other to one a lane.
+#if defined(SPHERECHAIN_CROWD_LANE_MATRICES_H) == defined(HWY_TARGET_TOGGLE)  // once a target
+#ifdef SPHERECHAIN_CROWD_LANE_MATRICES_H
+#undef SPHERECHAIN_CROWD_LANE_MATRICES_H
+#else
+#define SPHERECHAIN_CROWD_LANE_MATRICES_H
+#endif
+
 #include <hwy/cache_control.h>
 
 #include "crowd/refit.h"
 #include "pairs/sphere_registers.h"
+#include "simd/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
@@ -77,3 +84,5 @@ class Fetcher {
 }  // namespace HWY_NAMESPACE
 }  // namespace spherechain
 HWY_AFTER_NAMESPACE();
+
+#endif

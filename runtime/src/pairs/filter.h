@@ -4,11 +4,36 @@
 
 #include "asset/asset_view.h"
 #include "asset/memory.h"
+#include "asset/status.h"
+#include "pairs/pair_bits.h"
 #include "spherechain/detect.h"
 
 namespace spherechain {
 
-Status check_filter(const AssetView& asset, const Filter& filter);
+template <typename T>
+Span<T> span_of(T* data, std::size_t size) {
+  return {data, size};
+}
+
+// Inline, for the CUDA library, which sees only what a shared runtime exports.
+inline Status check_filter(const AssetView& asset, const Filter& filter) {
+  if (!asset.is_open()) {
+    return refuse(SC_NOT_OPEN, SC_FIELD_ASSET);
+  }
+  if (is_missing(span_of(filter.ignored, filter.ignored_words)) ||
+      is_missing(span_of(filter.disabled, filter.disabled_words)) ||
+      is_missing(span_of(filter.padding, filter.padding_count))) {
+    return refuse(SC_NULL, SC_FIELD_FILTER);
+  }
+  if (any_misaligned(filter.ignored, filter.disabled, filter.padding)) {
+    return refuse(SC_MISALIGNED, SC_FIELD_FILTER);
+  }
+  const std::size_t n = asset.spheres().size;
+  const bool fits = filter.ignored_words == words_for(pairs_of(n)) &&
+                    (filter.disabled_words == 0 || filter.disabled_words == words_for(n)) &&
+                    (filter.padding_count == 0 || filter.padding_count == n);
+  return fits ? done() : refuse(SC_TOO_SMALL, SC_FIELD_FILTER);
+}
 
 struct FilterRanges {
   MemoryRange ignored, disabled, padding;

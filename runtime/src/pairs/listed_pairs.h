@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "pairs/overlap.h"
-#include "spherechain/types.h"
+#include "asset/span.h"
 #include "spherechain/types.h"
 
 namespace spherechain {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "asset/span.h"
 #include "spherechain/types.h"
 
 #if defined(_MSC_VER)

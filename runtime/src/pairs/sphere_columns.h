@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Spheres by coordinates, and which pairs of them may touch. For files of kernels, after highway.h; no include guard,
-// for each target wants it again.
+// Spheres by coordinates, and which pairs of them may touch.
+#if defined(SPHERECHAIN_PAIRS_SPHERE_COLUMNS_H) == defined(HWY_TARGET_TOGGLE)  // once a target
+#ifdef SPHERECHAIN_PAIRS_SPHERE_COLUMNS_H
+#undef SPHERECHAIN_PAIRS_SPHERE_COLUMNS_H
+#else
+#define SPHERECHAIN_PAIRS_SPHERE_COLUMNS_H
+#endif
+
 #include <cfloat>
 
 #include "pairs/overlap.h"
 #include "pairs/sphere_registers.h"
+#include "simd/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
@@ -137,3 +144,5 @@ HWY_INLINE void for_candidates(const SphereColumns& columns, std::size_t column_
 }  // namespace HWY_NAMESPACE
 }  // namespace spherechain
 HWY_AFTER_NAMESPACE();
+
+#endif

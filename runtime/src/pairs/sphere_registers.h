@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Spheres into registers, and the rule of detect.h for listed pairs, a register of them at a time. For files of
-// kernels, after highway.h; no include guard, for each target wants it again.
+// Spheres into registers, and the rule of detect.h for listed pairs, a register of them at a time.
+#if defined(SPHERECHAIN_PAIRS_SPHERE_REGISTERS_H) == defined(HWY_TARGET_TOGGLE)  // once a target
+#ifdef SPHERECHAIN_PAIRS_SPHERE_REGISTERS_H
+#undef SPHERECHAIN_PAIRS_SPHERE_REGISTERS_H
+#else
+#define SPHERECHAIN_PAIRS_SPHERE_REGISTERS_H
+#endif
+
 #include <cfloat>
 
 #include "pairs/overlap.h"
+#include "simd/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
@@ -139,3 +146,5 @@ HWY_INLINE std::uint64_t test_listed(const Sphere* column_spheres, const Sphere*
 }  // namespace HWY_NAMESPACE
 }  // namespace spherechain
 HWY_AFTER_NAMESPACE();
+
+#endif

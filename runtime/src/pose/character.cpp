@@ -63,6 +63,11 @@ Status fill(sc_character& c, std::uint32_t abi, const void* data, std::size_t si
     return status;
   }
   const AssetView& view = view_of(c.asset);
+  const std::size_t table_words = sc_skin_table_words(&c.asset);
+  if (table_words == 0) {
+    Message(message, message_size).wrong("asset: it has no triangles, so there are no skin contacts");
+    return refuse(SC_NOT_IN_ASSET, SC_FIELD_ASSET);
+  }
   if (joints != nullptr) {
     if (!allocate_array(c.joint_of_bone, view.bone_count()) || !allocate_array(c.bones, 12 * view.bone_count())) {
       return no_memory;
@@ -73,7 +78,6 @@ Status fill(sc_character& c, std::uint32_t abi, const void* data, std::size_t si
       return status;
     }
   }
-  const std::size_t table_words = sc_skin_table_words(&c.asset);
   c.contact_capacity = view.part_count() * (view.part_count() + 1) / 2;
   if (!allocate_array(c.skin_table, table_words) || !allocate_array(c.scratch, sc_skin_scratch_words(&c.asset)) ||
       !allocate_array(c.contacts, c.contact_capacity)) {

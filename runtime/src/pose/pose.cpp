@@ -6,16 +6,6 @@
 
 namespace spherechain {
 
-BoneMatrices matrices_of(const Pose& pose) {
-  BoneMatrices out;
-  out.data = pose.bones;
-  out.stride = bone_stride(pose) / sizeof(float);
-  const bool by_rows = pose.bone_layout == SC_ROWS_3X4 || pose.bone_layout == SC_ROWS_4X4;
-  out.row = by_rows ? 4 : 1;
-  out.column = by_rows ? 1 : pose.bone_layout == SC_COLUMNS_4X4 ? 4 : 3;
-  return out;
-}
-
 Status check_bones(const AssetView& asset, const Pose& pose) {
   if (pose.bones == nullptr) {
     return refuse(SC_NULL, SC_FIELD_BONES);

@@ -21,9 +21,17 @@ struct BoneMatrices {
   std::size_t stride = 0, row = 0, column = 0;  // floats
 };
 
-BoneMatrices matrices_of(const Pose& pose);
 inline std::size_t bone_stride(const Pose& pose) {  // bytes
   return pose.bone_stride == 0 ? size_of(pose.bone_layout) : pose.bone_stride;
+}
+inline BoneMatrices matrices_of(const Pose& pose) {
+  BoneMatrices out;
+  out.data = pose.bones;
+  out.stride = bone_stride(pose) / sizeof(float);
+  const bool by_rows = pose.bone_layout == SC_ROWS_3X4 || pose.bone_layout == SC_ROWS_4X4;
+  out.row = by_rows ? 4 : 1;
+  out.column = by_rows ? 1 : pose.bone_layout == SC_COLUMNS_4X4 ? 4 : 3;
+  return out;
 }
 inline std::size_t vertex_stride(const Pose& pose) { return pose.vertex_stride == 0 ? 12 : pose.vertex_stride; }
 

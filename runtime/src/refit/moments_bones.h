@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Bones' matrices as refit by moments reads them. Included by refit_moments_kernel.cpp once a target; no include guard.
+// Bones' matrices as refit by moments reads them.
+#if defined(SPHERECHAIN_REFIT_MOMENTS_BONES_H) == defined(HWY_TARGET_TOGGLE)  // once a target
+#ifdef SPHERECHAIN_REFIT_MOMENTS_BONES_H
+#undef SPHERECHAIN_REFIT_MOMENTS_BONES_H
+#else
+#define SPHERECHAIN_REFIT_MOMENTS_BONES_H
+#endif
+
+#include "refit/moments_lanes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
@@ -217,3 +225,5 @@ class Bones {
 }  // namespace HWY_NAMESPACE
 }  // namespace spherechain
 HWY_AFTER_NAMESPACE();
+
+#endif

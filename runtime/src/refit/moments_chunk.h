@@ -1,5 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Four spheres of their sums. Included by refit_moments_kernel.cpp once a target; no include guard.
+// Four spheres of their sums.
+#if defined(SPHERECHAIN_REFIT_MOMENTS_CHUNK_H) == defined(HWY_TARGET_TOGGLE)  // once a target
+#ifdef SPHERECHAIN_REFIT_MOMENTS_CHUNK_H
+#undef SPHERECHAIN_REFIT_MOMENTS_CHUNK_H
+#else
+#define SPHERECHAIN_REFIT_MOMENTS_CHUNK_H
+#endif
+
+#include "refit/moments_lanes.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
@@ -135,3 +143,5 @@ HWY_INLINE void finish(const Sums& sums, std::size_t first, std::size_t count, c
 }  // namespace HWY_NAMESPACE
 }  // namespace spherechain
 HWY_AFTER_NAMESPACE();
+
+#endif

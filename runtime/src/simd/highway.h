@@ -11,7 +11,7 @@
 // function of the standard library that is a template: one instantiated here would carry this target's instructions to
 // machines without them.
 //
-// No include guard: Highway wants to be included again for every target.
+// Headers of kernels are compiled once a target too: their guards go by HWY_TARGET_TOGGLE, as Highway's own do.
 
 #if !defined(HWY_DISABLED_TARGETS)
 // Of Highway's list, which grows, only the targets of spherechain::Target; by number where Highway 1.0.3 has no name:
@@ -38,6 +38,13 @@
 
 #if defined(HWY_DISABLE_BMI2_FMA)
 #error "spherechain's AVX2 target fuses multiply-adds: HWY_DISABLE_BMI2_FMA would change its results"
+#endif
+
+#if defined(SPHERECHAIN_SIMD_HIGHWAY_H) == defined(HWY_TARGET_TOGGLE)  // once a target
+#ifdef SPHERECHAIN_SIMD_HIGHWAY_H
+#undef SPHERECHAIN_SIMD_HIGHWAY_H
+#else
+#define SPHERECHAIN_SIMD_HIGHWAY_H
 #endif
 
 HWY_BEFORE_NAMESPACE();
@@ -111,3 +118,5 @@ HWY_INLINE V fused(D d, V a, V b, V c) {
 }  // namespace HWY_NAMESPACE
 }  // namespace spherechain
 HWY_AFTER_NAMESPACE();
+
+#endif

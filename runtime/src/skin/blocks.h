@@ -1,10 +1,17 @@
 // SPDX-License-Identifier: MIT
-// The triangles of a cluster that could touch a box. Included by triangle_contacts_kernel.cpp once a
-// target, after highway.h; no include guard.
+// The triangles of a cluster that could touch a box.
+#if defined(SPHERECHAIN_SKIN_BLOCKS_H) == defined(HWY_TARGET_TOGGLE)  // once a target
+#ifdef SPHERECHAIN_SKIN_BLOCKS_H
+#undef SPHERECHAIN_SKIN_BLOCKS_H
+#else
+#define SPHERECHAIN_SKIN_BLOCKS_H
+#endif
+
 #include <cfloat>
 
-#include "skin/scene.h"
 #include "pairs/pair_bits.h"
+#include "skin/scene.h"
+#include "skin/slots.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
@@ -206,3 +213,5 @@ HWY_NOINLINE bool load_block(const ContactScene& scene, std::size_t cluster_inde
 }  // namespace HWY_NAMESPACE
 }  // namespace spherechain
 HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Boxes and balls around spheres and clusters, and what they keep apart. Included by triangle_contacts_kernel.cpp once a
-// target, after highway.h; no include guard.
+// Boxes and balls around spheres and clusters, and what they keep apart.
+#if defined(SPHERECHAIN_SKIN_BOXES_H) == defined(HWY_TARGET_TOGGLE)  // once a target
+#ifdef SPHERECHAIN_SKIN_BOXES_H
+#undef SPHERECHAIN_SKIN_BOXES_H
+#else
+#define SPHERECHAIN_SKIN_BOXES_H
+#endif
+
 #include <cfloat>
 
+#include "simd/highway.h"
 #include "skin/scene.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -192,3 +199,5 @@ HWY_NOINLINE void bound_clusters(const ContactScene& scene) {
 }  // namespace HWY_NAMESPACE
 }  // namespace spherechain
 HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cluster bounds: boxes and balls around clusters in a pose, from bones alone. Included by triangle_contacts_kernel.cpp once a target, after contact_boxes.h; no include guard.
+// Cluster bounds: boxes and balls around clusters in a pose, from bones alone.
 //
 // A cluster's vertices lie at rest in a box of centre c and half extents h, within rho of c. With the mid weights w_b, the
 // deviations d_b of the weights from them, M_b = (R_b; t_b) the bones' matrices, R = sum w_b R_b, t = sum w_b t_b and
@@ -10,11 +10,11 @@
 // and within rho |R| + |s| of m: the box is the lesser of the two, axis by axis. A morph target of weight a whose
 // deltas lie within r of e moves c by a e, and adds |a| r to h and rho.
 //
-// The margin for roundings, to first order, in units of u Q, u = 2^-24 and Q as in cover.h. N counts the group's bones
-// and moving morph targets, D = sum d_b. A product added to a sum is rounded twice where the target has no fma. Any
+// The margin for roundings, to first order, in units of u Q, u = 2^-24 and Q = max_b (|R_b| X + max |t_b|), of
+// X = |c|_1 + rho and as much for each morph, times |a|. N counts the group's bones and moving morph targets, D = sum d_b. A product added to a sum is rounded twice where the target has no fma. Any
 // partial sum of a row of M_b v is at most Q, and of |R_b| h at most 1.8 Q, as |h| is at most 3^0.5 rho.
-//   a vertex, by SkinJob: 3 a row, one a bone               N + 4
-//   the same by who blends matrices first, or has no fma    2 N + 8, in place of that
+//   a vertex, skinned here: 3 a row, one a bone               N + 4
+//   the same with blended matrices, or without fma          2 N + 8, in place of that
 //   sum e_b, of at most 4 u: |m| + |R p|                    11
 //   m: the entries of R and t, 2 a bone; then 2 a product   2 N + 6
 //   |R| h: likewise, of 1.8 Q                               3.6 N + 11
@@ -26,6 +26,14 @@
 //   box and ball put together, low and high                 12 + 22 D
 //   morphs: c, h and rho, 2 each, moved by M_b and R        no more than a bone each
 // Together less than 64 + 8 N + (128 + 32 N) D.
+#if defined(SPHERECHAIN_SKIN_CLUSTER_BOUNDS_H) == defined(HWY_TARGET_TOGGLE)  // once a target
+#ifdef SPHERECHAIN_SKIN_CLUSTER_BOUNDS_H
+#undef SPHERECHAIN_SKIN_CLUSTER_BOUNDS_H
+#else
+#define SPHERECHAIN_SKIN_CLUSTER_BOUNDS_H
+#endif
+
+#include "skin/boxes.h"
 #include "skin/scene.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -91,7 +99,8 @@ HWY_INLINE GroupVector extent_of_group(const BoundsInputs& in, const GroupRest& 
 // Below this length squares run out of exponents: no bound is less.
 constexpr float kMinLength = 0x1p-60F;
 
-// At least the spectral norm, but for rounding: the root of the greatest row sum of |R^T R|.
+// At least the spectral norm, but for rounding: the root of the greatest row sum of |R^T R|. Infinite where squares
+// overflow: without fma their sum is then no number, which a maximum would lose.
 HWY_INLINE GroupVector spectral_bound(const GroupVector (&r)[3][4]) {
   GroupVector sums[3];
   const auto dot = [&](std::size_t i, std::size_t j) HWY_ATTR {
@@ -101,7 +110,10 @@ HWY_INLINE GroupVector spectral_bound(const GroupVector (&r)[3][4]) {
   sums[0] = hn::Add(hn::Add(dot(0, 0), xy), zx);
   sums[1] = hn::Add(hn::Add(dot(1, 1), xy), yz);
   sums[2] = hn::Add(hn::Add(dot(2, 2), yz), zx);
-  return hn::Max(hn::Sqrt(hn::Max(hn::Max(sums[0], sums[1]), sums[2])), hn::Set(GroupLanes(), kMinLength));
+  constexpr GroupLanes d;
+  const GroupVector norm = hn::Max(hn::Sqrt(hn::Max(hn::Max(sums[0], sums[1]), sums[2])), hn::Set(d, kMinLength));
+  const GroupVector all = hn::Add(hn::Add(sums[0], sums[1]), sums[2]);
+  return hn::IfThenElse(hn::Eq(all, all), norm, hn::Inf(d));
 }
 
 // One register's lanes of a group of clusters.
@@ -213,3 +225,5 @@ HWY_NOINLINE void bound_sphere_by_bones(const ContactScene& scene, std::size_t s
 }  // namespace HWY_NAMESPACE
 }  // namespace spherechain
 HWY_AFTER_NAMESPACE();
+
+#endif

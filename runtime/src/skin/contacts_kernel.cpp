@@ -12,19 +12,8 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "skin/contacts_kernel.cpp"
 #include "simd/highway.h"
-#include "skin/skin_cluster.h"
-
-// One after another: each builds on those before.
-#include "skin/boxes.h"
-
-#include "skin/cluster_bounds.h"
-
-#include "skin/slots.h"
-
-#include "skin/hulls.h"
-
 #include "skin/blocks.h"
-
+#include "skin/hulls.h"
 #include "skin/single_precision.h"
 
 HWY_BEFORE_NAMESPACE();

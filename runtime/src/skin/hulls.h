@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What spheres' skins are near to in a pose, from bones alone: the hull of their hulls' points. Included by
-// triangle_contacts_kernel.cpp once a target, after contact_slots.h; no include guard.
+// What spheres' skins are near to in a pose, from bones alone: their hulls' points.
 //
 // With the weights w_b of a vertex v, o_kb of a point p_k and l_k the vertex' shares of the points, let
 //   r_b = w_b (v - c; 1) - sum_k l_k o_kb (p_k - c; 1),    four coordinates for each bone b,
@@ -13,7 +12,7 @@
 //   s_i + |R_0| e at most,    s_i = sum_b (|R_b - R_0| |r_b| + |R_b c + t_b - R_0 c - t_0| |r_b|_4)_i,
 // and the vertex within |s| + |R_0| e of the hull.
 //
-// The margin for roundings, to first order, in units of u Q, u = 2^-24 and Q = max_b |R_b| X + |t_b| as in cover.h, of
+// The margin for roundings, to first order, in units of u Q, u = 2^-24 and Q = max_b |R_b| X + |t_b|, of
 // X = |c|_1 + the hull's radius. N counts the hull's bones. |r_b| is at most 2 X, and its fourth at most 1.
 //   a vertex and a point, however skinned (cluster_bounds.h)   4 N + 16
 //   sum_b r_b's fourth: weights add up to 1 within 2 u      4
@@ -24,9 +23,18 @@
 //   |R_0| e: Gram matrix, row sums, root                    12
 //   a box's sides; a point's part of a direction            48
 // Together less than 128 + 192 N + 16 N^2. And no bound is less than kMinLength, for what underflows.
+#if defined(SPHERECHAIN_SKIN_HULLS_H) == defined(HWY_TARGET_TOGGLE)  // once a target
+#ifdef SPHERECHAIN_SKIN_HULLS_H
+#undef SPHERECHAIN_SKIN_HULLS_H
+#else
+#define SPHERECHAIN_SKIN_HULLS_H
+#endif
+
 #include <cfloat>
 
+#include "skin/cluster_bounds.h"
 #include "skin/scene.h"
+#include "skin/slots.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
@@ -198,3 +206,5 @@ HWY_INLINE bool hulls_apart(const ContactScene& scene, std::size_t a, std::size_
 }  // namespace HWY_NAMESPACE
 }  // namespace spherechain
 HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: MIT
-// What single precision can tell of pairs of triangles. Included by triangle_contacts_kernel.cpp once a
-// target, after highway.h; no include guard.
+// What single precision can tell of pairs of triangles.
+#if defined(SPHERECHAIN_SKIN_SINGLE_PRECISION_H) == defined(HWY_TARGET_TOGGLE)  // once a target
+#ifdef SPHERECHAIN_SKIN_SINGLE_PRECISION_H
+#undef SPHERECHAIN_SKIN_SINGLE_PRECISION_H
+#else
+#define SPHERECHAIN_SKIN_SINGLE_PRECISION_H
+#endif
+
+#include "skin/blocks.h"
 #include "skin/scene.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -134,3 +141,5 @@ HWY_INLINE Verdicts judge(const Taken& first, const Taken& second, std::uint64_t
 }  // namespace HWY_NAMESPACE
 }  // namespace spherechain
 HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: MIT
-// One cluster's vertices in a pose, a slot a lane; the arithmetic is SkinJob's. Included by files of kernels once a
-// target, after highway.h; no include guard.
+// One cluster's vertices in a pose, a slot a lane; docs/arithmetic.md has the arithmetic.
+#if defined(SPHERECHAIN_SKIN_SKIN_CLUSTER_H) == defined(HWY_TARGET_TOGGLE)  // once a target
+#ifdef SPHERECHAIN_SKIN_SKIN_CLUSTER_H
+#undef SPHERECHAIN_SKIN_SKIN_CLUSTER_H
+#else
+#define SPHERECHAIN_SKIN_SKIN_CLUSTER_H
+#endif
+
+#include "simd/highway.h"
 #include "skin/skin_inputs.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -103,3 +110,5 @@ HWY_INLINE void skin_cluster(const SkinInputs& in, const Cluster& cluster, float
 }  // namespace HWY_NAMESPACE
 }  // namespace spherechain
 HWY_AFTER_NAMESPACE();
+
+#endif

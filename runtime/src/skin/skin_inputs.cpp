@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "simd/arithmetic.h"
 
@@ -19,9 +20,14 @@ BoneSize bone_size(const BoneMatrices& bones, std::size_t bone) {
       gram[i][j] = gram[j][i] = std::abs((p[0] * q[0] + p[bones.row] * q[bones.row]) + p[2 * bones.row] * q[2 * bones.row]);
     }
   }
-  float most = 0;
+  float most = 0, all = 0;
   for (const auto& row : gram) {
-    most = std::max(most, (row[0] + row[1]) + row[2]);
+    const float sum = (row[0] + row[1]) + row[2];
+    most = std::max(most, sum);
+    all += sum;
+  }
+  if (std::isnan(all)) {  // products overflowed, with either sign: the maximum lost it
+    most = std::numeric_limits<float>::infinity();
   }
   const float* t = m + 3 * bones.column;
   return {std::sqrt(most), std::max({std::abs(t[0]), std::abs(t[bones.row]), std::abs(t[2 * bones.row])})};

@@ -13,9 +13,12 @@ namespace spherechain {
 namespace {
 
 constexpr std::uint64_t kMagic = 0x6B736E696B736373;  // says that the words are a table
-enum Place : std::size_t { kIsTable, kAsset, kTriangles, kVertices, kHeaderWords };
+enum Place : std::size_t { kIsTable, kAsset, kTriangles, kVertices, kAlignment, kHeaderWords };
 
 std::uint64_t key_of(const AssetView& asset) { return reinterpret_cast<std::uintptr_t>(asset.spheres().data); }
+
+// The arrays start at cache lines: a table that was copied to another place in its line is none.
+std::uint64_t alignment_of(const std::uint64_t* words) { return reinterpret_cast<std::uintptr_t>(words) % 64; }
 
 // Hands out the table's arrays, each from a cache line on; of null words only counts them.
 class Layout {
@@ -270,6 +273,7 @@ void fill_skin_table(const AssetView& asset, std::uint64_t* words) {
   words[kAsset] = key_of(asset);
   words[kTriangles] = asset.skin().sizes.triangles;
   words[kVertices] = asset.skin().sizes.vertices;
+  words[kAlignment] = alignment_of(words);
   Filler(asset, layout).run();
 }
 
@@ -283,7 +287,7 @@ Status read_skin_table(const AssetView& asset, const std::uint64_t* words, Surfa
   // The bytes of another asset may have come to lie at the same address.
   const SkinData& skin = asset.skin();
   if (words[kIsTable] != kMagic || words[kAsset] != key_of(asset) || words[kTriangles] != skin.sizes.triangles ||
-      words[kVertices] != skin.sizes.vertices) {
+      words[kVertices] != skin.sizes.vertices || words[kAlignment] != alignment_of(words)) {
     return refuse(SC_BAD_VALUE, SC_FIELD_SKIN_TABLE);
   }
   const Layout table(asset, const_cast<std::uint64_t*>(words));

@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: MIT
-// The vertices of a cluster, in its slots. Included by triangle_contacts_kernel.cpp once a
-// target, after highway.h; no include guard.
+// The vertices of a cluster, in its slots.
+#if defined(SPHERECHAIN_SKIN_SLOTS_H) == defined(HWY_TARGET_TOGGLE)  // once a target
+#ifdef SPHERECHAIN_SKIN_SLOTS_H
+#undef SPHERECHAIN_SKIN_SLOTS_H
+#else
+#define SPHERECHAIN_SKIN_SLOTS_H
+#endif
+
 #include <cfloat>
 
+#include "skin/boxes.h"
 #include "skin/scene.h"
+#include "skin/skin_cluster.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
@@ -166,7 +174,7 @@ HWY_INLINE void put_span(const ContactScene& scene, std::size_t cluster_index) {
 #endif
 
 // A cluster shrunk to a point, or to a line along an axis, has only degenerate triangles, which intersect nothing: it
-// rest_scales nowhere. In a pose that takes all to one point each cluster would be paired with each.
+// reaches nowhere. In a pose that takes all to one point each cluster would be paired with each.
 HWY_INLINE void drop_line(const ContactScene& scene, std::size_t cluster_index) {
   float* const low = scene.spans + 2 * kSpanLanes * cluster_index;
   float* const high = low + kSpanLanes;
@@ -247,3 +255,5 @@ HWY_NOINLINE bool plane_parts(const ContactScene& scene, std::size_t a, std::siz
 }  // namespace HWY_NAMESPACE
 }  // namespace spherechain
 HWY_AFTER_NAMESPACE();
+
+#endif

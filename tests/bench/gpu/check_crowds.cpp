@@ -30,10 +30,10 @@ bool check_crowds(const std::vector<std::string>& names, const std::string& fold
       std::fprintf(stderr, "spherechain_bench_gpu: %s\n", error.c_str());
       std::exit(3);
     }
-    if (posed.poses.pose_count == 0 || posed.asset.refit_rule() != RefitRule::kMoments) {
+    if (posed.poses.pose_count == 0 || posed.view().refit_rule() != RefitRule::kMoments) {
       continue;
     }
-    for (const RadiusKind radius : {RadiusKind::kFit, RadiusKind::kDetect}) {
+    for (const Radius radius : {SC_RADIUS_FIT, SC_RADIUS_DETECT}) {
       const Reference reference = reference_of(posed, radius);
       DeviceCrowd crowd(posed, reference, radius, posed.poses.pose_count);
       constexpr unsigned kOutputs = DeviceCrowd::kCounts | DeviceCrowd::kBits | DeviceCrowd::kList;
@@ -43,8 +43,8 @@ bool check_crowds(const std::vector<std::string>& names, const std::string& fold
       for (const std::uint32_t count : reference.counts) {
         pairs += count;
       }
-      std::printf("%-24s %6zu %8zu %8s %10zu  %s\n", name.c_str(), posed.poses.pose_count, posed.asset.spheres().size,
-                  radius == RadiusKind::kFit ? "fit" : "detect", pairs, is_right ? "equal, bit for bit" : "DIFFERENT");
+      std::printf("%-24s %6zu %8zu %8s %10zu  %s\n", name.c_str(), posed.poses.pose_count, posed.view().spheres().size,
+                  radius == SC_RADIUS_FIT ? "fit" : "detect", pairs, is_right ? "equal, bit for bit" : "DIFFERENT");
       all_right &= is_right;
     }
   }

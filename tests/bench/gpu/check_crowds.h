@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Crowds of every character and clip against the CPU's jobs, bit for bit.
+// Crowds of every character and clip against the CPU, bit for bit.
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // spherechain_check_crowds FOLDER: what the crowd's kernels make of every character and clip in a folder that
-// spherechain_gpu_data wrote, emulated on this machine's CPU, against the CPU's jobs, bit for bit. No GPU, no CUDA.
+// spherechain_gpu_data wrote, emulated on this machine's CPU, against the runtime's, bit for bit. No GPU, no CUDA.
 #include <cstdio>
 
 #include "check_crowds.h"

@@ -13,6 +13,7 @@
 #include "contestants.h"
 #include "device_crowd.h"
 #include "further_modes.h"
+#include "pairs/pair_bits.h"
 #include "spherechain/cuda.h"
 
 namespace {
@@ -24,29 +25,33 @@ using namespace spherechain::bench;
 class HostCrowd {
  public:
   HostCrowd(const PosedAsset& posed, std::size_t instances, std::size_t threads)
-      : threads_(threads), tasks_(4 * threads), words_(CrowdContext::words_needed(posed.asset, tasks_)) {
+      : threads_(threads), scratch_(sc_crowd_scratch_words(&posed.asset, 4 * threads)) {
     const std::size_t size = posed.poses.bone_count * kMatrixFloats;
     matrices_.resize(instances * size);
     for (std::size_t i = 0; i < instances; ++i) {
       std::copy_n(posed.poses.matrices_of(i % posed.poses.pose_count), size, &matrices_[i * size]);
     }
     counts_.resize(instances);
-    bits_.resize(instances * DetectJob::bit_words(posed.asset));
-    context_.words = {words_.data(), words_.size()};
+    bits_.resize(instances * sc_pair_words(&posed.asset));
     job_.asset = &posed.asset;
-    job_.bones = {matrices_.data(), posed.poses.bone_count, MatrixLayout::kRowMajor3x4, 48};
-    job_.instance_stride = size * sizeof(float);
-    job_.context = &context_;
-    job_.task_count = tasks_;
-    job_.hook = {run_on_threads, &threads_};
+    job_.pose.bones = matrices_.data();
+    job_.pose.bone_count = posed.poses.bone_count;
+    job_.pose.bone_layout = SC_ROWS_3X4;
+    job_.scratch = scratch_.data();
+    job_.scratch_words = scratch_.size();
+    job_.task_count = 4 * threads;
+    job_.parallel_for = run_on_threads;
+    job_.user = &threads_;
+    job_.counts = counts_.data();
+    job_.bits = bits_.data();
   }
 
   double time(std::size_t instances) {
     job_.instance_count = instances;
-    job_.counts = {counts_.data(), instances};
-    job_.bits = {bits_.data(), instances * (bits_.size() / counts_.size())};
+    job_.count_capacity = instances;
+    job_.bit_words = instances * (bits_.size() / counts_.size());
     const double begin = seconds();
-    if (job_.run() != Status::kOk) {
+    if (job_.run() != SC_OK) {
       std::exit(1);
     }
     return (seconds() - begin) * 1e9 / static_cast<double>(instances);
@@ -71,12 +76,11 @@ class HostCrowd {
     }
   }
 
-  std::size_t threads_, tasks_;
-  std::vector<std::uint64_t> words_, bits_;
+  std::size_t threads_;
+  std::vector<std::uint64_t> scratch_, bits_;
   std::vector<float> matrices_;
   std::vector<std::uint32_t> counts_;
-  CrowdContext context_;
-  spherechain::CrowdJob job_;
+  CrowdJob job_;
 };
 
 Ceilings measure_ceilings(int multiprocessors) {
@@ -100,7 +104,7 @@ Ceilings measure_ceilings(int multiprocessors) {
 
 // A character's, where nothing is worked out twice. By moments: a Gram matrix for each pair of bones, of which a sphere
 // takes sixteen figures, and its centre.
-std::size_t refit_multiply_adds(const Asset& asset) {
+std::size_t refit_multiply_adds(const AssetView& asset) {
   const MomentTables& tables = asset.moment_tables();
   std::set<std::pair<std::uint16_t, std::uint16_t>> pairs;
   for (const BonePair& pair : tables.pairs) {
@@ -121,15 +125,15 @@ bool bench_character(const std::string& folder, const std::string& name, const C
     std::fprintf(stderr, "spherechain_bench_gpu: %s\n", error.c_str());
     std::exit(3);
   }
-  const Reference reference = reference_of(posed, RadiusKind::kDetect);
-  DeviceCrowd crowd(posed, reference, RadiusKind::kDetect, kInstances);
-  const std::size_t n = posed.asset.spheres().size;
+  const Reference reference = reference_of(posed, SC_RADIUS_DETECT);
+  DeviceCrowd crowd(posed, reference, SC_RADIUS_DETECT, kInstances);
+  const AssetView& asset = posed.view();
+  const std::size_t n = asset.spheres().size;
 
   std::vector<IndexPair> wanted;
   for (std::size_t b = 1; b < n; ++b) {
     for (std::size_t a = 0; a < b; ++a) {
-      const std::size_t bit = b * (b - 1) / 2 + a;
-      if ((posed.asset.ignored()[bit / 64] >> (bit % 64) & 1U) == 0) {
+      if (!test_bit(asset.ignored(), ignored_bit(a, b))) {
         wanted.push_back({static_cast<std::int16_t>(a), static_cast<std::int16_t>(b)});
       }
     }
@@ -167,12 +171,11 @@ bool bench_character(const std::string& folder, const std::string& name, const C
   measure(all, kInstances);
   std::printf(
       "\n%s: %zu spheres, %zu bones, %zu pairs tested (%zu of them rest pairs), %zu characters in 1,024 poses\n",
-      name.c_str(), n, posed.asset.bone_count(), wanted.size(), posed.asset.near_pairs(RadiusKind::kDetect).size,
-      kInstances);
+      name.c_str(), n, asset.bone_count(), wanted.size(), asset.rest_pairs(SC_RADIUS_DETECT).size, kInstances);
   print_table(all, static_cast<double>(wanted.size()), ceilings);
   const double fused = all[0].times.median(), detect = all[4].times.median(), counts = all[5].times.median(),
                block = all[6].times.median();
-  const auto least_operations = static_cast<double>(refit_multiply_adds(posed.asset) + wanted.size() * 4);
+  const auto least_operations = static_cast<double>(refit_multiply_adds(asset) + wanted.size() * 4);
   std::printf(
       "  multiply-adds of refit and pair tests alone: %.0f a character, %.3f ns at the device's ceiling (%.0f %% of "
       "the fused time)\n",
@@ -195,9 +198,10 @@ bool bench_character(const std::string& folder, const std::string& name, const C
     many.add(all_cores.time(16384));
   }
   std::printf(
-      "  the CPU's CrowdJob (%s), counts and bits: 1 core %.0f ns, %zu threads %.1f ns a character: %.0f and %.0f "
+      "  the CPU's crowd job (%s), counts and bits: 1 core %.0f ns, %zu threads %.1f ns a character: %.0f and %.0f "
       "times the GPU's\n",
-      to_string(best_target()), one.median(), cores, many.median(), one.median() / fused, many.median() / fused);
+      sc_target_name(*sc_supported_targets(nullptr)), one.median(), cores, many.median(), one.median() / fused,
+      many.median() / fused);
 
   std::printf("  %-12s %14s %24s %14s %14s   us a call, bones in, counts and bits out\n", "characters", "GPU, events",
               "GPU, launch to finish", "1 core", "all cores");
@@ -232,7 +236,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: spherechain_bench_gpu FOLDER (that spherechain_gpu_data wrote)\n");
     return 2;
   }
-  if (cuda::check_device() != Status::kOk) {
+  if (cuda::check_device() != SC_OK) {
     std::fprintf(stderr, "spherechain_bench_gpu: no CUDA device: %s\n", cuda::last_device_error());
     return 1;
   }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "spherechain/cuda.h"
+#include "spherechain/refit.h"
 
 namespace spherechain::bench {
 namespace {
@@ -13,8 +13,9 @@ namespace {
 constexpr std::size_t kSets = 2;
 
 void must_be_ok(Status status, const char* what) {
-  if (status != Status::kOk) {
-    std::fprintf(stderr, "spherechain_bench_gpu: %s: %s (%s)\n", what, to_string(status), cuda::last_device_error());
+  if (status != SC_OK) {
+    std::fprintf(stderr, "spherechain_bench_gpu: %s: %s: %s (%s)\n", what, sc_field_name(status.field),
+                 sc_code_text(status.code), cuda::last_device_error());
     std::exit(1);
   }
 }
@@ -44,15 +45,19 @@ std::vector<T> repeated(const std::vector<T>& poses, std::size_t pose_size, std:
   return out;
 }
 
-BoneMatrices bones_of(const PosedAsset& posed, std::size_t pose) {
-  return {posed.poses.matrices_of(pose), posed.poses.bone_count};
+Pose pose_with(const float* bones, std::size_t count) {
+  Pose pose;
+  pose.bones = bones;
+  pose.bone_count = count;
+  pose.bone_layout = SC_ROWS_3X4;
+  return pose;
 }
 
 // For assets too large for shared memory: two blocks a multiprocessor.
-std::size_t scratch_bytes(const cuda::CrowdTables& tables, const PoseFile& poses, std::size_t instances) {
+std::size_t scratch_bytes(const std::uint64_t* table, const PoseFile& poses, std::size_t instances) {
   cudaDeviceProp properties{};
   must(cudaGetDeviceProperties(&properties, 0));
-  const std::size_t block = tables.block_bytes(poses.bone_count > 0, true, true);
+  const std::size_t block = cuda::crowd_block_bytes(table, poses.bone_count > 0, true, true);
   const std::size_t blocks =
       std::min((instances + 31) / 32, 2 * static_cast<std::size_t>(properties.multiProcessorCount));
   return block <= properties.sharedMemPerBlockOptin ? 1 : blocks * block;
@@ -60,34 +65,37 @@ std::size_t scratch_bytes(const cuda::CrowdTables& tables, const PoseFile& poses
 
 }  // namespace
 
-void detect(const PosedAsset& posed, RadiusKind radius, Reference& reference) {
+void detect(const PosedAsset& posed, Radius radius, Reference& reference) {
   const std::size_t poses = posed.poses.pose_count;
   reference.counts.resize(poses);
-  reference.bits.resize(poses * DetectJob::bit_words(posed.asset));
-  std::vector<std::uint64_t> words(CrowdContext::words_needed(posed.asset, 1));
-  CrowdContext context{{words.data(), words.size()}};
-  spherechain::CrowdJob detect;
+  reference.bits.resize(poses * sc_pair_words(&posed.asset));
+  std::vector<std::uint64_t> scratch(sc_crowd_scratch_words(&posed.asset, 1));
+  CrowdJob detect;
   detect.asset = &posed.asset;
   detect.spheres = reference.spheres.data();
   detect.instance_count = poses;
   detect.radius = radius;
-  detect.context = &context;
-  detect.counts = {reference.counts.data(), poses};
-  detect.bits = {reference.bits.data(), reference.bits.size()};
-  must_be_ok(detect.run(), "CrowdJob");
+  detect.scratch = scratch.data();
+  detect.scratch_words = scratch.size();
+  detect.counts = reference.counts.data();
+  detect.count_capacity = poses;
+  detect.bits = reference.bits.data();
+  detect.bit_words = reference.bits.size();
+  must_be_ok(detect.run(), "sc_detect_crowd");
 }
 
-Reference reference_of(const PosedAsset& posed, RadiusKind radius) {
-  const std::size_t n = posed.asset.spheres().size, poses = posed.poses.pose_count;
+Reference reference_of(const PosedAsset& posed, Radius radius) {
+  const std::size_t n = posed.view().spheres().size, poses = posed.poses.pose_count;
   Reference out;
   out.spheres.resize(n * poses);
   for (std::size_t i = 0; i < poses; ++i) {
-    RefitBonesJob refit;
+    RefitJob refit;
     refit.asset = &posed.asset;
-    refit.bones = bones_of(posed, i);
+    refit.pose = pose_with(posed.poses.matrices_of(i), posed.poses.bone_count);
     refit.radius = radius;
-    refit.spheres = {&out.spheres[i * n], n};
-    must_be_ok(refit.run(), "RefitBonesJob");
+    refit.spheres = &out.spheres[i * n];
+    refit.sphere_capacity = n;
+    must_be_ok(refit.run(), "sc_refit");
   }
   detect(posed, radius, out);
   return out;
@@ -99,41 +107,39 @@ void DeviceCrowd::Wrong::add(std::size_t instance, const char* what) {
   }
 }
 
-DeviceCrowd::DeviceCrowd(const PosedAsset& posed, const Reference& reference, RadiusKind radius, std::size_t instances)
+DeviceCrowd::DeviceCrowd(const PosedAsset& posed, const Reference& reference, Radius radius, std::size_t instances)
     : posed_(posed),
       reference_(reference),
       instances_(instances),
-      words_(cuda::CrowdTables::words_needed(posed.asset)),
-      refitted_(instances * posed.asset.spheres().size),
+      table_(cuda::crowd_table_words(posed.asset)),
+      refitted_(instances * posed.view().spheres().size),
       counts_(instances),
-      bits_(instances * DetectJob::bit_words(posed.asset)),
+      bits_(instances * sc_pair_words(&posed.asset)),
       starts_(instances),
       pair_count_(1),
       pairs_(pair_count(reference, instances)),
       scratch_([&] {
-        must_be_ok(tables_.build(posed.asset, radius, nullptr, {words_.data(), words_.size()}), "CrowdTables");
-        return scratch_bytes(tables_, posed.poses, instances);
+        must_be_ok(cuda::prepare_crowd(posed.asset, radius, nullptr, table_.data(), table_.size()), "prepare_crowd");
+        return scratch_bytes(table_.data(), posed.poses, instances);
       }()) {
-  device_tables_ = std::make_unique<DeviceArray<std::uint64_t>>(words_);
+  device_table_ = std::make_unique<DeviceArray<std::uint64_t>>(table_);
   const PoseFile& poses = posed.poses;
   for (std::size_t set = 0; set < kSets; ++set) {  // the same instances: what comes out must be the same
     if (poses.bone_count > 0) {
       matrices_.emplace_back(repeated(poses.matrices, poses.bone_count * kMatrixFloats, instances));
     }
-    spheres_.emplace_back(repeated(reference.spheres, posed.asset.spheres().size, instances));
+    spheres_.emplace_back(repeated(reference.spheres, posed.view().spheres().size, instances));
   }
 }
 
 void DeviceCrowd::enqueue(bool from_bones, unsigned outputs, std::size_t instances) {
   const std::size_t set = launches_++ % kSets;
   cuda::CrowdGroup group;
-  group.tables = &tables_;
-  group.device_tables = device_tables_->data();
+  group.table = table_.data();
+  group.device_table = device_table_->data();
   group.instance_count = instances;
   if (from_bones) {
-    const std::size_t bones = posed_.poses.bone_count;
-    group.bones = {matrices_[set].data(), bones, MatrixLayout::kRowMajor3x4, 48};
-    group.instance_stride = bones * 48;
+    group.pose = pose_with(matrices_[set].data(), posed_.poses.bone_count);
   } else {
     group.spheres = spheres_[set].data();
   }
@@ -147,8 +153,7 @@ void DeviceCrowd::enqueue(bool from_bones, unsigned outputs, std::size_t instanc
   group.pair_capacity = pairs_.size();
   group.scratch = scratch_.data();
   group.scratch_bytes = scratch_.size();
-  const cuda::CrowdJob job{{&group, 1}, nullptr};
-  must_be_ok(job.run(), "cuda::CrowdJob");
+  must_be_ok(cuda::enqueue_crowds(&group, 1, nullptr), "enqueue_crowds");
 }
 
 bool DeviceCrowd::runs_right(bool from_bones, unsigned outputs) {
@@ -157,8 +162,8 @@ bool DeviceCrowd::runs_right(bool from_bones, unsigned outputs) {
   spoil(refitted_, counts_, bits_, starts_, pair_count_, pairs_);
   enqueue(from_bones, outputs, instances_);
 
-  const std::size_t poses = posed_.poses.pose_count, n = posed_.asset.spheres().size;
-  const std::size_t words = DetectJob::bit_words(posed_.asset);
+  const std::size_t poses = posed_.poses.pose_count, n = posed_.view().spheres().size;
+  const std::size_t words = sc_pair_words(&posed_.asset);
   Wrong wrong;
   const auto compare = [&](const char* what, const auto& got, const auto& wanted, std::size_t size) {
     for (std::size_t i = 0; i < instances_; ++i) {
@@ -183,7 +188,7 @@ bool DeviceCrowd::runs_right(bool from_bones, unsigned outputs) {
 }
 
 std::vector<std::uint64_t> DeviceCrowd::listed_bits(Wrong& wrong) const {
-  const std::size_t n = posed_.asset.spheres().size, words = DetectJob::bit_words(posed_.asset);
+  const std::size_t n = posed_.view().spheres().size, words = sc_pair_words(&posed_.asset);
   const std::vector<CrowdPair> pairs = pairs_.host();
   const std::vector<std::uint64_t> starts = starts_.host();
   const std::vector<std::uint32_t> counts = counts_.host();
@@ -209,10 +214,10 @@ std::vector<std::uint64_t> DeviceCrowd::listed_bits(Wrong& wrong) const {
 }
 
 std::size_t DeviceCrowd::bytes_moved(bool from_bones, unsigned outputs) const {
-  const std::size_t n = posed_.asset.spheres().size;
+  const std::size_t n = posed_.view().spheres().size;
   std::size_t out = from_bones ? posed_.poses.bone_count * 48 : n * sizeof(Sphere);
   out += (outputs & kCounts) != 0 ? sizeof(std::uint32_t) : 0;
-  out += (outputs & kBits) != 0 ? DetectJob::bit_words(posed_.asset) * 8 : 0;
+  out += (outputs & kBits) != 0 ? sc_pair_words(&posed_.asset) * 8 : 0;
   out += (outputs & kSpheres) != 0 ? n * sizeof(Sphere) : 0;
   return out;
 }

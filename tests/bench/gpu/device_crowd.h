@@ -7,23 +7,22 @@
 #include "device.h"
 #include "posed_asset.h"
 #include "spherechain/cuda.h"
-#include "spherechain/detect.h"
 
 namespace spherechain::bench {
 
-// What the CPU's jobs make of each pose.
+// What the CPU makes of each pose.
 struct Reference {
   std::vector<Sphere> spheres;        // pose after pose
   std::vector<std::uint32_t> counts;  // a pose each
   std::vector<std::uint64_t> bits;    // bit words a pose
 };
-Reference reference_of(const PosedAsset& posed, RadiusKind radius);
+Reference reference_of(const PosedAsset& posed, Radius radius);
 // Fills in the pairs of the reference's spheres.
-void detect(const PosedAsset& posed, RadiusKind radius, Reference& reference);
+void detect(const PosedAsset& posed, Radius radius, Reference& reference);
 
 class DeviceCrowd {
  public:
-  DeviceCrowd(const PosedAsset& posed, const Reference& reference, RadiusKind radius, std::size_t instances);
+  DeviceCrowd(const PosedAsset& posed, const Reference& reference, Radius radius, std::size_t instances);
 
   enum Output : unsigned { kCounts = 1, kBits = 2, kList = 4, kSpheres = 8 };
   // One launch on the default stream: of the first `instances`, from bones or from spheres. Two sets of inputs take
@@ -34,7 +33,7 @@ class DeviceCrowd {
   bool runs_right(bool from_bones, unsigned outputs);
 
   // Memory of a block, and how many such are given to assets too large for shared memory: two a multiprocessor.
-  std::size_t block_bytes() const { return tables_.block_bytes(!matrices_.empty(), true, true); }
+  std::size_t block_bytes() const { return cuda::crowd_block_bytes(table_.data(), !matrices_.empty(), true, true); }
   std::size_t scratch_blocks() const { return scratch_.size() / block_bytes(); }
   const Sphere* spheres() const { return spheres_[0].data(); }
   std::size_t bytes_moved(bool from_bones, unsigned outputs) const;  // an instance: inputs read once, outputs written
@@ -49,9 +48,8 @@ class DeviceCrowd {
   const PosedAsset& posed_;
   const Reference& reference_;
   std::size_t instances_, launches_ = 0;
-  std::vector<std::uint64_t> words_;
-  cuda::CrowdTables tables_;
-  std::unique_ptr<DeviceArray<std::uint64_t>> device_tables_;
+  std::vector<std::uint64_t> table_;
+  std::unique_ptr<DeviceArray<std::uint64_t>> device_table_;
   std::vector<DeviceArray<float>> matrices_;
   std::vector<DeviceArray<Sphere>> spheres_;
   DeviceArray<Sphere> refitted_;

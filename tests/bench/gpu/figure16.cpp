@@ -45,10 +45,7 @@ struct CpuTimed {
   const char* key;
   CpuMethod method;
 };
-constexpr CpuTimed kCpuMethods[] = {{"cpu_m1", CpuMethod::kM1},
-                                    {"cpu_m2", CpuMethod::kM2},
-                                    {"cpu_m1_loops", CpuMethod::kM1Loops},
-                                    {"cpu_m2_loops", CpuMethod::kM2Loops}};
+constexpr CpuTimed kCpuMethods[] = {{"cpu_m1", CpuMethod::kM1}, {"cpu_m2", CpuMethod::kM2}};
 
 // How a method is timed. Where it takes long, a launch gives all its times at once; where it is slow, on few frames.
 struct Pace {
@@ -79,11 +76,11 @@ bool same(const std::vector<ChainPair>& l, const std::vector<ChainPair>& r) {
 struct Expected {
   std::vector<std::vector<ChainPair>> m1, m2;
   const std::vector<ChainPair>& of(CpuMethod method, std::size_t frame) const {
-    return method == CpuMethod::kM1 || method == CpuMethod::kM1Loops ? m1[frame] : m2[frame];
+    return method == CpuMethod::kM1 ? m1[frame] : m2[frame];
   }
 };
 
-// The runtime's jobs, on all cores: a thread takes the next frame.
+// By sc_detect(), on all cores: a thread takes the next frame.
 Expected expect(const PaperCase& paper_case, const PaperAnimation& animation) {
   const std::size_t count = animation.frames.size();
   Expected out{std::vector<std::vector<ChainPair>>(count), std::vector<std::vector<ChainPair>>(count)};
@@ -94,8 +91,8 @@ Expected expect(const PaperCase& paper_case, const PaperAnimation& animation) {
     try {
       CpuRunner runner(paper_case);
       for (std::size_t i = next++; i < count; i = next++) {
-        out.m1[i] = runner.pairs(CpuMethod::kM1, animation.frames[i]);
         out.m2[i] = runner.pairs(CpuMethod::kM2, animation.frames[i]);
+        out.m1[i] = chain_pairs_of(paper_case.view(), out.m2[i]);
       }
     } catch (...) {
       const std::lock_guard lock(mutex);
@@ -161,12 +158,10 @@ int compare(Contestant& contestant) {
         }
       }
     }
-    for (const CpuMethod loops : {CpuMethod::kM1Loops, CpuMethod::kM2Loops}) {
-      if (!same(cpu.pairs(loops, animation.frames[0]), contestant.expected[a].of(loops, 0))) {
-        ++differ;
-        std::fprintf(stderr, "%s: the paper's loops find other pairs than the runtime's jobs\n",
-                     contestant.paper_case->name.c_str());
-      }
+    if (!same(cpu.pairs(CpuMethod::kM1, animation.frames[0]), contestant.expected[a].m1[0])) {
+      ++differ;
+      std::fprintf(stderr, "%s: the paper's loops find other pairs than sc_detect()\n",
+                   contestant.paper_case->name.c_str());
     }
   }
   return differ;
@@ -237,7 +232,7 @@ class Report {
 
   void add_character(const Contestant& contestant) {
     const PaperCase& paper_case = *contestant.paper_case;
-    const Asset& asset = paper_case.asset();
+    const AssetView& asset = paper_case.view();
     std::size_t m1 = 0;
     for (std::size_t c = 0; c < asset.chain_count(); ++c) {
       m1 += asset.chain(c).spheres.size * asset.chain(c).spheres.size;
@@ -260,7 +255,7 @@ class Report {
   // `expected` null: nothing is looked for.
   void add(const PaperCase& paper_case, const PaperAnimation& animation, const char* method, const Timed& timed,
            const std::function<std::size_t(std::size_t)>& overlaps, bool is_gpu) {
-    Json series = {{"spheres", paper_case.asset().spheres().size},
+    Json series = {{"spheres", paper_case.view().spheres().size},
                    {"animation", animation.name},
                    {"method", method},
                    {"repetitions", timed.times[0].size()},
@@ -272,7 +267,7 @@ class Report {
       mean += static_cast<double>(found.back()) / static_cast<double>(timed.frames.size());
     }
     series["overlaps"] = found;
-    std::printf("%-8zu %-5s %-14s %9.1f |", paper_case.asset().spheres().size, animation.name.c_str(), method, mean);
+    std::printf("%-8zu %-5s %-14s %9.1f |", paper_case.view().spheres().size, animation.name.c_str(), method, mean);
     column(series, "kernel", timed, &cuda_paper::Times::kernel);
     if (is_gpu) {
       column(series, "launch", timed, &cuda_paper::Times::launch);
@@ -378,7 +373,7 @@ int run(const std::string& data, const std::string& json, const std::string& com
     differ += compare(contestant);
     report.add_character(contestant);
     std::printf("%s, each sphere in %u: %zu spheres, the kernels' pairs compared with the CPU's %zu times\n",
-                choice.name, choice.parts, contestant.paper_case->asset().spheres().size, contestant.compared);
+                choice.name, choice.parts, contestant.paper_case->view().spheres().size, contestant.compared);
     std::fflush(stdout);
   }
   if (differ > 0) {

@@ -27,13 +27,9 @@ bool add(DeviceCrowd& crowd, const char* text, bool from_bones, unsigned outputs
   return crowd.runs_right(from_bones, outputs);
 }
 
-double pairs_tested(const Asset& asset) {
+double pairs_tested(const AssetView& asset) {
   const std::size_t n = asset.spheres().size;
-  std::size_t count = 0;
-  for (std::size_t bit = 0; bit < n * (n - 1) / 2; ++bit) {
-    count += (asset.ignored()[bit / 64] >> (bit % 64) & 1U) == 0 ? 1U : 0U;
-  }
-  return static_cast<double>(count);
+  return static_cast<double>(n * (n - 1) / 2 - asset.ignored_count());
 }
 
 double mean_count(const Reference& reference) {
@@ -49,7 +45,7 @@ double mean_count(const Reference& reference) {
 bool bench_large(const std::string& folder, const std::string& name, std::uint32_t parts, const Ceilings& ceilings) {
   constexpr std::size_t kLarge = 4096, kPoses = 64;
   const PosedAsset whole = read(folder, name);
-  const Reference reference_of_whole = reference_of(whole, RadiusKind::kFit);
+  const Reference reference_of_whole = reference_of(whole, SC_RADIUS_FIT);
   const SplitAsset split(whole.asset, parts);
   PosedAsset posed;
   posed.asset = split.asset();
@@ -58,15 +54,15 @@ bool bench_large(const std::string& folder, const std::string& name, std::uint32
   for (std::size_t i = 0; i < posed.poses.pose_count; ++i) {
     const auto first =
         reference_of_whole.spheres.begin() +
-        static_cast<std::ptrdiff_t>(i * whole.poses.pose_count / posed.poses.pose_count * whole.asset.spheres().size);
+        static_cast<std::ptrdiff_t>(i * whole.poses.pose_count / posed.poses.pose_count * whole.view().spheres().size);
     const std::vector<Sphere> spheres =
-        split.split({first, first + static_cast<std::ptrdiff_t>(whole.asset.spheres().size)});
+        split.split({first, first + static_cast<std::ptrdiff_t>(whole.view().spheres().size)});
     reference.spheres.insert(reference.spheres.end(), spheres.begin(), spheres.end());
   }
   const double begin = seconds();
-  detect(posed, RadiusKind::kFit, reference);
+  detect(posed, SC_RADIUS_FIT, reference);
   const double cpu = (seconds() - begin) * 1e9 / static_cast<double>(posed.poses.pose_count);
-  DeviceCrowd crowd(posed, reference, RadiusKind::kFit, kLarge);
+  DeviceCrowd crowd(posed, reference, SC_RADIUS_FIT, kLarge);
   std::vector<Contestant> all;
   if (!add(crowd, "large: spheres in, counts out", false, DeviceCrowd::kCounts, kLarge, all) ||
       !add(crowd, "large: spheres in, counts and bits out", false, DeviceCrowd::kCounts | DeviceCrowd::kBits, kLarge,
@@ -75,15 +71,15 @@ bool bench_large(const std::string& folder, const std::string& name, std::uint32
   }
   measure(all, kLarge);
   std::printf("\n%s in parts: %zu spheres, %.1f pairs, %zu characters, blocks of %.1f MB in ", name.c_str(),
-              posed.asset.spheres().size, mean_count(reference), kLarge,
+              posed.view().spheres().size, mean_count(reference), kLarge,
               static_cast<double>(crowd.block_bytes()) / 1e6);
   if (crowd.scratch_blocks() == 0) {
     std::printf("shared memory\n");
   } else {
     std::printf("scratch, %zu at once\n", crowd.scratch_blocks());
   }
-  print_table(all, pairs_tested(posed.asset), ceilings);
-  std::printf("  the CPU's CrowdJob, 1 core: %.0f ns a character\n", cpu);
+  print_table(all, pairs_tested(posed.view()), ceilings);
+  std::printf("  the CPU, 1 core: %.0f ns a character\n", cpu);
   return true;
 }
 

@@ -10,6 +10,7 @@
 #include "mesh/error.h"
 #include "motion/clip.h"
 #include "motion/poses.h"
+#include "play/asset_file.h"
 #include "play/play.h"
 #include "pose_file.h"
 #include "spherechain/refit.h"
@@ -35,37 +36,31 @@ void append(std::string& bytes, const void* data, std::size_t size) {
   bytes.append(static_cast<const char*>(data), size);
 }
 
-// From the skin, of a character without bones of its own.
-std::vector<Sphere> refit(const Asset& asset, const baker::Bake& bake, const Deformation& pose) {
-  std::vector<float> positions;
+// From the deformed vertices, of a character without bones of its own.
+std::vector<Sphere> refit(const baker::OpenAsset& asset, const baker::Bake& bake, const Deformation& pose) {
+  std::vector<float> vertices;
   for (const baker::Vec3& v : baker::deform(bake.character.source_positions, bake.rig_weights, pose.bones)) {
-    for (Eigen::Index axis = 0; axis < 3; ++axis) positions.push_back(static_cast<float>(v[axis]));
+    for (Eigen::Index axis = 0; axis < 3; ++axis) vertices.push_back(static_cast<float>(v[axis]));
   }
-  std::vector<Sphere> out(asset.spheres().size);
+  std::vector<Sphere> out(asset->spheres().size);
   RefitJob job;
-  job.asset = &asset;
-  job.positions = positions.data();
-  job.vertex_count = positions.size() / 3;
-  job.radius = RadiusKind::kFit;
-  job.spheres = {out.data(), out.size()};
-  if (const Status status = job.run(); status != Status::kOk) {
-    throw baker::Error(baker::ExitCode::kInternal, std::string("refit: ") + to_string(status));
-  }
+  job.asset = asset.handle();
+  job.pose.vertices = vertices.data();
+  job.pose.vertex_count = vertices.size() / 3;
+  job.radius = SC_RADIUS_FIT;
+  job.spheres = out.data();
+  job.sphere_capacity = out.size();
+  baker::check_runtime(job.run());
   return out;
 }
 
 // NAME.sphc and NAME.poses.
 void write(const fs::path& folder, const std::string& name, const baker::Bake& bake,
            const std::vector<Deformation>& poses) {
-  const std::vector<std::uint8_t>& bytes = bake.asset;
-  std::vector<std::uint64_t> aligned(bytes.size() / sizeof(std::uint64_t) + 1);
-  std::memcpy(aligned.data(), bytes.data(), bytes.size());
-  Asset asset;
-  if (const Status status = asset.open(aligned.data(), bytes.size()); status != Status::kOk) {
-    throw baker::Error(baker::ExitCode::kInternal, name + ": " + to_string(status));
-  }
-  const bool has_moments = asset.refit_rule() == RefitRule::kMoments;
-  const std::size_t bones = has_moments ? asset.bone_count() : 0, spheres = has_moments ? 0 : asset.spheres().size;
+  const std::string_view bytes(reinterpret_cast<const char*>(bake.asset.data()), bake.asset.size());
+  const baker::OpenAsset asset(bytes, name);
+  const bool has_moments = asset->refit_rule() == RefitRule::kMoments;
+  const std::size_t bones = has_moments ? asset->bone_count() : 0, spheres = has_moments ? 0 : asset->spheres().size;
   const std::uint32_t counts[4] = {static_cast<std::uint32_t>(poses.size()), static_cast<std::uint32_t>(bones),
                                    static_cast<std::uint32_t>(spheres), 0};
   std::string file;
@@ -80,9 +75,9 @@ void write(const fs::path& folder, const std::string& name, const baker::Bake& b
       append(file, refitted.data(), refitted.size() * sizeof(Sphere));
     }
   }
-  baker::write_atomically(folder / (name + ".sphc"), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  baker::write_atomically(folder / (name + ".sphc"), bytes);
   baker::write_atomically(folder / (name + ".poses"), file);
-  std::printf("%-28s %4zu spheres %4zu bones %5zu poses\n", name.c_str(), asset.spheres().size, bones, poses.size());
+  std::printf("%-28s %4zu spheres %4zu bones %5zu poses\n", name.c_str(), asset->spheres().size, bones, poses.size());
 }
 
 // Evenly spaced, the start and the end among them.

@@ -11,8 +11,8 @@ namespace {
 constexpr std::size_t kRoom = 1 << 14;  // pairs, to begin with
 
 void check(Status status, const std::string& what) {
-  if (status != Status::kOk) {
-    throw std::runtime_error(what + ": " + to_string(status));
+  if (status != SC_OK) {
+    throw std::runtime_error(what + ": " + sc_field_name(status.field) + ": " + sc_code_text(status.code));
   }
 }
 
@@ -51,11 +51,26 @@ PaperCase::PaperCase(const std::string& folder, const std::string& name_, std::u
       }
     }
   }
-  tables = std::make_unique<cuda_paper::Tables>(asset(), RadiusKind::kFit);
+  tables = std::make_unique<cuda_paper::Tables>(view(), SC_RADIUS_FIT);
 }
 
-CpuRunner::CpuRunner(const PaperCase& paper_case)
-    : case_(paper_case), words_(DetectContext::words_needed(paper_case.asset())), pairs_(kRoom), chain_pairs_(kRoom) {}
+std::vector<ChainPair> chain_pairs_of(const AssetView& asset, const std::vector<ChainPair>& m2) {
+  std::vector<ChainPair> out;
+  for (std::uint32_t c = 0; c < asset.chain_count(); ++c) {
+    std::vector<bool> is_member(asset.spheres().size);
+    for (const std::uint32_t sphere : asset.chain(c).spheres) {
+      is_member[sphere] = true;
+    }
+    for (const ChainPair& one : m2) {
+      if (is_member[one.pair.a] && is_member[one.pair.b]) {
+        out.push_back({c, one.pair});
+      }
+    }
+  }
+  return out;
+}
+
+CpuRunner::CpuRunner(const PaperCase& paper_case) : case_(paper_case), pairs_(kRoom), chain_pairs_(kRoom) {}
 
 std::vector<ChainPair> CpuRunner::pairs(CpuMethod method, const std::vector<Sphere>& spheres) {
   run(method, spheres);
@@ -79,47 +94,27 @@ double CpuRunner::time(CpuMethod method, const std::vector<Sphere>& spheres) {
 }
 
 void CpuRunner::run(CpuMethod method, const std::vector<Sphere>& spheres) {
-  switch (method) {
-    case CpuMethod::kM1:
-      return detect(Method::kM1, spheres);
-    case CpuMethod::kM2:
-      return detect(Method::kM2, spheres);
-    default:
-      return loop(method, spheres);
+  if (method == CpuMethod::kM1) {
+    const cuda_paper::Scene scene = case_.tables->scene(spheres.data());
+    found_ = 0;
+    for (std::uint32_t chain = 0; chain < scene.chain_count; ++chain) {
+      test_chain(scene, chain, {chain_pairs_.data(), static_cast<std::uint32_t>(chain_pairs_.size()), &found_});
+    }
+    return;
   }
-}
-
-void CpuRunner::detect(Method method, const std::vector<Sphere>& spheres) {
-  DetectContext context{{words_.data(), words_.size()}};
   DetectJob job;
   job.asset = &case_.asset();
-  job.spheres = {spheres.data(), spheres.size()};
-  job.radius = RadiusKind::kFit;
-  job.method = method;
-  job.target = Target::kScalar;
-  job.context = &context;
-  job.pairs = {pairs_.data(), pairs_.size()};
-  job.chain_pairs = {chain_pairs_.data(), chain_pairs_.size()};
+  job.spheres = spheres.data();
+  job.sphere_count = spheres.size();
+  job.radius = SC_RADIUS_FIT;
+  job.target = SC_TARGET_SCALAR;
+  job.pairs = pairs_.data();
+  job.pair_capacity = pairs_.size();
   const Status status = job.run();
-  if (status != Status::kOverflow) {
+  if (status != SC_OVERFLOW) {
     check(status, "overlaps on the CPU");
   }
-  found_ = static_cast<std::uint32_t>(job.chain_pair_count);
-}
-
-void CpuRunner::loop(CpuMethod method, const std::vector<Sphere>& spheres) {
-  const cuda_paper::Scene scene = case_.tables->scene(spheres.data());
-  found_ = 0;
-  const cuda_paper::PairList list{chain_pairs_.data(), static_cast<std::uint32_t>(chain_pairs_.size()), &found_};
-  if (method == CpuMethod::kM1Loops) {
-    for (std::uint32_t chain = 0; chain < scene.chain_count; ++chain) {
-      test_chain(scene, chain, list);
-    }
-  } else {
-    for (std::uint32_t i = 0; i < scene.sphere_count; ++i) {
-      test_sphere(scene, i, list);
-    }
-  }
+  found_ = static_cast<std::uint32_t>(job.pair_count);
 }
 
 }  // namespace spherechain::bench

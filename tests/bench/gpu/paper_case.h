@@ -27,6 +27,7 @@ struct PaperCase {
   PaperCase& operator=(const PaperCase&) = delete;
 
   const Asset& asset() const { return split ? split->asset() : whole.asset; }
+  const AssetView& view() const { return view_of(asset()); }
 
   std::string name;
   std::uint32_t parts;
@@ -36,27 +37,27 @@ struct PaperCase {
   std::unique_ptr<cuda_paper::Tables> tables;
 };
 
-// The runtime's jobs, scalar, and the paper's threads one after the other.
-enum class CpuMethod { kM1, kM2, kM1Loops, kM2Loops };
+// On one core: M1 by the paper's threads one after the other, M2 by sc_detect(), scalar.
+enum class CpuMethod { kM1, kM2 };
+
+// M1's overlaps, sorted, as they follow from M2's: each as often as there are chains that hold both spheres.
+std::vector<ChainPair> chain_pairs_of(const AssetView& asset, const std::vector<ChainPair>& m2);
 
 class CpuRunner {
  public:
   explicit CpuRunner(const PaperCase& paper_case);
 
-  // Sorted by chain, then pair; M2's as of chain 0. Throws std::runtime_error where the job fails.
+  // Sorted by chain, then pair; M2's as of chain 0. Throws std::runtime_error where detection fails.
   std::vector<ChainPair> pairs(CpuMethod method, const std::vector<Sphere>& spheres);
-  // Microseconds, the job alone. After pairs() of that method and at least as many pairs.
+  // Microseconds, detection alone. After pairs() of that method and at least as many pairs.
   double time(CpuMethod method, const std::vector<Sphere>& spheres);
 
  private:
   void run(CpuMethod method, const std::vector<Sphere>& spheres);
-  void detect(Method method, const std::vector<Sphere>& spheres);
-  void loop(CpuMethod method, const std::vector<Sphere>& spheres);
 
   const PaperCase& case_;
-  std::vector<std::uint64_t> words_;
-  std::vector<Pair> pairs_;
-  std::vector<ChainPair> chain_pairs_;
+  std::vector<Pair> pairs_;             // M2's
+  std::vector<ChainPair> chain_pairs_;  // M1's
   std::uint32_t found_ = 0;
 };
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "asset/asset_view.h"
 #include "pose_file.h"
-#include "spherechain/asset.h"
 
 namespace spherechain::bench {
 
@@ -16,6 +16,8 @@ struct PosedAsset {
   std::vector<std::uint64_t> bytes;
   Asset asset;  // a view of `bytes`
   PoseFile poses;
+
+  const AssetView& view() const { return view_of(asset); }
 };
 
 // False where one of the two is missing or broken, or they do not go together; `error` then says why.
@@ -35,7 +37,7 @@ inline bool read_posed_asset(const std::string& folder, const std::string& name,
     return false;
   }
   char message[160] = "";
-  if (out.asset.open(out.bytes.data(), size, message, sizeof message) != Status::kOk) {
+  if (sc_asset_open(&out.asset, SC_ABI_VERSION, out.bytes.data(), size, message, sizeof message) != SC_OK) {
     error = path + ": " + message;
     return false;
   }
@@ -43,7 +45,7 @@ inline bool read_posed_asset(const std::string& folder, const std::string& name,
     return false;
   }
   const std::size_t bones = out.poses.bone_count, spheres = out.poses.sphere_count;
-  if ((bones != 0 && bones != out.asset.bone_count()) || (spheres != 0 && spheres != out.asset.spheres().size)) {
+  if ((bones != 0 && bones != out.view().bone_count()) || (spheres != 0 && spheres != out.view().spheres().size)) {
     error = path + ": has other bones or spheres than the poses beside it";
     return false;
   }

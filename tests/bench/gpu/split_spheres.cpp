@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "pairs/pair_bits.h"
 #include "tiny_asset.h"
 
 namespace spherechain::bench {
@@ -13,18 +14,8 @@ namespace {
 // The plastic number's powers: their multiples' fractions fill a square evenly.
 constexpr double kAround = 0.7548776662466927, kUp = 0.5698402909980532, kTurn = 6.283185307179586;
 
-void set_bit(std::vector<std::uint64_t>& words, std::size_t a, std::size_t b) {
-  const std::size_t bit = b * (b - 1) / 2 + a;
-  words[bit / 64] |= std::uint64_t{1} << (bit % 64);
-}
-
-bool is_ignored(const Asset& asset, std::size_t a, std::size_t b) {
-  const std::size_t bit = b * (b - 1) / 2 + a;
-  return ((asset.ignored()[bit / 64] >> (bit % 64)) & 1U) != 0;
-}
-
 // Spheres that open() takes; nobody refits them.
-void add_spheres(const Asset& whole, std::uint32_t parts, test::AssetParts& out) {
+void add_spheres(const AssetView& whole, std::uint32_t parts, test::AssetParts& out) {
   out = test::random_asset(1, 1).parts;
   RestSphere part = out.spheres[0];
   part.triangle_count = 0;
@@ -38,38 +29,38 @@ void add_spheres(const Asset& whole, std::uint32_t parts, test::AssetParts& out)
   }
 }
 
-void add_pairs(const Asset& whole, std::uint32_t parts, test::AssetParts& out) {
+void add_pairs(const AssetView& whole, std::uint32_t parts, test::AssetParts& out) {
   const std::size_t n = out.spheres.size();
-  out.ignored.assign((n * (n - 1) / 2 + 63) / 64, 0);
+  out.ignored.assign(words_for(pairs_of(n)), 0);
   for (std::size_t b = 0; b < n; ++b) {
     for (std::size_t a = 0; a < b; ++a) {
-      if (a / parts == b / parts || is_ignored(whole, a / parts, b / parts)) {
-        set_bit(out.ignored, a, b);
+      if (a / parts == b / parts || test_bit(whole.ignored(), ignored_bit(a / parts, b / parts))) {
+        set_bit({out.ignored.data(), out.ignored.size()}, ignored_bit(a, b));
       }
     }
   }
-  out.near_detect.clear();
-  out.near_fit.clear();
-  const Span<const NearPair> near = whole.near_pairs(RadiusKind::kFit);
-  for (std::size_t first = 0, last = 0; first < near.size; first = last) {
-    while (last < near.size && near[last].a == near[first].a) {
+  out.rest_detect.clear();
+  out.rest_fit.clear();
+  const Span<const RestPair> rest = whole.rest_pairs(SC_RADIUS_FIT);
+  for (std::size_t first = 0, last = 0; first < rest.size; first = last) {
+    while (last < rest.size && rest[last].a == rest[first].a) {
       ++last;
     }
     for (std::uint32_t i = 0; i < parts; ++i) {
       for (std::size_t pair = first; pair < last; ++pair) {
         for (std::uint32_t j = 0; j < parts; ++j) {
-          out.near_fit.push_back({parts * near[pair].a + i, parts * near[pair].b + j, near[pair].reach});
+          out.rest_fit.push_back({parts * rest[pair].a + i, parts * rest[pair].b + j, rest[pair].rest_scale});
         }
       }
     }
   }
 }
 
-void add_chains(const Asset& whole, std::uint32_t parts, test::AssetParts& out) {
+void add_chains(const AssetView& whole, std::uint32_t parts, test::AssetParts& out) {
   out.chains.clear();
   for (std::size_t c = 0; c < whole.chain_count(); ++c) {
     const ChainView chain = whole.chain(c);
-    test::ChainParts split{chain.name, {}, {}};
+    test::ChainEntry split{chain.name, {}, {}};
     for (const std::uint32_t sphere : chain.spheres) {
       for (std::uint32_t i = 0; i < parts; ++i) {
         split.spheres.push_back(parts * sphere + i);
@@ -83,7 +74,8 @@ void add_chains(const Asset& whole, std::uint32_t parts, test::AssetParts& out) 
 
 SplitAsset::SplitAsset(const Asset& whole, std::uint32_t parts)
     : radius_(static_cast<float>(1 / std::cbrt(static_cast<double>(parts)))) {
-  if (parts == 0 || whole.spheres().size > kMaxSphereCount / parts) {
+  const AssetView& view = view_of(whole);
+  if (parts == 0 || view.spheres().size > kMaxSphereCount / parts) {
     throw std::runtime_error("spheres in " + std::to_string(parts) + " parts: none, or more than an asset may have");
   }
   for (std::uint32_t i = 0; i < parts; ++i) {
@@ -95,12 +87,12 @@ SplitAsset::SplitAsset(const Asset& whole, std::uint32_t parts)
                         static_cast<float>(far * ring * std::sin(angle))});
   }
   test::AssetParts all;
-  add_spheres(whole, parts, all);
-  add_pairs(whole, parts, all);
-  add_chains(whole, parts, all);
+  add_spheres(view, parts, all);
+  add_pairs(view, parts, all);
+  add_chains(view, parts, all);
   bytes_ = test::build(all);
   char message[160] = "";
-  if (asset_.open(bytes_.data(), bytes_.size(), message, sizeof message) != Status::kOk) {
+  if (sc_asset_open(&asset_, SC_ABI_VERSION, bytes_.data(), bytes_.size(), message, sizeof message) != SC_OK) {
     throw std::runtime_error("spheres in " + std::to_string(parts) + " parts: " + message);
   }
 }

@@ -13,13 +13,13 @@ namespace spherechain::bench {
 // Each sphere of an asset replaced by `parts` smaller ones inside it, together of its volume, at fixed offsets in
 // proportion to its radius.
 // Sphere s becomes parts * s and those after it, in every chain that holds it. Pairs within a sphere are ignored, and
-// of parts of two spheres as the two are; so are near pairs and their reach, for the fit radius.
+// of parts of two spheres as the two are; so are rest pairs and their scale, for the fit radius.
 class SplitAsset {
  public:
   // Throws std::runtime_error where that is no asset: too many spheres.
   SplitAsset(const Asset& whole, std::uint32_t parts);
 
-  const Asset& asset() const { return asset_; }  // for DetectJob: it cannot be refitted
+  const Asset& asset() const { return asset_; }  // for detection: it cannot be refitted
   std::vector<Sphere> split(const std::vector<Sphere>& spheres) const;
 
  private:

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* The same road in C: bones to pairs. */
+/* A game in C: from bones to pairs of spheres, and to pairs of body parts whose skins intersect. */
 #include <spherechain/spherechain.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,43 +21,51 @@ static void* read_file(const char* path, size_t* size) {
 }
 
 int main(int argc, char** argv) {
-  size_t size = 0, i, bone_count;
+  size_t size = 0, i, part_count;
   void* bytes = read_file(argc > 1 ? argv[1] : "", &size);
-  void* memory = malloc(sc_asset_size());
-  const sc_asset* asset = NULL;
+  sc_character* character = NULL;
+  const sc_asset* asset;
+  const sc_part_contact* parts;
   sc_asset_info info;
-  sc_refit_bones_job refit = SC_REFIT_BONES_JOB_INIT;
-  sc_detect_job detect = SC_DETECT_JOB_INIT;
+  sc_pose pose = {0};
+  sc_refit_job refit = {0};
+  sc_detect_job detect = {0};
   sc_sphere* spheres;
   float* matrices;
   char message[160];
-  if (sc_asset_open(SC_ABI_VERSION, memory, sc_asset_size(), bytes, size, &asset, message, sizeof message) != SC_OK) {
+  if (sc_character_create(SC_ABI_VERSION, bytes, size, NULL, 0, SC_LAYOUT_UNSET, &character, message, sizeof message)
+          .code != SC_OK) {
     fprintf(stderr, "stranger_c: %s\n", message);
     return 3;
   }
-  info.struct_size = sizeof info;
-  if (sc_asset_get_info(asset, &info) != SC_OK) {
-    return 1;
-  }
-  bone_count = info.bone_count;
+  asset = sc_character_asset(character);
+  info = sc_asset_get_info(asset);
   spheres = calloc(info.sphere_count, sizeof *spheres);
-  matrices = calloc(bone_count + 1, 12 * sizeof *matrices);
-  for (i = 0; i < bone_count; ++i) {
+  matrices = calloc(info.bone_count, 12 * sizeof *matrices);
+  for (i = 0; i < info.bone_count; ++i) {
     matrices[12 * i] = matrices[12 * i + 5] = matrices[12 * i + 10] = 1.0F;
   }
+  pose.bones = matrices;
+  pose.bone_count = info.bone_count;
+  pose.bone_layout = SC_ROWS_3X4;
   refit.asset = detect.asset = asset;
-  refit.bones.data = matrices;
-  refit.bones.count = bone_count;
+  refit.pose = pose;
   refit.spheres = spheres;
   detect.spheres = spheres;
-  refit.sphere_count = detect.sphere_count = info.sphere_count;
-  if (sc_refit_bones(&refit) != SC_OK || sc_detect(&detect) != SC_OK) {
+  refit.sphere_capacity = detect.sphere_count = info.sphere_count;
+  if (sc_refit(&refit).code != SC_OK || sc_detect(&detect).code != SC_OK) {
     return 1;
   }
-  printf("%zu spheres, %zu pairs\n", info.sphere_count, detect.pair_count);
+  for (i = 0; i < info.bone_count; ++i) { /* pull the body apart */
+    matrices[12 * i + 3] = 0.5F * (float)i;
+  }
+  if (sc_character_contacts(character, &pose, &parts, &part_count).code != SC_OK) {
+    return 1;
+  }
+  printf("%zu spheres, %zu pairs, %zu pairs of body parts\n", info.sphere_count, detect.pair_count, part_count);
+  sc_character_destroy(character);
   free(matrices);
   free(spheres);
-  free(memory);
   free(bytes);
   return 0;
 }

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Opens an asset and calls every function of the C++ API: what a shared library forgot to give out does not link.
-#include <spherechain/contacts.h>
-#include <spherechain/crowd.h>
-#include <spherechain/detect.h>
-#include <spherechain/refit.h>
-#include <spherechain/refit_bones.h>
+// A game in C++. It also calls every other function: one that a shared library does not export does not link.
+#include <spherechain/spherechain.h>
 
 #include <cstdint>
 #include <cstdio>
+#include <cstring>
 #include <vector>
 
 using namespace spherechain;
@@ -27,86 +24,139 @@ std::vector<std::uint64_t> read(const char* path) {
   return bytes;
 }
 
-// The accessors and functions that the road from bones to pairs has no use for.
-std::size_t call_the_rest(const Asset& asset, const std::vector<Sphere>& spheres, const std::vector<Pair>& pairs) {
-  std::vector<std::uint64_t> ignored(Filter::ignored_words(asset)), disabled(Filter::disabled_words(asset));
-  std::vector<float> padding(spheres.size());
-  Filter filter{{ignored.data(), ignored.size()}, {disabled.data(), disabled.size()}, {padding.data(), padding.size()}};
-  std::size_t failed = 0;
-  for (const Status status :
-       {reset_filter(asset, filter), check_filter(asset, filter), ignore_pair(asset, filter, 0, 1),
-        ignore_regions(asset, filter, 0, 1), ignore_hops(asset, filter, 1), disable_sphere(asset, filter, 0),
-        pad_sphere(asset, filter, 0, 0.5F)}) {
-    failed += status != Status::kOk;
-  }
-  ContactJob contacts;
-  contacts.asset = &asset;
-  contacts.spheres = {spheres.data(), spheres.size()};
-  contacts.pairs = {pairs.data(), pairs.size()};
-  failed += contacts.run() != Status::kOk;
+int failed = 0;
 
-  std::vector<std::uint64_t> words(CrowdContext::words_needed(asset, 1));
-  std::vector<std::uint32_t> counts(1);
-  CrowdContext context{{words.data(), words.size()}};
+void expect(bool holds, const char* what) {
+  if (!holds) {
+    std::fprintf(stderr, "stranger_cpp: %s\n", what);
+    ++failed;
+  }
+}
+
+void call_accessors(const Asset& asset) {
+  expect(sc_abi_version() == SC_ABI_VERSION && sc_asset_is_open(&asset) != 0, "open");
+  expect(sc_asset_sphere(&asset, 0).radius > 0, "sphere");
+  expect(sc_asset_part(&asset, 0).name != nullptr, "part");
+  expect(sc_asset_morph_name(&asset, 0) != nullptr, "morph");
+  expect(sc_asset_region_name(&asset, 0) != nullptr, "region");
+  expect(sc_asset_source_buffer(&asset, 1000).vertex_count == 0, "source buffer");
+  const float position[3] = {0.0F, 0.0F, 0.0F};
+  expect(sc_hash_positions(position, 1, 12) != 0, "hash");
+  expect(sc_check_source(&asset, SC_WHOLE_SOURCE, position, 1, 12) != SC_OK, "source");
+  std::size_t targets = 0;
+  expect(sc_supported_targets(&targets)[targets - 1] == SC_TARGET_SCALAR, "targets");
+  expect(std::strcmp(sc_target_name(SC_TARGET_SCALAR), "scalar") == 0, "target name");
+  expect(*sc_code_text(SC_NULL) != '\0' && *sc_field_name(SC_FIELD_BONES) != '\0', "texts");
+}
+
+void call_filter(const Asset& asset) {
+  std::vector<std::uint64_t> ignored(sc_pair_words(&asset)), disabled(sc_sphere_words(&asset));
+  std::vector<float> padding(sc_asset_get_info(&asset).sphere_count);
+  Filter filter;
+  filter.ignored = ignored.data();
+  filter.ignored_words = ignored.size();
+  filter.disabled = disabled.data();
+  filter.disabled_words = disabled.size();
+  filter.padding = padding.data();
+  filter.padding_count = padding.size();
+  expect(sc_reset_filter(&asset, &filter) == SC_OK, "reset filter");
+  expect(sc_ignore_pair(&asset, &filter, 0, 1, 1) == SC_OK, "ignore pair");
+  expect(sc_ignore_regions(&asset, &filter, 0, 1, 1) == SC_OK, "ignore regions");
+  expect(sc_disable_sphere(&asset, &filter, 0, 1) == SC_OK, "disable sphere");
+  expect(sc_pad_sphere(&asset, &filter, 0, 0.5F) == SC_OK, "pad sphere");
+  std::vector<std::uint64_t> table(sc_detect_table_words(&asset));
+  expect(sc_prepare_detect(&asset, SC_RADIUS_DETECT, &filter, table.data(), table.size()) == SC_OK, "table");
+}
+
+// A crowd of one.
+void call_crowd(const Asset& asset, const Pose& pose, std::size_t pair_count) {
+  std::vector<std::uint64_t> scratch(sc_crowd_scratch_words(&asset, 1));
   CrowdJob crowd;
   crowd.asset = &asset;
-  crowd.spheres = spheres.data();
+  crowd.pose = pose;
   crowd.instance_count = 1;
-  crowd.context = &context;
-  crowd.counts = {counts.data(), counts.size()};
-  failed += crowd.run() != Status::kOk || counts[0] != pairs.size();
+  crowd.scratch = scratch.data();
+  crowd.scratch_words = scratch.size();
+  expect(crowd.run() == SC_OK && crowd.pair_count == pair_count, "crowd");
+}
 
-  const float position[3] = {0.0F, 0.0F, 0.0F};
-  RefitJob refit;
-  refit.asset = &asset;
-  refit.positions = position;
-  refit.vertex_count = 1;
-  failed += refit.run() == Status::kOk;
-  failed += check_source(asset, position, 1) == Status::kOk;
-  failed += check_source_part(asset, 0, position, 1) == Status::kOk;
-  failed += hash_positions(position, 1) == 0;
+void call_skin(const Asset& asset, const Pose& pose, std::size_t part_count) {
+  std::vector<std::uint64_t> table(sc_skin_table_words(&asset)), scratch(sc_skin_scratch_words(&asset));
+  expect(sc_prepare_skin(&asset, table.data(), table.size()) == SC_OK, "skin table");
+  SkinContactJob job;
+  job.asset = &asset;
+  job.pose = pose;
+  job.skin_table = table.data();
+  job.scratch = scratch.data();
+  job.scratch_words = scratch.size();
+  expect(job.run() == SC_OK && job.part_count == part_count && job.triangle_count >= part_count, "skin contacts");
+}
 
-  Target target{};
-  failed += find_target("best", target) != Status::kOk || lanes_of(best_target()) == 0;
-  failed += *to_string(target) == '\0' || *to_string(Status::kOk) == '\0' || abi_version() != SC_ABI_VERSION;
-  failed += asset.info().format_version != 1 || asset.region(0).name == nullptr || asset.region_count() == 0;
-  failed += asset.chain(0).name == nullptr || asset.chain_count() == 0;
-  failed += asset.joint_count() > 0 && asset.joint(0).name == nullptr;
-  failed += asset.bone_count() > 0 && asset.bone(0).name == nullptr;
-  failed += asset.morph_count() > 0 && asset.morph_name(0) == nullptr;
-  return failed + (asset.refit_rule() == RefitRule::kPaper) + (DetectContext::words_needed(asset) == 0) +
-         (DetectJob::bit_words(asset) == 0);
+void call_binding(const Asset& asset, const std::vector<Bone>& joints, const Pose& pose) {
+  char message[160];
+  std::vector<std::uint32_t> joint_of_bone(joints.size());
+  expect(sc_bind_joints(&asset, joints.data(), joints.size(), SC_ROWS_3X4, joint_of_bone.data(), joint_of_bone.size(),
+                        message, sizeof message) == SC_OK,
+         message);
+  std::vector<float> bones(12 * joints.size());
+  expect(sc_gather_bones(&asset, joint_of_bone.data(), &pose, bones.data()) == SC_OK, "gather bones");
+  expect(sc_check_rest_pose(&asset, &pose, message, sizeof message) == SC_OK, message);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   const std::vector<std::uint64_t> bytes = read(argc > 1 ? argv[1] : "");
+  const std::size_t size = bytes.size() * sizeof bytes[0];
   Asset asset;
   char message[160];
-  if (asset.open(bytes.data(), bytes.size() * sizeof bytes[0], message, sizeof message) != Status::kOk) {
+  if (sc_asset_open(&asset, SC_ABI_VERSION, bytes.data(), size, message, sizeof message) != SC_OK) {
     std::fprintf(stderr, "stranger_cpp: %s\n", message);
     return 3;
   }
+  const AssetInfo info = sc_asset_get_info(&asset);
   const float identity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  std::vector<Bone> joints;
   std::vector<float> matrices;
-  for (std::size_t i = 0; i < asset.bone_count(); ++i) {
+  for (std::size_t i = 0; i < info.bone_count; ++i) {
+    joints.push_back(sc_asset_bone(&asset, i));
     matrices.insert(matrices.end(), identity, identity + 12);
   }
-  std::vector<Sphere> spheres(asset.spheres().size);
-  RefitBonesJob refit;
+  Pose pose;
+  pose.bones = matrices.data();
+  pose.bone_count = info.bone_count;
+  pose.bone_layout = SC_ROWS_3X4;
+
+  std::vector<Sphere> spheres(info.sphere_count);
+  RefitJob refit;
   refit.asset = &asset;
-  refit.bones = {matrices.data(), asset.bone_count()};
-  refit.spheres = {spheres.data(), spheres.size()};
-  std::vector<Pair> pairs(spheres.size() * spheres.size());
+  refit.pose = pose;
+  refit.spheres = spheres.data();
+  refit.sphere_capacity = spheres.size();
   DetectJob detect;
   detect.asset = &asset;
-  detect.spheres = {spheres.data(), spheres.size()};
-  detect.pairs = {pairs.data(), pairs.size()};
-  if (refit.run() != Status::kOk || detect.run() != Status::kOk) {
-    return 1;
+  detect.spheres = spheres.data();
+  detect.sphere_count = spheres.size();
+  expect(refit.run() == SC_OK && detect.run() == SC_OK, "spheres");
+
+  Character character;
+  const PartContact* contacts = nullptr;
+  std::size_t contact_count = 0;
+  expect(
+      character.create(bytes.data(), size, joints.data(), joints.size(), SC_ROWS_3X4, message, sizeof message) == SC_OK,
+      message);
+  expect(character.check_rest(pose, message, sizeof message) == SC_OK, message);
+  call_binding(asset, joints, pose);
+  call_crowd(asset, pose, detect.pair_count);
+  for (std::size_t b = 0; b < info.bone_count; ++b) {  // pull the body apart
+    matrices[12 * b + 3] = 0.5F * static_cast<float>(b);
   }
-  pairs.resize(detect.pair_count);
-  std::printf("%zu spheres, %zu pairs\n", spheres.size(), pairs.size());
-  return static_cast<int>(call_the_rest(asset, spheres, pairs));
+  expect(character.contacts(pose, contacts, contact_count) == SC_OK, "contacts");
+  expect(contact_count > 0 && character.part_name(contacts[0].part_a) != nullptr, "part names");
+  call_skin(asset, pose, contact_count);
+  std::printf("%zu spheres, %zu pairs, %zu pairs of body parts\n", spheres.size(), detect.pair_count, contact_count);
+
+  call_accessors(asset);
+  call_filter(asset);
+  return failed;
 }

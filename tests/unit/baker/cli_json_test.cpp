@@ -11,7 +11,7 @@
 #include "baked_human.h"
 #include "human.h"
 #include "report/play_frames.h"
-#include "spherechain/simd.h"
+#include "simd/simd.h"
 #include "temporary_folder.h"
 #include "tool.h"
 

@@ -112,9 +112,9 @@ TEST_CASE("every region from skin is one piece, and eyes are the head's") {
 
 TEST_CASE("a patch of skin that hangs on the wrong joint joins what is around it") {
   SkinnedHuman human = skinned_human();
-  const auto wrist = static_cast<Index>(human.human->joint("left_wrist"));
+  const auto wrist = static_cast<Index>(human.human.joint("left_wrist"));
   // The crown of the head follows the hand, and one thigh's middle nothing at all.
-  const double crown = human.human.own_axes(human.human.joints[human.human->joint("head")].tail).y();
+  const double crown = human.human.own_axes(human.human.joints[human.human.joint("head")].tail).y();
   for (std::size_t v = 0; v < human.character.source_positions.size(); ++v) {
     VertexWeights& weights = human.character.rig.weights[v];
     const double height = human.human.own_axes(human.character.source_positions[v]).y();
@@ -148,7 +148,7 @@ TEST_CASE("a limb's line runs from its cut through its joints to its tip") {
 
 TEST_CASE("a limb that moves no skin has no triangles and no line") {
   SkinnedHuman human = skinned_human();
-  const auto chest = static_cast<Index>(human.human->joint("chest"));
+  const auto chest = static_cast<Index>(human.human.joint("chest"));
   for (VertexWeights& weights : human.character.rig.weights) {
     for (std::size_t k = 0; k < kMaxInfluences; ++k) {
       if (human.roles.of_node[weights.joint[k]].limb == 1) weights.joint[k] = chest;

@@ -75,17 +75,19 @@ TEST_CASE("an asset baked with attachments finds the same source again, and fits
   folder.write("staff.sphc", {baked.asset.begin(), baked.asset.end()});
 
   const AnimatedAsset animated(asset.string(), source.string(), {}, {});
-  const spherechain::Span<const spherechain::SourcePart> parts = animated.asset().source_parts();
-  REQUIRE(parts.size == 2);
+  const spherechain::Span<const sc_source_buffer> buffers = animated.asset()->source_buffers();
+  REQUIRE(buffers.size == 2);
   for (std::size_t p = 0; p < 2; ++p) {
     const std::size_t view = p == 0 ? 0 : 4;  // of the positions
-    std::vector<float> buffer(3 * parts[p].vertex_count);
+    std::vector<float> buffer(3 * buffers[p].vertex_count);
     std::memcpy(buffer.data(), glb.binary.data() + glb.json["bufferViews"][view]["byteOffset"].get<std::size_t>(),
                 sizeof(float) * buffer.size());
-    const auto check = [&] { return check_source_part(animated.asset(), p, buffer.data(), parts[p].vertex_count); };
+    const auto check = [&] {
+      return sc_check_source(animated.asset().handle(), p, buffer.data(), buffers[p].vertex_count, 12);
+    };
     CHECK(check() == SC_OK);
     buffer[5] += 0.01F;
-    CHECK(check() == spherechain::Status::kWrongSource);
+    CHECK(check() == SC_WRONG_SOURCE);
   }
 }
 

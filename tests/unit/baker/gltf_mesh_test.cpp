@@ -42,7 +42,7 @@ TEST_CASE("strips, fans and unindexed triangles all turn the same way; points an
   for (int mode = 0; mode < 4; ++mode) {
     const SourceMesh mesh = with(mode, {});
     CHECK(mesh.positions.empty());
-    CHECK(mesh.parts.empty());
+    CHECK(mesh.buffers.empty());
     CHECK(mesh.points_and_lines_dropped == dropped[mode]);
   }
 }
@@ -133,22 +133,22 @@ TEST_CASE("each primitive is a part with the hash of the file's own positions") 
   glb.json["nodes"].push_back({{"mesh", 1}, {"translation", {50, 0, 0}}});
   glb.json["scenes"][0]["nodes"].push_back(4);
   const SourceMesh mesh = read(glb);
-  REQUIRE(mesh.parts.size() == 3);
+  REQUIRE(mesh.buffers.size() == 3);
   CHECK(mesh.positions.size() == 20);
   CHECK(mesh.triangles[24] == Triangle{0, 1, 2});
-  const auto check = [&](const SourcePart& part, Index mesh_index, Index primitive, Index first, Index count) {
+  const auto check = [&](const SourceBuffer& part, Index mesh_index, Index primitive, Index first, Index count) {
     CHECK(part.mesh == mesh_index);
     CHECK(part.primitive == primitive);
     CHECK(part.first_vertex == first);
     CHECK(part.vertex_count == count);
   };
-  check(mesh.parts[0], 0, 0, 0, 16);
-  check(mesh.parts[1], 0, 1, 0, 16);
-  check(mesh.parts[2], 1, 0, 16, 4);
-  CHECK(mesh.parts[2].hash == spherechain::hash_positions(kSquare.data(), 4));  // though its node moves it
+  check(mesh.buffers[0], 0, 0, 0, 16);
+  check(mesh.buffers[1], 0, 1, 0, 16);
+  check(mesh.buffers[2], 1, 0, 16, 4);
+  CHECK(mesh.buffers[2].hash == sc_hash_positions(kSquare.data(), 4, 12));  // though its node moves it
   std::vector<float> raw(48);
   std::memcpy(raw.data(), glb.binary.data(), sizeof(float) * raw.size());
-  CHECK(mesh.parts[0].hash == spherechain::hash_positions(raw.data(), 16));
+  CHECK(mesh.buffers[0].hash == sc_hash_positions(raw.data(), 16, 12));
 }
 
 TEST_CASE("morph targets displace in the rest space, named, sparse or absent, with the weights they rest at") {

@@ -212,7 +212,7 @@ TEST_CASE(
                        {{"mesh", 0}, {"translation", {100, 0, 0}}}};
   SourceMesh mesh = read(glb);
   CHECK(mesh.meshes == 2);  // the third is in no scene
-  CHECK(mesh.parts.size() == 2);
+  CHECK(mesh.buffers.size() == 2);
   CHECK(mesh.rig.bones.empty());
   CHECK(mesh.rig.weights.empty());
   CHECK(mesh.metres_per_unit == 1);

@@ -19,7 +19,7 @@ using nlohmann::json;
 
 namespace {
 
-using Reader = std::string (*)(const std::string&, const spherechain::Asset&, const std::string&);
+using Reader = std::string (*)(const std::string&, const OpenAsset&, const std::string&);
 
 struct Made {
   OpenAsset asset = open_asset(tool::baked_files().asset.string());

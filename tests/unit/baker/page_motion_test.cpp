@@ -10,7 +10,8 @@ using namespace spherechain::baker;
 TEST_CASE("the page stores the morph targets that its frames move, and puts the others into the rest positions") {
   Character character;
   character.source_positions = {{0, 0, 0}, {1, 0, 0}};
-  character.rig.morphs = {{"off", {0}, {{5, 5, 5}}, 0}, {"smile", {0}, {{0, 1, 0}}, 0}, {"wide", {1}, {{2, 0, 0}}, 0.5}};
+  character.rig.morphs = {
+      {"off", {0}, {{5, 5, 5}}, 0}, {"smile", {0}, {{0, 1, 0}}, 0}, {"wide", {1}, {{2, 0, 0}}, 0.5}};
   PageMotion motion(character, {Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ(), 1});
   for (const double smile : {0.0, 0.25, 1.0}) {
     Deformation deformation;

@@ -113,8 +113,8 @@ std::vector<std::string> names_of_spheres(const spherechain::baker::OpenAsset& a
     const std::string region = asset->region(sphere.region).name;
     if (region == "torso") {
       std::string name = "torso_level_" + std::to_string(sphere.level);
-      if (sphere.side == spherechain::Side::kLeft) name += "_left";
-      if (sphere.side == spherechain::Side::kRight) name += "_right";
+      if (sphere.side == SC_SIDE_LEFT) name += "_left";
+      if (sphere.side == SC_SIDE_RIGHT) name += "_right";
       names.push_back(name);
     } else {
       const int place = count[region]++;
@@ -290,10 +290,11 @@ TEST_CASE(
     const std::vector<float> buffer = pack(posed);
     std::vector<spherechain::Sphere> spheres(names.size());
     spherechain::RefitJob refit;
-    refit.asset = &asset;
-    refit.positions = buffer.data();
-    refit.vertex_count = posed.size();
-    refit.spheres = {spheres.data(), spheres.size()};
+    refit.asset = asset.handle();
+    refit.pose.vertices = buffer.data();
+    refit.pose.vertex_count = posed.size();
+    refit.spheres = spheres.data();
+    refit.sphere_capacity = spheres.size();
     REQUIRE(refit.run() == SC_OK);
 
     Preview preview = human_preview();

@@ -9,13 +9,14 @@
 #include <limits>
 #include <random>
 
-#include "exact_orientation.h"
-#include "spherechain/triangle_contacts.h"
+#include "skin/exact_orientation.h"
+#include "skin/exact_triangles.h"
 
 namespace {
 
 using spherechain::Vec2;
 using spherechain::Vec3;
+using Corners = spherechain::TriangleCorners;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 using Random = std::mt19937;
@@ -91,10 +92,6 @@ int exact_side(const Vec2& a, const Vec2& b, const Vec2& c) {
   return sgn(mpq_class((b.x - ax) * (c.y - ay) - (b.y - ay) * (c.x - ax)));
 }
 
-struct Corners {
-  Vec3 p[3];
-};
-
 CGAL::Triangle_3<Kernel> to_cgal(const Corners& t) {
   const auto point = [](const Vec3& p) { return CGAL::Point_3<Kernel>(p.x, p.y, p.z); };
   return {point(t.p[0]), point(t.p[1]), point(t.p[2])};
@@ -163,8 +160,8 @@ TEST_CASE("a million pairs of triangles intersect where CGAL says so: any, touch
     draw_triangles(random, a, b);
     const bool expected = cgal_intersects(a, b);
     intersecting += expected ? 1 : 0;
-    different += spherechain::triangles_intersect(a.p, b.p) == expected ? 0 : 1;
-    different += spherechain::triangles_intersect(b.p, a.p) == expected ? 0 : 1;
+    different += spherechain::triangles_intersect(a, b) == expected ? 0 : 1;
+    different += spherechain::triangles_intersect(b, a) == expected ? 0 : 1;
   }
   CHECK(different == 0);
   CHECK(intersecting > 100000);
@@ -175,21 +172,21 @@ TEST_CASE("triangles whose corners are on one line, or are not finite, intersect
   const Corners triangle{{{0, 0, 0}, {2, 0, 0}, {0, 2, 0}}};
   const Corners line{{{0.5F, 0.5F, -1}, {0.5F, 0.5F, 0}, {0.5F, 0.5F, 1}}};
   const Corners point{{{0.5F, 0.5F, 0}, {0.5F, 0.5F, 0}, {0.5F, 0.5F, 0}}};
-  CHECK(spherechain::triangles_intersect(triangle.p, triangle.p));
+  CHECK(spherechain::triangles_intersect(triangle, triangle));
   for (const Corners& degenerate : {line, point}) {
-    CHECK_FALSE(spherechain::triangles_intersect(triangle.p, degenerate.p));
-    CHECK_FALSE(spherechain::triangles_intersect(degenerate.p, triangle.p));
-    CHECK_FALSE(spherechain::triangles_intersect(degenerate.p, degenerate.p));
+    CHECK_FALSE(spherechain::triangles_intersect(triangle, degenerate));
+    CHECK_FALSE(spherechain::triangles_intersect(degenerate, triangle));
+    CHECK_FALSE(spherechain::triangles_intersect(degenerate, degenerate));
   }
   for (const float bad : {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity()}) {
     Corners spoiled = triangle;
     spoiled.p[1].y = bad;
-    CHECK_FALSE(spherechain::triangles_intersect(triangle.p, spoiled.p));
-    CHECK_FALSE(spherechain::triangles_intersect(spoiled.p, spoiled.p));
+    CHECK_FALSE(spherechain::triangles_intersect(triangle, spoiled));
+    CHECK_FALSE(spherechain::triangles_intersect(spoiled, spoiled));
   }
 }
 
-TEST_CASE("the segment of two triangles lies in both, and moving one by the depth parts them") {
+TEST_CASE("the segment in which two triangles cross lies in both") {
   Random random(4);
   int count = 0;
   for (int i = 0; i < 100000; ++i) {
@@ -200,21 +197,14 @@ TEST_CASE("the segment of two triangles lies in both, and moving one by the dept
     }
     if (!cgal_intersects(a, b)) continue;
     ++count;
-    const spherechain::TriangleOverlap overlap = spherechain::overlap_triangles(a.p, b.p);
-    for (const Vec3& point : {overlap.from, overlap.to}) {
+    const spherechain::Segment segment = spherechain::crossing_segment(a, b);
+    for (const Vec3& point : {segment.from, segment.to}) {
       for (const Corners& t : {a, b}) {
         const CGAL::Point_3<Kernel> p(point.x, point.y, point.z);
         // Needles make the rounding of the point worse: none here is thinner than a thousandth.
         CHECK(CGAL::to_double(CGAL::squared_distance(p, to_cgal(t))) < 1e-10);
       }
     }
-    const auto& n = overlap.normal;
-    CHECK(std::abs(n.x * n.x + n.y * n.y + n.z * n.z - 1) < 1e-5F);
-    CHECK(overlap.depth >= 0);
-    Corners parted = b;
-    const float far = overlap.depth * 1.0001F + 1e-5F;
-    for (Vec3& p : parted.p) p = {p.x + far * n.x, p.y + far * n.y, p.z + far * n.z};
-    CHECK_FALSE(cgal_intersects(a, parted));
   }
   CHECK(count > 10000);
 }

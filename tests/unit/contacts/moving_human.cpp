@@ -8,6 +8,7 @@
 
 #include "motion/capture.h"
 #include "motion/poses.h"
+#include "play/play.h"
 
 namespace spherechain::test {
 namespace {
@@ -15,33 +16,22 @@ namespace {
 constexpr const char* kModels = "/usr/share/assimp/models/";
 constexpr int kCaptureFrames = 24;
 
-}  // namespace
-
-const MovingHuman& moving_human() {
-  static const MovingHuman result{
-      baker::bake(std::string(kModels) + "Collada/human.zae", baker::make_settings("balanced", "{}", "test"), {})};
-  return result;
-}
-
-Asset MovingHuman::asset() const {
-  Asset out;
-  char message[256] = "";
-  REQUIRE_MESSAGE(out.open(bake.asset.data(), bake.asset.size(), message, sizeof message) == Status::kOk, message);
-  return out;
-}
-
-std::vector<float> MovingHuman::rest_positions() const { return baker::pack(bake.character.source_positions); }
-
-std::vector<float> MovingHuman::deformed(const baker::Deformation& deformation) const {
-  return baker::pack(baker::deform(bake.character.source_positions, bake.rig_weights, deformation.bones));
-}
-
-std::vector<MovingHuman::Frame> MovingHuman::frames() const {
-  std::vector<Frame> out;
+MovingHuman make() {
+  baker::Bake bake =
+      baker::bake(std::string(kModels) + "Collada/human.zae", baker::make_settings("balanced", "{}", "test"), {});
+  baker::OpenAsset asset({reinterpret_cast<const char*>(bake.asset.data()), bake.asset.size()}, "human.sphc");
+  MovingHuman human{std::move(bake), std::move(asset), {}, {}};
+  const baker::Bake& b = human.bake;
+  human.rest = baker::pack(b.character.source_positions);
+  const auto add = [&](const std::string& name, const baker::Deformation& deformation) {
+    human.frames.push_back(
+        {name, baker::bone_palette(human.asset, deformation),
+         baker::pack(baker::deform(b.character.source_positions, b.rig_weights, deformation.bones))});
+  };
   const baker::CaptureMotion boxing(baker::read_capture(std::filesystem::path(kModels) / "BVH/Boxing_Toes.bvh"),
-                                    baker::body_of(bake.joints, bake.regions.frame));
+                                    baker::body_of(b.joints, b.regions.frame));
   for (int i = 0; i < kCaptureFrames; ++i) {
-    out.push_back({"Boxing_Toes.bvh, frame " + std::to_string(i), boxing.at(i / (kCaptureFrames - 1.0))});
+    add("Boxing_Toes.bvh, frame " + std::to_string(i), boxing.at(i / (kCaptureFrames - 1.0)));
   }
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(SPHERECHAIN_SAMPLES "/poses")) {
@@ -49,11 +39,60 @@ std::vector<MovingHuman::Frame> MovingHuman::frames() const {
   }
   std::sort(files.begin(), files.end());
   for (const auto& file : files) {
-    const baker::BezierMotion motion(bake.joints, bake.regions.frame, baker::read_pose_motion(file, bake.joints));
+    const baker::BezierMotion motion(b.joints, b.regions.frame, baker::read_pose_motion(file, b.joints));
     for (const double t : {0.5, 1.0}) {
-      out.push_back({file.filename().string() + " at " + std::to_string(t), motion.at(t)});
+      add(file.filename().string() + " at " + std::to_string(t), motion.at(t));
     }
   }
+  return human;
+}
+
+}  // namespace
+
+const MovingHuman& moving_human() {
+  static const MovingHuman human = make();
+  return human;
+}
+
+Pose vertices_of(const std::vector<float>& vertices) {
+  Pose pose;
+  pose.vertices = vertices.data();
+  pose.vertex_count = vertices.size() / 3;
+  return pose;
+}
+
+Pose bones_of(const std::vector<float>& palette) {
+  Pose pose;
+  pose.bones = palette.data();
+  pose.bone_count = palette.size() / 12;
+  pose.bone_layout = SC_ROWS_3X4;
+  return pose;
+}
+
+Pose both_of(const MovingHuman::Frame& frame) {
+  Pose pose = bones_of(frame.palette);
+  pose.vertices = frame.vertices.data();
+  pose.vertex_count = frame.vertices.size() / 3;
+  return pose;
+}
+
+SkinContactJob job_of(const Pose& pose, Target target) {
+  SkinContactJob job;
+  job.asset = moving_human().asset.handle();
+  job.pose = pose;
+  job.target = target;
+  return job;
+}
+
+SkinContacts run(const SkinContactJob& job) {
+  SkinContacts found = find_contacts(job);
+  REQUIRE(found.status == SC_OK);
+  return found;
+}
+
+std::vector<Pair> triangle_pairs(const SkinContacts& found) {
+  std::vector<Pair> out;
+  for (const TriangleContact& contact : found.triangles) out.push_back({contact.triangle_a, contact.triangle_b});
   return out;
 }
 

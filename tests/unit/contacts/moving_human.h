@@ -4,9 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "jobs.h"
 #include "motion/motion.h"
 #include "pipeline/pipeline.h"
-#include "spherechain/triangle_contacts.h"
+#include "play/asset_file.h"
 
 namespace spherechain::test {
 
@@ -14,19 +15,30 @@ namespace spherechain::test {
 struct MovingHuman {
   struct Frame {
     std::string name;
-    baker::Deformation deformation;
+    std::vector<float> palette;   // SC_ROWS_3X4
+    std::vector<float> vertices;  // x y z of each source vertex, rounded to float
   };
 
   baker::Bake bake;
-
-  Asset asset() const;  // a view of bake.asset
-  std::vector<float> rest_positions() const;
-  std::vector<Frame> frames() const;
-  // x y z of each source vertex, rounded to float.
-  std::vector<float> deformed(const baker::Deformation& deformation) const;
+  baker::OpenAsset asset;
+  std::vector<float> rest;  // x y z of each source vertex
+  std::vector<Frame> frames;
 };
 
 // Baked once for all tests of a run.
 const MovingHuman& moving_human();
+
+Pose vertices_of(const std::vector<float>& vertices);
+Pose bones_of(const std::vector<float>& palette);
+Pose both_of(const MovingHuman::Frame& frame);
+
+// A job on moving_human() in that pose.
+SkinContactJob job_of(const Pose& pose, Target target = SC_TARGET_BEST);
+
+// REQUIREs that the job succeeds.
+SkinContacts run(const SkinContactJob& job);
+
+// The contacts' triangles.
+std::vector<Pair> triangle_pairs(const SkinContacts& found);
 
 }  // namespace spherechain::test

@@ -6,20 +6,18 @@
 #include <cmath>
 #include <limits>
 
-#include "crowd_launch.h"
 #include "jobs.h"
 #include "palette.h"
-#include "tiny_moments.h"
 
 namespace spherechain::test {
 namespace {
 
 constexpr Sphere kGap{0, 0, 0, std::numeric_limits<float>::infinity()};  // between instances: never to be looked at
 
-void add_pairs(const Asset& asset, const std::vector<Sphere>& spheres, RadiusKind radius, const Filter* filter,
+void add_pairs(const Asset& asset, const std::vector<Sphere>& spheres, Radius radius, const Filter* filter,
                Expected& to) {
-  const Detected found = detect(asset, spheres, Method::kM2, radius, Target::kScalar, filter);
-  REQUIRE(found.status == Status::kOk);
+  const Detected found = detect(asset, spheres, radius, SC_TARGET_SCALAR, filter);
+  REQUIRE(found.status == SC_OK);
   to.counts.push_back(static_cast<std::uint32_t>(found.pairs.size()));
   to.bits.insert(to.bits.end(), found.bits.begin(), found.bits.end());
   to.pairs.insert(to.pairs.end(), found.pairs.begin(), found.pairs.end());
@@ -27,17 +25,15 @@ void add_pairs(const Asset& asset, const std::vector<Sphere>& spheres, RadiusKin
 
 }  // namespace
 
-Tables::Tables(const Asset& asset, RadiusKind radius, const Filter* filter)
-    : words(cuda::CrowdTables::words_needed(asset)) {
-  REQUIRE(tables.build(asset, radius, filter, {words.data(), words.size()}) == Status::kOk);
-  REQUIRE(tables.words.size <= words.size());
-  words.resize(tables.words.size);
+std::vector<std::uint64_t> table_of(const Asset& asset, Radius radius, const Filter* filter) {
+  std::vector<std::uint64_t> table(cuda::crowd_table_words(asset));
+  REQUIRE(cuda::prepare_crowd(asset, radius, filter, table.data(), table.size()) == SC_OK);
+  return table;
 }
 
-GroupInput group_of(const Tables& tables, std::size_t instances) {
+GroupInput group_of(const Asset& asset, Radius radius, std::size_t instances, const Filter* filter) {
   GroupInput in;
-  in.tables = &tables.tables;
-  in.words = tables.words;
+  in.table = table_of(asset, radius, filter);
   in.instance_count = instances;
   return in;
 }
@@ -58,10 +54,9 @@ std::vector<Sphere> spheres_of(std::size_t n, std::size_t instances, std::size_t
 
 void give_matrices(GroupInput& in, const Asset& asset, MatrixLayout layout, PoseKind kind, std::size_t gap,
                    std::mt19937& random) {
-  const std::size_t bones = asset.bone_count(), floats = size_of(layout) / 4;
-  in.layout = layout;
-  in.bone_count = bones;
-  in.bone_stride = size_of(layout);
+  const std::size_t bones = view_of(asset).bone_count(), floats = floats_of(layout);
+  in.pose.bone_layout = layout;
+  in.pose.bone_count = bones;
   in.instance_stride = (bones * floats + gap) * 4;
   in.matrices.assign(in.offset + in.instance_count * in.instance_stride / 4, std::nanf(""));
   for (std::size_t i = 0; i < in.instance_count; ++i) {
@@ -79,18 +74,19 @@ TinyAsset moment_asset(unsigned spheres, std::size_t bones, unsigned seed) {
     give_pivots(tiny, 7, 1, 3);
     give_pivots(tiny, 8, 16, 4);
   }
-  TinySkin skin = add_bones(tiny, bones, seed);
-  add_moments(tiny, skin);
+  add_bones(tiny, bones, seed);
   return tiny;
 }
 
-BoneMatrices bones_of(const GroupInput& in, std::size_t i) {
-  return {in.matrices.data() + in.offset + i * in.instance_stride / 4, in.bone_count, in.layout, in.bone_stride};
+Pose pose_of(const GroupInput& in, std::size_t i) {
+  Pose pose = in.pose;
+  pose.bones = in.matrices.data() + in.offset + i * in.instance_stride / 4;
+  return pose;
 }
 
-Expected pairs_of_spheres(const Asset& asset, const GroupInput& in, RadiusKind radius, const Filter* filter) {
+Expected pairs_of_spheres(const Asset& asset, const GroupInput& in, Radius radius, const Filter* filter) {
   Expected out;
-  const std::size_t n = asset.spheres().size, stride = in.stride == 0 ? n : in.stride;
+  const std::size_t n = view_of(asset).spheres().size, stride = in.instance_stride == 0 ? n : in.instance_stride;
   for (std::size_t i = 0; i < in.instance_count; ++i) {
     const auto first = in.spheres.begin() + static_cast<std::ptrdiff_t>(i * stride);
     add_pairs(asset, {first, first + static_cast<std::ptrdiff_t>(n)}, radius, filter, out);
@@ -98,11 +94,11 @@ Expected pairs_of_spheres(const Asset& asset, const GroupInput& in, RadiusKind r
   return out;
 }
 
-Expected pairs_of_bones(const Asset& asset, const GroupInput& in, RadiusKind radius, const Filter* filter) {
+Expected pairs_of_bones(const Asset& asset, const GroupInput& in, Radius radius, const Filter* filter) {
   Expected out;
   for (std::size_t i = 0; i < in.instance_count; ++i) {
-    const Refitted refitted = refit_bones(asset, bones_of(in, i), {}, radius, Target::kScalar);
-    REQUIRE(refitted.status == Status::kOk);
+    const Refitted refitted = refit(asset, pose_of(in, i), radius, SC_TARGET_SCALAR);
+    REQUIRE(refitted.status == SC_OK);
     out.spheres.insert(out.spheres.end(), refitted.spheres.begin(), refitted.spheres.end());
     add_pairs(asset, refitted.spheres, radius, filter, out);
   }
@@ -110,19 +106,19 @@ Expected pairs_of_bones(const Asset& asset, const GroupInput& in, RadiusKind rad
 }
 
 void edit_randomly(const Asset& asset, Filter& filter, std::mt19937& random) {
-  for (std::uint32_t i = 0; i < asset.spheres().size; ++i) {
-    if (random() % 4 == 0) REQUIRE(disable_sphere(asset, filter, i) == Status::kOk);
-    REQUIRE(pad_sphere(asset, filter, i, uniform(random, i % 6 == 0 ? -3 : -0.05F, 0.3F)) == Status::kOk);
+  for (std::uint32_t i = 0; i < view_of(asset).spheres().size; ++i) {
+    if (random() % 4 == 0) REQUIRE(sc_disable_sphere(&asset, &filter, i, 1) == SC_OK);
+    REQUIRE(sc_pad_sphere(&asset, &filter, i, uniform(random, i % 6 == 0 ? -3 : -0.05F, 0.3F)) == SC_OK);
     if (i > 0) {
       const auto other = static_cast<std::uint32_t>(random() % i);
-      REQUIRE(ignore_pair(asset, filter, i, other, random() % 2 == 0) == Status::kOk);
+      REQUIRE(sc_ignore_pair(&asset, &filter, i, other, random() % 2 == 0) == SC_OK);
     }
   }
 }
 
-void RunCounts::add(const Tables& tables) {
-  const cuda::TableHeader& header = cuda::header_of(tables.tables);
-  const auto* runs = reinterpret_cast<const cuda::MomentRun*>(&tables.words[header.runs]);
+void RunCounts::add(const std::vector<std::uint64_t>& table) {
+  const cuda::TableHeader& header = cuda::header_of(table.data());
+  const auto* runs = reinterpret_cast<const cuda::MomentRun*>(&table[header.runs]);
   for (std::uint32_t i = 0; i < header.run_count; ++i) ++of_kind[runs[i].kind];
 }
 

@@ -7,14 +7,9 @@
 
 namespace spherechain::test {
 
-struct Tables {
-  Tables(const Asset& asset, RadiusKind radius, const Filter* filter = nullptr);
+std::vector<std::uint64_t> table_of(const Asset& asset, Radius radius, const Filter* filter = nullptr);
 
-  std::vector<std::uint64_t> words;
-  cuda::CrowdTables tables;
-};
-
-GroupInput group_of(const Tables& tables, std::size_t instances);
+GroupInput group_of(const Asset& asset, Radius radius, std::size_t instances, const Filter* filter = nullptr);
 
 // Some touch hardly at all, some are not finite or huge.
 std::vector<Sphere> spheres_of(std::size_t n, std::size_t instances, std::size_t stride, std::mt19937& random);
@@ -27,7 +22,7 @@ void give_matrices(GroupInput& in, const Asset& asset, MatrixLayout layout, Pose
 TinyAsset moment_asset(unsigned spheres, std::size_t bones, unsigned seed);
 
 // Instance `i`'s.
-BoneMatrices bones_of(const GroupInput& in, std::size_t i);
+Pose pose_of(const GroupInput& in, std::size_t i);
 
 struct Expected {
   std::vector<Sphere> spheres;
@@ -37,8 +32,8 @@ struct Expected {
 };
 
 // By the CPU's jobs.
-Expected pairs_of_spheres(const Asset& asset, const GroupInput& in, RadiusKind radius, const Filter* filter = nullptr);
-Expected pairs_of_bones(const Asset& asset, const GroupInput& in, RadiusKind radius, const Filter* filter = nullptr);
+Expected pairs_of_spheres(const Asset& asset, const GroupInput& in, Radius radius, const Filter* filter = nullptr);
+Expected pairs_of_bones(const Asset& asset, const GroupInput& in, Radius radius, const Filter* filter = nullptr);
 
 // Disables some spheres, pads all, ignores some pairs and takes up others.
 void edit_randomly(const Asset& asset, Filter& filter, std::mt19937& random);
@@ -46,7 +41,7 @@ void edit_randomly(const Asset& asset, Filter& filter, std::mt19937& random);
 // How many there are of each kind (kTwoBones, kThreeBones, kAnyBones).
 struct RunCounts {
   std::size_t of_kind[3] = {};
-  void add(const Tables& tables);
+  void add(const std::vector<std::uint64_t>& table);
 };
 
 }  // namespace spherechain::test

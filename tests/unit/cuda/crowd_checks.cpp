@@ -34,7 +34,7 @@ void check_pairs(const GroupInput& in, const GroupOutput& got, const Expected& w
 void run_and_check(std::vector<GroupInput> in, const std::vector<Expected>& wanted) {
   for (std::size_t g = 0; g < in.size(); ++g) in[g].pair_capacity = wanted[g].pairs.size() + 3;
   const CrowdRun run = run_crowd(in);
-  REQUIRE(run.status == Status::kOk);
+  REQUIRE(run.status == SC_OK);
   for (std::size_t g = 0; g < in.size(); ++g) {
     CAPTURE(g);
     CHECK(same_bits(run.groups[g].refitted, wanted[g].spheres));

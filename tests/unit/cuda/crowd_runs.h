@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A CrowdJob as one call, from the program's own memory: emulated_runs.cpp runs the kernel's steps on the CPU,
+// enqueue_crowds() as one call, from the program's own memory: emulated_runs.cpp runs the kernel's steps on the CPU,
 // device_runs.cpp the kernel on a device. The same tests are linked with each.
 #pragma once
 
@@ -11,22 +11,34 @@
 namespace spherechain::test {
 
 struct GroupInput {
-  const cuda::CrowdTables* tables = nullptr;
-  std::vector<std::uint64_t> words;  // of the tables
+  std::vector<std::uint64_t> table;
   std::size_t instance_count = 0;
   std::vector<Sphere> spheres;
-  std::size_t stride = 0;
   std::vector<float> matrices;  // or these; from matrices[offset] on
-  std::size_t offset = 0, bone_count = 0, bone_stride = 48, instance_stride = 0;
-  MatrixLayout layout = MatrixLayout::kRowMajor3x4;
+  Pose pose;                    // without bones
+  std::size_t offset = 0, instance_stride = 0;
   bool wants_bits = true, wants_spheres = true;
   std::size_t pair_capacity = 0;  // 0: no list
   std::size_t scratch_bytes = 0;  // a multiple of 16
 };
 
-// Zeros if the tables are not built.
+// Zeros where there is no table.
 inline cuda::TableHeader header_of(const GroupInput& in) {
-  return in.tables == nullptr || in.tables->words.size == 0 ? cuda::TableHeader{} : cuda::header_of(*in.tables);
+  return in.table.empty() ? cuda::TableHeader{} : cuda::header_of(in.table.data());
+}
+
+// Inputs alone, where they lie for who runs it.
+inline cuda::CrowdGroup inputs_of(const GroupInput& in, const std::uint64_t* device_table, const Sphere* spheres,
+                                  const float* matrices) {
+  cuda::CrowdGroup group;
+  group.table = in.table.empty() ? nullptr : in.table.data();
+  group.device_table = in.table.empty() ? nullptr : device_table;
+  group.instance_count = in.instance_count;
+  group.spheres = in.spheres.empty() ? nullptr : spheres;
+  group.pose = in.pose;
+  group.pose.bones = in.matrices.empty() ? nullptr : matrices + in.offset;
+  group.instance_stride = in.instance_stride;
+  return group;
 }
 
 struct GroupOutput {

@@ -69,15 +69,8 @@ CrowdRun run_crowd(const std::vector<GroupInput>& groups) {
   std::vector<cuda::CrowdGroup> device;
   std::vector<Outputs> outputs;
   for (const GroupInput& in : groups) {
-    cuda::CrowdGroup& group = device.emplace_back();
-    group.tables = in.tables;
-    group.device_tables = buffers.put(in.words);
-    group.instance_count = in.instance_count;
-    group.spheres = buffers.put(in.spheres);
-    group.stride = in.stride;
-    const float* matrices = buffers.put(in.matrices);
-    if (!in.matrices.empty()) group.bones = {matrices + in.offset, in.bone_count, in.layout, in.bone_stride};
-    group.instance_stride = in.instance_stride;
+    cuda::CrowdGroup& group =
+        device.emplace_back(inputs_of(in, buffers.put(in.table), buffers.put(in.spheres), buffers.put(in.matrices)));
     const cuda::TableHeader header = header_of(in);
     const std::size_t count = in.instance_count, words = in.wants_bits ? header.bit_words * count : 0;
     const Outputs& out = outputs.emplace_back(Outputs{
@@ -94,8 +87,7 @@ CrowdRun run_crowd(const std::vector<GroupInput>& groups) {
     group.scratch = buffers.take<unsigned char>(in.scratch_bytes).data<void>();
     group.scratch_bytes = in.scratch_bytes;
   }
-  const cuda::CrowdJob job{{device.data(), device.size()}, nullptr};
-  CrowdRun run{job.run(), std::vector<GroupOutput>(groups.size())};
+  CrowdRun run{cuda::enqueue_crowds(device.data(), device.size(), nullptr), std::vector<GroupOutput>(groups.size())};
   must(cudaDeviceSynchronize());
   for (std::size_t g = 0; g < groups.size(); ++g) {
     GroupOutput& to = run.groups[g];
@@ -113,7 +105,7 @@ CrowdRun run_crowd(const std::vector<GroupInput>& groups) {
 
 bool can_run(const char*& where) {
   static cudaDeviceProp properties;
-  if (cuda::check_device() != Status::kOk) {
+  if (cuda::check_device() != SC_OK) {
     std::printf("skipped: %s\n", cuda::last_device_error());
     return false;
   }

@@ -29,17 +29,15 @@ TEST_CASE("the kernel's square root is the rounded one for every float it is use
   CHECK(count_wrong_roots() == 0);
 }
 
-TEST_CASE("a job is captured into a graph, and each replay finds the pairs of the spheres as they are then") {
+TEST_CASE("a crowd is captured into a graph, and each replay finds the pairs of the spheres as they are then") {
   constexpr std::size_t kSpheres = 40, kInstances = 100;
   std::mt19937 random(2);
   const OpenedAsset opened(random_asset(kSpheres, 2).parts);
-  std::vector<std::uint64_t> words(cuda::CrowdTables::words_needed(opened.asset));
-  cuda::CrowdTables tables;
-  REQUIRE(tables.build(opened.asset, RadiusKind::kDetect, nullptr, {words.data(), words.size()}) == Status::kOk);
+  const std::vector<std::uint64_t> table = table_of(opened.asset, SC_RADIUS_DETECT);
 
   cuda::CrowdGroup group;
-  group.tables = &tables;
-  group.device_tables = on_device(words);
+  group.table = table.data();
+  group.device_table = on_device(table);
   group.instance_count = kInstances;
   auto* spheres = on_device(std::vector<Sphere>(kSpheres * kInstances));
   group.spheres = spheres;
@@ -51,10 +49,9 @@ TEST_CASE("a job is captured into a graph, and each replay finds the pairs of th
 
   cudaStream_t stream = nullptr;
   REQUIRE(cudaStreamCreateWithFlags(&stream, cudaStreamNonBlocking) == cudaSuccess);
-  const cuda::CrowdJob job{{&group, 1}, stream};
   cudaGraph_t graph = nullptr;
   REQUIRE(cudaStreamBeginCapture(stream, cudaStreamCaptureModeGlobal) == cudaSuccess);
-  REQUIRE(job.run() == Status::kOk);
+  REQUIRE(cuda::enqueue_crowds(&group, 1, stream) == SC_OK);
   REQUIRE(cudaStreamEndCapture(stream, &graph) == cudaSuccess);
   cudaGraphExec_t replayed = nullptr;
   REQUIRE(cudaGraphInstantiate(&replayed, graph, 0) == cudaSuccess);
@@ -66,7 +63,7 @@ TEST_CASE("a job is captured into a graph, and each replay finds the pairs of th
     for (std::size_t i = 0; i < kInstances; ++i) {
       const std::vector<Sphere> one = random_spheres(kSpheres, random);
       all.insert(all.end(), one.begin(), one.end());
-      const Detected found = detect(opened.asset, one, Method::kM2, RadiusKind::kDetect, Target::kScalar);
+      const Detected found = detect(opened.asset, one, SC_RADIUS_DETECT, SC_TARGET_SCALAR);
       wanted.push_back(static_cast<std::uint32_t>(found.pairs.size()));
       total += found.pairs.size();
     }
@@ -84,7 +81,7 @@ TEST_CASE("a job is captured into a graph, and each replay finds the pairs of th
   cudaGraphExecDestroy(replayed);
   cudaGraphDestroy(graph);
   cudaStreamDestroy(stream);
-  for (const void* memory : {static_cast<const void*>(group.device_tables), static_cast<const void*>(spheres),
+  for (const void* memory : {static_cast<const void*>(group.device_table), static_cast<const void*>(spheres),
                              static_cast<const void*>(group.counts), static_cast<const void*>(group.starts),
                              static_cast<const void*>(group.pairs), static_cast<const void*>(group.pair_count)}) {
     cudaFree(const_cast<void*>(memory));
@@ -98,25 +95,25 @@ TEST_CASE("a host crowd on the device gives the CPU's spheres and sorted pairs, 
     std::mt19937 random(3);
     GroupInput in;
     in.instance_count = kInstances;
-    give_matrices(in, opened.asset, MatrixLayout::kColumnMajor4x4, PoseKind::kGentle, 0, random);
+    give_matrices(in, opened.asset, SC_COLUMNS_4X4, PoseKind::kGentle, 0, random);
     std::vector<Sphere> wanted, refitted(spheres * kInstances);
     std::vector<CrowdPair> wanted_pairs;
     for (std::uint32_t i = 0; i < kInstances; ++i) {
-      const Refitted one = refit_bones(opened.asset, bones_of(in, i), {}, RadiusKind::kDetect);
+      const Refitted one = refit(opened.asset, pose_of(in, i), SC_RADIUS_DETECT);
       wanted.insert(wanted.end(), one.spheres.begin(), one.spheres.end());
-      for (const Pair& pair : detect(opened.asset, one.spheres, Method::kM2, RadiusKind::kDetect).pairs) {
+      for (const Pair& pair : detect(opened.asset, one.spheres, SC_RADIUS_DETECT).pairs) {
         wanted_pairs.push_back({i, pair});
       }
     }
     std::vector<CrowdPair> pairs(wanted_pairs.size());
     cuda::HostCrowd crowd;
-    REQUIRE(crowd.open(opened.asset, RadiusKind::kDetect, nullptr, kInstances, pairs.size()) == Status::kOk);
-    crowd.bones = bones_of(in, 0);
+    REQUIRE(crowd.open(opened.asset, SC_RADIUS_DETECT, nullptr, kInstances, pairs.size()) == SC_OK);
+    crowd.pose = pose_of(in, 0);
     crowd.instance_stride = in.instance_stride;
     crowd.instance_count = kInstances;
     crowd.spheres = refitted.data();
     crowd.pairs = pairs.data();
-    REQUIRE(crowd.run() == Status::kOk);
+    REQUIRE(crowd.run() == SC_OK);
     CHECK(same_bits(refitted, wanted));
     CHECK(crowd.pair_count == wanted_pairs.size());
     CHECK(same_bits(pairs, wanted_pairs));

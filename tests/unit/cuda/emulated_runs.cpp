@@ -21,32 +21,25 @@ struct alignas(16) Chunk {
   std::uint64_t words[2];
 };
 
+template <typename T>
+std::vector<Chunk> aligned(const std::vector<T>& from) {
+  std::vector<Chunk> out((from.size() * sizeof(T) + sizeof(Chunk) - 1) / sizeof(Chunk));
+  if (!from.empty()) std::memcpy(static_cast<void*>(out.data()), from.data(), from.size() * sizeof(T));
+  return out;
+}
+
 }  // namespace
 
 CrowdRun run_crowd(const std::vector<GroupInput>& groups) {
-  CrowdRun out{Status::kOk, std::vector<GroupOutput>(groups.size())};
+  CrowdRun out{{SC_OK, SC_FIELD_NONE}, std::vector<GroupOutput>(groups.size())};
   std::mt19937 random(static_cast<unsigned>(groups.size()));
   for (std::size_t g = 0; g < groups.size(); ++g) {
     const GroupInput& in = groups[g];
     GroupOutput& to = out.groups[g];
-    std::vector<Chunk> tables((in.words.size() + 1) / 2);
-    if (!in.words.empty()) std::memcpy(tables.data(), in.words.data(), in.words.size() * sizeof in.words[0]);
-    std::vector<Chunk> aligned((in.matrices.size() + 3) / 4);
-    if (!in.matrices.empty()) std::memcpy(aligned.data(), in.matrices.data(), in.matrices.size() * sizeof(float));
-    std::vector<Chunk> spheres(in.spheres.size());
-    if (!in.spheres.empty()) std::memcpy(spheres.data(), in.spheres.data(), in.spheres.size() * sizeof(Sphere));
-
-    cuda::CrowdGroup group;
-    group.tables = in.tables;
-    group.device_tables = in.words.empty() ? nullptr : tables[0].words;
-    group.instance_count = in.instance_count;
-    group.spheres = in.spheres.empty() ? nullptr : reinterpret_cast<const Sphere*>(spheres.data());
-    group.stride = in.stride;
-    if (!in.matrices.empty()) {
-      group.bones = {reinterpret_cast<const float*>(aligned.data()) + in.offset, in.bone_count, in.layout,
-                     in.bone_stride};
-    }
-    group.instance_stride = in.instance_stride;
+    const std::vector<Chunk> table = aligned(in.table), spheres = aligned(in.spheres), matrices = aligned(in.matrices);
+    cuda::CrowdGroup group =
+        inputs_of(in, reinterpret_cast<const std::uint64_t*>(table.data()),
+                  reinterpret_cast<const Sphere*>(spheres.data()), reinterpret_cast<const float*>(matrices.data()));
     const std::size_t count = in.instance_count;
     const cuda::TableHeader header = header_of(in);
     group.refitted = take(to.refitted, in.wants_spheres && !in.matrices.empty() ? header.sphere_count * count : 0);
@@ -64,9 +57,9 @@ CrowdRun run_crowd(const std::vector<GroupInput>& groups) {
 
     cuda::Launch all;
     cuda::LaunchPlan plan;
-    out.status = cuda::view_groups({&group, 1}, all);
-    if (out.status == Status::kOk) out.status = cuda::plan_launches(all, kSharedBytes, plan);
-    if (out.status != Status::kOk) return out;
+    out.status = cuda::view_groups(&group, 1, all);
+    if (out.status == SC_OK) out.status = cuda::plan_launches(all, kSharedBytes, plan);
+    if (out.status != SC_OK) return out;
     for (std::uint32_t k = 0; k < cuda::kKernels; ++k)
       run_kernel(static_cast<cuda::Kernel>(k), plan.launches[k], random);
   }

@@ -124,11 +124,11 @@ namespace spherechain::cuda {
 Status enqueue(Kernel kernel, const Launch& launch, std::size_t shared_bytes_max, CUstream_st*) {
   ++fake_device.launches[static_cast<std::size_t>(kernel)];
   const Status status = status_of(call());
-  if (status != Status::kOk) return status;
-  if (launch.shared_bytes > shared_bytes_max) return Status::kDeviceFailed;
+  if (status != SC_OK) return status;
+  if (launch.shared_bytes > shared_bytes_max) return {SC_DEVICE_FAILED, SC_FIELD_NONE};
   std::mt19937 random(1);
   run_kernel(kernel, launch, random);
-  return Status::kOk;
+  return status;
 }
 
 }  // namespace spherechain::cuda

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// HostCrowd and CrowdJob with a device that is fake but for its kernels.
+// HostCrowd and enqueue_crowds() with a device that is fake but for its kernels.
 #include <doctest/doctest.h>
 
 #include <string>
@@ -21,11 +21,11 @@ struct Poses {
   Poses(const Asset& asset, std::size_t instances, unsigned seed) : asset(asset), instances(instances) {
     std::mt19937 random(seed);
     input.instance_count = instances;
-    give_matrices(input, asset, MatrixLayout::kRowMajor4x4, PoseKind::kGentle, 4, random);
+    give_matrices(input, asset, SC_ROWS_4X4, PoseKind::kGentle, 4, random);
     for (std::size_t i = 0; i < instances; ++i) {
-      const Refitted refitted = refit_bones(asset, bones_of(input, i), {}, RadiusKind::kDetect);
+      const Refitted refitted = refit(asset, pose_of(input, i), SC_RADIUS_DETECT);
       spheres.insert(spheres.end(), refitted.spheres.begin(), refitted.spheres.end());
-      const Detected found = detect(asset, refitted.spheres, Method::kM2, RadiusKind::kDetect);
+      const Detected found = detect(asset, refitted.spheres, SC_RADIUS_DETECT);
       counts.push_back(static_cast<std::uint32_t>(found.pairs.size()));
       for (const Pair& pair : found.pairs) pairs.push_back({static_cast<std::uint32_t>(i), pair});
     }
@@ -49,7 +49,7 @@ constexpr CrowdPair kUnwritten{77, {7, 7}};
 Results give(cuda::HostCrowd& crowd, const Poses& poses, std::size_t capacity) {
   Results out{std::vector<Sphere>(poses.spheres.size()), std::vector<std::uint32_t>(poses.instances),
               std::vector<CrowdPair>(capacity, kUnwritten)};
-  crowd.bones = bones_of(poses.input, 0);
+  crowd.pose = pose_of(poses.input, 0);
   crowd.instance_stride = poses.input.instance_stride;
   crowd.instance_count = poses.instances;
   crowd.spheres = out.spheres.data();
@@ -89,26 +89,26 @@ TEST_CASE("a host crowd gives the CPU's spheres, counts and sorted pairs, run af
   const Device device;
   const OpenedAsset opened(moment_asset(50, 6, 3).parts);
   cuda::HostCrowd crowd;
-  REQUIRE(crowd.open(opened.asset, RadiusKind::kDetect, nullptr, 100, kCapacity) == Status::kOk);
+  REQUIRE(crowd.open(opened.asset, SC_RADIUS_DETECT, nullptr, 100, kCapacity) == SC_OK);
   CHECK(crowd.is_open());
   for (const std::size_t instances : {10U, 100U, 33U, 1U}) {
     const Poses poses(opened.asset, instances, static_cast<unsigned>(instances));
     const Results got = give(crowd, poses, kCapacity);
-    REQUIRE(crowd.run() == Status::kOk);
+    REQUIRE(crowd.run() == SC_OK);
     check(got, poses, crowd.pair_count);
     CHECK(crowd.device_milliseconds == 0.25F);
   }
   CHECK(launches(cuda::Kernel::kBones) == 4);
   CHECK(launches(cuda::Kernel::kScratch) == 0);
   crowd.instance_count = 0;
-  CHECK(crowd.run() == Status::kOk);
+  CHECK(crowd.run() == SC_OK);
   CHECK(crowd.pair_count == 0);
 
   const OpenedAsset other(moment_asset(20, 3, 4).parts);
-  REQUIRE(crowd.open(other.asset, RadiusKind::kDetect, nullptr, 5, 1000) == Status::kOk);
+  REQUIRE(crowd.open(other.asset, SC_RADIUS_DETECT, nullptr, 5, 1000) == SC_OK);
   const Poses poses(other.asset, 5, 9);
   const Results got = give(crowd, poses, 1000);
-  REQUIRE(crowd.run() == Status::kOk);
+  REQUIRE(crowd.run() == SC_OK);
   check(got, poses, crowd.pair_count);
 }
 
@@ -117,15 +117,15 @@ TEST_CASE("a host crowd of fewer outputs gives those") {
   const OpenedAsset opened(moment_asset(30, 4, 3).parts);
   const Poses poses(opened.asset, 40, 2);
   cuda::HostCrowd crowd;
-  REQUIRE(crowd.open(opened.asset, RadiusKind::kDetect, nullptr, 40, 1) == Status::kOk);
+  REQUIRE(crowd.open(opened.asset, SC_RADIUS_DETECT, nullptr, 40, 1) == SC_OK);
   const Results got = give(crowd, poses, 1);
   crowd.spheres = nullptr;
   crowd.pairs = nullptr;
-  REQUIRE(crowd.run() == Status::kOk);
+  REQUIRE(crowd.run() == SC_OK);
   CHECK(got.counts == poses.counts);
   CHECK(crowd.pair_count == poses.pairs.size());
   crowd.counts = nullptr;
-  CHECK(crowd.run() == Status::kOk);
+  CHECK(crowd.run() == SC_OK);
 }
 
 TEST_CASE("more pairs than a host crowd has room for are counted, and none is written") {
@@ -134,15 +134,15 @@ TEST_CASE("more pairs than a host crowd has room for are counted, and none is wr
   const Poses poses(opened.asset, 40, 2);
   REQUIRE(poses.pairs.size() > 100);
   cuda::HostCrowd crowd;
-  REQUIRE(crowd.open(opened.asset, RadiusKind::kDetect, nullptr, 40, poses.pairs.size() - 1) == Status::kOk);
+  REQUIRE(crowd.open(opened.asset, SC_RADIUS_DETECT, nullptr, 40, poses.pairs.size() - 1) == SC_OK);
   const Results got = give(crowd, poses, poses.pairs.size());
-  CHECK(crowd.run() == Status::kOverflow);
+  CHECK(crowd.run() == SC_OVERFLOW);
   CHECK(crowd.pair_count == poses.pairs.size());
   CHECK(got.counts == poses.counts);
   for (const CrowdPair& pair : got.pairs) REQUIRE(pair.instance == kUnwritten.instance);
-  REQUIRE(crowd.open(opened.asset, RadiusKind::kDetect, nullptr, 40, poses.pairs.size()) == Status::kOk);
+  REQUIRE(crowd.open(opened.asset, SC_RADIUS_DETECT, nullptr, 40, poses.pairs.size()) == SC_OK);
   const Results again = give(crowd, poses, poses.pairs.size());
-  CHECK(crowd.run() == Status::kOk);
+  CHECK(crowd.run() == SC_OK);
   check(again, poses, crowd.pair_count);
 }
 
@@ -154,9 +154,9 @@ TEST_CASE("a host crowd of a large asset has scratch, as much as there is room f
     fake_device.most_shared_bytes = 30 * 1024;
     fake_device.multiprocessors = multiprocessors;
     cuda::HostCrowd crowd;
-    REQUIRE(crowd.open(opened.asset, RadiusKind::kDetect, nullptr, 150, kCapacity) == Status::kOk);
+    REQUIRE(crowd.open(opened.asset, SC_RADIUS_DETECT, nullptr, 150, kCapacity) == SC_OK);
     const Results got = give(crowd, poses, kCapacity);
-    REQUIRE(crowd.run() == Status::kOk);
+    REQUIRE(crowd.run() == SC_OK);
     check(got, poses, crowd.pair_count);
     CHECK(launches(cuda::Kernel::kBones) == 0);
     CHECK(launches(cuda::Kernel::kScratch) == 1);
@@ -170,44 +170,44 @@ TEST_CASE("a host crowd refuses what it cannot run, before it asks the device, a
   const Filter bad{};
   cuda::HostCrowd crowd;
   const auto open = [&](const Asset& asset, const Filter* filter, std::size_t instances, std::size_t capacity) {
-    const Status status = crowd.open(asset, RadiusKind::kDetect, filter, instances, capacity);
-    CHECK(crowd.is_open() == (status == Status::kOk));
+    const Status status = crowd.open(asset, SC_RADIUS_DETECT, filter, instances, capacity);
+    CHECK(crowd.is_open() == (status == SC_OK));
     return status;
   };
-  CHECK(crowd.run() == Status::kNotOpen);
-  CHECK(open(closed, nullptr, 1, 1) == Status::kNotOpen);
-  CHECK(open(boneless.asset, nullptr, 1, 1) == Status::kNotInAsset);
-  CHECK(open(opened.asset, nullptr, 0, 1) == Status::kBadArgument);
-  CHECK(open(opened.asset, nullptr, 1, 0) == Status::kBadArgument);
-  CHECK(open(opened.asset, nullptr, ~std::size_t{0}, 1) == Status::kBadArgument);
-  CHECK(open(opened.asset, &bad, 1, 1) == Status::kBadFilter);
-  CHECK(open(opened.asset, nullptr, 1, ~std::size_t{0} / 2) == Status::kDeviceFailed);
+  CHECK(crowd.run() == SC_NOT_OPEN);
+  CHECK(open(closed, nullptr, 1, 1) == SC_NOT_OPEN);
+  CHECK(open(boneless.asset, nullptr, 1, 1) == SC_NOT_IN_ASSET);
+  CHECK(open(opened.asset, nullptr, 0, 1) == Status{SC_BAD_VALUE, SC_FIELD_INSTANCES});
+  CHECK(open(opened.asset, nullptr, 1, 0) == Status{SC_BAD_VALUE, SC_FIELD_PAIRS});
+  CHECK(open(opened.asset, nullptr, ~std::size_t{0}, 1) == Status{SC_BAD_VALUE, SC_FIELD_INSTANCES});
+  CHECK(open(opened.asset, &bad, 1, 1) == Status{SC_TOO_SMALL, SC_FIELD_FILTER});
+  CHECK(open(opened.asset, nullptr, 1, ~std::size_t{0} / 2) == SC_NO_MEMORY);
   CHECK(fake_device.calls == 0);
 
-  REQUIRE(open(opened.asset, nullptr, 10, 1000) == Status::kOk);
+  REQUIRE(open(opened.asset, nullptr, 10, 1000) == SC_OK);
   const Poses poses(opened.asset, 10, 1);
   const std::size_t calls = fake_device.calls;
-  const auto refused = [&](Status status, auto change) {
+  const auto refused = [&](sc_code code, sc_field field, auto change) {
     const Results got = give(crowd, poses, 1000);
     change();
-    CHECK(crowd.run() == status);
+    CHECK(crowd.run() == Status{code, field});
     CHECK(crowd.pair_count == 0);
     for (const std::uint32_t count : got.counts) CHECK(count == 0);
     CHECK(got.pairs[0].instance == kUnwritten.instance);
   };
-  refused(Status::kBadArgument, [&] { crowd.instance_count = 11; });
-  refused(Status::kNullArgument, [&] { crowd.bones.data = nullptr; });
-  refused(Status::kTooFewBones, [&] { --crowd.bones.count; });
-  refused(Status::kBadStride, [&] { crowd.bones.stride = 60; });
-  refused(Status::kBadStride, [&] { crowd.instance_stride = 16; });
-  refused(Status::kBadStride, [&] { crowd.instance_stride = ~std::size_t{3}; });
-  refused(Status::kBadArgument, [&] { crowd.bones.layout = static_cast<MatrixLayout>(9); });
+  refused(SC_BAD_VALUE, SC_FIELD_INSTANCES, [&] { crowd.instance_count = 11; });
+  refused(SC_NULL, SC_FIELD_BONES, [&] { crowd.pose.bones = nullptr; });
+  refused(SC_TOO_SMALL, SC_FIELD_BONE_COUNT, [&] { --crowd.pose.bone_count; });
+  refused(SC_BAD_STRIDE, SC_FIELD_BONE_STRIDE, [&] { crowd.pose.bone_stride = 60; });
+  refused(SC_BAD_STRIDE, SC_FIELD_INSTANCE_STRIDE, [&] { crowd.instance_stride = 16; });
+  refused(SC_BAD_STRIDE, SC_FIELD_INSTANCE_STRIDE, [&] { crowd.instance_stride = ~std::size_t{3}; });
+  refused(SC_BAD_VALUE, SC_FIELD_BONE_LAYOUT, [&] { crowd.pose.bone_layout = static_cast<MatrixLayout>(9); });
   CHECK(fake_device.calls == calls);
   const Results got = give(crowd, poses, 1000);
-  CHECK(crowd.run() == Status::kOk);
+  CHECK(crowd.run() == SC_OK);
   check(got, poses, crowd.pair_count);
   crowd.close();
-  CHECK(crowd.run() == Status::kNotOpen);
+  CHECK(crowd.run() == SC_NOT_OPEN);
 }
 
 TEST_CASE("where there is no device, or no driver for it, a host crowd says so and holds nothing") {
@@ -219,8 +219,8 @@ TEST_CASE("where there is no device, or no driver for it, a host crowd says so a
     fake_device.count = 0;
     fake_device.error = error;
     cuda::HostCrowd crowd;
-    CHECK(cuda::check_device() == Status::kNoDevice);
-    CHECK(crowd.open(opened.asset, RadiusKind::kDetect, nullptr, 5, 10) == Status::kNoDevice);
+    CHECK(cuda::check_device() == SC_NO_DEVICE);
+    CHECK(crowd.open(opened.asset, SC_RADIUS_DETECT, nullptr, 5, 10) == SC_NO_DEVICE);
     CHECK(!crowd.is_open());
     CHECK(std::string(cuda::last_device_error()) == "the fake device failed");
   }
@@ -238,19 +238,19 @@ TEST_CASE("each failure of the device is told, leaves nothing behind, and can be
       fake_device.error = cudaErrorIllegalAddress;
       fake_device.calls_before_error = calls;
       cuda::HostCrowd crowd;
-      Status status = crowd.open(opened.asset, RadiusKind::kDetect, nullptr, 40, kCapacity);
-      CHECK(crowd.is_open() == (status == Status::kOk));
-      if (status == Status::kOk) {
+      Status status = crowd.open(opened.asset, SC_RADIUS_DETECT, nullptr, 40, kCapacity);
+      CHECK(crowd.is_open() == (status == SC_OK));
+      if (status == SC_OK) {
         const Results unread = give(crowd, poses, kCapacity);
         status = crowd.run();
-        failed_runs += status == Status::kDeviceFailed ? 1U : 0U;
+        failed_runs += status == SC_DEVICE_FAILED ? 1U : 0U;
       }
-      failures += status == Status::kDeviceFailed ? 1U : 0U;
-      CHECK((status == Status::kDeviceFailed || status == Status::kOk));
+      failures += status == SC_DEVICE_FAILED ? 1U : 0U;
+      CHECK((status == SC_DEVICE_FAILED || status == SC_OK));
       fake_device.error = cudaSuccess;
       if (!crowd.is_open()) continue;
       const Results got = give(crowd, poses, kCapacity);
-      CHECK(crowd.run() == Status::kOk);
+      CHECK(crowd.run() == SC_OK);
       check(got, poses, crowd.pair_count);
     }
     CHECK(failures > 20);
@@ -259,23 +259,23 @@ TEST_CASE("each failure of the device is told, leaves nothing behind, and can be
 }
 
 TEST_CASE(
-    "a job clears the counts of all groups with a list, of those without instances too, and launches each kind once") {
+    "a call clears the counts of all groups with a list, of those without instances too, and launches each kind once") {
   const Device device;
   const OpenedAsset opened(random_asset(30, 2).parts);
-  const Tables tables(opened.asset, RadiusKind::kDetect);
   std::mt19937 random(1);
   const std::vector<Sphere> spheres = spheres_of(30, 64, 30, random);
   alignas(16) std::uint64_t words[20000];
-  REQUIRE(tables.words.size() <= std::size(words));
-  std::copy(tables.words.begin(), tables.words.end(), words);
+  const std::vector<std::uint64_t> table = table_of(opened.asset, SC_RADIUS_DETECT);
+  REQUIRE(table.size() <= std::size(words));
+  std::copy(table.begin(), table.end(), words);
   std::vector<std::uint32_t> counts(64);
   std::vector<std::uint64_t> starts(64), pair_counts(3, 99);
   std::vector<CrowdPair> pairs(10000);
   alignas(16) static unsigned char scratch[200000];
   std::vector<cuda::CrowdGroup> groups(3);
   for (std::size_t g = 0; g < 3; ++g) {
-    groups[g].tables = &tables.tables;
-    groups[g].device_tables = words;
+    groups[g].table = table.data();
+    groups[g].device_table = words;
     groups[g].instance_count = g == 1 ? 0 : 64;
     groups[g].spheres = spheres.data();
     groups[g].counts = counts.data();
@@ -286,24 +286,24 @@ TEST_CASE(
     groups[g].scratch = scratch;
     groups[g].scratch_bytes = sizeof scratch;
   }
-  const cuda::CrowdJob job{{groups.data(), groups.size()}, nullptr};
-  REQUIRE(job.run() == Status::kOk);
+  const auto enqueue = [&] { return cuda::enqueue_crowds(groups.data(), groups.size(), nullptr); };
+  REQUIRE(enqueue() == SC_OK);
   CHECK(launches(cuda::Kernel::kSpheres) == 1);
   CHECK(pair_counts[0] > 100);
   CHECK(pair_counts[1] == 0);
   CHECK(pair_counts[2] == pair_counts[0]);
   fake_device.most_shared_bytes = 1024;
-  REQUIRE(job.run() == Status::kOk);
+  REQUIRE(enqueue() == SC_OK);
   CHECK(launches(cuda::Kernel::kSpheres) == 1);
   CHECK(launches(cuda::Kernel::kScratch) == 1);
   CHECK(pair_counts[2] == pair_counts[0]);
   groups[0].scratch = nullptr;
   pair_counts[0] = 5;
-  CHECK(job.run() == Status::kDeviceTooSmall);
+  CHECK(enqueue() == SC_DEVICE_TOO_SMALL);
   CHECK(pair_counts[0] == 5);
 
   const std::size_t calls = fake_device.calls;
-  CHECK(cuda::CrowdJob{}.run() == Status::kOk);
+  CHECK(cuda::enqueue_crowds(nullptr, 0, nullptr) == SC_OK);
   CHECK(fake_device.calls == calls);
 }
 

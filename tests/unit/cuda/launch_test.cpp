@@ -11,9 +11,9 @@ namespace {
 using cuda::Kernel;
 
 struct Group {
-  explicit Group(const Tables& tables, std::size_t instances) {
-    group.tables = &tables.tables;
-    group.device_tables = reinterpret_cast<const std::uint64_t*>(memory);
+  Group(const std::vector<std::uint64_t>& table, std::size_t instances) {
+    group.table = table.data();
+    group.device_table = reinterpret_cast<const std::uint64_t*>(memory);
     group.spheres = reinterpret_cast<const Sphere*>(memory);
     group.instance_count = instances;
   }
@@ -25,11 +25,11 @@ struct Group {
 
 TEST_CASE("groups go to shared memory where it is large enough, and else to as many blocks of scratch as fit") {
   const OpenedAsset large(random_asset(300, 1).parts), small(random_asset(20, 2).parts);
-  const Tables a(large.asset, RadiusKind::kFit), b(small.asset, RadiusKind::kFit);
+  const std::vector<std::uint64_t> a = table_of(large.asset, SC_RADIUS_FIT), b = table_of(small.asset, SC_RADIUS_FIT);
   Group groups[] = {Group(b, 33), Group(a, 100), Group(b, 0), Group(a, 31), Group(b, 64)};
   const std::size_t block = [&] {  // without bits
     cuda::GroupView view;
-    REQUIRE(cuda::view_group(groups[1].group, view) == Status::kOk);
+    REQUIRE(cuda::view_group(groups[1].group, view) == SC_OK);
     return cuda::layout_of(view).size;
   }();
   std::vector<cuda::CrowdGroup> all;
@@ -40,9 +40,9 @@ TEST_CASE("groups go to shared memory where it is large enough, and else to as m
   }
   cuda::Launch views;
   cuda::LaunchPlan plan;
-  REQUIRE(cuda::view_groups({all.data(), all.size()}, views) == Status::kOk);
+  REQUIRE(cuda::view_groups(all.data(), all.size(), views) == SC_OK);
   CHECK(views.count == 4);
-  REQUIRE(cuda::plan_launches(views, block - 1, plan) == Status::kOk);
+  REQUIRE(cuda::plan_launches(views, block - 1, plan) == SC_OK);
   REQUIRE(plan[Kernel::kSpheres].count == 2);
   CHECK(plan[Kernel::kSpheres].views[1].first_block == 5);
   CHECK(!plan[Kernel::kSpheres].views[0].in_scratch);
@@ -54,17 +54,17 @@ TEST_CASE("groups go to shared memory where it is large enough, and else to as m
   CHECK(plan[Kernel::kScratch].views[1].first_block == 3);
   CHECK(plan[Kernel::kScratch].blocks == 6);
   CHECK(plan[Kernel::kScratch].views[0].in_scratch);
-  views.views[1].instance_count = 1;  // as of an asset of more spheres than a block's places reach, with scratch for it
+  views.views[1].instances = 1;  // as of an asset of more spheres than a block's places reach, with scratch for it
   views.views[1].sphere_count = 60000;
   views.views[1].bit_words = 60000U * 59999U / 128 + 1;
   views.views[1].bits = reinterpret_cast<std::uint64_t*>(groups[1].memory);
-  views.views[1].matrices = reinterpret_cast<const float*>(groups[1].memory);
+  views.views[1].pose.bones = reinterpret_cast<const float*>(groups[1].memory);
   const cuda::BlockLayout largest = views.views[1].layout = cuda::layout_of(views.views[1]);
   views.views[1].scratch_bytes = ~std::size_t{0};
   CHECK(largest.size > std::size_t{4} << 30);
-  CHECK(cuda::plan_launches(views, block, plan) == Status::kDeviceTooSmall);
-  REQUIRE(cuda::view_groups({all.data(), all.size()}, views) == Status::kOk);
-  REQUIRE(cuda::plan_launches(views, block, plan) == Status::kOk);
+  CHECK(cuda::plan_launches(views, block, plan) == SC_DEVICE_TOO_SMALL);
+  REQUIRE(cuda::view_groups(all.data(), all.size(), views) == SC_OK);
+  REQUIRE(cuda::plan_launches(views, block, plan) == SC_OK);
   CHECK(plan[Kernel::kSpheres].count == 4);
   CHECK(plan[Kernel::kScratch].count == 0);
   CHECK(plan[Kernel::kSpheres].shared_bytes == block);
@@ -72,14 +72,14 @@ TEST_CASE("groups go to shared memory where it is large enough, and else to as m
 
 TEST_CASE("too many groups, none at all and a null list are told apart") {
   const OpenedAsset small(random_asset(9, 2).parts);
-  const Tables tables(small.asset, RadiusKind::kFit);
-  const Group group(tables, 1);
-  std::vector<cuda::CrowdGroup> all(cuda::CrowdJob::kGroupsMax + 1, group.group);
+  const std::vector<std::uint64_t> table = table_of(small.asset, SC_RADIUS_FIT);
+  const Group group(table, 1);
+  std::vector<cuda::CrowdGroup> all(cuda::kCrowdGroupsMax + 1, group.group);
   cuda::Launch views;
-  CHECK(cuda::view_groups({all.data(), all.size()}, views) == Status::kBadArgument);
-  CHECK(cuda::view_groups({all.data(), all.size() - 1}, views) == Status::kOk);
-  CHECK(cuda::view_groups({nullptr, 1}, views) == Status::kNullArgument);
-  CHECK(cuda::view_groups({}, views) == Status::kOk);
+  CHECK(cuda::view_groups(all.data(), all.size(), views) == SC_BAD_VALUE);
+  CHECK(cuda::view_groups(all.data(), all.size() - 1, views) == SC_OK);
+  CHECK(cuda::view_groups(nullptr, 1, views) == SC_NULL);
+  CHECK(cuda::view_groups(nullptr, 0, views) == SC_OK);
   CHECK(views.count == 0);
 }
 

@@ -87,7 +87,7 @@ TEST_CASE("an asset is read with the poses beside it, and not with those of othe
   folder.write("a.poses", pose_bytes(1, 2, 0, 24));
   CHECK_FALSE(read_posed_asset(folder.path.string(), "a", read, error));
   CHECK(error.find("other bones") != std::string::npos);
-  CHECK(read.asset.spheres().size == 5);
+  CHECK(view_of(read.asset).spheres().size == 5);
   folder.write("a.sphc", "no asset");
   CHECK_FALSE(read_posed_asset(folder.path.string(), "a", read, error));
   CHECK(error.rfind((folder.path / "a.sphc").string() + ": ", 0) == 0);

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "jobs.h"
+#include "pairs/plain_detection.h"
 #include "tiny_asset.h"
 
 namespace spherechain::bench {
@@ -16,15 +16,15 @@ namespace {
 constexpr std::uint32_t kParts = 7;
 constexpr std::size_t kSpheres = 30;
 
-bool is_ignored(const Asset& asset, std::size_t a, std::size_t b) {
-  const std::size_t bit = b * (b - 1) / 2 + a;
-  return ((asset.ignored()[bit / 64] >> (bit % 64)) & 1U) != 0;
+bool is_ignored(const AssetView& asset, std::size_t a, std::size_t b) {
+  return test_bit(asset.ignored(), ignored_bit(a, b));
 }
 
-float reach_of(const Asset& asset, const Pair& pair) {
-  for (const NearPair& near : asset.near_pairs(RadiusKind::kFit)) {
-    if (Pair{near.a, near.b} == pair) {
-      return near.reach;
+// -1 where it is no rest pair.
+float rest_scale_of(const AssetView& asset, const Pair& pair) {
+  for (const RestPair& rest : asset.rest_pairs(SC_RADIUS_FIT)) {
+    if (Pair{rest.a, rest.b} == pair) {
+      return rest.rest_scale;
     }
   }
   return -1;
@@ -34,7 +34,7 @@ float reach_of(const Asset& asset, const Pair& pair) {
 
 TEST_CASE("a sphere's parts lie inside it, are alike, and have its volume together") {
   const test::OpenedAsset whole(test::random_asset(kSpheres, 1).parts);
-  REQUIRE(whole.status == Status::kOk);
+  REQUIRE(whole.status == SC_OK);
   std::mt19937 random(2);
   std::vector<Sphere> spheres = test::random_spheres(kSpheres, random);
   for (Sphere& sphere : spheres) {
@@ -54,43 +54,45 @@ TEST_CASE("a sphere's parts lie inside it, are alike, and have its volume togeth
   }
 }
 
-TEST_CASE("parts are in the chains of their sphere, and their pairs are ignored and near as the spheres' are") {
+TEST_CASE(
+    "parts are in the chains of their sphere, and their pairs are ignored pairs and rest pairs as the spheres' are") {
   const test::OpenedAsset whole(test::random_asset(kSpheres, 1).parts);
-  REQUIRE(whole.status == Status::kOk);
+  REQUIRE(whole.status == SC_OK);
   const SplitAsset split(whole.asset, kParts);
-  const Asset& asset = split.asset();
+  const AssetView &asset = view_of(split.asset()), &of_whole = whole.view();
   REQUIRE(asset.spheres().size == kSpheres * kParts);
-  REQUIRE(asset.chain_count() == whole.asset.chain_count());
+  REQUIRE(asset.chain_count() == of_whole.chain_count());
   for (std::size_t c = 0; c < asset.chain_count(); ++c) {
-    const auto members = asset.chain(c).spheres, of = whole.asset.chain(c).spheres;
+    const auto members = asset.chain(c).spheres, of = of_whole.chain(c).spheres;
     REQUIRE(members.size == kParts * of.size);
     for (std::size_t i = 0; i < members.size; ++i) {
       CHECK(members[i] == kParts * of[i / kParts] + i % kParts);
     }
   }
-  std::size_t near = 0;
+  std::size_t rest_pairs = 0;
   for (std::uint32_t b = 1; b < kSpheres * kParts; ++b) {
     for (std::uint32_t a = 0; a < b; ++a) {
       const Pair parents{a / kParts, b / kParts};
-      const bool ignored = parents.a == parents.b || is_ignored(whole.asset, parents.a, parents.b);
+      const bool ignored = parents.a == parents.b || is_ignored(of_whole, parents.a, parents.b);
       CHECK(is_ignored(asset, a, b) == ignored);
       if (a % kParts == 0 || b % kParts == kParts - 1) {  // enough, for looking each up takes long
-        CHECK(reach_of(asset, {a, b}) == reach_of(whole.asset, parents));
+        CHECK(rest_scale_of(asset, {a, b}) == rest_scale_of(of_whole, parents));
       }
-      near += parents.a != parents.b && reach_of(whole.asset, parents) >= 0 ? 1 : 0;
+      rest_pairs += parents.a != parents.b && rest_scale_of(of_whole, parents) >= 0 ? 1 : 0;
     }
   }
-  CHECK(near == asset.near_pairs(RadiusKind::kFit).size);
+  CHECK(rest_pairs == asset.rest_pairs(SC_RADIUS_FIT).size);
 }
 
 TEST_CASE("parts touch only where their spheres do") {
   const test::OpenedAsset whole(test::random_asset(kSpheres, 4).parts);
-  REQUIRE(whole.status == Status::kOk);
+  REQUIRE(whole.status == SC_OK);
   const SplitAsset split(whole.asset, 20);
   std::mt19937 random(5);
   const std::vector<Sphere> spheres = test::random_spheres(kSpheres, random);
-  const test::Detected of_spheres = test::detect(whole.asset, spheres, Method::kM2, RadiusKind::kFit);
-  const test::Detected of_parts = test::detect(split.asset(), split.split(spheres), Method::kM2, RadiusKind::kFit);
+  const PlainResult of_spheres = PlainDetection(whole.view(), SC_RADIUS_FIT).all_pairs(spheres.data());
+  const PlainResult of_parts =
+      PlainDetection(view_of(split.asset()), SC_RADIUS_FIT).all_pairs(split.split(spheres).data());
   CHECK(of_parts.pairs.size() > of_spheres.pairs.size());
   for (const Pair& pair : of_parts.pairs) {
     const Sphere &p = spheres[pair.a / 20], &q = spheres[pair.b / 20];
@@ -100,7 +102,7 @@ TEST_CASE("parts touch only where their spheres do") {
 
 TEST_CASE("more parts than an asset has room for are refused, with a sentence") {
   const test::OpenedAsset whole(test::random_asset(kSpheres, 1).parts);
-  REQUIRE(whole.status == Status::kOk);
+  REQUIRE(whole.status == SC_OK);
   CHECK_THROWS_AS(SplitAsset(whole.asset, 0), std::runtime_error);
   CHECK_THROWS_WITH_AS(SplitAsset(whole.asset, kMaxSphereCount / kSpheres + 1), doctest::Contains("parts"),
                        std::runtime_error);

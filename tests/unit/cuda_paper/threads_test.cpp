@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The paper's threads, one after the other, against DetectJob.
+// The paper's threads, one after the other, against PlainDetection.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -8,7 +8,6 @@
 #include <limits>
 #include <numeric>
 
-#include "jobs.h"
 #include "paper_tables.h"
 #include "tiny_asset.h"
 
@@ -70,10 +69,11 @@ Found run_threads(const Tables& tables, const std::vector<Sphere>& spheres) {
 }
 
 // How many overlaps M1 has.
-std::size_t check_like_the_jobs(const Asset& asset, const std::vector<Sphere>& spheres, RadiusKind radius) {
+std::size_t check_like_plain(const AssetView& asset, const std::vector<Sphere>& spheres, Radius radius) {
   const Found found = run_threads(Tables(asset, radius), spheres);
-  std::vector<ChainPair> m1 = detect(asset, spheres, Method::kM1, radius).chain_pairs, m2;
-  for (const Pair& pair : detect(asset, spheres, Method::kM2, radius).pairs) {
+  const PlainDetection plain(asset, radius);
+  std::vector<ChainPair> m1 = plain.chains(spheres.data()).chain_pairs, m2;
+  for (const Pair& pair : plain.all_pairs(spheres.data()).pairs) {
     m2.push_back({0, pair});
   }
   std::sort(m1.begin(), m1.end(), by_chain);
@@ -83,7 +83,7 @@ std::size_t check_like_the_jobs(const Asset& asset, const std::vector<Sphere>& s
   return m1.size();
 }
 
-constexpr RadiusKind kRadii[] = {RadiusKind::kFit, RadiusKind::kDetect};
+constexpr Radius kRadii[] = {SC_RADIUS_FIT, SC_RADIUS_DETECT};
 
 }  // namespace
 
@@ -93,10 +93,10 @@ TEST_CASE("the paper's threads find the pairs of M1 and M2, in every chain that 
   for (const unsigned n : {1U, 2U, 3U, 17U, 50U, 64U, 65U, 84U, 128U, 129U, 200U}) {
     CAPTURE(n);
     const OpenedAsset opened(random_asset(n, n).parts);
-    REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
-    for (const RadiusKind radius : kRadii) {
+    REQUIRE_MESSAGE(opened.status == SC_OK, opened.message);
+    for (const Radius radius : kRadii) {
       for (int draw = 0; draw < 4; ++draw) {
-        overlaps += check_like_the_jobs(opened.asset, random_spheres(n, random), radius);
+        overlaps += check_like_plain(opened.view(), random_spheres(n, random), radius);
       }
     }
   }
@@ -106,7 +106,7 @@ TEST_CASE("the paper's threads find the pairs of M1 and M2, in every chain that 
 TEST_CASE("spheres that are not finite, or too large to square, touch nothing in the paper's threads either") {
   constexpr std::size_t kCount = 40;
   const OpenedAsset opened(random_asset(kCount, 3).parts);
-  REQUIRE(opened.status == Status::kOk);
+  REQUIRE(opened.status == SC_OK);
   std::mt19937 random(13);
   for (const float odd : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
                           -std::numeric_limits<float>::infinity(), 1e30F, -1.0F}) {
@@ -114,18 +114,18 @@ TEST_CASE("spheres that are not finite, or too large to square, touch nothing in
     for (std::size_t i = 0; i < kCount; i += 3) {
       (i % 2 == 0 ? spheres[i].radius : spheres[i].y) = odd;
     }
-    check_like_the_jobs(opened.asset, spheres, RadiusKind::kFit);
+    check_like_plain(opened.view(), spheres, SC_RADIUS_FIT);
   }
 }
 
 // A sum in another order, or a multiply-add, decides one in some hundred of these otherwise.
-TEST_CASE("where the last bit decides, the paper's threads decide as the jobs do") {
+TEST_CASE("where the last bit decides, the paper's threads decide as plain loops do") {
   AssetParts parts = random_asset(2, 1).parts;
   parts.ignored.assign(parts.ignored.size(), 0);
-  parts.near_fit.clear();
+  parts.rest_fit.clear();
   parts.chains.assign(1, {"all", {0}, {0, 1}});
   const OpenedAsset opened(parts);
-  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
+  REQUIRE_MESSAGE(opened.status == SC_OK, opened.message);
   std::mt19937 random(19);
   for (int draw = 0; draw < 2000; ++draw) {
     const auto place = [&] { return Sphere{uniform(random, 0, 1), uniform(random, 0, 1), uniform(random, 0, 1), 0}; };
@@ -135,17 +135,17 @@ TEST_CASE("where the last bit decides, the paper's threads decide as the jobs do
     const float next = std::nextafter(q.radius, 2.0F);
     for (const float radius : {q.radius, next}) {
       q.radius = radius;
-      check_like_the_jobs(opened.asset, {p, q}, RadiusKind::kFit);
+      check_like_plain(opened.view(), {p, q}, SC_RADIUS_FIT);
     }
   }
 }
 
 TEST_CASE("a list that is too short keeps what fits and counts on") {
   const OpenedAsset opened(random_asset(60, 7).parts);
-  REQUIRE(opened.status == Status::kOk);
+  REQUIRE(opened.status == SC_OK);
   std::mt19937 random(17);
   const std::vector<Sphere> spheres = random_spheres(60, random);
-  const Tables tables(opened.asset, RadiusKind::kDetect);
+  const Tables tables(opened.view(), SC_RADIUS_DETECT);
   const Scene scene = tables.scene(spheres.data());
   const std::size_t all = run_threads(tables, spheres).m2_sphere.size();
   REQUIRE(all > 10);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whatever the rule of refit, a crowd of skeletons has the spheres of RefitBonesJob, and so its pairs.
+// A crowd of skeletons has the spheres of a refit job an instance, and so its pairs.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 #include "crowds.h"
 #include "jobs.h"
 #include "owned_filter.h"
-#include "tiny_moments.h"
+#include "palette.h"
 
 namespace spherechain::test {
 namespace {
@@ -19,22 +19,8 @@ constexpr std::size_t kInstances = 37;  // two full registers of the widest targ
 
 struct Shape {
   std::size_t spheres = 40, bones = 9, batch_pairs = 48;
-  RefitRule rule = RefitRule::kMoments;
   bool has_large_spheres = true;
-  bool has_whole_moments = false;  // a bone's own are symmetric, as older bakers gave them
 };
-
-void make_symmetric(MomentParts& moments) {
-  std::size_t pair = 0;
-  for (const std::size_t bones : moments.bone_counts) {
-    for (std::size_t left = bones; left > 0; pair += left, --left) {  // a bone's pairs begin with its own
-      float* const values = moments.moments[pair].values;
-      for (std::size_t i = 0; i < kMomentSize; ++i) {
-        if (i / 4 < i % 4) values[i] = values[4 * (i % 4) + i / 4] = values[i] / 2;
-      }
-    }
-  }
-}
 
 TinyAsset make(const Shape& shape) {
   TinyAsset tiny = random_asset(shape.spheres, 21);
@@ -42,41 +28,38 @@ TinyAsset make(const Shape& shape) {
     const std::uint16_t counts[] = {2, 8, 1, 19, 4, 3, 16, 2};
     give_pivots(tiny, i, shape.has_large_spheres ? counts[i % 8] : std::uint16_t{2}, static_cast<unsigned>(i / 2));
   }
-  TinySkin skin = add_bones(tiny, shape.bones, 22);
-  if (shape.rule == RefitRule::kMoments) {
-    add_moments(tiny, skin, shape.batch_pairs);
-    if (shape.has_whole_moments) make_symmetric(tiny.parts.bone_refit.moments);
-  }
-  tiny.parts.refit = static_cast<std::uint8_t>(shape.rule);
+  const TinySkin skin = add_bones(tiny, shape.bones, 22);
+  add_moments(tiny, skin, shape.batch_pairs);
   return tiny;
 }
 
 struct CrowdOfBones {
   explicit CrowdOfBones(const Shape& shape)
       : tiny(make(shape)), opened(tiny.parts), sphere_count(shape.spheres), bone_count(shape.bones) {
-    REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
-    REQUIRE(opened.asset.refit_rule() == shape.rule);
-    const bool is_upper = shape.rule == RefitRule::kMoments && !shape.has_whole_moments;
-    REQUIRE(opened.asset.moment_tables().own_are_upper == is_upper);
+    REQUIRE_MESSAGE(opened.status == SC_OK, opened.message);
     for (std::size_t i = 0; i < kInstances; ++i) {
       const std::vector<Matrix> own = random_matrices(bone_count, static_cast<unsigned>(i));
       matrices.insert(matrices.end(), own.begin(), own.end());
     }
   }
 
-  BoneMatrices bones_of(std::size_t instance) const { return {matrices[instance * bone_count].data(), bone_count}; }
+  Pose pose_at(std::size_t instance) const {
+    Pose pose = pose_of(matrices);
+    pose.bones = matrices[instance * bone_count].data();
+    pose.bone_count = bone_count;
+    return pose;
+  }
 
   std::vector<Sphere> spheres_of(std::size_t instance) const {
-    const Refitted refitted = refit_bones(opened.asset, bones_of(instance), {}, RadiusKind::kDetect, Target::kScalar);
-    REQUIRE(refitted.status == Status::kOk);
+    const Refitted refitted = refit(opened.asset, pose_at(instance), SC_RADIUS_DETECT, SC_TARGET_SCALAR);
+    REQUIRE(refitted.status == SC_OK);
     return refitted.spheres;
   }
 
   std::vector<CrowdPair> expected() const {
     std::vector<CrowdPair> out;
     for (std::size_t i = 0; i < kInstances; ++i) {
-      for (const Pair& pair :
-           detect(opened.asset, spheres_of(i), Method::kM2, RadiusKind::kDetect, Target::kScalar).pairs) {
+      for (const Pair& pair : detect(opened.asset, spheres_of(i), SC_RADIUS_DETECT, SC_TARGET_SCALAR).pairs) {
         out.push_back({static_cast<std::uint32_t>(i), pair});
       }
     }
@@ -87,13 +70,14 @@ struct CrowdOfBones {
     CrowdBuffers buffers(opened.asset, kInstances, task_count);
     std::vector<CrowdPair> pairs(kInstances * sphere_count * sphere_count);
     std::size_t threads = 3;
-    buffers.job.bones = bones_of(0);
-    buffers.job.instance_stride = bone_count * sizeof(Matrix);
+    buffers.job.pose = pose_at(0);
     buffers.job.target = target;
     buffers.job.filter = filter;
-    buffers.job.hook = {on_threads, &threads};
-    buffers.job.pairs = {pairs.data(), pairs.size()};
-    REQUIRE(buffers.job.run() == Status::kOk);
+    buffers.job.parallel_for = on_threads;
+    buffers.job.user = &threads;
+    buffers.job.pairs = pairs.data();
+    buffers.job.pair_capacity = pairs.size();
+    REQUIRE(buffers.job.run() == SC_OK);
     pairs.resize(buffers.job.pair_count);
     return pairs;
   }
@@ -103,8 +87,8 @@ struct CrowdOfBones {
     CHECK(wanted.size() > 200);
     for (const Target target : supported_targets()) {
       for (const std::size_t tasks : {1U, 2U, 5U}) {
-        INFO(to_string(target), ", ", tasks, " tasks");
-        CHECK(run(target, tasks) == wanted);
+        INFO(std::string(sc_target_name(target)), ", ", tasks, " tasks");
+        CHECK(same_bits(run(target, tasks), wanted));
       }
     }
   }
@@ -150,22 +134,21 @@ void check_last_bits(const Shape& shape) {
     const auto [touching, apart] = find_limit(spheres[a], spheres[b]);
     REQUIRE(touch(spheres[a], spheres[b], touching));
     REQUIRE(!touch(spheres[a], spheres[b], apart));
-    REQUIRE(reset_filter(crowd.opened.asset, filter.filter) == Status::kOk);
+    REQUIRE(sc_reset_filter(&crowd.opened.asset, &filter.filter) == SC_OK);
     for (std::uint32_t i = 1; i < count; ++i) {
       for (std::uint32_t k = 0; k < i; ++k) {
-        REQUIRE(ignore_pair(crowd.opened.asset, filter.filter, k, i, k != a || i != b) == Status::kOk);
+        REQUIRE(sc_ignore_pair(&crowd.opened.asset, &filter.filter, k, i, k != a || i != b ? 1 : 0) == SC_OK);
       }
     }
-    const CrowdPair own{instance, {a, b}};
+    const auto is_own = [&](const CrowdPair& p) { return p.instance == instance && p.pair == Pair{a, b}; };
     for (const float padding : {touching, apart}) {
-      REQUIRE(pad_sphere(crowd.opened.asset, filter.filter, b, padding) == Status::kOk);
+      REQUIRE(sc_pad_sphere(&crowd.opened.asset, &filter.filter, b, padding) == SC_OK);
       const bool wanted =
-          !detect(crowd.opened.asset, spheres, Method::kM2, RadiusKind::kDetect, Target::kScalar, &filter.filter)
-               .pairs.empty();
+          !detect(crowd.opened.asset, spheres, SC_RADIUS_DETECT, SC_TARGET_SCALAR, &filter.filter).pairs.empty();
       for (const Target target : supported_targets()) {
-        INFO(to_string(target), ", ", a, " and ", b, " of ", instance);
+        INFO(std::string(sc_target_name(target)), ", ", a, " and ", b, " of ", instance);
         const std::vector<CrowdPair> found = crowd.run(target, 1, &filter.filter);
-        CHECK(std::count(found.begin(), found.end(), own) == (wanted ? 1 : 0));
+        CHECK(std::count_if(found.begin(), found.end(), is_own) == (wanted ? 1 : 0));
       }
     }
   }
@@ -173,19 +156,15 @@ void check_last_bits(const Shape& shape) {
 
 }  // namespace
 
-TEST_CASE("by moments, a crowd of skeletons gives the pairs of its refitted spheres") {
+TEST_CASE("a crowd of skeletons gives the pairs of its refitted spheres") {
   CrowdOfBones(Shape{}).check();
   CrowdOfBones(Shape{60, 20}).check();
   CrowdOfBones(Shape{40, 9, 1}).check();
   CrowdOfBones(Shape{40, kMaxMomentBones, kMaxMomentPairs}).check();
-  CrowdOfBones(Shape{40, 300, 48, RefitRule::kMoments, false}).check();
-  CrowdOfBones(Shape{40, 9, 48, RefitRule::kMoments, true, true}).check();
+  CrowdOfBones(Shape{40, 300, 48, false}).check();
 }
 
-TEST_CASE("by moments, a crowd's spheres are those of a single refit to the last bit") {
-  check_last_bits(Shape{});
-  check_last_bits(Shape{40, 9, 48, RefitRule::kMoments, true, true});
-}
+TEST_CASE("a crowd's spheres are those of a single refit to the last bit") { check_last_bits(Shape{}); }
 
 TEST_CASE("bits of a filter past its pairs count for nothing in a crowd") {
   const CrowdOfBones crowd(Shape{});
@@ -195,40 +174,35 @@ TEST_CASE("bits of a filter past its pairs count for nothing in a crowd") {
   filter.ignored.back() |= ~std::uint64_t{0} << (64 - spare);
   const std::vector<CrowdPair> wanted = crowd.expected();
   for (const Target target : supported_targets()) {
-    CHECK(crowd.run(target, 1, &filter.filter) == wanted);
+    CHECK(same_bits(crowd.run(target, 1, &filter.filter), wanted));
   }
 }
 
-TEST_CASE("matrices that are not finite cost no other instance a pair, whatever the rule") {
-  for (const RefitRule rule : {RefitRule::kPaper, RefitRule::kCalibrated, RefitRule::kMoments}) {
-    INFO("rule ", static_cast<int>(rule));
-    Shape shape;
-    shape.rule = rule;
-    CrowdOfBones crowd(shape);
-    const std::vector<CrowdPair> before = crowd.expected();
-    const float bad[] = {kNan, kInfinity, -kInfinity, 3e38F, -1e30F, 1e-40F};
-    std::vector<bool> is_bad(kInstances);
-    for (std::size_t i = 1; i < kInstances; i += 3) {
-      is_bad[i] = true;
-      for (std::size_t k = 0; k < 1 + i % 3; ++k) {
-        const std::size_t bone = (i + 5 * k) % crowd.bone_count;
-        crowd.matrices[i * crowd.bone_count + bone][(i + 7 * k) % 12] = bad[(i / 3 + k) % 6];
-      }
+TEST_CASE("matrices that are not finite cost no other instance a pair") {
+  CrowdOfBones crowd(Shape{});
+  const std::vector<CrowdPair> before = crowd.expected();
+  const float bad[] = {kNan, kInfinity, -kInfinity, 3e38F, -1e30F, 1e-40F};
+  std::vector<bool> is_bad(kInstances);
+  for (std::size_t i = 1; i < kInstances; i += 3) {
+    is_bad[i] = true;
+    for (std::size_t k = 0; k < 1 + i % 3; ++k) {
+      const std::size_t bone = (i + 5 * k) % crowd.bone_count;
+      crowd.matrices[i * crowd.bone_count + bone][(i + 7 * k) % 12] = bad[(i / 3 + k) % 6];
     }
-    std::vector<CrowdPair> wanted = crowd.expected();
-    for (const Target target : supported_targets()) {
-      INFO(to_string(target));
-      const std::vector<CrowdPair> found = crowd.run(target);
-      CHECK(found == wanted);
-      const auto of_good = [&](const std::vector<CrowdPair>& pairs) {
-        std::vector<CrowdPair> out;
-        std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(out),
-                     [&](const CrowdPair& pair) { return !is_bad[pair.instance]; });
-        return out;
-      };
-      CHECK(of_good(found).size() > 100);
-      CHECK(of_good(found) == of_good(before));
-    }
+  }
+  std::vector<CrowdPair> wanted = crowd.expected();
+  for (const Target target : supported_targets()) {
+    INFO(std::string(sc_target_name(target)));
+    const std::vector<CrowdPair> found = crowd.run(target);
+    CHECK(same_bits(found, wanted));
+    const auto of_good = [&](const std::vector<CrowdPair>& pairs) {
+      std::vector<CrowdPair> out;
+      std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(out),
+                   [&](const CrowdPair& pair) { return !is_bad[pair.instance]; });
+      return out;
+    };
+    CHECK(of_good(found).size() > 100);
+    CHECK(same_bits(of_good(found), of_good(before)));
   }
 }
 

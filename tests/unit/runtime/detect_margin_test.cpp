@@ -6,8 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "crowds.h"
 #include "jobs.h"
-#include "spherechain/crowd.h"
 #include "tiny_asset.h"
 
 namespace spherechain::test {
@@ -15,21 +15,15 @@ namespace {
 
 // What a crowd of this one instance finds.
 std::vector<Pair> in_crowd(const Asset& asset, const std::vector<Sphere>& spheres, Target target) {
-  std::vector<std::uint64_t> words(CrowdContext::words_needed(asset, 1));
+  CrowdBuffers buffers(asset, 1, 1);
   std::vector<CrowdPair> found(spheres.size() * spheres.size());
-  std::uint32_t count = 0;
-  CrowdContext context{{words.data(), words.size()}};
-  CrowdJob job;
-  job.asset = &asset;
-  job.spheres = spheres.data();
-  job.instance_count = 1;
-  job.target = target;
-  job.context = &context;
-  job.counts = {&count, 1};
-  job.pairs = {found.data(), found.size()};
-  REQUIRE(job.run() == Status::kOk);
+  buffers.job.spheres = spheres.data();
+  buffers.job.target = target;
+  buffers.job.pairs = found.data();
+  buffers.job.pair_capacity = found.size();
+  REQUIRE(buffers.job.run() == SC_OK);
   std::vector<Pair> pairs;
-  for (std::size_t i = 0; i < job.pair_count; ++i) pairs.push_back(found[i].pair);
+  for (std::size_t i = 0; i < buffers.job.pair_count; ++i) pairs.push_back(found[i].pair);
   return pairs;
 }
 
@@ -64,8 +58,8 @@ TEST_CASE("pairs a few roundings from touching are judged by the formula alone, 
   std::size_t reported = 0, close = 0;
   for (const std::size_t n : {2U, 30U, 128U, 150U}) {
     TinyAsset tiny = random_asset(n, static_cast<unsigned>(n));
-    tiny.parts.near_fit.clear();
-    tiny.parts.near_detect.clear();
+    tiny.parts.rest_fit.clear();
+    tiny.parts.rest_detect.clear();
     const OpenedAsset opened(tiny.parts);
     const std::set<Pair> ignored(tiny.ignored_pairs.begin(), tiny.ignored_pairs.end());
     for (const float scale : {1e-22F, 1e-18F, 1e-3F, 1.0F, 1e4F, 1e15F, 1e17F, 3e17F, 5e17F, 1e18F}) {
@@ -85,8 +79,8 @@ TEST_CASE("pairs a few roundings from touching are judged by the formula alone, 
         }
         reported += expected.size();
         for (const Target target : supported_targets()) {
-          CAPTURE(to_string(target));
-          CHECK(detect(opened.asset, spheres, Method::kM2, RadiusKind::kDetect, target).pairs == expected);
+          INFO(std::string(sc_target_name(target)));
+          CHECK(detect(opened.asset, spheres, SC_RADIUS_DETECT, target).pairs == expected);
           CHECK(in_crowd(opened.asset, spheres, target) == expected);
         }
       }
@@ -99,7 +93,7 @@ TEST_CASE("pairs a few roundings from touching are judged by the formula alone, 
 TEST_CASE("spheres touch as well where the squares of their coordinates are infinite") {
   TinyAsset tiny = random_asset(40, 1);
   tiny.parts.ignored.assign(tiny.parts.ignored.size(), 0);
-  tiny.parts.near_detect.clear();
+  tiny.parts.rest_detect.clear();
   const OpenedAsset opened(tiny.parts);
   for (const float far : {1e18F, 1e19F, 1.8e19F, 1.9e19F, 1e20F, 1e30F, 3e38F}) {
     std::vector<Sphere> spheres(40, {0, 0, 0, 1});
@@ -119,8 +113,8 @@ TEST_CASE("spheres touch as well where the squares of their coordinates are infi
     REQUIRE(expected.size() >= 20);
     for (const Target target : supported_targets()) {
       CAPTURE(far);
-      CAPTURE(to_string(target));
-      CHECK(detect(opened.asset, spheres, Method::kM2, RadiusKind::kDetect, target).pairs == expected);
+      INFO(std::string(sc_target_name(target)));
+      CHECK(detect(opened.asset, spheres, SC_RADIUS_DETECT, target).pairs == expected);
       CHECK(in_crowd(opened.asset, spheres, target) == expected);
     }
   }

@@ -1,59 +1,33 @@
 // SPDX-License-Identifier: MIT
-// The rules for one pair, the buffers, and what a job refuses.
+// The rules for one pair, and the buffers.
 #include <doctest/doctest.h>
 
 #include <cmath>
 
 #include "jobs.h"
+#include "pairs/plain_detection.h"
 #include "tiny_asset.h"
 
 namespace spherechain::test {
 namespace {
 
-// n spheres, nothing ignored, no near pairs, one chain of all.
+// n spheres, nothing ignored, no rest pairs.
 AssetParts plain_asset(std::uint32_t n) {
   AssetParts parts = random_asset(n, 1).parts;
   parts.ignored.assign(parts.ignored.size(), 0);
-  parts.near_fit.clear();
-  parts.near_detect.clear();
-  parts.chains.assign(1, {"all", {0}, {}});
-  for (std::uint32_t i = 0; i < n; ++i) {
-    parts.chains[0].spheres.push_back(i);
-  }
+  parts.rest_fit.clear();
+  parts.rest_detect.clear();
   return parts;
 }
 
-// What both methods find; they must agree, for the one chain holds all.
 std::vector<Pair> pairs_of(const AssetParts& parts, const std::vector<Sphere>& spheres,
-                           RadiusKind kind = RadiusKind::kDetect) {
+                           Radius kind = SC_RADIUS_DETECT) {
   const OpenedAsset opened(parts);
-  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
-  const Detected m1 = detect(opened.asset, spheres, Method::kM1, kind);
-  const Detected m2 = detect(opened.asset, spheres, Method::kM2, kind);
-  CHECK(m1.pairs == m2.pairs);
-  CHECK(m1.test_count == m2.test_count);
-  return m2.pairs;
+  REQUIRE_MESSAGE(opened.status == SC_OK, opened.message);
+  const Detected found = detect(opened.asset, spheres, kind);
+  CHECK(found.pairs == PlainDetection(opened.view(), kind).all_pairs(spheres.data()).pairs);
+  return found.pairs;
 }
-
-struct Buffers {
-  explicit Buffers(const Asset& asset) : words(DetectContext::words_needed(asset)), pairs(200), chain_pairs(200) {
-    context.words = {words.data(), words.size()};
-  }
-  DetectJob job(const Asset& asset, const std::vector<Sphere>& spheres, Method method) {
-    DetectJob job;
-    job.asset = &asset;
-    job.spheres = {spheres.data(), spheres.size()};
-    job.method = method;
-    job.context = &context;
-    job.pairs = {pairs.data(), pairs.size()};
-    job.chain_pairs = {chain_pairs.data(), chain_pairs.size()};
-    return job;
-  }
-  std::vector<std::uint64_t> words;
-  DetectContext context;
-  std::vector<Pair> pairs;
-  std::vector<ChainPair> chain_pairs;
-};
 
 }  // namespace
 
@@ -76,7 +50,7 @@ TEST_CASE("the squared distance is summed in the order the header gives, where t
     const float d2 = (dx * dx + dy * dy) + dz * dz;
     q.radius = std::sqrt(d2);  // they touch, as nearly as a float can say
     const float reach = q.radius * q.radius;
-    const bool overlaps = !detect(opened.asset, {p, q}, Method::kM2, RadiusKind::kFit).pairs.empty();
+    const bool overlaps = !detect(opened.asset, {p, q}, SC_RADIUS_FIT).pairs.empty();
     CHECK(overlaps == (d2 < reach));
     other_order_differs += overlaps != (dx * dx + (dy * dy + dz * dz) < reach);
     fused_differs += overlaps != (std::fma(dz, dz, std::fma(dy, dy, dx * dx)) < reach);
@@ -90,43 +64,40 @@ TEST_CASE("an ignored pair is neither tested nor reported") {
   parts.ignored[0] = 1U << 1;  // bit b(b-1)/2 + a: a = 0, b = 2
   const std::vector<Sphere> heap(3, {0, 0, 0, 1});
   CHECK(pairs_of(parts, heap) == std::vector<Pair>{{0, 1}, {1, 2}});
-  const OpenedAsset opened(parts);
-  CHECK(detect(opened.asset, heap, Method::kM1, RadiusKind::kFit).test_count == 2);
-  CHECK(detect(opened.asset, heap, Method::kM2, RadiusKind::kFit).test_count == 2);
 }
 
-TEST_CASE("a near pair is reported only within its reach, which each radius has of its own") {
+TEST_CASE("a rest pair is reported only where it is closer than its scale, which each radius has of its own") {
   AssetParts parts = plain_asset(2);
-  parts.near_fit = {{0, 1, 0.75F}};
-  parts.near_detect = {{0, 1, 0.5F}};
+  parts.rest_fit = {{0, 1, 0.75F}};
+  parts.rest_detect = {{0, 1, 0.5F}};
   const auto apart = [](float distance) { return std::vector<Sphere>{{0, 0, 0, 1}, {distance, 0, 0, 1}}; };
-  CHECK(pairs_of(parts, apart(1.6F), RadiusKind::kFit).empty());
-  CHECK(pairs_of(parts, apart(1.5F), RadiusKind::kFit).empty());
-  CHECK(pairs_of(parts, apart(1.4F), RadiusKind::kFit).size() == 1);
-  CHECK(pairs_of(parts, apart(1.4F), RadiusKind::kDetect).empty());
-  CHECK(pairs_of(parts, apart(0.9F), RadiusKind::kDetect).size() == 1);
-  parts.near_detect[0].reach = 0;
-  CHECK(pairs_of(parts, apart(0.0F), RadiusKind::kDetect).empty());
-  parts.near_detect[0].reach = 0.75F;
+  CHECK(pairs_of(parts, apart(1.6F), SC_RADIUS_FIT).empty());
+  CHECK(pairs_of(parts, apart(1.5F), SC_RADIUS_FIT).empty());
+  CHECK(pairs_of(parts, apart(1.4F), SC_RADIUS_FIT).size() == 1);
+  CHECK(pairs_of(parts, apart(1.4F), SC_RADIUS_DETECT).empty());
+  CHECK(pairs_of(parts, apart(0.9F), SC_RADIUS_DETECT).size() == 1);
+  parts.rest_detect[0].rest_scale = 0;
+  CHECK(pairs_of(parts, apart(0.0F), SC_RADIUS_DETECT).empty());
+  parts.rest_detect[0].rest_scale = 0.75F;
   parts.ignored[0] = 1;
-  CHECK(pairs_of(parts, apart(0.0F), RadiusKind::kDetect).empty());
+  CHECK(pairs_of(parts, apart(0.0F), SC_RADIUS_DETECT).empty());
 }
 
-TEST_CASE("a reach just below 1 is judged by the formula alone, at the distances where the full reach flips") {
+TEST_CASE("a scale just below 1 is judged by the formula alone, at the distances where the full sum flips") {
   AssetParts parts = plain_asset(2);
-  const float reach = std::nextafter(1.0F, 0.0F);
-  parts.near_detect = {{0, 1, reach}};
+  const float scale = std::nextafter(1.0F, 0.0F);
+  parts.rest_detect = {{0, 1, scale}};
   const OpenedAsset opened(parts);
   std::mt19937 random(2);
   int reported = 0;
   for (int i = 0; i < 1000; ++i) {
     const float p = uniform(random, 0, 1), q = uniform(random, 0, 1);
     for (const float d :
-         {p + q, std::nextafter(p + q, 0.0F), std::nextafter(p + q, 4.0F), std::nextafter(reach * (p + q), 0.0F)}) {
+         {p + q, std::nextafter(p + q, 0.0F), std::nextafter(p + q, 4.0F), std::nextafter(scale * (p + q), 0.0F)}) {
       const std::vector<Sphere> spheres{{0, 0, 0, p}, {0, d, 0, q}};
-      const float s = reach * (p + q);
-      const bool expected = d * d < s * s;  // the full reach is not asked
-      CHECK(detect(opened.asset, spheres, Method::kM2, RadiusKind::kDetect).pairs.size() == (expected ? 1 : 0));
+      const float s = scale * (p + q);
+      const bool expected = d * d < s * s;  // the full sum is not asked
+      CHECK(detect(opened.asset, spheres, SC_RADIUS_DETECT).pairs.size() == (expected ? 1 : 0));
       reported += expected ? 1 : 0;
     }
   }
@@ -150,131 +121,30 @@ TEST_CASE("a sphere that is not finite touches nothing") {
   }
 }
 
-TEST_CASE("an overflow says how many entries were needed and writes the first ones") {
+TEST_CASE("an overflow says how many pairs there are and writes the first ones") {
   const OpenedAsset opened(plain_asset(5));
   const std::vector<Sphere> heap(5, {0, 0, 0, 1});
-  for (const Method method : {Method::kM1, Method::kM2}) {
-    Buffers buffers(opened.asset);
-    const Pair untouched{77, 77};
-    buffers.pairs.assign(4, untouched);
-    DetectJob job = buffers.job(opened.asset, heap, method);
-    job.pairs.size = 3;
-    CHECK(job.run() == Status::kOverflow);
-    CHECK(job.pair_count == 10);
-    CHECK(job.chain_pair_count == 10);
-    CHECK(job.test_count == 10);
-    CHECK(buffers.pairs == std::vector<Pair>{{0, 1}, {0, 2}, {0, 3}, untouched});
-
-    job.pairs.size = 0;  // to count only
-    CHECK(job.run() == Status::kOk);
-    CHECK(job.pair_count == 10);
-
-    job.chain_pairs.size = 9;
-    CHECK(job.run() == (method == Method::kM1 ? Status::kOverflow : Status::kOk));
-    CHECK(job.chain_pair_count == 10);
-  }
-}
-
-TEST_CASE("buffers of exactly the size needed do not overflow") {
-  const OpenedAsset opened(plain_asset(5));
-  const std::vector<Sphere> heap(5, {0, 0, 0, 1});
-  Buffers buffers(opened.asset);
-  DetectJob job = buffers.job(opened.asset, heap, Method::kM1);
-  job.pairs.size = 10;
-  job.chain_pairs.size = 10;
-  CHECK(job.run() == Status::kOk);
-}
-
-TEST_CASE("detect refuses what it cannot use and writes nothing") {
-  const OpenedAsset opened(plain_asset(5));
-  const std::vector<Sphere> heap(5, {0, 0, 0, 1});
-  const Asset closed;
-  Buffers buffers(opened.asset);
-  buffers.pairs.assign(200, {77, 77});
-  const auto status_of = [&](Method method, auto change) {
-    DetectJob job = buffers.job(opened.asset, heap, method);
-    job.pair_count = job.chain_pair_count = job.test_count = 99;
-    change(job);
-    const Status status = job.run();
-    CHECK(job.pair_count == 99);
-    CHECK(job.chain_pair_count == 99);
-    CHECK(job.test_count == 99);
-    return status;
-  };
-  DetectContext small{{buffers.words.data(), 0}};
-  DetectContext null{{nullptr, 1}};
-  for (const Method method : {Method::kM1, Method::kM2}) {
-    CHECK(status_of(method, [](DetectJob& j) { j.asset = nullptr; }) == Status::kNullArgument);
-    CHECK(status_of(method, [](DetectJob& j) { j.spheres.data = nullptr; }) == Status::kNullArgument);
-    CHECK(status_of(method, [](DetectJob& j) { j.pairs.data = nullptr; }) == Status::kNullArgument);
-    CHECK(status_of(method, [&](DetectJob& j) { j.asset = &closed; }) == Status::kNotOpen);
-    CHECK(status_of(method, [](DetectJob& j) { j.spheres.size = 4; }) == Status::kTooFewSpheres);
-    CHECK(status_of(method, [](DetectJob& j) { j.radius = static_cast<RadiusKind>(2); }) == Status::kBadArgument);
-    CHECK(status_of(method, [](DetectJob& j) { j.target = static_cast<Target>(7); }) == Status::kUnsupportedTarget);
-  }
-  CHECK(status_of(Method::kM1, [](DetectJob& j) { j.method = static_cast<Method>(0); }) == Status::kBadArgument);
-  CHECK(status_of(Method::kM1, [](DetectJob& j) { j.method = static_cast<Method>(3); }) == Status::kBadArgument);
-  CHECK(status_of(Method::kM1, [](DetectJob& j) { j.context = nullptr; }) == Status::kNullArgument);
-  CHECK(status_of(Method::kM1, [&](DetectJob& j) { j.context = &null; }) == Status::kNullArgument);
-  CHECK(status_of(Method::kM1, [](DetectJob& j) { j.chain_pairs.data = nullptr; }) == Status::kNullArgument);
-  CHECK(status_of(Method::kM1, [&](DetectJob& j) { j.context = &small; }) == Status::kContextTooSmall);
-  std::vector<std::uint64_t> bits(2);
-  for (const Method method : {Method::kM1, Method::kM2}) {
-    CHECK(status_of(method, [&](DetectJob& j) { j.bits = {bits.data(), 2}; }) == Status::kBadArgument);
-    CHECK(status_of(method, [&](DetectJob& j) { j.bits = {nullptr, 1}; }) == Status::kNullArgument);
-  }
-  CHECK(status_of(Method::kM1, [](DetectJob& j) { j.first_only = true; }) == Status::kBadArgument);
-  CHECK(buffers.pairs == std::vector<Pair>(200, {77, 77}));
-}
-
-TEST_CASE("detect refuses to write where it reads or writes something else") {
-  const OpenedAsset opened(plain_asset(5));
-  // One block of memory that every buffer is cut from; those that do not overlap are fine.
-  std::vector<std::uint64_t> memory(64, 7);
-  float* floats = reinterpret_cast<float*>(memory.data());
-  for (std::size_t i = 0; i < 20; ++i) floats[i] = 1.0F;  // five spheres: words 0 to 9
-  DetectContext context;
+  const Pair untouched{77, 77};
+  std::vector<Pair> pairs(11, untouched);
   DetectJob job;
   job.asset = &opened.asset;
-  job.context = &context;
-  job.spheres = {reinterpret_cast<const Sphere*>(memory.data()), 5};
-  const auto at = [&](std::size_t pairs, std::size_t bits, std::size_t words, std::size_t chain_pairs, Method method) {
-    job.method = method;
-    job.pairs = {reinterpret_cast<Pair*>(memory.data() + pairs), 10};
-    job.bits = {memory.data() + bits, 1};
-    context.words = {memory.data() + words, 1};
-    job.chain_pairs = {reinterpret_cast<ChainPair*>(memory.data() + chain_pairs), 10};
-    const std::vector<std::uint64_t> before = memory;
-    const Status status = job.run();
-    if (status != Status::kOk) CHECK(memory == before);
-    return status;
-  };
-  for (const Method method : {Method::kM1, Method::kM2}) {
-    CHECK(at(10, 20, 21, 22, method) == Status::kOk);
-    CHECK(at(9, 20, 21, 22, method) == Status::kSharedMemory);
-    CHECK(at(10, 19, 21, 22, method) == Status::kSharedMemory);
-    CHECK(at(10, 0, 21, 22, method) == Status::kSharedMemory);
-  }
-  CHECK(at(10, 20, 20, 22, Method::kM1) == Status::kSharedMemory);
-  CHECK(at(10, 20, 20, 22, Method::kM2) == Status::kOk);  // M2 needs neither of them
-  CHECK(at(10, 20, 21, 21, Method::kM1) == Status::kSharedMemory);
-  CHECK(at(10, 20, 21, 21, Method::kM2) == Status::kOk);
-  CHECK(at(10, 20, 9, 22, Method::kM1) == Status::kSharedMemory);
-}
-
-TEST_CASE("M2 needs no context") {
-  const OpenedAsset opened(plain_asset(5));
-  const std::vector<Sphere> heap(5, {0, 0, 0, 1});
-  DetectJob job;
-  job.asset = &opened.asset;
-  job.spheres = {heap.data(), heap.size()};
-  CHECK(job.run() == Status::kOk);
+  job.spheres = heap.data();
+  job.sphere_count = heap.size();
+  CHECK(job.run() == SC_OK);  // to count only
   CHECK(job.pair_count == 10);
+  job.pairs = pairs.data();
+  job.pair_capacity = 3;
+  CHECK(job.run() == sc_status{SC_OVERFLOW, SC_FIELD_PAIRS});
+  CHECK(job.pair_count == 10);
+  CHECK(std::vector<Pair>(pairs.begin(), pairs.begin() + 4) == std::vector<Pair>{{0, 1}, {0, 2}, {0, 3}, untouched});
+  job.pair_capacity = 10;
+  CHECK(job.run() == SC_OK);
+  CHECK(pairs[10] == untouched);
 }
 
-TEST_CASE("one sphere touches nothing and needs no scratch memory") {
+TEST_CASE("one sphere touches nothing and needs no bits") {
   const OpenedAsset opened(plain_asset(1));
-  CHECK(DetectContext::words_needed(opened.asset) == 0);
+  CHECK(sc_pair_words(&opened.asset) == 0);
   CHECK(pairs_of(plain_asset(1), {{0, 0, 0, 1}}).empty());
 }
 

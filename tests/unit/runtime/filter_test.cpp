@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The user's own filter, against sets of pairs kept by hand.
-#include "spherechain/filter.h"
-
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
-#include <limits>
 #include <set>
 
 #include "jobs.h"
@@ -30,16 +26,16 @@ std::set<Pair> pairs_in(const std::vector<std::uint64_t>& table, std::uint32_t n
 
 // What an asset with these ignored pairs, and spheres with these radii, would report.
 std::vector<Pair> expected(AssetParts parts, const std::set<Pair>& ignored, const std::vector<Sphere>& spheres,
-                           const std::set<std::uint32_t>& disabled, Method method) {
+                           const std::set<std::uint32_t>& disabled) {
   std::fill(parts.ignored.begin(), parts.ignored.end(), 0);
   for (const Pair& pair : ignored) {
     const std::size_t bit = std::size_t{pair.b} * (pair.b - 1) / 2 + pair.a;
     parts.ignored[bit / 64] |= std::uint64_t{1} << (bit % 64);
   }
   const OpenedAsset opened(parts);
-  REQUIRE(opened.status == Status::kOk);
+  REQUIRE(opened.status == SC_OK);
   std::vector<Pair> pairs;
-  for (const Pair& pair : detect(opened.asset, spheres, method, RadiusKind::kDetect, Target::kScalar).pairs) {
+  for (const Pair& pair : detect(opened.asset, spheres, SC_RADIUS_DETECT, SC_TARGET_SCALAR).pairs) {
     if (disabled.count(pair.a) + disabled.count(pair.b) == 0) pairs.push_back(pair);
   }
   return pairs;
@@ -47,7 +43,7 @@ std::vector<Pair> expected(AssetParts parts, const std::set<Pair>& ignored, cons
 
 }  // namespace
 
-TEST_CASE("any edits to a filter report what an asset baked that way would, on every target, with M1 and M2") {
+TEST_CASE("any edits to a filter report what an asset baked that way would, on every target") {
   for (const unsigned n : {2U, 20U, 64U, 65U, 128U, 150U}) {
     CAPTURE(n);
     std::mt19937 random(n);
@@ -64,29 +60,25 @@ TEST_CASE("any edits to a filter report what an asset baked that way would, on e
       if (edit % 3 == 0 && a != b) {
         const bool on = random() % 2 == 0;
         const Pair pair{std::min(a, b), std::max(a, b)};
-        REQUIRE(ignore_pair(opened.asset, owned.filter, a, b, on) == Status::kOk);
+        REQUIRE(sc_ignore_pair(&opened.asset, &owned.filter, a, b, on ? 1 : 0) == SC_OK);
         on ? (void)ignored.insert(pair) : (void)ignored.erase(pair);
       } else if (edit % 3 == 1) {
         const bool on = random() % 4 == 0;
-        REQUIRE(disable_sphere(opened.asset, owned.filter, a, on) == Status::kOk);
+        REQUIRE(sc_disable_sphere(&opened.asset, &owned.filter, a, on ? 1 : 0) == SC_OK);
         on ? (void)disabled.insert(a) : (void)disabled.erase(a);
       } else {
         const float padding = uniform(random, -0.1F, 0.2F);
-        REQUIRE(pad_sphere(opened.asset, owned.filter, a, padding) == Status::kOk);
+        REQUIRE(sc_pad_sphere(&opened.asset, &owned.filter, a, padding) == SC_OK);
         const float radius = spheres[a].radius + padding;
         padded[a].radius = radius < 0 ? kNan : radius;
       }
     }
     CHECK(pairs_in(owned.ignored, n) == ignored);
-    for (const Method method : {Method::kM1, Method::kM2}) {
-      const std::vector<Pair> wanted = expected(tiny.parts, ignored, padded, disabled, method);
-      for (const Target target : supported_targets()) {
-        const Detected got = detect(opened.asset, spheres, method, RadiusKind::kDetect, target, &owned.filter);
-        CHECK(got.status == Status::kOk);
-        CHECK(got.pairs == wanted);
-        CHECK(got.test_count ==
-              detect(opened.asset, spheres, method, RadiusKind::kDetect, Target::kScalar, &owned.filter).test_count);
-      }
+    const std::vector<Pair> wanted = expected(tiny.parts, ignored, padded, disabled);
+    for (const Target target : supported_targets()) {
+      const Detected got = detect(opened.asset, spheres, SC_RADIUS_DETECT, target, &owned.filter);
+      CHECK(got.status == SC_OK);
+      CHECK(got.pairs == wanted);
     }
   }
 }
@@ -97,7 +89,7 @@ TEST_CASE("regions are ignored against each other, or each within itself, and ta
   OwnedFilter owned(opened.asset);
   std::set<Pair> ignored(tiny.ignored_pairs.begin(), tiny.ignored_pairs.end());
   const auto apply = [&](std::size_t p, std::size_t q, bool on) {
-    REQUIRE(ignore_regions(opened.asset, owned.filter, p, q, on) == Status::kOk);
+    REQUIRE(sc_ignore_regions(&opened.asset, &owned.filter, p, q, on ? 1 : 0) == SC_OK);
     for (std::uint32_t b = 0; b < 30; ++b) {
       for (std::uint32_t a = 0; a < b; ++a) {
         const std::size_t in_a = a % 5, in_b = b % 5;  // as random_asset deals them out
@@ -113,104 +105,57 @@ TEST_CASE("regions are ignored against each other, or each within itself, and ta
   apply(2, 2, false);
 }
 
-TEST_CASE("spheres at most so many places apart in a chain are ignored") {
-  TinyAsset tiny = random_asset(6, 1);
-  tiny.parts.ignored.assign(1, 0);
-  tiny.parts.chains = {{"one", {0}, {5, 1, 3, 0}}, {"two", {1}, {2, 4}}, {"three", {1}, {4}}, {"none", {1}, {}}};
-  const OpenedAsset opened(tiny.parts);
-  REQUIRE_MESSAGE(opened.status == Status::kOk, opened.message);
-  const auto after = [&](std::size_t hops) {
-    OwnedFilter owned(opened.asset);
-    REQUIRE(ignore_hops(opened.asset, owned.filter, hops) == Status::kOk);
-    const std::set<Pair> pairs = pairs_in(owned.ignored, 6);
-    REQUIRE(ignore_hops(opened.asset, owned.filter, hops, false) == Status::kOk);
-    CHECK(pairs_in(owned.ignored, 6).empty());
-    return pairs;
-  };
-  const std::set<Pair> next{{1, 5}, {1, 3}, {0, 3}, {2, 4}};
-  std::set<Pair> two = next;
-  two.insert({{3, 5}, {0, 1}});
-  std::set<Pair> all = two;
-  all.insert({0, 5});
-  CHECK(after(0).empty());
-  CHECK(after(1) == next);
-  CHECK(after(2) == two);
-  CHECK(after(3) == all);
-  CHECK(after(std::numeric_limits<std::size_t>::max()) == all);
-}
-
-TEST_CASE("a filter that does not fit, or an edit of what is not there, is refused and changes nothing") {
+TEST_CASE("an edit of what is not there, or in a buffer that is not there, is refused and changes nothing") {
   const OpenedAsset opened(random_asset(70, 1).parts);
-  const Asset& asset = opened.asset;
-  OwnedFilter owned(asset);
-  const OwnedFilter before(asset);
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  CHECK(ignore_pair(asset, owned.filter, 3, 3) == Status::kBadArgument);
-  CHECK(ignore_pair(asset, owned.filter, 70, 3) == Status::kBadArgument);
-  CHECK(ignore_pair(asset, owned.filter, 3, 70) == Status::kBadArgument);
-  CHECK(ignore_regions(asset, owned.filter, 5, 0) == Status::kBadArgument);
-  CHECK(ignore_regions(asset, owned.filter, 0, 5) == Status::kBadArgument);
-  CHECK(disable_sphere(asset, owned.filter, 70) == Status::kBadArgument);
-  CHECK(pad_sphere(asset, owned.filter, 70, 1) == Status::kBadArgument);
-  CHECK(pad_sphere(asset, owned.filter, 0, nan) == Status::kBadArgument);
-  CHECK(ignore_pair(Asset(), owned.filter, 0, 1) == Status::kNotOpen);
-  CHECK(check_filter(asset, owned.filter) == Status::kOk);
+  const Asset* const asset = &opened.asset;
+  const Asset closed{};
+  OwnedFilter owned(*asset);
+  const OwnedFilter before(*asset);
+  Filter* const filter = &owned.filter;
+  constexpr sc_status kNoSuchIndex{SC_BAD_VALUE, SC_FIELD_INDEX};
+  CHECK(sc_ignore_pair(asset, filter, 3, 3, 1) == kNoSuchIndex);
+  CHECK(sc_ignore_pair(asset, filter, 70, 3, 1) == kNoSuchIndex);
+  CHECK(sc_ignore_pair(asset, filter, 3, 70, 1) == kNoSuchIndex);
+  CHECK(sc_ignore_regions(asset, filter, 5, 0, 1) == kNoSuchIndex);
+  CHECK(sc_ignore_regions(asset, filter, 0, 5, 1) == kNoSuchIndex);
+  CHECK(sc_disable_sphere(asset, filter, 70, 1) == kNoSuchIndex);
+  CHECK(sc_pad_sphere(asset, filter, 70, 1) == kNoSuchIndex);
+  CHECK(sc_pad_sphere(asset, filter, 0, kNan) == kNoSuchIndex);
+  Filter plain{owned.filter.ignored, owned.filter.ignored_words, nullptr, 0, nullptr, 0};
+  CHECK(sc_disable_sphere(asset, &plain, 0, 1) == sc_status{SC_NULL, SC_FIELD_FILTER});
+  CHECK(sc_pad_sphere(asset, &plain, 0, 1) == sc_status{SC_NULL, SC_FIELD_FILTER});
 
   const std::vector<Sphere> spheres(70, {0, 0, 0, 1});
-  const auto all_refuse = [&](Status status, auto change) {
-    Filter filter = owned.filter;
-    change(filter);
-    CHECK(check_filter(asset, filter) == status);
-    CHECK(reset_filter(asset, filter) == status);
-    CHECK(ignore_pair(asset, filter, 0, 1) == status);
-    CHECK(ignore_regions(asset, filter, 0, 1) == status);
-    CHECK(ignore_hops(asset, filter, 1) == status);
-    CHECK(disable_sphere(asset, filter, 0) == status);
-    CHECK(pad_sphere(asset, filter, 0, 1) == status);
-    for (const Method method : {Method::kM1, Method::kM2}) {
-      CHECK(detect(asset, spheres, method, RadiusKind::kFit, Target::kBest, &filter).status == status);
+  const auto all_refuse = [&](const Asset* of, Filter* wrong, sc_status status) {
+    const sc_status all[] = {sc_reset_filter(of, wrong), sc_ignore_pair(of, wrong, 0, 1, 1),
+                             sc_ignore_regions(of, wrong, 0, 1, 1), sc_disable_sphere(of, wrong, 0, 1),
+                             sc_pad_sphere(of, wrong, 0, 1)};
+    CHECK(std::count(std::begin(all), std::end(all), status) == 5);
+  };
+  all_refuse(nullptr, filter, {SC_NULL, SC_FIELD_ASSET});
+  all_refuse(&closed, filter, {SC_NOT_OPEN, SC_FIELD_ASSET});
+  all_refuse(asset, nullptr, {SC_NULL, SC_FIELD_FILTER});
+  const auto refused = [&](sc_code code, auto change) {
+    Filter wrong = owned.filter;
+    change(wrong);
+    all_refuse(asset, &wrong, {code, SC_FIELD_FILTER});
+    if (code != SC_ALIASED) {
+      CHECK(detect(*asset, spheres, SC_RADIUS_FIT, SC_TARGET_BEST, &wrong).status == sc_status{code, SC_FIELD_FILTER});
     }
   };
-  all_refuse(Status::kBadFilter, [](Filter& f) { --f.ignored.size; });
-  all_refuse(Status::kBadFilter, [](Filter& f) { ++f.ignored.size; });
-  all_refuse(Status::kBadFilter, [](Filter& f) { f.ignored = {}; });
-  all_refuse(Status::kBadFilter, [](Filter& f) { --f.disabled.size; });
-  all_refuse(Status::kBadFilter, [](Filter& f) { ++f.padding.size; });
-  all_refuse(Status::kNullArgument, [](Filter& f) { f.ignored.data = nullptr; });
-  all_refuse(Status::kNullArgument, [](Filter& f) { f.disabled.data = nullptr; });
-  all_refuse(Status::kNullArgument, [](Filter& f) { f.padding.data = nullptr; });
+  refused(SC_TOO_SMALL, [](Filter& f) { --f.ignored_words; });
+  refused(SC_TOO_SMALL, [](Filter& f) { f.ignored_words = 0; });
+  refused(SC_TOO_SMALL, [](Filter& f) { --f.disabled_words; });
+  refused(SC_NULL, [](Filter& f) { f.ignored = nullptr; });
+  refused(SC_NULL, [](Filter& f) { f.disabled = nullptr; });
+  refused(SC_NULL, [](Filter& f) { f.padding = nullptr; });
+  // Buffers that lie on each other, or on the asset's.
+  refused(SC_ALIASED, [&](Filter& f) { f.padding = reinterpret_cast<float*>(owned.ignored.data()); });
+  refused(SC_ALIASED, [&](Filter& f) { f.disabled = owned.ignored.data() + owned.ignored.size() - 2; });
+  refused(SC_ALIASED, [&](Filter& f) { f.ignored = const_cast<std::uint64_t*>(opened.view().ignored().data); });
   CHECK(owned.ignored == before.ignored);
   CHECK(owned.disabled == before.disabled);
   CHECK(owned.padding == before.padding);
-
-  Filter plain{owned.filter.ignored, {}, {}};
-  CHECK(disable_sphere(asset, plain, 0) == Status::kBadFilter);
-  CHECK(pad_sphere(asset, plain, 0, 1) == Status::kBadFilter);
-  CHECK(detect(asset, spheres, Method::kM2, RadiusKind::kFit, Target::kBest, &plain).status == Status::kOk);
-}
-
-TEST_CASE("a filter whose buffers lie on each other, or on the asset's, is neither reset nor edited") {
-  const OpenedAsset opened(random_asset(70, 1).parts);
-  const Asset& asset = opened.asset;
-  OwnedFilter owned(asset);
-  const std::vector<std::uint64_t> before(owned.ignored.size(), 5);
-  owned.ignored = before;
-  const std::vector<std::uint64_t> own(asset.ignored().begin(), asset.ignored().end());
-  const auto is_refused = [&](auto change) {
-    Filter filter = owned.filter;
-    change(filter);
-    const Status all[] = {reset_filter(asset, filter),         ignore_pair(asset, filter, 0, 1),
-                          ignore_regions(asset, filter, 0, 1), ignore_hops(asset, filter, 1),
-                          disable_sphere(asset, filter, 0),    pad_sphere(asset, filter, 0, 1)};
-    CHECK(owned.ignored == before);
-    CHECK(std::equal(asset.ignored().begin(), asset.ignored().end(), own.begin()));
-    return std::count(std::begin(all), std::end(all), Status::kSharedMemory) == 6;
-  };
-  CHECK(is_refused([&](Filter& f) { f.padding.data = reinterpret_cast<float*>(owned.ignored.data()); }));
-  CHECK(is_refused([&](Filter& f) { f.disabled.data = owned.ignored.data() + owned.ignored.size() - 2; }));
-  CHECK(is_refused([&](Filter& f) { f.disabled.data = reinterpret_cast<std::uint64_t*>(owned.padding.data()); }));
-  CHECK(is_refused([&](Filter& f) { f.ignored.data = const_cast<std::uint64_t*>(asset.ignored().data); }));
-  CHECK(reset_filter(asset, owned.filter) == Status::kOk);
 }
 
 }  // namespace spherechain::test

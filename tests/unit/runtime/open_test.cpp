@@ -5,7 +5,7 @@
 #include <string>
 
 #include "jobs.h"
-#include "tiny_asset.h"
+#include "tiny_bones.h"
 
 namespace spherechain::test {
 namespace {
@@ -22,24 +22,23 @@ std::vector<T> to_vector(Span<const T> span) {
 
 TEST_CASE("a valid asset opens, with no message") {
   const OpenedAsset opened(random_asset(12, 1).parts);
-  CHECK(opened.status == Status::kOk);
-  CHECK(opened.asset.is_open());
+  CHECK(opened.status == SC_OK);
+  CHECK(sc_asset_is_open(&opened.asset) == 1);
   CHECK(opened.message.empty());
 }
 
 TEST_CASE("the views of an open asset hold what was written") {
   const AssetParts parts = random_asset(12, 2).parts;
   const OpenedAsset opened(parts);
-  const Asset& asset = opened.asset;
-  REQUIRE(opened.status == Status::kOk);
+  const AssetView& asset = opened.view();
+  REQUIRE(opened.status == SC_OK);
 
   CHECK(same_bits(to_vector(asset.spheres()), parts.spheres));
   CHECK(same_bits(to_vector(asset.pivots()), parts.pivots));
-  CHECK(to_vector(asset.triangles()) == parts.triangles);
-  CHECK(same_bits(to_vector(asset.source_parts()), parts.source_parts));
+  CHECK(same_bits(to_vector(asset.source_buffers()), parts.buffers));
   CHECK(to_vector(asset.ignored()) == parts.ignored);
-  CHECK(same_bits(to_vector(asset.near_pairs(RadiusKind::kFit)), parts.near_fit));
-  CHECK(same_bits(to_vector(asset.near_pairs(RadiusKind::kDetect)), parts.near_detect));
+  CHECK(same_bits(to_vector(asset.rest_pairs(SC_RADIUS_FIT)), parts.rest_fit));
+  CHECK(same_bits(to_vector(asset.rest_pairs(SC_RADIUS_DETECT)), parts.rest_detect));
   CHECK(asset.ignored_count() == random_asset(12, 2).ignored_pairs.size());
 
   REQUIRE(asset.region_count() == parts.regions.size());
@@ -53,6 +52,12 @@ TEST_CASE("the views of an open asset hold what was written") {
     CHECK(to_vector(asset.chain(i).regions) == parts.chains[i].regions);
     CHECK(to_vector(asset.chain(i).spheres) == parts.chains[i].spheres);
   }
+  REQUIRE(asset.part_count() == parts.parts.size());
+  for (std::size_t i = 0; i < parts.parts.size(); ++i) {
+    CHECK(asset.part(i).name == parts.parts[i].name);
+    CHECK(asset.part(i).side == parts.parts[i].side);
+    CHECK(asset.part(i).bone == parts.parts[i].bone);
+  }
   REQUIRE(asset.joint_count() == parts.joints.size());
   for (std::size_t i = 0; i < parts.joints.size(); ++i) {
     CHECK(asset.joint(i).name == parts.joints[i].name);
@@ -65,36 +70,40 @@ TEST_CASE("the views of an open asset hold what was written") {
 TEST_CASE("each field of a sphere has a place of its own") {
   AssetParts parts = random_asset(1, 3).parts;
   parts.regions.resize(8);
-  parts.spheres[0] = {{1.0F, 2.0F, 3.0F}, 4.0F, 5.0F, 6.0F, 1, 2, 1, 3, 7, Side::kRight, 9, 0};
+  parts.spheres[0] = {{1.0F, 2.0F, 3.0F}, 4.0F, 5.0F, 6.0F, 1, 0, 3, 7, SC_SIDE_RIGHT, 9, 0};
   const OpenedAsset opened(parts);
-  REQUIRE(opened.status == Status::kOk);
-  const RestSphere& sphere = opened.asset.spheres()[0];
+  REQUIRE(opened.status == SC_OK);
+  const RestSphere& sphere = opened.view().spheres()[0];
   CHECK(same(sphere.center, {1.0F, 2.0F, 3.0F}));
   CHECK(sphere.radius == 4.0F);
   CHECK(sphere.detect_radius == 5.0F);
   CHECK(sphere.pivot_spread == 6.0F);
   CHECK(sphere.first_pivot == 1);
-  CHECK(sphere.first_triangle == 2);
-  CHECK(sphere.triangle_count == 1);
   CHECK(sphere.pivot_count == 3);
   CHECK(sphere.region == 7);
-  CHECK(sphere.side == Side::kRight);
+  CHECK(sphere.side == SC_SIDE_RIGHT);
   CHECK(sphere.level == 9);
+  const sc_rest_sphere shown = sc_asset_sphere(&opened.asset, 0);
+  CHECK(same(shown.center, sphere.center));
+  CHECK(shown.radius == 4.0F);
+  CHECK(shown.detect_radius == 5.0F);
+  CHECK(shown.side == SC_SIDE_RIGHT);
+  CHECK(shown.region == 7);
+  CHECK(shown.level == 9);
 }
 
 TEST_CASE("info tells where the asset comes from") {
   const AssetParts parts = random_asset(5, 4).parts;
   const OpenedAsset opened(parts);
-  REQUIRE(opened.status == Status::kOk);
-  const AssetInfo info = opened.asset.info();
-  CHECK(info.format_version == kFormatVersion);
+  REQUIRE(opened.status == SC_OK);
+  const AssetInfo info = sc_asset_get_info(&opened.asset);
   CHECK(info.writer == parts.writer);
   CHECK(info.settings == parts.settings);
   CHECK(info.settings_sha256 == parts.settings_sha256);
   CHECK(info.source_file == parts.source_file);
   CHECK(info.source_sha256 == parts.source_sha256);
-  CHECK(info.source_vertex_count == parts.vertex_count);
-  CHECK(info.source_triangle_count == parts.triangle_count);
+  CHECK(info.vertex_count == parts.vertex_count);
+  CHECK(info.triangle_count == parts.triangle_count);
   CHECK(info.source_rest_hash == parts.rest_hash);
   CHECK(info.metres_per_unit == parts.metres_per_unit);
   CHECK(same(info.origin, parts.origin));
@@ -102,32 +111,76 @@ TEST_CASE("info tells where the asset comes from") {
   CHECK(same(info.up, parts.up));
   CHECK(same(info.forward, parts.forward));
   CHECK(info.height == parts.height);
-  CHECK(same(info.phi1, parts.phi1));
-  CHECK(same(info.phi1_adjusted, parts.phi1_adjusted));
-  CHECK(same(info.phi2, parts.phi2));
-  CHECK(info.refit == RefitRule::kCalibrated);
-  CHECK(info.chain_entries_table1 == parts.chain_entries_table1);
+  CHECK(info.sphere_count == 5);
+  CHECK(info.bone_count == 0);
+  CHECK(info.part_count == parts.parts.size());
+  CHECK(info.region_count == parts.regions.size());
+  CHECK(info.source_buffer_count == parts.buffers.size());
+  CHECK(info.ignored_pair_count == random_asset(5, 4).ignored_pairs.size());
+  const FitErrors fit = opened.view().fit();
+  CHECK(same(fit.phi1, parts.phi1));
+  CHECK(same(fit.phi1_adjusted, parts.phi1_adjusted));
+  CHECK(same(fit.phi2, parts.phi2));
+  CHECK(fit.chain_entries_table1 == parts.chain_entries_table1);
+  CHECK(opened.view().refit_rule() == RefitRule::kMoments);
 }
 
-TEST_CASE("an asset without joints, near pairs or source parts, of one sphere, opens") {
+TEST_CASE("an asset without joints, rest pairs or source buffers, of one sphere, opens") {
   AssetParts parts = random_asset(1, 5).parts;
-  parts.source_parts.clear();
+  parts.buffers.clear();
   parts.joints.clear();
-  parts.near_fit.clear();
-  parts.near_detect.clear();
+  parts.rest_fit.clear();
+  parts.rest_detect.clear();
   const OpenedAsset opened(parts);
-  CHECK(opened.status == Status::kOk);
-  CHECK(opened.asset.joint_count() == 0);
-  CHECK(opened.asset.source_parts().size == 0);
-  CHECK(opened.asset.ignored().size == 0);
-  CHECK(opened.asset.near_pairs(RadiusKind::kFit).size == 0);
+  CHECK(opened.status == SC_OK);
+  CHECK(opened.view().joint_count() == 0);
+  CHECK(opened.view().source_buffers().size == 0);
+  CHECK(opened.view().ignored().size == 0);
+  CHECK(opened.view().rest_pairs(SC_RADIUS_FIT).size == 0);
 }
 
 TEST_CASE("a copy is a view of the same bytes") {
   const OpenedAsset opened(random_asset(5, 6).parts);
   const Asset copy = opened.asset;
-  CHECK(copy.spheres().data == opened.asset.spheres().data);
-  CHECK(copy.info().writer == opened.asset.info().writer);
+  CHECK(view_of(copy).spheres().data == opened.view().spheres().data);
+  CHECK(sc_asset_get_info(&copy).writer == sc_asset_get_info(&opened.asset).writer);
+}
+
+TEST_CASE("an asset tells its bones, parts and morph targets, and zeros of those that it has not") {
+  TinyAsset tiny = random_asset(12, 1);
+  add_bones(tiny, 5, 2);
+  const OpenedAsset opened(tiny.parts);
+  REQUIRE_MESSAGE(opened.status == SC_OK, opened.message);
+  const Asset* const asset = &opened.asset;
+  CHECK(std::string(sc_asset_bone(asset, 2).name) == "bone2");
+  CHECK(sc_asset_bone(asset, 2).inverse_bind[3] == -2.0F);
+  CHECK(sc_asset_bone(asset, 2).inverse_bind[10] == 1.0F);
+  CHECK(std::string(sc_asset_bone(asset, 4).name).empty());
+  CHECK(std::string(sc_asset_part(asset, 1).name) == "right hand");
+  CHECK(sc_asset_part(asset, 1).side == SC_SIDE_RIGHT);
+  CHECK(sc_asset_part(asset, 1).bone == 1);
+  CHECK(std::string(sc_asset_morph_name(asset, 2)) == "morph2");
+  CHECK(std::string(sc_asset_region_name(asset, 4)) == "torso");
+  CHECK(sc_asset_source_buffer(asset, 1).first_vertex == 4);
+  CHECK(sc_asset_bone(asset, 5).name == nullptr);
+  CHECK(sc_asset_part(asset, 5).name == nullptr);
+  CHECK(sc_asset_morph_name(asset, 3) == nullptr);
+  CHECK(sc_asset_region_name(asset, 5) == nullptr);
+  CHECK(sc_asset_source_buffer(asset, 2).vertex_count == 0);
+  CHECK(sc_asset_sphere(asset, 12).radius == 0);
+}
+
+TEST_CASE("of an asset that is not open all is zero, and what it takes is nothing") {
+  const Asset closed{};
+  for (const Asset* asset : {&closed, static_cast<const Asset*>(nullptr)}) {
+    CHECK(sc_asset_is_open(asset) == 0);
+    CHECK(sc_pair_words(asset) == 0);
+    CHECK(sc_sphere_words(asset) == 0);
+    CHECK(sc_detect_table_words(asset) == 0);
+    CHECK(sc_skin_table_words(asset) == 0);
+    CHECK(sc_skin_scratch_words(asset) == 0);
+    CHECK(sc_crowd_scratch_words(asset, 1) == 0);
+  }
 }
 
 TEST_CASE("the message is cut to the buffer, final zero included") {
@@ -135,12 +188,16 @@ TEST_CASE("the message is cut to the buffer, final zero included") {
   bytes[4] = 'X';
   char message[8];
   std::memset(message, '#', sizeof message);
-  CHECK(Asset().open(bytes.data(), bytes.size(), message, 6) == Status::kWrongIdentifier);
+  Asset asset;
+  const auto open = [&](char* to, std::size_t size) {
+    return sc_asset_open(&asset, SC_ABI_VERSION, bytes.data(), bytes.size(), to, size);
+  };
+  CHECK(open(message, 6) == SC_NOT_AN_ASSET);
   CHECK(std::string(message) == "file ");
   CHECK(message[6] == '#');
-  CHECK(Asset().open(bytes.data(), bytes.size(), message + 7, 0) == Status::kWrongIdentifier);
+  CHECK(open(message + 7, 0) == SC_NOT_AN_ASSET);
   CHECK(message[7] == '#');
-  CHECK(Asset().open(bytes.data(), bytes.size()) == Status::kWrongIdentifier);
+  CHECK(open(nullptr, 0) == SC_NOT_AN_ASSET);
 }
 
 TEST_CASE("an asset that fails to open is closed, whatever it was before") {
@@ -148,9 +205,19 @@ TEST_CASE("an asset that fails to open is closed, whatever it was before") {
   std::vector<std::uint8_t> bytes = opened.bytes;
   bytes[4] = 'X';
   Asset asset = opened.asset;
-  CHECK(asset.open(bytes.data(), bytes.size()) == Status::kWrongIdentifier);
-  CHECK(!asset.is_open());
-  CHECK(asset.spheres().size == 0);
+  CHECK(sc_asset_open(&asset, SC_ABI_VERSION, bytes.data(), bytes.size(), nullptr, 0) ==
+        sc_status{SC_NOT_AN_ASSET, SC_FIELD_DATA});
+  CHECK(sc_asset_is_open(&asset) == 0);
+}
+
+TEST_CASE("a program compiled with other headers is refused, and told both versions") {
+  const OpenedAsset opened(random_asset(5, 8).parts);
+  Asset asset;
+  char message[160] = "";
+  CHECK(sc_asset_open(&asset, SC_ABI_VERSION - 1, opened.bytes.data(), opened.bytes.size(), message, 160) ==
+        SC_WRONG_ABI);
+  CHECK(std::string(message).find("ABI version " + std::to_string(SC_ABI_VERSION - 1)) != std::string::npos);
+  CHECK(sc_abi_version() == SC_ABI_VERSION);
 }
 
 }  // namespace spherechain::test

@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: MIT
-#include "spherechain/status.h"
-
 #include <doctest/doctest.h>
 
 #include <set>
 #include <string>
 
-namespace spherechain {
+#include "spherechain/types.h"
 
-TEST_CASE("every status has a sentence of its own") {
-  std::set<std::string> sentences;
-  for (int i = 0; i <= 21; ++i) {
-    const std::string sentence = to_string(static_cast<Status>(i));
-    CHECK_MESSAGE(sentences.insert(sentence).second, sentence);
-    CHECK(sentence != "unknown status");
-    CHECK(sentence.back() != '.');
-  }
+namespace spherechain::test {
+
+TEST_CASE("every code and every field has words of its own, and one that does not exist has some") {
+  const auto check = [](auto text_of, int count) {
+    std::set<std::string> texts;
+    for (int i = 0; i < count; ++i) {
+      const std::string text = text_of(i);
+      CHECK_MESSAGE(texts.insert(text).second, i, ": ", text);
+    }
+    CHECK(texts.insert(text_of(count)).second);
+    CHECK(std::string(text_of(count)) == text_of(-1));
+  };
+  check([](int i) { return sc_code_text(static_cast<sc_code>(i)); }, SC_DEVICE_TOO_SMALL + 1);
+  check([](int i) { return sc_field_name(static_cast<sc_field>(i)); }, SC_FIELD_SKIN_TABLE + 1);
+  CHECK(std::string(sc_field_name(SC_FIELD_BONES)) == "pose.bones");
 }
 
-TEST_CASE("a status that does not exist still has a sentence") {
-  CHECK(std::string(to_string(static_cast<Status>(99))) == "unknown status");
-  CHECK(std::string(to_string(static_cast<Status>(-1))) == "unknown status");
-}
-
-}  // namespace spherechain
+}  // namespace spherechain::test

@@ -4,30 +4,35 @@
 #include <thread>
 
 #include "jobs.h"
-#include "tiny_asset.h"
+#include "palette.h"
+#include "tiny_skin.h"
 
 namespace spherechain::test {
 
 TEST_CASE("four threads that share an asset find what one finds") {
-  const TinyAsset tiny = random_asset(50, 1);
+  TinyAsset tiny = random_band(20, 1);
+  const TinySkin skin = add_bones(tiny, 5, 2);
+  add_skin(tiny, &skin, 4);
   const OpenedAsset opened(tiny.parts);
-  REQUIRE(opened.status == Status::kOk);
-  const auto run = [&](Method method) {
-    const Refitted refitted = refit(opened.asset, tiny.rest, RadiusKind::kDetect);
-    return detect(opened.asset, refitted.spheres, method, RadiusKind::kDetect);
+  REQUIRE_MESSAGE(opened.status == SC_OK, opened.message);
+  const std::vector<Matrix> matrices = random_matrices(5, 3);
+  SkinContactJob job;
+  job.asset = &opened.asset;
+  job.pose = pose_of(matrices);
+  const auto pairs = [&] {
+    return detect(opened.asset, refit(opened.asset, job.pose, SC_RADIUS_DETECT).spheres, SC_RADIUS_DETECT).pairs;
   };
-  const Detected m1 = run(Method::kM1);
-  const Detected m2 = run(Method::kM2);
-  CHECK(!m1.pairs.empty());
+  const std::vector<Pair> expected = pairs();
+  const SkinContacts contacts = find_contacts(job);
+  CHECK(!expected.empty());
+  CHECK(!contacts.triangles.empty());
 
   int agreed[4] = {};
   std::vector<std::thread> threads;
   for (int& count : agreed) {
     threads.emplace_back([&] {
       for (int i = 0; i < 50; ++i) {
-        const Detected one = run(Method::kM1);
-        const Detected other = run(Method::kM2);
-        count += one.pairs == m1.pairs && same_bits(one.chain_pairs, m1.chain_pairs) && other.pairs == m2.pairs;
+        count += pairs() == expected && same_bits(find_contacts(job).triangles, contacts.triangles) ? 1 : 0;
       }
     });
   }

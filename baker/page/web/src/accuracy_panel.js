@@ -21,9 +21,9 @@ function table(head, rows) {
 }
 
 function figures(validation) {
-  const { chains, all_pairs: allPairs, out_of_scope: out, raw_pairs: raw, truth_pairs: truth } = validation;
+  const { skin, chains, all_pairs: allPairs, out_of_scope: out, raw_pairs: raw, truth_pairs: truth } = validation;
   const row = (name, score) => [name, share(score.pair_recall), share(score.precision), number(score.reported_per_frame)];
-  const rows = [...(validation.skin ? [row('skin', validation)] : []), row('all pairs', allPairs), row('chains', chains)];
+  const rows = [row('skin', skin), row('spheres, all pairs', allPairs), row('spheres, chains', chains)];
   return [
     h('section', {}, h('h3', {}, 'Reported pairs'), table(['', 'recall', 'precision', 'a frame'], rows)),
     h(
@@ -58,7 +58,7 @@ export function fillAccuracyPanel(panel, store, model, flyTo) {
     panel.append(h('p', { class: 'note' }, 'No validation in this page: give `view` the file that `validate --json` wrote.'));
     return;
   }
-  const row = ({ time, spheres: [a, b], triangle_pairs: pairs, depth }) => {
+  const row = ({ time, spheres: [a, b], triangle_pairs: pairs, overlap }) => {
     const frame = frameAt(model, time);
     return h(
       'li',
@@ -70,7 +70,7 @@ export function fillAccuracyPanel(panel, store, model, flyTo) {
           class: 'pair miss',
           'data-frame': frame,
           title: `${plural(pairs, 'triangle pair')} at ${time.toFixed(2)} s; click to go there`,
-          'aria-label': `frame ${frame}: ${a} ${model.spheres[a].name} and ${b} ${model.spheres[b].name}, ${percent(depth)} of the height deep`,
+          'aria-label': `frame ${frame}: ${a} ${model.spheres[a].name} and ${b} ${model.spheres[b].name}, ${percent(overlap)} of the height`,
           onclick: () => {
             store.set({ frame, playing: false, alarm: `${a}-${b}` });
             if (!store.state.spheres) store.showSpheres(true);
@@ -78,7 +78,7 @@ export function fillAccuracyPanel(panel, store, model, flyTo) {
           },
         },
         h('span', { class: 'two-names' }, sphereName(model, a), sphereName(model, b)),
-        h('span', { class: 'depth' }, percent(depth), h('i', { style: `width: ${Math.min(100, 2500 * depth)}%` })),
+        h('span', { class: 'depth' }, percent(overlap), h('i', { style: `width: ${Math.min(100, 2500 * overlap)}%` })),
       ),
     );
   };
@@ -93,8 +93,8 @@ export function fillAccuracyPanel(panel, store, model, flyTo) {
         'p',
         { class: 'note' },
         known.length === 0
-          ? `Nothing was missed ${validation.skin ? 'by the skin' : `at the ${validation.radius} radius`}.`
-          : `Contacts not reported at the ${validation.radius} radius, the deepest first; depth in % of the height.`,
+          ? `${validation.reported} missed nothing.`
+          : `Contacts that ${validation.reported} at the ${validation.radius} radius missed, the greatest overlap of two triangles first; in % of the height.`,
       ),
       h('ol', { class: 'pairs', id: 'misses' }, known.map(row)),
     ),

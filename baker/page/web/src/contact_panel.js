@@ -3,14 +3,14 @@ import { plural } from './format.js';
 
 // The frame's contacts by body parts, and below those of the whole clip; a click goes there.
 
-// [3, 4, 5, 9] -> "3–5, 9"
-function runs(frames) {
+// [3, 4, 5, 9] -> "3–5, 9", as their clip numbers them.
+function runs(frames, numberOf) {
   const out = [];
   for (const frame of frames) {
     if (out.length > 0 && out.at(-1)[1] === frame - 1) out.at(-1)[1] = frame;
     else out.push([frame, frame]);
   }
-  const text = out.slice(0, 5).map(([a, b]) => (a === b ? `${a}` : `${a}–${b}`));
+  const text = out.slice(0, 5).map(([a, b]) => (a === b ? `${numberOf(a)}` : `${numberOf(a)}–${numberOf(b)}`));
   return text.join(', ') + (out.length > 5 ? ' …' : '');
 }
 
@@ -40,17 +40,17 @@ export function fillContactPanel(panel, store, model, flyTo) {
       store.set({ contact: key });
       flyTo(key);
     });
-  const clipRow = (clip) => (entry) =>
+  const clipRow = (entry) =>
     row(
       {
         class: 'pair clip-contact',
         'data-contact': entry.key,
-        'data-frame': entry.worst - clip.first,
-        title: `Most triangles at frame ${entry.worst - clip.first}: ${entry.most}`,
+        'data-frame': model.number(entry.worst),
+        title: `Most triangles at frame ${model.number(entry.worst)}: ${entry.most}`,
       },
       null,
       entry.name,
-      `${entry.frames.length > 1 ? 'frames' : 'frame'} ${runs(entry.frames.map((frame) => frame - clip.first))}`,
+      `${entry.frames.length > 1 ? 'frames' : 'frame'} ${runs(entry.frames, model.number)}`,
       () => {
         store.set({ frame: entry.worst, playing: false, contact: entry.key });
         flyTo(entry.key);
@@ -73,7 +73,7 @@ export function fillContactPanel(panel, store, model, flyTo) {
     const found = model.contacts.over(clip.first, clip.count);
     clipTitle.textContent = found.length === 0 ? `No contact in ${clip.name}` : `In the whole of ${clip.name}, the longest first`;
     clipTitle.hidden = clipList.hidden = clip.count < 2;
-    clipList.replaceChildren(...found.map(clipRow(clip)));
+    clipList.replaceChildren(...found.map(clipRow));
   });
   store.watch(['frame', 'contact'], ({ contact }) => {
     for (const button of list.querySelectorAll('.pair')) button.setAttribute('aria-pressed', button.dataset.contact === contact);

@@ -99,11 +99,13 @@ export function readModel(text) {
   const floats = 3 + kinds.length;
   const touching = Object.fromEntries(kinds.map((kind) => [kind, pairLists(frames?.[kind], Uint16Array)]));
   const times = decode(frames?.times, Float32Array);
+  const seconds = decode(frames?.seconds, Float32Array);
+  const numbers = decode(frames?.numbers, Uint32Array);
   const partOf = decode(mesh.parts, Uint8Array);
   const sphereOf = decode(mesh.spheres, Uint16Array);
   const partName = (part) => data.parts[part] ?? 'other parts';
   const contactLists = pairLists(frames?.contacts, Uint32Array);
-  const clips = data.clips?.length > 0 ? data.clips : [{ name: 'rest pose', first: 0, count: 1 }];
+  const clips = data.clips?.length > 0 ? data.clips : [{ name: 'rest pose', first: 0, count: 1, own_count: 1 }];
   return {
     title: data.title,
     axes: data.axes,
@@ -135,6 +137,9 @@ export function readModel(text) {
 
     clipAt: (frame) => Math.max(clips.findLastIndex(({ first }) => first <= frame), 0),
     time: (frame) => times[frame] ?? frame / (frames?.fps || 30),
+    // In its clip: the clip's own number of the frame, and seconds from the clip's start.
+    number: (frame) => numbers[frame] ?? frame,
+    seconds: (frame) => seconds[frame] ?? 0,
     // The sphere in a frame: [x, y, z, radius].
     sphere(frame, i, kind) {
       const at = (frame * spheres.length + i) * floats;

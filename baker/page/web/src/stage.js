@@ -209,7 +209,7 @@ export function createStage(canvas, model, store, { skinLayer, sphereLayer, cont
     flyToContact(ball) {
       framed = null;
       const center = new THREE.Vector3(...ball).applyMatrix4(toWorld());
-      const distance = Math.max((1.5 * ball[3]) / model.height / TAN, 0.8 * unit);
+      const distance = Math.max((1.5 * ball[3]) / model.height / TAN, 0.62 * unit);
       const back = camera.position.clone().sub(controls.target).normalize();
       const best = findView(toWorld(), center, distance, back, inSphere);
       go(center, best ? center.clone().addScaledVector(best, distance) : outside(center, back, distance));

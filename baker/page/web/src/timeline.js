@@ -21,16 +21,18 @@ function drawNumbers(context, { model, x, base, height, perFrame, inRange }) {
       context.fillRect(left, base, 1, 4);
       context.fillStyle = css('--muted');
       context.textAlign = frame === 0 ? 'left' : 'center';
-      context.fillText(`${frame}`, frame === 0 ? left - 2 : left, height);
+      context.fillText(`${model.number(first + frame)}`, frame === 0 ? left - 2 : left, height);
     }
   }
 }
 
 function drawClips(context, { model, x, base, inRange }) {
   if (model.clips.length < 2) return;
-  for (const clip of model.clips.filter(inRange)) {
-    const { name, first, count } = clip;
+  let marked = -Infinity;
+  for (const { name, first, count } of model.clips.filter(inRange)) {
     const left = x(first);
+    if (left < marked + 4) continue; // too near to tell apart
+    marked = left;
     const right = x(first + count);
     context.fillStyle = css('--muted');
     context.fillRect(left, 0, 1, base + 4);
@@ -111,12 +113,12 @@ export function fillTimeline(panel, store, model) {
   store.watch(['frame'], ({ frame }) => {
     const clip = model.clips[model.clipAt(frame)];
     const touching = model.contacts.of(frame).length;
-    const number = frame - clip.first;
+    const number = model.number(frame);
     const text = touching > 0 ? plural(touching, 'contact') : 'no contact';
     input.setAttribute('aria-valuetext', `${clip.name}, frame ${number}, ${text}`);
     readout.replaceChildren(
-      last === 0 ? h('b', {}, 'One frame') : h('span', {}, 'frame ', h('b', {}, `${number}`), ` / ${clip.count - 1}`),
-      h('span', {}, `${(model.time(frame) - model.time(clip.first)).toFixed(2)} s`),
+      last === 0 ? h('b', {}, 'One frame') : h('span', {}, 'frame ', h('b', {}, `${number}`), ` / ${clip.own_count - 1}`),
+      h('span', {}, `${model.seconds(frame).toFixed(2)} s`),
       h('span', { class: touching > 0 ? 'warning' : '' }, text),
     );
   });

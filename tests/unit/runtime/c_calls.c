@@ -1,0 +1,135 @@
+/* SPDX-License-Identifier: MIT */
+#include "c_calls.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define EXPECT(condition)                         \
+  do {                                            \
+    if (!(condition)) {                           \
+      if (!out->failed) out->failed = #condition; \
+    }                                             \
+  } while (0)
+#define OK(call) EXPECT((call).code == SC_OK)
+
+static uint64_t* words(size_t count) { return (uint64_t*)calloc(count + 1, sizeof(uint64_t)); }
+
+static void call_accessors(const sc_asset* asset, const float* rest, size_t vertex_count, c_calls_result* out) {
+  const sc_asset_info info = sc_asset_get_info(asset);
+  size_t count = 0;
+  EXPECT(sc_abi_version() == SC_ABI_VERSION);
+  EXPECT(sc_asset_is_open(asset));
+  EXPECT(info.vertex_count == vertex_count);
+  EXPECT(sc_asset_sphere(asset, 0).radius > 0);
+  EXPECT(strcmp(sc_asset_bone(asset, 0).name, "bone0") == 0);
+  EXPECT(strcmp(sc_asset_part(asset, 0).name, "left hand") == 0);
+  EXPECT(strcmp(sc_asset_morph_name(asset, 0), "morph0") == 0);
+  EXPECT(strcmp(sc_asset_region_name(asset, 0), "left_arm") == 0);
+  EXPECT(sc_asset_source_buffer(asset, 0).vertex_count == 4);
+  EXPECT(sc_hash_positions(rest, vertex_count, 12) == info.source_rest_hash);
+  OK(sc_check_source(asset, SC_WHOLE_SOURCE, rest, vertex_count, 12));
+  EXPECT(strcmp(sc_code_text(SC_NULL), "null") == 0);
+  EXPECT(strcmp(sc_field_name(SC_FIELD_BONES), "pose.bones") == 0);
+  EXPECT(strcmp(sc_target_name(SC_TARGET_SCALAR), "scalar") == 0);
+  EXPECT(sc_supported_targets(&count)[0] != SC_TARGET_BEST && count > 0);
+}
+
+static void call_spheres(const sc_asset* asset, const sc_pose* pose, c_calls_result* out) {
+  const size_t sphere_count = sc_asset_get_info(asset).sphere_count;
+  sc_refit_job refit = {0};
+  sc_detect_job detect = {0};
+  sc_crowd_job crowd = {0};
+  sc_filter filter = {0};
+  uint32_t pair_counts[1];
+  uint64_t* table = words(sc_detect_table_words(asset));
+  filter.ignored = words(filter.ignored_words = sc_pair_words(asset));
+  filter.disabled = words(filter.disabled_words = sc_sphere_words(asset));
+  filter.padding = (float*)words(filter.padding_count = sphere_count);
+  refit.asset = detect.asset = crowd.asset = asset;
+  refit.pose = crowd.pose = *pose;
+  refit.spheres = out->spheres;
+  refit.sphere_capacity = C_CALLS_SPHERES;
+  OK(sc_refit(&refit));
+  OK(sc_reset_filter(asset, &filter));
+  OK(sc_ignore_pair(asset, &filter, 2, 5, 1));
+  OK(sc_ignore_regions(asset, &filter, 0, 1, 1));
+  OK(sc_disable_sphere(asset, &filter, 3, 1));
+  OK(sc_pad_sphere(asset, &filter, 4, 0.25F));
+  OK(sc_prepare_detect(asset, SC_RADIUS_DETECT, &filter, table, sc_detect_table_words(asset)));
+  detect.spheres = out->spheres;
+  detect.sphere_count = sphere_count;
+  detect.table = table;
+  detect.pairs = out->pairs;
+  detect.pair_capacity = C_CALLS_ROOM;
+  OK(sc_detect(&detect));
+  out->pair_count = detect.pair_count;
+  crowd.instance_count = 1;
+  crowd.filter = &filter;
+  crowd.scratch_words = sc_crowd_scratch_words(asset, 1);
+  crowd.scratch = words(crowd.scratch_words);
+  crowd.counts = pair_counts;
+  crowd.count_capacity = 1;
+  crowd.pairs = out->crowd_pairs;
+  crowd.pair_capacity = C_CALLS_ROOM;
+  OK(sc_detect_crowd(&crowd));
+  out->crowd_pair_count = crowd.pair_count;
+  free(crowd.scratch);
+  free(filter.padding);
+  free(filter.disabled);
+  free(filter.ignored);
+  free(table);
+}
+
+static void call_skin(const sc_asset* asset, const sc_pose* pose, c_calls_result* out) {
+  sc_skin_contact_job job = {0};
+  uint64_t* table = words(sc_skin_table_words(asset));
+  OK(sc_prepare_skin(asset, table, sc_skin_table_words(asset)));
+  job.asset = asset;
+  job.pose = *pose;
+  job.skin_table = table;
+  job.scratch_words = sc_skin_scratch_words(asset);
+  job.scratch = words(job.scratch_words);
+  job.triangles = out->triangles;
+  job.triangle_capacity = C_CALLS_ROOM;
+  OK(sc_find_skin_contacts(&job));
+  out->triangle_count = job.triangle_count;
+  free(job.scratch);
+  free(table);
+}
+
+static void call_character(const void* data, size_t size, const sc_asset* asset, const sc_pose* pose,
+                           c_calls_result* out) {
+  sc_character* character = NULL;
+  const sc_part_contact* parts = NULL;
+  sc_bone joints[64];
+  uint32_t joint_of_bone[64];
+  float* bones = (float*)words(12 * pose->bone_count);
+  size_t b;
+  for (b = 0; b < pose->bone_count; ++b) joints[b] = sc_asset_bone(asset, b);
+  OK(sc_bind_joints(asset, joints, pose->bone_count, SC_ROWS_3X4, joint_of_bone, 64, NULL, 0));
+  EXPECT(joint_of_bone[0] == 0 && joint_of_bone[pose->bone_count - 1] == SC_NO_JOINT);
+  OK(sc_gather_bones(asset, joint_of_bone, pose, bones));
+  EXPECT(memcmp(bones, pose->bones, 12 * sizeof(float)) == 0);
+  EXPECT(sc_check_rest_pose(asset, pose, NULL, 0).code == SC_OTHER_BIND);
+  OK(sc_character_create(SC_ABI_VERSION, data, size, NULL, 0, SC_LAYOUT_UNSET, &character, NULL, 0));
+  EXPECT(sc_asset_is_open(sc_character_asset(character)));
+  EXPECT(sc_character_check_rest(character, pose, NULL, 0).code == SC_OTHER_BIND);
+  OK(sc_character_contacts(character, pose, &parts, &out->part_count));
+  memcpy(out->parts, parts, out->part_count * sizeof *parts);
+  sc_character_destroy(character);
+  free(bones);
+}
+
+void c_call_all(const void* data, size_t size, const float* matrices, size_t bone_count, const float* rest,
+                size_t vertex_count, c_calls_result* out) {
+  sc_asset asset;
+  sc_pose pose = {0};
+  pose.bones = matrices;
+  pose.bone_count = bone_count;
+  pose.bone_layout = SC_ROWS_3X4;
+  OK(sc_asset_open(&asset, SC_ABI_VERSION, data, size, NULL, 0));
+  call_accessors(&asset, rest, vertex_count, out);
+  call_spheres(&asset, &pose, out);
+  call_skin(&asset, &pose, out);
+  call_character(data, size, &asset, &pose, out);
+}

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// A C99 program that calls every function once gets what C++ gets.
+#include <doctest/doctest.h>
+
+#include <memory>
+
+#include "c_calls.h"
+#include "jobs.h"
+#include "owned_filter.h"
+#include "palette.h"
+#include "random_poses.h"
+#include "tiny_skin.h"
+
+namespace spherechain::test {
+
+TEST_CASE("every function called from C99 gives what C++ gets") {
+  constexpr std::size_t kBoneCount = 6;
+  TinyAsset tiny = random_band(20, 3);
+  const TinySkin skin = add_bones(tiny, kBoneCount, 4);
+  add_skin(tiny, &skin, 4);
+  const OpenedAsset opened(tiny.parts);
+  REQUIRE_MESSAGE(opened.status == SC_OK, opened.message);
+  std::mt19937 random(5);
+  const std::vector<Matrix> matrices = random_pose(kBoneCount, PoseKind::kGentle, 1, random);
+  const auto c = std::make_unique<c_calls_result>();
+  c_call_all(opened.bytes.data(), opened.bytes.size(), matrices[0].data(), kBoneCount, tiny.rest.data(),
+             tiny.parts.vertex_count, c.get());
+  CHECK_MESSAGE(c->failed == nullptr, std::string(c->failed == nullptr ? "" : c->failed));
+
+  const Pose pose = pose_of(matrices);
+  const std::vector<Sphere> spheres = refit(opened.asset, pose, SC_RADIUS_DETECT).spheres;
+  CHECK(same_bits({c->spheres, c->spheres + 20}, spheres));
+  OwnedFilter owned(opened.asset);
+  REQUIRE(sc_ignore_pair(&opened.asset, &owned.filter, 2, 5, 1) == SC_OK);
+  REQUIRE(sc_ignore_regions(&opened.asset, &owned.filter, 0, 1, 1) == SC_OK);
+  REQUIRE(sc_disable_sphere(&opened.asset, &owned.filter, 3, 1) == SC_OK);
+  REQUIRE(sc_pad_sphere(&opened.asset, &owned.filter, 4, 0.25F) == SC_OK);
+  const std::vector<Pair> pairs = detect(opened.asset, spheres, SC_RADIUS_DETECT, SC_TARGET_BEST, &owned.filter).pairs;
+  CHECK(!pairs.empty());
+  CHECK(same_bits({c->pairs, c->pairs + c->pair_count}, pairs));
+  REQUIRE(c->crowd_pair_count == pairs.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) CHECK(c->crowd_pairs[i].pair == pairs[i]);
+
+  SkinContactJob job;
+  job.asset = &opened.asset;
+  job.pose = pose;
+  const SkinContacts contacts = find_contacts(job);
+  CHECK(!contacts.triangles.empty());
+  CHECK(same_bits({c->triangles, c->triangles + c->triangle_count}, contacts.triangles));
+  CHECK(same_bits({c->parts, c->parts + c->part_count}, contacts.parts));
+}
+
+}  // namespace spherechain::test
