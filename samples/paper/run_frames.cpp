@@ -66,6 +66,7 @@ class Runner {
     job.pose.vertices = positions.data();
     job.pose.vertex_count = positions.size() / 3;
     job.radius = SC_RADIUS_FIT;
+    job.target = SC_TARGET_SCALAR;
     job.spheres = spheres_.data();
     job.sphere_capacity = spheres_.size();
     baker::check_runtime(job.run());

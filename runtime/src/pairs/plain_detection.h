@@ -75,7 +75,8 @@ class PlainDetection {
       return false;
     }
     ++out.test_count;
-    return spheres_touch(spheres[pair.a], spheres[pair.b], rest_scale_of(pair));
+    const Sphere &p = spheres[pair.a], &q = spheres[pair.b];
+    return spheres_touch(p, q, 1) && spheres_touch(p, q, rest_scale_of(pair));  // few pairs are looked up
   }
   float rest_scale_of(Pair pair) const {
     const auto before = [](const RestPair& l, Pair r) { return Pair{l.a, l.b} < r; };
