@@ -46,7 +46,7 @@ struct Character {
 
   std::vector<Vec3> source_positions;      // rest pose, exactly representable as float
   std::vector<Triangle> source_triangles;  // corners: source vertices
-  std::vector<SourceBuffer> buffers;           // in the order of their vertices
+  std::vector<SourceBuffer> buffers;       // in the order of their vertices
   SourceRig rig;
 
   // All pieces, welded and cleaned: what spheres are bound to.

@@ -141,7 +141,8 @@ class GltfReader {
   }
 
   // A node's morphs move the vertices of all its primitives.
-  void add_morphs(const tinygltf::Primitive& primitive, const Carrier& carrier, std::size_t n, const SourceBuffer& part) {
+  void add_morphs(const tinygltf::Primitive& primitive, const Carrier& carrier, std::size_t n,
+                  const SourceBuffer& part) {
     const tinygltf::Node& node = file_.model.nodes[n];
     const tinygltf::Mesh& mesh = file_.model.meshes[at(node.mesh)];
     GltfMorphs& morphs = morphs_of_node_[n];

@@ -35,8 +35,7 @@ OpenAsset::OpenAsset(std::string_view bytes, const std::string& name)
     : bytes_(bytes.size() / sizeof(std::uint64_t) + 1) {
   std::memcpy(bytes_.data(), bytes.data(), bytes.size());
   char message[256] = "";
-  const Status status =
-      sc_asset_open(&asset_, SC_ABI_VERSION, bytes_.data(), bytes.size(), message, sizeof(message));
+  const Status status = sc_asset_open(&asset_, SC_ABI_VERSION, bytes_.data(), bytes.size(), message, sizeof(message));
   if (status != SC_OK) {
     throw Error(ExitCode::kFile, name + ": " + sc_code_text(status.code) + ": " + message + " (bake it again)");
   }

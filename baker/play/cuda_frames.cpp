@@ -25,8 +25,9 @@ void check_cuda(Status status) {
 CudaFrames play_on_cuda(const AnimatedAsset& animated, Radius radius) {
   const OpenAsset& asset = animated.asset();
   if (asset->bone_count() == 0 || asset->refit_rule() != RefitRule::kMoments) {
-    throw Error(ExitCode::kFile,
-                animated.file() + ": has no bones that its spheres can be refitted from (bake it with profile balanced)");
+    throw Error(
+        ExitCode::kFile,
+        animated.file() + ": has no bones that its spheres can be refitted from (bake it with profile balanced)");
   }
   check_cuda(cuda::check_device());
   const auto count = static_cast<std::size_t>(animated.frame_count());

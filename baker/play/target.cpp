@@ -27,7 +27,8 @@ std::string backend_text(Target target) {
 
 std::string supported_targets_text() {
   std::string text;
-  for (const Target target : supported_targets()) text += (text.empty() ? "" : ", ") + std::string(sc_target_name(target));
+  for (const Target target : supported_targets())
+    text += (text.empty() ? "" : ", ") + std::string(sc_target_name(target));
   return text;
 }
 

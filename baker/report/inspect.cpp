@@ -174,7 +174,8 @@ std::string inspect_json(const OpenAsset& asset) {
         {"vertices", asset.surface().source_vertices.size},
         {"rest_contacts", asset.surface().rest_contacts.size},
         {"bytes", bytes_of(asset->skin())}}},
-      {"fit", {{"phi1", to_json(fit.phi1)}, {"phi1_adjusted", to_json(fit.phi1_adjusted)}, {"phi2", to_json(fit.phi2)}}}};
+      {"fit",
+       {{"phi1", to_json(fit.phi1)}, {"phi1_adjusted", to_json(fit.phi1_adjusted)}, {"phi2", to_json(fit.phi2)}}}};
   return json_text(out, 1) + "\n";
 }
 

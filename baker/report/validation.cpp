@@ -87,9 +87,8 @@ std::string curve_text(const Validation& validation) {
                      "precision", "a frame");
   out += curve_row("as it is", validation.chains, validation.all_pairs);
   for (const CurvePoint& point : validation.curve) {
-    const std::string name = point.change.rest_scale
-                                 ? fmt::format("rest scale {:.1f}", *point.change.rest_scale)
-                                 : fmt::format("radius x {:.1f}", point.change.scale);
+    const std::string name = point.change.rest_scale ? fmt::format("rest scale {:.1f}", *point.change.rest_scale)
+                                                     : fmt::format("radius x {:.1f}", point.change.scale);
     out += curve_row(name, point.chains, point.all_pairs);
   }
   return out;

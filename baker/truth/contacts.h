@@ -6,20 +6,19 @@
 #include "import/import.h"
 #include "motion/motion.h"
 #include "play/asset_file.h"
-#include "spherechain/types.h"
-#include "spherechain/types.h"
 #include "spherechain/skin_contacts.h"
+#include "spherechain/types.h"
 
 namespace spherechain::baker {
 
 // The triangle pairs the runtime's narrow phase finds in deformed source vertices (x, y, z after another); sorted. The
 // asset must have leaves.
 std::vector<Pair> find_contacts(const OpenAsset& asset, const std::vector<float>& positions, Scope scope,
-                                        Target target);
+                                Target target);
 
 // The same from the matrices of bones and the morphs' weights alone, for an asset that bones move.
 struct ContactsFromBones {
-  std::vector<float> positions;                 // where the runtime has the source vertices: what it decided on
+  std::vector<float> positions;         // where the runtime has the source vertices: what it decided on
   std::vector<Pair> pairs, neighbours;  // of the two scopes; sorted
 };
 ContactsFromBones find_contacts_from_bones(const OpenAsset& asset, const Character& character,

@@ -10,8 +10,8 @@
 namespace spherechain::baker {
 
 struct Intersections {
-  std::vector<Pair> pairs;  // sorted
-  std::size_t degenerate = 0;       // triangles without area, which intersect nothing
+  std::vector<Pair> pairs;     // sorted
+  std::size_t degenerate = 0;  // triangles without area, which intersect nothing
 };
 
 // Every pair of a surface's triangles that have a point in common, neighbours left out: decided exactly for the

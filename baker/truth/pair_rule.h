@@ -14,7 +14,7 @@ namespace spherechain::baker {
 //   a pair       |ca - cb| < ra + rb
 //   a near pair  that, and |ca - cb| < rest_scale * (ra + rb): come nearer than a part of its distance at rest
 struct RuleChange {
-  double scale = 1;                     // of every radius; near pairs keep the distance they are reported at
+  double scale = 1;                  // of every radius; near pairs keep the distance they are reported at
   std::optional<double> rest_scale;  // the part of the distance at rest, whatever the asset says
 };
 

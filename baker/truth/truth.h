@@ -20,10 +20,10 @@ struct TrueContact {
 struct FrameTruth {
   std::size_t raw_pairs = 0;
   std::size_t rest = 0, same_sphere = 0, ignored = 0;
-  std::size_t degenerate = 0;            // triangles without area in this pose
-  std::vector<Pair> pairs;       // the rest: the true pairs, sorted
-  std::vector<Pair> neighbours;  // those of one sphere and of ignored ones, sorted
-  std::vector<TrueContact> contacts;     // the same by spheres, sorted
+  std::size_t degenerate = 0;         // triangles without area in this pose
+  std::vector<Pair> pairs;            // the rest: the true pairs, sorted
+  std::vector<Pair> neighbours;       // those of one sphere and of ignored ones, sorted
+  std::vector<TrueContact> contacts;  // the same by spheres, sorted
 };
 
 // `rest_pairs`: those of the rest pose, sorted. `is_ignored` is asked about two owners of the surface's triangles.

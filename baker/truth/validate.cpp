@@ -154,9 +154,7 @@ Frame validate_frame(const Context& context, int index) {
   frame.curve = context.curve.measure(all.spheres(), frame.truth, is_close);
   frame.capsules = score_ragdolls(context, found, frame.truth, positions, deformation);
   if (settings.contacts) {
-    const auto found = [&](Scope scope) {
-      return find_contacts(animated.asset(), positions, scope, settings.target);
-    };
+    const auto found = [&](Scope scope) { return find_contacts(animated.asset(), positions, scope, settings.target); };
     frame.contacts = compare(found(SC_SCOPE_APART), frame.truth.pairs);
     frame.neighbour_contacts = compare(found(SC_SCOPE_NEIGHBOURS), frame.truth.neighbours);
     if (moved_by_bones(animated.asset(), deformation)) {

@@ -52,8 +52,7 @@ std::vector<flatbuffers::Offset<schema::Bone>> create_bones(flatbuffers::FlatBuf
   return out;
 }
 
-flatbuffers::Offset<schema::Moments> create_moments(flatbuffers::FlatBufferBuilder& builder,
-                                                    const MomentBinding& in) {
+flatbuffers::Offset<schema::Moments> create_moments(flatbuffers::FlatBufferBuilder& builder, const MomentBinding& in) {
   if (in.batches.empty()) return 0;
   std::vector<schema::MomentBatch> batches;
   std::vector<schema::BonePair> pairs;

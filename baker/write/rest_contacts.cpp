@@ -36,8 +36,8 @@ std::vector<Pair> find_rest_contacts(const std::vector<std::uint8_t>& bytes, con
     status = job.run();
   }
   if (status != SC_OK) {
-    throw Error(ExitCode::kInternal, std::string("rest contacts: ") + sc_field_name(status.field) + ": " +
-                                         sc_code_text(status.code));
+    throw Error(ExitCode::kInternal,
+                std::string("rest contacts: ") + sc_field_name(status.field) + ": " + sc_code_text(status.code));
   }
   std::vector<Pair> pairs;
   for (const TriangleContact& contact : contacts) pairs.push_back({contact.triangle_a, contact.triangle_b});

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
+#include "asset/asset_view.h"
 #include "import/sha256.h"
 #include "mesh/error.h"
 #include "sphere_chains_generated.h"
-#include "asset/asset_view.h"
 #include "write/moment_tables.h"
 #include "write/rest_contacts.h"
 #include "write/schema_values.h"
@@ -35,9 +35,9 @@ void add_spheres(const AssetSource& in, const std::vector<std::uint32_t>& triang
     const BoundSphere& bound = in.binding.spheres[i];
     spheres.emplace_back(
         to_schema(bound.rest.center), static_cast<float>(bound.rest.radius), static_cast<float>(bound.detect_radius),
-        static_cast<float>(bound.spread), static_cast<std::uint32_t>(pivots.size()),
-        triangle_counts[i], static_cast<std::uint16_t>(bound.pivots.size()), fitted.region,
-        static_cast<schema::Side>(fitted.side), static_cast<std::int16_t>(fitted.level), std::uint16_t{0});
+        static_cast<float>(bound.spread), static_cast<std::uint32_t>(pivots.size()), triangle_counts[i],
+        static_cast<std::uint16_t>(bound.pivots.size()), fitted.region, static_cast<schema::Side>(fitted.side),
+        static_cast<std::int16_t>(fitted.level), std::uint16_t{0});
     for (const BoundPivot& pivot : bound.pivots) {
       const Triangle& corners = in.character.source_triangles[in.character.skin_source_triangle[pivot.triangle]];
       pivots.emplace_back(corners[0], corners[1], corners[2], static_cast<float>(pivot.weight));
@@ -138,12 +138,12 @@ std::vector<std::uint8_t> bytes_of(const AssetSource& in, const std::vector<Pair
   const auto rest_detect_at = builder.CreateVectorOfStructs(rest_detect);
   const auto joints_at = builder.CreateVector(joints);
   const auto bones_at = builder.CreateVector(bones);
-  builder.Finish(schema::CreateAsset(builder, kFormatVersion, provenance, source, frame,
-                                     static_cast<schema::Refit>(in.binding.rule), fit, regions_at, parts_at, spheres_at,
-                                     pivots_at, chains_at, static_cast<std::uint32_t>(in.chains.entries_table1),
-                                     ignored_at, rest_fit_at, rest_detect_at, joints_at, bones_at, morphs, moments,
-                                     skin),
-                 schema::AssetIdentifier());
+  builder.Finish(
+      schema::CreateAsset(builder, kFormatVersion, provenance, source, frame,
+                          static_cast<schema::Refit>(in.binding.rule), fit, regions_at, parts_at, spheres_at, pivots_at,
+                          chains_at, static_cast<std::uint32_t>(in.chains.entries_table1), ignored_at, rest_fit_at,
+                          rest_detect_at, joints_at, bones_at, morphs, moments, skin),
+      schema::AssetIdentifier());
   return {builder.GetBufferPointer(), builder.GetBufferPointer() + builder.GetSize()};
 }
 

@@ -100,9 +100,8 @@ Figure running_time_figure(const Results& results) {
       const Table one = t.where("animation", animation);
       const bool time = std::string(column) == "us";
       Panel panel{"animation of the " + animation, "frame", time ? "time (µs)" : "overlaps", {}};
-      for (const auto& [method, colour] :
-           {std::pair("M1", Colour::kBlue), std::pair("M2", Colour::kVermilion), std::pair("all_pairs", Colour::kGreen),
-            std::pair("refit", Colour::kGrey)}) {
+      for (const auto& [method, colour] : {std::pair("M1", Colour::kBlue), std::pair("M2", Colour::kVermilion),
+                                           std::pair("all_pairs", Colour::kGreen), std::pair("refit", Colour::kGrey)}) {
         const Table rows = one.where("method", method);
         const bool of_product = colour == Colour::kGreen || colour == Colour::kGrey;
         if (!time && of_product) continue;  // all_pairs finds what M2 finds

@@ -111,7 +111,8 @@ std::vector<Section> sections(const Results& results) {
        {"All times are of scalar code on one core, at the paper's radius: " + results.machine +
         ". M1 and M2 are plain loops of one style (`runtime/src/pairs/plain_detection.h`), so that their times can be "
         "compared. M1 is no part of the product. The product's refit and its all_pairs job, which finds what M2 finds, "
-        "stand beside them. Each frame and method takes its turn in every repetition. A time is the median of the repetitions."},
+        "stand beside them. Each frame and method takes its turn in every repetition. A time is the median of the "
+        "repetitions."},
        {running_time_figure(results)},
        {}});
   out.push_back(gpu_section(results));

@@ -16,8 +16,7 @@ extern "C" {
  * sc_bind_joints(), or SC_NO_MEMORY. Pass SC_ABI_VERSION for `abi`. */
 SPHERECHAIN_API sc_status sc_character_create(uint32_t abi, const void* data, size_t size, const sc_bone* joints,
                                               size_t joint_count, sc_matrix_layout inverse_bind_layout,
-                                              sc_character** character, char* message,
-                                              size_t message_size) SC_NOEXCEPT;
+                                              sc_character** character, char* message, size_t message_size) SC_NOEXCEPT;
 SPHERECHAIN_API void sc_character_destroy(sc_character* character) SC_NOEXCEPT; /* null is fine */
 
 SPHERECHAIN_API const sc_asset* sc_character_asset(const sc_character* character) SC_NOEXCEPT;

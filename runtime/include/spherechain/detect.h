@@ -20,8 +20,8 @@ typedef struct sc_filter {
   size_t padding_count SC_ZERO;
 } sc_filter;
 
-/* The overlap test of all pairs of spheres that are not ignored. Rest pairs, which touch at rest or nearly, are reported
- * where they come closer than rest_scale times the sum of their radii (docs/arithmetic.md).
+/* The overlap test of all pairs of spheres that are not ignored. Rest pairs, which touch at rest or nearly, are
+ * reported where they come closer than rest_scale times the sum of their radii (docs/arithmetic.md).
  *
  * Allocates nothing, takes no lock. Jobs on other outputs may run at the same time. Needs 25 KiB of stack. */
 typedef struct sc_detect_job {
@@ -30,8 +30,8 @@ typedef struct sc_detect_job {
   size_t sphere_count SC_ZERO; /* at least the asset's */
   sc_radius radius SC_ZERO;    /* of the spheres: which refit made them */
   sc_target target SC_ZERO;
-  /* At most one of the two. A table from sc_prepare_detect(), with this asset and radius, is faster and holds the filter
-   * it was made with; neither: the asset's own ignored pairs. */
+  /* At most one of the two. A table from sc_prepare_detect(), with this asset and radius, is faster and holds the
+   * filter it was made with; neither: the asset's own ignored pairs. */
   const uint64_t* table SC_ZERO;
   const sc_filter* filter SC_ZERO;
   sc_pair* pairs SC_ZERO; /* out: sorted, each once; null: count only */
@@ -62,7 +62,7 @@ SPHERECHAIN_API size_t sc_detect_table_words(const sc_asset* asset) SC_NOEXCEPT;
 SPHERECHAIN_API sc_status sc_prepare_detect(const sc_asset* asset, sc_radius radius, const sc_filter* filter,
                                             uint64_t* words, size_t word_count) SC_NOEXCEPT;
 
-/* These edit a filter's buffers. SC_BAD_VALUE where a sphere, part or figure does not exist; nothing is written then. */
+/* These edit a filter's buffers. SC_BAD_VALUE: a sphere, region or figure does not exist; nothing is written then. */
 /* The asset's own pairs; every sphere enabled, no padding. */
 SPHERECHAIN_API sc_status sc_reset_filter(const sc_asset* asset, sc_filter* filter) SC_NOEXCEPT;
 /* `ignored` 0 reports the pair again, also where the asset itself ignores it. */

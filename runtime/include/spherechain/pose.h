@@ -43,8 +43,8 @@ extern "C" {
  * nothing of use. */
 #define SC_NO_JOINT 0xFFFFFFFFu
 SPHERECHAIN_API sc_status sc_bind_joints(const sc_asset* asset, const sc_bone* joints, size_t joint_count,
-                                         sc_matrix_layout inverse_bind_layout, uint32_t* joint_of_bone,
-                                         size_t capacity, char* message, size_t message_size) SC_NOEXCEPT;
+                                         sc_matrix_layout inverse_bind_layout, uint32_t* joint_of_bone, size_t capacity,
+                                         char* message, size_t message_size) SC_NOEXCEPT;
 
 /* Writes the matrices of a palette in the engine's order into `bones`, in the asset's order, as SC_ROWS_3X4: 12 floats
  * a bone. The bone without a name gets the identity. */

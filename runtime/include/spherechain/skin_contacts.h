@@ -7,8 +7,9 @@
 
 /* Which triangles are paired, by the spheres that they belong to. */
 SC_ENUM(sc_scope){
-    SC_SCOPE_APART = 0,      /* of two spheres that are not ignored: no neighbours on the body */
-    SC_SCOPE_NEIGHBOURS = 1, /* of one sphere, or of two that are ignored: folds of elbow, knee, fingers. 40 times dearer */
+    SC_SCOPE_APART = 0, /* of two spheres that are not ignored: no neighbours on the body */
+    SC_SCOPE_NEIGHBOURS =
+        1, /* of one sphere, or of two that are ignored: folds of elbow, knee, fingers. 40 times dearer */
     SC_SCOPE_ALL = 2,
 };
 
@@ -41,10 +42,11 @@ typedef struct sc_skin_contact_job {
   sc_pose pose SC_ZERO;
   sc_scope scope SC_ZERO;
   sc_target target SC_ZERO;
-  int32_t spheres_only SC_ZERO; /* 1: find pairs of spheres alone; each ends at its first contact. Cheapest */
+  int32_t spheres_only SC_ZERO;       /* 1: find pairs of spheres alone; each ends at its first contact. Cheapest */
   const uint64_t* skin_table SC_ZERO; /* from sc_prepare_skin(), of this asset */
   const sc_filter* filter SC_ZERO;    /* null: the asset's ignored pairs */
-  /* Null, or: only these pairs of spheres, ignored or not. Sorted by (a, b), each once. Scope and filter must be zero */
+  /* Null, or: only these pairs of spheres, ignored or not. Sorted by (a, b), each once. Scope and filter must be zero
+   */
   const sc_pair* candidates SC_ZERO;
   size_t candidate_count SC_ZERO;
   uint64_t* scratch SC_ZERO; /* sc_skin_scratch_words() words; nothing is kept there between runs */

@@ -28,36 +28,35 @@ SC_ENUM(sc_radius){
  * to keep AVX-512 out of a game. */
 SC_ENUM(sc_target){
     SC_TARGET_BEST = 0, /* the best that the build has and the machine runs */
-    SC_TARGET_SCALAR = 1, SC_TARGET_SSE2 = 2, SC_TARGET_SSSE3 = 3,
-    SC_TARGET_AVX2 = 4,   /* with BMI2 and FMA */
-    SC_TARGET_AVX512 = 5, /* F, VL, DQ, BW, CD */
+    SC_TARGET_SCALAR = 1, SC_TARGET_SSE2 = 2, SC_TARGET_SSSE3 = 3, SC_TARGET_AVX2 = 4, /* with BMI2 and FMA */
+    SC_TARGET_AVX512 = 5,                                                              /* F, VL, DQ, BW, CD */
     SC_TARGET_NEON = 6,
 };
 
 /* What went wrong. */
 SC_ENUM(sc_code){
     SC_OK = 0,
-    SC_OVERFLOW = 1,           /* an output buffer is too small; the job's counts say how many entries there are */
-    SC_NULL = 2,               /* the field is required and null */
-    SC_MISALIGNED = 3,         /* the field's memory is not aligned as its type */
-    SC_TOO_SMALL = 4,          /* the field has fewer entries than the call needs, or a filter's buffer another number */
-    SC_BAD_STRIDE = 5,         /* a stride below the size of an entry, or no multiple of 4 */
-    SC_BAD_VALUE = 6,          /* the field has a value that does not exist */
-    SC_ALIASED = 7,            /* the field is written and overlaps another buffer of the call */
-    SC_NOT_OPEN = 8,           /* the asset was never opened */
-    SC_NOT_IN_ASSET = 9,       /* the asset has no data for this: no bones, or no triangles */
+    SC_OVERFLOW = 1,     /* an output buffer is too small; the job's counts say how many entries there are */
+    SC_NULL = 2,         /* the field is required and null */
+    SC_MISALIGNED = 3,   /* the field's memory is not aligned as its type */
+    SC_TOO_SMALL = 4,    /* the field has fewer entries than the call needs, or a filter's buffer another number */
+    SC_BAD_STRIDE = 5,   /* a stride below the size of an entry, or no multiple of 4 */
+    SC_BAD_VALUE = 6,    /* the field has a value that does not exist */
+    SC_ALIASED = 7,      /* the field is written and overlaps another buffer of the call */
+    SC_NOT_OPEN = 8,     /* the asset was never opened */
+    SC_NOT_IN_ASSET = 9, /* the asset has no data for this: no bones, or no triangles */
     SC_UNSUPPORTED_TARGET = 10, /* this build or this machine lacks the instruction set */
-    SC_NOT_AN_ASSET = 11,      /* the bytes are no .sphc file */
-    SC_OTHER_VERSION = 12,     /* the asset is of another format version: bake it again */
-    SC_CORRUPT = 13,           /* the asset is cut short or damaged */
-    SC_WRONG_ABI = 14,         /* the program was compiled with other headers than the library */
-    SC_WRONG_SOURCE = 15,      /* these are not the vertices that the asset was baked from */
-    SC_NO_SUCH_BONE = 16,      /* the skeleton lacks a bone of the asset */
-    SC_OTHER_BIND = 17,        /* a bone's inverse bind matrix, or its place at rest, differs from the asset's */
-    SC_NO_MEMORY = 18,         /* an allocation failed (sc_character_create and HostCrowd only) */
-    SC_NO_DEVICE = 19,         /* no CUDA device, or no driver for one */
-    SC_DEVICE_FAILED = 20,     /* the CUDA device or its driver reported an error */
-    SC_DEVICE_TOO_SMALL = 21,  /* the asset does not fit into a block's memory on the CUDA device */
+    SC_NOT_AN_ASSET = 11,       /* the bytes are no .sphc file */
+    SC_OTHER_VERSION = 12,      /* the asset is of another format version: bake it again */
+    SC_CORRUPT = 13,            /* the asset is cut short or damaged */
+    SC_WRONG_ABI = 14,          /* the program was compiled with other headers than the library */
+    SC_WRONG_SOURCE = 15,       /* these are not the vertices that the asset was baked from */
+    SC_NO_SUCH_BONE = 16,       /* the skeleton lacks a bone of the asset */
+    SC_OTHER_BIND = 17,         /* a bone's inverse bind matrix, or its place at rest, differs from the asset's */
+    SC_NO_MEMORY = 18,          /* an allocation failed (sc_character_create and HostCrowd only) */
+    SC_NO_DEVICE = 19,          /* no CUDA device, or no driver for one */
+    SC_DEVICE_FAILED = 20,      /* the CUDA device or its driver reported an error */
+    SC_DEVICE_TOO_SMALL = 21,   /* the asset does not fit into a block's memory on the CUDA device */
 };
 
 /* The field or argument that a status is about. */

@@ -16,8 +16,7 @@ namespace {
 constexpr std::uint32_t pairs_of_bones(std::uint32_t count) { return count * (count + 1) / 2; }
 
 bool has_size(std::uint32_t size, std::uint64_t wanted, const char* name, const char* of, Message& message) {
-  return size == wanted ||
-         message.wrong("moments.%s: %" PRIu32 " of them, but %" PRIu64 " %s", name, size, wanted, of);
+  return size == wanted || message.wrong("moments.%s: %" PRIu32 " of them, but %" PRIu64 " %s", name, size, wanted, of);
 }
 
 bool check_origin(const schema::Moments& in, std::uint32_t bones, Message& message) {
@@ -29,8 +28,7 @@ bool check_origin(const schema::Moments& in, std::uint32_t bones, Message& messa
     return message.wrong("moments.origin: not finite");
   }
   return in.reference() < bones ||
-         message.wrong("moments.reference: %" PRIu32 " is past the %" PRIu32 " bones", in.reference(),
-                       bones);
+         message.wrong("moments.reference: %" PRIu32 " is past the %" PRIu32 " bones", in.reference(), bones);
 }
 
 bool check_batches(const schema::Moments& in, std::uint32_t spheres, Message& message) {
@@ -58,8 +56,8 @@ bool check_pairs(const schema::Moments& in, std::uint32_t bones, Message& messag
     for (const std::uint32_t first = i; i < first + batch->pair_count(); ++i) {
       const schema::BonePair& pair = *in.pairs()->Get(i);
       if (pair.b() >= bones) {
-        return message.wrong("moments.pairs[%" PRIu32 "].b: %u is past the %" PRIu32 " bones", i,
-                             unsigned{pair.b()}, bones);
+        return message.wrong("moments.pairs[%" PRIu32 "].b: %u is past the %" PRIu32 " bones", i, unsigned{pair.b()},
+                             bones);
       }
       if (pair.a() > pair.b()) {
         return message.wrong("moments.pairs[%" PRIu32 "]: a is above b", i);
@@ -82,8 +80,8 @@ bool check_spheres(const schema::Moments& in, Message& message) {
   for (std::uint32_t i = 0; i < count; ++i) {
     const std::uint32_t sphere = in.spheres()->Get(i);
     if (sphere >= count) {
-      return message.wrong("moments.spheres[%" PRIu32 "]: %" PRIu32 " is past the %" PRIu32 " spheres", i,
-                           sphere, count);
+      return message.wrong("moments.spheres[%" PRIu32 "]: %" PRIu32 " is past the %" PRIu32 " spheres", i, sphere,
+                           count);
     }
     if (!seen.insert(sphere)) {
       return message.wrong("moments.spheres[%" PRIu32 "]: %" PRIu32 " is there already", i, sphere);
@@ -100,8 +98,7 @@ bool check_bones(const schema::Moments& in, std::uint32_t bones, Message& messag
   for (std::uint32_t i = 0; i < in.bone_counts()->size(); ++i) {
     const std::uint32_t count = in.bone_counts()->Get(i);
     if (count == 0 || count > kMaxMomentBones) {
-      return message.wrong("moments.bone_counts[%" PRIu32 "]: %" PRIu32 " is not 1 to %zu", i, count,
-                           kMaxMomentBones);
+      return message.wrong("moments.bone_counts[%" PRIu32 "]: %" PRIu32 " is not 1 to %zu", i, count, kMaxMomentBones);
     }
     bones_used += count;
     pairs_used += pairs_of_bones(count);
@@ -137,8 +134,7 @@ bool check_places(const schema::Moments& in, Message& message) {
         for (std::uint32_t l = k; l < end; ++l, ++i) {
           const std::uint32_t place = in.pair_places()->Get(i);
           if (place >= batch->pair_count()) {
-            return message.wrong("moments.pair_places[%" PRIu32 "]: %" PRIu32 " is past its batch's %" PRIu32
-                                 " pairs",
+            return message.wrong("moments.pair_places[%" PRIu32 "]: %" PRIu32 " is past its batch's %" PRIu32 " pairs",
                                  i, place, batch->pair_count());
           }
           const schema::BonePair& pair = *in.pairs()->Get(first_pair + place);
@@ -156,9 +152,7 @@ bool check_places(const schema::Moments& in, Message& message) {
 }
 
 // A bone's own moment is symmetric, and stored upper triangular.
-bool is_upper(const float* m) {
-  return m[4] == 0 && m[8] == 0 && m[9] == 0 && m[12] == 0 && m[13] == 0 && m[14] == 0;
-}
+bool is_upper(const float* m) { return m[4] == 0 && m[8] == 0 && m[9] == 0 && m[12] == 0 && m[13] == 0 && m[14] == 0; }
 
 bool check_own_moments(const schema::Moments& in, Message& message) {
   std::uint32_t i = 0;

@@ -70,8 +70,8 @@ class Checker {
 
   bool run() {
     sizes_ = {};
-    return check_vertices() && check_influences() && check_morphs() && check_clusters() && check_triangles() && check_parts() &&
-           check_bounds() && check_hulls() && check_rest_contacts() && check_sizes();
+    return check_vertices() && check_influences() && check_morphs() && check_clusters() && check_triangles() &&
+           check_parts() && check_bounds() && check_hulls() && check_rest_contacts() && check_sizes();
   }
 
  private:
@@ -157,7 +157,8 @@ class Checker {
     for (std::uint32_t v = 0; v < skin_.vertex_count(); ++v) {
       for (const std::uint64_t first = i, end = first + morphs_of(v); i < end; ++i) {
         if (i >= morphs.size() || morphs.Get(i)->target() >= root_.morphs()->size() ||
-            !is_finite(morphs.Get(i)->delta()) || (i > first && morphs.Get(i)->target() <= morphs.Get(i - 1)->target())) {
+            !is_finite(morphs.Get(i)->delta()) ||
+            (i > first && morphs.Get(i)->target() <= morphs.Get(i - 1)->target())) {
           return wrong_at("morphs", i, "missing, not finite, past the targets, or not sorted", message_);
         }
       }
@@ -266,7 +267,9 @@ class Checker {
     return has_size(last, sizes_.triangles, "part_runs", "triangles", message_) && ends(ends_of_runs, "part_run_ends");
   }
 
-  std::uint32_t lanes_of(std::uint32_t group) const { return std::min(kLanes, skin_.clusters()->size() - kLanes * group); }
+  std::uint32_t lanes_of(std::uint32_t group) const {
+    return std::min(kLanes, skin_.clusters()->size() - kLanes * group);
+  }
 
   // A group's entries each, one group after another, that name bones or morph targets.
   template <typename IsValid>
@@ -281,7 +284,8 @@ class Checker {
       }
       for (auto i = first; i < next; ++i) {
         if (names.Get(i) >= limit || (i > first && names.Get(i) <= names.Get(i - 1)) || !is_valid(group, i)) {
-          return wrong_at(names_name, i, "past the end, not sorted, or its lanes are not finite, below 0, or a spare is not 0",
+          return wrong_at(names_name, i,
+                          "past the end, not sorted, or its lanes are not finite, below 0, or a spare is not 0",
                           message_);
         }
       }

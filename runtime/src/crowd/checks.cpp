@@ -24,18 +24,16 @@ bool is_aliased(const AssetView& asset, const CrowdJob& job) {
   const std::size_t before_last = job.instance_count == 0 ? 0 : job.instance_count - 1;
   const std::size_t spheres =
       job.instance_count == 0 || job.spheres == nullptr ? 0 : before_last * sphere_stride(asset, job) + n;
-  const std::size_t floats =
-      job.instance_count == 0 || job.pose.bones == nullptr
-          ? 0
-          : (before_last * bone_stride(asset, job) + instance_bytes(asset, job)) / sizeof(float);
+  const std::size_t floats = job.instance_count == 0 || job.pose.bones == nullptr
+                                 ? 0
+                                 : (before_last * bone_stride(asset, job) + instance_bytes(asset, job)) / sizeof(float);
   const FilterRanges filter = ranges_of(job.filter);
-  return any_shared({range_of(Span<std::uint32_t>{job.counts, job.count_capacity}),
-                     range_of(Span<std::uint64_t>{job.bits, job.bit_words}),
-                     range_of(Span<CrowdPair>{job.pairs, job.pair_capacity}),
-                     range_of(Span<std::uint64_t>{job.scratch, job.scratch_words})},
-                    {range_of(Span<const Sphere>{job.spheres, spheres}), range_of(asset.ignored()),
-                     range_of(Span<const float>{job.pose.bones, floats}), filter.ignored, filter.disabled,
-                     filter.padding});
+  return any_shared(
+      {range_of(Span<std::uint32_t>{job.counts, job.count_capacity}),
+       range_of(Span<std::uint64_t>{job.bits, job.bit_words}), range_of(Span<CrowdPair>{job.pairs, job.pair_capacity}),
+       range_of(Span<std::uint64_t>{job.scratch, job.scratch_words})},
+      {range_of(Span<const Sphere>{job.spheres, spheres}), range_of(asset.ignored()),
+       range_of(Span<const float>{job.pose.bones, floats}), filter.ignored, filter.disabled, filter.padding});
 }
 
 Status check_instances(const AssetView& asset, const CrowdJob& job) {

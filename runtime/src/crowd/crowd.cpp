@@ -28,14 +28,14 @@ struct Layout {
         order_words(1 + asset.spheres().size / 2 + 1) {}
 
   std::size_t bit_words;
-  std::size_t lane_words;               // a task
-  std::size_t bone_words;               // a task: matrices, one instance a lane
-  std::size_t product_words;            // a task: of matrices
-  std::size_t candidate_words;          // a task
-  std::size_t order_words;              // a task: its total, and a place a sphere
+  std::size_t lane_words;       // a task
+  std::size_t bone_words;       // a task: matrices, one instance a lane
+  std::size_t product_words;    // a task: of matrices
+  std::size_t candidate_words;  // a task
+  std::size_t order_words;      // a task: its total, and a place a sphere
   std::size_t task_words() const {
-    return kAlignmentWords + lane_words + bone_words + product_words + kMaxLanes * bit_words +
-           candidate_words + order_words;
+    return kAlignmentWords + lane_words + bone_words + product_words + kMaxLanes * bit_words + candidate_words +
+           order_words;
   }
   std::size_t shared_words() const { return 2 * bit_words; }
 };
@@ -44,12 +44,12 @@ struct Crowd {
   const CrowdJob& job;
   const AssetView& asset;
   Layout layout;
-  Target target;  // resolved
+  Target target;                          // resolved
   std::size_t stride, lanes, task_count;  // of spheres; of the target; of the job
   Span<const RestPair> rest_pairs;
   Span<std::uint64_t> wanted, is_rest_pair;  // bits in the order of sorted pairs
-  RefitInputs bones = {};               // where the job has bones
-  bool list_only = false;               // the second pass
+  RefitInputs bones = {};                    // where the job has bones
+  bool list_only = false;                    // the second pass
 
   // Of job.pairs, what a task lists into: its share, until all totals are known.
   std::size_t list_begin(std::size_t task) const { return job.pair_capacity / task_count * task; }

@@ -3,15 +3,15 @@
 
 #include <cfloat>
 
-#include "simd/arithmetic.h"
 #include "pairs/overlap.h"
-#include "simd/simd.h"
 #include "pairs/pair_bits.h"
+#include "simd/arithmetic.h"
+#include "simd/simd.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "crowd/lanes.cpp"
-#include "simd/highway.h"
 #include "pairs/sphere_registers.h"
+#include "simd/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
@@ -152,14 +152,15 @@ struct Row {
   std::uint16_t* candidates;  // of each sphere after `a` with which it is wanted: a bit a lane
 };
 
-// Tests a row's pairs that are candidates in any lane, in order. `next_rest_pair`: the first rest pair of the row, then of
-// the next one.
+// Tests a row's pairs that are candidates in any lane, in order. `next_rest_pair`: the first rest pair of the row, then
+// of the next one.
 template <bool kCheckFinite>
 HWY_INLINE void test_row(Found& found, const Row& row, std::size_t& next_rest_pair) {
   const LaneBatch& batch = found.batch;
   const LaneSphere own = load(batch.lanes, row.a);
   for (std::size_t first = row.a + 1; first < batch.sphere_count; first += 64) {
-    const std::uint64_t own_rest_pairs = sorted_row_bits(batch.is_rest_pair, batch.bit_words, row.a, first, batch.sphere_count);
+    const std::uint64_t own_rest_pairs =
+        sorted_row_bits(batch.is_rest_pair, batch.bit_words, row.a, first, batch.sphere_count);
     std::uint64_t left = sorted_row_bits(batch.wanted, batch.bit_words, row.a, first, batch.sphere_count);
     if (!kCheckFinite) {
       left &= any_bits(row.candidates + first);
@@ -242,8 +243,7 @@ void test_batch(LaneBatch& batch) {
   Found found{batch, hn::FirstN(kFloats, batch.count), hn::Zero(kNumbers),
               hn::Mul(hn::Iota(kNumbers, 0), hn::Set(kNumbers, kMaxListed + 1))};
   if (!any_huge && hn::AllTrue(kFloats, hn::Le(extent, hn::Set(kFloats, FLT_MAX)))) {
-    find_pairs<false>(found,
-                      hn::Add(hn::Mul(hn::Set(kFloats, kMarginOfExtent), extent), hn::Set(kFloats, kMinMargin)));
+    find_pairs<false>(found, hn::Add(hn::Mul(hn::Set(kFloats, kMarginOfExtent), extent), hn::Set(kFloats, kMinMargin)));
   } else {
     find_pairs<true>(found, hn::Zero(kFloats));
   }

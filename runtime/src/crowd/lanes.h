@@ -8,7 +8,6 @@
 #include "asset/asset_view.h"
 #include "spherechain/crowd.h"
 #include "spherechain/types.h"
-#include "spherechain/types.h"
 
 namespace spherechain {
 

@@ -2,15 +2,15 @@
 // Refit by moments of as many instances as a register has lanes, one a lane. docs/arithmetic.md has the
 // arithmetic. A batch's Gram matrices are made once for all of its spheres, two columns at a time: half of them fit
 // the first cache beside what else is read, and leave one register a sphere to be kept.
-#include "simd/arithmetic.h"
 #include "crowd/lanes.h"
 #include "crowd/refit.h"
+#include "simd/arithmetic.h"
 #include "simd/simd.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "crowd/moments.cpp"
-#include "simd/highway.h"
 #include "crowd/lane_matrices.h"
+#include "simd/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
@@ -297,9 +297,7 @@ std::size_t product_floats(const MomentTables& moments) {
   return kMomentSize / 2 * kMaxLanes * most;
 }
 
-void refit_lanes(Target resolved, const LaneRefit& batch) {
-  refit_batch_kernels[index_of(resolved)](batch);
-}
+void refit_lanes(Target resolved, const LaneRefit& batch) { refit_batch_kernels[index_of(resolved)](batch); }
 
 }  // namespace spherechain
 #endif

@@ -49,7 +49,8 @@ Status check(const DetectJob& job, Target& resolved, DetectTable& table) {
   }
   if (job.filter != nullptr) {
     // A table holds the filter that it was made with: another beside it would be ignored in silence.
-    const Status status = job.table != nullptr ? refuse(SC_BAD_VALUE, SC_FIELD_FILTER) : check_filter(asset, *job.filter);
+    const Status status =
+        job.table != nullptr ? refuse(SC_BAD_VALUE, SC_FIELD_FILTER) : check_filter(asset, *job.filter);
     if (status != SC_OK) {
       return status;
     }
@@ -64,10 +65,10 @@ Status check(const DetectJob& job, Target& resolved, DetectTable& table) {
     return refuse(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET);
   }
   const FilterRanges filter = ranges_of(job.filter);
-  const bool is_aliased = any_shared({range_of(pairs), range_of(bits)},
-                                     {range_of(spheres), range_of(asset.ignored()),
-                                      range_of(Span<const std::uint64_t>{job.table, table.size}), filter.ignored,
-                                      filter.disabled, filter.padding});
+  const bool is_aliased =
+      any_shared({range_of(pairs), range_of(bits)}, {range_of(spheres), range_of(asset.ignored()),
+                                                     range_of(Span<const std::uint64_t>{job.table, table.size}),
+                                                     filter.ignored, filter.disabled, filter.padding});
   return is_aliased ? refuse(SC_ALIASED, pairs.size > 0 ? SC_FIELD_PAIRS : SC_FIELD_BITS) : done();
 }
 

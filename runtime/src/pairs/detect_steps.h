@@ -7,9 +7,9 @@
 
 #include "pairs/overlap.h"
 #include "pairs/padded_radius.h"
+#include "pairs/pair_bits.h"
 #include "pairs/pair_rows.h"
 #include "spherechain/detect.h"
-#include "pairs/pair_bits.h"
 
 namespace spherechain {
 

@@ -25,8 +25,8 @@ std::size_t padded_rest_pairs(const AssetView& asset) {
   return (most + kBlock - 1) / kBlock * kBlock;
 }
 
-// Where in a table's words what lies, and how many there are; of null words only how many. An asset of one tile has rows
-// and lists; a larger one, for which they would save nothing, its filter's bits.
+// Where in a table's words what lies, and how many there are; of null words only how many. An asset of one tile has
+// rows and lists; a larger one, for which they would save nothing, its filter's bits.
 struct Content {
   Content(std::uint64_t* words, const AssetView& asset) : size(kHeaderWords) {
     const auto take = [&](auto*& content, std::size_t count) {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "simd/arithmetic.h"
 #include "pairs/detect_steps.h"
+#include "simd/arithmetic.h"
 
 namespace spherechain {
 

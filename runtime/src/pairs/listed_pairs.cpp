@@ -8,8 +8,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "pairs/listed_pairs.cpp"
-#include "simd/highway.h"
 #include "pairs/sphere_columns.h"
+#include "simd/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
@@ -20,8 +20,8 @@ using Floats = hn::ScalableTag<float>;
 using Pairs = hn::ScalableTag<std::int32_t>;  // numbers below 2^31: offsets are of kTileSize spheres
 
 // Adds those of kListLanes pairs that touch and whose number is below `count`. False where there are too many.
-HWY_INLINE bool test_pairs(const Sphere* spheres, const ListedPair* pairs, hn::Vec<Floats> rest_scales, std::size_t count,
-                           FoundPairs& found) {
+HWY_INLINE bool test_pairs(const Sphere* spheres, const ListedPair* pairs, hn::Vec<Floats> rest_scales,
+                           std::size_t count, FoundPairs& found) {
   constexpr Floats kFloats;
   constexpr Pairs kPairs;
   const auto* const bytes = reinterpret_cast<const char*>(spheres);

@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "pairs/overlap.h"
 #include "asset/span.h"
+#include "pairs/overlap.h"
 #include "spherechain/types.h"
 
 namespace spherechain {
@@ -45,9 +45,9 @@ constexpr std::size_t padded_strips(std::size_t sphere_count) {
 
 // What to look at.
 struct PairLists {
-  const std::uint16_t* wanted;  // by strip, a bit a sphere: pairs but rest pairs; 0 in the padding
-  const ListedPair* strips;     // the block's first sphere as a, the sphere as b
-  const ListedPair* rest_pairs;       // rest_count is a multiple of kBlock, filled up by pairs that never touch
+  const std::uint16_t* wanted;   // by strip, a bit a sphere: pairs but rest pairs; 0 in the padding
+  const ListedPair* strips;      // the block's first sphere as a, the sphere as b
+  const ListedPair* rest_pairs;  // rest_count is a multiple of kBlock, filled up by pairs that never touch
   const float* rest_scales;
   std::size_t rest_count;
 };

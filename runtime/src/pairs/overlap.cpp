@@ -8,8 +8,8 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "pairs/overlap.cpp"
-#include "simd/highway.h"
 #include "pairs/sphere_columns.h"
+#include "simd/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {

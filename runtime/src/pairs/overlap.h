@@ -7,7 +7,6 @@
 
 #include "asset/asset_view.h"
 #include "spherechain/types.h"
-#include "spherechain/types.h"
 
 namespace spherechain {
 
@@ -53,7 +52,7 @@ struct Tile {
   const TileWords* wanted = nullptr;
   const TileWords* plain = nullptr;
   Span<const RestPair> rest_pairs;  // those of the columns
-  bool is_whole = false;      // columns and rows are all spheres there are
+  bool is_whole = false;            // columns and rows are all spheres there are
   // Out: the pairs that touch. padded_rows(row_count).
   TileWords* bits = nullptr;
   std::uint8_t hits[kTileSize * kTileWords];  // the words of bits that have some, upwards: kTileWords * r + word

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
+#include "pairs/pair_bits.h"
 #include "simd/arithmetic.h"
 #include "simd/simd.h"
-#include "pairs/pair_bits.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "pairs/pair_rows.cpp"
@@ -17,7 +17,7 @@ namespace HWY_NAMESPACE {
 
 // Fills rows of both tables; `enabled` are the tile's columns' and rows' bits.
 void choose(const PairChoice& choice, const TilePlace& place, const TileWords& enabled_columns,
-                   const TileWords& enabled_rows, TileWords* wanted, TileWords* plain) {
+            const TileWords& enabled_rows, TileWords* wanted, TileWords* plain) {
   // Copies: for all the compiler knows, writing rows could change what it has by reference.
   const std::uint64_t* const ignored = choice.ignored.data;
   const std::size_t ignored_words = choice.ignored.size, row_count = place.row_count;

@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "asset/asset_view.h"
 #include "pairs/listed_pairs.h"
 #include "pairs/overlap.h"
-#include "asset/asset_view.h"
 #include "spherechain/detect.h"
 
 namespace spherechain {

@@ -107,8 +107,8 @@ HWY_INLINE void load_next_spheres(D d, const Sphere* spheres, V& x, V& y, V& z, 
 #endif
 }
 
-// The rule for kListLanes pairs, spheres p and q of each. With a rest_scale of 1 the rule for rest pairs is that for all
-// others, and one below 1 only ever narrows that, also after rounding.
+// The rule for kListLanes pairs, spheres p and q of each. With a rest_scale of 1 the rule for rest pairs is that for
+// all others, and one below 1 only ever narrows that, also after rounding.
 template <typename P, typename Q, typename V>
 HWY_INLINE hwy::HWY_NAMESPACE::Mask<hwy::HWY_NAMESPACE::ScalableTag<float>> touching(const P& p_at, const Q& q_at,
                                                                                      V rest_scales) {

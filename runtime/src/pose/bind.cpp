@@ -102,7 +102,8 @@ sc_status sc_bind_joints(const sc_asset* asset, const sc_bone* joints, size_t jo
         sentence.wrong("inverse_bind_layout: not set, but joint \"%s\" has an inverse bind matrix", bone.name);
         return refuse(SC_BAD_VALUE, SC_FIELD_BONE_LAYOUT);
       }
-      const Difference d = difference_of(bone.inverse_bind, matrix_at(joints[j].inverse_bind, inverse_bind_layout), height);
+      const Difference d =
+          difference_of(bone.inverse_bind, matrix_at(joints[j].inverse_bind, inverse_bind_layout), height);
       if (agrees(d)) {
         joint_of_bone[b] = static_cast<std::uint32_t>(j);
       } else if (d.linear + d.translation < least.linear + least.translation) {
@@ -116,9 +117,10 @@ sc_status sc_bind_joints(const sc_asset* asset, const sc_bone* joints, size_t jo
       sentence.wrong("bone \"%s\" of the asset is no joint of this skeleton", bone.name);
       return refuse(SC_NO_SUCH_BONE, SC_FIELD_JOINTS);
     }
-    sentence.wrong("bone \"%s\": its inverse bind matrix differs from the asset's (axes by %.3g, place by %.3g of the "
-                   "height): another rest pose, unit or axis convention",
-                   bone.name, least.linear, least.translation);
+    sentence.wrong(
+        "bone \"%s\": its inverse bind matrix differs from the asset's (axes by %.3g, place by %.3g of the "
+        "height): another rest pose, unit or axis convention",
+        bone.name, least.linear, least.translation);
     return refuse(SC_OTHER_BIND, SC_FIELD_JOINTS);
   }
   return done();
@@ -130,7 +132,9 @@ sc_status sc_gather_bones(const sc_asset* asset, const uint32_t* joint_of_bone, 
     return refuse(asset == nullptr ? SC_NULL : SC_NOT_OPEN, SC_FIELD_ASSET);
   }
   if (palette == nullptr || palette->bones == nullptr || joint_of_bone == nullptr || bones == nullptr) {
-    return refuse(SC_NULL, bones == nullptr ? SC_FIELD_OUTPUT : joint_of_bone == nullptr ? SC_FIELD_JOINTS : SC_FIELD_BONES);
+    return refuse(SC_NULL, bones == nullptr           ? SC_FIELD_OUTPUT
+                           : joint_of_bone == nullptr ? SC_FIELD_JOINTS
+                                                      : SC_FIELD_BONES);
   }
   if (any_misaligned(palette->bones, bones)) {
     return refuse(SC_MISALIGNED, any_misaligned(bones) ? SC_FIELD_OUTPUT : SC_FIELD_BONES);
@@ -191,9 +195,10 @@ sc_status sc_check_rest_pose(const sc_asset* asset, const sc_pose* pose, char* m
       move(bones, b, points[i], moved);
       for (std::size_t r = 0; r < 3; ++r) {
         if (!(std::abs(moved[r] - first[i][r]) <= kTolerance * scale) && !view.bone(b).is_rest) {
-          sentence.wrong("bone \"%s\": its matrix is not that of \"%s\", as in the bind pose. Is this the bind pose? "
-                         "Are layout, order and inverse bind matrices right?",
-                         view.bone(b).name, view.bone(0).name);
+          sentence.wrong(
+              "bone \"%s\": its matrix is not that of \"%s\", as in the bind pose. Is this the bind pose? "
+              "Are layout, order and inverse bind matrices right?",
+              view.bone(b).name, view.bone(0).name);
           return refuse(SC_OTHER_BIND, SC_FIELD_BONES);
         }
       }

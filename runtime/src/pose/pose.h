@@ -12,7 +12,9 @@ namespace spherechain {
 
 // Bytes of one matrix; 0 for a layout that does not exist.
 constexpr std::size_t size_of(MatrixLayout layout) noexcept {
-  return layout == SC_ROWS_3X4 || layout == SC_COLUMNS_3X4 ? 48 : layout == SC_ROWS_4X4 || layout == SC_COLUMNS_4X4 ? 64 : 0;
+  return layout == SC_ROWS_3X4 || layout == SC_COLUMNS_3X4   ? 48
+         : layout == SC_ROWS_4X4 || layout == SC_COLUMNS_4X4 ? 64
+                                                             : 0;
 }
 
 // A pose's matrices, side by side or not: element (r, c) of bone b is data[b * stride + r * row + c * column].

@@ -4,8 +4,8 @@
 // matrices, a batch's Gram matrices, the sums of some spheres.
 #include <cstring>
 
-#include "simd/arithmetic.h"
 #include "refit/inputs.h"
+#include "simd/arithmetic.h"
 #include "simd/simd.h"
 
 #undef HWY_TARGET_INCLUDE

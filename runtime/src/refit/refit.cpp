@@ -87,8 +87,7 @@ Status check(const RefitJob& job, Target& resolved) {
     return refuse(SC_NOT_OPEN, SC_FIELD_ASSET);
   }
   const bool has_bones = job.pose.bones != nullptr;
-  const Status status =
-      has_bones ? check_refit_bones(asset, job.pose, job.radius) : check_vertices(asset, job.pose);
+  const Status status = has_bones ? check_refit_bones(asset, job.pose, job.radius) : check_vertices(asset, job.pose);
   if (status != SC_OK) {
     return status;
   }

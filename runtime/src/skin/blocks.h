@@ -19,8 +19,8 @@ namespace HWY_NAMESPACE {
 
 constexpr std::size_t kBlock = 64;  // triangles: a bit each
 
-// Of each vertex of the cluster, the sides of the box that it is beyond of: a bit a side. At least 16 codes, and a vector
-// more than there are vertices, can be written and read.
+// Of each vertex of the cluster, the sides of the box that it is beyond of: a bit a side. At least 16 codes, and a
+// vector more than there are vertices, can be written and read.
 using Codes = std::uint8_t[256 + 64];
 
 HWY_INLINE void find_sides(const ContactScene& scene, std::size_t cluster_index, const BoxProbe& box, Codes& codes) {
@@ -141,11 +141,11 @@ HWY_NOINLINE void remove(std::uint64_t triangles, bool neighbours, Block& block)
   block.count = left;
 }
 
-// Of the cluster's triangles from `first` on, at most kBlock, those that touch the box but for what single corners tell.
-// Degenerate ones intersect nothing: where two corners meet, as they do all over a pose too far off for its floats,
-// they are left out here, for to tell would take exact arithmetic, pair by pair. False where there are none.
-HWY_NOINLINE bool load_block(const ContactScene& scene, std::size_t cluster_index, std::size_t first, const BoxProbe& box,
-                             Block& out) {
+// Of the cluster's triangles from `first` on, at most kBlock, those that touch the box but for what single corners
+// tell. Degenerate ones intersect nothing: where two corners meet, as they do all over a pose too far off for its
+// floats, they are left out here, for to tell would take exact arithmetic, pair by pair. False where there are none.
+HWY_NOINLINE bool load_block(const ContactScene& scene, std::size_t cluster_index, std::size_t first,
+                             const BoxProbe& box, Block& out) {
   constexpr Floats kFloats;
   const Cluster& cluster = scene.surface->clusters.data[cluster_index];
   const std::size_t first_triangle = cluster.first_triangle + first;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Cluster bounds: boxes and balls around clusters in a pose, from bones alone.
 //
-// A cluster's vertices lie at rest in a box of centre c and half extents h, within rho of c. With the mid weights w_b, the
-// deviations d_b of the weights from them, M_b = (R_b; t_b) the bones' matrices, R = sum w_b R_b, t = sum w_b t_b and
-// m = R c + t, a vertex v = c + p whose weights are w_b + e_b is moved to
+// A cluster's vertices lie at rest in a box of centre c and half extents h, within rho of c. With the mid weights w_b,
+// the deviations d_b of the weights from them, M_b = (R_b; t_b) the bones' matrices, R = sum w_b R_b, t = sum w_b t_b
+// and m = R c + t, a vertex v = c + p whose weights are w_b + e_b is moved to
 //   sum (w_b + e_b) M_b v = m + R p + sum e_b ((M_b c - m) + (R_b - R) p) + sum e_b (m + R p),
 // the last of which is rounding, for the e_b add up to 0. So along axis i it is within
 //   sum_j |R|_ij h_j + s_i    of m_i,    s_i = sum_b d_b (|M_b c - m|_i + sum_j |R_b - R|_ij h_j),
@@ -11,8 +11,9 @@
 // deltas lie within r of e moves c by a e, and adds |a| r to h and rho.
 //
 // The margin for roundings, to first order, in units of u Q, u = 2^-24 and Q = max_b (|R_b| X + max |t_b|), of
-// X = |c|_1 + rho and as much for each morph, times |a|. N counts the group's bones and moving morph targets, D = sum d_b. A product added to a sum is rounded twice where the target has no fma. Any
-// partial sum of a row of M_b v is at most Q, and of |R_b| h at most 1.8 Q, as |h| is at most 3^0.5 rho.
+// X = |c|_1 + rho and as much for each morph, times |a|. N counts the group's bones and moving morph targets, D = sum
+// d_b. A product added to a sum is rounded twice where the target has no fma. Any partial sum of a row of M_b v is at
+// most Q, and of |R_b| h at most 1.8 Q, as |h| is at most 3^0.5 rho.
 //   a vertex, skinned here: 3 a row, one a bone               N + 4
 //   the same with blended matrices, or without fma          2 N + 8, in place of that
 //   sum e_b, of at most 4 u: |m| + |R p|                    11

@@ -62,7 +62,10 @@ void ContactCollector::add_parts(std::uint32_t a, std::uint32_t b, const Candida
   const std::uint64_t bit = std::uint64_t{1} << (place % 64);
   if ((word & bit) == 0) {
     word |= bit;
-    contact = {static_cast<std::uint32_t>(low), static_cast<std::uint32_t>(high), 0, {FLT_MAX, FLT_MAX, FLT_MAX},
+    contact = {static_cast<std::uint32_t>(low),
+               static_cast<std::uint32_t>(high),
+               0,
+               {FLT_MAX, FLT_MAX, FLT_MAX},
                {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
   }
   ++contact.triangle_pairs;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // From boxes of spheres to boxes of clusters to triangles. With bones, spheres' boxes are what hulls.h makes of them,
-// and a plane parts most spheres whose boxes touch; clusters' boxes are what cluster_bounds.h makes of them, else exact.
-// Pairs of clusters are listed, and decided together: loaded, skinned or copied, those that still seem to touch along the
-// axes, their diagonals and the line between them, and paired triangle by triangle. Which candidates come out may
-// differ between targets, but none that intersects is ever missing.
-#include "simd/arithmetic.h"
-#include "skin/scene.h"
-#include "simd/simd.h"
+// and a plane parts most spheres whose boxes touch; clusters' boxes are what cluster_bounds.h makes of them, else
+// exact. Pairs of clusters are listed, and decided together: loaded, skinned or copied, those that still seem to touch
+// along the axes, their diagonals and the line between them, and paired triangle by triangle. Which candidates come out
+// may differ between targets, but none that intersects is ever missing.
 #include "pairs/pair_bits.h"
+#include "simd/arithmetic.h"
+#include "simd/simd.h"
+#include "skin/scene.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "skin/contacts_kernel.cpp"
@@ -214,7 +214,7 @@ HWY_NOINLINE void decide_clusters(const ContactScene& scene, ClusterPairs& list,
 // One cluster against the clusters [first, end).
 template <bool kFirst>
 HWY_INLINE void list_cluster(const ContactScene& scene, std::size_t cluster, std::size_t first, std::size_t end,
-                          ClusterPairs& list, ContactCollector& collector) {
+                             ClusterPairs& list, ContactCollector& collector) {
   constexpr Floats kFloats;
   const BoxProbe boxes(box_at(scene.clusters, cluster));
   for (std::size_t j = first; j < end; j += kLanes) {
@@ -248,7 +248,8 @@ HWY_INLINE void list_spheres(const ContactScene& scene, std::size_t a, std::size
     bound_sphere_by_bones(scene, a);
     bound_sphere_by_bones(scene, b);
   }
-  const std::size_t end_a = scene.first_cluster[a + 1], first_b = scene.first_cluster[b], end_b = scene.first_cluster[b + 1];
+  const std::size_t end_a = scene.first_cluster[a + 1], first_b = scene.first_cluster[b],
+                    end_b = scene.first_cluster[b + 1];
   const BoxProbe probe_a(box_at(scene.spheres, a));
   if (end_b - first_b <= kLanes && probe_a.touching(scene.clusters, first_b, end_b - first_b) == 0) {
     return;  // most spheres whose boxes touch
@@ -346,8 +347,8 @@ HWY_NOINLINE void pair_spheres(const ContactScene& scene, SpherePairs& spheres, 
     spheres.count = left;
   }
   for (std::size_t k = 0; k < spheres.count; ++k) {
-    list_spheres<kFirst>(scene, static_cast<std::size_t>(spheres.b[k]), static_cast<std::size_t>(spheres.a[k]), clusters,
-                         collector);
+    list_spheres<kFirst>(scene, static_cast<std::size_t>(spheres.b[k]), static_cast<std::size_t>(spheres.a[k]),
+                         clusters, collector);
   }
   spheres.count = 0;
 }

@@ -14,8 +14,8 @@ namespace spherechain {
 // Vectors of any target may be read, and written, this far past the end of what is there.
 inline constexpr std::size_t kContactPadding = 16;
 
-// Along which a cluster's vertices are spanned: the axes x, y and z and the diagonals of their planes, x + y, y + z, z +
-// x, x - y, y - z and z - x. Most clusters whose boxes touch are apart along a diagonal. And room for a vector.
+// Along which a cluster's vertices are spanned: the axes x, y and z and the diagonals of their planes, x + y, y + z, z
+// + x, x - y, y - z and z - x. Most clusters whose boxes touch are apart along a diagonal. And room for a vector.
 inline constexpr std::size_t kDirections = 9, kSpanLanes = 16;
 
 // Of a bone's matrix by columns of four.
@@ -35,23 +35,23 @@ struct ContactScene {
   bool apart = true, neighbours = false;        // which of them to pair: see sc_scope
   const float* positions = nullptr;             // the source's; null: from bones
   bool has_balls = false;                       // bounded by bones
-  bool has_hulls = false;                    // and sphere by sphere first: clusters only as needed
+  bool has_hulls = false;                       // and sphere by sphere first: clusters only as needed
   std::size_t stride = 0;                       // floats
   SkinInputs skin{};                            // from bones
   BoundsInputs bounds{};                        // likewise
   // Scratch memory.
   BoxColumns spheres, clusters;
   std::uint32_t* first_cluster = nullptr;  // a sphere's, and the end
-  std::uint8_t* is_loaded = nullptr;    // a cluster's: are its vertices and its span below?
-  std::uint8_t* is_bounded = nullptr;   // a sphere's: are its clusters' boxes there?
-  float* spans = nullptr;               // of cluster after cluster: the least in each direction, then the greatest
-  float* slots = nullptr;               // x, y, z of a cluster's vertices, of cluster after cluster
-  float* ball_columns[4] = {};          // from bones: around the clusters, by coordinates, the radius last
-  BoneSize* bone_sizes = nullptr;       // from bones
+  std::uint8_t* is_loaded = nullptr;       // a cluster's: are its vertices and its span below?
+  std::uint8_t* is_bounded = nullptr;      // a sphere's: are its clusters' boxes there?
+  float* spans = nullptr;                  // of cluster after cluster: the least in each direction, then the greatest
+  float* slots = nullptr;                  // x, y, z of a cluster's vertices, of cluster after cluster
+  float* ball_columns[4] = {};             // from bones: around the clusters, by coordinates, the radius last
+  BoneSize* bone_sizes = nullptr;          // from bones
   // With hulls.
   std::uint32_t* group_terms = nullptr;  // where in the bounds' terms a group of clusters starts
   std::uint8_t* is_group_bounded = nullptr;
-  float* columns = nullptr;          // of bone after bone four of four floats, the fourth the translation
+  float* columns = nullptr;       // of bone after bone four of four floats, the fourth the translation
   float* hulls = nullptr;         // of sphere after sphere the points' x, y and z in the pose
   float* hull_margins = nullptr;  // how far from the points' hull the sphere's vertices are at most
 };

@@ -58,10 +58,10 @@ HWY_INLINE void move_slots(D d, const SkinInputs& in, const Cluster& cluster, st
   }
 }
 
-// x, y, z: room for kMaxClusterSlots, aligned for the target's registers. As many are written as the cluster has slots: those
-// beyond its vertices repeat the last one.
+// x, y, z: room for kMaxClusterSlots, aligned for the target's registers. As many are written as the cluster has slots:
+// those beyond its vertices repeat the last one.
 HWY_INLINE void skin_cluster(const SkinInputs& in, const Cluster& cluster, float* HWY_RESTRICT x, float* HWY_RESTRICT y,
-                          float* HWY_RESTRICT z) {
+                             float* HWY_RESTRICT z) {
   namespace hn = hwy::HWY_NAMESPACE;
   constexpr hn::CappedTag<float, kSlotLanes> d;
   const std::size_t slots = (cluster.vertex_count + kSlotLanes - 1) / kSlotLanes * kSlotLanes;

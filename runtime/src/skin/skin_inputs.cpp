@@ -17,7 +17,8 @@ BoneSize bone_size(const BoneMatrices& bones, std::size_t bone) {
     for (std::size_t j = i; j < 3; ++j) {
       const float* p = m + i * bones.column;
       const float* q = m + j * bones.column;
-      gram[i][j] = gram[j][i] = std::abs((p[0] * q[0] + p[bones.row] * q[bones.row]) + p[2 * bones.row] * q[2 * bones.row]);
+      gram[i][j] = gram[j][i] =
+          std::abs((p[0] * q[0] + p[bones.row] * q[bones.row]) + p[2 * bones.row] * q[2 * bones.row]);
     }
   }
   float most = 0, all = 0;

@@ -51,8 +51,8 @@ SkinInputs skin_inputs(const Surface& surface, const Pose& pose);
 // Writes the sizes of the asset's bones to `sizes`.
 BoundsInputs bounds_inputs(const AssetView& asset, const Surface& surface, const Pose& pose, BoneSize* sizes);
 
-// Puts the surface's vertices where the bones have them: positions + stride * v for the source vertex v, in floats; other
-// source vertices are left alone. For the repository's own use.
+// Puts the surface's vertices where the bones have them: positions + stride * v for the source vertex v, in floats;
+// other source vertices are left alone. For the repository's own use.
 void skin_surface(const Surface& surface, const Pose& pose, Target resolved, float* positions, std::size_t stride);
 
 }  // namespace spherechain

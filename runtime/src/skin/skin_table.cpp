@@ -117,7 +117,9 @@ class Filler {
     }
   }
 
-  std::uint32_t bones_of(std::size_t vertex) const { return skin_.influence_counts[vertex] & ~unsigned{kOneWeightLeftOut}; }
+  std::uint32_t bones_of(std::size_t vertex) const {
+    return skin_.influence_counts[vertex] & ~unsigned{kOneWeightLeftOut};
+  }
   bool leaves_one_out(std::size_t vertex) const { return skin_.influence_counts[vertex] >= kOneWeightLeftOut; }
 
   // 0 where the bone does not move the vertex.

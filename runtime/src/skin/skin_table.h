@@ -50,18 +50,18 @@ struct Hull {
 // A vertex stands for all source vertices that have its rest position and move as it does; a corner is the slot of a
 // vertex in its cluster. Two triangles are neighbours where a corner's weld is the same. Groups are of eight clusters.
 struct Surface {
-  Span<const std::uint32_t> triangles;         // the source's numbers, by sphere, in it by cluster
-  Span<const Cluster> clusters;                // by sphere
-  Span<const std::uint32_t> cluster_vertices;  // the vertex in a slot: ascending in a cluster
-  Span<const std::uint32_t> cluster_bones;     // ascending in a cluster
-  Span<const std::uint8_t> corners;            // three a triangle, in the source's order
-  Span<const std::uint8_t> parts;              // of each triangle
-  Span<const std::uint32_t> source_vertices;   // a vertex' lowest source vertex
-  Span<const std::uint32_t> welds;             // the lowest vertex at the same rest position: at most its own number
-  Span<const float> slot_positions;            // at rest: of a cluster all x, all y, all z
-  Span<const float> slot_weights;              // of a cluster its first bone's in all slots, its second's ...
-  Span<const SlotMorph> slot_morphs;           // of a cluster sorted by target, then slot
-  Span<const BoxLanes> boxes;                  // a group's: around a cluster's vertices at rest, without its morphs
+  Span<const std::uint32_t> triangles;           // the source's numbers, by sphere, in it by cluster
+  Span<const Cluster> clusters;                  // by sphere
+  Span<const std::uint32_t> cluster_vertices;    // the vertex in a slot: ascending in a cluster
+  Span<const std::uint32_t> cluster_bones;       // ascending in a cluster
+  Span<const std::uint8_t> corners;              // three a triangle, in the source's order
+  Span<const std::uint8_t> parts;                // of each triangle
+  Span<const std::uint32_t> source_vertices;     // a vertex' lowest source vertex
+  Span<const std::uint32_t> welds;               // the lowest vertex at the same rest position: at most its own number
+  Span<const float> slot_positions;              // at rest: of a cluster all x, all y, all z
+  Span<const float> slot_weights;                // of a cluster its first bone's in all slots, its second's ...
+  Span<const SlotMorph> slot_morphs;             // of a cluster sorted by target, then slot
+  Span<const BoxLanes> boxes;                    // a group's: around a cluster's vertices at rest, without its morphs
   Span<const std::uint32_t> bounds_term_counts;  // a group's; empty where nothing moves the source
   Span<const std::uint32_t> bounds_term_bones;   // a term's, ascending in a group
   Span<const BoundsTerm> bounds_terms;

@@ -23,8 +23,8 @@ struct Slots {
   std::size_t count;
 };
 
-// Each axis starts at a multiple of kContactPadding floats. A cluster's slots, a multiple of half of that, are rounded up
-// to one: half of it for each cluster before is room enough.
+// Each axis starts at a multiple of kContactPadding floats. A cluster's slots, a multiple of half of that, are rounded
+// up to one: half of it for each cluster before is room enough.
 HWY_INLINE Slots slots_of(const ContactScene& scene, std::size_t cluster_index) {
   static_assert(2 * kSlotLanes == kContactPadding, "half of it");
   constexpr std::size_t kWhole = kContactPadding;
@@ -207,8 +207,8 @@ HWY_INLINE Box box_of_span(const ContactScene& scene, std::size_t cluster_index)
   return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
 }
 
-// Do two clusters that are loaded reach as far as each other in all directions? A sum rounded once keeps the order of the
-// sums themselves, so nothing that touches is kept apart.
+// Do two clusters that are loaded reach as far as each other in all directions? A sum rounded once keeps the order of
+// the sums themselves, so nothing that touches is kept apart.
 HWY_INLINE bool spans_touch(const ContactScene& scene, std::size_t a, std::size_t b) {
   constexpr hn::CappedTag<float, kSpanLanes> d;
   const float* const one = scene.spans + 2 * kSpanLanes * a;

@@ -38,7 +38,8 @@ int main(int argc, char** argv) {
   const std::vector<std::uint64_t> bytes = read(argc > 1 ? argv[1] : "");
   Asset asset;
   char message[160];
-  if (sc_asset_open(&asset, SC_ABI_VERSION, bytes.data(), bytes.size() * sizeof bytes[0], message, sizeof message) != SC_OK) {
+  if (sc_asset_open(&asset, SC_ABI_VERSION, bytes.data(), bytes.size() * sizeof bytes[0], message, sizeof message) !=
+      SC_OK) {
     std::fprintf(stderr, "stranger_cuda: %s\n", message);
     return 3;
   }

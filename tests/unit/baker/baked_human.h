@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "pipeline/pipeline.h"
-#include "play/play.h"
 #include "play/asset_file.h"
+#include "play/play.h"
 
 // The MakeHuman body baked once a run with each profile.
 const spherechain::baker::Bake& baked_human();        // balanced: refit by moments, extremities

@@ -118,9 +118,7 @@ Difference difference(const Bake& bake, const std::vector<Moved>& a, const std::
   return out;
 }
 
-Binding bound(const Bake& bake) {
-  return bind_spheres(bake.character, bake.regions, bake.spheres, bake.settings.bind);
-}
+Binding bound(const Bake& bake) { return bind_spheres(bake.character, bake.regions, bake.spheres, bake.settings.bind); }
 
 // Equal to the last bit.
 void check_same(const MomentBinding& a, const MomentBinding& b) {
@@ -299,7 +297,8 @@ TEST_CASE("moments of a character turned, moved and in other units refit it like
 }
 
 TEST_CASE("every source that bones move has moments, but with the paper's rule") {
-  const spherechain::baker::OpenAsset paper = open_asset_of(paper_baked_human()), morphing = open_asset_of(morphing_person());
+  const spherechain::baker::OpenAsset paper = open_asset_of(paper_baked_human()),
+                                      morphing = open_asset_of(morphing_person());
   CHECK(paper->refit_rule() == spherechain::RefitRule::kPaper);
   CHECK(paper->moment_tables().spheres.size == 0);
   CHECK(morphing->refit_rule() == spherechain::RefitRule::kMoments);

@@ -15,7 +15,6 @@
 
 using namespace spherechain::baker;
 using spherechain::Pair;
-using spherechain::Pair;
 
 namespace {
 
@@ -119,7 +118,7 @@ TEST_CASE("the spheres' true pairs keep their number when they are sorted by cap
   const std::vector<Index>& second = human.ragdoll.surface().of_sphere[1];
   const auto pair_of = [&](Index a, Index b) {
     return Pair{std::min(human.surface.source_triangle[a], human.surface.source_triangle[b]),
-                        std::max(human.surface.source_triangle[a], human.surface.source_triangle[b])};
+                std::max(human.surface.source_triangle[a], human.surface.source_triangle[b])};
   };
   FrameTruth truth;
   truth.pairs = {pair_of(first[0], second[0]), pair_of(first[1], second[0]), pair_of(first[0], first[1])};

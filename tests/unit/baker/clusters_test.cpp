@@ -237,8 +237,8 @@ TEST_CASE("without morphs a sphere's vertices are near its hull, as near as the 
           for (std::size_t k = 0; k < hull.point_count; ++k) {
             const float* rest = surface.hull_points.data + std::size_t{3} * hull.first_point + k;
             const Eigen::Vector4d point(rest[0], rest[hull.point_count], rest[2 * hull.point_count], 1);
-            points[k] += surface.hull_weights[hull.first_weight + b * hull.point_count + k] *
-                         (bones[bone.bone] * point);
+            points[k] +=
+                surface.hull_weights[hull.first_weight + b * hull.point_count + k] * (bones[bone.bone] * point);
           }
           const Eigen::Matrix<double, 3, 4> apart = bones[bone.bone] - first;
           strays += apart.leftCols<3>().cwiseAbs() * Vec3(bone.x, bone.y, bone.z) +

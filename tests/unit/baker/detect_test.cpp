@@ -119,7 +119,8 @@ TEST_CASE("a hand behind the head touches the head") {
 }
 
 TEST_CASE(
-    "in all 80 frames and on every target all pairs equal a brute force, and the chains' are some of them, counted chain by "
+    "in all 80 frames and on every target all pairs equal a brute force, and the chains' are some of them, counted "
+    "chain by "
     "chain") {
   for (const Bake* bake : {&baked_human(), &paper_baked_human()}) {
     const OpenAsset asset = open_asset_of(*bake);
@@ -127,8 +128,7 @@ TEST_CASE(
       std::size_t chain_total = 0, all_total = 0, frames_touching = 0;
       for (const AnimationFrame& frame : animation_frames()) {
         const std::vector<Sphere> spheres = refit(asset, pack(frame.positions), kind).spheres;
-        const spherechain::PlainResult chains =
-            spherechain::PlainDetection(asset.view(), kind).chains(spheres.data());
+        const spherechain::PlainResult chains = spherechain::PlainDetection(asset.view(), kind).chains(spheres.data());
         const Detected all = detect(asset, spheres, kind);
         CHECK(all.pairs == brute_force(*bake, spheres, kind));
         for (const spherechain::Target target : spherechain::supported_targets()) {

@@ -9,8 +9,8 @@
 #include "human.h"
 #include "motion/clip.h"
 #include "pipeline/pipeline.h"
-#include "play/play.h"
 #include "play/asset_file.h"
+#include "play/play.h"
 #include "temporary_folder.h"
 
 using namespace spherechain::baker;

@@ -91,5 +91,6 @@ TEST_CASE("the asset knows its own rest pose from any other buffer") {
   std::vector<float> positions = pack(bake.character.source_positions);
   CHECK(sc_check_source(asset.handle(), SC_WHOLE_SOURCE, positions.data(), positions.size() / 3, 12) == SC_OK);
   positions[3000] += 1e-3f;
-  CHECK(sc_check_source(asset.handle(), SC_WHOLE_SOURCE, positions.data(), positions.size() / 3, 12) == SC_WRONG_SOURCE);
+  CHECK(sc_check_source(asset.handle(), SC_WHOLE_SOURCE, positions.data(), positions.size() / 3, 12) ==
+        SC_WRONG_SOURCE);
 }

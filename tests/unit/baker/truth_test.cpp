@@ -17,7 +17,6 @@
 
 using namespace spherechain::baker;
 using spherechain::Pair;
-using spherechain::Pair;
 
 namespace {
 
@@ -217,8 +216,8 @@ TEST_CASE("what is at rest too, of one sphere or of an ignored pair is counted a
   std::uint32_t c = b + 1;
   while (is_ignored(asset, a, c)) ++c;
   const Pair same = pair_of(first(a), last(a)), same_at_rest = pair_of(first(b), last(b)),
-                     ignored = pair_of(first(a), first(b)), one = pair_of(first(a), first(c)),
-                     two = pair_of(last(a), last(c)), at_rest = pair_of(first(a), last(c));
+             ignored = pair_of(first(a), first(b)), one = pair_of(first(a), first(c)), two = pair_of(last(a), last(c)),
+             at_rest = pair_of(first(a), last(c));
   Intersections found{{same, same_at_rest, ignored, one, two, at_rest}, 0};
   std::sort(found.pairs.begin(), found.pairs.end());
   std::vector<Pair> rest{at_rest, same_at_rest};

@@ -96,8 +96,7 @@ TEST_CASE("with larger radii more is reported, near pairs at their distance as b
   std::size_t free = 0;
   for (std::size_t i = 0; i < animation_frames().size(); i += 5) {
     const std::vector<Sphere> spheres = spheres_at(asset, animation_frames()[i].positions, SC_RADIUS_DETECT);
-    const std::vector<Pair> found = rule.pairs(spheres),
-                            before = detect(asset, spheres, SC_RADIUS_DETECT).pairs,
+    const std::vector<Pair> found = rule.pairs(spheres), before = detect(asset, spheres, SC_RADIUS_DETECT).pairs,
                             large = detect(asset, scaled(spheres, 1.5F), SC_RADIUS_DETECT).pairs;
     for (const Pair& pair : large) {
       if (near.count(pair) == 0) CHECK(contains(found, pair));
