@@ -45,8 +45,7 @@ typedef struct sc_skin_contact_job {
   int32_t spheres_only SC_ZERO;       /* 1: find pairs of spheres alone; each ends at its first contact. Cheapest */
   const uint64_t* skin_table SC_ZERO; /* from sc_prepare_skin(), of this asset */
   const sc_filter* filter SC_ZERO;    /* null: the asset's ignored pairs */
-  /* Null, or: only these pairs of spheres, ignored or not. Sorted by (a, b), each once. Scope and filter must be zero
-   */
+  /* Null, or: only these pairs of spheres, ignored or not; sorted, each once. Then scope and filter must be zero. */
   const sc_pair* candidates SC_ZERO;
   size_t candidate_count SC_ZERO;
   uint64_t* scratch SC_ZERO; /* sc_skin_scratch_words() words; nothing is kept there between runs */

@@ -258,7 +258,7 @@ TEST_CASE("moments of a character turned, moved and in other units refit it like
     Bake other = bake;
     for (Vec3& p : other.character.source_positions) p = change * p;
     for (Vec3& p : other.character.skin.positions) p = change * p;
-    other.binding = bound(bake);
+    for (BoundSphere& sphere : other.binding.spheres) sphere.spread *= scale;
     other.moments = bind_moments(other.character, other.bones, other.rig_weights, other.binding);
     CHECK(other.moments.reference == bake.moments.reference);
     REQUIRE(other.moments.batches.size() == bake.moments.batches.size());
@@ -271,8 +271,6 @@ TEST_CASE("moments of a character turned, moved and in other units refit it like
         REQUIRE(y.sphere == x.sphere);
         REQUIRE(y.bones == x.bones);
         CHECK(y.places == x.places);
-        CHECK(other.binding.spheres[x.sphere].spread ==
-              doctest::Approx(scale * bake.binding.spheres[x.sphere].spread).epsilon(1e-9));
         // Parts of pivots relative to the origin, which moves along: only turned and scaled.
         Eigen::Matrix4d turned = Eigen::Matrix4d::Identity();
         turned.topLeftCorner<3, 3>() = change.linear();
@@ -347,10 +345,12 @@ TEST_CASE("a sphere hangs on at most 22 bones: with more, on those that move it 
 TEST_CASE("the same input gives the same bytes, and moments that start at a multiple of 64") {
   const Bake& bake = baked_human();
   CHECK(rebake(bake, bake.settings).asset == bake.asset);
-  const spherechain::baker::OpenAsset asset = open_asset_of(bake);
+  sc_asset asset;
+  REQUIRE(sc_asset_open(&asset, SC_ABI_VERSION, bake.asset.data(), bake.asset.size(), nullptr, 0) == SC_OK);
+  const spherechain::MomentTables& tables = spherechain::view_of(asset).moment_tables();
   const auto place = [&](const auto& span) {
     return reinterpret_cast<const std::uint8_t*>(span.data) - bake.asset.data();
   };
-  CHECK(place(asset->moment_tables().moments) % 64 == 0);
-  CHECK(place(asset->moment_tables().centers) % 16 == 0);
+  CHECK(place(tables.moments) % 64 == 0);
+  CHECK(place(tables.centers) % 16 == 0);
 }

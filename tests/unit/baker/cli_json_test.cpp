@@ -33,7 +33,7 @@ TEST_CASE("inspect --json has the contract's fields and agrees with itself") {
   const Run inspect = run(fmt::format("inspect {} --json", baked_files().asset.string()));
   REQUIRE(inspect.code == 0);
   const json asset = json::parse(inspect.out);
-  CHECK(asset["format_version"] == 1);
+  CHECK(asset["format_version"] == 2);
   CHECK(asset["writer"].get<std::string>().rfind("spherechain ", 0) == 0);
   CHECK(asset["source"]["file"] == "human.zae");
   CHECK(asset["source"]["sha256"].get<std::string>().size() == 64);
@@ -73,11 +73,10 @@ TEST_CASE("inspect --json has the contract's fields and agrees with itself") {
   CHECK(asset["bones"][0]["name"] == asset["joints"][0]["name"]);
   CHECK(asset["morphs"].empty());
   CHECK(asset["refit"] == "moments");
-  CHECK(asset["bone_tables"]["bytes"] == 0);  // of pivots, which moments do without
   CHECK(asset["moment_tables"]["batches"] == baked_human().moments.batches.size());
   CHECK(asset["moment_tables"]["pairs"] > asset["moment_tables"]["batches"]);
   CHECK(asset["moment_tables"]["sphere_pairs"] > asset["moment_tables"]["sphere_bones"]);
-  CHECK(asset["pivot_vertices"] > asset["sphere_count"]);
+  CHECK(asset["skin"]["clusters"] > asset["sphere_count"]);
   const std::string text = run("inspect " + baked_files().asset.string()).out;
   CHECK(text.find("refit    moments\n") != std::string::npos);
   CHECK(text.find("\nmoments  ") != std::string::npos);
