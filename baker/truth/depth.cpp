@@ -76,7 +76,7 @@ Mesh region_mesh(const TruthSurface& surface, const std::vector<float>& position
   return mesh;
 }
 
-// One surrounding region, deformed, that points can be behind of.
+// One sphere's triangles, deformed, that points can be behind of.
 class Patch {
  public:
   Patch(const TruthSurface& surface, const std::vector<float>& positions, std::uint32_t sphere)

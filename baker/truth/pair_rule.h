@@ -12,16 +12,16 @@ namespace spherechain::baker {
 
 // Which pairs an asset would report with other radii, or another rule for what is near at rest. The asset's own:
 //   a pair       |ca - cb| < ra + rb
-//   a near pair  that, and |ca - cb| < rest_scale * (ra + rb): come nearer than a part of its distance at rest
+//   a rest pair  that, and |ca - cb| < rest_scale * (ra + rb): come nearer than a part of its distance at rest
 struct RuleChange {
-  double scale = 1;                  // of every radius; near pairs keep the distance they are reported at
+  double scale = 1;                  // of every radius; rest pairs keep the distance they are reported at
   std::optional<double> rest_scale;  // the part of the distance at rest, whatever the asset says
 };
 
 // A plain loop over all spheres, apart from the runtime: with no change it reports what the runtime does, bit for bit.
 //
 // Where larger radii would report a pair sooner than at the asset's own part of its distance at rest, it becomes a near
-// pair. That part is the median over the asset's near pairs; 0.9 where it has none.
+// pair. That part is the median over the asset's rest pairs; 0.9 where it has none.
 class PairRule {
  public:
   PairRule(const OpenAsset& asset, Radius radius, const RuleChange& change);
@@ -32,7 +32,7 @@ class PairRule {
  private:
   struct Entry {
     Pair pair;
-    float rest_scale;  // infinite where it is no near pair
+    float rest_scale;  // infinite where it is no rest pair
   };
   float scale_;
   std::vector<Entry> entries_;  // pairs that are not ignored, sorted

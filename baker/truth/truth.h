@@ -9,7 +9,7 @@
 
 namespace spherechain::baker {
 
-// A pair of spheres and the true triangle pairs between their surrounding regions.
+// A pair of spheres and the true triangle pairs between their triangles.
 struct TrueContact {
   Pair spheres;
   std::vector<Pair> triangles;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Matrices of as many instances as a register has lanes: from one instance after the other to one a lane.
+#include "simd/highway.h"
+
 #if defined(SPHERECHAIN_CROWD_LANE_MATRICES_H) == defined(HWY_TARGET_TOGGLE)  // once a target
 #ifdef SPHERECHAIN_CROWD_LANE_MATRICES_H
 #undef SPHERECHAIN_CROWD_LANE_MATRICES_H
@@ -11,7 +13,6 @@
 
 #include "crowd/refit.h"
 #include "pairs/sphere_registers.h"
-#include "simd/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Spheres by coordinates, and which pairs of them may touch.
+#include "simd/highway.h"
+
 #if defined(SPHERECHAIN_PAIRS_SPHERE_COLUMNS_H) == defined(HWY_TARGET_TOGGLE)  // once a target
 #ifdef SPHERECHAIN_PAIRS_SPHERE_COLUMNS_H
 #undef SPHERECHAIN_PAIRS_SPHERE_COLUMNS_H
@@ -11,7 +13,6 @@
 
 #include "pairs/overlap.h"
 #include "pairs/sphere_registers.h"
-#include "simd/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {

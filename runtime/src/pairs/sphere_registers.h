@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Spheres into registers, and the rule of detect.h for listed pairs, a register of them at a time.
+#include "simd/highway.h"
+
 #if defined(SPHERECHAIN_PAIRS_SPHERE_REGISTERS_H) == defined(HWY_TARGET_TOGGLE)  // once a target
 #ifdef SPHERECHAIN_PAIRS_SPHERE_REGISTERS_H
 #undef SPHERECHAIN_PAIRS_SPHERE_REGISTERS_H
@@ -10,7 +12,6 @@
 #include <cfloat>
 
 #include "pairs/overlap.h"
-#include "simd/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Bones' matrices as refit by moments reads them.
+#include "simd/highway.h"
+
 #if defined(SPHERECHAIN_REFIT_MOMENTS_BONES_H) == defined(HWY_TARGET_TOGGLE)  // once a target
 #ifdef SPHERECHAIN_REFIT_MOMENTS_BONES_H
 #undef SPHERECHAIN_REFIT_MOMENTS_BONES_H

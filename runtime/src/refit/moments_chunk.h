@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Four spheres of their sums.
+#include "simd/highway.h"
+
 #if defined(SPHERECHAIN_REFIT_MOMENTS_CHUNK_H) == defined(HWY_TARGET_TOGGLE)  // once a target
 #ifdef SPHERECHAIN_REFIT_MOMENTS_CHUNK_H
 #undef SPHERECHAIN_REFIT_MOMENTS_CHUNK_H

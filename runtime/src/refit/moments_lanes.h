@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What the kernels of refit by moments have in common. Compiled once a target.
+#include "simd/highway.h"
+
 #if defined(SPHERECHAIN_REFIT_MOMENTS_LANES_H) == defined(HWY_TARGET_TOGGLE)  // once a target
 #ifdef SPHERECHAIN_REFIT_MOMENTS_LANES_H
 #undef SPHERECHAIN_REFIT_MOMENTS_LANES_H
@@ -8,7 +10,6 @@
 #endif
 
 #include "refit/inputs.h"
-#include "simd/highway.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {

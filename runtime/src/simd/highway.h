@@ -11,7 +11,8 @@
 // function of the standard library that is a template: one instantiated here would carry this target's instructions to
 // machines without them.
 //
-// Headers of kernels are compiled once a target too: their guards go by HWY_TARGET_TOGGLE, as Highway's own do.
+// Headers of kernels are compiled once a target too: their guards go by HWY_TARGET_TOGGLE, as Highway's own do, and
+// they include this header before the guard, so that each target meets the guard as the others do.
 
 #if !defined(HWY_DISABLED_TARGETS)
 // Of Highway's list, which grows, only the targets of spherechain::Target; by number where Highway 1.0.3 has no name:

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The triangles of a cluster that could touch a box.
+#include "simd/highway.h"
+
 #if defined(SPHERECHAIN_SKIN_BLOCKS_H) == defined(HWY_TARGET_TOGGLE)  // once a target
 #ifdef SPHERECHAIN_SKIN_BLOCKS_H
 #undef SPHERECHAIN_SKIN_BLOCKS_H

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Boxes and balls around spheres and clusters, and what they keep apart.
+#include "simd/highway.h"
+
 #if defined(SPHERECHAIN_SKIN_BOXES_H) == defined(HWY_TARGET_TOGGLE)  // once a target
 #ifdef SPHERECHAIN_SKIN_BOXES_H
 #undef SPHERECHAIN_SKIN_BOXES_H
@@ -9,7 +11,6 @@
 
 #include <cfloat>
 
-#include "simd/highway.h"
 #include "skin/scene.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -27,6 +27,8 @@
 //   box and ball put together, low and high                 12 + 22 D
 //   morphs: c, h and rho, 2 each, moved by M_b and R        no more than a bone each
 // Together less than 64 + 8 N + (128 + 32 N) D.
+#include "simd/highway.h"
+
 #if defined(SPHERECHAIN_SKIN_CLUSTER_BOUNDS_H) == defined(HWY_TARGET_TOGGLE)  // once a target
 #ifdef SPHERECHAIN_SKIN_CLUSTER_BOUNDS_H
 #undef SPHERECHAIN_SKIN_CLUSTER_BOUNDS_H

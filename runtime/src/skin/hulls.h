@@ -23,6 +23,8 @@
 //   |R_0| e: Gram matrix, row sums, root                    12
 //   a box's sides; a point's part of a direction            48
 // Together less than 128 + 192 N + 16 N^2. And no bound is less than kMinLength, for what underflows.
+#include "simd/highway.h"
+
 #if defined(SPHERECHAIN_SKIN_HULLS_H) == defined(HWY_TARGET_TOGGLE)  // once a target
 #ifdef SPHERECHAIN_SKIN_HULLS_H
 #undef SPHERECHAIN_SKIN_HULLS_H

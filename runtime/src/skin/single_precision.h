@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What single precision can tell of pairs of triangles.
+#include "simd/highway.h"
+
 #if defined(SPHERECHAIN_SKIN_SINGLE_PRECISION_H) == defined(HWY_TARGET_TOGGLE)  // once a target
 #ifdef SPHERECHAIN_SKIN_SINGLE_PRECISION_H
 #undef SPHERECHAIN_SKIN_SINGLE_PRECISION_H

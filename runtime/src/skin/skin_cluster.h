@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // One cluster's vertices in a pose, a slot a lane; docs/arithmetic.md has the arithmetic.
+#include "simd/highway.h"
+
 #if defined(SPHERECHAIN_SKIN_SKIN_CLUSTER_H) == defined(HWY_TARGET_TOGGLE)  // once a target
 #ifdef SPHERECHAIN_SKIN_SKIN_CLUSTER_H
 #undef SPHERECHAIN_SKIN_SKIN_CLUSTER_H
@@ -7,7 +9,6 @@
 #define SPHERECHAIN_SKIN_SKIN_CLUSTER_H
 #endif
 
-#include "simd/highway.h"
 #include "skin/skin_inputs.h"
 
 HWY_BEFORE_NAMESPACE();

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The vertices of a cluster, in its slots.
+#include "simd/highway.h"
+
 #if defined(SPHERECHAIN_SKIN_SLOTS_H) == defined(HWY_TARGET_TOGGLE)  // once a target
 #ifdef SPHERECHAIN_SKIN_SLOTS_H
 #undef SPHERECHAIN_SKIN_SLOTS_H

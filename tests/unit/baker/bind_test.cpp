@@ -115,7 +115,7 @@ TEST_CASE("four pivots in one plane are rejected as ill-posed, more are taken") 
 }
 
 TEST_CASE(
-    "the detect radius holds nine tenths of the surrounding region's area, and just that where it is not the fit "
+    "the detect radius holds nine tenths of its triangles' area, and just that where it is not the fit "
     "radius") {
   const Bake& bake = baked_human();
   const Mesh& skin = bake.character.skin;
@@ -162,7 +162,7 @@ TEST_CASE("neighbours along limbs and on the torso are ignored, and nothing far 
   CHECK(!ignored(0, last(0)));
 }
 
-TEST_CASE("surrounding regions that share an edge are ignored, whatever the links say") {
+TEST_CASE("spheres whose triangles share an edge are ignored, whatever the links say") {
   const Bake& bake = baked_human();
   Spheres unlinked = bake.spheres;
   unlinked.links.clear();

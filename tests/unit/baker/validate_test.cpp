@@ -89,7 +89,7 @@ TEST_CASE("with another part of the rest distance the rule reports what a bake w
   CHECK(fewer > 0);
 }
 
-TEST_CASE("with larger radii more is reported, near pairs at their distance as before, and nothing at rest") {
+TEST_CASE("with larger radii more is reported, rest pairs at their distance as before, and nothing at rest") {
   const OpenAsset asset = open_asset_of(baked_human());
   const PairRule rule(asset, SC_RADIUS_DETECT, {1.5, {}});
   const std::set<Pair> near = held_back(asset, 1.5F);
