@@ -179,10 +179,10 @@ Binding bind_spheres(const Character& character, const Regions& regions, const S
     const bool on_torso = sphere.region == regions.torso_region();
     BoundSphere bound = bind_sphere(skin, surrounding[i], sphere, on_torso, regions.frame, settings);
     if (bound.pivots.empty()) {
-      throw Error(ExitCode::kSegmentation, character.file + ": sphere " + std::to_string(i) + " of the " +
-                                               regions.name(sphere.region) +
-                                               " finds no pivots that carry it around its " +
-                                               std::to_string(surrounding[i].size()) + " triangles");
+      throw Error(ExitCode::kSegmentation,
+                  character.file + ": sphere " + std::to_string(i) + " of the " + regions.name(sphere.region) +
+                      " finds no pivots that carry it around its " + std::to_string(surrounding[i].size()) +
+                      " triangles (set penetration_depth to 0: fewer, larger spheres)");
     }
     out.spheres.push_back(std::move(bound));
   }

@@ -82,7 +82,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", std::string("spherechain ") + kVersion + "\ntargets: " + supported_targets_text());
   app.require_subcommand(1);
   app.footer(
-      "Exit: 0 done; 1 internal error; 2 usage; 3 a file cannot be read or written, or is not what it should be;\n"
+      "Exit: 0 done; 1 internal error; 2 usage; 3 a file cannot be read or written, or has the wrong content;\n"
       "4 the mesh cannot be segmented; 5 done, but a target in the settings was not met.");
   std::function<ExitCode()> run;
 

@@ -11,7 +11,7 @@ enum class ExitCode : int {
   kDone = 0,
   kInternal = 1,
   kUsage = 2,
-  kFile = 3,          // a file cannot be read or written, or is not what it should be
+  kFile = 3,          // a file cannot be read or written, or has the wrong content
   kSegmentation = 4,  // the mesh cannot be segmented
   kTargetMissed = 5,  // done, but a target in the settings was not met
 };

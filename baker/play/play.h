@@ -27,7 +27,7 @@ struct MotionChoice {
 // An asset, the mesh it was baked from, and the motion to play: what every command that animates starts with.
 class AnimatedAsset {
  public:
-  // Throws Error(kFile) where a file is not what it should be, or the source is not the asset's.
+  // Throws Error(kFile) where a file has the wrong content, or the source is not the asset's.
   AnimatedAsset(const std::string& asset, const std::string& source, const MotionChoice& motion,
                 const FrameChoice& frames);
 

@@ -287,6 +287,10 @@ std::string bake_report_text(const Bake& bake) {
                   bake.character.source_triangles.size(), mesh.triangles.size(), bake.character.report.components,
                   bake.regions.frame.height * bake.character.metres_per_unit,
                   bake.regions.name(0).ends_with("arm") ? "tall" : "long", bake.regions.facing);
+  if (const std::size_t dropped = bake.character.report.attachments_dropped; dropped > 0) {
+    out += fmt::format("left out: {} on joints, such as weapons and hats (--attachments keeps them)\n",
+                       dropped == 1 ? "1 rigid mesh" : fmt::format("{} rigid meshes", dropped));
+  }
   out += closing_line(bake.closing);
   out += passed_over_lines(bake.segmented_by);
   out += fmt::format("\n{:<14} {:>9} {:>7}\n", "region", "triangles", "spheres");

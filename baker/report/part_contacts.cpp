@@ -80,7 +80,7 @@ std::string PartContacts::head(std::size_t index, const std::string& motion) con
   const char* unit = frames.count == 1 && of.empty() ? "frame" : "frames";
   what += fmt::format(": {}{} {} at {} fps", frames.count, of, unit, animated_.fps());
   const int with_contact = clips_[index].contact_frames;
-  if (with_contact == 0) return what + ". The skin does not intersect itself.\n";
+  if (with_contact == 0) return what + ". No contact.\n";
   return what + fmt::format("; skin contacts in {} {}\n", with_contact, with_contact == 1 ? "frame" : "frames");
 }
 

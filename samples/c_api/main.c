@@ -52,7 +52,7 @@ static sc_status play(sc_character* character, gltf_character* model) {
 }
 
 int main(int argc, char** argv) {
-  char message[160];
+  char message[256];
   sc_character* character = NULL;
   gltf_character* model;
   const sc_bone* joints;

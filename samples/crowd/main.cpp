@@ -42,7 +42,7 @@ std::vector<float> animate(const Asset& asset, const samples::GltfCharacter& mod
   const std::size_t bone_count = sc_asset_get_info(&asset).bone_count;
   const std::vector<Bone> joints = model.joints();
   std::vector<std::uint32_t> joint_of_bone(bone_count);
-  char message[160];
+  char message[256];
   check(sc_bind_joints(&asset, joints.data(), joints.size(), SC_COLUMNS_4X4, joint_of_bone.data(), bone_count, message,
                        sizeof message),
         message);
@@ -108,7 +108,7 @@ std::size_t confirm(const Asset& asset, const std::vector<float>& bones, const s
 
 void run(const std::vector<char>& file, const samples::GltfCharacter& model) {
   Asset asset;
-  char message[160];
+  char message[256];
   check(sc_asset_open(&asset, SC_ABI_VERSION, file.data(), file.size(), message, sizeof message), message);
   const std::vector<float> bones = animate(asset, model);
 

@@ -14,7 +14,7 @@ static void play(const std::vector<char>& file, const samples::GltfCharacter& mo
   // [hello]
   const std::vector<spherechain::Bone> joints = model.joints();  // your skeleton: names and inverse bind matrices
   spherechain::Character character;                              // allocates here, never in a frame
-  char message[160];
+  char message[256];
   const spherechain::Status made =
       character.create(file.data(), file.size(), joints.data(), joints.size(), SC_COLUMNS_4X4, message, sizeof message);
   check(made, message);

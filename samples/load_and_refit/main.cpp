@@ -61,7 +61,7 @@ std::size_t count_touching_spheres(const Asset& asset, const Pose& pose) {
 
 void play(const std::vector<char>& file, const samples::GltfCharacter& model) {
   Character character;
-  char message[160];
+  char message[256];
   if (character.create(file.data(), file.size(), nullptr, 0, SC_LAYOUT_UNSET, message, sizeof message) != SC_OK) {
     throw std::runtime_error(message);
   }

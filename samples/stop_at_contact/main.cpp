@@ -24,7 +24,7 @@ class Player {
  public:
   Player(const std::vector<char>& file, const samples::GltfCharacter& model) : model_(model) {
     const std::vector<Bone> joints = model.joints();
-    char message[160];
+    char message[256];
     check(character_.create(file.data(), file.size(), joints.data(), joints.size(), SC_COLUMNS_4X4, message,
                             sizeof message),
           message);

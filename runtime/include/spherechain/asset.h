@@ -68,10 +68,13 @@ SPHERECHAIN_API uint32_t sc_abi_version(void) SC_NOEXCEPT;
 
 /* Verifies `size` bytes at `data` and makes `asset` a view of them. On failure the asset is closed (with SC_WRONG_ABI
  * it is left alone), and where `message` is not null it receives a sentence that names what is wrong, cut to
- * `message_size` bytes (160 are enough). Hostile bytes: reads only inside [data, data + size); what opens can be used
- * by every function and job without a read or write out of bounds, a division by zero or an endless loop. Costs about
- * one pass over the bytes; allocates nothing. Pass SC_ABI_VERSION for `abi`. SC_OK, SC_NULL, SC_MISALIGNED,
- * SC_NOT_AN_ASSET, SC_OTHER_VERSION, SC_CORRUPT, SC_WRONG_ABI. */
+ * `message_size` bytes (256 are enough).
+ *
+ * Hostile bytes: reads only inside [data, data + size); what opens can be used by every function and job without a read
+ * or write out of bounds, a division by zero or an endless loop. Costs about one pass over the bytes; allocates
+ * nothing. Pass SC_ABI_VERSION for `abi`.
+ *
+ * SC_OK, SC_NULL, SC_MISALIGNED, SC_NOT_AN_ASSET, SC_OTHER_VERSION, SC_CORRUPT, SC_WRONG_ABI. */
 SPHERECHAIN_API sc_status sc_asset_open(sc_asset* asset, uint32_t abi, const void* data, size_t size, char* message,
                                         size_t message_size) SC_NOEXCEPT;
 SPHERECHAIN_API int sc_asset_is_open(const sc_asset* asset) SC_NOEXCEPT;

@@ -53,8 +53,9 @@ SPHERECHAIN_API sc_status sc_gather_bones(const sc_asset* asset, const uint32_t*
 
 /* A self-check for the first run: `pose` is what the engine gives while the character stands in its bind pose. There
  * every bone's matrix is the same, the model's own. SC_OTHER_BIND: the message names the first bone whose matrix moves
- * the character otherwise, by more than a thousandth of its height. It finds wrong layouts and strides, matrices that
- * lack the inverse bind matrix, and other rest poses. Wrong orders do not show in this pose: bind by name. */
+ * the character otherwise, by more than a thousandth of its height. It finds wrong strides, matrices that lack the
+ * inverse bind matrix, and other rest poses. Stand the character off the origin and turned: where the model's matrix is
+ * the identity, a wrong layout does not show. Wrong orders never show in this pose: bind by name. */
 SPHERECHAIN_API sc_status sc_check_rest_pose(const sc_asset* asset, const sc_pose* pose, char* message,
                                              size_t message_size) SC_NOEXCEPT;
 

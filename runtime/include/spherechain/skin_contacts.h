@@ -7,9 +7,8 @@
 
 /* Which triangles are paired, by the spheres that they belong to. */
 SC_ENUM(sc_scope){
-    SC_SCOPE_APART = 0, /* of two spheres that are not ignored: no neighbours on the body */
-    SC_SCOPE_NEIGHBOURS =
-        1, /* of one sphere, or of two that are ignored: folds of elbow, knee, fingers. 40 times dearer */
+    SC_SCOPE_APART = 0,      /* of two spheres that are not ignored: no neighbours on the body */
+    SC_SCOPE_NEIGHBOURS = 1, /* of one sphere, or of two that are ignored: folds of elbow and knee; 40 times dearer */
     SC_SCOPE_ALL = 2,
 };
 

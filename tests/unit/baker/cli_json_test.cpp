@@ -177,7 +177,7 @@ TEST_CASE("play --json has the contract's fields; at rest nothing touches, hands
 
   const Run scalar = play("--mode chains --radius fit --backend scalar");
   REQUIRE(scalar.code == 0);
-  CHECK(scalar.out.find("rest pose: 1 frame at 30 fps. The skin does not intersect itself.\n") == 0);
+  CHECK(scalar.out.find("rest pose: 1 frame at 30 fps. No contact.\n") == 0);
   CHECK(scalar.out.find("\n(radius fit, refit moments, backend scalar)\n") != std::string::npos);
   const json one = json::parse(contents(out));
   CHECK(one["frames"][0].contains("chains"));

@@ -6,8 +6,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
-#include <filesystem>
 #include <map>
 #include <numeric>
 #include <random>
@@ -21,6 +19,7 @@
 #include "motion/clip.h"
 #include "motion/poses.h"
 #include "random_poses.h"
+#include "test_characters.h"
 #include "truth/intersections.h"
 
 using namespace spherechain::baker;
@@ -366,21 +365,14 @@ TEST_CASE("over poses and clips the runtime puts every vertex where skinning doe
 }
 
 TEST_CASE("characters of SPHERECHAIN_TEST_DATA: over clips the runtime puts every vertex where skinning does") {
-  const char* folder = std::getenv("SPHERECHAIN_TEST_DATA");
-  if (folder == nullptr) {
-    MESSAGE("skipped: SPHERECHAIN_TEST_DATA names no folder of rigged characters");
-    return;
-  }
-  for (const auto& file : std::filesystem::directory_iterator(folder)) {
-    if (file.path().extension() != ".glb" && file.path().extension() != ".gltf") continue;
-    const Bake bake = spherechain::baker::bake(file.path(), make_settings("balanced", "{}", "test"), {});
+  for_each_test_character([](const Bake& bake) {
     std::vector<Deformation> frames;
     for (const Clip& clip : bake.character.rig.clips) {
       const ClipMotion motion(bake.character.rig, {&clip});
       for (int i = 0; i < 25; ++i) frames.push_back(motion.at(i / 24.0));
     }
-    if (frames.empty()) continue;
+    if (frames.empty()) return;
     const Checked checked = check_frames(bake, frames);
     report(bake.character.file + ", clips", checked, bake.regions.frame.height);
-  }
+  });
 }

@@ -4,14 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
-#include <filesystem>
 
 #include "baked_human.h"
 #include "baked_person.h"
 #include "jobs.h"
 #include "motion/clip.h"
 #include "motion/poses.h"
+#include "test_characters.h"
 
 using namespace spherechain::baker;
 using spherechain::Radius;
@@ -127,17 +126,10 @@ TEST_CASE("the bones of an asset are the source's in order, or the automatic rig
 }
 
 TEST_CASE("characters of SPHERECHAIN_TEST_DATA: over every clip bones give the spheres of the skinned mesh") {
-  const char* folder = std::getenv("SPHERECHAIN_TEST_DATA");
-  if (folder == nullptr) {
-    MESSAGE("skipped: SPHERECHAIN_TEST_DATA names no folder of rigged characters");
-    return;
-  }
-  for (const auto& file : std::filesystem::directory_iterator(folder)) {
-    if (file.path().extension() != ".glb" && file.path().extension() != ".gltf") continue;
-    const Bake bake = spherechain::baker::bake(file.path(), make_settings("balanced", "{}", "test"), {});
+  for_each_test_character([](const Bake& bake) {
     const std::vector<Deformation> frames = frames_of_clips(bake.character.rig);
     const double worst = worst_difference(bake, frames);
     MESSAGE(fmt::format("{}: {} frames: {:.2g} of the height", bake.character.file, frames.size(), worst));
     CHECK(worst < kTolerance);
-  }
+  });
 }

@@ -17,7 +17,7 @@ function runs(frames, numberOf) {
 export function fillContactPanel(panel, store, model, flyTo) {
   const summary = h('p', { role: 'status', class: 'summary' });
   const list = h('ol', { class: 'pairs', id: 'frame-contacts' });
-  const order = h('p', { class: 'note' }, 'Most triangles first. How deep they are is not measured yet.');
+  const order = h('p', { class: 'note' }, 'Most pairs of triangles first. How deep they are is not measured yet.');
   const clipTitle = h('h3', {});
   const clipList = h('ol', { class: 'pairs', id: 'clip-contacts' });
   panel.append(summary, list, order, clipTitle, clipList);
@@ -35,8 +35,8 @@ export function fillContactPanel(panel, store, model, flyTo) {
       ),
     );
 
-  const frameRow = ({ key, name, triangles }, i) =>
-    row({ class: 'pair contact', 'data-contact': key }, `${i + 1}`, name, plural(triangles.length, 'triangle'), () => {
+  const frameRow = ({ key, name, pairs }, i) =>
+    row({ class: 'pair contact', 'data-contact': key }, `${i + 1}`, name, plural(pairs, 'triangle pair'), () => {
       store.set({ contact: key });
       flyTo(key);
     });
@@ -46,7 +46,7 @@ export function fillContactPanel(panel, store, model, flyTo) {
         class: 'pair clip-contact',
         'data-contact': entry.key,
         'data-frame': model.number(entry.worst),
-        title: `Most triangles at frame ${model.number(entry.worst)}: ${entry.most}`,
+        title: `Most triangle pairs at frame ${model.number(entry.worst)}: ${entry.most}`,
       },
       null,
       entry.name,

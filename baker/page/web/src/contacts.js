@@ -1,7 +1,8 @@
 // Which triangles of the skin touch in a frame, by pairs of body parts.
 
-// A frame's contacts: [{key, parts, name, triangles, sides}], the one of most triangles first. `triangles` are those that
-// touch, each once; `sides` says of each whether it is of the first part (1) or the second (2).
+// A frame's contacts: [{key, parts, name, pairs, triangles, sides}], the one of most pairs first. `pairs` counts the pairs of
+// triangles that intersect, as `play` does. `triangles` are those that touch, each once; `sides` says of each whether it is of
+// the first part (1) or the second (2).
 function group(pairs, partOf, nameOf) {
   const groups = new Map();
   for (let i = 0; i < pairs.length; i += 2) {
@@ -9,14 +10,15 @@ function group(pairs, partOf, nameOf) {
     if (partOf[ends[0]] > partOf[ends[1]]) ends.reverse();
     const parts = ends.map((t) => partOf[t]);
     const key = parts.join('-');
-    if (!groups.has(key)) groups.set(key, { key, parts, side: new Map() });
+    if (!groups.has(key)) groups.set(key, { key, parts, pairs: 0, side: new Map() });
     const { side } = groups.get(key);
+    ++groups.get(key).pairs;
     ends.forEach((t, end) => side.has(t) || side.set(t, parts[0] === parts[1] ? 1 : end + 1));
   }
   const name = ([a, b]) => (a === b ? `${nameOf(a)} with itself` : `${nameOf(a)}, ${nameOf(b)}`);
   return [...groups.values()]
-    .map(({ key, parts, side }) => ({ key, parts, name: name(parts), triangles: [...side.keys()], sides: [...side.values()] }))
-    .sort((a, b) => b.triangles.length - a.triangles.length || a.name.localeCompare(b.name));
+    .map(({ key, parts, pairs, side }) => ({ key, parts, name: name(parts), pairs, triangles: [...side.keys()], sides: [...side.values()] }))
+    .sort((a, b) => b.pairs - a.pairs || a.name.localeCompare(b.name));
 }
 
 export class Contacts {
@@ -34,15 +36,15 @@ export class Contacts {
   }
 
   // Pairs of body parts over a run of frames: [{key, name, frames, worst, most}], longest first. `worst` is the frame of most
-  // triangles.
+  // pairs of triangles.
   over(first, count) {
     const found = new Map();
     for (let frame = first; frame < first + count; ++frame) {
-      for (const { key, name, triangles } of this.of(frame)) {
+      for (const { key, name, pairs } of this.of(frame)) {
         if (!found.has(key)) found.set(key, { key, name, frames: [], worst: frame, most: 0 });
         const entry = found.get(key);
         entry.frames.push(frame);
-        if (triangles.length > entry.most) Object.assign(entry, { worst: frame, most: triangles.length });
+        if (pairs > entry.most) Object.assign(entry, { worst: frame, most: pairs });
       }
     }
     return [...found.values()].sort((a, b) => b.frames.length - a.frames.length || b.most - a.most || a.name.localeCompare(b.name));

@@ -159,7 +159,7 @@ function start(model) {
       return store.state.frame;
     },
     setFrame: (frame) => timeline.go(frame),
-    contacts: () => model.contacts.of(store.state.frame).map(({ name, triangles }) => ({ name, triangles: [...triangles] })),
+    contacts: () => model.contacts.of(store.state.frame).map(({ name, pairs, triangles }) => ({ name, pairs, triangles: [...triangles] })),
     hovered: () => store.state.pointed,
     ready: true,
   });

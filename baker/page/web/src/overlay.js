@@ -132,7 +132,7 @@ function numberContacts(names, { model, skin, state, project }) {
     const at = project(x, y, z);
     const { up } = model.axes;
     const above = project(x + radius * up[0], y + radius * up[1], z + radius * up[2]);
-    const lift = Math.min(Math.hypot(above.x - at.x, above.y - at.y), 60) + 12;
+    const lift = Math.min(Math.hypot(above.x - at.x, above.y - at.y), 12) + 12;
     const paper = state.contact === null || state.contact === key ? CONTACT : '#9a5257';
     [[0, -lift], [lift, 0], [-lift, 0], [0, lift]].some(([dx, dy]) => names.add(`${i + 1}`, at.x + dx, at.y + dy, { ink: '#fff', paper, bold: true }));
   }

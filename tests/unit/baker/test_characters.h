@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The rigged glTF characters of the folder that SPHERECHAIN_TEST_DATA names. What is skipped is printed.
+#pragma once
+
+#include <doctest/doctest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "pipeline/pipeline.h"
+#include "mesh/error.h"
+
+template <typename Check>
+void for_each_test_character(const Check& check) {
+  const char* folder = std::getenv("SPHERECHAIN_TEST_DATA");
+  if (folder == nullptr) {
+    MESSAGE("skipped: SPHERECHAIN_TEST_DATA names no folder of rigged characters");
+    return;
+  }
+  using namespace spherechain::baker;
+  std::size_t count = 0;
+  for (const auto& file : std::filesystem::directory_iterator(folder)) {
+    if (file.path().extension() != ".glb" && file.path().extension() != ".gltf") continue;
+    try {
+      const Bake baked = bake(file.path(), make_settings("balanced", "{}", "test"), {});
+      check(baked);
+      ++count;
+    } catch (const Error& refused) {
+      MESSAGE("skipped: ", refused.what());
+    }
+  }
+  CHECK(count > 0);
+}
