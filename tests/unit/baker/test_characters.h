@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <optional>
 
-#include "pipeline/pipeline.h"
 #include "mesh/error.h"
+#include "pipeline/pipeline.h"
 
 template <typename Check>
 void for_each_test_character(const Check& check) {
