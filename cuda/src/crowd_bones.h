@@ -8,7 +8,7 @@
 namespace spherechain::cuda {
 
 SPHERECHAIN_HD std::uint32_t instances_in(const GroupView& v, const Place& at) {
-  const std::uint32_t most = block_instances(v), left = v.instances - at.block * most;
+  const std::uint32_t most = block_instances(v), left = static_cast<std::uint32_t>(v.instance_count) - at.block * most;
   return left < most ? left : most;
 }
 
@@ -74,9 +74,11 @@ SPHERECHAIN_HD void center_matrices(const GroupView& v, const Shared& shared, co
   }
 }
 
-struct Matrix {
-  float at[3][4];
+template <std::size_t kRows>
+struct Rows {
+  float at[kRows][4];
 };
+using Matrix = Rows<3>;
 
 // `place`: of MomentRun's steps or bones.
 SPHERECHAIN_HD Matrix matrix_at(const Shared& shared, std::uint32_t lane, std::uint32_t place) {

@@ -144,16 +144,17 @@ struct MatrixSteps {
 inline constexpr std::uint32_t kBlockQueued = 1024, kWarpQueued = 256, kQueuedSpheresMax = 8192;
 SPHERECHAIN_HD bool has_queue(std::uint32_t sphere_count) { return sphere_count <= kQueuedSpheresMax; }
 
-// Offsets in bytes. The matrices are no longer needed when pairs are tested: bits and queue lie in the same place.
+// Offsets in bytes: from bones, from the start of the block's memory; from spheres, from the start of a warp's part of
+// it, which has `warp_size` bytes. The matrices are no longer needed when pairs are tested: powers, bits and queue lie
+// in the same place.
 struct BlockLayout {
-  // From bones: from the start of the block's memory.
-  std::uint32_t matrices, reference, powers, bits, ordered_bits, queue, spheres, counts, dealt, parts;
-  // From spheres: from the start of a warp's part, which has `warp_size` bytes.
-  std::uint32_t warp_size, warp_seen, warp_powers, warp_bits, warp_ordered_bits, warp_parts, warp_spheres;
-  std::size_t size;
+  std::uint32_t matrices, reference, queue, counts, dealt, start;  // from bones only
+  std::uint32_t warp_size, seen;                                   // from spheres only
+  std::uint32_t spheres, powers, bits, ordered_bits, parts;
+  std::size_t size;  // of a block
 };
 
-// A group as the kernels read it.
+// A group as the kernels read it. Its instance_stride is never 0.
 struct GroupView : TableFigures, CrowdGroup {
   // The arrays of the table's copy on the device.
   const float* paddings;
@@ -169,8 +170,6 @@ struct GroupView : TableFigures, CrowdGroup {
   const RunSphere* run_spheres;
   const Float4* center_terms;
 
-  std::uint32_t instances;                     // instance_count
-  std::size_t sphere_stride;                   // entries from one instance to the next
   std::uint32_t bone_floats, instance_floats;  // from one matrix, one instance to the next
   MatrixSteps steps;
   bool wide_matrices;  // whose rows are read 16 bytes at a time
@@ -186,21 +185,21 @@ SPHERECHAIN_HD std::uint32_t block_instances(const GroupView& v) {
 }
 
 SPHERECHAIN_HD std::uint32_t blocks_of(const GroupView& v) {
-  return (v.instances + block_instances(v) - 1) / block_instances(v);
+  return (static_cast<std::uint32_t>(v.instance_count) + block_instances(v) - 1) / block_instances(v);
 }
 
-SPHERECHAIN_HD std::uint32_t half_words(const GroupView& v) { return 2 * v.bit_words; }
+SPHERECHAIN_HD std::uint32_t half_words(const TableFigures& t) { return 2 * t.bit_words; }
 
 // An item has eight rows and columns, also where there are fewer spheres.
-SPHERECHAIN_HD std::uint32_t sphere_places(const GroupView& v) {
-  return v.sphere_count < kColumns ? kColumns : v.sphere_count;
+SPHERECHAIN_HD std::uint32_t sphere_places(const TableFigures& t) {
+  return t.sphere_count < kColumns ? kColumns : t.sphere_count;
 }
 
 // Rounded up, so that all lanes of a warp take as many.
 SPHERECHAIN_HD std::uint32_t lanes_of(std::uint32_t count) { return (count + kLanes - 1) / kLanes * kLanes; }
 
 // The pitch of WarpInstance::seen: no two lanes that read at once share a bank.
-SPHERECHAIN_HD std::uint32_t seen_pitch(const GroupView& v) { return lanes_of(v.sphere_count) + kUnit / 2; }
+SPHERECHAIN_HD std::uint32_t seen_pitch(const TableFigures& t) { return lanes_of(t.sphere_count) + kUnit / 2; }
 
 // A thread of a block. If instances come from bones, a lane is one of them and the warps share the work; if they come
 // as spheres, a warp is one of them and its lanes share the work.
@@ -212,7 +211,8 @@ struct Place {
   SPHERECHAIN_HD std::uint32_t warps() const { return threads / kLanes; }
 };
 
-// A block's memory: shared memory, or a part of the group's scratch.
+// A block's memory: shared memory, or a part of the group's scratch. For instances that come as spheres: a warp's part.
+// There the arrays have a single column, and see WarpInstance.
 struct Shared {
   unsigned char* bytes;
   Float4* matrices;             // [3 * bone + row][lane]
@@ -237,8 +237,8 @@ struct Shared {
     counts = reinterpret_cast<std::uint32_t*>(bytes + layout.counts);
     queue = reinterpret_cast<std::uint32_t*>(bytes + layout.queue);
     dealt = reinterpret_cast<std::uint32_t*>(bytes + layout.dealt);
-    start = reinterpret_cast<std::uint64_t*>(bytes + layout.parts);
-    parts = reinterpret_cast<std::uint32_t*>(bytes + layout.parts) + 4;
+    start = reinterpret_cast<std::uint64_t*>(bytes + layout.start);
+    parts = reinterpret_cast<std::uint32_t*>(bytes + layout.parts);
   }
 };
 
@@ -248,30 +248,20 @@ struct alignas(16) WarpState {
   std::uint32_t queue[kWarpQueued];  // (unit * kLanePairs + pair) * kLanes + lane
 };
 
-// The instance that a warp tests, its part of the block's memory, and the lane. For instances that come as spheres.
-struct WarpInstance {
+// For instances that come as spheres: the one that a warp tests, and the lane. `powers` are [pair of spheres][first,
+// second, first, second], `parts` [lane].
+struct WarpInstance : Shared {
   WarpState* state;
-  float* seen;    // [x, y, z, power][place_of(sphere)], see see_sphere()
-  float* powers;  // [pair of spheres][first, second, first, second]
-  std::uint32_t* bits;
-  std::uint32_t* ordered_bits;  // the same in the order of sorted pairs
-  std::uint32_t* parts;         // [lane]: pairs in each lane's part of the ordered bits
-  Float4* spheres;
+  float* seen;  // [x, y, z, power][place_of(sphere)], see see_sphere()
   std::uint32_t lane, instance;
 
   // `place`: the instance's in its block.
-  SPHERECHAIN_HD WarpInstance(const GroupView& v, const Shared& shared, const Place& at, std::uint32_t place)
-      : lane(at.lane()), instance(at.block * kSphereInstances + place) {
-    const BlockLayout& layout = v.layout;
-    unsigned char* const bytes = shared.bytes + at.warp() * layout.warp_size;
-    state = reinterpret_cast<WarpState*>(bytes);
-    seen = reinterpret_cast<float*>(bytes + layout.warp_seen);
-    powers = reinterpret_cast<float*>(bytes + layout.warp_powers);
-    bits = reinterpret_cast<std::uint32_t*>(bytes + layout.warp_bits);
-    ordered_bits = reinterpret_cast<std::uint32_t*>(bytes + layout.warp_ordered_bits);
-    parts = reinterpret_cast<std::uint32_t*>(bytes + layout.warp_parts);
-    spheres = reinterpret_cast<Float4*>(bytes + layout.warp_spheres);
-  }
+  SPHERECHAIN_HD WarpInstance(const GroupView& v, const Shared& block, const Place& at, std::uint32_t place)
+      : Shared(block.bytes + at.warp() * v.layout.warp_size, v.layout),
+        state(reinterpret_cast<WarpState*>(bytes)),
+        seen(reinterpret_cast<float*>(bytes + v.layout.seen)),
+        lane(at.lane()),
+        instance(at.block * kSphereInstances + place) {}
 };
 
 }  // namespace spherechain::cuda
