@@ -31,15 +31,16 @@ void check(cudaError_t error, const char* what) {
   }
 }
 
-// Memory of the device, and of the host that is copied from and to at full speed.
-class Allocations {
+// Events, memory of the device, and memory of the host that is copied from and to at full speed.
+class Resources {
  public:
-  Allocations() = default;
-  Allocations(const Allocations&) = delete;
-  Allocations& operator=(const Allocations&) = delete;
-  ~Allocations() {
+  Resources() = default;
+  Resources(const Resources&) = delete;
+  Resources& operator=(const Resources&) = delete;
+  ~Resources() {
     std::for_each(device_.begin(), device_.end(), cudaFree);
     std::for_each(host_.begin(), host_.end(), cudaFreeHost);
+    std::for_each(events_.begin(), events_.end(), cudaEventDestroy);
   }
 
   template <typename T>
@@ -60,26 +61,15 @@ class Allocations {
     check(cudaMallocHost(&memory, std::max<std::size_t>(count, 1) * sizeof(T)), "allocation on the host");
     return static_cast<T*>(memory);
   }
-
- private:
-  std::vector<void*> device_, host_;
-};
-
-class Event {
- public:
-  Event() { check(cudaEventCreate(&event_), "cudaEventCreate"); }
-  ~Event() { cudaEventDestroy(event_); }
-  Event(const Event&) = delete;
-  Event& operator=(const Event&) = delete;
-  void record() { check(cudaEventRecord(event_), "cudaEventRecord"); }
-  double microseconds_since(const Event& start) const {
-    float milliseconds = 0;
-    check(cudaEventElapsedTime(&milliseconds, start.event_, event_), "cudaEventElapsedTime");
-    return 1000.0 * static_cast<double>(milliseconds);
+  cudaEvent_t event() {
+    cudaEvent_t& event = events_.emplace_back();
+    check(cudaEventCreate(&event), "cudaEventCreate");
+    return event;
   }
 
  private:
-  cudaEvent_t event_ = nullptr;
+  std::vector<void*> device_, host_;
+  std::vector<cudaEvent_t> events_;
 };
 
 using Clock = std::chrono::steady_clock;
@@ -104,7 +94,7 @@ Device device() {
   return {properties.name, version(driver), version(runtime)};
 }
 
-struct Runner::Memory : Allocations {
+struct Runner::Memory : Resources {
   Memory(const Tables& tables, std::uint32_t capacity)
       : scene(tables.scene(on_device<Sphere>(tables.asset->spheres().size))),
         longest_chain(tables.longest_chain),
@@ -153,7 +143,7 @@ struct Runner::Memory : Allocations {
   Sphere* host_spheres;
   ChainPair* host_entries;
   std::uint32_t* host_count;
-  Event begin, end;
+  cudaEvent_t begin = event(), end = event();
 };
 
 void Runner::Memory::launch(Kernel kernel) const {
@@ -199,14 +189,16 @@ std::vector<ChainPair> Runner::pairs(Kernel kernel, const Sphere* spheres) {
 Times Runner::time(Kernel kernel, const Sphere* spheres) {
   Memory& m = *memory_;
   Times times{};
+  float milliseconds = 0;
   m.upload(spheres);
   m.clear_count();
   wait();
-  m.begin.record();
+  check(cudaEventRecord(m.begin), "cudaEventRecord");
   m.launch(kernel);
-  m.end.record();
+  check(cudaEventRecord(m.end), "cudaEventRecord");
   wait();
-  times.kernel = m.end.microseconds_since(m.begin);
+  check(cudaEventElapsedTime(&milliseconds, m.begin, m.end), "cudaEventElapsedTime");
+  times.kernel = 1000.0 * static_cast<double>(milliseconds);
 
   Clock::time_point start = Clock::now();
   m.clear_count();

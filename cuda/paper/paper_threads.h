@@ -45,14 +45,11 @@ struct Tables {
 
   // For threads on the host.
   Scene scene(const Sphere* spheres) const {
-    return {spheres,
-            static_cast<std::uint32_t>(asset->spheres().size),
-            chain_begin.data(),
-            static_cast<std::uint32_t>(asset->chain_count()),
-            members.data(),
-            asset->ignored().data,
-            rest_pairs.data,
-            static_cast<std::uint32_t>(rest_pairs.size)};
+    const auto count = static_cast<std::uint32_t>(asset->spheres().size);
+    const auto chain_count = static_cast<std::uint32_t>(asset->chain_count());
+    const auto rest_pair_count = static_cast<std::uint32_t>(rest_pairs.size);
+    return {spheres,         count,          chain_begin.data(), chain_count, members.data(), asset->ignored().data,
+            rest_pairs.data, rest_pair_count};
   }
 
   const AssetView* asset;
