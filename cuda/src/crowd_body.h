@@ -67,7 +67,7 @@ struct RunThread {
     asm volatile("" : "+r"(here.thread));  // else all that follows from it is kept in registers from the start
     const std::uint32_t count = instances_in(v, here);
     for (std::uint32_t place = here.warp(); place < count; place += here.warps()) {
-      const WarpInstance w(v, shared, here, place);
+      const WarpInstance w(shared, here, place);
       ((steps(w), barriers.warp()), ...);
     }
   }

@@ -71,47 +71,47 @@ Status check(const CrowdGroup& group) {
   return status == SC_OK && from_bones ? check_bones(group) : status;
 }
 
-// Places one after another.
+// Places one after another, each at a multiple of 16.
 struct Bytes {
   std::size_t used = 0;
 
-  void take(std::uint32_t& at, std::size_t bytes) {
-    at = static_cast<std::uint32_t>(used);
-    used += (bytes + 15) / 16 * 16;
+  template <typename T>
+  void take(Offset<T>& to, std::size_t count) {
+    to.bytes = static_cast<std::uint32_t>(used);
+    used += (count * sizeof(T) + 15) / 16 * 16;
   }
 };
 
 BlockLayout layout_of_bones(const TableFigures& t, const BlockUse& use) {
-  constexpr std::size_t kFigures = kPitch * sizeof(float);
-  const std::size_t bits = half_words(t) * kFigures;
+  const std::size_t bits = std::size_t{half_words(t)} * kPitch, places = std::size_t{sphere_places(t)} * kPitch;
   BlockLayout out{};
   Bytes before, after;
-  before.take(out.matrices, std::size_t{3} * t.used_bone_count * kPitch * sizeof(Float4));
-  before.take(out.reference, 3 * kFigures);
-  after.take(out.powers, sphere_places(t) * kFigures);
+  before.take(out.matrices, std::size_t{3} * t.used_bone_count * kPitch);
+  before.take(out.reference, 3 * kPitch);
+  after.take(out.powers, places);
   after.take(out.bits, use.bits ? bits : 0);
   after.take(out.ordered_bits, use.pairs ? bits : 0);
-  after.take(out.queue, has_queue(t.sphere_count) ? kBlockQueued * sizeof(std::uint32_t) : 0);
+  after.take(out.queue, has_queue(t.sphere_count) ? kBlockQueued : 0);
   Bytes all{std::max(before.used, after.used)};
-  all.take(out.spheres, std::size_t{sphere_places(t)} * kPitch * sizeof(Float4));
-  all.take(out.counts, kLanes * sizeof(std::uint32_t));
-  all.take(out.dealt, 3 * sizeof(std::uint32_t));
-  all.take(out.start, use.pairs ? sizeof(std::uint64_t) : 0);
-  all.take(out.parts, use.pairs ? kWarpsMax * kLanes * sizeof(std::uint32_t) : 0);
+  all.take(out.spheres, places);
+  all.take(out.counts, kLanes);
+  all.take(out.dealt, 3);
+  all.take(out.start, use.pairs ? 1 : 0);
+  all.take(out.parts, use.pairs ? kWarpsMax * kLanes : 0);
   out.size = all.used;
   return out;
 }
 
 BlockLayout layout_of_spheres(const TableFigures& t, const BlockUse& use) {
-  const std::size_t places = lanes_of(t.sphere_count), bits = t.bit_words * sizeof(std::uint64_t);
+  const std::size_t places = lanes_of(t.sphere_count);
   BlockLayout out{};
   Bytes warp{sizeof(WarpState)};
-  warp.take(out.seen, std::size_t{4} * seen_pitch(t) * sizeof(float));
-  warp.take(out.powers, 2 * places * sizeof(float));
-  warp.take(out.bits, use.bits ? bits : 0);
-  warp.take(out.ordered_bits, use.pairs ? bits : 0);
-  warp.take(out.parts, use.pairs ? kLanes * sizeof(std::uint32_t) : 0);
-  warp.take(out.spheres, places * sizeof(Float4));
+  warp.take(out.seen, std::size_t{4} * seen_pitch(t));
+  warp.take(out.powers, 2 * places);
+  warp.take(out.bits, use.bits ? half_words(t) : 0);
+  warp.take(out.ordered_bits, use.pairs ? half_words(t) : 0);
+  warp.take(out.parts, use.pairs ? kLanes : 0);
+  warp.take(out.spheres, places);
   out.warp_size = static_cast<std::uint32_t>(warp.used);
   out.size = kWarpsMax * warp.used;
   return out;
@@ -162,8 +162,9 @@ Status view_group(const CrowdGroup& group, GroupView& view) {
   view.instance_stride = stride;
   view.bone_floats = static_cast<std::uint32_t>(matrices.stride);
   view.instance_floats = static_cast<std::uint32_t>(stride / sizeof(float));
-  view.steps = {static_cast<std::uint32_t>(matrices.row), static_cast<std::uint32_t>(matrices.column)};
-  view.wide_matrices = view.steps.column == 1 && is_aligned(matrices.data, 16) &&
+  view.row_step = static_cast<std::uint32_t>(matrices.row);
+  view.column_step = static_cast<std::uint32_t>(matrices.column);
+  view.wide_matrices = view.column_step == 1 && is_aligned(matrices.data, 16) &&
                        matrices.stride * sizeof(float) % sizeof(Float4) == 0 && stride % sizeof(Float4) == 0;
   view.layout = layout_of(view, {group.pose.bones != nullptr, group.bits != nullptr, group.pairs != nullptr});
   return done();

@@ -45,17 +45,17 @@ SPHERECHAIN_HD void for_all_lanes_of(std::uint32_t count, std::uint32_t lane, co
 // Places past the last sphere get the last sphere once more. Then adds the filter's padding: each lane to the spheres
 // that it loaded. A sphere padded to below 0 touches nothing.
 SPHERECHAIN_HD void load_spheres(const GroupView& v, const WarpInstance& w) {
-  const Sphere* const from = v.spheres + w.instance * v.instance_stride;
+  const auto* const from = reinterpret_cast<const Float4*>(v.spheres + w.instance * v.instance_stride);
   const std::uint32_t last = v.sphere_count - 1;
-  if (!v.in_scratch) {
-    for_all_lanes_of(v.sphere_count, w.lane,
-                     [&](std::uint32_t i) { copy_past_cache(w.spheres + i, &from[i < last ? i : last].x); });
-    wait_for_copies();
-  } else {
-    for_all_lanes_of(v.sphere_count, w.lane, [&](std::uint32_t i) {
-      w.spheres[i] = reinterpret_cast<const Float4*>(from)[i < last ? i : last];
-    });
-  }
+  for_all_lanes_of(v.sphere_count, w.lane, [&](std::uint32_t i) {
+    const Float4* const sphere = from + (i < last ? i : last);
+    if (v.in_scratch) {
+      w.spheres[i] = *sphere;
+    } else {
+      copy_past_cache(w.spheres + i, &sphere->x);
+    }
+  });
+  wait_for_copies();
   if (v.has_padding != 0) {
     for_each_of(v.sphere_count, w.lane, [&](std::uint32_t i) {
       const float radius = w.spheres[i].w + v.paddings[i];

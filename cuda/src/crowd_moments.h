@@ -6,9 +6,9 @@
 
 namespace spherechain::cuda {
 
-using Gram = Rows<4>;
-using MomentSums = Rows<4>;
-using CenterSums = Rows<3>;
+struct Gram {
+  float at[4][4];
+};
 
 SPHERECHAIN_HD float gram_at(const Matrix& a, const Matrix& b, std::size_t row, std::size_t column) {
   return fused(a.at[2][row], b.at[2][column], fused(a.at[1][row], b.at[1][column], a.at[0][row] * b.at[0][column]));
@@ -40,17 +40,23 @@ SPHERECHAIN_HD Gram gram_of(const Matrix& a, const Matrix& b, bool is_self) {
   return out;
 }
 
-// To -0, which as a summand changes nothing, not even a sign.
+// From -0, which as a summand changes nothing, not even a sign.
 template <std::size_t kRows>
-SPHERECHAIN_HD void clear(Rows<kRows>& sums) {
-  SPHERECHAIN_UNROLL
-  for (float(&row)[4] : sums.at) {
+struct Sums {
+  float at[kRows][4];
+
+  SPHERECHAIN_HD Sums() {
     SPHERECHAIN_UNROLL
-    for (float& sum : row) {
-      sum = -0.0F;
+    for (float(&row)[4] : at) {
+      SPHERECHAIN_UNROLL
+      for (float& sum : row) {
+        sum = -0.0F;
+      }
     }
   }
-}
+};
+using MomentSums = Sums<4>;
+using CenterSums = Sums<3>;
 
 SPHERECHAIN_HD float sum_column(const MomentSums& sums, std::size_t column) {
   return (sums.at[0][column] + sums.at[2][column]) + (sums.at[1][column] + sums.at[3][column]);
@@ -156,7 +162,6 @@ SPHERECHAIN_HD void add_columns(const Shared& shared, std::uint32_t lane, const 
   SPHERECHAIN_ONE_BY_ONE
   for (std::uint32_t s = 0; s < sphere_count; ++s, quads += few_bone_quads(kBones, kFirst, kStep)) {
     MomentSums sums;
-    clear(sums);
     Figures moment(quads);
     for_each_few_figure<kBones, kFirst, kStep>(
         [&](std::size_t pair, std::size_t, std::size_t, std::size_t row, std::size_t column) {
@@ -175,7 +180,6 @@ SPHERECHAIN_HD void add_few_centers(const Shared& shared, std::uint32_t lane, co
   SPHERECHAIN_ONE_BY_ONE
   for (std::uint32_t s = 0; s < sphere_count; ++s, terms += kBones) {
     CenterSums sums;
-    clear(sums);
     SPHERECHAIN_UNROLL
     for (std::size_t k = 0; k < kBones; ++k) {
       add_center(matrices[k], terms[k], sums);
@@ -258,15 +262,11 @@ SPHERECHAIN_HD void refit_run(const GroupView& v, const Shared& shared, std::uin
   float spreads[kRunSpheres];
   {
     MomentSums sums[kRunSpheres];
-    clear(sums[0]);
-    clear(sums[1]);
     add_pairs(v, shared, lane, run, sums);
     spreads[0] = spread_of(tree(sums[0]));
     spreads[1] = spread_of(tree(sums[1]));
   }
   CenterSums centers[kRunSpheres];
-  clear(centers[0]);
-  clear(centers[1]);
   add_bones(v, shared, lane, run, centers);
   const RunSphere* spheres = v.run_spheres + run.first_sphere;
   SPHERECHAIN_UNROLL

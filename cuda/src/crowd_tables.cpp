@@ -29,9 +29,8 @@ struct WantedPairs {
 };
 
 bool is_rest_pair(Span<const RestPair> rest, std::uint32_t a, std::uint32_t b) {
-  const auto before = [](const RestPair& pair, const Pair& at) { return Pair{pair.a, pair.b} < at; };
-  const RestPair* found = std::lower_bound(rest.begin(), rest.end(), Pair{a, b}, before);
-  return found != rest.end() && found->a == a && found->b == b;
+  const auto before = [](const RestPair& l, const RestPair& r) { return Pair{l.a, l.b} < Pair{r.a, r.b}; };
+  return std::binary_search(rest.begin(), rest.end(), RestPair{a, b, 0}, before);
 }
 
 // For either radius.

@@ -134,23 +134,26 @@ struct TableHeader : TableFigures {
   std::uint32_t used_bones, runs, run_spheres, moment_steps, moments, run_bones, center_terms;
 };
 
-// A matrix has row i, column k at data[row * i + column * k].
-struct MatrixSteps {
-  std::uint32_t row, column;
-};
-
 // Pairs that a block (from bones) or a warp (from spheres) may queue before it decides about them. A block's entry has
 // 32 bits for lane and pair: assets of more spheres have no queue.
 inline constexpr std::uint32_t kBlockQueued = 1024, kWarpQueued = 256, kQueuedSpheresMax = 8192;
 SPHERECHAIN_HD bool has_queue(std::uint32_t sphere_count) { return sphere_count <= kQueuedSpheresMax; }
 
-// Offsets in bytes: from bones, from the start of the block's memory; from spheres, from the start of a warp's part of
-// it, which has `warp_size` bytes. The matrices are no longer needed when pairs are tested: powers, bits and queue lie
-// in the same place.
+// Where an array lies in a block's memory.
+template <typename T>
+struct Offset {
+  std::uint32_t bytes;
+  SPHERECHAIN_HD T* in(unsigned char* memory) const { return reinterpret_cast<T*>(memory + bytes); }
+};
+
+// From bones: the parts of the block's memory; from spheres: those of a warp's share of it, which has `warp_size`
+// bytes. The matrices are no longer needed when pairs are tested: powers, bits and queue lie in the same place.
 struct BlockLayout {
-  std::uint32_t matrices, reference, queue, counts, dealt, start;  // from bones only
-  std::uint32_t warp_size, seen;                                   // from spheres only
-  std::uint32_t spheres, powers, bits, ordered_bits, parts;
+  Offset<Float4> matrices, spheres;
+  Offset<float> reference, powers, seen;
+  Offset<std::uint32_t> bits, ordered_bits, counts, queue, dealt, parts;
+  Offset<std::uint64_t> start;
+  std::uint32_t warp_size;
   std::size_t size;  // of a block
 };
 
@@ -171,9 +174,9 @@ struct GroupView : TableFigures, CrowdGroup {
   const Float4* center_terms;
 
   std::uint32_t bone_floats, instance_floats;  // from one matrix, one instance to the next
-  MatrixSteps steps;
-  bool wide_matrices;  // whose rows are read 16 bytes at a time
-  bool in_scratch;     // the block's memory is not shared memory
+  std::uint32_t row_step, column_step;         // a matrix has row i, column k at data[row_step * i + column_step * k]
+  bool wide_matrices;                          // whose rows are read 16 bytes at a time
+  bool in_scratch;                             // the block's memory is not shared memory
 
   std::uint32_t scratch_blocks;  // that run at once and take the group's blocks in turns
   std::uint32_t first_block;
@@ -211,35 +214,25 @@ struct Place {
   SPHERECHAIN_HD std::uint32_t warps() const { return threads / kLanes; }
 };
 
-// A block's memory: shared memory, or a part of the group's scratch. For instances that come as spheres: a warp's part.
-// There the arrays have a single column, and see WarpInstance.
+// A block's memory: shared memory, or a part of the group's scratch. For instances that come as spheres: a warp's
+// share, where arrays have a single column; see WarpInstance.
 struct Shared {
   unsigned char* bytes;
-  Float4* matrices;             // [3 * bone + row][lane]
-  float* reference;             // [axis][lane]: where the reference bone has the origin
-  Float4* spheres;              // [sphere][lane], with the filter's padding
-  float* powers;                // [sphere][lane], see power_of()
-  std::uint32_t* bits;          // [half word][lane]
-  std::uint32_t* ordered_bits;  // the same in the order of sorted pairs
-  std::uint32_t* counts;        // [lane]
-  std::uint32_t* queue;         // see queue_entry()
-  std::uint32_t* dealt;         // runs dealt, then pair items; and the length of the queue
-  std::uint64_t* start;         // the block's place in the list
-  std::uint32_t* parts;         // [warp][lane]: pairs in each warp's part of the ordered bits
+  const BlockLayout& layout;
+  Float4* matrices = layout.matrices.in(bytes);                 // [3 * bone + row][lane]
+  float* reference = layout.reference.in(bytes);                // [axis][lane]: where the reference bone has the origin
+  Float4* spheres = layout.spheres.in(bytes);                   // [sphere][lane], with the filter's padding
+  float* powers = layout.powers.in(bytes);                      // [sphere][lane], see power_of()
+  std::uint32_t* bits = layout.bits.in(bytes);                  // [half word][lane]
+  std::uint32_t* ordered_bits = layout.ordered_bits.in(bytes);  // the same in the order of sorted pairs
+  std::uint32_t* counts = layout.counts.in(bytes);              // [lane]
+  std::uint32_t* queue = layout.queue.in(bytes);                // see queue_entry()
+  std::uint32_t* dealt = layout.dealt.in(bytes);                // runs, then pair items; and the length of the queue
+  std::uint64_t* start = layout.start.in(bytes);                // the block's place in the list
+  std::uint32_t* parts = layout.parts.in(bytes);                // [warp][lane]: pairs in the warps' ordered bits
 
-  SPHERECHAIN_HD Shared(void* memory, const BlockLayout& layout) : bytes(static_cast<unsigned char*>(memory)) {
-    matrices = reinterpret_cast<Float4*>(bytes + layout.matrices);
-    reference = reinterpret_cast<float*>(bytes + layout.reference);
-    spheres = reinterpret_cast<Float4*>(bytes + layout.spheres);
-    powers = reinterpret_cast<float*>(bytes + layout.powers);
-    bits = reinterpret_cast<std::uint32_t*>(bytes + layout.bits);
-    ordered_bits = reinterpret_cast<std::uint32_t*>(bytes + layout.ordered_bits);
-    counts = reinterpret_cast<std::uint32_t*>(bytes + layout.counts);
-    queue = reinterpret_cast<std::uint32_t*>(bytes + layout.queue);
-    dealt = reinterpret_cast<std::uint32_t*>(bytes + layout.dealt);
-    start = reinterpret_cast<std::uint64_t*>(bytes + layout.start);
-    parts = reinterpret_cast<std::uint32_t*>(bytes + layout.parts);
-  }
+  SPHERECHAIN_HD Shared(void* memory, const BlockLayout& layout_)
+      : bytes(static_cast<unsigned char*>(memory)), layout(layout_) {}
 };
 
 struct alignas(16) WarpState {
@@ -251,15 +244,13 @@ struct alignas(16) WarpState {
 // For instances that come as spheres: the one that a warp tests, and the lane. `powers` are [pair of spheres][first,
 // second, first, second], `parts` [lane].
 struct WarpInstance : Shared {
-  WarpState* state;
-  float* seen;  // [x, y, z, power][place_of(sphere)], see see_sphere()
+  WarpState* state = reinterpret_cast<WarpState*>(bytes);
+  float* seen = layout.seen.in(bytes);  // [x, y, z, power][place_of(sphere)], see see_sphere()
   std::uint32_t lane, instance;
 
   // `place`: the instance's in its block.
-  SPHERECHAIN_HD WarpInstance(const GroupView& v, const Shared& block, const Place& at, std::uint32_t place)
-      : Shared(block.bytes + at.warp() * v.layout.warp_size, v.layout),
-        state(reinterpret_cast<WarpState*>(bytes)),
-        seen(reinterpret_cast<float*>(bytes + v.layout.seen)),
+  SPHERECHAIN_HD WarpInstance(const Shared& block, const Place& at, std::uint32_t place)
+      : Shared(block.bytes + at.warp() * block.layout.warp_size, block.layout),
         lane(at.lane()),
         instance(at.block * kSphereInstances + place) {}
 };

@@ -40,7 +40,7 @@ struct RunStep {
       const auto run_for_warp = [&](const auto& step) {
         (*this)([&](const cuda::Place& at) {
           const std::uint32_t place = first + at.warp();
-          if (place < cuda::instances_in(v, at)) step(cuda::WarpInstance(v, shared, at, place));
+          if (place < cuda::instances_in(v, at)) step(cuda::WarpInstance(shared, at, place));
         });
       };
       (run_for_warp(steps), ...);
