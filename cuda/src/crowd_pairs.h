@@ -91,10 +91,6 @@ SPHERECHAIN_HD Pair pair_of_bit(const Corner& corner, std::uint32_t half, std::u
   return {corner.row + at % kRows, corner.column + at / kRows + half * kHalfColumns};
 }
 
-SPHERECHAIN_HD std::uint32_t queue_entry(std::uint32_t lane, const Pair& pair) {
-  return (pair.b * kQueuedSpheresMax + pair.a) * kLanes + lane;
-}
-
 // Puts a lane's candidates into the queue, for a few lanes have most of them and all lanes share the queue. Decides at
 // once about those that find no room.
 SPHERECHAIN_HD void queue_candidates(const GroupView& v, const Shared& shared, std::uint32_t lane, const Corner& corner,
@@ -110,7 +106,7 @@ SPHERECHAIN_HD void queue_candidates(const GroupView& v, const Shared& shared, s
     for (std::uint32_t& left = candidates[half]; left != 0; left &= left - 1, ++place) {
       const Pair pair = pair_of_bit(corner, half, lowest_bit(left));
       if (place < kBlockQueued) {
-        shared.queue[place] = queue_entry(lane, pair);
+        shared.queue[place] = (pair.b * kQueuedSpheresMax + pair.a) * kLanes + lane;
       } else {
         decide(v, shared, lane, pair, 1.0F);
       }
