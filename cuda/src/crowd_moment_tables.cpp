@@ -48,10 +48,10 @@ struct Union {
   std::uint16_t bones[kBonesMax];
   std::uint32_t numbers[kRunSpheres][kBonesMax];
 
-  Union(const MomentTables& tables, const Member* members, std::uint32_t sphere_count) {
-    const Span<const std::uint16_t> l = bones_of(tables, members[0]), r = bones_of(tables, members[sphere_count - 1]);
+  Union(const MomentTables& tables, Span<const Member> members) {
+    const Span<const std::uint16_t> l = bones_of(tables, members[0]), r = bones_of(tables, members[members.size - 1]);
     count = static_cast<std::uint32_t>(std::set_union(l.begin(), l.end(), r.begin(), r.end(), bones) - bones);
-    for (std::uint32_t s = 0; s < sphere_count; ++s) {
+    for (std::uint32_t s = 0; s < members.size; ++s) {
       const Span<const std::uint16_t> own = bones_of(tables, members[s]);
       std::uint32_t next = 0;
       for (std::uint32_t i = 0; i < count; ++i) {
@@ -68,7 +68,7 @@ constexpr std::int64_t kGramCost = 48, kAskingCost = 4, kRunCost = 64;
 // What one run for both saves over two.
 std::int64_t saved(const MomentTables& tables, const Member& a, const Member& b) {
   const Member both[] = {a, b};
-  const std::int64_t common = pairs_of(a.bone_count + b.bone_count - Union(tables, both, 2).count);
+  const std::int64_t common = pairs_of(a.bone_count + b.bone_count - Union(tables, {both, 2}).count);
   const std::int64_t all = pairs_of(a.bone_count) + pairs_of(b.bone_count) - common;
   return common == 0 ? 0 : kGramCost * common + kRunCost - kAskingCost * all;
 }
@@ -89,23 +89,23 @@ class RunWriter {
       : tables_(asset.moment_tables()), rest_(asset.spheres()), radius_(radius), bone_indices_(bone_indices) {}
 
   // Spheres that all have the same two bones, or three.
-  void add_few_bones(const Member* members, std::uint32_t count) {
+  void add_few_bones(Span<const Member> members) {
     const std::uint32_t bones = members[0].bone_count, step = bones == 2 ? 1 : 2;
-    MomentRun& run = start(members, count, bones, bones == 2 ? kTwoBones : kThreeBones);
-    run.cost = 3 * pairs_of(bones) + count * (bones == 2 ? 5 : 8);
+    MomentRun& run = start(members, bones, bones == 2 ? kTwoBones : kThreeBones);
+    run.cost = 3 * pairs_of(bones) + run.sphere_count * (bones == 2 ? 5 : 8);
     for (const std::uint16_t bone : bones_of(tables_, members[0])) {
       run_bones.add(matrix_of(bone));
     }
-    for (std::uint32_t s = 0; s < count; ++s) {
+    for (const Member& member : members) {
       for (std::uint32_t k = 0; k < bones; ++k) {
-        add_center(members[s], k);
+        add_center(member, k);
       }
     }
     for (std::uint32_t first = 0; first < step; ++first) {
-      for (std::uint32_t s = 0; s < count; ++s) {
+      for (const Member& member : members) {
         for (std::uint32_t k = 0; k < bones; ++k) {
           for (std::uint32_t l = k; l < bones; ++l) {
-            add_columns(moment_of(members[s], k, l), k == l, first, step);
+            add_columns(moment_of(member, k, l), k == l, first, step);
           }
         }
         fill_quad();
@@ -114,25 +114,25 @@ class RunWriter {
   }
 
   // One or two spheres of any bones.
-  void add(const Member* members, std::uint32_t count) {
-    const Union all(tables_, members, count);
-    MomentRun& run = start(members, count, all.count, kAnyBones);
+  void add(Span<const Member> members) {
+    const Union all(tables_, members);
+    MomentRun& run = start(members, all.count, kAnyBones);
     for (std::uint32_t i = 0; i < all.count; ++i) {
-      run_bones.add(add_step(all, i, i, members, count));
-      for (std::uint32_t s = 0; s < count; ++s) {
+      run_bones.add(add_step(all, i, i, members));
+      for (std::uint32_t s = 0; s < members.size; ++s) {
         if (all.numbers[s][i] != Union::kNone) {
           add_center(members[s], all.numbers[s][i]);
         }
       }
       for (std::uint32_t j = i + 1; j < all.count; ++j) {
-        add_step(all, i, j, members, count);
+        add_step(all, i, j, members);
       }
       steps.last() |= kLastOfBone;
     }
     steps.last() |= kLastOfRun;
     run.cost = 3 * (steps.size - run.first_step);  // a Gram matrix is worth three times what a sphere makes of it
-    for (std::uint32_t s = 0; s < count; ++s) {
-      run.cost += pairs_of(members[s].bone_count);
+    for (const Member& member : members) {
+      run.cost += pairs_of(member.bone_count);
     }
   }
 
@@ -143,12 +143,13 @@ class RunWriter {
   List<Float4> center_terms;
 
  private:
-  MomentRun& start(const Member* members, std::uint32_t count, std::uint32_t bone_count, std::uint32_t kind) {
+  MomentRun& start(Span<const Member> members, std::uint32_t bone_count, std::uint32_t kind) {
+    const auto count = static_cast<std::uint32_t>(members.size);
     MomentRun& run = runs.add(
         {steps.size, moments.size / 4, run_bones.size, center_terms.size, spheres.size, count, bone_count, kind, 0});
-    for (std::uint32_t s = 0; s < count; ++s) {
-      const RestSphere& rest = rest_[members[s].sphere];
-      spheres.add({members[s].sphere, radius_ == SC_RADIUS_FIT ? rest.radius : rest.detect_radius});
+    for (const Member& member : members) {
+      const RestSphere& rest = rest_[member.sphere];
+      spheres.add({member.sphere, radius_ == SC_RADIUS_FIT ? rest.radius : rest.detect_radius});
     }
     return run;
   }
@@ -168,10 +169,9 @@ class RunWriter {
   }
 
   // The step of bones i and j, if a sphere has both, and the moments of those that do. Returns the step, or 0.
-  std::uint32_t add_step(const Union& all, std::uint32_t i, std::uint32_t j, const Member* members,
-                         std::uint32_t count) {
+  std::uint32_t add_step(const Union& all, std::uint32_t i, std::uint32_t j, Span<const Member> members) {
     std::uint32_t mask = 0;
-    for (std::uint32_t s = 0; s < count; ++s) {
+    for (std::uint32_t s = 0; s < members.size; ++s) {
       const std::uint32_t k = all.numbers[s][i], l = all.numbers[s][j];
       if (k != Union::kNone && l != Union::kNone) {
         mask |= 1U << s;
@@ -208,7 +208,7 @@ void add_runs(const MomentTables& tables, Member* members, RunWriter& writer) {
   for (Member *one = few, *next = one; one < end; one = next) {
     next = std::find_if_not(one, one + std::min<std::ptrdiff_t>(kRunSpheresMax, end - one),
                             [&](const Member& other) { return have_same_bones(tables, *one, other); });
-    writer.add_few_bones(one, static_cast<std::uint32_t>(next - one));
+    writer.add_few_bones({one, static_cast<std::size_t>(next - one)});
   }
   for (Member* one = members; one < few; ++one) {
     if (one->bone_count == 0) {
@@ -222,7 +222,7 @@ void add_runs(const MomentTables& tables, Member* members, RunWriter& writer) {
       best_saving = std::max(best_saving, saving);
     }
     const Member run[kRunSpheres] = {*one, best != nullptr ? *best : *one};
-    writer.add(run, best != nullptr ? 2 : 1);
+    writer.add({run, best != nullptr ? std::size_t{2} : 1});
     if (best != nullptr) {
       best->bone_count = 0;
     }

@@ -80,8 +80,8 @@ struct alignas(16) MomentRun {
   std::uint32_t first_step, first_moment;  // the first of this run in each array
   std::uint32_t first_bone, first_center;
   std::uint32_t first_sphere, sphere_count;
-  std::uint32_t bone_count, kind;
-  std::uint32_t cost;
+  std::uint32_t bone_count, kind, cost;
+  std::uint32_t unused[3] = {};
 };
 // The kinds of runs: many spheres of the same two bones, or of the same three; one or two spheres of any bones.
 inline constexpr std::uint32_t kTwoBones = 0, kThreeBones = 1, kAnyBones = 2;
@@ -226,7 +226,7 @@ struct Shared {
   std::uint32_t* bits = layout.bits.in(bytes);                  // [half word][lane]
   std::uint32_t* ordered_bits = layout.ordered_bits.in(bytes);  // the same in the order of sorted pairs
   std::uint32_t* counts = layout.counts.in(bytes);              // [lane]
-  std::uint32_t* queue = layout.queue.in(bytes);                // see queue_entry()
+  std::uint32_t* queue = layout.queue.in(bytes);                // see queue_candidates()
   std::uint32_t* dealt = layout.dealt.in(bytes);                // runs, then pair items; and the length of the queue
   std::uint64_t* start = layout.start.in(bytes);                // the block's place in the list
   std::uint32_t* parts = layout.parts.in(bytes);                // [warp][lane]: pairs in the warps' ordered bits
