@@ -31,53 +31,45 @@ void check(cudaError_t error, const char* what) {
   }
 }
 
-// Memory of the device, or of the host that is copied from and to at full speed.
-template <typename T>
-class Buffer {
+// Events, memory of the device, and memory of the host that is copied from and to at full speed.
+class Resources {
  public:
-  enum class Place { kDevice, kHost };
-
-  explicit Buffer(std::size_t count, Place place = Place::kDevice) : place_(place) {
-    const std::size_t bytes = std::max<std::size_t>(count, 1) * sizeof(T);
-    void* memory = nullptr;
-    check(place == Place::kDevice ? cudaMalloc(&memory, bytes) : cudaMallocHost(&memory, bytes), "allocation");
-    data_ = static_cast<T*>(memory);
+  Resources() = default;
+  Resources(const Resources&) = delete;
+  Resources& operator=(const Resources&) = delete;
+  ~Resources() {
+    std::for_each(device_.begin(), device_.end(), cudaFree);
+    std::for_each(host_.begin(), host_.end(), cudaFreeHost);
+    std::for_each(events_.begin(), events_.end(), cudaEventDestroy);
   }
-  Buffer(const T* from, std::size_t count) : Buffer(count) {
-    check(cudaMemcpy(data_, from, count * sizeof(T), cudaMemcpyHostToDevice), "copy of a table to the device");
+
+  template <typename T>
+  T* on_device(std::size_t count) {
+    void*& memory = device_.emplace_back();
+    check(cudaMalloc(&memory, std::max<std::size_t>(count, 1) * sizeof(T)), "allocation on the device");
+    return static_cast<T*>(memory);
   }
-  ~Buffer() {
-    if (place_ == Place::kDevice) {
-      cudaFree(data_);
-    } else {
-      cudaFreeHost(data_);
-    }
+  template <typename T>
+  T* copy_to_device(const T* from, std::size_t count) {
+    T* const to = on_device<T>(count);
+    check(cudaMemcpy(to, from, count * sizeof(T), cudaMemcpyHostToDevice), "copy of a table to the device");
+    return to;
   }
-  Buffer(const Buffer&) = delete;
-  Buffer& operator=(const Buffer&) = delete;
-
-  T* get() const { return data_; }
-
- private:
-  Place place_;
-  T* data_ = nullptr;
-};
-
-class Event {
- public:
-  Event() { check(cudaEventCreate(&event_), "cudaEventCreate"); }
-  ~Event() { cudaEventDestroy(event_); }
-  Event(const Event&) = delete;
-  Event& operator=(const Event&) = delete;
-  void record() { check(cudaEventRecord(event_), "cudaEventRecord"); }
-  double microseconds_since(const Event& start) const {
-    float milliseconds = 0;
-    check(cudaEventElapsedTime(&milliseconds, start.event_, event_), "cudaEventElapsedTime");
-    return 1000.0 * static_cast<double>(milliseconds);
+  template <typename T>
+  T* on_host(std::size_t count) {
+    void*& memory = host_.emplace_back();
+    check(cudaMallocHost(&memory, std::max<std::size_t>(count, 1) * sizeof(T)), "allocation on the host");
+    return static_cast<T*>(memory);
+  }
+  cudaEvent_t event() {
+    cudaEvent_t& event = events_.emplace_back();
+    check(cudaEventCreate(&event), "cudaEventCreate");
+    return event;
   }
 
  private:
-  cudaEvent_t event_ = nullptr;
+  std::vector<void*> device_, host_;
+  std::vector<cudaEvent_t> events_;
 };
 
 using Clock = std::chrono::steady_clock;
@@ -102,55 +94,59 @@ Device device() {
   return {properties.name, version(driver), version(runtime)};
 }
 
-struct Runner::Memory {
+struct Runner::Memory : Resources {
   Memory(const Tables& tables, std::uint32_t capacity)
-      : spheres(tables.sphere_count()),
-        chain_begin(tables.chain_begin.data(), tables.chain_begin.size()),
-        members(tables.members.data(), tables.members.size()),
-        ignored(tables.asset->ignored().data, tables.asset->ignored().size),
-        rest_pairs(tables.asset->rest_pairs(tables.radius).data, tables.asset->rest_pairs(tables.radius).size),
-        entries(capacity),
-        count(1),
-        host_spheres(tables.sphere_count(), Buffer<Sphere>::Place::kHost),
-        host_entries(capacity, Buffer<ChainPair>::Place::kHost),
-        host_count(1, Buffer<std::uint32_t>::Place::kHost),
-        scene(tables.scene(spheres.get())),
-        list{entries.get(), capacity, count.get()} {
-    scene.chain_begin = chain_begin.get();
-    scene.members = members.get();
-    scene.ignored = ignored.get();
-    scene.rest_pairs = rest_pairs.get();
+      : scene(tables.scene(on_device<Sphere>(tables.asset->spheres().size))),
+        longest_chain(tables.longest_chain),
+        list{on_device<ChainPair>(capacity), capacity, on_device<std::uint32_t>(1)},
+        host_spheres(on_host<Sphere>(scene.sphere_count)),
+        host_entries(on_host<ChainPair>(capacity)),
+        host_count(on_host<std::uint32_t>(1)) {
+    scene.chain_begin = copy_to_device(tables.chain_begin.data(), tables.chain_begin.size());
+    scene.members = copy_to_device(tables.members.data(), tables.members.size());
+    scene.ignored = copy_to_device(tables.asset->ignored().data, tables.asset->ignored().size);
+    scene.rest_pairs = copy_to_device(tables.rest_pairs.data, tables.rest_pairs.size);
   }
-
-  Buffer<Sphere> spheres;
-  Buffer<std::uint32_t> chain_begin, members;
-  Buffer<std::uint64_t> ignored;
-  Buffer<RestPair> rest_pairs;
-  Buffer<ChainPair> entries;
-  Buffer<std::uint32_t> count;
-  Buffer<Sphere> host_spheres;
-  Buffer<ChainPair> host_entries;
-  Buffer<std::uint32_t> host_count;
-  Event start, stop;
-  Scene scene;  // on the device
-  PairList list;
 
   void upload(const Sphere* from) {
     const std::size_t bytes = scene.sphere_count * sizeof(Sphere);
-    std::memcpy(host_spheres.get(), from, bytes);
-    check(cudaMemcpyAsync(spheres.get(), host_spheres.get(), bytes, cudaMemcpyHostToDevice), "copy of the spheres");
+    std::memcpy(host_spheres, from, bytes);
+    check(cudaMemcpyAsync(const_cast<Sphere*>(scene.spheres), host_spheres, bytes, cudaMemcpyHostToDevice),
+          "copy of the spheres");
   }
-  void clear_count() { check(cudaMemsetAsync(count.get(), 0, sizeof(std::uint32_t)), "cudaMemsetAsync"); }
+  void clear_count() { check(cudaMemsetAsync(list.count, 0, sizeof(std::uint32_t)), "cudaMemsetAsync"); }
+  void launch(Kernel kernel) const;
+  void launch(Kernel kernel, const Sphere* from) {
+    upload(from);
+    clear_count();
+    launch(kernel);
+  }
+
+  // Waits for all before it.
+  std::uint32_t count() {
+    check(cudaMemcpyAsync(host_count, list.count, sizeof(std::uint32_t), cudaMemcpyDeviceToHost), "copy of the count");
+    wait();
+    return *host_count;
+  }
+  void fetch(std::uint32_t found) {
+    const std::size_t there = std::min(found, list.capacity);
+    if (there > 0) {
+      check(cudaMemcpyAsync(host_entries, list.entries, there * sizeof(ChainPair), cudaMemcpyDeviceToHost),
+            "copy of the pairs");
+      wait();
+    }
+  }
+
+  Scene scene;  // on the device
+  std::uint32_t longest_chain;
+  PairList list;
+  Sphere* host_spheres;
+  ChainPair* host_entries;
+  std::uint32_t* host_count;
+  cudaEvent_t begin = event(), end = event();
 };
 
-Runner::Runner(const Tables& tables, std::uint32_t pair_capacity)
-    : tables_(tables), memory_(std::make_unique<Memory>(tables, pair_capacity)) {}
-
-Runner::~Runner() = default;
-
-void Runner::launch(Kernel kernel) {
-  const Scene& scene = memory_->scene;
-  const PairList& list = memory_->list;
+void Runner::Memory::launch(Kernel kernel) const {
   const auto blocks = [](std::uint32_t threads) { return std::max(1U, (threads + kThreads - 1) / kThreads); };
   switch (kernel) {
     case Kernel::kEmpty:
@@ -163,41 +159,27 @@ void Runner::launch(Kernel kernel) {
       m1_chain<<<blocks(scene.chain_count), std::max(1U, std::min(scene.chain_count, kThreads))>>>(scene, list);
       break;
     case Kernel::kM1Sphere:
-      m1_sphere<<<dim3(blocks(tables_.longest_chain), std::max(1U, scene.chain_count)), kThreads>>>(scene, list);
+      m1_sphere<<<dim3(blocks(longest_chain), std::max(1U, scene.chain_count)), kThreads>>>(scene, list);
       break;
   }
   check(cudaGetLastError(), "launch of a kernel of the paper");
 }
 
-// Waits for all before it.
-std::uint32_t Runner::count() {
-  check(cudaMemcpyAsync(memory_->host_count.get(), memory_->count.get(), sizeof(std::uint32_t), cudaMemcpyDeviceToHost),
-        "copy of the count");
-  wait();
-  return *memory_->host_count.get();
-}
+Runner::Runner(const Tables& tables, std::uint32_t pair_capacity)
+    : memory_(std::make_unique<Memory>(tables, pair_capacity)) {}
 
-void Runner::fetch(std::uint32_t found) {
-  const std::size_t there = std::min(found, memory_->list.capacity);
-  if (there > 0) {
-    check(cudaMemcpyAsync(memory_->host_entries.get(), memory_->entries.get(), there * sizeof(ChainPair),
-                          cudaMemcpyDeviceToHost),
-          "copy of the pairs");
-    wait();
-  }
-}
+Runner::~Runner() = default;
 
 std::vector<ChainPair> Runner::pairs(Kernel kernel, const Sphere* spheres) {
-  memory_->upload(spheres);
-  memory_->clear_count();
-  launch(kernel);
-  const std::uint32_t found = count();
-  if (found > memory_->list.capacity) {
+  Memory& m = *memory_;
+  m.launch(kernel, spheres);
+  const std::uint32_t found = m.count();
+  if (found > m.list.capacity) {
     throw std::runtime_error("the paper's kernels found " + std::to_string(found) + " pairs where there is room for " +
-                             std::to_string(memory_->list.capacity));
+                             std::to_string(m.list.capacity));
   }
-  fetch(found);
-  std::vector<ChainPair> out(memory_->host_entries.get(), memory_->host_entries.get() + found);
+  m.fetch(found);
+  std::vector<ChainPair> out(m.host_entries, m.host_entries + found);
   std::sort(out.begin(), out.end(), [](const ChainPair& l, const ChainPair& r) {
     return l.chain != r.chain ? l.chain < r.chain : l.pair < r.pair;
   });
@@ -205,45 +187,29 @@ std::vector<ChainPair> Runner::pairs(Kernel kernel, const Sphere* spheres) {
 }
 
 Times Runner::time(Kernel kernel, const Sphere* spheres) {
+  Memory& m = *memory_;
   Times times{};
-  memory_->upload(spheres);
-  memory_->clear_count();
+  float milliseconds = 0;
+  m.upload(spheres);
+  m.clear_count();
   wait();
-  memory_->start.record();
-  launch(kernel);
-  memory_->stop.record();
+  check(cudaEventRecord(m.begin), "cudaEventRecord");
+  m.launch(kernel);
+  check(cudaEventRecord(m.end), "cudaEventRecord");
   wait();
-  times.kernel = memory_->stop.microseconds_since(memory_->start);
+  check(cudaEventElapsedTime(&milliseconds, m.begin, m.end), "cudaEventElapsedTime");
+  times.kernel = 1000.0 * static_cast<double>(milliseconds);
 
   Clock::time_point start = Clock::now();
-  memory_->clear_count();
-  launch(kernel);
-  count();
+  m.clear_count();
+  m.launch(kernel);
+  m.count();
   times.launch = microseconds_since(start);
 
   start = Clock::now();
-  memory_->upload(spheres);
-  memory_->clear_count();
-  launch(kernel);
-  fetch(count());
+  m.launch(kernel, spheres);
+  m.fetch(m.count());
   times.frame = microseconds_since(start);
-  return times;
-}
-
-Times Runner::time_at_once(Kernel kernel, const Sphere* spheres) {
-  Times times{};
-  const Clock::time_point start = Clock::now();
-  memory_->upload(spheres);
-  const Clock::time_point uploaded = Clock::now();
-  memory_->clear_count();
-  memory_->start.record();
-  launch(kernel);
-  memory_->stop.record();
-  const std::uint32_t found = count();
-  times.launch = microseconds_since(uploaded);
-  fetch(found);
-  times.frame = microseconds_since(start);
-  times.kernel = memory_->stop.microseconds_since(memory_->start);
   return times;
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "paper_tables.h"
+#include "paper_threads.h"
 
 namespace spherechain::cuda_paper {
 
@@ -33,7 +33,7 @@ Device device();
 
 class Runner {
  public:
-  // Room for `pair_capacity` pairs. The tables must outlive it.
+  // Room for `pair_capacity` pairs.
   Runner(const Tables& tables, std::uint32_t pair_capacity);
   ~Runner();
   Runner(const Runner&) = delete;
@@ -42,17 +42,11 @@ class Runner {
   // As many spheres as the asset has. Sorted by chain, then pair. Throws where there are more than there is room for.
   std::vector<ChainPair> pairs(Kernel kernel, const Sphere* spheres);
 
-  // One launch each; or all three times of one launch, which adds the events' own time to two of them.
+  // A launch for each.
   Times time(Kernel kernel, const Sphere* spheres);
-  Times time_at_once(Kernel kernel, const Sphere* spheres);
 
  private:
   struct Memory;
-  void launch(Kernel kernel);
-  std::uint32_t count();
-  void fetch(std::uint32_t found);
-
-  const Tables& tables_;
   std::unique_ptr<Memory> memory_;
 };
 

@@ -4,9 +4,10 @@
 // thread after the other. Spheres, pairs and arithmetic are those of PlainDetection.
 #pragma once
 
+#include <algorithm>
 #include <cfloat>
-#include <cstddef>
 #include <cstdint>
+#include <vector>
 
 #include "pairs/plain_detection.h"
 
@@ -30,6 +31,33 @@ struct Scene {
   std::uint32_t rest_pair_count;
 };
 
+// What the threads read of an asset, in the host's memory. The asset, open, must outlive it.
+struct Tables {
+  Tables(const AssetView& asset_, Radius radius)
+      : asset(&asset_), rest_pairs(asset_.rest_pairs(radius)), chain_begin{0} {
+    for (std::size_t c = 0; c < asset->chain_count(); ++c) {
+      const Span<const std::uint32_t> spheres = asset->chain(c).spheres;
+      members.insert(members.end(), spheres.begin(), spheres.end());
+      chain_begin.push_back(static_cast<std::uint32_t>(members.size()));
+      longest_chain = std::max(longest_chain, static_cast<std::uint32_t>(spheres.size));
+    }
+  }
+
+  // For threads on the host.
+  Scene scene(const Sphere* spheres) const {
+    const auto count = static_cast<std::uint32_t>(asset->spheres().size);
+    const auto chain_count = static_cast<std::uint32_t>(asset->chain_count());
+    const auto rest_pair_count = static_cast<std::uint32_t>(rest_pairs.size);
+    return {spheres,         count,          chain_begin.data(), chain_count, members.data(), asset->ignored().data,
+            rest_pairs.data, rest_pair_count};
+  }
+
+  const AssetView* asset;
+  Span<const RestPair> rest_pairs;
+  std::vector<std::uint32_t> chain_begin, members;
+  std::uint32_t longest_chain = 0;
+};
+
 // What is found, in no order: M1's raw list, a pair once for each chain that holds it; M2's pairs, as of chain 0.
 struct PairList {
   ChainPair* entries;
@@ -48,17 +76,11 @@ SPHERECHAIN_PAPER_BODY void add_pair(const PairList& list, std::uint32_t chain, 
   }
 }
 
-SPHERECHAIN_PAPER_BODY float squared_distance(const Sphere& p, const Sphere& q) {
-  const float dx = p.x - q.x;
-  const float dy = p.y - q.y;
-  const float dz = p.z - q.z;
-  return (dx * dx + dy * dy) + dz * dz;
-}
-
-SPHERECHAIN_PAPER_BODY bool overlap(const Sphere& p, const Sphere& q) {
-  const float s = p.radius + q.radius;
-  const float square = s * s;
-  return squared_distance(p, q) < square && square <= FLT_MAX;
+// `scale`: a rest pair's, else 1.
+SPHERECHAIN_PAPER_BODY bool overlap(const Sphere& p, const Sphere& q, float scale = 1) {
+  const float dx = p.x - q.x, dy = p.y - q.y, dz = p.z - q.z;
+  const float s = p.radius + q.radius, square = s * s, t = scale * s;
+  return (dx * dx + dy * dy) + dz * dz < t * t && square <= FLT_MAX;
 }
 
 // "Two spheres collide when they are not adjacent": spheres i and j, which overlap, unless their pair is ignored, or
@@ -79,12 +101,8 @@ SPHERECHAIN_PAPER_BODY bool is_reported(const Scene& scene, std::uint32_t i, std
       high = middle;
     }
   }
-  if (low == scene.rest_pair_count || scene.rest_pairs[low].a != a || scene.rest_pairs[low].b != b) {
-    return true;
-  }
-  const Sphere &p = scene.spheres[a], &q = scene.spheres[b];
-  const float t = scene.rest_pairs[low].rest_scale * (p.radius + q.radius);
-  return squared_distance(p, q) < t * t;
+  const bool is_rest_pair = low < scene.rest_pair_count && scene.rest_pairs[low].a == a && scene.rest_pairs[low].b == b;
+  return !is_rest_pair || overlap(scene.spheres[a], scene.spheres[b], scene.rest_pairs[low].rest_scale);
 }
 
 // M2, m threads (the paper's Figure 11): sphere i against all of the mesh, m^2 tests in all.

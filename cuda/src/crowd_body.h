@@ -10,29 +10,14 @@
 
 namespace spherechain::cuda {
 
-// Something that a warp does for an instance, if it is wanted.
-template <typename Step>
-struct WarpStep {
-  bool is_wanted;
-  Step run;
-};
-
-template <typename Step>
-SPHERECHAIN_HD WarpStep<Step> warp_step(bool is_wanted, const Step& run) {
-  return {is_wanted, run};
-}
-
 // `run` takes a warp through the steps for each of its instances, and waits for the warp after each step.
 template <typename Run>
 SPHERECHAIN_HD void run_sphere_block(const GroupView& v, const Shared& shared, const Run& run) {
-  run.for_instances(v, shared,  //
-                    warp_step(true, [&](const WarpInstance& w) { load_spheres(v, w); }),
-                    warp_step(v.has_padding != 0, [&](const WarpInstance& w) { pad_spheres(v, w); }),
-                    warp_step(true, [&](const WarpInstance& w) { see_spheres(v, w); }),
-                    warp_step(true, [&](const WarpInstance& w) { find_pairs(v, w); }),
-                    warp_step(true, [&](const WarpInstance& w) { decide_pairs(v, w); }),
-                    warp_step(true, [&](const WarpInstance& w) { write_instance(v, w); }),
-                    warp_step(v.pairs != nullptr, [&](const WarpInstance& w) { write_pairs(v, w); }));
+  run.for_instances(
+      v, shared,  //
+      [&](const WarpInstance& w) { load_spheres(v, w); }, [&](const WarpInstance& w) { see_spheres(v, w); },
+      [&](const WarpInstance& w) { find_pairs(v, w); }, [&](const WarpInstance& w) { decide_pairs(v, w); },
+      [&](const WarpInstance& w) { write_instance(v, w); }, [&](const WarpInstance& w) { write_pairs(v, w); });
 }
 
 // `run` runs a step for the block's threads and waits for all of them.
@@ -82,17 +67,8 @@ struct RunThread {
     asm volatile("" : "+r"(here.thread));  // else all that follows from it is kept in registers from the start
     const std::uint32_t count = instances_in(v, here);
     for (std::uint32_t place = here.warp(); place < count; place += here.warps()) {
-      const WarpInstance w(v, shared, here, place);
-      (run_for_warp(steps, w), ...);
-    }
-  }
-
- private:
-  template <typename Step>
-  SPHERECHAIN_HD void run_for_warp(const Step& step, const WarpInstance& w) const {
-    if (step.is_wanted) {
-      step.run(w);
-      barriers.warp();
+      const WarpInstance w(shared, here, place);
+      ((steps(w), barriers.warp()), ...);
     }
   }
 };

@@ -8,7 +8,7 @@
 namespace spherechain::cuda {
 
 SPHERECHAIN_HD std::uint32_t instances_in(const GroupView& v, const Place& at) {
-  const std::uint32_t most = block_instances(v), left = v.instances - at.block * most;
+  const std::uint32_t most = block_instances(v), left = static_cast<std::uint32_t>(v.instance_count) - at.block * most;
   return left < most ? left : most;
 }
 
@@ -22,7 +22,7 @@ SPHERECHAIN_HD void load_matrices(const GroupView& v, const Shared& shared, cons
   const float* const first = v.pose.bones + std::size_t{at.block} * kLanes * v.instance_floats;
   if (v.wide_matrices && !v.in_scratch) {
     for (std::uint32_t i = at.lane(); i < 3 * v.used_bone_count; i += kLanes) {
-      const float* const row = first + (v.used_bones[i / 3] * v.bone_floats + i % 3 * v.steps.row);
+      const float* const row = first + (v.used_bones[i / 3] * v.bone_floats + i % 3 * v.row_step);
       Float4* const to = shared.matrices + i * kPitch;
       SPHERECHAIN_UNROLL
       for (std::uint32_t turn = 0; turn * at.warps() < kLanes; ++turn) {
@@ -35,7 +35,7 @@ SPHERECHAIN_HD void load_matrices(const GroupView& v, const Shared& shared, cons
   } else {
     for (std::uint32_t i = at.lane(); i < 12 * v.used_bone_count; i += kLanes) {
       const std::uint32_t figure =
-          v.used_bones[i / 12] * v.bone_floats + i / 4 % 3 * v.steps.row + i % 4 * v.steps.column;
+          v.used_bones[i / 12] * v.bone_floats + i / 4 % 3 * v.row_step + i % 4 * v.column_step;
       for (std::uint32_t to = at.warp(); to < kLanes; to += at.warps()) {
         (&shared.matrices[i / 4 * kPitch + to].x)[i % 4] =
             first[std::size_t{to < last ? to : last} * v.instance_floats + figure];

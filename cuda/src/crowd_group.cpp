@@ -29,44 +29,14 @@ Status check_bones(const CrowdGroup& group) {
   if (bones == 0) {
     return refuse(SC_NOT_IN_ASSET, SC_FIELD_BONES);
   }
-  if (size == 0) {
-    return refuse(SC_BAD_VALUE, SC_FIELD_BONE_LAYOUT);
-  }
-  if (group.pose.bone_count < bones) {
-    return refuse(SC_TOO_SMALL, SC_FIELD_BONE_COUNT);
-  }
-  if (stride % sizeof(float) != 0 || stride < size || stride > kUintMax / bones) {
-    return refuse(SC_BAD_STRIDE, SC_FIELD_BONE_STRIDE);
-  }
-  const bool is_right = instance_stride % sizeof(float) == 0 && instance_stride >= (bones - 1) * stride + size &&
-                        instance_stride <= kUintMax;
-  return is_right ? done() : refuse(SC_BAD_STRIDE, SC_FIELD_INSTANCE_STRIDE);
-}
-
-Status check_alignment(const CrowdGroup& group) {
-  const struct {
-    const void* pointer;
-    std::size_t to;
-    sc_field field;
-  } all[] = {{group.device_table, 16, SC_FIELD_TABLE}, {group.spheres, 16, SC_FIELD_SPHERES},
-             {group.pose.bones, 4, SC_FIELD_BONES},    {group.refitted, 16, SC_FIELD_OUTPUT},
-             {group.counts, 4, SC_FIELD_COUNTS},       {group.bits, 8, SC_FIELD_BITS},
-             {group.pairs, 4, SC_FIELD_PAIRS},         {group.starts, 8, SC_FIELD_PAIRS},
-             {group.pair_count, 8, SC_FIELD_PAIRS},    {group.scratch, 16, SC_FIELD_SCRATCH}};
-  for (const auto& one : all) {
-    if (!is_aligned(one.pointer, one.to)) {
-      return refuse(SC_MISALIGNED, one.field);
-    }
-  }
-  return done();
-}
-
-Status check_list(const CrowdGroup& group) {
-  const bool is_empty = group.instance_count == 0;
-  if (group.pair_count == nullptr || (group.starts == nullptr && !is_empty)) {
-    return refuse(SC_NULL, SC_FIELD_PAIRS);
-  }
-  return group.counts == nullptr && !is_empty ? refuse(SC_NULL, SC_FIELD_COUNTS) : done();
+  return first_of({
+      {size == 0, SC_BAD_VALUE, SC_FIELD_BONE_LAYOUT},
+      {group.pose.bone_count < bones, SC_TOO_SMALL, SC_FIELD_BONE_COUNT},
+      {stride % sizeof(float) != 0 || stride < size || stride > kUintMax / bones, SC_BAD_STRIDE, SC_FIELD_BONE_STRIDE},
+      {instance_stride % sizeof(float) != 0 || instance_stride < (bones - 1) * stride + size ||
+           instance_stride > kUintMax,
+       SC_BAD_STRIDE, SC_FIELD_INSTANCE_STRIDE},
+  });
 }
 
 Status check(const CrowdGroup& group) {
@@ -76,70 +46,72 @@ Status check(const CrowdGroup& group) {
   if (header_of(group.table).magic != kTableMagic) {
     return refuse(SC_BAD_VALUE, SC_FIELD_TABLE);
   }
-  const bool from_bones = group.pose.bones != nullptr;
-  if (group.spheres == nullptr && !from_bones && group.instance_count > 0) {
-    return refuse(SC_NULL, SC_FIELD_SPHERES);
-  }
-  const sc_field bad = group.instance_count > kInstancesMax              ? SC_FIELD_INSTANCES
-                       : group.pose.vertices != nullptr                  ? SC_FIELD_VERTICES
-                       : from_bones && group.spheres != nullptr          ? SC_FIELD_SPHERES
-                       : !from_bones && group.refitted != nullptr        ? SC_FIELD_OUTPUT
-                       : !from_bones && stride_of(group) > kInstancesMax ? SC_FIELD_INSTANCE_STRIDE
-                                                                         : SC_FIELD_NONE;
-  if (bad != SC_FIELD_NONE) {
-    return refuse(SC_BAD_VALUE, bad);
-  }
-  Status status = check_alignment(group);
-  if (status == SC_OK && group.pairs != nullptr) {
-    status = check_list(group);
-  }
-  if (status == SC_OK && from_bones) {
-    status = check_bones(group);
-  }
-  const bool is_right = from_bones || stride_of(group) >= header_of(group.table).sphere_count;
-  return status != SC_OK || is_right ? status : refuse(SC_BAD_STRIDE, SC_FIELD_INSTANCE_STRIDE);
+  const bool from_bones = group.pose.bones != nullptr, has_list = group.pairs != nullptr;
+  const bool has_instances = group.instance_count > 0;
+  const Status status = first_of({
+      {!from_bones && has_instances && group.spheres == nullptr, SC_NULL, SC_FIELD_SPHERES},
+      {group.instance_count > kInstancesMax, SC_BAD_VALUE, SC_FIELD_INSTANCES},
+      {group.pose.vertices != nullptr, SC_BAD_VALUE, SC_FIELD_VERTICES},
+      {from_bones && group.spheres != nullptr, SC_BAD_VALUE, SC_FIELD_SPHERES},
+      {!from_bones && group.refitted != nullptr, SC_BAD_VALUE, SC_FIELD_OUTPUT},
+      {!from_bones && stride_of(group) > kInstancesMax, SC_BAD_VALUE, SC_FIELD_INSTANCE_STRIDE},
+      {!is_aligned(group.device_table, 16), SC_MISALIGNED, SC_FIELD_TABLE},
+      {!is_aligned(group.spheres, 16), SC_MISALIGNED, SC_FIELD_SPHERES},
+      {!is_aligned(group.pose.bones, 4), SC_MISALIGNED, SC_FIELD_BONES},
+      {!is_aligned(group.refitted, 16), SC_MISALIGNED, SC_FIELD_OUTPUT},
+      {!is_aligned(group.counts, 4), SC_MISALIGNED, SC_FIELD_COUNTS},
+      {!is_aligned(group.bits, 8), SC_MISALIGNED, SC_FIELD_BITS},
+      {any_misaligned(group.pairs, group.starts, group.pair_count), SC_MISALIGNED, SC_FIELD_PAIRS},
+      {!is_aligned(group.scratch, 16), SC_MISALIGNED, SC_FIELD_SCRATCH},
+      {has_list && group.pair_count == nullptr, SC_NULL, SC_FIELD_PAIRS},
+      {has_list && has_instances && group.starts == nullptr, SC_NULL, SC_FIELD_PAIRS},
+      {has_list && has_instances && group.counts == nullptr, SC_NULL, SC_FIELD_COUNTS},
+      {!from_bones && stride_of(group) < header_of(group.table).sphere_count, SC_BAD_STRIDE, SC_FIELD_INSTANCE_STRIDE},
+  });
+  return status == SC_OK && from_bones ? check_bones(group) : status;
 }
 
-// Places one after another.
+// Places one after another, each at a multiple of 16.
 struct Bytes {
   std::size_t used = 0;
 
-  void take(std::uint32_t& at, std::size_t bytes) {
-    at = static_cast<std::uint32_t>(used);
-    used += (bytes + 15) / 16 * 16;
+  template <typename T>
+  void take(Offset<T>& to, std::size_t count) {
+    to.bytes = static_cast<std::uint32_t>(used);
+    used += (count * sizeof(T) + 15) / 16 * 16;
   }
 };
 
-BlockLayout layout_of_bones(const GroupView& v) {
-  constexpr std::size_t kFigures = kPitch * sizeof(float);
-  const std::size_t bits = half_words(v) * kFigures;
+BlockLayout layout_of_bones(const TableFigures& t, const BlockUse& use) {
+  const std::size_t bits = std::size_t{half_words(t)} * kPitch, places = std::size_t{sphere_places(t)} * kPitch;
   BlockLayout out{};
   Bytes before, after;
-  before.take(out.matrices, std::size_t{3} * v.used_bone_count * kPitch * sizeof(Float4));
-  before.take(out.reference, 3 * kFigures);
-  after.take(out.powers, sphere_places(v) * kFigures);
-  after.take(out.bits, v.bits != nullptr ? bits : 0);
-  after.take(out.ordered_bits, v.pairs != nullptr ? bits : 0);
-  after.take(out.queue, has_queue(v.sphere_count) ? kBlockQueued * sizeof(std::uint32_t) : 0);
+  before.take(out.matrices, std::size_t{3} * t.used_bone_count * kPitch);
+  before.take(out.reference, 3 * kPitch);
+  after.take(out.powers, places);
+  after.take(out.bits, use.bits ? bits : 0);
+  after.take(out.ordered_bits, use.pairs ? bits : 0);
+  after.take(out.queue, has_queue(t.sphere_count) ? kBlockQueued : 0);
   Bytes all{std::max(before.used, after.used)};
-  all.take(out.spheres, std::size_t{sphere_places(v)} * kPitch * sizeof(Float4));
-  all.take(out.counts, kLanes * sizeof(std::uint32_t));
-  all.take(out.dealt, 3 * sizeof(std::uint32_t));
-  all.take(out.parts, v.pairs != nullptr ? (kWarpsMax * kLanes + 4) * sizeof(std::uint32_t) : 0);
+  all.take(out.spheres, places);
+  all.take(out.counts, kLanes);
+  all.take(out.dealt, 3);
+  all.take(out.start, use.pairs ? 1 : 0);
+  all.take(out.parts, use.pairs ? kWarpsMax * kLanes : 0);
   out.size = all.used;
   return out;
 }
 
-BlockLayout layout_of_spheres(const GroupView& v) {
-  const std::size_t places = lanes_of(v.sphere_count);
+BlockLayout layout_of_spheres(const TableFigures& t, const BlockUse& use) {
+  const std::size_t places = lanes_of(t.sphere_count);
   BlockLayout out{};
   Bytes warp{sizeof(WarpState)};
-  warp.take(out.warp_seen, std::size_t{4} * seen_pitch(v) * sizeof(float));
-  warp.take(out.warp_powers, 2 * places * sizeof(float));
-  warp.take(out.warp_bits, v.bits != nullptr ? v.bit_words * sizeof(std::uint64_t) : 0);
-  warp.take(out.warp_ordered_bits, v.pairs != nullptr ? v.bit_words * sizeof(std::uint64_t) : 0);
-  warp.take(out.warp_parts, v.pairs != nullptr ? kLanes * sizeof(std::uint32_t) : 0);
-  warp.take(out.warp_spheres, places * sizeof(Float4));
+  warp.take(out.seen, std::size_t{4} * seen_pitch(t));
+  warp.take(out.powers, 2 * places);
+  warp.take(out.bits, use.bits ? half_words(t) : 0);
+  warp.take(out.ordered_bits, use.pairs ? half_words(t) : 0);
+  warp.take(out.parts, use.pairs ? kLanes : 0);
+  warp.take(out.spheres, places);
   out.warp_size = static_cast<std::uint32_t>(warp.used);
   out.size = kWarpsMax * warp.used;
   return out;
@@ -167,21 +139,14 @@ void view_table(const TableHeader& header, const std::uint64_t* words, GroupView
 
 }  // namespace
 
-BlockLayout layout_of(const GroupView& v) {
-  return v.pose.bones != nullptr ? layout_of_bones(v) : layout_of_spheres(v);
+BlockLayout layout_of(const TableFigures& table, const BlockUse& use) {
+  return use.bones ? layout_of_bones(table, use) : layout_of_spheres(table, use);
 }
 
 std::size_t crowd_block_bytes(const std::uint64_t* table, bool from_bones, bool with_bits, bool with_pairs) noexcept {
-  alignas(16) static std::uint64_t something[2];  // it only matters what is null
-  if (table == nullptr || header_of(table).magic != kTableMagic) {
-    return 0;
-  }
-  GroupView v{};
-  view_table(header_of(table), something, v);
-  v.pose.bones = from_bones ? reinterpret_cast<const float*>(something) : nullptr;
-  v.bits = with_bits ? something : nullptr;
-  v.pairs = with_pairs ? reinterpret_cast<CrowdPair*>(something) : nullptr;
-  return layout_of(v).size;
+  return table == nullptr || header_of(table).magic != kTableMagic
+             ? 0
+             : layout_of(header_of(table), {from_bones, with_bits, with_pairs}).size;
 }
 
 Status view_group(const CrowdGroup& group, GroupView& view) {
@@ -194,14 +159,14 @@ Status view_group(const CrowdGroup& group, GroupView& view) {
   view_table(header_of(group.table), group.device_table, view);
   const BoneMatrices matrices = matrices_of(group.pose);
   const std::size_t stride = stride_of(group);
-  view.instances = static_cast<std::uint32_t>(group.instance_count);
-  view.sphere_stride = stride;
+  view.instance_stride = stride;
   view.bone_floats = static_cast<std::uint32_t>(matrices.stride);
   view.instance_floats = static_cast<std::uint32_t>(stride / sizeof(float));
-  view.steps = {static_cast<std::uint32_t>(matrices.row), static_cast<std::uint32_t>(matrices.column)};
-  view.wide_matrices = view.steps.column == 1 && is_aligned(matrices.data, 16) &&
+  view.row_step = static_cast<std::uint32_t>(matrices.row);
+  view.column_step = static_cast<std::uint32_t>(matrices.column);
+  view.wide_matrices = view.column_step == 1 && is_aligned(matrices.data, 16) &&
                        matrices.stride * sizeof(float) % sizeof(Float4) == 0 && stride % sizeof(Float4) == 0;
-  view.layout = layout_of(view);
+  view.layout = layout_of(view, {group.pose.bones != nullptr, group.bits != nullptr, group.pairs != nullptr});
   return done();
 }
 

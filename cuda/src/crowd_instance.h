@@ -42,27 +42,26 @@ SPHERECHAIN_HD void for_all_lanes_of(std::uint32_t count, std::uint32_t lane, co
   }
 }
 
-// Places past the last sphere get the last sphere once more.
+// Places past the last sphere get the last sphere once more. Then adds the filter's padding: each lane to the spheres
+// that it loaded. A sphere padded to below 0 touches nothing.
 SPHERECHAIN_HD void load_spheres(const GroupView& v, const WarpInstance& w) {
-  const Sphere* const from = v.spheres + w.instance * v.sphere_stride;
+  const auto* const from = reinterpret_cast<const Float4*>(v.spheres + w.instance * v.instance_stride);
   const std::uint32_t last = v.sphere_count - 1;
-  if (!v.in_scratch) {
-    for_all_lanes_of(v.sphere_count, w.lane,
-                     [&](std::uint32_t i) { copy_past_cache(w.spheres + i, &from[i < last ? i : last].x); });
-    wait_for_copies();
-  } else {
-    for_all_lanes_of(v.sphere_count, w.lane, [&](std::uint32_t i) {
-      w.spheres[i] = reinterpret_cast<const Float4*>(from)[i < last ? i : last];
+  for_all_lanes_of(v.sphere_count, w.lane, [&](std::uint32_t i) {
+    const Float4* const sphere = from + (i < last ? i : last);
+    if (v.in_scratch) {
+      w.spheres[i] = *sphere;
+    } else {
+      copy_past_cache(w.spheres + i, &sphere->x);
+    }
+  });
+  wait_for_copies();
+  if (v.has_padding != 0) {
+    for_each_of(v.sphere_count, w.lane, [&](std::uint32_t i) {
+      const float radius = w.spheres[i].w + v.paddings[i];
+      w.spheres[i].w = radius < 0 ? NAN : radius;
     });
   }
-}
-
-// Adds the filter's padding. A sphere padded to below 0 touches nothing.
-SPHERECHAIN_HD void pad_spheres(const GroupView& v, const WarpInstance& w) {
-  for_each_of(v.sphere_count, w.lane, [&](std::uint32_t i) {
-    const float radius = w.spheres[i].w + v.paddings[i];
-    w.spheres[i].w = radius < 0 ? NAN : radius;
-  });
 }
 
 // Fills in what the quick test reads; past the last sphere any figures will do. Clears what is found.
@@ -96,14 +95,7 @@ SPHERECHAIN_HD std::uint32_t decide(const GroupView& v, const WarpInstance& w, s
   if (!touch(p, q, scale)) {
     return 0;
   }
-  if (v.bits != nullptr) {
-    const std::uint32_t bit = b * (b - 1) / 2 + a;
-    set_bits(&w.bits[bit / 32], 1U << (bit % 32));
-  }
-  if (v.pairs != nullptr) {
-    const std::uint32_t bit = a * (2 * v.sphere_count - a - 1) / 2 + (b - a - 1);
-    set_bits(&w.ordered_bits[bit / 32], 1U << (bit % 32));
-  }
+  set_pair_bits(v, w, a, b, 1, 0);
   return 1;
 }
 
@@ -247,7 +239,7 @@ SPHERECHAIN_HD void write_instance(const GroupView& v, const WarpInstance& w) {
 }
 
 SPHERECHAIN_HD void write_pairs(const GroupView& v, const WarpInstance& w) {
-  if (w.parts[w.lane] == 0) {
+  if (v.pairs == nullptr || w.parts[w.lane] == 0) {
     return;
   }
   std::uint64_t place = w.state->start;

@@ -2,14 +2,35 @@
 // From a caller's groups to the launches of kernels.
 #pragma once
 
+#include <algorithm>
+#include <initializer_list>
+
+#include "asset/status.h"
 #include "crowd_view.h"
 
 namespace spherechain::cuda {
 
 inline const TableHeader& header_of(const std::uint64_t* table) { return *reinterpret_cast<const TableHeader*>(table); }
 
-// The memory of a block. Reads the view's counts, and which inputs and outputs there are.
-BlockLayout layout_of(const GroupView& view);
+// Something wrong with what the caller gave.
+struct Fault {
+  bool is_there;
+  sc_code code;
+  sc_field field;
+};
+
+inline Status first_of(std::initializer_list<Fault> faults) {
+  const Fault* const found = std::find_if(faults.begin(), faults.end(), [](const Fault& one) { return one.is_there; });
+  return found == faults.end() ? done() : refuse(found->code, found->field);
+}
+
+// Which inputs and outputs a group has.
+struct BlockUse {
+  bool bones, bits, pairs;
+};
+
+// The memory of a block.
+BlockLayout layout_of(const TableFigures& table, const BlockUse& use);
 
 // Checks a group as enqueue_crowds() says and fills in the view, except for its place in a launch.
 Status view_group(const CrowdGroup& group, GroupView& view);

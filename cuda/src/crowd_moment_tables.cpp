@@ -15,6 +15,15 @@ struct alignas(16) Member {
 
 constexpr std::uint32_t pairs_of(std::uint32_t bones) { return static_cast<std::uint32_t>(pairs_of_bones(bones)); }
 
+Span<const std::uint16_t> bones_of(const MomentTables& tables, const Member& member) {
+  return {tables.bones.data + member.first_bone, member.bone_count};
+}
+
+bool have_same_bones(const MomentTables& tables, const Member& a, const Member& b) {
+  const Span<const std::uint16_t> l = bones_of(tables, a), r = bones_of(tables, b);
+  return std::equal(l.begin(), l.end(), r.begin(), r.end());
+}
+
 // Spheres of most bones come first, spheres of the same bones next to each other.
 void fill_members(const MomentTables& tables, Member* out) {
   std::uint32_t bone = 0, pair = 0;
@@ -25,39 +34,28 @@ void fill_members(const MomentTables& tables, Member* out) {
     pair += pairs_of(count);
   }
   std::sort(out, out + tables.spheres.size, [&](const Member& a, const Member& b) {
-    const std::uint16_t *l = tables.bones.data + a.first_bone, *r = tables.bones.data + b.first_bone;
-    if (a.bone_count != b.bone_count) {
-      return a.bone_count > b.bone_count;
-    }
-    const bool are_equal = std::equal(l, l + a.bone_count, r);
-    return are_equal ? a.sphere < b.sphere : std::lexicographical_compare(l, l + a.bone_count, r, r + b.bone_count);
+    const Span<const std::uint16_t> l = bones_of(tables, a), r = bones_of(tables, b);
+    return l.size != r.size                ? l.size > r.size
+           : have_same_bones(tables, a, b) ? a.sphere < b.sphere
+                                           : std::lexicographical_compare(l.begin(), l.end(), r.begin(), r.end());
   });
 }
 
-// The bones of a run's spheres, ascending, and the number that each has among a sphere's own bones.
+// The bones of a run's one or two spheres, ascending, and the number that each has among a sphere's own bones.
 struct Union {
   static constexpr std::uint32_t kBonesMax = kRunSpheres * kMaxMomentBones, kNone = ~0U;
-  std::uint32_t count = 0;
+  std::uint32_t count;
   std::uint16_t bones[kBonesMax];
   std::uint32_t numbers[kRunSpheres][kBonesMax];
 
-  Union(const MomentTables& tables, const Member* members, std::uint32_t sphere_count) {
-    std::uint32_t next[kRunSpheres] = {};
-    const auto has_next = [&](std::uint32_t s) { return s < sphere_count && next[s] < members[s].bone_count; };
-    const auto next_bone = [&](std::uint32_t s) { return tables.bones[members[s].first_bone + next[s]]; };
-    for (;; ++count) {
-      bool is_any = false;
-      for (std::uint32_t s = 0; s < kRunSpheres; ++s) {
-        if (has_next(s)) {
-          bones[count] = is_any ? std::min(bones[count], next_bone(s)) : next_bone(s);
-          is_any = true;
-        }
-      }
-      if (!is_any) {
-        return;
-      }
-      for (std::uint32_t s = 0; s < kRunSpheres; ++s) {
-        numbers[s][count] = has_next(s) && next_bone(s) == bones[count] ? next[s]++ : kNone;
+  Union(const MomentTables& tables, Span<const Member> members) {
+    const Span<const std::uint16_t> l = bones_of(tables, members[0]), r = bones_of(tables, members[members.size - 1]);
+    count = static_cast<std::uint32_t>(std::set_union(l.begin(), l.end(), r.begin(), r.end(), bones) - bones);
+    for (std::uint32_t s = 0; s < members.size; ++s) {
+      const Span<const std::uint16_t> own = bones_of(tables, members[s]);
+      std::uint32_t next = 0;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        numbers[s][i] = next < own.size && own[next] == bones[i] ? next++ : kNone;
       }
     }
   }
@@ -70,10 +68,20 @@ constexpr std::int64_t kGramCost = 48, kAskingCost = 4, kRunCost = 64;
 // What one run for both saves over two.
 std::int64_t saved(const MomentTables& tables, const Member& a, const Member& b) {
   const Member both[] = {a, b};
-  const std::int64_t common = pairs_of(a.bone_count + b.bone_count - Union(tables, both, 2).count);
+  const std::int64_t common = pairs_of(a.bone_count + b.bone_count - Union(tables, {both, 2}).count);
   const std::int64_t all = pairs_of(a.bone_count) + pairs_of(b.bone_count) - common;
   return common == 0 ? 0 : kGramCost * common + kRunCost - kAskingCost * all;
 }
+
+// Grows into memory that was taken for it.
+template <typename T>
+struct List {
+  T* data = nullptr;
+  std::uint32_t size = 0;
+
+  T& add(const T& one) { return data[size++] = one; }
+  T& last() { return data[size - 1]; }
+};
 
 class RunWriter {
  public:
@@ -81,68 +89,67 @@ class RunWriter {
       : tables_(asset.moment_tables()), rest_(asset.spheres()), radius_(radius), bone_indices_(bone_indices) {}
 
   // Spheres that all have the same two bones, or three.
-  void add_few_bones(const Member* members, std::uint32_t count) {
-    const std::uint32_t bones = members[0].bone_count;
-    MomentRun& run = start(members, count, bones == 2 ? kTwoBones : kThreeBones);
-    run.bone_count = bones;
-    for (std::uint32_t k = 0; k < bones; ++k) {
-      run_bones[bone_count_++] = matrix_of(tables_.bones[members[0].first_bone + k]);
+  void add_few_bones(Span<const Member> members) {
+    const std::uint32_t bones = members[0].bone_count, step = bones == 2 ? 1 : 2;
+    MomentRun& run = start(members, bones, bones == 2 ? kTwoBones : kThreeBones);
+    run.cost = 3 * pairs_of(bones) + run.sphere_count * (bones == 2 ? 5 : 8);
+    for (const std::uint16_t bone : bones_of(tables_, members[0])) {
+      run_bones.add(matrix_of(bone));
     }
-    for (std::uint32_t s = 0; s < count; ++s) {
+    for (const Member& member : members) {
       for (std::uint32_t k = 0; k < bones; ++k) {
-        add_center(members[s], k);
+        add_center(member, k);
       }
     }
-    const std::uint32_t step = bones == 2 ? 1 : 2;
     for (std::uint32_t first = 0; first < step; ++first) {
-      for (std::uint32_t s = 0; s < count; ++s) {
-        add_columns(members[s], first, step);
+      for (const Member& member : members) {
+        for (std::uint32_t k = 0; k < bones; ++k) {
+          for (std::uint32_t l = k; l < bones; ++l) {
+            add_columns(moment_of(member, k, l), k == l, first, step);
+          }
+        }
+        fill_quad();
       }
     }
-    run.cost = static_cast<std::uint32_t>(3 * pairs_of(bones) + count * (bones == 2 ? 5 : 8));
   }
 
   // One or two spheres of any bones.
-  void add(const Member* members, std::uint32_t count) {
-    const Union all(tables_, members, count);
-    MomentRun& run = start(members, count, kAnyBones);
-    run.bone_count = all.count;
+  void add(Span<const Member> members) {
+    const Union all(tables_, members);
+    MomentRun& run = start(members, all.count, kAnyBones);
     for (std::uint32_t i = 0; i < all.count; ++i) {
-      add_bone(all, i, members, count);
-      for (std::uint32_t j = i + 1; j < all.count; ++j) {
-        add_pair(all, i, j, members, count);
+      run_bones.add(add_step(all, i, i, members));
+      for (std::uint32_t s = 0; s < members.size; ++s) {
+        if (all.numbers[s][i] != Union::kNone) {
+          add_center(members[s], all.numbers[s][i]);
+        }
       }
-      steps[step_count_ - 1] |= kLastOfBone;
+      for (std::uint32_t j = i + 1; j < all.count; ++j) {
+        add_step(all, i, j, members);
+      }
+      steps.last() |= kLastOfBone;
     }
-    steps[step_count_ - 1] |= kLastOfRun;
-    run.cost = 3 * (step_count_ - run.first_step);  // a Gram matrix is worth three times what a sphere makes of it
-    for (std::uint32_t s = 0; s < count; ++s) {
-      run.cost += pairs_of(members[s].bone_count);
+    steps.last() |= kLastOfRun;
+    run.cost = 3 * (steps.size - run.first_step);  // a Gram matrix is worth three times what a sphere makes of it
+    for (const Member& member : members) {
+      run.cost += pairs_of(member.bone_count);
     }
   }
 
-  std::uint32_t run_count() const { return run_count_; }
-
-  MomentRun* runs = nullptr;
-  RunSphere* spheres = nullptr;
-  std::uint32_t* steps = nullptr;
-  Float4* moments = nullptr;
-  std::uint32_t* run_bones = nullptr;
-  Float4* center_terms = nullptr;
+  List<MomentRun> runs;
+  List<RunSphere> spheres;
+  List<std::uint32_t> steps, run_bones;
+  List<float> moments;  // each sphere's or pair's at a multiple of four
+  List<Float4> center_terms;
 
  private:
-  MomentRun& start(const Member* members, std::uint32_t count, std::uint32_t kind) {
-    MomentRun& run = runs[run_count_++];
-    run.first_step = step_count_;
-    run.first_moment = moment_count_;
-    run.first_bone = bone_count_;
-    run.first_center = center_count_;
-    run.first_sphere = sphere_count_;
-    run.sphere_count = count;
-    run.kind = kind;
-    for (std::uint32_t s = 0; s < count; ++s) {
-      const RestSphere& rest = rest_[members[s].sphere];
-      spheres[sphere_count_++] = {members[s].sphere, radius_ == SC_RADIUS_FIT ? rest.radius : rest.detect_radius};
+  MomentRun& start(Span<const Member> members, std::uint32_t bone_count, std::uint32_t kind) {
+    const auto count = static_cast<std::uint32_t>(members.size);
+    MomentRun& run = runs.add(
+        {steps.size, moments.size / 4, run_bones.size, center_terms.size, spheres.size, count, bone_count, kind, 0});
+    for (const Member& member : members) {
+      const RestSphere& rest = rest_[member.sphere];
+      spheres.add({member.sphere, radius_ == SC_RADIUS_FIT ? rest.radius : rest.detect_radius});
     }
     return run;
   }
@@ -158,114 +165,64 @@ class RunWriter {
 
   void add_center(const Member& member, std::uint32_t number) {
     const CenterTerm& term = tables_.centers[member.first_bone + number];
-    center_terms[center_count_++] = {term.x, term.y, term.z, term.w};
+    center_terms.add({term.x, term.y, term.z, term.w});
   }
 
-  // The bone, and its pair with itself.
-  void add_bone(const Union& all, std::uint32_t i, const Member* members, std::uint32_t count) {
-    std::uint32_t& bone = run_bones[bone_count_++] = matrix_of(all.bones[i]);
-    std::uint32_t& step = steps[step_count_++] = bone;
-    for (std::uint32_t s = 0; s < count; ++s) {
-      const std::uint32_t k = all.numbers[s][i];
-      if (k != Union::kNone) {
-        bone |= 1U << s;
-        step |= 1U << s;
-        add_center(members[s], k);
-        add_moment(moment_of(members[s], k, k), true);
-      }
-    }
-  }
-
-  void add_pair(const Union& all, std::uint32_t i, std::uint32_t j, const Member* members, std::uint32_t count) {
+  // The step of bones i and j, if a sphere has both, and the moments of those that do. Returns the step, or 0.
+  std::uint32_t add_step(const Union& all, std::uint32_t i, std::uint32_t j, Span<const Member> members) {
     std::uint32_t mask = 0;
-    for (std::uint32_t s = 0; s < count; ++s) {
+    for (std::uint32_t s = 0; s < members.size; ++s) {
       const std::uint32_t k = all.numbers[s][i], l = all.numbers[s][j];
       if (k != Union::kNone && l != Union::kNone) {
         mask |= 1U << s;
-        add_moment(moment_of(members[s], k, l), false);
+        add_columns(moment_of(members[s], k, l), i == j, 0, 1);
+        fill_quad();
       }
     }
-    if (mask != 0) {
-      steps[step_count_++] = matrix_of(all.bones[j]) | mask;
-    }
+    return mask == 0 ? 0 : steps.add(matrix_of(all.bones[j]) | mask);
   }
 
   // Columns of a moment, of those that are kept the rows one after another.
-  static float* put_columns(const Moment& moment, bool is_self, std::size_t first, std::size_t step, float* to) {
+  void add_columns(const Moment& moment, bool is_self, std::size_t first, std::size_t step) {
     for (std::size_t column = first; column < 4; column += step) {
       for (std::size_t row = 0; row < rows_of_moment(is_self, column); ++row) {
-        *to++ = moment.values[4 * row + column];
+        moments.add(moment.values[4 * row + column]);
       }
     }
-    return to;
   }
-
-  // Columns of all moments of a sphere of few bones.
-  void add_columns(const Member& member, std::uint32_t first, std::uint32_t step) {
-    auto* to = reinterpret_cast<float*>(moments + moment_count_);
-    for (std::uint32_t k = 0; k < member.bone_count; ++k) {
-      for (std::uint32_t l = k; l < member.bone_count; ++l) {
-        to = put_columns(moment_of(member, k, l), k == l, first, step, to);
-      }
-    }
-    moment_count_ += static_cast<std::uint32_t>(few_bone_quads(member.bone_count, first, step));
-  }
-
-  void add_moment(const Moment& moment, bool is_self) {
-    put_columns(moment, is_self, 0, 1, reinterpret_cast<float*>(moments + moment_count_));
-    moment_count_ += static_cast<std::uint32_t>(is_self ? few_bone_quads(1, 0, 1) : kPairQuads);
-  }
+  void fill_quad() { moments.size = (moments.size + 3) / 4 * 4; }
 
   const MomentTables& tables_;
   Span<const RestSphere> rest_;
   Radius radius_;
   const std::uint32_t* bone_indices_;
-  std::uint32_t run_count_ = 0, step_count_ = 0, moment_count_ = 0, bone_count_ = 0, center_count_ = 0,
-                sphere_count_ = 0;
 };
 
-bool has_few_bones(const Member& member) { return member.bone_count == 2 || member.bone_count == 3; }
-
-bool have_same_bones(const MomentTables& tables, const Member& a, const Member& b) {
-  const std::uint16_t *l = tables.bones.data + a.first_bone, *r = tables.bones.data + b.first_bone;
-  return std::equal(l, l + a.bone_count, r, r + b.bone_count);
-}
-
-// Takes out the spheres of two or three bones, many of the same ones at a time. Returns how many spheres are left.
-std::size_t add_few_bone_runs(const MomentTables& tables, Member* members, RunWriter& writer) {
-  const std::size_t n = tables.spheres.size;
-  std::size_t left = 0;
-  for (std::size_t i = 0; i < n;) {
-    if (!has_few_bones(members[i])) {
-      members[left++] = members[i++];
-      continue;
-    }
-    std::uint32_t count = 1;
-    while (count < kRunSpheresMax && i + count < n && have_same_bones(tables, members[i], members[i + count])) {
-      ++count;
-    }
-    writer.add_few_bones(members + i, count);
-    i += count;
+// The spheres of two or three bones, many of the same ones at a time; the others by twos where that is less work. Of
+// those only spheres near each other in the order are compared.
+void add_runs(const MomentTables& tables, Member* members, RunWriter& writer) {
+  constexpr std::ptrdiff_t kNear = 64;
+  Member* const end = members + tables.spheres.size;
+  Member* few = std::find_if(members, end, [](const Member& member) { return member.bone_count <= 3; });
+  few = std::rotate(few, std::find_if(few, end, [](const Member& member) { return member.bone_count < 2; }), end);
+  for (Member *one = few, *next = one; one < end; one = next) {
+    next = std::find_if_not(one, one + std::min<std::ptrdiff_t>(kRunSpheresMax, end - one),
+                            [&](const Member& other) { return have_same_bones(tables, *one, other); });
+    writer.add_few_bones({one, static_cast<std::size_t>(next - one)});
   }
-  return left;
-}
-
-// The others, by twos where that is less work; only spheres near each other in the order are compared.
-void add_other_runs(const MomentTables& tables, Member* members, std::size_t count, RunWriter& writer) {
-  constexpr std::size_t kNear = 64;
-  for (Member* one = members; one < members + count; ++one) {
+  for (Member* one = members; one < few; ++one) {
     if (one->bone_count == 0) {
       continue;  // taken already
     }
     Member* best = nullptr;
     std::int64_t best_saving = 0;
-    for (Member* other = one + 1; other < members + count && other < one + kNear; ++other) {
+    for (Member* other = one + 1; other < one + std::min(kNear, few - one); ++other) {
       const std::int64_t saving = other->bone_count == 0 ? 0 : saved(tables, *one, *other);
       best = saving > best_saving ? other : best;
       best_saving = std::max(best_saving, saving);
     }
-    Member run[kRunSpheres] = {*one, best != nullptr ? *best : *one};
-    writer.add(run, best != nullptr ? 2 : 1);
+    const Member run[kRunSpheres] = {*one, best != nullptr ? *best : *one};
+    writer.add({run, best != nullptr ? std::size_t{2} : 1});
     if (best != nullptr) {
       best->bone_count = 0;
     }
@@ -286,12 +243,12 @@ void add_moments(const AssetView& asset, Radius radius, TableMemory& memory, Tab
   auto* bone_indices = memory.take<std::uint32_t>(header.bone_count, unread);
   auto* members = memory.take<Member>(n, unread);
   RunWriter writer(asset, radius, bone_indices);
-  writer.runs = memory.take<MomentRun>(n, header.runs);
-  writer.spheres = memory.take<RunSphere>(n, header.run_spheres);
-  writer.steps = memory.take<std::uint32_t>(2 * tables.moments.size, header.moment_steps);
-  writer.moments = memory.take<Float4>(kPairQuads * tables.moments.size, header.moments);
-  writer.run_bones = memory.take<std::uint32_t>(tables.bones.size, header.run_bones);
-  writer.center_terms = memory.take<Float4>(tables.bones.size, header.center_terms);
+  writer.runs.data = memory.take<MomentRun>(n, header.runs);
+  writer.spheres.data = memory.take<RunSphere>(n, header.run_spheres);
+  writer.steps.data = memory.take<std::uint32_t>(2 * tables.moments.size, header.moment_steps);
+  writer.moments.data = memory.take<float>(kMomentSize * tables.moments.size, header.moments);
+  writer.run_bones.data = memory.take<std::uint32_t>(tables.bones.size, header.run_bones);
+  writer.center_terms.data = memory.take<Float4>(tables.bones.size, header.center_terms);
   if (memory.is_null()) {
     return;
   }
@@ -308,9 +265,9 @@ void add_moments(const AssetView& asset, Radius radius, TableMemory& memory, Tab
   header.reference = bone_indices[tables.reference];
   header.origin = tables.origin;
   fill_members(tables, members);
-  add_other_runs(tables, members, add_few_bone_runs(tables, members, writer), writer);
-  header.run_count = writer.run_count();
-  std::sort(writer.runs, writer.runs + header.run_count, [](const MomentRun& l, const MomentRun& r) {
+  add_runs(tables, members, writer);
+  header.run_count = writer.runs.size;
+  std::sort(writer.runs.data, writer.runs.data + header.run_count, [](const MomentRun& l, const MomentRun& r) {
     return l.cost != r.cost ? l.cost > r.cost : l.first_sphere < r.first_sphere;
   });
 }

@@ -14,48 +14,49 @@ SPHERECHAIN_HD float gram_at(const Matrix& a, const Matrix& b, std::size_t row, 
   return fused(a.at[2][row], b.at[2][column], fused(a.at[1][row], b.at[1][column], a.at[0][row] * b.at[0][column]));
 }
 
-SPHERECHAIN_HD Gram gram_of(const Matrix& a, const Matrix& b) {
-  Gram out;
+// Calls visit(row, column) for some columns of a moment; of a bone's own without the rows below the diagonal.
+template <std::size_t kFirst, std::size_t kStep, typename Visit>
+SPHERECHAIN_HD void for_each_figure(bool is_self, const Visit& visit) {
   SPHERECHAIN_UNROLL
-  for (std::size_t column = 0; column < 4; ++column) {
+  for (std::size_t column = kFirst; column < 4; column += kStep) {
     SPHERECHAIN_UNROLL
-    for (std::size_t row = 0; row < 4; ++row) {
-      out.at[row][column] = gram_at(a, b, row, column);
+    for (std::size_t row = 0; row < rows_of_moment(is_self, column); ++row) {
+      visit(row, column);
     }
   }
+}
+
+// Of a bone with itself without the figures below the diagonal. Their moments are 0, and to leave them out changes no
+// radius: the sign of a sum of zeros does not matter, and where a figure below the diagonal is not finite, its twin
+// above is not either.
+SPHERECHAIN_HD Gram gram_of(const Matrix& a, const Matrix& b, bool is_self) {
+  Gram out;
+  for_each_figure<0, 1>(is_self, [&](std::size_t row, std::size_t column) {
+    out.at[row][column] = gram_at(a, b, row, column);
+    if (is_self) {
+      make_once(out.at[row][column]);
+    }
+  });
   return out;
 }
 
-struct MomentSums {
-  float at[4][4];
-};
-struct CenterSums {
-  float at[3][4];
-};
-
-// To -0, which as a summand changes nothing, not even a sign.
+// From -0, which as a summand changes nothing, not even a sign.
 template <std::size_t kRows>
-SPHERECHAIN_HD void clear(float (&sums)[kRows][4]) {
-  SPHERECHAIN_UNROLL
-  for (float(&row)[4] : sums) {
+struct Sums {
+  float at[kRows][4];
+
+  SPHERECHAIN_HD Sums() {
     SPHERECHAIN_UNROLL
-    for (float& sum : row) {
-      sum = -0.0F;
+    for (float(&row)[4] : at) {
+      SPHERECHAIN_UNROLL
+      for (float& sum : row) {
+        sum = -0.0F;
+      }
     }
   }
-}
-
-// A moment of two bones, by columns.
-SPHERECHAIN_HD void add_pair_moment(const Float4* columns, const Gram& gram, MomentSums& sums) {
-  SPHERECHAIN_UNROLL
-  for (std::size_t column = 0; column < 4; ++column) {
-    const Float4 m = columns[column];
-    sums.at[0][column] = fused(m.x, gram.at[0][column], sums.at[0][column]);
-    sums.at[1][column] = fused(m.y, gram.at[1][column], sums.at[1][column]);
-    sums.at[2][column] = fused(m.z, gram.at[2][column], sums.at[2][column]);
-    sums.at[3][column] = fused(m.w, gram.at[3][column], sums.at[3][column]);
-  }
-}
+};
+using MomentSums = Sums<4>;
+using CenterSums = Sums<3>;
 
 SPHERECHAIN_HD float sum_column(const MomentSums& sums, std::size_t column) {
   return (sums.at[0][column] + sums.at[2][column]) + (sums.at[1][column] + sums.at[3][column]);
@@ -85,15 +86,13 @@ SPHERECHAIN_HD void add_center(const Matrix& matrix, const Float4& term, CenterS
   }
 }
 
-SPHERECHAIN_HD float center_of(const Shared& shared, std::uint32_t lane, const CenterSums& sums, std::size_t row) {
-  const float(&s)[4] = sums.at[row];
-  return ((s[0] + s[2]) + (s[1] + s[3])) + shared.reference[row * kPitch + lane];
-}
-
 SPHERECHAIN_HD void store_sphere(const Shared& shared, std::uint32_t lane, std::uint32_t sphere, const CenterSums& sums,
                                  float radius) {
-  shared.spheres[sphere * kPitch + lane] = {center_of(shared, lane, sums, 0), center_of(shared, lane, sums, 1),
-                                            center_of(shared, lane, sums, 2), radius};
+  const auto center = [&](std::size_t row) {
+    const float(&s)[4] = sums.at[row];
+    return ((s[0] + s[2]) + (s[1] + s[3])) + shared.reference[row * kPitch + lane];
+  };
+  shared.spheres[sphere * kPitch + lane] = {center(0), center(1), center(2), radius};
 }
 
 // Reads figures one after another, by fours.
@@ -115,42 +114,34 @@ class Figures {
   std::size_t read_ = 0;
 };
 
+SPHERECHAIN_HD void add_moment(const Float4* quads, const Gram& gram, bool is_self, MomentSums& sums) {
+  Figures moment(quads);
+  for_each_figure<0, 1>(is_self, [&](std::size_t row, std::size_t column) {
+    sums.at[row][column] = fused(moment.next(), gram.at[row][column], sums.at[row][column]);
+  });
+}
+
 // Calls visit(pair, its two bones, row, column) for the figures that few_bone_quads() counts, in their order.
 template <std::size_t kBones, std::size_t kFirst, std::size_t kStep, typename Visit>
-SPHERECHAIN_HD void for_each_figure(const Visit& visit) {
+SPHERECHAIN_HD void for_each_few_figure(const Visit& visit) {
   std::size_t pair = 0;
   SPHERECHAIN_UNROLL
   for (std::size_t k = 0; k < kBones; ++k) {
     SPHERECHAIN_UNROLL
     for (std::size_t l = k; l < kBones; ++l, ++pair) {
-      SPHERECHAIN_UNROLL
-      for (std::size_t column = kFirst; column < 4; column += kStep) {
-        SPHERECHAIN_UNROLL
-        for (std::size_t row = 0; row < rows_of_moment(k == l, column); ++row) {
-          visit(pair, k, l, row, column);
-        }
-      }
+      for_each_figure<kFirst, kStep>(k == l,
+                                     [&](std::size_t row, std::size_t column) { visit(pair, k, l, row, column); });
     }
   }
 }
 
-// A bone's Gram matrix with itself, without the figures below the diagonal. Their moments are 0, and to leave them out
-// changes no radius: the sign of a sum of zeros does not matter, and where a figure below the diagonal is not finite,
-// its twin above is not either.
-SPHERECHAIN_HD Gram gram_of(const Matrix& a) {
-  Gram out;
-  for_each_figure<1, 0, 1>([&](std::size_t, std::size_t, std::size_t, std::size_t row, std::size_t column) {
-    out.at[row][column] = gram_at(a, a, row, column);
-    make_once(out.at[row][column]);
-  });
-  return out;
-}
-
-SPHERECHAIN_HD void add_self_moment(const Float4* quads, const Gram& gram, MomentSums& sums) {
-  Figures moment(quads);
-  for_each_figure<1, 0, 1>([&](std::size_t, std::size_t, std::size_t, std::size_t row, std::size_t column) {
-    sums.at[row][column] = fused(moment.next(), gram.at[row][column], sums.at[row][column]);
-  });
+template <std::size_t kBones>
+SPHERECHAIN_HD void load_matrices_of(const Shared& shared, std::uint32_t lane, const std::uint32_t* bones,
+                                     Matrix (&matrices)[kBones]) {
+  SPHERECHAIN_UNROLL
+  for (std::size_t k = 0; k < kBones; ++k) {
+    matrices[k] = matrix_at(shared, lane, bones[k]);
+  }
 }
 
 // Holds some columns of the Gram matrices of few bones in registers and goes through the spheres. Calls take(sphere,
@@ -161,11 +152,8 @@ SPHERECHAIN_HD void add_columns(const Shared& shared, std::uint32_t lane, const 
   Gram grams[pairs_of_bones(kBones)];
   {
     Matrix matrices[kBones];
-    SPHERECHAIN_UNROLL
-    for (std::size_t k = 0; k < kBones; ++k) {
-      matrices[k] = matrix_at(shared, lane, bones[k]);
-    }
-    for_each_figure<kBones, kFirst, kStep>(
+    load_matrices_of(shared, lane, bones, matrices);
+    for_each_few_figure<kBones, kFirst, kStep>(
         [&](std::size_t pair, std::size_t k, std::size_t l, std::size_t row, std::size_t column) {
           float& figure = grams[pair].at[row][column] = gram_at(matrices[k], matrices[l], row, column);
           make_once(figure);
@@ -174,9 +162,8 @@ SPHERECHAIN_HD void add_columns(const Shared& shared, std::uint32_t lane, const 
   SPHERECHAIN_ONE_BY_ONE
   for (std::uint32_t s = 0; s < sphere_count; ++s, quads += few_bone_quads(kBones, kFirst, kStep)) {
     MomentSums sums;
-    clear(sums.at);
     Figures moment(quads);
-    for_each_figure<kBones, kFirst, kStep>(
+    for_each_few_figure<kBones, kFirst, kStep>(
         [&](std::size_t pair, std::size_t, std::size_t, std::size_t row, std::size_t column) {
           float& sum = sums.at[row][column];
           sum = fused(moment.next(), grams[pair].at[row][column], sum);
@@ -189,14 +176,10 @@ template <std::size_t kBones>
 SPHERECHAIN_HD void add_few_centers(const Shared& shared, std::uint32_t lane, const std::uint32_t* bones,
                                     const Float4* terms, const RunSphere* spheres, std::uint32_t sphere_count) {
   Matrix matrices[kBones];
-  SPHERECHAIN_UNROLL
-  for (std::size_t k = 0; k < kBones; ++k) {
-    matrices[k] = matrix_at(shared, lane, bones[k]);
-  }
+  load_matrices_of(shared, lane, bones, matrices);
   SPHERECHAIN_ONE_BY_ONE
   for (std::uint32_t s = 0; s < sphere_count; ++s, terms += kBones) {
     CenterSums sums;
-    clear(sums.at);
     SPHERECHAIN_UNROLL
     for (std::size_t k = 0; k < kBones; ++k) {
       add_center(matrices[k], terms[k], sums);
@@ -238,27 +221,22 @@ SPHERECHAIN_HD void add_pairs(const GroupView& v, const Shared& shared, std::uin
   const std::uint32_t* steps = v.moment_steps + run.first_step;
   const Float4* quads = v.moments + run.first_moment;
   std::uint32_t step = 0;
-  do {
-    step = *steps++;
-    const Matrix a = matrix_at(shared, lane, step);
-    const Gram self = gram_of(a);
+  const auto add = [&](const Gram& gram, bool is_self) {
     SPHERECHAIN_UNROLL
     for (std::uint32_t s = 0; s < kRunSpheres; ++s) {
       if ((step >> s & 1U) != 0) {
-        add_self_moment(quads, self, sums[s]);
-        quads += few_bone_quads(1, 0, 1);
+        add_moment(quads, gram, is_self, sums[s]);
+        quads += is_self ? few_bone_quads(1, 0, 1) : kPairQuads;
       }
     }
+  };
+  do {
+    step = *steps++;
+    const Matrix a = matrix_at(shared, lane, step);
+    add(gram_of(a, a, true), true);
     while ((step & kLastOfBone) == 0) {
       step = *steps++;
-      const Gram both = gram_of(a, matrix_at(shared, lane, step));
-      SPHERECHAIN_UNROLL
-      for (std::uint32_t s = 0; s < kRunSpheres; ++s) {
-        if ((step >> s & 1U) != 0) {
-          add_pair_moment(quads, both, sums[s]);
-          quads += kPairQuads;
-        }
-      }
+      add(gram_of(a, matrix_at(shared, lane, step), false), false);
     }
   } while ((step & kLastOfRun) == 0);
 }
@@ -284,15 +262,11 @@ SPHERECHAIN_HD void refit_run(const GroupView& v, const Shared& shared, std::uin
   float spreads[kRunSpheres];
   {
     MomentSums sums[kRunSpheres];
-    clear(sums[0].at);
-    clear(sums[1].at);
     add_pairs(v, shared, lane, run, sums);
     spreads[0] = spread_of(tree(sums[0]));
     spreads[1] = spread_of(tree(sums[1]));
   }
   CenterSums centers[kRunSpheres];
-  clear(centers[0].at);
-  clear(centers[1].at);
   add_bones(v, shared, lane, run, centers);
   const RunSphere* spheres = v.run_spheres + run.first_sphere;
   SPHERECHAIN_UNROLL

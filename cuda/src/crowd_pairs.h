@@ -58,16 +58,25 @@ SPHERECHAIN_HD bool touch(const Float4& p, const Float4& q, float scale) {
   return ((dx * dx + dy * dy) + dz * dz) < t * t && squared <= FLT_MAX;
 }
 
-SPHERECHAIN_HD void report(const GroupView& v, const Shared& shared, std::uint32_t lane, std::uint32_t a,
-                           std::uint32_t b) {
-  add_to(&shared.counts[lane], 1U);
+// Of the pair a < b. `pitch`: from one half word to the next.
+SPHERECHAIN_HD void set_pair_bits(const GroupView& v, const Shared& shared, std::uint32_t a, std::uint32_t b,
+                                  std::uint32_t pitch, std::uint32_t column) {
   if (v.bits != nullptr) {
     const std::uint32_t bit = b * (b - 1) / 2 + a;
-    set_bits(&shared.bits[bit / 32 * kPitch + lane], 1U << (bit % 32));
+    set_bits(&shared.bits[bit / 32 * pitch + column], 1U << (bit % 32));
   }
   if (v.pairs != nullptr) {
     const std::uint32_t bit = a * (2 * v.sphere_count - a - 1) / 2 + (b - a - 1);
-    set_bits(&shared.ordered_bits[bit / 32 * kPitch + lane], 1U << (bit % 32));
+    set_bits(&shared.ordered_bits[bit / 32 * pitch + column], 1U << (bit % 32));
+  }
+}
+
+SPHERECHAIN_HD void decide(const GroupView& v, const Shared& shared, std::uint32_t lane, const Pair& pair,
+                           float scale) {
+  const Float4 p = shared.spheres[pair.a * kPitch + lane], q = shared.spheres[pair.b * kPitch + lane];
+  if (touch(p, q, scale)) {
+    add_to(&shared.counts[lane], 1U);
+    set_pair_bits(v, shared, pair.a, pair.b, kPitch, lane);
   }
 }
 
@@ -80,17 +89,6 @@ struct Corner {
 SPHERECHAIN_HD Pair pair_of_bit(const Corner& corner, std::uint32_t half, std::uint32_t bit) {
   const std::uint32_t at = kHalfItem - 1 - bit;
   return {corner.row + at % kRows, corner.column + at / kRows + half * kHalfColumns};
-}
-
-SPHERECHAIN_HD void decide(const GroupView& v, const Shared& shared, std::uint32_t lane, const Pair& pair) {
-  const Float4 p = shared.spheres[pair.a * kPitch + lane], q = shared.spheres[pair.b * kPitch + lane];
-  if (touch(p, q, 1.0F)) {
-    report(v, shared, lane, pair.a, pair.b);
-  }
-}
-
-SPHERECHAIN_HD std::uint32_t queue_entry(std::uint32_t lane, const Pair& pair) {
-  return (pair.b * kQueuedSpheresMax + pair.a) * kLanes + lane;
 }
 
 // Puts a lane's candidates into the queue, for a few lanes have most of them and all lanes share the queue. Decides at
@@ -108,9 +106,9 @@ SPHERECHAIN_HD void queue_candidates(const GroupView& v, const Shared& shared, s
     for (std::uint32_t& left = candidates[half]; left != 0; left &= left - 1, ++place) {
       const Pair pair = pair_of_bit(corner, half, lowest_bit(left));
       if (place < kBlockQueued) {
-        shared.queue[place] = queue_entry(lane, pair);
+        shared.queue[place] = (pair.b * kQueuedSpheresMax + pair.a) * kLanes + lane;
       } else {
-        decide(v, shared, lane, pair);
+        decide(v, shared, lane, pair, 1.0F);
       }
     }
   }
@@ -171,9 +169,7 @@ SPHERECHAIN_HD void test_pairs(const GroupView& v, const Shared& shared, const P
     place = deal(&shared.dealt[1], at, round);
     for (std::uint32_t i = first; i < end; ++i) {
       const RestPairItem& pair = v.rest_pairs[i];
-      if (touch(shared.spheres[pair.a * kPitch + lane], shared.spheres[pair.b * kPitch + lane], pair.rest_scale)) {
-        report(v, shared, lane, pair.a, pair.b);
-      }
+      decide(v, shared, lane, {pair.a, pair.b}, pair.rest_scale);
     }
   }
 }
@@ -184,7 +180,7 @@ SPHERECHAIN_HD void decide_queued(const GroupView& v, const Shared& shared, cons
   SPHERECHAIN_ONE_BY_ONE
   for (std::uint32_t i = at.thread; i < count; i += at.threads) {
     const std::uint32_t entry = shared.queue[i], pair = entry / kLanes;
-    decide(v, shared, entry % kLanes, {pair % kQueuedSpheresMax, pair / kQueuedSpheresMax});
+    decide(v, shared, entry % kLanes, {pair % kQueuedSpheresMax, pair / kQueuedSpheresMax}, 1.0F);
   }
 }
 

@@ -4,8 +4,10 @@
 
 #include <tuple>
 
+#include "crowd_launch.h"
 #include "crowd_units.h"
 #include "pairs/filter.h"
+#include "pose/pose.h"
 
 namespace spherechain::cuda {
 namespace {
@@ -27,25 +29,14 @@ struct WantedPairs {
 };
 
 bool is_rest_pair(Span<const RestPair> rest, std::uint32_t a, std::uint32_t b) {
-  const auto before = [](const RestPair& pair, const Pair& at) { return Pair{pair.a, pair.b} < at; };
-  const RestPair* found = std::lower_bound(rest.begin(), rest.end(), Pair{a, b}, before);
-  return found != rest.end() && found->a == a && found->b == b;
+  const auto before = [](const RestPair& l, const RestPair& r) { return Pair{l.a, l.b} < Pair{r.a, r.b}; };
+  return std::binary_search(rest.begin(), rest.end(), RestPair{a, b, 0}, before);
 }
 
 // For either radius.
 std::uint32_t rest_pairs_max(const AssetView& asset) {
   return lanes_of(static_cast<std::uint32_t>(
       std::max(asset.rest_pairs(SC_RADIUS_FIT).size, asset.rest_pairs(SC_RADIUS_DETECT).size)));
-}
-
-std::uint32_t fill_rest_pairs(const WantedPairs& wanted, Span<const RestPair> rest, RestPairItem* out) {
-  std::uint32_t count = 0;
-  for (const RestPair& pair : rest) {
-    if (wanted(pair.a, pair.b)) {
-      out[count++] = {pair.a, pair.b, pair.rest_scale, 0};
-    }
-  }
-  return count;
 }
 
 // Every block of rows with all columns past its first.
@@ -99,8 +90,6 @@ std::uint32_t fill_items(std::uint32_t n, PairItem* out, const Wanted& wanted) {
   return count;
 }
 
-std::size_t unit_words(std::size_t n) { return words_of_units(units_of(static_cast<std::uint32_t>(n))); }
-
 // The places of the units, and for each lane which of their pairs it tests: those of two spheres a < b that exist.
 template <typename Wanted>
 void fill_units(std::uint32_t n, std::uint32_t* places, std::uint32_t* words, const Wanted& wanted) {
@@ -140,19 +129,14 @@ std::uint32_t middle_sphere(Span<const RestSphere> spheres) {
 }
 
 Status check(const Asset& asset, Radius radius, const Filter* filter, const std::uint64_t* words, std::size_t count) {
-  if (!view_of(asset).is_open()) {
-    return refuse(SC_NOT_OPEN, SC_FIELD_ASSET);
-  }
-  if (radius != SC_RADIUS_FIT && radius != SC_RADIUS_DETECT) {
-    return refuse(SC_BAD_VALUE, SC_FIELD_RADIUS);
-  }
-  if (words == nullptr || reinterpret_cast<std::uintptr_t>(words) % alignof(Float4) != 0) {
-    return refuse(words == nullptr ? SC_NULL : SC_MISALIGNED, SC_FIELD_TABLE);
-  }
-  if (count < crowd_table_words(asset)) {
-    return refuse(SC_TOO_SMALL, SC_FIELD_TABLE);
-  }
-  return filter != nullptr ? check_filter(view_of(asset), *filter) : done();
+  const Status status = first_of({
+      {!view_of(asset).is_open(), SC_NOT_OPEN, SC_FIELD_ASSET},
+      {!is_radius(radius), SC_BAD_VALUE, SC_FIELD_RADIUS},
+      {words == nullptr, SC_NULL, SC_FIELD_TABLE},
+      {reinterpret_cast<std::uintptr_t>(words) % alignof(Float4) != 0, SC_MISALIGNED, SC_FIELD_TABLE},
+      {count < crowd_table_words(asset), SC_TOO_SMALL, SC_FIELD_TABLE},
+  });
+  return status == SC_OK && filter != nullptr ? check_filter(view_of(asset), *filter) : status;
 }
 
 // Without memory only counts its words.
@@ -166,8 +150,9 @@ void fill(const AssetView& asset, Radius radius, const Filter* filter, TableMemo
   auto* const paddings = memory.take<float>(n, header.paddings);
   auto* const rest_pairs = memory.take<RestPairItem>(rest_pairs_max(asset), header.rest_pairs);
   auto* const items = memory.take<PairItem>(items_max(n), header.items);
-  auto* const unit_places = memory.take<std::uint32_t>(unit_words(n) * kWordUnits, header.unit_places);
-  auto* const unit_pairs = memory.take<std::uint32_t>(unit_words(n) * kLanes, header.wanted);
+  const std::size_t unit_words = words_of_units(units_of(n));
+  auto* const unit_places = memory.take<std::uint32_t>(unit_words * kWordUnits, header.unit_places);
+  auto* const unit_pairs = memory.take<std::uint32_t>(unit_words * kLanes, header.wanted);
   if (memory.is_null()) {
     return;
   }
@@ -182,7 +167,11 @@ void fill(const AssetView& asset, Radius radius, const Filter* filter, TableMemo
   const WantedPairs wanted(asset, filter);
   const Span<const RestPair> rest = asset.rest_pairs(radius);
   const auto is_tested = [&](auto a, auto b) { return wanted(a, b) && !is_rest_pair(rest, a, b); };
-  header.rest_pair_count = fill_rest_pairs(wanted, rest, rest_pairs);
+  for (const RestPair& pair : rest) {
+    if (wanted(pair.a, pair.b)) {
+      rest_pairs[header.rest_pair_count++] = {pair.a, pair.b, pair.rest_scale, 0};
+    }
+  }
   header.item_count = fill_items(n, items, is_tested);
   fill_units(n, unit_places, unit_pairs, is_tested);
 }

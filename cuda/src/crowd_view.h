@@ -80,8 +80,8 @@ struct alignas(16) MomentRun {
   std::uint32_t first_step, first_moment;  // the first of this run in each array
   std::uint32_t first_bone, first_center;
   std::uint32_t first_sphere, sphere_count;
-  std::uint32_t bone_count, kind;
-  std::uint32_t cost;
+  std::uint32_t bone_count, kind, cost;
+  std::uint32_t unused[3] = {};
 };
 // The kinds of runs: many spheres of the same two bones, or of the same three; one or two spheres of any bones.
 inline constexpr std::uint32_t kTwoBones = 0, kThreeBones = 1, kAnyBones = 2;
@@ -134,26 +134,30 @@ struct TableHeader : TableFigures {
   std::uint32_t used_bones, runs, run_spheres, moment_steps, moments, run_bones, center_terms;
 };
 
-// A matrix has row i, column k at data[row * i + column * k].
-struct MatrixSteps {
-  std::uint32_t row, column;
-};
-
 // Pairs that a block (from bones) or a warp (from spheres) may queue before it decides about them. A block's entry has
 // 32 bits for lane and pair: assets of more spheres have no queue.
 inline constexpr std::uint32_t kBlockQueued = 1024, kWarpQueued = 256, kQueuedSpheresMax = 8192;
 SPHERECHAIN_HD bool has_queue(std::uint32_t sphere_count) { return sphere_count <= kQueuedSpheresMax; }
 
-// Offsets in bytes. The matrices are no longer needed when pairs are tested: bits and queue lie in the same place.
-struct BlockLayout {
-  // From bones: from the start of the block's memory.
-  std::uint32_t matrices, reference, powers, bits, ordered_bits, queue, spheres, counts, dealt, parts;
-  // From spheres: from the start of a warp's part, which has `warp_size` bytes.
-  std::uint32_t warp_size, warp_seen, warp_powers, warp_bits, warp_ordered_bits, warp_parts, warp_spheres;
-  std::size_t size;
+// Where an array lies in a block's memory.
+template <typename T>
+struct Offset {
+  std::uint32_t bytes;
+  SPHERECHAIN_HD T* in(unsigned char* memory) const { return reinterpret_cast<T*>(memory + bytes); }
 };
 
-// A group as the kernels read it.
+// From bones: the parts of the block's memory; from spheres: those of a warp's share of it, which has `warp_size`
+// bytes. The matrices are no longer needed when pairs are tested: powers, bits and queue lie in the same place.
+struct BlockLayout {
+  Offset<Float4> matrices, spheres;
+  Offset<float> reference, powers, seen;
+  Offset<std::uint32_t> bits, ordered_bits, counts, queue, dealt, parts;
+  Offset<std::uint64_t> start;
+  std::uint32_t warp_size;
+  std::size_t size;  // of a block
+};
+
+// A group as the kernels read it. Its instance_stride is never 0.
 struct GroupView : TableFigures, CrowdGroup {
   // The arrays of the table's copy on the device.
   const float* paddings;
@@ -169,12 +173,10 @@ struct GroupView : TableFigures, CrowdGroup {
   const RunSphere* run_spheres;
   const Float4* center_terms;
 
-  std::uint32_t instances;                     // instance_count
-  std::size_t sphere_stride;                   // entries from one instance to the next
   std::uint32_t bone_floats, instance_floats;  // from one matrix, one instance to the next
-  MatrixSteps steps;
-  bool wide_matrices;  // whose rows are read 16 bytes at a time
-  bool in_scratch;     // the block's memory is not shared memory
+  std::uint32_t row_step, column_step;         // a matrix has row i, column k at data[row_step * i + column_step * k]
+  bool wide_matrices;                          // whose rows are read 16 bytes at a time
+  bool in_scratch;                             // the block's memory is not shared memory
 
   std::uint32_t scratch_blocks;  // that run at once and take the group's blocks in turns
   std::uint32_t first_block;
@@ -186,21 +188,21 @@ SPHERECHAIN_HD std::uint32_t block_instances(const GroupView& v) {
 }
 
 SPHERECHAIN_HD std::uint32_t blocks_of(const GroupView& v) {
-  return (v.instances + block_instances(v) - 1) / block_instances(v);
+  return (static_cast<std::uint32_t>(v.instance_count) + block_instances(v) - 1) / block_instances(v);
 }
 
-SPHERECHAIN_HD std::uint32_t half_words(const GroupView& v) { return 2 * v.bit_words; }
+SPHERECHAIN_HD std::uint32_t half_words(const TableFigures& t) { return 2 * t.bit_words; }
 
 // An item has eight rows and columns, also where there are fewer spheres.
-SPHERECHAIN_HD std::uint32_t sphere_places(const GroupView& v) {
-  return v.sphere_count < kColumns ? kColumns : v.sphere_count;
+SPHERECHAIN_HD std::uint32_t sphere_places(const TableFigures& t) {
+  return t.sphere_count < kColumns ? kColumns : t.sphere_count;
 }
 
 // Rounded up, so that all lanes of a warp take as many.
 SPHERECHAIN_HD std::uint32_t lanes_of(std::uint32_t count) { return (count + kLanes - 1) / kLanes * kLanes; }
 
 // The pitch of WarpInstance::seen: no two lanes that read at once share a bank.
-SPHERECHAIN_HD std::uint32_t seen_pitch(const GroupView& v) { return lanes_of(v.sphere_count) + kUnit / 2; }
+SPHERECHAIN_HD std::uint32_t seen_pitch(const TableFigures& t) { return lanes_of(t.sphere_count) + kUnit / 2; }
 
 // A thread of a block. If instances come from bones, a lane is one of them and the warps share the work; if they come
 // as spheres, a warp is one of them and its lanes share the work.
@@ -212,34 +214,25 @@ struct Place {
   SPHERECHAIN_HD std::uint32_t warps() const { return threads / kLanes; }
 };
 
-// A block's memory: shared memory, or a part of the group's scratch.
+// A block's memory: shared memory, or a part of the group's scratch. For instances that come as spheres: a warp's
+// share, where arrays have a single column; see WarpInstance.
 struct Shared {
   unsigned char* bytes;
-  Float4* matrices;             // [3 * bone + row][lane]
-  float* reference;             // [axis][lane]: where the reference bone has the origin
-  Float4* spheres;              // [sphere][lane], with the filter's padding
-  float* powers;                // [sphere][lane], see power_of()
-  std::uint32_t* bits;          // [half word][lane]
-  std::uint32_t* ordered_bits;  // the same in the order of sorted pairs
-  std::uint32_t* counts;        // [lane]
-  std::uint32_t* queue;         // see queue_entry()
-  std::uint32_t* dealt;         // runs dealt, then pair items; and the length of the queue
-  std::uint64_t* start;         // the block's place in the list
-  std::uint32_t* parts;         // [warp][lane]: pairs in each warp's part of the ordered bits
+  const BlockLayout& layout;
+  Float4* matrices = layout.matrices.in(bytes);                 // [3 * bone + row][lane]
+  float* reference = layout.reference.in(bytes);                // [axis][lane]: where the reference bone has the origin
+  Float4* spheres = layout.spheres.in(bytes);                   // [sphere][lane], with the filter's padding
+  float* powers = layout.powers.in(bytes);                      // [sphere][lane], see power_of()
+  std::uint32_t* bits = layout.bits.in(bytes);                  // [half word][lane]
+  std::uint32_t* ordered_bits = layout.ordered_bits.in(bytes);  // the same in the order of sorted pairs
+  std::uint32_t* counts = layout.counts.in(bytes);              // [lane]
+  std::uint32_t* queue = layout.queue.in(bytes);                // see queue_candidates()
+  std::uint32_t* dealt = layout.dealt.in(bytes);                // runs, then pair items; and the length of the queue
+  std::uint64_t* start = layout.start.in(bytes);                // the block's place in the list
+  std::uint32_t* parts = layout.parts.in(bytes);                // [warp][lane]: pairs in the warps' ordered bits
 
-  SPHERECHAIN_HD Shared(void* memory, const BlockLayout& layout) : bytes(static_cast<unsigned char*>(memory)) {
-    matrices = reinterpret_cast<Float4*>(bytes + layout.matrices);
-    reference = reinterpret_cast<float*>(bytes + layout.reference);
-    spheres = reinterpret_cast<Float4*>(bytes + layout.spheres);
-    powers = reinterpret_cast<float*>(bytes + layout.powers);
-    bits = reinterpret_cast<std::uint32_t*>(bytes + layout.bits);
-    ordered_bits = reinterpret_cast<std::uint32_t*>(bytes + layout.ordered_bits);
-    counts = reinterpret_cast<std::uint32_t*>(bytes + layout.counts);
-    queue = reinterpret_cast<std::uint32_t*>(bytes + layout.queue);
-    dealt = reinterpret_cast<std::uint32_t*>(bytes + layout.dealt);
-    start = reinterpret_cast<std::uint64_t*>(bytes + layout.parts);
-    parts = reinterpret_cast<std::uint32_t*>(bytes + layout.parts) + 4;
-  }
+  SPHERECHAIN_HD Shared(void* memory, const BlockLayout& layout_)
+      : bytes(static_cast<unsigned char*>(memory)), layout(layout_) {}
 };
 
 struct alignas(16) WarpState {
@@ -248,30 +241,18 @@ struct alignas(16) WarpState {
   std::uint32_t queue[kWarpQueued];  // (unit * kLanePairs + pair) * kLanes + lane
 };
 
-// The instance that a warp tests, its part of the block's memory, and the lane. For instances that come as spheres.
-struct WarpInstance {
-  WarpState* state;
-  float* seen;    // [x, y, z, power][place_of(sphere)], see see_sphere()
-  float* powers;  // [pair of spheres][first, second, first, second]
-  std::uint32_t* bits;
-  std::uint32_t* ordered_bits;  // the same in the order of sorted pairs
-  std::uint32_t* parts;         // [lane]: pairs in each lane's part of the ordered bits
-  Float4* spheres;
+// For instances that come as spheres: the one that a warp tests, and the lane. `powers` are [pair of spheres][first,
+// second, first, second], `parts` [lane].
+struct WarpInstance : Shared {
+  WarpState* state = reinterpret_cast<WarpState*>(bytes);
+  float* seen = layout.seen.in(bytes);  // [x, y, z, power][place_of(sphere)], see see_sphere()
   std::uint32_t lane, instance;
 
   // `place`: the instance's in its block.
-  SPHERECHAIN_HD WarpInstance(const GroupView& v, const Shared& shared, const Place& at, std::uint32_t place)
-      : lane(at.lane()), instance(at.block * kSphereInstances + place) {
-    const BlockLayout& layout = v.layout;
-    unsigned char* const bytes = shared.bytes + at.warp() * layout.warp_size;
-    state = reinterpret_cast<WarpState*>(bytes);
-    seen = reinterpret_cast<float*>(bytes + layout.warp_seen);
-    powers = reinterpret_cast<float*>(bytes + layout.warp_powers);
-    bits = reinterpret_cast<std::uint32_t*>(bytes + layout.warp_bits);
-    ordered_bits = reinterpret_cast<std::uint32_t*>(bytes + layout.warp_ordered_bits);
-    parts = reinterpret_cast<std::uint32_t*>(bytes + layout.warp_parts);
-    spheres = reinterpret_cast<Float4*>(bytes + layout.warp_spheres);
-  }
+  SPHERECHAIN_HD WarpInstance(const Shared& block, const Place& at, std::uint32_t place)
+      : Shared(block.bytes + at.warp() * block.layout.warp_size, block.layout),
+        lane(at.lane()),
+        instance(at.block * kSphereInstances + place) {}
 };
 
 }  // namespace spherechain::cuda

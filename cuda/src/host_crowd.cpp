@@ -33,8 +33,9 @@ class Array {
     size_ = status == SC_OK ? size : 0;
     return status;
   }
-  Status put(const T* from, std::size_t count) {
-    return status_of(cudaMemcpy(data_, from, count * sizeof(T), cudaMemcpyHostToDevice));
+  Status assign(const T* from, std::size_t count) {
+    const Status status = reserve(count);
+    return status != SC_OK ? status : status_of(cudaMemcpy(data_, from, count * sizeof(T), cudaMemcpyHostToDevice));
   }
   Status get(T* to, std::size_t count) const {
     return count == 0 || to == nullptr ? done()
@@ -67,12 +68,35 @@ struct HostCrowd::Memory {
     }
   }
 
-  Status allocate_on_device(std::size_t instances, std::size_t pair_capacity);
-  Status allocate_scratch(std::size_t instances);
+  // Only for assets too large for the device's shared memory: two blocks a multiprocessor, but at most 1 GiB if that is
+  // enough for one.
+  Status allocate_scratch(std::size_t instances) {
+    constexpr std::size_t kBytesMax = std::size_t{1} << 30;
+    DeviceLimits limits{};
+    const Status status = find_limits(limits);
+    const std::size_t block = crowd_block_bytes(table(), true, false, true);
+    if (status != SC_OK || block <= limits.shared_bytes_max) {
+      return status;
+    }
+    const std::size_t useful = std::min(2 * limits.multiprocessors, (instances + kLanes - 1) / kLanes);
+    return scratch.reserve(block * std::clamp<std::size_t>(kBytesMax / block, 1, std::max<std::size_t>(useful, 1)));
+  }
 
-  std::vector<std::uint64_t> words;  // one more than the table has, for its alignment
-  std::uint64_t* table = nullptr;
-  Array<std::uint64_t> device_table, starts, pair_count;
+  Status allocate_on_device(std::size_t instances, std::size_t pair_capacity) {
+    return first_failure(
+        [&] { return check_device(); }, [&] { return device_table.assign(host_table.data(), host_table.size()); },
+        [&] { return spheres.reserve(instances * header_of(table()).sphere_count); },
+        [&] { return counts.reserve(instances); }, [&] { return starts.reserve(instances); },
+        [&] { return pair_count.reserve(1); }, [&] { return pairs.reserve(pair_capacity); },
+        [&] { return allocate_scratch(instances); }, [&] { return status_of(cudaEventCreate(&begin)); },
+        [&] { return status_of(cudaEventCreate(&end)); });
+  }
+
+  std::uint64_t* table() { return reinterpret_cast<std::uint64_t*>(host_table.data()); }
+
+  std::vector<Float4> host_table;  // two words each
+  Array<Float4> device_table;
+  Array<std::uint64_t> starts, pair_count;
   Array<float> matrices;
   Array<Sphere> spheres;
   Array<std::uint32_t> counts;
@@ -84,30 +108,6 @@ struct HostCrowd::Memory {
   std::vector<std::uint32_t> host_counts;
   std::vector<CrowdPair> host_pairs;
 };
-
-Status HostCrowd::Memory::allocate_on_device(std::size_t instances, std::size_t pair_capacity) {
-  return first_failure([&] { return check_device(); }, [&] { return device_table.reserve(words.size() - 1); },
-                       [&] { return device_table.put(table, words.size() - 1); },
-                       [&] { return spheres.reserve(instances * header_of(table).sphere_count); },
-                       [&] { return counts.reserve(instances); }, [&] { return starts.reserve(instances); },
-                       [&] { return pair_count.reserve(1); }, [&] { return pairs.reserve(pair_capacity); },
-                       [&] { return allocate_scratch(instances); }, [&] { return status_of(cudaEventCreate(&begin)); },
-                       [&] { return status_of(cudaEventCreate(&end)); });
-}
-
-// Only for assets too large for the device's shared memory: two blocks a multiprocessor, but at most 1 GiB if that is
-// enough for one.
-Status HostCrowd::Memory::allocate_scratch(std::size_t instances) {
-  constexpr std::size_t kBytesMax = std::size_t{1} << 30;
-  DeviceLimits limits{};
-  const Status status = find_limits(limits);
-  const std::size_t block = crowd_block_bytes(table, true, false, true);
-  if (status != SC_OK || block <= limits.shared_bytes_max) {
-    return status;
-  }
-  const std::size_t useful = std::min(2 * limits.multiprocessors, (instances + kLanes - 1) / kLanes);
-  return scratch.reserve(block * std::clamp<std::size_t>(kBytesMax / block, 1, std::max<std::size_t>(useful, 1)));
-}
 
 void HostCrowd::close() noexcept {
   delete memory_;
@@ -123,9 +123,8 @@ Status HostCrowd::open(const Asset& asset, Radius radius, const Filter* filter, 
   Status status = done();
   try {
     memory_ = new Memory;
-    memory_->words.resize(crowd_table_words(asset) + 1);
-    memory_->table = memory_->words.data() + reinterpret_cast<std::uintptr_t>(memory_->words.data()) % 16 / 8;
-    status = prepare_crowd(asset, radius, filter, memory_->table, memory_->words.size() - 1);
+    memory_->host_table.resize(crowd_table_words(asset) / 2);
+    status = prepare_crowd(asset, radius, filter, memory_->table(), 2 * memory_->host_table.size());
     memory_->host_starts.resize(instances);
     memory_->host_counts.resize(instances);
     memory_->host_pairs.resize(pair_capacity);
@@ -133,8 +132,8 @@ Status HostCrowd::open(const Asset& asset, Radius radius, const Filter* filter, 
     status = refuse(SC_NO_MEMORY, SC_FIELD_NONE);
   }
   if (status == SC_OK) {
-    status = header_of(memory_->table).bone_count == 0 ? refuse(SC_NOT_IN_ASSET, SC_FIELD_BONES)
-                                                       : memory_->allocate_on_device(instances, pair_capacity);
+    status = header_of(memory_->table()).bone_count == 0 ? refuse(SC_NOT_IN_ASSET, SC_FIELD_BONES)
+                                                         : memory_->allocate_on_device(instances, pair_capacity);
   }
   if (status != SC_OK) {
     close();
@@ -148,18 +147,18 @@ Status HostCrowd::run() noexcept {
     return refuse(SC_NOT_OPEN, SC_FIELD_NONE);
   }
   Memory& m = *memory_;
-  if (instance_count > m.host_counts.size()) {
-    return refuse(SC_BAD_VALUE, SC_FIELD_INSTANCES);
-  }
-  if (pose.bones == nullptr && instance_count > 0) {
-    return refuse(SC_NULL, SC_FIELD_BONES);
-  }
   if (instance_count == 0) {
     return done();
   }
+  if (instance_count > m.host_counts.size()) {
+    return refuse(SC_BAD_VALUE, SC_FIELD_INSTANCES);
+  }
+  if (pose.bones == nullptr) {
+    return refuse(SC_NULL, SC_FIELD_BONES);
+  }
   CrowdGroup group;
-  group.table = m.table;
-  group.device_table = m.device_table.data();
+  group.table = m.table();
+  group.device_table = reinterpret_cast<const std::uint64_t*>(m.device_table.data());
   group.instance_count = instance_count;
   group.pose = pose;
   group.instance_stride = instance_stride;
@@ -175,12 +174,12 @@ Status HostCrowd::run() noexcept {
   if (const Status refused = view_group(group, checked); refused != SC_OK) {
     return refused;
   }
-  const TableHeader& header = header_of(m.table);
+  const TableHeader& header = header_of(m.table());
   const std::size_t floats = (instance_count - 1) * checked.instance_floats +
                              ((header.bone_count - 1) * bone_stride(pose) + size_of(pose.bone_layout)) / sizeof(float);
   std::uint64_t found = 0;
   const Status status = first_failure(
-      [&] { return m.matrices.reserve(floats); }, [&] { return m.matrices.put(pose.bones, floats); },
+      [&] { return m.matrices.assign(pose.bones, floats); },
       [&] {
         group.pose.bones = m.matrices.data();
         return status_of(cudaEventRecord(m.begin));

@@ -25,9 +25,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kRepetitions = 201;         // at most
-constexpr double kSeconds = 0.2;                  // for one method on one animation, about
-constexpr double kLong = 5'000, kSlow = 100'000;  // microseconds: see Pace
+constexpr std::size_t kRepetitions = 201;  // at most
+constexpr double kSeconds = 0.2;           // for one method on one animation, about
+constexpr double kSlow = 100'000;          // microseconds: see step_of()
 constexpr std::size_t kSlowStep = 20;
 constexpr int kFailed = 1, kPairsDiffer = 2;  // exit codes
 constexpr const char* kAnimations = "arms and legs, 40 frames each";
@@ -47,12 +47,8 @@ struct CpuTimed {
 };
 constexpr CpuTimed kCpuMethods[] = {{"cpu_m1", CpuMethod::kM1}, {"cpu_m2", CpuMethod::kM2}};
 
-// How a method is timed. Where it takes long, a launch gives all its times at once; where it is slow, on few frames.
-struct Pace {
-  bool at_once = false;
-  std::size_t step = 1;  // every which frame
-};
-Pace pace_of(double microseconds) { return {microseconds > kLong, microseconds > kSlow ? kSlowStep : 1}; }
+// A method is timed on every which frame: on few where it is slow.
+std::size_t step_of(double microseconds) { return microseconds > kSlow ? kSlowStep : 1; }
 
 double microseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
@@ -129,7 +125,7 @@ struct Contestant {
   std::unique_ptr<PaperCase> paper_case;
   std::vector<Expected> expected;  // an animation each
   std::unique_ptr<cuda_paper::Runner> runner;
-  Pace paces[std::size(kGpuMethods)];
+  std::size_t steps[std::size(kGpuMethods)];
   std::size_t compared = 0;  // frames times kernels
 };
 
@@ -144,9 +140,9 @@ int compare(Contestant& contestant) {
       if (a == 0) {
         const auto start = Clock::now();
         contestant.runner->pairs(method.kernel, animation.frames[0].data());
-        contestant.paces[m] = pace_of(microseconds_since(start));
+        contestant.steps[m] = step_of(microseconds_since(start));
       }
-      for (std::size_t i = 0; i < animation.frames.size(); i += contestant.paces[m].step) {
+      for (std::size_t i = 0; i < animation.frames.size(); i += contestant.steps[m]) {
         const auto found = contestant.runner->pairs(method.kernel, animation.frames[i].data());
         const auto& expected = contestant.expected[a].of(method.same_pairs, i);
         ++contestant.compared;
@@ -327,19 +323,16 @@ void time(Contestant& contestant, Report& report) {
   for (std::size_t a = 0; a < paper_case.animations.size(); ++a) {
     const PaperAnimation& animation = paper_case.animations[a];
     const std::size_t count = animation.frames.size();
-    const auto gpu = [&](Kernel kernel, const Pace& pace) {
-      return repeat(count, pace.step, [&](std::size_t frame) {
-        const Sphere* spheres = animation.frames[frame].data();
-        return pace.at_once ? contestant.runner->time_at_once(kernel, spheres)
-                            : contestant.runner->time(kernel, spheres);
-      });
+    const auto gpu = [&](Kernel kernel, std::size_t step) {
+      return repeat(count, step,
+                    [&](std::size_t frame) { return contestant.runner->time(kernel, animation.frames[frame].data()); });
     };
     report.add(
-        paper_case, animation, "gpu_empty", gpu(Kernel::kEmpty, {}), [](std::size_t) { return std::size_t{0}; }, true);
+        paper_case, animation, "gpu_empty", gpu(Kernel::kEmpty, 1), [](std::size_t) { return std::size_t{0}; }, true);
     for (std::size_t m = 0; m < std::size(kGpuMethods); ++m) {
       const GpuMethod& method = kGpuMethods[m];
       report.add(
-          paper_case, animation, method.key, gpu(method.kernel, contestant.paces[m]),
+          paper_case, animation, method.key, gpu(method.kernel, contestant.steps[m]),
           [&](std::size_t f) { return contestant.expected[a].of(method.same_pairs, f).size(); }, true);
     }
     CpuRunner cpu(paper_case);
@@ -347,10 +340,10 @@ void time(Contestant& contestant, Report& report) {
       for (const std::size_t frame : {std::size_t{0}, count - 1}) {
         cpu.pairs(timed.method, animation.frames[frame]);
       }
-      const Pace pace = pace_of(cpu.time(timed.method, animation.frames[0]));
+      const std::size_t step = step_of(cpu.time(timed.method, animation.frames[0]));
       report.add(
           paper_case, animation, timed.key,
-          repeat(count, pace.step,
+          repeat(count, step,
                  [&](std::size_t frame) {
                    return cuda_paper::Times{cpu.time(timed.method, animation.frames[frame]), 0, 0};
                  }),

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "paper_tables.h"
+#include "paper_threads.h"
 #include "posed_asset.h"
 #include "spherechain/detect.h"
 #include "split_spheres.h"

@@ -38,10 +38,9 @@ struct RunStep {
   void for_instances(const cuda::GroupView& v, const cuda::Shared& shared, const Steps&... steps) const {
     for (std::uint32_t first = 0; first < cuda::kSphereInstances; first += kThreads / cuda::kLanes) {
       const auto run_for_warp = [&](const auto& step) {
-        if (!step.is_wanted) return;
         (*this)([&](const cuda::Place& at) {
           const std::uint32_t place = first + at.warp();
-          if (place < cuda::instances_in(v, at)) step.run(cuda::WarpInstance(v, shared, at, place));
+          if (place < cuda::instances_in(v, at)) step(cuda::WarpInstance(shared, at, place));
         });
       };
       (run_for_warp(steps), ...);

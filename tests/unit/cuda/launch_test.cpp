@@ -30,7 +30,7 @@ TEST_CASE("groups go to shared memory where it is large enough, and else to as m
   const std::size_t block = [&] {  // without bits
     cuda::GroupView view;
     REQUIRE(cuda::view_group(groups[1].group, view) == SC_OK);
-    return cuda::layout_of(view).size;
+    return view.layout.size;
   }();
   std::vector<cuda::CrowdGroup> all;
   for (Group& one : groups) {
@@ -54,12 +54,12 @@ TEST_CASE("groups go to shared memory where it is large enough, and else to as m
   CHECK(plan[Kernel::kScratch].views[1].first_block == 3);
   CHECK(plan[Kernel::kScratch].blocks == 6);
   CHECK(plan[Kernel::kScratch].views[0].in_scratch);
-  views.views[1].instances = 1;  // as of an asset of more spheres than a block's places reach, with scratch for it
+  views.views[1].instance_count = 1;  // as of an asset of more spheres than a block's places reach, with scratch for it
   views.views[1].sphere_count = 60000;
   views.views[1].bit_words = 60000U * 59999U / 128 + 1;
   views.views[1].bits = reinterpret_cast<std::uint64_t*>(groups[1].memory);
   views.views[1].pose.bones = reinterpret_cast<const float*>(groups[1].memory);
-  const cuda::BlockLayout largest = views.views[1].layout = cuda::layout_of(views.views[1]);
+  const cuda::BlockLayout largest = views.views[1].layout = cuda::layout_of(views.views[1], {true, true, false});
   views.views[1].scratch_bytes = ~std::size_t{0};
   CHECK(largest.size > std::size_t{4} << 30);
   CHECK(cuda::plan_launches(views, block, plan) == SC_DEVICE_TOO_SMALL);

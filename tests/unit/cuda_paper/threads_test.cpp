@@ -8,7 +8,7 @@
 #include <limits>
 #include <numeric>
 
-#include "paper_tables.h"
+#include "paper_threads.h"
 #include "tiny_asset.h"
 
 namespace spherechain::test {
@@ -131,7 +131,8 @@ TEST_CASE("where the last bit decides, the paper's threads decide as plain loops
     const auto place = [&] { return Sphere{uniform(random, 0, 1), uniform(random, 0, 1), uniform(random, 0, 1), 0}; };
     const Sphere p = place();
     Sphere q = place();
-    q.radius = std::sqrt(cuda_paper::squared_distance(p, q));
+    const float dx = p.x - q.x, dy = p.y - q.y, dz = p.z - q.z;
+    q.radius = std::sqrt((dx * dx + dy * dy) + dz * dz);
     const float next = std::nextafter(q.radius, 2.0F);
     for (const float radius : {q.radius, next}) {
       q.radius = radius;
