@@ -35,11 +35,24 @@ inline BoneMatrices matrices_of(const Pose& pose) {
   out.column = by_rows ? 1 : pose.bone_layout == SC_COLUMNS_4X4 ? 4 : 3;
   return out;
 }
-inline std::size_t vertex_stride(const Pose& pose) { return pose.vertex_stride == 0 ? 12 : pose.vertex_stride; }
 
-// Whether the pose's bones, or its vertices, are what a job of this open asset needs.
+inline constexpr std::size_t kPackedVertex = 3 * sizeof(float);
+inline std::size_t vertex_stride(const Pose& pose) {  // bytes
+  return pose.vertex_stride == 0 ? kPackedVertex : pose.vertex_stride;
+}
+inline const float* vertex_at(const float* positions, std::size_t index, std::size_t stride) {
+  return positions + index * (stride / sizeof(float));
+}
+
+// Whether matrices can be read: their pointer, layout and stride, not their number.
+Status check_matrices(const Pose& pose);
+// Whether the pose's bones and morph weights are what a job of this open asset needs.
 Status check_bones(const AssetView& asset, const Pose& pose);
-Status check_vertices(const AssetView& asset, const Pose& pose);
+// Whether the pose has `wanted` vertices, or the asset's.
+Status check_vertices(const Pose& pose, std::size_t wanted);
+inline Status check_vertices(const AssetView& asset, const Pose& pose) {
+  return check_vertices(pose, asset.vertex_count());
+}
 
 // What is read of a checked pose.
 MemoryRange range_of_bones(const AssetView& asset, const Pose& pose);
