@@ -2,12 +2,21 @@
 // The caller's buffer for a sentence that says what is wrong with an asset.
 #pragma once
 
+#include <cinttypes>
 #include <cstdarg>
 #include <cstddef>
+#include <cstdint>
 #include <cstdio>
+#include <initializer_list>
 
 namespace spherechain {
 
+struct Rule {
+  bool holds;
+  const char *field, *fault;  // what Message::wrong_at() says where it does not
+};
+
+// Every function returns false, or whether its check holds: a check can end with it.
 class Message {
  public:
   Message(char* buffer, std::size_t size) noexcept : buffer_(buffer), size_(buffer == nullptr ? 0 : size) {
@@ -16,7 +25,7 @@ class Message {
     }
   }
 
-  // Writes the sentence, cut to the buffer. Returns false so that a check can end with it.
+  // Writes the sentence, cut to the buffer.
 #if defined(__GNUC__)
   __attribute__((format(printf, 2, 3)))
 #endif
@@ -27,6 +36,33 @@ class Message {
     std::vsnprintf(buffer_, size_, format, arguments);
     va_end(arguments);
     return false;
+  }
+
+  // About entry i of a table, or a field of it: ".radius".
+  bool wrong_at(const char* table, std::uint64_t i, const char* field, const char* what) noexcept {
+    return wrong("%s[%" PRIu64 "]%s: %s", table, i, field, what);
+  }
+  bool wrong_at(const char* table, std::uint64_t i, const char* what) noexcept { return wrong_at(table, i, "", what); }
+
+  // Checks entry i of a table.
+  bool all_hold(const char* table, std::uint64_t i, std::initializer_list<Rule> rules) noexcept {
+    for (const Rule& rule : rules) {
+      if (!rule.holds) {
+        return wrong_at(table, i, rule.field, rule.fault);
+      }
+    }
+    return true;
+  }
+
+  // Entry i of a table names a thing by its number, of which there are `count`.
+  bool past_end(const char* table, std::uint64_t i, const char* field, std::uint32_t value, std::size_t count,
+                const char* things) noexcept {
+    return wrong("%s[%" PRIu64 "]%s: %" PRIu32 " is past the %zu %s", table, i, field, value, count, things);
+  }
+
+  // Checks how many entries a table has.
+  bool has_size(const char* table, std::uint64_t size, std::uint64_t wanted, const char* things) noexcept {
+    return size == wanted || wrong("%s: %" PRIu64 " of them, but %" PRIu64 " %s", table, size, wanted, things);
   }
 
  private:
