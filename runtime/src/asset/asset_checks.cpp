@@ -123,18 +123,25 @@ class AssetChecker {
   }
 
   bool check_figures(const RestSphere& sphere, std::size_t i) {
-    return message_.all_hold(
-        "spheres", i,
-        {
-            {is_finite(sphere.center), ".center", "not finite"},
-            {is_above_0(sphere.radius), ".radius", "not a finite number above 0"},
-            {is_at_least_0(sphere.detect_radius), ".detect_radius", "not a finite number of at least 0"},
-            {is_above_0(sphere.pivot_spread), ".pivot_spread", "not a finite number above 0"},
-            {sphere.pivot_count > 0, ".pivot_count", "0, but a sphere needs a pivot"},
-            {sphere.side <= SC_SIDE_RIGHT, ".side", "no known side"},
-            {sphere.level >= -1, ".level", "below -1"},
-            {sphere.reserved == 0, ".reserved", "not 0"},
-        });
+    const struct {
+      bool holds;
+      const char *field, *fault;
+    } rules[] = {
+        {is_finite(sphere.center), ".center", "not finite"},
+        {is_above_0(sphere.radius), ".radius", "not a finite number above 0"},
+        {is_at_least_0(sphere.detect_radius), ".detect_radius", "not a finite number of at least 0"},
+        {is_above_0(sphere.pivot_spread), ".pivot_spread", "not a finite number above 0"},
+        {sphere.pivot_count > 0, ".pivot_count", "0, but a sphere needs a pivot"},
+        {sphere.side <= SC_SIDE_RIGHT, ".side", "no known side"},
+        {sphere.level >= -1, ".level", "below -1"},
+        {sphere.reserved == 0, ".reserved", "not 0"},
+    };
+    for (const auto& rule : rules) {
+      if (!rule.holds) {
+        return message_.wrong_at("spheres", i, rule.field, rule.fault);
+      }
+    }
+    return true;
   }
 
   bool check_spheres() {
@@ -226,14 +233,14 @@ class AssetChecker {
       if (pair.b >= count) {
         return message_.past_end(name, i, ".b", pair.b, count, "spheres");
       }
-      const float scale = pairs[i].rest_scale;
-      if (!message_.all_hold(name, i,
-                             {
-                                 {pair.a < pair.b, "", "a is not below b"},
-                                 {scale >= 0.0F && scale < 1.0F, "", "scale is not in [0, 1)"},
-                                 {before < pair, "", "not sorted, or there twice"},  // the first is above (0, 0)
-                             })) {
-        return false;
+      if (pair.a >= pair.b) {
+        return message_.wrong_at(name, i, "a is not below b");
+      }
+      if (!(pairs[i].rest_scale >= 0.0F && pairs[i].rest_scale < 1.0F)) {
+        return message_.wrong_at(name, i, "scale is not in [0, 1)");
+      }
+      if (!(before < pair)) {  // the first is above (0, 0)
+        return message_.wrong_at(name, i, "not sorted, or there twice");
       }
       before = pair;
     }

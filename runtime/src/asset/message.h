@@ -7,14 +7,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
-#include <initializer_list>
 
 namespace spherechain {
-
-struct Rule {
-  bool holds;
-  const char *field, *fault;  // what Message::wrong_at() says where it does not
-};
 
 // Every function returns false, or whether its check holds: a check can end with it.
 class Message {
@@ -43,16 +37,6 @@ class Message {
     return wrong("%s[%" PRIu64 "]%s: %s", table, i, field, what);
   }
   bool wrong_at(const char* table, std::uint64_t i, const char* what) noexcept { return wrong_at(table, i, "", what); }
-
-  // Checks entry i of a table.
-  bool all_hold(const char* table, std::uint64_t i, std::initializer_list<Rule> rules) noexcept {
-    for (const Rule& rule : rules) {
-      if (!rule.holds) {
-        return wrong_at(table, i, rule.field, rule.fault);
-      }
-    }
-    return true;
-  }
 
   // Entry i of a table names a thing by its number, of which there are `count`.
   bool past_end(const char* table, std::uint64_t i, const char* field, std::uint32_t value, std::size_t count,

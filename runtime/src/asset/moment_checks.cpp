@@ -6,18 +6,13 @@
 namespace spherechain {
 namespace {
 
-constexpr std::uint32_t pairs_of_bones(std::uint32_t count) { return count * (count + 1) / 2; }
-
 // A bone's own moment is symmetric, and stored upper triangular.
 bool is_upper(const float* m) { return m[4] == 0 && m[8] == 0 && m[9] == 0 && m[12] == 0 && m[13] == 0 && m[14] == 0; }
 
 class MomentChecker {
  public:
   MomentChecker(const AssetView& asset, Message& message)
-      : tables_(asset.moment_tables()),
-        sphere_count_(asset.spheres().size),
-        bone_count_(asset.bone_count()),
-        message_(message) {}
+      : tables_(asset.moment_tables()), asset_(asset), message_(message) {}
 
   bool run() {
     return check_reference() && check_batches() && check_pairs() && check_spheres() && check_sizes() &&
@@ -26,8 +21,9 @@ class MomentChecker {
 
  private:
   bool check_reference() {
-    return tables_.reference < bone_count_ ||
-           message_.wrong("moments.reference: %" PRIu32 " is past the %zu bones", tables_.reference, bone_count_);
+    return tables_.reference < asset_.bone_count() ||
+           message_.wrong("moments.reference: %" PRIu32 " is past the %zu bones", tables_.reference,
+                          asset_.bone_count());
   }
 
   bool check_batches() {
@@ -45,7 +41,7 @@ class MomentChecker {
       spheres_used += batch.sphere_count;
     }
     return message_.has_size("moments.pairs", tables_.pairs.size, pairs_used, "in the batches") &&
-           message_.has_size("moments.spheres", tables_.spheres.size, sphere_count_, "in the asset") &&
+           message_.has_size("moments.spheres", tables_.spheres.size, asset_.spheres().size, "in the asset") &&
            message_.has_size("moments.spheres", tables_.spheres.size, spheres_used, "in the batches");
   }
 
@@ -55,8 +51,8 @@ class MomentChecker {
       Pair before{};
       for (const std::size_t first = i; i < first + batch.pair_count; ++i) {
         const Pair pair{tables_.pairs[i].a, tables_.pairs[i].b};
-        if (pair.b >= bone_count_) {
-          return message_.past_end("moments.pairs", i, ".b", pair.b, bone_count_, "bones");
+        if (pair.b >= asset_.bone_count()) {
+          return message_.past_end("moments.pairs", i, ".b", pair.b, asset_.bone_count(), "bones");
         }
         if (pair.a > pair.b) {
           return message_.wrong_at("moments.pairs", i, "a is above b");
@@ -72,10 +68,10 @@ class MomentChecker {
 
   bool check_spheres() {
     std::bitset<kMaxSphereCount> seen;
-    for (std::size_t i = 0; i < sphere_count_; ++i) {
+    for (std::size_t i = 0; i < asset_.spheres().size; ++i) {
       const std::uint32_t sphere = tables_.spheres[i];
-      if (sphere >= sphere_count_) {
-        return message_.past_end("moments.spheres", i, "", sphere, sphere_count_, "spheres");
+      if (sphere >= asset_.spheres().size) {
+        return message_.past_end("moments.spheres", i, "", sphere, asset_.spheres().size, "spheres");
       }
       if (seen[sphere]) {
         return message_.wrong("moments.spheres[%zu]: %" PRIu32 " is there already", i, sphere);
@@ -86,17 +82,17 @@ class MomentChecker {
   }
 
   bool check_sizes() {
-    if (!message_.has_size("moments.bone_counts", tables_.bone_counts.size, sphere_count_, "spheres")) {
+    if (!message_.has_size("moments.bone_counts", tables_.bone_counts.size, asset_.spheres().size, "spheres")) {
       return false;
     }
     std::uint64_t bones_used = 0, pairs_used = 0;
-    for (std::size_t i = 0; i < sphere_count_; ++i) {
+    for (std::size_t i = 0; i < asset_.spheres().size; ++i) {
       const std::uint32_t count = tables_.bone_counts[i];
       if (count == 0 || count > kMaxMomentBones) {
         return message_.wrong("moments.bone_counts[%zu]: %" PRIu32 " is not 1 to %zu", i, count, kMaxMomentBones);
       }
       bones_used += count;
-      pairs_used += pairs_of_bones(count);
+      pairs_used += count * (count + 1) / 2;
     }
     const char* const of_pairs = "pairs of the spheres' bones";
     return message_.has_size("moments.bones", tables_.bones.size, bones_used, "in bone_counts") &&
@@ -131,8 +127,8 @@ class MomentChecker {
 
   bool check_bone(std::size_t k, bool is_first) {
     const std::uint32_t bone = tables_.bones[k];
-    if (bone >= bone_count_) {
-      return message_.past_end("moments.bones", k, "", bone, bone_count_, "bones");
+    if (bone >= asset_.bone_count()) {
+      return message_.past_end("moments.bones", k, "", bone, asset_.bone_count(), "bones");
     }
     if (!is_first && bone <= tables_.bones[k - 1]) {
       return message_.wrong_at("moments.bones", k, "not above the one before it");
@@ -157,7 +153,7 @@ class MomentChecker {
   }
 
   const MomentTables& tables_;
-  const std::size_t sphere_count_, bone_count_;
+  const AssetView& asset_;
   Message& message_;
 };
 

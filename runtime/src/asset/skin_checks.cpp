@@ -29,12 +29,7 @@ bool lanes_are_valid(const Lanes& lanes, std::size_t used, std::size_t first_len
 class SkinChecker {
  public:
   SkinChecker(const AssetView& asset, SkinSizes& sizes, Message& message)
-      : asset_(asset),
-        skin_(asset.skin()),
-        bone_count_(asset.bone_count()),
-        source_triangle_count_(asset.info().triangle_count),
-        sizes_(sizes),
-        message_(message) {}
+      : asset_(asset), skin_(asset.skin()), sizes_(sizes), message_(message) {}
 
   bool run() {
     return check_vertices() && check_influences() && check_morphs() && check_clusters() && check_parts() &&
@@ -98,7 +93,7 @@ class SkinChecker {
     std::size_t left_out = 0;
     for (std::size_t v = 0; v < sizes_.vertices; ++v) {
       const unsigned stored = skin_.influence_counts[v], count = stored & ~unsigned{kOneWeightLeftOut};
-      if ((count > 0) != (bone_count_ > 0) || (count == 0 && stored != 0)) {
+      if ((count > 0) != (asset_.bone_count() > 0) || (count == 0 && stored != 0)) {
         return message_.wrong_at("skin.influence_counts", v, "no bone moves it, or there is none");
       }
       sizes_.influences += count;
@@ -109,7 +104,7 @@ class SkinChecker {
                              "that the vertices have") &&
            (std::all_of(weights.begin(), weights.end(), [](float w) { return w >= 0 && w <= 1; }) ||
             message_.wrong("skin.influence_weights: one is not from 0 to 1")) &&
-           check_stream(skin_.influence_bones, sizes_.influences, bone_count_, "skin.influence_bones");
+           check_stream(skin_.influence_bones, sizes_.influences, asset_.bone_count(), "skin.influence_bones");
   }
 
   std::uint32_t morphs_of(std::uint32_t vertex) const {
@@ -165,7 +160,7 @@ class SkinChecker {
   bool check_cluster(std::size_t c, Stream& vertices, Stream& bones) {
     const PackedCluster& cluster = skin_.clusters[c];
     if (cluster.vertex_count == 0 || cluster.vertex_count > kMaxClusterVertices ||
-        (cluster.bone_count > 0) != (bone_count_ > 0)) {
+        (cluster.bone_count > 0) != (asset_.bone_count() > 0)) {
       return message_.wrong_at("skin.clusters", c, "its vertex_count is not 1 to 192, or its bones are none");
     }
     if (3 * (sizes_.triangles + cluster.triangle_count) > skin_.corners.size) {
@@ -179,7 +174,7 @@ class SkinChecker {
     if (!check_corners(cluster) ||
         !check_run(vertices, cluster.vertex_count, sizes_.vertices, "skin.cluster_vertices", sizes_.cluster_vertices,
                    count_morphs) ||
-        !check_run(bones, cluster.bone_count, bone_count_, "skin.cluster_bones", sizes_.cluster_bones,
+        !check_run(bones, cluster.bone_count, asset_.bone_count(), "skin.cluster_bones", sizes_.cluster_bones,
                    [](std::uint32_t) {})) {
       return false;
     }
@@ -213,7 +208,7 @@ class SkinChecker {
     return message_.has_size("skin.clusters", clusters.size, c, "that spheres have") &&
            message_.has_size("skin.corners", skin_.corners.size, 3 * sizes_.triangles, "that the triangles have") &&
            ends(vertices, "skin.cluster_vertices") && ends(bones, "skin.cluster_bones") &&
-           check_stream(skin_.triangles, sizes_.triangles, source_triangle_count_, "skin.triangles");
+           check_stream(skin_.triangles, sizes_.triangles, asset_.info().triangle_count, "skin.triangles");
   }
 
   bool check_parts() {
@@ -258,7 +253,7 @@ class SkinChecker {
 
   bool check_bounds() {
     const std::size_t groups = (skin_.clusters.size + kClusterLanes - 1) / kClusterLanes;
-    const std::size_t moving_groups = bone_count_ == 0 ? 0 : groups;
+    const std::size_t moving_groups = asset_.bone_count() == 0 ? 0 : groups;
     const std::size_t morphing_groups = skin_.bounds_morph_counts.size == 0 ? 0 : groups;
     if (!message_.has_size("skin.boxes", skin_.boxes.size, groups, "groups of clusters") ||
         !message_.has_size("skin.bounds_term_counts", skin_.bounds_term_counts.size, moving_groups,
@@ -277,7 +272,7 @@ class SkinChecker {
       }
     }
     return check_groups(skin_.bounds_term_counts, "skin.bounds_term_counts", skin_.bounds_term_bones,
-                        "skin.bounds_term_bones", bone_count_, skin_.bounds_terms, 0) &&
+                        "skin.bounds_term_bones", asset_.bone_count(), skin_.bounds_terms, 0) &&
            check_groups(skin_.bounds_morph_counts, "skin.bounds_morph_counts", skin_.bounds_morph_targets,
                         "skin.bounds_morph_targets", asset_.morph_count(), skin_.bounds_morphs, 3);
   }
@@ -285,15 +280,12 @@ class SkinChecker {
   bool check_hull(std::size_t s) {
     const PackedHull& hull = skin_.hulls[s];
     const bool has_clusters = asset_.spheres()[s].triangle_count > 0;
-    const bool fits = (hull.bone_count > 0) == has_clusters && (hull.point_count > 0) == has_clusters &&
-                      hull.point_count % kHullLanes == 0;
-    const bool is_sound = is_finite(hull.center) && is_at_least_0(hull.radius) && is_at_least_0(hull.slack);
-    if (!message_.all_hold("skin.hulls", s,
-                           {
-                               {fits, "", "its counts are not those of a sphere with, or without triangles"},
-                               {is_sound, "", "its center, radius or slack is not finite, or below 0"},
-                           })) {
-      return false;
+    if ((hull.bone_count > 0) != has_clusters || (hull.point_count > 0) != has_clusters ||
+        hull.point_count % kHullLanes != 0) {
+      return message_.wrong_at("skin.hulls", s, "its counts are not those of a sphere with, or without triangles");
+    }
+    if (!is_finite(hull.center) || !is_at_least_0(hull.radius) || !is_at_least_0(hull.slack)) {
+      return message_.wrong_at("skin.hulls", s, "its center, radius or slack is not finite, or below 0");
     }
     std::size_t& i = sizes_.hull_bones;
     for (const std::size_t end = i + hull.bone_count; i < end; ++i) {
@@ -301,8 +293,8 @@ class SkinChecker {
         return message_.wrong_at("skin.hull_bones", i, "missing");
       }
       const HullBone& bone = skin_.hull_bones[i];
-      if (bone.bone >= bone_count_ || !is_at_least_0(bone.x) || !is_at_least_0(bone.y) || !is_at_least_0(bone.z) ||
-          !is_at_least_0(bone.w)) {
+      if (bone.bone >= asset_.bone_count() || !is_at_least_0(bone.x) || !is_at_least_0(bone.y) ||
+          !is_at_least_0(bone.z) || !is_at_least_0(bone.w)) {
         return message_.wrong_at("skin.hull_bones", i, "past the bones, or a figure of it is not finite, or below 0");
       }
     }
@@ -313,7 +305,7 @@ class SkinChecker {
 
   bool check_hulls() {
     sizes_.hulls = skin_.hulls.size;
-    if (!message_.has_size("skin.hulls", sizes_.hulls, bone_count_ == 0 ? 0 : asset_.spheres().size,
+    if (!message_.has_size("skin.hulls", sizes_.hulls, asset_.bone_count() == 0 ? 0 : asset_.spheres().size,
                            "spheres that move")) {
       return false;
     }
@@ -327,7 +319,7 @@ class SkinChecker {
   }
 
   bool check_rest_contacts() {
-    return check_pairs(skin_.rest_contacts, source_triangle_count_, "skin.rest_contacts",
+    return check_pairs(skin_.rest_contacts, asset_.info().triangle_count, "skin.rest_contacts",
                        "a is not below b, or not sorted", sizes_.rest_contacts,
                        [](const Pair& before, const Pair& pair) { return pair.a < pair.b && before < pair; });
   }
@@ -339,7 +331,6 @@ class SkinChecker {
 
   const AssetView& asset_;
   const SkinData& skin_;
-  const std::size_t bone_count_, source_triangle_count_;
   SkinSizes& sizes_;
   Message& message_;
 };

@@ -1,17 +1,11 @@
 // SPDX-License-Identifier: MIT
 #include "asset/status.h"
 
-#include <cstddef>
+#include <utility>
 
 namespace {
 
-template <typename Value>
-struct Text {
-  Value value;
-  const char* text;
-};
-
-constexpr Text<sc_code> kCodeTexts[] = {
+constexpr std::pair<sc_code, const char*> kCodeTexts[] = {
     {SC_OK, "done"},
     {SC_OVERFLOW, "too small for what there is"},
     {SC_NULL, "null"},
@@ -36,7 +30,7 @@ constexpr Text<sc_code> kCodeTexts[] = {
     {SC_DEVICE_TOO_SMALL, "the asset does not fit into the memory that the CUDA device has for a block"},
 };
 
-constexpr Text<sc_field> kFieldNames[] = {
+constexpr std::pair<sc_field, const char*> kFieldNames[] = {
     {SC_FIELD_NONE, ""},
     {SC_FIELD_ASSET, "asset"},
     {SC_FIELD_DATA, "data"},
@@ -71,11 +65,11 @@ constexpr Text<sc_field> kFieldNames[] = {
     {SC_FIELD_SKIN_TABLE, "skin_table"},
 };
 
-template <typename Value, std::size_t kCount>
-const char* text_of(const Text<Value> (&texts)[kCount], Value value, const char* unknown) {
-  for (const Text<Value>& entry : texts) {
-    if (entry.value == value) {
-      return entry.text;
+template <typename Texts, typename Value>
+const char* text_of(const Texts& texts, Value value, const char* unknown) {
+  for (const auto& [known, text] : texts) {
+    if (known == value) {
+      return text;
     }
   }
   return unknown;

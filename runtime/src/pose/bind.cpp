@@ -121,7 +121,7 @@ sc_status sc_gather_bones(const sc_asset* asset, const uint32_t* joint_of_bone, 
   if (sc_asset_is_open(asset) == 0) {
     return refuse(asset == nullptr ? SC_NULL : SC_NOT_OPEN, SC_FIELD_ASSET);
   }
-  if (palette == nullptr || joint_of_bone == nullptr || bones == nullptr) {
+  if (palette == nullptr || palette->bones == nullptr || joint_of_bone == nullptr || bones == nullptr) {
     return refuse(SC_NULL, bones == nullptr           ? SC_FIELD_OUTPUT
                            : joint_of_bone == nullptr ? SC_FIELD_JOINTS
                                                       : SC_FIELD_BONES);

@@ -27,13 +27,9 @@ inline std::size_t bone_stride(const Pose& pose) {  // bytes
   return pose.bone_stride == 0 ? size_of(pose.bone_layout) : pose.bone_stride;
 }
 inline BoneMatrices matrices_of(const Pose& pose) {
-  BoneMatrices out;
-  out.data = pose.bones;
-  out.stride = bone_stride(pose) / sizeof(float);
   const bool by_rows = pose.bone_layout == SC_ROWS_3X4 || pose.bone_layout == SC_ROWS_4X4;
-  out.row = by_rows ? 4 : 1;
-  out.column = by_rows ? 1 : pose.bone_layout == SC_COLUMNS_4X4 ? 4 : 3;
-  return out;
+  const std::size_t column = by_rows ? 1 : pose.bone_layout == SC_COLUMNS_4X4 ? 4 : 3;
+  return {pose.bones, bone_stride(pose) / sizeof(float), by_rows ? std::size_t{4} : 1, column};
 }
 
 inline constexpr std::size_t kPackedVertex = 3 * sizeof(float);
