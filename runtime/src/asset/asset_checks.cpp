@@ -21,7 +21,7 @@ schema::Vec3 cross(const schema::Vec3& a, const schema::Vec3& b) {
   return {a.y() * b.z() - a.z() * b.y(), a.z() * b.x() - a.x() * b.z(), a.x() * b.y() - a.y() * b.x()};
 }
 
-// What is wrong with a struct in a table, which FlatBuffers takes for optional; null: nothing.
+// What is wrong with a struct in a table; null: nothing. FlatBuffers lets such structs be missing.
 template <typename Floats>
 const char* fault_of(const Floats* value) {
   return value == nullptr ? "missing" : is_finite(*value) ? nullptr : "not finite";
@@ -82,7 +82,7 @@ class AssetChecker {
            message_.wrong("frame: left, up and forward are not orthonormal and right-handed");
   }
 
-  // The verifier only sees to the alignment of the array's length.
+  // FlatBuffers' verifier checks the alignment of the array's length only.
   template <typename T>
   bool is_aligned(Span<const T> values, const char* name) {
     return values.size == 0 || !any_misaligned(values.data) ||

@@ -18,7 +18,7 @@ namespace spherechain {
 bool values_are_valid(const schema::Asset& root, const AssetView& asset, std::size_t size, SkinSizes& sizes,
                       Message& message);
 
-// Its parts that see to refit by moments, and to the skin. The spheres, bones and parts are valid already.
+// The same for the tables of refit by moments, and for the skin. Spheres, bones and parts must be valid already.
 bool moment_values_are_valid(const AssetView& asset, Message& message);
 bool skin_values_are_valid(const AssetView& asset, SkinSizes& sizes, Message& message);
 

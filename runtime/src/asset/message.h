@@ -10,7 +10,7 @@
 
 namespace spherechain {
 
-// Every function returns false, or whether its check holds: a check can end with it.
+// Its functions return false, so that a check can end with one; has_size() is a check itself.
 class Message {
  public:
   Message(char* buffer, std::size_t size) noexcept : buffer_(buffer), size_(buffer == nullptr ? 0 : size) {

@@ -11,7 +11,7 @@ using Numbers = Span<const std::uint32_t>;
 // The tables expand to at most this many entries each: a packed file must not ask for a giant table.
 constexpr std::uint64_t kMaxEntries = std::uint64_t{1} << 31;
 
-// Whether the used lanes are finite, those of the rows from `first_length` on at least 0, and the spare lanes 0.
+// Rows of eight lanes: those in use are finite, and at least 0 from row `first_length` on; the spare ones are 0.
 template <typename Lanes>
 bool lanes_are_valid(const Lanes& lanes, std::size_t used, std::size_t first_length) {
   const auto* row = reinterpret_cast<const float*>(&lanes);
@@ -25,7 +25,7 @@ bool lanes_are_valid(const Lanes& lanes, std::size_t used, std::size_t first_len
   return true;
 }
 
-// What is checked, one table after another; `sizes` grows on the way.
+// Checks one table after another and adds up what they expand to.
 class SkinChecker {
  public:
   SkinChecker(const AssetView& asset, SkinSizes& sizes, Message& message)
@@ -58,7 +58,8 @@ class SkinChecker {
     return ends(stream, name);
   }
 
-  // A stream of pairs of numbers below `limit`; `may_follow` has the pair before, at first (0, 0), and the pair.
+  // A stream of pairs of numbers below `limit`. `may_follow` gets the pair before, which is (0, 0) at first, and the
+  // pair.
   template <typename MayFollow>
   bool check_pairs(Bytes bytes, std::size_t limit, const char* name, const char* fault, std::size_t& count,
                    const MayFollow& may_follow) {
@@ -141,7 +142,7 @@ class SkinChecker {
     return true;
   }
 
-  // The next `count` numbers of a stream, of which `first` are taken: ascending and below `limit`. `use` has each.
+  // The next `count` numbers of a stream ascend and are below `limit`. Number `first` comes next; `use` gets each.
   template <typename Use>
   bool check_run(Stream& stream, std::uint32_t count, std::size_t limit, const char* name, std::uint64_t first,
                  const Use& use) {
@@ -230,7 +231,8 @@ class SkinChecker {
     return std::min(kClusterLanes, skin_.clusters.size - kClusterLanes * group);
   }
 
-  // A group's entries each, one group after another, that name bones or morph targets.
+  // Each group's entries follow those of the group before. An entry has the number of a bone or morph target, ascending
+  // in the group, and its lanes.
   template <typename Lanes>
   bool check_groups(Numbers counts, const char* counts_name, Numbers names, const char* names_name, std::size_t limit,
                     Span<const Lanes> lanes, std::size_t first_length) {
