@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What an open asset tells.
-#include <cstring>
+// The views of an asset's bytes, and what an open asset tells.
+#include <type_traits>
 
 #include "asset/asset_view.h"
 #include "sphere_chains_generated.h"
@@ -8,28 +8,107 @@
 namespace spherechain {
 namespace {
 
-const schema::Asset& root_of(const void* root) { return *static_cast<const schema::Asset*>(root); }
-
 template <typename Vector>
 auto at(const Vector& vector, std::size_t i) {
   return vector.Get(static_cast<flatbuffers::uoffset_t>(i));
 }
 
-template <typename View, typename Vector>
-Span<const View> view(const Vector& vector) {
-  return {reinterpret_cast<const View*>(vector.Data()), vector.size()};
+// The views point straight into the bytes, so their structs must be the schema's: little-endian, field by field.
+static_assert(FLATBUFFERS_LITTLEENDIAN, "the asset is little-endian and used in place");
+static_assert(offsetof(Pivot, weight) == 12 && offsetof(sc_source_buffer, hash) == 16 &&
+              offsetof(RestPair, rest_scale) == 8 && offsetof(CenterTerm, w) == 12);
+static_assert(offsetof(RestSphere, pivot_spread) == 20 && offsetof(RestSphere, triangle_count) == 28 &&
+              offsetof(RestSphere, pivot_count) == 32 && offsetof(RestSphere, region) == 34 &&
+              offsetof(RestSphere, side) == 35 && offsetof(RestSphere, level) == 36);
+static_assert(offsetof(BoxLanes, radius) == 192 && offsetof(PackedCluster, bone_count) == 2 &&
+              offsetof(PackedHull, center) == 4 && offsetof(PackedHull, slack) == 20);
+
+// Empty where the asset lacks the array.
+template <typename View, typename Entry>
+Span<const View> entries_of(const flatbuffers::Vector<Entry>* entries) {
+  using Stored = std::remove_pointer_t<Entry>;
+  static_assert(std::is_standard_layout_v<View> && std::is_trivially_copyable_v<View>);
+  static_assert(sizeof(View) == sizeof(Stored) && alignof(View) == alignof(Stored));
+  return entries == nullptr ? Span<const View>{}
+                            : Span<const View>{reinterpret_cast<const View*>(entries->Data()), entries->size()};
 }
 
-Vec3 to_vec3(const schema::Vec3* v) { return {v->x(), v->y(), v->z()}; }
+// 0 where the asset lacks it.
+Vec3 to_vec3(const schema::Vec3* v) { return v == nullptr ? Vec3{} : Vec3{v->x(), v->y(), v->z()}; }
 FitError to_error(const schema::FitError* e) { return {e->mean_abs_f(), e->max_abs_f()}; }
+
+MomentTables moments_of(const schema::Moments& stored) {
+  MomentTables tables;
+  tables.origin = to_vec3(stored.origin());
+  tables.reference = stored.reference();
+  tables.batches = entries_of<MomentBatch>(stored.batches());
+  tables.pairs = entries_of<BonePair>(stored.pairs());
+  tables.spheres = entries_of<std::uint32_t>(stored.spheres());
+  tables.bone_counts = entries_of<std::uint8_t>(stored.bone_counts());
+  tables.bones = entries_of<std::uint16_t>(stored.bones());
+  tables.centers = entries_of<CenterTerm>(stored.centers());
+  tables.pair_places = entries_of<std::uint8_t>(stored.pair_places());
+  tables.moments = entries_of<Moment>(stored.moments());
+  return tables;
+}
+
+SkinData skin_of(const schema::Skin& stored) {
+  SkinData skin;
+  skin.sizes.vertices = stored.vertex_count();
+  skin.triangles = entries_of<std::uint8_t>(stored.triangles());
+  skin.cluster_vertices = entries_of<std::uint8_t>(stored.cluster_vertices());
+  skin.cluster_bones = entries_of<std::uint8_t>(stored.cluster_bones());
+  skin.sources = entries_of<std::uint8_t>(stored.sources());
+  skin.welds = entries_of<std::uint8_t>(stored.welds());
+  skin.influence_bones = entries_of<std::uint8_t>(stored.influence_bones());
+  skin.morph_counts = entries_of<std::uint16_t>(stored.morph_counts());
+  skin.rest_contacts = entries_of<std::uint8_t>(stored.rest_contacts());
+  skin.hull_points = entries_of<std::uint8_t>(stored.hull_points());
+  skin.part_runs = entries_of<std::uint8_t>(stored.part_runs());
+  skin.part_run_ends = entries_of<std::uint8_t>(stored.part_run_ends());
+  skin.corners = entries_of<std::uint8_t>(stored.corners());
+  skin.influence_counts = entries_of<std::uint8_t>(stored.influence_counts());
+  skin.clusters = entries_of<PackedCluster>(stored.clusters());
+  skin.positions = entries_of<float>(stored.positions());
+  skin.influence_weights = entries_of<float>(stored.influence_weights());
+  skin.morphs = entries_of<MorphDelta>(stored.morphs());
+  skin.boxes = entries_of<BoxLanes>(stored.boxes());
+  skin.bounds_term_counts = entries_of<std::uint32_t>(stored.bounds_term_counts());
+  skin.bounds_term_bones = entries_of<std::uint32_t>(stored.bounds_term_bones());
+  skin.bounds_morph_counts = entries_of<std::uint32_t>(stored.bounds_morph_counts());
+  skin.bounds_morph_targets = entries_of<std::uint32_t>(stored.bounds_morph_targets());
+  skin.bounds_terms = entries_of<BoundsTerm>(stored.bounds_terms());
+  skin.bounds_morphs = entries_of<BallLanes>(stored.bounds_morphs());
+  skin.hulls = entries_of<PackedHull>(stored.hulls());
+  skin.hull_bones = entries_of<HullBone>(stored.hull_bones());
+  return skin;
+}
 
 }  // namespace
 
+void AssetView::view(const schema::Asset& root) noexcept {
+  root_ = &root;
+  spheres_ = entries_of<RestSphere>(root.spheres());
+  pivots_ = entries_of<Pivot>(root.pivots());
+  ignored_ = entries_of<std::uint64_t>(root.ignored());
+  vertex_count_ = root.source()->vertex_count();
+  part_count_ = root.parts()->size();
+  bone_count_ = root.bones()->size();
+  morph_count_ = root.morphs()->size();
+  refit_rule_ = static_cast<RefitRule>(root.refit());
+  rest_fit_ = entries_of<RestPair>(root.rest_pairs_fit());
+  rest_detect_ = entries_of<RestPair>(root.rest_pairs_detect());
+  source_buffers_ = entries_of<sc_source_buffer>(root.source()->buffers());
+  if (root.moments() != nullptr) {
+    moment_tables_ = moments_of(*root.moments());
+  }
+  skin_ = skin_of(*root.skin());
+}
+
 AssetInfo AssetView::info() const noexcept {
-  const schema::Asset& root = root_of(root_);
-  const schema::Provenance& provenance = *root.provenance();
-  const schema::Source& source = *root.source();
-  const schema::Frame& frame = *root.frame();
+  const schema::Provenance& provenance = *root_->provenance();
+  const schema::Source& source = *root_->source();
+  const schema::Frame& frame = *root_->frame();
   AssetInfo info{};
   info.sphere_count = spheres_.size;
   info.bone_count = bone_count_;
@@ -56,46 +135,45 @@ AssetInfo AssetView::info() const noexcept {
 }
 
 FitErrors AssetView::fit() const noexcept {
-  const schema::Asset& root = root_of(root_);
-  return {to_error(root.fit()->phi1()), to_error(root.fit()->phi1_adjusted()), to_error(root.fit()->phi2()),
-          root.chain_entries_table1()};
+  const schema::Fit& fit = *root_->fit();
+  return {to_error(fit.phi1()), to_error(fit.phi1_adjusted()), to_error(fit.phi2()), root_->chain_entries_table1()};
 }
 
-std::size_t AssetView::region_count() const noexcept { return root_of(root_).regions()->size(); }
+std::size_t AssetView::region_count() const noexcept { return root_->regions()->size(); }
 
 RegionView AssetView::region(std::size_t i) const noexcept {
-  const schema::Region& region = *at(*root_of(root_).regions(), i);
+  const schema::Region& region = *at(*root_->regions(), i);
   return {region.name()->c_str(), region.triangle_count()};
 }
 
 BodyPart AssetView::part(std::size_t i) const noexcept {
-  const schema::Part& part = *at(*root_of(root_).parts(), i);
+  const schema::Part& part = *at(*root_->parts(), i);
   return {part.name()->c_str(), static_cast<Side>(part.side()), part.bone()};
 }
 
-std::size_t AssetView::chain_count() const noexcept { return root_of(root_).chains()->size(); }
+std::size_t AssetView::chain_count() const noexcept { return root_->chains()->size(); }
 
 ChainView AssetView::chain(std::size_t i) const noexcept {
-  const schema::Chain& chain = *at(*root_of(root_).chains(), i);
-  return {chain.name()->c_str(), view<std::uint8_t>(*chain.regions()), view<std::uint32_t>(*chain.spheres())};
+  const schema::Chain& chain = *at(*root_->chains(), i);
+  return {chain.name()->c_str(), entries_of<std::uint8_t>(chain.regions()), entries_of<std::uint32_t>(chain.spheres())};
 }
 
 std::size_t AssetView::joint_count() const noexcept {
-  const auto* joints = root_of(root_).joints();
+  const auto* joints = root_->joints();
   return joints == nullptr ? 0 : joints->size();
 }
 
 JointView AssetView::joint(std::size_t i) const noexcept {
-  const schema::Joint& joint = *at(*root_of(root_).joints(), i);
+  const schema::Joint& joint = *at(*root_->joints(), i);
   return {joint.name()->c_str(), joint.parent(), to_vec3(joint.position()), to_vec3(joint.tail())};
 }
 
 BoneView AssetView::bone(std::size_t i) const noexcept {
-  const schema::Bone& bone = *at(*root_of(root_).bones(), i);
+  const schema::Bone& bone = *at(*root_->bones(), i);
   return {bone.name()->c_str(), bone.inverse_bind()->elements()->data(), bone.is_rest()};
 }
 
-const char* AssetView::morph_name(std::size_t i) const noexcept { return at(*root_of(root_).morphs(), i)->c_str(); }
+const char* AssetView::morph_name(std::size_t i) const noexcept { return at(*root_->morphs(), i)->c_str(); }
 
 }  // namespace spherechain
 

@@ -12,6 +12,11 @@
 
 namespace spherechain {
 
+class Message;
+namespace schema {
+struct Asset;
+}
+
 inline constexpr std::uint32_t kFormatVersion = 2;
 inline constexpr std::uint32_t kMaxSphereCount = 65535, kMaxPartCount = 255;
 
@@ -74,8 +79,6 @@ struct FitErrors {
   std::uint32_t chain_entries_table1;
 };
 
-class Message;
-
 class AssetView {
  public:
   Status open(const void* data, std::size_t size, Message& message) noexcept;
@@ -110,7 +113,9 @@ class AssetView {
   const SkinData& skin() const noexcept { return skin_; }
 
  private:
-  const void* root_ = nullptr;
+  void view(const schema::Asset& root) noexcept;
+
+  const schema::Asset* root_ = nullptr;
   Span<const RestSphere> spheres_;
   Span<const Pivot> pivots_;
   Span<const std::uint64_t> ignored_;

@@ -39,13 +39,6 @@ Difference difference_of(const float* rows, const BoneMatrices& other, double he
 
 bool agrees(const Difference& d) { return d.linear <= kTolerance && d.translation <= kTolerance; }
 
-BoneMatrices matrix_at(const float* data, MatrixLayout layout) {
-  Pose pose{};
-  pose.bones = data;
-  pose.bone_layout = layout;
-  return matrices_of(pose);
-}
-
 // Where matrix `bone` of a pose takes a point.
 void move(const BoneMatrices& bones, std::size_t bone, const Vec3& p, double (&out)[3]) {
   const float* const m = bones.data + bone * bones.stride;
@@ -89,28 +82,25 @@ sc_status sc_bind_joints(const sc_asset* asset, const sc_bone* joints, size_t jo
     }
     bool is_there = false;
     Difference least{HUGE_VAL, HUGE_VAL};
-    for (std::size_t j = 0; j < joint_count && joint_of_bone[b] == SC_NO_JOINT; ++j) {
+    for (std::size_t j = 0; j < joint_count && !agrees(least); ++j) {
       if (joints[j].name == nullptr || std::strcmp(joints[j].name, bone.name) != 0) {
         continue;
       }
       is_there = true;
-      if (joints[j].inverse_bind == nullptr) {
-        joint_of_bone[b] = static_cast<std::uint32_t>(j);
-        continue;
+      Difference d{};
+      if (joints[j].inverse_bind != nullptr) {
+        if (size_of(inverse_bind_layout) == 0) {
+          sentence.wrong("inverse_bind_layout: not set, but joint \"%s\" has an inverse bind matrix", bone.name);
+          return refuse(SC_BAD_VALUE, SC_FIELD_BONE_LAYOUT);
+        }
+        d = difference_of(bone.inverse_bind, matrices_of(Pose{joints[j].inverse_bind, 1, inverse_bind_layout}), height);
       }
-      if (size_of(inverse_bind_layout) == 0) {
-        sentence.wrong("inverse_bind_layout: not set, but joint \"%s\" has an inverse bind matrix", bone.name);
-        return refuse(SC_BAD_VALUE, SC_FIELD_BONE_LAYOUT);
-      }
-      const Difference d =
-          difference_of(bone.inverse_bind, matrix_at(joints[j].inverse_bind, inverse_bind_layout), height);
-      if (agrees(d)) {
-        joint_of_bone[b] = static_cast<std::uint32_t>(j);
-      } else if (d.linear + d.translation < least.linear + least.translation) {
+      if (agrees(d) || d.linear + d.translation < least.linear + least.translation) {
         least = d;
+        joint_of_bone[b] = static_cast<std::uint32_t>(j);
       }
     }
-    if (joint_of_bone[b] != SC_NO_JOINT) {
+    if (agrees(least)) {
       continue;
     }
     if (!is_there) {
@@ -136,14 +126,12 @@ sc_status sc_gather_bones(const sc_asset* asset, const uint32_t* joint_of_bone, 
                            : joint_of_bone == nullptr ? SC_FIELD_JOINTS
                                                       : SC_FIELD_BONES);
   }
-  if (any_misaligned(palette->bones, bones)) {
-    return refuse(SC_MISALIGNED, any_misaligned(bones) ? SC_FIELD_OUTPUT : SC_FIELD_BONES);
+  if (any_misaligned(bones)) {
+    return refuse(SC_MISALIGNED, SC_FIELD_OUTPUT);
   }
-  if (size_of(palette->bone_layout) == 0) {
-    return refuse(SC_BAD_VALUE, SC_FIELD_BONE_LAYOUT);
-  }
-  if (bone_stride(*palette) < size_of(palette->bone_layout) || bone_stride(*palette) % sizeof(float) != 0) {
-    return refuse(SC_BAD_STRIDE, SC_FIELD_BONE_STRIDE);
+  const Status status = check_matrices(*palette);
+  if (status != SC_OK) {
+    return status;
   }
   const std::size_t count = view_of(*asset).bone_count();
   for (std::size_t b = 0; b < count; ++b) {

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The short way: one block of memory that holds the asset's bytes, its binding, its tables and its outputs.
+// The short way: an object that owns the asset's bytes, its binding, its tables and its outputs.
 #include "spherechain/character.h"
 
 #include <cstdlib>
 #include <cstring>
-#include <initializer_list>
 #include <new>
 
 #include "asset/message.h"
@@ -13,7 +12,8 @@
 
 struct sc_character {
   sc_asset asset;
-  void* bytes;
+  void* blocks[6];  // what the pointers below and the asset point into
+  std::size_t block_count;
   std::uint32_t* joint_of_bone;  // null: palettes come in the asset's order
   float* bones;
   std::uint64_t *skin_table, *scratch;
@@ -26,39 +26,24 @@ namespace {
 
 constexpr std::size_t kLine = 64;
 
-// Memory from a cache line on. The place that std::malloc gave stands before it.
-void* allocate(std::size_t size) {
-  void* const block = std::malloc(size + kLine + sizeof(void*));
-  if (block == nullptr) {
-    return nullptr;
-  }
-  const auto first = reinterpret_cast<std::uintptr_t>(block) + sizeof(void*);
-  void* const aligned = reinterpret_cast<void*>((first + kLine - 1) / kLine * kLine);
-  static_cast<void**>(aligned)[-1] = block;
-  return aligned;
-}
-
-void release(void* memory) {
-  if (memory != nullptr) {
-    std::free(static_cast<void**>(memory)[-1]);
-  }
-}
-
+// Room for `count` entries, from a cache line on. False where there is no memory.
 template <typename T>
-bool allocate_array(T*& out, std::size_t count) {
-  out = static_cast<T*>(allocate(count * sizeof(T)));
-  return out != nullptr;
+bool allocate(sc_character& c, T*& out, std::size_t count) {
+  void* const block = std::malloc(count * sizeof(T) + kLine);
+  c.blocks[c.block_count++] = block;
+  out = reinterpret_cast<T*>((reinterpret_cast<std::uintptr_t>(block) + kLine - 1) / kLine * kLine);
+  return block != nullptr;
 }
 
 Status fill(sc_character& c, std::uint32_t abi, const void* data, std::size_t size, const sc_bone* joints,
             std::size_t joint_count, sc_matrix_layout layout, char* message, std::size_t message_size) {
   const Status no_memory = refuse(SC_NO_MEMORY, SC_FIELD_NONE);
-  c.bytes = allocate(size);
-  if (c.bytes == nullptr) {
+  unsigned char* bytes = nullptr;
+  if (!allocate(c, bytes, size)) {
     return no_memory;
   }
-  std::memcpy(c.bytes, data, size);
-  Status status = sc_asset_open(&c.asset, abi, c.bytes, size, message, message_size);
+  std::memcpy(bytes, data, size);
+  Status status = sc_asset_open(&c.asset, abi, bytes, size, message, message_size);
   if (status != SC_OK) {
     return status;
   }
@@ -68,22 +53,17 @@ Status fill(sc_character& c, std::uint32_t abi, const void* data, std::size_t si
     Message(message, message_size).wrong("asset: it has no triangles, so there are no skin contacts");
     return refuse(SC_NOT_IN_ASSET, SC_FIELD_ASSET);
   }
-  if (joints != nullptr) {
-    if (!allocate_array(c.joint_of_bone, view.bone_count()) || !allocate_array(c.bones, 12 * view.bone_count())) {
-      return no_memory;
-    }
-    status = sc_bind_joints(&c.asset, joints, joint_count, layout, c.joint_of_bone, view.bone_count(), message,
-                            message_size);
-    if (status != SC_OK) {
-      return status;
-    }
-  }
+  const std::size_t bones = view.bone_count();
   c.contact_capacity = view.part_count() * (view.part_count() + 1) / 2;
-  if (!allocate_array(c.skin_table, table_words) || !allocate_array(c.scratch, sc_skin_scratch_words(&c.asset)) ||
-      !allocate_array(c.contacts, c.contact_capacity)) {
+  if (!allocate(c, c.skin_table, table_words) || !allocate(c, c.scratch, sc_skin_scratch_words(&c.asset)) ||
+      !allocate(c, c.contacts, c.contact_capacity) ||
+      (joints != nullptr && (!allocate(c, c.joint_of_bone, bones) || !allocate(c, c.bones, 12 * bones)))) {
     return no_memory;
   }
-  return sc_prepare_skin(&c.asset, c.skin_table, table_words);
+  if (joints != nullptr) {
+    status = sc_bind_joints(&c.asset, joints, joint_count, layout, c.joint_of_bone, bones, message, message_size);
+  }
+  return status == SC_OK ? sc_prepare_skin(&c.asset, c.skin_table, table_words) : status;
 }
 
 // The palette's bones in the asset's order.
@@ -116,7 +96,7 @@ sc_status sc_character_create(uint32_t abi, const void* data, size_t size, const
     return refuse(SC_NULL, character == nullptr ? SC_FIELD_OUTPUT : SC_FIELD_DATA);
   }
   *character = nullptr;
-  void* const memory = allocate(sizeof(sc_character));
+  void* const memory = std::malloc(sizeof(sc_character));
   Status status = refuse(SC_NO_MEMORY, SC_FIELD_NONE);
   if (memory != nullptr) {
     auto* const made = new (memory) sc_character{};
@@ -137,12 +117,10 @@ void sc_character_destroy(sc_character* character) noexcept {
   if (character == nullptr) {
     return;
   }
-  for (void* memory : {character->bytes, static_cast<void*>(character->joint_of_bone),
-                       static_cast<void*>(character->bones), static_cast<void*>(character->skin_table),
-                       static_cast<void*>(character->scratch), static_cast<void*>(character->contacts)}) {
-    release(memory);
+  for (void* block : character->blocks) {
+    std::free(block);
   }
-  release(character);
+  std::free(character);
 }
 
 const sc_asset* sc_character_asset(const sc_character* character) noexcept {

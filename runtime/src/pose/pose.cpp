@@ -2,69 +2,63 @@
 #include "pose/pose.h"
 
 #include "asset/status.h"
-#include "asset/stride.h"
 
 namespace spherechain {
+namespace {
 
-Status check_bones(const AssetView& asset, const Pose& pose) {
-  if (pose.bones == nullptr) {
-    return refuse(SC_NULL, SC_FIELD_BONES);
+// Of `count` entries of `size` bytes.
+MemoryRange range_of(const float* first, std::size_t count, std::size_t stride, std::size_t size) {
+  if (first == nullptr || count == 0) {
+    return {};
   }
-  if (any_misaligned(pose.bones)) {
-    return refuse(SC_MISALIGNED, SC_FIELD_BONES);
-  }
-  if (size_of(pose.bone_layout) == 0) {
-    return refuse(SC_BAD_VALUE, SC_FIELD_BONE_LAYOUT);
-  }
-  if (bone_stride(pose) < size_of(pose.bone_layout) || bone_stride(pose) % sizeof(float) != 0) {
-    return refuse(SC_BAD_STRIDE, SC_FIELD_BONE_STRIDE);
-  }
-  if (asset.bone_count() == 0) {
-    return refuse(SC_NOT_IN_ASSET, SC_FIELD_BONES);
-  }
-  if (pose.bone_count < asset.bone_count()) {
-    return refuse(SC_TOO_SMALL, SC_FIELD_BONE_COUNT);
-  }
-  if (pose.morph_weights == nullptr) {
-    return pose.morph_weight_count == 0 ? done() : refuse(SC_NULL, SC_FIELD_MORPH_WEIGHTS);
-  }
-  if (any_misaligned(pose.morph_weights)) {
-    return refuse(SC_MISALIGNED, SC_FIELD_MORPH_WEIGHTS);
-  }
-  return pose.morph_weight_count >= asset.morph_count() ? done() : refuse(SC_TOO_SMALL, SC_FIELD_MORPH_WEIGHTS);
+  const auto begin = reinterpret_cast<std::uintptr_t>(first);
+  return {begin, begin + (count - 1) * stride + size};
 }
 
-Status check_vertices(const AssetView& asset, const Pose& pose) {
-  if (pose.vertices == nullptr) {
-    return refuse(SC_NULL, SC_FIELD_VERTICES);
+}  // namespace
+
+Status check_matrices(const Pose& pose) {
+  const std::size_t size = size_of(pose.bone_layout), stride = bone_stride(pose);
+  return pose.bones == nullptr                          ? refuse(SC_NULL, SC_FIELD_BONES)
+         : any_misaligned(pose.bones)                   ? refuse(SC_MISALIGNED, SC_FIELD_BONES)
+         : size == 0                                    ? refuse(SC_BAD_VALUE, SC_FIELD_BONE_LAYOUT)
+         : stride < size || stride % sizeof(float) != 0 ? refuse(SC_BAD_STRIDE, SC_FIELD_BONE_STRIDE)
+                                                        : done();
+}
+
+Status check_bones(const AssetView& asset, const Pose& pose) {
+  const Status status = check_matrices(pose);
+  if (status != SC_OK) {
+    return status;
   }
-  if (any_misaligned(pose.vertices)) {
-    return refuse(SC_MISALIGNED, SC_FIELD_VERTICES);
-  }
-  if (!is_valid_stride(vertex_stride(pose))) {
-    return refuse(SC_BAD_STRIDE, SC_FIELD_VERTEX_STRIDE);
-  }
-  return pose.vertex_count >= asset.vertex_count() ? done() : refuse(SC_TOO_SMALL, SC_FIELD_VERTEX_COUNT);
+  const bool has_weights = pose.morph_weights != nullptr;
+  return asset.bone_count() == 0                                        ? refuse(SC_NOT_IN_ASSET, SC_FIELD_BONES)
+         : pose.bone_count < asset.bone_count()                         ? refuse(SC_TOO_SMALL, SC_FIELD_BONE_COUNT)
+         : !has_weights && pose.morph_weight_count > 0                  ? refuse(SC_NULL, SC_FIELD_MORPH_WEIGHTS)
+         : any_misaligned(pose.morph_weights)                           ? refuse(SC_MISALIGNED, SC_FIELD_MORPH_WEIGHTS)
+         : has_weights && pose.morph_weight_count < asset.morph_count() ? refuse(SC_TOO_SMALL, SC_FIELD_MORPH_WEIGHTS)
+                                                                        : done();
+}
+
+Status check_vertices(const Pose& pose, std::size_t wanted) {
+  const std::size_t stride = vertex_stride(pose);
+  return pose.vertices == nullptr                                ? refuse(SC_NULL, SC_FIELD_VERTICES)
+         : any_misaligned(pose.vertices)                         ? refuse(SC_MISALIGNED, SC_FIELD_VERTICES)
+         : stride < kPackedVertex || stride % sizeof(float) != 0 ? refuse(SC_BAD_STRIDE, SC_FIELD_VERTEX_STRIDE)
+         : pose.vertex_count < wanted                            ? refuse(SC_TOO_SMALL, SC_FIELD_VERTEX_COUNT)
+                                                                 : done();
 }
 
 MemoryRange range_of_bones(const AssetView& asset, const Pose& pose) {
-  if (pose.bones == nullptr || asset.bone_count() == 0) {
-    return {};
-  }
-  const auto first = reinterpret_cast<std::uintptr_t>(pose.bones);
-  return {first, first + (asset.bone_count() - 1) * bone_stride(pose) + size_of(pose.bone_layout)};
+  return range_of(pose.bones, asset.bone_count(), bone_stride(pose), size_of(pose.bone_layout));
 }
 
 MemoryRange range_of_vertices(const AssetView& asset, const Pose& pose) {
-  if (pose.vertices == nullptr || asset.vertex_count() == 0) {
-    return {};
-  }
-  const auto first = reinterpret_cast<std::uintptr_t>(pose.vertices);
-  return {first, first + (asset.vertex_count() - 1) * vertex_stride(pose) + 3 * sizeof(float)};
+  return range_of(pose.vertices, asset.vertex_count(), vertex_stride(pose), kPackedVertex);
 }
 
 MemoryRange range_of_morph_weights(const AssetView& asset, const Pose& pose) {
-  return range_of(Span<const float>{pose.morph_weights, pose.morph_weights == nullptr ? 0 : asset.morph_count()});
+  return range_of(pose.morph_weights, asset.morph_count(), sizeof(float), sizeof(float));
 }
 
 }  // namespace spherechain

@@ -27,19 +27,28 @@ inline std::size_t bone_stride(const Pose& pose) {  // bytes
   return pose.bone_stride == 0 ? size_of(pose.bone_layout) : pose.bone_stride;
 }
 inline BoneMatrices matrices_of(const Pose& pose) {
-  BoneMatrices out;
-  out.data = pose.bones;
-  out.stride = bone_stride(pose) / sizeof(float);
   const bool by_rows = pose.bone_layout == SC_ROWS_3X4 || pose.bone_layout == SC_ROWS_4X4;
-  out.row = by_rows ? 4 : 1;
-  out.column = by_rows ? 1 : pose.bone_layout == SC_COLUMNS_4X4 ? 4 : 3;
-  return out;
+  const std::size_t column = by_rows ? 1 : pose.bone_layout == SC_COLUMNS_4X4 ? 4 : 3;
+  return {pose.bones, bone_stride(pose) / sizeof(float), by_rows ? std::size_t{4} : 1, column};
 }
-inline std::size_t vertex_stride(const Pose& pose) { return pose.vertex_stride == 0 ? 12 : pose.vertex_stride; }
 
-// Whether the pose's bones, or its vertices, are what a job of this open asset needs.
+inline constexpr std::size_t kPackedVertex = 3 * sizeof(float);
+inline std::size_t vertex_stride(const Pose& pose) {  // bytes
+  return pose.vertex_stride == 0 ? kPackedVertex : pose.vertex_stride;
+}
+inline const float* vertex_at(const float* positions, std::size_t index, std::size_t stride) {
+  return positions + index * (stride / sizeof(float));
+}
+
+// Whether matrices can be read: their pointer, layout and stride, not their number.
+Status check_matrices(const Pose& pose);
+// Whether the pose's bones and morph weights are what a job of this open asset needs.
 Status check_bones(const AssetView& asset, const Pose& pose);
-Status check_vertices(const AssetView& asset, const Pose& pose);
+// Whether the pose has `wanted` vertices, or the asset's.
+Status check_vertices(const Pose& pose, std::size_t wanted);
+inline Status check_vertices(const AssetView& asset, const Pose& pose) {
+  return check_vertices(pose, asset.vertex_count());
+}
 
 // What is read of a checked pose.
 MemoryRange range_of_bones(const AssetView& asset, const Pose& pose);

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "asset/status.h"
-#include "asset/stride.h"
 #include "refit/inputs.h"
 #include "simd/arithmetic.h"
 #include "simd/simd.h"

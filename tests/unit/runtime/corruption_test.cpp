@@ -65,7 +65,7 @@ TEST_CASE("no bytes, unaligned bytes and too few bytes are refused") {
   CHECK(open_bytes(bytes, 0, message) == SC_NOT_AN_ASSET);
   CHECK(open_bytes(bytes, 7, message) == SC_NOT_AN_ASSET);
   CHECK(open_bytes(bytes, 63, message) == SC_CORRUPT);
-  CHECK(message == "size: 63 bytes, but any asset has at least 64");
+  CHECK(message.find("size: 63 bytes, but an asset has 64 to ") == 0);
   CHECK(open_bytes(bytes, 64, message) == SC_CORRUPT);
   CHECK(message.find("structure: ") == 0);
 }
@@ -78,7 +78,8 @@ TEST_CASE("another kind of file is refused, also a short one") {
 }
 
 TEST_CASE("an asset of another format version is refused: bake it again") {
-  for (const std::uint32_t version : {kFormatVersion - 1, kFormatVersion + 1, 0xFFFFFFFFU}) {
+  // 0 is not written: an asset without the field has that version.
+  for (const std::uint32_t version : {0U, kFormatVersion - 1, kFormatVersion + 1, 0xFFFFFFFFU}) {
     AssetParts parts = random_asset(12, 1).parts;
     parts.format_version = version;
     const OpenedAsset other(parts);
@@ -298,7 +299,7 @@ TEST_CASE("tables for refit by moments that are not sound are refused") {
       {".bones[0]: 5 is past the 5 bones", change([](Moments& t) { t.bones[0] = 5; })},
       {".bones[1]: not above the one before it", change([](Moments& t) { t.bones[1] = t.bones[0]; })},
       {".bones[1]: not above the one before it", change([](Moments& t) { std::swap(t.bones[0], t.bones[1]); })},
-      {".pair_places[1]: " + in_first + " is past its batch's " + in_first + " pairs",
+      {".pair_places[1]: " + in_first + " is past the " + in_first + " pairs of its batch",
        change([](Moments& t) { t.pair_places[1] = static_cast<std::uint8_t>(t.batches[0].pair_count); })},
       {".pair_places[1]: not the place of bones ", change([](Moments& t) { t.pair_places[1] = t.pair_places[0]; })},
       {".centers[2]: not finite", change([](Moments& t) { t.centers[2].x = kNan; })},

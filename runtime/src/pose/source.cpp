@@ -2,11 +2,8 @@
 // Are these the vertices that the asset was baked from?
 #include <cstring>
 
-#include "asset/asset_view.h"
-#include "asset/memory.h"
 #include "asset/status.h"
-#include "asset/stride.h"
-#include "simd/arithmetic.h"
+#include "pose/pose.h"
 
 using namespace spherechain;
 
@@ -17,7 +14,7 @@ uint64_t sc_hash_positions(const float* positions, size_t count, size_t stride) 
   constexpr std::uint64_t kPrime = 1099511628211ULL;
   std::uint64_t hash = kOffsetBasis;
   for (std::size_t i = 0; i < count && positions != nullptr; ++i) {
-    const float* position = vertex_at(positions, i, stride == 0 ? 12 : stride);
+    const float* const position = vertex_at(positions, i, stride == 0 ? kPackedVertex : stride);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const float value = position[axis] == 0.0F ? 0.0F : position[axis];
       std::uint32_t bits = 0;
@@ -39,16 +36,15 @@ sc_status sc_check_source(const sc_asset* asset, size_t buffer, const float* pos
   if (buffer != SC_WHOLE_SOURCE && buffer >= view.source_buffers().size) {
     return refuse(SC_BAD_VALUE, SC_FIELD_INDEX);
   }
-  if (positions == nullptr || any_misaligned(positions)) {
-    return refuse(positions == nullptr ? SC_NULL : SC_MISALIGNED, SC_FIELD_VERTICES);
-  }
-  if (stride != 0 && !is_valid_stride(stride)) {
-    return refuse(SC_BAD_STRIDE, SC_FIELD_VERTEX_STRIDE);
-  }
   const bool is_whole = buffer == SC_WHOLE_SOURCE;
   const std::size_t wanted = is_whole ? view.vertex_count() : view.source_buffers()[buffer].vertex_count;
-  if (count < wanted) {
-    return refuse(SC_TOO_SMALL, SC_FIELD_VERTEX_COUNT);
+  Pose pose{};
+  pose.vertices = positions;
+  pose.vertex_count = count;
+  pose.vertex_stride = stride;
+  const Status status = check_vertices(pose, wanted);
+  if (status != SC_OK) {
+    return status;
   }
   const std::uint64_t hash = is_whole ? view.info().source_rest_hash : view.source_buffers()[buffer].hash;
   return sc_hash_positions(positions, wanted, stride) == hash ? done() : refuse(SC_WRONG_SOURCE, SC_FIELD_VERTICES);
