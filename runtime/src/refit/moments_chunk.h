@@ -9,12 +9,22 @@
 #define SPHERECHAIN_REFIT_MOMENTS_CHUNK_H
 #endif
 
-#include "refit/moments_lanes.h"
+#include "refit/moments_bones.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
 namespace HWY_NAMESPACE {
 namespace moments {
+
+constexpr std::size_t kChunk = 4;  // spheres finished together
+constexpr std::size_t kSums = 32;  // spheres whose sums are kept: finished at once, none waits for its own sums
+
+// Of spheres each: the centre's three rows of four columns, and the sixteen of its squared spread.
+struct Sums {
+  HWY_ALIGN float centers[kSums][kMomentSize];
+  HWY_ALIGN float squares[kSums][kMomentSize];
+  HWY_ALIGN float wanted[kSums];
+};
 
 // Of what is not finite, no number: 0 times it is none.
 HWY_INLINE hn::Vec<Lanes4> spread_of(hn::Vec<Lanes4> square) {
