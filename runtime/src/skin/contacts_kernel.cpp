@@ -206,8 +206,8 @@ HWY_INLINE void list_cluster(const ContactScene& scene, std::size_t cluster, std
   }
 }
 
-// Bounds of a sphere's clusters, where they have none yet; without hulls of the sphere too, by its clusters.
-HWY_NOINLINE void bound_sphere(const ContactScene& scene, std::size_t sphere) {
+// Bounds of a sphere's clusters, where they have none yet.
+HWY_NOINLINE void bound_clusters(const ContactScene& scene, std::size_t sphere) {
   if (scene.is_bounded[sphere] != 0) {
     return;
   }
@@ -215,19 +215,30 @@ HWY_NOINLINE void bound_sphere(const ContactScene& scene, std::size_t sphere) {
   if (scene.has_balls) {
     bound_clusters_by_bones(scene, sphere);
   } else {
-    for (std::size_t i = scene.first_cluster[sphere]; i < scene.first_cluster[sphere + 1]; ++i) {
-      put_box(scene.clusters, i, box_of_cluster(scene, scene.surface->clusters.data[i]));
+    const Cluster* const clusters = scene.surface->clusters.data;
+    const std::size_t end = scene.first_cluster[sphere + 1];
+    for (std::size_t i = scene.first_cluster[sphere]; i < end; ++i) {
+      put_box(scene.clusters, i, box_of_cluster(scene, clusters[i]));
     }
   }
-  if (!scene.has_hulls) {
-    unite_clusters(scene, sphere);
+}
+
+// Boxes of the spheres: by their hulls; else of those whose clusters are bounded, of all of them before this. Vectors
+// that are loaded right after their lanes were stored one by one have to wait.
+HWY_NOINLINE void bound_spheres(const ContactScene& scene) {
+  for (std::size_t s = 0; s < scene.sphere_count; ++s) {
+    if (scene.has_hulls) {
+      bound_hull(scene, s);
+    } else if (scene.is_bounded[s] != 0) {
+      unite_clusters(scene, s);
+    }
   }
 }
 
 // The clusters of one sphere.
 HWY_INLINE void list_within(const ContactScene& scene, std::size_t sphere, ClusterPairs& list,
                             ContactCollector& collector) {
-  bound_sphere(scene, sphere);
+  bound_clusters(scene, sphere);
   const std::size_t end = scene.first_cluster[sphere + 1];
   for (std::size_t cluster = scene.first_cluster[sphere]; cluster < end; ++cluster) {
     list_cluster(scene, cluster, cluster, end, list, collector);
@@ -236,8 +247,8 @@ HWY_INLINE void list_within(const ContactScene& scene, std::size_t sphere, Clust
 
 HWY_INLINE void list_spheres(const ContactScene& scene, std::size_t a, std::size_t b, ClusterPairs& list,
                              ContactCollector& collector) {
-  bound_sphere(scene, a);
-  bound_sphere(scene, b);
+  bound_clusters(scene, a);
+  bound_clusters(scene, b);
   const std::size_t end_a = scene.first_cluster[a + 1], first_b = scene.first_cluster[b],
                     end_b = scene.first_cluster[b + 1];
   const BoxProbe probe_a(box_at(scene.spheres, a));
@@ -254,16 +265,17 @@ HWY_INLINE void list_spheres(const ContactScene& scene, std::size_t a, std::size
 
 // The pairs of spheres that the caller lists, whatever the scope.
 HWY_NOINLINE void find_listed(const ContactScene& scene, ContactCollector& collector) {
-  if (scene.has_hulls && scene.candidates.size > 0) {
-    bound_hulls(scene);
+  const Span<const Pair> pairs = scene.candidates;
+  for (std::size_t i = 0; i < pairs.size && !scene.has_hulls; ++i) {
+    bound_clusters(scene, pairs.data[i].a);
+    bound_clusters(scene, pairs.data[i].b);
+  }
+  if (pairs.size > 0) {
+    bound_spheres(scene);
   }
   ClusterPairs clusters;
-  for (std::size_t i = 0; i < scene.candidates.size; ++i) {
-    const std::size_t a = scene.candidates.data[i].a, b = scene.candidates.data[i].b;
-    if (!scene.has_hulls) {
-      bound_sphere(scene, a);
-      bound_sphere(scene, b);
-    }
+  for (std::size_t i = 0; i < pairs.size; ++i) {
+    const std::size_t a = pairs.data[i].a, b = pairs.data[i].b;
     if (box_at(scene.spheres, a).touches(box_at(scene.spheres, b)) && !(scene.has_hulls && hulls_apart(scene, a, b))) {
       list_spheres(scene, a, b, clusters, collector);
     }
@@ -303,13 +315,10 @@ HWY_NOINLINE void pair_spheres(const ContactScene& scene, SpherePairs& spheres, 
 
 // All pairs of the scope.
 HWY_NOINLINE void find_all(const ContactScene& scene, ContactCollector& collector) {
-  if (scene.has_hulls) {
-    bound_hulls(scene);
-  } else {
-    for (std::size_t s = 0; s < scene.sphere_count; ++s) {
-      bound_sphere(scene, s);
-    }
+  for (std::size_t s = 0; s < scene.sphere_count && !scene.has_hulls; ++s) {
+    bound_clusters(scene, s);
   }
+  bound_spheres(scene);
   SpherePairs spheres;
   ClusterPairs clusters;
   const BoxColumns boxes = scene.spheres;  // in registers, for all that vectors may be written over

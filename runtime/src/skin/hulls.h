@@ -156,12 +156,6 @@ HWY_INLINE void bound_hull(const ContactScene& scene, std::size_t sphere) {
   put_box(scene.spheres, sphere, box);
 }
 
-HWY_NOINLINE void bound_hulls(const ContactScene& scene) {
-  for (std::size_t sphere = 0; sphere < scene.sphere_count; ++sphere) {
-    bound_hull(scene, sphere);
-  }
-}
-
 // Does a plane across the line of their boxes' middles part two spheres' hulls? Any direction would be as sure; this
 // one parts most that can be. Where a margin is infinite the direction is not a number, and nothing is parted.
 HWY_INLINE bool hulls_apart(const ContactScene& scene, std::size_t a, std::size_t b) {
