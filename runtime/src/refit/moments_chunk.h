@@ -35,16 +35,10 @@ HWY_INLINE hn::Vec<Lanes4> spread_of(hn::Vec<Lanes4> square) {
 // The first two steps of the tree.
 HWY_INLINE void fold(const float* sums, float* out) {
   const Lanes4 d;
-#if HWY_TARGET == HWY_AVX2
-  const Lanes16 half;
-  const Vector eight = hn::Add(hn::Load(half, sums), hn::Load(half, sums + 8));
-  hn::Store(hn::Add(hn::LowerHalf(d, eight), hn::UpperHalf(d, eight)), d, out);
-#else
   for (std::size_t i = 0; i < 4; i += hn::MaxLanes(d)) {
     const auto sum = [&](std::size_t k) HWY_ATTR { return hn::Add(hn::Load(d, sums + k), hn::Load(d, sums + k + 8)); };
     hn::Store(hn::Add(sum(i), sum(i + 4)), d, out + i);
   }
-#endif
 }
 
 // out[i] = (v[i][0] + v[i][2]) + (v[i][1] + v[i][3]), the v[i] `step` floats apart.
