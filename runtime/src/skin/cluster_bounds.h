@@ -198,10 +198,9 @@ HWY_INLINE void bound_lanes(const ContactScene& scene, std::size_t group, const 
   hn::StoreU(radius, d, scene.ball_columns[3] + first);
 }
 
-// The groups that hold a sphere's clusters, where they are not bounded yet.
-HWY_NOINLINE void bound_clusters_by_bones(const ContactScene& scene, std::size_t sphere) {
-  const std::size_t end = (scene.first_cluster[sphere + 1] + kClusterLanes - 1) / kClusterLanes;
-  for (std::size_t group = scene.first_cluster[sphere] / kClusterLanes; group < end; ++group) {
+// The groups that hold the clusters [first, end), where they are not bounded yet.
+HWY_NOINLINE void bound_clusters_by_bones(const ContactScene& scene, std::size_t first, std::size_t end) {
+  for (std::size_t group = first / kClusterLanes; group < (end + kClusterLanes - 1) / kClusterLanes; ++group) {
     if (scene.is_group_bounded[group] == 0) {
       scene.is_group_bounded[group] = 1;
       const GroupEntries entries = entries_of_group(scene, group);

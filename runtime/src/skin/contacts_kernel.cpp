@@ -4,6 +4,8 @@
 // exact. Pairs of clusters are listed, and decided together: loaded, skinned or copied, those that still seem to touch
 // along the axes, their diagonals and the line between them, and paired triangle by triangle. Which candidates come out
 // may differ between targets, but none that intersects is ever missing.
+#include <cstring>
+
 #include "pairs/pair_bits.h"
 #include "simd/arithmetic.h"
 #include "simd/simd.h"
@@ -206,20 +208,23 @@ HWY_INLINE void list_cluster(const ContactScene& scene, std::size_t cluster, std
   }
 }
 
-// Bounds of a sphere's clusters, where they have none yet.
-HWY_NOINLINE void bound_clusters(const ContactScene& scene, std::size_t sphere) {
-  if (scene.is_bounded[sphere] != 0) {
+// Bounds of the clusters of spheres [first, end).
+HWY_NOINLINE void bound_clusters(const ContactScene& scene, std::size_t first, std::size_t end) {
+  std::memset(scene.is_bounded + first, 1, end - first);
+  const std::size_t first_cluster = scene.first_cluster[first], end_cluster = scene.first_cluster[end];
+  if (scene.has_balls) {
+    bound_clusters_by_bones(scene, first_cluster, end_cluster);
     return;
   }
-  scene.is_bounded[sphere] = 1;
-  if (scene.has_balls) {
-    bound_clusters_by_bones(scene, sphere);
-  } else {
-    const Cluster* const clusters = scene.surface->clusters.data;
-    const std::size_t end = scene.first_cluster[sphere + 1];
-    for (std::size_t i = scene.first_cluster[sphere]; i < end; ++i) {
-      put_box(scene.clusters, i, box_of_cluster(scene, clusters[i]));
-    }
+  const Cluster* const clusters = scene.surface->clusters.data;
+  for (std::size_t i = first_cluster; i < end_cluster; ++i) {
+    put_box(scene.clusters, i, box_of_cluster(scene, clusters[i]));
+  }
+}
+
+HWY_INLINE void bound_once(const ContactScene& scene, std::size_t sphere) {
+  if (scene.is_bounded[sphere] == 0) {
+    bound_clusters(scene, sphere, sphere + 1);
   }
 }
 
@@ -238,7 +243,7 @@ HWY_NOINLINE void bound_spheres(const ContactScene& scene) {
 // The clusters of one sphere.
 HWY_INLINE void list_within(const ContactScene& scene, std::size_t sphere, ClusterPairs& list,
                             ContactCollector& collector) {
-  bound_clusters(scene, sphere);
+  bound_once(scene, sphere);
   const std::size_t end = scene.first_cluster[sphere + 1];
   for (std::size_t cluster = scene.first_cluster[sphere]; cluster < end; ++cluster) {
     list_cluster(scene, cluster, cluster, end, list, collector);
@@ -247,8 +252,8 @@ HWY_INLINE void list_within(const ContactScene& scene, std::size_t sphere, Clust
 
 HWY_INLINE void list_spheres(const ContactScene& scene, std::size_t a, std::size_t b, ClusterPairs& list,
                              ContactCollector& collector) {
-  bound_clusters(scene, a);
-  bound_clusters(scene, b);
+  bound_once(scene, a);
+  bound_once(scene, b);
   const std::size_t end_a = scene.first_cluster[a + 1], first_b = scene.first_cluster[b],
                     end_b = scene.first_cluster[b + 1];
   const BoxProbe probe_a(box_at(scene.spheres, a));
@@ -267,8 +272,8 @@ HWY_INLINE void list_spheres(const ContactScene& scene, std::size_t a, std::size
 HWY_NOINLINE void find_listed(const ContactScene& scene, ContactCollector& collector) {
   const Span<const Pair> pairs = scene.candidates;
   for (std::size_t i = 0; i < pairs.size && !scene.has_hulls; ++i) {
-    bound_clusters(scene, pairs.data[i].a);
-    bound_clusters(scene, pairs.data[i].b);
+    bound_once(scene, pairs.data[i].a);
+    bound_once(scene, pairs.data[i].b);
   }
   if (pairs.size > 0) {
     bound_spheres(scene);
@@ -315,8 +320,8 @@ HWY_NOINLINE void pair_spheres(const ContactScene& scene, SpherePairs& spheres, 
 
 // All pairs of the scope.
 HWY_NOINLINE void find_all(const ContactScene& scene, ContactCollector& collector) {
-  for (std::size_t s = 0; s < scene.sphere_count && !scene.has_hulls; ++s) {
-    bound_clusters(scene, s);
+  if (!scene.has_hulls) {
+    bound_clusters(scene, 0, scene.sphere_count);
   }
   bound_spheres(scene);
   SpherePairs spheres;
