@@ -59,7 +59,7 @@ HWY_INLINE void move_origin(const Vec3& origin, Matrix& matrix) {
 // From bones' matrices to those relative to the origin and its image by the reference bone, which is handed back.
 HWY_INLINE void make_relative(const LaneRefit& batch, Vector (&reference)[kRows]) {
   constexpr Floats kFloats;
-  const MomentInputs& tables = batch.inputs.moments;
+  const MomentTables& tables = *batch.inputs.moments;
   Matrix matrix;
   load_matrix(matrix_of(batch, tables.reference), matrix);
   move_origin(tables.origin, matrix);
@@ -221,20 +221,20 @@ template <bool kIsSecond>
 HWY_INLINE void sum_spheres(const LaneRefit& batch, const BatchPlace& start, std::size_t sphere_count,
                             Fetcher& fetcher) {
   constexpr Floats kFloats;
-  const MomentInputs& tables = batch.inputs.moments;
+  const MomentTables& tables = *batch.inputs.moments;
   constexpr std::size_t kFirst = kIsSecond ? 1 : 0;
   std::size_t place = start.place;
   const auto finish = [&](std::size_t i, Vector sum) HWY_ATTR {
-    const std::size_t sphere = tables.spheres[i];
+    const std::size_t sphere = tables.spheres.data[i];
     float* const radius = batch.lanes + (kLaneFigures * sphere + 3) * kLanes;
     hn::Store(kIsSecond ? radius_of(batch, sphere, hn::Add(hn::Load(kFloats, radius), sum)) : sum, kFloats, radius);
     fetcher.fetch();
   };
   for (std::size_t i = start.sphere; i < start.sphere + sphere_count;) {
-    const std::size_t bone_count = tables.bone_counts[i], count = bone_count * (bone_count + 1) / 2;
-    const std::uint8_t* const places = tables.pair_places + place;
-    const Moment* const moments = tables.moments + place;
-    if (i + 1 < start.sphere + sphere_count && tables.bone_counts[i + 1] == bone_count &&
+    const std::size_t bone_count = tables.bone_counts.data[i], count = bone_count * (bone_count + 1) / 2;
+    const std::uint8_t* const places = tables.pair_places.data + place;
+    const Moment* const moments = tables.moments.data + place;
+    if (i + 1 < start.sphere + sphere_count && tables.bone_counts.data[i + 1] == bone_count &&
         have_same_pairs(places, count)) {
       Vector sums[2];
       sum_pairs<2, kFirst>(batch, places, bone_count, moments, sums);
@@ -253,22 +253,23 @@ HWY_INLINE void sum_spheres(const LaneRefit& batch, const BatchPlace& start, std
 }
 
 void refit_batch(const LaneRefit& batch) {
-  const MomentInputs& tables = batch.inputs.moments;
+  const MomentTables& tables = *batch.inputs.moments;
   transpose(batch);
   Vector reference[kRows];
   make_relative(batch, reference);
   Fetcher fetcher(batch, 2 * batch.inputs.sphere_count);
   BatchPlace at{0, 0, 0, 0};
-  for (std::size_t b = 0; b < tables.batch_count; ++b) {
-    const std::size_t pair_count = tables.batches[b].pair_count, sphere_count = tables.batches[b].sphere_count;
-    multiply_pairs<0>(batch, tables.pairs + at.pair, pair_count);
+  for (std::size_t b = 0; b < tables.batches.size; ++b) {
+    const std::size_t pair_count = tables.batches.data[b].pair_count,
+                      sphere_count = tables.batches.data[b].sphere_count;
+    multiply_pairs<0>(batch, tables.pairs.data + at.pair, pair_count);
     sum_spheres<false>(batch, at, sphere_count, fetcher);
-    multiply_pairs<1>(batch, tables.pairs + at.pair, pair_count);
+    multiply_pairs<1>(batch, tables.pairs.data + at.pair, pair_count);
     sum_spheres<true>(batch, at, sphere_count, fetcher);
     for (std::size_t i = 0; i < sphere_count; ++i) {
-      const std::size_t bone_count = tables.bone_counts[at.sphere];
-      place_center(batch, tables.bones + at.bone, tables.centers + at.bone, bone_count, reference,
-                   batch.lanes + kLaneFigures * kLanes * tables.spheres[at.sphere]);
+      const std::size_t bone_count = tables.bone_counts.data[at.sphere];
+      place_center(batch, tables.bones.data + at.bone, tables.centers.data + at.bone, bone_count, reference,
+                   batch.lanes + kLaneFigures * kLanes * tables.spheres.data[at.sphere]);
       ++at.sphere;
       at.bone += bone_count;
       at.place += bone_count * (bone_count + 1) / 2;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What refit by moments reads, as bare arrays: kernels are compiled once a target and may use no inline function of the
-// headers.
+// What refit by moments reads. Kernels use the spans' pointers alone: they are compiled once a target and may use no
+// inline function of the headers.
 #pragma once
 
 #include <cstddef>
@@ -9,24 +9,10 @@
 
 namespace spherechain {
 
-struct MomentInputs {
-  Vec3 origin;
-  std::uint32_t reference;
-  std::size_t batch_count;
-  const MomentBatch* batches;
-  const BonePair* pairs;
-  const std::uint32_t* spheres;
-  const std::uint8_t* bone_counts;
-  const std::uint16_t* bones;
-  const CenterTerm* centers;
-  const std::uint8_t* pair_places;
-  const Moment* moments;
-};
-
 struct RefitInputs {
   const RestSphere* rest;
   std::size_t sphere_count, bone_count;
-  MomentInputs moments;
+  const MomentTables* moments;
   const float* matrices;
   std::size_t stride;  // floats
   MatrixLayout layout;

@@ -9,12 +9,25 @@
 #define SPHERECHAIN_REFIT_MOMENTS_BONES_H
 #endif
 
-#include "refit/moments_lanes.h"
+#include "refit/inputs.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
 namespace HWY_NAMESPACE {
 namespace moments {
+
+using Lanes16 = hn::CappedTag<float, kMomentSize>;
+using Lanes4 = hn::CappedTag<float, 4>;
+using Vector = hn::Vec<Lanes16>;
+constexpr std::size_t kLanes = hn::MaxLanes(Lanes16());
+constexpr std::size_t kParts = kMomentSize / kLanes;
+constexpr std::size_t kKeptBones = 256;  // an asset of more has its matrices moved wherever they are read
+
+// A bone's matrix by rows of four, seen from the origin and the reference bone; and a fourth row, which no sum that is
+// used reads.
+struct Moved {
+  HWY_ALIGN float rows[kMomentSize];
+};
 
 // Of four floats, as they fall on lane i of a part: row[i % 4], and row[i / 4].
 HWY_INLINE Vector repeat(const float* row, std::size_t part) {
@@ -149,21 +162,14 @@ template <bool kKeeps>
 class Bones {
  public:
   HWY_INLINE explicit Bones(const RefitInputs& in) : in_(in) {
-    load(in.moments.reference, reference_);
+    load(in.moments->reference, reference_);
     if (kKeeps) {
-      switch (in.layout) {
-        case SC_ROWS_3X4:
-        case SC_ROWS_4X4:
-          keep<1>();
-          break;
-        case SC_COLUMNS_4X4:
-          keep<4>();
-          break;
-        case SC_COLUMNS_3X4:
-          keep<3>();
-          break;
-        case SC_LAYOUT_UNSET:
-          break;
+      if (in.layout == SC_COLUMNS_4X4) {
+        keep<4>();
+      } else if (in.layout == SC_COLUMNS_3X4) {
+        keep<3>();
+      } else {
+        keep<1>();
       }
     }
   }
@@ -192,7 +198,7 @@ class Bones {
     } else {
       load_rows<1>(matrix, rows);
     }
-    move_origin(in_.moments.origin, rows);
+    move_origin(in_.moments->origin, rows);
   }
 
   HWY_INLINE void store(Vector (&rows)[kParts], Moved& out) const {
@@ -206,7 +212,7 @@ class Bones {
   template <std::size_t kColumn>
   HWY_INLINE void keep() {
     // Here and not in memory, where what is stored might be these.
-    const Vec3 origin = in_.moments.origin;
+    const Vec3 origin = in_.moments->origin;
     const std::size_t stride = in_.stride;
     const float* matrix = in_.matrices;
     Moved* out = kept_;

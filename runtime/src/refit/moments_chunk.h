@@ -9,89 +9,36 @@
 #define SPHERECHAIN_REFIT_MOMENTS_CHUNK_H
 #endif
 
-#include "refit/moments_lanes.h"
+#include "refit/moments_bones.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
 namespace HWY_NAMESPACE {
 namespace moments {
 
-// Of what is not finite, no number: 0 times it is none.
+constexpr std::size_t kChunk = 4;  // spheres finished together
+constexpr std::size_t kSums = 32;  // spheres whose sums are kept: finished at once, none waits for its own sums
+
+// Of spheres each: the centre's three rows of four columns, and the sixteen of its squared spread.
+struct Sums {
+  HWY_ALIGN float centers[kSums][kMomentSize];
+  HWY_ALIGN float squares[kSums][kMomentSize];
+  HWY_ALIGN float wanted[kSums];
+};
+
+// A square that is not finite makes the spread NaN.
 HWY_INLINE hn::Vec<Lanes4> spread_of(hn::Vec<Lanes4> square) {
   const auto zero = hn::Zero(Lanes4());
   return hn::MulAdd(square, zero, hn::Sqrt(hn::IfThenZeroElse(hn::Le(square, zero), square)));
 }
 
-#if HWY_TARGET == HWY_AVX3
-
-// Spheres `first` and on of the sums, `count` of them, to where `numbers` says.
-HWY_INLINE void finish(const Sums& sums, std::size_t first, std::size_t count, const std::uint32_t* numbers,
-                       const Vector (&references)[kParts], Sphere* spheres) {
-  const Lanes16 d;
-  const Lanes4 four;
-  const hn::Repartition<double, Lanes16> doubles;
-  // Of two spheres: i + (i + 8).
-  const auto eights = [&](std::size_t i) HWY_ATTR {
-    const Vector a = hn::Load(d, sums.squares[first + i]), b = hn::Load(d, sums.squares[first + i + 1]);
-    return hn::Add(Vector{_mm512_shuffle_f32x4(a.raw, b.raw, 0x44)}, Vector{_mm512_shuffle_f32x4(a.raw, b.raw, 0xEE)});
-  };
-  const Vector low = eights(0), high = eights(2);
-  Vector fours = hn::Add(Vector{_mm512_shuffle_f32x4(low.raw, high.raw, 0x88)},
-                         Vector{_mm512_shuffle_f32x4(low.raw, high.raw, 0xDD)});  // four lanes a sphere
-  fours = hn::Add(fours, hn::Shuffle1032(fours));
-  fours = hn::Add(fours, hn::Shuffle2301(fours));
-  alignas(64) static constexpr std::int32_t kFirsts[kMomentSize] = {0, 4, 8, 12};
-  const hn::Half<Lanes16> half;
-  const auto squared =
-      hn::LowerHalf(four, hn::LowerHalf(half, hn::TableLookupLanes(fours, hn::SetTableIndices(d, kFirsts))));
-  const auto radius = hn::Mul(hn::Load(four, sums.wanted + first), spread_of(squared));
-
-  // Of two spheres, of each row: columns j + (j + 2).
-  const auto twos = [&](std::size_t i) HWY_ATTR {
-    const auto a = hn::BitCast(doubles, hn::Load(d, sums.centers[first + i]));
-    const auto b = hn::BitCast(doubles, hn::Load(d, sums.centers[first + i + 1]));
-    return hn::Add(hn::BitCast(d, hn::InterleaveLower(doubles, a, b)),
-                   hn::BitCast(d, hn::InterleaveUpper(doubles, a, b)));
-  };
-  const Vector lower = twos(0), upper = twos(2);
-  const Vector even{_mm512_shuffle_ps(lower.raw, upper.raw, 0x88)};
-  const Vector odd{_mm512_shuffle_ps(lower.raw, upper.raw, 0xDD)};
-  Vector out = hn::Add(hn::Add(even, odd), hn::Broadcast<3>(references[0]));  // of four spheres x, y, z
-  alignas(64) static constexpr std::int32_t kFourth[kMomentSize] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 2, 3};
-  const auto radii = hn::ZeroExtendVector(d, hn::ZeroExtendVector(half, radius));
-  out = hn::IfThenElse(hn::Not(hn::FirstN(d, 12)), hn::TableLookupLanes(radii, hn::SetTableIndices(d, kFourth)), out);
-  alignas(64) static constexpr std::int32_t kTurned[kMomentSize] = {0, 4, 8,  12, 1, 5, 9,  13,
-                                                                    2, 6, 10, 14, 3, 7, 11, 15};
-  out = hn::TableLookupLanes(out, hn::SetTableIndices(d, kTurned));
-  if (count == kChunk) {
-    _mm_storeu_ps(&spheres[numbers[0]].x, _mm512_castps512_ps128(out.raw));
-    _mm_storeu_ps(&spheres[numbers[1]].x, _mm512_extractf32x4_ps(out.raw, 1));
-    _mm_storeu_ps(&spheres[numbers[2]].x, _mm512_extractf32x4_ps(out.raw, 2));
-    _mm_storeu_ps(&spheres[numbers[3]].x, _mm512_extractf32x4_ps(out.raw, 3));
-    return;
-  }
-  HWY_ALIGN Sphere last[kChunk];
-  hn::Store(out, d, &last[0].x);
-  for (std::size_t i = 0; i < count; ++i) {
-    spheres[numbers[i]] = last[i];
-  }
-}
-
-#else
-
 // The first two steps of the tree.
 HWY_INLINE void fold(const float* sums, float* out) {
   const Lanes4 d;
-#if HWY_TARGET == HWY_AVX2
-  const Lanes16 half;
-  const Vector eight = hn::Add(hn::Load(half, sums), hn::Load(half, sums + 8));
-  hn::Store(hn::Add(hn::LowerHalf(d, eight), hn::UpperHalf(d, eight)), d, out);
-#else
   for (std::size_t i = 0; i < 4; i += hn::MaxLanes(d)) {
     const auto sum = [&](std::size_t k) HWY_ATTR { return hn::Add(hn::Load(d, sums + k), hn::Load(d, sums + k + 8)); };
     hn::Store(hn::Add(sum(i), sum(i + 4)), d, out + i);
   }
-#endif
 }
 
 // out[i] = (v[i][0] + v[i][2]) + (v[i][1] + v[i][3]), the v[i] `step` floats apart.
@@ -111,6 +58,7 @@ HWY_INLINE void sum_four(const float* v, std::size_t step, float* out) {
 #endif
 }
 
+// Spheres `first` and on of the sums, `count` of them, to where `numbers` says.
 HWY_INLINE void finish(const Sums& sums, std::size_t first, std::size_t count, const std::uint32_t* numbers,
                        const Vector (&references)[kParts], Sphere* spheres) {
   const Lanes4 d;
@@ -138,8 +86,6 @@ HWY_INLINE void finish(const Sums& sums, std::size_t first, std::size_t count, c
     spheres[numbers[i]] = out[i];
   }
 }
-
-#endif
 
 }  // namespace moments
 }  // namespace HWY_NAMESPACE

@@ -48,6 +48,14 @@ HWY_INLINE void find_grams(const BonePair* pair, const BonePair* end, const Bone
   }
 }
 
+// Where in the tables a sphere's figures start.
+struct Place {
+  const std::uint16_t* bones;
+  const CenterTerm* centers;
+  const std::uint8_t* pair_places;
+  const Moment* moments;
+};
+
 // A sphere's sums. Where the number of its bones is known, kBones, nothing is left to branch on.
 template <std::size_t kBones, bool kKeeps>
 HWY_INLINE void add_sphere(std::size_t known_bones, const Bones<kKeeps>& bones, const Moment* grams, Place& at,
@@ -96,8 +104,8 @@ class Refit {
  public:
   HWY_INLINE Refit(const RefitInputs& in, const Bones<kKeeps>& bones, Sphere* spheres)
       : bones_(bones),
-        at_{in.moments.bones, in.moments.centers, in.moments.pair_places, in.moments.moments},
-        numbers_(in.moments.spheres),
+        at_{in.moments->bones.data, in.moments->centers.data, in.moments->pair_places.data, in.moments->moments.data},
+        numbers_(in.moments->spheres.data),
         radii_(in.radius == SC_RADIUS_FIT ? &in.rest->radius : &in.rest->detect_radius),
         spheres_(spheres) {}
 
@@ -184,13 +192,13 @@ class Refit {
 
 template <bool kKeeps>
 HWY_INLINE void refit_all(const RefitInputs& in, Sphere* spheres) {
-  const MomentInputs& tables = in.moments;
+  const MomentTables& tables = *in.moments;
   const Bones<kKeeps> bones(in);
   HWY_ALIGN Moment grams[kMaxMomentPairs];
   Refit<kKeeps> refit(in, bones, spheres);
-  const BonePair* pair = tables.pairs;
-  const std::uint8_t* bone_count = tables.bone_counts;
-  for (const MomentBatch *batch = tables.batches, *end = batch + tables.batch_count; batch < end; ++batch) {
+  const BonePair* pair = tables.pairs.data;
+  const std::uint8_t* bone_count = tables.bone_counts.data;
+  for (const MomentBatch *batch = tables.batches.data, *end = batch + tables.batches.size; batch < end; ++batch) {
     find_grams(pair, pair + batch->pair_count, bones, grams);
     refit.add(grams, bone_count, bone_count + batch->sphere_count);
     pair += batch->pair_count;

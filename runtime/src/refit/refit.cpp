@@ -114,22 +114,6 @@ Status check(const RefitJob& job, Target& resolved) {
              : done();
 }
 
-MomentInputs moment_inputs(const MomentTables& tables) {
-  MomentInputs in{};
-  in.origin = tables.origin;
-  in.reference = tables.reference;
-  in.batch_count = tables.batches.size;
-  in.batches = tables.batches.data;
-  in.pairs = tables.pairs.data;
-  in.spheres = tables.spheres.data;
-  in.bone_counts = tables.bone_counts.data;
-  in.bones = tables.bones.data;
-  in.centers = tables.centers.data;
-  in.pair_places = tables.pair_places.data;
-  in.moments = tables.moments.data;
-  return in;
-}
-
 }  // namespace
 
 Status check_refit_bones(const AssetView& asset, const Pose& pose, Radius radius) {
@@ -148,7 +132,7 @@ RefitInputs refit_inputs(const AssetView& asset, const Pose& pose, Radius radius
   in.rest = asset.spheres().data;
   in.sphere_count = asset.spheres().size;
   in.bone_count = asset.bone_count();
-  in.moments = moment_inputs(asset.moment_tables());
+  in.moments = &asset.moment_tables();
   in.matrices = pose.bones;
   in.stride = bone_stride(pose) / sizeof(float);
   in.layout = pose.bone_layout;

@@ -52,23 +52,24 @@ HWY_BEFORE_NAMESPACE();
 namespace spherechain {
 namespace HWY_NAMESPACE {
 
+namespace hn = hwy::HWY_NAMESPACE;
+
 // Lane i as bit i.
-HWY_INLINE std::uint64_t bits_of(hwy::HWY_NAMESPACE::Mask<hwy::HWY_NAMESPACE::ScalableTag<float>> mask) {
-  constexpr hwy::HWY_NAMESPACE::ScalableTag<float> kFloats;
+HWY_INLINE std::uint64_t bits_of(hn::Mask<hn::ScalableTag<float>> mask) {
+  constexpr hn::ScalableTag<float> kFloats;
 #if HWY_TARGET == HWY_AVX3
   std::uint16_t bits = 0;
 #else
   std::uint8_t bits = 0;
 #endif
-  static_assert(hwy::HWY_NAMESPACE::MaxLanes(kFloats) <= 8 * sizeof bits, "a bit a lane");
-  hwy::HWY_NAMESPACE::StoreMaskBits(kFloats, mask, reinterpret_cast<std::uint8_t*>(&bits));
+  static_assert(hn::MaxLanes(kFloats) <= 8 * sizeof bits, "a bit a lane");
+  hn::StoreMaskBits(kFloats, mask, reinterpret_cast<std::uint8_t*>(&bits));
   return bits;
 }
 
 // The other way round; further bits are any.
-HWY_INLINE hwy::HWY_NAMESPACE::Mask<hwy::HWY_NAMESPACE::ScalableTag<float>> mask_of(std::uint64_t bits) {
-  return hwy::HWY_NAMESPACE::LoadMaskBits(hwy::HWY_NAMESPACE::ScalableTag<float>(),
-                                          reinterpret_cast<const std::uint8_t*>(&bits));
+HWY_INLINE hn::Mask<hn::ScalableTag<float>> mask_of(std::uint64_t bits) {
+  return hn::LoadMaskBits(hn::ScalableTag<float>(), reinterpret_cast<const std::uint8_t*>(&bits));
 }
 
 #undef SPHERECHAIN_FUSES
@@ -81,7 +82,6 @@ HWY_INLINE hwy::HWY_NAMESPACE::Mask<hwy::HWY_NAMESPACE::ScalableTag<float>> mask
 // a * b + c, rounded once on every target.
 template <typename D, typename V>
 HWY_INLINE V fused(D d, V a, V b, V c) {
-  namespace hn = hwy::HWY_NAMESPACE;
 #if SPHERECHAIN_FUSES
   (void)d;
   return hn::MulAdd(a, b, c);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "simd/simd.h"
 
+#include <algorithm>
 #include <cstring>
+#include <iterator>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/simd.cpp"
@@ -11,10 +13,7 @@ HWY_BEFORE_NAMESPACE();
 namespace spherechain {
 namespace HWY_NAMESPACE {
 
-std::size_t count_lanes() {
-  const hwy::HWY_NAMESPACE::ScalableTag<float> floats;
-  return hwy::HWY_NAMESPACE::Lanes(floats);
-}
+std::size_t count_lanes() { return hn::Lanes(hn::ScalableTag<float>()); }
 
 }  // namespace HWY_NAMESPACE
 }  // namespace spherechain
@@ -44,7 +43,6 @@ constexpr Target kCompiled[] = {
     SC_TARGET_NEON,
 #endif
     SC_TARGET_SCALAR};
-constexpr std::size_t kCompiledCount = sizeof kCompiled / sizeof kCompiled[0];
 
 constexpr bool all_have_kernels() {
   for (const Target target : kCompiled) {
@@ -84,21 +82,17 @@ bool machine_has([[maybe_unused]] Target target) {
 }  // namespace
 
 Span<const Target> supported_targets() noexcept {
-  std::size_t first = 0;
-  while (!machine_has(kCompiled[first])) {
-    ++first;
-  }
-  return {kCompiled + first, kCompiledCount - first};
+  const Target* const end = std::end(kCompiled);
+  const Target* const first = std::find_if(std::begin(kCompiled), end, machine_has);
+  return {first, static_cast<std::size_t>(end - first)};
 }
 
 bool find_target(const char* name, Target& target) noexcept {
-  if (std::strcmp(name, sc_target_name(SC_TARGET_BEST)) == 0) {
-    target = SC_TARGET_BEST;
-    return true;
-  }
-  for (const Target supported : supported_targets()) {
-    if (std::strcmp(name, sc_target_name(supported)) == 0) {
-      target = supported;
+  for (std::size_t i = 0; i < kTargetCount; ++i) {
+    const auto named = static_cast<Target>(i);
+    Target resolved{};
+    if (std::strcmp(name, sc_target_name(named)) == 0 && resolve_target(named, resolved)) {
+      target = named;
       return true;
     }
   }
@@ -125,23 +119,10 @@ std::size_t lanes_of(Target target) noexcept {
 extern "C" {
 
 const char* sc_target_name(sc_target target) noexcept {
-  switch (target) {
-    case SC_TARGET_BEST:
-      return "best";
-    case SC_TARGET_SCALAR:
-      return "scalar";
-    case SC_TARGET_SSE2:
-      return "sse2";
-    case SC_TARGET_SSSE3:
-      return "ssse3";
-    case SC_TARGET_AVX2:
-      return "avx2";
-    case SC_TARGET_AVX512:
-      return "avx512";
-    case SC_TARGET_NEON:
-      return "neon";
-  }
-  return "unknown target";
+  static constexpr const char* kNames[spherechain::kTargetCount] = {"best", "scalar", "sse2", "ssse3",
+                                                                    "avx2", "avx512", "neon"};
+  const auto number = static_cast<std::size_t>(target);
+  return number < spherechain::kTargetCount ? kNames[number] : "unknown target";
 }
 
 const sc_target* sc_supported_targets(size_t* count) noexcept {

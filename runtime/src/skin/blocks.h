@@ -10,6 +10,7 @@
 #endif
 
 #include <cfloat>
+#include <cstring>
 
 #include "pairs/pair_bits.h"
 #include "skin/scene.h"
@@ -19,7 +20,8 @@ HWY_BEFORE_NAMESPACE();
 namespace spherechain {
 namespace HWY_NAMESPACE {
 
-constexpr std::size_t kBlock = 64;  // triangles: a bit each
+constexpr std::size_t kBlock = kMaxClusterTriangles;  // a bit each
+static_assert(kBlock == 64);
 
 // Of each vertex of the cluster, the sides of the box that it is beyond of: a bit a side. At least 16 codes, and a
 // vector more than there are vertices, can be written and read.
@@ -85,7 +87,7 @@ HWY_INLINE std::uint64_t within(const std::uint8_t* corners, std::size_t count, 
 
 #endif
 
-// Some triangles of a cluster, coordinate by coordinate. Spare lanes up to a vector are dirt.
+// Triangles of a cluster, coordinate by coordinate. Spare lanes up to a vector are dirt.
 struct Block {
   std::size_t cluster, count;
   std::uint32_t triangles[kBlock + kContactPadding];  // in AssetView::triangles()
@@ -103,113 +105,75 @@ struct Block {
   }
 };
 
-// The triangles that have two corners in one place.
-HWY_INLINE std::uint64_t collapsed(const Block& block) {
+// The cluster's triangles that touch the box but for what single corners tell. False where there are none. Degenerate
+// triangles intersect nothing. Where two corners meet, as they do all over a pose too far off for its floats, the box
+// is empty, and nothing touches it: else exact arithmetic would have to tell, pair by pair.
+HWY_NOINLINE bool load_block(const ContactScene& scene, std::size_t cluster_index, const BoxProbe& box, Block& out) {
   constexpr Floats kFloats;
-  std::uint64_t bits = 0;
-  for (std::size_t i = 0; i < block.count; i += kLanes) {
-    auto ab = hn::FirstN(kFloats, block.count - i), bc = ab, ca = ab;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const Vector a = hn::LoadU(kFloats, block.corners[0][axis] + i),
-                   b = hn::LoadU(kFloats, block.corners[1][axis] + i),
-                   c = hn::LoadU(kFloats, block.corners[2][axis] + i);
-      ab = hn::And(ab, hn::Eq(a, b));
-      bc = hn::And(bc, hn::Eq(b, c));
-      ca = hn::And(ca, hn::Eq(c, a));
-    }
-    bits |= bits_of(hn::Or(hn::Or(ab, bc), ca)) << i;
-  }
-  return bits;
-}
-
-// Takes these triangles out; the others stay in order.
-HWY_NOINLINE void remove(std::uint64_t triangles, bool neighbours, Block& block) {
-  std::size_t left = 0;
-  for (std::size_t i = 0; i < block.count; ++i) {
-    if (((triangles >> i) & 1U) != 0) {
-      continue;
-    }
-    block.triangles[left] = block.triangles[i];
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        block.corners[k][axis][left] = block.corners[k][axis][i];
-      }
-      if (neighbours) {
-        block.welds[k][left] = block.welds[k][i];
-      }
-    }
-    ++left;
-  }
-  block.count = left;
-}
-
-// Of the cluster's triangles from `first` on, at most kBlock, those that touch the box but for what single corners
-// tell. Degenerate ones intersect nothing: where two corners meet, as they do all over a pose too far off for its
-// floats, they are left out here, for to tell would take exact arithmetic, pair by pair. False where there are none.
-HWY_NOINLINE bool load_block(const ContactScene& scene, std::size_t cluster_index, std::size_t first,
-                             const BoxProbe& box, Block& out) {
-  constexpr Floats kFloats;
-  const Cluster& cluster = scene.surface->clusters.data[cluster_index];
-  const std::size_t first_triangle = cluster.first_triangle + first;
-  const std::size_t left = cluster.triangle_count - first;
-  const std::uint8_t* corners = scene.surface->corners.data + 3 * first_triangle;
+  const Surface& surface = *scene.surface;
+  const Cluster& cluster = surface.clusters.data[cluster_index];
+  const std::uint8_t* corners = surface.corners.data + 3 * std::size_t{cluster.first_triangle};
   HWY_ALIGN Codes codes;
   find_sides(scene, cluster_index, box, codes);
-  std::size_t count = 0;
   const Slots slots = slots_of(scene, cluster_index);
-  const std::uint32_t* vertices = scene.surface->cluster_vertices.data + cluster.first_vertex;
-  const std::uint8_t* known = corners;
+  const std::uint32_t* vertices = surface.cluster_vertices.data + cluster.first_vertex;
   std::uint8_t last[3 * kBlock];
-  if (3 * (first_triangle + kBlock) > scene.surface->corners.size) {  // the asset's last few
-    for (std::size_t i = 0; i < 3 * kBlock; ++i) {
-      last[i] = i < 3 * left ? corners[i] : std::uint8_t{0};
-    }
-    known = last;
+  if (3 * (cluster.first_triangle + kBlock) > surface.corners.size) {  // the asset's last few
+    std::memset(last, 0, sizeof last);
+    std::memcpy(last, corners, 3 * std::size_t{cluster.triangle_count});
+    corners = last;
   }
-  std::uint64_t bits = within(known, left < kBlock ? left : kBlock, cluster.vertex_count, codes);
-  if (bits == 0) {
-    return false;
-  }
-  for (; bits != 0; bits &= bits - 1, ++count) {
+  std::size_t count = 0;
+  for (std::uint64_t bits = within(corners, cluster.triangle_count, cluster.vertex_count, codes); bits != 0;
+       bits &= bits - 1, ++count) {
     const std::size_t i = lowest_bit(bits);
-    out.triangles[count] = static_cast<std::uint32_t>(first_triangle + i);
+    out.triangles[count] = static_cast<std::uint32_t>(cluster.first_triangle + i);
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t slot = corners[3 * i + k];
       for (std::size_t axis = 0; axis < 3; ++axis) {
         out.corners[k][axis][count] = slots.axes[axis][slot];
       }
       if (scene.neighbours) {
-        out.welds[k][count] = scene.surface->welds.data[vertices[slot]];
+        out.welds[k][count] = surface.welds.data[vertices[slot]];
       }
     }
   }
+  if (count == 0) {
+    return false;
+  }
   out.cluster = cluster_index;
   out.count = count;
-  const std::uint64_t gone = collapsed(out);
-  if (gone != 0) {
-    remove(gone, scene.neighbours, out);
-    count = out.count;
-    if (count == 0) {
-      return false;
-    }
-  }
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    Vector least = hn::Set(kFloats, FLT_MAX), most = hn::Set(kFloats, -FLT_MAX);
-    for (std::size_t i = 0; i < count; i += kLanes) {
+  const Vector empty_low = hn::Set(kFloats, FLT_MAX), empty_high = hn::Set(kFloats, -FLT_MAX);
+  Vector least[3] = {empty_low, empty_low, empty_low}, most[3] = {empty_high, empty_high, empty_high};
+  for (std::size_t i = 0; i < count; i += kLanes) {
+    const auto used = hn::FirstN(kFloats, count - i);
+    auto ab = used, bc = used, ca = used;
+    Vector low[3], high[3];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
       const Vector a = hn::LoadU(kFloats, out.corners[0][axis] + i);
       const Vector b = hn::LoadU(kFloats, out.corners[1][axis] + i);
       const Vector c = hn::LoadU(kFloats, out.corners[2][axis] + i);
-      const Vector low = hn::Min(hn::Min(a, b), c), high = hn::Max(hn::Max(a, b), c);
-      hn::StoreU(low, kFloats, out.low[axis] + i);
-      hn::StoreU(high, kFloats, out.high[axis] + i);
-      const auto used = hn::FirstN(kFloats, count - i);
-      least = hn::IfThenElse(used, hn::Min(low, least), least);
-      most = hn::IfThenElse(used, hn::Max(high, most), most);
+      low[axis] = hn::Min(hn::Min(a, b), c);
+      high[axis] = hn::Max(hn::Max(a, b), c);
+      ab = hn::And(ab, hn::Eq(a, b));
+      bc = hn::And(bc, hn::Eq(b, c));
+      ca = hn::And(ca, hn::Eq(c, a));
     }
-    out.box.low[axis] = hn::GetLane(hn::MinOfLanes(kFloats, least));
-    out.box.high[axis] = hn::GetLane(hn::MaxOfLanes(kFloats, most));
+    const auto is_empty = hn::Or(hn::Or(ab, bc), hn::Or(ca, hn::Not(used)));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Vector first = hn::IfThenElse(is_empty, empty_low, low[axis]);
+      const Vector end = hn::IfThenElse(is_empty, empty_high, high[axis]);
+      hn::StoreU(first, kFloats, out.low[axis] + i);
+      hn::StoreU(end, kFloats, out.high[axis] + i);
+      least[axis] = hn::Min(first, least[axis]);
+      most[axis] = hn::Max(end, most[axis]);
+    }
   }
-  return true;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    out.box.low[axis] = hn::GetLane(hn::MinOfLanes(kFloats, least[axis]));
+    out.box.high[axis] = hn::GetLane(hn::MaxOfLanes(kFloats, most[axis]));
+  }
+  return out.box.low[0] <= out.box.high[0];
 }
 
 }  // namespace HWY_NAMESPACE

@@ -17,7 +17,6 @@ HWY_BEFORE_NAMESPACE();
 namespace spherechain {
 namespace HWY_NAMESPACE {
 
-namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::ScalableTag<float>;
 using Vector = hn::Vec<Floats>;
 constexpr std::size_t kLanes = hn::MaxLanes(Floats());
@@ -35,7 +34,9 @@ struct Box {
   }
 };
 
-HWY_INLINE Box box_at(const BoxColumns& columns, std::size_t i) {
+// Of BoxColumns, or of whatever has `low` and `high` by axis.
+template <class Columns>
+HWY_INLINE Box box_at(const Columns& columns, std::size_t i) {
   Box box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     box.low[axis] = columns.low[axis][i];
@@ -62,21 +63,16 @@ struct BoxProbe {
       high[axis] = hn::Set(kFloats, box.high[axis]);
     }
   }
-  HWY_INLINE hn::Mask<Floats> misses(const float* const (&lows)[3], const float* const (&highs)[3],
-                                     std::size_t i) const {
+  template <class Columns>
+  HWY_INLINE hn::Mask<Floats> misses(const Columns& columns, std::size_t i) const {
     constexpr Floats kFloats;
-    auto out = hn::Gt(low[0], hn::LoadU(kFloats, highs[0] + i));
-    out = hn::Or(out, hn::Lt(high[0], hn::LoadU(kFloats, lows[0] + i)));
+    auto out = hn::Gt(low[0], hn::LoadU(kFloats, columns.high[0] + i));
+    out = hn::Or(out, hn::Lt(high[0], hn::LoadU(kFloats, columns.low[0] + i)));
     for (std::size_t axis = 1; axis < 3; ++axis) {
-      out = hn::Or(out, hn::Gt(low[axis], hn::LoadU(kFloats, highs[axis] + i)));
-      out = hn::Or(out, hn::Lt(high[axis], hn::LoadU(kFloats, lows[axis] + i)));
+      out = hn::Or(out, hn::Gt(low[axis], hn::LoadU(kFloats, columns.high[axis] + i)));
+      out = hn::Or(out, hn::Lt(high[axis], hn::LoadU(kFloats, columns.low[axis] + i)));
     }
     return out;
-  }
-  HWY_INLINE hn::Mask<Floats> misses(const BoxColumns& columns, std::size_t i) const {
-    const float* const lows[3] = {columns.low[0], columns.low[1], columns.low[2]};
-    const float* const highs[3] = {columns.high[0], columns.high[1], columns.high[2]};
-    return misses(lows, highs, i);
   }
   // Bit k: box i + k touches; `count` boxes are left.
   HWY_INLINE std::uint64_t touching(const BoxColumns& columns, std::size_t i, std::size_t count) const {
@@ -189,13 +185,6 @@ struct BallProbe {
     return hn::Gt(squared, most);
   }
 };
-
-HWY_NOINLINE void bound_clusters(const ContactScene& scene) {
-  const Surface& surface = *scene.surface;
-  for (std::size_t i = 0; i < surface.clusters.size; ++i) {
-    put_box(scene.clusters, i, box_of_cluster(scene, surface.clusters.data[i]));
-  }
-}
 
 }  // namespace HWY_NAMESPACE
 }  // namespace spherechain

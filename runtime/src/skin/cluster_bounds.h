@@ -46,56 +46,59 @@ namespace HWY_NAMESPACE {
 using GroupLanes = hn::CappedTag<float, kClusterLanes>;
 using GroupVector = hn::Vec<GroupLanes>;
 
-// Where in the tables a group's entries start.
-struct GroupTerms {
-  std::size_t term, term_count, morph, morph_count;
+// A group's entries in the tables.
+struct GroupEntries {
+  std::size_t first_term, end_term, first_morph, end_morph;
 };
+
+HWY_INLINE GroupEntries entries_of_group(const ContactScene& scene, std::size_t group) {
+  const std::uint32_t* const terms = scene.surface->bounds_first_terms.data + group;
+  if (scene.skin.morph_weights == nullptr) {
+    return {terms[0], terms[1], 0, 0};
+  }
+  const std::uint32_t* const morphs = scene.surface->bounds_first_morphs.data + group;
+  return {terms[0], terms[1], morphs[0], morphs[1]};
+}
 
 // What a group's clusters are at rest, morphed.
 struct GroupRest {
   HWY_INLINE GroupRest() {}  // for the target: an implicit one is compiled for the build's own, which NEON refuses
   GroupVector center[3], half[3], radius;
+  GroupVector extent;  // the X of Q: of the rest and of each morph's part of it, as these may cancel out
 };
 
-HWY_INLINE GroupRest rest_of_group(const BoundsInputs& in, std::size_t group, const GroupTerms& at, std::size_t lane) {
+HWY_INLINE GroupRest rest_of_group(const ContactScene& scene, std::size_t group, const GroupEntries& entries,
+                                   std::size_t lane) {
   constexpr GroupLanes d;
+  const Surface& surface = *scene.surface;
   GroupRest out;
-  const BoxLanes& box = in.boxes[group];
+  const BoxLanes& box = surface.boxes.data[group];
   const float* const columns[6] = {box.x, box.y, box.z, box.half_x, box.half_y, box.half_z};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     out.center[axis] = hn::LoadU(d, columns[axis] + lane);
     out.half[axis] = hn::LoadU(d, columns[3 + axis] + lane);
   }
   out.radius = hn::LoadU(d, box.radius + lane);
-  for (std::size_t i = at.morph; i < at.morph + at.morph_count; ++i) {
-    const BallLanes& ball = in.morphs[i];
-    const GroupVector weight = hn::Set(d, in.morph_weights[in.morph_targets[i]]);
-    const GroupVector radius = hn::Mul(hn::Abs(weight), hn::LoadU(d, ball.radius + lane));
-    out.center[0] = hn::MulAdd(weight, hn::LoadU(d, ball.x + lane), out.center[0]);
-    out.center[1] = hn::MulAdd(weight, hn::LoadU(d, ball.y + lane), out.center[1]);
-    out.center[2] = hn::MulAdd(weight, hn::LoadU(d, ball.z + lane), out.center[2]);
+  GroupVector of_morphs = hn::Zero(d);
+  for (std::size_t i = entries.first_morph; i < entries.end_morph; ++i) {
+    const BallLanes& ball = surface.bounds_morphs.data[i];
+    const GroupVector weight = hn::Set(d, scene.skin.morph_weights[surface.bounds_morph_targets.data[i]]);
+    const GroupVector x = hn::LoadU(d, ball.x + lane), y = hn::LoadU(d, ball.y + lane), z = hn::LoadU(d, ball.z + lane),
+                      reach = hn::LoadU(d, ball.radius + lane), radius = hn::Mul(hn::Abs(weight), reach);
+    out.center[0] = hn::MulAdd(weight, x, out.center[0]);
+    out.center[1] = hn::MulAdd(weight, y, out.center[1]);
+    out.center[2] = hn::MulAdd(weight, z, out.center[2]);
     for (GroupVector& half : out.half) {
       half = hn::Add(half, radius);
     }
     out.radius = hn::Add(out.radius, radius);
+    const GroupVector extent = hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), hn::Add(hn::Abs(z), reach));
+    // Twice: once more for what it took from the centre's extent.
+    of_morphs = hn::MulAdd(hn::Set(d, 2.0F), hn::Mul(hn::Abs(weight), extent), of_morphs);
   }
-  return out;
-}
-
-// The X of Q: of the rest and of each morph's part of it, as these may cancel out.
-HWY_INLINE GroupVector extent_of_group(const BoundsInputs& in, const GroupRest& rest, const GroupTerms& at,
-                                       std::size_t lane) {
-  constexpr GroupLanes d;
-  GroupVector out =
-      hn::Add(hn::Add(hn::Abs(rest.center[0]), hn::Abs(rest.center[1])), hn::Add(hn::Abs(rest.center[2]), rest.radius));
-  for (std::size_t i = at.morph; i < at.morph + at.morph_count; ++i) {
-    const BallLanes& ball = in.morphs[i];
-    const GroupVector size = hn::Abs(hn::Set(d, in.morph_weights[in.morph_targets[i]]));
-    const GroupVector extent =
-        hn::Add(hn::Add(hn::Abs(hn::LoadU(d, ball.x + lane)), hn::Abs(hn::LoadU(d, ball.y + lane))),
-                hn::Add(hn::Abs(hn::LoadU(d, ball.z + lane)), hn::LoadU(d, ball.radius + lane)));
-    out = hn::MulAdd(hn::Set(d, 2.0F), hn::Mul(size, extent), out);  // once more for what it took from the sum above
-  }
+  const GroupVector of_center =
+      hn::Add(hn::Add(hn::Abs(out.center[0]), hn::Abs(out.center[1])), hn::Add(hn::Abs(out.center[2]), out.radius));
+  out.extent = hn::Add(of_center, of_morphs);
   return out;
 }
 
@@ -120,22 +123,25 @@ HWY_INLINE GroupVector spectral_bound(const GroupVector (&r)[3][4]) {
 }
 
 // One register's lanes of a group of clusters.
-HWY_INLINE void bound_lanes(const ContactScene& scene, std::size_t group, const GroupTerms& at, std::size_t lane) {
+HWY_INLINE void bound_lanes(const ContactScene& scene, std::size_t group, const GroupEntries& entries,
+                            std::size_t lane) {
   constexpr GroupLanes d;
-  const BoundsInputs& in = scene.bounds;
-  const GroupRest rest = rest_of_group(in, group, at, lane);
-  const GroupVector extent = extent_of_group(in, rest, at, lane);
+  const BoundsTerm* const terms = scene.surface->bounds_terms.data;
+  const std::uint32_t* const term_bones = scene.surface->bounds_term_bones.data;
+  const BoneSize* const sizes = scene.bone_sizes;
+  const BoneMatrices bones = scene.skin.bones;
+  const GroupRest rest = rest_of_group(scene, group, entries, lane);
 
   GroupVector blend[3][4];
   for (auto& row : blend) {
     row[0] = row[1] = row[2] = row[3] = hn::Zero(d);
   }
-  for (std::size_t t = at.term; t < at.term + at.term_count; ++t) {
-    const float* row = in.matrices + in.term_bones[t] * in.stride;
-    const GroupVector weight = hn::LoadU(d, in.terms[t].weights + lane);
-    for (std::size_t i = 0; i < 3; ++i, row += in.row) {
+  for (std::size_t t = entries.first_term; t < entries.end_term; ++t) {
+    const float* row = bones.data + term_bones[t] * bones.stride;
+    const GroupVector weight = hn::LoadU(d, terms[t].weights + lane);
+    for (std::size_t i = 0; i < 3; ++i, row += bones.row) {
       for (std::size_t j = 0; j < 4; ++j) {
-        blend[i][j] = hn::MulAdd(weight, hn::Set(d, row[j * in.column]), blend[i][j]);
+        blend[i][j] = hn::MulAdd(weight, hn::Set(d, row[j * bones.column]), blend[i][j]);
       }
     }
   }
@@ -148,19 +154,19 @@ HWY_INLINE void bound_lanes(const ContactScene& scene, std::size_t group, const 
     strays[i] = hn::Zero(d);
   }
   GroupVector most = hn::Zero(d), deviations = hn::Zero(d);
-  for (std::size_t t = at.term; t < at.term + at.term_count; ++t) {
-    const std::size_t bone = in.term_bones[t];
-    const float* row = in.matrices + bone * in.stride;
-    const GroupVector deviation = hn::LoadU(d, in.terms[t].deviations + lane);
-    const auto moves = hn::Gt(hn::Add(deviation, hn::LoadU(d, in.terms[t].weights + lane)), hn::Zero(d));
-    const GroupVector size =
-        hn::MulAdd(hn::Set(d, in.sizes[bone].norm), extent, hn::Set(d, in.sizes[bone].translation));
+  for (std::size_t t = entries.first_term; t < entries.end_term; ++t) {
+    const std::size_t bone = term_bones[t];
+    const float* row = bones.data + bone * bones.stride;
+    const GroupVector deviation = hn::LoadU(d, terms[t].deviations + lane);
+    const auto moves = hn::Gt(hn::Add(deviation, hn::LoadU(d, terms[t].weights + lane)), hn::Zero(d));
+    const GroupVector size = hn::MulAdd(hn::Set(d, sizes[bone].norm), rest.extent, hn::Set(d, sizes[bone].translation));
     most = hn::Max(most, hn::IfThenElseZero(moves, size));
     deviations = hn::Add(deviations, deviation);
     const auto strays_from_mid = hn::Gt(deviation, hn::Zero(d));  // else 0, though what it is to weight may overflow
-    for (std::size_t i = 0; i < 3; ++i, row += in.row) {
-      const GroupVector x = hn::Set(d, row[0]), y = hn::Set(d, row[in.column]), z = hn::Set(d, row[2 * in.column]);
-      GroupVector stray = hn::Abs(hn::Sub(move(x, y, z, hn::Set(d, row[3 * in.column])), center[i]));
+    for (std::size_t i = 0; i < 3; ++i, row += bones.row) {
+      const GroupVector x = hn::Set(d, row[0]), y = hn::Set(d, row[bones.column]),
+                        z = hn::Set(d, row[2 * bones.column]);
+      GroupVector stray = hn::Abs(hn::Sub(move(x, y, z, hn::Set(d, row[3 * bones.column])), center[i]));
       stray = hn::MulAdd(hn::Abs(hn::Sub(x, blend[i][0])), rest.half[0], stray);
       stray = hn::MulAdd(hn::Abs(hn::Sub(y, blend[i][1])), rest.half[1], stray);
       stray = hn::MulAdd(hn::Abs(hn::Sub(z, blend[i][2])), rest.half[2], stray);
@@ -168,7 +174,8 @@ HWY_INLINE void bound_lanes(const ContactScene& scene, std::size_t group, const 
     }
   }
   constexpr float kUnit = 1.0F / 16777216.0F;
-  const auto count = static_cast<float>(at.term_count + at.morph_count);
+  const auto count =
+      static_cast<float>(entries.end_term - entries.first_term + (entries.end_morph - entries.first_morph));
   const GroupVector factor =
       hn::MulAdd(hn::Set(d, kUnit * (128.0F + 32.0F * count)), deviations, hn::Set(d, kUnit * (64.0F + 8.0F * count)));
   const GroupVector margin = hn::MulAdd(factor, most, hn::Set(d, kMinLength));
@@ -191,35 +198,14 @@ HWY_INLINE void bound_lanes(const ContactScene& scene, std::size_t group, const 
   hn::StoreU(radius, d, scene.ball_columns[3] + first);
 }
 
-HWY_NOINLINE void bound_clusters_by_bones(const ContactScene& scene) {
-  const BoundsInputs& in = scene.bounds;
-  GroupTerms at{};
-  for (std::size_t group = 0; group * kClusterLanes < in.cluster_count; ++group) {
-    at.term_count = in.term_counts[group];
-    at.morph_count = in.morph_counts == nullptr ? 0 : in.morph_counts[group];
-    for (std::size_t lane = 0; lane < kClusterLanes; lane += hn::MaxLanes(GroupLanes())) {
-      bound_lanes(scene, group, at, lane);
-    }
-    at.term += at.term_count;
-    at.morph += at.morph_count;
-  }
-}
-
-// The clusters of one sphere, where they are not bounded yet; with hulls, so no morph has a weight.
-HWY_NOINLINE void bound_sphere_by_bones(const ContactScene& scene, std::size_t sphere) {
-  if (scene.is_bounded[sphere] != 0) {
-    return;
-  }
-  scene.is_bounded[sphere] = 1;
-  const std::size_t end = (scene.first_cluster[sphere + 1] + kClusterLanes - 1) / kClusterLanes;
-  for (std::size_t group = scene.first_cluster[sphere] / kClusterLanes; group < end; ++group) {
+// The groups that hold the clusters [first, end), where they are not bounded yet.
+HWY_NOINLINE void bound_clusters_by_bones(const ContactScene& scene, std::size_t first, std::size_t end) {
+  for (std::size_t group = first / kClusterLanes; group < (end + kClusterLanes - 1) / kClusterLanes; ++group) {
     if (scene.is_group_bounded[group] == 0) {
       scene.is_group_bounded[group] = 1;
-      GroupTerms at{};
-      at.term = scene.group_terms[group];
-      at.term_count = scene.bounds.term_counts[group];
+      const GroupEntries entries = entries_of_group(scene, group);
       for (std::size_t lane = 0; lane < kClusterLanes; lane += hn::MaxLanes(GroupLanes())) {
-        bound_lanes(scene, group, at, lane);
+        bound_lanes(scene, group, entries, lane);
       }
     }
   }

@@ -2,7 +2,6 @@
 #include "skin/collector.h"
 
 #include <cfloat>
-#include <cmath>
 #include <utility>
 
 #include "asset/status.h"
@@ -10,21 +9,6 @@
 #include "simd/arithmetic.h"
 
 namespace spherechain {
-namespace {
-
-bool is_finite(const TriangleCorners& t) {
-  bool finite = true;
-  for (const Vec3& p : t.p) {
-    finite = finite && std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-  }
-  return finite;
-}
-
-}  // namespace
-
-void begin_spheres(ContactCollector& collector, Pair spheres) { collector.begin_spheres(spheres); }
-bool decide(ContactCollector& collector, const Candidate& candidate) { return collector.decide(candidate); }
-
 void ContactCollector::begin_spheres(Pair spheres) {
   end_spheres();
   current_ = spheres;
@@ -83,7 +67,7 @@ bool ContactCollector::decide(const Candidate& candidate) {
   if (share_a_position(candidate)) {
     return false;
   }
-  if (!candidate.meets && (!finite_triangles_intersect(*a, *b) || !is_finite(*a) || !is_finite(*b))) {
+  if (!candidate.meets && !triangles_intersect(*a, *b)) {
     return false;
   }
   TriangleContact contact{};
@@ -99,7 +83,7 @@ bool ContactCollector::decide(const Candidate& candidate) {
     std::swap(contact.part_a, contact.part_b);
     std::swap(a, b);
   }
-  const Span<const Pair> rest = surface_.rest_contacts;
+  const Span<Pair>& rest = surface_.rest_contacts;
   if (std::binary_search(rest.begin(), rest.end(), Pair{contact.triangle_a, contact.triangle_b})) {
     return false;
   }

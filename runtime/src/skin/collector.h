@@ -46,19 +46,19 @@ class LeastEntries {
   std::size_t count_ = 0;
 };
 
+// Kernels call its functions, none of them inline: they must not call templates of the standard library.
 class ContactCollector {
  public:
   ContactCollector(const Surface& surface, const PartTable& parts, SkinContactJob& job)
       : surface_(surface),
         part_table_(parts),
-        parts_(job.spheres_only != 0 ? Span<sc_part_contact>{} : Span<sc_part_contact>{job.parts, job.part_capacity}),
-        triangles_(job.spheres_only != 0 ? Span<TriangleContact>{}
-                                         : Span<TriangleContact>{job.triangles, job.triangle_capacity}),
+        parts_{job.parts, job.part_capacity},
+        triangles_({job.triangles, job.triangle_capacity}),
         spheres_({job.spheres, job.sphere_capacity}),
         spheres_only_(job.spheres_only != 0) {}
 
   void begin_spheres(Pair spheres);
-  bool decide(const Candidate& candidate);
+  bool decide(const Candidate& candidate);  // is it a contact?
   // Brings the lists in order and sets the job's counts. SC_OK, or SC_OVERFLOW.
   Status finish(SkinContactJob& job);
 

@@ -4,9 +4,12 @@
 // exact. Pairs of clusters are listed, and decided together: loaded, skinned or copied, those that still seem to touch
 // along the axes, their diagonals and the line between them, and paired triangle by triangle. Which candidates come out
 // may differ between targets, but none that intersects is ever missing.
+#include <cstring>
+
 #include "pairs/pair_bits.h"
 #include "simd/arithmetic.h"
 #include "simd/simd.h"
+#include "skin/collector.h"
 #include "skin/scene.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -38,6 +41,18 @@ struct PairList {
     hn::StoreU(hn::Compress(numbers, which), kPlaces, b + at);
     return at + hn::CountTrue(kPlaces, which);
   }
+  // Drops the pairs that `keeps` says false of; the others stay in order.
+  template <class Keeps>
+  HWY_INLINE void filter(const Keeps& keeps) {
+    std::size_t left = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::int32_t one = a[k], other = b[k];
+      a[left] = one;
+      b[left] = other;
+      left += keeps(static_cast<std::size_t>(one), static_cast<std::size_t>(other)) ? 1 : 0;
+    }
+    count = left;
+  }
   static bool has_room(std::size_t at) { return at + kLanes <= kRoom; }
   HWY_INLINE void finish() {
     constexpr Places kPlaces;
@@ -68,18 +83,11 @@ HWY_INLINE void find_places(const Block& block, std::size_t i, const Block& othe
                             PlacePairs& out) {
   constexpr Floats kFloats;
   constexpr hn::Rebind<std::uint32_t, Floats> kTriangles;
-  const float* const lows[3] = {other.low[0], other.low[1], other.low[2]};
-  const float* const highs[3] = {other.high[0], other.high[1], other.high[2]};
   const std::size_t end = block.count - i < kLanes ? block.count : i + kLanes;
   const auto used = hn::FirstN(kFloats, other.count - j);
   std::size_t count = 0;
   for (std::size_t one = i; one < end; ++one) {
-    Box box;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      box.low[axis] = block.low[axis][one];
-      box.high[axis] = block.high[axis][one];
-    }
-    auto apart = BoxProbe(box).misses(lows, highs, j);
+    auto apart = BoxProbe(box_at(block, one)).misses(other, j);
     if (neighbours) {
       apart = hn::Or(apart, sharing(block, one, other, j));
     }
@@ -94,12 +102,11 @@ HWY_INLINE void find_places(const Block& block, std::size_t i, const Block& othe
   out.finish();
 }
 
-// Like all that pairs, true where that is enough: at the first contact, where that is all that is asked for.
-template <bool kFirst>
-HWY_NOINLINE bool pair_registers(const Block& block, std::size_t i, const Block& other, std::size_t j, bool neighbours,
-                                 ContactCollector& collector) {
+// This and what calls it return true at the first contact, where that is all that is asked for.
+HWY_NOINLINE bool pair_registers(const ContactScene& scene, const Block& block, std::size_t i, const Block& other,
+                                 std::size_t j, ContactCollector& collector) {
   PlacePairs places;
-  find_places(block, i, other, j, neighbours, places);
+  find_places(block, i, other, j, scene.neighbours, places);
   for (std::size_t k = 0; k < places.count; k += kLanes) {
     const std::size_t left = places.count - k;
     std::uint64_t bits = ~std::uint64_t{0} >> (64 - (left < kLanes ? left : kLanes));
@@ -115,7 +122,7 @@ HWY_NOINLINE bool pair_registers(const Block& block, std::size_t i, const Block&
                                 block.corners_of(one),
                                 other.corners_of(two),
                                 ((verdicts.meeting >> lane) & 1U) != 0};
-      if (decide(collector, candidate) && kFirst) {
+      if (collector.decide(candidate) && scene.first_only) {
         return true;
       }
     }
@@ -123,15 +130,15 @@ HWY_NOINLINE bool pair_registers(const Block& block, std::size_t i, const Block&
   return false;
 }
 
-template <bool kFirst>
-HWY_INLINE bool pair_triangles(const Block& block, const Block& other, bool neighbours, ContactCollector& collector) {
+HWY_INLINE bool pair_triangles(const ContactScene& scene, const Block& block, const Block& other,
+                               ContactCollector& collector) {
   for (std::size_t i = 0; i < block.count; i += kLanes) {
     for (std::size_t j = 0; j < other.count; j += kLanes) {
       const std::size_t last = (other.count - j < kLanes ? other.count : j + kLanes) - 1;
       if (block.cluster == other.cluster && other.triangles[last] <= block.triangles[i]) {
         continue;  // each two triangles of a cluster once
       }
-      if (pair_registers<kFirst>(block, i, other, j, neighbours, collector)) {
+      if (pair_registers(scene, block, i, other, j, collector)) {
         return true;
       }
     }
@@ -140,27 +147,10 @@ HWY_INLINE bool pair_triangles(const Block& block, const Block& other, bool neig
 }
 
 // Two clusters that are loaded; or one, with itself.
-template <bool kFirst>
 HWY_NOINLINE bool pair_clusters(const ContactScene& scene, std::size_t a, std::size_t b, ContactCollector& collector) {
-  const BoxProbe probe(box_of_span(scene, b));
-  const std::size_t count_a = scene.surface->clusters.data[a].triangle_count;
-  const std::size_t count_b = scene.surface->clusters.data[b].triangle_count;
   Block block, other;
-  for (std::size_t first = 0; first < count_a; first += kBlock) {
-    if (!load_block(scene, a, first, probe, block)) {
-      continue;
-    }
-    const BoxProbe block_probe(block.box);
-    for (std::size_t first_b = 0; first_b < count_b; first_b += kBlock) {
-      if (!load_block(scene, b, first_b, block_probe, other)) {
-        continue;
-      }
-      if (pair_triangles<kFirst>(block, other, scene.neighbours, collector)) {
-        return true;
-      }
-    }
-  }
-  return false;
+  return load_block(scene, a, BoxProbe(box_of_span(scene, b)), block) &&
+         load_block(scene, b, BoxProbe(block.box), other) && pair_triangles(scene, block, other, collector);
 }
 
 // Of clusters, waiting to be decided together.
@@ -171,7 +161,6 @@ struct ClusterPairs : PairList<512> {
 
 // Loads the clusters that are listed, and pairs those that then still seem to touch; of each two spheres only until a
 // contact, where the first one is all that is asked for.
-template <bool kFirst>
 HWY_NOINLINE void decide_clusters(const ContactScene& scene, ClusterPairs& list, ContactCollector& collector) {
   const auto load_all = [&](const std::int32_t* side) HWY_ATTR {
     for (std::size_t k = 0; k < list.count; ++k) {
@@ -181,38 +170,28 @@ HWY_NOINLINE void decide_clusters(const ContactScene& scene, ClusterPairs& list,
       }
     }
   };
-  const auto keep = [&](const auto& touch) HWY_ATTR {
-    std::size_t left = 0;
-    for (std::size_t k = 0; k < list.count; ++k) {
-      const std::int32_t a = list.a[k], b = list.b[k];
-      list.a[left] = a;
-      list.b[left] = b;
-      left += touch(static_cast<std::size_t>(a), static_cast<std::size_t>(b)) ? 1 : 0;
-    }
-    list.count = left;
-  };
   load_all(list.a);
-  keep([&](std::size_t a, std::size_t b) HWY_ATTR { return box_of_span(scene, a).touches(box_at(scene.clusters, b)); });
+  list.filter([&](std::size_t a, std::size_t b)
+                  HWY_ATTR { return box_of_span(scene, a).touches(box_at(scene.clusters, b)); });
   load_all(list.b);
-  keep([&](std::size_t a, std::size_t b) HWY_ATTR { return spans_touch(scene, a, b); });
-  keep([&](std::size_t a, std::size_t b) HWY_ATTR { return a == b || !plane_parts(scene, a, b); });
+  list.filter([&](std::size_t a, std::size_t b) HWY_ATTR { return spans_touch(scene, a, b); });
+  list.filter([&](std::size_t a, std::size_t b) HWY_ATTR { return a == b || !plane_parts(scene, a, b); });
   for (std::size_t k = 0; k < list.count; ++k) {
     const auto a = static_cast<std::size_t>(list.a[k]), b = static_cast<std::size_t>(list.b[k]);
     const Pair spheres{scene.surface->clusters.data[a].sphere, scene.surface->clusters.data[b].sphere};
     if (spheres.a != list.spheres.a || spheres.b != list.spheres.b) {
-      begin_spheres(collector, spheres);
+      collector.begin_spheres(spheres);
       list.spheres = spheres;
       list.touch = false;
     }
-    if (!kFirst || !list.touch) {
-      list.touch |= pair_clusters<kFirst>(scene, a, b, collector);
+    if (!scene.first_only || !list.touch) {
+      list.touch |= pair_clusters(scene, a, b, collector);
     }
   }
   list.count = 0;
 }
 
 // One cluster against the clusters [first, end).
-template <bool kFirst>
 HWY_INLINE void list_cluster(const ContactScene& scene, std::size_t cluster, std::size_t first, std::size_t end,
                              ClusterPairs& list, ContactCollector& collector) {
   constexpr Floats kFloats;
@@ -224,7 +203,39 @@ HWY_INLINE void list_cluster(const ContactScene& scene, std::size_t cluster, std
     }
     list.count = list.put(list.count, cluster, j, hn::AndNot(apart, hn::FirstN(kFloats, end - j)));
     if (!list.has_room(list.count)) {
-      decide_clusters<kFirst>(scene, list, collector);
+      decide_clusters(scene, list, collector);
+    }
+  }
+}
+
+// Bounds of the clusters of spheres [first, end).
+HWY_NOINLINE void bound_clusters(const ContactScene& scene, std::size_t first, std::size_t end) {
+  std::memset(scene.is_bounded + first, 1, end - first);
+  const std::size_t first_cluster = scene.first_cluster[first], end_cluster = scene.first_cluster[end];
+  if (scene.has_balls) {
+    bound_clusters_by_bones(scene, first_cluster, end_cluster);
+    return;
+  }
+  const Cluster* const clusters = scene.surface->clusters.data;
+  for (std::size_t i = first_cluster; i < end_cluster; ++i) {
+    put_box(scene.clusters, i, box_of_cluster(scene, clusters[i]));
+  }
+}
+
+HWY_INLINE void bound_once(const ContactScene& scene, std::size_t sphere) {
+  if (scene.is_bounded[sphere] == 0) {
+    bound_clusters(scene, sphere, sphere + 1);
+  }
+}
+
+// Boxes of the spheres: by their hulls; else of those whose clusters are bounded, of all of them before this. Vectors
+// that are loaded right after their lanes were stored one by one have to wait.
+HWY_NOINLINE void bound_spheres(const ContactScene& scene) {
+  for (std::size_t s = 0; s < scene.sphere_count; ++s) {
+    if (scene.has_hulls) {
+      bound_hull(scene, s);
+    } else if (scene.is_bounded[s] != 0) {
+      unite_clusters(scene, s);
     }
   }
 }
@@ -232,22 +243,17 @@ HWY_INLINE void list_cluster(const ContactScene& scene, std::size_t cluster, std
 // The clusters of one sphere.
 HWY_INLINE void list_within(const ContactScene& scene, std::size_t sphere, ClusterPairs& list,
                             ContactCollector& collector) {
-  if (scene.has_hulls) {
-    bound_sphere_by_bones(scene, sphere);
-  }
+  bound_once(scene, sphere);
   const std::size_t end = scene.first_cluster[sphere + 1];
   for (std::size_t cluster = scene.first_cluster[sphere]; cluster < end; ++cluster) {
-    list_cluster<false>(scene, cluster, cluster, end, list, collector);
+    list_cluster(scene, cluster, cluster, end, list, collector);
   }
 }
 
-template <bool kFirst>
 HWY_INLINE void list_spheres(const ContactScene& scene, std::size_t a, std::size_t b, ClusterPairs& list,
                              ContactCollector& collector) {
-  if (scene.has_hulls) {
-    bound_sphere_by_bones(scene, a);
-    bound_sphere_by_bones(scene, b);
-  }
+  bound_once(scene, a);
+  bound_once(scene, b);
   const std::size_t end_a = scene.first_cluster[a + 1], first_b = scene.first_cluster[b],
                     end_b = scene.first_cluster[b + 1];
   const BoxProbe probe_a(box_at(scene.spheres, a));
@@ -257,62 +263,29 @@ HWY_INLINE void list_spheres(const ContactScene& scene, std::size_t a, std::size
   const BoxProbe probe_b(box_at(scene.spheres, b));
   for (std::size_t i = scene.first_cluster[a]; i < end_a; i += kLanes) {
     for (std::uint64_t bits = probe_b.touching(scene.clusters, i, end_a - i); bits != 0; bits &= bits - 1) {
-      list_cluster<kFirst>(scene, i + lowest_bit(bits), first_b, end_b, list, collector);
+      list_cluster(scene, i + lowest_bit(bits), first_b, end_b, list, collector);
     }
   }
 }
 
-// Exact boxes of a sphere's clusters and of all of them, where it has none yet.
-HWY_NOINLINE void bound_sphere(const ContactScene& scene, std::size_t sphere) {
-  if (scene.is_bounded[sphere] != 0) {
-    return;
+// The pairs of spheres that the caller lists, whatever the scope.
+HWY_NOINLINE void find_listed(const ContactScene& scene, ContactCollector& collector) {
+  const Span<const Pair> pairs = scene.candidates;
+  for (std::size_t i = 0; i < pairs.size && !scene.has_hulls; ++i) {
+    bound_once(scene, pairs.data[i].a);
+    bound_once(scene, pairs.data[i].b);
   }
-  scene.is_bounded[sphere] = 1;
-  for (std::size_t i = scene.first_cluster[sphere]; i < scene.first_cluster[sphere + 1]; ++i) {
-    put_box(scene.clusters, i, box_of_cluster(scene, scene.surface->clusters.data[i]));
+  if (pairs.size > 0) {
+    bound_spheres(scene);
   }
-  unite_clusters(scene, sphere);
-}
-
-// Boxes of all clusters and spheres.
-HWY_NOINLINE void bound_all(const ContactScene& scene) {
-  if (scene.has_hulls) {
-    bound_hulls(scene);
-    return;
+  ClusterPairs clusters;
+  for (std::size_t i = 0; i < pairs.size; ++i) {
+    const std::size_t a = pairs.data[i].a, b = pairs.data[i].b;
+    if (box_at(scene.spheres, a).touches(box_at(scene.spheres, b)) && !(scene.has_hulls && hulls_apart(scene, a, b))) {
+      list_spheres(scene, a, b, clusters, collector);
+    }
   }
-  if (scene.has_balls) {
-    bound_clusters_by_bones(scene);
-  } else {
-    bound_clusters(scene);
-  }
-  for (std::size_t s = 0; s < scene.sphere_count; ++s) {
-    unite_clusters(scene, s);
-  }
-}
-
-// Two spheres, whatever the scope. By bones all are bounded.
-template <bool kFirst>
-HWY_INLINE void pair_two(const ContactScene& scene, std::size_t a, std::size_t b, ClusterPairs& list,
-                         ContactCollector& collector) {
-  if (!scene.has_balls) {
-    bound_sphere(scene, a);
-    bound_sphere(scene, b);
-  }
-  if (box_at(scene.spheres, a).touches(box_at(scene.spheres, b)) && !(scene.has_hulls && hulls_apart(scene, a, b))) {
-    list_spheres<kFirst>(scene, a, b, list, collector);
-  }
-}
-
-template <bool kFirst>
-HWY_INLINE void find_of(const ContactScene& scene, const Pair* pairs, std::size_t count, ContactCollector& collector) {
-  if (scene.has_balls && count > 0) {
-    bound_all(scene);
-  }
-  ClusterPairs list;
-  for (std::size_t i = 0; i < count; ++i) {
-    pair_two<kFirst>(scene, pairs[i].a, pairs[i].b, list, collector);
-  }
-  decide_clusters<kFirst>(scene, list, collector);
+  decide_clusters(scene, clusters, collector);
 }
 
 HWY_INLINE bool is_enabled(const ContactScene& scene, std::size_t sphere) {
@@ -333,29 +306,24 @@ HWY_INLINE std::uint64_t paired(const ContactScene& scene, std::size_t first, st
 // Spheres, waiting for their clusters to be paired.
 using SpherePairs = PairList<512>;
 
-template <bool kFirst>
 HWY_NOINLINE void pair_spheres(const ContactScene& scene, SpherePairs& spheres, ClusterPairs& clusters,
                                ContactCollector& collector) {
   if (scene.has_hulls) {
-    std::size_t left = 0;
-    for (std::size_t k = 0; k < spheres.count; ++k) {
-      const std::int32_t a = spheres.a[k], b = spheres.b[k];
-      spheres.a[left] = a;
-      spheres.b[left] = b;
-      left += hulls_apart(scene, static_cast<std::size_t>(a), static_cast<std::size_t>(b)) ? 0 : 1;
-    }
-    spheres.count = left;
+    spheres.filter([&](std::size_t a, std::size_t b) HWY_ATTR { return !hulls_apart(scene, a, b); });
   }
   for (std::size_t k = 0; k < spheres.count; ++k) {
-    list_spheres<kFirst>(scene, static_cast<std::size_t>(spheres.b[k]), static_cast<std::size_t>(spheres.a[k]),
-                         clusters, collector);
+    list_spheres(scene, static_cast<std::size_t>(spheres.b[k]), static_cast<std::size_t>(spheres.a[k]), clusters,
+                 collector);
   }
   spheres.count = 0;
 }
 
-template <bool kFirst>
-HWY_INLINE void find(const ContactScene& scene, ContactCollector& collector) {
-  bound_all(scene);
+// All pairs of the scope.
+HWY_NOINLINE void find_all(const ContactScene& scene, ContactCollector& collector) {
+  if (!scene.has_hulls) {
+    bound_clusters(scene, 0, scene.sphere_count);
+  }
+  bound_spheres(scene);
   SpherePairs spheres;
   ClusterPairs clusters;
   const BoxColumns boxes = scene.spheres;  // in registers, for all that vectors may be written over
@@ -376,30 +344,21 @@ HWY_INLINE void find(const ContactScene& scene, ContactCollector& collector) {
       count = spheres.put(count, b, first, hn::AndNot(probe.misses(boxes, first), mask_of(bits)));
       if (!spheres.has_room(count)) {
         spheres.count = count;
-        pair_spheres<kFirst>(scene, spheres, clusters, collector);
+        pair_spheres(scene, spheres, clusters, collector);
         count = 0;
       }
     }
   }
   spheres.count = count;
-  pair_spheres<kFirst>(scene, spheres, clusters, collector);
-  decide_clusters<kFirst>(scene, clusters, collector);
+  pair_spheres(scene, spheres, clusters, collector);
+  decide_clusters(scene, clusters, collector);
 }
 
-void find_all(const ContactScene& scene, bool first_only, ContactCollector& collector) {
-  if (first_only) {
-    find<true>(scene, collector);
+void find(const ContactScene& scene, ContactCollector& collector) {
+  if (scene.candidates.data != nullptr) {
+    find_listed(scene, collector);
   } else {
-    find<false>(scene, collector);
-  }
-}
-
-void find_pairs(const ContactScene& scene, const Pair* pairs, std::size_t count, bool first_only,
-                ContactCollector& collector) {
-  if (first_only) {
-    find_of<true>(scene, pairs, count, collector);
-  } else {
-    find_of<false>(scene, pairs, count, collector);
+    find_all(scene, collector);
   }
 }
 
@@ -411,18 +370,12 @@ HWY_AFTER_NAMESPACE();
 namespace spherechain {
 namespace {
 
-SPHERECHAIN_KERNELS(find_all);
-SPHERECHAIN_KERNELS(find_pairs);
+SPHERECHAIN_KERNELS(find);
 
 }  // namespace
 
-void find_candidates(Target resolved, const ContactScene& scene, bool first_only, ContactCollector& collector) {
-  find_all_kernels[index_of(resolved)](scene, first_only, collector);
-}
-
-void find_candidates_of(Target resolved, const ContactScene& scene, Span<const Pair> pairs, bool first_only,
-                        ContactCollector& collector) {
-  find_pairs_kernels[index_of(resolved)](scene, pairs.data, pairs.size, first_only, collector);
+void find_candidates(Target resolved, const ContactScene& scene, ContactCollector& collector) {
+  find_kernels[index_of(resolved)](scene, collector);
 }
 
 }  // namespace spherechain

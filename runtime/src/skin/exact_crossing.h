@@ -116,9 +116,8 @@ struct Pieces {
   bool overlap() const { return order(q, v) <= 0 && order(r, w) >= 0; }
 };
 
-inline Pieces pieces_of(const TriangleCorners& a, const TriangleCorners& b, const Crossing& a_in_b,
-                        const Crossing& b_in_a, double error) {
-  const Arrangement of_a = arrange(a_in_b.sides), of_b = arrange(b_in_a.sides);
+inline Pieces pieces_of(const TriangleCorners& a, const TriangleCorners& b, const Crossings& crossings, double error) {
+  const Arrangement of_a = arrange(crossings.a_in_b.sides), of_b = arrange(crossings.b_in_a.sides);
   Pieces pieces{&a, &b, of_a.alone, of_a.second, of_a.third, of_b.alone, of_b.second, of_b.third, error};
   if (of_b.turns) {  // a's plane
     pieces.q = of_a.third;

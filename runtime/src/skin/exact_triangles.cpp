@@ -56,18 +56,15 @@ bool is_finite(const TriangleCorners& t) {
 
 }  // namespace
 
-bool finite_triangles_intersect(const TriangleCorners& a, const TriangleCorners& b) noexcept {
+bool triangles_intersect(const TriangleCorners& a, const TriangleCorners& b) noexcept {
   const double error = error_of(a, b);
   Crossings crossings{};
   if (!cross_each_other(a, b, error, crossings)) {
     return false;
   }
-  return are_in_one_plane(crossings) ? flat_triangles_intersect(a, b)
-                                     : pieces_of(a, b, crossings.a_in_b, crossings.b_in_a, error).overlap();
-}
-
-bool triangles_intersect(const TriangleCorners& a, const TriangleCorners& b) noexcept {
-  return is_finite(a) && is_finite(b) && finite_triangles_intersect(a, b);
+  const bool intersect =
+      are_in_one_plane(crossings) ? flat_triangles_intersect(a, b) : pieces_of(a, b, crossings, error).overlap();
+  return intersect && is_finite(a) && is_finite(b);  // last: most are
 }
 
 }  // namespace spherechain

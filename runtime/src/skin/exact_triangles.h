@@ -15,9 +15,6 @@ struct TriangleCorners {
 // the processor's default rounding, to nearest; where it takes subnormal floats as zero, so does this.
 bool triangles_intersect(const TriangleCorners& a, const TriangleCorners& b) noexcept;
 
-// The same of corners known to be finite.
-bool finite_triangles_intersect(const TriangleCorners& a, const TriangleCorners& b) noexcept;
-
 struct Segment {
   Vec3 from, to;
 };

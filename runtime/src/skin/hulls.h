@@ -47,7 +47,7 @@ HWY_INLINE float hull_margin(const ContactScene& scene, const Hull& hull) {
   constexpr hn::CappedTag<float, 4> kFour;
   constexpr std::size_t kWidth = hn::MaxLanes(kFour);
   const HullBone* const bones = scene.surface->hull_bones.data + hull.first_bone;
-  const BoneSize* const sizes = scene.bounds.sizes;
+  const BoneSize* const sizes = scene.bone_sizes;
   const float center[3] = {hull.center.x, hull.center.y, hull.center.z};
   const float extent = (center[0] < 0 ? -center[0] : center[0]) + (center[1] < 0 ? -center[1] : center[1]) +
                        (center[2] < 0 ? -center[2] : center[2]) + hull.radius;
@@ -145,15 +145,8 @@ HWY_INLINE void bound_hull(const ContactScene& scene, std::size_t sphere) {
   const float margin = hull_margin(scene, hull);
   scene.hull_margins[sphere] = margin;
   float lows[4], highs[4];
-#if HWY_TARGET == HWY_SCALAR
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    lows[axis] = hn::GetLane(low[axis]);
-    highs[axis] = hn::GetLane(high[axis]);
-  }
-#else
   reduce_four(low, Lesser(), lows);
   reduce_four(high, Greater(), highs);
-#endif
   const bool is_bounded = margin <= FLT_MAX;
   Box box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -161,12 +154,6 @@ HWY_INLINE void bound_hull(const ContactScene& scene, std::size_t sphere) {
     box.high[axis] = is_bounded ? highs[axis] + margin : margin;
   }
   put_box(scene.spheres, sphere, box);
-}
-
-HWY_NOINLINE void bound_hulls(const ContactScene& scene) {
-  for (std::size_t sphere = 0; sphere < scene.sphere_count; ++sphere) {
-    bound_hull(scene, sphere);
-  }
 }
 
 // Does a plane across the line of their boxes' middles part two spheres' hulls? Any direction would be as sure; this

@@ -21,43 +21,48 @@ inline constexpr std::size_t kDirections = 9, kSpanLanes = 16;
 // Of a bone's matrix by columns of four.
 inline constexpr std::size_t kColumnFloats = 16;
 
+// How large a bone's matrix is.
+struct BoneSize {
+  float norm;         // at least the spectral norm of its linear part, but for rounding
+  float translation;  // the greatest magnitude of a component
+};
+
 // Boxes coordinate by coordinate.
 struct BoxColumns {
   float* low[3];
   float* high[3];
 };
 
-// Bare arrays, as in SkinInputs.
 struct ContactScene {
   const Surface* surface = nullptr;
   std::size_t sphere_count = 0;
-  Span<const std::uint64_t> ignored, disabled;  // the latter may be empty
-  bool apart = true, neighbours = false;        // which of them to pair: see sc_scope
-  const float* positions = nullptr;             // the source's; null: from bones
-  bool has_balls = false;                       // bounded by bones
-  bool has_hulls = false;                       // and sphere by sphere first: clusters only as needed
-  std::size_t stride = 0;                       // floats
-  SkinInputs skin{};                            // from bones
-  BoundsInputs bounds{};                        // likewise
+  Span<const std::uint64_t> ignored, disabled;   // the latter may be empty
+  Span<const Pair> candidates;                   // of spheres: the pairs to decide; null: those of the scope
+  bool apart = true, neighbours = false;         // which of them to pair: see sc_scope
+  bool first_only = false;                       // of each two spheres no more once one candidate is a contact
+  const float* positions = nullptr;              // the source's; null: from bones
+  bool has_balls = false;                        // bounded by bones
+  bool has_hulls = false;                        // and sphere by sphere first: clusters only as needed
+  std::size_t stride = 0;                        // floats
+  SkinInputs skin{};                             // from bones
+  const std::uint32_t* first_cluster = nullptr;  // a sphere's, and the end
   // Scratch memory.
   BoxColumns spheres, clusters;
-  std::uint32_t* first_cluster = nullptr;  // a sphere's, and the end
-  std::uint8_t* is_loaded = nullptr;       // a cluster's: are its vertices and its span below?
-  std::uint8_t* is_bounded = nullptr;      // a sphere's: are its clusters' boxes there?
-  float* spans = nullptr;                  // of cluster after cluster: the least in each direction, then the greatest
-  float* slots = nullptr;                  // x, y, z of a cluster's vertices, of cluster after cluster
-  float* ball_columns[4] = {};             // from bones: around the clusters, by coordinates, the radius last
-  BoneSize* bone_sizes = nullptr;          // from bones
+  std::uint8_t* is_loaded = nullptr;   // a cluster's: are its vertices and its span below?
+  std::uint8_t* is_bounded = nullptr;  // a sphere's: are its clusters' boxes there?
+  float* spans = nullptr;              // of cluster after cluster: the least in each direction, then the greatest
+  float* slots = nullptr;              // x, y, z of a cluster's vertices, of cluster after cluster
+  // From bones.
+  float* ball_columns[4] = {};               // around the clusters, by coordinates, the radius last
+  std::uint8_t* is_group_bounded = nullptr;  // a group's of eight clusters
+  BoneSize* bone_sizes = nullptr;
   // With hulls.
-  std::uint32_t* group_terms = nullptr;  // where in the bounds' terms a group of clusters starts
-  std::uint8_t* is_group_bounded = nullptr;
   float* columns = nullptr;       // of bone after bone four of four floats, the fourth the translation
   float* hulls = nullptr;         // of sphere after sphere the points' x, y and z in the pose
   float* hull_margins = nullptr;  // how far from the points' hull the sphere's vertices are at most
 };
 
-// Where triangles that intersect go. In a file of its own, for kernels must not call templates of the standard library.
-class ContactCollector;
+class ContactCollector;  // where triangles that intersect go
 
 // Two triangles of two clusters whose boxes touch, and whose planes may cross: the decision.
 struct Candidate {
@@ -66,15 +71,8 @@ struct Candidate {
   TriangleCorners a, b;
   bool meets;  // is known to: no more to decide
 };
-void begin_spheres(ContactCollector& collector, Pair spheres);
-bool decide(ContactCollector& collector, const Candidate& candidate);  // is it a contact?
 
-// Hands all candidates that there are, and a few more, to the collector. `first_only`: of each two spheres no more once
-// one candidate is a contact.
-void find_candidates(Target resolved, const ContactScene& scene, bool first_only, ContactCollector& collector);
-
-// The same for these pairs of spheres only.
-void find_candidates_of(Target resolved, const ContactScene& scene, Span<const Pair> pairs, bool first_only,
-                        ContactCollector& collector);
+// Hands all candidates that there are, and a few more, to the collector.
+void find_candidates(Target resolved, const ContactScene& scene, ContactCollector& collector);
 
 }  // namespace spherechain

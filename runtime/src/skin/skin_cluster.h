@@ -17,7 +17,6 @@ namespace HWY_NAMESPACE {
 
 HWY_INLINE float fused_one(float a, float b, float c) {
 #if SPHERECHAIN_FUSES
-  namespace hn = hwy::HWY_NAMESPACE;
   const hn::CappedTag<float, 1> d;
   return hn::GetLane(hn::MulAdd(hn::Set(d, a), hn::Set(d, b), hn::Set(d, c)));
 #else
@@ -29,7 +28,6 @@ HWY_INLINE float fused_one(float a, float b, float c) {
 template <std::size_t kParts, class D>
 HWY_INLINE void move_slots(D d, const SkinInputs& in, const Cluster& cluster, std::size_t slots, std::size_t slot,
                            const float* const (&rest)[3], float* const (&out)[3]) {
-  namespace hn = hwy::HWY_NAMESPACE;
   constexpr std::size_t kWidth = hn::MaxLanes(D());
   hn::Vec<D> p[3][kParts], a[3][kParts];
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -38,11 +36,11 @@ HWY_INLINE void move_slots(D d, const SkinInputs& in, const Cluster& cluster, st
       a[axis][part] = hn::Zero(d);
     }
   }
-  const std::uint32_t* const bones = in.cluster_bones + cluster.first_bone;
-  const float* weights = in.slot_weights + cluster.first_weight + slot;
-  const std::size_t row_step = in.row, column_step = in.column;
+  const std::uint32_t* const bones = in.surface->cluster_bones.data + cluster.first_bone;
+  const float* weights = in.surface->slot_weights.data + cluster.first_weight + slot;
+  const std::size_t row_step = in.bones.row, column_step = in.bones.column;
   for (std::size_t bone = 0; bone < cluster.bone_count; ++bone, weights += slots) {
-    const float* row = in.matrices + bones[bone] * in.stride;
+    const float* row = in.bones.data + bones[bone] * in.bones.stride;
     for (std::size_t axis = 0; axis < 3; ++axis, row += row_step) {
       const auto m0 = hn::Set(d, row[0]), m1 = hn::Set(d, row[column_step]), m2 = hn::Set(d, row[2 * column_step]),
                  m3 = hn::Set(d, row[3 * column_step]);
@@ -59,16 +57,15 @@ HWY_INLINE void move_slots(D d, const SkinInputs& in, const Cluster& cluster, st
   }
 }
 
-// x, y, z: room for kMaxClusterSlots, aligned for the target's registers. As many are written as the cluster has slots:
-// those beyond its vertices repeat the last one.
+// x, y, z: room for kMaxClusterVertices, aligned for the target's registers. As many are written as the cluster has
+// slots: those beyond its vertices repeat the last one.
 HWY_INLINE void skin_cluster(const SkinInputs& in, const Cluster& cluster, float* HWY_RESTRICT x, float* HWY_RESTRICT y,
                              float* HWY_RESTRICT z) {
-  namespace hn = hwy::HWY_NAMESPACE;
   constexpr hn::CappedTag<float, kSlotLanes> d;
   const std::size_t slots = (cluster.vertex_count + kSlotLanes - 1) / kSlotLanes * kSlotLanes;
   const float* rest[3];
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    rest[axis] = in.slot_positions + 3 * std::size_t{cluster.first_slot} + axis * slots;
+    rest[axis] = in.surface->slot_positions.data + 3 * std::size_t{cluster.first_slot} + axis * slots;
   }
   if (in.morph_weights != nullptr && cluster.morph_count > 0) {
     float* const morphed[3] = {x, y, z};
@@ -78,7 +75,7 @@ HWY_INLINE void skin_cluster(const SkinInputs& in, const Cluster& cluster, float
       }
       rest[axis] = morphed[axis];
     }
-    const SlotMorph* const end = in.slot_morphs + cluster.first_morph + cluster.morph_count;
+    const SlotMorph* const end = in.surface->slot_morphs.data + cluster.first_morph + cluster.morph_count;
     for (const SlotMorph* morph = end - cluster.morph_count; morph != end; ++morph) {
       const float weight = in.morph_weights[morph->target];
       if (weight != 0) {

@@ -121,13 +121,10 @@ sc_status sc_find_skin_contacts(sc_skin_contact_job* job) noexcept {
   ContactScene scene = scene_of(view_of(*job->asset), surface, job->pose, job->filter, job->scratch, parts);
   scene.apart = job->scope != SC_SCOPE_NEIGHBOURS;
   scene.neighbours = job->scope != SC_SCOPE_APART;
+  scene.candidates = {job->candidates, job->candidate_count};
+  scene.first_only = job->spheres_only != 0;
   ContactCollector collector(surface, parts, *job);
-  const bool first_only = job->spheres_only != 0;
-  if (job->candidates == nullptr) {
-    find_candidates(resolved, scene, first_only, collector);
-  } else {
-    find_candidates_of(resolved, scene, {job->candidates, job->candidate_count}, first_only, collector);
-  }
+  find_candidates(resolved, scene, collector);
   return collector.finish(*job);
 }
 

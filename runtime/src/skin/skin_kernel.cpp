@@ -12,8 +12,10 @@ HWY_BEFORE_NAMESPACE();
 namespace spherechain {
 namespace HWY_NAMESPACE {
 
-void skin_all(const SkinInputs& in, const Surface& surface, float* positions, std::size_t stride) {
-  HWY_ALIGN float x[kMaxClusterSlots], y[kMaxClusterSlots], z[kMaxClusterSlots];
+void skin_all(const SkinInputs& in, float* positions, std::size_t stride) {
+  const Surface& surface = *in.surface;
+  static_assert(kMaxClusterVertices % kSlotLanes == 0, "as many slots");
+  HWY_ALIGN float x[kMaxClusterVertices], y[kMaxClusterVertices], z[kMaxClusterVertices];
   for (std::size_t i = 0; i < surface.clusters.size; ++i) {
     const Cluster& cluster = surface.clusters.data[i];
     skin_cluster(in, cluster, x, y, z);
@@ -40,7 +42,7 @@ SPHERECHAIN_KERNELS(skin_all);
 }  // namespace
 
 void skin_surface(const Surface& surface, const Pose& pose, Target resolved, float* positions, std::size_t stride) {
-  skin_all_kernels[index_of(resolved)](skin_inputs(surface, pose), surface, positions, stride);
+  skin_all_kernels[index_of(resolved)]({&surface, matrices_of(pose), pose.morph_weights}, positions, stride);
 }
 
 }  // namespace spherechain

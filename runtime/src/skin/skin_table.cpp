@@ -2,7 +2,8 @@
 #include "skin/skin_table.h"
 
 #include <algorithm>
-#include <type_traits>
+#include <cstring>
+#include <numeric>
 
 #include "asset/memory.h"
 #include "asset/status.h"
@@ -12,76 +13,73 @@
 namespace spherechain {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x6B736E696B736373;  // says that the words are a table
-enum Place : std::size_t { kIsTable, kAsset, kTriangles, kVertices, kAlignment, kHeaderWords };
-
-std::uint64_t key_of(const AssetView& asset) { return reinterpret_cast<std::uintptr_t>(asset.spheres().data); }
-
-// The arrays start at cache lines: a table that was copied to another place in its line is none.
-std::uint64_t alignment_of(const std::uint64_t* words) { return reinterpret_cast<std::uintptr_t>(words) % 64; }
-
-// Hands out the table's arrays, each from a cache line on; of null words only counts them.
-class Layout {
- public:
-  Layout(const AssetView& asset, std::uint64_t* words) : words_(words), used_(kHeaderWords) {
-    const SkinSizes& sizes = asset.skin().sizes;
-    take(triangles, sizes.triangles);
-    take(clusters, sizes.clusters);
-    take(cluster_vertices, sizes.cluster_vertices);
-    take(cluster_bones, sizes.cluster_bones);
-    take(parts, sizes.triangles);
-    take(source_vertices, sizes.vertices);
-    take(welds, sizes.vertices);
-    take(slot_positions, 3 * sizes.slots);
-    take(slot_weights, sizes.weights);
-    take(slot_morphs, sizes.slot_morphs);
-    take(rest_contacts, sizes.rest_contacts);
-    take(hulls, sizes.hulls);
-    take(hull_points, 3 * sizes.hull_points);
-    take(hull_weights, sizes.hull_weights);
-    // While the table is filled: where a vertex' bones, weights and morphs start; and the bones.
-    take(first_bones, sizes.vertices + 1);
-    take(first_weights, sizes.vertices);
-    take(first_morphs, sizes.vertices + 1);
-    take(bones, sizes.influences);
-  }
-
-  std::size_t words() const { return used_; }
-
-  Span<std::uint32_t> triangles, cluster_vertices, cluster_bones, source_vertices, welds;
-  Span<std::uint8_t> parts;
-  Span<Cluster> clusters;
-  Span<float> slot_positions, slot_weights, hull_points, hull_weights;
-  Span<SlotMorph> slot_morphs;
-  Span<Pair> rest_contacts;
-  Span<Hull> hulls;
-  Span<std::uint32_t> first_bones, first_weights, first_morphs, bones;
-
- private:
-  // Vectors of any target may be read this far past an array's end.
-  static constexpr std::size_t kLine = 64 / sizeof(std::uint64_t);
-
-  template <typename T>
-  void take(Span<T>& out, std::size_t count) {
-    const auto misplaced = reinterpret_cast<std::uintptr_t>(words_ + used_) / sizeof(std::uint64_t) % kLine;
-    used_ += words_ == nullptr ? kLine : (kLine - misplaced) % kLine;
-    out = {words_ == nullptr ? nullptr : reinterpret_cast<T*>(words_ + used_), count};
-    used_ += (count * sizeof(T) + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t) + kLine;
-  }
-
-  std::uint64_t* words_;
-  std::size_t used_;
+// What a table begins with. The bytes of another asset may have come to lie at the same address, hence its sizes. The
+// arrays start at cache lines: a table that was copied to another place in its line is none.
+struct Header {
+  std::uint64_t magic, asset, triangles, vertices, alignment;
 };
+
+constexpr std::uint64_t kMagic = 0x6B736E696B736373;  // says that the words are a table
+
+Header header_of(const AssetView& asset, const std::uint64_t* words) {
+  const SkinSizes& sizes = asset.skin().sizes;
+  return {kMagic, reinterpret_cast<std::uintptr_t>(asset.spheres().data), sizes.triangles, sizes.vertices,
+          reinterpret_cast<std::uintptr_t>(words) % 64};
+}
+
+// While the table is filled: where a vertex' bones, weights and morphs start; and the bones.
+struct VertexTable {
+  Span<std::uint32_t> first_bones, first_weights, first_morphs, bones;
+};
+
+// Sets the table's arrays; of null words only counts them.
+std::size_t lay_out(const AssetView& asset, std::uint64_t* words, Surface& out, VertexTable& vertices) {
+  const SkinData& skin = asset.skin();
+  const SkinSizes& sizes = skin.sizes;
+  WordMemory memory(words, sizeof(Header) / sizeof(std::uint64_t));
+  memory.take(out.triangles, sizes.triangles);
+  memory.take(out.clusters, sizes.clusters);
+  memory.take(out.first_clusters, asset.spheres().size + 1);
+  memory.take(out.cluster_vertices, sizes.cluster_vertices);
+  memory.take(out.cluster_bones, sizes.cluster_bones);
+  memory.take(out.parts, sizes.triangles);
+  memory.take(out.source_vertices, sizes.vertices);
+  memory.take(out.welds, sizes.vertices);
+  memory.take(out.slot_positions, 3 * sizes.slots);
+  memory.take(out.slot_weights, sizes.weights);
+  memory.take(out.slot_morphs, sizes.slot_morphs);
+  memory.take(out.bounds_first_terms, skin.bounds_term_counts.size + 1);
+  memory.take(out.bounds_first_morphs, skin.bounds_morph_counts.size == 0 ? 0 : skin.bounds_morph_counts.size + 1);
+  memory.take(out.rest_contacts, sizes.rest_contacts);
+  memory.take(out.hulls, sizes.hulls);
+  memory.take(out.hull_points, 3 * sizes.hull_points);
+  memory.take(out.hull_weights, sizes.hull_weights);
+  memory.take(vertices.first_bones, sizes.vertices + 1);
+  memory.take(vertices.first_weights, sizes.vertices);
+  memory.take(vertices.first_morphs, sizes.vertices + 1);
+  memory.take(vertices.bones, sizes.influences);
+  out.corners = skin.corners;
+  out.boxes = skin.boxes;
+  out.bounds_term_bones = skin.bounds_term_bones;
+  out.bounds_terms = skin.bounds_terms;
+  out.bounds_morph_targets = skin.bounds_morph_targets;
+  out.bounds_morphs = skin.bounds_morphs;
+  out.hull_bones = skin.hull_bones;
+  return memory.used();
+}
 
 class Filler {
  public:
-  Filler(const AssetView& asset, const Layout& out) : asset_(asset), skin_(asset.skin()), out_(out) {}
+  Filler(const AssetView& asset, const Surface& out, const VertexTable& vertices)
+      : asset_(asset), skin_(asset.skin()), out_(out), vertices_(vertices) {}
 
   void run() {
     fill_vertices();
     fill_clusters();
     fill_parts();
     fill_hulls();
+    fill_starts(skin_.bounds_term_counts, out_.bounds_first_terms);
+    fill_starts(skin_.bounds_morph_counts, out_.bounds_first_morphs);
     Stream triangles(skin_.triangles), pairs(skin_.rest_contacts);
     for (std::uint32_t& triangle : out_.triangles) {
       triangle = triangles.next();
@@ -99,16 +97,16 @@ class Filler {
     for (; v < out_.source_vertices.size; ++v) {
       out_.source_vertices[v] = sources.next();
       out_.welds[v] = v;
-      out_.first_bones[v] = bone;
-      out_.first_weights[v] = weight;
-      out_.first_morphs[v] = morph;
+      vertices_.first_bones[v] = bone;
+      vertices_.first_weights[v] = weight;
+      vertices_.first_morphs[v] = morph;
       bone += bones_of(v);
       weight += bones_of(v) - (leaves_one_out(v) ? 1U : 0U);
       morph += skin_.morph_counts.size == 0 ? 0U : skin_.morph_counts[v];
     }
-    out_.first_bones[v] = bone;
-    out_.first_morphs[v] = morph;
-    for (std::uint32_t& entry : out_.bones) {
+    vertices_.first_bones[v] = bone;
+    vertices_.first_morphs[v] = morph;
+    for (std::uint32_t& entry : vertices_.bones) {
       entry = bones.next();
     }
     while (welds.has_more()) {
@@ -125,8 +123,8 @@ class Filler {
   // 0 where the bone does not move the vertex.
   float weight_of(std::uint32_t vertex, std::uint32_t bone) const {
     const std::uint32_t count = bones_of(vertex);
-    const std::uint32_t* const bones = out_.bones.data + out_.first_bones[vertex];
-    const float* const weights = skin_.influence_weights.data + out_.first_weights[vertex];
+    const std::uint32_t* const bones = vertices_.bones.data + vertices_.first_bones[vertex];
+    const float* const weights = skin_.influence_weights.data + vertices_.first_weights[vertex];
     const auto k = static_cast<std::uint32_t>(std::find(bones, bones + count, bone) - bones);
     if (k == count) {
       return 0;
@@ -147,34 +145,35 @@ class Filler {
   void fill_clusters() {
     Stream vertices(skin_.cluster_vertices), bones(skin_.cluster_bones);
     Cluster next{};
-    std::uint32_t left = asset_.spheres()[0].triangle_count;
-    for (std::size_t c = 0; c < out_.clusters.size; ++c) {
-      while (left == 0) {
-        left = asset_.spheres()[++next.sphere].triangle_count;
+    std::uint32_t c = 0;
+    for (; next.sphere < asset_.spheres().size; ++next.sphere) {
+      out_.first_clusters[next.sphere] = c;
+      for (std::uint32_t left = asset_.spheres()[next.sphere].triangle_count; left > 0; ++c) {
+        const PackedCluster& packed = skin_.clusters[c];
+        Cluster& cluster = out_.clusters[c];
+        cluster = next;
+        cluster.triangle_count = packed.triangle_count;
+        cluster.vertex_count = packed.vertex_count;
+        cluster.bone_count = packed.bone_count;
+        for (std::uint32_t i = 0; i < cluster.vertex_count; ++i) {
+          out_.cluster_vertices[cluster.first_vertex + i] = vertices.next();
+        }
+        for (std::uint32_t i = 0; i < cluster.bone_count; ++i) {
+          out_.cluster_bones[cluster.first_bone + i] = bones.next();
+        }
+        fill_slots(cluster);
+        fill_morphs(cluster);
+        const auto slots = static_cast<std::uint32_t>(slot_count(cluster));
+        left -= cluster.triangle_count;
+        next.first_triangle += cluster.triangle_count;
+        next.first_vertex += cluster.vertex_count;
+        next.first_bone += cluster.bone_count;
+        next.first_slot += slots;
+        next.first_weight += slots * cluster.bone_count;
+        next.first_morph += cluster.morph_count;
       }
-      const PackedCluster& packed = skin_.clusters[c];
-      Cluster& cluster = out_.clusters[c];
-      cluster = next;
-      cluster.triangle_count = packed.triangle_count;
-      cluster.vertex_count = packed.vertex_count;
-      cluster.bone_count = packed.bone_count;
-      for (std::uint32_t i = 0; i < cluster.vertex_count; ++i) {
-        out_.cluster_vertices[cluster.first_vertex + i] = vertices.next();
-      }
-      for (std::uint32_t i = 0; i < cluster.bone_count; ++i) {
-        out_.cluster_bones[cluster.first_bone + i] = bones.next();
-      }
-      fill_slots(cluster);
-      fill_morphs(cluster);
-      const auto slots = static_cast<std::uint32_t>(slot_count(cluster));
-      left -= cluster.triangle_count;
-      next.first_triangle += cluster.triangle_count;
-      next.first_vertex += cluster.vertex_count;
-      next.first_bone += cluster.bone_count;
-      next.first_slot += slots;
-      next.first_weight += slots * cluster.bone_count;
-      next.first_morph += cluster.morph_count;
     }
+    out_.first_clusters[next.sphere] = c;
   }
 
   // Slots beyond the vertices repeat the last.
@@ -203,7 +202,7 @@ class Filler {
     SlotMorph* end = first;
     for (std::uint32_t slot = 0; slot < slot_count(cluster); ++slot) {
       const std::uint32_t vertex = vertex_in(cluster, slot);
-      for (std::uint32_t i = out_.first_morphs[vertex]; i < out_.first_morphs[vertex + 1]; ++i) {
+      for (std::uint32_t i = vertices_.first_morphs[vertex]; i < vertices_.first_morphs[vertex + 1]; ++i) {
         *end++ = {skin_.morphs[i].target, slot, skin_.morphs[i].delta};
       }
     }
@@ -226,7 +225,6 @@ class Filler {
   void fill_hulls() {
     Stream points(skin_.hull_points);
     Hull next{};
-    std::uint32_t cluster = 0;
     for (std::size_t s = 0; s < out_.hulls.size; ++s) {
       const PackedHull& packed = skin_.hulls[s];
       Hull& hull = out_.hulls[s];
@@ -248,35 +246,32 @@ class Filler {
               weight_of(vertex, skin_.hull_bones[hull.first_bone + k].bone);
         }
       }
-      while (cluster < out_.clusters.size && out_.clusters[cluster].sphere == s) {
-        ++cluster;
-      }
-      next.first_cluster = cluster;
       next.first_bone += packed.bone_count;
       next.first_point += packed.point_count;
       next.first_weight += static_cast<std::uint32_t>(packed.point_count) * packed.bone_count;
     }
   }
 
+  // Of runs of so many entries each, where they start, and the end.
+  static void fill_starts(Span<const std::uint32_t> counts, Span<std::uint32_t> starts) {
+    if (starts.size > 0) {
+      starts[0] = 0;
+      std::partial_sum(counts.begin(), counts.end(), starts.begin() + 1);
+    }
+  }
+
   const AssetView& asset_;
   const SkinData& skin_;
-  const Layout& out_;
+  const Surface& out_;
+  const VertexTable& vertices_;
 };
 
 }  // namespace
 
 std::size_t skin_table_words(const AssetView& asset) {
-  return asset.is_open() && asset.skin().sizes.clusters > 0 ? Layout(asset, nullptr).words() : 0;
-}
-
-void fill_skin_table(const AssetView& asset, std::uint64_t* words) {
-  const Layout layout(asset, words);
-  words[kIsTable] = kMagic;
-  words[kAsset] = key_of(asset);
-  words[kTriangles] = asset.skin().sizes.triangles;
-  words[kVertices] = asset.skin().sizes.vertices;
-  words[kAlignment] = alignment_of(words);
-  Filler(asset, layout).run();
+  Surface surface;
+  VertexTable vertices;
+  return asset.is_open() && asset.skin().sizes.clusters > 0 ? lay_out(asset, nullptr, surface, vertices) : 0;
 }
 
 Status read_skin_table(const AssetView& asset, const std::uint64_t* words, Surface& out) {
@@ -286,39 +281,12 @@ Status read_skin_table(const AssetView& asset, const std::uint64_t* words, Surfa
   if (any_misaligned(words)) {
     return refuse(SC_MISALIGNED, SC_FIELD_SKIN_TABLE);
   }
-  // The bytes of another asset may have come to lie at the same address.
-  const SkinData& skin = asset.skin();
-  if (words[kIsTable] != kMagic || words[kAsset] != key_of(asset) || words[kTriangles] != skin.sizes.triangles ||
-      words[kVertices] != skin.sizes.vertices || words[kAlignment] != alignment_of(words)) {
+  const Header header = header_of(asset, words);
+  if (std::memcmp(words, &header, sizeof header) != 0) {
     return refuse(SC_BAD_VALUE, SC_FIELD_SKIN_TABLE);
   }
-  const Layout table(asset, const_cast<std::uint64_t*>(words));
-  const auto view = [](const auto& span) {
-    return Span<const std::remove_pointer_t<decltype(span.data)>>{span.data, span.size};
-  };
-  out = {view(table.triangles),
-         view(table.clusters),
-         view(table.cluster_vertices),
-         view(table.cluster_bones),
-         skin.corners,
-         view(table.parts),
-         view(table.source_vertices),
-         view(table.welds),
-         view(table.slot_positions),
-         view(table.slot_weights),
-         view(table.slot_morphs),
-         skin.boxes,
-         skin.bounds_term_counts,
-         skin.bounds_term_bones,
-         skin.bounds_terms,
-         skin.bounds_morph_counts,
-         skin.bounds_morph_targets,
-         skin.bounds_morphs,
-         view(table.rest_contacts),
-         view(table.hulls),
-         skin.hull_bones,
-         view(table.hull_points),
-         view(table.hull_weights)};
+  VertexTable vertices;
+  lay_out(asset, const_cast<std::uint64_t*>(words), out, vertices);
   return done();
 }
 
@@ -349,7 +317,12 @@ sc_status sc_prepare_skin(const sc_asset* asset, uint64_t* words, size_t word_co
   if (word_count < skin_table_words(view)) {
     return refuse(SC_TOO_SMALL, SC_FIELD_SKIN_TABLE);
   }
-  fill_skin_table(view, words);
+  Surface surface;
+  VertexTable vertices;
+  lay_out(view, words, surface, vertices);
+  const Header header = header_of(view, words);
+  std::memcpy(words, &header, sizeof header);
+  Filler(view, surface, vertices).run();
   return done();
 }
 

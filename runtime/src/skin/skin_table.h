@@ -38,10 +38,9 @@ struct SlotMorph {
 
 // Points near whose convex hull a sphere's vertices stay in every pose (schemas/sphere_chains.fbs, Hull).
 struct Hull {
-  std::uint32_t first_cluster;  // the sphere's
-  std::uint32_t first_bone;     // into Surface::hull_bones
-  std::uint32_t first_point;    // a third of the place in Surface::hull_points
-  std::uint32_t first_weight;   // into Surface::hull_weights
+  std::uint32_t first_bone;    // into Surface::hull_bones
+  std::uint32_t first_point;   // a third of the place in Surface::hull_points
+  std::uint32_t first_weight;  // into Surface::hull_weights
   std::uint16_t bone_count, point_count;
   Vec3 center;
   float radius, slack;
@@ -50,34 +49,63 @@ struct Hull {
 // A vertex stands for all source vertices that have its rest position and move as it does; a corner is the slot of a
 // vertex in its cluster. Two triangles are neighbours where a corner's weld is the same. Groups are of eight clusters.
 struct Surface {
-  Span<const std::uint32_t> triangles;           // the source's numbers, by sphere, in it by cluster
-  Span<const Cluster> clusters;                  // by sphere
-  Span<const std::uint32_t> cluster_vertices;    // the vertex in a slot: ascending in a cluster
-  Span<const std::uint32_t> cluster_bones;       // ascending in a cluster
-  Span<const std::uint8_t> corners;              // three a triangle, in the source's order
-  Span<const std::uint8_t> parts;                // of each triangle
-  Span<const std::uint32_t> source_vertices;     // a vertex' lowest source vertex
-  Span<const std::uint32_t> welds;               // the lowest vertex at the same rest position: at most its own number
-  Span<const float> slot_positions;              // at rest: of a cluster all x, all y, all z
-  Span<const float> slot_weights;                // of a cluster its first bone's in all slots, its second's ...
-  Span<const SlotMorph> slot_morphs;             // of a cluster sorted by target, then slot
-  Span<const BoxLanes> boxes;                    // a group's: around a cluster's vertices at rest, without its morphs
-  Span<const std::uint32_t> bounds_term_counts;  // a group's; empty where nothing moves the source
-  Span<const std::uint32_t> bounds_term_bones;   // a term's, ascending in a group
+  // In the caller's words, which sc_prepare_skin() alone writes.
+  Span<std::uint32_t> triangles;            // the source's numbers, by sphere, in it by cluster
+  Span<Cluster> clusters;                   // by sphere
+  Span<std::uint32_t> first_clusters;       // a sphere's, and the end
+  Span<std::uint32_t> cluster_vertices;     // the vertex in a slot: ascending in a cluster
+  Span<std::uint32_t> cluster_bones;        // ascending in a cluster
+  Span<std::uint8_t> parts;                 // of each triangle
+  Span<std::uint32_t> source_vertices;      // a vertex' lowest source vertex
+  Span<std::uint32_t> welds;                // the lowest vertex at the same rest position: at most its own number
+  Span<float> slot_positions;               // at rest: of a cluster all x, all y, all z
+  Span<float> slot_weights;                 // of a cluster its first bone's in all slots, its second's ...
+  Span<SlotMorph> slot_morphs;              // of a cluster sorted by target, then slot
+  Span<std::uint32_t> bounds_first_terms;   // a group's, and the end
+  Span<std::uint32_t> bounds_first_morphs;  // likewise; empty where no morph moves the skin
+  Span<Pair> rest_contacts;                 // source triangles that intersect in the rest pose, sorted
+  // Of the rest pose without morphs; empty where nothing moves the source.
+  Span<Hull> hulls;          // a sphere's
+  Span<float> hull_points;   // of a hull all x, all y, all z
+  Span<float> hull_weights;  // of a hull its first bone's of all points, its second's ...
+
+  // The asset's own.
+  Span<const std::uint8_t> corners;             // three a triangle, in the source's order
+  Span<const BoxLanes> boxes;                   // a group's: around a cluster's vertices at rest, without its morphs
+  Span<const std::uint32_t> bounds_term_bones;  // a term's, ascending in a group
   Span<const BoundsTerm> bounds_terms;
-  Span<const std::uint32_t> bounds_morph_counts;   // a group's; empty where no morph moves the skin
   Span<const std::uint32_t> bounds_morph_targets;  // an entry's of bounds_morphs, ascending in a group
   Span<const BallLanes> bounds_morphs;             // around the deltas of a cluster's vertices
-  Span<const Pair> rest_contacts;                  // source triangles that intersect in the rest pose, sorted
-  // Of the rest pose without morphs; empty where nothing moves the source.
-  Span<const Hull> hulls;           // a sphere's
-  Span<const HullBone> hull_bones;  // of hull after hull
-  Span<const float> hull_points;    // of a hull all x, all y, all z
-  Span<const float> hull_weights;   // of a hull its first bone's of all points, its second's ...
+  Span<const HullBone> hull_bones;                 // of hull after hull
+};
+
+// Hands out arrays of a caller's words, each from a cache line on, and with a line to spare: vectors of any target may
+// be read and written that far past its end. Of null words it only counts how many there have to be.
+class WordMemory {
+ public:
+  explicit WordMemory(std::uint64_t* words, std::size_t used = 0) : words_(words), used_(used) {}
+
+  template <typename T>
+  void take(T*& out, std::size_t count) {
+    const std::uintptr_t place = reinterpret_cast<std::uintptr_t>(words_) / sizeof(std::uint64_t) + used_;
+    used_ += words_ == nullptr ? kLine - 1 : (kLine - place % kLine) % kLine;
+    out = words_ == nullptr ? nullptr : reinterpret_cast<T*>(words_ + used_);
+    used_ += (count * sizeof(T) + sizeof(std::uint64_t) - 1) / sizeof(std::uint64_t) + kLine;
+  }
+  template <typename T>
+  void take(Span<T>& out, std::size_t count) {
+    take(out.data, count);
+    out.size = count;
+  }
+  std::size_t used() const { return used_; }
+
+ private:
+  static constexpr std::size_t kLine = 64 / sizeof(std::uint64_t);
+  std::uint64_t* words_;
+  std::size_t used_;
 };
 
 std::size_t skin_table_words(const AssetView& asset);
-void fill_skin_table(const AssetView& asset, std::uint64_t* words);
 
 // A table of this asset; else SC_NULL, SC_MISALIGNED or SC_BAD_VALUE.
 Status read_skin_table(const AssetView& asset, const std::uint64_t* words, Surface& surface);

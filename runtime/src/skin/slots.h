@@ -78,28 +78,6 @@ HWY_INLINE void copy_vertices(const ContactScene& scene, const Cluster& cluster,
 
 #endif
 
-#if HWY_TARGET == HWY_SCALAR
-
-HWY_INLINE void put_span(const ContactScene& scene, std::size_t cluster_index) {
-  const Slots slots = slots_of(scene, cluster_index);
-  float* const low = scene.spans + 2 * kSpanLanes * cluster_index;
-  float* const high = low + kSpanLanes;
-  for (std::size_t k = 0; k < kSpanLanes; ++k) {
-    low[k] = k < kDirections ? FLT_MAX : 0;
-    high[k] = k < kDirections ? -FLT_MAX : 0;
-  }
-  for (std::size_t i = 0; i < slots.count; ++i) {
-    const float x = slots.axes[0][i], y = slots.axes[1][i], z = slots.axes[2][i];
-    const float along[kDirections] = {x, y, z, x + y, y + z, z + x, x - y, y - z, z - x};
-    for (std::size_t k = 0; k < kDirections; ++k) {
-      low[k] = along[k] < low[k] ? along[k] : low[k];
-      high[k] = along[k] > high[k] ? along[k] : high[k];
-    }
-  }
-}
-
-#else
-
 struct Lesser {
   template <class V>
   HWY_INLINE V operator()(V a, V b) const {
@@ -116,6 +94,12 @@ struct Greater {
 // What is left of the lanes of each of four vectors.
 template <class Reduce>
 HWY_INLINE void reduce_four(const Vector* in, const Reduce& reduce, float* out) {
+#if HWY_TARGET == HWY_SCALAR
+  (void)reduce;
+  for (std::size_t k = 0; k < 4; ++k) {
+    out[k] = hn::GetLane(in[k]);
+  }
+#else
   constexpr Floats kFloats;
   constexpr hn::RepartitionToWide<hn::Rebind<std::uint32_t, Floats> > kPairs;
   const auto two = [&](Vector a, Vector b) HWY_ATTR {
@@ -134,6 +118,7 @@ HWY_INLINE void reduce_four(const Vector* in, const Reduce& reduce, float* out) 
   hn::StoreU(reduce(hn::LowerHalf(kFour, blocks), hn::UpperHalf(kFour, blocks)), kFour, out);
 #else
   hn::StoreU(blocks, kFloats, out);
+#endif
 #endif
 }
 
@@ -172,8 +157,6 @@ HWY_INLINE void put_span(const ContactScene& scene, std::size_t cluster_index) {
     reduce_four(high + from, Greater(), out + kSpanLanes + k);
   }
 }
-
-#endif
 
 // A cluster shrunk to a point, or to a line along an axis, has only degenerate triangles, which intersect nothing: it
 // reaches nowhere. In a pose that takes all to one point each cluster would be paired with each.

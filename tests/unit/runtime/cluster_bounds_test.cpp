@@ -75,7 +75,7 @@ struct Bounds {
     scene.has_hulls = has_hulls;  // without them all clusters are bounded, else those of spheres that are near others
     SkinContactJob job;
     ContactCollector collector(table.surface, parts, job);
-    find_candidates(target, scene, false, collector);  // leaves what it bounded in the scene's memory
+    find_candidates(target, scene, collector);  // leaves what it bounded in the scene's memory
   }
   bool contain(std::size_t cluster, const Position& p) const {
     double squared = 0;
