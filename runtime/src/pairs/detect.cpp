@@ -91,6 +91,18 @@ const Sphere* padded(const Scene& scene, std::size_t first, std::size_t count, S
   return copy;
 }
 
+// Those of the tile's columns.
+Span<const RestPair> rest_pairs_of(const Scene& scene, const TilePlace& place) {
+  const Span<const RestPair> all = scene.choice.rest_pairs;
+  if (place.column_count == scene.spheres.size) {
+    return all;
+  }
+  const auto is_before = [](const RestPair& pair, std::size_t a) { return pair.a < a; };
+  const RestPair* const begin = std::lower_bound(all.begin(), all.end(), place.first_column, is_before);
+  const RestPair* const end = std::lower_bound(begin, all.end(), place.first_column + place.column_count, is_before);
+  return {begin, static_cast<std::size_t>(end - begin)};
+}
+
 // The pairs of a tile for which no lists are prepared.
 void find_unprepared(Target target, const Scene& scene, Tile& tile, FoundPairs& found) {
   constexpr std::size_t kRestRoom = 256;
@@ -99,16 +111,11 @@ void find_unprepared(Target target, const Scene& scene, Tile& tile, FoundPairs& 
   float rest_scales[kRestRoom];
   const PairListBuffers buffers{wanted, strips, rest_pairs, rest_scales, kRestRoom};
   const std::size_t strip_count = fill_strips(target, scene.choice, tile.place, buffers);
-  // Those of the columns.
-  const auto is_before = [](const RestPair& pair, std::size_t a) { return pair.a < a; };
-  const Span<const RestPair> all = scene.choice.rest_pairs;
-  const RestPair* const begin = std::lower_bound(all.begin(), all.end(), tile.place.first_column, is_before);
-  const RestPair* const end =
-      std::lower_bound(begin, all.end(), tile.place.first_column + tile.place.column_count, is_before);
-  Span<const RestPair> left{begin, static_cast<std::size_t>(end - begin)};
+  Span<const RestPair> left = rest_pairs_of(scene, tile.place);
   do {  // strips come with the last rest pairs, once they have none of them
     const std::size_t rest_count = move_rest_pairs(left, tile.place, buffers);
-    tile.lists = {wanted, strips, left.size > 0 ? 0 : strip_count, rest_pairs, rest_scales, rest_count};
+    const PairLists lists{wanted, strips, left.size > 0 ? 0 : strip_count, rest_pairs, rest_scales, rest_count};
+    tile.lists = &lists;
     find_pairs(target, tile, found);
   } while (left.size > 0);
 }
@@ -125,7 +132,7 @@ void detect(Target target, const Scene& scene, PairOutput& output) {
       tile.place = {first, column_count, first_row, std::min(n - first_row, kTileSize)};
       tile.rows = first_row == first ? tile.columns : padded(scene, first_row, tile.place.row_count, rows);
       if (scene.has_lists) {
-        tile.lists = scene.lists;
+        tile.lists = &scene.lists;
         find_pairs(target, tile, found);
       } else {
         find_unprepared(target, scene, tile, found);
@@ -141,27 +148,29 @@ void detect(Target target, const Scene& scene, PairOutput& output) {
 }  // namespace
 
 void PairOutput::take(const TilePlace& place, FoundPairs& found) {
-  for (std::size_t i = 0; i < found.count; ++i) {
-    const std::size_t a = place.first_column + found.pairs[i].a / sizeof(Sphere),
-                      b = place.first_row + found.pairs[i].b / sizeof(Sphere);
-    if (bits_.size > 0) {
-      set_bit(bits_, ignored_bit(a, b));
-    }
-    if (list_.size > 0) {
-      add_to_list({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)});
-    }
-    ++count_;
+  const auto pair_at = [&](std::size_t i) {
+    return Pair{static_cast<std::uint32_t>(place.first_column + found.pairs[i].a / sizeof(Sphere)),
+                static_cast<std::uint32_t>(place.first_row + found.pairs[i].b / sizeof(Sphere))};
+  };
+  const Span<std::uint64_t> bits = bits_;  // a copy: for all the compiler knows, setting bits could change the member
+  const std::size_t count = found.count;
+  for (std::size_t i = 0; i < count && bits.size > 0; ++i) {
+    set_bit(bits, ignored_bit(pair_at(i).a, pair_at(i).b));
   }
+  for (std::size_t i = 0; i < count && list_.size > 0; ++i) {
+    add_to_list(count_ + i, pair_at(i));
+  }
+  count_ += count;
   found.count = 0;
 }
 
 // A full list is a heap, its last pair first.
-void PairOutput::add_to_list(Pair pair) {
-  if (count_ < list_.size) {
-    list_[count_] = pair;
+void PairOutput::add_to_list(std::size_t count, Pair pair) {
+  if (count < list_.size) {
+    list_[count] = pair;
     return;
   }
-  if (count_ == list_.size) {
+  if (count == list_.size) {
     std::make_heap(list_.begin(), list_.end());
   }
   if (pair < list_[0]) {
@@ -172,7 +181,7 @@ void PairOutput::add_to_list(Pair pair) {
 }
 
 void PairOutput::finish(Target resolved, const TilePlace& place, FoundPairs& found) {
-  if (count_ == 0) {  // few pairs of an only tile, as most poses have
+  if (count_ == 0 && list_.size > 0) {  // few pairs of an only tile, as most poses have
     list_in_order(resolved, found, list_);
     list_ = {};
   }

@@ -36,8 +36,8 @@ struct Content {
     const std::size_t n = asset.spheres().size;
     if (is_one_tile(asset)) {
       lists.rest_room = padded_rest_pairs(asset);
-      take(lists.strips, padded_strips(n));
       take(lists.wanted, padded_strips(n));
+      take(lists.strips, padded_strips(n));
       take(lists.rest_pairs, lists.rest_room);
       take(lists.rest_scales, lists.rest_room);
     } else {

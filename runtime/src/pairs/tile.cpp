@@ -85,7 +85,7 @@ HWY_INLINE std::size_t list_strip(const ListedPair& strip, std::uint16_t wanted,
 // Writes each strip's columns that may have a pair with the row, or all of them.
 HWY_INLINE void find_candidates(const Tile& tile, std::uint16_t* candidates) {
   const TilePlace place = tile.place;
-  const std::size_t strip_count = tile.lists.strip_count;
+  const std::size_t strip_count = tile.lists->strip_count;
   const bool is_diagonal = place.is_diagonal();
   SphereColumns columns, rows;  // rows: where they are others
   if (fill_all(tile.columns, place.column_count, tile.columns[0], columns) &&
@@ -102,7 +102,7 @@ HWY_INLINE void find_candidates(const Tile& tile, std::uint16_t* candidates) {
 
 void find(const Tile& tile, FoundPairs& found) {
   constexpr Floats kFloats;
-  const PairLists lists = tile.lists;
+  const PairLists lists = *tile.lists;
   HWY_ALIGN std::uint16_t candidates[kMaxStrips + kStripGroup];
   find_candidates(tile, candidates);
   // What candidates need of memory arrives meanwhile.

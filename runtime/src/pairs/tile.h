@@ -37,6 +37,38 @@ constexpr ListedPair listed_pair(std::size_t a, std::size_t b) {
 inline constexpr std::size_t kMaxStrips = kTileSize * kTileSize / kBlock;
 inline constexpr std::size_t kStripGroup = 64;
 
+// The strips of two blocks. A diagonal tile's first kBlock rows have none with the second block.
+class TwoBlocks {
+ public:
+  explicit TwoBlocks(const TilePlace& place)
+      : row_count_(place.row_count),
+        step_(place.is_diagonal() ? 2 * kBlock : 0),
+        single_rows_(place.is_diagonal() ? kBlock : 0),
+        first_row_(place.first_row_of(0)) {
+    set_end();
+  }
+
+  void advance() {
+    first_column_ += 2 * kBlock;
+    first_row_ += step_;
+    begin_ = end_;
+    set_end();
+  }
+  std::size_t first_column() const { return first_column_; }
+  std::size_t first_row() const { return first_row_; }
+  std::size_t single_rows() const { return single_rows_; }
+  std::size_t begin() const { return begin_; }  // of the strips' numbers
+  std::size_t strip_of(std::size_t column, std::size_t row) const {
+    return begin_ + strips_of(row - first_row_) + (column - first_column_) / kBlock;
+  }
+
+ private:
+  std::size_t strips_of(std::size_t rows) const { return rows + (rows > single_rows_ ? rows - single_rows_ : 0); }
+  void set_end() { end_ = begin_ + (first_row_ < row_count_ ? strips_of(row_count_ - first_row_) : 0); }
+
+  std::size_t row_count_, step_, single_rows_, first_row_, first_column_ = 0, begin_ = 0, end_ = 0;
+};
+
 // Which pairs of a tile to test.
 struct PairLists {
   const std::uint16_t* wanted;  // by strip, a bit a column: pairs but rest pairs; 0 up to a multiple of kStripGroup
@@ -50,7 +82,7 @@ struct PairLists {
 struct Tile {
   TilePlace place;
   const Sphere *columns, *rows;
-  PairLists lists;
+  const PairLists* lists;
 };
 
 struct FoundPairs;
@@ -68,7 +100,7 @@ class PairOutput {
   std::size_t count() const { return count_; }
 
  private:
-  void add_to_list(Pair pair);
+  void add_to_list(std::size_t count, Pair pair);  // count: of those before
 
   Span<Pair> list_;  // where there are more pairs, the first of them
   Span<std::uint64_t> bits_;
