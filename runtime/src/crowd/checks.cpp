@@ -19,21 +19,26 @@ std::size_t instance_bytes(const AssetView& asset, const CrowdJob& job) {
   return (asset.bone_count() - 1) * bone_stride(job.pose) + size_of(job.pose.bone_layout);
 }
 
+// From the first instance to the end of the last one.
+MemoryRange range_of_instances(const AssetView& asset, const CrowdJob& job) {
+  if (job.instance_count == 0) {
+    return {};
+  }
+  const std::size_t before_last = job.instance_count - 1;
+  if (job.pose.bones == nullptr) {
+    return range_of(Span<const Sphere>{job.spheres, before_last * sphere_stride(asset, job) + asset.spheres().size});
+  }
+  const std::size_t bytes = before_last * bone_stride(asset, job) + instance_bytes(asset, job);
+  return range_of(Span<const float>{job.pose.bones, bytes / sizeof(float)});
+}
+
 bool is_aliased(const AssetView& asset, const CrowdJob& job) {
-  const std::size_t n = asset.spheres().size;
-  const std::size_t before_last = job.instance_count == 0 ? 0 : job.instance_count - 1;
-  const std::size_t spheres =
-      job.instance_count == 0 || job.spheres == nullptr ? 0 : before_last * sphere_stride(asset, job) + n;
-  const std::size_t floats = job.instance_count == 0 || job.pose.bones == nullptr
-                                 ? 0
-                                 : (before_last * bone_stride(asset, job) + instance_bytes(asset, job)) / sizeof(float);
   const FilterRanges filter = ranges_of(job.filter);
   return any_shared(
       {range_of(Span<std::uint32_t>{job.counts, job.count_capacity}),
        range_of(Span<std::uint64_t>{job.bits, job.bit_words}), range_of(Span<CrowdPair>{job.pairs, job.pair_capacity}),
        range_of(Span<std::uint64_t>{job.scratch, job.scratch_words})},
-      {range_of(Span<const Sphere>{job.spheres, spheres}), range_of(asset.ignored()),
-       range_of(Span<const float>{job.pose.bones, floats}), filter.ignored, filter.disabled, filter.padding});
+      {range_of_instances(asset, job), range_of(asset.ignored()), filter.ignored, filter.disabled, filter.padding});
 }
 
 Status check_instances(const AssetView& asset, const CrowdJob& job) {
@@ -44,10 +49,9 @@ Status check_instances(const AssetView& asset, const CrowdJob& job) {
     return refuse(SC_BAD_VALUE, SC_FIELD_VERTICES);
   }
   if (job.pose.bones == nullptr) {
-    if (job.spheres == nullptr || any_misaligned(job.spheres)) {
-      return job.instance_count == 0 && job.spheres == nullptr
-                 ? done()
-                 : refuse(job.spheres == nullptr ? SC_NULL : SC_MISALIGNED, SC_FIELD_SPHERES);
+    const Status status = check_list(job.spheres, job.instance_count, SC_FIELD_SPHERES);
+    if (status != SC_OK || job.spheres == nullptr) {
+      return status;
     }
     const std::size_t stride = sphere_stride(asset, job);
     return stride >= asset.spheres().size && stride < kMaxCount &&
@@ -69,13 +73,6 @@ Status check_instances(const AssetView& asset, const CrowdJob& job) {
   return stride <= kMaxCount && stride % sizeof(float) == 0 && stride >= instance_bytes(asset, job)
              ? done()
              : refuse(SC_BAD_STRIDE, SC_FIELD_INSTANCE_STRIDE);
-}
-
-template <typename T>
-Status check_list(const T* data, std::size_t size, sc_field field) {
-  return data == nullptr && size > 0 ? refuse(SC_NULL, field)
-         : any_misaligned(data)      ? refuse(SC_MISALIGNED, field)
-                                     : done();
 }
 
 Status check_outputs(const AssetView& asset, const CrowdJob& job) {

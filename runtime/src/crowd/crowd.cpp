@@ -7,7 +7,6 @@
 #include "asset/status.h"
 #include "crowd/checks.h"
 #include "crowd/lanes.h"
-#include "crowd/refit.h"
 #include "pairs/pair_bits.h"
 #include "simd/arithmetic.h"
 #include "simd/simd.h"
@@ -134,12 +133,6 @@ void list_found(const std::uint32_t* listed, std::size_t count, std::uint32_t in
   }
 }
 
-// Instances [first, first + batch.count).
-void refit_instances(const Crowd& crowd, std::size_t first, LaneRefit& batch) {
-  batch.inputs.matrices = crowd.job.pose.bones + first * batch.instance_stride;
-  refit_lanes(crowd.target, batch);
-}
-
 // A task's instances, a register's lanes at a time.
 void run_task(void* data, std::size_t task) {
   const Crowd& crowd = *static_cast<const Crowd*>(data);
@@ -168,7 +161,6 @@ void run_task(void* data, std::size_t task) {
 
   LaneRefit refit;
   refit.inputs = crowd.bones;
-  refit.bone_count = crowd.asset.bone_count();
   refit.instance_stride = job.pose.bones == nullptr ? 0 : bone_stride(crowd.asset, job) / sizeof(float);
   refit.lanes = batch.lanes;
   refit.matrices = batch.lanes + 2 * crowd.layout.lane_words;
@@ -189,7 +181,8 @@ void run_task(void* data, std::size_t task) {
     std::uint64_t* const bits = job.bit_words > 0 ? job.bits + first * words : own_bits;
     const auto find = [&] {
       if (job.pose.bones != nullptr) {
-        refit_instances(crowd, first, refit);
+        refit.inputs.matrices = job.pose.bones + first * refit.instance_stride;
+        refit_lanes(crowd.target, refit);
       }
       batch.bits = keeps_bits ? bits : nullptr;
       if (keeps_bits) {
@@ -197,27 +190,24 @@ void run_task(void* data, std::size_t task) {
       }
       test_lanes(crowd.target, batch);
     };
-    const bool tests = !crowd.list_only || job.bit_words == 0;
-    if (tests) {
+    find();
+    if (lists && !keeps_bits && *std::max_element(batch.pair_counts, batch.pair_counts + batch.count) > kMaxListed) {
+      keeps_bits = true;
       find();
-      if (lists && !keeps_bits && *std::max_element(batch.pair_counts, batch.pair_counts + batch.count) > kMaxListed) {
-        keeps_bits = true;
-        find();
-      }
     }
     for (std::size_t lane = 0; lane < batch.count; ++lane) {
       const std::uint32_t instance = static_cast<std::uint32_t>(first + lane), own = batch.pair_counts[lane];
       total += own;
-      if (!crowd.list_only && job.counts != nullptr) {
+      if (job.counts != nullptr) {
         job.counts[instance] = own;
       }
-      if (lists && job.counts[instance] > 0) {
-        if (tests && own <= kMaxListed) {
+      if (lists && own > 0) {
+        if (own <= kMaxListed) {
           list_found(batch.listed[lane], own, instance, place, pairs);
         } else {
           list_instance(bits + lane * words, crowd, instance, place, pairs, places);
         }
-        place += job.counts[instance];
+        place += own;
       }
     }
   }

@@ -3,14 +3,13 @@
 
 #include <cfloat>
 
-#include "pairs/overlap.h"
 #include "pairs/pair_bits.h"
 #include "simd/arithmetic.h"
 #include "simd/simd.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "crowd/lanes.cpp"
-#include "pairs/sphere_registers.h"
+#include "pairs/sphere_columns.h"
 #include "simd/highway.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -21,9 +20,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::ScalableTag<float>;
 using Vector = hn::Vec<Floats>;
 using Numbers = hn::RebindToSigned<Floats>;
-
-// Two radii up to this have a sum whose square is finite.
-constexpr float kHugeRadius = 9e18F;
 
 struct LaneSphere {
   Vector x, y, z, radius;
@@ -38,58 +34,45 @@ HWY_INLINE LaneSphere load(const float* lanes, std::size_t sphere) {
 }
 
 // From one instance after the other to one a lane, padded, and seen from the first sphere. At least |center|^2 +
-// radius^2 of each lane's spheres, seen so; infinite where one is not finite. `any_huge`: a radius is huge.
-HWY_INLINE Vector prepare(const LaneBatch& batch, bool& any_huge) {
+// radius^2 of each lane's spheres, seen so; infinite where one is not finite.
+HWY_INLINE Vector prepare(const LaneBatch& batch) {
   constexpr Floats kFloats;
-  const std::size_t n = hn::Lanes(kFloats);
-  Sphere row[hn::MaxLanes(kFloats)] = {};
-  any_huge = false;
+  constexpr std::size_t kLanes = hn::MaxLanes(kFloats);
+  const Sphere* instances[kLanes];  // lanes of instances that are not there take after the last one
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    instances[lane] = batch.spheres + (lane < batch.count ? lane : batch.count - 1) * batch.stride;
+  }
   Vector origin[3], extent = hn::Zero(kFloats);
   for (std::size_t i = 0; i < batch.sphere_count; ++i) {
-    float* at = batch.lanes + kLaneFigures * n * i;
-    Vector x, y, z, radius;  // no LaneSphere: its own constructor would not be compiled for this target
+    float* at = batch.lanes + kLaneFigures * kLanes * i;
+    Vector center[3], radius;  // no LaneSphere: its own constructor would not be compiled for this target
     if (batch.spheres == nullptr) {
-      x = hn::Load(kFloats, at);
-      y = hn::Load(kFloats, at + n);
-      z = hn::Load(kFloats, at + 2 * n);
-      radius = hn::Load(kFloats, at + 3 * n);
-    } else {
-      const Sphere* const first = batch.spheres + i;
-      const std::size_t stride = batch.stride;
-      if (batch.count == n) {
-        load_spheres(
-            kFloats, [&](std::size_t lane) -> const Sphere& { return first[lane * stride]; }, x, y, z, radius);
-      } else {
-        for (std::size_t lane = 0; lane < batch.count; ++lane) {
-          row[lane] = first[lane * stride];
-        }
-        load_spheres(
-            kFloats, [&](std::size_t lane) -> const Sphere& { return row[lane]; }, x, y, z, radius);
+      for (std::size_t c = 0; c < 3; ++c) {
+        center[c] = hn::Load(kFloats, at + c * kLanes);
       }
-      hn::Store(x, kFloats, at);
-      hn::Store(y, kFloats, at + n);
-      hn::Store(z, kFloats, at + 2 * n);
+      radius = hn::Load(kFloats, at + 3 * kLanes);
+    } else {
+      load_spheres(
+          kFloats, [&](std::size_t lane) -> const Sphere& { return instances[lane][i]; }, center[0], center[1],
+          center[2], radius);
     }
     if (batch.padding != nullptr) {
       radius = hn::Add(radius, hn::Set(kFloats, batch.padding[i]));
-      radius = hn::IfThenElse(hn::Lt(radius, hn::Zero(kFloats)), hn::NaN(kFloats), radius);  // as padded_radius.h
+      radius = hn::IfThenElse(hn::Lt(radius, hn::Zero(kFloats)), hn::NaN(kFloats), radius);  // as a detect job has it
     }
-    any_huge |= !hn::AllFalse(kFloats, hn::Gt(hn::Abs(radius), hn::Set(kFloats, kHugeRadius)));
-    hn::Store(radius, kFloats, at + 3 * n);
-    if (i == 0) {
-      origin[0] = x;
-      origin[1] = y;
-      origin[2] = z;
+    hn::Store(radius, kFloats, at + 3 * kLanes);
+    for (std::size_t c = 0; c < 3; ++c) {
+      hn::Store(center[c], kFloats, at + c * kLanes);
+      if (i == 0) {
+        origin[c] = center[c];
+      }
+      center[c] = hn::Sub(center[c], origin[c]);
+      hn::Store(center[c], kFloats, at + (4 + c) * kLanes);
     }
-    x = hn::Sub(x, origin[0]);
-    y = hn::Sub(y, origin[1]);
-    z = hn::Sub(z, origin[2]);
     const Vector squared_radius = hn::Mul(radius, radius);
-    const Vector squared_length = hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
-    hn::Store(x, kFloats, at + 4 * n);
-    hn::Store(y, kFloats, at + 5 * n);
-    hn::Store(z, kFloats, at + 6 * n);
-    hn::Store(hn::Sub(squared_radius, hn::Mul(hn::Set(kFloats, 0.5F), squared_length)), kFloats, at + 7 * n);
+    const Vector squared_length =
+        hn::Add(hn::Add(hn::Mul(center[0], center[0]), hn::Mul(center[1], center[1])), hn::Mul(center[2], center[2]));
+    hn::Store(hn::Sub(squared_radius, hn::Mul(hn::Set(kFloats, 0.5F), squared_length)), kFloats, at + 7 * kLanes);
     const Vector own = hn::Add(squared_length, squared_radius);
     extent = hn::Max(extent, hn::IfThenElse(hn::Le(own, hn::Set(kFloats, FLT_MAX)), own, hn::Inf(kFloats)));
   }
@@ -97,7 +80,6 @@ HWY_INLINE Vector prepare(const LaneBatch& batch, bool& any_huge) {
 }
 
 // Where the spheres overlap, and are within rest_scale of each other: a rest_scale of 1 is none.
-template <bool kCheckFinite>
 HWY_INLINE hn::Mask<Floats> overlap(const LaneSphere& p, const LaneSphere& q, float rest_scale) {
   constexpr Floats kFloats;
   const Vector dx = hn::Sub(p.x, q.x);
@@ -106,8 +88,7 @@ HWY_INLINE hn::Mask<Floats> overlap(const LaneSphere& p, const LaneSphere& q, fl
   const Vector s = hn::Add(p.radius, q.radius);
   const Vector d2 = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
   const Vector t = hn::Mul(hn::Set(kFloats, rest_scale), s);
-  const hn::Mask<Floats> touching = hn::Lt(d2, hn::Mul(t, t));
-  return kCheckFinite ? hn::And(touching, hn::Le(hn::Mul(s, s), hn::Set(kFloats, FLT_MAX))) : touching;
+  return hn::And(hn::Lt(d2, hn::Mul(t, t)), hn::Le(hn::Mul(s, s), hn::Set(kFloats, FLT_MAX)));
 }
 
 // What is found of each lane's instance.
@@ -115,6 +96,7 @@ struct Found {
   LaneBatch& batch;
   hn::Mask<Floats> in_use;
   hn::Vec<Numbers> counts, lists;  // of pairs; where in the batch's lists the lane's own starts
+  bool tests_all;                  // wanted pairs, for which there are no candidates
 };
 
 // All lanes write, without a branch: those that do not touch write what the next pair, or nobody, overwrites.
@@ -154,7 +136,6 @@ struct Row {
 
 // Tests a row's pairs that are candidates in any lane, in order. `next_rest_pair`: the first rest pair of the row, then
 // of the next one.
-template <bool kCheckFinite>
 HWY_INLINE void test_row(Found& found, const Row& row, std::size_t& next_rest_pair) {
   const LaneBatch& batch = found.batch;
   const LaneSphere own = load(batch.lanes, row.a);
@@ -162,7 +143,7 @@ HWY_INLINE void test_row(Found& found, const Row& row, std::size_t& next_rest_pa
     const std::uint64_t own_rest_pairs =
         sorted_row_bits(batch.is_rest_pair, batch.bit_words, row.a, first, batch.sphere_count);
     std::uint64_t left = sorted_row_bits(batch.wanted, batch.bit_words, row.a, first, batch.sphere_count);
-    if (!kCheckFinite) {
+    if (!found.tests_all) {
       left &= any_bits(row.candidates + first);
     }
     for (; left != 0; left &= left - 1) {
@@ -173,7 +154,7 @@ HWY_INLINE void test_row(Found& found, const Row& row, std::size_t& next_rest_pa
       if ((own_rest_pairs & lowest) != 0) {
         rest_scale = &batch.rest_pairs.data[next_rest_pair + hwy::PopCount(own_rest_pairs & (lowest - 1))].rest_scale;
       }
-      report(found, overlap<kCheckFinite>(own, load(batch.lanes, b), *rest_scale), row.a, b);
+      report(found, overlap(own, load(batch.lanes, b), *rest_scale), row.a, b);
     }
     next_rest_pair += hwy::PopCount(own_rest_pairs);
   }
@@ -217,7 +198,6 @@ HWY_INLINE void find_candidates(const LaneBatch& batch, Vector margin, const Row
 
 // In the order of sorted pairs, so that each lane's list is in order. Where a figure is not finite or too large, all
 // wanted pairs are tested by the rule.
-template <bool kCheckFinite>
 HWY_INLINE void find_pairs(Found& found, Vector margin) {
   const LaneBatch& batch = found.batch;
   const std::size_t row_size = candidate_row(batch.sphere_count);
@@ -227,26 +207,22 @@ HWY_INLINE void find_pairs(Found& found, Vector margin) {
   std::size_t next_rest_pair = 0;
   for (std::size_t a = 0; a + 1 < batch.sphere_count; a += 2) {
     const Row low{a, batch.candidates}, high{a + 1, batch.candidates + row_size};
-    if (!kCheckFinite) {
+    if (!found.tests_all) {
       find_candidates(batch, margin, low, high);
     }
-    test_row<kCheckFinite>(found, low, next_rest_pair);
-    test_row<kCheckFinite>(found, high, next_rest_pair);
+    test_row(found, low, next_rest_pair);
+    test_row(found, high, next_rest_pair);
   }
 }
 
 void test_batch(LaneBatch& batch) {
   constexpr Floats kFloats;
   constexpr Numbers kNumbers;
-  bool any_huge = false;
-  const Vector extent = prepare(batch, any_huge);
+  const Vector extent = prepare(batch);
   Found found{batch, hn::FirstN(kFloats, batch.count), hn::Zero(kNumbers),
-              hn::Mul(hn::Iota(kNumbers, 0), hn::Set(kNumbers, kMaxListed + 1))};
-  if (!any_huge && hn::AllTrue(kFloats, hn::Le(extent, hn::Set(kFloats, FLT_MAX)))) {
-    find_pairs<false>(found, hn::Add(hn::Mul(hn::Set(kFloats, kMarginOfExtent), extent), hn::Set(kFloats, kMinMargin)));
-  } else {
-    find_pairs<true>(found, hn::Zero(kFloats));
-  }
+              hn::Mul(hn::Iota(kNumbers, 0), hn::Set(kNumbers, kMaxListed + 1)),
+              !hn::AllTrue(kFloats, hn::Le(extent, hn::Set(kFloats, FLT_MAX)))};
+  find_pairs(found, hn::Add(hn::Mul(hn::Set(kFloats, kMarginOfExtent), extent), hn::Set(kFloats, kMinMargin)));
   hn::StoreU(found.counts, kNumbers, reinterpret_cast<std::int32_t*>(batch.pair_counts));
 }
 

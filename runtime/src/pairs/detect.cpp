@@ -2,11 +2,13 @@
 #include "spherechain/detect.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "asset/memory.h"
 #include "asset/status.h"
-#include "pairs/detect_steps.h"
 #include "pairs/filter.h"
+#include "pairs/pair_bits.h"
+#include "pairs/scene.h"
 #include "pose/pose.h"
 #include "simd/arithmetic.h"
 #include "simd/simd.h"
@@ -14,7 +16,7 @@
 namespace spherechain {
 namespace {
 
-Status check(const DetectJob& job, Target& resolved, DetectTable& table) {
+Status check(const DetectJob& job, Target& resolved, Scene& scene) {
   if (job.asset == nullptr) {
     return refuse(SC_NULL, SC_FIELD_ASSET);
   }
@@ -22,24 +24,23 @@ Status check(const DetectJob& job, Target& resolved, DetectTable& table) {
   if (!asset.is_open()) {
     return refuse(SC_NOT_OPEN, SC_FIELD_ASSET);
   }
-  if (job.spheres == nullptr) {
-    return refuse(SC_NULL, SC_FIELD_SPHERES);
-  }
-  if (any_misaligned(job.spheres)) {
-    return refuse(SC_MISALIGNED, SC_FIELD_SPHERES);
+  const Status spheres_status = check_list(job.spheres, 1, SC_FIELD_SPHERES);
+  if (spheres_status != SC_OK) {
+    return spheres_status;
   }
   const Span<const Sphere> spheres{job.spheres, asset.spheres().size};
   if (job.sphere_count < spheres.size) {
     return refuse(SC_TOO_SMALL, SC_FIELD_SPHERES);
   }
+  scene.spheres = spheres;
   fetch(range_of(spheres));
   const Span<Pair> pairs{job.pairs, job.pair_capacity};
-  if (is_missing(pairs) || any_misaligned(job.pairs)) {
-    return refuse(is_missing(pairs) ? SC_NULL : SC_MISALIGNED, SC_FIELD_PAIRS);
-  }
   const Span<std::uint64_t> bits{job.bits, job.bit_words};
-  if (is_missing(bits) || any_misaligned(job.bits)) {
-    return refuse(is_missing(bits) ? SC_NULL : SC_MISALIGNED, SC_FIELD_BITS);
+  for (const Status& status :
+       {check_list(pairs.data, pairs.size, SC_FIELD_PAIRS), check_list(bits.data, bits.size, SC_FIELD_BITS)}) {
+    if (status != SC_OK) {
+      return status;
+    }
   }
   if (bits.size > 0 && bits.size != words_for(pairs_of(spheres.size))) {
     return refuse(SC_BAD_VALUE, SC_FIELD_BITS);
@@ -56,10 +57,12 @@ Status check(const DetectJob& job, Target& resolved, DetectTable& table) {
     }
   }
   if (job.table != nullptr) {
-    const Status status = read_detect_table(asset, job.radius, job.table, table);
+    const Status status = read_detect_table(asset, job.radius, job.table, scene);
     if (status != SC_OK) {
       return status;
     }
+  } else {
+    scene.choice = choice_of(asset, job.radius, job.filter);
   }
   if (!resolve_target(job.target, resolved)) {
     return refuse(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET);
@@ -67,12 +70,125 @@ Status check(const DetectJob& job, Target& resolved, DetectTable& table) {
   const FilterRanges filter = ranges_of(job.filter);
   const bool is_aliased =
       any_shared({range_of(pairs), range_of(bits)}, {range_of(spheres), range_of(asset.ignored()),
-                                                     range_of(Span<const std::uint64_t>{job.table, table.size}),
+                                                     range_of(Span<const std::uint64_t>{job.table, scene.table_words}),
                                                      filter.ignored, filter.disabled, filter.padding});
   return is_aliased ? refuse(SC_ALIASED, pairs.size > 0 ? SC_FIELD_PAIRS : SC_FIELD_BITS) : done();
 }
 
+// Spheres from `first` on, padded: those of the scene where nothing is padded, or in `copy`.
+const Sphere* padded(const Scene& scene, std::size_t first, std::size_t count, Sphere* copy) {
+  const Sphere* const spheres = scene.spheres.data + first;
+  if (scene.choice.padding.size == 0) {
+    return spheres;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    copy[i] = spheres[i];
+    copy[i].radius += scene.choice.padding[first + i];
+    if (copy[i].radius < 0) {  // no number touches nothing, whatever the other sphere's radius is
+      copy[i].radius = std::numeric_limits<float>::quiet_NaN();
+    }
+  }
+  return copy;
+}
+
+// Those of the tile's columns.
+Span<const RestPair> rest_pairs_of(const Scene& scene, const TilePlace& place) {
+  const Span<const RestPair> all = scene.choice.rest_pairs;
+  if (place.column_count == scene.spheres.size) {
+    return all;
+  }
+  const auto is_before = [](const RestPair& pair, std::size_t a) { return pair.a < a; };
+  const RestPair* const begin = std::lower_bound(all.begin(), all.end(), place.first_column, is_before);
+  const RestPair* const end = std::lower_bound(begin, all.end(), place.first_column + place.column_count, is_before);
+  return {begin, static_cast<std::size_t>(end - begin)};
+}
+
+// The pairs of a tile for which no lists are prepared.
+void find_unprepared(Target target, const Scene& scene, Tile& tile, FoundPairs& found) {
+  constexpr std::size_t kRestRoom = 256;
+  std::uint16_t wanted[kMaxStrips];
+  ListedPair strips[kMaxStrips], rest_pairs[kRestRoom];
+  float rest_scales[kRestRoom];
+  const PairListBuffers buffers{wanted, strips, rest_pairs, rest_scales, kRestRoom};
+  const std::size_t strip_count = fill_strips(target, scene.choice, tile.place, buffers);
+  Span<const RestPair> left = rest_pairs_of(scene, tile.place);
+  do {  // strips come with the last rest pairs, once they have none of them
+    const std::size_t rest_count = move_rest_pairs(left, tile.place, buffers);
+    const PairLists lists{wanted, strips, left.size > 0 ? 0 : strip_count, rest_pairs, rest_scales, rest_count};
+    tile.lists = &lists;
+    find_pairs(target, tile, found);
+  } while (left.size > 0);
+}
+
+void detect(Target target, const Scene& scene, PairOutput& output) {
+  const std::size_t n = scene.spheres.size;
+  FoundPairs found(output);
+  Sphere columns[kTileSize], rows[kTileSize];
+  Tile tile{};
+  for (std::size_t first = 0; first < n; first += kTileSize) {
+    const std::size_t column_count = std::min(n - first, kTileSize);
+    tile.columns = padded(scene, first, column_count, columns);
+    for (std::size_t first_row = first; first_row < n; first_row += kTileSize) {
+      tile.place = {first, column_count, first_row, std::min(n - first_row, kTileSize)};
+      tile.rows = first_row == first ? tile.columns : padded(scene, first_row, tile.place.row_count, rows);
+      if (scene.has_lists) {
+        tile.lists = &scene.lists;
+        find_pairs(target, tile, found);
+      } else {
+        find_unprepared(target, scene, tile, found);
+      }
+      if (n > kTileSize) {
+        output.take(tile.place, found);
+      }
+    }
+  }
+  output.finish(target, tile.place, found);
+}
+
 }  // namespace
+
+void PairOutput::take(const TilePlace& place, FoundPairs& found) {
+  const auto pair_at = [&](std::size_t i) {
+    return Pair{static_cast<std::uint32_t>(place.first_column + found.pairs[i].a / sizeof(Sphere)),
+                static_cast<std::uint32_t>(place.first_row + found.pairs[i].b / sizeof(Sphere))};
+  };
+  const Span<std::uint64_t> bits = bits_;  // a copy: for all the compiler knows, setting bits could change the member
+  const std::size_t count = found.count;
+  for (std::size_t i = 0; i < count && bits.size > 0; ++i) {
+    set_bit(bits, ignored_bit(pair_at(i).a, pair_at(i).b));
+  }
+  for (std::size_t i = 0; i < count && list_.size > 0; ++i) {
+    add_to_list(count_ + i, pair_at(i));
+  }
+  count_ += count;
+  found.count = 0;
+}
+
+// A full list is a heap, its last pair first.
+void PairOutput::add_to_list(std::size_t count, Pair pair) {
+  if (count < list_.size) {
+    list_[count] = pair;
+    return;
+  }
+  if (count == list_.size) {
+    std::make_heap(list_.begin(), list_.end());
+  }
+  if (pair < list_[0]) {
+    std::pop_heap(list_.begin(), list_.end());
+    list_[list_.size - 1] = pair;
+    std::push_heap(list_.begin(), list_.end());
+  }
+}
+
+void PairOutput::finish(Target resolved, const TilePlace& place, FoundPairs& found) {
+  if (count_ == 0 && list_.size > 0) {  // few pairs of an only tile, as most poses have
+    list_in_order(resolved, found, list_);
+    list_ = {};
+  }
+  take(place, found);
+  std::sort(list_.begin(), list_.begin() + std::min(count_, list_.size));
+}
+
 }  // namespace spherechain
 
 using namespace spherechain;
@@ -92,31 +208,18 @@ sc_status sc_detect(sc_detect_job* job) noexcept {
     return refuse(SC_NULL, SC_FIELD_NONE);
   }
   Target resolved{};
-  DetectTable table;
-  const Status status = check(*job, resolved, table);
+  Scene scene;
+  const Status status = check(*job, resolved, scene);
   if (status != SC_OK) {
     return status;
   }
-  const AssetView& asset = view_of(*job->asset);
-  Scene scene{&asset, job->spheres, asset.rest_pairs(job->radius), asset.ignored(), {}, {}, resolved, nullptr};
-  if (job->table != nullptr) {
-    scene.padding = table.padding;
-    if (table.has_rows) {
-      scene.rows = &table.rows;
-    } else {
-      scene.ignored = table.ignored;
-      scene.disabled = table.disabled;
-    }
-  } else if (job->filter != nullptr) {
-    scene.ignored = {job->filter->ignored, job->filter->ignored_words};
-    scene.disabled = {job->filter->disabled, job->filter->disabled_words};
-    scene.padding = {job->filter->padding, job->filter->padding_count};
-  }
-  Result result{{{job->pairs, job->pair_capacity}}, {job->bits, job->bit_words}};
-  std::fill(result.bits.begin(), result.bits.end(), std::uint64_t{0});
-  detect_all(scene, result);
-  job->pair_count = result.pairs.count;
-  return result.pairs.overflowed() ? refuse(SC_OVERFLOW, SC_FIELD_PAIRS) : done();
+  const Span<std::uint64_t> bits{job->bits, job->bit_words};
+  std::fill(bits.begin(), bits.end(), std::uint64_t{0});
+  PairOutput output({job->pairs, job->pair_capacity}, bits);
+  detect(resolved, scene, output);
+  job->pair_count = output.count();
+  // A caller who only wants the count brings no list.
+  return job->pair_capacity > 0 && output.count() > job->pair_capacity ? refuse(SC_OVERFLOW, SC_FIELD_PAIRS) : done();
 }
 
 }  // extern "C"

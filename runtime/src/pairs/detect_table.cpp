@@ -6,7 +6,7 @@
 #include "asset/status.h"
 #include "pairs/filter.h"
 #include "pairs/pair_bits.h"
-#include "pairs/pair_rows.h"
+#include "pairs/scene.h"
 #include "pose/pose.h"
 #include "simd/simd.h"
 
@@ -26,7 +26,7 @@ std::size_t padded_rest_pairs(const AssetView& asset) {
 }
 
 // Where in a table's words what lies, and how many there are; of null words only how many. An asset of one tile has
-// rows and lists; a larger one, for which they would save nothing, its filter's bits.
+// lists; a larger one, for which they would save nothing, its filter's bits.
 struct Content {
   Content(std::uint64_t* words, const AssetView& asset) : size(kHeaderWords) {
     const auto take = [&](auto*& content, std::size_t count) {
@@ -35,12 +35,11 @@ struct Content {
     };
     const std::size_t n = asset.spheres().size;
     if (is_one_tile(asset)) {
-      take(rows, padded_rows(n));
-      take(plain, padded_rows(n));
-      take(strips, padded_strips(n));
-      take(wanted, padded_strips(n));
-      take(rest_pairs, padded_rest_pairs(asset));
-      take(rest_scales, padded_rest_pairs(asset));
+      lists.rest_room = padded_rest_pairs(asset);
+      take(lists.wanted, padded_strips(n));
+      take(lists.strips, padded_strips(n));
+      take(lists.rest_pairs, lists.rest_room);
+      take(lists.rest_scales, lists.rest_room);
     } else {
       take(ignored, words_for(pairs_of(n)));
       take(disabled, words_for(n));
@@ -49,40 +48,10 @@ struct Content {
   }
 
   std::size_t size;
-  TileWords *rows = nullptr, *plain = nullptr;
-  ListedPair *strips = nullptr, *rest_pairs = nullptr;
-  std::uint16_t* wanted = nullptr;
-  float *rest_scales = nullptr, *padding = nullptr;
+  PairListBuffers lists = {};
+  float* padding = nullptr;
   std::uint64_t *ignored = nullptr, *disabled = nullptr;
 };
-
-void fill_strips(std::size_t n, const Content& content) {
-  const std::size_t padded = padded_strips(n);
-  std::fill(content.strips, content.strips + padded, ListedPair{});
-  std::size_t strip = 0;
-  for_each_strip(n, [&](std::size_t row, std::size_t first) {
-    content.strips[strip] = listed_pair(first, row);
-    content.wanted[strip] = static_cast<std::uint16_t>(content.plain[row].words[first / 64] >> (first % 64));
-    ++strip;
-  });
-  std::fill(content.wanted + strip, content.wanted + padded, std::uint16_t{0});
-}
-
-// The rest pairs that rows hold. Returns how many, filled up.
-std::size_t fill_rest_pairs(Span<const RestPair> from, const Content& content) {
-  std::size_t count = 0;
-  for (const RestPair& pair : from) {
-    if (((content.rows[pair.b].words[pair.a / 64] >> (pair.a % 64)) & 1U) != 0) {
-      content.rest_pairs[count] = listed_pair(pair.a, pair.b);
-      content.rest_scales[count++] = pair.rest_scale;
-    }
-  }
-  for (; count % kBlock != 0; ++count) {
-    content.rest_pairs[count] = {};
-    content.rest_scales[count] = 0;
-  }
-  return count;
-}
 
 Status check(const AssetView& asset, Radius radius, const Filter* filter, Span<std::uint64_t> words) {
   if (words.data == nullptr || any_misaligned(words.data)) {
@@ -108,29 +77,23 @@ Status check(const AssetView& asset, Radius radius, const Filter* filter, Span<s
 
 void fill(const AssetView& asset, Radius radius, const Filter* filter, std::uint64_t* words) {
   const std::size_t n = asset.spheres().size;
-  PairChoice choice{asset.ignored(), {}, asset.rest_pairs(radius)};
-  Span<const float> padding;
-  if (filter != nullptr) {
-    choice.ignored = {filter->ignored, filter->ignored_words};
-    choice.disabled = {filter->disabled, filter->disabled_words};
-    padding = {filter->padding, filter->padding_count};
-  }
+  PairChoice choice = choice_of(asset, radius, filter);
   const Content content(words, asset);
   words[kIsTable] = kMagic;
   words[kAsset] = key_of(asset);
   words[kRadius] = static_cast<std::uint64_t>(radius);
   words[kSpheres] = n;
   words[kRestRoom] = padded_rest_pairs(asset);
-  words[kIsPadded] = padding.size > 0 ? 1 : 0;
+  words[kIsPadded] = choice.padding.size > 0 ? 1 : 0;
   words[kRestPairs] = 0;
   std::fill(content.padding, content.padding + n, 0.0F);
-  std::copy(padding.begin(), padding.end(), content.padding);
+  std::copy(choice.padding.begin(), choice.padding.end(), content.padding);
   if (is_one_tile(asset)) {
     Target target{};
     resolve_target(SC_TARGET_BEST, target);
-    fill_rows(target, choice, {0, n, 0, n}, content.rows, content.plain);
-    fill_strips(n, content);
-    words[kRestPairs] = fill_rest_pairs(choice.rest_pairs, content);
+    const TilePlace place{0, n, 0, n};
+    fill_strips(target, choice, place, content.lists);
+    words[kRestPairs] = move_rest_pairs(choice.rest_pairs, place, content.lists);
   } else {
     std::copy(choice.ignored.begin(), choice.ignored.end(), content.ignored);
     std::fill(content.disabled, content.disabled + words_for(n), std::uint64_t{0});
@@ -140,7 +103,7 @@ void fill(const AssetView& asset, Radius radius, const Filter* filter, std::uint
 
 }  // namespace
 
-Status read_detect_table(const AssetView& asset, Radius radius, const std::uint64_t* words, DetectTable& out) {
+Status read_detect_table(const AssetView& asset, Radius radius, const std::uint64_t* words, Scene& scene) {
   if (any_misaligned(words)) {
     return refuse(SC_MISALIGNED, SC_FIELD_TABLE);
   }
@@ -152,16 +115,16 @@ Status read_detect_table(const AssetView& asset, Radius radius, const std::uint6
   }
   const Content content(const_cast<std::uint64_t*>(words), asset);
   const std::size_t n = asset.spheres().size;
-  out.size = content.size;
-  out.padding = {content.padding, words[kIsPadded] != 0 ? n : 0};
-  out.has_rows = is_one_tile(asset);
-  if (out.has_rows) {
-    out.rows = {content.rows,
-                content.plain,
-                {content.wanted, content.strips, content.rest_pairs, content.rest_scales, words[kRestPairs]}};
+  const PairListBuffers& lists = content.lists;
+  scene.table_words = content.size;
+  scene.choice.padding = {content.padding, words[kIsPadded] != 0 ? n : 0};
+  scene.has_lists = is_one_tile(asset);
+  if (scene.has_lists) {
+    scene.lists = {lists.wanted, lists.strips, strips_of(n), lists.rest_pairs, lists.rest_scales, words[kRestPairs]};
   } else {
-    out.ignored = {content.ignored, words_for(pairs_of(n))};
-    out.disabled = {content.disabled, words_for(n)};
+    scene.choice.rest_pairs = asset.rest_pairs(radius);
+    scene.choice.ignored = {content.ignored, words_for(pairs_of(n))};
+    scene.choice.disabled = {content.disabled, words_for(n)};
   }
   return done();
 }

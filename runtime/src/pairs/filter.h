@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A caller's filter, checked.
+// A caller's lists and filter, checked.
 #pragma once
 
 #include "asset/asset_view.h"
@@ -13,6 +13,13 @@ namespace spherechain {
 template <typename T>
 Span<T> span_of(T* data, std::size_t size) {
   return {data, size};
+}
+
+template <typename T>
+Status check_list(const T* data, std::size_t size, sc_field field) {
+  return data == nullptr && size > 0 ? refuse(SC_NULL, field)
+         : any_misaligned(data)      ? refuse(SC_MISALIGNED, field)
+                                     : done();
 }
 
 // Inline, for the CUDA library, which sees only what a shared runtime exports.

@@ -67,15 +67,6 @@ inline unsigned lowest_bit(std::uint64_t word) {
 #endif
 }
 
-// Of a word that has few.
-inline std::size_t count_bits(std::uint64_t word) {
-  std::size_t count = 0;
-  for (; word != 0; word &= word - 1) {
-    ++count;
-  }
-  return count;
-}
-
 // The pairs whose bits are set in a table of n spheres by ignored_bit, b ascending and then a. Bits past the pairs are
 // not looked at.
 template <typename Use>

@@ -11,12 +11,21 @@
 
 #include <cfloat>
 
-#include "pairs/overlap.h"
 #include "pairs/sphere_registers.h"
+#include "pairs/tile.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
 namespace HWY_NAMESPACE {
+
+// Spheres coordinate by coordinate, as vectors want them: seen from `origin`, with half of |center|^2, less radius^2
+// and a margin for what tests may be off. The entries up to the next multiple of kBlock are there too, and are 0.
+struct alignas(64) SphereColumns {
+  float x[kTileSize], y[kTileSize], z[kTileSize], power[kTileSize];
+};
+
+// What a sphere's |center|^2 + radius^2 adds to what a test by multiply-adds may be off: the proof is below.
+constexpr float kMarginOfExtent = 0x1p-18F, kMinMargin = 0x1p-120F;
 
 // The spheres of a whole vector. Returns what their extents raise the lanes of `extent` to.
 template <typename D, typename V>
@@ -81,12 +90,12 @@ HWY_INLINE bool fill_all(const Sphere* spheres, std::size_t count, const Sphere&
 // each h is, and where two spheres touch, -h(q) and some of the products are together at least rq^2 - G (px qx >= -(px
 // - qx)^2 / 4, and so on). So sums overflow upwards, if at all.
 //
-// Of kBlocks blocks of kBlock columns from `first` on, calls use(place, row, first, bits) of each for the rows [begin,
-// end), with at least the bits of the pairs that touch. Places follow each other from `place` on by block, and are
-// `step` apart by row.
+// Of kBlocks blocks of kBlock columns from `first` on, calls use(strip, bits) of each for the rows [begin, end), with
+// at least the bits of the pairs that touch. Strips follow each other from `strip` on by block, and are `step` apart by
+// row.
 template <std::size_t kBlocks, typename Use>
 HWY_INLINE void for_rows(const SphereColumns& columns, std::size_t first, const SphereColumns& rows, std::size_t begin,
-                         std::size_t end, std::size_t place, std::size_t step, const Use& use) {
+                         std::size_t end, std::size_t strip, std::size_t step, const Use& use) {
   namespace hn = hwy::HWY_NAMESPACE;
   constexpr hn::ScalableTag<float> kFloats;
   using V = hn::Vec<hn::ScalableTag<float>>;
@@ -102,7 +111,7 @@ HWY_INLINE void for_rows(const SphereColumns& columns, std::size_t first, const 
       start[block][part] = hn::Neg(hn::Load(kFloats, columns.power + at));
     }
   }
-  for (std::size_t r = begin; r < end; ++r, place += step) {
+  for (std::size_t r = begin; r < end; ++r, strip += step) {
     const V px = hn::Set(kFloats, rows.x[r]);
     const V py = hn::Set(kFloats, rows.y[r]);
     const V pz = hn::Set(kFloats, rows.z[r]);
@@ -115,7 +124,7 @@ HWY_INLINE void for_rows(const SphereColumns& columns, std::size_t first, const 
         sum = hn::MulAdd(pz, z[block][part], sum);
         bits |= bits_of(hn::Gt(sum, power)) << (part * kLanes);
       }
-      use(place + block, r, first + block * kBlock, static_cast<std::uint16_t>(bits));
+      use(strip + block, static_cast<std::uint16_t>(bits));
     }
   }
 }
@@ -126,19 +135,19 @@ template <typename FirstRow, typename Use>
 HWY_INLINE void for_candidates(const SphereColumns& columns, std::size_t column_count, const SphereColumns& rows,
                                std::size_t row_count, const FirstRow& first_row, const Use& use) {
   constexpr bool kIsWide = kListLanes == kBlock;
-  std::size_t place = 0;
+  std::size_t strip = 0;
   for (std::size_t first = 0; first < column_count; first += 2 * kBlock) {
     const std::size_t next = first + kBlock, begin = first_row(first);
     const std::size_t both = next < column_count && first_row(next) < row_count ? first_row(next) : row_count;
-    for_rows<1>(columns, first, rows, begin, both, place, 1, use);
-    place += begin < both ? both - begin : 0;
+    for_rows<1>(columns, first, rows, begin, both, strip, 1, use);
+    strip += begin < both ? both - begin : 0;
     if (kIsWide) {
-      for_rows<kIsWide ? 2 : 1>(columns, first, rows, both, row_count, place, 2, use);
+      for_rows<kIsWide ? 2 : 1>(columns, first, rows, both, row_count, strip, 2, use);
     } else {
-      for_rows<1>(columns, first, rows, both, row_count, place, 2, use);
-      for_rows<1>(columns, next, rows, both, row_count, place + 1, 2, use);
+      for_rows<1>(columns, first, rows, both, row_count, strip, 2, use);
+      for_rows<1>(columns, next, rows, both, row_count, strip + 1, 2, use);
     }
-    place += 2 * (row_count - both);
+    strip += 2 * (row_count - both);
   }
 }
 

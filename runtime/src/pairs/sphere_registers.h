@@ -11,7 +11,7 @@
 
 #include <cfloat>
 
-#include "pairs/overlap.h"
+#include "spherechain/types.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
@@ -54,23 +54,6 @@ HWY_INLINE void turn(D d, V v0, V v1, V v2, V v3, V& x, V& y, V& z, V& radius) {
 }
 
 #endif
-
-template <typename D>
-HWY_INLINE hwy::HWY_NAMESPACE::Vec<D> load_reaches(D d, const RestPair* pairs) {
-  namespace hn = hwy::HWY_NAMESPACE;
-  const auto* words = reinterpret_cast<const float*>(pairs);
-#if HWY_TARGET == HWY_AVX3
-  (void)d;
-  const __m512i low = _mm512_setr_epi32(2, 5, 8, 11, 14, 17, 20, 23, 26, 29, 0, 0, 0, 0, 0, 0);
-  const __m512i high = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 16, 19, 22, 25, 28, 31);
-  const __m512 first = _mm512_permutex2var_ps(_mm512_loadu_ps(words), low, _mm512_loadu_ps(words + 16));
-  return hn::Vec<D>{_mm512_permutex2var_ps(first, high, _mm512_loadu_ps(words + 32))};
-#else
-  hn::Vec<D> a, b, rest_scale;
-  hn::LoadInterleaved3(d, words, a, b, rest_scale);
-  return rest_scale;
-#endif
-}
 
 // A register's worth of spheres, the ith of them `sphere_at(i)`.
 template <typename D, typename SphereAt, typename V>
@@ -134,14 +117,6 @@ HWY_INLINE hwy::HWY_NAMESPACE::Mask<hwy::HWY_NAMESPACE::ScalableTag<float>> touc
   const V d2 = hn::Add(hn::Add(hn::Mul(dx, dx), hn::Mul(dy, dy)), hn::Mul(dz, dz));
   const V s2 = hn::Mul(s, s), t = hn::Mul(rest_scales, s);
   return hn::And(hn::Lt(d2, hn::Mul(t, t)), hn::Le(s2, hn::Set(d, FLT_MAX)));
-}
-
-// kListLanes pairs, a bit each: a counts from the columns' first sphere, b from the rows'.
-HWY_INLINE std::uint64_t test_listed(const Sphere* column_spheres, const Sphere* row_spheres, const RestPair* pairs) {
-  const hwy::HWY_NAMESPACE::ScalableTag<float> d;
-  return bits_of(touching([&](std::size_t k) -> const Sphere& { return column_spheres[pairs[k].a]; },
-                          [&](std::size_t k) -> const Sphere& { return row_spheres[pairs[k].b]; },
-                          load_reaches(d, pairs)));
 }
 
 }  // namespace HWY_NAMESPACE

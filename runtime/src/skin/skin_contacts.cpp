@@ -11,13 +11,6 @@
 namespace spherechain {
 namespace {
 
-template <typename T>
-Status check_list(const T* data, std::size_t size, sc_field field) {
-  return data == nullptr && size > 0 ? refuse(SC_NULL, field)
-         : any_misaligned(data)      ? refuse(SC_MISALIGNED, field)
-                                     : done();
-}
-
 // Sorted, each once, of two spheres each.
 Status check_candidates(const SkinContactJob& job, std::size_t sphere_count) {
   const Status status = check_list(job.candidates, job.candidate_count, SC_FIELD_CANDIDATES);

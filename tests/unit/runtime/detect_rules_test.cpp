@@ -2,6 +2,7 @@
 // The rules for one pair, and the buffers.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "jobs.h"
@@ -140,6 +141,40 @@ TEST_CASE("an overflow says how many pairs there are and writes the first ones")
   job.pair_capacity = 10;
   CHECK(job.run() == SC_OK);
   CHECK(pairs[10] == untouched);
+}
+
+TEST_CASE("an overflow of hundreds of pairs writes the first ones, of a character of one tile and of several") {
+  for (const std::uint32_t n : {40U, 128U, 300U}) {
+    const OpenedAsset opened(plain_asset(n));
+    const std::vector<Sphere> heap(n, {0, 0, 0, 1});
+    const std::vector<Pair> all = detect(opened.asset, heap, SC_RADIUS_DETECT).pairs;
+    REQUIRE(all.size() == n * (n - 1) / 2);
+    for (const std::size_t capacity : {std::size_t{1}, std::size_t{129}, all.size() - 1}) {
+      std::vector<Pair> pairs(capacity);
+      DetectJob job;
+      job.asset = &opened.asset;
+      job.spheres = heap.data();
+      job.sphere_count = heap.size();
+      job.pairs = pairs.data();
+      job.pair_capacity = capacity;
+      CHECK(job.run() == sc_status{SC_OVERFLOW, SC_FIELD_PAIRS});
+      CHECK(job.pair_count == all.size());
+      CHECK(std::equal(pairs.begin(), pairs.end(), all.begin()));
+    }
+  }
+}
+
+TEST_CASE("rest pairs may be many") {
+  std::mt19937 random(5);
+  for (const std::uint32_t n : {23U, 24U, 120U, 150U}) {
+    AssetParts parts = plain_asset(n);
+    for (std::uint32_t a = 0; a < n; ++a) {
+      for (std::uint32_t b = a + 1; b < n; ++b) {
+        if ((a + b) % 7 != 0) parts.rest_detect.push_back({a, b, uniform(random, 0.3F, 1.0F)});
+      }
+    }
+    CHECK(!pairs_of(parts, random_spheres(n, random)).empty());
+  }
 }
 
 TEST_CASE("one sphere touches nothing and needs no bits") {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "pairs/listed_pairs.h"
+#include "pairs/tile.h"
 
 #include <cstring>
 
@@ -7,7 +7,7 @@
 #include "simd/simd.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "pairs/listed_pairs.cpp"
+#define HWY_TARGET_INCLUDE "pairs/tile.cpp"
 #include "pairs/sphere_columns.h"
 #include "simd/highway.h"
 
@@ -19,21 +19,24 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::ScalableTag<float>;
 using Pairs = hn::ScalableTag<std::int32_t>;  // numbers below 2^31: offsets are of kTileSize spheres
 
-// Adds those of kListLanes pairs that touch and whose number is below `count`. False where there are too many.
-HWY_INLINE bool test_pairs(const Sphere* spheres, const ListedPair* pairs, hn::Vec<Floats> rest_scales,
-                           std::size_t count, FoundPairs& found) {
+// Adds those of kListLanes pairs that touch and whose number is below `count`.
+HWY_INLINE void test_pairs(const Tile& tile, const ListedPair* pairs, hn::Vec<Floats> rest_scales, std::size_t count,
+                           FoundPairs& found) {
   constexpr Floats kFloats;
   constexpr Pairs kPairs;
-  const auto* const bytes = reinterpret_cast<const char*>(spheres);
-  const auto at = [&](std::size_t offset) -> const Sphere& { return *reinterpret_cast<const Sphere*>(bytes + offset); };
-  auto touch = touching([&](std::size_t k) -> const Sphere& { return at(pairs[k].a); },
-                        [&](std::size_t k) -> const Sphere& { return at(pairs[k].b); }, rest_scales);
+  const auto at = [](const Sphere* spheres, std::size_t bytes) -> const Sphere& {
+    return *reinterpret_cast<const Sphere*>(reinterpret_cast<const char*>(spheres) + bytes);
+  };
+  auto touch = touching([&](std::size_t k) -> const Sphere& { return at(tile.columns, pairs[k].a); },
+                        [&](std::size_t k) -> const Sphere& { return at(tile.rows, pairs[k].b); }, rest_scales);
   touch = hn::And(touch, hn::FirstN(kFloats, count));
   const auto numbers = hn::LoadU(kPairs, reinterpret_cast<const std::int32_t*>(pairs));
   const auto own = hn::RebindMask(kPairs, touch);
   hn::StoreU(hn::Compress(numbers, own), kPairs, reinterpret_cast<std::int32_t*>(found.pairs + found.count));
   found.count += hn::CountTrue(kPairs, own);
-  return found.count <= kMaxPairs;
+  if (HWY_UNLIKELY(found.count > kMaxFound)) {
+    found.output.take(tile.place, found);
+  }
 }
 
 // The bits of the strips that have wanted candidates, of a group; the others' are taken from `candidates`.
@@ -79,49 +82,53 @@ HWY_INLINE std::size_t list_strip(const ListedPair& strip, std::uint16_t wanted,
 #endif
 }
 
-bool find(const Sphere* spheres, std::size_t count, const PairLists& lists, FoundPairs& found) {
-  constexpr Floats kFloats;
-  found.count = 0;
-  SphereColumns columns;
-  if (count == 0 || !fill_all(spheres, count, spheres[0], columns)) {
-    return count == 0;
+// Writes each strip's columns that may have a pair with the row, or all of them.
+HWY_INLINE void find_candidates(const Tile& tile, std::uint16_t* candidates) {
+  const TilePlace place = tile.place;
+  const std::size_t strip_count = tile.lists->strip_count;
+  const bool is_diagonal = place.is_diagonal();
+  SphereColumns columns, rows;  // rows: where they are others
+  if (fill_all(tile.columns, place.column_count, tile.columns[0], columns) &&
+      (is_diagonal || fill_all(tile.rows, place.row_count, tile.columns[0], rows))) {
+    clear_group(candidates + strip_count / kStripGroup * kStripGroup);
+    for_candidates(
+        columns, place.column_count, is_diagonal ? columns : rows, place.row_count,
+        [&](std::size_t column) { return place.first_row_of(column); },
+        [&](std::size_t strip, std::uint16_t bits) { candidates[strip] = bits; });
+  } else {
+    std::memset(candidates, 0xFF, (strip_count + kStripGroup) * sizeof *candidates);
   }
-  HWY_ALIGN std::uint16_t candidates[padded_strips(kTileSize) + kStripGroup];
-  const std::size_t strip_count = strips_of(count);
-  clear_group(candidates + strip_count / kStripGroup * kStripGroup);
-  for_candidates(
-      columns, count, columns, count, [](std::size_t first) { return first + 1; },
-      [&](std::size_t strip, std::size_t, std::size_t, std::uint16_t bits) { candidates[strip] = bits; });
+}
+
+void find(const Tile& tile, FoundPairs& found) {
+  constexpr Floats kFloats;
+  const PairLists lists = *tile.lists;
+  HWY_ALIGN std::uint16_t candidates[kMaxStrips + kStripGroup];
+  find_candidates(tile, candidates);
   // What candidates need of memory arrives meanwhile.
   for (std::size_t i = 0; i < lists.rest_count; i += kListLanes) {
-    if (!test_pairs(spheres, lists.rest_pairs + i, hn::LoadU(kFloats, lists.rest_scales + i), kListLanes, found)) {
-      return false;
-    }
+    test_pairs(tile, lists.rest_pairs + i, hn::LoadU(kFloats, lists.rest_scales + i), kListLanes, found);
   }
-  ListedPair listed[kMaxPairs + kBlock];
+  constexpr std::size_t kEnough = 128;
+  ListedPair listed[kEnough + kStripGroup * kBlock + kBlock];
   std::size_t listed_count = 0;
-  for (std::size_t first = 0; first < strip_count; first += kStripGroup) {
+  for (std::size_t first = 0; first < lists.strip_count; first += kStripGroup) {
     std::uint64_t strips = keep_wanted(lists.wanted + first, candidates + first);
     for (; strips != 0; strips &= strips - 1) {
       const std::size_t strip = first + hwy::Num0BitsBelowLS1Bit_Nonzero64(strips);
-      if (listed_count > kMaxPairs) {
-        return false;
-      }
       listed_count += list_strip(lists.strips[strip], candidates[strip], listed + listed_count);
     }
-  }
-  if (listed_count > kMaxPairs) {
-    return false;
-  }
-  for (std::size_t i = 0; i < kListLanes; ++i) {
-    listed[listed_count + i].a = listed[listed_count + i].b = 0;
-  }
-  for (std::size_t i = 0; i < listed_count; i += kListLanes) {
-    if (!test_pairs(spheres, listed + i, hn::Set(kFloats, 1.0F), listed_count - i, found)) {
-      return false;
+    if (listed_count <= kEnough && first + kStripGroup < lists.strip_count) {
+      continue;
     }
+    for (std::size_t i = 0; i < kListLanes; ++i) {
+      listed[listed_count + i].a = listed[listed_count + i].b = 0;
+    }
+    for (std::size_t i = 0; i < listed_count; i += kListLanes) {
+      test_pairs(tile, listed + i, hn::Set(kFloats, 1.0F), listed_count - i, found);
+    }
+    listed_count = 0;
   }
-  return true;
 }
 
 // Each pair's place is the number of those before it: of a register's pairs at once.
@@ -161,9 +168,7 @@ SPHERECHAIN_KERNELS(sort);
 
 }  // namespace
 
-bool find_listed(Target resolved, const Sphere* spheres, std::size_t count, const PairLists& lists, FoundPairs& found) {
-  return find_kernels[index_of(resolved)](spheres, count, lists, found);
-}
+void find_pairs(Target resolved, const Tile& tile, FoundPairs& found) { find_kernels[index_of(resolved)](tile, found); }
 
 void list_in_order(Target resolved, const FoundPairs& found, Span<Pair> list) {
   sort_kernels[index_of(resolved)](found, list.data, list.size);
