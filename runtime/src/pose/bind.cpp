@@ -26,6 +26,9 @@ Difference difference_of(const float* rows, const BoneMatrices& other, double he
   for (std::size_t r = 0; r < 3; ++r) {
     for (std::size_t c = 0; c < 4; ++c) {
       const double own = rows[4 * r + c], theirs = other.data[r * other.row + c * other.column];
+      if (!std::isfinite(theirs)) {
+        return {HUGE_VAL, HUGE_VAL};
+      }
       if (c < 3) {
         greatest = std::max(greatest, std::abs(own));
         linear = std::max(linear, std::abs(own - theirs));

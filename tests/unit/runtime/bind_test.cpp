@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -112,6 +113,8 @@ TEST_CASE("another rest pose, and a transposed layout, are found while binding; 
   CHECK(rig.message.find("\"bone3\"") != std::string::npos);
   *place -= 0.1F;
   rig.binds[16 * 2] += 0.1F;  // and its axes
+  CHECK(rig.bind() == SC_OTHER_BIND);
+  std::fill_n(&rig.binds[16 * 2], 16, std::numeric_limits<float>::quiet_NaN());
   CHECK(rig.bind() == SC_OTHER_BIND);
   rig.joints[2].inverse_bind = nullptr;  // not compared
   CHECK(rig.bind() == SC_OK);
