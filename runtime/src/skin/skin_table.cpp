@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <numeric>
 
 #include "asset/memory.h"
 #include "asset/status.h"
@@ -254,9 +253,8 @@ class Filler {
 
   // Of runs of so many entries each, where they start, and the end.
   static void fill_starts(Span<const std::uint32_t> counts, Span<std::uint32_t> starts) {
-    if (starts.size > 0) {
-      starts[0] = 0;
-      std::partial_sum(counts.begin(), counts.end(), starts.begin() + 1);
+    for (std::size_t i = 0; i < starts.size; ++i) {
+      starts[i] = i == 0 ? 0 : starts[i - 1] + counts[i - 1];
     }
   }
 
