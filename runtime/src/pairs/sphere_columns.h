@@ -31,7 +31,6 @@ constexpr float kMarginOfExtent = 0x1p-18F, kMinMargin = 0x1p-120F;
 template <typename D, typename V>
 HWY_INLINE V fill_vector(D d, const Sphere* spheres, const Sphere& origin, V extent, SphereColumns& columns,
                          std::size_t i) {
-  namespace hn = hwy::HWY_NAMESPACE;
   V x, y, z, radius;
   load_next_spheres(d, spheres, x, y, z, radius);
   x = hn::Sub(x, hn::Set(d, origin.x));
@@ -52,7 +51,6 @@ HWY_INLINE V fill_vector(D d, const Sphere* spheres, const Sphere& origin, V ext
 
 // False where the extent of a sphere is not finite: then the columns are of no use.
 HWY_INLINE bool fill_all(const Sphere* spheres, std::size_t count, const Sphere& origin, SphereColumns& columns) {
-  namespace hn = hwy::HWY_NAMESPACE;
   constexpr hn::ScalableTag<float> kFloats;
   const std::size_t lanes = hn::Lanes(kFloats);
   auto extent = hn::Zero(kFloats);
@@ -96,7 +94,6 @@ HWY_INLINE bool fill_all(const Sphere* spheres, std::size_t count, const Sphere&
 template <std::size_t kBlocks, typename Use>
 HWY_INLINE void for_rows(const SphereColumns& columns, std::size_t first, const SphereColumns& rows, std::size_t begin,
                          std::size_t end, std::size_t strip, std::size_t step, const Use& use) {
-  namespace hn = hwy::HWY_NAMESPACE;
   constexpr hn::ScalableTag<float> kFloats;
   using V = hn::Vec<hn::ScalableTag<float>>;
   constexpr std::size_t kLanes = hn::MaxLanes(kFloats);

@@ -24,7 +24,6 @@ constexpr std::size_t kListLanes = hwy::HWY_NAMESPACE::MaxLanes(hwy::HWY_NAMESPA
 // Block b of 128 bits is the sphere `sphere_at(4 * b)`.
 template <typename D, typename SphereAt>
 HWY_INLINE hwy::HWY_NAMESPACE::Vec<D> load_blocks(D d, const SphereAt& sphere_at) {
-  namespace hn = hwy::HWY_NAMESPACE;
 #if HWY_TARGET == HWY_AVX3  // four loads; halves put together would be shuffled
   __m512 spheres = _mm512_castps128_ps512(_mm_loadu_ps(&sphere_at(0).x));
   spheres = _mm512_insertf32x4(spheres, _mm_loadu_ps(&sphere_at(4).x), 1);
@@ -44,7 +43,6 @@ HWY_INLINE hwy::HWY_NAMESPACE::Vec<D> load_blocks(D d, const SphereAt& sphere_at
 // by four figures are turned about.
 template <typename D, typename V>
 HWY_INLINE void turn(D d, V v0, V v1, V v2, V v3, V& x, V& y, V& z, V& radius) {
-  namespace hn = hwy::HWY_NAMESPACE;
   const V low02 = hn::InterleaveLower(d, v0, v2), low13 = hn::InterleaveLower(d, v1, v3),
           high02 = hn::InterleaveUpper(d, v0, v2), high13 = hn::InterleaveUpper(d, v1, v3);
   x = hn::InterleaveLower(d, low02, low13);
@@ -72,7 +70,6 @@ HWY_INLINE void load_spheres(D d, const SphereAt& sphere_at, V& x, V& y, V& z, V
 template <typename D, typename V>
 HWY_INLINE void load_next_spheres(D d, const Sphere* spheres, V& x, V& y, V& z, V& radius) {
 #if HWY_TARGET == HWY_AVX3  // eight spheres' figures together first: whole registers, and half the shuffles
-  namespace hn = hwy::HWY_NAMESPACE;
   HWY_ALIGN static constexpr std::int32_t kXy[16] = {0, 4, 8, 12, 16, 20, 24, 28, 1, 5, 9, 13, 17, 21, 25, 29};
   HWY_ALIGN static constexpr std::int32_t kZr[16] = {2, 6, 10, 14, 18, 22, 26, 30, 3, 7, 11, 15, 19, 23, 27, 31};
   const __m512i first = _mm512_load_si512(kXy), second = _mm512_load_si512(kZr);
@@ -96,7 +93,6 @@ HWY_INLINE void load_next_spheres(D d, const Sphere* spheres, V& x, V& y, V& z, 
 template <typename P, typename Q, typename V>
 HWY_INLINE hwy::HWY_NAMESPACE::Mask<hwy::HWY_NAMESPACE::ScalableTag<float>> touching(const P& p_at, const Q& q_at,
                                                                                      V rest_scales) {
-  namespace hn = hwy::HWY_NAMESPACE;
   const hn::ScalableTag<float> d;
 #if HWY_TARGET == HWY_SCALAR
   const Sphere &p = p_at(0), &q = q_at(0);
