@@ -7,7 +7,6 @@
 #include <string>
 
 #include "bind/neighbours.h"
-#include "mesh/error.h"
 #include "mesh/surface_query.h"
 
 namespace spherechain::baker {
@@ -72,6 +71,7 @@ SpherePairs find_ignored(const Character& character, const Regions& regions, con
                          const std::vector<std::uint32_t>& owner, double gap) {
   SpherePairs ignored(spheres.links.begin(), spheres.links.end());
   add_neighbours(character.skin, owner, gap, ignored);
+  if (regions.follow_bones()) return ignored;
   add_neighbours(character.body, assign_triangles(character.body, regions.of_triangle, spheres), gap, ignored);
   return ignored;
 }
@@ -138,6 +138,12 @@ BoundSphere bind_sphere(const Mesh& mesh, const std::vector<Index>& surrounding,
   if (pivots.empty() && settings.rule == RefitRule::kMoments) {
     pivots = choose_nearest_pivots(mesh, triangles_around(mesh, sphere, 8), sphere, reference, settings.pivots);
   }
+  if (pivots.empty() && settings.rule == RefitRule::kMoments) {
+    constexpr std::size_t kFew = 4;  // one triangle's centroid has no distance from itself
+    constexpr double kEverywhere = std::numeric_limits<double>::infinity();
+    pivots = choose_even_pivots(
+        mesh, surrounding.size() < kFew ? triangles_around(mesh, sphere, kEverywhere) : surrounding, sphere);
+  }
   BoundSphere bound = carried(mesh, sphere, settings.rule, std::move(pivots));
   bound.detect_radius = detect_ratio(mesh, surrounding, sphere.ball, settings.detect_quantile) * bound.rest.radius;
   return bound;
@@ -162,27 +168,28 @@ std::vector<BoundPair> find_rest_pairs(const std::vector<BoundSphere>& spheres, 
 
 }  // namespace
 
-Binding bind_spheres(const Character& character, const Regions& regions, const Spheres& spheres,
-                     const BindSettings& settings) {
+Attempt<Binding> bind_spheres(const Character& character, const Regions& regions, const Spheres& spheres,
+                              const BindSettings& settings) {
   Binding out;
   out.rule = settings.rule;
   const Mesh& skin = character.skin;
-  out.sphere_of_triangle = assign_triangles(skin, regions.of_skin, spheres);
+  const bool by_halves = !spheres.of_skin.empty();
+  out.sphere_of_triangle = by_halves ? spheres.of_skin : assign_triangles(skin, regions.of_skin, spheres);
 
   std::vector<std::vector<Index>> surrounding(spheres.spheres.size());
-  const std::vector<bool> loose = loose_triangles(character, regions.frame.height);
+  const std::vector<bool> loose =
+      by_halves ? std::vector<bool>(skin.triangles.size(), false) : loose_triangles(character, regions.frame.height);
   for (Index t = 0; t < out.sphere_of_triangle.size(); ++t) {
     if (!loose[t]) surrounding[out.sphere_of_triangle[t]].push_back(t);
   }
   for (std::size_t i = 0; i < spheres.spheres.size(); ++i) {
     const FittedSphere& sphere = spheres.spheres[i];
-    const bool on_torso = sphere.region == regions.torso_region();
+    const bool on_torso = !by_halves && sphere.region == regions.torso_region();
     BoundSphere bound = bind_sphere(skin, surrounding[i], sphere, on_torso, regions.frame, settings);
-    if (bound.pivots.empty()) {
-      throw Error(ExitCode::kSegmentation,
-                  character.file + ": sphere " + std::to_string(i) + " of the " + regions.name(sphere.region) +
-                      " finds no pivots that carry it around its " + std::to_string(surrounding[i].size()) +
-                      " triangles (set penetration_depth to 0: fewer, larger spheres)");
+    if (bound.pivots.empty() || !(bound.spread > 0)) {
+      return Reason{"sphere " + std::to_string(i) + " of the " + regions.name(sphere.region) +
+                    " finds no pivots that carry it around its " + std::to_string(surrounding[i].size()) +
+                    " triangles"};
     }
     out.spheres.push_back(std::move(bound));
   }

@@ -51,9 +51,9 @@ struct BindSettings {
   double neighbour_gap = 0;      // of the height: spheres this close along the mesh are ignored, too
 };
 
-// Throws Error(kSegmentation) where a sphere finds no pivots.
-Binding bind_spheres(const Character& character, const Regions& regions, const Spheres& spheres,
-                     const BindSettings& settings);
+// There is none where a sphere finds no pivots.
+Attempt<Binding> bind_spheres(const Character& character, const Regions& regions, const Spheres& spheres,
+                              const BindSettings& settings);
 
 // Chooses the pivots of one sphere among its triangles. Under the paper's rule: `count` of them, or none where there
 // are fewer. Under the rule of moments: `count`, or all where there are fewer. Where the magnitudes of their weights
@@ -66,5 +66,10 @@ std::vector<BoundPivot> choose_pivots(const Mesh& mesh, const std::vector<Index>
 // four that do not lie in a plane.
 std::vector<BoundPivot> choose_nearest_pivots(const Mesh& mesh, const std::vector<Index>& triangles,
                                               const FittedSphere& sphere, const Vec3& reference, int count);
+
+// For a sphere that choose_nearest_pivots() has none for either: the 16 triangles nearest to its centre, or all where
+// there are fewer, in equal parts. The centre is drawn to the middle of them.
+std::vector<BoundPivot> choose_even_pivots(const Mesh& mesh, const std::vector<Index>& triangles,
+                                           const FittedSphere& sphere);
 
 }  // namespace spherechain::baker

@@ -22,7 +22,9 @@ struct Pattern {
 std::vector<Index> pick(const Mesh& mesh, const std::vector<Index>& triangles, const FittedSphere& sphere,
                         const Vec3& reference, const Pattern& pattern) {
   const Vec3 axis = sphere.axis;
-  const Vec3 u = (reference - reference.dot(axis) * axis).normalized(), v = axis.cross(u);
+  const Vec3 across = reference - reference.dot(axis) * axis;
+  const Vec3 u = across.norm() > 1e-3 * reference.norm() ? across.normalized() : axis.unitOrthogonal();
+  const Vec3 v = axis.cross(u);
   std::vector<Index> picked;
   for (int k = 0; k < pattern.count; ++k) {
     // In the middle of the k-th sector: with four, of the quadrant.
@@ -128,6 +130,18 @@ std::vector<BoundPivot> choose_nearest_pivots(const Mesh& mesh, const std::vecto
     weight = share * weight + (1 - share) / static_cast<double>(found.weights.size());
   }
   return bound(found);
+}
+
+std::vector<BoundPivot> choose_even_pivots(const Mesh& mesh, const std::vector<Index>& triangles,
+                                           const FittedSphere& sphere) {
+  constexpr std::size_t kMost = 16;
+  std::vector<std::pair<double, Index>> near;
+  for (const Index t : triangles) near.emplace_back((triangle_centroid(mesh, t) - sphere.ball.center).squaredNorm(), t);
+  const std::size_t count = std::min(kMost, near.size());
+  std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end());
+  std::vector<BoundPivot> pivots;
+  for (std::size_t i = 0; i < count; ++i) pivots.push_back({near[i].second, 1.0 / static_cast<double>(count)});
+  return pivots;
 }
 
 }  // namespace spherechain::baker

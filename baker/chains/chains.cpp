@@ -109,4 +109,51 @@ Chains build_chains(const Spheres& spheres, const std::vector<LimbPlace>& limbs)
   return out;
 }
 
+Chains build_tree_chains(const Spheres& spheres, const std::vector<std::uint8_t>& parents) {
+  const std::uint8_t root = spheres.torso_region();
+  std::vector<bool> is_leaf(parents.size(), true);
+  for (std::uint8_t region = 0; region < root; ++region) is_leaf[parents[region]] = false;
+  is_leaf[root] = false;
+  std::vector<std::vector<std::uint8_t>> ways;  // from each leaf to the root
+  for (std::uint8_t leaf = 0; leaf < root; ++leaf) {
+    if (!is_leaf[leaf]) continue;
+    ways.push_back({leaf});
+    while (ways.back().back() != root) ways.back().push_back(parents[ways.back().back()]);
+  }
+  if (ways.empty()) ways.push_back({root});
+
+  Chains out;
+  // `down`: regions in whose order from start to tip the chain goes on.
+  const auto add = [&](const std::vector<std::uint8_t>& up, const std::vector<std::uint8_t>& down) {
+    Chain chain{"zeta" + std::to_string(out.chains.size()), up, {}};
+    for (const std::uint8_t region : up) {
+      const Ids ids = reversed(spheres.of_region[region]);
+      chain.spheres.insert(chain.spheres.end(), ids.begin(), ids.end());
+    }
+    for (const std::uint8_t region : down) {
+      const Ids& ids = spheres.of_region[region];
+      chain.regions.push_back(region);
+      chain.spheres.insert(chain.spheres.end(), ids.begin(), ids.end());
+    }
+    out.entries_table1 += chain.spheres.size();
+    out.chains.push_back(std::move(chain));
+  };
+  if (ways.size() == 1) add(ways[0], {});
+  for (std::size_t i = 0; i < ways.size(); ++i) {
+    for (std::size_t j = i + 1; j < ways.size(); ++j) {
+      std::vector<std::uint8_t> up = ways[i], down = ways[j];
+      std::uint8_t shared = root;
+      while (!up.empty() && !down.empty() && up.back() == down.back()) {
+        shared = up.back();
+        up.pop_back();
+        down.pop_back();
+      }
+      up.push_back(shared);
+      std::reverse(down.begin(), down.end());
+      add(up, down);
+    }
+  }
+  return out;
+}
+
 }  // namespace spherechain::baker

@@ -11,7 +11,7 @@ namespace spherechain::baker {
 
 struct Chain {
   std::string name;                    // zeta0 ..
-  std::vector<std::uint8_t> regions;   // limb, torso, limb
+  std::vector<std::uint8_t> regions;   // limb, torso, limb; of a tree: from leaf to leaf
   std::vector<std::uint32_t> spheres;  // each once: from one limb's tip through the torso to the other limb's tip
 };
 
@@ -40,5 +40,9 @@ struct LimbPlace {
 // is in every chain that goes through the top level. A single limb is a chain of its own. The order of a chain's
 // spheres is for readers; neighbours on the body are Spheres::links.
 Chains build_chains(const Spheres& spheres, const std::vector<LimbPlace>& limbs);
+
+// Of regions that are a tree (Regions::parents): a chain for each two leaves, through the regions between them; a
+// single leaf's goes to the root.
+Chains build_tree_chains(const Spheres& spheres, const std::vector<std::uint8_t>& parents);
 
 }  // namespace spherechain::baker

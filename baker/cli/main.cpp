@@ -9,6 +9,7 @@
 #include <functional>
 
 #include "cli/commands.h"
+#include "pipeline/pipeline.h"
 #include "play/target.h"
 #include "write/version.h"
 
@@ -99,6 +100,8 @@ int main(int argc, char** argv) {
       ->add_option("--body", bake.body,
                    "What to look for: biped, quadruped, or auto, any number of limbs (default auto)")
       ->check(CLI::IsMember({"biped", "quadruped", "auto"}));
+  bake_command->add_option("--spheres", bake.spheres, "At most so many spheres (default: as many as the body needs)")
+      ->check(CLI::Range(kSpheresMin, kSpheresMax));
   bake_command->add_flag("--extremities", bake.extremities,
                          "Spheres in head, hands and feet too (profile balanced has them)");
   bake_command->add_flag("--attachments", bake.attachments, "Keep rigid meshes that hang on joints: weapons, hats");

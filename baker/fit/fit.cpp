@@ -69,24 +69,26 @@ double penetration_depth(const Ball& a, const Ball& b) {
   return 1 - (a.center - b.center).norm() / (a.radius + b.radius);
 }
 
-Spheres fit_spheres(const Character& character, const Regions& regions, const FitSettings& settings) {
+Attempt<Spheres> fit_spheres(const Character& character, const Regions& regions, const FitSettings& settings) {
   const Mesh& mesh = character.body;
   Spheres out;
   const auto append = [&](const std::vector<FittedSphere>& spheres) {
     out.spheres.insert(out.spheres.end(), spheres.begin(), spheres.end());
   };
   if (regions.has_torso) {
-    fit_torso(mesh, regions, settings, character.file, out);
+    if (auto reason = fit_torso(mesh, regions, settings, out)) return *reason;
     if (!is_biped(regions) && is_narrow(out)) {
       FitSettings one = settings;
       one.spheres_per_level = 1;
       out = {};
-      fit_torso(mesh, regions, one, character.file, out);
+      if (auto reason = fit_torso(mesh, regions, one, out)) return *reason;
     }
   }
   if (regions.has_torso && settings.extremities) append(fit_head(mesh, regions, out, settings));
   for (std::uint8_t region = 0; region < regions.limbs.size(); ++region) {
-    append(fit_limb(mesh, regions, region, settings, character.file));
+    const Attempt<std::vector<FittedSphere>> limb = fit_limb(mesh, regions, region, settings);
+    if (!limb) return limb.reason();
+    append(*limb);
     if (settings.extremities) append(fit_hand_or_foot(mesh, regions, region, out.spheres.back().ball, settings));
   }
   out.of_region.resize(regions.limbs.size() + 1);

@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "import/import.h"
+#include "mesh/attempt.h"
 #include "segment/segment.h"
 
 namespace spherechain::baker {
@@ -19,9 +21,9 @@ struct Ball {
 struct FittedSphere {
   Ball ball;
   std::uint8_t region;
-  int level;       // torso: the disk's number from the bottom, which the head continues; limbs: -1
+  int level;       // torso: the disk's number from the bottom, which the head continues; else -1
   Side side;       // torso: which part of the disk; limbs, head and the middle of a level: none
-  Vec3 axis;       // unit direction of the chain here: along the limb towards its tip, up the torso
+  Vec3 axis;       // unit direction of the chain here: along the limb or part towards its tip, up the torso
   bool extremity;  // in head, hand or foot, where the paper has no spheres
 };
 
@@ -49,13 +51,22 @@ struct Spheres {
   std::vector<TorsoFit> torso;        // of spheres 0, 1, ... without the head
   std::vector<double> level_heights;  // along frame.up from frame.origin; without the head
   // Neighbours on the body, a < b, sorted: along a limb, on the same or the next torso level, limb and torso, neck and
-  // torso.
+  // torso. By halves: of a part and the one it hangs on, and of skin that moves alike.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> links;
+  // By halves: a triangle of Character::skin -> the sphere that was fitted to it. Else empty.
+  std::vector<std::uint32_t> of_skin;
 
   std::uint8_t torso_region() const { return static_cast<std::uint8_t>(of_region.size() - 1); }
   // The torso level at a place from 0, the hip, to 1, the chest.
   int level_at(double along) const;
 };
+
+// Spheres that fit_halves takes where no limit is set: the first, and up to the second where more than a twentieth of
+// the skin is still far from its sphere.
+inline constexpr int kHalvedSpheres = 75, kHalvedSpheresMax = 110;
+
+// How far the skin may be from the surface of its sphere to count as well fitted, in heights.
+inline constexpr double kWellFitted = 0.02, kFarAreaGood = 0.05;
 
 // Lengths are fractions of the character's height; the letters are the paper's.
 struct FitSettings {
@@ -65,18 +76,23 @@ struct FitSettings {
   double limb_step = 0.0015;        // march of the circumference
   int spheres_per_level = 2;        // N_s: 1 to 3
   bool extremities = true;          // spheres in head, hands and feet
+  std::optional<int> spheres;       // at most so many; else what the march needs; by halves kHalvedSpheres
 
   bool operator==(const FitSettings&) const = default;
 };
 
-// Throws Error(kSegmentation) where a limb or the torso has no section a sphere fits in.
-Spheres fit_spheres(const Character& character, const Regions& regions, const FitSettings& settings);
+// The paper's fit: the march along limbs, the disk up the torso. There is none where a limb or the torso has no section
+// that a sphere fits in.
+Attempt<Spheres> fit_spheres(const Character& character, const Regions& regions, const FitSettings& settings);
+
+// The fit for any body, of regions that follow the bones: a sphere for each, and the skin of the worst one halved
+// across its longest extent, until there are enough. Mirrored regions are halved as often.
+Spheres fit_halves(const Character& character, const Regions& regions, const FitSettings& settings);
 
 // fit_spheres' parts.
-std::vector<FittedSphere> fit_limb(const Mesh& mesh, const Regions& regions, std::uint8_t region,
-                                   const FitSettings& settings, const std::string& file);
-void fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& settings, const std::string& file,
-               Spheres& out);
+Attempt<std::vector<FittedSphere>> fit_limb(const Mesh& mesh, const Regions& regions, std::uint8_t region,
+                                            const FitSettings& settings);
+std::optional<Reason> fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& settings, Spheres& out);
 // Spheres of the hand or foot past the limb's last sphere; none where the limb ends there.
 std::vector<FittedSphere> fit_hand_or_foot(const Mesh& mesh, const Regions& regions, std::uint8_t region,
                                            const Ball& last, const FitSettings& settings);
@@ -85,6 +101,7 @@ std::vector<FittedSphere> fit_head(const Mesh& mesh, const Regions& regions, con
                                    const FitSettings& settings);
 
 // phi2: the smallest sphere around the points (CGAL).
+Ball minimum_enclosing_ball(const std::vector<Vec3>& points);
 Ball minimum_enclosing_ball(const Mesh& mesh, const std::vector<Index>& vertices);
 
 // Penetration depth PD of two neighbours: 0 where they touch, 0.5 for equal spheres that overlap by half.

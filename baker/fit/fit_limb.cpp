@@ -5,7 +5,6 @@
 
 #include "fit/fit.h"
 #include "fit/march.h"
-#include "mesh/error.h"
 #include "mesh/ring.h"
 
 namespace spherechain::baker {
@@ -79,8 +78,9 @@ class LimbMarch {
 
 }  // namespace
 
-std::vector<FittedSphere> fit_limb(const Mesh& mesh, const Regions& regions, std::uint8_t region,
-                                   const FitSettings& settings, const std::string& file) {
+Attempt<std::vector<FittedSphere>> fit_limb(const Mesh& mesh, const Regions& regions, std::uint8_t region,
+                                            const FitSettings& settings) {
+  if (triangles_of_region(regions, region).empty()) return Reason{"the " + regions.name(region) + " has no skin"};
   const LimbMarch march(mesh, regions, region, settings);
   const double end = regions.limbs[region].extremity, step = settings.limb_step * regions.frame.height;
 
@@ -95,8 +95,7 @@ std::vector<FittedSphere> fit_limb(const Mesh& mesh, const Regions& regions, std
     s = at;
   }
   if (most < kSkinShareMin) {
-    throw Error(ExitCode::kSegmentation,
-                file + ": no section of the " + regions.name(region) + " is closed by its own skin");
+    return Reason{"no section of the " + regions.name(region) + " is closed by its own skin"};
   }
   std::vector<FittedSphere> spheres;
   const auto place = [&](double at, const Ball& ball) {

@@ -8,7 +8,6 @@
 
 #include "fit/fit.h"
 #include "fit/march.h"
-#include "mesh/error.h"
 #include "mesh/ring.h"
 
 namespace spherechain::baker {
@@ -173,13 +172,11 @@ std::pair<double, double> band_of(const std::vector<Level>& levels, std::size_t 
 
 }  // namespace
 
-void fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& settings, const std::string& file,
-               Spheres& out) {
+std::optional<Reason> fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& settings, Spheres& out) {
   const BodyFrame& frame = regions.frame;
+  if (triangles_of_region(regions, regions.torso_region()).empty()) return Reason{"the torso has no skin"};
   const std::vector<Level> levels = place_levels(TorsoDisk(mesh, regions, settings), regions, settings);
-  if (levels.empty()) {
-    throw Error(ExitCode::kSegmentation, file + ": the torso has no level between hip and neck that a disk fits in");
-  }
+  if (levels.empty()) return Reason{"the torso has no level between hip and neck that a disk fits in"};
   std::vector<bool> in_torso(mesh.positions.size(), false);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     if (regions.of_triangle[t] != regions.torso_region()) continue;
@@ -207,6 +204,7 @@ void fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& sett
     }
     out.level_heights.push_back(levels[i].height);
   }
+  return std::nullopt;
 }
 
 }  // namespace spherechain::baker

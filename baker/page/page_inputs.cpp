@@ -104,7 +104,9 @@ std::string read_bake_report(const std::string& file, const OpenAsset& asset, co
   const Value counts = report["counts"];
   counts["why"].text();
   counts["paper"].numbers({"spheres_by_its_chain_counts", "spheres_as_stated", "chain_entries"});
-  report["bind"]["covered_area"].number();
+  const Value quality = report["bind"]["quality"];
+  quality["grade"].text();
+  quality.numbers({"far_area", "protrusion"});
   report["missed_targets"].each([](const Value& target) { target.text(); });
   report["stages"].each([](const Value& stage) {
     stage["stage"].text();

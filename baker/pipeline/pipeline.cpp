@@ -2,11 +2,14 @@
 // One character through all stages.
 #include "pipeline/pipeline.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <chrono>
 
 #include "mesh/error.h"
 #include "pipeline/segment_wraps.h"
+#include "segment/by_bones.h"
 #include "segment/by_rig.h"
 #include "segment/by_shape.h"
 #include "wrap/repair_body.h"
@@ -54,7 +57,8 @@ void run_after_fit(Bake& out, const Progress& progress) {
     for (const Limb& limb : out.regions.limbs) {
       limbs.push_back({static_cast<std::uint8_t>(limbs.size()), limb.side, limb.along});
     }
-    out.chains = build_chains(out.spheres, limbs);
+    out.chains = out.regions.follow_bones() ? build_tree_chains(out.spheres, out.regions.parents)
+                                            : build_chains(out.spheres, limbs);
   });
   stage(out, progress, "rig", [&] {
     if (!is_biped(out.regions) || !out.joints.empty()) return;
@@ -62,7 +66,6 @@ void run_after_fit(Bake& out, const Progress& progress) {
     if (out.character.rig.bones.empty()) out.rig_weights = rig_weights(out.character, out.joints);
   });
   stage(out, progress, "bind", [&] {
-    out.binding = bind_spheres(out.character, out.regions, out.spheres, settings.bind);
     out.body_parts = find_body_parts(out.character, out.roles, out.regions, out.joints, out.rig_weights);
     out.bones = bind_bones(out.character, out.joints, out.rig_weights);
     out.moments = bind_moments(out.character, out.bones, out.rig_weights, out.binding);
@@ -76,13 +79,14 @@ void run_after_fit(Bake& out, const Progress& progress) {
   });
 }
 
-void run_fit(Bake& out, const Progress& progress) {
-  stage(out, progress, "fit", [&] { out.spheres = fit_spheres(out.character, out.regions, out.settings.fit); });
+Attempt<Spheres> fit_regions(const Character& character, const Regions& regions, const FitSettings& settings) {
+  if (regions.follow_bones()) return fit_halves(character, regions, settings);
+  return fit_spheres(character, regions, settings);
 }
 
 }  // namespace
 
-Segmentation segment_character(Character& character, const Roles& roles, const SegmentSettings& settings) {
+Attempt<Segmentation> segment_character(Character& character, const Roles& roles, const SegmentSettings& settings) {
   Segmentation out;
   const bool rigged = !roles.limbs.empty() && !character.rig.weights.empty();
   const bool whole = is_whole(character);
@@ -130,21 +134,9 @@ Segmentation segment_character(Character& character, const Roles& roles, const S
                  take_all_pieces(character);
                  Attempt<Proposal> proposal = by_rig();
                  if (proposal && limbs_are_in_shards(character.skin, proposal->regions)) {
-                   proposal->reservation = "most of the limbs' skin is in small pieces";
+                   return *(failure = Reason{"most of the limbs' skin is in small pieces"});
                  }
                  return proposal;
-               }},
-      Strategy{"rig on a wrap",
-               [&]() -> Attempt<Proposal> {
-                 if (!rigged) return does_not_apply("there is no rig with limbs");
-                 if (!reserve) return does_not_apply("a wrap does not change the rig");
-                 for (const WrapSize& size : wrap_sizes_of_limbs(character.skin)) {
-                   const Attempt<Wrap> wrap = wrap_skin(character.skin, size, out.closing);
-                   if (!wrap || wrap->lines_skin()) continue;
-                   use_wrap(character, *wrap, out.closing);
-                   return by_rig();
-                 }
-                 return Reason{"every wrap lines the skin from inside"};
                }},
       Strategy{"shape of a wrap",
                [&]() -> Attempt<Proposal> {
@@ -177,7 +169,7 @@ Segmentation segment_character(Character& character, const Roles& roles, const S
                         out.closing};
     }
   }
-  if (!reserve) throw Error(ExitCode::kSegmentation, character.file + ": " + failure->what);
+  if (!reserve) return *failure;
   character.body = std::move(reserve->body);
   character.body_source_triangle = std::move(reserve->body_source_triangle);
   character.body_of_source = std::move(reserve->body_of_source);
@@ -187,7 +179,66 @@ Segmentation segment_character(Character& character, const Roles& roles, const S
 }
 
 void close_body(Character& character, const SegmentSettings& settings) {
-  if (!is_whole(character) || !covers_skin(character)) segment_character(character, {}, settings);
+  if (is_whole(character) && covers_skin(character)) return;
+  const Attempt<Segmentation> found = segment_character(character, {}, settings);
+  if (!found) throw Error(ExitCode::kSegmentation, character.file + ": " + found.reason().what);
+}
+
+FittedCharacter fit_character(Character character, const Roles& roles, const BakeSettings& settings) {
+  const auto fail = [file = character.file](const Reason& reason) -> FittedCharacter {
+    throw Error(ExitCode::kSegmentation, file + ": " + reason.what);
+  };
+  const auto fit = [&](FittedCharacter& fitted) -> std::optional<Reason> {
+    const Regions& regions = fitted.segmentation.regions;
+    Attempt<Spheres> spheres = fit_regions(fitted.character, regions, settings.fit);
+    if (!spheres) return spheres.reason();
+    Attempt<Binding> binding = bind_spheres(fitted.character, regions, *spheres, settings.bind);
+    if (!binding) return binding.reason();
+    fitted.quality = measure_fit(fitted.character, regions, *binding);
+    fitted.spheres = std::move(*spheres);
+    fitted.binding = std::move(*binding);
+    return std::nullopt;
+  };
+  FittedCharacter first;
+  first.character = character;
+  const auto fit_first = [&]() -> std::optional<Reason> {
+    Attempt<Segmentation> found = segment_character(first.character, roles, settings.segment);
+    if (!found) return found.reason();
+    first.segmentation = std::move(*found);
+    return fit(first);
+  };
+  const std::optional<Reason> failure = fit_first();
+  // Without bones the automatic rig is what moves a body, and it needs a biped's regions.
+  const bool needs_limbs = character.rig.bones.empty() && is_biped(first.segmentation.regions);
+  const bool only_first = settings.bind.rule == RefitRule::kPaper || settings.segment.body != BodyKind::kUnknown ||
+                          (failure ? failure->cause == Reason::Cause::kSettings : needs_limbs);
+  if (failure && only_first) return fail(*failure);
+  if (only_first || (!failure && !settings.fit.spheres && first.quality.grade() == FitGrade::kGood)) return first;
+
+  FittedCharacter second;
+  second.character = std::move(character);
+  second.segmentation.regions = segment_by_bones(
+      second.character, roles, static_cast<std::size_t>(settings.fit.spheres.value_or(kHalvedSpheres)));
+  if (const auto reason = fit(second)) return fail(*reason);
+  const auto why = [](const FittedCharacter& fitted, const FittedCharacter& other) {
+    return Reason{
+        fmt::format("{:.1f} % of the skin is farther from its sphere than {:.0f} % of the height, not {:.1f} %",
+                    100 * fitted.quality.far_area, 100 * kWellFitted, 100 * other.quality.far_area)};
+  };
+  const bool too_many =
+      settings.fit.spheres && first.spheres.spheres.size() > static_cast<std::size_t>(*settings.fit.spheres);
+  if (!failure && !too_many && first.quality.far_area <= second.quality.far_area) {
+    first.segmentation.choice.passed_over.push_back({"bones", why(second, first)});
+    return first;
+  }
+  const Choice& tried = first.segmentation.choice;
+  const Reason too_many_spheres{fmt::format("it takes {} spheres", first.spheres.spheres.size())};
+  second.segmentation.choice = {"bones", tried.passed_over};
+  second.segmentation.choice.passed_over.push_back(
+      {tried.strategy.empty() ? "march and disk" : tried.strategy, failure    ? *failure
+                                                                   : too_many ? too_many_spheres
+                                                                              : why(first, second)});
+  return second;
 }
 
 Bake bake(const std::filesystem::path& input, const BakeSettings& settings, const Progress& progress) {
@@ -197,17 +248,20 @@ Bake bake(const std::filesystem::path& input, const BakeSettings& settings, cons
   stage(out, progress, "roles", [&] {
     out.roles = find_roles(out.character.rig, out.character.source_positions, settings.roles, settings.segment.body);
   });
-  stage(out, progress, "segment", [&] {
-    Segmentation found = segment_character(out.character, out.roles, settings.segment);
-    out.regions = std::move(found.regions);
-    out.closing = found.closing;
-    out.segmented_by = std::move(found.choice);
+  stage(out, progress, "fit", [&] {
+    FittedCharacter fitted = fit_character(std::move(out.character), out.roles, settings);
+    out.character = std::move(fitted.character);
+    out.regions = std::move(fitted.segmentation.regions);
+    out.closing = fitted.segmentation.closing;
+    out.segmented_by = std::move(fitted.segmentation.choice);
+    out.spheres = std::move(fitted.spheres);
+    out.binding = std::move(fitted.binding);
+    out.quality = std::move(fitted.quality);
   });
   if (out.closing.seconds > 0) {
     out.times.back().seconds -= out.closing.seconds;
     out.times.insert(out.times.end() - 1, {"wrap", out.closing.seconds});
   }
-  run_fit(out, progress);
   run_after_fit(out, progress);
   return out;
 }
@@ -222,11 +276,16 @@ Bake rebake(const Bake& bake, const BakeSettings& settings) {
   out.rig_weights = bake.rig_weights;
   out.closing = bake.closing;
   out.segmented_by = bake.segmented_by;
-  if (settings.fit == bake.settings.fit) {
-    out.spheres = bake.spheres;
-  } else {
-    run_fit(out, {});
-  }
+  stage(out, {}, "fit", [&] {
+    const auto or_throw = [&](auto attempt) {
+      if (!attempt) throw Error(ExitCode::kSegmentation, out.character.file + ": " + attempt.reason().what);
+      return std::move(*attempt);
+    };
+    const bool same = settings.fit == bake.settings.fit;
+    out.spheres = same ? bake.spheres : or_throw(fit_regions(out.character, out.regions, settings.fit));
+    out.binding = or_throw(bind_spheres(out.character, out.regions, out.spheres, settings.bind));
+    out.quality = measure_fit(out.character, out.regions, out.binding);
+  });
   run_after_fit(out, {});
   return out;
 }

@@ -12,6 +12,7 @@
 #include "bind/bind_bones.h"
 #include "bind/bind_moments.h"
 #include "bind/body_parts.h"
+#include "bind/fit_quality.h"
 #include "chains/chains.h"
 #include "clusters/clusters.h"
 #include "fit/fit.h"
@@ -26,10 +27,11 @@ namespace spherechain::baker {
 
 // What a bake has to reach; where it does not, the asset is written and the exit code says so.
 struct Targets {
-  std::optional<std::size_t> max_spheres;
-  std::optional<double> max_mean_abs_f;    // of phi1' over the torso; fraction of the height
-  std::optional<double> min_covered_area;  // share of the surface within its sphere's detect radius
+  std::optional<FitGrade> fit;  // or better
 };
+
+// Limits of the setting `spheres`.
+inline constexpr int kSpheresMin = 8, kSpheresMax = 500;
 
 struct BakeSettings {
   ImportOptions import;
@@ -72,6 +74,7 @@ struct Bake {
   std::vector<Joint> joints;
   std::vector<VertexWeights> rig_weights;  // to the joints, of every source vertex; none where the source has bones
   BodyParts body_parts;
+  FitQuality quality;
   BoneBinding bones;
   MomentBinding moments;
   Clusters clusters;
@@ -87,8 +90,23 @@ struct Segmentation {
 };
 
 // Tries the strategies of segmentation in order: by shape, by rig, and both on a closed surface made of the skin. The
-// body becomes what was segmented. Throws Error(kSegmentation) where no strategy has a result.
-Segmentation segment_character(Character& character, const Roles& roles, const SegmentSettings& settings);
+// body becomes what was segmented.
+Attempt<Segmentation> segment_character(Character& character, const Roles& roles, const SegmentSettings& settings);
+
+// A character with its spheres, and what carries them.
+struct FittedCharacter {
+  Character character;  // its body is what was segmented
+  Segmentation segmentation;
+  Spheres spheres;
+  Binding binding;
+  FitQuality quality;
+};
+
+// The paper's fit on what segment_character finds. Where there is none, it is not good, or the settings limit the
+// spheres, also the fit by halves of the bones' parts: the one with less skin far from its sphere is taken. Under the
+// paper's refit rule, and where the settings name a body, there is only the first. Throws Error(kSegmentation) where
+// there is none.
+FittedCharacter fit_character(Character character, const Roles& roles, const BakeSettings& settings);
 
 // Makes the body what segment_character makes of it without a rig: for what depends on the body alone (bone heat).
 void close_body(Character& character, const SegmentSettings& settings);
@@ -100,16 +118,6 @@ Bake bake(const std::filesystem::path& input, const BakeSettings& settings,
 // The stages after segmentation again, on the same character and regions, with other settings for them. Where those of
 // the fit are the same, the spheres stay.
 Bake rebake(const Bake& bake, const BakeSettings& settings);
-
-// Share of the body's area whose triangles have their centroid within their sphere's detect radius.
-double covered_area(const Bake& bake);
-
-// How far the skin is from the surface of the sphere it belongs to: over the body's triangles, at their centroids, in
-// fractions of the height.
-struct OwnerDistance {
-  double mean, p95, max;
-};
-OwnerDistance owner_distance(const Character& character, const Regions& regions, const Binding& binding);
 
 // What the settings ask for and the bake has not reached, a sentence each.
 std::vector<std::string> missed_targets(const Bake& bake);

@@ -117,6 +117,11 @@ BakeSettings make_settings(const std::string& profile, const std::string& text, 
   Reader reader(object, file);
   reader.boolean("attachments", settings.import.attachments);
   if (const json* roles = reader.object("roles")) settings.roles = parse_role_file(roles->dump(), file + ": roles");
+  if (const json* limit = reader.object("spheres"); limit != nullptr && !limit->is_null()) {
+    int spheres = kSpheresMin;
+    reader.integer("spheres", spheres, kSpheresMin, kSpheresMax);
+    settings.fit.spheres = spheres;
+  }
   reader.integer("rays", settings.fit.rays, 8, 4096);
   settings.segment.rays = settings.fit.rays;
   reader.number("penetration_depth", settings.fit.penetration_depth, 0, 0.9);
@@ -150,14 +155,9 @@ BakeSettings make_settings(const std::string& profile, const std::string& text, 
   if (const json* targets = reader.object("targets")) {
     if (!targets->is_object()) reader.fail("targets", "is not an object");
     Reader inner(*targets, file + ": targets");
-    int spheres = 0;
-    double value = 0;
-    inner.integer("max_spheres", spheres, 1, 65535);
-    if (targets->contains("max_spheres")) settings.targets.max_spheres = static_cast<std::size_t>(spheres);
-    inner.number("max_mean_abs_f", value, 0, 1);
-    if (targets->contains("max_mean_abs_f")) settings.targets.max_mean_abs_f = value;
-    inner.number("min_covered_area", value, 0, 1);
-    if (targets->contains("min_covered_area")) settings.targets.min_covered_area = value;
+    inner.text("fit", {"good", "fair"}, [&](const std::string& grade) {
+      settings.targets.fit = grade == "good" ? FitGrade::kGood : FitGrade::kFair;
+    });
     inner.done();
   }
   reader.done();
@@ -174,6 +174,8 @@ std::string to_json(const BakeSettings& settings) {
   out["limb_step"] = settings.fit.limb_step;
   out["spheres_per_level"] = settings.fit.spheres_per_level;
   out["extremities"] = settings.fit.extremities;
+  out["spheres"] = nullptr;
+  if (settings.fit.spheres) out["spheres"] = *settings.fit.spheres;
   out["facing"] = nullptr;
   if (const auto& facing = settings.segment.facing) out["facing"] = {facing->x(), facing->y(), facing->z()};
   out["body"] = settings.segment.body == BodyKind::kUnknown ? "auto" : body_kind_name(settings.segment.body);
@@ -184,9 +186,7 @@ std::string to_json(const BakeSettings& settings) {
   out["neighbour_gap"] = settings.bind.neighbour_gap;
   out["clusters"] = {{"triangles", settings.clusters.triangles}, {"branching", settings.clusters.branching}};
   json targets = json::object();
-  if (settings.targets.max_spheres) targets["max_spheres"] = *settings.targets.max_spheres;
-  if (settings.targets.max_mean_abs_f) targets["max_mean_abs_f"] = *settings.targets.max_mean_abs_f;
-  if (settings.targets.min_covered_area) targets["min_covered_area"] = *settings.targets.min_covered_area;
+  if (settings.targets.fit) targets["fit"] = fit_grade_name(*settings.targets.fit);
   out["targets"] = std::move(targets);
   return out.dump();
 }

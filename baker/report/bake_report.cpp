@@ -63,7 +63,7 @@ std::string passed_over_lines(const Choice& choice) {
   std::string lines;
   for (const PassedOver& passed : choice.passed_over) {
     if (passed.reason.cause == Reason::Cause::kDoesNotApply) continue;
-    lines += fmt::format("segmented by {}, not by {}: {}\n", choice.strategy, passed.strategy, passed.reason.what);
+    lines += fmt::format("by {}, not by {}: {}\n", choice.strategy, passed.strategy, passed.reason.what);
   }
   return lines;
 }
@@ -174,6 +174,9 @@ std::size_t count_extremity(const Bake& bake, std::size_t region) {
 
 // A march at penetration depth PD takes about length / (2 r (1 - PD)) spheres.
 std::string why_this_count(const Bake& bake) {
+  if (bake.regions.follow_bones()) {
+    return "A sphere for each part; where the skin was farthest from its sphere, its triangles were halved.";
+  }
   std::string why;
   for (std::size_t r = 0; r < bake.regions.limbs.size(); ++r) {
     double radius = 0;
@@ -228,6 +231,19 @@ std::pair<std::size_t, std::size_t> pivots_used(const Bake& bake) {
   return {fewest->pivots.size(), most->pivots.size()};
 }
 
+ordered_json quality_section(const Bake& bake) {
+  const FitQuality& quality = bake.quality;
+  ordered_json far = ordered_json::array();
+  for (const std::uint8_t region : quality.far_regions) far.push_back(bake.regions.name(region));
+  return {{"grade", fit_grade_name(quality.grade())},
+          {"far_area", quality.far_area},
+          {"far_regions", std::move(far)},
+          {"protrusion", quality.protrusion},
+          {"distance_mean", quality.distance_mean},
+          {"distance_p95", quality.distance_p95},
+          {"distance_max", quality.distance_max}};
+}
+
 ordered_json bind_section(const Bake& bake) {
   ordered_json spheres = ordered_json::array();
   for (std::size_t i = 0; i < bake.binding.spheres.size(); ++i) {
@@ -239,13 +255,23 @@ ordered_json bind_section(const Bake& bake) {
                        {"detect_radius", sphere.detect_radius},
                        {"moved_by_refit_at_rest", (sphere.rest.center - bake.spheres.spheres[i].ball.center).norm()}});
   }
-  const OwnerDistance owner = owner_distance(bake.character, bake.regions, bake.binding);
   const auto [fewest, most] = pivots_used(bake);
   return {{"refit", refit_name(static_cast<spherechain::RefitRule>(bake.binding.rule))},
           {"pivots", {{"asked", bake.settings.bind.pivots}, {"fewest", fewest}, {"most", most}}},
-          {"covered_area", covered_area(bake)},
-          {"owner_distance", {{"mean", owner.mean}, {"p95", owner.p95}, {"max", owner.max}}},
+          {"quality", quality_section(bake)},
           {"spheres", std::move(spheres)}};
+}
+
+// What a person wants to know first.
+std::string grade_lines(const Bake& bake) {
+  const FitQuality& quality = bake.quality;
+  std::string out = fmt::format("fit: {}; {:.0f} % of the skin is within {:.0f} % of the height of its sphere",
+                                fit_grade_name(quality.grade()), 100 * (1 - quality.far_area), 100 * kWellFitted);
+  out += fmt::format(", spheres stand out {:.1f} % on average\n", 100 * quality.protrusion);
+  std::string far;
+  for (const std::uint8_t region : quality.far_regions) far += (far.empty() ? "" : ", ") + bake.regions.name(region);
+  if (!far.empty() && quality.grade() != FitGrade::kGood) out += "badly fitted: " + far + "\n";
+  return out;
 }
 
 }  // namespace
@@ -281,12 +307,11 @@ std::string bake_report_json(const Bake& bake) {
 
 std::string bake_report_text(const Bake& bake) {
   const Mesh& mesh = bake.character.body;
-  const double mm = 1000 * bake.character.metres_per_unit;
   std::string out =
       fmt::format("{}: {} triangles ({} body), {} components, {:.3f} m {}; {}\n", bake.character.file,
                   bake.character.source_triangles.size(), mesh.triangles.size(), bake.character.report.components,
                   bake.regions.frame.height * bake.character.metres_per_unit,
-                  bake.regions.name(0).ends_with("arm") ? "tall" : "long", bake.regions.facing);
+                  is_biped(bake.regions) || bake.regions.follow_bones() ? "tall" : "long", bake.regions.facing);
   if (const std::size_t dropped = bake.character.report.attachments_dropped; dropped > 0) {
     out += fmt::format("left out: {} on joints, such as weapons and hats (--attachments keeps them)\n",
                        dropped == 1 ? "1 rigid mesh" : fmt::format("{} rigid meshes", dropped));
@@ -299,42 +324,16 @@ std::string bake_report_text(const Bake& bake) {
                        std::count(bake.regions.of_skin.begin(), bake.regions.of_skin.end(), r),
                        bake.spheres.of_region[r].size());
   }
-  out += fmt::format("{} spheres, {} chain entries ({} as Table 1 counts), {} pairs ignored\n",
-                     bake.spheres.spheres.size(), bake.chains.entries(), bake.chains.entries_table1,
+  out += fmt::format("{} spheres, {} pairs of neighbours ignored\n", bake.spheres.spheres.size(),
                      bake.binding.ignored.size());
-
-  const OwnerDistance owner = owner_distance(bake.character, bake.regions, bake.binding);
-  out += fmt::format("skin to its sphere: mean {:.2f} %, p95 {:.2f} %, max {:.2f} % of the height\n", 100 * owner.mean,
-                     100 * owner.p95, 100 * owner.max);
-
-  const auto [fewest, most] = pivots_used(bake);
-  out += fmt::format("pivots a sphere: {} asked, {} to {} used\n", bake.settings.bind.pivots, fewest, most);
-
-  out += fmt::format("\nmean |F| in mm (max)\n{:<8} {:>14} {:>14} {:>14}\n", "sphere", "phi1", "phi1'", "phi2");
-  std::array<double, 3> sums{};
-  for (std::size_t i = 0; i < bake.spheres.torso.size(); ++i) {
-    const TorsoFit& fit = bake.spheres.torso[i];
-    const FittedSphere& sphere = bake.spheres.spheres[i];
-    const char side = sphere.side == Side::kLeft ? 'L' : sphere.side == Side::kRight ? 'R' : ' ';
-    out += fmt::format("{:<8}", fmt::format("{} {}{}", i, side, sphere.level));
-    std::size_t column = 0;
-    for (const Ball* ball : {&fit.phi1, &fit.phi1_adjusted, &fit.phi2}) {
-      const FError error = f_error(*ball, mesh, fit.vertices);
-      sums[column++] += error.mean_abs / static_cast<double>(bake.spheres.torso.size());
-      out += fmt::format(" {:>14}", fmt::format("{:.1f} ({:.1f})", mm * error.mean_abs, mm * error.max_abs));
-    }
-    out += "\n";
-  }
-  out += fmt::format("{:<8} {:>14.1f} {:>14.1f} {:>14.1f}\n", "mean", mm * sums[0], mm * sums[1], mm * sums[2]);
-
   out += fmt::format("\n{:<10} {:>8}\n", "stage", "ms");
   double total = 0;
   for (const StageTime& time : bake.times) {
     out += fmt::format("{:<10} {:>8.1f}\n", time.stage, 1e3 * time.seconds);
     total += time.seconds;
   }
-  out += fmt::format("{:<10} {:>8.1f}   peak memory {:.0f} MB\n", "total", 1e3 * total, peak_memory_mb());
-  return out;
+  out += fmt::format("{:<10} {:>8.1f}   peak memory {:.0f} MB\n\n", "total", 1e3 * total, peak_memory_mb());
+  return out + grade_lines(bake);
 }
 
 }  // namespace spherechain::baker

@@ -98,16 +98,6 @@ void join_islands(const Mesh& mesh, const Neighbours& neighbours, std::vector<st
   }
 }
 
-// To another mesh of the same shape: each triangle has the label of the nearest.
-std::vector<std::uint8_t> carry_labels(const Mesh& from, const std::vector<std::uint8_t>& labels, const Mesh& to) {
-  const SurfaceQuery surface(from);
-  std::vector<std::uint8_t> carried;
-  for (Index t = 0; t < to.triangles.size(); ++t) {
-    carried.push_back(labels[surface.closest(triangle_centroid(to, t)).triangle]);
-  }
-  return carried;
-}
-
 Vec3 centroid(const Mesh& mesh, const std::vector<Index>& triangles) {
   Vec3 sum = Vec3::Zero();
   double area = 0;
@@ -179,15 +169,13 @@ double free_start(const SurfaceQuery& surface, const std::vector<std::uint8_t>& 
 }  // namespace
 
 SkinRegions segment_from_skin(const Character& character, const Roles& roles) {
-  const bool wrapped = !is_part_of_skin(character);
-  const Mesh& mesh = wrapped ? character.body : character.skin;
+  const Mesh& mesh = character.skin;
   const std::vector<Vec3> joints = rest_positions(character.rig);
   const Neighbours neighbours = triangle_neighbours(mesh);
   const SurfaceQuery surface(mesh);
   const Vec3 middle = surface_centroid(mesh);
   SkinRegions regions;
-  std::vector<std::uint8_t> dominant = dominant_limbs(character.rig, roles, character.skin, character.skin_of_source);
-  if (wrapped) dominant = carry_labels(character.skin, dominant, mesh);
+  std::vector<std::uint8_t> dominant = dominant_limbs(character.rig, roles, mesh, character.skin_of_source);
   join_islands(mesh, neighbours, dominant);
   std::vector<std::uint8_t> labels = dominant;
   for (std::uint8_t i = 0; i < roles.limbs.size(); ++i) {
@@ -211,11 +199,6 @@ SkinRegions segment_from_skin(const Character& character, const Roles& roles) {
     regions.limbs.back() = {line, extremity > kLengthMin * line.length() ? extremity : line.length()};
   }
   join_islands(mesh, neighbours, labels);
-  if (wrapped) {
-    regions.of_skin = carry_labels(mesh, labels, character.skin);
-    regions.of_triangle = std::move(labels);
-    return regions;
-  }
   regions.of_skin = std::move(labels);
   std::vector<std::uint8_t> of_source(character.source_triangles.size(), kNoLimb);
   for (std::size_t t = 0; t < regions.of_skin.size(); ++t) {

@@ -26,7 +26,7 @@ struct SkinRegions {
 
 // A triangle belongs to the limb whose joints move it most. A limb begins at the first ring of rays around it that
 // meets (almost) nothing else, so that armpit and crotch belong to the torso. On each piece of the skin a region is
-// connected. The character must have weights; `roles` are those of its rig.
+// connected. The body must be of the skin, and the character have weights; `roles` are those of its rig.
 SkinRegions segment_from_skin(const Character& character, const Roles& roles);
 
 }  // namespace spherechain::baker

@@ -23,14 +23,17 @@ struct Limb {
 };
 
 // The region of every triangle. Limbs are regions 0 to k - 1; region k is the torso with neck and head. A biped's
-// regions are the paper's R0 to R4.
+// regions are the paper's R0 to R4. Regions that follow the bones are a tree instead: any number of parts, each a limb
+// whose line is its axis, and the root in the place of the torso.
 struct Regions {
   BodyFrame frame;
-  std::string provider;  // "shape" or "rig"
+  std::string provider;  // "shape", "rig" or "bones"
   std::string facing;    // how forward was decided, for people
   std::vector<Limb> limbs;
   bool has_torso = true;  // a snake has none
-  Vec3 hip, chest;        // in the plane of symmetry: between the starts of the legs, and of the arms
+  std::string torso_name = "torso";
+  std::vector<std::uint8_t> parents;  // by bones: the region that each hangs on, the root on itself; else empty
+  Vec3 hip, chest;                    // in the plane of symmetry: between the starts of the legs, and of the arms
   TorsoEnds torso;
   Polyline spine;                         // the skeleton's curve from hip to chest junction and on to the head's tip
   double spine_chest, spine_neck;         // arc lengths on `spine` of the chest junction and the neck's base
@@ -39,7 +42,8 @@ struct Regions {
 
   std::uint8_t torso_region() const { return static_cast<std::uint8_t>(limbs.size()); }
   std::size_t count() const { return limbs.size() + (has_torso ? 1 : 0); }
-  std::string name(std::size_t region) const { return region < limbs.size() ? limbs[region].name : "torso"; }
+  std::string name(std::size_t region) const { return region < limbs.size() ? limbs[region].name : torso_name; }
+  bool follow_bones() const { return !parents.empty(); }
 };
 
 // The body's triangles of a region.

@@ -71,12 +71,4 @@ void use_wrap(Character& character, const Wrap& wrap, ClosingReport& report) {
   report.triangles = wrap.surface.triangles.size();
 }
 
-std::array<WrapSize, 3> wrap_sizes_of_limbs(const Mesh& skin) {
-  constexpr double kOfHuman = 0.46;  // area over diameter squared
-  constexpr double kFinenessMin = 90;
-  const double stoutness = surface_area(skin) / std::pow(diameter(skin), 2);
-  const double usual = std::max(kFinenessMin, 130 * std::min(1.0, std::sqrt(kOfHuman / stoutness)));
-  return {WrapSize{usual}, WrapSize{0.7 * usual}, WrapSize{0.46 * usual}};
-}
-
 }  // namespace spherechain::baker

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <array>
-
 #include "mesh/attempt.h"
 #include "wrap/closing_report.h"
 
@@ -30,9 +28,5 @@ Attempt<Wrap> wrap_skin(const Mesh& skin, const WrapSize& size, ClosingReport& r
 
 // Makes the body the wrap, and says so in `report`.
 void use_wrap(Character& character, const Wrap& wrap, ClosingReport& report);
-
-// What to try in order where a rig says what the regions are: as fine as limbs need, then coarser against wide holes.
-// Stout bodies, which have more skin for their size, need less than a human.
-std::array<WrapSize, 3> wrap_sizes_of_limbs(const Mesh& skin);
 
 }  // namespace spherechain::baker

@@ -7,7 +7,7 @@ using namespace spherechain::baker;
 
 const Bake& baked_person() {
   static const Bake result =
-      bake("/usr/share/assimp/models/X/BCN_Epileptic.X", make_settings("balanced", "{}", "test"), {});
+      bake("/usr/share/assimp/models/X/BCN_Epileptic.X", make_settings("balanced", R"({"body": "biped"})", "test"), {});
   return result;
 }
 

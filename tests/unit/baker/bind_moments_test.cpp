@@ -118,7 +118,9 @@ Difference difference(const Bake& bake, const std::vector<Moved>& a, const std::
   return out;
 }
 
-Binding bound(const Bake& bake) { return bind_spheres(bake.character, bake.regions, bake.spheres, bake.settings.bind); }
+Binding bound(const Bake& bake) {
+  return *bind_spheres(bake.character, bake.regions, bake.spheres, bake.settings.bind);
+}
 
 // Equal to the last bit.
 void check_same(const MomentBinding& a, const MomentBinding& b) {

@@ -64,7 +64,7 @@ TEST_CASE(
     BindSettings settings;
     settings.rule = rule;
     settings.pivots = pivots;
-    return bind_spheres(bake.character, bake.regions, bake.spheres, settings).spheres;
+    return bind_spheres(bake.character, bake.regions, bake.spheres, settings)->spheres;
   };
   for (const int count : {2, 8, 16}) {
     for (const BoundSphere& sphere : bound(RefitRule::kPaper, count)) {
@@ -166,7 +166,7 @@ TEST_CASE("spheres whose triangles share an edge are ignored, whatever the links
   const Bake& bake = baked_human();
   Spheres unlinked = bake.spheres;
   unlinked.links.clear();
-  const Binding binding = bind_spheres(bake.character, bake.regions, unlinked, {});
+  const Binding binding = *bind_spheres(bake.character, bake.regions, unlinked, {});
   std::map<std::pair<Index, Index>, std::set<std::uint32_t>> owners_of_edge;
   for (std::size_t t = 0; t < bake.character.skin.triangles.size(); ++t) {
     const Triangle& v = bake.character.skin.triangles[t];
@@ -218,7 +218,7 @@ TEST_CASE("a gap makes more neighbours of a body, and keeps those there are") {
   const Bake& bake = baked_human();
   BindSettings settings;
   settings.neighbour_gap = 0.03;
-  const auto wide = bind_spheres(bake.character, bake.regions, bake.spheres, settings).ignored;
+  const auto wide = bind_spheres(bake.character, bake.regions, bake.spheres, settings)->ignored;
   CHECK(std::includes(wide.begin(), wide.end(), bake.binding.ignored.begin(), bake.binding.ignored.end()));
   CHECK(wide.size() > bake.binding.ignored.size() + 10);
 }
@@ -227,7 +227,7 @@ TEST_CASE("a detect quantile of 1 reaches the farthest centroid of the region") 
   const Bake& bake = baked_human();
   BindSettings settings;
   settings.detect_quantile = 1;
-  const std::vector<BoundSphere> all = bind_spheres(bake.character, bake.regions, bake.spheres, settings).spheres;
+  const std::vector<BoundSphere> all = bind_spheres(bake.character, bake.regions, bake.spheres, settings)->spheres;
   for (std::size_t i = 0; i < all.size(); ++i) CHECK(all[i].detect_radius >= bake.binding.spheres[i].detect_radius);
 }
 

@@ -13,7 +13,7 @@ namespace {
 // Debian's assimp-testmodels: a person in five open pieces, with a 3ds Max Biped.
 const Bake& person_in_pieces() {
   static const Bake result =
-      bake("/usr/share/assimp/models/X/BCN_Epileptic.X", make_settings("balanced", "{}", "test"), {});
+      bake("/usr/share/assimp/models/X/BCN_Epileptic.X", make_settings("balanced", R"({"body": "biped"})", "test"), {});
   return result;
 }
 

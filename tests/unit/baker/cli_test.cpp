@@ -40,7 +40,7 @@ TEST_CASE("bake writes the same bytes as the library, a report and a table, and 
   const json report = json::parse(contents(files.report));
   CHECK(report["import"]["body_triangles"] == 26756);
   CHECK(report["bind"]["pivots"]["asked"] == 8);
-  CHECK(report["bind"]["owner_distance"]["mean"] < 0.01);
+  CHECK(report["bind"]["quality"]["distance_mean"] < 0.01);
   CHECK(report["counts"]["spheres"] == baked_human().spheres.spheres.size());
   CHECK(report["counts"]["why"].get<std::string>().find("touch the skin") != std::string::npos);
   for (const json& sphere : report["fit"]["torso"]) {
@@ -262,12 +262,12 @@ TEST_CASE("a bake comes to its end where a hand or foot is folded to nothing in 
 TEST_CASE("a missed target ends with 5, says so, and writes the asset all the same" *
           doctest::test_suite("many bakes")) {
   const TemporaryFolder folder;
-  const auto config = folder.write("c.json", R"({"targets": {"max_spheres": 10, "min_covered_area": 0.01}})").string();
+  const auto config = folder.write("c.json", R"({"spheres": 10, "targets": {"fit": "good"}})").string();
   const fs::path out = folder.path / "out.sphc", report = folder.path / "r.json";
   const Run result =
       run(fmt::format("bake {} -o {} --config {} --report {}", kHumanFile, out.string(), config, report.string()));
   CHECK(result.code == 5);
-  CHECK(result.error.find("max_spheres: 10 asked") != std::string::npos);
+  CHECK(result.error.find("spheres: 10 asked") != std::string::npos);
   CHECK(fs::exists(out));
   CHECK(json::parse(contents(report))["missed_targets"].size() == 1);
 }

@@ -167,16 +167,18 @@ TEST_CASE("head, hands and feet are filled to their ends: crown, heel, toes and 
 TEST_CASE("with extremities the skin is six times nearer to its spheres") {
   const Bake &with = baked_human(), &without = paper_baked_human();
   REQUIRE(extremity(without, 0).empty());
-  const OwnerDistance near = owner_distance(with.character, with.regions, with.binding),
-                      far = owner_distance(without.character, without.regions, without.binding);
-  CHECK(near.mean < 0.01);
-  CHECK(near.p95 < 0.02);
-  CHECK(near.max < 0.04);
-  CHECK(far.mean > 0.05);
+  const FitQuality &near = with.quality, &far = without.quality;
+  CHECK(near.distance_mean < 0.01);
+  CHECK(near.distance_p95 < 0.02);
+  CHECK(near.distance_max < 0.04);
+  CHECK(near.grade() == FitGrade::kGood);
+  CHECK(far.distance_mean > 0.05);
+  CHECK(far.grade() == FitGrade::kPoor);
   MESSAGE(
       fmt::format("skin to its sphere, % of the height, mean p95 max: {:.2f} {:.2f} {:.2f}; without extremities "
                   "{:.2f} {:.2f} {:.2f}",
-                  100 * near.mean, 100 * near.p95, 100 * near.max, 100 * far.mean, 100 * far.p95, 100 * far.max));
+                  100 * near.distance_mean, 100 * near.distance_p95, 100 * near.distance_max, 100 * far.distance_mean,
+                  100 * far.distance_p95, 100 * far.distance_max));
 }
 
 TEST_CASE("other bodies get extremities too" * doctest::skip(std::getenv("SPHERECHAIN_TEST_DATA") == nullptr)) {
@@ -185,18 +187,18 @@ TEST_CASE("other bodies get extremities too" * doctest::skip(std::getenv("SPHERE
     const std::string path = std::string(std::getenv("SPHERECHAIN_TEST_DATA")) + "/" + file;
     const Character character = build_character(read_with_assimp(path), file);
     const Regions regions = *segment_by_shape(character, {});
-    std::array<OwnerDistance, 2> distances{};
+    std::array<double, 2> distances{};
     for (const bool extremities : {false, true}) {
       FitSettings settings;
       settings.extremities = extremities;
-      const Spheres spheres = fit_spheres(character, regions, settings);
+      const Spheres spheres = *fit_spheres(character, regions, settings);
       distances[extremities ? 1 : 0] =
-          owner_distance(character, regions, bind_spheres(character, regions, spheres, {}));
+          measure_fit(character, regions, *bind_spheres(character, regions, spheres, {})).distance_mean;
     }
-    CHECK(distances[1].mean < limit);
-    CHECK(distances[1].mean < 0.2 * distances[0].mean);
-    MESSAGE(fmt::format("{}: mean {:.2f} % of the height, without extremities {:.2f} %", file, 100 * distances[1].mean,
-                        100 * distances[0].mean));
+    CHECK(distances[1] < limit);
+    CHECK(distances[1] < 0.2 * distances[0]);
+    MESSAGE(fmt::format("{}: mean {:.2f} % of the height, without extremities {:.2f} %", file, 100 * distances[1],
+                        100 * distances[0]));
   }
 }
 
@@ -252,7 +254,7 @@ TEST_CASE("a torso level has one, two or three spheres, and its parts share out 
     FitSettings settings;
     settings.spheres_per_level = static_cast<int>(parts);
     Spheres torso;
-    fit_torso(mesh, fixture.regions, settings, "human", torso);
+    fit_torso(mesh, fixture.regions, settings, torso);
     const std::size_t levels = torso.level_heights.size();
     REQUIRE(torso.spheres.size() == parts * levels);
     mean_f.push_back(0);

@@ -45,7 +45,7 @@ double distance_to_axes(const std::vector<Tube>& tubes, const Vec3& p) {
 }
 
 Spheres fitted(const SourceMesh& source, const Regions& regions) {
-  return fit_spheres(build_character(source, "creature.obj"), regions, {});
+  return *fit_spheres(build_character(source, "creature.obj"), regions, {});
 }
 
 std::string reason_against(const SourceMesh& source, const SegmentSettings& settings) {

@@ -52,7 +52,7 @@ Variant make_variant(const SourceMesh& original, const Change& change) {
   }
   variant.character = build_character(mesh, change.name);
   variant.regions = *segment_by_shape(variant.character, {});
-  variant.spheres = fit_spheres(variant.character, variant.regions, {});
+  variant.spheres = *fit_spheres(variant.character, variant.regions, {});
   return variant;
 }
 

@@ -40,10 +40,10 @@ Closed close(const SourceMesh& source, const std::string& name = "broken.obj") {
   Closed out;
   out.character = build_character(source, name);
   out.character.file = name;
-  Segmentation found = segment_character(out.character, {}, {});
+  Segmentation found = *segment_character(out.character, {}, {});
   out.regions = std::move(found.regions);
   out.report = found.closing;
-  out.spheres = fit_spheres(out.character, out.regions, {});
+  out.spheres = *fit_spheres(out.character, out.regions, {});
   return out;
 }
 
@@ -61,7 +61,7 @@ double agreement(const BrokenBody& broken, const Closed& closed) {
 }
 
 const Spheres& intact_spheres() {
-  static const Spheres spheres = fit_spheres(human().character, human().regions, {});
+  static const Spheres spheres = *fit_spheres(human().character, human().regions, {});
   return spheres;
 }
 
@@ -122,7 +122,7 @@ void check(const std::string& name, const BrokenBody& broken, const Expectation&
   CHECK(distance.max <= expected.max);
 
   // Spheres hang on triangles of the source, and from these come back to where they are.
-  const Binding binding = bind_spheres(closed.character, closed.regions, closed.spheres, {});
+  const Binding binding = *bind_spheres(closed.character, closed.regions, closed.spheres, {});
   REQUIRE(binding.spheres.size() == closed.spheres.spheres.size());
   for (std::size_t i = 0; i < binding.spheres.size(); ++i) {
     Vec3 center = Vec3::Zero();
@@ -177,7 +177,7 @@ SourceRig rig_of(const std::vector<Joint>& joints) {
 
 }  // namespace
 
-TEST_CASE("a rigged body in 60 pieces, none as large as a limb, is segmented by its rig on a wrap" *
+TEST_CASE("a rigged body in 60 pieces, none as large as a limb, is fitted by its bones" *
           doctest::test_suite("many bakes")) {
   BrokenBody broken = intact_body();
   const std::vector<Triangle> intact_corners = broken.source.triangles;
@@ -193,27 +193,13 @@ TEST_CASE("a rigged body in 60 pieces, none as large as a limb, is segmented by 
     }
   }
 
-  Closed closed;
-  closed.character = build_character(broken.source, "rigged.obj");
-  const Roles roles = find_roles(closed.character.rig, closed.character.source_positions);
-  Segmentation found = segment_character(closed.character, roles, {});
-  CHECK(found.choice.strategy == "rig on a wrap");
-  REQUIRE(found.choice.passed_over.size() == 4);
-  CHECK(found.choice.passed_over[3].strategy == "rig on all pieces of the skin");
-  CHECK(found.choice.passed_over[3].reason.what == "most of the limbs' skin is in small pieces");
-  closed.regions = std::move(found.regions);
-  closed.report = found.closing;
-  CHECK(closed.regions.provider == "rig");
-  CHECK(closed.report.body == BodySource::kWrapped);
-  CHECK(count_open_edges(closed.character.body) == 0);
-  closed.spheres = fit_spheres(closed.character, closed.regions, {});
-  const double equal = agreement(broken, closed);
-  CHECK(equal >= 0.95);
-  const Distance distance = distance_from_intact(closed);
-  CHECK(distance.mean <= 0.01);
-  CHECK(distance.max <= 0.04);
-  MESSAGE(fmt::format("{:.2f} % of the area agrees; spheres off by {:.2f} % of the height, at most {:.2f} %",
-                      100 * equal, 100 * distance.mean, 100 * distance.max));
+  Character character = build_character(broken.source, "rigged.obj");
+  const Roles roles = find_roles(character.rig, character.source_positions);
+  const FittedCharacter fitted = fit_character(std::move(character), roles, {});
+  CHECK(fitted.segmentation.choice.strategy == "bones");
+  CHECK(fitted.segmentation.choice.passed_over.back().reason.what == "most of the limbs' skin is in small pieces");
+  CHECK(fitted.quality.grade() == FitGrade::kGood);
+  CHECK(fitted.spheres.spheres.size() <= kHalvedSpheresMax);
 }
 
 TEST_CASE("a closed surface of one piece is left as it is") {

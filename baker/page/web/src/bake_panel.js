@@ -66,6 +66,14 @@ function provenance({ source, writer, format_version: version, settings, setting
   ];
 }
 
+function fitTable({ grade, far_area: far, protrusion }) {
+  return table(null, [
+    ['grade', grade],
+    ['skin within 2 % of the height of its sphere', percent(1 - far)],
+    ['spheres stand out, mean, of the height', percent(protrusion)],
+  ]);
+}
+
 function achieved({ inspect, report, height }) {
   const error = (name, fit) => fit && [name, length(fit.mean_abs_F, height), length(fit.max_abs_F, height)];
   const paper = report?.counts?.paper;
@@ -83,8 +91,7 @@ function achieved({ inspect, report, height }) {
       table(['', 'mean |F|', 'max |F|'], [error('phi1', phi1), error("phi1'", adjusted), error('phi2', phi2)].filter(Boolean)),
       'method',
     ),
-    report?.bind?.covered_area !== undefined &&
-      section('Coverage', table(null, [['surface inside spheres', percent(report.bind.covered_area)]])),
+    report?.bind?.quality && section('Fit', fitTable(report.bind.quality)),
     report?.counts?.why && section('Why this count', h('p', {}, report.counts.why), 'method'),
   ];
 }

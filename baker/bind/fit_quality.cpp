@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "bind/fit_quality.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "mesh/surface_query.h"
+
+namespace spherechain::baker {
+namespace {
+
+constexpr double kFairArea = 0.15;
+constexpr double kGoodProtrusion = 0.025, kFairProtrusion = 0.04;
+
+// Even directions (a Fibonacci lattice).
+std::vector<Vec3> directions(int count) {
+  const double turn = std::numbers::pi * (3 - std::sqrt(5.0));
+  std::vector<Vec3> out;
+  for (int i = 0; i < count; ++i) {
+    const double z = 1 - (2 * i + 1.0) / count, r = std::sqrt(1 - z * z);
+    out.emplace_back(r * std::cos(i * turn), r * std::sin(i * turn), z);
+  }
+  return out;
+}
+
+double protrusion_of(const Mesh& skin, const std::vector<BoundSphere>& spheres) {
+  constexpr int kPoints = 100;  // of each sphere
+  const SurfaceQuery surface(skin);
+  const std::vector<Vec3> around = directions(kPoints);
+  double sum = 0, area = 0;
+  for (const BoundSphere& sphere : spheres) {
+    const double radius = sphere.rest.radius;
+    for (const Vec3& direction : around) {
+      const Vec3 point = sphere.rest.center + radius * direction;
+      const bool inside = std::any_of(spheres.begin(), spheres.end(), [&](const BoundSphere& other) {
+        return &other != &sphere && (other.rest.center - point).norm() < other.rest.radius;
+      });
+      if (inside) continue;
+      sum += radius * radius * surface.closest(point).distance;
+      area += radius * radius;
+    }
+  }
+  return area > 0 ? sum / area : 0;
+}
+
+}  // namespace
+
+const char* fit_grade_name(FitGrade grade) {
+  return grade == FitGrade::kGood ? "good" : grade == FitGrade::kFair ? "fair" : "poor";
+}
+
+FitGrade FitQuality::grade() const {
+  if (far_area <= kFarAreaGood && protrusion <= kGoodProtrusion) return FitGrade::kGood;
+  return far_area <= kFairArea && protrusion <= kFairProtrusion ? FitGrade::kFair : FitGrade::kPoor;
+}
+
+FitQuality measure_fit(const Character& character, const Regions& regions, const Binding& binding) {
+  const Mesh& skin = character.skin;
+  const double height = regions.frame.height;
+  std::vector<double> distances;
+  std::vector<double> area(regions.count(), 0), far(regions.count(), 0);
+  double sum = 0, all = 0, all_far = 0;
+  for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
+    const Ball& ball = binding.spheres[binding.sphere_of_triangle[t]].rest;
+    const double distance = std::abs(signed_f(ball, triangle_centroid(skin, t))) / height;
+    const double own = triangle_area(skin, t);
+    distances.push_back(distance);
+    sum += distance;
+    all += own;
+    area[regions.of_skin[t]] += own;
+    if (distance <= kWellFitted) continue;
+    all_far += own;
+    far[regions.of_skin[t]] += own;
+  }
+  std::sort(distances.begin(), distances.end());
+  const auto count = static_cast<double>(distances.size());
+  FitQuality quality{sum / count,   distances[static_cast<std::size_t>(0.95 * count)], distances.back(),
+                     all_far / all, protrusion_of(skin, binding.spheres) / height,     {}};
+  for (std::uint8_t region = 0; region < regions.count(); ++region) {
+    if (far[region] > 0.5 * area[region]) quality.far_regions.push_back(region);
+  }
+  return quality;
+}
+
+}  // namespace spherechain::baker

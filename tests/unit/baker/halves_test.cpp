@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The fit for any body: parts that follow the bones, halved where they fit worst, chains along their tree.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "creatures.h"
+#include "pipeline/pipeline.h"
+#include "segment/by_bones.h"
+
+using namespace spherechain::baker;
+
+namespace {
+
+double distance_to(const Tube& tube, const Vec3& p) {
+  const Vec3 axis = tube.to - tube.from;
+  return (p - tube.from - std::clamp((p - tube.from).dot(axis) / axis.squaredNorm(), 0.0, 1.0) * axis).norm();
+}
+
+struct Hand {
+  std::vector<Tube> tubes{{{0, 0, 0}, {0, 0.3, 0}, 0.2, 0.22}};  // a palm, then two bones a finger
+  std::vector<std::string> names{"palm"};
+  std::vector<int> parents{-1};
+};
+
+// Five fingers, mirrored left and right of the middle one; each vertex follows the tube next to it.
+Hand hand() {
+  Hand made;
+  for (int finger = 0; finger < 5; ++finger) {
+    const double x = 0.2 * (finger - 2);
+    const Vec3 root(0.6 * x, 0.4, 0), middle(x, 0.8, 0), tip(1.2 * x, 1.1, 0);
+    const int first = static_cast<int>(made.tubes.size());
+    made.tubes.push_back({root, middle, 0.06, 0.05});
+    made.tubes.push_back({middle, tip, 0.05, 0.04});
+    for (const char* bone : {"a", "b"}) made.names.push_back("finger" + std::to_string(finger) + bone);
+    made.parents.insert(made.parents.end(), {0, first});
+  }
+  return made;
+}
+
+SourceMesh mesh_of(const Hand& hand) {
+  SourceMesh mesh = melt(hand.tubes, 0.03);
+  for (std::size_t i = 0; i < hand.tubes.size(); ++i) {
+    Node node;
+    node.name = hand.names[i];
+    node.parent = hand.parents[i];
+    node.translation = hand.tubes[i].from;
+    if (node.parent >= 0) node.translation -= hand.tubes[static_cast<std::size_t>(node.parent)].from;
+    node.local.translation() = node.translation;
+    Affine inverse_bind = Affine::Identity();
+    inverse_bind.translation() = -hand.tubes[i].from;
+    mesh.rig.nodes.push_back(node);
+    mesh.rig.bones.push_back({static_cast<Index>(i), inverse_bind});
+  }
+  for (const Vec3& p : mesh.positions) {
+    const auto nearer = [&](const Tube& a, const Tube& b) { return distance_to(a, p) < distance_to(b, p); };
+    const auto nearest = std::min_element(hand.tubes.begin(), hand.tubes.end(), nearer);
+    VertexWeights weights;
+    weights.joint[0] = static_cast<Index>(nearest - hand.tubes.begin());
+    weights.weight[0] = 1;
+    mesh.rig.weights.push_back(weights);
+  }
+  return mesh;
+}
+
+FittedCharacter fitted(const SourceMesh& mesh, const BakeSettings& settings = {}) {
+  return fit_character(build_character(mesh, "hand.glb"), {}, settings);
+}
+
+// What every such fit keeps to.
+void check_fit(const FittedCharacter& fit, std::size_t most) {
+  const Regions& regions = fit.segmentation.regions;
+  const Mesh& skin = fit.character.skin;
+  REQUIRE(regions.follow_bones());
+  REQUIRE(regions.parents.size() == regions.count());
+  for (std::uint8_t region = 0; region < regions.count(); ++region) {
+    std::uint8_t above = region;
+    for (std::size_t i = 0; i < regions.count(); ++i) above = regions.parents[above];
+    CHECK(above == regions.torso_region());
+    CHECK_FALSE(fit.spheres.of_region[region].empty());
+  }
+  CHECK(fit.spheres.spheres.size() <= most);
+  for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
+    CHECK(fit.spheres.spheres[fit.spheres.of_skin[t]].region == regions.of_skin[t]);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a hand that the march has no limbs for is fitted by its bones: each finger follows its own") {
+  const Hand made = hand();
+  const FittedCharacter fit = fitted(mesh_of(made));
+  check_fit(fit, kHalvedSpheresMax);
+  CHECK(fit.quality.grade() == FitGrade::kGood);
+  const Regions& regions = fit.segmentation.regions;
+  REQUIRE(regions.count() == made.tubes.size());
+  CHECK(regions.torso_name == "palm");
+  const Mesh& skin = fit.character.skin;
+  for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
+    std::size_t nearest = 0;
+    for (std::size_t i = 1; i < made.tubes.size(); ++i) {
+      const Vec3 p = triangle_centroid(skin, t);
+      if (distance_to(made.tubes[i], p) < distance_to(made.tubes[nearest], p) - 0.02) nearest = i;
+    }
+    const auto bone = static_cast<std::size_t>(
+        std::find(made.names.begin(), made.names.end(), regions.name(regions.of_skin[t])) - made.names.begin());
+    const Vec3 p = triangle_centroid(skin, t);
+    CHECK(distance_to(made.tubes[bone], p) < distance_to(made.tubes[nearest], p) + 0.04);
+  }
+}
+
+TEST_CASE("a limit on the spheres is kept, few or many, and more of them fit closer") {
+  const SourceMesh mesh = mesh_of(hand());
+  double last = 1;
+  for (const int limit : {8, 40, 200}) {
+    CAPTURE(limit);
+    BakeSettings settings;
+    settings.fit.spheres = limit;
+    const FittedCharacter fit = fitted(mesh, settings);
+    check_fit(fit, static_cast<std::size_t>(limit));
+    CHECK(fit.quality.distance_mean < last);
+    last = fit.quality.distance_mean;
+  }
+}
+
+TEST_CASE("mirrored parts have as many spheres") {
+  const FittedCharacter fit = fitted(mesh_of(hand()));
+  const auto spheres_of = [&](const std::string& name) {
+    for (std::size_t region = 0; region < fit.segmentation.regions.count(); ++region) {
+      if (fit.segmentation.regions.name(region) == name) return fit.spheres.of_region[region].size();
+    }
+    return std::size_t{0};
+  };
+  for (const char* bone : {"a", "b"}) {
+    CHECK(spheres_of("finger0" + std::string(bone)) == spheres_of("finger4" + std::string(bone)));
+    CHECK(spheres_of("finger1" + std::string(bone)) == spheres_of("finger3" + std::string(bone)));
+  }
+}
+
+TEST_CASE("a part too small for a sphere of its own joins the one above it") {
+  Hand made = hand();
+  SourceMesh mesh = mesh_of(made);
+  // One triangle of the last finger's tip hangs on a ring of its own.
+  Node ring;
+  ring.name = "ring";
+  ring.parent = static_cast<int>(made.tubes.size()) - 1;
+  mesh.rig.nodes.push_back(ring);
+  mesh.rig.bones.push_back({static_cast<Index>(made.tubes.size()), Affine::Identity()});
+  for (const Triangle& triangle : mesh.triangles) {
+    if (mesh.rig.weights[triangle[0]].joint[0] + 1 != made.tubes.size()) continue;
+    for (const Index v : triangle) mesh.rig.weights[v].joint[0] = static_cast<Index>(made.tubes.size());
+    break;
+  }
+  const FittedCharacter fit = fitted(mesh);
+  CHECK(fit.segmentation.regions.count() == made.tubes.size());
+  check_fit(fit, kHalvedSpheresMax);
+}
+
+TEST_CASE("what nothing moves is cut in pieces that hang together; so is a body without bones") {
+  const Hand made = hand();
+  SourceMesh mesh = mesh_of(made);
+  for (VertexWeights& weights : mesh.rig.weights) {
+    if (weights.joint[0] == 0) weights = {};
+  }
+  check_fit(fitted(mesh), kHalvedSpheresMax);
+  mesh.rig = {};
+  const FittedCharacter still = fitted(mesh);
+  check_fit(still, kHalvedSpheresMax);
+  CHECK(still.quality.grade() != FitGrade::kPoor);
+}
+
+TEST_CASE("a body of few triangles bakes: one, two in a plane, a bone with a single one") {
+  SourceMesh one;
+  one.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  one.triangles = {{0, 1, 2}};
+  CHECK(fitted(one).spheres.spheres.size() >= 1);
+  SourceMesh two = one;
+  two.positions.insert(two.positions.end(), {{1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+  two.triangles.push_back({3, 4, 5});
+  CHECK(fitted(two).spheres.spheres.size() >= 1);
+  Node root, child;
+  root.name = "same";
+  child.name = "same";
+  child.parent = 0;
+  two.rig.nodes = {root, child};
+  two.rig.bones = {{0, Affine::Identity()}, {1, Affine::Identity()}};
+  two.rig.weights.resize(6);
+  for (Index v = 0; v < 6; ++v) {
+    two.rig.weights[v].joint[0] = v < 3 ? 0 : 1;
+    two.rig.weights[v].weight[0] = 1;
+  }
+  const FittedCharacter fit = fitted(two);
+  REQUIRE(fit.segmentation.regions.count() == 2);
+  CHECK(fit.segmentation.regions.name(0) != fit.segmentation.regions.name(1));
+}
+
+TEST_CASE("along a tree of parts every two spheres of different leaves share a chain") {
+  const FittedCharacter fit = fitted(mesh_of(hand()));
+  const std::vector<std::uint8_t>& parents = fit.segmentation.regions.parents;
+  const Chains chains = build_tree_chains(fit.spheres, parents);
+  CHECK(chains.chains.size() == 5 * 4 / 2);
+  std::set<std::pair<std::uint32_t, std::uint32_t>> shared;
+  for (const Chain& chain : chains.chains) {
+    CHECK(std::set<std::uint32_t>(chain.spheres.begin(), chain.spheres.end()).size() == chain.spheres.size());
+    for (const std::uint32_t a : chain.spheres) {
+      for (const std::uint32_t b : chain.spheres) shared.emplace(a, b);
+    }
+  }
+  const std::size_t n = fit.spheres.spheres.size();
+  CHECK(shared.size() == n * n);
+}
