@@ -187,9 +187,9 @@ Attempt<Binding> bind_spheres(const Character& character, const Regions& regions
     const bool on_torso = !by_halves && sphere.region == regions.torso_region();
     BoundSphere bound = bind_sphere(skin, surrounding[i], sphere, on_torso, regions.frame, settings);
     if (bound.pivots.empty() || !(bound.spread > 0)) {
-      return Reason{"sphere " + std::to_string(i) + " of the " + regions.name(sphere.region) +
-                    " finds no pivots that carry it around its " + std::to_string(surrounding[i].size()) +
-                    " triangles"};
+      return Reason{"the skin is too small for sphere " + std::to_string(i) + ", of the " +
+                    regions.name(sphere.region) + ": its " + std::to_string(surrounding[i].size()) +
+                    " triangles, and those around them, do not tell how it moves and grows"};
     }
     out.spheres.push_back(std::move(bound));
   }

@@ -14,10 +14,34 @@ namespace {
 using Kernel = CGAL::Simple_cartesian<double>;
 using Triangles = std::vector<Kernel::Triangle_3>;
 using Primitive = CGAL::AABB_triangle_primitive<Kernel, Triangles::const_iterator>;
-using AabbTree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
 
 Kernel::Point_3 to_cgal(const Vec3& p) { return {p.x(), p.y(), p.z()}; }
 Vec3 from_cgal(const Kernel::Point_3& p) { return {p.x(), p.y(), p.z()}; }
+
+// CGAL's ray against a triangle ends the program where rounding makes a flat triangle contradict itself. This one has
+// no such case: a triangle that the ray lies in, or that has no area, is not hit.
+struct Traits : CGAL::AABB_traits<Kernel, Primitive> {
+  struct Intersection {
+    using Hit = Intersection_and_primitive_id<Kernel::Ray_3>::Type;
+    boost::optional<Hit> operator()(const Kernel::Ray_3& ray, const Primitive& primitive) const {
+      const Kernel::Triangle_3& triangle = *primitive.id();
+      const Kernel::Vector_3 direction = ray.to_vector();
+      const Kernel::Vector_3 a = triangle[0] - ray.source(), b = triangle[1] - ray.source(),
+                             c = triangle[2] - ray.source();
+      const auto side = [&](const Kernel::Vector_3& from, const Kernel::Vector_3& to) {
+        return CGAL::scalar_product(direction, CGAL::cross_product(from, to));
+      };
+      const double u = side(b, c), v = side(c, a), w = side(a, b), sum = u + v + w;
+      const bool is_inside = (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
+      if (!is_inside || sum == 0) return boost::none;
+      const Kernel::Vector_3 offset = (u * a + v * b + w * c) / sum;
+      if (CGAL::scalar_product(offset, direction) < 0) return boost::none;
+      return Hit(ray.source() + offset, primitive.id());
+    }
+  };
+  Intersection intersection_object() const { return {}; }
+};
+using AabbTree = CGAL::AABB_tree<Traits>;
 
 }  // namespace
 
@@ -56,9 +80,7 @@ std::optional<SurfaceHit> SurfaceQuery::first_hit(const Vec3& origin, const Vec3
   const Kernel::Ray_3 ray(to_cgal(origin), Kernel::Vector_3(direction.x(), direction.y(), direction.z()));
   const auto hit = tree_->aabb.first_intersection(ray);
   if (!hit) return std::nullopt;
-  const auto* point = boost::get<Kernel::Point_3>(&hit->first);
-  if (point == nullptr) return std::nullopt;  // the ray lies in the triangle's plane: its neighbours answer
-  const Vec3 p = from_cgal(*point);
+  const Vec3 p = from_cgal(boost::get<Kernel::Point_3>(hit->first));
   return SurfaceHit{p, (p - origin).norm(), tree_->id(hit->second)};
 }
 

@@ -219,7 +219,8 @@ TEST_CASE("a human with a long tail keeps arms and legs, and the tail is a limb"
 
 TEST_CASE("a rigged beast in open pieces bakes with four legs and a tail, and left is left") {
   // Debian's assimp-testmodels; z is up, and it looks along -y.
-  const Bake result = bake("/usr/share/assimp/models/X/Testwuson.X", make_settings("balanced", "{}", "test"), {});
+  const BakeSettings as_quadruped = make_settings("balanced", R"({"body": "quadruped"})", "test");
+  const Bake result = bake("/usr/share/assimp/models/X/Testwuson.X", as_quadruped, {});
   REQUIRE(names(result.regions) ==
           std::vector<std::string>{"left_foreleg", "right_foreleg", "left_hindleg", "right_hindleg", "tail", "torso"});
   for (std::size_t region = 0; region < result.spheres.of_region.size(); ++region) {
