@@ -11,8 +11,10 @@ namespace spherechain::baker {
 namespace {
 
 constexpr Eigen::Index kPointsMax = 96, kLanes = 16;  // points of a hull at most; its points come in lanes
-constexpr double kNear = 0.03;  // of the spheres' mean radius: as near to the hull as this is near enough
-constexpr int kStepsAPoint = 12, kLastSteps = 200;
+constexpr double kNear = 0.03;              // of the spheres' mean radius: as near to the hull as this is near enough
+constexpr Eigen::Index kCandidates = 2048;  // vertices of a sphere that may be points of its hull
+constexpr double kEnough = 1e-9;  // of the squared radius: a step that shortens a squared distance by less is the last
+constexpr int kStepsAPoint = 12, kLastSteps = 200, kOnlySteps = 120;
 constexpr double kRounding = 1e-13;  // more than double precision takes from shares and sums, of lengths of 1
 
 // A sphere's vertices as the asset has them: their places, seen from the hull's centre, and their weights.
@@ -86,7 +88,10 @@ Eigen::MatrixXd lift(const Skin& skin) {
 class NearestMeans {
  public:
   explicit NearestMeans(const Eigen::MatrixXd& points)
-      : points_(points), shares_(Eigen::MatrixXd::Zero(kPointsMax, points.cols())), slopes_(shares_) {}
+      : points_(points),
+        enough_(kEnough * points.colwise().squaredNorm().maxCoeff()),
+        shares_(Eigen::MatrixXd::Zero(kPointsMax, points.cols())),
+        slopes_(shares_) {}
 
   Eigen::Index count() const { return static_cast<Eigen::Index>(chosen_.size()); }
   const std::vector<Eigen::Index>& chosen() const { return chosen_; }
@@ -128,6 +133,7 @@ class NearestMeans {
       const double down = slopes[from] - slopes[to];
       if (!(down > 0) || !(squared > 0)) break;
       const double moved = std::min(down / squared, shares[from]);
+      if (moved * down < enough_) break;
       shares[to] += moved;
       shares[from] -= moved;
       slopes += moved * (products_.col(to) - products_.col(from)).head(m);
@@ -136,21 +142,24 @@ class NearestMeans {
 
  private:
   const Eigen::MatrixXd& points_;
+  double enough_;
   std::vector<Eigen::Index> chosen_;
   Eigen::Matrix<double, kPointsMax, kPointsMax> products_;
   Eigen::MatrixXd shares_, slopes_;  // a point's column: of the chosen ones
 };
 
-// Chooses the point that is farthest from the hull of the points before, again and again.
+// Chooses the point that is farthest from the hull of the points before, again and again. Of fine skin it looks at an
+// even part: that the others are near is measured, not assumed.
 void choose_points(const Eigen::MatrixXd& points, double near, NearestMeans& means) {
   Eigen::VectorXd distances(points.cols());
   Eigen::Index farthest = 0;
   points.colwise().squaredNorm().maxCoeff(&farthest);
   distances.setConstant(std::numeric_limits<double>::max());
+  const Eigen::Index stride = (points.cols() + kCandidates - 1) / kCandidates;
   do {
     means.choose(farthest);
     farthest = 0;
-    for (Eigen::Index v = 0; v < points.cols(); ++v) {
+    for (Eigen::Index v = 0; v < points.cols(); v += stride) {
       if (distances[v] > near) {
         means.improve(v, kStepsAPoint);
         distances[v] = means.distance(v);
@@ -159,7 +168,7 @@ void choose_points(const Eigen::MatrixXd& points, double near, NearestMeans& mea
     }
   } while (means.count() < std::min(kPointsMax, points.cols()) &&
            (means.count() % kLanes != 0 || distances[farthest] > near));
-  for (Eigen::Index v = 0; v < points.cols(); ++v) means.improve(v, kLastSteps);
+  for (Eigen::Index v = 0; v < points.cols(); ++v) means.improve(v, v % stride == 0 ? kLastSteps : kOnlySteps);
 }
 
 // Measures how far the vertices are from their means: the differences of w_b (v - center; 1), bone by bone.

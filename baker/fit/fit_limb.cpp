@@ -41,14 +41,24 @@ class LimbMarch {
     Vec3 center = middle;
     // Where the limb's own skin is open, the way out has no end: the section's does.
     const double reach = ring.median_distance();
-    double radius = skin_.closest(center).distance;
+    // Skin that was closest before tells of most candidates that they are no farther from the skin.
+    std::vector<Vec3> near;
+    const auto distance_from_skin = [&](const Vec3& p) {
+      const SurfaceHit hit = skin_.closest(p);
+      near.push_back(hit.point);
+      return hit.distance;
+    };
+    double radius = distance_from_skin(center);
     // A compass search: the distance to the skin has one maximum in a section as round as a limb's.
     for (double step = 0.25 * radius; step > 1e-4 * radius;) {
       bool moved = false;
       for (const Vec3& direction : {ring.u, ring.v, Vec3(-ring.u), Vec3(-ring.v)}) {
         const Vec3 candidate = center + step * direction;
-        const double distance = skin_.closest(candidate).distance;
-        if (distance > radius && (candidate - middle).norm() <= reach) {
+        if ((candidate - middle).norm() > reach) continue;
+        const auto is_near = [&](const Vec3& p) { return (candidate - p).norm() <= radius; };
+        if (std::any_of(near.rbegin(), near.rend(), is_near)) continue;
+        const double distance = distance_from_skin(candidate);
+        if (distance > radius) {
           center = candidate;
           radius = distance;
           moved = true;
