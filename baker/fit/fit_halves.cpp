@@ -15,13 +15,15 @@ namespace {
 constexpr std::size_t kSampled = 2000;      // triangles of a piece that place its sphere
 constexpr std::size_t kFewTriangles = 400;  // of a piece whose ball encloses the middles of edges too
 constexpr double kEnclosed = 0.95;          // of a piece's area, by its ball
+constexpr double kFarCounts = 2;            // times the limit: the error of skin beyond it, besides its distance
 constexpr double kMovesAlike = 0.8;         // of the mean weights of two spheres' skin
 
 // Triangles with one sphere.
 struct Piece {
   std::vector<Index> triangles;
   Ball ball;
-  double error;     // the skin's area times how far it is from the sphere's surface
+  double
+      error;  // the skin's area times how far it is from the sphere's surface; what is farther than a limit counts more
   double far_area;  // of the skin farther than a limit
 };
 
@@ -113,7 +115,9 @@ class Halver {
     for (const auto& [distance, own] : distances) {
       const double off = std::abs(distance - piece.ball.radius);
       piece.error += own * off;
-      if (off > far_) piece.far_area += own;
+      if (off <= far_) continue;
+      piece.error += kFarCounts * own * far_;
+      piece.far_area += own;
     }
     return piece;
   }
@@ -162,6 +166,23 @@ struct Region {
     double most = 0;
     for (const Piece& piece : pieces) most = std::max(most, piece.error);
     return most;
+  }
+  // Each triangle to the sphere whose surface is nearest to it, unless a sphere would lose all of its own.
+  void share_again(const Halver& halver, const Mesh& mesh) {
+    std::vector<std::vector<Index>> shares(pieces.size());
+    for (const Index t : triangles) {
+      const Vec3 p = triangle_centroid(mesh, t);
+      std::size_t nearest = 0;
+      for (std::size_t i = 1; i < pieces.size(); ++i) {
+        if (std::abs(signed_f(pieces[i].ball, p)) < std::abs(signed_f(pieces[nearest].ball, p))) nearest = i;
+      }
+      shares[nearest].push_back(t);
+    }
+    if (std::any_of(shares.begin(), shares.end(), [](const auto& share) { return share.empty(); })) return;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      pieces[i] = halver.measure(shares[i], pieces[i].ball);
+      pieces[i].triangles = std::move(shares[i]);
+    }
   }
   // Whether the worst piece could be halved; else it is done with.
   bool halve_worst(const Halver& halver) {
@@ -311,6 +332,10 @@ Spheres fit_halves(const Character& character, const Regions& regions, const Fit
   for (Region& region : all) region.pieces.push_back(halver.enclose(region.triangles));
   std::vector<std::vector<Region*>> groups = mirrored(skin, regions, all);
   share_spheres(halver, groups, settings, surface_area(skin));
+  constexpr int kRounds = 2;
+  for (Region& region : all) {
+    for (int round = 0; round < kRounds; ++round) region.share_again(halver, skin);
+  }
 
   Spheres out;
   out.of_region.resize(all.size());
