@@ -1,9 +1,11 @@
 #!/usr/bin/env node
-// Bakes and plays every character without an option, and writes the table of docs/characters.md between its marks:
+// Bakes and plays every character without an option, draws its spheres at the first frame into docs/characters/, and
+// writes the table of docs/characters.md between its marks:
 //   scripts/characters.mjs build/release/bin/spherechain CHARACTER...
+// draw_asset (samples/pictures) is expected beside the tool.
 // A character is a mesh file, or MESH+MOTION to play it with a motion of another file.
 import { spawnSync } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { basename, dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
@@ -13,7 +15,9 @@ if (!tool || characters.length === 0) {
   console.error("usage: characters.mjs SPHERECHAIN CHARACTER[+MOTION]...");
   process.exit(2);
 }
-const page = join(dirname(fileURLToPath(import.meta.url)), "../docs/characters.md");
+const docs = join(dirname(fileURLToPath(import.meta.url)), "../docs");
+const page = join(docs, "characters.md"), pictures = join(docs, "characters");
+mkdirSync(pictures, { recursive: true });
 const kBegin = "<!-- table: scripts/characters.mjs -->\n", kEnd = "<!-- end of table -->";
 const folder = mkdtempSync(join(tmpdir(), "characters-"));
 const asset = join(folder, "asset.sphc"), report = join(folder, "report.json"), played = join(folder, "play.json");
@@ -40,6 +44,17 @@ function mostFrequent(clips) {
   return best ? `${best[0]}: ${thousands(best[1])}` : "none";
 }
 
+// Markdown of the picture, once a mesh.
+const drawn = new Set();
+function picture(mesh) {
+  if (drawn.has(mesh)) return "as above";
+  drawn.add(mesh);
+  const file = `${basename(mesh)}.png`;
+  const draw = spawnSync(join(dirname(tool), "draw_asset"),
+    [asset, mesh, "-o", join(pictures, file), "--frame", "0", "--height", "180"]);
+  return draw.status === 0 ? `![spheres of ${basename(mesh)}](characters/${file})` : "";
+}
+
 function bakeAndPlay(character) {
   const [mesh, motion] = character.split("+");
   const name = basename(mesh) + (motion ? ` + ${basename(motion)}` : "");
@@ -51,15 +66,19 @@ function bakeAndPlay(character) {
   const bake = json(report), { clips } = json(played);
   const inspected = JSON.parse(spawnSync(tool, ["inspect", asset, "--json"], { encoding: "utf8" }).stdout);
   const sum = (pick) => clips.reduce((total, clip) => total + pick(clip), 0);
-  return [name, thousands(bake.import.source_triangles), thousands(bake.import.components), inspected.bones.length,
-    bake.segment.provider, inspected.sphere_count, clips.length, thousands(sum((c) => c.frame_count)),
+  const { grade, far_area, protrusion } = bake.bind.quality;
+  const percent = (share) => `${(100 * share).toFixed(1)} %`;
+  return [name, picture(mesh), thousands(bake.import.source_triangles), thousands(bake.import.components),
+    inspected.bones.length, bake.segment.provider, inspected.sphere_count, grade, percent(1 - far_area),
+    percent(protrusion), bake.stages.reduce((total, stage) => total + stage.seconds, 0).toFixed(1), clips.length, thousands(sum((c) => c.frame_count)),
     thousands(sum((c) => c.contact_frames)), mostFrequent(clips)];
 }
 
 const rows = characters.map(bakeAndPlay);
 rmSync(folder, { recursive: true });
-const head = ["character", "triangles", "pieces", "bones", "limbs found by", "spheres", "clips", "frames",
-  "with skin contacts", "most frequent contact: frames"];
+const head = ["character", "spheres, first frame", "triangles", "pieces", "bones", "parts found by", "spheres", "fit",
+  "skin within 2 % of the height", "spheres stand out", "bake, seconds", "clips", "frames", "with skin contacts",
+  "most frequent contact: frames"];
 const line = (cells) => `| ${cells.join(" | ")} |`;
 const full = rows.filter((row) => row.length === head.length), failed = rows.filter((row) => row.length < head.length);
 let table = `\`\`\`

@@ -84,7 +84,7 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(
       "Exit: 0 done; 1 internal error; 2 usage; 3 a file cannot be read or written, or has the wrong content;\n"
-      "4 the mesh cannot be segmented; 5 done, but a target in the settings was not met.");
+      "4 the body that was asked for is not there; 5 done, but a target in the settings was not met.");
   std::function<ExitCode()> run;
 
   BakeOptions bake;

@@ -12,7 +12,7 @@ enum class ExitCode : int {
   kInternal = 1,
   kUsage = 2,
   kFile = 3,          // a file cannot be read or written, or has the wrong content
-  kSegmentation = 4,  // the mesh cannot be segmented
+  kSegmentation = 4,  // the body that was asked for is not there
   kTargetMissed = 5,  // done, but a target in the settings was not met
 };
 
