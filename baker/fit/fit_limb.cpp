@@ -13,6 +13,7 @@ namespace {
 constexpr double kSkinShareGood = 0.95, kSkinShareMin = 0.6;  // of the rays
 // Of the limb's thickest sphere: a tail's tip, where spheres would go on getting smaller without end.
 constexpr double kThinEnd = 0.2;
+constexpr std::size_t kLimbSpheresMax = 100;
 
 class LimbMarch {
  public:
@@ -123,6 +124,10 @@ Attempt<std::vector<FittedSphere>> fit_limb(const Mesh& mesh, const Regions& reg
     if (last.radius < kThinEnd * thickest) return spheres;
     thickest = std::max(thickest, last.radius);
     place(s, last);
+    if (spheres.size() > kLimbSpheresMax) {
+      return Reason{"the " + regions.name(region) + " is so thin that it takes more than " +
+                    std::to_string(kLimbSpheresMax) + " spheres"};
+    }
   }
   // The closing pair overlaps by whatever is left.
   if (march.own_share(end) < kSkinShareMin) return spheres;
