@@ -91,7 +91,7 @@ function achieved({ inspect, report, height }) {
       table(['', 'mean |F|', 'max |F|'], [error('phi1', phi1), error("phi1'", adjusted), error('phi2', phi2)].filter(Boolean)),
       'method',
     ),
-    report?.bind?.quality && section('Fit', fitTable(report.bind.quality)),
+    report?.bind?.quality && section('Spheres on the skin', fitTable(report.bind.quality)),
     report?.counts?.why && section('Why this count', h('p', {}, report.counts.why), 'method'),
   ];
 }
