@@ -38,6 +38,7 @@ Affine affine(const GltfFile& file, const double* m, const std::string& where) {
 Node read_node(const GltfFile& file, const tinygltf::Node& in, const std::string& where) {
   Node node;
   node.name = in.name;
+  if (in.extras.Has("humanoid")) node.humanoid_bone = in.extras.Get("humanoid").Get<std::string>();
   if (!in.matrix.empty()) {
     node.local = affine(file, in.matrix.data(), where + ".matrix");
     decompose(node);

@@ -24,7 +24,8 @@ struct VertexWeights {
 // three parts; then the transform is translation * rotation * scale.
 struct Node {
   std::string name;
-  int parent = -1;  // comes before its children
+  std::string humanoid_bone{};  // what a VRM avatar says it is, such as "leftUpperArm"; empty where it says nothing
+  int parent = -1;              // comes before its children
   Affine local = Affine::Identity();
   Vec3 translation = Vec3::Zero();
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
