@@ -82,6 +82,11 @@ struct SourceRig {
   Affine to_rest = Affine::Identity();  // from the scene's axes and units to those of the rest positions
 };
 
+// Which of the maps that a skin's bones are at rest holds for most of it: the one nearest to the median of all, entry
+// by entry, each with the weight of the skin it moves. Of maps that are alike it is the first. A bone that was bound in
+// other units or axes than the others does not decide. All maps are finite, and there is one at least.
+std::size_t typical_map(const std::vector<Affine>& maps, const std::vector<double>& weights);
+
 // Every node's transform into the scene.
 std::vector<Affine> world_of(const std::vector<Node>& nodes);
 
