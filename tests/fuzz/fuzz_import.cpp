@@ -138,7 +138,7 @@ void damage(std::string& bytes, bool text, Random& random) {
 
 // Where a run takes longer, it hangs. The importer has far less; a bake without a rig takes some twenty seconds.
 constexpr int kRunSeconds = 240;
-constexpr const char* kImportSeconds = "10";
+constexpr const char *kImportSeconds = "10", *kImportMemory = "1024";
 
 struct Ended {
   bool in_time;
@@ -271,6 +271,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   ::setenv("SPHERECHAIN_IMPORT_SECONDS", kImportSeconds, 1);
+  ::setenv("SPHERECHAIN_IMPORT_MEMORY", kImportMemory, 1);
   const std::vector<Source> all = sources();
   Campaign campaign(tool, keep);
   for (std::size_t m = 0; m < mutations; ++m) {
