@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "import/assimp_scene.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "mesh/error.h"
@@ -96,17 +97,24 @@ class SkinPlacement {
     return placement.isApprox(by_node, kSame) || !placement.matrix().allFinite() ? by_node : placement;
   }
 
-  // Mesh space into the scene, as the highest of the mesh's bones has it in the rest pose.
+  // Mesh space into the scene, as the mesh's bones have it in the rest pose.
   Affine shown(const aiMesh& mesh, const Affine& by_node) const {
-    Affine out = by_node;
-    Index highest = kNoIndex;
+    std::vector<std::pair<Index, const aiBone*>> bones;  // the highest first
     for (unsigned b = 0; b < mesh.mNumBones; ++b) {
       const auto node = flat_.by_name.find(mesh.mBones[b]->mName.C_Str());
-      if (node == flat_.by_name.end() || node->second >= highest) continue;
-      highest = node->second;
-      out = flat_.world[highest] * to_affine(mesh.mBones[b]->mOffsetMatrix);
+      if (node != flat_.by_name.end()) bones.emplace_back(node->second, mesh.mBones[b]);
     }
-    return out;
+    std::stable_sort(bones.begin(), bones.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<Affine> maps;
+    std::vector<double> weights;
+    for (const auto& [node, bone] : bones) {
+      const Affine map = flat_.world[node] * to_affine(bone->mOffsetMatrix);
+      if (!map.matrix().allFinite()) continue;
+      maps.push_back(map);
+      weights.push_back(0);
+      for (unsigned w = 0; w < bone->mNumWeights; ++w) weights.back() += std::max(bone->mWeights[w].mWeight, 0.0F);
+    }
+    return maps.empty() ? by_node : maps[typical_map(maps, weights)];
   }
 
   const AssimpScene& flat_;

@@ -275,6 +275,22 @@ void strip(json& value) {
   }
 }
 
+// A VRM avatar's humanoid says which node is which bone of a body: VRM 0 in a list, VRM 1 bone by bone.
+void keep_humanoid(const json& all, json& root) {
+  for (const char* place : {"/extensions/VRM/humanoid/humanBones", "/extensions/VRMC_vrm/humanoid/humanBones"}) {
+    const json::json_pointer bones(place);
+    if (!all.contains(bones)) continue;
+    for (const auto& [key, bone] : all[bones].items()) {
+      if (!bone.is_object() || !bone.contains("node") || !bone["node"].is_number_unsigned()) continue;
+      const auto node = bone["node"].get<std::size_t>();
+      const json name = bone.contains("bone") ? bone["bone"] : json(key);
+      if (name.is_string() && root.contains("nodes") && node < root["nodes"].size()) {
+        root["nodes"][node]["extras"]["humanoid"] = name;
+      }
+    }
+  }
+}
+
 }  // namespace
 
 json check_gltf_json(std::string_view text, const std::string& file) {
@@ -307,6 +323,7 @@ json check_gltf_json(std::string_view text, const std::string& file) {
   check_extensions(root, file);
   check_members(root, file);
   strip(root);
+  keep_humanoid(all, root);
   return root;
 }
 

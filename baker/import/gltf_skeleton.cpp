@@ -4,6 +4,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 namespace spherechain::baker {
 namespace {
@@ -38,6 +39,7 @@ Affine affine(const GltfFile& file, const double* m, const std::string& where) {
 Node read_node(const GltfFile& file, const tinygltf::Node& in, const std::string& where) {
   Node node;
   node.name = in.name;
+  if (in.extras.Has("humanoid")) node.humanoid_bone = in.extras.Get("humanoid").Get<std::string>();
   if (!in.matrix.empty()) {
     node.local = affine(file, in.matrix.data(), where + ".matrix");
     decompose(node);
@@ -116,14 +118,14 @@ GltfNodes read_nodes(const GltfFile& file) {
   return out;
 }
 
-GltfSkeleton::GltfSkeleton(const GltfFile& file, const GltfNodes& nodes, const std::vector<int>& used)
+GltfSkeleton::GltfSkeleton(const GltfFile& file, const GltfNodes& nodes, const std::vector<UsedSkin>& used)
     : file_(file), nodes_(nodes), bones_of_node_(nodes.nodes.size()), joint_above_(nodes.nodes.size(), kNoIndex) {
   if (used.empty()) return;
   skins_.resize(file.model.skins.size());
-  for (const int s : used) skins_[at(s)] = read_skin(at(s));
+  for (const UsedSkin& s : used) skins_[at(s.index)] = read_skin(at(s.index));
 
-  const GltfSkin& lead = *skins_[at(used.front())];
-  world_to_rest_ = rest_to_world(at(used.front())).inverse();
+  const GltfSkin& lead = *skins_[at(used.front().index)];
+  world_to_rest_ = rest_to_world(used.front()).inverse();
   Eigen::AlignedBox3d joints;
   std::vector<Index> lead_joint(nodes.nodes.size(), kNoIndex);  // node -> joint of the leading skin
   for (Index j = 0; j < lead.joints.size(); ++j) {
@@ -133,9 +135,9 @@ GltfSkeleton::GltfSkeleton(const GltfFile& file, const GltfNodes& nodes, const s
   }
   extent_ = joints.isEmpty() ? 0 : joints.diagonal().norm();
 
-  for (const int s : used) {
-    find_to_rest(at(s), lead, lead_joint);
-    GltfSkin& skin = *skins_[at(s)];
+  for (const UsedSkin& s : used) {
+    find_to_rest(s, lead, lead_joint);
+    GltfSkin& skin = *skins_[at(s.index)];
     const Affine from_rest = skin.to_rest.inverse();
     for (std::size_t j = 0; j < skin.joints.size(); ++j) {
       skin.bones.push_back(bone(skin.joints[j], skin.inverse_bind[j] * from_rest));
@@ -167,28 +169,36 @@ GltfSkin GltfSkeleton::read_skin(std::size_t index) const {
   return skin;
 }
 
-// The map that a skin's first joint from the root has when the nodes are at rest.
-Affine GltfSkeleton::rest_to_world(std::size_t index) const {
-  const GltfSkin& skin = *skins_[index];
-  std::optional<std::size_t> root;
-  for (std::size_t j = 0; j < skin.joints.size(); ++j) {
-    const bool usable = invertible(nodes_.world[skin.joints[j]]) && invertible(skin.inverse_bind[j]);
-    if (usable && (!root || skin.joints[j] < skin.joints[*root])) root = j;
+// The map that a skin's joints have when the nodes are at rest.
+Affine GltfSkeleton::rest_to_world(const UsedSkin& used) const {
+  const GltfSkin& skin = *skins_[at(used.index)];
+  std::vector<std::size_t> order(skin.joints.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return skin.joints[a] < skin.joints[b]; });
+  std::vector<Affine> maps;
+  std::vector<double> weights;
+  for (const std::size_t j : order) {
+    if (!invertible(nodes_.world[skin.joints[j]]) || !invertible(skin.inverse_bind[j])) continue;
+    const Affine map = nodes_.world[skin.joints[j]] * skin.inverse_bind[j];
+    if (!map.matrix().allFinite()) continue;
+    maps.push_back(map);
+    weights.push_back(used.weights[j]);
   }
-  if (!root) file_.fail("skins[" + std::to_string(index) + "] has no joint with a size, both at rest and when bound");
-  return nodes_.world[skin.joints[*root]] * skin.inverse_bind[*root];
+  if (maps.empty())
+    file_.fail("skins[" + std::to_string(used.index) + "] has no joint with a size, both at rest and when bound");
+  return maps[typical_map(maps, weights)];
 }
 
 // A joint that two skins share is at one place for both when they are bound; without one, at rest must do.
-void GltfSkeleton::find_to_rest(std::size_t index, const GltfSkin& lead, const std::vector<Index>& lead_joint) {
-  GltfSkin& skin = *skins_[index];
+void GltfSkeleton::find_to_rest(const UsedSkin& used, const GltfSkin& lead, const std::vector<Index>& lead_joint) {
+  GltfSkin& skin = *skins_[at(used.index)];
   std::optional<Affine> to_rest;
   for (std::size_t j = 0; j < skin.joints.size() && !to_rest; ++j) {
     const Index shared = lead_joint[skin.joints[j]];
     if (shared == kNoIndex || !invertible(skin.inverse_bind[j])) continue;
     to_rest = lead.inverse_bind[shared].inverse() * skin.inverse_bind[j];
   }
-  if (!to_rest) to_rest = world_to_rest_ * rest_to_world(index);
+  if (!to_rest) to_rest = world_to_rest_ * rest_to_world(used);
   // Exactly nothing where it is nothing but rounding: then the rest pose is the file's own vertex buffer.
   skin.to_rest = same(Affine::Identity(), *to_rest, extent_) ? Affine::Identity() : *to_rest;
 }

@@ -27,11 +27,17 @@ struct GltfSkin {
   std::vector<Index> bones;             // a joint's bone
 };
 
+// A skin of the scene's meshes: its number in the file, and how much of the meshes each joint moves, in vertices.
+struct UsedSkin {
+  int index;
+  std::vector<double> weights;
+};
+
 // Binds meshes to nodes. The rest space is the mesh space of one skin; without skins it is the scene's world.
 class GltfSkeleton {
  public:
   // `used` are the skins of the scene's meshes, the one that leads first.
-  GltfSkeleton(const GltfFile& file, const GltfNodes& nodes, const std::vector<int>& used);
+  GltfSkeleton(const GltfFile& file, const GltfNodes& nodes, const std::vector<UsedSkin>& used);
 
   bool has_skins() const { return !skins_.empty(); }
   const GltfSkin& skin(int file_index) const { return *skins_[static_cast<std::size_t>(file_index)]; }
@@ -50,8 +56,8 @@ class GltfSkeleton {
 
  private:
   GltfSkin read_skin(std::size_t index) const;
-  Affine rest_to_world(std::size_t index) const;
-  void find_to_rest(std::size_t index, const GltfSkin& lead, const std::vector<Index>& lead_joint);
+  Affine rest_to_world(const UsedSkin& used) const;
+  void find_to_rest(const UsedSkin& used, const GltfSkin& lead, const std::vector<Index>& lead_joint);
   Index bone(Index node, const Affine& inverse_bind);
 
   const GltfFile& file_;

@@ -3,10 +3,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <fstream>
 #include <system_error>
 
+#include "import/archive.h"
 #include "import/gltf_file.h"
 #include "import/obj_file.h"
+#include "import/read_in_child.h"
 #include "import/sha256.h"
 #include "mesh/error.h"
 
@@ -20,10 +23,16 @@ std::string extension_of(const std::filesystem::path& path) {
   return extension;
 }
 
+// A glTF is told by its first bytes, whatever its ending (a .vrm is a GLB). No other format begins with a JSON object.
 // Through assimp a glTF would lose its own vertex order and bind pose.
 bool is_gltf(const std::filesystem::path& path) {
-  const std::string extension = extension_of(path);
-  return extension == ".glb" || extension == ".gltf";
+  std::string start(64, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(start.data(), static_cast<std::streamsize>(start.size()));
+  start.resize(static_cast<std::size_t>(file.gcount()));
+  if (start.starts_with("\xEF\xBB\xBF")) start.erase(0, 3);
+  const std::size_t first = start.find_first_not_of(" \t\r\n");
+  return start.starts_with("glTF") || (first != start.npos && start[first] == '{');
 }
 
 }  // namespace
@@ -49,12 +58,20 @@ std::vector<std::filesystem::path> files_beside(const std::filesystem::path& sou
 std::vector<std::filesystem::path> files_read_with(const std::filesystem::path& source) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(source, ignored) || is_gltf(source)) return {};  // files_beside has a glTF's
-  return files_read_with_assimp(source);
+  try {
+    const auto files = from_bytes<std::vector<std::string>>(
+        read_in_child(source.string(), [&] { return to_bytes(files_read_with_assimp(source)); }));
+    return {files.begin(), files.end()};
+  } catch (const Error&) {  // which read_source says
+    return {};
+  }
 }
 
 SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& options) {
   check_regular_file(path);
-  return is_gltf(path) ? read_with_tinygltf(path, options) : read_with_assimp(path);
+  return from_bytes<SourceMesh>(read_in_child(path.string(), [&] {
+    return to_bytes(is_gltf(path) ? read_with_tinygltf(path, options) : read_with_assimp(path));
+  }));
 }
 
 Character import_character(const std::filesystem::path& path, const ImportOptions& options) {

@@ -109,10 +109,11 @@ std::vector<std::filesystem::path> files_beside(const std::filesystem::path& sou
 // pictures that its materials name. It takes as long as reading the source.
 std::vector<std::filesystem::path> files_read_with(const std::filesystem::path& source);
 
-// Reads a file with the importer of its format. A file of motion has no mesh. Throws Error(kFile).
+// Reads a file with the importer of its format, which its content decides, in a child process (read_in_child.h). A file
+// of motion has no mesh. Throws Error(kFile).
 SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& options = {});
 SourceMesh read_with_assimp(const std::filesystem::path& path);
-std::vector<std::filesystem::path> files_read_with_assimp(const std::filesystem::path& path);
+std::vector<std::string> files_read_with_assimp(const std::filesystem::path& path);
 SourceMesh read_with_tinygltf(const std::filesystem::path& path, const ImportOptions& options);
 
 // Checks, welds, cleans and splits what an importer read; `name` is what errors call the file.

@@ -1,28 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <assimp/BaseImporter.h>
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/config.h>
+#include <assimp/importerdesc.h>
 #include <assimp/material.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
-#include <cstdint>
 #include <filesystem>
 #include <new>
+#include <sstream>
 #include <string_view>
 
 #include "import/assimp_scene.h"
 #include "import/check_bvh.h"
 #include "import/import.h"
-#include "import/memory_limit.h"
 #include "mesh/error.h"
 #include "spherechain/asset.h"
 
 namespace spherechain::baker {
 namespace {
 
-using Files = std::vector<std::filesystem::path>;
+using Files = std::vector<std::string>;
 
 void append(const MeshInstance& instance, const std::string& name, SourceMesh& out) {
   const aiMesh& mesh = *instance.mesh;
@@ -56,23 +57,52 @@ void append(const MeshInstance& instance, const std::string& name, SourceMesh& o
 }
 
 // What a mesh's file names (its materials) is read where it is a file: assimp would wait for ever for a pipe's other
-// end.
+// end. The mesh's own file may go by an alias with another ending.
 class FilesAlone : public Assimp::DefaultIOSystem {
  public:
-  explicit FilesAlone(Files* opened) : opened_(opened) {}
+  FilesAlone(std::string file, Files* opened) : file_(std::move(file)), opened_(opened) {}
+  const std::string& alias(const std::string& ending) { return alias_ = file_ + "." + ending; }
   bool Exists(const char* path) const override {
     std::error_code ignored;
-    return std::filesystem::is_regular_file(path, ignored);
+    return std::filesystem::is_regular_file(real(path), ignored);
   }
   Assimp::IOStream* Open(const char* path, const char* mode) override {
     if (!Exists(path)) return nullptr;
-    if (opened_ != nullptr) opened_->push_back(path);
-    return DefaultIOSystem::Open(path, mode);
+    if (opened_ != nullptr) opened_->push_back(real(path));
+    return DefaultIOSystem::Open(real(path), mode);
   }
 
  private:
+  const char* real(const char* path) const { return path == alias_ ? file_.c_str() : path; }
+
+  std::string file_, alias_;
   Files* opened_;
 };
+
+bool has_content(const aiScene* scene) {
+  return scene != nullptr && (scene->mNumMeshes > 0 || scene->mNumAnimations > 0);
+}
+
+bool recognises(Assimp::BaseImporter& format, const std::string& name, FilesAlone& files) {
+  try {
+    return format.CanRead(name, &files, true);
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+// Assimp goes by a file's ending. Where that leads to nothing, each format that recognises the content has its turn.
+const aiScene* read_by_ending_or_content(Assimp::Importer& importer, FilesAlone& files, const std::string& name) {
+  if (const aiScene* scene = importer.ReadFile(name, 0); has_content(scene)) return scene;
+  for (std::size_t f = 0; f < importer.GetImporterCount(); ++f) {
+    if (!recognises(*importer.GetImporter(f), files.alias(""), files)) continue;
+    std::istringstream endings(importer.GetImporterInfo(f)->mFileExtensions);
+    for (std::string ending; endings >> ending;) {
+      if (const aiScene* scene = importer.ReadFile(files.alias(ending), 0); has_content(scene)) return scene;
+    }
+  }
+  return importer.ReadFile(name, 0);  // for what it says of the ending's format
+}
 
 // Assimp's triangulation ends the program over a face without corners.
 void check_faces(const aiScene& scene, const std::string& file) {
@@ -86,33 +116,22 @@ void check_faces(const aiScene& scene, const std::string& file) {
   }
 }
 
-// In bounded memory: no format here packs a character tighter than this. `opened` gets the names of the files that it
-// takes, however it ends.
+// `opened` gets the names of the files that it takes, however it ends.
 const aiScene* read_scene(Assimp::Importer& importer, const std::filesystem::path& path, Files* opened = nullptr) {
   check_bvh(path);
-  importer.SetIOHandler(new FilesAlone(opened));  // which the importer deletes
+  const std::string name = path.string();
+  auto* files = new FilesAlone(name, opened);
+  importer.SetIOHandler(files);  // which the importer deletes
   // Sticks that importers put where a file has bones and no mesh are no character.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
-  constexpr std::uint64_t kMemoryMin = std::uint64_t{1} << 30, kPerByte = 500;
-  std::error_code unknown;
-  const std::uintmax_t size = std::filesystem::file_size(path, unknown);
-  const std::string name = path.string();
-  const MemoryLimit limit(kMemoryMin + (unknown ? 0 : kPerByte * size));
-  const auto too_much = [&] {
-    return Error(ExitCode::kFile, name + ": needs more memory than " + std::to_string(size) +
-                                      " bytes can fill (the file is cut off, or its counts are wrong)");
-  };
-  try {
-    const aiScene* scene = importer.ReadFile(name, 0);
-    if (scene == nullptr && std::string_view(importer.GetErrorString()).find("bad_alloc") != std::string_view::npos) {
-      throw too_much();
-    }
-    if (scene == nullptr) return nullptr;
-    check_faces(*scene, name);
-    return importer.ApplyPostProcessing(aiProcess_Triangulate);
-  } catch (const std::bad_alloc&) {
-    throw too_much();
+  const aiScene* scene = read_by_ending_or_content(importer, *files, name);
+  // Assimp catches it and goes on.
+  if (scene == nullptr && std::string_view(importer.GetErrorString()).find("bad_alloc") != std::string_view::npos) {
+    throw std::bad_alloc();
   }
+  if (scene == nullptr) return nullptr;
+  check_faces(*scene, name);
+  return importer.ApplyPostProcessing(aiProcess_Triangulate);
 }
 
 // Pictures are never read. They are where the file says, or beside it, as where its author's disk is not at hand.
@@ -126,8 +145,8 @@ void add_pictures(const aiMaterial& material, const std::filesystem::path& folde
     }
     std::string slashed = name.C_Str();
     std::replace(slashed.begin(), slashed.end(), '\\', '/');
-    files.push_back(folder / slashed);
-    files.push_back(folder / std::filesystem::path(slashed).filename());
+    files.push_back((folder / slashed).string());
+    files.push_back((folder / std::filesystem::path(slashed).filename()).string());
   }
 }
 

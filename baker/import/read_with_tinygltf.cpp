@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
+#include <set>
 
 #include "import/gltf_clips.h"
 #include "import/gltf_primitive.h"
@@ -12,21 +14,41 @@
 namespace spherechain::baker {
 namespace {
 
+std::string primitive_name(int mesh, std::size_t primitive) {
+  return "meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(primitive) + "]";
+}
+
 // The skins of the scene's meshes. The one that moves most vertices leads: its mesh space becomes the rest space.
-std::vector<int> skins_of_scene(const GltfFile& file, const GltfNodes& nodes) {
+std::vector<UsedSkin> skins_of_scene(const GltfFile& file, const GltfNodes& nodes) {
   std::map<int, std::size_t> vertices;
+  std::map<int, std::vector<double>> weights;
+  std::set<std::pair<int, int>> seen;  // skin, mesh
   for (std::size_t n = 0; n < file.model.nodes.size(); ++n) {
     const tinygltf::Node& node = file.model.nodes[n];
     if (!nodes.in_scene[n] || node.mesh < 0 || node.skin < 0) continue;
-    for (const tinygltf::Primitive& primitive : file.model.meshes[at(node.mesh)].primitives) {
-      const auto position = primitive.attributes.find("POSITION");
-      if (!is_skinned(primitive) || position == primitive.attributes.end()) continue;
-      vertices[node.skin] += file.model.accessors[at(position->second)].count;
+    std::vector<Index> joints(file.model.skins[at(node.skin)].joints.size());
+    std::iota(joints.begin(), joints.end(), Index{0});
+    const bool is_new = seen.emplace(node.skin, node.mesh).second;
+    const std::vector<tinygltf::Primitive>& primitives = file.model.meshes[at(node.mesh)].primitives;
+    for (std::size_t p = 0; p < primitives.size(); ++p) {
+      const auto position = primitives[p].attributes.find("POSITION");
+      if (!is_skinned(primitives[p]) || position == primitives[p].attributes.end()) continue;
+      const std::size_t count = file.model.accessors[at(position->second)].count;
+      vertices[node.skin] += count;
+      std::vector<double>& moved = weights[node.skin];
+      moved.resize(joints.size());
+      if (!is_new || count > kGltfElementsMax) continue;
+      const std::string where = primitive_name(node.mesh, p);
+      for (const VertexWeights& own :
+           read_weights(file, primitives[p], joints, read_positions(file, primitives[p], where).size(), where)) {
+        for (std::size_t k = 0; k < kMaxInfluences; ++k) moved[own.joint[k]] += own.weight[k];
+      }
     }
   }
-  std::vector<int> skins;
-  for (const auto& [skin, count] : vertices) skins.push_back(skin);
-  std::stable_sort(skins.begin(), skins.end(), [&](int a, int b) { return vertices[a] > vertices[b]; });
+  std::vector<UsedSkin> skins;
+  for (auto& [skin, moved] : weights) skins.push_back({skin, std::move(moved)});
+  std::stable_sort(skins.begin(), skins.end(),
+                   [&](const UsedSkin& a, const UsedSkin& b) { return vertices[a.index] > vertices[b.index]; });
   return skins;
 }
 
@@ -81,7 +103,7 @@ class GltfReader {
         dropped = true;
       } else if (primitive.attributes.count("POSITION") > 0) {
         kept = true;
-        where_ = "meshes[" + std::to_string(node.mesh) + "].primitives[" + std::to_string(p) + "]";
+        where_ = primitive_name(node.mesh, p);
         // Primitives may have their vertices in common, and each its own triangles.
         const auto [known, is_new] = shared.try_emplace({primitive.attributes, primitive.targets});
         const Carrier carrier = carrier_of(n, skinned);

@@ -62,6 +62,24 @@ void decompose(Node& node) {
   }
 }
 
+std::size_t typical_map(const std::vector<Affine>& maps, const std::vector<double>& weights) {
+  constexpr double kMoves = 1e-6;  // a vertex: bones that move none count where all do not
+  Eigen::Matrix3d median;
+  for (Eigen::Index i = 0; i < 9; ++i) {
+    std::vector<std::pair<double, double>> entries;
+    for (std::size_t m = 0; m < maps.size(); ++m)
+      entries.emplace_back(maps[m].linear()(i % 3, i / 3), weights[m] + kMoves);
+    median(i % 3, i / 3) = weighted_quantile(std::move(entries), 0.5);
+  }
+  constexpr double kAlike = 1e-4;
+  const double tolerance = kAlike * median.norm();
+  std::size_t best = 0;
+  for (std::size_t m = 1; m < maps.size(); ++m) {
+    if ((maps[m].linear() - median).norm() < (maps[best].linear() - median).norm() - tolerance) best = m;
+  }
+  return best;
+}
+
 std::vector<Affine> world_of(const std::vector<Node>& nodes) {
   std::vector<Affine> world;
   for (const Node& node : nodes) {

@@ -24,7 +24,8 @@ struct VertexWeights {
 // three parts; then the transform is translation * rotation * scale.
 struct Node {
   std::string name;
-  int parent = -1;  // comes before its children
+  std::string humanoid_bone{};  // what a VRM avatar says it is, such as "leftUpperArm"; empty where it says nothing
+  int parent = -1;              // comes before its children
   Affine local = Affine::Identity();
   Vec3 translation = Vec3::Zero();
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
@@ -80,6 +81,11 @@ struct SourceRig {
   std::vector<Clip> clips;
   Affine to_rest = Affine::Identity();  // from the scene's axes and units to those of the rest positions
 };
+
+// Which of the maps that a skin's bones are at rest holds for most of it: the one nearest to the median of all, entry
+// by entry, each with the weight of the skin it moves. Of maps that are alike it is the first. A bone that was bound in
+// other units or axes than the others does not decide. All maps are finite, and there is one at least.
+std::size_t typical_map(const std::vector<Affine>& maps, const std::vector<double>& weights);
 
 // Every node's transform into the scene.
 std::vector<Affine> world_of(const std::vector<Node>& nodes);

@@ -38,6 +38,14 @@ const char* plain_role(Word word) {
   }
 }
 
+// What the file itself calls the node on the body goes before its name.
+Hint hint_of(const Node& node) {
+  if (node.humanoid_bone.empty()) return read_name(node.name);
+  Hint hint = read_name(node.humanoid_bone);
+  if (hint.word != Word::kNone) hint.reason = "the avatar's humanoid says " + node.humanoid_bone;
+  return hint;
+}
+
 // Gives every node its role and the reason for it.
 struct RoleWriter {
   const Skeleton& s;
@@ -208,7 +216,7 @@ const char* body_kind_name(BodyKind kind) {
 Roles find_roles(const SourceRig& rig, const std::vector<Vec3>& positions, const RoleFile& file, BodyKind wanted) {
   const Skeleton skeleton = make_skeleton(rig, positions);
   std::vector<Hint> hints;
-  for (const Node& node : rig.nodes) hints.push_back(read_name(node.name));
+  for (const Node& node : rig.nodes) hints.push_back(hint_of(node));
   if (find_limb_paths(skeleton, hints).empty()) {
     const std::vector<Hint> shape = hints_from_shape(skeleton);
     for (std::size_t n = 0; n < hints.size(); ++n) {

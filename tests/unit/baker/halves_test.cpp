@@ -6,6 +6,7 @@
 #include <set>
 
 #include "creatures.h"
+#include "mesh/error.h"
 #include "pipeline/pipeline.h"
 #include "segment/by_bones.h"
 

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Height, metres and the way up are those of the character as it stands in its scene.
+#include <doctest/doctest.h>
+
+#include "gltf_reference.h"
+#include "role_cases.h"
+#include "segment/by_bones.h"
+
+using namespace spherechain::baker;
+
+namespace {
+
+// The column as it was bound, with its parent as a third joint, which moves nothing and was bound by `inverse_bind`.
+Glb with_root(const std::vector<float>& inverse_bind) {
+  Glb glb = two_boxes();
+  glb.json["nodes"][2].erase("rotation");
+  std::vector<float> all{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0,  0, 1,
+                         1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -2, 0, 1};
+  all.insert(all.end(), inverse_bind.begin(), inverse_bind.end());
+  glb.json["skins"] = {{{"joints", {1, 2, 3}}, {"inverseBindMatrices", glb.accessor(all, "MAT4")}}};
+  return glb;
+}
+
+Affine scaled(double by) {
+  Affine map = Affine::Identity();
+  map.linear() *= by;
+  return map;
+}
+
+}  // namespace
+
+TEST_CASE("the scale of an armature is the character's, whatever it is") {
+  for (const double scale : {1.0, 0.1, 0.01, 10.0, 0.0254}) {
+    CAPTURE(scale);
+    Glb glb = two_boxes();
+    glb.json["nodes"][3]["scale"] = {scale, scale, scale};
+    const SourceMesh mesh = read(glb);
+    CHECK(mesh.metres_per_unit == doctest::Approx(scale));
+    CHECK(mesh.positions == read(two_boxes()).positions);
+  }
+}
+
+TEST_CASE("a root that was bound in other units or axes than the bones that move skin says nothing about them") {
+  for (const std::vector<float>& root : {std::vector<float>{10, 0, 0, 0, 0, 10, 0, 0, 0, 0, 10, 0, 0, 0, 0, 1},
+                                         {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1}}) {
+    Glb glb = with_root(root);
+    CHECK(read(glb).metres_per_unit == doctest::Approx(1));
+    CHECK(read(glb).up_hint.isApprox(Vec3::UnitY()));
+    // Above it all is as it was.
+    glb.json["nodes"].push_back({{"children", {3}}, {"scale", {0.1, 0.1, 0.1}}, {"rotation", {-0.5, 0.5, 0.5, 0.5}}});
+    glb.json["scenes"][0]["nodes"] = {0, 4};
+    CHECK(read(glb).metres_per_unit == doctest::Approx(0.1));
+    CHECK(std::abs(read(glb).up_hint.y()) < 1e-6);
+  }
+}
+
+TEST_CASE("the map that holds for most of the skin is taken, the first of those that are alike") {
+  CHECK(typical_map({scaled(2)}, {0}) == 0);
+  CHECK(typical_map({scaled(1), scaled(1), scaled(1)}, {1, 5, 2}) == 0);
+  CHECK(typical_map({scaled(10), scaled(1), scaled(1)}, {0, 1, 1}) == 1);
+  CHECK(typical_map({scaled(10), scaled(10), scaled(10), scaled(1)}, {0, 0, 0, 7}) == 3);
+  CHECK(typical_map({scaled(10), scaled(10), scaled(1)}, {0, 0, 0}) == 0);
+}
+
+TEST_CASE("a biped that lies in its file stands upright by its rig where its parts follow the bones") {
+  const NamedRig rig = named_rig(kMixamo);
+  SourceMesh mesh;
+  mesh.rig = rig.rig;
+  mesh.rig.weights.clear();
+  for (std::size_t v = 0; v < rig.positions.size(); ++v) {  // a tetrahedron about each joint
+    const auto first = static_cast<Index>(mesh.positions.size());
+    for (const Vec3& corner : {Vec3(0, 0, 0), Vec3(0.02, 0, 0), Vec3(0, 0.02, 0), Vec3(0, 0, 0.02)}) {
+      mesh.positions.push_back(rig.positions[v] + corner);
+      mesh.rig.weights.push_back(rig.rig.weights[v]);
+    }
+    for (const Triangle& t : {Triangle{0, 2, 1}, Triangle{0, 1, 3}, Triangle{1, 2, 3}, Triangle{0, 3, 2}})
+      mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  for (const Vec3& up : {Vec3(Vec3::UnitY()), Vec3(Vec3::UnitZ()), Vec3(-Vec3::UnitY()), Vec3(Vec3::UnitX())}) {
+    mesh.up_hint = up;
+    Character character = build_character(mesh, "a.glb");
+    const Roles roles = find_roles(character.rig, character.source_positions);
+    const Regions regions = segment_by_bones(character, roles, 60);
+    CHECK(regions.frame.up.isApprox(Vec3::UnitY()));
+    CHECK(regions.frame.left.x() > 0.9);
+  }
+}
