@@ -198,7 +198,7 @@ scripts/accuracy.mjs build/release/bin/spherechain [CHARACTER.glb]... > docs/acc
 
 The exact triangle contacts miss ${contacts.missing} of the ${all.truth} true pairs below and report ${contacts.extra} others (\`validate --contacts\`, ${contacts.frames} frames).
 Tests along chains alone miss ${Math.round(missedByChains)} of the ${Math.round(all.found)} true pairs that all pairs of spheres find (${percent(share(missedByChains, all.found))} %).
-Bodies other than humans fit spheres less well: their spheres may miss half of the contacts. Their skin contacts are exact all the same.
+How spheres do on bodies other than humans, \`scripts/alarms.mjs\` prints. Skin contacts are exact on all of them.
 
 ## Skin, spheres, chains and capsules
 
@@ -221,7 +221,7 @@ ${curve("radius_curve", (p) => `x ${p.scale.toFixed(1)}`)}
 
 ## Over the rest rule
 
-The same for other values of the setting \`rest_scale\`.
+The same if every rest pair is reported below one part of its distance at rest, in place of the calibrated distance.
 
 ${curve("rest_curve", (p) => p.rest_scale.toFixed(1))}
 
