@@ -9,7 +9,7 @@ namespace {
 
 // False alarms that a contact is worth: of a rest pair, and where a larger radius finds it. The second is dearer: what
 // is beyond all radii is never found.
-constexpr double kRestWorth = 8, kGrowthWorth = 40;
+constexpr double kRestWorth = 7, kGrowthWorth = 40;
 // A pair must touch this often before its spheres grow: a pair that seldom touches says little.
 constexpr std::size_t kTouchesMin = 6;
 constexpr double kRounding = 1 + 1e-5;

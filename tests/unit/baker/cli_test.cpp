@@ -51,7 +51,7 @@ TEST_CASE("bake writes the same bytes as the library, a report and a table, and 
   std::set<std::string> stages;
   for (const json& stage : report["stages"]) stages.insert(stage["stage"].get<std::string>());
   CHECK(stages ==
-        std::set<std::string>{"import", "roles", "segment", "fit", "chains", "bind", "rig", "clusters", "write"});
+        std::set<std::string>{"import", "roles", "fit", "chains", "bind", "rig", "clusters", "write", "calibrate"});
 }
 
 TEST_CASE(
