@@ -120,6 +120,12 @@ function methods(row) {
   });
 }
 
+function far(row) {
+  const spheres = row.detect[0].all_pairs;
+  const shown = (x) => (x === null ? "" : percent(x));
+  return [row.name, shown(spheres.far_recall), shown(spheres.apart_precision), spheres.reported_per_frame.toFixed(1)];
+}
+
 function scope(row) {
   const total = (pick) => row.detect.reduce((n, f) => n + pick(f), 0);
   const raw = total((f) => f.raw_pairs), truth = total((f) => f.truth_pairs);
@@ -198,11 +204,19 @@ scripts/accuracy.mjs build/release/bin/spherechain [CHARACTER.glb]... > docs/acc
 
 The exact triangle contacts miss ${contacts.missing} of the ${all.truth} true pairs below and report ${contacts.extra} others (\`validate --contacts\`, ${contacts.frames} frames).
 Tests along chains alone miss ${Math.round(missedByChains)} of the ${Math.round(all.found)} true pairs that all pairs of spheres find (${percent(share(missedByChains, all.found))} %).
-Bodies other than humans fit spheres less well: their spheres may miss half of the contacts. Their skin contacts are exact all the same.
+How spheres do on bodies other than humans, \`scripts/alarms.mjs\` prints. Skin contacts are exact on all of them.
 
 ## Skin, spheres, chains and capsules
 
 ${table(["motion", "method", "true pairs", "recall", "precision", "pairs a frame", "any", "all", "missed overlap"], rows.flatMap(methods))}
+
+## Spheres between parts that are far from each other
+
+Recall leaves out what the asset ignores, and spheres whose skins nearly touch at rest are nearly always right. **Far recall** counts only contacts between
+body parts that do not hang on each other or on the same third part, and are 0.3 % of the height apart at rest. Pairs that the asset ignores count, too.
+**Apart precision** leaves out pairs of spheres whose skins are nearer than that at rest. Motions without such a contact have no far recall.
+
+${table(["motion", "far recall", "apart precision", "pairs a frame"], rows.filter((row) => row.detect.length === 1).map(far))}
 
 ## What is out of scope
 
@@ -221,7 +235,7 @@ ${curve("radius_curve", (p) => `x ${p.scale.toFixed(1)}`)}
 
 ## Over the rest rule
 
-The same for other values of the setting \`rest_scale\`.
+The same if every rest pair is reported below one part of its distance at rest, in place of the calibrated distance.
 
 ${curve("rest_curve", (p) => p.rest_scale.toFixed(1))}
 

@@ -151,7 +151,7 @@ BoundSphere bind_sphere(const Mesh& mesh, const std::vector<Index>& surrounding,
 
 // Pairs that touch at rest, or would soon, are reported where they have come nearer than that.
 std::vector<BoundPair> find_rest_pairs(const std::vector<BoundSphere>& spheres, const SpherePairs& ignored,
-                                       double fraction, double BoundSphere::*detect) {
+                                       double BoundSphere::*detect) {
   std::vector<BoundPair> pairs;
   for (std::uint32_t a = 0; a < spheres.size(); ++a) {
     for (std::uint32_t b = a + 1; b < spheres.size(); ++b) {
@@ -159,7 +159,7 @@ std::vector<BoundPair> find_rest_pairs(const std::vector<BoundSphere>& spheres, 
       const double distance = (spheres[a].rest.center - spheres[b].rest.center).norm();
       const double sum =
           detect ? spheres[a].*detect + spheres[b].*detect : spheres[a].rest.radius + spheres[b].rest.radius;
-      const double rest_scale = fraction * distance / sum;
+      const double rest_scale = kPaperRestScale * distance / sum;
       if (rest_scale < 1) pairs.push_back({a, b, rest_scale});
     }
   }
@@ -196,8 +196,8 @@ Attempt<Binding> bind_spheres(const Character& character, const Regions& regions
   const SpherePairs ignored =
       find_ignored(character, regions, spheres, out.sphere_of_triangle, settings.neighbour_gap * regions.frame.height);
   out.ignored.assign(ignored.begin(), ignored.end());
-  out.rest_fit = find_rest_pairs(out.spheres, ignored, settings.rest_scale, nullptr);
-  out.rest_detect = find_rest_pairs(out.spheres, ignored, settings.rest_scale, &BoundSphere::detect_radius);
+  out.rest_fit = find_rest_pairs(out.spheres, ignored, nullptr);
+  out.rest_detect = find_rest_pairs(out.spheres, ignored, &BoundSphere::detect_radius);
   return out;
 }
 

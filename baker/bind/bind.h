@@ -43,11 +43,14 @@ struct Binding {
   std::vector<BoundPair> rest_fit, rest_detect;                  // by the fit and the detect radii; not ignored; sorted
 };
 
+// The paper's rest pairs are reported below this part of their distance at rest; those of moments are calibrated
+// (calibrate/calibrate.h).
+inline constexpr double kPaperRestScale = 0.9;
+
 struct BindSettings {
   RefitRule rule = RefitRule::kMoments;
   int pivots = 8;                // of a sphere; moments: more where 8 are ill-posed
   double detect_quantile = 0.9;  // of the area of the sphere's triangles, by distance from the centre
-  double rest_scale = 0.9;       // rest pairs are reported below this part of their rest distance
   double neighbour_gap = 0;      // of the height: spheres this close along the mesh are ignored, too
 };
 

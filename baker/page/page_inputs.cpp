@@ -88,7 +88,13 @@ void check_source(const Value& root, const OpenAsset& asset, const std::string& 
   }
 }
 
-void check_score(const Value& score) { score.numbers({"pair_recall", "precision", "reported_per_frame"}); }
+// A share of nothing is null.
+void check_score(const Value& score) {
+  for (const char* share : {"pair_recall", "precision"}) {
+    if (!score[share].raw().is_null()) score[share].number();
+  }
+  score["reported_per_frame"].number();
+}
 
 }  // namespace
 

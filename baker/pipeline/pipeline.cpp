@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 
+#include "calibrate/calibrate.h"
 #include "mesh/error.h"
 #include "pipeline/segment_wraps.h"
 #include "segment/by_bones.h"
@@ -73,9 +74,15 @@ void run_after_fit(Bake& out, const Progress& progress) {
   stage(out, progress, "clusters", [&] {
     out.clusters = make_clusters(out.character, out.binding, out.bones, out.rig_weights, settings.clusters);
   });
-  stage(out, progress, "write", [&] {
+  const auto write = [&] {
     out.asset = serialize({out.character, out.regions, out.spheres, out.chains, out.binding, out.joints, out.bones,
                            out.moments, out.body_parts, out.clusters, to_json(settings)});
+  };
+  stage(out, progress, "write", write);
+  if (settings.bind.rule == RefitRule::kPaper) return;
+  stage(out, progress, "calibrate", [&] {
+    calibrate(out.character, out.regions, out.joints, out.asset, out.binding);
+    write();
   });
 }
 

@@ -140,7 +140,6 @@ BakeSettings make_settings(const std::string& profile, const std::string& text, 
   settings.bind.pivots = paper ? 4 : 8;
   reader.integer("pivots", settings.bind.pivots, paper ? 2 : 4, 16);
   reader.number("detect_quantile", settings.bind.detect_quantile, 0, 1);
-  reader.number("rest_scale", settings.bind.rest_scale, 0, 0.99);
   reader.number("neighbour_gap", settings.bind.neighbour_gap, 0, 1);
   if (const json* clusters = reader.object("clusters")) {
     if (!clusters->is_object()) reader.fail("clusters", "is not an object");
@@ -182,7 +181,6 @@ std::string to_json(const BakeSettings& settings) {
   out["refit"] = settings.bind.rule == RefitRule::kPaper ? "paper" : "moments";
   out["pivots"] = settings.bind.pivots;
   out["detect_quantile"] = settings.bind.detect_quantile;
-  out["rest_scale"] = settings.bind.rest_scale;
   out["neighbour_gap"] = settings.bind.neighbour_gap;
   out["clusters"] = {{"triangles", settings.clusters.triangles}, {"branching", settings.clusters.branching}};
   json targets = json::object();

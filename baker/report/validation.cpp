@@ -23,11 +23,22 @@ const char* reported_name(const ValidateSettings& settings) {
   return settings.method == Method::kChains ? "chains" : "all_pairs";
 }
 
+// Null where there is nothing to share.
+ordered_json share_json(const std::optional<double>& share) {
+  return share ? ordered_json(*share) : ordered_json(nullptr);
+}
+
+std::string share_text(const std::optional<double>& share, int digits) {
+  return share ? fmt::format("{:.{}f}", *share, digits) : "-";
+}
+
 ordered_json score_json(const Score& score) {
-  return {{"pair_recall", score.pair_recall()},
-          {"frame_any_recall", score.frame_any_recall()},
-          {"frame_all_recall", score.frame_all_recall()},
-          {"precision", score.precision()},
+  return {{"pair_recall", share_json(score.pair_recall())},
+          {"far_recall", share_json(score.far_recall())},
+          {"frame_any_recall", share_json(score.frame_any_recall())},
+          {"frame_all_recall", share_json(score.frame_all_recall())},
+          {"precision", share_json(score.precision())},
+          {"apart_precision", share_json(score.apart_precision())},
           {"reported_per_frame", score.reported_per_frame()}};
 }
 
@@ -74,8 +85,8 @@ std::string groups_text(const std::string& title, const std::vector<PairGroup>& 
 std::string curve_row(const std::string& name, const Score& chains, const Score& all_pairs) {
   std::string out = fmt::format("  {:<18}", name);
   for (const Score* score : {&all_pairs, &chains}) {
-    out += fmt::format(" {:>9.4f} {:>9.4f} {:>9.2f}  ", score->pair_recall(), score->precision(),
-                       score->reported_per_frame());
+    out += fmt::format(" {:>9} {:>9} {:>9.2f}  ", share_text(score->pair_recall(), 4),
+                       share_text(score->precision(), 4), score->reported_per_frame());
   }
   out.resize(out.find_last_not_of(' ') + 1);
   return out + "\n";
@@ -94,6 +105,13 @@ std::string curve_text(const Validation& validation) {
   return out;
 }
 
+std::string score_line(const char* name, const Score& score) {
+  return fmt::format("{} recall {}, precision {}, far recall {}, apart precision {}, {:.1f} pairs a frame\n", name,
+                     share_text(score.pair_recall(), 3), share_text(score.precision(), 3),
+                     share_text(score.far_recall(), 3), share_text(score.apart_precision(), 3),
+                     score.reported_per_frame());
+}
+
 // The skin beside the spheres.
 std::string scores_text(const Validation& validation, double height) {
   std::string out = fmt::format("{:<20} {:>11} {:>10} {:>10} {:>10} {:>10} {:>15}\n", "", "pair recall", "precision",
@@ -101,9 +119,10 @@ std::string scores_text(const Validation& validation, double height) {
   for (const auto& [name, score] :
        {std::pair{"skin", &validation.skin}, std::pair{"spheres, all pairs", &validation.all_pairs},
         std::pair{"spheres, chains", &validation.chains}}) {
-    out += fmt::format("{:<20} {:>11.4f} {:>10.4f} {:>10.2f} {:>10.4f} {:>10.4f} {:>13.2f} %\n", name,
-                       score->pair_recall(), score->precision(), score->reported_per_frame(), score->frame_any_recall(),
-                       score->frame_all_recall(), 100 * score->missed_overlap / height);
+    out += fmt::format("{:<20} {:>11} {:>10} {:>10.2f} {:>10} {:>10} {:>13.2f} %\n", name,
+                       share_text(score->pair_recall(), 4), share_text(score->precision(), 4),
+                       score->reported_per_frame(), share_text(score->frame_any_recall(), 4),
+                       share_text(score->frame_all_recall(), 4), 100 * score->missed_overlap / height);
   }
   return out + "(overlap in % of the height; any, all: share of the frames with a true pair)\n";
 }
@@ -156,7 +175,7 @@ std::string validation_json(const Validation& validation, const AnimatedAsset& a
       ordered_json entry{{"quantile", point.quantile}};
       entry.update(score_json(point.score));
       entry["own_truth_pairs"] = point.own.true_pairs;
-      entry["own_pair_recall"] = point.own.pair_recall();
+      entry["own_pair_recall"] = share_json(point.own.pair_recall());
       out["capsules"]["curve"].push_back(std::move(entry));
     }
   }
@@ -189,6 +208,9 @@ std::string validation_text(const Validation& validation, const AnimatedAsset& a
   out += fmt::format("  of one sphere                 {:>8}\n", validation.same_sphere);
   out += fmt::format("  of ignored spheres            {:>8}\n", validation.ignored);
   out += fmt::format("  true                          {:>8}  in {} frames\n\n", score.true_pairs, score.true_frames);
+  const Score& spheres = settings.method == Method::kChains ? validation.chains : validation.all_pairs;
+  if (score.true_pairs == 0) out += "no true contact in this motion: there is nothing to recall\n";
+  out += score_line("spheres:", spheres) + score_line("skin:   ", validation.skin) + "\n";
   out += scores_text(validation, height);
   if (settings.contacts) {
     const auto errors = [](const ContactErrors& of) {
@@ -215,9 +237,9 @@ std::string validation_text(const Validation& validation, const AnimatedAsset& a
     out += fmt::format("\n{:<18} {:>9} {:>9} {:>9}   {:>9}\n", fmt::format("{} capsules", validation.capsules),
                        "recall", "precision", "a frame", "own truth");
     for (const CapsulePoint& point : validation.capsule_curve) {
-      out += fmt::format("  {:<16} {:>9.4f} {:>9.4f} {:>9.2f}   {:>9.4f}\n",
-                         fmt::format("quantile {:.1f}", point.quantile), point.score.pair_recall(),
-                         point.score.precision(), point.score.reported_per_frame(), point.own.pair_recall());
+      out += fmt::format("  {:<16} {:>9} {:>9} {:>9.2f}   {:>9}\n", fmt::format("quantile {:.1f}", point.quantile),
+                         share_text(point.score.pair_recall(), 4), share_text(point.score.precision(), 4),
+                         point.score.reported_per_frame(), share_text(point.own.pair_recall(), 4));
     }
   }
   out += groups_text(fmt::format("{} between regions", reported_name(settings)), validation.by_region);

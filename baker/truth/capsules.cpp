@@ -12,8 +12,6 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr double kRestScale = BindSettings{}.rest_scale;  // the spheres' default
-
 double distance_to_segment(const Vec3& p, const Vec3& from, const Vec3& to) {
   const Vec3 along = to - from;
   const double length = along.squaredNorm();
@@ -159,7 +157,7 @@ std::vector<Pair> CapsuleRagdoll::pairs(const Deformation& deformation) const {
   for (std::uint32_t a = 0; a < now.size(); ++a) {
     for (std::uint32_t b = a + 1; b < now.size(); ++b) {
       if (is_ignored(a, b) || gap(now[a], now[b]) >= 0) continue;
-      if (axis_distance(now[a], now[b]) >= kRestScale * axis_distance(capsules_[a], capsules_[b])) continue;
+      if (axis_distance(now[a], now[b]) >= kPaperRestScale * axis_distance(capsules_[a], capsules_[b])) continue;
       out.push_back({a, b});
     }
   }

@@ -10,13 +10,14 @@ Curve::Curve(const OpenAsset& asset, Radius radius) : chains_(asset) {
 }
 
 std::vector<CurvePoint> Curve::measure(const std::vector<Sphere>& spheres, const FrameTruth& truth,
-                                       const std::function<bool(const Pair&)>& is_close) const {
+                                       const std::function<bool(const Pair&)>& is_close,
+                                       const std::function<bool(const Pair&)>& is_apart) const {
   const auto no_depth = [](const TrueContact&) { return 0.0; };
   std::vector<CurvePoint> points;
   for (std::size_t i = 0; i < rules_.size(); ++i) {
     const std::vector<Pair> pairs = rules_[i].pairs(spheres);
-    points.push_back({changes_[i], score_frame(truth, chains_.sharing(pairs), is_close, no_depth),
-                      score_frame(truth, pairs, is_close, no_depth)});
+    points.push_back({changes_[i], score_frame(truth, chains_.sharing(pairs), is_close, is_apart, no_depth),
+                      score_frame(truth, pairs, is_close, is_apart, no_depth)});
   }
   return points;
 }

@@ -22,7 +22,8 @@ class Curve {
 
   // One frame; the depth of what is missed is not measured. `spheres` are refitted at the curve's radius.
   std::vector<CurvePoint> measure(const std::vector<Sphere>& spheres, const FrameTruth& truth,
-                                  const std::function<bool(const Pair&)>& is_close) const;
+                                  const std::function<bool(const Pair&)>& is_close,
+                                  const std::function<bool(const Pair&)>& is_apart) const;
 
  private:
   ChainMembers chains_;

@@ -50,6 +50,28 @@ Intersections find_intersections(const TruthSurface& surface, const std::vector<
   return out;
 }
 
+std::set<Pair> close_owners(const TruthSurface& surface, const std::vector<float>& positions,
+                            const std::vector<std::uint32_t>& owner, double distance) {
+  using Kernel = CGAL::Simple_cartesian<double>;
+  std::vector<Kernel::Triangle_3> triangles;
+  std::vector<Box> boxes;
+  for (Index i = 0; i < surface.corners.size(); ++i) {
+    triangles.push_back(triangle_at<Kernel>(surface, positions, i));
+    const CGAL::Bbox_3 box = triangles[i].bbox();
+    const double margin = distance / 2;
+    boxes.emplace_back(CGAL::Bbox_3(box.xmin() - margin, box.ymin() - margin, box.zmin() - margin, box.xmax() + margin,
+                                    box.ymax() + margin, box.zmax() + margin),
+                       i);
+  }
+  std::set<Pair> out;
+  CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), [&](const Box& l, const Box& r) {
+    const auto [a, b] = std::minmax(owner[l.info()], owner[r.info()]);
+    if (a == b || out.count({a, b}) > 0) return;
+    if (CGAL::squared_distance(triangles[l.info()], triangles[r.info()]) < distance * distance) out.insert({a, b});
+  });
+  return out;
+}
+
 bool any_closer(const TruthSurface& surface, const std::vector<float>& positions, const std::vector<Index>& one,
                 const std::vector<Index>& other, double distance) {
   using Kernel = CGAL::Simple_cartesian<double>;

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <set>
 #include <vector>
 
 #include "truth/surface.h"
@@ -22,5 +24,10 @@ Intersections find_intersections(const TruthSurface& surface, const std::vector<
 // Whether a triangle of the one list (places in the surface) is closer than `distance` to one of the other.
 bool any_closer(const TruthSurface& surface, const std::vector<float>& positions, const std::vector<Index>& one,
                 const std::vector<Index>& other, double distance);
+
+// Which owners have triangles closer to each other than `distance`: a < b. `owner`: a place in the surface -> its
+// owner.
+std::set<Pair> close_owners(const TruthSurface& surface, const std::vector<float>& positions,
+                            const std::vector<std::uint32_t>& owner, double distance);
 
 }  // namespace spherechain::baker

@@ -12,7 +12,6 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr double kUsualFraction = BindSettings{}.rest_scale;
 constexpr float kNever = std::numeric_limits<float>::infinity();
 
 double rest_radius(const RestSphere& sphere, Radius kind) {
@@ -30,7 +29,7 @@ double own_fraction(const OpenAsset& asset, Radius kind) {
     const RestSphere &a = asset->spheres()[pair.a], &b = asset->spheres()[pair.b];
     parts.push_back(pair.rest_scale * (rest_radius(a, kind) + rest_radius(b, kind)) / rest_distance(a, b));
   }
-  if (parts.empty()) return kUsualFraction;
+  if (parts.empty()) return kPaperRestScale;
   const auto middle = parts.begin() + static_cast<std::ptrdiff_t>(parts.size() / 2);
   std::nth_element(parts.begin(), middle, parts.end());
   return *middle;

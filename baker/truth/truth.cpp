@@ -7,7 +7,8 @@
 namespace spherechain::baker {
 
 FrameTruth judge(const Intersections& found, const std::vector<Pair>& rest_pairs, const TruthSurface& surface,
-                 const std::function<bool(std::uint32_t, std::uint32_t)>& is_ignored) {
+                 const std::function<bool(std::uint32_t, std::uint32_t)>& is_ignored,
+                 const std::function<bool(const Pair&)>& is_far) {
   FrameTruth out;
   out.raw_pairs = found.pairs.size();
   out.degenerate = found.degenerate;
@@ -17,7 +18,10 @@ FrameTruth judge(const Intersections& found, const std::vector<Pair>& rest_pairs
         std::minmax({surface.sphere[surface.of_source[pair.a]], surface.sphere[surface.of_source[pair.b]]});
     if (std::binary_search(rest_pairs.begin(), rest_pairs.end(), pair)) {
       ++out.rest;
-    } else if (a == b) {
+      continue;
+    }
+    if (is_far(pair)) out.far.push_back(pair);
+    if (a == b) {
       ++out.same_sphere;
       out.neighbours.push_back(pair);
     } else if (is_ignored(a, b)) {

@@ -23,11 +23,14 @@ struct FrameTruth {
   std::size_t degenerate = 0;         // triangles without area in this pose
   std::vector<Pair> pairs;            // the rest: the true pairs, sorted
   std::vector<Pair> neighbours;       // those of one sphere and of ignored ones, sorted
-  std::vector<TrueContact> contacts;  // the same by spheres, sorted
+  std::vector<TrueContact> contacts;  // the true pairs by spheres, sorted
+  std::vector<Pair> far;              // of the true pairs and the neighbours those between parts that are far; sorted
 };
 
-// `rest_pairs`: those of the rest pose, sorted. `is_ignored` is asked about two owners of the surface's triangles.
+// `rest_pairs`: those of the rest pose, sorted. `is_ignored` is asked about two owners of the surface's triangles,
+// `is_far` about two source triangles.
 FrameTruth judge(const Intersections& found, const std::vector<Pair>& rest_pairs, const TruthSurface& surface,
-                 const std::function<bool(std::uint32_t, std::uint32_t)>& is_ignored);
+                 const std::function<bool(std::uint32_t, std::uint32_t)>& is_ignored,
+                 const std::function<bool(const Pair&)>& is_far);
 
 }  // namespace spherechain::baker

@@ -8,11 +8,13 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <set>
 
 #include "mesh/error.h"
 #include "play/player.h"
 #include "truth/capsules.h"
 #include "truth/depth.h"
+#include "truth/far_parts.h"
 #include "truth/truth_cache.h"
 
 namespace spherechain::baker {
@@ -35,9 +37,15 @@ struct Context {
   const ValidateSettings& settings;
   TruthSurface surface = surface_of(animated.asset(), animated.character());
   CachedIntersections intersections{surface, settings.cache};
-  std::vector<Pair> rest_pairs = intersections.find(pack(animated.character().source_positions)).pairs;
+  std::vector<float> rest = pack(animated.character().source_positions);
+  std::vector<Pair> rest_pairs = intersections.find(rest).pairs;
+  double close = kCloseSurface * animated.frame().height;
+  FarParts is_far{animated, surface, close};
+  std::set<Pair> close_spheres = close_owners(surface, rest, surface.sphere, close);  // at rest
   Curve curve{animated.asset(), settings.radius};
   std::vector<std::pair<double, CapsuleRagdoll>> ragdolls = make_ragdolls();
+  std::set<Pair> close_capsules =
+      close_owners(ragdolls.front().second.surface(), rest, ragdolls.front().second.surface().sphere, close);
 
   std::vector<std::pair<double, CapsuleRagdoll>> make_ragdolls() const {
     std::vector<std::pair<double, CapsuleRagdoll>> out;
@@ -78,16 +86,18 @@ std::vector<CapsulePoint> score_ragdolls(const Context& context, const Intersect
   const CapsuleRagdoll& any = context.ragdolls.front().second;
   // Whole meshes as poses have nothing a capsule could hang on.
   if (any.capsules().empty() || !deformation.positions.empty()) return {};
-  Closeness closeness(any.surface(), positions, kCloseSurface * context.animated.frame().height);
+  Closeness closeness(any.surface(), positions, context.close);
   const auto is_close = [&](const Pair& pair) { return closeness(pair); };
+  const auto is_apart = [&](const Pair& pair) { return context.close_capsules.count(pair) == 0; };
   const FrameTruth shared = any.by_capsules(truth),
-                   own = judge(found, context.rest_pairs, any.surface(),
-                               [&](std::uint32_t a, std::uint32_t b) { return any.is_ignored(a, b); });
+                   own = judge(
+                       found, context.rest_pairs, any.surface(),
+                       [&](std::uint32_t a, std::uint32_t b) { return any.is_ignored(a, b); }, context.is_far);
   std::vector<CapsulePoint> points;
   for (const auto& [quantile, ragdoll] : context.ragdolls) {
     const std::vector<Pair> pairs = ragdoll.pairs(deformation);
-    points.push_back(
-        {quantile, score_frame(shared, pairs, is_close, no_depth), score_frame(own, pairs, is_close, no_depth)});
+    points.push_back({quantile, score_frame(shared, pairs, is_close, is_apart, no_depth),
+                      score_frame(own, pairs, is_close, is_apart, no_depth)});
   }
   return points;
 }
@@ -131,27 +141,28 @@ Frame validate_frame(const Context& context, int index) {
   const Deformation deformation = animated.deformation(index);
   const std::vector<float> positions = pack(animated.positions(deformation));
   const Intersections found = context.intersections.find(positions);
-  Closeness closeness(surface, positions, kCloseSurface * animated.frame().height);
+  Closeness closeness(surface, positions, context.close);
   const auto is_close = [&](const Pair& pair) { return closeness(pair); };
+  const auto is_apart = [&](const Pair& pair) { return context.close_spheres.count(pair) == 0; };
   const auto depth_of = [&](const TrueContact& contact) { return penetration(contact, surface, positions); };
 
   Frame frame;
   const auto ignored = [&](std::uint32_t a, std::uint32_t b) { return is_ignored(animated.asset(), a, b); };
-  frame.truth = judge(found, context.rest_pairs, surface, ignored);
+  frame.truth = judge(found, context.rest_pairs, surface, ignored, context.is_far);
   Player chains(animated.asset(), settings.radius, true, false, settings.target),
       all(animated.asset(), settings.radius, false, true, settings.target);
   const std::vector<Pair> chains_pairs = touching_spheres(chains, positions),
                           all_pairs = touching_spheres(all, positions),
                           skin_pairs = all.spheres_of(all.detect_triangles(positions).pairs);
   frame.reported = settings.skin ? skin_pairs : settings.method == Method::kChains ? chains_pairs : all_pairs;
-  frame.score = score_frame(frame.truth, frame.reported, is_close, [&](const TrueContact& contact) {
+  frame.score = score_frame(frame.truth, frame.reported, is_close, is_apart, [&](const TrueContact& contact) {
     frame.misses.push_back({index, contact.spheres, contact.triangles.size(), depth_of(contact)});
     return frame.misses.back().overlap;
   });
-  frame.skin = score_frame(frame.truth, skin_pairs, is_close, depth_of);
-  frame.chains = score_frame(frame.truth, chains_pairs, is_close, depth_of);
-  frame.all_pairs = score_frame(frame.truth, all_pairs, is_close, depth_of);
-  frame.curve = context.curve.measure(all.spheres(), frame.truth, is_close);
+  frame.skin = score_frame(frame.truth, skin_pairs, is_close, is_apart, depth_of);
+  frame.chains = score_frame(frame.truth, chains_pairs, is_close, is_apart, depth_of);
+  frame.all_pairs = score_frame(frame.truth, all_pairs, is_close, is_apart, depth_of);
+  frame.curve = context.curve.measure(all.spheres(), frame.truth, is_close, is_apart);
   frame.capsules = score_ragdolls(context, found, frame.truth, positions, deformation);
   if (settings.contacts) {
     const auto found = [&](Scope scope) { return find_contacts(animated.asset(), positions, scope, settings.target); };
@@ -162,7 +173,7 @@ Frame validate_frame(const Context& context, int index) {
       const ContactsFromBones of_bones =
           find_contacts_from_bones(animated.asset(), animated.character(), deformation, settings.target);
       const FrameTruth truth =
-          judge(context.intersections.find(of_bones.positions), context.rest_pairs, surface, ignored);
+          judge(context.intersections.find(of_bones.positions), context.rest_pairs, surface, ignored, context.is_far);
       frame.contacts_from_bones = compare(of_bones.pairs, truth.pairs);
       frame.neighbour_contacts_from_bones = compare(of_bones.neighbours, truth.neighbours);
     }

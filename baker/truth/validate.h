@@ -15,7 +15,8 @@
 
 namespace spherechain::baker {
 
-// A reported pair counts as right where the regions are nearer than this; a fraction of the height.
+// A reported pair counts as right where the regions are nearer than this; body parts are far, and skins apart, where at
+// rest they are not. A fraction of the height.
 inline constexpr double kCloseSurface = 0.003;
 
 struct ValidateSettings {

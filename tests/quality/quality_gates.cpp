@@ -167,9 +167,11 @@ bool judge(const Gate& gate, Workshop& workshop) {
   try {
     const json found = workshop.validate(gate);
     failures = gate.failures(found);
-    fmt::print("{:<6} {:<32} recall {:.3f}, precision {:.3f}, {:.1f} pairs a frame\n",
-               failures.empty() ? "ok" : "FAILED", gate.name(), figure(found, "pair_recall"),
-               figure(found, "precision"), figure(found, "reported_per_frame"));
+    const auto share = [&](const char* name) {  // of nothing: null
+      return found.at(name).is_null() ? "-" : fmt::format("{:.3f}", figure(found, name));
+    };
+    fmt::print("{:<6} {:<32} recall {}, precision {}, {:.1f} pairs a frame\n", failures.empty() ? "ok" : "FAILED",
+               gate.name(), share("pair_recall"), share("precision"), figure(found, "reported_per_frame"));
   } catch (const TestDataMissing& missing) {
     fmt::print("skipped: {} ({})\n", gate.name(), missing.what());
     return true;

@@ -223,7 +223,9 @@ TEST_CASE("what is at rest too, of one sphere or of an ignored pair is counted a
   std::vector<Pair> rest{at_rest, same_at_rest};
   std::sort(rest.begin(), rest.end());
 
-  const FrameTruth truth = judge(found, rest, surface, [&](auto l, auto r) { return is_ignored(asset, l, r); });
+  const FrameTruth truth = judge(
+      found, rest, surface, [&](auto l, auto r) { return is_ignored(asset, l, r); },
+      [&](const Pair& pair) { return pair == two || pair == ignored || pair == at_rest; });
   CHECK(truth.raw_pairs == 6);
   CHECK(truth.rest == 2);
   CHECK(truth.same_sphere == 1);
@@ -232,23 +234,30 @@ TEST_CASE("what is at rest too, of one sphere or of an ignored pair is counted a
   REQUIRE(truth.contacts.size() == 1);
   CHECK(truth.contacts[0].spheres == Pair{std::min(a, c), std::max(a, c)});
   CHECK(truth.contacts[0].triangles == truth.pairs);
+  std::vector<Pair> far{two, ignored};  // also of spheres that the asset ignores
+  std::sort(far.begin(), far.end());
+  CHECK(truth.far == far);
 }
 
 TEST_CASE("a score counts triangle pairs, frames and reported spheres as the contract says") {
   FrameTruth truth;
   truth.pairs = {{1, 2}, {1, 3}, {4, 5}};
   truth.contacts = {{{0, 1}, {{1, 2}, {1, 3}}}, {{0, 2}, {{4, 5}}}};
+  truth.far = {{1, 3}, {8, 9}};  // the second is of one sphere
   const auto score = [&](const std::vector<Pair>& reported) {
     return score_frame(
         truth, reported,
         [](const Pair& pair) {
           return pair == Pair{5, 6};
         },
+        [](const Pair& pair) { return pair.a > 0; },
         [](const TrueContact& contact) { return static_cast<double>(contact.spheres.b); });
   };
   const Score some = score({{0, 1}, {5, 6}, {7, 8}});
-  CHECK(some.pair_recall() == doctest::Approx(2.0 / 3));
-  CHECK(some.precision() == doctest::Approx(2.0 / 3));  // {5, 6} is close
+  CHECK(some.pair_recall().value() == doctest::Approx(2.0 / 3));
+  CHECK(some.precision().value() == doctest::Approx(2.0 / 3));  // {5, 6} is close
+  CHECK(some.far_recall() == 0.5);
+  CHECK(some.apart_precision() == 0.5);  // {0, 1} is near at rest
   CHECK(some.frame_any_recall() == 1);
   CHECK(some.frame_all_recall() == 0);
   CHECK(some.missed_overlap == 2);
@@ -262,6 +271,9 @@ TEST_CASE("a score counts triangle pairs, frames and reported spheres as the con
   CHECK(both.precision() == 1);
   CHECK(both.missed_overlap == 2);
   truth = {};
-  CHECK(score({}).pair_recall() == 1);
+  CHECK(!score({}).pair_recall());
+  CHECK(!score({}).far_recall());
+  CHECK(!score({}).precision());
+  CHECK(!score({}).apart_precision());
   CHECK(score({}).true_frames == 0);
 }

@@ -4,7 +4,7 @@ import { sphereName } from './sphere_panel.js';
 
 // What `validate` found: how much is reported of what truly intersects, and the worst of what is not; a click goes there.
 
-const share = (value) => (value === undefined ? '–' : percent(value));
+const share = (value) => (value === undefined || value === null ? '–' : percent(value));
 
 function table(head, rows) {
   const cells = (row) => row.map((cell, i) => h(i === 0 ? 'th' : 'td', i === 0 ? { scope: 'row' } : {}, cell));

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "calibrate/random_poses.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace spherechain::baker {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kPadding = 10 * kDegree, kWithoutClips = 45 * kDegree;
+
+// The axis of a rotation times its angle, which is at most 180 degrees.
+Vec3 rotation_vector(const Eigen::Quaterniond& q) {
+  const Vec3 axis = q.w() < 0 ? Vec3(-q.vec()) : Vec3(q.vec());
+  const double sine = axis.norm();
+  return sine > 0 ? Vec3(2 * std::atan2(sine, std::abs(q.w())) / sine * axis) : Vec3(Vec3::Zero());
+}
+
+Eigen::Quaterniond rotation_of(const Vec3& vector) {
+  const double angle = vector.norm();
+  return angle > 0 ? Eigen::Quaterniond(Eigen::AngleAxisd(angle, vector / angle)) : Eigen::Quaterniond::Identity();
+}
+
+// A channel's values at all its keys.
+std::vector<Eigen::Vector4d> values_of(const Channel& channel) {
+  std::vector<Eigen::Vector4d> out;
+  for (const double time : channel.times) out.push_back(sample(channel, time));
+  return out;
+}
+
+std::vector<Node> nodes_of(const std::vector<Joint>& joints) {
+  std::vector<Node> out;
+  for (const Joint& joint : joints) {
+    Node node;
+    node.name = joint.name;
+    node.parent = joint.parent;
+    const Vec3 above = joint.parent < 0 ? Vec3(Vec3::Zero()) : joints[static_cast<std::size_t>(joint.parent)].position;
+    node.translation = joint.position - above;
+    node.local.translation() = node.translation;
+    out.push_back(node);
+  }
+  return out;
+}
+
+Vec3 random_in(Random& random, const Vec3& low, const Vec3& high) {
+  Vec3 out;
+  for (Eigen::Index k = 0; k < 3; ++k) out[k] = random.between(low[k], high[k]);
+  return out;
+}
+
+}  // namespace
+
+RandomPoses::RandomPoses(const Character& character, const std::vector<Joint>& joints) {
+  const SourceRig& rig = character.rig;
+  if (!rig.bones.empty()) {
+    nodes_ = rig.nodes;
+    bones_ = rig.bones;
+    to_rest_ = rig.to_rest;
+    for (const Morph& morph : rig.morphs) morphs_.emplace_back(morph.rest_weight, morph.rest_weight);
+  } else {
+    nodes_ = nodes_of(joints);
+    for (Index j = 0; j < joints.size(); ++j) {
+      bones_.push_back({j, Affine(Eigen::Translation3d(-joints[j].position))});
+    }
+  }
+  limits_.resize(nodes_.size());
+  if (rig.bones.empty() || rig.clips.empty()) {
+    for (const Bone& bone : bones_) {
+      const Node& node = nodes_[bone.node];
+      const Vec3 widest = Vec3::Constant(kWithoutClips);
+      limits_[bone.node] = {
+          node.rotation, {-widest, widest}, {node.translation, node.translation}, {node.scale, node.scale}, true};
+    }
+    return;
+  }
+  std::vector<std::vector<Eigen::Quaterniond>> turns(nodes_.size());
+  std::vector<std::vector<Vec3>> translations(nodes_.size()), scales(nodes_.size());
+  std::vector<std::vector<double>> weights(morphs_.size());
+  for (const Clip& clip : rig.clips) {
+    for (const Channel& channel : clip.channels) {
+      for (const Eigen::Vector4d& v : values_of(channel)) {
+        if (channel.path == ChannelPath::kMorphWeight) weights[channel.target].push_back(v[0]);
+        if (channel.path == ChannelPath::kRotation) turns[channel.target].emplace_back(v);
+        if (channel.path == ChannelPath::kTranslation) translations[channel.target].push_back(v.head<3>());
+        if (channel.path == ChannelPath::kScale) scales[channel.target].push_back(v.head<3>());
+      }
+    }
+  }
+  const auto range_of = [](const std::vector<Vec3>& values, const Vec3& rest) {
+    if (values.empty()) return Range{rest, rest};
+    Range range{values[0], values[0]};
+    for (const Vec3& value : values) range = {range.low.cwiseMin(value), range.high.cwiseMax(value)};
+    return range;
+  };
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    Limits& limits = limits_[n];
+    limits.moves = !turns[n].empty() || !translations[n].empty() || !scales[n].empty();
+    if (!limits.moves) continue;
+    Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+    for (const Eigen::Quaterniond& turn : turns[n])
+      sum += (turn.coeffs().dot(turns[n][0].coeffs()) < 0 ? -1 : 1) * turn.coeffs();
+    limits.middle = sum.norm() > 0 ? Eigen::Quaterniond(Eigen::Vector4d(sum.normalized())) : nodes_[n].rotation;
+    std::vector<Vec3> vectors;
+    for (const Eigen::Quaterniond& turn : turns[n])
+      vectors.push_back(rotation_vector(limits.middle.conjugate() * turn));
+    limits.turn = range_of(vectors, Vec3::Zero());
+    limits.turn.low.array() -= kPadding;
+    limits.turn.high.array() += kPadding;
+    limits.translation = range_of(translations[n], nodes_[n].translation);
+    limits.scale = range_of(scales[n], nodes_[n].scale);
+  }
+  for (std::size_t m = 0; m < morphs_.size(); ++m) {
+    if (weights[m].empty()) continue;
+    const auto [low, high] = std::minmax_element(weights[m].begin(), weights[m].end());
+    morphs_[m] = {*low, *high};
+  }
+}
+
+RandomPoses::Pose RandomPoses::next(Random& random) const {
+  std::vector<Node> nodes = nodes_;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    const Limits& limits = limits_[n];
+    if (!limits.moves) continue;
+    const Eigen::Quaterniond turn = limits.middle * rotation_of(random_in(random, limits.turn.low, limits.turn.high));
+    const Vec3 translation = random_in(random, limits.translation.low, limits.translation.high);
+    const Vec3 scale = random_in(random, limits.scale.low, limits.scale.high);
+    nodes[n].local.linear() = turn.toRotationMatrix() * scale.asDiagonal();
+    nodes[n].local.translation() = translation;
+  }
+  Pose out;
+  const std::vector<Affine> world = world_of(nodes);
+  for (const Bone& bone : bones_) out.bones.push_back(to_rest_ * world[bone.node] * bone.inverse_bind);
+  for (const auto& [low, high] : morphs_) out.morphs.push_back(random.between(low, high));
+  return out;
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "calibrate/random_poses.h"
+#include "spherechain/types.h"
+
+namespace spherechain::baker {
+
+// Two spheres in one pose.
+struct PairSample {
+  float distance;
+  float radius_a, radius_b;  // the detect radii
+  bool touch;                // whether their skins intersect
+};
+
+struct SampledPair {
+  Pair spheres;
+  std::vector<PairSample> samples;  // of the poses in which the distance is below twice the sum of the radii
+};
+
+// An asset in `count` random poses: what the runtime says about these pairs, bones to spheres and to exact contacts.
+// `pairs` are sorted. The same numbers on every machine.
+std::vector<SampledPair> sample_pairs(const std::vector<std::uint8_t>& asset, const std::vector<Pair>& pairs,
+                                      const RandomPoses& poses, int count);
+
+}  // namespace spherechain::baker
