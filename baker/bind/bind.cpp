@@ -149,7 +149,7 @@ BoundSphere bind_sphere(const Mesh& mesh, const std::vector<Index>& surrounding,
   return bound;
 }
 
-// Pairs that touch at rest, or would soon, are reported where they have come nearer than that.
+// The paper's: pairs that touch at rest, or would soon, are reported where they have come nearer than that.
 std::vector<BoundPair> find_rest_pairs(const std::vector<BoundSphere>& spheres, const SpherePairs& ignored,
                                        double BoundSphere::*detect) {
   std::vector<BoundPair> pairs;
@@ -196,6 +196,7 @@ Attempt<Binding> bind_spheres(const Character& character, const Regions& regions
   const SpherePairs ignored =
       find_ignored(character, regions, spheres, out.sphere_of_triangle, settings.neighbour_gap * regions.frame.height);
   out.ignored.assign(ignored.begin(), ignored.end());
+  if (settings.rule != RefitRule::kPaper) return out;
   out.rest_fit = find_rest_pairs(out.spheres, ignored, nullptr);
   out.rest_detect = find_rest_pairs(out.spheres, ignored, &BoundSphere::detect_radius);
   return out;

@@ -54,7 +54,7 @@ struct BindSettings {
   double neighbour_gap = 0;      // of the height: spheres this close along the mesh are ignored, too
 };
 
-// There is none where a sphere finds no pivots.
+// There is none where a sphere finds no pivots. Under the rule of moments rest pairs are left to the calibration.
 Attempt<Binding> bind_spheres(const Character& character, const Regions& regions, const Spheres& spheres,
                               const BindSettings& settings);
 

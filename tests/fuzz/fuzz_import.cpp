@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "random.h"
+#include "temporary_folder.h"
 
 namespace fs = std::filesystem;
 
@@ -183,27 +184,13 @@ std::string fault(const Ended& ended, const std::string& error, bool bakes, bool
   return {};
 }
 
-struct Folder {
-  fs::path path;
-  Folder() {
-    std::string name = (fs::temp_directory_path() / "spherechain-fuzz-XXXXXX").string();
-    path = ::mkdtemp(name.data());
-  }
-  ~Folder() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-};
-
 class Campaign {
  public:
   Campaign(std::string tool, fs::path keep) : tool_(std::move(tool)), keep_(std::move(keep)) {}
 
   void mutate(const Source& source, Random& random, const std::string& label) {
     const std::vector<fs::path>& files = source.files;
-    const Folder folder;
+    const TemporaryFolder folder;
     const std::size_t damaged = random.up_to(files.size() - 1);
     for (std::size_t f = 0; f < files.size(); ++f) {
       std::string bytes = read_file(files[f]);
@@ -216,7 +203,7 @@ class Campaign {
     const bool bakes = source.bakes && random.one_in(4);
     std::vector<std::string> command{tool_, "inspect", "--roles", input.string()};
     if (bakes) command = {tool_, "bake", input.string(), "-o", output.string()};
-    const Folder words;
+    const TemporaryFolder words;
     const Ended ended = run(command, words.path / "error");
     const std::string error = read_file(words.path / "error");
     const auto there = static_cast<std::size_t>(std::distance(fs::directory_iterator(folder.path), {}));
