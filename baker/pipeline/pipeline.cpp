@@ -93,7 +93,8 @@ Attempt<Spheres> fit_regions(const Character& character, const Regions& regions,
 
 }  // namespace
 
-Attempt<Segmentation> segment_character(Character& character, const Roles& roles, const SegmentSettings& settings) {
+Attempt<Segmentation> segment_character(Character& character, const Roles& roles, const SegmentSettings& settings,
+                                        Wraps wraps) {
   Segmentation out;
   const bool rigged = !roles.limbs.empty() && !character.rig.weights.empty();
   const bool whole = is_whole(character);
@@ -148,6 +149,9 @@ Attempt<Segmentation> segment_character(Character& character, const Roles& roles
       Strategy{"shape of a wrap",
                [&]() -> Attempt<Proposal> {
                  if (rigged) return does_not_apply("the rig decides");
+                 if (wraps == Wraps::kUnmoved && !character.rig.weights.empty()) {
+                   return does_not_apply("bones move the skin");
+                 }
                  if (failure && covers_skin(character)) return does_not_apply("a wrap has no more limbs than the skin");
                  Attempt<SegmentedWrap> found =
                      segment_wraps(character, settings, failure, out.closing, out.choice.passed_over);
@@ -176,7 +180,7 @@ Attempt<Segmentation> segment_character(Character& character, const Roles& roles
                         out.closing};
     }
   }
-  if (!reserve) return *failure;
+  if (!reserve) return failure.value_or(Reason{"its rig has no limbs, and its skin is not one closed surface"});
   character.body = std::move(reserve->body);
   character.body_source_triangle = std::move(reserve->body_source_triangle);
   character.body_of_source = std::move(reserve->body_of_source);
@@ -187,7 +191,7 @@ Attempt<Segmentation> segment_character(Character& character, const Roles& roles
 
 void close_body(Character& character, const SegmentSettings& settings) {
   if (is_whole(character) && covers_skin(character)) return;
-  const Attempt<Segmentation> found = segment_character(character, {}, settings);
+  const Attempt<Segmentation> found = segment_character(character, {}, settings, Wraps::kAll);
   if (!found) throw Error(ExitCode::kSegmentation, character.file + ": " + found.reason().what);
 }
 
@@ -206,10 +210,12 @@ FittedCharacter fit_character(Character character, const Roles& roles, const Bak
     fitted.binding = std::move(*binding);
     return std::nullopt;
   };
+  const bool one_fit = settings.bind.rule == RefitRule::kPaper || settings.segment.body != BodyKind::kUnknown;
+  const Wraps wraps = one_fit ? Wraps::kAll : Wraps::kUnmoved;
   FittedCharacter first;
   first.character = character;
   const auto fit_first = [&]() -> std::optional<Reason> {
-    Attempt<Segmentation> found = segment_character(first.character, roles, settings.segment);
+    Attempt<Segmentation> found = segment_character(first.character, roles, settings.segment, wraps);
     if (!found) return found.reason();
     first.segmentation = std::move(*found);
     return fit(first);
@@ -217,8 +223,7 @@ FittedCharacter fit_character(Character character, const Roles& roles, const Bak
   const std::optional<Reason> failure = fit_first();
   // Without bones the automatic rig is what moves a body, and it needs a biped's regions.
   const bool needs_limbs = character.rig.bones.empty() && is_biped(first.segmentation.regions);
-  const bool only_first = settings.bind.rule == RefitRule::kPaper || settings.segment.body != BodyKind::kUnknown ||
-                          (failure ? failure->cause == Reason::Cause::kSettings : needs_limbs);
+  const bool only_first = one_fit || (failure ? failure->cause == Reason::Cause::kSettings : needs_limbs);
   if (failure && only_first) return fail(*failure);
   if (only_first || (!failure && !settings.fit.spheres && first.quality.grade() == FitGrade::kGood)) return first;
 

@@ -89,9 +89,13 @@ struct Segmentation {
   Choice choice;
 };
 
+// Whose skin may be wrapped. It takes long, and where bones move the skin the fit by bones stands in.
+enum class Wraps : std::uint8_t { kUnmoved, kAll };
+
 // Tries the strategies of segmentation in order: by shape, by rig, and both on a closed surface made of the skin. The
 // body becomes what was segmented.
-Attempt<Segmentation> segment_character(Character& character, const Roles& roles, const SegmentSettings& settings);
+Attempt<Segmentation> segment_character(Character& character, const Roles& roles, const SegmentSettings& settings,
+                                        Wraps wraps);
 
 // A character with its spheres, and what carries them.
 struct FittedCharacter {

@@ -29,7 +29,7 @@ std::vector<VertexWeights> rigid_ends(const std::vector<Joint>& joints) {
 
 void draw(const Options& options) {
   Character character = import_character(options.character);
-  const Regions regions = segment_character(character, {}, {})->regions;
+  const Regions regions = segment_character(character, {}, {}, Wraps::kAll)->regions;
   const std::vector<Joint> joints = place_joints(character, regions);
   std::vector<Vec3> ends;
   for (const Joint& joint : joints) ends.insert(ends.end(), {joint.position, joint.tail});

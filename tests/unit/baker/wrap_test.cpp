@@ -40,7 +40,7 @@ Closed close(const SourceMesh& source, const std::string& name = "broken.obj") {
   Closed out;
   out.character = build_character(source, name);
   out.character.file = name;
-  Attempt<Segmentation> found = segment_character(out.character, {}, {});
+  Attempt<Segmentation> found = segment_character(out.character, {}, {}, Wraps::kAll);
   if (!found) throw Error(ExitCode::kSegmentation, name + ": " + found.reason().what);
   out.regions = std::move(found->regions);
   out.report = found->closing;
