@@ -66,7 +66,9 @@ void PlayFile::add(const ordered_json& frame) {
 }
 
 void PlayFile::finish(const ordered_json& tail) {
-  file_.write("," + json_text(tail, 1).substr(1) + "\n");
+  std::string text = json_text(tail, 1) + "\n";
+  text[0] = ',';  // in place of its brace
+  file_.write(text);
   file_.finish();
 }
 
