@@ -46,6 +46,7 @@ ExitCode run_bake(const BakeOptions& options) {
   fmt::print("wrote {} ({} bytes)\n", options.output, result.asset.size());
   if (!options.report.empty()) fmt::print("wrote {}\n", options.report);
   if (!options.preview.empty()) fmt::print("wrote {} ({} bytes)\n", options.preview, preview.size());
+  fmt::print("{}", fit_line(result));
   const std::vector<std::string> missed = missed_targets(result);
   for (const std::string& target : missed)
     fmt::print(stderr, "spherechain: target missed: {}: {}\n", options.input, target);

@@ -262,16 +262,16 @@ ordered_json bind_section(const Bake& bake) {
           {"spheres", std::move(spheres)}};
 }
 
-// What a person wants to know first.
-std::string grade_lines(const Bake& bake) {
-  const FitQuality& quality = bake.quality;
-  std::string out = fmt::format("fit: {}; {:.0f} % of the skin is within {:.0f} % of the height of its sphere",
-                                fit_grade_name(quality.grade()), 100 * (1 - quality.far_area), 100 * kWellFitted);
-  out += fmt::format(", spheres stand out {:.1f} % on average\n", 100 * quality.protrusion);
-  std::string far;
-  for (const std::uint8_t region : quality.far_regions) far += (far.empty() ? "" : ", ") + bake.regions.name(region);
-  if (!far.empty() && quality.grade() != FitGrade::kGood) out += "badly fitted: " + far + "\n";
+std::string joined(const std::vector<std::string>& names) {
+  std::string out;
+  for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
   return out;
+}
+
+std::string figures_line(const FitQuality& quality) {
+  return fmt::format(
+      "{:.0f} % of the skin is within {:.0f} % of the height of its sphere; spheres stand out {:.1f} % on average\n",
+      100 * (1 - quality.far_area), 100 * kWellFitted, 100 * quality.protrusion);
 }
 
 }  // namespace
@@ -333,7 +333,26 @@ std::string bake_report_text(const Bake& bake) {
     total += time.seconds;
   }
   out += fmt::format("{:<10} {:>8.1f}   peak memory {:.0f} MB\n\n", "total", 1e3 * total, peak_memory_mb());
-  return out + grade_lines(bake);
+  return out + figures_line(bake.quality);
+}
+
+std::string generic_fit_text(const std::vector<std::string>& generic, std::size_t parts) {
+  if (generic.empty()) return {};
+  if (generic.size() == parts) return "; all parts by the generic fit";
+  return fmt::format("; {} by the generic fit: {}",
+                     generic.size() == 1 ? "1 part" : fmt::format("{} parts", generic.size()), joined(generic));
+}
+
+std::string fit_line(const Bake& bake) {
+  const FitQuality& quality = bake.quality;
+  std::vector<std::string> far, generic;
+  for (const std::uint8_t region : quality.far_regions) far.push_back(bake.regions.name(region));
+  for (std::size_t r = 0; r < bake.regions.count(); ++r) {
+    if (bake.regions.follow_bones()) generic.push_back(bake.regions.name(r));
+  }
+  std::string line = fmt::format("fit: {}", fit_grade_name(quality.grade()));
+  if (!far.empty() && quality.grade() != FitGrade::kGood) line += "; badly fitted: " + joined(far);
+  return line + generic_fit_text(generic, bake.regions.count()) + "\n";
 }
 
 }  // namespace spherechain::baker

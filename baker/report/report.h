@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "pipeline/pipeline.h"
 #include "play/asset_file.h"
@@ -13,8 +14,14 @@ namespace spherechain::baker {
 // targets.
 std::string bake_report_json(const Bake& bake);
 
-// The same in a screenful of text.
+// The same in a screenful of text, without the fit's grade.
 std::string bake_report_text(const Bake& bake);
+
+// The last line of a bake: the grade of the fit, the parts that it fits badly, and those by the generic fit.
+std::string fit_line(const Bake& bake);
+
+// The end of that line. `generic` are names of some of a character's `parts`.
+std::string generic_fit_text(const std::vector<std::string>& generic, std::size_t parts);
 
 // An asset's contents, as the command line contract has it; `text` for people.
 std::string inspect_json(const OpenAsset& asset);

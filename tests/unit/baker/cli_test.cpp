@@ -8,6 +8,7 @@
 
 #include "baked_human.h"
 #include "human.h"
+#include "report/report.h"
 #include "simd/simd.h"
 #include "temporary_folder.h"
 #include "tool.h"
@@ -22,6 +23,7 @@ using tool::BakedFiles;
 using tool::check_error;
 using tool::contents;
 using tool::files_in;
+using tool::last_line;
 using tool::pose;
 using tool::Run;
 using tool::run;
@@ -33,6 +35,7 @@ TEST_CASE("bake writes the same bytes as the library, a report and a table, and 
   REQUIRE_MESSAGE(files.bake.code == 0, files.bake.error);
   CHECK(files.bake.error.empty());
   CHECK(files.bake.out.find("stage") != std::string::npos);
+  CHECK(last_line(files.bake.out) == "fit: good");
   const std::string bytes = contents(files.asset);
   CHECK(bytes == std::string(baked_human().asset.begin(), baked_human().asset.end()));
   CHECK(files_in(files.folder.path) == 2);
@@ -249,7 +252,18 @@ TEST_CASE("a mesh without the body that it is said to have ends with 4; as it is
   const std::string bake = fmt::format("bake {} -o {}", mesh, (folder.path / "t.sphc").string());
   check_error(run(bake + " --body biped"), 4, {"t.obj", "missing"});
   CHECK(!fs::exists(folder.path / "t.sphc"));
-  CHECK(run(bake).code == 0);
+  const Run baked = run(bake);
+  CHECK(baked.code == 0);
+  CHECK(last_line(baked.out).rfind("fit: ", 0) == 0);
+  CHECK(last_line(baked.out).find("; all parts by the generic fit") != std::string::npos);
+}
+
+TEST_CASE("the grade names the parts by the generic fit, or says that all are, or nothing") {
+  using spherechain::baker::generic_fit_text;
+  CHECK(generic_fit_text({}, 5) == "");
+  CHECK(generic_fit_text({"horn"}, 5) == "; 1 part by the generic fit: horn");
+  CHECK(generic_fit_text({"skirt", "horn"}, 5) == "; 2 parts by the generic fit: skirt, horn");
+  CHECK(generic_fit_text({"a", "b"}, 2) == "; all parts by the generic fit");
 }
 
 TEST_CASE("a bake comes to its end where a hand or foot is folded to nothing in between" *

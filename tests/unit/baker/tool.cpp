@@ -37,6 +37,11 @@ void check_error(const Run& run, int code, const std::vector<std::string>& parts
   for (const std::string& part : parts) CHECK_MESSAGE(run.error.find(part) != std::string::npos, run.error);
 }
 
+std::string last_line(const std::string& text) {
+  const std::size_t end = text.find_last_not_of('\n') + 1, start = text.rfind('\n', end - 1) + 1;
+  return text.substr(start, end - start);
+}
+
 std::size_t files_in(const fs::path& folder) {
   return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }

@@ -22,6 +22,9 @@ Run run(const std::string& arguments, const std::string& environment = {});
 // One line, "spherechain: error: ...", that mentions what it should.
 void check_error(const Run& run, int code, const std::vector<std::string>& parts);
 
+// Without its end.
+std::string last_line(const std::string& text);
+
 std::string contents(const std::filesystem::path& path);
 std::size_t files_in(const std::filesystem::path& folder);
 
