@@ -76,12 +76,25 @@ SpherePairs find_ignored(const Character& character, const Regions& regions, con
   return ignored;
 }
 
-// The smallest radius around the centre that holds this share of the region's area; each triangle counts at its
-// centroid.
-double area_quantile(const Mesh& mesh, const std::vector<Index>& triangles, const Vec3& center, double share) {
+// Where a triangle's area counts: the march and the disk take its centroid. The fit by halves also has spheres of few
+// large triangles, and takes corners and the middles of edges.
+enum class AreaAt { kCentroid, kCorners };
+
+// The smallest radius around the centre that holds this share of the region's area.
+double area_quantile(const Mesh& mesh, const std::vector<Index>& triangles, const Vec3& center, double share,
+                     AreaAt at) {
   std::vector<std::pair<double, double>> rings;
   for (const Index t : triangles) {
-    rings.emplace_back((triangle_centroid(mesh, t) - center).norm(), triangle_area(mesh, t));
+    const auto add = [&](const Vec3& p) { rings.emplace_back((p - center).norm(), triangle_area(mesh, t)); };
+    if (at == AreaAt::kCentroid) {
+      add(triangle_centroid(mesh, t));
+      continue;
+    }
+    const Triangle& v = mesh.triangles[t];
+    for (std::size_t k = 0; k < 3; ++k) {
+      add(mesh.positions[v[k]]);
+      add(0.5 * (mesh.positions[v[k]] + mesh.positions[v[(k + 1) % 3]]));
+    }
   }
   return weighted_quantile(std::move(rings), share);
 }
@@ -119,12 +132,13 @@ BoundSphere carried(const Mesh& mesh, const FittedSphere& sphere, RefitRule rule
 }
 
 // Never below the fit radius: a sphere's region may lie all inside it.
-double detect_ratio(const Mesh& mesh, const std::vector<Index>& surrounding, const Ball& ball, double quantile) {
-  return std::max(1.0, area_quantile(mesh, surrounding, ball.center, quantile) / ball.radius);
+double detect_ratio(const Mesh& mesh, const std::vector<Index>& surrounding, const Ball& ball, double quantile,
+                    AreaAt at) {
+  return std::max(1.0, area_quantile(mesh, surrounding, ball.center, quantile, at) / ball.radius);
 }
 
 BoundSphere bind_sphere(const Mesh& mesh, const std::vector<Index>& surrounding, const FittedSphere& sphere,
-                        bool on_torso, const BodyFrame& frame, const BindSettings& settings) {
+                        bool on_torso, AreaAt at, const BodyFrame& frame, const BindSettings& settings) {
   // Ray 0 of the rings points there too: pivots turn with the body.
   const Vec3 reference = on_torso ? frame.forward : Vec3(frame.up + 0.7 * frame.left + 0.3 * frame.forward);
   const auto choose = [&](const std::vector<Index>& among) {
@@ -145,7 +159,7 @@ BoundSphere bind_sphere(const Mesh& mesh, const std::vector<Index>& surrounding,
         mesh, surrounding.size() < kFew ? triangles_around(mesh, sphere, kEverywhere) : surrounding, sphere);
   }
   BoundSphere bound = carried(mesh, sphere, settings.rule, std::move(pivots));
-  bound.detect_radius = detect_ratio(mesh, surrounding, sphere.ball, settings.detect_quantile) * bound.rest.radius;
+  bound.detect_radius = detect_ratio(mesh, surrounding, sphere.ball, settings.detect_quantile, at) * bound.rest.radius;
   return bound;
 }
 
@@ -185,7 +199,8 @@ Attempt<Binding> bind_spheres(const Character& character, const Regions& regions
   for (std::size_t i = 0; i < spheres.spheres.size(); ++i) {
     const FittedSphere& sphere = spheres.spheres[i];
     const bool on_torso = !by_halves && sphere.region == regions.torso_region();
-    BoundSphere bound = bind_sphere(skin, surrounding[i], sphere, on_torso, regions.frame, settings);
+    const AreaAt at = by_halves ? AreaAt::kCorners : AreaAt::kCentroid;
+    BoundSphere bound = bind_sphere(skin, surrounding[i], sphere, on_torso, at, regions.frame, settings);
     if (bound.pivots.empty() || !(bound.spread > 0)) {
       return Reason{"the skin is too small for sphere " + std::to_string(i) + ", of the " +
                     regions.name(sphere.region) + ": its " + std::to_string(surrounding[i].size()) +

@@ -28,8 +28,8 @@ struct BoundSphere {
   double weight_sum;  // sum of |weight|: 1 means the centre lies inside the pivots' hull
 };
 
-// Two spheres that touch at rest, or would touch soon. They are reported only when they are closer than
-// rest_scale * (radius of a + radius of b).
+// Two spheres that are reported only when they are closer than rest_scale * (radius of a + radius of b). Most of them
+// touch at rest, or would touch soon.
 struct BoundPair {
   std::uint32_t a, b;  // a < b
   double rest_scale;   // below 1

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "mesh/even_directions.h"
 #include "mesh/surface_query.h"
 
 namespace spherechain::baker {
@@ -13,21 +13,10 @@ namespace {
 constexpr double kFairArea = 0.15;
 constexpr double kGoodProtrusion = 0.025, kFairProtrusion = 0.04;
 
-// Even directions (a Fibonacci lattice).
-std::vector<Vec3> directions(int count) {
-  const double turn = std::numbers::pi * (3 - std::sqrt(5.0));
-  std::vector<Vec3> out;
-  for (int i = 0; i < count; ++i) {
-    const double z = 1 - (2 * i + 1.0) / count, r = std::sqrt(1 - z * z);
-    out.emplace_back(r * std::cos(i * turn), r * std::sin(i * turn), z);
-  }
-  return out;
-}
-
 double protrusion_of(const Mesh& skin, const std::vector<BoundSphere>& spheres) {
   constexpr int kPoints = 100;  // of each sphere
   const SurfaceQuery surface(skin);
-  const std::vector<Vec3> around = directions(kPoints);
+  const std::vector<Vec3> around = even_directions(kPoints);
   double sum = 0, area = 0;
   for (const BoundSphere& sphere : spheres) {
     const double radius = sphere.rest.radius;

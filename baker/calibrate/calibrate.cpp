@@ -11,10 +11,12 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr double kClose = 0.003;   // of the height: skins that are this near at rest always count
-constexpr double kGapShare = 0.6;  // of the gap must close
-constexpr double kNear = 0.9;      // spheres nearly touch where this part of their distance is within their radii
-constexpr std::size_t kTriangles = 30'000'000;  // of all poses together, at most
+constexpr double kClose = 0.003;      // of the height: skins that are this near at rest touch in most poses,
+constexpr double kCloseReach = 1.03;  // and are reported up to this part of the spheres' distance at rest
+constexpr double kGapShare = 0.6;     // of another gap must close
+constexpr double kNear = 0.9;         // spheres nearly touch where this part of their distance is within their radii
+constexpr double kListed = 0.02;      // of the poses: what a pair's own distance saves in false alarms, at least
+constexpr std::size_t kTriangles = 60'000'000;  // of all poses together, at most
 
 std::vector<Pair> tested_pairs(const Binding& binding) {
   std::vector<Pair> out;
@@ -26,13 +28,15 @@ std::vector<Pair> tested_pairs(const Binding& binding) {
   return out;
 }
 
+int pose_count(const Character& character) {
+  const std::size_t fitting = kTriangles / character.skin.triangles.size() + 1;
+  return static_cast<int>(std::min<std::size_t>(kCalibrationPoses, fitting));
+}
+
 std::vector<SampledPair> sampled_pairs(const Character& character, const std::vector<Joint>& joints,
                                        const std::vector<std::uint8_t>& asset, const std::vector<Pair>& pairs) {
   const RandomPoses poses(character, joints);
-  if (poses.any() && !pairs.empty()) {
-    const std::size_t fitting = kTriangles / character.skin.triangles.size() + 1;
-    return sample_pairs(asset, pairs, poses, static_cast<int>(std::min<std::size_t>(kCalibrationPoses, fitting)));
-  }
+  if (poses.any() && !pairs.empty()) return sample_pairs(asset, pairs, poses, pose_count(character));
   std::vector<SampledPair> out;
   for (const Pair& pair : pairs) out.push_back({pair, {}});
   return out;
@@ -42,9 +46,11 @@ double rest_distance(const Binding& binding, const Pair& pair) {
   return (binding.spheres[pair.a].rest.center - binding.spheres[pair.b].rest.center).norm();
 }
 
-double radius_sum(const Binding& binding, const Pair& pair, double BoundSphere::*detect) {
-  const BoundSphere &a = binding.spheres[pair.a], &b = binding.spheres[pair.b];
-  return detect ? a.*detect + b.*detect : a.rest.radius + b.rest.radius;
+// The fit or the detect radii of all spheres at rest.
+std::vector<double> radii_of(const Binding& binding, bool detect) {
+  std::vector<double> out;
+  for (const BoundSphere& sphere : binding.spheres) out.push_back(detect ? sphere.detect_radius : sphere.rest.radius);
+  return out;
 }
 
 }  // namespace
@@ -53,40 +59,46 @@ void calibrate(const Character& character, const Regions& regions, const std::ve
                const std::vector<std::uint8_t>& asset, Binding& binding) {
   const std::vector<Pair> pairs = tested_pairs(binding);
   const std::vector<SampledPair> sampled = sampled_pairs(character, joints, asset, pairs);
+  const std::vector<double> sampled_radii = radii_of(binding, true);
+  const auto sum_of = [&](const Pair& pair, const std::vector<double>& radii) { return radii[pair.a] + radii[pair.b]; };
+
+  std::vector<bool> is_rest_pair;
+  for (const Pair& pair : pairs) {
+    is_rest_pair.push_back(kNear * rest_distance(binding, pair) < sum_of(pair, sampled_radii));
+  }
+  std::vector<double> reaches = best_reaches(sampled, is_rest_pair, binding.spheres.size());
   const SkinGaps skin_gaps(character.skin, binding);
-  std::vector<double> gaps(pairs.size(), -1);  // each found once
-  const auto is_rest_pair = [&](std::size_t i, double BoundSphere::*detect) {
-    if (kNear * rest_distance(binding, pairs[i]) >= radius_sum(binding, pairs[i], detect)) return false;
-    if (gaps[i] < 0) gaps[i] = skin_gaps.between(pairs[i].a, pairs[i].b);
-    return gaps[i] >= kClose * regions.frame.height;
-  };
-  std::vector<bool> before;
-  std::vector<double> sampled_radii;
-  for (std::size_t i = 0; i < pairs.size(); ++i) before.push_back(is_rest_pair(i, &BoundSphere::detect_radius));
-  for (const BoundSphere& sphere : binding.spheres) sampled_radii.push_back(sphere.detect_radius);
-  if (regions.follow_bones()) {
-    const std::vector<double> factors = grow_radii(sampled, before, binding.spheres.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (!is_rest_pair[i]) continue;
+    const double gap = skin_gaps.between(pairs[i].a, pairs[i].b), distance = rest_distance(binding, pairs[i]);
+    const double at_rest = gap < kClose * regions.frame.height ? kCloseReach * distance : distance - kGapShare * gap;
+    reaches[i] = std::max(reaches[i], at_rest / sum_of(pairs[i], sampled_radii));
+  }
+  const bool any = std::any_of(sampled.begin(), sampled.end(), [](const auto& pair) { return !pair.samples.empty(); });
+  if (any && regions.follow_bones()) {
+    std::vector<double> least = radii_of(binding, false);
+    for (std::size_t s = 0; s < least.size(); ++s) least[s] /= sampled_radii[s];
+    const std::vector<double> factors = radius_factors(sampled, reaches, sampled_radii, least);
     for (std::size_t s = 0; s < factors.size(); ++s) binding.spheres[s].detect_radius *= factors[s];
   }
 
-  const auto rest_pairs = [&](double BoundSphere::*detect) {
-    const auto scale_of = [&](std::uint32_t s) {
-      const BoundSphere& sphere = binding.spheres[s];
-      return (detect ? sphere.*detect : sphere.rest.radius) / sampled_radii[s];
-    };
+  const auto listed = static_cast<std::size_t>(kListed * pose_count(character));
+  const auto rest_pairs = [&](const std::vector<double>& radii) {
+    const auto factor = [&](std::uint32_t s) { return radii[s] / sampled_radii[s]; };
     std::vector<BoundPair> out;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
-      if (!is_rest_pair(i, detect)) continue;
       const auto [a, b] = pairs[i];
-      const double at_rest =
-          (rest_distance(binding, pairs[i]) - kGapShare * gaps[i]) / radius_sum(binding, pairs[i], detect);
-      const double scale = std::max({0.0, at_rest, best_reach(sampled[i], scale_of(a), scale_of(b))});
-      if (scale < 1) out.push_back({a, b, scale});
+      const double scale = reaches[i] * sum_of(pairs[i], sampled_radii) / sum_of(pairs[i], radii);
+      if (scale >= 1) continue;
+      const double part = rest_distance(binding, pairs[i]) / sum_of(pairs[i], radii);
+      const bool at_rest = part < 1 && part >= scale;  // else it would be reported there
+      const std::size_t saved = false_alarms_beyond(sampled[i], reaches[i], factor(a), factor(b));
+      if (at_rest || saved > listed) out.push_back({a, b, scale});
     }
     return out;
   };
-  binding.rest_fit = rest_pairs(nullptr);
-  binding.rest_detect = rest_pairs(&BoundSphere::detect_radius);
+  binding.rest_fit = rest_pairs(radii_of(binding, false));
+  binding.rest_detect = rest_pairs(radii_of(binding, true));
 }
 
 }  // namespace spherechain::baker

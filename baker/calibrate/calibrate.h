@@ -11,16 +11,18 @@
 
 namespace spherechain::baker {
 
-// Random poses that a calibration takes. A mesh of more than 50,000 triangles takes fewer.
-inline constexpr int kCalibrationPoses = 600;
+// Random poses that a calibration takes. A mesh of more than 30,000 triangles takes fewer.
+inline constexpr int kCalibrationPoses = 1800;
 
 // Fits the detect radii and the rest pairs of `binding` to what truly touches in random poses:
-// 1. The detect radius of a sphere that follows the bones grows where it misses contacts. Spheres of limbs and torso
-//    miss next to none.
-// 2. Two spheres that touch at rest, or nearly, are a rest pair. It is reported below the larger of two distances:
-//    that at rest less 0.6 of the gap between the skins, and the greatest at which a report is worth its false alarms.
-//    Where the skins are within 0.3 % of the height at rest, the pair is tested like any other.
-// A character that has neither bones nor joints takes no poses: its radii stay, and the first distance alone counts.
+// 1. Each pair gets a distance below which it is reported: where the contacts that it finds are worth their false
+//    alarms (reach.h). Spheres that nearly touch at rest reach at least as far as their distance there less 0.6 of the
+//    gap between the skins, or 1.03 of that distance where the gap is below 0.3 % of the height.
+// 2. Detect radii of spheres that follow the bones become what these distances need. Those of limbs and torso stay:
+//    they miss next to nothing.
+// 3. A pair becomes a rest pair where its own distance is below the sum of the radii, and saves false alarms in more
+//    than 2 % of the poses, or at rest.
+// A character that has neither bones nor joints takes no poses: its radii stay, and the distance at rest alone counts.
 // `asset` is one of this binding, whatever its rest pairs. The same input gives the same result.
 void calibrate(const Character& character, const Regions& regions, const std::vector<Joint>& joints,
                const std::vector<std::uint8_t>& asset, Binding& binding);

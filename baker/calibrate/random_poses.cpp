@@ -9,7 +9,7 @@ namespace spherechain::baker {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kPadding = 10 * kDegree, kWithoutClips = 45 * kDegree;
+constexpr double kPadding = 10 * kDegree, kWithoutClips = 45 * kDegree, kJitter = 5 * kDegree;
 
 // The axis of a rotation times its angle, which is at most 180 degrees.
 Vec3 rotation_vector(const Eigen::Quaterniond& q) {
@@ -75,6 +75,17 @@ RandomPoses::RandomPoses(const Character& character, const std::vector<Joint>& j
     }
     return;
   }
+  clips_ = &rig.clips;
+  children_.resize(nodes_.size());
+  for (const Node& node : nodes_) {
+    if (node.parent >= 0) ++children_[static_cast<std::size_t>(node.parent)];
+  }
+  for (const Clip& clip : rig.clips) {
+    channels_.emplace_back(nodes_.size());
+    for (const Channel& channel : clip.channels) {
+      if (channel.path != ChannelPath::kMorphWeight) channels_.back()[channel.target].push_back(&channel);
+    }
+  }
   std::vector<std::vector<Eigen::Quaterniond>> turns(nodes_.size());
   std::vector<std::vector<Vec3>> translations(nodes_.size()), scales(nodes_.size());
   std::vector<std::vector<double>> weights(morphs_.size());
@@ -118,7 +129,47 @@ RandomPoses::RandomPoses(const Character& character, const std::vector<Joint>& j
   }
 }
 
-RandomPoses::Pose RandomPoses::next(Random& random) const {
+RandomPoses::Moment RandomPoses::any_moment(Random& random) const {
+  const auto clip = static_cast<std::size_t>(random.between(0, static_cast<double>(clips_->size())));
+  return {clip, random.between(0, (*clips_)[clip].duration)};
+}
+
+std::vector<RandomPoses::Moment> RandomPoses::moments(Random& random, bool by_branch) const {
+  constexpr double kOwn = 0.5;  // of the branches have a moment of their own
+  const Moment all = any_moment(random);
+  std::vector<Moment> out;
+  for (const Node& node : nodes_) {
+    const auto parent = static_cast<std::size_t>(node.parent);
+    const bool is_branch = by_branch && node.parent >= 0 && children_[parent] > 1;
+    if (is_branch && random.between(0, 1) < kOwn) {
+      out.push_back(any_moment(random));
+    } else {
+      out.push_back(node.parent < 0 ? all : out[parent]);
+    }
+  }
+  return out;
+}
+
+std::vector<Node> RandomPoses::at_moments(Random& random, bool by_branch) const {
+  const std::vector<Moment> of_node = moments(random, by_branch);
+  std::vector<Node> nodes = nodes_;
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    if (!limits_[n].moves) continue;
+    Node& node = nodes[n];
+    for (const Channel* channel : channels_[of_node[n].clip][n]) {
+      const Eigen::Vector4d value = sample(*channel, of_node[n].seconds);
+      if (channel->path == ChannelPath::kTranslation) node.translation = value.head<3>();
+      if (channel->path == ChannelPath::kScale) node.scale = value.head<3>();
+      if (channel->path == ChannelPath::kRotation) node.rotation = Eigen::Quaterniond(value);
+    }
+    node.rotation = node.rotation * rotation_of(random_in(random, Vec3::Constant(-kJitter), Vec3::Constant(kJitter)));
+    node.local.linear() = node.rotation.toRotationMatrix() * node.scale.asDiagonal();
+    node.local.translation() = node.translation;
+  }
+  return nodes;
+}
+
+std::vector<Node> RandomPoses::turned(Random& random) const {
   std::vector<Node> nodes = nodes_;
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     const Limits& limits = limits_[n];
@@ -129,8 +180,14 @@ RandomPoses::Pose RandomPoses::next(Random& random) const {
     nodes[n].local.linear() = turn.toRotationMatrix() * scale.asDiagonal();
     nodes[n].local.translation() = translation;
   }
+  return nodes;
+}
+
+RandomPoses::Pose RandomPoses::next(Random& random, int kind) const {
+  constexpr int kBranches = 1, kTurned = 2;
+  const bool is_turned = kind == kTurned || clips_ == nullptr;
   Pose out;
-  const std::vector<Affine> world = world_of(nodes);
+  const std::vector<Affine> world = world_of(is_turned ? turned(random) : at_moments(random, kind == kBranches));
   for (const Bone& bone : bones_) out.bones.push_back(to_rest_ * world[bone.node] * bone.inverse_bind);
   for (const auto& [low, high] : morphs_) out.morphs.push_back(random.between(low, high));
   return out;

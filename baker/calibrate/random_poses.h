@@ -9,13 +9,17 @@
 
 namespace spherechain::baker {
 
-// Poses within a character's joint limits. Each joint turns about its three axes on its own, evenly in a box of
-// rotation vectors. With clips the box is the smallest around all their keys and 10 degrees more; so are the boxes of
-// translations, scales and morph weights, without the 10 degrees. Without clips a joint turns by up to 45 degrees about
-// each axis, and morphs keep their weight at rest.
+// Poses that a character may take, of three kinds in turn:
+// 1. a moment of one of its clips;
+// 2. a moment of its own for each branch of the skeleton, or that of the joint above, as chance has it: limbs bend as
+//    in the clips, and meet as they do not there;
+// 3. each joint turned about its three axes on its own, evenly in a box of rotation vectors: the smallest around all
+//    keys of the clips and 10 degrees more. So are translations, scales and morph weights, without the 10 degrees.
+// In the first two kinds each joint turns by up to 5 degrees more about each axis. Without clips all poses are of the
+// third kind: a joint turns by up to 45 degrees, and morphs keep their weight at rest.
 class RandomPoses {
  public:
-  // `joints`: the automatic rig's, for a character without bones.
+  // `joints`: the automatic rig's, for a character without bones. The character must outlive this.
   RandomPoses(const Character& character, const std::vector<Joint>& joints);
 
   // Whether there is anything to move.
@@ -25,7 +29,8 @@ class RandomPoses {
     std::vector<Affine> bones;  // for each bone: rest -> posed
     std::vector<double> morphs;
   };
-  Pose next(Random& random) const;
+  // Of the kinds above, 0 to 2.
+  Pose next(Random& random, int kind) const;
 
  private:
   struct Range {
@@ -37,8 +42,21 @@ class RandomPoses {
     bool moves = false;  // else the node keeps its transform
   };
 
+  struct Moment {
+    std::size_t clip;
+    double seconds;
+  };
+  Moment any_moment(Random& random) const;
+  // The moments of all nodes.
+  std::vector<Moment> moments(Random& random, bool by_branch) const;
+  std::vector<Node> turned(Random& random) const;
+  std::vector<Node> at_moments(Random& random, bool by_branch) const;
+
   std::vector<Node> nodes_;
-  std::vector<Limits> limits_;  // of each node
+  std::vector<Limits> limits_;                                      // of each node
+  std::vector<Clip> const* clips_ = nullptr;                        // none: all poses are of the third kind
+  std::vector<std::vector<std::vector<const Channel*>>> channels_;  // of each clip and node
+  std::vector<int> children_;                                       // of each node
   std::vector<Bone> bones_;
   Affine to_rest_ = Affine::Identity();
   std::vector<std::pair<double, double>> morphs_;  // the least and the greatest weight

@@ -2,88 +2,117 @@
 #include "calibrate/reach.h"
 
 #include <algorithm>
-#include <limits>
+#include <array>
 
 namespace spherechain::baker {
 namespace {
 
-// False alarms that a contact is worth: of a rest pair, and where a larger radius finds it. The second is dearer: what
-// is beyond all radii is never found.
-constexpr double kRestWorth = 7, kGrowthWorth = 40;
-// A pair must touch this often before its spheres grow: a pair that seldom touches says little.
-constexpr std::size_t kTouchesMin = 6;
-constexpr double kRounding = 1 + 1e-5;
+constexpr double kRestWorth = 15, kWorth = 30;  // false alarms that a contact is worth: of a rest pair; of another
+constexpr double kBorrowed = 3;                 // average pairs, from each sphere and from the body
+constexpr double kReachMin = 0.7;               // of pairs that are no rest pairs
 
-// What a larger radius of a sphere could report.
-struct Open {
-  std::size_t other;  // the other sphere
-  PairSample sample;  // a is the sphere itself
-};
-
-// What each sphere could report with larger radii.
-std::vector<std::vector<Open>> open_samples(const std::vector<SampledPair>& pairs,
-                                            const std::vector<bool>& is_rest_pair, std::size_t count) {
-  std::vector<std::vector<Open>> open(count);
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const auto touches = std::count_if(pairs[i].samples.begin(), pairs[i].samples.end(),
-                                       [](const PairSample& sample) { return sample.touch; });
-    const bool often = static_cast<std::size_t>(touches) >= kTouchesMin;
-    if (is_rest_pair[i] && !often) continue;
-    const double reach = is_rest_pair[i] ? best_reach(pairs[i], 1, 1) : std::numeric_limits<double>::infinity();
-    const auto [a, b] = pairs[i].spheres;
-    for (const PairSample& sample : pairs[i].samples) {
-      const double sum = double{sample.radius_a} + sample.radius_b;
-      if (sample.distance < sum || sample.distance > reach * sum) continue;
-      const bool touch = sample.touch && often;
-      open[a].push_back({b, {sample.distance, sample.radius_a, sample.radius_b, touch}});
-      open[b].push_back({a, {sample.distance, sample.radius_b, sample.radius_a, touch}});
+// What reporting below a distance gains, by the distance as a part of the radii's sum, in steps.
+class Gain {
+ public:
+  void add(const SampledPair& pair, double worth) {
+    for (const PairSample& sample : pair.samples) {
+      const double part = sample.distance / (double{sample.radius_a} + sample.radius_b);
+      steps_[std::min(static_cast<std::size_t>(part / kStep), kSteps - 1)] += sample.touch ? worth : -1;
     }
   }
-  return open;
-}
+  void add(const Gain& other, double times) {
+    for (std::size_t i = 0; i < kSteps; ++i) steps_[i] += times * other.steps_[i];
+  }
+  // The distance that gains most; 0 where none gains anything.
+  double best() const {
+    double sum = 0, most = 0, best = 0;
+    for (std::size_t i = 0; i < kSteps; ++i) {
+      sum += steps_[i];
+      if (sum <= most) continue;
+      most = sum;
+      best = kStep * static_cast<double>(i + 1);
+    }
+    return best;
+  }
+
+ private:
+  static constexpr std::size_t kSteps = 200;
+  static constexpr double kStep = kSampledReach / kSteps;
+
+  std::array<double, kSteps> steps_{};
+};
+
+// The sum of some pairs' gains.
+struct Pool {
+  Gain sum;
+  std::size_t pairs = 0;
+
+  void add(const Gain& gain) {
+    sum.add(gain, 1);
+    ++pairs;
+  }
+  void lend(Gain& to) const {
+    if (pairs > 0) to.add(sum, kBorrowed / static_cast<double>(pairs));
+  }
+};
 
 }  // namespace
 
-Line best_line(std::vector<std::pair<double, bool>> values, double worth) {
-  std::sort(values.begin(), values.end());
-  double gain = 0;
-  Line best;
-  for (const auto& [value, is_contact] : values) {
-    gain += is_contact ? worth : -1;
-    if (gain > best.gain) best = {kRounding * value, gain};
+std::vector<double> best_reaches(const std::vector<SampledPair>& pairs, const std::vector<bool>& is_rest_pair,
+                                 std::size_t sphere_count) {
+  std::vector<Gain> gains(pairs.size());
+  std::vector<Pool> of_sphere(sphere_count);
+  Pool of_body;
+  bool any = false;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    any = any || !pairs[i].samples.empty();
+    gains[i].add(pairs[i], is_rest_pair[i] ? kRestWorth : kWorth);
+    if (is_rest_pair[i]) continue;
+    for (Pool* pool : {&of_sphere[pairs[i].spheres.a], &of_sphere[pairs[i].spheres.b], &of_body}) pool->add(gains[i]);
   }
-  return best;
-}
-
-double best_reach(const SampledPair& pair, double scale_a, double scale_b) {
-  std::vector<std::pair<double, bool>> values;
-  for (const PairSample& sample : pair.samples) {
-    values.emplace_back(sample.distance / (scale_a * sample.radius_a + scale_b * sample.radius_b), sample.touch);
-  }
-  return best_line(std::move(values), kRestWorth).value;
-}
-
-std::vector<double> grow_radii(const std::vector<SampledPair>& pairs, const std::vector<bool>& is_rest_pair,
-                               std::size_t count) {
-  constexpr int kSweeps = 3;
-  const std::vector<std::vector<Open>> open = open_samples(pairs, is_rest_pair, count);
-  std::vector<double> factors(count, 1);
-  // The best factor of one sphere while the others keep theirs.
-  const auto best_factor = [&](std::size_t sphere) {
-    std::vector<std::pair<double, bool>> needed;
-    for (const auto& [other, sample] : open[sphere]) {
-      const double factor = (sample.distance - factors[other] * sample.radius_b) / sample.radius_a;
-      if (factor >= factors[sphere]) needed.emplace_back(factor, sample.touch);
+  std::vector<double> reaches;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (is_rest_pair[i]) {
+      reaches.push_back(gains[i].best());
+      continue;
     }
-    return best_line(std::move(needed), kGrowthWorth);
-  };
-  for (int sweep = 0; sweep < kSweeps; ++sweep) {
-    std::vector<std::pair<double, std::size_t>> order;  // those that gain most first
-    for (std::size_t s = 0; s < count; ++s) order.emplace_back(-best_factor(s).gain, s);
-    std::sort(order.begin(), order.end());
-    for (const auto& [gain, s] : order) factors[s] = std::max(factors[s], best_factor(s).value);
+    Gain gain = gains[i];
+    for (const Pool* pool : {&of_sphere[pairs[i].spheres.a], &of_sphere[pairs[i].spheres.b], &of_body})
+      pool->lend(gain);
+    reaches.push_back(any ? std::max(kReachMin, gain.best()) : 1);
+  }
+  return reaches;
+}
+
+std::vector<double> radius_factors(const std::vector<SampledPair>& pairs, const std::vector<double>& reaches,
+                                   const std::vector<double>& radii, const std::vector<double>& least) {
+  constexpr int kRounds = 6;
+  std::vector<double> factors = least;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    for (const std::uint32_t s : {pairs[i].spheres.a, pairs[i].spheres.b})
+      factors[s] = std::max(factors[s], reaches[i]);
+  }
+  // Every pair reaches far enough now. Each sphere goes halfway to what it needs while the others stay: a pair's sum
+  // then is no less than halfway between what it was and what it should be.
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<double> needed = least;
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      const auto [a, b] = pairs[i].spheres;
+      const double sum = reaches[i] * (radii[a] + radii[b]);
+      needed[a] = std::max(needed[a], (sum - factors[b] * radii[b]) / radii[a]);
+      needed[b] = std::max(needed[b], (sum - factors[a] * radii[a]) / radii[b]);
+    }
+    for (std::size_t s = 0; s < factors.size(); ++s) factors[s] = 0.5 * (factors[s] + needed[s]);
   }
   return factors;
+}
+
+std::size_t false_alarms_beyond(const SampledPair& pair, double reach, double factor_a, double factor_b) {
+  return static_cast<std::size_t>(
+      std::count_if(pair.samples.begin(), pair.samples.end(), [&](const PairSample& sample) {
+        return !sample.touch && sample.distance >= reach * (double{sample.radius_a} + sample.radius_b) &&
+               sample.distance < factor_a * sample.radius_a + factor_b * sample.radius_b;
+      }));
 }
 
 }  // namespace spherechain::baker

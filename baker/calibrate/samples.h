@@ -16,9 +16,12 @@ struct PairSample {
   bool touch;                // whether their skins intersect
 };
 
+// Of poses in which two spheres are farther apart than this, as a part of the sum of their radii, there are no samples.
+inline constexpr double kSampledReach = 2;
+
 struct SampledPair {
   Pair spheres;
-  std::vector<PairSample> samples;  // of the poses in which the distance is below twice the sum of the radii
+  std::vector<PairSample> samples;
 };
 
 // An asset in `count` random poses: what the runtime says about these pairs, bones to spheres and to exact contacts.

@@ -51,7 +51,7 @@ struct Spheres {
   std::vector<TorsoFit> torso;        // of spheres 0, 1, ... without the head
   std::vector<double> level_heights;  // along frame.up from frame.origin; without the head
   // Neighbours on the body, a < b, sorted: along a limb, on the same or the next torso level, limb and torso, neck and
-  // torso. By halves: of a part and the one it hangs on, and of skin that moves alike.
+  // torso. By halves: of a part and the one it hangs on, where their skins are joined, and of skin that moves alike.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> links;
   // By halves: a triangle of Character::skin -> the sphere that was fitted to it. Else empty.
   std::vector<std::uint32_t> of_skin;

@@ -5,8 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numbers>
+#include <set>
 
 #include "fit/fit.h"
+#include "mesh/even_directions.h"
 #include "mesh/surface_query.h"
 
 namespace spherechain::baker {
@@ -16,14 +19,17 @@ constexpr std::size_t kSampled = 2000;      // triangles of a piece that place i
 constexpr std::size_t kFewTriangles = 400;  // of a piece whose ball encloses the middles of edges too
 constexpr double kEnclosed = 0.95;          // of a piece's area, by its ball
 constexpr double kFarCounts = 2;            // times the limit: the error of skin beyond it, besides its distance
+constexpr double kProtrusionCounts = 0.1;   // as much as skin that is as far from its sphere
 constexpr double kMovesAlike = 0.8;         // of the mean weights of two spheres' skin
+constexpr double kJoined = 0.01;  // of the height: a part whose skin is farther from the one it hangs on is apart
 
 // Triangles with one sphere.
 struct Piece {
   std::vector<Index> triangles;
   Ball ball;
-  double
-      error;  // the skin's area times how far it is from the sphere's surface; what is farther than a limit counts more
+  // The skin's area times its distance from the sphere, and the same of the sphere where it is outside the skin. What
+  // is farther than a limit counts more.
+  double error;
   double far_area;  // of the skin farther than a limit
 };
 
@@ -102,24 +108,28 @@ class Halver {
     return best;
   }
 
-  // The sphere around a ball's centre that is nearest to the skin on average: half of the skin is on either side. The
-  // detect radius reaches the rest.
+  // The best sphere around a ball's centre. Its radius is one of a few quantiles of the skin's distance: a sphere that
+  // lies half outside the skin at the median is better smaller. The detect radius reaches the rest.
   Piece measure(const std::vector<Index>& triangles, const Ball& ball) const {
-    constexpr double kSmallest = 0.5;  // of the ball: of a few triangles the middles may all be at its centre
+    constexpr double kSmallest = 0.25;  // of the ball: of a few triangles the middles may all be at its centre
     std::vector<std::pair<double, double>> distances;
     distances.reserve(triangles.size());
     for (const Index t : triangles) {
       distances.emplace_back((triangle_centroid(mesh_, t) - ball.center).norm(), triangle_area(mesh_, t));
     }
-    Piece piece{{}, {ball.center, std::max(weighted_quantile(distances, 0.5), kSmallest * ball.radius)}, 0, 0};
-    for (const auto& [distance, own] : distances) {
-      const double off = std::abs(distance - piece.ball.radius);
-      piece.error += own * off;
-      if (off <= far_) continue;
-      piece.error += kFarCounts * own * far_;
-      piece.far_area += own;
+    Piece best{{}, ball, std::numeric_limits<double>::max(), 0};
+    for (const double quantile : {0.5, 0.35, 0.2, 0.1}) {
+      const double radius = std::max(weighted_quantile(distances, quantile), kSmallest * ball.radius);
+      Piece piece{{}, {ball.center, radius}, 0, 0};
+      for (const auto& [distance, own] : distances) {
+        const double off = std::abs(distance - radius);
+        piece.error += own * penalty(off);
+        if (off > far_) piece.far_area += own;
+      }
+      if (piece.error < best.error) piece.error += kProtrusionCounts * protrusion(piece.ball);
+      if (piece.error < best.error) best = piece;
     }
-    return piece;
+    return best;
   }
 
   // Across the longest extent, in its middle. One half is empty where there is nothing to cut.
@@ -153,9 +163,24 @@ class Halver {
   }
 
  private:
+  double penalty(double distance) const { return distance + (distance > far_ ? kFarCounts * far_ : 0); }
+
+  // The area of a sphere outside the skin, times how far it is outside.
+  double protrusion(const Ball& ball) const {
+    double sum = 0;
+    for (const Vec3& direction : directions_) {
+      const Vec3 point = ball.center + ball.radius * direction;
+      const SurfaceHit hit = surface_.closest(point);
+      if ((point - hit.point).dot(triangle_cross(mesh_, hit.triangle)) > 0) sum += penalty(hit.distance);
+    }
+    const double area = 4 * std::numbers::pi * ball.radius * ball.radius;
+    return area * sum / static_cast<double>(directions_.size());
+  }
+
   const Mesh& mesh_;
   SurfaceQuery surface_;
   double far_;
+  std::vector<Vec3> directions_ = even_directions(32);
 };
 
 struct Region {
@@ -294,6 +319,27 @@ double overlap(const std::map<Index, double>& a, const std::map<Index, double>& 
   return sum;
 }
 
+// The corners of a sphere's triangles.
+std::vector<Vec3> corners_of(const Mesh& skin, const Spheres& spheres, std::uint32_t sphere) {
+  std::set<Index> corners;
+  for (std::size_t t = 0; t < spheres.of_skin.size(); ++t) {
+    if (spheres.of_skin[t] == sphere) corners.insert(skin.triangles[t].begin(), skin.triangles[t].end());
+  }
+  std::vector<Vec3> out;
+  for (const Index v : corners) out.push_back(skin.positions[v]);
+  return out;
+}
+
+bool are_joined(const Mesh& skin, const Spheres& spheres, std::uint32_t a, std::uint32_t b, double distance) {
+  const std::vector<Vec3> of_b = corners_of(skin, spheres, b);
+  for (const Vec3& p : corners_of(skin, spheres, a)) {
+    for (const Vec3& q : of_b) {
+      if ((p - q).squaredNorm() < distance * distance) return true;
+    }
+  }
+  return false;
+}
+
 std::vector<std::pair<std::uint32_t, std::uint32_t>> find_links(const Character& character, const Regions& regions,
                                                                 const Spheres& spheres) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> links;
@@ -315,7 +361,9 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> find_links(const Character&
         nearest = std::minmax(a, b);
       }
     }
-    links.push_back(nearest);
+    if (are_joined(character.skin, spheres, nearest.first, nearest.second, kJoined * regions.frame.height)) {
+      links.push_back(nearest);
+    }
   }
   std::sort(links.begin(), links.end());
   links.erase(std::unique(links.begin(), links.end()), links.end());

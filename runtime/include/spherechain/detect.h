@@ -20,7 +20,7 @@ typedef struct sc_filter {
   size_t padding_count SC_ZERO;
 } sc_filter;
 
-/* The overlap test of all pairs of spheres that are not ignored. Rest pairs, which touch at rest or nearly, are
+/* The overlap test of all pairs of spheres that are not ignored. Rest pairs, most of which touch at rest, are
  * reported where they come closer than rest_scale times the sum of their radii (docs/arithmetic.md).
  *
  * Allocates nothing, takes no lock. Jobs on other outputs may run at the same time. Needs 25 KiB of stack. */

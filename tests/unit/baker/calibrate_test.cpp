@@ -9,6 +9,7 @@
 #include "baked_human.h"
 #include "calibrate/random_poses.h"
 #include "calibrate/reach.h"
+#include "calibrate/skin_gap.h"
 #include "jobs.h"
 #include "motion/motion.h"
 #include "play/player.h"
@@ -54,7 +55,7 @@ TEST_CASE("in random poses of another seed the calibrated spheres report nearly 
   std::size_t touching = 0, found = 0;
   for (int i = 0; i < 40; ++i) {
     const std::vector<float> positions =
-        pack(deform(bake.character.source_positions, weights_of_human(), poses.next(random).bones));
+        pack(deform(bake.character.source_positions, weights_of_human(), poses.next(random, i % 3).bones));
     const std::vector<Pair> reported =
         detect(asset, refit(asset, positions, SC_RADIUS_DETECT).spheres, SC_RADIUS_DETECT).pairs;
     for (const Pair& pair : touching_skins(player, positions)) {
@@ -66,7 +67,7 @@ TEST_CASE("in random poses of another seed the calibrated spheres report nearly 
   CHECK(static_cast<double>(found) >= 0.9 * static_cast<double>(touching));
 }
 
-TEST_CASE("calibration changes only pairs that touch at rest or nearly, and no radius of limbs and torso") {
+TEST_CASE("calibration changes no radius of limbs and torso, and lists few pairs") {
   const Bake& bake = baked_human();
   const Attempt<Binding> before = bind_spheres(bake.character, bake.regions, bake.spheres, bake.settings.bind);
   REQUIRE(before);
@@ -77,8 +78,16 @@ TEST_CASE("calibration changes only pairs that touch at rest or nearly, and no r
   CHECK(bake.binding.ignored == before->ignored);
   CHECK(!bake.binding.rest_detect.empty());
   for (const BoundPair& pair : bake.binding.rest_detect) {
-    CHECK(0.9 * distance_at_rest(bake, {pair.a, pair.b}) < radii(bake, {pair.a, pair.b}));
+    CHECK(pair.rest_scale > 0);
     CHECK(pair.rest_scale < 1);
+  }
+  CHECK(bake.binding.rest_detect.size() < 100);
+  // At rest only pairs are reported whose skins all but touch.
+  const OpenAsset asset = open_asset_of(bake);
+  const std::vector<float> rest = pack(bake.character.source_positions);
+  const SkinGaps gaps(bake.character.skin, bake.binding);
+  for (const Pair& pair : detect(asset, refit(asset, rest, SC_RADIUS_DETECT).spheres, SC_RADIUS_DETECT).pairs) {
+    CHECK(gaps.between(pair.a, pair.b) < 0.003 * bake.regions.frame.height);
   }
 }
 
@@ -93,52 +102,124 @@ TEST_CASE("two bakes give the same bytes, and profile paper keeps nine tenths fo
   }
 }
 
-TEST_CASE("the best line finds contacts for no more false alarms than they are worth") {
-  CHECK(best_line({}, 5).value == 0);
-  CHECK(best_line({{1, false}, {2, false}}, 5).value == 0);
-  const Line both = best_line({{3, true}, {1, true}, {2, false}}, 5);
-  CHECK(both.value == doctest::Approx(3));
-  CHECK(both.gain == 9);
-  std::vector<std::pair<double, bool>> values{{1, true}, {3, true}};
-  for (int i = 0; i < 6; ++i) values.emplace_back(2, false);
-  CHECK(best_line(values, 5).value == doctest::Approx(1));
-  CHECK(best_line(values, 7).value == doctest::Approx(3));
+namespace {
+
+// A pair of spheres of radius 1, `times` at a distance.
+void add(SampledPair& pair, int times, float distance, bool touch) {
+  for (int i = 0; i < times; ++i) pair.samples.push_back({distance, 1, 1, touch});
 }
 
-TEST_CASE("a radius grows to contacts that happen often, for its false alarms, and a rest pair asks for no more") {
-  // Spheres of radius 1: 0 and 1 touch at 2.2; 0 and 2 are at 2.1 and never touch.
-  SampledPair touching{{0, 1}, {}}, apart{{0, 2}, {}};
-  for (int i = 0; i < 100; ++i) {
-    touching.samples.push_back({2.2F, 1, 1, true});
-    apart.samples.push_back({2.1F, 1, 1, false});
+std::vector<double> reaches(const std::vector<SampledPair>& pairs, bool are_rest_pairs) {
+  return best_reaches(pairs, std::vector<bool>(pairs.size(), are_rest_pairs), 4);
+}
+
+}  // namespace
+
+TEST_CASE("a rest pair reaches as far as contacts are worth their false alarms") {
+  SampledPair never{{0, 1}, {}}, often{{0, 2}, {}}, dear{{0, 3}, {}};
+  add(never, 100, 1, false);
+  add(often, 1, 1, true);
+  add(often, 10, 1.2F, false);
+  add(often, 1, 1.4F, true);
+  add(dear, 1, 1, true);
+  add(dear, 20, 1.2F, false);
+  add(dear, 1, 1.4F, true);
+  const std::vector<double> found = reaches({never, often, dear}, true);
+  CHECK(found[0] == 0);
+  CHECK(found[1] == doctest::Approx(0.7).epsilon(0.02));
+  CHECK(found[2] == doctest::Approx(0.5).epsilon(0.02));
+}
+
+TEST_CASE("a pair without contacts of its own reaches as far as its neighbours do, and never less than 0.7") {
+  SampledPair touching{{0, 1}, {}}, silent{{0, 2}, {}}, alone{{2, 3}, {}};
+  add(touching, 50, 2.2F, true);
+  const std::vector<double> found = reaches({touching, silent, alone}, false);
+  CHECK(found[0] == doctest::Approx(1.1).epsilon(0.01));
+  CHECK(found[1] == doctest::Approx(1.1).epsilon(0.01));
+  add(alone, 5000, 2.1F, false);
+  CHECK(reaches({touching, silent, alone}, false)[2] == doctest::Approx(0.7));
+  CHECK(reaches({silent}, false)[0] == 1);  // no sample at all
+}
+
+TEST_CASE("radii become what their pairs need, the same for mirrored spheres, and no less than the least") {
+  const std::vector<SampledPair> pairs{{{0, 1}, {}}, {{0, 2}, {}}, {{1, 2}, {}}};
+  const std::vector<double> wanted{1.4, 1.4, 0.7}, radii{2, 1, 1}, least{0.5, 0.5, 0.5};
+  const std::vector<double> factors = radius_factors(pairs, wanted, radii, least);
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const auto [a, b] = pairs[i].spheres;
+    CHECK(factors[a] * radii[a] + factors[b] * radii[b] >= wanted[i] * (radii[a] + radii[b]) - 1e-9);
   }
-  const std::vector<double> grown = grow_radii({touching, apart}, {false, false}, 3);
-  CHECK(grown[0] + grown[1] == doctest::Approx(2.2).epsilon(1e-3));
-  CHECK(grown[2] == 1);
-  CHECK(grow_radii({apart}, {true}, 3) == std::vector<double>{1, 1, 1});
-  touching.samples.resize(2);  // too seldom
-  CHECK(grow_radii({touching, apart}, {false, false}, 3) == std::vector<double>{1, 1, 1});
+  CHECK(factors[1] == factors[2]);
+  CHECK(factors[0] < 1.45);
+  CHECK(radius_factors(pairs, {0, 0, 0}, radii, least) == least);
 }
 
-TEST_CASE("random poses stay within the limits of the clips, and are the same for the same seed") {
+TEST_CASE("false alarms beyond a reach are those that the radii report and it does not") {
+  SampledPair pair{{0, 1}, {}};
+  add(pair, 3, 1.5F, false);
+  add(pair, 4, 1.5F, true);
+  add(pair, 5, 1.1F, false);
+  add(pair, 6, 2.5F, false);
+  CHECK(false_alarms_beyond(pair, 0.6, 1, 1) == 3);
+  CHECK(false_alarms_beyond(pair, 0.5, 1, 1) == 8);
+  CHECK(false_alarms_beyond(pair, 0.6, 1.5, 1.5) == 9);
+}
+
+namespace {
+
+// A root with `arms` bones on it, which bend together by 80 degrees in one clip.
+Character bending(std::size_t arms) {
   Character character;
-  Node root, tip;
-  tip.parent = 0;
-  tip.translation = {0, 1, 0};
-  tip.local.translation() = tip.translation;
-  character.rig.nodes = {root, tip};
-  character.rig.bones = {{0, Affine::Identity()}, {1, Affine(Eigen::Translation3d(0, -1, 0))}};
+  Node root, arm;
+  arm.parent = 0;
+  arm.translation = {0, 1, 0};
+  arm.local.translation() = arm.translation;
+  character.rig.nodes = {root};
+  character.rig.bones = {{0, Affine::Identity()}};
   const Eigen::Quaterniond bent(Eigen::AngleAxisd(80 * kRadiansADegree, Vec3::UnitX()));
   Clip clip;
   clip.duration = 1;
-  clip.channels = {{ChannelPath::kRotation, 1, Interpolation::kLinear, {0, 1}, {0, 0, 0, 1, bent.x(), 0, 0, bent.w()}}};
+  for (Index i = 1; i <= arms; ++i) {
+    character.rig.nodes.push_back(arm);
+    character.rig.bones.push_back({i, Affine(Eigen::Translation3d(0, -1, 0))});
+    clip.channels.push_back(
+        {ChannelPath::kRotation, i, Interpolation::kLinear, {0, 1}, {0, 0, 0, 1, bent.x(), 0, 0, bent.w()}});
+  }
   character.rig.clips = {clip};
+  return character;
+}
+
+// The turn of a bone against the root's, in degrees about x.
+double bend(const RandomPoses::Pose& pose, std::size_t bone) {
+  const Eigen::AngleAxisd turn(Eigen::Matrix3d(pose.bones[0].linear().transpose() * pose.bones[bone].linear()));
+  return turn.angle() * turn.axis().x() / kRadiansADegree;
+}
+
+}  // namespace
+
+TEST_CASE("in a moment of a clip limbs bend together; with a moment for each branch half of them bend on their own") {
+  const Character character = bending(2);
+  const RandomPoses poses(character, {});
+  Random random(kOtherSeed);
+  int apart = 0;
+  for (int i = 0; i < 300; ++i) {
+    const RandomPoses::Pose together = poses.next(random, 0);
+    CHECK(std::abs(bend(together, 1) - bend(together, 2)) < 12);  // each turns by up to 5 degrees more
+    const RandomPoses::Pose branched = poses.next(random, 1);
+    apart += std::abs(bend(branched, 1) - bend(branched, 2)) > 12 ? 1 : 0;
+  }
+  CHECK(apart > 100);
+  CHECK(apart < 250);
+}
+
+TEST_CASE("random poses stay within the limits of the clips, and are the same for the same seed") {
+  Character character = bending(1);
 
   const auto widest = [](const RandomPoses& poses) {
     Random random(kOtherSeed);
     Vec3 low = Vec3::Zero(), high = Vec3::Zero();
     for (int i = 0; i < 500; ++i) {
-      const RandomPoses::Pose pose = poses.next(random);
+      const RandomPoses::Pose pose = poses.next(random, 2);
       const Eigen::AngleAxisd turn(Eigen::Matrix3d(pose.bones[0].linear().transpose() * pose.bones[1].linear()));
       low = low.cwiseMin(turn.angle() * turn.axis());
       high = high.cwiseMax(turn.angle() * turn.axis());
