@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "bind/neighbours.h"
@@ -18,24 +17,19 @@ std::vector<std::uint32_t> assign_triangles(const Mesh& mesh, const std::vector<
   std::vector<std::uint32_t> owner;
   owner.reserve(mesh.triangles.size());
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const Vec3 centroid = triangle_centroid(mesh, t);
-    double least = std::numeric_limits<double>::max();
-    std::uint32_t best = 0;
-    for (const std::uint32_t i : spheres.of_region[region_of_triangle[t]]) {
-      const double d = (spheres.spheres[i].ball.center - centroid).squaredNorm();
-      if (d < least) {
-        least = d;
-        best = i;
-      }
-    }
-    owner.push_back(best);
+    owner.push_back(nearest_sphere(spheres, spheres.of_region[region_of_triangle[t]], triangle_centroid(mesh, t)));
   }
   return owner;
 }
 
 // Triangles of pieces too small to be body (eyes, teeth, buttons): they may move on their own, so they carry no sphere.
-// Where much of the skin is in such pieces (armour, a robot), those that lie on the body are the body.
-std::vector<bool> loose_triangles(const Character& character, double height) {
+// Where much of the skin is in such pieces (armour, a robot), those that lie on the body are the body. What follows the
+// bones is never loose.
+std::vector<bool> loose_triangles(const Character& character, const Regions& regions) {
+  const std::vector<bool>& by_bones = regions.by_bones;
+  if (regions.is_tree() && std::find(by_bones.begin(), by_bones.end(), false) == by_bones.end()) {
+    return std::vector<bool>(character.skin.triangles.size(), false);
+  }
   constexpr double kSmall = 0.01, kMuch = 0.2;  // of the area
   constexpr double kOnBody = 0.005;             // of the height
   const Mesh& skin = character.skin;
@@ -58,11 +52,13 @@ std::vector<bool> loose_triangles(const Character& character, double height) {
         distance[piece] += triangle_area(skin, t) / area[piece] * body.closest(triangle_centroid(skin, t)).distance;
     }
     for (std::size_t piece = 0; piece < loose.size(); ++piece) {
-      if (distance[piece] < kOnBody * height) loose[piece] = false;
+      if (distance[piece] < kOnBody * regions.frame.height) loose[piece] = false;
     }
   }
   std::vector<bool> of_triangle;
-  for (const Index piece : pieces.of_triangle) of_triangle.push_back(loose[piece]);
+  for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
+    of_triangle.push_back(loose[pieces.of_triangle[t]] && !regions.is_by_bones(regions.of_skin[t]));
+  }
   return of_triangle;
 }
 
@@ -71,7 +67,7 @@ SpherePairs find_ignored(const Character& character, const Regions& regions, con
                          const std::vector<std::uint32_t>& owner, double gap) {
   SpherePairs ignored(spheres.links.begin(), spheres.links.end());
   add_neighbours(character.skin, owner, gap, ignored);
-  if (regions.follow_bones()) return ignored;
+  if (regions.is_tree()) return ignored;
   add_neighbours(character.body, assign_triangles(character.body, regions.of_triangle, spheres), gap, ignored);
   return ignored;
 }
@@ -187,19 +183,18 @@ Attempt<Binding> bind_spheres(const Character& character, const Regions& regions
   Binding out;
   out.rule = settings.rule;
   const Mesh& skin = character.skin;
-  const bool by_halves = !spheres.of_skin.empty();
-  out.sphere_of_triangle = by_halves ? spheres.of_skin : assign_triangles(skin, regions.of_skin, spheres);
+  out.sphere_of_triangle = regions.is_tree() ? spheres.of_skin : assign_triangles(skin, regions.of_skin, spheres);
 
   std::vector<std::vector<Index>> surrounding(spheres.spheres.size());
-  const std::vector<bool> loose =
-      by_halves ? std::vector<bool>(skin.triangles.size(), false) : loose_triangles(character, regions.frame.height);
+  const std::vector<bool> loose = loose_triangles(character, regions);
   for (Index t = 0; t < out.sphere_of_triangle.size(); ++t) {
     if (!loose[t]) surrounding[out.sphere_of_triangle[t]].push_back(t);
   }
   for (std::size_t i = 0; i < spheres.spheres.size(); ++i) {
     const FittedSphere& sphere = spheres.spheres[i];
-    const bool on_torso = !by_halves && sphere.region == regions.torso_region();
-    const AreaAt at = by_halves ? AreaAt::kCorners : AreaAt::kCentroid;
+    const bool by_bones = regions.is_by_bones(sphere.region);
+    const bool on_torso = !by_bones && sphere.region == regions.torso_region();
+    const AreaAt at = by_bones ? AreaAt::kCorners : AreaAt::kCentroid;
     BoundSphere bound = bind_sphere(skin, surrounding[i], sphere, on_torso, at, regions.frame, settings);
     if (bound.pivots.empty() || !(bound.spread > 0)) {
       return Reason{"the skin is too small for sphere " + std::to_string(i) + ", of the " +

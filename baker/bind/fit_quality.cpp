@@ -44,6 +44,14 @@ FitGrade FitQuality::grade() const {
   return far_area <= kFairArea && protrusion <= kFairProtrusion ? FitGrade::kFair : FitGrade::kPoor;
 }
 
+std::vector<std::uint8_t> FitQuality::far_regions() const {
+  std::vector<std::uint8_t> out;
+  for (std::uint8_t region = 0; region < far_of_region.size(); ++region) {
+    if (far_of_region[region] > 0.5) out.push_back(region);
+  }
+  return out;
+}
+
 FitQuality measure_fit(const Character& character, const Regions& regions, const Binding& binding) {
   const Mesh& skin = character.skin;
   const double height = regions.frame.height;
@@ -66,8 +74,8 @@ FitQuality measure_fit(const Character& character, const Regions& regions, const
   const auto count = static_cast<double>(distances.size());
   FitQuality quality{sum / count,   distances[static_cast<std::size_t>(0.95 * count)], distances.back(),
                      all_far / all, protrusion_of(skin, binding.spheres) / height,     {}};
-  for (std::uint8_t region = 0; region < regions.count(); ++region) {
-    if (far[region] > 0.5 * area[region]) quality.far_regions.push_back(region);
+  for (std::size_t region = 0; region < regions.count(); ++region) {
+    quality.far_of_region.push_back(area[region] > 0 ? far[region] / area[region] : 0);
   }
   return quality;
 }

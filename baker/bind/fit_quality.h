@@ -16,7 +16,10 @@ struct FitQuality {
   double distance_mean, distance_p95, distance_max;  // of the skin from its sphere's surface, over triangles
   double far_area;                                   // share of the skin farther than kWellFitted
   double protrusion;                                 // mean distance of the spheres' outer surface from the skin
-  std::vector<std::uint8_t> far_regions;             // those with most of their skin far
+  std::vector<double> far_of_region;                 // of each region: the share of its skin farther than that
+
+  // Those with most of their skin far.
+  std::vector<std::uint8_t> far_regions() const;
 
   // Good: at most 5 % far, protrusion at most 0.025. Fair: three times as much, and 0.04.
   FitGrade grade() const;

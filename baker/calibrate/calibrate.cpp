@@ -75,7 +75,7 @@ void calibrate(const Character& character, const Regions& regions, const std::ve
     reaches[i] = std::max(reaches[i], at_rest / sum_of(pairs[i], sampled_radii));
   }
   const bool any = std::any_of(sampled.begin(), sampled.end(), [](const auto& pair) { return !pair.samples.empty(); });
-  if (any && regions.follow_bones()) {
+  if (any && regions.is_tree()) {
     std::vector<double> least = radii_of(binding, false);
     for (std::size_t s = 0; s < least.size(); ++s) least[s] /= sampled_radii[s];
     const std::vector<double> factors = radius_factors(sampled, reaches, sampled_radii, least);

@@ -52,6 +52,12 @@ int Spheres::level_at(double along) const {
   return static_cast<int>(std::lround(along * (static_cast<double>(level_heights.size()) - 1)));
 }
 
+std::uint32_t nearest_sphere(const Spheres& spheres, const std::vector<std::uint32_t>& among, const Vec3& point) {
+  const auto distance = [&](std::uint32_t i) { return (spheres.spheres[i].ball.center - point).squaredNorm(); };
+  return *std::min_element(among.begin(), among.end(),
+                           [&](std::uint32_t a, std::uint32_t b) { return distance(a) < distance(b); });
+}
+
 double signed_f(const Ball& ball, const Vec3& vertex) { return ball.radius - (ball.center - vertex).norm(); }
 
 FError f_error(const Ball& ball, const Mesh& mesh, const std::vector<Index>& vertices) {

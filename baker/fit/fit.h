@@ -53,7 +53,7 @@ struct Spheres {
   // Neighbours on the body, a < b, sorted: along a limb, on the same or the next torso level, limb and torso, neck and
   // torso. By halves: of a part and the one it hangs on, where their skins are joined, and of skin that moves alike.
   std::vector<std::pair<std::uint32_t, std::uint32_t>> links;
-  // By halves: a triangle of Character::skin -> the sphere that was fitted to it. Else empty.
+  // Of a tree: a triangle of Character::skin -> the sphere that was fitted to it. Else empty.
   std::vector<std::uint32_t> of_skin;
 
   std::uint8_t torso_region() const { return static_cast<std::uint8_t>(of_region.size() - 1); }
@@ -85,9 +85,25 @@ struct FitSettings {
 // that a sphere fits in.
 Attempt<Spheres> fit_spheres(const Character& character, const Regions& regions, const FitSettings& settings);
 
-// The fit for any body, of regions that follow the bones: a sphere for each, and the skin of the worst one halved
-// across its longest extent, until there are enough. Mirrored regions are halved as often.
-Spheres fit_halves(const Character& character, const Regions& regions, const FitSettings& settings);
+// Spheres of the paper's fit that regions of a tree keep.
+struct KeptSpheres {
+  const Spheres* spheres = nullptr;
+  std::vector<int>
+      region;  // of each region of the tree: the one in `spheres` that it was, or -1; empty: none keeps any
+
+  bool keeps(std::size_t id) const { return !region.empty() && region[id] >= 0; }
+  const std::vector<std::uint32_t>& of_region(std::size_t id) const {
+    return spheres->of_region[static_cast<std::size_t>(region[id])];
+  }
+};
+
+// The fit for any body, of a tree of regions: a sphere for each, and the skin of the worst one halved across its
+// longest extent, until there are enough. Mirrored regions are halved as often.
+Spheres fit_halves(const Character& character, const Regions& regions, const FitSettings& settings,
+                   const KeptSpheres& kept = {});
+
+// Of some spheres the one whose centre is nearest.
+std::uint32_t nearest_sphere(const Spheres& spheres, const std::vector<std::uint32_t>& among, const Vec3& point);
 
 // fit_spheres' parts.
 Attempt<std::vector<FittedSphere>> fit_limb(const Mesh& mesh, const Regions& regions, std::uint8_t region,

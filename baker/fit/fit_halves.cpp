@@ -225,16 +225,16 @@ struct Region {
 };
 
 // Regions that mirror each other, by area and place; the others alone.
-std::vector<std::vector<Region*>> mirrored(const Mesh& mesh, const Regions& regions, std::vector<Region>& all) {
+std::vector<std::vector<Region*>> mirrored(const Mesh& mesh, const Regions& regions, const std::vector<Region*>& all) {
   constexpr double kSameArea = 0.05, kSamePlace = 0.03;  // of the area; of the height
   struct Place {
     double area = 0;
     Vec3 centroid = Vec3::Zero();
   };
   std::vector<Place> places;
-  for (const Region& region : all) {
+  for (const Region* region : all) {
     Place place;
-    for (const Index t : region.triangles) {
+    for (const Index t : region->triangles) {
       place.area += triangle_area(mesh, t);
       place.centroid += triangle_area(mesh, t) * triangle_centroid(mesh, t);
     }
@@ -252,20 +252,20 @@ std::vector<std::vector<Region*>> mirrored(const Mesh& mesh, const Regions& regi
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (taken[i]) continue;
     std::vector<Region*>& group = groups.emplace_back();
-    group.push_back(&all[i]);
+    group.push_back(all[i]);
     for (std::size_t j = i + 1; j < all.size() && group.size() == 1; ++j) {
       if (taken[j] || !are_mirrored(places[i], places[j])) continue;
-      group.push_back(&all[j]);
+      group.push_back(all[j]);
       taken[j] = true;
     }
   }
   return groups;
 }
 
-// Halves the worst pieces until the spheres are as many as they may be.
+// Halves the worst pieces until the spheres, with those kept, are as many as they may be. `area` is that of the pieces.
 void share_spheres(const Halver& halver, std::vector<std::vector<Region*>>& groups, const FitSettings& settings,
-                   double area) {
-  std::size_t spheres = 0;
+                   double area, std::size_t kept) {
+  std::size_t spheres = kept;
   for (const std::vector<Region*>& group : groups) spheres += group.size();
   for (;;) {
     double far_area = 0;
@@ -372,36 +372,69 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> find_links(const Character&
 
 }  // namespace
 
-Spheres fit_halves(const Character& character, const Regions& regions, const FitSettings& settings) {
+Spheres fit_halves(const Character& character, const Regions& regions, const FitSettings& settings,
+                   const KeptSpheres& kept) {
   const Mesh& skin = character.skin;
   const Halver halver(skin, kWellFitted * regions.frame.height);
   std::vector<Region> all(regions.count());
   for (Index t = 0; t < regions.of_skin.size(); ++t) all[regions.of_skin[t]].triangles.push_back(t);
-  for (Region& region : all) region.pieces.push_back(halver.enclose(region.triangles));
-  std::vector<std::vector<Region*>> groups = mirrored(skin, regions, all);
-  share_spheres(halver, groups, settings, surface_area(skin));
+  std::vector<Region*> halved;
+  std::size_t kept_spheres = 0;
+  double area = 0;
+  for (std::size_t id = 0; id < all.size(); ++id) {
+    if (kept.keeps(id)) {
+      kept_spheres += kept.of_region(id).size();
+      continue;
+    }
+    for (const Index t : all[id].triangles) area += triangle_area(skin, t);
+    all[id].pieces.push_back(halver.enclose(all[id].triangles));
+    halved.push_back(&all[id]);
+  }
+  std::vector<std::vector<Region*>> groups = mirrored(skin, regions, halved);
+  share_spheres(halver, groups, settings, area, kept_spheres);
   constexpr int kRounds = 2;
-  for (Region& region : all) {
-    for (int round = 0; round < kRounds; ++round) region.share_again(halver, skin);
+  for (Region* region : halved) {
+    for (int round = 0; round < kRounds; ++round) region->share_again(halver, skin);
   }
 
   Spheres out;
   out.of_region.resize(all.size());
   out.of_skin.resize(skin.triangles.size());
+  std::map<std::uint32_t, std::uint32_t> place;  // of each kept sphere
   for (std::uint8_t id = 0; id < all.size(); ++id) {
+    const auto add = [&](const FittedSphere& sphere) {
+      out.of_region[id].push_back(static_cast<std::uint32_t>(out.spheres.size()));
+      out.spheres.push_back(sphere);
+      out.spheres.back().region = id;
+    };
+    if (kept.keeps(id)) {
+      for (const std::uint32_t sphere : kept.of_region(id)) {
+        place[sphere] = static_cast<std::uint32_t>(out.spheres.size());
+        add(kept.spheres->spheres[sphere]);
+      }
+      for (const Index t : all[id].triangles) {
+        out.of_skin[t] = nearest_sphere(out, out.of_region[id], triangle_centroid(skin, t));
+      }
+      continue;
+    }
     const Polyline& line = id < regions.limbs.size() ? regions.limbs[id].line : regions.spine;
     const Vec3 axis = (line.points().back() - line.points().front()).normalized();
     std::vector<Piece>& pieces = all[id].pieces;
     std::stable_sort(pieces.begin(), pieces.end(),
                      [&](const Piece& a, const Piece& b) { return a.ball.center.dot(axis) < b.ball.center.dot(axis); });
     for (const Piece& piece : pieces) {
-      const auto sphere = static_cast<std::uint32_t>(out.spheres.size());
-      out.spheres.push_back({piece.ball, id, -1, Side::kNone, axis, false});
-      out.of_region[id].push_back(sphere);
-      for (const Index t : piece.triangles) out.of_skin[t] = sphere;
+      for (const Index t : piece.triangles) out.of_skin[t] = static_cast<std::uint32_t>(out.spheres.size());
+      add({piece.ball, id, -1, Side::kNone, axis, false});
     }
   }
   out.links = find_links(character, regions, out);
+  if (kept.spheres != nullptr) {
+    for (const auto& [a, b] : kept.spheres->links) {
+      if (place.count(a) > 0 && place.count(b) > 0) out.links.push_back(std::minmax(place[a], place[b]));
+    }
+    std::sort(out.links.begin(), out.links.end());
+    out.links.erase(std::unique(out.links.begin(), out.links.end()), out.links.end());
+  }
   return out;
 }
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 
@@ -58,8 +59,8 @@ void run_after_fit(Bake& out, const Progress& progress) {
     for (const Limb& limb : out.regions.limbs) {
       limbs.push_back({static_cast<std::uint8_t>(limbs.size()), limb.side, limb.along});
     }
-    out.chains = out.regions.follow_bones() ? build_tree_chains(out.spheres, out.regions.parents)
-                                            : build_chains(out.spheres, limbs);
+    out.chains =
+        out.regions.is_tree() ? build_tree_chains(out.spheres, out.regions.parents) : build_chains(out.spheres, limbs);
   });
   stage(out, progress, "rig", [&] {
     if (!is_biped(out.regions) || !out.joints.empty()) return;
@@ -87,7 +88,7 @@ void run_after_fit(Bake& out, const Progress& progress) {
 }
 
 Attempt<Spheres> fit_regions(const Character& character, const Regions& regions, const FitSettings& settings) {
-  if (regions.follow_bones()) return fit_halves(character, regions, settings);
+  if (regions.is_tree()) return fit_halves(character, regions, settings);
   return fit_spheres(character, regions, settings);
 }
 
@@ -195,62 +196,130 @@ void close_body(Character& character, const SegmentSettings& settings) {
   if (!found) throw Error(ExitCode::kSegmentation, character.file + ": " + found.reason().what);
 }
 
+namespace {
+
+using Candidate = Attempt<FittedCharacter>;
+
+// Binds and measures what a candidate's spheres are.
+Candidate bound(FittedCharacter candidate, Attempt<Spheres> spheres, const BakeSettings& settings) {
+  if (!spheres) return spheres.reason();
+  const Regions& regions = candidate.segmentation.regions;
+  Attempt<Binding> binding = bind_spheres(candidate.character, regions, *spheres, settings.bind);
+  if (!binding) return binding.reason();
+  candidate.quality = measure_fit(candidate.character, regions, *binding);
+  candidate.spheres = std::move(*spheres);
+  candidate.binding = std::move(*binding);
+  return candidate;
+}
+
+std::size_t sphere_limit(const BakeSettings& settings) {
+  return static_cast<std::size_t>(settings.fit.spheres.value_or(kHalvedSpheres));
+}
+
+// `choice` becomes how the regions were found, if they were.
+Candidate fit_limbs(const Character& character, const Roles& roles, const BakeSettings& settings, Wraps wraps,
+                    Choice& choice) {
+  FittedCharacter out;
+  out.character = character;
+  Attempt<Segmentation> found = segment_character(out.character, roles, settings.segment, wraps);
+  if (!found) return found.reason();
+  out.segmentation = std::move(*found);
+  choice = out.segmentation.choice;
+  Attempt<Spheres> spheres = fit_spheres(out.character, out.segmentation.regions, settings.fit);
+  return bound(std::move(out), std::move(spheres), settings);
+}
+
+Candidate fit_bones(const Character& character, const Roles& roles, const BakeSettings& settings) {
+  FittedCharacter out;
+  out.character = character;
+  out.segmentation.regions = segment_by_bones(out.character, roles, sphere_limit(settings));
+  Attempt<Spheres> spheres = fit_halves(out.character, out.segmentation.regions, settings.fit);
+  return bound(std::move(out), std::move(spheres), settings);
+}
+
+// Which regions fit well; of a left and a right limb both or none.
+std::vector<bool> well_fitted(const Regions& regions, const std::vector<double>& far) {
+  std::vector<bool> out;
+  for (const double share : far) out.push_back(share <= kFarAreaGood);
+  for (std::size_t a = 0; a < regions.limbs.size(); ++a) {
+    for (std::size_t b = 0; b < regions.limbs.size(); ++b) {
+      const Limb &left = regions.limbs[a], &right = regions.limbs[b];
+      const bool mirrored = left.side == Side::kLeft && right.side == Side::kRight &&
+                            left.name.substr(left.name.find('_')) == right.name.substr(right.name.find('_'));
+      if (mirrored) out[a] = out[b] = out[a] && out[b];
+    }
+  }
+  return out;
+}
+
+// Limbs and torso where they fit well, and bones for the rest.
+Candidate fit_mixed(const FittedCharacter& limbed, const Roles& roles, const BakeSettings& settings) {
+  const Regions& regions = limbed.segmentation.regions;
+  const std::vector<double>& far = limbed.quality.far_of_region;
+  const std::vector<bool> kept = well_fitted(regions, far);
+  std::size_t kept_spheres = 0;
+  for (std::size_t region = 0; region < kept.size(); ++region) {
+    if (kept[region]) kept_spheres += limbed.spheres.of_region[region].size();
+  }
+  const auto count = static_cast<std::size_t>(std::count(kept.begin(), kept.end(), true));
+  if (!regions.has_torso || count == 0 || count == kept.size()) return Reason{"no region fits better than others"};
+  if (kept_spheres >= sphere_limit(settings)) return Reason{"its limbs take all spheres"};
+  FittedCharacter out;
+  out.character = limbed.character;
+  MixedRegions mixed =
+      segment_rest_by_bones(out.character, regions, kept, roles, sphere_limit(settings) - kept_spheres);
+  out.segmentation.regions = std::move(mixed.regions);
+  Attempt<Spheres> spheres =
+      fit_halves(out.character, out.segmentation.regions, settings.fit, {&limbed.spheres, std::move(mixed.kept)});
+  const Choice& tried = limbed.segmentation.choice;
+  out.segmentation.choice = {tried.strategy + ", in part by bones", tried.passed_over};
+  for (std::size_t region = 0; region < kept.size(); ++region) {
+    if (kept[region]) continue;
+    out.segmentation.choice.passed_over.push_back(
+        {tried.strategy + " for the " + regions.name(region),
+         {fmt::format("{:.0f} % of its skin is farther from its sphere than {:.0f} % of the height", 100 * far[region],
+                      100 * kWellFitted)}});
+  }
+  return bound(std::move(out), std::move(spheres), settings);
+}
+
+Reason why_not(const FittedCharacter& candidate, const FittedCharacter& taken) {
+  return {fmt::format("{:.1f} % of the skin is farther from its sphere than {:.0f} % of the height, not {:.1f} %",
+                      100 * candidate.quality.far_area, 100 * kWellFitted, 100 * taken.quality.far_area)};
+}
+
+}  // namespace
+
 FittedCharacter fit_character(Character character, const Roles& roles, const BakeSettings& settings) {
-  const auto fail = [file = character.file](const Reason& reason) -> FittedCharacter {
-    throw Error(ExitCode::kSegmentation, file + ": " + reason.what);
-  };
-  const auto fit = [&](FittedCharacter& fitted) -> std::optional<Reason> {
-    const Regions& regions = fitted.segmentation.regions;
-    Attempt<Spheres> spheres = fit_regions(fitted.character, regions, settings.fit);
-    if (!spheres) return spheres.reason();
-    Attempt<Binding> binding = bind_spheres(fitted.character, regions, *spheres, settings.bind);
-    if (!binding) return binding.reason();
-    fitted.quality = measure_fit(fitted.character, regions, *binding);
-    fitted.spheres = std::move(*spheres);
-    fitted.binding = std::move(*binding);
-    return std::nullopt;
+  const auto taken_or_fail = [&](Candidate candidate) {
+    if (!candidate) throw Error(ExitCode::kSegmentation, character.file + ": " + candidate.reason().what);
+    return std::move(*candidate);
   };
   const bool one_fit = settings.bind.rule == RefitRule::kPaper || settings.segment.body != BodyKind::kUnknown;
-  const Wraps wraps = one_fit ? Wraps::kAll : Wraps::kUnmoved;
-  FittedCharacter first;
-  first.character = character;
-  const auto fit_first = [&]() -> std::optional<Reason> {
-    Attempt<Segmentation> found = segment_character(first.character, roles, settings.segment, wraps);
-    if (!found) return found.reason();
-    first.segmentation = std::move(*found);
-    return fit(first);
-  };
-  const std::optional<Reason> failure = fit_first();
+  Choice tried;
+  Candidate limbed = fit_limbs(character, roles, settings, one_fit ? Wraps::kAll : Wraps::kUnmoved, tried);
   // Without bones the automatic rig is what moves a body, and it needs a biped's regions.
-  const bool needs_limbs = character.rig.bones.empty() && is_biped(first.segmentation.regions);
-  const bool only_first = one_fit || (failure ? failure->cause == Reason::Cause::kSettings : needs_limbs);
-  if (failure && only_first) return fail(*failure);
-  if (only_first || (!failure && !settings.fit.spheres && first.quality.grade() == FitGrade::kGood)) return first;
+  const bool only_limbs = one_fit || (limbed ? character.rig.bones.empty() && is_biped(limbed->segmentation.regions)
+                                             : limbed.reason().cause == Reason::Cause::kSettings);
+  if (only_limbs) return taken_or_fail(std::move(limbed));
+  if (limbed && !settings.fit.spheres && limbed->quality.grade() == FitGrade::kGood) return std::move(*limbed);
 
-  FittedCharacter second;
-  second.character = std::move(character);
-  second.segmentation.regions = segment_by_bones(
-      second.character, roles, static_cast<std::size_t>(settings.fit.spheres.value_or(kHalvedSpheres)));
-  if (const auto reason = fit(second)) return fail(*reason);
-  const auto why = [](const FittedCharacter& fitted, const FittedCharacter& other) {
-    return Reason{
-        fmt::format("{:.1f} % of the skin is farther from its sphere than {:.0f} % of the height, not {:.1f} %",
-                    100 * fitted.quality.far_area, 100 * kWellFitted, 100 * other.quality.far_area)};
-  };
-  const bool too_many =
-      settings.fit.spheres && first.spheres.spheres.size() > static_cast<std::size_t>(*settings.fit.spheres);
-  if (!failure && !too_many && first.quality.far_area <= second.quality.far_area) {
-    first.segmentation.choice.passed_over.push_back({"bones", why(second, first)});
-    return first;
+  const bool too_many = limbed && settings.fit.spheres && limbed->spheres.spheres.size() > sphere_limit(settings);
+  if (limbed && !too_many && !character.rig.bones.empty()) {
+    Candidate mixed = fit_mixed(*limbed, roles, settings);
+    if (mixed && mixed->quality.grade() == FitGrade::kGood) return std::move(*mixed);
   }
-  const Choice& tried = first.segmentation.choice;
-  const Reason too_many_spheres{fmt::format("it takes {} spheres", first.spheres.spheres.size())};
-  second.segmentation.choice = {"bones", tried.passed_over};
-  second.segmentation.choice.passed_over.push_back(
-      {tried.strategy.empty() ? "march and disk" : tried.strategy, failure    ? *failure
-                                                                   : too_many ? too_many_spheres
-                                                                              : why(first, second)});
-  return second;
+  FittedCharacter bones = taken_or_fail(fit_bones(character, roles, settings));
+  if (limbed && !too_many && limbed->quality.far_area <= bones.quality.far_area) {
+    limbed->segmentation.choice.passed_over.push_back({"bones", why_not(bones, *limbed)});
+    return std::move(*limbed);
+  }
+  const Reason reason = !limbed    ? limbed.reason()
+                        : too_many ? Reason{fmt::format("it takes {} spheres", limbed->spheres.spheres.size())}
+                                   : why_not(*limbed, bones);
+  bones.segmentation.choice = {"bones", tried.passed_over};
+  bones.segmentation.choice.passed_over.push_back({tried.strategy.empty() ? "march and disk" : tried.strategy, reason});
+  return bones;
 }
 
 Bake bake(const std::filesystem::path& input, const BakeSettings& settings, const Progress& progress) {

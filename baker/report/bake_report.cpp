@@ -100,6 +100,7 @@ ordered_json segment_section(const Bake& bake) {
   ordered_json regions = ordered_json::array();
   for (std::size_t r = 0; r < bake.regions.count(); ++r) {
     ordered_json entry{{"name", bake.regions.name(r)},
+                       {"fit", bake.regions.is_by_bones(r) ? "generic" : "paper"},
                        {"triangles", std::count(bake.regions.of_skin.begin(), bake.regions.of_skin.end(), r)},
                        {"area", region_area(bake, r)}};
     if (r < bake.regions.limbs.size()) {
@@ -174,7 +175,7 @@ std::size_t count_extremity(const Bake& bake, std::size_t region) {
 
 // A march at penetration depth PD takes about length / (2 r (1 - PD)) spheres.
 std::string why_this_count(const Bake& bake) {
-  if (bake.regions.follow_bones()) {
+  if (bake.regions.is_tree()) {
     return "A sphere for each part; where the skin was farthest from its sphere, its triangles were halved.";
   }
   std::string why;
@@ -234,7 +235,7 @@ std::pair<std::size_t, std::size_t> pivots_used(const Bake& bake) {
 ordered_json quality_section(const Bake& bake) {
   const FitQuality& quality = bake.quality;
   ordered_json far = ordered_json::array();
-  for (const std::uint8_t region : quality.far_regions) far.push_back(bake.regions.name(region));
+  for (const std::uint8_t region : quality.far_regions()) far.push_back(bake.regions.name(region));
   return {{"grade", fit_grade_name(quality.grade())},
           {"far_area", quality.far_area},
           {"far_regions", std::move(far)},
@@ -311,7 +312,7 @@ std::string bake_report_text(const Bake& bake) {
       fmt::format("{}: {} triangles ({} body), {} components, {:.3f} m {}; {}\n", bake.character.file,
                   bake.character.source_triangles.size(), mesh.triangles.size(), bake.character.report.components,
                   bake.regions.frame.height * bake.character.metres_per_unit,
-                  is_biped(bake.regions) || bake.regions.follow_bones() ? "tall" : "long", bake.regions.facing);
+                  is_biped(bake.regions) || bake.regions.is_tree() ? "tall" : "long", bake.regions.facing);
   if (const std::size_t dropped = bake.character.report.attachments_dropped; dropped > 0) {
     out += fmt::format("left out: {} on joints, such as weapons and hats (--attachments keeps them)\n",
                        dropped == 1 ? "1 rigid mesh" : fmt::format("{} rigid meshes", dropped));
@@ -339,6 +340,8 @@ std::string bake_report_text(const Bake& bake) {
 std::string generic_fit_text(const std::vector<std::string>& generic, std::size_t parts) {
   if (generic.empty()) return {};
   if (generic.size() == parts) return "; all parts by the generic fit";
+  constexpr std::size_t kNamed = 6;
+  if (generic.size() > kNamed) return fmt::format("; {} of {} parts by the generic fit", generic.size(), parts);
   return fmt::format("; {} by the generic fit: {}",
                      generic.size() == 1 ? "1 part" : fmt::format("{} parts", generic.size()), joined(generic));
 }
@@ -346,9 +349,9 @@ std::string generic_fit_text(const std::vector<std::string>& generic, std::size_
 std::string fit_line(const Bake& bake) {
   const FitQuality& quality = bake.quality;
   std::vector<std::string> far, generic;
-  for (const std::uint8_t region : quality.far_regions) far.push_back(bake.regions.name(region));
+  for (const std::uint8_t region : quality.far_regions()) far.push_back(bake.regions.name(region));
   for (std::size_t r = 0; r < bake.regions.count(); ++r) {
-    if (bake.regions.follow_bones()) generic.push_back(bake.regions.name(r));
+    if (bake.regions.is_by_bones(r)) generic.push_back(bake.regions.name(r));
   }
   std::string line = fmt::format("fit: {}", fit_grade_name(quality.grade()));
   if (!far.empty() && quality.grade() != FitGrade::kGood) line += "; badly fitted: " + joined(far);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "segment/by_bones.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,263 +9,12 @@
 #include <set>
 
 #include "roles/skeleton.h"
+#include "segment/part_tree.h"
 
 namespace spherechain::baker {
 namespace {
 
-constexpr int kNone = -1;
-
-// Triangles of the skin that move as one.
-struct Part {
-  int node = kNone;  // of the rig; none where nothing moves them
-  std::vector<Index> triangles;
-  int parent = kNone;  // another part
-};
-
-// The node of the rig that moves each triangle of the skin most.
-std::vector<int> heaviest_nodes(const Character& character) {
-  const SourceRig& rig = character.rig;
-  std::vector<int> nodes;
-  for (const Index source : character.skin_source_triangle) {
-    std::map<int, double> sum;
-    for (const Index corner : character.source_triangles[source]) {
-      if (rig.weights.empty()) break;
-      const VertexWeights& weights = rig.weights[corner];
-      for (std::size_t k = 0; k < kMaxInfluences; ++k) {
-        if (weights.weight[k] > 0) sum[static_cast<int>(rig.bones[weights.joint[k]].node)] += weights.weight[k];
-      }
-    }
-    const auto most =
-        std::max_element(sum.begin(), sum.end(), [](const auto& l, const auto& r) { return l.second < r.second; });
-    nodes.push_back(most == sum.end() ? kNone : most->first);
-  }
-  return nodes;
-}
-
-// Where the area of triangles lies: its centroid, and how far it spreads along its principal axes, the longest first.
-struct Extent {
-  Vec3 centroid = Vec3::Zero();
-  std::array<Vec3, 3> axis;
-  std::array<double, 3> spread;  // standard deviations
-};
-
-Extent extent_of(const Mesh& mesh, const std::vector<Index>& triangles) {
-  Extent extent;
-  double area = 0;
-  for (const Index t : triangles) {
-    extent.centroid += triangle_area(mesh, t) * triangle_centroid(mesh, t);
-    area += triangle_area(mesh, t);
-  }
-  extent.centroid /= area;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const Index t : triangles) {
-    for (const Index v : mesh.triangles[t]) {
-      const Vec3 d = mesh.positions[v] - extent.centroid;
-      covariance += triangle_area(mesh, t) / (3 * area) * d * d.transpose();
-    }
-  }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto column = static_cast<Eigen::Index>(2 - i);
-    extent.axis[i] = solver.eigenvectors().col(column);
-    extent.spread[i] = std::sqrt(std::max(0.0, solver.eigenvalues()[column]));
-  }
-  return extent;
-}
-
-double area_of(const Mesh& mesh, const std::vector<Index>& triangles) {
-  double area = 0;
-  for (const Index t : triangles) area += triangle_area(mesh, t);
-  return area;
-}
-
-// Pieces of triangles that no bone moves, halved across the longest until there are enough.
-std::vector<std::vector<Index>> cut_in_pieces(const Mesh& mesh, std::vector<Index> triangles, std::size_t count) {
-  constexpr std::size_t kFewest = 8;  // triangles of what is still cut
-  std::vector<std::vector<Index>> pieces{std::move(triangles)};
-  std::vector<Extent> extents{extent_of(mesh, pieces[0])};
-  while (pieces.size() < count) {
-    std::size_t longest = pieces.size();
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-      if (pieces[i].size() < kFewest) continue;
-      if (longest == pieces.size() || extents[i].spread[0] > extents[longest].spread[0]) longest = i;
-    }
-    if (longest == pieces.size()) break;
-    const Extent cut = extents[longest];
-    const auto above = [&](Index t) { return (triangle_centroid(mesh, t) - cut.centroid).dot(cut.axis[0]) > 0; };
-    const auto middle = std::stable_partition(pieces[longest].begin(), pieces[longest].end(), above);
-    std::vector<Index> below(middle, pieces[longest].end());
-    if (below.empty() || below.size() == pieces[longest].size()) break;
-    pieces[longest].erase(middle, pieces[longest].end());
-    extents[longest] = extent_of(mesh, pieces[longest]);
-    extents.push_back(extent_of(mesh, below));
-    pieces.push_back(std::move(below));
-  }
-  return pieces;
-}
-
-double distance_of(const Mesh& mesh, const Part& a, const Part& b) {
-  constexpr std::size_t kSamples = 100;
-  const auto step = [](const Part& part) { return std::max<std::size_t>(1, part.triangles.size() / kSamples); };
-  double least = std::numeric_limits<double>::max();
-  for (std::size_t i = 0; i < a.triangles.size(); i += step(a)) {
-    const Vec3 p = triangle_centroid(mesh, a.triangles[i]);
-    for (std::size_t j = 0; j < b.triangles.size(); j += step(b)) {
-      least = std::min(least, (p - triangle_centroid(mesh, b.triangles[j])).squaredNorm());
-    }
-  }
-  return least;
-}
-
-class PartTree {
- public:
-  PartTree(const Character& character, double least_area) : mesh_(character.skin), least_area_(least_area) {
-    std::map<int, std::vector<Index>> of_node;
-    const std::vector<int> nodes = heaviest_nodes(character);
-    for (Index t = 0; t < nodes.size(); ++t) of_node[nodes[t]].push_back(t);
-    std::vector<Index> unmoved = std::move(of_node[kNone]);
-    of_node.erase(kNone);
-
-    const std::vector<Node>& rig = character.rig.nodes;
-    const auto above = [&](int node) {
-      do node = rig[static_cast<std::size_t>(node)].parent;
-      while (node != kNone && of_node.count(node) == 0);
-      return node;
-    };
-    // Parents come before their children: from the last on, each small part is complete when it joins.
-    for (int node = static_cast<int>(rig.size()) - 1; node >= 0; --node) {
-      const auto part = of_node.find(node);
-      if (part == of_node.end() || area_of(mesh_, part->second) >= least_area_) continue;
-      const int parent = above(node);
-      if (parent == kNone) continue;
-      std::vector<Index>& joined = of_node[parent];
-      joined.insert(joined.end(), part->second.begin(), part->second.end());
-      of_node.erase(part);
-    }
-    std::map<int, int> part_of_node;
-    for (auto& [node, triangles] : of_node) {
-      const int parent = above(node);
-      part_of_node[node] = static_cast<int>(parts_.size());
-      std::sort(triangles.begin(), triangles.end());
-      parts_.push_back({node, std::move(triangles), parent == kNone ? kNone : part_of_node[parent]});
-    }
-    add_unmoved(std::move(unmoved));
-    join_roots();
-  }
-
-  // The root is the last.
-  std::vector<Part> take() {
-    std::vector<int> order;
-    for (int i = 0; i < count(); ++i) {
-      if (at(i).parent != kNone) order.push_back(i);
-    }
-    for (int i = 0; i < count(); ++i) {
-      if (at(i).parent == kNone) order.push_back(i);
-    }
-    std::vector<int> place(parts_.size());
-    for (std::size_t i = 0; i < order.size(); ++i) place[static_cast<std::size_t>(order[i])] = static_cast<int>(i);
-    std::vector<Part> sorted;
-    for (const int i : order) {
-      sorted.push_back(std::move(at(i)));
-      int& parent = sorted.back().parent;
-      parent = parent == kNone ? count() - 1 : place[static_cast<std::size_t>(parent)];
-    }
-    return sorted;
-  }
-
- private:
-  int count() const { return static_cast<int>(parts_.size()); }
-  Part& at(int i) { return parts_[static_cast<std::size_t>(i)]; }
-  double area(int i) { return area_of(mesh_, at(i).triangles); }
-
-  void add_unmoved(std::vector<Index> triangles) {
-    constexpr std::size_t kPieces = 16;
-    if (triangles.empty()) return;
-    if (!parts_.empty() && area_of(mesh_, triangles) < least_area_) {
-      parts_.push_back({kNone, std::move(triangles), kNone});  // join_roots() finds it a place
-      return;
-    }
-    for (std::vector<Index>& piece : cut_in_pieces(mesh_, std::move(triangles), kPieces)) {
-      parts_.push_back({kNone, std::move(piece), kNone});
-    }
-  }
-
-  bool hangs_on(int part, int other) {
-    for (; part != kNone; part = at(part).parent) {
-      if (part == other) return true;
-    }
-    return false;
-  }
-
-  // The part nearest to a root, of another tree.
-  int nearest_to(int root) {
-    int nearest = kNone;
-    double least = std::numeric_limits<double>::max();
-    for (int i = 0; i < count(); ++i) {
-      if (hangs_on(i, root)) continue;
-      const double distance = distance_of(mesh_, at(root), at(i));
-      if (distance >= least) continue;
-      least = distance;
-      nearest = i;
-    }
-    return nearest;
-  }
-
-  // One tree: the root of most area stays, every other one hangs on the part next to it; a small one joins that.
-  void join_roots() {
-    int main = kNone;
-    double most = 0;
-    for (int root = 0; root < count(); ++root) {
-      if (at(root).parent != kNone) continue;
-      double sum = 0;
-      for (int i = 0; i < count(); ++i) sum += hangs_on(i, root) ? area(i) : 0;
-      if (sum > most) {
-        most = sum;
-        main = root;
-      }
-    }
-    std::vector<bool> gone(parts_.size(), false);
-    for (int root = 0; root < count(); ++root) {
-      if (at(root).parent != kNone || root == main) continue;
-      at(root).parent = nearest_to(root);
-      if (area(root) < least_area_) gone[static_cast<std::size_t>(root)] = true;
-    }
-    for (int i = 0; i < count(); ++i) {
-      if (!gone[static_cast<std::size_t>(i)]) continue;
-      Part& into = at(at(i).parent);
-      into.triangles.insert(into.triangles.end(), at(i).triangles.begin(), at(i).triangles.end());
-      std::sort(into.triangles.begin(), into.triangles.end());
-      at(i).triangles.clear();
-      for (Part& part : parts_) {
-        if (part.parent == i) part.parent = at(i).parent;
-      }
-    }
-    std::vector<int> place;
-    std::vector<Part> kept;
-    for (int i = 0; i < count(); ++i) {
-      place.push_back(static_cast<int>(kept.size()));
-      if (!gone[static_cast<std::size_t>(i)]) kept.push_back(std::move(at(i)));
-    }
-    for (Part& part : kept) {
-      if (part.parent != kNone) part.parent = place[static_cast<std::size_t>(part.parent)];
-    }
-    parts_ = std::move(kept);
-  }
-
-  const Mesh& mesh_;
-  double least_area_;
-  std::vector<Part> parts_;
-};
-
-std::vector<Part> parts_of(const Character& character, std::size_t spheres) {
-  constexpr double kShare = 0.3;       // of a sphere's even share of the area
-  constexpr double kSmallest = 0.005;  // of the area: regions are numbered in a byte
-  const double area = surface_area(character.skin);
-  for (double share = std::max(kShare / static_cast<double>(spheres), kSmallest);; share *= 1.25) {
-    std::vector<Part> parts = PartTree(character, share * area).take();
-    if (parts.size() <= spheres || parts.size() == 1) return parts;
-  }
-}
+constexpr int kNone = Part::kNone;
 
 // From the joint towards the one below it where the skin goes on longest, or the skin's own axis where it is much
 // longer that way.
@@ -369,38 +117,143 @@ BodyFrame frame_of(const Character& character, const std::vector<Part>& parts, c
   return frame;
 }
 
+// A region in the making. The last is the root.
+struct Entry {
+  Limb limb;
+  std::vector<Index> triangles;
+  int parent;     // another entry; the root's is itself
+  bool by_bones;  // else a limb or torso
+};
+
+// Appends the parts' entries, their parents included.
+void add_parts(const Character& character, const Roles& roles, const std::vector<Part>& parts,
+               std::set<std::string>& taken, std::vector<Entry>& entries) {
+  const Skeleton skeleton = make_skeleton(character.rig, character.source_positions);
+  const auto first = static_cast<int>(entries.size());
+  for (const Part& part : parts) {
+    const Extent extent = extent_of(character.skin, part.triangles);
+    const Polyline line =
+        line_of(character.skin, part, extent.centroid, axis_of(part, skeleton, extent, character.skin));
+    entries.push_back({{name_of(part, character.rig, taken), side_of(part, roles), 0, line, line.length()},
+                       part.triangles,
+                       first + part.parent,
+                       true});
+  }
+}
+
+void fill(const std::vector<Entry>& entries, std::size_t triangles, Regions& regions) {
+  regions.of_skin.resize(triangles);
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    for (const Index t : entries[i].triangles) regions.of_skin[t] = static_cast<std::uint8_t>(i);
+    regions.parents.push_back(static_cast<std::uint8_t>(entries[i].parent));
+    regions.by_bones.push_back(entries[i].by_bones);
+    if (i + 1 < entries.size()) regions.limbs.push_back(entries[i].limb);
+  }
+  regions.of_triangle = regions.of_skin;
+  const Limb& root = entries.back().limb;
+  regions.torso_name = root.name;
+  regions.spine = root.line;
+  regions.hip = root.line.at(0);
+  regions.chest = root.line.at(root.line.length());
+  regions.spine_chest = regions.spine_neck = root.line.length();
+  regions.torso = {0, regions.frame.height};
+}
+
+std::vector<Index> skin_of(const Regions& regions, std::uint8_t region) {
+  std::vector<Index> out;
+  for (Index t = 0; t < regions.of_skin.size(); ++t) {
+    if (regions.of_skin[t] == region) out.push_back(t);
+  }
+  return out;
+}
+
+// The skin's regions, where a limb that is kept has all the skin of the bones that move most of their skin in it: the
+// armpit moves with the arm.
+std::vector<std::uint8_t> with_all_of_limbs(const Character& character, const Regions& regions,
+                                            const std::vector<bool>& kept) {
+  const std::vector<int> nodes = heaviest_nodes(character);
+  std::map<int, std::vector<double>> areas;  // of each node, by region
+  for (Index t = 0; t < nodes.size(); ++t) {
+    std::vector<double>& of_node = areas[nodes[t]];
+    of_node.resize(regions.count());
+    of_node[regions.of_skin[t]] += triangle_area(character.skin, t);
+  }
+  std::vector<std::uint8_t> out = regions.of_skin;
+  for (Index t = 0; t < nodes.size(); ++t) {
+    const std::vector<double>& of_node = areas[nodes[t]];
+    const auto most = std::max_element(of_node.begin(), of_node.end());
+    const auto region = static_cast<std::size_t>(most - of_node.begin());
+    if (kept[region] && *most > 0.5 * std::accumulate(of_node.begin(), of_node.end(), 0.0)) {
+      out[t] = static_cast<std::uint8_t>(region);
+    }
+  }
+  return out;
+}
+
+// The entry from `first` on whose skin is nearest.
+int nearest_entry(const Mesh& skin, const std::vector<Entry>& entries, std::size_t first, const Entry& from) {
+  std::size_t nearest = first;
+  double least = std::numeric_limits<double>::max();
+  for (std::size_t i = first; i < entries.size(); ++i) {
+    const double distance = distance_of(skin, from.triangles, entries[i].triangles);
+    if (distance >= least) continue;
+    least = distance;
+    nearest = i;
+  }
+  return static_cast<int>(nearest);
+}
+
 }  // namespace
 
 Regions segment_by_bones(Character& character, const Roles& roles, std::size_t spheres) {
   take_all_pieces(character);
-  const std::vector<Part> parts = parts_of(character, spheres);
-  const Skeleton skeleton = make_skeleton(character.rig, character.source_positions);
+  const std::vector<Part> parts = parts_of(character, spheres, {});
   Regions regions;
   regions.provider = "bones";
   regions.frame = frame_of(character, parts, roles, regions.facing);
-  regions.of_skin.resize(character.skin.triangles.size());
   std::set<std::string> taken;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const Part& part = parts[i];
-    for (const Index t : part.triangles) regions.of_skin[t] = static_cast<std::uint8_t>(i);
-    regions.parents.push_back(static_cast<std::uint8_t>(part.parent));
-    const Extent extent = extent_of(character.skin, part.triangles);
-    const Polyline line =
-        line_of(character.skin, part, extent.centroid, axis_of(part, skeleton, extent, character.skin));
-    const std::string name = name_of(part, character.rig, taken);
-    if (i + 1 < parts.size()) {
-      regions.limbs.push_back({name, side_of(part, roles), 0, line, line.length()});
-      continue;
-    }
-    regions.torso_name = name;
-    regions.spine = line;
-    regions.hip = line.at(0);
-    regions.chest = line.at(line.length());
-    regions.spine_chest = regions.spine_neck = line.length();
-    regions.torso = {0, regions.frame.height};
-  }
-  regions.of_triangle = regions.of_skin;
+  std::vector<Entry> entries;
+  add_parts(character, roles, parts, taken, entries);
+  fill(entries, character.skin.triangles.size(), regions);
   return regions;
+}
+
+MixedRegions segment_rest_by_bones(Character& character, const Regions& found, const std::vector<bool>& kept,
+                                   const Roles& roles, std::size_t spheres) {
+  take_all_pieces(character);
+  Regions limbed = found;
+  limbed.of_skin = with_all_of_limbs(character, found, kept);
+  std::vector<bool> left_out;
+  for (const std::uint8_t region : limbed.of_skin) left_out.push_back(kept[region]);
+  const std::uint8_t torso = limbed.torso_region();
+  std::set<std::string> taken{limbed.torso_name};
+  std::vector<Entry> entries;
+  MixedRegions out;
+  for (std::uint8_t region = 0; region < torso; ++region) {
+    if (!kept[region]) continue;
+    entries.push_back({limbed.limbs[region], skin_of(limbed, region), 0, false});
+    taken.insert(limbed.limbs[region].name);
+    out.kept.push_back(region);
+  }
+  const std::size_t first = entries.size();
+  add_parts(character, roles, parts_of(character, spheres, left_out), taken, entries);
+  out.kept.resize(entries.size(), MixedRegions::kNone);
+  if (kept[torso]) {
+    const auto root = static_cast<int>(entries.size());
+    entries.back().parent = root;
+    const Limb spine{limbed.torso_name, Side::kNone, 0, limbed.spine, limbed.spine.length()};
+    entries.push_back({spine, skin_of(limbed, torso), root, false});
+    out.kept.push_back(torso);
+  }
+  for (std::size_t i = 0; i < first; ++i) {
+    entries[i].parent =
+        kept[torso] ? static_cast<int>(entries.size()) - 1 : nearest_entry(character.skin, entries, first, entries[i]);
+  }
+  out.regions.provider = limbed.provider;
+  out.regions.frame = limbed.frame;
+  out.regions.facing = limbed.facing;
+  fill(entries, character.skin.triangles.size(), out.regions);
+  return out;
 }
 
 }  // namespace spherechain::baker

@@ -14,7 +14,7 @@ std::vector<Index> triangles_of_region(const Regions& regions, std::uint8_t regi
 }
 
 bool is_biped(const Regions& regions) {
-  return regions.limbs.size() == kTorso && !regions.follow_bones() &&
+  return regions.limbs.size() == kTorso && !regions.is_tree() &&
          std::equal(regions.limbs.begin(), regions.limbs.end(), kRegionNames.begin(),
                     [](const Limb& limb, const char* name) { return limb.name == name; });
 }

@@ -23,8 +23,8 @@ struct Limb {
 };
 
 // The region of every triangle. Limbs are regions 0 to k - 1; region k is the torso with neck and head. A biped's
-// regions are the paper's R0 to R4. Regions that follow the bones are a tree instead: any number of parts, each a limb
-// whose line is its axis, and the root in the place of the torso.
+// regions are the paper's R0 to R4. Where regions follow the bones they are a tree instead: any number of parts, each a
+// limb whose line is its axis, and the root in the place of the torso. Limbs that fit well may be parts of the tree.
 struct Regions {
   BodyFrame frame;
   std::string provider;  // "shape", "rig" or "bones"
@@ -32,7 +32,8 @@ struct Regions {
   std::vector<Limb> limbs;
   bool has_torso = true;  // a snake has none
   std::string torso_name = "torso";
-  std::vector<std::uint8_t> parents;  // by bones: the region that each hangs on, the root on itself; else empty
+  std::vector<std::uint8_t> parents;  // of a tree: the region that each hangs on, the root on itself; else empty
+  std::vector<bool> by_bones;         // of a tree: whether a region is what a bone moves, or a limb or torso after all
   Vec3 hip, chest;                    // in the plane of symmetry: between the starts of the legs, and of the arms
   TorsoEnds torso;
   Polyline spine;                         // the skeleton's curve from hip to chest junction and on to the head's tip
@@ -43,7 +44,8 @@ struct Regions {
   std::uint8_t torso_region() const { return static_cast<std::uint8_t>(limbs.size()); }
   std::size_t count() const { return limbs.size() + (has_torso ? 1 : 0); }
   std::string name(std::size_t region) const { return region < limbs.size() ? limbs[region].name : torso_name; }
-  bool follow_bones() const { return !parents.empty(); }
+  bool is_tree() const { return !parents.empty(); }
+  bool is_by_bones(std::size_t region) const { return is_tree() && by_bones[region]; }
 };
 
 // The body's triangles of a region.

@@ -264,6 +264,7 @@ TEST_CASE("the grade names the parts by the generic fit, or says that all are, o
   CHECK(generic_fit_text({"horn"}, 5) == "; 1 part by the generic fit: horn");
   CHECK(generic_fit_text({"skirt", "horn"}, 5) == "; 2 parts by the generic fit: skirt, horn");
   CHECK(generic_fit_text({"a", "b"}, 2) == "; all parts by the generic fit");
+  CHECK(generic_fit_text({"a", "b", "c", "d", "e", "f", "g"}, 9) == "; 7 of 9 parts by the generic fit");
 }
 
 TEST_CASE("a bake comes to its end where a hand or foot is folded to nothing in between" *

@@ -6,9 +6,11 @@
 #include <set>
 
 #include "creatures.h"
+#include "human.h"
 #include "mesh/error.h"
 #include "pipeline/pipeline.h"
 #include "segment/by_bones.h"
+#include "segment/part_tree.h"
 
 using namespace spherechain::baker;
 
@@ -73,7 +75,7 @@ FittedCharacter fitted(const SourceMesh& mesh, const BakeSettings& settings = {}
 void check_fit(const FittedCharacter& fit, std::size_t most) {
   const Regions& regions = fit.segmentation.regions;
   const Mesh& skin = fit.character.skin;
-  REQUIRE(regions.follow_bones());
+  REQUIRE(regions.is_tree());
   REQUIRE(regions.parents.size() == regions.count());
   for (std::uint8_t region = 0; region < regions.count(); ++region) {
     std::uint8_t above = region;
@@ -210,4 +212,49 @@ TEST_CASE("along a tree of parts every two spheres of different leaves share a c
   }
   const std::size_t n = fit.spheres.spheres.size();
   CHECK(shared.size() == n * n);
+}
+
+TEST_CASE("limbs that fit well keep the march's spheres, and the rest of the body follows its bones") {
+  // A wolf: the trunk with its mane fits badly, the legs fit well.
+  Character wolf = import_character(kModels / "X/Testwuson.X");
+  const Roles roles = find_roles(wolf.rig, wolf.source_positions, {}, BodyKind::kUnknown);
+  const FittedCharacter fit = fit_character(std::move(wolf), roles, {});
+  check_fit(fit, kHalvedSpheresMax);
+  CHECK(fit.quality.grade() == FitGrade::kGood);
+  const Regions& regions = fit.segmentation.regions;
+  CHECK(fit.segmentation.choice.passed_over.back().strategy.ends_with("for the torso"));
+  const Mesh& skin = fit.character.skin;
+  std::set<std::string> legs;
+  for (std::size_t region = 0; region < regions.count(); ++region) {
+    const std::vector<std::uint32_t>& spheres = fit.spheres.of_region[region];
+    if (regions.is_by_bones(region)) {
+      CHECK_FALSE(regions.name(region).starts_with("left_"));
+      continue;
+    }
+    const Limb& limb = regions.limbs[region];
+    if (limb.side != Side::kNone) legs.insert(limb.name);
+    // The paper's chain: along the limb from its start, and neighbours one after another.
+    for (std::size_t i = 1; i < spheres.size(); ++i) {
+      const auto along = [&](std::uint32_t sphere) {
+        return limb.line.closest(fit.spheres.spheres[sphere].ball.center);
+      };
+      CHECK(along(spheres[i - 1]) <= along(spheres[i]));
+      const auto link = std::minmax(spheres[i - 1], spheres[i]);
+      CHECK(std::binary_search(fit.spheres.links.begin(), fit.spheres.links.end(),
+                               std::pair<std::uint32_t, std::uint32_t>(link)));
+    }
+  }
+  CHECK(legs == std::set<std::string>{"left_foreleg", "right_foreleg", "left_hindleg", "right_hindleg"});
+  // The bone of a paw has no skin outside its leg.
+  const std::vector<int> nodes = heaviest_nodes(fit.character);
+  std::set<std::uint8_t> of_paw;
+  for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
+    CHECK(regions.of_skin[t] == fit.spheres.spheres[fit.binding.sphere_of_triangle[t]].region);
+    const int node = nodes[t];
+    if (node >= 0 && fit.character.rig.nodes[static_cast<std::size_t>(node)].name == "ForeLeg_L_05") {
+      of_paw.insert(regions.of_skin[t]);
+    }
+  }
+  REQUIRE(of_paw.size() == 1);
+  CHECK(regions.name(*of_paw.begin()) == "left_foreleg");
 }

@@ -411,7 +411,7 @@ TEST_CASE("a character is played on the body that its own settings closed, and b
   for (const Triangle& t : mesh.triangles) obj += fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
   const TemporaryFolder folder;
   const std::filesystem::path source = folder.write("doll.obj", obj);
-  CHECK(bake(source, make_settings("balanced", "{}", "test"), {}).regions.follow_bones());
+  CHECK(bake(source, make_settings("balanced", "{}", "test"), {}).regions.is_tree());
 
   const Bake baked = bake(source, make_settings("balanced", R"({"facing": [0, 0, 1]})", "test"), {});
   CHECK(baked.closing.body == BodySource::kRepaired);
