@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/area_samples.h"
 #include "mesh/even_directions.h"
 #include "mesh/surface_query.h"
 
@@ -55,25 +56,28 @@ std::vector<std::uint8_t> FitQuality::far_regions() const {
 FitQuality measure_fit(const Character& character, const Regions& regions, const Binding& binding) {
   const Mesh& skin = character.skin;
   const double height = regions.frame.height;
-  std::vector<double> distances;
+  std::vector<std::pair<double, double>> distances;
   std::vector<double> area(regions.count(), 0), far(regions.count(), 0);
   double sum = 0, all = 0, all_far = 0;
   for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
     const Ball& ball = binding.spheres[binding.sphere_of_triangle[t]].rest;
-    const double distance = std::abs(signed_f(ball, triangle_centroid(skin, t))) / height;
-    const double own = triangle_area(skin, t);
-    distances.push_back(distance);
-    sum += distance;
-    all += own;
-    area[regions.of_skin[t]] += own;
-    if (distance <= kWellFitted) continue;
-    all_far += own;
-    far[regions.of_skin[t]] += own;
+    for_each_area_sample(skin, t, kWellFitted * height, [&](const Vec3& p, double own) {
+      const double distance = std::abs(signed_f(ball, p)) / height;
+      distances.emplace_back(distance, own);
+      sum += own * distance;
+      all += own;
+      area[regions.of_skin[t]] += own;
+      if (distance <= kWellFitted) return;
+      all_far += own;
+      far[regions.of_skin[t]] += own;
+    });
   }
-  std::sort(distances.begin(), distances.end());
-  const auto count = static_cast<double>(distances.size());
-  FitQuality quality{sum / count,   distances[static_cast<std::size_t>(0.95 * count)], distances.back(),
-                     all_far / all, protrusion_of(skin, binding.spheres) / height,     {}};
+  FitQuality quality{sum / all,
+                     weighted_quantile(distances, 0.95),
+                     std::max_element(distances.begin(), distances.end())->first,
+                     all_far / all,
+                     protrusion_of(skin, binding.spheres) / height,
+                     {}};
   for (std::size_t region = 0; region < regions.count(); ++region) {
     quality.far_of_region.push_back(area[region] > 0 ? far[region] / area[region] : 0);
   }

@@ -13,7 +13,7 @@ const char* fit_grade_name(FitGrade grade);
 
 // How well the spheres fit the skin at rest. Lengths are fractions of the height.
 struct FitQuality {
-  double distance_mean, distance_p95, distance_max;  // of the skin from its sphere's surface, over triangles
+  double distance_mean, distance_p95, distance_max;  // of the skin from its sphere's surface, by area
   double far_area;                                   // share of the skin farther than kWellFitted
   double protrusion;                                 // mean distance of the spheres' outer surface from the skin
   std::vector<double> far_of_region;                 // of each region: the share of its skin farther than that

@@ -15,7 +15,7 @@ constexpr double kClose = 0.003;      // of the height: skins that are this near
 constexpr double kCloseReach = 1.03;  // and are reported up to this part of the spheres' distance at rest
 constexpr double kGapShare = 0.6;     // of another gap must close
 constexpr double kNear = 0.9;         // spheres nearly touch where this part of their distance is within their radii
-constexpr double kListed = 0.02;      // of the poses: what a pair's own distance saves in false alarms, at least
+constexpr double kListed = 0.01;      // of the poses: what a pair's own distance saves in false alarms, at least
 constexpr std::size_t kTriangles = 60'000'000;  // of all poses together, at most
 
 std::vector<Pair> tested_pairs(const Binding& binding) {

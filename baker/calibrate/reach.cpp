@@ -7,7 +7,7 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr double kRestWorth = 15, kWorth = 30;  // false alarms that a contact is worth: of a rest pair; of another
+constexpr double kRestWorth = 10, kWorth = 30;  // false alarms that a contact is worth: of a rest pair; of another
 constexpr double kBorrowed = 3;                 // average pairs, from each sphere and from the body
 constexpr double kReachMin = 0.7;               // of pairs that are no rest pairs
 

@@ -9,7 +9,7 @@
 namespace spherechain::baker {
 
 // How near two spheres must come to be reported, for each pair, as a part of the sum of their sampled radii: where the
-// contacts that a report finds, times their worth, exceed its false alarms most. A contact is worth 15 false alarms of
+// contacts that a report finds, times their worth, exceed its false alarms most. A contact is worth 10 false alarms of
 // a rest pair, 30 of another: what is beyond the radii is never found.
 // A pair that is no rest pair borrows three average pairs from each of its spheres and from the whole body, for many
 // touch seldom in samples. It reaches 0.7 at least. Without samples it reaches 1, and a rest pair 0.

@@ -45,6 +45,7 @@ void check_regular_file(const std::filesystem::path& path) {
   if (status.type() == std::filesystem::file_type::none) fail("cannot be read (" + error.message() + ")");
   if (std::filesystem::is_directory(status)) fail("is a folder, not a file");
   if (!std::filesystem::is_regular_file(status)) fail("is a pipe or a device, not a file");
+  if (std::filesystem::file_size(path, error) == 0) fail("is empty (export it again)");
 }
 
 std::vector<std::filesystem::path> files_beside(const std::filesystem::path& source) {

@@ -169,8 +169,10 @@ SourceMesh read_with_assimp(const std::filesystem::path& path) {
   Assimp::Importer importer;
   const std::string name = path.string();
   const aiScene* scene = read_scene(importer, path);
-  if (scene == nullptr)
-    throw Error(ExitCode::kFile, name + ": not a mesh or motion that assimp reads (" + importer.GetErrorString() + ")");
+  if (scene == nullptr) {
+    throw Error(ExitCode::kFile, name + ": not a mesh or motion that assimp reads: " + importer.GetErrorString() +
+                                     " (export it as glTF 2.0)");
+  }
   SourceMesh out;
   out.importer = "assimp";
   const AssimpScene flat = flatten(*scene, name);

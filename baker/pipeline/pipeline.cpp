@@ -232,7 +232,7 @@ Candidate fit_limbs(const Character& character, const Roles& roles, const BakeSe
 Candidate fit_bones(const Character& character, const Roles& roles, const BakeSettings& settings) {
   FittedCharacter out;
   out.character = character;
-  out.segmentation.regions = segment_by_bones(out.character, roles, sphere_limit(settings));
+  out.segmentation.regions = segment_by_bones(out.character, roles, settings.segment.facing, sphere_limit(settings));
   Attempt<Spheres> spheres = fit_halves(out.character, out.segmentation.regions, settings.fit);
   return bound(std::move(out), std::move(spheres), settings);
 }
@@ -305,19 +305,20 @@ FittedCharacter fit_character(Character character, const Roles& roles, const Bak
   if (limbed && !settings.fit.spheres && limbed->quality.grade() == FitGrade::kGood) return std::move(*limbed);
 
   const bool too_many = limbed && settings.fit.spheres && limbed->spheres.spheres.size() > sphere_limit(settings);
-  if (limbed && !too_many && !character.rig.bones.empty()) {
-    Candidate mixed = fit_mixed(*limbed, roles, settings);
-    if (mixed && mixed->quality.grade() == FitGrade::kGood) return std::move(*mixed);
-  }
+  Candidate mixed{Reason{"there is nothing to mix"}};
+  if (limbed && !too_many && !character.rig.bones.empty()) mixed = fit_mixed(*limbed, roles, settings);
+  if (mixed && mixed->quality.grade() == FitGrade::kGood) return std::move(*mixed);
   FittedCharacter bones = taken_or_fail(fit_bones(character, roles, settings));
+  if (mixed && mixed->quality.far_area <= bones.quality.far_area) return std::move(*mixed);
   if (limbed && !too_many && limbed->quality.far_area <= bones.quality.far_area) {
-    limbed->segmentation.choice.passed_over.push_back({"bones", why_not(bones, *limbed)});
+    const char* name = character.rig.bones.empty() ? "pieces" : "bones";
+    limbed->segmentation.choice.passed_over.push_back({name, why_not(bones, *limbed)});
     return std::move(*limbed);
   }
   const Reason reason = !limbed    ? limbed.reason()
                         : too_many ? Reason{fmt::format("it takes {} spheres", limbed->spheres.spheres.size())}
                                    : why_not(*limbed, bones);
-  bones.segmentation.choice = {"bones", tried.passed_over};
+  bones.segmentation.choice = {character.rig.bones.empty() ? "pieces" : "bones", tried.passed_over};
   bones.segmentation.choice.passed_over.push_back({tried.strategy.empty() ? "march and disk" : tried.strategy, reason});
   return bones;
 }

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -306,13 +307,23 @@ std::string bake_report_json(const Bake& bake) {
   return json_text(report, 1) + "\n";
 }
 
+// Whether the frame's height, the longest extent, is the one upwards.
+bool is_tall(const Bake& bake) {
+  if (!bake.regions.is_tree()) return is_biped(bake.regions);
+  double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
+  for (const Vec3& p : bake.character.skin.positions) {
+    low = std::min(low, p.dot(bake.regions.frame.up));
+    high = std::max(high, p.dot(bake.regions.frame.up));
+  }
+  return high - low > 0.999 * bake.regions.frame.height;
+}
+
 std::string bake_report_text(const Bake& bake) {
   const Mesh& mesh = bake.character.body;
-  std::string out =
-      fmt::format("{}: {} triangles ({} body), {} components, {:.3f} m {}; {}\n", bake.character.file,
-                  bake.character.source_triangles.size(), mesh.triangles.size(), bake.character.report.components,
-                  bake.regions.frame.height * bake.character.metres_per_unit,
-                  is_biped(bake.regions) || bake.regions.is_tree() ? "tall" : "long", bake.regions.facing);
+  std::string out = fmt::format(
+      "{}: {} triangles ({} body), {} components, {:.3f} m {}; {}\n", bake.character.file,
+      bake.character.source_triangles.size(), mesh.triangles.size(), bake.character.report.components,
+      bake.regions.frame.height * bake.character.metres_per_unit, is_tall(bake) ? "tall" : "long", bake.regions.facing);
   if (const std::size_t dropped = bake.character.report.attachments_dropped; dropped > 0) {
     out += fmt::format("left out: {} on joints, such as weapons and hats (--attachments keeps them)\n",
                        dropped == 1 ? "1 rigid mesh" : fmt::format("{} rigid meshes", dropped));
@@ -350,11 +361,16 @@ std::string fit_line(const Bake& bake) {
   const FitQuality& quality = bake.quality;
   std::vector<std::string> far, generic;
   for (const std::uint8_t region : quality.far_regions()) far.push_back(bake.regions.name(region));
+  if (far.empty()) {
+    const std::vector<double>& shares = quality.far_of_region;
+    far.push_back(
+        bake.regions.name(static_cast<std::size_t>(std::max_element(shares.begin(), shares.end()) - shares.begin())));
+  }
   for (std::size_t r = 0; r < bake.regions.count(); ++r) {
     if (bake.regions.is_by_bones(r)) generic.push_back(bake.regions.name(r));
   }
   std::string line = fmt::format("fit: {}", fit_grade_name(quality.grade()));
-  if (!far.empty() && quality.grade() != FitGrade::kGood) line += "; badly fitted: " + joined(far);
+  if (quality.grade() != FitGrade::kGood) line += "; badly fitted: " + joined(far);
   return line + generic_fit_text(generic, bake.regions.count()) + "\n";
 }
 

@@ -88,7 +88,7 @@ Vec3 up_of(const Character& character, const Roles& roles) {
 }
 
 BodyFrame frame_of(const Character& character, const std::vector<Part>& parts, const Roles& roles,
-                   std::string& facing) {
+                   const std::optional<Vec3>& wish, std::string& facing) {
   Vec3 left = Vec3::Zero();
   for (const Part& part : parts) {
     const Side side = side_of(part, roles);
@@ -103,6 +103,10 @@ BodyFrame frame_of(const Character& character, const std::vector<Part>& parts, c
     facing = "forward is as the file's axes have it";
     left = std::abs(up.x()) < 0.9 ? Vec3::UnitX() : Vec3::UnitY();
     left -= left.dot(up) * up;
+  }
+  if (const Vec3 across = up.cross(wish.value_or(Vec3::Zero())); across.norm() > 1e-6 * wish.value_or(up).norm()) {
+    left = across;
+    facing = "forward is the direction in the settings";
   }
   left.normalize();
   BodyFrame frame = with_up({Vec3::Zero(), left, up, left.cross(up), 0}, up, character.skin);
@@ -205,12 +209,13 @@ int nearest_entry(const Mesh& skin, const std::vector<Entry>& entries, std::size
 
 }  // namespace
 
-Regions segment_by_bones(Character& character, const Roles& roles, std::size_t spheres) {
+Regions segment_by_bones(Character& character, const Roles& roles, const std::optional<Vec3>& facing,
+                         std::size_t spheres) {
   take_all_pieces(character);
   const std::vector<Part> parts = parts_of(character, spheres, {});
   Regions regions;
   regions.provider = "bones";
-  regions.frame = frame_of(character, parts, roles, regions.facing);
+  regions.frame = frame_of(character, parts, roles, facing, regions.facing);
   std::set<std::string> taken;
   std::vector<Entry> entries;
   add_parts(character, roles, parts, taken, entries);

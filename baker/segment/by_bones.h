@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "roles/roles.h"
@@ -11,7 +12,9 @@ namespace spherechain::baker {
 // Segments any body: each triangle belongs to the bone that moves it most, or, where nothing moves it, to a piece of
 // its own. A part too small for its share of `spheres` joins the nearest part above it in the rig. The body becomes all
 // of the skin. `roles` are those of the rig and tell sides; they may be empty.
-Regions segment_by_bones(Character& character, const Roles& roles, std::size_t spheres);
+// `facing` overrides which way is forward.
+Regions segment_by_bones(Character& character, const Roles& roles, const std::optional<Vec3>& facing,
+                         std::size_t spheres);
 
 // A tree of limbs, and perhaps the torso, of other regions, and of parts by bones in the place of the rest.
 struct MixedRegions {

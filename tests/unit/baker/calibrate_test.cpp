@@ -119,10 +119,10 @@ TEST_CASE("a rest pair reaches as far as contacts are worth their false alarms")
   SampledPair never{{0, 1}, {}}, often{{0, 2}, {}}, dear{{0, 3}, {}};
   add(never, 100, 1, false);
   add(often, 1, 1, true);
-  add(often, 10, 1.2F, false);
+  add(often, 5, 1.2F, false);
   add(often, 1, 1.4F, true);
   add(dear, 1, 1, true);
-  add(dear, 20, 1.2F, false);
+  add(dear, 15, 1.2F, false);
   add(dear, 1, 1.4F, true);
   const std::vector<double> found = reaches({never, often, dear}, true);
   CHECK(found[0] == 0);

@@ -258,3 +258,11 @@ TEST_CASE("limbs that fit well keep the march's spheres, and the rest of the bod
   REQUIRE(of_paw.size() == 1);
   CHECK(regions.name(*of_paw.begin()) == "left_foreleg");
 }
+
+TEST_CASE("a facing direction in the settings is forward where parts follow the bones, too") {
+  BakeSettings settings;
+  settings.segment.facing = Vec3(-2, 0.5, 0);
+  const BodyFrame frame = fitted(mesh_of(hand()), settings).segmentation.regions.frame;
+  CHECK((frame.forward - Vec3(-1, 0, 0)).norm() < 1e-9);
+  CHECK((frame.left - frame.up.cross(frame.forward)).norm() < 1e-9);
+}

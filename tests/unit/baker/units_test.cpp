@@ -80,7 +80,7 @@ TEST_CASE("a biped that lies in its file stands upright by its rig where its par
     mesh.up_hint = up;
     Character character = build_character(mesh, "a.glb");
     const Roles roles = find_roles(character.rig, character.source_positions);
-    const Regions regions = segment_by_bones(character, roles, 60);
+    const Regions regions = segment_by_bones(character, roles, std::nullopt, 60);
     CHECK(regions.frame.up.isApprox(Vec3::UnitY()));
     CHECK(regions.frame.left.x() > 0.9);
   }
