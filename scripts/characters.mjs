@@ -69,7 +69,7 @@ function bakeAndPlay(character) {
   const { grade, far_area, protrusion } = bake.bind.quality;
   const percent = (share) => `${(100 * share).toFixed(1)} %`;
   return [name, picture(mesh), thousands(bake.import.source_triangles), thousands(bake.import.components),
-    inspected.bones.length, bake.segment.provider, inspected.sphere_count, grade, percent(1 - far_area),
+    inspected.bones.length, bake.segment.provider + (bake.segment.strategy.endsWith("in part by bones") ? ", bones" : ""), inspected.sphere_count, grade, percent(1 - far_area),
     percent(protrusion), bake.stages.reduce((total, stage) => total + stage.seconds, 0).toFixed(1), clips.length, thousands(sum((c) => c.frame_count)),
     thousands(sum((c) => c.contact_frames)), mostFrequent(clips)];
 }

@@ -10,8 +10,8 @@
 namespace spherechain::baker {
 
 // Calls use(point, area) for points that stand for a triangle's area: the centroids of the equal triangles that it is
-// cut into, so that no edge is longer than `fine`, or eight to an edge. The centroid of a long triangle alone says little
-// about its ends.
+// cut into, so that no edge is longer than `fine`, or eight to an edge. The centroid of a long triangle alone says
+// little about its ends.
 template <typename Use>
 void for_each_area_sample(const Mesh& mesh, std::size_t triangle, double fine, const Use& use) {
   constexpr double kCutsMax = 8;
