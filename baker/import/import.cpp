@@ -45,7 +45,6 @@ void check_regular_file(const std::filesystem::path& path) {
   if (status.type() == std::filesystem::file_type::none) fail("cannot be read (" + error.message() + ")");
   if (std::filesystem::is_directory(status)) fail("is a folder, not a file");
   if (!std::filesystem::is_regular_file(status)) fail("is a pipe or a device, not a file");
-  if (std::filesystem::file_size(path, error) == 0) fail("is empty (export it again)");
 }
 
 std::vector<std::filesystem::path> files_beside(const std::filesystem::path& source) {
@@ -70,6 +69,10 @@ std::vector<std::filesystem::path> files_read_with(const std::filesystem::path& 
 
 SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& options) {
   check_regular_file(path);
+  std::error_code ignored;
+  if (std::filesystem::file_size(path, ignored) == 0) {
+    throw Error(ExitCode::kFile, path.string() + ": is empty (export it again)");
+  }
   return from_bytes<SourceMesh>(read_in_child(path.string(), [&] {
     return to_bytes(is_gltf(path) ? read_with_tinygltf(path, options) : read_with_assimp(path));
   }));

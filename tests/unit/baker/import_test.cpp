@@ -48,7 +48,7 @@ TEST_CASE("what is no character is refused with the file's name and the cause") 
   CHECK(contains(refusal(folder.path), "is a folder"));
   CHECK(contains(refusal(folder.write("notes.txt", "dear diary")), "not a mesh"));
   CHECK(contains(refusal(folder.write("broken.dae", "<COLLADA><asset>")), "not a mesh"));
-  CHECK(contains(refusal(folder.write("empty.obj", "")), "not a mesh"));
+  CHECK(contains(refusal(folder.write("empty.obj", "")), "is empty"));
   CHECK(contains(refusal(folder.write("short.GLB", "glTF")), "cut short"));
   CHECK(refusal(folder.write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n")) != "accepted");
   CHECK(contains(refusal(folder.write("lines.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2\nl 2 3\n")), "no triangles"));
