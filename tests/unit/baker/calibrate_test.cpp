@@ -152,6 +152,14 @@ TEST_CASE("radii become what their pairs need, the same for mirrored spheres, an
   CHECK(factors[1] == factors[2]);
   CHECK(factors[0] < 1.45);
   CHECK(radius_factors(pairs, {0, 0, 0}, radii, least) == least);
+  // Both 0 and 1 could give way, for 2 and 4 reach farther than they must; not both at once.
+  const std::vector<SampledPair> row{{{0, 1}, {}}, {{0, 2}, {}}, {{2, 3}, {}}, {{1, 4}, {}}, {{4, 5}, {}}};
+  const std::vector<double> asked{1.2, 1.4, 2, 1.4, 2};
+  const std::vector<double> given = radius_factors(row, asked, std::vector<double>(6, 1), std::vector<double>(6, 0.5));
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    CHECK(given[row[i].spheres.a] + given[row[i].spheres.b] >= 2 * asked[i] - 1e-9);
+  }
+  CHECK(given[0] + given[1] < 2.42);
 }
 
 TEST_CASE("false alarms beyond a reach are those that the radii report and it does not") {
