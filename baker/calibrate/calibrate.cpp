@@ -16,7 +16,7 @@ constexpr double kCloseReach = 1.03;  // and are reported up to this part of the
 constexpr double kGapShare = 0.6;     // of another gap must close
 constexpr double kNear = 0.9;         // spheres nearly touch where this part of their distance is within their radii
 constexpr double kListed = 0.01;      // of the poses: what a pair's own distance saves in false alarms, at least
-constexpr std::size_t kTriangles = 60'000'000;  // of all poses together, at most
+constexpr std::size_t kTriangles = 30'000'000;  // of all poses together, at most
 
 std::vector<Pair> tested_pairs(const Binding& binding) {
   std::vector<Pair> out;

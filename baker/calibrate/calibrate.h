@@ -11,7 +11,7 @@
 
 namespace spherechain::baker {
 
-// Random poses that a calibration takes. A mesh of more than 30,000 triangles takes fewer.
+// Random poses that a calibration takes. A mesh of more than 17,000 triangles takes fewer.
 inline constexpr int kCalibrationPoses = 1800;
 
 // Fits the detect radii and the rest pairs of `binding` to what truly touches in random poses:
