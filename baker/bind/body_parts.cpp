@@ -24,7 +24,7 @@ class PartList {
  public:
   std::size_t add(const std::string& name, Side side, int bone) {
     const auto [found, is_new] = index_of_.try_emplace(name, parts_.size());
-    if (is_new) parts_.push_back({name, side, bone});
+    if (is_new) parts_.push_back({name, side, bone, -1});
     return found->second;
   }
   void follow(std::size_t part, int bone) { parts_[part].bone = bone; }
@@ -110,10 +110,31 @@ Side side_of_region(const Regions& regions, std::size_t region) {
 BodyParts parts_of_regions(const Character& character, const Regions& regions) {
   BodyParts out;
   for (std::size_t r = 0; r < regions.count(); ++r) {
-    out.parts.push_back({in_words(regions.name(r)), side_of_region(regions, r), -1});
+    out.parts.push_back({in_words(regions.name(r)), side_of_region(regions, r), -1, -1});
   }
   out.of_triangle = regions_of_source(character, regions);
   return out;
+}
+
+// Sets each part's parent. The bones are the source's nodes, or the joints of the automatic rig.
+void find_parents(const SourceRig& rig, const std::vector<Joint>& joints, std::vector<BodyPart>& parts) {
+  const bool own_rig = !rig.bones.empty();
+  const auto above = [&](int node) {
+    const auto n = static_cast<std::size_t>(node);
+    return own_rig ? rig.nodes[n].parent : joints[n].parent;
+  };
+  std::map<int, int> part_at;
+  const auto node_of = [&](const BodyPart& part) {
+    return part.bone >= 0 && own_rig ? static_cast<int>(rig.bones[static_cast<std::size_t>(part.bone)].node) : part.bone;
+  };
+  for (std::size_t p = 0; p < parts.size(); ++p) part_at[node_of(parts[p])] = static_cast<int>(p);
+  part_at.erase(-1);
+  for (BodyPart& part : parts) {
+    int node = node_of(part);
+    if (node >= 0) node = above(node);
+    while (node >= 0 && part_at.count(node) == 0) node = above(node);
+    part.parent = node < 0 ? -1 : part_at[node];
+  }
 }
 
 // The parts to keep: those with a triangle; of too many those with most, so that there is room for the rest.
@@ -162,8 +183,9 @@ BodyParts find_body_parts(const Character& character, const Roles& roles, const 
   }
   for (const std::size_t part : of_triangle) out.of_triangle.push_back(place[part]);
   if (std::count(triangles.begin(), triangles.end(), 0U) + std::ssize(kept) < std::ssize(triangles)) {
-    out.parts.push_back({"rest of the body", Side::kNone, -1});
+    out.parts.push_back({"rest of the body", Side::kNone, -1, -1});
   }
+  find_parents(character.rig, joints, out.parts);
   return out;
 }
 

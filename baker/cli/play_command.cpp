@@ -25,7 +25,8 @@ using nlohmann::ordered_json;
 // Means over all frames: what the spheres tell beside the skin, and what each costs.
 class Tally {
  public:
-  void add(const FrameResult& result, Span<const Pair> alarmed, const std::vector<Pair>& skin, double skin_us) {
+  void add(const FrameResult& result, Span<const Pair> alarmed, const std::vector<Pair>& skin, double skin_us,
+           double measure_us) {
     ++frames_;
     last_ = result;
     refit_us_ += result.refit_us;
@@ -38,6 +39,7 @@ class Tally {
       all_pairs_ += result.all_pairs->pairs;
     }
     skin_us_ += skin_us;
+    measure_us_ += measure_us;
     skin_ += skin.size();
     alarmed_ += alarmed.size;
     for (const Pair& pair : alarmed) confirmed_ += std::binary_search(skin.begin(), skin.end(), pair) ? 1 : 0;
@@ -67,13 +69,13 @@ class Tally {
     if (last_.chains) out += row("chains", std::to_string(last_.chains->tests), mean(chains_pairs_), chains_us_);
     if (last_.all_pairs)
       out += row("all pairs", std::to_string(last_.all_pairs->tests), mean(all_pairs_), all_pairs_us_);
-    return out + row("skin", "", mean(skin_), skin_us_);
+    return out + row("skin", "", mean(skin_), skin_us_) + row("depth", "", "", measure_us_);
   }
 
  private:
   int frames_ = 0;
   FrameResult last_;
-  double refit_us_ = 0, chains_us_ = 0, all_pairs_us_ = 0, skin_us_ = 0;
+  double refit_us_ = 0, chains_us_ = 0, all_pairs_us_ = 0, skin_us_ = 0, measure_us_ = 0;
   // Pairs of spheres; alarmed: by the last method that ran.
   std::size_t chains_pairs_ = 0, all_pairs_ = 0, skin_ = 0, alarmed_ = 0, confirmed_ = 0;
 };
@@ -125,12 +127,14 @@ ExitCode run_play(const PlayOptions& options) {
       } else {
         result = player.run(positions);
       }
-      const Player::TriangleDetection skin = player.detect_triangles(positions);
-      const PartCounts counts = contacts.add(i, skin.pairs);
-      tally.add(result, player.pairs(), player.spheres_of(skin.pairs), skin.us);
+      const bool is_next = i > 0 && animated.frame_at(i).clip == animated.frame_at(i - 1).clip;
+      const Player::TriangleDetection skin = player.detect_triangles(positions, is_next);
+      const PartCounts counts = contacts.add(i, skin.pairs, skin.penetrations);
+      tally.add(result, player.pairs(), player.spheres_of(skin.pairs), skin.us, skin.measure_us);
       if (!file) continue;
       ordered_json frame = frame_json(animated, i, result, player);
       frame["skin"] = skin_json(player, skin, contacts, counts, options.contacts);
+      frame["penetrations"] = penetrations_json(animated, skin.penetrations, contacts);
       file->add(frame);
     }
     if (file) file->finish({{"clips", contacts.json()}});

@@ -86,7 +86,7 @@ PageFrames::PageFrames(const AnimatedAsset& animated, Radius radius)
       fit_(checked(animated).asset(), SC_RADIUS_FIT, true, true, choose_target("auto")),
       detect_(animated.asset(), SC_RADIUS_DETECT, true, true, choose_target("auto")) {}
 
-PageFrame PageFrames::run(const std::vector<float>& positions) {
+PageFrame PageFrames::run(const std::vector<float>& positions, bool is_next) {
   PageFrame out;
   const FrameResult fit = fit_.run(positions), detect = detect_.run(positions);
   const FrameResult& timed = radius_ == SC_RADIUS_FIT ? fit : detect;
@@ -99,8 +99,9 @@ PageFrame PageFrames::run(const std::vector<float>& positions) {
     const Sphere& sphere = fit_.spheres()[s];
     out.spheres.insert(out.spheres.end(), {sphere.x, sphere.y, sphere.z, sphere.radius, detect_.spheres()[s].radius});
   }
-  const Player::TriangleDetection found = detect_.detect_triangles(positions);
+  const Player::TriangleDetection found = detect_.detect_triangles(positions, is_next);
   out.contacts_us = found.us;
+  out.penetrations = found.penetrations;
   for (const Pair& pair : found.pairs) out.contacts.push_back({pair.a, pair.b});
   return out;
 }

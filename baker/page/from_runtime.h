@@ -34,6 +34,7 @@ PageParts page_parts(const OpenAsset& asset);
 struct PageFrame {
   std::vector<std::array<std::uint32_t, 2>> contacts;  // triangles of the skin that intersect
   double contacts_us;
+  std::vector<Penetration> penetrations;                // deepest first
   std::vector<float> spheres;                           // a sphere's x, y, z, fit radius, detect radius
   std::vector<std::array<std::uint16_t, 2>> fit_pairs;  // spheres that touch at these radii
   std::vector<std::array<std::uint16_t, 2>> detect_pairs;
@@ -46,8 +47,8 @@ class PageFrames {
   // Throws Error(kFile) where the asset cannot tell contacts.
   PageFrames(const AnimatedAsset& animated, Radius radius);
 
-  // `positions` are the deformed source vertices.
-  PageFrame run(const std::vector<float>& positions);
+  // `positions` are the deformed source vertices; `is_next`: of the clip's next frame.
+  PageFrame run(const std::vector<float>& positions, bool is_next);
 
  private:
   Radius radius_;

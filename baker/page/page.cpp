@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "mesh/error.h"
@@ -98,6 +100,20 @@ void check_size(const AnimatedAsset& animated, double still, double moving, cons
                                     : "its mesh has too many triangles"));
 }
 
+// Parts a and b, class, depth in mm, direction, the deepest point of b, the share that is visible, volume in ml or -1.
+using PenetrationEntry = std::array<float, 12>;
+std::vector<PenetrationEntry> entries_of(const std::vector<Penetration>& penetrations, double mm) {
+  std::vector<PenetrationEntry> out;
+  for (const Penetration& p : penetrations) {
+    const double ml = p.is_closed != 0 ? std::pow(mm / 10, 3) * double{p.volume} : -1;
+    const spherechain::Vec3 &d = p.direction, &at = p.deepest_b.position;
+    out.push_back({static_cast<float>(p.part_a), static_cast<float>(p.part_b), static_cast<float>(p.kind),
+                   static_cast<float>(mm * double{p.depth}), d.x, d.y, d.z, at.x, at.y, at.z, p.visible,
+                   static_cast<float>(ml)});
+  }
+  return out;
+}
+
 // `still` is the size of the page without them.
 ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& options, double still, PageMotion& motion,
                          const std::function<void(int)>& progress) {
@@ -106,6 +122,7 @@ ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& optio
   std::vector<std::uint32_t> numbers;
   std::vector<float> times, seconds, spheres, refit_us, contacts_us;
   FrameLists<std::array<std::uint32_t, 2>> contacts;
+  FrameLists<PenetrationEntry> penetrations;
   FrameLists<std::array<std::uint16_t, 2>> fit_pairs, detect_pairs;
   Costs chains, all_pairs;
   for (int i = 0; i < frames; ++i) {
@@ -113,12 +130,14 @@ ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& optio
     const Deformation deformation = animated.deformation(i);
     const std::vector<Vec3> positions = animated.positions(deformation);
     motion.add(deformation, positions);
-    const PageFrame frame = runtime.run(pack(positions));
+    const bool is_next = i > 0 && animated.frame_at(i).clip == animated.frame_at(i - 1).clip;
+    const PageFrame frame = runtime.run(pack(positions), is_next);
     numbers.push_back(static_cast<std::uint32_t>(animated.frame_at(i).number));
     seconds.push_back(static_cast<float>(animated.frame_at(i).seconds));
     times.push_back(static_cast<float>(animated.time(i)));
     spheres.insert(spheres.end(), frame.spheres.begin(), frame.spheres.end());
     contacts.add(frame.contacts);
+    penetrations.add(entries_of(frame.penetrations, mm_per_unit(animated.asset())));
     fit_pairs.add(frame.fit_pairs);
     detect_pairs.add(frame.detect_pairs);
     chains.add(frame.chains);
@@ -128,7 +147,7 @@ ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& optio
     // Base64 has four letters for three bytes.
     constexpr std::size_t kFigures = 14 * sizeof(float);  // times, counts and costs of a frame
     const std::size_t bytes = times.size() * kFigures + motion.bytes() + spheres.size() * sizeof(float) +
-                              contacts.bytes() + fit_pairs.bytes() + detect_pairs.bytes();
+                              contacts.bytes() + penetrations.bytes() + fit_pairs.bytes() + detect_pairs.bytes();
     check_size(animated, still, static_cast<double>(bytes) * 4 / 3 / (i + 1) * frames, options);
   }
   return {{"count", frames},
@@ -138,6 +157,7 @@ ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& optio
           {"times", base64(times)},
           {"spheres", base64(spheres)},
           {"contacts", contacts.json()},
+          {"penetrations", penetrations.json()},
           {"fit", fit_pairs.json()},
           {"detect", detect_pairs.json()},
           {"contacts_us", base64(contacts_us)},

@@ -145,12 +145,14 @@ std::vector<Vec3> AnimatedAsset::positions(const Deformation& deformation) const
                 deformation.bones);
 }
 
+double mm_per_unit(const OpenAsset& asset) { return 1000 * double{asset->info().metres_per_unit}; }
+
 BodyParts parts_of(const OpenAsset& asset) {
   constexpr std::uint8_t kNone = 255;
   BodyParts out;
   for (std::size_t i = 0; i < asset->part_count(); ++i) {
     const sc_part part = asset->part(i);
-    out.parts.push_back({part.name, static_cast<Side>(part.side), part.bone});
+    out.parts.push_back({part.name, static_cast<Side>(part.side), part.bone, part.parent});
   }
   out.of_triangle.assign(asset->info().triangle_count, kNone);
   const Surface& surface = asset.surface();

@@ -71,6 +71,9 @@ class AnimatedAsset {
   double fps_;
 };
 
+// Of the source's units.
+double mm_per_unit(const OpenAsset& asset);
+
 // The asset's body parts; 255 where a source triangle has none.
 BodyParts parts_of(const OpenAsset& asset);
 

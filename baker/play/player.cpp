@@ -74,7 +74,7 @@ Detection Player::take(std::vector<Sphere> spheres, const std::vector<Pair>& pai
   return {pairs_.size() - asset_->ignored_count(), pair_count_, pair_count_, us};
 }
 
-Player::TriangleDetection Player::detect_triangles(const std::vector<float>& positions) {
+Player::TriangleDetection Player::detect_triangles(const std::vector<float>& positions, bool is_next) {
   SkinContactJob job;
   job.asset = asset_.handle();
   job.pose.vertices = positions.data();
@@ -90,6 +90,30 @@ Player::TriangleDetection Player::detect_triangles(const std::vector<float>& pos
   job.triangle_capacity = contacts.size();
   check_runtime(job.run());
   for (const TriangleContact& contact : contacts) out.pairs.push_back({contact.triangle_a, contact.triangle_b});
+
+  PenetrationJob measure;
+  measure.asset = job.asset;
+  measure.pose = job.pose;
+  measure.target = target_;
+  measure.skin_table = job.skin_table;
+  measure.contacts = contacts.data();
+  measure.contact_count = contacts.size();
+  if (is_next) {
+    measure.previous = last_penetrations_.data();
+    measure.previous_count = last_penetrations_.size();
+  }
+  measure_scratch_.resize(std::max(measure_scratch_.size(), sc_penetration_scratch_words(measure.asset, contacts.size())));
+  measure.scratch = measure_scratch_.data();
+  measure.scratch_words = measure_scratch_.size();
+  out.penetrations.resize(job.part_count);
+  measure.penetrations = out.penetrations.data();
+  measure.penetration_capacity = out.penetrations.size();
+  const auto start = Clock::now();
+  check_runtime(measure.run());
+  out.measure_us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+  last_penetrations_ = out.penetrations;
+  std::stable_sort(out.penetrations.begin(), out.penetrations.end(),
+                   [](const Penetration& l, const Penetration& r) { return l.depth > r.depth; });
   return out;
 }
 

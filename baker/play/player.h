@@ -8,6 +8,7 @@
 
 #include "play/asset_file.h"
 #include "spherechain/detect.h"
+#include "spherechain/penetrations.h"
 #include "spherechain/refit.h"
 #include "spherechain/skin_contacts.h"
 
@@ -46,8 +47,11 @@ class Player {
   struct TriangleDetection {
     std::vector<Pair> pairs;
     double us;  // median of a few runs
+    std::vector<Penetration> penetrations;  // deepest first
+    double measure_us;                      // what measuring them costs
   };
-  TriangleDetection detect_triangles(const std::vector<float>& positions);
+  // `is_next`: this pose follows the last one in its clip, and directions may follow that one's.
+  TriangleDetection detect_triangles(const std::vector<float>& positions, bool is_next);
   // The spheres that these triangles belong to: pairs a < b, sorted.
   std::vector<Pair> spheres_of(const std::vector<Pair>& triangles) const;
 
@@ -65,7 +69,8 @@ class Player {
   Target target_;
   std::vector<Sphere> spheres_;
   std::vector<Pair> pairs_;
-  std::vector<std::uint64_t> scratch_;
+  std::vector<std::uint64_t> scratch_, measure_scratch_;
+  std::vector<Penetration> last_penetrations_;
   std::unordered_map<std::uint32_t, std::uint32_t> sphere_of_;  // a source triangle -> its sphere
   std::size_t pair_count_ = 0;
 };

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "mesh/error.h"
@@ -48,7 +49,8 @@ std::size_t PartContacts::part_of(std::uint32_t triangle) const {
   throw Error(ExitCode::kFile, animated_.file() + ": names triangles that its source does not have (bake it again)");
 }
 
-PartCounts PartContacts::add(int frame, const std::vector<Pair>& triangles) {
+PartCounts PartContacts::add(int frame, const std::vector<Pair>& triangles,
+                             const std::vector<Penetration>& penetrations) {
   PartCounts counts;
   for (const Pair& pair : triangles) ++counts[std::minmax({part_of(pair.a), part_of(pair.b)})];
   const MotionFrame& at = animated_.frame_at(frame);
@@ -69,6 +71,14 @@ PartCounts PartContacts::add(int frame, const std::vector<Pair>& triangles) {
       contact.frame_of_max = at.number;
     }
   }
+  for (const Penetration& found : penetrations) {
+    Contact& contact = clip.contacts[{found.part_a, found.part_b}];
+    if (mm_ * double{found.depth} > contact.depth_mm_max) {
+      contact.depth_mm_max = mm_ * double{found.depth};
+      contact.frame_of_depth_max = at.number;
+      contact.kind = found.kind;
+    }
+  }
   last_frame_ = frame;
   return counts;
 }
@@ -86,17 +96,33 @@ std::string PartContacts::head(std::size_t index, const std::string& motion) con
 
 std::string PartContacts::rows(const Clip& clip) const {
   std::vector<Row> order;
-  for (const auto& entry : clip.contacts) order.push_back(&entry);
-  std::stable_sort(order.begin(), order.end(), [](Row l, Row r) { return l->second.frames > r->second.frames; });
+  std::map<PenetrationClass, int, std::greater<>> others;
+  for (const auto& entry : clip.contacts) {
+    const PenetrationClass kind = entry.second.kind;
+    if (kind >= SC_CLASS_DEEP_FOLD) order.push_back(&entry);
+    if (kind < SC_CLASS_DEEP_FOLD) ++others[kind];
+  }
+  std::stable_sort(order.begin(), order.end(), [](Row l, Row r) {
+    const auto key = [](Row row) { return std::pair(row->second.kind, row->second.depth_mm_max); };
+    return key(l) > key(r);
+  });
   std::vector<std::vector<std::string>> cells;
   for (const Row row : order) {
     const auto [a, b] = row->first;
     const Contact& contact = row->second;
     const char* unit = contact.frames == 1 ? "frame " : "frames ";
+    const char* fold = contact.kind == SC_CLASS_DEEP_FOLD ? "deep fold, " : "";
     cells.push_back({name(a), a == b ? "itself" : name(b), unit + runs_text(contact.runs),
-                     fmt::format("most triangle pairs {} at {}", contact.triangle_pairs_max, contact.frame_of_max)});
+                     fmt::format("{}{:.0f} mm deep at {}", fold, contact.depth_mm_max, contact.frame_of_depth_max)});
   }
-  return table(cells);
+  std::string rest;
+  for (const auto& [kind, count] : others) {
+    const char* plural = count == 1 ? "" : kind == SC_CLASS_TOUCH ? "es" : "s";
+    const std::string what = kind == SC_CLASS_REST ? "contact" : sc_penetration_class_name(kind);
+    rest += fmt::format("{}{} {}{}{}", rest.empty() ? "  besides: " : ", ", count, what, plural,
+                        kind == SC_CLASS_REST ? " as at rest" : "");
+  }
+  return table(cells) + (rest.empty() ? rest : rest + "\n");
 }
 
 std::string PartContacts::text(const std::string& motion) const {
@@ -118,7 +144,10 @@ ordered_json PartContacts::json() const {
                           {"b", name(pair.second)},
                           {"frames", contact.runs},
                           {"triangle_pairs_max", contact.triangle_pairs_max},
-                          {"frame_of_max", contact.frame_of_max}});
+                          {"frame_of_max", contact.frame_of_max},
+                          {"class", sc_penetration_class_name(contact.kind)},
+                          {"depth_mm_max", contact.depth_mm_max},
+                          {"frame_of_depth_max", contact.frame_of_depth_max}});
     }
     out.push_back({{"name", frames.name},
                    {"first_frame", frames.first},

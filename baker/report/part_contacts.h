@@ -10,7 +10,7 @@
 
 #include "bind/body_parts.h"
 #include "play/play.h"
-#include "spherechain/skin_contacts.h"
+#include "spherechain/penetrations.h"
 
 namespace spherechain::baker {
 
@@ -21,15 +21,17 @@ using PartCounts = std::map<std::pair<std::size_t, std::size_t>, std::size_t>;
 class PartContacts {
  public:
   // `animated` must outlive it.
-  explicit PartContacts(const AnimatedAsset& animated) : animated_(animated), parts_(parts_of(animated.asset())) {}
+  explicit PartContacts(const AnimatedAsset& animated)
+      : animated_(animated), mm_(mm_per_unit(animated.asset())), parts_(parts_of(animated.asset())) {}
 
   // Frames are added in order. Returns the frame's counts.
-  PartCounts add(int frame, const std::vector<Pair>& triangles);
+  PartCounts add(int frame, const std::vector<Pair>& triangles, const std::vector<Penetration>& penetrations);
 
   const std::string& name(std::size_t part) const { return parts_.parts[part].name; }
   const BodyParts& parts() const { return parts_; }
 
-  // The frames so far, a paragraph for each clip. `motion` names what is not made of clips.
+  // The frames so far, a paragraph for each clip: faults and deep folds, the deepest first, and how many contacts of
+  // other classes there are. `motion` names what is not made of clips.
   std::string text(const std::string& motion) const;
   // The same as a list of clips.
   nlohmann::ordered_json json() const;
@@ -41,6 +43,9 @@ class PartContacts {
     int frames = 0;
     std::size_t triangle_pairs_max = 0;
     int frame_of_max = 0;
+    double depth_mm_max = 0;  // and its frame, and the class there
+    int frame_of_depth_max = 0;
+    PenetrationClass kind = SC_CLASS_REST;
   };
   using Contacts = std::map<std::pair<std::size_t, std::size_t>, Contact>;
   struct Clip {
@@ -54,6 +59,7 @@ class PartContacts {
   std::string rows(const Clip& clip) const;
 
   const AnimatedAsset& animated_;
+  double mm_;  // a unit of the source, in millimetres
   BodyParts parts_;
   std::vector<Clip> clips_;
   int last_frame_ = -1;

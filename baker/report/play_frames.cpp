@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "report/play_frames.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "report/json_text.h"
@@ -43,6 +44,29 @@ ordered_json skin_json(const Player& player, const Player::TriangleDetection& sk
   if (list_triangles) {
     ordered_json& triangles = out["triangles"] = ordered_json::array();
     for (const Pair& pair : skin.pairs) triangles.push_back({pair.a, pair.b});
+  }
+  return out;
+}
+
+ordered_json penetrations_json(const AnimatedAsset& animated, const std::vector<Penetration>& penetrations,
+                               const PartContacts& contacts) {
+  const double mm = mm_per_unit(animated.asset());
+  const auto point = [](const SkinPoint& at) {
+    return ordered_json{{"position", {at.position.x, at.position.y, at.position.z}},
+                        {"triangle", at.triangle},
+                        {"weights", at.weights}};
+  };
+  ordered_json out = ordered_json::array();
+  for (const Penetration& found : penetrations) {
+    const double ml = std::pow(mm / 10, 3) * double{found.volume};
+    out.push_back({{"parts", {contacts.name(found.part_a), contacts.name(found.part_b)}},
+                   {"class", sc_penetration_class_name(found.kind)},
+                   {"depth_mm", mm * double{found.depth}},
+                   {"direction", {found.direction.x, found.direction.y, found.direction.z}},
+                   {"volume_ml", found.is_closed != 0 ? ordered_json(ml) : ordered_json()},
+                   {"visible", found.visible},
+                   {"contour_mm", mm * double{found.contour_length}},
+                   {"deepest", {point(found.deepest_a), point(found.deepest_b)}}});
   }
   return out;
 }

@@ -21,6 +21,10 @@ nlohmann::ordered_json frame_json(const AnimatedAsset& animated, int index, cons
 nlohmann::ordered_json skin_json(const Player& player, const Player::TriangleDetection& skin,
                                  const PartContacts& contacts, const PartCounts& counts, bool list_triangles);
 
+// A frame's `penetrations`, deepest first.
+nlohmann::ordered_json penetrations_json(const AnimatedAsset& animated, const std::vector<Penetration>& penetrations,
+                                         const PartContacts& contacts);
+
 // What `play --json` writes: the keys of `head`, then `frames`, then the keys of `tail`. It is written frame by
 // frame: all of them may not fit in memory.
 class PlayFile {

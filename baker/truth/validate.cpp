@@ -153,7 +153,7 @@ Frame validate_frame(const Context& context, int index) {
       all(animated.asset(), settings.radius, false, true, settings.target);
   const std::vector<Pair> chains_pairs = touching_spheres(chains, positions),
                           all_pairs = touching_spheres(all, positions),
-                          skin_pairs = all.spheres_of(all.detect_triangles(positions).pairs);
+                          skin_pairs = all.spheres_of(all.detect_triangles(positions, false).pairs);
   frame.reported = settings.skin ? skin_pairs : settings.method == Method::kChains ? chains_pairs : all_pairs;
   frame.score = score_frame(frame.truth, frame.reported, is_close, is_apart, [&](const TrueContact& contact) {
     frame.misses.push_back({index, contact.spheres, contact.triangles.size(), depth_of(contact)});

@@ -41,7 +41,8 @@ class Builder {
       return schema::CreateRegion(fb_, fb_.CreateString(region.name), region.triangle_count);
     });
     const auto body_parts = tables(parts_.parts, [&](const PartEntry& part) {
-      return schema::CreatePart(fb_, fb_.CreateString(part.name), static_cast<schema::Side>(part.side), part.bone);
+      return schema::CreatePart(fb_, fb_.CreateString(part.name), static_cast<schema::Side>(part.side), part.bone,
+                                part.parent);
     });
     const auto spheres = structs<schema::Sphere>(fb_, parts_.spheres);
     const auto pivots = structs<schema::Pivot>(fb_, parts_.pivots);

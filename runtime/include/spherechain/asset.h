@@ -24,7 +24,8 @@ typedef struct sc_bone {
 typedef struct sc_part {
   const char* name;
   sc_side side;
-  int32_t bone; /* the bone that it follows; -1 where no bone moves it */
+  int32_t bone;   /* the bone that it follows; -1 where no bone moves it */
+  int32_t parent; /* the part that it hangs on; -1: none */
 } sc_part;
 
 /* A sphere at rest. Lengths in source units. */

@@ -6,6 +6,7 @@
 #include "spherechain/character.h"
 #include "spherechain/crowd.h"
 #include "spherechain/detect.h"
+#include "spherechain/penetrations.h"
 #include "spherechain/pose.h"
 #include "spherechain/refit.h"
 #include "spherechain/skin_contacts.h"

@@ -93,6 +93,9 @@ SC_ENUM(sc_field){
     SC_FIELD_OUTPUT = 29,
     SC_FIELD_STREAM = 30,
     SC_FIELD_SKIN_TABLE = 31,
+    SC_FIELD_CONTACTS = 32,
+    SC_FIELD_PREVIOUS = 33,
+    SC_FIELD_PENETRATIONS = 34,
 };
 
 /* What every operation returns: what went wrong, and with which field. */

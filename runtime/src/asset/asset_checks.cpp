@@ -284,6 +284,9 @@ class AssetChecker {
       if (part.side > SC_SIDE_RIGHT || part.bone < -1 || part.bone >= static_cast<std::int64_t>(bones)) {
         return message_.wrong("parts[%zu]: no known side, or a bone past the %zu", i, bones);
       }
+      if (part.parent < -1 || part.parent >= static_cast<std::int64_t>(asset_.part_count())) {
+        return message_.wrong("parts[%zu]: hangs on a part that does not exist", i);
+      }
     }
     return true;
   }

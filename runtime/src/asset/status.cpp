@@ -63,6 +63,9 @@ constexpr std::pair<sc_field, const char*> kFieldNames[] = {
     {SC_FIELD_OUTPUT, "output"},
     {SC_FIELD_STREAM, "stream"},
     {SC_FIELD_SKIN_TABLE, "skin_table"},
+    {SC_FIELD_CONTACTS, "contacts"},
+    {SC_FIELD_PREVIOUS, "previous"},
+    {SC_FIELD_PENETRATIONS, "penetrations"},
 };
 
 template <typename Texts, typename Value>

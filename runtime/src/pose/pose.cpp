@@ -49,6 +49,16 @@ Status check_vertices(const Pose& pose, std::size_t wanted) {
                                                                  : done();
 }
 
+Status check_skin_pose(const AssetView& asset, const Pose& pose) {
+  if (pose.vertices != nullptr) {
+    const Status status = check_vertices(asset, pose);
+    if (status != SC_OK || pose.bones == nullptr) {
+      return status;
+    }
+  }
+  return check_bones(asset, pose);
+}
+
 MemoryRange range_of_bones(const AssetView& asset, const Pose& pose) {
   return range_of(pose.bones, asset.bone_count(), bone_stride(pose), size_of(pose.bone_layout));
 }

@@ -50,6 +50,9 @@ inline Status check_vertices(const AssetView& asset, const Pose& pose) {
   return check_vertices(pose, asset.vertex_count());
 }
 
+// Whether the pose has what a job on the skin needs: vertices, bones or both.
+Status check_skin_pose(const AssetView& asset, const Pose& pose);
+
 // What is read of a checked pose.
 MemoryRange range_of_bones(const AssetView& asset, const Pose& pose);
 MemoryRange range_of_vertices(const AssetView& asset, const Pose& pose);

@@ -4,25 +4,11 @@
 // error bound, and exactly where that does not tell.
 #pragma once
 
-#include "simd/arithmetic.h"
+#include "skin/double3.h"
 #include "skin/exact_orientation.h"
 #include "skin/exact_triangles.h"
 
 namespace spherechain {
-
-struct Double3 {
-  double x, y, z;
-};
-
-inline Double3 difference(const Vec3& a, const Vec3& b) {
-  return {double{a.x} - double{b.x}, double{a.y} - double{b.y}, double{a.z} - double{b.z}};
-}
-
-inline Double3 cross(const Double3& a, const Double3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-inline double dot(const Double3& a, const Double3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
 // Of both, along an axis.
 inline double extent_of(const TriangleCorners& a, const TriangleCorners& b, float Vec3::*axis) {

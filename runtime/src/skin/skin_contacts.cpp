@@ -31,16 +31,6 @@ Status check_candidates(const SkinContactJob& job, std::size_t sphere_count) {
                                      : done();
 }
 
-Status check_pose(const AssetView& asset, const Pose& pose) {
-  if (pose.vertices != nullptr) {
-    const Status status = check_vertices(asset, pose);
-    if (status != SC_OK || pose.bones == nullptr) {
-      return status;
-    }
-  }
-  return check_bones(asset, pose);
-}
-
 bool is_aliased(const SkinContactJob& job, const AssetView& asset) {
   const FilterRanges filter = ranges_of(job.filter);
   return any_shared(
@@ -64,7 +54,7 @@ Status check(const SkinContactJob& job, Target& resolved, Surface& surface) {
   if (asset.skin().sizes.clusters == 0) {
     return refuse(SC_NOT_IN_ASSET, SC_FIELD_ASSET);
   }
-  const Status statuses[] = {check_pose(asset, job.pose),
+  const Status statuses[] = {check_skin_pose(asset, job.pose),
                              read_skin_table(asset, job.skin_table, surface),
                              job.filter == nullptr ? done() : check_filter(asset, *job.filter),
                              check_list(job.scratch, 1, SC_FIELD_SCRATCH),

@@ -20,4 +20,7 @@ struct SkinInputs {
 // other source vertices are left alone. For the repository's own use.
 void skin_surface(const Surface& surface, const Pose& pose, Target resolved, float* positions, std::size_t stride);
 
+// The same for all of the surface's vertices, x, y, z each.
+void skin_vertices(const Surface& surface, const Pose& pose, Target resolved, float* positions);
+
 }  // namespace spherechain

@@ -12,7 +12,8 @@ HWY_BEFORE_NAMESPACE();
 namespace spherechain {
 namespace HWY_NAMESPACE {
 
-void skin_all(const SkinInputs& in, float* positions, std::size_t stride) {
+// Vertices go to their own place, or to their source vertex'.
+void skin_all(const SkinInputs& in, bool by_source, float* positions, std::size_t stride) {
   const Surface& surface = *in.surface;
   static_assert(kMaxClusterVertices % kSlotLanes == 0, "as many slots");
   HWY_ALIGN float x[kMaxClusterVertices], y[kMaxClusterVertices], z[kMaxClusterVertices];
@@ -21,7 +22,7 @@ void skin_all(const SkinInputs& in, float* positions, std::size_t stride) {
     skin_cluster(in, cluster, x, y, z);
     for (std::size_t slot = 0; slot < cluster.vertex_count; ++slot) {
       const std::uint32_t vertex = surface.cluster_vertices.data[cluster.first_vertex + slot];
-      float* out = positions + stride * surface.source_vertices.data[vertex];
+      float* out = positions + stride * (by_source ? surface.source_vertices.data[vertex] : vertex);
       out[0] = x[slot];
       out[1] = y[slot];
       out[2] = z[slot];
@@ -42,7 +43,11 @@ SPHERECHAIN_KERNELS(skin_all);
 }  // namespace
 
 void skin_surface(const Surface& surface, const Pose& pose, Target resolved, float* positions, std::size_t stride) {
-  skin_all_kernels[index_of(resolved)]({&surface, matrices_of(pose), pose.morph_weights}, positions, stride);
+  skin_all_kernels[index_of(resolved)]({&surface, matrices_of(pose), pose.morph_weights}, true, positions, stride);
+}
+
+void skin_vertices(const Surface& surface, const Pose& pose, Target resolved, float* positions) {
+  skin_all_kernels[index_of(resolved)]({&surface, matrices_of(pose), pose.morph_weights}, false, positions, 3);
 }
 
 }  // namespace spherechain

@@ -42,6 +42,12 @@ std::size_t lay_out(const AssetView& asset, std::uint64_t* words, Surface& out, 
   memory.take(out.cluster_vertices, sizes.cluster_vertices);
   memory.take(out.cluster_bones, sizes.cluster_bones);
   memory.take(out.parts, sizes.triangles);
+  memory.take(out.triangle_vertices, 3 * sizes.triangles);
+  memory.take(out.triangle_spheres, sizes.triangles);
+  memory.take(out.place_of_source, asset.info().triangle_count);
+  memory.take(out.part_triangles, sizes.triangles);
+  memory.take(out.first_of_part, asset.part_count() + 1);
+  memory.take(out.pieces, sizes.vertices);
   memory.take(out.source_vertices, sizes.vertices);
   memory.take(out.welds, sizes.vertices);
   memory.take(out.slot_positions, 3 * sizes.slots);
@@ -57,6 +63,7 @@ std::size_t lay_out(const AssetView& asset, std::uint64_t* words, Surface& out, 
   memory.take(vertices.first_weights, sizes.vertices);
   memory.take(vertices.first_morphs, sizes.vertices + 1);
   memory.take(vertices.bones, sizes.influences);
+  out.rest_positions = skin.positions;
   out.corners = skin.corners;
   out.boxes = skin.boxes;
   out.bounds_term_bones = skin.bounds_term_bones;
@@ -80,9 +87,13 @@ class Filler {
     fill_starts(skin_.bounds_term_counts, out_.bounds_first_terms);
     fill_starts(skin_.bounds_morph_counts, out_.bounds_first_morphs);
     Stream triangles(skin_.triangles), pairs(skin_.rest_contacts);
-    for (std::uint32_t& triangle : out_.triangles) {
-      triangle = triangles.next();
+    std::fill(out_.place_of_source.begin(), out_.place_of_source.end(), kNoPlace);
+    for (std::uint32_t t = 0; t < out_.triangles.size; ++t) {
+      out_.triangles[t] = triangles.next();
+      out_.place_of_source[out_.triangles[t]] = t;
     }
+    fill_part_triangles();
+    fill_pieces();
     for (Pair& pair : out_.rest_contacts) {
       pair.a = pairs.next();
       pair.b = pairs.next();
@@ -160,6 +171,12 @@ class Filler {
         for (std::uint32_t i = 0; i < cluster.bone_count; ++i) {
           out_.cluster_bones[cluster.first_bone + i] = bones.next();
         }
+        std::fill_n(out_.triangle_spheres.data + cluster.first_triangle, cluster.triangle_count,
+                    static_cast<std::uint16_t>(cluster.sphere));
+        for (std::size_t i = 0; i < 3 * std::size_t{cluster.triangle_count}; ++i) {
+          const std::size_t corner = 3 * std::size_t{cluster.first_triangle} + i;
+          out_.triangle_vertices[corner] = out_.cluster_vertices[cluster.first_vertex + skin_.corners[corner]];
+        }
         fill_slots(cluster);
         fill_morphs(cluster);
         const auto slots = static_cast<std::uint32_t>(slot_count(cluster));
@@ -218,6 +235,51 @@ class Filler {
       for (const std::size_t end = ends.next(); triangle < end; ++triangle) {
         out_.parts[triangle] = part;
       }
+    }
+  }
+
+  void fill_part_triangles() const {
+    std::fill(out_.first_of_part.begin(), out_.first_of_part.end(), 0U);
+    for (const std::uint8_t part : out_.parts) {
+      ++out_.first_of_part[part + std::size_t{1}];
+    }
+    for (std::size_t part = 1; part < out_.first_of_part.size; ++part) {
+      out_.first_of_part[part] += out_.first_of_part[part - 1];
+    }
+    // Each start moves on to the part's end, which is the next one's start.
+    for (std::uint32_t t = 0; t < out_.parts.size; ++t) {
+      out_.part_triangles[out_.first_of_part[out_.parts[t]]++] = t;
+    }
+    for (std::size_t part = out_.first_of_part.size - 1; part > 0; --part) {
+      out_.first_of_part[part] = out_.first_of_part[part - 1];
+    }
+    out_.first_of_part[0] = 0;
+  }
+
+  // Each vertex points to one of its piece with a number no higher than its own; the lowest stands for the piece.
+  std::uint32_t piece_of(std::uint32_t vertex) const {
+    while (out_.pieces[vertex] != vertex) {
+      vertex = out_.pieces[vertex] = out_.pieces[out_.pieces[vertex]];
+    }
+    return vertex;
+  }
+  void join(std::uint32_t v, std::uint32_t w) const {
+    const std::uint32_t a = piece_of(v), b = piece_of(w);
+    out_.pieces[std::max(a, b)] = std::min(a, b);
+  }
+  void fill_pieces() const {
+    for (std::uint32_t v = 0; v < out_.pieces.size; ++v) {
+      out_.pieces[v] = v;
+    }
+    for (std::uint32_t v = 0; v < out_.pieces.size; ++v) {
+      join(v, out_.welds[v]);
+    }
+    for (std::size_t t = 0; t < out_.triangles.size; ++t) {
+      join(out_.triangle_vertices[3 * t], out_.triangle_vertices[3 * t + 1]);
+      join(out_.triangle_vertices[3 * t], out_.triangle_vertices[3 * t + 2]);
+    }
+    for (std::uint32_t v = 0; v < out_.pieces.size; ++v) {
+      out_.pieces[v] = piece_of(v);
     }
   }
 

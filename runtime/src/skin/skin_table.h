@@ -46,6 +46,8 @@ struct Hull {
   float radius, slack;
 };
 
+inline constexpr std::uint32_t kNoPlace = 0xFFFFFFFF;
+
 // A vertex stands for all source vertices that have its rest position and move as it does; a corner is the slot of a
 // vertex in its cluster. Two triangles are neighbours where a corner's weld is the same. Groups are of eight clusters.
 struct Surface {
@@ -56,6 +58,12 @@ struct Surface {
   Span<std::uint32_t> cluster_vertices;     // the vertex in a slot: ascending in a cluster
   Span<std::uint32_t> cluster_bones;        // ascending in a cluster
   Span<std::uint8_t> parts;                 // of each triangle
+  Span<std::uint32_t> triangle_vertices;    // three of each triangle
+  Span<std::uint16_t> triangle_spheres;     // of each triangle
+  Span<std::uint32_t> place_of_source;      // a source triangle's place in `triangles`; kNoPlace where it is not there
+  Span<std::uint32_t> part_triangles;       // places in `triangles`, of part after part
+  Span<std::uint32_t> first_of_part;        // a part's, and the end
+  Span<std::uint32_t> pieces;               // of each vertex: equal where triangles join two vertices
   Span<std::uint32_t> source_vertices;      // a vertex' lowest source vertex
   Span<std::uint32_t> welds;                // the lowest vertex at the same rest position: at most its own number
   Span<float> slot_positions;               // at rest: of a cluster all x, all y, all z
@@ -70,6 +78,7 @@ struct Surface {
   Span<float> hull_weights;  // of a hull its first bone's of all points, its second's ...
 
   // The asset's own.
+  Span<const float> rest_positions;             // x, y, z of each vertex
   Span<const std::uint8_t> corners;             // three a triangle, in the source's order
   Span<const BoxLanes> boxes;                   // a group's: around a cluster's vertices at rest, without its morphs
   Span<const std::uint32_t> bounds_term_bones;  // a term's, ascending in a group

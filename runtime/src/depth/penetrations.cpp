@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: MIT
+// From triangles that meet to depth, direction, volume and class of each two body parts.
+#include "spherechain/penetrations.h"
+
+#include <algorithm>
+
+#include "asset/status.h"
+#include "depth/visibility.h"
+#include "depth/way_out.h"
+#include "pairs/filter.h"
+#include "simd/simd.h"
+
+namespace spherechain {
+namespace {
+
+// Lengths are parts of the character's height, but those in metres.
+constexpr double kTouchMetres = 0.003;
+constexpr double kGapMetres = 0.0006, kGapMax = 0.001;  // shorter free places on the way are none
+constexpr double kFoldDistance = 0.09;    // of two spots at rest, to be a fold
+constexpr double kShellDistance = 0.035;  // likewise, to be layers of the same place
+constexpr double kDeepFold = 0.012, kDeepFoldFacing = 0.3;
+constexpr double kDeep = 0.015;  // worth more directions
+constexpr double kClearance = 3e-4;
+constexpr double kAreaError = 0.05;  // of a closed contour's area: beyond it the volume is not known
+
+struct Memory {
+  PosedSkin skin;
+  ContourScratch contour;
+  Visibility visibility{skin};
+  Span<std::uint64_t> keys;
+  Span<Segment3> segments;
+  Span<std::uint32_t> side_a, side_b;  // of a part that meets itself
+
+  std::size_t lay_out(const AssetView& asset, std::size_t contact_count, std::uint64_t* words, Sweep& sweep) {
+    const SkinSizes& sizes = asset.skin().sizes;
+    WordMemory memory(words);
+    skin.take(memory, sizes.vertices);
+    contour.take(memory, contact_count, sizes.triangles);
+    visibility.take(memory, sizes.clusters);
+    memory.take(keys, contact_count);
+    memory.take(segments, contact_count);
+    memory.take(side_a, contact_count);
+    memory.take(side_b, contact_count);
+    sweep.take(memory, sizes.triangles);
+    return memory.used();
+  }
+};
+
+class Measurer {
+ public:
+  Measurer(const AssetView& asset, const Surface& surface, const PenetrationJob& job)
+      : asset_(asset),
+        surface_(surface),
+        job_(job),
+        rule_{&surface, asset.ignored(), {}, job.scope != SC_SCOPE_NEIGHBOURS, job.scope != SC_SCOPE_APART},
+        info_(asset.info()),
+        metre_(1 / double{info_.metres_per_unit}),
+        height_(info_.height),
+        sweep_(memory_.skin, rule_, std::min(kGapMetres * metre_, kGapMax * height_)) {
+    if (job.filter != nullptr) {
+      rule_.ignored = {job.filter->ignored, job.filter->ignored_words};
+      rule_.disabled = {job.filter->disabled, job.filter->disabled_words};
+    }
+    memory_.skin.surface = &surface;
+    memory_.lay_out(asset, job.contact_count, job.scratch, sweep_);
+    memory_.contour.clear(surface.triangles.size);
+  }
+
+  Status run(Target resolved, PenetrationJob& job) {
+    job.penetration_count = 0;
+    memory_.skin.fill(job.pose, resolved);
+    if (job.quick == 0) {
+      memory_.visibility.fill();
+    }
+    const std::size_t count = sort_segments();
+    for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
+      while (end < count && memory_.keys[end] >> 32 == memory_.keys[begin] >> 32) {
+        ++end;
+      }
+      if (job.penetration_count < job.penetration_capacity) {
+        job.penetrations[job.penetration_count] = measure({memory_.segments.data + begin, end - begin});
+      }
+      ++job.penetration_count;
+    }
+    return job.penetration_capacity > 0 && job.penetration_count > job.penetration_capacity
+               ? refuse(SC_OVERFLOW, SC_FIELD_PENETRATIONS)
+               : done();
+  }
+
+ private:
+  // Of a contact, part a's triangle first.
+  Segment3 segment_of(const TriangleContact& contact) const {
+    Segment3 out{};
+    out.a = surface_.place_of_source[contact.triangle_a];
+    out.b = surface_.place_of_source[contact.triangle_b];
+    if (surface_.parts[out.a] > surface_.parts[out.b]) {
+      std::swap(out.a, out.b);
+    }
+    out.normal_a = normal_of(memory_.skin.corners(out.a));
+    out.normal_b = normal_of(memory_.skin.corners(out.b));
+    out.normal_a = normalize(out.normal_a) ? out.normal_a : Double3{0, 0, 0};
+    out.normal_b = normalize(out.normal_b) ? out.normal_b : Double3{0, 0, 0};
+    out.from = to_double(contact.from);
+    out.to = to_double(contact.to);
+    if (dot(cross(out.normal_a, out.normal_b), out.to - out.from) < 0) {
+      std::swap(out.from, out.to);
+    }
+    out.length = length(out.to - out.from);
+    if (!std::isfinite(out.length)) {
+      out.from = out.to = memory_.skin.corners(out.a).p[0];
+      out.length = 0;
+    }
+    return out;
+  }
+
+  // By pairs of parts, in these as they were given.
+  std::size_t sort_segments() {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < job_.contact_count; ++i) {
+      const std::uint64_t p = surface_.parts[surface_.place_of_source[job_.contacts[i].triangle_a]];
+      const std::uint64_t q = surface_.parts[surface_.place_of_source[job_.contacts[i].triangle_b]];
+      memory_.keys[count++] = std::min(p, q) << 48 | std::max(p, q) << 32 | i;
+    }
+    std::sort(memory_.keys.begin(), memory_.keys.begin() + count);
+    for (std::size_t i = 0; i < count; ++i) {
+      memory_.segments[i] = segment_of(job_.contacts[memory_.keys[i] & 0xFFFFFFFF]);
+    }
+    return count;
+  }
+
+  Span<const std::uint32_t> triangles_of(std::size_t part) const {
+    const std::uint32_t first = surface_.first_of_part[part];
+    return {surface_.part_triangles.data + first, surface_.first_of_part[part + 1] - first};
+  }
+
+  static Span<const std::uint32_t> unique(std::uint32_t* triangles, std::size_t count) {
+    std::sort(triangles, triangles + count);
+    return {triangles, static_cast<std::size_t>(std::unique(triangles, triangles + count) - triangles)};
+  }
+
+  void set_sides(const Contour& contour, std::size_t part_a, std::size_t part_b) {
+    if (part_a != part_b) {
+      sweep_.set_sides(triangles_of(part_a), triangles_of(part_b));
+      return;
+    }
+    for (std::size_t i = 0; i < contour.segments.size; ++i) {
+      memory_.side_a[i] = contour.segments[i].a;
+      memory_.side_b[i] = contour.segments[i].b;
+    }
+    sweep_.set_sides(unique(memory_.side_a.data, contour.segments.size),
+                     unique(memory_.side_b.data, contour.segments.size));
+  }
+
+  Penetration measure(Span<Segment3> segments) {
+    const std::size_t part_a = surface_.parts[segments[0].a], part_b = surface_.parts[segments[0].b];
+    const Contour contour = contour_of(memory_.skin, segments, height_, memory_.contour);
+    set_sides(contour, part_a, part_b);
+    const Double3 previous = previous_direction(part_a, part_b);
+    const bool has_previous = dot(previous, previous) > 0 && std::isfinite(dot(previous, previous));
+    const Exit exit = find_exit(
+        sweep_, contour, {job_.quick != 0, kDeep * height_, has_previous && job_.quick == 0 ? &previous : nullptr});
+    Penetration out{};
+    out.part_a = static_cast<std::uint32_t>(part_a);
+    out.part_b = static_cast<std::uint32_t>(part_b);
+    // Triangles that just touch are clear of each other after any move: the least there is.
+    out.depth = std::max(static_cast<float>(exit.way.depth), static_cast<float>(1e-7 * height_));
+    out.direction = to_float(exit.direction);
+    out.contour_length = static_cast<float>(contour.length);
+    out.deepest_a = point_of(exit.way.a, exit.way.point_a, segments[0].a);
+    out.deepest_b = point_of(exit.way.b, exit.way.point_b, segments[0].b);
+    out.visible = 1;
+    if (job_.quick == 0) {
+      if (contour.is_closed && part_a != part_b) {
+        const Volume volume = sweep_.volume(exit.way.depth);
+        const double area = std::abs(dot(contour.area, exit.direction));
+        out.is_closed = std::abs(volume.area - area) <= kAreaError * area && volume.volume >= 0 ? 1 : 0;
+        out.volume = out.is_closed != 0 ? static_cast<float>(volume.volume) : 0;
+      }
+      Double3 axes[3];
+      axes_of(contour, exit.direction, axes);
+      out.visible = static_cast<float>(memory_.visibility.share(contour, axes, kClearance * height_));
+    }
+    out.kind = class_of(contour, out);
+    return out;
+  }
+
+  SkinPoint point_of(std::uint32_t triangle, const Double3& at, std::uint32_t otherwise) const {
+    const bool is_known = triangle != kNoPlace;
+    const Corners t = memory_.skin.corners(is_known ? triangle : otherwise);
+    const Double3 p = is_known ? at : t.p[0], normal = normal_of(t);
+    const double size = dot(normal, normal);
+    SkinPoint out{to_float(p), surface_.triangles[is_known ? triangle : otherwise], {1, 0, 0}};
+    if (size > 0) {
+      const double v = dot(normal, cross(p - t.p[0], t.p[2] - t.p[0])) / size;
+      const double w = dot(normal, cross(t.p[1] - t.p[0], p - t.p[0])) / size;
+      out.weights[0] = static_cast<float>(1 - v - w);
+      out.weights[1] = static_cast<float>(v);
+      out.weights[2] = static_cast<float>(w);
+    }
+    return out;
+  }
+
+  Double3 previous_direction(std::size_t part_a, std::size_t part_b) const {
+    for (std::size_t i = 0; i < job_.previous_count; ++i) {
+      if (job_.previous[i].part_a == part_a && job_.previous[i].part_b == part_b) {
+        return to_double(job_.previous[i].direction);
+      }
+    }
+    return {0, 0, 0};
+  }
+
+  // Does one hang on the other, or both on the same third?
+  bool are_neighbours(std::uint32_t a, std::uint32_t b) const {
+    const std::int32_t above_a = asset_.part(a).parent, above_b = asset_.part(b).parent;
+    return a == b || above_a == static_cast<std::int32_t>(b) || above_b == static_cast<std::int32_t>(a) ||
+           (above_a >= 0 && above_a == above_b);
+  }
+
+  PenetrationClass class_of(const Contour& contour, const Penetration& of) const {
+    const double touch = job_.touch_depth > 0 ? double{job_.touch_depth} : kTouchMetres * metre_;
+    if (2 * contour.touching >= 1) {
+      return SC_CLASS_REST;
+    }
+    if (of.visible <= 0 || (!contour.is_one_piece && contour.rest_distance < kShellDistance * height_)) {
+      return SC_CLASS_SHELL;
+    }
+    if (of.depth < touch) {
+      return SC_CLASS_TOUCH;
+    }
+    if (of.part_a == of.part_b ||
+        (are_neighbours(of.part_a, of.part_b) && contour.rest_distance < kFoldDistance * height_)) {
+      return of.depth > kDeepFold * height_ && contour.facing > kDeepFoldFacing ? SC_CLASS_DEEP_FOLD : SC_CLASS_FOLD;
+    }
+    return SC_CLASS_PENETRATION;
+  }
+
+  const AssetView& asset_;
+  const Surface& surface_;
+  const PenetrationJob& job_;
+  PairRule rule_;
+  AssetInfo info_;
+  double metre_, height_;
+  Memory memory_;
+  Sweep sweep_;
+};
+
+std::size_t scratch_words(const AssetView& asset, std::size_t contact_count) {
+  if (!asset.is_open() || asset.skin().sizes.clusters == 0) {
+    return 0;
+  }
+  Memory memory;
+  const PairRule rule;
+  Sweep sweep(memory.skin, rule, 0);
+  return memory.lay_out(asset, contact_count, nullptr, sweep);
+}
+
+Status check_contacts(const PenetrationJob& job, const AssetView& asset, const Surface& surface) {
+  const std::size_t parts = asset.part_count();
+  for (std::size_t i = 0; i < job.contact_count; ++i) {
+    const TriangleContact& contact = job.contacts[i];
+    for (const std::uint32_t triangle : {contact.triangle_a, contact.triangle_b}) {
+      if (triangle >= surface.place_of_source.size || surface.place_of_source[triangle] == kNoPlace ||
+          surface.parts[surface.place_of_source[triangle]] >= parts) {
+        return refuse(SC_BAD_VALUE, SC_FIELD_CONTACTS);
+      }
+    }
+  }
+  return done();
+}
+
+bool is_aliased(const PenetrationJob& job, const AssetView& asset) {
+  const FilterRanges filter = ranges_of(job.filter);
+  return any_shared({range_of(Span<Penetration>{job.penetrations, job.penetration_capacity}),
+                     range_of(Span<std::uint64_t>{job.scratch, scratch_words(asset, job.contact_count)})},
+                    {range_of_vertices(asset, job.pose), range_of_bones(asset, job.pose),
+                     range_of_morph_weights(asset, job.pose),
+                     range_of(Span<const std::uint64_t>{job.skin_table, skin_table_words(asset)}),
+                     range_of(asset.ignored()), range_of(Span<const TriangleContact>{job.contacts, job.contact_count}),
+                     range_of(Span<const Penetration>{job.previous, job.previous_count}), filter.ignored,
+                     filter.disabled});
+}
+
+Status check(const PenetrationJob& job, Target& resolved, Surface& surface) {
+  if (job.asset == nullptr) {
+    return refuse(SC_NULL, SC_FIELD_ASSET);
+  }
+  const AssetView& asset = view_of(*job.asset);
+  if (!asset.is_open()) {
+    return refuse(SC_NOT_OPEN, SC_FIELD_ASSET);
+  }
+  if (asset.skin().sizes.clusters == 0) {
+    return refuse(SC_NOT_IN_ASSET, SC_FIELD_ASSET);
+  }
+  const Status statuses[] = {check_skin_pose(asset, job.pose),
+                             read_skin_table(asset, job.skin_table, surface),
+                             job.filter == nullptr ? done() : check_filter(asset, *job.filter),
+                             check_list(job.contacts, job.contact_count, SC_FIELD_CONTACTS),
+                             check_list(job.previous, job.previous_count, SC_FIELD_PREVIOUS),
+                             check_list(job.scratch, 1, SC_FIELD_SCRATCH),
+                             check_list(job.penetrations, job.penetration_capacity, SC_FIELD_PENETRATIONS)};
+  for (const Status& status : statuses) {
+    if (status != SC_OK) {
+      return status;
+    }
+  }
+  if (job.scratch_words < scratch_words(asset, job.contact_count)) {
+    return refuse(SC_TOO_SMALL, SC_FIELD_SCRATCH);
+  }
+  if (job.scope != SC_SCOPE_APART && job.scope != SC_SCOPE_NEIGHBOURS && job.scope != SC_SCOPE_ALL) {
+    return refuse(SC_BAD_VALUE, SC_FIELD_SCOPE);
+  }
+  if (!resolve_target(job.target, resolved)) {
+    return refuse(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET);
+  }
+  return is_aliased(job, asset) ? refuse(SC_ALIASED, SC_FIELD_OUTPUT) : check_contacts(job, asset, surface);
+}
+
+}  // namespace
+}  // namespace spherechain
+
+using namespace spherechain;
+
+extern "C" {
+
+size_t sc_penetration_scratch_words(const sc_asset* asset, size_t contact_count) noexcept {
+  return asset == nullptr ? 0 : scratch_words(view_of(*asset), contact_count);
+}
+
+sc_status sc_measure_penetrations(sc_penetration_job* job) noexcept {
+  if (job == nullptr) {
+    return refuse(SC_NULL, SC_FIELD_NONE);
+  }
+  Target resolved{};
+  Surface surface;
+  const Status status = check(*job, resolved, surface);
+  return status == SC_OK ? Measurer(view_of(*job->asset), surface, *job).run(resolved, *job) : status;
+}
+
+const char* sc_penetration_class_name(sc_penetration_class kind) noexcept {
+  constexpr const char* kNames[] = {"rest", "shell", "touch", "fold", "deep_fold", "penetration"};
+  return kind >= 0 && kind <= SC_CLASS_PENETRATION ? kNames[kind] : "unknown";
+}
+
+}  // extern "C"

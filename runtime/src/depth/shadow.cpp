@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include "depth/shadow.h"
+
+#include <algorithm>
+
+namespace spherechain {
+namespace {
+
+// Cuts off where `keep`, which is linear, is negative. The cut's edge gets the number `edge`.
+template <typename Keep>
+void clip(Shadow& shadow, int edge, const Keep& keep) {
+  Shadow::Corner out[Shadow::kCornersMax];
+  int count = 0;
+  for (int i = 0; i < shadow.count && count + 2 <= Shadow::kCornersMax; ++i) {
+    const Shadow::Corner &from = shadow.corners[i], &to = shadow.corners[(i + 1) % shadow.count];
+    const double at_from = keep(from), at_to = keep(to);
+    if (at_from >= 0) {
+      out[count++] = from;
+    }
+    if ((at_from >= 0) != (at_to >= 0)) {
+      const double share = at_from / (at_from - at_to);
+      out[count++] = {from.x + share * (to.x - from.x), from.y + share * (to.y - from.y),
+                      from.rise + share * (to.rise - from.rise), at_from >= 0 ? edge : from.edge};
+    }
+  }
+  std::copy(out, out + count, shadow.corners);
+  shadow.count = count;
+}
+
+}  // namespace
+
+View::View(const Double3& direction, const Double3& center) : d(direction), origin(center) {
+  const double x = std::abs(d.x), y = std::abs(d.y), z = std::abs(d.z);
+  const Double3 aside = x <= y && x <= z ? Double3{1, 0, 0} : y <= z ? Double3{0, 1, 0} : Double3{0, 0, 1};
+  v = cross(d, aside);
+  normalize(v);
+  u = cross(v, d);
+}
+
+double height_at(const Corners& t, double x, double y) {
+  const Double3 e = t.p[1] - t.p[0], f = t.p[2] - t.p[0];
+  const double determinant = e.x * f.y - f.x * e.y;
+  const double px = x - t.p[0].x, py = y - t.p[0].y;
+  const double s = (px * f.y - f.x * py) / determinant, r = (e.x * py - px * e.y) / determinant;
+  return t.p[0].z + (s * e.z + r * f.z);
+}
+
+Shadow::Shadow(const Corners& a, const Corners& b) {
+  const double turn = turn_of(a);
+  if (!(turn > 0) && !(turn < 0)) {
+    return;
+  }
+  for (int i = 0; i < 3; ++i) {
+    const Double3& p = b.p[i];
+    corners[i] = {p.x, p.y, height_at(a, p.x, p.y) - p.z, i};
+  }
+  count = 3;
+  const double sign = turn > 0 ? 1 : -1;
+  for (int i = 0; i < 3 && count > 0; ++i) {
+    const Double3 &from = a.p[i], &to = a.p[(i + 1) % 3];
+    const double x = sign * (to.x - from.x), y = sign * (to.y - from.y);
+    clip(*this, 3 + i, [&](const Corner& c) { return x * (c.y - from.y) - y * (c.x - from.x); });
+  }
+}
+
+void Shadow::keep_above(double rise) {
+  clip(*this, 6, [&](const Corner& c) { return c.rise - rise; });
+}
+
+void Shadow::keep_below(double rise) {
+  clip(*this, 6, [&](const Corner& c) { return rise - c.rise; });
+}
+
+double Shadow::area() const {
+  double twice = 0;
+  for (int i = 1; i + 1 < count; ++i) {
+    const Corner &o = corners[0], &p = corners[i], &q = corners[i + 1];
+    twice += (p.x - o.x) * (q.y - o.y) - (q.x - o.x) * (p.y - o.y);
+  }
+  return 0.5 * std::abs(twice);
+}
+
+double Shadow::volume() const {
+  double six_times = 0;
+  for (int i = 1; i + 1 < count; ++i) {
+    const Corner &o = corners[0], &p = corners[i], &q = corners[i + 1];
+    six_times += ((p.x - o.x) * (q.y - o.y) - (q.x - o.x) * (p.y - o.y)) * (o.rise + p.rise + q.rise);
+  }
+  return std::abs(six_times) / 6;
+}
+
+}  // namespace spherechain

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "depth/visibility.h"
+
+#include <algorithm>
+#include <cfloat>
+
+namespace spherechain {
+namespace {
+
+constexpr std::size_t kSampled = 8;  // segments
+
+// Does the ray meet the triangle? (Moeller and Trumbore)
+bool meets(const Double3& from, const Double3& direction, const Corners& t) {
+  const Double3 e = t.p[1] - t.p[0], f = t.p[2] - t.p[0], p = cross(direction, f);
+  const double determinant = dot(e, p);
+  if (!(determinant > 0) && !(determinant < 0)) {
+    return false;
+  }
+  const Double3 r = from - t.p[0], q = cross(r, e);
+  const double s = dot(r, p) / determinant, u = dot(direction, q) / determinant;
+  return s >= 0 && u >= 0 && s + u <= 1 && dot(f, q) / determinant > 0;
+}
+
+}  // namespace
+
+void Visibility::take(WordMemory& memory, std::size_t cluster_count) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    memory.take(low_[axis], cluster_count);
+    memory.take(high_[axis], cluster_count);
+  }
+}
+
+void Visibility::fill() {
+  const Surface& surface = *skin_.surface;
+  for (std::size_t c = 0; c < surface.clusters.size; ++c) {
+    const Cluster& cluster = surface.clusters[c];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      float low = FLT_MAX, high = -FLT_MAX;
+      for (std::size_t i = 0; i < cluster.vertex_count; ++i) {
+        const float at = skin_.positions[3 * surface.cluster_vertices[cluster.first_vertex + i] + axis];
+        low = std::min(low, at);
+        high = std::max(high, at);
+      }
+      low_[axis][c] = low;
+      high_[axis][c] = high;
+    }
+  }
+}
+
+bool Visibility::is_free(const Double3& from, const Double3& direction) const {
+  const Surface& surface = *skin_.surface;
+  const double start[3] = {from.x, from.y, from.z};
+  const double slope[3] = {1 / direction.x, 1 / direction.y, 1 / direction.z};
+  for (std::size_t c = 0; c < surface.clusters.size; ++c) {
+    double enter = 0, leave = HUGE_VAL;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double s = (double{low_[axis][c]} - start[axis]) * slope[axis];
+      const double t = (double{high_[axis][c]} - start[axis]) * slope[axis];
+      enter = std::max(enter, std::min(s, t));
+      leave = std::min(leave, std::max(s, t));
+    }
+    if (enter > leave) {
+      continue;
+    }
+    const Cluster& cluster = surface.clusters[c];
+    for (std::uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangle_count; ++t) {
+      if (meets(from, direction, skin_.corners(t))) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
+double Visibility::share(const Contour& contour, const Double3 (&axes)[3], double clearance) const {
+  const std::size_t step = (contour.segments.size + kSampled - 1) / kSampled;
+  std::size_t seen = 0, count = 0;
+  for (std::size_t i = step / 2; i < contour.segments.size; i += step, ++count) {
+    const Segment3& segment = contour.segments[i];
+    Double3 out = segment.normal_a + segment.normal_b;
+    if (!normalize(out)) {
+      out = segment.normal_a;
+    }
+    const Double3 from = 0.5 * (segment.from + segment.to) + clearance * out;
+    bool is_seen = is_free(from, out);
+    for (int k = 0; k < 27 && !is_seen; ++k) {
+      Double3 direction = double(k % 3 - 1) * axes[0] + (double(k / 3 % 3 - 1) * axes[1] + double(k / 9 - 1) * axes[2]);
+      is_seen = normalize(direction) && is_free(from, direction);
+    }
+    seen += is_seen ? 1 : 0;
+  }
+  return static_cast<double>(seen) / static_cast<double>(count);
+}
+
+}  // namespace spherechain

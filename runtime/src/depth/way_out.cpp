@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: MIT
+#include "depth/way_out.h"
+
+#include <algorithm>
+
+namespace spherechain {
+namespace {
+
+constexpr int kSteps = 4;            // of a direction towards the normal of what blocks it last
+constexpr double kNearlyAsGood = 1.15;  // times the shortest: the last frame's direction is kept
+constexpr double kSameWay = 0.5;     // cosine: a direction that is refined farther is another
+
+class Search {
+ public:
+  Search(Sweep& sweep, const Contour& contour, double handedness)
+      : sweep_(sweep), contour_(contour), handedness_(handedness) {}
+
+  bool has_any() const { return has_any_; }
+  const Exit& best() const { return best_; }
+  // From now on, ways that end inside the other part are none.
+  void be_careful() {
+    is_careful_ = true;
+    has_any_ = false;
+  }
+
+  // Along that direction, and along those that its blockers' normals lead to.
+  void refine(Double3 direction) {
+    for (int step = 0; step <= kSteps && normalize(direction); ++step) {
+      WayOut way;
+      const double bound = has_any_ ? best_.way.depth : HUGE_VAL;
+      if (sweep_.find(direction, contour_, bound, way) && !is_refused(way)) {
+        best_ = {direction, way};
+        has_any_ = true;
+      } else if (step > 1) {
+        return;
+      }
+      if (dot(way.normal, direction) > 0.9999) {
+        return;
+      }
+      direction = way.normal;
+    }
+  }
+
+  // Takes that direction, or what is near it, where it is nearly as good as the best.
+  void prefer(const Double3& wanted) {
+    if (dot(wanted, best_.direction) > kSameWay) {
+      return;
+    }
+    Exit kept;
+    double bound = kNearlyAsGood * best_.way.depth;
+    bool found = false;
+    Double3 direction = wanted;
+    for (int step = 0; step <= kSteps && normalize(direction) && dot(direction, wanted) > kSameWay; ++step) {
+      WayOut way;
+      if (sweep_.find(direction, contour_, bound, way) && !sweep_.is_enclosed(way, contour_, handedness_)) {
+        kept = {direction, way};
+        bound = way.depth;
+        found = true;
+      } else if (step > 1) {
+        break;
+      }
+      direction = way.normal;
+    }
+    if (found) {
+      best_ = kept;
+    }
+  }
+
+ private:
+  bool is_refused(const WayOut& way) const { return is_careful_ && sweep_.is_enclosed(way, contour_, handedness_); }
+
+  Sweep& sweep_;
+  const Contour& contour_;
+  double handedness_;
+  bool is_careful_ = false, has_any_ = false;
+  Exit best_;
+};
+
+}  // namespace
+
+void axes_of(const Contour& contour, const Double3& direction, Double3 (&axes)[3]) {
+  Double3 aside{0, 0, 0};
+  double most = 0;
+  for (const Segment3& segment : contour.segments) {
+    Double3 arm = segment.from - contour.center;
+    arm = arm - dot(arm, direction) * direction;
+    if (dot(arm, arm) > most) {
+      most = dot(arm, arm);
+      aside = arm;
+    }
+  }
+  axes[0] = direction;
+  axes[1] = aside;
+  if (!normalize(axes[1])) {
+    axes[1] = View(direction, contour.center).u;
+  }
+  axes[2] = cross(axes[0], axes[1]);
+}
+
+Exit find_exit(Sweep& sweep, const Contour& contour, const ExitSettings& settings) {
+  const double turn = dot(contour.area, contour.normals);
+  const double handedness = contour.is_closed && turn < 0 ? -1 : 1;
+  const Double3 normals = handedness * contour.normals;
+  Double3 first = contour.is_closed ? contour.area : normals;
+  if (!normalize(first)) {
+    first = contour.is_closed ? normals : contour.area;
+    if (!normalize(first)) {
+      first = {0, 0, 1};
+    }
+  }
+  Exit out{first, {}};
+  const bool found = sweep.find(first, contour, HUGE_VAL, out.way);
+  if (settings.one_direction || !found) {
+    return out;
+  }
+  Search search(sweep, contour, handedness);
+  sweep.keep_near(out.way.depth);
+  Double3 axes[3];
+  axes_of(contour, first, axes);
+  const auto try_all = [&] {
+    for (const Double3& direction : {first, normals, contour.area, contour.largest_area}) {
+      search.refine(direction);
+    }
+    if (!search.has_any() || search.best().way.depth > settings.deep) {
+      for (int k = 0; k < 27; ++k) {
+        search.refine(double(k % 3 - 1) * axes[0] + (double(k / 3 % 3 - 1) * axes[1] + double(k / 9 - 1) * axes[2]));
+      }
+    }
+  };
+  try_all();
+  // The votes of is_enclosed() are of its own direction's view.
+  const auto is_good = [&] {
+    WayOut way;
+    return search.has_any() && sweep.find(search.best().direction, contour, HUGE_VAL, way) &&
+           !sweep.is_enclosed(way, contour, handedness);
+  };
+  if (!is_good()) {
+    const Exit fallback = search.has_any() ? search.best() : out;
+    search.be_careful();
+    sweep.keep_all();
+    try_all();
+    if (!search.has_any()) {
+      sweep.find(fallback.direction, contour, HUGE_VAL, out.way);
+      return fallback;
+    }
+  }
+  if (settings.previous != nullptr) {
+    search.prefer(*settings.previous);
+  }
+  out = search.best();
+  sweep.find(out.direction, contour, HUGE_VAL, out.way);
+  return out;
+}
+
+}  // namespace spherechain
