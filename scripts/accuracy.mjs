@@ -114,7 +114,7 @@ function methods(row) {
   }
   return variants.map(([name, list, pick]) => {
     const s = of(list, pick);
-    const depths = list.map((f) => pick(f).missed_overlap);
+    const depths = list.map((f) => pick(f).missed_depth_mm);
     const depth = depths[0] === undefined ? "" : percent(Math.max(...depths));
     return [row.name, name, s.truth, ...scored(s), percent(share(s.any, s.trueFrames)), percent(share(s.all, s.trueFrames)), depth];
   });
@@ -208,7 +208,7 @@ How spheres do on bodies other than humans, \`scripts/alarms.mjs\` prints. Skin 
 
 ## Skin, spheres, chains and capsules
 
-${table(["motion", "method", "true pairs", "recall", "precision", "pairs a frame", "any", "all", "missed overlap"], rows.flatMap(methods))}
+${table(["motion", "method", "true pairs", "recall", "precision", "pairs a frame", "any", "all", "missed, mm"], rows.flatMap(methods))}
 
 ## Spheres between parts that are far from each other
 

@@ -137,7 +137,7 @@ std::string read_validation(const std::string& file, const OpenAsset& asset, con
   validation.numbers({"raw_pairs", "truth_pairs"});
   validation["out_of_scope"].numbers({"rest", "same_sphere", "ignored"});
   validation["worst_misses"].each([&](const Value& miss) {
-    miss.numbers({"time", "triangle_pairs", "overlap"});
+    miss.numbers({"time", "triangle_pairs", "depth_mm"});
     const Value spheres = miss["spheres"];
     spheres.each([&](const Value& sphere) { sphere.index(asset->spheres().size); });
     spheres.size(2);

@@ -113,18 +113,18 @@ std::string score_line(const char* name, const Score& score) {
 }
 
 // The skin beside the spheres.
-std::string scores_text(const Validation& validation, double height) {
+std::string scores_text(const Validation& validation, double mm) {
   std::string out = fmt::format("{:<20} {:>11} {:>10} {:>10} {:>10} {:>10} {:>15}\n", "", "pair recall", "precision",
-                                "a frame", "any found", "all found", "missed overlap");
+                                "a frame", "any found", "all found", "missed depth");
   for (const auto& [name, score] :
        {std::pair{"skin", &validation.skin}, std::pair{"spheres, all pairs", &validation.all_pairs},
         std::pair{"spheres, chains", &validation.chains}}) {
-    out += fmt::format("{:<20} {:>11} {:>10} {:>10.2f} {:>10} {:>10} {:>13.2f} %\n", name,
+    out += fmt::format("{:<20} {:>11} {:>10} {:>10.2f} {:>10} {:>10} {:>12.0f} mm\n", name,
                        share_text(score->pair_recall(), 4), share_text(score->precision(), 4),
                        score->reported_per_frame(), share_text(score->frame_any_recall(), 4),
-                       share_text(score->frame_all_recall(), 4), 100 * score->missed_overlap / height);
+                       share_text(score->frame_all_recall(), 4), mm * score->missed_depth);
   }
-  return out + "(overlap in % of the height; any, all: share of the frames with a true pair)\n";
+  return out + "(missed depth: of the deepest fault between two body parts of which nothing is reported;\n any, all: share of the frames with a true pair)\n";
 }
 
 std::size_t shown_misses(const Validation& validation) { return std::min(validation.misses.size(), kWorstMisses); }
@@ -133,7 +133,7 @@ std::size_t shown_misses(const Validation& validation) { return std::min(validat
 
 std::string validation_json(const Validation& validation, const AnimatedAsset& animated,
                             const ValidateSettings& settings) {
-  const double height = animated.frame().height;
+  const double mm = mm_per_unit(animated.asset());
   const Score& score = validation.score;
   const AssetInfo info = animated.asset()->info();
   ordered_json out{
@@ -147,7 +147,7 @@ std::string validation_json(const Validation& validation, const AnimatedAsset& a
   };
   out.update(score_json(score));
   out.update({
-      {"missed_overlap", score.missed_overlap / height},
+      {"missed_depth_mm", mm * score.missed_depth},
       {"radius", radius_name(settings.radius)},
       {"reported", reported_name(settings)},
       {"truth_frames", score.true_frames},
@@ -167,7 +167,7 @@ std::string validation_json(const Validation& validation, const AnimatedAsset& a
   for (const auto& [name, of] : {std::pair{"skin", &validation.skin}, std::pair{"all_pairs", &validation.all_pairs},
                                  std::pair{"chains", &validation.chains}}) {
     out[name] = score_json(*of);
-    out[name]["missed_overlap"] = of->missed_overlap / height;
+    out[name]["missed_depth_mm"] = mm * of->missed_depth;
   }
   if (validation.capsules > 0) {
     out["capsules"] = {{"count", validation.capsules}, {"curve", ordered_json::array()}};
@@ -191,7 +191,7 @@ std::string validation_json(const Validation& validation, const AnimatedAsset& a
                                    {"clip_frame", animated.frame_at(miss.frame).number},
                                    {"spheres", {miss.spheres.a, miss.spheres.b}},
                                    {"triangle_pairs", miss.triangle_pairs},
-                                   {"overlap", miss.overlap / height}});
+                                   {"depth_mm", mm * miss.depth}});
     if (const std::string& clip = animated.clip_at(miss.frame); !clip.empty())
       out["worst_misses"].back()["clip"] = clip;
   }
@@ -200,7 +200,7 @@ std::string validation_json(const Validation& validation, const AnimatedAsset& a
 
 std::string validation_text(const Validation& validation, const AnimatedAsset& animated,
                             const ValidateSettings& settings) {
-  const double height = animated.frame().height;
+  const double mm = mm_per_unit(animated.asset());
   const Score& score = validation.score;
   std::string out = fmt::format("{} frames, radius {}\n\n", score.frames, radius_name(settings.radius));
   out += fmt::format("triangle pairs that intersect   {:>8}\n", validation.raw_pairs);
@@ -211,7 +211,7 @@ std::string validation_text(const Validation& validation, const AnimatedAsset& a
   const Score& spheres = settings.method == Method::kChains ? validation.chains : validation.all_pairs;
   if (score.true_pairs == 0) out += "no true contact in this motion: there is nothing to recall\n";
   out += score_line("spheres:", spheres) + score_line("skin:   ", validation.skin) + "\n";
-  out += scores_text(validation, height);
+  out += scores_text(validation, mm);
   if (settings.contacts) {
     const auto errors = [](const ContactErrors& of) {
       return fmt::format("{} missing, {} extra", of.missing, of.extra);
@@ -225,13 +225,13 @@ std::string validation_text(const Validation& validation, const AnimatedAsset& a
     out += line("of neighbours", validation.neighbour_contacts, validation.neighbour_contacts_from_bones);
   }
   if (!validation.misses.empty()) {
-    out += fmt::format("\nworst misses of {}: frame, spheres, triangle pairs, overlap in % of the height\n",
+    out += fmt::format("\nworst misses of {}: frame, spheres, triangle pairs, depth in mm where it is a fault of which nothing is reported\n",
                        reported_name(settings));
   }
   for (std::size_t i = 0; i < std::min<std::size_t>(shown_misses(validation), 5); ++i) {
     const Miss& miss = validation.misses[i];
-    out += fmt::format("  {:>5}  {:>3} - {:<3} {:>5}  {:.2f}\n", miss.frame, miss.spheres.a, miss.spheres.b,
-                       miss.triangle_pairs, 100 * miss.overlap / height);
+    out += fmt::format("  {:>5}  {:>3} - {:<3} {:>5}  {:.0f}\n", miss.frame, miss.spheres.a, miss.spheres.b,
+                       miss.triangle_pairs, mm * miss.depth);
   }
   if (validation.capsules > 0) {
     out += fmt::format("\n{:<18} {:>9} {:>9} {:>9}   {:>9}\n", fmt::format("{} capsules", validation.capsules),

@@ -27,7 +27,7 @@ void Score::add(const Score& other) {
   apart_right += other.apart_right;
   reported += other.reported;
   right += other.right;
-  missed_overlap = std::max(missed_overlap, other.missed_overlap);
+  missed_depth = std::max(missed_depth, other.missed_depth);
 }
 
 Score score_frame(const FrameTruth& truth, const std::vector<Pair>& reported,
@@ -45,7 +45,7 @@ Score score_frame(const FrameTruth& truth, const std::vector<Pair>& reported,
       score.far_found +=
           static_cast<std::size_t>(std::count_if(contact.triangles.begin(), contact.triangles.end(), is_far));
     } else {
-      score.missed_overlap = std::max(score.missed_overlap, depth_of(contact));
+      score.missed_depth = std::max(score.missed_depth, depth_of(contact));
     }
   }
   const auto before = [](const TrueContact& contact, const Pair& pair) { return contact.spheres < pair; };

@@ -13,8 +13,8 @@
 #include "mesh/error.h"
 #include "play/player.h"
 #include "truth/capsules.h"
-#include "truth/depth.h"
 #include "truth/far_parts.h"
+#include "truth/missed_depth.h"
 #include "truth/truth_cache.h"
 
 namespace spherechain::baker {
@@ -41,6 +41,7 @@ struct Context {
   std::vector<Pair> rest_pairs = intersections.find(rest).pairs;
   double close = kCloseSurface * animated.frame().height;
   FarParts is_far{animated, surface, close};
+  BodyParts parts = parts_of(animated.asset());
   std::set<Pair> close_spheres = close_owners(surface, rest, surface.sphere, close);  // at rest
   Curve curve{animated.asset(), settings.radius};
   std::vector<std::pair<double, CapsuleRagdoll>> ragdolls = make_ragdolls();
@@ -144,7 +145,6 @@ Frame validate_frame(const Context& context, int index) {
   Closeness closeness(surface, positions, context.close);
   const auto is_close = [&](const Pair& pair) { return closeness(pair); };
   const auto is_apart = [&](const Pair& pair) { return context.close_spheres.count(pair) == 0; };
-  const auto depth_of = [&](const TrueContact& contact) { return penetration(contact, surface, positions); };
 
   Frame frame;
   const auto ignored = [&](std::uint32_t a, std::uint32_t b) { return is_ignored(animated.asset(), a, b); };
@@ -152,16 +152,20 @@ Frame validate_frame(const Context& context, int index) {
   Player chains(animated.asset(), settings.radius, true, false, settings.target),
       all(animated.asset(), settings.radius, false, true, settings.target);
   const std::vector<Pair> chains_pairs = touching_spheres(chains, positions),
-                          all_pairs = touching_spheres(all, positions),
-                          skin_pairs = all.spheres_of(all.detect_triangles(positions, false).pairs);
+                          all_pairs = touching_spheres(all, positions);
+  const Player::TriangleDetection skin = all.detect_triangles(positions, false);
+  const std::vector<Pair> skin_pairs = all.spheres_of(skin.pairs);
+  const auto missed = [&](const std::vector<Pair>& reported) {
+    return MissedDepth(context.parts.of_triangle, frame.truth, reported, skin.penetrations);
+  };
   frame.reported = settings.skin ? skin_pairs : settings.method == Method::kChains ? chains_pairs : all_pairs;
   frame.score = score_frame(frame.truth, frame.reported, is_close, is_apart, [&](const TrueContact& contact) {
-    frame.misses.push_back({index, contact.spheres, contact.triangles.size(), depth_of(contact)});
-    return frame.misses.back().overlap;
+    frame.misses.push_back({index, contact.spheres, contact.triangles.size(), missed(frame.reported)(contact)});
+    return frame.misses.back().depth;
   });
-  frame.skin = score_frame(frame.truth, skin_pairs, is_close, is_apart, depth_of);
-  frame.chains = score_frame(frame.truth, chains_pairs, is_close, is_apart, depth_of);
-  frame.all_pairs = score_frame(frame.truth, all_pairs, is_close, is_apart, depth_of);
+  frame.skin = score_frame(frame.truth, skin_pairs, is_close, is_apart, missed(skin_pairs));
+  frame.chains = score_frame(frame.truth, chains_pairs, is_close, is_apart, missed(chains_pairs));
+  frame.all_pairs = score_frame(frame.truth, all_pairs, is_close, is_apart, missed(all_pairs));
   frame.curve = context.curve.measure(all.spheres(), frame.truth, is_close, is_apart);
   frame.capsules = score_ragdolls(context, found, frame.truth, positions, deformation);
   if (settings.contacts) {
@@ -223,7 +227,7 @@ Validation validate(const AnimatedAsset& animated, const ValidateSettings& setti
   if (!out.capsule_curve.empty()) out.capsules = context.ragdolls.front().second.capsules().size();
   out.by_chain = chains.groups();
   std::stable_sort(out.misses.begin(), out.misses.end(),
-                   [](const Miss& l, const Miss& r) { return l.overlap > r.overlap; });
+                   [](const Miss& l, const Miss& r) { return l.depth > r.depth; });
   return out;
 }
 

@@ -33,7 +33,9 @@ struct Miss {
   int frame;
   Pair spheres;
   std::size_t triangle_pairs;
-  double overlap;  // mesh units, see truth/depth.h
+  // Of the two body parts, where no report is of the same two: a fault that is not seen at all. Else 0, as of what is
+  // no fault. Mesh units.
+  double depth;
 };
 
 // A ragdoll of capsules of this quantile (truth/capsules.h): on the truth of the spheres, and on its own, which has

@@ -18,18 +18,22 @@ static void play(const std::vector<char>& file, const samples::GltfCharacter& mo
   const spherechain::Status made =
       character.create(file.data(), file.size(), joints.data(), joints.size(), SC_COLUMNS_4X4, message, sizeof message);
   check(made, message);
+  const float metres = sc_asset_get_info(&character.asset()).metres_per_unit;
   check(character.check_rest(samples::pose_of(model.rest_palette()), message, sizeof message), message);
 
   for (int frame = 0; frame <= 30 * model.duration(0); ++frame) {
     const samples::Palette palette = model.palette(0, frame / 30.0);  // what your skinning shader gets
     const spherechain::Pose pose{palette[0].data(), palette.size(), SC_COLUMNS_4X4};
 
-    const spherechain::PartContact* contacts = nullptr;
+    const spherechain::Penetration* found = nullptr;
     std::size_t count = 0;
-    check(character.contacts(pose, contacts, count), "the palette does not fit");
+    check(character.penetrations(pose, found, count), "the palette does not fit");
     for (std::size_t i = 0; i < count; ++i) {
-      std::printf("frame %d: %s in %s (%u triangle pairs)\n", frame, character.part_name(contacts[i].part_a),
-                  character.part_name(contacts[i].part_b), contacts[i].triangle_pairs);
+      if (found[i].kind != SC_CLASS_PENETRATION) continue;  // folds at joints, touches ...
+      const spherechain::Vec3 out = found[i].direction;     // the way that part_b must go
+      std::printf("frame %d: %s in %s, %.0f mm; out along (%.2f, %.2f, %.2f)\n", frame,
+                  character.part_name(found[i].part_b), character.part_name(found[i].part_a),
+                  1000 * metres * found[i].depth, out.x, out.y, out.z);
     }
   }
   // [/hello]

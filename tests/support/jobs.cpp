@@ -140,4 +140,24 @@ SkinContacts find_contacts(SkinContactJob job) {
   return out;
 }
 
+Measured measure(PenetrationJob job) {
+  const PreparedSkin table(*job.asset);
+  std::vector<std::uint64_t> scratch(sc_penetration_scratch_words(job.asset, job.contact_count), kDirty);
+  job.skin_table = table.words.data();
+  job.scratch = scratch.data();
+  job.scratch_words = scratch.size();
+  Measured out{job.run(), {}};
+  for (const Target target : supported_targets()) {
+    std::vector<Penetration> found(job.penetration_count);
+    job.target = target;
+    job.penetrations = found.data();
+    job.penetration_capacity = found.size();
+    std::fill(scratch.begin(), scratch.end(), kDirty);
+    if (out.status == SC_OK) out.status = job.run();
+    if (!out.penetrations.empty() && !same_bits(found, out.penetrations)) out.status = {SC_CORRUPT, SC_FIELD_TARGET};
+    out.penetrations = found;
+  }
+  return out;
+}
+
 }  // namespace spherechain::test

@@ -55,6 +55,14 @@ struct SkinContacts {
 // SC_CORRUPT where the runs find different things.
 SkinContacts find_contacts(SkinContactJob job);
 
+struct Measured {
+  Status status;
+  std::vector<Penetration> penetrations;
+};
+
+// The same for the measure of contacts, on every target: SC_CORRUPT where their bits differ.
+Measured measure(PenetrationJob job);
+
 // Bit for bit, so that a NaN equals itself.
 template <typename T>
 bool same_bits(const std::vector<T>& l, const std::vector<T>& r) {

@@ -27,6 +27,7 @@ struct PartEntry {
   std::string name;
   std::uint8_t side = SC_SIDE_NONE;
   std::int32_t bone = -1;
+  std::int32_t parent = -1;
 };
 
 struct ChainEntry {

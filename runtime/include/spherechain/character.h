@@ -3,7 +3,7 @@
  * never in a frame. One object serves any number of characters of one asset, one at a time: make one a thread. */
 #pragma once
 
-#include "spherechain/skin_contacts.h"
+#include "spherechain/penetrations.h"
 
 typedef struct sc_character sc_character;
 
@@ -29,6 +29,12 @@ SPHERECHAIN_API sc_status sc_character_check_rest(sc_character* character, const
  * part_b), valid until the next call. `palette` has the bones in the engine's joint order; it may have vertices too. */
 SPHERECHAIN_API sc_status sc_character_contacts(sc_character* character, const sc_pose* palette,
                                                 const sc_part_contact** contacts, size_t* count) SC_NOEXCEPT;
+
+/* The same with depth, direction and class, measured quickly (sc_penetration_job.quick): *penetrations points to *count of
+ * them, sorted by (part_a, part_b), valid until the next call. SC_OVERFLOW, with none: more pairs of triangles intersect
+ * than the character has room for (4,096, or half as many as it has triangles); ask sc_character_contacts(). */
+SPHERECHAIN_API sc_status sc_character_penetrations(sc_character* character, const sc_pose* palette,
+                                                    const sc_penetration** penetrations, size_t* count) SC_NOEXCEPT;
 
 #if defined(__cplusplus)
 }
@@ -61,6 +67,9 @@ class Character {
   }
   Status contacts(const Pose& palette, const PartContact*& contacts, size_t& count) noexcept {
     return sc_character_contacts(handle_, &palette, &contacts, &count);
+  }
+  Status penetrations(const Pose& palette, const Penetration*& penetrations, size_t& count) noexcept {
+    return sc_character_penetrations(handle_, &palette, &penetrations, &count);
   }
   const char* part_name(size_t part) const noexcept { return sc_asset_part(&asset(), part).name; }
 

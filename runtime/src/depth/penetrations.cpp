@@ -14,14 +14,15 @@ namespace spherechain {
 namespace {
 
 // Lengths are parts of the character's height, but those in metres.
-constexpr double kTouchMetres = 0.003;
+constexpr double kTouchMetres = 0.003, kTouchMin = 0.001, kTouchMax = 0.01;
 constexpr double kGapMetres = 0.0006, kGapMax = 0.001;  // shorter free places on the way are none
 constexpr double kFoldDistance = 0.09;    // of two spots at rest, to be a fold
 constexpr double kShellDistance = 0.035;  // likewise, to be layers of the same place
 constexpr double kDeepFold = 0.012, kDeepFoldFacing = 0.3;
+constexpr double kNear = 0.006;
 constexpr double kDeep = 0.015;  // worth more directions
 constexpr double kClearance = 3e-4;
-constexpr double kAreaError = 0.05;  // of a closed contour's area: beyond it the volume is not known
+constexpr double kAreaError = 0.03;  // if the contour has another area than the skin inside, the volume is not known
 
 struct Memory {
   PosedSkin skin;
@@ -29,19 +30,18 @@ struct Memory {
   Visibility visibility{skin};
   Span<std::uint64_t> keys;
   Span<Segment3> segments;
-  Span<std::uint32_t> side_a, side_b;  // of a part that meets itself
+  Span<TriangleRun> side_a, side_b;  // of a part that meets itself
 
   std::size_t lay_out(const AssetView& asset, std::size_t contact_count, std::uint64_t* words, Sweep& sweep) {
     const SkinSizes& sizes = asset.skin().sizes;
     WordMemory memory(words);
-    skin.take(memory, sizes.vertices);
+    skin.take(memory, sizes.vertices, sizes.clusters);
     contour.take(memory, contact_count, sizes.triangles);
-    visibility.take(memory, sizes.clusters);
     memory.take(keys, contact_count);
     memory.take(segments, contact_count);
     memory.take(side_a, contact_count);
     memory.take(side_b, contact_count);
-    sweep.take(memory, sizes.triangles);
+    sweep.take(memory, sizes.triangles, sizes.vertices);
     return memory.used();
   }
 };
@@ -64,14 +64,12 @@ class Measurer {
     memory_.skin.surface = &surface;
     memory_.lay_out(asset, job.contact_count, job.scratch, sweep_);
     memory_.contour.clear(surface.triangles.size);
+    sweep_.clear(surface.source_vertices.size);
   }
 
   Status run(Target resolved, PenetrationJob& job) {
     job.penetration_count = 0;
     memory_.skin.fill(job.pose, resolved);
-    if (job.quick == 0) {
-      memory_.visibility.fill();
-    }
     const std::size_t count = sort_segments();
     for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
       while (end < count && memory_.keys[end] >> 32 == memory_.keys[begin] >> 32) {
@@ -128,27 +126,35 @@ class Measurer {
     return count;
   }
 
-  Span<const std::uint32_t> triangles_of(std::size_t part) const {
+  Span<const TriangleRun> runs_of(std::size_t part) const {
     const std::uint32_t first = surface_.first_of_part[part];
-    return {surface_.part_triangles.data + first, surface_.first_of_part[part + 1] - first};
+    return {surface_.part_runs.data + first, surface_.first_of_part[part + 1] - first};
   }
 
-  static Span<const std::uint32_t> unique(std::uint32_t* triangles, std::size_t count) {
-    std::sort(triangles, triangles + count);
-    return {triangles, static_cast<std::size_t>(std::unique(triangles, triangles + count) - triangles)};
+  // Triangles each once.
+  Span<const TriangleRun> unique(Span<TriangleRun> runs) const {
+    const auto first = [](const TriangleRun& run) { return run.first; };
+    std::sort(runs.begin(), runs.end(), [&](const auto& l, const auto& r) { return first(l) < first(r); });
+    const auto end = std::unique(runs.begin(), runs.end(), [&](const auto& l, const auto& r) { return first(l) == first(r); });
+    for (TriangleRun* run = runs.begin(); run != end; ++run) {
+      const auto after = std::upper_bound(surface_.clusters.begin(), surface_.clusters.end(), run->first,
+                                          [](std::uint32_t t, const Cluster& c) { return t < c.first_triangle; });
+      run->cluster = static_cast<std::uint32_t>(after - surface_.clusters.begin() - 1);
+    }
+    return {runs.data, static_cast<std::size_t>(end - runs.begin())};
   }
 
   void set_sides(const Contour& contour, std::size_t part_a, std::size_t part_b) {
     if (part_a != part_b) {
-      sweep_.set_sides(triangles_of(part_a), triangles_of(part_b));
+      sweep_.set_sides(runs_of(part_a), runs_of(part_b), contour.center);
       return;
     }
-    for (std::size_t i = 0; i < contour.segments.size; ++i) {
-      memory_.side_a[i] = contour.segments[i].a;
-      memory_.side_b[i] = contour.segments[i].b;
+    const std::size_t count = contour.segments.size;
+    for (std::size_t i = 0; i < count; ++i) {
+      memory_.side_a[i] = {0, contour.segments[i].a, 1};
+      memory_.side_b[i] = {0, contour.segments[i].b, 1};
     }
-    sweep_.set_sides(unique(memory_.side_a.data, contour.segments.size),
-                     unique(memory_.side_b.data, contour.segments.size));
+    sweep_.set_sides(unique({memory_.side_a.data, count}), unique({memory_.side_b.data, count}), contour.center);
   }
 
   Penetration measure(Span<Segment3> segments) {
@@ -157,8 +163,10 @@ class Measurer {
     set_sides(contour, part_a, part_b);
     const Double3 previous = previous_direction(part_a, part_b);
     const bool has_previous = dot(previous, previous) > 0 && std::isfinite(dot(previous, previous));
-    const Exit exit = find_exit(
-        sweep_, contour, {job_.quick != 0, kDeep * height_, has_previous && job_.quick == 0 ? &previous : nullptr});
+    const bool folds = is_fold(contour, part_a, part_b);
+    const Exit exit = find_exit(sweep_, contour,
+                                {job_.quick != 0, kNear * height_, (folds ? 2 : 1) * kDeep * height_,
+                                 has_previous && job_.quick == 0 ? &previous : nullptr});
     Penetration out{};
     out.part_a = static_cast<std::uint32_t>(part_a);
     out.part_b = static_cast<std::uint32_t>(part_b);
@@ -172,8 +180,8 @@ class Measurer {
     if (job_.quick == 0) {
       if (contour.is_closed && part_a != part_b) {
         const Volume volume = sweep_.volume(exit.way.depth);
-        const double area = std::abs(dot(contour.area, exit.direction));
-        out.is_closed = std::abs(volume.area - area) <= kAreaError * area && volume.volume >= 0 ? 1 : 0;
+        const double area = dot(contour.area, exit.direction);
+        out.is_closed = std::abs(volume.area - area) <= kAreaError * volume.total && volume.volume >= 0 ? 1 : 0;
         out.volume = out.is_closed != 0 ? static_cast<float>(volume.volume) : 0;
       }
       Double3 axes[3];
@@ -210,14 +218,20 @@ class Measurer {
   }
 
   // Does one hang on the other, or both on the same third?
-  bool are_neighbours(std::uint32_t a, std::uint32_t b) const {
+  bool are_neighbours(std::size_t a, std::size_t b) const {
     const std::int32_t above_a = asset_.part(a).parent, above_b = asset_.part(b).parent;
     return a == b || above_a == static_cast<std::int32_t>(b) || above_b == static_cast<std::int32_t>(a) ||
            (above_a >= 0 && above_a == above_b);
   }
 
+  bool is_fold(const Contour& contour, std::size_t a, std::size_t b) const {
+    return a == b || (are_neighbours(a, b) && contour.rest_distance < kFoldDistance * height_);
+  }
+
   PenetrationClass class_of(const Contour& contour, const Penetration& of) const {
-    const double touch = job_.touch_depth > 0 ? double{job_.touch_depth} : kTouchMetres * metre_;
+    // Files without a unit make giants and dwarfs.
+    const double few = std::min(std::max(kTouchMetres * metre_, kTouchMin * height_), kTouchMax * height_);
+    const double touch = job_.touch_depth > 0 ? double{job_.touch_depth} : few;
     if (2 * contour.touching >= 1) {
       return SC_CLASS_REST;
     }
@@ -227,8 +241,7 @@ class Measurer {
     if (of.depth < touch) {
       return SC_CLASS_TOUCH;
     }
-    if (of.part_a == of.part_b ||
-        (are_neighbours(of.part_a, of.part_b) && contour.rest_distance < kFoldDistance * height_)) {
+    if (is_fold(contour, of.part_a, of.part_b)) {
       return of.depth > kDeepFold * height_ && contour.facing > kDeepFoldFacing ? SC_CLASS_DEEP_FOLD : SC_CLASS_FOLD;
     }
     return SC_CLASS_PENETRATION;

@@ -20,8 +20,9 @@ struct PosedSkin {
   const Surface* surface = nullptr;
   float* positions = nullptr;  // x, y, z of each of the surface's vertices
 
-  void take(WordMemory& memory, std::size_t vertex_count) { memory.take(positions, 3 * vertex_count); }
+  float *low[3] = {}, *high[3] = {};  // of a cluster's box
 
+  void take(WordMemory& memory, std::size_t vertex_count, std::size_t cluster_count);
   // Where the pose's vertices are, or where its bones put them.
   void fill(const Pose& pose, Target resolved);
 

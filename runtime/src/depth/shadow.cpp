@@ -27,7 +27,35 @@ void clip(Shadow& shadow, int edge, const Keep& keep) {
   shadow.count = count;
 }
 
+// A triangle's plane in view: z = z0 + x_slope (x - x0) + y_slope (y - y0).
+struct Slope {
+  double x0, y0, z0, x_slope, y_slope;
+
+  explicit Slope(const Corners& t) : x0(t.p[0].x), y0(t.p[0].y), z0(t.p[0].z) {
+    const Double3 e = t.p[1] - t.p[0], f = t.p[2] - t.p[0];
+    const double determinant = e.x * f.y - f.x * e.y;
+    x_slope = (e.z * f.y - f.z * e.y) / determinant;
+    y_slope = (e.x * f.z - f.x * e.z) / determinant;
+  }
+  double at(double x, double y) const { return z0 + (x_slope * (x - x0) + y_slope * (y - y0)); }
+};
+
+// Is b, seen along d, beyond one of a's edges?
+bool is_beside(const Corners& a, const Corners& b, double sign_of_a) {
+  for (int i = 0; i < 3; ++i) {
+    const Double3 &from = a.p[i], &to = a.p[(i + 1) % 3];
+    const double x = sign_of_a * (to.x - from.x), y = sign_of_a * (to.y - from.y);
+    const auto beyond = [&](const Double3& p) { return x * (p.y - from.y) - y * (p.x - from.x) < 0; };
+    if (beyond(b.p[0]) && beyond(b.p[1]) && beyond(b.p[2])) {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
+
+double height_at(const Corners& t, double x, double y) { return Slope(t).at(x, y); }
 
 View::View(const Double3& direction, const Double3& center) : d(direction), origin(center) {
   const double x = std::abs(d.x), y = std::abs(d.y), z = std::abs(d.z);
@@ -37,25 +65,19 @@ View::View(const Double3& direction, const Double3& center) : d(direction), orig
   u = cross(v, d);
 }
 
-double height_at(const Corners& t, double x, double y) {
-  const Double3 e = t.p[1] - t.p[0], f = t.p[2] - t.p[0];
-  const double determinant = e.x * f.y - f.x * e.y;
-  const double px = x - t.p[0].x, py = y - t.p[0].y;
-  const double s = (px * f.y - f.x * py) / determinant, r = (e.x * py - px * e.y) / determinant;
-  return t.p[0].z + (s * e.z + r * f.z);
-}
-
 Shadow::Shadow(const Corners& a, const Corners& b) {
-  const double turn = turn_of(a);
-  if (!(turn > 0) && !(turn < 0)) {
+  const double turn_a = turn_of(a), turn_b = turn_of(b);
+  if ((!(turn_a > 0) && !(turn_a < 0)) || is_beside(a, b, turn_a > 0 ? 1 : -1) ||
+      is_beside(b, a, turn_b > 0 ? 1 : turn_b < 0 ? -1 : 0)) {
     return;
   }
+  const Slope slope(a);
   for (int i = 0; i < 3; ++i) {
     const Double3& p = b.p[i];
-    corners[i] = {p.x, p.y, height_at(a, p.x, p.y) - p.z, i};
+    corners[i] = {p.x, p.y, slope.at(p.x, p.y) - p.z, i};
   }
   count = 3;
-  const double sign = turn > 0 ? 1 : -1;
+  const double sign = turn_a > 0 ? 1 : -1;
   for (int i = 0; i < 3 && count > 0; ++i) {
     const Double3 &from = a.p[i], &to = a.p[(i + 1) % 3];
     const double x = sign * (to.x - from.x), y = sign * (to.y - from.y);

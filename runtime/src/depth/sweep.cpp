@@ -11,18 +11,9 @@ namespace {
 
 constexpr int kPassesMax = 64;       // of hostile input; of bodies a handful
 constexpr std::size_t kVotes = 8;    // contacts that say what is inside
-constexpr float kLarge = 4;          // cells
 
 bool is_on(const Span<const std::uint64_t>& bits, std::size_t i) {
   return bits.size > 0 && (bits[i / 64] >> (i % 64) & 1) != 0;
-}
-
-bool is_finite(const Corners& t) {
-  bool finite = true;
-  for (const Double3& p : t.p) {
-    finite = finite && std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-  }
-  return finite;
 }
 
 }  // namespace
@@ -52,168 +43,162 @@ bool PairRule::counts(std::uint32_t a, std::uint32_t b) const {
 }
 
 void Sweep::Boxes::take(WordMemory& memory, std::size_t capacity) {
+  const std::size_t blocks = (capacity + kBlock - 1) / kBlock;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    memory.take(low[axis], capacity);
-    memory.take(high[axis], capacity);
+    memory.take(low[axis], blocks * kBlock);
+    memory.take(high[axis], blocks * kBlock);
+    memory.take(block_low[axis], blocks);
+    memory.take(block_high[axis], blocks);
   }
   memory.take(triangle, capacity);
+  memory.take(corners, 3 * capacity);
 }
 
-void Sweep::Boxes::view(const PosedSkin& skin, const View& view) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const Corners t = view.seen(skin.corners(triangle[i]));
-    const double coordinates[3][3] = {
-        {t.p[0].x, t.p[1].x, t.p[2].x}, {t.p[0].y, t.p[1].y, t.p[2].y}, {t.p[0].z, t.p[1].z, t.p[2].z}};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double *const c = coordinates[axis];
-      low[axis][i] = static_cast<float>(std::min({c[0], c[1], c[2]}));
-      high[axis][i] = static_cast<float>(std::max({c[0], c[1], c[2]}));
-    }
-  }
-}
-
-void Sweep::Boxes::bounds(float (&low_out)[3], float (&high_out)[3]) const {
+void Sweep::Boxes::view(float* const (&seen)[3]) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    low_out[axis] = FLT_MAX;
-    high_out[axis] = -FLT_MAX;
+    const float* const at = seen[axis];
     for (std::size_t i = 0; i < count; ++i) {
-      low_out[axis] = std::min(low_out[axis], low[axis][i]);
-      high_out[axis] = std::max(high_out[axis], high[axis][i]);
+      const float p = at[corners[3 * i]], q = at[corners[3 * i + 1]], r = at[corners[3 * i + 2]];
+      low[axis][i] = std::min(std::min(p, q), r);
+      high[axis][i] = std::max(std::max(p, q), r);
     }
   }
-}
-
-void Sweep::Boxes::keep(const Boxes& other, double reach) {
-  float lows[3], highs[3];
-  other.bounds(lows, highs);
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    bool is_near = true;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      is_near = is_near && double{low[axis][i]} <= highs[axis] + reach && double{high[axis][i]} >= lows[axis] - reach;
-    }
-    if (is_near) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        low[axis][kept] = low[axis][i];
-        high[axis][kept] = high[axis][i];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::fill(low[axis] + count, low[axis] + block_count() * kBlock, FLT_MAX);
+    std::fill(high[axis] + count, high[axis] + block_count() * kBlock, -FLT_MAX);
+    for (std::size_t block = 0; block < block_count(); ++block) {
+      float least = FLT_MAX, most = -FLT_MAX;
+      for (std::size_t i = kBlock * block; i < kBlock * (block + 1); ++i) {
+        least = std::min(least, low[axis][i]);
+        most = std::max(most, high[axis][i]);
       }
-      triangle[kept++] = triangle[i];
+      block_low[axis][block] = least;
+      block_high[axis][block] = most;
     }
   }
-  count = kept;
 }
 
-void Sweep::take(WordMemory& memory, std::size_t triangle_count) {
+void Sweep::take(WordMemory& memory, std::size_t triangle_count, std::size_t vertex_count) {
   a_.take(memory, triangle_count);
   b_.take(memory, triangle_count);
-  memory.take(first_in_cell_, std::size_t{kCells} * kCells + 1);
-  memory.take(in_cell_, triangle_count);
-  memory.take(large_, triangle_count);
+  memory.take(vertices_.vertex, vertex_count);
+  memory.take(vertices_.place, vertex_count);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    memory.take(vertices_.at[axis], vertex_count);
+    memory.take(vertices_.seen[axis], vertex_count);
+  }
 }
 
-void Sweep::set_sides(Span<const std::uint32_t> a, Span<const std::uint32_t> b) {
-  const auto fill = [&](Boxes& boxes, const Span<const std::uint32_t>& triangles) {
-    boxes.count = 0;
-    for (const std::uint32_t triangle : triangles) {
-      if (is_finite(skin_.corners(triangle))) {
-        boxes.triangle[boxes.count++] = triangle;
+void Sweep::clear(std::size_t vertex_count) {
+  std::fill(vertices_.place, vertices_.place + vertex_count, kNoPlace);
+}
+
+// Near each other in memory: boxes are made of them again and again.
+void Sweep::list_vertices(Boxes& boxes) {
+  for (std::size_t i = 0; i < boxes.count; ++i) {
+    const std::uint32_t* const corners = skin_.surface->triangle_vertices.data + 3 * std::size_t{boxes.triangle[i]};
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::uint32_t& place = vertices_.place[corners[k]];
+      if (place == kNoPlace) {
+        place = static_cast<std::uint32_t>(vertices_.count);
+        vertices_.vertex[vertices_.count] = corners[k];
+        const float* const p = skin_.positions + 3 * std::size_t{corners[k]};
+        vertices_.at[0][vertices_.count] = static_cast<float>(double{p[0]} - vertices_.origin.x);
+        vertices_.at[1][vertices_.count] = static_cast<float>(double{p[1]} - vertices_.origin.y);
+        vertices_.at[2][vertices_.count] = static_cast<float>(double{p[2]} - vertices_.origin.z);
+        ++vertices_.count;
       }
+      boxes.corners[3 * i + k] = place;
     }
-  };
+  }
+}
+
+// Boxes need no more than single precision: their triangles are compared in double precision.
+void Sweep::see_vertices() {
+  const float *const x = vertices_.at[0], *const y = vertices_.at[1], *const z = vertices_.at[2];
+  const Double3* const axes[3] = {&view_.u, &view_.v, &view_.d};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Vec3 a = to_float(*axes[axis]);
+    float* const out = vertices_.seen[axis];
+    for (std::size_t i = 0; i < vertices_.count; ++i) {
+      out[i] = a.x * x[i] + (a.y * y[i] + a.z * z[i]);
+    }
+  }
+}
+
+void Sweep::set_sides(Span<const TriangleRun> a, Span<const TriangleRun> b, const Double3& origin) {
   side_a_ = a;
   side_b_ = b;
-  fill(a_, a);
-  fill(b_, b);
+  vertices_.origin = origin;
+  remembered_count_ = 0;
 }
 
 void Sweep::keep_near(double depth) {
-  for (int round = 0; round < 2; ++round) {
-    b_.keep(a_, depth + gap_);
-    a_.keep(b_, depth + gap_);
+  for (std::size_t i = 0; i < vertices_.count; ++i) {
+    vertices_.place[vertices_.vertex[i]] = kNoPlace;
   }
+  vertices_.count = 0;
+  keep_runs(side_a_, side_b_, depth, a_);
+  keep_runs(side_b_, side_a_, depth, b_);
+  list_vertices(a_);
+  list_vertices(b_);
 }
 
-// Cells as large as a's boxes are on average, and no more than kCells a side.
-void Sweep::fill_grid() {
-  float lows[3], highs[3];
-  a_.bounds(lows, highs);
-  top_ = highs[2];
-  double width[2] = {0, 0};
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    for (std::size_t i = 0; i < a_.count; ++i) {
-      width[axis] += double{a_.high[axis][i]} - double{a_.low[axis][i]};
-    }
-  }
-  const double mean = 0.5 * (width[0] + width[1]) / static_cast<double>(std::max<std::size_t>(a_.count, 1));
-  for (std::size_t axis = 0; axis < 2; ++axis) {
-    const double extent = a_.count == 0 ? 0 : double{highs[axis]} - double{lows[axis]};
-    corner_[axis] = a_.count == 0 ? 0 : lows[axis];
-    const double wanted = mean > 0 ? extent / mean : 0;
-    cells_[axis] = wanted < 1 ? 1 : wanted > kCells ? kCells : static_cast<int>(wanted);
-    cell_[axis] = extent > 0 ? static_cast<float>(extent / cells_[axis]) : 1.0F;
-    reach_[axis] = 0;
-  }
-  const auto cell_of = [&](std::size_t axis, float at) {
-    const float place = (at - corner_[axis]) / cell_[axis];
-    return place < 1 ? 0 : place >= static_cast<float>(cells_[axis]) ? cells_[axis] - 1 : static_cast<int>(place);
-  };
-  const std::size_t cell_count = static_cast<std::size_t>(cells_[0]) * static_cast<std::size_t>(cells_[1]);
-  std::fill(first_in_cell_, first_in_cell_ + cell_count + 1, 0U);
-  large_count_ = 0;
-  const auto is_large = [&](std::size_t i) {
-    return a_.high[0][i] - a_.low[0][i] > kLarge * cell_[0] || a_.high[1][i] - a_.low[1][i] > kLarge * cell_[1];
-  };
-  const auto cell_at = [&](std::size_t i) {
-    return static_cast<std::size_t>(cell_of(1, a_.low[1][i]) * cells_[0] + cell_of(0, a_.low[0][i]));
-  };
-  for (std::size_t i = 0; i < a_.count; ++i) {
-    if (is_large(i)) {
-      large_[large_count_++] = static_cast<std::uint32_t>(i);
-      continue;
-    }
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-      reach_[axis] = std::max(reach_[axis], a_.high[axis][i] - a_.low[axis][i]);
-    }
-    ++first_in_cell_[cell_at(i) + 1];
-  }
-  for (std::size_t cell = 1; cell <= cell_count; ++cell) {
-    first_in_cell_[cell] += first_in_cell_[cell - 1];
-  }
-  for (std::size_t i = 0; i < a_.count; ++i) {
-    if (!is_large(i)) {
-      in_cell_[first_in_cell_[cell_at(i)]++] = static_cast<std::uint32_t>(i);
-    }
-  }
-  for (std::size_t cell = cell_count; cell > 0; --cell) {
-    first_in_cell_[cell] = first_in_cell_[cell - 1];
-  }
-  first_in_cell_[0] = 0;
-}
-
-// Those of a's boxes that b's box hides or is hidden by.
-template <typename Visit>
-void Sweep::for_neighbours(std::size_t b, const Visit& visit) const {
-  const float low[2] = {b_.low[0][b], b_.low[1][b]}, high[2] = {b_.high[0][b], b_.high[1][b]};
-  const auto meets = [&](std::size_t a) {
-    return a_.low[0][a] <= high[0] && a_.high[0][a] >= low[0] && a_.low[1][a] <= high[1] && a_.high[1][a] >= low[1];
-  };
-  const auto cell_of = [&](std::size_t axis, float at) {
-    const float place = (at - corner_[axis]) / cell_[axis];
-    return place < 1 ? 0 : place >= static_cast<float>(cells_[axis]) ? cells_[axis] - 1 : static_cast<int>(place);
-  };
-  const int x_begin = cell_of(0, low[0] - reach_[0]), x_end = cell_of(0, high[0]) + 1;
-  const int y_begin = cell_of(1, low[1] - reach_[1]), y_end = cell_of(1, high[1]) + 1;
-  for (int y = y_begin; y < y_end; ++y) {
-    const std::uint32_t* const row = first_in_cell_ + static_cast<std::size_t>(y) * static_cast<std::size_t>(cells_[0]);
-    for (std::uint32_t k = row[x_begin]; k < row[x_end]; ++k) {
-      if (meets(in_cell_[k])) {
-        visit(in_cell_[k]);
+// Runs of whose cluster the box is near one of the other side's.
+void Sweep::keep_runs(const Span<const TriangleRun>& side, const Span<const TriangleRun>& other, double depth,
+                      Boxes& out) {
+  out.count = 0;
+  const double reach = depth + gap_;
+  for (const TriangleRun& run : side) {
+    const auto is_near = [&](const TriangleRun& from) {
+      bool near = true;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        near = near && double{skin_.low[axis][run.cluster]} <= double{skin_.high[axis][from.cluster]} + reach &&
+               double{skin_.high[axis][run.cluster]} >= double{skin_.low[axis][from.cluster]} - reach;
+      }
+      return near;
+    };
+    if (std::any_of(other.begin(), other.end(), is_near)) {
+      for (std::uint32_t i = 0; i < run.count; ++i) {
+        out.triangle[out.count++] = run.first + i;
       }
     }
   }
-  for (std::size_t k = 0; k < large_count_; ++k) {
-    if (meets(large_[k])) {
-      visit(large_[k]);
+}
+
+template <typename Wants, typename Visit>
+void Sweep::for_pairs(const Wants& wants, const Visit& visit) const {
+  for (std::size_t q = 0; q < b_.block_count(); ++q) {
+    for (std::size_t p = 0; p < a_.block_count(); ++p) {
+      const auto meets = [&](std::size_t axis) {
+        return a_.block_low[axis][p] <= b_.block_high[axis][q] && a_.block_high[axis][p] >= b_.block_low[axis][q];
+      };
+      if (!wants(double{a_.block_low[2][p]} - double{b_.block_high[2][q]},
+                 double{a_.block_high[2][p]} - double{b_.block_low[2][q]}) ||
+          !meets(0) || !meets(1)) {
+        continue;
+      }
+      const std::size_t b_end = std::min(kBlock * (q + 1), b_.count);
+      for (std::size_t b = kBlock * q; b < b_end; ++b) {
+        const float low_u = b_.low[0][b], high_u = b_.high[0][b], low_v = b_.low[1][b], high_v = b_.high[1][b];
+        const float *const lows_u = a_.low[0] + kBlock * p, *const highs_u = a_.high[0] + kBlock * p;
+        const float *const lows_v = a_.low[1] + kBlock * p, *const highs_v = a_.high[1] + kBlock * p;
+        std::int32_t hides[kBlock];
+        std::int32_t any = 0;
+        for (std::size_t k = 0; k < kBlock; ++k) {
+          const std::int32_t p0 = lows_u[k] <= high_u ? -1 : 0, p1 = highs_u[k] >= low_u ? -1 : 0;
+          const std::int32_t q0 = lows_v[k] <= high_v ? -1 : 0, q1 = highs_v[k] >= low_v ? -1 : 0;
+          hides[k] = p0 & p1 & q0 & q1;
+          any |= hides[k];
+        }
+        for (std::size_t k = 0; any != 0 && k < kBlock; ++k) {
+          const std::size_t a = kBlock * p + k;
+          if (hides[k] != 0 && wants(double{a_.low[2][a]} - double{b_.high[2][b]},
+                                     double{a_.high[2][a]} - double{b_.low[2][b]})) {
+            visit(a_.triangle[a], b_.triangle[b]);
+          }
+        }
+      }
     }
   }
 }
@@ -260,71 +245,82 @@ void Sweep::block(std::uint32_t a, std::uint32_t b, double& depth, WayOut& out) 
   out.point_b = view_.back({corner.x, corner.y, z - high});
 }
 
-void Sweep::pass(double& depth, WayOut& out, bool& is_longer) const {
-  for (std::size_t b = 0; b < b_.count; ++b) {
-    const double low_b = b_.low[2][b], high_b = b_.high[2][b];
-    if (double{top_} - low_b <= depth) {
-      continue;
-    }
-    for_neighbours(b, [&](std::uint32_t a) {
-      if (double{a_.high[2][a]} - low_b > depth && double{a_.low[2][a]} - high_b <= depth + gap_) {
-        const double before = depth;
-        block(a_.triangle[a], b_.triangle[b], depth, out);
-        is_longer = is_longer || depth > before;
-      }
-    });
+void Sweep::remember(const WayOut& out) {
+  const Pair pair{out.a, out.b};
+  const std::size_t known = std::min(remembered_count_, kRemembered);
+  if (out.a != kNoPlace && std::find(remembered_, remembered_ + known, pair) == remembered_ + known) {
+    remembered_[remembered_count_++ % kRemembered] = pair;
   }
 }
 
 bool Sweep::find(const Double3& direction, const Contour& contour, double bound, WayOut& out) {
-  view_ = View(direction, contour.center);
-  WayOut way;
+  view_ = View(direction, vertices_.origin);
+  out = {};
   double depth = 0;
   for (const Segment3& segment : contour.segments) {
-    block(segment.a, segment.b, depth, way);
+    block(segment.a, segment.b, depth, out);
   }
-  out = way;
+  for (std::size_t i = 0; i < 2 * std::min(remembered_count_, kRemembered) && depth < bound; ++i) {
+    const Pair& pair = remembered_[i % std::min(remembered_count_, kRemembered)];
+    block(pair.a, pair.b, depth, out);
+  }
   if (depth >= bound) {
     return false;
   }
-  a_.view(skin_, view_);
-  b_.view(skin_, view_);
-  fill_grid();
+  see_vertices();
+  a_.view(vertices_.seen);
+  b_.view(vertices_.seen);
   bool is_longer = true;
-  for (int i = 0; is_longer && i < kPassesMax; ++i) {
-    is_longer = false;
-    pass(depth, way, is_longer);
-    out = way;
-    if (depth >= bound) {
-      return false;
+  for (int i = 0; is_longer && i < kPassesMax && depth < bound; ++i) {
+    const double before = depth;
+    for_pairs([&](double low, double high) { return high > depth && low <= depth + gap_ && depth < bound; },
+              [&](std::uint32_t a, std::uint32_t b) { block(a, b, depth, out); });
+    is_longer = depth > before;
+  }
+  remember(out);
+  out.depth = depth;
+  return depth < bound;
+}
+
+void Sweep::vote_by(std::uint32_t triangle, const Double3* points, std::size_t count, bool up, double handedness,
+                    double* nearest, int* inside) const {
+  const Corners t = view_.seen(skin_.corners(triangle));
+  const double turn = turn_of(t), sign = turn > 0 ? 1 : -1;
+  for (std::size_t i = 0; i < count && (turn > 0 || turn < 0); ++i) {
+    const Double3& from = points[i];
+    bool is_over = true;
+    for (int k = 0; k < 3 && is_over; ++k) {
+      const Double3 &p = t.p[k], &q = t.p[(k + 1) % 3];
+      is_over = sign * ((q.x - p.x) * (from.y - p.y) - (q.y - p.y) * (from.x - p.x)) >= 0;
+    }
+    const double rise = is_over ? height_at(t, from.x, from.y) - from.z : 0, distance = up ? rise : -rise;
+    if (distance > 0 && distance < nearest[i]) {
+      nearest[i] = distance;
+      inside[i] = (up ? sign : -sign) * handedness > 0 ? 1 : 0;
     }
   }
-  out.depth = depth;
-  return true;
 }
 
 // For each point: is the next surface of that side above it, or below it, one that is left, not entered?
-void Sweep::vote(const Span<const std::uint32_t>& side, const Double3* points, std::size_t count, bool up,
+void Sweep::vote(const Span<const TriangleRun>& side, const Double3* points, std::size_t count, bool up,
                  double handedness, int* inside) const {
   double nearest[kVotes];
   std::fill(nearest, nearest + kVotes, HUGE_VAL);
-  for (const std::uint32_t triangle : side) {
-    const Corners t = view_.seen(skin_.corners(triangle));
-    const double turn = turn_of(t), sign = turn > 0 ? 1 : -1;
-    for (std::size_t i = 0; i < count && (turn > 0 || turn < 0); ++i) {
-      const Double3& from = points[i];
-      bool is_over = true;
-      for (int k = 0; k < 3 && is_over; ++k) {
-        const Double3 &p = t.p[k], &q = t.p[(k + 1) % 3];
-        is_over = sign * ((q.x - p.x) * (from.y - p.y) - (q.y - p.y) * (from.x - p.x)) >= 0;
-      }
-      if (is_over) {
-        const double rise = height_at(t, from.x, from.y) - from.z, distance = up ? rise : -rise;
-        if (distance > 0 && distance < nearest[i]) {
-          nearest[i] = distance;
-          inside[i] = (up ? sign : -sign) * handedness > 0 ? 1 : 0;
-        }
-      }
+  for (const TriangleRun& run : side) {
+    // The run's box, seen: its middle and how far it reaches along u and v.
+    Double3 low{}, high{};
+    low = {double{skin_.low[0][run.cluster]}, double{skin_.low[1][run.cluster]}, double{skin_.low[2][run.cluster]}};
+    high = {double{skin_.high[0][run.cluster]}, double{skin_.high[1][run.cluster]}, double{skin_.high[2][run.cluster]}};
+    const Double3 middle = view_.seen(0.5 * (low + high)), half = 0.5 * (high - low);
+    const auto reach = [&](const Double3& axis) {
+      return std::abs(axis.x) * half.x + (std::abs(axis.y) * half.y + std::abs(axis.z) * half.z);
+    };
+    const double reach_u = reach(view_.u), reach_v = reach(view_.v);
+    const bool is_over_any = std::any_of(points, points + count, [&](const Double3& p) {
+      return std::abs(p.x - middle.x) <= reach_u && std::abs(p.y - middle.y) <= reach_v;
+    });
+    for (std::uint32_t k = 0; is_over_any && k < run.count; ++k) {
+      vote_by(run.first + k, points, count, up, handedness, nearest, inside);
     }
   }
 }
@@ -355,23 +351,19 @@ bool Sweep::is_enclosed(const WayOut& way, const Contour& contour, double handed
 // the way are left of that sum.
 Volume Sweep::volume(double depth) const {
   Volume out;
-  for (std::size_t b = 0; b < b_.count; ++b) {
-    for_neighbours(b, [&](std::uint32_t a) {
-      if (!(a_.high[2][a] > b_.low[2][b]) || !(double{a_.low[2][a]} - double{b_.high[2][b]} < depth)) {
-        return;
-      }
-      const Corners seen_a = view_.seen(skin_.corners(a_.triangle[a])),
-                    seen_b = view_.seen(skin_.corners(b_.triangle[b]));
-      Shadow shadow(seen_a, seen_b);
-      shadow.keep_above(0);
-      shadow.keep_below(depth);
-      if (shadow.count > 2) {
-        const double sign = (turn_of(seen_a) > 0) == (turn_of(seen_b) > 0) ? -1 : 1;
-        out.volume += sign * shadow.volume();
-        out.area += sign * shadow.area();
-      }
-    });
-  }
+  for_pairs([&](double low, double high) { return high > 0 && low <= depth + gap_; },
+            [&](std::uint32_t a, std::uint32_t b) {
+              const Corners seen_a = view_.seen(skin_.corners(a)), seen_b = view_.seen(skin_.corners(b));
+              Shadow shadow(seen_a, seen_b);
+              shadow.keep_above(0);
+              shadow.keep_below(depth);
+              if (shadow.count > 2) {
+                const double sign = (turn_of(seen_a) > 0) == (turn_of(seen_b) > 0) ? -1 : 1;
+                out.volume += sign * shadow.volume();
+                out.area += sign * shadow.area();
+                out.total += shadow.area();
+              }
+            });
   return out;
 }
 

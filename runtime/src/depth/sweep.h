@@ -27,19 +27,22 @@ struct WayOut {
 
 struct Volume {
   double volume = 0;
-  double area = 0;  // of what is inside, seen along the direction
+  double area = 0;   // of b's skin inside a, seen along the direction: what faces away counts negative
+  double total = 0;  // of all that area was made of
 };
 
 class Sweep {
  public:
   // `gap`: free places shorter than that are none.
   Sweep(const PosedSkin& skin, const PairRule& rule, double gap) : skin_(skin), rule_(rule), gap_(gap) {}
-  void take(WordMemory& memory, std::size_t triangle_count);
+  void take(WordMemory& memory, std::size_t triangle_count, std::size_t vertex_count);
+  // Once, before anything else.
+  void clear(std::size_t vertex_count);
 
-  // Sets the triangles. Those that are not finite are left out.
-  void set_sides(Span<const std::uint32_t> a, Span<const std::uint32_t> b);
-  void keep_all() { set_sides(side_a_, side_b_); }
-  // Leaves those that may meet within a move of `depth` in any direction, seen in the last direction.
+  // `origin`: about where they meet. keep_near() comes next.
+  void set_sides(Span<const TriangleRun> a, Span<const TriangleRun> b, const Double3& origin);
+  // Leaves the triangles that may meet within a move of `depth` in any direction: ways that are longer are not known
+  // from here on. With an infinite depth all are left.
   void keep_near(double depth);
 
   // False where the way is not shorter than `bound`: then `out` is the pair that said so.
@@ -50,37 +53,50 @@ class Sweep {
   Volume volume(double depth) const;
 
  private:
+  // Blocks of triangles that follow one another, and their boxes in view: along u, v, d.
+  static constexpr std::size_t kBlock = 16;
   struct Boxes {
-    float *low[3] = {}, *high[3] = {};
-    std::uint32_t* triangle = nullptr;
+    float *low[3] = {}, *high[3] = {};              // a triangle's; those past the last are empty
+    float *block_low[3] = {}, *block_high[3] = {};  // a block's
+    std::uint32_t *triangle = nullptr, *corners = nullptr;  // three places in vertices_ each
     std::size_t count = 0;
 
+    std::size_t block_count() const { return (count + kBlock - 1) / kBlock; }
     void take(WordMemory& memory, std::size_t capacity);
-    void view(const PosedSkin& skin, const View& view);
-    void keep(const Boxes& other, double reach);
-    void bounds(float (&low_out)[3], float (&high_out)[3]) const;
+    void view(float* const (&seen)[3]);
   };
-  void fill_grid();
-  void pass(double& depth, WayOut& out, bool& is_longer) const;
+  // The vertices of both sides' triangles, and their coordinates in view.
+  struct Vertices {
+    std::uint32_t *vertex = nullptr, *place = nullptr;  // the other way round: kNoPlace where it is not there
+    float *at[3] = {}, *seen[3] = {};                   // relative to `origin`
+    Double3 origin{};
+    std::size_t count = 0;
+  };
+  void list_vertices(Boxes& boxes);
+  void see_vertices();
+  void keep_runs(const Span<const TriangleRun>& side, const Span<const TriangleRun>& other, double depth, Boxes& out);
   void block(std::uint32_t a, std::uint32_t b, double& depth, WayOut& out) const;
-  template <typename Visit>
-  void for_neighbours(std::size_t b, const Visit& visit) const;
-  void vote(const Span<const std::uint32_t>& side, const Double3* points, std::size_t count, bool up, double handedness,
+  // Calls visit(a, b) for triangles whose boxes hide each other and wants(low, high) of their intervals: b can meet a
+  // only after a move between low and high.
+  template <typename Wants, typename Visit>
+  void for_pairs(const Wants& wants, const Visit& visit) const;
+  void vote(const Span<const TriangleRun>& side, const Double3* points, std::size_t count, bool up, double handedness,
             int* inside) const;
+  void vote_by(std::uint32_t triangle, const Double3* points, std::size_t count, bool up, double handedness,
+               double* nearest, int* inside) const;
+  void remember(const WayOut& out);
 
   const PosedSkin& skin_;
   const PairRule& rule_;
   double gap_;
   View view_{{0, 0, 1}, {0, 0, 0}};
-  Span<const std::uint32_t> side_a_, side_b_;
+  Span<const TriangleRun> side_a_, side_b_;
   Boxes a_, b_;
-  // a's boxes by where their lower corners are; those larger than four cells apart.
-  static constexpr int kCells = 64;
-  std::uint32_t *first_in_cell_ = nullptr, *in_cell_ = nullptr, *large_ = nullptr;
-  std::size_t large_count_ = 0;
-  float top_ = 0;  // of a's boxes
-  float cell_[2] = {1, 1}, corner_[2] = {0, 0}, reach_[2] = {0, 0};
-  int cells_[2] = {1, 1};
+  Vertices vertices_;
+  // Pairs that blocked other ways last: likely to block the next.
+  static constexpr std::size_t kRemembered = 64;
+  Pair remembered_[kRemembered] = {};
+  std::size_t remembered_count_ = 0;
 };
 
 }  // namespace spherechain

@@ -2,7 +2,6 @@
 #include "depth/visibility.h"
 
 #include <algorithm>
-#include <cfloat>
 
 namespace spherechain {
 namespace {
@@ -23,30 +22,6 @@ bool meets(const Double3& from, const Double3& direction, const Corners& t) {
 
 }  // namespace
 
-void Visibility::take(WordMemory& memory, std::size_t cluster_count) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    memory.take(low_[axis], cluster_count);
-    memory.take(high_[axis], cluster_count);
-  }
-}
-
-void Visibility::fill() {
-  const Surface& surface = *skin_.surface;
-  for (std::size_t c = 0; c < surface.clusters.size; ++c) {
-    const Cluster& cluster = surface.clusters[c];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      float low = FLT_MAX, high = -FLT_MAX;
-      for (std::size_t i = 0; i < cluster.vertex_count; ++i) {
-        const float at = skin_.positions[3 * surface.cluster_vertices[cluster.first_vertex + i] + axis];
-        low = std::min(low, at);
-        high = std::max(high, at);
-      }
-      low_[axis][c] = low;
-      high_[axis][c] = high;
-    }
-  }
-}
-
 bool Visibility::is_free(const Double3& from, const Double3& direction) const {
   const Surface& surface = *skin_.surface;
   const double start[3] = {from.x, from.y, from.z};
@@ -54,8 +29,8 @@ bool Visibility::is_free(const Double3& from, const Double3& direction) const {
   for (std::size_t c = 0; c < surface.clusters.size; ++c) {
     double enter = 0, leave = HUGE_VAL;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double s = (double{low_[axis][c]} - start[axis]) * slope[axis];
-      const double t = (double{high_[axis][c]} - start[axis]) * slope[axis];
+      const double s = (double{skin_.low[axis][c]} - start[axis]) * slope[axis];
+      const double t = (double{skin_.high[axis][c]} - start[axis]) * slope[axis];
       enter = std::max(enter, std::min(s, t));
       leave = std::min(leave, std::max(s, t));
     }

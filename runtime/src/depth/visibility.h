@@ -9,9 +9,6 @@ namespace spherechain {
 class Visibility {
  public:
   explicit Visibility(const PosedSkin& skin) : skin_(skin) {}
-  void take(WordMemory& memory, std::size_t cluster_count);
-  // The boxes around the clusters of the pose.
-  void fill();
 
   // The share of the contour's length, of samples, from which some ray leaves the body without meeting it. Rays start
   // `clearance` away from the skin, between the two surfaces. `axes` are three directions at right angles.
@@ -21,7 +18,6 @@ class Visibility {
   bool is_free(const Double3& from, const Double3& direction) const;
 
   const PosedSkin& skin_;
-  float *low_[3] = {}, *high_[3] = {};
 };
 
 }  // namespace spherechain

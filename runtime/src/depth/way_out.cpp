@@ -7,6 +7,7 @@ namespace spherechain {
 namespace {
 
 constexpr int kSteps = 4;            // of a direction towards the normal of what blocks it last
+constexpr int kWidenings = 4;        // of what is near
 constexpr double kNearlyAsGood = 1.15;  // times the shortest: the last frame's direction is kept
 constexpr double kSameWay = 0.5;     // cosine: a direction that is refined farther is another
 
@@ -23,15 +24,16 @@ class Search {
     has_any_ = false;
   }
 
-  // Along that direction, and along those that its blockers' normals lead to.
-  void refine(Double3 direction) {
+  // Along that direction, and along those that its blockers' normals lead to: where it is not shorter than the best,
+  // so many steps.
+  void refine(Double3 direction, int steps_in_vain) {
     for (int step = 0; step <= kSteps && normalize(direction); ++step) {
       WayOut way;
       const double bound = has_any_ ? best_.way.depth : HUGE_VAL;
       if (sweep_.find(direction, contour_, bound, way) && !is_refused(way)) {
         best_ = {direction, way};
         has_any_ = true;
-      } else if (step > 1) {
+      } else if (step >= steps_in_vain) {
         return;
       }
       if (dot(way.normal, direction) > 0.9999) {
@@ -108,9 +110,16 @@ Exit find_exit(Sweep& sweep, const Contour& contour, const ExitSettings& setting
       first = {0, 0, 1};
     }
   }
+  // Near triangles alone, while the way is shorter than what is near.
   Exit out{first, {}};
-  const bool found = sweep.find(first, contour, HUGE_VAL, out.way);
-  if (settings.one_direction || !found) {
+  double reach = settings.near;
+  for (int i = 0; i < kWidenings; ++i, reach *= 4) {
+    sweep.keep_near(i + 1 < kWidenings ? reach : HUGE_VAL);
+    if (sweep.find(first, contour, i + 1 < kWidenings ? reach : HUGE_VAL, out.way)) {
+      break;
+    }
+  }
+  if (settings.one_direction) {
     return out;
   }
   Search search(sweep, contour, handedness);
@@ -119,11 +128,11 @@ Exit find_exit(Sweep& sweep, const Contour& contour, const ExitSettings& setting
   axes_of(contour, first, axes);
   const auto try_all = [&] {
     for (const Double3& direction : {first, normals, contour.area, contour.largest_area}) {
-      search.refine(direction);
+      search.refine(direction, 2);
     }
     if (!search.has_any() || search.best().way.depth > settings.deep) {
       for (int k = 0; k < 27; ++k) {
-        search.refine(double(k % 3 - 1) * axes[0] + (double(k / 3 % 3 - 1) * axes[1] + double(k / 9 - 1) * axes[2]));
+        search.refine(double(k % 3 - 1) * axes[0] + (double(k / 3 % 3 - 1) * axes[1] + double(k / 9 - 1) * axes[2]), 0);
       }
     }
   };
@@ -137,7 +146,7 @@ Exit find_exit(Sweep& sweep, const Contour& contour, const ExitSettings& setting
   if (!is_good()) {
     const Exit fallback = search.has_any() ? search.best() : out;
     search.be_careful();
-    sweep.keep_all();
+    sweep.keep_near(HUGE_VAL);
     try_all();
     if (!search.has_any()) {
       sweep.find(fallback.direction, contour, HUGE_VAL, out.way);

@@ -13,6 +13,7 @@ struct Exit {
 
 struct ExitSettings {
   bool one_direction = false;
+  double near = 0;                    // ways are likely to be shorter
   double deep = 0;                    // above it many more directions are tried
   const Double3* previous = nullptr;  // the last frame's, or null
 };

@@ -2,6 +2,7 @@
 // The short way: an object that owns the asset's bytes, its binding, its tables and its outputs.
 #include "spherechain/character.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <new>
@@ -12,19 +13,24 @@
 
 struct sc_character {
   sc_asset asset;
-  void* blocks[6];  // what the pointers below and the asset point into
+  void* blocks[9];  // what the pointers below and the asset point into
   std::size_t block_count;
   std::uint32_t* joint_of_bone;  // null: palettes come in the asset's order
   float* bones;
   std::uint64_t *skin_table, *scratch;
   sc_part_contact* contacts;
   std::size_t contact_capacity;
+  sc_triangle_contact* triangles;
+  std::size_t triangle_capacity;
+  std::uint64_t* measure_scratch;
+  sc_penetration* penetrations;  // as many as contacts
 };
 
 namespace spherechain {
 namespace {
 
 constexpr std::size_t kLine = 64;
+constexpr std::size_t kTrianglesMin = 4096;  // pairs that a frame has room for, at least; else half of the triangles
 
 // Room for `count` entries, from a cache line on. False where there is no memory.
 template <typename T>
@@ -55,8 +61,11 @@ Status fill(sc_character& c, std::uint32_t abi, const void* data, std::size_t si
   }
   const std::size_t bones = view.bone_count();
   c.contact_capacity = view.part_count() * (view.part_count() + 1) / 2;
+  c.triangle_capacity = std::max(kTrianglesMin, view.skin().sizes.triangles / 2);
   if (!allocate(c, c.skin_table, table_words) || !allocate(c, c.scratch, sc_skin_scratch_words(&c.asset)) ||
-      !allocate(c, c.contacts, c.contact_capacity) ||
+      !allocate(c, c.contacts, c.contact_capacity) || !allocate(c, c.triangles, c.triangle_capacity) ||
+      !allocate(c, c.measure_scratch, sc_penetration_scratch_words(&c.asset, c.triangle_capacity)) ||
+      !allocate(c, c.penetrations, c.contact_capacity) ||
       (joints != nullptr && (!allocate(c, c.joint_of_bone, bones) || !allocate(c, c.bones, 12 * bones)))) {
     return no_memory;
   }
@@ -78,6 +87,21 @@ Status gather(sc_character& c, const sc_pose& palette, sc_pose& pose) {
   pose.bone_layout = SC_ROWS_3X4;
   pose.bone_stride = 0;
   return status;
+}
+
+// Fills in and runs a job whose outputs are set, but for the parts.
+Status find(sc_character& c, const sc_pose& palette, SkinContactJob& job) {
+  const Status gathered = gather(c, palette, job.pose);
+  if (gathered != SC_OK) {
+    return gathered;
+  }
+  job.asset = &c.asset;
+  job.skin_table = c.skin_table;
+  job.scratch = c.scratch;
+  job.scratch_words = sc_skin_scratch_words(&c.asset);
+  job.parts = c.contacts;
+  job.part_capacity = c.contact_capacity;
+  return job.run();
 }
 
 }  // namespace
@@ -145,18 +169,38 @@ sc_status sc_character_contacts(sc_character* character, const sc_pose* palette,
   *contacts = character->contacts;
   *count = 0;
   SkinContactJob job;
-  const Status gathered = gather(*character, *palette, job.pose);
-  if (gathered != SC_OK) {
-    return gathered;
-  }
-  job.asset = &character->asset;
-  job.skin_table = character->skin_table;
-  job.scratch = character->scratch;
-  job.scratch_words = sc_skin_scratch_words(&character->asset);
-  job.parts = character->contacts;
-  job.part_capacity = character->contact_capacity;
-  const Status status = job.run();
+  const Status status = find(*character, *palette, job);
   *count = status == SC_OK ? job.part_count : 0;
+  return status;
+}
+
+sc_status sc_character_penetrations(sc_character* character, const sc_pose* palette,
+                                    const sc_penetration** penetrations, size_t* count) noexcept {
+  if (character == nullptr || palette == nullptr || penetrations == nullptr || count == nullptr) {
+    return refuse(SC_NULL, palette == nullptr ? SC_FIELD_BONES : SC_FIELD_OUTPUT);
+  }
+  *penetrations = character->penetrations;
+  *count = 0;
+  SkinContactJob found;
+  found.triangles = character->triangles;
+  found.triangle_capacity = character->triangle_capacity;
+  Status status = find(*character, *palette, found);
+  if (status != SC_OK) {
+    return status;
+  }
+  PenetrationJob job;
+  job.asset = &character->asset;
+  job.pose = found.pose;
+  job.skin_table = character->skin_table;
+  job.contacts = found.triangles;
+  job.contact_count = found.triangle_count;
+  job.quick = 1;
+  job.scratch = character->measure_scratch;
+  job.scratch_words = sc_penetration_scratch_words(&character->asset, character->triangle_capacity);
+  job.penetrations = character->penetrations;
+  job.penetration_capacity = character->contact_capacity;
+  status = job.run();
+  *count = status == SC_OK ? job.penetration_count : 0;
   return status;
 }
 

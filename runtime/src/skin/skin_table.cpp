@@ -45,7 +45,7 @@ std::size_t lay_out(const AssetView& asset, std::uint64_t* words, Surface& out, 
   memory.take(out.triangle_vertices, 3 * sizes.triangles);
   memory.take(out.triangle_spheres, sizes.triangles);
   memory.take(out.place_of_source, asset.info().triangle_count);
-  memory.take(out.part_triangles, sizes.triangles);
+  memory.take(out.part_runs, skin.part_runs.size + sizes.clusters);
   memory.take(out.first_of_part, asset.part_count() + 1);
   memory.take(out.pieces, sizes.vertices);
   memory.take(out.source_vertices, sizes.vertices);
@@ -92,7 +92,7 @@ class Filler {
       out_.triangles[t] = triangles.next();
       out_.place_of_source[out_.triangles[t]] = t;
     }
-    fill_part_triangles();
+    fill_part_runs();
     fill_pieces();
     for (Pair& pair : out_.rest_contacts) {
       pair.a = pairs.next();
@@ -238,18 +238,27 @@ class Filler {
     }
   }
 
-  void fill_part_triangles() const {
-    std::fill(out_.first_of_part.begin(), out_.first_of_part.end(), 0U);
-    for (const std::uint8_t part : out_.parts) {
-      ++out_.first_of_part[part + std::size_t{1}];
+  // What runs of one part and clusters have in common.
+  template <typename Visit>
+  void for_part_runs(const Visit& visit) const {
+    for (std::uint32_t c = 0; c < out_.clusters.size; ++c) {
+      const std::uint32_t end = out_.clusters[c].first_triangle + out_.clusters[c].triangle_count;
+      for (std::uint32_t t = out_.clusters[c].first_triangle, next = t; t < end; t = next) {
+        while (next < end && out_.parts[next] == out_.parts[t]) {
+          ++next;
+        }
+        visit(out_.parts[t], TriangleRun{c, t, next - t});
+      }
     }
+  }
+  void fill_part_runs() const {
+    std::fill(out_.first_of_part.begin(), out_.first_of_part.end(), 0U);
+    for_part_runs([&](std::size_t part, const TriangleRun&) { ++out_.first_of_part[part + 1]; });
     for (std::size_t part = 1; part < out_.first_of_part.size; ++part) {
       out_.first_of_part[part] += out_.first_of_part[part - 1];
     }
     // Each start moves on to the part's end, which is the next one's start.
-    for (std::uint32_t t = 0; t < out_.parts.size; ++t) {
-      out_.part_triangles[out_.first_of_part[out_.parts[t]]++] = t;
-    }
+    for_part_runs([&](std::size_t part, const TriangleRun& run) { out_.part_runs[out_.first_of_part[part]++] = run; });
     for (std::size_t part = out_.first_of_part.size - 1; part > 0; --part) {
       out_.first_of_part[part] = out_.first_of_part[part - 1];
     }

@@ -36,6 +36,11 @@ struct SlotMorph {
   Vec3 delta;
 };
 
+// Triangles side by side, of one cluster.
+struct TriangleRun {
+  std::uint32_t cluster, first, count;
+};
+
 // Points near whose convex hull a sphere's vertices stay in every pose (schemas/sphere_chains.fbs, Hull).
 struct Hull {
   std::uint32_t first_bone;    // into Surface::hull_bones
@@ -61,8 +66,8 @@ struct Surface {
   Span<std::uint32_t> triangle_vertices;    // three of each triangle
   Span<std::uint16_t> triangle_spheres;     // of each triangle
   Span<std::uint32_t> place_of_source;      // a source triangle's place in `triangles`; kNoPlace where it is not there
-  Span<std::uint32_t> part_triangles;       // places in `triangles`, of part after part
-  Span<std::uint32_t> first_of_part;        // a part's, and the end
+  Span<TriangleRun> part_runs;              // of part after part
+  Span<std::uint32_t> first_of_part;        // a part's in part_runs, and the end
   Span<std::uint32_t> pieces;               // of each vertex: equal where triangles join two vertices
   Span<std::uint32_t> source_vertices;      // a vertex' lowest source vertex
   Span<std::uint32_t> welds;                // the lowest vertex at the same rest position: at most its own number

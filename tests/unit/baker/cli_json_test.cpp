@@ -257,9 +257,9 @@ TEST_CASE("validate --json has the contract's fields, the same with a cache and 
   }
   CHECK(found["frame_any_recall"] == 1);
   CHECK(found["reported_per_frame"] > 0);
-  CHECK(found["missed_overlap"] == 0);
-  CHECK(found["all_pairs"]["missed_overlap"] >= 0);
-  CHECK(found["all_pairs"]["missed_overlap"] < 0.1);
+  CHECK(found["missed_depth_mm"] == 0);
+  CHECK(found["all_pairs"]["missed_depth_mm"] >= 0);
+  CHECK(found["all_pairs"]["missed_depth_mm"] < 100);
 
   CHECK(validate("", cache.string()) == found);
   CHECK(files_in(cache) == 3);  // frame 0 is the rest pose

@@ -155,7 +155,7 @@ TEST_CASE("a validation is shown only whole, and of spheres that the asset has")
                         "/worst_misses/0",
                         "/worst_misses/0/time",
                         "/worst_misses/0/triangle_pairs",
-                        "/worst_misses/0/overlap",
+                        "/worst_misses/0/depth_mm",
                         "/worst_misses/0/spheres",
                         "/worst_misses/0/spheres/1"});
   for (const json& number : {json(-1), json(1.5), json(made().asset->spheres().size)}) {

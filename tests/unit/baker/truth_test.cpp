@@ -9,7 +9,7 @@
 #include "baked_human.h"
 #include "mesh_self_intersections.h"
 #include "temporary_folder.h"
-#include "truth/depth.h"
+#include "truth/missed_depth.h"
 #include "truth/intersections.h"
 #include "truth/score.h"
 #include "truth/truth.h"
@@ -156,53 +156,21 @@ TEST_CASE("intersections are found once a pose and kept in files; a broken file 
   CHECK(CachedIntersections(surface, {}).find(crossing).pairs.size() == 1);
 }
 
-// A square of 8 by 8 units in z = 0 that faces up, and a slim spike that hangs from z = 5 down to `tip`.
-struct SpikeOverFloor {
-  std::vector<Triangle> corners;
-  std::vector<std::uint32_t> spheres;
-  std::vector<float> positions;
-
-  explicit SpikeOverFloor(const Vec3& tip) {
-    for (int y = 0; y <= 8; ++y) {
-      for (int x = 0; x <= 8; ++x) add({x - 4.0, y - 4.0, 0});
-    }
-    for (Index y = 0; y < 8; ++y) {
-      for (Index x = 0; x < 8; ++x) {
-        const Index v = 9 * y + x;
-        corners.push_back({v, v + 1, v + 10});
-        corners.push_back({v, v + 10, v + 9});
-      }
-    }
-    spheres.assign(corners.size(), 0);
-    const auto first = static_cast<Index>(positions.size() / 3);
-    add(tip);
-    for (const auto& [x, y] : {std::pair(0.1, 0.0), std::pair(-0.1, 0.1), std::pair(-0.1, -0.1)}) {
-      add({tip.x() + x, tip.y() + y, 5});
-    }
-    corners.push_back({first, first + 2, first + 1});
-    corners.push_back({first, first + 3, first + 2});
-    corners.push_back({first, first + 1, first + 3});
-    spheres.insert(spheres.end(), 3, 1);
-  }
-
-  double depth() const {
-    const TruthSurface surface = loose_surface(corners, spheres);
-    return penetration({{0, 1}, find_intersections(surface, positions).pairs}, surface, positions);
-  }
-
- private:
-  void add(const Vec3& p) {
-    for (int k = 0; k < 3; ++k) positions.push_back(static_cast<float>(p[k]));
-  }
-};
-
-TEST_CASE("depth is how far a vertex lies behind the other region, whatever its triangles' size") {
-  CHECK(SpikeOverFloor({0.3, 0.2, -1.5}).depth() == doctest::Approx(1.5));  // behind a face
-  CHECK(SpikeOverFloor({0.5, 0.0, -1.5}).depth() == doctest::Approx(1.5));  // behind an edge
-  CHECK(SpikeOverFloor({0.0, 0.0, -1.5}).depth() == doctest::Approx(1.5));  // behind a vertex
-  CHECK(SpikeOverFloor({0.3, 0.2, -0.001}).depth() == doctest::Approx(0.001));
-  CHECK(SpikeOverFloor({0.3, 0.2, 0.5}).depth() == 0);
-  CHECK(SpikeOverFloor({9, 9, -1.5}).depth() == 0);  // beside it
+TEST_CASE("a method misses a fault where it reports no contact of its two body parts") {
+  const std::vector<std::uint8_t> part_of{0, 1, 1, 2};
+  FrameTruth truth;
+  truth.contacts = {{{0, 1}, {{0, 1}}}, {{0, 2}, {{0, 2}}}, {{1, 3}, {{1, 3}}}};
+  std::vector<Penetration> found(2);
+  found[0] = {0, 1, SC_CLASS_PENETRATION, 5};
+  found[1] = {1, 2, SC_CLASS_FOLD, 7};
+  const auto missed = [&](const std::vector<Pair>& reported, std::size_t contact) {
+    return MissedDepth(part_of, truth, reported, found)(truth.contacts[contact]);
+  };
+  CHECK(missed({}, 0) == 5);
+  CHECK(missed({{0, 2}}, 0) == 0);  // other spheres of the same parts
+  CHECK(missed({}, 2) == 0);        // a fold
+  found[1].kind = SC_CLASS_DEEP_FOLD;
+  CHECK(missed({}, 2) == 7);
 }
 
 TEST_CASE("what is at rest too, of one sphere or of an ignored pair is counted and left out, each pair once") {
@@ -260,16 +228,16 @@ TEST_CASE("a score counts triangle pairs, frames and reported spheres as the con
   CHECK(some.apart_precision() == 0.5);  // {0, 1} is near at rest
   CHECK(some.frame_any_recall() == 1);
   CHECK(some.frame_all_recall() == 0);
-  CHECK(some.missed_overlap == 2);
+  CHECK(some.missed_depth == 2);
   Score both = score({{0, 1}, {0, 2}});
   CHECK(both.frame_all_recall() == 1);
-  CHECK(both.missed_overlap == 0);
+  CHECK(both.missed_depth == 0);
   both.add(score({}));
   CHECK(both.pair_recall() == 0.5);
   CHECK(both.frame_any_recall() == 0.5);
   CHECK(both.reported_per_frame() == 1);
   CHECK(both.precision() == 1);
-  CHECK(both.missed_overlap == 2);
+  CHECK(both.missed_depth == 2);
   truth = {};
   CHECK(!score({}).pair_recall());
   CHECK(!score({}).far_recall());

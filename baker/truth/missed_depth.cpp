@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "truth/missed_depth.h"
+
+#include <algorithm>
+
+namespace spherechain::baker {
+
+MissedDepth::MissedDepth(const std::vector<std::uint8_t>& part_of, const FrameTruth& truth,
+                         const std::vector<Pair>& reported, const std::vector<Penetration>& penetrations)
+    : part_of_(part_of) {
+  for (const Penetration& found : penetrations) {
+    if (found.kind >= SC_CLASS_DEEP_FOLD) depths_[{found.part_a, found.part_b}] = double{found.depth};
+  }
+  for (const TrueContact& contact : truth.contacts) {
+    if (!std::binary_search(reported.begin(), reported.end(), contact.spheres)) continue;
+    for (const Pair& triangles : contact.triangles) depths_.erase(parts_of(triangles));
+  }
+}
+
+double MissedDepth::operator()(const TrueContact& contact) const {
+  double deepest = 0;
+  for (const Pair& triangles : contact.triangles) {
+    const auto found = depths_.find(parts_of(triangles));
+    if (found != depths_.end()) deepest = std::max(deepest, found->second);
+  }
+  return deepest;
+}
+
+Pair MissedDepth::parts_of(const Pair& triangles) const {
+  const auto [a, b] = std::minmax(part_of_[triangles.a], part_of_[triangles.b]);
+  return {a, b};
+}
+
+}  // namespace spherechain::baker

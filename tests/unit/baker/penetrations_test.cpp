@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Depth, direction and volume of bodies for which they are known.
+#include <doctest/doctest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
+#include "two_shapes.h"
+
+using Vec = spherechain::baker::Vec3;
+using Turn = Eigen::AngleAxisd;
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+const auto shifted = [](double x, double y, double z) { return [=](const Vec& p) { return Vec(p + Vec(x, y, z)); }; };
+Vec direction_of(const spherechain::Penetration& of) {
+  return {double{of.direction.x}, double{of.direction.y}, double{of.direction.z}};
+}
+
+spherechain::Penetration only(const std::vector<spherechain::Penetration>& found) {
+  REQUIRE(found.size() == 1);
+  return found[0];
+}
+
+double lens(double r, double d) { return kPi * (4 * r + d) * (2 * r - d) * (2 * r - d) / 12; }
+
+}  // namespace
+
+TEST_CASE("two balls are as deep as their radii are longer than their distance, and part along it") {
+  const TwoShapes balls(ball(1, 24), ball(1, 24));
+  for (const double distance : {1.9, 1.5, 1.1}) {
+    const spherechain::Penetration found = only(balls.measure(shifted(0, 0.6 * distance, -0.8 * distance)));
+    CHECK(found.depth == doctest::Approx(2 - distance).epsilon(0.01));
+    CHECK(direction_of(found).dot(Vec(0, 0.6, -0.8)) > 0.99);
+    REQUIRE(found.is_closed == 1);
+    CHECK(found.volume == doctest::Approx(lens(1, distance)).epsilon(0.01));
+    CHECK(found.contour_length == doctest::Approx(2 * kPi * std::sqrt(1 - distance * distance / 4)).epsilon(0.01));
+    CHECK(found.visible == 1);
+    CHECK(found.kind == SC_CLASS_PENETRATION);
+  }
+}
+
+TEST_CASE("boxes are as deep as their shortest overlap") {
+  const TwoShapes boxes(box(1, 1, 1), box(0.5, 0.5, 0.5));
+  const spherechain::Penetration found = only(boxes.measure(shifted(1.4, 0.3, 0.2)));
+  CHECK(found.depth == doctest::Approx(0.1).epsilon(1e-4));
+  CHECK(direction_of(found).x() > 0.9999);
+  CHECK(found.volume == doctest::Approx(0.1).epsilon(1e-3));
+  // The corner alone: 0.2 by 0.3 by 0.4.
+  const spherechain::Penetration corner = only(boxes.measure(shifted(-1.3, 1.2, 1.1)));
+  CHECK(corner.depth == doctest::Approx(0.2).epsilon(1e-4));
+  CHECK(direction_of(corner).x() < -0.9999);
+  CHECK(corner.volume == doctest::Approx(0.2 * 0.3 * 0.4).epsilon(1e-3));
+}
+
+TEST_CASE("tubes that cross part over each other's back") {
+  const double radius = 0.3;
+  const TwoShapes capsules(capsule(radius, 1, 12), capsule(radius, 1, 12)),
+      cylinders(cylinder(radius, 1, 12), cylinder(radius, 1, 12));
+  for (const TwoShapes* tubes : {&capsules, &cylinders}) {
+    for (const double angle : {90.0, 50.0}) {
+      const auto place = [&](const Vec& p) { return Vec(Turn(angle * kPi / 180, Vec::UnitX()) * p + Vec(0.4, 0, 0)); };
+      const spherechain::Penetration found = only(tubes->measure(place));
+      CHECK(found.depth == doctest::Approx(2 * radius - 0.4).epsilon(0.01));
+      CHECK(direction_of(found).x() > 0.99);
+    }
+  }
+  // At right angles, axes in one plane: Steinmetz' solid.
+  const spherechain::Penetration through = only(cylinders.measure([&](const Vec& p) { return Vec(p.x(), p.z(), -p.y()); }));
+  CHECK(through.depth == doctest::Approx(2 * radius).epsilon(0.01));
+  CHECK(through.volume == doctest::Approx(16.0 / 3 * radius * radius * radius).epsilon(0.01));
+}
+
+TEST_CASE("depth goes to zero where a contact ends, and is never zero") {
+  const TwoShapes balls(ball(1, 12), ball(1, 12));
+  double last = 1;
+  for (const double distance : {1.9, 1.97, 1.98, 1.985}) {
+    const auto found = balls.measure(shifted(distance, 0, 0));
+    if (found.empty()) break;
+    CHECK(found[0].depth > 0);
+    CHECK(double{found[0].depth} < last);
+    last = double{found[0].depth};
+  }
+  CHECK(last < 0.03);
+  const TwoShapes boxes(box(1, 1, 1), box(0.5, 0.5, 0.5));
+  CHECK(only(boxes.measure(shifted(1.5, 0.3, 0.2))).depth > 0);  // faces that touch
+}
+
+TEST_CASE("the answer turns, grows and mirrors with the bodies, and the deepest points are its ends") {
+  const TwoShapes shapes(box(1, 1, 1), capsule(0.3, 0.5, 8));
+  const auto place = [](const Vec& p) { return Vec(Turn(0.5, Vec(1, 2, 3).normalized()) * p + Vec(0.4, 1.3, -0.2)); };
+  const spherechain::Penetration plain = only(shapes.measure(place));
+  const spherechain::SkinPoint &a = plain.deepest_a, &b = plain.deepest_b;
+  CHECK(a.position.x - b.position.x == doctest::Approx(plain.depth * plain.direction.x).epsilon(0.001));
+  CHECK(a.position.y - b.position.y == doctest::Approx(plain.depth * plain.direction.y).epsilon(0.001));
+  for (const spherechain::SkinPoint& point : {a, b}) {
+    CHECK(point.weights[0] + point.weights[1] + point.weights[2] == doctest::Approx(1).epsilon(1e-4));
+  }
+  // Moved so far and a little farther it is free; nine tenths of the way it is not.
+  const auto after = [&](double share) {
+    return [&, share](const Vec& p) { return Vec(place(p) + share * double{plain.depth} * direction_of(plain)); };
+  };
+  CHECK(shapes.measure(after(1.001)).empty());
+  CHECK(!shapes.measure(after(0.9)).empty());
+}
+
+TEST_CASE("a body that went most of the way in is not pushed inside") {
+  const TwoShapes shapes(ball(2, 16), capsule(0.2, 0.5, 6));
+  // Nearly all of the pin is in the ball: inwards is shorter, but there it would be lost.
+  const spherechain::Penetration found = only(shapes.measure(shifted(0, 1.4, 0)));
+  CHECK(direction_of(found).y() > 0.5);
+}
+
+TEST_CASE("the quick form and every target agree with the full form, and a kept direction does not flicker") {
+  const TwoShapes balls(ball(1, 16), ball(1, 16));
+  const auto place = shifted(1.3, 0.4, 0);
+  const spherechain::Penetration full = only(balls.measure(place));
+  const spherechain::Penetration quick = only(balls.measure(place, [](spherechain::PenetrationJob& job) { job.quick = 1; }));
+  CHECK(quick.depth == doctest::Approx(full.depth).epsilon(0.05));
+  spherechain::Penetration last = full;
+  last.direction = {0, 0, 1};  // far worse than the best: it does not count
+  const spherechain::Penetration fresh = only(balls.measure(place, [&](spherechain::PenetrationJob& job) {
+    job.previous = &last;
+    job.previous_count = 1;
+  }));
+  CHECK(fresh.depth == full.depth);
+}

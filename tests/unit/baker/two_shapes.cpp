@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "two_shapes.h"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "glb_writer.h"
+#include "jobs.h"
+#include "temporary_folder.h"
+
+using namespace spherechain::baker;
+using Vec = spherechain::baker::Vec3;
+
+namespace {
+
+constexpr double kApart = 40;
+
+// A profile of radii and heights from the lower pole to the upper, turned around y.
+Shape turned(const std::vector<std::pair<double, double>>& profile, int around) {
+  Shape out;
+  const auto n = static_cast<std::uint32_t>(around);
+  for (const auto& [radius, y] : profile) {
+    for (int k = 0; k < around; ++k) {
+      const double angle = 2 * std::numbers::pi * k / around;
+      out.positions.push_back({radius * std::cos(angle), y, radius * std::sin(angle)});
+    }
+  }
+  const auto rings = static_cast<std::uint32_t>(profile.size());
+  for (std::uint32_t ring = 0; ring + 1 < rings; ++ring) {
+    for (std::uint32_t k = 0; k < n; ++k) {
+      const std::uint32_t a = ring * n + k, b = ring * n + (k + 1) % n;
+      out.triangles.push_back({a, a + n, b + n});
+      out.triangles.push_back({a, b + n, b});
+    }
+  }
+  const auto pole = static_cast<std::uint32_t>(out.positions.size());
+  out.positions.push_back({0, profile.front().second, 0});
+  out.positions.push_back({0, profile.back().second, 0});
+  for (std::uint32_t k = 0; k < n; ++k) {
+    out.triangles.push_back({pole, k, (k + 1) % n});
+    out.triangles.push_back({pole + 1, (rings - 1) * n + (k + 1) % n, (rings - 1) * n + k});
+  }
+  return out;
+}
+
+}  // namespace
+
+Shape capsule(double radius, double half, int rings) {
+  std::vector<std::pair<double, double>> profile;
+  for (int k = 0; k < rings; ++k) {
+    const double angle = std::numbers::pi / 2 * (k + 0.5) / rings;
+    profile.emplace_back(radius * std::sin(angle), -half - radius * std::cos(angle));
+  }
+  profile.emplace_back(radius, -half);
+  if (half > 0) profile.emplace_back(radius, half);
+  for (int k = rings; k-- > 0;) {
+    const auto [r, y] = profile[static_cast<std::size_t>(k)];
+    profile.emplace_back(r, -y);
+  }
+  Shape out = turned(profile, 4 * rings);
+  // The poles are on the ball.
+  out.positions[out.positions.size() - 2].y() = -half - radius;
+  out.positions.back().y() = half + radius;
+  return out;
+}
+
+Shape ball(double radius, int rings) { return capsule(radius, 0, rings); }
+
+Shape cylinder(double radius, double half, int rings) {
+  std::vector<std::pair<double, double>> profile;
+  for (int k = 0; k <= rings; ++k) profile.emplace_back(radius, half * (2.0 * k / rings - 1));
+  return turned(profile, 4 * rings);
+}
+
+Shape box(double x, double y, double z) {
+  Shape out;
+  for (int k = 0; k < 8; ++k) out.positions.push_back({k & 1 ? x : -x, k & 2 ? y : -y, k & 4 ? z : -z});
+  out.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                   {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return out;
+}
+
+TwoShapes::TwoShapes(const Shape& a, const Shape& b)
+    : first_of_b_(a.positions.size()), apart_(kApart), asset_([&] {
+        Glb glb;
+        std::vector<float> weights, inverse_binds;
+        std::vector<std::uint16_t> joints;
+        std::vector<std::uint32_t> corners;
+        for (const Shape* shape : {&a, &b}) {
+          const bool second = shape == &b;
+          for (const Vec& p : shape->positions) {
+            rest_.insert(rest_.end(), {static_cast<float>(p.x() + (second ? kApart : 0)), static_cast<float>(p.y()),
+                                       static_cast<float>(p.z())});
+            joints.insert(joints.end(), {static_cast<std::uint16_t>(second ? 1 : 0), 0, 0, 0});
+            weights.insert(weights.end(), {1, 0, 0, 0});
+          }
+          const auto first = static_cast<std::uint32_t>(second ? a.positions.size() : 0);
+          for (const auto& t : shape->triangles) corners.insert(corners.end(), {first + t[0], first + t[1], first + t[2]});
+          for (int i = 0; i < 16; ++i) inverse_binds.push_back(i % 5 == 0 ? 1.0F : 0.0F);
+        }
+        glb.json["nodes"] = {{{"name", "root"}, {"children", {1, 2}}}, {{"name", "a"}}, {{"name", "b"}},
+                             {{"mesh", 0}, {"skin", 0}}};
+        glb.json["scenes"] = {{{"nodes", {0, 3}}}};
+        glb.json["meshes"] = {{{"primitives",
+                                {{{"attributes",
+                                   {{"POSITION", glb.accessor(rest_, "VEC3")},
+                                    {"JOINTS_0", glb.accessor(joints, "VEC4")},
+                                    {"WEIGHTS_0", glb.accessor(weights, "VEC4")}}},
+                                  {"indices", glb.accessor(corners, "SCALAR")}}}}}};
+        glb.json["skins"] = {{{"joints", {1, 2}}, {"inverseBindMatrices", glb.accessor(inverse_binds, "MAT4")}}};
+        const TemporaryFolder folder;
+        const Bake baked = bake(folder.write("shapes.glb", glb.bytes()), make_settings("balanced", "{}", "test"), {});
+        return OpenAsset({reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size()}, "shapes");
+      }()) {}
+
+std::vector<spherechain::Penetration> TwoShapes::measure(const std::function<Vec(const Vec&)>& place, const std::function<void(spherechain::PenetrationJob&)>& change) const {
+  std::vector<float> vertices = rest_;
+  for (std::size_t v = first_of_b_; 3 * v < vertices.size(); ++v) {
+    float* const p = vertices.data() + 3 * v;
+    const Vec moved = place({double{p[0]} - apart_, double{p[1]}, double{p[2]}});
+    for (int k = 0; k < 3; ++k) p[k] = static_cast<float>(moved[k]);
+  }
+  spherechain::SkinContactJob find;
+  find.asset = asset_.handle();
+  find.pose.vertices = vertices.data();
+  find.pose.vertex_count = vertices.size() / 3;
+  find.scope = SC_SCOPE_ALL;
+  const spherechain::test::SkinContacts found = spherechain::test::find_contacts(find);
+  REQUIRE(found.status == SC_OK);
+  spherechain::PenetrationJob job;
+  job.asset = find.asset;
+  job.pose = find.pose;
+  job.scope = find.scope;
+  job.contacts = found.triangles.data();
+  job.contact_count = found.triangles.size();
+  if (change) change(job);
+  const spherechain::test::Measured measured = spherechain::test::measure(job);
+  REQUIRE(measured.status == SC_OK);
+  return measured.penetrations;
+}

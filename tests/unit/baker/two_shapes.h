@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Two closed meshes that follow a joint each, baked: what is known about their intersection can be computed by hand.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "pipeline/pipeline.h"
+#include "play/asset_file.h"
+#include "spherechain/penetrations.h"
+
+struct Shape {
+  std::vector<spherechain::baker::Vec3> positions;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+Shape ball(double radius, int rings);
+Shape box(double x, double y, double z);  // half of its edges
+// Along y, with round or flat ends; `half` is half of its straight length.
+Shape capsule(double radius, double half, int rings);
+Shape cylinder(double radius, double half, int rings);
+
+class TwoShapes {
+ public:
+  TwoShapes(const Shape& a, const Shape& b);
+
+  // b goes through `place`; a stays. All that the runtime finds, by the job's other settings.
+  std::vector<spherechain::Penetration> measure(
+      const std::function<spherechain::baker::Vec3(const spherechain::baker::Vec3&)>& place,
+      const std::function<void(spherechain::PenetrationJob&)>& change = {}) const;
+
+ private:
+  std::vector<float> rest_;
+  std::size_t first_of_b_;
+  double apart_;  // b at rest is so far from where it was given
+  spherechain::baker::OpenAsset asset_;
+};
