@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The fit for any body: the skin of each region is halved where its sphere fits worst, until there are enough.
-#include <Eigen/Eigenvalues>
+// The fit for any body: skin is halved where that gains most, until there are enough spheres.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
+#include <optional>
 #include <set>
 
 #include "fit/bone_weights.h"
