@@ -6,6 +6,7 @@
 #include <string>
 
 #include "bind/neighbours.h"
+#include "fit/bone_weights.h"
 #include "mesh/surface_query.h"
 
 namespace spherechain::baker {
@@ -104,6 +105,17 @@ std::vector<Index> triangles_around(const Mesh& mesh, const FittedSphere& sphere
   return around;
 }
 
+// Those of some triangles whose weights overlap others' by more than `least`.
+std::vector<Index> moving_alike(const Character& character, const std::vector<Index>& triangles,
+                                const BoneWeights& weights, double least) {
+  if (least <= 0) return triangles;
+  std::vector<Index> alike;
+  for (const Index t : triangles) {
+    if (overlap(mean_weights(character, {t}), weights) > least) alike.push_back(t);
+  }
+  return alike;
+}
+
 // What the pivots make of the sphere: its centre and spread in the rest pose.
 BoundSphere carried(const Mesh& mesh, const FittedSphere& sphere, RefitRule rule, std::vector<BoundPivot> pivots) {
   BoundSphere bound{sphere.ball, 0, 0, std::move(pivots), 0};
@@ -133,17 +145,26 @@ double detect_ratio(const Mesh& mesh, const std::vector<Index>& surrounding, con
   return std::max(1.0, area_quantile(mesh, surrounding, ball.center, quantile, at) / ball.radius);
 }
 
-BoundSphere bind_sphere(const Mesh& mesh, const std::vector<Index>& surrounding, const FittedSphere& sphere,
+BoundSphere bind_sphere(const Character& character, const std::vector<Index>& surrounding, const FittedSphere& sphere,
                         bool on_torso, AreaAt at, const BodyFrame& frame, const BindSettings& settings) {
+  const Mesh& mesh = character.skin;
   // Ray 0 of the rings points there too: pivots turn with the body.
   const Vec3 reference = on_torso ? frame.forward : Vec3(frame.up + 0.7 * frame.left + 0.3 * frame.forward);
   const auto choose = [&](const std::vector<Index>& among) {
     return choose_pivots(mesh, among, sphere, reference, settings.rule, settings.pivots);
   };
-  std::vector<BoundPivot> pivots = choose(surrounding);
-  // Few and large triangles: those beyond the region's border carry the sphere too.
-  for (double radii = 2; pivots.empty() && radii <= 8; radii *= 2) {
-    pivots = choose(triangles_around(mesh, sphere, radii));
+  std::vector<BoundPivot> pivots;
+  // The radius follows how far pivots are apart: those that other bones move would blow it up. Few and large triangles:
+  // those beyond the region's border carry the sphere too.
+  const BoneWeights weights =
+      settings.rule == RefitRule::kMoments ? mean_weights(character, surrounding) : BoneWeights{};
+  for (const double alike : {kMovesAlike, 0.65, 0.5, 0.0}) {
+    if (weights.empty() && alike > 0) continue;
+    if (pivots.empty()) pivots = choose(moving_alike(character, surrounding, weights, alike));
+    for (const double radii : {2.0, 4.0, 8.0}) {
+      if (!pivots.empty()) break;
+      pivots = choose(moving_alike(character, triangles_around(mesh, sphere, radii), weights, alike));
+    }
   }
   if (pivots.empty() && settings.rule == RefitRule::kMoments) {
     pivots = choose_nearest_pivots(mesh, triangles_around(mesh, sphere, 8), sphere, reference, settings.pivots);
@@ -195,7 +216,7 @@ Attempt<Binding> bind_spheres(const Character& character, const Regions& regions
     const bool by_bones = regions.is_by_bones(sphere.region);
     const bool on_torso = !by_bones && sphere.region == regions.torso_region();
     const AreaAt at = by_bones ? AreaAt::kCorners : AreaAt::kCentroid;
-    BoundSphere bound = bind_sphere(skin, surrounding[i], sphere, on_torso, at, regions.frame, settings);
+    BoundSphere bound = bind_sphere(character, surrounding[i], sphere, on_torso, at, regions.frame, settings);
     if (bound.pivots.empty() || !(bound.spread > 0)) {
       return Reason{"the skin is too small for sphere " + std::to_string(i) + ", of the " +
                     regions.name(sphere.region) + ": its " + std::to_string(surrounding[i].size()) +

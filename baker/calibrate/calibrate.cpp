@@ -2,6 +2,7 @@
 #include "calibrate/calibrate.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "calibrate/random_poses.h"
 #include "calibrate/reach.h"
@@ -62,18 +63,16 @@ void calibrate(const Character& character, const Regions& regions, const std::ve
   const std::vector<double> sampled_radii = radii_of(binding, true);
   const auto sum_of = [&](const Pair& pair, const std::vector<double>& radii) { return radii[pair.a] + radii[pair.b]; };
 
-  std::vector<bool> is_rest_pair;
-  for (const Pair& pair : pairs) {
-    is_rest_pair.push_back(kNear * rest_distance(binding, pair) < sum_of(pair, sampled_radii));
-  }
-  std::vector<double> reaches = best_reaches(sampled, is_rest_pair, binding.spheres.size());
   const SkinGaps skin_gaps(character.skin, binding);
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (!is_rest_pair[i]) continue;
-    const double gap = skin_gaps.between(pairs[i].a, pairs[i].b), distance = rest_distance(binding, pairs[i]);
-    const double at_rest = gap < kClose * regions.frame.height ? kCloseReach * distance : distance - kGapShare * gap;
-    reaches[i] = std::max(reaches[i], at_rest / sum_of(pairs[i], sampled_radii));
+  std::vector<std::optional<double>> at_rest;
+  for (const Pair& pair : pairs) {
+    const double distance = rest_distance(binding, pair), sum = sum_of(pair, sampled_radii);
+    at_rest.emplace_back();
+    if (kNear * distance >= sum) continue;
+    const double gap = skin_gaps.between(pair.a, pair.b);
+    at_rest.back() = (gap < kClose * regions.frame.height ? kCloseReach * distance : distance - kGapShare * gap) / sum;
   }
+  const std::vector<double> reaches = best_reaches(sampled, at_rest, binding.spheres.size());
   const bool any = std::any_of(sampled.begin(), sampled.end(), [](const auto& pair) { return !pair.samples.empty(); });
   if (any && regions.is_tree()) {
     std::vector<double> least = radii_of(binding, false);

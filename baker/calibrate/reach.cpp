@@ -7,7 +7,8 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr double kRestWorth = 10, kWorth = 30;  // false alarms that a contact is worth: of a rest pair; of another
+constexpr double kRestWorth = 25, kWorth = 12;  // false alarms that a contact is worth: of a rest pair; of another
+constexpr double kAtRest = 10;                  // contacts that a rest pair is taken to have where it nearly touches
 constexpr double kBorrowed = 3;                 // average pairs, from each sphere and from the body
 constexpr double kReachMin = 0.7;               // of pairs that are no rest pairs
 
@@ -19,6 +20,10 @@ class Gain {
       const double part = sample.distance / (double{sample.radius_a} + sample.radius_b);
       steps_[std::min(static_cast<std::size_t>(part / kStep), kSteps - 1)] += sample.touch ? worth : -1;
     }
+  }
+  // A contact at a distance that is a part of the radii's sum.
+  void add_contact(double part, double worth) {
+    steps_[std::min(static_cast<std::size_t>(part / kStep), kSteps - 1)] += worth;
   }
   void add(const Gain& other, double times) {
     for (std::size_t i = 0; i < kSteps; ++i) steps_[i] += times * other.steps_[i];
@@ -58,21 +63,24 @@ struct Pool {
 
 }  // namespace
 
-std::vector<double> best_reaches(const std::vector<SampledPair>& pairs, const std::vector<bool>& is_rest_pair,
-                                 std::size_t sphere_count) {
+std::vector<double> best_reaches(const std::vector<SampledPair>& pairs,
+                                 const std::vector<std::optional<double>>& at_rest, std::size_t sphere_count) {
   std::vector<Gain> gains(pairs.size());
   std::vector<Pool> of_sphere(sphere_count);
   Pool of_body;
   bool any = false;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     any = any || !pairs[i].samples.empty();
-    gains[i].add(pairs[i], is_rest_pair[i] ? kRestWorth : kWorth);
-    if (is_rest_pair[i]) continue;
+    gains[i].add(pairs[i], at_rest[i] ? kRestWorth : kWorth);
+    if (at_rest[i]) {
+      gains[i].add_contact(*at_rest[i], kAtRest * kRestWorth);
+      continue;
+    }
     for (Pool* pool : {&of_sphere[pairs[i].spheres.a], &of_sphere[pairs[i].spheres.b], &of_body}) pool->add(gains[i]);
   }
   std::vector<double> reaches;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (is_rest_pair[i]) {
+    if (at_rest[i]) {
       reaches.push_back(gains[i].best());
       continue;
     }

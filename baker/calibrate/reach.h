@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "calibrate/samples.h"
@@ -9,12 +10,13 @@
 namespace spherechain::baker {
 
 // How near two spheres must come to be reported, for each pair, as a part of the sum of their sampled radii: where the
-// contacts that a report finds, times their worth, exceed its false alarms most. A contact is worth 10 false alarms of
-// a rest pair, 30 of another: what is beyond the radii is never found.
-// A pair that is no rest pair borrows three average pairs from each of its spheres and from the whole body, for many
-// touch seldom in samples. It reaches 0.7 at least. Without samples it reaches 1, and a rest pair 0.
-std::vector<double> best_reaches(const std::vector<SampledPair>& pairs, const std::vector<bool>& is_rest_pair,
-                                 std::size_t sphere_count);
+// contacts that a report finds, times their worth, exceed its false alarms most. A contact is worth 25 false alarms of
+// a rest pair, 12 of another.
+// `at_rest` is what a rest pair should reach for what it is at rest; it counts as ten contacts there, which samples
+// without contacts can outweigh. Other pairs have none: they borrow three average pairs from each of their spheres and
+// from the whole body, for many touch seldom in samples, and reach 0.7 at least, or 1 without samples.
+std::vector<double> best_reaches(const std::vector<SampledPair>& pairs,
+                                 const std::vector<std::optional<double>>& at_rest, std::size_t sphere_count);
 
 // What to multiply the sampled radius of each sphere with, at least `least`, so that each pair reaches as far as it
 // should. `radii` are the spheres' at rest; mirrored spheres get the same factor.

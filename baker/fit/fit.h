@@ -97,8 +97,8 @@ struct KeptSpheres {
   }
 };
 
-// The fit for any body, of a tree of regions: a sphere for each, and the skin of the worst one halved across its
-// longest extent, until there are enough. Mirrored regions are halved as often.
+// The fit for any body, of a tree of regions: a sphere for each, and the skin that gains most by it halved, until there
+// are enough. Mirrored regions are halved as often.
 Spheres fit_halves(const Character& character, const Regions& regions, const FitSettings& settings,
                    const KeptSpheres& kept = {});
 

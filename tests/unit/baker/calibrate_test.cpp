@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "baked_human.h"
@@ -109,36 +110,45 @@ void add(SampledPair& pair, int times, float distance, bool touch) {
   for (int i = 0; i < times; ++i) pair.samples.push_back({distance, 1, 1, touch});
 }
 
-std::vector<double> reaches(const std::vector<SampledPair>& pairs, bool are_rest_pairs) {
-  return best_reaches(pairs, std::vector<bool>(pairs.size(), are_rest_pairs), 4);
+using AtRest = std::optional<double>;
+
+std::vector<double> reaches(const std::vector<SampledPair>& pairs, const AtRest& at_rest) {
+  return best_reaches(pairs, std::vector<AtRest>(pairs.size(), at_rest), 4);
 }
 
 }  // namespace
 
 TEST_CASE("a rest pair reaches as far as contacts are worth their false alarms") {
-  SampledPair never{{0, 1}, {}}, often{{0, 2}, {}}, dear{{0, 3}, {}};
-  add(never, 100, 1, false);
+  SampledPair often{{0, 2}, {}}, dear{{0, 3}, {}};
   add(often, 1, 1, true);
-  add(often, 5, 1.2F, false);
+  add(often, 20, 1.2F, false);
   add(often, 1, 1.4F, true);
   add(dear, 1, 1, true);
-  add(dear, 15, 1.2F, false);
+  add(dear, 30, 1.2F, false);
   add(dear, 1, 1.4F, true);
-  const std::vector<double> found = reaches({never, often, dear}, true);
-  CHECK(found[0] == 0);
-  CHECK(found[1] == doctest::Approx(0.7).epsilon(0.02));
-  CHECK(found[2] == doctest::Approx(0.5).epsilon(0.02));
+  const std::vector<double> found = reaches({often, dear}, 0.2);
+  CHECK(found[0] == doctest::Approx(0.7).epsilon(0.02));
+  CHECK(found[1] == doctest::Approx(0.5).epsilon(0.02));
+}
+
+TEST_CASE("a rest pair reaches what it is at rest, unless it nearly always is so and never touches") {
+  SampledPair seldom{{0, 1}, {}}, always{{0, 2}, {}};
+  add(seldom, 100, 1, false);
+  add(always, 1000, 1, false);
+  const std::vector<double> found = reaches({seldom, always}, 0.6);
+  CHECK(found[0] == doctest::Approx(0.6).epsilon(0.02));
+  CHECK(found[1] == 0);
 }
 
 TEST_CASE("a pair without contacts of its own reaches as far as its neighbours do, and never less than 0.7") {
   SampledPair touching{{0, 1}, {}}, silent{{0, 2}, {}}, alone{{2, 3}, {}};
   add(touching, 50, 2.2F, true);
-  const std::vector<double> found = reaches({touching, silent, alone}, false);
+  const std::vector<double> found = reaches({touching, silent, alone}, {});
   CHECK(found[0] == doctest::Approx(1.1).epsilon(0.01));
   CHECK(found[1] == doctest::Approx(1.1).epsilon(0.01));
   add(alone, 5000, 2.1F, false);
-  CHECK(reaches({touching, silent, alone}, false)[2] == doctest::Approx(0.7));
-  CHECK(reaches({silent}, false)[0] == 1);  // no sample at all
+  CHECK(reaches({touching, silent, alone}, {})[2] == doctest::Approx(0.7));
+  CHECK(reaches({silent}, {})[0] == 1);  // no sample at all
 }
 
 TEST_CASE("radii become what their pairs need, the same for mirrored spheres, and no less than the least") {

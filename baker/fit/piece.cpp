@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fit/piece.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "mesh/area_samples.h"
+#include "mesh/even_directions.h"
+
+namespace spherechain::baker {
+namespace {
+
+constexpr std::size_t kSampled = 200;      // points of a piece that place its sphere
+constexpr double kFarCounts = 2;           // times the limit: the error of skin beyond it, besides its distance
+constexpr double kProtrusionCounts = 0.1;  // as much as skin that is as far from its sphere
+constexpr int kDirections = 16;            // points of a sphere that tell how far it is outside the skin
+
+}  // namespace
+
+PieceFitter::PieceFitter(const Mesh& skin, double far)
+    : mesh_(skin), far_(far), surface_(skin), directions_(even_directions(kDirections)) {
+  first_.reserve(skin.triangles.size() + 1);
+  for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
+    first_.push_back(samples_.size());
+    for_each_area_sample(skin, t, far, [&](const Vec3& p, double area) { samples_.push_back({p, area}); });
+  }
+  first_.push_back(samples_.size());
+}
+
+double PieceFitter::penalty(double distance) const { return distance + (distance > far_ ? kFarCounts * far_ : 0); }
+
+// The area of a sphere outside the skin, times how far it is outside; or more than the bound.
+double PieceFitter::protrusion(const Ball& ball, double bound) const {
+  const double area = 4 * std::numbers::pi * ball.radius * ball.radius / static_cast<double>(directions_.size());
+  double sum = 0;
+  for (const Vec3& direction : directions_) {
+    const Vec3 point = ball.center + ball.radius * direction;
+    const SurfaceHit hit = surface_.closest(point);
+    if ((point - hit.point).dot(triangle_cross(mesh_, hit.triangle)) > 0) sum += area * penalty(hit.distance);
+    if (sum >= bound) return std::numeric_limits<double>::max();
+  }
+  return sum;
+}
+
+double PieceFitter::error_of(Index triangle, const Ball& ball) const {
+  double sum = 0;
+  for (const Sample& sample : of_triangle(triangle)) {
+    sum += sample.area * penalty(std::abs((sample.point - ball.center).norm() - ball.radius));
+  }
+  return sum;
+}
+
+Piece PieceFitter::measured(std::vector<Index> triangles, const Ball& ball) const {
+  Piece piece{std::move(triangles), ball, 0, 0};
+  for (const Index t : piece.triangles) {
+    for (const Sample& sample : of_triangle(t)) {
+      const double off = std::abs((sample.point - ball.center).norm() - ball.radius);
+      piece.error += sample.area * penalty(off);
+      if (off > far_) piece.far_area += sample.area;
+    }
+  }
+  piece.error += kProtrusionCounts * protrusion(ball, std::numeric_limits<double>::max());
+  return piece;
+}
+
+// Evenly along the area.
+std::vector<PieceFitter::Sample> PieceFitter::some_samples(const std::vector<Index>& triangles) const {
+  std::size_t count = 0;
+  double area = 0;
+  for (const Index t : triangles) {
+    for (const Sample& sample : of_triangle(t)) {
+      area += sample.area;
+      ++count;
+    }
+  }
+  std::vector<Sample> out;
+  const double each = count <= kSampled ? 0 : area / static_cast<double>(kSampled);
+  double waiting = 0;
+  for (const Index t : triangles) {
+    for (const Sample& sample : of_triangle(t)) {
+      waiting += sample.area;
+      if (waiting < each) continue;
+      out.push_back({sample.point, waiting});
+      waiting = 0;
+    }
+  }
+  if (waiting > 0 && !out.empty()) out.back().area += waiting;
+  return out;
+}
+
+// Moves centre and radius in ever smaller steps while the error falls: along the axes, and inwards while the sphere's
+// outer side stays where it is.
+Ball PieceFitter::search(Ball ball, const std::vector<Sample>& samples, const Vec3& normal) const {
+  constexpr int kHalvings = 4, kTries = 60;
+  const double smallest = 0.1 * far_;
+  const auto error = [&](const Ball& at, double bound) {
+    double sum = 0;
+    for (const Sample& sample : samples) {
+      sum += sample.area * penalty(std::abs((sample.point - at.center).norm() - at.radius));
+      if (sum >= bound) return std::numeric_limits<double>::max();
+    }
+    return sum + kProtrusionCounts * protrusion(at, (bound - sum) / kProtrusionCounts);
+  };
+  std::vector<std::pair<Vec3, double>> moves;
+  if (normal.norm() > 0) {
+    moves.emplace_back(-normal, 1);
+    moves.emplace_back(normal, -1);
+    moves.emplace_back(-normal, 0);
+    moves.emplace_back(normal, 0);
+  }
+  moves.emplace_back(Vec3::Zero(), -1);
+  moves.emplace_back(Vec3::Zero(), 1);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    moves.emplace_back(Vec3::Unit(k), 0);
+    moves.emplace_back(-Vec3::Unit(k), 0);
+  }
+  double least = error(ball, std::numeric_limits<double>::max());
+  double step = 2 * far_;
+  for (int halving = 0; halving <= kHalvings; ++halving, step *= 0.5) {
+    bool any = true;
+    for (int tries = 0; any && tries < kTries; ++tries) {
+      any = false;
+      for (const auto& [direction, growth] : moves) {
+        const Ball moved{ball.center + step * direction, ball.radius + step * growth};
+        if (moved.radius < smallest) continue;
+        const double now = error(moved, least);
+        if (now >= least) continue;
+        least = now;
+        ball = moved;
+        any = true;
+      }
+    }
+  }
+  return ball;
+}
+
+Piece PieceFitter::fit_from(const Ball& ball, std::vector<Index> triangles) const {
+  Vec3 normal = Vec3::Zero();
+  for (const Index t : triangles) normal += triangle_cross(mesh_, t);
+  if (normal.norm() > 0) normal.normalize();
+  const Ball found = search(ball, some_samples(triangles), normal);
+  return measured(std::move(triangles), found);
+}
+
+// From the middle of the skin, with its mean distance.
+Piece PieceFitter::fit(std::vector<Index> triangles) const {
+  Vec3 center = Vec3::Zero();
+  double area = 0;
+  for (const Index t : triangles) {
+    for (const Sample& sample : of_triangle(t)) {
+      center += sample.area * sample.point;
+      area += sample.area;
+    }
+  }
+  center /= area;
+  double radius = 0;
+  for (const Index t : triangles) {
+    for (const Sample& sample : of_triangle(t)) radius += sample.area / area * (sample.point - center).norm();
+  }
+  return fit_from({center, radius}, std::move(triangles));
+}
+
+std::optional<std::pair<Piece, Piece>> PieceFitter::halve(const Piece& piece) const {
+  constexpr double kAsLong = 0.6;  // of the longest: variance along another axis that is worth a try
+  Vec3 centroid = Vec3::Zero();
+  double area = 0;
+  for (const Index t : piece.triangles) {
+    centroid += triangle_area(mesh_, t) * triangle_centroid(mesh_, t);
+    area += triangle_area(mesh_, t);
+  }
+  centroid /= area;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (const Index t : piece.triangles) {
+    for (const Sample& sample : of_triangle(t)) {
+      const Vec3 d = sample.point - centroid;
+      covariance += sample.area * d * d.transpose();
+    }
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
+  std::optional<std::pair<Piece, Piece>> best;
+  for (const Eigen::Index column : {2, 1}) {
+    if (eigen.eigenvalues()[column] < kAsLong * eigen.eigenvalues()[2]) break;
+    const Vec3 axis = eigen.eigenvectors().col(column);
+    double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
+    for (const Index t : piece.triangles) {
+      const double along = triangle_centroid(mesh_, t).dot(axis);
+      low = std::min(low, along);
+      high = std::max(high, along);
+    }
+    std::pair<std::vector<Index>, std::vector<Index>> halves;
+    for (const Index t : piece.triangles) {
+      (triangle_centroid(mesh_, t).dot(axis) > 0.5 * (low + high) ? halves.first : halves.second).push_back(t);
+    }
+    if (halves.first.empty() || halves.second.empty()) continue;
+    std::pair<Piece, Piece> cut{fit(std::move(halves.first)), fit(std::move(halves.second))};
+    halves = {};
+    for (const Index t : piece.triangles) {
+      (error_of(t, cut.first.ball) < error_of(t, cut.second.ball) ? halves.first : halves.second).push_back(t);
+    }
+    if (!halves.first.empty() && !halves.second.empty()) {
+      std::pair<Piece, Piece> shared{fit_from(cut.first.ball, std::move(halves.first)),
+                                     fit_from(cut.second.ball, std::move(halves.second))};
+      if (shared.first.error + shared.second.error < cut.first.error + cut.second.error) cut = std::move(shared);
+    }
+    if (!best || cut.first.error + cut.second.error < best->first.error + best->second.error) best = std::move(cut);
+  }
+  return best;
+}
+
+}  // namespace spherechain::baker
