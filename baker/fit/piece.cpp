@@ -16,6 +16,7 @@ namespace {
 constexpr std::size_t kSampled = 200;      // points of a piece that place its sphere
 constexpr double kFarCounts = 2;           // times the limit: the error of skin beyond it, besides its distance
 constexpr double kProtrusionCounts = 0.1;  // as much as skin that is as far from its sphere
+constexpr double kSmallest = 0.1;          // times the limit: the least radius
 constexpr int kDirections = 16;            // points of a sphere that tell how far it is outside the skin
 
 }  // namespace
@@ -95,7 +96,7 @@ std::vector<PieceFitter::Sample> PieceFitter::some_samples(const std::vector<Ind
 // outer side stays where it is.
 Ball PieceFitter::search(Ball ball, const std::vector<Sample>& samples, const Vec3& normal) const {
   constexpr int kHalvings = 4, kTries = 60;
-  const double smallest = 0.1 * far_;
+  const double smallest = kSmallest * far_;
   const auto error = [&](const Ball& at, double bound) {
     double sum = 0;
     for (const Sample& sample : samples) {
@@ -160,7 +161,7 @@ Piece PieceFitter::fit(std::vector<Index> triangles) const {
   for (const Index t : triangles) {
     for (const Sample& sample : of_triangle(t)) radius += sample.area / area * (sample.point - center).norm();
   }
-  return fit_from({center, radius}, std::move(triangles));
+  return fit_from({center, std::max(radius, kSmallest * far_)}, std::move(triangles));
 }
 
 std::optional<std::pair<Piece, Piece>> PieceFitter::halve(const Piece& piece) const {
