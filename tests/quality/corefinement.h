@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "brute_force.h"
+
+namespace spherechain::quality {
+
+// What two bodies have in common, by CGAL's corefinement of their triangles, the holes at their borders filled. None
+// where CGAL cannot: where a body intersects itself, is no manifold, or stays open.
+std::optional<double> common_volume(const std::vector<Corners>& a, const std::vector<Corners>& b);
+
+}  // namespace spherechain::quality
