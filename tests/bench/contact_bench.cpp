@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Goal P6 (docs/performance.md): exact skin contacts. Checks that all contestants find the same, then times them.
+// Goals P6 and P10 (docs/performance.md): exact skin contacts, and their depth. Checks that all contestants find the same, then times them.
 #include <fmt/format.h>
 #include <time.h>
 
@@ -44,7 +44,7 @@ Pairs sorted(Pairs pairs) {
 }
 
 // The goals are for the product's question. Lists of triangles are the runtime's too.
-enum class Kind { kProduct, kTriangleList, kPeer };
+enum class Kind { kProduct, kTriangleList, kDepth, kPeer };
 
 struct Contestant {
   std::unique_ptr<ContactFinder> finder;
@@ -83,6 +83,7 @@ class ContactBench {
     };
     add(runtime_part_finders(*mesh_), passes, Kind::kProduct);
     add(runtime_triangle_finders(*mesh_), passes, Kind::kTriangleList);
+    add(runtime_depth_finders(*mesh_), std::min(passes, 7), Kind::kDepth);
     add(cgal_contact_finders(*mesh_), with_peers ? 3 : 0, Kind::kPeer);
     if (with_peers) {
       add(embree_contact_finders(*mesh_), 3, Kind::kPeer);
@@ -128,7 +129,14 @@ class ContactBench {
         out.rows.push_back({"P6", c.finder->name + ", no contact", f.free, ""});
       }
     }
+    const auto from_bones = std::find_if(figures.begin(), figures.end(), [](const Figures& f) {
+      return f.of.kind == Kind::kProduct && f.of.finder->name.find("bones") != std::string::npos;
+    });
     for (const Figures& own : figures) {
+      if (own.of.kind == Kind::kDepth && own.of.finder->name.find("quick") != std::string::npos) {
+        out.goals.push_back({"P10 " + own.of.finder->name + ": mean over the contacts' own", "x",
+                             own.mean.median / from_bones->mean.median, 5, false});
+      }
       if (own.of.kind != Kind::kProduct) continue;
       const auto goal = [&](const std::string& what, const char* unit, double reached, double wanted, bool at_least) {
         out.goals.push_back({"P6 " + own.of.finder->name + ": " + what, unit, reached, wanted, at_least});

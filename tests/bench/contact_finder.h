@@ -59,6 +59,8 @@ using ContactFinders = std::vector<std::unique_ptr<ContactFinder>>;
 ContactFinders runtime_part_finders(const ContactMesh& mesh);
 // The same three with a list of the triangles and the segments in which they cross.
 ContactFinders runtime_triangle_finders(const ContactMesh& mesh);
+// The triangles from bones, and depth, direction and class of the parts (P10): in full, and the quick form.
+ContactFinders runtime_depth_finders(const ContactMesh& mesh);
 ContactFinders cgal_contact_finders(const ContactMesh& mesh);
 ContactFinders embree_contact_finders(const ContactMesh& mesh);
 ContactFinders fcl_contact_finders(const ContactMesh& mesh);

@@ -2,7 +2,7 @@
 #include <stdexcept>
 
 #include "contact_finder.h"
-#include "spherechain/skin_contacts.h"
+#include "spherechain/penetrations.h"
 
 namespace spherechain::bench {
 namespace {
@@ -56,6 +56,8 @@ class RuntimeFinder : public ContactFinder {
     return out;
   }
 
+  const SkinContactJob& job() const { return job_; }
+
  private:
   void set_lists(bool has_parts, bool has_triangles) {
     job_.parts = has_parts ? parts_.data() : nullptr;
@@ -78,6 +80,41 @@ class RuntimeFinder : public ContactFinder {
   SkinContactJob job_;
 };
 
+// Contacts from bones, and how deep they are.
+class DepthFinder : public ContactFinder {
+ public:
+  DepthFinder(const ContactMesh& mesh, const std::string& name, bool quick)
+      : ContactFinder(name),
+        finder_(mesh, name, Output::kTriangles, false, true),
+        scratch_(memory_for(sc_penetration_scratch_words(&mesh.character.asset, kContactsMax))),
+        found_(mesh.character.view().part_count() * (mesh.character.view().part_count() + 1) / 2) {
+    job_.asset = &mesh.character.asset;
+    job_.skin_table = mesh.skin_table.data()->words;
+    job_.scratch = scratch_.data()->words;
+    job_.scratch_words = sc_penetration_scratch_words(&mesh.character.asset, kContactsMax);
+    job_.quick = quick ? 1 : 0;
+    job_.penetrations = found_.data();
+    job_.penetration_capacity = found_.size();
+  }
+
+  void find(const ContactPose& pose) override {
+    finder_.find(pose);
+    const SkinContactJob& found = finder_.job();
+    job_.pose = found.pose;
+    job_.contacts = found.triangles;
+    job_.contact_count = found.triangle_count;
+    if (!(job_.run() == SC_OK)) throw std::runtime_error(name + ": fails");
+  }
+  std::vector<Pair> pairs() override { return finder_.pairs(); }
+
+ private:
+  static constexpr std::size_t kContactsMax = 1 << 16;
+  RuntimeFinder finder_;
+  Memory scratch_;
+  std::vector<Penetration> found_;
+  PenetrationJob job_;
+};
+
 ContactFinders runtime_finders(const ContactMesh& mesh, const std::string& name, Output output) {
   ContactFinders out;
   out.push_back(std::make_unique<RuntimeFinder>(mesh, name + " from vertices", output, true, false));
@@ -93,6 +130,13 @@ ContactFinders runtime_part_finders(const ContactMesh& mesh) {
 }
 ContactFinders runtime_triangle_finders(const ContactMesh& mesh) {
   return runtime_finders(mesh, "spherechain triangles", Output::kTriangles);
+}
+
+ContactFinders runtime_depth_finders(const ContactMesh& mesh) {
+  ContactFinders out;
+  out.push_back(std::make_unique<DepthFinder>(mesh, "spherechain depth from bones", false));
+  out.push_back(std::make_unique<DepthFinder>(mesh, "spherechain depth from bones, quick", true));
+  return out;
 }
 
 }  // namespace spherechain::bench

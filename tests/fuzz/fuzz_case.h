@@ -122,5 +122,6 @@ void fuzz_refit(Case& c);
 void fuzz_detect(Case& c);
 void fuzz_crowd(Case& c);
 void fuzz_contacts(Case& c);
+void fuzz_penetrations(Case& c);
 
 }  // namespace spherechain::test

@@ -20,7 +20,8 @@ struct Kind {
 };
 constexpr Kind kKinds[] = {{"open", fuzz_open},       {"accessors", fuzz_accessors}, {"filter", fuzz_filter},
                            {"prepare", fuzz_prepare}, {"character", fuzz_character}, {"refit", fuzz_refit},
-                           {"detect", fuzz_detect},   {"crowd", fuzz_crowd},         {"contacts", fuzz_contacts}};
+                           {"detect", fuzz_detect},   {"crowd", fuzz_crowd},         {"contacts", fuzz_contacts},
+                           {"penetrations", fuzz_penetrations}};
 constexpr std::size_t kKindCount = sizeof kKinds / sizeof kKinds[0];
 
 bool read_number(int argc, char** argv, int& i, const char* name, std::uint64_t& number) {

@@ -143,9 +143,10 @@ void find_in_crowd(const Asset& asset, const std::vector<Palette>& clip, Radius 
 
 // Triangles, the segments in which they cross, and body parts.
 struct ContactHashes {
-  Hash triangles, segments, parts;
+  Hash triangles, segments, parts, penetrations;
+  std::vector<Penetration> last;
 
-  void add(const SkinContacts& found) {
+  void add(const SkinContacts& found, const SkinContactJob& by) {
     std::vector<Pair> pairs;
     std::vector<Vec3> ends;
     for (const TriangleContact& contact : found.triangles) {
@@ -155,11 +156,21 @@ struct ContactHashes {
     triangles.add_list(pairs);
     segments.add_list(ends);
     parts.add_list(found.parts);
+    PenetrationJob job;
+    job.asset = by.asset;
+    job.pose = by.pose;
+    job.contacts = found.triangles.data();
+    job.contact_count = found.triangles.size();
+    job.previous = last.data();
+    job.previous_count = last.size();
+    last = measure(job, by.target);
+    penetrations.add_list(last);
   }
   void add_to(HashTable& table, const std::string& from, Target target) const {
     table.add("triangle contacts " + from, triangles, sc_target_name(target));
     table.add("crossing segments " + from, segments, sc_target_name(target));
     table.add("part contacts " + from, parts, sc_target_name(target));
+    table.add("penetrations " + from, penetrations, sc_target_name(target));
   }
 };
 
@@ -180,9 +191,9 @@ void hash_skin(const Doll& doll, const std::vector<Palette>& clip, HashTable& ta
       job.asset = &doll.asset;
       job.target = target;
       job.pose = vertices_of(vertices);
-      by_vertices.add(find_contacts(job));
+      by_vertices.add(find_contacts(job), job);
       job.pose = bones_of(palette);
-      by_bones.add(find_contacts(job));
+      by_bones.add(find_contacts(job), job);
     }
     table.add("skinned vertices", positions, sc_target_name(target));
     by_vertices.add_to(table, "vertices", target);

@@ -29,6 +29,13 @@ void Hash::add(const PartContact& contact) {
   add(contact.part_a), add(contact.part_b), add(contact.triangle_pairs), add(contact.low), add(contact.high);
 }
 
+void Hash::add(const Penetration& p) {
+  static_assert(sizeof p % sizeof(std::uint32_t) == 0, "words alone, without padding");
+  std::uint32_t words[sizeof p / sizeof(std::uint32_t)];
+  std::memcpy(words, &p, sizeof p);
+  for (const std::uint32_t word : words) add(word);
+}
+
 std::string Hash::line(const std::string& name) const {
   char text[120];
   std::snprintf(text, sizeof text, "%-*s %8zu %016" PRIx64, kNameWidth, name.c_str(), count_, value_);

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "spherechain/skin_contacts.h"
+#include "spherechain/penetrations.h"
 
 namespace spherechain::test {
 
@@ -20,6 +20,7 @@ class Hash {
   void add(const Sphere& sphere);
   void add(const Pair& pair);
   void add(const PartContact& contact);
+  void add(const Penetration& penetration);
 
   // A frame's array of fixed size.
   template <typename T>

@@ -140,22 +140,19 @@ SkinContacts find_contacts(SkinContactJob job) {
   return out;
 }
 
-Measured measure(PenetrationJob job) {
+std::vector<Penetration> measure(PenetrationJob job, Target target) {
   const PreparedSkin table(*job.asset);
   std::vector<std::uint64_t> scratch(sc_penetration_scratch_words(job.asset, job.contact_count), kDirty);
   job.skin_table = table.words.data();
   job.scratch = scratch.data();
   job.scratch_words = scratch.size();
-  Measured out{job.run(), {}};
-  for (const Target target : supported_targets()) {
-    std::vector<Penetration> found(job.penetration_count);
-    job.target = target;
-    job.penetrations = found.data();
-    job.penetration_capacity = found.size();
-    std::fill(scratch.begin(), scratch.end(), kDirty);
-    if (out.status == SC_OK) out.status = job.run();
-    if (!out.penetrations.empty() && !same_bits(found, out.penetrations)) out.status = {SC_CORRUPT, SC_FIELD_TARGET};
-    out.penetrations = found;
+  job.target = target;
+  std::vector<Penetration> out;
+  if (job.run() == SC_OK) {
+    out.resize(job.penetration_count);
+    job.penetrations = out.data();
+    job.penetration_capacity = out.size();
+    out.resize(job.run() == SC_OK ? out.size() : 0);
   }
   return out;
 }

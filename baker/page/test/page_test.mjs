@@ -38,7 +38,7 @@ test('the page is one file of less than 6 MB', () => {
   assert.doesNotMatch(readFileSync(template, 'utf8'), /<(link|script|img)[^>]+(src|href)="(?!data:)/);
 });
 
-test('contacts are the triangles of the skin that play reports, the most first', async () => {
+test('contacts are the triangles of the skin that play reports, with class and depth, faults first', async () => {
   const page = await fresh();
   assert.ok(pages.play[TOUCHING].skin.triangles.length > 0);
   for (const number of [0, TOUCHING, 19, 25, 39]) {
@@ -52,11 +52,22 @@ test('contacts are the triangles of the skin that play reports, the most first',
     assert.deepEqual(listed.map(({ name, pairs }) => row(name, pairs)).sort(), parts.map((part) => row(partPair(part), part.triangle_pairs)).sort());
     const rows = await page.locator('.contact').allInnerTexts();
     assert.equal(rows.length, listed.length);
-    listed.forEach(({ name, pairs }, i) => {
-      assert.ok(rows[i].includes(name) && rows[i].includes(`${pairs} triangle pair`), rows[i]);
-      if (i > 0) assert.ok(pairs <= listed[i - 1].pairs);
+    const measured = pages.play[number].penetrations;
+    listed.forEach(({ name, kind, depth }, i) => {
+      const found = measured.find(({ parts: [a, b] }) => partPair({ a, b }) === name);
+      assert.ok(Math.abs(depth - found.depth_mm) < 1e-3 * found.depth_mm + 1e-3, name);
+      assert.ok(rows[i].includes(name) && /(as at rest|shell|touch|fold|penetration), [0-9.]+ mm/.test(rows[i]), rows[i]);
+      if (i > 0) assert.ok(kind < listed[i - 1].kind || (kind === listed[i - 1].kind && depth <= listed[i - 1].depth));
     });
   }
+});
+
+test('D goes to the deepest frame of the clip', async () => {
+  const page = await fresh();
+  await page.keyboard.press('d');
+  const fault = ({ class: kind }) => kind === 'penetration' || kind === 'deep_fold';
+  const deepest = pages.play.map(({ penetrations }) => Math.max(0, ...penetrations.filter(fault).map(({ depth_mm }) => depth_mm)));
+  assert.equal(await frame(page), deepest.indexOf(Math.max(...deepest)));
 });
 
 test('contacts are marked in the picture, and nothing else is red', async () => {

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int kSteps = 4;            // of a direction towards the normal of what blocks it last
 constexpr int kWidenings = 4;        // of what is near
-constexpr double kNearlyAsGood = 1.15;  // times the shortest: the last frame's direction is kept
+constexpr double kNearlyAsGood = 1.2;  // times the shortest: the last frame's direction is kept
 constexpr double kSameWay = 0.5;     // cosine: a direction that is refined farther is another
 
 class Search {

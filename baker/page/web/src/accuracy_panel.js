@@ -58,7 +58,7 @@ export function fillAccuracyPanel(panel, store, model, flyTo) {
     panel.append(h('p', { class: 'note' }, 'No validation in this page: give `view` the file that `validate --json` wrote.'));
     return;
   }
-  const row = ({ time, spheres: [a, b], triangle_pairs: pairs, overlap }) => {
+  const row = ({ time, spheres: [a, b], triangle_pairs: pairs, depth_mm: depth }) => {
     const frame = frameAt(model, time);
     return h(
       'li',
@@ -70,7 +70,7 @@ export function fillAccuracyPanel(panel, store, model, flyTo) {
           class: 'pair miss',
           'data-frame': frame,
           title: `${plural(pairs, 'triangle pair')} at ${time.toFixed(2)} s; click to go there`,
-          'aria-label': `frame ${frame}: ${a} ${model.spheres[a].name} and ${b} ${model.spheres[b].name}, ${percent(overlap)} of the height`,
+          'aria-label': `frame ${frame}: ${a} ${model.spheres[a].name} and ${b} ${model.spheres[b].name}, ${Math.round(depth)} mm`,
           onclick: () => {
             store.set({ frame, playing: false, alarm: `${a}-${b}` });
             if (!store.state.spheres) store.showSpheres(true);
@@ -78,7 +78,7 @@ export function fillAccuracyPanel(panel, store, model, flyTo) {
           },
         },
         h('span', { class: 'two-names' }, sphereName(model, a), sphereName(model, b)),
-        h('span', { class: 'depth' }, percent(overlap), h('i', { style: `width: ${Math.min(100, 2500 * overlap)}%` })),
+        h('span', { class: 'depth' }, `${Math.round(depth)} mm`, h('i', { style: `width: ${Math.min(100, depth)}%` })),
       ),
     );
   };
@@ -94,7 +94,7 @@ export function fillAccuracyPanel(panel, store, model, flyTo) {
         { class: 'note' },
         known.length === 0
           ? `${validation.reported} missed nothing.`
-          : `Contacts that ${validation.reported} at the ${validation.radius} radius missed, the greatest overlap of two triangles first; in % of the height.`,
+          : `Contacts that ${validation.reported} at the ${validation.radius} radius missed. In mm: how deep two body parts are in each other of which nothing was reported.`,
       ),
       h('ol', { class: 'pairs', id: 'misses' }, known.map(row)),
     ),

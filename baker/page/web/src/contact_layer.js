@@ -1,9 +1,12 @@
 import * as THREE from 'three';
+import { isFault } from './contacts.js';
 import { CONTACT } from './palette.js';
 import { LIGHT } from './skin_layer.js';
 
 // The triangles that touch, over the skin: striped where they are seen, faint where something hides them, and with edges, so
 // that small ones show too. Where a contact is chosen, all others are paler.
+
+const ARROW = 0x101418;
 
 const vertexShader = `
   attribute float side;
@@ -79,6 +82,8 @@ export class ContactLayer {
     };
     this.hidden = mesh(0.3, 5, { depthFunc: THREE.GreaterDepth });
     this.group = new THREE.Group().add(this.hidden, mesh(1, 6, {}), mesh(0.9, 7, { wireframe: true }));
+    this.arrows = new THREE.Group();
+    this.group.add(this.arrows);
     this.probe = mesh(1, 6, { fragmentShader: probeShader, uniforms: { winding: { value: 1 } }, transparent: false });
   }
 
@@ -100,8 +105,26 @@ export class ContactLayer {
         }
       });
     }
+    this.point(contacts.filter((contact) => isFault(contact) || contact.key === chosen));
     this.geometry.setDrawRange(0, corner);
     this.shared.anyChosen.value = contacts.some(({ key }) => key === chosen) ? 1 : 0;
     for (const buffer of Object.values(this.buffers)) buffer.needsUpdate = true;
+  }
+
+  // The way out of each: from the second part's deepest point to where that is free. It is seen through the skin.
+  point(contacts) {
+    for (const arrow of this.arrows.children) arrow.dispose();
+    this.arrows.clear();
+    const { unitsPerMm, height } = this.skin.mesh;
+    for (const { at, direction, depth } of contacts) {
+      const length = depth * unitsPerMm;
+      const head = Math.max(0.35 * length, 0.012 * height);
+      const arrow = new THREE.ArrowHelper(new THREE.Vector3(...direction), new THREE.Vector3(...at), Math.max(length, head), ARROW, head, 0.6 * head);
+      for (const part of [arrow.line, arrow.cone]) {
+        Object.assign(part.material, { depthTest: false, transparent: true });
+        part.renderOrder = 9;
+      }
+      this.arrows.add(arrow);
+    }
   }
 }

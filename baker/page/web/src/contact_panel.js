@@ -1,4 +1,5 @@
 import { h } from './dom.js';
+import { CLASSES, isFault, millimetres } from './contacts.js';
 import { plural } from './format.js';
 
 // The frame's contacts by body parts, and below those of the whole clip; a click goes there.
@@ -17,7 +18,7 @@ function runs(frames, numberOf) {
 export function fillContactPanel(panel, store, model, flyTo) {
   const summary = h('p', { role: 'status', class: 'summary' });
   const list = h('ol', { class: 'pairs', id: 'frame-contacts' });
-  const order = h('p', { class: 'note' }, 'Most pairs of triangles first. How deep they are is not measured yet.');
+  const order = h('p', { class: 'note' }, 'Faults first, the deepest first. The arrow is the way out: where it ends, the second part is free of the first.');
   const clipTitle = h('h3', {});
   const clipList = h('ol', { class: 'pairs', id: 'clip-contacts' });
   panel.append(summary, list, order, clipTitle, clipList);
@@ -35,27 +36,34 @@ export function fillContactPanel(panel, store, model, flyTo) {
       ),
     );
 
-  const frameRow = ({ key, name, pairs }, i) =>
-    row({ class: 'pair contact', 'data-contact': key }, `${i + 1}`, name, plural(pairs, 'triangle pair'), () => {
+  const what = ({ kind, depth }) => `${CLASSES[kind]}, ${millimetres(depth)}`;
+  const minor = (contact) => (isFault(contact) ? '' : ' minor');
+  const frameRow = (contact, i) => {
+    const { key, name, pairs, volume, visible } = contact;
+    const title = [plural(pairs, 'triangle pair'), volume >= 0 && `${volume.toPrecision(2)} ml`, `${Math.round(100 * visible)} % visible`];
+    const properties = { class: `pair contact${minor(contact)}`, 'data-contact': key, title: title.filter(Boolean).join(', ') };
+    return row(properties, `${i + 1}`, name, what(contact), () => {
       store.set({ contact: key });
       flyTo(key);
     });
+  };
   const clipRow = (entry) =>
     row(
       {
-        class: 'pair clip-contact',
+        class: `pair clip-contact${minor(entry)}`,
         'data-contact': entry.key,
         'data-frame': model.number(entry.worst),
-        title: `Most triangle pairs at frame ${model.number(entry.worst)}: ${entry.most}`,
+        title: `${what(entry)} at frame ${model.number(entry.worst)}`,
       },
       null,
       entry.name,
-      `${entry.frames.length > 1 ? 'frames' : 'frame'} ${runs(entry.frames, model.number)}`,
-      () => {
-        store.set({ frame: entry.worst, playing: false, contact: entry.key });
-        flyTo(entry.key);
-      },
+      `${what(entry)} at ${model.number(entry.worst)}; ${entry.frames.length > 1 ? 'frames' : 'frame'} ${runs(entry.frames, model.number)}`,
+      () => go(entry),
     );
+  const go = ({ worst, key }) => {
+    store.set({ frame: worst, playing: false, contact: key });
+    flyTo(key);
+  };
 
   store.watch(['frame'], ({ frame }) => {
     const contacts = model.contacts.of(frame);
@@ -71,11 +79,17 @@ export function fillContactPanel(panel, store, model, flyTo) {
     shown = at;
     const clip = model.clips[at];
     const found = model.contacts.over(clip.first, clip.count);
-    clipTitle.textContent = found.length === 0 ? `No contact in ${clip.name}` : `In the whole of ${clip.name}, the longest first`;
+    clipTitle.textContent = found.length === 0 ? `No contact in ${clip.name}` : `In the whole of ${clip.name}, the deepest first`;
     clipTitle.hidden = clipList.hidden = clip.count < 2;
     clipList.replaceChildren(...found.map(clipRow));
   });
   store.watch(['frame', 'contact'], ({ contact }) => {
     for (const button of list.querySelectorAll('.pair')) button.setAttribute('aria-pressed', button.dataset.contact === contact);
   });
+  // To the deepest contact of the clip.
+  return () => {
+    const { first, count } = model.clips[model.clipAt(store.state.frame)];
+    const [deepest] = model.contacts.over(first, count);
+    if (deepest) go(deepest);
+  };
 }

@@ -1,9 +1,28 @@
 // Which triangles of the skin touch in a frame, by pairs of body parts.
 
-// A frame's contacts: [{key, parts, name, pairs, triangles, sides}], the one of most pairs first. `pairs` counts the pairs of
+export const CLASSES = ['as at rest', 'shell', 'touch', 'fold', 'deep fold', 'penetration'];
+const DEEP_FOLD = 4; // from here on a person sees a fault
+export const MEASURES = 12; // numbers of a measured contact (../README.md)
+
+// What the runtime measured, by the contact's key.
+function measured(list) {
+  const out = new Map();
+  for (let i = 0; i < list.length; i += MEASURES) {
+    const [a, b, kind, depth, dx, dy, dz, x, y, z, visible, volume] = list.slice(i, i + MEASURES);
+    out.set(`${a}-${b}`, { kind, depth, direction: [dx, dy, dz], at: [x, y, z], visible, volume });
+  }
+  return out;
+}
+
+export const isFault = ({ kind }) => kind >= DEEP_FOLD;
+export const millimetres = (depth) => `${depth < 9.95 ? depth.toFixed(1) : Math.round(depth)} mm`;
+const worseFirst = (a, b) => b.kind - a.kind || b.depth - a.depth || a.name.localeCompare(b.name);
+
+// A frame's contacts: [{key, parts, name, pairs, triangles, sides, kind, depth, direction, at, visible, volume}], faults first,
+// the deepest first: part b, moved by `depth` mm along `direction`, is free of part a; `at` is its deepest point. `pairs` counts the pairs of
 // triangles that intersect, as `play` does. `triangles` are those that touch, each once; `sides` says of each whether it is of
 // the first part (1) or the second (2).
-function group(pairs, partOf, nameOf) {
+function group(pairs, partOf, nameOf, measures) {
   const groups = new Map();
   for (let i = 0; i < pairs.length; i += 2) {
     const ends = [pairs[i], pairs[i + 1]];
@@ -17,17 +36,25 @@ function group(pairs, partOf, nameOf) {
   }
   const name = ([a, b]) => (a === b ? `${nameOf(a)} with itself` : `${nameOf(a)}, ${nameOf(b)}`);
   return [...groups.values()]
-    .map(({ key, parts, pairs, side }) => ({ key, parts, name: name(parts), pairs, triangles: [...side.keys()], sides: [...side.values()] }))
-    .sort((a, b) => b.pairs - a.pairs || a.name.localeCompare(b.name));
+    .map(({ key, parts, pairs, side }) => ({
+      key,
+      parts,
+      name: name(parts),
+      pairs,
+      triangles: [...side.keys()],
+      sides: [...side.values()],
+      ...(measures.get(key) ?? { kind: 0, depth: 0, direction: [0, 0, 0], at: [0, 0, 0], visible: 0, volume: -1 }),
+    }))
+    .sort(worseFirst);
 }
 
 export class Contacts {
-  constructor(lists, partOf, nameOf) {
-    Object.assign(this, { lists, partOf, nameOf, groups: [] });
+  constructor(lists, partOf, nameOf, measures) {
+    Object.assign(this, { lists, partOf, nameOf, measures, groups: [] });
   }
 
   of(frame) {
-    return (this.groups[frame] ??= group(this.lists.of(frame), this.partOf, this.nameOf));
+    return (this.groups[frame] ??= group(this.lists.of(frame), this.partOf, this.nameOf, measured(this.measures.of(frame))));
   }
 
   // Triangles that touch in a frame.
@@ -35,18 +62,23 @@ export class Contacts {
     return this.of(frame).reduce((sum, { triangles }) => sum + triangles.length, 0);
   }
 
-  // Pairs of body parts over a run of frames: [{key, name, frames, worst, most}], longest first. `worst` is the frame of most
-  // pairs of triangles.
+  // Depth of the deepest fault in a frame, mm; 0 where there is none.
+  depth(frame) {
+    return this.of(frame).filter(isFault).reduce((most, { depth }) => Math.max(most, depth), 0);
+  }
+
+  // Pairs of body parts over a run of frames: [{key, name, frames, worst, kind, depth}], of each what it is where it is
+  // deepest; faults first, the deepest first.
   over(first, count) {
     const found = new Map();
     for (let frame = first; frame < first + count; ++frame) {
-      for (const { key, name, pairs } of this.of(frame)) {
-        if (!found.has(key)) found.set(key, { key, name, frames: [], worst: frame, most: 0 });
+      for (const { key, name, kind, depth } of this.of(frame)) {
+        if (!found.has(key)) found.set(key, { key, name, frames: [], worst: frame, kind, depth });
         const entry = found.get(key);
         entry.frames.push(frame);
-        if (pairs > entry.most) Object.assign(entry, { worst: frame, most: pairs });
+        if (depth > entry.depth) Object.assign(entry, { worst: frame, kind, depth });
       }
     }
-    return [...found.values()].sort((a, b) => b.frames.length - a.frames.length || b.most - a.most || a.name.localeCompare(b.name));
+    return [...found.values()].sort(worseFirst);
   }
 }

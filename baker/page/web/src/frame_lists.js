@@ -7,12 +7,12 @@ export function decode(base64, Type) {
   return new Type(bytes.buffer);
 }
 
-// Pairs of numbers: `of(frame)` is [a, b, a, b, ...].
-export function pairLists(data, Type) {
+// Pairs of numbers: `of(frame)` is [a, b, a, b, ...]; or entries of another `width`.
+export function pairLists(data, Type, width = 2) {
   const counts = decode(data?.counts, Uint32Array);
   const entries = decode(data?.entries, Type);
   const ends = [];
   let end = 0;
-  for (const count of counts) ends.push((end += 2 * count));
+  for (const count of counts) ends.push((end += width * count));
   return { of: (frame) => entries.subarray(frame > 0 ? ends[frame - 1] : 0, ends[frame] ?? 0) };
 }

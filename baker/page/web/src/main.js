@@ -134,7 +134,7 @@ function start(model) {
   };
   fillClips($('clip'), store, model);
   fillControls($('controls'), store, model);
-  fillContactPanel($('contacts'), store, model, flyToContact);
+  const deepest = fillContactPanel($('contacts'), store, model, flyToContact);
   fillSpherePanel($('spheres'), store, model, flyToSpheres);
   fillSphereCard($('sphere'), store, model);
   const timeline = fillTimeline($('timeline'), store, model);
@@ -151,7 +151,7 @@ function start(model) {
   $('help-button').addEventListener('click', () => $('help').showModal());
   $('licences').textContent = LICENCES;
   const chains = model.sets.filter((set) => set.kind === 'chain').map((set) => set.name);
-  bindKeys(store, { timeline, stage, help: $('help'), toggleTheme, reset, chains });
+  bindKeys(store, { timeline, stage, help: $('help'), toggleTheme, reset, deepest, chains });
   runPlayback(store, model);
 
   window.spherechainViewer = Object.freeze({
@@ -159,7 +159,8 @@ function start(model) {
       return store.state.frame;
     },
     setFrame: (frame) => timeline.go(frame),
-    contacts: () => model.contacts.of(store.state.frame).map(({ name, pairs, triangles }) => ({ name, pairs, triangles: [...triangles] })),
+    contacts: () =>
+      model.contacts.of(store.state.frame).map(({ name, pairs, triangles, kind, depth }) => ({ name, pairs, triangles: [...triangles], kind, depth })),
     hovered: () => store.state.pointed,
     ready: true,
   });

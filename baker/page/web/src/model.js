@@ -1,4 +1,4 @@
-import { Contacts } from './contacts.js';
+import { Contacts, MEASURES } from './contacts.js';
 import { decode, pairLists } from './frame_lists.js';
 
 // The page's data (see ../README.md) as the other modules use it. Lengths are in the source's units.
@@ -124,6 +124,8 @@ export function readModel(text) {
       triangles: decode(mesh.triangles, Uint32Array),
       partOf,
       sphereOf,
+      height: data.axes.height,
+      unitsPerMm: 1 / (1000 * (data.inspect.source.metres_per_unit || 1)),
       influences: mesh.influences ?? 0,
       joints: decode(mesh.joints, Uint16Array),
       weights: decode(mesh.weights, Uint16Array),
@@ -133,7 +135,7 @@ export function readModel(text) {
     fps: frames?.fps || 30,
     clips,
     costs: count > 0 ? readCosts(frames) : null,
-    contacts: new Contacts(contactLists, partOf, partName),
+    contacts: new Contacts(contactLists, partOf, partName, pairLists(frames?.penetrations, Float32Array, MEASURES)),
 
     clipAt: (frame) => Math.max(clips.findLastIndex(({ first }) => first <= frame), 0),
     time: (frame) => times[frame] ?? frame / (frames?.fps || 30),

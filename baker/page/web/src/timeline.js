@@ -2,8 +2,8 @@ import { css, fitCanvas, h } from './dom.js';
 import { plural } from './format.js';
 import { CONTACT, FALSE_ALARM } from './palette.js';
 
-// Play, step, scrub. A frame in which the skin touches has a bar, as high as there are triangles; with spheres shown, a frame
-// with false alarms has a mark below. Clips begin at a line with their name; frames are numbered in their clip.
+// Play, step, scrub. A frame with a fault has a bar, as high as it is deep; one in which the skin only folds or touches has a
+// tick. With spheres shown, a frame with false alarms has a mark below. Clips begin at a line with their name; frames are numbered in their clip.
 
 const INSET = 8; // half the slider's thumb: where its first and last value are
 const BASE = 15; // pixels for the numbers
@@ -63,17 +63,19 @@ function drawBars(canvas, model, state) {
     context.fillStyle = css('--hover');
     context.fillRect(x(clip.first), 0, Math.max((clip.count - 1) * perFrame, 2), height - BASE);
   }
-  const counts = Array.from({ length: model.frameCount }, (_, frame) => model.contacts.count(frame));
-  const most = Math.max(1, ...counts.slice(from, to + 1));
+  const depths = Array.from({ length: model.frameCount }, (_, frame) => model.contacts.depth(frame));
+  const most = Math.max(1, ...depths.slice(from, to + 1));
   const base = height - BASE;
   const top = model.clips.length > 1 ? TOP : 4;
   context.fillStyle = css('--line');
   context.fillRect(INSET, base, width - 2 * INSET, 1);
   context.fillStyle = CONTACT;
   const bar = Math.max(1, Math.min(14, perFrame * 0.7));
-  counts.forEach((count, frame) => {
-    const high = 3 + (count / most) * (base - top - 3);
-    if (count > 0 && frame >= from && frame <= to) context.fillRect(x(frame) - bar / 2, base - high, bar, high);
+  depths.forEach((depth, frame) => {
+    if (frame < from || frame > to || model.contacts.of(frame).length === 0) return;
+    context.fillStyle = depth > 0 ? CONTACT : css('--muted');
+    const high = depth > 0 ? 3 + (depth / most) * (base - top - 3) : 2;
+    context.fillRect(x(frame) - bar / 2, base - high, bar, high);
   });
   if (state.spheres) {
     context.fillStyle = FALSE_ALARM;
