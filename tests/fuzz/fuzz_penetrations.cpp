@@ -9,11 +9,11 @@
 namespace spherechain::test {
 namespace {
 
-constexpr std::size_t kMaxWords = std::size_t{1} << 17, kMaxContacts = 60;
+constexpr std::size_t kMaxContacts = 60, kMaxScratch = std::size_t{1} << 18;
 
 // Those of the pose, or any triangles with any segments.
 void draw_contacts(Case& c, PenetrationJob& job, const Surface& surface) {
-  TriangleContact* const contacts = c.arena.add<TriangleContact>(c.random.below(kMaxContacts));
+  TriangleContact* const contacts = c.arena.add<TriangleContact>(job.contact_count);
   job.contacts = contacts;
   if (c.random.one_in(2)) {
     std::vector<std::uint64_t> scratch(sc_skin_scratch_words(&c.asset));
@@ -31,8 +31,8 @@ void draw_contacts(Case& c, PenetrationJob& job, const Surface& surface) {
     return;
   }
   for (std::size_t i = 0; i < job.contact_count; ++i) {
-    contacts[i].triangle_a = surface.triangles[c.random.below(surface.triangles.size)];
-    contacts[i].triangle_b = surface.triangles[c.random.below(surface.triangles.size)];
+    contacts[i].triangle_a = surface.triangles[c.random.up_to(surface.triangles.size - 1)];
+    contacts[i].triangle_b = surface.triangles[c.random.up_to(surface.triangles.size - 1)];
     fill_figures(c, &contacts[i].from.x, 6);
   }
 }
@@ -66,7 +66,7 @@ Ways ways_of(Case& c, PenetrationJob& job, Target& other) {
 
 void fuzz_penetrations(Case& c) {
   const std::size_t table_words = draw_asset(c) ? sc_skin_table_words(&c.asset) : 0;
-  if (table_words == 0 || table_words > kMaxWords || sc_skin_scratch_words(&c.asset) > kMaxWords) {
+  if (table_words == 0 || table_words > kMaxScratch || sc_penetration_scratch_words(&c.asset, kMaxContacts) > kMaxScratch) {
     return;
   }
   PenetrationJob job;
