@@ -48,7 +48,8 @@ void measure_rest(const PosedSkin& skin, double height, ContourScratch& scratch,
     distances[count++] = distance;
     out.is_one_piece = out.is_one_piece && skin.piece(segment.a) == skin.piece(segment.b);
   }
-  std::nth_element(distances, distances + count / 2, distances + count);
+  // By an order of its own: a shared library would export the standard one's instances.
+  std::nth_element(distances, distances + count / 2, distances + count, [](double l, double r) { return l < r; });
   out.rest_distance = distances[count / 2];
   out.touching = static_cast<double>(touching) / static_cast<double>(count);
 }

@@ -119,7 +119,7 @@ class Measurer {
       const std::uint64_t q = surface_.parts[surface_.place_of_source[job_.contacts[i].triangle_b]];
       memory_.keys[count++] = std::min(p, q) << 48 | std::max(p, q) << 32 | i;
     }
-    std::sort(memory_.keys.begin(), memory_.keys.begin() + count);
+    std::sort(memory_.keys.begin(), memory_.keys.begin() + count, [](std::uint64_t l, std::uint64_t r) { return l < r; });
     for (std::size_t i = 0; i < count; ++i) {
       memory_.segments[i] = segment_of(job_.contacts[memory_.keys[i] & 0xFFFFFFFF]);
     }
