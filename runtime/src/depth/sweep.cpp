@@ -342,7 +342,7 @@ bool Sweep::is_enclosed(const WayOut& way, const Contour& contour, double handed
   }
   vote(side_a_, of_b, count, true, handedness, b_in_a);
   vote(side_b_, of_a, count, false, handedness, a_in_b);
-  const auto most = [&](const int* votes) { return 2 * std::count(votes, votes + count, 1) > static_cast<long>(count); };
+  const auto most = [&](const int* votes) { return 2 * std::count_if(votes, votes + count, [](int vote) { return vote == 1; }) > static_cast<long>(count); };
   return most(b_in_a) || most(a_in_b);
 }
 
