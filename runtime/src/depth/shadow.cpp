@@ -67,21 +67,29 @@ View::View(const Double3& direction, const Double3& center) : d(direction), orig
 
 Shadow::Shadow(const Corners& a, const Corners& b) {
   const double turn_a = turn_of(a), turn_b = turn_of(b);
-  if ((!(turn_a > 0) && !(turn_a < 0)) || is_beside(a, b, turn_a > 0 ? 1 : -1) ||
-      is_beside(b, a, turn_b > 0 ? 1 : turn_b < 0 ? -1 : 0)) {
+  if (is_beside(a, b, turn_a > 0 ? 1 : turn_a < 0 ? -1 : 0) || is_beside(b, a, turn_b > 0 ? 1 : turn_b < 0 ? -1 : 0)) {
     return;
   }
-  const Slope slope(a);
+  // Heights are those of the plane that is seen more from the front: the other may be seen edge-on.
+  const Double3 normal_a = normal_of(a), normal_b = normal_of(b);
+  stands_on_a = turn_a * turn_a * dot(normal_b, normal_b) >= turn_b * turn_b * dot(normal_a, normal_a);
+  const Corners &base = stands_on_a ? a : b, &other = stands_on_a ? b : a;
+  const double turn = stands_on_a ? turn_a : turn_b, sign = turn > 0 ? 1 : -1;
+  if (!(turn > 0) && !(turn < 0)) {
+    return;
+  }
+  const int base_edge = stands_on_a ? 3 : 0, other_edge = 3 - base_edge;
+  const Slope slope(base);
   for (int i = 0; i < 3; ++i) {
-    const Double3& p = b.p[i];
-    corners[i] = {p.x, p.y, slope.at(p.x, p.y) - p.z, i};
+    const Double3& p = other.p[i];
+    const double above = slope.at(p.x, p.y) - p.z;
+    corners[i] = {p.x, p.y, stands_on_a ? above : -above, other_edge + i};
   }
   count = 3;
-  const double sign = turn_a > 0 ? 1 : -1;
   for (int i = 0; i < 3 && count > 0; ++i) {
-    const Double3 &from = a.p[i], &to = a.p[(i + 1) % 3];
+    const Double3 &from = base.p[i], &to = base.p[(i + 1) % 3];
     const double x = sign * (to.x - from.x), y = sign * (to.y - from.y);
-    clip(*this, 3 + i, [&](const Corner& c) { return x * (c.y - from.y) - y * (c.x - from.x); });
+    clip(*this, base_edge + i, [&](const Corner& c) { return x * (c.y - from.y) - y * (c.x - from.x); });
   }
 }
 

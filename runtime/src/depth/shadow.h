@@ -30,6 +30,7 @@ struct Shadow {
   };
   Corner corners[kCornersMax];
   int count = 0;  // 0: they do not hide each other
+  bool stands_on_a = true;  // the plane of a, not of b, gives the heights: it is not seen edge-on
 
   Shadow(const Corners& a, const Corners& b);
   // Leaves what rises at least, or at most, so far.

@@ -191,7 +191,8 @@ void Sweep::for_pairs(const Wants& wants, const Visit& visit) const {
           hides[k] = p0 & p1 & q0 & q1;
           any |= hides[k];
         }
-        for (std::size_t k = 0; any != 0 && k < kBlock; ++k) {
+        // Positions that are not finite meet even the empty boxes past the last.
+        for (std::size_t k = 0; any != 0 && k < kBlock && kBlock * p + k < a_.count; ++k) {
           const std::size_t a = kBlock * p + k;
           if (hides[k] != 0 && wants(double{a_.low[2][a]} - double{b_.high[2][b]},
                                      double{a_.high[2][a]} - double{b_.low[2][b]})) {
@@ -240,7 +241,7 @@ void Sweep::block(std::uint32_t a, std::uint32_t b, double& depth, WayOut& out) 
   if (dot(out.normal, view_.d) < 0) {
     out.normal = -1 * out.normal;
   }
-  const double z = height_at(seen_a, corner.x, corner.y);
+  const double z = shadow.stands_on_a ? height_at(seen_a, corner.x, corner.y) : height_at(seen_b, corner.x, corner.y) + high;
   out.point_a = view_.back({corner.x, corner.y, z});
   out.point_b = view_.back({corner.x, corner.y, z - high});
 }
