@@ -16,8 +16,8 @@ namespace {
 // Lengths are parts of the character's height, but those in metres.
 constexpr double kTouchMetres = 0.003, kTouchMin = 0.001, kTouchMax = 0.01;
 constexpr double kGapMetres = 0.0006, kGapMax = 0.001;  // shorter free places on the way are none
-constexpr double kFoldDistance = 0.09;    // of two spots at rest, to be a fold
-constexpr double kShellDistance = 0.035;  // likewise, to be layers of the same place
+constexpr double kFoldDistance = 0.09;                  // of two spots at rest, to be a fold
+constexpr double kShellDistance = 0.035;                // likewise, to be layers of the same place
 constexpr double kDeepFold = 0.012, kDeepFoldFacing = 0.3;
 constexpr double kNear = 0.006;
 constexpr double kDeep = 0.003;  // worth more directions
@@ -119,7 +119,8 @@ class Measurer {
       const std::uint64_t q = surface_.parts[surface_.place_of_source[job_.contacts[i].triangle_b]];
       memory_.keys[count++] = std::min(p, q) << 48 | std::max(p, q) << 32 | i;
     }
-    std::sort(memory_.keys.begin(), memory_.keys.begin() + count, [](std::uint64_t l, std::uint64_t r) { return l < r; });
+    std::sort(memory_.keys.begin(), memory_.keys.begin() + count,
+              [](std::uint64_t l, std::uint64_t r) { return l < r; });
     for (std::size_t i = 0; i < count; ++i) {
       memory_.segments[i] = segment_of(job_.contacts[memory_.keys[i] & 0xFFFFFFFF]);
     }
@@ -135,7 +136,8 @@ class Measurer {
   Span<const TriangleRun> unique(Span<TriangleRun> runs) const {
     const auto first = [](const TriangleRun& run) { return run.first; };
     std::sort(runs.begin(), runs.end(), [&](const auto& l, const auto& r) { return first(l) < first(r); });
-    const auto end = std::unique(runs.begin(), runs.end(), [&](const auto& l, const auto& r) { return first(l) == first(r); });
+    const auto end =
+        std::unique(runs.begin(), runs.end(), [&](const auto& l, const auto& r) { return first(l) == first(r); });
     for (TriangleRun* run = runs.begin(); run != end; ++run) {
       const auto after = std::upper_bound(surface_.clusters.begin(), surface_.clusters.end(), run->first,
                                           [](std::uint32_t t, const Cluster& c) { return t < c.first_triangle; });
@@ -179,7 +181,7 @@ class Measurer {
     out.visible = 1;
     if (job_.quick == 0) {
       if (contour.is_closed && part_a != part_b) {
-        const Volume volume = sweep_.volume(exit.way.depth);
+        const Volume volume = sweep_.volume(exit.direction, exit.way.depth);
         const double area = dot(contour.area, exit.direction);
         out.is_closed = std::abs(volume.area - area) <= kAreaError * volume.total && volume.volume >= 0 ? 1 : 0;
         out.volume = out.is_closed != 0 ? static_cast<float>(volume.volume) : 0;
@@ -283,14 +285,13 @@ Status check_contacts(const PenetrationJob& job, const AssetView& asset, const S
 
 bool is_aliased(const PenetrationJob& job, const AssetView& asset) {
   const FilterRanges filter = ranges_of(job.filter);
-  return any_shared({range_of(Span<Penetration>{job.penetrations, job.penetration_capacity}),
-                     range_of(Span<std::uint64_t>{job.scratch, scratch_words(asset, job.contact_count)})},
-                    {range_of_vertices(asset, job.pose), range_of_bones(asset, job.pose),
-                     range_of_morph_weights(asset, job.pose),
-                     range_of(Span<const std::uint64_t>{job.skin_table, skin_table_words(asset)}),
-                     range_of(asset.ignored()), range_of(Span<const TriangleContact>{job.contacts, job.contact_count}),
-                     range_of(Span<const Penetration>{job.previous, job.previous_count}), filter.ignored,
-                     filter.disabled});
+  return any_shared(
+      {range_of(Span<Penetration>{job.penetrations, job.penetration_capacity}),
+       range_of(Span<std::uint64_t>{job.scratch, scratch_words(asset, job.contact_count)})},
+      {range_of_vertices(asset, job.pose), range_of_bones(asset, job.pose), range_of_morph_weights(asset, job.pose),
+       range_of(Span<const std::uint64_t>{job.skin_table, skin_table_words(asset)}), range_of(asset.ignored()),
+       range_of(Span<const TriangleContact>{job.contacts, job.contact_count}),
+       range_of(Span<const Penetration>{job.previous, job.previous_count}), filter.ignored, filter.disabled});
 }
 
 Status check(const PenetrationJob& job, Target& resolved, Surface& surface) {

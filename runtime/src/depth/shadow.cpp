@@ -65,11 +65,8 @@ View::View(const Double3& direction, const Double3& center) : d(direction), orig
   u = cross(v, d);
 }
 
-Shadow::Shadow(const Corners& a, const Corners& b) {
+Shadow::Shadow(const Corners& a, const Corners& b, double above, double below) {
   const double turn_a = turn_of(a), turn_b = turn_of(b);
-  if (is_beside(a, b, turn_a > 0 ? 1 : turn_a < 0 ? -1 : 0) || is_beside(b, a, turn_b > 0 ? 1 : turn_b < 0 ? -1 : 0)) {
-    return;
-  }
   // Heights are those of the plane that is seen more from the front: the other may be seen edge-on.
   const Double3 normal_a = normal_of(a), normal_b = normal_of(b);
   stands_on_a = turn_a * turn_a * dot(normal_b, normal_b) >= turn_b * turn_b * dot(normal_a, normal_a);
@@ -80,10 +77,24 @@ Shadow::Shadow(const Corners& a, const Corners& b) {
   }
   const int base_edge = stands_on_a ? 3 : 0, other_edge = 3 - base_edge;
   const Slope slope(base);
+  double least = HUGE_VAL, most = -HUGE_VAL;
   for (int i = 0; i < 3; ++i) {
     const Double3& p = other.p[i];
-    const double above = slope.at(p.x, p.y) - p.z;
-    corners[i] = {p.x, p.y, stands_on_a ? above : -above, other_edge + i};
+    const double over = slope.at(p.x, p.y) - p.z, rise = stands_on_a ? over : -over;
+    corners[i] = {p.x, p.y, rise, other_edge + i};
+    least = std::min(least, rise);
+    most = std::max(most, rise);
+  }
+  if (most <= above || least > below ||
+      is_beside(a, b,
+                turn_a > 0   ? 1
+                : turn_a < 0 ? -1
+                             : 0) ||
+      is_beside(b, a,
+                turn_b > 0   ? 1
+                : turn_b < 0 ? -1
+                             : 0)) {
+    return;
   }
   count = 3;
   for (int i = 0; i < 3 && count > 0; ++i) {

@@ -32,7 +32,8 @@ struct Shadow {
   int count = 0;  // 0: they do not hide each other
   bool stands_on_a = true;  // the plane of a, not of b, gives the heights: it is not seen edge-on
 
-  Shadow(const Corners& a, const Corners& b);
+  // May stay empty where it rises nowhere above `above`, or everywhere beyond `below`.
+  Shadow(const Corners& a, const Corners& b, double above, double below);
   // Leaves what rises at least, or at most, so far.
   void keep_above(double rise);
   void keep_below(double rise);

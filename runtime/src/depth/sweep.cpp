@@ -9,8 +9,8 @@
 namespace spherechain {
 namespace {
 
-constexpr int kPassesMax = 64;       // of hostile input; of bodies a handful
-constexpr std::size_t kVotes = 8;    // contacts that say what is inside
+constexpr int kPassesMax = 64;     // of hostile input; of bodies a handful
+constexpr std::size_t kVotes = 8;  // contacts that say what is inside
 
 bool is_on(const Span<const std::uint64_t>& bits, std::size_t i) {
   return bits.size > 0 && (bits[i / 64] >> (i % 64) & 1) != 0;
@@ -20,7 +20,7 @@ bool is_on(const Span<const std::uint64_t>& bits, std::size_t i) {
 
 bool PairRule::counts(std::uint32_t a, std::uint32_t b) const {
   const std::uint32_t *const v = surface->triangle_vertices.data + 3 * std::size_t{a},
-                            *const w = surface->triangle_vertices.data + 3 * std::size_t{b};
+                             *const w = surface->triangle_vertices.data + 3 * std::size_t{b};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
       if (surface->welds[v[i]] == surface->welds[w[j]]) {
@@ -89,9 +89,7 @@ void Sweep::take(WordMemory& memory, std::size_t triangle_count, std::size_t ver
   }
 }
 
-void Sweep::clear(std::size_t vertex_count) {
-  std::fill(vertices_.place, vertices_.place + vertex_count, kNoPlace);
-}
+void Sweep::clear(std::size_t vertex_count) { std::fill(vertices_.place, vertices_.place + vertex_count, kNoPlace); }
 
 // Near each other in memory: boxes are made of them again and again.
 void Sweep::list_vertices(Boxes& boxes) {
@@ -113,8 +111,10 @@ void Sweep::list_vertices(Boxes& boxes) {
   }
 }
 
+void Sweep::look_along(const Double3& direction) { view_ = View(direction, vertices_.origin); }
+
 // Boxes need no more than single precision: their triangles are compared in double precision.
-void Sweep::see_vertices() {
+void Sweep::see_boxes() {
   const float *const x = vertices_.at[0], *const y = vertices_.at[1], *const z = vertices_.at[2];
   const Double3* const axes[3] = {&view_.u, &view_.v, &view_.d};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -124,6 +124,8 @@ void Sweep::see_vertices() {
       out[i] = a.x * x[i] + (a.y * y[i] + a.z * z[i]);
     }
   }
+  a_.view(vertices_.seen);
+  b_.view(vertices_.seen);
 }
 
 void Sweep::set_sides(Span<const TriangleRun> a, Span<const TriangleRun> b, const Double3& origin) {
@@ -181,6 +183,12 @@ void Sweep::for_pairs(const Wants& wants, const Visit& visit) const {
       const std::size_t b_end = std::min(kBlock * (q + 1), b_.count);
       for (std::size_t b = kBlock * q; b < b_end; ++b) {
         const float low_u = b_.low[0][b], high_u = b_.high[0][b], low_v = b_.low[1][b], high_v = b_.high[1][b];
+        if (a_.block_low[0][p] > high_u || a_.block_high[0][p] < low_u || a_.block_low[1][p] > high_v ||
+            a_.block_high[1][p] < low_v ||
+            !wants(double{a_.block_low[2][p]} - double{b_.high[2][b]},
+                   double{a_.block_high[2][p]} - double{b_.low[2][b]})) {
+          continue;
+        }
         const float *const lows_u = a_.low[0] + kBlock * p, *const highs_u = a_.high[0] + kBlock * p;
         const float *const lows_v = a_.low[1] + kBlock * p, *const highs_v = a_.high[1] + kBlock * p;
         std::int32_t hides[kBlock];
@@ -194,8 +202,8 @@ void Sweep::for_pairs(const Wants& wants, const Visit& visit) const {
         // Positions that are not finite meet even the empty boxes past the last.
         for (std::size_t k = 0; any != 0 && k < kBlock && kBlock * p + k < a_.count; ++k) {
           const std::size_t a = kBlock * p + k;
-          if (hides[k] != 0 && wants(double{a_.low[2][a]} - double{b_.high[2][b]},
-                                     double{a_.high[2][a]} - double{b_.low[2][b]})) {
+          if (hides[k] != 0 &&
+              wants(double{a_.low[2][a]} - double{b_.high[2][b]}, double{a_.high[2][a]} - double{b_.low[2][b]})) {
             visit(a_.triangle[a], b_.triangle[b]);
           }
         }
@@ -207,7 +215,7 @@ void Sweep::for_pairs(const Wants& wants, const Visit& visit) const {
 // Moves the way's end on to where this pair no longer blocks it.
 void Sweep::block(std::uint32_t a, std::uint32_t b, double& depth, WayOut& out) const {
   const Corners seen_a = view_.seen(skin_.corners(a)), seen_b = view_.seen(skin_.corners(b));
-  const Shadow shadow(seen_a, seen_b);
+  const Shadow shadow(seen_a, seen_b, depth, depth + gap_);
   double low = HUGE_VAL, high = -HUGE_VAL;
   int last = 0;
   for (int i = 0; i < shadow.count; ++i) {
@@ -241,7 +249,8 @@ void Sweep::block(std::uint32_t a, std::uint32_t b, double& depth, WayOut& out) 
   if (dot(out.normal, view_.d) < 0) {
     out.normal = -1 * out.normal;
   }
-  const double z = shadow.stands_on_a ? height_at(seen_a, corner.x, corner.y) : height_at(seen_b, corner.x, corner.y) + high;
+  const double z =
+      shadow.stands_on_a ? height_at(seen_a, corner.x, corner.y) : height_at(seen_b, corner.x, corner.y) + high;
   out.point_a = view_.back({corner.x, corner.y, z});
   out.point_b = view_.back({corner.x, corner.y, z - high});
 }
@@ -255,27 +264,31 @@ void Sweep::remember(const WayOut& out) {
 }
 
 bool Sweep::find(const Double3& direction, const Contour& contour, double bound, WayOut& out) {
-  view_ = View(direction, vertices_.origin);
+  look_along(direction);
   out = {};
   double depth = 0;
   for (const Segment3& segment : contour.segments) {
     block(segment.a, segment.b, depth, out);
   }
-  for (std::size_t i = 0; i < 2 * std::min(remembered_count_, kRemembered) && depth < bound; ++i) {
-    const Pair& pair = remembered_[i % std::min(remembered_count_, kRemembered)];
-    block(pair.a, pair.b, depth, out);
+  for (double before = -1; depth > before && depth < bound;) {
+    before = depth;
+    for (std::size_t i = 0; i < std::min(remembered_count_, kRemembered) && depth < bound; ++i) {
+      block(remembered_[i].a, remembered_[i].b, depth, out);
+    }
   }
   if (depth >= bound) {
     return false;
   }
-  see_vertices();
-  a_.view(vertices_.seen);
-  b_.view(vertices_.seen);
+  see_boxes();
   bool is_longer = true;
   for (int i = 0; is_longer && i < kPassesMax && depth < bound; ++i) {
     const double before = depth;
     for_pairs([&](double low, double high) { return high > depth && low <= depth + gap_ && depth < bound; },
-              [&](std::uint32_t a, std::uint32_t b) { block(a, b, depth, out); });
+              [&](std::uint32_t a, std::uint32_t b) {
+                const double was = depth;
+                block(a, b, depth, out);
+                if (depth > was) remember(out);
+              });
     is_longer = depth > before;
   }
   remember(out);
@@ -326,7 +339,8 @@ void Sweep::vote(const Span<const TriangleRun>& side, const Double3* points, std
   }
 }
 
-bool Sweep::is_enclosed(const WayOut& way, const Contour& contour, double handedness) const {
+bool Sweep::is_enclosed(const Double3& direction, const WayOut& way, const Contour& contour, double handedness) {
+  look_along(direction);
   const auto middle = [&](std::uint32_t triangle) {
     const Corners t = view_.seen(skin_.corners(triangle));
     return (1.0 / 3) * (t.p[0] + (t.p[1] + t.p[2]));
@@ -343,19 +357,23 @@ bool Sweep::is_enclosed(const WayOut& way, const Contour& contour, double handed
   }
   vote(side_a_, of_b, count, true, handedness, b_in_a);
   vote(side_b_, of_a, count, false, handedness, a_in_b);
-  const auto most = [&](const int* votes) { return 2 * std::count_if(votes, votes + count, [](int vote) { return vote == 1; }) > static_cast<long>(count); };
+  const auto most = [&](const int* votes) {
+    return 2 * std::count_if(votes, votes + count, [](int vote) { return vote == 1; }) > static_cast<long>(count);
+  };
   return most(b_in_a) || most(a_in_b);
 }
 
 // Along each line in the direction, the part of b inside a is as long as the sum over pairs of crossings, with the
 // signs of their surfaces, of how far b's is below a's. Where b is clear of a after the move, only pairs that meet on
 // the way are left of that sum.
-Volume Sweep::volume(double depth) const {
+Volume Sweep::volume(const Double3& direction, double depth) {
+  look_along(direction);
+  see_boxes();
   Volume out;
   for_pairs([&](double low, double high) { return high > 0 && low <= depth + gap_; },
             [&](std::uint32_t a, std::uint32_t b) {
               const Corners seen_a = view_.seen(skin_.corners(a)), seen_b = view_.seen(skin_.corners(b));
-              Shadow shadow(seen_a, seen_b);
+              Shadow shadow(seen_a, seen_b, 0, depth);
               shadow.keep_above(0);
               shadow.keep_below(depth);
               if (shadow.count > 2) {

@@ -47,10 +47,10 @@ class Sweep {
 
   // False where the way is not shorter than `bound`: then `out` is the pair that said so.
   bool find(const Double3& direction, const Contour& contour, double bound, WayOut& out);
-  // After a find() along its direction: is b, moved so, inside a, or a inside b?
-  bool is_enclosed(const WayOut& way, const Contour& contour, double handedness) const;
-  // After a find(), along its direction: of b inside a.
-  Volume volume(double depth) const;
+  // Is b, moved so, inside a, or a inside b?
+  bool is_enclosed(const Double3& direction, const WayOut& way, const Contour& contour, double handedness);
+  // Of b inside a, seen along the direction of a way that long.
+  Volume volume(const Double3& direction, double depth);
 
  private:
   // Blocks of triangles that follow one another, and their boxes in view: along u, v, d.
@@ -73,7 +73,8 @@ class Sweep {
     std::size_t count = 0;
   };
   void list_vertices(Boxes& boxes);
-  void see_vertices();
+  void look_along(const Double3& direction);
+  void see_boxes();
   void keep_runs(const Span<const TriangleRun>& side, const Span<const TriangleRun>& other, double depth, Boxes& out);
   void block(std::uint32_t a, std::uint32_t b, double& depth, WayOut& out) const;
   // Calls visit(a, b) for triangles whose boxes hide each other and wants(low, high) of their intervals: b can meet a

@@ -6,10 +6,11 @@
 namespace spherechain {
 namespace {
 
-constexpr int kSteps = 4;            // of a direction towards the normal of what blocks it last
-constexpr int kWidenings = 4;        // of what is near
+constexpr int kSteps = 4;              // of a direction towards the normal of what blocks it last
+constexpr int kWidenings = 4;          // of what is near
 constexpr double kNearlyAsGood = 1.2;  // times the shortest: the last frame's direction is kept
-constexpr double kSameWay = 0.5;     // cosine: a direction that is refined farther is another
+constexpr double kSameWay = 0.5;       // cosine: a direction that is refined farther is another
+constexpr double kSame = 0.9998;       // cosine: a direction that is as near to another is not tried again
 
 class Search {
  public:
@@ -22,15 +23,16 @@ class Search {
   void be_careful() {
     is_careful_ = true;
     has_any_ = false;
+    tried_count_ = 0;
   }
 
   // Along that direction, and along those that its blockers' normals lead to: where it is not shorter than the best,
   // so many steps.
   void refine(Double3 direction, int steps_in_vain) {
-    for (int step = 0; step <= kSteps && normalize(direction); ++step) {
+    for (int step = 0; step <= kSteps && normalize(direction) && is_new(direction); ++step) {
       WayOut way;
       const double bound = has_any_ ? best_.way.depth : HUGE_VAL;
-      if (sweep_.find(direction, contour_, bound, way) && !is_refused(way)) {
+      if (sweep_.find(direction, contour_, bound, way) && !is_refused(direction, way)) {
         best_ = {direction, way};
         has_any_ = true;
       } else if (step >= steps_in_vain) {
@@ -54,7 +56,7 @@ class Search {
     Double3 direction = wanted;
     for (int step = 0; step <= kSteps && normalize(direction) && dot(direction, wanted) > kSameWay; ++step) {
       WayOut way;
-      if (sweep_.find(direction, contour_, bound, way) && !sweep_.is_enclosed(way, contour_, handedness_)) {
+      if (sweep_.find(direction, contour_, bound, way) && !sweep_.is_enclosed(direction, way, contour_, handedness_)) {
         kept = {direction, way};
         bound = way.depth;
         found = true;
@@ -69,13 +71,30 @@ class Search {
   }
 
  private:
-  bool is_refused(const WayOut& way) const { return is_careful_ && sweep_.is_enclosed(way, contour_, handedness_); }
+  // Is it another than all that were tried?
+  bool is_new(const Double3& direction) {
+    const auto is_same = [&](const Double3& tried) { return dot(tried, direction) > kSame; };
+    if (std::any_of(tried_, tried_ + tried_count_, is_same)) {
+      return false;
+    }
+    if (tried_count_ < kTriedMax) {
+      tried_[tried_count_++] = direction;
+    }
+    return true;
+  }
+
+  bool is_refused(const Double3& direction, const WayOut& way) {
+    return is_careful_ && sweep_.is_enclosed(direction, way, contour_, handedness_);
+  }
 
   Sweep& sweep_;
   const Contour& contour_;
   double handedness_;
   bool is_careful_ = false, has_any_ = false;
   Exit best_;
+  static constexpr std::size_t kTriedMax = 64;
+  Double3 tried_[kTriedMax];
+  std::size_t tried_count_ = 0;
 };
 
 }  // namespace
@@ -123,7 +142,7 @@ Exit find_exit(Sweep& sweep, const Contour& contour, const ExitSettings& setting
     return out;
   }
   Search search(sweep, contour, handedness);
-  sweep.keep_near(out.way.depth);
+  sweep.keep_near(kNearlyAsGood * out.way.depth);
   Double3 axes[3];
   axes_of(contour, first, axes);
   const auto try_all = [&] {
@@ -137,28 +156,19 @@ Exit find_exit(Sweep& sweep, const Contour& contour, const ExitSettings& setting
     }
   };
   try_all();
-  // The votes of is_enclosed() are of its own direction's view.
-  const auto is_good = [&] {
-    WayOut way;
-    return search.has_any() && sweep.find(search.best().direction, contour, HUGE_VAL, way) &&
-           !sweep.is_enclosed(way, contour, handedness);
-  };
-  if (!is_good()) {
+  if (!search.has_any() || sweep.is_enclosed(search.best().direction, search.best().way, contour, handedness)) {
     const Exit fallback = search.has_any() ? search.best() : out;
     search.be_careful();
     sweep.keep_near(HUGE_VAL);
     try_all();
     if (!search.has_any()) {
-      sweep.find(fallback.direction, contour, HUGE_VAL, out.way);
       return fallback;
     }
   }
   if (settings.previous != nullptr) {
     search.prefer(*settings.previous);
   }
-  out = search.best();
-  sweep.find(out.direction, contour, HUGE_VAL, out.way);
-  return out;
+  return search.best();
 }
 
 }  // namespace spherechain

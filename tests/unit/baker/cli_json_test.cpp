@@ -219,7 +219,7 @@ TEST_CASE("play tells which body parts touch, in which frames, and how the spher
     CHECK(frames.count(contact["frame_of_max"].get<int>()) == 1);
     with_contact.insert(frames.begin(), frames.end());
     // Faults have a line of their own.
-    const bool is_fault = contact["class"] == "penetration" || contact["class"] == "deep fold";
+    const bool is_fault = contact["class"] == "penetration" || contact["class"] == "deep_fold";
     const std::string line = fmt::format("{:.0f} mm deep at {}\n", contact["depth_mm_max"].get<double>(),
                                          contact["frame_of_depth_max"].get<int>());
     CHECK_MESSAGE((play.out.find(line) != std::string::npos) == is_fault, line);
