@@ -168,7 +168,15 @@ class Study {
           const double turn = double{p.direction.x} * double{before.direction.x} +
                               double{p.direction.y} * double{before.direction.y} +
                               double{p.direction.z} * double{before.direction.z};
-          if (turn < 0) ++tally_.flips;
+          if (turn < 0) {
+            ++tally_.flips;
+            if (list_) {
+              fmt::print(stderr, "{} clip '{}' frame {}: {} - {}: {:.2f} mm, turned around from {:.2f} mm\n", mesh_,
+                         animated_->clip_at(i), animated_->frame_at(i).number, animated_->asset()->part(p.part_a).name,
+                         animated_->asset()->part(p.part_b).name, 1000 * double{p.depth} / metre,
+                         1000 * double{before.depth} / metre);
+            }
+          }
         }
       }
       last = found.penetrations;
@@ -210,12 +218,16 @@ class Study {
         ++tally_.unanswered;
       }
     }
-    if (list_ && (!frees || frees_early || ratio > 1.25 || ratio < 0.8 || (volume_ratio > 0 && std::abs(volume_ratio - 1) > 0.25))) {
-      fmt::print(stderr, "{} clip '{}' frame {}: {} - {}: class {}, {:.2f} mm along ({:.2f} {:.2f} {:.2f}), {} {}need {:.2f} mm along ({:.2f} {:.2f} {:.2f}); volume ratio {:.2f}\n",
+    if (list_ && (!frees || frees_early || ratio > 1.25 || ratio < 0.8 ||
+                  (volume_ratio > 0 && std::abs(volume_ratio - 1) > 0.25))) {
+      fmt::print(stderr,
+                 "{} clip '{}' frame {}: {} - {}: class {}, {:.2f} mm along ({:.2f} {:.2f} {:.2f}), {} {}need {:.2f} "
+                 "mm along ({:.2f} {:.2f} {:.2f}); volume ratio {:.2f}\n",
                  mesh_, animated_->clip_at(frame), animated_->frame_at(frame).number, asset->part(what.part_a).name,
-                 asset->part(what.part_b).name, sc_penetration_class_name(what.kind), 1000 * depth / metre, direction.x(),
-                 direction.y(), direction.z(), frees ? "" : "does not free, ", frees_early ? "frees early, " : "",
-                 1000 * way.depth / metre, way.direction.x(), way.direction.y(), way.direction.z(), volume_ratio);
+                 asset->part(what.part_b).name, sc_penetration_class_name(what.kind), 1000 * depth / metre,
+                 direction.x(), direction.y(), direction.z(), frees ? "" : "does not free, ",
+                 frees_early ? "frees early, " : "", 1000 * way.depth / metre, way.direction.x(), way.direction.y(),
+                 way.direction.z(), volume_ratio);
     }
   }
 
@@ -230,12 +242,14 @@ void print_row(const std::string& name, const Tally& t) {
     const auto found = t.classes.find(kind);
     return found == t.classes.end() ? 0 : found->second;
   };
-  fmt::print("| {} | {} | {} {} {} {} {} {} | {} | {} | {} | {} | {} | {:.2f} | {:.2f} | {} | {} of {} | {} | {:.2f} | {:.2f} |\n", name,
-             t.frames, of(SC_CLASS_REST), of(SC_CLASS_SHELL), of(SC_CLASS_TOUCH), of(SC_CLASS_FOLD),
-             of(SC_CLASS_DEEP_FOLD), of(SC_CLASS_PENETRATION), t.judged, share(t.freed, t.judged),
-             share(t.freed_early, t.judged), share(t.within, t.judged), share(t.above, t.judged),
-             quantile(t.ratios, 0.5), quantile(t.ratios, 0.9), share(t.flips, t.steps), share(t.volumes_within, t.volumes),
-             t.volumes, t.unanswered, quantile(t.us, 0.5) / 1000, quantile(t.us, 0.95) / 1000);
+  fmt::print(
+      "| {} | {} | {} {} {} {} {} {} | {} | {} | {} | {} | {} | {:.2f} | {:.2f} | {} | {} of {} | {} | {:.2f} | {:.2f} "
+      "|\n",
+      name, t.frames, of(SC_CLASS_REST), of(SC_CLASS_SHELL), of(SC_CLASS_TOUCH), of(SC_CLASS_FOLD),
+      of(SC_CLASS_DEEP_FOLD), of(SC_CLASS_PENETRATION), t.judged, share(t.freed, t.judged),
+      share(t.freed_early, t.judged), share(t.within, t.judged), share(t.above, t.judged), quantile(t.ratios, 0.5),
+      quantile(t.ratios, 0.9), share(t.flips, t.steps), share(t.volumes_within, t.volumes), t.volumes, t.unanswered,
+      quantile(t.us, 0.5) / 1000, quantile(t.us, 0.95) / 1000);
   std::fflush(stdout);
 }
 
@@ -258,7 +272,9 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "usage: depth_study [--list] [--judged N] CHARACTER[+MOTION]...\n");
     return 2;
   }
-  fmt::print("| character | frames | rest shell touch fold deep penetration | judged | frees % | 0.9 frees % | <= 1.25 % | >= 0.8 % | median | p90 | flips % | volume within 25 % | no answer | ms a pair | p95 |\n");
+  fmt::print(
+      "| character | frames | rest shell touch fold deep penetration | judged | frees % | 0.9 frees % | <= 1.25 % | >= "
+      "0.8 % | median | p90 | flips % | volume within 25 % | no answer | ms a pair | p95 |\n");
   fmt::print("|{}\n", std::string("---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|"));
   Tally total;
   for (const std::string& character : characters) {

@@ -20,7 +20,6 @@ constexpr double kFoldDistance = 0.09;                  // of two spots at rest,
 constexpr double kShellDistance = 0.035;                // likewise, to be layers of the same place
 constexpr double kDeepFold = 0.012, kDeepFoldFacing = 0.3;
 constexpr double kNear = 0.006;
-constexpr double kDeep = 0.003;  // worth more directions
 constexpr double kClearance = 3e-4;
 constexpr double kAreaError = 0.03;  // if the contour has another area than the skin inside, the volume is not known
 
@@ -167,7 +166,7 @@ class Measurer {
     const bool has_previous = dot(previous, previous) > 0 && std::isfinite(dot(previous, previous));
     const bool folds = is_fold(contour, part_a, part_b);
     const Exit exit = find_exit(sweep_, contour,
-                                {job_.quick != 0, kNear * height_, (folds ? kDeepFold : kDeep) * height_,
+                                {job_.quick != 0, kNear * height_, folds ? kDeepFold * height_ : 0,
                                  has_previous && job_.quick == 0 ? &previous : nullptr});
     Penetration out{};
     out.part_a = static_cast<std::uint32_t>(part_a);
