@@ -8,9 +8,9 @@
 namespace spherechain {
 namespace {
 
-constexpr double kOpen = 1e-3;         // of its length: a contour whose ends are farther apart is open
-constexpr double kTouching = 0.001;    // of the height
-constexpr std::size_t kSampled = 48;   // pairs whose distance at rest is measured
+constexpr double kOpen = 1e-3;        // of its length: a contour whose ends are farther apart is open
+constexpr double kTouching = 0.001;   // of the height
+constexpr std::size_t kSampled = 48;  // pairs whose distance at rest is measured
 
 std::uint32_t first_of(std::uint32_t* patch, std::uint32_t i) {
   while (patch[i] != i) {
@@ -62,7 +62,9 @@ void ContourScratch::take(WordMemory& memory, std::size_t contact_count, std::si
   memory.take(lengths, contact_count);
 }
 
-void ContourScratch::clear(std::size_t triangle_count) { std::fill(last_segment, last_segment + triangle_count, kNoPlace); }
+void ContourScratch::clear(std::size_t triangle_count) {
+  std::fill(last_segment, last_segment + triangle_count, kNoPlace);
+}
 
 Contour contour_of(const PosedSkin& skin, Span<Segment3> segments, double height, ContourScratch& scratch) {
   Contour out;
@@ -84,8 +86,8 @@ Contour contour_of(const PosedSkin& skin, Span<Segment3> segments, double height
   for (std::uint32_t i = 0; i < segments.size; ++i) {
     scratch.lengths[first_of(scratch.patch, i)] += segments[i].length;
   }
-  const auto longest = static_cast<std::uint32_t>(
-      std::max_element(scratch.lengths, scratch.lengths + segments.size) - scratch.lengths);
+  const auto longest =
+      static_cast<std::uint32_t>(std::max_element(scratch.lengths, scratch.lengths + segments.size) - scratch.lengths);
   for (std::uint32_t i = 0; i < segments.size; ++i) {
     const Segment3& s = segments[i];
     const Double3 share = 0.5 * cross(s.from - out.center, s.to - out.center);

@@ -17,22 +17,22 @@ struct Segment3 {
 
 struct Contour {
   Span<Segment3> segments;
-  Double3 center{};         // of the segments, by length
+  Double3 center{};  // of the segments, by length
   double length = 0;
-  bool is_closed = false;   // its lines have no ends
-  Double3 area{};           // the area that it encloses, as a vector: part b comes out along it
-  Double3 largest_area{};   // of the longest of its connected pieces
-  Double3 normals{};        // mean of normal a - normal b
-  double facing = 0;        // mean of -(normal a . normal b): 1 where the sides lie flat on each other
-  double rest_distance = 0; // median distance of the triangles that meet, at rest
-  double touching = 0;      // share of them that are closer than `kTouching` of `height` at rest
-  bool is_one_piece = true; // of the skin
+  bool is_closed = false;    // its lines have no ends
+  Double3 area{};            // the area that it encloses, as a vector: part b comes out along it
+  Double3 largest_area{};    // of the longest of its connected pieces
+  Double3 normals{};         // mean of normal a - normal b
+  double facing = 0;         // mean of -(normal a . normal b): 1 where the sides lie flat on each other
+  double rest_distance = 0;  // median distance of the triangles that meet, at rest
+  double touching = 0;       // share of them that are closer than `kTouching` of `height` at rest
+  bool is_one_piece = true;  // of the skin
 };
 
 // Words of scratch memory, and what it is for.
 struct ContourScratch {
-  std::uint32_t *patch = nullptr;         // a segment's, while they are joined
-  std::uint32_t *last_segment = nullptr;  // of a triangle; kNoPlace between calls
+  std::uint32_t* patch = nullptr;         // a segment's, while they are joined
+  std::uint32_t* last_segment = nullptr;  // of a triangle; kNoPlace between calls
   double* lengths = nullptr;              // of a patch
 
   void take(WordMemory& memory, std::size_t contact_count, std::size_t triangle_count);

@@ -62,12 +62,15 @@ class Measurer {
     }
     memory_.skin.surface = &surface;
     memory_.lay_out(asset, job.contact_count, job.scratch, sweep_);
-    memory_.contour.clear(surface.triangles.size);
-    sweep_.clear(surface.source_vertices.size);
   }
 
   Status run(Target resolved, PenetrationJob& job) {
     job.penetration_count = 0;
+    if (job.contact_count == 0) {
+      return done();
+    }
+    memory_.contour.clear(surface_.triangles.size);
+    sweep_.clear(surface_.source_vertices.size);
     memory_.skin.fill(job.pose, resolved);
     const std::size_t count = sort_segments();
     for (std::size_t begin = 0, end = 0; begin < count; begin = end) {

@@ -29,7 +29,7 @@ struct Shadow {
     int edge;  // that goes on from here: 0 to 2 of b, 3 to 5 of a
   };
   Corner corners[kCornersMax];
-  int count = 0;  // 0: they do not hide each other
+  int count = 0;            // 0: they do not hide each other
   bool stands_on_a = true;  // the plane of a, not of b, gives the heights: it is not seen edge-on
 
   // May stay empty where it rises nowhere above `above`, or everywhere beyond `below`.

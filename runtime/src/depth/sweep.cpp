@@ -135,32 +135,55 @@ void Sweep::set_sides(Span<const TriangleRun> a, Span<const TriangleRun> b, cons
   remembered_count_ = 0;
 }
 
-void Sweep::keep_near(double depth) {
+void Sweep::keep_near(double depth) { keep({{depth, depth, depth}, {depth, depth, depth}}); }
+
+void Sweep::keep_on_way(const Double3& direction, double depth) {
+  const auto part = [&](double along) { return along > 0 ? along * depth : 0; };
+  keep({{part(direction.x), part(direction.y), part(direction.z)},
+        {part(-direction.x), part(-direction.y), part(-direction.z)}});
+}
+
+void Sweep::keep(const Room& room) {
   for (std::size_t i = 0; i < vertices_.count; ++i) {
     vertices_.place[vertices_.vertex[i]] = kNoPlace;
   }
   vertices_.count = 0;
-  keep_runs(side_a_, side_b_, depth, a_);
-  keep_runs(side_b_, side_a_, depth, b_);
+  keep_runs(side_a_, side_b_, room, a_);
+  keep_runs(side_b_, side_a_, {room.down, room.up}, b_);
   list_vertices(a_);
   list_vertices(b_);
 }
 
-// Runs of whose cluster the box is near one of the other side's.
-void Sweep::keep_runs(const Span<const TriangleRun>& side, const Span<const TriangleRun>& other, double depth,
+// Runs of whose cluster the box meets one of the other side's that goes so far up and down along each axis.
+void Sweep::keep_runs(const Span<const TriangleRun>& side, const Span<const TriangleRun>& other, const Room& room,
                       Boxes& out) {
+  const double up[3] = {room.up.x + gap_, room.up.y + gap_, room.up.z + gap_};
+  const double down[3] = {room.down.x + gap_, room.down.y + gap_, room.down.z + gap_};
+  double highest[3], lowest[3];  // of them all
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    highest[axis] = -HUGE_VAL;
+    lowest[axis] = HUGE_VAL;
+    for (const TriangleRun& from : other) {
+      highest[axis] = std::max(highest[axis], double{skin_.high[axis][from.cluster]});
+      lowest[axis] = std::min(lowest[axis], double{skin_.low[axis][from.cluster]});
+    }
+  }
   out.count = 0;
-  const double reach = depth + gap_;
   for (const TriangleRun& run : side) {
-    const auto is_near = [&](const TriangleRun& from) {
+    const auto is_near = [&](const auto& high, const auto& low) {
       bool near = true;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        near = near && double{skin_.low[axis][run.cluster]} <= double{skin_.high[axis][from.cluster]} + reach &&
-               double{skin_.high[axis][run.cluster]} >= double{skin_.low[axis][from.cluster]} - reach;
+        near = near && double{skin_.low[axis][run.cluster]} <= high(axis) + up[axis] &&
+               double{skin_.high[axis][run.cluster]} >= low(axis) - down[axis];
       }
       return near;
     };
-    if (std::any_of(other.begin(), other.end(), is_near)) {
+    const auto is_near_run = [&](const TriangleRun& from) {
+      return is_near([&](std::size_t axis) { return double{skin_.high[axis][from.cluster]}; },
+                     [&](std::size_t axis) { return double{skin_.low[axis][from.cluster]}; });
+    };
+    if (is_near([&](std::size_t axis) { return highest[axis]; }, [&](std::size_t axis) { return lowest[axis]; }) &&
+        std::any_of(other.begin(), other.end(), is_near_run)) {
       for (std::uint32_t i = 0; i < run.count; ++i) {
         out.triangle[out.count++] = run.first + i;
       }

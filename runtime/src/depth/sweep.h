@@ -39,11 +39,13 @@ class Sweep {
   // Once, before anything else.
   void clear(std::size_t vertex_count);
 
-  // `origin`: about where they meet. keep_near() comes next.
+  // `origin`: about where they meet. keep_near() or keep_on_way() comes next.
   void set_sides(Span<const TriangleRun> a, Span<const TriangleRun> b, const Double3& origin);
   // Leaves the triangles that may meet within a move of `depth` in any direction: ways that are longer are not known
   // from here on. With an infinite depth all are left.
   void keep_near(double depth);
+  // Likewise, of moves in that direction alone.
+  void keep_on_way(const Double3& direction, double depth);
 
   // False where the way is not shorter than `bound`: then `out` is the pair that said so.
   bool find(const Double3& direction, const Contour& contour, double bound, WayOut& out);
@@ -56,8 +58,8 @@ class Sweep {
   // Blocks of triangles that follow one another, and their boxes in view: along u, v, d.
   static constexpr std::size_t kBlock = 16;
   struct Boxes {
-    float *low[3] = {}, *high[3] = {};              // a triangle's; those past the last are empty
-    float *block_low[3] = {}, *block_high[3] = {};  // a block's
+    float *low[3] = {}, *high[3] = {};                      // a triangle's; those past the last are empty
+    float *block_low[3] = {}, *block_high[3] = {};          // a block's
     std::uint32_t *triangle = nullptr, *corners = nullptr;  // three places in vertices_ each
     std::size_t count = 0;
 
@@ -75,7 +77,12 @@ class Sweep {
   void list_vertices(Boxes& boxes);
   void look_along(const Double3& direction);
   void see_boxes();
-  void keep_runs(const Span<const TriangleRun>& side, const Span<const TriangleRun>& other, double depth, Boxes& out);
+  struct Room {
+    Double3 up, down;  // along each axis
+  };
+  void keep(const Room& room);
+  void keep_runs(const Span<const TriangleRun>& side, const Span<const TriangleRun>& other, const Room& room,
+                 Boxes& out);
   void block(std::uint32_t a, std::uint32_t b, double& depth, WayOut& out) const;
   // Calls visit(a, b) for triangles whose boxes hide each other and wants(low, high) of their intervals: b can meet a
   // only after a move between low and high.

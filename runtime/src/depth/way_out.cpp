@@ -133,7 +133,7 @@ Exit find_exit(Sweep& sweep, const Contour& contour, const ExitSettings& setting
   Exit out{first, {}};
   double reach = settings.near;
   for (int i = 0; i < kWidenings; ++i, reach *= 4) {
-    sweep.keep_near(i + 1 < kWidenings ? reach : HUGE_VAL);
+    sweep.keep_on_way(first, i + 1 < kWidenings ? reach : HUGE_VAL);
     if (sweep.find(first, contour, i + 1 < kWidenings ? reach : HUGE_VAL, out.way)) {
       break;
     }
