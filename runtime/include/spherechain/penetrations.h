@@ -39,8 +39,8 @@ typedef struct sc_penetration {
  * found `contacts`, and pass its whole list of triangles.
  *
  * Depth is the shortest of the ways along several directions; a straight way may exist that is a little shorter.
- * Give the last frame's results as `previous`: a direction that is nearly as good as the best is kept, so it does not
- * flicker.
+ * Give the last frame's results as `previous`: a direction stays while it is at most half as long again as the
+ * shortest, so that it does not flicker.
  *
  * Allocates nothing, takes no lock. Jobs on other outputs and scratch memory may run at the same time. */
 typedef struct sc_penetration_job {
