@@ -96,8 +96,8 @@ class Measurer {
     if (surface_.parts[out.a] > surface_.parts[out.b]) {
       std::swap(out.a, out.b);
     }
-    out.normal_a = normal_of(memory_.skin.corners(out.a));
-    out.normal_b = normal_of(memory_.skin.corners(out.b));
+    out.normal_a = memory_.skin.handedness * normal_of(memory_.skin.corners(out.a));
+    out.normal_b = memory_.skin.handedness * normal_of(memory_.skin.corners(out.b));
     out.normal_a = normalize(out.normal_a) ? out.normal_a : Double3{0, 0, 0};
     out.normal_b = normalize(out.normal_b) ? out.normal_b : Double3{0, 0, 0};
     out.from = to_double(contact.from);
@@ -168,9 +168,10 @@ class Measurer {
     const Double3 previous = previous_direction(part_a, part_b);
     const bool has_previous = dot(previous, previous) > 0 && std::isfinite(dot(previous, previous));
     const bool folds = is_fold(contour, part_a, part_b);
-    const Exit exit = find_exit(sweep_, contour,
-                                {job_.quick != 0, kNear * height_, folds ? kDeepFold * height_ : 0,
-                                 has_previous && job_.quick == 0 ? &previous : nullptr});
+    const Exit exit =
+        find_exit(sweep_, contour,
+                  {job_.quick != 0, memory_.skin.handedness, kNear * height_, folds ? kDeepFold * height_ : 0,
+                   has_previous && job_.quick == 0 ? &previous : nullptr});
     Penetration out{};
     out.part_a = static_cast<std::uint32_t>(part_a);
     out.part_b = static_cast<std::uint32_t>(part_b);

@@ -21,6 +21,7 @@ struct PosedSkin {
   float* positions = nullptr;  // x, y, z of each of the surface's vertices
 
   float *low[3] = {}, *high[3] = {};  // of a cluster's box
+  double handedness = 1;              // -1: the pose mirrors the skin, and its triangles turn the other way
 
   void take(WordMemory& memory, std::size_t vertex_count, std::size_t cluster_count);
   // Where the pose's vertices are, or where its bones put them.
@@ -33,6 +34,7 @@ struct PosedSkin {
   }
 
  private:
+  double find_handedness() const;
   Corners corners_in(const float* all, std::uint32_t triangle) const {
     const std::uint32_t* const v = surface->triangle_vertices.data + 3 * std::size_t{triangle};
     Corners out;

@@ -120,8 +120,9 @@ void axes_of(const Contour& contour, const Double3& direction, Double3 (&axes)[3
 
 Exit find_exit(Sweep& sweep, const Contour& contour, const ExitSettings& settings) {
   const double turn = dot(contour.area, contour.normals);
-  const double handedness = contour.is_closed && turn < 0 ? -1 : 1;
-  const Double3 normals = handedness * contour.normals;
+  const double outwards = contour.is_closed && turn < 0 ? -1 : 1;  // -1: the skin is inside out
+  const double handedness = outwards * settings.handedness;
+  const Double3 normals = outwards * contour.normals;
   Double3 first = contour.is_closed ? contour.area : normals;
   if (!normalize(first)) {
     first = contour.is_closed ? normals : contour.area;

@@ -13,6 +13,7 @@ struct Exit {
 
 struct ExitSettings {
   bool one_direction = false;
+  double handedness = 1;              // the posed skin's
   double near = 0;                    // ways are likely to be shorter
   double deep = 0;                    // above it many more directions are tried
   const Double3* previous = nullptr;  // the last frame's, or null
@@ -21,7 +22,7 @@ struct ExitSettings {
 // Three directions at right angles that turn with the contour; the first is the one given.
 void axes_of(const Contour& contour, const Double3& direction, Double3 (&axes)[3]);
 
-// The sweep's sides are set. It is left as the last find() along the exit's direction left it.
+// The sweep's sides are set.
 Exit find_exit(Sweep& sweep, const Contour& contour, const ExitSettings& settings);
 
 }  // namespace spherechain

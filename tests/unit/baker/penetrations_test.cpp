@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -23,6 +24,17 @@ Vec direction_of(const spherechain::Penetration& of) {
 spherechain::Penetration only(const std::vector<spherechain::Penetration>& found) {
   REQUIRE(found.size() == 1);
   return found[0];
+}
+
+// The same shape, stored the other way round.
+Shape reversed(Shape shape) {
+  const auto count = static_cast<std::uint32_t>(shape.positions.size());
+  std::reverse(shape.positions.begin(), shape.positions.end());
+  std::reverse(shape.triangles.begin(), shape.triangles.end());
+  for (auto& triangle : shape.triangles) {
+    triangle = {count - 1 - triangle[1], count - 1 - triangle[2], count - 1 - triangle[0]};
+  }
+  return shape;
 }
 
 double lens(double r, double d) { return kPi * (4 * r + d) * (2 * r - d) * (2 * r - d) / 12; }
@@ -69,7 +81,8 @@ TEST_CASE("tubes that cross part over each other's back") {
     }
   }
   // At right angles, axes in one plane: Steinmetz' solid.
-  const spherechain::Penetration through = only(cylinders.measure([&](const Vec& p) { return Vec(p.x(), p.z(), -p.y()); }));
+  const spherechain::Penetration through =
+      only(cylinders.measure([&](const Vec& p) { return Vec(p.x(), p.z(), -p.y()); }));
   CHECK(through.depth == doctest::Approx(2 * radius).epsilon(0.01));
   CHECK(through.volume == doctest::Approx(16.0 / 3 * radius * radius * radius).epsilon(0.01));
 }
@@ -89,7 +102,7 @@ TEST_CASE("depth goes to zero where a contact ends, and is never zero") {
   CHECK(only(boxes.measure(shifted(1.5, 0.3, 0.2))).depth > 0);  // faces that touch
 }
 
-TEST_CASE("the answer turns, grows and mirrors with the bodies, and the deepest points are its ends") {
+TEST_CASE("the deepest points are the ends of the way, and at its end the body is free") {
   const TwoShapes shapes(box(1, 1, 1), capsule(0.3, 0.5, 8));
   const auto place = [](const Vec& p) { return Vec(Turn(0.5, Vec(1, 2, 3).normalized()) * p + Vec(0.4, 1.3, -0.2)); };
   const spherechain::Penetration plain = only(shapes.measure(place));
@@ -107,6 +120,26 @@ TEST_CASE("the answer turns, grows and mirrors with the bodies, and the deepest 
   CHECK(!shapes.measure(after(0.9)).empty());
 }
 
+TEST_CASE("the answer turns, grows and mirrors with the bodies, in whatever order they are stored") {
+  const Shape tile = box(1, 0.7, 1), pin = capsule(0.3, 0.5, 8);
+  const TwoShapes shapes(tile, pin), shuffled(reversed(tile), reversed(pin));
+  const auto place = [](const Vec& p) { return Vec(Turn(0.5, Vec(1, 2, 3).normalized()) * p + Vec(0.4, 1.1, -0.2)); };
+  const spherechain::Penetration plain = only(shapes.measure(place));
+  const auto check = [&](const spherechain::Penetration& found, double size, const Vec& direction) {
+    CHECK(found.depth == doctest::Approx(size * double{plain.depth}).epsilon(1e-3));
+    CHECK(direction_of(found).dot(direction) > 0.9999);
+    CHECK(found.volume == doctest::Approx(size * size * size * double{plain.volume}).epsilon(1e-3));
+    CHECK(found.kind == plain.kind);
+  };
+  const Turn turn(1.1, Vec(3, -1, 2).normalized());
+  const Vec way = direction_of(plain);
+  check(only(shapes.measure(place, {}, [&](const Vec& p) { return Vec(turn * p + Vec(5, 6, 7)); })), 1, turn * way);
+  check(only(shapes.measure(place, {}, [](const Vec& p) { return Vec(2 * p); })), 2, way);
+  check(only(shapes.measure(place, {}, [](const Vec& p) { return Vec(-p.x(), p.y(), p.z()); })), 1,
+        {-way.x(), way.y(), way.z()});
+  check(only(shuffled.measure(place)), 1, way);
+}
+
 TEST_CASE("a body that went most of the way in is not pushed inside") {
   const TwoShapes shapes(ball(2, 16), capsule(0.2, 0.5, 6));
   // Nearly all of the pin is in the ball: inwards is shorter, but there it would be lost.
@@ -118,7 +151,8 @@ TEST_CASE("the quick form and every target agree with the full form, and a kept 
   const TwoShapes balls(ball(1, 16), ball(1, 16));
   const auto place = shifted(1.3, 0.4, 0);
   const spherechain::Penetration full = only(balls.measure(place));
-  const spherechain::Penetration quick = only(balls.measure(place, [](spherechain::PenetrationJob& job) { job.quick = 1; }));
+  const spherechain::Penetration quick =
+      only(balls.measure(place, [](spherechain::PenetrationJob& job) { job.quick = 1; }));
   CHECK(quick.depth == doctest::Approx(full.depth).epsilon(0.05));
   spherechain::Penetration last = full;
   last.direction = {0, 0, 1};  // far worse than the best: it does not count

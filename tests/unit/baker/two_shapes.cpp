@@ -97,11 +97,12 @@ TwoShapes::TwoShapes(const Shape& a, const Shape& b)
             weights.insert(weights.end(), {1, 0, 0, 0});
           }
           const auto first = static_cast<std::uint32_t>(second ? a.positions.size() : 0);
-          for (const auto& t : shape->triangles) corners.insert(corners.end(), {first + t[0], first + t[1], first + t[2]});
+          for (const auto& t : shape->triangles)
+            corners.insert(corners.end(), {first + t[0], first + t[1], first + t[2]});
           for (int i = 0; i < 16; ++i) inverse_binds.push_back(i % 5 == 0 ? 1.0F : 0.0F);
         }
-        glb.json["nodes"] = {{{"name", "root"}, {"children", {1, 2}}}, {{"name", "a"}}, {{"name", "b"}},
-                             {{"mesh", 0}, {"skin", 0}}};
+        glb.json["nodes"] = {
+            {{"name", "root"}, {"children", {1, 2}}}, {{"name", "a"}}, {{"name", "b"}}, {{"mesh", 0}, {"skin", 0}}};
         glb.json["scenes"] = {{{"nodes", {0, 3}}}};
         glb.json["meshes"] = {{{"primitives",
                                 {{{"attributes",
@@ -115,12 +116,15 @@ TwoShapes::TwoShapes(const Shape& a, const Shape& b)
         return OpenAsset({reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size()}, "shapes");
       }()) {}
 
-std::vector<spherechain::Penetration> TwoShapes::measure(const std::function<Vec(const Vec&)>& place, const std::function<void(spherechain::PenetrationJob&)>& change) const {
+std::vector<spherechain::Penetration> TwoShapes::measure(
+    const Place& place, const std::function<void(spherechain::PenetrationJob&)>& change, const Place& both) const {
   std::vector<float> vertices = rest_;
-  for (std::size_t v = first_of_b_; 3 * v < vertices.size(); ++v) {
+  for (std::size_t v = 0; 3 * v < vertices.size(); ++v) {
     float* const p = vertices.data() + 3 * v;
-    const Vec moved = place({double{p[0]} - apart_, double{p[1]}, double{p[2]}});
-    for (int k = 0; k < 3; ++k) p[k] = static_cast<float>(moved[k]);
+    Vec at(double{p[0]}, double{p[1]}, double{p[2]});
+    if (v >= first_of_b_) at = place(at - Vec(apart_, 0, 0));
+    if (both) at = both(at);
+    for (int k = 0; k < 3; ++k) p[k] = static_cast<float>(at[k]);
   }
   spherechain::SkinContactJob find;
   find.asset = asset_.handle();

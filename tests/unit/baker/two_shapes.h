@@ -25,10 +25,12 @@ class TwoShapes {
  public:
   TwoShapes(const Shape& a, const Shape& b);
 
-  // b goes through `place`; a stays. All that the runtime finds, by the job's other settings.
-  std::vector<spherechain::Penetration> measure(
-      const std::function<spherechain::baker::Vec3(const spherechain::baker::Vec3&)>& place,
-      const std::function<void(spherechain::PenetrationJob&)>& change = {}) const;
+  using Place = std::function<spherechain::baker::Vec3(const spherechain::baker::Vec3&)>;
+  // b goes through `place`; a stays; then both go through `both`. All that the runtime finds, by the job's other
+  // settings.
+  std::vector<spherechain::Penetration> measure(const Place& place,
+                                                const std::function<void(spherechain::PenetrationJob&)>& change = {},
+                                                const Place& both = {}) const;
 
  private:
   std::vector<float> rest_;
