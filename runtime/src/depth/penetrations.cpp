@@ -14,11 +14,11 @@ namespace spherechain {
 namespace {
 
 // Lengths are parts of the character's height, but those in metres.
-constexpr double kTouchMetres = 0.003, kTouchMin = 0.001, kTouchMax = 0.01;
+constexpr double kTouchMetres = 0.007, kTouchMin = 0.0045, kTouchMax = 0.015;
 constexpr double kGapMetres = 0.0006, kGapMax = 0.001;  // shorter free places on the way are none
-constexpr double kFoldDistance = 0.09;                  // of two spots at rest, to be a fold
+constexpr double kFoldDistance = 0.11;                  // of two spots at rest, to be a fold
 constexpr double kShellDistance = 0.035;                // likewise, to be layers of the same place
-constexpr double kDeepFold = 0.012, kDeepFoldFacing = 0.3;
+constexpr double kDeepFold = 0.045, kFoldFacing = 0.2, kFoldExit = 0.012;
 constexpr double kNear = 0.006;
 constexpr double kClearance = 3e-4;
 constexpr double kAreaError = 0.03;  // if the contour has another area than the skin inside, the volume is not known
@@ -170,7 +170,7 @@ class Measurer {
     const bool folds = is_fold(contour, part_a, part_b);
     const Exit exit =
         find_exit(sweep_, contour,
-                  {job_.quick != 0, memory_.skin.handedness, kNear * height_, folds ? kDeepFold * height_ : 0,
+                  {job_.quick != 0, memory_.skin.handedness, kNear * height_, folds ? kFoldExit * height_ : 0,
                    has_previous && job_.quick == 0 ? &previous : nullptr});
     Penetration out{};
     out.part_a = static_cast<std::uint32_t>(part_a);
@@ -222,21 +222,32 @@ class Measurer {
     return {0, 0, 0};
   }
 
-  // Does one hang on the other, or both on the same third?
-  bool are_neighbours(std::size_t a, std::size_t b) const {
-    const std::int32_t above_a = asset_.part(a).parent, above_b = asset_.part(b).parent;
-    return a == b || above_a == static_cast<std::int32_t>(b) || above_b == static_cast<std::int32_t>(a) ||
-           (above_a >= 0 && above_a == above_b);
+  bool hangs_on(std::size_t a, std::size_t b) const { return asset_.part(a).parent == static_cast<std::int32_t>(b); }
+
+  // Do both hang on the same third?
+  bool are_siblings(std::size_t a, std::size_t b) const {
+    return asset_.part(a).parent >= 0 && asset_.part(a).parent == asset_.part(b).parent;
+  }
+
+  // Does a hang on a part that hangs on b? A thigh and the abdomen, with the hips between.
+  bool hangs_twice(std::size_t a, std::size_t b) const {
+    const std::int32_t above = asset_.part(a).parent;
+    return above >= 0 && hangs_on(static_cast<std::size_t>(above), b);
   }
 
   bool is_fold(const Contour& contour, std::size_t a, std::size_t b) const {
-    return a == b || (are_neighbours(a, b) && contour.rest_distance < kFoldDistance * height_);
+    const bool are_joined = hangs_on(a, b) || hangs_on(b, a);
+    if (a == b || (are_joined && !contour.is_one_piece)) {
+      return true;  // the second: a joint of loose pieces, as robots have
+    }
+    const bool lie_flat = contour.facing > kFoldFacing && (hangs_twice(a, b) || hangs_twice(b, a));
+    return (are_joined || are_siblings(a, b) || lie_flat) && contour.rest_distance < kFoldDistance * height_;
   }
 
   PenetrationClass class_of(const Contour& contour, const Penetration& of) const {
     // Files without a unit make giants and dwarfs.
     const double few = std::min(std::max(kTouchMetres * metre_, kTouchMin * height_), kTouchMax * height_);
-    const double touch = job_.touch_depth > 0 ? double{job_.touch_depth} : few;
+    const double touch = job_.touch_depth > 0 ? double{job_.touch_depth} : few * (1 + std::max(0.0, contour.facing));
     if (2 * contour.touching >= 1) {
       return SC_CLASS_REST;
     }
@@ -247,7 +258,7 @@ class Measurer {
       return SC_CLASS_TOUCH;
     }
     if (is_fold(contour, of.part_a, of.part_b)) {
-      return of.depth > kDeepFold * height_ && contour.facing > kDeepFoldFacing ? SC_CLASS_DEEP_FOLD : SC_CLASS_FOLD;
+      return of.depth > kDeepFold * height_ && contour.is_one_piece ? SC_CLASS_DEEP_FOLD : SC_CLASS_FOLD;
     }
     return SC_CLASS_PENETRATION;
   }
