@@ -133,6 +133,7 @@ void Sweep::set_sides(Span<const TriangleRun> a, Span<const TriangleRun> b, cons
   side_b_ = b;
   vertices_.origin = origin;
   remembered_count_ = 0;
+  first_block_ = 0;
 }
 
 void Sweep::keep_near(double depth) { keep({{depth, depth, depth}, {depth, depth, depth}}); }
@@ -192,15 +193,18 @@ void Sweep::keep_runs(const Span<const TriangleRun>& side, const Span<const Tria
 }
 
 template <typename Wants, typename Visit>
-void Sweep::for_pairs(const Wants& wants, const Visit& visit) const {
-  for (std::size_t q = 0; q < b_.block_count(); ++q) {
-    for (std::size_t p = 0; p < a_.block_count(); ++p) {
-      const auto meets = [&](std::size_t axis) {
-        return a_.block_low[axis][p] <= b_.block_high[axis][q] && a_.block_high[axis][p] >= b_.block_low[axis][q];
-      };
-      if (!wants(double{a_.block_low[2][p]} - double{b_.block_high[2][q]},
-                 double{a_.block_high[2][p]} - double{b_.block_low[2][q]}) ||
-          !meets(0) || !meets(1)) {
+void Sweep::for_pairs(std::size_t first, const Wants& wants, const Visit& visit) const {
+  const std::size_t a_blocks = a_.block_count(), b_blocks = b_.block_count();
+  const float *const low_0 = a_.block_low[0], *const low_1 = a_.block_low[1], *const low_2 = a_.block_low[2];
+  const float *const high_0 = a_.block_high[0], *const high_1 = a_.block_high[1], *const high_2 = a_.block_high[2];
+  for (std::size_t turn = 0; turn < b_blocks; ++turn) {
+    const std::size_t q = (first + turn) % b_blocks;
+    const float low_u_of_q = b_.block_low[0][q], low_v_of_q = b_.block_low[1][q], low_d_of_q = b_.block_low[2][q];
+    const float high_u_of_q = b_.block_high[0][q], high_v_of_q = b_.block_high[1][q], high_d_of_q = b_.block_high[2][q];
+    for (std::size_t p = 0; p < a_blocks; ++p) {
+      const bool meets = static_cast<int>(low_0[p] <= high_u_of_q) & static_cast<int>(high_0[p] >= low_u_of_q) &
+                         static_cast<int>(low_1[p] <= high_v_of_q) & static_cast<int>(high_1[p] >= low_v_of_q);
+      if (!meets || !wants(double{low_2[p]} - double{high_d_of_q}, double{high_2[p]} - double{low_d_of_q})) {
         continue;
       }
       const std::size_t b_end = std::min(kBlock * (q + 1), b_.count);
@@ -227,7 +231,9 @@ void Sweep::for_pairs(const Wants& wants, const Visit& visit) const {
           const std::size_t a = kBlock * p + k;
           if (hides[k] != 0 &&
               wants(double{a_.low[2][a]} - double{b_.high[2][b]}, double{a_.high[2][a]} - double{b_.low[2][b]})) {
-            visit(a_.triangle[a], b_.triangle[b]);
+            if (!visit(a_.triangle[a], b_.triangle[b], q)) {
+              return;
+            }
           }
         }
       }
@@ -290,8 +296,8 @@ bool Sweep::find(const Double3& direction, const Contour& contour, double bound,
   look_along(direction);
   out = {};
   double depth = 0;
-  for (const Segment3& segment : contour.segments) {
-    block(segment.a, segment.b, depth, out);
+  for (std::size_t i = 0; i < contour.segments.size && depth < bound; ++i) {
+    block(contour.segments[i].a, contour.segments[i].b, depth, out);
   }
   for (double before = -1; depth > before && depth < bound;) {
     before = depth;
@@ -306,12 +312,18 @@ bool Sweep::find(const Double3& direction, const Contour& contour, double bound,
   bool is_longer = true;
   for (int i = 0; is_longer && i < kPassesMax && depth < bound; ++i) {
     const double before = depth;
-    for_pairs([&](double low, double high) { return high > depth && low <= depth + gap_ && depth < bound; },
-              [&](std::uint32_t a, std::uint32_t b) {
-                const double was = depth;
-                block(a, b, depth, out);
-                if (depth > was) remember(out);
-              });
+    // What blocked last is likely to block again: it comes first.
+    for_pairs(
+        first_block_, [&](double low, double high) { return high > depth && low <= depth + gap_; },
+        [&](std::uint32_t a, std::uint32_t b, std::size_t at) {
+          const double was = depth;
+          block(a, b, depth, out);
+          if (depth > was) {
+            remember(out);
+            first_block_ = at;
+          }
+          return depth < bound;
+        });
     is_longer = depth > before;
   }
   remember(out);
@@ -393,19 +405,21 @@ Volume Sweep::volume(const Double3& direction, double depth) {
   look_along(direction);
   see_boxes();
   Volume out;
-  for_pairs([&](double low, double high) { return high > 0 && low <= depth + gap_; },
-            [&](std::uint32_t a, std::uint32_t b) {
-              const Corners seen_a = view_.seen(skin_.corners(a)), seen_b = view_.seen(skin_.corners(b));
-              Shadow shadow(seen_a, seen_b, 0, depth);
-              shadow.keep_above(0);
-              shadow.keep_below(depth);
-              if (shadow.count > 2) {
-                const double sign = (turn_of(seen_a) > 0) == (turn_of(seen_b) > 0) ? -1 : 1;
-                out.volume += sign * shadow.volume();
-                out.area += sign * shadow.area();
-                out.total += shadow.area();
-              }
-            });
+  for_pairs(
+      0, [&](double low, double high) { return high > 0 && low <= depth + gap_; },
+      [&](std::uint32_t a, std::uint32_t b, std::size_t) {
+        const Corners seen_a = view_.seen(skin_.corners(a)), seen_b = view_.seen(skin_.corners(b));
+        Shadow shadow(seen_a, seen_b, 0, depth);
+        shadow.keep_above(0);
+        shadow.keep_below(depth);
+        if (shadow.count > 2) {
+          const double sign = (turn_of(seen_a) > 0) == (turn_of(seen_b) > 0) ? -1 : 1;
+          out.volume += sign * shadow.volume();
+          out.area += sign * shadow.area();
+          out.total += shadow.area();
+        }
+        return true;
+      });
   return out;
 }
 

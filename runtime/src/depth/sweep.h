@@ -84,10 +84,10 @@ class Sweep {
   void keep_runs(const Span<const TriangleRun>& side, const Span<const TriangleRun>& other, const Room& room,
                  Boxes& out);
   void block(std::uint32_t a, std::uint32_t b, double& depth, WayOut& out) const;
-  // Calls visit(a, b) for triangles whose boxes hide each other and wants(low, high) of their intervals: b can meet a
-  // only after a move between low and high.
+  // Calls visit(a, b, block of b) for triangles whose boxes hide each other and wants(low, high) of their intervals: b
+  // can meet a only after a move between low and high. Starts at that block of b; ends where visit() says false.
   template <typename Wants, typename Visit>
-  void for_pairs(const Wants& wants, const Visit& visit) const;
+  void for_pairs(std::size_t first, const Wants& wants, const Visit& visit) const;
   void vote(const Span<const TriangleRun>& side, const Double3* points, std::size_t count, bool up, double handedness,
             int* inside) const;
   void vote_by(std::uint32_t triangle, const Double3* points, std::size_t count, bool up, double handedness,
@@ -105,6 +105,7 @@ class Sweep {
   static constexpr std::size_t kRemembered = 64;
   Pair remembered_[kRemembered] = {};
   std::size_t remembered_count_ = 0;
+  std::size_t first_block_ = 0;  // of b, where the last blocker was
 };
 
 }  // namespace spherechain
