@@ -3,10 +3,14 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
+#include <numbers>
 #include <set>
 
 #include "creatures.h"
+#include "fit/piece.h"
 #include "human.h"
 #include "mesh/error.h"
 #include "pipeline/pipeline.h"
@@ -276,4 +280,44 @@ TEST_CASE("a facing direction in the settings is forward where parts follow the 
   const BodyFrame frame = fitted(mesh_of(hand()), settings).segmentation.regions.frame;
   CHECK((frame.forward - Vec3(0, 0, -1)).norm() < 1e-9);
   CHECK((frame.left - frame.up.cross(frame.forward)).norm() < 1e-9);
+}
+
+TEST_CASE("a sphere of a half tube is the one that a search over a grid finds") {
+  constexpr Index kRings = 41, kAround = 48;
+  constexpr double kLength = 0.8;
+  Mesh tube;
+  std::vector<Index> half;
+  for (Index ring = 0; ring < kRings; ++ring) {
+    for (Index k = 0; k < kAround; ++k) {
+      const double angle = 2 * std::numbers::pi * k / kAround;
+      tube.positions.emplace_back(std::cos(angle), kLength * ring / (kRings - 1), -std::sin(angle));
+      if (ring + 1 == kRings) continue;
+      const Index a = ring * kAround + k, b = ring * kAround + (k + 1) % kAround, up = kAround;
+      for (const Triangle& t : {Triangle{a, b, a + up}, Triangle{b, b + up, a + up}}) {
+        if (k < kAround / 2) half.push_back(static_cast<Index>(tube.triangles.size()));
+        tube.triangles.push_back(t);
+      }
+    }
+  }
+  const PieceFitter fitter(tube, 0.1);
+  const Piece piece = fitter.fit(half);
+  const auto skin_error = [&](const Ball& ball) {
+    double sum = 0;
+    for (const Index t : half) sum += fitter.error_of(t, ball);
+    return sum;
+  };
+  Ball best{Vec3::Zero(), 0};
+  double least = std::numeric_limits<double>::max();
+  for (int z = -8; z <= 4; ++z) {
+    for (int r = 10; r <= 30; ++r) {
+      const Ball ball{{0, 0.5 * kLength, 0.05 * z}, 0.05 * r};
+      const double error = skin_error(ball);
+      if (error >= least) continue;
+      least = error;
+      best = ball;
+    }
+  }
+  CHECK(piece.ball.radius == doctest::Approx(best.radius).epsilon(0.08));
+  CHECK((piece.ball.center - best.center).norm() < 0.1);
+  CHECK(skin_error(piece.ball) < 1.1 * least);
 }
