@@ -42,6 +42,17 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
   return out;
 }
 
+bool is_fault(PenetrationClass kind) { return kind >= SC_CLASS_DEEP_FOLD; }
+
+// `before` is the number of the frame before, or -1.
+void add_to_runs(std::vector<std::pair<int, int>>& runs, int number, int before) {
+  if (!runs.empty() && runs.back().second == before) {
+    runs.back().second = number;
+  } else {
+    runs.emplace_back(number, number);
+  }
+}
+
 }  // namespace
 
 std::size_t PartContacts::part_of(std::uint32_t triangle) const {
@@ -60,25 +71,26 @@ PartCounts PartContacts::add(int frame, const std::vector<Pair>& triangles,
   const int before = frame > animated_.clips()[at.clip].first ? animated_.frame_at(frame - 1).number : -1;
   for (const auto& [pair, count] : counts) {
     Contact& contact = clip.contacts[pair];
-    if (contact.frames > 0 && contact.runs.back().second == before) {
-      contact.runs.back().second = at.number;
-    } else {
-      contact.runs.emplace_back(at.number, at.number);
-    }
+    add_to_runs(contact.runs, at.number, before);
     ++contact.frames;
     if (count > contact.triangle_pairs_max) {
       contact.triangle_pairs_max = count;
       contact.frame_of_max = at.number;
     }
   }
+  bool has_fault = false;
   for (const Penetration& found : penetrations) {
     Contact& contact = clip.contacts[{found.part_a, found.part_b}];
-    if (mm_ * double{found.depth} > contact.depth_mm_max) {
+    const bool fault = is_fault(found.kind);
+    has_fault = has_fault || fault;
+    if (fault) add_to_runs(contact.fault_runs, at.number, before);
+    if (std::pair(fault, mm_ * double{found.depth}) > std::pair(is_fault(contact.kind), contact.depth_mm_max)) {
       contact.depth_mm_max = mm_ * double{found.depth};
       contact.frame_of_depth_max = at.number;
       contact.kind = found.kind;
     }
   }
+  clip.fault_frames += has_fault ? 1 : 0;
   last_frame_ = frame;
   return counts;
 }
@@ -91,7 +103,8 @@ std::string PartContacts::head(std::size_t index, const std::string& motion) con
   what += fmt::format(": {}{} {} at {} fps", frames.count, of, unit, animated_.fps());
   const int with_contact = clips_[index].contact_frames;
   if (with_contact == 0) return what + ". No contact.\n";
-  return what + fmt::format("; skin contacts in {} {}\n", with_contact, with_contact == 1 ? "frame" : "frames");
+  return what + fmt::format("; skin contacts in {} {}, faults in {}\n", with_contact,
+                            with_contact == 1 ? "frame" : "frames", clips_[index].fault_frames);
 }
 
 std::string PartContacts::rows(const Clip& clip) const {
@@ -99,8 +112,8 @@ std::string PartContacts::rows(const Clip& clip) const {
   std::map<PenetrationClass, int, std::greater<>> others;
   for (const auto& entry : clip.contacts) {
     const PenetrationClass kind = entry.second.kind;
-    if (kind >= SC_CLASS_DEEP_FOLD) order.push_back(&entry);
-    if (kind < SC_CLASS_DEEP_FOLD) ++others[kind];
+    if (is_fault(kind)) order.push_back(&entry);
+    if (!is_fault(kind)) ++others[kind];
   }
   std::stable_sort(order.begin(), order.end(), [](Row l, Row r) {
     const auto key = [](Row row) { return std::pair(row->second.kind, row->second.depth_mm_max); };
@@ -110,9 +123,10 @@ std::string PartContacts::rows(const Clip& clip) const {
   for (const Row row : order) {
     const auto [a, b] = row->first;
     const Contact& contact = row->second;
-    const char* unit = contact.frames == 1 ? "frame " : "frames ";
+    const auto& runs = contact.fault_runs;
+    const char* unit = runs.size() == 1 && runs[0].first == runs[0].second ? "frame " : "frames ";
     const char* fold = contact.kind == SC_CLASS_DEEP_FOLD ? "deep fold, " : "";
-    cells.push_back({name(a), a == b ? "itself" : name(b), unit + runs_text(contact.runs),
+    cells.push_back({name(a), a == b ? "itself" : name(b), unit + runs_text(runs),
                      fmt::format("{}{:.0f} mm deep at {}", fold, contact.depth_mm_max, contact.frame_of_depth_max)});
   }
   std::string rest;
@@ -143,6 +157,7 @@ ordered_json PartContacts::json() const {
       contacts.push_back({{"a", name(pair.first)},
                           {"b", name(pair.second)},
                           {"frames", contact.runs},
+                          {"fault_frames", contact.fault_runs},
                           {"triangle_pairs_max", contact.triangle_pairs_max},
                           {"frame_of_max", contact.frame_of_max},
                           {"class", sc_penetration_class_name(contact.kind)},
@@ -155,6 +170,7 @@ ordered_json PartContacts::json() const {
                    {"own_frame_count", frames.own_count},
                    {"fps", animated_.fps()},
                    {"contact_frames", clips_[i].contact_frames},
+                   {"fault_frames", clips_[i].fault_frames},
                    {"contacts", std::move(contacts)}});
   }
   return out;

@@ -39,18 +39,19 @@ class PartContacts {
  private:
   // Two body parts in one clip.
   struct Contact {
-    std::vector<std::pair<int, int>> runs;  // numbers of the first and the last frame of each
+    // Numbers of the first and the last frame of each run; of all, and of those that are faults.
+    std::vector<std::pair<int, int>> runs, fault_runs;
     int frames = 0;
     std::size_t triangle_pairs_max = 0;
     int frame_of_max = 0;
-    double depth_mm_max = 0;  // and its frame, and the class there
+    double depth_mm_max = 0;  // of the deepest fault, or without one of the deepest; its frame, and the class there
     int frame_of_depth_max = 0;
     PenetrationClass kind = SC_CLASS_REST;
   };
   using Contacts = std::map<std::pair<std::size_t, std::size_t>, Contact>;
   struct Clip {
     Contacts contacts;
-    int contact_frames = 0;
+    int contact_frames = 0, fault_frames = 0;
   };
   using Row = Contacts::const_pointer;
 

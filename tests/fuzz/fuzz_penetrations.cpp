@@ -44,6 +44,8 @@ Ways ways_of(Case& c, PenetrationJob& job, Target& other) {
                [&, words] { job.scratch_words = c.random.up_to(words - 1), c.spoil(SC_TOO_SMALL, SC_FIELD_SCRATCH); },
                [&] { job.penetrations = nullptr, job.penetration_capacity = 1, c.spoil(SC_NULL, SC_FIELD_PENETRATIONS); },
                [&] { job.previous = nullptr, job.previous_count = 1, c.spoil(SC_NULL, SC_FIELD_PREVIOUS); },
+               [&] { job.touch_depth = -1, c.spoil(SC_BAD_VALUE, SC_FIELD_TOUCH_DEPTH); },
+               [&] { job.touch_depth = NAN, c.spoil(SC_BAD_VALUE, SC_FIELD_TOUCH_DEPTH); },
                [&] { job.scope = draw_none<Scope>(c, 3), c.spoil(SC_BAD_VALUE, SC_FIELD_SCOPE); },
                [&] { other = draw_none<Target>(c, 7), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
                [&] {

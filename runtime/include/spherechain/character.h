@@ -32,7 +32,7 @@ SPHERECHAIN_API sc_status sc_character_contacts(sc_character* character, const s
 
 /* The same with depth, direction and class, measured quickly (sc_penetration_job.quick): *penetrations points to *count of
  * them, sorted by (part_a, part_b), valid until the next call. SC_OVERFLOW, with none: more pairs of triangles intersect
- * than the character has room for (4,096, or half as many as it has triangles); ask sc_character_contacts(). */
+ * than the character has room for (the larger of 4,096 and half of its triangles); ask sc_character_contacts(). */
 SPHERECHAIN_API sc_status sc_character_penetrations(sc_character* character, const sc_pose* palette,
                                                     const sc_penetration** penetrations, size_t* count) SC_NOEXCEPT;
 

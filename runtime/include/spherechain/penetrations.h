@@ -4,7 +4,7 @@
 
 #include "spherechain/skin_contacts.h"
 
-/* What a person would call it. The first that applies. */
+/* What a person would call it. The first that applies. From SC_CLASS_DEEP_FOLD on it is a fault. */
 SC_ENUM(sc_penetration_class){
     SC_CLASS_REST = 0,        /* the two spots touch in the rest pose, too */
     SC_CLASS_SHELL = 1,       /* another layer of the same place (a garment on the body), or hidden from all sides */
@@ -35,11 +35,11 @@ typedef struct sc_penetration {
   sc_skin_point deepest_a, deepest_b; /* the points that part last; deepest_a - deepest_b = depth * direction */
 } sc_penetration;
 
-/* Measures the contacts of one pose. Fill asset, pose, scope, filter and skin_table as in the sc_skin_contact_job that
+/* Measures the contacts of one pose, which is as large as the asset: the classes compare with its height. Fill asset, pose, scope, filter and skin_table as in the sc_skin_contact_job that
  * found `contacts`, and pass its whole list of triangles.
  *
  * Depth is the shortest of the ways along several directions; a straight way may exist that is a little shorter.
- * Give the last frame's results as `previous`: a direction stays while it is at most half as long again as the
+ * Give the last frame's results as `previous`: a direction stays while it is at most a quarter longer than the
  * shortest, so that it does not flicker.
  *
  * Allocates nothing, takes no lock. Jobs on other outputs and scratch memory may run at the same time. */
@@ -55,12 +55,12 @@ typedef struct sc_penetration_job {
   const sc_penetration* previous SC_ZERO; /* null: none */
   size_t previous_count SC_ZERO;
   int32_t quick SC_ZERO;     /* 1: one direction, no volume, no visibility, no previous frame. For games */
-  float touch_depth SC_ZERO; /* 0: 7 mm, by the asset's metres_per_unit, but at least 0.45 % and at most 1.5 % of the
+  float touch_depth SC_ZERO; /* >= 0. 0: 7 mm, by the asset's metres_per_unit, but at least 0.45 % and at most 1.5 % of the
                                 height; up to twice that where the two sides lie flat on each other */
   uint64_t* scratch SC_ZERO; /* sc_penetration_scratch_words() words; nothing is kept there between runs */
   size_t scratch_words SC_ZERO;
   /* Out. Sorted by (part_a, part_b). The count says how many there are, also where the list is too small. */
-  sc_penetration* penetrations SC_ZERO;
+  sc_penetration* penetrations SC_ZERO; /* null, with a capacity of 0: count only */
   size_t penetration_capacity SC_ZERO;
   size_t penetration_count SC_ZERO;
 #if defined(__cplusplus)

@@ -96,6 +96,7 @@ SC_ENUM(sc_field){
     SC_FIELD_CONTACTS = 32,
     SC_FIELD_PREVIOUS = 33,
     SC_FIELD_PENETRATIONS = 34,
+    SC_FIELD_TOUCH_DEPTH = 35,
 };
 
 /* What every operation returns: what went wrong, and with which field. */

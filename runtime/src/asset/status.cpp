@@ -66,6 +66,7 @@ constexpr std::pair<sc_field, const char*> kFieldNames[] = {
     {SC_FIELD_CONTACTS, "contacts"},
     {SC_FIELD_PREVIOUS, "previous"},
     {SC_FIELD_PENETRATIONS, "penetrations"},
+    {SC_FIELD_TOUCH_DEPTH, "touch_depth"},
 };
 
 template <typename Texts, typename Value>

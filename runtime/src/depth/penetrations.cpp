@@ -337,6 +337,9 @@ Status check(const PenetrationJob& job, Target& resolved, Surface& surface) {
   if (job.scope != SC_SCOPE_APART && job.scope != SC_SCOPE_NEIGHBOURS && job.scope != SC_SCOPE_ALL) {
     return refuse(SC_BAD_VALUE, SC_FIELD_SCOPE);
   }
+  if (!(job.touch_depth >= 0) || !std::isfinite(job.touch_depth)) {
+    return refuse(SC_BAD_VALUE, SC_FIELD_TOUCH_DEPTH);
+  }
   if (!resolve_target(job.target, resolved)) {
     return refuse(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET);
   }

@@ -6,11 +6,11 @@
 namespace spherechain {
 namespace {
 
-constexpr int kSteps = 4;              // of a direction towards the normal of what blocks it last
-constexpr int kWidenings = 4;          // of what is near
-constexpr double kNearlyAsGood = 1.5;  // times the shortest: the last frame's direction is kept
-constexpr double kSameWay = 0.5;       // cosine: a direction that is refined farther is another
-constexpr double kSame = 0.9998;       // cosine: a direction that is as near to another is not tried again
+constexpr int kSteps = 4;               // of a direction towards the normal of what blocks it last
+constexpr int kWidenings = 4;           // of what is near
+constexpr double kNearlyAsGood = 1.25;  // times the shortest: the last frame's direction is kept
+constexpr double kSameWay = 0.5;        // cosine: a direction that is refined farther is another
+constexpr double kSame = 0.9998;        // cosine: a direction that is as near to another is not tried again
 
 class Search {
  public:

@@ -200,7 +200,14 @@ TEST_CASE("play tells which body parts touch, in which frames, and how the spher
   CHECK(clip["fps"] == 30);
   REQUIRE(clip["contacts"].size() > 1);
   std::set<int> with_contact;
+  const auto is_fault_class = [](const json& of) { return of["class"] == "penetration" || of["class"] == "deep_fold"; };
   int faults = 0;
+  std::set<int> with_fault;
+  for (const json& frame : found["frames"]) {
+    for (const json& one : frame["penetrations"]) {
+      if (is_fault_class(one)) with_fault.insert(frame["clip_frame"].get<int>());
+    }
+  }
   for (const json& contact : clip["contacts"]) {
     std::size_t most = 0;
     std::set<int> frames, listed;
@@ -219,15 +226,18 @@ TEST_CASE("play tells which body parts touch, in which frames, and how the spher
     CHECK(frames.count(contact["frame_of_max"].get<int>()) == 1);
     with_contact.insert(frames.begin(), frames.end());
     // Faults have a line of their own.
-    const bool is_fault = contact["class"] == "penetration" || contact["class"] == "deep_fold";
+    const bool is_fault = is_fault_class(contact);
+    CHECK(contact["fault_frames"].empty() == !is_fault);
     const std::string line = fmt::format("{:.0f} mm deep at {}\n", contact["depth_mm_max"].get<double>(),
                                          contact["frame_of_depth_max"].get<int>());
     CHECK_MESSAGE((play.out.find(line) != std::string::npos) == is_fault, line);
     faults += is_fault ? 1 : 0;
   }
   CHECK(clip["contact_frames"] == with_contact.size());
+  CHECK(clip["fault_frames"] == with_fault.size());
   const std::string head =
-      fmt::format("motion animation_arms.json: 20 frames at 30 fps; skin contacts in {} frames\n", with_contact.size());
+      fmt::format("motion animation_arms.json: 20 frames at 30 fps; skin contacts in {} frames, faults in {}\n",
+                  with_contact.size(), with_fault.size());
   CHECK_MESSAGE(play.out.find(head) == 0, play.out);
   CHECK(faults > 0);
   CHECK(play.out.find("\nspheres: ") != std::string::npos);

@@ -68,7 +68,7 @@ export function fillContactPanel(panel, store, model, flyTo) {
   store.watch(['frame'], ({ frame }) => {
     const contacts = model.contacts.of(frame);
     summary.textContent =
-      contacts.length === 0 ? 'The skin touches nowhere in this frame.' : `The skin touches at ${plural(contacts.length, 'place')}:`;
+      contacts.length === 0 ? 'The skin touches nowhere in this frame.' : `${plural(contacts.length, 'contact')}:`;
     order.hidden = contacts.length === 0;
     list.replaceChildren(...contacts.map(frameRow));
   });
