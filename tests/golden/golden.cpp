@@ -145,6 +145,7 @@ void find_in_crowd(const Asset& asset, const std::vector<Palette>& clip, Radius 
 struct ContactHashes {
   Hash triangles, segments, parts, penetrations;
   std::vector<Penetration> last;
+  int frames = 0;
 
   void add(const SkinContacts& found, const SkinContactJob& by) {
     std::vector<Pair> pairs;
@@ -156,6 +157,9 @@ struct ContactHashes {
     triangles.add_list(pairs);
     segments.add_list(ends);
     parts.add_list(found.parts);
+    if (frames++ % 4 > 0) {
+      return;  // the measure takes a minute under sanitizers
+    }
     PenetrationJob job;
     job.asset = by.asset;
     job.pose = by.pose;
