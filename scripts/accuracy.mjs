@@ -215,7 +215,7 @@ ${table(["motion", "method", "true pairs", "recall", "precision", "pairs a frame
 | turns | from one frame to the next the direction turns by more than 90 degrees | at most 2 % |
 | volume | is within 25 % of CGAL's corefinement, where the contour is closed and CGAL has an answer | 90 % |
 | quick | the quick form's depth over the full one's, median and 90th of 100 | |
-| ms | a pair's time, median and 95th of 100, of a pass without brute force on a quiet machine (\`--judged 1\`) | 0.5, 5 |
+| ms | a pair's time, median and 95th of 100, let nothing else run | 0.5, 5 |
 
 ${posed.length > 0 ? depth() : ""}
 ## Spheres between parts that are far from each other

@@ -72,7 +72,6 @@ PartCounts PartContacts::add(int frame, const std::vector<Pair>& triangles,
   for (const auto& [pair, count] : counts) {
     Contact& contact = clip.contacts[pair];
     add_to_runs(contact.runs, at.number, before);
-    ++contact.frames;
     if (count > contact.triangle_pairs_max) {
       contact.triangle_pairs_max = count;
       contact.frame_of_max = at.number;
@@ -112,8 +111,11 @@ std::string PartContacts::rows(const Clip& clip) const {
   std::map<PenetrationClass, int, std::greater<>> others;
   for (const auto& entry : clip.contacts) {
     const PenetrationClass kind = entry.second.kind;
-    if (is_fault(kind)) order.push_back(&entry);
-    if (!is_fault(kind)) ++others[kind];
+    if (is_fault(kind)) {
+      order.push_back(&entry);
+    } else {
+      ++others[kind];
+    }
   }
   std::stable_sort(order.begin(), order.end(), [](Row l, Row r) {
     const auto key = [](Row row) { return std::pair(row->second.kind, row->second.depth_mm_max); };

@@ -41,7 +41,6 @@ class PartContacts {
   struct Contact {
     // Numbers of the first and the last frame of each run; of all, and of those that are faults.
     std::vector<std::pair<int, int>> runs, fault_runs;
-    int frames = 0;
     std::size_t triangle_pairs_max = 0;
     int frame_of_max = 0;
     double depth_mm_max = 0;  // of the deepest fault, or without one of the deepest; its frame, and the class there

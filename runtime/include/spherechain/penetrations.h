@@ -35,8 +35,9 @@ typedef struct sc_penetration {
   sc_skin_point deepest_a, deepest_b; /* the points that part last; deepest_a - deepest_b = depth * direction */
 } sc_penetration;
 
-/* Measures the contacts of one pose, which is as large as the asset: the classes compare with its height. Fill asset, pose, scope, filter and skin_table as in the sc_skin_contact_job that
- * found `contacts`, and pass its whole list of triangles.
+/* Measures the contacts of one pose. Fill asset, pose, scope, filter and skin_table as in the sc_skin_contact_job that
+ * found `contacts`, and pass its whole list of triangles. Classes compare with the asset's height: the pose must not
+ * scale the character.
  *
  * Depth is the shortest of the ways along several directions; a straight way may exist that is a little shorter.
  * Give the last frame's results as `previous`: a direction stays while it is at most a quarter longer than the
