@@ -18,7 +18,7 @@ constexpr double kTouchMetres = 0.007, kTouchMin = 0.0045, kTouchMax = 0.015;
 constexpr double kGapMetres = 0.0006, kGapMax = 0.001;  // shorter free places on the way are none
 constexpr double kFoldDistance = 0.11;                  // of two spots at rest, to be a fold
 constexpr double kShellDistance = 0.035;                // likewise, to be layers of the same place
-constexpr double kDeepFold = 0.045, kFoldFacing = 0.2, kFoldExit = 0.012;
+constexpr double kDeepFold = 0.045, kFoldFacing = 0.2;
 constexpr double kNear = 0.006;
 constexpr double kClearance = 3e-4;
 constexpr double kAreaError = 0.03;  // if the contour has another area than the skin inside, the volume is not known
@@ -71,7 +71,17 @@ class Measurer {
     }
     memory_.contour.clear(surface_.triangles.size);
     sweep_.clear(surface_.source_vertices.size);
-    memory_.skin.fill(job.pose, resolved);
+    if (job.quick != 0) {
+      std::uint64_t parts[4] = {};
+      for (std::size_t i = 0; i < job.contact_count; ++i) {
+        for (const std::size_t part : {part_of(job.contacts[i].triangle_a), part_of(job.contacts[i].triangle_b)}) {
+          parts[part / 64] |= std::uint64_t{1} << part % 64;
+        }
+      }
+      memory_.skin.fill(job.pose, resolved, parts);
+    } else {
+      memory_.skin.fill(job.pose, resolved);
+    }
     const std::size_t count = sort_segments();
     for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
       while (end < count && memory_.keys[end] >> 32 == memory_.keys[begin] >> 32) {
@@ -113,12 +123,15 @@ class Measurer {
     return out;
   }
 
+  std::size_t part_of(std::uint32_t source_triangle) const {
+    return surface_.parts[surface_.place_of_source[source_triangle]];
+  }
+
   // By pairs of parts, in these as they were given.
   std::size_t sort_segments() {
     std::size_t count = 0;
     for (std::size_t i = 0; i < job_.contact_count; ++i) {
-      const std::uint64_t p = surface_.parts[surface_.place_of_source[job_.contacts[i].triangle_a]];
-      const std::uint64_t q = surface_.parts[surface_.place_of_source[job_.contacts[i].triangle_b]];
+      const std::uint64_t p = part_of(job_.contacts[i].triangle_a), q = part_of(job_.contacts[i].triangle_b);
       memory_.keys[count++] = std::min(p, q) << 48 | std::max(p, q) << 32 | i;
     }
     std::sort(memory_.keys.begin(), memory_.keys.begin() + count,
@@ -170,7 +183,7 @@ class Measurer {
     const bool folds = is_fold(contour, part_a, part_b);
     const Exit exit =
         find_exit(sweep_, contour,
-                  {job_.quick != 0, memory_.skin.handedness, kNear * height_, folds ? kFoldExit * height_ : 0,
+                  {job_.quick != 0, memory_.skin.handedness, kNear * height_, folds ? kDeepFold * height_ : 0,
                    has_previous && job_.quick == 0 ? &previous : nullptr});
     Penetration out{};
     out.part_a = static_cast<std::uint32_t>(part_a);
@@ -184,6 +197,7 @@ class Measurer {
     out.visible = 1;
     if (job_.quick == 0) {
       if (contour.is_closed && part_a != part_b) {
+        sweep_.keep_on_way(exit.direction, exit.way.depth);
         const Volume volume = sweep_.volume(exit.direction, exit.way.depth);
         const double area = dot(contour.area, exit.direction);
         out.is_closed = std::abs(volume.area - area) <= kAreaError * volume.total && volume.volume >= 0 ? 1 : 0;

@@ -15,29 +15,64 @@ constexpr std::size_t kAsked = 64;  // clusters, for the handedness
 
 void PosedSkin::take(WordMemory& memory, std::size_t vertex_count, std::size_t cluster_count) {
   memory.take(positions, 3 * vertex_count);
+  memory.take(clusters, cluster_count);
+  memory.take(is_listed, cluster_count);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     memory.take(low[axis], cluster_count);
     memory.take(high[axis], cluster_count);
+    memory.take(group_low[axis], (cluster_count + kGroup - 1) / kGroup);
+    memory.take(group_high[axis], (cluster_count + kGroup - 1) / kGroup);
   }
 }
 
 void PosedSkin::fill(const Pose& pose, Target resolved) {
-  if (pose.vertices == nullptr) {
-    skin_vertices(*surface, pose, resolved, positions);
-  } else {
-    const std::size_t stride = vertex_stride(pose);
-    for (std::size_t v = 0; v < surface->source_vertices.size; ++v) {
-      const float* const p = vertex_at(pose.vertices, surface->source_vertices[v], stride);
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        positions[3 * v + axis] = p[axis];
+  clusters.size = surface->clusters.size;
+  for (std::uint32_t c = 0; c < clusters.size; ++c) {
+    clusters[c] = c;
+  }
+  fill_clusters(pose, resolved);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t first = 0; first < surface->clusters.size; first += kGroup) {
+      const std::size_t end = std::min(first + kGroup, surface->clusters.size);
+      group_low[axis][first / kGroup] = *std::min_element(low[axis] + first, low[axis] + end);
+      group_high[axis][first / kGroup] = *std::max_element(high[axis] + first, high[axis] + end);
+    }
+  }
+}
+
+void PosedSkin::fill(const Pose& pose, Target resolved, const std::uint64_t (&parts)[4]) {
+  std::fill(is_listed, is_listed + surface->clusters.size, 0);
+  clusters.size = 0;
+  for (std::size_t part = 0; part + 1 < surface->first_of_part.size; ++part) {
+    if ((parts[part / 64] >> part % 64 & 1) == 0) {
+      continue;
+    }
+    for (std::size_t i = surface->first_of_part[part]; i < surface->first_of_part[part + 1]; ++i) {
+      const std::uint32_t c = surface->part_runs[i].cluster;
+      if (is_listed[c] == 0) {
+        is_listed[c] = 1;
+        clusters[clusters.size++] = c;
       }
     }
   }
-  for (std::size_t c = 0; c < surface->clusters.size; ++c) {
+  fill_clusters(pose, resolved);
+}
+
+void PosedSkin::fill_clusters(const Pose& pose, Target resolved) {
+  if (pose.vertices == nullptr) {
+    skin_vertices(*surface, pose, resolved, {clusters.data, clusters.size}, positions);
+  }
+  const std::size_t stride = vertex_stride(pose);
+  for (const std::uint32_t c : clusters) {
     const Cluster& cluster = surface->clusters[c];
     float lows[3] = {FLT_MAX, FLT_MAX, FLT_MAX}, highs[3] = {-FLT_MAX, -FLT_MAX, -FLT_MAX};
     for (std::size_t i = 0; i < cluster.vertex_count; ++i) {
-      const float* const p = positions + 3 * std::size_t{surface->cluster_vertices[cluster.first_vertex + i]};
+      const std::size_t v = surface->cluster_vertices[cluster.first_vertex + i];
+      float* const p = positions + 3 * v;
+      if (pose.vertices != nullptr) {
+        const float* const from = vertex_at(pose.vertices, surface->source_vertices[v], stride);
+        std::copy(from, from + 3, p);
+      }
       for (std::size_t axis = 0; axis < 3; ++axis) {
         lows[axis] = std::min(lows[axis], p[axis]);
         highs[axis] = std::max(highs[axis], p[axis]);
@@ -53,18 +88,18 @@ void PosedSkin::fill(const Pose& pose, Target resolved) {
 
 // By some clusters: is their vertex that is farthest from a triangle's plane at rest on the other side of it now?
 double PosedSkin::find_handedness() const {
-  const std::size_t step = (surface->clusters.size + kAsked - 1) / kAsked;
+  const std::size_t step = (clusters.size + kAsked - 1) / kAsked;
   int votes = 0;
-  for (std::size_t c = 0; c < surface->clusters.size; c += step) {
-    const Cluster& cluster = surface->clusters[c];
+  for (std::size_t i = 0; i < clusters.size; i += step) {
+    const Cluster& cluster = surface->clusters[clusters[i]];
     const Corners rest = rest_corners(cluster.first_triangle), posed = corners(cluster.first_triangle);
     const auto above = [](const Corners& t, const float* p) {
       return dot(normal_of(t), Double3{double{p[0]}, double{p[1]}, double{p[2]}} - t.p[0]);
     };
     double most = 0;
     std::size_t farthest = surface->cluster_vertices[cluster.first_vertex];
-    for (std::size_t i = 0; i < cluster.vertex_count; ++i) {
-      const std::size_t v = surface->cluster_vertices[cluster.first_vertex + i];
+    for (std::size_t k = 0; k < cluster.vertex_count; ++k) {
+      const std::size_t v = surface->cluster_vertices[cluster.first_vertex + k];
       const double height = above(rest, surface->rest_positions.data + 3 * v);
       if (std::abs(height) > std::abs(most)) {
         most = height;

@@ -20,12 +20,19 @@ struct PosedSkin {
   const Surface* surface = nullptr;
   float* positions = nullptr;  // x, y, z of each of the surface's vertices
 
-  float *low[3] = {}, *high[3] = {};  // of a cluster's box
-  double handedness = 1;              // -1: the pose mirrors the skin, and its triangles turn the other way
+  float *low[3] = {}, *high[3] = {};              // of a cluster's box
+  static constexpr std::size_t kGroup = 8;        // clusters that follow one another
+  float *group_low[3] = {}, *group_high[3] = {};  // of the box around a group
+  double handedness = 1;                          // -1: the pose mirrors the skin, and its triangles turn the other way
+
+  Span<std::uint32_t> clusters;        // that stand in the pose: vertices and boxes of others are not known
+  std::uint32_t* is_listed = nullptr;  // among them, of each cluster
 
   void take(WordMemory& memory, std::size_t vertex_count, std::size_t cluster_count);
-  // Where the pose's vertices are, or where its bones put them.
+  // Puts all of the skin where the pose's vertices are, or where its bones have it.
   void fill(const Pose& pose, Target resolved);
+  // The skin of those parts alone.
+  void fill(const Pose& pose, Target resolved, const std::uint64_t (&parts)[4]);
 
   Corners corners(std::uint32_t triangle) const { return corners_in(positions, triangle); }
   Corners rest_corners(std::uint32_t triangle) const { return corners_in(surface->rest_positions.data, triangle); }
@@ -34,6 +41,7 @@ struct PosedSkin {
   }
 
  private:
+  void fill_clusters(const Pose& pose, Target resolved);
   double find_handedness() const;
   Corners corners_in(const float* all, std::uint32_t triangle) const {
     const std::uint32_t* const v = surface->triangle_vertices.data + 3 * std::size_t{triangle};

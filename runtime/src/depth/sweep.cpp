@@ -292,13 +292,18 @@ void Sweep::remember(const WayOut& out) {
   }
 }
 
-bool Sweep::find(const Double3& direction, const Contour& contour, double bound, WayOut& out) {
+double Sweep::find_by_contour(const Double3& direction, const Contour& contour, double bound, WayOut& out) {
   look_along(direction);
   out = {};
   double depth = 0;
   for (std::size_t i = 0; i < contour.segments.size && depth < bound; ++i) {
     block(contour.segments[i].a, contour.segments[i].b, depth, out);
   }
+  return depth;
+}
+
+bool Sweep::find(const Double3& direction, const Contour& contour, double bound, WayOut& out) {
+  double depth = find_by_contour(direction, contour, bound, out);
   for (double before = -1; depth > before && depth < bound;) {
     before = depth;
     for (std::size_t i = 0; i < std::min(remembered_count_, kRemembered) && depth < bound; ++i) {

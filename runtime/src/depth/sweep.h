@@ -47,6 +47,8 @@ class Sweep {
   // Likewise, of moves in that direction alone.
   void keep_on_way(const Double3& direction, double depth);
 
+  // What the contour's own triangles block of the way: it is at least so long. Ends at `bound`.
+  double find_by_contour(const Double3& direction, const Contour& contour, double bound, WayOut& out);
   // False where the way is not shorter than `bound`: then `out` is the pair that said so.
   bool find(const Double3& direction, const Contour& contour, double bound, WayOut& out);
   // Is b, moved so, inside a, or a inside b?

@@ -22,24 +22,37 @@ bool meets(const Double3& from, const Double3& direction, const Corners& t) {
 
 }  // namespace
 
-bool Visibility::is_free(const Double3& from, const Double3& direction) const {
+bool Visibility::is_free(const Double3& from, const Double3& direction) {
   const Surface& surface = *skin_.surface;
   const double start[3] = {from.x, from.y, from.z};
   const double slope[3] = {1 / direction.x, 1 / direction.y, 1 / direction.z};
-  for (std::size_t c = 0; c < surface.clusters.size; ++c) {
+  const auto meets_box = [&](const float* const(&low)[3], const float* const(&high)[3], std::size_t i) {
     double enter = 0, leave = HUGE_VAL;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double s = (double{skin_.low[axis][c]} - start[axis]) * slope[axis];
-      const double t = (double{skin_.high[axis][c]} - start[axis]) * slope[axis];
+      const double s = (double{low[axis][i]} - start[axis]) * slope[axis];
+      const double t = (double{high[axis][i]} - start[axis]) * slope[axis];
       enter = std::max(enter, std::min(s, t));
       leave = std::min(leave, std::max(s, t));
     }
-    if (enter > leave) {
+    return !(enter > leave);
+  };
+  for (const std::uint32_t t : blockers_) {
+    if (t != kNoPlace && meets(from, direction, skin_.corners(t))) {
+      return false;
+    }
+  }
+  for (std::size_t c = 0; c < surface.clusters.size; ++c) {
+    if (c % PosedSkin::kGroup == 0 && !meets_box(skin_.group_low, skin_.group_high, c / PosedSkin::kGroup)) {
+      c += PosedSkin::kGroup - 1;
+      continue;
+    }
+    if (!meets_box(skin_.low, skin_.high, c)) {
       continue;
     }
     const Cluster& cluster = surface.clusters[c];
     for (std::uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangle_count; ++t) {
       if (meets(from, direction, skin_.corners(t))) {
+        blockers_[next_blocker_++ % kBlockers] = t;
         return false;
       }
     }
@@ -47,9 +60,11 @@ bool Visibility::is_free(const Double3& from, const Double3& direction) const {
   return true;
 }
 
-double Visibility::share(const Contour& contour, const Double3 (&axes)[3], double clearance) const {
+double Visibility::share(const Contour& contour, const Double3 (&axes)[3], double clearance) {
+  std::fill(blockers_, blockers_ + kBlockers, kNoPlace);
   const std::size_t step = (contour.segments.size + kSampled - 1) / kSampled;
   std::size_t seen = 0, count = 0;
+  Double3 free = axes[0];  // the last ray that left: likely to be free again
   for (std::size_t i = step / 2; i < contour.segments.size; i += step, ++count) {
     const Segment3& segment = contour.segments[i];
     Double3 out = segment.normal_a + segment.normal_b;
@@ -57,10 +72,11 @@ double Visibility::share(const Contour& contour, const Double3 (&axes)[3], doubl
       out = segment.normal_a;
     }
     const Double3 from = 0.5 * (segment.from + segment.to) + clearance * out;
-    bool is_seen = is_free(from, out);
+    bool is_seen = is_free(from, out) || is_free(from, free);
     for (int k = 0; k < 27 && !is_seen; ++k) {
       Double3 direction = double(k % 3 - 1) * axes[0] + (double(k / 3 % 3 - 1) * axes[1] + double(k / 9 - 1) * axes[2]);
       is_seen = normalize(direction) && is_free(from, direction);
+      free = is_seen ? direction : free;
     }
     seen += is_seen ? 1 : 0;
   }

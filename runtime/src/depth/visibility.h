@@ -12,12 +12,16 @@ class Visibility {
 
   // The share of the contour's length, of samples, from which some ray leaves the body without meeting it. Rays start
   // `clearance` away from the skin, between the two surfaces. `axes` are three directions at right angles.
-  double share(const Contour& contour, const Double3 (&axes)[3], double clearance) const;
+  double share(const Contour& contour, const Double3 (&axes)[3], double clearance);
 
  private:
-  bool is_free(const Double3& from, const Double3& direction) const;
+  bool is_free(const Double3& from, const Double3& direction);
 
   const PosedSkin& skin_;
+  // Triangles that rays met last: likely to stop the next.
+  static constexpr std::size_t kBlockers = 8;
+  std::uint32_t blockers_[kBlockers];
+  std::size_t next_blocker_ = 0;
 };
 
 }  // namespace spherechain

@@ -8,6 +8,7 @@ namespace {
 
 constexpr int kSteps = 4;               // of a direction towards the normal of what blocks it last
 constexpr int kWidenings = 4;           // of what is near
+constexpr double kLikely = 2;           // times what the contour alone blocks: ways are seldom longer
 constexpr double kNearlyAsGood = 1.25;  // times the shortest: the last frame's direction is kept
 constexpr double kSameWay = 0.5;        // cosine: a direction that is refined farther is another
 constexpr double kSame = 0.9998;        // cosine: a direction that is as near to another is not tried again
@@ -19,6 +20,11 @@ class Search {
 
   bool has_any() const { return has_any_; }
   const Exit& best() const { return best_; }
+  void start(const Exit& first) {
+    best_ = first;
+    has_any_ = true;
+    is_new(first.direction);
+  }
   // From now on, ways that end inside the other part are none.
   void be_careful() {
     is_careful_ = true;
@@ -132,7 +138,7 @@ Exit find_exit(Sweep& sweep, const Contour& contour, const ExitSettings& setting
   }
   // Near triangles alone, while the way is shorter than what is near.
   Exit out{first, {}};
-  double reach = settings.near;
+  double reach = std::max(settings.near, kLikely * sweep.find_by_contour(first, contour, HUGE_VAL, out.way));
   for (int i = 0; i < kWidenings; ++i, reach *= 4) {
     sweep.keep_on_way(first, i + 1 < kWidenings ? reach : HUGE_VAL);
     if (sweep.find(first, contour, i + 1 < kWidenings ? reach : HUGE_VAL, out.way)) {
@@ -143,11 +149,12 @@ Exit find_exit(Sweep& sweep, const Contour& contour, const ExitSettings& setting
     return out;
   }
   Search search(sweep, contour, handedness);
+  search.start(out);
   sweep.keep_near(kNearlyAsGood * out.way.depth);
   Double3 axes[3];
   axes_of(contour, first, axes);
   const auto try_all = [&] {
-    for (const Double3& direction : {first, normals, contour.area, contour.largest_area}) {
+    for (const Double3& direction : {first, out.way.normal, normals, contour.area, contour.largest_area}) {
       search.refine(direction, 2);
     }
     if (!search.has_any() || search.best().way.depth > settings.deep) {

@@ -20,7 +20,8 @@ struct SkinInputs {
 // other source vertices are left alone. For the repository's own use.
 void skin_surface(const Surface& surface, const Pose& pose, Target resolved, float* positions, std::size_t stride);
 
-// The same for all of the surface's vertices, x, y, z each.
-void skin_vertices(const Surface& surface, const Pose& pose, Target resolved, float* positions);
+// The same for the vertices of those clusters, x, y, z each of the surface's.
+void skin_vertices(const Surface& surface, const Pose& pose, Target resolved, Span<const std::uint32_t> clusters,
+                   float* positions);
 
 }  // namespace spherechain

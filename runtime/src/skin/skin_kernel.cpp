@@ -12,13 +12,15 @@ HWY_BEFORE_NAMESPACE();
 namespace spherechain {
 namespace HWY_NAMESPACE {
 
-// Vertices go to their own place, or to their source vertex'.
-void skin_all(const SkinInputs& in, bool by_source, float* positions, std::size_t stride) {
+// Of the listed clusters, or of all where the list is null. Vertices go to their own place, or to their source vertex'.
+void skin_all(const SkinInputs& in, Span<const std::uint32_t> listed, bool by_source, float* positions,
+              std::size_t stride) {
   const Surface& surface = *in.surface;
   static_assert(kMaxClusterVertices % kSlotLanes == 0, "as many slots");
   HWY_ALIGN float x[kMaxClusterVertices], y[kMaxClusterVertices], z[kMaxClusterVertices];
-  for (std::size_t i = 0; i < surface.clusters.size; ++i) {
-    const Cluster& cluster = surface.clusters.data[i];
+  const std::size_t count = listed.data == nullptr ? surface.clusters.size : listed.size;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Cluster& cluster = surface.clusters.data[listed.data == nullptr ? i : listed.data[i]];
     skin_cluster(in, cluster, x, y, z);
     for (std::size_t slot = 0; slot < cluster.vertex_count; ++slot) {
       const std::uint32_t vertex = surface.cluster_vertices.data[cluster.first_vertex + slot];
@@ -43,11 +45,13 @@ SPHERECHAIN_KERNELS(skin_all);
 }  // namespace
 
 void skin_surface(const Surface& surface, const Pose& pose, Target resolved, float* positions, std::size_t stride) {
-  skin_all_kernels[index_of(resolved)]({&surface, matrices_of(pose), pose.morph_weights}, true, positions, stride);
+  skin_all_kernels[index_of(resolved)]({&surface, matrices_of(pose), pose.morph_weights}, {}, true, positions, stride);
 }
 
-void skin_vertices(const Surface& surface, const Pose& pose, Target resolved, float* positions) {
-  skin_all_kernels[index_of(resolved)]({&surface, matrices_of(pose), pose.morph_weights}, false, positions, 3);
+void skin_vertices(const Surface& surface, const Pose& pose, Target resolved, Span<const std::uint32_t> clusters,
+                   float* positions) {
+  skin_all_kernels[index_of(resolved)]({&surface, matrices_of(pose), pose.morph_weights}, clusters, false, positions,
+                                       3);
 }
 
 }  // namespace spherechain
