@@ -9,10 +9,11 @@
 #include "import/import.h"
 #include "mesh/error.h"
 
-// What importing `file` says when it is refused: one line that begins with the file's name. "accepted" where it is not.
-inline std::string refusal(const std::filesystem::path& file) {
+// What `import` says when it refuses `file`: one line that begins with the file's name. "accepted" where it does not.
+template <typename Import>
+std::string refusal(const std::filesystem::path& file, const Import& import) {
   try {
-    spherechain::baker::import_character(file);
+    import(file);
   } catch (const spherechain::baker::Error& error) {
     CHECK(error.code() == spherechain::baker::ExitCode::kFile);
     const std::string what = error.what();
@@ -21,6 +22,10 @@ inline std::string refusal(const std::filesystem::path& file) {
     return what;
   }
   return "accepted";
+}
+
+inline std::string refusal(const std::filesystem::path& file) {
+  return refusal(file, [](const auto& path) { spherechain::baker::import_character(path); });
 }
 
 inline bool contains(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
