@@ -44,7 +44,7 @@ export function createViewFinder(renderer, skinLayer, contactLayer, fieldOfView)
     return a + b + (a > 0 && b > 0 ? 0.5 * Math.min(a, b) + 8 : 0);
   }
 
-  // The direction from `center` to the eye, near to `back` where others are no better; null where the contact is seen from
+  // The direction from `center` to the eye, near to `back` and across the way out where others are no better; null where the contact is seen from
   // nowhere. `refuses(eye)` says where no eye may be.
   return function find(matrix, center, distance, back, refuses) {
     character.matrix.copy(matrix);
@@ -56,10 +56,12 @@ export function createViewFinder(renderer, skinLayer, contactLayer, fieldOfView)
     renderer.setRenderTarget(target);
     let best = null;
     let most = 0;
+    const way = contactLayer.way?.clone().transformDirection(matrix);
     for (const direction of [back, ...DIRECTIONS]) {
       const eye = center.clone().addScaledVector(direction, distance);
       if (refuses(eye)) continue;
-      const score = seen(eye, center, distance / 50, distance * 4) * (0.7 + 0.3 * direction.dot(back));
+      const aside = way ? Math.sqrt(1 - Math.min(direction.dot(way) ** 2, 1)) : 1; // 0: the arrow is seen end-on
+      const score = seen(eye, center, distance / 50, distance * 4) * (0.7 + 0.3 * direction.dot(back)) * (0.4 + 0.6 * aside);
       if (score > most) [best, most] = [direction.clone(), score];
     }
     renderer.setRenderTarget(before);

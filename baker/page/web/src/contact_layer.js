@@ -6,7 +6,9 @@ import { LIGHT } from './skin_layer.js';
 // The triangles that touch, over the skin: striped where they are seen, faint where something hides them, and with edges, so
 // that small ones show too. Where a contact is chosen, all others are paler.
 
-const ARROW = 0x101418;
+const ARROW_MATERIAL = new THREE.MeshBasicMaterial({ color: 0x0b3fd1, depthTest: false, transparent: true });
+const SHAFT = new THREE.CylinderGeometry(1, 1, 1, 12); // one wide and high: scaled
+const HEAD = new THREE.ConeGeometry(1, 1, 16);
 
 const vertexShader = `
   attribute float side;
@@ -105,6 +107,8 @@ export class ContactLayer {
         }
       });
     }
+    const own = contacts.find(({ key }) => key === chosen);
+    this.way = own ? new THREE.Vector3(...own.direction) : null; // out of the chosen contact
     this.point(contacts.filter((contact) => isFault(contact) || contact.key === chosen));
     this.geometry.setDrawRange(0, corner);
     this.shared.anyChosen.value = contacts.some(({ key }) => key === chosen) ? 1 : 0;
@@ -113,17 +117,24 @@ export class ContactLayer {
 
   // The way out of each: from the second part's deepest point to where that is free. It is seen through the skin.
   point(contacts) {
-    for (const arrow of this.arrows.children) arrow.dispose();
     this.arrows.clear();
     const { unitsPerMm, height } = this.skin.mesh;
     for (const { at, direction, depth } of contacts) {
       const length = depth * unitsPerMm;
       const head = Math.max(0.35 * length, 0.012 * height);
-      const arrow = new THREE.ArrowHelper(new THREE.Vector3(...direction), new THREE.Vector3(...at), Math.max(length, head), ARROW, head, 0.6 * head);
-      for (const part of [arrow.line, arrow.cone]) {
-        Object.assign(part.material, { depthTest: false, transparent: true });
-        part.renderOrder = 9;
-      }
+      const shaft = Math.max(length - head, 0.004 * height);
+      const arrow = new THREE.Group();
+      const part = (geometry, width, from, size) => {
+        const made = new THREE.Mesh(geometry, ARROW_MATERIAL);
+        made.scale.set(width, size, width);
+        made.position.y = from + size / 2;
+        made.renderOrder = 9;
+        arrow.add(made);
+      };
+      part(SHAFT, 0.14 * head, 0, shaft);
+      part(HEAD, 0.35 * head, shaft, head);
+      arrow.position.set(...at);
+      arrow.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), new THREE.Vector3(...direction));
       this.arrows.add(arrow);
     }
   }

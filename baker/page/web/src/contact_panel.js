@@ -1,5 +1,5 @@
 import { h } from './dom.js';
-import { CLASSES, isFault, millimetres } from './contacts.js';
+import { CLASSES, isFault, MEANINGS, millimetres } from './contacts.js';
 import { plural } from './format.js';
 
 // The frame's contacts by body parts, and below those of the whole clip; a click goes there.
@@ -21,7 +21,13 @@ export function fillContactPanel(panel, store, model, flyTo) {
   const order = h('p', { class: 'note' }, 'Faults first, the deepest first. The arrow is the way out: where it ends, the second part is free of the first.');
   const clipTitle = h('h3', {});
   const clipList = h('ol', { class: 'pairs', id: 'clip-contacts' });
-  panel.append(summary, list, order, clipTitle, clipList);
+  const classes = h(
+    'details',
+    { class: 'classes' },
+    h('summary', {}, 'What the classes mean'),
+    h('dl', {}, ...CLASSES.map((name, kind) => [h('dt', {}, name), h('dd', {}, MEANINGS[kind])]).reverse().flat()),
+  );
+  panel.append(summary, list, order, clipTitle, clipList, classes);
 
   const row = (properties, badge, name, note, onclick) =>
     h(
@@ -37,12 +43,13 @@ export function fillContactPanel(panel, store, model, flyTo) {
     );
 
   const what = ({ kind, depth }) => `${CLASSES[kind]}, ${millimetres(depth)}`;
+  const millilitres = ({ volume }) => (volume >= 0 ? `, ${volume.toPrecision(2)} ml` : '');
   const minor = (contact) => (isFault(contact) ? '' : ' minor');
   const frameRow = (contact, i) => {
-    const { key, name, pairs, volume, visible } = contact;
-    const title = [plural(pairs, 'triangle pair'), volume >= 0 && `${volume.toPrecision(2)} ml`, `${Math.round(100 * visible)} % visible`];
-    const properties = { class: `pair contact${minor(contact)}`, 'data-contact': key, title: title.filter(Boolean).join(', ') };
-    return row(properties, `${i + 1}`, name, what(contact), () => {
+    const { key, name, pairs, visible } = contact;
+    const title = [plural(pairs, 'triangle pair'), `${Math.round(100 * visible)} % visible`];
+    const properties = { class: `pair contact${minor(contact)}`, 'data-contact': key, title: title.join(', ') };
+    return row(properties, `${i + 1}`, name, what(contact) + millilitres(contact), () => {
       store.set({ contact: key });
       flyTo(key);
     });

@@ -1,6 +1,14 @@
 // Which triangles of the skin touch in a frame, by pairs of body parts.
 
 export const CLASSES = ['as at rest', 'shell', 'touch', 'fold', 'deep fold', 'penetration'];
+export const MEANINGS = [
+  'The same spots are this near in the rest pose, too.',
+  'Layers of the same place, such as a garment on the body, or nothing of it can be seen.',
+  'Too shallow to be seen.',
+  'Neighbours of a joint that bends.',
+  'A joint whose skin is far inside itself. A fault.',
+  'One part is inside another. A fault.',
+];
 const DEEP_FOLD = 4; // from here on a person sees a fault
 export const MEASURES = 12; // numbers of a measured contact (../README.md)
 
