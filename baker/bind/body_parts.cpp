@@ -7,7 +7,6 @@
 
 #include "bind/bind_bones.h"
 #include "bind/part_names.h"
-#include "bind/part_parents.h"
 
 namespace spherechain::baker {
 namespace {
@@ -117,6 +116,27 @@ BodyParts parts_of_regions(const Character& character, const Regions& regions) {
   return out;
 }
 
+// Sets each part's parent. The bones are the source's nodes, or the joints of the automatic rig.
+void find_parents(const SourceRig& rig, const std::vector<Joint>& joints, std::vector<BodyPart>& parts) {
+  const bool own_rig = !rig.bones.empty();
+  const auto above = [&](int node) {
+    const auto n = static_cast<std::size_t>(node);
+    return own_rig ? rig.nodes[n].parent : joints[n].parent;
+  };
+  std::map<int, int> part_at;
+  const auto node_of = [&](const BodyPart& part) {
+    return part.bone >= 0 && own_rig ? static_cast<int>(rig.bones[static_cast<std::size_t>(part.bone)].node) : part.bone;
+  };
+  for (std::size_t p = 0; p < parts.size(); ++p) part_at[node_of(parts[p])] = static_cast<int>(p);
+  part_at.erase(-1);
+  for (BodyPart& part : parts) {
+    int node = node_of(part);
+    if (node >= 0) node = above(node);
+    while (node >= 0 && part_at.count(node) == 0) node = above(node);
+    part.parent = node < 0 ? -1 : part_at[node];
+  }
+}
+
 // The parts to keep: those with a triangle; of too many those with most, so that there is room for the rest.
 std::vector<std::size_t> kept_parts(const std::vector<BodyPart>& parts, const std::vector<std::size_t>& triangles) {
   std::vector<std::size_t> kept;
@@ -165,7 +185,7 @@ BodyParts find_body_parts(const Character& character, const Roles& roles, const 
   if (std::count(triangles.begin(), triangles.end(), 0U) + std::ssize(kept) < std::ssize(triangles)) {
     out.parts.push_back({"rest of the body", Side::kNone, -1, -1});
   }
-  find_parents(character, joints, out);
+  find_parents(character.rig, joints, out.parts);
   return out;
 }
 

@@ -323,36 +323,3 @@ TEST_CASE("characters of SPHERECHAIN_TEST_DATA have the parts that people see") 
   CHECK(bone_name(barbarian, "head") == "head");
   CHECK(bone_name(barbarian, "right thigh") == "upperleg.r");
 }
-
-TEST_CASE("a part without a bone above hangs on the part that its skin touches") {
-  Character character;
-  for (const char* name : {"scene", "trunk", "claw", "halo"}) {
-    character.rig.nodes.push_back({});
-    character.rig.nodes.back().name = name;
-    character.rig.nodes.back().parent = character.rig.nodes.size() == 1 ? -1 : 0;
-  }
-  character.rig.bones.resize(3);
-  const auto add = [&](Index bone, const Vec3& at) {  // a triangle one unit wide
-    for (const Vec3& corner : {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, 0)}) {
-      VertexWeights weights;
-      weights.joint[0] = bone;
-      weights.weight[0] = 1;
-      character.rig.weights.push_back(weights);
-      character.skin.positions.push_back(at + corner);
-    }
-    const auto v = static_cast<Index>(character.skin.positions.size());
-    character.skin_source_triangle.push_back(static_cast<Index>(character.skin.triangles.size()));
-    character.skin.triangles.push_back({v - 3, v - 2, v - 1});
-    character.rig.bones[bone].node = bone + 1;
-  };
-  for (int y = 0; y < 9; ++y) add(0, {0, double(y), 0});
-  add(1, {1.01, 4, 0});
-  add(2, {0, 13, 0});
-  character.source_positions = character.skin.positions;
-  character.source_triangles = character.skin.triangles;
-  const BodyParts parts = find_body_parts(character, find_roles(character.rig, character.source_positions), {}, {}, {});
-  REQUIRE(part_names(parts) == Names{"trunk", "claw", "halo"});
-  CHECK(parts.parts[0].parent == -1);
-  CHECK(parts.parts[1].parent == 0);
-  CHECK(parts.parts[2].parent == -1);
-}
