@@ -17,6 +17,7 @@ namespace {
 constexpr double kTouchMetres = 0.007, kTouchMin = 0.0045, kTouchMax = 0.015;
 constexpr double kGapMetres = 0.0006, kGapMax = 0.001;  // shorter free places on the way are none
 constexpr double kFoldDistance = 0.11;                  // of two spots at rest, to be a fold
+constexpr double kNeighbourDistance = 0.055;            // likewise, whatever the parts are
 constexpr double kShellDistance = 0.035;                // likewise, to be layers of the same place
 constexpr double kDeepFold = 0.045, kFoldFacing = 0.2;
 constexpr double kNear = 0.006;
@@ -251,8 +252,8 @@ class Measurer {
 
   bool is_fold(const Contour& contour, std::size_t a, std::size_t b) const {
     const bool are_joined = hangs_on(a, b) || hangs_on(b, a);
-    if (a == b || (are_joined && !contour.is_one_piece)) {
-      return true;  // the second: a joint of loose pieces, as robots have
+    if (a == b || (are_joined && !contour.is_one_piece) || contour.rest_distance < kNeighbourDistance * height_) {
+      return true;  // the second: a joint of loose pieces, as robots have; the third: joints that no bones name
     }
     const bool lie_flat = contour.facing > kFoldFacing && (hangs_twice(a, b) || hangs_twice(b, a));
     return (are_joined || are_siblings(a, b) || lie_flat) && contour.rest_distance < kFoldDistance * height_;
@@ -261,7 +262,8 @@ class Measurer {
   PenetrationClass class_of(const Contour& contour, const Penetration& of) const {
     // Files without a unit make giants and dwarfs.
     const double few = std::min(std::max(kTouchMetres * metre_, kTouchMin * height_), kTouchMax * height_);
-    const double touch = job_.touch_depth > 0 ? double{job_.touch_depth} : few * (1 + std::max(0.0, contour.facing));
+    const double touch =
+        job_.touch_depth > 0 ? double{job_.touch_depth} : few * (1 + std::max(0.0, contour.facing) / 2);
     if (2 * contour.touching >= 1) {
       return SC_CLASS_REST;
     }

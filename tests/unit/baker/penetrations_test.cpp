@@ -147,6 +147,16 @@ TEST_CASE("a body that went most of the way in is not pushed inside") {
   CHECK(direction_of(found).y() > 0.5);
 }
 
+TEST_CASE("spots that are near at rest make a fold, layers a shell, all others a penetration") {
+  const auto kind = [](double gap) {  // at rest, of a body about 4 long
+    const TwoShapes boxes(box(1, 1, 1), box(1, 1, 1), 2 + gap);
+    return only(boxes.measure(shifted(1.9, 0, 0))).kind;
+  };
+  CHECK(kind(0.1) == SC_CLASS_SHELL);
+  CHECK(kind(0.18) == SC_CLASS_FOLD);
+  CHECK(kind(0.3) == SC_CLASS_PENETRATION);
+}
+
 TEST_CASE("the quick form and every target agree with the full form, and a kept direction does not flicker") {
   const TwoShapes balls(ball(1, 16), ball(1, 16));
   const auto place = shifted(1.3, 0.4, 0);

@@ -15,8 +15,6 @@ using Vec = spherechain::baker::Vec3;
 
 namespace {
 
-constexpr double kApart = 40;
-
 // A profile of radii and heights from the lower pole to the upper, turned around y.
 Shape turned(const std::vector<std::pair<double, double>>& profile, int around) {
   Shape out;
@@ -82,8 +80,8 @@ Shape box(double x, double y, double z) {
   return out;
 }
 
-TwoShapes::TwoShapes(const Shape& a, const Shape& b)
-    : first_of_b_(a.positions.size()), apart_(kApart), asset_([&] {
+TwoShapes::TwoShapes(const Shape& a, const Shape& b, double apart)
+    : first_of_b_(a.positions.size()), apart_(apart), asset_([&] {
         Glb glb;
         std::vector<float> weights, inverse_binds;
         std::vector<std::uint16_t> joints;
@@ -91,7 +89,7 @@ TwoShapes::TwoShapes(const Shape& a, const Shape& b)
         for (const Shape* shape : {&a, &b}) {
           const bool second = shape == &b;
           for (const Vec& p : shape->positions) {
-            rest_.insert(rest_.end(), {static_cast<float>(p.x() + (second ? kApart : 0)), static_cast<float>(p.y()),
+            rest_.insert(rest_.end(), {static_cast<float>(p.x() + (second ? apart : 0)), static_cast<float>(p.y()),
                                        static_cast<float>(p.z())});
             joints.insert(joints.end(), {static_cast<std::uint16_t>(second ? 1 : 0), 0, 0, 0});
             weights.insert(weights.end(), {1, 0, 0, 0});

@@ -23,7 +23,8 @@ Shape cylinder(double radius, double half, int rings);
 
 class TwoShapes {
  public:
-  TwoShapes(const Shape& a, const Shape& b);
+  // At rest, b stands `apart` from where it is given, along x.
+  TwoShapes(const Shape& a, const Shape& b, double apart = 40);
 
   using Place = std::function<spherechain::baker::Vec3(const spherechain::baker::Vec3&)>;
   // b goes through `place`; a stays; then both go through `both`. All that the runtime finds, by the job's other
@@ -35,6 +36,6 @@ class TwoShapes {
  private:
   std::vector<float> rest_;
   std::size_t first_of_b_;
-  double apart_;  // b at rest is so far from where it was given
+  double apart_;
   spherechain::baker::OpenAsset asset_;
 };
