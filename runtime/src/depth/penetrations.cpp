@@ -255,15 +255,15 @@ class Measurer {
     if (a == b || (are_joined && !contour.is_one_piece) || contour.rest_distance < kNeighbourDistance * height_) {
       return true;  // the second: a joint of loose pieces, as robots have; the third: joints that no bones name
     }
-    const bool lie_flat = contour.facing > kFoldFacing && (hangs_twice(a, b) || hangs_twice(b, a));
-    return (are_joined || are_siblings(a, b) || lie_flat) && contour.rest_distance < kFoldDistance * height_;
+    const bool are_near = hangs_twice(a, b) || hangs_twice(b, a);
+    const bool lie_close = are_near && (contour.facing > kFoldFacing || !contour.is_one_piece);
+    return (are_joined || are_siblings(a, b) || lie_close) && contour.rest_distance < kFoldDistance * height_;
   }
 
   PenetrationClass class_of(const Contour& contour, const Penetration& of) const {
     // Files without a unit make giants and dwarfs.
     const double few = std::min(std::max(kTouchMetres * metre_, kTouchMin * height_), kTouchMax * height_);
-    const double touch =
-        job_.touch_depth > 0 ? double{job_.touch_depth} : few * (1 + std::max(0.0, contour.facing) / 2);
+    const double touch = job_.touch_depth > 0 ? double{job_.touch_depth} : few * (1 + std::max(0.0, contour.facing));
     if (2 * contour.touching >= 1) {
       return SC_CLASS_REST;
     }
