@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "mesh/error.h"
 #include "play/play.h"
@@ -51,5 +52,15 @@ struct ViewOptions {
   bool force = false;
 };
 ExitCode run_view(const ViewOptions& options);
+
+struct CheckOptions {
+  std::vector<std::string> library;  // with `merge` folders of shards
+  std::string output, config, baseline, motion, shard, cache, json, junit, sarif;
+  std::string fail_on = "penetration";
+  double max_depth = 0, fps = 0;  // 0: each clip's own
+  int jobs = 0;                   // 0: as many as the machine has cores
+  bool accept = false, folds = false, merge = false;
+};
+ExitCode run_check(const CheckOptions& options);
 
 }  // namespace spherechain::baker

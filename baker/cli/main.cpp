@@ -84,7 +84,8 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(
       "Exit: 0 done; 1 internal error; 2 usage; 3 a file cannot be read or written, or has the wrong content;\n"
-      "4 the body that was asked for is not there; 5 done, but a target in the settings was not met.");
+      "4 the body that was asked for is not there; 5 done, but a target in the settings was not met;\n"
+      "6 done, but a library fails its check.");
   std::function<ExitCode()> run;
 
   BakeOptions bake;
@@ -165,6 +166,39 @@ int main(int argc, char** argv) {
   add_name(*view_command, "--validation", view.validation, "What validate --json wrote, to show in the page");
   view_command->add_flag("--force", view.force, "Replace an output file that is not a page");
   view_command->callback([&] { run = [&] { return run_view(view); }; });
+
+  CheckOptions check;
+  CLI::App* check_command =
+      app.add_subcommand("check", "Say which clips of a library are broken: where, when and how deep");
+  check_command
+      ->add_option("LIBRARY", check.library,
+                   "Characters: files, folders, or a JSON manifest; with --merge folders that --shard wrote")
+      ->required()
+      ->check(refuse_empty);
+  add_name(*check_command, "-o,--output", check.output, "Folder of the report to write")->required();
+  add_name(*check_command, "--config", check.config, "JSON file of rules");
+  add_name(*check_command, "--baseline", check.baseline, "JSON file of faults that are known or accepted");
+  check_command->add_flag("--accept", check.accept, "Accept all faults: write them to the baseline");
+  check_command->add_option("--fail-on", check.fail_on, "What makes the exit code 6")
+      ->check(CLI::IsMember({"penetration", "new", "none"}))
+      ->capture_default_str();
+  check_command->add_option("--max-depth", check.max_depth, "Depth in mm up to which any fault is fine")
+      ->check(CLI::Range(0.0, 1e6))
+      ->check(refuse_nan);
+  add_name(*check_command, "--motion", check.motion, "Recording, or a folder of them, to carry over to each character");
+  check_command->add_option("--fps", check.fps, "Frames a second (default: each clip's own)")
+      ->check(CLI::Range(1e-3, 1e6))
+      ->check(refuse_nan);
+  check_command->add_option("--jobs", check.jobs, "Processes at a time (default: one for each core)")
+      ->check(CLI::Range(1, 1024));
+  check_command->add_flag("--folds", check.folds, "List folds, shells and contacts as at rest, too");
+  add_name(*check_command, "--cache", check.cache, "Folder that keeps results: what has not changed is not computed");
+  add_name(*check_command, "--shard", check.shard, "I/N: check the I-th of N parts, for --merge");
+  check_command->add_flag("--merge", check.merge, "Join the results of all shards");
+  add_name(*check_command, "--json", check.json, "JSON file to write");
+  add_name(*check_command, "--junit", check.junit, "JUnit XML file to write");
+  add_name(*check_command, "--sarif", check.sarif, "SARIF file to write");
+  check_command->callback([&] { run = [&] { return run_check(check); }; });
 
   try {
     app.parse(argc, argv);

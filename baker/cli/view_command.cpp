@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "cli/commands.h"
+#include "cli/installed.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "page/page.h"
@@ -15,9 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Build tree and installation have the same shape: bin/spherechain and share/spherechain/viewer.html.
 fs::path viewer_template() {
-  const fs::path page = fs::canonical("/proc/self/exe").parent_path().parent_path() / "share/spherechain/viewer.html";
+  const fs::path page = installed_page("viewer.html");
   if (!fs::is_regular_file(page)) {
     throw Error(ExitCode::kFile, page.string() + ": the viewer's page is not installed (build spherechain with Node)");
   }

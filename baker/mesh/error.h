@@ -14,6 +14,7 @@ enum class ExitCode : int {
   kFile = 3,          // a file cannot be read or written, or has the wrong content
   kSegmentation = 4,  // the body that was asked for is not there
   kTargetMissed = 5,  // done, but a target in the settings was not met
+  kCheckFailed = 6,   // done, but a library fails by its rules
 };
 
 // An error that the user can mend. what() is one line: "FILE: what is wrong (what to do)".

@@ -200,6 +200,8 @@ void CaptureMotion::align(const RoleJoints& reference, const std::vector<Affine>
   }
 }
 
+double CaptureMotion::rate() const { return rate_of(capture_.clip); }
+
 std::vector<Affine> CaptureMotion::joints_at(double t) const {
   const std::vector<Affine> world = world_at(capture_.rig, capture_.clip, t * duration());
   const Vec3 hips = 0.5 * (world[hips_[0]].translation() + world[hips_[1]].translation());

@@ -46,6 +46,7 @@ class CaptureMotion : public Motion {
   CaptureMotion(Capture capture, CaptureBody body);
   Deformation at(double t) const override;
   double duration() const override { return capture_.clip.duration; }
+  double rate() const override;
 
  private:
   // The node of the capture that a joint turns with; without one it turns with its parent.

@@ -2,6 +2,7 @@
 #include "motion/clip.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace spherechain::baker {
 namespace {
@@ -9,7 +10,32 @@ namespace {
 // A clip of one key is a pose: it shows for a frame.
 double length_of(const Clip& clip) { return std::max(clip.duration, 1.0 / 30); }
 
+// Importers round times to milliseconds.
+bool keys_are_frames(const Clip& clip, double rate) {
+  constexpr double kRounding = 0.05;  // of a frame
+  for (const Channel& channel : clip.channels) {
+    for (const double time : channel.times) {
+      if (std::abs(time * rate - std::round(time * rate)) > kRounding) return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
+
+double rate_of(const Clip& clip) {
+  constexpr double kOtherwise = 30, kMin = 5, kMax = 480;
+  for (const double rate : {30.0, 24.0, 25.0, 60.0, 50.0, 48.0, 120.0, 100.0}) {
+    if (keys_are_frames(clip, rate)) return rate;
+  }
+  double densest = 0;
+  for (const Channel& channel : clip.channels) {
+    const std::vector<double>& times = channel.times;
+    if (times.size() < 2 || times.back() <= times.front()) continue;
+    densest = std::max(densest, static_cast<double>(times.size() - 1) / (times.back() - times.front()));
+  }
+  return densest < kMin || densest > kMax ? kOtherwise : densest;
+}
 
 std::vector<Affine> world_at(const SourceRig& rig, const Clip& clip, double seconds) {
   std::vector<Node> nodes = rig.nodes;

@@ -14,6 +14,10 @@ std::vector<Affine> world_at(const SourceRig& rig, const Clip& clip, double seco
 // The rig's bones at a time of `clip`. Morphs without a channel keep their rest weight.
 Deformation sample(const SourceRig& rig, const Clip& clip, double seconds);
 
+// Frames a second that the clip was made at: the usual rate on whose frames all keys lie, 30 before others; else that
+// of its densest channel. 30 where that is no rate a person would make it at.
+double rate_of(const Clip& clip);
+
 // Clips of the file's own, one after another. The rig and its clips must outlive it.
 class ClipMotion : public Motion {
  public:

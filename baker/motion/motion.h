@@ -23,6 +23,8 @@ class Motion {
   virtual Deformation at(double t) const = 0;
   // Seconds; 0 where the motion has no pace of its own.
   virtual double duration() const { return 0; }
+  // Frames a second of its own; 0 where it has none.
+  virtual double rate() const { return 0; }
   // Frames of its own, where it is made of frames; else 0.
   virtual int frame_count() const { return 0; }
 };

@@ -66,6 +66,7 @@ class ClipByName : public Motion {
   }
   Deformation at(double t) const override { return sample(rig_, clip_, t * clip_.duration); }
   double duration() const override { return clip_.duration; }
+  double rate() const override { return rate_of(clip_); }
 
  private:
   const SourceRig& rig_;

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <array>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "mesh/error.h"
@@ -13,6 +12,7 @@
 #include "page/page_axes.h"
 #include "page/page_mesh.h"
 #include "page/page_motion.h"
+#include "page/page_penetrations.h"
 #include "report/json_text.h"
 #include "report/report.h"
 #include "report/vec3_json.h"
@@ -21,22 +21,6 @@ namespace spherechain::baker {
 namespace {
 
 using nlohmann::ordered_json;
-
-// Lists of a frame each, one after another: all entries, and how many each frame has.
-template <typename T>
-class FrameLists {
- public:
-  void add(const std::vector<T>& list) {
-    counts_.push_back(static_cast<std::uint32_t>(list.size()));
-    entries_.insert(entries_.end(), list.begin(), list.end());
-  }
-  ordered_json json() const { return {{"counts", base64(counts_)}, {"entries", base64(entries_)}}; }
-  std::size_t bytes() const { return entries_.size() * sizeof(T); }
-
- private:
-  std::vector<std::uint32_t> counts_;
-  std::vector<T> entries_;
-};
 
 // Tests, pairs and microseconds of each frame.
 class Costs {
@@ -98,20 +82,6 @@ void check_size(const AnimatedAsset& animated, double still, double moving, cons
                           animated.file(), frames, (still + moving) / 1e6, max / 1e6,
                           fewer > 0 ? fmt::format("--frames {}, or one clip by --clip", fewer)
                                     : "its mesh has too many triangles"));
-}
-
-// Parts a and b, class, depth in mm, direction, the deepest point of b, the share that is visible, volume in ml or -1.
-using PenetrationEntry = std::array<float, 12>;
-std::vector<PenetrationEntry> entries_of(const std::vector<Penetration>& penetrations, double mm) {
-  std::vector<PenetrationEntry> out;
-  for (const Penetration& p : penetrations) {
-    const double ml = p.is_closed != 0 ? std::pow(mm / 10, 3) * double{p.volume} : -1;
-    const spherechain::Vec3 &d = p.direction, &at = p.deepest_b.position;
-    out.push_back({static_cast<float>(p.part_a), static_cast<float>(p.part_b), static_cast<float>(p.kind),
-                   static_cast<float>(mm * double{p.depth}), d.x, d.y, d.z, at.x, at.y, at.z, p.visible,
-                   static_cast<float>(ml)});
-  }
-  return out;
 }
 
 // `still` is the size of the page without them.
@@ -199,6 +169,20 @@ std::string view_page(const AnimatedAsset& animated, const PageOptions& options,
   for (std::size_t i = text.find('<'); i != std::string::npos; i = text.find('<', i)) text.replace(i, 1, "\\u003c");
   check_size(animated, still, static_cast<double>(page.size() + text.size()) - still, options);
   return page.substr(0, at) + open + text + page.substr(at + open.size() + std::string("null").size());
+}
+
+std::string character_page(const AnimatedAsset& animated) {
+  const PageParts parts = page_parts(animated.asset());
+  const ordered_json none = ordered_json::array();
+  const ordered_json data{{"axes", axes_json(page_axes(animated))},
+                          {"parts", parts.names},
+                          {"inspect",
+                           {{"source", {{"metres_per_unit", animated.asset()->info().metres_per_unit}}},
+                            {"regions", none},
+                            {"spheres", none},
+                            {"chains", none}}},
+                          {"mesh", page_mesh(animated, animated.character().source_positions, parts, {})}};
+  return json_text(data, -1);
 }
 
 }  // namespace spherechain::baker

@@ -24,8 +24,8 @@ double even_place(int frame, int count) { return count > 1 ? static_cast<double>
 class Builder {
  public:
   // `start` is the clip's, in the motion's seconds.
-  void open(const std::string& name, const Clip* clip, int own_count, double start) {
-    out.clips.push_back({name, clip, static_cast<int>(out.frames.size()), 0, own_count});
+  void open(const std::string& name, const Clip* clip, int own_count, double start, double fps) {
+    out.clips.push_back({name, clip, static_cast<int>(out.frames.size()), 0, own_count, fps});
     start_ = start;
   }
   void add(double seconds, int number, double along) {
@@ -43,10 +43,11 @@ class Builder {
 
 MotionFrames frames_of(const SourceRig& rig, const std::vector<const Clip*>& clips, const FrameChoice& choice) {
   const ClipMotion motion(rig, clips);
-  const double fps = choice.fps;
   Builder builder;
+  double fps = 0;  // of the clip that is open
   const auto open = [&](std::size_t c) {
-    builder.open(clips[c]->name, clips[c], own_frames(clips[c]->duration, fps), motion.start(c));
+    fps = choice.fps > 0 ? choice.fps : rate_of(*clips[c]);
+    builder.open(clips[c]->name, clips[c], own_frames(clips[c]->duration, fps), motion.start(c), fps);
   };
   if (choice.count == 0) {
     for (std::size_t c = 0; c < clips.size(); ++c) {
@@ -67,13 +68,14 @@ MotionFrames frames_of(const SourceRig& rig, const std::vector<const Clip*>& cli
 }
 
 MotionFrames frames_of(const Motion* motion, const FrameChoice& choice) {
-  const double fps = choice.fps, duration = motion ? motion->duration() : 0;
+  const double duration = motion ? motion->duration() : 0, own_rate = motion ? motion->rate() : 0;
+  const double fps = choice.fps > 0 ? choice.fps : own_rate > 0 ? own_rate : FrameChoice().fps;
   const bool has_pace = duration > 0;
   int own_count = motion == nullptr ? 1 : motion->frame_count();
   if (own_count == 0) own_count = has_pace ? own_frames(duration, fps) : choice.count > 0 ? choice.count : kPoseFrames;
   const int count = choice.count > 0 ? choice.count : own_count;
   Builder builder;
-  builder.open({}, nullptr, own_count, 0);
+  builder.open({}, nullptr, own_count, 0, fps);
   for (int i = 0; i < count; ++i) {
     double along = even_place(i, count);
     if (!has_pace) {

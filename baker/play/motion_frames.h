@@ -13,7 +13,7 @@ namespace spherechain::baker {
 // the first clip to the end of the last.
 struct FrameChoice {
   int count = 0;
-  double fps = 30;
+  double fps = 30;  // 0: each clip's own (rate_of), 30 where it has none
 };
 
 // The frames of one clip, a run of the motion's frames. A motion that is not made of clips is one without a name.
@@ -22,6 +22,7 @@ struct ClipFrames {
   const Clip* clip = nullptr;  // null where the motion is not made of clips
   int first = 0, count = 0;
   int own_count = 0;  // frames that the clip has at `fps`, or of its own
+  double fps = 30;
 };
 
 struct MotionFrame {

@@ -40,7 +40,7 @@ std::string MotionChoice::name() const {
 
 AnimatedAsset::AnimatedAsset(const std::string& asset, const std::string& source, const MotionChoice& motion,
                              const FrameChoice& frames)
-    : asset_name_(asset), file_(open_asset(asset)), fps_(frames.fps) {
+    : asset_name_(asset), source_name_(source), file_(open_asset(asset)) {
   const BakeSettings settings = settings_of(file_, asset);
   roles_ = settings.roles;
   segment_settings_ = settings.segment;
@@ -51,18 +51,24 @@ AnimatedAsset::AnimatedAsset(const std::string& asset, const std::string& source
     throw Error(ExitCode::kFile,
                 source + ": is not the mesh that " + asset + " was baked from (" + to_string(status) + ")");
   }
+  play(motion, frames);
+}
+
+void AnimatedAsset::play(const MotionChoice& motion, const FrameChoice& frames) {
   std::vector<const Clip*> clips;
+  fps_ = frames.fps;
+  motion_.reset();
   if (!motion.poses.empty() && !is_sequence(motion.poses)) {
     play_poses(motion.poses);
   } else if (!motion.poses.empty()) {
     motion_ = std::make_unique<SequenceMotion>(character_, sequence_files(motion.poses), SequenceMotion::Path::kBezier);
   } else if (!motion.motion.empty() && !is_sequence(motion.motion)) {
-    play_capture(source, motion.motion);
+    play_capture(motion.motion);
   } else if (!motion.motion.empty()) {
     motion_ =
         std::make_unique<SequenceMotion>(character_, sequence_files(motion.motion), SequenceMotion::Path::kFrames);
   } else if (!motion.clip.empty() || !character_.rig.clips.empty()) {
-    clips = find_clips(source, motion.clip);
+    clips = find_clips(motion.clip);
     use_skin();
   }
   frames_ = clips.empty() ? frames_of(motion_.get(), frames) : frames_of(character_.rig, clips, frames);
@@ -79,9 +85,9 @@ void AnimatedAsset::play_poses(const std::string& file) {
 }
 
 // On the source's own skeleton, where it has one.
-void AnimatedAsset::play_capture(const std::string& source, const std::string& file) {
+void AnimatedAsset::play_capture(const std::string& file) {
   if (!character_.rig.bones.empty()) {
-    motion_ = capture_motion(file, character_.rig, character_.source_positions, frame(), source);
+    motion_ = capture_motion(file, character_.rig, character_.source_positions, frame(), source_name_);
     return use_skin();
   }
   const std::vector<Joint> joints = joints_of(file_);
@@ -90,7 +96,7 @@ void AnimatedAsset::play_capture(const std::string& source, const std::string& f
 }
 
 // By name, or by number where no name is that; all of them where none is asked for.
-std::vector<const Clip*> AnimatedAsset::find_clips(const std::string& source, const std::string& wanted) const {
+std::vector<const Clip*> AnimatedAsset::find_clips(const std::string& wanted) const {
   const SourceRig& rig = character_.rig;
   std::vector<const Clip*> clips;
   std::string names;
@@ -102,7 +108,7 @@ std::vector<const Clip*> AnimatedAsset::find_clips(const std::string& source, co
     if (std::to_string(i) == wanted) clips.push_back(&rig.clips[i]);
   }
   if (clips.empty()) {
-    throw Error(ExitCode::kFile, source + ": has no clip '" + wanted + "' (" +
+    throw Error(ExitCode::kFile, source_name_ + ": has no clip '" + wanted + "' (" +
                                      (names.empty() ? "it has none at all" : "it has " + names) + ")");
   }
   if (!wanted.empty()) clips.erase(clips.begin() + 1, clips.end());  // names need not differ
@@ -110,15 +116,18 @@ std::vector<const Clip*> AnimatedAsset::find_clips(const std::string& source, co
 }
 
 void AnimatedAsset::use_skin() {
+  bone_names_.clear();
   weights_ = character_.rig.weights;
   for (const Bone& bone : character_.rig.bones) bone_names_.push_back(character_.rig.nodes[bone.node].name);
 }
 
 void AnimatedAsset::use_rig(const std::vector<Joint>& joints) {
-  if (character_.rig.bones.empty()) {
-    close_body(character_, segment_settings_);  // the one whose weights the bake took
+  if (rig_weights_.empty()) {
+    if (character_.rig.bones.empty()) close_body(character_, segment_settings_);  // whose weights the bake took
+    rig_weights_ = rig_weights(character_, joints);
   }
-  weights_ = rig_weights(character_, joints);
+  bone_names_.clear();
+  weights_ = rig_weights_;
   for (const Joint& joint : joints) bone_names_.push_back(joint.name);
 }
 

@@ -31,6 +31,9 @@ class AnimatedAsset {
   AnimatedAsset(const std::string& asset, const std::string& source, const MotionChoice& motion,
                 const FrameChoice& frames);
 
+  // Plays another motion in place of that one. Throws Error(kFile).
+  void play(const MotionChoice& motion, const FrameChoice& frames);
+
   const std::string& file() const { return asset_name_; }  // the asset's, as it was given
   const OpenAsset& asset() const { return file_; }
   const Character& character() const { return character_; }
@@ -56,15 +59,15 @@ class AnimatedAsset {
   void play_poses(const std::string& file);
   void use_skin();  // the source's own
   void use_rig(const std::vector<Joint>& joints);
-  void play_capture(const std::string& source, const std::string& file);
-  std::vector<const Clip*> find_clips(const std::string& source, const std::string& wanted) const;
+  void play_capture(const std::string& file);
+  std::vector<const Clip*> find_clips(const std::string& wanted) const;
 
-  std::string asset_name_;
+  std::string asset_name_, source_name_;
   OpenAsset file_;
   Character character_;
   RoleFile roles_;  // those of the bake
   SegmentSettings segment_settings_;
-  std::vector<VertexWeights> weights_;
+  std::vector<VertexWeights> weights_, rig_weights_;
   std::vector<std::string> bone_names_;
   std::unique_ptr<Motion> motion_;  // null where clips or nothing plays
   MotionFrames frames_;

@@ -50,9 +50,9 @@ Player::Player(const OpenAsset& asset, Radius radius, bool chains, bool all_pair
       chains_(chains),
       all_pairs_(all_pairs),
       target_(target),
+      skin_(asset, target),
       spheres_(asset->spheres().size),
-      pairs_(spheres_.size() * (spheres_.size() - 1) / 2),
-      scratch_(sc_skin_scratch_words(asset.handle())) {
+      pairs_(spheres_.size() * (spheres_.size() - 1) / 2) {
   for (std::uint32_t s = 0; s < asset->spheres().size; ++s) {
     for (const std::uint32_t triangle : asset.triangles_of(s)) sphere_of_[triangle] = s;
   }
@@ -75,43 +75,15 @@ Detection Player::take(std::vector<Sphere> spheres, const std::vector<Pair>& pai
 }
 
 Player::TriangleDetection Player::detect_triangles(const std::vector<float>& positions, bool is_next) {
-  SkinContactJob job;
-  job.asset = asset_.handle();
-  job.pose.vertices = positions.data();
-  job.pose.vertex_count = positions.size() / 3;
-  job.target = target_;
-  job.skin_table = asset_.skin_table();
-  job.scratch = scratch_.data();
-  job.scratch_words = scratch_.size();
+  sc_pose pose;
+  pose.vertices = positions.data();
+  pose.vertex_count = positions.size() / 3;
   TriangleDetection out{};
-  out.us = median_us([&] { check_runtime(job.run()); });  // the product's question: body parts, no list
-  std::vector<TriangleContact> contacts(job.triangle_count);
-  job.triangles = contacts.data();
-  job.triangle_capacity = contacts.size();
-  check_runtime(job.run());
-  for (const TriangleContact& contact : contacts) out.pairs.push_back({contact.triangle_a, contact.triangle_b});
-
-  PenetrationJob measure;
-  measure.asset = job.asset;
-  measure.pose = job.pose;
-  measure.target = target_;
-  measure.skin_table = job.skin_table;
-  measure.contacts = contacts.data();
-  measure.contact_count = contacts.size();
-  if (is_next) {
-    measure.previous = last_penetrations_.data();
-    measure.previous_count = last_penetrations_.size();
-  }
-  measure_scratch_.resize(std::max(measure_scratch_.size(), sc_penetration_scratch_words(measure.asset, contacts.size())));
-  measure.scratch = measure_scratch_.data();
-  measure.scratch_words = measure_scratch_.size();
-  out.penetrations.resize(job.part_count);
-  measure.penetrations = out.penetrations.data();
-  measure.penetration_capacity = out.penetrations.size();
+  out.us = median_us([&] { skin_.find(pose); });
+  for (const TriangleContact& contact : skin_.find(pose)) out.pairs.push_back({contact.triangle_a, contact.triangle_b});
   const auto start = Clock::now();
-  check_runtime(measure.run());
+  out.penetrations = skin_.measure(pose, is_next);
   out.measure_us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-  last_penetrations_ = out.penetrations;
   std::stable_sort(out.penetrations.begin(), out.penetrations.end(),
                    [](const Penetration& l, const Penetration& r) { return l.depth > r.depth; });
   return out;

@@ -7,10 +7,9 @@
 #include <vector>
 
 #include "play/asset_file.h"
+#include "play/skin_player.h"
 #include "spherechain/detect.h"
-#include "spherechain/penetrations.h"
 #include "spherechain/refit.h"
-#include "spherechain/skin_contacts.h"
 
 namespace spherechain::baker {
 
@@ -67,10 +66,9 @@ class Player {
   Radius radius_;
   bool chains_, all_pairs_;
   Target target_;
+  SkinPlayer skin_;
   std::vector<Sphere> spheres_;
   std::vector<Pair> pairs_;
-  std::vector<std::uint64_t> scratch_, measure_scratch_;
-  std::vector<Penetration> last_penetrations_;
   std::unordered_map<std::uint32_t, std::uint32_t> sphere_of_;  // a source triangle -> its sphere
   std::size_t pair_count_ = 0;
 };

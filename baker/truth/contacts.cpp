@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "play/play.h"
+#include "play/skin_player.h"
 #include "skin/skin_inputs.h"
 #include "spherechain/skin_contacts.h"
 
@@ -56,15 +56,8 @@ std::vector<Pair> find_contacts(const OpenAsset& asset, const std::vector<float>
 
 ContactsFromBones find_contacts_from_bones(const OpenAsset& asset, const Character& character,
                                            const Deformation& deformation, Target target) {
-  const std::vector<float> matrices = bone_palette(asset, deformation);
-  std::vector<float> weights(deformation.morphs.begin(), deformation.morphs.end());
-  weights.resize(asset->morph_count());
-  sc_pose pose;
-  pose.bones = matrices.data();
-  pose.bone_count = asset->bone_count();
-  pose.bone_layout = SC_ROWS_3X4;
-  pose.morph_weights = weights.empty() ? nullptr : weights.data();
-  pose.morph_weight_count = weights.size();
+  const BonePose bones(asset, deformation);
+  const sc_pose pose = bones.pose();
   ContactsFromBones out{pack(character.source_positions), {}, {}};
   skin_surface(asset.surface(), pose, target, out.positions.data(), 3);
   follow(asset.surface(), out.positions, character.source_triangles);

@@ -131,10 +131,6 @@ std::vector<Pair> touching_spheres(Player& player, const std::vector<float>& pos
 }
 
 // Whole meshes as poses have no bones.
-bool moved_by_bones(const OpenAsset& asset, const Deformation& deformation) {
-  return asset->bone_count() > 0 && deformation.positions.empty();
-}
-
 Frame validate_frame(const Context& context, int index) {
   const AnimatedAsset& animated = context.animated;
   const TruthSurface& surface = context.surface;

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <nlohmann/json.hpp>
+
+#include "check/formats.h"
+#include "report/json_text.h"
+#include "report/vec3_json.h"
+
+namespace spherechain::baker {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json event_json(const JudgedEvent& judged) {
+  const Event& event = judged.event;
+  ordered_json out{{"parts", event.parts},
+                   {"class", sc_penetration_class_name(event.kind)},
+                   {"from", event.from},
+                   {"to", event.to},
+                   {"deepest", event.deepest},
+                   {"depth_mm", event.depth_mm},
+                   {"depth_percent", event.depth_percent},
+                   {"volume_ml", event.volume_ml >= 0 ? ordered_json(event.volume_ml) : ordered_json()},
+                   {"direction", to_json(event.direction)},
+                   {"state", state_name(judged.state)},
+                   {"rule", judged.rule.empty() ? ordered_json() : ordered_json(judged.rule)},
+                   {"fails", judged.fails}};
+  if (judged.before_mm >= 0) out["known_depth_mm"] = judged.before_mm;
+  if (event.eye) out["camera"] = {{"target", to_json(event.point)}, {"back", to_json(*event.eye)}};
+  return out;
+}
+
+ordered_json clip_json(const JudgedClip& clip) {
+  ordered_json events = ordered_json::array();
+  for (const JudgedEvent& event : clip.events) events.push_back(event_json(event));
+  ordered_json besides = ordered_json::object();
+  for (const auto& [kind, count] : clip.besides) besides[sc_penetration_class_name(kind)] = count;
+  ordered_json out{{"character", clip.character},
+                   {"clip", clip.clip.clip},
+                   {"frames", clip.frames},
+                   {"fps", clip.fps},
+                   {"loops", clip.loops},
+                   {"events", std::move(events)},
+                   {"counted", std::move(besides)},
+                   {"fit", clip.grade}};
+  if (!clip.clip.error.empty()) out["error"] = clip.clip.error;
+  return out;
+}
+
+}  // namespace
+
+std::string check_json(const Verdict& verdict) {
+  const Summary& s = verdict.summary;
+  ordered_json clips = ordered_json::array();
+  for (const JudgedClip& clip : verdict.clips) clips.push_back(clip_json(clip));
+  return json_text({{"summary",
+                     {{"characters", s.characters},
+                      {"clips", s.clips},
+                      {"frames", s.frames},
+                      {"events", s.events},
+                      {"penetrations", s.penetrations},
+                      {"deep_folds", s.deep_folds},
+                      {"new", s.fresh},
+                      {"worse", s.worse},
+                      {"accepted", s.accepted},
+                      {"resolved", s.resolved},
+                      {"errors", s.errors},
+                      {"fails", verdict.fails},
+                      {"seconds", s.seconds}}},
+                    {"clips", std::move(clips)}},
+                   1) +
+         "\n";
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "check/formats.h"
+
+namespace spherechain::baker {
+namespace {
+
+std::string clip_text(const JudgedClip& clip) { return clip.character + (clip.clip.clip.empty() ? "" : " " + clip.clip.clip); }
+
+std::string marks(const JudgedEvent& judged) {
+  std::string out;
+  const auto add = [&](const std::string& text) { out += (out.empty() ? "  [" : ", ") + text; };
+  if (judged.event.kind == SC_CLASS_DEEP_FOLD) add("deep fold");
+  if (judged.before_mm >= 0) add(fmt::format("worse than {:.0f} mm", judged.before_mm));
+  if (!judged.rule.empty()) add(judged.rule);
+  if (judged.state != EventState::kNew) add(state_name(judged.state));
+  return out.empty() ? out : out + "]";
+}
+
+std::string counted(int count, const char* one, const char* many) {
+  return fmt::format("{} {}", count, count == 1 ? one : many);
+}
+
+std::string summary_text(const Summary& s) {
+  std::string out = fmt::format("{}, {}, {} frames: {}", counted(s.characters, "character", "characters"),
+                                counted(s.clips, "clip", "clips"), s.frames,
+                                counted(s.penetrations, "penetration", "penetrations"));
+  if (s.deep_folds > 0) out += ", " + counted(s.deep_folds, "deep fold", "deep folds");
+  out += fmt::format("; {} new", s.fresh);
+  if (s.worse > 0) out += fmt::format(" ({} worse than before)", s.worse);
+  if (s.accepted > 0) out += fmt::format(", {} accepted", s.accepted);
+  if (s.resolved > 0) out += fmt::format(", {} gone", s.resolved);
+  if (s.errors > 0) out += "; " + counted(s.errors, "row", "rows") + " could not be checked";
+  return out + "\n";
+}
+
+}  // namespace
+
+std::string parts_text(const Event& event) {
+  const std::size_t inside = static_cast<std::size_t>(event.inside);
+  return event.parts[0] == event.parts[1] ? event.parts[0] + " in itself"
+                                          : event.parts[inside] + " in " + event.parts[1 - inside];
+}
+
+std::string frames_text(const Event& event) {
+  if (event.from == event.to) return fmt::format("frame {}", event.from);
+  return fmt::format("frames {}-{}{}", event.from, event.to, event.from > event.to ? " (over the loop)" : "");
+}
+
+std::string check_text(const Verdict& verdict) {
+  std::vector<std::array<std::string, 4>> rows;
+  std::array<std::size_t, 4> widths{};
+  std::string errors;
+  for (const JudgedClip& clip : verdict.clips) {
+    if (!clip.clip.error.empty()) errors += clip.clip.error + "\n";
+    for (const JudgedEvent& judged : clip.events) {
+      const Event& event = judged.event;
+      if (!is_fault(event.kind) && judged.state != EventState::kResolved) continue;
+      const std::string worst = event.from == event.to || judged.state == EventState::kResolved
+                                    ? ""
+                                    : fmt::format("  (worst at {})", event.deepest);
+      rows.push_back({clip_text(clip), frames_text(event), parts_text(event),
+                      fmt::format("{:.0f} mm{}{}", event.depth_mm, worst, marks(judged))});
+      for (std::size_t k = 0; k < 3; ++k) widths[k] = std::max(widths[k], rows.back()[k].size());
+    }
+  }
+  std::string out;
+  for (const auto& row : rows) {
+    for (std::size_t k = 0; k < 3; ++k) out += fmt::format("{:{}}  ", row[k], widths[k]);
+    out += row[3] + "\n";
+  }
+  return out + errors + (out.empty() && errors.empty() ? "" : "\n") + summary_text(verdict.summary);
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "check/formats.h"
+#include "report/json_text.h"
+#include "write/version.h"
+
+namespace spherechain::baker {
+namespace {
+
+using nlohmann::ordered_json;
+
+// Control characters are none of XML's, and bytes that are not UTF-8 are none of anything.
+std::string xml(const std::string& text) {
+  std::string clean = json_text(text, -1);  // replaces what is not UTF-8
+  clean = ordered_json::parse(clean).get<std::string>();
+  std::string out;
+  for (const char c : clean) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+    }
+  }
+  return out;
+}
+
+std::string fault_text(const JudgedEvent& judged) {
+  const Event& event = judged.event;
+  return fmt::format("{}: {}, {:.0f} mm deep at frame {}", frames_text(event), parts_text(event), event.depth_mm,
+                     event.deepest);
+}
+
+std::string testcase(const JudgedClip& clip) {
+  std::string out = fmt::format("  <testcase classname=\"{}\" name=\"{}\"", xml(clip.character),
+                                xml(clip.clip.clip.empty() ? "character" : clip.clip.clip));
+  if (!clip.clip.error.empty()) return out + fmt::format("><error message=\"{}\"/></testcase>\n", xml(clip.clip.error));
+  if (clip.clip.clip.empty()) return out + "><skipped message=\"no clips\"/></testcase>\n";
+  std::string lines;
+  int failing = 0;
+  for (const JudgedEvent& judged : clip.events) {
+    if (!judged.fails) continue;
+    ++failing;
+    lines += fault_text(judged) + "\n";
+  }
+  if (failing == 0) return out + "/>\n";
+  return out + fmt::format("><failure message=\"{} {}\" type=\"penetration\">{}</failure></testcase>\n", failing,
+                           failing == 1 ? "fault" : "faults", xml(lines));
+}
+
+}  // namespace
+
+std::string check_junit(const Verdict& verdict) {
+  int failures = 0;
+  std::string cases;
+  for (const JudgedClip& clip : verdict.clips) {
+    bool fails = false;
+    for (const JudgedEvent& judged : clip.events) fails = fails || judged.fails;
+    failures += fails ? 1 : 0;
+    cases += testcase(clip);
+  }
+  return fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites>\n <testsuite name=\"spherechain check\" tests=\"{}\" "
+      "failures=\"{}\" errors=\"{}\">\n{} </testsuite>\n</testsuites>\n",
+      verdict.clips.size(), failures, verdict.summary.errors, cases);
+}
+
+std::string check_sarif(const Verdict& verdict) {
+  ordered_json results = ordered_json::array();
+  const auto add = [&](const JudgedClip& clip, const std::string& rule, const char* level, const std::string& text) -> ordered_json& {
+    results.push_back(
+        {{"ruleId", rule},
+         {"level", level},
+         {"message", {{"text", text}}},
+         {"locations", {{{"physicalLocation", {{"artifactLocation", {{"uri", clip.file}}}}},
+                         {"logicalLocations", {{{"name", clip.clip.clip}, {"kind", "clip"}}}}}}}});
+    return results.back();
+  };
+  for (const JudgedClip& clip : verdict.clips) {
+    if (!clip.clip.error.empty()) add(clip, "unreadable", "error", clip.clip.error);
+    for (const JudgedEvent& judged : clip.events) {
+      if (!is_fault(judged.event.kind)) continue;
+      const bool is_gone = judged.state == EventState::kResolved;
+      const char* level = judged.fails ? "error" : judged.severity == Severity::kIgnore ? "note" : "warning";
+      ordered_json& result = add(clip, sc_penetration_class_name(judged.event.kind), is_gone ? "none" : level,
+                                 clip.clip.clip + ", " + fault_text(judged));
+      result["baselineState"] = is_gone                                ? "absent"
+                                : judged.before_mm >= 0                ? "updated"
+                                : judged.state == EventState::kNew     ? "new"
+                                                                       : "unchanged";
+      if (judged.state == EventState::kAccepted || !judged.rule.empty()) {
+        result["suppressions"] = {{{"kind", "external"}, {"justification", judged.rule.empty() ? "accepted" : judged.rule}}};
+      }
+    }
+  }
+  ordered_json rules = ordered_json::array();
+  for (const auto& [id, text] :
+       {std::pair("penetration", "A body part is in another."), std::pair("deep_fold", "A fold of the skin is very deep."),
+        std::pair("unreadable", "A file cannot be checked.")}) {
+    rules.push_back({{"id", id}, {"shortDescription", {{"text", text}}}});
+  }
+  return json_text({{"$schema", "https://json.schemastore.org/sarif-2.1.0.json"},
+                    {"version", "2.1.0"},
+                    {"runs",
+                     {{{"tool", {{"driver", {{"name", "spherechain"}, {"version", kVersion}, {"rules", rules}}}}},
+                       {"results", results}}}}},
+                   1) +
+         "\n";
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "check/picture.h"
+#include "check/results.h"
+#include "play/play.h"
+#include "play/skin_player.h"
+
+namespace spherechain::baker {
+
+// A checked clip: what was found, and what the report shows of it.
+struct ClipCheck {
+  ClipResult result;
+  std::string page;     // its motion and contacts: JSON with the keys of baker/page/README.md
+  std::string picture;  // PNG: its worst frame
+};
+
+// Checks the clips of one character after another.
+class ClipChecker {
+ public:
+  // `animated` must outlive it, and may play other motions in between. Throws Error(kFile) where the asset has no
+  // clusters.
+  ClipChecker(const AnimatedAsset& animated, Target target);
+
+  // All frames of one of animated.clips().
+  ClipCheck check(std::size_t clip);
+
+ private:
+  struct Frames;  // what was seen, frame by frame
+  void take_sample();
+  Frames look(const ClipFrames& clip);
+  Event event_of(const Frames& frames, const struct EventSpan& span, const ClipFrames& clip);
+  void show(ClipCheck& out, const Frames& frames, const ClipFrames& clip);
+
+  const AnimatedAsset& animated_;
+  SkinPlayer player_;
+  BodyParts parts_;
+  std::vector<double> areas_;  // of the parts, in triangles
+  double mm_;                  // a unit of the source
+  BodyFrame axes_;
+  Picture picture_;
+  std::vector<Vec3> sample_;  // some of the rest positions: they say where the character is
+  std::vector<VertexWeights> sample_weights_;
+};
+
+}  // namespace spherechain::baker

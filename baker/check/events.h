@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "mesh/mesh.h"
+#include "spherechain/penetrations.h"
+
+namespace spherechain::baker {
+
+// Two body parts that meet in a frame of a clip.
+struct PartMeeting {
+  int frame;
+  std::uint32_t part_a, part_b;
+  PenetrationClass kind;
+  double depth_mm;
+  double volume_ml;  // -1: not known
+  Vec3 direction;    // moves part_b
+  Vec3 point;        // the deepest of part_b
+};
+
+// Frames without a meeting that an event goes on over.
+inline constexpr int kGapMax = 3;
+
+// Meetings of the same two parts, joined over frames: what a person would call one clipping.
+struct EventSpan {
+  int from, to;         // where an event goes over the seam of a loop, from > to
+  std::size_t deepest;  // index of its deepest meeting, the earliest of equals
+};
+
+// `meetings` are those of a clip of `frames` frames, by frame. `loops`: its last frame is its first again. Returns the
+// events by where they begin, then by parts.
+std::vector<EventSpan> join_events(const std::vector<PartMeeting>& meetings, int frames, bool loops);
+
+}  // namespace spherechain::baker

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+#include "check/verdict.h"
+
+namespace spherechain::baker {
+
+// A verdict for people, as a linter prints it.
+std::string check_text(const Verdict& verdict);
+
+// For pipelines (docs/json.md), CI servers (JUnit XML) and code review (SARIF 2.1.0).
+std::string check_json(const Verdict& verdict);
+std::string check_junit(const Verdict& verdict);
+std::string check_sarif(const Verdict& verdict);
+
+// "right hand in left thigh".
+std::string parts_text(const Event& event);
+// "frames 34-41"; over a loop's seam "frames 28-3 (over the loop)".
+std::string frames_text(const Event& event);
+
+}  // namespace spherechain::baker

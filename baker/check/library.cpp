@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "check/library.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "mesh/error.h"
+#include "play/asset_file.h"
+#include "roles/roles.h"
+
+namespace spherechain::baker {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using Motions = std::vector<LibraryCharacter::Motion>;
+
+std::string extension_of(const fs::path& file) {
+  std::string out = file.extension().string();
+  for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return out;
+}
+
+bool may_be_character(const fs::path& file) {
+  static const std::set<std::string> kExtensions{".glb", ".gltf", ".vrm", ".fbx", ".dae", ".zae", ".obj", ".x",
+                                                 ".ms3d", ".b3d", ".md5mesh", ".smd", ".iqm", ".mdl", ".ply", ".stl"};
+  return kExtensions.count(extension_of(file)) > 0;
+}
+
+bool may_be_motion(const fs::path& file) {
+  static const std::set<std::string> kExtensions{".bvh", ".fbx", ".glb", ".gltf", ".vrm", ".dae", ".zae"};
+  return kExtensions.count(extension_of(file)) > 0;
+}
+
+// Those below `folder`, by name.
+std::vector<fs::path> files_below(const fs::path& folder, bool (*wanted)(const fs::path&)) {
+  std::vector<fs::path> out;
+  std::error_code ignored;
+  for (const auto& entry : fs::recursive_directory_iterator(folder, ignored)) {
+    if (entry.is_regular_file(ignored) && wanted(entry.path())) out.push_back(entry.path());
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+void check_there(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::exists(path, ignored)) throw Error(ExitCode::kFile, path.string() + ": there is no such file or folder");
+}
+
+Motions motions_at(const fs::path& path) {
+  check_there(path);
+  if (!fs::is_directory(path)) return {{path.filename().string(), path}};
+  Motions out;
+  for (const fs::path& file : files_below(path, may_be_motion)) out.push_back({file.lexically_relative(path).string(), file});
+  if (out.empty()) throw Error(ExitCode::kFile, path.string() + ": has no recordings (BVH, FBX, glTF or Collada)");
+  return out;
+}
+
+void append(Motions& to, const Motions& from) { to.insert(to.end(), from.begin(), from.end()); }
+
+class Manifest {
+ public:
+  explicit Manifest(const fs::path& file) : file_(file), folder_(file.parent_path()) {}
+
+  std::vector<LibraryCharacter> read(const CheckConfig& config) const {
+    const json manifest = json::parse(read_file(file_.string()), nullptr, false);
+    if (!manifest.is_object() || !manifest.contains("characters") || !manifest["characters"].is_array()) {
+      fail("is not a manifest (an object with a list 'characters')");
+    }
+    check_keys(manifest, {"characters", "motions"});
+    const Motions shared = motions_of(manifest);
+    std::vector<LibraryCharacter> out;
+    for (const json& entry : manifest["characters"]) {
+      out.push_back(character(entry.is_string() ? json{{"file", entry}} : entry, config));
+      append(out.back().motions, shared);
+    }
+    return out;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const { throw Error(ExitCode::kFile, file_.string() + ": " + what); }
+
+  void check_keys(const json& object, const std::set<std::string>& known) const {
+    for (const auto& [key, value] : object.items()) {
+      if (known.count(key) == 0) fail("'" + key + "' is unknown");
+    }
+  }
+
+  // Paths are relative to the manifest.
+  fs::path path(const json& value, const char* key) const {
+    if (!value.is_string()) fail(std::string("'") + key + "' is not a path");
+    return folder_ / value.get<std::string>();
+  }
+
+  Motions motions_of(const json& object) const {
+    Motions out;
+    if (!object.contains("motions")) return out;
+    if (!object["motions"].is_array()) fail("'motions' is not a list of paths");
+    for (const json& entry : object["motions"]) append(out, motions_at(path(entry, "motions")));
+    return out;
+  }
+
+  LibraryCharacter character(const json& entry, const CheckConfig& config) const {
+    if (!entry.is_object() || !entry.contains("file")) fail("a character has no 'file'");
+    check_keys(entry, {"file", "motions", "roles", "config"});
+    LibraryCharacter out{{}, path(entry["file"], "file"), motions_of(entry), config};
+    if (entry.contains("config")) out.config = read_config(entry["config"].dump(), file_.string(), config);
+    if (entry.contains("roles")) {
+      const std::string roles = path(entry["roles"], "roles").string();
+      out.config.bake.roles = parse_role_file(read_file(roles), roles);
+    }
+    return out;
+  }
+
+  fs::path file_, folder_;
+};
+
+// The shortest ends of the paths that are all different.
+void give_names(std::vector<LibraryCharacter>& characters) {
+  const auto tail = [](const fs::path& path, int parts) {
+    fs::path out, rest = path;
+    for (int i = 0; i < parts && rest.has_filename(); ++i, rest = rest.parent_path()) out = rest.filename() / out;
+    std::string text = out.string();
+    return text.substr(0, text.find_last_not_of('/') + 1);
+  };
+  for (int parts = 1; parts < 16; ++parts) {
+    std::map<std::string, int> count;
+    for (const LibraryCharacter& c : characters) ++count[tail(fs::absolute(c.file), parts)];
+    for (LibraryCharacter& c : characters) {
+      const std::string text = tail(fs::absolute(c.file), parts);
+      if (c.name.empty() && count[text] == 1) c.name = text;
+    }
+  }
+  std::map<std::string, int> seen;  // one file that is given twice
+  for (LibraryCharacter& c : characters) {
+    if (!c.name.empty()) continue;
+    c.name = c.file.filename().string();
+    if (const int n = ++seen[c.file.string()]; n > 1) c.name += " (" + std::to_string(n) + ")";
+  }
+}
+
+}  // namespace
+
+std::vector<LibraryCharacter> read_library(const std::vector<std::string>& paths, const std::string& motion,
+                                           const CheckConfig& config) {
+  std::vector<LibraryCharacter> out;
+  for (const std::string& path : paths) {
+    check_there(path);
+    if (extension_of(path) == ".json") {
+      const std::vector<LibraryCharacter> all = Manifest(path).read(config);
+      out.insert(out.end(), all.begin(), all.end());
+    } else if (fs::is_directory(path)) {
+      for (const fs::path& file : files_below(path, may_be_character)) out.push_back({{}, file, {}, config});
+    } else {
+      out.push_back({{}, path, {}, config});
+    }
+  }
+  // A folder of recordings may lie within that of the characters.
+  if (!motion.empty() && fs::is_directory(motion)) {
+    const fs::path folder = fs::weakly_canonical(motion);
+    std::erase_if(out, [&](const LibraryCharacter& character) {
+      const fs::path inside = fs::weakly_canonical(character.file).lexically_relative(folder);
+      return !inside.empty() && *inside.begin() != "..";
+    });
+  }
+  if (out.empty()) throw Error(ExitCode::kFile, paths.front() + ": has no characters (glTF, FBX, Collada ...)");
+  if (!motion.empty()) {
+    const Motions shared = motions_at(motion);
+    for (LibraryCharacter& character : out) append(character.motions, shared);
+  }
+  give_names(out);
+  return out;
+}
+
+}  // namespace spherechain::baker

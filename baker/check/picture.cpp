@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "check/picture.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mesh/even_directions.h"
+
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wall"
+#pragma GCC diagnostic ignored "-Wextra"
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#include <stb/stb_image_write.h>
+#pragma GCC diagnostic pop
+
+namespace spherechain::baker {
+namespace {
+
+constexpr std::uint32_t kNoTriangle = 0xFFFFFFFF;
+constexpr int kProbeSize = 48;
+constexpr int kWidth = 144, kHeight = 144, kSamples = 2;  // of a picture; samples a pixel in each direction
+using Colour = std::array<double, 3>;
+constexpr Colour kClay{0.79, 0.76, 0.71}, kFirst{0.83, 0.12, 0.17}, kSecond{0.95, 0.55, 0.1};
+
+// Few from below.
+std::vector<Vec3> eye_directions(const BodyFrame& axes) {
+  std::vector<Vec3> out;
+  for (const Vec3& d : even_directions(26)) {
+    if (d.y() < -0.5 || d.y() > 0.9) continue;
+    out.push_back(d.x() * axes.left + d.y() * axes.up + d.z() * axes.forward);
+  }
+  return out;
+}
+
+}  // namespace
+
+void Picture::pose(const std::vector<Vec3>& positions) { positions_ = positions; }
+
+Picture::View Picture::view_from(const Vec3& back, const Vec3& middle, double extent, int width, int height) const {
+  View view{{}, {}, back.normalized(), middle, std::min(width, height) / extent, width, height};
+  Vec3 right = axes_.up.cross(view.back);
+  if (right.norm() < 1e-3) right = axes_.left;
+  view.right = right.normalized();
+  view.up = view.back.cross(view.right);
+  return view;
+}
+
+void Picture::draw(const View& view) {
+  projected_.resize(positions_.size());
+  for (std::size_t v = 0; v < positions_.size(); ++v) {
+    const Vec3 from = positions_[v] - view.middle;
+    projected_[v] = {static_cast<float>(view.width * 0.5 + view.scale * from.dot(view.right)),
+                     static_cast<float>(view.height * 0.5 - view.scale * from.dot(view.up)),
+                     static_cast<float>(from.dot(view.back))};
+  }
+  const std::size_t size = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
+  ids_.assign(size, kNoTriangle);
+  depths_.assign(size, -HUGE_VALF);
+  for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+    const auto &a = projected_[triangles_[t][0]], &b = projected_[triangles_[t][1]], &c = projected_[triangles_[t][2]];
+    const float area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+    if (area == 0) continue;
+    const auto [low_x, high_x] = std::minmax({a[0], b[0], c[0]});
+    const auto [low_y, high_y] = std::minmax({a[1], b[1], c[1]});
+    if (high_x < 0 || high_y < 0 || !(low_x < static_cast<float>(view.width)) || !(low_y < static_cast<float>(view.height)))
+      continue;
+    const int from_x = std::max(0, static_cast<int>(std::ceil(low_x - 0.5f))),
+              to_x = std::min(view.width - 1, static_cast<int>(std::floor(high_x - 0.5f))),
+              from_y = std::max(0, static_cast<int>(std::ceil(low_y - 0.5f))),
+              to_y = std::min(view.height - 1, static_cast<int>(std::floor(high_y - 0.5f)));
+    for (int y = from_y; y <= to_y; ++y) {
+      for (int x = from_x; x <= to_x; ++x) {
+        const float px = static_cast<float>(x) + 0.5f, py = static_cast<float>(y) + 0.5f;
+        const float u = ((px - a[0]) * (c[1] - a[1]) - (py - a[1]) * (c[0] - a[0])) / area;
+        const float v = ((b[0] - a[0]) * (py - a[1]) - (b[1] - a[1]) * (px - a[0])) / area;
+        if (u < 0 || v < 0 || u + v > 1) continue;
+        const float depth = a[2] + u * (b[2] - a[2]) + v * (c[2] - a[2]);
+        const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x);
+        if (depth <= depths_[at]) continue;
+        depths_[at] = depth;
+        ids_[at] = t;
+      }
+    }
+  }
+}
+
+Vec3 Picture::find_eye(const Patches& patches) {
+  std::vector<std::uint8_t> side(triangles_.size(), 0);
+  double extent = 0;
+  for (std::size_t k = 0; k < 2; ++k) {
+    for (const std::uint32_t t : patches.triangles[k]) {
+      side[t] = static_cast<std::uint8_t>(k + 1);
+      for (const Index v : triangles_[t]) extent = std::max(extent, 2.4 * (positions_[v] - patches.point).norm());
+    }
+  }
+  extent = std::max(extent, 0.05 * axes_.height);
+  Vec3 best = axes_.forward;
+  double most = 0;
+  for (const Vec3& back : eye_directions(axes_)) {
+    draw(view_from(back, patches.point, extent, kProbeSize, kProbeSize));
+    std::array<int, 3> seen{};
+    for (const std::uint32_t id : ids_) ++seen[id == kNoTriangle ? 0 : side[id]];
+    const int both = seen[1] > 0 && seen[2] > 0 ? std::min(seen[1], seen[2]) / 2 + 8 : 0;
+    const double score = (seen[1] + seen[2] + both) * (0.75 + 0.25 * back.dot(axes_.forward));
+    if (score > most) {
+      most = score;
+      best = back;
+    }
+  }
+  return best;
+}
+
+std::string Picture::png(const Patches* patches, const Vec3& eye) {
+  std::vector<const Colour*> colours(triangles_.size(), &kClay);
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : positions_) {
+    box.extend(Vec3((p - axes_.origin).dot(axes_.left), (p - axes_.origin).dot(axes_.up), (p - axes_.origin).dot(axes_.forward)));
+  }
+  const Vec3 center = box.center();
+  Vec3 middle = axes_.origin + center.x() * axes_.left + center.y() * axes_.up + center.z() * axes_.forward;
+  double extent = 1.08 * box.sizes().maxCoeff();
+  if (patches != nullptr) {
+    for (const std::uint32_t t : patches->triangles[0]) colours[t] = &kFirst;
+    for (const std::uint32_t t : patches->triangles[1]) colours[t] = &kSecond;
+    extent = 0.55 * axes_.height;
+    middle = patches->point;
+  }
+  const int width = kWidth * kSamples, height = kHeight * kSamples;
+  const View view = view_from(eye, middle, extent, width, height);
+  draw(view);
+  const Vec3 key = (-0.45 * view.right + 0.7 * view.up + 0.65 * view.back).normalized();
+  std::vector<unsigned char> pixels;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      Colour sum{};
+      int covered = 0;
+      for (int s = 0; s < kSamples * kSamples; ++s) {
+        const std::size_t at = static_cast<std::size_t>(y * kSamples + s / kSamples) * static_cast<std::size_t>(width) +
+                               static_cast<std::size_t>(x * kSamples + s % kSamples);
+        if (ids_[at] == kNoTriangle) continue;
+        ++covered;
+        const Triangle& t = triangles_[ids_[at]];
+        Vec3 normal = (positions_[t[1]] - positions_[t[0]]).cross(positions_[t[2]] - positions_[t[0]]).normalized();
+        if (normal.dot(view.back) < 0) normal = -normal;
+        const double light = 0.32 + 0.62 * std::max(0.0, normal.dot(key)) + 0.12 * normal.dot(view.up);
+        for (std::size_t k = 0; k < 3; ++k) sum[k] += std::clamp(light * (*colours[ids_[at]])[k], 0.0, 1.0);
+      }
+      for (const double value : sum) {
+        const double mean = covered > 0 ? value / covered : 0;
+        pixels.push_back(static_cast<unsigned char>(std::lround(255 * std::pow(mean, 1 / 1.25))));
+      }
+      pixels.push_back(static_cast<unsigned char>(255 * covered / (kSamples * kSamples)));
+    }
+  }
+  std::string out;
+  stbi_write_png_to_func(
+      [](void* context, void* data, int size) {
+        static_cast<std::string*>(context)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
+      },
+      &out, kWidth, kHeight, 4, pixels.data(), 4 * kWidth);
+  return out;
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "import/import.h"
+#include "segment/body_plan.h"
+
+namespace spherechain::baker {
+
+// Two patches of a posed skin that intersect.
+struct Patches {
+  std::array<std::vector<std::uint32_t>, 2> triangles;  // of each part; source numbers
+  Vec3 point;                                           // in the middle
+};
+
+// Pictures of a character in one pose, and from where its patches are seen. Parallel light and projection, no memory of
+// the pose before.
+class Picture {
+ public:
+  Picture(const std::vector<Triangle>& triangles, const BodyFrame& axes) : triangles_(triangles), axes_(axes) {}
+
+  // `positions` of the source vertices. Both hold until the next call.
+  void pose(const std::vector<Vec3>& positions);
+
+  const Vec3& position(Index vertex) const { return positions_[vertex]; }
+
+  // The direction from the patches to an eye that sees most of both; from the front where others are no better.
+  Vec3 find_eye(const Patches& patches);
+
+  // A PNG of the character around the patches, which are coloured; without patches of all of it, from the front.
+  std::string png(const Patches* patches, const Vec3& eye);
+
+ private:
+  struct View {
+    Vec3 right, up, back, middle;
+    double scale;  // pixels a unit
+    int width, height;
+  };
+  View view_from(const Vec3& back, const Vec3& middle, double extent, int width, int height) const;
+  void draw(const View& view);  // into ids_ and depths_
+
+  const std::vector<Triangle>& triangles_;
+  BodyFrame axes_;
+  std::vector<Vec3> positions_;
+  std::vector<std::array<float, 3>> projected_;
+  std::vector<std::uint32_t> ids_;  // a pixel's triangle, kNoTriangle none
+  std::vector<float> depths_;
+};
+
+}  // namespace spherechain::baker

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "check/report_folder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "check/formats.h"
+#include "mesh/error.h"
+#include "page/base64.h"
+#include "play/asset_file.h"
+#include "report/json_text.h"
+#include "report/vec3_json.h"
+#include "write/write.h"
+
+namespace spherechain::baker {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+constexpr std::size_t kStripWidth = 100;
+
+// The deepest fault that no rule excuses, over the clip: bytes of half millimetres.
+std::string strip(const JudgedClip& clip) {
+  std::vector<std::uint8_t> out(std::min<std::size_t>(kStripWidth, static_cast<std::size_t>(std::max(clip.frames, 1))), 0);
+  for (const JudgedEvent& judged : clip.events) {
+    if (!judged.rule.empty()) continue;
+    for (std::size_t i = 0; i < judged.event.depths_mm.size(); ++i) {
+      const std::size_t frame = (static_cast<std::size_t>(judged.event.from) + i) % static_cast<std::size_t>(clip.frames);
+      std::uint8_t& bar = out[frame * out.size() / static_cast<std::size_t>(clip.frames)];
+      bar = std::max(bar, static_cast<std::uint8_t>(std::clamp(2.0 * static_cast<double>(judged.event.depths_mm[i]), 0.0, 255.0)));
+    }
+  }
+  return base64(out);
+}
+
+ordered_json page_event(const JudgedEvent& judged) {
+  const Event& event = judged.event;
+  ordered_json out{{"parts", event.parts},
+                   {"text", parts_text(event)},
+                   {"class", sc_penetration_class_name(event.kind)},
+                   {"from", event.from},
+                   {"to", event.to},
+                   {"deepest", event.deepest},
+                   {"mm", std::round(10 * event.depth_mm) / 10},
+                   {"state", state_name(judged.state)},
+                   {"fails", judged.fails}};
+  if (event.volume_ml >= 0) out["ml"] = std::round(10 * event.volume_ml) / 10;
+  if (!judged.rule.empty()) out["rule"] = judged.rule;
+  if (judged.before_mm >= 0) out["before"] = judged.before_mm;
+  return out;
+}
+
+std::string data_name(const std::string& key) { return "data/" + key.substr(0, 2) + "/" + key.substr(2, 30); }
+
+ordered_json page_clip(const JudgedClip& clip) {
+  ordered_json out{{"character", clip.character}, {"clip", clip.clip.clip}};
+  if (!clip.clip.error.empty()) out["error"] = clip.clip.error;
+  if (clip.clip.key.empty() || !clip.clip.error.empty()) return out;
+  out["fps"] = clip.fps;
+  out["frames"] = clip.frames;
+  out["fit"] = clip.grade;
+  out["data"] = data_name(clip.clip.key);
+  out["body"] = data_name(clip.clip.character_key);
+  out["strip"] = strip(clip);
+  ordered_json& events = out["events"] = ordered_json::array();
+  int minor = 0;
+  for (const JudgedEvent& judged : clip.events) {
+    if (is_fault(judged.event.kind) || judged.state == EventState::kResolved) {
+      events.push_back(page_event(judged));
+    } else {
+      ++minor;
+    }
+  }
+  for (const auto& [kind, count] : clip.besides) minor += count;
+  out["minor"] = minor;
+  return out;
+}
+
+// A page refers to what it shows: nothing else stays in `data`.
+class DataFolder {
+ public:
+  DataFolder(const fs::path& report, const Store& store) : report_(report), store_(store) {}
+
+  void take(const std::string& key, const char* kind) {
+    const fs::path to = report_ / (data_name(key) + kind);
+    kept_.insert(to.lexically_relative(report_).string());
+    std::error_code error;
+    if (fs::exists(to, error)) return;
+    fs::create_directories(to.parent_path(), error);
+    const fs::path from = store_.path(key, kind);
+    fs::create_hard_link(from, to, error);
+    if (error) fs::copy_file(from, to, fs::copy_options::overwrite_existing, error);
+    if (error) throw Error(ExitCode::kFile, to.string() + ": cannot be written (" + error.message() + ")");
+  }
+
+  void remove_others() const {
+    std::error_code ignored;
+    std::vector<fs::path> others;
+    for (const auto& entry : fs::recursive_directory_iterator(report_ / "data", ignored)) {
+      if (entry.is_regular_file(ignored) && kept_.count(entry.path().lexically_relative(report_).string()) == 0)
+        others.push_back(entry.path());
+    }
+    for (const fs::path& other : others) fs::remove(other, ignored);
+  }
+
+ private:
+  fs::path report_;
+  const Store& store_;
+  std::set<std::string> kept_;
+};
+
+}  // namespace
+
+void check_report_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw Error(ExitCode::kFile, folder.string() + ": cannot be created (" + error.message() + ")");
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (fs::exists(folder / "library.js") || name[0] == '.' || name == "data") continue;
+    throw Error(ExitCode::kFile, folder.string() + ": holds other files than a report (name an empty folder)");
+  }
+  if (error) throw Error(ExitCode::kFile, folder.string() + ": cannot be read (" + error.message() + ")");
+}
+
+bool write_report(const fs::path& folder, const Verdict& verdict, const Store& store, const fs::path& pages) {
+  DataFolder data(folder, store);
+  ordered_json clips = ordered_json::array();
+  for (const JudgedClip& clip : verdict.clips) {
+    clips.push_back(page_clip(clip));
+    if (!clips.back().contains("data")) continue;
+    data.take(clip.clip.key, kPageFile);
+    data.take(clip.clip.key, kPictureFile);
+    data.take(clip.clip.character_key, kPageFile);
+  }
+  const Summary& s = verdict.summary;
+  const ordered_json library{{"fails", verdict.fails},
+                             {"characters", s.characters},
+                             {"clips", s.clips},
+                             {"frames", s.frames},
+                             {"penetrations", s.penetrations},
+                             {"deep_folds", s.deep_folds},
+                             {"new", s.fresh},
+                             {"errors", s.errors},
+                             {"rows", std::move(clips)}};
+  write_atomically(folder / "library.js", "spherechain.library = " + json_text(library, -1) + ";\n");
+  data.remove_others();
+  for (const std::string page : {"index.html", "clip.html"}) {
+    const fs::path made = pages / ("report_" + page);
+    std::error_code ignored;
+    if (!fs::is_regular_file(made, ignored)) return false;
+    write_atomically(folder / page, read_file(made.string()));
+  }
+  return true;
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "check/results.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "report/json_text.h"
+#include "report/vec3_json.h"
+
+namespace spherechain::baker {
+namespace {
+
+using nlohmann::ordered_json;
+
+Vec3 read_vec3(const ordered_json& v) { return {v.at(0).get<double>(), v.at(1).get<double>(), v.at(2).get<double>()}; }
+
+ordered_json result_event(const Event& event) {
+  ordered_json depths = ordered_json::array();  // in tenths of a millimetre
+  for (const float depth : event.depths_mm) depths.push_back(std::lround(10 * depth));
+  return {{"parts", event.parts},
+          {"inside", event.inside},
+          {"class", static_cast<int>(event.kind)},
+          {"from", event.from},
+          {"to", event.to},
+          {"deepest", event.deepest},
+          {"depth_mm", event.depth_mm},
+          {"depth_percent", event.depth_percent},
+          {"volume_ml", event.volume_ml},
+          {"direction", to_json(event.direction)},
+          {"point", to_json(event.point)},
+          {"eye", event.eye ? ordered_json(to_json(*event.eye)) : ordered_json()},
+          {"depths", std::move(depths)}};
+}
+
+Event read_result_event(const ordered_json& json) {
+  Event event;
+  json.at("parts").get_to(event.parts);
+  json.at("inside").get_to(event.inside);
+  event.kind = static_cast<PenetrationClass>(json.at("class").get<int>());
+  json.at("from").get_to(event.from);
+  json.at("to").get_to(event.to);
+  json.at("deepest").get_to(event.deepest);
+  json.at("depth_mm").get_to(event.depth_mm);
+  json.at("depth_percent").get_to(event.depth_percent);
+  json.at("volume_ml").get_to(event.volume_ml);
+  event.direction = read_vec3(json.at("direction"));
+  event.point = read_vec3(json.at("point"));
+  if (!json.at("eye").is_null()) event.eye = read_vec3(json.at("eye"));
+  for (const ordered_json& depth : json.at("depths")) event.depths_mm.push_back(depth.get<float>() / 10);
+  return event;
+}
+
+// A file that a power cut or a full disk left behind is none.
+template <typename Result, typename Read>
+std::optional<Result> read_whole(const std::string& bytes, const Read& read) {
+  const ordered_json json = ordered_json::parse(bytes, nullptr, false);
+  if (json.is_discarded()) return {};
+  try {
+    return read(json);
+  } catch (const nlohmann::json::exception&) {
+    return {};
+  }
+}
+
+}  // namespace
+
+std::string to_bytes(const ClipResult& result) {
+  ordered_json events = ordered_json::array();
+  for (const Event& event : result.events) events.push_back(result_event(event));
+  return json_text({{"frames", result.frames}, {"fps", result.fps}, {"loops", result.loops}, {"events", events}}, -1);
+}
+
+std::string to_bytes(const CharacterResult& result) {
+  return json_text({{"clips", result.clips}, {"grade", result.grade}}, -1);
+}
+
+std::optional<ClipResult> read_clip_result(const std::string& bytes) {
+  return read_whole<ClipResult>(bytes, [](const ordered_json& json) {
+    ClipResult out;
+    json.at("frames").get_to(out.frames);
+    json.at("fps").get_to(out.fps);
+    json.at("loops").get_to(out.loops);
+    for (const ordered_json& event : json.at("events")) out.events.push_back(read_result_event(event));
+    return out;
+  });
+}
+
+std::optional<CharacterResult> read_character_result(const std::string& bytes) {
+  return read_whole<CharacterResult>(bytes, [](const ordered_json& json) {
+    CharacterResult out;
+    json.at("clips").get_to(out.clips);
+    json.at("grade").get_to(out.grade);
+    return out;
+  });
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mesh/mesh.h"
+#include "spherechain/penetrations.h"
+
+// What a check finds, before any rule: the same for the same character, clip, settings and tool.
+namespace spherechain::baker {
+
+struct Event {
+  std::array<std::string, 2> parts;
+  int inside = 0;               // which of the two is the smaller: it is what a person sees in the other
+  PenetrationClass kind = SC_CLASS_REST;  // of the deepest frame, as all that follows
+  int from = 0, to = 0, deepest = 0;      // frames; from > to: it goes over the seam of a loop
+  double depth_mm = 0, depth_percent = 0;  // of the character's height
+  double volume_ml = -1;                   // -1: not known
+  Vec3 direction = Vec3::Zero();           // part 1, moved so by `depth_mm`, is free of part 0
+  Vec3 point = Vec3::Zero();               // the deepest of part 1; the pose's space, source units
+  std::optional<Vec3> eye;                 // of a fault: from the point to an eye that sees it; unit length
+  std::vector<float> depths_mm;            // of a fault: in each frame of it; 0 where it is none
+};
+
+struct ClipResult {
+  int frames = 0;
+  double fps = 30;
+  bool loops = false;
+  std::vector<Event> events;  // by where they begin
+};
+
+// What a character's check needs to know of its asset.
+struct CharacterResult {
+  std::vector<std::string> clips;  // its own; unique
+  std::string grade;               // of the fit
+};
+
+inline bool is_fault(PenetrationClass kind) { return kind >= SC_CLASS_DEEP_FOLD; }
+
+// As the bytes of a file, and back; no result where the bytes are not whole.
+std::string to_bytes(const ClipResult& result);
+std::string to_bytes(const CharacterResult& result);
+std::optional<ClipResult> read_clip_result(const std::string& bytes);
+std::optional<CharacterResult> read_character_result(const std::string& bytes);
+
+}  // namespace spherechain::baker

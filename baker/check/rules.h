@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "check/results.h"
+#include "pipeline/pipeline.h"
+
+namespace spherechain::baker {
+
+enum class Severity { kError, kWarning, kIgnore };
+
+// What is fine in a library: the part of a check that a person decides.
+struct Rules {
+  // A pair of parts that may be so deep in each other; "*" stands for any part.
+  struct Allowed {
+    std::array<std::string, 2> parts;
+    double depth_mm;
+  };
+  std::vector<Allowed> allowed;
+  std::vector<std::string> left_out;  // parts that are not looked at
+  double max_depth_mm = 0;            // any fault may be so deep
+  Severity penetration = Severity::kError, deep_fold = Severity::kWarning;
+
+  bool leaves_out(const Event& event) const;
+  // What excuses a fault, in words; empty where nothing does.
+  std::string excuse(const Event& event) const;
+  Severity severity(PenetrationClass kind) const;
+};
+
+// A config file: rules, and the settings of bakes.
+struct CheckConfig {
+  Rules rules;
+  BakeSettings bake;
+};
+
+// `json` is an object with the keys `allow`, `leave_out`, `max_depth_mm`, `severity` and `bake`, any of them; what it
+// does not have is as in `start`. Throws Error(kFile) that names `file` and the key.
+CheckConfig read_config(const std::string& json, const std::string& file, const CheckConfig& start);
+CheckConfig default_config();
+
+}  // namespace spherechain::baker

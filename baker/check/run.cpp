@@ -1,0 +1,312 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "check/run.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+
+#include "check/clip_check.h"
+#include "check/workers.h"
+#include "import/sha256.h"
+#include "mesh/error.h"
+#include "page/page.h"
+#include "play/target.h"
+
+namespace spherechain::baker {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kOwnClips = 0;             // a unit: the clips in the character's file; others are recordings
+constexpr std::size_t kClipsPerUnitMax = 100000;  // for the order of clips
+constexpr std::size_t kBatchMax = 32;             // clips of a task: it reads the character once
+
+// A file's bytes and those of the files that it names.
+std::string hash_of(const fs::path& file) {
+  check_regular_file(file);
+  std::string hashes = sha256_of_file(file);
+  for (const fs::path& beside : files_beside(file)) {
+    std::error_code ignored;
+    hashes += fs::is_regular_file(beside, ignored) ? sha256_of_file(beside) : "-";
+  }
+  return hashes;
+}
+
+std::string key_of(const std::string& what, const std::vector<std::string>& of) {
+  std::string text = what + "\n" + tool_identity();
+  for (const std::string& part : of) text += "\n" + part;
+  return sha256_of_text(text);
+}
+
+struct ChosenCharacter {
+  const LibraryCharacter* of;
+  std::size_t place;
+  std::vector<std::size_t> units;  // that are asked for
+  std::string key, error;
+};
+
+// Units weigh what their files weigh: a guess at their frames that every machine makes alike.
+std::vector<ChosenCharacter> choose(const std::vector<LibraryCharacter>& library, const Shard& shard) {
+  const auto weight = [](const fs::path& file) {
+    std::error_code error;
+    const auto size = fs::file_size(file, error);
+    return 1.0 + (error ? 0.0 : static_cast<double>(size));
+  };
+  double all = 0;
+  for (const LibraryCharacter& c : library) {
+    all += weight(c.file);
+    for (const auto& motion : c.motions) all += weight(motion.file);
+  }
+  std::vector<ChosenCharacter> out;
+  double before = 0;
+  for (std::size_t c = 0; c < library.size(); ++c) {
+    ChosenCharacter chosen{&library[c], c, {}, {}, {}};
+    for (std::size_t unit = 0; unit <= library[c].motions.size(); ++unit) {
+      const double own = weight(unit == kOwnClips ? library[c].file : library[c].motions[unit - 1].file);
+      const int part = std::min(shard.count, 1 + static_cast<int>((before + own / 2) / all * shard.count));
+      before += own;
+      if (part == shard.index) chosen.units.push_back(unit);
+    }
+    if (!chosen.units.empty()) out.push_back(std::move(chosen));
+  }
+  return out;
+}
+
+void bake_into(const Store& store, const std::string& key, const LibraryCharacter& character) {
+  const Bake baked = bake(character.file, character.config.bake, {});
+  CharacterResult result;
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < baked.character.rig.clips.size(); ++i) {
+    const std::string& own = baked.character.rig.clips[i].name;
+    const std::string name = own.empty() ? fmt::format("clip {}", i) : own;
+    std::string unique = name;
+    for (int n = 2; !names.insert(unique).second; ++n) unique = fmt::format("{} ({})", name, n);
+    result.clips.push_back(unique);
+  }
+  result.grade = fit_grade_name(baked.quality.grade());
+  store.write(key, kAssetFile, {reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size()});
+  store.write(key, kResultFile, to_bytes(result));
+}
+
+std::optional<CharacterResult> read_character(const Store& store, const std::string& key) {
+  const std::optional<std::string> bytes = store.read(key, kResultFile);
+  if (!bytes || !store.has(key, kAssetFile)) return {};
+  return read_character_result(*bytes);
+}
+
+bool is_checked(const Store& store, const CheckedClip& clip) {
+  const std::optional<std::string> bytes = store.read(clip.key, kResultFile);
+  return bytes && read_clip_result(*bytes) && store.has(clip.key, kPageFile) && store.has(clip.key, kPictureFile) &&
+         store.has(clip.character_key, kPageFile);
+}
+
+// A clip that is to be checked, in a process that has its character open.
+struct Todo {
+  CheckedClip* clip;
+  std::size_t unit, number;  // number among the file's own
+};
+
+class Run {
+ public:
+  Run(const RunOptions& options, const Store& store, const std::function<void(const RunState&)>& progress)
+      : options_(options), store_(store), progress_(progress) {}
+
+  void bake_all(std::vector<ChosenCharacter>& characters) {
+    std::deque<Task> tasks;
+    std::set<std::string> asked;
+    for (ChosenCharacter& character : characters) {
+      try {
+        character.key =
+            key_of("character", {hash_of(character.of->file), to_json(character.of->config.bake),
+                                 character.of->file.extension().string()});
+      } catch (const Error& error) {
+        character.error = error.what();
+        continue;
+      }
+      if (read_character(store_, character.key) || !asked.insert(character.key).second) continue;
+      tasks.push_back({[&](const Task::Tell& tell) { bake_in_child(character, tell); },
+                       [&](const std::string& error) { character.error = error; },
+                       [&](const std::string& failure) {
+                         if (!failure.empty()) character.error = failure_text(character.of->file, failure);
+                         ++done_;
+                       }});
+    }
+    run("baking", tasks, tasks.size());
+    for (ChosenCharacter& character : characters) {  // of one content
+      if (character.error.empty() && !read_character(store_, character.key)) {
+        character.error = character.of->file.string() + ": cannot be baked, see the same file above";
+      }
+    }
+  }
+
+  std::vector<CheckedClip> check_all(const std::vector<ChosenCharacter>& characters) {
+    std::vector<CheckedClip> clips;
+    std::vector<std::vector<Todo>> todo(characters.size());  // by the clip's index first
+    for (const ChosenCharacter& character : characters) list(character, clips);
+    for (std::size_t c = 0, i = 0; c < characters.size(); ++c) {
+      for (; i < clips.size() && clips[i].character == characters[c].place; ++i) {
+        CheckedClip& clip = clips[i];
+        if (!clip.error.empty() || clip.clip.empty() || is_checked(store_, clip)) continue;
+        todo[c].push_back({&clip, clip.order / kClipsPerUnitMax, clip.order % kClipsPerUnitMax});
+      }
+    }
+    std::size_t all = 0;
+    for (const auto& list : todo) all += list.size();
+    const std::size_t batch =
+        std::clamp<std::size_t>(all / (4 * static_cast<std::size_t>(options_.jobs)), 1, kBatchMax);
+    std::deque<Task> tasks;
+    for (std::size_t c = 0; c < characters.size(); ++c) {
+      for (std::size_t first = 0; first < todo[c].size(); first += batch) {
+        const std::size_t last = std::min(first + batch, todo[c].size());
+        add(tasks, characters[c],
+            {todo[c].begin() + static_cast<std::ptrdiff_t>(first), todo[c].begin() + static_cast<std::ptrdiff_t>(last)});
+      }
+    }
+    run("checking", tasks, all);
+    return clips;
+  }
+
+ private:
+  static std::string failure_text(const fs::path& file, const std::string& failure) {
+    return file.string() + ": " + failure;
+  }
+
+  void run(const char* doing, std::deque<Task>& tasks, std::size_t all) {
+    done_ = 0;
+    run_in_children(tasks, options_.jobs, [&] { progress_({doing, done_, all}); });
+  }
+
+  void bake_in_child(const ChosenCharacter& character, const Task::Tell& tell) const {
+    try {
+      bake_into(store_, character.key, *character.of);
+    } catch (const Error& error) {
+      tell(error.what());
+    }
+  }
+
+  // The clips of a character, checked or not.
+  void list(const ChosenCharacter& character, std::vector<CheckedClip>& out) {
+    const auto add_row = [&](std::size_t unit, std::size_t number, const std::string& name, const std::string& error) {
+      out.push_back({character.place, unit * kClipsPerUnitMax + number, name, error, {}, character.key});
+    };
+    if (!character.error.empty()) return add_row(0, 0, {}, character.error);
+    const CharacterResult result = *read_character(store_, character.key);
+    const std::string fps = fmt::format("{}", options_.fps);
+    for (const std::size_t unit : character.units) {
+      if (unit == kOwnClips) {
+        for (std::size_t i = 0; i < result.clips.size(); ++i) {
+          add_row(unit, i, result.clips[i], {});
+          out.back().key = key_of("clip", {character.key, fmt::format("{}", i), fps});
+        }
+        continue;
+      }
+      const LibraryCharacter::Motion& motion = character.of->motions[unit - 1];
+      add_row(unit, 0, motion.name, {});
+      try {
+        out.back().key = key_of("recording", {character.key, motion_hash(motion.file), fps});
+      } catch (const Error& error) {
+        out.back().error = error.what();
+      }
+    }
+    if (result.clips.empty() && character.of->motions.empty()) {
+      add_row(0, 0, {}, {});
+    }
+  }
+
+  const std::string& motion_hash(const fs::path& file) {
+    const auto [entry, is_new] = motion_hashes_.try_emplace(file.string());
+    if (is_new) {
+      try {
+        entry->second = hash_of(file);
+      } catch (...) {
+        motion_hashes_.erase(entry);
+        throw;
+      }
+    }
+    return entry->second;
+  }
+
+  void add(std::deque<Task>& tasks, const ChosenCharacter& character, std::vector<Todo> todo) {
+    const auto left = std::make_shared<std::vector<Todo>>(std::move(todo));  // the first is in work
+    Task task;
+    task.work = [this, &character, left](const Task::Tell& tell) { check_in_child(character, *left, tell); };
+    task.told = [this, left](const std::string& error) {
+      left->front().clip->error = error;
+      left->erase(left->begin());
+      ++done_;
+    };
+    task.ended = [this, &tasks, &character, left](const std::string& failure) {
+      if (left->empty()) return;
+      // What it was at when it failed does not keep the others from being checked.
+      const fs::path& file =
+          left->front().unit == kOwnClips ? character.of->file : character.of->motions[left->front().unit - 1].file;
+      left->front().clip->error = failure_text(file, failure.empty() ? "ends the check early" : failure);
+      left->erase(left->begin());
+      ++done_;
+      if (!left->empty()) add(tasks, character, *left);
+    };
+    tasks.push_back(std::move(task));
+  }
+
+  // Tells a line for each: empty, or what is wrong.
+  void check_in_child(const ChosenCharacter& character, const std::vector<Todo>& todo, const Task::Tell& tell) const {
+    const FrameChoice frames{0, options_.fps};
+    std::optional<AnimatedAsset> animated;
+    std::optional<ClipChecker> checker;
+    bool plays_own = true;
+    for (const Todo& next : todo) {
+      try {
+        if (!animated) {
+          animated.emplace(store_.path(character.key, kAssetFile).string(), character.of->file.string(), MotionChoice{},
+                           frames);
+          checker.emplace(*animated, choose_target("auto"));
+        }
+        if (next.unit != kOwnClips) {
+          animated->play({{}, {}, character.of->motions[next.unit - 1].file.string()}, frames);
+        } else if (!plays_own) {
+          animated->play({}, frames);
+        }
+        plays_own = next.unit == kOwnClips;
+        check_into(*animated, *checker, next, character.key);
+        tell({});
+      } catch (const Error& error) {
+        tell(error.what());
+      }
+    }
+  }
+
+  // The result last: where it is, all is.
+  void check_into(const AnimatedAsset& animated, ClipChecker& checker, const Todo& next,
+                  const std::string& character_key) const {
+    const ClipCheck found = checker.check(next.number);
+    const std::string& key = next.clip->key;
+    if (!store_.has(character_key, kPageFile)) {
+      store_.write(character_key, kPageFile, "spherechain.character = " + character_page(animated) + ";\n");
+    }
+    store_.write(key, kPageFile, "spherechain.clip = " + found.page + ";\n");
+    store_.write(key, kPictureFile, found.picture);
+    store_.write(key, kResultFile, to_bytes(found.result));
+  }
+
+  const RunOptions& options_;
+  const Store& store_;
+  const std::function<void(const RunState&)>& progress_;
+  std::size_t done_ = 0;
+  std::map<std::string, std::string> motion_hashes_;
+};
+
+}  // namespace
+
+std::vector<CheckedClip> check_library(const std::vector<LibraryCharacter>& library, const RunOptions& options,
+                                       const Store& store, const std::function<void(const RunState&)>& progress) {
+  std::vector<ChosenCharacter> characters = choose(library, options.shard);
+  Run run(options, store, progress);
+  run.bake_all(characters);
+  return run.check_all(characters);
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "check/library.h"
+#include "check/store.h"
+
+namespace spherechain::baker {
+
+// One clip of a library, and where its results are. Or a character that has none.
+struct CheckedClip {
+  std::size_t character = 0;       // its place in the library
+  std::size_t order = 0;           // of the clip among the character's
+  std::string clip;                // name; empty: of a character that has none
+  std::string error;               // what kept it from being checked: "FILE: what (what to do)"
+  std::string key, character_key;  // in the store: of the clip, of the character
+};
+
+// Part `index` of `count`, from 1, of a library: runs of characters and recordings of about the same size.
+struct Shard {
+  int index = 1, count = 1;
+};
+
+struct RunOptions {
+  double fps = 0;  // 0: each clip's own
+  int jobs = 1;
+  Shard shard;
+};
+
+// How far a run is.
+struct RunState {
+  const char* doing;  // "baking", "checking"
+  std::size_t done, all;
+};
+
+// Brings the results of all clips into `store`: what it has is kept, characters are baked where they must be. Whatever a
+// file does, the others are checked. Returns the clips in the library's order.
+std::vector<CheckedClip> check_library(const std::vector<LibraryCharacter>& library, const RunOptions& options,
+                                       const Store& store, const std::function<void(const RunState&)>& progress);
+
+// Kinds of files in the store. Of a character: its asset, its CharacterResult, its page. Of a clip: its ClipResult, its
+// page, its picture.
+inline constexpr const char *kAssetFile = ".sphc", *kResultFile = ".json", *kPageFile = ".js", *kPictureFile = ".png";
+
+}  // namespace spherechain::baker

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "check/verdict.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace spherechain::baker {
+namespace {
+
+bool is_counted_only(PenetrationClass kind) {
+  return kind == SC_CLASS_REST || kind == SC_CLASS_SHELL || kind == SC_CLASS_FOLD;
+}
+
+using ClipName = std::pair<std::string, std::string>;  // character, clip
+
+class Judge {
+ public:
+  Judge(const Baseline& baseline, bool folds, FailOn fail_on) : folds_(folds), fail_on_(fail_on) {
+    for (const KnownEvent& event : baseline.events) known_[{event.character, event.clip}].push_back(&event);
+  }
+
+  void events(JudgedClip& out, const ClipResult& result, const Rules& rules) const {
+    std::vector<const KnownEvent*> known;
+    if (const auto found = known_.find({out.character, out.clip.clip}); found != known_.end()) known = found->second;
+    std::set<const KnownEvent*> there;
+    for (const Event& event : result.events) {
+      if (rules.leaves_out(event)) continue;
+      if (is_counted_only(event.kind)) ++out.besides[event.kind];
+      if (is_counted_only(event.kind) && !folds_) continue;
+      JudgedEvent judged{event, EventState::kKnown, rules.excuse(event), -1, Severity::kIgnore, false};
+      if (is_fault(event.kind)) judge_fault(judged, known, there, result.fps, rules);
+      out.events.push_back(std::move(judged));
+    }
+    for (const KnownEvent* event : known) {
+      if (there.count(event) == 0) out.events.push_back(resolved(*event, result.fps));
+    }
+  }
+
+ private:
+  void judge_fault(JudgedEvent& out, const std::vector<const KnownEvent*>& known, std::set<const KnownEvent*>& there,
+                   double fps, const Rules& rules) const {
+    out.state = EventState::kNew;
+    for (const KnownEvent* one : known) {
+      if (!is_same(*one, out.event, fps)) continue;
+      there.insert(one);
+      // Of several the most that was approved.
+      if (is_worse(*one, out.event)) {
+        if (out.state == EventState::kNew) out.before_mm = std::max(out.before_mm, one->depth_mm);
+        continue;
+      }
+      out.before_mm = -1;
+      if (out.state != EventState::kAccepted) out.state = one->state;
+    }
+    out.severity = out.rule.empty() ? rules.severity(out.event.kind) : Severity::kIgnore;
+    out.fails = out.severity == Severity::kError &&
+                (fail_on_ == FailOn::kNew           ? out.state == EventState::kNew
+                 : fail_on_ == FailOn::kPenetration ? out.state != EventState::kAccepted
+                                                    : false);
+  }
+
+  static JudgedEvent resolved(const KnownEvent& known, double fps) {
+    JudgedEvent out;
+    out.state = EventState::kResolved;
+    Event& event = out.event;
+    event.parts = known.parts;
+    event.kind = known.kind;
+    event.from = static_cast<int>(std::lround(known.from * fps));
+    event.to = static_cast<int>(std::lround(known.to * fps));
+    event.deepest = event.from;
+    event.depth_mm = known.depth_mm;
+    return out;
+  }
+
+  bool folds_;
+  FailOn fail_on_;
+  std::map<ClipName, std::vector<const KnownEvent*>> known_;
+};
+
+void count(Summary& out, const JudgedClip& clip) {
+  ++out.clips;
+  out.frames += clip.frames;
+  out.seconds += clip.frames / clip.fps;
+  for (const JudgedEvent& judged : clip.events) {
+    if (judged.state == EventState::kResolved) {
+      ++out.resolved;
+      continue;
+    }
+    ++out.events;
+    if (!is_fault(judged.event.kind) || !judged.rule.empty()) continue;
+    ++(judged.event.kind == SC_CLASS_PENETRATION ? out.penetrations : out.deep_folds);
+    out.fresh += judged.state == EventState::kNew ? 1 : 0;
+    out.worse += judged.before_mm >= 0 ? 1 : 0;
+    out.accepted += judged.state == EventState::kAccepted ? 1 : 0;
+  }
+}
+
+}  // namespace
+
+Verdict judge(const std::vector<CheckedClip>& clips, const std::vector<CharacterRules>& characters, const Store& store,
+              const Baseline& baseline, bool folds, FailOn fail_on) {
+  const Judge by(baseline, folds, fail_on);
+  Verdict out;
+  out.summary.characters = static_cast<int>(characters.size());
+  std::map<std::string, std::string> grades;
+  for (const CheckedClip& clip : clips) {
+    const CharacterRules& of = characters[clip.character];
+    JudgedClip judged{of.name, of.file, {}, clip, 0, 30, false, {}, {}};
+    if (clip.error.empty() && !clip.clip.empty()) {
+      const std::optional<std::string> bytes = store.read(clip.key, kResultFile);
+      const std::optional<ClipResult> result = bytes ? read_clip_result(*bytes) : std::nullopt;
+      if (!result) judged.clip.error = of.file + ": the result of '" + clip.clip + "' is not there (check it again)";
+      if (result) {
+        judged.frames = result->frames;
+        judged.fps = result->fps;
+        judged.loops = result->loops;
+        by.events(judged, *result, of.rules);
+        count(out.summary, judged);
+      }
+      const auto [grade, is_new] = grades.try_emplace(clip.character_key);
+      if (is_new) {
+        const std::optional<std::string> character = store.read(clip.character_key, kResultFile);
+        const auto read = character ? read_character_result(*character) : std::nullopt;
+        if (read) grade->second = read->grade;
+      }
+      judged.grade = grade->second;
+    }
+    out.summary.errors += judged.clip.error.empty() ? 0 : 1;
+    const bool is_broken = !judged.clip.error.empty() && fail_on != FailOn::kNone;
+    out.fails = out.fails || is_broken || std::any_of(judged.events.begin(), judged.events.end(), [](const auto& e) { return e.fails; });
+    out.clips.push_back(std::move(judged));
+  }
+  return out;
+}
+
+Baseline accept(const Verdict& verdict, const Baseline& before) {
+  std::set<ClipName> checked;
+  for (const JudgedClip& clip : verdict.clips) {
+    if (clip.clip.error.empty()) checked.insert({clip.character, clip.clip.clip});
+  }
+  Baseline out;
+  for (const KnownEvent& event : before.events) {
+    if (checked.count({event.character, event.clip}) == 0) out.events.push_back(event);
+  }
+  for (const JudgedClip& clip : verdict.clips) {
+    for (const JudgedEvent& judged : clip.events) {
+      const Event& event = judged.event;
+      if (judged.state == EventState::kResolved || !is_fault(event.kind)) continue;
+      out.events.push_back({clip.character, clip.clip.clip, event.parts, event.kind, event.from / clip.fps,
+                            event.to / clip.fps, event.depth_mm, EventState::kAccepted});
+    }
+  }
+  return out;
+}
+
+}  // namespace spherechain::baker

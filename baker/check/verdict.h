@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "check/baseline.h"
+#include "check/rules.h"
+#include "check/run.h"
+
+namespace spherechain::baker {
+
+// A library's results by its rules and its baseline.
+
+struct JudgedEvent {
+  Event event;
+  EventState state = EventState::kNew;
+  std::string rule;  // that excuses it; empty: none
+  double before_mm = -1;  // of the known event that it is the same as, but worse; -1: it is not
+  Severity severity = Severity::kIgnore;
+  bool fails = false;
+};
+
+struct JudgedClip {
+  std::string character, file, grade;  // name; path as given; grade of the fit
+  CheckedClip clip;
+  int frames = 0;
+  double fps = 30;
+  bool loops = false;
+  std::vector<JudgedEvent> events;  // those that are looked at, then the resolved ones
+  std::map<PenetrationClass, int> besides;  // of classes that are counted only
+};
+
+struct Summary {
+  int characters = 0, clips = 0, events = 0, penetrations = 0, deep_folds = 0, fresh = 0, worse = 0, accepted = 0,
+      resolved = 0, errors = 0;
+  long frames = 0;
+  double seconds = 0;  // of motion
+};
+
+struct Verdict {
+  std::vector<JudgedClip> clips;
+  Summary summary;
+  bool fails = false;  // an event does, or a file cannot be checked
+};
+
+enum class FailOn { kPenetration, kNew, kNone };
+
+// A character's name, file and rules, by its place in the library.
+struct CharacterRules {
+  std::string name, file;
+  Rules rules;
+};
+
+// `folds`: folds, shells and contacts as at rest are listed too. Results come from `store`.
+Verdict judge(const std::vector<CheckedClip>& clips, const std::vector<CharacterRules>& characters, const Store& store,
+              const Baseline& baseline, bool folds, FailOn fail_on);
+
+// `before`, with all faults of these clips accepted and what is resolved left out. Other clips' stay.
+Baseline accept(const Verdict& verdict, const Baseline& before);
+
+}  // namespace spherechain::baker

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <thread>
+
+#include "check/formats.h"
+#include "check/report_folder.h"
+#include "check/shards.h"
+#include "cli/commands.h"
+#include "cli/installed.h"
+#include "cli/outputs.h"
+#include "cli/progress.h"
+#include "play/asset_file.h"
+#include "write/write.h"
+
+namespace spherechain::baker {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+Shard parse_shard(const std::string& text) {
+  Shard shard;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%d/%d%c", &shard.index, &shard.count, &rest) != 2 || shard.index < 1 ||
+      shard.count > 100000 || shard.index > shard.count) {
+    throw Error(ExitCode::kUsage, "--shard: '" + text + "' is not I/N, with I from 1 to N");
+  }
+  return shard;
+}
+
+FailOn parse_fail_on(const std::string& text) {
+  return text == "new" ? FailOn::kNew : text == "none" ? FailOn::kNone : FailOn::kPenetration;
+}
+
+void check_usage(const CheckOptions& options) {
+  if (options.accept && options.baseline.empty()) {
+    throw Error(ExitCode::kUsage, "--accept: needs a baseline to write (--baseline FILE)");
+  }
+  const bool is_judged = options.accept || !options.baseline.empty() || !options.json.empty() ||
+                         !options.junit.empty() || !options.sarif.empty();
+  if (!options.shard.empty() && (options.merge || is_judged)) {
+    throw Error(ExitCode::kUsage, "--shard: only computes; --merge, --baseline and reports come with the merge");
+  }
+  if (options.merge && (!options.config.empty() || !options.motion.empty() || !options.cache.empty())) {
+    throw Error(ExitCode::kUsage, "--merge: takes rules, motions and results from the shards (give --config, --motion "
+                                  "and --cache to these)");
+  }
+}
+
+// "check: 312 of 1000 clips checked, 8.1 a second, 1:25 left".
+class RunProgress {
+ public:
+  void show(const RunState& state) {
+    if (doing_ != state.doing) {
+      doing_ = state.doing;
+      start_ = Clock::now();
+    }
+    const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
+    const bool bakes = doing_ == "baking";
+    std::string text = fmt::format("{} {} of {} {}", doing_, state.done, state.all, bakes ? "characters" : "clips");
+    if (state.done > 0 && seconds > 1) {
+      const double rate = static_cast<double>(state.done) / seconds;
+      const int left = static_cast<int>(static_cast<double>(state.all - state.done) / rate);
+      text += fmt::format(", {:.1f} a second, {}:{:02} left", rate, left / 60, left % 60);
+    }
+    progress_.show(text);
+  }
+
+ private:
+  Progress progress_{"check:"};
+  std::string doing_;
+  Clock::time_point start_;
+};
+
+std::vector<CharacterRules> rules_of(const std::vector<LibraryCharacter>& library) {
+  std::vector<CharacterRules> out;
+  for (const LibraryCharacter& c : library) out.push_back({c.name, c.file.string(), c.config.rules});
+  return out;
+}
+
+ExitCode report(const CheckOptions& options, const std::vector<CheckedClip>& clips,
+                const std::vector<CharacterRules>& characters, const Store& store) {
+  const FailOn fail_on = parse_fail_on(options.fail_on);
+  Baseline baseline;
+  if (!options.baseline.empty()) baseline = read_baseline(options.baseline, options.accept);
+  Verdict verdict = judge(clips, characters, store, baseline, options.folds, fail_on);
+  if (options.accept) {
+    baseline = accept(verdict, baseline);
+    verdict = judge(clips, characters, store, baseline, options.folds, fail_on);
+  }
+  const bool has_pages = write_report(options.output, verdict, store, installed_page(""));
+  if (!options.json.empty()) write_atomically(options.json, check_json(verdict));
+  if (!options.junit.empty()) write_atomically(options.junit, check_junit(verdict));
+  if (!options.sarif.empty()) write_atomically(options.sarif, check_sarif(verdict));
+  if (options.accept) write_atomically(options.baseline, to_bytes(baseline));
+  fmt::print("{}", check_text(verdict));
+  if (has_pages) {
+    fmt::print("wrote {}: open it in a browser\n", (fs::path(options.output) / "index.html").string());
+  } else {
+    fmt::print("wrote {}, without pages: they are built where Node and npm are\n", options.output);
+  }
+  return verdict.fails ? ExitCode::kCheckFailed : ExitCode::kDone;
+}
+
+}  // namespace
+
+ExitCode run_check(const CheckOptions& options) {
+  check_usage(options);
+  CheckConfig config = default_config();
+  if (!options.config.empty()) config = read_config(read_file(options.config), options.config, config);
+  config.rules.max_depth_mm = std::max(config.rules.max_depth_mm, options.max_depth);
+  check_outputs({{"--config", options.config}}, {{"--baseline", options.accept ? options.baseline : ""},
+                                                 {"--json", options.json},
+                                                 {"--junit", options.junit},
+                                                 {"--sarif", options.sarif}});
+  if (options.merge) {
+    check_report_folder(options.output);
+    const fs::path work = fs::path(options.output) / ".results";
+    const Store store(work);
+    const ShardResult all = merge_shards(options.library, store);
+    const ExitCode code = report(options, all.clips, all.characters, store);
+    fs::remove_all(work);
+    return code;
+  }
+  const std::vector<LibraryCharacter> library = read_library(options.library, options.motion, config);
+  RunOptions run;
+  run.fps = options.fps;
+  run.jobs = options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  const auto check = [&](const Store& store) {
+    RunProgress progress;
+    return check_library(library, run, store, [&](const RunState& state) { progress.show(state); });
+  };
+  if (!options.shard.empty()) {
+    run.shard = parse_shard(options.shard);
+    const Store store(options.cache.empty() ? fs::path(options.output) / kShardStore : fs::path(options.cache));
+    const ShardResult result{run.shard, rules_of(library), check(store)};
+    write_shard(options.output, result, store);
+    fmt::print("wrote {}: {} clips, shard {} of {}\n", options.output, result.clips.size(), run.shard.index,
+               run.shard.count);
+    return ExitCode::kDone;
+  }
+  check_report_folder(options.output);
+  const fs::path work = options.cache.empty() ? fs::path(options.output) / ".results" : fs::path(options.cache);
+  const Store store(work);
+  const ExitCode code = report(options, check(store), rules_of(library), store);
+  if (options.cache.empty()) fs::remove_all(work);
+  return code;
+}
+
+}  // namespace spherechain::baker

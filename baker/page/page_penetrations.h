@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "page/base64.h"
+#include "spherechain/penetrations.h"
+
+namespace spherechain::baker {
+
+// Lists of a frame each, one after another: all entries, and how many each frame has.
+template <typename T>
+class FrameLists {
+ public:
+  void add(const std::vector<T>& list) {
+    counts_.push_back(static_cast<std::uint32_t>(list.size()));
+    entries_.insert(entries_.end(), list.begin(), list.end());
+    ends_.push_back(entries_.size());
+  }
+  std::vector<T> of(std::size_t frame) const {
+    const auto at = [&](std::size_t end) { return entries_.begin() + static_cast<std::ptrdiff_t>(end); };
+    return {at(frame > 0 ? ends_[frame - 1] : 0), at(ends_[frame])};
+  }
+  nlohmann::ordered_json json() const { return {{"counts", base64(counts_)}, {"entries", base64(entries_)}}; }
+  std::size_t bytes() const { return entries_.size() * sizeof(T); }
+
+ private:
+  std::vector<std::uint32_t> counts_;
+  std::vector<std::size_t> ends_;
+  std::vector<T> entries_;
+};
+
+// Parts a and b, class, depth in mm, direction, the deepest point of b, the share that is visible, volume in ml or -1.
+using PenetrationEntry = std::array<float, 12>;
+inline std::vector<PenetrationEntry> entries_of(const std::vector<Penetration>& penetrations, double mm) {
+  std::vector<PenetrationEntry> out;
+  for (const Penetration& p : penetrations) {
+    const double ml = p.is_closed != 0 ? std::pow(mm / 10, 3) * double{p.volume} : -1;
+    const spherechain::Vec3 &d = p.direction, &at = p.deepest_b.position;
+    out.push_back({static_cast<float>(p.part_a), static_cast<float>(p.part_b), static_cast<float>(p.kind),
+                   static_cast<float>(mm * double{p.depth}), d.x, d.y, d.z, at.x, at.y, at.z, p.visible,
+                   static_cast<float>(ml)});
+  }
+  return out;
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "play/skin_player.h"
+
+#include <algorithm>
+
+#include "play/play.h"
+
+namespace spherechain::baker {
+
+BonePose::BonePose(const OpenAsset& asset, const Deformation& deformation)
+    : bones_(bone_palette(asset, deformation)), morphs_(deformation.morphs.begin(), deformation.morphs.end()) {
+  morphs_.resize(asset->morph_count());
+}
+
+sc_pose BonePose::pose() const {
+  sc_pose pose;
+  pose.bones = bones_.data();
+  pose.bone_count = bones_.size() / 12;
+  pose.bone_layout = SC_ROWS_3X4;
+  pose.morph_weights = morphs_.empty() ? nullptr : morphs_.data();
+  pose.morph_weight_count = morphs_.size();
+  return pose;
+}
+
+bool moved_by_bones(const OpenAsset& asset, const Deformation& deformation) {
+  return asset->bone_count() > 0 && deformation.positions.empty();
+}
+
+SkinPlayer::SkinPlayer(const OpenAsset& asset, Target target)
+    : asset_(asset), target_(target), scratch_(sc_skin_scratch_words(asset.handle())) {}
+
+const std::vector<TriangleContact>& SkinPlayer::find(const sc_pose& pose) {
+  SkinContactJob job;
+  job.asset = asset_.handle();
+  job.pose = pose;
+  job.target = target_;
+  job.skin_table = asset_.skin_table();
+  job.scratch = scratch_.data();
+  job.scratch_words = scratch_.size();
+  contacts_.resize(std::max<std::size_t>(contacts_.capacity(), 256));
+  for (;;) {
+    job.triangles = contacts_.data();
+    job.triangle_capacity = contacts_.size();
+    const Status status = job.run();
+    if (status.code != SC_OVERFLOW) check_runtime(status);
+    const bool fits = job.triangle_count <= contacts_.size();
+    contacts_.resize(job.triangle_count);
+    if (fits) break;
+  }
+  part_count_ = job.part_count;
+  return contacts_;
+}
+
+const std::vector<Penetration>& SkinPlayer::measure(const sc_pose& pose, bool is_next) {
+  std::swap(penetrations_, before_);
+  PenetrationJob job;
+  job.asset = asset_.handle();
+  job.pose = pose;
+  job.target = target_;
+  job.skin_table = asset_.skin_table();
+  job.contacts = contacts_.data();
+  job.contact_count = contacts_.size();
+  job.previous = is_next ? before_.data() : nullptr;
+  job.previous_count = is_next ? before_.size() : 0;
+  const std::size_t words = sc_penetration_scratch_words(job.asset, contacts_.size());
+  measure_scratch_.resize(std::max(measure_scratch_.size(), words));
+  job.scratch = measure_scratch_.data();
+  job.scratch_words = measure_scratch_.size();
+  penetrations_.resize(part_count_);
+  job.penetrations = penetrations_.data();
+  job.penetration_capacity = penetrations_.size();
+  check_runtime(job.run());
+  return penetrations_;
+}
+
+}  // namespace spherechain::baker

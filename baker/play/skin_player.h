@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "motion/motion.h"
+#include "play/asset_file.h"
+#include "spherechain/penetrations.h"
+#include "spherechain/skin_contacts.h"
+
+namespace spherechain::baker {
+
+// A deformation as the runtime takes it: by bones and morph weights, for an asset that these move.
+class BonePose {
+ public:
+  BonePose(const OpenAsset& asset, const Deformation& deformation);
+  sc_pose pose() const;
+
+ private:
+  std::vector<float> bones_, morphs_;
+};
+bool moved_by_bones(const OpenAsset& asset, const Deformation& deformation);
+
+// The runtime's exact contacts of one pose after another, and what they measure. The asset must have clusters.
+class SkinPlayer {
+ public:
+  SkinPlayer(const OpenAsset& asset, Target target);
+
+  // The triangles that intersect. Both lists hold until the next call.
+  const std::vector<TriangleContact>& find(const sc_pose& pose);
+  // What find() found in that pose, sorted by body parts. `is_next`: the pose follows the last one measured, and
+  // directions may follow that one's.
+  const std::vector<Penetration>& measure(const sc_pose& pose, bool is_next);
+
+ private:
+  const OpenAsset& asset_;
+  Target target_;
+  std::vector<std::uint64_t> scratch_, measure_scratch_;
+  std::vector<TriangleContact> contacts_;
+  std::vector<Penetration> penetrations_, before_;
+  std::size_t part_count_ = 0;  // pairs of parts in contact
+};
+
+}  // namespace spherechain::baker
