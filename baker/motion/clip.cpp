@@ -24,17 +24,19 @@ bool keys_are_frames(const Clip& clip, double rate) {
 }  // namespace
 
 double rate_of(const Clip& clip) {
-  constexpr double kOtherwise = 30, kMin = 5, kMax = 480;
-  for (const double rate : {30.0, 24.0, 25.0, 60.0, 50.0, 48.0, 120.0, 100.0}) {
-    if (keys_are_frames(clip, rate)) return rate;
-  }
   double densest = 0;
   for (const Channel& channel : clip.channels) {
     const std::vector<double>& times = channel.times;
     if (times.size() < 2 || times.back() <= times.front()) continue;
     densest = std::max(densest, static_cast<double>(times.size() - 1) / (times.back() - times.front()));
   }
-  return densest < kMin || densest > kMax ? kOtherwise : densest;
+  constexpr double kOtherwise = 30, kMin = 5, kMax = 480;
+  for (const double rate : {30.0, 24.0, 25.0, 60.0, 50.0, 48.0, 120.0, 100.0}) {
+    // Keys that are few lie on the frames of any high rate.
+    const bool is_likely = rate <= 30 || rate < 2.5 * densest;
+    if (is_likely && keys_are_frames(clip, rate)) return rate;
+  }
+  return densest < kMin || densest > kMax ? kOtherwise : std::round(1000 * densest) / 1000;
 }
 
 std::vector<Affine> world_at(const SourceRig& rig, const Clip& clip, double seconds) {
