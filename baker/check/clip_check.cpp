@@ -128,11 +128,18 @@ ClipChecker::Frames ClipChecker::look(const ClipFrames& clip) {
   return out;
 }
 
+// A hand is in a thigh, a foot in a shin: what hangs farther out is in the other; of two alike the smaller.
+std::pair<int, double> ClipChecker::rank(std::uint32_t part) const {
+  int joints = 0;
+  for (int p = parts_.parts[part].parent; p >= 0; p = parts_.parts[static_cast<std::size_t>(p)].parent) ++joints;
+  return {joints, -areas_[part]};
+}
+
 Event ClipChecker::event_of(const Frames& frames, const EventSpan& span, const ClipFrames& clip) {
   const PartMeeting& worst = frames.meetings[span.deepest];
   Event event;
   event.parts = {parts_.parts[worst.part_a].name, parts_.parts[worst.part_b].name};
-  event.inside = areas_[worst.part_a] < areas_[worst.part_b] ? 0 : 1;
+  event.inside = rank(worst.part_a) > rank(worst.part_b) ? 0 : 1;
   event.kind = worst.kind;
   event.from = span.from;
   event.to = span.to;

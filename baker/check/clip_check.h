@@ -31,6 +31,7 @@ class ClipChecker {
  private:
   struct Frames;  // what was seen, frame by frame
   void take_sample();
+  std::pair<int, double> rank(std::uint32_t part) const;
   Frames look(const ClipFrames& clip);
   Event event_of(const Frames& frames, const struct EventSpan& span, const ClipFrames& clip);
   void show(ClipCheck& out, const Frames& frames, const ClipFrames& clip);

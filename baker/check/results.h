@@ -14,8 +14,8 @@ namespace spherechain::baker {
 
 struct Event {
   std::array<std::string, 2> parts;
-  int inside = 0;               // which of the two is the smaller: it is what a person sees in the other
-  PenetrationClass kind = SC_CLASS_REST;  // of the deepest frame, as all that follows
+  int inside = 0;                          // which of the two a person sees in the other
+  PenetrationClass kind = SC_CLASS_REST;   // of the deepest frame, as all that follows
   int from = 0, to = 0, deepest = 0;      // frames; from > to: it goes over the seam of a loop
   double depth_mm = 0, depth_percent = 0;  // of the character's height
   double volume_ml = -1;                   // -1: not known

@@ -66,22 +66,22 @@ export function fillControls(panel, store, model) {
     store.watch([key], (state) => (button.hidden = state[key].size === 0));
     return button;
   };
-  panel.replaceChildren(
+  const content = [
     h('h2', {}, 'Show'),
     h('div', { class: 'row' }, check(store, 'skin', 'Skin', 'S'), slider(store, 'skinOpacity', 'Opacity of the skin')),
     check(store, 'hiddenContacts', 'Contacts behind the skin', 'H'),
     model.frameCount > 1 && check(store, 'follow', 'Hold the character in place', 'F'),
-    h(
+    model.spheres.length > 0 && h(
       'div',
       { class: 'row' },
       check(store, 'spheres', 'Spheres', 'B', (shown) => store.showSpheres(shown)),
       slider(store, 'sphereOpacity', 'Opacity of the spheres'),
     ),
-    legend(store),
+    model.spheres.length > 0 && legend(store),
     h('h2', {}, 'Body parts', link('hiddenParts', 'show all')),
     h('div', { class: 'parts' }, partToggles(store, model)),
-    h('h2', {}, 'Under the hood'),
-    check(store, 'method', 'Method', 'M', (shown) => store.showMethod(shown)),
+    model.spheres.length > 0 && h('h2', {}, 'Under the hood'),
+    model.spheres.length > 0 && check(store, 'method', 'Method', 'M', (shown) => store.showMethod(shown)),
     h(
       'div',
       { class: 'method' },
@@ -96,5 +96,6 @@ export function fillControls(panel, store, model) {
       of('level').length > 0 && h('h2', {}, 'Torso levels and sides'),
       h('div', { class: 'chips' }, setToggles(store, of('level')), h('span', { class: 'gap' }), setToggles(store, of('side'))),
     ),
-  );
+  ];
+  panel.replaceChildren(...content.filter(Boolean));
 }

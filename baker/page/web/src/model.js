@@ -82,9 +82,7 @@ function readCosts({ chains, all_pairs: allPairs, refit_us: refit, contacts_us: 
   return { chains: costs(chains), allPairs: costs(allPairs), refit: list(refit, Float32Array), skin: list(skin, Float32Array) };
 }
 
-export function readModel(text) {
-  const data = JSON.parse(text);
-  if (data === null) return null;
+export function readModel(data) {
   const spheres = readSpheres(data);
   for (const { spheres: chain } of data.inspect.chains) {
     for (let i = 1; i < chain.length; ++i) {
@@ -134,7 +132,7 @@ export function readModel(text) {
     frameCount: Math.max(count, 1),
     fps: frames?.fps || 30,
     clips,
-    costs: count > 0 ? readCosts(frames) : null,
+    costs: frames?.chains ? readCosts(frames) : null,
     contacts: new Contacts(contactLists, partOf, partName, pairLists(frames?.penetrations, Float32Array, MEASURES)),
 
     clipAt: (frame) => Math.max(clips.findLastIndex(({ first }) => first <= frame), 0),

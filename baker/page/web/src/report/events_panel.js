@@ -1,0 +1,104 @@
+import { h } from '../dom.js';
+import { clipLink, readLink } from './links.js';
+import { isAccepted, isFault, onMarks, toggleAccepted } from './marks.js';
+
+// The clip's events. One is chosen: the page is at its deepest frame, and the camera where it is seen.
+
+const millimetres = (mm) => `${mm < 9.95 ? mm.toFixed(1) : Math.round(mm)} mm`;
+
+const timecode = (frame, fps) => {
+  const seconds = Math.floor(frame / fps);
+  const two = (value) => `${value}`.padStart(2, '0');
+  return `${two(Math.floor(seconds / 60))}:${two(seconds % 60)}:${two(Math.floor(frame - seconds * fps))}`;
+};
+
+const CLASSES = { penetration: 'penetration', deep_fold: 'deep fold' };
+
+export function fillEvents(panel, { rows, row, model, store, flyToContact }) {
+  const events = row.events;
+  const names = model.parts.map(({ name }) => name);
+  const partOf = (name) => model.parts[names.indexOf(name)]?.part;
+  let chosen = readLink().event;
+
+  const go = (index) => {
+    const event = events[index];
+    if (!event || event.state === 'resolved') return;
+    chosen = index;
+    history.replaceState(null, '', clipLink(row, index));
+    const key = event.parts.map(partOf).sort((a, b) => a - b).join('-');
+    store.set({ frame: event.deepest, playing: false, contact: key });
+    flyToContact(key);
+    draw();
+  };
+
+  const state = (event) => {
+    if (event.state === 'resolved') return 'gone';
+    if (event.rule) return event.rule;
+    if (isAccepted(row, event)) return 'accepted';
+    return event.before ? `worse than ${millimetres(event.before)}` : event.state;
+  };
+
+  const item = (event, index) => {
+    const gone = event.state === 'resolved';
+    const frames = event.from === event.to ? `frame ${event.from}` : `frames ${event.from}–${event.to}`;
+    return h(
+      'li',
+      { class: index === chosen ? 'chosen' : '' },
+      h(
+        'button',
+        { type: 'button', class: 'pair event', 'aria-pressed': index === chosen, disabled: gone, onclick: () => go(index) },
+        h('span', { class: 'part-names' }, event.text),
+        h('span', { class: 'count' }, millimetres(event.mm)),
+        h('span', { class: 'when' }, `${frames}, worst at ${event.deepest} (${timecode(event.deepest, row.fps)})`),
+        h('span', { class: `when ${event.fails && !isAccepted(row, event) ? 'warning' : ''}` }, `${CLASSES[event.class] ?? event.class}, ${state(event)}${event.ml === undefined ? '' : `, ${event.ml} ml`}`),
+      ),
+      index === chosen && isFault(event) && !event.rule && event.state !== 'accepted' &&
+        h('button', { type: 'button', class: 'accept', onclick: () => { toggleAccepted(row, event); draw(); } }, isAccepted(row, event) ? 'Accepted: take back (A)' : 'Accept (A)'),
+    );
+  };
+
+  const list = h('ol', { class: 'pairs', id: 'clip-events' });
+  const summary = h('p', { class: 'summary', role: 'status' });
+  const note = h('p', { class: 'note' }, 'N and P: next and previous event, in the next clip too. Accepted events go into the baseline that the library page exports.');
+  panel.append(summary, list, note);
+
+  function draw() {
+    summary.textContent = events.length === 0 ? 'No fault in this clip.' : `${events.length} ${events.length === 1 ? 'fault' : 'faults'}`;
+    list.replaceChildren(...events.map(item));
+    list.querySelector('.chosen')?.scrollIntoView({ block: 'nearest' });
+  }
+
+  // The next event with a fault, here or in the rows that follow.
+  const step = (by) => {
+    const stops = rows.flatMap((other) => (other.data ? other.events.map((event, index) => ({ other, event, index })) : []));
+    const shown = stops.filter(({ event }) => event.state !== 'resolved');
+    const before = ({ other, index }) => rows.indexOf(other) < rows.indexOf(row) || (other === row && index < (chosen ?? (by > 0 ? 0 : -1)));
+    const here = shown.findIndex(({ other, index }) => other === row && index === chosen);
+    const next = here >= 0 ? shown[here + by] : by > 0 ? shown.find((stop) => !before(stop)) : shown.filter(before).at(-1);
+    if (!next) return;
+    if (next.other === row) go(next.index);
+    else location.href = clipLink(next.other, next.index); // hashchange loads it
+  };
+  const accept = () => {
+    const event = events[chosen];
+    if (!event || !isFault(event) || event.rule || event.state === 'accepted') return;
+    toggleAccepted(row, event);
+    draw();
+  };
+  const keys = { n: () => step(1), p: () => step(-1), a: accept, escape: () => {} };
+  document.addEventListener(
+    'keydown',
+    (event) => {
+      const action = keys[event.key.toLowerCase()];
+      if (!action || event.key === 'Escape' || event.ctrlKey || event.metaKey || event.altKey) return;
+      event.preventDefault();
+      event.stopImmediatePropagation();
+      action();
+    },
+    true,
+  );
+  onMarks(draw);
+  draw();
+  if (chosen !== null) go(chosen);
+  else if (events.length > 0) store.set({ frame: 0 });
+}

@@ -1,0 +1,168 @@
+import 'uplot/dist/uPlot.min.css';
+import './style.css';
+import { fillAccuracyPanel } from './accuracy_panel.js';
+import { fillBakePanel } from './bake_panel.js';
+import { fillCharts } from './charts.js';
+import { fillClips } from './clips.js';
+import { fillContactPanel } from './contact_panel.js';
+import { ContactLayer } from './contact_layer.js';
+import { fillControls } from './controls.js';
+import { css } from './dom.js';
+import { dress } from './dress.js';
+import { bindKeys } from './keys.js';
+import { drawOverlay } from './overlay.js';
+import { followPointer } from './pointer.js';
+import { fillSphereCard, fillSpherePanel } from './sphere_panel.js';
+import { Skin } from './skin.js';
+import { SkinLayer } from './skin_layer.js';
+import { SphereLayer } from './sphere_layer.js';
+import { createStage } from './stage.js';
+import { createStore } from './store.js';
+import { bindTabs } from './tabs.js';
+import { fillTimeline } from './timeline.js';
+
+const $ = (id) => document.getElementById(id);
+
+function bindTheme(store) {
+  const toggle = () => store.set({ theme: store.state.theme === 'dark' ? 'light' : 'dark' });
+  $('theme').addEventListener('click', toggle);
+  store.watch(['theme'], ({ theme }) => (document.documentElement.dataset.theme = theme));
+  matchMedia('(prefers-color-scheme: dark)').addEventListener('change', (event) =>
+    store.set({ theme: event.matches ? 'dark' : 'light' }),
+  );
+  return toggle;
+}
+
+// In a narrow window the controls come and go over the picture.
+function bindDrawer() {
+  const button = $('show');
+  button.addEventListener('click', () => {
+    const open = document.body.classList.toggle('controls-open');
+    button.setAttribute('aria-expanded', open);
+  });
+}
+
+// The clip shown plays again and again.
+function runPlayback(store, model) {
+  let start = null;
+  const tick = (now) => {
+    if (!store.state.playing) return;
+    const { first, count } = model.clips[model.clipAt(store.state.frame)];
+    start ??= { clip: first, time: now - (1000 * (store.state.frame - first)) / model.fps };
+    if (start.clip !== first) start = { clip: first, time: now };
+    store.set({ frame: first + (Math.floor(((now - start.time) * model.fps) / 1000) % count) });
+    requestAnimationFrame(tick);
+  };
+  store.watch(['playing'], ({ playing }) => {
+    start = null;
+    if (playing && model.frameCount > 1) requestAnimationFrame(tick);
+    else if (playing) store.set({ playing: false });
+  });
+}
+
+const shown = {
+  skin: true,
+  skinOpacity: 1,
+  hiddenContacts: true,
+  follow: true,
+  spheres: false,
+  sphereOpacity: 0.8,
+  method: false,
+  regions: false, // in their colours
+  patches: false, // spheres' triangles in tones
+  pivots: false,
+  numbers: false,
+  oneClip: false, // on the timeline
+  hiddenParts: new Set(),
+  sets: new Set(),
+  contact: null, // the key of the contact last gone to
+  alarm: null, // "a-b": the pair of spheres last gone to
+  pinned: null,
+  pointed: null, // the sphere under the pointer, else the one pinned
+};
+
+function bindStage(stage, store, model, layers, skin) {
+  const visible = new Set();
+  let eye = null;
+  stage.onDraw(
+    (from) => {
+      eye = from;
+      layers.sphereLayer.upload(eye);
+      layers.contactLayer.shared.ratio.value = stage.pixelRatio();
+    },
+    (project) => drawOverlay($('overlay'), { model, skin, state: store.state, project, eye, visible }),
+  );
+  store.watch(['theme'], () => stage.setInk(css('--ink')));
+  store.watch(Object.keys(store.state), () => {
+    dress(model, store.state, layers, visible);
+    stage.invalidate();
+  });
+  followPointer($('view'), store, model, stage, visible);
+  for (const button of document.querySelectorAll('[data-view]')) {
+    button.addEventListener('click', () => stage.view(button.dataset.view));
+  }
+}
+
+// Shows a model in the page. Returns what other parts of a page need of it.
+export function start(model) {
+  document.title = `${model.title} · spherechain`;
+  $('title').textContent = model.title;
+  const startState = { ...shown, radius: model.radius };
+  const theme = matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light';
+  const store = createStore({ ...startState, frame: 0, playing: false, theme });
+  const toggleTheme = bindTheme(store);
+  const skin = new Skin(model.mesh, model.motion);
+  let most = 0;
+  for (let frame = 0; frame < model.frameCount; ++frame) most = Math.max(most, model.contacts.count(frame));
+  const layers = {
+    skinLayer: new SkinLayer(skin),
+    sphereLayer: new SphereLayer(model.spheres.length),
+    contactLayer: new ContactLayer(skin, most),
+  };
+  skin.pose(0);
+  const stage = createStage($('view'), model, store, layers);
+  if (stage) bindStage(stage, store, model, layers, skin);
+  else $('no-webgl').hidden = false;
+
+  const flyToSpheres = (a, b) => {
+    const { frame, radius } = store.state;
+    stage?.flyToSpheres(model.sphere(frame, a, radius), model.sphere(frame, b, radius));
+  };
+  const flyToContact = (key) => {
+    const contact = model.contacts.of(store.state.frame).find((other) => other.key === key);
+    if (contact) stage?.flyToContact(skin.ballOf(contact.triangles));
+  };
+  fillClips($('clip'), store, model);
+  fillControls($('controls'), store, model);
+  const deepest = fillContactPanel($('contacts'), store, model, flyToContact);
+  fillSpherePanel($('spheres'), store, model, flyToSpheres);
+  fillSphereCard($('sphere'), store, model);
+  const timeline = fillTimeline($('timeline'), store, model);
+  fillCharts($('charts'), store, model);
+  fillAccuracyPanel($('accuracy'), store, model, flyToSpheres);
+  fillBakePanel($('bake'), model);
+  bindTabs(store);
+  bindDrawer();
+  const reset = () => {
+    store.set(startState);
+    stage?.view('front');
+  };
+  $('reset').addEventListener('click', reset);
+  $('help-button').addEventListener('click', () => $('help').showModal());
+  $('licences').textContent = LICENCES;
+  const chains = model.sets.filter((set) => set.kind === 'chain').map((set) => set.name);
+  bindKeys(store, { timeline, stage, help: $('help'), toggleTheme, reset, deepest, chains });
+  runPlayback(store, model);
+
+  window.spherechainViewer = Object.freeze({
+    get frame() {
+      return store.state.frame;
+    },
+    setFrame: (frame) => timeline.go(frame),
+    contacts: () =>
+      model.contacts.of(store.state.frame).map(({ name, pairs, triangles, kind, depth }) => ({ name, pairs, triangles: [...triangles], kind, depth })),
+    hovered: () => store.state.pointed,
+    ready: true,
+  });
+  return { store, flyToContact };
+}
