@@ -126,7 +126,7 @@ std::string Picture::png(const Patches* patches, const Vec3& eye) {
   if (patches != nullptr) {
     for (const std::uint32_t t : patches->triangles[0]) colours[t] = &kFirst;
     for (const std::uint32_t t : patches->triangles[1]) colours[t] = &kSecond;
-    extent = 0.55 * axes_.height;
+    extent = 0.4 * axes_.height;
     middle = patches->point;
   }
   const int width = kWidth * kSamples, height = kHeight * kSamples;

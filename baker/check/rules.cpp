@@ -108,7 +108,8 @@ Severity Rules::severity(PenetrationClass kind) const {
 CheckConfig read_config(const std::string& text, const std::string& file, const CheckConfig& start) {
   const ConfigReader reader(file);
   CheckConfig config = start;
-  for (const auto& [key, value] : reader.parse(text).items()) {
+  const json object = reader.parse(text);
+  for (const auto& [key, value] : object.items()) {
     if (key == "allow") {
       reader.allow(value, config.rules.allowed);
     } else if (key == "leave_out") {

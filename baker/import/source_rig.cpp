@@ -34,7 +34,9 @@ Eigen::Vector4d sample(const Channel& channel, double seconds) {
     return channel.path == ChannelPath::kRotation ? to_quaternion(v).coeffs() : v;
   };
   const std::vector<double>& times = channel.times;
-  const auto above = std::upper_bound(times.begin(), times.end(), seconds);
+  // Files round times to floats: a step that is on a frame is not after it.
+  const double rounding = channel.interpolation == Interpolation::kStep ? 1e-6 * (1 + seconds) : 0;
+  const auto above = std::upper_bound(times.begin(), times.end(), seconds + rounding);
   if (above == times.begin()) return finished(value(0, 1));
   const auto low = static_cast<std::size_t>(above - times.begin()) - 1;
   if (above == times.end() || channel.interpolation == Interpolation::kStep) return finished(value(low, 1));

@@ -40,7 +40,7 @@ export function fillEvents(panel, { rows, row, model, store, flyToContact }) {
 
   const item = (event, index) => {
     const gone = event.state === 'resolved';
-    const frames = event.from === event.to ? `frame ${event.from}` : `frames ${event.from}–${event.to}`;
+    const frames = event.from === event.to ? `frame ${event.from}` : `frames ${event.from}–${event.to}${event.from > event.to ? ' over the loop' : ''}`;
     return h(
       'li',
       { class: index === chosen ? 'chosen' : '' },
@@ -85,12 +85,12 @@ export function fillEvents(panel, { rows, row, model, store, flyToContact }) {
     toggleAccepted(row, event);
     draw();
   };
-  const keys = { n: () => step(1), p: () => step(-1), a: accept, escape: () => {} };
+  const keys = { n: () => step(1), p: () => step(-1), a: accept };
   document.addEventListener(
     'keydown',
     (event) => {
       const action = keys[event.key.toLowerCase()];
-      if (!action || event.key === 'Escape' || event.ctrlKey || event.metaKey || event.altKey) return;
+      if (!action || event.ctrlKey || event.metaKey || event.altKey) return;
       event.preventDefault();
       event.stopImmediatePropagation();
       action();
@@ -100,5 +100,4 @@ export function fillEvents(panel, { rows, row, model, store, flyToContact }) {
   onMarks(draw);
   draw();
   if (chosen !== null) go(chosen);
-  else if (events.length > 0) store.set({ frame: 0 });
 }

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `spherechain check` on a library whose faults are known.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "planted_library.h"
+#include "tool.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+const std::vector<PlantedClip> kClips{
+    {"clean", {-100, -50, -100, -200}},
+    {"dip", {-50, -50, 60, 120, 200, 80, -50, -50}},
+    {"bridged", {100, -50, -50, -50, 150, -50}},
+    {"twice", {100, -50, -50, -50, -50, 150, -50}},
+    {"still", {90}},
+    {"loop", {150, 90, -50, -50, -50, -50, -50, -50, 80, 150}},
+};
+
+struct Library {
+  TemporaryFolder folder;
+  fs::path file = folder.write("hero.glb", planted_character(kClips));
+
+  std::string report() const { return (folder.path / "report").string(); }
+  std::string path(const char* name) const { return (folder.path / name).string(); }
+  tool::Run check(const std::string& more) const {
+    return tool::run(fmt::format("check {} -o {} {}", file.string(), report(), more));
+  }
+  json read(const char* name) const { return json::parse(tool::contents(folder.path / name)); }
+};
+
+// "from-to@deepest:depth state", one after another.
+std::string events(const json& report, const std::string& clip) {
+  std::string out;
+  for (const json& one : report["clips"]) {
+    if (one["clip"] != clip) continue;
+    for (const json& event : one["events"]) {
+      CHECK(event["parts"] == json{"wall", "ball"});
+      out += fmt::format("{}{}-{}@{}:{:.0f} {}", out.empty() ? "" : ", ", event["from"].get<int>(), event["to"].get<int>(),
+                         event["deepest"].get<int>(), event["depth_mm"].get<double>(), event["state"].get<std::string>());
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("check reports planted faults: parts, frames and depth") {
+  const Library library;
+  const tool::Run run = library.check("--json " + library.path("all.json"));
+  CHECK_MESSAGE(run.code == 6, run.error);
+  CHECK(run.out.find("hero.glb dip      frames 2-5                    ball in wall  200 mm  (worst at 4)\n") != std::string::npos);
+  CHECK(run.out.find("hero.glb still    frame 0 ") != std::string::npos);
+  const json report = library.read("all.json");
+  CHECK(events(report, "clean").empty());
+  CHECK(events(report, "dip") == "2-5@4:200 new");
+  CHECK(events(report, "bridged") == "0-4@4:150 new");
+  CHECK(events(report, "twice") == "0-0@0:100 new, 5-5@5:150 new");
+  CHECK(events(report, "still") == "0-0@0:90 new");
+  CHECK(events(report, "loop") == "8-1@0:150 new");
+  const json& event = report["clips"][1]["events"][0];
+  CHECK(event["class"] == "penetration");
+  CHECK(event["rule"].is_null());
+  CHECK(event["direction"][0] > 0.99);  // moves the ball, the second
+  CHECK(event["volume_ml"].is_number());
+  CHECK(event["camera"]["back"].size() == 3);
+  const json& summary = report["summary"];
+  CHECK(summary["characters"] == 1);
+  CHECK(summary["clips"] == 6);
+  CHECK(summary["frames"] == 36);
+  CHECK(summary["events"] == 6);
+  CHECK(summary["penetrations"] == 6);
+  CHECK(summary["new"] == 6);
+  CHECK(summary["seconds"] == doctest::Approx(36 / 30.0));
+  for (const json& clip : report["clips"]) CHECK(clip["fps"] == 30);
+  // A report is a folder of data at least; nothing else stays.
+  CHECK(fs::exists(library.folder.path / "report/library.js"));
+  CHECK_FALSE(fs::exists(library.folder.path / "report/.results"));
+}
+
+TEST_CASE("check fails by its rules and its baseline alone") {
+  Library library;
+  const std::string cache = " --cache " + library.path("cache"), baseline = " --baseline " + library.path("baseline.json"),
+                    json_file = " --json " + library.path("all.json");
+  CHECK(library.check(cache + " --fail-on none").code == 0);
+  CHECK(library.check(cache + " --max-depth 500").code == 0);
+  CHECK(library.check(cache + " --max-depth 199").code == 6);
+  library.folder.write("rules.json", R"({"allow": [{"parts": ["ball", "wall"], "depth_mm": 160}], "severity": {"penetration": "warning"}})");
+  CHECK(library.check(cache + json_file + " --config " + library.path("rules.json")).code == 0);
+  CHECK(events(library.read("all.json"), "dip") == "2-5@4:200 new");
+  CHECK(library.read("all.json")["clips"][1]["events"][0]["rule"].is_null());
+  CHECK(library.read("all.json")["clips"][2]["events"][0]["rule"] == "ball and wall: 160 mm are allowed");
+  library.folder.write("rules.json", R"({"leave_out": ["ball"]})");
+  CHECK(library.check(cache + json_file + " --config " + library.path("rules.json")).code == 0);
+  CHECK(events(library.read("all.json"), "dip").empty());
+  tool::check_error(library.check("--config " + library.folder.write("rules.json", "{\"alow\": []}").string()), 3, {"'alow' is unknown"});
+
+  tool::check_error(library.check(cache + baseline), 3, {"baseline.json"});
+  CHECK(library.check(cache + baseline + " --accept").code == 0);
+  CHECK(library.check(cache + baseline).code == 0);
+
+  // An edit: one fault is gone, one is later and as deep, one deeper, one is new.
+  std::vector<PlantedClip> edited = kClips;
+  edited[0].depths_mm[2] = 60;
+  edited[1].depths_mm = {-50, -50, -50, -50, 60, 120, 200, -50};
+  edited[2].depths_mm[4] = 170;
+  edited[4].depths_mm = {-50};
+  library.folder.write("hero.glb", planted_character(edited));
+  const tool::Run run = library.check(cache + baseline + json_file + " --fail-on new --junit " + library.path("junit.xml") +
+                                      " --sarif " + library.path("check.sarif"));
+  CHECK(run.code == 6);
+  CHECK(run.out.find("worse than 150 mm") != std::string::npos);
+  const json report = library.read("all.json");
+  CHECK(events(report, "clean") == "2-2@2:60 new");
+  CHECK(events(report, "dip") == "4-6@6:200 accepted");
+  CHECK(events(report, "bridged") == "0-4@4:170 new");
+  CHECK(events(report, "still") == "0-0@0:90 resolved");
+  CHECK(report["summary"]["new"] == 2);
+  CHECK(report["summary"]["resolved"] == 1);
+  const std::string junit = tool::contents(library.path("junit.xml"));
+  CHECK(junit.find("tests=\"6\" failures=\"2\" errors=\"0\"") != std::string::npos);
+  const json sarif = library.read("check.sarif")["runs"][0]["results"];
+  CHECK(sarif[0]["baselineState"] == "new");
+  CHECK(sarif[0]["level"] == "error");
+}
+
+TEST_CASE("one bad file stops nothing") {
+  const Library library;
+  library.folder.write("broken.glb", planted_character(kClips).substr(0, 200));
+  library.folder.write("empty.fbx", "");
+  const tool::Run run = tool::run(fmt::format("check {} -o {} --json {} --fail-on none", library.folder.path.string(),
+                                              library.report(), library.path("all.json")));
+  CHECK_MESSAGE(run.code == 0, run.error);
+  const json report = library.read("all.json");
+  REQUIRE(report["clips"].size() == 8);
+  CHECK(report["summary"]["errors"] == 2);
+  CHECK(report["clips"][0]["error"].get<std::string>().find("broken.glb: ") != std::string::npos);
+  CHECK(events(report, "dip") == "2-5@4:200 new");
+  tool::check_error(tool::run("check nowhere.glb -o " + library.report()), 3, {"nowhere.glb: there is no such file"});
+  tool::check_error(tool::run("check " + library.file.string() + " -o " + library.folder.path.string()), 3,
+                    {"holds other files than a report"});
+}
+
+TEST_CASE("nothing is computed that is in the cache, whatever killed the run that made it") {
+  const Library library;
+  const std::string command = fmt::format("check {} -o {} --cache {} --json {}", library.file.string(), library.report(),
+                                          library.path("cache"), library.path("all.json"));
+  for (int i = 1; i <= 12; ++i) {
+    tool::run(fmt::format("{} & p=$!; sleep {}; kill -9 $p; wait", command, 0.02 * i));
+  }
+  CHECK(tool::run(command).code == 6);
+  const std::string first = tool::contents(library.path("all.json"));
+  CHECK(events(json::parse(first), "dip") == "2-5@4:200 new");
+  std::map<fs::path, fs::file_time_type> times;
+  for (const auto& entry : fs::recursive_directory_iterator(library.path("cache"))) {
+    if (entry.is_regular_file()) times[entry.path()] = entry.last_write_time();
+  }
+  CHECK(tool::run(command).code == 6);
+  CHECK(tool::contents(library.path("all.json")) == first);
+  for (const auto& [path, time] : times) CHECK(fs::last_write_time(path) == time);
+}
+
+TEST_CASE("merged shards are what one machine makes, byte for byte") {
+  const Library library;
+  library.folder.write("second.glb", planted_character({{"dip", {-10, 80, -10}}}));
+  library.folder.write("third.glb", "no character");
+  const std::string all = fmt::format("check {0}/hero.glb {0}/second.glb {0}/third.glb", library.folder.path.string());
+  CHECK(tool::run(all + " -o " + library.path("whole") + " --json " + library.path("whole.json")).code == 6);
+  for (const char* part : {"1/3", "2/3", "3/3"}) {
+    CHECK(tool::run(fmt::format("{} --shard {} -o {}/shard{}", all, part, library.folder.path.string(), part[0])).code == 0);
+  }
+  const std::string merge = fmt::format("check --merge {0}/shard2 {0}/shard1 ", library.folder.path.string());
+  const std::string outputs = "-o " + library.path("merged") + " --json " + library.path("merged.json");
+  tool::check_error(tool::run(merge + outputs), 3, {"shard 3 of 3 is missing"});
+  CHECK(tool::run(merge + library.path("shard3") + " " + outputs).code == 6);
+  CHECK(tool::contents(library.path("merged.json")) == tool::contents(library.path("whole.json")));
+  CHECK(std::system(fmt::format("diff -r {0}/whole {0}/merged", library.folder.path.string()).c_str()) == 0);
+}
