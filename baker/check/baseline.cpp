@@ -80,8 +80,8 @@ std::string to_bytes(const Baseline& baseline) {
 }
 
 bool is_same(const KnownEvent& known, const Event& event, double fps) {
-  const bool same_parts = known.parts == event.parts ||
-                          (known.parts[0] == event.parts[1] && known.parts[1] == event.parts[0]);
+  const bool same_parts =
+      known.parts == event.parts || (known.parts[0] == event.parts[1] && known.parts[1] == event.parts[0]);
   const double half = 0.5 / fps;  // an event of one frame has a length, too
   return same_parts && overlap(known.from - half, known.to + half, event.from / fps - half, event.to / fps + half);
 }

@@ -34,14 +34,10 @@ ordered_json clip_json(const JudgedClip& clip) {
   for (const JudgedEvent& event : clip.events) events.push_back(event_json(event));
   ordered_json besides = ordered_json::object();
   for (const auto& [kind, count] : clip.besides) besides[sc_penetration_class_name(kind)] = count;
-  ordered_json out{{"character", clip.character},
-                   {"clip", clip.clip.clip},
-                   {"frames", clip.frames},
-                   {"fps", clip.fps},
-                   {"loops", clip.loops},
-                   {"events", std::move(events)},
-                   {"counted", std::move(besides)},
-                   {"fit", clip.grade}};
+  ordered_json out{{"character", clip.character},   {"clip", clip.clip.clip},
+                   {"frames", clip.frames},         {"fps", clip.fps},
+                   {"loops", clip.loops},           {"events", std::move(events)},
+                   {"counted", std::move(besides)}, {"fit", clip.grade}};
   if (!clip.clip.error.empty()) out["error"] = clip.clip.error;
   return out;
 }

@@ -8,7 +8,9 @@
 namespace spherechain::baker {
 namespace {
 
-std::string clip_text(const JudgedClip& clip) { return clip.character + (clip.clip.clip.empty() ? "" : " " + clip.clip.clip); }
+std::string clip_text(const JudgedClip& clip) {
+  return clip.character + (clip.clip.clip.empty() ? "" : " " + clip.clip.clip);
+}
 
 std::string marks(const JudgedEvent& judged) {
   std::string out;
@@ -25,9 +27,9 @@ std::string counted(int count, const char* one, const char* many) {
 }
 
 std::string summary_text(const Summary& s) {
-  std::string out = fmt::format("{}, {}, {} frames: {}", counted(s.characters, "character", "characters"),
-                                counted(s.clips, "clip", "clips"), s.frames,
-                                counted(s.penetrations, "penetration", "penetrations"));
+  std::string out =
+      fmt::format("{}, {}, {} frames: {}", counted(s.characters, "character", "characters"),
+                  counted(s.clips, "clip", "clips"), s.frames, counted(s.penetrations, "penetration", "penetrations"));
   if (s.deep_folds > 0) out += ", " + counted(s.deep_folds, "deep fold", "deep folds");
   out += fmt::format("; {} new", s.fresh);
   if (s.worse > 0) out += fmt::format(" ({} worse than before)", s.worse);

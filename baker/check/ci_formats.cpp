@@ -81,13 +81,14 @@ std::string check_junit(const Verdict& verdict) {
 
 std::string check_sarif(const Verdict& verdict) {
   ordered_json results = ordered_json::array();
-  const auto add = [&](const JudgedClip& clip, const std::string& rule, const char* level, const std::string& text) -> ordered_json& {
-    results.push_back(
-        {{"ruleId", rule},
-         {"level", level},
-         {"message", {{"text", text}}},
-         {"locations", {{{"physicalLocation", {{"artifactLocation", {{"uri", clip.file}}}}},
-                         {"logicalLocations", {{{"name", clip.clip.clip}, {"kind", "clip"}}}}}}}});
+  const auto add = [&](const JudgedClip& clip, const std::string& rule, const char* level,
+                       const std::string& text) -> ordered_json& {
+    results.push_back({{"ruleId", rule},
+                       {"level", level},
+                       {"message", {{"text", text}}},
+                       {"locations",
+                        {{{"physicalLocation", {{"artifactLocation", {{"uri", clip.file}}}}},
+                          {"logicalLocations", {{{"name", clip.clip.clip}, {"kind", "clip"}}}}}}}});
     return results.back();
   };
   for (const JudgedClip& clip : verdict.clips) {
@@ -98,19 +99,20 @@ std::string check_sarif(const Verdict& verdict) {
       const char* level = judged.fails ? "error" : judged.severity == Severity::kIgnore ? "note" : "warning";
       ordered_json& result = add(clip, sc_penetration_class_name(judged.event.kind), is_gone ? "none" : level,
                                  clip.clip.clip + ", " + fault_text(judged));
-      result["baselineState"] = is_gone                                ? "absent"
-                                : judged.before_mm >= 0                ? "updated"
-                                : judged.state == EventState::kNew     ? "new"
-                                                                       : "unchanged";
+      result["baselineState"] = is_gone                            ? "absent"
+                                : judged.before_mm >= 0            ? "updated"
+                                : judged.state == EventState::kNew ? "new"
+                                                                   : "unchanged";
       if (judged.state == EventState::kAccepted || !judged.rule.empty()) {
-        result["suppressions"] = {{{"kind", "external"}, {"justification", judged.rule.empty() ? "accepted" : judged.rule}}};
+        result["suppressions"] = {
+            {{"kind", "external"}, {"justification", judged.rule.empty() ? "accepted" : judged.rule}}};
       }
     }
   }
   ordered_json rules = ordered_json::array();
-  for (const auto& [id, text] :
-       {std::pair("penetration", "A body part is in another."), std::pair("deep_fold", "A fold of the skin is very deep."),
-        std::pair("unreadable", "A file cannot be checked.")}) {
+  for (const auto& [id, text] : {std::pair("penetration", "A body part is in another."),
+                                 std::pair("deep_fold", "A fold of the skin is very deep."),
+                                 std::pair("unreadable", "A file cannot be checked.")}) {
     rules.push_back({{"id", id}, {"shortDescription", {{"text", text}}}});
   }
   return json_text({{"$schema", "https://json.schemastore.org/sarif-2.1.0.json"},

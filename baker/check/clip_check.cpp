@@ -155,8 +155,8 @@ Event ClipChecker::event_of(const Frames& frames, const EventSpan& span, const C
   for (const PartMeeting& m : frames.meetings) {
     if (m.part_a != worst.part_a || m.part_b != worst.part_b || !is_fault(m.kind)) continue;
     const int at = m.frame >= span.from ? m.frame - span.from : m.frame - span.from + clip.count;
-    const bool inside = span.from <= span.to ? m.frame >= span.from && m.frame <= span.to
-                                             : m.frame >= span.from || m.frame <= span.to;
+    const bool inside =
+        span.from <= span.to ? m.frame >= span.from && m.frame <= span.to : m.frame >= span.from || m.frame <= span.to;
     if (inside) event.depths_mm[static_cast<std::size_t>(at)] = static_cast<float>(m.depth_mm);
   }
   return event;
@@ -187,7 +187,8 @@ void ClipChecker::show(ClipCheck& out, const Frames& frames, const ClipFrames& c
   };
   const Event* worst = nullptr;
   for (const Event& event : out.result.events) {
-    if (is_fault(event.kind) && (worst == nullptr || std::pair(event.kind, event.depth_mm) > std::pair(worst->kind, worst->depth_mm)))
+    if (is_fault(event.kind) &&
+        (worst == nullptr || std::pair(event.kind, event.depth_mm) > std::pair(worst->kind, worst->depth_mm)))
       worst = &event;
   }
   for (std::size_t i = 0; i < out.result.events.size(); ++i) {

@@ -25,8 +25,8 @@ std::string extension_of(const fs::path& file) {
 }
 
 bool may_be_character(const fs::path& file) {
-  static const std::set<std::string> kExtensions{".glb", ".gltf", ".vrm", ".fbx", ".dae", ".zae", ".obj", ".x",
-                                                 ".ms3d", ".b3d", ".md5mesh", ".smd", ".iqm", ".mdl", ".ply", ".stl"};
+  static const std::set<std::string> kExtensions{".glb",  ".gltf", ".vrm",     ".fbx", ".dae", ".zae", ".obj", ".x",
+                                                 ".ms3d", ".b3d",  ".md5mesh", ".smd", ".iqm", ".mdl", ".ply", ".stl"};
   return kExtensions.count(extension_of(file)) > 0;
 }
 
@@ -55,7 +55,8 @@ Motions motions_at(const fs::path& path) {
   check_there(path);
   if (!fs::is_directory(path)) return {{path.filename().string(), path}};
   Motions out;
-  for (const fs::path& file : files_below(path, may_be_motion)) out.push_back({file.lexically_relative(path).string(), file});
+  for (const fs::path& file : files_below(path, may_be_motion))
+    out.push_back({file.lexically_relative(path).string(), file});
   if (out.empty()) throw Error(ExitCode::kFile, path.string() + ": has no recordings (BVH, FBX, glTF or Collada)");
   return out;
 }

@@ -66,7 +66,8 @@ void Picture::draw(const View& view) {
     if (area == 0) continue;
     const auto [low_x, high_x] = std::minmax({a[0], b[0], c[0]});
     const auto [low_y, high_y] = std::minmax({a[1], b[1], c[1]});
-    if (high_x < 0 || high_y < 0 || !(low_x < static_cast<float>(view.width)) || !(low_y < static_cast<float>(view.height)))
+    if (high_x < 0 || high_y < 0 || !(low_x < static_cast<float>(view.width)) ||
+        !(low_y < static_cast<float>(view.height)))
       continue;
     const int from_x = std::max(0, static_cast<int>(std::ceil(low_x - 0.5f))),
               to_x = std::min(view.width - 1, static_cast<int>(std::floor(high_x - 0.5f))),
@@ -79,7 +80,8 @@ void Picture::draw(const View& view) {
         const float v = ((b[0] - a[0]) * (py - a[1]) - (b[1] - a[1]) * (px - a[0])) / area;
         if (u < 0 || v < 0 || u + v > 1) continue;
         const float depth = a[2] + u * (b[2] - a[2]) + v * (c[2] - a[2]);
-        const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x);
+        const std::size_t at =
+            static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x);
         if (depth <= depths_[at]) continue;
         depths_[at] = depth;
         ids_[at] = t;
@@ -118,7 +120,8 @@ std::string Picture::png(const Patches* patches, const Vec3& eye) {
   std::vector<const Colour*> colours(triangles_.size(), &kClay);
   Eigen::AlignedBox3d box;
   for (const Vec3& p : positions_) {
-    box.extend(Vec3((p - axes_.origin).dot(axes_.left), (p - axes_.origin).dot(axes_.up), (p - axes_.origin).dot(axes_.forward)));
+    box.extend(Vec3((p - axes_.origin).dot(axes_.left), (p - axes_.origin).dot(axes_.up),
+                    (p - axes_.origin).dot(axes_.forward)));
   }
   const Vec3 center = box.center();
   Vec3 middle = axes_.origin + center.x() * axes_.left + center.y() * axes_.up + center.z() * axes_.forward;

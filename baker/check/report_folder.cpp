@@ -24,13 +24,16 @@ constexpr std::size_t kStripWidth = 100;
 
 // The deepest fault that no rule excuses, over the clip: bytes of half millimetres.
 std::string strip(const JudgedClip& clip) {
-  std::vector<std::uint8_t> out(std::min<std::size_t>(kStripWidth, static_cast<std::size_t>(std::max(clip.frames, 1))), 0);
+  std::vector<std::uint8_t> out(std::min<std::size_t>(kStripWidth, static_cast<std::size_t>(std::max(clip.frames, 1))),
+                                0);
   for (const JudgedEvent& judged : clip.events) {
     if (!judged.rule.empty()) continue;
     for (std::size_t i = 0; i < judged.event.depths_mm.size(); ++i) {
-      const std::size_t frame = (static_cast<std::size_t>(judged.event.from) + i) % static_cast<std::size_t>(clip.frames);
+      const std::size_t frame =
+          (static_cast<std::size_t>(judged.event.from) + i) % static_cast<std::size_t>(clip.frames);
       std::uint8_t& bar = out[frame * out.size() / static_cast<std::size_t>(clip.frames)];
-      bar = std::max(bar, static_cast<std::uint8_t>(std::clamp(2.0 * static_cast<double>(judged.event.depths_mm[i]), 0.0, 255.0)));
+      bar = std::max(
+          bar, static_cast<std::uint8_t>(std::clamp(2.0 * static_cast<double>(judged.event.depths_mm[i]), 0.0, 255.0)));
     }
   }
   return base64(out);
@@ -137,15 +140,10 @@ bool write_report(const fs::path& folder, const Verdict& verdict, const Store& s
     data.take(clip.clip.character_key, kPageFile);
   }
   const Summary& s = verdict.summary;
-  const ordered_json library{{"fails", verdict.fails},
-                             {"characters", s.characters},
-                             {"clips", s.clips},
-                             {"frames", s.frames},
-                             {"penetrations", s.penetrations},
-                             {"deep_folds", s.deep_folds},
-                             {"new", s.fresh},
-                             {"errors", s.errors},
-                             {"rows", std::move(clips)}};
+  const ordered_json library{
+      {"fails", verdict.fails},         {"characters", s.characters}, {"clips", s.clips}, {"frames", s.frames},
+      {"penetrations", s.penetrations}, {"deep_folds", s.deep_folds}, {"new", s.fresh},   {"errors", s.errors},
+      {"rows", std::move(clips)}};
   write_atomically(folder / "library.js", "spherechain.library = " + json_text(library, -1) + ";\n");
   data.remove_others();
   for (const std::string page : {"index.html", "clip.html"}) {

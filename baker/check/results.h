@@ -16,7 +16,7 @@ struct Event {
   std::array<std::string, 2> parts;
   int inside = 0;                          // which of the two a person sees in the other
   PenetrationClass kind = SC_CLASS_REST;   // of the deepest frame, as all that follows
-  int from = 0, to = 0, deepest = 0;      // frames; from > to: it goes over the seam of a loop
+  int from = 0, to = 0, deepest = 0;       // frames; from > to: it goes over the seam of a loop
   double depth_mm = 0, depth_percent = 0;  // of the character's height
   double volume_ml = -1;                   // -1: not known
   Vec3 direction = Vec3::Zero();           // part 1, moved so by `depth_mm`, is free of part 0

@@ -84,9 +84,8 @@ class ConfigReader {
 }  // namespace
 
 bool Rules::leaves_out(const Event& event) const {
-  return std::any_of(left_out.begin(), left_out.end(), [&](const std::string& part) {
-    return part == event.parts[0] || part == event.parts[1];
-  });
+  return std::any_of(left_out.begin(), left_out.end(),
+                     [&](const std::string& part) { return part == event.parts[0] || part == event.parts[1]; });
 }
 
 std::string Rules::excuse(const Event& event) const {
@@ -97,7 +96,8 @@ std::string Rules::excuse(const Event& event) const {
     }
   }
   if (event.depth_mm <= max_depth_mm) return fmt::format("{:g} mm are allowed", max_depth_mm);
-  if (severity(event.kind) == Severity::kIgnore) return fmt::format("{} is ignored", sc_penetration_class_name(event.kind));
+  if (severity(event.kind) == Severity::kIgnore)
+    return fmt::format("{} is ignored", sc_penetration_class_name(event.kind));
   return {};
 }
 

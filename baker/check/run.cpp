@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kOwnClips = 0;             // a unit: the clips in the character's file; others are recordings
+constexpr std::size_t kOwnClips = 0;              // a unit: the clips in the character's file; others are recordings
 constexpr std::size_t kClipsPerUnitMax = 100000;  // for the order of clips
 constexpr std::size_t kBatchMax = 32;             // clips of a task: it reads the character once
 
@@ -120,9 +120,8 @@ class Run {
     std::set<std::string> asked;
     for (ChosenCharacter& character : characters) {
       try {
-        character.key =
-            key_of("character", {hash_of(character.of->file), to_json(character.of->config.bake),
-                                 character.of->file.extension().string()});
+        character.key = key_of("character", {hash_of(character.of->file), to_json(character.of->config.bake),
+                                             character.of->file.extension().string()});
       } catch (const Error& error) {
         character.error = error.what();
         continue;
@@ -163,7 +162,8 @@ class Run {
       for (std::size_t first = 0; first < todo[c].size(); first += batch) {
         const std::size_t last = std::min(first + batch, todo[c].size());
         add(tasks, characters[c],
-            {todo[c].begin() + static_cast<std::ptrdiff_t>(first), todo[c].begin() + static_cast<std::ptrdiff_t>(last)});
+            {todo[c].begin() + static_cast<std::ptrdiff_t>(first),
+             todo[c].begin() + static_cast<std::ptrdiff_t>(last)});
       }
     }
     run("checking", tasks, all);

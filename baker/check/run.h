@@ -36,8 +36,8 @@ struct RunState {
   std::size_t done, all;
 };
 
-// Brings the results of all clips into `store`: what it has is kept, characters are baked where they must be. Whatever a
-// file does, the others are checked. Returns the clips in the library's order.
+// Brings the results of all clips into `store`: what it has is kept, characters are baked where they must be. Whatever
+// a file does, the others are checked. Returns the clips in the library's order.
 std::vector<CheckedClip> check_library(const std::vector<LibraryCharacter>& library, const RunOptions& options,
                                        const Store& store, const std::function<void(const RunState&)>& progress);
 

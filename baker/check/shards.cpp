@@ -109,9 +109,11 @@ ShardResult merge_shards(const std::vector<std::string>& folders, const Store& s
       out.shard = {1, shard.shard.count};
       out.characters = shard.characters;
     }
-    const auto same = [](const CharacterRules& l, const CharacterRules& r) { return l.name == r.name && l.file == r.file; };
-    if (shard.shard.count != out.shard.count ||
-        !std::equal(shard.characters.begin(), shard.characters.end(), out.characters.begin(), out.characters.end(), same)) {
+    const auto same = [](const CharacterRules& l, const CharacterRules& r) {
+      return l.name == r.name && l.file == r.file;
+    };
+    if (shard.shard.count != out.shard.count || !std::equal(shard.characters.begin(), shard.characters.end(),
+                                                            out.characters.begin(), out.characters.end(), same)) {
       throw Error(ExitCode::kFile, folder + ": is a shard of another library than " + folders.front());
     }
     if (!there.insert(shard.shard.index).second) {
@@ -131,9 +133,9 @@ ShardResult merge_shards(const std::vector<std::string>& folders, const Store& s
   // A character that cannot be read is in each shard that has a part of it.
   const auto key = [](const CheckedClip& c) { return std::pair(c.character, c.order); };
   std::stable_sort(out.clips.begin(), out.clips.end(), [&](const auto& l, const auto& r) { return key(l) < key(r); });
-  out.clips.erase(std::unique(out.clips.begin(), out.clips.end(),
-                              [&](const auto& l, const auto& r) { return key(l) == key(r); }),
-                  out.clips.end());
+  out.clips.erase(
+      std::unique(out.clips.begin(), out.clips.end(), [&](const auto& l, const auto& r) { return key(l) == key(r); }),
+      out.clips.end());
   return out;
 }
 

@@ -53,10 +53,10 @@ class Judge {
       if (out.state != EventState::kAccepted) out.state = one->state;
     }
     out.severity = out.rule.empty() ? rules.severity(out.event.kind) : Severity::kIgnore;
-    out.fails = out.severity == Severity::kError &&
-                (fail_on_ == FailOn::kNew           ? out.state == EventState::kNew
-                 : fail_on_ == FailOn::kPenetration ? out.state != EventState::kAccepted
-                                                    : false);
+    out.fails =
+        out.severity == Severity::kError && (fail_on_ == FailOn::kNew           ? out.state == EventState::kNew
+                                             : fail_on_ == FailOn::kPenetration ? out.state != EventState::kAccepted
+                                                                                : false);
   }
 
   static JudgedEvent resolved(const KnownEvent& known, double fps) {
@@ -127,7 +127,8 @@ Verdict judge(const std::vector<CheckedClip>& clips, const std::vector<Character
     }
     out.summary.errors += judged.clip.error.empty() ? 0 : 1;
     const bool is_broken = !judged.clip.error.empty() && fail_on != FailOn::kNone;
-    out.fails = out.fails || is_broken || std::any_of(judged.events.begin(), judged.events.end(), [](const auto& e) { return e.fails; });
+    out.fails = out.fails || is_broken ||
+                std::any_of(judged.events.begin(), judged.events.end(), [](const auto& e) { return e.fails; });
     out.clips.push_back(std::move(judged));
   }
   return out;

@@ -16,7 +16,7 @@ namespace spherechain::baker {
 struct JudgedEvent {
   Event event;
   EventState state = EventState::kNew;
-  std::string rule;  // that excuses it; empty: none
+  std::string rule;       // that excuses it; empty: none
   double before_mm = -1;  // of the known event that it is the same as, but worse; -1: it is not
   Severity severity = Severity::kIgnore;
   bool fails = false;
@@ -28,7 +28,7 @@ struct JudgedClip {
   int frames = 0;
   double fps = 30;
   bool loops = false;
-  std::vector<JudgedEvent> events;  // those that are looked at, then the resolved ones
+  std::vector<JudgedEvent> events;          // those that are looked at, then the resolved ones
   std::map<PenetrationClass, int> besides;  // of classes that are counted only
 };
 

@@ -46,8 +46,9 @@ void check_usage(const CheckOptions& options) {
     throw Error(ExitCode::kUsage, "--shard: only computes; --merge, --baseline and reports come with the merge");
   }
   if (options.merge && (!options.config.empty() || !options.motion.empty() || !options.cache.empty())) {
-    throw Error(ExitCode::kUsage, "--merge: takes rules, motions and results from the shards (give --config, --motion "
-                                  "and --cache to these)");
+    throw Error(ExitCode::kUsage,
+                "--merge: takes rules, motions and results from the shards (give --config, --motion "
+                "and --cache to these)");
   }
 }
 

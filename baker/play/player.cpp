@@ -79,7 +79,7 @@ Player::TriangleDetection Player::detect_triangles(const std::vector<float>& pos
   pose.vertices = positions.data();
   pose.vertex_count = positions.size() / 3;
   TriangleDetection out{};
-  out.us = median_us([&] { skin_.find(pose); });
+  out.us = median_us([&] { skin_.ask(pose); });
   for (const TriangleContact& contact : skin_.find(pose)) out.pairs.push_back({contact.triangle_a, contact.triangle_b});
   const auto start = Clock::now();
   out.penetrations = skin_.measure(pose, is_next);

@@ -45,7 +45,7 @@ class Player {
   // must have clusters.
   struct TriangleDetection {
     std::vector<Pair> pairs;
-    double us;  // median of a few runs
+    double us;                              // median of a few runs
     std::vector<Penetration> penetrations;  // deepest first
     double measure_us;                      // what measuring them costs
   };

@@ -29,7 +29,7 @@ bool moved_by_bones(const OpenAsset& asset, const Deformation& deformation) {
 SkinPlayer::SkinPlayer(const OpenAsset& asset, Target target)
     : asset_(asset), target_(target), scratch_(sc_skin_scratch_words(asset.handle())) {}
 
-const std::vector<TriangleContact>& SkinPlayer::find(const sc_pose& pose) {
+SkinContactJob SkinPlayer::job(const sc_pose& pose) {
   SkinContactJob job;
   job.asset = asset_.handle();
   job.pose = pose;
@@ -37,6 +37,13 @@ const std::vector<TriangleContact>& SkinPlayer::find(const sc_pose& pose) {
   job.skin_table = asset_.skin_table();
   job.scratch = scratch_.data();
   job.scratch_words = scratch_.size();
+  return job;
+}
+
+void SkinPlayer::ask(const sc_pose& pose) { check_runtime(job(pose).run()); }
+
+const std::vector<TriangleContact>& SkinPlayer::find(const sc_pose& pose) {
+  SkinContactJob job = this->job(pose);
   contacts_.resize(std::max<std::size_t>(contacts_.capacity(), 256));
   for (;;) {
     job.triangles = contacts_.data();

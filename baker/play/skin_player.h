@@ -26,6 +26,8 @@ class SkinPlayer {
  public:
   SkinPlayer(const OpenAsset& asset, Target target);
 
+  // Finds which body parts meet, and lists nothing: what a game asks.
+  void ask(const sc_pose& pose);
   // The triangles that intersect. Both lists hold until the next call.
   const std::vector<TriangleContact>& find(const sc_pose& pose);
   // What find() found in that pose, sorted by body parts. `is_next`: the pose follows the last one measured, and
@@ -33,6 +35,8 @@ class SkinPlayer {
   const std::vector<Penetration>& measure(const sc_pose& pose, bool is_next);
 
  private:
+  SkinContactJob job(const sc_pose& pose);
+
   const OpenAsset& asset_;
   Target target_;
   std::vector<std::uint64_t> scratch_, measure_scratch_;

@@ -41,7 +41,8 @@ bk::Event event(int from, int to, double depth) {
 }
 
 bk::KnownEvent known(double from, double to, double depth) {
-  return {"hero", "run", {"left thigh", "right hand"}, SC_CLASS_PENETRATION, from, to, depth, bk::EventState::kAccepted};
+  return {"hero", "run", {"left thigh", "right hand"}, SC_CLASS_PENETRATION, from,
+          to,     depth, bk::EventState::kAccepted};
 }
 
 }  // namespace
@@ -67,8 +68,8 @@ TEST_CASE("an event goes on over the seam of a loop") {
   const std::vector<double> seam{5, 1, 0, 0, 0, 0, 0, 2, 5};
   CHECK(events(seam) == "0-1@0 7-8@8");
   CHECK(events(seam, true) == "7-1@0");
-  CHECK(events({0, 1, 0, 0, 0, 0, 0, 0, 0, 2, 0}, true) == "9-1@9");    // gap of one: the last frame is the first
-  CHECK(events({0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 0}, true) == "11-2@11");  // three
+  CHECK(events({0, 1, 0, 0, 0, 0, 0, 0, 0, 2, 0}, true) == "9-1@9");  // gap of one: the last frame is the first
+  CHECK(events({0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 0}, true) == "11-2@11");         // three
   CHECK(events({0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 2, 0, 0}, true) == "3-3@3 11-11@11");  // four
   CHECK(events({1, 1, 1, 1, 1}, true) == "0-4@0");
 }

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-// A clip of 30 frames a second: how deep the ball is in the wall in each of its frames, in mm; below 0 it is outside. The
-// wall is 1 m thick, the ball 600 mm.
+// A clip of 30 frames a second: how deep the ball is in the wall in each of its frames, in mm; below 0 it is outside.
+// The wall is 1 m thick, the ball 600 mm.
 struct PlantedClip {
   std::string name;
   std::vector<double> depths_mm;
