@@ -21,7 +21,7 @@ namespace spherechain::baker {
 namespace {
 
 constexpr std::uint32_t kNoTriangle = 0xFFFFFFFF;
-constexpr int kProbeSize = 48;
+constexpr int kProbeSize = 40;
 constexpr int kWidth = 144, kHeight = 144, kSamples = 2;  // of a picture; samples a pixel in each direction
 using Colour = std::array<double, 3>;
 constexpr Colour kClay{0.79, 0.76, 0.71}, kFirst{0.83, 0.12, 0.17}, kSecond{0.95, 0.55, 0.1};
@@ -29,7 +29,7 @@ constexpr Colour kClay{0.79, 0.76, 0.71}, kFirst{0.83, 0.12, 0.17}, kSecond{0.95
 // Few from below.
 std::vector<Vec3> eye_directions(const BodyFrame& axes) {
   std::vector<Vec3> out;
-  for (const Vec3& d : even_directions(26)) {
+  for (const Vec3& d : even_directions(16)) {
     if (d.y() < -0.5 || d.y() > 0.9) continue;
     out.push_back(d.x() * axes.left + d.y() * axes.up + d.z() * axes.forward);
   }
@@ -38,7 +38,11 @@ std::vector<Vec3> eye_directions(const BodyFrame& axes) {
 
 }  // namespace
 
-void Picture::pose(const std::vector<Vec3>& positions) { positions_ = positions; }
+void Picture::pose(const std::vector<Vec3>& positions) {
+  positions_ = positions;
+  floats_.clear();
+  for (const Vec3& p : positions) floats_.push_back(p.cast<float>());
+}
 
 Picture::View Picture::view_from(const Vec3& back, const Vec3& middle, double extent, int width, int height) const {
   View view{{}, {}, back.normalized(), middle, std::min(width, height) / extent, width, height};
@@ -50,12 +54,14 @@ Picture::View Picture::view_from(const Vec3& back, const Vec3& middle, double ex
 }
 
 void Picture::draw(const View& view) {
+  const Eigen::Vector3f right = (view.scale * view.right).cast<float>(), up = (view.scale * view.up).cast<float>(),
+                        back = view.back.cast<float>();
+  const float x0 = static_cast<float>(view.width * 0.5 - view.scale * view.middle.dot(view.right)),
+              y0 = static_cast<float>(view.height * 0.5 + view.scale * view.middle.dot(view.up));
   projected_.resize(positions_.size());
   for (std::size_t v = 0; v < positions_.size(); ++v) {
-    const Vec3 from = positions_[v] - view.middle;
-    projected_[v] = {static_cast<float>(view.width * 0.5 + view.scale * from.dot(view.right)),
-                     static_cast<float>(view.height * 0.5 - view.scale * from.dot(view.up)),
-                     static_cast<float>(from.dot(view.back))};
+    const Eigen::Vector3f& p = floats_[v];
+    projected_[v] = {x0 + p.dot(right), y0 - p.dot(up), p.dot(back)};
   }
   const std::size_t size = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
   ids_.assign(size, kNoTriangle);

@@ -47,6 +47,7 @@ class Picture {
   const std::vector<Triangle>& triangles_;
   BodyFrame axes_;
   std::vector<Vec3> positions_;
+  std::vector<Eigen::Vector3f> floats_;  // the same
   std::vector<std::array<float, 3>> projected_;
   std::vector<std::uint32_t> ids_;  // a pixel's triangle, kNoTriangle none
   std::vector<float> depths_;

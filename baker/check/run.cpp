@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <sys/mman.h>
+
 #include <algorithm>
+#include <atomic>
 #include <map>
 #include <memory>
 #include <optional>
@@ -23,7 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kOwnClips = 0;              // a unit: the clips in the character's file; others are recordings
 constexpr std::size_t kClipsPerUnitMax = 100000;  // for the order of clips
-constexpr std::size_t kBatchMax = 32;             // clips of a task: it reads the character once
+constexpr std::size_t kWorkerClips = 8;           // a process is worth it for so many: it reads the character
 
 // A file's bytes and those of the files that it names.
 std::string hash_of(const fs::path& file) {
@@ -104,10 +107,35 @@ bool is_checked(const Store& store, const CheckedClip& clip) {
          store.has(clip.character_key, kPageFile);
 }
 
-// A clip that is to be checked, in a process that has its character open.
+// A clip that is to be checked.
 struct Todo {
   CheckedClip* clip;
   std::size_t unit, number;  // number among the file's own
+};
+
+// The clips of one character that are to be checked. Its processes take one after another: who is quick takes more.
+class Queue {
+ public:
+  Queue(const ChosenCharacter& of, std::vector<Todo> todo) : character(of), clips(std::move(todo)) {
+    void* shared = ::mmap(nullptr, sizeof(Next), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (shared == MAP_FAILED) throw Error(ExitCode::kFile, "--jobs: no memory that processes share");
+    next_ = new (shared) Next(0);
+  }
+  ~Queue() { ::munmap(next_, sizeof(Next)); }
+  Queue(const Queue&) = delete;
+  Queue& operator=(const Queue&) = delete;
+
+  bool is_empty() const { return *next_ >= clips.size(); }
+  // The next one's index; not less than their number where there is none.
+  std::size_t take() { return (*next_)++; }
+
+  const ChosenCharacter& character;
+  const std::vector<Todo> clips;
+
+ private:
+  using Next = std::atomic<std::size_t>;
+  static_assert(Next::is_always_lock_free);
+  Next* next_;
 };
 
 class Run {
@@ -154,17 +182,14 @@ class Run {
       }
     }
     std::size_t all = 0;
-    for (const auto& list : todo) all += list.size();
-    const std::size_t batch =
-        std::clamp<std::size_t>(all / (4 * static_cast<std::size_t>(options_.jobs)), 1, kBatchMax);
     std::deque<Task> tasks;
     for (std::size_t c = 0; c < characters.size(); ++c) {
-      for (std::size_t first = 0; first < todo[c].size(); first += batch) {
-        const std::size_t last = std::min(first + batch, todo[c].size());
-        add(tasks, characters[c],
-            {todo[c].begin() + static_cast<std::ptrdiff_t>(first),
-             todo[c].begin() + static_cast<std::ptrdiff_t>(last)});
-      }
+      if (todo[c].empty()) continue;
+      all += todo[c].size();
+      const std::size_t workers = std::min<std::size_t>(static_cast<std::size_t>(options_.jobs),
+                                                        (todo[c].size() + kWorkerClips - 1) / kWorkerClips);
+      const auto queue = std::make_shared<Queue>(characters[c], std::move(todo[c]));
+      for (std::size_t i = 0; i < workers; ++i) add(tasks, queue);
     }
     run("checking", tasks, all);
     return clips;
@@ -230,35 +255,48 @@ class Run {
     return entry->second;
   }
 
-  void add(std::deque<Task>& tasks, const ChosenCharacter& character, std::vector<Todo> todo) {
-    const auto left = std::make_shared<std::vector<Todo>>(std::move(todo));  // the first is in work
+  // A process that checks clips of a character.
+  void add(std::deque<Task>& tasks, const std::shared_ptr<Queue>& queue) {
+    if (queue->is_empty()) return;
+    const auto at = std::make_shared<std::optional<std::size_t>>();  // the clip that it is at
     Task task;
-    task.work = [this, &character, left](const Task::Tell& tell) { check_in_child(character, *left, tell); };
-    task.told = [this, left](const std::string& error) {
-      left->front().clip->error = error;
-      left->erase(left->begin());
-      ++done_;
+    task.work = [this, queue](const Task::Tell& tell) { check_in_child(*queue, tell); };
+    task.told = [this, queue, at](const std::string& line) {
+      if (!*at) {
+        *at = std::stoul(line);
+      } else {
+        end(queue->clips[**at], line);
+        at->reset();
+      }
     };
-    task.ended = [this, &tasks, &character, left](const std::string& failure) {
-      if (left->empty()) return;
+    task.ended = [this, &tasks, queue, at](const std::string& failure) {
       // What it was at when it failed does not keep the others from being checked.
-      const fs::path& file =
-          left->front().unit == kOwnClips ? character.of->file : character.of->motions[left->front().unit - 1].file;
-      left->front().clip->error = failure_text(file, failure.empty() ? "ends the check early" : failure);
-      left->erase(left->begin());
-      ++done_;
-      if (!left->empty()) add(tasks, character, *left);
+      if (*at) {
+        const Todo& todo = queue->clips[**at];
+        const LibraryCharacter& of = *queue->character.of;
+        const fs::path& file = todo.unit == kOwnClips ? of.file : of.motions[todo.unit - 1].file;
+        end(todo, failure_text(file, failure.empty() ? "ends the check early" : failure));
+      }
+      if (*at || !failure.empty()) add(tasks, queue);
     };
     tasks.push_back(std::move(task));
   }
 
-  // Tells a line for each: empty, or what is wrong.
-  void check_in_child(const ChosenCharacter& character, const std::vector<Todo>& todo, const Task::Tell& tell) const {
+  void end(const Todo& todo, const std::string& error) {
+    todo.clip->error = error;
+    ++done_;
+  }
+
+  // Tells two lines for each: its index before, and after it nothing, or what is wrong.
+  void check_in_child(Queue& queue, const Task::Tell& tell) const {
+    const ChosenCharacter& character = queue.character;
     const FrameChoice frames{0, options_.fps};
     std::optional<AnimatedAsset> animated;
     std::optional<ClipChecker> checker;
     bool plays_own = true;
-    for (const Todo& next : todo) {
+    for (std::size_t i = queue.take(); i < queue.clips.size(); i = queue.take()) {
+      const Todo& next = queue.clips[i];
+      tell(std::to_string(i));
       try {
         if (!animated) {
           animated.emplace(store_.path(character.key, kAssetFile).string(), character.of->file.string(), MotionChoice{},
@@ -266,11 +304,12 @@ class Run {
           checker.emplace(*animated, choose_target("auto"));
         }
         if (next.unit != kOwnClips) {
+          plays_own = false;
           animated->play({{}, {}, character.of->motions[next.unit - 1].file.string()}, frames);
         } else if (!plays_own) {
           animated->play({}, frames);
+          plays_own = true;
         }
-        plays_own = next.unit == kOwnClips;
         check_into(*animated, *checker, next, character.key);
         tell({});
       } catch (const Error& error) {

@@ -10,9 +10,10 @@ namespace {
 constexpr double kFramesMax = 1e6;
 constexpr int kPoseFrames = 40;
 
-// One every 1 / fps seconds, from 0 on.
-int own_frames(double seconds, double fps) {
-  return static_cast<int>(std::min(seconds * fps + 1e-6, kFramesMax - 1)) + 1;
+// One every 1 / fps seconds, from 0 on. A rate that is the clip's own is rounded, its last key is a frame all the same.
+int own_frames(double seconds, double fps, const FrameChoice& choice) {
+  const double rounding = choice.fps > 0 ? 1e-6 : 0.05;
+  return static_cast<int>(std::min(seconds * fps + rounding, kFramesMax - 1)) + 1;
 }
 
 int nearest_number(double seconds, double fps) {
@@ -47,7 +48,7 @@ MotionFrames frames_of(const SourceRig& rig, const std::vector<const Clip*>& cli
   double fps = 0;  // of the clip that is open
   const auto open = [&](std::size_t c) {
     fps = choice.fps > 0 ? choice.fps : rate_of(*clips[c]);
-    builder.open(clips[c]->name, clips[c], own_frames(clips[c]->duration, fps), motion.start(c), fps);
+    builder.open(clips[c]->name, clips[c], own_frames(clips[c]->duration, fps, choice), motion.start(c), fps);
   };
   if (choice.count == 0) {
     for (std::size_t c = 0; c < clips.size(); ++c) {
@@ -72,7 +73,8 @@ MotionFrames frames_of(const Motion* motion, const FrameChoice& choice) {
   const double fps = choice.fps > 0 ? choice.fps : own_rate > 0 ? own_rate : FrameChoice().fps;
   const bool has_pace = duration > 0;
   int own_count = motion == nullptr ? 1 : motion->frame_count();
-  if (own_count == 0) own_count = has_pace ? own_frames(duration, fps) : choice.count > 0 ? choice.count : kPoseFrames;
+  if (own_count == 0)
+    own_count = has_pace ? own_frames(duration, fps, choice) : choice.count > 0 ? choice.count : kPoseFrames;
   const int count = choice.count > 0 ? choice.count : own_count;
   Builder builder;
   builder.open({}, nullptr, own_count, 0, fps);

@@ -34,12 +34,14 @@ function makeClips(into, count) {
 function run(name, motion, more) {
   const words = ['check', human, '--motion', motion, '-o', join(folder, `report_${name}`), '--fail-on', 'none', ...more];
   const start = performance.now();
-  const { status, stdout, stderr } = spawnSync('/usr/bin/time', ['-f', '%M', tool, ...words], { encoding: 'utf8', maxBuffer: 1 << 28 });
+  const { status, stdout, stderr } = spawnSync('/usr/bin/time', ['-f', '%M %U %S', tool, ...words], { encoding: 'utf8', maxBuffer: 1 << 28 });
   const seconds = (performance.now() - start) / 1000;
   if (status !== 0) throw new Error(stderr);
   const summary = stdout.trim().split('\n').at(-2);
-  console.log(`${name.padEnd(10)} ${seconds.toFixed(1).padStart(8)} s  ${(Number(stderr.trim()) / 1024).toFixed(0)} MB a process at most  ${summary}`);
-  return seconds;
+  const [kilobytes, user, system] = stderr.trim().split(' ').map(Number);
+  const cpu = user + system;
+  console.log(`${name.padEnd(10)} ${seconds.toFixed(1).padStart(7)} s, ${cpu.toFixed(1).padStart(7)} s of all cores, ${(kilobytes / 1024).toFixed(0)} MB a process at most: ${summary}`);
+  return { seconds, cpu };
 }
 
 rmSync(folder, { recursive: true, force: true });
@@ -55,5 +57,7 @@ execFileSync('cp', ['-r', join(folder, 'baked'), join(folder, 'baked2')]);
 const alone = run('alone', join(folder, 'few'), [...baked, '--jobs', '1']);
 const together = run('together', join(folder, 'few'), ['--cache', join(folder, 'baked2')]);
 const cores = availableParallelism();
-console.log(`${((1000 * all) / (Number(clips) * Number(frames))).toFixed(2)} ms a frame on ${cores} cores, bake and report included; parallel efficiency ${(alone / together / cores).toFixed(2)}`);
+const perFrame = (seconds) => ((1000 * seconds) / (Number(clips) * Number(frames))).toFixed(2);
+console.log(`${perFrame(all.seconds)} ms a frame on ${cores} cores, ${perFrame(all.cpu)} ms of a core, bake and report included`);
+console.log(`parallel efficiency ${(alone.seconds / together.seconds / cores).toFixed(2)}`);
 console.log(execFileSync('du', ['-sh', join(folder, 'report_first')], { encoding: 'utf8' }).trim());
