@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # The main job, end to end: bakes the MakeHuman body that Debian's assimp-testmodels installs, plays two animations of 40
-# frames and three recordings of people, and draws what it found. Results go to out/demo; the page to open is human.html.
+# frames and three recordings of people, draws what it found, and checks the recordings as a library. Results go to out/demo;
+# the pages to open are human.html and check/index.html.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -46,10 +47,18 @@ if [[ -f $page ]]; then
 fi
 
 echo
+echo "== check"
+recordings=$(mktemp -d)
+trap 'rm -r "$recordings"' EXIT
+for capture in Boxing_Toes 01_01 01_03; do ln -s "$captures/$capture.bvh" "$recordings"; done
+rm -rf "$out/check"
+"$tool" check "$human" --motion "$recordings" --fps 30 -o "$out/check" --json "$out/check.json" --fail-on none
+
+echo
 echo "Wrote, in $out:"
 ls -1 "$out" | sed 's/^/  /'
 if [[ -f $page ]]; then
-  echo "Open $out/human.html in a browser."
+  echo "Open $out/human.html and $out/check/index.html in a browser."
 else
   echo "The page of \`spherechain view\` is left out: it is built where Node and npm are."
 fi
