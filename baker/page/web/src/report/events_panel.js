@@ -46,7 +46,7 @@ export function fillEvents(panel, { rows, row, model, store, flyToContact }) {
       { class: index === chosen ? 'chosen' : '' },
       h(
         'button',
-        { type: 'button', class: 'pair event', 'aria-pressed': index === chosen, disabled: gone, onclick: () => go(index) },
+        { type: 'button', class: 'pair event', 'aria-pressed': `${index === chosen}`, disabled: gone, onclick: () => go(index) },
         h('span', { class: 'part-names' }, event.text),
         h('span', { class: 'count' }, millimetres(event.mm)),
         h('span', { class: 'when' }, `${frames}, worst at ${event.deepest} (${timecode(event.deepest, row.fps)})`),

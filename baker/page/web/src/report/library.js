@@ -66,6 +66,8 @@ function drawStrip(canvas, strip) {
   });
 }
 
+const ROWS = 100; // made at a time
+
 const sight = new IntersectionObserver(
   (entries) => {
     for (const { isIntersecting, target } of entries) {
@@ -74,7 +76,7 @@ const sight = new IntersectionObserver(
       drawStrip(target, target.dataset.strip);
     }
   },
-  { rootMargin: '300px' },
+  { root: document.querySelector('main'), rootMargin: '300px' },
 );
 
 function element(row) {
@@ -122,14 +124,25 @@ function start(library) {
   let rows = library.rows.map(digest);
   const state = { sort: COLUMNS.findIndex(({ name }) => name === 'Depth'), down: true, filter: '', show: 'All' };
 
+  // Rows are made as they come near.
+  let left = [];
+  const drawMore = () => {
+    $('rows').append(...left.splice(0, ROWS).map(element));
+    end.unobserve($('end'));
+    if (left.length > 0) end.observe($('end'));
+  };
+  const end = new IntersectionObserver(([{ isIntersecting }]) => isIntersecting && drawMore(), { root: document.querySelector('main'), rootMargin: '1500px' });
+
   const draw = () => {
     const { of } = COLUMNS[state.sort];
     const words = state.filter.toLowerCase().split(/\s+/).filter(Boolean);
     const shown = rows.filter((row) => STATES[state.show](row) && words.every((word) => row.words.includes(word)));
     const compare = (a, b) => (typeof a === 'string' ? a.localeCompare(b, 'en', { numeric: true }) : a - b);
     shown.sort((a, b) => (state.down ? -1 : 1) * (compare(of(a), of(b)) || 0) || a.index - b.index);
-    $('rows').replaceChildren(...shown.map(element));
-    $('none').hidden = shown.length > 0;
+    $('rows').replaceChildren();
+    left = shown;
+    drawMore();
+    $('none').hidden = $('rows').children.length > 0;
     [...$('heads').children].forEach((head, i) => head.setAttribute('aria-sort', i !== state.sort ? 'none' : state.down ? 'descending' : 'ascending'));
     $('summary').textContent = summaryText(library, rows);
     for (const button of $('states').children) button.setAttribute('aria-pressed', button.textContent === state.show);
