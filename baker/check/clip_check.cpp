@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <unordered_map>
 
 #include "check/events.h"
 #include "page/base64.h"
@@ -55,6 +57,7 @@ struct ClipChecker::Frames {
   std::vector<PartMeeting> meetings;
   FrameLists<std::array<std::uint32_t, 2>> contacts;  // triangles of faults and touches
   FrameLists<PenetrationEntry> penetrations;
+  std::map<std::uint32_t, HeatSpot> heat;
   PageMotion motion;
   bool loops = false;
   std::vector<EventSpan> spans;
@@ -86,21 +89,28 @@ void ClipChecker::take_sample() {
 
 ClipChecker::Frames ClipChecker::look(const ClipFrames& clip) {
   take_sample();
-  Frames out{{}, {}, {}, PageMotion(animated_.character(), axes_), false, {}, {}};
+  Frames out{{}, {}, {}, {}, PageMotion(animated_.character(), axes_), false, {}, {}};
   Deformation first;
   for (int i = 0; i < clip.count; ++i) {
     Deformation deformation = animated_.deformation(clip.first + i);
     std::vector<Penetration> found;
     std::vector<std::array<std::uint32_t, 2>> triangles;
+    std::unordered_map<std::uint32_t, float> hot;
     const auto run = [&](const sc_pose& pose) {
       const std::vector<TriangleContact>& contacts = player_.find(pose);
       found = player_.measure(pose, i > 0);
       for (const TriangleContact& contact : contacts) {
         const auto [a, b] = std::minmax(contact.part_a, contact.part_b);
-        const bool shown = std::any_of(found.begin(), found.end(), [&, a = a, b = b](const Penetration& p) {
-          return p.part_a == a && p.part_b == b && (is_fault(p.kind) || p.kind == SC_CLASS_TOUCH);
+        const auto of = std::find_if(found.begin(), found.end(), [&, a = a, b = b](const Penetration& p) {
+          return p.part_a == a && p.part_b == b;
         });
-        if (shown) triangles.push_back({contact.triangle_a, contact.triangle_b});
+        if (of == found.end() || !(is_fault(of->kind) || of->kind == SC_CLASS_TOUCH)) continue;
+        triangles.push_back({contact.triangle_a, contact.triangle_b});
+        if (!is_fault(of->kind)) continue;
+        for (const std::uint32_t t : triangles.back()) {
+          float& depth = hot[t];
+          depth = std::max(depth, static_cast<float>(mm_ * double{of->depth}));
+        }
       }
     };
     if (moved_by_bones(animated_.asset(), deformation)) {
@@ -111,6 +121,11 @@ ClipChecker::Frames ClipChecker::look(const ClipFrames& clip) {
       pose.vertices = positions.data();
       pose.vertex_count = positions.size() / 3;
       run(pose);
+    }
+    for (const auto& [triangle, depth] : hot) {
+      HeatSpot& spot = out.heat.try_emplace(triangle, HeatSpot{triangle, 0, 0}).first->second;
+      ++spot.frames;
+      spot.depth_mm = std::max(spot.depth_mm, depth);
     }
     for (const Penetration& p : found) {
       const double ml = p.is_closed != 0 ? std::pow(mm_ / 10, 3) * double{p.volume} : -1;
@@ -209,7 +224,8 @@ ClipCheck ClipChecker::check(std::size_t index) {
   const ClipFrames& clip = animated_.clips()[index];
   Frames frames = look(clip);
   frames.spans = join_events(frames.meetings, clip.count, frames.loops);
-  ClipCheck out{{clip.count, clip.fps, frames.loops, {}}, {}, {}};
+  ClipCheck out{{clip.count, clip.fps, frames.loops, {}}, {}, {}, {}};
+  for (const auto& [triangle, spot] : frames.heat) out.heat.push_back(spot);
   for (const EventSpan& span : frames.spans) out.result.events.push_back(event_of(frames, span, clip));
   show(out, frames, clip);
   std::vector<std::uint32_t> numbers;

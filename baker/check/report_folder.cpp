@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -82,6 +84,37 @@ ordered_json page_clip(const JudgedClip& clip) {
   return out;
 }
 
+// Where on a character's skin its faults are, in all of its clips.
+class HeatMap {
+ public:
+  void add(const std::string& bytes, int frames) {
+    frames_ += frames;
+    std::vector<HeatSpot> spots(bytes.size() / sizeof(HeatSpot));
+    std::memcpy(spots.data(), bytes.data(), spots.size() * sizeof(HeatSpot));
+    for (const HeatSpot& spot : spots) {
+      HeatSpot& sum = spots_.try_emplace(spot.triangle, HeatSpot{spot.triangle, 0, 0}).first->second;
+      sum.frames += spot.frames;
+      sum.depth_mm = std::max(sum.depth_mm, spot.depth_mm);
+    }
+  }
+  std::string page() const {
+    std::vector<std::uint32_t> triangles, frames;
+    std::vector<float> depths;
+    for (const auto& [triangle, spot] : spots_) {
+      triangles.push_back(triangle);
+      frames.push_back(spot.frames);
+      depths.push_back(spot.depth_mm);
+    }
+    const ordered_json json{
+        {"of", frames_}, {"triangles", base64(triangles)}, {"frames", base64(frames)}, {"mm", base64(depths)}};
+    return "spherechain.heat = " + json_text(json, -1) + ";\n";
+  }
+
+ private:
+  long frames_ = 0;
+  std::map<std::uint32_t, HeatSpot> spots_;
+};
+
 // A page refers to what it shows: nothing else stays in `data`.
 class DataFolder {
  public:
@@ -97,6 +130,11 @@ class DataFolder {
     fs::create_hard_link(from, to, error);
     if (error) fs::copy_file(from, to, fs::copy_options::overwrite_existing, error);
     if (error) throw Error(ExitCode::kFile, to.string() + ": cannot be written (" + error.message() + ")");
+  }
+
+  void write(const std::string& name, const std::string& bytes) {
+    kept_.insert(name);
+    write_atomically(report_ / name, bytes);
   }
 
   void remove_others() const {
@@ -132,13 +170,16 @@ void check_report_folder(const fs::path& folder) {
 bool write_report(const fs::path& folder, const Verdict& verdict, const Store& store, const fs::path& pages) {
   DataFolder data(folder, store);
   ordered_json clips = ordered_json::array();
+  std::map<std::string, HeatMap> heat;  // by character
   for (const JudgedClip& clip : verdict.clips) {
     clips.push_back(page_clip(clip));
     if (!clips.back().contains("data")) continue;
     data.take(clip.clip.key, kPageFile);
     data.take(clip.clip.key, kPictureFile);
     data.take(clip.clip.character_key, kPageFile);
+    heat[clip.clip.character_key].add(store.read(clip.clip.key, kHeatFile).value_or(""), clip.frames);
   }
+  for (const auto& [character, map] : heat) data.write(data_name(character) + "_heat.js", map.page());
   const Summary& s = verdict.summary;
   const ordered_json library{
       {"fails", verdict.fails},         {"characters", s.characters}, {"clips", s.clips}, {"frames", s.frames},

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,6 +31,13 @@ struct ClipResult {
   double fps = 30;
   bool loops = false;
   std::vector<Event> events;  // by where they begin
+};
+
+// How often and how deep a triangle of the skin takes part in faults.
+struct HeatSpot {
+  std::uint32_t triangle;  // the source's number
+  std::uint32_t frames;
+  float depth_mm;  // of the deepest
 };
 
 // What a character's check needs to know of its asset.

@@ -328,6 +328,8 @@ class Run {
     }
     store_.write(key, kPageFile, "spherechain.clip = " + found.page + ";\n");
     store_.write(key, kPictureFile, found.picture);
+    store_.write(key, kHeatFile,
+                 {reinterpret_cast<const char*>(found.heat.data()), found.heat.size() * sizeof(HeatSpot)});
     store_.write(key, kResultFile, to_bytes(found.result));
   }
 

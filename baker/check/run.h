@@ -42,7 +42,8 @@ std::vector<CheckedClip> check_library(const std::vector<LibraryCharacter>& libr
                                        const Store& store, const std::function<void(const RunState&)>& progress);
 
 // Kinds of files in the store. Of a character: its asset, its CharacterResult, its page. Of a clip: its ClipResult, its
-// page, its picture.
-inline constexpr const char *kAssetFile = ".sphc", *kResultFile = ".json", *kPageFile = ".js", *kPictureFile = ".png";
+// page, its picture, its HeatSpots.
+inline constexpr const char *kAssetFile = ".sphc", *kResultFile = ".json", *kPageFile = ".js", *kPictureFile = ".png",
+                            *kHeatFile = ".heat";
 
 }  // namespace spherechain::baker

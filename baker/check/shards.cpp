@@ -67,7 +67,7 @@ void copy_results(const CheckedClip& clip, const Store& from, const Store& store
     if (error) fs::copy_file(file, to, error);
     if (error) throw Error(ExitCode::kFile, to.string() + ": cannot be written (" + error.message() + ")");
   };
-  for (const char* kind : {kResultFile, kPageFile, kPictureFile}) copy(clip.key, kind);
+  for (const char* kind : {kResultFile, kPageFile, kPictureFile, kHeatFile}) copy(clip.key, kind);
   for (const char* kind : {kResultFile, kPageFile}) copy(clip.character_key, kind);
 }
 

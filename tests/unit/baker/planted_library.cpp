@@ -24,7 +24,7 @@ int mesh(Glb& glb, const Shape& shape) {
 std::string planted_character(const std::vector<PlantedClip>& clips) {
   constexpr double kTouching = 0.5 + 0.3;  // the ball's place, from the wall's middle
   Glb glb;
-  const int wall = mesh(glb, box(0.5, 1, 1)), sphere = mesh(glb, ball(0.3, 24));
+  const int wall = mesh(glb, box(0.5, 1, 1)), sphere = mesh(glb, ball(0.3, 12));
   glb.json["nodes"] = {{{"name", "character"}, {"children", {1, 2}}},
                        {{"name", "wall"}, {"mesh", wall}},
                        {{"name", "ball"}, {"mesh", sphere}, {"translation", {2, 0, 0}}}};

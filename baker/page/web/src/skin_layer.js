@@ -5,6 +5,7 @@ import * as THREE from 'three';
 
 const vertexShader = `
   attribute float zone;
+  attribute vec4 heat;
   uniform sampler2D looks;
   varying vec4 look;
   varying vec3 normalInView;
@@ -12,6 +13,7 @@ const vertexShader = `
   void main() {
     int i = int(zone);
     look = texelFetch(looks, ivec2(i % 1024, i / 1024), 0);
+    look.rgb = mix(look.rgb, heat.rgb, heat.a);
     vec4 p = modelViewMatrix * vec4(position, 1.0);
     normalInView = normalMatrix * normal;
     toEye = -p.xyz;
@@ -59,6 +61,8 @@ export class SkinLayer {
     geometry.setAttribute('position', this.position);
     geometry.setAttribute('normal', this.normal);
     geometry.setAttribute('zone', new THREE.BufferAttribute(skin.zone, 1));
+    this.heat = new THREE.BufferAttribute(new Uint8Array(4 * skin.zone.length), 4, true);
+    geometry.setAttribute('heat', this.heat);
     geometry.setIndex(new THREE.BufferAttribute(skin.index, 1));
 
     const rows = Math.ceil(Math.max(skin.zones.length, 1) / 1024);
@@ -80,6 +84,18 @@ export class SkinLayer {
     const rgb = parseInt(colour.slice(1), 16);
     this.texels.set([rgb >> 16, (rgb >> 8) & 255, rgb & 255, kind], 4 * zone);
     this.texture.needsUpdate = true;
+  }
+
+  // Paints triangles: `colourOf(t)` is [r, g, b, how much] of 255, linear, or null. A corner takes the strongest.
+  paint(colourOf) {
+    const { index } = this.skin;
+    const paint = this.heat.array.fill(0);
+    for (let t = 0; t < index.length / 3; ++t) {
+      const colour = colourOf(t);
+      if (colour === null) continue;
+      for (let k = 3 * t; k < 3 * t + 3; ++k) if (colour[3] >= paint[4 * index[k] + 3]) paint.set(colour, 4 * index[k]);
+    }
+    this.heat.needsUpdate = true;
   }
 
   pose(frame) {

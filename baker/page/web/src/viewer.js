@@ -164,5 +164,5 @@ export function start(model) {
     hovered: () => store.state.pointed,
     ready: true,
   });
-  return { store, flyToContact };
+  return { store, flyToContact, skinLayer: layers.skinLayer, redraw: () => stage?.invalidate() };
 }

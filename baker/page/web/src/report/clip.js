@@ -5,6 +5,7 @@ import { h } from '../dom.js';
 import { readModel } from '../model.js';
 import { start } from '../viewer.js';
 import { fillEvents } from './events_panel.js';
+import { fillHeat } from './heat_panel.js';
 import { readLink } from './links.js';
 
 // A clip of a report: the viewer, with the clip's events. Pages from disk may not fetch: data are scripts.
@@ -20,9 +21,9 @@ const load = (file) =>
 const say = (text) =>
   document.body.replaceChildren(h('p', { class: 'template' }, text, ' ', h('a', { href: 'index.html' }, 'To the library')));
 
-function addEventsTab() {
+function addTab(name) {
   const tabs = document.querySelector('[role=tablist]');
-  const tab = h('button', { type: 'button', role: 'tab', id: 'tab-events', 'aria-controls': 'events', 'aria-selected': 'true' }, 'Events');
+  const tab = h('button', { type: 'button', role: 'tab', id: 'tab-events', 'aria-controls': 'events', 'aria-selected': 'true' }, name);
   const panel = h('div', { role: 'tabpanel', id: 'events', 'aria-labelledby': 'tab-events' });
   for (const other of tabs.children) Object.assign(other, { tabIndex: -1 }).setAttribute('aria-selected', false);
   tabs.prepend(tab);
@@ -34,13 +35,26 @@ function addEventsTab() {
   return panel;
 }
 
+// All that a character's clips do to its skin, on the character at rest.
+async function showCharacter(row, rows) {
+  await Promise.all([load(`${row.body}.js`), load(`${row.body}_heat.js`)]);
+  const { character, heat } = spherechain;
+  const model = readModel({ ...character, title: row.character, radius: 'detect', report: null, clips: [{ name: 'all clips', first: 0, count: 1, own_count: 1 }] });
+  const panel = addTab('Heat');
+  document.getElementById('tab-contacts').remove();
+  document.body.classList.add('heat');
+  const viewer = start(model);
+  fillHeat(panel, { rows: rows.filter((other) => other.data && other.character === row.character), heat, ...viewer });
+}
+
 async function main() {
   globalThis.spherechain = {};
   await load('library.js');
   const { rows } = spherechain.library;
   const link = readLink();
-  const row = rows.find(({ character, clip, data }) => data && character === link.character && clip === link.clip);
+  const row = rows.find(({ character, clip, data }) => data && character === link.character && (link.clip ?? clip) === clip);
   if (!row) return say('This report has no such clip.');
+  if (link.clip === null) return showCharacter(row, rows);
   await Promise.all([load(`${row.body}.js`), load(`${row.data}.js`)]);
   const { character, clip } = spherechain;
   const model = readModel({
@@ -51,7 +65,7 @@ async function main() {
     report: null,
     clips: [{ name: row.clip, first: 0, count: clip.frames.count, own_count: clip.frames.count }],
   });
-  const panel = addEventsTab();
+  const panel = addTab('Events');
   const viewer = start(model);
   document.title = `${row.character} ${row.clip} · spherechain`;
   fillEvents(panel, { rows, row, model, ...viewer });

@@ -2,7 +2,7 @@ import '../style.css';
 import './library.css';
 import { css, fitCanvas, h } from '../dom.js';
 import { plural } from '../format.js';
-import { clipLink } from './links.js';
+import { characterLink, clipLink } from './links.js';
 import { baseline, download, isAccepted, isFault, onMarks } from './marks.js';
 import { followTheme } from './theme.js';
 
@@ -99,7 +99,7 @@ function element(row) {
     'tr',
     { onclick: (event) => !event.target.closest('a') && (location.href = link) },
     h('td', { class: 'picture' }, h('img', { src: `${row.data}.png`, loading: 'lazy', alt: '', width: 72, height: 72 })),
-    h('th', { scope: 'row' }, row.character),
+    h('th', { scope: 'row' }, h('a', { href: characterLink(row), title: 'Where on its skin all its faults are' }, row.character)),
     h('td', {}, h('a', { href: link }, row.clip)),
     number(row.frames.toLocaleString('en')),
     h('td', {}, strip),

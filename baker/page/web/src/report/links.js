@@ -1,5 +1,7 @@
 // A link to a clip, and to one of its events: it holds after the library is checked again.
 
+export const characterLink = ({ character }) => `clip.html#${new URLSearchParams({ character })}`;
+
 export const clipLink = ({ character, clip }, event = null) =>
   `clip.html#${new URLSearchParams({ character, clip, ...(event === null ? {} : { event: `${event}` }) })}`;
 
