@@ -24,7 +24,7 @@ constexpr std::uint32_t kNoTriangle = 0xFFFFFFFF;
 constexpr int kProbeSize = 40;
 constexpr int kWidth = 144, kHeight = 144, kSamples = 2;  // of a picture; samples a pixel in each direction
 using Colour = std::array<double, 3>;
-constexpr Colour kClay{0.79, 0.76, 0.71}, kFirst{0.83, 0.12, 0.17}, kSecond{0.95, 0.55, 0.1};
+constexpr std::array<Colour, 3> kColours{{{0.79, 0.76, 0.71}, {0.83, 0.12, 0.17}, {0.95, 0.55, 0.1}}};  // skin, patches
 
 // Few from below.
 std::vector<Vec3> eye_directions(const BodyFrame& axes) {
@@ -53,7 +53,7 @@ Picture::View Picture::view_from(const Vec3& back, const Vec3& middle, double ex
   return view;
 }
 
-void Picture::draw(const View& view) {
+void Picture::draw(const View& view, const std::vector<std::uint8_t>* only) {
   const Eigen::Vector3f right = (view.scale * view.right).cast<float>(), up = (view.scale * view.up).cast<float>(),
                         back = view.back.cast<float>();
   const float x0 = static_cast<float>(view.width * 0.5 - view.scale * view.middle.dot(view.right)),
@@ -67,6 +67,7 @@ void Picture::draw(const View& view) {
   ids_.assign(size, kNoTriangle);
   depths_.assign(size, -HUGE_VALF);
   for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+    if (only != nullptr && (*only)[t] == 0) continue;
     const auto &a = projected_[triangles_[t][0]], &b = projected_[triangles_[t][1]], &c = projected_[triangles_[t][2]];
     const float area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
     if (area == 0) continue;
@@ -123,7 +124,7 @@ Vec3 Picture::find_eye(const Patches& patches) {
 }
 
 std::string Picture::png(const Patches* patches, const Vec3& eye) {
-  std::vector<const Colour*> colours(triangles_.size(), &kClay);
+  std::vector<std::uint8_t> side(triangles_.size(), 0);
   Eigen::AlignedBox3d box;
   for (const Vec3& p : positions_) {
     box.extend(Vec3((p - axes_.origin).dot(axes_.left), (p - axes_.origin).dot(axes_.up),
@@ -133,13 +134,15 @@ std::string Picture::png(const Patches* patches, const Vec3& eye) {
   Vec3 middle = axes_.origin + center.x() * axes_.left + center.y() * axes_.up + center.z() * axes_.forward;
   double extent = 1.08 * box.sizes().maxCoeff();
   if (patches != nullptr) {
-    for (const std::uint32_t t : patches->triangles[0]) colours[t] = &kFirst;
-    for (const std::uint32_t t : patches->triangles[1]) colours[t] = &kSecond;
+    for (const std::uint32_t t : patches->triangles[0]) side[t] = 1;
+    for (const std::uint32_t t : patches->triangles[1]) side[t] = 2;
     extent = 0.4 * axes_.height;
     middle = patches->point;
   }
   const int width = kWidth * kSamples, height = kHeight * kSamples;
   const View view = view_from(eye, middle, extent, width, height);
+  draw(view, &side);
+  const std::vector<std::uint32_t> patch_ids = ids_;
   draw(view);
   const Vec3 key = (-0.45 * view.right + 0.7 * view.up + 0.65 * view.back).normalized();
   std::vector<unsigned char> pixels;
@@ -156,7 +159,13 @@ std::string Picture::png(const Patches* patches, const Vec3& eye) {
         Vec3 normal = (positions_[t[1]] - positions_[t[0]]).cross(positions_[t[2]] - positions_[t[0]]).normalized();
         if (normal.dot(view.back) < 0) normal = -normal;
         const double light = 0.32 + 0.62 * std::max(0.0, normal.dot(key)) + 0.12 * normal.dot(view.up);
-        for (std::size_t k = 0; k < 3; ++k) sum[k] += std::clamp(light * (*colours[ids_[at]])[k], 0.0, 1.0);
+        // A patch shows through the skin before it, half as strong.
+        const std::uint32_t patch = patch_ids[at];
+        const double share = side[ids_[at]] != 0 ? 1 : patch != kNoTriangle ? 0.5 : 0;
+        const Colour& colour = kColours[side[side[ids_[at]] != 0 || patch == kNoTriangle ? ids_[at] : patch]];
+        for (std::size_t k = 0; k < 3; ++k) {
+          sum[k] += std::clamp(light * (share * colour[k] + (1 - share) * kColours[0][k]), 0.0, 1.0);
+        }
       }
       for (const double value : sum) {
         const double mean = covered > 0 ? value / covered : 0;

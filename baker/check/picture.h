@@ -42,7 +42,8 @@ class Picture {
     int width, height;
   };
   View view_from(const Vec3& back, const Vec3& middle, double extent, int width, int height) const;
-  void draw(const View& view);  // into ids_ and depths_
+  // Into ids_ and depths_: all triangles, or those that are `only`.
+  void draw(const View& view, const std::vector<std::uint8_t>* only = nullptr);
 
   const std::vector<Triangle>& triangles_;
   BodyFrame axes_;

@@ -49,7 +49,7 @@ export function fillEvents(panel, { rows, row, model, store, flyToContact }) {
         { type: 'button', class: 'pair event', 'aria-pressed': `${index === chosen}`, disabled: gone, onclick: () => go(index) },
         h('span', { class: 'part-names' }, event.text),
         h('span', { class: 'count' }, millimetres(event.mm)),
-        h('span', { class: 'when' }, `${frames}, worst at ${event.deepest} (${timecode(event.deepest, row.fps)})`),
+        h('span', { class: 'when' }, `${frames}${event.from === event.to ? '' : `, worst at ${event.deepest}`} (${timecode(event.deepest, row.fps)})`),
         h('span', { class: `when ${event.fails && !isAccepted(row, event) ? 'warning' : ''}` }, `${CLASSES[event.class] ?? event.class}, ${state(event)}${event.ml === undefined ? '' : `, ${event.ml} ml`}`),
       ),
       index === chosen && isFault(event) && !event.rule && event.state !== 'accepted' &&
