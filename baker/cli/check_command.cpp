@@ -114,10 +114,15 @@ ExitCode run_check(const CheckOptions& options) {
   CheckConfig config = default_config();
   if (!options.config.empty()) config = read_config(read_file(options.config), options.config, config);
   config.rules.max_depth_mm = std::max(config.rules.max_depth_mm, options.max_depth);
-  check_outputs({{"--config", options.config}}, {{"--baseline", options.accept ? options.baseline : ""},
-                                                 {"--json", options.json},
-                                                 {"--junit", options.junit},
-                                                 {"--sarif", options.sarif}});
+  std::vector<CommandFile> inputs{{"--config", options.config}, {"--motion", options.motion}};
+  for (const std::string& path : options.library) inputs.push_back({"LIBRARY", path});
+  const std::string accepted = options.accept ? options.baseline : "";
+  check_outputs(
+      inputs,
+      {{"--baseline", accepted}, {"--json", options.json}, {"--junit", options.junit}, {"--sarif", options.sarif}});
+  for (const std::string& file : {accepted, options.json, options.sarif}) {
+    check_replaceable_json(file, false, "delete it, or name another");
+  }
   if (options.merge) {
     check_report_folder(options.output);
     const fs::path work = fs::path(options.output) / ".results";

@@ -161,6 +161,11 @@ TEST_CASE("one bad file stops nothing") {
   CHECK(report["summary"]["errors"] == 2);
   CHECK(report["clips"][0]["error"].get<std::string>().find("broken.glb: ") != std::string::npos);
   CHECK(events(report, "dip") == "2-5@4:200 new");
+  const std::string other = library.folder.write("other.json", "{}").string();
+  tool::check_error(library.check("--json " + other), 3, {"other.json: exists and is not what spherechain writes"});
+  tool::check_error(library.check("--json " + library.file.string()), 2, {"LIBRARY and --json are the same file"});
+  tool::check_error(library.check("--accept"), 2, {"--accept: needs a baseline"});
+  tool::check_error(library.check("--shard 4/3"), 2, {"'4/3' is not I/N"});
   tool::check_error(tool::run("check nowhere.glb -o " + library.report()), 3, {"nowhere.glb: there is no such file"});
   tool::check_error(tool::run("check " + library.file.string() + " -o " + library.folder.path.string()), 3,
                     {"holds other files than a report"});
