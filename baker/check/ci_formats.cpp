@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <cctype>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -35,6 +36,16 @@ std::string xml(const std::string& text) {
       default:
         out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
     }
+  }
+  return out;
+}
+
+std::string uri(const std::string& path) {
+  std::string out;
+  for (const char c : path) {
+    const bool is_plain =
+        std::isalnum(static_cast<unsigned char>(c)) != 0 || std::string("/-._~").find(c) != std::string::npos;
+    out += is_plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
   }
   return out;
 }
@@ -87,7 +98,7 @@ std::string check_sarif(const Verdict& verdict) {
                        {"level", level},
                        {"message", {{"text", text}}},
                        {"locations",
-                        {{{"physicalLocation", {{"artifactLocation", {{"uri", clip.file}}}}},
+                        {{{"physicalLocation", {{"artifactLocation", {{"uri", uri(clip.file)}}}}},
                           {"logicalLocations", {{{"name", clip.clip.clip}, {"kind", "clip"}}}}}}}});
     return results.back();
   };

@@ -59,6 +59,16 @@ std::string events(const json& report, const std::string& clip) {
   return out;
 }
 
+// docs/json.md names every key.
+void check_documented(const json& value) {
+  static const std::string page = tool::contents(SPHERECHAIN_SAMPLES "/../docs/json.md");
+  if (!value.is_structured()) return;
+  for (const auto& [key, inner] : value.items()) {
+    if (value.is_object()) CHECK_MESSAGE(page.find("`" + key + "`") != std::string::npos, key);
+    check_documented(inner);
+  }
+}
+
 // One space where there are several.
 std::string squeezed(std::string text) {
   text.erase(std::unique(text.begin(), text.end(), [](char a, char b) { return a == ' ' && b == ' '; }), text.end());
@@ -135,6 +145,7 @@ TEST_CASE("check fails by its rules and its baseline alone") {
   CHECK(run.code == 6);
   CHECK(run.out.find("worse than 150 mm") != std::string::npos);
   const json report = library.read("all.json");
+  check_documented(report);
   CHECK(events(report, "clean") == "2-2@2:60 new");
   CHECK(events(report, "dip") == "4-6@6:200 accepted");
   CHECK(events(report, "bridged") == "0-4@4:170 new");
