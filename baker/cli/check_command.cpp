@@ -84,7 +84,7 @@ std::vector<CharacterRules> rules_of(const std::vector<LibraryCharacter>& librar
 }
 
 ExitCode report(const CheckOptions& options, const std::vector<CheckedClip>& clips,
-                const std::vector<CharacterRules>& characters, const Store& store) {
+                const std::vector<CharacterRules>& characters, const Store& store, const fs::path& pages) {
   const FailOn fail_on = parse_fail_on(options.fail_on);
   Baseline baseline;
   if (!options.baseline.empty()) baseline = read_baseline(options.baseline, options.accept);
@@ -93,7 +93,7 @@ ExitCode report(const CheckOptions& options, const std::vector<CheckedClip>& cli
     baseline = accept(verdict, baseline);
     verdict = judge(clips, characters, store, baseline, options.folds, fail_on);
   }
-  const bool has_pages = write_report(options.output, verdict, store, installed_page(""));
+  const bool has_pages = write_report(options.output, verdict, store, pages);
   if (!options.json.empty()) write_atomically(options.json, check_json(verdict));
   if (!options.junit.empty()) write_atomically(options.junit, check_junit(verdict));
   if (!options.sarif.empty()) write_atomically(options.sarif, check_sarif(verdict));
@@ -111,6 +111,7 @@ ExitCode report(const CheckOptions& options, const std::vector<CheckedClip>& cli
 
 ExitCode run_check(const CheckOptions& options) {
   check_usage(options);
+  const fs::path pages = installed_page("");  // now: a long run may outlive its program's file
   CheckConfig config = default_config();
   if (!options.config.empty()) config = read_config(read_file(options.config), options.config, config);
   config.rules.max_depth_mm = std::max(config.rules.max_depth_mm, options.max_depth);
@@ -128,7 +129,7 @@ ExitCode run_check(const CheckOptions& options) {
     const fs::path work = fs::path(options.output) / ".results";
     const Store store(work);
     const ShardResult all = merge_shards(options.library, store);
-    const ExitCode code = report(options, all.clips, all.characters, store);
+    const ExitCode code = report(options, all.clips, all.characters, store, pages);
     fs::remove_all(work);
     return code;
   }
@@ -152,7 +153,7 @@ ExitCode run_check(const CheckOptions& options) {
   check_report_folder(options.output);
   const fs::path work = options.cache.empty() ? fs::path(options.output) / ".results" : fs::path(options.cache);
   const Store store(work);
-  const ExitCode code = report(options, check(store), rules_of(library), store);
+  const ExitCode code = report(options, check(store), rules_of(library), store, pages);
   if (options.cache.empty()) fs::remove_all(work);
   return code;
 }
