@@ -15,10 +15,12 @@ std::string clip_text(const JudgedClip& clip) {
 std::string marks(const JudgedEvent& judged) {
   std::string out;
   const auto add = [&](const std::string& text) { out += (out.empty() ? "  [" : ", ") + text; };
-  if (judged.event.kind == SC_CLASS_DEEP_FOLD) add("deep fold");
+  const PenetrationClass kind = judged.event.kind;
+  if (kind == SC_CLASS_DEEP_FOLD) add("deep fold");
+  if (!is_fault(kind)) add(kind == SC_CLASS_REST ? "as at rest" : sc_penetration_class_name(kind));
   if (judged.before_mm >= 0) add(fmt::format("worse than {:.0f} mm", judged.before_mm));
   if (!judged.rule.empty()) add(judged.rule);
-  if (judged.state != EventState::kNew) add(state_name(judged.state));
+  if (is_fault(kind) && judged.state != EventState::kNew) add(state_name(judged.state));
   return out.empty() ? out : out + "]";
 }
 
@@ -36,7 +38,15 @@ std::string summary_text(const Summary& s) {
   if (s.accepted > 0) out += fmt::format(", {} accepted", s.accepted);
   if (s.resolved > 0) out += fmt::format(", {} gone", s.resolved);
   if (s.errors > 0) out += "; " + counted(s.errors, "row", "rows") + " could not be checked";
-  return out + "\n";
+  std::string besides;
+  const auto beside = [&](PenetrationClass kind, const char* one, const char* many) {
+    const auto found = s.besides.find(kind);
+    if (found != s.besides.end()) besides += (besides.empty() ? "" : ", ") + counted(found->second, one, many);
+  };
+  beside(SC_CLASS_FOLD, "fold", "folds");
+  beside(SC_CLASS_SHELL, "shell", "shells");
+  beside(SC_CLASS_REST, "contact as at rest", "contacts as at rest");
+  return out + (besides.empty() ? "" : "\nbesides: " + besides) + "\n";
 }
 
 }  // namespace
@@ -60,7 +70,7 @@ std::string check_text(const Verdict& verdict) {
     if (!clip.clip.error.empty()) errors += clip.clip.error + "\n";
     for (const JudgedEvent& judged : clip.events) {
       const Event& event = judged.event;
-      if (!is_fault(event.kind) && judged.state != EventState::kResolved) continue;
+      if (event.kind == SC_CLASS_TOUCH) continue;
       const std::string worst = event.from == event.to || judged.state == EventState::kResolved
                                     ? ""
                                     : fmt::format("  (worst at {})", event.deepest);

@@ -81,6 +81,7 @@ void count(Summary& out, const JudgedClip& clip) {
   ++out.clips;
   out.frames += clip.frames;
   out.seconds += clip.frames / clip.fps;
+  for (const auto& [kind, number] : clip.besides) out.besides[kind] += number;
   for (const JudgedEvent& judged : clip.events) {
     if (judged.state == EventState::kResolved) {
       ++out.resolved;

@@ -36,7 +36,8 @@ struct Summary {
   int characters = 0, clips = 0, events = 0, penetrations = 0, deep_folds = 0, fresh = 0, worse = 0, accepted = 0,
       resolved = 0, errors = 0;
   long frames = 0;
-  double seconds = 0;  // of motion
+  double seconds = 0;                       // of motion
+  std::map<PenetrationClass, int> besides;  // events of classes that are counted only
 };
 
 struct Verdict {

@@ -37,7 +37,7 @@ function run(name, motion, more) {
   const { status, stdout, stderr } = spawnSync('/usr/bin/time', ['-f', '%M %U %S', tool, ...words], { encoding: 'utf8', maxBuffer: 1 << 28 });
   const seconds = (performance.now() - start) / 1000;
   if (status !== 0) throw new Error(stderr);
-  const summary = stdout.trim().split('\n').at(-2);
+  const summary = stdout.split('\n').find((line) => /^\d+ characters?, /.test(line));
   const [kilobytes, user, system] = stderr.trim().split(' ').map(Number);
   const cpu = user + system;
   console.log(`${name.padEnd(10)} ${seconds.toFixed(1).padStart(7)} s, ${cpu.toFixed(1).padStart(7)} s of all cores, ${(kilobytes / 1024).toFixed(0)} MB a process at most: ${summary}`);
