@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "mesh/mesh.h"
-#include "spherechain/penetrations.h"
+#include "play/skin_player.h"
 
 // What a check finds, before any rule: the same for the same character, clip, settings and tool.
 namespace spherechain::baker {
@@ -45,8 +45,6 @@ struct CharacterResult {
   std::vector<std::string> clips;  // its own; unique
   std::string grade;               // of the fit
 };
-
-inline bool is_fault(PenetrationClass kind) { return kind >= SC_CLASS_DEEP_FOLD; }
 
 // As the bytes of a file, and back; no result where the bytes are not whole.
 std::string to_bytes(const ClipResult& result);

@@ -19,7 +19,12 @@ class BonePose {
  private:
   std::vector<float> bones_, morphs_;
 };
+
+// Whole meshes as poses have no bones.
 bool moved_by_bones(const OpenAsset& asset, const Deformation& deformation);
+
+// What a person sees as a fault.
+inline bool is_fault(PenetrationClass kind) { return kind >= SC_CLASS_DEEP_FOLD; }
 
 // The runtime's exact contacts of one pose after another, and what they measure. The asset must have clusters.
 class SkinPlayer {

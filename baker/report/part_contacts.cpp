@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "mesh/error.h"
+#include "play/skin_player.h"
 
 namespace spherechain::baker {
 namespace {
@@ -41,8 +42,6 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
   }
   return out;
 }
-
-bool is_fault(PenetrationClass kind) { return kind >= SC_CLASS_DEEP_FOLD; }
 
 // `before` is the number of the frame before, or -1.
 void add_to_runs(std::vector<std::pair<int, int>>& runs, int number, int before) {

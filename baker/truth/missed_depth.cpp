@@ -3,13 +3,15 @@
 
 #include <algorithm>
 
+#include "play/skin_player.h"
+
 namespace spherechain::baker {
 
 MissedDepth::MissedDepth(const std::vector<std::uint8_t>& part_of, const FrameTruth& truth,
                          const std::vector<Pair>& reported, const std::vector<Penetration>& penetrations)
     : part_of_(part_of) {
   for (const Penetration& found : penetrations) {
-    if (found.kind >= SC_CLASS_DEEP_FOLD) depths_[{found.part_a, found.part_b}] = double{found.depth};
+    if (is_fault(found.kind)) depths_[{found.part_a, found.part_b}] = double{found.depth};
   }
   for (const TrueContact& contact : truth.contacts) {
     if (!std::binary_search(reported.begin(), reported.end(), contact.spheres)) continue;

@@ -130,7 +130,6 @@ std::vector<Pair> touching_spheres(Player& player, const std::vector<float>& pos
   return {player.pairs().begin(), player.pairs().end()};
 }
 
-// Whole meshes as poses have no bones.
 Frame validate_frame(const Context& context, int index) {
   const AnimatedAsset& animated = context.animated;
   const TruthSurface& surface = context.surface;

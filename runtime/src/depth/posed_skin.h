@@ -31,7 +31,7 @@ struct PosedSkin {
   void take(WordMemory& memory, std::size_t vertex_count, std::size_t cluster_count);
   // Puts all of the skin where the pose's vertices are, or where its bones have it.
   void fill(const Pose& pose, Target resolved);
-  // The skin of those parts alone.
+  // The skin of those parts alone, a bit each; boxes around groups are not known.
   void fill(const Pose& pose, Target resolved, const std::uint64_t (&parts)[4]);
 
   Corners corners(std::uint32_t triangle) const { return corners_in(positions, triangle); }

@@ -20,6 +20,7 @@ class Search {
 
   bool has_any() const { return has_any_; }
   const Exit& best() const { return best_; }
+  // A way that is known.
   void start(const Exit& first) {
     best_ = first;
     has_any_ = true;
