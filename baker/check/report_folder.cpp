@@ -90,7 +90,7 @@ class HeatMap {
   void add(const std::string& bytes, int frames) {
     frames_ += frames;
     std::vector<HeatSpot> spots(bytes.size() / sizeof(HeatSpot));
-    std::memcpy(spots.data(), bytes.data(), spots.size() * sizeof(HeatSpot));
+    if (!spots.empty()) std::memcpy(spots.data(), bytes.data(), spots.size() * sizeof(HeatSpot));
     for (const HeatSpot& spot : spots) {
       HeatSpot& sum = spots_.try_emplace(spot.triangle, HeatSpot{spot.triangle, 0, 0}).first->second;
       sum.frames += spot.frames;
