@@ -5,7 +5,6 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <unordered_map>
 
 #include "check/events.h"
 #include "page/base64.h"
@@ -20,6 +19,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::size_t kSampleSize = 1500;
+constexpr std::size_t kFullMeasures = 8;  // of a fault, at most
 
 std::vector<double> sizes_of(const BodyParts& parts, const Character& character) {
   std::vector<double> out(parts.parts.size(), 0);
@@ -51,17 +51,21 @@ bool same_pose(const Deformation& first, const Deformation& last, const BodyFram
 
 Vec3 to_vec3(const spherechain::Vec3& v) { return {v.x, v.y, v.z}; }
 
+bool is_of(const PartMeeting& meeting, const TriangleContact& contact) {
+  const auto [a, b] = std::minmax(contact.part_a, contact.part_b);
+  return meeting.found.part_a == a && meeting.found.part_b == b;
+}
+
+bool is_shown(PenetrationClass kind) { return is_fault(kind) || kind == SC_CLASS_TOUCH; }
+
 }  // namespace
 
 struct ClipChecker::Frames {
-  std::vector<PartMeeting> meetings;
-  FrameLists<std::array<std::uint32_t, 2>> contacts;  // triangles of faults and touches
-  FrameLists<PenetrationEntry> penetrations;
-  std::map<std::uint32_t, HeatSpot> heat;
+  std::vector<PartMeeting> meetings;             // by frame, then by parts
+  std::vector<std::vector<Triangles>> contacts;  // of a meeting that is shown: the triangles of part_a and part_b
   PageMotion motion;
   bool loops = false;
   std::vector<EventSpan> spans;
-  std::vector<Event> events;  // of the spans
 };
 
 ClipChecker::ClipChecker(const AnimatedAsset& animated, Target target)
@@ -87,60 +91,82 @@ void ClipChecker::take_sample() {
   }
 }
 
+template <typename Run>
+void ClipChecker::with_pose(const Deformation& deformation, const Run& run) {
+  if (moved_by_bones(animated_.asset(), deformation)) return run(BonePose(animated_.asset(), deformation).pose());
+  const std::vector<float> positions = pack(animated_.positions(deformation));
+  sc_pose pose;
+  pose.vertices = positions.data();
+  pose.vertex_count = positions.size() / 3;
+  run(pose);
+}
+
+ClipChecker::Triangles ClipChecker::triangles_of(const TriangleContact& contact) const {
+  return contact.part_a <= contact.part_b ? Triangles{contact.triangle_a, contact.triangle_b}
+                                          : Triangles{contact.triangle_b, contact.triangle_a};
+}
+
+// Every frame's contacts, measured quickly.
 ClipChecker::Frames ClipChecker::look(const ClipFrames& clip) {
   take_sample();
-  Frames out{{}, {}, {}, {}, PageMotion(animated_.character(), axes_), false, {}, {}};
+  Frames out{{}, {}, PageMotion(animated_.character(), axes_), false, {}};
   Deformation first;
   for (int i = 0; i < clip.count; ++i) {
     Deformation deformation = animated_.deformation(clip.first + i);
-    std::vector<Penetration> found;
-    std::vector<std::array<std::uint32_t, 2>> triangles;
-    std::unordered_map<std::uint32_t, float> hot;
-    const auto run = [&](const sc_pose& pose) {
+    with_pose(deformation, [&](const sc_pose& pose) {
       const std::vector<TriangleContact>& contacts = player_.find(pose);
-      found = player_.measure(pose, i > 0);
-      for (const TriangleContact& contact : contacts) {
-        const auto [a, b] = std::minmax(contact.part_a, contact.part_b);
-        const auto of = std::find_if(found.begin(), found.end(), [&, a = a, b = b](const Penetration& p) {
-          return p.part_a == a && p.part_b == b;
-        });
-        if (of == found.end() || !(is_fault(of->kind) || of->kind == SC_CLASS_TOUCH)) continue;
-        triangles.push_back({contact.triangle_a, contact.triangle_b});
-        if (!is_fault(of->kind)) continue;
-        for (const std::uint32_t t : triangles.back()) {
-          float& depth = hot[t];
-          depth = std::max(depth, static_cast<float>(mm_ * double{of->depth}));
-        }
+      const std::size_t before = out.meetings.size();
+      for (const Penetration& found : player_.measure_quickly(pose)) {
+        out.meetings.push_back({i, found});
+        out.meetings.back().found.visible = -1;  // not known
       }
-    };
-    if (moved_by_bones(animated_.asset(), deformation)) {
-      run(BonePose(animated_.asset(), deformation).pose());
-    } else {
-      const std::vector<float> positions = pack(animated_.positions(deformation));
-      sc_pose pose;
-      pose.vertices = positions.data();
-      pose.vertex_count = positions.size() / 3;
-      run(pose);
-    }
-    for (const auto& [triangle, depth] : hot) {
-      HeatSpot& spot = out.heat.try_emplace(triangle, HeatSpot{triangle, 0, 0}).first->second;
-      ++spot.frames;
-      spot.depth_mm = std::max(spot.depth_mm, depth);
-    }
-    for (const Penetration& p : found) {
-      const double ml = p.is_closed != 0 ? std::pow(mm_ / 10, 3) * double{p.volume} : -1;
-      out.meetings.push_back({i, p.part_a, p.part_b, p.kind, mm_ * double{p.depth}, ml, to_vec3(p.direction),
-                              to_vec3(p.deepest_b.position)});
-    }
-    std::stable_sort(found.begin(), found.end(), [](const auto& l, const auto& r) { return l.depth > r.depth; });
-    out.contacts.add(triangles);
-    out.penetrations.add(entries_of(found, mm_));
+      out.contacts.resize(out.meetings.size());
+      for (const TriangleContact& contact : contacts) {
+        std::size_t m = before;
+        while (!is_of(out.meetings[m], contact)) ++m;
+        if (is_shown(out.meetings[m].found.kind)) out.contacts[m].push_back(triangles_of(contact));
+      }
+    });
     out.motion.add(deformation, deformation.positions.empty() ? deform(sample_, sample_weights_, deformation.bones)
                                                               : deformation.positions);
     if (i == clip.count - 1) out.loops = clip.count > 2 && same_pose(first, deformation, axes_);
     if (i == 0) first = std::move(deformation);
   }
   return out;
+}
+
+// Measures a meeting in full.
+void ClipChecker::measure(const ClipFrames& clip, PartMeeting& meeting, std::vector<Triangles>& triangles) {
+  with_pose(animated_.deformation(clip.first + meeting.frame), [&](const sc_pose& pose) {
+    std::vector<TriangleContact> of_them;
+    triangles.clear();
+    for (const TriangleContact& contact : player_.find(pose)) {
+      if (!is_of(meeting, contact)) continue;
+      of_them.push_back(contact);
+      triangles.push_back(triangles_of(contact));
+    }
+    meeting.found = player_.measure_parts(pose, of_them);
+  });
+}
+
+// The quick form is seldom less deep than the full one: frames are measured in full from the deepest on, until none is
+// left that can be deeper. An event has the class of its deepest frame, and no frame is worse than that one.
+void ClipChecker::find_deepest(Frames& frames, const ClipFrames& clip, EventSpan& span) {
+  const auto found = [&](std::size_t m) -> Penetration& { return frames.meetings[m].found; };
+  std::vector<std::size_t> order = span.meetings;
+  std::sort(order.begin(), order.end(),
+            [&](auto l, auto r) { return std::pair(-found(l).depth, l) < std::pair(-found(r).depth, r); });
+  const bool may_be_fault = std::any_of(order.begin(), order.end(), [&](auto m) { return is_fault(found(m).kind); });
+  const std::size_t limit = std::min(order.size(), may_be_fault ? kFullMeasures : 1);
+  span.deepest = order[0];
+  for (std::size_t i = 0; i < limit && (i == 0 || found(order[i]).depth > found(span.deepest).depth); ++i) {
+    measure(clip, frames.meetings[order[i]], frames.contacts[order[i]]);
+    if (found(order[i]).depth > found(span.deepest).depth) span.deepest = order[i];
+  }
+  for (const std::size_t m : span.meetings) {
+    found(m).depth = std::min(found(m).depth, found(span.deepest).depth);
+    found(m).kind = std::min(found(m).kind, found(span.deepest).kind);
+  }
 }
 
 // A hand is in a thigh, a foot in a shin: what hangs farther out is in the other; of two alike the smaller.
@@ -150,54 +176,45 @@ std::pair<int, double> ClipChecker::rank(std::uint32_t part) const {
   return {joints, -areas_[part]};
 }
 
-Event ClipChecker::event_of(const Frames& frames, const EventSpan& span, const ClipFrames& clip) {
-  const PartMeeting& worst = frames.meetings[span.deepest];
+Event ClipChecker::event_of(const Frames& frames, const EventSpan& span, const ClipFrames& clip) const {
+  const Penetration& worst = frames.meetings[span.deepest].found;
   Event event;
   event.parts = {parts_.parts[worst.part_a].name, parts_.parts[worst.part_b].name};
   event.inside = rank(worst.part_a) > rank(worst.part_b) ? 0 : 1;
   event.kind = worst.kind;
   event.from = span.from;
   event.to = span.to;
-  event.deepest = worst.frame;
-  event.depth_mm = worst.depth_mm;
-  event.depth_percent = 100 * worst.depth_mm / (mm_ * animated_.frame().height);
-  event.volume_ml = worst.volume_ml;
-  event.direction = worst.direction;
-  event.point = worst.point;
+  event.deepest = frames.meetings[span.deepest].frame;
+  event.depth_mm = mm_ * double{worst.depth};
+  event.depth_percent = 100 * double{worst.depth} / animated_.frame().height;
+  if (worst.is_closed != 0) event.volume_ml = std::pow(mm_ / 10, 3) * double{worst.volume};
+  event.direction = to_vec3(worst.direction);
+  event.point = to_vec3(worst.deepest_b.position);
   if (!is_fault(worst.kind)) return event;
   const int length = span.from <= span.to ? span.to - span.from + 1 : clip.count - span.from + span.to + 1;
   event.depths_mm.assign(static_cast<std::size_t>(length), 0);
-  for (const PartMeeting& m : frames.meetings) {
-    if (m.part_a != worst.part_a || m.part_b != worst.part_b || !is_fault(m.kind)) continue;
-    const int at = m.frame >= span.from ? m.frame - span.from : m.frame - span.from + clip.count;
-    const bool inside =
-        span.from <= span.to ? m.frame >= span.from && m.frame <= span.to : m.frame >= span.from || m.frame <= span.to;
-    if (inside) event.depths_mm[static_cast<std::size_t>(at)] = static_cast<float>(m.depth_mm);
+  for (const std::size_t m : span.meetings) {
+    const auto& [frame, found] = frames.meetings[m];
+    if (!is_fault(found.kind)) continue;
+    const int at = frame >= span.from ? frame - span.from : frame - span.from + clip.count;
+    event.depths_mm[static_cast<std::size_t>(at)] = static_cast<float>(mm_ * double{found.depth});
   }
   return event;
 }
 
 // The picture is of the worst fault; without one, of the first frame.
 void ClipChecker::show(ClipCheck& out, const Frames& frames, const ClipFrames& clip) {
-  const auto patches_at = [&](const Event& event, const PartMeeting& worst) {
+  const auto patches_of = [&](const std::vector<Triangles>& contacts) {
     Patches patches;
     Vec3 sum = Vec3::Zero();
-    double count = 0;
-    const auto& list = frames.contacts.of(static_cast<std::size_t>(event.deepest));
-    for (const auto& pair : list) {
-      const std::array<std::uint8_t, 2> of{parts_.of_triangle[pair[0]], parts_.of_triangle[pair[1]]};
-      if (std::min(of[0], of[1]) != worst.part_a || std::max(of[0], of[1]) != worst.part_b) continue;
-      const std::size_t first = of[0] <= of[1] ? 0 : 1;
-      patches.triangles[0].push_back(pair[first]);
-      patches.triangles[1].push_back(pair[1 - first]);
+    for (const Triangles& pair : contacts) {
+      patches.triangles[0].push_back(pair[0]);
+      patches.triangles[1].push_back(pair[1]);
       for (const std::uint32_t t : pair) {
-        for (const Index v : animated_.character().source_triangles[t]) {
-          sum += picture_.position(v);
-          ++count;
-        }
+        for (const Index v : animated_.character().source_triangles[t]) sum += picture_.position(v);
       }
     }
-    patches.point = count > 0 ? Vec3(sum / count) : event.point;
+    patches.point = sum / (6 * static_cast<double>(contacts.size()));
     return patches;
   };
   const Event* worst = nullptr;
@@ -210,7 +227,7 @@ void ClipChecker::show(ClipCheck& out, const Frames& frames, const ClipFrames& c
     Event& event = out.result.events[i];
     if (!is_fault(event.kind)) continue;
     picture_.pose(animated_.positions(animated_.deformation(clip.first + event.deepest)));
-    const Patches patches = patches_at(event, frames.meetings[frames.spans[i].deepest]);
+    const Patches patches = patches_of(frames.contacts[frames.spans[i].deepest]);
     event.eye = picture_.find_eye(patches);
     if (&event == worst) out.picture = picture_.png(&patches, *event.eye);
   }
@@ -220,14 +237,52 @@ void ClipChecker::show(ClipCheck& out, const Frames& frames, const ClipFrames& c
   }
 }
 
+std::vector<HeatSpot> ClipChecker::heat_of(const Frames& frames) const {
+  struct Heat {
+    HeatSpot spot;
+    int last;  // frame
+  };
+  std::map<std::uint32_t, Heat> heat;
+  for (std::size_t m = 0; m < frames.meetings.size(); ++m) {
+    const auto& [frame, found] = frames.meetings[m];
+    if (!is_fault(found.kind)) continue;
+    for (const Triangles& pair : frames.contacts[m]) {
+      for (const std::uint32_t t : pair) {
+        auto& [spot, last] = heat.try_emplace(t, Heat{{t, 0, 0}, -1}).first->second;
+        spot.frames += last != frame ? 1 : 0;
+        spot.depth_mm = std::max(spot.depth_mm, static_cast<float>(mm_ * double{found.depth}));
+        last = frame;
+      }
+    }
+  }
+  std::vector<HeatSpot> out;
+  for (const auto& [triangle, one] : heat) out.push_back(one.spot);
+  return out;
+}
+
 ClipCheck ClipChecker::check(std::size_t index) {
   const ClipFrames& clip = animated_.clips()[index];
   Frames frames = look(clip);
   frames.spans = join_events(frames.meetings, clip.count, frames.loops);
-  ClipCheck out{{clip.count, clip.fps, frames.loops, {}}, {}, {}, {}};
-  for (const auto& [triangle, spot] : frames.heat) out.heat.push_back(spot);
+  for (EventSpan& span : frames.spans) find_deepest(frames, clip, span);
+  ClipCheck out{{clip.count, clip.fps, frames.loops, {}}, {}, {}, heat_of(frames)};
   for (const EventSpan& span : frames.spans) out.result.events.push_back(event_of(frames, span, clip));
   show(out, frames, clip);
+  FrameLists<Triangles> contacts;
+  FrameLists<PenetrationEntry> penetrations;
+  for (std::size_t i = 0, m = 0; i < static_cast<std::size_t>(clip.count); ++i) {
+    std::vector<Triangles> triangles;
+    std::vector<Penetration> found;
+    for (; m < frames.meetings.size() && frames.meetings[m].frame == static_cast<int>(i); ++m) {
+      found.push_back(frames.meetings[m].found);
+      if (is_shown(found.back().kind)) {
+        triangles.insert(triangles.end(), frames.contacts[m].begin(), frames.contacts[m].end());
+      }
+    }
+    std::stable_sort(found.begin(), found.end(), [](const auto& l, const auto& r) { return l.depth > r.depth; });
+    contacts.add(triangles);
+    penetrations.add(entries_of(found, mm_));
+  }
   std::vector<std::uint32_t> numbers;
   std::vector<float> seconds;
   for (int i = 0; i < clip.count; ++i) {
@@ -240,8 +295,8 @@ ClipCheck ClipChecker::check(std::size_t index) {
                           {"numbers", base64(numbers)},
                           {"seconds", base64(seconds)},
                           {"times", base64(seconds)},
-                          {"contacts", frames.contacts.json()},
-                          {"penetrations", frames.penetrations.json()}}},
+                          {"contacts", contacts.json()},
+                          {"penetrations", penetrations.json()}}},
                         {"motion", frames.motion.json()}},
                        -1);
   return out;

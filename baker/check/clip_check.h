@@ -30,11 +30,18 @@ class ClipChecker {
   ClipCheck check(std::size_t clip);
 
  private:
-  struct Frames;  // what was seen, frame by frame
+  using Triangles = std::array<std::uint32_t, 2>;  // that intersect: of part_a and of part_b
+  struct Frames;                                   // what was seen, frame by frame
   void take_sample();
   std::pair<int, double> rank(std::uint32_t part) const;
+  Triangles triangles_of(const TriangleContact& contact) const;
+  template <typename Run>
+  void with_pose(const Deformation& deformation, const Run& run);
   Frames look(const ClipFrames& clip);
-  Event event_of(const Frames& frames, const struct EventSpan& span, const ClipFrames& clip);
+  void measure(const ClipFrames& clip, struct PartMeeting& meeting, std::vector<Triangles>& triangles);
+  void find_deepest(Frames& frames, const ClipFrames& clip, struct EventSpan& span);
+  Event event_of(const Frames& frames, const struct EventSpan& span, const ClipFrames& clip) const;
+  std::vector<HeatSpot> heat_of(const Frames& frames) const;
   void show(ClipCheck& out, const Frames& frames, const ClipFrames& clip);
 
   const AnimatedAsset& animated_;

@@ -18,7 +18,8 @@ void close_loop(std::vector<EventSpan>& spans, int frames, const std::vector<Par
   EventSpan &first = spans.front(), &last = spans.back();
   if (!is_bridged(last.to, first.from + period)) return;
   first.from = last.from;
-  if (meetings[last.deepest].depth_mm > meetings[first.deepest].depth_mm) first.deepest = last.deepest;
+  if (meetings[last.deepest].found.depth > meetings[first.deepest].found.depth) first.deepest = last.deepest;
+  first.meetings.insert(first.meetings.begin(), last.meetings.begin(), last.meetings.end());
   spans.pop_back();
 }
 
@@ -28,14 +29,15 @@ std::vector<EventSpan> join_events(const std::vector<PartMeeting>& meetings, int
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<EventSpan>> by_parts;
   for (std::size_t i = 0; i < meetings.size(); ++i) {
     const PartMeeting& meeting = meetings[i];
-    std::vector<EventSpan>& spans = by_parts[{meeting.part_a, meeting.part_b}];
+    std::vector<EventSpan>& spans = by_parts[{meeting.found.part_a, meeting.found.part_b}];
     if (spans.empty() || !is_bridged(spans.back().to, meeting.frame)) {
-      spans.push_back({meeting.frame, meeting.frame, i});
+      spans.push_back({meeting.frame, meeting.frame, i, {i}});
       continue;
     }
     EventSpan& span = spans.back();
     span.to = meeting.frame;
-    if (meeting.depth_mm > meetings[span.deepest].depth_mm) span.deepest = i;
+    span.meetings.push_back(i);
+    if (meeting.found.depth > meetings[span.deepest].found.depth) span.deepest = i;
   }
   std::vector<EventSpan> out;
   for (auto& [parts, spans] : by_parts) {
@@ -44,8 +46,8 @@ std::vector<EventSpan> join_events(const std::vector<PartMeeting>& meetings, int
   }
   std::sort(out.begin(), out.end(), [&](const EventSpan& l, const EventSpan& r) {
     const auto key = [&](const EventSpan& span) {
-      const PartMeeting& m = meetings[span.deepest];
-      return std::tuple(span.from, m.part_a, m.part_b, span.to);
+      const Penetration& of = meetings[span.deepest].found;
+      return std::tuple(span.from, of.part_a, of.part_b, span.to);
     };
     return key(l) < key(r);
   });

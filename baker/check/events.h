@@ -2,10 +2,8 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <vector>
 
-#include "mesh/mesh.h"
 #include "spherechain/penetrations.h"
 
 namespace spherechain::baker {
@@ -13,12 +11,7 @@ namespace spherechain::baker {
 // Two body parts that meet in a frame of a clip.
 struct PartMeeting {
   int frame;
-  std::uint32_t part_a, part_b;
-  PenetrationClass kind;
-  double depth_mm;
-  double volume_ml;  // -1: not known
-  Vec3 direction;    // moves part_b
-  Vec3 point;        // the deepest of part_b
+  Penetration found;
 };
 
 // Frames without a meeting that an event goes on over.
@@ -26,8 +19,9 @@ inline constexpr int kGapMax = 3;
 
 // Meetings of the same two parts, joined over frames: what a person would call one clipping.
 struct EventSpan {
-  int from, to;         // where an event goes over the seam of a loop, from > to
-  std::size_t deepest;  // index of its deepest meeting, the earliest of equals
+  int from, to;                       // where an event goes over the seam of a loop, from > to
+  std::size_t deepest;                // index of its deepest meeting, the earliest of equals
+  std::vector<std::size_t> meetings;  // indices, in the order of time
 };
 
 // `meetings` are those of a clip of `frames` frames, by frame. `loops`: its last frame is its first again. Returns the

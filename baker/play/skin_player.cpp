@@ -58,26 +58,49 @@ const std::vector<TriangleContact>& SkinPlayer::find(const sc_pose& pose) {
   return contacts_;
 }
 
-const std::vector<Penetration>& SkinPlayer::measure(const sc_pose& pose, bool is_next) {
-  std::swap(penetrations_, before_);
+PenetrationJob SkinPlayer::measure_job(const sc_pose& pose, const std::vector<TriangleContact>& contacts) {
   PenetrationJob job;
   job.asset = asset_.handle();
   job.pose = pose;
   job.target = target_;
   job.skin_table = asset_.skin_table();
-  job.contacts = contacts_.data();
-  job.contact_count = contacts_.size();
-  job.previous = is_next ? before_.data() : nullptr;
-  job.previous_count = is_next ? before_.size() : 0;
-  const std::size_t words = sc_penetration_scratch_words(job.asset, contacts_.size());
-  measure_scratch_.resize(std::max(measure_scratch_.size(), words));
+  job.contacts = contacts.data();
+  job.contact_count = contacts.size();
+  measure_scratch_.resize(std::max(measure_scratch_.size(), sc_penetration_scratch_words(job.asset, contacts.size())));
   job.scratch = measure_scratch_.data();
   job.scratch_words = measure_scratch_.size();
+  return job;
+}
+
+const std::vector<Penetration>& SkinPlayer::run(PenetrationJob& job) {
   penetrations_.resize(part_count_);
   job.penetrations = penetrations_.data();
   job.penetration_capacity = penetrations_.size();
   check_runtime(job.run());
   return penetrations_;
+}
+
+const std::vector<Penetration>& SkinPlayer::measure(const sc_pose& pose, bool is_next) {
+  std::swap(penetrations_, before_);
+  PenetrationJob job = measure_job(pose, contacts_);
+  job.previous = is_next ? before_.data() : nullptr;
+  job.previous_count = is_next ? before_.size() : 0;
+  return run(job);
+}
+
+const std::vector<Penetration>& SkinPlayer::measure_quickly(const sc_pose& pose) {
+  PenetrationJob job = measure_job(pose, contacts_);
+  job.quick = 1;
+  return run(job);
+}
+
+Penetration SkinPlayer::measure_parts(const sc_pose& pose, const std::vector<TriangleContact>& of_them) {
+  PenetrationJob job = measure_job(pose, of_them);
+  Penetration out{};
+  job.penetrations = &out;
+  job.penetration_capacity = 1;
+  check_runtime(job.run());
+  return out;
 }
 
 }  // namespace spherechain::baker

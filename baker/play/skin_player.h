@@ -38,9 +38,15 @@ class SkinPlayer {
   // What find() found in that pose, sorted by body parts. `is_next`: the pose follows the last one measured, and
   // directions may follow that one's.
   const std::vector<Penetration>& measure(const sc_pose& pose, bool is_next);
+  // The same by the quick form: along one direction, as games do.
+  const std::vector<Penetration>& measure_quickly(const sc_pose& pose);
+  // Of two body parts that find() found, in full; whatever came before.
+  Penetration measure_parts(const sc_pose& pose, const std::vector<TriangleContact>& of_them);
 
  private:
   SkinContactJob job(const sc_pose& pose);
+  PenetrationJob measure_job(const sc_pose& pose, const std::vector<TriangleContact>& contacts);
+  const std::vector<Penetration>& run(PenetrationJob& job);
 
   const OpenAsset& asset_;
   Target target_;

@@ -14,7 +14,10 @@ namespace {
 std::vector<bk::PartMeeting> meetings(const std::vector<double>& depths) {
   std::vector<bk::PartMeeting> out;
   for (std::size_t i = 0; i < depths.size(); ++i) {
-    if (depths[i] > 0) out.push_back({static_cast<int>(i), 0, 1, SC_CLASS_PENETRATION, depths[i], -1, {}, {}});
+    if (depths[i] <= 0) continue;
+    out.push_back({static_cast<int>(i), {}});
+    out.back().found.part_b = 1;
+    out.back().found.depth = static_cast<float>(depths[i]);
   }
   return out;
 }
@@ -76,11 +79,12 @@ TEST_CASE("an event goes on over the seam of a loop") {
 
 TEST_CASE("events of different parts are apart") {
   std::vector<bk::PartMeeting> list = meetings({1, 1});
-  list.push_back({1, 0, 2, SC_CLASS_TOUCH, 9, -1, {}, {}});
+  list.push_back(list[1]);
+  list.back().found.part_b = 2;
   const std::vector<bk::EventSpan> spans = bk::join_events(list, 2, false);
   REQUIRE(spans.size() == 2);
   CHECK(spans[0].deepest == 0);
-  CHECK(list[spans[1].deepest].part_b == 2);
+  CHECK(list[spans[1].deepest].found.part_b == 2);
 }
 
 TEST_CASE("a known event is of the same parts at the same time, at any rate") {

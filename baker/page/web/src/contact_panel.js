@@ -47,7 +47,8 @@ export function fillContactPanel(panel, store, model, flyTo) {
   const minor = (contact) => (isFault(contact) ? '' : ' minor');
   const frameRow = (contact, i) => {
     const { key, name, pairs, visible } = contact;
-    const title = [plural(pairs, 'triangle pair'), `${Math.round(100 * visible)} % visible`];
+    const title = [plural(pairs, 'triangle pair')];
+    if (visible >= 0) title.push(`${Math.round(100 * visible)} % visible`);
     const properties = { class: `pair contact${minor(contact)}`, 'data-contact': key, title: title.join(', ') };
     return row(properties, `${i + 1}`, name, what(contact) + millilitres(contact), () => {
       store.set({ contact: key });
