@@ -6,7 +6,8 @@
 namespace spherechain {
 namespace {
 
-constexpr std::size_t kSampled = 8;  // segments
+constexpr std::size_t kSampled = 8;    // segments
+constexpr std::size_t kSearched = 32;  // until one is seen
 
 // Does the ray meet the triangle? (Moeller and Trumbore)
 bool meets(const Double3& from, const Double3& direction, const Corners& t) {
@@ -60,27 +61,40 @@ bool Visibility::is_free(const Double3& from, const Double3& direction) {
   return true;
 }
 
+bool Visibility::is_seen(const Segment3& segment, const Double3 (&axes)[3], double clearance, Double3& free) {
+  Double3 out = segment.normal_a + segment.normal_b;
+  if (!normalize(out)) {
+    out = segment.normal_a;
+  }
+  const Double3 from = 0.5 * (segment.from + segment.to) + clearance * out;
+  if (is_free(from, out) || is_free(from, free)) {
+    return true;
+  }
+  for (int k = 0; k < 27; ++k) {
+    Double3 direction = double(k % 3 - 1) * axes[0] + (double(k / 3 % 3 - 1) * axes[1] + double(k / 9 - 1) * axes[2]);
+    if (normalize(direction) && is_free(from, direction)) {
+      free = direction;
+      return true;
+    }
+  }
+  return false;
+}
+
 double Visibility::share(const Contour& contour, const Double3 (&axes)[3], double clearance) {
   std::fill(blockers_, blockers_ + kBlockers, kNoPlace);
-  const std::size_t step = (contour.segments.size + kSampled - 1) / kSampled;
-  std::size_t seen = 0, count = 0;
+  const std::size_t size = contour.segments.size;
   Double3 free = axes[0];  // the last ray that left: likely to be free again
-  for (std::size_t i = step / 2; i < contour.segments.size; i += step, ++count) {
-    const Segment3& segment = contour.segments[i];
-    Double3 out = segment.normal_a + segment.normal_b;
-    if (!normalize(out)) {
-      out = segment.normal_a;
+  for (const std::size_t wanted : {kSampled, kSearched}) {
+    const std::size_t step = (size + wanted - 1) / wanted, first = step / 2;
+    std::size_t seen = 0;
+    for (std::size_t i = first; i < size && (wanted == kSampled || seen == 0); i += step) {
+      seen += is_seen(contour.segments[i], axes, clearance, free) ? 1 : 0;
     }
-    const Double3 from = 0.5 * (segment.from + segment.to) + clearance * out;
-    bool is_seen = is_free(from, out) || is_free(from, free);
-    for (int k = 0; k < 27 && !is_seen; ++k) {
-      Double3 direction = double(k % 3 - 1) * axes[0] + (double(k / 3 % 3 - 1) * axes[1] + double(k / 9 - 1) * axes[2]);
-      is_seen = normalize(direction) && is_free(from, direction);
-      free = is_seen ? direction : free;
+    if (seen > 0) {
+      return static_cast<double>(seen) / static_cast<double>((size - first + step - 1) / step);
     }
-    seen += is_seen ? 1 : 0;
   }
-  return static_cast<double>(seen) / static_cast<double>(count);
+  return 0;
 }
 
 }  // namespace spherechain

@@ -1,0 +1,83 @@
+// Are `spherechain check`'s events those of CGAL's intersections, and how much faster does it find them?
+//   node check_against_cgal.mjs TOOL FILE[+MOTION]...
+//
+// For each clip: events join the frames in which `play` finds the two body parts in contact, and `validate` finds no
+// contact of any frame missing or extra by CGAL. The ratio is of times of the same frames, one after another on one core:
+// check with its report and without the bake, over the search by CGAL and its comparison with ours.
+import { spawnSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { basename, join } from 'node:path';
+
+const [tool, ...files] = process.argv.slice(2);
+if (files.length === 0) throw new Error('node check_against_cgal.mjs TOOL FILE[+MOTION]...');
+const folder = mkdtempSync(join(tmpdir(), 'check-'));
+const kGap = 3;
+const rate = ['--fps', '30'];
+
+function run(...words) {
+  const start = performance.now();
+  const { status, stderr } = spawnSync(tool, words, { encoding: 'utf8', maxBuffer: 1 << 28 });
+  if (status !== 0) throw new Error(`${words.join(' ')}: ${stderr}`);
+  return (performance.now() - start) / 1000;
+}
+const json = (name) => JSON.parse(readFileSync(join(folder, name), 'utf8'));
+const to = (name) => ['--json', join(folder, name)];
+
+// Runs of frames, over gaps, and over the seam of a loop: `a/b: from-to`.
+function spans(frames, loops) {
+  const met = new Map();
+  frames.forEach((frame, i) => {
+    for (const { a, b } of frame.skin.parts) met.set(`${a}/${b}`, [...(met.get(`${a}/${b}`) ?? []), i]);
+  });
+  const out = [];
+  for (const [parts, list] of met) {
+    const runs = [];
+    for (const i of list) {
+      if (runs.length > 0 && i - runs.at(-1)[1] - 1 <= kGap) runs.at(-1)[1] = i;
+      else runs.push([i, i]);
+    }
+    if (loops && runs.length > 1 && runs[0][0] + frames.length - 1 - runs.at(-1)[1] - 1 <= kGap) runs[0][0] = runs.pop()[0];
+    for (const [from, last] of runs) out.push(`${parts}: ${from}-${last}`);
+  }
+  return new Set(out);
+}
+const sizeOfOnly = (a, b) => [...a].filter((x) => !b.has(x)).length;
+
+const total = { clips: 0, frames: 0, events: 0, missed: 0, invented: 0, missing: 0, extra: 0, check: 0, cgal: 0 };
+const columns = Object.keys(total);
+const line = (name, row) => {
+  const cells = columns.map((c) => (['check', 'cgal'].includes(c) ? ((1000 * row[c]) / row.frames).toFixed(2) : `${row[c]}`).padStart(9));
+  console.log(`${name.padEnd(32)}${cells.join('')}${(row.cgal / row.check).toFixed(0).padStart(7)} x`);
+};
+console.log(`${'character'.padEnd(32)}${columns.map((c) => c.padStart(9)).join('')}   (check, cgal: ms a frame)`);
+for (const file of files) {
+  const [character, motion] = file.split('+');
+  const carried = motion ? ['--motion', motion] : [];
+  const asset = join(folder, 'asset.sphc'), cache = ['--cache', join(folder, basename(file))];
+  const report = ['-o', join(folder, 'report'), '--fail-on', 'none', '--jobs', '1'];
+  run('bake', character, '-o', asset);
+  run('check', character, ...carried, ...report, ...cache, '--fps', '1');  // bakes into the cache
+  const row = Object.fromEntries(columns.map((c) => [c, 0]));
+  row.check = run('check', character, ...carried, ...report, ...cache, ...rate, '--folds', ...to('check.json'));
+  for (const clip of json('check.json').clips) {
+    const which = motion ? carried : ['--clip', clip.clip];
+    run('play', asset, '--source', character, ...which, ...rate, ...to('play.json'));
+    const events = new Set(clip.events.map(({ parts: [a, b], from, to }) => `${a}/${b}: ${from}-${to}`));
+    const expected = spans(json('play.json').frames, clip.loops);
+    row.cgal += run('validate', asset, '--source', character, ...which, ...rate, '--contacts', ...to('truth.json'));
+    const truth = json('truth.json');
+    if (truth.frames !== clip.frames) throw new Error(`${file}: ${clip.clip}: ${truth.frames} frames, not ${clip.frames}`);
+    row.clips += 1;
+    row.frames += clip.frames;
+    row.events += clip.events.length;
+    row.missed += sizeOfOnly(expected, events);
+    row.invented += sizeOfOnly(events, expected);
+    row.missing += truth.contacts_missing + truth.contacts_from_bones.missing + truth.neighbour_contacts.missing;
+    row.extra += truth.contacts_extra + truth.contacts_from_bones.extra + truth.neighbour_contacts.extra;
+  }
+  line(basename(character) + (motion ? ` + ${basename(motion)}` : ''), row);
+  for (const c of columns) total[c] += row[c];
+}
+line('all', total);
+rmSync(folder, { recursive: true });
