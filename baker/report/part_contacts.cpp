@@ -85,6 +85,7 @@ PartCounts PartContacts::add(int frame, const std::vector<Pair>& triangles,
     if (std::pair(fault, mm_ * double{found.depth}) > std::pair(is_fault(contact.kind), contact.depth_mm_max)) {
       contact.depth_mm_max = mm_ * double{found.depth};
       contact.frame_of_depth_max = at.number;
+      contact.direction = found.direction;
       contact.kind = found.kind;
     }
   }
@@ -127,8 +128,10 @@ std::string PartContacts::rows(const Clip& clip) const {
     const auto& runs = contact.fault_runs;
     const char* unit = runs.size() == 1 && runs[0].first == runs[0].second ? "frame " : "frames ";
     const char* fold = contact.kind == SC_CLASS_DEEP_FOLD ? "deep fold, " : "";
+    const auto& [x, y, z] = contact.direction;
     cells.push_back({name(a), a == b ? "itself" : name(b), unit + runs_text(runs),
-                     fmt::format("{}{:.0f} mm deep at {}", fold, contact.depth_mm_max, contact.frame_of_depth_max)});
+                     fmt::format("{}{:.0f} mm deep at {}, out along ({:.2f}, {:.2f}, {:.2f})", fold,
+                                 contact.depth_mm_max, contact.frame_of_depth_max, x, y, z)});
   }
   std::string rest;
   for (const auto& [kind, count] : others) {

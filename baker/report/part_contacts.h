@@ -43,8 +43,9 @@ class PartContacts {
     std::vector<std::pair<int, int>> runs, fault_runs;
     std::size_t triangle_pairs_max = 0;
     int frame_of_max = 0;
-    double depth_mm_max = 0;  // of the deepest fault, or without one of the deepest; its frame, and the class there
+    double depth_mm_max = 0;  // of the deepest fault, or without one of the deepest; its frame, and what is there
     int frame_of_depth_max = 0;
+    spherechain::Vec3 direction{};
     PenetrationClass kind = SC_CLASS_REST;
   };
   using Contacts = std::map<std::pair<std::size_t, std::size_t>, Contact>;

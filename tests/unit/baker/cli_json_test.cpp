@@ -228,7 +228,7 @@ TEST_CASE("play tells which body parts touch, in which frames, and how the spher
     // Faults have a line of their own.
     const bool is_fault = is_fault_class(contact);
     CHECK(contact["fault_frames"].empty() == !is_fault);
-    const std::string line = fmt::format("{:.0f} mm deep at {}\n", contact["depth_mm_max"].get<double>(),
+    const std::string line = fmt::format("{:.0f} mm deep at {}, out along (", contact["depth_mm_max"].get<double>(),
                                          contact["frame_of_depth_max"].get<int>());
     CHECK_MESSAGE((play.out.find(line) != std::string::npos) == is_fault, line);
     faults += is_fault ? 1 : 0;
