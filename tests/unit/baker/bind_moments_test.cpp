@@ -164,7 +164,7 @@ TEST_CASE("in any pose of the bones the moments give the skinned pivots' centre 
   }
 }
 
-TEST_CASE("where vertices hang on no bone, moments have them on the rest bone") {
+TEST_CASE("where vertices hang on no bone, moments have them on the rest bone" * doctest::test_suite("many bakes")) {
   Bake bake = morphing_person();
   bake.character.rig.morphs.clear();
   bake = rebake(bake, bake.settings);
