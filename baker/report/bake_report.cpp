@@ -318,12 +318,18 @@ bool is_tall(const Bake& bake) {
   return high - low > 0.999 * bake.regions.frame.height;
 }
 
+constexpr double kSmallest = 0.02, kLargest = 50;  // metres: what is outside is seldom a character
+
 std::string bake_report_text(const Bake& bake) {
   const Mesh& mesh = bake.character.body;
-  std::string out = fmt::format(
-      "{}: {} triangles ({} body), {} components, {:.3f} m {}; {}\n", bake.character.file,
-      bake.character.source_triangles.size(), mesh.triangles.size(), bake.character.report.components,
-      bake.regions.frame.height * bake.character.metres_per_unit, is_tall(bake) ? "tall" : "long", bake.regions.facing);
+  const double metres = bake.regions.frame.height * bake.character.metres_per_unit;
+  std::string out =
+      fmt::format("{}: {} triangles ({} body), {} components, {:.3f} m {}; {}\n", bake.character.file,
+                  bake.character.source_triangles.size(), mesh.triangles.size(), bake.character.report.components,
+                  metres, is_tall(bake) ? "tall" : "long", bake.regions.facing);
+  if (metres < kSmallest || metres > kLargest) {
+    out += "its file names no unit, or a wrong one: believe depths in % of the height, not those in mm\n";
+  }
   if (const std::size_t dropped = bake.character.report.attachments_dropped; dropped > 0) {
     out += fmt::format("left out: {} on joints, such as weapons and hats (--attachments keeps them)\n",
                        dropped == 1 ? "1 rigid mesh" : fmt::format("{} rigid meshes", dropped));
