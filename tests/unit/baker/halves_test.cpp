@@ -118,7 +118,8 @@ TEST_CASE("a hand that the march has no limbs for is fitted by its bones: each f
   }
 }
 
-TEST_CASE("a limit on the spheres is kept, few or many, and more of them fit closer") {
+TEST_CASE("a limit on the spheres is kept, few or many, and more of them fit closer" *
+          doctest::test_suite("many bakes")) {
   const SourceMesh mesh = mesh_of(hand());
   double last = 1;
   for (const int limit : {8, 40, 200}) {
