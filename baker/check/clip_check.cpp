@@ -198,6 +198,7 @@ void ClipChecker::show(ClipCheck& out, const Frames& frames, const ClipFrames& c
       }
     }
     patches.point = count > 0 ? Vec3(sum / count) : event.point;
+    patches.way = event.direction;
     return patches;
   };
   const Event* worst = nullptr;

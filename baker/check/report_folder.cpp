@@ -53,6 +53,7 @@ ordered_json page_event(const JudgedEvent& judged) {
                    {"state", state_name(judged.state)},
                    {"fails", judged.fails}};
   if (event.volume_ml >= 0) out["ml"] = std::round(10 * event.volume_ml) / 10;
+  if (event.eye) out["camera"] = {{"target", to_json(event.point)}, {"back", to_json(*event.eye)}};
   if (!judged.rule.empty()) out["rule"] = judged.rule;
   if (judged.before_mm >= 0) out["before"] = judged.before_mm;
   return out;
@@ -171,12 +172,14 @@ bool write_report(const fs::path& folder, const Verdict& verdict, const Store& s
   DataFolder data(folder, store);
   ordered_json clips = ordered_json::array();
   std::map<std::string, HeatMap> heat;  // by character
+  std::map<std::string, std::string> fits;  // by body
   for (const JudgedClip& clip : verdict.clips) {
     clips.push_back(page_clip(clip));
     if (!clips.back().contains("data")) continue;
     data.take(clip.clip.key, kPageFile);
     data.take(clip.clip.key, kPictureFile);
     data.take(clip.clip.character_key, kPageFile);
+    fits[data_name(clip.clip.character_key)] = clip.fit;
     heat[clip.clip.character_key].add(store.read(clip.clip.key, kHeatFile).value_or(""), clip.frames);
   }
   for (const auto& [character, map] : heat) data.write(data_name(character) + "_heat.js", map.page());
@@ -184,7 +187,7 @@ bool write_report(const fs::path& folder, const Verdict& verdict, const Store& s
   const ordered_json library{
       {"fails", verdict.fails},         {"characters", s.characters}, {"clips", s.clips}, {"frames", s.frames},
       {"penetrations", s.penetrations}, {"deep_folds", s.deep_folds}, {"new", s.fresh},   {"errors", s.errors},
-      {"rows", std::move(clips)}};
+      {"fits", fits}, {"rows", std::move(clips)}};
   write_atomically(folder / "library.js", "spherechain.library = " + json_text(library, -1) + ";\n");
   data.remove_others();
   for (const std::string page : {"index.html", "clip.html"}) {

@@ -71,7 +71,7 @@ std::string to_bytes(const ClipResult& result) {
 }
 
 std::string to_bytes(const CharacterResult& result) {
-  return json_text({{"clips", result.clips}, {"grade", result.grade}}, -1);
+  return json_text({{"clips", result.clips}, {"grade", result.grade}, {"fit", result.fit}}, -1);
 }
 
 std::optional<ClipResult> read_clip_result(const std::string& bytes) {
@@ -90,6 +90,7 @@ std::optional<CharacterResult> read_character_result(const std::string& bytes) {
     CharacterResult out;
     json.at("clips").get_to(out.clips);
     json.at("grade").get_to(out.grade);
+    json.at("fit").get_to(out.fit);
     return out;
   });
 }

@@ -43,7 +43,8 @@ struct HeatSpot {
 // What a character's check needs to know of its asset.
 struct CharacterResult {
   std::vector<std::string> clips;  // its own; unique
-  std::string grade;               // of the fit
+  std::string grade;               // of the spheres' fit
+  std::string fit;                 // the same as a sentence: fit_line's
 };
 
 // As the bytes of a file, and back; no result where the bytes are not whole.

@@ -18,6 +18,7 @@
 #include "mesh/error.h"
 #include "page/page.h"
 #include "play/target.h"
+#include "report/report.h"
 
 namespace spherechain::baker {
 namespace {
@@ -91,6 +92,7 @@ void bake_into(const Store& store, const std::string& key, const LibraryCharacte
     result.clips.push_back(unique);
   }
   result.grade = fit_grade_name(baked.quality.grade());
+  result.fit = fit_line(baked);
   store.write(key, kAssetFile, {reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size()});
   store.write(key, kResultFile, to_bytes(result));
 }

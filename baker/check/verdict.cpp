@@ -103,10 +103,10 @@ Verdict judge(const std::vector<CheckedClip>& clips, const std::vector<Character
   const Judge by(baseline, folds, fail_on);
   Verdict out;
   out.summary.characters = static_cast<int>(characters.size());
-  std::map<std::string, std::string> grades;
+  std::map<std::string, CharacterResult> read;  // by key
   for (const CheckedClip& clip : clips) {
     const CharacterRules& of = characters[clip.character];
-    JudgedClip judged{of.name, of.file, {}, clip, 0, 30, false, {}, {}};
+    JudgedClip judged{of.name, of.file, {}, {}, clip, 0, 30, false, {}, {}};
     if (clip.error.empty() && !clip.clip.empty()) {
       const std::optional<std::string> bytes = store.read(clip.key, kResultFile);
       const std::optional<ClipResult> result = bytes ? read_clip_result(*bytes) : std::nullopt;
@@ -118,13 +118,13 @@ Verdict judge(const std::vector<CheckedClip>& clips, const std::vector<Character
         by.events(judged, *result, of.rules);
         count(out.summary, judged);
       }
-      const auto [grade, is_new] = grades.try_emplace(clip.character_key);
+      const auto [character, is_new] = read.try_emplace(clip.character_key);
       if (is_new) {
-        const std::optional<std::string> character = store.read(clip.character_key, kResultFile);
-        const auto read = character ? read_character_result(*character) : std::nullopt;
-        if (read) grade->second = read->grade;
+        const std::string bytes_of = store.read(clip.character_key, kResultFile).value_or("");
+        character->second = read_character_result(bytes_of).value_or(CharacterResult());
       }
-      judged.grade = grade->second;
+      judged.grade = character->second.grade;
+      judged.fit = character->second.fit;
     }
     out.summary.errors += judged.clip.error.empty() ? 0 : 1;
     const bool is_broken = !judged.clip.error.empty() && fail_on != FailOn::kNone;

@@ -24,6 +24,7 @@ struct JudgedEvent {
 
 struct JudgedClip {
   std::string character, file, grade;  // name; path as given; grade of the fit
+  std::string fit;                     // the grade as a sentence
   CheckedClip clip;
   int frames = 0;
   double fps = 30;

@@ -205,13 +205,13 @@ export function createStage(canvas, model, store, { skinLayer, sphereLayer, cont
       return caster.ray.applyMatrix4(fromWorld());
     },
 
-    // Looks at a ball of source units from where the outside of the chosen contact's triangles is seen best.
-    flyToContact(ball) {
+    // Looks at a ball of source units from where the outside of the chosen contact's triangles is seen best, or as `known` says.
+    flyToContact(ball, known) {
       framed = null;
-      const center = new THREE.Vector3(...ball).applyMatrix4(toWorld());
+      const center = new THREE.Vector3(...(known?.target ?? ball)).applyMatrix4(toWorld());
       const distance = Math.max((1.5 * ball[3]) / model.height / TAN, 0.62 * unit);
       const back = camera.position.clone().sub(controls.target).normalize();
-      const best = findView(toWorld(), center, distance, back, inSphere);
+      const best = known ? new THREE.Vector3(...known.back).transformDirection(toWorld()) : findView(toWorld(), center, distance, back, inSphere);
       go(center, best ? center.clone().addScaledVector(best, distance) : outside(center, back, distance));
     },
 
