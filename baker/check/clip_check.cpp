@@ -5,7 +5,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <unordered_map>
+#include <tuple>
 
 #include "check/events.h"
 #include "page/base64.h"
@@ -57,7 +57,6 @@ struct ClipChecker::Frames {
   std::vector<PartMeeting> meetings;
   FrameLists<std::array<std::uint32_t, 2>> contacts;  // triangles of faults and touches
   FrameLists<PenetrationEntry> penetrations;
-  std::map<std::uint32_t, HeatSpot> heat;
   PageMotion motion;
   bool loops = false;
   std::vector<EventSpan> spans;
@@ -89,13 +88,12 @@ void ClipChecker::take_sample() {
 
 ClipChecker::Frames ClipChecker::look(const ClipFrames& clip) {
   take_sample();
-  Frames out{{}, {}, {}, {}, PageMotion(animated_.character(), axes_), false, {}, {}};
+  Frames out{{}, {}, {}, PageMotion(animated_.character(), axes_), false, {}, {}};
   Deformation first;
   for (int i = 0; i < clip.count; ++i) {
     Deformation deformation = animated_.deformation(clip.first + i);
     std::vector<Penetration> found;
     std::vector<std::array<std::uint32_t, 2>> triangles;
-    std::unordered_map<std::uint32_t, float> hot;
     const auto run = [&](const sc_pose& pose) {
       const std::vector<TriangleContact>& contacts = player_.find(pose);
       found = player_.measure(pose, i > 0);
@@ -106,11 +104,6 @@ ClipChecker::Frames ClipChecker::look(const ClipFrames& clip) {
         });
         if (of == found.end() || !(is_fault(of->kind) || of->kind == SC_CLASS_TOUCH)) continue;
         triangles.push_back({contact.triangle_a, contact.triangle_b});
-        if (!is_fault(of->kind)) continue;
-        for (const std::uint32_t t : triangles.back()) {
-          float& depth = hot[t];
-          depth = std::max(depth, static_cast<float>(mm_ * double{of->depth}));
-        }
       }
     };
     if (moved_by_bones(animated_.asset(), deformation)) {
@@ -121,11 +114,6 @@ ClipChecker::Frames ClipChecker::look(const ClipFrames& clip) {
       pose.vertices = positions.data();
       pose.vertex_count = positions.size() / 3;
       run(pose);
-    }
-    for (const auto& [triangle, depth] : hot) {
-      HeatSpot& spot = out.heat.try_emplace(triangle, HeatSpot{triangle, 0, 0}).first->second;
-      ++spot.frames;
-      spot.depth_mm = std::max(spot.depth_mm, depth);
     }
     for (const Penetration& p : found) {
       const double ml = p.is_closed != 0 ? std::pow(mm_ / 10, 3) * double{p.volume} : -1;
@@ -170,14 +158,13 @@ Event ClipChecker::event_of(const Frames& frames, const EventSpan& span, const C
   for (const PartMeeting& m : frames.meetings) {
     if (m.part_a != worst.part_a || m.part_b != worst.part_b || !is_fault(m.kind)) continue;
     const int at = m.frame >= span.from ? m.frame - span.from : m.frame - span.from + clip.count;
-    const bool inside =
-        span.from <= span.to ? m.frame >= span.from && m.frame <= span.to : m.frame >= span.from || m.frame <= span.to;
-    if (inside) event.depths_mm[static_cast<std::size_t>(at)] = static_cast<float>(m.depth_mm);
+    if (event.is_at(m.frame)) event.depths_mm[static_cast<std::size_t>(at)] = static_cast<float>(m.depth_mm);
   }
   return event;
 }
 
-// The picture is of the worst fault; without one, of the first frame.
+// Rules excuse a fault by its parts, its class and its depth. So the worst that they leave is the deepest of its parts
+// and class: each of those has a picture.
 void ClipChecker::show(ClipCheck& out, const Frames& frames, const ClipFrames& clip) {
   const auto patches_at = [&](const Event& event, const PartMeeting& worst) {
     Patches patches;
@@ -201,11 +188,12 @@ void ClipChecker::show(ClipCheck& out, const Frames& frames, const ClipFrames& c
     patches.way = event.direction;
     return patches;
   };
-  const Event* worst = nullptr;
+  picture_.pose(animated_.positions(animated_.deformation(clip.first)));
+  out.pictures.push_back(picture_.png(nullptr, axes_.forward));
+  std::map<std::tuple<std::string, std::string, PenetrationClass>, const Event*> deepest;
   for (const Event& event : out.result.events) {
-    if (is_fault(event.kind) &&
-        (worst == nullptr || std::pair(event.kind, event.depth_mm) > std::pair(worst->kind, worst->depth_mm)))
-      worst = &event;
+    const Event*& known = deepest[{event.parts[0], event.parts[1], event.kind}];
+    if (known == nullptr || event.depth_mm > known->depth_mm) known = &event;
   }
   for (std::size_t i = 0; i < out.result.events.size(); ++i) {
     Event& event = out.result.events[i];
@@ -213,12 +201,49 @@ void ClipChecker::show(ClipCheck& out, const Frames& frames, const ClipFrames& c
     picture_.pose(animated_.positions(animated_.deformation(clip.first + event.deepest)));
     const Patches patches = patches_at(event, frames.meetings[frames.spans[i].deepest]);
     event.eye = picture_.find_eye(patches);
-    if (&event == worst) out.picture = picture_.png(&patches, *event.eye);
+    if (deepest[{event.parts[0], event.parts[1], event.kind}] != &event) continue;
+    event.picture = static_cast<int>(out.pictures.size());
+    out.pictures.push_back(picture_.png(&patches, *event.eye));
   }
-  if (worst == nullptr) {
-    picture_.pose(animated_.positions(animated_.deformation(clip.first)));
-    out.picture = picture_.png(nullptr, axes_.forward);
+}
+
+// Of faults alone, in the frames where they are one.
+std::vector<HeatSpot> ClipChecker::heat_of(const std::vector<Event>& events, const Frames& frames) const {
+  using Parts = std::pair<std::uint32_t, std::uint32_t>;
+  std::map<Parts, std::vector<std::uint32_t>> events_of;
+  for (std::uint32_t e = 0; e < events.size(); ++e) {
+    const PartMeeting& worst = frames.meetings[frames.spans[e].deepest];
+    if (is_fault(events[e].kind)) events_of[{worst.part_a, worst.part_b}].push_back(e);
   }
+  std::map<std::pair<std::uint32_t, std::uint32_t>, HeatSpot> spots;  // by event and triangle
+  for (std::size_t m = 0; m < frames.meetings.size();) {
+    const int frame = frames.meetings[m].frame;
+    std::map<Parts, std::pair<std::uint32_t, float>> here;  // the event, and how deep it is
+    for (; m < frames.meetings.size() && frames.meetings[m].frame == frame; ++m) {
+      const PartMeeting& meeting = frames.meetings[m];
+      const auto found = events_of.find({meeting.part_a, meeting.part_b});
+      if (found == events_of.end() || !is_fault(meeting.kind)) continue;
+      for (const std::uint32_t e : found->second) {
+        if (events[e].is_at(frame)) here[found->first] = {e, static_cast<float>(meeting.depth_mm)};
+      }
+    }
+    if (here.empty()) continue;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, float> hot;
+    for (const auto& pair : frames.contacts.of(static_cast<std::size_t>(frame))) {
+      const std::uint32_t p = parts_.of_triangle[pair[0]], q = parts_.of_triangle[pair[1]];
+      const auto found = here.find({std::min(p, q), std::max(p, q)});
+      if (found == here.end()) continue;
+      for (const std::uint32_t t : pair) hot[{found->second.first, t}] = found->second.second;
+    }
+    for (const auto& [place, depth] : hot) {
+      HeatSpot& spot = spots.try_emplace(place, HeatSpot{place.first, place.second, 0, 0}).first->second;
+      ++spot.frames;
+      spot.depth_mm = std::max(spot.depth_mm, depth);
+    }
+  }
+  std::vector<HeatSpot> out;
+  for (const auto& [place, spot] : spots) out.push_back(spot);
+  return out;
 }
 
 ClipCheck ClipChecker::check(std::size_t index) {
@@ -226,8 +251,8 @@ ClipCheck ClipChecker::check(std::size_t index) {
   Frames frames = look(clip);
   frames.spans = join_events(frames.meetings, clip.count, frames.loops);
   ClipCheck out{{clip.count, clip.fps, frames.loops, {}}, {}, {}, {}};
-  for (const auto& [triangle, spot] : frames.heat) out.heat.push_back(spot);
   for (const EventSpan& span : frames.spans) out.result.events.push_back(event_of(frames, span, clip));
+  out.heat = heat_of(out.result.events, frames);
   show(out, frames, clip);
   std::vector<std::uint32_t> numbers;
   std::vector<float> seconds;
@@ -243,7 +268,7 @@ ClipCheck ClipChecker::check(std::size_t index) {
                           {"times", base64(seconds)},
                           {"contacts", frames.contacts.json()},
                           {"penetrations", frames.penetrations.json()}}},
-                        {"motion", frames.motion.json()}},
+                        {"motion", frames.motion.json(PageMotion::Still::kInMotion)}},
                        -1);
   return out;
 }

@@ -14,9 +14,9 @@ namespace spherechain::baker {
 // A checked clip: what was found, and what the report shows of it.
 struct ClipCheck {
   ClipResult result;
-  std::string page;            // its motion and contacts: JSON with the keys of baker/page/README.md
-  std::string picture;         // PNG: its worst frame
-  std::vector<HeatSpot> heat;  // by triangle
+  std::string page;                   // its motion and contacts: JSON with the keys of baker/page/README.md
+  std::vector<std::string> pictures;  // PNG: of the first frame, then of the events that have one
+  std::vector<HeatSpot> heat;         // by event, then by triangle
 };
 
 // Checks the clips of one character after another.
@@ -36,6 +36,7 @@ class ClipChecker {
   Frames look(const ClipFrames& clip);
   Event event_of(const Frames& frames, const struct EventSpan& span, const ClipFrames& clip);
   void show(ClipCheck& out, const Frames& frames, const ClipFrames& clip);
+  std::vector<HeatSpot> heat_of(const std::vector<Event>& events, const Frames& frames) const;
 
   const AnimatedAsset& animated_;
   SkinPlayer player_;

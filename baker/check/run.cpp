@@ -329,7 +329,8 @@ class Run {
       store_.write(character_key, kPageFile, "spherechain.character = " + character_page(animated) + ";\n");
     }
     store_.write(key, kPageFile, "spherechain.clip = " + found.page + ";\n");
-    store_.write(key, kPictureFile, found.picture);
+    for (std::size_t i = 0; i < found.pictures.size(); ++i)
+      store_.write(key, picture_file(i).c_str(), found.pictures[i]);
     store_.write(key, kHeatFile,
                  {reinterpret_cast<const char*>(found.heat.data()), found.heat.size() * sizeof(HeatSpot)});
     store_.write(key, kResultFile, to_bytes(found.result));
@@ -343,6 +344,10 @@ class Run {
 };
 
 }  // namespace
+
+std::string picture_file(std::size_t number) {
+  return number == 0 ? kPictureFile : fmt::format("_{}{}", number, kPictureFile);
+}
 
 std::vector<CheckedClip> check_library(const std::vector<LibraryCharacter>& library, const RunOptions& options,
                                        const Store& store, const std::function<void(const RunState&)>& progress) {

@@ -24,11 +24,12 @@ class Judge {
     std::vector<const KnownEvent*> known;
     if (const auto found = known_.find({out.character, out.clip.clip}); found != known_.end()) known = found->second;
     std::set<const KnownEvent*> there;
-    for (const Event& event : result.events) {
+    for (std::size_t i = 0; i < result.events.size(); ++i) {
+      const Event& event = result.events[i];
       if (rules.leaves_out(event)) continue;
       if (is_counted_only(event.kind)) ++out.besides[event.kind];
       if (is_counted_only(event.kind) && !folds_) continue;
-      JudgedEvent judged{event, EventState::kKnown, rules.excuse(event), -1, Severity::kIgnore, false};
+      JudgedEvent judged{event, EventState::kKnown, rules.excuse(event), -1, Severity::kIgnore, false, i};
       if (is_fault(event.kind)) judge_fault(judged, known, there, result.fps, rules);
       out.events.push_back(std::move(judged));
     }
@@ -88,7 +89,7 @@ void count(Summary& out, const JudgedClip& clip) {
       continue;
     }
     ++out.events;
-    if (!is_fault(judged.event.kind) || !judged.rule.empty()) continue;
+    if (!judged.is_open()) continue;
     ++(judged.event.kind == SC_CLASS_PENETRATION ? out.penetrations : out.deep_folds);
     out.fresh += judged.state == EventState::kNew ? 1 : 0;
     out.worse += judged.before_mm >= 0 ? 1 : 0;

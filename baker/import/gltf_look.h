@@ -36,7 +36,7 @@ class GltfLook {
   const GltfFile& file_;
   std::filesystem::path folder_;
   nlohmann::json json_;
-  std::vector<Texture> textures_;                  // of the materials
+  std::vector<Texture> textures_;                 // of the materials
   std::map<std::size_t, std::int32_t> pictures_;  // by the image's number
 };
 

@@ -17,7 +17,7 @@ using nlohmann::ordered_json;
 
 constexpr int kPictureSize = 512;  // pixels a side
 constexpr std::size_t kPicturesMax = 64;
-constexpr float kUvMax = 1000;     // a picture that is repeated more often is not seen
+constexpr float kUvMax = 1000;  // a picture that is repeated more often is not seen
 
 std::string hex(const std::array<float, 3>& colour) {
   const auto byte = [](float x) { return static_cast<int>(std::lround(255 * (x >= 0 && x <= 1 ? x : 1))); };
@@ -37,8 +37,7 @@ ordered_json uvs_json(const SourceLook& look) {
   std::vector<std::uint16_t> shares;
   for (const auto& uv : look.uvs) {
     for (std::size_t k = 0; k < 2; ++k) {
-      shares.push_back(
-          static_cast<std::uint16_t>(std::lround(65535 * (finite(uv[k]) - low[k]) / (high[k] - low[k]))));
+      shares.push_back(static_cast<std::uint16_t>(std::lround(65535 * (finite(uv[k]) - low[k]) / (high[k] - low[k]))));
     }
   }
   return {{"low", low}, {"high", high}, {"shares", base64(shares)}};

@@ -209,7 +209,7 @@ export function createStage(canvas, model, store, { skinLayer, sphereLayer, cont
     flyToContact(ball, known) {
       framed = null;
       const center = new THREE.Vector3(...(known?.target ?? ball)).applyMatrix4(toWorld());
-      const distance = Math.max((1.5 * ball[3]) / model.height / TAN, 0.62 * unit);
+      const distance = Math.max((1.5 * ball[3]) / model.height / TAN, (known ? 0.74 : 0.62) * unit);
       const back = camera.position.clone().sub(controls.target).normalize();
       const best = known ? new THREE.Vector3(...known.back).transformDirection(toWorld()) : findView(toWorld(), center, distance, back, inSphere);
       go(center, best ? center.clone().addScaledVector(best, distance) : outside(center, back, distance));
