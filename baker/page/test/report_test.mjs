@@ -76,7 +76,24 @@ test('a click opens a clip at its worst event, in 3D', async () => {
   assert.match(await chosen(), new RegExp(`${Math.round(worst.depth_mm)} mm`));
   const shown = await page.evaluate(() => spherechainViewer.contacts()[0]);
   assert.ok(Math.abs(shown.depth - worst.depth_mm) < 0.1 && shown.triangles.length > 0);
-  await picture(page);
+  const camera = await page.evaluate(() => spherechainViewer.camera());
+  const apart = (a, b) => Math.hypot(...a.map((x, k) => x - b[k]));
+  assert.ok(apart(camera.back, worst.camera.back) < 1e-3);
+  assert.ok(apart(camera.target, worst.camera.target) < 1e-3 * apart(camera.target, [0, 0, 0]));
+});
+
+test('an event in 3D has the base colours of the file, and the spheres with their verdict', async () => {
+  const coloured = await picture(page);
+  await page.keyboard.press('x');
+  const grey = await picture(page);
+  assert.notEqual(grey, coloured);
+  await page.keyboard.press('x');
+  assert.equal(await picture(page), coloured);
+  assert.match(await page.locator('#verdict').innerText(), /fit: (good|fair|poor)/);
+  await page.keyboard.press('b');
+  assert.notEqual(await picture(page), coloured);
+  await page.locator('#spheres-button').click();
+  assert.equal(await picture(page), coloured);
 });
 
 test('N and P go through the events, over clips, and the address is a link', async () => {

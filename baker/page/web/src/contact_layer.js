@@ -125,7 +125,7 @@ export class ContactLayer {
       const head = Math.max(0.35 * length, 0.016 * height);
       const shaft = Math.max(length - head, 0.004 * height);
       const arrow = new THREE.Group();
-      const rim = 0.0016 * height;
+      const rim = 0.0011 * height;
       const part = (geometry, width, from, size) => {
         for (const [material, order, wider] of [[HALO_MATERIAL, 9, rim], [ARROW_MATERIAL, 10, 0]]) {
           const made = new THREE.Mesh(geometry, material);

@@ -109,7 +109,8 @@ function bindStage(stage, store, model, layers, skin) {
 export function start(model) {
   document.title = `${model.title} · spherechain`;
   $('title').textContent = model.title;
-  const startState = { ...shown, radius: model.radius };
+  // Where spheres are no method to study, the skin shows through them.
+  const startState = { ...shown, radius: model.radius, ...(model.hasMethod ? {} : { sphereOpacity: 0.4 }) };
   const theme = matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light';
   const store = createStore({ ...startState, frame: 0, playing: false, theme });
   const toggleTheme = bindTheme(store);
@@ -165,6 +166,7 @@ export function start(model) {
     setFrame: (frame) => timeline.go(frame),
     contacts: () =>
       model.contacts.of(store.state.frame).map(({ name, pairs, triangles, kind, depth }) => ({ name, pairs, triangles: [...triangles], kind, depth })),
+    camera: () => stage?.camera() ?? null,
     hovered: () => store.state.pointed,
     ready: true,
   });
