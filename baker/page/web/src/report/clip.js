@@ -46,6 +46,7 @@ async function showCharacter(row, { rows, fits }) {
   document.getElementById('tab-contacts').remove();
   document.body.classList.add('heat');
   const viewer = start(model);
+  viewer.store.set({ look: false }); // the heat's colours alone
   fillHeat(panel, { rows: rows.filter((other) => other.data && other.character === row.character), fit: fits[row.body], heat, ...viewer });
 }
 

@@ -16,12 +16,12 @@ const CLASSES = { penetration: 'penetration', deep_fold: 'deep fold' };
 
 // The bake's spheres, with the verdict on them: the skin's contacts do not depend on it.
 export function spheresSection(store, fit) {
-  const button = h('button', { type: 'button', id: 'spheres-button', onclick: () => store.showSpheres(!store.state.spheres) });
+  const button = h('button', { type: 'button', id: 'spheres-button', class: 'accept', onclick: () => store.showSpheres(!store.state.spheres) });
   store.watch(['spheres'], ({ spheres }) => {
-    button.textContent = spheres ? 'Hide the spheres (B)' : 'Show the spheres (B)';
+    button.textContent = spheres ? 'Hide (B)' : 'Show (B)';
     button.setAttribute('aria-pressed', spheres);
   });
-  return h('section', { id: 'verdict' }, h('h3', {}, 'Spheres'), h('p', { class: 'summary' }, fit), button);
+  return h('div', { id: 'verdict' }, h('span', {}, `Spheres, ${fit}`), button);
 }
 
 export function fillEvents(panel, { rows, row, fit, model, store, flyToContact }) {
@@ -70,7 +70,7 @@ export function fillEvents(panel, { rows, row, fit, model, store, flyToContact }
   const list = h('ol', { class: 'pairs', id: 'clip-events' });
   const summary = h('p', { class: 'summary', role: 'status' });
   const note = h('p', { class: 'note' }, 'N and P: next and previous event, in the next clip too. Accepted events go into the baseline that the library page exports.');
-  panel.append(summary, list, note, spheresSection(store, fit));
+  panel.append(spheresSection(store, fit), summary, list, note);
 
   function draw() {
     summary.textContent = events.length === 0 ? 'No fault in this clip.' : `${events.length} ${events.length === 1 ? 'fault' : 'faults'}`;

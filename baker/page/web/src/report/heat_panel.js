@@ -34,12 +34,12 @@ export function fillHeat(panel, { rows, fit, heat, store, skinLayer, redraw }) {
     .sort((a, b) => b.count - a.count)
     .map(({ row, count }) => h('li', {}, h('a', { class: 'pair', href: clipLink(row) }, h('span', { class: 'part-names' }, row.clip), h('span', { class: 'count' }, count || 'clean'))));
   panel.append(
+    spheresSection(store, fit),
     h('p', { class: 'summary' }, `The faults of ${rows.length === 1 ? 'its clip' : `its ${rows.length} clips`}, on the skin at rest`),
     h('div', { class: 'segments', role: 'group', 'aria-label': 'Colour' }, buttons),
     legend,
     h('h3', {}, 'Clips, by faults'),
     h('ol', { class: 'pairs' }, list),
-    spheresSection(store, fit),
   );
   show('depth');
 }
