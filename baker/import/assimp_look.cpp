@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <map>
 
+#include "import/srgb.h"
+
 namespace spherechain::baker {
 namespace {
 
@@ -36,8 +38,9 @@ class Reader {
     aiColor3D colour(1, 1, 1);
     if (material.Get(AI_MATKEY_BASE_COLOR, colour) != aiReturn_SUCCESS) material.Get(AI_MATKEY_COLOR_DIFFUSE, colour);
     const std::array<float, 3> channels{colour.r, colour.g, colour.b};
-    // A picture takes the colour's place in these formats.
-    for (std::size_t k = 0; k < 3; ++k) out.material.colour[k] = std::clamp(channels[k], 0.0F, 1.0F);
+    // Blender, which most such files come from, writes them linear. A picture takes the colour's place in these
+    // formats.
+    for (std::size_t k = 0; k < 3; ++k) out.material.colour[k] = to_srgb(channels[k]);
     for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}) {
       aiString name;
       if (material.GetTexture(type, 0, &name, nullptr, &out.set) != aiReturn_SUCCESS) continue;

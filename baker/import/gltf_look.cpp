@@ -4,17 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "import/srgb.h"
 #include "mesh/error.h"
 
 namespace spherechain::baker {
 namespace {
 
 using nlohmann::json;
-
-float to_srgb(double linear) {
-  const double c = std::clamp(linear, 0.0, 1.0);
-  return static_cast<float>(c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055);
-}
 
 // An empty object where there is none of that name: all that is asked of it has its default then.
 const json& member(const json& of, const char* key) {

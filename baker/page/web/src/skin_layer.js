@@ -52,8 +52,8 @@ const fragmentShader = `
       if (texel.a < place.w) discard;
       colour *= texel.rgb;
     }
-    // A little paler than they are: nothing is as red as a contact.
-    if (pictured > 0.5) colour = mix(vec3(dot(colour, vec3(0.2126, 0.7152, 0.0722))), colour, 0.75);
+    // A little paler than they are, and never black: nothing is as red as a contact, and shapes can be seen.
+    if (pictured > 0.5) colour = 0.025 + 0.975 * mix(vec3(dot(colour, vec3(0.2126, 0.7152, 0.0722))), colour, 0.75);
     if (look.a < 0.1) discard;
     vec3 n = normalize(normalInView);
     vec3 e = normalize(toEye);
