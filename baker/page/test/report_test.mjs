@@ -92,8 +92,10 @@ test('an event in 3D has the base colours of the file, and the spheres with thei
   assert.match(await page.locator('#verdict').innerText(), /fit: (good|fair|poor)/);
   await page.keyboard.press('b');
   assert.ok((await change()) > 0.01);
-  await page.locator('#spheres-button').click();
+  await page.keyboard.press('b');
   assert.ok((await change()) < 0.001);
+  await page.locator('#spheres-button').click();
+  assert.match(await page.locator('#spheres-button').innerText(), /Hide/);
 });
 
 test('N and P go through the events, over clips, and the address is a link', async () => {

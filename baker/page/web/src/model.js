@@ -147,7 +147,7 @@ export function readModel(data) {
     frameCount: Math.max(count, 1),
     hasSpheres: Boolean(frames?.spheres),
     refit: null, // where the page has no spheres of each frame: they follow the skin
-    hasMethod: Boolean(frames?.chains), // what the paper's method finds, frame by frame
+    hasMethod: data.spheres !== undefined, // the page of `view`: what the paper's method finds
     fps: frames?.fps || 30,
     clips,
     costs: frames?.chains ? readCosts(frames) : null,
