@@ -16,7 +16,7 @@ const vertexShader = `
   void main() {
     int i = int(zone);
     look = texelFetch(looks, ivec2(i % 1024, i / 1024), 0);
-    painted = heat;
+    painted = vec4(heat.rgb * heat.a, heat.a);
     place = picture;
     vec4 p = modelViewMatrix * vec4(position, 1.0);
     normalInView = normalMatrix * normal;
@@ -62,7 +62,7 @@ const fragmentShader = `
     float alpha = opacity + (1.0 - opacity) * 0.55 * edge * smoothstep(0.0, 0.15, opacity);
     if (look.a > 0.9) alpha = max(alpha, 0.62);
     if (alpha < 0.004) discard;
-    gl_FragColor = vec4(mix(colour, painted.rgb, painted.a) * lightOn(n, e), alpha);
+    gl_FragColor = vec4((colour * (1.0 - painted.a) + painted.rgb) * lightOn(n, e), alpha);
     #include <colorspace_fragment>
   }`;
 
