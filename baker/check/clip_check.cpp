@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <tuple>
 
 #include "check/events.h"
 #include "page/base64.h"
@@ -202,9 +203,10 @@ Event ClipChecker::event_of(const Frames& frames, const EventSpan& span, const C
   return event;
 }
 
-// The picture is of the worst fault; without one, of the first frame.
+// Rules excuse a fault by its parts, its class and its depth. So the worst that they leave is the deepest of its parts
+// and class: each of those has a picture.
 void ClipChecker::show(ClipCheck& out, const Frames& frames, const ClipFrames& clip) {
-  const auto patches_of = [&](const std::vector<Triangles>& contacts) {
+  const auto patches_of = [&](const Event& event, const std::vector<Triangles>& contacts) {
     Patches patches;
     Vec3 sum = Vec3::Zero();
     for (const Triangles& pair : contacts) {
@@ -215,48 +217,51 @@ void ClipChecker::show(ClipCheck& out, const Frames& frames, const ClipFrames& c
       }
     }
     patches.point = sum / (6 * static_cast<double>(contacts.size()));
+    patches.way = event.direction;
     return patches;
   };
-  const Event* worst = nullptr;
+  picture_.pose(animated_.positions(animated_.deformation(clip.first)));
+  out.pictures.push_back(picture_.png(nullptr, axes_.forward));
+  std::map<std::tuple<std::string, std::string, PenetrationClass>, const Event*> deepest;
   for (const Event& event : out.result.events) {
-    if (is_fault(event.kind) &&
-        (worst == nullptr || std::pair(event.kind, event.depth_mm) > std::pair(worst->kind, worst->depth_mm)))
-      worst = &event;
+    const Event*& known = deepest[{event.parts[0], event.parts[1], event.kind}];
+    if (known == nullptr || event.depth_mm > known->depth_mm) known = &event;
   }
   for (std::size_t i = 0; i < out.result.events.size(); ++i) {
     Event& event = out.result.events[i];
     if (!is_fault(event.kind)) continue;
     picture_.pose(animated_.positions(animated_.deformation(clip.first + event.deepest)));
-    const Patches patches = patches_of(frames.contacts[frames.spans[i].deepest]);
+    const Patches patches = patches_of(event, frames.contacts[frames.spans[i].deepest]);
     event.eye = picture_.find_eye(patches);
-    if (&event == worst) out.picture = picture_.png(&patches, *event.eye);
-  }
-  if (worst == nullptr) {
-    picture_.pose(animated_.positions(animated_.deformation(clip.first)));
-    out.picture = picture_.png(nullptr, axes_.forward);
+    if (deepest[{event.parts[0], event.parts[1], event.kind}] != &event) continue;
+    event.picture = static_cast<int>(out.pictures.size());
+    out.pictures.push_back(picture_.png(&patches, *event.eye));
   }
 }
 
+// Of faults alone, in the frames where they are one.
 std::vector<HeatSpot> ClipChecker::heat_of(const Frames& frames) const {
   struct Heat {
     HeatSpot spot;
     int last;  // frame
   };
-  std::map<std::uint32_t, Heat> heat;
-  for (std::size_t m = 0; m < frames.meetings.size(); ++m) {
-    const auto& [frame, found] = frames.meetings[m];
-    if (!is_fault(found.kind)) continue;
-    for (const Triangles& pair : frames.contacts[m]) {
-      for (const std::uint32_t t : pair) {
-        auto& [spot, last] = heat.try_emplace(t, Heat{{t, 0, 0}, -1}).first->second;
-        spot.frames += last != frame ? 1 : 0;
-        spot.depth_mm = std::max(spot.depth_mm, static_cast<float>(mm_ * double{found.depth}));
-        last = frame;
+  std::vector<HeatSpot> out;
+  for (std::uint32_t e = 0; e < frames.spans.size(); ++e) {
+    std::map<std::uint32_t, Heat> heat;
+    for (const std::size_t m : frames.spans[e].meetings) {
+      const auto& [frame, found] = frames.meetings[m];
+      if (!is_fault(found.kind)) continue;
+      for (const Triangles& pair : frames.contacts[m]) {
+        for (const std::uint32_t t : pair) {
+          auto& [spot, last] = heat.try_emplace(t, Heat{{e, t, 0, 0}, -1}).first->second;
+          spot.frames += last != frame ? 1 : 0;
+          spot.depth_mm = std::max(spot.depth_mm, static_cast<float>(mm_ * double{found.depth}));
+          last = frame;
+        }
       }
     }
+    for (const auto& [triangle, one] : heat) out.push_back(one.spot);
   }
-  std::vector<HeatSpot> out;
-  for (const auto& [triangle, one] : heat) out.push_back(one.spot);
   return out;
 }
 
@@ -265,8 +270,9 @@ ClipCheck ClipChecker::check(std::size_t index) {
   Frames frames = look(clip);
   frames.spans = join_events(frames.meetings, clip.count, frames.loops);
   for (EventSpan& span : frames.spans) find_deepest(frames, clip, span);
-  ClipCheck out{{clip.count, clip.fps, frames.loops, {}}, {}, {}, heat_of(frames)};
+  ClipCheck out{{clip.count, clip.fps, frames.loops, {}}, {}, {}, {}};
   for (const EventSpan& span : frames.spans) out.result.events.push_back(event_of(frames, span, clip));
+  out.heat = heat_of(frames);
   show(out, frames, clip);
   FrameLists<Triangles> contacts;
   FrameLists<PenetrationEntry> penetrations;
@@ -297,7 +303,7 @@ ClipCheck ClipChecker::check(std::size_t index) {
                           {"times", base64(seconds)},
                           {"contacts", contacts.json()},
                           {"penetrations", penetrations.json()}}},
-                        {"motion", frames.motion.json()}},
+                        {"motion", frames.motion.json(PageMotion::Still::kInMotion)}},
                        -1);
   return out;
 }

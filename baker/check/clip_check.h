@@ -14,9 +14,9 @@ namespace spherechain::baker {
 // A checked clip: what was found, and what the report shows of it.
 struct ClipCheck {
   ClipResult result;
-  std::string page;            // its motion and contacts: JSON with the keys of baker/page/README.md
-  std::string picture;         // PNG: its worst frame
-  std::vector<HeatSpot> heat;  // by triangle
+  std::string page;                   // its motion and contacts: JSON with the keys of baker/page/README.md
+  std::vector<std::string> pictures;  // PNG: of the first frame, then of the events that have one
+  std::vector<HeatSpot> heat;         // by event, then by triangle
 };
 
 // Checks the clips of one character after another.

@@ -114,7 +114,8 @@ Vec3 Picture::find_eye(const Patches& patches) {
     std::array<int, 3> seen{};
     for (const std::uint32_t id : ids_) ++seen[id == kNoTriangle ? 0 : side[id]];
     const int both = seen[1] > 0 && seen[2] > 0 ? std::min(seen[1], seen[2]) / 2 + 8 : 0;
-    const double score = (seen[1] + seen[2] + both) * (0.75 + 0.25 * back.dot(axes_.forward));
+    const double aside = back.cross(patches.way).norm();  // 0: the way out is seen end-on
+    const double score = (seen[1] + seen[2] + both) * (0.75 + 0.25 * back.dot(axes_.forward)) * (0.4 + 0.6 * aside);
     if (score > most) {
       most = score;
       best = back;

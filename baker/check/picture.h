@@ -16,6 +16,7 @@ namespace spherechain::baker {
 struct Patches {
   std::array<std::vector<std::uint32_t>, 2> triangles;  // of each part; source numbers
   Vec3 point;                                           // in the middle
+  Vec3 way = Vec3::Zero();                              // out of the contact
 };
 
 // Pictures of a character in one pose, and from where its patches are seen. Parallel light and projection, no memory of
@@ -29,7 +30,8 @@ class Picture {
 
   const Vec3& position(Index vertex) const { return positions_[vertex]; }
 
-  // The direction from the patches to an eye that sees most of both; from the front where others are no better.
+  // The direction from the patches to an eye that sees most of both and the way out from the side; from the front where
+  // others are no better.
   Vec3 find_eye(const Patches& patches);
 
   // A PNG of the character around the patches, which are coloured; without patches of all of it, from the front.

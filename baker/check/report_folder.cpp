@@ -29,7 +29,7 @@ std::string strip(const JudgedClip& clip) {
   std::vector<std::uint8_t> out(std::min<std::size_t>(kStripWidth, static_cast<std::size_t>(std::max(clip.frames, 1))),
                                 0);
   for (const JudgedEvent& judged : clip.events) {
-    if (!judged.rule.empty()) continue;
+    if (!judged.is_open()) continue;
     for (std::size_t i = 0; i < judged.event.depths_mm.size(); ++i) {
       const std::size_t frame =
           (static_cast<std::size_t>(judged.event.from) + i) % static_cast<std::size_t>(clip.frames);
@@ -53,12 +53,23 @@ ordered_json page_event(const JudgedEvent& judged) {
                    {"state", state_name(judged.state)},
                    {"fails", judged.fails}};
   if (event.volume_ml >= 0) out["ml"] = std::round(10 * event.volume_ml) / 10;
+  if (event.eye) out["camera"] = {{"target", to_json(event.point)}, {"back", to_json(*event.eye)}};
   if (!judged.rule.empty()) out["rule"] = judged.rule;
   if (judged.before_mm >= 0) out["before"] = judged.before_mm;
   return out;
 }
 
 std::string data_name(const std::string& key) { return "data/" + key.substr(0, 2) + "/" + key.substr(2, 30); }
+
+// Of the worst fault that no rule excuses, as the library's row names it; else of the clip's first frame.
+std::size_t picture_of(const JudgedClip& clip) {
+  const JudgedEvent* worst = nullptr;
+  const auto badness = [](const JudgedEvent& e) { return std::pair(e.event.kind, e.event.depth_mm); };
+  for (const JudgedEvent& judged : clip.events) {
+    if (judged.is_open() && (worst == nullptr || badness(judged) > badness(*worst))) worst = &judged;
+  }
+  return worst == nullptr ? 0 : static_cast<std::size_t>(worst->event.picture);
+}
 
 ordered_json page_clip(const JudgedClip& clip) {
   ordered_json out{{"character", clip.character}, {"clip", clip.clip.clip}};
@@ -70,6 +81,7 @@ ordered_json page_clip(const JudgedClip& clip) {
   out["data"] = data_name(clip.clip.key);
   out["body"] = data_name(clip.clip.character_key);
   out["strip"] = strip(clip);
+  out["picture"] = data_name(clip.clip.key) + picture_file(picture_of(clip));
   ordered_json& events = out["events"] = ordered_json::array();
   int minor = 0;
   for (const JudgedEvent& judged : clip.events) {
@@ -84,15 +96,20 @@ ordered_json page_clip(const JudgedClip& clip) {
   return out;
 }
 
-// Where on a character's skin its faults are, in all of its clips.
+// Where on a character's skin its faults are that no rule excuses, in all of its clips.
 class HeatMap {
  public:
-  void add(const std::string& bytes, int frames) {
-    frames_ += frames;
+  void add(const std::string& bytes, const JudgedClip& clip) {
+    frames_ += clip.frames;
+    std::set<std::size_t> open;
+    for (const JudgedEvent& judged : clip.events) {
+      if (judged.is_open()) open.insert(judged.number);
+    }
     std::vector<HeatSpot> spots(bytes.size() / sizeof(HeatSpot));
     if (!spots.empty()) std::memcpy(spots.data(), bytes.data(), spots.size() * sizeof(HeatSpot));
     for (const HeatSpot& spot : spots) {
-      HeatSpot& sum = spots_.try_emplace(spot.triangle, HeatSpot{spot.triangle, 0, 0}).first->second;
+      if (open.count(spot.event) == 0) continue;
+      HeatSpot& sum = spots_.try_emplace(spot.triangle, HeatSpot{0, spot.triangle, 0, 0}).first->second;
       sum.frames += spot.frames;
       sum.depth_mm = std::max(sum.depth_mm, spot.depth_mm);
     }
@@ -102,7 +119,7 @@ class HeatMap {
     std::vector<float> depths;
     for (const auto& [triangle, spot] : spots_) {
       triangles.push_back(triangle);
-      frames.push_back(spot.frames);
+      frames.push_back(static_cast<std::uint32_t>(std::min<long>(spot.frames, frames_)));  // events may coincide
       depths.push_back(spot.depth_mm);
     }
     const ordered_json json{
@@ -170,21 +187,29 @@ void check_report_folder(const fs::path& folder) {
 bool write_report(const fs::path& folder, const Verdict& verdict, const Store& store, const fs::path& pages) {
   DataFolder data(folder, store);
   ordered_json clips = ordered_json::array();
-  std::map<std::string, HeatMap> heat;  // by character
+  std::map<std::string, HeatMap> heat;      // by character
+  std::map<std::string, std::string> fits;  // by body
   for (const JudgedClip& clip : verdict.clips) {
     clips.push_back(page_clip(clip));
     if (!clips.back().contains("data")) continue;
     data.take(clip.clip.key, kPageFile);
-    data.take(clip.clip.key, kPictureFile);
+    data.take(clip.clip.key, picture_file(picture_of(clip)).c_str());
     data.take(clip.clip.character_key, kPageFile);
-    heat[clip.clip.character_key].add(store.read(clip.clip.key, kHeatFile).value_or(""), clip.frames);
+    fits[data_name(clip.clip.character_key)] = clip.fit;
+    heat[clip.clip.character_key].add(store.read(clip.clip.key, kHeatFile).value_or(""), clip);
   }
   for (const auto& [character, map] : heat) data.write(data_name(character) + "_heat.js", map.page());
   const Summary& s = verdict.summary;
-  const ordered_json library{
-      {"fails", verdict.fails},         {"characters", s.characters}, {"clips", s.clips}, {"frames", s.frames},
-      {"penetrations", s.penetrations}, {"deep_folds", s.deep_folds}, {"new", s.fresh},   {"errors", s.errors},
-      {"rows", std::move(clips)}};
+  const ordered_json library{{"fails", verdict.fails},
+                             {"characters", s.characters},
+                             {"clips", s.clips},
+                             {"frames", s.frames},
+                             {"penetrations", s.penetrations},
+                             {"deep_folds", s.deep_folds},
+                             {"new", s.fresh},
+                             {"errors", s.errors},
+                             {"fits", fits},
+                             {"rows", std::move(clips)}};
   write_atomically(folder / "library.js", "spherechain.library = " + json_text(library, -1) + ";\n");
   data.remove_others();
   for (const std::string page : {"index.html", "clip.html"}) {

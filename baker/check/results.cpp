@@ -29,6 +29,7 @@ ordered_json result_event(const Event& event) {
           {"direction", to_json(event.direction)},
           {"point", to_json(event.point)},
           {"eye", event.eye ? ordered_json(to_json(*event.eye)) : ordered_json()},
+          {"picture", event.picture},
           {"depths", std::move(depths)}};
 }
 
@@ -46,6 +47,7 @@ Event read_result_event(const ordered_json& json) {
   event.direction = read_vec3(json.at("direction"));
   event.point = read_vec3(json.at("point"));
   if (!json.at("eye").is_null()) event.eye = read_vec3(json.at("eye"));
+  json.at("picture").get_to(event.picture);
   for (const ordered_json& depth : json.at("depths")) event.depths_mm.push_back(depth.get<float>() / 10);
   return event;
 }
@@ -71,7 +73,7 @@ std::string to_bytes(const ClipResult& result) {
 }
 
 std::string to_bytes(const CharacterResult& result) {
-  return json_text({{"clips", result.clips}, {"grade", result.grade}}, -1);
+  return json_text({{"clips", result.clips}, {"grade", result.grade}, {"fit", result.fit}}, -1);
 }
 
 std::optional<ClipResult> read_clip_result(const std::string& bytes) {
@@ -90,6 +92,7 @@ std::optional<CharacterResult> read_character_result(const std::string& bytes) {
     CharacterResult out;
     json.at("clips").get_to(out.clips);
     json.at("grade").get_to(out.grade);
+    json.at("fit").get_to(out.fit);
     return out;
   });
 }

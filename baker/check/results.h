@@ -24,6 +24,9 @@ struct Event {
   Vec3 point = Vec3::Zero();               // the deepest of part 1; the pose's space, source units
   std::optional<Vec3> eye;                 // of a fault: from the point to an eye that sees it; unit length
   std::vector<float> depths_mm;            // of a fault: in each frame of it; 0 where it is none
+  int picture = 0;                         // of the clip's pictures the one that shows it; 0: none does
+
+  bool is_at(int frame) const { return from <= to ? frame >= from && frame <= to : frame >= from || frame <= to; }
 };
 
 struct ClipResult {
@@ -33,8 +36,9 @@ struct ClipResult {
   std::vector<Event> events;  // by where they begin
 };
 
-// How often and how deep a triangle of the skin takes part in faults.
+// How often and how deep a triangle of the skin takes part in a fault.
 struct HeatSpot {
+  std::uint32_t event;     // of the clip's
   std::uint32_t triangle;  // the source's number
   std::uint32_t frames;
   float depth_mm;  // of the deepest
@@ -43,7 +47,8 @@ struct HeatSpot {
 // What a character's check needs to know of its asset.
 struct CharacterResult {
   std::vector<std::string> clips;  // its own; unique
-  std::string grade;               // of the fit
+  std::string grade;               // of the spheres' fit
+  std::string fit;                 // the same as a sentence: fit_line's
 };
 
 // As the bytes of a file, and back; no result where the bytes are not whole.

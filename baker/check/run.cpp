@@ -18,6 +18,7 @@
 #include "mesh/error.h"
 #include "page/page.h"
 #include "play/target.h"
+#include "report/report.h"
 
 namespace spherechain::baker {
 namespace {
@@ -91,6 +92,7 @@ void bake_into(const Store& store, const std::string& key, const LibraryCharacte
     result.clips.push_back(unique);
   }
   result.grade = fit_grade_name(baked.quality.grade());
+  result.fit = fit_line(baked);
   store.write(key, kAssetFile, {reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size()});
   store.write(key, kResultFile, to_bytes(result));
 }
@@ -327,7 +329,8 @@ class Run {
       store_.write(character_key, kPageFile, "spherechain.character = " + character_page(animated) + ";\n");
     }
     store_.write(key, kPageFile, "spherechain.clip = " + found.page + ";\n");
-    store_.write(key, kPictureFile, found.picture);
+    for (std::size_t i = 0; i < found.pictures.size(); ++i)
+      store_.write(key, picture_file(i).c_str(), found.pictures[i]);
     store_.write(key, kHeatFile,
                  {reinterpret_cast<const char*>(found.heat.data()), found.heat.size() * sizeof(HeatSpot)});
     store_.write(key, kResultFile, to_bytes(found.result));
@@ -341,6 +344,10 @@ class Run {
 };
 
 }  // namespace
+
+std::string picture_file(std::size_t number) {
+  return number == 0 ? kPictureFile : fmt::format("_{}{}", number, kPictureFile);
+}
 
 std::vector<CheckedClip> check_library(const std::vector<LibraryCharacter>& library, const RunOptions& options,
                                        const Store& store, const std::function<void(const RunState&)>& progress) {

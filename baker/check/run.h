@@ -42,8 +42,10 @@ std::vector<CheckedClip> check_library(const std::vector<LibraryCharacter>& libr
                                        const Store& store, const std::function<void(const RunState&)>& progress);
 
 // Kinds of files in the store. Of a character: its asset, its CharacterResult, its page. Of a clip: its ClipResult, its
-// page, its picture, its HeatSpots.
+// page, its pictures (picture_file), its HeatSpots.
 inline constexpr const char *kAssetFile = ".sphc", *kResultFile = ".json", *kPageFile = ".js", *kPictureFile = ".png",
                             *kHeatFile = ".heat";
+// Of a clip's picture of that number: 0 is kPictureFile.
+std::string picture_file(std::size_t number);
 
 }  // namespace spherechain::baker

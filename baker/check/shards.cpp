@@ -67,7 +67,9 @@ void copy_results(const CheckedClip& clip, const Store& from, const Store& store
     if (error) fs::copy_file(file, to, error);
     if (error) throw Error(ExitCode::kFile, to.string() + ": cannot be written (" + error.message() + ")");
   };
-  for (const char* kind : {kResultFile, kPageFile, kPictureFile, kHeatFile}) copy(clip.key, kind);
+  for (const char* kind : {kResultFile, kPageFile, kHeatFile}) copy(clip.key, kind);
+  for (std::size_t i = 0; !clip.key.empty() && from.has(clip.key, picture_file(i).c_str()); ++i)
+    copy(clip.key, picture_file(i).c_str());
   for (const char* kind : {kResultFile, kPageFile}) copy(clip.character_key, kind);
 }
 

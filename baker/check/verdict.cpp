@@ -24,11 +24,12 @@ class Judge {
     std::vector<const KnownEvent*> known;
     if (const auto found = known_.find({out.character, out.clip.clip}); found != known_.end()) known = found->second;
     std::set<const KnownEvent*> there;
-    for (const Event& event : result.events) {
+    for (std::size_t i = 0; i < result.events.size(); ++i) {
+      const Event& event = result.events[i];
       if (rules.leaves_out(event)) continue;
       if (is_counted_only(event.kind)) ++out.besides[event.kind];
       if (is_counted_only(event.kind) && !folds_) continue;
-      JudgedEvent judged{event, EventState::kKnown, rules.excuse(event), -1, Severity::kIgnore, false};
+      JudgedEvent judged{event, EventState::kKnown, rules.excuse(event), -1, Severity::kIgnore, false, i};
       if (is_fault(event.kind)) judge_fault(judged, known, there, result.fps, rules);
       out.events.push_back(std::move(judged));
     }
@@ -88,7 +89,7 @@ void count(Summary& out, const JudgedClip& clip) {
       continue;
     }
     ++out.events;
-    if (!is_fault(judged.event.kind) || !judged.rule.empty()) continue;
+    if (!judged.is_open()) continue;
     ++(judged.event.kind == SC_CLASS_PENETRATION ? out.penetrations : out.deep_folds);
     out.fresh += judged.state == EventState::kNew ? 1 : 0;
     out.worse += judged.before_mm >= 0 ? 1 : 0;
@@ -103,10 +104,10 @@ Verdict judge(const std::vector<CheckedClip>& clips, const std::vector<Character
   const Judge by(baseline, folds, fail_on);
   Verdict out;
   out.summary.characters = static_cast<int>(characters.size());
-  std::map<std::string, std::string> grades;
+  std::map<std::string, CharacterResult> read;  // by key
   for (const CheckedClip& clip : clips) {
     const CharacterRules& of = characters[clip.character];
-    JudgedClip judged{of.name, of.file, {}, clip, 0, 30, false, {}, {}};
+    JudgedClip judged{of.name, of.file, {}, {}, clip, 0, 30, false, {}, {}};
     if (clip.error.empty() && !clip.clip.empty()) {
       const std::optional<std::string> bytes = store.read(clip.key, kResultFile);
       const std::optional<ClipResult> result = bytes ? read_clip_result(*bytes) : std::nullopt;
@@ -118,13 +119,13 @@ Verdict judge(const std::vector<CheckedClip>& clips, const std::vector<Character
         by.events(judged, *result, of.rules);
         count(out.summary, judged);
       }
-      const auto [grade, is_new] = grades.try_emplace(clip.character_key);
+      const auto [character, is_new] = read.try_emplace(clip.character_key);
       if (is_new) {
-        const std::optional<std::string> character = store.read(clip.character_key, kResultFile);
-        const auto read = character ? read_character_result(*character) : std::nullopt;
-        if (read) grade->second = read->grade;
+        const std::string bytes_of = store.read(clip.character_key, kResultFile).value_or("");
+        character->second = read_character_result(bytes_of).value_or(CharacterResult());
       }
-      judged.grade = grade->second;
+      judged.grade = character->second.grade;
+      judged.fit = character->second.fit;
     }
     out.summary.errors += judged.clip.error.empty() ? 0 : 1;
     const bool is_broken = !judged.clip.error.empty() && fail_on != FailOn::kNone;

@@ -20,10 +20,15 @@ struct JudgedEvent {
   double before_mm = -1;  // of the known event that it is the same as, but worse; -1: it is not
   Severity severity = Severity::kIgnore;
   bool fails = false;
+  std::size_t number = kNoNumber;  // of the event among the clip's; a resolved one has none
+
+  static constexpr std::size_t kNoNumber = ~std::size_t{0};
+  bool is_open() const { return state != EventState::kResolved && is_fault(event.kind) && rule.empty(); }
 };
 
 struct JudgedClip {
   std::string character, file, grade;  // name; path as given; grade of the fit
+  std::string fit;                     // the grade as a sentence
   CheckedClip clip;
   int frames = 0;
   double fps = 30;

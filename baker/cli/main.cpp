@@ -43,6 +43,16 @@ CLI::Option* add_name(CLI::App& command, const std::string& option, std::string&
   return command.add_option(option, name, description)->check(refuse_empty);
 }
 
+// Other tools take it for standard output, which has a command's words for people.
+std::string refuse_dash(const std::string& text) {
+  return text == "-" ? "- is standard output elsewhere, here it is not (name a file)" : std::string();
+}
+
+CLI::Option* add_output(CLI::App& command, const std::string& option, std::string& name,
+                        const std::string& description) {
+  return add_name(command, option, name, description)->check(refuse_dash);
+}
+
 // What is printed and cannot be written (a full disk, a closed file) is an output that cannot be written.
 int flush(int code) {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
@@ -91,7 +101,7 @@ int main(int argc, char** argv) {
   BakeOptions bake;
   CLI::App* bake_command = app.add_subcommand("bake", "Turn a character into an asset");
   add_name(*bake_command, "INPUT", bake.input, "glTF, or anything assimp reads")->required();
-  add_name(*bake_command, "-o,--output", bake.output, "Asset to write (.sphc)")->required();
+  add_output(*bake_command, "-o,--output", bake.output, "Asset to write (.sphc)")->required();
   add_name(*bake_command, "--config", bake.config, "JSON file that changes the profile's settings");
   add_name(*bake_command, "--roles", bake.roles, "JSON file of roles by node name, before names and shape");
   bake_command->add_option("--profile", bake.profile, "Where the settings start")
@@ -106,8 +116,8 @@ int main(int argc, char** argv) {
   bake_command->add_flag("--extremities", bake.extremities,
                          "Spheres in head, hands and feet too (profile balanced has them)");
   bake_command->add_flag("--attachments", bake.attachments, "Keep rigid meshes that hang on joints: weapons, hats");
-  add_name(*bake_command, "--report", bake.report, "JSON report to write");
-  add_name(*bake_command, "--preview", bake.preview, "glTF binary to write: regions, joints and spheres");
+  add_output(*bake_command, "--report", bake.report, "JSON report to write");
+  add_output(*bake_command, "--preview", bake.preview, "glTF binary to write: regions, joints and spheres");
   bake_command->add_flag("--force", bake.force, "Replace an output file of another kind");
   bake_command->callback([&] { run = [&] { return run_bake(bake); }; });
 
@@ -136,7 +146,7 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember({"auto", "scalar", "simd", "cuda"}))
       ->capture_default_str();
   play_command->add_flag("--contacts", play.contacts, "List the triangles that intersect in the JSON, too");
-  add_name(*play_command, "--json", play.json, "JSON file to write");
+  add_output(*play_command, "--json", play.json, "JSON file to write");
   play_command->callback([&] { run = [&] { return run_play(play); }; });
 
   ValidateOptions validate;
@@ -152,14 +162,14 @@ int main(int argc, char** argv) {
   validate_command->add_flag("--contacts", validate.contacts, "Compare the narrow phase's triangle pairs too");
   validate_command->add_flag("--spheres-alone", validate.spheres_alone,
                              "Judge the spheres that touch, not those whose skins intersect");
-  add_name(*validate_command, "--json", validate.json, "JSON file to write");
+  add_output(*validate_command, "--json", validate.json, "JSON file to write");
   validate_command->callback([&] { run = [&] { return run_validate(validate); }; });
 
   ViewOptions view;
   CLI::App* view_command = app.add_subcommand("view", "Write a page that shows an asset on its source in motion");
   add_name(*view_command, "ASSET", view.asset, "Asset (.sphc)")->required();
   add_name(*view_command, "--source", view.source, "The mesh it was baked from")->required();
-  add_name(*view_command, "-o,--output", view.output, "Page to write (.html)")->required();
+  add_output(*view_command, "-o,--output", view.output, "Page to write (.html)")->required();
   add_motion(*view_command, view.motion, view.frames);
   add_radius(*view_command, view.radius);
   add_name(*view_command, "--report", view.report, "The report that bake wrote, to show in the page");
@@ -175,9 +185,9 @@ int main(int argc, char** argv) {
                    "Characters: files, folders, or a JSON manifest; with --merge folders that --shard wrote")
       ->required()
       ->check(refuse_empty);
-  add_name(*check_command, "-o,--output", check.output, "Folder of the report to write")->required();
+  add_output(*check_command, "-o,--output", check.output, "Folder of the report to write")->required();
   add_name(*check_command, "--config", check.config, "JSON file of rules");
-  add_name(*check_command, "--baseline", check.baseline, "JSON file of faults that are known or accepted");
+  add_output(*check_command, "--baseline", check.baseline, "JSON file of faults that are known or accepted");
   check_command->add_flag("--accept", check.accept, "Accept all faults: write them to the baseline");
   check_command->add_option("--fail-on", check.fail_on, "What makes the exit code 6")
       ->check(CLI::IsMember({"penetration", "new", "none"}))
@@ -195,9 +205,9 @@ int main(int argc, char** argv) {
   add_name(*check_command, "--cache", check.cache, "Folder that keeps results: what has not changed is not computed");
   add_name(*check_command, "--shard", check.shard, "I/N: check the I-th of N parts, for --merge");
   check_command->add_flag("--merge", check.merge, "Join the results of all shards");
-  add_name(*check_command, "--json", check.json, "JSON file to write");
-  add_name(*check_command, "--junit", check.junit, "JUnit XML file to write");
-  add_name(*check_command, "--sarif", check.sarif, "SARIF file to write");
+  add_output(*check_command, "--json", check.json, "JSON file to write");
+  add_output(*check_command, "--junit", check.junit, "JUnit XML file to write");
+  add_output(*check_command, "--sarif", check.sarif, "SARIF file to write");
   check_command->callback([&] { run = [&] { return run_check(check); }; });
 
   try {

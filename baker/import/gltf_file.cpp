@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "import/gltf_json.h"
+#include "import/look.h"
 #include "mesh/error.h"
 
 namespace spherechain::baker {
@@ -121,15 +122,37 @@ bool no_image(tinygltf::Image*, int, std::string*, std::string*, int, int, const
 
 void GltfFile::fail(const std::string& what) const { throw Error(ExitCode::kFile, name + ": " + what); }
 
-std::vector<fs::path> files_of_gltf(const fs::path& path) {
-  nlohmann::json json;
+nlohmann::json raw_json_of_gltf(const fs::path& path) {
   try {
     const GltfFile file{path.string(), {}};
     const std::string bytes = read_bytes(path, file.name);
-    json = nlohmann::json::parse(split(bytes, file).json, nullptr, false);
+    return nlohmann::json::parse(split(bytes, file).json, nullptr, false);
   } catch (const Error&) {
-    return {};
+    return nlohmann::json(nlohmann::json::value_t::discarded);
   }
+}
+
+std::string picture_of_gltf(const GltfFile& file, const nlohmann::json& image, const fs::path& folder) {
+  if (image.contains("uri") && image["uri"].is_string()) {
+    const auto uri = image["uri"].get<std::string>();
+    if (is_elsewhere(uri)) return {};
+    if (!is_data(uri)) return read_picture(folder / percent_decoded(uri));
+    std::vector<unsigned char> bytes;
+    std::string type;
+    if (!tinygltf::DecodeDataURI(&bytes, type, uri, 0, false)) return {};
+    return {bytes.begin(), bytes.end()};
+  }
+  if (!image.contains("bufferView") || !image["bufferView"].is_number_unsigned()) return {};
+  const auto index = image["bufferView"].get<std::size_t>();
+  if (index >= file.model.bufferViews.size()) return {};
+  const tinygltf::BufferView& view = file.model.bufferViews[index];
+  const std::vector<unsigned char>& data = file.model.buffers[at(view.buffer)].data;
+  if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset) return {};
+  return {reinterpret_cast<const char*>(data.data()) + view.byteOffset, view.byteLength};
+}
+
+std::vector<fs::path> files_of_gltf(const fs::path& path) {
+  const nlohmann::json json = raw_json_of_gltf(path);
   std::vector<fs::path> files;
   for (const char* list : {"buffers", "images"}) {
     if (!json.is_object() || !json.contains(list)) continue;

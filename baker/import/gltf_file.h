@@ -4,6 +4,7 @@
 #include <tiny_gltf.h>
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,12 @@ struct GltfFile {
 
 // Reads a .gltf or .glb, told apart by content, with the buffers beside it. Throws Error(kFile).
 GltfFile open_gltf(const std::filesystem::path& path);
+
+// The file's JSON, of which nothing is checked; discarded where it is none.
+nlohmann::json raw_json_of_gltf(const std::filesystem::path& path);
+
+// The bytes of one of its images; none where they are not there. `folder` is the file's.
+std::string picture_of_gltf(const GltfFile& file, const nlohmann::json& image, const std::filesystem::path& folder);
 
 // The files of its buffers and images, whether they exist or not; none where the file is no glTF.
 std::vector<std::filesystem::path> files_of_gltf(const std::filesystem::path& path);

@@ -74,7 +74,7 @@ SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& o
     throw Error(ExitCode::kFile, path.string() + ": is empty (export it again)");
   }
   return from_bytes<SourceMesh>(read_in_child(path.string(), [&] {
-    return to_bytes(is_gltf(path) ? read_with_tinygltf(path, options) : read_with_assimp(path));
+    return to_bytes(is_gltf(path) ? read_with_tinygltf(path, options) : read_with_assimp(path, options));
   }));
 }
 

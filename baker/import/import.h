@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "import/look.h"
 #include "import/source_rig.h"
 #include "mesh/mesh.h"
 
@@ -25,6 +26,7 @@ struct ImportReport {
 
 struct ImportOptions {
   bool attachments = false;  // keep them
+  bool look = false;         // read the base colours, too
 };
 
 // A vertex buffer of the file, as a game loads it: a run of the source's vertices.
@@ -91,6 +93,7 @@ struct SourceMesh {
   std::vector<Triangle> triangles;
   std::vector<SourceBuffer> buffers;
   SourceRig rig;
+  SourceLook look;  // where it was asked for
   std::string importer;
   std::size_t meshes = 0;
   std::size_t points_and_lines_dropped = 0;
@@ -112,7 +115,7 @@ std::vector<std::filesystem::path> files_read_with(const std::filesystem::path& 
 // Reads a file with the importer of its format, which its content decides, in a child process (read_in_child.h). A file
 // of motion has no mesh. Throws Error(kFile).
 SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& options = {});
-SourceMesh read_with_assimp(const std::filesystem::path& path);
+SourceMesh read_with_assimp(const std::filesystem::path& path, const ImportOptions& options = {});
 std::vector<std::string> files_read_with_assimp(const std::filesystem::path& path);
 SourceMesh read_with_tinygltf(const std::filesystem::path& path, const ImportOptions& options);
 

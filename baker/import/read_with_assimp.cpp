@@ -14,6 +14,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "import/assimp_look.h"
 #include "import/assimp_scene.h"
 #include "import/check_bvh.h"
 #include "import/import.h"
@@ -134,7 +135,6 @@ const aiScene* read_scene(Assimp::Importer& importer, const std::filesystem::pat
   return importer.ApplyPostProcessing(aiProcess_Triangulate);
 }
 
-// Pictures are never read. They are where the file says, or beside it, as where its author's disk is not at hand.
 void add_pictures(const aiMaterial& material, const std::filesystem::path& folder, Files& files) {
   for (unsigned p = 0; p < material.mNumProperties; ++p) {
     const aiMaterialProperty& property = *material.mProperties[p];
@@ -143,10 +143,7 @@ void add_pictures(const aiMaterial& material, const std::filesystem::path& folde
         material.Get(_AI_MATKEY_TEXTURE_BASE, property.mSemantic, property.mIndex, name) != aiReturn_SUCCESS) {
       continue;
     }
-    std::string slashed = name.C_Str();
-    std::replace(slashed.begin(), slashed.end(), '\\', '/');
-    files.push_back((folder / slashed).string());
-    files.push_back((folder / std::filesystem::path(slashed).filename()).string());
+    for (const std::filesystem::path& place : places_of_picture(name.C_Str(), folder)) files.push_back(place.string());
   }
 }
 
@@ -165,7 +162,7 @@ Files files_read_with_assimp(const std::filesystem::path& path) {
   return files;
 }
 
-SourceMesh read_with_assimp(const std::filesystem::path& path) {
+SourceMesh read_with_assimp(const std::filesystem::path& path, const ImportOptions& options) {
   Assimp::Importer importer;
   const std::string name = path.string();
   const aiScene* scene = read_scene(importer, path);
@@ -178,6 +175,7 @@ SourceMesh read_with_assimp(const std::filesystem::path& path) {
   const AssimpScene flat = flatten(*scene, name);
   for (const MeshInstance& instance : flat.instances) append(instance, name, out);
   out.rig = read_rig(*scene, flat, name);
+  if (options.look) out.look = read_look(*scene, flat, path.parent_path());
   // Formats without units are taken as metres. FBX says its own, in centimetres.
   double centimetres = 0;
   float centimetres_f = 0;

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "import/gltf_clips.h"
+#include "import/gltf_look.h"
 #include "import/gltf_primitive.h"
 #include "import/import.h"
 #include "spherechain/asset.h"
@@ -67,6 +68,14 @@ class GltfReader {
         nodes_(read_nodes(file)),
         skeleton_(file, nodes_, skins_of_scene(file, nodes_)),
         morphs_of_node_(file.model.nodes.size()) {}
+
+  // Of the source that read() gave.
+  SourceLook read_look(const std::filesystem::path& path) {
+    GltfLook out(file_, path);
+    for (const auto& [primitive, part] : vertices_read_) out.add_vertices(*primitive, part);
+    for (const auto& [primitive, count] : triangles_read_) out.add_triangles(*primitive, count);
+    return std::move(out.look);
+  }
 
   SourceMesh read() {
     out_.importer = "tinygltf";
@@ -149,12 +158,14 @@ class GltfReader {
       all.insert(all.end(), positions.size(), rigid);
     }
     add_morphs(primitive, carrier, n, part);
+    vertices_read_.emplace_back(&primitive, positions.size());
     return part;
   }
 
   void add_triangles(const tinygltf::Primitive& primitive, const Carrier& carrier, const SourceBuffer& part) {
     const std::vector<Triangle> triangles = read_triangles(file_, primitive, part.vertex_count, where_);
     spend(triangles.size());
+    triangles_read_.emplace_back(&primitive, triangles.size());
     const bool mirrored = carrier.to_rest.linear().determinant() < 0;  // turns triangles inside out
     for (Triangle t : triangles) {
       if (mirrored) std::swap(t[1], t[2]);
@@ -209,6 +220,7 @@ class GltfReader {
   GltfSkeleton skeleton_;
   std::vector<GltfMorphs> morphs_of_node_;  // by the file's index
   SourceMesh out_;
+  std::vector<std::pair<const tinygltf::Primitive*, std::size_t>> vertices_read_, triangles_read_;  // in their order
   std::string where_;  // the primitive at hand, for errors
   std::size_t spent_ = 0;
 };
@@ -217,7 +229,10 @@ class GltfReader {
 
 SourceMesh read_with_tinygltf(const std::filesystem::path& path, const ImportOptions& options) {
   const GltfFile file = open_gltf(path);
-  return GltfReader(file, options).read();
+  GltfReader reader(file, options);
+  SourceMesh out = reader.read();
+  if (options.look) out.look = reader.read_look(path);
+  return out;
 }
 
 }  // namespace spherechain::baker

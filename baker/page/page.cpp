@@ -10,6 +10,7 @@
 #include "page/base64.h"
 #include "page/from_runtime.h"
 #include "page/page_axes.h"
+#include "page/page_look.h"
 #include "page/page_mesh.h"
 #include "page/page_motion.h"
 #include "page/page_penetrations.h"
@@ -173,15 +174,16 @@ std::string view_page(const AnimatedAsset& animated, const PageOptions& options,
 
 std::string character_page(const AnimatedAsset& animated) {
   const PageParts parts = page_parts(animated.asset());
-  const ordered_json none = ordered_json::array();
+  const ordered_json all = ordered_json::parse(inspect_json(animated.asset()));
   const ordered_json data{{"axes", axes_json(page_axes(animated))},
                           {"parts", parts.names},
                           {"inspect",
                            {{"source", {{"metres_per_unit", animated.asset()->info().metres_per_unit}}},
-                            {"regions", none},
-                            {"spheres", none},
-                            {"chains", none}}},
-                          {"mesh", page_mesh(animated, animated.character().source_positions, parts, {})}};
+                            {"regions", all["regions"]},
+                            {"spheres", all["spheres"]},
+                            {"chains", ordered_json::array()}}},
+                          {"mesh", page_mesh(animated, animated.character().source_positions, parts, {})},
+                          {"look", page_look(animated.look())}};
   return json_text(data, -1);
 }
 

@@ -58,7 +58,7 @@ std::vector<Vec3> PageMotion::rest() const {
   return morph(character_.source_positions, character_.rig.morphs, still);
 }
 
-ordered_json PageMotion::json() const {
+ordered_json PageMotion::json(Still still) const {
   ordered_json out{{"boxes", base64(boxes_)}, {"centers", base64(centers_)}};
   if (!vertices_.empty()) {
     out["vertices"] = base64(vertices_);
@@ -67,7 +67,7 @@ ordered_json PageMotion::json() const {
   out["bones"] = base64(bones_);
   ordered_json& targets = out["morphs"] = ordered_json::array();
   for (std::size_t m = 0; m < morph_count_; ++m) {
-    if (!moves(m)) continue;
+    if (!moves(m) && (still == Still::kInRest || morphs_[m] == 0)) continue;
     const Morph& target = character_.rig.morphs[m];
     std::vector<float> weights;
     for (std::size_t i = m; i < morphs_.size(); i += morph_count_) weights.push_back(morphs_[i]);

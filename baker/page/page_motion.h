@@ -21,9 +21,11 @@ class PageMotion {
   // So far.
   std::size_t bytes() const;
 
-  // Once all frames are there. A morph target that never changes is in the rest positions, and stored nowhere else.
+  // Once all frames are there. A morph target that never changes is in the rest positions, and stored nowhere else; or
+  // not in them, where the page has the source's.
+  enum class Still { kInRest, kInMotion };
   std::vector<Vec3> rest() const;
-  nlohmann::ordered_json json() const;
+  nlohmann::ordered_json json(Still still = Still::kInRest) const;
 
  private:
   bool moves(std::size_t morph) const;

@@ -44,7 +44,8 @@ AnimatedAsset::AnimatedAsset(const std::string& asset, const std::string& source
   const BakeSettings settings = settings_of(file_, asset);
   roles_ = settings.roles;
   segment_settings_ = settings.segment;
-  character_ = import_character(source, settings.import);
+  import_ = settings.import;
+  character_ = import_character(source, import_);
   const std::vector<float> rest = pack(character_.source_positions);
   if (const Status status = sc_check_source(file_.handle(), SC_WHOLE_SOURCE, rest.data(), rest.size() / 3, 12);
       status != SC_OK) {
@@ -52,6 +53,19 @@ AnimatedAsset::AnimatedAsset(const std::string& asset, const std::string& source
                 source + ": is not the mesh that " + asset + " was baked from (" + to_string(status) + ")");
   }
   play(motion, frames);
+}
+
+SourceLook AnimatedAsset::look() const {
+  ImportOptions options = import_;
+  options.look = true;
+  try {
+    SourceLook look = read_source(source_name_, options).look;
+    const bool is_whole = look.uvs.size() == character_.source_positions.size() &&
+                          look.material_of.size() == character_.source_triangles.size();
+    return is_whole ? std::move(look) : SourceLook();
+  } catch (const std::exception&) {
+    return {};
+  }
 }
 
 void AnimatedAsset::play(const MotionChoice& motion, const FrameChoice& frames) {

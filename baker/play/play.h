@@ -37,6 +37,8 @@ class AnimatedAsset {
   const std::string& file() const { return asset_name_; }  // the asset's, as it was given
   const OpenAsset& asset() const { return file_; }
   const Character& character() const { return character_; }
+  // Reads the source again. Nothing where that fails: it is only looked at.
+  SourceLook look() const;
   // Throws Error(kFile) where the asset has no clusters, which skin contacts are found with.
   void check_clusters() const;
   BodyFrame frame() const;
@@ -65,7 +67,8 @@ class AnimatedAsset {
   std::string asset_name_, source_name_;
   OpenAsset file_;
   Character character_;
-  RoleFile roles_;  // those of the bake
+  ImportOptions import_;  // of the bake, as the next two
+  RoleFile roles_;
   SegmentSettings segment_settings_;
   std::vector<VertexWeights> weights_, rig_weights_;
   std::vector<std::string> bone_names_;

@@ -5,7 +5,7 @@ import { copyFileSync, mkdirSync, readFileSync, rmSync, writeFileSync } from 'no
 import { dirname, join } from 'node:path';
 import { pathToFileURL } from 'node:url';
 import { after, before, test } from 'node:test';
-import { launch, picture } from './browser.mjs';
+import { compare, launch, picture } from './browser.mjs';
 
 const { SPHERECHAIN_TOOL: tool, SPHERECHAIN_HUMAN: human, SPHERECHAIN_CHROMIUM: chromium, SPHERECHAIN_OUT: out } = process.env;
 const folder = join(out, 'report');
@@ -76,7 +76,26 @@ test('a click opens a clip at its worst event, in 3D', async () => {
   assert.match(await chosen(), new RegExp(`${Math.round(worst.depth_mm)} mm`));
   const shown = await page.evaluate(() => spherechainViewer.contacts()[0]);
   assert.ok(Math.abs(shown.depth - worst.depth_mm) < 0.1 && shown.triangles.length > 0);
-  await picture(page);
+  const camera = await page.evaluate(() => spherechainViewer.camera());
+  const apart = (a, b) => Math.hypot(...a.map((x, k) => x - b[k]));
+  assert.ok(apart(camera.back, worst.camera.back) < 1e-3);
+  assert.ok(apart(camera.target, worst.camera.target) < 1e-3 * apart(camera.target, [0, 0, 0]));
+});
+
+test('an event in 3D has the base colours of the file, and the spheres with their verdict', async () => {
+  const coloured = await picture(page);
+  const change = async () => (await compare(page, coloured, await picture(page))).differing;
+  await page.keyboard.press('x');
+  assert.ok((await change()) > 0.1);
+  await page.keyboard.press('x');
+  assert.ok((await change()) < 0.01);
+  assert.match(await page.locator('#verdict').innerText(), /fit: (good|fair|poor)/);
+  await page.keyboard.press('b');
+  assert.ok((await change()) > 0.1);
+  await page.keyboard.press('b');
+  assert.ok((await change()) < 0.01);
+  await page.locator('#spheres-button').click();
+  assert.match(await page.locator('#spheres-button').innerText(), /Hide/);
 });
 
 test('N and P go through the events, over clips, and the address is a link', async () => {

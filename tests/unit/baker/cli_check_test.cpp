@@ -159,6 +159,25 @@ TEST_CASE("check fails by its rules and its baseline alone") {
   CHECK(sarif[0]["level"] == "error");
 }
 
+TEST_CASE("pictures and heat maps show what the rules leave") {
+  const Library library;
+  const auto page = [&](const std::string& more) {
+    library.check(more);
+    const std::string text = tool::contents(library.folder.path / "report/library.js");
+    const json row = json::parse(text.substr(text.find('{'), text.rfind('}') + 1 - text.find('{')))["rows"][1];
+    CHECK(fs::exists(library.folder.path / "report" / row["picture"].get<std::string>()));
+    const std::string heat =
+        tool::contents(library.folder.path / "report" / (row["body"].get<std::string>() + "_heat.js"));
+    return std::pair(row["picture"].get<std::string>().find("_1.png") != std::string::npos,
+                     heat.find("\"triangles\":\"\"") == std::string::npos);
+  };
+  CHECK(page("") == std::pair(true, true));
+  CHECK(page("--max-depth 500") == std::pair(false, false));
+  CHECK(page("--max-depth 199") == std::pair(true, true));
+  library.folder.write("rules.json", R"({"leave_out": ["ball"]})");
+  CHECK(page("--config " + library.path("rules.json")) == std::pair(false, false));
+}
+
 TEST_CASE("one bad file stops nothing") {
   const Library library;
   library.folder.write("broken.glb", planted_character(kClips).substr(0, 200));

@@ -33,6 +33,14 @@ TEST_CASE("numbers that are none are usage errors") {
   CHECK(tool::files_in(folder.path) == 0);
 }
 
+TEST_CASE("a dash is no file to write") {
+  for (const char* command :
+       {"bake a.glb -o -", "bake a.glb -o a.sphc --report -", "play a.sphc --source a.glb --json -",
+        "view a.sphc --source a.glb -o -", "check a.glb -o report --json -"}) {
+    check_error(run(command), 2, {"- is standard output elsewhere"});
+  }
+}
+
 TEST_CASE("an empty name, as of a script's variable that is not set, is a usage error and no option left out") {
   const TemporaryFolder folder;
   const std::string asset = baked_files().asset.string(), out = (folder.path / "out").string(),

@@ -22,5 +22,8 @@ TEST_CASE("the page stores the morph targets that its frames move, and puts the 
   REQUIRE(stored["morphs"].size() == 1);
   CHECK(stored["morphs"][0]["name"] == "smile");
   CHECK(stored["morphs"][0]["weights"] == "AAAAAAAAgD4AAIA/");  // 0, 0.25, 1
+  const nlohmann::ordered_json all = motion.json(PageMotion::Still::kInMotion);
+  REQUIRE(all["morphs"].size() == 2);
+  CHECK(all["morphs"][1]["name"] == "wide");
   CHECK(motion.rest() == std::vector<Vec3>{{0, 0, 0}, {2, 0, 0}});
 }

@@ -7,6 +7,7 @@ import { LIGHT } from './skin_layer.js';
 // that small ones show too. Where a contact is chosen, all others are paler.
 
 const ARROW_MATERIAL = new THREE.MeshBasicMaterial({ color: 0x0b3fd1, depthTest: false, transparent: true });
+const HALO_MATERIAL = new THREE.MeshBasicMaterial({ color: 0xffffff, depthTest: false, transparent: true }); // over any texture
 const SHAFT = new THREE.CylinderGeometry(1, 1, 1, 12); // one wide and high: scaled
 const HEAD = new THREE.ConeGeometry(1, 1, 16);
 
@@ -121,15 +122,18 @@ export class ContactLayer {
     const { unitsPerMm, height } = this.skin.mesh;
     for (const { at, direction, depth } of contacts) {
       const length = depth * unitsPerMm;
-      const head = Math.max(0.35 * length, 0.012 * height);
+      const head = Math.max(0.35 * length, 0.016 * height);
       const shaft = Math.max(length - head, 0.004 * height);
       const arrow = new THREE.Group();
+      const rim = 0.0011 * height;
       const part = (geometry, width, from, size) => {
-        const made = new THREE.Mesh(geometry, ARROW_MATERIAL);
-        made.scale.set(width, size, width);
-        made.position.y = from + size / 2;
-        made.renderOrder = 9;
-        arrow.add(made);
+        for (const [material, order, wider] of [[HALO_MATERIAL, 9, rim], [ARROW_MATERIAL, 10, 0]]) {
+          const made = new THREE.Mesh(geometry, material);
+          made.scale.set(width + wider, size + 2 * wider, width + wider);
+          made.position.y = from + size / 2;
+          made.renderOrder = order;
+          arrow.add(made);
+        }
       };
       part(SHAFT, 0.14 * head, 0, shaft);
       part(HEAD, 0.35 * head, shaft, head);

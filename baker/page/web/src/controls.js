@@ -69,6 +69,7 @@ export function fillControls(panel, store, model) {
   const content = [
     h('h2', {}, 'Show'),
     h('div', { class: 'row' }, check(store, 'skin', 'Skin', 'S'), slider(store, 'skinOpacity', 'Opacity of the skin')),
+    model.look && check(store, 'look', 'Textures', 'X'),
     check(store, 'hiddenContacts', 'Contacts behind the skin', 'H'),
     model.frameCount > 1 && check(store, 'follow', 'Hold the character in place', 'F'),
     model.spheres.length > 0 && h(
@@ -77,11 +78,11 @@ export function fillControls(panel, store, model) {
       check(store, 'spheres', 'Spheres', 'B', (shown) => store.showSpheres(shown)),
       slider(store, 'sphereOpacity', 'Opacity of the spheres'),
     ),
-    model.spheres.length > 0 && legend(store),
+    model.hasMethod && legend(store),
     h('h2', {}, 'Body parts', link('hiddenParts', 'show all')),
     h('div', { class: 'parts' }, partToggles(store, model)),
-    model.spheres.length > 0 && h('h2', {}, 'Under the hood'),
-    model.spheres.length > 0 && check(store, 'method', 'Method', 'M', (shown) => store.showMethod(shown)),
+    model.hasMethod && h('h2', {}, 'Under the hood'),
+    model.hasMethod && check(store, 'method', 'Method', 'M', (shown) => store.showMethod(shown)),
     h(
       'div',
       { class: 'method' },

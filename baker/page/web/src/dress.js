@@ -6,9 +6,11 @@ function dressSkin(model, state, skinLayer) {
   skinLayer.group.visible = state.skin;
   skinLayer.uniforms.opacity.value = state.skinOpacity;
   skinLayer.pose(state.frame);
-  skinLayer.skin.zones.forEach(({ sphere, part }, zone) => {
+  const plain = state.regions || state.patches || !state.look;
+  skinLayer.uniforms.pictured.value = plain ? 0 : 1;
+  skinLayer.skin.zones.forEach(({ sphere, part, material }, zone) => {
     const region = model.spheres[sphere]?.region ?? -1;
-    const base = state.regions || state.patches ? regionColour(region) : CLAY;
+    const base = state.regions || state.patches ? regionColour(region) : (!plain && material?.colour) || CLAY;
     if (state.hiddenParts.has(part)) skinLayer.setLook(zone, base, looks.HIDDEN);
     else if (state.method && sphere === state.pointed) skinLayer.setLook(zone, POINTED, looks.POINTED);
     else skinLayer.setLook(zone, state.patches ? tone(base, sphere) : base, looks.PLAIN);
@@ -18,13 +20,12 @@ function dressSkin(model, state, skinLayer) {
 function dressSpheres(model, state, sphereLayer, visible) {
   const marked = new Set(model.sets.filter((set) => state.sets.has(set.name)).flatMap((set) => [...set.spheres]));
   const alarms = new Map();
-  if (state.spheres) {
-    for (const { a, b, isFalse } of model.spherePairs(state.frame, state.radius)) {
-      for (const id of [a, b]) if (!isFalse || !alarms.has(id)) alarms.set(id, isFalse ? FALSE_ALARM : CONTACT);
-    }
-  }
   visible.clear();
   sphereLayer.group.visible = state.spheres;
+  if (!state.spheres) return;
+  for (const { a, b, isFalse } of model.spherePairs(state.frame, state.radius)) {
+    for (const id of [a, b]) if (!isFalse || !alarms.has(id)) alarms.set(id, isFalse ? FALSE_ALARM : CONTACT);
+  }
   sphereLayer.rimColour.set(css('--rim'));
   model.spheres.forEach(({ region }, id) => {
     const item = sphereLayer.items[id];
@@ -34,7 +35,7 @@ function dressSpheres(model, state, sphereLayer, visible) {
     item.colour.set(alarm ?? (state.regions ? regionColour(region) : SPHERE));
     item.alpha = faded ? 0.1 : alarm ? Math.max(state.sphereOpacity, 0.9) : state.sphereOpacity;
     item.rim = id === state.pointed ? 0.3 : alarm && !faded ? 0.16 : 0;
-    if (state.spheres && !faded) visible.add(id);
+    if (!faded) visible.add(id);
   });
 }
 

@@ -2,7 +2,7 @@ import { h } from './dom.js';
 
 // Keyboard shortcuts, and the page that lists them.
 
-export function bindKeys(store, { timeline, stage, help, toggleTheme, reset, deepest, chains }) {
+export function bindKeys(store, { timeline, stage, help, toggleTheme, reset, deepest, chains, hasMethod }) {
   const flip = (key) => () => store.set({ [key]: !store.state[key] });
   const method = (action) => () => store.state.method && action();
   const allChains = () => store.set({ sets: new Set(chains.every((name) => store.state.sets.has(name)) ? [] : chains) });
@@ -19,10 +19,11 @@ export function bindKeys(store, { timeline, stage, help, toggleTheme, reset, dee
     ['4', '4', 'View from the top', () => stage?.view('top')],
     ['0', '0', 'Reset', reset],
     ['S', 's', 'Skin', flip('skin')],
+    ['X', 'x', 'Textures', flip('look')],
     ['H', 'h', 'Contacts behind the skin', flip('hiddenContacts')],
     ['F', 'f', 'Hold the character in place', flip('follow')],
     ['B', 'b', 'Spheres', () => store.showSpheres(!store.state.spheres)],
-    ['M', 'm', 'Method', () => store.showMethod(!store.state.method)],
+    ['M', 'm', 'Method', () => hasMethod && store.showMethod(!store.state.method)],
     ['G', 'g', 'Method: regions in their colours', method(flip('regions'))],
     ['U', 'u', "Method: spheres' triangles", method(flip('patches'))],
     ['P', 'p', 'Method: pivots', method(flip('pivots'))],

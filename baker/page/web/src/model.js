@@ -75,6 +75,20 @@ function readMotion({ motion, frames }) {
   };
 }
 
+// The skin's base colours; null where it has none.
+function readLook(look) {
+  if (!look) return null;
+  const shares = decode(look.uvs?.shares, Uint16Array);
+  const { low, high } = look.uvs ?? {};
+  return {
+    of: decode(look.of, Uint16Array),
+    materials: look.materials,
+    pictures: look.pictures,
+    uvs: Float32Array.from(shares, (share, i) => low[i % 2] + ((high[i % 2] - low[i % 2]) * share) / 65535),
+    array: null, // of decodePictures
+  };
+}
+
 // Lists of a number a frame, as the charts want them.
 function readCosts({ chains, all_pairs: allPairs, refit_us: refit, contacts_us: skin }) {
   const list = (text, Type) => [...decode(text, Type)];
@@ -92,7 +106,7 @@ export function readModel(data) {
   }
   const { mesh, frames } = data;
   const count = frames?.count ?? 0;
-  const moved = count > 0 ? decode(frames.spheres, Float32Array) : Float32Array.from(spheres.flatMap((s) => s.rest));
+  const moved = frames?.spheres ? decode(frames.spheres, Float32Array) : Float32Array.from(spheres.flatMap((s) => s.rest));
   const kinds = ['fit', 'detect'];
   const floats = 3 + kinds.length;
   const touching = Object.fromEntries(kinds.map((kind) => [kind, pairLists(frames?.[kind], Uint16Array)]));
@@ -128,8 +142,12 @@ export function readModel(data) {
       joints: decode(mesh.joints, Uint16Array),
       weights: decode(mesh.weights, Uint16Array),
     },
+    look: readLook(data.look),
     motion: readMotion(data),
     frameCount: Math.max(count, 1),
+    hasSpheres: Boolean(frames?.spheres),
+    refit: null, // where the page has no spheres of each frame: they follow the skin
+    hasMethod: data.spheres !== undefined, // the page of `view`: what the paper's method finds
     fps: frames?.fps || 30,
     clips,
     costs: frames?.chains ? readCosts(frames) : null,
@@ -142,6 +160,7 @@ export function readModel(data) {
     seconds: (frame) => seconds[frame] ?? 0,
     // The sphere in a frame: [x, y, z, radius].
     sphere(frame, i, kind) {
+      if (this.refit) return this.refit.sphere(i, kind);
       const at = (frame * spheres.length + i) * floats;
       return [moved[at], moved[at + 1], moved[at + 2], moved[at + 3 + kinds.indexOf(kind)]];
     },

@@ -1,7 +1,7 @@
 // Morphs and linear blend skinning of the mesh on the CPU, with smooth normals.
 //
 // Sources split vertices at seams and faces. Here a vertex is what moves alike and belongs to one zone (a sphere's triangles of
-// one body part), so that zones have sharp borders; normals are shared by all that are in one place at rest.
+// one body part, of one material), so that zones have sharp borders; normals are shared by all that are in one place at rest.
 
 const sameAs = (map, key) => {
   let id = map.get(key);
@@ -10,7 +10,7 @@ const sameAs = (map, key) => {
 };
 
 export class Skin {
-  constructor(mesh, motion) {
+  constructor(mesh, motion, look = null) {
     this.mesh = mesh;
     this.motion = motion;
     this.frame = -1;
@@ -34,10 +34,11 @@ export class Skin {
         const from = influences * v;
         const to = from + influences;
         const skin = influences > 0 ? `${joints.subarray(from, to)};${weights.subarray(from, to)}` : '';
-        moverOf[v] = sameAs(movers, ownPath[v] ? v : `${placeOf[v]};${skin}`);
+        const uv = look?.uvs.length > 0 ? `;${look.uvs[2 * v]},${look.uvs[2 * v + 1]}` : '';
+        moverOf[v] = sameAs(movers, ownPath[v] ? v : `${placeOf[v]};${skin}${uv}`);
       }
       const triangle = Math.floor(corner / 3);
-      const z = sameAs(zones, sphereOf[triangle] * 256 + partOf[triangle]);
+      const z = sameAs(zones, (sphereOf[triangle] * 256 + partOf[triangle]) * 65536 + (look?.of[triangle] ?? 0));
       const r = sameAs(vertices, moverOf[v] * 65536 + z);
       if (r === source.length) {
         source.push(v);
@@ -49,7 +50,11 @@ export class Skin {
     this.source = Uint32Array.from(source);
     this.place = Uint32Array.from(place);
     this.zone = Float32Array.from(zone);
-    this.zones = [...zones.keys()].map((key) => ({ sphere: Math.floor(key / 256), part: key % 256 }));
+    this.zones = [...zones.keys()].map((key) => ({
+      sphere: Math.floor(key / 16777216),
+      part: Math.floor(key / 65536) % 256,
+      material: look?.materials[key % 65536] ?? null,
+    }));
     this.positions = new Float32Array(3 * source.length);
     this.normals = new Float32Array(3 * source.length);
     this.placeNormals = new Float32Array(3 * places.size);

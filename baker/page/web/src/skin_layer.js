@@ -6,14 +6,18 @@ import * as THREE from 'three';
 const vertexShader = `
   attribute float zone;
   attribute vec4 heat;
+  attribute vec4 picture; // u, v, which (-1: none), and the alpha below which nothing is there
   uniform sampler2D looks;
   varying vec4 look;
+  varying vec4 painted;
+  varying vec4 place;
   varying vec3 normalInView;
   varying vec3 toEye;
   void main() {
     int i = int(zone);
     look = texelFetch(looks, ivec2(i % 1024, i / 1024), 0);
-    look.rgb = mix(look.rgb, heat.rgb, heat.a);
+    painted = vec4(heat.rgb * heat.a, heat.a);
+    place = picture;
     vec4 p = modelViewMatrix * vec4(position, 1.0);
     normalInView = normalMatrix * normal;
     toEye = -p.xyz;
@@ -33,11 +37,23 @@ export const LIGHT = `
 // A look is a colour and, in alpha, a kind: 0 hidden, 1/2 plain, 1 pointed at.
 const fragmentShader = `
   uniform float opacity;
+  uniform float pictured;
+  uniform highp sampler2DArray pictures;
   varying vec4 look;
+  varying vec4 painted;
+  varying vec4 place;
   varying vec3 normalInView;
   varying vec3 toEye;
   ${LIGHT}
   void main() {
+    vec3 colour = look.rgb;
+    vec4 texel = texture(pictures, vec3(place.xy, max(round(place.z), 0.0)));
+    if (pictured > 0.5 && place.z > -0.5) {
+      if (texel.a < place.w) discard;
+      colour *= texel.rgb;
+    }
+    // A little paler than they are, and never black: nothing is as red as a contact, and shapes can be seen.
+    if (pictured > 0.5) colour = 0.025 + 0.975 * mix(vec3(dot(colour, vec3(0.2126, 0.7152, 0.0722))), colour, 0.75);
     if (look.a < 0.1) discard;
     vec3 n = normalize(normalInView);
     vec3 e = normalize(toEye);
@@ -46,14 +62,38 @@ const fragmentShader = `
     float alpha = opacity + (1.0 - opacity) * 0.55 * edge * smoothstep(0.0, 0.15, opacity);
     if (look.a > 0.9) alpha = max(alpha, 0.62);
     if (alpha < 0.004) discard;
-    gl_FragColor = vec4(look.rgb * lightOn(n, e), alpha);
+    gl_FragColor = vec4((colour * (1.0 - painted.a) + painted.rgb) * lightOn(n, e), alpha);
     #include <colorspace_fragment>
   }`;
 
 export const looks = { HIDDEN: 0, PLAIN: 128, POINTED: 255 };
 
+function placesOnPictures({ source, zone, zones }, look) {
+  const out = new Float32Array(4 * zone.length).fill(-1);
+  if (look === null) return out;
+  zone.forEach((z, r) => {
+    const { picture = -1, cut = 0 } = zones[z].material ?? {};
+    if (picture >= 0) out.set([look.uvs[2 * source[r]], look.uvs[2 * source[r] + 1], picture, cut], 4 * r);
+  });
+  return out;
+}
+
+function pictureTexture({ pixels, size, count }) {
+  const texture = new THREE.DataArrayTexture(pixels, size, size, count);
+  return Object.assign(texture, {
+    colorSpace: THREE.SRGBColorSpace,
+    wrapS: THREE.RepeatWrapping,
+    wrapT: THREE.RepeatWrapping,
+    magFilter: THREE.LinearFilter,
+    minFilter: THREE.LinearMipmapLinearFilter,
+    generateMipmaps: true,
+    anisotropy: 4,
+    needsUpdate: true,
+  });
+}
+
 export class SkinLayer {
-  constructor(skin) {
+  constructor(skin, look = null) {
     this.skin = skin;
     const geometry = new THREE.BufferGeometry();
     this.position = new THREE.BufferAttribute(skin.positions, 3).setUsage(THREE.DynamicDrawUsage);
@@ -63,13 +103,19 @@ export class SkinLayer {
     geometry.setAttribute('zone', new THREE.BufferAttribute(skin.zone, 1));
     this.heat = new THREE.BufferAttribute(new Uint8Array(4 * skin.zone.length), 4, true);
     geometry.setAttribute('heat', this.heat);
+    geometry.setAttribute('picture', new THREE.BufferAttribute(placesOnPictures(skin, look), 4));
     geometry.setIndex(new THREE.BufferAttribute(skin.index, 1));
 
     const rows = Math.ceil(Math.max(skin.zones.length, 1) / 1024);
     this.texels = new Uint8Array(4 * 1024 * rows);
     this.texture = new THREE.DataTexture(this.texels, 1024, rows);
     this.texture.colorSpace = THREE.SRGBColorSpace;
-    this.uniforms = { looks: { value: this.texture }, opacity: { value: 1 } };
+    this.uniforms = {
+      looks: { value: this.texture },
+      opacity: { value: 1 },
+      pictured: { value: 0 },
+      pictures: { value: pictureTexture(look?.array ?? { pixels: new Uint8Array([255, 255, 255, 255]), size: 1, count: 1 }) },
+    };
     const material = (settings) =>
       new THREE.ShaderMaterial({ vertexShader, fragmentShader, uniforms: this.uniforms, side: THREE.DoubleSide, ...settings });
     this.depth = new THREE.Mesh(geometry, material({ colorWrite: false, transparent: true }));

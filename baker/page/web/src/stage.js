@@ -193,6 +193,12 @@ export function createStage(canvas, model, store, { skinLayer, sphereLayer, cont
     setInk: (colour) => floor.uniforms.ink.value.set(colour),
     pixelRatio: () => renderer.getPixelRatio(),
 
+    // What it looks at, in source units, and the direction from there to the eye.
+    camera() {
+      const back = camera.position.clone().sub(controls.target).transformDirection(fromWorld());
+      return { target: controls.target.clone().applyMatrix4(fromWorld()).toArray(), back: back.toArray() };
+    },
+
     // The ray through a pixel, in source units.
     ray(clientX, clientY) {
       const box = canvas.getBoundingClientRect();
@@ -205,13 +211,13 @@ export function createStage(canvas, model, store, { skinLayer, sphereLayer, cont
       return caster.ray.applyMatrix4(fromWorld());
     },
 
-    // Looks at a ball of source units from where the outside of the chosen contact's triangles is seen best.
-    flyToContact(ball) {
+    // Looks at a ball of source units from where the outside of the chosen contact's triangles is seen best, or as `known` says.
+    flyToContact(ball, known) {
       framed = null;
-      const center = new THREE.Vector3(...ball).applyMatrix4(toWorld());
-      const distance = Math.max((1.5 * ball[3]) / model.height / TAN, 0.62 * unit);
+      const center = new THREE.Vector3(...(known?.target ?? ball)).applyMatrix4(toWorld());
+      const distance = Math.max((1.5 * ball[3]) / model.height / TAN, (known ? 0.74 : 0.62) * unit);
       const back = camera.position.clone().sub(controls.target).normalize();
-      const best = findView(toWorld(), center, distance, back, inSphere);
+      const best = known ? new THREE.Vector3(...known.back).transformDirection(toWorld()) : findView(toWorld(), center, distance, back, inSphere);
       go(center, best ? center.clone().addScaledVector(best, distance) : outside(center, back, distance));
     },
 

@@ -13,6 +13,7 @@ import { bindKeys } from './keys.js';
 import { drawOverlay } from './overlay.js';
 import { followPointer } from './pointer.js';
 import { fillSphereCard, fillSpherePanel } from './sphere_panel.js';
+import { Refit } from './refit.js';
 import { Skin } from './skin.js';
 import { SkinLayer } from './skin_layer.js';
 import { SphereLayer } from './sphere_layer.js';
@@ -63,6 +64,7 @@ function runPlayback(store, model) {
 const shown = {
   skin: true,
   skinOpacity: 1,
+  look: true, // its base colours
   hiddenContacts: true,
   follow: true,
   spheres: false,
@@ -107,15 +109,17 @@ function bindStage(stage, store, model, layers, skin) {
 export function start(model) {
   document.title = `${model.title} · spherechain`;
   $('title').textContent = model.title;
-  const startState = { ...shown, radius: model.radius };
+  // Where spheres are no method to study, the skin shows through them.
+  const startState = { ...shown, radius: model.radius, ...(model.hasMethod ? {} : { sphereOpacity: 0.4 }) };
   const theme = matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light';
   const store = createStore({ ...startState, frame: 0, playing: false, theme });
   const toggleTheme = bindTheme(store);
-  const skin = new Skin(model.mesh, model.motion);
+  const skin = new Skin(model.mesh, model.motion, model.look);
+  if (!model.hasSpheres) model.refit = new Refit(model.inspect, model.mesh, skin);
   let most = 0;
   for (let frame = 0; frame < model.frameCount; ++frame) most = Math.max(most, model.contacts.count(frame));
   const layers = {
-    skinLayer: new SkinLayer(skin),
+    skinLayer: new SkinLayer(skin, model.look),
     sphereLayer: new SphereLayer(model.spheres.length),
     contactLayer: new ContactLayer(skin, most),
   };
@@ -128,9 +132,10 @@ export function start(model) {
     const { frame, radius } = store.state;
     stage?.flyToSpheres(model.sphere(frame, a, radius), model.sphere(frame, b, radius));
   };
-  const flyToContact = (key) => {
+  // `camera`: from where it is seen, where that is known.
+  const flyToContact = (key, camera = null) => {
     const contact = model.contacts.of(store.state.frame).find((other) => other.key === key);
-    if (contact) stage?.flyToContact(skin.ballOf(contact.triangles));
+    if (contact) stage?.flyToContact(skin.ballOf(contact.triangles), camera);
   };
   fillClips($('clip'), store, model);
   fillControls($('controls'), store, model);
@@ -151,7 +156,7 @@ export function start(model) {
   $('help-button').addEventListener('click', () => $('help').showModal());
   $('licences').textContent = LICENCES;
   const chains = model.sets.filter((set) => set.kind === 'chain').map((set) => set.name);
-  bindKeys(store, { timeline, stage, help: $('help'), toggleTheme, reset, deepest, chains });
+  bindKeys(store, { timeline, stage, help: $('help'), toggleTheme, reset, deepest, chains, hasMethod: model.hasMethod });
   runPlayback(store, model);
 
   window.spherechainViewer = Object.freeze({
@@ -161,6 +166,7 @@ export function start(model) {
     setFrame: (frame) => timeline.go(frame),
     contacts: () =>
       model.contacts.of(store.state.frame).map(({ name, pairs, triangles, kind, depth }) => ({ name, pairs, triangles: [...triangles], kind, depth })),
+    camera: () => stage?.camera() ?? null,
     hovered: () => store.state.pointed,
     ready: true,
   });

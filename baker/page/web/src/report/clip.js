@@ -3,6 +3,7 @@ import '../style.css';
 import './clip.css';
 import { h } from '../dom.js';
 import { readModel } from '../model.js';
+import { decodePictures } from '../pictures.js';
 import { start } from '../viewer.js';
 import { fillEvents } from './events_panel.js';
 import { fillHeat } from './heat_panel.js';
@@ -36,25 +37,27 @@ function addTab(name) {
 }
 
 // All that a character's clips do to its skin, on the character at rest.
-async function showCharacter(row, rows) {
+async function showCharacter(row, { rows, fits }) {
   await Promise.all([load(`${row.body}.js`), load(`${row.body}_heat.js`)]);
   const { character, heat } = spherechain;
   const model = readModel({ ...character, title: row.character, radius: 'detect', report: null, clips: [{ name: 'all clips', first: 0, count: 1, own_count: 1 }] });
+  await decodePictures(model);
   const panel = addTab('Heat');
   document.getElementById('tab-contacts').remove();
   document.body.classList.add('heat');
   const viewer = start(model);
-  fillHeat(panel, { rows: rows.filter((other) => other.data && other.character === row.character), heat, ...viewer });
+  viewer.store.set({ look: false }); // the heat's colours alone
+  fillHeat(panel, { rows: rows.filter((other) => other.data && other.character === row.character), fit: fits[row.body], heat, ...viewer });
 }
 
 async function main() {
   globalThis.spherechain = {};
   await load('library.js');
-  const { rows } = spherechain.library;
+  const { rows, fits } = spherechain.library;
   const link = readLink();
   const row = rows.find(({ character, clip, data }) => data && character === link.character && (link.clip ?? clip) === clip);
   if (!row) return say('This report has no such clip.');
-  if (link.clip === null) return showCharacter(row, rows);
+  if (link.clip === null) return showCharacter(row, spherechain.library);
   await Promise.all([load(`${row.body}.js`), load(`${row.data}.js`)]);
   const { character, clip } = spherechain;
   const model = readModel({
@@ -65,10 +68,11 @@ async function main() {
     report: null,
     clips: [{ name: row.clip, first: 0, count: clip.frames.count, own_count: clip.frames.count }],
   });
+  await decodePictures(model);
   const panel = addTab('Events');
   const viewer = start(model);
   document.title = `${row.character} ${row.clip} · spherechain`;
-  fillEvents(panel, { rows, row, model, ...viewer });
+  fillEvents(panel, { rows, row, fit: fits[row.body], model, ...viewer });
 }
 
 main().catch((error) => say(`The report is not whole: ${error.message}.`));

@@ -14,7 +14,17 @@ const timecode = (frame, fps) => {
 
 const CLASSES = { penetration: 'penetration', deep_fold: 'deep fold' };
 
-export function fillEvents(panel, { rows, row, model, store, flyToContact }) {
+// The bake's spheres, with the verdict on them: the skin's contacts do not depend on it.
+export function spheresSection(store, fit) {
+  const button = h('button', { type: 'button', id: 'spheres-button', class: 'accept', onclick: () => store.showSpheres(!store.state.spheres) });
+  store.watch(['spheres'], ({ spheres }) => {
+    button.textContent = spheres ? 'Hide (B)' : 'Show (B)';
+    button.setAttribute('aria-pressed', spheres);
+  });
+  return h('div', { id: 'verdict' }, h('span', {}, `Spheres, ${fit}`), button);
+}
+
+export function fillEvents(panel, { rows, row, fit, model, store, flyToContact }) {
   const events = row.events;
   const names = model.parts.map(({ name }) => name);
   const partOf = (name) => model.parts[names.indexOf(name)]?.part;
@@ -27,7 +37,7 @@ export function fillEvents(panel, { rows, row, model, store, flyToContact }) {
     history.replaceState(null, '', clipLink(row, index));
     const key = event.parts.map(partOf).sort((a, b) => a - b).join('-');
     store.set({ frame: event.deepest, playing: false, contact: key });
-    flyToContact(key);
+    flyToContact(key, event.camera);
     draw();
   };
 
@@ -60,7 +70,7 @@ export function fillEvents(panel, { rows, row, model, store, flyToContact }) {
   const list = h('ol', { class: 'pairs', id: 'clip-events' });
   const summary = h('p', { class: 'summary', role: 'status' });
   const note = h('p', { class: 'note' }, 'N and P: next and previous event, in the next clip too. Accepted events go into the baseline that the library page exports.');
-  panel.append(summary, list, note);
+  panel.append(spheresSection(store, fit), summary, list, note);
 
   function draw() {
     summary.textContent = events.length === 0 ? 'No fault in this clip.' : `${events.length} ${events.length === 1 ? 'fault' : 'faults'}`;

@@ -1,5 +1,6 @@
 import { h } from '../dom.js';
 import { decode } from '../frame_lists.js';
+import { spheresSection } from './events_panel.js';
 import { clipLink } from './links.js';
 import { isFault } from './marks.js';
 
@@ -9,7 +10,7 @@ const LOW = [250, 190, 60]; // linear, from faint to strong
 const HIGH = [190, 8, 20];
 const mix = (share) => [...LOW.map((low, k) => Math.round(low + share * (HIGH[k] - low))), Math.round(110 + 145 * Math.sqrt(share))];
 
-export function fillHeat(panel, { rows, heat, skinLayer, redraw }) {
+export function fillHeat(panel, { rows, fit, heat, store, skinLayer, redraw }) {
   const triangles = decode(heat.triangles, Uint32Array);
   const measures = {
     depth: { values: decode(heat.mm, Float32Array), text: (value) => `${Math.round(value)} mm`, name: 'How deep' },
@@ -33,10 +34,11 @@ export function fillHeat(panel, { rows, heat, skinLayer, redraw }) {
     .sort((a, b) => b.count - a.count)
     .map(({ row, count }) => h('li', {}, h('a', { class: 'pair', href: clipLink(row) }, h('span', { class: 'part-names' }, row.clip), h('span', { class: 'count' }, count || 'clean'))));
   panel.append(
+    spheresSection(store, fit),
     h('p', { class: 'summary' }, `The faults of ${rows.length === 1 ? 'its clip' : `its ${rows.length} clips`}, on the skin at rest`),
     h('div', { class: 'segments', role: 'group', 'aria-label': 'Colour' }, buttons),
     legend,
-    h('h3', {}, `Clips, by faults; spheres: ${rows[0].fit}`),
+    h('h3', {}, 'Clips, by faults'),
     h('ol', { class: 'pairs' }, list),
   );
   show('depth');

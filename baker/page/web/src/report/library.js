@@ -98,7 +98,7 @@ function element(row) {
   return h(
     'tr',
     { onclick: (event) => !event.target.closest('a') && (location.href = link) },
-    h('td', { class: 'picture' }, h('img', { src: `${row.data}.png`, loading: 'lazy', alt: '', width: 72, height: 72 })),
+    h('td', { class: 'picture' }, h('img', { src: row.picture, loading: 'lazy', alt: '', width: 72, height: 72 })),
     h('th', { scope: 'row' }, h('a', { href: characterLink(row), title: 'Where on its skin all its faults are' }, row.character)),
     h('td', {}, h('a', { href: link }, row.clip)),
     number(row.frames.toLocaleString('en')),
