@@ -96,6 +96,10 @@ double area_quantile(const Mesh& mesh, const std::vector<Index>& triangles, cons
   return weighted_quantile(std::move(rings), share);
 }
 
+// Skins whose weights overlap by more keep their shape: they err no more with weights ten times as large as skins that
+// move alike with theirs.
+constexpr double kMovesAsOne = 0.98, kIllPosedAsOne = kIllPosed * (1 - kMovesAlike) / (1 - kMovesAsOne);
+
 // All triangles within some radii of a sphere's centre.
 std::vector<Index> triangles_around(const Mesh& mesh, const FittedSphere& sphere, double radii) {
   std::vector<Index> around;
@@ -150,20 +154,24 @@ BoundSphere bind_sphere(const Character& character, const std::vector<Index>& su
   const Mesh& mesh = character.skin;
   // Ray 0 of the rings points there too: pivots turn with the body.
   const Vec3 reference = on_torso ? frame.forward : Vec3(frame.up + 0.7 * frame.left + 0.3 * frame.forward);
-  const auto choose = [&](const std::vector<Index>& among) {
-    return choose_pivots(mesh, among, sphere, reference, settings.rule, settings.pivots);
+  const auto choose = [&](const std::vector<Index>& among, double magnitudes_max) {
+    return choose_pivots(mesh, among, sphere, reference, settings.rule, settings.pivots, magnitudes_max);
   };
+  constexpr double kEverywhere = std::numeric_limits<double>::infinity();
   std::vector<BoundPivot> pivots;
   // The radius follows how far pivots are apart: those that other bones move would blow it up. Few and large triangles:
   // those beyond the region's border carry the sphere too.
   const BoneWeights weights =
       settings.rule == RefitRule::kMoments ? mean_weights(character, surrounding) : BoneWeights{};
-  for (const double alike : {kMovesAlike, 0.65, 0.5, 0.0}) {
+  // The end of a sword has no skin around it: all of the sword carries it.
+  for (const auto& [alike, magnitudes_max] :
+       {std::pair{kMovesAlike, kIllPosed}, std::pair{kMovesAsOne, kIllPosedAsOne}, std::pair{0.65, kIllPosed},
+        std::pair{0.5, kIllPosed}, std::pair{0.0, kIllPosed}}) {
     if (weights.empty() && alike > 0) continue;
-    if (pivots.empty()) pivots = choose(moving_alike(character, surrounding, weights, alike));
-    for (const double radii : {2.0, 4.0, 8.0}) {
-      if (!pivots.empty()) break;
-      pivots = choose(moving_alike(character, triangles_around(mesh, sphere, radii), weights, alike));
+    if (pivots.empty()) pivots = choose(moving_alike(character, surrounding, weights, alike), magnitudes_max);
+    for (const double radii : {2.0, 4.0, 8.0, kEverywhere}) {
+      if (!pivots.empty() || (radii == kEverywhere && alike != kMovesAsOne)) break;
+      pivots = choose(moving_alike(character, triangles_around(mesh, sphere, radii), weights, alike), magnitudes_max);
     }
   }
   if (pivots.empty() && settings.rule == RefitRule::kMoments) {
@@ -171,7 +179,6 @@ BoundSphere bind_sphere(const Character& character, const std::vector<Index>& su
   }
   if (pivots.empty() && settings.rule == RefitRule::kMoments) {
     constexpr std::size_t kFew = 4;  // one triangle's centroid has no distance from itself
-    constexpr double kEverywhere = std::numeric_limits<double>::infinity();
     pivots = choose_even_pivots(
         mesh, surrounding.size() < kFew ? triangles_around(mesh, sphere, kEverywhere) : surrounding, sphere);
   }

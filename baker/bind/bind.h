@@ -58,11 +58,15 @@ struct BindSettings {
 Attempt<Binding> bind_spheres(const Character& character, const Regions& regions, const Spheres& spheres,
                               const BindSettings& settings);
 
+// What the magnitudes of a sphere's weights may add up to: above 1 the sphere moves more than its pivots do.
+inline constexpr double kIllPosed = 1.5;
+
 // Chooses the pivots of one sphere among its triangles. Under the paper's rule: `count` of them, or none where there
 // are fewer. Under the rule of moments: `count`, or all where there are fewer. Where the magnitudes of their weights
-// add up to more than 1.5, up to 16; none where 16 are not enough either.
+// add up to more than 1.5, up to 16; none where they still add up to more than `magnitudes_max`.
 std::vector<BoundPivot> choose_pivots(const Mesh& mesh, const std::vector<Index>& triangles, const FittedSphere& sphere,
-                                      const Vec3& reference, RefitRule rule, int count);
+                                      const Vec3& reference, RefitRule rule, int count,
+                                      double magnitudes_max = kIllPosed);
 
 // For a sphere that choose_pivots() has no pivots for (in a spike of few triangles): pivots of the rule of moments
 // whose weights' magnitudes add up to at most 1.5. The centre is drawn towards them. None where there are fewer than

@@ -71,8 +71,6 @@ double sum_of_magnitudes(const std::vector<double>& weights) {
   return sum;
 }
 
-constexpr double kIllPosed = 1.5;
-
 struct Carriers {
   std::vector<Index> triangles;
   std::vector<double> weights;
@@ -108,7 +106,7 @@ std::vector<BoundPivot> bound(const Carriers& carriers) {
 }  // namespace
 
 std::vector<BoundPivot> choose_pivots(const Mesh& mesh, const std::vector<Index>& triangles, const FittedSphere& sphere,
-                                      const Vec3& reference, RefitRule rule, int count) {
+                                      const Vec3& reference, RefitRule rule, int count, double magnitudes_max) {
   std::vector<BoundPivot> pivots;
   if (rule == RefitRule::kPaper) {
     const std::vector<Index> picked = pick(mesh, triangles, sphere, reference, {count, 0});
@@ -117,7 +115,7 @@ std::vector<BoundPivot> choose_pivots(const Mesh& mesh, const std::vector<Index>
     return pivots;
   }
   const Carriers found = least_ill_posed(mesh, triangles, sphere, reference, count);
-  return found.magnitudes <= kIllPosed ? bound(found) : pivots;
+  return found.magnitudes <= magnitudes_max ? bound(found) : pivots;
 }
 
 std::vector<BoundPivot> choose_nearest_pivots(const Mesh& mesh, const std::vector<Index>& triangles,

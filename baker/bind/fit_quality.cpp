@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "mesh/area_samples.h"
 #include "mesh/even_directions.h"
@@ -59,10 +60,20 @@ FitQuality measure_fit(const Character& character, const Regions& regions, const
   std::vector<std::pair<double, double>> distances;
   std::vector<double> area(regions.count(), 0), far(regions.count(), 0);
   double sum = 0, all = 0, all_far = 0;
+  std::vector<std::set<std::uint32_t>> of_region(regions.count());
   for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
-    const Ball& ball = binding.spheres[binding.sphere_of_triangle[t]].rest;
+    of_region[regions.of_skin[t]].insert(binding.sphere_of_triangle[t]);
+  }
+  for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
+    const std::uint8_t region = regions.of_skin[t];
+    const bool by_bones = regions.is_by_bones(region);
     for_each_area_sample(skin, t, kWellFitted * height, [&](const Vec3& p, double own) {
-      const double distance = std::abs(signed_f(ball, p)) / height;
+      double distance = std::abs(signed_f(binding.spheres[binding.sphere_of_triangle[t]].rest, p)) / height;
+      if (by_bones) {
+        for (const std::uint32_t sphere : of_region[region]) {
+          distance = std::min(distance, std::abs(signed_f(binding.spheres[sphere].rest, p)) / height);
+        }
+      }
       distances.emplace_back(distance, own);
       sum += own * distance;
       all += own;

@@ -11,7 +11,8 @@ namespace spherechain::baker {
 enum class FitGrade : std::uint8_t { kGood, kFair, kPoor };
 const char* fit_grade_name(FitGrade grade);
 
-// How well the spheres fit the skin at rest. Lengths are fractions of the height.
+// How well the spheres fit the skin at rest. Lengths are fractions of the height. A sphere's skin is that of its
+// triangles; in parts that follow bones, where spheres stand along long triangles, the part's skin that is nearest.
 struct FitQuality {
   double distance_mean, distance_p95, distance_max;  // of the skin from its sphere's surface, by area
   double far_area;                                   // share of the skin farther than kWellFitted

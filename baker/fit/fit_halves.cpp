@@ -34,20 +34,22 @@ struct Region {
         halves[i] ? std::max(pieces[i].error - halves[i]->first.error - halves[i]->second.error, 0.01 * pieces[i].error)
                   : 0;
   }
-  double most_gain() const { return *std::max_element(gains.begin(), gains.end()); }
-  // Each triangle to the sphere whose surface is nearest to it, unless a sphere would lose all of its own.
+  // Every piece needs a triangle of its own.
+  bool is_full() const { return pieces.size() >= triangles.size(); }
+  double most_gain() const { return is_full() ? 0 : *std::max_element(gains.begin(), gains.end()); }
+  // Each sample to the sphere whose surface is nearest to it, unless a sphere would lose all of its own.
   void share_again(const PieceFitter& fitter) {
-    std::vector<std::vector<Index>> shares(pieces.size());
-    for (const Index t : triangles) {
+    std::vector<Samples> shares(pieces.size());
+    for (const std::uint32_t sample : fitter.samples_of(triangles)) {
       std::size_t nearest = 0;
       double least = std::numeric_limits<double>::max();
       for (std::size_t i = 0; i < pieces.size(); ++i) {
-        const double error = fitter.error_of(t, pieces[i].ball);
+        const double error = fitter.error_of(sample, pieces[i].ball);
         if (error >= least) continue;
         least = error;
         nearest = i;
       }
-      shares[nearest].push_back(t);
+      shares[nearest].push_back(sample);
     }
     if (std::any_of(shares.begin(), shares.end(), [](const auto& share) { return share.empty(); })) return;
     for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -57,12 +59,45 @@ struct Region {
   // Whether any piece could be halved.
   bool halve_best(const PieceFitter& fitter) {
     const auto i = static_cast<std::size_t>(std::max_element(gains.begin(), gains.end()) - gains.begin());
-    if (!halves[i]) return false;
+    if (!halves[i] || is_full()) return false;
     std::pair<Piece, Piece> two = std::move(*halves[i]);
     pieces[i] = std::move(two.first);
     look_ahead(fitter, i);
     add(fitter, std::move(two.second));
     return true;
+  }
+  // The piece of each triangle: the one whose sphere its farthest part is nearest to. A piece without a triangle gets
+  // the nearest of those that another can spare.
+  std::vector<std::size_t> owners(const PieceFitter& fitter) const {
+    std::vector<std::vector<double>> errors;  // of each triangle, by piece
+    std::vector<std::size_t> owned(pieces.size());
+    std::vector<std::size_t> out;
+    for (const Index t : triangles) {
+      std::vector<double>& of_triangle = errors.emplace_back(pieces.size());
+      const Samples samples = fitter.samples_of({t});
+      for (std::size_t i = 0; i < pieces.size(); ++i) {
+        for (const std::uint32_t sample : samples)
+          of_triangle[i] = std::max(of_triangle[i], fitter.error_of(sample, pieces[i].ball));
+      }
+      out.push_back(
+          static_cast<std::size_t>(std::min_element(of_triangle.begin(), of_triangle.end()) - of_triangle.begin()));
+      ++owned[out.back()];
+    }
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      if (owned[i] > 0) continue;
+      std::size_t best = 0;
+      double least = std::numeric_limits<double>::max();
+      for (std::size_t k = 0; k < triangles.size(); ++k) {
+        const double worse = errors[k][i] / errors[k][out[k]];
+        if (owned[out[k]] < 2 || worse >= least) continue;
+        least = worse;
+        best = k;
+      }
+      --owned[out[best]];
+      out[best] = i;
+      owned[i] = 1;
+    }
+    return out;
   }
 };
 
@@ -206,7 +241,7 @@ Spheres fit_halves(const Character& character, const Regions& regions, const Fit
       continue;
     }
     for (const Index t : all[id].triangles) area += triangle_area(skin, t);
-    all[id].add(fitter, fitter.fit(all[id].triangles));
+    all[id].add(fitter, fitter.fit(fitter.samples_of(all[id].triangles)));
     halved.push_back(&all[id]);
   }
   std::vector<std::vector<Region*>> groups = mirrored(skin, regions, halved);
@@ -241,10 +276,11 @@ Spheres fit_halves(const Character& character, const Regions& regions, const Fit
     std::vector<Piece>& pieces = all[id].pieces;
     std::stable_sort(pieces.begin(), pieces.end(),
                      [&](const Piece& a, const Piece& b) { return a.ball.center.dot(axis) < b.ball.center.dot(axis); });
-    for (const Piece& piece : pieces) {
-      for (const Index t : piece.triangles) out.of_skin[t] = static_cast<std::uint32_t>(out.spheres.size());
-      add({piece.ball, id, -1, Side::kNone, axis, false});
+    const std::vector<std::size_t> owners = all[id].owners(fitter);
+    for (std::size_t k = 0; k < owners.size(); ++k) {
+      out.of_skin[all[id].triangles[k]] = static_cast<std::uint32_t>(out.spheres.size() + owners[k]);
     }
+    for (const Piece& piece : pieces) add({piece.ball, id, -1, Side::kNone, axis, false});
   }
   out.links = find_links(character, regions, out);
   if (kept.spheres != nullptr) {

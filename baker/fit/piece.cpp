@@ -26,7 +26,9 @@ PieceFitter::PieceFitter(const Mesh& skin, double far)
   first_.reserve(skin.triangles.size() + 1);
   for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
     first_.push_back(samples_.size());
-    for_each_area_sample(skin, t, far, [&](const Vec3& p, double area) { samples_.push_back({p, area}); });
+    for_each_area_sample(skin, t, far, [&](const Vec3& p, double area) {
+      samples_.push_back({p, area, static_cast<Index>(t)});
+    });
   }
   first_.push_back(samples_.size());
 }
@@ -46,47 +48,42 @@ double PieceFitter::protrusion(const Ball& ball, double bound) const {
   return sum;
 }
 
-double PieceFitter::error_of(Index triangle, const Ball& ball) const {
-  double sum = 0;
-  for (const Sample& sample : of_triangle(triangle)) {
-    sum += sample.area * penalty(std::abs((sample.point - ball.center).norm() - ball.radius));
+Samples PieceFitter::samples_of(const std::vector<Index>& triangles) const {
+  Samples out;
+  for (const Index t : triangles) {
+    for (std::size_t i = first_[t]; i < first_[t + 1]; ++i) out.push_back(static_cast<std::uint32_t>(i));
   }
-  return sum;
+  return out;
 }
 
-Piece PieceFitter::measured(std::vector<Index> triangles, const Ball& ball) const {
-  Piece piece{std::move(triangles), ball, 0, 0};
-  for (const Index t : piece.triangles) {
-    for (const Sample& sample : of_triangle(t)) {
-      const double off = std::abs((sample.point - ball.center).norm() - ball.radius);
-      piece.error += sample.area * penalty(off);
-      if (off > far_) piece.far_area += sample.area;
-    }
+double PieceFitter::error_of(std::uint32_t sample, const Ball& ball) const {
+  const Sample& at = samples_[sample];
+  return at.area * penalty(std::abs((at.point - ball.center).norm() - ball.radius));
+}
+
+Piece PieceFitter::measured(Samples samples, const Ball& ball) const {
+  Piece piece{std::move(samples), ball, 0, 0};
+  for (const std::uint32_t i : piece.samples) {
+    const double off = std::abs((samples_[i].point - ball.center).norm() - ball.radius);
+    piece.error += samples_[i].area * penalty(off);
+    if (off > far_) piece.far_area += samples_[i].area;
   }
   piece.error += kProtrusionCounts * protrusion(ball, std::numeric_limits<double>::max());
   return piece;
 }
 
 // Evenly along the area.
-std::vector<PieceFitter::Sample> PieceFitter::some_samples(const std::vector<Index>& triangles) const {
-  std::size_t count = 0;
+std::vector<PieceFitter::Sample> PieceFitter::some_samples(const Samples& samples) const {
   double area = 0;
-  for (const Index t : triangles) {
-    for (const Sample& sample : of_triangle(t)) {
-      area += sample.area;
-      ++count;
-    }
-  }
+  for (const std::uint32_t i : samples) area += samples_[i].area;
   std::vector<Sample> out;
-  const double each = count <= kSampled ? 0 : area / static_cast<double>(kSampled);
+  const double each = samples.size() <= kSampled ? 0 : area / static_cast<double>(kSampled);
   double waiting = 0;
-  for (const Index t : triangles) {
-    for (const Sample& sample : of_triangle(t)) {
-      waiting += sample.area;
-      if (waiting < each) continue;
-      out.push_back({sample.point, waiting});
-      waiting = 0;
-    }
+  for (const std::uint32_t i : samples) {
+    waiting += samples_[i].area;
+    if (waiting < each) continue;
+    out.push_back({samples_[i].point, waiting, samples_[i].triangle});
+    waiting = 0;
   }
   if (waiting > 0 && !out.empty()) out.back().area += waiting;
   return out;
@@ -138,47 +135,43 @@ Ball PieceFitter::search(Ball ball, const std::vector<Sample>& samples, const Ve
   return ball;
 }
 
-Piece PieceFitter::fit_from(const Ball& ball, std::vector<Index> triangles) const {
+Piece PieceFitter::fit_from(const Ball& ball, Samples samples) const {
   Vec3 normal = Vec3::Zero();
-  for (const Index t : triangles) normal += triangle_cross(mesh_, t);
+  for (const std::uint32_t i : samples) {
+    normal += samples_[i].area * triangle_cross(mesh_, samples_[i].triangle).normalized();
+  }
   if (normal.norm() > 0) normal.normalize();
-  const Ball found = search(ball, some_samples(triangles), normal);
-  return measured(std::move(triangles), found);
+  const Ball found = search(ball, some_samples(samples), normal);
+  return measured(std::move(samples), found);
 }
 
 // From the middle of the skin, with its mean distance.
-Piece PieceFitter::fit(std::vector<Index> triangles) const {
+Piece PieceFitter::fit(Samples samples) const {
   Vec3 center = Vec3::Zero();
   double area = 0;
-  for (const Index t : triangles) {
-    for (const Sample& sample : of_triangle(t)) {
-      center += sample.area * sample.point;
-      area += sample.area;
-    }
+  for (const std::uint32_t i : samples) {
+    center += samples_[i].area * samples_[i].point;
+    area += samples_[i].area;
   }
   center /= area;
   double radius = 0;
-  for (const Index t : triangles) {
-    for (const Sample& sample : of_triangle(t)) radius += sample.area / area * (sample.point - center).norm();
-  }
-  return fit_from({center, std::max(radius, kSmallest * far_)}, std::move(triangles));
+  for (const std::uint32_t i : samples) radius += samples_[i].area / area * (samples_[i].point - center).norm();
+  return fit_from({center, std::max(radius, kSmallest * far_)}, std::move(samples));
 }
 
 std::optional<std::pair<Piece, Piece>> PieceFitter::halve(const Piece& piece) const {
   constexpr double kAsLong = 0.6;  // of the longest: variance along another axis that is worth a try
   Vec3 centroid = Vec3::Zero();
   double area = 0;
-  for (const Index t : piece.triangles) {
-    centroid += triangle_area(mesh_, t) * triangle_centroid(mesh_, t);
-    area += triangle_area(mesh_, t);
+  for (const std::uint32_t i : piece.samples) {
+    centroid += samples_[i].area * samples_[i].point;
+    area += samples_[i].area;
   }
   centroid /= area;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-  for (const Index t : piece.triangles) {
-    for (const Sample& sample : of_triangle(t)) {
-      const Vec3 d = sample.point - centroid;
-      covariance += sample.area * d * d.transpose();
-    }
+  for (const std::uint32_t i : piece.samples) {
+    const Vec3 d = samples_[i].point - centroid;
+    covariance += samples_[i].area * d * d.transpose();
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(covariance);
   std::optional<std::pair<Piece, Piece>> best;
@@ -186,20 +179,20 @@ std::optional<std::pair<Piece, Piece>> PieceFitter::halve(const Piece& piece) co
     if (eigen.eigenvalues()[column] < kAsLong * eigen.eigenvalues()[2]) break;
     const Vec3 axis = eigen.eigenvectors().col(column);
     double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
-    for (const Index t : piece.triangles) {
-      const double along = triangle_centroid(mesh_, t).dot(axis);
+    for (const std::uint32_t i : piece.samples) {
+      const double along = samples_[i].point.dot(axis);
       low = std::min(low, along);
       high = std::max(high, along);
     }
-    std::pair<std::vector<Index>, std::vector<Index>> halves;
-    for (const Index t : piece.triangles) {
-      (triangle_centroid(mesh_, t).dot(axis) > 0.5 * (low + high) ? halves.first : halves.second).push_back(t);
+    std::pair<Samples, Samples> halves;
+    for (const std::uint32_t i : piece.samples) {
+      (samples_[i].point.dot(axis) > 0.5 * (low + high) ? halves.first : halves.second).push_back(i);
     }
     if (halves.first.empty() || halves.second.empty()) continue;
     std::pair<Piece, Piece> cut{fit(std::move(halves.first)), fit(std::move(halves.second))};
     halves = {};
-    for (const Index t : piece.triangles) {
-      (error_of(t, cut.first.ball) < error_of(t, cut.second.ball) ? halves.first : halves.second).push_back(t);
+    for (const std::uint32_t i : piece.samples) {
+      (error_of(i, cut.first.ball) < error_of(i, cut.second.ball) ? halves.first : halves.second).push_back(i);
     }
     if (!halves.first.empty() && !halves.second.empty()) {
       std::pair<Piece, Piece> shared{fit_from(cut.first.ball, std::move(halves.first)),

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -10,9 +11,12 @@
 
 namespace spherechain::baker {
 
-// Triangles with one sphere.
+// Points that stand for parts of the skin's area, by their numbers in a PieceFitter.
+using Samples = std::vector<std::uint32_t>;
+
+// Skin with one sphere.
 struct Piece {
-  std::vector<Index> triangles;
+  Samples samples;
   Ball ball;
   // The skin's area times its distance from the sphere, and the same of the sphere where it is outside the skin. What
   // is farther than a limit counts more.
@@ -20,38 +24,38 @@ struct Piece {
   double far_area;  // of the skin farther than the limit
 };
 
-// Fits spheres to pieces of a skin. The skin counts by points that stand for its area, not by triangles: of large ones
-// a sphere is near a part only.
+// Fits spheres to pieces of a skin. The skin counts by points that stand for its area, not by triangles: parts of a
+// large one may have spheres of their own.
 class PieceFitter {
  public:
   // Farther than `far` from its sphere the skin is badly fitted.
   PieceFitter(const Mesh& skin, double far);
 
-  // The sphere that fits some triangles best.
-  Piece fit(std::vector<Index> triangles) const;
+  // The samples of some triangles.
+  Samples samples_of(const std::vector<Index>& triangles) const;
+  Index triangle_of(std::uint32_t sample) const { return samples_[sample].triangle; }
+  double area_of(std::uint32_t sample) const { return samples_[sample].area; }
+
+  // The sphere that fits some skin best.
+  Piece fit(Samples samples) const;
   // The same, searched from a sphere that fits nearly.
-  Piece fit_from(const Ball& ball, std::vector<Index> triangles) const;
+  Piece fit_from(const Ball& ball, Samples samples) const;
   // The best of some ways to cut a piece in two; none where there is nothing to cut.
   std::optional<std::pair<Piece, Piece>> halve(const Piece& piece) const;
-  // What a triangle adds to the error of a piece with this sphere.
-  double error_of(Index triangle, const Ball& ball) const;
+  // What a sample adds to the error of a piece with this sphere.
+  double error_of(std::uint32_t sample, const Ball& ball) const;
 
  private:
   struct Sample {
     Vec3 point;
     double area;
+    Index triangle;
   };
-  struct Samples {
-    const Sample *first, *last;
-    const Sample* begin() const { return first; }
-    const Sample* end() const { return last; }
-  };
-  Samples of_triangle(Index t) const { return {samples_.data() + first_[t], samples_.data() + first_[t + 1]}; }
-  std::vector<Sample> some_samples(const std::vector<Index>& triangles) const;
+  std::vector<Sample> some_samples(const Samples& samples) const;
   double penalty(double distance) const;
   double protrusion(const Ball& ball, double bound) const;  // or more than `bound`
   Ball search(Ball ball, const std::vector<Sample>& samples, const Vec3& normal) const;
-  Piece measured(std::vector<Index> triangles, const Ball& ball) const;
+  Piece measured(Samples samples, const Ball& ball) const;
 
   const Mesh& mesh_;
   double far_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -275,6 +276,86 @@ TEST_CASE("limbs that are kept have the march's spheres, and the rest of the bod
   }
 }
 
+// A bar of twelve triangles, as long as it is, moved by one bone.
+void add_bar(SourceMesh& mesh, const Vec3& low, const Vec3& high, Index bone) {
+  const auto first = static_cast<Index>(mesh.positions.size());
+  for (int corner = 0; corner < 8; ++corner) {
+    mesh.positions.emplace_back(corner & 1 ? high.x() : low.x(), corner & 2 ? high.y() : low.y(),
+                                corner & 4 ? high.z() : low.z());
+    VertexWeights weights;
+    weights.joint[0] = bone;
+    weights.weight[0] = 1;
+    mesh.rig.weights.push_back(weights);
+  }
+  for (const Triangle& t : {Triangle{0, 2, 1}, Triangle{1, 2, 3}, Triangle{4, 5, 6}, Triangle{5, 7, 6},
+                            Triangle{0, 1, 4}, Triangle{1, 5, 4}, Triangle{2, 6, 3}, Triangle{3, 6, 7},
+                            Triangle{0, 4, 2}, Triangle{2, 4, 6}, Triangle{1, 3, 5}, Triangle{3, 7, 5}}) {
+    mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+}
+
+// Two bars side by side, a bone each: fingers of few, long triangles.
+SourceMesh two_bars() {
+  SourceMesh mesh;
+  add_bar(mesh, {0, 0, 0}, {0.1, 1, 0.1}, 0);
+  add_bar(mesh, {0.12, 0, 0}, {0.22, 1, 0.1}, 1);
+  for (const char* name : {"a", "b"}) {
+    Node node;
+    node.name = name;
+    mesh.rig.nodes.push_back(node);
+    mesh.rig.bones.push_back({static_cast<Index>(mesh.rig.bones.size()), Affine::Identity()});
+  }
+  return mesh;
+}
+
+TEST_CASE("spheres stand along long triangles, and each has a triangle of its own") {
+  const FittedCharacter fit = fitted(two_bars());
+  check_fit(fit, kHalvedSpheresMax);
+  CHECK(fit.quality.far_area < kFarAreaGood);
+  std::vector<std::size_t> owned(fit.spheres.spheres.size());
+  for (const std::uint32_t sphere : fit.spheres.of_skin) ++owned[sphere];
+  CHECK(*std::min_element(owned.begin(), owned.end()) > 0);
+  for (const std::vector<std::uint32_t>& spheres : fit.spheres.of_region) {
+    double low = 1, high = 0;
+    for (const std::uint32_t sphere : spheres) {
+      low = std::min(low, fit.spheres.spheres[sphere].ball.center.y());
+      high = std::max(high, fit.spheres.spheres[sphere].ball.center.y());
+    }
+    CHECK(low < 0.2);
+    CHECK(high > 0.8);
+  }
+}
+
+TEST_CASE("a sphere follows skin that moves alike: it neither grows nor leaves its skin where other bones tear away") {
+  const FittedCharacter fit = fitted(two_bars());
+  const Mesh& rest = fit.character.skin;
+  for (std::size_t i = 0; i < fit.spheres.spheres.size(); ++i) {
+    const BoundSphere& sphere = fit.binding.spheres[i];
+    CAPTURE(i);
+    CHECK((sphere.rest.center - fit.spheres.spheres[i].ball.center).norm() < 1e-6);
+    for (const BoundPivot& pivot : sphere.pivots) {
+      CHECK(fit.segmentation.regions.of_skin[pivot.triangle] == fit.spheres.spheres[i].region);
+    }
+  }
+  // The second bar turns about its end and goes away; the rule of moments refits the spheres.
+  Affine away = Affine::Identity();
+  away.translate(Vec3(3, 0, 0)).rotate(Eigen::AngleAxisd(2, Vec3(0.6, 0, 0.8)));
+  const std::vector<Affine> bones{Affine::Identity(), away};
+  Mesh posed = rest;
+  for (Vec3& p : posed.positions) p = bones[p.x() > 0.11 ? 1 : 0] * p;
+  for (const BoundSphere& sphere : fit.binding.spheres) {
+    Vec3 center = Vec3::Zero();
+    for (const BoundPivot& pivot : sphere.pivots) center += pivot.weight * triangle_centroid(posed, pivot.triangle);
+    double squares = 0;
+    for (const BoundPivot& pivot : sphere.pivots) {
+      squares += (triangle_centroid(posed, pivot.triangle) - center).squaredNorm();
+    }
+    const double spread = std::sqrt(squares / static_cast<double>(sphere.pivots.size()));
+    CHECK(spread == doctest::Approx(sphere.spread));
+    CHECK((center - bones[sphere.rest.center.x() > 0.11 ? 1 : 0] * sphere.rest.center).norm() < 1e-6);
+  }
+}
+
 TEST_CASE("a facing direction in the settings is forward where parts follow the bones, too") {
   BakeSettings settings;
   settings.segment.facing = Vec3(0, 0.5, -2);
@@ -301,10 +382,11 @@ TEST_CASE("a sphere of a half tube is the one that a search over a grid finds") 
     }
   }
   const PieceFitter fitter(tube, 0.1);
-  const Piece piece = fitter.fit(half);
+  const Samples skin = fitter.samples_of(half);
+  const Piece piece = fitter.fit(skin);
   const auto skin_error = [&](const Ball& ball) {
     double sum = 0;
-    for (const Index t : half) sum += fitter.error_of(t, ball);
+    for (const std::uint32_t sample : skin) sum += fitter.error_of(sample, ball);
     return sum;
   };
   Ball best{Vec3::Zero(), 0};
