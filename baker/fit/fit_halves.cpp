@@ -88,7 +88,7 @@ struct Region {
       std::size_t best = 0;
       double least = std::numeric_limits<double>::max();
       for (std::size_t k = 0; k < triangles.size(); ++k) {
-        const double worse = errors[k][i] / errors[k][out[k]];
+        const double worse = errors[k][i] / std::max(errors[k][out[k]], std::numeric_limits<double>::min());
         if (owned[out[k]] < 2 || worse >= least) continue;
         least = worse;
         best = k;
