@@ -36,6 +36,11 @@ std::vector<Vec3> eye_directions(const BodyFrame& axes) {
   return out;
 }
 
+// The least of what is not finite.
+int pixel(float at, int least, int most) {
+  return !(at > static_cast<float>(least)) ? least : at < static_cast<float>(most) ? static_cast<int>(at) : most;
+}
+
 }  // namespace
 
 void Picture::pose(const std::vector<Vec3>& positions) {
@@ -58,28 +63,32 @@ void Picture::draw(const View& view, const std::vector<std::uint8_t>* only) {
                         back = view.back.cast<float>();
   const float x0 = static_cast<float>(view.width * 0.5 - view.scale * view.middle.dot(view.right)),
               y0 = static_cast<float>(view.height * 0.5 + view.scale * view.middle.dot(view.up));
+  const float width = static_cast<float>(view.width), height = static_cast<float>(view.height);
   projected_.resize(positions_.size());
+  outside_.resize(positions_.size());
   for (std::size_t v = 0; v < positions_.size(); ++v) {
     const Eigen::Vector3f& p = floats_[v];
-    projected_[v] = {x0 + p.dot(right), y0 - p.dot(up), p.dot(back)};
+    const float x = x0 + p.dot(right), y = y0 - p.dot(up);
+    projected_[v] = {x, y, p.dot(back)};
+    outside_[v] =
+        static_cast<std::uint8_t>((x < 0 ? 1 : 0) | (y < 0 ? 2 : 0) | (x < width ? 0 : 4) | (y < height ? 0 : 8));
   }
   const std::size_t size = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
   ids_.assign(size, kNoTriangle);
   depths_.assign(size, -HUGE_VALF);
   for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
     if (only != nullptr && (*only)[t] == 0) continue;
-    const auto &a = projected_[triangles_[t][0]], &b = projected_[triangles_[t][1]], &c = projected_[triangles_[t][2]];
+    const Triangle& corners = triangles_[t];
+    if ((outside_[corners[0]] & outside_[corners[1]] & outside_[corners[2]]) != 0) continue;
+    const auto &a = projected_[corners[0]], &b = projected_[corners[1]], &c = projected_[corners[2]];
     const float area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
     if (area == 0) continue;
     const auto [low_x, high_x] = std::minmax({a[0], b[0], c[0]});
     const auto [low_y, high_y] = std::minmax({a[1], b[1], c[1]});
-    if (high_x < 0 || high_y < 0 || !(low_x < static_cast<float>(view.width)) ||
-        !(low_y < static_cast<float>(view.height)))
-      continue;
-    const int from_x = std::max(0, static_cast<int>(std::ceil(low_x - 0.5f))),
-              to_x = std::min(view.width - 1, static_cast<int>(std::floor(high_x - 0.5f))),
-              from_y = std::max(0, static_cast<int>(std::ceil(low_y - 0.5f))),
-              to_y = std::min(view.height - 1, static_cast<int>(std::floor(high_y - 0.5f)));
+    const int from_x = pixel(std::ceil(low_x - 0.5f), 0, view.width),
+              to_x = pixel(std::floor(high_x - 0.5f), -1, view.width - 1),
+              from_y = pixel(std::ceil(low_y - 0.5f), 0, view.height),
+              to_y = pixel(std::floor(high_y - 0.5f), -1, view.height - 1);
     for (int y = from_y; y <= to_y; ++y) {
       for (int x = from_x; x <= to_x; ++x) {
         const float px = static_cast<float>(x) + 0.5f, py = static_cast<float>(y) + 0.5f;

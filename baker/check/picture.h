@@ -52,7 +52,8 @@ class Picture {
   std::vector<Vec3> positions_;
   std::vector<Eigen::Vector3f> floats_;  // the same
   std::vector<std::array<float, 3>> projected_;
-  std::vector<std::uint32_t> ids_;  // a pixel's triangle, kNoTriangle none
+  std::vector<std::uint8_t> outside_;  // of the picture: a bit for each side
+  std::vector<std::uint32_t> ids_;     // a pixel's triangle, kNoTriangle none
   std::vector<float> depths_;
 };
 
