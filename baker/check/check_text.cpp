@@ -67,7 +67,9 @@ std::string check_text(const Verdict& verdict) {
   std::array<std::size_t, 4> widths{};
   std::string errors;
   for (const JudgedClip& clip : verdict.clips) {
-    if (!clip.clip.error.empty()) errors += clip.clip.error + "\n";
+    if (!clip.clip.error.empty()) {
+      errors += clip.clip.error + (clip.clip.clip.empty() ? "" : "  (" + clip_text(clip) + ")") + "\n";
+    }
     for (const JudgedEvent& judged : clip.events) {
       const Event& event = judged.event;
       if (event.kind == SC_CLASS_TOUCH) continue;
@@ -84,6 +86,7 @@ std::string check_text(const Verdict& verdict) {
     for (std::size_t k = 0; k < 3; ++k) out += fmt::format("{:{}}  ", row[k], widths[k]);
     out += row[3] + "\n";
   }
+  for (const std::string& note : verdict.notes) errors += "note: " + note + "\n";
   return out + errors + (out.empty() && errors.empty() ? "" : "\n") + summary_text(verdict.summary);
 }
 

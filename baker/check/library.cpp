@@ -20,13 +20,15 @@ using Motions = std::vector<LibraryCharacter::Motion>;
 
 std::string extension_of(const fs::path& file) {
   std::string out = file.extension().string();
+  if (out == ".xml" && file.stem().has_extension()) out = file.stem().extension().string() + out;  // Ogre's .mesh.xml
   for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return out;
 }
 
 bool may_be_character(const fs::path& file) {
-  static const std::set<std::string> kExtensions{".glb",  ".gltf", ".vrm",     ".fbx", ".dae", ".zae", ".obj", ".x",
-                                                 ".ms3d", ".b3d",  ".md5mesh", ".smd", ".iqm", ".mdl", ".ply", ".stl"};
+  static const std::set<std::string> kExtensions{".glb", ".gltf", ".vrm", ".fbx", ".dae",     ".zae",  ".obj",
+                                                 ".x",   ".ms3d", ".b3d", ".3ds", ".md5mesh", ".smd",  ".iqm",
+                                                 ".mdl", ".md2",  ".md3", ".ply", ".stl",     ".mesh", ".mesh.xml"};
   return kExtensions.count(extension_of(file)) > 0;
 }
 
@@ -168,7 +170,9 @@ std::vector<LibraryCharacter> read_library(const std::vector<std::string>& paths
       return !inside.empty() && *inside.begin() != "..";
     });
   }
-  if (out.empty()) throw Error(ExitCode::kFile, paths.front() + ": has no characters (glTF, FBX, Collada ...)");
+  if (out.empty())
+    throw Error(ExitCode::kFile,
+                paths.front() + ": has no characters (docs/cli.md lists the endings that are searched for)");
   if (!motion.empty()) {
     const Motions shared = motions_at(motion);
     for (LibraryCharacter& character : out) append(character.motions, shared);

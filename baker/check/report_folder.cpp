@@ -49,7 +49,7 @@ ordered_json page_event(const JudgedEvent& judged) {
                    {"from", event.from},
                    {"to", event.to},
                    {"deepest", event.deepest},
-                   {"mm", std::round(10 * event.depth_mm) / 10},
+                   {"mm", std::round(1000 * event.depth_mm) / 1000},
                    {"state", state_name(judged.state)},
                    {"fails", judged.fails}};
   if (event.volume_ml >= 0) out["ml"] = std::round(10 * event.volume_ml) / 10;

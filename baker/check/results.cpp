@@ -73,7 +73,12 @@ std::string to_bytes(const ClipResult& result) {
 }
 
 std::string to_bytes(const CharacterResult& result) {
-  return json_text({{"clips", result.clips}, {"grade", result.grade}, {"fit", result.fit}}, -1);
+  return json_text({{"clips", result.clips},
+                    {"grade", result.grade},
+                    {"fit", result.fit},
+                    {"unit_note", result.unit_note},
+                    {"parts", result.parts}},
+                   -1);
 }
 
 std::optional<ClipResult> read_clip_result(const std::string& bytes) {
@@ -93,6 +98,8 @@ std::optional<CharacterResult> read_character_result(const std::string& bytes) {
     json.at("clips").get_to(out.clips);
     json.at("grade").get_to(out.grade);
     json.at("fit").get_to(out.fit);
+    json.at("unit_note").get_to(out.unit_note);
+    json.at("parts").get_to(out.parts);
     return out;
   });
 }

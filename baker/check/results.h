@@ -49,6 +49,8 @@ struct CharacterResult {
   std::vector<std::string> clips;  // its own; unique
   std::string grade;               // of the spheres' fit
   std::string fit;                 // the same as a sentence: fit_line's
+  std::string unit_note;
+  std::vector<std::string> parts;  // names of its body parts
 };
 
 // As the bytes of a file, and back; no result where the bytes are not whole.

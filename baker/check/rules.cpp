@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "mesh/error.h"
@@ -99,6 +100,15 @@ std::string Rules::excuse(const Event& event) const {
   if (severity(event.kind) == Severity::kIgnore)
     return fmt::format("{} is ignored", sc_penetration_class_name(event.kind));
   return {};
+}
+
+std::vector<std::string> Rules::named_parts() const {
+  std::vector<std::string> out = left_out;
+  for (const Allowed& one : allowed) {
+    std::copy_if(one.parts.begin(), one.parts.end(), std::back_inserter(out),
+                 [](const auto& part) { return part != "*"; });
+  }
+  return out;
 }
 
 Severity Rules::severity(PenetrationClass kind) const {

@@ -28,6 +28,8 @@ struct Rules {
   bool leaves_out(const Event& event) const;
   // What excuses a fault, in words; empty where nothing does.
   std::string excuse(const Event& event) const;
+  // Of body parts, by all rules.
+  std::vector<std::string> named_parts() const;
   Severity severity(PenetrationClass kind) const;
 };
 

@@ -93,6 +93,8 @@ void bake_into(const Store& store, const std::string& key, const LibraryCharacte
   }
   result.grade = fit_grade_name(baked.quality.grade());
   result.fit = fit_line(baked);
+  result.unit_note = unit_note(baked);
+  for (const BodyPart& part : baked.body_parts.parts) result.parts.push_back(part.name);
   store.write(key, kAssetFile, {reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size()});
   store.write(key, kResultFile, to_bytes(result));
 }

@@ -123,6 +123,7 @@ Verdict judge(const std::vector<CheckedClip>& clips, const std::vector<Character
       if (is_new) {
         const std::string bytes_of = store.read(clip.character_key, kResultFile).value_or("");
         character->second = read_character_result(bytes_of).value_or(CharacterResult());
+        if (!character->second.unit_note.empty()) out.notes.push_back(of.name + ": " + character->second.unit_note);
       }
       judged.grade = character->second.grade;
       judged.fit = character->second.fit;
@@ -132,6 +133,16 @@ Verdict judge(const std::vector<CheckedClip>& clips, const std::vector<Character
     out.fails = out.fails || is_broken ||
                 std::any_of(judged.events.begin(), judged.events.end(), [](const auto& e) { return e.fails; });
     out.clips.push_back(std::move(judged));
+  }
+  std::set<std::string> parts, unknown;
+  for (const auto& [key, character] : read) parts.insert(character.parts.begin(), character.parts.end());
+  for (const CharacterRules& of : characters) {
+    for (const std::string& part : of.rules.named_parts()) {
+      if (!parts.empty() && parts.count(part) == 0) unknown.insert(part);
+    }
+  }
+  for (const std::string& part : unknown) {
+    out.notes.push_back("a rule names '" + part + "', which no character has (inspect prints their body parts)");
   }
   return out;
 }
@@ -148,7 +159,7 @@ Baseline accept(const Verdict& verdict, const Baseline& before) {
   for (const JudgedClip& clip : verdict.clips) {
     for (const JudgedEvent& judged : clip.events) {
       const Event& event = judged.event;
-      if (judged.state == EventState::kResolved || !is_fault(event.kind)) continue;
+      if (!judged.is_open()) continue;
       out.events.push_back({clip.character, clip.clip.clip, event.parts, event.kind, event.from / clip.fps,
                             event.to / clip.fps, event.depth_mm, EventState::kAccepted});
     }

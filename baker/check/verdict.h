@@ -48,7 +48,8 @@ struct Summary {
 struct Verdict {
   std::vector<JudgedClip> clips;
   Summary summary;
-  bool fails = false;  // an event does, or a file cannot be checked
+  std::vector<std::string> notes;  // what may mislead: units, rules for parts that no character has
+  bool fails = false;              // an event does, or a file cannot be checked
 };
 
 enum class FailOn { kPenetration, kNew, kNone };
@@ -63,7 +64,8 @@ struct CharacterRules {
 Verdict judge(const std::vector<CheckedClip>& clips, const std::vector<CharacterRules>& characters, const Store& store,
               const Baseline& baseline, bool folds, FailOn fail_on);
 
-// `before`, with all faults of these clips accepted and what is resolved left out. Other clips' stay.
+// `before`, with all faults of these clips accepted that no rule excuses, and what is resolved left out. Other clips'
+// stay.
 Baseline accept(const Verdict& verdict, const Baseline& before);
 
 }  // namespace spherechain::baker

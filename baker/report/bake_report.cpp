@@ -318,7 +318,14 @@ bool is_tall(const Bake& bake) {
   return high - low > 0.999 * bake.regions.frame.height;
 }
 
-constexpr double kSmallest = 0.02, kLargest = 50;  // metres: what is outside is seldom a character
+std::string unit_note(const Bake& bake) {
+  constexpr double kSmallest = 0.02, kLargest = 50;  // metres: what is outside is seldom a character
+  const double metres = bake.regions.frame.height * bake.character.metres_per_unit;
+  if (metres >= kSmallest && metres <= kLargest) return {};
+  return fmt::format(
+      "{:.4g} m {}: its file names no unit, or a wrong one: believe depths in % of the height, not in mm", metres,
+      is_tall(bake) ? "tall" : "long");
+}
 
 std::string bake_report_text(const Bake& bake) {
   const Mesh& mesh = bake.character.body;
@@ -327,9 +334,7 @@ std::string bake_report_text(const Bake& bake) {
       fmt::format("{}: {} triangles ({} body), {} components, {:.3f} m {}; {}\n", bake.character.file,
                   bake.character.source_triangles.size(), mesh.triangles.size(), bake.character.report.components,
                   metres, is_tall(bake) ? "tall" : "long", bake.regions.facing);
-  if (metres < kSmallest || metres > kLargest) {
-    out += "its file names no unit, or a wrong one: believe depths in % of the height, not those in mm\n";
-  }
+  if (const std::string note = unit_note(bake); !note.empty()) out += note + "\n";
   if (const std::size_t dropped = bake.character.report.attachments_dropped; dropped > 0) {
     out += fmt::format("left out: {} on joints, such as weapons and hats (--attachments keeps them)\n",
                        dropped == 1 ? "1 rigid mesh" : fmt::format("{} rigid meshes", dropped));

@@ -126,6 +126,8 @@ TEST_CASE("check fails by its rules and its baseline alone") {
   library.folder.write("rules.json", R"({"leave_out": ["ball"]})");
   CHECK(library.check(json_file + " --config " + library.path("rules.json")).code == 0);
   CHECK(events(library.read("all.json"), "dip").empty());
+  library.folder.write("rules.json", R"({"allow": [{"parts": ["*", "bal"], "depth_mm": 500}]})");
+  CHECK(library.check(" --config " + library.path("rules.json")).out.find("a rule names 'bal'") != std::string::npos);
   tool::check_error(library.check("--config " + library.folder.write("rules.json", "{\"alow\": []}").string()), 3,
                     {"'alow' is unknown"});
 

@@ -73,7 +73,9 @@ export function fillEvents(panel, { rows, row, fit, model, store, flyToContact }
   panel.append(spheresSection(store, fit), summary, list, note);
 
   function draw() {
-    summary.textContent = events.length === 0 ? 'No fault in this clip.' : `${events.length} ${events.length === 1 ? 'fault' : 'faults'}`;
+    const excused = events.filter(({ rule }) => rule).length;
+    const faults = events.filter((event) => isFault(event) && !event.rule && event.state !== 'resolved').length;
+    summary.textContent = (faults === 0 ? 'No fault in this clip' : `${faults} ${faults === 1 ? 'fault' : 'faults'}`) + (excused > 0 ? `, ${excused} more excused by rules` : '');
     list.replaceChildren(...events.map(item));
     list.querySelector('.chosen')?.scrollIntoView({ block: 'nearest' });
   }
