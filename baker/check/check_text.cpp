@@ -36,7 +36,7 @@ std::string summary_text(const Summary& s) {
   out += fmt::format("; {} new", s.fresh);
   if (s.worse > 0) out += fmt::format(" ({} worse than before)", s.worse);
   if (s.accepted > 0) out += fmt::format(", {} accepted", s.accepted);
-  if (s.resolved > 0) out += fmt::format(", {} gone", s.resolved);
+  if (s.resolved > 0) out += fmt::format(", {} resolved", s.resolved);
   if (s.errors > 0) out += "; " + counted(s.errors, "row", "rows") + " could not be checked";
   std::string besides;
   const auto beside = [&](PenetrationClass kind, const char* one, const char* many) {

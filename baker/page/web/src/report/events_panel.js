@@ -42,7 +42,7 @@ export function fillEvents(panel, { rows, row, fit, model, store, flyToContact }
   };
 
   const state = (event) => {
-    if (event.state === 'resolved') return 'gone';
+    if (event.state === 'resolved') return 'resolved';
     if (event.rule) return event.rule;
     if (isAccepted(row, event)) return 'accepted';
     return event.before ? `worse than ${millimetres(event.before)}` : event.state;

@@ -21,7 +21,7 @@ function digest(row, index) {
     index,
     open,
     worst,
-    gone: (row.events ?? []).length - events.length,
+    resolved: (row.events ?? []).length - events.length,
     faults: open.length,
     fresh: open.filter((event) => event.state === 'new' && !isAccepted(row, event)).length,
     accepted: open.filter((event) => isAccepted(row, event)).length,
@@ -115,7 +115,7 @@ function summaryText({ characters, clips, frames, errors }, rows) {
   const sum = (key) => rows.reduce((total, row) => total + row[key], 0);
   const parts = [plural(characters, 'character'), plural(clips, 'clip'), plural(frames, 'frame'), plural(sum('faults'), 'fault'), `${sum('fresh')} new`];
   if (sum('accepted') > 0) parts.push(`${sum('accepted')} accepted`);
-  if (sum('gone') > 0) parts.push(`${sum('gone')} gone`);
+  if (sum('resolved') > 0) parts.push(`${sum('resolved')} resolved`);
   if (errors > 0) parts.push(`${errors} not checked`);
   return parts.join(' · ');
 }
