@@ -165,7 +165,8 @@ TEST_CASE("the quick form and every target agree with the full form, and a kept 
       only(balls.measure(place, [](spherechain::PenetrationJob& job) { job.quick = 1; }));
   CHECK(quick.depth == doctest::Approx(full.depth).epsilon(0.05));
   spherechain::Penetration last = full;
-  last.direction = {0, 0, 1};  // far worse than the best: it does not count
+  // Out on the other side: the direction and all that are near it are far worse than the best.
+  last.direction = {-full.direction.x, -full.direction.y, -full.direction.z};
   const spherechain::Penetration fresh = only(balls.measure(place, [&](spherechain::PenetrationJob& job) {
     job.previous = &last;
     job.previous_count = 1;
