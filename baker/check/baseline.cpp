@@ -53,9 +53,10 @@ const char* state_name(EventState state) {
 
 Baseline read_baseline(const std::string& file, bool may_be_missing) {
   std::error_code ignored;
-  if (may_be_missing && !std::filesystem::exists(file, ignored)) return {};
-  if (!std::filesystem::exists(file, ignored))
+  if (!std::filesystem::exists(file, ignored)) {
+    if (may_be_missing) return {};
     throw Error(ExitCode::kFile, file + ": no such file (--accept writes it)");
+  }
   const ordered_json json = ordered_json::parse(read_file(file), nullptr, false);
   Baseline out;
   try {

@@ -104,7 +104,7 @@ void ClipChecker::with_pose(const Deformation& deformation, const Run& run) {
   run(pose);
 }
 
-ClipChecker::Triangles ClipChecker::triangles_of(const TriangleContact& contact) const {
+ClipChecker::Triangles ClipChecker::triangles_of(const TriangleContact& contact) {
   return contact.part_a <= contact.part_b ? Triangles{contact.triangle_a, contact.triangle_b}
                                           : Triangles{contact.triangle_b, contact.triangle_a};
 }

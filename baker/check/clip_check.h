@@ -34,7 +34,7 @@ class ClipChecker {
   struct Frames;                                   // what was seen, frame by frame
   void take_sample();
   std::pair<int, double> rank(std::uint32_t part) const;
-  Triangles triangles_of(const TriangleContact& contact) const;
+  static Triangles triangles_of(const TriangleContact& contact);
   template <typename Run>
   void with_pose(const Deformation& deformation, const Run& run);
   Frames look(const ClipFrames& clip);

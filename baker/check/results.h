@@ -25,8 +25,6 @@ struct Event {
   std::optional<Vec3> eye;                 // of a fault: from the point to an eye that sees it; unit length
   std::vector<float> depths_mm;            // of a fault: in each frame of it; 0 where it is none
   int picture = 0;                         // of the clip's pictures the one that shows it; 0: none does
-
-  bool is_at(int frame) const { return from <= to ? frame >= from && frame <= to : frame >= from || frame <= to; }
 };
 
 struct ClipResult {

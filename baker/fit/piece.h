@@ -33,8 +33,6 @@ class PieceFitter {
 
   // The samples of some triangles.
   Samples samples_of(const std::vector<Index>& triangles) const;
-  Index triangle_of(std::uint32_t sample) const { return samples_[sample].triangle; }
-  double area_of(std::uint32_t sample) const { return samples_[sample].area; }
 
   // The sphere that fits some skin best.
   Piece fit(Samples samples) const;

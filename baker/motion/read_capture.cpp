@@ -100,7 +100,7 @@ CaptureBody body_of(const SourceRig& rig, const std::vector<Vec3>& rest, const B
   CaptureBody body{frame, joints_by_role(rig.nodes, role_names(roles), rest_positions(rig)), {}};
   for (const char* role : {"pelvis", "left_hip", "right_hip", "left_knee", "right_knee", "left_ankle", "right_ankle"}) {
     if (roles.kind == BodyKind::kBiped && body.joints.find(role) >= 0) continue;
-    throw Error(ExitCode::kFile, file + ": its skeleton is not that of a biped (a capture moves no other; a library's manifest gives each character its own)");
+    throw Error(ExitCode::kFile, file + ": its skeleton is not that of a biped (a capture moves no other)");
   }
   for (const Bone& bone : rig.bones) body.joint_of_bone.push_back(body.joints.joint_of_node[bone.node]);
   return body;

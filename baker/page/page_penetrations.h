@@ -18,18 +18,12 @@ class FrameLists {
   void add(const std::vector<T>& list) {
     counts_.push_back(static_cast<std::uint32_t>(list.size()));
     entries_.insert(entries_.end(), list.begin(), list.end());
-    ends_.push_back(entries_.size());
-  }
-  std::vector<T> of(std::size_t frame) const {
-    const auto at = [&](std::size_t end) { return entries_.begin() + static_cast<std::ptrdiff_t>(end); };
-    return {at(frame > 0 ? ends_[frame - 1] : 0), at(ends_[frame])};
   }
   nlohmann::ordered_json json() const { return {{"counts", base64(counts_)}, {"entries", base64(entries_)}}; }
   std::size_t bytes() const { return entries_.size() * sizeof(T); }
 
  private:
   std::vector<std::uint32_t> counts_;
-  std::vector<std::size_t> ends_;
   std::vector<T> entries_;
 };
 

@@ -94,8 +94,8 @@ const std::vector<Penetration>& SkinPlayer::measure_quickly(const sc_pose& pose)
   return run(job);
 }
 
-Penetration SkinPlayer::measure_parts(const sc_pose& pose, const std::vector<TriangleContact>& of_them) {
-  PenetrationJob job = measure_job(pose, of_them);
+Penetration SkinPlayer::measure_parts(const sc_pose& pose, const std::vector<TriangleContact>& contacts) {
+  PenetrationJob job = measure_job(pose, contacts);
   Penetration out{};
   job.penetrations = &out;
   job.penetration_capacity = 1;

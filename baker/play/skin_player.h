@@ -40,8 +40,8 @@ class SkinPlayer {
   const std::vector<Penetration>& measure(const sc_pose& pose, bool is_next);
   // The same by the quick form: along one direction, as games do.
   const std::vector<Penetration>& measure_quickly(const sc_pose& pose);
-  // Of two body parts that find() found, in full; whatever came before.
-  Penetration measure_parts(const sc_pose& pose, const std::vector<TriangleContact>& of_them);
+  // Two body parts alone, in full, whatever came before. `contacts` are all of theirs in that pose.
+  Penetration measure_parts(const sc_pose& pose, const std::vector<TriangleContact>& contacts);
 
  private:
   SkinContactJob job(const sc_pose& pose);

@@ -2,7 +2,8 @@
 //   node check_against_cgal.mjs TOOL FILE[+MOTION]...
 //
 // For each clip: events join the frames in which `play` finds the two body parts in contact, and `validate` finds no
-// contact of any frame missing or extra by CGAL. The ratio is of times of the same frames, one after another on one core:
+// contact of any frame missing or extra by CGAL. Shallow: faults that are less than .8 as deep as the deepest that `play`
+// measures of those parts in those frames (it measures each in full, and keeps a direction that is up to 1.25 as long). The ratio is of times of the same frames, one after another on one core:
 // check with its report and without the bake, over the search by CGAL and its comparison with ours.
 import { spawnSync } from 'node:child_process';
 import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
@@ -42,9 +43,18 @@ function spans(frames, loops) {
   }
   return new Set(out);
 }
+// Of events, those whose depth is under that share of the deepest frame's.
+function shallow(events, frames, share) {
+  return events.filter(({ parts: [a, b], class: kind, from, to, depth_mm: depth }) => {
+    if (kind !== 'penetration' && kind !== 'deep_fold') return false;
+    const here = frames.filter((_, i) => (from <= to ? i >= from && i <= to : i >= from || i <= to));
+    const found = here.flatMap((f) => f.penetrations).filter(({ parts }) => parts[0] === a && parts[1] === b);
+    return depth < share * Math.max(...found.map((p) => p.depth_mm));
+  }).length;
+}
 const sizeOfOnly = (a, b) => [...a].filter((x) => !b.has(x)).length;
 
-const total = { clips: 0, frames: 0, events: 0, missed: 0, invented: 0, missing: 0, extra: 0, check: 0, cgal: 0 };
+const total = { clips: 0, frames: 0, events: 0, missed: 0, invented: 0, faults: 0, shallow: 0, missing: 0, extra: 0, check: 0, cgal: 0 };
 const columns = Object.keys(total);
 const line = (name, row) => {
   const cells = columns.map((c) => (['check', 'cgal'].includes(c) ? ((1000 * row[c]) / row.frames).toFixed(2) : `${row[c]}`).padStart(9));
@@ -64,7 +74,8 @@ for (const file of files) {
     const which = motion ? carried : ['--clip', clip.clip];
     run('play', asset, '--source', character, ...which, ...rate, ...to('play.json'));
     const events = new Set(clip.events.map(({ parts: [a, b], from, to }) => `${a}/${b}: ${from}-${to}`));
-    const expected = spans(json('play.json').frames, clip.loops);
+    const { frames } = json('play.json');
+    const expected = spans(frames, clip.loops);
     row.cgal += run('validate', asset, '--source', character, ...which, ...rate, '--contacts', ...to('truth.json'));
     const truth = json('truth.json');
     if (truth.frames !== clip.frames) throw new Error(`${file}: ${clip.clip}: ${truth.frames} frames, not ${clip.frames}`);
@@ -73,6 +84,8 @@ for (const file of files) {
     row.events += clip.events.length;
     row.missed += sizeOfOnly(expected, events);
     row.invented += sizeOfOnly(events, expected);
+    row.faults += shallow(clip.events, frames, Infinity);
+    row.shallow += shallow(clip.events, frames, 0.8);
     row.missing += truth.contacts_missing + truth.contacts_from_bones.missing + truth.neighbour_contacts.missing;
     row.extra += truth.contacts_extra + truth.contacts_from_bones.extra + truth.neighbour_contacts.extra;
   }

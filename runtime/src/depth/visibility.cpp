@@ -90,7 +90,7 @@ double Visibility::share(const Contour& contour, const Double3 (&axes)[3], doubl
     for (std::size_t i = first; i < size && (wanted == kSampled || seen == 0); i += step) {
       seen += is_seen(contour.segments[i], axes, clearance, free) ? 1 : 0;
     }
-    if (seen > 0) {
+    if (seen > 0 || step == 1) {
       return static_cast<double>(seen) / static_cast<double>((size - first + step - 1) / step);
     }
   }
