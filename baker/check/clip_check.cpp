@@ -78,7 +78,7 @@ ClipChecker::ClipChecker(const AnimatedAsset& animated, Target target)
       areas_(sizes_of(parts_, animated.character())),
       mm_(mm_per_unit(animated.asset())),
       axes_(page_axes(animated)),
-      picture_(animated.character().source_triangles, axes_) {
+      picture_(animated.character().source_positions, animated.character().source_triangles, axes_) {
   animated.check_clusters();
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -23,7 +24,7 @@ struct Patches {
 // the pose before.
 class Picture {
  public:
-  Picture(const std::vector<Triangle>& triangles, const BodyFrame& axes) : triangles_(triangles), axes_(axes) {}
+  Picture(const std::vector<Vec3>& rest, const std::vector<Triangle>& triangles, const BodyFrame& axes);
 
   // `positions` of the source vertices. Both hold until the next call.
   void pose(const std::vector<Vec3>& positions);
@@ -42,18 +43,23 @@ class Picture {
     Vec3 right, up, back, middle;
     double scale;  // pixels a unit
     int width, height;
+    double least = -HUGE_VAL;  // along `back`: what lies all farther away is left out
   };
   View view_from(const Vec3& back, const Vec3& middle, double extent, int width, int height) const;
-  // Into ids_ and depths_: all triangles, or those that are `only`.
-  void draw(const View& view, const std::vector<std::uint8_t>* only = nullptr);
+  // Into ids_ and depths_: all triangles, or those of the patches.
+  void draw(const View& view, const Patches* only = nullptr);
 
   const std::vector<Triangle>& triangles_;
   BodyFrame axes_;
   std::vector<Vec3> positions_;
   std::vector<Eigen::Vector3f> floats_;  // the same
-  std::vector<std::array<float, 3>> projected_;
-  std::vector<std::uint8_t> outside_;  // of the picture: a bit for each side
-  std::vector<std::uint32_t> ids_;     // a pixel's triangle, kNoTriangle none
+  std::vector<std::uint32_t> order_;     // of triangles: kRun that follow one another lie together
+  struct Ball {
+    Eigen::Vector3f center;
+    float radius;
+  };
+  std::vector<Ball> balls_;         // around kRun of them each: most are outside a picture
+  std::vector<std::uint32_t> ids_;  // a pixel's triangle, kNoTriangle none
   std::vector<float> depths_;
 };
 
