@@ -27,7 +27,7 @@ struct Beast {
   json nodes = {{{"name", "root"}, {"children", json::array()}}};
 
   Beast() {
-    const SourceMesh mesh = melt(tubes, 0.08);
+    const SourceMesh mesh = melt(tubes, 0.16);
     for (const Tube& tube : tubes) {
       nodes[0]["children"].push_back(nodes.size());
       nodes.push_back({{"name", "joint" + std::to_string(nodes.size())},
