@@ -9,7 +9,8 @@
 namespace spherechain {
 namespace {
 
-constexpr int kPassesMax = 64;  // of hostile input; of bodies a handful
+constexpr int kPassesMax = 64;      // of hostile input; of bodies a handful
+constexpr float kRounding = 1e-5F;  // of sums of coordinates, to their size: many times more than there is
 
 bool is_on(const Span<const std::uint64_t>& bits, std::size_t i) {
   return bits.size > 0 && (bits[i / 64] >> (i % 64) & 1) != 0;
@@ -46,34 +47,74 @@ void Sweep::Boxes::take(WordMemory& memory, std::size_t capacity) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     memory.take(low[axis], blocks * kBlock);
     memory.take(high[axis], blocks * kBlock);
-    memory.take(block_low[axis], blocks);
-    memory.take(block_high[axis], blocks);
+    memory.take(block_low[axis], blocks + kBlock);
+    memory.take(block_high[axis], blocks + kBlock);
+    memory.take(middle[axis], blocks);
+    memory.take(half[axis], blocks);
   }
+  memory.take(block, blocks);
   memory.take(triangle, capacity);
   memory.take(corners, 3 * capacity);
 }
 
-void Sweep::Boxes::view(float* const (&seen)[3]) {
+// Intervals that are no shorter than those of the triangles' boxes, of all blocks.
+void Sweep::Boxes::view_blocks(const View& view) {
+  block_count = (count + kBlock - 1) / kBlock;
+  const Double3* const axes[3] = {&view.u, &view.v, &view.d};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const float* const at = seen[axis];
-    for (std::size_t i = 0; i < count; ++i) {
-      const float p = at[corners[3 * i]], q = at[corners[3 * i + 1]], r = at[corners[3 * i + 2]];
-      low[axis][i] = std::min(std::min(p, q), r);
-      high[axis][i] = std::max(std::max(p, q), r);
+    const Vec3 a = to_float(*axes[axis]);
+    for (std::size_t i = 0; i < block_count; ++i) {
+      const float at = a.x * middle[0][i] + (a.y * middle[1][i] + a.z * middle[2][i]);
+      const float reach = std::abs(a.x) * half[0][i] + (std::abs(a.y) * half[1][i] + std::abs(a.z) * half[2][i]);
+      block_low[axis][i] = at - reach;
+      block_high[axis][i] = at + reach;
     }
   }
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    std::fill(low[axis] + count, low[axis] + block_count() * kBlock, FLT_MAX);
-    std::fill(high[axis] + count, high[axis] + block_count() * kBlock, -FLT_MAX);
-    for (std::size_t block = 0; block < block_count(); ++block) {
-      float least = FLT_MAX, most = -FLT_MAX;
-      for (std::size_t i = kBlock * block; i < kBlock * (block + 1); ++i) {
-        least = std::min(least, low[axis][i]);
-        most = std::max(most, high[axis][i]);
-      }
-      block_low[axis][block] = least;
-      block_high[axis][block] = most;
+  for (std::size_t i = 0; i < block_count; ++i) {
+    block[i] = static_cast<std::uint32_t>(i);
+  }
+}
+
+// Those that reach into a box; what is not finite stays.
+void Sweep::Boxes::keep_blocks(const float (&least)[3], const float (&most)[3]) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < block_count; ++i) {
+    bool is_outside = false;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      is_outside = is_outside || block_low[axis][i] > most[axis] || block_high[axis][i] < least[axis];
     }
+    if (!is_outside) {
+      block[kept] = block[i];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        block_low[axis][kept] = block_low[axis][i];
+        block_high[axis][kept] = block_high[axis][i];
+      }
+      ++kept;
+    }
+  }
+  block_count = kept;
+}
+
+void Sweep::Boxes::view(const float* const (&seen)[3]) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float* const at = seen[axis];
+    for (std::size_t i = 0; i < block_count; ++i) {
+      const std::size_t first = kBlock * block[i], end = std::min(first + kBlock, count);
+      float least = FLT_MAX, most = -FLT_MAX;
+      for (std::size_t t = first; t < end; ++t) {
+        const float p = at[corners[3 * t]], q = at[corners[3 * t + 1]], r = at[corners[3 * t + 2]];
+        low[axis][t] = std::min(std::min(p, q), r);
+        high[axis][t] = std::max(std::max(p, q), r);
+        least = std::min(least, low[axis][t]);
+        most = std::max(most, high[axis][t]);
+      }
+      std::fill(low[axis] + end, low[axis] + first + kBlock, FLT_MAX);
+      std::fill(high[axis] + end, high[axis] + first + kBlock, -FLT_MAX);
+      block_low[axis][i] = least;
+      block_high[axis][i] = most;
+    }
+    std::fill(block_low[axis] + block_count, block_low[axis] + block_count + kBlock, FLT_MAX);
+    std::fill(block_high[axis] + block_count, block_high[axis] + block_count + kBlock, -FLT_MAX);
   }
 }
 
@@ -113,7 +154,34 @@ void Sweep::list_vertices(Boxes& boxes) {
 void Sweep::look_along(const Double3& direction) { view_ = View(direction, vertices_.origin); }
 
 // Boxes need no more than single precision: their triangles are compared in double precision.
-void Sweep::see_boxes() {
+void Sweep::see_boxes(double depth) {
+  a_.view_blocks(view_);
+  b_.view_blocks(view_);
+  // A side's blocks stay where they reach into the box around the other's; that one is smaller the second time. To meet
+  // a, b rises: so far at least.
+  const float rise = static_cast<float>(depth) * (1 - kRounding);
+  for (int turn = 0; turn < 2; ++turn) {
+    for (Boxes* const side : {&a_, &b_}) {
+      const Boxes& other = side == &a_ ? b_ : a_;
+      float least[3], most[3];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        least[axis] = FLT_MAX;
+        most[axis] = -FLT_MAX;
+        for (std::size_t i = 0; i < other.block_count; ++i) {
+          least[axis] = std::min(least[axis], other.block_low[axis][i]);
+          most[axis] = std::max(most[axis], other.block_high[axis][i]);
+        }
+      }
+      if (side == &a_) {
+        least[2] += rise;
+        most[2] = FLT_MAX;
+      } else {
+        least[2] = -FLT_MAX;
+        most[2] -= rise;
+      }
+      side->keep_blocks(least, most);
+    }
+  }
   const float *const x = vertices_.at[0], *const y = vertices_.at[1], *const z = vertices_.at[2];
   const Double3* const axes[3] = {&view_.u, &view_.v, &view_.d};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -154,6 +222,23 @@ void Sweep::keep(const Room& room) {
   list_vertices(b_);
 }
 
+// By the box of the run's cluster, of the blocks that the run comes to lie in.
+void Sweep::widen_blocks(const TriangleRun& run, Boxes& out) const {
+  const double origin[3] = {vertices_.origin.x, vertices_.origin.y, vertices_.origin.z};
+  for (std::size_t i = out.count / kBlock; kBlock * i < out.count + run.count; ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      auto low = static_cast<float>(double{skin_.low[axis][run.cluster]} - origin[axis]);
+      auto high = static_cast<float>(double{skin_.high[axis][run.cluster]} - origin[axis]);
+      if (kBlock * i < out.count) {
+        low = std::min(low, out.middle[axis][i] - out.half[axis][i]);
+        high = std::max(high, out.middle[axis][i] + out.half[axis][i]);
+      }
+      out.middle[axis][i] = 0.5F * (low + high);
+      out.half[axis][i] = 0.5F * (high - low) + kRounding * std::max(std::abs(low), std::abs(high));
+    }
+  }
+}
+
 // Runs of whose cluster the box meets one of the other side's that goes so far up and down along each axis.
 void Sweep::keep_runs(const Span<const TriangleRun>& side, const Span<const TriangleRun>& other, const Room& room,
                       Boxes& out) {
@@ -184,6 +269,7 @@ void Sweep::keep_runs(const Span<const TriangleRun>& side, const Span<const Tria
     };
     if (is_near([&](std::size_t axis) { return highest[axis]; }, [&](std::size_t axis) { return lowest[axis]; }) &&
         std::any_of(other.begin(), other.end(), is_near_run)) {
+      widen_blocks(run, out);
       for (std::uint32_t i = 0; i < run.count; ++i) {
         out.triangle[out.count++] = run.first + i;
       }
@@ -191,48 +277,56 @@ void Sweep::keep_runs(const Span<const TriangleRun>& side, const Span<const Tria
   }
 }
 
+// Which of kBlock boxes from `first` on hide, seen along d, box `i` of the others? -1 each; 0 if none does.
+std::int32_t Sweep::find_hidden(float* const (&low)[3], float* const (&high)[3], std::size_t first,
+                                float* const (&other_low)[3], float* const (&other_high)[3], std::size_t i,
+                                std::int32_t (&hides)[kBlock]) {
+  const float low_u = other_low[0][i], high_u = other_high[0][i], low_v = other_low[1][i], high_v = other_high[1][i];
+  const float *const lows_u = low[0] + first, *const highs_u = high[0] + first;
+  const float *const lows_v = low[1] + first, *const highs_v = high[1] + first;
+  std::int32_t any = 0;
+  for (std::size_t k = 0; k < kBlock; ++k) {
+    const std::int32_t p0 = lows_u[k] <= high_u ? -1 : 0, p1 = highs_u[k] >= low_u ? -1 : 0;
+    const std::int32_t q0 = lows_v[k] <= high_v ? -1 : 0, q1 = highs_v[k] >= low_v ? -1 : 0;
+    hides[k] = p0 & p1 & q0 & q1;
+    any |= hides[k];
+  }
+  return any;
+}
+
 template <typename Wants, typename Visit>
 void Sweep::for_pairs(std::size_t first, const Wants& wants, const Visit& visit) const {
-  const std::size_t a_blocks = a_.block_count(), b_blocks = b_.block_count();
-  const float *const low_0 = a_.block_low[0], *const low_1 = a_.block_low[1], *const low_2 = a_.block_low[2];
-  const float *const high_0 = a_.block_high[0], *const high_1 = a_.block_high[1], *const high_2 = a_.block_high[2];
+  const std::size_t a_blocks = a_.block_count, b_blocks = b_.block_count;
+  const auto start = static_cast<std::size_t>(std::lower_bound(b_.block, b_.block + b_blocks, first) - b_.block);
+  std::int32_t near[kBlock], hides[kBlock];
   for (std::size_t turn = 0; turn < b_blocks; ++turn) {
-    const std::size_t q = (first + turn) % b_blocks;
-    const float low_u_of_q = b_.block_low[0][q], low_v_of_q = b_.block_low[1][q], low_d_of_q = b_.block_low[2][q];
-    const float high_u_of_q = b_.block_high[0][q], high_v_of_q = b_.block_high[1][q], high_d_of_q = b_.block_high[2][q];
+    const std::size_t q = (start + turn) % b_blocks, b_first = kBlock * b_.block[q];
+    const std::size_t b_end = std::min(b_first + kBlock, b_.count);
     for (std::size_t p = 0; p < a_blocks; ++p) {
-      const bool meets = static_cast<int>(low_0[p] <= high_u_of_q) & static_cast<int>(high_0[p] >= low_u_of_q) &
-                         static_cast<int>(low_1[p] <= high_v_of_q) & static_cast<int>(high_1[p] >= low_v_of_q);
-      if (!meets || !wants(double{low_2[p]} - double{high_d_of_q}, double{high_2[p]} - double{low_d_of_q})) {
+      if (p % kBlock == 0 && find_hidden(a_.block_low, a_.block_high, p, b_.block_low, b_.block_high, q, near) == 0) {
+        p += kBlock - 1;
         continue;
       }
-      const std::size_t b_end = std::min(kBlock * (q + 1), b_.count);
-      for (std::size_t b = kBlock * q; b < b_end; ++b) {
-        const float low_u = b_.low[0][b], high_u = b_.high[0][b], low_v = b_.low[1][b], high_v = b_.high[1][b];
-        if (a_.block_low[0][p] > high_u || a_.block_high[0][p] < low_u || a_.block_low[1][p] > high_v ||
-            a_.block_high[1][p] < low_v ||
+      if (near[p % kBlock] == 0 || !wants(double{a_.block_low[2][p]} - double{b_.block_high[2][q]},
+                                          double{a_.block_high[2][p]} - double{b_.block_low[2][q]})) {
+        continue;
+      }
+      const std::size_t a_first = kBlock * a_.block[p];
+      for (std::size_t b = b_first; b < b_end; ++b) {
+        if (a_.block_low[0][p] > b_.high[0][b] || a_.block_high[0][p] < b_.low[0][b] ||
+            a_.block_low[1][p] > b_.high[1][b] || a_.block_high[1][p] < b_.low[1][b] ||
             !wants(double{a_.block_low[2][p]} - double{b_.high[2][b]},
-                   double{a_.block_high[2][p]} - double{b_.low[2][b]})) {
+                   double{a_.block_high[2][p]} - double{b_.low[2][b]}) ||
+            find_hidden(a_.low, a_.high, a_first, b_.low, b_.high, b, hides) == 0) {
           continue;
         }
-        const float *const lows_u = a_.low[0] + kBlock * p, *const highs_u = a_.high[0] + kBlock * p;
-        const float *const lows_v = a_.low[1] + kBlock * p, *const highs_v = a_.high[1] + kBlock * p;
-        std::int32_t hides[kBlock];
-        std::int32_t any = 0;
-        for (std::size_t k = 0; k < kBlock; ++k) {
-          const std::int32_t p0 = lows_u[k] <= high_u ? -1 : 0, p1 = highs_u[k] >= low_u ? -1 : 0;
-          const std::int32_t q0 = lows_v[k] <= high_v ? -1 : 0, q1 = highs_v[k] >= low_v ? -1 : 0;
-          hides[k] = p0 & p1 & q0 & q1;
-          any |= hides[k];
-        }
         // Positions that are not finite meet even the empty boxes past the last.
-        for (std::size_t k = 0; any != 0 && k < kBlock && kBlock * p + k < a_.count; ++k) {
-          const std::size_t a = kBlock * p + k;
+        for (std::size_t k = 0; k < kBlock && a_first + k < a_.count; ++k) {
+          const std::size_t a = a_first + k;
           if (hides[k] != 0 &&
-              wants(double{a_.low[2][a]} - double{b_.high[2][b]}, double{a_.high[2][a]} - double{b_.low[2][b]})) {
-            if (!visit(a_.triangle[a], b_.triangle[b], q)) {
-              return;
-            }
+              wants(double{a_.low[2][a]} - double{b_.high[2][b]}, double{a_.high[2][a]} - double{b_.low[2][b]}) &&
+              !visit(a_.triangle[a], b_.triangle[b], b_.block[q])) {
+            return;
           }
         }
       }
@@ -312,7 +406,7 @@ bool Sweep::find(const Double3& direction, const Contour& contour, double bound,
   if (depth >= bound) {
     return false;
   }
-  see_boxes();
+  see_boxes(depth);
   bool is_longer = true;
   for (int i = 0; is_longer && i < kPassesMax && depth < bound; ++i) {
     const double before = depth;
@@ -340,7 +434,7 @@ bool Sweep::find(const Double3& direction, const Contour& contour, double bound,
 // the way are left of that sum.
 Volume Sweep::volume(const Double3& direction, double depth) {
   look_along(direction);
-  see_boxes();
+  see_boxes(0);
   Volume out;
   for_pairs(
       0, [&](double low, double high) { return high > 0 && low <= depth + gap_; },

@@ -57,17 +57,22 @@ class Sweep {
   Volume volume(const Double3& direction, double depth);
 
  private:
-  // Blocks of triangles that follow one another, and their boxes in view: along u, v, d.
+  // Blocks of triangles that follow one another, and their boxes in view: along u, v, d. Boxes past the last are empty.
   static constexpr std::size_t kBlock = 16;
   struct Boxes {
-    float *low[3] = {}, *high[3] = {};                      // a triangle's; those past the last are empty
-    float *block_low[3] = {}, *block_high[3] = {};          // a block's
     std::uint32_t *triangle = nullptr, *corners = nullptr;  // three places in vertices_ each
     std::size_t count = 0;
+    float *middle[3] = {}, *half[3] = {};  // of a box around a block, not seen from anywhere
+    // Of what may meet the other side in this view.
+    std::uint32_t* block = nullptr;  // in ascending order
+    std::size_t block_count = 0;
+    float *block_low[3] = {}, *block_high[3] = {};  // of each of those
+    float *low[3] = {}, *high[3] = {};              // of a triangle
 
-    std::size_t block_count() const { return (count + kBlock - 1) / kBlock; }
     void take(WordMemory& memory, std::size_t capacity);
-    void view(float* const (&seen)[3]);
+    void view_blocks(const View& view);
+    void keep_blocks(const float (&least)[3], const float (&most)[3]);
+    void view(const float* const (&seen)[3]);
   };
   // The vertices of both sides' triangles, and their coordinates in view.
   struct Vertices {
@@ -78,14 +83,19 @@ class Sweep {
   };
   void list_vertices(Boxes& boxes);
   void look_along(const Double3& direction);
-  void see_boxes();
+  // For ways that are longer than `depth`.
+  void see_boxes(double depth);
   struct Room {
     Double3 up, down;  // along each axis
   };
   void keep(const Room& room);
   void keep_runs(const Span<const TriangleRun>& side, const Span<const TriangleRun>& other, const Room& room,
                  Boxes& out);
+  void widen_blocks(const TriangleRun& run, Boxes& out) const;
   void block(std::uint32_t a, std::uint32_t b, double& depth, WayOut& out) const;
+  static std::int32_t find_hidden(float* const (&low)[3], float* const (&high)[3], std::size_t first,
+                                  float* const (&other_low)[3], float* const (&other_high)[3], std::size_t i,
+                                  std::int32_t (&hides)[kBlock]);
   // Calls visit(a, b, block of b) for triangles whose boxes hide each other and wants(low, high) of their intervals: b
   // can meet a only after a move between low and high. Starts at that block of b; ends where visit() says false.
   template <typename Wants, typename Visit>
