@@ -56,7 +56,7 @@ TEST_CASE("in random poses of another seed the calibrated spheres report nearly 
   std::size_t touching = 0, found = 0;
   for (int i = 0; i < 40; ++i) {
     const std::vector<float> positions =
-        pack(deform(bake.character.source_positions, weights_of_human(), poses.next(random, i % 3).bones));
+        pack(deform(bake.character.source_positions, weights_of_human(), poses.next(random, i % 3, i / 40.0).bones));
     const std::vector<Pair> reported =
         detect(asset, refit(asset, positions, SC_RADIUS_DETECT).spheres, SC_RADIUS_DETECT).pairs;
     for (const Pair& pair : touching_skins(player, positions)) {
@@ -107,7 +107,7 @@ namespace {
 
 // A pair of spheres of radius 1, `times` at a distance.
 void add(SampledPair& pair, int times, float distance, bool touch) {
-  for (int i = 0; i < times; ++i) pair.samples.push_back({distance, 1, 1, touch});
+  for (int i = 0; i < times; ++i) pair.samples.push_back({distance, 1, 1, touch, true});
 }
 
 using AtRest = std::optional<double>;
@@ -215,16 +215,31 @@ double bend(const RandomPoses::Pose& pose, std::size_t bone) {
 
 }  // namespace
 
-TEST_CASE("in a moment of a clip limbs bend together; with a moment for each branch half of them bend on their own") {
+TEST_CASE("moments of clips are the clips' own, spread over all their time") {
+  const Character character = bending(2);
+  const RandomPoses poses(character, {});
+  REQUIRE(poses.have_clips());
+  Random random(kOtherSeed);
+  double least = 180, most = 0;
+  for (int i = 0; i < 100; ++i) {
+    const RandomPoses::Pose pose = poses.next(random, 0, i / 100.0);
+    CHECK(bend(pose, 1) == doctest::Approx(bend(pose, 2)));
+    CHECK(bend(pose, 1) == doctest::Approx(std::min(80.0, 0.8 * i * 31 / 30)).epsilon(0.02));
+    least = std::min(least, bend(pose, 1));
+    most = std::max(most, bend(pose, 1));
+  }
+  CHECK(least == doctest::Approx(0));
+  CHECK(most == doctest::Approx(80));
+}
+
+TEST_CASE("with a moment for each branch half of the limbs bend on their own") {
   const Character character = bending(2);
   const RandomPoses poses(character, {});
   Random random(kOtherSeed);
   int apart = 0;
   for (int i = 0; i < 300; ++i) {
-    const RandomPoses::Pose together = poses.next(random, 0);
-    CHECK(std::abs(bend(together, 1) - bend(together, 2)) < 12);  // each turns by up to 5 degrees more
-    const RandomPoses::Pose branched = poses.next(random, 1);
-    apart += std::abs(bend(branched, 1) - bend(branched, 2)) > 12 ? 1 : 0;
+    const RandomPoses::Pose branched = poses.next(random, 1, 0);
+    apart += std::abs(bend(branched, 1) - bend(branched, 2)) > 12 ? 1 : 0;  // each turns by up to 5 degrees more
   }
   CHECK(apart > 100);
   CHECK(apart < 250);
@@ -237,7 +252,7 @@ TEST_CASE("random poses stay within the limits of the clips, and are the same fo
     Random random(kOtherSeed);
     Vec3 low = Vec3::Zero(), high = Vec3::Zero();
     for (int i = 0; i < 500; ++i) {
-      const RandomPoses::Pose pose = poses.next(random, 2);
+      const RandomPoses::Pose pose = poses.next(random, 2, 0);
       const Eigen::AngleAxisd turn(Eigen::Matrix3d(pose.bones[0].linear().transpose() * pose.bones[1].linear()));
       low = low.cwiseMin(turn.angle() * turn.axis());
       high = high.cwiseMax(turn.angle() * turn.axis());
