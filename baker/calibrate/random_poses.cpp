@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kPadding = 10 * kDegree, kWithoutClips = 45 * kDegree, kJitter = 5 * kDegree;
+constexpr double kLastFrame = 1.0 / 30;  // seconds that the end of a clip lasts
 
 // The axis of a rotation times its angle, which is at most 180 degrees.
 Vec3 rotation_vector(const Eigen::Quaterniond& q) {
@@ -129,18 +130,28 @@ RandomPoses::RandomPoses(const Character& character, const std::vector<Joint>& j
   }
 }
 
+RandomPoses::Moment RandomPoses::moment_at(double part) const {
+  const auto length = [](const Clip& clip) { return clip.duration + kLastFrame; };
+  double seconds = 0;
+  for (const Clip& clip : *clips_) seconds += length(clip);
+  seconds *= part;
+  std::size_t clip = 0;
+  for (; clip + 1 < clips_->size() && seconds >= length((*clips_)[clip]); ++clip) seconds -= length((*clips_)[clip]);
+  return {clip, std::min(seconds, (*clips_)[clip].duration)};
+}
+
 RandomPoses::Moment RandomPoses::any_moment(Random& random) const {
   const auto clip = static_cast<std::size_t>(random.between(0, static_cast<double>(clips_->size())));
   return {clip, random.between(0, (*clips_)[clip].duration)};
 }
 
-std::vector<RandomPoses::Moment> RandomPoses::moments(Random& random, bool by_branch) const {
+std::vector<RandomPoses::Moment> RandomPoses::of_branches(Random& random) const {
   constexpr double kOwn = 0.5;  // of the branches have a moment of their own
   const Moment all = any_moment(random);
   std::vector<Moment> out;
   for (const Node& node : nodes_) {
     const auto parent = static_cast<std::size_t>(node.parent);
-    const bool is_branch = by_branch && node.parent >= 0 && children_[parent] > 1;
+    const bool is_branch = node.parent >= 0 && children_[parent] > 1;
     if (is_branch && random.between(0, 1) < kOwn) {
       out.push_back(any_moment(random));
     } else {
@@ -150,8 +161,7 @@ std::vector<RandomPoses::Moment> RandomPoses::moments(Random& random, bool by_br
   return out;
 }
 
-std::vector<Node> RandomPoses::at_moments(Random& random, bool by_branch) const {
-  const std::vector<Moment> of_node = moments(random, by_branch);
+std::vector<Node> RandomPoses::at_moments(const std::vector<Moment>& of_node) const {
   std::vector<Node> nodes = nodes_;
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     if (!limits_[n].moves) continue;
@@ -162,9 +172,18 @@ std::vector<Node> RandomPoses::at_moments(Random& random, bool by_branch) const 
       if (channel->path == ChannelPath::kScale) node.scale = value.head<3>();
       if (channel->path == ChannelPath::kRotation) node.rotation = Eigen::Quaterniond(value);
     }
-    node.rotation = node.rotation * rotation_of(random_in(random, Vec3::Constant(-kJitter), Vec3::Constant(kJitter)));
     node.local.linear() = node.rotation.toRotationMatrix() * node.scale.asDiagonal();
     node.local.translation() = node.translation;
+  }
+  return nodes;
+}
+
+std::vector<Node> RandomPoses::bent(std::vector<Node> nodes, Random& random) const {
+  for (std::size_t n = 0; n < nodes.size(); ++n) {
+    if (!limits_[n].moves) continue;
+    Node& node = nodes[n];
+    node.rotation = node.rotation * rotation_of(random_in(random, Vec3::Constant(-kJitter), Vec3::Constant(kJitter)));
+    node.local.linear() = node.rotation.toRotationMatrix() * node.scale.asDiagonal();
   }
   return nodes;
 }
@@ -183,11 +202,16 @@ std::vector<Node> RandomPoses::turned(Random& random) const {
   return nodes;
 }
 
-RandomPoses::Pose RandomPoses::next(Random& random, int kind) const {
-  constexpr int kBranches = 1, kTurned = 2;
-  const bool is_turned = kind == kTurned || clips_ == nullptr;
+RandomPoses::Pose RandomPoses::next(Random& random, int kind, double part) const {
+  constexpr int kMoment = 0, kBranches = 1;
+  const auto nodes = [&] {
+    if (clips_ == nullptr) return turned(random);
+    if (kind == kMoment) return at_moments(std::vector<Moment>(nodes_.size(), moment_at(part)));
+    if (kind == kBranches) return bent(at_moments(of_branches(random)), random);
+    return turned(random);
+  };
   Pose out;
-  const std::vector<Affine> world = world_of(is_turned ? turned(random) : at_moments(random, kind == kBranches));
+  const std::vector<Affine> world = world_of(nodes());
   for (const Bone& bone : bones_) out.bones.push_back(to_rest_ * world[bone.node] * bone.inverse_bind);
   for (const auto& [low, high] : morphs_) out.morphs.push_back(random.between(low, high));
   return out;

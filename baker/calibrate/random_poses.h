@@ -10,12 +10,12 @@
 namespace spherechain::baker {
 
 // Poses that a character may take, of three kinds in turn:
-// 1. a moment of one of its clips;
+// 1. a moment of one of its clips, as it is;
 // 2. a moment of its own for each branch of the skeleton, or that of the joint above, as chance has it: limbs bend as
 //    in the clips, and meet as they do not there;
 // 3. each joint turned about its three axes on its own, evenly in a box of rotation vectors: the smallest around all
 //    keys of the clips and 10 degrees more. So are translations, scales and morph weights, without the 10 degrees.
-// In the first two kinds each joint turns by up to 5 degrees more about each axis. Without clips all poses are of the
+// In the second kind each joint turns by up to 5 degrees more about each axis. Without clips all poses are of the
 // third kind: a joint turns by up to 45 degrees, and morphs keep their weight at rest.
 class RandomPoses {
  public:
@@ -24,13 +24,14 @@ class RandomPoses {
 
   // Whether there is anything to move.
   bool any() const { return !bones_.empty(); }
+  bool have_clips() const { return clips_ != nullptr; }
 
   struct Pose {
     std::vector<Affine> bones;  // for each bone: rest -> posed
     std::vector<double> morphs;
   };
-  // Of the kinds above, 0 to 2.
-  Pose next(Random& random, int kind) const;
+  // Of the kinds above, 0 to 2; `part`, of the clips' time, is where one of the first kind is.
+  Pose next(Random& random, int kind, double part) const;
 
  private:
   struct Range {
@@ -46,11 +47,13 @@ class RandomPoses {
     std::size_t clip;
     double seconds;
   };
+  Moment moment_at(double part) const;
   Moment any_moment(Random& random) const;
   // The moments of all nodes.
-  std::vector<Moment> moments(Random& random, bool by_branch) const;
+  std::vector<Moment> of_branches(Random& random) const;
+  std::vector<Node> at_moments(const std::vector<Moment>& of_node) const;
+  std::vector<Node> bent(std::vector<Node> nodes, Random& random) const;
   std::vector<Node> turned(Random& random) const;
-  std::vector<Node> at_moments(Random& random, bool by_branch) const;
 
   std::vector<Node> nodes_;
   std::vector<Limits> limits_;                                      // of each node

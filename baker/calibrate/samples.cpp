@@ -114,14 +114,16 @@ std::vector<SampledPair> sample_pairs(const std::vector<std::uint8_t>& asset, co
   PosedAsset posed(asset, pairs);
   Random random(kSeed);
   for (int i = 0; i < count; ++i) {
-    posed.take(poses.next(random, i % 3));
+    const int kind = i % 3;
+    const bool expected = kind == 0 && poses.have_clips();
+    posed.take(poses.next(random, kind, static_cast<double>(i) / count));
     for (SampledPair& pair : out) {
       const Sphere &a = posed.spheres()[pair.spheres.a], &b = posed.spheres()[pair.spheres.b];
       const float dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
       const float squared = (dx * dx + dy * dy) + dz * dz,
                   far = static_cast<float>(kSampledReach) * (a.radius + b.radius);
       if (squared < far * far) {
-        pair.samples.push_back({std::sqrt(squared), a.radius, b.radius, posed.touch(pair.spheres)});
+        pair.samples.push_back({std::sqrt(squared), a.radius, b.radius, posed.touch(pair.spheres), expected});
       }
     }
   }

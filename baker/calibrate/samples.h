@@ -14,6 +14,7 @@ struct PairSample {
   float distance;
   float radius_a, radius_b;  // the detect radii
   bool touch;                // whether their skins intersect
+  bool expected;             // whether the pose is a moment of a clip
 };
 
 // Of poses in which two spheres are farther apart than this, as a part of the sum of their radii, there are no samples.
