@@ -62,7 +62,7 @@ function load(character) {
     run(tool, "view", asset, "--source", mesh, ...moves, "-o", page);
   }
   const html = readFileSync(page, "utf8");
-  const model = readModel(html.match(/<script id="spherechain-data" type="application\/json">([^<]*)</)[1]);
+  const model = readModel(JSON.parse(html.match(/<script id="spherechain-data" type="application\/json">([^<]*)</)[1]));
   return { name: name.replace(/\.(glb|gltf|fbx|vrm|zae|mesh\.xml)/, "").replace(/\.(bvh|json)$/, ""), model, skin: new Skin(model.mesh, model.motion) };
 }
 

@@ -7,8 +7,8 @@
 /* What a person would call it. The first that applies. From SC_CLASS_DEEP_FOLD on it is a fault. */
 SC_ENUM(sc_penetration_class){
     SC_CLASS_REST = 0,        /* the two spots touch in the rest pose, too */
-    SC_CLASS_SHELL = 1,       /* another layer of the same place (a garment on the body), or hidden from all sides */
-    SC_CLASS_TOUCH = 2,       /* less deep than the job's touch_depth */
+    SC_CLASS_SHELL = 1,       /* another layer of the same place (a garment on the body), or most of it is hidden */
+    SC_CLASS_TOUCH = 2,       /* less deep than the job's touch_depth, or too little of it is in sight */
     SC_CLASS_FOLD = 3,        /* of neighbours on the body, near the joint: an elbow, a groin */
     SC_CLASS_DEEP_FOLD = 4,   /* a fold of one piece of skin, deeper than 4.5 % of the character's height */
     SC_CLASS_PENETRATION = 5, /* all else: a fault */
@@ -56,8 +56,8 @@ typedef struct sc_penetration_job {
   const sc_penetration* previous SC_ZERO; /* null: none */
   size_t previous_count SC_ZERO;
   int32_t quick SC_ZERO;     /* 1: one direction, no volume, no visibility, no previous frame. For games */
-  float touch_depth SC_ZERO; /* >= 0. 0: 7 mm, by the asset's metres_per_unit, but at least 0.45 % and at most 1.5 % of the
-                                height; up to twice that where the two sides lie flat on each other */
+  float touch_depth SC_ZERO; /* >= 0. 0: 5 mm, by the asset's metres_per_unit, but at least 0.32 % and at most 1.1 % of the
+                                height; up to three times that where the two sides lie flat on each other */
   uint64_t* scratch SC_ZERO; /* sc_penetration_scratch_words() words; nothing is kept there between runs */
   size_t scratch_words SC_ZERO;
   /* Out. Sorted by (part_a, part_b). The count says how many there are, also where the list is too small. */

@@ -14,7 +14,10 @@ namespace spherechain {
 namespace {
 
 // Lengths are parts of the character's height, but those in metres.
-constexpr double kTouchMetres = 0.007, kTouchMin = 0.0045, kTouchMax = 0.015;
+constexpr double kTouchMetres = 0.005, kTouchMin = 0.0032, kTouchMax = 0.011;
+constexpr double kTouchFlat = 3;                        // times as deep, where the sides lie flat on each other
+constexpr double kTouchSide = 3;                        // times: the side of a square that is too small to be seen
+constexpr double kHidden = 0.3;                         // less of the contour is visible: it is hidden
 constexpr double kGapMetres = 0.0006, kGapMax = 0.001;  // shorter free places on the way are none
 constexpr double kFoldDistance = 0.11;                  // of two spots at rest, to be a fold
 constexpr double kNeighbourDistance = 0.055;            // likewise, whatever the parts are
@@ -195,7 +198,8 @@ class Measurer {
     out.contour_length = static_cast<float>(contour.length);
     out.deepest_a = point_of(exit.way.a, exit.way.point_a, segments[0].a);
     out.deepest_b = point_of(exit.way.b, exit.way.point_b, segments[0].b);
-    out.visible = 1;
+    // All of the line is in sight, as far as its own sides do not hide it.
+    Seen seen{1, contour.length * std::sqrt(std::max(0.0, 1 - contour.facing) / 2)};
     if (job_.quick == 0) {
       if (contour.is_closed && part_a != part_b) {
         sweep_.keep_on_way(exit.direction, exit.way.depth);
@@ -206,9 +210,10 @@ class Measurer {
       }
       Double3 axes[3];
       axes_of(contour, exit.direction, axes);
-      out.visible = static_cast<float>(memory_.visibility.share(contour, axes, kClearance * height_));
+      seen = memory_.visibility.look(contour, axes, kClearance * height_);
     }
-    out.kind = class_of(contour, out);
+    out.visible = static_cast<float>(seen.share);
+    out.kind = class_of(contour, out, seen.length);
     return out;
   }
 
@@ -251,23 +256,24 @@ class Measurer {
   }
 
   bool is_fold(const Contour& contour, std::size_t a, std::size_t b) const {
-    const bool are_joined = hangs_on(a, b) || hangs_on(b, a);
-    if (a == b || (are_joined && !contour.is_one_piece) || contour.rest_distance < kNeighbourDistance * height_) {
-      return true;  // the second: a joint of loose pieces, as robots have; the third: joints that no bones name
+    if (a == b || hangs_on(a, b) || hangs_on(b, a) || contour.rest_distance < kNeighbourDistance * height_) {
+      return true;  // the last: joints that no bones name
     }
     const bool are_near = hangs_twice(a, b) || hangs_twice(b, a);
     const bool lie_close = are_near && (contour.facing > kFoldFacing || !contour.is_one_piece);
-    return (are_joined || are_siblings(a, b) || lie_close) && contour.rest_distance < kFoldDistance * height_;
+    return (are_siblings(a, b) || lie_close) && contour.rest_distance < kFoldDistance * height_;
   }
 
-  PenetrationClass class_of(const Contour& contour, const Penetration& of) const {
+  PenetrationClass class_of(const Contour& contour, const Penetration& of, double seen_length) const {
     // Files without a unit make giants and dwarfs.
     const double few = std::min(std::max(kTouchMetres * metre_, kTouchMin * height_), kTouchMax * height_);
-    const double touch = job_.touch_depth > 0 ? double{job_.touch_depth} : few * (1 + std::max(0.0, contour.facing));
+    const double touch =
+        job_.touch_depth > 0 ? double{job_.touch_depth} : few * (1 + (kTouchFlat - 1) * std::max(0.0, contour.facing));
+    const double side = kTouchSide * std::min(few, touch);
     if (2 * contour.touching >= 1) {
       return SC_CLASS_REST;
     }
-    if (of.visible <= 0 || (!contour.is_one_piece && contour.rest_distance < kShellDistance * height_)) {
+    if (double{of.visible} < kHidden || (!contour.is_one_piece && contour.rest_distance < kShellDistance * height_)) {
       return SC_CLASS_SHELL;
     }
     if (of.depth < touch) {
@@ -276,7 +282,7 @@ class Measurer {
     if (is_fold(contour, of.part_a, of.part_b)) {
       return of.depth > kDeepFold * height_ && contour.is_one_piece ? SC_CLASS_DEEP_FOLD : SC_CLASS_FOLD;
     }
-    return SC_CLASS_PENETRATION;
+    return of.depth * seen_length < side * side ? SC_CLASS_TOUCH : SC_CLASS_PENETRATION;
   }
 
   const AssetView& asset_;

@@ -61,40 +61,49 @@ bool Visibility::is_free(const Double3& from, const Double3& direction) {
   return true;
 }
 
-bool Visibility::is_seen(const Segment3& segment, const Double3 (&axes)[3], double clearance, Double3& free) {
+double Visibility::best_cosine(const Segment3& segment, const Double3 (&axes)[3], double clearance, Double3& free) {
   Double3 out = segment.normal_a + segment.normal_b;
   if (!normalize(out)) {
     out = segment.normal_a;
   }
   const Double3 from = 0.5 * (segment.from + segment.to) + clearance * out;
-  if (is_free(from, out) || is_free(from, free)) {
-    return true;
+  const auto cosine_of = [&](const Double3& direction) {
+    return std::max(0.0, std::min(dot(direction, segment.normal_a), dot(direction, segment.normal_b)));
+  };
+  if (is_free(from, out)) {
+    return cosine_of(out);  // none is better
   }
+  double best = is_free(from, free) ? cosine_of(free) : -1;
   for (int k = 0; k < 27; ++k) {
     Double3 direction = double(k % 3 - 1) * axes[0] + (double(k / 3 % 3 - 1) * axes[1] + double(k / 9 - 1) * axes[2]);
-    if (normalize(direction) && is_free(from, direction)) {
+    if (normalize(direction) && cosine_of(direction) > best && is_free(from, direction)) {
+      best = cosine_of(direction);
       free = direction;
-      return true;
     }
   }
-  return false;
+  return best;
 }
 
-double Visibility::share(const Contour& contour, const Double3 (&axes)[3], double clearance) {
+Seen Visibility::look(const Contour& contour, const Double3 (&axes)[3], double clearance) {
   std::fill(blockers_, blockers_ + kBlockers, kNoPlace);
   const std::size_t size = contour.segments.size;
   Double3 free = axes[0];  // the last ray that left: likely to be free again
   for (const std::size_t wanted : {kSampled, kSearched}) {
     const std::size_t step = (size + wanted - 1) / wanted, first = step / 2;
+    const std::size_t count = (size - first + step - 1) / step;
     std::size_t seen = 0;
+    double cosines = 0;
     for (std::size_t i = first; i < size && (wanted == kSampled || seen == 0); i += step) {
-      seen += is_seen(contour.segments[i], axes, clearance, free) ? 1 : 0;
+      const double cosine = best_cosine(contour.segments[i], axes, clearance, free);
+      seen += cosine >= 0 ? 1 : 0;
+      cosines += std::max(0.0, cosine);
     }
     if (seen > 0 || step == 1) {
-      return static_cast<double>(seen) / static_cast<double>((size - first + step - 1) / step);
+      return {static_cast<double>(seen) / static_cast<double>(count),
+              contour.length * cosines / static_cast<double>(count)};
     }
   }
-  return 0;
+  return {0, 0};
 }
 
 }  // namespace spherechain

@@ -6,18 +6,24 @@
 namespace spherechain {
 
 // What of a contour can be seen from far away.
+struct Seen {
+  double share;   // of the contour's segments
+  double length;  // of the contour; a segment counts less where one looks along one of its sides
+};
+
 class Visibility {
  public:
   explicit Visibility(const PosedSkin& skin) : skin_(skin) {}
 
-  // The share of the contour's segments, of samples, from which some ray leaves the body without meeting it. Rays start
-  // `clearance` away from the skin, between the two surfaces. `axes` are three directions at right angles.
-  double share(const Contour& contour, const Double3 (&axes)[3], double clearance);
+  // Of samples of the contour's segments, from which does some ray leave the body without meeting it? Rays start
+  // `clearance` away from the skin, between the two surfaces. `axes` are three directions at right angles. A segment
+  // counts by the cosine between a ray and the normal of the side that it meets more flatly: the best free ray's.
+  Seen look(const Contour& contour, const Double3 (&axes)[3], double clearance);
 
  private:
   bool is_free(const Double3& from, const Double3& direction);
-  // `free`: a direction to try first; the one that is free, where another is.
-  bool is_seen(const Segment3& segment, const Double3 (&axes)[3], double clearance, Double3& free);
+  // That cosine, at least 0; -1 where no ray is free. `free`: a direction to try first; then the best one, if any.
+  double best_cosine(const Segment3& segment, const Double3 (&axes)[3], double clearance, Double3& free);
 
   const PosedSkin& skin_;
   // Triangles that rays met last: likely to stop the next.

@@ -157,6 +157,16 @@ TEST_CASE("spots that are near at rest make a fold, layers a shell, all others a
   CHECK(kind(0.3) == SC_CLASS_PENETRATION);
 }
 
+TEST_CASE("a line that is too short to be seen makes a touch, though it is deep") {
+  const auto found = [](double half) {  // of a rod, at rest far from the box
+    const TwoShapes shapes(box(1, 1, 1), box(0.5, half, half));
+    return only(shapes.measure(shifted(1.1, 0.3, 0.2)));
+  };
+  CHECK(found(0.02).depth == doctest::Approx(0.4).epsilon(1e-3));
+  CHECK(found(0.02).kind == SC_CLASS_TOUCH);
+  CHECK(found(0.2).kind == SC_CLASS_PENETRATION);
+}
+
 TEST_CASE("the quick form and every target agree with the full form, and a kept direction does not flicker") {
   const TwoShapes balls(ball(1, 16), ball(1, 16));
   const auto place = shifted(1.3, 0.4, 0);

@@ -3,8 +3,8 @@
 export const CLASSES = ['as at rest', 'shell', 'touch', 'fold', 'deep fold', 'penetration'];
 export const MEANINGS = [
   'The same spots are this near in the rest pose, too.',
-  'Layers of the same place, such as a garment on the body, or nothing of it can be seen.',
-  'Too shallow to be seen.',
+  'Layers of the same place, such as a garment on the body, or most of it is hidden.',
+  'Too little of it to be seen.',
   'Neighbours of a joint that bends.',
   'A joint whose skin is far inside itself. A fault.',
   'One part is inside another. A fault.',
