@@ -297,7 +297,10 @@ std::int32_t Sweep::find_hidden(float* const (&low)[3], float* const (&high)[3],
 template <typename Wants, typename Visit>
 void Sweep::for_pairs(std::size_t first, const Wants& wants, const Visit& visit) const {
   const std::size_t a_blocks = a_.block_count, b_blocks = b_.block_count;
-  const auto start = static_cast<std::size_t>(std::lower_bound(b_.block, b_.block + b_blocks, first) - b_.block);
+  // A lambda: without one the function would be a symbol of the library.
+  const auto is_before = [](std::uint32_t block, std::size_t other) { return block < other; };
+  const auto start =
+      static_cast<std::size_t>(std::lower_bound(b_.block, b_.block + b_blocks, first, is_before) - b_.block);
   std::int32_t near[kBlock], hides[kBlock];
   for (std::size_t turn = 0; turn < b_blocks; ++turn) {
     const std::size_t q = (start + turn) % b_blocks, b_first = kBlock * b_.block[q];
