@@ -22,13 +22,13 @@ namespace spherechain::baker {
 namespace {
 
 constexpr std::uint32_t kNoTriangle = 0xFFFFFFFF;
-constexpr std::size_t kRun = 32;
+constexpr std::size_t kRun = 32;  // triangles that are left out of a picture together
 constexpr int kProbeSize = 24;
 constexpr int kWidth = 144, kHeight = 144, kSamples = 2;  // of a picture; samples a pixel in each direction
 using Colour = std::array<double, 3>;
 constexpr std::array<Colour, 3> kColours{{{0.79, 0.76, 0.71}, {0.83, 0.12, 0.17}, {0.95, 0.55, 0.1}}};  // skin, patches
 
-// Of a display, for kTones + 1 strengths of light from 0 to 1.
+// The pixel values of kTones + 1 strengths of light from 0 to 1.
 constexpr double kTones = 1023;
 std::vector<unsigned char> make_tones() {
   std::vector<unsigned char> out;
@@ -53,7 +53,7 @@ int pixel(float at, int least, int most) {
   return !(at > static_cast<float>(least)) ? least : at < static_cast<float>(most) ? static_cast<int>(at) : most;
 }
 
-// Runs of kRun triangles that lie together, whatever their order in the file: halves along the longest axis, again.
+// Sorts triangles so that each kRun in a row lie together: halves them along the longest axis, again and again.
 void sort_by_place(const std::vector<Vec3>& centers, std::uint32_t* begin, std::uint32_t* end) {
   if (end - begin <= static_cast<std::ptrdiff_t>(kRun)) return;
   Eigen::AlignedBox3d box;
@@ -156,9 +156,8 @@ void Picture::draw(const View& view, const Patches* only) {
   for (std::size_t run = 0; run < balls_.size(); ++run) {
     const Eigen::Vector3f p = seen(balls_[run].center);
     const float reach = static_cast<float>(view.scale) * balls_[run].radius;
-    if (p[2] + balls_[run].radius < least || p[0] + reach < 0 || p[1] + reach < 0 || p[0] - reach > width ||
-        p[1] - reach > height)
-      continue;
+    const bool is_aside = p[0] + reach < 0 || p[1] + reach < 0 || p[0] - reach > width || p[1] - reach > height;
+    if (is_aside || p[2] + balls_[run].radius < least) continue;
     const std::size_t end = std::min(kRun * (run + 1), order_.size());
     for (std::size_t i = kRun * run; i < end; ++i) draw_triangle(order_[i]);
   }

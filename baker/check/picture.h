@@ -43,7 +43,7 @@ class Picture {
     Vec3 right, up, back, middle;
     double scale;  // pixels a unit
     int width, height;
-    double least = -HUGE_VAL;  // along `back`: what lies all farther away is left out
+    double least = -HUGE_VAL;  // along `back`: triangles that lie wholly behind it are left out
   };
   View view_from(const Vec3& back, const Vec3& middle, double extent, int width, int height) const;
   // Into ids_ and depths_: all triangles, or those of the patches.

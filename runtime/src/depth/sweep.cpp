@@ -2,15 +2,13 @@
 #include "depth/sweep.h"
 
 #include <algorithm>
-#include <cfloat>
 
 #include "pairs/pair_bits.h"
 
 namespace spherechain {
 namespace {
 
-constexpr int kPassesMax = 64;      // of hostile input; of bodies a handful
-constexpr float kRounding = 1e-5F;  // of sums of coordinates, to their size: many times more than there is
+constexpr int kPassesMax = 64;  // of hostile input; of bodies a handful
 
 bool is_on(const Span<const std::uint64_t>& bits, std::size_t i) {
   return bits.size > 0 && (bits[i / 64] >> (i % 64) & 1) != 0;
@@ -42,82 +40,6 @@ bool PairRule::counts(std::uint32_t a, std::uint32_t b) const {
                              Pair{std::min(p, q), std::max(p, q)});
 }
 
-void Sweep::Boxes::take(WordMemory& memory, std::size_t capacity) {
-  const std::size_t blocks = (capacity + kBlock - 1) / kBlock;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    memory.take(low[axis], blocks * kBlock);
-    memory.take(high[axis], blocks * kBlock);
-    memory.take(block_low[axis], blocks + kBlock);
-    memory.take(block_high[axis], blocks + kBlock);
-    memory.take(middle[axis], blocks);
-    memory.take(half[axis], blocks);
-  }
-  memory.take(block, blocks);
-  memory.take(triangle, capacity);
-  memory.take(corners, 3 * capacity);
-}
-
-// Intervals that are no shorter than those of the triangles' boxes, of all blocks.
-void Sweep::Boxes::view_blocks(const View& view) {
-  block_count = (count + kBlock - 1) / kBlock;
-  const Double3* const axes[3] = {&view.u, &view.v, &view.d};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const Vec3 a = to_float(*axes[axis]);
-    for (std::size_t i = 0; i < block_count; ++i) {
-      const float at = a.x * middle[0][i] + (a.y * middle[1][i] + a.z * middle[2][i]);
-      const float reach = std::abs(a.x) * half[0][i] + (std::abs(a.y) * half[1][i] + std::abs(a.z) * half[2][i]);
-      block_low[axis][i] = at - reach;
-      block_high[axis][i] = at + reach;
-    }
-  }
-  for (std::size_t i = 0; i < block_count; ++i) {
-    block[i] = static_cast<std::uint32_t>(i);
-  }
-}
-
-// Those that reach into a box; what is not finite stays.
-void Sweep::Boxes::keep_blocks(const float (&least)[3], const float (&most)[3]) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < block_count; ++i) {
-    bool is_outside = false;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      is_outside = is_outside || block_low[axis][i] > most[axis] || block_high[axis][i] < least[axis];
-    }
-    if (!is_outside) {
-      block[kept] = block[i];
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        block_low[axis][kept] = block_low[axis][i];
-        block_high[axis][kept] = block_high[axis][i];
-      }
-      ++kept;
-    }
-  }
-  block_count = kept;
-}
-
-void Sweep::Boxes::view(const float* const (&seen)[3]) {
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const float* const at = seen[axis];
-    for (std::size_t i = 0; i < block_count; ++i) {
-      const std::size_t first = kBlock * block[i], end = std::min(first + kBlock, count);
-      float least = FLT_MAX, most = -FLT_MAX;
-      for (std::size_t t = first; t < end; ++t) {
-        const float p = at[corners[3 * t]], q = at[corners[3 * t + 1]], r = at[corners[3 * t + 2]];
-        low[axis][t] = std::min(std::min(p, q), r);
-        high[axis][t] = std::max(std::max(p, q), r);
-        least = std::min(least, low[axis][t]);
-        most = std::max(most, high[axis][t]);
-      }
-      std::fill(low[axis] + end, low[axis] + first + kBlock, FLT_MAX);
-      std::fill(high[axis] + end, high[axis] + first + kBlock, -FLT_MAX);
-      block_low[axis][i] = least;
-      block_high[axis][i] = most;
-    }
-    std::fill(block_low[axis] + block_count, block_low[axis] + block_count + kBlock, FLT_MAX);
-    std::fill(block_high[axis] + block_count, block_high[axis] + block_count + kBlock, -FLT_MAX);
-  }
-}
-
 void Sweep::take(WordMemory& memory, std::size_t triangle_count, std::size_t vertex_count) {
   a_.take(memory, triangle_count);
   b_.take(memory, triangle_count);
@@ -131,69 +53,7 @@ void Sweep::take(WordMemory& memory, std::size_t triangle_count, std::size_t ver
 
 void Sweep::clear(std::size_t vertex_count) { std::fill(vertices_.place, vertices_.place + vertex_count, kNoPlace); }
 
-// Near each other in memory: boxes are made of them again and again.
-void Sweep::list_vertices(Boxes& boxes) {
-  for (std::size_t i = 0; i < boxes.count; ++i) {
-    const std::uint32_t* const corners = skin_.surface->triangle_vertices.data + 3 * std::size_t{boxes.triangle[i]};
-    for (std::size_t k = 0; k < 3; ++k) {
-      std::uint32_t& place = vertices_.place[corners[k]];
-      if (place == kNoPlace) {
-        place = static_cast<std::uint32_t>(vertices_.count);
-        vertices_.vertex[vertices_.count] = corners[k];
-        const float* const p = skin_.positions + 3 * std::size_t{corners[k]};
-        vertices_.at[0][vertices_.count] = static_cast<float>(double{p[0]} - vertices_.origin.x);
-        vertices_.at[1][vertices_.count] = static_cast<float>(double{p[1]} - vertices_.origin.y);
-        vertices_.at[2][vertices_.count] = static_cast<float>(double{p[2]} - vertices_.origin.z);
-        ++vertices_.count;
-      }
-      boxes.corners[3 * i + k] = place;
-    }
-  }
-}
-
 void Sweep::look_along(const Double3& direction) { view_ = View(direction, vertices_.origin); }
-
-// Boxes need no more than single precision: their triangles are compared in double precision.
-void Sweep::see_boxes(double depth) {
-  a_.view_blocks(view_);
-  b_.view_blocks(view_);
-  // A side's blocks stay where they reach into the box around the other's; that one is smaller the second time. To meet
-  // a, b rises: so far at least.
-  const float rise = static_cast<float>(depth) * (1 - kRounding);
-  for (int turn = 0; turn < 2; ++turn) {
-    for (Boxes* const side : {&a_, &b_}) {
-      const Boxes& other = side == &a_ ? b_ : a_;
-      float least[3], most[3];
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        least[axis] = FLT_MAX;
-        most[axis] = -FLT_MAX;
-        for (std::size_t i = 0; i < other.block_count; ++i) {
-          least[axis] = std::min(least[axis], other.block_low[axis][i]);
-          most[axis] = std::max(most[axis], other.block_high[axis][i]);
-        }
-      }
-      if (side == &a_) {
-        least[2] += rise;
-        most[2] = FLT_MAX;
-      } else {
-        least[2] = -FLT_MAX;
-        most[2] -= rise;
-      }
-      side->keep_blocks(least, most);
-    }
-  }
-  const float *const x = vertices_.at[0], *const y = vertices_.at[1], *const z = vertices_.at[2];
-  const Double3* const axes[3] = {&view_.u, &view_.v, &view_.d};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const Vec3 a = to_float(*axes[axis]);
-    float* const out = vertices_.seen[axis];
-    for (std::size_t i = 0; i < vertices_.count; ++i) {
-      out[i] = a.x * x[i] + (a.y * y[i] + a.z * z[i]);
-    }
-  }
-  a_.view(vertices_.seen);
-  b_.view(vertices_.seen);
-}
 
 void Sweep::set_sides(Span<const TriangleRun> a, Span<const TriangleRun> b, const Double3& origin) {
   side_a_ = a;
@@ -211,73 +71,8 @@ void Sweep::keep_on_way(const Double3& direction, double depth) {
         {part(-direction.x), part(-direction.y), part(-direction.z)}});
 }
 
-void Sweep::keep(const Room& room) {
-  for (std::size_t i = 0; i < vertices_.count; ++i) {
-    vertices_.place[vertices_.vertex[i]] = kNoPlace;
-  }
-  vertices_.count = 0;
-  keep_runs(side_a_, side_b_, room, a_);
-  keep_runs(side_b_, side_a_, {room.down, room.up}, b_);
-  list_vertices(a_);
-  list_vertices(b_);
-}
-
-// By the box of the run's cluster, of the blocks that the run comes to lie in.
-void Sweep::widen_blocks(const TriangleRun& run, Boxes& out) const {
-  const double origin[3] = {vertices_.origin.x, vertices_.origin.y, vertices_.origin.z};
-  for (std::size_t i = out.count / kBlock; kBlock * i < out.count + run.count; ++i) {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      auto low = static_cast<float>(double{skin_.low[axis][run.cluster]} - origin[axis]);
-      auto high = static_cast<float>(double{skin_.high[axis][run.cluster]} - origin[axis]);
-      if (kBlock * i < out.count) {
-        low = std::min(low, out.middle[axis][i] - out.half[axis][i]);
-        high = std::max(high, out.middle[axis][i] + out.half[axis][i]);
-      }
-      out.middle[axis][i] = 0.5F * (low + high);
-      out.half[axis][i] = 0.5F * (high - low) + kRounding * std::max(std::abs(low), std::abs(high));
-    }
-  }
-}
-
-// Runs of whose cluster the box meets one of the other side's that goes so far up and down along each axis.
-void Sweep::keep_runs(const Span<const TriangleRun>& side, const Span<const TriangleRun>& other, const Room& room,
-                      Boxes& out) {
-  const double up[3] = {room.up.x + gap_, room.up.y + gap_, room.up.z + gap_};
-  const double down[3] = {room.down.x + gap_, room.down.y + gap_, room.down.z + gap_};
-  double highest[3], lowest[3];  // of them all
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    highest[axis] = -HUGE_VAL;
-    lowest[axis] = HUGE_VAL;
-    for (const TriangleRun& from : other) {
-      highest[axis] = std::max(highest[axis], double{skin_.high[axis][from.cluster]});
-      lowest[axis] = std::min(lowest[axis], double{skin_.low[axis][from.cluster]});
-    }
-  }
-  out.count = 0;
-  for (const TriangleRun& run : side) {
-    const auto is_near = [&](const auto& high, const auto& low) {
-      bool near = true;
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        near = near && double{skin_.low[axis][run.cluster]} <= high(axis) + up[axis] &&
-               double{skin_.high[axis][run.cluster]} >= low(axis) - down[axis];
-      }
-      return near;
-    };
-    const auto is_near_run = [&](const TriangleRun& from) {
-      return is_near([&](std::size_t axis) { return double{skin_.high[axis][from.cluster]}; },
-                     [&](std::size_t axis) { return double{skin_.low[axis][from.cluster]}; });
-    };
-    if (is_near([&](std::size_t axis) { return highest[axis]; }, [&](std::size_t axis) { return lowest[axis]; }) &&
-        std::any_of(other.begin(), other.end(), is_near_run)) {
-      widen_blocks(run, out);
-      for (std::uint32_t i = 0; i < run.count; ++i) {
-        out.triangle[out.count++] = run.first + i;
-      }
-    }
-  }
-}
-
-// Which of kBlock boxes from `first` on hide, seen along d, box `i` of the others? -1 each; 0 if none does.
+// Compares kBlock boxes from `first` on with box `i` of the others, in u and v: -1 for each that overlaps it, else 0.
+// Returns 0 if none does.
 std::int32_t Sweep::find_hidden(float* const (&low)[3], float* const (&high)[3], std::size_t first,
                                 float* const (&other_low)[3], float* const (&other_high)[3], std::size_t i,
                                 std::int32_t (&hides)[kBlock]) {

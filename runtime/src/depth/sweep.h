@@ -62,12 +62,12 @@ class Sweep {
   struct Boxes {
     std::uint32_t *triangle = nullptr, *corners = nullptr;  // three places in vertices_ each
     std::size_t count = 0;
-    float *middle[3] = {}, *half[3] = {};  // of a box around a block, not seen from anywhere
-    // Of what may meet the other side in this view.
-    std::uint32_t* block = nullptr;  // in ascending order
+    float *middle[3] = {}, *half[3] = {};  // a block's box along x, y, z, relative to vertices_.origin
+    // The blocks that may meet the other side in this view.
+    std::uint32_t* block = nullptr;  // their numbers, ascending
     std::size_t block_count = 0;
-    float *block_low[3] = {}, *block_high[3] = {};  // of each of those
-    float *low[3] = {}, *high[3] = {};              // of a triangle
+    float *block_low[3] = {}, *block_high[3] = {};  // their boxes, in the order of `block`
+    float *low[3] = {}, *high[3] = {};              // their triangles' boxes; the others' are not set
 
     void take(WordMemory& memory, std::size_t capacity);
     void view_blocks(const View& view);
@@ -83,7 +83,7 @@ class Sweep {
   };
   void list_vertices(Boxes& boxes);
   void look_along(const Double3& direction);
-  // For ways that are longer than `depth`.
+  // Boxes of all blocks that can block a way longer than `depth`.
   void see_boxes(double depth);
   struct Room {
     Double3 up, down;  // along each axis
