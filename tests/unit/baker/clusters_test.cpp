@@ -310,7 +310,7 @@ TEST_CASE("contacts at rest are CGAL's intersections of the rest pose between tr
   CHECK(all > 0);
 }
 
-TEST_CASE("clusters.triangles is how many triangles a cluster has at most") {
+TEST_CASE("clusters.triangles is how many triangles a cluster has at most" * doctest::test_suite("many bakes")) {
   const Bake small = rebake(baked_person(), make_settings("balanced", R"({"clusters": {"triangles": 16}})", "test"));
   CHECK(small.clusters.clusters.size() > 2 * baked_person().clusters.clusters.size());
   for (const Cluster& cluster : small.clusters.clusters) CHECK(cluster.triangles.size() <= 16);
@@ -318,7 +318,8 @@ TEST_CASE("clusters.triangles is how many triangles a cluster has at most") {
   CHECK(open_asset_of(small).surface().clusters.size == small.clusters.clusters.size());
 }
 
-TEST_CASE("clusters.branching is how many children a node of too many triangles is divided into") {
+TEST_CASE("clusters.branching is how many children a node of too many triangles is divided into" *
+          doctest::test_suite("many bakes")) {
   for (const std::size_t branching : {2, 4, 8}) {
     CAPTURE(branching);
     const Bake bake =

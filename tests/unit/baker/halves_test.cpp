@@ -134,7 +134,7 @@ TEST_CASE("a limit on the spheres is kept, few or many, and more of them fit clo
   }
 }
 
-TEST_CASE("mirrored parts have as many spheres") {
+TEST_CASE("mirrored parts have as many spheres" * doctest::test_suite("many bakes")) {
   const FittedCharacter fit = fitted(mesh_of(hand()));
   const auto spheres_of = [&](const std::string& name) {
     for (std::size_t region = 0; region < fit.segmentation.regions.count(); ++region) {
@@ -148,7 +148,7 @@ TEST_CASE("mirrored parts have as many spheres") {
   }
 }
 
-TEST_CASE("a part too small for a sphere of its own joins the one above it") {
+TEST_CASE("a part too small for a sphere of its own joins the one above it" * doctest::test_suite("many bakes")) {
   Hand made = hand();
   SourceMesh mesh = mesh_of(made);
   // One triangle of the last finger's tip hangs on a ring of its own.
@@ -205,7 +205,8 @@ TEST_CASE("a body of few triangles bakes: two in a plane, a bone with a single o
   CHECK(fit.segmentation.regions.name(0) != fit.segmentation.regions.name(1));
 }
 
-TEST_CASE("along a tree of parts every two spheres of different leaves share a chain") {
+TEST_CASE("along a tree of parts every two spheres of different leaves share a chain" *
+          doctest::test_suite("many bakes")) {
   const FittedCharacter fit = fitted(mesh_of(hand()));
   const std::vector<std::uint8_t>& parents = fit.segmentation.regions.parents;
   const Chains chains = build_tree_chains(fit.spheres, parents);
@@ -356,7 +357,8 @@ TEST_CASE("a sphere follows skin that moves alike: it neither grows nor leaves i
   }
 }
 
-TEST_CASE("a facing direction in the settings is forward where parts follow the bones, too") {
+TEST_CASE("a facing direction in the settings is forward where parts follow the bones, too" *
+          doctest::test_suite("many bakes")) {
   BakeSettings settings;
   settings.segment.facing = Vec3(0, 0.5, -2);
   const BodyFrame frame = fitted(mesh_of(hand()), settings).segmentation.regions.frame;

@@ -157,6 +157,32 @@ TEST_CASE("spots that are near at rest make a fold, layers a shell, all others a
   CHECK(kind(0.3) == SC_CLASS_PENETRATION);
 }
 
+TEST_CASE("a limb folds into the limb that it hangs on; others it penetrates") {
+  const auto kind = [](bool is_child) {
+    const TwoShapes rods(box(4, 1, 1), box(2, 0.8, 0.8), 12, is_child);
+    return only(rods.measure(shifted(0.3, 1.4, 0.1))).kind;
+  };
+  CHECK(kind(false) == SC_CLASS_PENETRATION);
+  CHECK(kind(true) == SC_CLASS_FOLD);
+}
+
+TEST_CASE("what a third layer hides is a shell, not a fault") {
+  const auto found = [](bool is_hidden) {
+    Shape a = box(1, 1, 1);
+    if (is_hidden) {
+      const Shape around = box(6, 6, 6);
+      const auto first = static_cast<std::uint32_t>(a.positions.size());
+      a.positions.insert(a.positions.end(), around.positions.begin(), around.positions.end());
+      for (const auto& t : around.triangles) a.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+    return only(TwoShapes(a, box(1, 1, 1)).measure(shifted(1.6, 0.1, 0.2)));
+  };
+  CHECK(found(false).visible > 0.3F);
+  CHECK(found(false).kind == SC_CLASS_PENETRATION);
+  CHECK(found(true).visible == 0);
+  CHECK(found(true).kind == SC_CLASS_SHELL);
+}
+
 TEST_CASE("a line that is too short to be seen makes a touch, though it is deep") {
   const auto found = [](double half) {  // of a rod, at rest far from the box
     const TwoShapes shapes(box(1, 1, 1), box(0.5, half, half));

@@ -80,7 +80,7 @@ Shape box(double x, double y, double z) {
   return out;
 }
 
-TwoShapes::TwoShapes(const Shape& a, const Shape& b, double apart)
+TwoShapes::TwoShapes(const Shape& a, const Shape& b, double apart, bool is_child)
     : first_of_b_(a.positions.size()), apart_(apart), asset_([&] {
         Glb glb;
         std::vector<float> weights, inverse_binds;
@@ -99,8 +99,11 @@ TwoShapes::TwoShapes(const Shape& a, const Shape& b, double apart)
             corners.insert(corners.end(), {first + t[0], first + t[1], first + t[2]});
           for (int i = 0; i < 16; ++i) inverse_binds.push_back(i % 5 == 0 ? 1.0F : 0.0F);
         }
-        glb.json["nodes"] = {
-            {{"name", "root"}, {"children", {1, 2}}}, {{"name", "a"}}, {{"name", "b"}}, {{"mesh", 0}, {"skin", 0}}};
+        glb.json["nodes"] = {{{"name", "root"}, {"children", nlohmann::json::array({1})}},
+                             {{"name", "a"}},
+                             {{"name", "b"}},
+                             {{"mesh", 0}, {"skin", 0}}};
+        glb.json["nodes"][is_child ? 1 : 0]["children"].push_back(2);
         glb.json["scenes"] = {{{"nodes", {0, 3}}}};
         glb.json["meshes"] = {{{"primitives",
                                 {{{"attributes",

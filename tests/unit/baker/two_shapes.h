@@ -23,8 +23,8 @@ Shape cylinder(double radius, double half, int rings);
 
 class TwoShapes {
  public:
-  // At rest, b stands `apart` from where it is given, along x.
-  TwoShapes(const Shape& a, const Shape& b, double apart = 40);
+  // At rest, b stands `apart` from where it is given, along x. Its joint is a's child or its sibling.
+  TwoShapes(const Shape& a, const Shape& b, double apart = 40, bool is_child = false);
 
   using Place = std::function<spherechain::baker::Vec3(const spherechain::baker::Vec3&)>;
   // b goes through `place`; a stays; then both go through `both`. All that the runtime finds, by the job's other
