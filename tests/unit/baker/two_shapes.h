@@ -23,7 +23,7 @@ Shape cylinder(double radius, double half, int rings);
 
 class TwoShapes {
  public:
-  // At rest, b stands `apart` from where it is given, along x. Its joint is a's child or its sibling.
+  // At rest, b stands `apart` from where it is given, along x. The joints are siblings, unless b's is a's child.
   TwoShapes(const Shape& a, const Shape& b, double apart = 40, bool is_child = false);
 
   using Place = std::function<spherechain::baker::Vec3(const spherechain::baker::Vec3&)>;
