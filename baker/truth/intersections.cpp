@@ -22,31 +22,50 @@ typename Kernel::Triangle_3 triangle_at(const TruthSurface& surface, const std::
   return {corner(0), corner(1), corner(2)};
 }
 
+// Those without area have no box: they intersect nothing.
+struct ExactTriangles {
+  using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+  std::vector<Kernel::Triangle_3> triangles;
+  std::vector<Box> boxes;
+
+  ExactTriangles(const TruthSurface& surface, const std::vector<float>& positions) {
+    triangles.reserve(surface.corners.size());
+    boxes.reserve(surface.corners.size());
+    for (Index i = 0; i < surface.corners.size(); ++i) {
+      triangles.push_back(triangle_at<Kernel>(surface, positions, i));
+      if (!triangles[i].is_degenerate()) boxes.emplace_back(triangles[i].bbox(), i);
+    }
+  }
+};
+
 }  // namespace
 
 Intersections find_intersections(const TruthSurface& surface, const std::vector<float>& positions) {
-  using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
   Intersections out;
-  std::vector<Kernel::Triangle_3> triangles;
-  std::vector<Box> boxes;
-  triangles.reserve(surface.corners.size());
-  boxes.reserve(surface.corners.size());
-  for (Index i = 0; i < surface.corners.size(); ++i) {
-    triangles.push_back(triangle_at<Kernel>(surface, positions, i));
-    if (triangles[i].is_degenerate()) {
-      ++out.degenerate;
-    } else {
-      boxes.emplace_back(triangles[i].bbox(), i);
-    }
-  }
+  ExactTriangles body(surface, positions);
+  out.degenerate = surface.corners.size() - body.boxes.size();
   const auto meet = [&](const Box& l, const Box& r) {
     const Index a = std::min(l.info(), r.info()), b = std::max(l.info(), r.info());
     if (are_neighbours(surface.welded[a], surface.welded[b])) return;
-    if (!CGAL::do_intersect(triangles[a], triangles[b])) return;
+    if (!CGAL::do_intersect(body.triangles[a], body.triangles[b])) return;
     out.pairs.push_back({surface.source_triangle[a], surface.source_triangle[b]});
   };
-  CGAL::box_self_intersection_d(boxes.begin(), boxes.end(), meet);
+  CGAL::box_self_intersection_d(body.boxes.begin(), body.boxes.end(), meet);
   std::sort(out.pairs.begin(), out.pairs.end());
+  return out;
+}
+
+std::vector<Pair> find_intersections(const TruthSurface& a, const std::vector<float>& positions_a,
+                                     const TruthSurface& b, const std::vector<float>& positions_b) {
+  std::vector<Pair> out;
+  ExactTriangles of_a(a, positions_a), of_b(b, positions_b);
+  CGAL::box_intersection_d(of_a.boxes.begin(), of_a.boxes.end(), of_b.boxes.begin(), of_b.boxes.end(),
+                           [&](const Box& l, const Box& r) {
+                             if (CGAL::do_intersect(of_a.triangles[l.info()], of_b.triangles[r.info()])) {
+                               out.push_back({a.source_triangle[l.info()], b.source_triangle[r.info()]});
+                             }
+                           });
+  std::sort(out.begin(), out.end());
   return out;
 }
 

@@ -21,6 +21,11 @@ struct Intersections {
 // threads.
 Intersections find_intersections(const TruthSurface& surface, const std::vector<float>& positions);
 
+// Every pair of a triangle of one body and a triangle of another that have a point in common: as source triangles, a's
+// first.
+std::vector<Pair> find_intersections(const TruthSurface& a, const std::vector<float>& positions_a,
+                                     const TruthSurface& b, const std::vector<float>& positions_b);
+
 // Whether a triangle of the one list (places in the surface) is closer than `distance` to one of the other.
 bool any_closer(const TruthSurface& surface, const std::vector<float>& positions, const std::vector<Index>& one,
                 const std::vector<Index>& other, double distance);

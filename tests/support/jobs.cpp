@@ -112,10 +112,11 @@ std::vector<float> skin(const Asset& asset, const Pose& pose, Target target) {
   return vertices;
 }
 
-SkinContacts find_contacts(SkinContactJob job) {
-  const PreparedSkin table(*job.asset);
-  std::vector<std::uint64_t> scratch(sc_skin_scratch_words(job.asset), kDirty);
-  job.skin_table = table.words.data();
+namespace {
+
+template <typename Job>
+SkinContacts find_all(Job job, std::size_t scratch_words) {
+  std::vector<std::uint64_t> scratch(scratch_words, kDirty);
   job.scratch = scratch.data();
   job.scratch_words = scratch.size();
   SkinContacts out;
@@ -138,6 +139,21 @@ SkinContacts find_contacts(SkinContactJob job) {
     out.status = {SC_CORRUPT, SC_FIELD_NONE};
   }
   return out;
+}
+
+}  // namespace
+
+SkinContacts find_contacts(SkinContactJob job) {
+  const PreparedSkin table(*job.asset);
+  job.skin_table = table.words.data();
+  return find_all(job, sc_skin_scratch_words(job.asset));
+}
+
+SkinContacts find_contacts(BodyContactJob job) {
+  const PreparedSkin a(*job.a.asset), b(*job.b.asset);
+  job.a.skin_table = a.words.data();
+  job.b.skin_table = b.words.data();
+  return find_all(job, sc_body_scratch_words(job.a.asset, job.b.asset));
 }
 
 std::vector<Penetration> measure(PenetrationJob job, Target target) {

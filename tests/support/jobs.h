@@ -51,9 +51,10 @@ struct SkinContacts {
   std::vector<TriangleContact> triangles;
 };
 
-// Runs `job`, which needs no outputs, scratch memory or skin table, to count and then with exactly sized lists.
+// Runs `job`, which needs no outputs, scratch memory or skin tables, to count and then with exactly sized lists.
 // SC_CORRUPT where the runs find different things.
 SkinContacts find_contacts(SkinContactJob job);
+SkinContacts find_contacts(BodyContactJob job);
 
 // The same for the measure of contacts; nothing where it fails.
 std::vector<Penetration> measure(PenetrationJob job, Target target);

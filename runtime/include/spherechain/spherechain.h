@@ -3,6 +3,7 @@
 #pragma once
 
 #include "spherechain/asset.h"
+#include "spherechain/bodies.h"
 #include "spherechain/character.h"
 #include "spherechain/crowd.h"
 #include "spherechain/detect.h"

@@ -22,9 +22,10 @@ void ContactCollector::end_spheres() {
 }
 
 bool ContactCollector::share_a_position(const Candidate& candidate) const {
+  const Surface& surface = *a_.surface;
   const auto weld = [&](std::size_t cluster, std::size_t triangle, std::size_t corner) {
-    const std::size_t place = surface_.corners[3 * triangle + corner];
-    return surface_.welds[surface_.cluster_vertices[surface_.clusters[cluster].first_vertex + place]];
+    const std::size_t place = surface.corners[3 * triangle + corner];
+    return surface.welds[surface.cluster_vertices[surface.clusters[cluster].first_vertex + place]];
   };
   for (std::size_t i = 0; i < 3; ++i) {
     const std::uint32_t own = weld(candidate.cluster_a, candidate.triangle_a, i);
@@ -37,20 +38,27 @@ bool ContactCollector::share_a_position(const Candidate& candidate) const {
   return false;
 }
 
+// Neighbours first: of them the exact test would need its exact arithmetic.
+bool ContactCollector::is_left_out(const Candidate& candidate) const {
+  const auto is_ignored = [](const Skin& skin, std::size_t triangle) {
+    const std::size_t part = skin.surface->parts[triangle];
+    return skin.ignored_parts != nullptr && (skin.ignored_parts[part / 64] >> part % 64 & 1) != 0;
+  };
+  return are_one_ ? share_a_position(candidate)
+                  : is_ignored(a_, candidate.triangle_a) || is_ignored(b_, candidate.triangle_b);
+}
+
 // The box is of corners alone: the same in whatever order contacts are found.
-void ContactCollector::add_parts(std::uint32_t a, std::uint32_t b, const Candidate& candidate) {
-  const std::size_t low = std::min(a, b), high = std::max(a, b);
-  const std::size_t place = low * part_table_.part_count - low * (low + 1) / 2 + high;
+void ContactCollector::add_parts(const TriangleContact& of, const Candidate& candidate) {
+  const std::uint32_t low = are_one_ ? std::min(of.part_a, of.part_b) : of.part_a;
+  const std::uint32_t high = are_one_ ? std::max(of.part_a, of.part_b) : of.part_b;
+  const std::size_t place = part_table_.place(low, high, are_one_);
   PartContact& contact = part_table_.contacts[place];
   std::uint64_t& word = part_table_.seen[place / 64];
   const std::uint64_t bit = std::uint64_t{1} << (place % 64);
   if ((word & bit) == 0) {
     word |= bit;
-    contact = {static_cast<std::uint32_t>(low),
-               static_cast<std::uint32_t>(high),
-               0,
-               {FLT_MAX, FLT_MAX, FLT_MAX},
-               {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
+    contact = {low, high, 0, {FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
   }
   ++contact.triangle_pairs;
   for (const TriangleCorners* triangle : {&candidate.a, &candidate.b}) {
@@ -63,35 +71,33 @@ void ContactCollector::add_parts(std::uint32_t a, std::uint32_t b, const Candida
 
 bool ContactCollector::decide(const Candidate& candidate) {
   const TriangleCorners *a = &candidate.a, *b = &candidate.b;
-  // Neighbours first: of them the exact test would need its exact arithmetic.
-  if (share_a_position(candidate)) {
-    return false;
-  }
-  if (!candidate.meets && !triangles_intersect(*a, *b)) {
+  if (is_left_out(candidate) || (!candidate.meets && !triangles_intersect(*a, *b))) {
     return false;
   }
   TriangleContact contact{};
-  contact.triangle_a = surface_.triangles[candidate.triangle_a];
-  contact.triangle_b = surface_.triangles[candidate.triangle_b];
-  contact.sphere_a = surface_.clusters[candidate.cluster_a].sphere;
-  contact.sphere_b = surface_.clusters[candidate.cluster_b].sphere;
-  contact.part_a = surface_.parts[candidate.triangle_a];
-  contact.part_b = surface_.parts[candidate.triangle_b];
-  if (contact.triangle_b < contact.triangle_a) {
-    std::swap(contact.triangle_a, contact.triangle_b);
-    std::swap(contact.sphere_a, contact.sphere_b);
-    std::swap(contact.part_a, contact.part_b);
-    std::swap(a, b);
-  }
-  const Span<Pair>& rest = surface_.rest_contacts;
-  if (std::binary_search(rest.begin(), rest.end(), Pair{contact.triangle_a, contact.triangle_b})) {
-    return false;
+  contact.triangle_a = a_.surface->triangles[candidate.triangle_a];
+  contact.triangle_b = b_.surface->triangles[candidate.triangle_b];
+  contact.sphere_a = a_.surface->clusters[candidate.cluster_a].sphere;
+  contact.sphere_b = b_.surface->clusters[candidate.cluster_b].sphere;
+  contact.part_a = a_.surface->parts[candidate.triangle_a];
+  contact.part_b = b_.surface->parts[candidate.triangle_b];
+  if (are_one_) {
+    if (contact.triangle_b < contact.triangle_a) {
+      std::swap(contact.triangle_a, contact.triangle_b);
+      std::swap(contact.sphere_a, contact.sphere_b);
+      std::swap(contact.part_a, contact.part_b);
+      std::swap(a, b);
+    }
+    const Span<Pair>& rest = a_.surface->rest_contacts;
+    if (std::binary_search(rest.begin(), rest.end(), Pair{contact.triangle_a, contact.triangle_b})) {
+      return false;
+    }
   }
   touch_ = true;
   if (spheres_only_) {
     return true;
   }
-  add_parts(contact.part_a, contact.part_b, candidate);
+  add_parts(contact, candidate);
   if (triangles_.is_wanted()) {
     const Segment segment = crossing_segment(*a, *b);
     contact.from = segment.from;
@@ -114,14 +120,12 @@ std::size_t ContactCollector::list_parts() const {
   return count;
 }
 
-Status ContactCollector::finish(SkinContactJob& job) {
+Status ContactCollector::finish(ContactCounts& counts) {
   end_spheres();
   triangles_.finish();
   spheres_.finish();
-  job.part_count = list_parts();
-  job.sphere_count = spheres_.count();
-  job.triangle_count = triangles_.count();
-  if (parts_.size > 0 && job.part_count > parts_.size) {
+  counts = {list_parts(), spheres_.count(), triangles_.count()};
+  if (parts_.size > 0 && counts.parts > parts_.size) {
     return refuse(SC_OVERFLOW, SC_FIELD_PARTS);
   }
   return spheres_.overflowed()     ? refuse(SC_OVERFLOW, SC_FIELD_SPHERES)

@@ -46,31 +46,74 @@ class LeastEntries {
   std::size_t count_ = 0;
 };
 
+// Where a job's contacts go, and how many there were.
+struct ContactLists {
+  Span<PartContact> parts;
+  Span<Pair> spheres;
+  Span<TriangleContact> triangles;
+  bool spheres_only;
+
+  template <typename Job>
+  static ContactLists of(const Job& job) {
+    return {{job.parts, job.part_capacity},
+            {job.spheres, job.sphere_capacity},
+            {job.triangles, job.triangle_capacity},
+            job.spheres_only != 0};
+  }
+};
+struct ContactCounts {
+  std::size_t parts, spheres, triangles;
+
+  template <typename Job>
+  void copy_to(Job& job) const {
+    job.part_count = parts;
+    job.sphere_count = spheres;
+    job.triangle_count = triangles;
+  }
+};
+
+// A body's triangles; a bit for each part that meets nothing, or null.
+struct Skin {
+  const Surface* surface;
+  const std::uint64_t* ignored_parts;
+};
+
 // Kernels call its functions, none of them inline: they must not call templates of the standard library.
 class ContactCollector {
  public:
-  ContactCollector(const Surface& surface, const PartTable& parts, SkinContactJob& job)
-      : surface_(surface),
-        part_table_(parts),
-        parts_{job.parts, job.part_capacity},
-        triangles_({job.triangles, job.triangle_capacity}),
-        spheres_({job.spheres, job.sphere_capacity}),
-        spheres_only_(job.spheres_only != 0) {}
+  // One body's contacts with itself: neighbours and what touches at rest are none.
+  ContactCollector(const Surface& surface, const PartTable& parts, const ContactLists& lists)
+      : ContactCollector({&surface, nullptr}, {&surface, nullptr}, true, parts, lists) {}
+  // Two bodies'.
+  ContactCollector(const Skin& a, const Skin& b, const PartTable& parts, const ContactLists& lists)
+      : ContactCollector(a, b, false, parts, lists) {}
 
   void begin_spheres(Pair spheres);
   bool decide(const Candidate& candidate);  // is it a contact?
-  // Brings the lists in order and sets the job's counts. SC_OK, or SC_OVERFLOW.
-  Status finish(SkinContactJob& job);
+  // Brings the lists in order. SC_OK, or SC_OVERFLOW.
+  Status finish(ContactCounts& counts);
 
  private:
+  ContactCollector(const Skin& a, const Skin& b, bool are_one, const PartTable& parts, const ContactLists& lists)
+      : a_(a),
+        b_(b),
+        are_one_(are_one),
+        part_table_(parts),
+        parts_(lists.parts),
+        triangles_(lists.triangles),
+        spheres_(lists.spheres),
+        spheres_only_(lists.spheres_only) {}
+
   void end_spheres();
   bool share_a_position(const Candidate& candidate) const;
-  void add_parts(std::uint32_t a, std::uint32_t b, const Candidate& candidate);
+  bool is_left_out(const Candidate& candidate) const;
+  void add_parts(const TriangleContact& contact, const Candidate& candidate);
   std::size_t list_parts() const;
 
-  const Surface& surface_;
+  Skin a_, b_;
+  bool are_one_;
   PartTable part_table_;
-  Span<sc_part_contact> parts_;
+  Span<PartContact> parts_;
   LeastEntries<TriangleContact> triangles_;
   LeastEntries<Pair> spheres_;
   bool spheres_only_, touch_ = false;

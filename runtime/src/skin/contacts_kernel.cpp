@@ -77,21 +77,28 @@ HWY_INLINE hn::Mask<Floats> sharing(const Block& block, std::size_t one, const B
   return hn::RebindMask(kFloats, hn::Or(hn::Or(holding(0), holding(1)), holding(2)));
 }
 
+// Two clusters' triangles, loaded.
+struct BlockPair {
+  const Block &a, &b;
+  bool share_corners;  // may triangles of the two have a corner at the same position at rest?
+  bool are_one;        // the same cluster of the same body
+};
+
 // The triangles of two registers of the blocks whose boxes touch; of one cluster each two once. Of neighbours most that
 // lies side by side shares a corner, which the collector would tell too, one by one.
-HWY_INLINE void find_places(const Block& block, std::size_t i, const Block& other, std::size_t j, bool neighbours,
-                            PlacePairs& out) {
+HWY_INLINE void find_places(const BlockPair& blocks, std::size_t i, std::size_t j, PlacePairs& out) {
   constexpr Floats kFloats;
   constexpr hn::Rebind<std::uint32_t, Floats> kTriangles;
+  const Block &block = blocks.a, &other = blocks.b;
   const std::size_t end = block.count - i < kLanes ? block.count : i + kLanes;
   const auto used = hn::FirstN(kFloats, other.count - j);
   std::size_t count = 0;
   for (std::size_t one = i; one < end; ++one) {
     auto apart = BoxProbe(box_at(block, one)).misses(other, j);
-    if (neighbours) {
+    if (blocks.share_corners) {
       apart = hn::Or(apart, sharing(block, one, other, j));
     }
-    if (block.cluster == other.cluster) {
+    if (blocks.are_one) {
       const auto triangles = hn::LoadU(kTriangles, other.triangles + j);
       const auto later = hn::Gt(triangles, hn::Set(kTriangles, block.triangles[one]));
       apart = hn::Or(apart, hn::Not(hn::RebindMask(kFloats, later)));
@@ -103,10 +110,11 @@ HWY_INLINE void find_places(const Block& block, std::size_t i, const Block& othe
 }
 
 // This and what calls it return true at the first contact, where that is all that is asked for.
-HWY_NOINLINE bool pair_registers(const ContactScene& scene, const Block& block, std::size_t i, const Block& other,
-                                 std::size_t j, ContactCollector& collector) {
+HWY_NOINLINE bool pair_registers(const BlockPair& blocks, std::size_t i, std::size_t j, bool first_only,
+                                 ContactCollector& collector) {
+  const Block &block = blocks.a, &other = blocks.b;
   PlacePairs places;
-  find_places(block, i, other, j, scene.neighbours, places);
+  find_places(blocks, i, j, places);
   for (std::size_t k = 0; k < places.count; k += kLanes) {
     const std::size_t left = places.count - k;
     std::uint64_t bits = ~std::uint64_t{0} >> (64 - (left < kLanes ? left : kLanes));
@@ -122,7 +130,7 @@ HWY_NOINLINE bool pair_registers(const ContactScene& scene, const Block& block, 
                                 block.corners_of(one),
                                 other.corners_of(two),
                                 ((verdicts.meeting >> lane) & 1U) != 0};
-      if (collector.decide(candidate) && scene.first_only) {
+      if (collector.decide(candidate) && first_only) {
         return true;
       }
     }
@@ -130,15 +138,15 @@ HWY_NOINLINE bool pair_registers(const ContactScene& scene, const Block& block, 
   return false;
 }
 
-HWY_INLINE bool pair_triangles(const ContactScene& scene, const Block& block, const Block& other,
-                               ContactCollector& collector) {
+HWY_INLINE bool pair_triangles(const BlockPair& blocks, bool first_only, ContactCollector& collector) {
+  const Block &block = blocks.a, &other = blocks.b;
   for (std::size_t i = 0; i < block.count; i += kLanes) {
     for (std::size_t j = 0; j < other.count; j += kLanes) {
       const std::size_t last = (other.count - j < kLanes ? other.count : j + kLanes) - 1;
-      if (block.cluster == other.cluster && other.triangles[last] <= block.triangles[i]) {
+      if (blocks.are_one && other.triangles[last] <= block.triangles[i]) {
         continue;  // each two triangles of a cluster once
       }
-      if (pair_registers(scene, block, i, other, j, collector)) {
+      if (pair_registers(blocks, i, j, first_only, collector)) {
         return true;
       }
     }
@@ -147,10 +155,11 @@ HWY_INLINE bool pair_triangles(const ContactScene& scene, const Block& block, co
 }
 
 // Two clusters that are loaded; or one, with itself.
-HWY_NOINLINE bool pair_clusters(const ContactScene& scene, std::size_t a, std::size_t b, ContactCollector& collector) {
+HWY_NOINLINE bool pair_clusters(const Bodies& bodies, std::size_t a, std::size_t b, ContactCollector& collector) {
   Block block, other;
-  return load_block(scene, a, BoxProbe(box_of_span(scene, b)), block) &&
-         load_block(scene, b, BoxProbe(block.box), other) && pair_triangles(scene, block, other, collector);
+  return load_block(bodies.a, a, BoxProbe(box_of_span(bodies.b, b)), block) &&
+         load_block(bodies.b, b, BoxProbe(block.box), other) &&
+         pair_triangles({block, other, bodies.a.neighbours, bodies.are_one && a == b}, bodies.a.first_only, collector);
 }
 
 // Of clusters, waiting to be decided together.
@@ -161,8 +170,8 @@ struct ClusterPairs : PairList<512> {
 
 // Loads the clusters that are listed, and pairs those that then still seem to touch; of each two spheres only until a
 // contact, where the first one is all that is asked for.
-HWY_NOINLINE void decide_clusters(const ContactScene& scene, ClusterPairs& list, ContactCollector& collector) {
-  const auto load_all = [&](const std::int32_t* side) HWY_ATTR {
+HWY_NOINLINE void decide_clusters(const Bodies& bodies, ClusterPairs& list, ContactCollector& collector) {
+  const auto load_all = [&](const ContactScene& scene, const std::int32_t* side) HWY_ATTR {
     for (std::size_t k = 0; k < list.count; ++k) {
       const auto cluster = static_cast<std::size_t>(side[k]);
       if (scene.is_loaded[cluster] == 0) {
@@ -170,40 +179,42 @@ HWY_NOINLINE void decide_clusters(const ContactScene& scene, ClusterPairs& list,
       }
     }
   };
-  load_all(list.a);
+  load_all(bodies.a, list.a);
   list.filter([&](std::size_t a, std::size_t b)
-                  HWY_ATTR { return box_of_span(scene, a).touches(box_at(scene.clusters, b)); });
-  load_all(list.b);
-  list.filter([&](std::size_t a, std::size_t b) HWY_ATTR { return spans_touch(scene, a, b); });
-  list.filter([&](std::size_t a, std::size_t b) HWY_ATTR { return a == b || !plane_parts(scene, a, b); });
+                  HWY_ATTR { return box_of_span(bodies.a, a).touches(box_at(bodies.b.clusters, b)); });
+  load_all(bodies.b, list.b);
+  list.filter([&](std::size_t a, std::size_t b) HWY_ATTR { return spans_touch(bodies.a, a, bodies.b, b); });
+  list.filter([&](std::size_t a, std::size_t b) HWY_ATTR {
+    return (bodies.are_one && a == b) || !plane_parts(bodies.a, a, bodies.b, b);
+  });
   for (std::size_t k = 0; k < list.count; ++k) {
     const auto a = static_cast<std::size_t>(list.a[k]), b = static_cast<std::size_t>(list.b[k]);
-    const Pair spheres{scene.surface->clusters.data[a].sphere, scene.surface->clusters.data[b].sphere};
+    const Pair spheres{bodies.a.surface->clusters.data[a].sphere, bodies.b.surface->clusters.data[b].sphere};
     if (spheres.a != list.spheres.a || spheres.b != list.spheres.b) {
       collector.begin_spheres(spheres);
       list.spheres = spheres;
       list.touch = false;
     }
-    if (!scene.first_only || !list.touch) {
-      list.touch |= pair_clusters(scene, a, b, collector);
+    if (!bodies.a.first_only || !list.touch) {
+      list.touch |= pair_clusters(bodies, a, b, collector);
     }
   }
   list.count = 0;
 }
 
-// One cluster against the clusters [first, end).
-HWY_INLINE void list_cluster(const ContactScene& scene, std::size_t cluster, std::size_t first, std::size_t end,
+// One cluster of a against the clusters [first, end) of b.
+HWY_INLINE void list_cluster(const Bodies& bodies, std::size_t cluster, std::size_t first, std::size_t end,
                              ClusterPairs& list, ContactCollector& collector) {
   constexpr Floats kFloats;
-  const BoxProbe boxes(box_at(scene.clusters, cluster));
+  const BoxProbe boxes(box_at(bodies.a.clusters, cluster));
   for (std::size_t j = first; j < end; j += kLanes) {
-    auto apart = boxes.misses(scene.clusters, j);
-    if (scene.has_balls) {
-      apart = hn::Or(apart, BallProbe(scene, cluster).misses(scene, j));
+    auto apart = boxes.misses(bodies.b.clusters, j);
+    if (bodies.a.has_balls && bodies.b.has_balls) {
+      apart = hn::Or(apart, BallProbe(bodies.a, cluster).misses(bodies.b, j));
     }
     list.count = list.put(list.count, cluster, j, hn::AndNot(apart, hn::FirstN(kFloats, end - j)));
     if (!list.has_room(list.count)) {
-      decide_clusters(scene, list, collector);
+      decide_clusters(bodies, list, collector);
     }
   }
 }
@@ -246,24 +257,24 @@ HWY_INLINE void list_within(const ContactScene& scene, std::size_t sphere, Clust
   bound_once(scene, sphere);
   const std::size_t end = scene.first_cluster[sphere + 1];
   for (std::size_t cluster = scene.first_cluster[sphere]; cluster < end; ++cluster) {
-    list_cluster(scene, cluster, cluster, end, list, collector);
+    list_cluster({scene, scene, true}, cluster, cluster, end, list, collector);
   }
 }
 
-HWY_INLINE void list_spheres(const ContactScene& scene, std::size_t a, std::size_t b, ClusterPairs& list,
+HWY_INLINE void list_spheres(const Bodies& bodies, std::size_t a, std::size_t b, ClusterPairs& list,
                              ContactCollector& collector) {
-  bound_once(scene, a);
-  bound_once(scene, b);
-  const std::size_t end_a = scene.first_cluster[a + 1], first_b = scene.first_cluster[b],
-                    end_b = scene.first_cluster[b + 1];
-  const BoxProbe probe_a(box_at(scene.spheres, a));
-  if (end_b - first_b <= kLanes && probe_a.touching(scene.clusters, first_b, end_b - first_b) == 0) {
+  bound_once(bodies.a, a);
+  bound_once(bodies.b, b);
+  const std::size_t end_a = bodies.a.first_cluster[a + 1], first_b = bodies.b.first_cluster[b],
+                    end_b = bodies.b.first_cluster[b + 1];
+  const BoxProbe probe_a(box_at(bodies.a.spheres, a));
+  if (end_b - first_b <= kLanes && probe_a.touching(bodies.b.clusters, first_b, end_b - first_b) == 0) {
     return;  // most spheres whose boxes touch
   }
-  const BoxProbe probe_b(box_at(scene.spheres, b));
-  for (std::size_t i = scene.first_cluster[a]; i < end_a; i += kLanes) {
-    for (std::uint64_t bits = probe_b.touching(scene.clusters, i, end_a - i); bits != 0; bits &= bits - 1) {
-      list_cluster(scene, i + lowest_bit(bits), first_b, end_b, list, collector);
+  const BoxProbe probe_b(box_at(bodies.b.spheres, b));
+  for (std::size_t i = bodies.a.first_cluster[a]; i < end_a; i += kLanes) {
+    for (std::uint64_t bits = probe_b.touching(bodies.a.clusters, i, end_a - i); bits != 0; bits &= bits - 1) {
+      list_cluster(bodies, i + lowest_bit(bits), first_b, end_b, list, collector);
     }
   }
 }
@@ -281,84 +292,97 @@ HWY_NOINLINE void find_listed(const ContactScene& scene, ContactCollector& colle
   ClusterPairs clusters;
   for (std::size_t i = 0; i < pairs.size; ++i) {
     const std::size_t a = pairs.data[i].a, b = pairs.data[i].b;
-    if (box_at(scene.spheres, a).touches(box_at(scene.spheres, b)) && !(scene.has_hulls && hulls_apart(scene, a, b))) {
-      list_spheres(scene, a, b, clusters, collector);
+    if (box_at(scene.spheres, a).touches(box_at(scene.spheres, b)) &&
+        !(scene.has_hulls && hulls_apart(scene, a, scene, b))) {
+      list_spheres({scene, scene, true}, a, b, clusters, collector);
     }
   }
-  decide_clusters(scene, clusters, collector);
+  decide_clusters({scene, scene, true}, clusters, collector);
 }
 
 HWY_INLINE bool is_enabled(const ContactScene& scene, std::size_t sphere) {
   return scene.disabled.size == 0 || !test_bit(scene.disabled, sphere);
 }
 
-// Bit k: sphere first + k is before b, and the scope pairs the two.
-HWY_INLINE std::uint64_t paired(const ContactScene& scene, std::size_t first, std::size_t b) {
-  const std::uint64_t ignored = bits_at(scene.ignored.data, scene.ignored.size, ignored_bit(first, b));
-  std::uint64_t bits = (scene.neighbours ? ignored : 0) | (scene.apart ? ~ignored : 0);
+// Bit k: a's sphere first + k is to be paired with b's sphere b. Of one body only those before b.
+HWY_INLINE std::uint64_t paired(const Bodies& bodies, std::size_t first, std::size_t b) {
+  const ContactScene& scene = bodies.a;
+  std::uint64_t bits = ~std::uint64_t{0};
+  if (bodies.are_one) {
+    const std::uint64_t ignored = bits_at(scene.ignored.data, scene.ignored.size, ignored_bit(first, b));
+    bits = (scene.neighbours ? ignored : 0) | (scene.apart ? ~ignored : 0);
+  }
   if (scene.disabled.size > 0) {
     bits &= ~bits_at(scene.disabled.data, scene.disabled.size, first);
   }
-  const std::size_t count = b - first;
+  const std::size_t count = (bodies.are_one ? b : scene.sphere_count) - first;
   return bits & (~std::uint64_t{0} >> (64 - (count < 64 ? count : 64)));
 }
 
-// Spheres, waiting for their clusters to be paired.
+// Of b and a, waiting for their clusters to be paired.
 using SpherePairs = PairList<512>;
 
-HWY_NOINLINE void pair_spheres(const ContactScene& scene, SpherePairs& spheres, ClusterPairs& clusters,
+HWY_NOINLINE void pair_spheres(const Bodies& bodies, SpherePairs& spheres, ClusterPairs& clusters,
                                ContactCollector& collector) {
-  if (scene.has_hulls) {
-    spheres.filter([&](std::size_t a, std::size_t b) HWY_ATTR { return !hulls_apart(scene, a, b); });
+  if (bodies.a.has_hulls && bodies.b.has_hulls) {
+    spheres.filter([&](std::size_t b, std::size_t a) HWY_ATTR { return !hulls_apart(bodies.a, a, bodies.b, b); });
   }
   for (std::size_t k = 0; k < spheres.count; ++k) {
-    list_spheres(scene, static_cast<std::size_t>(spheres.b[k]), static_cast<std::size_t>(spheres.a[k]), clusters,
+    list_spheres(bodies, static_cast<std::size_t>(spheres.b[k]), static_cast<std::size_t>(spheres.a[k]), clusters,
                  collector);
   }
   spheres.count = 0;
 }
 
-// All pairs of the scope.
-HWY_NOINLINE void find_all(const ContactScene& scene, ContactCollector& collector) {
+HWY_INLINE void bound(const ContactScene& scene) {
   if (!scene.has_hulls) {
     bound_clusters(scene, 0, scene.sphere_count);
   }
   bound_spheres(scene);
+}
+
+// All pairs of the scope; or of each sphere of one body with each of the other.
+HWY_NOINLINE void find_all(const Bodies& bodies, ContactCollector& collector) {
+  bound(bodies.a);
+  if (!bodies.are_one) {
+    bound(bodies.b);
+  }
   SpherePairs spheres;
   ClusterPairs clusters;
-  const BoxColumns boxes = scene.spheres;  // in registers, for all that vectors may be written over
+  const BoxColumns boxes = bodies.a.spheres;  // in registers, for all that vectors may be written over
   std::size_t count = 0;
-  for (std::size_t b = 0; b < scene.sphere_count; ++b) {
-    if (!is_enabled(scene, b)) {
+  for (std::size_t b = 0; b < bodies.b.sphere_count; ++b) {
+    if (!is_enabled(bodies.b, b)) {
       continue;
     }
-    if (scene.neighbours) {
-      list_within(scene, b, clusters, collector);
+    if (bodies.b.neighbours) {
+      list_within(bodies.b, b, clusters, collector);
     }
-    const BoxProbe probe(box_at(scene.spheres, b));
+    const BoxProbe probe(box_at(bodies.b.spheres, b));
+    const std::size_t end = bodies.are_one ? b : bodies.a.sphere_count;
     std::uint64_t bits = 0;
-    for (std::size_t first = 0; first < b; first += kLanes, bits >>= kLanes) {
+    for (std::size_t first = 0; first < end; first += kLanes, bits >>= kLanes) {
       if (first % 64 == 0) {
-        bits = paired(scene, first, b);
+        bits = paired(bodies, first, b);
       }
       count = spheres.put(count, b, first, hn::AndNot(probe.misses(boxes, first), mask_of(bits)));
       if (!spheres.has_room(count)) {
         spheres.count = count;
-        pair_spheres(scene, spheres, clusters, collector);
+        pair_spheres(bodies, spheres, clusters, collector);
         count = 0;
       }
     }
   }
   spheres.count = count;
-  pair_spheres(scene, spheres, clusters, collector);
-  decide_clusters(scene, clusters, collector);
+  pair_spheres(bodies, spheres, clusters, collector);
+  decide_clusters(bodies, clusters, collector);
 }
 
-void find(const ContactScene& scene, ContactCollector& collector) {
-  if (scene.candidates.data != nullptr) {
-    find_listed(scene, collector);
+void find(const Bodies& bodies, ContactCollector& collector) {
+  if (bodies.a.candidates.data != nullptr) {
+    find_listed(bodies.a, collector);
   } else {
-    find_all(scene, collector);
+    find_all(bodies, collector);
   }
 }
 
@@ -374,8 +398,8 @@ SPHERECHAIN_KERNELS(find);
 
 }  // namespace
 
-void find_candidates(Target resolved, const ContactScene& scene, ContactCollector& collector) {
-  find_kernels[index_of(resolved)](scene, collector);
+void find_candidates(Target resolved, const Bodies& bodies, ContactCollector& collector) {
+  find_kernels[index_of(resolved)](bodies, collector);
 }
 
 }  // namespace spherechain

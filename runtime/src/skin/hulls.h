@@ -158,14 +158,13 @@ HWY_INLINE void bound_hull(const ContactScene& scene, std::size_t sphere) {
 
 // Does a plane across the line of their boxes' middles part two spheres' hulls? Any direction would be as sure; this
 // one parts most that can be. Where a margin is infinite the direction is not a number, and nothing is parted.
-HWY_INLINE bool hulls_apart(const ContactScene& scene, std::size_t a, std::size_t b) {
+HWY_INLINE bool hulls_apart(const ContactScene& scene_a, std::size_t a, const ContactScene& scene_b, std::size_t b) {
   constexpr Floats kFloats;
   constexpr hn::CappedTag<float, 1> kOne;
   float direction[3], squared = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const float* const low = scene.spheres.low[axis];
-    const float* const high = scene.spheres.high[axis];
-    direction[axis] = (low[b] + high[b]) - (low[a] + high[a]);
+    direction[axis] = (scene_b.spheres.low[axis][b] + scene_b.spheres.high[axis][b]) -
+                      (scene_a.spheres.low[axis][a] + scene_a.spheres.high[axis][a]);
     squared += direction[axis] * direction[axis];
   }
   const Vector x = hn::Set(kFloats, direction[0]), y = hn::Set(kFloats, direction[1]),
@@ -175,10 +174,10 @@ HWY_INLINE bool hulls_apart(const ContactScene& scene, std::size_t a, std::size_
     return hn::MulAdd(z, hn::LoadU(kFloats, points + 2 * count),
                       hn::MulAdd(y, hn::LoadU(kFloats, points + count), first));
   };
-  const Hull& hull_a = scene.surface->hulls.data[a];
-  const Hull& hull_b = scene.surface->hulls.data[b];
-  const float* const points_a = scene.hulls + 3 * std::size_t{hull_a.first_point};
-  const float* const points_b = scene.hulls + 3 * std::size_t{hull_b.first_point};
+  const Hull& hull_a = scene_a.surface->hulls.data[a];
+  const Hull& hull_b = scene_b.surface->hulls.data[b];
+  const float* const points_a = scene_a.hulls + 3 * std::size_t{hull_a.first_point};
+  const float* const points_b = scene_b.hulls + 3 * std::size_t{hull_b.first_point};
   Vector most = along(points_a, hull_a.point_count), least = along(points_b, hull_b.point_count);
   for (std::size_t i = kLanes; i < hull_a.point_count; i += kLanes) {
     most = hn::Max(most, along(points_a + i, hull_a.point_count));
@@ -188,7 +187,7 @@ HWY_INLINE bool hulls_apart(const ContactScene& scene, std::size_t a, std::size_
   }
   const float gap = hn::GetLane(hn::MinOfLanes(kFloats, least)) - hn::GetLane(hn::MaxOfLanes(kFloats, most));
   const float length = hn::GetLane(hn::Sqrt(hn::Set(kOne, squared)));
-  const float margin = scene.hull_margins[a] + scene.hull_margins[b];
+  const float margin = scene_a.hull_margins[a] + scene_b.hull_margins[b];
   return gap > length * margin * (1 + 0x1p-20F) + kMinLength;
 }
 

@@ -62,17 +62,23 @@ struct ContactScene {
   float* hull_margins = nullptr;  // how far from the points' hull the sphere's vertices are at most
 };
 
+// Whose spheres are paired: a body's with its own, or with another's.
+struct Bodies {
+  const ContactScene &a, &b;
+  bool are_one;
+};
+
 class ContactCollector;  // where triangles that intersect go
 
 // Two triangles of two clusters whose boxes touch, and whose planes may cross: the decision.
 struct Candidate {
   std::size_t cluster_a, cluster_b;
-  std::size_t triangle_a, triangle_b;  // in Surface::triangles
+  std::size_t triangle_a, triangle_b;  // in Surface::triangles of body a and of body b
   TriangleCorners a, b;
   bool meets;  // is known to: no more to decide
 };
 
 // Hands all candidates that there are, and a few more, to the collector.
-void find_candidates(Target resolved, const ContactScene& scene, ContactCollector& collector);
+void find_candidates(Target resolved, const Bodies& bodies, ContactCollector& collector);
 
 }  // namespace spherechain

@@ -6,16 +6,15 @@
 #include <cstring>
 #include <limits>
 
+#include "asset/status.h"
 #include "pairs/pair_bits.h"
 #include "simd/arithmetic.h"
 
 namespace spherechain {
 namespace {
 
-// Sets the scene's and the table's scratch memory; of null words only counts it.
-std::size_t lay_out(const AssetView& asset, std::uint64_t* words, ContactScene& scene, PartTable& parts) {
+void lay_out(const AssetView& asset, WordMemory& memory, ContactScene& scene) {
   const SkinSizes& sizes = asset.skin().sizes;
-  WordMemory memory(words);
   scene.sphere_count = asset.spheres().size;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     memory.take(scene.spheres.low[axis], scene.sphere_count);
@@ -27,10 +26,6 @@ std::size_t lay_out(const AssetView& asset, std::uint64_t* words, ContactScene& 
   memory.take(scene.is_bounded, scene.sphere_count);
   memory.take(scene.spans, 2 * kSpanLanes * sizes.clusters);
   memory.take(scene.slots, 3 * sizes.slots + 3 * (kSlotLanes * sizes.clusters + kContactPadding));
-  parts.part_count = asset.part_count();
-  parts.word_count = words_for(part_pairs(parts.part_count));
-  memory.take(parts.seen, parts.word_count);
-  memory.take(parts.contacts, part_pairs(parts.part_count));
   if (asset.bone_count() > 0) {
     memory.take(scene.bone_sizes, asset.bone_count());
     for (float*& column : scene.ball_columns) {
@@ -41,7 +36,6 @@ std::size_t lay_out(const AssetView& asset, std::uint64_t* words, ContactScene& 
     memory.take(scene.hulls, 3 * sizes.hull_points);
     memory.take(scene.hull_margins, scene.sphere_count);
   }
-  return memory.used();
 }
 
 BoneSize bone_size(const BoneMatrices& bones, std::size_t bone) {
@@ -85,22 +79,62 @@ void prepare_bounds(const AssetView& asset, ContactScene& scene) {
   }
 }
 
+bool has_skin(const AssetView& asset) { return asset.is_open() && asset.skin().sizes.clusters > 0; }
+
 }  // namespace
 
+void PartTable::take(WordMemory& memory, std::size_t count_a, std::size_t parts_of_b, bool are_one) {
+  count_b = parts_of_b;
+  const std::size_t pairs = are_one ? count_a * (count_a + 1) / 2 : count_a * count_b;
+  word_count = words_for(pairs);
+  memory.take(seen, word_count);
+  memory.take(contacts, pairs);
+}
+
+void PartTable::clear() const { std::memset(seen, 0, word_count * sizeof(std::uint64_t)); }
+
+Status check_skin(const Asset* asset, const Pose& pose, const std::uint64_t* skin_table, Surface& surface) {
+  if (asset == nullptr) {
+    return refuse(SC_NULL, SC_FIELD_ASSET);
+  }
+  const AssetView& view = view_of(*asset);
+  if (!view.is_open()) {
+    return refuse(SC_NOT_OPEN, SC_FIELD_ASSET);
+  }
+  if (!has_skin(view)) {
+    return refuse(SC_NOT_IN_ASSET, SC_FIELD_ASSET);
+  }
+  const Status status = check_skin_pose(view, pose);
+  return status == SC_OK ? read_skin_table(view, skin_table, surface) : status;
+}
+
 std::size_t skin_scratch_words(const AssetView& asset) {
-  if (!asset.is_open() || asset.skin().sizes.clusters == 0) {
+  if (!has_skin(asset)) {
     return 0;
   }
+  WordMemory memory(nullptr);
   ContactScene scene;
-  PartTable parts{};
-  return lay_out(asset, nullptr, scene, parts);
+  lay_out(asset, memory, scene);
+  PartTable().take(memory, asset.part_count(), asset.part_count(), true);
+  return memory.used();
+}
+
+std::size_t body_scratch_words(const AssetView& a, const AssetView& b) {
+  if (!has_skin(a) || !has_skin(b)) {
+    return 0;
+  }
+  WordMemory memory(nullptr);
+  ContactScene scene;
+  lay_out(a, memory, scene);
+  lay_out(b, memory, scene);
+  PartTable().take(memory, a.part_count(), b.part_count(), false);
+  return memory.used();
 }
 
 ContactScene scene_of(const AssetView& asset, const Surface& surface, const Pose& pose, const Filter* filter,
-                      std::uint64_t* words, PartTable& parts) {
+                      WordMemory& memory) {
   ContactScene scene;
-  lay_out(asset, words, scene, parts);
-  std::memset(parts.seen, 0, parts.word_count * sizeof(std::uint64_t));
+  lay_out(asset, memory, scene);
   scene.surface = &surface;
   scene.first_cluster = surface.first_clusters.data;
   scene.positions = pose.vertices;

@@ -10,19 +10,32 @@
 
 namespace spherechain {
 
-// Table of the pairs of body parts that are found: a bit and an entry for each two parts, a <= b, in order.
+// Table of the pairs of body parts that are found: a bit and an entry for each two parts, in order.
 struct PartTable {
-  std::uint64_t* seen;
-  sc_part_contact* contacts;
-  std::size_t part_count, word_count;
-};
-constexpr std::size_t part_pairs(std::size_t part_count) { return part_count * (part_count + 1) / 2; }
+  std::uint64_t* seen = nullptr;
+  PartContact* contacts = nullptr;
+  std::size_t count_b = 0;  // parts of body b
+  std::size_t word_count = 0;
 
+  // Of one body a <= b, and only such two have a place.
+  std::size_t place(std::size_t a, std::size_t b, bool are_one) const {
+    return a * count_b + b - (are_one ? a * (a + 1) / 2 : 0);
+  }
+  void take(WordMemory& memory, std::size_t count_a, std::size_t count_b, bool are_one);
+  void clear() const;
+};
+
+// Whose skin a job asks about: is it there, does the pose fit, and was the table made of it?
+Status check_skin(const Asset* asset, const Pose& pose, const std::uint64_t* skin_table, Surface& surface);
+
+// Of one scene, and of one body's table of parts.
 std::size_t skin_scratch_words(const AssetView& asset);
+// Of two, and of their table of parts.
+std::size_t body_scratch_words(const AssetView& a, const AssetView& b);
 
 // Of a checked pose, with enough words; no cluster is bounded yet. All pairs of spheres are paired but those that the
 // asset or the filter, which may be null, ignores or disables.
 ContactScene scene_of(const AssetView& asset, const Surface& surface, const Pose& pose, const Filter* filter,
-                      std::uint64_t* words, PartTable& parts);
+                      WordMemory& memory);
 
 }  // namespace spherechain

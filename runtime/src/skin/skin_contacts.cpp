@@ -44,19 +44,12 @@ bool is_aliased(const SkinContactJob& job, const AssetView& asset) {
 }
 
 Status check(const SkinContactJob& job, Target& resolved, Surface& surface) {
-  if (job.asset == nullptr) {
-    return refuse(SC_NULL, SC_FIELD_ASSET);
+  const Status skin = check_skin(job.asset, job.pose, job.skin_table, surface);
+  if (skin != SC_OK) {
+    return skin;
   }
   const AssetView& asset = view_of(*job.asset);
-  if (!asset.is_open()) {
-    return refuse(SC_NOT_OPEN, SC_FIELD_ASSET);
-  }
-  if (asset.skin().sizes.clusters == 0) {
-    return refuse(SC_NOT_IN_ASSET, SC_FIELD_ASSET);
-  }
-  const Status statuses[] = {check_skin_pose(asset, job.pose),
-                             read_skin_table(asset, job.skin_table, surface),
-                             job.filter == nullptr ? done() : check_filter(asset, *job.filter),
+  const Status statuses[] = {job.filter == nullptr ? done() : check_filter(asset, *job.filter),
                              check_list(job.scratch, 1, SC_FIELD_SCRATCH),
                              check_list(job.parts, job.part_capacity, SC_FIELD_PARTS),
                              check_list(job.spheres, job.sphere_capacity, SC_FIELD_SPHERES),
@@ -100,15 +93,22 @@ sc_status sc_find_skin_contacts(sc_skin_contact_job* job) noexcept {
   if (status != SC_OK) {
     return status;
   }
-  PartTable parts{};
-  ContactScene scene = scene_of(view_of(*job->asset), surface, job->pose, job->filter, job->scratch, parts);
+  const AssetView& asset = view_of(*job->asset);
+  WordMemory memory(job->scratch);
+  ContactScene scene = scene_of(asset, surface, job->pose, job->filter, memory);
   scene.apart = job->scope != SC_SCOPE_NEIGHBOURS;
   scene.neighbours = job->scope != SC_SCOPE_APART;
   scene.candidates = {job->candidates, job->candidate_count};
   scene.first_only = job->spheres_only != 0;
-  ContactCollector collector(surface, parts, *job);
-  find_candidates(resolved, scene, collector);
-  return collector.finish(*job);
+  PartTable parts;
+  parts.take(memory, asset.part_count(), asset.part_count(), true);
+  parts.clear();
+  ContactCollector collector(surface, parts, ContactLists::of(*job));
+  find_candidates(resolved, {scene, scene, true}, collector);
+  ContactCounts counts{};
+  const Status found = collector.finish(counts);
+  counts.copy_to(*job);
+  return found;
 }
 
 }  // extern "C"

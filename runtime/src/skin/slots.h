@@ -194,10 +194,10 @@ HWY_INLINE Box box_of_span(const ContactScene& scene, std::size_t cluster_index)
 
 // Do two clusters that are loaded reach as far as each other in all directions? A sum rounded once keeps the order of
 // the sums themselves, so nothing that touches is kept apart.
-HWY_INLINE bool spans_touch(const ContactScene& scene, std::size_t a, std::size_t b) {
+HWY_INLINE bool spans_touch(const ContactScene& scene_a, std::size_t a, const ContactScene& scene_b, std::size_t b) {
   constexpr hn::CappedTag<float, kSpanLanes> d;
-  const float* const one = scene.spans + 2 * kSpanLanes * a;
-  const float* const other = scene.spans + 2 * kSpanLanes * b;
+  const float* const one = scene_a.spans + 2 * kSpanLanes * a;
+  const float* const other = scene_b.spans + 2 * kSpanLanes * b;
   auto apart = hn::Gt(hn::LoadU(d, one), hn::LoadU(d, other + kSpanLanes));
   apart = hn::Or(apart, hn::Gt(hn::LoadU(d, other), hn::LoadU(d, one + kSpanLanes)));
   for (std::size_t k = hn::MaxLanes(d); k < kSpanLanes; k += hn::MaxLanes(d)) {
@@ -209,9 +209,10 @@ HWY_INLINE bool spans_touch(const ContactScene& scene, std::size_t a, std::size_
 
 // Does a plane across the line of the middles of two clusters that are loaded part their vertices? Of the two sums of
 // three products each rounding is a unit in the last place of at most the sums of magnitudes, and eight are counted.
-HWY_NOINLINE bool plane_parts(const ContactScene& scene, std::size_t a, std::size_t b) {
+HWY_NOINLINE bool plane_parts(const ContactScene& scene_a, std::size_t a, const ContactScene& scene_b,
+                              std::size_t b) {
   constexpr Floats kFloats;
-  const Box box_a = box_of_span(scene, a), box_b = box_of_span(scene, b);
+  const Box box_a = box_of_span(scene_a, a), box_b = box_of_span(scene_b, b);
   float direction[3], size = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const float low = box_a.low[axis] < box_b.low[axis] ? box_a.low[axis] : box_b.low[axis];
@@ -221,7 +222,7 @@ HWY_NOINLINE bool plane_parts(const ContactScene& scene, std::size_t a, std::siz
     direction[axis] = along;
     size += (along < 0 ? -along : along) * extent;
   }
-  const auto farthest = [&](std::size_t cluster, float sign) HWY_ATTR {
+  const auto farthest = [&](const ContactScene& scene, std::size_t cluster, float sign) HWY_ATTR {
     const Slots slots = slots_of(scene, cluster);
     const Vector x = hn::Set(kFloats, sign * direction[0]), y = hn::Set(kFloats, sign * direction[1]),
                  z = hn::Set(kFloats, sign * direction[2]);
@@ -234,7 +235,7 @@ HWY_NOINLINE bool plane_parts(const ContactScene& scene, std::size_t a, std::siz
     }
     return hn::GetLane(hn::MaxOfLanes(kFloats, most));
   };
-  return farthest(a, 1) + farthest(b, -1) < -(size * 0x1p-20F + 0x1p-100F);
+  return farthest(scene_a, a, 1) + farthest(scene_b, b, -1) < -(size * 0x1p-20F + 0x1p-100F);
 }
 
 }  // namespace HWY_NAMESPACE

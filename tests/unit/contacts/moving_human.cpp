@@ -54,6 +54,25 @@ const MovingHuman& moving_human() {
   return human;
 }
 
+const baker::TruthSurface& truth_surface() {
+  static const baker::TruthSurface surface = baker::surface_of(moving_human().asset, moving_human().bake.character);
+  return surface;
+}
+
+MovingHuman::Frame skinned(MovingHuman::Frame frame) {
+  const std::vector<float> moved = skin(*moving_human().asset.handle(), bones_of(frame.palette));
+  const spherechain::Surface& surface = moving_human().asset.surface();
+  const baker::TruthSurface& triangles = truth_surface();
+  for (std::size_t i = 0; i < triangles.corners.size(); ++i) {
+    const std::uint32_t place = surface.place_of_source[triangles.source_triangle[i]];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t from = surface.source_vertices[surface.triangle_vertices[3 * std::size_t{place} + k]];
+      std::copy_n(&moved[3 * from], 3, &frame.vertices[3 * std::size_t{triangles.corners[i][k]}]);
+    }
+  }
+  return frame;
+}
+
 Pose vertices_of(const std::vector<float>& vertices) {
   Pose pose;
   pose.vertices = vertices.data();

@@ -8,6 +8,7 @@
 #include "motion/motion.h"
 #include "pipeline/pipeline.h"
 #include "play/asset_file.h"
+#include "truth/surface.h"
 
 namespace spherechain::test {
 
@@ -27,6 +28,12 @@ struct MovingHuman {
 
 // Baked once for all tests of a run.
 const MovingHuman& moving_human();
+
+// Its triangles, for CGAL.
+const baker::TruthSurface& truth_surface();
+
+// The frame with the vertices of its triangles as the runtime skins them.
+MovingHuman::Frame skinned(MovingHuman::Frame frame);
 
 Pose vertices_of(const std::vector<float>& vertices);
 Pose bones_of(const std::vector<float>& palette);

@@ -19,11 +19,6 @@ using namespace spherechain::test;
 
 namespace {
 
-const baker::TruthSurface& truth_surface() {
-  static const baker::TruthSurface surface = baker::surface_of(moving_human().asset, moving_human().bake.character);
-  return surface;
-}
-
 // CGAL's, sorted into the scopes.
 baker::FrameTruth truth_of(const std::vector<float>& vertices) {
   const MovingHuman& human = moving_human();
@@ -32,15 +27,6 @@ baker::FrameTruth truth_of(const std::vector<float>& vertices) {
       baker::find_intersections(truth_surface(), vertices), rest, truth_surface(),
       [&](std::uint32_t a, std::uint32_t b) { return baker::is_ignored(human.asset, a, b); },
       [](const Pair&) { return false; });
-}
-
-// The frame with vertices as the runtime skins them.
-MovingHuman::Frame skinned(MovingHuman::Frame frame) {
-  const std::vector<float> moved = skin(*moving_human().asset.handle(), bones_of(frame.palette));
-  for (std::size_t i = 0; i < moved.size(); ++i) {
-    if (!std::isnan(moved[i])) frame.vertices[i] = moved[i];  // source vertices beside the surface stay
-  }
-  return frame;
 }
 
 // The source vertices whose positions the runtime reads for a source triangle.

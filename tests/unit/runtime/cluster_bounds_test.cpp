@@ -65,17 +65,17 @@ std::vector<Matrix> bounds_pose(int number, std::mt19937& random) {
 
 struct Bounds {
   std::vector<std::uint64_t> words;
-  PartTable parts{};
+  WordMemory memory;
   ContactScene scene;
 
   Bounds(const OpenedAsset& opened, const PreparedSkin& table, const Pose& pose, Target target, bool has_hulls)
       : words(sc_skin_scratch_words(&opened.asset)),
-        scene(scene_of(opened.view(), table.surface, pose, nullptr, words.data(), parts)) {
+        memory(words.data()),
+        scene(scene_of(opened.view(), table.surface, pose, nullptr, memory)) {
     REQUIRE((scene.has_hulls || !has_hulls));
     scene.has_hulls = has_hulls;  // without them all clusters are bounded, else those of spheres that are near others
-    SkinContactJob job;
-    ContactCollector collector(table.surface, parts, job);
-    find_candidates(target, scene, collector);  // leaves what it bounded in the scene's memory
+    ContactCollector collector(table.surface, PartTable(), {{}, {}, {}, true});  // spheres only
+    find_candidates(target, {scene, scene, true}, collector);  // leaves what it bounded in the scene's memory
   }
   bool contain(std::size_t cluster, const Position& p) const {
     double squared = 0;

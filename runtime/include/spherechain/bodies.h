@@ -1,0 +1,58 @@
+/* SPDX-License-Identifier: MIT */
+/* Q4: where do two characters, or a character and a prop, penetrate each other? Exact, as Q3 is for one. */
+#pragma once
+
+#include "spherechain/penetrations.h"
+
+/* One of two bodies. Both stand in one space; two bodies may be of one asset. */
+typedef struct sc_body {
+  const sc_asset* asset SC_ZERO;         /* open, with triangles; a character, or what `bake --prop` wrote */
+  sc_pose pose SC_ZERO;                  /* as of an sc_skin_contact_job; a prop has one bone */
+  const uint64_t* skin_table SC_ZERO;    /* from sc_prepare_skin(), of this asset */
+  const uint64_t* ignored_parts SC_ZERO; /* bit p: body part p meets nothing; null: all parts meet */
+} sc_body;
+
+/* All triangles of two bodies' skins that intersect. In what it lists, `_a` and the first index are of body a, `_b` and
+ * the second of body b: nothing is swapped. Nothing is left out but the parts that the bodies ignore.
+ *
+ * Allocates nothing, takes no lock. Jobs on other outputs and scratch memory may run at the same time. */
+typedef struct sc_body_contact_job {
+  sc_body a SC_ZERO, b SC_ZERO;
+  sc_target target SC_ZERO;     /* the same contacts on every one */
+  int32_t spheres_only SC_ZERO; /* 1: find pairs of spheres alone; each ends at its first contact. Cheapest */
+  uint64_t* scratch SC_ZERO;    /* sc_body_scratch_words() words; nothing is kept there between runs */
+  size_t scratch_words SC_ZERO;
+  /* Out. As of an sc_skin_contact_job: sorted, each once; null: count only. */
+  sc_part_contact* parts SC_ZERO;
+  size_t part_capacity SC_ZERO;
+  sc_pair* spheres SC_ZERO;
+  size_t sphere_capacity SC_ZERO;
+  sc_triangle_contact* triangles SC_ZERO;
+  size_t triangle_capacity SC_ZERO;
+  size_t part_count SC_ZERO, sphere_count SC_ZERO, triangle_count SC_ZERO;
+#if defined(__cplusplus)
+  sc_status run() noexcept;
+#endif
+} sc_body_contact_job;
+
+#if defined(__cplusplus)
+extern "C" {
+#endif
+
+/* Errors as of sc_find_skin_contacts(); the field does not say which of the two bodies is meant. */
+SPHERECHAIN_API sc_status sc_find_body_contacts(sc_body_contact_job* job) SC_NOEXCEPT;
+
+/* Words of scratch memory; 0 where an asset is not open or has no triangles. */
+SPHERECHAIN_API size_t sc_body_scratch_words(const sc_asset* a, const sc_asset* b) SC_NOEXCEPT;
+
+/* Words of a bit for each body part. 0 where the asset is not open. */
+SPHERECHAIN_API size_t sc_part_words(const sc_asset* asset) SC_NOEXCEPT;
+
+#if defined(__cplusplus)
+}
+inline sc_status sc_body_contact_job::run() noexcept { return sc_find_body_contacts(this); }
+namespace spherechain {
+using Body = sc_body;
+using BodyContactJob = sc_body_contact_job;
+}  // namespace spherechain
+#endif

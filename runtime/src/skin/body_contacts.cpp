@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include "asset/memory.h"
+#include "asset/status.h"
+#include "pairs/filter.h"
+#include "simd/simd.h"
+#include "skin/collector.h"
+#include "skin/scene_setup.h"
+#include "spherechain/bodies.h"
+
+namespace spherechain {
+namespace {
+
+struct BodyRanges {
+  MemoryRange vertices, bones, morph_weights, skin_table, ignored_parts;
+
+  explicit BodyRanges(const Body& body)
+      : vertices(range_of_vertices(view_of(*body.asset), body.pose)),
+        bones(range_of_bones(view_of(*body.asset), body.pose)),
+        morph_weights(range_of_morph_weights(view_of(*body.asset), body.pose)),
+        skin_table(range_of(Span<const std::uint64_t>{body.skin_table, skin_table_words(view_of(*body.asset))})),
+        ignored_parts(range_of(Span<const std::uint64_t>{body.ignored_parts, sc_part_words(body.asset)})) {}
+};
+
+bool is_aliased(const BodyContactJob& job) {
+  const BodyRanges a(job.a), b(job.b);
+  return any_shared(
+      {range_of(Span<PartContact>{job.parts, job.part_capacity}),
+       range_of(Span<Pair>{job.spheres, job.sphere_capacity}),
+       range_of(Span<TriangleContact>{job.triangles, job.triangle_capacity}),
+       range_of(Span<std::uint64_t>{job.scratch, sc_body_scratch_words(job.a.asset, job.b.asset)})},
+      {a.vertices, a.bones, a.morph_weights, a.skin_table, a.ignored_parts, b.vertices, b.bones, b.morph_weights,
+       b.skin_table, b.ignored_parts});
+}
+
+Status check(const BodyContactJob& job, Target& resolved, Surface& surface_a, Surface& surface_b) {
+  const Status statuses[] = {check_skin(job.a.asset, job.a.pose, job.a.skin_table, surface_a),
+                             check_skin(job.b.asset, job.b.pose, job.b.skin_table, surface_b),
+                             check_list(job.a.ignored_parts, 0, SC_FIELD_FILTER),
+                             check_list(job.b.ignored_parts, 0, SC_FIELD_FILTER),
+                             check_list(job.scratch, 1, SC_FIELD_SCRATCH),
+                             check_list(job.parts, job.part_capacity, SC_FIELD_PARTS),
+                             check_list(job.spheres, job.sphere_capacity, SC_FIELD_SPHERES),
+                             check_list(job.triangles, job.triangle_capacity, SC_FIELD_TRIANGLES)};
+  for (const Status& status : statuses) {
+    if (status != SC_OK) {
+      return status;
+    }
+  }
+  if (job.scratch_words < sc_body_scratch_words(job.a.asset, job.b.asset)) {
+    return refuse(SC_TOO_SMALL, SC_FIELD_SCRATCH);
+  }
+  if (!resolve_target(job.target, resolved)) {
+    return refuse(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET);
+  }
+  return is_aliased(job) ? refuse(SC_ALIASED, SC_FIELD_OUTPUT) : done();
+}
+
+}  // namespace
+}  // namespace spherechain
+
+using namespace spherechain;
+
+extern "C" {
+
+size_t sc_body_scratch_words(const sc_asset* a, const sc_asset* b) noexcept {
+  return a == nullptr || b == nullptr ? 0 : body_scratch_words(view_of(*a), view_of(*b));
+}
+
+size_t sc_part_words(const sc_asset* asset) noexcept {
+  return asset == nullptr || !view_of(*asset).is_open() ? 0 : words_for(view_of(*asset).part_count());
+}
+
+sc_status sc_find_body_contacts(sc_body_contact_job* job) noexcept {
+  if (job == nullptr) {
+    return refuse(SC_NULL, SC_FIELD_NONE);
+  }
+  Target resolved{};
+  Surface surface_a, surface_b;
+  const Status status = check(*job, resolved, surface_a, surface_b);
+  if (status != SC_OK) {
+    return status;
+  }
+  WordMemory memory(job->scratch);
+  const AssetView &asset_a = view_of(*job->a.asset), &asset_b = view_of(*job->b.asset);
+  ContactScene a = scene_of(asset_a, surface_a, job->a.pose, nullptr, memory);
+  const ContactScene b = scene_of(asset_b, surface_b, job->b.pose, nullptr, memory);
+  a.first_only = job->spheres_only != 0;
+  PartTable parts;
+  parts.take(memory, asset_a.part_count(), asset_b.part_count(), false);
+  parts.clear();
+  ContactCollector collector({&surface_a, job->a.ignored_parts}, {&surface_b, job->b.ignored_parts}, parts,
+                             ContactLists::of(*job));
+  find_candidates(resolved, {a, b, false}, collector);
+  ContactCounts counts{};
+  const Status found = collector.finish(counts);
+  counts.copy_to(*job);
+  return found;
+}
+
+}  // extern "C"
