@@ -35,6 +35,31 @@ typedef struct sc_body_contact_job {
 #endif
 } sc_body_contact_job;
 
+/* Measures two bodies' contacts: fill a and b as in the sc_body_contact_job that found `contacts`, and pass its whole
+ * list of triangles. What an sc_penetration_job says holds here, too. part_a is a part of body a; the direction moves
+ * the part of body b. Classes are SC_CLASS_SHELL (most of it is hidden), SC_CLASS_TOUCH and SC_CLASS_PENETRATION;
+ * lengths compare with the lower of the two assets' heights.
+ *
+ * Allocates nothing, takes no lock. Jobs on other outputs and scratch memory may run at the same time. */
+typedef struct sc_body_penetration_job {
+  sc_body a SC_ZERO, b SC_ZERO; /* ignored_parts is not read */
+  sc_target target SC_ZERO;
+  const sc_triangle_contact* contacts SC_ZERO; /* null: none */
+  size_t contact_count SC_ZERO;
+  const sc_penetration* previous SC_ZERO; /* null: none */
+  size_t previous_count SC_ZERO;
+  int32_t quick SC_ZERO;
+  float touch_depth SC_ZERO;
+  uint64_t* scratch SC_ZERO; /* sc_body_penetration_scratch_words() words; nothing is kept there between runs */
+  size_t scratch_words SC_ZERO;
+  sc_penetration* penetrations SC_ZERO; /* out: sorted by (part_a, part_b) */
+  size_t penetration_capacity SC_ZERO;
+  size_t penetration_count SC_ZERO;
+#if defined(__cplusplus)
+  sc_status run() noexcept;
+#endif
+} sc_body_penetration_job;
+
 #if defined(__cplusplus)
 extern "C" {
 #endif
@@ -45,14 +70,21 @@ SPHERECHAIN_API sc_status sc_find_body_contacts(sc_body_contact_job* job) SC_NOE
 /* Words of scratch memory; 0 where an asset is not open or has no triangles. */
 SPHERECHAIN_API size_t sc_body_scratch_words(const sc_asset* a, const sc_asset* b) SC_NOEXCEPT;
 
+/* Errors as of sc_measure_penetrations(). */
+SPHERECHAIN_API sc_status sc_measure_body_penetrations(sc_body_penetration_job* job) SC_NOEXCEPT;
+SPHERECHAIN_API size_t sc_body_penetration_scratch_words(const sc_asset* a, const sc_asset* b,
+                                                         size_t contact_count) SC_NOEXCEPT;
+
 /* Words of a bit for each body part. 0 where the asset is not open. */
 SPHERECHAIN_API size_t sc_part_words(const sc_asset* asset) SC_NOEXCEPT;
 
 #if defined(__cplusplus)
 }
 inline sc_status sc_body_contact_job::run() noexcept { return sc_find_body_contacts(this); }
+inline sc_status sc_body_penetration_job::run() noexcept { return sc_measure_body_penetrations(this); }
 namespace spherechain {
 using Body = sc_body;
 using BodyContactJob = sc_body_contact_job;
+using BodyPenetrationJob = sc_body_penetration_job;
 }  // namespace spherechain
 #endif

@@ -20,10 +20,11 @@ std::uint32_t first_of(std::uint32_t* patch, std::uint32_t i) {
 }
 
 // Segments that share a triangle follow one another on a contour.
-void join_patches(const Span<Segment3>& segments, ContourScratch& scratch) {
+void join_patches(const Skins& skins, const Span<Segment3>& segments, ContourScratch& scratch) {
+  const std::uint32_t first_of_b = skins.first_triangle_of_b();
   for (std::uint32_t i = 0; i < segments.size; ++i) {
     scratch.patch[i] = i;
-    for (const std::uint32_t triangle : {segments[i].a, segments[i].b}) {
+    for (const std::uint32_t triangle : {segments[i].a, first_of_b + segments[i].b}) {
       std::uint32_t& last = scratch.last_segment[triangle];
       if (last != kNoPlace) {
         const std::uint32_t p = first_of(scratch.patch, i), q = first_of(scratch.patch, last);
@@ -33,11 +34,17 @@ void join_patches(const Span<Segment3>& segments, ContourScratch& scratch) {
     }
   }
   for (const Segment3& segment : segments) {
-    scratch.last_segment[segment.a] = scratch.last_segment[segment.b] = kNoPlace;
+    scratch.last_segment[segment.a] = scratch.last_segment[first_of_b + segment.b] = kNoPlace;
   }
 }
 
-void measure_rest(const PosedSkin& skin, double height, ContourScratch& scratch, Contour& out) {
+void measure_rest(const Skins& skins, double height, ContourScratch& scratch, Contour& out) {
+  if (!skins.are_one()) {
+    out.rest_distance = HUGE_VAL;
+    out.is_one_piece = false;
+    return;
+  }
+  const PosedSkin& skin = skins.a;
   const std::size_t step = (out.segments.size + kSampled - 1) / kSampled;
   double* const distances = scratch.lengths;
   std::size_t count = 0, touching = 0;
@@ -66,7 +73,7 @@ void ContourScratch::clear(std::size_t triangle_count) {
   std::fill(last_segment, last_segment + triangle_count, kNoPlace);
 }
 
-Contour contour_of(const PosedSkin& skin, Span<Segment3> segments, double height, ContourScratch& scratch) {
+Contour contour_of(const Skins& skins, Span<Segment3> segments, double height, ContourScratch& scratch) {
   Contour out;
   out.segments = segments;
   Double3 middle{0, 0, 0}, gap{0, 0, 0};
@@ -81,7 +88,7 @@ Contour contour_of(const PosedSkin& skin, Span<Segment3> segments, double height
   out.center = out.length > 0 ? (1 / out.length) * middle : segments[0].from;
   out.facing = out.length > 0 ? facing / out.length : 0;
   out.is_closed = length(gap) <= kOpen * out.length && out.length > 0;
-  join_patches(segments, scratch);
+  join_patches(skins, segments, scratch);
   std::fill(scratch.lengths, scratch.lengths + segments.size, 0.0);
   for (std::uint32_t i = 0; i < segments.size; ++i) {
     scratch.lengths[first_of(scratch.patch, i)] += segments[i].length;
@@ -96,7 +103,7 @@ Contour contour_of(const PosedSkin& skin, Span<Segment3> segments, double height
       out.largest_area = out.largest_area + share;
     }
   }
-  measure_rest(skin, height, scratch, out);
+  measure_rest(skins, height, scratch, out);
   return out;
 }
 

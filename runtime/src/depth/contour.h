@@ -7,9 +7,9 @@
 
 namespace spherechain {
 
-// Two triangles that meet, a of the first body part.
+// Two triangles that meet, a of the first body part, or of the first body.
 struct Segment3 {
-  std::uint32_t a, b;  // places in Surface::triangles
+  std::uint32_t a, b;  // places in their bodies' Surface::triangles
   Double3 from, to;    // in the direction of normal a x normal b: around what lies inside, seen from where it came
   Double3 normal_a, normal_b;  // of unit length; zero of degenerate triangles
   double length;
@@ -24,9 +24,9 @@ struct Contour {
   Double3 largest_area{};    // of the longest of its connected pieces
   Double3 normals{};         // mean of normal a - normal b
   double facing = 0;         // mean of -(normal a . normal b): 1 where the sides lie flat on each other
-  double rest_distance = 0;  // median distance of the triangles that meet, at rest
+  double rest_distance = 0;  // median distance of the triangles that meet, at rest; of two bodies infinite
   double touching = 0;       // share of them that are closer than `kTouching` of `height` at rest
-  bool is_one_piece = true;  // of the skin
+  bool is_one_piece = true;  // of one body's skin
 };
 
 // Words of scratch memory, and what it is for.
@@ -39,6 +39,6 @@ struct ContourScratch {
   void clear(std::size_t triangle_count);
 };
 
-Contour contour_of(const PosedSkin& skin, Span<Segment3> segments, double height, ContourScratch& scratch);
+Contour contour_of(const Skins& skins, Span<Segment3> segments, double height, ContourScratch& scratch);
 
 }  // namespace spherechain

@@ -11,9 +11,9 @@ constexpr std::size_t kVotes = 8;  // contacts that say what is inside
 
 }  // namespace
 
-void Sweep::vote_by(std::uint32_t triangle, const Double3* points, std::size_t count, bool up, double handedness,
+void Sweep::vote_by(const Corners& triangle, const Double3* points, std::size_t count, bool up, double handedness,
                     double* nearest, int* inside) const {
-  const Corners t = view_.seen(skin_.corners(triangle));
+  const Corners t = view_.seen(triangle);
   const double turn = turn_of(t), sign = turn > 0 ? 1 : -1;
   for (std::size_t i = 0; i < count && (turn > 0 || turn < 0); ++i) {
     const Double3& from = points[i];
@@ -31,15 +31,16 @@ void Sweep::vote_by(std::uint32_t triangle, const Double3* points, std::size_t c
 }
 
 // For each point: is the next surface of that side above it, or below it, one that is left, not entered?
-void Sweep::vote(const Span<const TriangleRun>& side, const Double3* points, std::size_t count, bool up,
-                 double handedness, int* inside) const {
+void Sweep::vote(const Side& side, const Double3* points, std::size_t count, bool up, double outwards,
+                 int* inside) const {
+  const PosedSkin& skin = side.skin;
   double nearest[kVotes];
   std::fill(nearest, nearest + kVotes, HUGE_VAL);
-  for (const TriangleRun& run : side) {
+  for (const TriangleRun& run : side.runs) {
     // The run's box, seen: its middle and how far it reaches along u and v.
     Double3 low{}, high{};
-    low = {double{skin_.low[0][run.cluster]}, double{skin_.low[1][run.cluster]}, double{skin_.low[2][run.cluster]}};
-    high = {double{skin_.high[0][run.cluster]}, double{skin_.high[1][run.cluster]}, double{skin_.high[2][run.cluster]}};
+    low = {double{skin.low[0][run.cluster]}, double{skin.low[1][run.cluster]}, double{skin.low[2][run.cluster]}};
+    high = {double{skin.high[0][run.cluster]}, double{skin.high[1][run.cluster]}, double{skin.high[2][run.cluster]}};
     const Double3 middle = view_.seen(0.5 * (low + high)), half = 0.5 * (high - low);
     const auto reach = [&](const Double3& axis) {
       return std::abs(axis.x) * half.x + (std::abs(axis.y) * half.y + std::abs(axis.z) * half.z);
@@ -49,15 +50,15 @@ void Sweep::vote(const Span<const TriangleRun>& side, const Double3* points, std
       return std::abs(p.x - middle.x) <= reach_u && std::abs(p.y - middle.y) <= reach_v;
     });
     for (std::uint32_t k = 0; is_over_any && k < run.count; ++k) {
-      vote_by(run.first + k, points, count, up, handedness, nearest, inside);
+      vote_by(skin.corners(run.first + k), points, count, up, outwards * skin.handedness, nearest, inside);
     }
   }
 }
 
-bool Sweep::is_enclosed(const Double3& direction, const WayOut& way, const Contour& contour, double handedness) {
+bool Sweep::is_enclosed(const Double3& direction, const WayOut& way, const Contour& contour, double outwards) {
   look_along(direction);
-  const auto middle = [&](std::uint32_t triangle) {
-    const Corners t = view_.seen(skin_.corners(triangle));
+  const auto middle = [&](const Corners& corners) {
+    const Corners t = view_.seen(corners);
     return (1.0 / 3) * (t.p[0] + (t.p[1] + t.p[2]));
   };
   const std::size_t step = (contour.segments.size + kVotes - 1) / kVotes;
@@ -65,13 +66,13 @@ bool Sweep::is_enclosed(const Double3& direction, const WayOut& way, const Conto
   int a_in_b[kVotes] = {}, b_in_a[kVotes] = {};
   std::size_t count = 0;
   for (std::size_t i = 0; i < contour.segments.size; i += step, ++count) {
-    of_a[count] = middle(contour.segments[i].a);
-    of_b[count] = middle(contour.segments[i].b);
+    of_a[count] = middle(skins_.a.corners(contour.segments[i].a));
+    of_b[count] = middle(skins_.b.corners(contour.segments[i].b));
     of_a[count].z -= way.depth;
     of_b[count].z += way.depth;
   }
-  vote(side_a_, of_b, count, true, handedness, b_in_a);
-  vote(side_b_, of_a, count, false, handedness, a_in_b);
+  vote(side_a(), of_b, count, true, outwards, b_in_a);
+  vote(side_b(), of_a, count, false, outwards, a_in_b);
   const auto most = [&](const int* votes) {
     return 2 * std::count_if(votes, votes + count, [](int vote) { return vote == 1; }) > static_cast<long>(count);
   };

@@ -54,4 +54,21 @@ struct PosedSkin {
   }
 };
 
+// Whose skins meet: one body's with itself, or two bodies'. Places and vertices are those of the body's own surface.
+struct Skins {
+  const PosedSkin &a, &b;
+
+  bool are_one() const { return &a == &b; }
+  // Where numbers of both are put into one table.
+  std::uint32_t first_vertex_of_b() const { return are_one() ? 0 : static_cast<std::uint32_t>(size(a)); }
+  std::uint32_t first_triangle_of_b() const {
+    return are_one() ? 0 : static_cast<std::uint32_t>(a.surface->triangles.size);
+  }
+  std::size_t vertex_count() const { return size(a) + (are_one() ? 0 : size(b)); }
+  std::size_t triangle_count() const { return a.surface->triangles.size + (are_one() ? 0 : b.surface->triangles.size); }
+
+ private:
+  static std::size_t size(const PosedSkin& skin) { return skin.surface->source_vertices.size; }
+};
+
 }  // namespace spherechain

@@ -17,6 +17,9 @@ bool is_on(const Span<const std::uint64_t>& bits, std::size_t i) {
 }  // namespace
 
 bool PairRule::counts(std::uint32_t a, std::uint32_t b) const {
+  if (surface == nullptr) {
+    return true;
+  }
   const std::uint32_t *const v = surface->triangle_vertices.data + 3 * std::size_t{a},
                              *const w = surface->triangle_vertices.data + 3 * std::size_t{b};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -40,9 +43,10 @@ bool PairRule::counts(std::uint32_t a, std::uint32_t b) const {
                              Pair{std::min(p, q), std::max(p, q)});
 }
 
-void Sweep::take(WordMemory& memory, std::size_t triangle_count, std::size_t vertex_count) {
-  a_.take(memory, triangle_count);
-  b_.take(memory, triangle_count);
+void Sweep::take(WordMemory& memory, const SkinSizes& a, const SkinSizes& b) {
+  const std::size_t vertex_count = a.vertices + (skins_.are_one() ? 0 : b.vertices);
+  a_.take(memory, a.triangles);
+  b_.take(memory, b.triangles);
   memory.take(vertices_.vertex, vertex_count);
   memory.take(vertices_.place, vertex_count);
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -51,7 +55,7 @@ void Sweep::take(WordMemory& memory, std::size_t triangle_count, std::size_t ver
   }
 }
 
-void Sweep::clear(std::size_t vertex_count) { std::fill(vertices_.place, vertices_.place + vertex_count, kNoPlace); }
+void Sweep::clear() { std::fill(vertices_.place, vertices_.place + skins_.vertex_count(), kNoPlace); }
 
 void Sweep::look_along(const Double3& direction) { view_ = View(direction, vertices_.origin); }
 
@@ -134,7 +138,7 @@ void Sweep::for_pairs(std::size_t first, const Wants& wants, const Visit& visit)
 
 // Moves the way's end on to where this pair no longer blocks it.
 void Sweep::block(std::uint32_t a, std::uint32_t b, double& depth, WayOut& out) const {
-  const Corners seen_a = view_.seen(skin_.corners(a)), seen_b = view_.seen(skin_.corners(b));
+  const Corners seen_a = view_.seen(skins_.a.corners(a)), seen_b = view_.seen(skins_.b.corners(b));
   const Shadow shadow(seen_a, seen_b, depth, depth + gap_);
   double low = HUGE_VAL, high = -HUGE_VAL;
   int last = 0;
@@ -154,7 +158,7 @@ void Sweep::block(std::uint32_t a, std::uint32_t b, double& depth, WayOut& out) 
   const Shadow::Corner& corner = shadow.corners[last];
   const int edges[2] = {shadow.corners[(last + shadow.count - 1) % shadow.count].edge, corner.edge};
   const bool of_b[2] = {edges[0] < 3, edges[1] < 3};
-  const Corners &t = skin_.corners(a), &r = skin_.corners(b);
+  const Corners &t = skins_.a.corners(a), &r = skins_.b.corners(b);
   if (of_b[0] && of_b[1]) {  // a corner of b leaves a's face
     out.normal = normal_of(t);
   } else if (!of_b[0] && !of_b[1]) {
@@ -237,7 +241,7 @@ Volume Sweep::volume(const Double3& direction, double depth) {
   for_pairs(
       0, [&](double low, double high) { return high > 0 && low <= depth + gap_; },
       [&](std::uint32_t a, std::uint32_t b, std::size_t) {
-        const Corners seen_a = view_.seen(skin_.corners(a)), seen_b = view_.seen(skin_.corners(b));
+        const Corners seen_a = view_.seen(skins_.a.corners(a)), seen_b = view_.seen(skins_.b.corners(b));
         Shadow shadow(seen_a, seen_b, 0, depth);
         shadow.keep_above(0);
         shadow.keep_below(depth);

@@ -10,7 +10,7 @@ namespace spherechain {
 
 // Which pairs of triangles count: those that the contact job would report.
 struct PairRule {
-  const Surface* surface = nullptr;
+  const Surface* surface = nullptr;  // null: all pairs, those of two bodies
   Span<const std::uint64_t> ignored, disabled;
   bool apart = true, neighbours = false;
 
@@ -34,10 +34,10 @@ struct Volume {
 class Sweep {
  public:
   // `gap`: free places shorter than that are none.
-  Sweep(const PosedSkin& skin, const PairRule& rule, double gap) : skin_(skin), rule_(rule), gap_(gap) {}
-  void take(WordMemory& memory, std::size_t triangle_count, std::size_t vertex_count);
+  Sweep(const Skins& skins, const PairRule& rule, double gap) : skins_(skins), rule_(rule), gap_(gap) {}
+  void take(WordMemory& memory, const SkinSizes& a, const SkinSizes& b);
   // Once, before anything else.
-  void clear(std::size_t vertex_count);
+  void clear();
 
   // `origin`: about where they meet. keep_near() or keep_on_way() comes next.
   void set_sides(Span<const TriangleRun> a, Span<const TriangleRun> b, const Double3& origin);
@@ -51,8 +51,8 @@ class Sweep {
   double find_by_contour(const Double3& direction, const Contour& contour, double bound, WayOut& out);
   // False where the way is not shorter than `bound`: then `out` is the pair that said so.
   bool find(const Double3& direction, const Contour& contour, double bound, WayOut& out);
-  // Is b, moved so, inside a, or a inside b?
-  bool is_enclosed(const Double3& direction, const WayOut& way, const Contour& contour, double handedness);
+  // Is b, moved so, inside a, or a inside b? `outwards`: -1 where the skins are inside out.
+  bool is_enclosed(const Double3& direction, const WayOut& way, const Contour& contour, double outwards);
   // Of b inside a, seen along the direction of a way that long.
   Volume volume(const Double3& direction, double depth);
 
@@ -81,7 +81,16 @@ class Sweep {
     Double3 origin{};
     std::size_t count = 0;
   };
-  void list_vertices(Boxes& boxes);
+  // A body's triangles. Its vertices' numbers start at that one: bodies that are two share none.
+  struct Side {
+    const PosedSkin& skin;
+    std::uint32_t first_vertex;
+    Span<const TriangleRun> runs;
+  };
+  Side side_a() const { return {skins_.a, 0, side_a_}; }
+  Side side_b() const { return {skins_.b, skins_.first_vertex_of_b(), side_b_}; }
+
+  void list_vertices(const Side& side, Boxes& boxes);
   void look_along(const Double3& direction);
   // Boxes of all blocks that can block a way longer than `depth`.
   void see_boxes(double depth);
@@ -89,9 +98,8 @@ class Sweep {
     Double3 up, down;  // along each axis
   };
   void keep(const Room& room);
-  void keep_runs(const Span<const TriangleRun>& side, const Span<const TriangleRun>& other, const Room& room,
-                 Boxes& out);
-  void widen_blocks(const TriangleRun& run, Boxes& out) const;
+  void keep_runs(const Side& side, const Side& other, const Room& room, Boxes& out);
+  void widen_blocks(const PosedSkin& skin, const TriangleRun& run, Boxes& out) const;
   void block(std::uint32_t a, std::uint32_t b, double& depth, WayOut& out) const;
   static std::int32_t find_hidden(float* const (&low)[3], float* const (&high)[3], std::size_t first,
                                   float* const (&other_low)[3], float* const (&other_high)[3], std::size_t i,
@@ -100,13 +108,12 @@ class Sweep {
   // can meet a only after a move between low and high. Starts at that block of b; ends where visit() says false.
   template <typename Wants, typename Visit>
   void for_pairs(std::size_t first, const Wants& wants, const Visit& visit) const;
-  void vote(const Span<const TriangleRun>& side, const Double3* points, std::size_t count, bool up, double handedness,
-            int* inside) const;
-  void vote_by(std::uint32_t triangle, const Double3* points, std::size_t count, bool up, double handedness,
+  void vote(const Side& side, const Double3* points, std::size_t count, bool up, double outwards, int* inside) const;
+  void vote_by(const Corners& triangle, const Double3* points, std::size_t count, bool up, double handedness,
                double* nearest, int* inside) const;
   void remember(const WayOut& out);
 
-  const PosedSkin& skin_;
+  const Skins& skins_;
   const PairRule& rule_;
   double gap_;
   View view_{{0, 0, 1}, {0, 0, 0}};

@@ -94,19 +94,19 @@ void Sweep::keep(const Room& room) {
     vertices_.place[vertices_.vertex[i]] = kNoPlace;
   }
   vertices_.count = 0;
-  keep_runs(side_a_, side_b_, room, a_);
-  keep_runs(side_b_, side_a_, {room.down, room.up}, b_);
-  list_vertices(a_);
-  list_vertices(b_);
+  keep_runs(side_a(), side_b(), room, a_);
+  keep_runs(side_b(), side_a(), {room.down, room.up}, b_);
+  list_vertices(side_a(), a_);
+  list_vertices(side_b(), b_);
 }
 
 // By the box of the run's cluster, of the blocks that the run comes to lie in.
-void Sweep::widen_blocks(const TriangleRun& run, Boxes& out) const {
+void Sweep::widen_blocks(const PosedSkin& skin, const TriangleRun& run, Boxes& out) const {
   const double origin[3] = {vertices_.origin.x, vertices_.origin.y, vertices_.origin.z};
   for (std::size_t i = out.count / kBlock; kBlock * i < out.count + run.count; ++i) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      auto low = static_cast<float>(double{skin_.low[axis][run.cluster]} - origin[axis]);
-      auto high = static_cast<float>(double{skin_.high[axis][run.cluster]} - origin[axis]);
+      auto low = static_cast<float>(double{skin.low[axis][run.cluster]} - origin[axis]);
+      auto high = static_cast<float>(double{skin.high[axis][run.cluster]} - origin[axis]);
       if (kBlock * i < out.count) {
         low = std::min(low, out.middle[axis][i] - out.half[axis][i]);
         high = std::max(high, out.middle[axis][i] + out.half[axis][i]);
@@ -118,36 +118,35 @@ void Sweep::widen_blocks(const TriangleRun& run, Boxes& out) const {
 }
 
 // Runs of whose cluster the box meets one of the other side's that goes so far up and down along each axis.
-void Sweep::keep_runs(const Span<const TriangleRun>& side, const Span<const TriangleRun>& other, const Room& room,
-                      Boxes& out) {
+void Sweep::keep_runs(const Side& side, const Side& other, const Room& room, Boxes& out) {
   const double up[3] = {room.up.x + gap_, room.up.y + gap_, room.up.z + gap_};
   const double down[3] = {room.down.x + gap_, room.down.y + gap_, room.down.z + gap_};
   double highest[3], lowest[3];  // of them all
   for (std::size_t axis = 0; axis < 3; ++axis) {
     highest[axis] = -HUGE_VAL;
     lowest[axis] = HUGE_VAL;
-    for (const TriangleRun& from : other) {
-      highest[axis] = std::max(highest[axis], double{skin_.high[axis][from.cluster]});
-      lowest[axis] = std::min(lowest[axis], double{skin_.low[axis][from.cluster]});
+    for (const TriangleRun& from : other.runs) {
+      highest[axis] = std::max(highest[axis], double{other.skin.high[axis][from.cluster]});
+      lowest[axis] = std::min(lowest[axis], double{other.skin.low[axis][from.cluster]});
     }
   }
   out.count = 0;
-  for (const TriangleRun& run : side) {
+  for (const TriangleRun& run : side.runs) {
     const auto is_near = [&](const auto& high, const auto& low) {
       bool near = true;
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        near = near && double{skin_.low[axis][run.cluster]} <= high(axis) + up[axis] &&
-               double{skin_.high[axis][run.cluster]} >= low(axis) - down[axis];
+        near = near && double{side.skin.low[axis][run.cluster]} <= high(axis) + up[axis] &&
+               double{side.skin.high[axis][run.cluster]} >= low(axis) - down[axis];
       }
       return near;
     };
     const auto is_near_run = [&](const TriangleRun& from) {
-      return is_near([&](std::size_t axis) { return double{skin_.high[axis][from.cluster]}; },
-                     [&](std::size_t axis) { return double{skin_.low[axis][from.cluster]}; });
+      return is_near([&](std::size_t axis) { return double{other.skin.high[axis][from.cluster]}; },
+                     [&](std::size_t axis) { return double{other.skin.low[axis][from.cluster]}; });
     };
     if (is_near([&](std::size_t axis) { return highest[axis]; }, [&](std::size_t axis) { return lowest[axis]; }) &&
-        std::any_of(other.begin(), other.end(), is_near_run)) {
-      widen_blocks(run, out);
+        std::any_of(other.runs.begin(), other.runs.end(), is_near_run)) {
+      widen_blocks(side.skin, run, out);
       for (std::uint32_t i = 0; i < run.count; ++i) {
         out.triangle[out.count++] = run.first + i;
       }
@@ -156,15 +155,16 @@ void Sweep::keep_runs(const Span<const TriangleRun>& side, const Span<const Tria
 }
 
 // Near each other in memory: boxes are made of them again and again.
-void Sweep::list_vertices(Boxes& boxes) {
+void Sweep::list_vertices(const Side& side, Boxes& boxes) {
   for (std::size_t i = 0; i < boxes.count; ++i) {
-    const std::uint32_t* const corners = skin_.surface->triangle_vertices.data + 3 * std::size_t{boxes.triangle[i]};
+    const std::uint32_t* const corners = side.skin.surface->triangle_vertices.data + 3 * std::size_t{boxes.triangle[i]};
     for (std::size_t k = 0; k < 3; ++k) {
-      std::uint32_t& place = vertices_.place[corners[k]];
+      const std::uint32_t vertex = side.first_vertex + corners[k];
+      std::uint32_t& place = vertices_.place[vertex];
       if (place == kNoPlace) {
         place = static_cast<std::uint32_t>(vertices_.count);
-        vertices_.vertex[vertices_.count] = corners[k];
-        const float* const p = skin_.positions + 3 * std::size_t{corners[k]};
+        vertices_.vertex[vertices_.count] = vertex;
+        const float* const p = side.skin.positions + 3 * std::size_t{corners[k]};
         vertices_.at[0][vertices_.count] = static_cast<float>(double{p[0]} - vertices_.origin.x);
         vertices_.at[1][vertices_.count] = static_cast<float>(double{p[1]} - vertices_.origin.y);
         vertices_.at[2][vertices_.count] = static_cast<float>(double{p[2]} - vertices_.origin.z);

@@ -24,7 +24,16 @@ bool meets(const Double3& from, const Double3& direction, const Corners& t) {
 }  // namespace
 
 bool Visibility::is_free(const Double3& from, const Double3& direction) {
-  const Surface& surface = *skin_.surface;
+  for (const Blocker& blocker : blockers_) {
+    if (blocker.skin != nullptr && meets(from, direction, blocker.skin->corners(blocker.triangle))) {
+      return false;
+    }
+  }
+  return !meets_skin(skins_.a, from, direction) && (skins_.are_one() || !meets_skin(skins_.b, from, direction));
+}
+
+bool Visibility::meets_skin(const PosedSkin& skin, const Double3& from, const Double3& direction) {
+  const Surface& surface = *skin.surface;
   const double start[3] = {from.x, from.y, from.z};
   const double slope[3] = {1 / direction.x, 1 / direction.y, 1 / direction.z};
   const auto meets_box = [&](const float* const(&low)[3], const float* const(&high)[3], std::size_t i) {
@@ -37,28 +46,23 @@ bool Visibility::is_free(const Double3& from, const Double3& direction) {
     }
     return !(enter > leave);
   };
-  for (const std::uint32_t t : blockers_) {
-    if (t != kNoPlace && meets(from, direction, skin_.corners(t))) {
-      return false;
-    }
-  }
   for (std::size_t c = 0; c < surface.clusters.size; ++c) {
-    if (c % PosedSkin::kGroup == 0 && !meets_box(skin_.group_low, skin_.group_high, c / PosedSkin::kGroup)) {
+    if (c % PosedSkin::kGroup == 0 && !meets_box(skin.group_low, skin.group_high, c / PosedSkin::kGroup)) {
       c += PosedSkin::kGroup - 1;
       continue;
     }
-    if (!meets_box(skin_.low, skin_.high, c)) {
+    if (!meets_box(skin.low, skin.high, c)) {
       continue;
     }
     const Cluster& cluster = surface.clusters[c];
     for (std::uint32_t t = cluster.first_triangle; t < cluster.first_triangle + cluster.triangle_count; ++t) {
-      if (meets(from, direction, skin_.corners(t))) {
-        blockers_[next_blocker_++ % kBlockers] = t;
-        return false;
+      if (meets(from, direction, skin.corners(t))) {
+        blockers_[next_blocker_++ % kBlockers] = {&skin, t};
+        return true;
       }
     }
   }
-  return true;
+  return false;
 }
 
 double Visibility::best_cosine(const Segment3& segment, const Double3 (&axes)[3], double clearance, Double3& free) {
@@ -85,7 +89,7 @@ double Visibility::best_cosine(const Segment3& segment, const Double3 (&axes)[3]
 }
 
 Seen Visibility::look(const Contour& contour, const Double3 (&axes)[3], double clearance) {
-  std::fill(blockers_, blockers_ + kBlockers, kNoPlace);
+  std::fill(blockers_, blockers_ + kBlockers, Blocker{nullptr, 0});
   const std::size_t size = contour.segments.size;
   Double3 free = axes[0];  // the last ray that left: likely to be free again
   for (const std::size_t wanted : {kSampled, kSearched}) {

@@ -13,22 +13,27 @@ struct Seen {
 
 class Visibility {
  public:
-  explicit Visibility(const PosedSkin& skin) : skin_(skin) {}
+  explicit Visibility(const Skins& skins) : skins_(skins) {}
 
-  // Of samples of the contour's segments, from which does some ray leave the body without meeting it? Rays start
+  // Of samples of the contour's segments, from which does some ray leave the bodies without meeting them? Rays start
   // `clearance` away from the skin, between the two surfaces. `axes` are three directions at right angles. A segment
   // counts by the cosine between a ray and the normal of the side that it meets more flatly: the best free ray's.
   Seen look(const Contour& contour, const Double3 (&axes)[3], double clearance);
 
  private:
   bool is_free(const Double3& from, const Double3& direction);
+  bool meets_skin(const PosedSkin& skin, const Double3& from, const Double3& direction);
   // That cosine, at least 0; -1 where no ray is free. `free`: a direction to try first; then the best one, if any.
   double best_cosine(const Segment3& segment, const Double3 (&axes)[3], double clearance, Double3& free);
 
-  const PosedSkin& skin_;
+  const Skins& skins_;
   // Triangles that rays met last: likely to stop the next.
   static constexpr std::size_t kBlockers = 8;
-  std::uint32_t blockers_[kBlockers];
+  struct Blocker {
+    const PosedSkin* skin;  // null: none yet
+    std::uint32_t triangle;
+  };
+  Blocker blockers_[kBlockers];
   std::size_t next_blocker_ = 0;
 };
 

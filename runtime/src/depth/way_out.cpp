@@ -15,8 +15,8 @@ constexpr double kSame = 0.9998;        // cosine: a direction that is as near t
 
 class Search {
  public:
-  Search(Sweep& sweep, const Contour& contour, double handedness)
-      : sweep_(sweep), contour_(contour), handedness_(handedness) {}
+  Search(Sweep& sweep, const Contour& contour, double outwards)
+      : sweep_(sweep), contour_(contour), outwards_(outwards) {}
 
   bool has_any() const { return has_any_; }
   const Exit& best() const { return best_; }
@@ -63,7 +63,7 @@ class Search {
     Double3 direction = wanted;
     for (int step = 0; step <= kSteps && normalize(direction) && dot(direction, wanted) > kSameWay; ++step) {
       WayOut way;
-      if (sweep_.find(direction, contour_, bound, way) && !sweep_.is_enclosed(direction, way, contour_, handedness_)) {
+      if (sweep_.find(direction, contour_, bound, way) && !sweep_.is_enclosed(direction, way, contour_, outwards_)) {
         kept = {direction, way};
         bound = way.depth;
         found = true;
@@ -91,12 +91,12 @@ class Search {
   }
 
   bool is_refused(const Double3& direction, const WayOut& way) {
-    return is_careful_ && sweep_.is_enclosed(direction, way, contour_, handedness_);
+    return is_careful_ && sweep_.is_enclosed(direction, way, contour_, outwards_);
   }
 
   Sweep& sweep_;
   const Contour& contour_;
-  double handedness_;
+  double outwards_;
   bool is_careful_ = false, has_any_ = false;
   Exit best_;
   static constexpr std::size_t kTriedMax = 64;
@@ -128,7 +128,6 @@ void axes_of(const Contour& contour, const Double3& direction, Double3 (&axes)[3
 Exit find_exit(Sweep& sweep, const Contour& contour, const ExitSettings& settings) {
   const double turn = dot(contour.area, contour.normals);
   const double outwards = contour.is_closed && turn < 0 ? -1 : 1;  // -1: the skin is inside out
-  const double handedness = outwards * settings.handedness;
   const Double3 normals = outwards * contour.normals;
   Double3 first = contour.is_closed ? contour.area : normals;
   if (!normalize(first)) {
@@ -149,7 +148,7 @@ Exit find_exit(Sweep& sweep, const Contour& contour, const ExitSettings& setting
   if (settings.one_direction) {
     return out;
   }
-  Search search(sweep, contour, handedness);
+  Search search(sweep, contour, outwards);
   search.start(out);
   sweep.keep_near(kNearlyAsGood * out.way.depth);
   Double3 axes[3];
@@ -165,7 +164,7 @@ Exit find_exit(Sweep& sweep, const Contour& contour, const ExitSettings& setting
     }
   };
   try_all();
-  if (!search.has_any() || sweep.is_enclosed(search.best().direction, search.best().way, contour, handedness)) {
+  if (!search.has_any() || sweep.is_enclosed(search.best().direction, search.best().way, contour, outwards)) {
     const Exit fallback = search.has_any() ? search.best() : out;
     search.be_careful();
     sweep.keep_near(HUGE_VAL);

@@ -13,7 +13,6 @@ struct Exit {
 
 struct ExitSettings {
   bool one_direction = false;
-  double handedness = 1;              // the posed skin's
   double near = 0;                    // ways are likely to be shorter
   double deep = 0;                    // above it many more directions are tried
   const Double3* previous = nullptr;  // the last frame's, or null

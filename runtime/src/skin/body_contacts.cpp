@@ -10,26 +10,14 @@
 namespace spherechain {
 namespace {
 
-struct BodyRanges {
-  MemoryRange vertices, bones, morph_weights, skin_table, ignored_parts;
-
-  explicit BodyRanges(const Body& body)
-      : vertices(range_of_vertices(view_of(*body.asset), body.pose)),
-        bones(range_of_bones(view_of(*body.asset), body.pose)),
-        morph_weights(range_of_morph_weights(view_of(*body.asset), body.pose)),
-        skin_table(range_of(Span<const std::uint64_t>{body.skin_table, skin_table_words(view_of(*body.asset))})),
-        ignored_parts(range_of(Span<const std::uint64_t>{body.ignored_parts, sc_part_words(body.asset)})) {}
-};
-
 bool is_aliased(const BodyContactJob& job) {
   const BodyRanges a(job.a), b(job.b);
-  return any_shared(
-      {range_of(Span<PartContact>{job.parts, job.part_capacity}),
-       range_of(Span<Pair>{job.spheres, job.sphere_capacity}),
-       range_of(Span<TriangleContact>{job.triangles, job.triangle_capacity}),
-       range_of(Span<std::uint64_t>{job.scratch, sc_body_scratch_words(job.a.asset, job.b.asset)})},
-      {a.vertices, a.bones, a.morph_weights, a.skin_table, a.ignored_parts, b.vertices, b.bones, b.morph_weights,
-       b.skin_table, b.ignored_parts});
+  return any_shared({range_of(Span<PartContact>{job.parts, job.part_capacity}),
+                     range_of(Span<Pair>{job.spheres, job.sphere_capacity}),
+                     range_of(Span<TriangleContact>{job.triangles, job.triangle_capacity}),
+                     range_of(Span<std::uint64_t>{job.scratch, sc_body_scratch_words(job.a.asset, job.b.asset)})},
+                    {a.vertices, a.bones, a.morph_weights, a.skin_table, a.ignored_parts, b.vertices, b.bones,
+                     b.morph_weights, b.skin_table, b.ignored_parts});
 }
 
 Status check(const BodyContactJob& job, Target& resolved, Surface& surface_a, Surface& surface_b) {

@@ -184,9 +184,8 @@ HWY_NOINLINE void decide_clusters(const Bodies& bodies, ClusterPairs& list, Cont
                   HWY_ATTR { return box_of_span(bodies.a, a).touches(box_at(bodies.b.clusters, b)); });
   load_all(bodies.b, list.b);
   list.filter([&](std::size_t a, std::size_t b) HWY_ATTR { return spans_touch(bodies.a, a, bodies.b, b); });
-  list.filter([&](std::size_t a, std::size_t b) HWY_ATTR {
-    return (bodies.are_one && a == b) || !plane_parts(bodies.a, a, bodies.b, b);
-  });
+  list.filter([&](std::size_t a, std::size_t b)
+                  HWY_ATTR { return (bodies.are_one && a == b) || !plane_parts(bodies.a, a, bodies.b, b); });
   for (std::size_t k = 0; k < list.count; ++k) {
     const auto a = static_cast<std::size_t>(list.a[k]), b = static_cast<std::size_t>(list.b[k]);
     const Pair spheres{bodies.a.surface->clusters.data[a].sphere, bodies.b.surface->clusters.data[b].sphere};

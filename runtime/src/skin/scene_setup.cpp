@@ -79,9 +79,16 @@ void prepare_bounds(const AssetView& asset, ContactScene& scene) {
   }
 }
 
+}  // namespace
+
 bool has_skin(const AssetView& asset) { return asset.is_open() && asset.skin().sizes.clusters > 0; }
 
-}  // namespace
+BodyRanges::BodyRanges(const Body& body)
+    : vertices(range_of_vertices(view_of(*body.asset), body.pose)),
+      bones(range_of_bones(view_of(*body.asset), body.pose)),
+      morph_weights(range_of_morph_weights(view_of(*body.asset), body.pose)),
+      skin_table(range_of(Span<const std::uint64_t>{body.skin_table, skin_table_words(view_of(*body.asset))})),
+      ignored_parts(range_of(Span<const std::uint64_t>{body.ignored_parts, sc_part_words(body.asset)})) {}
 
 void PartTable::take(WordMemory& memory, std::size_t count_a, std::size_t parts_of_b, bool are_one) {
   count_b = parts_of_b;

@@ -6,7 +6,7 @@
 
 #include "pose/pose.h"
 #include "skin/scene.h"
-#include "spherechain/skin_contacts.h"
+#include "spherechain/bodies.h"
 
 namespace spherechain {
 
@@ -27,6 +27,15 @@ struct PartTable {
 
 // Whose skin a job asks about: is it there, does the pose fit, and was the table made of it?
 Status check_skin(const Asset* asset, const Pose& pose, const std::uint64_t* skin_table, Surface& surface);
+
+bool has_skin(const AssetView& asset);
+
+// What a job reads of a body.
+struct BodyRanges {
+  MemoryRange vertices, bones, morph_weights, skin_table, ignored_parts;
+
+  explicit BodyRanges(const Body& body);
+};
 
 // Of one scene, and of one body's table of parts.
 std::size_t skin_scratch_words(const AssetView& asset);

@@ -209,8 +209,7 @@ HWY_INLINE bool spans_touch(const ContactScene& scene_a, std::size_t a, const Co
 
 // Does a plane across the line of the middles of two clusters that are loaded part their vertices? Of the two sums of
 // three products each rounding is a unit in the last place of at most the sums of magnitudes, and eight are counted.
-HWY_NOINLINE bool plane_parts(const ContactScene& scene_a, std::size_t a, const ContactScene& scene_b,
-                              std::size_t b) {
+HWY_NOINLINE bool plane_parts(const ContactScene& scene_a, std::size_t a, const ContactScene& scene_b, std::size_t b) {
   constexpr Floats kFloats;
   const Box box_a = box_of_span(scene_a, a), box_b = box_of_span(scene_b, b);
   float direction[3], size = 0;

@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: MIT
+// From triangles that meet to depth, direction, volume and class of each two body parts.
+#include "depth/measure.h"
+
+#include <algorithm>
+
+#include "asset/status.h"
+#include "depth/visibility.h"
+#include "depth/way_out.h"
+
+namespace spherechain {
+namespace {
+
+// Lengths are parts of the character's height, but those in metres.
+constexpr double kTouchMetres = 0.005, kTouchMin = 0.0032, kTouchMax = 0.011;
+constexpr double kTouchFlat = 3;                        // times as deep, where the sides lie flat on each other
+constexpr double kTouchSide = 3;                        // times: the side of a square that is too small to be seen
+constexpr double kHidden = 0.3;                         // less of the contour is visible: it is hidden
+constexpr double kGapMetres = 0.0006, kGapMax = 0.001;  // shorter free places on the way are none
+constexpr double kFoldDistance = 0.11;                  // of two spots at rest, to be a fold
+constexpr double kNeighbourDistance = 0.055;            // likewise, whatever the parts are
+constexpr double kShellDistance = 0.035;                // likewise, to be layers of the same place
+constexpr double kDeepFold = 0.045, kFoldFacing = 0.2;
+constexpr double kNear = 0.006;
+constexpr double kClearance = 3e-4;
+constexpr double kAreaError = 0.03;  // if the contour has another area than the skin inside, the volume is not known
+
+struct Memory {
+  PosedSkin own, other;  // the latter of two bodies alone
+  Skins skins;
+  ContourScratch contour;
+  Visibility visibility{skins};
+  Span<std::uint64_t> keys;
+  Span<Segment3> segments;
+  Span<TriangleRun> side_a, side_b;  // of a part that meets itself
+
+  explicit Memory(bool are_one) : skins{own, are_one ? own : other} {}
+
+  std::size_t lay_out(const SkinSizes& a, const SkinSizes& b, std::size_t contact_count, std::uint64_t* words,
+                      Sweep& sweep) {
+    WordMemory memory(words);
+    own.take(memory, a.vertices, a.clusters);
+    if (!skins.are_one()) {
+      other.take(memory, b.vertices, b.clusters);
+    }
+    contour.take(memory, contact_count, a.triangles + (skins.are_one() ? 0 : b.triangles));
+    memory.take(keys, contact_count);
+    memory.take(segments, contact_count);
+    memory.take(side_a, contact_count);
+    memory.take(side_b, contact_count);
+    sweep.take(memory, a, b);
+    return memory.used();
+  }
+};
+
+class Measurer {
+ public:
+  explicit Measurer(const Meeting& in)
+      : in_(in),
+        surface_a_(*in.a.surface),
+        surface_b_(*in.b.surface),
+        metre_(1 / double{in.a.asset->info().metres_per_unit}),
+        height_(std::min(double{in.a.asset->info().height}, double{in.b.asset->info().height})),
+        memory_(in.are_one),
+        sweep_(memory_.skins, in.rule, std::min(kGapMetres * metre_, kGapMax * height_)) {
+    memory_.own.surface = in.a.surface;
+    memory_.other.surface = in.b.surface;
+    memory_.lay_out(in.a.asset->skin().sizes, in.b.asset->skin().sizes, in.contacts.size, in.scratch, sweep_);
+  }
+
+  Status run(std::size_t& found) {
+    found = 0;
+    if (in_.contacts.size == 0) {
+      return done();
+    }
+    memory_.contour.clear(memory_.skins.triangle_count());
+    sweep_.clear();
+    pose_skins();
+    const std::size_t count = sort_segments();
+    for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
+      while (end < count && memory_.keys[end] >> 32 == memory_.keys[begin] >> 32) {
+        ++end;
+      }
+      if (found < in_.out.size) {
+        in_.out[found] = measure({memory_.segments.data + begin, end - begin});
+      }
+      ++found;
+    }
+    return in_.out.size > 0 && found > in_.out.size ? refuse(SC_OVERFLOW, SC_FIELD_PENETRATIONS) : done();
+  }
+
+ private:
+  std::size_t part_a(const TriangleContact& contact) const {
+    return surface_a_.parts[surface_a_.place_of_source[contact.triangle_a]];
+  }
+  std::size_t part_b(const TriangleContact& contact) const {
+    return surface_b_.parts[surface_b_.place_of_source[contact.triangle_b]];
+  }
+
+  // Those parts alone that meet, where nothing else is looked at.
+  void pose_skins() {
+    if (!in_.quick) {
+      memory_.own.fill(in_.a.pose, in_.target);
+      if (!in_.are_one) {
+        memory_.other.fill(in_.b.pose, in_.target);
+      }
+      return;
+    }
+    std::uint64_t parts[2][4] = {};
+    const auto mark = [&](std::size_t body, std::size_t part) {
+      parts[body][part / 64] |= std::uint64_t{1} << part % 64;
+    };
+    for (const TriangleContact& contact : in_.contacts) {
+      mark(0, part_a(contact));
+      mark(in_.are_one ? 0 : 1, part_b(contact));
+    }
+    memory_.own.fill(in_.a.pose, in_.target, parts[0]);
+    if (!in_.are_one) {
+      memory_.other.fill(in_.b.pose, in_.target, parts[1]);
+    }
+  }
+
+  // Of a contact, part a's triangle first.
+  Segment3 segment_of(const TriangleContact& contact) const {
+    const PosedSkin &skin_a = memory_.skins.a, &skin_b = memory_.skins.b;
+    Segment3 out{};
+    out.a = surface_a_.place_of_source[contact.triangle_a];
+    out.b = surface_b_.place_of_source[contact.triangle_b];
+    if (in_.are_one && surface_a_.parts[out.a] > surface_a_.parts[out.b]) {
+      std::swap(out.a, out.b);
+    }
+    out.normal_a = skin_a.handedness * normal_of(skin_a.corners(out.a));
+    out.normal_b = skin_b.handedness * normal_of(skin_b.corners(out.b));
+    out.normal_a = normalize(out.normal_a) ? out.normal_a : Double3{0, 0, 0};
+    out.normal_b = normalize(out.normal_b) ? out.normal_b : Double3{0, 0, 0};
+    out.from = to_double(contact.from);
+    out.to = to_double(contact.to);
+    if (dot(cross(out.normal_a, out.normal_b), out.to - out.from) < 0) {
+      std::swap(out.from, out.to);
+    }
+    out.length = length(out.to - out.from);
+    if (!std::isfinite(out.length)) {
+      out.from = out.to = skin_a.corners(out.a).p[0];
+      out.length = 0;
+    }
+    return out;
+  }
+
+  // By pairs of parts, in these as they were given.
+  std::size_t sort_segments() {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < in_.contacts.size; ++i) {
+      const std::uint64_t p = part_a(in_.contacts[i]), q = part_b(in_.contacts[i]);
+      memory_.keys[count++] = in_.are_one ? std::min(p, q) << 48 | std::max(p, q) << 32 | i : p << 48 | q << 32 | i;
+    }
+    std::sort(memory_.keys.begin(), memory_.keys.begin() + count,
+              [](std::uint64_t l, std::uint64_t r) { return l < r; });
+    for (std::size_t i = 0; i < count; ++i) {
+      memory_.segments[i] = segment_of(in_.contacts[memory_.keys[i] & 0xFFFFFFFF]);
+    }
+    return count;
+  }
+
+  static Span<const TriangleRun> runs_of(const Surface& surface, std::size_t part) {
+    const std::uint32_t first = surface.first_of_part[part];
+    return {surface.part_runs.data + first, surface.first_of_part[part + 1] - first};
+  }
+
+  // Triangles each once.
+  Span<const TriangleRun> unique(Span<TriangleRun> runs) const {
+    const auto first = [](const TriangleRun& run) { return run.first; };
+    std::sort(runs.begin(), runs.end(), [&](const auto& l, const auto& r) { return first(l) < first(r); });
+    const auto end =
+        std::unique(runs.begin(), runs.end(), [&](const auto& l, const auto& r) { return first(l) == first(r); });
+    for (TriangleRun* run = runs.begin(); run != end; ++run) {
+      const auto after = std::upper_bound(surface_a_.clusters.begin(), surface_a_.clusters.end(), run->first,
+                                          [](std::uint32_t t, const Cluster& c) { return t < c.first_triangle; });
+      run->cluster = static_cast<std::uint32_t>(after - surface_a_.clusters.begin() - 1);
+    }
+    return {runs.data, static_cast<std::size_t>(end - runs.begin())};
+  }
+
+  void set_sides(const Contour& contour, std::size_t part_a, std::size_t part_b) {
+    if (!in_.are_one || part_a != part_b) {
+      sweep_.set_sides(runs_of(surface_a_, part_a), runs_of(surface_b_, part_b), contour.center);
+      return;
+    }
+    const std::size_t count = contour.segments.size;
+    for (std::size_t i = 0; i < count; ++i) {
+      memory_.side_a[i] = {0, contour.segments[i].a, 1};
+      memory_.side_b[i] = {0, contour.segments[i].b, 1};
+    }
+    sweep_.set_sides(unique({memory_.side_a.data, count}), unique({memory_.side_b.data, count}), contour.center);
+  }
+
+  Penetration measure(Span<Segment3> segments) {
+    const std::size_t part_a = surface_a_.parts[segments[0].a], part_b = surface_b_.parts[segments[0].b];
+    const Contour contour = contour_of(memory_.skins, segments, height_, memory_.contour);
+    set_sides(contour, part_a, part_b);
+    const Double3 previous = previous_direction(part_a, part_b);
+    const bool has_previous = dot(previous, previous) > 0 && std::isfinite(dot(previous, previous));
+    const bool folds = in_.are_one && is_fold(contour, part_a, part_b);
+    const Exit exit = find_exit(sweep_, contour,
+                                {in_.quick, kNear * height_, folds ? kDeepFold * height_ : 0,
+                                 has_previous && !in_.quick ? &previous : nullptr});
+    Penetration out{};
+    out.part_a = static_cast<std::uint32_t>(part_a);
+    out.part_b = static_cast<std::uint32_t>(part_b);
+    // Triangles that just touch are clear of each other after any move: the least there is.
+    out.depth = std::max(static_cast<float>(exit.way.depth), static_cast<float>(1e-7 * height_));
+    out.direction = to_float(exit.direction);
+    out.contour_length = static_cast<float>(contour.length);
+    out.deepest_a = point_of(memory_.skins.a, exit.way.a, exit.way.point_a, segments[0].a);
+    out.deepest_b = point_of(memory_.skins.b, exit.way.b, exit.way.point_b, segments[0].b);
+    // All of the line is in sight, as far as its own sides do not hide it.
+    Seen seen{1, contour.length * std::sqrt(std::max(0.0, 1 - contour.facing) / 2)};
+    if (!in_.quick) {
+      if (contour.is_closed && (!in_.are_one || part_a != part_b)) {
+        sweep_.keep_on_way(exit.direction, exit.way.depth);
+        const Volume volume = sweep_.volume(exit.direction, exit.way.depth);
+        const double area = dot(contour.area, exit.direction);
+        out.is_closed = std::abs(volume.area - area) <= kAreaError * volume.total && volume.volume >= 0 ? 1 : 0;
+        out.volume = out.is_closed != 0 ? static_cast<float>(volume.volume) : 0;
+      }
+      Double3 axes[3];
+      axes_of(contour, exit.direction, axes);
+      seen = memory_.visibility.look(contour, axes, kClearance * height_);
+    }
+    out.visible = static_cast<float>(seen.share);
+    out.kind = class_of(contour, out, seen.length);
+    return out;
+  }
+
+  static SkinPoint point_of(const PosedSkin& skin, std::uint32_t triangle, const Double3& at, std::uint32_t otherwise) {
+    const bool is_known = triangle != kNoPlace;
+    const Corners t = skin.corners(is_known ? triangle : otherwise);
+    const Double3 p = is_known ? at : t.p[0], normal = normal_of(t);
+    const double size = dot(normal, normal);
+    SkinPoint out{to_float(p), skin.surface->triangles[is_known ? triangle : otherwise], {1, 0, 0}};
+    if (size > 0) {
+      const double v = dot(normal, cross(p - t.p[0], t.p[2] - t.p[0])) / size;
+      const double w = dot(normal, cross(t.p[1] - t.p[0], p - t.p[0])) / size;
+      out.weights[0] = static_cast<float>(1 - v - w);
+      out.weights[1] = static_cast<float>(v);
+      out.weights[2] = static_cast<float>(w);
+    }
+    return out;
+  }
+
+  Double3 previous_direction(std::size_t part_a, std::size_t part_b) const {
+    for (const Penetration& last : in_.previous) {
+      if (last.part_a == part_a && last.part_b == part_b) {
+        return to_double(last.direction);
+      }
+    }
+    return {0, 0, 0};
+  }
+
+  bool hangs_on(std::size_t a, std::size_t b) const {
+    return in_.a.asset->part(a).parent == static_cast<std::int32_t>(b);
+  }
+
+  // Do both hang on the same third?
+  bool are_siblings(std::size_t a, std::size_t b) const {
+    return in_.a.asset->part(a).parent >= 0 && in_.a.asset->part(a).parent == in_.a.asset->part(b).parent;
+  }
+
+  // Does a hang on a part that hangs on b? A thigh and the abdomen, with the hips between.
+  bool hangs_twice(std::size_t a, std::size_t b) const {
+    const std::int32_t above = in_.a.asset->part(a).parent;
+    return above >= 0 && hangs_on(static_cast<std::size_t>(above), b);
+  }
+
+  bool is_fold(const Contour& contour, std::size_t a, std::size_t b) const {
+    if (a == b || hangs_on(a, b) || hangs_on(b, a) || contour.rest_distance < kNeighbourDistance * height_) {
+      return true;  // the last: joints that no bones name
+    }
+    const bool are_near = hangs_twice(a, b) || hangs_twice(b, a);
+    const bool lie_close = are_near && (contour.facing > kFoldFacing || !contour.is_one_piece);
+    return (are_siblings(a, b) || lie_close) && contour.rest_distance < kFoldDistance * height_;
+  }
+
+  PenetrationClass class_of(const Contour& contour, const Penetration& of, double seen_length) const {
+    // Files without a unit make giants and dwarfs.
+    const double few = std::min(std::max(kTouchMetres * metre_, kTouchMin * height_), kTouchMax * height_);
+    const double touch =
+        in_.touch_depth > 0 ? double{in_.touch_depth} : few * (1 + (kTouchFlat - 1) * std::max(0.0, contour.facing));
+    const double side = kTouchSide * std::min(few, touch);
+    if (2 * contour.touching >= 1) {
+      return SC_CLASS_REST;
+    }
+    if (double{of.visible} < kHidden || (!contour.is_one_piece && contour.rest_distance < kShellDistance * height_)) {
+      return SC_CLASS_SHELL;
+    }
+    if (of.depth < touch) {
+      return SC_CLASS_TOUCH;
+    }
+    if (in_.are_one && is_fold(contour, of.part_a, of.part_b)) {
+      return of.depth > kDeepFold * height_ && contour.is_one_piece ? SC_CLASS_DEEP_FOLD : SC_CLASS_FOLD;
+    }
+    return of.depth * seen_length < side * side ? SC_CLASS_TOUCH : SC_CLASS_PENETRATION;
+  }
+
+  const Meeting& in_;
+  const Surface &surface_a_, &surface_b_;
+  double metre_, height_;
+  Memory memory_;
+  Sweep sweep_;
+};
+
+}  // namespace
+
+std::size_t measure_words(const AssetView& a, const AssetView& b, bool are_one, std::size_t contact_count) {
+  Memory memory(are_one);
+  const PairRule rule;
+  Sweep sweep(memory.skins, rule, 0);
+  return memory.lay_out(a.skin().sizes, b.skin().sizes, contact_count, nullptr, sweep);
+}
+
+Status check_contacts(const Meeting& meeting) {
+  const auto is_known = [](const Meeting::Side& side, std::uint32_t triangle) {
+    const Surface& surface = *side.surface;
+    return triangle < surface.place_of_source.size && surface.place_of_source[triangle] != kNoPlace &&
+           surface.parts[surface.place_of_source[triangle]] < side.asset->part_count();
+  };
+  for (const TriangleContact& contact : meeting.contacts) {
+    if (!is_known(meeting.a, contact.triangle_a) || !is_known(meeting.b, contact.triangle_b)) {
+      return refuse(SC_BAD_VALUE, SC_FIELD_CONTACTS);
+    }
+  }
+  return done();
+}
+
+Status measure(const Meeting& meeting, std::size_t& count) { return Measurer(meeting).run(count); }
+
+}  // namespace spherechain

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// How deep, which way out, how much, and what kind: of one body's contacts with itself, or of two bodies'.
+#pragma once
+
+#include "depth/sweep.h"
+#include "spherechain/penetrations.h"
+
+namespace spherechain {
+
+// Checked, but for its contacts.
+struct Meeting {
+  struct Side {
+    const AssetView* asset;
+    const Surface* surface;
+    Pose pose;
+  };
+  Side a, b;  // of one body the same
+  bool are_one;
+  PairRule rule;
+  Target target;  // resolved
+  Span<const TriangleContact> contacts;
+  Span<const Penetration> previous;
+  bool quick;
+  float touch_depth;
+  std::uint64_t* scratch;  // measure_words() of them
+  Span<Penetration> out;
+};
+
+std::size_t measure_words(const AssetView& a, const AssetView& b, bool are_one, std::size_t contact_count);
+// SC_OK, or SC_BAD_VALUE where one names a triangle that is in no body's skin.
+Status check_contacts(const Meeting& meeting);
+// SC_OK, or SC_OVERFLOW. `count`: how many there are.
+Status measure(const Meeting& meeting, std::size_t& count);
+
+}  // namespace spherechain
