@@ -156,10 +156,11 @@ SkinContacts find_contacts(BodyContactJob job) {
   return find_all(job, sc_body_scratch_words(job.a.asset, job.b.asset));
 }
 
-std::vector<Penetration> measure(PenetrationJob job, Target target) {
-  const PreparedSkin table(*job.asset);
-  std::vector<std::uint64_t> scratch(sc_penetration_scratch_words(job.asset, job.contact_count), kDirty);
-  job.skin_table = table.words.data();
+namespace {
+
+template <typename Job>
+std::vector<Penetration> measure_all(Job job, std::size_t scratch_words, Target target) {
+  std::vector<std::uint64_t> scratch(scratch_words, kDirty);
   job.scratch = scratch.data();
   job.scratch_words = scratch.size();
   job.target = target;
@@ -171,6 +172,21 @@ std::vector<Penetration> measure(PenetrationJob job, Target target) {
     out.resize(job.run() == SC_OK ? out.size() : 0);
   }
   return out;
+}
+
+}  // namespace
+
+std::vector<Penetration> measure(PenetrationJob job, Target target) {
+  const PreparedSkin table(*job.asset);
+  job.skin_table = table.words.data();
+  return measure_all(job, sc_penetration_scratch_words(job.asset, job.contact_count), target);
+}
+
+std::vector<Penetration> measure(BodyPenetrationJob job, Target target) {
+  const PreparedSkin a(*job.a.asset), b(*job.b.asset);
+  job.a.skin_table = a.words.data();
+  job.b.skin_table = b.words.data();
+  return measure_all(job, sc_body_penetration_scratch_words(job.a.asset, job.b.asset, job.contact_count), target);
 }
 
 }  // namespace spherechain::test

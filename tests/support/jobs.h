@@ -58,6 +58,7 @@ SkinContacts find_contacts(BodyContactJob job);
 
 // The same for the measure of contacts; nothing where it fails.
 std::vector<Penetration> measure(PenetrationJob job, Target target);
+std::vector<Penetration> measure(BodyPenetrationJob job, Target target);
 
 // Bit for bit, so that a NaN equals itself.
 template <typename T>

@@ -167,3 +167,41 @@ TEST_CASE("parts and spheres sum up two bodies' triangles; parts that a body ign
   }
   CHECK(left_out > 100);
 }
+
+TEST_CASE("moved along the way out, a part of body b no longer meets the part of body a; nine tenths of it do not do") {
+  std::mt19937 random(27);
+  std::size_t measured = 0;
+  for (int i = 0; i < 24; ++i) {
+    CAPTURE(i);
+    const Two two(random);
+    const BodyContactJob job = meeting_of(bones_of(two.a.palette), bones_of(two.b.palette));
+    const SkinContacts found = met(job);
+    BodyPenetrationJob of;
+    of.a = job.a;
+    of.b = job.b;
+    of.contacts = found.triangles.data();
+    of.contact_count = found.triangles.size();
+    const std::vector<Penetration> all = measure(of, SC_TARGET_BEST);
+    REQUIRE(all.size() == found.parts.size());
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      CAPTURE(k);
+      const Penetration& one = all[k];
+      CHECK(Pair{one.part_a, one.part_b} == Pair{found.parts[k].part_a, found.parts[k].part_b});
+      CHECK(one.kind >= SC_CLASS_SHELL);
+      const auto meets_after = [&](float share) {
+        const float way = share * one.depth;
+        const Matrix move{1, 0, 0, way * one.direction.x, 0, 1, 0, way * one.direction.y,
+                          0, 0, 1, way * one.direction.z};
+        const std::vector<float> palette = placed(move, two.b.palette);
+        const SkinContacts after = met(meeting_of(job.a.pose, bones_of(palette)));
+        return std::any_of(after.parts.begin(), after.parts.end(), [&](const PartContact& part) {
+          return part.part_a == one.part_a && part.part_b == one.part_b;
+        });
+      };
+      CHECK(!meets_after(1.001F));
+      CHECK(meets_after(0.9F));
+      ++measured;
+    }
+  }
+  CHECK(measured > 15);
+}
