@@ -71,8 +71,9 @@ sc_status sc_find_body_contacts(sc_body_contact_job* job) noexcept {
   WordMemory memory(job->scratch);
   const AssetView &asset_a = view_of(*job->a.asset), &asset_b = view_of(*job->b.asset);
   ContactScene a = scene_of(asset_a, surface_a, job->a.pose, nullptr, memory);
-  const ContactScene b = scene_of(asset_b, surface_b, job->b.pose, nullptr, memory);
+  ContactScene b = scene_of(asset_b, surface_b, job->b.pose, nullptr, memory);
   a.first_only = job->spheres_only != 0;
+  set_reach(asset_a, a, asset_b, b, job->a.pose, job->b.pose, memory);
   PartTable parts;
   parts.take(memory, asset_a.part_count(), asset_b.part_count(), false);
   parts.clear();

@@ -4,6 +4,7 @@
 // exact. Pairs of clusters are listed, and decided together: loaded, skinned or copied, those that still seem to touch
 // along the axes, their diagonals and the line between them, and paired triangle by triangle. Which candidates come out
 // may differ between targets, but none that intersects is ever missing.
+#include <cfloat>
 #include <cstring>
 
 #include "pairs/pair_bits.h"
@@ -238,11 +239,31 @@ HWY_INLINE void bound_once(const ContactScene& scene, std::size_t sphere) {
   }
 }
 
+// May the sphere's vertices, which its hull's bones move, be where the other body is?
+HWY_INLINE bool reaches_other(const ContactScene& scene, std::size_t sphere) {
+  const Hull& hull = scene.surface->hulls.data[sphere];
+  const HullBone* const bones = scene.surface->hull_bones.data + hull.first_bone;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    float low = FLT_MAX, high = -FLT_MAX;
+    for (std::size_t k = 0; k < hull.bone_count; ++k) {
+      const float* const box = scene.bone_boxes + 6 * std::size_t{bones[k].bone};
+      low = box[axis] < low ? box[axis] : low;
+      high = box[3 + axis] > high ? box[3 + axis] : high;
+    }
+    if (low > scene.reach_high[axis] || high < scene.reach_low[axis]) {
+      return false;
+    }
+  }
+  return true;
+}
+
 // Boxes of the spheres: by their hulls; else of those whose clusters are bounded, of all of them before this. Vectors
 // that are loaded right after their lanes were stored one by one have to wait.
 HWY_NOINLINE void bound_spheres(const ContactScene& scene) {
   for (std::size_t s = 0; s < scene.sphere_count; ++s) {
-    if (scene.has_hulls) {
+    if (scene.bone_boxes != nullptr && !reaches_other(scene, s)) {
+      put_box(scene.spheres, s, {{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}});
+    } else if (scene.has_hulls) {
       bound_hull(scene, s);
     } else if (scene.is_bounded[s] != 0) {
       unite_clusters(scene, s);

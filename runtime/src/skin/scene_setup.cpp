@@ -2,6 +2,7 @@
 #include "skin/scene_setup.h"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -83,6 +84,78 @@ void prepare_bounds(const AssetView& asset, ContactScene& scene) {
 
 bool has_skin(const AssetView& asset) { return asset.is_open() && asset.skin().sizes.clusters > 0; }
 
+// A vertex is a mean, by its weights, of where its bones would move it; so the skin is in a box around the bones'
+// boxes. Roundings are less than 64 + 16 N units of the greatest coordinate that goes into one: see cluster_bounds.h.
+Bounds3 bound_bones(const AssetView& asset, const Surface& surface, const Pose& pose, float* boxes) {
+  constexpr float kUnit = 1.0F / 16777216.0F;
+  const BoneMatrices bones = matrices_of(pose);
+  float morphed = 0;
+  for (std::size_t i = 0; pose.morph_weights != nullptr && i < surface.morph_reach.size; ++i) {
+    morphed += std::abs(pose.morph_weights[i]) * surface.morph_reach[i];
+  }
+  Bounds3 all{{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
+  float most = 0;
+  for (std::size_t bone = 0; bone < surface.bone_boxes.size; ++bone) {
+    const BoneBox& rest = surface.bone_boxes[bone];
+    const float center[3] = {rest.center.x, rest.center.y, rest.center.z};
+    const float half[3] = {rest.half.x + morphed, rest.half.y + morphed, rest.half.z + morphed};
+    float* const box = boxes + 6 * bone;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const float* const row = bones.data + bone * bones.stride + i * bones.row;
+      float at = row[3 * bones.column], reach = 0, size = std::abs(at);
+      for (std::size_t j = 0; j < 3; ++j) {
+        const float m = row[j * bones.column];
+        at += m * center[j];
+        reach += std::abs(m) * half[j];
+        size += std::abs(m) * (std::abs(center[j]) + half[j]);
+      }
+      const bool moves = rest.half.x >= 0;
+      box[i] = moves ? at - reach : FLT_MAX;
+      box[3 + i] = moves ? at + reach : -FLT_MAX;
+      // What is not a number, or overflows, bounds nothing.
+      if (moves && !(size < 0x1p60F)) {
+        box[i] = -FLT_MAX;
+        box[3 + i] = FLT_MAX;
+      }
+      most = moves && size < 0x1p60F ? std::max(most, size) : most;
+      all.low[i] = std::min(all.low[i], box[i]);
+      all.high[i] = std::max(all.high[i], box[3 + i]);
+    }
+  }
+  const float margin = kUnit * most * (64.0F + 16.0F * static_cast<float>(asset.bone_count())) + 0x1p-60F;
+  for (std::size_t i = 0; i < 3; ++i) {
+    all.low[i] -= margin;
+    all.high[i] += margin;
+  }
+  for (std::size_t bone = 0; bone < surface.bone_boxes.size; ++bone) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      boxes[6 * bone + i] -= margin;
+      boxes[6 * bone + 3 + i] += margin;
+    }
+  }
+  return all;
+}
+
+void set_reach(const AssetView& asset_a, ContactScene& a, const AssetView& asset_b, ContactScene& b, const Pose& pose_a,
+               const Pose& pose_b, WordMemory& memory) {
+  float *of_a = nullptr, *of_b = nullptr;
+  memory.take(of_a, 6 * asset_a.bone_count());
+  memory.take(of_b, 6 * asset_b.bone_count());
+  if (!a.has_hulls || !b.has_hulls || of_a == nullptr) {
+    return;
+  }
+  const Bounds3 box_a = bound_bones(asset_a, *a.surface, pose_a, of_a);
+  const Bounds3 box_b = bound_bones(asset_b, *b.surface, pose_b, of_b);
+  a.bone_boxes = of_a;
+  b.bone_boxes = of_b;
+  for (std::size_t i = 0; i < 3; ++i) {
+    a.reach_low[i] = box_b.low[i];
+    a.reach_high[i] = box_b.high[i];
+    b.reach_low[i] = box_a.low[i];
+    b.reach_high[i] = box_a.high[i];
+  }
+}
+
 BodyRanges::BodyRanges(const Body& body)
     : vertices(range_of_vertices(view_of(*body.asset), body.pose)),
       bones(range_of_bones(view_of(*body.asset), body.pose)),
@@ -134,6 +207,7 @@ std::size_t body_scratch_words(const AssetView& a, const AssetView& b) {
   ContactScene scene;
   lay_out(a, memory, scene);
   lay_out(b, memory, scene);
+  set_reach(a, scene, b, scene, {}, {}, memory);
   PartTable().take(memory, a.part_count(), b.part_count(), false);
   return memory.used();
 }

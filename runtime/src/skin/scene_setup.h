@@ -30,6 +30,16 @@ Status check_skin(const Asset* asset, const Pose& pose, const std::uint64_t* ski
 
 bool has_skin(const AssetView& asset);
 
+struct Bounds3 {
+  float low[3], high[3];
+};
+// What the vertices that each bone moves stay in, in the pose, six floats a bone: the low corner, then the high one;
+// and all of the skin. From checked bones.
+Bounds3 bound_bones(const AssetView& asset, const Surface& surface, const Pose& pose, float* boxes);
+// Tells two bodies' scenes where the other is.
+void set_reach(const AssetView& asset_a, ContactScene& a, const AssetView& asset_b, ContactScene& b, const Pose& pose_a,
+               const Pose& pose_b, WordMemory& memory);
+
 // What a job reads of a body.
 struct BodyRanges {
   MemoryRange vertices, bones, morph_weights, skin_table, ignored_parts;

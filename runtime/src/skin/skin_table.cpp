@@ -2,6 +2,8 @@
 #include "skin/skin_table.h"
 
 #include <algorithm>
+#include <cfloat>
+#include <cmath>
 #include <cstring>
 
 #include "asset/memory.h"
@@ -56,6 +58,8 @@ std::size_t lay_out(const AssetView& asset, std::uint64_t* words, Surface& out, 
   memory.take(out.bounds_first_terms, skin.bounds_term_counts.size + 1);
   memory.take(out.bounds_first_morphs, skin.bounds_morph_counts.size == 0 ? 0 : skin.bounds_morph_counts.size + 1);
   memory.take(out.rest_contacts, sizes.rest_contacts);
+  memory.take(out.bone_boxes, asset.bone_count());
+  memory.take(out.morph_reach, asset.morph_count());
   memory.take(out.hulls, sizes.hulls);
   memory.take(out.hull_points, 3 * sizes.hull_points);
   memory.take(out.hull_weights, sizes.hull_weights);
@@ -82,6 +86,7 @@ class Filler {
   void run() {
     fill_vertices();
     fill_clusters();
+    fill_reach();
     fill_parts();
     fill_hulls();
     fill_starts(skin_.bounds_term_counts, out_.bounds_first_terms);
@@ -226,6 +231,42 @@ class Filler {
       return l.target != r.target ? l.target < r.target : l.slot < r.slot;
     });
     cluster.morph_count = static_cast<std::uint32_t>(end - first);
+  }
+
+  void fill_reach() const {
+    for (std::size_t bone = 0; bone < out_.bone_boxes.size; ++bone) {
+      out_.bone_boxes[bone] = {{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};  // low and high so far
+    }
+    for (const Cluster& cluster : out_.clusters) {
+      const std::size_t slots = slot_count(cluster);
+      const float* const rest = out_.slot_positions.data + 3 * std::size_t{cluster.first_slot};
+      for (std::size_t k = 0; k < cluster.bone_count; ++k) {
+        BoneBox& box = out_.bone_boxes[out_.cluster_bones[cluster.first_bone + k]];
+        const float* const weights = out_.slot_weights.data + cluster.first_weight + k * slots;
+        for (std::size_t slot = 0; slot < slots; ++slot) {
+          if (weights[slot] != 0) {
+            const Vec3 p{rest[slot], rest[slots + slot], rest[2 * slots + slot]};
+            box.center = {std::min(box.center.x, p.x), std::min(box.center.y, p.y), std::min(box.center.z, p.z)};
+            box.half = {std::max(box.half.x, p.x), std::max(box.half.y, p.y), std::max(box.half.z, p.z)};
+          }
+        }
+      }
+    }
+    for (BoneBox& box : out_.bone_boxes) {
+      const Vec3 low = box.center, high = box.half;
+      if (low.x <= high.x) {
+        box.center = {0.5F * (low.x + high.x), 0.5F * (low.y + high.y), 0.5F * (low.z + high.z)};
+        box.half = {0.5F * (high.x - low.x), 0.5F * (high.y - low.y), 0.5F * (high.z - low.z)};
+      } else {
+        box = {{0, 0, 0}, {-1, -1, -1}};
+      }
+    }
+    std::fill(out_.morph_reach.begin(), out_.morph_reach.end(), 0.0F);
+    for (const SlotMorph& morph : out_.slot_morphs) {
+      const Vec3& d = morph.delta;
+      float& reach = out_.morph_reach[morph.target];
+      reach = std::max(reach, std::abs(d.x) + std::abs(d.y) + std::abs(d.z));
+    }
   }
 
   void fill_parts() const {

@@ -51,6 +51,11 @@ struct Hull {
   float radius, slack;
 };
 
+// Around the vertices that a bone moves, at rest; `half` is negative where it moves none.
+struct BoneBox {
+  Vec3 center, half;
+};
+
 inline constexpr std::uint32_t kNoPlace = 0xFFFFFFFF;
 
 // A vertex stands for all source vertices that have its rest position and move as it does; a corner is the slot of a
@@ -77,6 +82,8 @@ struct Surface {
   Span<std::uint32_t> bounds_first_terms;   // a group's, and the end
   Span<std::uint32_t> bounds_first_morphs;  // likewise; empty where no morph moves the skin
   Span<Pair> rest_contacts;                 // source triangles that intersect in the rest pose, sorted
+  Span<BoneBox> bone_boxes;                 // a bone's
+  Span<float> morph_reach;                  // how far a morph target of weight 1 moves a vertex at most
   // Of the rest pose without morphs; empty where nothing moves the source.
   Span<Hull> hulls;          // a sphere's
   Span<float> hull_points;   // of a hull all x, all y, all z

@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Goal P11 (docs/performance.md): exact contacts of two bodies that wrestle. Checks that all find the same, then times
+// them in turn.
+#include <fmt/format.h>
+#include <time.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <exception>
+#include <functional>
+#include <random>
+#include <stdexcept>
+
+#include "character.h"
+#include "simd/simd.h"
+#include "skin/skin_inputs.h"
+#include "spherechain/bodies.h"
+#include "table.h"
+#include "truth/intersections.h"
+
+using namespace spherechain;
+using namespace spherechain::bench;
+
+namespace {
+
+const Target kBest = supported_targets()[0];
+
+// Nanoseconds this thread has run. Waiting for a core of a shared machine does not count.
+double now() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return 1e9 * static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec);
+}
+
+void require(Status status, const char* what) {
+  if (status != SC_OK) throw std::runtime_error(fmt::format("{}: {}", what, sc_code_text(status.code)));
+}
+
+// Two bodies in a frame.
+struct Frame {
+  std::vector<float> bones[2];      // SC_ROWS_3X4
+  std::vector<float> positions[2];  // as the runtime skins them
+  std::vector<Pair> expected;       // CGAL's
+};
+
+class Wrestlers {
+ public:
+  explicit Wrestlers(int frames) {
+    load(human_, "human", "{}", 33);
+    table_ = memory_for(sc_skin_table_words(&human_.asset));
+    require(sc_prepare_skin(&human_.asset, table_.data()->words, sc_skin_table_words(&human_.asset)), "skin table");
+    require(read_skin_table(human_.view(), table_.data()->words, surface_), "skin table");
+    const auto motions = motions_of(human_.bake);
+    const auto motion = [&](const std::string& name) -> const baker::Motion& {
+      return *std::find_if(motions.begin(), motions.end(), [&](const auto& m) { return m.name == name; })->motion;
+    };
+    for (const auto& [a, b] :
+         {std::pair{"Boxing_Toes", "Boxing_Toes"}, std::pair{"01_01", "01_03"}, std::pair{"01_03", "Boxing_Toes"}}) {
+      for (int i = 0; i < frames; ++i) {
+        const double t = (i + 0.5) / frames;
+        add(motion(a).at(t), motion(b).at(t < 0.5 ? t + 0.5 : t - 0.5));
+      }
+    }
+  }
+
+  const PosedCharacter& human() const { return human_; }
+  const std::vector<Frame>& frames() const { return frames_; }
+  const std::uint64_t* table() const { return table_.data()->words; }
+  const baker::TruthSurface& truth() const { return truth_; }
+
+ private:
+  // b stands before a, an arm's length off, and looks at it.
+  void add(const baker::Deformation& a, const baker::Deformation& b) {
+    Frame frame;
+    const AssetInfo info = human_.view().info();
+    baker::Vec3 middles[2];
+    for (int body = 0; body < 2; ++body) {
+      for (const baker::Affine& bone : (body == 0 ? a : b).bones) {
+        frame.bones[body].resize(frame.bones[body].size() + 12);
+        put(bone, frame.bones[body].data() + frame.bones[body].size() - 12);
+      }
+      skin(frame, body);
+      middles[body] = middle_of(frame.positions[body]);
+    }
+    const baker::Vec3 up(double{info.up.x}, double{info.up.y}, double{info.up.z});
+    const baker::Vec3 forward(double{info.forward.x}, double{info.forward.y}, double{info.forward.z});
+    baker::Affine place = baker::Affine::Identity();
+    place.linear() = 2 * up * up.transpose() - Eigen::Matrix3d::Identity();  // half a turn
+    place.translation() = middles[0] + 0.2 * double{info.height} * forward - place.linear() * middles[1];
+    for (std::size_t i = 0; i < b.bones.size(); ++i) put(place * b.bones[i], frame.bones[1].data() + 12 * i);
+    skin(frame, 1);
+    frame.expected = baker::find_intersections(truth_, frame.positions[0], truth_, frame.positions[1]);
+    frames_.push_back(std::move(frame));
+  }
+  static void put(const baker::Affine& bone, float* out) {
+    for (Eigen::Index row = 0; row < 3; ++row) {
+      for (Eigen::Index column = 0; column < 4; ++column) *out++ = static_cast<float>(bone.matrix()(row, column));
+    }
+  }
+  void skin(Frame& frame, int body) {
+    if (truth_.corners.empty()) make_truth();
+    frame.positions[body].assign(3 * human_.bake.character.source_positions.size(), 0);
+    Pose pose = human_.pose(0);
+    pose.bones = frame.bones[body].data();
+    skin_surface(surface_, pose, kBest, frame.positions[body].data(), 3);
+  }
+  // By the source vertices that the runtime skins.
+  void make_truth() {
+    for (std::uint32_t t = 0; t < surface_.place_of_source.size; ++t) {
+      const std::uint32_t place = surface_.place_of_source[t];
+      if (place == kNoPlace) continue;
+      const std::uint32_t* const v = surface_.triangle_vertices.data + 3 * std::size_t{place};
+      truth_.source_triangle.push_back(t);
+      truth_.corners.push_back(
+          {surface_.source_vertices[v[0]], surface_.source_vertices[v[1]], surface_.source_vertices[v[2]]});
+    }
+  }
+  baker::Vec3 middle_of(const std::vector<float>& positions) const {
+    baker::Vec3 sum(0, 0, 0);
+    for (const std::uint32_t v : surface_.source_vertices) {
+      const float* const p = positions.data() + 3 * std::size_t{v};
+      sum += baker::Vec3(double{p[0]}, double{p[1]}, double{p[2]});
+    }
+    return sum / static_cast<double>(surface_.source_vertices.size);
+  }
+
+  PosedCharacter human_;
+  Memory table_;
+  Surface surface_;
+  baker::TruthSurface truth_;
+  std::vector<Frame> frames_;
+};
+
+struct Contestant {
+  std::string name;
+  int passes;
+  std::function<void(const Frame&)> run;
+  std::vector<std::vector<double>> times = {};  // by frame, of each pass
+
+  // The mean of the frames' medians, and of their minima.
+  Times mean() const {
+    double medians = 0, minima = 0;
+    for (std::vector<double> pass : times) {
+      std::sort(pass.begin(), pass.end());
+      medians += pass[pass.size() / 2];
+      minima += pass[0];
+    }
+    const auto count = static_cast<double>(times.size());
+    return {medians / count, minima / count};
+  }
+};
+
+class Bench {
+ public:
+  Bench(int frames, int passes) : bodies_(frames) {
+    const PosedCharacter& human = bodies_.human();
+    const std::size_t parts = human.view().part_count();
+    parts_.resize(parts * parts);
+    triangles_.resize(1 << 20);
+    scratch_ =
+        memory_for(std::max(sc_body_scratch_words(&human.asset, &human.asset), sc_skin_scratch_words(&human.asset)));
+    compare();
+    for (const int body : {0, 1}) {
+      contestants_.push_back({body == 0 ? "body a with itself" : "body b with itself", passes,
+                              [this, body](const Frame& frame) { find_own(frame, body); }});
+    }
+    contestants_.push_back({"a with b, from bones", passes, [this](const Frame& f) { find(f, true, true, false); }});
+    contestants_.push_back(
+        {"a with b, from vertices", passes, [this](const Frame& f) { find(f, false, true, false); }});
+    contestants_.push_back({"CGAL box_intersection_d + do_intersect", 3, [this](const Frame& f) {
+                              baker::find_intersections(bodies_.truth(), f.positions[0], bodies_.truth(),
+                                                        f.positions[1]);
+                            }});
+    time_all();
+  }
+
+  Table table() const {
+    Table out;
+    std::size_t pairs = 0, free = 0;
+    for (const Frame& frame : bodies_.frames()) {
+      pairs += frame.expected.size();
+      free += frame.expected.empty() ? 1 : 0;
+    }
+    out.context = {
+        machine(),
+        fmt::format("target {}, {} frames of three clips in which two of assimp-testmodels' "
+                    "human.zae wrestle, {} of them without a contact",
+                    sc_target_name(kBest), bodies_.frames().size(), free),
+        fmt::format("contacts over all frames: {} pairs of triangles, from bones and from vertices CGAL's: 0 "
+                    "missing, 0 extra",
+                    pairs)};
+    for (const Contestant& c : contestants_) out.rows.push_back({"P11", c.name + ", mean", c.mean(), ""});
+    const auto median = [&](std::size_t i) { return contestants_[i].mean().median; };
+    out.goals.push_back(
+        {"P11 two bodies over the self-contact's mean", "x", median(2) / ((median(0) + median(1)) / 2), 1.5, false});
+    out.goals.push_back({"P11 CGAL's over two bodies'", "x", median(4) / median(2), 1000, true});
+    return out;
+  }
+
+ private:
+  BodyContactJob job_of(const Frame& frame, bool from_bones) {
+    BodyContactJob job;
+    for (int body = 0; body < 2; ++body) {
+      Body& of = body == 0 ? job.a : job.b;
+      of.asset = &bodies_.human().asset;
+      of.skin_table = bodies_.table();
+      of.pose = pose_of(frame, body, from_bones);
+    }
+    job.scratch = scratch_.data()->words;
+    job.scratch_words = 8 * scratch_.size();
+    return job;
+  }
+  Pose pose_of(const Frame& frame, int body, bool from_bones) const {
+    Pose pose;
+    if (from_bones) {
+      pose = bodies_.human().pose(0);
+      pose.bones = frame.bones[body].data();
+    } else {
+      pose.vertices = frame.positions[body].data();
+      pose.vertex_count = frame.positions[body].size() / 3;
+    }
+    return pose;
+  }
+
+  std::vector<Pair> find(const Frame& frame, bool from_bones, bool has_parts, bool has_triangles) {
+    BodyContactJob job = job_of(frame, from_bones);
+    if (has_parts) {
+      job.parts = parts_.data();
+      job.part_capacity = parts_.size();
+    }
+    if (has_triangles) {
+      job.triangles = triangles_.data();
+      job.triangle_capacity = triangles_.size();
+    }
+    require(job.run(), "two bodies");
+    std::vector<Pair> out;
+    for (std::size_t i = 0; has_triangles && i < job.triangle_count; ++i) {
+      out.push_back({triangles_[i].triangle_a, triangles_[i].triangle_b});
+    }
+    return out;
+  }
+  void find_own(const Frame& frame, int body) {
+    SkinContactJob job;
+    job.asset = &bodies_.human().asset;
+    job.skin_table = bodies_.table();
+    job.pose = pose_of(frame, body, true);
+    job.scratch = scratch_.data()->words;
+    job.scratch_words = 8 * scratch_.size();
+    job.parts = parts_.data();
+    job.part_capacity = parts_.size();
+    require(job.run(), "one body");
+  }
+
+  void compare() {
+    for (const Frame& frame : bodies_.frames()) {
+      for (const bool from_bones : {true, false}) {
+        if (find(frame, from_bones, false, true) != frame.expected) {
+          throw std::runtime_error("the contacts of two bodies are not CGAL's");
+        }
+      }
+    }
+  }
+
+  // One pass over the frames at a time, in an order drawn at random over all passes of all contestants.
+  void time_all() {
+    std::vector<Contestant*> order;
+    for (Contestant& c : contestants_) {
+      c.times.resize(bodies_.frames().size());
+      order.insert(order.end(), static_cast<std::size_t>(c.passes), &c);
+    }
+    std::shuffle(order.begin(), order.end(), std::mt19937(1));
+    for (Contestant* c : order) {
+      for (std::size_t i = 0; i < bodies_.frames().size(); ++i) {
+        const double start = now();
+        c->run(bodies_.frames()[i]);
+        c->times[i].push_back(now() - start);
+      }
+    }
+  }
+
+  Wrestlers bodies_;
+  Memory scratch_;
+  std::vector<PartContact> parts_;
+  std::vector<TriangleContact> triangles_;
+  std::vector<Contestant> contestants_;
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"Times exact contacts of two bodies against CGAL's and against each body's own: goal P11"};
+  int frames = 20, passes = 21;
+  std::string json;
+  app.add_option("--frames", frames, "Of each of the three clips")->capture_default_str()->check(CLI::Range(1, 10000));
+  app.add_option("--passes", passes, "Of the runtime over the frames; CGAL makes 3")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100000));
+  app.add_option("--json", json, "File to write the table to as well");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    const Table table = std::make_unique<Bench>(frames, passes)->table();
+    table.print();
+    if (!json.empty()) table.write_json(json);
+    return 0;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "spherechain_bench_bodies: {}\n", error.what());
+    return 1;
+  }
+}
