@@ -12,6 +12,41 @@ typedef struct sc_body {
   const uint64_t* ignored_parts SC_ZERO; /* bit p: body part p meets nothing; null: all parts meet */
 } sc_body;
 
+/* Sides along the axes of the pose's space. */
+typedef struct sc_box {
+  sc_vec3 low, high;
+} sc_box;
+
+/* A character or a prop among those of an sc_scene_job. */
+typedef struct sc_scene_body {
+  const sc_sphere* spheres SC_ZERO; /* refitted, in the scene's space; or null: the box counts */
+  size_t sphere_count SC_ZERO;
+  sc_box box SC_ZERO;     /* without spheres: around the body, as sc_bound_body() has it; finite */
+  uint32_t layer SC_ZERO; /* below 32 */
+} sc_scene_body;
+
+/* Which of hundreds of characters and props may meet? All pairs of bodies with a sphere each that overlap; where one of
+ * the two has no spheres, whose boxes touch. Between boxes of sc_bound_body() no pair whose skins meet is missing;
+ * spheres are Q2's alarm. Spheres with a negative radius touch nothing.
+ *
+ * Allocates nothing, takes no lock. Jobs on other outputs and scratch memory may run at the same time. */
+typedef struct sc_scene_job {
+  const sc_scene_body* bodies SC_ZERO;
+  size_t body_count SC_ZERO; /* at most 2^24 */
+  /* 32 words; null: all layers meet. Bit k of word l: bodies of layer l meet those of layer k, and bit l of word k. */
+  const uint32_t* layers SC_ZERO;
+  const sc_pair* ignored SC_ZERO; /* bodies that never meet: a rider and his horse; sorted, each once; null: none */
+  size_t ignored_count SC_ZERO;
+  uint64_t* scratch SC_ZERO; /* sc_scene_scratch_words() words; nothing is kept there between runs */
+  size_t scratch_words SC_ZERO;
+  sc_pair* pairs SC_ZERO; /* out: of places in `bodies`; sorted, each once; null: count only */
+  size_t pair_capacity SC_ZERO;
+  size_t pair_count SC_ZERO; /* out: how many there are, also where `pairs` is too small */
+#if defined(__cplusplus)
+  sc_status run() noexcept;
+#endif
+} sc_scene_job;
+
 /* All triangles of two bodies' skins that intersect. In what it lists, `_a` and the first index are of body a, `_b` and
  * the second of body b: nothing is swapped. Nothing is left out but the parts that the bodies ignore.
  *
@@ -75,6 +110,15 @@ SPHERECHAIN_API sc_status sc_measure_body_penetrations(sc_body_penetration_job* 
 SPHERECHAIN_API size_t sc_body_penetration_scratch_words(const sc_asset* a, const sc_asset* b,
                                                          size_t contact_count) SC_NOEXCEPT;
 
+/* A box that holds all of the body's skin for certain: from bones somewhat too large, and in about a microsecond; from
+ * vertices alone exact. Reads asset, pose and skin_table. Errors as of sc_find_skin_contacts(). */
+SPHERECHAIN_API sc_status sc_bound_body(const sc_body* body, sc_box* box) SC_NOEXCEPT;
+
+/* SC_OK; SC_OVERFLOW: the first pairs of the sorted list are written; SC_NULL, SC_MISALIGNED, SC_TOO_SMALL,
+ * SC_BAD_VALUE, SC_ALIASED: nothing is written. */
+SPHERECHAIN_API sc_status sc_find_meetings(sc_scene_job* job) SC_NOEXCEPT;
+SPHERECHAIN_API size_t sc_scene_scratch_words(size_t body_count) SC_NOEXCEPT;
+
 /* Words of a bit for each body part. 0 where the asset is not open. */
 SPHERECHAIN_API size_t sc_part_words(const sc_asset* asset) SC_NOEXCEPT;
 
@@ -82,7 +126,11 @@ SPHERECHAIN_API size_t sc_part_words(const sc_asset* asset) SC_NOEXCEPT;
 }
 inline sc_status sc_body_contact_job::run() noexcept { return sc_find_body_contacts(this); }
 inline sc_status sc_body_penetration_job::run() noexcept { return sc_measure_body_penetrations(this); }
+inline sc_status sc_scene_job::run() noexcept { return sc_find_meetings(this); }
 namespace spherechain {
+using Box = sc_box;
+using SceneBody = sc_scene_body;
+using SceneJob = sc_scene_job;
 using Body = sc_body;
 using BodyContactJob = sc_body_contact_job;
 using BodyPenetrationJob = sc_body_penetration_job;

@@ -97,6 +97,10 @@ SC_ENUM(sc_field){
     SC_FIELD_PREVIOUS = 33,
     SC_FIELD_PENETRATIONS = 34,
     SC_FIELD_TOUCH_DEPTH = 35,
+    SC_FIELD_IGNORED_PARTS = 36,
+    SC_FIELD_BODIES = 37,
+    SC_FIELD_LAYERS = 38,
+    SC_FIELD_IGNORED = 39,
 };
 
 /* What every operation returns: what went wrong, and with which field. */

@@ -67,6 +67,10 @@ constexpr std::pair<sc_field, const char*> kFieldNames[] = {
     {SC_FIELD_PREVIOUS, "previous"},
     {SC_FIELD_PENETRATIONS, "penetrations"},
     {SC_FIELD_TOUCH_DEPTH, "touch_depth"},
+    {SC_FIELD_IGNORED_PARTS, "ignored_parts"},
+    {SC_FIELD_BODIES, "bodies"},
+    {SC_FIELD_LAYERS, "layers"},
+    {SC_FIELD_IGNORED, "ignored"},
 };
 
 template <typename Texts, typename Value>

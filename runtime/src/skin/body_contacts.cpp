@@ -23,8 +23,8 @@ bool is_aliased(const BodyContactJob& job) {
 Status check(const BodyContactJob& job, Target& resolved, Surface& surface_a, Surface& surface_b) {
   const Status statuses[] = {check_skin(job.a.asset, job.a.pose, job.a.skin_table, surface_a),
                              check_skin(job.b.asset, job.b.pose, job.b.skin_table, surface_b),
-                             check_list(job.a.ignored_parts, 0, SC_FIELD_FILTER),
-                             check_list(job.b.ignored_parts, 0, SC_FIELD_FILTER),
+                             check_list(job.a.ignored_parts, 0, SC_FIELD_IGNORED_PARTS),
+                             check_list(job.b.ignored_parts, 0, SC_FIELD_IGNORED_PARTS),
                              check_list(job.scratch, 1, SC_FIELD_SCRATCH),
                              check_list(job.parts, job.part_capacity, SC_FIELD_PARTS),
                              check_list(job.spheres, job.sphere_capacity, SC_FIELD_SPHERES),
@@ -84,6 +84,21 @@ sc_status sc_find_body_contacts(sc_body_contact_job* job) noexcept {
   const Status found = collector.finish(counts);
   counts.copy_to(*job);
   return found;
+}
+
+sc_status sc_bound_body(const sc_body* body, sc_box* box) noexcept {
+  if (body == nullptr || box == nullptr) {
+    return refuse(SC_NULL, body == nullptr ? SC_FIELD_NONE : SC_FIELD_OUTPUT);
+  }
+  Surface surface;
+  const Status status = check_skin(body->asset, body->pose, body->skin_table, surface);
+  if (status == SC_OK) {
+    const Bounds3 bounds = body->pose.bones != nullptr
+                               ? bound_bones(view_of(*body->asset), surface, body->pose, nullptr)
+                               : bound_vertices(surface, body->pose);
+    *box = {{bounds.low[0], bounds.low[1], bounds.low[2]}, {bounds.high[0], bounds.high[1], bounds.high[2]}};
+  }
+  return status;
 }
 
 }  // extern "C"

@@ -99,7 +99,7 @@ Bounds3 bound_bones(const AssetView& asset, const Surface& surface, const Pose& 
     const BoneBox& rest = surface.bone_boxes[bone];
     const float center[3] = {rest.center.x, rest.center.y, rest.center.z};
     const float half[3] = {rest.half.x + morphed, rest.half.y + morphed, rest.half.z + morphed};
-    float* const box = boxes + 6 * bone;
+    const bool moves = rest.half.x >= 0;
     for (std::size_t i = 0; i < 3; ++i) {
       const float* const row = bones.data + bone * bones.stride + i * bones.row;
       float at = row[3 * bones.column], reach = 0, size = std::abs(at);
@@ -109,28 +109,46 @@ Bounds3 bound_bones(const AssetView& asset, const Surface& surface, const Pose& 
         reach += std::abs(m) * half[j];
         size += std::abs(m) * (std::abs(center[j]) + half[j]);
       }
-      const bool moves = rest.half.x >= 0;
-      box[i] = moves ? at - reach : FLT_MAX;
-      box[3 + i] = moves ? at + reach : -FLT_MAX;
-      // What is not a number, or overflows, bounds nothing.
-      if (moves && !(size < 0x1p60F)) {
-        box[i] = -FLT_MAX;
-        box[3 + i] = FLT_MAX;
+      float low = moves ? at - reach : FLT_MAX, high = moves ? at + reach : -FLT_MAX;
+      if (moves && !(size < 0x1p60F)) {  // what is not a number, or overflows, bounds nothing
+        low = -FLT_MAX;
+        high = FLT_MAX;
+      } else if (moves) {
+        most = std::max(most, size);
       }
-      most = moves && size < 0x1p60F ? std::max(most, size) : most;
-      all.low[i] = std::min(all.low[i], box[i]);
-      all.high[i] = std::max(all.high[i], box[3 + i]);
+      all.low[i] = std::min(all.low[i], low);
+      all.high[i] = std::max(all.high[i], high);
+      if (boxes != nullptr) {
+        boxes[6 * bone + i] = low;
+        boxes[6 * bone + 3 + i] = high;
+      }
     }
   }
   const float margin = kUnit * most * (64.0F + 16.0F * static_cast<float>(asset.bone_count())) + 0x1p-60F;
-  for (std::size_t i = 0; i < 3; ++i) {
-    all.low[i] -= margin;
-    all.high[i] += margin;
-  }
-  for (std::size_t bone = 0; bone < surface.bone_boxes.size; ++bone) {
+  const auto widen = [&](float* low, float* high) {
     for (std::size_t i = 0; i < 3; ++i) {
-      boxes[6 * bone + i] -= margin;
-      boxes[6 * bone + 3 + i] += margin;
+      low[i] = std::max(low[i] - margin, -FLT_MAX);
+      high[i] = std::min(high[i] + margin, FLT_MAX);
+    }
+  };
+  widen(all.low, all.high);
+  for (std::size_t bone = 0; boxes != nullptr && bone < surface.bone_boxes.size; ++bone) {
+    widen(boxes + 6 * bone, boxes + 6 * bone + 3);
+  }
+  return all;
+}
+
+// Those that are not finite intersect nothing, and count for nothing.
+Bounds3 bound_vertices(const Surface& surface, const Pose& pose) {
+  Bounds3 all{{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
+  const std::size_t stride = vertex_stride(pose);
+  for (const std::uint32_t vertex : surface.source_vertices) {
+    const float* const p = vertex_at(pose.vertices, vertex, stride);
+    if (std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2])) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        all.low[i] = std::min(all.low[i], p[i]);
+        all.high[i] = std::max(all.high[i], p[i]);
+      }
     }
   }
   return all;

@@ -33,9 +33,10 @@ bool has_skin(const AssetView& asset);
 struct Bounds3 {
   float low[3], high[3];
 };
-// What the vertices that each bone moves stay in, in the pose, six floats a bone: the low corner, then the high one;
-// and all of the skin. From checked bones.
+// What all of the skin stays in, in a checked pose of bones. `boxes`, or null: the same of what each bone moves, six
+// floats: the low corner, then the high one.
 Bounds3 bound_bones(const AssetView& asset, const Surface& surface, const Pose& pose, float* boxes);
+Bounds3 bound_vertices(const Surface& surface, const Pose& pose);
 // Tells two bodies' scenes where the other is.
 void set_reach(const AssetView& asset_a, ContactScene& a, const AssetView& asset_b, ContactScene& b, const Pose& pose_a,
                const Pose& pose_b, WordMemory& memory);

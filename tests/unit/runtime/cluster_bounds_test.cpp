@@ -67,6 +67,8 @@ struct Bounds {
   std::vector<std::uint64_t> words;
   WordMemory memory;
   ContactScene scene;
+  std::vector<float> bones;  // a box each
+  Bounds3 body;
 
   Bounds(const OpenedAsset& opened, const PreparedSkin& table, const Pose& pose, Target target, bool has_hulls)
       : words(sc_skin_scratch_words(&opened.asset)),
@@ -76,6 +78,24 @@ struct Bounds {
     scene.has_hulls = has_hulls;  // without them all clusters are bounded, else those of spheres that are near others
     ContactCollector collector(table.surface, PartTable(), {{}, {}, {}, true});  // spheres only
     find_candidates(target, {scene, scene, true}, collector);  // leaves what it bounded in the scene's memory
+    bones.resize(6 * opened.view().bone_count());
+    body = bound_bones(opened.view(), table.surface, pose, bones.data());
+  }
+  // Is the vertex in the body's box, and in the one around those of its cluster's bones?
+  bool bones_hold(std::size_t cluster, const Position& p) const {
+    const Cluster& of = scene.surface->clusters[cluster];
+    bool inside = true;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      float low = HUGE_VALF, high = -HUGE_VALF;
+      for (std::size_t k = 0; k < of.bone_count; ++k) {
+        const float* const box = &bones[6 * std::size_t{scene.surface->cluster_bones[of.first_bone + k]}];
+        low = std::min(low, box[axis]);
+        high = std::max(high, box[3 + axis]);
+      }
+      inside = inside && p[axis] >= double{low} && p[axis] <= double{high} && p[axis] >= double{body.low[axis]} &&
+               p[axis] <= double{body.high[axis]};
+    }
+    return inside;
   }
   bool contain(std::size_t cluster, const Position& p) const {
     double squared = 0;
@@ -154,8 +174,12 @@ void check_poses(bool has_hulls, const Check& check) {
 
 }  // namespace
 
-TEST_CASE("in every pose every vertex, however it is skinned, is in its cluster's box and ball") {
-  check_poses(false, [](const Bounds& bounds, std::size_t c, const Position& p) { REQUIRE(bounds.contain(c, p)); });
+TEST_CASE(
+    "in every pose every vertex, however it is skinned, is in its cluster's box and ball, and in its bones' boxes") {
+  check_poses(false, [](const Bounds& bounds, std::size_t c, const Position& p) {
+    REQUIRE(bounds.contain(c, p));
+    REQUIRE(bounds.bones_hold(c, p));
+  });
 }
 
 TEST_CASE("in every pose every vertex is near the hull of its sphere") {

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+// Which bodies of a scene meet, against all pairs of all spheres.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "spherechain/spherechain.h"
+
+using namespace spherechain;
+
+namespace {
+
+struct Scene {
+  std::vector<std::vector<Sphere>> spheres;
+  std::vector<SceneBody> bodies;
+
+  // Some bodies have a box alone; some spheres a negative radius.
+  Scene(std::size_t count, std::mt19937& random, float size) {
+    std::uniform_real_distribution<float> place(0, size), off(-0.5F, 0.5F), radius(-0.05F, 0.3F);
+    spheres.resize(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const float x = place(random), y = off(random), z = place(random);
+      spheres[i].resize(random() % 100);
+      for (Sphere& s : spheres[i]) s = {x + off(random), y + off(random), z + off(random), radius(random)};
+      SceneBody body;
+      body.layer = static_cast<std::uint32_t>(random() % 3);
+      if (random() % 4 == 0) {
+        body.box = {{x - 0.4F, y - 0.3F, z - 0.2F}, {x + 0.2F, y + 0.3F, z + 0.4F}};
+      } else {
+        body.spheres = spheres[i].data();
+        body.sphere_count = spheres[i].size();
+      }
+      bodies.push_back(body);
+    }
+  }
+};
+
+Box box_of(const SceneBody& body) {
+  if (body.spheres == nullptr) return body.box;
+  Box box{{HUGE_VALF, HUGE_VALF, HUGE_VALF}, {-HUGE_VALF, -HUGE_VALF, -HUGE_VALF}};
+  for (std::size_t i = 0; i < body.sphere_count; ++i) {
+    const Sphere& s = body.spheres[i];
+    if (s.radius < 0) continue;
+    box.low = {std::min(box.low.x, s.x - s.radius), std::min(box.low.y, s.y - s.radius),
+               std::min(box.low.z, s.z - s.radius)};
+    box.high = {std::max(box.high.x, s.x + s.radius), std::max(box.high.y, s.y + s.radius),
+                std::max(box.high.z, s.z + s.radius)};
+  }
+  return box;
+}
+
+bool meet(const SceneBody& a, const SceneBody& b) {
+  if (a.spheres == nullptr || b.spheres == nullptr) {
+    const Box p = box_of(a), q = box_of(b);
+    return p.low.x <= q.high.x && q.low.x <= p.high.x && p.low.y <= q.high.y && q.low.y <= p.high.y &&
+           p.low.z <= q.high.z && q.low.z <= p.high.z;
+  }
+  for (std::size_t i = 0; i < a.sphere_count; ++i) {
+    for (std::size_t k = 0; k < b.sphere_count; ++k) {
+      const Sphere &p = a.spheres[i], &q = b.spheres[k];
+      const float dx = p.x - q.x, dy = p.y - q.y, dz = p.z - q.z, s = p.radius + q.radius;
+      if (p.radius >= 0 && q.radius >= 0 && (dx * dx + dy * dy) + dz * dz < s * s) return true;
+    }
+  }
+  return false;
+}
+
+std::vector<Pair> run(SceneJob job) {
+  std::vector<std::uint64_t> scratch(sc_scene_scratch_words(job.body_count));
+  job.scratch = scratch.data();
+  job.scratch_words = scratch.size();
+  REQUIRE(job.run() == SC_OK);
+  std::vector<Pair> pairs(job.pair_count);
+  job.pairs = pairs.data();
+  job.pair_capacity = pairs.size();
+  REQUIRE(job.run() == SC_OK);
+  REQUIRE(job.pair_count == pairs.size());
+  return pairs;
+}
+
+SceneJob job_of(const Scene& scene) {
+  SceneJob job;
+  job.bodies = scene.bodies.data();
+  job.body_count = scene.bodies.size();
+  return job;
+}
+
+}  // namespace
+
+TEST_CASE("a scene's meetings are those of all pairs of bodies, but for layers and ignored pairs") {
+  std::mt19937 random(5);
+  std::size_t total = 0;
+  for (int turn = 0; turn < 30; ++turn) {
+    const Scene scene(turn == 0 ? 0 : random() % 60, random, turn % 2 == 0 ? 6.0F : 2.0F);
+    std::vector<std::uint32_t> layers(32, ~0U);
+    layers[1] &= ~(1U << 2);
+    layers[2] &= ~(1U << 1);
+    std::vector<Pair> expected, ignored;
+    for (std::uint32_t b = 0; b < scene.bodies.size(); ++b) {
+      for (std::uint32_t a = 0; a < b; ++a) {
+        if (meet(scene.bodies[a], scene.bodies[b])) expected.push_back({a, b});
+        if (random() % 5 == 0) ignored.push_back({a, b});
+      }
+    }
+    std::sort(expected.begin(), expected.end());
+    std::sort(ignored.begin(), ignored.end());
+    SceneJob job = job_of(scene);
+    CHECK(run(job) == expected);
+    total += expected.size();
+    job.layers = layers.data();
+    job.ignored = ignored.data();
+    job.ignored_count = ignored.size();
+    expected.erase(std::remove_if(expected.begin(), expected.end(),
+                                  [&](const Pair& pair) {
+                                    return scene.bodies[pair.a].layer + scene.bodies[pair.b].layer == 3 ||
+                                           std::binary_search(ignored.begin(), ignored.end(), pair);
+                                  }),
+                   expected.end());
+    CHECK(run(job) == expected);
+    if (expected.size() < 2) continue;
+    // A list without room has the first.
+    std::vector<std::uint64_t> scratch(sc_scene_scratch_words(job.body_count));
+    std::vector<Pair> first(expected.size() / 2);
+    job.scratch = scratch.data();
+    job.scratch_words = scratch.size();
+    job.pairs = first.data();
+    job.pair_capacity = first.size();
+    CHECK(job.run() == Status{SC_OVERFLOW, SC_FIELD_PAIRS});
+    CHECK(job.pair_count == expected.size());
+    CHECK(std::equal(first.begin(), first.end(), expected.begin()));
+  }
+  CHECK(total > 1000);
+}
+
+TEST_CASE("a scene that is not sound is refused, and nothing is written") {
+  std::mt19937 random(6);
+  Scene scene(9, random, 1);
+  std::vector<std::uint64_t> scratch(sc_scene_scratch_words(9));
+  std::vector<Pair> pairs(36, Pair{7, 7});
+  const auto refused = [&](const auto& spoil) {
+    std::vector<SceneBody> bodies = scene.bodies;
+    SceneJob job = job_of(scene);
+    job.bodies = bodies.data();
+    job.scratch = scratch.data();
+    job.scratch_words = scratch.size();
+    job.pairs = pairs.data();
+    job.pair_capacity = pairs.size();
+    spoil(job, bodies);
+    const Status status = job.run();
+    CHECK(std::all_of(pairs.begin(), pairs.end(), [](const Pair& p) { return p == Pair{7, 7}; }));
+    return status;
+  };
+  using Bodies = std::vector<SceneBody>;
+  CHECK(refused([](SceneJob& job, Bodies&) { job.bodies = nullptr; }) == Status{SC_NULL, SC_FIELD_BODIES});
+  CHECK(refused([](SceneJob& job, Bodies&) { --job.scratch_words; }) == Status{SC_TOO_SMALL, SC_FIELD_SCRATCH});
+  CHECK(refused([](SceneJob& job, Bodies&) { job.scratch = nullptr; }) == Status{SC_NULL, SC_FIELD_SCRATCH});
+  CHECK(refused([](SceneJob& job, Bodies&) { job.pairs = nullptr; }) == Status{SC_NULL, SC_FIELD_PAIRS});
+  CHECK(refused([](SceneJob&, Bodies& of) { of[3].layer = 32; }) == Status{SC_BAD_VALUE, SC_FIELD_BODIES});
+  CHECK(refused([](SceneJob&, Bodies& of) {
+          of[2].spheres = nullptr;
+          of[2].sphere_count = 0;
+          of[2].box.high.y = HUGE_VALF;
+        }) == Status{SC_BAD_VALUE, SC_FIELD_BODIES});
+  std::vector<std::uint32_t> layers(32, 0);
+  layers[4] = 1U << 3;
+  CHECK(refused([&](SceneJob& job, Bodies&) { job.layers = layers.data(); }) == Status{SC_BAD_VALUE, SC_FIELD_LAYERS});
+  for (const std::vector<Pair>& bad : {std::vector<Pair>{{1, 1}}, {{2, 1}}, {{1, 9}}, {{1, 2}, {1, 2}}}) {
+    CHECK(refused([&](SceneJob& job, Bodies&) {
+            job.ignored = bad.data();
+            job.ignored_count = bad.size();
+          }) == Status{SC_BAD_VALUE, SC_FIELD_IGNORED});
+  }
+  CHECK(refused([&](SceneJob& job, Bodies&) { job.scratch = reinterpret_cast<std::uint64_t*>(pairs.data()); }) ==
+        Status{SC_ALIASED, SC_FIELD_OUTPUT});
+}
