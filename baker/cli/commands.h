@@ -15,7 +15,7 @@ struct BakeOptions {
   std::string input, output, config, report, preview, roles, body;
   std::string profile = "balanced";
   int spheres = 0;  // 0: no limit
-  bool extremities = false, attachments = false, force = false;
+  bool extremities = false, attachments = false, prop = false, force = false;
 };
 ExitCode run_bake(const BakeOptions& options);
 

@@ -116,6 +116,10 @@ int main(int argc, char** argv) {
   bake_command->add_flag("--extremities", bake.extremities,
                          "Spheres in head, hands and feet too (profile balanced has them)");
   bake_command->add_flag("--attachments", bake.attachments, "Keep rigid meshes that hang on joints: weapons, hats");
+  CLI::Option* prop = bake_command->add_flag("--prop", bake.prop, "A rigid thing without a rig: a sword, a chair");
+  for (const char* other : {"--profile", "--roles", "--body", "--extremities", "--attachments"}) {
+    prop->excludes(bake_command->get_option(other));
+  }
   add_output(*bake_command, "--report", bake.report, "JSON report to write");
   add_output(*bake_command, "--preview", bake.preview, "glTF binary to write: regions, joints and spheres");
   bake_command->add_flag("--force", bake.force, "Replace an output file of another kind");

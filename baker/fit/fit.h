@@ -77,6 +77,7 @@ struct FitSettings {
   int spheres_per_level = 2;        // N_s: 1 to 3
   bool extremities = true;          // spheres in head, hands and feet
   std::optional<int> spheres;       // at most so many; else what the march needs; by halves kHalvedSpheres
+  bool few = false;                 // by halves: none that gains little
 
   bool operator==(const FitSettings&) const = default;
 };

@@ -14,6 +14,7 @@
 namespace spherechain::baker {
 namespace {
 
+constexpr double kLittle = 0.01;  // of the error of one sphere for each region: a gain that few spheres do without
 constexpr double kJoined = 0.01;  // of the height: a part whose skin is farther from the one it hangs on is apart
 
 struct Region {
@@ -144,6 +145,12 @@ void share_spheres(const PieceFitter& fitter, std::vector<std::vector<Region*>>&
                    double area, std::size_t kept) {
   std::size_t spheres = kept;
   for (const std::vector<Region*>& group : groups) spheres += group.size();
+  double least_gain = 0;
+  for (const std::vector<Region*>& group : groups) {
+    for (const Region* region : group) {
+      for (const Piece& piece : region->pieces) least_gain += (settings.few ? kLittle : 0) * piece.error;
+    }
+  }
   for (;;) {
     double far_area = 0;
     for (const std::vector<Region*>& group : groups) {
@@ -154,7 +161,7 @@ void share_spheres(const PieceFitter& fitter, std::vector<std::vector<Region*>>&
     const bool is_good = far_area <= kFarAreaGood * area;
     const auto limit =
         static_cast<std::size_t>(settings.spheres.value_or(is_good ? kHalvedSpheres : kHalvedSpheresMax));
-    double most = 0;
+    double most = least_gain;
     std::vector<Region*>* next = nullptr;
     for (std::vector<Region*>& group : groups) {
       if (spheres + group.size() > limit) continue;

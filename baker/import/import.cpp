@@ -35,6 +35,24 @@ bool is_gltf(const std::filesystem::path& path) {
   return start.starts_with("glTF") || (first != start.npos && start[first] == '{');
 }
 
+// One bone moves all vertices. Morph targets stay at their weights at rest.
+void make_rigid(SourceMesh& mesh) {
+  for (const Morph& morph : mesh.rig.morphs) {
+    for (std::size_t i = 0; i < morph.vertices.size(); ++i) {
+      mesh.positions[morph.vertices[i]] += morph.rest_weight * morph.deltas[i];
+    }
+  }
+  mesh.bones_dropped = mesh.rig.bones.size();
+  Node node;
+  node.name = kPropBone;
+  VertexWeights whole;
+  whole.weight[0] = 1;
+  mesh.rig = {};
+  mesh.rig.nodes = {node};
+  mesh.rig.bones = {{0, Affine::Identity()}};
+  mesh.rig.weights.assign(mesh.positions.size(), whole);
+}
+
 }  // namespace
 
 void check_regular_file(const std::filesystem::path& path) {
@@ -73,9 +91,11 @@ SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& o
   if (std::filesystem::file_size(path, ignored) == 0) {
     throw Error(ExitCode::kFile, path.string() + ": is empty (export it again)");
   }
-  return from_bytes<SourceMesh>(read_in_child(path.string(), [&] {
+  SourceMesh mesh = from_bytes<SourceMesh>(read_in_child(path.string(), [&] {
     return to_bytes(is_gltf(path) ? read_with_tinygltf(path, options) : read_with_assimp(path, options));
   }));
+  if (options.prop) make_rigid(mesh);
+  return mesh;
 }
 
 Character import_character(const std::filesystem::path& path, const ImportOptions& options) {

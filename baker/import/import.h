@@ -22,12 +22,17 @@ struct ImportReport {
   std::size_t duplicates_dropped = 0;  // triangles with the same three positions as an earlier one
   std::size_t points_and_lines_dropped = 0;
   std::size_t attachments_dropped = 0;  // rigid meshes that hang on a joint: weapons, hats
+  std::size_t bones_dropped = 0;        // of a prop: what would have moved its parts
 };
 
 struct ImportOptions {
   bool attachments = false;  // keep them
+  bool prop = false;         // all meshes as one rigid thing: its only bone is kPropBone
   bool look = false;         // read the base colours, too
 };
+
+// The bone of a prop. Its matrix takes the rest pose to the pose's space.
+inline constexpr const char* kPropBone = "prop";
 
 // A vertex buffer of the file, as a game loads it: a run of the source's vertices.
 struct SourceBuffer {
@@ -98,6 +103,7 @@ struct SourceMesh {
   std::size_t meshes = 0;
   std::size_t points_and_lines_dropped = 0;
   std::size_t attachments_dropped = 0;
+  std::size_t bones_dropped = 0;
   double metres_per_unit = 1;
   Vec3 up_hint = Vec3::UnitY();
 };

@@ -108,7 +108,7 @@ class GltfReader {
       const bool skinned = node.skin >= 0 && is_skinned(primitive);
       if (!has_triangles(primitive)) {
         out_.points_and_lines_dropped += count_points_and_lines(file_, primitive);
-      } else if (!skinned && on_joint && !options_.attachments) {
+      } else if (!skinned && on_joint && !options_.attachments && !options_.prop) {
         dropped = true;
       } else if (primitive.attributes.count("POSITION") > 0) {
         kept = true;

@@ -10,6 +10,7 @@
 
 #include "calibrate/calibrate.h"
 #include "mesh/error.h"
+#include "pipeline/fit_prop.h"
 #include "pipeline/segment_wraps.h"
 #include "segment/by_bones.h"
 #include "segment/by_rig.h"
@@ -69,6 +70,7 @@ void run_after_fit(Bake& out, const Progress& progress) {
   });
   stage(out, progress, "bind", [&] {
     out.body_parts = find_body_parts(out.character, out.roles, out.regions, out.joints, out.rig_weights);
+    if (settings.import.prop) out.body_parts.parts[0].name = std::filesystem::path(out.character.file).stem().string();
     out.bones = bind_bones(out.character, out.joints, out.rig_weights);
     out.moments = bind_moments(out.character, out.bones, out.rig_weights, out.binding);
   });
@@ -80,7 +82,7 @@ void run_after_fit(Bake& out, const Progress& progress) {
                            out.moments, out.body_parts, out.clusters, to_json(settings)});
   };
   stage(out, progress, "write", write);
-  if (settings.bind.rule == RefitRule::kPaper) return;
+  if (settings.bind.rule == RefitRule::kPaper || settings.import.prop) return;
   stage(out, progress, "calibrate", [&] {
     calibrate(out.character, out.regions, out.joints, out.asset, out.binding);
     write();
@@ -295,6 +297,7 @@ FittedCharacter fit_character(Character character, const Roles& roles, const Bak
     if (!candidate) throw Error(ExitCode::kSegmentation, character.file + ": " + candidate.reason().what);
     return std::move(*candidate);
   };
+  if (settings.import.prop) return taken_or_fail(fit_prop(character, settings));
   const bool one_fit = settings.bind.rule == RefitRule::kPaper || settings.segment.body != BodyKind::kUnknown;
   Choice tried;
   Candidate limbed = fit_limbs(character, roles, settings, one_fit ? Wraps::kAll : Wraps::kUnmoved, tried);

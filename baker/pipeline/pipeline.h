@@ -30,8 +30,8 @@ struct Targets {
   std::optional<FitGrade> fit;  // or better
 };
 
-// Limits of the setting `spheres`.
-inline constexpr int kSpheresMin = 8, kSpheresMax = 500;
+// Limits of the setting `spheres`, and what it is for a prop.
+inline constexpr int kSpheresMin = 8, kSpheresMax = 500, kPropSpheres = 32;
 
 struct BakeSettings {
   ImportOptions import;
@@ -43,16 +43,16 @@ struct BakeSettings {
   Targets targets;
 };
 
-// "paper" (the paper's refit on 4 pivots, no spheres in head, hands and feet) or "balanced" (refit by moments,
-// extremities), changed by a JSON text. Throws Error(kFile)
-// that names `file` where the JSON is broken, has an unknown key or a value out of its range; Error(kUsage) for another
-// profile.
+// "paper" (the paper's refit on 4 pivots, no spheres in head, hands and feet), "balanced" (refit by moments,
+// extremities) or "prop" (a rigid thing: few spheres, which hold all of it), changed by a JSON text. Throws
+// Error(kFile) that names `file` where the JSON is broken, has an unknown key, a value out of its range or one that no
+// prop has; Error(kUsage) for another profile.
 BakeSettings make_settings(const std::string& profile, const std::string& json, const std::string& file);
 
 // "biped" or "quadruped"; "auto" is unknown: found.
 BodyKind parse_body(const std::string& name);
 
-// The settings as canonical JSON: all keys, sorted, no spaces.
+// The settings as canonical JSON: all keys, sorted, no spaces. `prop` only where it is true.
 std::string to_json(const BakeSettings& settings);
 
 struct StageTime {
@@ -108,8 +108,8 @@ struct FittedCharacter {
 
 // The paper's fit on what segment_character finds. Where there is none, it is not good, or the settings limit the
 // spheres, also the fit by halves of the bones' parts: the one with less skin far from its sphere is taken. Under the
-// paper's refit rule, and where the settings name a body, there is only the first. Throws Error(kSegmentation) where
-// there is none.
+// paper's refit rule, and where the settings name a body, there is only the first; of a prop only the second. Throws
+// Error(kSegmentation) where there is none.
 FittedCharacter fit_character(Character character, const Roles& roles, const BakeSettings& settings);
 
 // Makes the body what segment_character makes of it without a rig: for what depends on the body alone (bone heat).

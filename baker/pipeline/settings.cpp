@@ -110,12 +110,18 @@ BakeSettings make_settings(const std::string& profile, const std::string& text, 
   if (profile == "paper") {
     settings.bind.rule = RefitRule::kPaper;
     settings.fit.extremities = false;
-  } else if (profile != "balanced") {
+  } else if (profile != "balanced" && profile != "prop") {
     throw Error(ExitCode::kUsage, "profile '" + profile + "' is neither 'paper' nor 'balanced'");
   }
   const json object = parse(text, file);
   Reader reader(object, file);
   reader.boolean("attachments", settings.import.attachments);
+  reader.boolean("prop", settings.import.prop);
+  if (profile == "prop") settings.import.prop = true;
+  if (settings.import.prop) {
+    settings.fit.few = true;
+    settings.fit.spheres = kPropSpheres;
+  }
   if (const json* roles = reader.object("roles")) settings.roles = parse_role_file(roles->dump(), file + ": roles");
   if (const json* limit = reader.object("spheres"); limit != nullptr && !limit->is_null()) {
     int spheres = kSpheresMin;
@@ -160,12 +166,19 @@ BakeSettings make_settings(const std::string& profile, const std::string& text, 
     inner.done();
   }
   reader.done();
+  if (settings.import.prop) {
+    const auto refuse = [&](const char* key) { reader.fail(key, "is for characters, not for a prop"); };
+    if (!settings.roles.role_of.empty()) refuse("roles");
+    if (settings.segment.body != BodyKind::kUnknown) refuse("body");
+    if (settings.bind.rule == RefitRule::kPaper) refuse("refit");
+  }
   return settings;
 }
 
 std::string to_json(const BakeSettings& settings) {
   json out;
   out["attachments"] = settings.import.attachments;
+  if (settings.import.prop) out["prop"] = true;
   out["roles"] = settings.roles.role_of;
   out["rays"] = settings.fit.rays;
   out["penetration_depth"] = settings.fit.penetration_depth;

@@ -84,6 +84,7 @@ ordered_json import_section(const Bake& bake) {
           {"duplicates_dropped", report.duplicates_dropped},
           {"points_and_lines_dropped", report.points_and_lines_dropped},
           {"attachments_dropped", report.attachments_dropped},
+          {"bones_dropped", report.bones_dropped},
           {"metres_per_unit", bake.character.metres_per_unit},
           {"up_axis_of_file", to_json(bake.character.up_hint)}};
 }
@@ -328,16 +329,20 @@ std::string unit_note(const Bake& bake) {
 }
 
 std::string bake_report_text(const Bake& bake) {
-  const Mesh& mesh = bake.character.body;
   const double metres = bake.regions.frame.height * bake.character.metres_per_unit;
-  std::string out =
-      fmt::format("{}: {} triangles ({} body), {} components, {:.3f} m {}; {}\n", bake.character.file,
-                  bake.character.source_triangles.size(), mesh.triangles.size(), bake.character.report.components,
-                  metres, is_tall(bake) ? "tall" : "long", bake.regions.facing);
+  const std::string what =
+      bake.settings.import.prop ? "a prop" : fmt::format("{} body", bake.character.body.triangles.size());
+  std::string out = fmt::format("{}: {} triangles ({}), {} components, {:.3f} m {}; {}\n", bake.character.file,
+                                bake.character.source_triangles.size(), what, bake.character.report.components, metres,
+                                is_tall(bake) ? "tall" : "long", bake.regions.facing);
   if (const std::string note = unit_note(bake); !note.empty()) out += note + "\n";
   if (const std::size_t dropped = bake.character.report.attachments_dropped; dropped > 0) {
     out += fmt::format("left out: {} on joints, such as weapons and hats (--attachments keeps them)\n",
                        dropped == 1 ? "1 rigid mesh" : fmt::format("{} rigid meshes", dropped));
+  }
+  if (const std::size_t dropped = bake.character.report.bones_dropped; dropped > 0) {
+    out += fmt::format("left out: {} and what moves them: a prop is rigid, as at rest\n",
+                       dropped == 1 ? "1 bone" : fmt::format("{} bones", dropped));
   }
   out += closing_line(bake.closing);
   out += passed_over_lines(bake.segmented_by);
@@ -356,7 +361,7 @@ std::string bake_report_text(const Bake& bake) {
     total += time.seconds;
   }
   out += fmt::format("{:<10} {:>8.1f}   peak memory {:.0f} MB\n\n", "total", 1e3 * total, peak_memory_mb());
-  return out + figures_line(bake.quality);
+  return bake.settings.import.prop ? out : out + figures_line(bake.quality);
 }
 
 std::string generic_fit_text(const std::vector<std::string>& generic, std::size_t parts) {
@@ -370,6 +375,10 @@ std::string generic_fit_text(const std::vector<std::string>& generic, std::size_
 
 std::string fit_line(const Bake& bake) {
   const FitQuality& quality = bake.quality;
+  if (bake.settings.import.prop) {
+    return fmt::format("prop: {} spheres hold all of it, and stand out {:.1f} % of the height on average\n",
+                       bake.spheres.spheres.size(), 100 * quality.protrusion);
+  }
   std::vector<std::string> far, generic;
   for (const std::uint8_t region : quality.far_regions()) far.push_back(bake.regions.name(region));
   if (far.empty()) {
