@@ -13,8 +13,8 @@
 namespace spherechain::baker {
 
 ExitCode run_bake(const BakeOptions& options) {
-  BakeSettings settings =
-      make_settings(options.prop ? "prop" : options.profile, options.config.empty() ? "{}" : read_file(options.config), options.config);
+  BakeSettings settings = make_settings(options.prop ? "prop" : options.profile,
+                                        options.config.empty() ? "{}" : read_file(options.config), options.config);
   if (options.spheres > 0) settings.fit.spheres = options.spheres;
   if (options.extremities) settings.fit.extremities = true;
   if (!options.body.empty()) settings.segment.body = parse_body(options.body);
