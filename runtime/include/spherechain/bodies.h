@@ -95,6 +95,32 @@ typedef struct sc_body_penetration_job {
 #endif
 } sc_body_penetration_job;
 
+#define SC_FLOOR 0xFFFFFFFFu /* in place of a body part and of a triangle: the ground */
+
+/* What of a body is below the ground: all body parts with a vertex there, and how deep it is straight down. part_a is
+ * SC_FLOOR; the direction is `up`; `volume` is of the part below the ground, known where its skin does not end there.
+ * Classes are SC_CLASS_TOUCH and SC_CLASS_PENETRATION.
+ *
+ * Allocates nothing, takes no lock. Jobs on other outputs and scratch memory may run at the same time. */
+typedef struct sc_floor_job {
+  sc_body body SC_ZERO;
+  sc_target target SC_ZERO; /* the same bits on every one */
+  sc_vec3 up SC_ZERO;       /* of unit length */
+  float height SC_ZERO;     /* of the plane: up . p = height on it */
+  /* Null, or: how far the ground is above the plane at p; called for each vertex of the skin, in no certain order. */
+  float (*terrain)(const void* user, sc_vec3 p) SC_ZERO;
+  const void* user SC_ZERO;
+  float touch_depth SC_ZERO; /* as of an sc_penetration_job */
+  uint64_t* scratch SC_ZERO; /* sc_floor_scratch_words() words; nothing is kept there between runs */
+  size_t scratch_words SC_ZERO;
+  sc_penetration* penetrations SC_ZERO; /* out: sorted by part_b; null, with a capacity of 0: count only */
+  size_t penetration_capacity SC_ZERO;
+  size_t penetration_count SC_ZERO;
+#if defined(__cplusplus)
+  sc_status run() noexcept;
+#endif
+} sc_floor_job;
+
 #if defined(__cplusplus)
 extern "C" {
 #endif
@@ -109,6 +135,10 @@ SPHERECHAIN_API size_t sc_body_scratch_words(const sc_asset* a, const sc_asset* 
 SPHERECHAIN_API sc_status sc_measure_body_penetrations(sc_body_penetration_job* job) SC_NOEXCEPT;
 SPHERECHAIN_API size_t sc_body_penetration_scratch_words(const sc_asset* a, const sc_asset* b,
                                                          size_t contact_count) SC_NOEXCEPT;
+
+/* Errors as of sc_measure_penetrations(); SC_BAD_VALUE with SC_FIELD_FLOOR: `up` or `height` is none. */
+SPHERECHAIN_API sc_status sc_find_floor_penetrations(sc_floor_job* job) SC_NOEXCEPT;
+SPHERECHAIN_API size_t sc_floor_scratch_words(const sc_asset* asset) SC_NOEXCEPT;
 
 /* A box that holds all of the body's skin for certain: from bones somewhat too large, and in about a microsecond; from
  * vertices alone exact. Reads asset, pose and skin_table. Errors as of sc_find_skin_contacts(). */
@@ -126,11 +156,13 @@ SPHERECHAIN_API size_t sc_part_words(const sc_asset* asset) SC_NOEXCEPT;
 }
 inline sc_status sc_body_contact_job::run() noexcept { return sc_find_body_contacts(this); }
 inline sc_status sc_body_penetration_job::run() noexcept { return sc_measure_body_penetrations(this); }
+inline sc_status sc_floor_job::run() noexcept { return sc_find_floor_penetrations(this); }
 inline sc_status sc_scene_job::run() noexcept { return sc_find_meetings(this); }
 namespace spherechain {
 using Box = sc_box;
 using SceneBody = sc_scene_body;
 using SceneJob = sc_scene_job;
+using FloorJob = sc_floor_job;
 using Body = sc_body;
 using BodyContactJob = sc_body_contact_job;
 using BodyPenetrationJob = sc_body_penetration_job;

@@ -101,6 +101,7 @@ SC_ENUM(sc_field){
     SC_FIELD_BODIES = 37,
     SC_FIELD_LAYERS = 38,
     SC_FIELD_IGNORED = 39,
+    SC_FIELD_FLOOR = 40,
 };
 
 /* What every operation returns: what went wrong, and with which field. */

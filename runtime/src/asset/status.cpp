@@ -71,6 +71,7 @@ constexpr std::pair<sc_field, const char*> kFieldNames[] = {
     {SC_FIELD_BODIES, "bodies"},
     {SC_FIELD_LAYERS, "layers"},
     {SC_FIELD_IGNORED, "ignored"},
+    {SC_FIELD_FLOOR, "floor"},
 };
 
 template <typename Texts, typename Value>

@@ -281,8 +281,7 @@ class Measurer {
   }
 
   PenetrationClass class_of(const Contour& contour, const Penetration& of, double seen_length) const {
-    // Files without a unit make giants and dwarfs.
-    const double few = std::min(std::max(kTouchMetres * metre_, kTouchMin * height_), kTouchMax * height_);
+    const double few = touch_depth_of(metre_, height_);
     const double touch =
         in_.touch_depth > 0 ? double{in_.touch_depth} : few * (1 + (kTouchFlat - 1) * std::max(0.0, contour.facing));
     const double side = kTouchSide * std::min(few, touch);
@@ -309,6 +308,11 @@ class Measurer {
 };
 
 }  // namespace
+
+// Files without a unit make giants and dwarfs.
+double touch_depth_of(double metre, double height) {
+  return std::min(std::max(kTouchMetres * metre, kTouchMin * height), kTouchMax * height);
+}
 
 std::size_t measure_words(const AssetView& a, const AssetView& b, bool are_one, std::size_t contact_count) {
   Memory memory(are_one);

@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: MIT
+// What of a body is below a plane, or below ground over it, part by part.
+#include <algorithm>
+#include <cmath>
+
+#include "asset/memory.h"
+#include "asset/status.h"
+#include "depth/measure.h"
+#include "pairs/filter.h"
+#include "simd/simd.h"
+#include "skin/scene_setup.h"
+#include "spherechain/bodies.h"
+
+namespace spherechain {
+namespace {
+
+constexpr double kUnitError = 1e-3;  // of `up`'s length
+constexpr double kAreaError = 0.03;  // if the contour has another area than the skin below, the volume is not known
+
+struct Memory {
+  PosedSkin skin;
+  double* above = nullptr;  // how far each vertex is above the ground
+
+  std::size_t lay_out(const SkinSizes& sizes, std::uint64_t* words) {
+    WordMemory memory(words);
+    skin.take(memory, sizes.vertices, sizes.clusters);
+    memory.take(above, sizes.vertices);
+    return memory.used();
+  }
+};
+
+std::size_t floor_words(const AssetView& asset) { return Memory().lay_out(asset.skin().sizes, nullptr); }
+
+// A point of a triangle, and how far it is above the ground.
+struct Height {
+  Double3 p;
+  double above;
+};
+
+// What of a part's skin is below.
+class Below {
+ public:
+  Below(const Double3& up, double handedness) : up_(up), handedness_(handedness) {}
+
+  // A triangle that has a corner below.
+  void add(const Height (&corners)[3]) {
+    Height kept[4];
+    int count = 0;
+    Double3 cut[2];
+    for (int i = 0; i < 3; ++i) {
+      const Height &from = corners[i], &to = corners[(i + 1) % 3];
+      if (from.above < 0) {
+        kept[count++] = from;
+      }
+      if ((from.above < 0) != (to.above < 0)) {
+        const double share = from.above / (from.above - to.above);
+        const Double3 at = from.p + share * (to.p - from.p);
+        kept[count++] = {at, 0};
+        cut[from.above < 0 ? 0 : 1] = at;  // the way along the triangle goes up at the first
+      }
+    }
+    for (int i = 1; i + 1 < count; ++i) {
+      const Double3 area = 0.5 * handedness_ * cross(kept[i].p - kept[0].p, kept[i + 1].p - kept[0].p);
+      area_ = area_ + area;
+      total_ += length(area);
+      volume_ += dot(area, up_) * (kept[0].above + kept[i].above + kept[i + 1].above) / 3;
+    }
+    if (corners[0].above >= 0 || corners[1].above >= 0 || corners[2].above >= 0) {
+      const Double3 along = handedness_ * (cut[1] - cut[0]);
+      if (contour_length == 0) {
+        origin_ = cut[0];
+      }
+      contour_length += length(along);
+      enclosed_ = enclosed_ + 0.5 * handedness_ * cross(cut[0] - origin_, cut[1] - origin_);
+    }
+    ++triangles;
+  }
+
+  // Skin that ends below the ground has edges beside the contour: they enclose an area, too.
+  bool is_closed() const { return length(area_ - enclosed_) <= kAreaError * total_ && volume_ >= 0; }
+  double volume() const { return volume_; }
+
+  std::size_t triangles = 0;
+  double contour_length = 0;
+
+ private:
+  Double3 up_, area_{}, enclosed_{}, origin_{};
+  double handedness_, total_ = 0, volume_ = 0;
+};
+
+class Measurer {
+ public:
+  Measurer(const AssetView& asset, const Surface& surface, const FloorJob& job)
+      : asset_(asset), surface_(surface), job_(job), up_(to_double(job.up)) {
+    memory_.skin.surface = &surface;
+    memory_.lay_out(asset.skin().sizes, job.scratch);
+  }
+
+  Status run(Target resolved, FloorJob& job) {
+    memory_.skin.fill(job.body.pose, resolved);
+    find_heights();
+    job.penetration_count = 0;
+    for (std::size_t part = 0; part < asset_.part_count(); ++part) {
+      const std::uint64_t* const ignored = job.body.ignored_parts;
+      if (ignored != nullptr && (ignored[part / 64] >> part % 64 & 1) != 0) {
+        continue;
+      }
+      Penetration found{};
+      if (measure(part, found)) {
+        if (job.penetration_count < job.penetration_capacity) {
+          job.penetrations[job.penetration_count] = found;
+        }
+        ++job.penetration_count;
+      }
+    }
+    return job.penetration_capacity > 0 && job.penetration_count > job.penetration_capacity
+               ? refuse(SC_OVERFLOW, SC_FIELD_PENETRATIONS)
+               : done();
+  }
+
+ private:
+  void find_heights() {
+    for (std::size_t v = 0; v < surface_.source_vertices.size; ++v) {
+      const float* const p = memory_.skin.positions + 3 * v;
+      double above = dot(up_, Double3{double{p[0]}, double{p[1]}, double{p[2]}}) - double{job_.height};
+      if (job_.terrain != nullptr) {
+        above -= double{job_.terrain(job_.user, {p[0], p[1], p[2]})};
+      }
+      memory_.above[v] = std::isfinite(above) ? above : 0;  // of what is not finite nothing is below
+    }
+  }
+
+  bool measure(std::size_t part, Penetration& out) const {
+    Below below(up_, memory_.skin.handedness);
+    double deepest = 0;
+    for (std::size_t i = surface_.first_of_part[part]; i < surface_.first_of_part[part + 1]; ++i) {
+      const TriangleRun& run = surface_.part_runs[i];
+      for (std::uint32_t t = run.first; t < run.first + run.count; ++t) {
+        const std::uint32_t* const v = surface_.triangle_vertices.data + 3 * std::size_t{t};
+        const double least = std::min({memory_.above[v[0]], memory_.above[v[1]], memory_.above[v[2]]});
+        if (!(least < 0)) {
+          continue;
+        }
+        const Corners corners = memory_.skin.corners(t);
+        below.add({{corners.p[0], memory_.above[v[0]]},
+                   {corners.p[1], memory_.above[v[1]]},
+                   {corners.p[2], memory_.above[v[2]]}});
+        if (least < deepest) {
+          deepest = least;
+          const std::size_t k = memory_.above[v[0]] == least ? 0 : memory_.above[v[1]] == least ? 1 : 2;
+          out.deepest_b = {to_float(corners.p[k]), surface_.triangles[t], {}};
+          out.deepest_b.weights[k] = 1;
+        }
+      }
+    }
+    if (below.triangles == 0) {
+      return false;
+    }
+    const AssetInfo info = asset_.info();
+    const double touch = job_.touch_depth > 0 ? double{job_.touch_depth}
+                                              : touch_depth_of(1 / double{info.metres_per_unit}, double{info.height});
+    out.part_a = SC_FLOOR;
+    out.part_b = static_cast<std::uint32_t>(part);
+    out.depth = std::max(static_cast<float>(-deepest), static_cast<float>(1e-7 * double{info.height}));
+    out.direction = job_.up;
+    out.kind = -deepest < touch ? SC_CLASS_TOUCH : SC_CLASS_PENETRATION;
+    out.is_closed = below.is_closed() ? 1 : 0;
+    out.volume = out.is_closed != 0 ? static_cast<float>(below.volume()) : 0;
+    out.contour_length = static_cast<float>(below.contour_length);
+    out.visible = 1;
+    const Vec3& b = out.deepest_b.position;
+    out.deepest_a = {
+        {b.x + out.depth * job_.up.x, b.y + out.depth * job_.up.y, b.z + out.depth * job_.up.z}, SC_FLOOR, {}};
+    return true;
+  }
+
+  const AssetView& asset_;
+  const Surface& surface_;
+  const FloorJob& job_;
+  Double3 up_;
+  Memory memory_;
+};
+
+Status check(const FloorJob& job, Target& resolved, Surface& surface) {
+  const Status statuses[] = {check_skin(job.body.asset, job.body.pose, job.body.skin_table, surface),
+                             check_list(job.body.ignored_parts, 0, SC_FIELD_IGNORED_PARTS),
+                             check_list(job.scratch, 1, SC_FIELD_SCRATCH),
+                             check_list(job.penetrations, job.penetration_capacity, SC_FIELD_PENETRATIONS)};
+  for (const Status& status : statuses) {
+    if (status != SC_OK) {
+      return status;
+    }
+  }
+  if (job.scratch_words < sc_floor_scratch_words(job.body.asset)) {
+    return refuse(SC_TOO_SMALL, SC_FIELD_SCRATCH);
+  }
+  if (!(std::abs(length(to_double(job.up)) - 1) <= kUnitError) || !std::isfinite(job.height)) {
+    return refuse(SC_BAD_VALUE, SC_FIELD_FLOOR);
+  }
+  if (!(job.touch_depth >= 0) || !std::isfinite(job.touch_depth)) {
+    return refuse(SC_BAD_VALUE, SC_FIELD_TOUCH_DEPTH);
+  }
+  if (!resolve_target(job.target, resolved)) {
+    return refuse(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET);
+  }
+  const BodyRanges body(job.body);
+  return any_shared({range_of(Span<Penetration>{job.penetrations, job.penetration_capacity}),
+                     range_of(Span<std::uint64_t>{job.scratch, sc_floor_scratch_words(job.body.asset)})},
+                    {body.vertices, body.bones, body.morph_weights, body.skin_table, body.ignored_parts})
+             ? refuse(SC_ALIASED, SC_FIELD_OUTPUT)
+             : done();
+}
+
+}  // namespace
+}  // namespace spherechain
+
+using namespace spherechain;
+
+extern "C" {
+
+size_t sc_floor_scratch_words(const sc_asset* asset) noexcept {
+  return asset == nullptr || !has_skin(view_of(*asset)) ? 0 : floor_words(view_of(*asset));
+}
+
+sc_status sc_find_floor_penetrations(sc_floor_job* job) noexcept {
+  if (job == nullptr) {
+    return refuse(SC_NULL, SC_FIELD_NONE);
+  }
+  Target resolved{};
+  Surface surface;
+  const Status status = check(*job, resolved, surface);
+  return status == SC_OK ? Measurer(view_of(*job->body.asset), surface, *job).run(resolved, *job) : status;
+}
+
+}  // extern "C"
