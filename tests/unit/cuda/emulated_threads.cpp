@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The kernels' blocks by as many threads as they have, two blocks at the same time, with barriers where the kernel has
 // them: the thread sanitizer tells of two threads, or two blocks, that touch the same memory with nothing between.
-#include <barrier>
+#include <pthread.h>
+
 #include <cstring>
 #include <thread>
 #include <vector>
@@ -14,17 +15,30 @@ namespace {
 
 constexpr std::uint32_t kThreads = 64, kBlocksAtOnce = 2;
 
+// The standard library's barriers spin before they sleep: far too long where 128 threads share two cores.
+class Barrier {
+ public:
+  explicit Barrier(unsigned threads) { ::pthread_barrier_init(&barrier_, nullptr, threads); }
+  ~Barrier() { ::pthread_barrier_destroy(&barrier_); }
+  Barrier(const Barrier&) = delete;
+  Barrier& operator=(const Barrier&) = delete;
+  void arrive_and_wait() { ::pthread_barrier_wait(&barrier_); }
+
+ private:
+  pthread_barrier_t barrier_;
+};
+
 struct Barriers {
-  std::barrier<>* of_block;
-  std::barrier<>* of_warp;
+  Barrier* of_block;
+  Barrier* of_warp;
 
   void block() const { of_block->arrive_and_wait(); }
   void warp() const { of_warp->arrive_and_wait(); }
 };
 
 struct Team {
-  std::barrier<> block{kThreads};
-  std::barrier<> warps[kThreads / cuda::kLanes]{std::barrier<>{cuda::kLanes}, std::barrier<>{cuda::kLanes}};
+  Barrier block{kThreads};
+  Barrier warps[kThreads / cuda::kLanes]{Barrier{cuda::kLanes}, Barrier{cuda::kLanes}};
 };
 
 // `run`(which team, how the thread runs the steps of its block).
