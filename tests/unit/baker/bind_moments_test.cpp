@@ -17,7 +17,7 @@
 using namespace spherechain::baker;
 using spherechain::test::PoseKind;
 using Matrix34 = Eigen::Matrix<double, 3, 4>;
-using Pose = std::vector<Matrix34>;
+using BoneMatrices = std::vector<Matrix34>;
 
 namespace {
 
@@ -27,10 +27,10 @@ struct Moved {
   double spread;
 };
 
-std::vector<Moved> moved_by_tables(const spherechain::MomentTables& tables, const Pose& pose) {
+std::vector<Moved> moved_by_tables(const spherechain::MomentTables& tables, const BoneMatrices& pose) {
   const Eigen::Vector4d origin(double{tables.origin.x}, double{tables.origin.y}, double{tables.origin.z}, 1);
   const Vec3 reference = pose[tables.reference] * origin;
-  Pose relative = pose;
+  BoneMatrices relative = pose;
   for (std::size_t b = 0; b < pose.size(); ++b) relative[b].col(3) = pose[b] * origin - reference;
   std::vector<Moved> out(tables.spheres.size);
   std::size_t first_pair = 0, sphere = 0, first_bone = 0, pair = 0;
@@ -62,7 +62,7 @@ std::vector<Moved> moved_by_tables(const spherechain::MomentTables& tables, cons
 }
 
 // The same from the pivots of the skinned mesh. Vertices that no bone moves hang on the last.
-std::vector<Moved> moved_by_skin(const Bake& bake, const Pose& pose) {
+std::vector<Moved> moved_by_skin(const Bake& bake, const BoneMatrices& pose) {
   const Character& character = bake.character;
   const std::vector<VertexWeights>& weights = character.rig.bones.empty() ? bake.rig_weights : character.rig.weights;
   const auto vertex = [&](Index v) {
@@ -90,15 +90,15 @@ std::vector<Moved> moved_by_skin(const Bake& bake, const Pose& pose) {
   return out;
 }
 
-Pose random_pose(std::size_t bones, PoseKind kind, double size, std::mt19937& random) {
-  Pose out;
+BoneMatrices random_pose(std::size_t bones, PoseKind kind, double size, std::mt19937& random) {
+  BoneMatrices out;
   for (const auto& m : spherechain::test::random_pose(bones, kind, static_cast<float>(size), random)) {
     out.emplace_back(Eigen::Map<const Eigen::Matrix<float, 3, 4, Eigen::RowMajor>>(m.data()).cast<double>());
   }
   return out;
 }
 
-Pose rest_pose(std::size_t bones) { return Pose(bones, Matrix34::Identity()); }
+BoneMatrices rest_pose(std::size_t bones) { return BoneMatrices(bones, Matrix34::Identity()); }
 
 // What is left is the tables' rounding to single precision. Of the height; a spread's is its sphere's radius'.
 struct Difference {
@@ -151,7 +151,7 @@ TEST_CASE("in any pose of the bones the moments give the skinned pivots' centre 
     for (const PoseKind kind : spherechain::test::kPoseKinds) {
       Difference worst;
       for (int i = 0; i < 5; ++i) {
-        const Pose pose = random_pose(asset->bone_count(), kind, bake->regions.frame.height, random);
+        const BoneMatrices pose = random_pose(asset->bone_count(), kind, bake->regions.frame.height, random);
         const Difference now =
             difference(*bake, moved_by_tables(asset->moment_tables(), pose), moved_by_skin(*bake, pose));
         worst = {std::max(worst.center, now.center), std::max(worst.radius, now.radius)};
@@ -174,7 +174,7 @@ TEST_CASE("where vertices hang on no bone, moments have them on the rest bone" *
   const spherechain::MomentTables& tables = asset->moment_tables();
   CHECK(std::ranges::count(tables.bones, asset->bone_count() - 1) > 0);
   std::mt19937 random(8);
-  const Pose pose = random_pose(asset->bone_count(), PoseKind::kSheared, bake.regions.frame.height, random);
+  const BoneMatrices pose = random_pose(asset->bone_count(), PoseKind::kSheared, bake.regions.frame.height, random);
   const Difference off = difference(bake, moved_by_tables(tables, pose), moved_by_skin(bake, pose));
   CHECK(off.center < 1e-6);
   CHECK(off.radius < 1e-6);

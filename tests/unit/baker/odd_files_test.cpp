@@ -100,7 +100,7 @@ struct Case {
   std::function<void(Beast&)> change;
 };
 
-const float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinite = std::numeric_limits<float>::infinity();
+const float kNotANumber = std::numeric_limits<float>::quiet_NaN(), kInfinite = std::numeric_limits<float>::infinity();
 
 }  // namespace
 
@@ -143,10 +143,10 @@ TEST_CASE("odd files bake or say what is wrong with them") {
          const std::vector<std::uint32_t> once = b.corners;
          b.corners.insert(b.corners.end(), once.begin(), once.end());
        }},
-      {"a position that is no number", "not finite", [](Beast& b) { b.positions[7] = kNan; }},
+      {"a position that is no number", "not finite", [](Beast& b) { b.positions[7] = kNotANumber; }},
       {"a position without end", "not finite", [](Beast& b) { b.positions[7] = kInfinite; }},
-      {"a weight that is no number", "not finite", [](Beast& b) { b.weights[8] = kNan; }},
-      {"a bind pose that is no number", "not finite", [](Beast& b) { b.inverse_binds[3] = kNan; }},
+      {"a weight that is no number", "not finite", [](Beast& b) { b.weights[8] = kNotANumber; }},
+      {"a bind pose that is no number", "not finite", [](Beast& b) { b.inverse_binds[3] = kNotANumber; }},
       {"a bind pose without a size", "bakes", [](Beast& b) { std::fill_n(b.inverse_binds.begin() + 16, 11, 0.0F); }},
       {"a joint beyond the skin's", "follows joint 999", [](Beast& b) { b.joints[0] = 999; }},
       {"a vertex beyond the mesh's", "uses vertex", [](Beast& b) { b.corners[5] = 99999; }},
