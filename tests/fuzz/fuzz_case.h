@@ -123,5 +123,6 @@ void fuzz_detect(Case& c);
 void fuzz_crowd(Case& c);
 void fuzz_contacts(Case& c);
 void fuzz_penetrations(Case& c);
+void fuzz_bodies(Case& c);
 
 }  // namespace spherechain::test

@@ -18,10 +18,12 @@ struct Kind {
   const char* name;
   void (*fuzz)(Case& c);
 };
-constexpr Kind kKinds[] = {{"open", fuzz_open},       {"accessors", fuzz_accessors}, {"filter", fuzz_filter},
-                           {"prepare", fuzz_prepare}, {"character", fuzz_character}, {"refit", fuzz_refit},
-                           {"detect", fuzz_detect},   {"crowd", fuzz_crowd},         {"contacts", fuzz_contacts},
-                           {"penetrations", fuzz_penetrations}};
+constexpr Kind kKinds[] = {{"open", fuzz_open},           {"accessors", fuzz_accessors},
+                           {"filter", fuzz_filter},       {"prepare", fuzz_prepare},
+                           {"character", fuzz_character}, {"refit", fuzz_refit},
+                           {"detect", fuzz_detect},       {"crowd", fuzz_crowd},
+                           {"contacts", fuzz_contacts},   {"penetrations", fuzz_penetrations},
+                           {"bodies", fuzz_bodies}};
 constexpr std::size_t kKindCount = sizeof kKinds / sizeof kKinds[0];
 
 bool read_number(int argc, char** argv, int& i, const char* name, std::uint64_t& number) {

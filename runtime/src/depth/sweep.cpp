@@ -246,7 +246,8 @@ Volume Sweep::volume(const Double3& direction, double depth) {
         shadow.keep_above(0);
         shadow.keep_below(depth);
         if (shadow.count > 2) {
-          const double sign = (turn_of(seen_a) > 0) == (turn_of(seen_b) > 0) ? -1 : 1;
+          const double turns = (turn_of(seen_a) > 0) == (turn_of(seen_b) > 0) ? -1 : 1;
+          const double sign = turns * skins_.a.handedness * skins_.b.handedness;
           out.volume += sign * shadow.volume();
           out.area += sign * shadow.area();
           out.total += shadow.area();
