@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Goal P11 (docs/performance.md): exact contacts of two bodies that wrestle. Checks that all find the same, then times
-// them in turn.
+// Goal P11 (docs/performance.md): exact contacts of two bodies that wrestle, and of a crowd. Checks that all find the
+// same, then times them in turn.
 #include <fmt/format.h>
 #include <time.h>
 
 #include <CLI/CLI.hpp>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <exception>
 #include <functional>
@@ -15,6 +16,7 @@
 #include "simd/simd.h"
 #include "skin/skin_inputs.h"
 #include "spherechain/bodies.h"
+#include "spherechain/refit.h"
 #include "table.h"
 #include "truth/intersections.h"
 
@@ -131,6 +133,123 @@ class Wrestlers {
   std::vector<Frame> frames_;
 };
 
+// A thousand characters in the poses of the wrestlers, as dense as people stand: two a square metre.
+class Crowd {
+ public:
+  static constexpr std::size_t kCount = 1000;
+
+  explicit Crowd(const Wrestlers& bodies) : bodies_(bodies) {
+    const PosedCharacter& human = bodies.human();
+    const AssetInfo info = human.view().info();
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> turn(0, 6.28), off(-0.1, 0.1);
+    const double metre = 1 / double{info.metres_per_unit};
+    const baker::Vec3 up(double{info.up.x}, double{info.up.y}, double{info.up.z});
+    const baker::Vec3 left(double{info.left.x}, double{info.left.y}, double{info.left.z});
+    const baker::Vec3 forward = left.cross(up);
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const Frame& frame = bodies.frames()[random() % bodies.frames().size()];
+      const double x = (static_cast<double>(i % 32) + off(random)) * 0.7071 * metre;
+      const double z = (static_cast<double>(i / 32) + off(random)) * 0.7071 * metre;
+      const Eigen::AngleAxisd turned(turn(random), up);
+      std::vector<float> out = frame.bones[0];
+      const baker::Vec3 middle(double{out[3]}, double{out[7]}, double{out[11]});  // about where it stands
+      const baker::Vec3 level = middle - middle.dot(up) * up;
+      for (std::size_t b = 0; b < out.size(); b += 12) {
+        baker::Affine bone = baker::Affine::Identity();
+        for (Eigen::Index k = 0; k < 12; ++k) {
+          bone.matrix()(k / 4, k % 4) = double{out[b + static_cast<std::size_t>(k)]};
+        }
+        const baker::Affine placed =
+            Eigen::Translation3d(x * left + z * forward) * baker::Affine(turned) * Eigen::Translation3d(-level) * bone;
+        for (Eigen::Index k = 0; k < 12; ++k) {
+          out[b + static_cast<std::size_t>(k)] = static_cast<float>(placed.matrix()(k / 4, k % 4));
+        }
+      }
+      bones_.push_back(std::move(out));
+    }
+    spheres_.resize(kCount * human.sphere_count());
+    scene_.resize(kCount);
+    pairs_.resize(64 * kCount);
+    scratch_ = memory_for(std::max(sc_scene_scratch_words(kCount), sc_body_scratch_words(&human.asset, &human.asset)));
+    parts_.resize(human.view().part_count() * human.view().part_count());
+  }
+
+  // Refits all and finds the pairs with spheres that touch.
+  std::size_t find_by_spheres() {
+    const PosedCharacter& human = bodies_.human();
+    for (std::size_t i = 0; i < kCount; ++i) {
+      Sphere* const out = spheres_.data() + i * human.sphere_count();
+      RefitJob job;
+      job.asset = &human.asset;
+      job.pose = pose(i);
+      job.spheres = out;
+      job.sphere_capacity = human.sphere_count();
+      require(job.run(), "refit");
+      scene_[i].spheres = out;
+      scene_[i].sphere_count = human.sphere_count();
+    }
+    return meet();
+  }
+  // Bounds all, and finds the contacts of the skins of all whose boxes touch; gives how many pairs of bodies have some.
+  std::size_t find_contacts() {
+    for (std::size_t i = 0; i < kCount; ++i) {
+      scene_[i].spheres = nullptr;
+      scene_[i].sphere_count = 0;
+      const Body one = body(i);
+      require(sc_bound_body(&one, &scene_[i].box), "bounds");
+    }
+    boxes_touch = meet();
+    std::size_t with_contacts = 0;
+    for (std::size_t i = 0; i < boxes_touch; ++i) {
+      BodyContactJob job;
+      job.a = body(pairs_[i].a);
+      job.b = body(pairs_[i].b);
+      job.scratch = scratch_.data()->words;
+      job.scratch_words = 8 * scratch_.size();
+      job.parts = parts_.data();
+      job.part_capacity = parts_.size();
+      require(job.run(), "contacts in the crowd");
+      with_contacts += job.part_count > 0 ? 1 : 0;
+    }
+    return with_contacts;
+  }
+  std::size_t boxes_touch = 0;
+
+ private:
+  Pose pose(std::size_t i) const {
+    Pose out = bodies_.human().pose(0);
+    out.bones = bones_[i].data();
+    return out;
+  }
+  Body body(std::size_t i) const {
+    Body out;
+    out.asset = &bodies_.human().asset;
+    out.skin_table = bodies_.table();
+    out.pose = pose(i);
+    return out;
+  }
+  std::size_t meet() {
+    SceneJob job;
+    job.bodies = scene_.data();
+    job.body_count = kCount;
+    job.scratch = scratch_.data()->words;
+    job.scratch_words = 8 * scratch_.size();
+    job.pairs = pairs_.data();
+    job.pair_capacity = pairs_.size();
+    require(job.run(), "scene");
+    return job.pair_count;
+  }
+
+  const Wrestlers& bodies_;
+  std::vector<std::vector<float>> bones_;
+  std::vector<Sphere> spheres_;
+  std::vector<SceneBody> scene_;
+  std::vector<Pair> pairs_;
+  std::vector<PartContact> parts_;
+  Memory scratch_;
+};
+
 struct Contestant {
   std::string name;
   int passes;
@@ -152,7 +271,7 @@ struct Contestant {
 
 class Bench {
  public:
-  Bench(int frames, int passes) : bodies_(frames) {
+  Bench(int frames, int passes) : bodies_(frames), crowd_(bodies_) {
     const PosedCharacter& human = bodies_.human();
     const std::size_t parts = human.view().part_count();
     parts_.resize(parts * parts);
@@ -172,6 +291,14 @@ class Bench {
                                                         f.positions[1]);
                             }});
     time_all();
+    for (int pass = 0; pass < passes; ++pass) {
+      const double start = now();
+      by_spheres_ = crowd_.find_by_spheres();
+      const double middle = now();
+      with_contacts_ = crowd_.find_contacts();
+      crowd_times_[0].push_back(middle - start);
+      crowd_times_[1].push_back(now() - middle);
+    }
   }
 
   Table table() const {
@@ -190,6 +317,18 @@ class Bench {
                     "missing, 0 extra",
                     pairs)};
     for (const Contestant& c : contestants_) out.rows.push_back({"P11", c.name + ", mean", c.mean(), ""});
+    const auto times_of = [](std::vector<double> times) {
+      std::sort(times.begin(), times.end());
+      return Times{times[times.size() / 2], times[0]};
+    };
+    const Times by_spheres = times_of(crowd_times_[0]), by_skin = times_of(crowd_times_[1]);
+    out.rows.push_back({"P11", "crowd of 1,000: refit, spheres that touch", by_spheres,
+                        fmt::format("{} pairs of characters", by_spheres_)});
+    out.rows.push_back(
+        {"P11", "crowd of 1,000: bounds, skins that intersect", by_skin,
+         fmt::format("{} pairs of characters, of {} whose boxes touch", with_contacts_, crowd_.boxes_touch)});
+    out.goals.push_back({"P11 crowd of 1,000, spheres", "ms", by_spheres.median / 1e6, 2, false});
+    out.goals.push_back({"P11 crowd of 1,000, skins", "ms", by_skin.median / 1e6, 20, false});
     const auto median = [&](std::size_t i) { return contestants_[i].mean().median; };
     out.goals.push_back(
         {"P11 two bodies over the self-contact's mean", "x", median(2) / ((median(0) + median(1)) / 2), 1.5, false});
@@ -279,6 +418,9 @@ class Bench {
   }
 
   Wrestlers bodies_;
+  Crowd crowd_;
+  std::vector<double> crowd_times_[2];
+  std::size_t by_spheres_ = 0, with_contacts_ = 0;
   Memory scratch_;
   std::vector<PartContact> parts_;
   std::vector<TriangleContact> triangles_;

@@ -11,7 +11,7 @@
 namespace spherechain::test {
 namespace {
 
-constexpr std::size_t kBodyTriangles = 300;  // triangles: of more, all pairs take too long
+constexpr std::size_t kBodyTriangles = 100;  // triangles: of more, all pairs take too long
 constexpr std::size_t kBodyWords = std::size_t{1} << 17;
 constexpr std::size_t kBodyContacts = 60;
 
