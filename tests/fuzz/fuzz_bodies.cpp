@@ -250,7 +250,8 @@ void fuzz_scene(Case& c) {
     bodies[i] = {};
     bodies[i].layer = static_cast<std::uint32_t>(c.random.below(32));
     const auto x = static_cast<float>(c.random.below(20));
-    bodies[i].box = {{x, 0, 0}, {x + 2, 1, 1}};
+    bodies[i].low = {x, 0, 0};
+    bodies[i].high = {x + 2, 1, 1};
     if (c.random.one_in(2)) {
       bodies[i].sphere_count = c.random.below(150);
       Sphere* const spheres = c.arena.add<Sphere>(bodies[i].sphere_count);

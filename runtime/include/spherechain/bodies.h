@@ -12,17 +12,12 @@ typedef struct sc_body {
   const uint64_t* ignored_parts SC_ZERO; /* bit p: body part p meets nothing; null: all parts meet */
 } sc_body;
 
-/* Sides along the axes of the pose's space. */
-typedef struct sc_box {
-  sc_vec3 low, high;
-} sc_box;
-
 /* A character or a prop among those of an sc_scene_job. */
 typedef struct sc_scene_body {
   const sc_sphere* spheres SC_ZERO; /* refitted, in the scene's space; or null: the box counts */
   size_t sphere_count SC_ZERO;
-  sc_box box SC_ZERO;     /* without spheres: around the body, as sc_bound_body() has it; finite */
-  uint32_t layer SC_ZERO; /* below 32 */
+  sc_vec3 low SC_ZERO, high SC_ZERO; /* without spheres: a box around the body, as sc_bound_body() has it; finite */
+  uint32_t layer SC_ZERO;            /* below 32 */
 } sc_scene_body;
 
 /* Which of hundreds of characters and props may meet? All pairs of bodies with a sphere each that overlap; where one of
@@ -142,7 +137,7 @@ SPHERECHAIN_API size_t sc_floor_scratch_words(const sc_asset* asset) SC_NOEXCEPT
 
 /* A box that holds all of the body's skin for certain: from bones somewhat too large, and in about a microsecond; from
  * vertices alone exact. Reads asset, pose and skin_table. Errors as of sc_find_skin_contacts(). */
-SPHERECHAIN_API sc_status sc_bound_body(const sc_body* body, sc_box* box) SC_NOEXCEPT;
+SPHERECHAIN_API sc_status sc_bound_body(const sc_body* body, sc_vec3* low, sc_vec3* high) SC_NOEXCEPT;
 
 /* SC_OK; SC_OVERFLOW: the first pairs of the sorted list are written; SC_NULL, SC_MISALIGNED, SC_TOO_SMALL,
  * SC_BAD_VALUE, SC_ALIASED: nothing is written. */
@@ -159,7 +154,6 @@ inline sc_status sc_body_penetration_job::run() noexcept { return sc_measure_bod
 inline sc_status sc_floor_job::run() noexcept { return sc_find_floor_penetrations(this); }
 inline sc_status sc_scene_job::run() noexcept { return sc_find_meetings(this); }
 namespace spherechain {
-using Box = sc_box;
 using SceneBody = sc_scene_body;
 using SceneJob = sc_scene_job;
 using FloorJob = sc_floor_job;

@@ -23,10 +23,14 @@ struct SweptBox {
   std::uint32_t body;
 };
 
+struct Box {
+  Vec3 low, high;
+};
+
 // Around the spheres that can touch something: wider by more than a sphere's sides, or a sum of squares, are rounded.
 Box box_of(const SceneBody& body) {
   if (body.spheres == nullptr) {
-    return body.box;
+    return {body.low, body.high};
   }
   float low[3] = {FLT_MAX, FLT_MAX, FLT_MAX}, high[3] = {-FLT_MAX, -FLT_MAX, -FLT_MAX};
   for (std::size_t i = 0; i < body.sphere_count; ++i) {
@@ -173,7 +177,7 @@ Status check_bodies(const SceneJob& job) {
     if (spheres != SC_OK) {
       return spheres;
     }
-    const bool has_box = body.spheres != nullptr || (is_finite(body.box.low) && is_finite(body.box.high));
+    const bool has_box = body.spheres != nullptr || (is_finite(body.low) && is_finite(body.high));
     if (body.layer >= kLayers || !has_box) {
       return refuse(SC_BAD_VALUE, SC_FIELD_BODIES);
     }

@@ -73,7 +73,7 @@ sc_status sc_find_body_contacts(sc_body_contact_job* job) noexcept {
   ContactScene a = scene_of(asset_a, surface_a, job->a.pose, nullptr, memory);
   ContactScene b = scene_of(asset_b, surface_b, job->b.pose, nullptr, memory);
   a.first_only = job->spheres_only != 0;
-  set_reach(asset_a, a, asset_b, b, job->a.pose, job->b.pose, memory);
+  bound_bones_of_two(asset_a, a, asset_b, b, job->a.pose, job->b.pose, memory);
   PartTable parts;
   parts.take(memory, asset_a.part_count(), asset_b.part_count(), false);
   parts.clear();
@@ -86,8 +86,8 @@ sc_status sc_find_body_contacts(sc_body_contact_job* job) noexcept {
   return found;
 }
 
-sc_status sc_bound_body(const sc_body* body, sc_box* box) noexcept {
-  if (body == nullptr || box == nullptr) {
+sc_status sc_bound_body(const sc_body* body, sc_vec3* low, sc_vec3* high) noexcept {
+  if (body == nullptr || low == nullptr || high == nullptr) {
     return refuse(SC_NULL, body == nullptr ? SC_FIELD_NONE : SC_FIELD_OUTPUT);
   }
   Surface surface;
@@ -96,7 +96,8 @@ sc_status sc_bound_body(const sc_body* body, sc_box* box) noexcept {
     const Bounds3 bounds = body->pose.bones != nullptr
                                ? bound_bones(view_of(*body->asset), surface, body->pose, nullptr)
                                : bound_vertices(surface, body->pose);
-    *box = {{bounds.low[0], bounds.low[1], bounds.low[2]}, {bounds.high[0], bounds.high[1], bounds.high[2]}};
+    *low = {bounds.low[0], bounds.low[1], bounds.low[2]};
+    *high = {bounds.high[0], bounds.high[1], bounds.high[2]};
   }
   return status;
 }

@@ -239,31 +239,11 @@ HWY_INLINE void bound_once(const ContactScene& scene, std::size_t sphere) {
   }
 }
 
-// May the sphere's vertices, which its hull's bones move, be where the other body is?
-HWY_INLINE bool reaches_other(const ContactScene& scene, std::size_t sphere) {
-  const Hull& hull = scene.surface->hulls.data[sphere];
-  const HullBone* const bones = scene.surface->hull_bones.data + hull.first_bone;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    float low = FLT_MAX, high = -FLT_MAX;
-    for (std::size_t k = 0; k < hull.bone_count; ++k) {
-      const float* const box = scene.bone_boxes + 6 * std::size_t{bones[k].bone};
-      low = box[axis] < low ? box[axis] : low;
-      high = box[3 + axis] > high ? box[3 + axis] : high;
-    }
-    if (low > scene.reach_high[axis] || high < scene.reach_low[axis]) {
-      return false;
-    }
-  }
-  return true;
-}
-
 // Boxes of the spheres: by their hulls; else of those whose clusters are bounded, of all of them before this. Vectors
 // that are loaded right after their lanes were stored one by one have to wait.
 HWY_NOINLINE void bound_spheres(const ContactScene& scene) {
   for (std::size_t s = 0; s < scene.sphere_count; ++s) {
-    if (scene.bone_boxes != nullptr && !reaches_other(scene, s)) {
-      put_box(scene.spheres, s, {{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}});
-    } else if (scene.has_hulls) {
+    if (scene.has_hulls) {
       bound_hull(scene, s);
     } else if (scene.is_bounded[s] != 0) {
       unite_clusters(scene, s);
@@ -361,11 +341,74 @@ HWY_INLINE void bound(const ContactScene& scene) {
   bound_spheres(scene);
 }
 
+constexpr Box kEmptyBox{{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
+
+// A box around the boxes of a sphere's bones, of every sphere: its vertices are means of where those move them.
+HWY_NOINLINE void bound_by_bones(const ContactScene& scene) {
+  for (std::size_t s = 0; s < scene.sphere_count; ++s) {
+    const Hull& hull = scene.surface->hulls.data[s];
+    const HullBone* const bones = scene.surface->hull_bones.data + hull.first_bone;
+    Box box = kEmptyBox;
+    for (std::size_t k = 0; k < hull.bone_count; ++k) {
+      const float* const of_bone = scene.bone_boxes + 6 * std::size_t{bones[k].bone};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        box.low[axis] = of_bone[axis] < box.low[axis] ? of_bone[axis] : box.low[axis];
+        box.high[axis] = of_bone[3 + axis] > box.high[axis] ? of_bone[3 + axis] : box.high[axis];
+      }
+    }
+    put_box(scene.spheres, s, box);
+  }
+}
+
+// What all spheres' boxes have in common with that box, in a box.
+HWY_NOINLINE Box narrow(const ContactScene& scene, const Box& room) {
+  Box out = kEmptyBox;
+  for (std::size_t s = 0; s < scene.sphere_count; ++s) {
+    const Box box = box_at(scene.spheres, s);
+    if (box.touches(room)) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const float low = box.low[axis] > room.low[axis] ? box.low[axis] : room.low[axis];
+        const float high = box.high[axis] < room.high[axis] ? box.high[axis] : room.high[axis];
+        out.low[axis] = low < out.low[axis] ? low : out.low[axis];
+        out.high[axis] = high > out.high[axis] ? high : out.high[axis];
+      }
+    }
+  }
+  return out;
+}
+
+// Boxes of two bodies' spheres, where they may meet; empty ones of the others.
+HWY_NOINLINE void bound_two(const Bodies& bodies) {
+  const ContactScene* const scenes[] = {&bodies.a, &bodies.b};
+  Box room{{-FLT_MAX, -FLT_MAX, -FLT_MAX}, {FLT_MAX, FLT_MAX, FLT_MAX}};
+  for (const ContactScene* scene : scenes) {
+    bound_by_bones(*scene);
+    room = narrow(*scene, room);
+  }
+  for (const ContactScene* scene : scenes) {
+    room = narrow(*scene, room);
+  }
+  for (const ContactScene* scene : scenes) {
+    for (std::size_t s = 0; s < scene->sphere_count; ++s) {
+      if (box_at(scene->spheres, s).touches(room)) {
+        bound_hull(*scene, s);
+      } else {
+        put_box(scene->spheres, s, kEmptyBox);
+      }
+    }
+    room = narrow(*scene, room);
+  }
+}
+
 // All pairs of the scope; or of each sphere of one body with each of the other.
 HWY_NOINLINE void find_all(const Bodies& bodies, ContactCollector& collector) {
-  bound(bodies.a);
-  if (!bodies.are_one) {
-    bound(bodies.b);
+  if (bodies.a.bone_boxes != nullptr && bodies.b.bone_boxes != nullptr) {
+    bound_two(bodies);
+  } else {
+    bound(bodies.a);
+    if (!bodies.are_one) {
+      bound(bodies.b);
+    }
   }
   SpherePairs spheres;
   ClusterPairs clusters;
@@ -377,6 +420,9 @@ HWY_NOINLINE void find_all(const Bodies& bodies, ContactCollector& collector) {
     }
     if (bodies.b.neighbours) {
       list_within(bodies.b, b, clusters, collector);
+    }
+    if (!bodies.are_one && bodies.b.spheres.low[0][b] > bodies.b.spheres.high[0][b]) {
+      continue;
     }
     const BoxProbe probe(box_at(bodies.b.spheres, b));
     const std::size_t end = bodies.are_one ? b : bodies.a.sphere_count;

@@ -56,10 +56,9 @@ struct ContactScene {
   float* ball_columns[4] = {};               // around the clusters, by coordinates, the radius last
   std::uint8_t* is_group_bounded = nullptr;  // a group's of eight clusters
   BoneSize* bone_sizes = nullptr;
-  // Of one of two bodies that bones move: a bone's box in the pose, its low corner and its high one; and what the other
-  // body stays in. Null: spheres are bounded wherever they are.
+  // Of one of two bodies that bones move: a bone's box in the pose, its low corner and its high one. Null: spheres are
+  // bounded wherever they are.
   float* bone_boxes = nullptr;
-  float reach_low[3] = {}, reach_high[3] = {};
   // With hulls.
   float* columns = nullptr;       // of bone after bone four of four floats, the fourth the translation
   float* hulls = nullptr;         // of sphere after sphere the points' x, y and z in the pose

@@ -154,23 +154,16 @@ Bounds3 bound_vertices(const Surface& surface, const Pose& pose) {
   return all;
 }
 
-void set_reach(const AssetView& asset_a, ContactScene& a, const AssetView& asset_b, ContactScene& b, const Pose& pose_a,
-               const Pose& pose_b, WordMemory& memory) {
+void bound_bones_of_two(const AssetView& asset_a, ContactScene& a, const AssetView& asset_b, ContactScene& b,
+                        const Pose& pose_a, const Pose& pose_b, WordMemory& memory) {
   float *of_a = nullptr, *of_b = nullptr;
   memory.take(of_a, 6 * asset_a.bone_count());
   memory.take(of_b, 6 * asset_b.bone_count());
-  if (!a.has_hulls || !b.has_hulls || of_a == nullptr) {
-    return;
-  }
-  const Bounds3 box_a = bound_bones(asset_a, *a.surface, pose_a, of_a);
-  const Bounds3 box_b = bound_bones(asset_b, *b.surface, pose_b, of_b);
-  a.bone_boxes = of_a;
-  b.bone_boxes = of_b;
-  for (std::size_t i = 0; i < 3; ++i) {
-    a.reach_low[i] = box_b.low[i];
-    a.reach_high[i] = box_b.high[i];
-    b.reach_low[i] = box_a.low[i];
-    b.reach_high[i] = box_a.high[i];
+  if (a.has_hulls && b.has_hulls && of_a != nullptr) {
+    bound_bones(asset_a, *a.surface, pose_a, of_a);
+    bound_bones(asset_b, *b.surface, pose_b, of_b);
+    a.bone_boxes = of_a;
+    b.bone_boxes = of_b;
   }
 }
 
@@ -225,7 +218,7 @@ std::size_t body_scratch_words(const AssetView& a, const AssetView& b) {
   ContactScene scene;
   lay_out(a, memory, scene);
   lay_out(b, memory, scene);
-  set_reach(a, scene, b, scene, {}, {}, memory);
+  bound_bones_of_two(a, scene, b, scene, {}, {}, memory);
   PartTable().take(memory, a.part_count(), b.part_count(), false);
   return memory.used();
 }

@@ -37,9 +37,9 @@ struct Bounds3 {
 // floats: the low corner, then the high one.
 Bounds3 bound_bones(const AssetView& asset, const Surface& surface, const Pose& pose, float* boxes);
 Bounds3 bound_vertices(const Surface& surface, const Pose& pose);
-// Tells two bodies' scenes where the other is.
-void set_reach(const AssetView& asset_a, ContactScene& a, const AssetView& asset_b, ContactScene& b, const Pose& pose_a,
-               const Pose& pose_b, WordMemory& memory);
+// Of two bodies that both are moved by bones: for their scenes.
+void bound_bones_of_two(const AssetView& asset_a, ContactScene& a, const AssetView& asset_b, ContactScene& b,
+                        const Pose& pose_a, const Pose& pose_b, WordMemory& memory);
 
 // What a job reads of a body.
 struct BodyRanges {

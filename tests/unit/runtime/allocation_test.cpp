@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 #include "counting_new.h"
 #include "crowds.h"
 #include "jobs.h"
@@ -60,6 +62,31 @@ TEST_CASE("no job and no function but sc_character_create() allocates, on any ta
     contacts.sphere_capacity = touching.size();
     contacts.triangles = triangles.data();
     contacts.triangle_capacity = triangles.size();
+    BodyContactJob meeting;
+    std::vector<std::uint64_t> meeting_scratch(sc_body_scratch_words(&opened.asset, &opened.asset));
+    meeting.a.pose = meeting.b.pose = refit.pose;
+    meeting.a.skin_table = meeting.b.skin_table = skin_table.data();
+    meeting.scratch = meeting_scratch.data();
+    meeting.scratch_words = meeting_scratch.size();
+    meeting.triangles = triangles.data();
+    meeting.triangle_capacity = 1000;
+    BodyPenetrationJob measure;
+    std::vector<std::uint64_t> measure_scratch(sc_body_penetration_scratch_words(&opened.asset, &opened.asset, 1000));
+    measure.contacts = triangles.data();
+    measure.scratch = measure_scratch.data();
+    measure.scratch_words = measure_scratch.size();
+    FloorJob ground;
+    std::vector<std::uint64_t> ground_scratch(sc_floor_scratch_words(&opened.asset));
+    ground.up = {0, 1, 0};
+    ground.scratch = ground_scratch.data();
+    ground.scratch_words = ground_scratch.size();
+    SceneJob scene;
+    std::vector<SceneBody> scene_bodies(2);
+    std::vector<std::uint64_t> scene_scratch(sc_scene_scratch_words(2));
+    scene.bodies = scene_bodies.data();
+    scene.body_count = 2;
+    scene.scratch = scene_scratch.data();
+    scene.scratch_words = scene_scratch.size();
 
     const std::size_t before = allocation_count();
     Asset asset, closed;
@@ -76,12 +103,23 @@ TEST_CASE("no job and no function but sc_character_create() allocates, on any ta
     run(sc_bind_joints(&asset, joints.data(), bones, SC_ROWS_3X4, joint_of_bone.data(), bones, message, 160));
     run(sc_gather_bones(&asset, joint_of_bone.data(), &refit.pose, gathered.data()));
     const sc_status rest = sc_check_rest_pose(&asset, &refit.pose, message, 160);
+    meeting.a.asset = meeting.b.asset = &asset;
     for (const Target target : supported_targets()) {
       refit.target = detect.target = crowd.target = contacts.target = target;
       run(refit.run());
       run(detect.run());
       run(crowd.run());
       run(contacts.run());
+      meeting.target = measure.target = ground.target = target;
+      const sc_status met = meeting.run();
+      run(met == SC_OVERFLOW ? sc_status{SC_OK, SC_FIELD_NONE} : met);
+      measure.a = ground.body = meeting.a;
+      measure.b = meeting.b;
+      measure.contact_count = std::min<std::size_t>(meeting.triangle_count, 1000);
+      run(measure.run());
+      run(ground.run());
+      for (SceneBody& body : scene_bodies) run(sc_bound_body(&meeting.a, &body.low, &body.high));
+      run(scene.run());
     }
     refit.pose = {};
     refit.pose.vertices = tiny.rest.data();
@@ -98,6 +136,8 @@ TEST_CASE("no job and no function but sc_character_create() allocates, on any ta
     CHECK(detect.pair_count > 0);
     CHECK(crowd.pair_count > 0);
     CHECK(contacts.triangle_count > 0);
+    CHECK(measure.penetration_count > 0);
+    CHECK(scene.pair_count == 1);
   }
 }
 

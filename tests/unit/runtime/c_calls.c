@@ -97,6 +97,58 @@ static void call_skin(const sc_asset* asset, const sc_pose* pose, c_calls_result
   free(table);
 }
 
+static void call_bodies(const sc_asset* asset, const sc_pose* pose, c_calls_result* out) {
+  sc_body body = {0};
+  sc_body_contact_job find = {0};
+  sc_body_penetration_job measure = {0};
+  sc_floor_job floor = {0};
+  sc_scene_job scene = {0};
+  sc_scene_body bodies[2] = {{0}, {0}};
+  sc_triangle_contact* contacts;
+  uint64_t* table = words(sc_skin_table_words(asset));
+  OK(sc_prepare_skin(asset, table, sc_skin_table_words(asset)));
+  body.asset = asset;
+  body.pose = *pose;
+  body.skin_table = table;
+  EXPECT(sc_part_words(asset) == 1);
+  find.a = find.b = measure.a = measure.b = floor.body = body;
+  find.scratch_words = sc_body_scratch_words(asset, asset);
+  find.scratch = words(find.scratch_words);
+  OK(sc_find_body_contacts(&find));
+  out->body_triangle_count = find.triangle_count;
+  contacts = (sc_triangle_contact*)words(find.triangle_count * sizeof *contacts / 8 + 1);
+  find.triangles = contacts;
+  find.triangle_capacity = find.triangle_count;
+  OK(sc_find_body_contacts(&find));
+  measure.contacts = contacts;
+  measure.contact_count = find.triangle_count;
+  measure.quick = 1;
+  measure.scratch_words = sc_body_penetration_scratch_words(asset, asset, measure.contact_count);
+  measure.scratch = words(measure.scratch_words);
+  OK(sc_measure_body_penetrations(&measure));
+  out->body_part_count = measure.penetration_count;
+  floor.up.x = 1;
+  floor.height = 100; /* all of it is below */
+  floor.scratch_words = sc_floor_scratch_words(asset);
+  floor.scratch = words(floor.scratch_words);
+  OK(sc_find_floor_penetrations(&floor));
+  out->floor_part_count = floor.penetration_count;
+  OK(sc_bound_body(&body, &bodies[0].low, &bodies[0].high));
+  OK(sc_bound_body(&body, &bodies[1].low, &bodies[1].high));
+  scene.bodies = bodies;
+  scene.body_count = 2;
+  scene.scratch_words = sc_scene_scratch_words(2);
+  scene.scratch = words(scene.scratch_words);
+  OK(sc_find_meetings(&scene));
+  EXPECT(scene.pair_count == 1);
+  free(scene.scratch);
+  free(floor.scratch);
+  free(measure.scratch);
+  free(contacts);
+  free(find.scratch);
+  free(table);
+}
+
 static void call_character(const void* data, size_t size, const sc_asset* asset, const sc_pose* pose,
                            c_calls_result* out) {
   sc_character* character = NULL;
@@ -131,5 +183,6 @@ void c_call_all(const void* data, size_t size, const float* matrices, size_t bon
   call_accessors(&asset, rest, vertex_count, out);
   call_spheres(&asset, &pose, out);
   call_skin(&asset, &pose, out);
+  call_bodies(&asset, &pose, out);
   call_character(data, size, &asset, &pose, out);
 }

@@ -48,6 +48,14 @@ TEST_CASE("every function called from C99 gives what C++ gets") {
   CHECK(!contacts.triangles.empty());
   CHECK(same_bits({c->triangles, c->triangles + c->triangle_count}, contacts.triangles));
   CHECK(same_bits({c->parts, c->parts + c->part_count}, contacts.parts));
+
+  BodyContactJob bodies;
+  bodies.a.asset = bodies.b.asset = &opened.asset;
+  bodies.a.pose = bodies.b.pose = pose;
+  const SkinContacts with_itself = find_contacts(bodies);
+  CHECK(c->body_triangle_count == with_itself.triangles.size());
+  CHECK(c->body_part_count == with_itself.parts.size());
+  CHECK(c->floor_part_count > 0);
 }
 
 }  // namespace spherechain::test

@@ -28,7 +28,8 @@ struct Scene {
       SceneBody body;
       body.layer = static_cast<std::uint32_t>(random() % 3);
       if (random() % 4 == 0) {
-        body.box = {{x - 0.4F, y - 0.3F, z - 0.2F}, {x + 0.2F, y + 0.3F, z + 0.4F}};
+        body.low = {x - 0.4F, y - 0.3F, z - 0.2F};
+        body.high = {x + 0.2F, y + 0.3F, z + 0.4F};
       } else {
         body.spheres = spheres[i].data();
         body.sphere_count = spheres[i].size();
@@ -38,8 +39,12 @@ struct Scene {
   }
 };
 
+struct Box {
+  Vec3 low, high;
+};
+
 Box box_of(const SceneBody& body) {
-  if (body.spheres == nullptr) return body.box;
+  if (body.spheres == nullptr) return {body.low, body.high};
   Box box{{HUGE_VALF, HUGE_VALF, HUGE_VALF}, {-HUGE_VALF, -HUGE_VALF, -HUGE_VALF}};
   for (std::size_t i = 0; i < body.sphere_count; ++i) {
     const Sphere& s = body.spheres[i];
@@ -162,7 +167,7 @@ TEST_CASE("a scene that is not sound is refused, and nothing is written") {
   CHECK(refused([](SceneJob&, Bodies& of) {
           of[2].spheres = nullptr;
           of[2].sphere_count = 0;
-          of[2].box.high.y = HUGE_VALF;
+          of[2].high.y = HUGE_VALF;
         }) == Status{SC_BAD_VALUE, SC_FIELD_BODIES});
   std::vector<std::uint32_t> layers(32, 0);
   layers[4] = 1U << 3;
