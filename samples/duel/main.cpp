@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+// duel ASSET.sphc MODEL.glb: two fighters of one model play its clip face to face, half a clip apart. Who hits whom,
+// where and how deep? And whose foot goes through the floor?
+#include <algorithm>
+#include <cstdio>
+#include <set>
+#include <stdexcept>
+#include <string>
+
+#include "gltf_pose.h"
+#include "spherechain/spherechain.h"
+
+using namespace spherechain;
+
+namespace {
+
+constexpr double kFrame = 1.0 / 30;
+constexpr float kDistance = 0.3F;  // of the height, from one fighter's origin to the other's
+
+void check(Status status, const char* what) {
+  if (status != SC_OK) {
+    throw std::runtime_error(std::string(what) + ": " + sc_field_name(status.field) + ": " + sc_code_text(status.code));
+  }
+}
+
+// What all fighters of a model share.
+struct Model {
+  std::vector<std::uint64_t> bytes;  // the file's, aligned for the asset
+  Asset asset;
+  AssetInfo info{};
+  std::vector<std::uint64_t> skin_table;
+  std::vector<std::uint32_t> joint_of_bone;
+  const samples::GltfCharacter& clips;
+
+  Model(const std::vector<char>& file, const samples::GltfCharacter& character)
+      : bytes(file.size() / 8 + 1), clips(character) {
+    char message[256];
+    std::copy(file.begin(), file.end(), reinterpret_cast<char*>(bytes.data()));
+    check(sc_asset_open(&asset, SC_ABI_VERSION, bytes.data(), file.size(), message, sizeof message), message);
+    info = sc_asset_get_info(&asset);
+    skin_table.resize(sc_skin_table_words(&asset));
+    check(sc_prepare_skin(&asset, skin_table.data(), skin_table.size()), "the asset's skin");
+    joint_of_bone.resize(info.bone_count);
+    const std::vector<Bone> joints = clips.joints();
+    check(sc_bind_joints(&asset, joints.data(), joints.size(), SC_COLUMNS_4X4, joint_of_bone.data(), info.bone_count,
+                         message, sizeof message),
+          message);
+  }
+};
+
+class Fighter {
+ public:
+  // Turned half around the model's own upward axis, or not, and moved along its forward axis.
+  Fighter(const Model& model, bool turned, float forward) : model_(model), bones_(12 * model.info.bone_count) {
+    const Vec3 up = model.info.up, way = model.info.forward;
+    const float u[3] = {up.x, up.y, up.z}, w[3] = {way.x, way.y, way.z};
+    for (std::size_t row = 0; row < 3; ++row) {
+      for (std::size_t column = 0; column < 3; ++column) {
+        const float same = row == column ? 1.0F : 0.0F;
+        place_[row][column] = turned ? 2 * u[row] * u[column] - same : same;
+      }
+      place_[row][3] = forward * w[row];
+    }
+    body.asset = &model.asset;
+    body.skin_table = model.skin_table.data();
+    body.pose.bones = bones_.data();
+    body.pose.bone_count = model.info.bone_count;
+    body.pose.bone_layout = SC_ROWS_3X4;
+  }
+  Fighter(const Fighter&) = delete;  // the body points into this
+
+  void stand(double seconds) {
+    const samples::Palette palette = model_.clips.palette(0, seconds);
+    const Pose pose = samples::pose_of(palette);
+    check(sc_gather_bones(&model_.asset, model_.joint_of_bone.data(), &pose, bones_.data()), "the palette");
+    for (float* bone = bones_.data(); bone < bones_.data() + bones_.size(); bone += 12) {
+      float out[12];
+      for (std::size_t i = 0; i < 12; ++i) {
+        const std::size_t row = i / 4, column = i % 4;
+        out[i] = column == 3 ? place_[row][3] : 0;
+        for (std::size_t k = 0; k < 3; ++k) out[i] += place_[row][k] * bone[4 * k + column];
+      }
+      std::copy(out, out + 12, bone);
+    }
+  }
+
+  Body body;
+
+ private:
+  const Model& model_;
+  std::vector<float> bones_;
+  float place_[3][4] = {};
+};
+
+class Referee {
+ public:
+  explicit Referee(const Model& model)
+      : model_(model),
+        scratch_(std::max({sc_body_scratch_words(&model.asset, &model.asset), sc_floor_scratch_words(&model.asset),
+                           sc_body_penetration_scratch_words(&model.asset, &model.asset, kContacts)})),
+        contacts_(kContacts),
+        found_(model.info.part_count * model.info.part_count) {}
+
+  // Prints the hits that are new in this frame.
+  void watch(std::size_t frame, const Fighter& red, const Fighter& blue) {
+    std::set<Pair> now;
+    for (const Penetration& hit : measure(red.body, blue.body)) {
+      const Pair parts{hit.part_a, hit.part_b};
+      if (hit.kind < SC_CLASS_DEEP_FOLD) continue;
+      now.insert(parts);
+      if (last_.count(parts) > 0) continue;
+      ++hits;
+      const Vec3 at = hit.deepest_a.position;
+      std::printf("frame %zu: red's %s meets blue's %s at (%.2f, %.2f, %.2f), %.0f mm deep\n", frame, name(hit.part_a),
+                  name(hit.part_b), double{at.x}, double{at.y}, double{at.z},
+                  1000 * double{hit.depth * model_.info.metres_per_unit});
+    }
+    last_ = now;
+  }
+
+  // How far a fighter is below the floor at most, in metres.
+  double below_floor(const Fighter& fighter) {
+    FloorJob job;
+    job.body = fighter.body;
+    job.up = model_.info.up;
+    job.scratch = scratch_.data();
+    job.scratch_words = scratch_.size();
+    job.penetrations = found_.data();
+    job.penetration_capacity = found_.size();
+    check(job.run(), "the floor");
+    float deepest = 0;
+    for (std::size_t i = 0; i < job.penetration_count; ++i) deepest = std::max(deepest, found_[i].depth);
+    return double{deepest * model_.info.metres_per_unit};
+  }
+
+  std::size_t hits = 0;
+
+ private:
+  static constexpr std::size_t kContacts = 1 << 16;
+
+  std::vector<Penetration> measure(const Body& a, const Body& b) {
+    BodyContactJob find;
+    find.a = a;
+    find.b = b;
+    find.scratch = scratch_.data();
+    find.scratch_words = scratch_.size();
+    find.triangles = contacts_.data();
+    find.triangle_capacity = contacts_.size();
+    check(find.run(), "contacts");
+    BodyPenetrationJob job;
+    job.a = a;
+    job.b = b;
+    job.contacts = contacts_.data();
+    job.contact_count = find.triangle_count;
+    job.scratch = scratch_.data();
+    job.scratch_words = scratch_.size();
+    job.penetrations = found_.data();
+    job.penetration_capacity = found_.size();
+    check(job.run(), "penetrations");
+    return {found_.begin(), found_.begin() + static_cast<std::ptrdiff_t>(job.penetration_count)};
+  }
+  const char* name(std::uint32_t part) const { return sc_asset_part(&model_.asset, part).name; }
+
+  const Model& model_;
+  std::vector<std::uint64_t> scratch_;
+  std::vector<TriangleContact> contacts_;
+  std::vector<Penetration> found_;
+  std::set<Pair> last_;
+};
+
+void fight(const std::vector<char>& file, const samples::GltfCharacter& clips) {
+  const Model model(file, clips);
+  Fighter red(model, false, 0), blue(model, true, kDistance * model.info.height);
+  Referee referee(model);
+  const double duration = clips.duration(0);
+  std::size_t frames = 0;
+  double deepest = 0;
+  for (double now = 0; now <= duration; now += kFrame, ++frames) {
+    red.stand(now);
+    blue.stand(now < duration / 2 ? now + duration / 2 : now - duration / 2);
+    referee.watch(frames, red, blue);
+    deepest = std::max({deepest, referee.below_floor(red), referee.below_floor(blue)});
+  }
+  std::printf("%zu frames, %zu hits; below the floor by %.0f mm at most\n", frames, referee.hits, 1000 * deepest);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3) {
+    std::fputs("usage: duel ASSET.sphc MODEL.glb\n", stderr);
+    return 2;
+  }
+  try {
+    const std::vector<char> file = samples::read_file(argv[1]);
+    fight(file, samples::GltfCharacter(argv[2]));
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "duel: error: %s\n", error.what());
+    return 3;
+  }
+  return 0;
+}
