@@ -67,8 +67,8 @@ typedef struct sc_body_contact_job {
 
 /* Measures two bodies' contacts: fill a and b as in the sc_body_contact_job that found `contacts`, and pass its whole
  * list of triangles. What an sc_penetration_job says holds here, too. part_a is a part of body a; the direction moves
- * the part of body b. Classes are SC_CLASS_SHELL (most of it is hidden), SC_CLASS_TOUCH and SC_CLASS_PENETRATION;
- * lengths compare with the lower of the two assets' heights.
+ * the part of body b. Classes are SC_CLASS_SHELL (most of it is hidden), SC_CLASS_TOUCH and SC_CLASS_PENETRATION. They
+ * compare with the unit and the height of body a's asset: of a character and a prop, a is the character.
  *
  * Allocates nothing, takes no lock. Jobs on other outputs and scratch memory may run at the same time. */
 typedef struct sc_body_penetration_job {

@@ -60,7 +60,7 @@ class Measurer {
         surface_a_(*in.a.surface),
         surface_b_(*in.b.surface),
         metre_(1 / double{in.a.asset->info().metres_per_unit}),
-        height_(std::min(double{in.a.asset->info().height}, double{in.b.asset->info().height})),
+        height_(double{in.a.asset->info().height}),
         memory_(in.are_one),
         sweep_(memory_.skins, in.rule, std::min(kGapMetres * metre_, kGapMax * height_)) {
     memory_.own.surface = in.a.surface;
