@@ -84,8 +84,7 @@ struct SphereList {
   }
 };
 
-bool spheres_meet(const SceneBody& a, const SceneBody& b) {
-  const Box box_a = box_of(a), box_b = box_of(b);
+bool spheres_meet(const SceneBody& a, const Box& box_a, const SceneBody& b, const Box& box_b) {
   SphereList of_a, of_b;
   for (std::size_t i = 0; i < a.sphere_count;) {
     i = of_a.fill(a, i, box_b);
@@ -112,7 +111,7 @@ class Finder {
       for (const SweptBox* other = one + 1; other != end && other->low[0] <= one->high[0]; ++other) {
         if (one->low[1] <= other->high[1] && other->low[1] <= one->high[1] && one->low[2] <= other->high[2] &&
             other->low[2] <= one->high[2]) {
-          decide(one->body, other->body);
+          decide(*one, *other);
         }
       }
     }
@@ -138,18 +137,28 @@ class Finder {
     const auto spread = [&](std::size_t k) {
       return squares[k] - sums[k] * sums[k] / static_cast<double>(job_.body_count);
     };
-    const std::size_t last = spread(2) > spread(1) ? 2 : 1, axis = spread(last) > spread(0) ? last : 0;
-    for (std::size_t i = 0; i < job_.body_count && axis != 0; ++i) {
-      std::swap(boxes_[i].low[0], boxes_[i].low[axis]);
-      std::swap(boxes_[i].high[0], boxes_[i].high[axis]);
+    const std::size_t last = spread(2) > spread(1) ? 2 : 1;
+    axis_ = spread(last) > spread(0) ? last : 0;
+    for (std::size_t i = 0; i < job_.body_count; ++i) {
+      std::swap(boxes_[i].low[0], boxes_[i].low[axis_]);
+      std::swap(boxes_[i].high[0], boxes_[i].high[axis_]);
     }
     std::sort(boxes_, boxes_ + job_.body_count, [](const SweptBox& l, const SweptBox& r) {
       return l.low[0] < r.low[0] || (l.low[0] == r.low[0] && l.body < r.body);
     });
   }
 
-  void decide(std::uint32_t one, std::uint32_t other) {
-    const Pair pair{std::min(one, other), std::max(one, other)};
+  // With x, y and z in their places again.
+  Box box_in(const SweptBox& swept) const {
+    SweptBox out = swept;
+    std::swap(out.low[0], out.low[axis_]);
+    std::swap(out.high[0], out.high[axis_]);
+    return {{out.low[0], out.low[1], out.low[2]}, {out.high[0], out.high[1], out.high[2]}};
+  }
+
+  void decide(const SweptBox& one, const SweptBox& other) {
+    const SweptBox &first = one.body < other.body ? one : other, &second = one.body < other.body ? other : one;
+    const Pair pair{first.body, second.body};
     const SceneBody &a = job_.bodies[pair.a], &b = job_.bodies[pair.b];
     if (job_.layers != nullptr && (job_.layers[a.layer] >> b.layer & 1) == 0) {
       return;
@@ -158,13 +167,14 @@ class Finder {
                            [](const Pair& l, const Pair& r) { return l < r; })) {
       return;
     }
-    if (a.spheres == nullptr || b.spheres == nullptr || spheres_meet(a, b)) {
+    if (a.spheres == nullptr || b.spheres == nullptr || spheres_meet(a, box_in(first), b, box_in(second))) {
       pairs_.add(pair);
     }
   }
 
   const SceneJob& job_;
   SweptBox* boxes_;
+  std::size_t axis_ = 0;  // that is swept: its sides are the boxes' first
   LeastEntries<Pair> pairs_;
 };
 
