@@ -4,7 +4,6 @@
 // exact. Pairs of clusters are listed, and decided together: loaded, skinned or copied, those that still seem to touch
 // along the axes, their diagonals and the line between them, and paired triangle by triangle. Which candidates come out
 // may differ between targets, but none that intersects is ever missing.
-#include <cfloat>
 #include <cstring>
 
 #include "pairs/pair_bits.h"
@@ -17,6 +16,7 @@
 #define HWY_TARGET_INCLUDE "skin/contacts_kernel.cpp"
 #include "simd/highway.h"
 #include "skin/blocks.h"
+#include "skin/bounds_of_two.h"
 #include "skin/hulls.h"
 #include "skin/single_precision.h"
 
@@ -339,65 +339,6 @@ HWY_INLINE void bound(const ContactScene& scene) {
     bound_clusters(scene, 0, scene.sphere_count);
   }
   bound_spheres(scene);
-}
-
-constexpr Box kEmptyBox{{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
-
-// A box around the boxes of a sphere's bones, of every sphere: its vertices are means of where those move them.
-HWY_NOINLINE void bound_by_bones(const ContactScene& scene) {
-  for (std::size_t s = 0; s < scene.sphere_count; ++s) {
-    const Hull& hull = scene.surface->hulls.data[s];
-    const HullBone* const bones = scene.surface->hull_bones.data + hull.first_bone;
-    Box box = kEmptyBox;
-    for (std::size_t k = 0; k < hull.bone_count; ++k) {
-      const float* const of_bone = scene.bone_boxes + 6 * std::size_t{bones[k].bone};
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        box.low[axis] = of_bone[axis] < box.low[axis] ? of_bone[axis] : box.low[axis];
-        box.high[axis] = of_bone[3 + axis] > box.high[axis] ? of_bone[3 + axis] : box.high[axis];
-      }
-    }
-    put_box(scene.spheres, s, box);
-  }
-}
-
-// What all spheres' boxes have in common with that box, in a box.
-HWY_NOINLINE Box narrow(const ContactScene& scene, const Box& room) {
-  Box out = kEmptyBox;
-  for (std::size_t s = 0; s < scene.sphere_count; ++s) {
-    const Box box = box_at(scene.spheres, s);
-    if (box.touches(room)) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const float low = box.low[axis] > room.low[axis] ? box.low[axis] : room.low[axis];
-        const float high = box.high[axis] < room.high[axis] ? box.high[axis] : room.high[axis];
-        out.low[axis] = low < out.low[axis] ? low : out.low[axis];
-        out.high[axis] = high > out.high[axis] ? high : out.high[axis];
-      }
-    }
-  }
-  return out;
-}
-
-// Boxes of two bodies' spheres, where they may meet; empty ones of the others.
-HWY_NOINLINE void bound_two(const Bodies& bodies) {
-  const ContactScene* const scenes[] = {&bodies.a, &bodies.b};
-  Box room{{-FLT_MAX, -FLT_MAX, -FLT_MAX}, {FLT_MAX, FLT_MAX, FLT_MAX}};
-  for (const ContactScene* scene : scenes) {
-    bound_by_bones(*scene);
-    room = narrow(*scene, room);
-  }
-  for (const ContactScene* scene : scenes) {
-    room = narrow(*scene, room);
-  }
-  for (const ContactScene* scene : scenes) {
-    for (std::size_t s = 0; s < scene->sphere_count; ++s) {
-      if (box_at(scene->spheres, s).touches(room)) {
-        bound_hull(*scene, s);
-      } else {
-        put_box(scene->spheres, s, kEmptyBox);
-      }
-    }
-    room = narrow(*scene, room);
-  }
 }
 
 // All pairs of the scope; or of each sphere of one body with each of the other.

@@ -17,7 +17,8 @@ typedef struct c_calls_result {
   size_t part_count;
   sc_crowd_pair crowd_pairs[C_CALLS_ROOM];
   size_t crowd_pair_count;
-  size_t body_triangle_count, body_part_count, floor_part_count; /* of the body and itself; of the body below a high floor */
+  size_t body_triangle_count, body_part_count; /* of the body and itself */
+  size_t floor_part_count;                     /* below a floor that is high */
 } c_calls_result;
 
 #if defined(__cplusplus)

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// Where may two bodies meet that bones move? Boxes of their spheres there; empty ones of all other spheres.
+#include "simd/highway.h"
+
+#if defined(SPHERECHAIN_SKIN_BOUNDS_OF_TWO_H) == defined(HWY_TARGET_TOGGLE)  // once a target
+#ifdef SPHERECHAIN_SKIN_BOUNDS_OF_TWO_H
+#undef SPHERECHAIN_SKIN_BOUNDS_OF_TWO_H
+#else
+#define SPHERECHAIN_SKIN_BOUNDS_OF_TWO_H
+#endif
+
+#include <cfloat>
+
+#include "skin/hulls.h"
+#include "skin/scene.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace spherechain {
+namespace HWY_NAMESPACE {
+
+constexpr Box kEmptyBox{{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
+
+// A box around the boxes of a sphere's bones, of every sphere: its vertices are means of where those move them.
+HWY_NOINLINE void bound_by_bones(const ContactScene& scene) {
+  for (std::size_t s = 0; s < scene.sphere_count; ++s) {
+    const Hull& hull = scene.surface->hulls.data[s];
+    const HullBone* const bones = scene.surface->hull_bones.data + hull.first_bone;
+    Box box = kEmptyBox;
+    for (std::size_t k = 0; k < hull.bone_count; ++k) {
+      const float* const of_bone = scene.bone_boxes + 6 * std::size_t{bones[k].bone};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        box.low[axis] = of_bone[axis] < box.low[axis] ? of_bone[axis] : box.low[axis];
+        box.high[axis] = of_bone[3 + axis] > box.high[axis] ? of_bone[3 + axis] : box.high[axis];
+      }
+    }
+    put_box(scene.spheres, s, box);
+  }
+}
+
+// What all spheres' boxes have in common with that box, in a box.
+HWY_NOINLINE Box narrow(const ContactScene& scene, const Box& room) {
+  Box out = kEmptyBox;
+  for (std::size_t s = 0; s < scene.sphere_count; ++s) {
+    const Box box = box_at(scene.spheres, s);
+    if (box.touches(room)) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const float low = box.low[axis] > room.low[axis] ? box.low[axis] : room.low[axis];
+        const float high = box.high[axis] < room.high[axis] ? box.high[axis] : room.high[axis];
+        out.low[axis] = low < out.low[axis] ? low : out.low[axis];
+        out.high[axis] = high > out.high[axis] ? high : out.high[axis];
+      }
+    }
+  }
+  return out;
+}
+
+HWY_NOINLINE void bound_two(const Bodies& bodies) {
+  const ContactScene* const scenes[] = {&bodies.a, &bodies.b};
+  Box room{{-FLT_MAX, -FLT_MAX, -FLT_MAX}, {FLT_MAX, FLT_MAX, FLT_MAX}};
+  for (const ContactScene* scene : scenes) {
+    bound_by_bones(*scene);
+    room = narrow(*scene, room);
+  }
+  for (const ContactScene* scene : scenes) {
+    room = narrow(*scene, room);
+  }
+  for (const ContactScene* scene : scenes) {
+    for (std::size_t s = 0; s < scene->sphere_count; ++s) {
+      if (box_at(scene->spheres, s).touches(room)) {
+        bound_hull(*scene, s);
+      } else {
+        put_box(scene->spheres, s, kEmptyBox);
+      }
+    }
+    room = narrow(*scene, room);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace spherechain
+HWY_AFTER_NAMESPACE();
+
+#endif
