@@ -205,3 +205,27 @@ TEST_CASE("moved along the way out, a part of body b no longer meets the part of
   }
   CHECK(measured > 15);
 }
+
+TEST_CASE("as two bodies go apart their contacts are CGAL's to the last few") {
+  std::mt19937 random(28);
+  std::size_t few = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Two two(random);
+    std::size_t left = two.expected.size();
+    for (int step = 1; step <= 12 && left > 0; ++step) {
+      CAPTURE(i);
+      CAPTURE(step);
+      const float way = 0.06F * static_cast<float>(step);
+      Matrix move{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+      move[static_cast<std::size_t>(3 + 4 * (i % 3))] = i % 2 == 0 ? way : -way;
+      MovingHuman::Frame b = two.b;
+      b.palette = placed(move, b.palette);
+      b = skinned(b);
+      const auto expected = baker::find_intersections(truth_surface(), two.a.vertices, truth_surface(), b.vertices);
+      CHECK(triangle_pairs(met(meeting_of(bones_of(two.a.palette), bones_of(b.palette)))) == expected);
+      left = expected.size();
+      few += !expected.empty() && expected.size() < 60 ? 1 : 0;
+    }
+  }
+  CHECK(few > 5);
+}
