@@ -168,7 +168,8 @@ TEST_CASE("parts and spheres sum up two bodies' triangles; parts that a body ign
   CHECK(left_out > 100);
 }
 
-TEST_CASE("moved along the way out, a part of body b no longer meets the part of body a; nine tenths of it do not do") {
+TEST_CASE("moved along the way out, a part of body b no longer meets the part of body a; nine tenths of it do not do" *
+          doctest::test_suite("long runs")) {
   std::mt19937 random(27);
   std::size_t measured = 0;
   for (int i = 0; i < 24; ++i) {
@@ -206,7 +207,7 @@ TEST_CASE("moved along the way out, a part of body b no longer meets the part of
   CHECK(measured > 15);
 }
 
-TEST_CASE("as two bodies go apart their contacts are CGAL's to the last few") {
+TEST_CASE("as two bodies go apart their contacts are CGAL's to the last few" * doctest::test_suite("long runs")) {
   std::mt19937 random(28);
   std::size_t few = 0;
   for (int i = 0; i < 60; ++i) {
