@@ -149,15 +149,6 @@ void fuzz_body_contacts(Case& c) {
   }
 }
 
-void make_comparable(Penetration& one) {
-  make_one_nan(&one.depth, 4);
-  make_one_nan(&one.volume, 3);
-  for (SkinPoint* point : {&one.deepest_a, &one.deepest_b}) {
-    make_one_nan(&point->position.x, 3);
-    make_one_nan(point->weights, 3);
-  }
-}
-
 // Runs a job that gives penetrations.
 template <typename Job>
 void run_measure(Case& c, Job& job, const Target& other) {

@@ -112,6 +112,8 @@ Status run_twice(Case& c, const Call& call);
 // NaNs of all kinds are one, for which of them it is depends on the machine.
 void make_one_nan(float* figures, std::size_t count);
 
+void make_comparable(Penetration& one);
+
 // Each makes one call and says in c.wrong what went wrong.
 void fuzz_open(Case& c);
 void fuzz_accessors(Case& c);

@@ -39,36 +39,46 @@ void draw_contacts(Case& c, PenetrationJob& job, const Surface& surface) {
 
 Ways ways_of(Case& c, PenetrationJob& job, Target& other) {
   const std::size_t words = job.scratch_words;
-  Ways ways = {[&] { job.skin_table = nullptr, c.spoil(SC_NULL, SC_FIELD_SKIN_TABLE); },
-               [&] { job.scratch = nullptr, c.spoil(SC_NULL, SC_FIELD_SCRATCH); },
-               [&, words] { job.scratch_words = c.random.up_to(words - 1), c.spoil(SC_TOO_SMALL, SC_FIELD_SCRATCH); },
-               [&] { job.penetrations = nullptr, job.penetration_capacity = 1, c.spoil(SC_NULL, SC_FIELD_PENETRATIONS); },
-               [&] { job.previous = nullptr, job.previous_count = 1, c.spoil(SC_NULL, SC_FIELD_PREVIOUS); },
-               [&] { job.touch_depth = -1, c.spoil(SC_BAD_VALUE, SC_FIELD_TOUCH_DEPTH); },
-               [&] { job.touch_depth = NAN, c.spoil(SC_BAD_VALUE, SC_FIELD_TOUCH_DEPTH); },
-               [&] { job.scope = draw_none<Scope>(c, 3), c.spoil(SC_BAD_VALUE, SC_FIELD_SCOPE); },
-               [&] { other = draw_none<Target>(c, 7), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
-               [&] {
-                 if (job.contact_count > 0) {
-                   const_cast<TriangleContact*>(job.contacts)->triangle_b = 0xFFFFFFFFU;
-                   c.spoil(SC_BAD_VALUE, SC_FIELD_CONTACTS);
-                 }
-               },
-               [&] {
-                 if (job.penetration_capacity > 0 &&
-                     put_over(c, job.penetrations, bytes_of(job.scratch, job.scratch_words))) {
-                   c.spoil(SC_ALIASED, SC_FIELD_OUTPUT);
-                 }
-               }};
+  Ways ways = {
+      [&] { job.skin_table = nullptr, c.spoil(SC_NULL, SC_FIELD_SKIN_TABLE); },
+      [&] { job.scratch = nullptr, c.spoil(SC_NULL, SC_FIELD_SCRATCH); },
+      [&, words] { job.scratch_words = c.random.up_to(words - 1), c.spoil(SC_TOO_SMALL, SC_FIELD_SCRATCH); },
+      [&] { job.penetrations = nullptr, job.penetration_capacity = 1, c.spoil(SC_NULL, SC_FIELD_PENETRATIONS); },
+      [&] { job.previous = nullptr, job.previous_count = 1, c.spoil(SC_NULL, SC_FIELD_PREVIOUS); },
+      [&] { job.touch_depth = -1, c.spoil(SC_BAD_VALUE, SC_FIELD_TOUCH_DEPTH); },
+      [&] { job.touch_depth = NAN, c.spoil(SC_BAD_VALUE, SC_FIELD_TOUCH_DEPTH); },
+      [&] { job.scope = draw_none<Scope>(c, 3), c.spoil(SC_BAD_VALUE, SC_FIELD_SCOPE); },
+      [&] { other = draw_none<Target>(c, 7), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
+      [&] {
+        if (job.contact_count > 0) {
+          const_cast<TriangleContact*>(job.contacts)->triangle_b = 0xFFFFFFFFU;
+          c.spoil(SC_BAD_VALUE, SC_FIELD_CONTACTS);
+        }
+      },
+      [&] {
+        if (job.penetration_capacity > 0 && put_over(c, job.penetrations, bytes_of(job.scratch, job.scratch_words))) {
+          c.spoil(SC_ALIASED, SC_FIELD_OUTPUT);
+        }
+      }};
   add_asset_ways(c, job.asset, ways);
   return ways;
 }
 
 }  // namespace
 
+void make_comparable(Penetration& one) {
+  make_one_nan(&one.depth, 4);
+  make_one_nan(&one.volume, 3);
+  for (SkinPoint* point : {&one.deepest_a, &one.deepest_b}) {
+    make_one_nan(&point->position.x, 3);
+    make_one_nan(point->weights, 3);
+  }
+}
+
 void fuzz_penetrations(Case& c) {
   const std::size_t table_words = draw_asset(c) ? sc_skin_table_words(&c.asset) : 0;
-  if (table_words == 0 || table_words > kMaxScratch || sc_penetration_scratch_words(&c.asset, kMaxContacts) > kMaxScratch) {
+  if (table_words == 0 || table_words > kMaxScratch ||
+      sc_penetration_scratch_words(&c.asset, kMaxContacts) > kMaxScratch) {
     return;
   }
   PenetrationJob job;
@@ -114,14 +124,7 @@ void fuzz_penetrations(Case& c) {
   };
   call.tidy = [&] {
     std::fill_n(job.scratch, job.scratch_words, std::uint64_t{0});
-    for (std::size_t i = 0; i < written(); ++i) make_one_nan(&job.penetrations[i].depth, 4);
-    for (std::size_t i = 0; i < written(); ++i) {
-      make_one_nan(&job.penetrations[i].volume, 3);
-      for (SkinPoint* point : {&job.penetrations[i].deepest_a, &job.penetrations[i].deepest_b}) {
-        make_one_nan(&point->position.x, 3);
-        make_one_nan(point->weights, 3);
-      }
-    }
+    for (std::size_t i = 0; i < written(); ++i) make_comparable(job.penetrations[i]);
   };
   run_twice(c, call);
 }

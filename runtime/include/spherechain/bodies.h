@@ -135,7 +135,7 @@ SPHERECHAIN_API size_t sc_body_penetration_scratch_words(const sc_asset* a, cons
 SPHERECHAIN_API sc_status sc_find_floor_penetrations(sc_floor_job* job) SC_NOEXCEPT;
 SPHERECHAIN_API size_t sc_floor_scratch_words(const sc_asset* asset) SC_NOEXCEPT;
 
-/* A box that holds all of the body's skin for certain: from bones somewhat too large, and in about a microsecond; from
+/* A box that holds all of the body's skin for certain: from bones somewhat too large, without reading a vertex; from
  * vertices alone exact. Reads asset, pose and skin_table. Errors as of sc_find_skin_contacts(). */
 SPHERECHAIN_API sc_status sc_bound_body(const sc_body* body, sc_vec3* low, sc_vec3* high) SC_NOEXCEPT;
 
