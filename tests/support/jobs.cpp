@@ -156,6 +156,32 @@ SkinContacts find_contacts(BodyContactJob job) {
   return find_all(job, sc_body_scratch_words(job.a.asset, job.b.asset));
 }
 
+const StepContact* StepContacts::of(std::uint32_t part_a, std::uint32_t part_b) const {
+  for (const StepContact& contact : contacts) {
+    if (contact.part_a == part_a && contact.part_b == part_b) return &contact;
+  }
+  return nullptr;
+}
+
+StepContacts find_contacts(StepJob job) {
+  const PreparedSkin a(*job.a.body.asset);
+  const bool has_two = job.b.body.asset != nullptr;
+  const PreparedSkin b(has_two ? *job.b.body.asset : *job.a.body.asset);
+  job.a.body.skin_table = a.words.data();
+  job.b.body.skin_table = has_two ? b.words.data() : nullptr;
+  std::vector<std::uint64_t> scratch(sc_step_scratch_words(&job.a, has_two ? &job.b : nullptr), kDirty);
+  job.scratch = scratch.data();
+  job.scratch_words = scratch.size();
+  StepContacts out;
+  out.status = job.run();
+  if (out.status != SC_OK) return out;
+  out.contacts.resize(job.contact_count);
+  job.contacts = out.contacts.data();
+  job.contact_capacity = out.contacts.size();
+  out.status = job.run();
+  return out;
+}
+
 namespace {
 
 template <typename Job>

@@ -56,6 +56,15 @@ struct SkinContacts {
 SkinContacts find_contacts(SkinContactJob job);
 SkinContacts find_contacts(BodyContactJob job);
 
+// What a step job finds: listed whole, and counted first.
+struct StepContacts {
+  Status status{};
+  std::vector<StepContact> contacts;
+
+  const StepContact* of(std::uint32_t part_a, std::uint32_t part_b) const;  // null: none
+};
+StepContacts find_contacts(StepJob job);
+
 // The same for the measure of contacts; nothing where it fails.
 std::vector<Penetration> measure(PenetrationJob job, Target target);
 std::vector<Penetration> measure(BodyPenetrationJob job, Target target);

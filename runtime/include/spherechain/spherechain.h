@@ -11,4 +11,5 @@
 #include "spherechain/pose.h"
 #include "spherechain/refit.h"
 #include "spherechain/skin_contacts.h"
+#include "spherechain/steps.h"
 #include "spherechain/types.h"

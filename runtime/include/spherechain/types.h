@@ -102,6 +102,10 @@ SC_ENUM(sc_field){
     SC_FIELD_LAYERS = 38,
     SC_FIELD_IGNORED = 39,
     SC_FIELD_FLOOR = 40,
+    SC_FIELD_END = 41,
+    SC_FIELD_BLEND = 42,
+    SC_FIELD_PARENTS = 43,
+    SC_FIELD_TOLERANCE = 44,
 };
 
 /* What every operation returns: what went wrong, and with which field. */

@@ -72,6 +72,10 @@ constexpr std::pair<sc_field, const char*> kFieldNames[] = {
     {SC_FIELD_LAYERS, "layers"},
     {SC_FIELD_IGNORED, "ignored"},
     {SC_FIELD_FLOOR, "floor"},
+    {SC_FIELD_END, "end"},
+    {SC_FIELD_BLEND, "blend"},
+    {SC_FIELD_PARENTS, "parents"},
+    {SC_FIELD_TOLERANCE, "tolerance"},
 };
 
 template <typename Texts, typename Value>

@@ -108,7 +108,7 @@ struct Block {
 // The cluster's triangles that touch the box but for what single corners tell. False where there are none. Degenerate
 // triangles intersect nothing. Where two corners meet, as they do all over a pose too far off for its floats, the box
 // is empty, and nothing touches it: else exact arithmetic would have to tell, pair by pair.
-HWY_NOINLINE bool load_block(const ContactScene& scene, std::size_t cluster_index, const BoxProbe& box, Block& out) {
+inline HWY_NOINLINE bool load_block(const ContactScene& scene, std::size_t cluster_index, const BoxProbe& box, Block& out) {
   constexpr Floats kFloats;
   const Surface& surface = *scene.surface;
   const Cluster& cluster = surface.clusters.data[cluster_index];

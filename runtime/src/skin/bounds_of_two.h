@@ -21,7 +21,7 @@ namespace HWY_NAMESPACE {
 constexpr Box kEmptyBox{{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
 
 // A box around the boxes of a sphere's bones, of every sphere: its vertices are means of where those move them.
-HWY_NOINLINE void bound_by_bones(const ContactScene& scene) {
+inline HWY_NOINLINE void bound_by_bones(const ContactScene& scene) {
   for (std::size_t s = 0; s < scene.sphere_count; ++s) {
     const Hull& hull = scene.surface->hulls.data[s];
     const HullBone* const bones = scene.surface->hull_bones.data + hull.first_bone;
@@ -38,7 +38,7 @@ HWY_NOINLINE void bound_by_bones(const ContactScene& scene) {
 }
 
 // What all spheres' boxes have in common with that box, in a box.
-HWY_NOINLINE Box narrow(const ContactScene& scene, const Box& room) {
+inline HWY_NOINLINE Box narrow(const ContactScene& scene, const Box& room) {
   Box out = kEmptyBox;
   for (std::size_t s = 0; s < scene.sphere_count; ++s) {
     const Box box = box_at(scene.spheres, s);
@@ -54,7 +54,7 @@ HWY_NOINLINE Box narrow(const ContactScene& scene, const Box& room) {
   return out;
 }
 
-HWY_NOINLINE void bound_two(const Bodies& bodies) {
+inline HWY_NOINLINE void bound_two(const Bodies& bodies) {
   const ContactScene* const scenes[] = {&bodies.a, &bodies.b};
   Box room{{-FLT_MAX, -FLT_MAX, -FLT_MAX}, {FLT_MAX, FLT_MAX, FLT_MAX}};
   for (const ContactScene* scene : scenes) {

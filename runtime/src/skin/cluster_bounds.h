@@ -199,7 +199,7 @@ HWY_INLINE void bound_lanes(const ContactScene& scene, std::size_t group, const 
 }
 
 // The groups that hold the clusters [first, end), where they are not bounded yet.
-HWY_NOINLINE void bound_clusters_by_bones(const ContactScene& scene, std::size_t first, std::size_t end) {
+inline HWY_NOINLINE void bound_clusters_by_bones(const ContactScene& scene, std::size_t first, std::size_t end) {
   for (std::size_t group = first / kClusterLanes; group < (end + kClusterLanes - 1) / kClusterLanes; ++group) {
     if (scene.is_group_bounded[group] == 0) {
       scene.is_group_bounded[group] = 1;

@@ -21,43 +21,20 @@ void ContactCollector::end_spheres() {
   touch_ = false;
 }
 
-bool ContactCollector::share_a_position(const Candidate& candidate) const {
-  const Surface& surface = *a_.surface;
-  const auto weld = [&](std::size_t cluster, std::size_t triangle, std::size_t corner) {
-    const std::size_t place = surface.corners[3 * triangle + corner];
-    return surface.welds[surface.cluster_vertices[surface.clusters[cluster].first_vertex + place]];
-  };
-  for (std::size_t i = 0; i < 3; ++i) {
-    const std::uint32_t own = weld(candidate.cluster_a, candidate.triangle_a, i);
-    for (std::size_t j = 0; j < 3; ++j) {
-      if (own == weld(candidate.cluster_b, candidate.triangle_b, j)) {
-        return true;
-      }
-    }
-  }
-  return false;
-}
-
 // Neighbours first: of them the exact test would need its exact arithmetic.
 bool ContactCollector::is_left_out(const Candidate& candidate) const {
-  const auto is_ignored = [](const Skin& skin, std::size_t triangle) {
-    const std::size_t part = skin.surface->parts[triangle];
-    return skin.ignored_parts != nullptr && (skin.ignored_parts[part / 64] >> part % 64 & 1) != 0;
-  };
-  return are_one_ ? share_a_position(candidate)
-                  : is_ignored(a_, candidate.triangle_a) || is_ignored(b_, candidate.triangle_b);
+  return are_one_ ? share_a_position(*a_.surface, {candidate.cluster_a, candidate.triangle_a},
+                                     {candidate.cluster_b, candidate.triangle_b})
+                  : a_.ignores(candidate.triangle_a) || b_.ignores(candidate.triangle_b);
 }
 
 // The box is of corners alone: the same in whatever order contacts are found.
 void ContactCollector::add_parts(const TriangleContact& of, const Candidate& candidate) {
   const std::uint32_t low = are_one_ ? std::min(of.part_a, of.part_b) : of.part_a;
   const std::uint32_t high = are_one_ ? std::max(of.part_a, of.part_b) : of.part_b;
-  const std::size_t place = part_table_.place(low, high, are_one_);
-  PartContact& contact = part_table_.contacts[place];
-  std::uint64_t& word = part_table_.seen[place / 64];
-  const std::uint64_t bit = std::uint64_t{1} << (place % 64);
-  if ((word & bit) == 0) {
-    word |= bit;
+  bool is_new = false;
+  PartContact& contact = part_table_.at(low, high, are_one_, is_new);
+  if (is_new) {
     contact = {low, high, 0, {FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
   }
   ++contact.triangle_pairs;
@@ -88,8 +65,7 @@ bool ContactCollector::decide(const Candidate& candidate) {
       std::swap(contact.part_a, contact.part_b);
       std::swap(a, b);
     }
-    const Span<Pair>& rest = a_.surface->rest_contacts;
-    if (std::binary_search(rest.begin(), rest.end(), Pair{contact.triangle_a, contact.triangle_b})) {
+    if (intersect_at_rest(*a_.surface, {contact.triangle_a, contact.triangle_b})) {
       return false;
     }
   }

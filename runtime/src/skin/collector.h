@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "asset/span.h"
+#include "skin/left_out.h"
 #include "skin/scene_setup.h"
 #include "spherechain/skin_contacts.h"
 
@@ -72,12 +73,6 @@ struct ContactCounts {
   }
 };
 
-// A body's triangles; a bit for each part that meets nothing, or null.
-struct Skin {
-  const Surface* surface;
-  const std::uint64_t* ignored_parts;
-};
-
 // Kernels call its functions, none of them inline: they must not call templates of the standard library.
 class ContactCollector {
  public:
@@ -105,7 +100,6 @@ class ContactCollector {
         spheres_only_(lists.spheres_only) {}
 
   void end_spheres();
-  bool share_a_position(const Candidate& candidate) const;
   bool is_left_out(const Candidate& candidate) const;
   void add_parts(const TriangleContact& contact, const Candidate& candidate);
   std::size_t list_parts() const;

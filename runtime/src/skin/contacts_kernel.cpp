@@ -4,8 +4,6 @@
 // exact. Pairs of clusters are listed, and decided together: loaded, skinned or copied, those that still seem to touch
 // along the axes, their diagonals and the line between them, and paired triangle by triangle. Which candidates come out
 // may differ between targets, but none that intersects is ever missing.
-#include <cstring>
-
 #include "pairs/pair_bits.h"
 #include "simd/arithmetic.h"
 #include "simd/simd.h"
@@ -17,50 +15,13 @@
 #include "simd/highway.h"
 #include "skin/blocks.h"
 #include "skin/bounds_of_two.h"
-#include "skin/hulls.h"
+#include "skin/pair_list.h"
+#include "skin/scene_bounds.h"
 #include "skin/single_precision.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
 namespace HWY_NAMESPACE {
-
-using Places = hn::Rebind<std::int32_t, Floats>;
-
-// Pairs of numbers: one with some of a register of others. May be written to until it has no room for a register.
-template <std::size_t kRoom>
-struct PairList {
-  std::size_t count = 0;
-  std::int32_t a[kRoom + kLanes], b[kRoom + kLanes];  // vectors are written past the end
-
-  // Where `at` pairs are; gives how many are then. In a loop that is to stay in a register: what the vectors write
-  // could be `count`, for all that the compiler knows.
-  HWY_INLINE std::size_t put(std::size_t at, std::size_t one, std::size_t first, hn::Mask<Floats> others) {
-    constexpr Places kPlaces;
-    hn::StoreU(hn::Set(kPlaces, static_cast<std::int32_t>(one)), kPlaces, a + at);
-    const auto numbers = hn::Add(hn::Iota(kPlaces, 0), hn::Set(kPlaces, static_cast<std::int32_t>(first)));
-    const auto which = hn::RebindMask(kPlaces, others);
-    hn::StoreU(hn::Compress(numbers, which), kPlaces, b + at);
-    return at + hn::CountTrue(kPlaces, which);
-  }
-  // Drops the pairs that `keeps` says false of; the others stay in order.
-  template <class Keeps>
-  HWY_INLINE void filter(const Keeps& keeps) {
-    std::size_t left = 0;
-    for (std::size_t k = 0; k < count; ++k) {
-      const std::int32_t one = a[k], other = b[k];
-      a[left] = one;
-      b[left] = other;
-      left += keeps(static_cast<std::size_t>(one), static_cast<std::size_t>(other)) ? 1 : 0;
-    }
-    count = left;
-  }
-  static bool has_room(std::size_t at) { return at + kLanes <= kRoom; }
-  HWY_INLINE void finish() {
-    constexpr Places kPlaces;
-    hn::StoreU(hn::Zero(kPlaces), kPlaces, a + count);
-    hn::StoreU(hn::Zero(kPlaces), kPlaces, b + count);
-  }
-};
 
 // Of triangles of a register of one block and a register of another, by their places there.
 using PlacePairs = PairList<kLanes * kLanes>;
@@ -219,38 +180,6 @@ HWY_INLINE void list_cluster(const Bodies& bodies, std::size_t cluster, std::siz
   }
 }
 
-// Bounds of the clusters of spheres [first, end).
-HWY_NOINLINE void bound_clusters(const ContactScene& scene, std::size_t first, std::size_t end) {
-  std::memset(scene.is_bounded + first, 1, end - first);
-  const std::size_t first_cluster = scene.first_cluster[first], end_cluster = scene.first_cluster[end];
-  if (scene.has_balls) {
-    bound_clusters_by_bones(scene, first_cluster, end_cluster);
-    return;
-  }
-  const Cluster* const clusters = scene.surface->clusters.data;
-  for (std::size_t i = first_cluster; i < end_cluster; ++i) {
-    put_box(scene.clusters, i, box_of_cluster(scene, clusters[i]));
-  }
-}
-
-HWY_INLINE void bound_once(const ContactScene& scene, std::size_t sphere) {
-  if (scene.is_bounded[sphere] == 0) {
-    bound_clusters(scene, sphere, sphere + 1);
-  }
-}
-
-// Boxes of the spheres: by their hulls; else of those whose clusters are bounded, of all of them before this. Vectors
-// that are loaded right after their lanes were stored one by one have to wait.
-HWY_NOINLINE void bound_spheres(const ContactScene& scene) {
-  for (std::size_t s = 0; s < scene.sphere_count; ++s) {
-    if (scene.has_hulls) {
-      bound_hull(scene, s);
-    } else if (scene.is_bounded[s] != 0) {
-      unite_clusters(scene, s);
-    }
-  }
-}
-
 // The clusters of one sphere.
 HWY_INLINE void list_within(const ContactScene& scene, std::size_t sphere, ClusterPairs& list,
                             ContactCollector& collector) {
@@ -279,29 +208,32 @@ HWY_INLINE void list_spheres(const Bodies& bodies, std::size_t a, std::size_t b,
   }
 }
 
-// The pairs of spheres that the caller lists, whatever the scope.
-HWY_NOINLINE void find_listed(const ContactScene& scene, ContactCollector& collector) {
-  const Span<const Pair> pairs = scene.candidates;
-  for (std::size_t i = 0; i < pairs.size && !scene.has_hulls; ++i) {
-    bound_once(scene, pairs.data[i].a);
-    bound_once(scene, pairs.data[i].b);
+// The pairs of spheres that are listed, whatever the scope.
+HWY_NOINLINE void find_listed(const Bodies& bodies, ContactCollector& collector) {
+  const Span<const Pair> pairs = bodies.a.candidates;
+  const auto bound_all = [&](const ContactScene& scene, std::uint32_t Pair::*which) HWY_ATTR {
+    for (std::size_t i = 0; i < pairs.size && !scene.has_hulls; ++i) {
+      bound_once(scene, pairs.data[i].*which);
+    }
+  };
+  if (pairs.size > 0 && !bodies.a.has_sphere_boxes) {
+    bound_all(bodies.a, &Pair::a);
+    bound_all(bodies.b, &Pair::b);
+    bound_spheres(bodies.a);
+    if (!bodies.are_one) {
+      bound_spheres(bodies.b);
+    }
   }
-  if (pairs.size > 0) {
-    bound_spheres(scene);
-  }
+  const bool have_hulls = bodies.a.has_hulls && bodies.b.has_hulls;
   ClusterPairs clusters;
   for (std::size_t i = 0; i < pairs.size; ++i) {
     const std::size_t a = pairs.data[i].a, b = pairs.data[i].b;
-    if (box_at(scene.spheres, a).touches(box_at(scene.spheres, b)) &&
-        !(scene.has_hulls && hulls_apart(scene, a, scene, b))) {
-      list_spheres({scene, scene, true}, a, b, clusters, collector);
+    if (box_at(bodies.a.spheres, a).touches(box_at(bodies.b.spheres, b)) &&
+        !(have_hulls && hulls_apart(bodies.a, a, bodies.b, b))) {
+      list_spheres(bodies, a, b, clusters, collector);
     }
   }
-  decide_clusters({scene, scene, true}, clusters, collector);
-}
-
-HWY_INLINE bool is_enabled(const ContactScene& scene, std::size_t sphere) {
-  return scene.disabled.size == 0 || !test_bit(scene.disabled, sphere);
+  decide_clusters(bodies, clusters, collector);
 }
 
 // Bit k: a's sphere first + k is to be paired with b's sphere b. Of one body only those before b.
@@ -387,7 +319,7 @@ HWY_NOINLINE void find_all(const Bodies& bodies, ContactCollector& collector) {
 
 void find(const Bodies& bodies, ContactCollector& collector) {
   if (bodies.a.candidates.data != nullptr) {
-    find_listed(bodies.a, collector);
+    find_listed(bodies, collector);
   } else {
     find_all(bodies, collector);
   }

@@ -39,6 +39,7 @@ struct ContactScene {
   Span<const std::uint64_t> ignored, disabled;   // the latter may be empty
   Span<const Pair> candidates;                   // of spheres: the pairs to decide; null: those of the scope
   bool apart = true, neighbours = false;         // which of them to pair: see sc_scope
+  bool has_sphere_boxes = false;                 // those below are of this pose already
   bool first_only = false;                       // of each two spheres no more once one candidate is a contact
   const float* positions = nullptr;              // the source's; null: from bones
   bool has_balls = false;                        // bounded by bones

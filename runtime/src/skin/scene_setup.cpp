@@ -12,7 +12,6 @@
 #include "simd/arithmetic.h"
 
 namespace spherechain {
-namespace {
 
 void lay_out(const AssetView& asset, WordMemory& memory, ContactScene& scene) {
   const SkinSizes& sizes = asset.skin().sizes;
@@ -38,6 +37,8 @@ void lay_out(const AssetView& asset, WordMemory& memory, ContactScene& scene) {
     memory.take(scene.hull_margins, scene.sphere_count);
   }
 }
+
+namespace {
 
 BoneSize bone_size(const BoneMatrices& bones, std::size_t bone) {
   const float* m = bones.data + bone * bones.stride;
@@ -174,29 +175,19 @@ BodyRanges::BodyRanges(const Body& body)
       skin_table(range_of(Span<const std::uint64_t>{body.skin_table, skin_table_words(view_of(*body.asset))})),
       ignored_parts(range_of(Span<const std::uint64_t>{body.ignored_parts, sc_part_words(body.asset)})) {}
 
-void PartTable::take(WordMemory& memory, std::size_t count_a, std::size_t parts_of_b, bool are_one) {
-  count_b = parts_of_b;
-  const std::size_t pairs = are_one ? count_a * (count_a + 1) / 2 : count_a * count_b;
-  word_count = words_for(pairs);
-  memory.take(seen, word_count);
-  memory.take(contacts, pairs);
+Status check_asset(const Asset* asset) {
+  return asset == nullptr               ? refuse(SC_NULL, SC_FIELD_ASSET)
+         : !view_of(*asset).is_open()   ? refuse(SC_NOT_OPEN, SC_FIELD_ASSET)
+         : !has_skin(view_of(*asset))   ? refuse(SC_NOT_IN_ASSET, SC_FIELD_ASSET)
+                                        : done();
 }
 
-void PartTable::clear() const { std::memset(seen, 0, word_count * sizeof(std::uint64_t)); }
-
 Status check_skin(const Asset* asset, const Pose& pose, const std::uint64_t* skin_table, Surface& surface) {
-  if (asset == nullptr) {
-    return refuse(SC_NULL, SC_FIELD_ASSET);
+  Status status = check_asset(asset);
+  if (status == SC_OK) {
+    status = check_skin_pose(view_of(*asset), pose);
   }
-  const AssetView& view = view_of(*asset);
-  if (!view.is_open()) {
-    return refuse(SC_NOT_OPEN, SC_FIELD_ASSET);
-  }
-  if (!has_skin(view)) {
-    return refuse(SC_NOT_IN_ASSET, SC_FIELD_ASSET);
-  }
-  const Status status = check_skin_pose(view, pose);
-  return status == SC_OK ? read_skin_table(view, skin_table, surface) : status;
+  return status == SC_OK ? read_skin_table(view_of(*asset), skin_table, surface) : status;
 }
 
 std::size_t skin_scratch_words(const AssetView& asset) {
@@ -223,11 +214,10 @@ std::size_t body_scratch_words(const AssetView& a, const AssetView& b) {
   return memory.used();
 }
 
-ContactScene scene_of(const AssetView& asset, const Surface& surface, const Pose& pose, const Filter* filter,
-                      WordMemory& memory) {
-  ContactScene scene;
-  lay_out(asset, memory, scene);
+void set_pose(const AssetView& asset, const Surface& surface, const Pose& pose, const Filter* filter,
+              ContactScene& scene) {
   scene.surface = &surface;
+  scene.has_sphere_boxes = false;
   scene.first_cluster = surface.first_clusters.data;
   scene.positions = pose.vertices;
   scene.stride = vertex_stride(pose) / sizeof(float);
@@ -247,6 +237,13 @@ ContactScene scene_of(const AssetView& asset, const Surface& surface, const Pose
     scene.has_hulls = !morphs;
     prepare_bounds(asset, scene);
   }
+}
+
+ContactScene scene_of(const AssetView& asset, const Surface& surface, const Pose& pose, const Filter* filter,
+                      WordMemory& memory) {
+  ContactScene scene;
+  lay_out(asset, memory, scene);
+  set_pose(asset, surface, pose, filter, scene);
   return scene;
 }
 

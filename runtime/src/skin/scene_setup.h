@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstring>
 
 #include "pose/pose.h"
 #include "skin/scene.h"
@@ -11,9 +12,10 @@
 namespace spherechain {
 
 // Table of the pairs of body parts that are found: a bit and an entry for each two parts, in order.
-struct PartTable {
+template <class Entry>
+struct TableOfParts {
   std::uint64_t* seen = nullptr;
-  PartContact* contacts = nullptr;
+  Entry* contacts = nullptr;
   std::size_t count_b = 0;  // parts of body b
   std::size_t word_count = 0;
 
@@ -21,10 +23,27 @@ struct PartTable {
   std::size_t place(std::size_t a, std::size_t b, bool are_one) const {
     return a * count_b + b - (are_one ? a * (a + 1) / 2 : 0);
   }
-  void take(WordMemory& memory, std::size_t count_a, std::size_t count_b, bool are_one);
-  void clear() const;
+  void take(WordMemory& memory, std::size_t count_a, std::size_t parts_of_b, bool are_one) {
+    count_b = parts_of_b;
+    const std::size_t pairs = are_one ? count_a * (count_a + 1) / 2 : count_a * count_b;
+    word_count = (pairs + 63) / 64;
+    memory.take(seen, word_count);
+    memory.take(contacts, pairs);
+  }
+  void clear() const { std::memset(seen, 0, word_count * sizeof(std::uint64_t)); }
+  // The entry; `is_new`: it holds nothing yet.
+  Entry& at(std::size_t a, std::size_t b, bool are_one, bool& is_new) const {
+    const std::size_t i = place(a, b, are_one);
+    const std::uint64_t bit = std::uint64_t{1} << (i % 64);
+    is_new = (seen[i / 64] & bit) == 0;
+    seen[i / 64] |= bit;
+    return contacts[i];
+  }
 };
+using PartTable = TableOfParts<PartContact>;
 
+// Is it open, with a skin?
+Status check_asset(const Asset* asset);
 // Whose skin a job asks about: is it there, does the pose fit, and was the table made of it?
 Status check_skin(const Asset* asset, const Pose& pose, const std::uint64_t* skin_table, Surface& surface);
 
@@ -53,6 +72,10 @@ std::size_t skin_scratch_words(const AssetView& asset);
 // Of two, and of their table of parts.
 std::size_t body_scratch_words(const AssetView& a, const AssetView& b);
 
+// The scratch memory of a scene; and a pose for one that has it.
+void lay_out(const AssetView& asset, WordMemory& memory, ContactScene& scene);
+void set_pose(const AssetView& asset, const Surface& surface, const Pose& pose, const Filter* filter,
+              ContactScene& scene);
 // Of a checked pose, with enough words; no cluster is bounded yet. All pairs of spheres are paired but those that the
 // asset or the filter, which may be null, ignores or disables.
 ContactScene scene_of(const AssetView& asset, const Surface& surface, const Pose& pose, const Filter* filter,

@@ -173,7 +173,7 @@ HWY_INLINE void drop_line(const ContactScene& scene, std::size_t cluster_index) 
 }
 
 // Where they are not yet: a cluster's vertices, from the source's or from the bones, and how far they reach.
-HWY_NOINLINE void load(const ContactScene& scene, std::size_t cluster_index) {
+inline HWY_NOINLINE void load(const ContactScene& scene, std::size_t cluster_index) {
   scene.is_loaded[cluster_index] = 1;
   const Cluster& cluster = scene.surface->clusters.data[cluster_index];
   const Slots slots = slots_of(scene, cluster_index);
@@ -209,7 +209,7 @@ HWY_INLINE bool spans_touch(const ContactScene& scene_a, std::size_t a, const Co
 
 // Does a plane across the line of the middles of two clusters that are loaded part their vertices? Of the two sums of
 // three products each rounding is a unit in the last place of at most the sums of magnitudes, and eight are counted.
-HWY_NOINLINE bool plane_parts(const ContactScene& scene_a, std::size_t a, const ContactScene& scene_b, std::size_t b) {
+inline HWY_NOINLINE bool plane_parts(const ContactScene& scene_a, std::size_t a, const ContactScene& scene_b, std::size_t b) {
   constexpr Floats kFloats;
   const Box box_a = box_of_span(scene_a, a), box_b = box_of_span(scene_b, b);
   float direction[3], size = 0;

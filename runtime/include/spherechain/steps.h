@@ -1,0 +1,95 @@
+/* SPDX-License-Identifier: MIT */
+/* Q4, between two frames: what touches on the way from one pose to the next, and when? */
+#pragma once
+
+#include "spherechain/bodies.h"
+
+/* How a body goes from one pose to the next. */
+SC_ENUM(sc_blend){
+    SC_BLEND_LINEAR = 0, /* matrices, vertices and morph weights: each number on its own */
+    SC_BLEND_SLERP = 1,  /* joints: rotations at constant speed; translations, scales and morph weights linearly */
+    SC_BLEND_NLERP = 2,  /* joints: rotations as quaternions, linearly, brought back to unit length */
+};
+
+/* A joint: where its parent's space puts p, rotated and moved, is translation + rotation (scale p). */
+typedef struct sc_transform {
+  sc_vec3 translation;
+  float rotation[4]; /* a quaternion: x, y, z, w; of about unit length */
+  sc_vec3 scale;     /* along the joint's own axes; negative mirrors */
+} sc_transform;
+
+/* A body, and where it stands a step later.
+ *
+ * SC_BLEND_LINEAR: from body.pose to `end`, both with bones, or both with vertices.
+ * SC_BLEND_SLERP, SC_BLEND_NLERP: from start_joints to end_joints, composed down the skeleton as engines do; poses have
+ * morph weights at most. A rotation goes the shorter way round: of one that turns a joint by half a turn or more in one
+ * step, that way is assumed; of exactly half a turn, the sign that the quaternions have. */
+typedef struct sc_motion {
+  sc_body body SC_ZERO;
+  sc_pose end SC_ZERO;
+  sc_blend blend SC_ZERO;
+  const sc_transform* start_joints SC_ZERO;
+  const sc_transform* end_joints SC_ZERO;
+  size_t joint_count SC_ZERO;
+  const uint32_t* parents SC_ZERO; /* of each joint an earlier one, or SC_NO_JOINT; null: all stand in the pose's space */
+  const uint32_t* joint_of_bone SC_ZERO; /* of each bone of the asset: sc_bind_joints(); null: joint b moves bone b */
+} sc_motion;
+
+#define SC_NO_TRIANGLE 0xFFFFFFFFu
+
+/* Two body parts that touch in a step. Times are shares of the step: 0 is its start, 1 its end. */
+typedef struct sc_step_contact {
+  uint32_t part_a, part_b;
+  int32_t at_start, at_end; /* 1: sc_find_skin_contacts(), or sc_find_body_contacts(), has contacts of the two there */
+  float begin;              /* the first time at which they touch; 0 with at_start */
+  float end;                /* the last time; 1 with at_end. In between they may part and meet again */
+  uint32_t triangle_a, triangle_b; /* that touch at `begin`, by the source's numbers; SC_NO_TRIANGLE with at_start */
+  sc_vec3 at; /* where they do; with at_start the middle of a box around the triangles that intersect there */
+} sc_step_contact;
+
+/* All pairs of body parts that touch on the way from one pose to the next: of body a with itself, where b.body.asset is
+ * null, else of a and b. Nothing is missing and nothing made up, but for the tolerance: what comes no further into
+ * contact than that, measured as the change of the distance of two corners of the skin, may be found or not; and times
+ * are as exact. Left out is what sc_find_skin_contacts(), or sc_find_body_contacts(), leaves out.
+ *
+ * Allocates nothing, takes no lock. Jobs on other outputs and scratch memory may run at the same time. */
+typedef struct sc_step_job {
+  sc_motion a SC_ZERO, b SC_ZERO;
+  sc_target target SC_ZERO;        /* the same contacts, and times, on every one */
+  const sc_filter* filter SC_ZERO; /* of one body; null: the asset's ignored pairs */
+  float tolerance SC_ZERO;         /* a share of the height of a's asset; 0: 0.0001 */
+  uint64_t* scratch SC_ZERO;       /* sc_step_scratch_words() words; nothing is kept there between runs */
+  size_t scratch_words SC_ZERO;
+  sc_step_contact* contacts SC_ZERO; /* out: sorted by (part_a, part_b), each once; null: count only */
+  size_t contact_capacity SC_ZERO;
+  size_t contact_count SC_ZERO; /* out: how many there are, also where `contacts` is too small */
+#if defined(__cplusplus)
+  sc_status run() noexcept;
+#endif
+} sc_step_job;
+
+#if defined(__cplusplus)
+extern "C" {
+#endif
+
+/* Errors as of sc_find_body_contacts(); and SC_BAD_VALUE: SC_FIELD_END (vertices at one end alone), SC_FIELD_BLEND,
+ * SC_FIELD_JOINTS (not finite, a quaternion of length zero, a pose with bones or vertices beside them),
+ * SC_FIELD_PARENTS, SC_FIELD_TOLERANCE (not finite, negative, above 1). The field does not say which of two bodies is
+ * meant. Matrices and vertices that are not finite touch nothing. */
+SPHERECHAIN_API sc_status sc_find_step_contacts(sc_step_job* job) SC_NOEXCEPT;
+
+/* Words of scratch memory for those assets and numbers of joints; b null: one body. 0 where an asset is not open or has
+ * no triangles. */
+SPHERECHAIN_API size_t sc_step_scratch_words(const sc_motion* a, const sc_motion* b) SC_NOEXCEPT;
+
+#if defined(__cplusplus)
+}
+inline sc_status sc_step_job::run() noexcept { return sc_find_step_contacts(this); }
+namespace spherechain {
+using Blend = sc_blend;
+using Transform = sc_transform;
+using Motion = sc_motion;
+using StepContact = sc_step_contact;
+using StepJob = sc_step_job;
+}  // namespace spherechain
+#endif

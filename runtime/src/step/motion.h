@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// How a body goes from one pose to the next: where its bones are at any time, and how far its vertices stray from
+// straight lines.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "skin/double3.h"
+#include "skin/skin_table.h"
+#include "spherechain/steps.h"
+
+namespace spherechain {
+
+// A matrix: three rows of four.
+struct Affine {
+  double m[3][4];
+};
+
+// Of a joint during the step, at most: the norm of its matrix' linear part, of that part's first two derivatives by
+// time, and of those of where its origin is.
+struct Speeds {
+  double size, turn, turn_change, velocity, acceleration;
+};
+
+// The skeleton at one time, as far as it was asked for.
+struct Skeleton {
+  double time = -1;
+  Affine* joints = nullptr;
+  float* bones = nullptr;  // three rows of four, as the asset has them
+  std::uint8_t *has_joint = nullptr, *has_bone = nullptr;
+};
+
+// Times are dyadic. Rotations are halved again and again, which takes no function but the root: their bits are the same
+// on every machine.
+class BodyMotion {
+ public:
+  void take(WordMemory& memory, const AssetView& asset, std::size_t joint_count);
+  // Of a checked motion.
+  void start(const sc_motion& motion, const AssetView& asset, const Surface& surface);
+
+  // How far a vertex of the sphere is at most, during the whole step, from where it would be if it went straight from
+  // the start to the end. During a share h of the step, h * h of that.
+  Span<const float> strays() const { return {strays_, asset_->spheres().size}; }
+
+  // Writes `bones` and `morph_weights` where the motion has such.
+  Pose pose_at(double time, float* bones, float* morph_weights);
+  // Where the corners of a triangle are at a time between the ends. Not of vertices, which go straight.
+  void corners_at(double time, std::size_t cluster, std::size_t triangle, Double3* corners);
+
+ private:
+  bool has_joints() const { return motion_->blend != SC_BLEND_LINEAR; }
+  Skeleton& skeleton_at(double time);
+  const Affine& joint_at(Skeleton& skeleton, std::size_t joint);
+  const float* bone_at(Skeleton& skeleton, std::size_t bone);
+  float morph_weight_at(double time, std::size_t morph) const;
+  Affine local_at(double time, std::size_t joint) const;
+  void find_speeds();
+  double stray_of_bone(std::size_t bone) const;
+
+  const sc_motion* motion_ = nullptr;
+  const AssetView* asset_ = nullptr;
+  const Surface* surface_ = nullptr;
+  float* strays_ = nullptr;        // a sphere's
+  double* bone_strays_ = nullptr;  // a bone's
+  Speeds* speeds_ = nullptr;       // a joint's
+  std::uint32_t* chain_ = nullptr;
+  static constexpr std::size_t kSkeletons = 16;
+  Skeleton skeletons_[kSkeletons];
+  std::size_t oldest_ = 0;
+};
+
+// Are start and end what the motion says they are, and was the table made of the asset?
+Status check_motion(const sc_motion& motion, Surface& surface);
+
+}  // namespace spherechain

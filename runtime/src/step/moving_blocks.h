@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+// The triangles of a cluster that could touch a box on their way, and which pairs of them a plane parts all the time.
+#include "simd/highway.h"
+
+#if defined(SPHERECHAIN_STEP_MOVING_BLOCKS_H) == defined(HWY_TARGET_TOGGLE)  // once a target
+#ifdef SPHERECHAIN_STEP_MOVING_BLOCKS_H
+#undef SPHERECHAIN_STEP_MOVING_BLOCKS_H
+#else
+#define SPHERECHAIN_STEP_MOVING_BLOCKS_H
+#endif
+
+#include "skin/blocks.h"
+#include "skin/single_precision.h"
+#include "step/moving_scene.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace spherechain {
+namespace HWY_NAMESPACE {
+
+// As a Block, at the start and at the end.
+struct MovingBlock {
+  std::size_t cluster, count;
+  std::uint32_t triangles[kBlock + kContactPadding];
+  float corners[2][3][3][kBlock + kContactPadding];                               // by pose, by corner, by axis
+  float low[3][kBlock + kContactPadding], high[3][kBlock + kContactPadding];      // around the way
+  Box box;                                                                        // of all
+
+  TriangleCorners corners_of(std::size_t pose, std::size_t i) const {
+    TriangleCorners out;
+    for (std::size_t k = 0; k < 3; ++k) {
+      out.p[k] = {corners[pose][k][0][i], corners[pose][k][1][i], corners[pose][k][2][i]};
+    }
+    return out;
+  }
+};
+
+HWY_INLINE Box way_of_spans(const MovingScene& scene, std::size_t cluster, float stray) {
+  const Box start = box_of_span(scene.start, cluster), end = box_of_span(scene.end, cluster);
+  Box out;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    out.low[axis] = (start.low[axis] < end.low[axis] ? start.low[axis] : end.low[axis]) - stray;
+    out.high[axis] = (start.high[axis] > end.high[axis] ? start.high[axis] : end.high[axis]) + stray;
+  }
+  return out;
+}
+
+// The cluster's triangles whose boxes around the way, `stray` wider, touch the box, but for what single corners tell.
+// False where there are none. Those that are degenerate at both ends are left out.
+inline HWY_NOINLINE bool load_moving_block(const MovingScene& scene, std::size_t cluster_index, const BoxProbe& box,
+                                    float stray, MovingBlock& out) {
+  constexpr Floats kFloats;
+  const Surface& surface = *scene.start.surface;
+  const Cluster& cluster = surface.clusters.data[cluster_index];
+  const std::uint8_t* corners = surface.corners.data + 3 * std::size_t{cluster.first_triangle};
+  HWY_ALIGN Codes codes, codes_at_end;
+  find_sides(scene.start, cluster_index, box, codes);
+  find_sides(scene.end, cluster_index, box, codes_at_end);
+  for (std::size_t i = 0; i < cluster.vertex_count; ++i) {
+    codes[i] &= codes_at_end[i];  // beyond all the way
+  }
+  const Slots slots[2] = {slots_of(scene.start, cluster_index), slots_of(scene.end, cluster_index)};
+  std::uint8_t last[3 * kBlock];
+  if (3 * (cluster.first_triangle + kBlock) > surface.corners.size) {  // the asset's last few
+    std::memset(last, 0, sizeof last);
+    std::memcpy(last, corners, 3 * std::size_t{cluster.triangle_count});
+    corners = last;
+  }
+  std::size_t count = 0;
+  for (std::uint64_t bits = within(corners, cluster.triangle_count, cluster.vertex_count, codes); bits != 0;
+       bits &= bits - 1, ++count) {
+    const std::size_t i = lowest_bit(bits);
+    out.triangles[count] = static_cast<std::uint32_t>(cluster.first_triangle + i);
+    for (std::size_t pose = 0; pose < 2; ++pose) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          out.corners[pose][k][axis][count] = slots[pose].axes[axis][corners[3 * i + k]];
+        }
+      }
+    }
+  }
+  if (count == 0) {
+    return false;
+  }
+  out.cluster = cluster_index;
+  out.count = count;
+  const Vector empty_low = hn::Set(kFloats, FLT_MAX), empty_high = hn::Set(kFloats, -FLT_MAX);
+  const Vector wide = hn::Set(kFloats, stray);
+  Vector least[3] = {empty_low, empty_low, empty_low}, most[3] = {empty_high, empty_high, empty_high};
+  for (std::size_t i = 0; i < count; i += kLanes) {
+    const auto used = hn::FirstN(kFloats, count - i);
+    auto ab = used, bc = used, ca = used;
+    Vector low[3], high[3];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      low[axis] = empty_low;
+      high[axis] = empty_high;
+      for (std::size_t pose = 0; pose < 2; ++pose) {
+        const Vector a = hn::LoadU(kFloats, out.corners[pose][0][axis] + i);
+        const Vector b = hn::LoadU(kFloats, out.corners[pose][1][axis] + i);
+        const Vector c = hn::LoadU(kFloats, out.corners[pose][2][axis] + i);
+        low[axis] = hn::Min(hn::Min(hn::Min(a, b), c), low[axis]);
+        high[axis] = hn::Max(hn::Max(hn::Max(a, b), c), high[axis]);
+        ab = hn::And(ab, hn::Eq(a, b));
+        bc = hn::And(bc, hn::Eq(b, c));
+        ca = hn::And(ca, hn::Eq(c, a));
+      }
+    }
+    const auto is_empty = hn::Or(hn::Or(ab, bc), hn::Or(ca, hn::Not(used)));
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const Vector first = hn::IfThenElse(is_empty, empty_low, hn::Sub(low[axis], wide));
+      const Vector end = hn::IfThenElse(is_empty, empty_high, hn::Add(high[axis], wide));
+      hn::StoreU(first, kFloats, out.low[axis] + i);
+      hn::StoreU(end, kFloats, out.high[axis] + i);
+      least[axis] = hn::Min(first, least[axis]);
+      most[axis] = hn::Max(end, most[axis]);
+    }
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    out.box.low[axis] = hn::GetLane(hn::MinOfLanes(kFloats, least[axis]));
+    out.box.high[axis] = hn::GetLane(hn::MaxOfLanes(kFloats, most[axis]));
+  }
+  return out.box.low[0] <= out.box.high[0];
+}
+
+// Some of a register of triangles of a block, in any order.
+struct MovingTaken {
+  const MovingBlock* block;
+  std::size_t first;  // of the register
+  hn::Vec<hn::Rebind<std::int32_t, Floats> > which;
+
+  HWY_INLINE MovingTaken(const MovingBlock& from, std::size_t begin, const std::int32_t* places)
+      : block(&from), first(begin), which(hn::LoadU(hn::Rebind<std::int32_t, Floats>(), places)) {}
+  HWY_INLINE Vector of(const float* column) const {
+    constexpr Floats kFloats;
+    return hn::TableLookupLanes(hn::LoadU(kFloats, column + first), hn::IndicesFromVec(kFloats, which));
+  }
+  HWY_INLINE Vector3 corner(std::size_t pose, std::size_t k) const {
+    return {of(block->corners[pose][k][0]), of(block->corners[pose][k][1]), of(block->corners[pose][k][2])};
+  }
+};
+
+// Each lane's two triangles: does a plane stay between them that keeps its direction, the normal of one of the two half
+// way, or the line between them? Roundings are less than 2^-20 of what `stray` counts in.
+HWY_INLINE std::uint64_t stay_apart(const MovingTaken& first, const MovingTaken& second, float stray) {
+  constexpr Floats kFloats;
+  Vector3 a[2][3], b[2][3], mid_a[3], mid_b[3];
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector3 origin = first.corner(0, 0);
+    for (std::size_t pose = 0; pose < 2; ++pose) {
+      a[pose][k] = subtract(first.corner(pose, k), origin);
+      b[pose][k] = subtract(second.corner(pose, k), origin);
+    }
+    mid_a[k] = {hn::Add(a[0][k].x, a[1][k].x), hn::Add(a[0][k].y, a[1][k].y), hn::Add(a[0][k].z, a[1][k].z)};
+    mid_b[k] = {hn::Add(b[0][k].x, b[1][k].x), hn::Add(b[0][k].y, b[1][k].y), hn::Add(b[0][k].z, b[1][k].z)};
+  }
+  const auto parts = [&](const Vector3& n) HWY_ATTR {
+    const Vector least = hn::Mul(hn::Sqrt(dot_product(n, n)), hn::Set(kFloats, stray * (1 + 0x1p-18F)));
+    auto above = hn::FirstN(kFloats, kLanes), below = above;
+    for (std::size_t pose = 0; pose < 2; ++pose) {
+      Vector low[2], high[2];
+      for (std::size_t which = 0; which < 2; ++which) {
+        const Vector3(&corners)[3] = which == 0 ? a[pose] : b[pose];
+        const Vector p = dot_product(n, corners[0]), q = dot_product(n, corners[1]), r = dot_product(n, corners[2]);
+        low[which] = hn::Min(hn::Min(p, q), r);
+        high[which] = hn::Max(hn::Max(p, q), r);
+      }
+      above = hn::And(above, hn::Gt(hn::Sub(low[1], high[0]), least));
+      below = hn::And(below, hn::Gt(hn::Sub(low[0], high[1]), least));
+    }
+    return hn::Or(above, below);
+  };
+  const auto of_a = parts(cross_product(subtract(mid_a[1], mid_a[0]), subtract(mid_a[2], mid_a[0])));
+  const auto of_b = parts(cross_product(subtract(mid_b[1], mid_b[0]), subtract(mid_b[2], mid_b[0])));
+  const auto sum = [&](const Vector3(&p)[3]) HWY_ATTR {
+    return Vector3{hn::Add(hn::Add(p[0].x, p[1].x), p[2].x), hn::Add(hn::Add(p[0].y, p[1].y), p[2].y),
+                   hn::Add(hn::Add(p[0].z, p[1].z), p[2].z)};
+  };
+  const auto between = parts(subtract(sum(mid_b), sum(mid_a)));
+  return bits_of(hn::Or(hn::Or(of_a, of_b), between));
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace spherechain
+HWY_AFTER_NAMESPACE();
+
+#endif

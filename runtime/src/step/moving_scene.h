@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// What the stages of a step job hand to each other.
+#pragma once
+
+#include "skin/scene.h"
+
+namespace spherechain {
+
+// A skin between two poses of one step, or of a piece of it. Vertices go straight from where they start to where they
+// end, but for `strays`.
+struct MovingScene {
+  const ContactScene &start, &end;
+  // Scratch memory.
+  float* strays;  // of a sphere: how far a vertex may be off its straight line; find_moving_spheres() adds roundings
+  BoxColumns spheres, clusters;  // around all of the way
+  std::uint8_t* is_swept;        // a sphere's: are its clusters' boxes there?
+};
+
+struct MovingBodies {
+  const MovingScene &a, &b;
+  bool are_one;
+};
+
+// Two triangles that may touch on the way. Corners at the start, and at the end.
+struct MovingCandidate {
+  std::size_t cluster_a, cluster_b;
+  std::size_t triangle_a, triangle_b;  // in Surface::triangles of body a and of body b
+  float stray;                         // of corners of both, added
+  TriangleCorners a[2], b[2];
+};
+
+class StepCollector;
+
+// Lists the pairs of spheres that may touch on the way. `pairs` has room for all that there are. The scenes then have
+// their spheres' boxes.
+void find_moving_spheres(Target resolved, const MovingBodies& bodies, Span<Pair>& pairs);
+
+// Hands the collector all triangles of the listed spheres that touch on the way, and a few more.
+void find_moving_candidates(Target resolved, const MovingBodies& bodies, Span<const Pair> pairs,
+                            StepCollector& collector);
+
+}  // namespace spherechain

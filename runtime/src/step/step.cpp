@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: MIT
+// A step is cut into pieces, each so short that the vertices' ways are nearly straight in it. In each piece: pairs of
+// spheres that may touch on the way, then their triangles. Contacts at the step's ends are found as those of a frame.
+#include <algorithm>
+#include <cmath>
+
+#include "asset/memory.h"
+#include "asset/status.h"
+#include "pairs/filter.h"
+#include "simd/simd.h"
+#include "skin/collector.h"
+#include "spherechain/steps.h"
+#include "step/motion.h"
+#include "step/step_collector.h"
+
+namespace spherechain {
+namespace {
+
+constexpr float kTolerance = 1e-4F;
+constexpr double kWidest = 1.0 / 256;  // what vertices may stray in a piece, in heights
+constexpr int kMostHalvings = 6;       // of the step, into pieces
+
+// A body, on its way through the pieces.
+struct Walker {
+  const sc_motion* motion = nullptr;
+  const AssetView* asset = nullptr;
+  Surface surface;
+  BodyMotion way;
+  ContactScene start, end;
+  BoxColumns spheres, clusters;
+  std::uint8_t* is_swept = nullptr;
+  float* strays = nullptr;  // in a piece
+  float *bones[2] = {}, *morph_weights[2] = {};
+
+  void take(WordMemory& memory, const AssetView& of, std::size_t joint_count) {
+    const SkinSizes& sizes = of.skin().sizes;
+    const std::size_t sphere_count = of.spheres().size;
+    lay_out(of, memory, start);
+    lay_out(of, memory, end);
+    way.take(memory, of, joint_count);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      memory.take(spheres.low[axis], sphere_count);
+      memory.take(spheres.high[axis], sphere_count);
+      memory.take(clusters.low[axis], sizes.clusters);
+      memory.take(clusters.high[axis], sizes.clusters);
+    }
+    memory.take(is_swept, sphere_count);
+    memory.take(strays, sphere_count);
+    for (std::size_t side = 0; side < 2; ++side) {
+      memory.take(bones[side], 12 * of.bone_count());
+      memory.take(morph_weights[side], of.morph_count());
+    }
+  }
+  double widest() const {
+    const Span<const float> all = way.strays();
+    return all.size == 0 ? 0 : double{*std::max_element(all.begin(), all.end())};
+  }
+  MovingScene moving() const { return {start, end, strays, spheres, clusters, is_swept}; }
+};
+
+struct Room {
+  Walker a, b;
+  StepTable table;
+  PartTable parts;
+  Span<Pair> pairs;  // of spheres
+
+  void take(WordMemory& memory, const AssetView& asset_a, std::size_t joints_a, const AssetView* asset_b,
+            std::size_t joints_b) {
+    a.take(memory, asset_a, joints_a);
+    const std::size_t count = asset_a.spheres().size;
+    std::size_t pair_count = count * (count + 1) / 2, parts_b = asset_a.part_count();
+    if (asset_b != nullptr) {
+      b.take(memory, *asset_b, joints_b);
+      pair_count = count * asset_b->spheres().size;
+      parts_b = asset_b->part_count();
+    }
+    table.take(memory, asset_a.part_count(), parts_b, asset_b == nullptr);
+    parts.take(memory, asset_a.part_count(), parts_b, asset_b == nullptr);
+    memory.take(pairs, pair_count);
+  }
+};
+
+std::size_t scratch_words(const sc_motion* a, const sc_motion* b) {
+  if (a == nullptr || check_asset(a->body.asset) != SC_OK || (b != nullptr && check_asset(b->body.asset) != SC_OK)) {
+    return 0;
+  }
+  WordMemory memory(nullptr);
+  Room room;
+  room.take(memory, view_of(*a->body.asset), a->joint_count, b == nullptr ? nullptr : &view_of(*b->body.asset),
+            b == nullptr ? 0 : b->joint_count);
+  return memory.used();
+}
+
+// What a job reads of a motion.
+struct MotionRanges {
+  BodyRanges body;
+  MemoryRange end_vertices, end_bones, end_weights, start_joints, end_joints, parents, joint_of_bone;
+
+  explicit MotionRanges(const sc_motion& motion)
+      : body(motion.body),
+        end_vertices(range_of_vertices(view_of(*motion.body.asset), motion.end)),
+        end_bones(range_of_bones(view_of(*motion.body.asset), motion.end)),
+        end_weights(range_of_morph_weights(view_of(*motion.body.asset), motion.end)),
+        start_joints(range_of(Span<const sc_transform>{motion.start_joints, motion.joint_count})),
+        end_joints(range_of(Span<const sc_transform>{motion.end_joints, motion.joint_count})),
+        parents(range_of(Span<const std::uint32_t>{motion.parents, motion.joint_count})),
+        joint_of_bone(range_of(
+            Span<const std::uint32_t>{motion.joint_of_bone, view_of(*motion.body.asset).bone_count()})) {}
+
+  bool overlaps(const MemoryRange& out) const {
+    return any_shared({out}, {body.vertices, body.bones, body.morph_weights, body.skin_table, body.ignored_parts,
+                              end_vertices, end_bones, end_weights, start_joints, end_joints, parents, joint_of_bone});
+  }
+};
+
+bool has_two(const StepJob& job) { return job.b.body.asset != nullptr; }
+
+std::size_t scratch_words(const StepJob& job) { return scratch_words(&job.a, has_two(job) ? &job.b : nullptr); }
+
+bool is_aliased(const StepJob& job) {
+  const MemoryRange contacts = range_of(Span<StepContact>{job.contacts, job.contact_capacity});
+  const MemoryRange scratch = range_of(Span<std::uint64_t>{job.scratch, scratch_words(job)});
+  const FilterRanges filter = ranges_of(job.filter);
+  bool shared = any_shared({contacts, scratch}, {filter.ignored, filter.disabled});
+  for (const MemoryRange& out : {contacts, scratch}) {
+    shared = shared || MotionRanges(job.a).overlaps(out) || (has_two(job) && MotionRanges(job.b).overlaps(out));
+  }
+  return shared;
+}
+
+Status check(const StepJob& job, Target& resolved, Room& room) {
+  Status status = check_motion(job.a, room.a.surface);
+  if (status == SC_OK && has_two(job)) {
+    status = check_motion(job.b, room.b.surface);
+  }
+  if (status == SC_OK && job.filter != nullptr) {
+    status = has_two(job) ? refuse(SC_BAD_VALUE, SC_FIELD_FILTER) : check_filter(view_of(*job.a.body.asset), *job.filter);
+  }
+  if (status != SC_OK) {
+    return status;
+  }
+  const Status lists[] = {check_list(job.a.body.ignored_parts, 0, SC_FIELD_IGNORED_PARTS),
+                          check_list(job.b.body.ignored_parts, 0, SC_FIELD_IGNORED_PARTS),
+                          check_list(job.scratch, 1, SC_FIELD_SCRATCH),
+                          check_list(job.contacts, job.contact_capacity, SC_FIELD_CONTACTS)};
+  for (const Status& list : lists) {
+    if (list != SC_OK) {
+      return list;
+    }
+  }
+  if (!(job.tolerance >= 0) || !(job.tolerance <= 1)) {
+    return refuse(SC_BAD_VALUE, SC_FIELD_TOLERANCE);
+  }
+  if (job.scratch_words < scratch_words(job)) {
+    return refuse(SC_TOO_SMALL, SC_FIELD_SCRATCH);
+  }
+  if (!resolve_target(job.target, resolved)) {
+    return refuse(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET);
+  }
+  return is_aliased(job) ? refuse(SC_ALIASED, SC_FIELD_OUTPUT) : done();
+}
+
+// One run of a checked job.
+class Step {
+ public:
+  Step(const StepJob& job, Target resolved, Room& room)
+      : job_(job), resolved_(resolved), room_(room), are_one_(!has_two(job)), b_(are_one_ ? room.a : room.b) {}
+
+  std::size_t run() {
+    Walker &a = room_.a, &b = b_;
+    begin(a, job_.a);
+    if (!are_one_) {
+      begin(b, job_.b);
+    }
+    const double height{a.asset->info().height};
+    const double tolerance = height * double{job_.tolerance > 0 ? job_.tolerance : kTolerance};
+    room_.table.clear();
+    StepCollector collector({{&a.surface, are_one_ ? nullptr : job_.a.body.ignored_parts}, &a.way},
+                            {{&b.surface, are_one_ ? nullptr : job_.b.body.ignored_parts}, &b.way}, are_one_,
+                            room_.table, tolerance);
+    double share = 1;
+    const double widest = std::max(a.widest(), b.widest());
+    for (int k = 0; k < kMostHalvings && widest * share * share > kWidest * height; ++k) {
+      share /= 2;
+    }
+    if (share < 1) {
+      pose_at(1, true);
+      note_ends({}, false, collector);
+    }
+    pose_at(0, false);
+    if (share < 1) {
+      note_ends({}, true, collector);
+    }
+    for (double from = 0; from < 1; from += share) {
+      pose_at(from + share, true);
+      walk(from, share, collector);
+      std::swap(a.start, a.end);
+      if (!are_one_) {
+        std::swap(b.start, b.end);
+      }
+    }
+    return collector.list({job_.contacts, job_.contact_capacity});
+  }
+
+ private:
+  static void begin(Walker& walker, const sc_motion& motion) {
+    walker.motion = &motion;
+    walker.asset = &view_of(*motion.body.asset);
+    walker.way.start(motion, *walker.asset, walker.surface);
+  }
+
+  void pose_at(double time, bool at_end) {
+    const auto pose = [&](Walker& walker) {
+      ContactScene& scene = at_end ? walker.end : walker.start;
+      const std::size_t side = &scene == &walker.start ? 0 : 1;
+      set_pose(*walker.asset, walker.surface, walker.way.pose_at(time, walker.bones[side], walker.morph_weights[side]),
+               job_.filter, scene);
+    };
+    pose(room_.a);
+    if (!are_one_) {
+      pose(room_.b);
+    }
+  }
+
+  // Contacts in the pose of one end, of the listed spheres; of a null list, of all.
+  void note_ends(Span<const Pair> pairs, bool at_start, StepCollector& collector) {
+    ContactScene &a = at_start ? room_.a.start : room_.a.end, &b = at_start ? b_.start : b_.end;
+    a.candidates = pairs;
+    room_.parts.clear();
+    const ContactLists lists{{}, {}, {}, false};
+    ContactCollector found = are_one_ ? ContactCollector(room_.a.surface, room_.parts, lists)
+                                      : ContactCollector({&room_.a.surface, job_.a.body.ignored_parts},
+                                                         {&b_.surface, job_.b.body.ignored_parts}, room_.parts, lists);
+    find_candidates(resolved_, {a, b, are_one_}, found);
+    for (std::size_t w = 0; w < room_.parts.word_count; ++w) {
+      for (std::uint64_t word = room_.parts.seen[w]; word != 0; word &= word - 1) {
+        collector.note_ends(room_.parts.contacts[64 * w + lowest_bit(word)], at_start);
+      }
+    }
+  }
+
+  void walk(double from, double share, StepCollector& collector) {
+    prepare(room_.a, share);
+    if (!are_one_) {
+      prepare(b_, share);
+    }
+    const MovingScene a = room_.a.moving(), b = b_.moving();
+    const MovingBodies bodies{a, are_one_ ? a : b, are_one_};
+    Span<Pair> pairs{room_.pairs.data, 0};
+    find_moving_spheres(resolved_, bodies, pairs);
+    for (ContactScene* scene : {&room_.a.start, &room_.a.end, &b_.start, &b_.end}) {
+      scene->has_sphere_boxes = true;
+    }
+    const Span<const Pair> listed{pairs.data, pairs.size};
+    if (pairs.size == 0) {
+      return;
+    }
+    if (share == 1) {
+      note_ends(listed, true, collector);
+      note_ends(listed, false, collector);
+    }
+    collector.begin_piece(from, from + share);
+    find_moving_candidates(resolved_, bodies, listed, collector);
+  }
+
+  static void prepare(Walker& walker, double share) {
+    const std::size_t count = walker.asset->spheres().size;
+    std::fill(walker.is_swept, walker.is_swept + count, std::uint8_t{0});
+    const Span<const float> strays = walker.way.strays();
+    for (std::size_t s = 0; s < count; ++s) {
+      walker.strays[s] = static_cast<float>(share * share) * strays[s];
+    }
+  }
+
+  const StepJob& job_;
+  Target resolved_;
+  Room& room_;
+  bool are_one_;
+  Walker& b_;
+};
+
+}  // namespace
+}  // namespace spherechain
+
+using namespace spherechain;
+
+extern "C" {
+
+size_t sc_step_scratch_words(const sc_motion* a, const sc_motion* b) noexcept { return scratch_words(a, b); }
+
+sc_status sc_find_step_contacts(sc_step_job* job) noexcept {
+  if (job == nullptr) {
+    return refuse(SC_NULL, SC_FIELD_NONE);
+  }
+  Target resolved{};
+  Room room;
+  const Status status = check(*job, resolved, room);
+  if (status != SC_OK) {
+    return status;
+  }
+  WordMemory memory(job->scratch);
+  const bool two = has_two(*job);
+  room.take(memory, view_of(*job->a.body.asset), job->a.joint_count,
+            two ? &view_of(*job->b.body.asset) : nullptr, two ? job->b.joint_count : 0);
+  job->contact_count = Step(*job, resolved, room).run();
+  return job->contact_count > job->contact_capacity && job->contacts != nullptr
+             ? refuse(SC_OVERFLOW, SC_FIELD_CONTACTS)
+             : done();
+}
+
+}  // extern "C"

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: MIT
+#include "step/step_collector.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "pairs/pair_bits.h"
+#include "simd/arithmetic.h"
+
+namespace spherechain {
+namespace {
+
+constexpr double kNever = 2, kNoLast = -1;
+
+SixCorners corners_of(const TriangleCorners& a, const TriangleCorners& b) {
+  SixCorners out;
+  for (std::size_t k = 0; k < 3; ++k) {
+    out.p[k] = to_double(a.p[k]);
+    out.p[3 + k] = to_double(b.p[k]);
+  }
+  return out;
+}
+
+Vec3 middle_of(const Vec3& p, const Vec3& q) {
+  return to_float(0.5 * (to_double(p) + to_double(q)));
+}
+
+}  // namespace
+
+StepEntry& StepCollector::entry(std::uint32_t part_a, std::uint32_t part_b) {
+  bool is_new = false;
+  StepEntry& out = table_.at(part_a, part_b, are_one_, is_new);
+  if (is_new) {
+    out = {};
+    out.contact.part_a = part_a;
+    out.contact.part_b = part_b;
+    out.contact.triangle_a = out.contact.triangle_b = SC_NO_TRIANGLE;
+    out.first = kNever;
+    out.last = kNoLast;
+  }
+  return out;
+}
+
+void StepCollector::note_ends(const PartContact& contact, bool at_start) {
+  StepEntry& of = entry(contact.part_a, contact.part_b);
+  if (at_start) {
+    of.contact.at_start = 1;
+    of.contact.at = middle_of(contact.low, contact.high);
+    of.first = 0;
+    of.last = std::max(of.last, 0.0);
+  } else {
+    of.contact.at_end = 1;
+    of.last = 1;
+  }
+}
+
+SixCorners StepCollector::corners_at(const MovingCandidate& candidate, double time) {
+  SixCorners out;
+  a_.motion->corners_at(time, candidate.cluster_a, candidate.triangle_a, out.p);
+  b_.motion->corners_at(time, candidate.cluster_b, candidate.triangle_b, out.p + 3);
+  return out;
+}
+
+// The first time, on the way from one time to another, which may be the earlier, at which the two touch, up to `until`;
+// kNever: none.
+double StepCollector::search(const MovingCandidate& candidate, const Way& way, double from, double to, double until) {
+  const double limit = std::min((until - from) / (to - from), 1.0);
+  const Approach found = approach(way, limit);
+  if (found.outcome == Outcome::kApart) {
+    return kNever;
+  }
+  if (found.outcome == Outcome::kTouch) {
+    return from + found.time * (to - from);
+  }
+  const double middle = 0.5 * (from + to);
+  const SixCorners corners = corners_at(candidate, middle);
+  if (found.time < 0.5) {
+    const double first = search(candidate, {way.from, corners, way.stray / 4, way.step}, from, middle,
+                                limit < 0.5 ? until : middle);
+    if (first != kNever || limit <= 0.5) {
+      return first;
+    }
+  }
+  return search(candidate, {corners, way.to, way.stray / 4, way.step}, middle, to, until);
+}
+
+void StepCollector::decide(const MovingCandidate& candidate) {
+  std::uint32_t part_a = a_.skin.surface->parts[candidate.triangle_a],
+                part_b = b_.skin.surface->parts[candidate.triangle_b];
+  std::uint32_t triangle_a = a_.skin.surface->triangles[candidate.triangle_a],
+                triangle_b = b_.skin.surface->triangles[candidate.triangle_b];
+  const bool is_swapped = are_one_ && part_b < part_a;
+  if (is_swapped) {
+    std::swap(part_a, part_b);
+    std::swap(triangle_a, triangle_b);
+  }
+  const std::size_t place = table_.place(part_a, part_b, are_one_);
+  const bool is_known = (table_.seen[place / 64] >> place % 64 & 1) != 0;
+  const StepEntry* const known = is_known ? &table_.contacts[place] : nullptr;
+  const double first = known == nullptr ? kNever : known->first, last = known == nullptr ? kNoLast : known->last;
+  const bool may_begin = first > begin_, may_end = last < end_;
+  if (!may_begin && !may_end) {
+    return;
+  }
+  if (are_one_) {
+    if (share_a_position(*a_.skin.surface, {candidate.cluster_a, candidate.triangle_a},
+                         {candidate.cluster_b, candidate.triangle_b}) ||
+        intersect_at_rest(*a_.skin.surface, {std::min(triangle_a, triangle_b), std::max(triangle_a, triangle_b)})) {
+      return;
+    }
+  } else if (a_.skin.ignores(candidate.triangle_a) || b_.skin.ignores(candidate.triangle_b)) {
+    return;
+  }
+  const double share = end_ - begin_;
+  const double stray = share * share *
+                       (double{a_.motion->strays()[a_.skin.surface->clusters[candidate.cluster_a].sphere]} +
+                        double{b_.motion->strays()[b_.skin.surface->clusters[candidate.cluster_b].sphere]});
+  const Way way{corners_of(candidate.a[0], candidate.b[0]), corners_of(candidate.a[1], candidate.b[1]), stray,
+                tolerance_ / 2};
+  double begins = kNever;
+  if (may_begin) {
+    begins = search(candidate, way, begin_, end_, std::min(first, end_));
+    if (begins == kNever && first > end_) {
+      return;  // nor does it end
+    }
+  }
+  if (begins != kNever) {
+    StepEntry& of = entry(part_a, part_b);
+    if (begins < of.first ||
+        Pair{triangle_a, triangle_b} < Pair{of.contact.triangle_a, of.contact.triangle_b}) {
+      of.first = begins;
+      of.contact.triangle_a = triangle_a;
+      of.contact.triangle_b = triangle_b;
+      const SixCorners then = way.at((begins - begin_) / share);
+      const Segment segment = crossing_segment(then.triangle(0), then.triangle(3));
+      of.contact.at = middle_of(segment.from, segment.to);
+    }
+  }
+  if (may_end) {
+    const double ends = search(candidate, {way.to, way.from, stray, way.step}, end_, begin_, std::max(last, begin_));
+    if (ends != kNever) {
+      StepEntry& of = entry(part_a, part_b);
+      of.last = std::max(of.last, ends);
+    }
+  }
+}
+
+std::size_t StepCollector::list(Span<StepContact> out) const {
+  std::size_t count = 0;
+  for (std::size_t w = 0; w < table_.word_count; ++w) {
+    for (std::uint64_t word = table_.seen[w]; word != 0; word &= word - 1, ++count) {
+      if (count < out.size) {
+        const StepEntry& of = table_.contacts[64 * w + lowest_bit(word)];
+        out[count] = of.contact;
+        // What touches at the end, and no earlier for all that was seen, touches from then on.
+        out[count].begin = static_cast<float>(std::min(of.first, 1.0));
+        out[count].end = static_cast<float>(std::max(of.last, std::min(of.first, 1.0)));
+      }
+    }
+  }
+  return count;
+}
+
+}  // namespace spherechain

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// Of each two body parts: when they first touch in a step, and when last.
+#pragma once
+
+#include "skin/left_out.h"
+#include "skin/scene_setup.h"
+#include "step/approach.h"
+#include "step/motion.h"
+#include "step/moving_scene.h"
+
+namespace spherechain {
+
+struct StepEntry {
+  StepContact contact;
+  double first, last;  // times of the step; 2 and -1: none found
+};
+using StepTable = TableOfParts<StepEntry>;
+
+// A body on its way.
+struct StepBody {
+  Skin skin;
+  BodyMotion* motion;
+};
+
+// Kernels call decide(), which is not inline: they must not call templates of the standard library.
+class StepCollector {
+ public:
+  StepCollector(const StepBody& a, const StepBody& b, bool are_one, const StepTable& table, double tolerance)
+      : a_(a), b_(b), are_one_(are_one), table_(table), tolerance_(tolerance) {}
+
+  // Those have contacts at the start of the step, or at its end: of one body in order.
+  void note_ends(const PartContact& contact, bool at_start);
+  // What follows is of that part of the step.
+  void begin_piece(double begin, double end) {
+    begin_ = begin;
+    end_ = end;
+  }
+  void decide(const MovingCandidate& candidate);
+  // Writes the least entries that fit; gives how many there are.
+  std::size_t list(Span<StepContact> out) const;
+
+ private:
+  StepEntry& entry(std::uint32_t part_a, std::uint32_t part_b);
+  double search(const MovingCandidate& candidate, const Way& way, double from, double to, double until);
+  SixCorners corners_at(const MovingCandidate& candidate, double time);
+
+  StepBody a_, b_;
+  bool are_one_;
+  StepTable table_;
+  double tolerance_, begin_ = 0, end_ = 1;
+};
+
+}  // namespace spherechain

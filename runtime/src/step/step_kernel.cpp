@@ -1,0 +1,388 @@
+// SPDX-License-Identifier: MIT
+// As contacts_kernel.cpp, for skins on their way from one pose to the next. Vertices go straight, all but `strays`. So
+// for any fixed direction n the gap between two sets of vertices, min n.b - max n.a, is a concave function of time: where
+// it is positive at the start and at the end, it is so all the time. Spheres' and clusters' boxes, hulls, spans and
+// triangles are parted by that; what is left goes to the collector.
+#include <cstring>
+
+#include "pairs/pair_bits.h"
+#include "simd/arithmetic.h"
+#include "simd/simd.h"
+#include "step/moving_scene.h"
+#include "step/step_collector.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "step/step_kernel.cpp"
+#include "simd/highway.h"
+#include "skin/pair_list.h"
+#include "skin/scene_bounds.h"
+#include "step/moving_blocks.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace spherechain {
+namespace HWY_NAMESPACE {
+
+constexpr float kRootOfTwo = 1.4142137F;
+
+// Boxes [i, end) around both, `stray` wider: a register of them.
+HWY_INLINE void sweep_boxes(const BoxColumns& from, const BoxColumns& to, Vector stray, std::size_t i,
+                            std::size_t end, const BoxColumns& out) {
+  constexpr Floats kFloats;
+  const auto used = hn::FirstN(kFloats, end - i);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Vector low = hn::Min(hn::LoadU(kFloats, from.low[axis] + i), hn::LoadU(kFloats, to.low[axis] + i));
+    const Vector high = hn::Max(hn::LoadU(kFloats, from.high[axis] + i), hn::LoadU(kFloats, to.high[axis] + i));
+    hn::BlendedStore(hn::Sub(low, stray), used, kFloats, out.low[axis] + i);
+    hn::BlendedStore(hn::Add(high, stray), used, kFloats, out.high[axis] + i);
+  }
+}
+
+// What roundings of a box' vertices may be, and of a gap along a direction: 2^-20 of the greatest coordinate.
+HWY_INLINE Vector rounding_of(const BoxColumns& boxes, std::size_t i) {
+  constexpr Floats kFloats;
+  Vector most = hn::Zero(kFloats);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    most = hn::Max(hn::Abs(hn::LoadU(kFloats, boxes.low[axis] + i)), most);
+    most = hn::Max(hn::Abs(hn::LoadU(kFloats, boxes.high[axis] + i)), most);
+  }
+  return hn::IfThenElseZero(hn::Lt(most, hn::Set(kFloats, 0x1p60F)), hn::Mul(most, hn::Set(kFloats, 0x1p-20F)));
+}
+
+HWY_NOINLINE void bound_ways(const MovingScene& scene) {
+  constexpr Floats kFloats;
+  for (const ContactScene* pose : {&scene.start, &scene.end}) {
+    if (!pose->has_sphere_boxes) {
+      if (!pose->has_hulls) {
+        bound_clusters(*pose, 0, pose->sphere_count);
+      }
+      bound_spheres(*pose);
+    }
+  }
+  const std::size_t end = scene.start.sphere_count;
+  for (std::size_t s = 0; s < end; s += kLanes) {
+    const Vector rounding = hn::Max(rounding_of(scene.start.spheres, s), rounding_of(scene.end.spheres, s));
+    const Vector stray = hn::Add(hn::LoadU(kFloats, scene.strays + s), rounding);
+    hn::BlendedStore(stray, hn::FirstN(kFloats, end - s), kFloats, scene.strays + s);
+    sweep_boxes(scene.start.spheres, scene.end.spheres, stray, s, end, scene.spheres);
+  }
+}
+
+// Boxes of the sphere's clusters around all of the way.
+HWY_INLINE void sweep_once(const MovingScene& scene, std::size_t sphere) {
+  if (scene.is_swept[sphere] != 0) {
+    return;
+  }
+  scene.is_swept[sphere] = 1;
+  bound_once(scene.start, sphere);
+  bound_once(scene.end, sphere);
+  const Vector stray = hn::Set(Floats(), scene.strays[sphere]);
+  const std::size_t end = scene.start.first_cluster[sphere + 1];
+  for (std::size_t i = scene.start.first_cluster[sphere]; i < end; i += kLanes) {
+    sweep_boxes(scene.start.clusters, scene.end.clusters, stray, i, end, scene.clusters);
+  }
+}
+
+// Do two boxes that go straight from one place to another miss each other all the time? Each side is passed once, so
+// they touch from one time to another, if at all. `stray` is large beside the roundings.
+HWY_INLINE bool pass_by(const Box& start_a, const Box& end_a, const Box& start_b, const Box& end_b, float stray) {
+  float first = 0, last = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float starts[2] = {start_b.high[axis] - start_a.low[axis] + stray,
+                             start_a.high[axis] - start_b.low[axis] + stray};
+    const float ends[2] = {end_b.high[axis] - end_a.low[axis] + stray, end_a.high[axis] - end_b.low[axis] + stray};
+    for (std::size_t side = 0; side < 2; ++side) {
+      if (starts[side] < 0 && ends[side] < 0) {
+        return true;
+      }
+      if (starts[side] < 0) {
+        const float at = starts[side] / (starts[side] - ends[side]);
+        first = at > first ? at : first;
+      } else if (ends[side] < 0) {
+        const float at = starts[side] / (starts[side] - ends[side]);
+        last = at < last ? at : last;
+      }
+    }
+  }
+  return first > last;
+}
+
+// Of two directions, one of the start's and the end's middle.
+HWY_INLINE void middle_direction(const Box& start_a, const Box& end_a, const Box& start_b, const Box& end_b,
+                                 float (&direction)[3]) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    direction[axis] = ((start_b.low[axis] + start_b.high[axis]) - (start_a.low[axis] + start_a.high[axis])) +
+                      ((end_b.low[axis] + end_b.high[axis]) - (end_a.low[axis] + end_a.high[axis]));
+  }
+}
+
+HWY_INLINE float length_of(const float (&direction)[3]) {
+  constexpr hn::CappedTag<float, 1> kOne;
+  const float squared =
+      (direction[0] * direction[0] + direction[1] * direction[1]) + direction[2] * direction[2];
+  return hn::GetLane(hn::Sqrt(hn::Set(kOne, squared)));
+}
+
+// min n.b - max n.a of two sets of points, x then y then z; lanes up to a vector past the count may be dirt.
+HWY_INLINE float gap_along(const float (&direction)[3], const float* const (&a)[3], std::size_t count_a,
+                           const float* const (&b)[3], std::size_t count_b) {
+  constexpr Floats kFloats;
+  const Vector x = hn::Set(kFloats, direction[0]), y = hn::Set(kFloats, direction[1]),
+               z = hn::Set(kFloats, direction[2]);
+  const auto along = [&](const float* const (&p)[3], std::size_t i) HWY_ATTR {
+    const Vector first = hn::Mul(x, hn::LoadU(kFloats, p[0] + i));
+    return hn::MulAdd(z, hn::LoadU(kFloats, p[2] + i), hn::MulAdd(y, hn::LoadU(kFloats, p[1] + i), first));
+  };
+  Vector most = hn::Set(kFloats, -FLT_MAX), least = hn::Set(kFloats, FLT_MAX);
+  for (std::size_t i = 0; i < count_a; i += kLanes) {
+    most = hn::IfThenElse(hn::FirstN(kFloats, count_a - i), hn::Max(along(a, i), most), most);
+  }
+  for (std::size_t i = 0; i < count_b; i += kLanes) {
+    least = hn::IfThenElse(hn::FirstN(kFloats, count_b - i), hn::Min(along(b, i), least), least);
+  }
+  return hn::GetLane(hn::MinOfLanes(kFloats, least)) - hn::GetLane(hn::MaxOfLanes(kFloats, most));
+}
+
+// Does one plane, that keeps its direction, part two spheres' hulls at the start and at the end? See hulls_apart().
+HWY_INLINE bool hulls_stay_apart(const MovingScene& scene_a, std::size_t a, const MovingScene& scene_b, std::size_t b,
+                                 float stray) {
+  float direction[3];
+  middle_direction(box_at(scene_a.start.spheres, a), box_at(scene_a.end.spheres, a),
+                   box_at(scene_b.start.spheres, b), box_at(scene_b.end.spheres, b), direction);
+  const float length = length_of(direction);
+  const Hull& hull_a = scene_a.start.surface->hulls.data[a];
+  const Hull& hull_b = scene_b.start.surface->hulls.data[b];
+  const auto is_gap = [&](const ContactScene& pose_a, const ContactScene& pose_b) HWY_ATTR {
+    const float* const p = pose_a.hulls + 3 * std::size_t{hull_a.first_point};
+    const float* const q = pose_b.hulls + 3 * std::size_t{hull_b.first_point};
+    const std::size_t m = hull_a.point_count, n = hull_b.point_count;
+    const float gap = gap_along(direction, {p, p + m, p + 2 * m}, m, {q, q + n, q + 2 * n}, n);
+    const float margin = pose_a.hull_margins[a] + pose_b.hull_margins[b] + stray;
+    return gap > length * margin * (1 + 0x1p-20F) + kMinLength;
+  };
+  return is_gap(scene_a.start, scene_b.start) && is_gap(scene_a.end, scene_b.end);
+}
+
+// Bit k: a's sphere first + k is to be paired with b's sphere b. Of one body only those before b.
+HWY_INLINE std::uint64_t paired(const MovingBodies& bodies, std::size_t first, std::size_t b) {
+  const ContactScene& scene = bodies.a.start;
+  std::uint64_t bits = ~std::uint64_t{0};
+  if (bodies.are_one) {
+    bits = ~bits_at(scene.ignored.data, scene.ignored.size, ignored_bit(first, b));
+  }
+  if (scene.disabled.size > 0) {
+    bits &= ~bits_at(scene.disabled.data, scene.disabled.size, first);
+  }
+  const std::size_t count = (bodies.are_one ? b : scene.sphere_count) - first;
+  return bits & (~std::uint64_t{0} >> (64 - (count < 64 ? count : 64)));
+}
+
+using SpherePairs = PairList<512>;
+
+HWY_NOINLINE void put_spheres(const MovingBodies& bodies, SpherePairs& found, Span<Pair>& pairs) {
+  const MovingScene &a_scene = bodies.a, &b_scene = bodies.b;
+  const bool have_hulls = a_scene.start.has_hulls && a_scene.end.has_hulls && b_scene.start.has_hulls &&
+                          b_scene.end.has_hulls;
+  for (std::size_t k = 0; k < found.count; ++k) {
+    const auto b = static_cast<std::size_t>(found.a[k]), a = static_cast<std::size_t>(found.b[k]);
+    const float stray = a_scene.strays[a] + b_scene.strays[b];
+    if (pass_by(box_at(a_scene.start.spheres, a), box_at(a_scene.end.spheres, a), box_at(b_scene.start.spheres, b),
+                box_at(b_scene.end.spheres, b), stray) ||
+        (have_hulls && hulls_stay_apart(a_scene, a, b_scene, b, stray))) {
+      continue;
+    }
+    pairs.data[pairs.size] = {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)};
+    ++pairs.size;
+  }
+  found.count = 0;
+}
+
+void find_spheres(const MovingBodies& bodies, Span<Pair>& pairs) {
+  bound_ways(bodies.a);
+  if (!bodies.are_one) {
+    bound_ways(bodies.b);
+  }
+  SpherePairs found;
+  std::size_t count = 0;
+  const BoxColumns boxes = bodies.a.spheres;
+  for (std::size_t b = 0; b < bodies.b.start.sphere_count; ++b) {
+    if (!is_enabled(bodies.b.start, b)) {
+      continue;
+    }
+    const BoxProbe probe(box_at(bodies.b.spheres, b));
+    const std::size_t end = bodies.are_one ? b : bodies.a.start.sphere_count;
+    std::uint64_t bits = 0;
+    for (std::size_t first = 0; first < end; first += kLanes, bits >>= kLanes) {
+      if (first % 64 == 0) {
+        bits = paired(bodies, first, b);
+      }
+      count = found.put(count, b, first, hn::AndNot(probe.misses(boxes, first), mask_of(bits)));
+      if (!found.has_room(count)) {
+        found.count = count;
+        put_spheres(bodies, found, pairs);
+        count = 0;
+      }
+    }
+  }
+  found.count = count;
+  put_spheres(bodies, found, pairs);
+}
+
+// Do the spans along one direction miss each other at the start and at the end, in the same order?
+HWY_INLINE bool spans_stay_apart(const MovingBodies& bodies, std::size_t a, std::size_t b, float stray) {
+  constexpr hn::CappedTag<float, kSpanLanes> d;
+  const auto wide = hn::Set(d, stray * kRootOfTwo * (1 + 0x1p-20F));  // the diagonals' length
+  const auto span = [&](const ContactScene& scene, std::size_t cluster) HWY_ATTR {
+    return scene.spans + 2 * kSpanLanes * cluster;
+  };
+  const float *const a0 = span(bodies.a.start, a), *const a1 = span(bodies.a.end, a),
+                    *const b0 = span(bodies.b.start, b), *const b1 = span(bodies.b.end, b);
+  for (std::size_t k = 0; k < kSpanLanes; k += hn::MaxLanes(d)) {
+    const auto above = [&](const float* one, const float* other) HWY_ATTR {  // one above the other
+      return hn::Gt(hn::LoadU(d, one + k), hn::Add(hn::LoadU(d, other + kSpanLanes + k), wide));
+    };
+    const auto apart = hn::Or(hn::And(above(a0, b0), above(a1, b1)), hn::And(above(b0, a0), above(b1, a1)));
+    if (!hn::AllFalse(d, apart)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// Does a plane across the line between two clusters part them at the start and at the end?
+HWY_NOINLINE bool plane_stays_between(const MovingBodies& bodies, std::size_t a, std::size_t b, float stray) {
+  float direction[3];
+  middle_direction(box_of_span(bodies.a.start, a), box_of_span(bodies.a.end, a), box_of_span(bodies.b.start, b),
+                   box_of_span(bodies.b.end, b), direction);
+  const float least = length_of(direction) * stray * (1 + 0x1p-20F) + 0x1p-100F;
+  const auto is_gap = [&](const ContactScene& scene_a, const ContactScene& scene_b) HWY_ATTR {
+    const Slots p = slots_of(scene_a, a), q = slots_of(scene_b, b);
+    return gap_along(direction, {p.axes[0], p.axes[1], p.axes[2]}, p.count, {q.axes[0], q.axes[1], q.axes[2]},
+                     q.count) > least;
+  };
+  return is_gap(bodies.a.start, bodies.b.start) && is_gap(bodies.a.end, bodies.b.end);
+}
+
+using PlacePairs = PairList<kLanes * kLanes>;
+
+// The triangles of two registers of the blocks whose boxes around the way touch.
+HWY_INLINE void find_places(const MovingBlock& block, const MovingBlock& other, std::size_t i, std::size_t j,
+                            PlacePairs& out) {
+  constexpr Floats kFloats;
+  const std::size_t end = block.count - i < kLanes ? block.count : i + kLanes;
+  const auto used = hn::FirstN(kFloats, other.count - j);
+  std::size_t count = 0;
+  for (std::size_t one = i; one < end; ++one) {
+    count = out.put(count, one - i, 0, hn::AndNot(BoxProbe(box_at(block, one)).misses(other, j), used));
+  }
+  out.count = count;
+  out.finish();
+}
+
+HWY_NOINLINE void pair_blocks(const MovingBlock& block, const MovingBlock& other, float stray,
+                              StepCollector& collector) {
+  PlacePairs places;
+  for (std::size_t i = 0; i < block.count; i += kLanes) {
+    for (std::size_t j = 0; j < other.count; j += kLanes) {
+      find_places(block, other, i, j, places);
+      for (std::size_t k = 0; k < places.count; k += kLanes) {
+        const std::size_t left = places.count - k;
+        std::uint64_t bits = ~std::uint64_t{0} >> (64 - (left < kLanes ? left : kLanes));
+        bits &= ~stay_apart(MovingTaken(block, i, places.a + k), MovingTaken(other, j, places.b + k), stray);
+        for (; bits != 0; bits &= bits - 1) {
+          const std::size_t lane = lowest_bit(bits);
+          const std::size_t one = i + static_cast<std::size_t>(places.a[k + lane]);
+          const std::size_t two = j + static_cast<std::size_t>(places.b[k + lane]);
+          collector.decide({block.cluster,
+                            other.cluster,
+                            block.triangles[one],
+                            other.triangles[two],
+                            stray,
+                            {block.corners_of(0, one), block.corners_of(1, one)},
+                            {other.corners_of(0, two), other.corners_of(1, two)}});
+        }
+      }
+    }
+  }
+}
+
+// False where a cluster is a line along an axis all the time: load() takes away its span. Of one that is it at one end
+// alone the span is put back.
+HWY_INLINE bool load_both(const MovingScene& scene, std::size_t cluster) {
+  const auto load_one = [&](const ContactScene& pose) HWY_ATTR {
+    if (pose.is_loaded[cluster] == 0) {
+      load(pose, cluster);
+    }
+    const Box box = box_of_span(pose, cluster);
+    return box.low[0] <= box.high[0];
+  };
+  const bool at_start = load_one(scene.start), at_end = load_one(scene.end);
+  if (at_start != at_end) {
+    put_span(at_start ? scene.end : scene.start, cluster);
+  }
+  return at_start || at_end;
+}
+
+HWY_NOINLINE void pair_clusters(const MovingBodies& bodies, std::size_t a, std::size_t b, float stray,
+                                StepCollector& collector) {
+  if (pass_by(box_at(bodies.a.start.clusters, a), box_at(bodies.a.end.clusters, a),
+              box_at(bodies.b.start.clusters, b), box_at(bodies.b.end.clusters, b), stray)) {
+    return;
+  }
+  if (!load_both(bodies.a, a) || !load_both(bodies.b, b) || spans_stay_apart(bodies, a, b, stray) || plane_stays_between(bodies, a, b, stray)) {
+    return;
+  }
+  MovingBlock block, other;
+  if (load_moving_block(bodies.a, a, BoxProbe(way_of_spans(bodies.b, b, stray)), stray, block) &&
+      load_moving_block(bodies.b, b, BoxProbe(block.box), 0, other)) {
+    pair_blocks(block, other, stray, collector);
+  }
+}
+
+void find_triangles(const MovingBodies& bodies, Span<const Pair> pairs, StepCollector& collector) {
+  for (std::size_t k = 0; k < pairs.size; ++k) {
+    const std::size_t a = pairs.data[k].a, b = pairs.data[k].b;
+    const float stray = bodies.a.strays[a] + bodies.b.strays[b];
+    sweep_once(bodies.a, a);
+    sweep_once(bodies.b, b);
+    const std::size_t end_a = bodies.a.start.first_cluster[a + 1], first_b = bodies.b.start.first_cluster[b],
+                      end_b = bodies.b.start.first_cluster[b + 1];
+    const BoxProbe probe_b(box_at(bodies.b.spheres, b));
+    for (std::size_t i = bodies.a.start.first_cluster[a]; i < end_a; i += kLanes) {
+      for (std::uint64_t of_a = probe_b.touching(bodies.a.clusters, i, end_a - i); of_a != 0; of_a &= of_a - 1) {
+        const std::size_t one = i + lowest_bit(of_a);
+        const BoxProbe probe(box_at(bodies.a.clusters, one));
+        for (std::size_t j = first_b; j < end_b; j += kLanes) {
+          for (std::uint64_t of_b = probe.touching(bodies.b.clusters, j, end_b - j); of_b != 0; of_b &= of_b - 1) {
+            pair_clusters(bodies, one, j + lowest_bit(of_b), stray, collector);
+          }
+        }
+      }
+    }
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace spherechain
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace spherechain {
+namespace {
+
+SPHERECHAIN_KERNELS(find_spheres);
+SPHERECHAIN_KERNELS(find_triangles);
+
+}  // namespace
+
+void find_moving_spheres(Target resolved, const MovingBodies& bodies, Span<Pair>& pairs) {
+  pairs.size = 0;
+  find_spheres_kernels[index_of(resolved)](bodies, pairs);
+}
+
+void find_moving_candidates(Target resolved, const MovingBodies& bodies, Span<const Pair> pairs,
+                            StepCollector& collector) {
+  find_triangles_kernels[index_of(resolved)](bodies, pairs, collector);
+}
+
+}  // namespace spherechain
+#endif
