@@ -52,6 +52,9 @@ Quaternion between(const Turn& turn, double time, Blend blend) {
   if (blend == SC_BLEND_NLERP) {
     return unit(sum(scaled(1 - time, turn.from), scaled(time, turn.to)));
   }
+  if (time >= 1) {
+    return turn.to;
+  }
   Quaternion low = turn.from, high = turn.to;
   for (; time > 0; time -= time >= 1 ? 1 : 0) {
     const Quaternion middle = unit(sum(low, high));
