@@ -94,7 +94,8 @@ class Bench {
       if (motion->duration() <= 0) continue;
       for (int i = 0; i < steps; ++i) {
         const double length = 1 / (rate * motion->duration());
-        const double t = (1 - length) * static_cast<double>(random()) / 4294967296.0;
+        // The first frame of a recording is no pose of it.
+        const double t = 2 * length + (1 - 3 * length) * static_cast<double>(random()) / 4294967296.0;
         add(motion->at(t), motion->at(t + length));
       }
     }
@@ -117,9 +118,9 @@ class Bench {
     out.context = {machine(),
                    fmt::format("target {}, {} steps of assimp-testmodels' human.zae, {} of them without a contact",
                                sc_target_name(kBest), steps_.size(), free),
-                   fmt::format("poses on the way, {} a step: {} pairs of body parts touch, 0 of them missing; {} found "
-                               "that begin or end in a step",
-                               kSubsteps, looked_at_, begun_)};
+                   fmt::format("poses on the way, {} a step: {} pairs of body parts touch, 0 of them missing, none by more "
+                               "than {:.3f} of a step earlier or later; {} found that begin or end in a step",
+                               kSubsteps, looked_at_, latest_, begun_)};
     for (const Contestant& c : contestants_) {
       out.rows.push_back({"P13", c.name + ", mean", c.mean(steps_, false), ""});
       if (free > 0) out.rows.push_back({"P13", c.name + ", no contact", c.mean(steps_, true), ""});
@@ -221,14 +222,12 @@ class Bench {
         const std::size_t part_count = frame(blend(s, t));
         for (std::size_t i = 0; i < part_count; ++i) {
           ++looked_at_;
-          if (std::none_of(found.begin(), found.end(), [&](const StepContact& c) {
-                return c.part_a == parts_[i].part_a && c.part_b == parts_[i].part_b && double{c.begin} <= t + 0.01 &&
-                       double{c.end} >= t - 0.01;
-              })) {
-            for (const StepContact& c : found) if (c.part_a == parts_[i].part_a && c.part_b == parts_[i].part_b) fmt::print("{} {}: t {} begin {} end {} {} {}\n", c.part_a, c.part_b, t, c.begin, c.end, c.at_start, c.at_end);
-            fmt::print("step {} k {} parts {} {} pairs {}\n", &s - steps_.data(), k, parts_[i].part_a, parts_[i].part_b, parts_[i].triangle_pairs);
-            //throw std::runtime_error("a substep has a contact that the step lacks");
-          }
+          const auto of = std::find_if(found.begin(), found.end(), [&](const StepContact& c) {
+            return c.part_a == parts_[i].part_a && c.part_b == parts_[i].part_b;
+          });
+          if (of == found.end()) throw std::runtime_error("a pose on the way has a contact that the step lacks");
+          // A contact that is no deeper than the tolerance may be found later, or be gone earlier.
+          latest_ = std::max({latest_, double{of->begin} - t, t - double{of->end}});
         }
       }
     }
@@ -259,6 +258,7 @@ class Bench {
   std::vector<PartContact> parts_;
   std::vector<Contestant> contestants_;
   std::size_t looked_at_ = 0, begun_ = 0;
+  double latest_ = 0;  // of a step
 };
 
 }  // namespace

@@ -17,25 +17,50 @@ HWY_BEFORE_NAMESPACE();
 namespace spherechain {
 namespace HWY_NAMESPACE {
 
-// As a Block, at the start and at the end.
-struct MovingBlock {
-  std::size_t cluster, count;
-  std::uint32_t triangles[kBlock + kContactPadding];
-  float corners[2][3][3][kBlock + kContactPadding];                               // by pose, by corner, by axis
-  float low[3][kBlock + kContactPadding], high[3][kBlock + kContactPadding];      // around the way
-  Box box;                                                                        // of all
+// How two clusters move together: the mean of what their boxes' middles do. Seen from what goes along with that, boxes
+// around their ways are small; whether two triangles touch is the same.
+struct Drift {
+  float by[3];
 
-  TriangleCorners corners_of(std::size_t pose, std::size_t i) const {
-    TriangleCorners out;
-    for (std::size_t k = 0; k < 3; ++k) {
-      out.p[k] = {corners[pose][k][0][i], corners[pose][k][1][i], corners[pose][k][2][i]};
+  HWY_INLINE Drift(const Box& start_a, const Box& end_a, const Box& start_b, const Box& end_b) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      by[axis] = 0.25F * (((end_a.low[axis] + end_a.high[axis]) - (start_a.low[axis] + start_a.high[axis])) +
+                          ((end_b.low[axis] + end_b.high[axis]) - (start_b.low[axis] + start_b.high[axis])));
+    }
+  }
+  HWY_INLINE Box take_from(const Box& box, float sign) const {
+    Box out;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      out.low[axis] = box.low[axis] - sign * by[axis];
+      out.high[axis] = box.high[axis] - sign * by[axis];
     }
     return out;
   }
 };
 
-HWY_INLINE Box way_of_spans(const MovingScene& scene, std::size_t cluster, float stray) {
-  const Box start = box_of_span(scene.start, cluster), end = box_of_span(scene.end, cluster);
+// As a Block, at the start and at the end; there without the drift.
+struct MovingBlock {
+  std::size_t cluster, count;
+  std::uint32_t triangles[kBlock + kContactPadding];
+  std::uint8_t places[3][kBlock];                                             // the corners' slots
+  float corners[2][3][3][kBlock + kContactPadding];                           // by pose, by corner, by axis
+  float low[3][kBlock + kContactPadding], high[3][kBlock + kContactPadding];  // around the way
+  Box box;                                                                    // of all
+};
+
+// Where a block's triangle stands in a pose.
+HWY_INLINE TriangleCorners corners_of(const ContactScene& scene, const MovingBlock& block, std::size_t i) {
+  const Slots slots = slots_of(scene, block.cluster);
+  TriangleCorners out;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t slot = block.places[k][i];
+    out.p[k] = {slots.axes[0][slot], slots.axes[1][slot], slots.axes[2][slot]};
+  }
+  return out;
+}
+
+HWY_INLINE Box way_of_spans(const MovingScene& scene, std::size_t cluster, const Drift& drift, float stray) {
+  const Box start = box_of_span(scene.start, cluster), end = drift.take_from(box_of_span(scene.end, cluster), 1);
   Box out;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     out.low[axis] = (start.low[axis] < end.low[axis] ? start.low[axis] : end.low[axis]) - stray;
@@ -44,17 +69,18 @@ HWY_INLINE Box way_of_spans(const MovingScene& scene, std::size_t cluster, float
   return out;
 }
 
-// The cluster's triangles whose boxes around the way, `stray` wider, touch the box, but for what single corners tell.
+// The cluster's triangles whose boxes around the way, `stray` wider, touch the box, but for what single corners tell;
+// seen along with the drift.
 // False where there are none. Those that are degenerate at both ends are left out.
-inline HWY_NOINLINE bool load_moving_block(const MovingScene& scene, std::size_t cluster_index, const BoxProbe& box,
-                                    float stray, MovingBlock& out) {
+inline HWY_NOINLINE bool load_moving_block(const MovingScene& scene, std::size_t cluster_index, const Box& box,
+                                    const Drift& drift, float stray, MovingBlock& out) {
   constexpr Floats kFloats;
   const Surface& surface = *scene.start.surface;
   const Cluster& cluster = surface.clusters.data[cluster_index];
   const std::uint8_t* corners = surface.corners.data + 3 * std::size_t{cluster.first_triangle};
   HWY_ALIGN Codes codes, codes_at_end;
-  find_sides(scene.start, cluster_index, box, codes);
-  find_sides(scene.end, cluster_index, box, codes_at_end);
+  find_sides(scene.start, cluster_index, BoxProbe(box), codes);
+  find_sides(scene.end, cluster_index, BoxProbe(drift.take_from(box, -1)), codes_at_end);
   for (std::size_t i = 0; i < cluster.vertex_count; ++i) {
     codes[i] &= codes_at_end[i];  // beyond all the way
   }
@@ -70,11 +96,12 @@ inline HWY_NOINLINE bool load_moving_block(const MovingScene& scene, std::size_t
        bits &= bits - 1, ++count) {
     const std::size_t i = lowest_bit(bits);
     out.triangles[count] = static_cast<std::uint32_t>(cluster.first_triangle + i);
-    for (std::size_t pose = 0; pose < 2; ++pose) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-          out.corners[pose][k][axis][count] = slots[pose].axes[axis][corners[3 * i + k]];
-        }
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint8_t slot = corners[3 * i + k];
+      out.places[k][count] = slot;
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        out.corners[0][k][axis][count] = slots[0].axes[axis][slot];
+        out.corners[1][k][axis][count] = slots[1].axes[axis][slot] - drift.by[axis];
       }
     }
   }

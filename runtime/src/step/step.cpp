@@ -29,6 +29,7 @@ struct Walker {
   ContactScene start, end;
   BoxColumns spheres, clusters;
   std::uint8_t* is_swept = nullptr;
+  std::uint16_t* cluster_parts = nullptr;
   float* strays = nullptr;  // in a piece
   float *bones[2] = {}, *morph_weights[2] = {};
 
@@ -46,6 +47,7 @@ struct Walker {
     }
     memory.take(is_swept, sphere_count);
     memory.take(strays, sphere_count);
+    memory.take(cluster_parts, sizes.clusters);
     for (std::size_t side = 0; side < 2; ++side) {
       memory.take(bones[side], 12 * of.bone_count());
       memory.take(morph_weights[side], of.morph_count());
@@ -175,8 +177,8 @@ class Step {
     const double height{a.asset->info().height};
     const double tolerance = height * double{job_.tolerance > 0 ? job_.tolerance : kTolerance};
     room_.table.clear();
-    StepCollector collector({{&a.surface, are_one_ ? nullptr : job_.a.body.ignored_parts}, &a.way},
-                            {{&b.surface, are_one_ ? nullptr : job_.b.body.ignored_parts}, &b.way}, are_one_,
+    StepCollector collector({{&a.surface, are_one_ ? nullptr : job_.a.body.ignored_parts}, &a.way, a.cluster_parts},
+                            {{&b.surface, are_one_ ? nullptr : job_.b.body.ignored_parts}, &b.way, b.cluster_parts}, are_one_,
                             room_.table, tolerance);
     double share = 1;
     const double widest = std::max(a.widest(), b.widest());
@@ -207,6 +209,7 @@ class Step {
     walker.motion = &motion;
     walker.asset = &view_of(*motion.body.asset);
     walker.way.start(motion, *walker.asset, walker.surface);
+    std::fill(walker.cluster_parts, walker.cluster_parts + walker.surface.clusters.size, StepBody::kUnknown);
   }
 
   void pose_at(double time, bool at_end) {

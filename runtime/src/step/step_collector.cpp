@@ -27,6 +27,34 @@ Vec3 middle_of(const Vec3& p, const Vec3& q) {
 
 }  // namespace
 
+std::uint16_t StepBody::part_of(std::size_t cluster_index) {
+  std::uint16_t& part = parts[cluster_index];
+  if (part == kUnknown) {
+    const Cluster& cluster = skin.surface->clusters[cluster_index];
+    const std::uint8_t* const of = skin.surface->parts.data + cluster.first_triangle;
+    part = of[0];
+    for (std::size_t i = 1; i < cluster.triangle_count; ++i) {
+      part = of[i] == of[0] ? part : kSeveral;
+    }
+  }
+  return part;
+}
+
+const StepEntry* StepCollector::known(std::uint32_t part_a, std::uint32_t part_b) const {
+  const std::size_t place = table_.place(part_a, part_b, are_one_);
+  return (table_.seen[place / 64] >> place % 64 & 1) == 0 ? nullptr : &table_.contacts[place];
+}
+
+bool StepCollector::is_settled(std::size_t cluster_a, std::size_t cluster_b) {
+  const std::uint16_t a = a_.part_of(cluster_a), b = b_.part_of(cluster_b);
+  if (a == StepBody::kSeveral || b == StepBody::kSeveral) {
+    return false;
+  }
+  const bool is_swapped = are_one_ && b < a;
+  const StepEntry* const of = is_swapped ? known(b, a) : known(a, b);
+  return of != nullptr && of->first <= begin_ && of->last >= end_;
+}
+
 StepEntry& StepCollector::entry(std::uint32_t part_a, std::uint32_t part_b) {
   bool is_new = false;
   StepEntry& out = table_.at(part_a, part_b, are_one_, is_new);
@@ -94,10 +122,8 @@ void StepCollector::decide(const MovingCandidate& candidate) {
     std::swap(part_a, part_b);
     std::swap(triangle_a, triangle_b);
   }
-  const std::size_t place = table_.place(part_a, part_b, are_one_);
-  const bool is_known = (table_.seen[place / 64] >> place % 64 & 1) != 0;
-  const StepEntry* const known = is_known ? &table_.contacts[place] : nullptr;
-  const double first = known == nullptr ? kNever : known->first, last = known == nullptr ? kNoLast : known->last;
+  const StepEntry* const so_far = known(part_a, part_b);
+  const double first = so_far == nullptr ? kNever : so_far->first, last = so_far == nullptr ? kNoLast : so_far->last;
   const bool may_begin = first > begin_, may_end = last < end_;
   if (!may_begin && !may_end) {
     return;

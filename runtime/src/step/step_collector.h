@@ -20,9 +20,13 @@ using StepTable = TableOfParts<StepEntry>;
 struct StepBody {
   Skin skin;
   BodyMotion* motion;
+  std::uint16_t* parts;  // scratch memory: of each cluster the part of all its triangles, or kSeveral; kUnknown at first
+
+  static constexpr std::uint16_t kSeveral = 0xFFFE, kUnknown = 0xFFFF;
+  std::uint16_t part_of(std::size_t cluster);
 };
 
-// Kernels call decide(), which is not inline: they must not call templates of the standard library.
+// Kernels call decide() and is_settled(), which are not inline: they must not call templates of the standard library.
 class StepCollector {
  public:
   StepCollector(const StepBody& a, const StepBody& b, bool are_one, const StepTable& table, double tolerance)
@@ -35,12 +39,15 @@ class StepCollector {
     begin_ = begin;
     end_ = end;
   }
+  // Is all known of the parts of two clusters, in this piece?
+  bool is_settled(std::size_t cluster_a, std::size_t cluster_b);
   void decide(const MovingCandidate& candidate);
   // Writes the least entries that fit; gives how many there are.
   std::size_t list(Span<StepContact> out) const;
 
  private:
   StepEntry& entry(std::uint32_t part_a, std::uint32_t part_b);
+  const StepEntry* known(std::uint32_t part_a, std::uint32_t part_b) const;  // null: nothing
   double search(const MovingCandidate& candidate, const Way& way, double from, double to, double until);
   SixCorners corners_at(const MovingCandidate& candidate, double time);
 

@@ -278,7 +278,7 @@ HWY_INLINE void find_places(const MovingBlock& block, const MovingBlock& other, 
   out.finish();
 }
 
-HWY_NOINLINE void pair_blocks(const MovingBlock& block, const MovingBlock& other, float stray,
+HWY_NOINLINE void pair_blocks(const MovingBodies& bodies, const MovingBlock& block, const MovingBlock& other, float stray,
                               StepCollector& collector) {
   PlacePairs places;
   for (std::size_t i = 0; i < block.count; i += kLanes) {
@@ -297,8 +297,8 @@ HWY_NOINLINE void pair_blocks(const MovingBlock& block, const MovingBlock& other
                             block.triangles[one],
                             other.triangles[two],
                             stray,
-                            {block.corners_of(0, one), block.corners_of(1, one)},
-                            {other.corners_of(0, two), other.corners_of(1, two)}});
+                            {corners_of(bodies.a.start, block, one), corners_of(bodies.a.end, block, one)},
+                            {corners_of(bodies.b.start, other, two), corners_of(bodies.b.end, other, two)}});
         }
       }
     }
@@ -331,10 +331,12 @@ HWY_NOINLINE void pair_clusters(const MovingBodies& bodies, std::size_t a, std::
   if (!load_both(bodies.a, a) || !load_both(bodies.b, b) || spans_stay_apart(bodies, a, b, stray) || plane_stays_between(bodies, a, b, stray)) {
     return;
   }
+  const Drift drift(box_of_span(bodies.a.start, a), box_of_span(bodies.a.end, a), box_of_span(bodies.b.start, b),
+                    box_of_span(bodies.b.end, b));
   MovingBlock block, other;
-  if (load_moving_block(bodies.a, a, BoxProbe(way_of_spans(bodies.b, b, stray)), stray, block) &&
-      load_moving_block(bodies.b, b, BoxProbe(block.box), 0, other)) {
-    pair_blocks(block, other, stray, collector);
+  if (load_moving_block(bodies.a, a, way_of_spans(bodies.b, b, drift, stray), drift, stray, block) &&
+      load_moving_block(bodies.b, b, block.box, drift, 0, other)) {
+    pair_blocks(bodies, block, other, stray, collector);
   }
 }
 
@@ -353,7 +355,10 @@ void find_triangles(const MovingBodies& bodies, Span<const Pair> pairs, StepColl
         const BoxProbe probe(box_at(bodies.a.clusters, one));
         for (std::size_t j = first_b; j < end_b; j += kLanes) {
           for (std::uint64_t of_b = probe.touching(bodies.b.clusters, j, end_b - j); of_b != 0; of_b &= of_b - 1) {
-            pair_clusters(bodies, one, j + lowest_bit(of_b), stray, collector);
+            const std::size_t other = j + lowest_bit(of_b);
+            if (!collector.is_settled(one, other)) {
+              pair_clusters(bodies, one, other, stray, collector);
+            }
           }
         }
       }
