@@ -317,8 +317,24 @@ HWY_NOINLINE void find_all(const Bodies& bodies, ContactCollector& collector) {
   decide_clusters(bodies, clusters, collector);
 }
 
+HWY_NOINLINE void find_in_clusters(const Bodies& bodies, ContactCollector& collector) {
+  const Span<const Pair> pairs = bodies.a.candidate_clusters;
+  ClusterPairs clusters;
+  for (std::size_t i = 0; i < pairs.size; ++i) {
+    if (!clusters.has_room(clusters.count)) {
+      decide_clusters(bodies, clusters, collector);
+    }
+    clusters.a[clusters.count] = static_cast<std::int32_t>(pairs.data[i].a);
+    clusters.b[clusters.count] = static_cast<std::int32_t>(pairs.data[i].b);
+    ++clusters.count;
+  }
+  decide_clusters(bodies, clusters, collector);
+}
+
 void find(const Bodies& bodies, ContactCollector& collector) {
-  if (bodies.a.candidates.data != nullptr) {
+  if (bodies.a.candidate_clusters.data != nullptr) {
+    find_in_clusters(bodies, collector);
+  } else if (bodies.a.candidates.data != nullptr) {
     find_listed(bodies, collector);
   } else {
     find_all(bodies, collector);

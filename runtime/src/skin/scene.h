@@ -38,6 +38,7 @@ struct ContactScene {
   std::size_t sphere_count = 0;
   Span<const std::uint64_t> ignored, disabled;   // the latter may be empty
   Span<const Pair> candidates;                   // of spheres: the pairs to decide; null: those of the scope
+  Span<const Pair> candidate_clusters;           // of loaded clusters: the pairs to decide; null: those of spheres
   bool apart = true, neighbours = false;         // which of them to pair: see sc_scope
   bool has_sphere_boxes = false;                 // those below are of this pose already
   bool first_only = false;                       // of each two spheres no more once one candidate is a contact

@@ -31,12 +31,27 @@ struct MovingCandidate {
 
 class StepCollector;
 
+// Pairs of clusters that may touch on the way.
+struct MovingClusters {
+  Pair* pairs;
+  std::size_t room;
+  // Null, or: what takes them in whenever there is no more room.
+  void (*take)(void* user, Span<const Pair> pairs);
+  void* user;
+  std::size_t count = 0;
+
+  bool put(std::size_t a, std::size_t b);  // false: no room
+};
+
 // Lists the pairs of spheres that may touch on the way. `pairs` has room for all that there are. The scenes then have
 // their spheres' boxes.
 void find_moving_spheres(Target resolved, const MovingBodies& bodies, Span<Pair>& pairs);
 
-// Hands the collector all triangles of the listed spheres that touch on the way, and a few more.
-void find_moving_candidates(Target resolved, const MovingBodies& bodies, Span<const Pair> pairs,
+// Lists the pairs of their clusters that may. False where there was no room for all. The clusters then are loaded.
+bool find_moving_clusters(Target resolved, const MovingBodies& bodies, Span<const Pair> spheres, MovingClusters& found);
+
+// Hands the collector all triangles of the clusters that touch on the way, and a few more.
+void find_moving_candidates(Target resolved, const MovingBodies& bodies, Span<const Pair> clusters,
                             StepCollector& collector);
 
 }  // namespace spherechain

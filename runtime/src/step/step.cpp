@@ -19,6 +19,7 @@ namespace {
 constexpr float kTolerance = 1e-4F;
 constexpr double kWidest = 1.0 / 256;  // what vertices may stray in a piece, in heights
 constexpr int kMostHalvings = 6;       // of the step, into pieces
+constexpr std::size_t kClusterPairs = 1 << 14;  // listed at a time
 
 // A body, on its way through the pieces.
 struct Walker {
@@ -64,7 +65,7 @@ struct Room {
   Walker a, b;
   StepTable table;
   PartTable parts;
-  Span<Pair> pairs;  // of spheres
+  Span<Pair> spheres, clusters;  // pairs of them
 
   void take(WordMemory& memory, const AssetView& asset_a, std::size_t joints_a, const AssetView* asset_b,
             std::size_t joints_b) {
@@ -78,7 +79,8 @@ struct Room {
     }
     table.take(memory, asset_a.part_count(), parts_b, asset_b == nullptr);
     parts.take(memory, asset_a.part_count(), parts_b, asset_b == nullptr);
-    memory.take(pairs, pair_count);
+    memory.take(spheres, pair_count);
+    memory.take(clusters, kClusterPairs);
   }
 };
 
@@ -187,11 +189,11 @@ class Step {
     }
     if (share < 1) {
       pose_at(1, true);
-      note_ends({}, false, collector);
+      note_ends({}, {}, false, collector);
     }
     pose_at(0, false);
     if (share < 1) {
-      note_ends({}, true, collector);
+      note_ends({}, {}, true, collector);
     }
     for (double from = 0; from < 1; from += share) {
       pose_at(from + share, true);
@@ -225,10 +227,11 @@ class Step {
     }
   }
 
-  // Contacts in the pose of one end, of the listed spheres; of a null list, of all.
-  void note_ends(Span<const Pair> pairs, bool at_start, StepCollector& collector) {
+  // Contacts in the pose of one end: of listed pairs of clusters, else of spheres; of null lists, of all.
+  void note_ends(Span<const Pair> spheres, Span<const Pair> clusters, bool at_start, StepCollector& collector) {
     ContactScene &a = at_start ? room_.a.start : room_.a.end, &b = at_start ? b_.start : b_.end;
-    a.candidates = pairs;
+    a.candidates = spheres;
+    a.candidate_clusters = clusters;
     room_.parts.clear();
     const ContactLists lists{{}, {}, {}, false};
     ContactCollector found = are_one_ ? ContactCollector(room_.a.surface, room_.parts, lists)
@@ -249,22 +252,45 @@ class Step {
     }
     const MovingScene a = room_.a.moving(), b = b_.moving();
     const MovingBodies bodies{a, are_one_ ? a : b, are_one_};
-    Span<Pair> pairs{room_.pairs.data, 0};
-    find_moving_spheres(resolved_, bodies, pairs);
+    Span<Pair> listed{room_.spheres.data, 0};
+    find_moving_spheres(resolved_, bodies, listed);
     for (ContactScene* scene : {&room_.a.start, &room_.a.end, &b_.start, &b_.end}) {
       scene->has_sphere_boxes = true;
     }
-    const Span<const Pair> listed{pairs.data, pairs.size};
-    if (pairs.size == 0) {
+    const Span<const Pair> spheres{listed.data, listed.size};
+    if (spheres.size == 0) {
       return;
     }
-    if (share == 1) {
-      note_ends(listed, true, collector);
-      note_ends(listed, false, collector);
-    }
     collector.begin_piece(from, from + share);
-    find_moving_candidates(resolved_, bodies, listed, collector);
+    MovingClusters found{room_.clusters.data, room_.clusters.size, nullptr, nullptr};
+    const bool has_all = find_moving_clusters(resolved_, bodies, spheres, found);
+    const Span<const Pair> clusters{found.pairs, found.count};
+    if (share == 1) {
+      for (const bool at_start : {true, false}) {
+        note_ends(spheres, has_all ? clusters : Span<const Pair>{}, at_start, collector);
+      }
+    }
+    if (has_all) {
+      find_moving_candidates(resolved_, bodies, clusters, collector);
+      return;
+    }
+    Batch batch{resolved_, bodies, collector};
+    found = {room_.clusters.data, room_.clusters.size, &Batch::take, &batch};
+    find_moving_clusters(resolved_, bodies, spheres, found);
+    Batch::take(&batch, {found.pairs, found.count});
   }
+
+  // Of pairs of clusters, where there are too many for one list.
+  struct Batch {
+    Target resolved;
+    const MovingBodies& bodies;
+    StepCollector& collector;
+
+    static void take(void* batch, Span<const Pair> clusters) {
+      const Batch& of = *static_cast<const Batch*>(batch);
+      find_moving_candidates(of.resolved, of.bodies, clusters, of.collector);
+    }
+  };
 
   static void prepare(Walker& walker, double share) {
     const std::size_t count = walker.asset->spheres().size;
@@ -283,6 +309,19 @@ class Step {
 };
 
 }  // namespace
+
+bool MovingClusters::put(std::size_t a, std::size_t b) {
+  if (count == room) {
+    if (take == nullptr) {
+      return false;
+    }
+    take(user, {pairs, count});
+    count = 0;
+  }
+  pairs[count++] = {static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(b)};
+  return true;
+}
+
 }  // namespace spherechain
 
 using namespace spherechain;

@@ -322,27 +322,17 @@ HWY_INLINE bool load_both(const MovingScene& scene, std::size_t cluster) {
   return at_start || at_end;
 }
 
-HWY_NOINLINE void pair_clusters(const MovingBodies& bodies, std::size_t a, std::size_t b, float stray,
-                                StepCollector& collector) {
-  if (pass_by(box_at(bodies.a.start.clusters, a), box_at(bodies.a.end.clusters, a),
-              box_at(bodies.b.start.clusters, b), box_at(bodies.b.end.clusters, b), stray)) {
-    return;
-  }
-  if (!load_both(bodies.a, a) || !load_both(bodies.b, b) || spans_stay_apart(bodies, a, b, stray) || plane_stays_between(bodies, a, b, stray)) {
-    return;
-  }
-  const Drift drift(box_of_span(bodies.a.start, a), box_of_span(bodies.a.end, a), box_of_span(bodies.b.start, b),
-                    box_of_span(bodies.b.end, b));
-  MovingBlock block, other;
-  if (load_moving_block(bodies.a, a, way_of_spans(bodies.b, b, drift, stray), drift, stray, block) &&
-      load_moving_block(bodies.b, b, block.box, drift, 0, other)) {
-    pair_blocks(bodies, block, other, stray, collector);
-  }
+// May triangles of two clusters touch on the way?
+HWY_NOINLINE bool may_touch(const MovingBodies& bodies, std::size_t a, std::size_t b, float stray) {
+  return !pass_by(box_at(bodies.a.start.clusters, a), box_at(bodies.a.end.clusters, a),
+                  box_at(bodies.b.start.clusters, b), box_at(bodies.b.end.clusters, b), stray) &&
+         load_both(bodies.a, a) && load_both(bodies.b, b) && !spans_stay_apart(bodies, a, b, stray) &&
+         !plane_stays_between(bodies, a, b, stray);
 }
 
-void find_triangles(const MovingBodies& bodies, Span<const Pair> pairs, StepCollector& collector) {
-  for (std::size_t k = 0; k < pairs.size; ++k) {
-    const std::size_t a = pairs.data[k].a, b = pairs.data[k].b;
+bool find_clusters(const MovingBodies& bodies, Span<const Pair> spheres, MovingClusters& found) {
+  for (std::size_t k = 0; k < spheres.size; ++k) {
+    const std::size_t a = spheres.data[k].a, b = spheres.data[k].b;
     const float stray = bodies.a.strays[a] + bodies.b.strays[b];
     sweep_once(bodies.a, a);
     sweep_once(bodies.b, b);
@@ -356,12 +346,31 @@ void find_triangles(const MovingBodies& bodies, Span<const Pair> pairs, StepColl
         for (std::size_t j = first_b; j < end_b; j += kLanes) {
           for (std::uint64_t of_b = probe.touching(bodies.b.clusters, j, end_b - j); of_b != 0; of_b &= of_b - 1) {
             const std::size_t other = j + lowest_bit(of_b);
-            if (!collector.is_settled(one, other)) {
-              pair_clusters(bodies, one, other, stray, collector);
+            if (may_touch(bodies, one, other, stray) && !found.put(one, other)) {
+              return false;
             }
           }
         }
       }
+    }
+  }
+  return true;
+}
+
+void find_triangles(const MovingBodies& bodies, Span<const Pair> clusters, StepCollector& collector) {
+  for (std::size_t k = 0; k < clusters.size; ++k) {
+    const std::size_t a = clusters.data[k].a, b = clusters.data[k].b;
+    if (collector.is_settled(a, b)) {
+      continue;
+    }
+    const float stray = bodies.a.strays[bodies.a.start.surface->clusters.data[a].sphere] +
+                        bodies.b.strays[bodies.b.start.surface->clusters.data[b].sphere];
+    const Drift drift(box_of_span(bodies.a.start, a), box_of_span(bodies.a.end, a), box_of_span(bodies.b.start, b),
+                      box_of_span(bodies.b.end, b));
+    MovingBlock block, other;
+    if (load_moving_block(bodies.a, a, way_of_spans(bodies.b, b, drift, stray), drift, stray, block) &&
+        load_moving_block(bodies.b, b, block.box, drift, 0, other)) {
+      pair_blocks(bodies, block, other, stray, collector);
     }
   }
 }
@@ -375,6 +384,7 @@ namespace spherechain {
 namespace {
 
 SPHERECHAIN_KERNELS(find_spheres);
+SPHERECHAIN_KERNELS(find_clusters);
 SPHERECHAIN_KERNELS(find_triangles);
 
 }  // namespace
@@ -384,9 +394,13 @@ void find_moving_spheres(Target resolved, const MovingBodies& bodies, Span<Pair>
   find_spheres_kernels[index_of(resolved)](bodies, pairs);
 }
 
-void find_moving_candidates(Target resolved, const MovingBodies& bodies, Span<const Pair> pairs,
+bool find_moving_clusters(Target resolved, const MovingBodies& bodies, Span<const Pair> spheres, MovingClusters& found) {
+  return find_clusters_kernels[index_of(resolved)](bodies, spheres, found);
+}
+
+void find_moving_candidates(Target resolved, const MovingBodies& bodies, Span<const Pair> clusters,
                             StepCollector& collector) {
-  find_triangles_kernels[index_of(resolved)](bodies, pairs, collector);
+  find_triangles_kernels[index_of(resolved)](bodies, clusters, collector);
 }
 
 }  // namespace spherechain
