@@ -10,6 +10,9 @@ namespace {
 
 constexpr double kShortest = 1.0 / 65536;
 
+double least_of(double a, double b, double c) { return std::min(a, std::min(b, c)); }
+double greatest_of(double a, double b, double c) { return std::max(a, std::max(b, c)); }
+
 // What the corners of a and of b do to each other.
 class Pass {
  public:
@@ -29,31 +32,34 @@ class Pass {
 
   double least_step() const { return least_step_; }
 
-  // The latest time until which a plane that parts the triangles at `time`, and keeps its direction, is known to part
-  // them; `time` where there is none.
-  double open_until(double time, double limit) const {
-    const SixCorners now = way_.at(time);
-    const Double3* const a = now.p;
-    const Double3* const b = now.p + 3;
+  // The latest time until which a plane is known to part the triangles from `time` on that keeps its direction, one that
+  // parts them at `seen`; `time` where there is none. Ends where that is past the limit.
+  double open_until(double time, double seen, double limit) const {
+    const SixCorners now = way_.at(time), then = way_.at(seen);
+    const Double3* const a = then.p;
+    const Double3* const b = then.p + 3;
     const Double3 edges_a[3] = {a[1] - a[0], a[2] - a[1], a[0] - a[2]};
     const Double3 edges_b[3] = {b[1] - b[0], b[2] - b[1], b[0] - b[2]};
     const Double3 normal_a = cross(edges_a[0], edges_a[1]), normal_b = cross(edges_b[0], edges_b[1]);
     double latest = time;
-    const auto try_direction = [&](Double3 direction) {
-      if (latest <= limit && normalize(direction)) {
-        latest = std::max(latest, closing(direction, now, time));
-      }
+    const auto is_past = [&](const Double3& direction) {
+      latest = std::max(latest, closing(direction, now, time));
+      return latest > limit;
     };
-    try_direction(normal_a);
-    try_direction(normal_b);
-    for (std::size_t i = 0; i < 3 && latest <= limit; ++i) {
-      for (std::size_t j = 0; j < 3; ++j) {
-        try_direction(cross(edges_a[i], edges_b[j]));
+    if (is_past(normal_a) || is_past(normal_b)) {
+      return latest;
+    }
+    for (const Double3& edge_a : edges_a) {
+      for (const Double3& edge_b : edges_b) {
+        if (is_past(cross(edge_a, edge_b))) {
+          return latest;
+        }
       }
     }
-    for (std::size_t i = 0; i < 3 && latest <= limit; ++i) {
-      try_direction(cross(normal_a, edges_a[i]));
-      try_direction(cross(normal_b, edges_b[i]));
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (is_past(cross(normal_a, edges_a[i])) || is_past(cross(normal_b, edges_b[i]))) {
+        return latest;
+      }
     }
     return latest;
   }
@@ -66,9 +72,10 @@ class Pass {
       at[k] = dot(direction, now.p[k] - now.p[0]);
       along[k] = dot(direction, moves_[k]);
     }
-    const double above = std::min({at[3], at[4], at[5]}) - std::max({at[0], at[1], at[2]});
-    const double below = std::min({at[0], at[1], at[2]}) - std::max({at[3], at[4], at[5]});
-    if (!(above > way_.stray) && !(below > way_.stray)) {
+    const double above = least_of(at[3], at[4], at[5]) - greatest_of(at[0], at[1], at[2]);
+    const double below = least_of(at[0], at[1], at[2]) - greatest_of(at[3], at[4], at[5]);
+    const double stray = way_.stray > 0 ? way_.stray * length(direction) : 0;
+    if (!(above > stray) && !(below > stray)) {
       return time;
     }
     const double sign = above > below ? 1 : -1;
@@ -77,7 +84,7 @@ class Pass {
       for (std::size_t j = 3; j < 6; ++j) {
         const double approach = sign * (along[i] - along[j]);
         if (approach > 0) {
-          until = std::min(until, time + (sign * (at[j] - at[i]) - way_.stray) / approach);
+          until = std::min(until, time + (sign * (at[j] - at[i]) - stray) / approach);
         }
       }
     }
@@ -116,9 +123,12 @@ Approach approach(const Way& way, double limit) {
   }
   const Pass pass(way);
   const bool is_fine = way.stray <= way.step / 4;
-  double time = 0;
+  double time = pass.open_until(0, limit / 2, limit);  // most that miss are parted so all the time
+  if (time > limit) {
+    return {Outcome::kApart, limit};
+  }
   for (;;) {
-    const double open = pass.open_until(time, limit);
+    const double open = pass.open_until(time, time, limit);
     if (open > limit) {
       return {Outcome::kApart, limit};
     }

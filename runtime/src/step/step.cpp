@@ -17,7 +17,7 @@ namespace spherechain {
 namespace {
 
 constexpr float kTolerance = 1e-4F;
-constexpr double kWidest = 1.0 / 256;  // what vertices may stray in a piece, in heights
+constexpr double kWidest = 1.0 / 1024;  // what vertices may stray in a piece, in heights
 constexpr int kMostHalvings = 6;       // of the step, into pieces
 constexpr std::size_t kClusterPairs = 1 << 14;  // listed at a time
 
