@@ -40,11 +40,11 @@ typedef struct sc_motion {
 /* Two body parts that touch in a step. Times are shares of the step: 0 is its start, 1 its end. */
 typedef struct sc_step_contact {
   uint32_t part_a, part_b;
-  int32_t at_start, at_end; /* 1: sc_find_skin_contacts(), or sc_find_body_contacts(), has contacts of the two there */
+  int32_t at_start, at_end; /* 1: they intersect there: more say sc_find_skin_contacts(), sc_find_body_contacts() */
   float begin;              /* the first time at which they touch; 0 with at_start */
   float end;                /* the last time; 1 with at_end. In between they may part and meet again */
   uint32_t triangle_a, triangle_b; /* that touch at `begin`, by the source's numbers; SC_NO_TRIANGLE with at_start */
-  sc_vec3 at; /* where they do; with at_start the middle of a box around the triangles that intersect there */
+  sc_vec3 at; /* where they do; zero with at_start */
 } sc_step_contact;
 
 /* All pairs of body parts that touch on the way from one pose to the next: of body a with itself, where b.body.asset is

@@ -189,11 +189,11 @@ class Step {
     }
     if (share < 1) {
       pose_at(1, true);
-      note_ends({}, {}, false, collector);
+      note_ends({}, false, collector);
     }
     pose_at(0, false);
     if (share < 1) {
-      note_ends({}, {}, true, collector);
+      note_ends({}, true, collector);
     }
     for (double from = 0; from < 1; from += share) {
       pose_at(from + share, true);
@@ -227,11 +227,32 @@ class Step {
     }
   }
 
-  // Contacts in the pose of one end: of listed pairs of clusters, else of spheres; of null lists, of all.
-  void note_ends(Span<const Pair> spheres, Span<const Pair> clusters, bool at_start, StepCollector& collector) {
+  // Contacts in the pose of one end: of listed pairs of clusters, a few at a time, for of parts that are known to touch
+  // no more is asked; of a null list, of all spheres.
+  void note_ends(Span<const Pair> clusters, bool at_start, StepCollector& collector) {
+    constexpr std::size_t kAtATime = 16;
     ContactScene &a = at_start ? room_.a.start : room_.a.end, &b = at_start ? b_.start : b_.end;
-    a.candidates = spheres;
-    a.candidate_clusters = clusters;
+    if (clusters.data == nullptr) {
+      find_ends(a, b, at_start, collector);
+      return;
+    }
+    Pair some[kAtATime];
+    for (std::size_t i = 0; i < clusters.size;) {
+      std::size_t count = 0;
+      for (; i < clusters.size && count < kAtATime; ++i) {
+        if (!collector.touch_at_end(clusters[i], at_start)) {
+          some[count++] = clusters[i];
+        }
+      }
+      if (count > 0) {
+        a.candidate_clusters = {some, count};
+        find_ends(a, b, at_start, collector);
+      }
+    }
+    a.candidate_clusters = {};
+  }
+
+  void find_ends(const ContactScene& a, const ContactScene& b, bool at_start, StepCollector& collector) {
     room_.parts.clear();
     const ContactLists lists{{}, {}, {}, false};
     ContactCollector found = are_one_ ? ContactCollector(room_.a.surface, room_.parts, lists)
@@ -240,7 +261,7 @@ class Step {
     find_candidates(resolved_, {a, b, are_one_}, found);
     for (std::size_t w = 0; w < room_.parts.word_count; ++w) {
       for (std::uint64_t word = room_.parts.seen[w]; word != 0; word &= word - 1) {
-        collector.note_ends(room_.parts.contacts[64 * w + lowest_bit(word)], at_start);
+        collector.note_end(room_.parts.contacts[64 * w + lowest_bit(word)], at_start);
       }
     }
   }
@@ -267,7 +288,7 @@ class Step {
     const Span<const Pair> clusters{found.pairs, found.count};
     if (share == 1) {
       for (const bool at_start : {true, false}) {
-        note_ends(spheres, has_all ? clusters : Span<const Pair>{}, at_start, collector);
+        note_ends(has_all ? clusters : Span<const Pair>{}, at_start, collector);
       }
     }
     if (has_all) {

@@ -45,14 +45,23 @@ const StepEntry* StepCollector::known(std::uint32_t part_a, std::uint32_t part_b
   return (table_.seen[place / 64] >> place % 64 & 1) == 0 ? nullptr : &table_.contacts[place];
 }
 
-bool StepCollector::is_settled(std::size_t cluster_a, std::size_t cluster_b) {
+// Null, too, where a cluster is of several parts.
+const StepEntry* StepCollector::known_of_clusters(std::size_t cluster_a, std::size_t cluster_b) {
   const std::uint16_t a = a_.part_of(cluster_a), b = b_.part_of(cluster_b);
   if (a == StepBody::kSeveral || b == StepBody::kSeveral) {
-    return false;
+    return nullptr;
   }
-  const bool is_swapped = are_one_ && b < a;
-  const StepEntry* const of = is_swapped ? known(b, a) : known(a, b);
+  return are_one_ && b < a ? known(b, a) : known(a, b);
+}
+
+bool StepCollector::is_settled(std::size_t cluster_a, std::size_t cluster_b) {
+  const StepEntry* const of = known_of_clusters(cluster_a, cluster_b);
   return of != nullptr && of->first <= begin_ && of->last >= end_;
+}
+
+bool StepCollector::touch_at_end(const Pair& clusters, bool at_start) {
+  const StepEntry* const of = known_of_clusters(clusters.a, clusters.b);
+  return of != nullptr && (at_start ? of->contact.at_start : of->contact.at_end) != 0;
 }
 
 StepEntry& StepCollector::entry(std::uint32_t part_a, std::uint32_t part_b) {
@@ -69,11 +78,10 @@ StepEntry& StepCollector::entry(std::uint32_t part_a, std::uint32_t part_b) {
   return out;
 }
 
-void StepCollector::note_ends(const PartContact& contact, bool at_start) {
+void StepCollector::note_end(const PartContact& contact, bool at_start) {
   StepEntry& of = entry(contact.part_a, contact.part_b);
   if (at_start) {
     of.contact.at_start = 1;
-    of.contact.at = middle_of(contact.low, contact.high);
     of.first = 0;
     of.last = std::max(of.last, 0.0);
   } else {
