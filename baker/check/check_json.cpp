@@ -3,6 +3,7 @@
 
 #include "check/formats.h"
 #include "report/json_text.h"
+#include "report/number_json.h"
 #include "report/vec3_json.h"
 
 namespace spherechain::baker {
@@ -14,9 +15,9 @@ ordered_json event_json(const JudgedEvent& judged) {
   const Event& event = judged.event;
   ordered_json out{{"parts", event.parts},
                    {"class", sc_penetration_class_name(event.kind)},
-                   {"from", event.from},
-                   {"to", event.to},
-                   {"deepest", event.deepest},
+                   {"from", number_json(event.from)},
+                   {"to", number_json(event.to)},
+                   {"deepest", number_json(event.deepest)},
                    {"depth_mm", event.depth_mm},
                    {"depth_percent", event.depth_percent},
                    {"volume_ml", event.volume_ml >= 0 ? ordered_json(event.volume_ml) : ordered_json()},

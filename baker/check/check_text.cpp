@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "check/formats.h"
+#include "play/motion_frames.h"
 
 namespace spherechain::baker {
 namespace {
@@ -58,8 +59,9 @@ std::string parts_text(const Event& event) {
 }
 
 std::string frames_text(const Event& event) {
-  if (event.from == event.to) return fmt::format("frame {}", event.from);
-  return fmt::format("frames {}-{}{}", event.from, event.to, event.from > event.to ? " (over the loop)" : "");
+  if (event.from == event.to) return "frame " + frame_text(event.from);
+  return fmt::format("frames {}-{}{}", frame_text(event.from), frame_text(event.to),
+                     event.from > event.to ? " (over the loop)" : "");
 }
 
 std::string check_text(const Verdict& verdict) {
@@ -75,7 +77,7 @@ std::string check_text(const Verdict& verdict) {
       if (event.kind == SC_CLASS_TOUCH) continue;
       const std::string worst = event.from == event.to || judged.state == EventState::kResolved
                                     ? ""
-                                    : fmt::format("  (worst at {})", event.deepest);
+                                    : fmt::format("  (worst at {})", frame_text(event.deepest));
       rows.push_back({clip_text(clip), frames_text(event), parts_text(event),
                       fmt::format("{:.0f} mm{}{}", event.depth_mm, worst, marks(judged))});
       for (std::size_t k = 0; k < 3; ++k) widths[k] = std::max(widths[k], rows.back()[k].size());

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "check/formats.h"
+#include "play/motion_frames.h"
 #include "report/json_text.h"
 #include "write/version.h"
 
@@ -53,7 +54,7 @@ std::string uri(const std::string& path) {
 std::string fault_text(const JudgedEvent& judged) {
   const Event& event = judged.event;
   return fmt::format("{}: {}, {:.0f} mm deep at frame {}", frames_text(event), parts_text(event), event.depth_mm,
-                     event.deepest);
+                     frame_text(event.deepest));
 }
 
 std::string testcase(const JudgedClip& clip) {

@@ -195,9 +195,12 @@ Event ClipChecker::event_of(const Frames& frames, const EventSpan& span, const C
   event.parts = {parts_.parts[worst.part_a].name, parts_.parts[worst.part_b].name};
   event.inside = rank(worst.part_a) > rank(worst.part_b) ? 0 : 1;
   event.kind = worst.kind;
-  event.from = span.from;
-  event.to = span.to;
-  event.deepest = frames.meetings[span.deepest].frame;
+  const int deepest = frames.meetings[span.deepest].frame;
+  event.from = animated_.number(clip.first + span.from);
+  event.to = animated_.number(clip.first + span.to);
+  event.deepest = animated_.number(clip.first + deepest);
+  event.first_place = span.from;
+  event.place = deepest;
   event.depth_mm = mm_ * double{worst.depth};
   event.depth_percent = 100 * double{worst.depth} / animated_.frame().height;
   if (worst.is_closed != 0) event.volume_ml = std::pow(mm_ / 10, 3) * double{worst.volume};
@@ -242,7 +245,7 @@ void ClipChecker::show(ClipCheck& out, const Frames& frames, const ClipFrames& c
   for (std::size_t i = 0; i < out.result.events.size(); ++i) {
     Event& event = out.result.events[i];
     if (!is_fault(event.kind)) continue;
-    picture_.pose(animated_.positions(animated_.deformation(clip.first + event.deepest)));
+    picture_.pose(animated_.positions(animated_.deformation(clip.first + event.place)));
     const Patches patches = patches_of(event, frames.contacts[frames.spans[i].deepest]);
     event.eye = picture_.find_eye(patches);
     if (deepest[{event.parts[0], event.parts[1], event.kind}] != &event) continue;
@@ -282,7 +285,7 @@ ClipCheck ClipChecker::check(std::size_t index) {
   Frames frames = look(clip);
   frames.spans = join_events(frames.meetings, clip.count, frames.loops);
   for (EventSpan& span : frames.spans) find_deepest(frames, clip, span);
-  ClipCheck out{{clip.count, clip.fps, frames.loops, {}}, {}, {}, {}};
+  ClipCheck out{{clip.count - clip.between, clip.between, clip.fps, frames.loops, {}}, {}, {}, {}};
   for (const EventSpan& span : frames.spans) out.result.events.push_back(event_of(frames, span, clip));
   out.heat = heat_of(frames);
   show(out, frames, clip);
@@ -301,11 +304,10 @@ ClipCheck ClipChecker::check(std::size_t index) {
     contacts.add(triangles);
     penetrations.add(entries_of(found, mm_));
   }
-  std::vector<std::uint32_t> numbers;
-  std::vector<float> seconds;
-  for (int i = 0; i < clip.count; ++i) {
-    numbers.push_back(static_cast<std::uint32_t>(i));
-    seconds.push_back(static_cast<float>(i / clip.fps));
+  std::vector<float> numbers, seconds;
+  for (int i = clip.first; i < clip.first + clip.count; ++i) {
+    numbers.push_back(static_cast<float>(animated_.number(i)));
+    seconds.push_back(static_cast<float>(animated_.number(i) / clip.fps));
   }
   out.page = json_text({{"frames",
                          {{"count", clip.count},

@@ -13,6 +13,7 @@
 #include "page/base64.h"
 #include "play/asset_file.h"
 #include "report/json_text.h"
+#include "report/number_json.h"
 #include "report/vec3_json.h"
 #include "write/write.h"
 
@@ -26,14 +27,13 @@ constexpr std::size_t kStripWidth = 100;
 
 // The deepest fault that no rule excuses, over the clip: bytes of half millimetres.
 std::string strip(const JudgedClip& clip) {
-  std::vector<std::uint8_t> out(std::min<std::size_t>(kStripWidth, static_cast<std::size_t>(std::max(clip.frames, 1))),
-                                0);
+  const auto frames = static_cast<std::size_t>(clip.frames + clip.between);
+  std::vector<std::uint8_t> out(std::clamp<std::size_t>(frames, 1, kStripWidth), 0);
   for (const JudgedEvent& judged : clip.events) {
     if (!judged.is_open()) continue;
     for (std::size_t i = 0; i < judged.event.depths_mm.size(); ++i) {
-      const std::size_t frame =
-          (static_cast<std::size_t>(judged.event.from) + i) % static_cast<std::size_t>(clip.frames);
-      std::uint8_t& bar = out[frame * out.size() / static_cast<std::size_t>(clip.frames)];
+      const std::size_t frame = (static_cast<std::size_t>(judged.event.first_place) + i) % frames;
+      std::uint8_t& bar = out[frame * out.size() / frames];
       bar = std::max(
           bar, static_cast<std::uint8_t>(std::clamp(2.0 * static_cast<double>(judged.event.depths_mm[i]), 0.0, 255.0)));
     }
@@ -46,9 +46,10 @@ ordered_json page_event(const JudgedEvent& judged) {
   ordered_json out{{"parts", event.parts},
                    {"text", parts_text(event)},
                    {"class", sc_penetration_class_name(event.kind)},
-                   {"from", event.from},
-                   {"to", event.to},
-                   {"deepest", event.deepest},
+                   {"from", number_json(event.from)},
+                   {"to", number_json(event.to)},
+                   {"deepest", number_json(event.deepest)},
+                   {"place", event.place},
                    {"mm", std::round(1000 * event.depth_mm) / 1000},
                    {"state", state_name(judged.state)},
                    {"fails", judged.fails}};

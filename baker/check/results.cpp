@@ -23,6 +23,8 @@ ordered_json result_event(const Event& event) {
           {"from", event.from},
           {"to", event.to},
           {"deepest", event.deepest},
+          {"first_place", event.first_place},
+          {"place", event.place},
           {"depth_mm", event.depth_mm},
           {"depth_percent", event.depth_percent},
           {"volume_ml", event.volume_ml},
@@ -41,6 +43,8 @@ Event read_result_event(const ordered_json& json) {
   json.at("from").get_to(event.from);
   json.at("to").get_to(event.to);
   json.at("deepest").get_to(event.deepest);
+  json.at("first_place").get_to(event.first_place);
+  json.at("place").get_to(event.place);
   json.at("depth_mm").get_to(event.depth_mm);
   json.at("depth_percent").get_to(event.depth_percent);
   json.at("volume_ml").get_to(event.volume_ml);
@@ -69,7 +73,12 @@ std::optional<Result> read_whole(const std::string& bytes, const Read& read) {
 std::string to_bytes(const ClipResult& result) {
   ordered_json events = ordered_json::array();
   for (const Event& event : result.events) events.push_back(result_event(event));
-  return json_text({{"frames", result.frames}, {"fps", result.fps}, {"loops", result.loops}, {"events", events}}, -1);
+  return json_text({{"frames", result.frames},
+                    {"between", result.between},
+                    {"fps", result.fps},
+                    {"loops", result.loops},
+                    {"events", events}},
+                   -1);
 }
 
 std::string to_bytes(const CharacterResult& result) {
@@ -85,6 +94,7 @@ std::optional<ClipResult> read_clip_result(const std::string& bytes) {
   return read_whole<ClipResult>(bytes, [](const ordered_json& json) {
     ClipResult out;
     json.at("frames").get_to(out.frames);
+    json.at("between").get_to(out.between);
     json.at("fps").get_to(out.fps);
     json.at("loops").get_to(out.loops);
     for (const ordered_json& event : json.at("events")) out.events.push_back(read_result_event(event));

@@ -17,7 +17,8 @@ struct Event {
   std::array<std::string, 2> parts;
   int inside = 0;                          // which of the two a person sees in the other
   PenetrationClass kind = SC_CLASS_REST;   // of the deepest frame, as all that follows
-  int from = 0, to = 0, deepest = 0;       // frames; from > to: it goes over the seam of a loop
+  double from = 0, to = 0, deepest = 0;    // frames, with a fraction between two; from > to: over the seam of a loop
+  int first_place = 0, place = 0;          // of `from` and `deepest` among the frames that were looked at
   double depth_mm = 0, depth_percent = 0;  // of the character's height
   double volume_ml = -1;                   // -1: not known
   Vec3 direction = Vec3::Zero();           // part 1, moved so by `depth_mm`, is free of part 0
@@ -28,7 +29,8 @@ struct Event {
 };
 
 struct ClipResult {
-  int frames = 0;
+  int frames = 0;   // its own
+  int between = 0;  // poses between them that were looked at, too
   double fps = 30;
   bool loops = false;
   std::vector<Event> events;  // by where they begin

@@ -17,6 +17,7 @@
 #include "import/sha256.h"
 #include "mesh/error.h"
 #include "page/page.h"
+#include "play/steps.h"
 #include "play/target.h"
 #include "report/report.h"
 
@@ -224,7 +225,7 @@ class Run {
     };
     if (!character.error.empty()) return add_row(0, 0, {}, character.error);
     const CharacterResult result = *read_character(store_, character.key);
-    const std::string fps = fmt::format("{}", options_.fps);
+    const std::string fps = fmt::format("{}{}", options_.fps, options_.continuous ? ", between frames" : "");
     for (const std::size_t unit : character.units) {
       if (unit == kOwnClips) {
         for (std::size_t i = 0; i < result.clips.size(); ++i) {
@@ -323,8 +324,9 @@ class Run {
   }
 
   // The result last: where it is, all is.
-  void check_into(const AnimatedAsset& animated, ClipChecker& checker, const Todo& next,
+  void check_into(AnimatedAsset& animated, ClipChecker& checker, const Todo& next,
                   const std::string& character_key) const {
+    if (options_.continuous) look_between_frames(animated, choose_target("auto"), next.number, [](int) {});
     const ClipCheck found = checker.check(next.number);
     const std::string& key = next.clip->key;
     if (!store_.has(character_key, kPageFile)) {

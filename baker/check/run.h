@@ -25,7 +25,8 @@ struct Shard {
 };
 
 struct RunOptions {
-  double fps = 0;  // 0: each clip's own
+  double fps = 0;           // 0: each clip's own
+  bool continuous = false;  // look between frames, too
   int jobs = 1;
   Shard shard;
 };

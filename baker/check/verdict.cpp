@@ -66,8 +66,8 @@ class Judge {
     Event& event = out.event;
     event.parts = known.parts;
     event.kind = known.kind;
-    event.from = static_cast<int>(std::lround(known.from * fps));
-    event.to = static_cast<int>(std::lround(known.to * fps));
+    event.from = std::round(100 * known.from * fps) / 100;
+    event.to = std::round(100 * known.to * fps) / 100;
     event.deepest = event.from;
     event.depth_mm = known.depth_mm;
     return out;
@@ -107,13 +107,14 @@ Verdict judge(const std::vector<CheckedClip>& clips, const std::vector<Character
   std::map<std::string, CharacterResult> read;  // by key
   for (const CheckedClip& clip : clips) {
     const CharacterRules& of = characters[clip.character];
-    JudgedClip judged{of.name, of.file, {}, {}, clip, 0, 30, false, {}, {}};
+    JudgedClip judged{of.name, of.file, {}, {}, clip, 0, 0, 30, false, {}, {}};
     if (clip.error.empty() && !clip.clip.empty()) {
       const std::optional<std::string> bytes = store.read(clip.key, kResultFile);
       const std::optional<ClipResult> result = bytes ? read_clip_result(*bytes) : std::nullopt;
       if (!result) judged.clip.error = of.file + ": the result of '" + clip.clip + "' is not there (check it again)";
       if (result) {
         judged.frames = result->frames;
+        judged.between = result->between;
         judged.fps = result->fps;
         judged.loops = result->loops;
         by.events(judged, *result, of.rules);

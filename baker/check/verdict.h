@@ -30,7 +30,7 @@ struct JudgedClip {
   std::string character, file, grade;  // name; path as given; grade of the fit
   std::string fit;                     // the grade as a sentence
   CheckedClip clip;
-  int frames = 0;
+  int frames = 0, between = 0;  // as of a ClipResult
   double fps = 30;
   bool loops = false;
   std::vector<JudgedEvent> events;          // those that are looked at, then the resolved ones

@@ -136,6 +136,7 @@ ExitCode run_check(const CheckOptions& options) {
   const std::vector<LibraryCharacter> library = read_library(options.library, options.motion, config);
   RunOptions run;
   run.fps = options.fps;
+  run.continuous = options.continuous;
   run.jobs = options.jobs > 0 ? options.jobs : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   const auto check = [&](const Store& store) {
     RunProgress progress;

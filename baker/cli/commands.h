@@ -31,7 +31,7 @@ struct PlayOptions {
   MotionChoice motion;
   FrameChoice frames;
   std::string mode = "both", radius = "detect", backend = "auto";
-  bool contacts = false;
+  bool contacts = false, continuous = false;
 };
 ExitCode run_play(const PlayOptions& options);
 
@@ -40,7 +40,7 @@ struct ValidateOptions {
   MotionChoice motion;
   FrameChoice frames;
   std::string mode = "all_pairs", radius = "detect";
-  bool contacts = false, spheres_alone = false;
+  bool contacts = false, spheres_alone = false, continuous = false;
 };
 ExitCode run_validate(const ValidateOptions& options);
 
@@ -49,7 +49,7 @@ struct ViewOptions {
   MotionChoice motion;
   FrameChoice frames;
   std::string radius = "detect";
-  bool force = false;
+  bool force = false, continuous = false;
 };
 ExitCode run_view(const ViewOptions& options);
 
@@ -59,7 +59,7 @@ struct CheckOptions {
   std::string fail_on = "penetration";
   double max_depth = 0, fps = 0;  // 0: each clip's own
   int jobs = 0;                   // 0: as many as the machine has cores
-  bool accept = false, folds = false, merge = false;
+  bool accept = false, folds = false, merge = false, continuous = false;
 };
 ExitCode run_check(const CheckOptions& options);
 

@@ -59,8 +59,12 @@ int flush(int code) {
   return fail(ExitCode::kFile, "standard output: cannot be written");
 }
 
+void add_continuous(CLI::App& command, bool& continuous) {
+  command.add_flag("--continuous", continuous, "Look between frames, too: for what touches in neither of two");
+}
+
 // The choice of motion, the same for every command that animates.
-void add_motion(CLI::App& command, MotionChoice& motion, FrameChoice& frames) {
+void add_motion(CLI::App& command, MotionChoice& motion, FrameChoice& frames, bool& continuous) {
   CLI::Option_group& choice = *command.add_option_group(
       "Motion", "What to play; without a choice all clips of the source's own, or the rest pose");
   add_name(choice, "--clip", motion.clip, "A clip of the source's own: its name or number");
@@ -76,6 +80,7 @@ void add_motion(CLI::App& command, MotionChoice& motion, FrameChoice& frames) {
       ->check(CLI::Range(1e-3, 1e6))
       ->check(refuse_nan)
       ->capture_default_str();
+  add_continuous(command, continuous);
 }
 
 void add_radius(CLI::App& command, std::string& radius) {
@@ -137,7 +142,7 @@ int main(int argc, char** argv) {
       app.add_subcommand("play", "Animate an asset's source and report which body parts touch, and when");
   add_name(*play_command, "ASSET", play.asset, "Asset (.sphc)")->required();
   add_name(*play_command, "--source", play.source, "The mesh it was baked from")->required();
-  add_motion(*play_command, play.motion, play.frames);
+  add_motion(*play_command, play.motion, play.frames, play.continuous);
   play_command->add_option("--mode", play.mode, "Test of the spheres: along chains, all pairs, or both")
       ->check(CLI::IsMember({"all_pairs", "chains", "both"}))
       ->capture_default_str();
@@ -158,7 +163,7 @@ int main(int argc, char** argv) {
       "validate", "Compare skin contacts and spheres with the exact intersections of the deformed mesh");
   add_name(*validate_command, "ASSET", validate.asset, "Asset (.sphc)")->required();
   add_name(*validate_command, "--source", validate.source, "The mesh it was baked from")->required();
-  add_motion(*validate_command, validate.motion, validate.frames);
+  add_motion(*validate_command, validate.motion, validate.frames, validate.continuous);
   validate_command->add_option("--mode", validate.mode, "Test of the spheres: along chains, or all pairs")
       ->check(CLI::IsMember({"all_pairs", "chains"}))
       ->capture_default_str();
@@ -174,7 +179,7 @@ int main(int argc, char** argv) {
   add_name(*view_command, "ASSET", view.asset, "Asset (.sphc)")->required();
   add_name(*view_command, "--source", view.source, "The mesh it was baked from")->required();
   add_output(*view_command, "-o,--output", view.output, "Page to write (.html)")->required();
-  add_motion(*view_command, view.motion, view.frames);
+  add_motion(*view_command, view.motion, view.frames, view.continuous);
   add_radius(*view_command, view.radius);
   add_name(*view_command, "--report", view.report, "The report that bake wrote, to show in the page");
   add_name(*view_command, "--validation", view.validation, "What validate --json wrote, to show in the page");
@@ -203,6 +208,7 @@ int main(int argc, char** argv) {
   check_command->add_option("--fps", check.fps, "Frames a second (default: each clip's own)")
       ->check(CLI::Range(1e-3, 1e6))
       ->check(refuse_nan);
+  add_continuous(*check_command, check.continuous);
   check_command->add_option("--jobs", check.jobs, "Processes at a time (default: one for each core)")
       ->check(CLI::Range(1, 1024));
   check_command->add_flag("--folds", check.folds, "List folds, shells and contacts as at rest, too");

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "cli/between.h"
 #include "cli/commands.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
@@ -97,7 +98,8 @@ ExitCode run_play(const PlayOptions& options) {
   }
   const Target target = choose_target(on_cuda ? "auto" : options.backend);
   const Radius radius = options.radius == "fit" ? SC_RADIUS_FIT : SC_RADIUS_DETECT;
-  const AnimatedAsset animated(options.asset, options.source, options.motion, options.frames);
+  AnimatedAsset animated(options.asset, options.source, options.motion, options.frames);
+  if (options.continuous) look_between(animated, options.asset);
   animated.check_clusters();
   CudaFrames cuda;
   if (on_cuda) cuda = play_on_cuda(animated, radius);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include "cli/between.h"
 #include "cli/commands.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
@@ -23,7 +24,8 @@ ExitCode run_validate(const ValidateOptions& options) {
   settings.contacts = options.contacts;
   settings.skin = !options.spheres_alone;
   settings.cache = cache_folder();
-  const AnimatedAsset animated(options.asset, options.source, options.motion, options.frames);
+  AnimatedAsset animated(options.asset, options.source, options.motion, options.frames);
+  if (options.continuous) look_between(animated, options.asset);
   Validation validation;
   {
     Progress progress("validate " + options.asset + ":");

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "cli/between.h"
 #include "cli/commands.h"
 #include "cli/installed.h"
 #include "cli/outputs.h"
@@ -38,7 +39,8 @@ ExitCode run_view(const ViewOptions& options) {
   page.template_file = viewer_template().string();
   page.title = fs::path(options.asset).filename().string();
   page.radius = options.radius == "fit" ? SC_RADIUS_FIT : SC_RADIUS_DETECT;
-  const AnimatedAsset animated(options.asset, options.source, options.motion, options.frames);
+  AnimatedAsset animated(options.asset, options.source, options.motion, options.frames);
+  if (options.continuous) look_between(animated, options.asset);
   if (!options.report.empty()) page.report = read_bake_report(options.report, animated.asset(), options.asset);
   if (!options.validation.empty()) {
     page.validation = read_validation(options.validation, animated.asset(), options.asset);

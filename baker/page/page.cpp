@@ -90,8 +90,7 @@ ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& optio
                          const std::function<void(int)>& progress) {
   const int frames = animated.frame_count();
   PageFrames runtime(animated, options.radius);
-  std::vector<std::uint32_t> numbers;
-  std::vector<float> times, seconds, spheres, refit_us, contacts_us;
+  std::vector<float> numbers, times, seconds, spheres, refit_us, contacts_us;
   FrameLists<std::array<std::uint32_t, 2>> contacts;
   FrameLists<PenetrationEntry> penetrations;
   FrameLists<std::array<std::uint16_t, 2>> fit_pairs, detect_pairs;
@@ -103,7 +102,7 @@ ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& optio
     motion.add(deformation, positions);
     const bool is_next = i > 0 && animated.frame_at(i).clip == animated.frame_at(i - 1).clip;
     const PageFrame frame = runtime.run(pack(positions), is_next);
-    numbers.push_back(static_cast<std::uint32_t>(animated.frame_at(i).number));
+    numbers.push_back(static_cast<float>(animated.number(i)));
     seconds.push_back(static_cast<float>(animated.frame_at(i).seconds));
     times.push_back(static_cast<float>(animated.time(i)));
     spheres.insert(spheres.end(), frame.spheres.begin(), frame.spheres.end());

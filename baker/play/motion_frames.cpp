@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "play/motion_frames.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -26,12 +28,12 @@ class Builder {
  public:
   // `start` is the clip's, in the motion's seconds.
   void open(const std::string& name, const Clip* clip, int own_count, double start, double fps) {
-    out.clips.push_back({name, clip, static_cast<int>(out.frames.size()), 0, own_count, fps});
+    out.clips.push_back({name, clip, static_cast<int>(out.frames.size()), 0, 0, own_count, fps});
     start_ = start;
   }
   void add(double seconds, int number, double along) {
     ++out.clips.back().count;
-    out.frames.push_back({out.clips.size() - 1, number, seconds, start_ + seconds, along});
+    out.frames.push_back({out.clips.size() - 1, number, seconds, start_ + seconds, 0, along});
   }
 
   MotionFrames out;
@@ -88,6 +90,36 @@ MotionFrames frames_of(const Motion* motion, const FrameChoice& choice) {
     builder.add(along * duration, nearest_number(along * duration, fps), along);
   }
   return std::move(builder.out);
+}
+
+MotionFrames with_frames_between(const MotionFrames& frames, const std::vector<std::vector<double>>& shares) {
+  MotionFrames out{frames.clips, {}};
+  for (ClipFrames& clip : out.clips) {
+    const int first = clip.first, end = clip.first + clip.count;
+    clip.first = static_cast<int>(out.frames.size());
+    for (int i = first; i < end; ++i) {
+      const auto at = static_cast<std::size_t>(i);
+      const MotionFrame& frame = frames.frames[at];
+      out.frames.push_back(frame);
+      for (const double share : shares[at]) {
+        const MotionFrame& next = frames.frames[at + 1];
+        MotionFrame between = frame;
+        between.between = share;
+        between.seconds += share * (next.seconds - frame.seconds);
+        between.time += share * (next.time - frame.time);
+        between.along += share * (next.along - frame.along);
+        out.frames.push_back(between);
+        ++clip.between;
+      }
+    }
+    clip.count = static_cast<int>(out.frames.size()) - clip.first;
+  }
+  return out;
+}
+
+std::string frame_text(double number) {
+  const double whole = std::floor(number);
+  return number == whole ? fmt::format("{:.0f}", number) : fmt::format("{:.2f}", number);
 }
 
 }  // namespace spherechain::baker

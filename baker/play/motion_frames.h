@@ -21,6 +21,7 @@ struct ClipFrames {
   std::string name;
   const Clip* clip = nullptr;  // null where the motion is not made of clips
   int first = 0, count = 0;
+  int between = 0;    // of those, how many lie between two of the clip's (MotionFrame::between)
   int own_count = 0;  // frames that the clip has at `fps`, or of its own
   double fps = 30;
 };
@@ -30,8 +31,12 @@ struct MotionFrame {
   int number = 0;        // at `fps`, from the start of its clip
   double seconds = 0;    // from the start of its clip
   double time = 0;       // seconds from the start of the first clip
+  double between = 0;    // how far on the way to the next number, for what touches between two frames; else 0
   double along = 0;      // of a motion that is not made of clips: from 0, its start, to 1, its end
 };
+
+// "12", or "12.46": between two frames.
+std::string frame_text(double number);
 
 struct MotionFrames {
   std::vector<ClipFrames> clips;
@@ -40,6 +45,9 @@ struct MotionFrames {
 
 // Of clips, one after another.
 MotionFrames frames_of(const SourceRig& rig, const std::vector<const Clip*>& clips, const FrameChoice& choice);
+
+// With frames more, of each frame those at these shares of the way to the next.
+MotionFrames with_frames_between(const MotionFrames& frames, const std::vector<std::vector<double>>& shares);
 
 // Of another motion; null is the rest pose.
 MotionFrames frames_of(const Motion* motion, const FrameChoice& choice);

@@ -34,6 +34,9 @@ class AnimatedAsset {
   // Plays another motion in place of that one. Throws Error(kFile).
   void play(const MotionChoice& motion, const FrameChoice& frames);
 
+  // More frames between those that play now (motion_frames.h).
+  void put_between(const std::vector<std::vector<double>>& shares) { frames_ = with_frames_between(frames_, shares); }
+
   const std::string& file() const { return asset_name_; }  // the asset's, as it was given
   const OpenAsset& asset() const { return file_; }
   const Character& character() const { return character_; }
@@ -51,6 +54,8 @@ class AnimatedAsset {
   const MotionFrame& frame_at(int frame) const { return frames_.frames[static_cast<std::size_t>(frame)]; }
   const std::vector<ClipFrames>& clips() const { return frames_.clips; }
   double fps() const { return fps_; }
+  // Its number in its clip, and how far on to the next.
+  double number(int frame) const { return frame_at(frame).number + frame_at(frame).between; }
   double time(int frame) const { return frame_at(frame).time; }
   const std::string& clip_at(int frame) const { return clips()[frame_at(frame).clip].name; }
   Deformation deformation(int frame) const;

@@ -9,6 +9,7 @@
 
 #include "mesh/error.h"
 #include "play/skin_player.h"
+#include "report/number_json.h"
 
 namespace spherechain::baker {
 namespace {
@@ -17,13 +18,19 @@ using nlohmann::ordered_json;
 
 constexpr std::size_t kRunsShownMax = 6;
 
-std::string runs_text(const std::vector<std::pair<int, int>>& runs) {
+std::string runs_text(const std::vector<std::pair<double, double>>& runs) {
   std::string out;
   for (std::size_t i = 0; i < std::min(runs.size(), kRunsShownMax); ++i) {
     const auto [first, last] = runs[i];
-    out += (i > 0 ? ", " : "") + (first == last ? fmt::format("{}", first) : fmt::format("{}-{}", first, last));
+    out += (i > 0 ? ", " : "") + frame_text(first) + (first == last ? "" : "-" + frame_text(last));
   }
   if (runs.size() > kRunsShownMax) out += fmt::format(" and {} more", runs.size() - kRunsShownMax);
+  return out;
+}
+
+ordered_json runs_json(const std::vector<std::pair<double, double>>& runs) {
+  ordered_json out = ordered_json::array();
+  for (const auto& [first, last] : runs) out.push_back({number_json(first), number_json(last)});
   return out;
 }
 
@@ -44,7 +51,7 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
 }
 
 // `before` is the number of the frame before, or -1.
-void add_to_runs(std::vector<std::pair<int, int>>& runs, int number, int before) {
+void add_to_runs(std::vector<std::pair<double, double>>& runs, double number, double before) {
   if (!runs.empty() && runs.back().second == before) {
     runs.back().second = number;
   } else {
@@ -66,14 +73,16 @@ PartCounts PartContacts::add(int frame, const std::vector<Pair>& triangles,
   const MotionFrame& at = animated_.frame_at(frame);
   clips_.resize(animated_.clips().size());
   Clip& clip = clips_[at.clip];
-  clip.contact_frames += counts.empty() ? 0 : 1;
-  const int before = frame > animated_.clips()[at.clip].first ? animated_.frame_at(frame - 1).number : -1;
+  const bool is_own = at.between == 0;
+  clip.contact_frames += is_own && !counts.empty() ? 1 : 0;
+  const double number = animated_.number(frame);
+  const double before = frame > animated_.clips()[at.clip].first ? animated_.number(frame - 1) : -1;
   for (const auto& [pair, count] : counts) {
     Contact& contact = clip.contacts[pair];
-    add_to_runs(contact.runs, at.number, before);
+    add_to_runs(contact.runs, number, before);
     if (count > contact.triangle_pairs_max) {
       contact.triangle_pairs_max = count;
-      contact.frame_of_max = at.number;
+      contact.frame_of_max = number;
     }
   }
   bool has_fault = false;
@@ -81,15 +90,15 @@ PartCounts PartContacts::add(int frame, const std::vector<Pair>& triangles,
     Contact& contact = clip.contacts[{found.part_a, found.part_b}];
     const bool fault = is_fault(found.kind);
     has_fault = has_fault || fault;
-    if (fault) add_to_runs(contact.fault_runs, at.number, before);
+    if (fault) add_to_runs(contact.fault_runs, number, before);
     if (std::pair(fault, mm_ * double{found.depth}) > std::pair(is_fault(contact.kind), contact.depth_mm_max)) {
       contact.depth_mm_max = mm_ * double{found.depth};
-      contact.frame_of_depth_max = at.number;
+      contact.frame_of_depth_max = number;
       contact.direction = found.direction;
       contact.kind = found.kind;
     }
   }
-  clip.fault_frames += has_fault ? 1 : 0;
+  clip.fault_frames += is_own && has_fault ? 1 : 0;
   last_frame_ = frame;
   return counts;
 }
@@ -97,11 +106,15 @@ PartCounts PartContacts::add(int frame, const std::vector<Pair>& triangles,
 std::string PartContacts::head(std::size_t index, const std::string& motion) const {
   const ClipFrames& frames = animated_.clips()[index];
   std::string what = frames.clip != nullptr ? "clip " + frames.name : motion.empty() ? "rest pose" : "motion " + motion;
-  const std::string of = frames.count == frames.own_count ? "" : fmt::format(" of {}", frames.own_count);
-  const char* unit = frames.count == 1 && of.empty() ? "frame" : "frames";
-  what += fmt::format(": {}{} {} at {} fps", frames.count, of, unit, animated_.fps());
+  const int count = frames.count - frames.between;
+  const std::string of = count == frames.own_count ? "" : fmt::format(" of {}", frames.own_count);
+  const char* unit = count == 1 && of.empty() ? "frame" : "frames";
+  what += fmt::format(": {}{} {} at {} fps", count, of, unit, animated_.fps());
+  if (frames.between > 0) {
+    what += fmt::format(", and {} {} between them", frames.between, frames.between == 1 ? "pose" : "poses");
+  }
   const int with_contact = clips_[index].contact_frames;
-  if (with_contact == 0) return what + ". No contact.\n";
+  if (with_contact == 0 && frames.between == 0) return what + ". No contact.\n";
   return what + fmt::format("; skin contacts in {} {}, faults in {}\n", with_contact,
                             with_contact == 1 ? "frame" : "frames", clips_[index].fault_frames);
 }
@@ -131,7 +144,7 @@ std::string PartContacts::rows(const Clip& clip) const {
     const auto& [x, y, z] = contact.direction;
     cells.push_back({name(a), a == b ? "itself" : name(b), unit + runs_text(runs),
                      fmt::format("{}{:.0f} mm deep at {}, out along ({:.2f}, {:.2f}, {:.2f})", fold,
-                                 contact.depth_mm_max, contact.frame_of_depth_max, x, y, z)});
+                                 contact.depth_mm_max, frame_text(contact.frame_of_depth_max), x, y, z)});
   }
   std::string rest;
   for (const auto& [kind, count] : others) {
@@ -160,13 +173,13 @@ ordered_json PartContacts::json() const {
     for (const auto& [pair, contact] : clips_[i].contacts) {
       contacts.push_back({{"a", name(pair.first)},
                           {"b", name(pair.second)},
-                          {"frames", contact.runs},
-                          {"fault_frames", contact.fault_runs},
+                          {"frames", runs_json(contact.runs)},
+                          {"fault_frames", runs_json(contact.fault_runs)},
                           {"triangle_pairs_max", contact.triangle_pairs_max},
-                          {"frame_of_max", contact.frame_of_max},
+                          {"frame_of_max", number_json(contact.frame_of_max)},
                           {"class", sc_penetration_class_name(contact.kind)},
                           {"depth_mm_max", contact.depth_mm_max},
-                          {"frame_of_depth_max", contact.frame_of_depth_max}});
+                          {"frame_of_depth_max", number_json(contact.frame_of_depth_max)}});
     }
     out.push_back({{"name", frames.name},
                    {"first_frame", frames.first},

@@ -40,11 +40,11 @@ class PartContacts {
   // Two body parts in one clip.
   struct Contact {
     // Numbers of the first and the last frame of each run; of all, and of those that are faults.
-    std::vector<std::pair<int, int>> runs, fault_runs;
+    std::vector<std::pair<double, double>> runs, fault_runs;
     std::size_t triangle_pairs_max = 0;
-    int frame_of_max = 0;
+    double frame_of_max = 0;
     double depth_mm_max = 0;  // of the deepest fault, or without one of the deepest; its frame, and what is there
-    int frame_of_depth_max = 0;
+    double frame_of_depth_max = 0;
     spherechain::Vec3 direction{};
     PenetrationClass kind = SC_CLASS_REST;
   };

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "report/json_text.h"
+#include "report/number_json.h"
 
 namespace spherechain::baker {
 
@@ -19,7 +20,7 @@ ordered_json pairs_json(Span<const Pair> pairs) {
 ordered_json frame_json(const AnimatedAsset& animated, int index, const FrameResult& result, const Player& player) {
   ordered_json out{{"index", index}, {"time", animated.time(index)}};
   if (const std::string& clip = animated.clip_at(index); !clip.empty()) out["clip"] = clip;
-  out["clip_frame"] = animated.frame_at(index).number;
+  out["clip_frame"] = number_json(animated.number(index));
   out["refit_us"] = result.refit_us;
   if (const auto& chains = result.chains) {
     out["chains"] = {

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "report/json_text.h"
+#include "report/number_json.h"
 
 namespace spherechain::baker {
 namespace {
@@ -124,7 +125,9 @@ std::string scores_text(const Validation& validation, double mm) {
                        score->reported_per_frame(), share_text(score->frame_any_recall(), 4),
                        share_text(score->frame_all_recall(), 4), mm * score->missed_depth);
   }
-  return out + "(missed depth: of the deepest fault between two body parts of which nothing is reported;\n any, all: share of the frames with a true pair)\n";
+  return out +
+         "(missed depth: of the deepest fault between two body parts of which nothing is reported;\n any, all: share "
+         "of the frames with a true pair)\n";
 }
 
 std::size_t shown_misses(const Validation& validation) { return std::min(validation.misses.size(), kWorstMisses); }
@@ -188,7 +191,7 @@ std::string validation_json(const Validation& validation, const AnimatedAsset& a
     const Miss& miss = validation.misses[i];
     out["worst_misses"].push_back({{"frame", miss.frame},
                                    {"time", animated.time(miss.frame)},
-                                   {"clip_frame", animated.frame_at(miss.frame).number},
+                                   {"clip_frame", number_json(animated.number(miss.frame))},
                                    {"spheres", {miss.spheres.a, miss.spheres.b}},
                                    {"triangle_pairs", miss.triangle_pairs},
                                    {"depth_mm", mm * miss.depth}});
@@ -225,8 +228,10 @@ std::string validation_text(const Validation& validation, const AnimatedAsset& a
     out += line("of neighbours", validation.neighbour_contacts, validation.neighbour_contacts_from_bones);
   }
   if (!validation.misses.empty()) {
-    out += fmt::format("\nworst misses of {}: frame, spheres, triangle pairs, depth in mm where it is a fault of which nothing is reported\n",
-                       reported_name(settings));
+    out += fmt::format(
+        "\nworst misses of {}: frame, spheres, triangle pairs, depth in mm where it is a fault of which nothing is "
+        "reported\n",
+        reported_name(settings));
   }
   for (std::size_t i = 0; i < std::min<std::size_t>(shown_misses(validation), 5); ++i) {
     const Miss& miss = validation.misses[i];

@@ -35,10 +35,10 @@ double now() {
 }
 
 struct Step {
-  std::vector<float> bones[2];               // SC_ROWS_3X4
-  std::vector<sc_transform> joints[2];       // the same, each joint in the space of the pose
-  double substeps;                           // so that no two vertices change their distance by more than the tolerance
-  bool is_free;                              // nothing touches
+  std::vector<float> bones[2];          // SC_ROWS_3X4
+  std::vector<sc_transform> joints[2];  // the same, each joint in the space of the pose
+  double substeps;                      // so that no two vertices change their distance by more than the tolerance
+  bool is_free;                         // nothing touches
 };
 
 std::vector<float> palette(const baker::Deformation& pose) {
@@ -99,7 +99,8 @@ class Bench {
         add(motion->at(t), motion->at(t + length));
       }
     }
-    contestants_.push_back({"contacts in the frame where a step starts", passes, [this](const Step& s) { frame(s.bones[0]); }});
+    contestants_.push_back(
+        {"contacts in the frame where a step starts", passes, [this](const Step& s) { frame(s.bones[0]); }});
     contestants_.push_back({"a step of matrices", passes, [this](const Step& s) { step(s, SC_BLEND_LINEAR); }});
     contestants_.push_back({"a step of joints, slerp", passes, [this](const Step& s) { step(s, SC_BLEND_SLERP); }});
     contestants_.push_back({"a step of joints, nlerp", passes, [this](const Step& s) { step(s, SC_BLEND_NLERP); }});
@@ -115,12 +116,13 @@ class Bench {
       substeps += s.substeps / static_cast<double>(steps_.size());
       free += s.is_free ? 1 : 0;
     }
-    out.context = {machine(),
-                   fmt::format("target {}, {} steps of assimp-testmodels' human.zae, {} of them without a contact",
-                               sc_target_name(kBest), steps_.size(), free),
-                   fmt::format("poses on the way, {} a step: {} pairs of body parts touch, 0 of them missing, none by more "
-                               "than {:.3f} of a step earlier or later; {} found that begin or end in a step",
-                               kSubsteps, looked_at_, latest_, begun_)};
+    out.context = {
+        machine(),
+        fmt::format("target {}, {} steps of assimp-testmodels' human.zae, {} of them without a contact",
+                    sc_target_name(kBest), steps_.size(), free),
+        fmt::format("poses on the way, {} a step: {} pairs of body parts touch, 0 of them missing, none by more "
+                    "than {:.3f} of a step earlier or later; {} found that begin or end in a step",
+                    kSubsteps, looked_at_, latest_, begun_)};
     for (const Contestant& c : contestants_) {
       out.rows.push_back({"P13", c.name + ", mean", c.mean(steps_, false), ""});
       if (free > 0) out.rows.push_back({"P13", c.name + ", no contact", c.mean(steps_, true), ""});
@@ -128,7 +130,8 @@ class Bench {
     const double of_frame = contestants_[0].mean(steps_, false).median;
     for (std::size_t i = 1; i < contestants_.size(); ++i) {
       const double mean = contestants_[i].mean(steps_, false).median;
-      out.goals.push_back({"P13 " + contestants_[i].name + ": mean over a frame's contacts", "x", mean / of_frame, 3, false});
+      out.goals.push_back(
+          {"P13 " + contestants_[i].name + ": mean over a frame's contacts", "x", mean / of_frame, 3, false});
       if (free > 0) {
         out.goals.push_back({"P13 " + contestants_[i].name + ": no contact", "us",
                              contestants_[i].mean(steps_, true).median / 1e3, 15, false});

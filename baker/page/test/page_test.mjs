@@ -200,7 +200,7 @@ test('several clips: a list, a header that follows, frames of the clip, playing 
   const clips = [{ name: 'Walk', first: 0, count: 15, own_count: 15 }, { name: 'Run', first: 15, count: 25, own_count: 25 }];
   const opened = await open(browser, pages.variant('clips.html', (data) => {
     data.clips = clips;
-    data.frames.numbers = base64(Uint32Array.from({ length: 40 }, (_, i) => (i < 15 ? i : i - 15)));
+    data.frames.numbers = base64(Float32Array.from({ length: 40 }, (_, i) => (i < 15 ? i : i - 15)));
   }));
   const { page } = opened;
   await page.locator('#clips').selectOption('1');

@@ -31,7 +31,8 @@ typedef struct sc_motion {
   const sc_transform* start_joints SC_ZERO;
   const sc_transform* end_joints SC_ZERO;
   size_t joint_count SC_ZERO;
-  const uint32_t* parents SC_ZERO; /* of each joint an earlier one, or SC_NO_JOINT; null: all stand in the pose's space */
+  const uint32_t* parents
+      SC_ZERO; /* of each joint an earlier one, or SC_NO_JOINT; null: all stand in the pose's space */
   const uint32_t* joint_of_bone SC_ZERO; /* of each bone of the asset: sc_bind_joints(); null: joint b moves bone b */
 } sc_motion;
 
@@ -44,7 +45,7 @@ typedef struct sc_step_contact {
   float begin;              /* the first time at which they touch; 0 with at_start */
   float end;                /* the last time; 1 with at_end. In between they may part and meet again */
   uint32_t triangle_a, triangle_b; /* that touch at `begin`, by the source's numbers; SC_NO_TRIANGLE with at_start */
-  sc_vec3 at; /* where they do; zero with at_start */
+  sc_vec3 at;                      /* where they do; zero with at_start */
 } sc_step_contact;
 
 /* All pairs of body parts that touch on the way from one pose to the next: of body a with itself, where b.body.asset is

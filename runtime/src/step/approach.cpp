@@ -32,8 +32,8 @@ class Pass {
 
   double least_step() const { return least_step_; }
 
-  // The latest time until which a plane is known to part the triangles from `time` on that keeps its direction, one that
-  // parts them at `seen`; `time` where there is none. Ends where that is past the limit.
+  // The latest time until which a plane is known to part the triangles from `time` on that keeps its direction, one
+  // that parts them at `seen`; `time` where there is none. Ends where that is past the limit.
   double open_until(double time, double seen, double limit) const {
     const SixCorners now = way_.at(time), then = way_.at(seen);
     const Double3* const a = then.p;

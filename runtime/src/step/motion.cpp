@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// With a bone's matrix M(t), of linear part A(t) and origin o(t), a vertex is at v(t) = sum_b w_b M_b(t) p(t), where the
-// weights add up to 1 and p(t) = p + m(t) d is its place at rest, morphed. From a straight line over a time h it is off
-// by h^2 / 8 times the greatest length of its second derivative, which is at most the greatest of a bone's
+// With a bone's matrix M(t), of linear part A(t) and origin o(t), a vertex is at v(t) = sum_b w_b M_b(t) p(t), where
+// the weights add up to 1 and p(t) = p + m(t) d is its place at rest, morphed. From a straight line over a time h it is
+// off by h^2 / 8 times the greatest length of its second derivative, which is at most the greatest of a bone's
 //   |M'' p| + 2 |A' p'|  <=  |A''| |p| + |o''| + 2 |A'| |p'|.
 // Down a skeleton, of a parent P and a joint with the rotation R, the scale S and the translation l,
 //   A = P R S,   o = P l + o_P,   so   |A''| <= |P''||B| + 2 |P'||B'| + |P||B''| of B = R S, and o'' likewise.
-// S and l are linear in time. A rotation by the angle a in all has |R'| = a and |R''| = a^2 where its speed is constant;
-// as a normalised sum of quaternions that are an angle g apart, c = cos g, its speed is 2 g', with
+// S and l are linear in time. A rotation by the angle a in all has |R'| = a and |R''| = a^2 where its speed is
+// constant; as a normalised sum of quaternions that are an angle g apart, c = cos g, its speed is 2 g', with
 //   g' = sin g / D,   g'' = - sin g D' / D^2,   D = 1 - 2 t (1 - t) (1 - c)  >=  (1 + c) / 2,   |D'| <= 2 (1 - c).
 #include "step/motion.h"
 
@@ -80,7 +80,7 @@ LocalSpeeds local_speeds(const sc_transform& start, const sc_transform& end, Ble
   const Turn turn(start, end);
   const Quaternion apart = sum(turn.to, scaled(-1, turn.from));
   const double chord = std::sqrt(inner(apart, apart));  // 2 sin(g / 2), of an angle g of at most a quarter turn
-  double speed = 0, change = 0;                       // |R'|, |R''|
+  double speed = 0, change = 0;                         // |R'|, |R''|
   if (blend == SC_BLEND_SLERP) {
     speed = 2 * std::min(1.1108 * chord, 1.5708);  // the arc is at most that much longer than its chord
     change = speed * speed;
@@ -157,8 +157,8 @@ Status check_joints(const sc_motion& motion, const AssetView& asset) {
     }
   }
   for (std::size_t bone = 0; bone < asset.bone_count(); ++bone) {
-    const bool rests = motion.joint_of_bone == nullptr ? asset.bone(bone).is_rest
-                                                       : motion.joint_of_bone[bone] == SC_NO_JOINT;
+    const bool rests =
+        motion.joint_of_bone == nullptr ? asset.bone(bone).is_rest : motion.joint_of_bone[bone] == SC_NO_JOINT;
     if (!rests && joint_of(motion, bone) >= motion.joint_count) {
       return refuse(SC_TOO_SMALL, SC_FIELD_JOINTS);
     }
@@ -179,10 +179,9 @@ Status check_motion(const sc_motion& motion, Surface& surface) {
       return status;
     }
     const Status at_end = check_skin_pose(view_of(*body.asset), motion.end);
-    return at_end != SC_OK ? at_end
-           : (body.pose.vertices == nullptr) != (motion.end.vertices == nullptr)
-               ? refuse(SC_BAD_VALUE, SC_FIELD_END)
-               : done();
+    return at_end != SC_OK                                                       ? at_end
+           : (body.pose.vertices == nullptr) != (motion.end.vertices == nullptr) ? refuse(SC_BAD_VALUE, SC_FIELD_END)
+                                                                                 : done();
   }
   Status status = check_asset(body.asset);
   if (status == SC_OK) {

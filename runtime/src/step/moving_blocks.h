@@ -73,7 +73,7 @@ HWY_INLINE Box way_of_spans(const MovingScene& scene, std::size_t cluster, const
 // seen along with the drift.
 // False where there are none. Those that are degenerate at both ends are left out.
 inline HWY_NOINLINE bool load_moving_block(const MovingScene& scene, std::size_t cluster_index, const Box& box,
-                                    const Drift& drift, float stray, MovingBlock& out) {
+                                           const Drift& drift, float stray, MovingBlock& out) {
   constexpr Floats kFloats;
   const Surface& surface = *scene.start.surface;
   const Cluster& cluster = surface.clusters.data[cluster_index];

@@ -17,8 +17,8 @@ namespace spherechain {
 namespace {
 
 constexpr float kTolerance = 1e-4F;
-constexpr double kWidest = 1.0 / 1024;  // what vertices may stray in a piece, in heights
-constexpr int kMostHalvings = 6;       // of the step, into pieces
+constexpr double kWidest = 1.0 / 1024;          // what vertices may stray in a piece, in heights
+constexpr int kMostHalvings = 6;                // of the step, into pieces
 constexpr std::size_t kClusterPairs = 1 << 14;  // listed at a time
 
 // A body, on its way through the pieces.
@@ -108,8 +108,8 @@ struct MotionRanges {
         start_joints(range_of(Span<const sc_transform>{motion.start_joints, motion.joint_count})),
         end_joints(range_of(Span<const sc_transform>{motion.end_joints, motion.joint_count})),
         parents(range_of(Span<const std::uint32_t>{motion.parents, motion.joint_count})),
-        joint_of_bone(range_of(
-            Span<const std::uint32_t>{motion.joint_of_bone, view_of(*motion.body.asset).bone_count()})) {}
+        joint_of_bone(
+            range_of(Span<const std::uint32_t>{motion.joint_of_bone, view_of(*motion.body.asset).bone_count()})) {}
 
   bool overlaps(const MemoryRange& out) const {
     return any_shared({out}, {body.vertices, body.bones, body.morph_weights, body.skin_table, body.ignored_parts,
@@ -138,7 +138,8 @@ Status check(const StepJob& job, Target& resolved, Room& room) {
     status = check_motion(job.b, room.b.surface);
   }
   if (status == SC_OK && job.filter != nullptr) {
-    status = has_two(job) ? refuse(SC_BAD_VALUE, SC_FIELD_FILTER) : check_filter(view_of(*job.a.body.asset), *job.filter);
+    status =
+        has_two(job) ? refuse(SC_BAD_VALUE, SC_FIELD_FILTER) : check_filter(view_of(*job.a.body.asset), *job.filter);
   }
   if (status != SC_OK) {
     return status;
@@ -180,8 +181,8 @@ class Step {
     const double tolerance = height * double{job_.tolerance > 0 ? job_.tolerance : kTolerance};
     room_.table.clear();
     StepCollector collector({{&a.surface, are_one_ ? nullptr : job_.a.body.ignored_parts}, &a.way, a.cluster_parts},
-                            {{&b.surface, are_one_ ? nullptr : job_.b.body.ignored_parts}, &b.way, b.cluster_parts}, are_one_,
-                            room_.table, tolerance);
+                            {{&b.surface, are_one_ ? nullptr : job_.b.body.ignored_parts}, &b.way, b.cluster_parts},
+                            are_one_, room_.table, tolerance);
     double share = 1;
     const double widest = std::max(a.widest(), b.widest());
     for (int k = 0; k < kMostHalvings && widest * share * share > kWidest * height; ++k) {
@@ -363,12 +364,11 @@ sc_status sc_find_step_contacts(sc_step_job* job) noexcept {
   }
   WordMemory memory(job->scratch);
   const bool two = has_two(*job);
-  room.take(memory, view_of(*job->a.body.asset), job->a.joint_count,
-            two ? &view_of(*job->b.body.asset) : nullptr, two ? job->b.joint_count : 0);
+  room.take(memory, view_of(*job->a.body.asset), job->a.joint_count, two ? &view_of(*job->b.body.asset) : nullptr,
+            two ? job->b.joint_count : 0);
   job->contact_count = Step(*job, resolved, room).run();
-  return job->contact_count > job->contact_capacity && job->contacts != nullptr
-             ? refuse(SC_OVERFLOW, SC_FIELD_CONTACTS)
-             : done();
+  return job->contact_count > job->contact_capacity && job->contacts != nullptr ? refuse(SC_OVERFLOW, SC_FIELD_CONTACTS)
+                                                                                : done();
 }
 
 }  // extern "C"

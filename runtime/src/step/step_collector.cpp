@@ -21,9 +21,7 @@ SixCorners corners_of(const TriangleCorners& a, const TriangleCorners& b) {
   return out;
 }
 
-Vec3 middle_of(const Vec3& p, const Vec3& q) {
-  return to_float(0.5 * (to_double(p) + to_double(q)));
-}
+Vec3 middle_of(const Vec3& p, const Vec3& q) { return to_float(0.5 * (to_double(p) + to_double(q))); }
 
 }  // namespace
 
@@ -111,8 +109,8 @@ double StepCollector::search(const MovingCandidate& candidate, const Way& way, d
   const double middle = 0.5 * (from + to);
   const SixCorners corners = corners_at(candidate, middle);
   if (found.time < 0.5) {
-    const double first = search(candidate, {way.from, corners, way.stray / 4, way.step}, from, middle,
-                                limit < 0.5 ? until : middle);
+    const double first =
+        search(candidate, {way.from, corners, way.stray / 4, way.step}, from, middle, limit < 0.5 ? until : middle);
     if (first != kNever || limit <= 0.5) {
       return first;
     }
@@ -160,8 +158,7 @@ void StepCollector::decide(const MovingCandidate& candidate) {
   }
   if (begins != kNever) {
     StepEntry& of = entry(part_a, part_b);
-    if (begins < of.first ||
-        Pair{triangle_a, triangle_b} < Pair{of.contact.triangle_a, of.contact.triangle_b}) {
+    if (begins < of.first || Pair{triangle_a, triangle_b} < Pair{of.contact.triangle_a, of.contact.triangle_b}) {
       of.first = begins;
       of.contact.triangle_a = triangle_a;
       of.contact.triangle_b = triangle_b;

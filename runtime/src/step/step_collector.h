@@ -20,7 +20,8 @@ using StepTable = TableOfParts<StepEntry>;
 struct StepBody {
   Skin skin;
   BodyMotion* motion;
-  std::uint16_t* parts;  // scratch memory: of each cluster the part of all its triangles, or kSeveral; kUnknown at first
+  std::uint16_t*
+      parts;  // scratch memory: of each cluster the part of all its triangles, or kSeveral; kUnknown at first
 
   static constexpr std::uint16_t kSeveral = 0xFFFE, kUnknown = 0xFFFF;
   std::uint16_t part_of(std::size_t cluster);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // As contacts_kernel.cpp, for skins on their way from one pose to the next. Vertices go straight, all but `strays`. So
-// for any fixed direction n the gap between two sets of vertices, min n.b - max n.a, is a concave function of time: where
-// it is positive at the start and at the end, it is so all the time. Spheres' and clusters' boxes, hulls, spans and
-// triangles are parted by that; what is left goes to the collector.
+// for any fixed direction n the gap between two sets of vertices, min n.b - max n.a, is a concave function of time:
+// where it is positive at the start and at the end, it is so all the time. Spheres' and clusters' boxes, hulls, spans
+// and triangles are parted by that; what is left goes to the collector.
 #include <cstring>
 
 #include "pairs/pair_bits.h"
@@ -25,8 +25,8 @@ namespace HWY_NAMESPACE {
 constexpr float kRootOfTwo = 1.4142137F;
 
 // Boxes [i, end) around both, `stray` wider: a register of them.
-HWY_INLINE void sweep_boxes(const BoxColumns& from, const BoxColumns& to, Vector stray, std::size_t i,
-                            std::size_t end, const BoxColumns& out) {
+HWY_INLINE void sweep_boxes(const BoxColumns& from, const BoxColumns& to, Vector stray, std::size_t i, std::size_t end,
+                            const BoxColumns& out) {
   constexpr Floats kFloats;
   const auto used = hn::FirstN(kFloats, end - i);
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -117,8 +117,7 @@ HWY_INLINE void middle_direction(const Box& start_a, const Box& end_a, const Box
 
 HWY_INLINE float length_of(const float (&direction)[3]) {
   constexpr hn::CappedTag<float, 1> kOne;
-  const float squared =
-      (direction[0] * direction[0] + direction[1] * direction[1]) + direction[2] * direction[2];
+  const float squared = (direction[0] * direction[0] + direction[1] * direction[1]) + direction[2] * direction[2];
   return hn::GetLane(hn::Sqrt(hn::Set(kOne, squared)));
 }
 
@@ -128,7 +127,7 @@ HWY_INLINE float gap_along(const float (&direction)[3], const float* const (&a)[
   constexpr Floats kFloats;
   const Vector x = hn::Set(kFloats, direction[0]), y = hn::Set(kFloats, direction[1]),
                z = hn::Set(kFloats, direction[2]);
-  const auto along = [&](const float* const (&p)[3], std::size_t i) HWY_ATTR {
+  const auto along = [&](const float* const(&p)[3], std::size_t i) HWY_ATTR {
     const Vector first = hn::Mul(x, hn::LoadU(kFloats, p[0] + i));
     return hn::MulAdd(z, hn::LoadU(kFloats, p[2] + i), hn::MulAdd(y, hn::LoadU(kFloats, p[1] + i), first));
   };
@@ -146,8 +145,8 @@ HWY_INLINE float gap_along(const float (&direction)[3], const float* const (&a)[
 HWY_INLINE bool hulls_stay_apart(const MovingScene& scene_a, std::size_t a, const MovingScene& scene_b, std::size_t b,
                                  float stray) {
   float direction[3];
-  middle_direction(box_at(scene_a.start.spheres, a), box_at(scene_a.end.spheres, a),
-                   box_at(scene_b.start.spheres, b), box_at(scene_b.end.spheres, b), direction);
+  middle_direction(box_at(scene_a.start.spheres, a), box_at(scene_a.end.spheres, a), box_at(scene_b.start.spheres, b),
+                   box_at(scene_b.end.spheres, b), direction);
   const float length = length_of(direction);
   const Hull& hull_a = scene_a.start.surface->hulls.data[a];
   const Hull& hull_b = scene_b.start.surface->hulls.data[b];
@@ -180,8 +179,8 @@ using SpherePairs = PairList<512>;
 
 HWY_NOINLINE void put_spheres(const MovingBodies& bodies, SpherePairs& found, Span<Pair>& pairs) {
   const MovingScene &a_scene = bodies.a, &b_scene = bodies.b;
-  const bool have_hulls = a_scene.start.has_hulls && a_scene.end.has_hulls && b_scene.start.has_hulls &&
-                          b_scene.end.has_hulls;
+  const bool have_hulls =
+      a_scene.start.has_hulls && a_scene.end.has_hulls && b_scene.start.has_hulls && b_scene.end.has_hulls;
   for (std::size_t k = 0; k < found.count; ++k) {
     const auto b = static_cast<std::size_t>(found.a[k]), a = static_cast<std::size_t>(found.b[k]);
     const float stray = a_scene.strays[a] + b_scene.strays[b];
@@ -231,11 +230,10 @@ void find_spheres(const MovingBodies& bodies, Span<Pair>& pairs) {
 HWY_INLINE bool spans_stay_apart(const MovingBodies& bodies, std::size_t a, std::size_t b, float stray) {
   constexpr hn::CappedTag<float, kSpanLanes> d;
   const auto wide = hn::Set(d, stray * kRootOfTwo * (1 + 0x1p-20F));  // the diagonals' length
-  const auto span = [&](const ContactScene& scene, std::size_t cluster) HWY_ATTR {
-    return scene.spans + 2 * kSpanLanes * cluster;
-  };
+  const auto span = [&](const ContactScene& scene, std::size_t cluster)
+                        HWY_ATTR { return scene.spans + 2 * kSpanLanes * cluster; };
   const float *const a0 = span(bodies.a.start, a), *const a1 = span(bodies.a.end, a),
-                    *const b0 = span(bodies.b.start, b), *const b1 = span(bodies.b.end, b);
+                     *const b0 = span(bodies.b.start, b), *const b1 = span(bodies.b.end, b);
   for (std::size_t k = 0; k < kSpanLanes; k += hn::MaxLanes(d)) {
     const auto above = [&](const float* one, const float* other) HWY_ATTR {  // one above the other
       return hn::Gt(hn::LoadU(d, one + k), hn::Add(hn::LoadU(d, other + kSpanLanes + k), wide));
@@ -278,8 +276,8 @@ HWY_INLINE void find_places(const MovingBlock& block, const MovingBlock& other, 
   out.finish();
 }
 
-HWY_NOINLINE void pair_blocks(const MovingBodies& bodies, const MovingBlock& block, const MovingBlock& other, float stray,
-                              StepCollector& collector) {
+HWY_NOINLINE void pair_blocks(const MovingBodies& bodies, const MovingBlock& block, const MovingBlock& other,
+                              float stray, StepCollector& collector) {
   PlacePairs places;
   for (std::size_t i = 0; i < block.count; i += kLanes) {
     for (std::size_t j = 0; j < other.count; j += kLanes) {
@@ -394,7 +392,8 @@ void find_moving_spheres(Target resolved, const MovingBodies& bodies, Span<Pair>
   find_spheres_kernels[index_of(resolved)](bodies, pairs);
 }
 
-bool find_moving_clusters(Target resolved, const MovingBodies& bodies, Span<const Pair> spheres, MovingClusters& found) {
+bool find_moving_clusters(Target resolved, const MovingBodies& bodies, Span<const Pair> spheres,
+                          MovingClusters& found) {
   return find_clusters_kernels[index_of(resolved)](bodies, spheres, found);
 }
 

@@ -7,6 +7,9 @@ export function number(value) {
   return Math.abs(value) < 1e-4 ? value.toExponential(2) : `${Number(value.toPrecision(4))}`;
 }
 
+// A frame's number: one that lies between two has a fraction.
+export const frameNumber = (value) => (Number.isInteger(value) ? `${value}` : value.toFixed(2));
+
 export const percent = (share) => `${(100 * share).toFixed(2)} %`;
 
 // A length: in source units, and as a share of the character's height.

@@ -1,4 +1,5 @@
 import { Contacts, MEASURES } from './contacts.js';
+import { frameNumber } from './format.js';
 import { decode, pairLists } from './frame_lists.js';
 
 // The page's data (see ../README.md) as the other modules use it. Lengths are in the source's units.
@@ -112,7 +113,7 @@ export function readModel(data) {
   const touching = Object.fromEntries(kinds.map((kind) => [kind, pairLists(frames?.[kind], Uint16Array)]));
   const times = decode(frames?.times, Float32Array);
   const seconds = decode(frames?.seconds, Float32Array);
-  const numbers = decode(frames?.numbers, Uint32Array);
+  const numbers = decode(frames?.numbers, Float32Array);
   const partOf = decode(mesh.parts, Uint8Array);
   const sphereOf = decode(mesh.spheres, Uint16Array);
   const partName = (part) => data.parts[part] ?? 'other parts';
@@ -156,7 +157,7 @@ export function readModel(data) {
     clipAt: (frame) => Math.max(clips.findLastIndex(({ first }) => first <= frame), 0),
     time: (frame) => times[frame] ?? frame / (frames?.fps || 30),
     // In its clip: the clip's own number of the frame, and seconds from the clip's start.
-    number: (frame) => numbers[frame] ?? frame,
+    number: (frame) => frameNumber(numbers[frame] ?? frame),
     seconds: (frame) => seconds[frame] ?? 0,
     // The sphere in a frame: [x, y, z, radius].
     sphere(frame, i, kind) {

@@ -36,7 +36,7 @@ export function fillEvents(panel, { rows, row, fit, model, store, flyToContact }
     chosen = index;
     history.replaceState(null, '', clipLink(row, index));
     const key = event.parts.map(partOf).sort((a, b) => a - b).join('-');
-    store.set({ frame: event.deepest, playing: false, contact: key });
+    store.set({ frame: event.place, playing: false, contact: key });
     flyToContact(key, event.camera);
     draw();
   };

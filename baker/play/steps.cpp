@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "play/steps.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "play/asset_file.h"
+#include "play/skin_player.h"
+
+namespace spherechain::baker {
+namespace {
+
+constexpr double kApart = 1.0 / 16;  // of a step: nearer to each other they share a frame
+
+// Of each of the asset's bones the nearest one above it; -1: none.
+std::vector<int> bone_parents(const AnimatedAsset& animated) {
+  const OpenAsset& asset = animated.asset();
+  const SourceRig& rig = animated.character().rig;
+  std::vector<int> out(asset->bone_count(), -1);
+  if (rig.bones.empty()) {
+    for (std::size_t b = 0; b < std::min(out.size(), asset->joint_count()); ++b) {
+      if (std::string(asset->joint(b).name) == asset->bone(b).name) out[b] = asset->joint(b).parent;
+    }
+    return out;
+  }
+  std::vector<int> bone_of(rig.nodes.size(), -1);
+  for (std::size_t b = 0; b < rig.bones.size(); ++b) bone_of[rig.bones[b].node] = static_cast<int>(b);
+  for (std::size_t b = 0; b < std::min(out.size(), rig.bones.size()); ++b) {
+    int node = rig.nodes[rig.bones[b].node].parent;
+    while (node >= 0 && bone_of[static_cast<std::size_t>(node)] < 0)
+      node = rig.nodes[static_cast<std::size_t>(node)].parent;
+    if (node >= 0) out[b] = bone_of[static_cast<std::size_t>(node)];
+  }
+  return out;
+}
+
+Affine affine_of(const float* rows) {
+  Affine out;
+  for (Eigen::Index i = 0; i < 12; ++i) out(i / 4, i % 4) = double{rows[i]};
+  return out;
+}
+
+sc_transform transform_of(const Affine& local) {
+  Node node;
+  node.local = local;
+  decompose(node);
+  const auto to_float = [](const Vec3& v) {
+    return spherechain::Vec3{static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z())};
+  };
+  const Eigen::Quaterniond& q = node.rotation;
+  return {to_float(node.translation),
+          {static_cast<float>(q.x()), static_cast<float>(q.y()), static_cast<float>(q.z()), static_cast<float>(q.w())},
+          to_float(node.scale)};
+}
+
+bool is_sheared(const Affine& local) {
+  const Eigen::Matrix3d gram = local.linear().transpose() * local.linear();
+  const Vec3 sizes = gram.diagonal().cwiseSqrt();
+  const auto share = [&](Eigen::Index i, Eigen::Index j) { return std::abs(gram(i, j)) / (sizes[i] * sizes[j]); };
+  return !(std::max({share(0, 1), share(1, 2), share(2, 0)}) < 1e-4);
+}
+
+sc_pose pose_of(const std::vector<float>& vertices) {
+  sc_pose pose;
+  pose.vertices = vertices.data();
+  pose.vertex_count = vertices.size() / 3;
+  return pose;
+}
+
+}  // namespace
+
+StepPlayer::StepPlayer(const AnimatedAsset& animated, Target target) : animated_(animated), target_(target) {
+  const OpenAsset& asset = animated.asset();
+  const std::vector<int> parents = bone_parents(animated);
+  std::vector<std::size_t> depths(parents.size(), 0);
+  for (std::size_t b = 0; b < parents.size(); ++b) {
+    for (int p = parents[b]; p >= 0; p = parents[static_cast<std::size_t>(p)]) ++depths[b];
+    binds_.push_back(asset->bone(b).is_rest ? Affine::Identity() : affine_of(asset->bone(b).inverse_bind).inverse());
+    order_.push_back(b);
+  }
+  std::stable_sort(order_.begin(), order_.end(), [&](auto l, auto r) { return depths[l] < depths[r]; });
+  joint_of_bone_.resize(order_.size());
+  for (std::size_t i = 0; i < order_.size(); ++i) joint_of_bone_[order_[i]] = static_cast<std::uint32_t>(i);
+  for (const std::size_t b : order_) {
+    parents_.push_back(parents[b] < 0 ? SC_NO_JOINT : joint_of_bone_[static_cast<std::size_t>(parents[b])]);
+  }
+}
+
+// Empty where one is sheared, which no joint can be.
+std::vector<sc_transform> StepPlayer::joints_of(const Deformation& deformation) const {
+  const auto world = [&](std::size_t b) -> Affine {
+    return b < deformation.bones.size() ? deformation.bones[b] * binds_[b] : binds_[b];
+  };
+  std::vector<sc_transform> out;
+  for (std::size_t i = 0; i < order_.size(); ++i) {
+    const std::uint32_t parent = parents_[i];
+    const Affine local =
+        parent == SC_NO_JOINT ? world(order_[i]) : Affine(world(order_[parent]).inverse() * world(order_[i]));
+    if (is_sheared(local)) return {};
+    out.push_back(transform_of(local));
+  }
+  return out;
+}
+
+const std::vector<StepContact>& StepPlayer::find(const Deformation& from, const Deformation& to) {
+  const OpenAsset& asset = animated_.asset();
+  StepJob job;
+  job.a.body.asset = asset.handle();
+  job.a.body.skin_table = asset.skin_table();
+  job.target = target_;
+  std::vector<sc_transform> joints[2];
+  std::vector<float> vertices[2], morphs[2];
+  const Deformation* const ends[] = {&from, &to};
+  sc_pose* const poses[] = {&job.a.body.pose, &job.a.end};
+  bool has_joints = moved_by_bones(asset, from) && moved_by_bones(asset, to);
+  for (int end = 0; end < 2 && has_joints; ++end) {
+    joints[end] = joints_of(*ends[end]);
+    has_joints = !joints[end].empty();
+  }
+  for (int end = 0; end < 2; ++end) {
+    if (has_joints) {
+      morphs[end].assign(ends[end]->morphs.begin(), ends[end]->morphs.end());
+      morphs[end].resize(asset->morph_count());
+      poses[end]->morph_weights = morphs[end].empty() ? nullptr : morphs[end].data();
+      poses[end]->morph_weight_count = morphs[end].size();
+    } else {
+      vertices[end] = pack(animated_.positions(*ends[end]));
+      *poses[end] = pose_of(vertices[end]);
+    }
+  }
+  if (has_joints) {
+    job.a.blend = SC_BLEND_SLERP;
+    job.a.start_joints = joints[0].data();
+    job.a.end_joints = joints[1].data();
+    job.a.joint_count = joints[0].size();
+    job.a.parents = parents_.data();
+    job.a.joint_of_bone = joint_of_bone_.data();
+  }
+  scratch_.resize(std::max(scratch_.size(), sc_step_scratch_words(&job.a, nullptr)));
+  job.scratch = scratch_.data();
+  job.scratch_words = scratch_.size();
+  contacts_.resize(std::max<std::size_t>(contacts_.capacity(), 64));
+  for (;;) {
+    job.contacts = contacts_.data();
+    job.contact_capacity = contacts_.size();
+    const Status status = job.run();
+    if (status.code != SC_OVERFLOW) check_runtime(status);
+    const bool fits = job.contact_count <= contacts_.size();
+    contacts_.resize(job.contact_count);
+    if (fits) return contacts_;
+  }
+}
+
+void look_between_frames(AnimatedAsset& animated, Target target, std::size_t clip,
+                         const std::function<void(int)>& told) {
+  animated.check_clusters();
+  StepPlayer steps(animated, target);
+  std::vector<std::vector<double>> between(static_cast<std::size_t>(animated.frame_count()));
+  Deformation before;
+  const int first = animated.clips()[clip].first, end = first + animated.clips()[clip].count;
+  for (int i = first; i < end; ++i) {
+    told(i);
+    Deformation deformation = animated.deformation(i);
+    if (i > first) {
+      std::vector<double>& times = between[static_cast<std::size_t>(i - 1)];
+      for (const StepContact& contact : steps.find(before, deformation)) {
+        if (contact.at_start == 0 && contact.at_end == 0) {
+          times.push_back(0.5 * (double{contact.begin} + double{contact.end}));
+        }
+      }
+      std::sort(times.begin(), times.end());
+      times.erase(std::unique(times.begin(), times.end(), [](double l, double r) { return r - l < kApart; }),
+                  times.end());
+    }
+    before = std::move(deformation);
+  }
+  animated.put_between(between);
+}
+
+void look_between_frames(AnimatedAsset& animated, Target target, const std::function<void(int)>& told) {
+  for (std::size_t clip = 0; clip < animated.clips().size(); ++clip) look_between_frames(animated, target, clip, told);
+}
+
+}  // namespace spherechain::baker

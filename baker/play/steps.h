@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "play/play.h"
+#include "spherechain/steps.h"
+
+namespace spherechain::baker {
+
+// What touches on the way from one deformation to the next. Joints turn as engines blend poses, down the skeleton;
+// whole meshes as poses, and what sheared bones move, go straight. The asset must have clusters, and `animated` must
+// outlive it.
+class StepPlayer {
+ public:
+  StepPlayer(const AnimatedAsset& animated, Target target);
+
+  // Sorted by body parts; holds until the next call.
+  const std::vector<StepContact>& find(const Deformation& from, const Deformation& to);
+
+ private:
+  std::vector<sc_transform> joints_of(const Deformation& deformation) const;
+
+  const AnimatedAsset& animated_;
+  Target target_;
+  std::vector<Affine> binds_;                 // a bone's, from its space to the rest pose
+  std::vector<std::size_t> order_;            // bones, parents first
+  std::vector<std::uint32_t> parents_;        // of a place in that order
+  std::vector<std::uint32_t> joint_of_bone_;  // a bone's place in it
+  std::vector<std::uint64_t> scratch_;
+  std::vector<StepContact> contacts_;
+};
+
+// Puts a frame between two of a clip's own wherever body parts touch on the way that touch in neither of them, at the
+// middle of that time: MotionFrame::between. `told` is called with each frame.
+void look_between_frames(AnimatedAsset& animated, Target target, std::size_t clip,
+                         const std::function<void(int)>& told);
+// Of all clips that play.
+void look_between_frames(AnimatedAsset& animated, Target target, const std::function<void(int)>& told);
+
+}  // namespace spherechain::baker
