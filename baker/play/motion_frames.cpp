@@ -92,6 +92,15 @@ MotionFrames frames_of(const Motion* motion, const FrameChoice& choice) {
   return std::move(builder.out);
 }
 
+MotionFrame frame_between(const MotionFrame& frame, const MotionFrame& next, double share) {
+  MotionFrame out = frame;
+  out.between = share;
+  out.seconds += share * (next.seconds - frame.seconds);
+  out.time += share * (next.time - frame.time);
+  out.along += share * (next.along - frame.along);
+  return out;
+}
+
 MotionFrames with_frames_between(const MotionFrames& frames, const std::vector<std::vector<double>>& shares) {
   MotionFrames out{frames.clips, {}};
   for (ClipFrames& clip : out.clips) {
@@ -102,13 +111,7 @@ MotionFrames with_frames_between(const MotionFrames& frames, const std::vector<s
       const MotionFrame& frame = frames.frames[at];
       out.frames.push_back(frame);
       for (const double share : shares[at]) {
-        const MotionFrame& next = frames.frames[at + 1];
-        MotionFrame between = frame;
-        between.between = share;
-        between.seconds += share * (next.seconds - frame.seconds);
-        between.time += share * (next.time - frame.time);
-        between.along += share * (next.along - frame.along);
-        out.frames.push_back(between);
+        out.frames.push_back(frame_between(frame, frames.frames[at + 1], share));
         ++clip.between;
       }
     }

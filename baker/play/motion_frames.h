@@ -46,6 +46,9 @@ struct MotionFrames {
 // Of clips, one after another.
 MotionFrames frames_of(const SourceRig& rig, const std::vector<const Clip*>& clips, const FrameChoice& choice);
 
+// So far on the way from a frame to the next of its clip.
+MotionFrame frame_between(const MotionFrame& frame, const MotionFrame& next, double share);
+
 // With frames more, of each frame those at these shares of the way to the next.
 MotionFrames with_frames_between(const MotionFrames& frames, const std::vector<std::vector<double>>& shares);
 

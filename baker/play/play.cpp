@@ -156,8 +156,7 @@ BodyFrame AnimatedAsset::frame() const {
           static_cast<double>(info.height)};
 }
 
-Deformation AnimatedAsset::deformation(int frame) const {
-  const MotionFrame& at = frame_at(frame);
+Deformation AnimatedAsset::deformation(const MotionFrame& at) const {
   if (const Clip* clip = clips()[at.clip].clip) return sample(character_.rig, *clip, at.seconds);
   return motion_ ? motion_->at(at.along) : Deformation();
 }

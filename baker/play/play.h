@@ -58,7 +58,8 @@ class AnimatedAsset {
   double number(int frame) const { return frame_at(frame).number + frame_at(frame).between; }
   double time(int frame) const { return frame_at(frame).time; }
   const std::string& clip_at(int frame) const { return clips()[frame_at(frame).clip].name; }
-  Deformation deformation(int frame) const;
+  Deformation deformation(int frame) const { return deformation(frame_at(frame)); }
+  Deformation deformation(const MotionFrame& frame) const;
   // The deformed source vertices of such a frame.
   std::vector<Vec3> positions(const Deformation& deformation) const;
 

@@ -152,10 +152,43 @@ const std::vector<StepContact>& StepPlayer::find(const Deformation& from, const 
   }
 }
 
+namespace {
+
+// Of some poses while they touch the one in which two body parts are deepest in each other; where they touch in none, as
+// of a part that is wholly inside the other, the first time.
+double deepest_share(const AnimatedAsset& animated, int frame, const StepContact& contact, SkinPlayer& player) {
+  constexpr int kParts = 8;
+  double share = double{contact.begin}, most = -1;
+  for (int k = 1; k < kParts; ++k) {
+    const double at = double{contact.begin} + k * (double{contact.end} - double{contact.begin}) / kParts;
+    const Deformation deformation =
+        animated.deformation(frame_between(animated.frame_at(frame), animated.frame_at(frame + 1), at));
+    const auto look = [&](const sc_pose& pose) {
+      player.find(pose);
+      for (const Penetration& found : player.measure_quickly(pose)) {
+        if (found.part_a == contact.part_a && found.part_b == contact.part_b && double{found.depth} > most) {
+          most = double{found.depth};
+          share = at;
+        }
+      }
+    };
+    if (moved_by_bones(animated.asset(), deformation)) {
+      look(BonePose(animated.asset(), deformation).pose());
+    } else {
+      const std::vector<float> vertices = pack(animated.positions(deformation));
+      look(pose_of(vertices));
+    }
+  }
+  return share;
+}
+
+}  // namespace
+
 void look_between_frames(AnimatedAsset& animated, Target target, std::size_t clip,
                          const std::function<void(int)>& told) {
   animated.check_clusters();
   StepPlayer steps(animated, target);
+  SkinPlayer player(animated.asset(), target);
   std::vector<std::vector<double>> between(static_cast<std::size_t>(animated.frame_count()));
   Deformation before;
   const int first = animated.clips()[clip].first, end = first + animated.clips()[clip].count;
@@ -163,15 +196,15 @@ void look_between_frames(AnimatedAsset& animated, Target target, std::size_t cli
     told(i);
     Deformation deformation = animated.deformation(i);
     if (i > first) {
-      std::vector<double>& times = between[static_cast<std::size_t>(i - 1)];
+      std::vector<double>& shares = between[static_cast<std::size_t>(i - 1)];
       for (const StepContact& contact : steps.find(before, deformation)) {
         if (contact.at_start == 0 && contact.at_end == 0) {
-          times.push_back(0.5 * (double{contact.begin} + double{contact.end}));
+          shares.push_back(deepest_share(animated, i - 1, contact, player));
         }
       }
-      std::sort(times.begin(), times.end());
-      times.erase(std::unique(times.begin(), times.end(), [](double l, double r) { return r - l < kApart; }),
-                  times.end());
+      std::sort(shares.begin(), shares.end());
+      const auto is_near = [](double l, double r) { return r - l < kApart; };
+      shares.erase(std::unique(shares.begin(), shares.end(), is_near), shares.end());
     }
     before = std::move(deformation);
   }

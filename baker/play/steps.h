@@ -32,8 +32,8 @@ class StepPlayer {
   std::vector<StepContact> contacts_;
 };
 
-// Puts a frame between two of a clip's own wherever body parts touch on the way that touch in neither of them, at the
-// middle of that time: MotionFrame::between. `told` is called with each frame.
+// Puts a frame between two of a clip's own wherever body parts touch on the way that touch in neither of them, about
+// where they are deepest in each other: MotionFrame::between. `told` is called with each frame.
 void look_between_frames(AnimatedAsset& animated, Target target, std::size_t clip,
                          const std::function<void(int)>& told);
 // Of all clips that play.

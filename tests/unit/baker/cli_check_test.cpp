@@ -25,6 +25,9 @@ const std::vector<PlantedClip> kClips{
     {"loop", {150, 90, -50, -50, -50, -50, -50, -50, 80, 150}},
 };
 
+// From one side of the wall to the other, within a frame.
+const std::vector<PlantedClip> kThrough{{"through", {-300, -50, 1650, 1800}, true}, {"jumps", {-50, 1650}}};
+
 // Of one content: the bake is made once.
 const std::string& shared_cache() {
   static const TemporaryFolder folder;
@@ -34,7 +37,9 @@ const std::string& shared_cache() {
 
 struct Library {
   TemporaryFolder folder;
-  fs::path file = folder.write("hero.glb", planted_character(kClips));
+  fs::path file;
+  explicit Library(const std::vector<PlantedClip>& clips = kClips)
+      : file(folder.write("hero.glb", planted_character(clips))) {}
 
   std::string report() const { return (folder.path / "report").string(); }
   std::string path(const char* name) const { return (folder.path / name).string(); }
@@ -240,4 +245,27 @@ TEST_CASE("merged shards are what one machine makes, byte for byte") {
   CHECK(tool::run(merge + library.path("shard3") + " " + outputs).code == 6);
   CHECK(tool::contents(library.path("merged.json")) == tool::contents(library.path("whole.json")));
   CHECK(std::system(fmt::format("diff -r {0}/whole {0}/merged", library.folder.path.string()).c_str()) == 0);
+}
+
+TEST_CASE("check --continuous finds what passes through between two frames, and when") {
+  const Library library(kThrough);
+  REQUIRE(library.check("--json " + library.path("frames.json")).code == 0);
+  CHECK(library.read("frames.json")["summary"]["events"] == 0);
+  const tool::Run run = library.check("--continuous --json " + library.path("between.json"));
+  CHECK(run.code == 6);
+  CHECK(run.out.find("frame 1.") != std::string::npos);
+  const json report = library.read("between.json");
+  check_documented(report);
+  CHECK(report["summary"]["frames"] == 6);
+  for (const json& clip : report["clips"]) {
+    if (clip["clip"] == "jumps") CHECK(clip["events"].empty());
+    if (clip["clip"] != "through") continue;
+    REQUIRE(clip["events"].size() == 1);
+    const json& event = clip["events"][0];
+    CHECK(event["class"] == "penetration");
+    CHECK(event["from"] == event["to"]);
+    CHECK(event["deepest"].get<double>() > 1);
+    CHECK(event["deepest"].get<double>() < 2);
+    CHECK(event["depth_mm"].get<double>() > 100);
+  }
 }

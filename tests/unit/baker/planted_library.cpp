@@ -37,7 +37,7 @@ std::string planted_character(const std::vector<PlantedClip>& clips) {
     }
     const int input = glb.accessor(times, "SCALAR");
     const auto sampler = [&](const std::vector<float>& values) {
-      return nlohmann::json{{"input", input}, {"output", glb.accessor(values, "VEC3")}, {"interpolation", "STEP"}};
+      return nlohmann::json{{"input", input}, {"output", glb.accessor(values, "VEC3")}, {"interpolation", clip.is_linear ? "LINEAR" : "STEP"}};
     };
     const auto channel = [](int number, int node) {
       return nlohmann::json{{"sampler", number}, {"target", {{"node", node}, {"path", "translation"}}}};

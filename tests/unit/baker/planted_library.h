@@ -10,6 +10,7 @@
 struct PlantedClip {
   std::string name;
   std::vector<double> depths_mm;
+  bool is_linear = false;  // the ball goes from place to place; else it jumps
 };
 
 // Bytes of a GLB file. Its body parts are "wall" and "ball".
