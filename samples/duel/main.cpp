@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: MIT
 // duel ASSET.sphc MODEL.glb: two fighters of one model play its clip face to face, half a clip apart. Who hits whom,
-// where and how deep? And whose foot goes through the floor?
+// when, where and how deep? And whose foot goes through the floor?
 #include <algorithm>
 #include <cstdio>
-#include <set>
 #include <stdexcept>
 #include <string>
 
@@ -51,7 +50,8 @@ struct Model {
 class Fighter {
  public:
   // Turned half around the model's own upward axis, or not, and moved along its forward axis.
-  Fighter(const Model& model, bool turned, float forward) : model_(model), bones_(12 * model.info.bone_count) {
+  Fighter(const Model& model, bool turned, float forward)
+      : model_(model), before_(12 * model.info.bone_count), bones_(before_) {
     const Vec3 up = model.info.up, way = model.info.forward;
     const float u[3] = {up.x, up.y, up.z}, w[3] = {way.x, way.y, way.z};
     for (std::size_t row = 0; row < 3; ++row) {
@@ -66,10 +66,14 @@ class Fighter {
     body.pose.bones = bones_.data();
     body.pose.bone_count = model.info.bone_count;
     body.pose.bone_layout = SC_ROWS_3X4;
+    step.body = body;
+    step.body.pose.bones = before_.data();
+    step.end = body.pose;
   }
-  Fighter(const Fighter&) = delete;  // the body points into this
+  Fighter(const Fighter&) = delete;  // body and step point into this
 
   void stand(double seconds) {
+    before_ = bones_;
     const samples::Palette palette = model_.clips.palette(0, seconds);
     const Pose pose = samples::pose_of(palette);
     check(sc_gather_bones(&model_.asset, model_.joint_of_bone.data(), &pose, bones_.data()), "the palette");
@@ -84,11 +88,12 @@ class Fighter {
     }
   }
 
-  Body body;
+  Body body;    // as it stands
+  Motion step;  // from where it stood before
 
  private:
   const Model& model_;
-  std::vector<float> bones_;
+  std::vector<float> before_, bones_;
   float place_[3][4] = {};
 };
 
@@ -99,23 +104,39 @@ class Referee {
         scratch_(std::max({sc_body_scratch_words(&model.asset, &model.asset), sc_floor_scratch_words(&model.asset),
                            sc_body_penetration_scratch_words(&model.asset, &model.asset, kContacts)})),
         contacts_(kContacts),
-        found_(model.info.part_count * model.info.part_count) {}
+        found_(model.info.part_count * model.info.part_count),
+        steps_(found_.size()) {}
 
-  // Prints the hits that are new in this frame.
+  // Prints the hits on the way from the last frame to this one.
   void watch(std::size_t frame, const Fighter& red, const Fighter& blue) {
-    std::set<Pair> now;
-    for (const Penetration& hit : measure(red.body, blue.body)) {
-      const Pair parts{hit.part_a, hit.part_b};
-      if (hit.kind < SC_CLASS_DEEP_FOLD) continue;
-      now.insert(parts);
-      if (last_.count(parts) > 0) continue;
+    StepJob job;
+    job.a = red.step;
+    job.b = blue.step;
+    scratch_.resize(std::max(scratch_.size(), sc_step_scratch_words(&job.a, &job.b)));
+    job.scratch = scratch_.data();
+    job.scratch_words = scratch_.size();
+    job.contacts = steps_.data();
+    job.contact_capacity = steps_.size();
+    check(job.run(), "a step");
+    std::vector<Penetration> depths;
+    for (std::size_t i = 0; i < job.contact_count; ++i) {
+      const StepContact& hit = steps_[i];
+      if (hit.at_start != 0) continue;  // not a new one
       ++hits;
-      const Vec3 at = hit.deepest_a.position;
-      std::printf("frame %zu: red's %s meets blue's %s at (%.2f, %.2f, %.2f), %.0f mm deep\n", frame, name(hit.part_a),
-                  name(hit.part_b), double{at.x}, double{at.y}, double{at.z},
-                  1000 * double{hit.depth * model_.info.metres_per_unit});
+      const double before = static_cast<double>(frame) - 1;
+      std::printf("frame %.2f: red's %s meets blue's %s at (%.2f, %.2f, %.2f)", before + double{hit.begin},
+                  name(hit.part_a), name(hit.part_b), double{hit.at.x}, double{hit.at.y}, double{hit.at.z});
+      if (hit.at_end == 0) {
+        ++passing;
+        std::printf(" and leaves it at %.2f\n", before + double{hit.end});
+        continue;
+      }
+      if (depths.empty()) depths = measure(red.body, blue.body);
+      for (const Penetration& depth : depths) {
+        if (depth.part_a != hit.part_a || depth.part_b != hit.part_b) continue;
+        std::printf(", %.0f mm deep in frame %zu\n", 1000 * double{depth.depth * model_.info.metres_per_unit}, frame);
+      }
     }
-    last_ = now;
   }
 
   // How far a fighter is below the floor at most, in metres.
@@ -133,7 +154,7 @@ class Referee {
     return double{deepest * model_.info.metres_per_unit};
   }
 
-  std::size_t hits = 0;
+  std::size_t hits = 0, passing = 0;
 
  private:
   static constexpr std::size_t kContacts = 1 << 16;
@@ -165,7 +186,7 @@ class Referee {
   std::vector<std::uint64_t> scratch_;
   std::vector<TriangleContact> contacts_;
   std::vector<Penetration> found_;
-  std::set<Pair> last_;
+  std::vector<StepContact> steps_;
 };
 
 void fight(const std::vector<char>& file, const samples::GltfCharacter& clips) {
@@ -178,10 +199,11 @@ void fight(const std::vector<char>& file, const samples::GltfCharacter& clips) {
   for (double now = 0; now <= duration; now += kFrame, ++frames) {
     red.stand(now);
     blue.stand(now < duration / 2 ? now + duration / 2 : now - duration / 2);
-    referee.watch(frames, red, blue);
+    if (frames > 0) referee.watch(frames, red, blue);
     deepest = std::max({deepest, referee.below_floor(red), referee.below_floor(blue)});
   }
-  std::printf("%zu frames, %zu hits; below the floor by %.0f mm at most\n", frames, referee.hits, 1000 * deepest);
+  std::printf("%zu frames, %zu hits, %zu of them between two frames; below the floor by %.0f mm at most\n", frames,
+              referee.hits, referee.passing, 1000 * deepest);
 }
 
 }  // namespace
