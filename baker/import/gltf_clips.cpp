@@ -6,7 +6,7 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr int kFloat = TINYGLTF_COMPONENT_TYPE_FLOAT;
+constexpr int kFloatType = TINYGLTF_COMPONENT_TYPE_FLOAT;
 
 class ClipReader {
  public:
@@ -33,7 +33,7 @@ class ClipReader {
     Channel channel{ChannelPath::kTranslation, nodes_.of_file[node], interpolation(sampler), {}, {}};
     if (in.target_path == "translation" || in.target_path == "scale") {
       if (in.target_path == "scale") channel.path = ChannelPath::kScale;
-      if (keys(sampler, TINYGLTF_TYPE_VEC3, {kFloat}, 1, channel)) clip.channels.push_back(std::move(channel));
+      if (keys(sampler, TINYGLTF_TYPE_VEC3, {kFloatType}, 1, channel)) clip.channels.push_back(std::move(channel));
     } else if (in.target_path == "rotation") {
       channel.path = ChannelPath::kRotation;
       if (keys(sampler, TINYGLTF_TYPE_VEC4, kUnit, 1, channel)) clip.channels.push_back(std::move(channel));
@@ -55,7 +55,7 @@ class ClipReader {
   // False where there are none. `elements` of the output belong to a key, or three times as many with cubic splines.
   bool keys(const tinygltf::AnimationSampler& sampler, int type, const std::vector<int>& components,
             std::size_t elements, Channel& channel) {
-    channel.times = file_.numbers(sampler.input, TINYGLTF_TYPE_SCALAR, {kFloat});
+    channel.times = file_.numbers(sampler.input, TINYGLTF_TYPE_SCALAR, {kFloatType});
     channel.values = file_.numbers(sampler.output, type, components);
     const auto width = static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(type)));
     const std::size_t a_key = width * elements * (channel.interpolation == Interpolation::kCubicSpline ? 3 : 1);
@@ -95,7 +95,7 @@ class ClipReader {
   }
 
   // Of rotations and weights: fractions may be integers.
-  const std::vector<int> kUnit{kFloat, TINYGLTF_COMPONENT_TYPE_BYTE, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE,
+  const std::vector<int> kUnit{kFloatType, TINYGLTF_COMPONENT_TYPE_BYTE, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE,
                                TINYGLTF_COMPONENT_TYPE_SHORT, TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT};
   const GltfFile& file_;
   const GltfNodes& nodes_;

@@ -14,13 +14,11 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr int kNone = Part::kNone;
-
 // From the joint towards the one below it where the skin goes on longest, or the skin's own axis where it is much
 // longer that way.
 Vec3 axis_of(const Part& part, const Skeleton& skeleton, const Extent& extent, const Mesh& mesh) {
   constexpr double kMuchLonger = 1.8;
-  if (part.node == kNone) return extent.axis[0];
+  if (part.node == Part::kNone) return extent.axis[0];
   const Vec3& joint = skeleton.position[static_cast<std::size_t>(part.node)];
   Vec3 along = extent.centroid - joint;
   double farthest = 0;
@@ -58,7 +56,7 @@ Polyline line_of(const Mesh& mesh, const Part& part, const Vec3& center, const V
 }
 
 Side side_of(const Part& part, const Roles& roles) {
-  if (part.node == kNone || roles.of_node.empty()) return Side::kNone;
+  if (part.node == Part::kNone || roles.of_node.empty()) return Side::kNone;
   const NodeRole& role = roles.of_node[static_cast<std::size_t>(part.node)];
   const std::string& limb = role.limb < 0 ? role.role : roles.limbs[static_cast<std::size_t>(role.limb)].name;
   if (limb.starts_with("left_")) return Side::kLeft;
@@ -66,7 +64,7 @@ Side side_of(const Part& part, const Roles& roles) {
 }
 
 std::string name_of(const Part& part, const SourceRig& rig, std::set<std::string>& taken) {
-  const std::string wish = part.node == kNone ? "part" : rig.nodes[static_cast<std::size_t>(part.node)].name;
+  const std::string wish = part.node == Part::kNone ? "part" : rig.nodes[static_cast<std::size_t>(part.node)].name;
   std::string name = wish.empty() ? "part" : wish;
   for (int i = 2; !taken.insert(name).second; ++i) name = (wish.empty() ? "part" : wish) + "_" + std::to_string(i);
   return name;
