@@ -30,9 +30,8 @@ typedef struct sc_motion {
   sc_blend blend SC_ZERO;
   const sc_transform* start_joints SC_ZERO;
   const sc_transform* end_joints SC_ZERO;
-  size_t joint_count SC_ZERO;
-  const uint32_t* parents
-      SC_ZERO; /* of each joint an earlier one, or SC_NO_JOINT; null: all stand in the pose's space */
+  size_t joint_count SC_ZERO; /* at most 65536 */
+  const uint32_t* parents SC_ZERO; /* of each joint an earlier one, or SC_NO_JOINT; null: all stand in the pose's space */
   const uint32_t* joint_of_bone SC_ZERO; /* of each bone of the asset: sc_bind_joints(); null: joint b moves bone b */
 } sc_motion;
 
@@ -79,8 +78,8 @@ extern "C" {
  * meant. Matrices and vertices that are not finite touch nothing. */
 SPHERECHAIN_API sc_status sc_find_step_contacts(sc_step_job* job) SC_NOEXCEPT;
 
-/* Words of scratch memory for those assets and numbers of joints; b null: one body. 0 where an asset is not open or has
- * no triangles. */
+/* Words of scratch memory for those assets and numbers of joints; b null: one body. Of two bodies those that have
+ * vertices need more. 0 where an asset is not open or has no triangles, or there are too many joints. */
 SPHERECHAIN_API size_t sc_step_scratch_words(const sc_motion* a, const sc_motion* b) SC_NOEXCEPT;
 
 #if defined(__cplusplus)

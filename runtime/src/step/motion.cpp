@@ -172,6 +172,9 @@ Status check_motion(const sc_motion& motion, Surface& surface) {
   if (motion.blend != SC_BLEND_LINEAR && motion.blend != SC_BLEND_SLERP && motion.blend != SC_BLEND_NLERP) {
     return refuse(SC_BAD_VALUE, SC_FIELD_BLEND);
   }
+  if (motion.joint_count > kMostJoints) {
+    return refuse(SC_BAD_VALUE, SC_FIELD_JOINTS);
+  }
   const Body& body = motion.body;
   if (motion.blend == SC_BLEND_LINEAR) {
     const Status status = check_skin(body.asset, body.pose, body.skin_table, surface);
@@ -374,11 +377,30 @@ float BodyMotion::morph_weight_at(double time, std::size_t morph) const {
   return static_cast<float>(at_start + time * (at_end - at_start));
 }
 
-Pose BodyMotion::pose_at(double time, float* bones, float* morph_weights) {
+Double3 BodyMotion::vertex_at_time(double time, std::size_t vertex) const {
+  const Pose &start = motion_->body.pose, &end = motion_->end;
+  const float* const from = vertex_at(start.vertices, vertex, vertex_stride(start));
+  const float* const to = vertex_at(end.vertices, vertex, vertex_stride(end));
+  const Double3 p{double{from[0]}, double{from[1]}, double{from[2]}}, q{double{to[0]}, double{to[1]}, double{to[2]}};
+  return p + time * (q - p);
+}
+
+Pose BodyMotion::pose_at(double time, float* bones, float* morph_weights, float* vertices) {
   if (!has_joints() && (time <= 0 || time >= 1)) {
     return time <= 0 ? motion_->body.pose : motion_->end;
   }
   Pose pose;
+  if (has_vertices()) {
+    for (std::size_t v = 0; v < asset_->vertex_count(); ++v) {
+      const Vec3 at = to_float(vertex_at_time(time, v));
+      vertices[3 * v] = at.x;
+      vertices[3 * v + 1] = at.y;
+      vertices[3 * v + 2] = at.z;
+    }
+    pose.vertices = vertices;
+    pose.vertex_count = asset_->vertex_count();
+    return pose;
+  }
   Skeleton& skeleton = skeleton_at(time);
   for (std::size_t bone = 0; bone < asset_->bone_count(); ++bone) {
     const float* const from = bone_at(skeleton, bone);
@@ -398,8 +420,15 @@ Pose BodyMotion::pose_at(double time, float* bones, float* morph_weights) {
 }
 
 void BodyMotion::corners_at(double time, std::size_t cluster_index, std::size_t triangle, Double3* corners) {
-  Skeleton& skeleton = skeleton_at(time);
   const Cluster& cluster = surface_->clusters[cluster_index];
+  if (has_vertices()) {
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const std::size_t vertex = cluster.first_vertex + std::size_t{surface_->corners[3 * triangle + corner]};
+      corners[corner] = vertex_at_time(time, surface_->source_vertices[surface_->cluster_vertices[vertex]]);
+    }
+    return;
+  }
+  Skeleton& skeleton = skeleton_at(time);
   const std::size_t slots = slot_count(cluster);
   for (std::size_t corner = 0; corner < 3; ++corner) {
     const std::size_t slot = surface_->corners[3 * triangle + corner];

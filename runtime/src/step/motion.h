@@ -12,6 +12,8 @@
 
 namespace spherechain {
 
+constexpr std::size_t kMostJoints = 65536;  // so that no size of memory overflows
+
 // A matrix: three rows of four.
 struct Affine {
   double m[3][4];
@@ -43,13 +45,15 @@ class BodyMotion {
   // the start to the end. During a share h of the step, h * h of that.
   Span<const float> strays() const { return {strays_, asset_->spheres().size}; }
 
-  // Writes `bones` and `morph_weights` where the motion has such.
-  Pose pose_at(double time, float* bones, float* morph_weights);
-  // Where the corners of a triangle are at a time between the ends. Not of vertices, which go straight.
+  // Between the ends of the step it writes what the motion has: `vertices`, or `bones` and `morph_weights`.
+  Pose pose_at(double time, float* bones, float* morph_weights, float* vertices);
+  // Where the corners of a triangle are at a time between the ends.
   void corners_at(double time, std::size_t cluster, std::size_t triangle, Double3* corners);
 
  private:
   bool has_joints() const { return motion_->blend != SC_BLEND_LINEAR; }
+  bool has_vertices() const { return motion_->body.pose.vertices != nullptr; }
+  Double3 vertex_at_time(double time, std::size_t vertex) const;  // of the source
   Skeleton& skeleton_at(double time);
   const Affine& joint_at(Skeleton& skeleton, std::size_t joint);
   const float* bone_at(Skeleton& skeleton, std::size_t bone);

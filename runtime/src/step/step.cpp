@@ -32,14 +32,16 @@ struct Walker {
   std::uint8_t* is_swept = nullptr;
   std::uint16_t* cluster_parts = nullptr;
   float* strays = nullptr;  // in a piece
-  float *bones[2] = {}, *morph_weights[2] = {};
+  float *bones[2] = {}, *morph_weights[2] = {}, *vertices[2] = {};  // of `start` and of `end`, between the step's ends
 
-  void take(WordMemory& memory, const AssetView& of, std::size_t joint_count) {
+  void take(WordMemory& memory, const sc_motion& of_motion, bool is_alone) {
+    const AssetView& of = view_of(*of_motion.body.asset);
+    const bool has_vertices = of_motion.body.pose.vertices != nullptr && !is_alone;
     const SkinSizes& sizes = of.skin().sizes;
     const std::size_t sphere_count = of.spheres().size;
     lay_out(of, memory, start);
     lay_out(of, memory, end);
-    way.take(memory, of, joint_count);
+    way.take(memory, of, of_motion.joint_count);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       memory.take(spheres.low[axis], sphere_count);
       memory.take(spheres.high[axis], sphere_count);
@@ -52,7 +54,15 @@ struct Walker {
     for (std::size_t side = 0; side < 2; ++side) {
       memory.take(bones[side], 12 * of.bone_count());
       memory.take(morph_weights[side], of.morph_count());
+      memory.take(vertices[side], has_vertices ? 3 * of.vertex_count() : 0);
     }
+  }
+  // The end of a piece is the start of the next.
+  void go_on() {
+    std::swap(start, end);
+    std::swap(bones[0], bones[1]);
+    std::swap(morph_weights[0], morph_weights[1]);
+    std::swap(vertices[0], vertices[1]);
   }
   double widest() const {
     const Span<const float> all = way.strays();
@@ -67,31 +77,35 @@ struct Room {
   PartTable parts;
   Span<Pair> spheres, clusters;  // pairs of them
 
-  void take(WordMemory& memory, const AssetView& asset_a, std::size_t joints_a, const AssetView* asset_b,
-            std::size_t joints_b) {
-    a.take(memory, asset_a, joints_a);
+  void take(WordMemory& memory, const sc_motion& of_a, const sc_motion* of_b) {
+    const AssetView& asset_a = view_of(*of_a.body.asset);
+    const bool is_one = of_b == nullptr;
+    a.take(memory, of_a, is_one);
     const std::size_t count = asset_a.spheres().size;
     std::size_t pair_count = count * (count + 1) / 2, parts_b = asset_a.part_count();
-    if (asset_b != nullptr) {
-      b.take(memory, *asset_b, joints_b);
-      pair_count = count * asset_b->spheres().size;
-      parts_b = asset_b->part_count();
+    if (!is_one) {
+      const AssetView& asset_b = view_of(*of_b->body.asset);
+      b.take(memory, *of_b, is_one);
+      pair_count = count * asset_b.spheres().size;
+      parts_b = asset_b.part_count();
     }
-    table.take(memory, asset_a.part_count(), parts_b, asset_b == nullptr);
-    parts.take(memory, asset_a.part_count(), parts_b, asset_b == nullptr);
+    table.take(memory, asset_a.part_count(), parts_b, is_one);
+    parts.take(memory, asset_a.part_count(), parts_b, is_one);
     memory.take(spheres, pair_count);
     memory.take(clusters, kClusterPairs);
   }
 };
 
 std::size_t scratch_words(const sc_motion* a, const sc_motion* b) {
-  if (a == nullptr || check_asset(a->body.asset) != SC_OK || (b != nullptr && check_asset(b->body.asset) != SC_OK)) {
+  const auto is_one = [](const sc_motion& motion) {
+    return check_asset(motion.body.asset) == SC_OK && motion.joint_count <= kMostJoints;
+  };
+  if (a == nullptr || !is_one(*a) || (b != nullptr && !is_one(*b))) {
     return 0;
   }
   WordMemory memory(nullptr);
   Room room;
-  room.take(memory, view_of(*a->body.asset), a->joint_count, b == nullptr ? nullptr : &view_of(*b->body.asset),
-            b == nullptr ? 0 : b->joint_count);
+  room.take(memory, *a, b);
   return memory.used();
 }
 
@@ -199,9 +213,9 @@ class Step {
     for (double from = 0; from < 1; from += share) {
       pose_at(from + share, true);
       walk(from, share, collector);
-      std::swap(a.start, a.end);
+      a.go_on();
       if (!are_one_) {
-        std::swap(b.start, b.end);
+        b.go_on();
       }
     }
     return collector.list({job_.contacts, job_.contact_capacity});
@@ -218,8 +232,10 @@ class Step {
   void pose_at(double time, bool at_end) {
     const auto pose = [&](Walker& walker) {
       ContactScene& scene = at_end ? walker.end : walker.start;
-      const std::size_t side = &scene == &walker.start ? 0 : 1;
-      set_pose(*walker.asset, walker.surface, walker.way.pose_at(time, walker.bones[side], walker.morph_weights[side]),
+      const std::size_t side = at_end ? 1 : 0;
+      scene.has_balls = scene.has_hulls = false;
+      set_pose(*walker.asset, walker.surface,
+               walker.way.pose_at(time, walker.bones[side], walker.morph_weights[side], walker.vertices[side]),
                job_.filter, scene);
     };
     pose(room_.a);
@@ -364,8 +380,7 @@ sc_status sc_find_step_contacts(sc_step_job* job) noexcept {
   }
   WordMemory memory(job->scratch);
   const bool two = has_two(*job);
-  room.take(memory, view_of(*job->a.body.asset), job->a.joint_count, two ? &view_of(*job->b.body.asset) : nullptr,
-            two ? job->b.joint_count : 0);
+  room.take(memory, job->a, two ? &job->b : nullptr);
   job->contact_count = Step(*job, resolved, room).run();
   return job->contact_count > job->contact_capacity && job->contacts != nullptr ? refuse(SC_OVERFLOW, SC_FIELD_CONTACTS)
                                                                                 : done();
