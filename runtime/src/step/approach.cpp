@@ -123,7 +123,7 @@ Approach approach(const Way& way, double limit) {
   }
   const Pass pass(way);
   const bool is_fine = way.stray <= way.step / 4;
-  double time = pass.open_until(0, limit / 2, limit);  // most that miss are parted so all the time
+  double time = pass.open_until(0, 0.5, limit);  // most that miss are parted so all the time
   if (time > limit) {
     return {Outcome::kApart, limit};
   }

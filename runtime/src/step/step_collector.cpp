@@ -96,26 +96,28 @@ SixCorners StepCollector::corners_at(const MovingCandidate& candidate, double ti
 }
 
 // The first time, on the way from one time to another, which may be the earlier, at which the two touch, up to `until`;
-// kNever: none.
-double StepCollector::search(const MovingCandidate& candidate, const Way& way, double from, double to, double until) {
+// kNever: none. `then` is where the corners are at that time.
+double StepCollector::search(const MovingCandidate& candidate, const Way& way, double from, double to, double until,
+                             SixCorners& then) {
   const double limit = std::min((until - from) / (to - from), 1.0);
   const Approach found = approach(way, limit);
   if (found.outcome == Outcome::kApart) {
     return kNever;
   }
   if (found.outcome == Outcome::kTouch) {
+    then = way.at(found.time);
     return from + found.time * (to - from);
   }
   const double middle = 0.5 * (from + to);
   const SixCorners corners = corners_at(candidate, middle);
   if (found.time < 0.5) {
-    const double first =
-        search(candidate, {way.from, corners, way.stray / 4, way.step}, from, middle, limit < 0.5 ? until : middle);
+    const double first = search(candidate, {way.from, corners, way.stray / 4, way.step}, from, middle,
+                                limit < 0.5 ? until : middle, then);
     if (first != kNever || limit <= 0.5) {
       return first;
     }
   }
-  return search(candidate, {corners, way.to, way.stray / 4, way.step}, middle, to, until);
+  return search(candidate, {corners, way.to, way.stray / 4, way.step}, middle, to, until, then);
 }
 
 void StepCollector::decide(const MovingCandidate& candidate) {
@@ -147,31 +149,35 @@ void StepCollector::decide(const MovingCandidate& candidate) {
   const double stray = share * share *
                        (double{a_.motion->strays()[a_.skin.surface->clusters[candidate.cluster_a].sphere]} +
                         double{b_.motion->strays()[b_.skin.surface->clusters[candidate.cluster_b].sphere]});
-  const Way way{corners_of(candidate.a[0], candidate.b[0]), corners_of(candidate.a[1], candidate.b[1]), stray,
-                tolerance_ / 2};
+  const SixCorners from = corners_of(candidate.a[0], candidate.b[0]), to = corners_of(candidate.a[1], candidate.b[1]);
+  const Way way{from, to, stray, tolerance_ / 2};
   double begins = kNever;
+  SixCorners then;
   if (may_begin) {
-    begins = search(candidate, way, begin_, end_, std::min(first, end_));
+    begins = search(candidate, way, begin_, end_, std::min(first, end_), then);
     if (begins == kNever && first > end_) {
       return;  // nor does it end
     }
   }
   if (begins != kNever) {
     StepEntry& of = entry(part_a, part_b);
-    if (begins < of.first || Pair{triangle_a, triangle_b} < Pair{of.contact.triangle_a, of.contact.triangle_b}) {
+    if (begins < of.first || (begins == of.first && Pair{triangle_a, triangle_b} <
+                                                        Pair{of.contact.triangle_a, of.contact.triangle_b})) {
       of.first = begins;
       of.contact.triangle_a = triangle_a;
       of.contact.triangle_b = triangle_b;
-      const SixCorners then = way.at((begins - begin_) / share);
       const Segment segment = crossing_segment(then.triangle(0), then.triangle(3));
       of.contact.at = middle_of(segment.from, segment.to);
     }
   }
   if (may_end) {
-    const double ends = search(candidate, {way.to, way.from, stray, way.step}, end_, begin_, std::max(last, begin_));
-    if (ends != kNever) {
-      StepEntry& of = entry(part_a, part_b);
-      of.last = std::max(of.last, ends);
+    const double ends =
+        search(candidate, {way.to, way.from, stray, way.step}, end_, begin_, std::max(last, begin_), then);
+    // Of two that graze each other one of the two ways may find a contact, the other none. The way forward counts: so no
+    // time depends on the order in which triangles are looked at.
+    if (ends != kNever && ends > last &&
+        (begins != kNever || search(candidate, way, begin_, end_, end_, then) != kNever)) {
+      entry(part_a, part_b).last = ends;
     }
   }
 }
