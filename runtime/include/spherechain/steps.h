@@ -50,7 +50,8 @@ typedef struct sc_step_contact {
 /* All pairs of body parts that touch on the way from one pose to the next: of body a with itself, where b.body.asset is
  * null, else of a and b. Nothing is missing and nothing made up, but for the tolerance: what comes no further into
  * contact than that, measured as the change of the distance of two corners of the skin, may be found or not; and times
- * are as exact. Left out is what sc_find_skin_contacts(), or sc_find_body_contacts(), leaves out.
+ * are as exact. Of corners that move against each other by more than 32768 tolerances in the step, about three heights,
+ * it is larger. Left out is what sc_find_skin_contacts(), or sc_find_body_contacts(), leaves out.
  *
  * Allocates nothing, takes no lock. Jobs on other outputs and scratch memory may run at the same time. */
 typedef struct sc_step_job {
@@ -73,7 +74,8 @@ extern "C" {
 #endif
 
 /* Errors as of sc_find_body_contacts(); and SC_BAD_VALUE: SC_FIELD_END (vertices at one end alone), SC_FIELD_BLEND,
- * SC_FIELD_JOINTS (not finite, a quaternion of length zero, a pose with bones or vertices beside them),
+ * SC_FIELD_JOINTS (not finite, a quaternion of length zero, a pose with bones or vertices beside them; or a step so wild
+ * that the skin may be 256 heights off straight lines), SC_FIELD_MORPH_WEIGHTS (as wild, or not finite),
  * SC_FIELD_PARENTS, SC_FIELD_TOLERANCE (not finite, negative, above 1). The field does not say which of two bodies is
  * meant. Matrices and vertices that are not finite touch nothing. */
 SPHERECHAIN_API sc_status sc_find_step_contacts(sc_step_job* job) SC_NOEXCEPT;

@@ -8,8 +8,6 @@
 namespace spherechain {
 namespace {
 
-constexpr double kShortest = 1.0 / 65536;
-
 double least_of(double a, double b, double c) { return std::min(a, std::min(b, c)); }
 double greatest_of(double a, double b, double c) { return std::max(a, std::max(b, c)); }
 
@@ -27,7 +25,9 @@ class Pass {
         most = std::max(most, dot(relative, relative));
       }
     }
-    least_step_ = std::max(way.step / std::sqrt(most), kShortest);  // infinite where nothing moves
+    const double least = way.step / std::sqrt(most);  // infinite where nothing moves
+    // Of what moves farther the fewer times are looked at, the farther it is.
+    least_step_ = least >= way.shortest ? least : std::min(way.shortest * way.shortest / least, 256 * way.shortest);
   }
 
   double least_step() const { return least_step_; }

@@ -21,6 +21,7 @@ struct Way {
   SixCorners from, to;
   double stray;
   double step;  // of the corners' distances from each other: what they may change by between two looks
+  double shortest;  // share of the way between two looks, at least, however far they move
 
   SixCorners at(double t) const;
 };
@@ -33,7 +34,7 @@ struct Approach {
 
 // Looks along the way up to `limit` for the first time at which the triangles intersect, exactly and as rounded to
 // floats. Between two looks that are not known to be apart no two corners change their distance by more than `step`, but
-// for motions of more than 65536 steps, of which each 65536th part is looked at. When it looks does not depend on the limit.
+// where the motion is so long that `shortest` counts. When it looks does not depend on the limit.
 //
 // For a direction n the gap of the two triangles, min n.b - max n.a, is a minimum of linear functions of time: when it
 // closes is known. From a time on, the direction is taken whose gap stays open longest, of those that part the

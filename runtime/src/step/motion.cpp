@@ -223,7 +223,8 @@ void BodyMotion::start(const sc_motion& motion, const AssetView& asset, const Su
     const Hull& hull = surface.hulls[s];
     double most = 0;
     for (std::size_t k = 0; k < hull.bone_count; ++k) {
-      most = std::max(most, bone_strays_[surface.hull_bones[hull.first_bone + k].bone]);
+      const double stray = bone_strays_[surface.hull_bones[hull.first_bone + k].bone];
+      most = std::isnan(stray) ? HUGE_VAL : std::max(most, stray);
     }
     strays_[s] = static_cast<float>(most * (1 + 1e-6));
   }
@@ -263,7 +264,8 @@ double BodyMotion::stray_of_bone(std::size_t bone) const {
                      double{start.data[bone * start.stride + i * start.row + j * start.column]};
       }
     }
-    return 2 * norm_of(turn) * change / 8;
+    const double norm = norm_of(turn);
+    return std::isfinite(norm) ? 2 * norm * change / 8 : 0.0;  // what is not finite touches nothing
   }
   const std::uint32_t joint = joint_of(*motion_, bone);
   const BoneView view = asset_->bone(bone);

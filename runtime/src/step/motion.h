@@ -42,7 +42,7 @@ class BodyMotion {
   void start(const sc_motion& motion, const AssetView& asset, const Surface& surface);
 
   // How far a vertex of the sphere is at most, during the whole step, from where it would be if it went straight from
-  // the start to the end. During a share h of the step, h * h of that.
+  // the start to the end; infinite where that is not known. During a share h of the step, h * h of that.
   Span<const float> strays() const { return {strays_, asset_->spheres().size}; }
 
   // Between the ends of the step it writes what the motion has: `vertices`, or `bones` and `morph_weights`.

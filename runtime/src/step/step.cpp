@@ -17,8 +17,8 @@ namespace spherechain {
 namespace {
 
 constexpr float kTolerance = 1e-4F;
-constexpr double kWidest = 1.0 / 1024;          // what vertices may stray in a piece, in heights
-constexpr int kMostHalvings = 6;                // of the step, into pieces
+constexpr double kWidest = 1.0 / 1024;  // what vertices may stray in a piece, in heights
+constexpr int kMostHalvings = 9;       // of the step, into pieces
 constexpr std::size_t kClusterPairs = 1 << 14;  // listed at a time
 
 // A body, on its way through the pieces.
@@ -185,12 +185,24 @@ class Step {
   Step(const StepJob& job, Target resolved, Room& room)
       : job_(job), resolved_(resolved), room_(room), are_one_(!has_two(job)), b_(are_one_ ? room.a : room.b) {}
 
+  // Refuses steps that are too wild for a certain answer; only scratch memory is written.
+  Status begin() {
+    begin(room_.a, job_.a);
+    if (!are_one_) {
+      begin(b_, job_.b);
+    }
+    const double height{room_.a.asset->info().height};
+    for (const Walker* walker : {&room_.a, &b_}) {
+      if (!(walker->widest() <= kWidest * height * (1 << 2 * kMostHalvings))) {
+        return refuse(SC_BAD_VALUE,
+                      walker->motion->blend == SC_BLEND_LINEAR ? SC_FIELD_MORPH_WEIGHTS : SC_FIELD_JOINTS);
+      }
+    }
+    return done();
+  }
+
   std::size_t run() {
     Walker &a = room_.a, &b = b_;
-    begin(a, job_.a);
-    if (!are_one_) {
-      begin(b, job_.b);
-    }
     const double height{a.asset->info().height};
     const double tolerance = height * double{job_.tolerance > 0 ? job_.tolerance : kTolerance};
     room_.table.clear();
@@ -381,9 +393,14 @@ sc_status sc_find_step_contacts(sc_step_job* job) noexcept {
   WordMemory memory(job->scratch);
   const bool two = has_two(*job);
   room.take(memory, job->a, two ? &job->b : nullptr);
-  job->contact_count = Step(*job, resolved, room).run();
-  return job->contact_count > job->contact_capacity && job->contacts != nullptr ? refuse(SC_OVERFLOW, SC_FIELD_CONTACTS)
-                                                                                : done();
+  Step step(*job, resolved, room);
+  if (const Status wild = step.begin(); wild != SC_OK) {
+    return wild;
+  }
+  job->contact_count = step.run();
+  return job->contact_count > job->contact_capacity && job->contacts != nullptr
+             ? refuse(SC_OVERFLOW, SC_FIELD_CONTACTS)
+             : done();
 }
 
 }  // extern "C"

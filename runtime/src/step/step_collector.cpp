@@ -2,6 +2,7 @@
 #include "step/step_collector.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "pairs/pair_bits.h"
@@ -11,6 +12,8 @@ namespace spherechain {
 namespace {
 
 constexpr double kNever = 2, kNoLast = -1;
+constexpr double kShortest = 1.0 / 65536;   // share of the step between two looks
+constexpr double kMostStraySteps = 1 << 10;  // the way is halved at most six times: each takes three quarters of the stray
 
 SixCorners corners_of(const TriangleCorners& a, const TriangleCorners& b) {
   SixCorners out;
@@ -21,7 +24,18 @@ SixCorners corners_of(const TriangleCorners& a, const TriangleCorners& b) {
   return out;
 }
 
-Vec3 middle_of(const Vec3& p, const Vec3& q) { return to_float(0.5 * (to_double(p) + to_double(q))); }
+// How finely floats tell where the corners are.
+double resolution_of(const SixCorners& corners) {
+  double most = 0;
+  for (const Double3& p : corners.p) {
+    most = std::max({most, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+  }
+  return 0x1p-23 * most;
+}
+
+Vec3 middle_of(const Vec3& p, const Vec3& q) {
+  return to_float(0.5 * (to_double(p) + to_double(q)));
+}
 
 }  // namespace
 
@@ -111,13 +125,13 @@ double StepCollector::search(const MovingCandidate& candidate, const Way& way, d
   const double middle = 0.5 * (from + to);
   const SixCorners corners = corners_at(candidate, middle);
   if (found.time < 0.5) {
-    const double first = search(candidate, {way.from, corners, way.stray / 4, way.step}, from, middle,
+    const double first = search(candidate, {way.from, corners, way.stray / 4, way.step, 2 * way.shortest}, from, middle,
                                 limit < 0.5 ? until : middle, then);
     if (first != kNever || limit <= 0.5) {
       return first;
     }
   }
-  return search(candidate, {corners, way.to, way.stray / 4, way.step}, middle, to, until, then);
+  return search(candidate, {corners, way.to, way.stray / 4, way.step, 2 * way.shortest}, middle, to, until, then);
 }
 
 void StepCollector::decide(const MovingCandidate& candidate) {
@@ -150,7 +164,9 @@ void StepCollector::decide(const MovingCandidate& candidate) {
                        (double{a_.motion->strays()[a_.skin.surface->clusters[candidate.cluster_a].sphere]} +
                         double{b_.motion->strays()[b_.skin.surface->clusters[candidate.cluster_b].sphere]});
   const SixCorners from = corners_of(candidate.a[0], candidate.b[0]), to = corners_of(candidate.a[1], candidate.b[1]);
-  const Way way{from, to, stray, tolerance_ / 2};
+  const double step =
+      std::max({tolerance_ / 2, stray / kMostStraySteps, resolution_of(from), resolution_of(to)});
+  const Way way{from, to, stray, step, kShortest / share};
   double begins = kNever;
   SixCorners then;
   if (may_begin) {
@@ -172,7 +188,7 @@ void StepCollector::decide(const MovingCandidate& candidate) {
   }
   if (may_end) {
     const double ends =
-        search(candidate, {way.to, way.from, stray, way.step}, end_, begin_, std::max(last, begin_), then);
+        search(candidate, {way.to, way.from, stray, way.step, way.shortest}, end_, begin_, std::max(last, begin_), then);
     // Of two that graze each other one of the two ways may find a contact, the other none. The way forward counts: so no
     // time depends on the order in which triangles are looked at.
     if (ends != kNever && ends > last &&
