@@ -126,5 +126,6 @@ void fuzz_crowd(Case& c);
 void fuzz_contacts(Case& c);
 void fuzz_penetrations(Case& c);
 void fuzz_bodies(Case& c);
+void fuzz_steps(Case& c);
 
 }  // namespace spherechain::test

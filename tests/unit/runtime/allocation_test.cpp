@@ -75,6 +75,24 @@ TEST_CASE("no job and no function but sc_character_create() allocates, on any ta
     measure.contacts = triangles.data();
     measure.scratch = measure_scratch.data();
     measure.scratch_words = measure_scratch.size();
+    StepJob step;
+    std::vector<StepContact> step_contacts(15);
+    std::vector<sc_transform> transforms[2];
+    for (std::size_t b = 0; b < 2 * bones; ++b) {
+      const float turn = b % 2 == 0 ? 0.0F : 0.3F;
+      transforms[b % 2].push_back({{0, 0, 0}, {turn, 0, 0, 1}, {1, 1, 1}});
+    }
+    step.a.blend = SC_BLEND_SLERP;
+    step.a.start_joints = transforms[0].data();
+    step.a.end_joints = transforms[1].data();
+    step.a.joint_count = bones;
+    step.a.body.skin_table = skin_table.data();
+    step.contacts = step_contacts.data();
+    step.contact_capacity = step_contacts.size();
+    step.a.body.asset = &opened.asset;
+    std::vector<std::uint64_t> step_scratch(sc_step_scratch_words(&step.a, nullptr));
+    step.scratch = step_scratch.data();
+    step.scratch_words = step_scratch.size();
     FloorJob ground;
     std::vector<std::uint64_t> ground_scratch(sc_floor_scratch_words(&opened.asset));
     ground.up = {0, 1, 0};
@@ -103,14 +121,15 @@ TEST_CASE("no job and no function but sc_character_create() allocates, on any ta
     run(sc_bind_joints(&asset, joints.data(), bones, SC_ROWS_3X4, joint_of_bone.data(), bones, message, 160));
     run(sc_gather_bones(&asset, joint_of_bone.data(), &refit.pose, gathered.data()));
     const sc_status rest = sc_check_rest_pose(&asset, &refit.pose, message, 160);
-    meeting.a.asset = meeting.b.asset = &asset;
+    meeting.a.asset = meeting.b.asset = step.a.body.asset = &asset;
     for (const Target target : supported_targets()) {
       refit.target = detect.target = crowd.target = contacts.target = target;
       run(refit.run());
       run(detect.run());
       run(crowd.run());
       run(contacts.run());
-      meeting.target = measure.target = ground.target = target;
+      meeting.target = measure.target = ground.target = step.target = target;
+      run(step.run());
       const sc_status met = meeting.run();
       run(met == SC_OVERFLOW ? sc_status{SC_OK, SC_FIELD_NONE} : met);
       measure.a = ground.body = meeting.a;
@@ -138,6 +157,7 @@ TEST_CASE("no job and no function but sc_character_create() allocates, on any ta
     CHECK(contacts.triangle_count > 0);
     CHECK(measure.penetration_count > 0);
     CHECK(scene.pair_count == 1);
+    CHECK(step.contact_count > 0);
   }
 }
 

@@ -149,6 +149,30 @@ static void call_bodies(const sc_asset* asset, const sc_pose* pose, c_calls_resu
   free(table);
 }
 
+static void call_step(const sc_asset* asset, const sc_pose* pose, c_calls_result* out) {
+  sc_step_job step = {0};
+  const size_t bone_count = pose->bone_count;
+  float* rest = (float*)words(12 * bone_count);
+  uint64_t* table = words(sc_skin_table_words(asset));
+  size_t b;
+  for (b = 0; b < 12 * bone_count; ++b) rest[b] = b % 12 % 5 == 0 ? 1.0F : 0.0F;
+  OK(sc_prepare_skin(asset, table, sc_skin_table_words(asset)));
+  step.a.body.asset = asset;
+  step.a.body.pose = *pose;
+  step.a.body.skin_table = table;
+  step.a.end = *pose;
+  step.a.end.bones = rest;
+  step.scratch_words = sc_step_scratch_words(&step.a, NULL);
+  step.scratch = words(step.scratch_words);
+  step.contacts = out->step_contacts;
+  step.contact_capacity = 64;
+  OK(sc_find_step_contacts(&step));
+  out->step_contact_count = step.contact_count;
+  free(step.scratch);
+  free(table);
+  free(rest);
+}
+
 static void call_character(const void* data, size_t size, const sc_asset* asset, const sc_pose* pose,
                            c_calls_result* out) {
   sc_character* character = NULL;
@@ -184,5 +208,6 @@ void c_call_all(const void* data, size_t size, const float* matrices, size_t bon
   call_spheres(&asset, &pose, out);
   call_skin(&asset, &pose, out);
   call_bodies(&asset, &pose, out);
+  call_step(&asset, &pose, out);
   call_character(data, size, &asset, &pose, out);
 }

@@ -19,6 +19,8 @@ typedef struct c_calls_result {
   size_t crowd_pair_count;
   size_t body_triangle_count, body_part_count; /* of the body and itself */
   size_t floor_part_count;                     /* below a floor that is high */
+  sc_step_contact step_contacts[64];           /* from the pose to the one at rest */
+  size_t step_contact_count;
 } c_calls_result;
 
 #if defined(__cplusplus)

@@ -56,6 +56,15 @@ TEST_CASE("every function called from C99 gives what C++ gets") {
   CHECK(c->body_triangle_count == with_itself.triangles.size());
   CHECK(c->body_part_count == with_itself.parts.size());
   CHECK(c->floor_part_count > 0);
+
+  const std::vector<Matrix> rest(kBoneCount, Matrix{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0});
+  StepJob step;
+  step.a.body.asset = &opened.asset;
+  step.a.body.pose = pose;
+  step.a.end = pose_of(rest);
+  const StepContacts on_the_way = find_contacts(step);
+  CHECK(!on_the_way.contacts.empty());
+  CHECK(same_bits({c->step_contacts, c->step_contacts + c->step_contact_count}, on_the_way.contacts));
 }
 
 }  // namespace spherechain::test

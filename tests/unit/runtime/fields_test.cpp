@@ -326,6 +326,130 @@ TEST_CASE("a search for skin contacts names what it cannot use") {
   CHECK(table == before);
 }
 
+TEST_CASE("a step names what it cannot use") {
+  Scene s;
+  OwnedFilter owned(*s.asset);
+  const PreparedSkin table(*s.asset);
+  const std::vector<Matrix> end = random_pose(kSceneBones, PoseKind::kGentle, 1, s.random);
+  std::vector<Transform> joints(kSceneBones, Transform{{0, 0, 0}, {0, 0, 0, 1}, {1, 1, 1}}), good = joints;
+  std::vector<std::uint32_t> parents{SC_NO_JOINT, 0, 1, 1, SC_NO_JOINT};
+  StepJob job;
+  job.a.body.asset = s.asset;
+  job.a.body.pose = s.pose;
+  job.a.body.skin_table = table.words.data();
+  job.a.end = pose_of(end, s.weights);
+  std::vector<std::uint64_t> scratch(2 * sc_step_scratch_words(&job.a, &job.a) + 100000);
+  job.scratch = scratch.data();
+  job.scratch_words = scratch.size();
+  job.contacts = s.output<StepContact>(0);
+  job.contact_capacity = 100;
+  using J = StepJob;
+  const OpenedAsset without(random_asset(kSceneSpheres, 1).parts);
+  const auto other = [](J& j) -> Motion& {  // of two bodies
+    j.b = j.a;
+    return j.b;
+  };
+  const std::vector<Refusal<J>> common{
+      {SC_NULL, SC_FIELD_ASSET, [](J& j) { j.a.body.asset = nullptr; }},
+      {SC_NOT_OPEN, SC_FIELD_ASSET, [&](J& j) { j.a.body.asset = &s.closed; }},
+      {SC_NOT_OPEN, SC_FIELD_ASSET, [&](J& j) { other(j).body.asset = &s.closed; }},
+      {SC_NOT_IN_ASSET, SC_FIELD_ASSET, [&](J& j) { j.a.body.asset = &without.asset; }},
+      {SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET, [](J& j) { j.target = static_cast<Target>(99); }},
+      {SC_NULL, SC_FIELD_SKIN_TABLE, [](J& j) { j.a.body.skin_table = nullptr; }},
+      {SC_MISALIGNED, SC_FIELD_SKIN_TABLE, [](J& j) { j.a.body.skin_table = askew(j.a.body.skin_table); }},
+      {SC_BAD_VALUE, SC_FIELD_SKIN_TABLE, [&](J& j) { other(j).body.skin_table = s.memory.data(); }},
+      {SC_NULL, SC_FIELD_SCRATCH, [](J& j) { j.scratch = nullptr; }},
+      {SC_MISALIGNED, SC_FIELD_SCRATCH, [](J& j) { j.scratch = askew(j.scratch); }},
+      {SC_TOO_SMALL, SC_FIELD_SCRATCH, [](J& j) { j.scratch_words = sc_step_scratch_words(&j.a, nullptr) - 1; }},
+      {SC_TOO_SMALL, SC_FIELD_SCRATCH,
+       [&](J& j) { j.scratch_words = sc_step_scratch_words(&j.a, &other(j)) - 1; }},
+      {SC_NULL, SC_FIELD_CONTACTS, [](J& j) { j.contacts = nullptr; }},
+      {SC_MISALIGNED, SC_FIELD_CONTACTS, [](J& j) { j.contacts = askew(j.contacts); }},
+      {SC_MISALIGNED, SC_FIELD_IGNORED_PARTS, [&](J& j) { other(j).body.ignored_parts = askew(s.memory.data()); }},
+      {SC_BAD_VALUE, SC_FIELD_BLEND, [](J& j) { j.a.blend = static_cast<Blend>(3); }},
+      {SC_BAD_VALUE, SC_FIELD_BLEND, [](J& j) { j.a.blend = static_cast<Blend>(-1); }},
+      {SC_BAD_VALUE, SC_FIELD_JOINTS, [](J& j) { j.a.joint_count = 65537; }},
+      {SC_BAD_VALUE, SC_FIELD_TOLERANCE, [](J& j) { j.tolerance = -1; }},
+      {SC_BAD_VALUE, SC_FIELD_TOLERANCE, [](J& j) { j.tolerance = 1.5F; }},
+      {SC_BAD_VALUE, SC_FIELD_TOLERANCE, [](J& j) { j.tolerance = kNan; }},
+      {SC_BAD_VALUE, SC_FIELD_TOLERANCE, [](J& j) { j.tolerance = kInfinity; }},
+      {SC_BAD_VALUE, SC_FIELD_FILTER,
+       [&](J& j) {
+         other(j);
+         j.filter = &owned.filter;
+       }},
+      {SC_TOO_SMALL, SC_FIELD_FILTER,
+       [](J& j) {
+         static const Filter empty{};
+         j.filter = &empty;
+       }},
+      {SC_ALIASED, SC_FIELD_OUTPUT, [&](J& j) { j.contacts = as<StepContact>(scratch.data()); }},
+      {SC_ALIASED, SC_FIELD_OUTPUT, [&](J& j) { j.scratch = const_cast<std::uint64_t*>(table.words.data()); }},
+      {SC_ALIASED, SC_FIELD_OUTPUT,
+       [&](J& j) {
+         j.filter = &owned.filter;
+         j.contacts = as<StepContact>(owned.ignored.data());
+       }},
+  };
+  const std::vector<Refusal<J>> of_bones{
+      {SC_NULL, SC_FIELD_BONES, [](J& j) { j.a.end = {}; }},
+      {SC_TOO_SMALL, SC_FIELD_BONE_COUNT, [](J& j) { --j.a.body.pose.bone_count; }},
+      {SC_TOO_SMALL, SC_FIELD_BONE_COUNT, [](J& j) { --j.a.end.bone_count; }},
+      {SC_BAD_VALUE, SC_FIELD_BONE_LAYOUT, [](J& j) { j.a.end.bone_layout = SC_LAYOUT_UNSET; }},
+      {SC_TOO_SMALL, SC_FIELD_MORPH_WEIGHTS, [](J& j) { --j.a.end.morph_weight_count; }},
+      {SC_BAD_VALUE, SC_FIELD_END,
+       [&](J& j) {
+         j.a.end = {};
+         j.a.end.vertices = s.tiny.rest.data();
+         j.a.end.vertex_count = s.tiny.parts.vertex_count;
+       }},
+      {SC_BAD_VALUE, SC_FIELD_MORPH_WEIGHTS,
+       [](J& j) {
+         static const float wild[] = {1e9F, 0, -1e9F};
+         j.a.end.morph_weights = wild;
+       }},
+      {SC_ALIASED, SC_FIELD_OUTPUT, [&](J& j) { j.contacts = as<StepContact>(end.data()); }},
+  };
+  check_each(job, s.memory, common + of_bones);
+  CHECK(sc_find_step_contacts(nullptr) == SC_NULL);
+
+  job.a.body.pose = job.a.end = {};
+  job.a.blend = SC_BLEND_SLERP;
+  job.a.start_joints = good.data();
+  job.a.end_joints = joints.data();
+  job.a.joint_count = kSceneBones;
+  job.a.parents = parents.data();
+  const auto spoilt = [&](auto change) {
+    return [&joints, &good, change](J&) {
+      joints = good;
+      change(joints[3]);
+    };
+  };
+  const std::vector<Refusal<J>> of_joints{
+      {SC_NULL, SC_FIELD_JOINTS, [](J& j) { j.a.start_joints = nullptr; }},
+      {SC_NULL, SC_FIELD_JOINTS, [](J& j) { j.a.end_joints = nullptr; }},
+      {SC_MISALIGNED, SC_FIELD_JOINTS, [](J& j) { j.a.end_joints = askew(j.a.end_joints); }},
+      {SC_TOO_SMALL, SC_FIELD_JOINTS, [](J& j) { j.a.joint_count = 2; }},
+      {SC_BAD_VALUE, SC_FIELD_JOINTS, [&](J& j) { j.a.end = s.pose; }},
+      {SC_MISALIGNED, SC_FIELD_PARENTS, [](J& j) { j.a.parents = askew(j.a.parents); }},
+      {SC_BAD_VALUE, SC_FIELD_PARENTS,
+       [](J& j) {
+         static const std::uint32_t own[] = {SC_NO_JOINT, 1, 1, 1, 1};
+         j.a.parents = own;
+       }},
+      {SC_ALIASED, SC_FIELD_OUTPUT, [&](J& j) { j.contacts = as<StepContact>(joints.data()); }},
+      {SC_BAD_VALUE, SC_FIELD_JOINTS, spoilt([](Transform& t) { t.translation.y = kNan; })},
+      {SC_BAD_VALUE, SC_FIELD_JOINTS, spoilt([](Transform& t) { t.scale.z = -kInfinity; })},
+      {SC_BAD_VALUE, SC_FIELD_JOINTS, spoilt([](Transform& t) { t.rotation[0] = kInfinity; })},
+      {SC_BAD_VALUE, SC_FIELD_JOINTS, spoilt([](Transform& t) { t.rotation[3] = 0; })},
+      {SC_BAD_VALUE, SC_FIELD_JOINTS, spoilt([](Transform& t) {
+         t.rotation[0] = 1;  // by 90 degrees, and so large
+         t.scale.y = 1e9F;
+       })},
+  };
+  check_each(job, s.memory, common + of_joints);
+}
+
 TEST_CASE("a crowd names what it cannot use") {
   Scene s;
   constexpr std::size_t kInstances = 4;
