@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 
 #include "simd/simd.h"
 #include "skin/skin_inputs.h"
@@ -143,16 +144,25 @@ SkinContacts find_all(Job job, std::size_t scratch_words) {
 
 }  // namespace
 
+namespace {
+
+// What a job lacks.
+std::unique_ptr<PreparedSkin> prepare(const Asset* asset, const std::uint64_t*& skin_table) {
+  if (skin_table != nullptr || asset == nullptr) return nullptr;
+  auto made = std::make_unique<PreparedSkin>(*asset);
+  skin_table = made->words.data();
+  return made;
+}
+
+}  // namespace
+
 SkinContacts find_contacts(SkinContactJob job) {
-  const PreparedSkin table(*job.asset);
-  job.skin_table = table.words.data();
+  const auto table = prepare(job.asset, job.skin_table);
   return find_all(job, sc_skin_scratch_words(job.asset));
 }
 
 SkinContacts find_contacts(BodyContactJob job) {
-  const PreparedSkin a(*job.a.asset), b(*job.b.asset);
-  job.a.skin_table = a.words.data();
-  job.b.skin_table = b.words.data();
+  const auto a = prepare(job.a.asset, job.a.skin_table), b = prepare(job.b.asset, job.b.skin_table);
   return find_all(job, sc_body_scratch_words(job.a.asset, job.b.asset));
 }
 
@@ -164,11 +174,9 @@ const StepContact* StepContacts::of(std::uint32_t part_a, std::uint32_t part_b) 
 }
 
 StepContacts find_contacts(StepJob job) {
-  const PreparedSkin a(*job.a.body.asset);
+  const auto a = prepare(job.a.body.asset, job.a.body.skin_table),
+             b = prepare(job.b.body.asset, job.b.body.skin_table);
   const bool has_two = job.b.body.asset != nullptr;
-  const PreparedSkin b(has_two ? *job.b.body.asset : *job.a.body.asset);
-  job.a.body.skin_table = a.words.data();
-  job.b.body.skin_table = has_two ? b.words.data() : nullptr;
   std::vector<std::uint64_t> scratch(sc_step_scratch_words(&job.a, has_two ? &job.b : nullptr), kDirty);
   job.scratch = scratch.data();
   job.scratch_words = scratch.size();

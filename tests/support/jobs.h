@@ -51,7 +51,8 @@ struct SkinContacts {
   std::vector<TriangleContact> triangles;
 };
 
-// Runs `job`, which needs no outputs, scratch memory or skin tables, to count and then with exactly sized lists.
+// Runs `job`, which needs no outputs or scratch memory, to count and then with exactly sized lists. Skin tables that it
+// lacks are prepared.
 // SC_CORRUPT where the runs find different things.
 SkinContacts find_contacts(SkinContactJob job);
 SkinContacts find_contacts(BodyContactJob job);

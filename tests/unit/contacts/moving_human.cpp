@@ -54,6 +54,11 @@ const MovingHuman& moving_human() {
   return human;
 }
 
+const std::uint64_t* human_skin_table() {
+  static const PreparedSkin table(*moving_human().asset.handle());
+  return table.words.data();
+}
+
 const baker::TruthSurface& truth_surface() {
   static const baker::TruthSurface surface = baker::surface_of(moving_human().asset, moving_human().bake.character);
   return surface;
@@ -98,6 +103,7 @@ Pose both_of(const MovingHuman::Frame& frame) {
 SkinContactJob job_of(const Pose& pose, Target target) {
   SkinContactJob job;
   job.asset = moving_human().asset.handle();
+  job.skin_table = human_skin_table();
   job.pose = pose;
   job.target = target;
   return job;
@@ -107,6 +113,20 @@ SkinContacts run(const SkinContactJob& job) {
   SkinContacts found = find_contacts(job);
   REQUIRE(found.status == SC_OK);
   return found;
+}
+
+StepContacts run(const StepJob& job) {
+  StepContacts found = find_contacts(job);
+  REQUIRE(found.status == SC_OK);
+  return found;
+}
+
+std::vector<float> blended(const std::vector<float>& from, const std::vector<float>& to, double t) {
+  std::vector<float> out(from.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] = static_cast<float>(double{from[i]} + t * (double{to[i]} - double{from[i]}));
+  }
+  return out;
 }
 
 std::vector<Pair> triangle_pairs(const SkinContacts& found) {

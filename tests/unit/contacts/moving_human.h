@@ -29,6 +29,9 @@ struct MovingHuman {
 // Baked once for all tests of a run.
 const MovingHuman& moving_human();
 
+// Its skin table, prepared once.
+const std::uint64_t* human_skin_table();
+
 // Its triangles, for CGAL.
 const baker::TruthSurface& truth_surface();
 
@@ -44,6 +47,10 @@ SkinContactJob job_of(const Pose& pose, Target target = SC_TARGET_BEST);
 
 // REQUIREs that the job succeeds.
 SkinContacts run(const SkinContactJob& job);
+StepContacts run(const StepJob& job);
+
+// Each number on its own.
+std::vector<float> blended(const std::vector<float>& from, const std::vector<float>& to, double t);
 
 // The contacts' triangles.
 std::vector<Pair> triangle_pairs(const SkinContacts& found);
