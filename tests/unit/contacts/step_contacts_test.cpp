@@ -123,33 +123,34 @@ TEST_CASE("spheres that a filter disables, and pairs that it ignores, touch noth
   CHECK(same_bits(run(job).contacts, all.contacts));
   // All of one body part's spheres: its triangles are gone, and nobody else's contacts change.
   const auto& part_of = moving_human().bake.body_parts.of_triangle;
-  const std::uint32_t without = all.contacts.back().part_b;
-  std::vector<bool> has_part(count);
-  for (std::size_t t = 0; t < part_of.size(); ++t) {
-    const std::uint32_t place = truth_surface().of_source[t];
-    if (part_of[t] == without) has_part[truth_surface().sphere[place]] = true;
-  }
-  for (const bool disables : {true, false}) {
-    CAPTURE(disables);
-    REQUIRE(sc_reset_filter(&asset, &owned.filter) == SC_OK);
-    for (std::uint32_t s = 0; s < count; ++s) {
-      if (!has_part[s]) continue;
-      if (disables) REQUIRE(sc_disable_sphere(&asset, &owned.filter, s, 1) == SC_OK);
-      for (std::uint32_t other = 0; other < count && !disables; ++other) {
-        if (other != s) {
-          REQUIRE(sc_ignore_pair(&asset, &owned.filter, std::min(s, other), std::max(s, other), 1) == SC_OK);
+  for (const std::uint32_t without : {all.contacts.front().part_a, all.contacts.back().part_b}) {
+    std::vector<bool> has_part(count);
+    for (std::size_t t = 0; t < part_of.size(); ++t) {
+      const std::uint32_t place = truth_surface().of_source[t];
+      if (part_of[t] == without) has_part[truth_surface().sphere[place]] = true;
+    }
+    for (const bool disables : {true, false}) {
+      CAPTURE(disables);
+      REQUIRE(sc_reset_filter(&asset, &owned.filter) == SC_OK);
+      for (std::uint32_t s = 0; s < count; ++s) {
+        if (!has_part[s]) continue;
+        if (disables) REQUIRE(sc_disable_sphere(&asset, &owned.filter, s, 1) == SC_OK);
+        for (std::uint32_t other = 0; other < count && !disables; ++other) {
+          if (other != s) {
+            REQUIRE(sc_ignore_pair(&asset, &owned.filter, std::min(s, other), std::max(s, other), 1) == SC_OK);
+          }
         }
       }
-    }
-    const StepContacts found = run(job);
-    CHECK(found.contacts.size() < all.contacts.size());
-    for (const StepContact& of : found.contacts) {
-      CHECK(of.part_a != without);
-      CHECK(of.part_b != without);
-      const StepContact* const before = all.of(of.part_a, of.part_b);
-      REQUIRE(before != nullptr);
-      CHECK(of.begin >= before->begin);
-      CHECK(of.end <= before->end);
+      const StepContacts found = run(job);
+      CHECK(found.contacts.size() < all.contacts.size());
+      for (const StepContact& of : found.contacts) {
+        CHECK(of.part_a != without);
+        CHECK(of.part_b != without);
+        const StepContact* const before = all.of(of.part_a, of.part_b);
+        REQUIRE(before != nullptr);
+        CHECK(of.begin >= before->begin);
+        CHECK(of.end <= before->end);
+      }
     }
   }
 }
