@@ -96,38 +96,36 @@ void add_joint_ways(Case& c, Motion& motion, Ways& ways) {
                                 const_cast<sc_transform*>(motion.end_joints)};
   const float none[] = {NAN, INFINITY, -INFINITY};
   const std::size_t count = motion.joint_count;
-  ways.insert(
-      ways.end(),
-      {[&] { motion.start_joints = nullptr, c.spoil(SC_NULL, SC_FIELD_JOINTS); },
-       [&] { motion.end_joints = nullptr, c.spoil(SC_NULL, SC_FIELD_JOINTS); },
-       [&] { put_askew(c, motion.end_joints), c.spoil(SC_MISALIGNED, SC_FIELD_JOINTS); },
-       [&, ends, none, count] {
-         float* const figures = &c.random.pick(ends)[c.random.up_to(count - 1)].translation.x;
-         figures[c.random.below(10)] = c.random.pick(none);
-         c.spoil(SC_BAD_VALUE, SC_FIELD_JOINTS);
-       },
-       [&, ends, count] {
-         std::fill_n(c.random.pick(ends)[c.random.up_to(count - 1)].rotation, 4, 0.0F);
-         c.spoil(SC_BAD_VALUE, SC_FIELD_JOINTS);
-       },
-       [&, count] {
-         std::uint32_t* const parents = c.arena.add<std::uint32_t>(count);
-         std::fill_n(parents, count, SC_NO_JOINT);
-         const std::size_t i = c.random.up_to(count - 1);
-         parents[i] = static_cast<std::uint32_t>(i + c.random.below(3));
-         motion.parents = parents;
-         c.spoil(SC_BAD_VALUE, SC_FIELD_PARENTS);
-       },
-       [&, count] {
-         std::uint32_t* const joints = c.arena.add<std::uint32_t>(c.view().bone_count());
-         std::fill_n(joints, c.view().bone_count(), static_cast<std::uint32_t>(count));
-         motion.joint_of_bone = joints;
-         c.spoil(SC_TOO_SMALL, SC_FIELD_JOINTS);
-       },
-       [&] {
-         motion.end.bones = c.arena.add<float>(12 * c.view().bone_count());
-         c.spoil(SC_BAD_VALUE, SC_FIELD_JOINTS);
-       }});
+  ways.insert(ways.end(), {[&] { motion.start_joints = nullptr, c.spoil(SC_NULL, SC_FIELD_JOINTS); },
+                           [&] { motion.end_joints = nullptr, c.spoil(SC_NULL, SC_FIELD_JOINTS); },
+                           [&] { put_askew(c, motion.end_joints), c.spoil(SC_MISALIGNED, SC_FIELD_JOINTS); },
+                           [&, ends, none, count] {
+                             float* const figures = &c.random.pick(ends)[c.random.up_to(count - 1)].translation.x;
+                             figures[c.random.below(10)] = c.random.pick(none);
+                             c.spoil(SC_BAD_VALUE, SC_FIELD_JOINTS);
+                           },
+                           [&, ends, count] {
+                             std::fill_n(c.random.pick(ends)[c.random.up_to(count - 1)].rotation, 4, 0.0F);
+                             c.spoil(SC_BAD_VALUE, SC_FIELD_JOINTS);
+                           },
+                           [&, count] {
+                             std::uint32_t* const parents = c.arena.add<std::uint32_t>(count);
+                             std::fill_n(parents, count, SC_NO_JOINT);
+                             const std::size_t i = c.random.up_to(count - 1);
+                             parents[i] = static_cast<std::uint32_t>(i + c.random.below(3));
+                             motion.parents = parents;
+                             c.spoil(SC_BAD_VALUE, SC_FIELD_PARENTS);
+                           },
+                           [&, count] {
+                             std::uint32_t* const joints = c.arena.add<std::uint32_t>(c.view().bone_count());
+                             std::fill_n(joints, c.view().bone_count(), static_cast<std::uint32_t>(count));
+                             motion.joint_of_bone = joints;
+                             c.spoil(SC_TOO_SMALL, SC_FIELD_JOINTS);
+                           },
+                           [&] {
+                             motion.end.bones = c.arena.add<float>(12 * c.view().bone_count());
+                             c.spoil(SC_BAD_VALUE, SC_FIELD_JOINTS);
+                           }});
 }
 
 void add_motion_ways(Case& c, Motion& motion, bool is_first, Ways& ways) {
@@ -241,26 +239,27 @@ void fuzz_steps(Case& c) {
   job.contact_capacity = c.random.one_in(2) ? 400 : c.random.below(20);
   job.contacts = c.arena.add<StepContact>(job.contact_capacity);
   Target other = SC_TARGET_BEST;
-  Ways ways = {[&] { job.scratch = nullptr, c.spoil(SC_NULL, SC_FIELD_SCRATCH); },
-               [&] { job.scratch_words = c.random.up_to(job.scratch_words - 1), c.spoil(SC_TOO_SMALL, SC_FIELD_SCRATCH); },
-               [&] { job.contacts = nullptr, job.contact_capacity = 1, c.spoil(SC_NULL, SC_FIELD_CONTACTS); },
-               [&] { other = draw_none<Target>(c, 7), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
-               [&] {
-                 const float none[] = {NAN, -1e-45F, -1, 1.1F, INFINITY};
-                 job.tolerance = c.random.pick(none);
-                 c.spoil(SC_BAD_VALUE, SC_FIELD_TOLERANCE);
-               },
-               [&] {
-                 if (job.filter == nullptr) filter = draw_filter(c);
-                 job.filter = &filter;
-                 if (has_two) return c.spoil(SC_BAD_VALUE, SC_FIELD_FILTER);
-                 spoil_filter(c, filter);
-               },
-               [&] {
-                 if (job.contact_capacity > 0 && put_over(c, job.contacts, bytes_of(job.scratch, job.scratch_words))) {
-                   c.spoil(SC_ALIASED, SC_FIELD_OUTPUT);
-                 }
-               }};
+  Ways ways = {
+      [&] { job.scratch = nullptr, c.spoil(SC_NULL, SC_FIELD_SCRATCH); },
+      [&] { job.scratch_words = c.random.up_to(job.scratch_words - 1), c.spoil(SC_TOO_SMALL, SC_FIELD_SCRATCH); },
+      [&] { job.contacts = nullptr, job.contact_capacity = 1, c.spoil(SC_NULL, SC_FIELD_CONTACTS); },
+      [&] { other = draw_none<Target>(c, 7), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
+      [&] {
+        const float none[] = {NAN, -1e-45F, -1, 1.1F, INFINITY};
+        job.tolerance = c.random.pick(none);
+        c.spoil(SC_BAD_VALUE, SC_FIELD_TOLERANCE);
+      },
+      [&] {
+        if (job.filter == nullptr) filter = draw_filter(c);
+        job.filter = &filter;
+        if (has_two) return c.spoil(SC_BAD_VALUE, SC_FIELD_FILTER);
+        spoil_filter(c, filter);
+      },
+      [&] {
+        if (job.contact_capacity > 0 && put_over(c, job.contacts, bytes_of(job.scratch, job.scratch_words))) {
+          c.spoil(SC_ALIASED, SC_FIELD_OUTPUT);
+        }
+      }};
   const bool is_first = !has_two || c.random.one_in(2);
   add_motion_ways(c, is_first ? job.a : job.b, is_first, ways);
   spoil_some(c, ways);

@@ -174,8 +174,7 @@ const StepContact* StepContacts::of(std::uint32_t part_a, std::uint32_t part_b) 
 }
 
 StepContacts find_contacts(StepJob job) {
-  const auto a = prepare(job.a.body.asset, job.a.body.skin_table),
-             b = prepare(job.b.body.asset, job.b.body.skin_table);
+  const auto a = prepare(job.a.body.asset, job.a.body.skin_table), b = prepare(job.b.body.asset, job.b.body.skin_table);
   const bool has_two = job.b.body.asset != nullptr;
   std::vector<std::uint64_t> scratch(sc_step_scratch_words(&job.a, has_two ? &job.b : nullptr), kDirty);
   job.scratch = scratch.data();

@@ -31,7 +31,8 @@ typedef struct sc_motion {
   const sc_transform* start_joints SC_ZERO;
   const sc_transform* end_joints SC_ZERO;
   size_t joint_count SC_ZERO; /* at most 65536 */
-  const uint32_t* parents SC_ZERO; /* of each joint an earlier one, or SC_NO_JOINT; null: all stand in the pose's space */
+  const uint32_t* parents
+      SC_ZERO; /* of each joint an earlier one, or SC_NO_JOINT; null: all stand in the pose's space */
   const uint32_t* joint_of_bone SC_ZERO; /* of each bone of the asset: sc_bind_joints(); null: joint b moves bone b */
 } sc_motion;
 
@@ -74,8 +75,8 @@ extern "C" {
 #endif
 
 /* Errors as of sc_find_body_contacts(); and SC_BAD_VALUE: SC_FIELD_END (vertices at one end alone), SC_FIELD_BLEND,
- * SC_FIELD_JOINTS (not finite, a quaternion of length zero, a pose with bones or vertices beside them; or a step so wild
- * that the skin may be 256 heights off straight lines), SC_FIELD_MORPH_WEIGHTS (as wild, or not finite),
+ * SC_FIELD_JOINTS (not finite, a quaternion of length zero, a pose with bones or vertices beside them; or a step so
+ * wild that the skin may be 256 heights off straight lines), SC_FIELD_MORPH_WEIGHTS (as wild, or not finite),
  * SC_FIELD_PARENTS, SC_FIELD_TOLERANCE (not finite, negative, above 1). The field does not say which of two bodies is
  * meant. Matrices and vertices that are not finite touch nothing. */
 SPHERECHAIN_API sc_status sc_find_step_contacts(sc_step_job* job) SC_NOEXCEPT;

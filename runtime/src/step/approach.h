@@ -20,7 +20,7 @@ struct SixCorners {
 struct Way {
   SixCorners from, to;
   double stray;
-  double step;  // of the corners' distances from each other: what they may change by between two looks
+  double step;      // of the corners' distances from each other: what they may change by between two looks
   double shortest;  // share of the way between two looks, at least, however far they move
 
   SixCorners at(double t) const;
@@ -33,8 +33,8 @@ struct Approach {
 };
 
 // Looks along the way up to `limit` for the first time at which the triangles intersect, exactly and as rounded to
-// floats. Between two looks that are not known to be apart no two corners change their distance by more than `step`, but
-// where the motion is so long that `shortest` counts. When it looks does not depend on the limit.
+// floats. Between two looks that are not known to be apart no two corners change their distance by more than `step`,
+// but where the motion is so long that `shortest` counts. When it looks does not depend on the limit.
 //
 // For a direction n the gap of the two triangles, min n.b - max n.a, is a minimum of linear functions of time: when it
 // closes is known. From a time on, the direction is taken whose gap stays open longest, of those that part the

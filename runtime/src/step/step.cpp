@@ -17,8 +17,8 @@ namespace spherechain {
 namespace {
 
 constexpr float kTolerance = 1e-4F;
-constexpr double kWidest = 1.0 / 1024;  // what vertices may stray in a piece, in heights
-constexpr int kMostHalvings = 9;       // of the step, into pieces
+constexpr double kWidest = 1.0 / 1024;          // what vertices may stray in a piece, in heights
+constexpr int kMostHalvings = 9;                // of the step, into pieces
 constexpr std::size_t kClusterPairs = 1 << 14;  // listed at a time
 
 // A body, on its way through the pieces.
@@ -31,7 +31,7 @@ struct Walker {
   BoxColumns spheres, clusters;
   std::uint8_t* is_swept = nullptr;
   std::uint16_t* cluster_parts = nullptr;
-  float* strays = nullptr;  // in a piece
+  float* strays = nullptr;                                          // in a piece
   float *bones[2] = {}, *morph_weights[2] = {}, *vertices[2] = {};  // of `start` and of `end`, between the step's ends
 
   void take(WordMemory& memory, const sc_motion& of_motion, bool is_alone) {
@@ -398,9 +398,8 @@ sc_status sc_find_step_contacts(sc_step_job* job) noexcept {
     return wild;
   }
   job->contact_count = step.run();
-  return job->contact_count > job->contact_capacity && job->contacts != nullptr
-             ? refuse(SC_OVERFLOW, SC_FIELD_CONTACTS)
-             : done();
+  return job->contact_count > job->contact_capacity && job->contacts != nullptr ? refuse(SC_OVERFLOW, SC_FIELD_CONTACTS)
+                                                                                : done();
 }
 
 }  // extern "C"

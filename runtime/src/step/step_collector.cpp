@@ -12,8 +12,9 @@ namespace spherechain {
 namespace {
 
 constexpr double kNever = 2, kNoLast = -1;
-constexpr double kShortest = 1.0 / 65536;   // share of the step between two looks
-constexpr double kMostStraySteps = 1 << 10;  // the way is halved at most six times: each takes three quarters of the stray
+constexpr double kShortest = 1.0 / 65536;  // share of the step between two looks
+constexpr double kMostStraySteps =
+    1 << 10;  // the way is halved at most six times: each takes three quarters of the stray
 
 SixCorners corners_of(const TriangleCorners& a, const TriangleCorners& b) {
   SixCorners out;
@@ -33,9 +34,7 @@ double resolution_of(const SixCorners& corners) {
   return 0x1p-23 * most;
 }
 
-Vec3 middle_of(const Vec3& p, const Vec3& q) {
-  return to_float(0.5 * (to_double(p) + to_double(q)));
-}
+Vec3 middle_of(const Vec3& p, const Vec3& q) { return to_float(0.5 * (to_double(p) + to_double(q))); }
 
 }  // namespace
 
@@ -164,8 +163,7 @@ void StepCollector::decide(const MovingCandidate& candidate) {
                        (double{a_.motion->strays()[a_.skin.surface->clusters[candidate.cluster_a].sphere]} +
                         double{b_.motion->strays()[b_.skin.surface->clusters[candidate.cluster_b].sphere]});
   const SixCorners from = corners_of(candidate.a[0], candidate.b[0]), to = corners_of(candidate.a[1], candidate.b[1]);
-  const double step =
-      std::max({tolerance_ / 2, stray / kMostStraySteps, resolution_of(from), resolution_of(to)});
+  const double step = std::max({tolerance_ / 2, stray / kMostStraySteps, resolution_of(from), resolution_of(to)});
   const Way way{from, to, stray, step, kShortest / share};
   double begins = kNever;
   SixCorners then;
@@ -177,8 +175,8 @@ void StepCollector::decide(const MovingCandidate& candidate) {
   }
   if (begins != kNever) {
     StepEntry& of = entry(part_a, part_b);
-    if (begins < of.first || (begins == of.first && Pair{triangle_a, triangle_b} <
-                                                        Pair{of.contact.triangle_a, of.contact.triangle_b})) {
+    if (begins < of.first ||
+        (begins == of.first && Pair{triangle_a, triangle_b} < Pair{of.contact.triangle_a, of.contact.triangle_b})) {
       of.first = begins;
       of.contact.triangle_a = triangle_a;
       of.contact.triangle_b = triangle_b;
@@ -187,10 +185,10 @@ void StepCollector::decide(const MovingCandidate& candidate) {
     }
   }
   if (may_end) {
-    const double ends =
-        search(candidate, {way.to, way.from, stray, way.step, way.shortest}, end_, begin_, std::max(last, begin_), then);
-    // Of two that graze each other one of the two ways may find a contact, the other none. The way forward counts: so no
-    // time depends on the order in which triangles are looked at.
+    const double ends = search(candidate, {way.to, way.from, stray, way.step, way.shortest}, end_, begin_,
+                               std::max(last, begin_), then);
+    // Of two that graze each other one of the two ways may find a contact, the other none. The way forward counts: so
+    // no time depends on the order in which triangles are looked at.
     if (ends != kNever && ends > last &&
         (begins != kNever || search(candidate, way, begin_, end_, end_, then) != kNever)) {
       entry(part_a, part_b).last = ends;

@@ -140,7 +140,8 @@ TriangleCorners PosedTriangles::operator[](std::uint32_t source_triangle) const 
   const std::size_t place = surface.place_of_source[source_triangle];
   TriangleCorners out;
   for (std::size_t k = 0; k < 3; ++k) {
-    const float* const p = &vertices[3 * std::size_t{surface.source_vertices[surface.triangle_vertices[3 * place + k]]}];
+    const float* const p =
+        &vertices[3 * std::size_t{surface.source_vertices[surface.triangle_vertices[3 * place + k]]}];
     out.p[k] = {p[0], p[1], p[2]};
   }
   return out;

@@ -115,14 +115,15 @@ TEST_CASE("parts that a body ignores touch nothing in a step") {
   ignored[without / 64] |= std::uint64_t{1} << without % 64;
   job.b.body.ignored_parts = ignored.data();
   std::vector<StepContact> expected = all.contacts;
-  expected.erase(std::remove_if(expected.begin(), expected.end(),
-                                [&](const StepContact& of) { return of.part_b == without; }),
-                 expected.end());
+  expected.erase(
+      std::remove_if(expected.begin(), expected.end(), [&](const StepContact& of) { return of.part_b == without; }),
+      expected.end());
   CHECK(same_bits(run(job).contacts, expected));
   CHECK(expected.size() < all.contacts.size());
 }
 
-TEST_CASE("a step of two bodies is the same from bones, from joints that do not turn, and from vertices but for roundings") {
+TEST_CASE(
+    "a step of two bodies is the same from bones, from joints that do not turn, and from vertices but for roundings") {
   // b goes straight as a whole; a stands.
   const auto& frames = moving_human().frames;
   const double height = double{sc_asset_get_info(moving_human().asset.handle()).height};

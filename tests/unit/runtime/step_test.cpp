@@ -18,8 +18,8 @@ constexpr double kPi = 3.14159265358979323846;
 constexpr double kHeight = 1.75;  // of tiny assets
 constexpr Transform kStill{{0, 0, 0}, {0, 0, 0, 1}, {1, 1, 1}};
 
-// A plate, part 0, in the plane y = 0, that bone 0 moves; a spike, part 1, that bone 1 moves, with its tip at (0, -1, 0)
-// and its base at y = -0.5.
+// A plate, part 0, in the plane y = 0, that bone 0 moves; a spike, part 1, that bone 1 moves, with its tip at (0, -1,
+// 0) and its base at y = -0.5.
 struct PlateAndSpike {
   PlateAndSpike() : tiny(random_asset(2, 1)) {
     const Vec3 rim[] = {{-1, 0, -1}, {1, 0, -1}, {1, 0, 1}, {-1, 0, 1}};
@@ -74,8 +74,7 @@ struct Swing {
   std::vector<std::uint32_t> parents{SC_NO_JOINT, SC_NO_JOINT, 1}, joint_of_bone{0, 2, SC_NO_JOINT};
 
   Swing(double height, const Transform& from, const Transform& to)
-      : start{kStill, turned(0, {0, static_cast<float>(height), 0}), from},
-        end{start[0], start[1], to} {}
+      : start{kStill, turned(0, {0, static_cast<float>(height), 0}), from}, end{start[0], start[1], to} {}
   Motion motion(Blend blend) const {
     Motion out;
     out.body.asset = &plate_and_spike().opened->asset;
