@@ -18,7 +18,7 @@ typedef struct sc_transform {
   sc_vec3 scale;     /* along the joint's own axes; negative mirrors */
 } sc_transform;
 
-/* A body, and where it stands a step later.
+/* A body, and where it stands a step later. Of one body alone ignored_parts is not read.
  *
  * SC_BLEND_LINEAR: from body.pose to `end`, both with bones, or both with vertices.
  * SC_BLEND_SLERP, SC_BLEND_NLERP: from start_joints to end_joints, composed down the skeleton as engines do; poses have
@@ -30,9 +30,8 @@ typedef struct sc_motion {
   sc_blend blend SC_ZERO;
   const sc_transform* start_joints SC_ZERO;
   const sc_transform* end_joints SC_ZERO;
-  size_t joint_count SC_ZERO; /* at most 65536 */
-  const uint32_t* parents
-      SC_ZERO; /* of each joint an earlier one, or SC_NO_JOINT; null: all stand in the pose's space */
+  size_t joint_count SC_ZERO;            /* at most 65536 */
+  const uint32_t* parents SC_ZERO;       /* of a joint an earlier one, or SC_NO_JOINT; null: of all SC_NO_JOINT */
   const uint32_t* joint_of_bone SC_ZERO; /* of each bone of the asset: sc_bind_joints(); null: joint b moves bone b */
 } sc_motion;
 

@@ -18,6 +18,8 @@ namespace {
 
 constexpr float kTolerance = 1e-4F;
 constexpr double kWidest = 1.0 / 1024;          // what vertices may stray in a piece, in heights
+constexpr double kFarthest = 1.0 / 4;           // what they may move against each other in a piece, in heights
+constexpr double kTooFar = 16;                  // heights: cut by this, a step would have too many pieces
 constexpr int kMostHalvings = 9;                // of the step, into pieces
 constexpr std::size_t kClusterPairs = 1 << 14;  // listed at a time
 
@@ -209,21 +211,23 @@ class Step {
     StepCollector collector({{&a.surface, are_one_ ? nullptr : job_.a.body.ignored_parts}, &a.way, a.cluster_parts},
                             {{&b.surface, are_one_ ? nullptr : job_.b.body.ignored_parts}, &b.way, b.cluster_parts},
                             are_one_, room_.table, tolerance);
-    double share = 1;
-    const double widest = std::max(a.widest(), b.widest());
-    for (int k = 0; k < kMostHalvings && widest * share * share > kWidest * height; ++k) {
-      share /= 2;
-    }
-    if (share < 1) {
-      pose_at(1, true);
-      note_ends({}, false, collector);
-    }
     pose_at(0, false);
+    pose_at(1, true);
+    double share = 1;
+    const double widest = std::max(a.widest(), b.widest()), reach = greatest_move();
+    for (int k = 0; k < kMostHalvings; ++k) {
+      if (widest * share * share > kWidest * height || reach * share > kFarthest * height) {
+        share /= 2;
+      }
+    }
     if (share < 1) {
       note_ends({}, true, collector);
+      note_ends({}, false, collector);
     }
     for (double from = 0; from < 1; from += share) {
-      pose_at(from + share, true);
+      if (share < 1) {
+        pose_at(from + share, true);
+      }
       walk(from, share, collector);
       a.go_on();
       if (!are_one_) {
@@ -239,6 +243,43 @@ class Step {
     walker.asset = &view_of(*motion.body.asset);
     walker.way.start(motion, *walker.asset, walker.surface);
     std::fill(walker.cluster_parts, walker.cluster_parts + walker.surface.clusters.size, StepBody::kUnknown);
+  }
+
+  // About how far bones' skins move against each other: a guess, for there are fewer pairs of what moves less. 0 of
+  // what no bones move.
+  double greatest_move() const {
+    Double3 sum{0, 0, 0};
+    double count = 0, most = 0;
+    const auto over_all = [&](const auto& take) {
+      for (const Walker* walker : {&room_.a, &b_}) {
+        for (std::size_t bone = 0; walker->start.has_balls && bone < walker->surface.bone_boxes.size; ++bone) {
+          const BoneBox& box = walker->surface.bone_boxes[bone];
+          if (box.half.x >= 0) {
+            take(moved(walker->end.skin.bones, bone, box.center) - moved(walker->start.skin.bones, bone, box.center));
+          }
+        }
+      }
+    };
+    over_all([&](const Double3& move) {
+      sum = sum + move;
+      count += 1;
+    });
+    if (count == 0) {
+      return 0;
+    }
+    const Double3 mean = (1 / count) * sum;
+    over_all([&](const Double3& move) { most = std::max(most, length(move - mean)); });
+    return most < kTooFar * double{room_.a.asset->info().height} ? 2 * most : 0;
+  }
+
+  static Double3 moved(const BoneMatrices& bones, std::size_t bone, const Vec3& p) {
+    const float* const m = bones.data + bone * bones.stride;
+    const auto along = [&](std::size_t row) {
+      const float* const r = m + row * bones.row;
+      return double{r[0]} * double{p.x} + double{r[bones.column]} * double{p.y} +
+             double{r[2 * bones.column]} * double{p.z} + double{r[3 * bones.column]};
+    };
+    return {along(0), along(1), along(2)};
   }
 
   void pose_at(double time, bool at_end) {
