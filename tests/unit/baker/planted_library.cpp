@@ -32,12 +32,16 @@ std::string planted_character(const std::vector<PlantedClip>& clips) {
     std::vector<float> times, places, still;
     for (std::size_t i = 0; i < clip.depths_mm.size(); ++i) {
       times.push_back(static_cast<float>(i) / 30);
-      places.insert(places.end(), {static_cast<float>(kTouching - clip.depths_mm[i] / 1000), 0, 0});
+      const double height = clip.heights_mm.empty() ? 0 : clip.heights_mm[i];
+      places.insert(places.end(),
+                    {static_cast<float>(kTouching - clip.depths_mm[i] / 1000), static_cast<float>(height / 1000), 0});
       still.insert(still.end(), {0, 0, 0});
     }
     const int input = glb.accessor(times, "SCALAR");
     const auto sampler = [&](const std::vector<float>& values) {
-      return nlohmann::json{{"input", input}, {"output", glb.accessor(values, "VEC3")}, {"interpolation", clip.is_linear ? "LINEAR" : "STEP"}};
+      return nlohmann::json{{"input", input},
+                            {"output", glb.accessor(values, "VEC3")},
+                            {"interpolation", clip.is_linear ? "LINEAR" : "STEP"}};
     };
     const auto channel = [](int number, int node) {
       return nlohmann::json{{"sampler", number}, {"target", {{"node", node}, {"path", "translation"}}}};
