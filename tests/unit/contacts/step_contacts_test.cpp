@@ -67,7 +67,9 @@ TEST_CASE("a step of vertices has the contacts of a step of bones that put them 
   const auto& frames = moving_human().frames;
   const Asset& asset = *moving_human().asset.handle();
   for (const std::size_t f : {2, 15}) {
-    const Pose from = bones_of(frames[f].palette), to = bones_of(frames[f + 1].palette);
+    // So short that neither is cut into pieces, whose poses would be rounded differently.
+    const std::vector<float> end = blended(frames[f].palette, frames[f + 1].palette, 0.3);
+    const Pose from = bones_of(frames[f].palette), to = bones_of(end);
     const std::vector<float> starts = skin(asset, from), ends = skin(asset, to);
     const StepContacts of_bones = run(step_of(from, to));
     const StepContacts of_vertices = run(step_of(vertices_of(starts), vertices_of(ends)));
