@@ -125,7 +125,8 @@ void find_parents(const SourceRig& rig, const std::vector<Joint>& joints, std::v
   };
   std::map<int, int> part_at;
   const auto node_of = [&](const BodyPart& part) {
-    return part.bone >= 0 && own_rig ? static_cast<int>(rig.bones[static_cast<std::size_t>(part.bone)].node) : part.bone;
+    return part.bone >= 0 && own_rig ? static_cast<int>(rig.bones[static_cast<std::size_t>(part.bone)].node)
+                                     : part.bone;
   };
   for (std::size_t p = 0; p < parts.size(); ++p) part_at[node_of(parts[p])] = static_cast<int>(p);
   part_at.erase(-1);

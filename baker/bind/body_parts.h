@@ -16,7 +16,7 @@ namespace spherechain::baker {
 struct BodyPart {
   std::string name;  // unique
   Side side;
-  int bone;  // the bone it follows: index in the character's bones, else in the automatic rig's joints; -1 none
+  int bone;         // the bone it follows: index in the character's bones, else in the automatic rig's joints; -1 none
   int parent = -1;  // the part it hangs on: that of the nearest bone above which a part follows; -1 none
 };
 

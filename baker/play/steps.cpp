@@ -154,8 +154,8 @@ const std::vector<StepContact>& StepPlayer::find(const Deformation& from, const 
 
 namespace {
 
-// Of some poses while they touch the one in which two body parts are deepest in each other; where they touch in none, as
-// of a part that is wholly inside the other, the first time.
+// Of some poses while they touch the one in which two body parts are deepest in each other; where they touch in none,
+// as of a part that is wholly inside the other, the first time.
 double deepest_share(const AnimatedAsset& animated, int frame, const StepContact& contact, SkinPlayer& player) {
   constexpr int kParts = 8;
   double share = double{contact.begin}, most = -1;
