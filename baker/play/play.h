@@ -54,6 +54,10 @@ class AnimatedAsset {
   const MotionFrame& frame_at(int frame) const { return frames_.frames[static_cast<std::size_t>(frame)]; }
   const std::vector<ClipFrames>& clips() const { return frames_.clips; }
   double fps() const { return fps_; }
+  // Frames a second that a clip's keys, or a recording's poses, lie at; 0 where it has none.
+  double own_rate(std::size_t clip) const {
+    return clips()[clip].clip != nullptr ? rate_of(*clips()[clip].clip) : motion_ ? motion_->rate() : 0;
+  }
   // Its number in its clip, and how far on to the next.
   double number(int frame) const { return frame_at(frame).number + frame_at(frame).between; }
   double time(int frame) const { return frame_at(frame).time; }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 
 #include "play/asset_file.h"
@@ -11,6 +12,7 @@
 namespace spherechain::baker {
 namespace {
 
+constexpr double kMostParts = 64;    // of a step
 constexpr double kApart = 1.0 / 16;  // of a step: nearer to each other they share a frame
 
 // Of each of the asset's bones the nearest one above it; -1: none.
@@ -182,6 +184,37 @@ double deepest_share(const AnimatedAsset& animated, int frame, const StepContact
   return share;
 }
 
+// What touches on the way from a frame to the next and in neither of them. The way goes through the clip's own keys
+// between them, `parts` of it to a frame.
+std::vector<StepContact> find_between(const AnimatedAsset& animated, int frame, const Deformation& from,
+                                      const Deformation& to, int parts, StepPlayer& steps) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, StepContact> found;
+  Deformation before = from;
+  for (int k = 0; k < parts; ++k) {
+    const auto share = [&](double t) { return (k + t) / parts; };
+    Deformation next =
+        k + 1 == parts
+            ? to
+            : animated.deformation(frame_between(animated.frame_at(frame), animated.frame_at(frame + 1), share(1)));
+    for (StepContact contact : steps.find(before, next)) {
+      contact.begin = static_cast<float>(share(double{contact.begin}));
+      contact.end = static_cast<float>(share(double{contact.end}));
+      contact.at_start = k == 0 ? contact.at_start : 0;
+      contact.at_end = k + 1 == parts ? contact.at_end : 0;
+      const auto [known, is_new] = found.try_emplace({contact.part_a, contact.part_b}, contact);
+      if (is_new) continue;
+      known->second.at_end = contact.at_end;
+      known->second.end = contact.end;
+    }
+    before = std::move(next);
+  }
+  std::vector<StepContact> out;
+  for (const auto& [parts_of, contact] : found) {
+    if (contact.at_start == 0 && contact.at_end == 0) out.push_back(contact);
+  }
+  return out;
+}
+
 }  // namespace
 
 void look_between_frames(AnimatedAsset& animated, Target target, std::size_t clip,
@@ -197,10 +230,11 @@ void look_between_frames(AnimatedAsset& animated, Target target, std::size_t cli
     Deformation deformation = animated.deformation(i);
     if (i > first) {
       std::vector<double>& shares = between[static_cast<std::size_t>(i - 1)];
-      for (const StepContact& contact : steps.find(before, deformation)) {
-        if (contact.at_start == 0 && contact.at_end == 0) {
-          shares.push_back(deepest_share(animated, i - 1, contact, player));
-        }
+      const double seconds = animated.time(i) - animated.time(i - 1);
+      const double parts = std::clamp(std::ceil(seconds * animated.own_rate(clip) - 0.01), 1.0, kMostParts);
+      for (const StepContact& contact :
+           find_between(animated, i - 1, before, deformation, static_cast<int>(parts), steps)) {
+        shares.push_back(deepest_share(animated, i - 1, contact, player));
       }
       std::sort(shares.begin(), shares.end());
       const auto is_near = [](double l, double r) { return r - l < kApart; };

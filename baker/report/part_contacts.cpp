@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
 
@@ -32,6 +33,12 @@ ordered_json runs_json(const std::vector<std::pair<double, double>>& runs) {
   ordered_json out = ordered_json::array();
   for (const auto& [first, last] : runs) out.push_back({number_json(first), number_json(last)});
   return out;
+}
+
+// In no frame, but between frames.
+bool is_between_only(const std::vector<std::pair<double, double>>& runs) {
+  return std::all_of(runs.begin(), runs.end(),
+                     [](const auto& run) { return run.first == run.second && run.first != std::floor(run.first); });
 }
 
 // Pads every column but the last to its widest cell.
@@ -153,7 +160,14 @@ std::string PartContacts::rows(const Clip& clip) const {
     rest += fmt::format("{}{} {}{}{}", rest.empty() ? "  besides: " : ", ", count, what, plural,
                         kind == SC_CLASS_REST ? " as at rest" : "");
   }
-  return table(cells) + (rest.empty() ? rest : rest + "\n");
+  std::string between;
+  for (const auto& [parts, contact] : clip.contacts) {
+    if (!is_between_only(contact.runs)) continue;
+    between += fmt::format("{}{}, {} at {} ({}, {:.0f} mm)", between.empty() ? "  between frames only: " : "; ",
+                           name(parts.first), name(parts.second), frame_text(contact.frame_of_depth_max),
+                           sc_penetration_class_name(contact.kind), contact.depth_mm_max);
+  }
+  return table(cells) + (rest.empty() ? rest : rest + "\n") + (between.empty() ? between : between + "\n");
 }
 
 std::string PartContacts::text(const std::string& motion) const {

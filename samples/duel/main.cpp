@@ -134,8 +134,9 @@ class Referee {
       if (depths.empty()) depths = measure(red.body, blue.body);
       for (const Penetration& depth : depths) {
         if (depth.part_a != hit.part_a || depth.part_b != hit.part_b) continue;
-        std::printf(", %.0f mm deep in frame %zu\n", 1000 * double{depth.depth * model_.info.metres_per_unit}, frame);
+        std::printf(", %.0f mm deep in frame %zu", 1000 * double{depth.depth * model_.info.metres_per_unit}, frame);
       }
+      std::printf("\n");
     }
   }
 

@@ -22,7 +22,9 @@ typedef struct sc_transform {
  *
  * SC_BLEND_LINEAR: from body.pose to `end`, both with bones, or both with vertices.
  * SC_BLEND_SLERP, SC_BLEND_NLERP: from start_joints to end_joints, composed down the skeleton as engines do; poses have
- * morph weights at most. A rotation goes the shorter way round: of one that turns a joint by half a turn or more in one
+ * morph weights at most, no bones and no vertices. The bone b of the asset gets the world matrix of its joint times the
+ * asset's inverse bind matrix (sc_asset_bone()); joints may be there that move no bone; a bone without a joint stays at
+ * rest. A rotation goes the shorter way round: of one that turns a joint by half a turn or more in one
  * step, that way is assumed; of exactly half a turn, the sign that the quaternions have. */
 typedef struct sc_motion {
   sc_body body SC_ZERO;
@@ -61,7 +63,9 @@ typedef struct sc_step_job {
   float tolerance SC_ZERO;         /* a share of the height of a's asset; 0: 0.0001 */
   uint64_t* scratch SC_ZERO;       /* sc_step_scratch_words() words; nothing is kept there between runs */
   size_t scratch_words SC_ZERO;
-  sc_step_contact* contacts SC_ZERO; /* out: sorted by (part_a, part_b), each once; null: count only */
+  /* Out: sorted by (part_a, part_b), each once; null: count only. Of n parts at most n (n + 1) / 2; of two bodies n m.
+   */
+  sc_step_contact* contacts SC_ZERO;
   size_t contact_capacity SC_ZERO;
   size_t contact_count SC_ZERO; /* out: how many there are, also where `contacts` is too small */
 #if defined(__cplusplus)

@@ -66,7 +66,7 @@ async function main() {
     title: row.character,
     radius: 'detect',
     report: null,
-    clips: [{ name: row.clip, first: 0, count: clip.frames.count, own_count: clip.frames.count }],
+    clips: [{ name: row.clip, first: 0, count: clip.frames.count, own_count: row.frames }],
   });
   await decodePictures(model);
   const panel = addTab('Events');
