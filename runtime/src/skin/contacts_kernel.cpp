@@ -208,32 +208,25 @@ HWY_INLINE void list_spheres(const Bodies& bodies, std::size_t a, std::size_t b,
   }
 }
 
-// The pairs of spheres that are listed, whatever the scope.
-HWY_NOINLINE void find_listed(const Bodies& bodies, ContactCollector& collector) {
-  const Span<const Pair> pairs = bodies.a.candidates;
-  const auto bound_all = [&](const ContactScene& scene, std::uint32_t Pair::*which) HWY_ATTR {
-    for (std::size_t i = 0; i < pairs.size && !scene.has_hulls; ++i) {
-      bound_once(scene, pairs.data[i].*which);
-    }
-  };
-  if (pairs.size > 0 && !bodies.a.has_sphere_boxes) {
-    bound_all(bodies.a, &Pair::a);
-    bound_all(bodies.b, &Pair::b);
-    bound_spheres(bodies.a);
-    if (!bodies.are_one) {
-      bound_spheres(bodies.b);
-    }
+// The pairs of spheres that the caller lists, whatever the scope.
+HWY_NOINLINE void find_listed(const ContactScene& scene, ContactCollector& collector) {
+  const Span<const Pair> pairs = scene.candidates;
+  for (std::size_t i = 0; i < pairs.size && !scene.has_hulls; ++i) {
+    bound_once(scene, pairs.data[i].a);
+    bound_once(scene, pairs.data[i].b);
   }
-  const bool have_hulls = bodies.a.has_hulls && bodies.b.has_hulls;
+  if (pairs.size > 0) {
+    bound_spheres(scene);
+  }
   ClusterPairs clusters;
   for (std::size_t i = 0; i < pairs.size; ++i) {
     const std::size_t a = pairs.data[i].a, b = pairs.data[i].b;
-    if (box_at(bodies.a.spheres, a).touches(box_at(bodies.b.spheres, b)) &&
-        !(have_hulls && hulls_apart(bodies.a, a, bodies.b, b))) {
-      list_spheres(bodies, a, b, clusters, collector);
+    if (box_at(scene.spheres, a).touches(box_at(scene.spheres, b)) &&
+        !(scene.has_hulls && hulls_apart(scene, a, scene, b))) {
+      list_spheres({scene, scene, true}, a, b, clusters, collector);
     }
   }
-  decide_clusters(bodies, clusters, collector);
+  decide_clusters({scene, scene, true}, clusters, collector);
 }
 
 // Bit k: a's sphere first + k is to be paired with b's sphere b. Of one body only those before b.
@@ -335,7 +328,7 @@ void find(const Bodies& bodies, ContactCollector& collector) {
   if (bodies.a.candidate_clusters.data != nullptr) {
     find_in_clusters(bodies, collector);
   } else if (bodies.a.candidates.data != nullptr) {
-    find_listed(bodies, collector);
+    find_listed(bodies.a, collector);
   } else {
     find_all(bodies, collector);
   }

@@ -11,7 +11,6 @@
 #include "step/motion.h"
 
 #include <algorithm>
-#include <cfloat>
 #include <cmath>
 
 #include "asset/status.h"

@@ -28,6 +28,8 @@ const std::vector<PlantedClip> kClips{
 // From above the wall to below it, in its face within a frame; and from one side of it to the other, not on the way.
 const std::vector<PlantedClip> kThrough{{"through", {150, 150, 150, 150}, true, {1500, 1400, -1400, -1500}},
                                         {"jumps", {-50, 1650}}};
+// At 15 frames a second it is above the wall in both, and in its face on the way.
+const std::vector<PlantedClip> kDetour{{"detour", {150, 150, 150}, true, {1500, 0, 1500}}};
 
 // Of one content: the bake is made once.
 const std::string& shared_cache() {
@@ -269,4 +271,14 @@ TEST_CASE("check --continuous finds what passes through between two frames, and 
     CHECK(event["deepest"].get<double>() < 2);
     CHECK(event["depth_mm"].get<double>() == doctest::Approx(150).epsilon(0.05));
   }
+}
+
+TEST_CASE("check --continuous follows the clip's keys between two frames") {
+  const Library library(kDetour);
+  REQUIRE(library.check("--fps 15 --json " + library.path("frames.json")).code == 0);
+  const tool::Run run = library.check("--fps 15 --continuous --json " + library.path("between.json"));
+  CHECK(run.code == 6);
+  const json report = library.read("between.json");
+  REQUIRE(report["clips"][0]["events"].size() == 1);
+  CHECK(report["clips"][0]["events"][0]["depth_mm"].get<double>() == doctest::Approx(150).epsilon(0.05));
 }
