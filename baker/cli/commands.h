@@ -44,8 +44,16 @@ struct ValidateOptions {
 };
 ExitCode run_validate(const ValidateOptions& options);
 
+// A second character beside the first.
+struct WithOptions {
+  std::string asset, source;  // an empty source is the first's
+  MotionChoice motion;
+  std::vector<double> at;  // left and forward in metres, then degrees; empty: where its file has it
+};
+
 struct ViewOptions {
   std::string asset, source, output, report, validation;
+  WithOptions with;
   MotionChoice motion;
   FrameChoice frames;
   std::string radius = "detect";

@@ -83,6 +83,26 @@ void add_motion(CLI::App& command, MotionChoice& motion, FrameChoice& frames, bo
   add_continuous(command, continuous);
 }
 
+void add_with(CLI::App& command, WithOptions& with) {
+  CLI::Option_group& second = *command.add_option_group("Second character", "Shown beside the first");
+  CLI::Option* const asset = add_name(second, "--with", with.asset, "Its asset (.sphc)");
+  for (CLI::Option* option :
+       {add_name(second, "--with-source", with.source, "The mesh it was baked from (default: the first's)"),
+        add_name(second, "--with-clip", with.motion.clip, "A clip of that mesh: its name or number"),
+        add_name(second, "--with-poses", with.motion.poses, "As --poses, for the second"),
+        add_name(second, "--with-motion", with.motion.motion, "As --motion, for the second"),
+        second
+            .add_option("--at", with.at,
+                        "Where it stands: metres to the left and forward of the first, and degrees that it is turned "
+                        "(default: where its file has it)")
+            ->delimiter(',')
+            ->expected(3)
+            ->check(refuse_nan)
+            ->type_name("LEFT,FORWARD,DEGREES")}) {
+    option->needs(asset);
+  }
+}
+
 void add_radius(CLI::App& command, std::string& radius) {
   command.add_option("--radius", radius, "Radius pairs are reported at")
       ->check(CLI::IsMember({"fit", "detect"}))
@@ -180,6 +200,7 @@ int main(int argc, char** argv) {
   add_name(*view_command, "--source", view.source, "The mesh it was baked from")->required();
   add_output(*view_command, "-o,--output", view.output, "Page to write (.html)")->required();
   add_motion(*view_command, view.motion, view.frames, view.continuous);
+  add_with(*view_command, view.with);
   add_radius(*view_command, view.radius);
   add_name(*view_command, "--report", view.report, "The report that bake wrote, to show in the page");
   add_name(*view_command, "--validation", view.validation, "What validate --json wrote, to show in the page");

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <optional>
 
 #include "cli/between.h"
 #include "cli/commands.h"
@@ -10,6 +11,7 @@
 #include "cli/progress.h"
 #include "page/page.h"
 #include "page/page_inputs.h"
+#include "page/page_of_two.h"
 #include "write/write.h"
 
 namespace spherechain::baker {
@@ -25,16 +27,26 @@ fs::path viewer_template() {
   return page;
 }
 
+// What is read of the two characters.
+std::vector<CommandFile> inputs_of(const ViewOptions& options, const std::string& with_source_file) {
+  std::vector<CommandFile> inputs{
+      {"ASSET", options.asset}, {"--report", options.report}, {"--validation", options.validation}};
+  inputs = with_motion(with_source(std::move(inputs), "--source", options.source), options.motion);
+  if (options.with.asset.empty()) return inputs;
+  inputs.push_back({"--with", options.with.asset});
+  return with_motion(with_source(std::move(inputs), "--with-source", with_source_file), options.with.motion);
+}
+
 }  // namespace
 
 ExitCode run_view(const ViewOptions& options) {
-  check_outputs(
-      with_motion(
-          with_source({{"ASSET", options.asset}, {"--report", options.report}, {"--validation", options.validation}},
-                      "--source", options.source),
-          options.motion),
-      {{"-o", options.output}});
+  const WithOptions& with = options.with;
+  const std::string with_source_file = with.source.empty() ? options.source : with.source;
+  check_outputs(inputs_of(options, with_source_file), {{"-o", options.output}});
   check_replaceable(options.output, "<!doctype html", "a page", options.force);
+  if (!with.asset.empty() && (options.continuous || !options.report.empty() || !options.validation.empty())) {
+    throw Error(ExitCode::kUsage, "--with: a page of two shows no report, no validation, and frames alone");
+  }
   PageOptions page;
   page.template_file = viewer_template().string();
   page.title = fs::path(options.asset).filename().string();
@@ -47,11 +59,21 @@ ExitCode run_view(const ViewOptions& options) {
   }
   page.motion = options.motion.name().empty() ? "rest pose" : options.motion.name();
   page.fps = options.frames.fps;
+  std::optional<AnimatedAsset> second;
+  if (!with.asset.empty()) {
+    second.emplace(with.asset, with_source_file, with.motion, options.frames);
+    page.title += " (first, grey) and " + fs::path(with.asset).filename().string() + " (second, blue)";
+  }
   std::string html;
   {
     Progress progress("view " + options.asset + ":");
-    html = view_page(animated, page,
-                     [&](int i) { progress.show(fmt::format("frame {} of {}", i + 1, animated.frame_count())); });
+    const auto show = [&](int i) { progress.show(fmt::format("frame {} of {}", i + 1, animated.frame_count())); };
+    if (second) {
+      const Place place = with.at.empty() ? Place{} : Place{with.at[0], with.at[1], with.at[2]};
+      html = view_page_of_two(animated, *second, with.at.empty() ? nullptr : &place, page, show);
+    } else {
+      html = view_page(animated, page, show);
+    }
   }
   write_atomically(options.output, html);
   if (html.size() > kLargePageBytes) {

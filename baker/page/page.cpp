@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "page/page.h"
 
-#include <fmt/format.h>
-
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "mesh/error.h"
 #include "page/base64.h"
+#include "page/fill_page.h"
 #include "page/from_runtime.h"
 #include "page/page_axes.h"
 #include "page/page_look.h"
@@ -16,7 +14,6 @@
 #include "page/page_penetrations.h"
 #include "report/json_text.h"
 #include "report/report.h"
-#include "report/vec3_json.h"
 
 namespace spherechain::baker {
 namespace {
@@ -42,14 +39,6 @@ ordered_json parsed_or_null(const std::string& text) {
   return text.empty() ? ordered_json() : ordered_json::parse(text);
 }
 
-ordered_json axes_json(const BodyFrame& frame) {
-  return {{"origin", to_json(frame.origin)},
-          {"left", to_json(frame.left)},
-          {"up", to_json(frame.up)},
-          {"forward", to_json(frame.forward)},
-          {"height", frame.height}};
-}
-
 ordered_json spheres_json(const std::vector<PageSphere>& spheres) {
   ordered_json out = ordered_json::array();
   for (const PageSphere& sphere : spheres) {
@@ -68,21 +57,6 @@ ordered_json clips_json(const AnimatedAsset& animated, const std::string& motion
                    {"own_count", clip.own_count}});
   }
   return out;
-}
-
-// Throws where the page is too large: `still` bytes that are the same in however many frames, and `moving` of all of
-// them.
-void check_size(const AnimatedAsset& animated, double still, double moving, const PageOptions& options) {
-  const int frames = animated.frame_count();
-  const double max = static_cast<double>(options.max_bytes);
-  if (still + moving <= max) return;
-  // Later frames may have more contacts than those that were played.
-  const int fewer = still < max ? static_cast<int>(0.5 * frames * (max - still) / moving) : 0;
-  throw Error(ExitCode::kUsage,
-              fmt::format("{}: {} frames make a page of {:.1f} MB, of which browsers open {:.1f} MB ({})",
-                          animated.file(), frames, (still + moving) / 1e6, max / 1e6,
-                          fewer > 0 ? fmt::format("--frames {}, or one clip by --clip", fewer)
-                                    : "its mesh has too many triangles"));
 }
 
 // `still` is the size of the page without them.
@@ -140,12 +114,7 @@ ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& optio
 
 std::string view_page(const AnimatedAsset& animated, const PageOptions& options,
                       const std::function<void(int)>& progress) {
-  const std::string page = read_file(options.template_file);
-  const std::string open = R"(<script id="spherechain-data" type="application/json">)", hole = "null</script>";
-  const std::size_t at = page.find(open + hole);
-  if (at == std::string::npos) {
-    throw Error(ExitCode::kFile, options.template_file + ": is not the viewer's page (build it again)");
-  }
+  const PageTemplate page(options.template_file);
   const BodyFrame axes = page_axes(animated);
   const PageParts parts = page_parts(animated.asset());
   const std::vector<PageSphere> spheres = page_spheres(animated.asset(), animated.character());
@@ -164,11 +133,9 @@ std::string view_page(const AnimatedAsset& animated, const PageOptions& options,
   data["frames"] = frames_json(animated, options, still, motion, progress);
   data["motion"] = motion.json();
   data["mesh"] = page_mesh(animated, motion.rest(), parts, spheres);
-  std::string text = json_text(data, -1);
-  // Nothing in it may end the script.
-  for (std::size_t i = text.find('<'); i != std::string::npos; i = text.find('<', i)) text.replace(i, 1, "\\u003c");
-  check_size(animated, still, static_cast<double>(page.size() + text.size()) - still, options);
-  return page.substr(0, at) + open + text + page.substr(at + open.size() + std::string("null").size());
+  std::string html = page.fill(data);
+  check_size(animated, still, static_cast<double>(html.size()) - still, options);
+  return html;
 }
 
 std::string character_page(const AnimatedAsset& animated) {

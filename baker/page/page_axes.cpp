@@ -2,8 +2,10 @@
 #include "page/page_axes.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "page/from_runtime.h"
+#include "report/vec3_json.h"
 
 namespace spherechain::baker {
 
@@ -28,6 +30,14 @@ BodyFrame page_axes(const AnimatedAsset& animated) {
   }
   axes.origin += lowest * axes.up + (front + rear) / 2 * axes.forward;
   return axes;
+}
+
+nlohmann::ordered_json axes_json(const BodyFrame& frame) {
+  return {{"origin", to_json(frame.origin)},
+          {"left", to_json(frame.left)},
+          {"up", to_json(frame.up)},
+          {"forward", to_json(frame.forward)},
+          {"height", frame.height}};
 }
 
 }  // namespace spherechain::baker

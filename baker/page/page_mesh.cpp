@@ -36,9 +36,9 @@ ordered_json weights_json(const std::vector<VertexWeights>& weights) {
 
 }  // namespace
 
-ordered_json page_mesh(const AnimatedAsset& animated, const std::vector<Vec3>& rest, const PageParts& parts,
+ordered_json page_mesh(const std::vector<Vec3>& rest, const std::vector<Triangle>& triangles,
+                       const std::vector<VertexWeights>& weights, const PageParts& parts,
                        const std::vector<PageSphere>& spheres) {
-  const std::vector<Triangle>& triangles = animated.character().source_triangles;
   std::vector<std::uint32_t> corners;
   for (const Triangle& t : triangles) corners.insert(corners.end(), t.begin(), t.end());
   std::vector<std::uint16_t> sphere_of(triangles.size(), 0xFFFF);
@@ -49,8 +49,13 @@ ordered_json page_mesh(const AnimatedAsset& animated, const std::vector<Vec3>& r
                    {"triangles", base64(corners)},
                    {"spheres", base64(sphere_of)},
                    {"parts", base64(parts.of_triangle)}};
-  out.update(weights_json(animated.weights()));
+  out.update(weights_json(weights));
   return out;
+}
+
+ordered_json page_mesh(const AnimatedAsset& animated, const std::vector<Vec3>& rest, const PageParts& parts,
+                       const std::vector<PageSphere>& spheres) {
+  return page_mesh(rest, animated.character().source_triangles, animated.weights(), parts, spheres);
 }
 
 }  // namespace spherechain::baker

@@ -10,6 +10,10 @@
 namespace spherechain::baker {
 
 // The page's `mesh`. `rest` are the positions that bones and morphs move, source order.
+nlohmann::ordered_json page_mesh(const std::vector<Vec3>& rest, const std::vector<Triangle>& triangles,
+                                 const std::vector<VertexWeights>& weights, const PageParts& parts,
+                                 const std::vector<PageSphere>& spheres);
+// Of what plays.
 nlohmann::ordered_json page_mesh(const AnimatedAsset& animated, const std::vector<Vec3>& rest, const PageParts& parts,
                                  const std::vector<PageSphere>& spheres);
 

@@ -44,16 +44,7 @@ void SkinPlayer::ask(const sc_pose& pose) { check_runtime(job(pose).run()); }
 
 const std::vector<TriangleContact>& SkinPlayer::find(const sc_pose& pose) {
   SkinContactJob job = this->job(pose);
-  contacts_.resize(std::max<std::size_t>(contacts_.capacity(), 256));
-  for (;;) {
-    job.triangles = contacts_.data();
-    job.triangle_capacity = contacts_.size();
-    const Status status = job.run();
-    if (status.code != SC_OVERFLOW) check_runtime(status);
-    const bool fits = job.triangle_count <= contacts_.size();
-    contacts_.resize(job.triangle_count);
-    if (fits) break;
-  }
+  list_triangles(job, contacts_);
   part_count_ = job.part_count;
   return contacts_;
 }

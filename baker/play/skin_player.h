@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "motion/motion.h"
@@ -25,6 +26,20 @@ bool moved_by_bones(const OpenAsset& asset, const Deformation& deformation);
 
 // What a person sees as a fault.
 inline bool is_fault(PenetrationClass kind) { return kind >= SC_CLASS_DEEP_FOLD; }
+
+// Runs a job on triangles that intersect until there is room for all of them.
+template <typename Job>
+void list_triangles(Job& job, std::vector<TriangleContact>& contacts) {
+  contacts.resize(std::max<std::size_t>(contacts.capacity(), 256));
+  for (bool fits = false; !fits;) {
+    job.triangles = contacts.data();
+    job.triangle_capacity = contacts.size();
+    const Status status = job.run();
+    if (status.code != SC_OVERFLOW) check_runtime(status);
+    fits = job.triangle_count <= contacts.size();
+    contacts.resize(job.triangle_count);
+  }
+}
 
 // The runtime's exact contacts of one pose after another, and what they measure. The asset must have clusters.
 class SkinPlayer {

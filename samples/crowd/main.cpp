@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// crowd ASSET.sphc MODEL.glb: a thousand characters. Who is in himself? Spheres raise a cheap alarm, and only the
-// alarmed ones are looked at triangle by triangle. Then they stand close together on uneven ground: who is in whom, and
-// who is in the ground?
+// crowd ASSET.sphc MODEL.glb [MAP.svg]: a thousand characters. Who is in himself? Spheres raise a cheap alarm, and only
+// the alarmed ones are looked at triangle by triangle. Then they stand close together on uneven ground: who is in whom,
+// and who is in the ground?
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "gltf_pose.h"
+#include "map.h"
 #include "spherechain/spherechain.h"
 
 using namespace spherechain;
@@ -111,40 +112,29 @@ std::size_t confirm(const Asset& asset, const std::vector<float>& bones, const s
 // Stands the characters on a floor in rows, three quarters of a metre from each other, each turned its own way.
 void place(const AssetInfo& info, std::vector<float>& bones) {
   const Vec3 up = info.up, left = info.left, forward = info.forward, o = info.origin;
-  const float axes[3][3] = {{left.x, left.y, left.z}, {up.x, up.y, up.z}, {forward.x, forward.y, forward.z}};
+  const float step = 0.75F / info.metres_per_unit;
+  const Transform to_origin{{-o.x, -o.y, -o.z}, {0, 0, 0, 1}, {1, 1, 1}};
   for (std::size_t i = 0; i < kCharacters; ++i) {
-    const auto column = static_cast<float>(i % 32), row = static_cast<float>(i / 32), angle = static_cast<float>(i);
-    const float c = std::cos(angle), s = std::sin(angle), turn[3][3] = {{c, 0, s}, {0, 1, 0}, {-s, 0, c}};
-    const float to[3] = {0.75F * column / info.metres_per_unit, 0, 0.75F * row / info.metres_per_unit};
-    float m[3][4];  // turned about the origin, in the character's own axes, and moved
-    for (std::size_t x = 0; x < 3; ++x) {
-      m[x][3] = 0;
-      for (std::size_t y = 0; y < 3; ++y) {
-        m[x][y] = 0;
-        for (std::size_t j = 0; j < 3; ++j) {
-          for (std::size_t k = 0; k < 3; ++k) m[x][y] += axes[j][x] * turn[j][k] * axes[k][y];
-        }
-        m[x][3] += axes[y][x] * to[y];
-      }
-      m[x][3] += (&o.x)[x] - (m[x][0] * o.x + m[x][1] * o.y + m[x][2] * o.z);
-    }
-    const std::size_t size = 12 * info.bone_count;
-    for (float* bone = &bones[i * size]; bone < bones.data() + (i + 1) * size; bone += 12) {
-      float out[12];
-      for (std::size_t x = 0; x < 3; ++x) {
-        for (std::size_t y = 0; y < 4; ++y) {
-          out[4 * x + y] = m[x][0] * bone[y] + m[x][1] * bone[4 + y] + m[x][2] * bone[8 + y] + (y == 3 ? m[x][3] : 0);
-        }
-      }
-      std::copy(out, out + 12, bone);
-    }
+    const float x = step * static_cast<float>(i % 32), z = step * static_cast<float>(i / 32);
+    const float half = static_cast<float>(i) / 2, s = std::sin(half);
+    const Transform to_place{
+        {o.x + x * left.x + z * forward.x, o.y + x * left.y + z * forward.y, o.z + x * left.z + z * forward.z},
+        {s * up.x, s * up.y, s * up.z, std::cos(half)},
+        {1, 1, 1}};
+    float* const own = &bones[i * 12 * info.bone_count];
+    check(sc_place_bones(&to_origin, own, info.bone_count));
+    check(sc_place_bones(&to_place, own, info.bone_count));
   }
 }
 
 // Pairs of characters that are in each other: of those whose boxes touch.
-std::size_t find_meetings(const std::vector<Body>& bodies, std::size_t& boxes) {
+std::size_t find_meetings(const std::vector<Body>& bodies, std::vector<Standing>& characters, std::size_t& boxes) {
   std::vector<SceneBody> scene(bodies.size());
-  for (std::size_t i = 0; i < bodies.size(); ++i) check(sc_bound_body(&bodies[i], &scene[i].low, &scene[i].high));
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    check(sc_bound_body(&bodies[i], &scene[i].low, &scene[i].high));
+    characters[i].low = scene[i].low;
+    characters[i].high = scene[i].high;
+  }
   const Asset* const asset = bodies[0].asset;
   std::vector<Pair> pairs(64 * bodies.size());
   std::vector<std::uint64_t> scratch(
@@ -166,7 +156,10 @@ std::size_t find_meetings(const std::vector<Body>& bodies, std::size_t& boxes) {
     job.scratch = scratch.data();
     job.scratch_words = scratch.size();
     check(job.run());
-    count += job.part_count > 0 ? 1 : 0;
+    if (job.part_count == 0) continue;
+    ++count;
+    ++characters[pairs[i].a].met;
+    ++characters[pairs[i].b].met;
   }
   return count;
 }
@@ -177,14 +170,13 @@ float waves(const void* metres_per_unit, Vec3 p) {
   return 0.04F * metre * std::sin((p.x + p.y + p.z) / metre);
 }
 
-// How many characters are in the ground, and how deep at most.
-std::size_t find_grounded(const std::vector<Body>& bodies, const AssetInfo& info, float& deepest) {
+// How deep each is in the ground.
+void find_grounded(const std::vector<Body>& bodies, const AssetInfo& info, std::vector<Standing>& characters) {
   std::vector<std::uint64_t> scratch(sc_floor_scratch_words(bodies[0].asset));
   std::vector<Penetration> parts(info.part_count);
-  std::size_t count = 0;
-  for (const Body& body : bodies) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
     FloorJob job;
-    job.body = body;
+    job.body = bodies[i];
     job.up = info.up;
     job.height = info.up.x * info.origin.x + info.up.y * info.origin.y + info.up.z * info.origin.z;
     job.terrain = waves;
@@ -194,13 +186,13 @@ std::size_t find_grounded(const std::vector<Body>& bodies, const AssetInfo& info
     job.penetrations = parts.data();
     job.penetration_capacity = parts.size();
     check(job.run());
-    count += job.penetration_count > 0 ? 1 : 0;
-    for (std::size_t i = 0; i < job.penetration_count; ++i) deepest = std::max(deepest, parts[i].depth);
+    for (std::size_t k = 0; k < job.penetration_count; ++k) {
+      characters[i].depth = std::max(characters[i].depth, parts[k].depth);
+    }
   }
-  return count;
 }
 
-void stand(const Asset& asset, std::vector<float>& bones) {
+void stand(const Asset& asset, std::vector<float>& bones, const char* map) {
   const AssetInfo info = sc_asset_get_info(&asset);
   place(info, bones);
   std::vector<std::uint64_t> table(sc_skin_table_words(&asset));
@@ -211,16 +203,22 @@ void stand(const Asset& asset, std::vector<float>& bones) {
     bodies[i].skin_table = table.data();
     bodies[i].pose = {&bones[i * 12 * info.bone_count], info.bone_count, SC_ROWS_3X4};
   }
-  std::size_t boxes = 0;
-  const std::size_t meetings = find_meetings(bodies, boxes);
+  std::vector<Standing> characters(kCharacters);
+  std::size_t boxes = 0, grounded = 0;
+  const std::size_t meetings = find_meetings(bodies, characters, boxes);
+  find_grounded(bodies, info, characters);
   float deepest = 0;
-  const std::size_t grounded = find_grounded(bodies, info, deepest);
+  for (const Standing& one : characters) {
+    grounded += one.depth > 0 ? 1 : 0;
+    deepest = std::max(deepest, one.depth);
+  }
   std::printf("close together: %zu pairs of characters in each other, of %zu whose boxes touch\n", meetings, boxes);
   std::printf("uneven ground: %zu characters in it, %.0f mm deep at most\n", grounded,
               1000 * double{deepest * info.metres_per_unit});
+  if (map != nullptr) draw_map(info, characters, map);
 }
 
-void run(const std::vector<char>& file, const samples::GltfCharacter& model) {
+void run(const std::vector<char>& file, const samples::GltfCharacter& model, const char* map) {
   Asset asset;
   char message[256];
   check(sc_asset_open(&asset, SC_ABI_VERSION, file.data(), file.size(), message, sizeof message), message);
@@ -242,19 +240,19 @@ void run(const std::vector<char>& file, const samples::GltfCharacter& model) {
               alarms.size(), by_spheres.count() / kCharacters);
   std::printf("skin: %zu characters, %zu of the pairs, %.1f us an alarmed character\n", characters, confirmed,
               alarmed == 0 ? 0 : by_skin.count() / static_cast<double>(alarmed));
-  stand(asset, bones);
+  stand(asset, bones, map);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3) {
-    std::fputs("usage: crowd ASSET.sphc MODEL.glb\n", stderr);
+  if (argc != 3 && argc != 4) {
+    std::fputs("usage: crowd ASSET.sphc MODEL.glb [MAP.svg]\n", stderr);
     return 2;
   }
   try {
     const std::vector<char> file = samples::read_file(argv[1]);
-    run(file, samples::GltfCharacter(argv[2]));
+    run(file, samples::GltfCharacter(argv[2]), argc > 3 ? argv[3] : nullptr);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "crowd: error: %s\n", error.what());
     return 3;

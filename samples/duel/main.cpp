@@ -53,14 +53,10 @@ class Fighter {
   Fighter(const Model& model, bool turned, float forward)
       : model_(model), before_(12 * model.info.bone_count), bones_(before_) {
     const Vec3 up = model.info.up, way = model.info.forward;
-    const float u[3] = {up.x, up.y, up.z}, w[3] = {way.x, way.y, way.z};
-    for (std::size_t row = 0; row < 3; ++row) {
-      for (std::size_t column = 0; column < 3; ++column) {
-        const float same = row == column ? 1.0F : 0.0F;
-        place_[row][column] = turned ? 2 * u[row] * u[column] - same : same;
-      }
-      place_[row][3] = forward * w[row];
-    }
+    place_.translation = {forward * way.x, forward * way.y, forward * way.z};
+    place_.scale = {1, 1, 1};
+    const float half_turn[4] = {up.x, up.y, up.z, 0}, none[4] = {0, 0, 0, 1};
+    std::copy_n(turned ? half_turn : none, 4, place_.rotation);
     body.asset = &model.asset;
     body.skin_table = model.skin_table.data();
     body.pose.bones = bones_.data();
@@ -77,15 +73,7 @@ class Fighter {
     const samples::Palette palette = model_.clips.palette(0, seconds);
     const Pose pose = samples::pose_of(palette);
     check(sc_gather_bones(&model_.asset, model_.joint_of_bone.data(), &pose, bones_.data()), "the palette");
-    for (float* bone = bones_.data(); bone < bones_.data() + bones_.size(); bone += 12) {
-      float out[12];
-      for (std::size_t i = 0; i < 12; ++i) {
-        const std::size_t row = i / 4, column = i % 4;
-        out[i] = column == 3 ? place_[row][3] : 0;
-        for (std::size_t k = 0; k < 3; ++k) out[i] += place_[row][k] * bone[4 * k + column];
-      }
-      std::copy(out, out + 12, bone);
-    }
+    check(sc_place_bones(&place_, bones_.data(), model_.info.bone_count), "the place");
   }
 
   Body body;    // as it stands
@@ -94,7 +82,7 @@ class Fighter {
  private:
   const Model& model_;
   std::vector<float> before_, bones_;
-  float place_[3][4] = {};
+  Transform place_{};
 };
 
 class Referee {

@@ -237,6 +237,7 @@ void fuzz_scene(Case& c) {
   SceneJob job;
   job.body_count = c.random.below(30);
   SceneBody* const bodies = c.arena.add<SceneBody>(job.body_count);
+  Transform* transform = nullptr;  // of one of them
   for (std::size_t i = 0; i < job.body_count; ++i) {
     bodies[i] = {};
     bodies[i].layer = static_cast<std::uint32_t>(c.random.below(32));
@@ -248,6 +249,11 @@ void fuzz_scene(Case& c) {
       Sphere* const spheres = c.arena.add<Sphere>(bodies[i].sphere_count);
       fill_figures(c, &spheres->x, 4 * bodies[i].sphere_count);
       bodies[i].spheres = spheres;
+    }
+    if (c.random.one_in(3)) {
+      transform = c.arena.add<Transform>(1);
+      *transform = {{x, 1, 0}, {0, 0.6F, 0, 0.8F}, {1, 1, 1}};
+      bodies[i].transform = transform;
     }
   }
   job.bodies = bodies;
@@ -262,6 +268,12 @@ void fuzz_scene(Case& c) {
                  if (job.body_count > 0) {
                    bodies[0].layer = 32;
                    c.spoil(SC_BAD_VALUE, SC_FIELD_BODIES);
+                 }
+               },
+               [&] {
+                 if (transform != nullptr) {
+                   transform->rotation[c.random.below(4)] = NAN;
+                   c.spoil(SC_BAD_VALUE, SC_FIELD_TRANSFORM);
                  }
                },
                [&] { job.ignored = nullptr, job.ignored_count = 1, c.spoil(SC_NULL, SC_FIELD_IGNORED); },

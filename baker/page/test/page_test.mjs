@@ -33,6 +33,24 @@ async function fresh() {
   return page;
 }
 
+test('a page of two has the contacts of each, and those between them', async () => {
+  const two = await open(browser, pages.two);
+  const count = pages.inspect.source.triangles;
+  await goTo(two.page, TOUCHING);
+  const listed = await contacts(two.page);
+  const own = (who) => listed.filter(({ name }) => !name.includes(`${who === 'first' ? 'second' : 'first'}:`));
+  const triangles = (lists) => [...new Set(lists.flat())].sort((a, b) => a - b);
+  const alone = triangles(pages.play[TOUCHING].skin.triangles);
+  assert.deepEqual(triangles(own('first').map((contact) => contact.triangles)), alone);
+  assert.deepEqual(triangles(own('second').map((contact) => contact.triangles)), alone.map((t) => t + count));
+  const between = listed.filter((contact) => !own('first').includes(contact) && !own('second').includes(contact));
+  assert.ok(between.length > 0);
+  assert.ok(between.every(({ triangles: of, depth }) => depth > 0 && of.some((t) => t < count) && of.some((t) => t >= count)));
+  assert.equal(await two.page.locator('#tab-bake').count(), 0);
+  silent(two);
+  await two.close();
+});
+
 test('the page is one file of less than 6 MB', () => {
   assert.ok(statSync(pages.arms).size < 6e6);
   assert.doesNotMatch(readFileSync(template, 'utf8'), /<(link|script|img)[^>]+(src|href)="(?!data:)/);

@@ -19,9 +19,12 @@ export function makePages({ tool, human, poses, folder }) {
   run('view', asset, ...motion, '40', ...given, '-o', file('arms.html'));
   run('play', asset, ...motion, '40', '--contacts', '--json', file('arms.json'));
   run('view', asset, '--source', human, '-o', file('rest.html'));
+  const second = ['--with', asset, '--with-poses', join(poses, 'animation_arms.json'), '--at', '0,0.2,180'];
+  run('view', asset, ...motion, '40', ...second, '-o', file('two.html'));
   return {
     arms: file('arms.html'),
     rest: file('rest.html'),
+    two: file('two.html'),
     play: readJson('arms.json').frames,
     inspect: JSON.parse(run('inspect', asset, '--json')),
     report: readJson('report.json'),

@@ -14,15 +14,19 @@ typedef struct sc_body {
 
 /* A character or a prop among those of an sc_scene_job. */
 typedef struct sc_scene_body {
-  const sc_sphere* spheres SC_ZERO; /* refitted, in the scene's space; or null: the box counts */
+  const sc_sphere* spheres SC_ZERO; /* refitted; or null: the box counts */
   size_t sphere_count SC_ZERO;
   sc_vec3 low SC_ZERO, high SC_ZERO; /* without spheres: a box around the body, as sc_bound_body() has it; finite */
-  uint32_t layer SC_ZERO;            /* below 32 */
+  /* Moves the spheres, or the box, into the scene: a prop is refitted once, then moved. A scale that differs by axis
+   * makes spheres of its largest. Null: they are there. */
+  const sc_transform* transform SC_ZERO;
+  uint32_t layer SC_ZERO; /* below 32 */
 } sc_scene_body;
 
 /* Which of hundreds of characters and props may meet? All pairs of bodies with a sphere each that overlap; where one of
- * the two has no spheres, whose boxes touch. Between boxes of sc_bound_body() no pair whose skins meet is missing;
- * spheres are Q2's alarm. Spheres with a negative radius touch nothing.
+ * the two has no spheres, whose boxes touch. Between boxes of sc_bound_body() no pair whose skins meet is missing; those
+ * with a transform are larger by a millionth of their distance from the origin. Spheres are Q2's alarm; those with a
+ * negative radius touch nothing.
  *
  * Allocates nothing, takes no lock. Jobs on other outputs and scratch memory may run at the same time. */
 typedef struct sc_scene_job {

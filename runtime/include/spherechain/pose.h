@@ -31,6 +31,14 @@ typedef struct sc_pose {
   size_t vertex_stride SC_ZERO;         /* bytes from one vertex to the next; 0: 12 */
 } sc_pose;
 
+/* Where a joint is in its parent's space, or a character in the world: its own p is at
+ * translation + rotation (scale p) there. */
+typedef struct sc_transform {
+  sc_vec3 translation;
+  float rotation[4]; /* a quaternion: x, y, z, w; of about unit length */
+  sc_vec3 scale;     /* along its own axes; negative mirrors */
+} sc_transform;
+
 #if defined(__cplusplus)
 extern "C" {
 #endif
@@ -51,6 +59,10 @@ SPHERECHAIN_API sc_status sc_bind_joints(const sc_asset* asset, const sc_bone* j
 SPHERECHAIN_API sc_status sc_gather_bones(const sc_asset* asset, const uint32_t* joint_of_bone, const sc_pose* palette,
                                           float* bones) SC_NOEXCEPT;
 
+/* Multiplies matrices in SC_ROWS_3X4, as sc_gather_bones() writes them, by a transform: from a character's own space to
+ * the world, where others are. SC_BAD_VALUE: it is not finite, or its quaternion is of length zero. */
+SPHERECHAIN_API sc_status sc_place_bones(const sc_transform* transform, float* bones, size_t bone_count) SC_NOEXCEPT;
+
 /* A self-check for the first run: `pose` is what the engine gives while the character stands in its bind pose. There
  * every bone's matrix is the same, the model's own. SC_OTHER_BIND: the message names the first bone whose matrix moves
  * the character otherwise, by more than a thousandth of its height. It finds wrong strides, matrices that lack the
@@ -64,5 +76,6 @@ SPHERECHAIN_API sc_status sc_check_rest_pose(const sc_asset* asset, const sc_pos
 namespace spherechain {
 using MatrixLayout = sc_matrix_layout;
 using Pose = sc_pose;
+using Transform = sc_transform;
 }  // namespace spherechain
 #endif

@@ -11,21 +11,14 @@ SC_ENUM(sc_blend){
     SC_BLEND_NLERP = 2,  /* joints: rotations as quaternions, linearly, brought back to unit length */
 };
 
-/* A joint: where its parent's space puts p, rotated and moved, is translation + rotation (scale p). */
-typedef struct sc_transform {
-  sc_vec3 translation;
-  float rotation[4]; /* a quaternion: x, y, z, w; of about unit length */
-  sc_vec3 scale;     /* along the joint's own axes; negative mirrors */
-} sc_transform;
-
 /* A body, and where it stands a step later. Of one body alone ignored_parts is not read.
  *
  * SC_BLEND_LINEAR: from body.pose to `end`, both with bones, or both with vertices.
- * SC_BLEND_SLERP, SC_BLEND_NLERP: from start_joints to end_joints, composed down the skeleton as engines do; poses have
- * morph weights at most, no bones and no vertices. The bone b of the asset gets the world matrix of its joint times the
- * asset's inverse bind matrix (sc_asset_bone()); joints may be there that move no bone; a bone without a joint stays at
- * rest. A rotation goes the shorter way round: of one that turns a joint by half a turn or more in one
- * step, that way is assumed; of exactly half a turn, the sign that the quaternions have. */
+ * SC_BLEND_SLERP, SC_BLEND_NLERP: from start_joints to end_joints, each in its parent's space, composed down the
+ * skeleton as engines do; poses have morph weights at most, no bones and no vertices. The bone b of the asset gets the
+ * world matrix of its joint times the asset's inverse bind matrix (sc_asset_bone()); joints may be there that move no
+ * bone; a bone without a joint stays at rest. A rotation goes the shorter way round: of one that turns a joint by half
+ * a turn or more in one step, that way is assumed; of exactly half a turn, the sign that the quaternions have. */
 typedef struct sc_motion {
   sc_body body SC_ZERO;
   sc_pose end SC_ZERO;
@@ -93,7 +86,6 @@ SPHERECHAIN_API size_t sc_step_scratch_words(const sc_motion* a, const sc_motion
 inline sc_status sc_step_job::run() noexcept { return sc_find_step_contacts(this); }
 namespace spherechain {
 using Blend = sc_blend;
-using Transform = sc_transform;
 using Motion = sc_motion;
 using StepContact = sc_step_contact;
 using StepJob = sc_step_job;

@@ -106,6 +106,7 @@ SC_ENUM(sc_field){
     SC_FIELD_BLEND = 42,
     SC_FIELD_PARENTS = 43,
     SC_FIELD_TOLERANCE = 44,
+    SC_FIELD_TRANSFORM = 45,
 };
 
 /* What every operation returns: what went wrong, and with which field. */

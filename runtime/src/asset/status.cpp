@@ -76,6 +76,7 @@ constexpr std::pair<sc_field, const char*> kFieldNames[] = {
     {SC_FIELD_BLEND, "blend"},
     {SC_FIELD_PARENTS, "parents"},
     {SC_FIELD_TOLERANCE, "tolerance"},
+    {SC_FIELD_TRANSFORM, "transform"},
 };
 
 template <typename Texts, typename Value>

@@ -7,6 +7,7 @@
 #include "asset/memory.h"
 #include "asset/status.h"
 #include "pairs/filter.h"
+#include "pose/transform.h"
 #include "skin/collector.h"
 #include "spherechain/bodies.h"
 
@@ -27,27 +28,77 @@ struct Box {
   Vec3 low, high;
 };
 
-// Around the spheres that can touch something: wider by more than a sphere's sides, or a sum of squares, are rounded.
-Box box_of(const SceneBody& body) {
-  if (body.spheres == nullptr) {
-    return {body.low, body.high};
-  }
-  float low[3] = {FLT_MAX, FLT_MAX, FLT_MAX}, high[3] = {-FLT_MAX, -FLT_MAX, -FLT_MAX};
-  for (std::size_t i = 0; i < body.sphere_count; ++i) {
-    const Sphere& s = body.spheres[i];
-    const float at[3] = {s.x, s.y, s.z}, reach = s.radius * (1 + kRounding);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const float from = at[k] - reach, to = at[k] + reach;
-      low[k] = from < low[k] && s.radius >= 0 ? from : low[k];
-      high[k] = to > high[k] && s.radius >= 0 ? to : high[k];
+// A body where it is in the scene.
+class PlacedBody {
+ public:
+  explicit PlacedBody(const SceneBody& body) : body_(body) {
+    if (body.transform == nullptr) {
+      return;
     }
+    const Affine place = affine_of(*body.transform);
+    for (std::size_t i = 0; i < 12; ++i) {
+      place_[i] = static_cast<float>(place.m[i / 4][i % 4]);
+    }
+    const Vec3& scale = body.transform->scale;
+    stretch_ = std::max({std::abs(scale.x), std::abs(scale.y), std::abs(scale.z)});
   }
-  for (std::size_t k = 0; k < 3; ++k) {
-    low[k] -= kRounding * std::abs(low[k]);
-    high[k] += kRounding * std::abs(high[k]);
+
+  bool has_spheres() const { return body_.spheres != nullptr; }
+  std::size_t sphere_count() const { return body_.sphere_count; }
+  Sphere sphere(std::size_t i) const {
+    const Sphere& s = body_.spheres[i];
+    if (body_.transform == nullptr) {
+      return s;
+    }
+    const auto row = [&](const float* m) { return ((m[0] * s.x + m[1] * s.y) + m[2] * s.z) + m[3]; };
+    return {row(place_), row(place_ + 4), row(place_ + 8), stretch_ * s.radius};
   }
-  return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
-}
+  // Around the spheres that can touch something: wider by more than a sphere's sides, or a sum of squares, are rounded.
+  Box box() const { return has_spheres() ? box_of_spheres() : box_of_corners(); }
+
+ private:
+  Box box_of_spheres() const {
+    float low[3] = {FLT_MAX, FLT_MAX, FLT_MAX}, high[3] = {-FLT_MAX, -FLT_MAX, -FLT_MAX};
+    for (std::size_t i = 0; i < body_.sphere_count; ++i) {
+      const Sphere s = sphere(i);
+      const float at[3] = {s.x, s.y, s.z}, reach = s.radius * (1 + kRounding);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const float from = at[k] - reach, to = at[k] + reach;
+        low[k] = from < low[k] && s.radius >= 0 ? from : low[k];
+        high[k] = to > high[k] && s.radius >= 0 ? to : high[k];
+      }
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] -= kRounding * std::abs(low[k]);
+      high[k] += kRounding * std::abs(high[k]);
+    }
+    return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+  }
+  // Around the box, as it was given or moved.
+  Box box_of_corners() const {
+    if (body_.transform == nullptr) {
+      return {body_.low, body_.high};
+    }
+    const float from[3] = {body_.low.x, body_.low.y, body_.low.z}, to[3] = {body_.high.x, body_.high.y, body_.high.z};
+    float low[3], high[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float* const m = place_ + 4 * k;
+      float size = std::abs(m[3]);
+      low[k] = high[k] = m[3];
+      for (std::size_t i = 0; i < 3; ++i) {
+        low[k] += std::min(m[i] * from[i], m[i] * to[i]);
+        high[k] += std::max(m[i] * from[i], m[i] * to[i]);
+        size += std::max(std::abs(m[i] * from[i]), std::abs(m[i] * to[i]));
+      }
+      low[k] -= kRounding * size;
+      high[k] += kRounding * size;
+    }
+    return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+  }
+
+  const SceneBody& body_;
+  float place_[12] = {}, stretch_ = 1;
+};
 
 // Spheres by coordinates.
 struct SphereList {
@@ -55,10 +106,10 @@ struct SphereList {
   float x[kAtATime], y[kAtATime], z[kAtATime], radius[kAtATime];
 
   // Those of a body, from `first` on, that reach into the box, until there is no room; gives where it ended.
-  std::size_t fill(const SceneBody& body, std::size_t first, const Box& box) {
+  std::size_t fill(const PlacedBody& body, std::size_t first, const Box& box) {
     count = 0;
-    for (; first < body.sphere_count && count < kAtATime; ++first) {
-      const Sphere& s = body.spheres[first];
+    for (; first < body.sphere_count() && count < kAtATime; ++first) {
+      const Sphere s = body.sphere(first);
       x[count] = s.x;
       y[count] = s.y;
       z[count] = s.z;
@@ -84,11 +135,11 @@ struct SphereList {
   }
 };
 
-bool spheres_meet(const SceneBody& a, const Box& box_a, const SceneBody& b, const Box& box_b) {
+bool spheres_meet(const PlacedBody& a, const Box& box_a, const PlacedBody& b, const Box& box_b) {
   SphereList of_a, of_b;
-  for (std::size_t i = 0; i < a.sphere_count;) {
+  for (std::size_t i = 0; i < a.sphere_count();) {
     i = of_a.fill(a, i, box_b);
-    for (std::size_t j = 0; j < b.sphere_count && of_a.count > 0;) {
+    for (std::size_t j = 0; j < b.sphere_count() && of_a.count > 0;) {
       j = of_b.fill(b, j, box_a);
       for (std::size_t k = 0; k < of_a.count; ++k) {
         if (of_b.touches(of_a, k)) {
@@ -125,7 +176,7 @@ class Finder {
   void sort() {
     double sums[3] = {}, squares[3] = {};
     for (std::size_t i = 0; i < job_.body_count; ++i) {
-      const Box box = box_of(job_.bodies[i]);
+      const Box box = PlacedBody(job_.bodies[i]).box();
       boxes_[i] = {
           {box.low.x, box.low.y, box.low.z}, {box.high.x, box.high.y, box.high.z}, static_cast<std::uint32_t>(i)};
       for (std::size_t k = 0; k < 3; ++k) {
@@ -167,7 +218,8 @@ class Finder {
                            [](const Pair& l, const Pair& r) { return l < r; })) {
       return;
     }
-    if (a.spheres == nullptr || b.spheres == nullptr || spheres_meet(a, box_in(first), b, box_in(second))) {
+    if (a.spheres == nullptr || b.spheres == nullptr ||
+        spheres_meet(PlacedBody(a), box_in(first), PlacedBody(b), box_in(second))) {
       pairs_.add(pair);
     }
   }
@@ -186,6 +238,12 @@ Status check_bodies(const SceneJob& job) {
     const Status spheres = check_list(body.spheres, body.sphere_count, SC_FIELD_SPHERES);
     if (spheres != SC_OK) {
       return spheres;
+    }
+    if (any_misaligned(body.transform)) {
+      return refuse(SC_MISALIGNED, SC_FIELD_TRANSFORM);
+    }
+    if (body.transform != nullptr && !is_sound(*body.transform)) {
+      return refuse(SC_BAD_VALUE, SC_FIELD_TRANSFORM);
     }
     const bool has_box = body.spheres != nullptr || (is_finite(body.low) && is_finite(body.high));
     if (body.layer >= kLayers || !has_box) {
@@ -217,7 +275,9 @@ bool is_aliased(const SceneJob& job) {
                             range_of(Span<const Pair>{job.ignored, job.ignored_count})});
   for (std::size_t i = 0; i < job.body_count; ++i) {
     const MemoryRange spheres = range_of(Span<const Sphere>{job.bodies[i].spheres, job.bodies[i].sphere_count});
-    shared |= is_shared(pairs, spheres) || is_shared(scratch, spheres);
+    const MemoryRange transform =
+        range_of(Span<const Transform>{job.bodies[i].transform, std::size_t{job.bodies[i].transform != nullptr}});
+    shared |= any_shared({pairs, scratch}, {spheres, transform});
   }
   return shared;
 }

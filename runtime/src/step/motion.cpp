@@ -19,23 +19,6 @@
 namespace spherechain {
 namespace {
 
-struct Quaternion {
-  double x, y, z, w;
-};
-
-double inner(const Quaternion& a, const Quaternion& b) { return a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w; }
-
-Quaternion scaled(double s, const Quaternion& q) { return {s * q.x, s * q.y, s * q.z, s * q.w}; }
-
-Quaternion unit(const Quaternion& q) { return scaled(1 / std::sqrt(inner(q, q)), q); }
-
-Quaternion sum(const Quaternion& a, const Quaternion& b) { return {a.x + b.x, a.y + b.y, a.z + b.z, a.w + b.w}; }
-
-Quaternion quaternion_of(const sc_transform& transform) {
-  const float* const r = transform.rotation;
-  return unit({double{r[0]}, double{r[1]}, double{r[2]}, double{r[3]}});
-}
-
 // Where a joint's rotation starts, and where it ends: on the same side, so that the way is the shorter one.
 struct Turn {
   Quaternion from, to;
@@ -96,16 +79,6 @@ LocalSpeeds local_speeds(const sc_transform& start, const sc_transform& end, Ble
           length(difference(end.translation, start.translation))};
 }
 
-Affine product(const Affine& a, const Affine& b) {
-  Affine out;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 4; ++j) {
-      out.m[i][j] = a.m[i][0] * b.m[0][j] + a.m[i][1] * b.m[1][j] + a.m[i][2] * b.m[2][j] + (j == 3 ? a.m[i][3] : 0.0);
-    }
-  }
-  return out;
-}
-
 // At least the norm of the linear part of three rows of four.
 double norm_of(const double (&m)[3][4]) {
   double sum = 0;
@@ -117,13 +90,6 @@ double norm_of(const double (&m)[3][4]) {
 
 std::uint32_t joint_of(const sc_motion& motion, std::size_t bone) {
   return motion.joint_of_bone == nullptr ? static_cast<std::uint32_t>(bone) : motion.joint_of_bone[bone];
-}
-
-bool is_good(const sc_transform& joint) {
-  const float* const r = joint.rotation;
-  const double squared = double{r[0]} * double{r[0]} + double{r[1]} * double{r[1]} + double{r[2]} * double{r[2]} +
-                         double{r[3]} * double{r[3]};
-  return std::isfinite(length_of(joint.translation) + length_of(joint.scale)) && squared > 1e-12 && squared < 1e12;
 }
 
 Status check_joints(const sc_motion& motion, const AssetView& asset) {
@@ -148,7 +114,7 @@ Status check_joints(const sc_motion& motion, const AssetView& asset) {
     }
   }
   for (std::size_t i = 0; i < motion.joint_count; ++i) {
-    if (!is_good(motion.start_joints[i]) || !is_good(motion.end_joints[i])) {
+    if (!is_sound(motion.start_joints[i]) || !is_sound(motion.end_joints[i])) {
       return refuse(SC_BAD_VALUE, SC_FIELD_JOINTS);
     }
     if (motion.parents != nullptr && motion.parents[i] != SC_NO_JOINT && motion.parents[i] >= i) {
@@ -307,17 +273,8 @@ Skeleton& BodyMotion::skeleton_at(double time) {
 Affine BodyMotion::local_at(double time, std::size_t joint) const {
   const sc_transform &start = motion_->start_joints[joint], &end = motion_->end_joints[joint];
   const Quaternion q = between(Turn(start, end), time, motion_->blend);
-  const auto lerp = [&](float a, float b) { return double{a} + time * (double{b} - double{a}); };
-  const double s[3] = {lerp(start.scale.x, end.scale.x), lerp(start.scale.y, end.scale.y),
-                       lerp(start.scale.z, end.scale.z)};
-  const double xx = q.x * q.x, yy = q.y * q.y, zz = q.z * q.z, xy = q.x * q.y, xz = q.x * q.z, yz = q.y * q.z,
-               wx = q.w * q.x, wy = q.w * q.y, wz = q.w * q.z;
-  return {{{(1 - 2 * (yy + zz)) * s[0], 2 * (xy - wz) * s[1], 2 * (xz + wy) * s[2],
-            lerp(start.translation.x, end.translation.x)},
-           {2 * (xy + wz) * s[0], (1 - 2 * (xx + zz)) * s[1], 2 * (yz - wx) * s[2],
-            lerp(start.translation.y, end.translation.y)},
-           {2 * (xz - wy) * s[0], 2 * (yz + wx) * s[1], (1 - 2 * (xx + yy)) * s[2],
-            lerp(start.translation.z, end.translation.z)}}};
+  const auto lerp = [&](const Vec3& a, const Vec3& b) { return to_double(a) + time * difference(b, a); };
+  return affine_of(lerp(start.translation, end.translation), q, lerp(start.scale, end.scale));
 }
 
 const Affine& BodyMotion::joint_at(Skeleton& skeleton, std::size_t joint) {

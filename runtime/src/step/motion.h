@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "pose/transform.h"
 #include "skin/double3.h"
 #include "skin/skin_table.h"
 #include "spherechain/steps.h"
@@ -13,11 +14,6 @@
 namespace spherechain {
 
 constexpr std::size_t kMostJoints = 65536;  // so that no size of memory overflows
-
-// A matrix: three rows of four.
-struct Affine {
-  double m[3][4];
-};
 
 // Of a joint during the step, at most: the norm of its matrix' linear part, of that part's first two derivatives by
 // time, and of those of where its origin is.

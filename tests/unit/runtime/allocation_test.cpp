@@ -120,6 +120,8 @@ TEST_CASE("no job and no function but sc_character_create() allocates, on any ta
     run(sc_prepare_skin(&asset, skin_table.data(), skin_table.size()));
     run(sc_bind_joints(&asset, joints.data(), bones, SC_ROWS_3X4, joint_of_bone.data(), bones, message, 160));
     run(sc_gather_bones(&asset, joint_of_bone.data(), &refit.pose, gathered.data()));
+    const Transform place{{1, 2, 3}, {0, 0, 0, 1}, {1, 1, 1}};
+    run(sc_place_bones(&place, gathered.data(), bones));
     const sc_status rest = sc_check_rest_pose(&asset, &refit.pose, message, 160);
     meeting.a.asset = meeting.b.asset = step.a.body.asset = &asset;
     for (const Target target : supported_targets()) {

@@ -156,6 +156,28 @@ TEST_CASE("a gathered palette has the asset's order and layout, and the identity
   }
 }
 
+TEST_CASE("placed bones move what they moved, by the transform") {
+  // A quarter turn about z, twice as large, then along x.
+  const Transform place{{3, 0, 0}, {0, 0, 0.7071068F, 0.7071068F}, {2, 2, 2}};
+  const std::vector<Matrix> bones = random_bones(6);
+  std::vector<Matrix> placed = bones;
+  REQUIRE(sc_place_bones(&place, placed[0].data(), placed.size()) == SC_OK);
+  for (std::size_t b = 0; b < bones.size(); ++b) {
+    for (std::size_t column = 0; column < 4; ++column) {
+      const float x = bones[b][column], y = bones[b][4 + column], z = bones[b][8 + column];
+      CHECK(placed[b][column] == doctest::Approx(-2 * y + (column == 3 ? 3 : 0)));
+      CHECK(placed[b][4 + column] == doctest::Approx(2 * x));
+      CHECK(placed[b][8 + column] == doctest::Approx(2 * z));
+    }
+  }
+  placed = bones;
+  const Transform none{{}, {}, {1, 1, 1}};
+  CHECK(sc_place_bones(&none, placed[0].data(), placed.size()) == Status{SC_BAD_VALUE, SC_FIELD_TRANSFORM});
+  CHECK(sc_place_bones(nullptr, placed[0].data(), placed.size()) == Status{SC_NULL, SC_FIELD_TRANSFORM});
+  CHECK(sc_place_bones(&place, nullptr, 1) == Status{SC_NULL, SC_FIELD_BONES});
+  CHECK(same_bits(placed, bones));
+}
+
 TEST_CASE("gathering names what it cannot use and writes nothing") {
   Rig rig;
   REQUIRE(rig.bind() == SC_OK);

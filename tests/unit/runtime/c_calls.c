@@ -186,6 +186,12 @@ static void call_character(const void* data, size_t size, const sc_asset* asset,
   EXPECT(joint_of_bone[0] == 0 && joint_of_bone[pose->bone_count - 1] == SC_NO_JOINT);
   OK(sc_gather_bones(asset, joint_of_bone, pose, bones));
   EXPECT(memcmp(bones, pose->bones, 12 * sizeof(float)) == 0);
+  {
+    const sc_transform place = {{1, 0, 0}, {0, 0, 0, 1}, {1, 1, 1}};
+    const float x = bones[3];
+    OK(sc_place_bones(&place, bones, pose->bone_count));
+    EXPECT(bones[3] == x + 1);
+  }
   EXPECT(sc_check_rest_pose(asset, pose, NULL, 0).code == SC_OTHER_BIND);
   OK(sc_character_create(SC_ABI_VERSION, data, size, NULL, 0, SC_LAYOUT_UNSET, &character, NULL, 0));
   EXPECT(sc_asset_is_open(sc_character_asset(character)));

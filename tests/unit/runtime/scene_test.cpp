@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -140,6 +141,82 @@ TEST_CASE("a scene's meetings are those of all pairs of bodies, but for layers a
   CHECK(total > 1000);
 }
 
+TEST_CASE("a scene's transforms move spheres and boxes") {
+  using Vec = std::array<double, 3>;
+  std::mt19937 random(7);
+  std::uniform_real_distribution<float> any(-1, 1);
+  // By Rodrigues' formula.
+  const auto moved = [](const Transform& t, const Vec3& p) {
+    const Vec scaled{double{t.scale.x * p.x}, double{t.scale.y * p.y}, double{t.scale.z * p.z}};
+    const Vec q{double{t.rotation[0]}, double{t.rotation[1]}, double{t.rotation[2]}};
+    const double norm = std::hypot(std::hypot(q[0], q[1]), std::hypot(q[2], double{t.rotation[3]}));
+    const auto cross = [](const Vec& a, const Vec& b) {
+      return Vec{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+    };
+    const Vec once = cross(q, scaled), twice = cross(q, once);
+    const Vec from{double{t.translation.x}, double{t.translation.y}, double{t.translation.z}};
+    Vec out;
+    for (std::size_t k = 0; k < 3; ++k) {
+      out[k] = from[k] + scaled[k] + 2 * (double{t.rotation[3]} * once[k] + twice[k]) / (norm * norm);
+    }
+    return Vec3{static_cast<float>(out[0]), static_cast<float>(out[1]), static_cast<float>(out[2])};
+  };
+  std::size_t total = 0;
+  for (int turn = 0; turn < 30; ++turn) {
+    Scene scene(40, random, 3);
+    std::vector<Transform> transforms(scene.bodies.size());
+    // What certainly meets, and what may: radii and boxes a little smaller, and a little larger.
+    std::vector<SceneBody> less = scene.bodies, more = scene.bodies;
+    std::vector<std::vector<Sphere>> small = scene.spheres, large = scene.spheres;
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+      SceneBody& body = scene.bodies[i];
+      const float size = 0.7F + 0.3F * any(random), mirror = i % 3 == 0 ? -1.0F : 1.0F;
+      transforms[i] = {{any(random), any(random), any(random)},
+                       {any(random), any(random), any(random), 1 + any(random)},
+                       {size, mirror * size, size}};
+      body.transform = i % 5 == 0 ? nullptr : &transforms[i];
+      const auto at = [&](const Vec3& p) { return body.transform == nullptr ? p : moved(transforms[i], p); };
+      const float stretch = body.transform == nullptr ? 1 : size;
+      for (std::size_t k = 0; k < body.sphere_count; ++k) {
+        const Sphere& s = body.spheres[k];
+        const Vec3 p = at({s.x, s.y, s.z});
+        small[i][k] = {p.x, p.y, p.z, stretch * s.radius - 1e-5F};
+        large[i][k] = {p.x, p.y, p.z, s.radius < 0 ? s.radius : stretch * s.radius + 1e-5F};
+      }
+      if (body.spheres != nullptr) {
+        less[i].spheres = small[i].data();
+        more[i].spheres = large[i].data();
+        continue;
+      }
+      Vec3 low{HUGE_VALF, HUGE_VALF, HUGE_VALF}, high{-HUGE_VALF, -HUGE_VALF, -HUGE_VALF};
+      for (int corner = 0; corner < 8; ++corner) {
+        const Vec3 p = at({(corner & 1) != 0 ? body.low.x : body.high.x, (corner & 2) != 0 ? body.low.y : body.high.y,
+                           (corner & 4) != 0 ? body.low.z : body.high.z});
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+      }
+      const float e = 1e-5F;
+      less[i].low = {low.x + e, low.y + e, low.z + e};
+      less[i].high = {high.x - e, high.y - e, high.z - e};
+      more[i].low = {low.x - e, low.y - e, low.z - e};
+      more[i].high = {high.x + e, high.y + e, high.z + e};
+    }
+    const std::vector<Pair> found = run(job_of(scene));
+    std::vector<Pair> certain, possible;
+    for (std::uint32_t a = 0; a < scene.bodies.size(); ++a) {
+      for (std::uint32_t b = a + 1; b < scene.bodies.size(); ++b) {
+        if (meet(less[a], less[b])) certain.push_back({a, b});
+        if (meet(more[a], more[b])) possible.push_back({a, b});
+      }
+    }
+    CHECK(std::includes(found.begin(), found.end(), certain.begin(), certain.end()));
+    CHECK(std::includes(possible.begin(), possible.end(), found.begin(), found.end()));
+    CHECK(possible.size() <= certain.size() + 2);
+    total += found.size();
+  }
+  CHECK(total > 1000);
+}
+
 TEST_CASE("a scene that is not sound is refused, and nothing is written") {
   std::mt19937 random(6);
   Scene scene(9, random, 1);
@@ -169,6 +246,10 @@ TEST_CASE("a scene that is not sound is refused, and nothing is written") {
           of[2].sphere_count = 0;
           of[2].high.y = HUGE_VALF;
         }) == Status{SC_BAD_VALUE, SC_FIELD_BODIES});
+  const Transform turned{{}, {0, 0, 0, 0}, {1, 1, 1}}, far{{HUGE_VALF, 0, 0}, {0, 0, 0, 1}, {1, 1, 1}};
+  for (const Transform& bad : {turned, far}) {
+    CHECK(refused([&](SceneJob&, Bodies& of) { of[1].transform = &bad; }) == Status{SC_BAD_VALUE, SC_FIELD_TRANSFORM});
+  }
   std::vector<std::uint32_t> layers(32, 0);
   layers[4] = 1U << 3;
   CHECK(refused([&](SceneJob& job, Bodies&) { job.layers = layers.data(); }) == Status{SC_BAD_VALUE, SC_FIELD_LAYERS});

@@ -43,7 +43,7 @@ export function fillContactPanel(panel, store, model, flyTo) {
     );
 
   const what = ({ kind, depth }) => `${CLASSES[kind]}, ${millimetres(depth)}`;
-  const millilitres = ({ volume }) => (volume >= 0 ? `, ${volume.toPrecision(2)} ml` : '');
+  const millilitres = ({ volume }) => (volume >= 0 ? `, ${Number(volume.toPrecision(2))} ml` : '');
   const minor = (contact) => (isFault(contact) ? '' : ' minor');
   const frameRow = (contact, i) => {
     const { key, name, pairs, visible } = contact;

@@ -26,6 +26,12 @@ export const isFault = ({ kind }) => kind >= DEEP_FOLD;
 export const millimetres = (depth) => `${depth < 9.95 ? depth.toFixed(1) : Math.round(depth)} mm`;
 const worseFirst = (a, b) => b.kind - a.kind || b.depth - a.depth || a.name.localeCompare(b.name);
 
+// On a page of two, names start with the character's: said once.
+function beside(first, second) {
+  const own = first.slice(0, first.indexOf(': ') + 2);
+  return first.includes(': ') && second.startsWith(own) ? second.slice(own.length) : second;
+}
+
 // A frame's contacts: [{key, parts, name, pairs, triangles, sides, kind, depth, direction, at, visible, volume}], faults first,
 // the deepest first: part b, moved by `depth` mm along `direction`, is free of part a; `at` is its deepest point. `pairs` counts the pairs of
 // triangles that intersect, as `play` does. `triangles` are those that touch, each once; `sides` says of each whether it is of
@@ -42,7 +48,7 @@ function group(pairs, partOf, nameOf, measures) {
     ++groups.get(key).pairs;
     ends.forEach((t, end) => side.has(t) || side.set(t, parts[0] === parts[1] ? 1 : end + 1));
   }
-  const name = ([a, b]) => (a === b ? `${nameOf(a)} with itself` : `${nameOf(a)}, ${nameOf(b)}`);
+  const name = ([a, b]) => (a === b ? `${nameOf(a)} with itself` : `${nameOf(a)}, ${beside(nameOf(a), nameOf(b))}`);
   return [...groups.values()]
     .map(({ key, parts, pairs, side }) => ({
       key,

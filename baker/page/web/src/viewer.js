@@ -145,7 +145,8 @@ export function start(model) {
   const timeline = fillTimeline($('timeline'), store, model);
   fillCharts($('charts'), store, model);
   fillAccuracyPanel($('accuracy'), store, model, flyToSpheres);
-  fillBakePanel($('bake'), model);
+  if (model.hasMethod) fillBakePanel($('bake'), model);
+  else $('tab-bake').remove();
   bindTabs(store);
   bindDrawer();
   const reset = () => {

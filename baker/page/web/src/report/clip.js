@@ -31,7 +31,6 @@ function addTab(name) {
   tabs.after(panel);
   document.getElementById('contacts').hidden = true;
   document.getElementById('tab-contacts').textContent = 'This frame';
-  document.getElementById('tab-bake').remove();
   document.getElementById('title').before(h('a', { href: 'index.html', class: 'back', title: 'All clips of the library' }, '← Library'));
   return panel;
 }

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+#include "page/page.h"
+
+namespace spherechain::baker {
+
+// The page's template, around the place where its data go. Throws Error(kFile) where it is none.
+class PageTemplate {
+ public:
+  explicit PageTemplate(const std::string& file);
+
+  std::string fill(const nlohmann::ordered_json& data) const;
+  std::size_t size() const { return before_.size() + after_.size(); }
+
+ private:
+  std::string before_, after_;
+};
+
+// Throws Error(kUsage) where the page is larger than browsers open: `still` bytes that are the same in however many
+// frames, and `moving` of all of them.
+void check_size(const AnimatedAsset& animated, double still, double moving, const PageOptions& options);
+
+}  // namespace spherechain::baker
