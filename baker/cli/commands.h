@@ -71,4 +71,11 @@ struct CheckOptions {
 };
 ExitCode run_check(const CheckOptions& options);
 
+struct FixOptions {
+  std::string input, output, clip, keep, report;
+  double budget = 25, margin = 1.5;  // degrees; mm
+  bool force = false;
+};
+ExitCode run_fix(const FixOptions& options);
+
 }  // namespace spherechain::baker

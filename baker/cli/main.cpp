@@ -194,6 +194,24 @@ int main(int argc, char** argv) {
   add_output(*validate_command, "--json", validate.json, "JSON file to write");
   validate_command->callback([&] { run = [&] { return run_validate(validate); }; });
 
+  FixOptions fix;
+  CLI::App* fix_command = app.add_subcommand("fix", "Turn joints of a clip so that its body parts leave each other");
+  add_name(*fix_command, "INPUT", fix.input, "Character with clips (.glb)")->required();
+  add_output(*fix_command, "-o,--output", fix.output, "The same with the clips mended (.glb)")->required();
+  add_name(*fix_command, "--clip", fix.clip, "The clip to mend: its name or number (default: all)");
+  add_name(*fix_command, "--keep", fix.keep, "Rules, as check --config has them: what is fine as it is");
+  fix_command->add_option("--budget", fix.budget, "Degrees that an event may turn a joint, at most")
+      ->check(CLI::Range(0.1, 180.0))
+      ->check(refuse_nan)
+      ->capture_default_str();
+  fix_command->add_option("--margin", fix.margin, "Millimetres between what was pushed apart")
+      ->check(CLI::Range(0.0, 100.0))
+      ->check(refuse_nan)
+      ->capture_default_str();
+  add_output(*fix_command, "--report", fix.report, "JSON file to write");
+  fix_command->add_flag("--force", fix.force, "Replace output files of another kind");
+  fix_command->callback([&] { run = [&] { return run_fix(fix); }; });
+
   ViewOptions view;
   CLI::App* view_command = app.add_subcommand("view", "Write a page that shows an asset on its source in motion");
   add_name(*view_command, "ASSET", view.asset, "Asset (.sphc)")->required();

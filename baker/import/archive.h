@@ -28,17 +28,17 @@ template <typename T, typename Struct>
 concept Is = std::same_as<std::remove_const_t<T>, Struct>;
 
 void members(auto& io, Is<Node> auto& n) {
-  io(n.name, n.humanoid_bone, n.parent, n.local, n.translation, n.rotation, n.scale);
+  io(n.name, n.humanoid_bone, n.parent, n.in_file, n.local, n.translation, n.rotation, n.scale);
 }
 void members(auto& io, Is<Bone> auto& b) { io(b.node, b.inverse_bind); }
 void members(auto& io, Is<Morph> auto& m) { io(m.name, m.vertices, m.deltas, m.rest_weight); }
 void members(auto& io, Is<Channel> auto& c) { io(c.path, c.target, c.interpolation, c.times, c.values); }
-void members(auto& io, Is<Clip> auto& c) { io(c.name, c.duration, c.channels); }
+void members(auto& io, Is<Clip> auto& c) { io(c.name, c.duration, c.in_file, c.channels); }
 void members(auto& io, Is<SourceRig> auto& r) { io(r.nodes, r.bones, r.weights, r.morphs, r.clips, r.to_rest); }
 void members(auto& io, Is<SourceLook> auto& l) { io(l.uvs, l.material_of, l.materials, l.pictures); }
 void members(auto& io, Is<SourceMesh> auto& m) {
   io(m.positions, m.triangles, m.buffers, m.rig, m.look, m.importer, m.meshes, m.points_and_lines_dropped,
-     m.attachments_dropped, m.metres_per_unit, m.up_hint);
+     m.attachments_dropped, m.bones_dropped, m.metres_per_unit, m.up_hint);
 }
 
 class ByteWriter {

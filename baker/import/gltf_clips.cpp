@@ -111,6 +111,7 @@ std::vector<Clip> read_clips(const GltfFile& file, const GltfNodes& nodes, const
   std::vector<Clip> clips;
   for (std::size_t a = 0; a < file.model.animations.size(); ++a) {
     Clip clip = reader.read(a);
+    clip.in_file = static_cast<int>(a);
     if (!clip.channels.empty()) clips.push_back(std::move(clip));
   }
   return clips;

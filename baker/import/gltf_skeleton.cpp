@@ -97,6 +97,7 @@ GltfNodes read_nodes(const GltfFile& file) {
   for (const int n : order) {
     const std::string where = "nodes[" + std::to_string(n) + "]";
     Node node = read_node(file, model.nodes[at(n)], where);
+    node.in_file = n;
     Affine world = node.local;
     if (parent[at(n)] >= 0) {
       node.parent = static_cast<int>(out.of_file[at(parent[at(n)])]);

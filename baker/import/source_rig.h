@@ -26,6 +26,7 @@ struct Node {
   std::string name;
   std::string humanoid_bone{};  // what a VRM avatar says it is, such as "leftUpperArm"; empty where it says nothing
   int parent = -1;              // comes before its children
+  int in_file = -1;             // a glTF file's number of it
   Affine local = Affine::Identity();
   Vec3 translation = Vec3::Zero();
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
@@ -69,6 +70,7 @@ Eigen::Vector4d sample(const Channel& channel, double seconds);
 struct Clip {
   std::string name;
   double duration = 0;  // seconds, of the last key
+  int in_file = -1;     // a glTF file's number of it
   std::vector<Channel> channels;
 };
 

@@ -40,8 +40,12 @@ std::string MotionChoice::name() const {
 
 AnimatedAsset::AnimatedAsset(const std::string& asset, const std::string& source, const MotionChoice& motion,
                              const FrameChoice& frames)
-    : asset_name_(asset), source_name_(source), file_(open_asset(asset)) {
-  const BakeSettings settings = settings_of(file_, asset);
+    : AnimatedAsset(open_asset(asset), asset, source, motion, frames) {}
+
+AnimatedAsset::AnimatedAsset(OpenAsset asset, const std::string& name, const std::string& source,
+                             const MotionChoice& motion, const FrameChoice& frames)
+    : asset_name_(name), source_name_(source), file_(std::move(asset)) {
+  const BakeSettings settings = settings_of(file_, name);
   roles_ = settings.roles;
   segment_settings_ = settings.segment;
   import_ = settings.import;
@@ -50,7 +54,7 @@ AnimatedAsset::AnimatedAsset(const std::string& asset, const std::string& source
   if (const Status status = sc_check_source(file_.handle(), SC_WHOLE_SOURCE, rest.data(), rest.size() / 3, 12);
       status != SC_OK) {
     throw Error(ExitCode::kFile,
-                source + ": is not the mesh that " + asset + " was baked from (" + to_string(status) + ")");
+                source + ": is not the mesh that " + name + " was baked from (" + to_string(status) + ")");
   }
   play(motion, frames);
 }

@@ -30,6 +30,9 @@ class AnimatedAsset {
   // Throws Error(kFile) where a file has the wrong content, or the source is not the asset's.
   AnimatedAsset(const std::string& asset, const std::string& source, const MotionChoice& motion,
                 const FrameChoice& frames);
+  // Of an asset that is open; `name` is for messages.
+  AnimatedAsset(OpenAsset asset, const std::string& name, const std::string& source, const MotionChoice& motion,
+                const FrameChoice& frames);
 
   // Plays another motion in place of that one. Throws Error(kFile).
   void play(const MotionChoice& motion, const FrameChoice& frames);

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fix/fix_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "report/json_text.h"
+
+namespace spherechain::baker {
+namespace {
+
+using nlohmann::ordered_json;
+
+// The largest turn of a joint, in each frame of an event that was pushed; degrees, ascending.
+std::vector<double> turns_of(const MendedClip& clip) {
+  std::vector<double> out;
+  const std::size_t frames = clip.mend.in_window.size();
+  std::vector<char> is_mended(frames, 0);
+  for (const MendedEvent& event : clip.mend.events) {
+    if (event.outcome != Outcome::kCleared && event.outcome != Outcome::kReduced) continue;
+    for (int f = event.from; f <= event.to; ++f) is_mended[static_cast<std::size_t>(f)] = 1;
+  }
+  for (std::size_t f = 0; f < frames; ++f) {
+    if (is_mended[f] == 0) continue;
+    double most = 0;
+    for (std::size_t j = 0; j < clip.joints; ++j) most = std::max(most, clip.mend.turns[f * clip.joints + j].norm());
+    out.push_back(most * 180 / std::numbers::pi);
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+double quantile(const std::vector<double>& ascending, double q) {
+  if (ascending.empty()) return 0;
+  return ascending[static_cast<std::size_t>(q * static_cast<double>(ascending.size() - 1))];
+}
+
+}  // namespace
+
+std::string fix_json(const std::vector<MendedClip>& clips, const std::vector<BodyPart>& parts) {
+  ordered_json out;
+  out["clips"] = ordered_json::array();
+  for (const MendedClip& clip : clips) {
+    ordered_json events = ordered_json::array();
+    for (const MendedEvent& e : clip.mend.events) {
+      events.push_back({{"parts", {parts[e.part_a].name, parts[e.part_b].name}},
+                        {"from", e.from},
+                        {"to", e.to},
+                        {"depth_mm_before", e.depth_before},
+                        {"depth_mm_after", e.depth_after},
+                        {"turn_degrees", e.turn_degrees},
+                        {"outcome", outcome_name(e.outcome)}});
+    }
+    const std::vector<double> turns = turns_of(clip);
+    out["clips"].push_back(
+        {{"clip", clip.name},
+         {"events", std::move(events)},
+         {"turn_degrees",
+          {{"median", quantile(turns, 0.5)}, {"p90", quantile(turns, 0.9)}, {"max", quantile(turns, 1)}}},
+         {"seconds", clip.seconds}});
+  }
+  return json_text(out, 1) + "\n";
+}
+
+std::string fix_text(const MendedClip& clip, const std::vector<BodyPart>& parts) {
+  std::map<Outcome, int> counts;
+  std::string rows;
+  for (const MendedEvent& e : clip.mend.events) {
+    ++counts[e.outcome];
+    rows += fmt::format("  {:<34} {:>5}-{:<5} {:>6.1f} -> {:>5.1f} mm  {:>5.1f} degrees  {}\n",
+                        parts[e.part_a].name + ", " + parts[e.part_b].name, e.from, e.to, e.depth_before, e.depth_after,
+                        e.turn_degrees, outcome_name(e.outcome));
+  }
+  std::string out = fmt::format("{}: {} events", clip.name, clip.mend.events.size());
+  for (const auto& [outcome, count] : counts) out += fmt::format(", {} {}", count, outcome_name(outcome));
+  const std::vector<double> turns = turns_of(clip);
+  return out +
+         fmt::format("; turns {:.1f} degrees in the median, {:.1f} in p90, {:.1f} at most; {} rounds, {:.1f} s\n{}",
+                     quantile(turns, 0.5), quantile(turns, 0.9), quantile(turns, 1), clip.mend.rounds, clip.seconds,
+                     rows);
+}
+
+bool leaves_faults(const std::vector<MendedClip>& clips) {
+  return std::any_of(clips.begin(), clips.end(), [](const MendedClip& clip) {
+    return std::any_of(clip.mend.events.begin(), clip.mend.events.end(), [](const MendedEvent& e) {
+      return e.outcome == Outcome::kReduced || e.outcome == Outcome::kOverBudget;
+    });
+  });
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "bind/body_parts.h"
+#include "fix/mend.h"
+
+namespace spherechain::baker {
+
+struct MendedClip {
+  std::string name;
+  Mend mend;
+  std::size_t joints;  // that may turn
+  double seconds;      // that it took
+};
+
+// The file of `fix --report`, and the same for people.
+std::string fix_json(const std::vector<MendedClip>& clips, const std::vector<BodyPart>& parts);
+std::string fix_text(const MendedClip& clip, const std::vector<BodyPart>& parts);
+
+// Whether an event is left that could have been expected to be cleared.
+bool leaves_faults(const std::vector<MendedClip>& clips);
+
+}  // namespace spherechain::baker

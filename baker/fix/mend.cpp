@@ -1,0 +1,424 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Gauss-Newton over a whole clip: each two body parts that are in each other in a frame give a wish, that their deepest
+// points part along the way out. Wishes of earlier rounds stay: what was pushed out once must not come back.
+#include "fix/mend.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+#include <tuple>
+
+#include "fix/find_faults.h"
+#include "fix/solve.h"
+
+namespace spherechain::baker {
+namespace {
+
+constexpr int kRounds = 16;
+constexpr double kPad = 0.35;       // seconds around an event in which joints turn, too
+constexpr double kWish = 1e5;       // of a miss of one arm's length, against a radian
+constexpr double kPullBack = 50;    // of what was no deeper than kShallow: it ends near
+constexpr double kShallow = 10;     // mm
+constexpr double kFoot = 1e6;       // of a foot that moves
+constexpr double kArm = 0.3;        // of the height: an arm's length
+constexpr double kFarthest = 0.03;  // of an arm's length... in heights: what a round may ask for
+constexpr double kDeeper = 0.5;     // mm: so much deeper than before is a fault, too
+constexpr double kFoldDeeper = 2;   // the same of folds, which move with the joint
+constexpr std::size_t kMemory = 4;  // wishes of a pair of parts in a frame
+
+using PartPair = std::pair<std::uint32_t, std::uint32_t>;
+using At = std::tuple<double, std::uint32_t, std::uint32_t>;  // frame and parts
+
+At at_of(const Meeting& meeting) { return {meeting.frame, meeting.found.part_a, meeting.found.part_b}; }
+
+// The deepest points, which are to part along `way`.
+struct Push {
+  SkinSpot a, b;
+  Vec3 way;
+  double target;  // how far b is to be from a along the way: negative: no deeper than that
+  bool is_shallow;
+};
+
+Vec3 to_vec3(const spherechain::Vec3& v) { return {v.x, v.y, v.z}; }
+
+class Mender {
+ public:
+  Mender(const AnimatedAsset& animated, const Roles& roles, const ClipFrames& clip, const MendOptions& options)
+      : animated_(animated),
+        character_(animated.character()),
+        options_(options),
+        mm_(mm_per_unit(animated.asset())),
+        height_(animated.frame().height),
+        clip_(character_.rig, *clip.clip, clip.fps, clip.own_count, turning_joints(character_.rig, roles)),
+        finder_(animated, clip_),
+        turns_(static_cast<std::size_t>(clip.own_count) * clip_.count(), Vec3::Zero()) {
+    for (Index j = 0; j < clip_.count(); ++j) {
+      const std::string& role = roles.of_node[clip_.joints()[j].node].role;
+      if (role == "left_elbow" || role == "right_elbow" || role == "left_knee" || role == "right_knee") make_hinge(j);
+      if (role == "left_ankle" || role == "right_ankle") feet_.push_back(j);
+    }
+  }
+
+  Mend run(const std::function<bool(const MendedEvent&)>& leave, const std::function<void(const std::string&)>& told) {
+    std::vector<double> all;
+    for (int f = 0; f < clip_.frames(); ++f) all.push_back(f);
+    told("looking");
+    const std::vector<Meeting> before = finder_.in_frames(all, turns_);
+    for (const Meeting& meeting : before) depth_before_[at_of(meeting)] = meeting.found;
+    make_events(before, leave);
+    Mend out;
+    Turns best = turns_;
+    double least = HUGE_VAL;
+    for (int round = 0; round < kRounds && !is_idle(); ++round) {
+      const std::vector<Meeting> now = round == 0 ? before : finder_.in_frames(frames_in_window(), turns_);
+      std::vector<Meeting> between;
+      double badness = add_pushes(now);
+      if (round > 0 && (badness == 0 || round % 4 == 3)) {
+        between = finder_.between(whole_frames_in_window(), turns_);
+        badness += add_pushes(between);
+      }
+      told(fmt::format("round {}: {:.1f} mm too deep", round + 1, badness * mm_));
+      if (badness < least && round > 0) {
+        least = badness;
+        best = turns_;
+      }
+      if (badness == 0 && !give_up_some()) break;
+      open_windows();
+      turns_ = solve_turns(clip_, in_window_, wishes(), turns_);
+      out.rounds = round + 1;
+      if (round >= 5 && round % 5 == 0) give_up_some();
+    }
+    turns_ = best;
+    finish(out);
+    return out;
+  }
+
+ private:
+  bool is_idle() const {
+    return std::none_of(events_.begin(), events_.end(), [](const MendedEvent& e) { return is_wanted(e); });
+  }
+  static bool is_wanted(const MendedEvent& event) { return event.outcome == Outcome::kReduced; }
+
+  // In an elbow or a knee: the axis across its two bones, as the clip bends it.
+  void make_hinge(Index joint) {
+    Vec3 sum = Vec3::Zero(), along = Vec3::Zero();
+    const Index node = clip_.joints()[joint].node;
+    const SourceRig& rig = character_.rig;
+    int child = -1;
+    for (std::size_t n = 0; n < rig.nodes.size(); ++n) {
+      if (rig.nodes[n].parent == static_cast<int>(node) && child < 0) child = static_cast<int>(n);
+    }
+    if (child < 0) return;
+    const Vec3 lower = rig.nodes[static_cast<std::size_t>(child)].translation;
+    const Turns none(turns_.size(), Vec3::Zero());
+    for (int f = 0; f < clip_.frames(); f += std::max(1, clip_.frames() / 100)) {
+      Eigen::Quaterniond rotation = rig.nodes[node].rotation;
+      for (const Channel& channel : clip_.clip().channels) {
+        if (channel.target == node && channel.path == ChannelPath::kRotation) {
+          rotation = Eigen::Quaterniond(sample(channel, f / clip_.fps()));
+        }
+      }
+      const Vec3 upper = rotation.inverse() * rig.nodes[node].translation;
+      if (upper.norm() < 1e-9 || lower.norm() < 1e-9) return;
+      const Vec3 axis = upper.normalized().cross(lower.normalized());
+      sum += sum.dot(axis) < 0 ? Vec3(-axis) : axis;
+      along = lower.normalized();
+    }
+    if (sum.norm() < 1e-3) return;
+    const Vec3 axis = sum.normalized();
+    const Eigen::Matrix3d own = clip_.joints()[joint].price;
+    constexpr double kOff = 30, kTwist = 4;
+    clip_.set_price(joint, own * (kOff * Eigen::Matrix3d::Identity() - (kOff - 1) * axis * axis.transpose() -
+                                  (kOff - kTwist) * along * along.transpose()));
+  }
+
+  void make_events(const std::vector<Meeting>& before, const std::function<bool(const MendedEvent&)>& leave) {
+    std::vector<PartMeeting> faults;
+    for (const Meeting& meeting : before) {
+      if (is_fault(meeting.found.kind)) faults.push_back({static_cast<int>(meeting.frame), meeting.found});
+    }
+    for (const EventSpan& span : join_events(faults, clip_.frames(), false)) {
+      const Penetration& worst = faults[span.deepest].found;
+      MendedEvent event{worst.part_a, worst.part_b, span.from, span.to, worst.kind, mm_ * double{worst.depth}, 0};
+      if (worst.kind == SC_CLASS_DEEP_FOLD || worst.part_a == worst.part_b) event.outcome = Outcome::kFold;
+      if (leave(event)) event.outcome = Outcome::kAccepted;
+      events_.push_back(event);
+    }
+  }
+
+  const MendedEvent* event_of(const Meeting& meeting) const {
+    for (const MendedEvent& event : events_) {
+      if (event.part_a == meeting.found.part_a && event.part_b == meeting.found.part_b &&
+          meeting.frame >= event.from - 1 && meeting.frame <= event.to + 1) {
+        return &event;
+      }
+    }
+    return nullptr;
+  }
+
+  // How deep a pair may be, in the source's units; negative: so far apart.
+  double allowed(const Meeting& meeting) {
+    const MendedEvent* event = event_of(meeting);
+    const bool is_pushed = is_fault(meeting.found.kind) && meeting.found.part_a != meeting.found.part_b &&
+                           meeting.found.kind != SC_CLASS_DEEP_FOLD;
+    if (is_pushed && (event == nullptr || is_wanted(*event))) return -options_.margin_mm / mm_;
+    const auto known = depth_before_.find({std::round(meeting.frame), meeting.found.part_a, meeting.found.part_b});
+    return known == depth_before_.end() ? 0 : double{known->second.depth};
+  }
+
+  // Wishes for what is too deep; returns by how much in all.
+  double add_pushes(const std::vector<Meeting>& meetings) {
+    double sum = 0;
+    for (const Meeting& meeting : meetings) {
+      const Penetration& p = meeting.found;
+      const double may_be = allowed(meeting), excess = double{p.depth} - may_be;
+      const double slack = (p.kind == SC_CLASS_FOLD || p.kind == SC_CLASS_DEEP_FOLD ? kFoldDeeper : kDeeper) / mm_;
+      if (may_be >= 0 && excess <= slack) continue;
+      if (may_be >= 0 && (p.kind == SC_CLASS_REST || p.kind == SC_CLASS_SHELL || p.part_a == p.part_b)) continue;
+      sum += may_be < 0 ? double{p.depth} : excess;
+      const auto known = depth_before_.find(at_of(meeting));
+      const bool is_shallow = known != depth_before_.end() && mm_ * double{known->second.depth} <= kShallow;
+      Push push{spot_of(p.deepest_a), spot_of(p.deepest_b), to_vec3(p.direction), -may_be, is_shallow};
+      std::vector<Push>& all = pushes_[at_of(meeting)];
+      all.erase(std::remove_if(all.begin(), all.end(), [&](const Push& old) { return old.way.dot(push.way) < 0; }),
+                all.end());
+      if (all.size() == kMemory) all.erase(all.begin());
+      all.push_back(push);
+    }
+    return sum;
+  }
+
+  SkinSpot spot_of(const SkinPoint& point) const {
+    SkinSpot out;
+    for (std::size_t k = 0; k < 3; ++k) {
+      out.vertices[k] = character_.source_triangles[point.triangle][k];
+      out.shares[k] = double{point.weights[k]};
+    }
+    return out;
+  }
+
+  void open_windows() {
+    in_window_.assign(static_cast<std::size_t>(clip_.frames()), 0);
+    const int pad = static_cast<int>(std::ceil(kPad * clip_.fps()));
+    for (const auto& [at, pushes] : pushes_) {
+      const int frame = static_cast<int>(std::get<0>(at));
+      for (int f = std::max(0, frame - pad); f <= std::min(clip_.frames() - 1, frame + 1 + pad); ++f) {
+        in_window_[static_cast<std::size_t>(f)] = 1;
+      }
+    }
+  }
+  std::vector<int> whole_frames_in_window() const {
+    std::vector<int> out;
+    for (int f = 0; f < clip_.frames(); ++f) {
+      if (in_window_[static_cast<std::size_t>(f)] != 0) out.push_back(f);
+    }
+    return out;
+  }
+  // And those between two that have been looked at.
+  std::vector<double> frames_in_window() const {
+    std::set<double> out;
+    for (const int f : whole_frames_in_window()) out.insert(f);
+    for (const auto& [at, pushes] : pushes_) out.insert(std::get<0>(at));
+    return {out.begin(), out.end()};
+  }
+
+  std::vector<Wish> wishes() const {
+    std::vector<Wish> out;
+    const double arm = kArm * height_;
+    for (const auto& [at, pushes] : pushes_) {
+      const double frame = std::get<0>(at);
+      const TurnedClip::Pose pose = clip_.pose(frame, turns_);
+      const std::vector<Vec3> now = turns_at(frame);
+      for (const Push& push : pushes) {
+        const SpotMotion a =
+            motion_of(clip_, pose, character_.source_positions, animated_.weights(), push.a, now.data());
+        const SpotMotion b =
+            motion_of(clip_, pose, character_.source_positions, animated_.weights(), push.b, now.data());
+        const double gap = push.way.dot(b.at - a.at);
+        Wish wish;
+        wish.weight = kWish / (arm * arm);
+        wish.weight_over = push.is_shallow ? kPullBack / (arm * arm) : 0;
+        wish.value = std::min(push.target - gap, kFarthest * height_);
+        std::map<Index, Vec3> by;
+        for (const auto& [joint, moves] : b.by_joint)
+          by.try_emplace(joint, Vec3::Zero()).first->second += moves.transpose() * push.way;
+        for (const auto& [joint, moves] : a.by_joint)
+          by.try_emplace(joint, Vec3::Zero()).first->second -= moves.transpose() * push.way;
+        for (const auto& [joint, d] : by) {
+          wish.value += d.dot(now[joint]);
+          add_parts(wish, frame, joint, d);
+        }
+        out.push_back(std::move(wish));
+      }
+    }
+    for (const int f : whole_frames_in_window()) pin_feet(f, out);
+    return out;
+  }
+
+  std::vector<Vec3> turns_at(double frame) const {
+    const auto first = static_cast<std::size_t>(frame);
+    const std::size_t next = std::min(first + 1, static_cast<std::size_t>(clip_.frames()) - 1), count = clip_.count();
+    const double share = frame - std::floor(frame);
+    std::vector<Vec3> out;
+    for (std::size_t j = 0; j < count; ++j) {
+      out.push_back((1 - share) * turns_[first * count + j] + share * turns_[next * count + j]);
+    }
+    return out;
+  }
+  static void add_parts(Wish& wish, double frame, Index joint, const Vec3& by) {
+    const double share = frame - std::floor(frame);
+    const int first = static_cast<int>(frame);
+    wish.parts.push_back({first, joint, (1 - share) * by});
+    if (share > 0) wish.parts.push_back({first + 1, joint, share * by});
+  }
+
+  // Three points that each foot carries stay where the clip has them.
+  void pin_feet(int frame, std::vector<Wish>& out) const {
+    if (feet_.empty()) return;
+    const Turns none(turns_.size(), Vec3::Zero());
+    const TurnedClip::Pose pose = clip_.pose(frame, turns_), wanted = clip_.pose(frame, none);
+    const double arm = kArm * height_;
+    for (const Index foot : feet_) {
+      for (int k = 0; k < 3; ++k) {
+        const Vec3 own =
+            k == 0 ? Vec3::Zero() : Vec3(Vec3::Unit(k - 1) * 0.1 * height_ / pose.axes[foot].linear().col(0).norm());
+        const Vec3 at = pose.axes[foot] * own, to = wanted.axes[foot] * own;
+        std::vector<std::pair<Index, Eigen::Matrix3d>> moves;
+        for (int n = static_cast<int>(clip_.joints()[foot].node); n >= 0;
+             n = character_.rig.nodes[static_cast<std::size_t>(n)].parent) {
+          for (Index j = 0; j < clip_.count(); ++j) {
+            if (static_cast<int>(clip_.joints()[j].node) != n) continue;
+            const Vec3 l = pose.axes[j].linear().inverse() * (at - pose.axes[j].translation());
+            Eigen::Matrix3d cross;
+            cross << 0, -l.z(), l.y(), l.z(), 0, -l.x(), -l.y(), l.x(), 0;
+            const Vec3& x = turns_[static_cast<std::size_t>(frame) * clip_.count() + j];
+            moves.emplace_back(j, -pose.axes[j].linear() * cross * turn_derivative(x));
+          }
+        }
+        for (int axis = 0; axis < 3; ++axis) {
+          Wish wish;
+          wish.weight = wish.weight_over = kFoot / (arm * arm);
+          wish.value = to[axis] - at[axis];
+          for (const auto& [joint, m] : moves) {
+            const Vec3 by = m.row(axis).transpose();
+            wish.value += by.dot(turns_[static_cast<std::size_t>(frame) * clip_.count() + joint]);
+            wish.parts.push_back({frame, joint, by});
+          }
+          out.push_back(std::move(wish));
+        }
+      }
+    }
+  }
+
+  double greatest_turn(const MendedEvent& event) const {
+    double most = 0;
+    for (int f = event.from; f <= event.to; ++f) {
+      for (Index j = 0; j < clip_.count(); ++j) {
+        most = std::max(most, turns_[static_cast<std::size_t>(f) * clip_.count() + j].norm());
+      }
+    }
+    return most * 180 / std::numbers::pi;
+  }
+
+  // The event that turns a joint farthest beyond the budget is left as it is. False where there is none.
+  bool give_up_some() {
+    MendedEvent* worst = nullptr;
+    double most = options_.budget_degrees;
+    for (MendedEvent& event : events_) {
+      if (is_wanted(event) && greatest_turn(event) > most) {
+        most = greatest_turn(event);
+        worst = &event;
+      }
+    }
+    if (worst == nullptr) return false;
+    worst->outcome = Outcome::kOverBudget;
+    for (auto& [at, pushes] : pushes_) {
+      const auto& [frame, a, b] = at;
+      if (a == worst->part_a && b == worst->part_b && frame >= worst->from - 1 && frame <= worst->to + 1)
+        pushes.clear();
+    }
+    return true;
+  }
+
+  void finish(Mend& out) {
+    out.joints = clip_.joints();
+    out.in_window = in_window_.empty() ? std::vector<char>(static_cast<std::size_t>(clip_.frames()), 0) : in_window_;
+    std::vector<double> all;
+    for (int f = 0; f < clip_.frames(); ++f) all.push_back(f);
+    const std::vector<Meeting> after = finder_.in_frames(all, turns_);
+    for (MendedEvent& event : events_) {
+      event.depth_after = 0;
+      for (const Meeting& meeting : after) {
+        if (meeting.found.part_a != event.part_a || meeting.found.part_b != event.part_b ||
+            meeting.frame < event.from || meeting.frame > event.to || !is_fault(meeting.found.kind)) {
+          continue;
+        }
+        event.depth_after = std::max(event.depth_after, mm_ * double{meeting.found.depth});
+      }
+      event.turn_degrees = greatest_turn(event);
+      if (is_wanted(event) && event.depth_after == 0) event.outcome = Outcome::kCleared;
+    }
+    out.events = events_;
+    out.turns = turns_;
+  }
+
+  const AnimatedAsset& animated_;
+  const Character& character_;
+  MendOptions options_;
+  double mm_, height_;
+  TurnedClip clip_;
+  FaultFinder finder_;
+  Turns turns_;
+  std::vector<Index> feet_;  // joints
+  std::vector<char> in_window_;
+  std::map<At, Penetration> depth_before_;
+  std::map<At, std::vector<Push>> pushes_;
+  std::vector<MendedEvent> events_;
+};
+
+// What a radian costs. Joints near the trunk carry more with them.
+double price_of(const std::string& role) {
+  static const std::map<std::string, double> kPrices{{"shoulder", 1}, {"elbow", 1}, {"wrist", 2},  {"clavicle", 4},
+                                                     {"neck", 6},     {"head", 6},  {"spine", 12}, {"chest", 12},
+                                                     {"hip", 12},     {"knee", 12}, {"ankle", 25}};
+  std::string name = role;
+  for (const char* side : {"left_", "right_"}) {
+    if (name.starts_with(side)) name = name.substr(std::string(side).size());
+  }
+  const auto found = kPrices.find(name);
+  return found == kPrices.end() ? 0 : found->second;
+}
+
+}  // namespace
+
+const char* outcome_name(Outcome outcome) {
+  static constexpr std::array<const char*, 5> kNames{"cleared", "reduced", "over_budget", "fold", "accepted"};
+  return kNames[static_cast<std::size_t>(outcome)];
+}
+
+std::vector<TurningJoint> turning_joints(const SourceRig& rig, const Roles& roles) {
+  std::vector<TurningJoint> out;
+  for (Index n = 0; n < rig.nodes.size(); ++n) {
+    const double price = n < roles.of_node.size() ? price_of(roles.of_node[n].role) : 0;
+    if (price > 0) out.push_back({n, price * Eigen::Matrix3d::Identity()});
+  }
+  if (!out.empty()) return out;
+  std::set<Index> bones;
+  for (const Bone& bone : rig.bones) bones.insert(bone.node);
+  for (const Index n : bones) {
+    if (const int up = rig.nodes[n].parent; up >= 0 && bones.contains(static_cast<Index>(up))) out.push_back({n});
+  }
+  return out;
+}
+
+Mend mend_clip(const AnimatedAsset& animated, const Roles& roles, const ClipFrames& clip, const MendOptions& options,
+               const std::function<bool(const MendedEvent&)>& leave,
+               const std::function<void(const std::string&)>& told) {
+  return Mender(animated, roles, clip, options).run(leave, told);
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "check/events.h"
+#include "fix/turned_clip.h"
+#include "play/play.h"
+#include "roles/roles.h"
+
+namespace spherechain::baker {
+
+struct MendOptions {
+  double budget_degrees = 25;  // the farthest that an event may turn a joint
+  double margin_mm = 1.5;      // what is pushed out ends so far apart
+};
+
+enum class Outcome { kCleared, kReduced, kOverBudget, kFold, kAccepted };
+const char* outcome_name(Outcome outcome);
+
+// Two body parts in each other over some frames, before and after.
+struct MendedEvent {
+  std::uint32_t part_a, part_b;
+  int from, to;  // frames of the clip
+  PenetrationClass kind;
+  double depth_before, depth_after;  // mm
+  double turn_degrees = 0;           // the largest in its frames
+  Outcome outcome = Outcome::kReduced;
+};
+
+struct Mend {
+  std::vector<TurningJoint> joints;
+  Turns turns;                  // all zero where nothing is changed
+  std::vector<char> in_window;  // of each frame: may it have changed?
+  std::vector<MendedEvent> events;
+  int rounds = 0;
+};
+
+// The joints that may turn, of all that a body's roles name; of a body without such roles all bones below the topmost.
+std::vector<TurningJoint> turning_joints(const SourceRig& rig, const Roles& roles);
+
+// Turns joints so that what is a fault in a clip's frames, and between them, is none any more; feet stay where they
+// are. Whole events that would take a joint beyond the budget are left. `leave` says which are to be left as they are.
+// `told` is called with what is being done.
+Mend mend_clip(const AnimatedAsset& animated, const Roles& roles, const ClipFrames& clip, const MendOptions& options,
+               const std::function<bool(const MendedEvent&)>& leave,
+               const std::function<void(const std::string&)>& told);
+
+}  // namespace spherechain::baker

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fix/turned_clip.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace spherechain::baker {
+namespace {
+
+Eigen::Matrix3d cross_matrix(const Vec3& v) {
+  Eigen::Matrix3d out;
+  out << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return out;
+}
+
+struct Local {
+  Vec3 translation, scale;
+  Eigen::Quaterniond rotation;
+  bool is_animated = false;
+};
+
+}  // namespace
+
+Eigen::Matrix3d turn_derivative(const Vec3& x) {
+  const double angle = x.norm();
+  const Eigen::Matrix3d c = cross_matrix(x);
+  if (angle < 1e-6) return Eigen::Matrix3d::Identity() - 0.5 * c;
+  return Eigen::Matrix3d::Identity() - (1 - std::cos(angle)) / (angle * angle) * c +
+         (angle - std::sin(angle)) / (angle * angle * angle) * c * c;
+}
+
+Eigen::Quaterniond turned(const Eigen::Quaterniond& rotation, const Vec3& x) {
+  const double angle = x.norm();
+  if (angle == 0) return rotation;
+  return rotation * Eigen::Quaterniond(Eigen::AngleAxisd(angle, x / angle));
+}
+
+TurnedClip::TurnedClip(const SourceRig& rig, const Clip& clip, double fps, int frames, std::vector<TurningJoint> joints)
+    : rig_(rig),
+      clip_(clip),
+      fps_(fps),
+      frames_(frames),
+      joints_(std::move(joints)),
+      joint_of_node_(rig.nodes.size(), -1) {
+  for (std::size_t j = 0; j < joints_.size(); ++j) joint_of_node_[joints_[j].node] = static_cast<int>(j);
+  for (const Bone& bone : rig.bones) {
+    std::vector<Index>& above = above_.emplace_back();
+    for (int n = static_cast<int>(bone.node); n >= 0; n = rig.nodes[static_cast<std::size_t>(n)].parent) {
+      const int joint = joint_of_node_[static_cast<std::size_t>(n)];
+      if (joint >= 0) above.push_back(static_cast<Index>(joint));
+    }
+  }
+}
+
+TurnedClip::Pose TurnedClip::pose(double frame, const Turns& turns) const {
+  const double seconds = frame / fps_;
+  std::vector<Local> locals;
+  for (const Node& node : rig_.nodes) locals.push_back({node.translation, node.scale, node.rotation});
+  Pose out;
+  for (const Morph& morph : rig_.morphs) out.deformation.morphs.push_back(morph.rest_weight);
+  for (const Channel& channel : clip_.channels) {
+    const Eigen::Vector4d v = sample(channel, seconds);
+    if (channel.path == ChannelPath::kMorphWeight) {
+      out.deformation.morphs[channel.target] = v[0];
+      continue;
+    }
+    Local& local = locals[channel.target];
+    local.is_animated = true;
+    if (channel.path == ChannelPath::kTranslation) local.translation = v.head<3>();
+    if (channel.path == ChannelPath::kRotation) local.rotation = Eigen::Quaterniond(v);
+    if (channel.path == ChannelPath::kScale) local.scale = v.head<3>();
+  }
+  const int first = std::clamp(static_cast<int>(std::floor(frame)), 0, frames_ - 1);
+  const int next = std::min(first + 1, frames_ - 1);
+  const double share = std::clamp(frame - first, 0.0, 1.0);
+  std::vector<Affine> world(locals.size());
+  out.axes.resize(joints_.size());
+  for (std::size_t n = 0; n < locals.size(); ++n) {
+    const Node& node = rig_.nodes[n];
+    Local& local = locals[n];
+    const int joint = joint_of_node_[n];
+    Affine own = node.local;
+    if (local.is_animated || joint >= 0) {
+      if (joint >= 0) {
+        const auto turn = [&](int f) {
+          return turns[static_cast<std::size_t>(f) * joints_.size() + static_cast<std::size_t>(joint)];
+        };
+        local.rotation = turned(local.rotation, (1 - share) * turn(first) + share * turn(next));
+      }
+      own.linear() = local.rotation.toRotationMatrix() * local.scale.asDiagonal();
+      own.translation() = local.translation;
+    }
+    const Affine up = node.parent < 0 ? Affine::Identity() : world[static_cast<std::size_t>(node.parent)];
+    world[n] = up * own;
+    if (joint >= 0) {
+      Affine axes = Affine::Identity();
+      axes.linear() = local.rotation.toRotationMatrix();
+      axes.translation() = local.translation;
+      out.axes[static_cast<std::size_t>(joint)] = rig_.to_rest * up * axes;
+    }
+  }
+  for (const Bone& bone : rig_.bones) {
+    out.deformation.bones.push_back(rig_.to_rest * world[bone.node] * bone.inverse_bind);
+  }
+  return out;
+}
+
+SpotMotion motion_of(const TurnedClip& clip, const TurnedClip::Pose& pose, const std::vector<Vec3>& rest,
+                     const std::vector<VertexWeights>& weights, const SkinSpot& spot, const Vec3* turns) {
+  SpotMotion out;
+  std::vector<Vec3> arms(clip.count(), Vec3::Zero());  // a joint's: sum of shares times what it carries, in its axes
+  std::vector<char> used(clip.count(), 0);
+  for (std::size_t corner = 0; corner < 3; ++corner) {
+    const Index v = spot.vertices[corner];
+    for (std::size_t k = 0; k < kMaxInfluences; ++k) {
+      const double share = spot.shares[corner] * weights[v].weight[k];
+      if (share == 0) continue;
+      const Index bone = weights[v].joint[k];
+      const Vec3 at = pose.deformation.bones[bone] * rest[v];
+      out.at += share * at;
+      for (const Index joint : clip.above(bone)) {
+        const Affine& axes = pose.axes[joint];
+        arms[joint] += share * (axes.linear().inverse() * (at - axes.translation()));
+        used[joint] = 1;
+      }
+    }
+  }
+  for (Index joint = 0; joint < clip.count(); ++joint) {
+    if (used[joint] == 0) continue;
+    // A turn d moves what is at l in the joint's axes by d x l.
+    out.by_joint.emplace_back(joint,
+                              -pose.axes[joint].linear() * cross_matrix(arms[joint]) * turn_derivative(turns[joint]));
+  }
+  return out;
+}
+
+}  // namespace spherechain::baker

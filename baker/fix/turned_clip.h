@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "motion/clip.h"
+
+namespace spherechain::baker {
+
+// A joint that a mend may turn.
+struct TurningJoint {
+  Index node;
+  Eigen::Matrix3d price = Eigen::Matrix3d::Identity();  // a turn x, in the joint's own axes, costs x' price x
+};
+
+// Rotation vectors, in the joints' own axes: radians, a joint's after the other's, frame by frame.
+using Turns = std::vector<Vec3>;
+
+// Derivative of a turn: turning by x + d is turning by x, then by this times d, to first order.
+Eigen::Matrix3d turn_derivative(const Vec3& x);
+Eigen::Quaterniond turned(const Eigen::Quaterniond& rotation, const Vec3& x);
+
+// A clip with joints turned on top of what it does.
+class TurnedClip {
+ public:
+  // `rig` and `clip` must outlive it. Frames lie at number / fps seconds.
+  TurnedClip(const SourceRig& rig, const Clip& clip, double fps, int frames, std::vector<TurningJoint> joints);
+
+  struct Pose {
+    Deformation deformation;
+    std::vector<Affine> axes;  // of each turning joint, before its scale: to the rest pose's space
+  };
+  // `frame` may have a fraction: turns are blended.
+  Pose pose(double frame, const Turns& turns) const;
+
+  const SourceRig& rig() const { return rig_; }
+  const Clip& clip() const { return clip_; }
+  double fps() const { return fps_; }
+  int frames() const { return frames_; }
+  const std::vector<TurningJoint>& joints() const { return joints_; }
+  std::size_t count() const { return joints_.size(); }
+  // The turning joints that move a bone, itself among them.
+  const std::vector<Index>& above(Index bone) const { return above_[bone]; }
+  // Hinges give way along their axis alone: `axis` in the joint's own axes.
+  void set_price(std::size_t joint, const Eigen::Matrix3d& price) { joints_[joint].price = price; }
+
+ private:
+  const SourceRig& rig_;
+  const Clip& clip_;
+  double fps_;
+  int frames_;
+  std::vector<TurningJoint> joints_;
+  std::vector<int> joint_of_node_;
+  std::vector<std::vector<Index>> above_;
+};
+
+// A point of the skin: shares of a triangle's corners.
+struct SkinSpot {
+  std::array<Index, 3> vertices{};
+  std::array<double, 3> shares{};
+};
+
+// Where it is, and how it moves with each turning joint: column 3 j + k is by what the turn of joint j along k moves
+// it.
+struct SpotMotion {
+  Vec3 at = Vec3::Zero();
+  std::vector<std::pair<Index, Eigen::Matrix3d>> by_joint;
+};
+SpotMotion motion_of(const TurnedClip& clip, const TurnedClip::Pose& pose, const std::vector<Vec3>& rest,
+                     const std::vector<VertexWeights>& weights, const SkinSpot& spot, const Vec3* turns);
+
+}  // namespace spherechain::baker
