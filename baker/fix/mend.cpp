@@ -19,8 +19,14 @@ namespace spherechain::baker {
 namespace {
 
 constexpr int kRounds = 16;
-constexpr double kPad = 0.35;       // seconds around an event in which joints turn, too
-constexpr double kWish = 1e5;       // of a miss of one arm's length, against a radian
+constexpr int kTrying = 10;  // after so many, what stays is left
+constexpr int kTapers = 3;
+constexpr double kSame = 2e-4;  // radians
+constexpr int kPatience = 3;    // rounds that an event may take without getting better
+constexpr double kStep = 10;    // degrees that a joint turns in a round, at most
+constexpr double kPad = 0.35;   // seconds around an event in which joints turn, too
+constexpr double kWish = 1e4,
+                 kWishMost = 1e6;   // grows by round:      // of a miss of one arm's length, against a radian
 constexpr double kPullBack = 50;    // of what was no deeper than kShallow: it ends near
 constexpr double kShallow = 10;     // mm
 constexpr double kFoot = 1e6;       // of a foot that moves
@@ -74,30 +80,67 @@ class Mender {
     Turns best = turns_;
     double least = HUGE_VAL;
     for (int round = 0; round < kRounds && !is_idle(); ++round) {
-      const std::vector<Meeting> now = round == 0 ? before : finder_.in_frames(frames_in_window(), turns_);
-      std::vector<Meeting> between;
+      const std::vector<Meeting> now = round == 0 ? before : look(frames_in_window());
       double badness = add_pushes(now);
       if (round > 0 && (badness == 0 || round % 4 == 3)) {
-        between = finder_.between(whole_frames_in_window(), turns_);
-        badness += add_pushes(between);
+        badness += add_pushes(finder_.between(whole_frames_in_window(), turns_));
       }
       told(fmt::format("round {}: {:.1f} mm too deep", round + 1, badness * mm_));
       if (badness < least && round > 0) {
         least = badness;
         best = turns_;
       }
-      if (badness == 0 && !give_up_some()) break;
+      const bool is_last = badness == 0 || round >= kTrying;
+      if (const bool gave_up = give_up(now, round, is_last); gave_up) {
+        least = HUGE_VAL;
+      } else if (badness == 0) {
+        break;
+      }
       open_windows();
-      turns_ = solve_turns(clip_, in_window_, wishes(), turns_);
+      weight_ = std::min(kWish * std::pow(2, round), kWishMost);
+      take(solve_turns(clip_, in_window_, wishes(), turns_));
       out.rounds = round + 1;
-      if (round >= 5 && round % 5 == 0) give_up_some();
     }
     turns_ = best;
+    take_back_what_fails();
     finish(out);
     return out;
   }
 
  private:
+  // A joint turns a little a round, and never beyond the budget.
+  void take(const Turns& wanted) {
+    const double step = kStep * std::numbers::pi / 180, most = options_.budget_degrees * std::numbers::pi / 180;
+    for (std::size_t i = 0; i < turns_.size(); ++i) {
+      Vec3 move = wanted[i] - turns_[i];
+      if (move.norm() > step) move *= step / move.norm();
+      turns_[i] += move;
+      if (turns_[i].norm() > most) turns_[i] *= most / turns_[i].norm();
+    }
+  }
+
+  // What was found before in a frame holds while joints turn by no more than can be seen.
+  std::vector<Meeting> look(const std::vector<double>& frames) {
+    std::vector<double> changed;
+    for (const double frame : frames) {
+      std::vector<Vec3> now = turns_at(frame);
+      const auto known = seen_.find(frame);
+      bool is_same = known != seen_.end();
+      for (std::size_t j = 0; is_same && j < now.size(); ++j)
+        is_same = (now[j] - known->second.turns[j]).norm() < kSame;
+      if (is_same) continue;
+      changed.push_back(frame);
+      seen_[frame] = {std::move(now), {}};
+    }
+    for (const Meeting& meeting : finder_.in_frames(changed, turns_)) seen_[meeting.frame].found.push_back(meeting);
+    std::vector<Meeting> out;
+    for (const double frame : frames) {
+      const std::vector<Meeting>& found = seen_[frame].found;
+      out.insert(out.end(), found.begin(), found.end());
+    }
+    return out;
+  }
+
   bool is_idle() const {
     return std::none_of(events_.begin(), events_.end(), [](const MendedEvent& e) { return is_wanted(e); });
   }
@@ -152,10 +195,7 @@ class Mender {
 
   const MendedEvent* event_of(const Meeting& meeting) const {
     for (const MendedEvent& event : events_) {
-      if (event.part_a == meeting.found.part_a && event.part_b == meeting.found.part_b &&
-          meeting.frame >= event.from - 1 && meeting.frame <= event.to + 1) {
-        return &event;
-      }
+      if (is_in(meeting.frame, meeting.found.part_a, meeting.found.part_b, event)) return &event;
     }
     return nullptr;
   }
@@ -176,7 +216,8 @@ class Mender {
     for (const Meeting& meeting : meetings) {
       const Penetration& p = meeting.found;
       const double may_be = allowed(meeting), excess = double{p.depth} - may_be;
-      const double slack = (p.kind == SC_CLASS_FOLD || p.kind == SC_CLASS_DEEP_FOLD ? kFoldDeeper : kDeeper) / mm_;
+      const double slack =
+          (is_fault(p.kind) && p.kind != SC_CLASS_DEEP_FOLD ? kDeeper : kFoldDeeper) / mm_ + 0.1 * may_be;
       if (may_be >= 0 && excess <= slack) continue;
       if (may_be >= 0 && (p.kind == SC_CLASS_REST || p.kind == SC_CLASS_SHELL || p.part_a == p.part_b)) continue;
       sum += may_be < 0 ? double{p.depth} : excess;
@@ -240,7 +281,7 @@ class Mender {
             motion_of(clip_, pose, character_.source_positions, animated_.weights(), push.b, now.data());
         const double gap = push.way.dot(b.at - a.at);
         Wish wish;
-        wish.weight = kWish / (arm * arm);
+        wish.weight = weight_ / (arm * arm);
         wish.weight_over = push.is_shallow ? kPullBack / (arm * arm) : 0;
         wish.value = std::min(push.target - gap, kFarthest * height_);
         std::map<Index, Vec3> by;
@@ -324,24 +365,96 @@ class Mender {
     return most * 180 / std::numbers::pi;
   }
 
-  // The event that turns a joint farthest beyond the budget is left as it is. False where there is none.
-  bool give_up_some() {
-    MendedEvent* worst = nullptr;
-    double most = options_.budget_degrees;
-    for (MendedEvent& event : events_) {
-      if (is_wanted(event) && greatest_turn(event) > most) {
-        most = greatest_turn(event);
-        worst = &event;
+  // Events that get no better are left as they are. False where there is none.
+  bool give_up(const std::vector<Meeting>& now, int round, bool is_last) {
+    best_left_.resize(events_.size(), HUGE_VAL);
+    best_round_.resize(events_.size(), 0);
+    bool any = false;
+    for (std::size_t e = 0; e < events_.size(); ++e) {
+      MendedEvent& event = events_[e];
+      if (!is_wanted(event)) continue;
+      double left = 0;
+      for (const Meeting& m : now) {
+        if (is_fault(m.found.kind) && is_in(m.frame, m.found.part_a, m.found.part_b, event))
+          left += double{m.found.depth};
+      }
+      if (left < 0.9 * best_left_[e]) {
+        best_left_[e] = left;
+        best_round_[e] = round;
+      }
+      if (left == 0 || (!is_last && round - best_round_[e] < kPatience)) continue;
+      event.outcome = Outcome::kOverBudget;
+      any = true;
+      for (auto& [at, pushes] : pushes_) {
+        const auto& [frame, a, b] = at;
+        if (is_in(frame, a, b, event)) pushes.clear();
       }
     }
-    if (worst == nullptr) return false;
-    worst->outcome = Outcome::kOverBudget;
-    for (auto& [at, pushes] : pushes_) {
-      const auto& [frame, a, b] = at;
-      if (a == worst->part_a && b == worst->part_b && frame >= worst->from - 1 && frame <= worst->to + 1)
-        pushes.clear();
+    return any;
+  }
+
+  static bool is_in(double frame, std::uint32_t a, std::uint32_t b, const MendedEvent& event) {
+    return a == event.part_a && b == event.part_b && frame >= event.from - 1 && frame <= event.to + 1;
+  }
+
+  // Where something is worse than before, joints turn back around it, softly; and where that does not help, in all that
+  // lies together in time.
+  void take_back_what_fails() {
+    if (in_window_.empty()) return;
+    for (int turn = 0; turn <= kTapers; ++turn) {
+      std::vector<char> fails(in_window_.size(), 0);
+      const std::vector<int> whole = whole_frames_in_window();
+      std::vector<Meeting> after = look({whole.begin(), whole.end()});
+      const std::vector<Meeting> between = finder_.between(whole, turns_);
+      after.insert(after.end(), between.begin(), between.end());
+      bool any = false;
+      for (const Meeting& meeting : after) {
+        if (!is_fault(meeting.found.kind) || !is_worse(meeting)) continue;
+        fails[static_cast<std::size_t>(meeting.frame)] = 1;
+        any = true;
+      }
+      if (!any) return;
+      if (turn < kTapers) {
+        taper(fails);
+      } else {
+        turn_back(fails);
+      }
     }
-    return true;
+  }
+
+  void taper(const std::vector<char>& fails) {
+    const double pad = kPad * clip_.fps();
+    for (std::size_t f = 0; f < fails.size(); ++f) {
+      double near = HUGE_VAL;
+      for (std::size_t g = 0; g < fails.size(); ++g) {
+        if (fails[g] != 0) near = std::min(near, std::abs(static_cast<double>(f) - static_cast<double>(g)));
+      }
+      const double share = std::clamp((near - pad) / pad, 0.0, 1.0), smooth = share * share * (3 - 2 * share);
+      for (std::size_t j = 0; j < clip_.count(); ++j) turns_[f * clip_.count() + j] *= smooth;
+    }
+  }
+
+  void turn_back(const std::vector<char>& fails) {
+    for (std::size_t begin = 0; begin < fails.size(); ++begin) {
+      std::size_t end = begin;
+      bool any = false;
+      for (; end < fails.size() && in_window_[end] != 0; ++end) any |= fails[end] != 0;
+      if (any) {
+        std::fill(turns_.begin() + static_cast<std::ptrdiff_t>(begin * clip_.count()),
+                  turns_.begin() + static_cast<std::ptrdiff_t>(end * clip_.count()), Vec3::Zero());
+      }
+      begin = end;
+    }
+  }
+
+  // Than the same parts were around that time.
+  bool is_worse(const Meeting& meeting) const {
+    double most = 0;
+    for (int f = static_cast<int>(meeting.frame) - 1; f <= static_cast<int>(meeting.frame) + 2; ++f) {
+      const auto known = depth_before_.find({f, meeting.found.part_a, meeting.found.part_b});
+      if (known != depth_before_.end()) most = std::max(most, double{known->second.depth});
+    }
+    return double{meeting.found.depth} > most + kFoldDeeper / mm_;
   }
 
   void finish(Mend& out) {
@@ -360,7 +473,12 @@ class Mender {
         event.depth_after = std::max(event.depth_after, mm_ * double{meeting.found.depth});
       }
       event.turn_degrees = greatest_turn(event);
-      if (is_wanted(event) && event.depth_after == 0) event.outcome = Outcome::kCleared;
+      if (event.outcome == Outcome::kAccepted || event.outcome == Outcome::kFold) continue;
+      if (event.depth_after == 0) {
+        event.outcome = Outcome::kCleared;
+      } else if (event.depth_after < 0.8 * event.depth_before) {
+        event.outcome = Outcome::kReduced;
+      }
     }
     out.events = events_;
     out.turns = turns_;
@@ -378,6 +496,14 @@ class Mender {
   std::map<At, Penetration> depth_before_;
   std::map<At, std::vector<Push>> pushes_;
   std::vector<MendedEvent> events_;
+  struct Seen {
+    std::vector<Vec3> turns;
+    std::vector<Meeting> found;
+  };
+  std::map<double, Seen> seen_;
+  std::vector<double> best_left_;  // of each event, mm in all
+  std::vector<int> best_round_;
+  double weight_ = kWish;
 };
 
 // What a radian costs. Joints near the trunk carry more with them.

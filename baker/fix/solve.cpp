@@ -11,6 +11,7 @@ namespace spherechain::baker {
 namespace {
 
 constexpr double kSteadyTime = 0.1;  // seconds: what changes within is dear
+constexpr double kLeave = 3;         // of a radian from where the round starts
 constexpr int kTrials = 4;           // in which wishes are found to be met
 
 using Matrix = Eigen::SparseMatrix<double>;
@@ -90,13 +91,15 @@ Turns solve_turns(const TurnedClip& clip, const std::vector<char>& in_window, co
         x.segment<3>(at) = start[f * count + j];
     }
   }
-  const Matrix prices = system.prices();
+  Matrix prices = system.prices();
+  for (Eigen::Index i = 0; i < system.size(); ++i) prices.coeffRef(i, i) += kLeave;
+  const Eigen::VectorXd begin = x;
   Eigen::SimplicialLLT<Matrix> cholesky;
   std::vector<char> is_over(wishes.size());
   for (std::size_t i = 0; i < wishes.size(); ++i) is_over[i] = sum_of(wishes[i], system, x) > wishes[i].value ? 1 : 0;
   for (int round = 0; round < kTrials; ++round) {
     std::vector<Eigen::Triplet<double>> entries;
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(system.size());
+    Eigen::VectorXd right = kLeave * begin;
     for (std::size_t i = 0; i < wishes.size(); ++i) {
       const Wish& wish = wishes[i];
       const double weight = is_over[i] != 0 ? wish.weight_over : wish.weight;

@@ -21,7 +21,8 @@ struct Wish {
 };
 
 // The turns of a clip's frames that cost least: their price, how unsteady they are, and what is missed of the wishes.
-// Frames outside of `in_window` keep zero. One linear system over all of the clip. `start` is where to begin.
+// Frames outside of `in_window` keep zero. One linear system over all of the clip. To leave `start` has its price, too:
+// wishes hold near it alone.
 Turns solve_turns(const TurnedClip& clip, const std::vector<char>& in_window, const std::vector<Wish>& wishes,
                   const Turns& start);
 

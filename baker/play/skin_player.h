@@ -55,8 +55,10 @@ class SkinPlayer {
   const std::vector<Penetration>& measure(const sc_pose& pose, bool is_next);
   // The same by the quick form: along one direction, as games do.
   const std::vector<Penetration>& measure_quickly(const sc_pose& pose);
-  // Two body parts alone, in full, whatever came before. `contacts` are all of theirs in that pose.
-  Penetration measure_parts(const sc_pose& pose, const std::vector<TriangleContact>& contacts);
+  // Two body parts alone, in full, whatever came before. `contacts` are all of theirs in that pose; `previous` is what
+  // was found of them a moment before, or null.
+  Penetration measure_parts(const sc_pose& pose, const std::vector<TriangleContact>& contacts,
+                            const Penetration* previous = nullptr);
 
  private:
   SkinContactJob job(const sc_pose& pose);
