@@ -1,22 +1,33 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "check/rules.h"
 #include "cli/commands.h"
+#include "cli/installed.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "fix/fix_report.h"
 #include "fix/mend.h"
 #include "fix/write_clip.h"
+#include "page/page_of_two.h"
 #include "pipeline/pipeline.h"
 #include "write/write.h"
 
 namespace spherechain::baker {
 namespace {
+
+namespace fs = std::filesystem;
+
+void make_folder(const std::string& path) {
+  std::error_code failed;
+  fs::create_directories(path, failed);
+  if (failed) throw Error(ExitCode::kFile, path + ": no such folder can be made (" + failed.message() + ")");
+}
 
 Event event_of(const MendedEvent& mended, const std::vector<BodyPart>& parts) {
   Event event;
@@ -26,19 +37,46 @@ Event event_of(const MendedEvent& mended, const std::vector<BodyPart>& parts) {
   return event;
 }
 
+// Pages of the clips that changed, before and after side by side.
+void write_pages(const FixOptions& options, const Bake& baked, const AnimatedAsset& before,
+                 const std::vector<MendedClip>& clips) {
+  const fs::path page = installed_page("viewer.html");
+  if (!fs::is_regular_file(page)) return;
+  const std::string_view asset(reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size());
+  for (std::size_t i = 0; i < clips.size(); ++i) {
+    const MendedClip& clip = clips[i];
+    if (std::all_of(clip.mend.turns.begin(), clip.mend.turns.end(), [](const Vec3& x) { return x.isZero(0); }))
+      continue;
+    MotionChoice motion;
+    motion.clip = before.clips()[i].name;
+    const AnimatedAsset one(OpenAsset(asset, options.input), options.input, options.input, motion, {0, 0});
+    const AnimatedAsset other(OpenAsset(asset, options.input), options.input, options.output, motion, {0, 0});
+    PageOptions page_options;
+    page_options.template_file = page.string();
+    page_options.title = fs::path(options.input).filename().string() + ": before (grey) and after (blue)";
+    page_options.names = {"before", "after"};
+    page_options.fps = one.clips()[0].fps;
+    const Place beside{1.2, 0, 0};
+    write_atomically(fs::path(options.report) / fmt::format("clip_{}.html", i),
+                     view_page_of_two(one, other, &beside, page_options, [](int) {}));
+  }
+}
+
 }  // namespace
 
 ExitCode run_fix(const FixOptions& options) {
   CheckConfig config = default_config();
   if (!options.keep.empty()) config = read_config(read_file(options.keep), options.keep, config);
   check_regular_file(options.input);
+  const std::string json = options.report.empty() ? "" : (fs::path(options.report) / "fix.json").string();
+  if (!options.report.empty()) make_folder(options.report);
   check_outputs(with_source({{"--keep", options.keep}}, "INPUT", options.input),
-                {{"-o", options.output}, {"--report", options.report}});
+                {{"-o", options.output}, {"--report", json}});
   check_replaceable(options.output, "glTF", "a GLB file", options.force);
-  check_replaceable_json(options.report, options.force, "--force replaces it");
+  check_replaceable_json(json, options.force, "--force replaces it");
 
   std::vector<MendedClip> clips;
-  std::string bytes = read_file(options.input);
+  std::string text, bytes = read_file(options.input);
   {
     Progress progress("fix " + options.input + ":");
     const Bake baked = bake(options.input, config.bake, [&](const std::string& stage) { progress.show(stage); });
@@ -64,12 +102,17 @@ ExitCode run_fix(const FixOptions& options) {
       const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
       clips.push_back({clip.name, std::move(mend), turned.count(), seconds.count()});
     }
-    if (!options.report.empty()) write_atomically(options.report, fix_json(clips, parts));
     write_atomically(options.output, bytes);
-    progress.show("done");
-    for (const MendedClip& clip : clips) fmt::print("{}", fix_text(clip, parts));
+    if (!json.empty()) {
+      progress.show("report");
+      write_atomically(json, fix_json(clips, parts));
+      write_pages(options, baked, animated, clips);
+    }
+    text = fix_text(clips, parts);
   }
+  fmt::print("{}", text);
   fmt::print("wrote {}\n", options.output);
+  if (!json.empty()) fmt::print("wrote {}: fix.json, and a page of each clip that changed\n", options.report);
   return leaves_faults(clips) ? ExitCode::kTargetMissed : ExitCode::kDone;
 }
 

@@ -208,7 +208,7 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(0.0, 100.0))
       ->check(refuse_nan)
       ->capture_default_str();
-  add_output(*fix_command, "--report", fix.report, "JSON file to write");
+  add_output(*fix_command, "--report", fix.report, "Folder to write: fix.json, and pages of before and after");
   fix_command->add_flag("--force", fix.force, "Replace output files of another kind");
   fix_command->callback([&] { run = [&] { return run_fix(fix); }; });
 

@@ -51,8 +51,12 @@ std::vector<Meeting> FaultFinder::look(SkinPlayer& player, double frame, const T
   const BonePose bones(animated_.asset(), clip_.pose(frame, turns).deformation);
   const sc_pose pose = bones.pose();
   std::vector<Meeting> out;
-  const std::vector<TriangleContact> contacts = player.find(pose);
-  for (const Penetration& quick : player.measure_quickly(pose)) out.push_back({frame, quick});
+  std::vector<TriangleContact> contacts = player.find(pose);
+  contacts.erase(
+      std::remove_if(contacts.begin(), contacts.end(),
+                     [&](const TriangleContact& c) { return left_out_.contains(std::minmax(c.part_a, c.part_b)); }),
+      contacts.end());
+  for (const Penetration& quick : player.measure_quickly(pose, contacts)) out.push_back({frame, quick});
   for (Meeting& meeting : out) {
     if (!is_fault(meeting.found.kind)) continue;
     std::vector<TriangleContact> of_them;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "fix/turned_clip.h"
@@ -21,6 +24,9 @@ class FaultFinder {
  public:
   FaultFinder(const AnimatedAsset& animated, const TurnedClip& clip);
 
+  // Pairs of parts (the lesser number first) that are not looked at.
+  void leave_out(std::set<std::pair<std::uint32_t, std::uint32_t>> pairs) { left_out_ = std::move(pairs); }
+
   // In the order of the frames, then by parts.
   std::vector<Meeting> in_frames(const std::vector<double>& frames, const Turns& turns);
   // Faults on the way from each of these whole frames to the next that are none in either; where they are about
@@ -34,6 +40,7 @@ class FaultFinder {
 
   const AnimatedAsset& animated_;
   const TurnedClip& clip_;
+  std::set<std::pair<std::uint32_t, std::uint32_t>> left_out_;
   std::vector<SkinPlayer> players_;  // one a thread
   std::vector<StepPlayer> steps_;
 };

@@ -39,6 +39,24 @@ double quantile(const std::vector<double>& ascending, double q) {
   return ascending[static_cast<std::size_t>(q * static_cast<double>(ascending.size() - 1))];
 }
 
+std::string clip_text(const MendedClip& clip, const std::vector<BodyPart>& parts) {
+  std::map<Outcome, int> counts;
+  std::string rows;
+  for (const MendedEvent& e : clip.mend.events) {
+    ++counts[e.outcome];
+    rows += fmt::format("  {:<34} {:>5}-{:<5} {:>6.1f} -> {:>5.1f} mm  {:>5.1f} degrees  {}\n",
+                        parts[e.part_a].name + ", " + parts[e.part_b].name, e.from, e.to, e.depth_before, e.depth_after,
+                        e.turn_degrees, outcome_name(e.outcome));
+  }
+  std::string out = fmt::format("{}: {} events", clip.name, clip.mend.events.size());
+  for (const auto& [outcome, count] : counts) out += fmt::format(", {} {}", count, outcome_name(outcome));
+  const std::vector<double> turns = turns_of(clip);
+  return out +
+         fmt::format("; turns {:.1f} degrees in the median, {:.1f} in p90, {:.1f} at most; {} rounds, {:.1f} s\n{}",
+                     quantile(turns, 0.5), quantile(turns, 0.9), quantile(turns, 1), clip.mend.rounds, clip.seconds,
+                     rows);
+}
+
 }  // namespace
 
 std::string fix_json(const std::vector<MendedClip>& clips, const std::vector<BodyPart>& parts) {
@@ -61,27 +79,28 @@ std::string fix_json(const std::vector<MendedClip>& clips, const std::vector<Bod
          {"events", std::move(events)},
          {"turn_degrees",
           {{"median", quantile(turns, 0.5)}, {"p90", quantile(turns, 0.9)}, {"max", quantile(turns, 1)}}},
+         {"feet_mm", clip.mend.feet_mm},
+         {"feet_degrees", clip.mend.feet_degrees},
+         {"jerk_ratio", clip.mend.jerk_ratio},
+         {"shallow_contacts", clip.mend.shallow},
+         {"shallow_contacts_still_near", clip.mend.still_near},
          {"seconds", clip.seconds}});
   }
   return json_text(out, 1) + "\n";
 }
 
-std::string fix_text(const MendedClip& clip, const std::vector<BodyPart>& parts) {
-  std::map<Outcome, int> counts;
-  std::string rows;
-  for (const MendedEvent& e : clip.mend.events) {
-    ++counts[e.outcome];
-    rows += fmt::format("  {:<34} {:>5}-{:<5} {:>6.1f} -> {:>5.1f} mm  {:>5.1f} degrees  {}\n",
-                        parts[e.part_a].name + ", " + parts[e.part_b].name, e.from, e.to, e.depth_before, e.depth_after,
-                        e.turn_degrees, outcome_name(e.outcome));
+// Clips without an event are counted.
+std::string fix_text(const std::vector<MendedClip>& clips, const std::vector<BodyPart>& parts) {
+  std::string out;
+  int clean = 0;
+  for (const MendedClip& clip : clips) {
+    if (clip.mend.events.empty()) {
+      ++clean;
+    } else {
+      out += clip_text(clip, parts);
+    }
   }
-  std::string out = fmt::format("{}: {} events", clip.name, clip.mend.events.size());
-  for (const auto& [outcome, count] : counts) out += fmt::format(", {} {}", count, outcome_name(outcome));
-  const std::vector<double> turns = turns_of(clip);
-  return out +
-         fmt::format("; turns {:.1f} degrees in the median, {:.1f} in p90, {:.1f} at most; {} rounds, {:.1f} s\n{}",
-                     quantile(turns, 0.5), quantile(turns, 0.9), quantile(turns, 1), clip.mend.rounds, clip.seconds,
-                     rows);
+  return out + (clean > 0 ? fmt::format("{} of {} clips have no event: left as they are\n", clean, clips.size()) : "");
 }
 
 bool leaves_faults(const std::vector<MendedClip>& clips) {

@@ -18,7 +18,7 @@ struct MendedClip {
 
 // The file of `fix --report`, and the same for people.
 std::string fix_json(const std::vector<MendedClip>& clips, const std::vector<BodyPart>& parts);
-std::string fix_text(const MendedClip& clip, const std::vector<BodyPart>& parts);
+std::string fix_text(const std::vector<MendedClip>& clips, const std::vector<BodyPart>& parts);
 
 // Whether an event is left that could have been expected to be cleared.
 bool leaves_faults(const std::vector<MendedClip>& clips);

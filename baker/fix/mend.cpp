@@ -66,6 +66,7 @@ class Mender {
       const std::string& role = roles.of_node[clip_.joints()[j].node].role;
       if (role == "left_elbow" || role == "right_elbow" || role == "left_knee" || role == "right_knee") make_hinge(j);
       if (role == "left_ankle" || role == "right_ankle") feet_.push_back(j);
+      if (role == "left_wrist" || role == "right_wrist") wrists_.push_back(j);
     }
   }
 
@@ -76,6 +77,7 @@ class Mender {
     const std::vector<Meeting> before = finder_.in_frames(all, turns_);
     for (const Meeting& meeting : before) depth_before_[at_of(meeting)] = meeting.found;
     make_events(before, leave);
+    finder_.leave_out(harmless(before));
     Mend out;
     Turns best = turns_;
     double least = HUGE_VAL;
@@ -117,6 +119,20 @@ class Mender {
       turns_[i] += move;
       if (turns_[i].norm() > most) turns_[i] *= most / turns_[i].norm();
     }
+  }
+
+  // Pairs of parts that are never more than layers of each other, or as at rest.
+  static std::set<PartPair> harmless(const std::vector<Meeting>& meetings) {
+    std::map<PartPair, PenetrationClass> worst;
+    for (const Meeting& m : meetings) {
+      PenetrationClass& kind = worst.try_emplace({m.found.part_a, m.found.part_b}, m.found.kind).first->second;
+      kind = std::max(kind, m.found.kind);
+    }
+    std::set<PartPair> out;
+    for (const auto& [pair, kind] : worst) {
+      if (kind <= SC_CLASS_SHELL) out.insert(pair);
+    }
+    return out;
   }
 
   // What was found before in a frame holds while joints turn by no more than can be seen.
@@ -482,6 +498,59 @@ class Mender {
     }
     out.events = events_;
     out.turns = turns_;
+    compare(out);
+    count_near(out);
+  }
+
+  // What feet and wrists do that they did not do before.
+  void compare(Mend& out) const {
+    const Turns none(turns_.size(), Vec3::Zero());
+    std::vector<std::vector<std::array<Vec3, 2>>> wrists(wrists_.size());  // before and after
+    for (int f = 0; f < clip_.frames(); ++f) {
+      const TurnedClip::Pose before = clip_.pose(f, none), after = clip_.pose(f, turns_);
+      for (const Index foot : feet_) {
+        const Affine &a = before.axes[foot], &b = after.axes[foot];
+        out.feet_mm = std::max(out.feet_mm, mm_ * (a.translation() - b.translation()).norm());
+        const double scale = std::cbrt(a.linear().determinant());
+        const Eigen::Quaterniond p(Eigen::Matrix3d(a.linear() / scale)), q(Eigen::Matrix3d(b.linear() / scale));
+        out.feet_degrees = std::max(out.feet_degrees, p.angularDistance(q) * 180 / std::numbers::pi);
+      }
+      for (std::size_t w = 0; w < wrists_.size(); ++w) {
+        wrists[w].push_back({before.axes[wrists_[w]].translation(), after.axes[wrists_[w]].translation()});
+      }
+    }
+    double sums[2] = {};
+    for (const auto& way : wrists) {
+      for (std::size_t f = 3; f < way.size(); ++f) {
+        constexpr double kMoved = 3;  // mm
+        if (mm_ * (way[f - 1][0] - way[f - 1][1]).norm() < kMoved) continue;
+        for (std::size_t k = 0; k < 2; ++k) {
+          sums[k] += (way[f][k] - 3 * way[f - 1][k] + 3 * way[f - 2][k] - way[f - 3][k]).norm();
+        }
+      }
+    }
+    if (sums[0] > 0) out.jerk_ratio = sums[1] / sums[0];
+  }
+
+  void count_near(Mend& out) const {
+    constexpr double kNear = 5;  // mm
+    for (const auto& [at, pushes] : pushes_) {
+      const auto known = depth_before_.find(at);
+      if (pushes.empty() || known == depth_before_.end() || !is_fault(known->second.kind)) continue;
+      if (mm_ * double{known->second.depth} > kShallow) continue;
+      ++out.shallow;
+      const double frame = std::get<0>(at);
+      const TurnedClip::Pose pose = clip_.pose(frame, turns_);
+      double nearest = HUGE_VAL;
+      for (const Push& push : pushes) nearest = std::min(nearest, std::abs(gap(push, pose, turns_at(frame))));
+      out.still_near += mm_ * nearest <= kNear ? 1 : 0;
+    }
+  }
+  double gap(const Push& push, const TurnedClip::Pose& pose, const std::vector<Vec3>& turns) const {
+    const auto at = [&](const SkinSpot& spot) {
+      return motion_of(clip_, pose, character_.source_positions, animated_.weights(), spot, turns.data()).at;
+    };
+    return push.way.dot(at(push.b) - at(push.a));
   }
 
   const AnimatedAsset& animated_;
@@ -491,7 +560,7 @@ class Mender {
   TurnedClip clip_;
   FaultFinder finder_;
   Turns turns_;
-  std::vector<Index> feet_;  // joints
+  std::vector<Index> feet_, wrists_;  // joints
   std::vector<char> in_window_;
   std::map<At, Penetration> depth_before_;
   std::map<At, std::vector<Push>> pushes_;

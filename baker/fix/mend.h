@@ -36,6 +36,10 @@ struct Mend {
   Turns turns;                  // all zero where nothing is changed
   std::vector<char> in_window;  // of each frame: may it have changed?
   std::vector<MendedEvent> events;
+  double feet_mm = 0, feet_degrees = 0;  // that a foot moves and turns at most
+  double jerk_ratio = 1;                 // of the wrists where they move by more than 3 mm, after to before
+  int shallow = 0,
+      still_near = 0;  // pairs of parts in a frame, pushed, at most 10 mm deep before; of these, after, within 5 mm
   int rounds = 0;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <string>
@@ -12,10 +13,11 @@ namespace spherechain::baker {
 
 struct PageOptions {
   std::string title;
-  std::string motion;         // what the page calls a motion that is no clip
-  std::string report;         // of read_bake_report; may be empty
-  std::string validation;     // of read_validation; may be empty
-  std::string template_file;  // the page without data, as its build made it
+  std::string motion;                                   // what the page calls a motion that is no clip
+  std::string report;                                   // of read_bake_report; may be empty
+  std::string validation;                               // of read_validation; may be empty
+  std::string template_file;                            // the page without data, as its build made it
+  std::array<std::string, 2> names{"first", "second"};  // of two characters
   Radius radius = SC_RADIUS_DETECT;
   double fps = 30;
   std::size_t max_bytes = 512'000'000;  // Chromium reads no script of 2^29 letters or more

@@ -30,7 +30,6 @@ namespace {
 using nlohmann::ordered_json;
 using Triangles = std::array<std::uint32_t, 2>;
 
-constexpr std::array<const char*, 2> kNames{"first", "second"};
 constexpr std::array<const char*, 2> kColours{"#c9c2b6", "#8fb0cc"};
 
 const ClipFrames& only_clip(const AnimatedAsset& animated, const char* option) {
@@ -79,8 +78,9 @@ Affine place_of(const AnimatedAsset& first, const AnimatedAsset& second, const P
 // Two characters as one that has both meshes.
 class Both {
  public:
-  Both(const AnimatedAsset& first, const AnimatedAsset& second, const Affine& place)
-      : first_(first), second_(second), place_(place), parts_(page_parts(first.asset())) {
+  Both(const AnimatedAsset& first, const AnimatedAsset& second, const Affine& place,
+       const std::array<std::string, 2>& names)
+      : first_(first), second_(second), place_(place), who_(names), parts_(page_parts(first.asset())) {
     const Character &a = first.character(), &b = second.character();
     vertices_ = static_cast<Index>(a.source_positions.size());
     triangles_ = static_cast<std::uint32_t>(a.source_triangles.size());
@@ -148,7 +148,7 @@ class Both {
     ordered_json regions = ordered_json::array(), spheres = ordered_json::array();
     for (const ordered_json* of : {&a, &b}) {
       const bool is_second = of == &b;
-      const std::string name = std::string(kNames[is_second ? 1 : 0]) + ": ";
+      const std::string name = who_[is_second ? 1 : 0] + ": ";
       for (ordered_json region : of->at("regions")) {
         region["name"] = name + region["name"].get<std::string>();
         regions.push_back(std::move(region));
@@ -174,8 +174,8 @@ class Both {
                   fmt::format("{}, {}: have {} body parts; a page of two shows {} at most", first_.file(),
                               second_.file(), names_ + others.names.size(), kNoPart - 1));
     }
-    for (std::string& name : parts_.names) name = std::string(kNames[0]) + ": " + name;
-    for (const std::string& name : others.names) parts_.names.push_back(std::string(kNames[1]) + ": " + name);
+    for (std::string& name : parts_.names) name = who_[0] + ": " + name;
+    for (const std::string& name : others.names) parts_.names.push_back(who_[1] + ": " + name);
     for (const std::uint8_t part : others.of_triangle) {
       parts_.of_triangle.push_back(part == kNoPart ? kNoPart : static_cast<std::uint8_t>(part + names_));
     }
@@ -192,6 +192,7 @@ class Both {
 
   const AnimatedAsset &first_, &second_;
   Affine place_;
+  std::array<std::string, 2> who_;
   Character character_;
   std::vector<VertexWeights> weights_;
   PageParts parts_;
@@ -276,7 +277,7 @@ std::string view_page_of_two(const AnimatedAsset& first, const AnimatedAsset& se
   only_clip(second, "--with-clip");
   first.check_clusters();
   second.check_clusters();
-  const Both both(first, second, place_of(first, second, place));
+  const Both both(first, second, place_of(first, second, place), options.names);
   const BodyFrame axes = page_axes(first);
   const ordered_json clip_json{{"name", clip.name.empty() ? options.motion : clip.name},
                                {"first", 0},

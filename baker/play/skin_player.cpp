@@ -68,6 +68,7 @@ const std::vector<Penetration>& SkinPlayer::run(PenetrationJob& job) {
   job.penetrations = penetrations_.data();
   job.penetration_capacity = penetrations_.size();
   check_runtime(job.run());
+  penetrations_.resize(job.penetration_count);
   return penetrations_;
 }
 
@@ -79,8 +80,9 @@ const std::vector<Penetration>& SkinPlayer::measure(const sc_pose& pose, bool is
   return run(job);
 }
 
-const std::vector<Penetration>& SkinPlayer::measure_quickly(const sc_pose& pose) {
-  PenetrationJob job = measure_job(pose, contacts_);
+const std::vector<Penetration>& SkinPlayer::measure_quickly(const sc_pose& pose,
+                                                            const std::vector<TriangleContact>& contacts) {
+  PenetrationJob job = measure_job(pose, contacts);
   job.quick = 1;
   return run(job);
 }

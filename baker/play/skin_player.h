@@ -54,7 +54,9 @@ class SkinPlayer {
   // directions may follow that one's.
   const std::vector<Penetration>& measure(const sc_pose& pose, bool is_next);
   // The same by the quick form: along one direction, as games do.
-  const std::vector<Penetration>& measure_quickly(const sc_pose& pose);
+  const std::vector<Penetration>& measure_quickly(const sc_pose& pose) { return measure_quickly(pose, contacts_); }
+  // Of some pairs of parts: `contacts` are all of theirs.
+  const std::vector<Penetration>& measure_quickly(const sc_pose& pose, const std::vector<TriangleContact>& contacts);
   // Two body parts alone, in full, whatever came before. `contacts` are all of theirs in that pose; `previous` is what
   // was found of them a moment before, or null.
   Penetration measure_parts(const sc_pose& pose, const std::vector<TriangleContact>& contacts,
