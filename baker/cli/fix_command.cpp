@@ -55,6 +55,7 @@ void write_pages(const FixOptions& options, const Bake& baked, const AnimatedAss
     page_options.template_file = page.string();
     page_options.title = fs::path(options.input).filename().string() + ": before (grey) and after (blue)";
     page_options.names = {"before", "after"};
+    page_options.they_meet = false;
     page_options.fps = one.clips()[0].fps;
     const Place beside{1.2, 0, 0};
     write_atomically(fs::path(options.report) / fmt::format("clip_{}.html", i),

@@ -21,6 +21,7 @@ namespace {
 constexpr int kRounds = 16;
 constexpr int kTrying = 10;  // after so many, what stays is left
 constexpr int kTapers = 3;
+constexpr double kStill = 1;    // degrees: a round that turns joints by less may be the last
 constexpr double kSame = 2e-4;  // radians
 constexpr int kPatience = 3;    // rounds that an event may take without getting better
 constexpr double kStep = 10;    // degrees that a joint turns in a round, at most
@@ -80,7 +81,7 @@ class Mender {
     finder_.leave_out(harmless(before));
     Mend out;
     Turns best = turns_;
-    double least = HUGE_VAL;
+    double least = HUGE_VAL, moved = 0;
     for (int round = 0; round < kRounds && !is_idle(); ++round) {
       const std::vector<Meeting> now = round == 0 ? before : look(frames_in_window());
       double badness = add_pushes(now);
@@ -88,19 +89,19 @@ class Mender {
         badness += add_pushes(finder_.between(whole_frames_in_window(), turns_));
       }
       told(fmt::format("round {}: {:.1f} mm too deep", round + 1, badness * mm_));
-      if (badness < least && round > 0) {
+      if (badness <= least && round > 0) {
         least = badness;
         best = turns_;
       }
       const bool is_last = badness == 0 || round >= kTrying;
       if (const bool gave_up = give_up(now, round, is_last); gave_up) {
         least = HUGE_VAL;
-      } else if (badness == 0) {
+      } else if (badness == 0 && moved < kStill * std::numbers::pi / 180) {
         break;
       }
       open_windows();
       weight_ = std::min(kWish * std::pow(2, round), kWishMost);
-      take(solve_turns(clip_, in_window_, wishes(), turns_));
+      moved = take(solve_turns(clip_, in_window_, wishes(), turns_));
       out.rounds = round + 1;
     }
     turns_ = best;
@@ -110,15 +111,19 @@ class Mender {
   }
 
  private:
-  // A joint turns a little a round, and never beyond the budget.
-  void take(const Turns& wanted) {
+  // A joint turns a little a round, and never beyond the budget. Returns the farthest that one turns; radians.
+  double take(const Turns& wanted) {
     const double step = kStep * std::numbers::pi / 180, most = options_.budget_degrees * std::numbers::pi / 180;
+    double farthest = 0;
     for (std::size_t i = 0; i < turns_.size(); ++i) {
-      Vec3 move = wanted[i] - turns_[i];
-      if (move.norm() > step) move *= step / move.norm();
-      turns_[i] += move;
-      if (turns_[i].norm() > most) turns_[i] *= most / turns_[i].norm();
+      Vec3 to = wanted[i] - turns_[i];
+      if (to.norm() > step) to *= step / to.norm();
+      to += turns_[i];
+      if (to.norm() > most) to *= most / to.norm();
+      farthest = std::max(farthest, (to - turns_[i]).norm());
+      turns_[i] = to;
     }
+    return farthest;
   }
 
   // Pairs of parts that are never more than layers of each other, or as at rest.
@@ -602,10 +607,16 @@ std::vector<TurningJoint> turning_joints(const SourceRig& rig, const Roles& role
     if (price > 0) out.push_back({n, price * Eigen::Matrix3d::Identity()});
   }
   if (!out.empty()) return out;
-  std::set<Index> bones;
-  for (const Bone& bone : rig.bones) bones.insert(bone.node);
-  for (const Index n : bones) {
-    if (const int up = rig.nodes[n].parent; up >= 0 && bones.contains(static_cast<Index>(up))) out.push_back({n});
+  for (const Bone& bone : rig.bones) {
+    // Not the one that carries all others.
+    const auto is_below = [&](const Bone& other) {
+      int n = static_cast<int>(other.node);
+      while (n >= 0 && n != static_cast<int>(bone.node)) n = rig.nodes[static_cast<std::size_t>(n)].parent;
+      return n >= 0;
+    };
+    const auto is_it = [&](const TurningJoint& joint) { return joint.node == bone.node; };
+    if (std::all_of(rig.bones.begin(), rig.bones.end(), is_below)) continue;
+    if (std::none_of(out.begin(), out.end(), is_it)) out.push_back({bone.node});
   }
   return out;
 }

@@ -43,7 +43,8 @@ struct Mend {
   int rounds = 0;
 };
 
-// The joints that may turn, of all that a body's roles name; of a body without such roles all bones below the topmost.
+// The joints that may turn, of all that a body's roles name; of a body without such roles all but the one that carries
+// all others.
 std::vector<TurningJoint> turning_joints(const SourceRig& rig, const Roles& roles);
 
 // Turns joints so that what is a fault in a clip's frames, and between them, is none any more; feet stay where they

@@ -70,8 +70,8 @@ Eigen::Vector4d sample(const Channel& channel, double seconds);
 struct Clip {
   std::string name;
   double duration = 0;  // seconds, of the last key
-  int in_file = -1;     // a glTF file's number of it
   std::vector<Channel> channels;
+  int in_file = -1;  // a glTF file's number of it
 };
 
 // A file's skeleton, skin and motion; all empty where it has none.

@@ -212,8 +212,9 @@ sc_pose pose_of(const std::vector<float>& vertices) {
 // What touches in a frame: in each of the two, and between them.
 class Contacts {
  public:
-  Contacts(const AnimatedAsset& first, const AnimatedAsset& second, const Both& both)
-      : first_part_(static_cast<std::uint32_t>(both.first_part())),
+  Contacts(const AnimatedAsset& first, const AnimatedAsset& second, const Both& both, bool they_meet)
+      : they_meet_(they_meet),
+        first_part_(static_cast<std::uint32_t>(both.first_part())),
         first_triangle_(both.first_triangle()),
         mm_(mm_per_unit(first.asset())),
         players_{SkinPlayer(first.asset(), choose_target("auto")), SkinPlayer(second.asset(), choose_target("auto"))},
@@ -228,8 +229,10 @@ class Contacts {
       add(players_[i].find(poses[i]), i, i);
       add(players_[i].measure(poses[i], is_next), i, i);
     }
-    add(between_.find(poses[0], poses[1]), 0, 1);
-    add(between_.measure(poses[0], poses[1], is_next), 0, 1);
+    if (they_meet_) {
+      add(between_.find(poses[0], poses[1]), 0, 1);
+      add(between_.measure(poses[0], poses[1], is_next), 0, 1);
+    }
     std::stable_sort(measured_.begin(), measured_.end(),
                      [](const Penetration& l, const Penetration& r) { return l.depth > r.depth; });
   }
@@ -252,6 +255,7 @@ class Contacts {
     }
   }
 
+  bool they_meet_;
   std::uint32_t first_part_, first_triangle_;
   double mm_;
   std::array<SkinPlayer, 2> players_;
@@ -292,7 +296,7 @@ std::string view_page_of_two(const AnimatedAsset& first, const AnimatedAsset& se
                     {"clips", ordered_json::array({clip_json})},
                     {"look", two_colours(both)}};
   PageMotion motion(both.character(), axes);
-  Contacts found(first, second, both);
+  Contacts found(first, second, both, options.they_meet);
   FrameLists<Triangles> contacts;
   FrameLists<PenetrationEntry> penetrations;
   std::vector<float> numbers, seconds;
