@@ -4,7 +4,9 @@
 #include <pthread.h>
 
 #include <cstring>
+#include <functional>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "crowd_body.h"
@@ -41,17 +43,48 @@ struct Team {
   Barrier warps[kThreads / cuda::kLanes]{Barrier{cuda::kLanes}, Barrier{cuda::kLanes}};
 };
 
+// Started once: the thread sanitizer takes longer to start and end a thread than most blocks take to run.
+class Threads {
+ public:
+  Threads() {
+    for (std::uint32_t i = 0; i < kBlocksAtOnce * kThreads; ++i) {
+      threads_.emplace_back([this, i] {
+        for (begin_.arrive_and_wait(); job_; begin_.arrive_and_wait()) {
+          job_(i);
+          end_.arrive_and_wait();
+        }
+      });
+    }
+  }
+  ~Threads() {
+    job_ = nullptr;
+    begin_.arrive_and_wait();
+  }
+  Threads(const Threads&) = delete;
+  Threads& operator=(const Threads&) = delete;
+
+  void run(std::function<void(std::uint32_t)> job) {
+    job_ = std::move(job);
+    begin_.arrive_and_wait();
+    end_.arrive_and_wait();
+  }
+
+ private:
+  std::function<void(std::uint32_t)> job_;  // of a thread's number
+  Barrier begin_{kBlocksAtOnce * kThreads + 1}, end_{kBlocksAtOnce * kThreads + 1};
+  std::vector<std::jthread> threads_;  // the last member: they end before what they use
+};
+
 // `run`(which team, how the thread runs the steps of its block).
 template <typename Run>
 void run_teams(const Run& run) {
+  static Threads threads;
   Team teams[kBlocksAtOnce];
-  std::vector<std::jthread> threads;
-  for (std::uint32_t i = 0; i < kBlocksAtOnce * kThreads; ++i) {
-    threads.emplace_back([&, which = i / kThreads, thread = i % kThreads] {
-      const Barriers barriers{&teams[which].block, &teams[which].warps[thread / cuda::kLanes]};
-      run(which, [&](std::uint32_t block) { return cuda::RunThread<Barriers>{{thread, kThreads, block}, barriers}; });
-    });
-  }
+  threads.run([&](std::uint32_t i) {
+    const std::uint32_t which = i / kThreads, thread = i % kThreads;
+    const Barriers barriers{&teams[which].block, &teams[which].warps[thread / cuda::kLanes]};
+    run(which, [&](std::uint32_t block) { return cuda::RunThread<Barriers>{{thread, kThreads, block}, barriers}; });
+  });
 }
 
 }  // namespace
