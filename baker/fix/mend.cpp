@@ -81,8 +81,9 @@ class Mender {
     finder_.leave_out(harmless(before));
     Mend out;
     Turns best = turns_;
+    const double still = kStill * std::numbers::pi / 180;
     double least = HUGE_VAL, moved = 0;
-    for (int round = 0; round < kRounds && !is_idle(); ++round) {
+    for (int round = 0; round < kRounds && (!is_idle() || moved > still); ++round) {
       const std::vector<Meeting> now = round == 0 ? before : look(frames_in_window());
       double badness = add_pushes(now);
       if (round > 0 && (badness == 0 || round % 4 == 3)) {
@@ -96,7 +97,7 @@ class Mender {
       const bool is_last = badness == 0 || round >= kTrying;
       if (const bool gave_up = give_up(now, round, is_last); gave_up) {
         least = HUGE_VAL;
-      } else if (badness == 0 && moved < kStill * std::numbers::pi / 180) {
+      } else if (badness == 0 && moved < still) {
         break;
       }
       open_windows();
@@ -224,9 +225,12 @@ class Mender {
   // How deep a pair may be, in the source's units; negative: so far apart.
   double allowed(const Meeting& meeting) {
     const MendedEvent* event = event_of(meeting);
-    const bool is_pushed = is_fault(meeting.found.kind) && meeting.found.part_a != meeting.found.part_b &&
-                           meeting.found.kind != SC_CLASS_DEEP_FOLD;
-    if (is_pushed && (event == nullptr || is_wanted(*event))) return -options_.margin_mm / mm_;
+    const double apart = -options_.margin_mm / mm_;
+    if (event != nullptr && is_wanted(*event) && meeting.frame >= event->from && meeting.frame <= event->to)
+      return apart;
+    const bool is_new =
+        event == nullptr && meeting.found.kind == SC_CLASS_PENETRATION && meeting.found.part_a != meeting.found.part_b;
+    if (is_new) return apart;
     const auto known = depth_before_.find({std::round(meeting.frame), meeting.found.part_a, meeting.found.part_b});
     return known == depth_before_.end() ? 0 : double{known->second.depth};
   }
@@ -241,7 +245,7 @@ class Mender {
           (is_fault(p.kind) && p.kind != SC_CLASS_DEEP_FOLD ? kDeeper : kFoldDeeper) / mm_ + 0.1 * may_be;
       if (may_be >= 0 && excess <= slack) continue;
       if (may_be >= 0 && (p.kind == SC_CLASS_REST || p.kind == SC_CLASS_SHELL || p.part_a == p.part_b)) continue;
-      sum += may_be < 0 ? double{p.depth} : excess;
+      if (is_fault(p.kind) || may_be >= 0) sum += may_be < 0 ? double{p.depth} : excess;
       const auto known = depth_before_.find(at_of(meeting));
       const bool is_shallow = known != depth_before_.end() && mm_ * double{known->second.depth} <= kShallow;
       Push push{spot_of(p.deepest_a), spot_of(p.deepest_b), to_vec3(p.direction), -may_be, is_shallow};

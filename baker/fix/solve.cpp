@@ -92,14 +92,21 @@ Turns solve_turns(const TurnedClip& clip, const std::vector<char>& in_window, co
     }
   }
   Matrix prices = system.prices();
-  for (Eigen::Index i = 0; i < system.size(); ++i) prices.coeffRef(i, i) += kLeave;
-  const Eigen::VectorXd begin = x;
+  Eigen::VectorXd leave = Eigen::VectorXd::Zero(system.size());  // what no wish names is free to go back
+  for (const Wish& wish : wishes) {
+    for (const Wish::Part& part : wish.parts) {
+      if (const Eigen::Index at = system.place(part.frame, part.joint); at >= 0)
+        leave.segment<3>(at).setConstant(kLeave);
+    }
+  }
+  for (Eigen::Index i = 0; i < system.size(); ++i) prices.coeffRef(i, i) += leave[i];
+  const Eigen::VectorXd begin = leave.cwiseProduct(x);
   Eigen::SimplicialLLT<Matrix> cholesky;
   std::vector<char> is_over(wishes.size());
   for (std::size_t i = 0; i < wishes.size(); ++i) is_over[i] = sum_of(wishes[i], system, x) > wishes[i].value ? 1 : 0;
   for (int round = 0; round < kTrials; ++round) {
     std::vector<Eigen::Triplet<double>> entries;
-    Eigen::VectorXd right = kLeave * begin;
+    Eigen::VectorXd right = begin;
     for (std::size_t i = 0; i < wishes.size(); ++i) {
       const Wish& wish = wishes[i];
       const double weight = is_over[i] != 0 ? wish.weight_over : wish.weight;
