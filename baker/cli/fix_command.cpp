@@ -38,9 +38,8 @@ Event event_of(const MendedEvent& mended, const std::vector<BodyPart>& parts) {
 }
 
 // Pages of the clips that changed, before and after side by side.
-void write_pages(const FixOptions& options, const Bake& baked, const AnimatedAsset& before,
+void write_pages(const FixOptions& options, const fs::path& page, const Bake& baked, const AnimatedAsset& before,
                  const std::vector<MendedClip>& clips) {
-  const fs::path page = installed_page("viewer.html");
   if (!fs::is_regular_file(page)) return;
   const std::string_view asset(reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size());
   for (std::size_t i = 0; i < clips.size(); ++i) {
@@ -66,6 +65,7 @@ void write_pages(const FixOptions& options, const Bake& baked, const AnimatedAss
 }  // namespace
 
 ExitCode run_fix(const FixOptions& options) {
+  const fs::path page = installed_page("viewer.html");  // now: a long run may outlive its program's file
   CheckConfig config = default_config();
   if (!options.keep.empty()) config = read_config(read_file(options.keep), options.keep, config);
   check_regular_file(options.input);
@@ -107,7 +107,7 @@ ExitCode run_fix(const FixOptions& options) {
     if (!json.empty()) {
       progress.show("report");
       write_atomically(json, fix_json(clips, parts));
-      write_pages(options, baked, animated, clips);
+      write_pages(options, page, baked, animated, clips);
     }
     text = fix_text(clips, parts);
   }

@@ -19,23 +19,25 @@ namespace spherechain::baker {
 namespace {
 
 constexpr int kRounds = 16;
-constexpr int kTrying = 10;  // after so many, what stays is left
-constexpr int kTapers = 3;
-constexpr double kStill = 1;    // degrees: a round that turns joints by less may be the last
-constexpr double kSame = 2e-4;  // radians
-constexpr int kPatience = 3;    // rounds that an event may take without getting better
-constexpr double kStep = 10;    // degrees that a joint turns in a round, at most
-constexpr double kPad = 0.35;   // seconds around an event in which joints turn, too
-constexpr double kWish = 1e4,
-                 kWishMost = 1e6;   // grows by round:      // of a miss of one arm's length, against a radian
-constexpr double kPullBack = 50;    // of what was no deeper than kShallow: it ends near
-constexpr double kShallow = 10;     // mm
-constexpr double kFoot = 1e6;       // of a foot that moves
-constexpr double kArm = 0.3;        // of the height: an arm's length
-constexpr double kFarthest = 0.03;  // of an arm's length... in heights: what a round may ask for
-constexpr double kDeeper = 0.5;     // mm: so much deeper than before is a fault, too
-constexpr double kFoldDeeper = 2;   // the same of folds, which move with the joint
-constexpr std::size_t kMemory = 4;  // wishes of a pair of parts in a frame
+constexpr int kTrying = 10;      // after so many, what stays is left
+constexpr int kPatience = 3;     // rounds that an event may take without getting better
+constexpr int kTapers = 3;       // tries to take back softly what got worse
+constexpr double kStep = 10;     // degrees that a joint turns in a round, at most
+constexpr double kStill = 1;     // degrees: a round that turns joints by less may be the last
+constexpr double kSame = 2e-4;   // radians: too little to look again
+constexpr double kPad = 0.35;    // seconds around an event in which joints turn, too
+constexpr double kShallow = 10;  // mm
+constexpr double kDeeper = 0.5;  // mm: so much deeper than before is a fault, too
+constexpr double kFoldDeeper = 2;  // the same of folds, which move with the joint
+constexpr double kSameWay = 0.5;   // cosine
+constexpr std::size_t kMemory = 4;  // pushes of a pair of parts in a frame
+// Lengths, in heights.
+constexpr double kArm = 0.3;        // an arm's
+constexpr double kFarthest = 0.03;  // what a push asks for in a round, at most
+// Weights, against a radian of a shoulder; of a miss of an arm's length.
+constexpr double kWish = 1e4, kWishMost = 1e6;  // it grows by round
+constexpr double kPullBack = 50;                // of what was shallow: it ends near
+constexpr double kFoot = 1e6;                   // of a foot that moves
 
 using PartPair = std::pair<std::uint32_t, std::uint32_t>;
 using At = std::tuple<double, std::uint32_t, std::uint32_t>;  // frame and parts
@@ -250,12 +252,22 @@ class Mender {
       const bool is_shallow = known != depth_before_.end() && mm_ * double{known->second.depth} <= kShallow;
       Push push{spot_of(p.deepest_a), spot_of(p.deepest_b), to_vec3(p.direction), -may_be, is_shallow};
       std::vector<Push>& all = pushes_[at_of(meeting)];
+      if (!all.empty() && all.back().way.dot(push.way) < kSameWay && is_under_way(at_of(meeting), all)) continue;
       all.erase(std::remove_if(all.begin(), all.end(), [&](const Push& old) { return old.way.dot(push.way) < 0; }),
                 all.end());
       if (all.size() == kMemory) all.erase(all.begin());
       all.push_back(push);
     }
     return sum;
+  }
+
+  // Is a way out not at its end yet? Then another is not begun.
+  bool is_under_way(const At& at, const std::vector<Push>& pushes) const {
+    const double frame = std::get<0>(at);
+    const TurnedClip::Pose pose = clip_.pose(frame, turns_);
+    const std::vector<Vec3> now = turns_at(frame);
+    return std::any_of(pushes.begin(), pushes.end(),
+                       [&](const Push& push) { return gap(push, pose, now) < push.target - kDeeper / mm_; });
   }
 
   SkinSpot spot_of(const SkinPoint& point) const {
