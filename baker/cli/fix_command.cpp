@@ -87,8 +87,10 @@ ExitCode run_fix(const FixOptions& options) {
     const AnimatedAsset animated(OpenAsset(asset, options.input), options.input, options.input, motion, {0, 0});
     const std::vector<BodyPart> parts = parts_of(animated.asset()).parts;
     for (const ClipFrames& clip : animated.clips()) {
-      if (clip.clip == nullptr) {
-        throw Error(ExitCode::kFile, options.input + ": has no clips to mend");
+      if (clip.clip == nullptr || clip.clip->in_file < 0 || animated.asset()->bone_count() == 0) {
+        throw Error(ExitCode::kFile, options.input + (clip.clip == nullptr     ? ": has no clips to mend"
+                                                      : clip.clip->in_file < 0 ? ": is no glTF (export it as .glb)"
+                                                                               : ": no bones move it"));
       }
       const auto start = std::chrono::steady_clock::now();
       const auto leave = [&](const MendedEvent& event) {

@@ -79,9 +79,9 @@ std::string fix_json(const std::vector<MendedClip>& clips, const std::vector<Bod
          {"events", std::move(events)},
          {"turn_degrees",
           {{"median", quantile(turns, 0.5)}, {"p90", quantile(turns, 0.9)}, {"max", quantile(turns, 1)}}},
-         {"feet_mm", clip.mend.feet_mm},
-         {"feet_degrees", clip.mend.feet_degrees},
-         {"jerk_ratio", clip.mend.jerk_ratio},
+         {"feet_mm", clip.mend.compared.feet_mm},
+         {"feet_degrees", clip.mend.compared.feet_degrees},
+         {"jerk_ratio", clip.mend.compared.jerk_ratio},
          {"shallow_contacts", clip.mend.shallow},
          {"shallow_contacts_still_near", clip.mend.still_near},
          {"seconds", clip.seconds}});

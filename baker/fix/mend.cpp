@@ -10,49 +10,32 @@
 #include <map>
 #include <numbers>
 #include <set>
-#include <tuple>
 
 #include "fix/find_faults.h"
+#include "fix/joints.h"
+#include "fix/pushes.h"
 #include "fix/solve.h"
 
 namespace spherechain::baker {
 namespace {
 
 constexpr int kRounds = 16;
-constexpr int kTrying = 10;      // after so many, what stays is left
-constexpr int kPatience = 3;     // rounds that an event may take without getting better
-constexpr int kTapers = 3;       // tries to take back softly what got worse
-constexpr double kStep = 10;     // degrees that a joint turns in a round, at most
-constexpr double kStill = 1;     // degrees: a round that turns joints by less may be the last
-constexpr double kSame = 2e-4;   // radians: too little to look again
-constexpr double kPad = 0.35;    // seconds around an event in which joints turn, too
-constexpr double kShallow = 10;  // mm
-constexpr double kDeeper = 0.5;  // mm: so much deeper than before is a fault, too
-constexpr double kFoldDeeper = 2;  // the same of folds, which move with the joint
-constexpr double kSameWay = 0.5;   // cosine
-constexpr std::size_t kMemory = 4;  // pushes of a pair of parts in a frame
-// Lengths, in heights.
-constexpr double kArm = 0.3;        // an arm's
-constexpr double kFarthest = 0.03;  // what a push asks for in a round, at most
-// Weights, against a radian of a shoulder; of a miss of an arm's length.
-constexpr double kWish = 1e4, kWishMost = 1e6;  // it grows by round
-constexpr double kPullBack = 50;                // of what was shallow: it ends near
-constexpr double kFoot = 1e6;                   // of a foot that moves
+constexpr int kTrying = 10;                     // after so many, what stays is left
+constexpr int kPatience = 3;                    // rounds that an event may take without getting better
+constexpr int kTapers = 3;                      // tries to take back softly what got worse
+constexpr double kStep = 10;                    // degrees that a joint turns in a round, at most
+constexpr double kStill = 1;                    // degrees: a round that turns joints by less may be the last
+constexpr double kSame = 2e-4;                  // radians: too little to look again
+constexpr double kPad = 0.35;                   // seconds around an event in which joints turn, too
+constexpr double kShallow = 10;                 // mm
+constexpr double kNear = 5;                     // mm
+constexpr double kDeeper = 0.5;                 // mm: so much deeper than before is a fault, too
+constexpr double kFoldDeeper = 2;               // the same of folds, which move with the joint
+constexpr double kWish = 1e4, kWishMost = 1e6;  // the weight of pushes grows by round
 
 using PartPair = std::pair<std::uint32_t, std::uint32_t>;
-using At = std::tuple<double, std::uint32_t, std::uint32_t>;  // frame and parts
 
-At at_of(const Meeting& meeting) { return {meeting.frame, meeting.found.part_a, meeting.found.part_b}; }
-
-// The deepest points, which are to part along `way`.
-struct Push {
-  SkinSpot a, b;
-  Vec3 way;
-  double target;  // how far b is to be from a along the way: negative: no deeper than that
-  bool is_shallow;
-};
-
-Vec3 to_vec3(const spherechain::Vec3& v) { return {v.x, v.y, v.z}; }
+MeetingPlace place_of(const Meeting& meeting) { return {meeting.frame, meeting.found.part_a, meeting.found.part_b}; }
 
 class Mender {
  public:
@@ -62,23 +45,19 @@ class Mender {
         options_(options),
         mm_(mm_per_unit(animated.asset())),
         height_(animated.frame().height),
-        clip_(character_.rig, *clip.clip, clip.fps, clip.own_count, turning_joints(character_.rig, roles)),
+        clip_(character_.rig, *clip.clip, clip.fps, clip.own_count, turning_joints(character_.rig, roles, *clip.clip)),
         finder_(animated, clip_),
-        turns_(static_cast<std::size_t>(clip.own_count) * clip_.count(), Vec3::Zero()) {
-    for (Index j = 0; j < clip_.count(); ++j) {
-      const std::string& role = roles.of_node[clip_.joints()[j].node].role;
-      if (role == "left_elbow" || role == "right_elbow" || role == "left_knee" || role == "right_knee") make_hinge(j);
-      if (role == "left_ankle" || role == "right_ankle") feet_.push_back(j);
-      if (role == "left_wrist" || role == "right_wrist") wrists_.push_back(j);
-    }
-  }
+        pushes_(animated, clip_),
+        turns_(static_cast<std::size_t>(clip.own_count) * clip_.count(), Vec3::Zero()),
+        feet_(joints_of_role(clip_.joints(), roles, "ankle")),
+        wrists_(joints_of_role(clip_.joints(), roles, "wrist")) {}
 
   Mend run(const std::function<bool(const MendedEvent&)>& leave, const std::function<void(const std::string&)>& told) {
     std::vector<double> all;
     for (int f = 0; f < clip_.frames(); ++f) all.push_back(f);
     told("looking");
     const std::vector<Meeting> before = finder_.in_frames(all, turns_);
-    for (const Meeting& meeting : before) depth_before_[at_of(meeting)] = meeting.found;
+    for (const Meeting& meeting : before) before_[place_of(meeting)] = meeting.found;
     make_events(before, leave);
     finder_.leave_out(harmless(before));
     Mend out;
@@ -103,8 +82,7 @@ class Mender {
         break;
       }
       open_windows();
-      weight_ = std::min(kWish * std::pow(2, round), kWishMost);
-      moved = take(solve_turns(clip_, in_window_, wishes(), turns_));
+      moved = take(solve_turns(clip_, in_window_, wishes(std::min(kWish * std::pow(2, round), kWishMost)), turns_));
       out.rounds = round + 1;
     }
     turns_ = best;
@@ -147,7 +125,7 @@ class Mender {
   std::vector<Meeting> look(const std::vector<double>& frames) {
     std::vector<double> changed;
     for (const double frame : frames) {
-      std::vector<Vec3> now = turns_at(frame);
+      std::vector<Vec3> now = clip_.turns_at(frame, turns_);
       const auto known = seen_.find(frame);
       bool is_same = known != seen_.end();
       for (std::size_t j = 0; is_same && j < now.size(); ++j)
@@ -170,39 +148,6 @@ class Mender {
   }
   static bool is_wanted(const MendedEvent& event) { return event.outcome == Outcome::kReduced; }
 
-  // In an elbow or a knee: the axis across its two bones, as the clip bends it.
-  void make_hinge(Index joint) {
-    Vec3 sum = Vec3::Zero(), along = Vec3::Zero();
-    const Index node = clip_.joints()[joint].node;
-    const SourceRig& rig = character_.rig;
-    int child = -1;
-    for (std::size_t n = 0; n < rig.nodes.size(); ++n) {
-      if (rig.nodes[n].parent == static_cast<int>(node) && child < 0) child = static_cast<int>(n);
-    }
-    if (child < 0) return;
-    const Vec3 lower = rig.nodes[static_cast<std::size_t>(child)].translation;
-    const Turns none(turns_.size(), Vec3::Zero());
-    for (int f = 0; f < clip_.frames(); f += std::max(1, clip_.frames() / 100)) {
-      Eigen::Quaterniond rotation = rig.nodes[node].rotation;
-      for (const Channel& channel : clip_.clip().channels) {
-        if (channel.target == node && channel.path == ChannelPath::kRotation) {
-          rotation = Eigen::Quaterniond(sample(channel, f / clip_.fps()));
-        }
-      }
-      const Vec3 upper = rotation.inverse() * rig.nodes[node].translation;
-      if (upper.norm() < 1e-9 || lower.norm() < 1e-9) return;
-      const Vec3 axis = upper.normalized().cross(lower.normalized());
-      sum += sum.dot(axis) < 0 ? Vec3(-axis) : axis;
-      along = lower.normalized();
-    }
-    if (sum.norm() < 1e-3) return;
-    const Vec3 axis = sum.normalized();
-    const Eigen::Matrix3d own = clip_.joints()[joint].price;
-    constexpr double kOff = 30, kTwist = 4;
-    clip_.set_price(joint, own * (kOff * Eigen::Matrix3d::Identity() - (kOff - 1) * axis * axis.transpose() -
-                                  (kOff - kTwist) * along * along.transpose()));
-  }
-
   void make_events(const std::vector<Meeting>& before, const std::function<bool(const MendedEvent&)>& leave) {
     std::vector<PartMeeting> faults;
     for (const Meeting& meeting : before) {
@@ -219,7 +164,7 @@ class Mender {
 
   const MendedEvent* event_of(const Meeting& meeting) const {
     for (const MendedEvent& event : events_) {
-      if (is_in(meeting.frame, meeting.found.part_a, meeting.found.part_b, event)) return &event;
+      if (is_in(place_of(meeting), event)) return &event;
     }
     return nullptr;
   }
@@ -233,8 +178,8 @@ class Mender {
     const bool is_new =
         event == nullptr && meeting.found.kind == SC_CLASS_PENETRATION && meeting.found.part_a != meeting.found.part_b;
     if (is_new) return apart;
-    const auto known = depth_before_.find({std::round(meeting.frame), meeting.found.part_a, meeting.found.part_b});
-    return known == depth_before_.end() ? 0 : double{known->second.depth};
+    const auto known = before_.find({std::round(meeting.frame), meeting.found.part_a, meeting.found.part_b});
+    return known == before_.end() ? 0 : double{known->second.depth};
   }
 
   // Wishes for what is too deep; returns by how much in all.
@@ -248,42 +193,18 @@ class Mender {
       if (may_be >= 0 && excess <= slack) continue;
       if (may_be >= 0 && (p.kind == SC_CLASS_REST || p.kind == SC_CLASS_SHELL || p.part_a == p.part_b)) continue;
       if (is_fault(p.kind) || may_be >= 0) sum += may_be < 0 ? double{p.depth} : excess;
-      const auto known = depth_before_.find(at_of(meeting));
-      const bool is_shallow = known != depth_before_.end() && mm_ * double{known->second.depth} <= kShallow;
-      Push push{spot_of(p.deepest_a), spot_of(p.deepest_b), to_vec3(p.direction), -may_be, is_shallow};
-      std::vector<Push>& all = pushes_[at_of(meeting)];
-      if (!all.empty() && all.back().way.dot(push.way) < kSameWay && is_under_way(at_of(meeting), all)) continue;
-      all.erase(std::remove_if(all.begin(), all.end(), [&](const Push& old) { return old.way.dot(push.way) < 0; }),
-                all.end());
-      if (all.size() == kMemory) all.erase(all.begin());
-      all.push_back(push);
+      const auto known = before_.find(place_of(meeting));
+      const bool is_shallow = known != before_.end() && mm_ * double{known->second.depth} <= kShallow;
+      pushes_.add(place_of(meeting), p, -may_be, is_shallow, turns_);
     }
     return sum;
-  }
-
-  // Is a way out not at its end yet? Then another is not begun.
-  bool is_under_way(const At& at, const std::vector<Push>& pushes) const {
-    const double frame = std::get<0>(at);
-    const TurnedClip::Pose pose = clip_.pose(frame, turns_);
-    const std::vector<Vec3> now = turns_at(frame);
-    return std::any_of(pushes.begin(), pushes.end(),
-                       [&](const Push& push) { return gap(push, pose, now) < push.target - kDeeper / mm_; });
-  }
-
-  SkinSpot spot_of(const SkinPoint& point) const {
-    SkinSpot out;
-    for (std::size_t k = 0; k < 3; ++k) {
-      out.vertices[k] = character_.source_triangles[point.triangle][k];
-      out.shares[k] = double{point.weights[k]};
-    }
-    return out;
   }
 
   void open_windows() {
     in_window_.assign(static_cast<std::size_t>(clip_.frames()), 0);
     const int pad = static_cast<int>(std::ceil(kPad * clip_.fps()));
-    for (const auto& [at, pushes] : pushes_) {
-      const int frame = static_cast<int>(std::get<0>(at));
+    for (const auto& [place, pushes] : pushes_.all()) {
+      const int frame = static_cast<int>(place.frame);
       for (int f = std::max(0, frame - pad); f <= std::min(clip_.frames() - 1, frame + 1 + pad); ++f) {
         in_window_[static_cast<std::size_t>(f)] = 1;
       }
@@ -300,96 +221,15 @@ class Mender {
   std::vector<double> frames_in_window() const {
     std::set<double> out;
     for (const int f : whole_frames_in_window()) out.insert(f);
-    for (const auto& [at, pushes] : pushes_) out.insert(std::get<0>(at));
+    for (const auto& [place, pushes] : pushes_.all()) out.insert(place.frame);
     return {out.begin(), out.end()};
   }
 
-  std::vector<Wish> wishes() const {
+  std::vector<Wish> wishes(double weight) const {
     std::vector<Wish> out;
-    const double arm = kArm * height_;
-    for (const auto& [at, pushes] : pushes_) {
-      const double frame = std::get<0>(at);
-      const TurnedClip::Pose pose = clip_.pose(frame, turns_);
-      const std::vector<Vec3> now = turns_at(frame);
-      for (const Push& push : pushes) {
-        const SpotMotion a =
-            motion_of(clip_, pose, character_.source_positions, animated_.weights(), push.a, now.data());
-        const SpotMotion b =
-            motion_of(clip_, pose, character_.source_positions, animated_.weights(), push.b, now.data());
-        const double gap = push.way.dot(b.at - a.at);
-        Wish wish;
-        wish.weight = weight_ / (arm * arm);
-        wish.weight_over = push.is_shallow ? kPullBack / (arm * arm) : 0;
-        wish.value = std::min(push.target - gap, kFarthest * height_);
-        std::map<Index, Vec3> by;
-        for (const auto& [joint, moves] : b.by_joint)
-          by.try_emplace(joint, Vec3::Zero()).first->second += moves.transpose() * push.way;
-        for (const auto& [joint, moves] : a.by_joint)
-          by.try_emplace(joint, Vec3::Zero()).first->second -= moves.transpose() * push.way;
-        for (const auto& [joint, d] : by) {
-          wish.value += d.dot(now[joint]);
-          add_parts(wish, frame, joint, d);
-        }
-        out.push_back(std::move(wish));
-      }
-    }
-    for (const int f : whole_frames_in_window()) pin_feet(f, out);
+    pushes_.add_wishes(weight, turns_, out);
+    for (const int f : whole_frames_in_window()) add_pins(clip_, feet_, f, height_, turns_, out);
     return out;
-  }
-
-  std::vector<Vec3> turns_at(double frame) const {
-    const auto first = static_cast<std::size_t>(frame);
-    const std::size_t next = std::min(first + 1, static_cast<std::size_t>(clip_.frames()) - 1), count = clip_.count();
-    const double share = frame - std::floor(frame);
-    std::vector<Vec3> out;
-    for (std::size_t j = 0; j < count; ++j) {
-      out.push_back((1 - share) * turns_[first * count + j] + share * turns_[next * count + j]);
-    }
-    return out;
-  }
-  static void add_parts(Wish& wish, double frame, Index joint, const Vec3& by) {
-    const double share = frame - std::floor(frame);
-    const int first = static_cast<int>(frame);
-    wish.parts.push_back({first, joint, (1 - share) * by});
-    if (share > 0) wish.parts.push_back({first + 1, joint, share * by});
-  }
-
-  // Three points that each foot carries stay where the clip has them.
-  void pin_feet(int frame, std::vector<Wish>& out) const {
-    if (feet_.empty()) return;
-    const Turns none(turns_.size(), Vec3::Zero());
-    const TurnedClip::Pose pose = clip_.pose(frame, turns_), wanted = clip_.pose(frame, none);
-    const double arm = kArm * height_;
-    for (const Index foot : feet_) {
-      for (int k = 0; k < 3; ++k) {
-        const Vec3 own =
-            k == 0 ? Vec3::Zero() : Vec3(Vec3::Unit(k - 1) * 0.1 * height_ / pose.axes[foot].linear().col(0).norm());
-        const Vec3 at = pose.axes[foot] * own, to = wanted.axes[foot] * own;
-        std::vector<std::pair<Index, Eigen::Matrix3d>> moves;
-        for (int n = static_cast<int>(clip_.joints()[foot].node); n >= 0;
-             n = character_.rig.nodes[static_cast<std::size_t>(n)].parent) {
-          for (Index j = 0; j < clip_.count(); ++j) {
-            if (static_cast<int>(clip_.joints()[j].node) != n) continue;
-            const Vec3 l = pose.axes[j].linear().inverse() * (at - pose.axes[j].translation());
-            Eigen::Matrix3d cross;
-            cross << 0, -l.z(), l.y(), l.z(), 0, -l.x(), -l.y(), l.x(), 0;
-            const Vec3& x = turns_[static_cast<std::size_t>(frame) * clip_.count() + j];
-            moves.emplace_back(j, -pose.axes[j].linear() * cross * turn_derivative(x));
-          }
-        }
-        for (int axis = 0; axis < 3; ++axis) {
-          Wish wish;
-          wish.weight = wish.weight_over = kFoot / (arm * arm);
-          wish.value = to[axis] - at[axis];
-          for (const auto& [joint, m] : moves) {
-            const Vec3 by = m.row(axis).transpose();
-            wish.value += by.dot(turns_[static_cast<std::size_t>(frame) * clip_.count() + joint]);
-            wish.parts.push_back({frame, joint, by});
-          }
-          out.push_back(std::move(wish));
-        }
-      }
-    }
   }
 
   double greatest_turn(const MendedEvent& event) const {
@@ -412,8 +252,7 @@ class Mender {
       if (!is_wanted(event)) continue;
       double left = 0;
       for (const Meeting& m : now) {
-        if (is_fault(m.found.kind) && is_in(m.frame, m.found.part_a, m.found.part_b, event))
-          left += double{m.found.depth};
+        if (is_fault(m.found.kind) && is_in(place_of(m), event)) left += double{m.found.depth};
       }
       if (left < 0.9 * best_left_[e]) {
         best_left_[e] = left;
@@ -422,16 +261,14 @@ class Mender {
       if (left == 0 || (!is_last && round - best_round_[e] < kPatience)) continue;
       event.outcome = Outcome::kOverBudget;
       any = true;
-      for (auto& [at, pushes] : pushes_) {
-        const auto& [frame, a, b] = at;
-        if (is_in(frame, a, b, event)) pushes.clear();
-      }
+      pushes_.forget([&](const MeetingPlace& place) { return is_in(place, event); });
     }
     return any;
   }
 
-  static bool is_in(double frame, std::uint32_t a, std::uint32_t b, const MendedEvent& event) {
-    return a == event.part_a && b == event.part_b && frame >= event.from - 1 && frame <= event.to + 1;
+  static bool is_in(const MeetingPlace& place, const MendedEvent& event) {
+    return place.part_a == event.part_a && place.part_b == event.part_b && place.frame >= event.from - 1 &&
+           place.frame <= event.to + 1;
   }
 
   // Where something is worse than before, joints turn back around it, softly; and where that does not help, in all that
@@ -488,8 +325,8 @@ class Mender {
   bool is_worse(const Meeting& meeting) const {
     double most = 0;
     for (int f = static_cast<int>(meeting.frame) - 1; f <= static_cast<int>(meeting.frame) + 2; ++f) {
-      const auto known = depth_before_.find({f, meeting.found.part_a, meeting.found.part_b});
-      if (known != depth_before_.end()) most = std::max(most, double{known->second.depth});
+      const auto known = before_.find({static_cast<double>(f), meeting.found.part_a, meeting.found.part_b});
+      if (known != before_.end()) most = std::max(most, double{known->second.depth});
     }
     return double{meeting.found.depth} > most + kFoldDeeper / mm_;
   }
@@ -519,59 +356,14 @@ class Mender {
     }
     out.events = events_;
     out.turns = turns_;
-    compare(out);
-    count_near(out);
-  }
-
-  // What feet and wrists do that they did not do before.
-  void compare(Mend& out) const {
-    const Turns none(turns_.size(), Vec3::Zero());
-    std::vector<std::vector<std::array<Vec3, 2>>> wrists(wrists_.size());  // before and after
-    for (int f = 0; f < clip_.frames(); ++f) {
-      const TurnedClip::Pose before = clip_.pose(f, none), after = clip_.pose(f, turns_);
-      for (const Index foot : feet_) {
-        const Affine &a = before.axes[foot], &b = after.axes[foot];
-        out.feet_mm = std::max(out.feet_mm, mm_ * (a.translation() - b.translation()).norm());
-        const double scale = std::cbrt(a.linear().determinant());
-        const Eigen::Quaterniond p(Eigen::Matrix3d(a.linear() / scale)), q(Eigen::Matrix3d(b.linear() / scale));
-        out.feet_degrees = std::max(out.feet_degrees, p.angularDistance(q) * 180 / std::numbers::pi);
-      }
-      for (std::size_t w = 0; w < wrists_.size(); ++w) {
-        wrists[w].push_back({before.axes[wrists_[w]].translation(), after.axes[wrists_[w]].translation()});
-      }
-    }
-    double sums[2] = {};
-    for (const auto& way : wrists) {
-      for (std::size_t f = 3; f < way.size(); ++f) {
-        constexpr double kMoved = 3;  // mm
-        if (mm_ * (way[f - 1][0] - way[f - 1][1]).norm() < kMoved) continue;
-        for (std::size_t k = 0; k < 2; ++k) {
-          sums[k] += (way[f][k] - 3 * way[f - 1][k] + 3 * way[f - 2][k] - way[f - 3][k]).norm();
-        }
-      }
-    }
-    if (sums[0] > 0) out.jerk_ratio = sums[1] / sums[0];
-  }
-
-  void count_near(Mend& out) const {
-    constexpr double kNear = 5;  // mm
-    for (const auto& [at, pushes] : pushes_) {
-      const auto known = depth_before_.find(at);
-      if (pushes.empty() || known == depth_before_.end() || !is_fault(known->second.kind)) continue;
+    out.compared = compare(clip_, turns_, feet_, wrists_, mm_);
+    for (const auto& [place, pushes] : pushes_.all()) {
+      const auto known = before_.find(place);
+      if (pushes.empty() || known == before_.end() || !is_fault(known->second.kind)) continue;
       if (mm_ * double{known->second.depth} > kShallow) continue;
       ++out.shallow;
-      const double frame = std::get<0>(at);
-      const TurnedClip::Pose pose = clip_.pose(frame, turns_);
-      double nearest = HUGE_VAL;
-      for (const Push& push : pushes) nearest = std::min(nearest, std::abs(gap(push, pose, turns_at(frame))));
-      out.still_near += mm_ * nearest <= kNear ? 1 : 0;
+      out.still_near += mm_ * pushes_.nearest(place, turns_) <= kNear ? 1 : 0;
     }
-  }
-  double gap(const Push& push, const TurnedClip::Pose& pose, const std::vector<Vec3>& turns) const {
-    const auto at = [&](const SkinSpot& spot) {
-      return motion_of(clip_, pose, character_.source_positions, animated_.weights(), spot, turns.data()).at;
-    };
-    return push.way.dot(at(push.b) - at(push.a));
   }
 
   const AnimatedAsset& animated_;
@@ -580,11 +372,11 @@ class Mender {
   double mm_, height_;
   TurnedClip clip_;
   FaultFinder finder_;
+  Pushes pushes_;
   Turns turns_;
   std::vector<Index> feet_, wrists_;  // joints
   std::vector<char> in_window_;
-  std::map<At, Penetration> depth_before_;
-  std::map<At, std::vector<Push>> pushes_;
+  std::map<MeetingPlace, Penetration> before_;
   std::vector<MendedEvent> events_;
   struct Seen {
     std::vector<Vec3> turns;
@@ -593,48 +385,13 @@ class Mender {
   std::map<double, Seen> seen_;
   std::vector<double> best_left_;  // of each event, mm in all
   std::vector<int> best_round_;
-  double weight_ = kWish;
 };
-
-// What a radian costs. Joints near the trunk carry more with them.
-double price_of(const std::string& role) {
-  static const std::map<std::string, double> kPrices{{"shoulder", 1}, {"elbow", 1}, {"wrist", 2},  {"clavicle", 4},
-                                                     {"neck", 6},     {"head", 6},  {"spine", 12}, {"chest", 12},
-                                                     {"hip", 12},     {"knee", 12}, {"ankle", 25}};
-  std::string name = role;
-  for (const char* side : {"left_", "right_"}) {
-    if (name.starts_with(side)) name = name.substr(std::string(side).size());
-  }
-  const auto found = kPrices.find(name);
-  return found == kPrices.end() ? 0 : found->second;
-}
 
 }  // namespace
 
 const char* outcome_name(Outcome outcome) {
   static constexpr std::array<const char*, 5> kNames{"cleared", "reduced", "over_budget", "fold", "accepted"};
   return kNames[static_cast<std::size_t>(outcome)];
-}
-
-std::vector<TurningJoint> turning_joints(const SourceRig& rig, const Roles& roles) {
-  std::vector<TurningJoint> out;
-  for (Index n = 0; n < rig.nodes.size(); ++n) {
-    const double price = n < roles.of_node.size() ? price_of(roles.of_node[n].role) : 0;
-    if (price > 0) out.push_back({n, price * Eigen::Matrix3d::Identity()});
-  }
-  if (!out.empty()) return out;
-  for (const Bone& bone : rig.bones) {
-    // Not the one that carries all others.
-    const auto is_below = [&](const Bone& other) {
-      int n = static_cast<int>(other.node);
-      while (n >= 0 && n != static_cast<int>(bone.node)) n = rig.nodes[static_cast<std::size_t>(n)].parent;
-      return n >= 0;
-    };
-    const auto is_it = [&](const TurningJoint& joint) { return joint.node == bone.node; };
-    if (std::all_of(rig.bones.begin(), rig.bones.end(), is_below)) continue;
-    if (std::none_of(out.begin(), out.end(), is_it)) out.push_back({bone.node});
-  }
-  return out;
 }
 
 Mend mend_clip(const AnimatedAsset& animated, const Roles& roles, const ClipFrames& clip, const MendOptions& options,

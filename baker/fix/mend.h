@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "check/events.h"
+#include "fix/compare.h"
 #include "fix/turned_clip.h"
 #include "play/play.h"
 #include "roles/roles.h"
@@ -36,16 +37,11 @@ struct Mend {
   Turns turns;                  // all zero where nothing is changed
   std::vector<char> in_window;  // of each frame: may it have changed?
   std::vector<MendedEvent> events;
-  double feet_mm = 0, feet_degrees = 0;  // that a foot moves and turns at most
-  double jerk_ratio = 1;                 // of the wrists where they move by more than 3 mm, after to before
-  int shallow = 0,
-      still_near = 0;  // pairs of parts in a frame, pushed, at most 10 mm deep before; of these, after, within 5 mm
+  Comparison compared;
+  // Pairs of parts in a frame, pushed, at most 10 mm deep before; of these, those within 5 mm of each other after.
+  int shallow = 0, still_near = 0;
   int rounds = 0;
 };
-
-// The joints that may turn, of all that a body's roles name; of a body without such roles all but the one that carries
-// all others.
-std::vector<TurningJoint> turning_joints(const SourceRig& rig, const Roles& roles);
 
 // Turns joints so that what is a fault in a clip's frames, and between them, is none any more; feet stay where they
 // are. Whole events that would take a joint beyond the budget are left. `leave` says which are to be left as they are.

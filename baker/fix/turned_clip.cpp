@@ -13,6 +13,11 @@ Eigen::Matrix3d cross_matrix(const Vec3& v) {
   return out;
 }
 
+// A turn d moves what is at `arm` in the joint's axes by d x arm.
+Eigen::Matrix3d moves_of_arm(const Affine& axes, const Vec3& arm, const Vec3& x) {
+  return -axes.linear() * cross_matrix(arm) * turn_derivative(x);
+}
+
 struct Local {
   Vec3 translation, scale;
   Eigen::Quaterniond rotation;
@@ -43,13 +48,27 @@ TurnedClip::TurnedClip(const SourceRig& rig, const Clip& clip, double fps, int f
       joints_(std::move(joints)),
       joint_of_node_(rig.nodes.size(), -1) {
   for (std::size_t j = 0; j < joints_.size(); ++j) joint_of_node_[joints_[j].node] = static_cast<int>(j);
-  for (const Bone& bone : rig.bones) {
-    std::vector<Index>& above = above_.emplace_back();
-    for (int n = static_cast<int>(bone.node); n >= 0; n = rig.nodes[static_cast<std::size_t>(n)].parent) {
-      const int joint = joint_of_node_[static_cast<std::size_t>(n)];
-      if (joint >= 0) above.push_back(static_cast<Index>(joint));
-    }
+  for (const Bone& bone : rig.bones) above_.push_back(joints_above(bone.node));
+}
+
+std::vector<Index> TurnedClip::joints_above(Index node) const {
+  std::vector<Index> out;
+  for (int n = static_cast<int>(node); n >= 0; n = rig_.nodes[static_cast<std::size_t>(n)].parent) {
+    const int joint = joint_of_node_[static_cast<std::size_t>(n)];
+    if (joint >= 0) out.push_back(static_cast<Index>(joint));
   }
+  return out;
+}
+
+std::vector<Vec3> TurnedClip::turns_at(double frame, const Turns& turns) const {
+  const int first = std::clamp(static_cast<int>(std::floor(frame)), 0, frames_ - 1);
+  const auto here = static_cast<std::size_t>(first), next = static_cast<std::size_t>(std::min(first + 1, frames_ - 1));
+  const double share = std::clamp(frame - first, 0.0, 1.0);
+  std::vector<Vec3> out;
+  for (std::size_t j = 0; j < count(); ++j) {
+    out.push_back((1 - share) * turns[here * count() + j] + share * turns[next * count() + j]);
+  }
+  return out;
 }
 
 TurnedClip::Pose TurnedClip::pose(double frame, const Turns& turns) const {
@@ -70,9 +89,7 @@ TurnedClip::Pose TurnedClip::pose(double frame, const Turns& turns) const {
     if (channel.path == ChannelPath::kRotation) local.rotation = Eigen::Quaterniond(v);
     if (channel.path == ChannelPath::kScale) local.scale = v.head<3>();
   }
-  const int first = std::clamp(static_cast<int>(std::floor(frame)), 0, frames_ - 1);
-  const int next = std::min(first + 1, frames_ - 1);
-  const double share = std::clamp(frame - first, 0.0, 1.0);
+  const std::vector<Vec3> now = turns_at(frame, turns);
   std::vector<Affine> world(locals.size());
   out.axes.resize(joints_.size());
   for (std::size_t n = 0; n < locals.size(); ++n) {
@@ -81,12 +98,7 @@ TurnedClip::Pose TurnedClip::pose(double frame, const Turns& turns) const {
     const int joint = joint_of_node_[n];
     Affine own = node.local;
     if (local.is_animated || joint >= 0) {
-      if (joint >= 0) {
-        const auto turn = [&](int f) {
-          return turns[static_cast<std::size_t>(f) * joints_.size() + static_cast<std::size_t>(joint)];
-        };
-        local.rotation = turned(local.rotation, (1 - share) * turn(first) + share * turn(next));
-      }
+      if (joint >= 0) local.rotation = turned(local.rotation, now[static_cast<std::size_t>(joint)]);
       own.linear() = local.rotation.toRotationMatrix() * local.scale.asDiagonal();
       own.translation() = local.translation;
     }
@@ -103,6 +115,10 @@ TurnedClip::Pose TurnedClip::pose(double frame, const Turns& turns) const {
     out.deformation.bones.push_back(rig_.to_rest * world[bone.node] * bone.inverse_bind);
   }
   return out;
+}
+
+Eigen::Matrix3d turn_moves(const Affine& axes, const Vec3& at, const Vec3& x) {
+  return moves_of_arm(axes, axes.linear().inverse() * (at - axes.translation()), x);
 }
 
 SpotMotion motion_of(const TurnedClip& clip, const TurnedClip::Pose& pose, const std::vector<Vec3>& rest,
@@ -127,9 +143,7 @@ SpotMotion motion_of(const TurnedClip& clip, const TurnedClip::Pose& pose, const
   }
   for (Index joint = 0; joint < clip.count(); ++joint) {
     if (used[joint] == 0) continue;
-    // A turn d moves what is at l in the joint's axes by d x l.
-    out.by_joint.emplace_back(joint,
-                              -pose.axes[joint].linear() * cross_matrix(arms[joint]) * turn_derivative(turns[joint]));
+    out.by_joint.emplace_back(joint, moves_of_arm(pose.axes[joint], arms[joint], turns[joint]));
   }
   return out;
 }

@@ -40,12 +40,15 @@ class TurnedClip {
   int frames() const { return frames_; }
   const std::vector<TurningJoint>& joints() const { return joints_; }
   std::size_t count() const { return joints_.size(); }
-  // The turning joints that move a bone, itself among them.
+  // The turning joints that move a bone, or a turning joint, itself among them.
   const std::vector<Index>& above(Index bone) const { return above_[bone]; }
-  // Hinges give way along their axis alone: `axis` in the joint's own axes.
-  void set_price(std::size_t joint, const Eigen::Matrix3d& price) { joints_[joint].price = price; }
+  std::vector<Index> above_joint(Index joint) const { return joints_above(joints_[joint].node); }
+  // Of each joint; between two frames blended.
+  std::vector<Vec3> turns_at(double frame, const Turns& turns) const;
 
  private:
+  std::vector<Index> joints_above(Index node) const;
+
   const SourceRig& rig_;
   const Clip& clip_;
   double fps_;
@@ -54,6 +57,9 @@ class TurnedClip {
   std::vector<int> joint_of_node_;
   std::vector<std::vector<Index>> above_;
 };
+
+// How a turn of a joint moves what is at `at`: by this times the turn, to first order around the turn x.
+Eigen::Matrix3d turn_moves(const Affine& axes, const Vec3& at, const Vec3& x);
 
 // A point of the skin: shares of a triangle's corners.
 struct SkinSpot {

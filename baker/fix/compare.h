@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "fix/turned_clip.h"
+
+namespace spherechain::baker {
+
+// What feet and hands do that they did not do before.
+struct Comparison {
+  double feet_mm = 0, feet_degrees = 0;  // that a foot moves and turns, at most
+  double jerk_ratio = 1;                 // of the wrists, where they move by more than 3 mm: after to before
+};
+
+// `feet` and `wrists`: joints of the clip.
+Comparison compare(const TurnedClip& clip, const Turns& turns, const std::vector<Index>& feet,
+                   const std::vector<Index>& wrists, double mm_per_unit);
+
+}  // namespace spherechain::baker

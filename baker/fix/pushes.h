@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include "fix/solve.h"
+#include "fix/turned_clip.h"
+#include "play/play.h"
+
+namespace spherechain::baker {
+
+// Two body parts in a frame, or between two.
+struct MeetingPlace {
+  double frame;
+  std::uint32_t part_a, part_b;
+
+  bool operator<(const MeetingPlace& other) const {
+    return std::tie(frame, part_a, part_b) < std::tie(other.frame, other.part_a, other.part_b);
+  }
+};
+
+// Two spots, one of each part, and a way for b's to leave a's.
+struct Push {
+  SkinSpot a, b;
+  Vec3 way;         // unit length
+  double target;    // how far b is to be from a along the way; negative: no deeper than that
+  bool is_shallow;  // it ends near
+};
+
+// All that was ever in each other: what was pushed out once must not come back.
+class Pushes {
+ public:
+  Pushes(const AnimatedAsset& animated, const TurnedClip& clip) : animated_(animated), clip_(clip) {}
+
+  // From what was measured there. Another way out is not begun while one is not at its end.
+  void add(const MeetingPlace& place, const Penetration& found, double target, bool is_shallow, const Turns& turns);
+  // What this is true of is pushed no more.
+  template <typename Predicate>
+  void forget(const Predicate& is_it) {
+    for (auto& [place, pushes] : of_) {
+      if (is_it(place)) pushes.clear();
+    }
+  }
+
+  const std::map<MeetingPlace, std::vector<Push>>& all() const { return of_; }
+  // The least distance of a place's spots from each other, along their ways.
+  double nearest(const MeetingPlace& place, const Turns& turns) const;
+
+  // That spots part, to first order around the turns.
+  void add_wishes(double weight, const Turns& turns, std::vector<Wish>& wishes) const;
+
+ private:
+  double gap(const Push& push, double frame, const Turns& turns) const;
+
+  const AnimatedAsset& animated_;
+  const TurnedClip& clip_;
+  std::map<MeetingPlace, std::vector<Push>> of_;
+};
+
+// That three points which each of these joints carries stay where the clip has them.
+void add_pins(const TurnedClip& clip, const std::vector<Index>& joints, int frame, double height, const Turns& turns,
+              std::vector<Wish>& wishes);
+
+}  // namespace spherechain::baker
