@@ -29,6 +29,7 @@ constexpr double kSame = 2e-4;                  // radians: too little to look a
 constexpr double kPad = 0.35;                   // seconds around an event in which joints turn, too
 constexpr double kShallow = 10;                 // mm
 constexpr double kNear = 5;                     // mm
+constexpr double kLess = 0.8;                   // of its depth: an event is reduced
 constexpr double kDeeper = 0.5;                 // mm: so much deeper than before is a fault, too
 constexpr double kFoldDeeper = 2;               // the same of folds, which move with the joint
 constexpr double kWish = 1e4, kWishMost = 1e6;  // the weight of pushes grows by round
@@ -289,15 +290,16 @@ class Mender {
       }
       if (!any) return;
       if (turn < kTapers) {
-        taper(fails);
+        taper(fails, kPad * (turn + 1) / kTapers);
       } else {
         turn_back(fails);
       }
     }
   }
 
-  void taper(const std::vector<char>& fails) {
-    const double pad = kPad * clip_.fps();
+  // No turn within so many seconds of what fails; then all of it within as many more.
+  void taper(const std::vector<char>& fails, double seconds) {
+    const double pad = seconds * clip_.fps();
     for (std::size_t f = 0; f < fails.size(); ++f) {
       double near = HUGE_VAL;
       for (std::size_t g = 0; g < fails.size(); ++g) {
@@ -348,11 +350,9 @@ class Mender {
       }
       event.turn_degrees = greatest_turn(event);
       if (event.outcome == Outcome::kAccepted || event.outcome == Outcome::kFold) continue;
-      if (event.depth_after == 0) {
-        event.outcome = Outcome::kCleared;
-      } else if (event.depth_after < 0.8 * event.depth_before) {
-        event.outcome = Outcome::kReduced;
-      }
+      event.outcome = event.depth_after == 0                           ? Outcome::kCleared
+                      : event.depth_after < kLess * event.depth_before ? Outcome::kReduced
+                                                                       : Outcome::kOverBudget;
     }
     out.events = events_;
     out.turns = turns_;
