@@ -36,7 +36,17 @@ std::vector<double> sizes_of(const BodyParts& parts, const Character& character)
   return out;
 }
 
-// Whether two poses are the same, wherever the character stands: its first bone says where.
+Vec3 to_vec3(const spherechain::Vec3& v) { return {v.x, v.y, v.z}; }
+
+bool is_of(const PartMeeting& meeting, const TriangleContact& contact) {
+  const auto [a, b] = std::minmax(contact.part_a, contact.part_b);
+  return meeting.found.part_a == a && meeting.found.part_b == b;
+}
+
+bool is_shown(PenetrationClass kind) { return is_fault(kind) || kind == SC_CLASS_TOUCH; }
+
+}  // namespace
+
 bool same_pose(const Deformation& first, const Deformation& last, const BodyFrame& axes) {
   if (first.bones.empty() || first.morphs != last.morphs) return false;
   constexpr double kSame = 0.002;  // of the height
@@ -51,17 +61,6 @@ bool same_pose(const Deformation& first, const Deformation& last, const BodyFram
   }
   return true;
 }
-
-Vec3 to_vec3(const spherechain::Vec3& v) { return {v.x, v.y, v.z}; }
-
-bool is_of(const PartMeeting& meeting, const TriangleContact& contact) {
-  const auto [a, b] = std::minmax(contact.part_a, contact.part_b);
-  return meeting.found.part_a == a && meeting.found.part_b == b;
-}
-
-bool is_shown(PenetrationClass kind) { return is_fault(kind) || kind == SC_CLASS_TOUCH; }
-
-}  // namespace
 
 struct ClipChecker::Frames {
   std::vector<PartMeeting> meetings;             // by frame, then by parts

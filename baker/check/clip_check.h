@@ -11,6 +11,9 @@
 
 namespace spherechain::baker {
 
+// Whether two poses are the same, wherever the character stands: its first bone says where.
+bool same_pose(const Deformation& first, const Deformation& last, const BodyFrame& axes);
+
 // A checked clip: what was found, and what the report shows of it.
 struct ClipCheck {
   ClipResult result;

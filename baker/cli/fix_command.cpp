@@ -40,6 +40,10 @@ Event event_of(const MendedEvent& mended, const std::vector<BodyPart>& parts) {
 // Pages of the clips that changed, before and after side by side.
 void write_pages(const FixOptions& options, const fs::path& page, const Bake& baked, const AnimatedAsset& before,
                  const std::vector<MendedClip>& clips) {
+  for (const auto& entry : fs::directory_iterator(options.report)) {
+    const std::string name = entry.path().filename().string();  // of an earlier run
+    if (name.starts_with("clip_") && name.ends_with(".html")) fs::remove(entry.path());
+  }
   if (!fs::is_regular_file(page)) return;
   const std::string_view asset(reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size());
   for (std::size_t i = 0; i < clips.size(); ++i) {
@@ -56,7 +60,7 @@ void write_pages(const FixOptions& options, const fs::path& page, const Bake& ba
     page_options.names = {"before", "after"};
     page_options.they_meet = false;
     page_options.fps = one.clips()[0].fps;
-    const Place beside{1.2, 0, 0};
+    const Place beside{mm_per_unit(one.asset()) * one.frame().height / 1000, 0, 0};
     write_atomically(fs::path(options.report) / fmt::format("clip_{}.html", i),
                      view_page_of_two(one, other, &beside, page_options, [](int) {}));
   }
@@ -70,14 +74,18 @@ ExitCode run_fix(const FixOptions& options) {
   if (!options.keep.empty()) config = read_config(read_file(options.keep), options.keep, config);
   check_regular_file(options.input);
   const std::string json = options.report.empty() ? "" : (fs::path(options.report) / "fix.json").string();
-  if (!options.report.empty()) make_folder(options.report);
-  check_outputs(with_source({{"--keep", options.keep}}, "INPUT", options.input),
-                {{"-o", options.output}, {"--report", json}});
+  if (fs::path(options.output).extension() != ".glb") {
+    throw Error(ExitCode::kUsage, "-o: " + options.output + " is written as a binary glTF (name it .glb)");
+  }
+  if (fs::exists(options.report) && !fs::is_directory(options.report)) {
+    throw Error(ExitCode::kFile, options.report + ": is no folder");
+  }
+  check_outputs(with_source({{"--keep", options.keep}}, "INPUT", options.input), {{"-o", options.output}});
   check_replaceable(options.output, "glTF", "a GLB file", options.force);
   check_replaceable_json(json, options.force, "--force replaces it");
 
   std::vector<MendedClip> clips;
-  std::string text, bytes = read_file(options.input);
+  std::string text, notes, bytes = read_file(options.input);
   {
     Progress progress("fix " + options.input + ":");
     const Bake baked = bake(options.input, config.bake, [&](const std::string& stage) { progress.show(stage); });
@@ -86,6 +94,12 @@ ExitCode run_fix(const FixOptions& options) {
     const std::string_view asset(reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size());
     const AnimatedAsset animated(OpenAsset(asset, options.input), options.input, options.input, motion, {0, 0});
     const std::vector<BodyPart> parts = parts_of(animated.asset()).parts;
+    for (const std::string& name : config.rules.named_parts()) {
+      if (std::none_of(parts.begin(), parts.end(), [&](const BodyPart& part) { return part.name == name; })) {
+        notes += fmt::format("spherechain: warning: {}: a rule names '{}', which this character has not\n",
+                             options.keep, name);
+      }
+    }
     for (const ClipFrames& clip : animated.clips()) {
       if (clip.clip == nullptr || clip.clip->in_file < 0 || animated.asset()->bone_count() == 0) {
         throw Error(ExitCode::kFile, options.input + (clip.clip == nullptr     ? ": has no clips to mend"
@@ -108,11 +122,13 @@ ExitCode run_fix(const FixOptions& options) {
     write_atomically(options.output, bytes);
     if (!json.empty()) {
       progress.show("report");
+      make_folder(options.report);
       write_atomically(json, fix_json(clips, parts));
       write_pages(options, page, baked, animated, clips);
     }
     text = fix_text(clips, parts);
   }
+  fmt::print(stderr, "{}", notes);
   fmt::print("{}", text);
   fmt::print("wrote {}\n", options.output);
   if (!json.empty()) fmt::print("wrote {}: fix.json, and a page of each clip that changed\n", options.report);

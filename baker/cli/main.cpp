@@ -98,6 +98,7 @@ void add_with(CLI::App& command, WithOptions& with) {
             ->delimiter(',')
             ->expected(3)
             ->check(refuse_nan)
+            ->check(CLI::Range(-10000.0, 10000.0))
             ->type_name("LEFT,FORWARD,DEGREES")}) {
     option->needs(asset);
   }
@@ -119,7 +120,8 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   app.footer(
       "Exit: 0 done; 1 internal error; 2 usage; 3 a file cannot be read or written, or has the wrong content;\n"
-      "4 the body that was asked for is not there; 5 done, but a target in the settings was not met;\n"
+      "4 the body that was asked for is not there; 5 done, but a target in the settings was not met, or fix leaves "
+      "faults;\n"
       "6 done, but a library fails its check.");
   std::function<ExitCode()> run;
 

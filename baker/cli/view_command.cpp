@@ -37,6 +37,22 @@ std::vector<CommandFile> inputs_of(const ViewOptions& options, const std::string
   return with_motion(with_source(std::move(inputs), "--with-source", with_source_file), options.with.motion);
 }
 
+void check_with(const ViewOptions& options) {
+  const WithOptions& with = options.with;
+  const bool is_same = with.asset == options.asset;
+  const std::string wrong =
+      options.continuous || !options.report.empty() || !options.validation.empty()
+          ? "--with: a page of two shows no report, no validation, and frames alone"
+      : with.source.empty() && !is_same ? "--with-source: name the mesh that " + with.asset + " was baked from"
+      : with.at.empty() && is_same      ? "--at: say where the second stands: it would stand in the first"
+      : static_cast<int>(!with.motion.clip.empty()) + static_cast<int>(!with.motion.poses.empty()) +
+                  static_cast<int>(!with.motion.motion.empty()) >
+              1
+          ? "--with-clip, --with-poses, --with-motion: name one"
+          : "";
+  if (!wrong.empty()) throw Error(ExitCode::kUsage, wrong);
+}
+
 }  // namespace
 
 ExitCode run_view(const ViewOptions& options) {
@@ -44,9 +60,7 @@ ExitCode run_view(const ViewOptions& options) {
   const std::string with_source_file = with.source.empty() ? options.source : with.source;
   check_outputs(inputs_of(options, with_source_file), {{"-o", options.output}});
   check_replaceable(options.output, "<!doctype html", "a page", options.force);
-  if (!with.asset.empty() && (options.continuous || !options.report.empty() || !options.validation.empty())) {
-    throw Error(ExitCode::kUsage, "--with: a page of two shows no report, no validation, and frames alone");
-  }
+  if (!with.asset.empty()) check_with(options);
   PageOptions page;
   page.template_file = viewer_template().string();
   page.title = fs::path(options.asset).filename().string();

@@ -46,8 +46,7 @@ FaultFinder::FaultFinder(const AnimatedAsset& animated, const TurnedClip& clip) 
   }
 }
 
-std::vector<Meeting> FaultFinder::look(SkinPlayer& player, double frame, const Turns& turns,
-                                       const std::vector<Meeting>& before) const {
+std::vector<Meeting> FaultFinder::look(SkinPlayer& player, double frame, const Turns& turns) const {
   const BonePose bones(animated_.asset(), clip_.pose(frame, turns).deformation);
   const sc_pose pose = bones.pose();
   std::vector<Meeting> out;
@@ -64,23 +63,15 @@ std::vector<Meeting> FaultFinder::look(SkinPlayer& player, double frame, const T
       const auto [a, b] = std::minmax(contact.part_a, contact.part_b);
       if (a == meeting.found.part_a && b == meeting.found.part_b) of_them.push_back(contact);
     }
-    const auto known = std::find_if(before.begin(), before.end(), [&](const Meeting& other) {
-      return other.found.part_a == meeting.found.part_a && other.found.part_b == meeting.found.part_b &&
-             is_fault(other.found.kind);
-    });
-    meeting.found = player.measure_parts(pose, of_them, known == before.end() ? nullptr : &known->found);
+    meeting.found = player.measure_parts(pose, of_them);
   }
   return out;
 }
 
 std::vector<Meeting> FaultFinder::in_frames(const std::vector<double>& frames, const Turns& turns) {
   std::vector<std::vector<Meeting>> found(frames.size());
-  std::vector<std::vector<Meeting>> last(players_.size());  // a thread's
-  on_threads(players_.size(), frames.size(), [&](std::size_t t, std::size_t i) {
-    if (i > 0 && frames[i] > frames[i - 1] + 1) last[t].clear();
-    found[i] = look(players_[t], frames[i], turns, last[t]);
-    last[t] = found[i];
-  });
+  on_threads(players_.size(), frames.size(),
+             [&](std::size_t t, std::size_t i) { found[i] = look(players_[t], frames[i], turns); });
   return joined(std::move(found));
 }
 
@@ -94,7 +85,7 @@ std::vector<Meeting> FaultFinder::between(const std::vector<int>& frames, const 
     for (const StepContact& contact : contacts) {
       if (contact.at_start != 0 || contact.at_end != 0) continue;
       const double middle = 0.5 * (double{contact.begin} + double{contact.end});
-      for (const Meeting& meeting : look(players_[t], frame + middle, turns, {})) {
+      for (const Meeting& meeting : look(players_[t], frame + middle, turns)) {
         const auto [a, b] = std::minmax(contact.part_a, contact.part_b);
         if (meeting.found.part_a == a && meeting.found.part_b == b && is_fault(meeting.found.kind)) {
           found[i].push_back(meeting);

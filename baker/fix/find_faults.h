@@ -34,9 +34,7 @@ class FaultFinder {
   std::vector<Meeting> between(const std::vector<int>& frames, const Turns& turns);
 
  private:
-  // `before`: what was found in the frame before; ways out follow it.
-  std::vector<Meeting> look(SkinPlayer& player, double frame, const Turns& turns,
-                            const std::vector<Meeting>& before) const;
+  std::vector<Meeting> look(SkinPlayer& player, double frame, const Turns& turns) const;
 
   const AnimatedAsset& animated_;
   const TurnedClip& clip_;

@@ -11,6 +11,7 @@
 #include <numbers>
 #include <set>
 
+#include "check/clip_check.h"
 #include "fix/find_faults.h"
 #include "fix/joints.h"
 #include "fix/pushes.h"
@@ -20,18 +21,20 @@ namespace spherechain::baker {
 namespace {
 
 constexpr int kRounds = 16;
-constexpr int kTrying = 10;                     // after so many, what stays is left
-constexpr int kPatience = 3;                    // rounds that an event may take without getting better
-constexpr int kTapers = 3;                      // tries to take back softly what got worse
-constexpr double kStep = 10;                    // degrees that a joint turns in a round, at most
-constexpr double kStill = 1;                    // degrees: a round that turns joints by less may be the last
-constexpr double kSame = 2e-4;                  // radians: too little to look again
-constexpr double kPad = 0.35;                   // seconds around an event in which joints turn, too
-constexpr double kShallow = 10;                 // mm
-constexpr double kNear = 5;                     // mm
-constexpr double kLess = 0.8;                   // of its depth: an event is reduced
-constexpr double kDeeper = 0.5;                 // mm: so much deeper than before is a fault, too
-constexpr double kFoldDeeper = 2;               // the same of folds, which move with the joint
+constexpr int kTrying = 10;        // after so many, what stays is left
+constexpr int kPatience = 3;       // rounds that an event may take without getting better
+constexpr int kFreeRounds = 4;     // at most, once there is no fault, in which joints go back as far as they can
+constexpr int kTapers = 3;         // tries to take back softly what got worse
+constexpr double kStep = 10;       // degrees that a joint turns in a round, at most
+constexpr double kStill = 1;       // degrees: a round that turns joints by less may be the last
+constexpr double kLeave = 3;       // of a turn from where the round starts, while there is a fault
+constexpr double kSame = 2e-4;     // radians: too little to look again
+constexpr double kPad = 0.35;      // seconds around an event in which joints turn, too
+constexpr double kShallow = 10;    // mm
+constexpr double kNear = 5;        // mm
+constexpr double kLess = 0.8;      // of its depth: an event is reduced
+constexpr double kDeeper = 0.5;    // mm: so much deeper than before is a fault, too
+constexpr double kFoldDeeper = 2;  // the same of folds, which move with the joint
 constexpr double kWish = 1e4, kWishMost = 1e6;  // the weight of pushes grows by round
 
 using PartPair = std::pair<std::uint32_t, std::uint32_t>;
@@ -51,7 +54,10 @@ class Mender {
         pushes_(animated, clip_),
         turns_(static_cast<std::size_t>(clip.own_count) * clip_.count(), Vec3::Zero()),
         feet_(joints_of_role(clip_.joints(), roles, "ankle")),
-        wrists_(joints_of_role(clip_.joints(), roles, "wrist")) {}
+        wrists_(joints_of_role(clip_.joints(), roles, "wrist")),
+        loops_(same_pose(clip_.pose(0, turns_).deformation, clip_.pose(clip_.frames() - 1, turns_).deformation,
+                         animated.frame())),
+        in_window_(static_cast<std::size_t>(clip.own_count), 0) {}
 
   Mend run(const std::function<bool(const MendedEvent&)>& leave, const std::function<void(const std::string&)>& told) {
     std::vector<double> all;
@@ -65,6 +71,8 @@ class Mender {
     Turns best = turns_;
     const double still = kStill * std::numbers::pi / 180;
     double least = HUGE_VAL, moved = 0;
+    bool was_free = false;
+    int free_rounds = 0;
     for (int round = 0; round < kRounds && (!is_idle() || moved > still); ++round) {
       const std::vector<Meeting> now = round == 0 ? before : look(frames_in_window());
       double badness = add_pushes(now);
@@ -76,17 +84,20 @@ class Mender {
         least = badness;
         best = turns_;
       }
-      const bool is_last = badness == 0 || round >= kTrying;
-      if (const bool gave_up = give_up(now, round, is_last); gave_up) {
+      if (least == 0) {
+        if ((badness == 0 && was_free && moved < still) || ++free_rounds > kFreeRounds) break;
+      } else if (give_up(now, round, round >= kTrying)) {
         least = HUGE_VAL;
-      } else if (badness == 0 && moved < still) {
-        break;
       }
       open_windows();
-      moved = take(solve_turns(clip_, in_window_, wishes(std::min(kWish * std::pow(2, round), kWishMost)), turns_));
+      was_free = badness == 0;
+      const double weight = std::min(kWish * std::pow(2, round), kWishMost);
+      moved = take(solve_turns(clip_, in_window_, wishes(weight), turns_, was_free ? 0 : kLeave));
       out.rounds = round + 1;
     }
     turns_ = best;
+    finder_.leave_out({});
+    seen_.clear();
     take_back_what_fails();
     finish(out);
     return out;
@@ -192,8 +203,9 @@ class Mender {
       const double slack =
           (is_fault(p.kind) && p.kind != SC_CLASS_DEEP_FOLD ? kDeeper : kFoldDeeper) / mm_ + 0.1 * may_be;
       if (may_be >= 0 && excess <= slack) continue;
-      if (may_be >= 0 && (p.kind == SC_CLASS_REST || p.kind == SC_CLASS_SHELL || p.part_a == p.part_b)) continue;
-      if (is_fault(p.kind) || may_be >= 0) sum += may_be < 0 ? double{p.depth} : excess;
+      // What is no fault and not to part is let be: folds and touches come and go with a joint.
+      if (may_be >= 0 && (!is_fault(p.kind) || p.part_a == p.part_b)) continue;
+      if (is_fault(p.kind)) sum += may_be < 0 ? double{p.depth} : excess;
       const auto known = before_.find(place_of(meeting));
       const bool is_shallow = known != before_.end() && mm_ * double{known->second.depth} <= kShallow;
       pushes_.add(place_of(meeting), p, -may_be, is_shallow, turns_);
@@ -209,6 +221,10 @@ class Mender {
       for (int f = std::max(0, frame - pad); f <= std::min(clip_.frames() - 1, frame + 1 + pad); ++f) {
         in_window_[static_cast<std::size_t>(f)] = 1;
       }
+    }
+    if (loops_) {
+      const std::size_t last = in_window_.size() - 1;
+      in_window_[0] = in_window_[last] = static_cast<char>(in_window_[0] | in_window_[last]);
     }
   }
   std::vector<int> whole_frames_in_window() const {
@@ -229,6 +245,14 @@ class Mender {
   std::vector<Wish> wishes(double weight) const {
     std::vector<Wish> out;
     pushes_.add_wishes(weight, turns_, out);
+    if (loops_) {
+      for (Index j = 0; j < clip_.count(); ++j) {
+        for (int k = 0; k < 3; ++k) {
+          const Vec3 axis = Vec3::Unit(k);
+          out.push_back({{{0, j, axis}, {clip_.frames() - 1, j, -axis}}, 0, kWishMost, kWishMost});
+        }
+      }
+    }
     for (const int f : whole_frames_in_window()) add_pins(clip_, feet_, f, height_, turns_, out);
     return out;
   }
@@ -275,7 +299,6 @@ class Mender {
   // Where something is worse than before, joints turn back around it, softly; and where that does not help, in all that
   // lies together in time.
   void take_back_what_fails() {
-    if (in_window_.empty()) return;
     for (int turn = 0; turn <= kTapers; ++turn) {
       std::vector<char> fails(in_window_.size(), 0);
       const std::vector<int> whole = whole_frames_in_window();
@@ -303,14 +326,17 @@ class Mender {
     for (std::size_t f = 0; f < fails.size(); ++f) {
       double near = HUGE_VAL;
       for (std::size_t g = 0; g < fails.size(); ++g) {
-        if (fails[g] != 0) near = std::min(near, std::abs(static_cast<double>(f) - static_cast<double>(g)));
+        if (fails[g] == 0) continue;
+        const double apart = std::abs(static_cast<double>(f) - static_cast<double>(g));
+        near = std::min({near, apart, loops_ ? static_cast<double>(fails.size() - 1) - apart : apart});
       }
       const double share = std::clamp((near - pad) / pad, 0.0, 1.0), smooth = share * share * (3 - 2 * share);
       for (std::size_t j = 0; j < clip_.count(); ++j) turns_[f * clip_.count() + j] *= smooth;
     }
   }
 
-  void turn_back(const std::vector<char>& fails) {
+  void turn_back(std::vector<char> fails) {
+    if (loops_) fails[0] = fails[fails.size() - 1] = fails_at_seam(fails);
     for (std::size_t begin = 0; begin < fails.size(); ++begin) {
       std::size_t end = begin;
       bool any = false;
@@ -321,6 +347,14 @@ class Mender {
       }
       begin = end;
     }
+  }
+
+  // Of a loop: whether what lies together around its seam fails.
+  char fails_at_seam(const std::vector<char>& fails) const {
+    char any = 0;
+    for (std::size_t f = 0; f < fails.size() && in_window_[f] != 0; ++f) any |= fails[f];
+    for (std::size_t f = fails.size(); f-- > 0 && in_window_[f] != 0;) any |= fails[f];
+    return any;
   }
 
   // Than the same parts were around that time.
@@ -335,17 +369,16 @@ class Mender {
 
   void finish(Mend& out) {
     out.joints = clip_.joints();
-    out.in_window = in_window_.empty() ? std::vector<char>(static_cast<std::size_t>(clip_.frames()), 0) : in_window_;
+    out.in_window = in_window_;
     std::vector<double> all;
     for (int f = 0; f < clip_.frames(); ++f) all.push_back(f);
-    const std::vector<Meeting> after = finder_.in_frames(all, turns_);
+    std::vector<Meeting> after = finder_.in_frames(all, turns_);
+    const std::vector<Meeting> between = finder_.between(whole_frames_in_window(), turns_);
+    after.insert(after.end(), between.begin(), between.end());
     for (MendedEvent& event : events_) {
       event.depth_after = 0;
       for (const Meeting& meeting : after) {
-        if (meeting.found.part_a != event.part_a || meeting.found.part_b != event.part_b ||
-            meeting.frame < event.from || meeting.frame > event.to || !is_fault(meeting.found.kind)) {
-          continue;
-        }
+        if (!is_in(place_of(meeting), event) || !is_fault(meeting.found.kind)) continue;
         event.depth_after = std::max(event.depth_after, mm_ * double{meeting.found.depth});
       }
       event.turn_degrees = greatest_turn(event);
@@ -375,6 +408,7 @@ class Mender {
   Pushes pushes_;
   Turns turns_;
   std::vector<Index> feet_, wrists_;  // joints
+  bool loops_;
   std::vector<char> in_window_;
   std::map<MeetingPlace, Penetration> before_;
   std::vector<MendedEvent> events_;

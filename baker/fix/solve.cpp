@@ -11,7 +11,6 @@ namespace spherechain::baker {
 namespace {
 
 constexpr double kSteadyTime = 0.1;  // seconds: what changes within is dear
-constexpr double kLeave = 3;         // of a radian from where the round starts
 constexpr int kTrials = 4;           // in which wishes are found to be met
 
 using Matrix = Eigen::SparseMatrix<double>;
@@ -79,7 +78,7 @@ double sum_of(const Wish& wish, const System& system, const Eigen::VectorXd& x) 
 }  // namespace
 
 Turns solve_turns(const TurnedClip& clip, const std::vector<char>& in_window, const std::vector<Wish>& wishes,
-                  const Turns& start) {
+                  const Turns& start, double leave) {
   const System system(clip, in_window);
   const std::size_t count = clip.count();
   Turns out(in_window.size() * count, Vec3::Zero());
@@ -92,15 +91,15 @@ Turns solve_turns(const TurnedClip& clip, const std::vector<char>& in_window, co
     }
   }
   Matrix prices = system.prices();
-  Eigen::VectorXd leave = Eigen::VectorXd::Zero(system.size());  // what no wish names is free to go back
+  Eigen::VectorXd dear = Eigen::VectorXd::Zero(system.size());  // what no push names is free to go back
   for (const Wish& wish : wishes) {
+    if (wish.weight == wish.weight_over) continue;  // it holds everywhere
     for (const Wish::Part& part : wish.parts) {
-      if (const Eigen::Index at = system.place(part.frame, part.joint); at >= 0)
-        leave.segment<3>(at).setConstant(kLeave);
+      if (const Eigen::Index at = system.place(part.frame, part.joint); at >= 0) dear.segment<3>(at).setConstant(leave);
     }
   }
-  for (Eigen::Index i = 0; i < system.size(); ++i) prices.coeffRef(i, i) += leave[i];
-  const Eigen::VectorXd begin = leave.cwiseProduct(x);
+  for (Eigen::Index i = 0; i < system.size(); ++i) prices.coeffRef(i, i) += dear[i];
+  const Eigen::VectorXd begin = dear.cwiseProduct(x);
   Eigen::SimplicialLLT<Matrix> cholesky;
   std::vector<char> is_over(wishes.size());
   for (std::size_t i = 0; i < wishes.size(); ++i) is_over[i] = sum_of(wishes[i], system, x) > wishes[i].value ? 1 : 0;

@@ -21,9 +21,9 @@ struct Wish {
 };
 
 // The turns of a clip's frames that cost least: their price, how unsteady they are, and what is missed of the wishes.
-// Frames outside of `in_window` keep zero. One linear system over all of the clip. To leave `start` has its price, too:
-// wishes hold near it alone.
+// Frames outside of `in_window` keep zero. One linear system over all of the clip. To leave `start` costs `leave` times
+// a radian's square where a wish names the turn: wishes hold near it alone.
 Turns solve_turns(const TurnedClip& clip, const std::vector<char>& in_window, const std::vector<Wish>& wishes,
-                  const Turns& start);
+                  const Turns& start, double leave);
 
 }  // namespace spherechain::baker

@@ -124,7 +124,12 @@ std::vector<RotationTrack> turned_tracks(const TurnedClip& clip, const Turns& tu
       const auto time = static_cast<float>(f / clip.fps());
       const bool is_near =
           std::any_of(times.lower_bound(time - 1e-4F), times.upper_bound(time + 1e-4F), [](float) { return true; });
-      if ((!is_linear || in_window[static_cast<std::size_t>(f)] != 0) && !is_near) times.insert(time);
+      const auto is_open = [&](int g) {
+        return g >= 0 && g < clip.frames() && in_window[static_cast<std::size_t>(g)] != 0;
+      };
+      // One beside the window, too: there the way to the next key is the clip's own.
+      const bool is_wanted = (channel != nullptr && !is_linear) || is_open(f - 1) || is_open(f) || is_open(f + 1);
+      if (is_wanted && !is_near) times.insert(time);
     }
     RotationTrack track{node.in_file, {}, {}};
     Eigen::Quaterniond before(0, 0, 0, 0);

@@ -87,11 +87,8 @@ const std::vector<Penetration>& SkinPlayer::measure_quickly(const sc_pose& pose,
   return run(job);
 }
 
-Penetration SkinPlayer::measure_parts(const sc_pose& pose, const std::vector<TriangleContact>& contacts,
-                                      const Penetration* previous) {
+Penetration SkinPlayer::measure_parts(const sc_pose& pose, const std::vector<TriangleContact>& contacts) {
   PenetrationJob job = measure_job(pose, contacts);
-  job.previous = previous;
-  job.previous_count = previous != nullptr ? 1 : 0;
   Penetration out{};
   job.penetrations = &out;
   job.penetration_capacity = 1;

@@ -57,10 +57,8 @@ class SkinPlayer {
   const std::vector<Penetration>& measure_quickly(const sc_pose& pose) { return measure_quickly(pose, contacts_); }
   // Of some pairs of parts: `contacts` are all of theirs.
   const std::vector<Penetration>& measure_quickly(const sc_pose& pose, const std::vector<TriangleContact>& contacts);
-  // Two body parts alone, in full, whatever came before. `contacts` are all of theirs in that pose; `previous` is what
-  // was found of them a moment before, or null.
-  Penetration measure_parts(const sc_pose& pose, const std::vector<TriangleContact>& contacts,
-                            const Penetration* previous = nullptr);
+  // Two body parts alone, in full, whatever came before. `contacts` are all of theirs in that pose.
+  Penetration measure_parts(const sc_pose& pose, const std::vector<TriangleContact>& contacts);
 
  private:
   SkinContactJob job(const sc_pose& pose);

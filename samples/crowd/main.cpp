@@ -252,6 +252,8 @@ int main(int argc, char** argv) {
   }
   try {
     const std::vector<char> file = samples::read_file(argv[1]);
+    const std::string map = argc > 3 ? argv[3] : ".svg";
+    if (map.size() < 4 || map.substr(map.size() - 4) != ".svg") throw std::runtime_error(map + ": name the map .svg");
     run(file, samples::GltfCharacter(argv[2]), argc > 3 ? argv[3] : nullptr);
   } catch (const std::exception& error) {
     std::fprintf(stderr, "crowd: error: %s\n", error.what());

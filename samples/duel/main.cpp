@@ -106,6 +106,8 @@ class Referee {
     job.contacts = steps_.data();
     job.contact_capacity = steps_.size();
     check(job.run(), "a step");
+    std::sort(steps_.begin(), steps_.begin() + static_cast<std::ptrdiff_t>(job.contact_count),
+              [](const StepContact& l, const StepContact& r) { return l.begin < r.begin; });
     std::vector<Penetration> depths;
     for (std::size_t i = 0; i < job.contact_count; ++i) {
       const StepContact& hit = steps_[i];
@@ -179,6 +181,7 @@ class Referee {
 };
 
 void fight(const std::vector<char>& file, const samples::GltfCharacter& clips) {
+  if (clips.clip_count() == 0) throw std::runtime_error("the model has no clip");
   const Model model(file, clips);
   Fighter red(model, false, 0), blue(model, true, kDistance * model.info.height);
   Referee referee(model);
