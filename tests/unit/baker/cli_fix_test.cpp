@@ -134,6 +134,15 @@ TEST_CASE("fix: a fault in a clean clip is undone around it, and nothing else of
   CHECK(json_after["animations"][0]["channels"][1] == json_before["animations"][0]["channels"][1]);
 }
 
+TEST_CASE("fix: a loop stays one") {
+  std::vector<double> degrees(60, -10);
+  for (const int f : {0, 1, 2, 3, 57, 58, 59})
+    degrees[static_cast<std::size_t>(f)] = f < 10 ? 12 - 3 * f : 12 - 3 * (59 - f);
+  const Fixed fixed = fix(degrees);
+  for (const double after : fixed.degrees) CHECK(after < 0.2);
+  CHECK(std::abs(fixed.degrees.front() - fixed.degrees.back()) < 0.1);
+}
+
 TEST_CASE("fix: what has no fault, is meant, or costs more than the budget, stays byte for byte") {
   const Fixed clean = fix(std::vector<double>(30, -10));
   CHECK(clean.run.code == 0);
@@ -155,9 +164,13 @@ TEST_CASE("fix: what has no fault, is meant, or costs more than the budget, stay
   CHECK(dear.run.out.find("over_budget") != std::string::npos);
 }
 
-TEST_CASE("fix: refuses what it cannot write, and writes nothing") {
+TEST_CASE("fix: a report folder is written again; what cannot be written is refused, and nothing is written") {
   const TemporaryFolder folder;
   const auto file = folder.write("arm.glb", wall_and_arm({5, 5, 5}));
+  const std::string again = "fix " + file.string() + " -o " + (folder.path / "again.glb").string() + " --report " +
+                            (folder.path / "report").string();
+  CHECK(tool::run(again).code == 0);
+  CHECK(tool::run(again).code == 0);
   const std::string out = " -o " + (folder.path / "out.glb").string();
   Glb still;
   const int wall = mesh_of(still, box(0.5, 1, 1), 0, 0);
@@ -167,6 +180,8 @@ TEST_CASE("fix: refuses what it cannot write, and writes nothing") {
   tool::check_error(tool::run("fix /usr/share/assimp/models/BVH/01_01.bvh" + out), 3, {"01_01.bvh"});
   tool::check_error(tool::run("fix " + file.string() + out + " --clip other"), 3, {"other"});
   tool::check_error(tool::run("fix " + file.string() + " -o " + file.string()), 2, {"arm.glb"});
+  tool::check_error(tool::run("fix " + file.string() + " -o " + (folder.path / "out.gltf").string()), 2, {".glb"});
+  tool::check_error(tool::run("fix " + file.string() + out + " --report " + file.string()), 3, {"no folder"});
   CHECK(!std::filesystem::exists(folder.path / "out.glb"));
 }
 
