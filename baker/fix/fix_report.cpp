@@ -57,6 +57,8 @@ std::string clip_text(const MendedClip& clip, const std::vector<BodyPart>& parts
   }
   std::string out = fmt::format("{}: {} events", clip.name, clip.mend.events.size());
   for (const auto& [outcome, count] : counts) out += fmt::format(", {} {}", count, outcome_name(outcome));
+  const Comparison& compared = clip.mend.compared;
+  if (compared.feet_mm >= 0.005) out += fmt::format("; feet move {:.2f} mm", compared.feet_mm);
   const std::vector<double> turns = turns_of(clip);
   return out +
          fmt::format("; turns {:.1f} degrees in the median, {:.1f} in p90, {:.1f} at most; {} rounds, {:.1f} s\n{}",
