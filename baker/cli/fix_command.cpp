@@ -53,13 +53,14 @@ void write_pages(const FixOptions& options, const fs::path& page, const Bake& ba
     MotionChoice motion;
     motion.clip = before.clips()[i].name;
     const AnimatedAsset one(OpenAsset(asset, options.input), options.input, options.input, motion, {0, 0});
-    const AnimatedAsset other(OpenAsset(asset, options.input), options.input, options.output, motion, {0, 0});
     PageOptions page_options;
     page_options.template_file = page.string();
     page_options.title = fs::path(options.input).filename().string() + ": before (grey) and after (blue)";
     page_options.names = {"before", "after"};
     page_options.they_meet = false;
-    page_options.fps = one.clips()[0].fps;
+    page_options.fps = one.clips()[0].fps;  // the mended one's own may be another
+    const AnimatedAsset other(OpenAsset(asset, options.input), options.input, options.output, motion,
+                              {0, page_options.fps});
     const Place beside{mm_per_unit(one.asset()) * one.frame().height / 1000, 0, 0};
     write_atomically(fs::path(options.report) / fmt::format("clip_{}.html", i),
                      view_page_of_two(one, other, &beside, page_options, [](int) {}));
