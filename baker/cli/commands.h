@@ -46,7 +46,7 @@ ExitCode run_validate(const ValidateOptions& options);
 
 // A second character beside the first.
 struct WithOptions {
-  std::string asset, source;  // an empty source is the first's
+  std::string asset, source;  // an empty source is the first's, of one asset
   MotionChoice motion;
   std::vector<double> at;  // left and forward in metres, then degrees; empty: where its file has it
 };

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "check/rules.h"
 #include "cli/commands.h"
@@ -118,7 +117,7 @@ ExitCode run_fix(const FixOptions& options) {
       const std::vector<RotationTrack> tracks = turned_tracks(turned, mend.turns, mend.in_window);
       bytes = with_tracks(bytes, options.input, animated.character().rig, clip.clip->in_file, tracks);
       const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-      clips.push_back({clip.name, std::move(mend), turned.count(), seconds.count()});
+      clips.push_back({clip.name, std::move(mend), seconds.count()});
     }
     write_atomically(options.output, bytes);
     if (!json.empty()) {

@@ -87,14 +87,14 @@ void add_with(CLI::App& command, WithOptions& with) {
   CLI::Option_group& second = *command.add_option_group("Second character", "Shown beside the first");
   CLI::Option* const asset = add_name(second, "--with", with.asset, "Its asset (.sphc)");
   for (CLI::Option* option :
-       {add_name(second, "--with-source", with.source, "The mesh it was baked from (default: the first's)"),
+       {add_name(second, "--with-source", with.source, "The mesh it was baked from, where it is another asset"),
         add_name(second, "--with-clip", with.motion.clip, "A clip of that mesh: its name or number"),
         add_name(second, "--with-poses", with.motion.poses, "As --poses, for the second"),
         add_name(second, "--with-motion", with.motion.motion, "As --motion, for the second"),
         second
             .add_option("--at", with.at,
                         "Where it stands: metres to the left and forward of the first, and degrees that it is turned "
-                        "(default: where its file has it)")
+                        "(default: where its file has it; another asset's alone)")
             ->delimiter(',')
             ->expected(3)
             ->check(refuse_nan)

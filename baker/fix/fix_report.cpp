@@ -18,7 +18,7 @@ using nlohmann::ordered_json;
 // The largest turn of a joint, in each frame of an event that was pushed; degrees, ascending.
 std::vector<double> turns_of(const MendedClip& clip) {
   std::vector<double> out;
-  const std::size_t frames = clip.mend.in_window.size();
+  const std::size_t frames = clip.mend.in_window.size(), joints = clip.mend.joints.size();
   std::vector<char> is_mended(frames, 0);
   for (const MendedEvent& event : clip.mend.events) {
     if (event.outcome != Outcome::kCleared && event.outcome != Outcome::kReduced) continue;
@@ -27,7 +27,7 @@ std::vector<double> turns_of(const MendedClip& clip) {
   for (std::size_t f = 0; f < frames; ++f) {
     if (is_mended[f] == 0) continue;
     double most = 0;
-    for (std::size_t j = 0; j < clip.joints; ++j) most = std::max(most, clip.mend.turns[f * clip.joints + j].norm());
+    for (std::size_t j = 0; j < joints; ++j) most = std::max(most, clip.mend.turns[f * joints + j].norm());
     out.push_back(most * 180 / std::numbers::pi);
   }
   std::sort(out.begin(), out.end());

@@ -12,8 +12,7 @@ namespace spherechain::baker {
 struct MendedClip {
   std::string name;
   Mend mend;
-  std::size_t joints;  // that may turn
-  double seconds;      // that it took
+  double seconds;  // that it took
 };
 
 // The file of `fix --report`, and the same for people.

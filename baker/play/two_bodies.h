@@ -19,7 +19,9 @@ class TwoBodies {
   const std::vector<Penetration>& measure(const sc_pose& a, const sc_pose& b, bool is_next);
 
  private:
-  Body body(const OpenAsset& asset, const sc_pose& pose) const;
+  // With what both jobs have.
+  template <typename Job>
+  Job job(const sc_pose& a, const sc_pose& b);
 
   const OpenAsset &a_, &b_;
   Target target_;
