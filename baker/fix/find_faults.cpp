@@ -46,8 +46,9 @@ FaultFinder::FaultFinder(const AnimatedAsset& animated, const TurnedClip& clip) 
   }
 }
 
-std::vector<Meeting> FaultFinder::look(SkinPlayer& player, double frame, const Turns& turns) const {
-  const BonePose bones(animated_.asset(), clip_.pose(frame, turns).deformation);
+std::vector<Meeting> FaultFinder::look(SkinPlayer& player, double frame, const std::vector<Vec3>& turns,
+                                       Depth depth) const {
+  const BonePose bones(animated_.asset(), clip_.pose_of(frame, turns).deformation);
   const sc_pose pose = bones.pose();
   std::vector<Meeting> out;
   std::vector<TriangleContact> contacts = player.find(pose);
@@ -56,6 +57,7 @@ std::vector<Meeting> FaultFinder::look(SkinPlayer& player, double frame, const T
                      [&](const TriangleContact& c) { return left_out_.contains(std::minmax(c.part_a, c.part_b)); }),
       contacts.end());
   for (const Penetration& quick : player.measure_quickly(pose, contacts)) out.push_back({frame, quick});
+  if (depth == Depth::kQuick) return out;
   for (Meeting& meeting : out) {
     if (!is_fault(meeting.found.kind)) continue;
     std::vector<TriangleContact> of_them;
@@ -70,9 +72,18 @@ std::vector<Meeting> FaultFinder::look(SkinPlayer& player, double frame, const T
 
 std::vector<Meeting> FaultFinder::in_frames(const std::vector<double>& frames, const Turns& turns) {
   std::vector<std::vector<Meeting>> found(frames.size());
-  on_threads(players_.size(), frames.size(),
-             [&](std::size_t t, std::size_t i) { found[i] = look(players_[t], frames[i], turns); });
+  on_threads(players_.size(), frames.size(), [&](std::size_t t, std::size_t i) {
+    found[i] = look(players_[t], frames[i], clip_.turns_at(frames[i], turns), Depth::kFull);
+  });
   return joined(std::move(found));
+}
+
+std::vector<std::vector<Meeting>> FaultFinder::in_poses(const std::vector<TriedPose>& poses) {
+  std::vector<std::vector<Meeting>> found(poses.size());
+  on_threads(players_.size(), poses.size(), [&](std::size_t t, std::size_t i) {
+    found[i] = look(players_[t], poses[i].frame, poses[i].turns, Depth::kQuick);
+  });
+  return found;
 }
 
 std::vector<Meeting> FaultFinder::between(const std::vector<int>& frames, const Turns& turns) {
@@ -85,7 +96,8 @@ std::vector<Meeting> FaultFinder::between(const std::vector<int>& frames, const 
     for (const StepContact& contact : contacts) {
       if (contact.at_start != 0 || contact.at_end != 0) continue;
       const double middle = 0.5 * (double{contact.begin} + double{contact.end});
-      for (const Meeting& meeting : look(players_[t], frame + middle, turns)) {
+      for (const Meeting& meeting :
+           look(players_[t], frame + middle, clip_.turns_at(frame + middle, turns), Depth::kFull)) {
         const auto [a, b] = std::minmax(contact.part_a, contact.part_b);
         if (meeting.found.part_a == a && meeting.found.part_b == b && is_fault(meeting.found.kind)) {
           found[i].push_back(meeting);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fix/turned_clip.h"
+#include "fix/ways_out.h"
 #include "play/play.h"
 #include "play/skin_player.h"
 #include "play/steps.h"
@@ -29,12 +30,15 @@ class FaultFinder {
 
   // In the order of the frames, then by parts.
   std::vector<Meeting> in_frames(const std::vector<double>& frames, const Turns& turns);
+  // Of poses that are tried, all measured quickly.
+  std::vector<std::vector<Meeting>> in_poses(const std::vector<TriedPose>& poses);
   // Faults on the way from each of these whole frames to the next that are none in either; where they are about
   // deepest.
   std::vector<Meeting> between(const std::vector<int>& frames, const Turns& turns);
 
  private:
-  std::vector<Meeting> look(SkinPlayer& player, double frame, const Turns& turns) const;
+  enum class Depth { kFull, kQuick };
+  std::vector<Meeting> look(SkinPlayer& player, double frame, const std::vector<Vec3>& turns, Depth depth) const;
 
   const AnimatedAsset& animated_;
   const TurnedClip& clip_;

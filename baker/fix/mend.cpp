@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -16,6 +17,7 @@
 #include "fix/joints.h"
 #include "fix/pushes.h"
 #include "fix/solve.h"
+#include "fix/ways_out.h"
 
 namespace spherechain::baker {
 namespace {
@@ -57,7 +59,12 @@ class Mender {
         wrists_(joints_of_role(clip_.joints(), roles, "wrist")),
         loops_(same_pose(clip_.pose(0, turns_).deformation, clip_.pose(clip_.frames() - 1, turns_).deformation,
                          animated.frame())),
-        in_window_(static_cast<std::size_t>(clip.own_count), 0) {}
+        in_window_(static_cast<std::size_t>(clip.own_count), 0),
+        jumps_(static_cast<std::size_t>(clip.own_count), 0) {
+    for (const BodyPart& part : parts_of(animated.asset()).parts) {
+      joints_of_part_.push_back(part.bone < 0 ? std::vector<Index>{} : clip_.above(static_cast<Index>(part.bone)));
+    }
+  }
 
   Mend run(const std::function<bool(const MendedEvent&)>& leave, const std::function<void(const std::string&)>& told) {
     std::vector<double> all;
@@ -86,13 +93,14 @@ class Mender {
       }
       if (least == 0) {
         if ((badness == 0 && was_free && moved < still) || ++free_rounds > kFreeRounds) break;
-      } else if (give_up(now, round, round >= kTrying)) {
+      } else if (give_up(now, round, round >= kTrying, told)) {
         least = HUGE_VAL;
       }
       open_windows();
       was_free = badness == 0;
       const double weight = std::min(kWish * std::pow(2, round), kWishMost);
       moved = take(solve_turns(clip_, in_window_, wishes(weight), turns_, was_free ? 0 : kLeave));
+      jumps_.assign(jumps_.size(), 0);
       out.rounds = round + 1;
     }
     turns_ = best;
@@ -110,7 +118,7 @@ class Mender {
     double farthest = 0;
     for (std::size_t i = 0; i < turns_.size(); ++i) {
       Vec3 to = wanted[i] - turns_[i];
-      if (to.norm() > step) to *= step / to.norm();
+      if (to.norm() > step && jumps_[i / clip_.count()] == 0) to *= step / to.norm();
       to += turns_[i];
       if (to.norm() > most) to *= most / to.norm();
       farthest = std::max(farthest, (to - turns_[i]).norm());
@@ -194,18 +202,27 @@ class Mender {
     return known == before_.end() ? 0 : double{known->second.depth};
   }
 
+  bool is_let_be(const Meeting& meeting, double may_be) const {
+    if (may_be < 0) return false;
+    const Penetration& p = meeting.found;
+    const double slack =
+        (is_fault(p.kind) && p.kind != SC_CLASS_DEEP_FOLD ? kDeeper : kFoldDeeper) / mm_ + 0.1 * may_be;
+    // What is no fault and not to part is let be: folds and touches come and go with a joint.
+    return double{p.depth} - may_be <= slack || !is_fault(p.kind) || p.part_a == p.part_b;
+  }
+  static double too_deep(const Meeting& meeting, double may_be) {
+    if (!is_fault(meeting.found.kind)) return 0;
+    return double{meeting.found.depth} - std::max(may_be, 0.0);
+  }
+
   // Wishes for what is too deep; returns by how much in all.
   double add_pushes(const std::vector<Meeting>& meetings) {
     double sum = 0;
     for (const Meeting& meeting : meetings) {
       const Penetration& p = meeting.found;
-      const double may_be = allowed(meeting), excess = double{p.depth} - may_be;
-      const double slack =
-          (is_fault(p.kind) && p.kind != SC_CLASS_DEEP_FOLD ? kDeeper : kFoldDeeper) / mm_ + 0.1 * may_be;
-      if (may_be >= 0 && excess <= slack) continue;
-      // What is no fault and not to part is let be: folds and touches come and go with a joint.
-      if (may_be >= 0 && (!is_fault(p.kind) || p.part_a == p.part_b)) continue;
-      if (is_fault(p.kind)) sum += may_be < 0 ? double{p.depth} : excess;
+      const double may_be = allowed(meeting);
+      if (is_let_be(meeting, may_be)) continue;
+      sum += too_deep(meeting, may_be);
       const auto known = before_.find(place_of(meeting));
       const bool is_shallow = known != before_.end() && mm_ * double{known->second.depth} <= kShallow;
       pushes_.add(place_of(meeting), p, -may_be, is_shallow, turns_);
@@ -216,8 +233,10 @@ class Mender {
   void open_windows() {
     in_window_.assign(static_cast<std::size_t>(clip_.frames()), 0);
     const int pad = static_cast<int>(std::ceil(kPad * clip_.fps()));
-    for (const auto& [place, pushes] : pushes_.all()) {
-      const int frame = static_cast<int>(place.frame);
+    std::set<int> frames;
+    for (const auto& [place, pushes] : pushes_.all()) frames.insert(static_cast<int>(place.frame));
+    for (const auto& [at, turn] : led_) frames.insert(at.first);
+    for (const int frame : frames) {
       for (int f = std::max(0, frame - pad); f <= std::min(clip_.frames() - 1, frame + 1 + pad); ++f) {
         in_window_[static_cast<std::size_t>(f)] = 1;
       }
@@ -253,6 +272,9 @@ class Mender {
         }
       }
     }
+    for (const auto& [at, turn] : led_) {
+      out.push_back({{{at.first, at.second, turn.normalized()}}, turn.norm(), weight, 0});
+    }
     for (const int f : whole_frames_in_window()) add_pins(clip_, feet_, f, height_, turns_, out);
     return out;
   }
@@ -267,28 +289,118 @@ class Mender {
     return most * 180 / std::numbers::pi;
   }
 
-  // Events that get no better are left as they are. False where there is none.
-  bool give_up(const std::vector<Meeting>& now, int round, bool is_last) {
+  // Events that get no better are led out by trial, once, and then left as they are. False where there is none.
+  bool give_up(const std::vector<Meeting>& now, int round, bool is_last,
+               const std::function<void(const std::string&)>& told) {
     best_left_.resize(events_.size(), HUGE_VAL);
     best_round_.resize(events_.size(), 0);
-    bool any = false;
+    was_led_.resize(events_.size(), 0);
+    std::vector<std::size_t> stuck;
     for (std::size_t e = 0; e < events_.size(); ++e) {
-      MendedEvent& event = events_[e];
-      if (!is_wanted(event)) continue;
+      if (!is_wanted(events_[e])) continue;
       double left = 0;
       for (const Meeting& m : now) {
-        if (is_fault(m.found.kind) && is_in(place_of(m), event)) left += double{m.found.depth};
+        if (is_fault(m.found.kind) && is_in(place_of(m), events_[e])) left += double{m.found.depth};
       }
       if (left < 0.9 * best_left_[e]) {
         best_left_[e] = left;
         best_round_[e] = round;
       }
-      if (left == 0 || (!is_last && round - best_round_[e] < kPatience)) continue;
-      event.outcome = Outcome::kOverBudget;
-      any = true;
-      pushes_.forget([&](const MeetingPlace& place) { return is_in(place, event); });
+      if (left > 0 && (is_last || round - best_round_[e] >= kPatience)) stuck.push_back(e);
     }
-    return any;
+    for (const std::size_t e : stuck) {
+      if (was_led_[e] != 0 || !lead_out(e, round, told)) events_[e].outcome = Outcome::kOverBudget;
+    }
+    for (const std::size_t e : stuck) {
+      if (is_wanted(events_[e])) continue;
+      pushes_.forget([&](const MeetingPlace& place) { return is_in(place, events_[e]); });
+    }
+    return !stuck.empty();
+  }
+
+  // The joints that move one of two parts and not the other, of the cheap ones, and none that a foot hangs on.
+  std::set<Index> joints_between(std::uint32_t a, std::uint32_t b) const {
+    std::set<Index> one(joints_of_part_[a].begin(), joints_of_part_[a].end()),
+        other(joints_of_part_[b].begin(), joints_of_part_[b].end()), all;
+    std::set_symmetric_difference(one.begin(), one.end(), other.begin(), other.end(), std::inserter(all, all.end()));
+    const auto price = [&](Index joint) { return clip_.joints()[joint].price.eigenvalues().real().minCoeff(); };
+    for (const Index foot : feet_) {
+      for (const Index joint : clip_.above_joint(foot)) all.erase(joint);
+    }
+    double least = HUGE_VAL;
+    for (const Index joint : all) least = std::min(least, price(joint));
+    std::erase_if(all, [&](Index joint) { return price(joint) > 2.1 * least; });
+    return all;
+  }
+
+  // By trial, with all events that it shares joints and time with. False where no joint can.
+  bool lead_out(std::size_t first, int round, const std::function<void(const std::string&)>& told) {
+    LimbInTrouble limb{{}, events_[first].from, events_[first].to, 0};
+    std::set<Index> joints = joints_between(events_[first].part_a, events_[first].part_b);
+    if (joints.empty()) return false;
+    std::set<std::size_t> group{first};
+    for (bool grows = true; grows;) {
+      grows = false;
+      for (std::size_t e = 0; e < events_.size(); ++e) {
+        const MendedEvent& event = events_[e];
+        if (!is_wanted(event) || was_led_[e] != 0 || group.contains(e) || event.from > limb.to + 1 ||
+            event.to < limb.from - 1)
+          continue;
+        const std::set<Index> its = joints_between(event.part_a, event.part_b);
+        if (std::none_of(its.begin(), its.end(), [&](Index joint) { return joints.contains(joint); })) continue;
+        group.insert(e);
+        joints.insert(its.begin(), its.end());
+        limb.from = std::min(limb.from, event.from);
+        limb.to = std::max(limb.to, event.to);
+        grows = true;
+      }
+    }
+    limb.joints.assign(joints.begin(), joints.end());
+    const auto moves = [&](std::uint32_t part) {
+      return std::any_of(joints_of_part_[part].begin(), joints_of_part_[part].end(),
+                         [&](Index j) { return joints.contains(j); });
+    };
+    double worst = -1;
+    for (int f = limb.from; f <= limb.to; ++f) {
+      double sum = 0;
+      for (const std::size_t e : group) {
+        const auto known = before_.find({static_cast<double>(f), events_[e].part_a, events_[e].part_b});
+        if (known != before_.end()) sum += double{known->second.depth};
+      }
+      if (sum > worst) limb.worst = f;
+      worst = std::max(worst, sum);
+    }
+    told(fmt::format("trying ways out of frames {} to {}", limb.from, limb.to));
+    const auto judge = [&](const std::vector<TriedPose>& poses) {
+      std::vector<double> out;
+      for (const std::vector<Meeting>& meetings : finder_.in_poses(poses)) {
+        double sum = 0;
+        for (const Meeting& meeting : meetings) {
+          if (!moves(meeting.found.part_a) && !moves(meeting.found.part_b)) continue;
+          const double may_be = allowed(meeting);
+          if (!is_let_be(meeting, may_be)) sum += too_deep(meeting, may_be);
+        }
+        out.push_back(sum);
+      }
+      return out;
+    };
+    const double budget = options_.budget_degrees * std::numbers::pi / 180;
+    for (const auto& [frame, turns] : find_way_out(clip_, limb, budget, turns_, judge)) {
+      for (const Index joint : limb.joints) {
+        led_.erase({frame, joint});
+        if (!turns[joint].isZero(0)) led_[{frame, joint}] = turns[joint];
+      }
+      jumps_[static_cast<std::size_t>(frame)] = 1;
+    }
+    for (const std::size_t e : group) {
+      was_led_[e] = 1;
+      best_left_[e] = HUGE_VAL;
+      best_round_[e] = round + 1;
+    }
+    pushes_.forget([&](const MeetingPlace& place) {
+      return place.frame >= limb.from - 1 && place.frame <= limb.to + 1 && (moves(place.part_a) || moves(place.part_b));
+    });
+    return true;
   }
 
   static bool is_in(const MeetingPlace& place, const MendedEvent& event) {
@@ -410,6 +522,9 @@ class Mender {
   std::vector<Index> feet_, wrists_;  // joints
   bool loops_;
   std::vector<char> in_window_;
+  std::vector<char> jumps_;                    // of each frame: joints may turn far in this round
+  std::map<std::pair<int, Index>, Vec3> led_;  // of a frame's joint: how far it is to turn at least
+  std::vector<std::vector<Index>> joints_of_part_;
   std::map<MeetingPlace, Penetration> before_;
   std::vector<MendedEvent> events_;
   struct Seen {
@@ -419,6 +534,7 @@ class Mender {
   std::map<double, Seen> seen_;
   std::vector<double> best_left_;  // of each event, mm in all
   std::vector<int> best_round_;
+  std::vector<char> was_led_;
 };
 
 }  // namespace

@@ -71,7 +71,7 @@ std::vector<Vec3> TurnedClip::turns_at(double frame, const Turns& turns) const {
   return out;
 }
 
-TurnedClip::Pose TurnedClip::pose(double frame, const Turns& turns) const {
+TurnedClip::Pose TurnedClip::pose_of(double frame, const std::vector<Vec3>& turns) const {
   const double seconds = frame / fps_;
   std::vector<Local> locals;
   for (const Node& node : rig_.nodes) locals.push_back({node.translation, node.scale, node.rotation});
@@ -89,7 +89,6 @@ TurnedClip::Pose TurnedClip::pose(double frame, const Turns& turns) const {
     if (channel.path == ChannelPath::kRotation) local.rotation = Eigen::Quaterniond(v);
     if (channel.path == ChannelPath::kScale) local.scale = v.head<3>();
   }
-  const std::vector<Vec3> now = turns_at(frame, turns);
   std::vector<Affine> world(locals.size());
   out.axes.resize(joints_.size());
   for (std::size_t n = 0; n < locals.size(); ++n) {
@@ -98,7 +97,7 @@ TurnedClip::Pose TurnedClip::pose(double frame, const Turns& turns) const {
     const int joint = joint_of_node_[n];
     Affine own = node.local;
     if (local.is_animated || joint >= 0) {
-      if (joint >= 0) local.rotation = turned(local.rotation, now[static_cast<std::size_t>(joint)]);
+      if (joint >= 0) local.rotation = turned(local.rotation, turns[static_cast<std::size_t>(joint)]);
       own.linear() = local.rotation.toRotationMatrix() * local.scale.asDiagonal();
       own.translation() = local.translation;
     }

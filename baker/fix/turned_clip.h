@@ -32,7 +32,8 @@ class TurnedClip {
     std::vector<Affine> axes;  // of each turning joint, before its scale: to the rest pose's space
   };
   // `frame` may have a fraction: turns are blended.
-  Pose pose(double frame, const Turns& turns) const;
+  Pose pose(double frame, const Turns& turns) const { return pose_of(frame, turns_at(frame, turns)); }
+  Pose pose_of(double frame, const std::vector<Vec3>& turns) const;  // of each joint
 
   const SourceRig& rig() const { return rig_; }
   const Clip& clip() const { return clip_; }
