@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/surface_query.h"
+
 namespace spherechain::baker {
 namespace {
 
@@ -46,6 +48,33 @@ Comparison compare(const TurnedClip& clip, const Turns& turns, const std::vector
   }
   if (sums[0] > 0) out.jerk_ratio = sums[1] / sums[0];
   return out;
+}
+
+double distance_between(const AnimatedAsset& animated, const Deformation& pose, std::uint32_t part_a,
+                        std::uint32_t part_b) {
+  const BodyParts parts = parts_of(animated.asset());
+  Mesh mesh;
+  mesh.positions = animated.positions(pose);
+  mesh.triangles = animated.character().source_triangles;
+  const auto of = [&](std::uint32_t part) {
+    std::vector<Index> out;
+    for (Index t = 0; t < mesh.triangles.size(); ++t) {
+      if (parts.of_triangle[t] == part) out.push_back(t);
+    }
+    return out;
+  };
+  const std::vector<Index> a = of(part_a), b = of(part_b);
+  double least = HUGE_VAL;
+  if (a.empty() || b.empty()) return least;
+  for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)}) {
+    const SurfaceQuery surface(mesh, to);
+    for (const Index t : from) {
+      for (const Index corner : mesh.triangles[t]) {
+        least = std::min(least, surface.closest(mesh.positions[corner]).distance);
+      }
+    }
+  }
+  return least;
 }
 
 }  // namespace spherechain::baker

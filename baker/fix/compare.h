@@ -2,6 +2,7 @@
 #pragma once
 
 #include "fix/turned_clip.h"
+#include "play/play.h"
 
 namespace spherechain::baker {
 
@@ -14,5 +15,10 @@ struct Comparison {
 // `feet` and `wrists`: joints of the clip.
 Comparison compare(const TurnedClip& clip, const Turns& turns, const std::vector<Index>& feet,
                    const std::vector<Index>& wrists, double mm_per_unit);
+
+// The least distance of two body parts that do not meet, in the source's units: of a corner of one from the other's
+// triangles.
+double distance_between(const AnimatedAsset& animated, const Deformation& pose, std::uint32_t part_a,
+                        std::uint32_t part_b);
 
 }  // namespace spherechain::baker

@@ -10,6 +10,8 @@
 namespace spherechain::baker {
 namespace {
 
+constexpr double kSame = 2e-4;  // radians: too little to look again
+
 // Calls work(thread, i) for all i, neighbours on one thread.
 template <typename Work>
 void on_threads(std::size_t threads, std::size_t count, const Work& work) {
@@ -30,12 +32,6 @@ void on_threads(std::size_t threads, std::size_t count, const Work& work) {
   }
 }
 
-std::vector<Meeting> joined(std::vector<std::vector<Meeting>> lists) {
-  std::vector<Meeting> out;
-  for (const std::vector<Meeting>& list : lists) out.insert(out.end(), list.begin(), list.end());
-  return out;
-}
-
 }  // namespace
 
 FaultFinder::FaultFinder(const AnimatedAsset& animated, const TurnedClip& clip) : animated_(animated), clip_(clip) {
@@ -46,18 +42,20 @@ FaultFinder::FaultFinder(const AnimatedAsset& animated, const TurnedClip& clip) 
   }
 }
 
-std::vector<Meeting> FaultFinder::look(SkinPlayer& player, double frame, const std::vector<Vec3>& turns,
-                                       Depth depth) const {
-  const BonePose bones(animated_.asset(), clip_.pose_of(frame, turns).deformation);
+std::vector<TriangleContact> FaultFinder::contacts_of(SkinPlayer& player, const sc_pose& pose,
+                                                      const IsLeftOut& is_left_out) {
+  std::vector<TriangleContact> out = player.find(pose);
+  out.erase(std::remove_if(out.begin(), out.end(), is_left_out), out.end());
+  return out;
+}
+
+std::vector<Meeting> FaultFinder::look(SkinPlayer& player, double frame, const Turns& turns) const {
+  const BonePose bones(animated_.asset(), clip_.pose(frame, turns).deformation);
   const sc_pose pose = bones.pose();
+  const std::vector<TriangleContact> contacts = contacts_of(
+      player, pose, [&](const TriangleContact& c) { return left_out_.contains(std::minmax(c.part_a, c.part_b)); });
   std::vector<Meeting> out;
-  std::vector<TriangleContact> contacts = player.find(pose);
-  contacts.erase(
-      std::remove_if(contacts.begin(), contacts.end(),
-                     [&](const TriangleContact& c) { return left_out_.contains(std::minmax(c.part_a, c.part_b)); }),
-      contacts.end());
   for (const Penetration& quick : player.measure_quickly(pose, contacts)) out.push_back({frame, quick});
-  if (depth == Depth::kQuick) return out;
   for (Meeting& meeting : out) {
     if (!is_fault(meeting.found.kind)) continue;
     std::vector<TriangleContact> of_them;
@@ -70,42 +68,98 @@ std::vector<Meeting> FaultFinder::look(SkinPlayer& player, double frame, const s
   return out;
 }
 
-std::vector<Meeting> FaultFinder::in_frames(const std::vector<double>& frames, const Turns& turns) {
-  std::vector<std::vector<Meeting>> found(frames.size());
-  on_threads(players_.size(), frames.size(), [&](std::size_t t, std::size_t i) {
-    found[i] = look(players_[t], frames[i], clip_.turns_at(frames[i], turns), Depth::kFull);
-  });
-  return joined(std::move(found));
+void FaultFinder::leave_out(std::set<std::pair<std::uint32_t, std::uint32_t>> pairs) {
+  left_out_ = std::move(pairs);
+  seen_.clear();
+  seen_between_.clear();
 }
 
-std::vector<std::vector<Meeting>> FaultFinder::in_poses(const std::vector<TriedPose>& poses) {
+std::vector<double> FaultFinder::changed(SeenFrames& seen,
+                                         const std::vector<std::pair<double, std::vector<Vec3>>>& now) {
+  std::vector<double> out;
+  for (const auto& [frame, turns] : now) {
+    const auto known = seen.find(frame);
+    bool is_same = known != seen.end();
+    for (std::size_t j = 0; is_same && j < turns.size(); ++j) {
+      is_same = (turns[j] - known->second.turns[j]).norm() < kSame;
+    }
+    if (is_same) continue;
+    out.push_back(frame);
+    seen[frame] = {turns, {}};
+  }
+  return out;
+}
+
+std::vector<Meeting> FaultFinder::in_frames(const std::vector<double>& frames, const Turns& turns) {
+  std::vector<std::pair<double, std::vector<Vec3>>> now;
+  for (const double frame : frames) now.emplace_back(frame, clip_.turns_at(frame, turns));
+  const std::vector<double> again = changed(seen_, now);
+  std::vector<std::vector<Meeting>> found(again.size());
+  on_threads(players_.size(), again.size(),
+             [&](std::size_t t, std::size_t i) { found[i] = look(players_[t], again[i], turns); });
+  for (std::size_t i = 0; i < again.size(); ++i) seen_[again[i]].found = std::move(found[i]);
+  std::vector<Meeting> out;
+  for (const double frame : frames) {
+    const std::vector<Meeting>& of_it = seen_[frame].found;
+    out.insert(out.end(), of_it.begin(), of_it.end());
+  }
+  return out;
+}
+
+std::vector<std::vector<Meeting>> FaultFinder::in_poses(const std::vector<TriedPose>& poses,
+                                                        const std::vector<char>& moves) {
   std::vector<std::vector<Meeting>> found(poses.size());
   on_threads(players_.size(), poses.size(), [&](std::size_t t, std::size_t i) {
-    found[i] = look(players_[t], poses[i].frame, poses[i].turns, Depth::kQuick);
+    const BonePose bones(animated_.asset(), clip_.pose_of(poses[i].frame, poses[i].turns).deformation);
+    const sc_pose pose = bones.pose();
+    const std::vector<TriangleContact> contacts = contacts_of(players_[t], pose, [&](const TriangleContact& c) {
+      return c.part_a == c.part_b || (moves[c.part_a] == 0 && moves[c.part_b] == 0) ||
+             left_out_.contains(std::minmax(c.part_a, c.part_b));
+    });
+    for (const Penetration& quick : players_[t].measure_quickly(pose, contacts)) {
+      found[i].push_back({static_cast<double>(poses[i].frame), quick});
+    }
   });
   return found;
 }
 
-std::vector<Meeting> FaultFinder::between(const std::vector<int>& frames, const Turns& turns) {
-  std::vector<std::vector<Meeting>> found(frames.size());
-  on_threads(players_.size(), frames.size(), [&](std::size_t t, std::size_t i) {
-    const int frame = frames[i];
-    if (frame + 1 >= clip_.frames()) return;
-    const std::vector<StepContact> contacts =
-        steps_[t].find(clip_.pose(frame, turns).deformation, clip_.pose(frame + 1, turns).deformation);
-    for (const StepContact& contact : contacts) {
-      if (contact.at_start != 0 || contact.at_end != 0) continue;
-      const double middle = 0.5 * (double{contact.begin} + double{contact.end});
-      for (const Meeting& meeting :
-           look(players_[t], frame + middle, clip_.turns_at(frame + middle, turns), Depth::kFull)) {
-        const auto [a, b] = std::minmax(contact.part_a, contact.part_b);
-        if (meeting.found.part_a == a && meeting.found.part_b == b && is_fault(meeting.found.kind)) {
-          found[i].push_back(meeting);
-        }
+std::vector<Meeting> FaultFinder::look_after(std::size_t thread, int frame, const Turns& turns) {
+  std::vector<Meeting> out;
+  if (frame + 1 >= clip_.frames()) return out;
+  const std::vector<StepContact> contacts =
+      steps_[thread].find(clip_.pose(frame, turns).deformation, clip_.pose(frame + 1, turns).deformation);
+  for (const StepContact& contact : contacts) {
+    if (contact.at_start != 0 || contact.at_end != 0) continue;
+    const double middle = 0.5 * (double{contact.begin} + double{contact.end});
+    for (const Meeting& meeting : look(players_[thread], frame + middle, turns)) {
+      const auto [a, b] = std::minmax(contact.part_a, contact.part_b);
+      if (meeting.found.part_a == a && meeting.found.part_b == b && is_fault(meeting.found.kind)) {
+        out.push_back(meeting);
       }
     }
-  });
-  return joined(std::move(found));
+  }
+  return out;
+}
+
+std::vector<Meeting> FaultFinder::between(const std::vector<int>& frames, const Turns& turns) {
+  std::vector<std::pair<double, std::vector<Vec3>>> now;
+  for (const int frame : frames) {
+    std::vector<Vec3> both = clip_.turns_at(frame, turns);
+    const std::vector<Vec3> next = clip_.turns_at(frame + 1, turns);
+    both.insert(both.end(), next.begin(), next.end());
+    now.emplace_back(frame, std::move(both));
+  }
+  const std::vector<double> again = changed(seen_between_, now);
+  std::vector<std::vector<Meeting>> found(again.size());
+  on_threads(players_.size(), again.size(),
+             [&](std::size_t t, std::size_t i) { found[i] = look_after(t, static_cast<int>(again[i]), turns); });
+  for (std::size_t i = 0; i < again.size(); ++i) seen_between_[again[i]].found = std::move(found[i]);
+  std::vector<Meeting> out;
+  for (const int frame : frames) {
+    const std::vector<Meeting>& of_it = seen_between_[frame].found;
+    out.insert(out.end(), of_it.begin(), of_it.end());
+  }
+  return out;
 }
 
 }  // namespace spherechain::baker

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <set>
 #include <utility>
 #include <vector>
@@ -20,31 +22,43 @@ struct Meeting {
   Penetration found;  // a fault: measured in full; else quickly
 };
 
-// The runtime's contacts of a clip with turns, of many frames at a time.
+// The runtime's contacts of a clip with turns, of many frames at a time. What was found in a frame holds while joints
+// turn by no more than can be seen.
 class FaultFinder {
  public:
   FaultFinder(const AnimatedAsset& animated, const TurnedClip& clip);
 
   // Pairs of parts (the lesser number first) that are not looked at.
-  void leave_out(std::set<std::pair<std::uint32_t, std::uint32_t>> pairs) { left_out_ = std::move(pairs); }
+  void leave_out(std::set<std::pair<std::uint32_t, std::uint32_t>> pairs);
 
   // In the order of the frames, then by parts.
   std::vector<Meeting> in_frames(const std::vector<double>& frames, const Turns& turns);
-  // Of poses that are tried, all measured quickly.
-  std::vector<std::vector<Meeting>> in_poses(const std::vector<TriedPose>& poses);
+  // Of poses that are tried, measured quickly: pairs of two parts of which one `moves`.
+  std::vector<std::vector<Meeting>> in_poses(const std::vector<TriedPose>& poses, const std::vector<char>& moves);
   // Faults on the way from each of these whole frames to the next that are none in either; where they are about
   // deepest.
   std::vector<Meeting> between(const std::vector<int>& frames, const Turns& turns);
 
  private:
-  enum class Depth { kFull, kQuick };
-  std::vector<Meeting> look(SkinPlayer& player, double frame, const std::vector<Vec3>& turns, Depth depth) const;
+  struct Seen {
+    std::vector<Vec3> turns;
+    std::vector<Meeting> found;
+  };
+  using SeenFrames = std::map<double, Seen>;
+  // Those that have to be looked at again.
+  static std::vector<double> changed(SeenFrames& seen, const std::vector<std::pair<double, std::vector<Vec3>>>& now);
+  std::vector<Meeting> look(SkinPlayer& player, double frame, const Turns& turns) const;
+  std::vector<Meeting> look_after(std::size_t thread, int frame, const Turns& turns);
+  using IsLeftOut = std::function<bool(const TriangleContact&)>;
+  static std::vector<TriangleContact> contacts_of(SkinPlayer& player, const sc_pose& pose,
+                                                  const IsLeftOut& is_left_out);
 
   const AnimatedAsset& animated_;
   const TurnedClip& clip_;
   std::set<std::pair<std::uint32_t, std::uint32_t>> left_out_;
   std::vector<SkinPlayer> players_;  // one a thread
   std::vector<StepPlayer> steps_;
+  SeenFrames seen_, seen_between_;
 };
 
 }  // namespace spherechain::baker

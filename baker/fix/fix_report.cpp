@@ -89,6 +89,8 @@ std::string fix_json(const std::vector<MendedClip>& clips, const std::vector<Bod
          {"feet_mm", clip.mend.compared.feet_mm},
          {"feet_degrees", clip.mend.compared.feet_degrees},
          {"jerk_ratio", clip.mend.compared.jerk_ratio},
+         {"volume_cm3_before", clip.mend.volume_before},
+         {"volume_cm3_after", clip.mend.volume_after},
          {"shallow_contacts", clip.mend.shallow},
          {"shallow_contacts_still_near", clip.mend.still_near},
          {"seconds", clip.seconds}});

@@ -21,8 +21,9 @@ std::string role_of(const Roles& roles, Index node) {
 // What a radian costs. Joints near the trunk carry more with them.
 double price_of(const std::string& role) {
   static const std::map<std::string, double> kPrices{{"shoulder", 1}, {"elbow", 1}, {"wrist", 2},  {"clavicle", 4},
-                                                     {"neck", 6},     {"head", 6},  {"spine", 12}, {"chest", 12},
-                                                     {"hip", 12},     {"knee", 12}, {"ankle", 25}};
+                                                     {"neck", 6},     {"head", 6},  {"spine", 60}, {"chest", 60},
+                                                     {"hip", 12},     {"knee", 12}, {"ankle", 25}, {"limb", 1}};
+  if (role.starts_with("tail")) return 1;
   const auto found = kPrices.find(role);
   return found == kPrices.end() ? 0 : found->second;
 }

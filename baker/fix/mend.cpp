@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Gauss-Newton over a whole clip: each two body parts that are in each other in a frame give a wish, that their deepest
-// points part along the way out. Wishes of earlier rounds stay: what was pushed out once must not come back.
+// points part along the way out. Wishes of earlier rounds stay: what was pushed out once must not come back. Where that
+// leads nowhere, a limb is led along a way that was tried out.
 #include "fix/mend.h"
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -14,87 +14,81 @@
 
 #include "check/clip_check.h"
 #include "fix/find_faults.h"
+#include "fix/goals.h"
 #include "fix/joints.h"
+#include "fix/part_joints.h"
 #include "fix/pushes.h"
 #include "fix/solve.h"
+#include "fix/spans.h"
 #include "fix/ways_out.h"
 
 namespace spherechain::baker {
 namespace {
 
-constexpr int kRounds = 16;
-constexpr int kTrying = 10;        // after so many, what stays is left
-constexpr int kPatience = 3;       // rounds that an event may take without getting better
-constexpr int kFreeRounds = 4;     // at most, once there is no fault, in which joints go back as far as they can
-constexpr int kTapers = 3;         // tries to take back softly what got worse
-constexpr double kStep = 10;       // degrees that a joint turns in a round, at most
-constexpr double kStill = 1;       // degrees: a round that turns joints by less may be the last
-constexpr double kLeave = 3;       // of a turn from where the round starts, while there is a fault
-constexpr double kSame = 2e-4;     // radians: too little to look again
-constexpr double kPad = 0.35;      // seconds around an event in which joints turn, too
-constexpr double kShallow = 10;    // mm
-constexpr double kNear = 5;        // mm
-constexpr double kLess = 0.8;      // of its depth: an event is reduced
-constexpr double kDeeper = 0.5;    // mm: so much deeper than before is a fault, too
-constexpr double kFoldDeeper = 2;  // the same of folds, which move with the joint
+constexpr int kRounds = 24;
+constexpr int kPatience = 3;     // rounds that an event may take without getting better
+constexpr int kFreeRounds = 4;   // at most, once there is no fault, in which joints go back as far as they can
+constexpr int kLookBetween = 4;  // rounds, while there are faults in frames
+constexpr int kTapers = 3;       // tries to take back softly what got worse
+constexpr double kStep = 10;     // degrees that a joint turns in a round, at most
+constexpr double kStill = 1;     // degrees: a round that turns joints by less may be the last
+constexpr double kLeave = 3;     // of a turn from where the round starts, while there is a fault
+constexpr double kPad = 0.35;    // seconds around an event in which joints turn, too
+constexpr double kShallow = 10;  // mm
+constexpr double kNear = 5;      // mm
+constexpr double kLess = 0.8;    // of its depth: an event is reduced
+constexpr double kBetter = 0.9;  // of what is left: it gets better
 constexpr double kWish = 1e4, kWishMost = 1e6;  // the weight of pushes grows by round
 
-using PartPair = std::pair<std::uint32_t, std::uint32_t>;
-
-MeetingPlace place_of(const Meeting& meeting) { return {meeting.frame, meeting.found.part_a, meeting.found.part_b}; }
+double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
 class Mender {
  public:
-  Mender(const AnimatedAsset& animated, const Roles& roles, const ClipFrames& clip, const MendOptions& options)
+  Mender(const AnimatedAsset& animated, const Roles& roles, const ClipFrames& clip, const MendOptions& options,
+         const std::function<bool(const MendedEvent&)>& leave, const std::function<void(const std::string&)>& told)
       : animated_(animated),
-        character_(animated.character()),
         options_(options),
+        told_(told),
         mm_(mm_per_unit(animated.asset())),
         height_(animated.frame().height),
-        clip_(character_.rig, *clip.clip, clip.fps, clip.own_count, turning_joints(character_.rig, roles, *clip.clip)),
+        clip_(animated.character().rig, *clip.clip, clip.fps, clip.own_count,
+              turning_joints(animated.character().rig, roles, *clip.clip)),
         finder_(animated, clip_),
         pushes_(animated, clip_),
         turns_(static_cast<std::size_t>(clip.own_count) * clip_.count(), Vec3::Zero()),
         feet_(joints_of_role(clip_.joints(), roles, "ankle")),
         wrists_(joints_of_role(clip_.joints(), roles, "wrist")),
+        parts_(animated, clip_, feet_),
         loops_(same_pose(clip_.pose(0, turns_).deformation, clip_.pose(clip_.frames() - 1, turns_).deformation,
                          animated.frame())),
         in_window_(static_cast<std::size_t>(clip.own_count), 0),
-        jumps_(static_cast<std::size_t>(clip.own_count), 0) {
-    for (const BodyPart& part : parts_of(animated.asset()).parts) {
-      joints_of_part_.push_back(part.bone < 0 ? std::vector<Index>{} : clip_.above(static_cast<Index>(part.bone)));
-    }
+        jumps_(in_window_),
+        goals_(look_at_all(), clip.own_count, mm_, options.margin_mm, leave),
+        progress_(goals_.events.size()) {
+    finder_.leave_out(goals_.harmless());
   }
 
-  Mend run(const std::function<bool(const MendedEvent&)>& leave, const std::function<void(const std::string&)>& told) {
-    std::vector<double> all;
-    for (int f = 0; f < clip_.frames(); ++f) all.push_back(f);
-    told("looking");
-    const std::vector<Meeting> before = finder_.in_frames(all, turns_);
-    for (const Meeting& meeting : before) before_[place_of(meeting)] = meeting.found;
-    make_events(before, leave);
-    finder_.leave_out(harmless(before));
+  Mend run() {
     Mend out;
-    Turns best = turns_;
-    const double still = kStill * std::numbers::pi / 180;
-    double least = HUGE_VAL, moved = 0;
+    double moved = 0;
     bool was_free = false;
     int free_rounds = 0;
-    for (int round = 0; round < kRounds && (!is_idle() || moved > still); ++round) {
-      const std::vector<Meeting> now = round == 0 ? before : look(frames_in_window());
+    for (int round = 0; round < kRounds && (!is_idle() || moved > radians(kStill)); ++round) {
+      std::vector<Meeting> now = finder_.in_frames(frames_in_window(round), turns_);
+      touches_ = false;
       double badness = add_pushes(now);
-      if (round > 0 && (badness == 0 || round % 4 == 3)) {
-        badness += add_pushes(finder_.between(whole_frames_in_window(), turns_));
+      if (round > 0 && (badness == 0 || round % kLookBetween == kLookBetween - 1)) {
+        const std::vector<Meeting> between = finder_.between(whole_frames_in_window(), turns_);
+        badness += add_pushes(between);
+        now.insert(now.end(), between.begin(), between.end());
+        rounds_.push_back({turns_, now});
       }
-      told(fmt::format("round {}: {:.1f} mm too deep", round + 1, badness * mm_));
-      if (badness <= least && round > 0) {
-        least = badness;
-        best = turns_;
-      }
-      if (least == 0) {
-        if ((badness == 0 && was_free && moved < still) || ++free_rounds > kFreeRounds) break;
-      } else if (give_up(now, round, round >= kTrying, told)) {
-        least = HUGE_VAL;
+      told_(fmt::format("round {}: {:.1f} mm too deep", round + 1, badness * mm_));
+      if (badness == 0 && was_free && moved < radians(kStill) && !touches_) break;
+      if (badness == 0 || free_rounds > 0) {
+        if (round > 0 && ++free_rounds > kFreeRounds) break;
+      } else if (!go_on(now, round, badness)) {
+        break;
       }
       open_windows();
       was_free = badness == 0;
@@ -103,18 +97,28 @@ class Mender {
       jumps_.assign(jumps_.size(), 0);
       out.rounds = round + 1;
     }
-    turns_ = best;
+    take_the_best_rounds();
     finder_.leave_out({});
-    seen_.clear();
-    take_back_what_fails();
-    finish(out);
+    finish(take_back_what_fails(), out);
     return out;
   }
 
  private:
-  // A joint turns a little a round, and never beyond the budget. Returns the farthest that one turns; radians.
+  std::vector<Meeting> look_at_all() {
+    told_("looking");
+    return finder_.in_frames(all_frames(), turns_);
+  }
+
+  std::vector<double> all_frames() const {
+    std::vector<double> out;
+    for (int f = 0; f < clip_.frames(); ++f) out.push_back(f);
+    return out;
+  }
+
+  // A joint turns a little a round, unless it is led, and never beyond the budget. Returns the farthest that one turns;
+  // radians.
   double take(const Turns& wanted) {
-    const double step = kStep * std::numbers::pi / 180, most = options_.budget_degrees * std::numbers::pi / 180;
+    const double step = radians(kStep), most = radians(options_.budget_degrees);
     double farthest = 0;
     for (std::size_t i = 0; i < turns_.size(); ++i) {
       Vec3 to = wanted[i] - turns_[i];
@@ -127,111 +131,24 @@ class Mender {
     return farthest;
   }
 
-  // Pairs of parts that are never more than layers of each other, or as at rest.
-  static std::set<PartPair> harmless(const std::vector<Meeting>& meetings) {
-    std::map<PartPair, PenetrationClass> worst;
-    for (const Meeting& m : meetings) {
-      PenetrationClass& kind = worst.try_emplace({m.found.part_a, m.found.part_b}, m.found.kind).first->second;
-      kind = std::max(kind, m.found.kind);
-    }
-    std::set<PartPair> out;
-    for (const auto& [pair, kind] : worst) {
-      if (kind <= SC_CLASS_SHELL) out.insert(pair);
-    }
-    return out;
-  }
-
-  // What was found before in a frame holds while joints turn by no more than can be seen.
-  std::vector<Meeting> look(const std::vector<double>& frames) {
-    std::vector<double> changed;
-    for (const double frame : frames) {
-      std::vector<Vec3> now = clip_.turns_at(frame, turns_);
-      const auto known = seen_.find(frame);
-      bool is_same = known != seen_.end();
-      for (std::size_t j = 0; is_same && j < now.size(); ++j)
-        is_same = (now[j] - known->second.turns[j]).norm() < kSame;
-      if (is_same) continue;
-      changed.push_back(frame);
-      seen_[frame] = {std::move(now), {}};
-    }
-    for (const Meeting& meeting : finder_.in_frames(changed, turns_)) seen_[meeting.frame].found.push_back(meeting);
-    std::vector<Meeting> out;
-    for (const double frame : frames) {
-      const std::vector<Meeting>& found = seen_[frame].found;
-      out.insert(out.end(), found.begin(), found.end());
-    }
-    return out;
-  }
-
-  bool is_idle() const {
-    return std::none_of(events_.begin(), events_.end(), [](const MendedEvent& e) { return is_wanted(e); });
-  }
-  static bool is_wanted(const MendedEvent& event) { return event.outcome == Outcome::kReduced; }
-
-  void make_events(const std::vector<Meeting>& before, const std::function<bool(const MendedEvent&)>& leave) {
-    std::vector<PartMeeting> faults;
-    for (const Meeting& meeting : before) {
-      if (is_fault(meeting.found.kind)) faults.push_back({static_cast<int>(meeting.frame), meeting.found});
-    }
-    for (const EventSpan& span : join_events(faults, clip_.frames(), false)) {
-      const Penetration& worst = faults[span.deepest].found;
-      MendedEvent event{worst.part_a, worst.part_b, span.from, span.to, worst.kind, mm_ * double{worst.depth}, 0};
-      if (worst.kind == SC_CLASS_DEEP_FOLD || worst.part_a == worst.part_b) event.outcome = Outcome::kFold;
-      if (leave(event)) event.outcome = Outcome::kAccepted;
-      events_.push_back(event);
-    }
-  }
-
-  const MendedEvent* event_of(const Meeting& meeting) const {
-    for (const MendedEvent& event : events_) {
-      if (is_in(place_of(meeting), event)) return &event;
-    }
-    return nullptr;
-  }
-
-  // How deep a pair may be, in the source's units; negative: so far apart.
-  double allowed(const Meeting& meeting) {
-    const MendedEvent* event = event_of(meeting);
-    const double apart = -options_.margin_mm / mm_;
-    if (event != nullptr && is_wanted(*event) && meeting.frame >= event->from && meeting.frame <= event->to)
-      return apart;
-    const bool is_new =
-        event == nullptr && meeting.found.kind == SC_CLASS_PENETRATION && meeting.found.part_a != meeting.found.part_b;
-    if (is_new) return apart;
-    const auto known = before_.find({std::round(meeting.frame), meeting.found.part_a, meeting.found.part_b});
-    return known == before_.end() ? 0 : double{known->second.depth};
-  }
-
-  bool is_let_be(const Meeting& meeting, double may_be) const {
-    if (may_be < 0) return false;
-    const Penetration& p = meeting.found;
-    const double slack =
-        (is_fault(p.kind) && p.kind != SC_CLASS_DEEP_FOLD ? kDeeper : kFoldDeeper) / mm_ + 0.1 * may_be;
-    // What is no fault and not to part is let be: folds and touches come and go with a joint.
-    return double{p.depth} - may_be <= slack || !is_fault(p.kind) || p.part_a == p.part_b;
-  }
-  static double too_deep(const Meeting& meeting, double may_be) {
-    if (!is_fault(meeting.found.kind)) return 0;
-    return double{meeting.found.depth} - std::max(may_be, 0.0);
-  }
+  bool is_idle() const { return std::none_of(goals_.events.begin(), goals_.events.end(), Goals::is_wanted); }
 
   // Wishes for what is too deep; returns by how much in all.
   double add_pushes(const std::vector<Meeting>& meetings) {
     double sum = 0;
     for (const Meeting& meeting : meetings) {
-      const Penetration& p = meeting.found;
-      const double may_be = allowed(meeting);
-      if (is_let_be(meeting, may_be)) continue;
-      sum += too_deep(meeting, may_be);
-      const auto known = before_.find(place_of(meeting));
-      const bool is_shallow = known != before_.end() && mm_ * double{known->second.depth} <= kShallow;
-      pushes_.add(place_of(meeting), p, -may_be, is_shallow, turns_);
+      if (goals_.is_let_be(meeting)) continue;
+      sum += goals_.too_deep(meeting);
+      touches_ |= mm_ * double{meeting.found.depth} > options_.margin_mm;
+      const Penetration* before = goals_.before(place_of(meeting));
+      const bool is_shallow = before != nullptr && mm_ * double{before->depth} <= kShallow;
+      pushes_.add(place_of(meeting), meeting.found, -goals_.allowed(meeting), is_shallow, turns_);
     }
     return sum;
   }
 
   void open_windows() {
-    in_window_.assign(static_cast<std::size_t>(clip_.frames()), 0);
+    in_window_.assign(in_window_.size(), 0);
     const int pad = static_cast<int>(std::ceil(kPad * clip_.fps()));
     std::set<int> frames;
     for (const auto& [place, pushes] : pushes_.all()) frames.insert(static_cast<int>(place.frame));
@@ -253,8 +170,9 @@ class Mender {
     }
     return out;
   }
-  // And those between two that have been looked at.
-  std::vector<double> frames_in_window() const {
+  // And those between two that have been looked at. In the first round all.
+  std::vector<double> frames_in_window(int round) const {
+    if (round == 0) return all_frames();
     std::set<double> out;
     for (const int f : whole_frames_in_window()) out.insert(f);
     for (const auto& [place, pushes] : pushes_.all()) out.insert(place.frame);
@@ -264,6 +182,9 @@ class Mender {
   std::vector<Wish> wishes(double weight) const {
     std::vector<Wish> out;
     pushes_.add_wishes(weight, turns_, out);
+    for (const auto& [at, turn] : led_) {
+      out.push_back({{{at.first, at.second, turn.normalized()}}, turn.norm(), weight, 0});
+    }
     if (loops_) {
       for (Index j = 0; j < clip_.count(); ++j) {
         for (int k = 0; k < 3; ++k) {
@@ -271,9 +192,6 @@ class Mender {
           out.push_back({{{0, j, axis}, {clip_.frames() - 1, j, -axis}}, 0, kWishMost, kWishMost});
         }
       }
-    }
-    for (const auto& [at, turn] : led_) {
-      out.push_back({{{at.first, at.second, turn.normalized()}}, turn.norm(), weight, 0});
     }
     for (const int f : whole_frames_in_window()) add_pins(clip_, feet_, f, height_, turns_, out);
     return out;
@@ -289,208 +207,154 @@ class Mender {
     return most * 180 / std::numbers::pi;
   }
 
-  // Events that get no better are led out by trial, once, and then left as they are. False where there is none.
-  bool give_up(const std::vector<Meeting>& now, int round, bool is_last,
-               const std::function<void(const std::string&)>& told) {
-    best_left_.resize(events_.size(), HUGE_VAL);
-    best_round_.resize(events_.size(), 0);
-    was_led_.resize(events_.size(), 0);
+  // Events that get no better are led out by trial, once; those that do not get better at all are left as they are.
+  // False where nothing gets better any more.
+  bool go_on(const std::vector<Meeting>& now, int round, double badness) {
     std::vector<std::size_t> stuck;
-    for (std::size_t e = 0; e < events_.size(); ++e) {
-      if (!is_wanted(events_[e])) continue;
+    for (std::size_t e = 0; e < goals_.events.size(); ++e) {
+      if (!Goals::is_wanted(goals_.events[e])) continue;
       double left = 0;
       for (const Meeting& m : now) {
-        if (is_fault(m.found.kind) && is_in(place_of(m), events_[e])) left += double{m.found.depth};
+        if (is_fault(m.found.kind) && Goals::is_in(place_of(m), goals_.events[e])) left += double{m.found.depth};
       }
-      if (left < 0.9 * best_left_[e]) {
-        best_left_[e] = left;
-        best_round_[e] = round;
-      }
-      if (left > 0 && (is_last || round - best_round_[e] >= kPatience)) stuck.push_back(e);
+      if (round == 0) progress_[e].begin = left;
+      if (progress_[e].gets_better(left, round) || left == 0) continue;
+      if (round - progress_[e].round >= kPatience) stuck.push_back(e);
     }
+    in_all_.gets_better(badness, round);
     for (const std::size_t e : stuck) {
-      if (was_led_[e] != 0 || !lead_out(e, round, told)) events_[e].outcome = Outcome::kOverBudget;
+      if (!progress_[e].was_led && lead_out(e, round)) in_all_ = {0, HUGE_VAL, round + 1};
+      if (progress_[e].least < kLess * progress_[e].begin || progress_[e].round > round) continue;
+      goals_.events[e].outcome = Outcome::kOverBudget;
+      pushes_.forget([&](const MeetingPlace& place) { return Goals::is_in(place, goals_.events[e]); });
     }
-    for (const std::size_t e : stuck) {
-      if (is_wanted(events_[e])) continue;
-      pushes_.forget([&](const MeetingPlace& place) { return is_in(place, events_[e]); });
-    }
-    return !stuck.empty();
+    return round - in_all_.round < 2 * kPatience;
   }
 
-  // The joints that move one of two parts and not the other, of the cheap ones, and none that a foot hangs on.
-  std::set<Index> joints_between(std::uint32_t a, std::uint32_t b) const {
-    std::set<Index> one(joints_of_part_[a].begin(), joints_of_part_[a].end()),
-        other(joints_of_part_[b].begin(), joints_of_part_[b].end()), all;
-    std::set_symmetric_difference(one.begin(), one.end(), other.begin(), other.end(), std::inserter(all, all.end()));
-    const auto price = [&](Index joint) { return clip_.joints()[joint].price.eigenvalues().real().minCoeff(); };
-    for (const Index foot : feet_) {
-      for (const Index joint : clip_.above_joint(foot)) all.erase(joint);
-    }
-    double least = HUGE_VAL;
-    for (const Index joint : all) least = std::min(least, price(joint));
-    std::erase_if(all, [&](Index joint) { return price(joint) > 2.1 * least; });
-    return all;
-  }
-
-  // By trial, with all events that it shares joints and time with. False where no joint can.
-  bool lead_out(std::size_t first, int round, const std::function<void(const std::string&)>& told) {
-    LimbInTrouble limb{{}, events_[first].from, events_[first].to, 0};
-    std::set<Index> joints = joints_between(events_[first].part_a, events_[first].part_b);
-    if (joints.empty()) return false;
-    std::set<std::size_t> group{first};
-    for (bool grows = true; grows;) {
-      grows = false;
-      for (std::size_t e = 0; e < events_.size(); ++e) {
-        const MendedEvent& event = events_[e];
-        if (!is_wanted(event) || was_led_[e] != 0 || group.contains(e) || event.from > limb.to + 1 ||
-            event.to < limb.from - 1)
-          continue;
-        const std::set<Index> its = joints_between(event.part_a, event.part_b);
-        if (std::none_of(its.begin(), its.end(), [&](Index joint) { return joints.contains(joint); })) continue;
-        group.insert(e);
-        joints.insert(its.begin(), its.end());
-        limb.from = std::min(limb.from, event.from);
-        limb.to = std::max(limb.to, event.to);
-        grows = true;
-      }
-    }
-    limb.joints.assign(joints.begin(), joints.end());
-    const auto moves = [&](std::uint32_t part) {
-      return std::any_of(joints_of_part_[part].begin(), joints_of_part_[part].end(),
-                         [&](Index j) { return joints.contains(j); });
-    };
-    double worst = -1;
-    for (int f = limb.from; f <= limb.to; ++f) {
-      double sum = 0;
-      for (const std::size_t e : group) {
-        const auto known = before_.find({static_cast<double>(f), events_[e].part_a, events_[e].part_b});
-        if (known != before_.end()) sum += double{known->second.depth};
-      }
-      if (sum > worst) limb.worst = f;
-      worst = std::max(worst, sum);
-    }
-    told(fmt::format("trying ways out of frames {} to {}", limb.from, limb.to));
+  // By trial, with all that it shares joints and time with. False where no joint can.
+  bool lead_out(std::size_t event, int round) {
+    const auto is_open = [&](std::size_t e) { return Goals::is_wanted(goals_.events[e]) && !progress_[e].was_led; };
+    const LimbInTrouble limb = limb_in_trouble(goals_, parts_, event, is_open);
+    progress_[event].was_led = true;
+    if (limb.joints.empty()) return false;
+    told_(fmt::format("trying ways out of frames {} to {}", limb.from, limb.to));
     const auto judge = [&](const std::vector<TriedPose>& poses) {
       std::vector<double> out;
-      for (const std::vector<Meeting>& meetings : finder_.in_poses(poses)) {
-        double sum = 0;
-        for (const Meeting& meeting : meetings) {
-          if (!moves(meeting.found.part_a) && !moves(meeting.found.part_b)) continue;
-          const double may_be = allowed(meeting);
-          if (!is_let_be(meeting, may_be)) sum += too_deep(meeting, may_be);
-        }
-        out.push_back(sum);
+      for (const std::vector<Meeting>& meetings : finder_.in_poses(poses, limb.moves)) {
+        out.push_back(0);
+        for (const Meeting& meeting : meetings) out.back() += goals_.too_deep(meeting) / height_;
       }
       return out;
     };
-    const double budget = options_.budget_degrees * std::numbers::pi / 180;
-    for (const auto& [frame, turns] : find_way_out(clip_, limb, budget, turns_, judge)) {
+    Turns start(turns_.size(), Vec3::Zero());
+    for (const auto& [at, turn] : led_) start[static_cast<std::size_t>(at.first) * clip_.count() + at.second] = turn;
+    for (const auto& [frame, turns] : find_way_out(clip_, limb, radians(options_.budget_degrees), start, judge)) {
       for (const Index joint : limb.joints) {
         led_.erase({frame, joint});
         if (!turns[joint].isZero(0)) led_[{frame, joint}] = turns[joint];
       }
       jumps_[static_cast<std::size_t>(frame)] = 1;
     }
-    for (const std::size_t e : group) {
-      was_led_[e] = 1;
-      best_left_[e] = HUGE_VAL;
-      best_round_[e] = round + 1;
-    }
+    for (const std::size_t e : limb.events) progress_[e] = {progress_[e].begin, HUGE_VAL, round + 1, true};
     pushes_.forget([&](const MeetingPlace& place) {
-      return place.frame >= limb.from - 1 && place.frame <= limb.to + 1 && (moves(place.part_a) || moves(place.part_b));
+      const bool is_its = limb.moves[place.part_a] != 0 || limb.moves[place.part_b] != 0;
+      return is_its && place.frame >= limb.from - 1 && place.frame <= limb.to + 1;
     });
     return true;
   }
 
-  static bool is_in(const MeetingPlace& place, const MendedEvent& event) {
-    return place.part_a == event.part_a && place.part_b == event.part_b && place.frame >= event.from - 1 &&
-           place.frame <= event.to + 1;
-  }
-
-  // Where something is worse than before, joints turn back around it, softly; and where that does not help, in all that
-  // lies together in time.
-  void take_back_what_fails() {
-    for (int turn = 0; turn <= kTapers; ++turn) {
-      std::vector<char> fails(in_window_.size(), 0);
-      const std::vector<int> whole = whole_frames_in_window();
-      std::vector<Meeting> after = look({whole.begin(), whole.end()});
-      const std::vector<Meeting> between = finder_.between(whole, turns_);
-      after.insert(after.end(), between.begin(), between.end());
-      bool any = false;
-      for (const Meeting& meeting : after) {
-        if (!is_fault(meeting.found.kind) || !is_worse(meeting)) continue;
-        fails[static_cast<std::size_t>(meeting.frame)] = 1;
-        any = true;
-      }
-      if (!any) return;
-      if (turn < kTapers) {
-        taper(fails, kPad * (turn + 1) / kTapers);
-      } else {
-        turn_back(fails);
+  // Of all that lies together in time, the round that left least; of equal ones the last.
+  void take_the_best_rounds() {
+    for (MendedEvent& event : goals_.events) {
+      if (event.outcome == Outcome::kOverBudget) event.outcome = Outcome::kReduced;
+    }
+    std::vector<std::vector<double>> left;  // of each round and frame
+    for (const Round& round : rounds_) {
+      left.emplace_back(in_window_.size(), 0);
+      for (const Meeting& m : round.found) left.back()[static_cast<std::size_t>(m.frame)] += goals_.too_deep(m);
+    }
+    turns_.assign(turns_.size(), Vec3::Zero());
+    for (const std::vector<std::size_t>& span : spans_of(in_window_, loops_)) {
+      double least = HUGE_VAL;
+      for (std::size_t r = 0; r < rounds_.size(); ++r) {
+        double sum = 0;
+        for (const std::size_t f : span) sum += left[r][f];
+        if (sum > least) continue;
+        least = sum;
+        for (const std::size_t f : span) {
+          for (std::size_t i = f * clip_.count(); i < (f + 1) * clip_.count(); ++i) turns_[i] = rounds_[r].turns[i];
+        }
       }
     }
   }
 
-  // No turn within so many seconds of what fails; then all of it within as many more.
-  void taper(const std::vector<char>& fails, double seconds) {
-    const double pad = seconds * clip_.fps();
-    for (std::size_t f = 0; f < fails.size(); ++f) {
-      double near = HUGE_VAL;
-      for (std::size_t g = 0; g < fails.size(); ++g) {
-        if (fails[g] == 0) continue;
-        const double apart = std::abs(static_cast<double>(f) - static_cast<double>(g));
-        near = std::min({near, apart, loops_ ? static_cast<double>(fails.size() - 1) - apart : apart});
-      }
-      const double share = std::clamp((near - pad) / pad, 0.0, 1.0), smooth = share * share * (3 - 2 * share);
-      for (std::size_t j = 0; j < clip_.count(); ++j) turns_[f * clip_.count() + j] *= smooth;
-    }
-  }
-
-  void turn_back(std::vector<char> fails) {
-    if (loops_) fails[0] = fails[fails.size() - 1] = fails_at_seam(fails);
-    for (std::size_t begin = 0; begin < fails.size(); ++begin) {
-      std::size_t end = begin;
-      bool any = false;
-      for (; end < fails.size() && in_window_[end] != 0; ++end) any |= fails[end] != 0;
-      if (any) {
-        std::fill(turns_.begin() + static_cast<std::ptrdiff_t>(begin * clip_.count()),
-                  turns_.begin() + static_cast<std::ptrdiff_t>(end * clip_.count()), Vec3::Zero());
-      }
-      begin = end;
-    }
-  }
-
-  // Of a loop: whether what lies together around its seam fails.
-  char fails_at_seam(const std::vector<char>& fails) const {
-    char any = 0;
-    for (std::size_t f = 0; f < fails.size() && in_window_[f] != 0; ++f) any |= fails[f];
-    for (std::size_t f = fails.size(); f-- > 0 && in_window_[f] != 0;) any |= fails[f];
-    return any;
-  }
-
-  // Than the same parts were around that time.
-  bool is_worse(const Meeting& meeting) const {
-    double most = 0;
-    for (int f = static_cast<int>(meeting.frame) - 1; f <= static_cast<int>(meeting.frame) + 2; ++f) {
-      const auto known = before_.find({static_cast<double>(f), meeting.found.part_a, meeting.found.part_b});
-      if (known != before_.end()) most = std::max(most, double{known->second.depth});
-    }
-    return double{meeting.found.depth} > most + kFoldDeeper / mm_;
-  }
-
-  void finish(Mend& out) {
-    out.joints = clip_.joints();
-    out.in_window = in_window_;
-    std::vector<double> all;
-    for (int f = 0; f < clip_.frames(); ++f) all.push_back(f);
-    std::vector<Meeting> after = finder_.in_frames(all, turns_);
+  // In all frames, and between those that may have changed.
+  std::vector<Meeting> look_again() {
+    std::vector<Meeting> out = finder_.in_frames(all_frames(), turns_);
     const std::vector<Meeting> between = finder_.between(whole_frames_in_window(), turns_);
-    after.insert(after.end(), between.begin(), between.end());
-    for (MendedEvent& event : events_) {
+    out.insert(out.end(), between.begin(), between.end());
+    return out;
+  }
+
+  // Where something is worse than before, the joints that move it turn back around it, softly; and where that does not
+  // help, in all that lies together in time. So do joints that turned for nothing.
+  std::vector<Meeting> take_back_what_fails() {
+    for (int turn = 0; turn <= kTapers; ++turn) {
+      std::vector<Meeting> after = look_again();
+      judge_events(after);
+      std::map<Index, std::vector<char>> fails;  // of a joint: the frames
+      const auto fail = [&](Index joint, int from, int to) {
+        std::vector<char>& frames = fails.try_emplace(joint, in_window_.size(), 0).first->second;
+        for (int f = from; f <= to; ++f) frames[static_cast<std::size_t>(f)] = 1;
+      };
+      for (const Meeting& meeting : after) {
+        if (!goals_.is_worse(meeting)) continue;
+        const int frame = static_cast<int>(meeting.frame);
+        for (const std::uint32_t part : {meeting.found.part_a, meeting.found.part_b}) {
+          for (const Index joint : parts_.above(part)) fail(joint, frame, frame);
+        }
+      }
+      for (std::size_t e = 0; e < goals_.events.size(); ++e) {
+        if (goals_.events[e].outcome != Outcome::kOverBudget || goals_.events[e].turn_degrees == 0) continue;
+        const auto has_outcome = [&](std::size_t i) {
+          return goals_.events[i].outcome != Outcome::kAccepted && goals_.events[i].outcome != Outcome::kFold;
+        };
+        const LimbInTrouble limb = limb_in_trouble(goals_, parts_, e, has_outcome);
+        const auto is_for_nothing = [&](std::size_t i) { return goals_.events[i].outcome == Outcome::kOverBudget; };
+        if (!std::all_of(limb.events.begin(), limb.events.end(), is_for_nothing)) continue;
+        for (const Index joint : limb.joints) {
+          if (turns_in(goals_.events[e], joint)) fail(joint, goals_.events[e].from, goals_.events[e].to);
+        }
+      }
+      if (fails.empty()) return after;
+      for (const auto& [joint, frames] : fails) {
+        if (turn < kTapers) {
+          taper(clip_, joint, frames, kPad * (turn + 1) / kTapers, loops_, turns_);
+          continue;
+        }
+        for (const std::vector<std::size_t>& span : spans_of(in_window_, loops_)) {
+          if (std::none_of(span.begin(), span.end(), [&](std::size_t f) { return frames[f] != 0; })) continue;
+          for (const std::size_t f : span) turns_[f * clip_.count() + joint].setZero();
+        }
+      }
+    }
+    std::vector<Meeting> after = look_again();
+    judge_events(after);
+    return after;
+  }
+
+  bool turns_in(const MendedEvent& event, Index joint) const {
+    for (int f = event.from; f <= event.to; ++f) {
+      if (!turns_[static_cast<std::size_t>(f) * clip_.count() + joint].isZero(0)) return true;
+    }
+    return false;
+  }
+
+  void judge_events(const std::vector<Meeting>& after) {
+    for (MendedEvent& event : goals_.events) {
       event.depth_after = 0;
       for (const Meeting& meeting : after) {
-        if (!is_in(place_of(meeting), event) || !is_fault(meeting.found.kind)) continue;
+        if (!Goals::is_in(place_of(meeting), event) || !is_fault(meeting.found.kind)) continue;
         event.depth_after = std::max(event.depth_after, mm_ * double{meeting.found.depth});
       }
       event.turn_degrees = greatest_turn(event);
@@ -499,42 +363,69 @@ class Mender {
                       : event.depth_after < kLess * event.depth_before ? Outcome::kReduced
                                                                        : Outcome::kOverBudget;
     }
-    out.events = events_;
+  }
+
+  void finish(const std::vector<Meeting>& after, Mend& out) {
+    out.joints = clip_.joints();
+    out.in_window = in_window_;
+    out.events = goals_.events;
     out.turns = turns_;
     out.compared = compare(clip_, turns_, feet_, wrists_, mm_);
-    for (const auto& [place, pushes] : pushes_.all()) {
-      const auto known = before_.find(place);
-      if (pushes.empty() || known == before_.end() || !is_fault(known->second.kind)) continue;
-      if (mm_ * double{known->second.depth} > kShallow) continue;
+    for (const Meeting& meeting : after) out.volume_after += volume_of(meeting.frame, meeting.found);
+    for (const auto& [place, before] : goals_.before()) {
+      out.volume_before += volume_of(place.frame, before);
+      const auto pushes = pushes_.all().find(place);
+      if (pushes == pushes_.all().end() || pushes->second.empty() || !is_fault(before.kind)) continue;
+      if (mm_ * double{before.depth} > kShallow) continue;
       ++out.shallow;
-      out.still_near += mm_ * pushes_.nearest(place, turns_) <= kNear ? 1 : 0;
+      const Deformation pose = clip_.pose(place.frame, turns_).deformation;
+      const double apart = mm_ * distance_between(animated_, pose, place.part_a, place.part_b);
+      out.still_near += apart <= kNear ? 1 : 0;
     }
   }
 
+  // Of what is to be mended in a whole frame, cm3.
+  double volume_of(double frame, const Penetration& found) const {
+    const MendedEvent* event = goals_.event_at({frame, found.part_a, found.part_b});
+    const bool is_its = event != nullptr && event->outcome != Outcome::kAccepted && event->outcome != Outcome::kFold;
+    if (!is_its || frame != std::floor(frame)) return 0;
+    return double{found.volume} * std::pow(mm_ / 10, 3);
+  }
+
   const AnimatedAsset& animated_;
-  const Character& character_;
   MendOptions options_;
+  const std::function<void(const std::string&)>& told_;
   double mm_, height_;
   TurnedClip clip_;
   FaultFinder finder_;
   Pushes pushes_;
   Turns turns_;
   std::vector<Index> feet_, wrists_;  // joints
-  bool loops_;
+  PartJoints parts_;
+  bool loops_, touches_ = false;  // what is to part is not yet out
   std::vector<char> in_window_;
-  std::vector<char> jumps_;                    // of each frame: joints may turn far in this round
+  std::vector<char> jumps_;  // of each frame: joints may turn far in this round
+  Goals goals_;
   std::map<std::pair<int, Index>, Vec3> led_;  // of a frame's joint: how far it is to turn at least
-  std::vector<std::vector<Index>> joints_of_part_;
-  std::map<MeetingPlace, Penetration> before_;
-  std::vector<MendedEvent> events_;
-  struct Seen {
-    std::vector<Vec3> turns;
+  struct Progress {
+    double begin = 0, least = HUGE_VAL;  // depths of all frames
+    int round = 0;                       // of the least
+    bool was_led = false;
+
+    bool gets_better(double left, int now) {
+      if (left >= kBetter * least) return false;
+      least = left;
+      round = now;
+      return true;
+    }
+  };
+  std::vector<Progress> progress_;  // of each event
+  Progress in_all_;
+  struct Round {
+    Turns turns;
     std::vector<Meeting> found;
   };
-  std::map<double, Seen> seen_;
-  std::vector<double> best_left_;  // of each event, mm in all
-  std::vector<int> best_round_;
-  std::vector<char> was_led_;
+  std::vector<Round> rounds_;
 };
 
 }  // namespace
@@ -547,7 +438,7 @@ const char* outcome_name(Outcome outcome) {
 Mend mend_clip(const AnimatedAsset& animated, const Roles& roles, const ClipFrames& clip, const MendOptions& options,
                const std::function<bool(const MendedEvent&)>& leave,
                const std::function<void(const std::string&)>& told) {
-  return Mender(animated, roles, clip, options).run(leave, told);
+  return Mender(animated, roles, clip, options, leave, told).run();
 }
 
 }  // namespace spherechain::baker

@@ -30,6 +30,7 @@ struct MendedEvent {
   double depth_before, depth_after;  // mm
   double turn_degrees = 0;           // the largest in its frames
   Outcome outcome = Outcome::kReduced;
+  int worst = 0;  // the frame in which it is deepest, before
 };
 
 struct Mend {
@@ -40,6 +41,8 @@ struct Mend {
   Comparison compared;
   // Pairs of parts in a frame, pushed, at most 10 mm deep before; of these, those within 5 mm of each other after.
   int shallow = 0, still_near = 0;
+  // Of faults that were to be mended, as far as their contours close; cm3, summed over frames.
+  double volume_before = 0, volume_after = 0;
   int rounds = 0;
 };
 

@@ -14,7 +14,7 @@ constexpr std::size_t kMemory = 4;  // pushes of a place
 constexpr double kArm = 0.3;        // an arm's
 constexpr double kFarthest = 0.03;  // what a push asks for in a round, at most
 // Weights of a miss of an arm's length, against a radian of a shoulder.
-constexpr double kPullBack = 50;  // of what was shallow, where it is too far
+constexpr double kPullBack = 500;  // of what was shallow, where it is too far
 constexpr double kPinned = 1e6;
 
 Vec3 to_vec3(const spherechain::Vec3& v) { return {v.x, v.y, v.z}; }
@@ -54,12 +54,6 @@ void Pushes::add(const MeetingPlace& place, const Penetration& found, double tar
             all.end());
   if (all.size() == kMemory) all.erase(all.begin());
   all.push_back(push);
-}
-
-double Pushes::nearest(const MeetingPlace& place, const Turns& turns) const {
-  double out = HUGE_VAL;
-  for (const Push& push : of_.at(place)) out = std::min(out, std::abs(gap(push, place.frame, turns)));
-  return out;
 }
 
 void Pushes::add_wishes(double weight, const Turns& turns, std::vector<Wish>& wishes) const {

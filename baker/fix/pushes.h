@@ -46,9 +46,6 @@ class Pushes {
   }
 
   const std::map<MeetingPlace, std::vector<Push>>& all() const { return of_; }
-  // The least distance of a place's spots from each other, along their ways.
-  double nearest(const MeetingPlace& place, const Turns& turns) const;
-
   // That spots part, to first order around the turns.
   void add_wishes(double weight, const Turns& turns, std::vector<Wish>& wishes) const;
 

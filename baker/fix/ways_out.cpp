@@ -2,7 +2,11 @@
 #include "fix/ways_out.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <set>
+
+#include "fix/part_joints.h"
 
 namespace spherechain::baker {
 namespace {
@@ -11,6 +15,9 @@ constexpr int kLevels = 6;       // angles that are tried, up to the budget
 constexpr int kMoves = 3;        // joints that are turned one after another
 constexpr int kHalvings = 3;     // of the last step to the way out
 constexpr double kWorthIt = .9;  // of what is in each other: a move that leaves more is none
+constexpr std::size_t kWays = 8;
+constexpr double kLeft = 1e4;      // the price of a height of what is left, against that of a radian of a shoulder
+constexpr double kSteadyWay = .1;  // seconds: what changes within is dear
 
 // To the faces and corners of a cube.
 std::vector<Vec3> axes_to_try() {
@@ -36,12 +43,26 @@ class Search {
   Search(const TurnedClip& clip, const LimbInTrouble& limb, double budget, const Turns& start, const JudgePoses& judge)
       : clip_(clip), limb_(limb), budget_(budget), start_(start), judge_(judge) {}
 
-  std::map<int, std::vector<Vec3>> run() const {
-    std::map<int, std::vector<Vec3>> out;
-    out[limb_.worst] = free(limb_.worst, none(limb_.worst));
-    for (int f = limb_.worst + 1; f <= limb_.to; ++f) out[f] = free(f, out[f - 1]);
-    for (int f = limb_.worst - 1; f >= limb_.from; --f) out[f] = free(f, out[f + 1]);
-    return out;
+  std::map<int, std::vector<Vec3>> run() {
+    follow(none(limb_.from));
+    for (const int frame : limb_.worst) {
+      if (best(frame).left > 0) add_way(frame);
+    }
+    // Where none of them leads out, one more.
+    std::set<int> hopeless;
+    while (ways_ < kWays) {
+      int worst = -1;
+      double most = 0;
+      for (int f = limb_.from; f <= limb_.to; ++f) {
+        if (hopeless.contains(f) || best(f).left <= most) continue;
+        most = best(f).left;
+        worst = f;
+      }
+      if (worst < 0) break;
+      add_way(worst);
+      if (best(worst).left > 0) hopeless.insert(worst);
+    }
+    return steadiest();
   }
 
  private:
@@ -68,32 +89,87 @@ class Search {
     return out;
   }
 
-  // As `neighbour` does, as far as it must; else by what frees it.
-  std::vector<Vec3> free(int frame, const std::vector<Vec3>& neighbour) const {
-    Found best = follow(frame, neighbour);
-    if (best.left == 0) return best.turns;
-    for (int move = 0; move < kMoves && best.left > 0; ++move) {
-      Found next = turn_one(frame, best);
-      if (next.left > kWorthIt * best.left) break;
-      best = std::move(next);
-    }
-    return best.left == 0 ? follow(frame, best.turns).turns : best.turns;
+  const Found& best(int frame) const {
+    const std::vector<Found>& found = found_.at(frame);
+    return *std::min_element(found.begin(), found.end(),
+                             [](const Found& a, const Found& b) { return a.left < b.left; });
   }
 
-  // The least share of a way that frees a frame; without one the best.
-  Found follow(int frame, const std::vector<Vec3>& way) const {
-    constexpr double kShares[] = {0, .25, .5, .75, 1, 1.2};
-    std::vector<TriedPose> poses;
-    for (const double share : kShares) poses.push_back({frame, scaled(frame, way, share)});
-    const std::vector<double> left = judge_(poses);
-    const auto best = static_cast<std::size_t>(std::min_element(left.begin(), left.end()) - left.begin());
-    if (left[best] > 0 || best == 0) return {poses[best].turns, left[best]};
-    double in = kShares[best - 1], out = kShares[best];
-    for (int i = 0; i < kHalvings; ++i) {
-      const double middle = (in + out) / 2;
-      (judge_({{frame, scaled(frame, way, middle)}})[0] == 0 ? out : in) = middle;
+  // What frees a frame best, and how far all others must go that way.
+  void add_way(int frame) {
+    Found way = best(frame);
+    for (int move = 0; move < kMoves && way.left > 0; ++move) {
+      Found next = turn_one(frame, way);
+      if (next.left > kWorthIt * way.left) break;
+      way = std::move(next);
     }
-    return {scaled(frame, way, out), 0};
+    follow(way.turns);
+    ++ways_;
+  }
+
+  // Of each frame one way: the path through all that costs least.
+  std::map<int, std::vector<Vec3>> steadiest() const {
+    const double steady = std::pow(kSteadyWay * clip_.fps(), 2);
+    std::vector<std::vector<double>> sums;
+    std::vector<std::vector<std::size_t>> from;
+    for (int f = limb_.from; f <= limb_.to; ++f) {
+      const std::vector<Found>& here = found_.at(f);
+      sums.emplace_back();
+      from.emplace_back();
+      for (const Found& to : here) {
+        double least = sums.size() == 1 ? 0 : HUGE_VAL;
+        std::size_t chosen = 0;
+        for (std::size_t k = 0; sums.size() > 1 && k < found_.at(f - 1).size(); ++k) {
+          std::vector<Vec3> change = to.turns;
+          for (const Index joint : limb_.joints) change[joint] -= found_.at(f - 1)[k].turns[joint];
+          const double sum = sums[sums.size() - 2][k] + steady * price(change);
+          if (sum < least) chosen = k;
+          least = std::min(least, sum);
+        }
+        sums.back().push_back(least + price(to.turns) + kLeft * to.left);
+        from.back().push_back(chosen);
+      }
+    }
+    std::map<int, std::vector<Vec3>> out;
+    std::size_t at =
+        static_cast<std::size_t>(std::min_element(sums.back().begin(), sums.back().end()) - sums.back().begin());
+    for (int f = limb_.to; f >= limb_.from; --f) {
+      out[f] = found_.at(f)[at].turns;
+      at = from[static_cast<std::size_t>(f - limb_.from)][at];
+    }
+    return out;
+  }
+
+  // Of each frame the least share of a way that frees it; without one the best.
+  void follow(const std::vector<Vec3>& way) {
+    constexpr std::array<double, 6> kShares{0, .25, .5, .75, 1, 1.2};
+    std::vector<TriedPose> poses;
+    for (int f = limb_.from; f <= limb_.to; ++f) {
+      for (const double share : kShares) poses.push_back({f, scaled(f, way, share)});
+    }
+    const std::vector<double> left = judge_(poses);
+    struct Bracket {
+      int frame;
+      double in, out;
+    };
+    std::vector<Bracket> brackets;
+    for (int f = limb_.from; f <= limb_.to; ++f) {
+      const auto first = static_cast<std::size_t>(f - limb_.from) * kShares.size();
+      const auto begin = left.begin() + static_cast<std::ptrdiff_t>(first);
+      const auto best = static_cast<std::size_t>(std::min_element(begin, begin + kShares.size()) - begin);
+      found_[f].push_back({std::move(poses[first + best].turns), left[first + best]});
+      if (left[first + best] == 0 && best > 0) brackets.push_back({f, kShares[best - 1], kShares[best]});
+    }
+    for (int i = 0; i < kHalvings; ++i) {
+      poses.clear();
+      for (const Bracket& b : brackets) poses.push_back({b.frame, scaled(b.frame, way, (b.in + b.out) / 2)});
+      const std::vector<double> middle = judge_(poses);
+      for (std::size_t k = 0; k < brackets.size(); ++k) {
+        Bracket& b = brackets[k];
+        (middle[k] == 0 ? b.out : b.in) = (b.in + b.out) / 2;
+        found_[b.frame].back().turns = scaled(b.frame, way, b.out);
+      }
+    }
   }
 
   // One joint more, by the least angle that frees; without one by the best.
@@ -125,6 +201,8 @@ class Search {
   double budget_;
   const Turns& start_;
   const JudgePoses& judge_;
+  std::size_t ways_ = 0;
+  std::map<int, std::vector<Found>> found_;  // of each frame: itself, then what each way comes to
 };
 
 }  // namespace

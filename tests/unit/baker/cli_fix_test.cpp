@@ -155,12 +155,19 @@ TEST_CASE("fix: what has no fault, is meant, or costs more than the budget, stay
   REQUIRE(kept.report["clips"][0]["events"].size() == 1);
   CHECK(kept.report["clips"][0]["events"][0]["outcome"] == "accepted");
 
-  const Fixed dear = fix(std::vector<double>(30, 20), "--budget 8");
+  const Fixed dear = fix(std::vector<double>(30, 20), "--budget 1");
   CHECK(dear.run.code == 5);
   CHECK(dear.after == dear.before);
   REQUIRE(dear.report["clips"][0]["events"].size() == 1);
   CHECK(dear.report["clips"][0]["events"][0]["outcome"] == "over_budget");
   CHECK(dear.run.out.find("over_budget") != std::string::npos);
+
+  const Fixed less = fix(std::vector<double>(30, 20), "--budget 8");
+  CHECK(less.run.code == 5);
+  const json event = less.report["clips"][0]["events"][0];
+  CHECK(event["outcome"] == "reduced");
+  CHECK(event["depth_mm_after"].get<double>() < 0.4 * event["depth_mm_before"].get<double>());
+  CHECK(less.report["clips"][0]["turn_degrees"]["max"].get<double>() <= 8.001);
 }
 
 TEST_CASE("fix: a report folder is written again; what cannot be written is refused, and nothing is written") {

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fix/goals.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "check/events.h"
+
+namespace spherechain::baker {
+namespace {
+
+constexpr double kDeeper = 0.5;       // mm: so much deeper than before is a fault, too
+constexpr double kFoldDeeper = 2;     // the same of folds, which move with the joint
+constexpr double kDeeperShare = 0.1;  // and of how deep it was
+
+}  // namespace
+
+Goals::Goals(const std::vector<Meeting>& before, int frames, double mm_per_unit, double margin_mm,
+             const std::function<bool(const MendedEvent&)>& leave)
+    : mm_(mm_per_unit), margin_mm_(margin_mm) {
+  std::vector<PartMeeting> faults;
+  for (const Meeting& meeting : before) {
+    before_[place_of(meeting)] = meeting.found;
+    if (is_fault(meeting.found.kind)) faults.push_back({static_cast<int>(meeting.frame), meeting.found});
+  }
+  for (const EventSpan& span : join_events(faults, frames, false)) {
+    const Penetration& worst = faults[span.deepest].found;
+    MendedEvent event{worst.part_a, worst.part_b, span.from, span.to, worst.kind, mm_ * double{worst.depth}, 0};
+    event.worst = faults[span.deepest].frame;
+    if (worst.kind == SC_CLASS_DEEP_FOLD || worst.part_a == worst.part_b) event.outcome = Outcome::kFold;
+    if (leave(event)) event.outcome = Outcome::kAccepted;
+    events.push_back(event);
+  }
+}
+
+const Penetration* Goals::before(const MeetingPlace& place) const {
+  const auto known = before_.find(place);
+  return known == before_.end() ? nullptr : &known->second;
+}
+
+const MendedEvent* Goals::event_at(const MeetingPlace& place) const {
+  const auto event = std::find_if(events.begin(), events.end(), [&](const MendedEvent& e) { return is_in(place, e); });
+  return event == events.end() ? nullptr : &*event;
+}
+
+double Goals::allowed(const Meeting& meeting) const {
+  const double apart = -margin_mm_ / mm_;
+  const MendedEvent* event = event_at(place_of(meeting));
+  if (event == nullptr) {
+    const bool is_new = meeting.found.kind == SC_CLASS_PENETRATION && meeting.found.part_a != meeting.found.part_b;
+    if (is_new) return apart;
+  } else if (is_wanted(*event) && meeting.frame >= event->from && meeting.frame <= event->to) {
+    return apart;
+  }
+  const Penetration* known = before({std::round(meeting.frame), meeting.found.part_a, meeting.found.part_b});
+  return known == nullptr ? 0 : double{known->depth};
+}
+
+bool Goals::is_let_be(const Meeting& meeting) const {
+  const double may_be = allowed(meeting);
+  if (may_be < 0) return false;
+  const Penetration& p = meeting.found;
+  // What is no fault and not to part is let be: folds and touches come and go with a joint.
+  if (!is_fault(p.kind) || p.part_a == p.part_b) return true;
+  const double slack = (p.kind == SC_CLASS_DEEP_FOLD ? kFoldDeeper : kDeeper) / mm_ + kDeeperShare * may_be;
+  return double{p.depth} - may_be <= slack;
+}
+
+double Goals::too_deep(const Meeting& meeting) const {
+  if (!is_fault(meeting.found.kind) || is_let_be(meeting)) return 0;
+  return double{meeting.found.depth} - std::max(allowed(meeting), 0.0);
+}
+
+bool Goals::is_worse(const Meeting& meeting) const {
+  if (!is_fault(meeting.found.kind)) return false;
+  double most = 0;
+  for (int f = static_cast<int>(meeting.frame) - 1; f <= static_cast<int>(meeting.frame) + 2; ++f) {
+    const Penetration* known = before({static_cast<double>(f), meeting.found.part_a, meeting.found.part_b});
+    if (known != nullptr) most = std::max(most, double{known->depth});
+  }
+  return double{meeting.found.depth} > most + kFoldDeeper / mm_;
+}
+
+std::set<std::pair<std::uint32_t, std::uint32_t>> Goals::harmless() const {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, PenetrationClass> worst;
+  for (const auto& [place, found] : before_) {
+    PenetrationClass& kind = worst.try_emplace({place.part_a, place.part_b}, found.kind).first->second;
+    kind = std::max(kind, found.kind);
+  }
+  std::set<std::pair<std::uint32_t, std::uint32_t>> out;
+  for (const auto& [pair, kind] : worst) {
+    if (kind <= SC_CLASS_SHELL) out.insert(pair);
+  }
+  return out;
+}
+
+}  // namespace spherechain::baker
