@@ -26,19 +26,20 @@ namespace spherechain::baker {
 namespace {
 
 constexpr int kRounds = 24;
-constexpr int kPatience = 3;     // rounds that an event may take without getting better
-constexpr int kFreeRounds = 4;   // at most, once there is no fault, in which joints go back as far as they can
-constexpr int kLookBetween = 4;  // rounds, while there are faults in frames
-constexpr int kTapers = 3;       // tries to take back softly what got worse
-constexpr double kStep = 10;     // degrees that a joint turns in a round, at most
-constexpr double kStill = 1;     // degrees: a round that turns joints by less may be the last
-constexpr double kLeave = 3;     // of a turn from where the round starts, while there is a fault
-constexpr double kPad = 0.35;    // seconds around an event in which joints turn, too
-constexpr double kShallow = 10;  // mm
-constexpr double kNear = 5;      // mm
-constexpr double kLess = 0.8;    // of its depth: an event is reduced
-constexpr double kBetter = 0.9;  // of what is left: it gets better
-constexpr double kWish = 1e4, kWishMost = 1e6;  // the weight of pushes grows by round
+constexpr int kPatience = 3;      // rounds that an event may take without getting better
+constexpr int kFreeRounds = 4;    // at most, once there is no fault, in which joints go back as far as they can
+constexpr int kLookBetween = 4;   // rounds, while there are faults in frames
+constexpr int kTapers = 3;        // tries to take back softly what got worse
+constexpr double kStep = 10;      // degrees that a joint turns in a round, at most
+constexpr double kSmoothest = 4;  // frames
+constexpr double kStill = 1;      // degrees: a round that turns joints by less may be the last
+constexpr double kLeave = 3;      // of a turn from where the round starts, while there is a fault
+constexpr double kPad = 0.35;     // seconds around an event in which joints turn, too
+constexpr double kShallow = 10;   // mm
+constexpr double kNear = 5;       // mm
+constexpr double kLess = 0.8;     // of its depth: an event is reduced
+constexpr double kBetter = 0.9;   // of what is left: it gets better
+constexpr double kWish = 1e4, kWishMost = 1e5;  // the weight of pushes grows by round
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
@@ -98,6 +99,7 @@ class Mender {
       out.rounds = round + 1;
     }
     take_the_best_rounds();
+    calm_down();
     finder_.leave_out({});
     finish(take_back_what_fails(), out);
     return out;
@@ -284,6 +286,20 @@ class Mender {
         for (const std::size_t f : span) {
           for (std::size_t i = f * clip_.count(); i < (f + 1) * clip_.count(); ++i) turns_[i] = rounds_[r].turns[i];
         }
+      }
+    }
+  }
+
+  // What shakes is worse than what is in each other: it is smoothed, and joints that shake nevertheless turn back.
+  void calm_down() {
+    for (const std::vector<std::size_t>& span : spans_of(in_window_, loops_)) {
+      std::set<Index> joints = shaking_joints(clip_, span, turns_, height_);
+      for (double frames = 1; frames <= kSmoothest && !joints.empty(); frames *= 2) {
+        for (const Index joint : joints) smooth(clip_, joint, span, frames, loops_, turns_);
+        joints = shaking_joints(clip_, span, turns_, height_);
+      }
+      for (const Index joint : joints) {
+        for (const std::size_t f : span) turns_[f * clip_.count() + joint].setZero();
       }
     }
   }
