@@ -7,6 +7,7 @@
 
 #include "check/library.h"
 #include "check/store.h"
+#include "import/source_rig.h"
 
 namespace spherechain::baker {
 
@@ -30,6 +31,9 @@ struct RunOptions {
   int jobs = 1;
   Shard shard;
 };
+
+// What a check calls the clips in a character's file.
+std::vector<std::string> unique_clip_names(const SourceRig& rig);
 
 // How far a run is.
 struct RunState {

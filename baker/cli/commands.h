@@ -72,7 +72,8 @@ struct CheckOptions {
 ExitCode run_check(const CheckOptions& options);
 
 struct FixOptions {
-  std::string input, output, clip, keep, report;
+  std::string input, output, clip, motion, keep, baseline, report;
+  std::vector<std::string> parts;
   double budget = 25, margin = 1.5;  // degrees; mm
   bool force = false;
 };

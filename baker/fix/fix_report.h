@@ -11,8 +11,9 @@ namespace spherechain::baker {
 
 struct MendedClip {
   std::string name;
-  Mend mend;
-  double seconds;  // that it took
+  Mend mend;           // its events are those that were asked for
+  double seconds = 0;  // that it took
+  int others = 0;      // events that were not asked for
 };
 
 // The file of `fix --report`, and the same for people.
