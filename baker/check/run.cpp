@@ -26,9 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kOwnClips = 0;              // a unit: the clips in the character's file; others are recordings
-constexpr std::size_t kClipsPerUnitMax = 100000;  // for the order of clips
-constexpr std::size_t kWorkerClips = 8;           // a process is worth it for so many: it reads the character
+constexpr std::size_t kWorkerClips = 8;  // a process is worth it for so many: it reads the character
 
 // A file's bytes and those of the files that it names.
 std::string hash_of(const fs::path& file) {

@@ -63,7 +63,7 @@ ExitCode run_view(const ViewOptions& options);
 
 struct CheckOptions {
   std::vector<std::string> library;  // with `merge` folders of shards
-  std::string output, config, baseline, motion, shard, cache, json, junit, sarif;
+  std::string output, config, baseline, motion, shard, cache, json, junit, sarif, fix;
   std::string fail_on = "penetration";
   double max_depth = 0, fps = 0;  // 0: each clip's own
   int jobs = 0;                   // 0: as many as the machine has cores

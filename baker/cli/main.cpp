@@ -261,6 +261,8 @@ int main(int argc, char** argv) {
   add_continuous(*check_command, check.continuous);
   check_command->add_option("--jobs", check.jobs, "Processes at a time (default: one for each core)")
       ->check(CLI::Range(1, 1024));
+  add_output(*check_command, "--fix", check.fix,
+             "Folder: mend each character with faults into it, as fix does, with these rules and this baseline");
   check_command->add_flag("--folds", check.folds, "List folds, shells and contacts as at rest, too");
   add_name(*check_command, "--cache", check.cache, "Folder that keeps results: what has not changed is not computed");
   add_name(*check_command, "--shard", check.shard, "I/N: check the I-th of N parts, for --merge");

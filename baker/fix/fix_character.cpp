@@ -45,8 +45,10 @@ Clip with_rotations(Clip clip, const std::vector<Channel>& channels) {
 
 class Fixer {
  public:
-  Fixer(const FixJob& job, const Bake& baked, const std::function<void(const std::string&)>& told)
+  // `bytes`: the character's file, where that is written.
+  Fixer(const FixJob& job, std::string bytes, const Bake& baked, const std::function<void(const std::string&)>& told)
       : job_(job), roles_(baked.roles), told_(told) {
+    out_.bytes = std::move(bytes);
     out_.asset.assign(reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size());
     animated_.emplace(OpenAsset(out_.asset, job.input), job.input, job.input, MotionChoice{{}, job.clip, {}},
                       FrameChoice{0, 0});
@@ -60,7 +62,6 @@ class Fixer {
     for (const std::string& name : job.parts) {
       if (!is_part(name)) fail_part(name);
     }
-    if (!job.is_recording_written) out_.bytes = read_file(job.input);
   }
 
   FixedCharacter run() {
@@ -196,8 +197,13 @@ class Fixer {
 }  // namespace
 
 FixedCharacter fix_character(const FixJob& job, const std::function<void(const std::string&)>& told) {
+  std::string bytes;
+  if (!job.is_recording_written) {
+    bytes = read_file(job.input);
+    check_glb(bytes, job.input);
+  }
   const Bake baked = bake(job.input, job.config.bake, told);
-  return Fixer(job, baked, told).run();
+  return Fixer(job, std::move(bytes), baked, told).run();
 }
 
 double carried_over_again(const FixedCharacter& fixed, const std::string& input, const std::string& recording) {

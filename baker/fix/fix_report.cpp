@@ -114,6 +114,23 @@ std::string fix_text(const std::vector<MendedClip>& clips, const std::vector<Bod
   return out + (clean > 0 ? fmt::format("{} of {} clips have no event: left as they are\n", clean, clips.size()) : "");
 }
 
+std::string fix_line(const std::vector<MendedClip>& clips) {
+  std::map<Outcome, int> counts;
+  std::size_t events = 0;
+  for (const MendedClip& clip : clips) {
+    events += clip.mend.events.size();
+    for (const MendedEvent& event : clip.mend.events) ++counts[event.outcome];
+  }
+  std::string out =
+      fmt::format("{} clip{}, {} event{}", clips.size(), clips.size() == 1 ? "" : "s", events, events == 1 ? "" : "s");
+  const char* separator = ": ";
+  for (const auto& [outcome, count] : counts) {
+    out += fmt::format("{}{} {}", separator, count, outcome_name(outcome));
+    separator = ", ";
+  }
+  return out;
+}
+
 bool leaves_faults(const std::vector<MendedClip>& clips) {
   return std::any_of(clips.begin(), clips.end(), [](const MendedClip& clip) {
     return std::any_of(clip.mend.events.begin(), clip.mend.events.end(), [](const MendedEvent& e) {

@@ -20,6 +20,9 @@ struct MendedClip {
 std::string fix_json(const std::vector<MendedClip>& clips, const std::vector<BodyPart>& parts);
 std::string fix_text(const std::vector<MendedClip>& clips, const std::vector<BodyPart>& parts);
 
+// The same of a whole character in a line: "3 clips, 7 events: 6 cleared, 1 fold".
+std::string fix_line(const std::vector<MendedClip>& clips);
+
 // Whether an event is left that could have been expected to be cleared.
 bool leaves_faults(const std::vector<MendedClip>& clips);
 

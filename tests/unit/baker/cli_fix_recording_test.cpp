@@ -41,12 +41,6 @@ struct Files {
   json report() const { return json::parse(tool::contents(folder.path / "report/fix.json"))["clips"]; }
 };
 
-json json_of(const std::string& glb) {
-  std::uint32_t size = 0;
-  std::memcpy(&size, glb.data() + 12, 4);
-  return json::parse(glb.substr(20, size));
-}
-
 }  // namespace
 
 TEST_CASE("fix: a recording becomes a clip of the character, mended; its own clip stays") {

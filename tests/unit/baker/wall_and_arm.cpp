@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstring>
 #include <numbers>
 
 namespace {
@@ -64,4 +65,10 @@ std::string recording_of_arm(const std::vector<double>& degrees, bool is_hinge) 
     out += fmt::format("0 0 0 0 0 0  {:.4f} 0.5 0 0 0 0  {:.3f}{}\n", 0.6 + kMargin, -degree, is_hinge ? "" : " 0 0");
   }
   return out;
+}
+
+nlohmann::json json_of(const std::string& glb) {
+  std::uint32_t size = 0;
+  std::memcpy(&size, glb.data() + 12, 4);
+  return nlohmann::json::parse(glb.substr(20, size));
 }

@@ -2,6 +2,7 @@
 // A character of two parts that meet as a clip or a recording says, for `spherechain fix`.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -18,3 +19,6 @@ std::string wall_and_arm(const std::vector<double>& degrees);
 // The same motion as a BVH recording of the same joints, 30 frames a second. As a hinge the arm turns about
 // one axis alone.
 std::string recording_of_arm(const std::vector<double>& degrees, bool is_hinge = false);
+
+// The JSON in a GLB.
+nlohmann::json json_of(const std::string& glb);
