@@ -39,8 +39,8 @@ struct FixedCharacter {
 // what a bake throws.
 FixedCharacter fix_character(const FixJob& job, const std::function<void(const std::string&)>& told);
 
-// By how much the character with the skin farthest from a mended clip is off, when the recording that was written is
-// carried over again; mm.
+// Carries the recording that was written over again. Returns how far the skin is at most from the mended clip, in the
+// recording's frames; mm.
 double carried_over_again(const FixedCharacter& fixed, const std::string& input, const std::string& recording);
 
 }  // namespace spherechain::baker
