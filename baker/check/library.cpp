@@ -110,7 +110,9 @@ class Manifest {
   LibraryCharacter character(const json& entry, const CheckConfig& config) const {
     if (!entry.is_object() || !entry.contains("file")) fail("a character has no 'file'");
     check_keys(entry, {"file", "motions", "roles", "config"});
-    LibraryCharacter out{{}, path(entry["file"], "file"), motions_of(entry), config};
+    LibraryCharacter out{{}, path(entry["file"], "file"), motions_of(entry), config, {}};
+    out.relative = out.file.lexically_relative(folder_).lexically_normal();
+    if (out.relative.empty() || *out.relative.begin() == "..") out.relative = out.file.filename();
     if (entry.contains("config")) out.config = read_config(entry["config"].dump(), file_.string(), config);
     if (entry.contains("roles")) {
       const std::string roles = path(entry["roles"], "roles").string();
@@ -157,9 +159,10 @@ std::vector<LibraryCharacter> read_library(const std::vector<std::string>& paths
       const std::vector<LibraryCharacter> all = Manifest(path).read(config);
       out.insert(out.end(), all.begin(), all.end());
     } else if (fs::is_directory(path)) {
-      for (const fs::path& file : files_below(path, may_be_character)) out.push_back({{}, file, {}, config});
+      for (const fs::path& file : files_below(path, may_be_character))
+        out.push_back({{}, file, {}, config, file.lexically_relative(path)});
     } else {
-      out.push_back({{}, path, {}, config});
+      out.push_back({{}, path, {}, config, fs::path(path).filename()});
     }
   }
   // A folder of recordings may lie within that of the characters.

@@ -19,6 +19,7 @@ struct LibraryCharacter {
   };
   std::vector<Motion> motions;
   CheckConfig config;
+  std::filesystem::path relative;  // the file's path below the folder, or the manifest, that has it
 };
 
 // The characters of `paths`: files, folders (all files in them and below that a character may be in), and manifests

@@ -26,9 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kOwnClips = 0;              // a unit: the clips in the character's file; others are recordings
-constexpr std::size_t kClipsPerUnitMax = 100000;  // for the order of clips
-constexpr std::size_t kWorkerClips = 8;           // a process is worth it for so many: it reads the character
+constexpr std::size_t kWorkerClips = 8;  // a process is worth it for so many: it reads the character
 
 // A file's bytes and those of the files that it names.
 std::string hash_of(const fs::path& file) {
@@ -84,14 +82,7 @@ std::vector<ChosenCharacter> choose(const std::vector<LibraryCharacter>& library
 void bake_into(const Store& store, const std::string& key, const LibraryCharacter& character) {
   const Bake baked = bake(character.file, character.config.bake, {});
   CharacterResult result;
-  std::set<std::string> names;
-  for (std::size_t i = 0; i < baked.character.rig.clips.size(); ++i) {
-    const std::string& own = baked.character.rig.clips[i].name;
-    const std::string name = own.empty() ? fmt::format("clip {}", i) : own;
-    std::string unique = name;
-    for (int n = 2; !names.insert(unique).second; ++n) unique = fmt::format("{} ({})", name, n);
-    result.clips.push_back(unique);
-  }
+  result.clips = unique_clip_names(baked.character.rig);
   result.grade = fit_grade_name(baked.quality.grade());
   result.fit = fit_line(baked);
   result.unit_note = unit_note(baked);
@@ -348,6 +339,19 @@ class Run {
 };
 
 }  // namespace
+
+std::vector<std::string> unique_clip_names(const SourceRig& rig) {
+  std::vector<std::string> out;
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < rig.clips.size(); ++i) {
+    const std::string& own = rig.clips[i].name;
+    const std::string name = own.empty() ? fmt::format("clip {}", i) : own;
+    std::string unique = name;
+    for (int n = 2; !names.insert(unique).second; ++n) unique = fmt::format("{} ({})", name, n);
+    out.push_back(unique);
+  }
+  return out;
+}
 
 std::string picture_file(std::size_t number) {
   return number == 0 ? kPictureFile : fmt::format("_{}{}", number, kPictureFile);

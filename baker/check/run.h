@@ -7,13 +7,17 @@
 
 #include "check/library.h"
 #include "check/store.h"
+#include "import/source_rig.h"
 
 namespace spherechain::baker {
+
+// A unit of a character is the clips in its own file, or one recording: its motions[unit - 1].
+inline constexpr std::size_t kOwnClips = 0, kClipsPerUnitMax = 100000;
 
 // One clip of a library, and where its results are. Or a character that has none.
 struct CheckedClip {
   std::size_t character = 0;       // its place in the library
-  std::size_t order = 0;           // of the clip among the character's
+  std::size_t order = 0;           // of the clip among the character's: unit * kClipsPerUnitMax + number in it
   std::string clip;                // name; empty: of a character that has none
   std::string error;               // what kept it from being checked: "FILE: what (what to do)"
   std::string key, character_key;  // in the store: of the clip, of the character
@@ -30,6 +34,9 @@ struct RunOptions {
   int jobs = 1;
   Shard shard;
 };
+
+// What a check calls the clips in a character's file.
+std::vector<std::string> unique_clip_names(const SourceRig& rig);
 
 // How far a run is.
 struct RunState {

@@ -13,6 +13,7 @@
 #include "cli/installed.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
+#include "fix/fix_library.h"
 #include "play/asset_file.h"
 #include "write/write.h"
 
@@ -45,6 +46,9 @@ void check_usage(const CheckOptions& options) {
   if (!options.shard.empty() && (options.merge || is_judged)) {
     throw Error(ExitCode::kUsage, "--shard: only computes; --merge, --baseline and reports come with the merge");
   }
+  if (!options.fix.empty() && (options.merge || !options.shard.empty())) {
+    throw Error(ExitCode::kUsage, "--fix: mends what it has checked itself, no shards (run fix for each character)");
+  }
   if (options.merge && (!options.config.empty() || !options.motion.empty() || !options.cache.empty())) {
     throw Error(ExitCode::kUsage,
                 "--merge: takes rules, motions and results from the shards (give --config, --motion "
@@ -61,8 +65,9 @@ class RunProgress {
       start_ = Clock::now();
     }
     const double seconds = std::chrono::duration<double>(Clock::now() - start_).count();
-    const bool bakes = doing_ == "baking";
-    std::string text = fmt::format("{} {} of {} {}", doing_, state.done, state.all, bakes ? "characters" : "clips");
+    const bool is_of_clips = doing_ == "checking";
+    std::string text =
+        fmt::format("{} {} of {} {}", doing_, state.done, state.all, is_of_clips ? "clips" : "characters");
     if (state.done > 0 && seconds > 1) {
       const double rate = static_cast<double>(state.done) / seconds;
       const int left = static_cast<int>(static_cast<double>(state.all - state.done) / rate);
@@ -83,8 +88,8 @@ std::vector<CharacterRules> rules_of(const std::vector<LibraryCharacter>& librar
   return out;
 }
 
-ExitCode report(const CheckOptions& options, const std::vector<CheckedClip>& clips,
-                const std::vector<CharacterRules>& characters, const Store& store, const fs::path& pages) {
+Verdict report(const CheckOptions& options, const std::vector<CheckedClip>& clips,
+               const std::vector<CharacterRules>& characters, const Store& store, const fs::path& pages) {
   const FailOn fail_on = parse_fail_on(options.fail_on);
   Baseline baseline;
   if (!options.baseline.empty()) baseline = read_baseline(options.baseline, options.accept);
@@ -104,8 +109,10 @@ ExitCode report(const CheckOptions& options, const std::vector<CheckedClip>& cli
   } else {
     fmt::print("wrote {}, without pages: they are built where Node and npm are\n", options.output);
   }
-  return verdict.fails ? ExitCode::kCheckFailed : ExitCode::kDone;
+  return verdict;
 }
+
+ExitCode code_of(const Verdict& verdict) { return verdict.fails ? ExitCode::kCheckFailed : ExitCode::kDone; }
 
 }  // namespace
 
@@ -129,11 +136,12 @@ ExitCode run_check(const CheckOptions& options) {
     const fs::path work = fs::path(options.output) / ".results";
     const Store store(work);
     const ShardResult all = merge_shards(options.library, store);
-    const ExitCode code = report(options, all.clips, all.characters, store, pages);
+    const Verdict verdict = report(options, all.clips, all.characters, store, pages);
     fs::remove_all(work);
-    return code;
+    return code_of(verdict);
   }
   const std::vector<LibraryCharacter> library = read_library(options.library, options.motion, config);
+  if (!options.fix.empty()) check_fix_folder(library, options.fix);
   RunOptions run;
   run.fps = options.fps;
   run.continuous = options.continuous;
@@ -154,9 +162,16 @@ ExitCode run_check(const CheckOptions& options) {
   check_report_folder(options.output);
   const fs::path work = options.cache.empty() ? fs::path(options.output) / ".results" : fs::path(options.cache);
   const Store store(work);
-  const ExitCode code = report(options, check(store), rules_of(library), store, pages);
+  const Verdict verdict = report(options, check(store), rules_of(library), store, pages);
   if (options.cache.empty()) fs::remove_all(work);
-  return code;
+  if (!options.fix.empty()) {
+    RunProgress progress;
+    const Baseline baseline = options.baseline.empty() ? Baseline() : read_baseline(options.baseline, false);
+    const std::vector<std::string> lines = fix_library(library, verdict, baseline, options.fix, run.jobs,
+                                                       [&](const RunState& state) { progress.show(state); });
+    for (const std::string& line : lines) fmt::print("{}\n", line);
+  }
+  return code_of(verdict);
 }
 
 }  // namespace spherechain::baker

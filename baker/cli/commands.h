@@ -63,7 +63,7 @@ ExitCode run_view(const ViewOptions& options);
 
 struct CheckOptions {
   std::vector<std::string> library;  // with `merge` folders of shards
-  std::string output, config, baseline, motion, shard, cache, json, junit, sarif;
+  std::string output, config, baseline, motion, shard, cache, json, junit, sarif, fix;
   std::string fail_on = "penetration";
   double max_depth = 0, fps = 0;  // 0: each clip's own
   int jobs = 0;                   // 0: as many as the machine has cores
@@ -72,7 +72,8 @@ struct CheckOptions {
 ExitCode run_check(const CheckOptions& options);
 
 struct FixOptions {
-  std::string input, output, clip, keep, report;
+  std::string input, output, clip, motion, keep, baseline, report;
+  std::vector<std::string> parts;
   double budget = 25, margin = 1.5;  // degrees; mm
   bool force = false;
 };

@@ -2,19 +2,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
+#include <cctype>
 #include <filesystem>
+#include <optional>
 
-#include "check/rules.h"
 #include "cli/commands.h"
 #include "cli/installed.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
-#include "fix/fix_report.h"
-#include "fix/mend.h"
-#include "fix/write_clip.h"
+#include "fix/fix_character.h"
+#include "motion/sequence.h"
 #include "page/page_of_two.h"
-#include "pipeline/pipeline.h"
 #include "write/write.h"
 
 namespace spherechain::baker {
@@ -28,111 +26,112 @@ void make_folder(const std::string& path) {
   if (failed) throw Error(ExitCode::kFile, path + ": no such folder can be made (" + failed.message() + ")");
 }
 
-Event event_of(const MendedEvent& mended, const std::vector<BodyPart>& parts) {
-  Event event;
-  event.parts = {parts[mended.part_a].name, parts[mended.part_b].name};
-  event.kind = mended.kind;
-  event.depth_mm = mended.depth_before;
-  return event;
-}
-
 // Pages of the clips that changed, before and after side by side.
-void write_pages(const FixOptions& options, const fs::path& page, const Bake& baked, const AnimatedAsset& before,
-                 const std::vector<MendedClip>& clips) {
+void write_pages(const FixOptions& options, const fs::path& page, const FixedCharacter& fixed) {
   for (const auto& entry : fs::directory_iterator(options.report)) {
     const std::string name = entry.path().filename().string();  // of an earlier run
     if (name.starts_with("clip_") && name.ends_with(".html")) fs::remove(entry.path());
   }
   if (!fs::is_regular_file(page)) return;
-  const std::string_view asset(reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size());
-  for (std::size_t i = 0; i < clips.size(); ++i) {
-    const MendedClip& clip = clips[i];
-    if (std::all_of(clip.mend.turns.begin(), clip.mend.turns.end(), [](const Vec3& x) { return x.isZero(0); }))
-      continue;
-    MotionChoice motion;
-    motion.clip = before.clips()[i].name;
-    const AnimatedAsset one(OpenAsset(asset, options.input), options.input, options.input, motion, {0, 0});
+  std::optional<AnimatedAsset> before, after;
+  for (std::size_t i = 0; i < fixed.clips.size(); ++i) {
+    const Mend& mend = fixed.clips[i].mend;
+    if (std::all_of(mend.turns.begin(), mend.turns.end(), [](const Vec3& x) { return x.isZero(0); })) continue;
+    for (std::optional<AnimatedAsset>* one : {&before, &after}) {
+      if (!*one)
+        one->emplace(OpenAsset(fixed.asset, options.input), options.input, options.input, MotionChoice(),
+                     FrameChoice());
+    }
+    before->play_clip(fixed.before[i], {0, 0});
     PageOptions page_options;
     page_options.template_file = page.string();
     page_options.title = fs::path(options.input).filename().string() + ": before (grey) and after (blue)";
     page_options.names = {"before", "after"};
     page_options.they_meet = false;
-    page_options.fps = one.clips()[0].fps;  // the mended one's own may be another
-    const AnimatedAsset other(OpenAsset(asset, options.input), options.input, options.output, motion,
-                              {0, page_options.fps});
-    const Place beside{mm_per_unit(one.asset()) * one.frame().height / 1000, 0, 0};
+    page_options.fps = before->clips()[0].fps;  // the mended one's own may be another
+    after->play_clip(fixed.after[i], {0, page_options.fps});
+    const Place beside{mm_per_unit(before->asset()) * before->frame().height / 1000, 0, 0};
     write_atomically(fs::path(options.report) / fmt::format("clip_{}.html", i),
-                     view_page_of_two(one, other, &beside, page_options, [](int) {}));
+                     view_page_of_two(*before, *after, &beside, page_options, [](int) {}));
   }
+}
+
+bool has_ending(const std::string& file, const char* ending) {
+  std::string own = fs::path(file).extension().string();
+  for (char& c : own) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return own == ending;
+}
+
+void check_files(const FixOptions& options, const std::string& json, bool writes_bvh) {
+  check_regular_file(options.input);
+  if (writes_bvh && !has_ending(options.motion, ".bvh")) {
+    throw Error(ExitCode::kUsage,
+                "-o: " + options.output + ": a BVH is written of a BVH alone (--motion TAKE.bvh, or name it .glb)");
+  }
+  if (!writes_bvh && !has_ending(options.output, ".glb")) {
+    throw Error(ExitCode::kUsage, "-o: " + options.output + " is written as a binary glTF (name it .glb)");
+  }
+  if (is_sequence(options.motion)) {
+    throw Error(ExitCode::kUsage, "--motion: " + options.motion + " holds meshes, and no joints to turn");
+  }
+  if (fs::exists(options.report) && !fs::is_directory(options.report)) {
+    throw Error(ExitCode::kFile, options.report + ": is no folder");
+  }
+  std::vector<CommandFile> inputs{{"--keep", options.keep}, {"--baseline", options.baseline}};
+  MotionChoice motion;
+  motion.motion = options.motion;
+  check_outputs(with_motion(with_source(std::move(inputs), "INPUT", options.input), motion), {{"-o", options.output}});
+  if (writes_bvh) {
+    check_replaceable(options.output, "HIERARCHY", "a BVH file", options.force);
+  } else {
+    check_replaceable(options.output, "glTF", "a GLB file", options.force);
+  }
+  check_replaceable_json(json, options.force, "--force replaces it");
 }
 
 }  // namespace
 
 ExitCode run_fix(const FixOptions& options) {
   const fs::path page = installed_page("viewer.html");  // now: a long run may outlive its program's file
-  CheckConfig config = default_config();
-  if (!options.keep.empty()) config = read_config(read_file(options.keep), options.keep, config);
-  check_regular_file(options.input);
   const std::string json = options.report.empty() ? "" : (fs::path(options.report) / "fix.json").string();
-  if (fs::path(options.output).extension() != ".glb") {
-    throw Error(ExitCode::kUsage, "-o: " + options.output + " is written as a binary glTF (name it .glb)");
-  }
-  if (fs::exists(options.report) && !fs::is_directory(options.report)) {
-    throw Error(ExitCode::kFile, options.report + ": is no folder");
-  }
-  check_outputs(with_source({{"--keep", options.keep}}, "INPUT", options.input), {{"-o", options.output}});
-  check_replaceable(options.output, "glTF", "a GLB file", options.force);
-  check_replaceable_json(json, options.force, "--force replaces it");
+  const bool writes_bvh = has_ending(options.output, ".bvh");
+  FixJob job;
+  job.input = options.input;
+  job.clip = options.clip;
+  if (!options.motion.empty()) job.recordings = {options.motion};
+  job.is_recording_written = writes_bvh;
+  job.config = default_config();
+  if (!options.keep.empty()) job.config = read_config(read_file(options.keep), options.keep, job.config);
+  if (!options.baseline.empty()) job.baseline = read_baseline(options.baseline, false);
+  job.parts = options.parts;
+  job.mend = {options.budget, options.margin};
+  check_files(options, json, writes_bvh);
 
-  std::vector<MendedClip> clips;
-  std::string text, notes, bytes = read_file(options.input);
+  FixedCharacter fixed;
+  std::string again;
   {
     Progress progress("fix " + options.input + ":");
-    const Bake baked = bake(options.input, config.bake, [&](const std::string& stage) { progress.show(stage); });
-    MotionChoice motion;
-    motion.clip = options.clip;
-    const std::string_view asset(reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size());
-    const AnimatedAsset animated(OpenAsset(asset, options.input), options.input, options.input, motion, {0, 0});
-    const std::vector<BodyPart> parts = parts_of(animated.asset()).parts;
-    for (const std::string& name : config.rules.named_parts()) {
-      if (std::none_of(parts.begin(), parts.end(), [&](const BodyPart& part) { return part.name == name; })) {
-        notes += fmt::format("spherechain: warning: {}: a rule names '{}', which this character has not\n",
-                             options.keep, name);
-      }
-    }
-    for (const ClipFrames& clip : animated.clips()) {
-      if (clip.clip == nullptr || clip.clip->in_file < 0 || animated.asset()->bone_count() == 0) {
-        throw Error(ExitCode::kFile, options.input + (clip.clip == nullptr     ? ": has no clips to mend"
-                                                      : clip.clip->in_file < 0 ? ": is no glTF (export it as .glb)"
-                                                                               : ": no bones move it"));
-      }
-      const auto start = std::chrono::steady_clock::now();
-      const auto leave = [&](const MendedEvent& event) {
-        const Event known = event_of(event, parts);
-        return config.rules.leaves_out(known) || !config.rules.excuse(known).empty();
-      };
-      Mend mend = mend_clip(animated, baked.roles, clip, {options.budget, options.margin}, leave,
-                            [&](const std::string& doing) { progress.show(clip.name + ": " + doing); });
-      const TurnedClip turned(animated.character().rig, *clip.clip, clip.fps, clip.own_count, mend.joints);
-      const std::vector<RotationTrack> tracks = turned_tracks(turned, mend.turns, mend.in_window);
-      bytes = with_tracks(bytes, options.input, animated.character().rig, clip.clip->in_file, tracks);
-      const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-      clips.push_back({clip.name, std::move(mend), seconds.count()});
-    }
-    write_atomically(options.output, bytes);
+    fixed = fix_character(job, [&](const std::string& doing) { progress.show(doing); });
+    write_atomically(options.output, fixed.bytes);
     if (!json.empty()) {
       progress.show("report");
       make_folder(options.report);
-      write_atomically(json, fix_json(clips, parts));
-      write_pages(options, page, baked, animated, clips);
+      write_atomically(json, fix_json(fixed.clips, fixed.parts));
+      write_pages(options, page, fixed);
     }
-    text = fix_text(clips, parts);
+    if (writes_bvh) {
+      progress.show("carrying over again");
+      again = fmt::format("carried over again, the skin is within {:.2f} mm of what was mended\n",
+                          carried_over_again(fixed, options.input, options.output));
+    }
   }
-  fmt::print(stderr, "{}", notes);
-  fmt::print("{}", text);
-  fmt::print("wrote {}\n", options.output);
+  for (const std::string& part : fixed.unused_parts) {
+    fmt::print(stderr, "spherechain: warning: {}: a rule names '{}', which this character has not\n", options.keep,
+               part);
+  }
+  fmt::print("{}{}wrote {}\n", fix_text(fixed.clips, fixed.parts), again, options.output);
   if (!json.empty()) fmt::print("wrote {}: fix.json, and a page of each clip that changed\n", options.report);
-  return leaves_faults(clips) ? ExitCode::kTargetMissed : ExitCode::kDone;
+  return leaves_faults(fixed.clips) ? ExitCode::kTargetMissed : ExitCode::kDone;
 }
 
 }  // namespace spherechain::baker

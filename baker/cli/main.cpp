@@ -198,10 +198,19 @@ int main(int argc, char** argv) {
 
   FixOptions fix;
   CLI::App* fix_command = app.add_subcommand("fix", "Turn joints of a clip so that its body parts leave each other");
-  add_name(*fix_command, "INPUT", fix.input, "Character with clips (.glb)")->required();
-  add_output(*fix_command, "-o,--output", fix.output, "The same with the clips mended (.glb)")->required();
-  add_name(*fix_command, "--clip", fix.clip, "The clip to mend: its name or number (default: all)");
+  add_name(*fix_command, "INPUT", fix.input, "Character (.glb)")->required();
+  add_output(*fix_command, "-o,--output", fix.output,
+             "The same with the clips mended (.glb); with --motion TAKE.bvh also that recording mended (.bvh)")
+      ->required();
+  CLI::Option* clip = add_name(*fix_command, "--clip", fix.clip, "The clip to mend: its name or number (default: all)");
+  add_name(*fix_command, "--motion", fix.motion,
+           "Recording (BVH, FBX, Collada, glTF) to carry over and mend, in place of the character's own clips")
+      ->excludes(clip);
   add_name(*fix_command, "--keep", fix.keep, "Rules, as check --config has them: what is fine as it is");
+  add_name(*fix_command, "--baseline", fix.baseline, "What check --accept wrote: faults that are accepted are left");
+  fix_command->add_option("--parts", fix.parts, "Body parts, with commas between: only faults of these are mended")
+      ->delimiter(',')
+      ->check(refuse_empty);
   fix_command->add_option("--budget", fix.budget, "Degrees that an event may turn a joint, at most")
       ->check(CLI::Range(0.1, 180.0))
       ->check(refuse_nan)
@@ -252,6 +261,8 @@ int main(int argc, char** argv) {
   add_continuous(*check_command, check.continuous);
   check_command->add_option("--jobs", check.jobs, "Processes at a time (default: one for each core)")
       ->check(CLI::Range(1, 1024));
+  add_output(*check_command, "--fix", check.fix,
+             "Folder: mend each character with faults into it, as fix does, with these rules and this baseline");
   check_command->add_flag("--folds", check.folds, "List folds, shells and contacts as at rest, too");
   add_name(*check_command, "--cache", check.cache, "Folder that keeps results: what has not changed is not computed");
   add_name(*check_command, "--shard", check.shard, "I/N: check the I-th of N parts, for --merge");

@@ -57,6 +57,7 @@ std::string clip_text(const MendedClip& clip, const std::vector<BodyPart>& parts
   }
   std::string out = fmt::format("{}: {} events", clip.name, clip.mend.events.size());
   for (const auto& [outcome, count] : counts) out += fmt::format(", {} {}", count, outcome_name(outcome));
+  if (clip.others > 0) out += fmt::format("; {} of other parts", clip.others);
   const Comparison& compared = clip.mend.compared;
   if (compared.feet_mm >= 0.005) out += fmt::format("; feet move {:.2f} mm", compared.feet_mm);
   const std::vector<double> turns = turns_of(clip);
@@ -85,6 +86,7 @@ std::string fix_json(const std::vector<MendedClip>& clips, const std::vector<Bod
     out["clips"].push_back(
         {{"clip", clip.name},
          {"events", std::move(events)},
+         {"events_of_other_parts", clip.others},
          {"turn_degrees", {{"median", quantile(turns, 0.5)}, {"p90", quantile(turns, 0.9)}, {"max", most_of(clip)}}},
          {"feet_mm", clip.mend.compared.feet_mm},
          {"feet_degrees", clip.mend.compared.feet_degrees},
@@ -103,13 +105,30 @@ std::string fix_text(const std::vector<MendedClip>& clips, const std::vector<Bod
   std::string out;
   int clean = 0;
   for (const MendedClip& clip : clips) {
-    if (clip.mend.events.empty()) {
+    if (clip.mend.events.empty() && clip.others == 0) {
       ++clean;
     } else {
       out += clip_text(clip, parts);
     }
   }
   return out + (clean > 0 ? fmt::format("{} of {} clips have no event: left as they are\n", clean, clips.size()) : "");
+}
+
+std::string fix_line(const std::vector<MendedClip>& clips) {
+  std::map<Outcome, int> counts;
+  std::size_t events = 0;
+  for (const MendedClip& clip : clips) {
+    events += clip.mend.events.size();
+    for (const MendedEvent& event : clip.mend.events) ++counts[event.outcome];
+  }
+  std::string out =
+      fmt::format("{} clip{}, {} event{}", clips.size(), clips.size() == 1 ? "" : "s", events, events == 1 ? "" : "s");
+  const char* separator = ": ";
+  for (const auto& [outcome, count] : counts) {
+    out += fmt::format("{}{} {}", separator, count, outcome_name(outcome));
+    separator = ", ";
+  }
+  return out;
 }
 
 bool leaves_faults(const std::vector<MendedClip>& clips) {

@@ -11,13 +11,17 @@ namespace spherechain::baker {
 
 struct MendedClip {
   std::string name;
-  Mend mend;
-  double seconds;  // that it took
+  Mend mend;           // its events are those that were asked for
+  double seconds = 0;  // that it took
+  int others = 0;      // events that were not asked for
 };
 
 // The file of `fix --report`, and the same for people.
 std::string fix_json(const std::vector<MendedClip>& clips, const std::vector<BodyPart>& parts);
 std::string fix_text(const std::vector<MendedClip>& clips, const std::vector<BodyPart>& parts);
+
+// The same of a whole character in a line: "3 clips, 7 events: 6 cleared, 1 fold".
+std::string fix_line(const std::vector<MendedClip>& clips);
 
 // Whether an event is left that could have been expected to be cleared.
 bool leaves_faults(const std::vector<MendedClip>& clips);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -93,11 +94,22 @@ void take_apart(ordered_json& node, const Node& parts) {
   node["scale"] = {parts.scale.x(), parts.scale.y(), parts.scale.z()};
 }
 
+const char* path_name(ChannelPath path) {
+  return path == ChannelPath::kTranslation ? "translation" : path == ChannelPath::kRotation ? "rotation" : "scale";
+}
+
+const char* interpolation_name(Interpolation interpolation) {
+  return interpolation == Interpolation::kStep     ? "STEP"
+         : interpolation == Interpolation::kLinear ? "LINEAR"
+                                                   : "CUBICSPLINE";
+}
+
+std::vector<float> to_floats(const std::vector<double>& numbers) { return {numbers.begin(), numbers.end()}; }
+
 }  // namespace
 
-std::vector<RotationTrack> turned_tracks(const TurnedClip& clip, const Turns& turns,
-                                         const std::vector<char>& in_window) {
-  std::vector<RotationTrack> out;
+std::vector<Channel> turned_channels(const TurnedClip& clip, const Turns& turns, const std::vector<char>& in_window) {
+  std::vector<Channel> out;
   const auto turn_at = [&](std::size_t joint, double frame) {
     const int first = std::clamp(static_cast<int>(frame), 0, clip.frames() - 1);
     const int next = std::min(first + 1, clip.frames() - 1);
@@ -131,7 +143,7 @@ std::vector<RotationTrack> turned_tracks(const TurnedClip& clip, const Turns& tu
       const bool is_wanted = (channel != nullptr && !is_linear) || is_open(f - 1) || is_open(f) || is_open(f + 1);
       if (is_wanted && !is_near) times.insert(time);
     }
-    RotationTrack track{node.in_file, {}, {}};
+    Channel track{ChannelPath::kRotation, clip.joints()[j].node, Interpolation::kLinear, {}, {}};
     Eigen::Quaterniond before(0, 0, 0, 0);
     for (const float time : times) {
       Eigen::Quaterniond rotation =
@@ -140,38 +152,48 @@ std::vector<RotationTrack> turned_tracks(const TurnedClip& clip, const Turns& tu
       if (turn.norm() > kUnturned) rotation = turned(rotation, turn).normalized();
       if (rotation.dot(before) < 0) rotation.coeffs() = -rotation.coeffs();
       before = rotation;
-      track.times.push_back(time);
-      for (const double x : {rotation.x(), rotation.y(), rotation.z(), rotation.w()}) {
-        track.rotations.push_back(static_cast<float>(x));
-      }
+      track.times.push_back(double{time});
+      track.values.insert(track.values.end(), rotation.coeffs().begin(), rotation.coeffs().end());
     }
     out.push_back(std::move(track));
   }
   return out;
 }
 
-std::string with_tracks(const std::string& bytes, const std::string& name, const SourceRig& rig, int animation,
-                        const std::vector<RotationTrack>& tracks) {
-  Glb glb = read_glb(bytes, name);
-  if (tracks.empty()) return bytes;
-  ordered_json& target = glb.json["animations"][static_cast<std::size_t>(animation)];
-  for (const RotationTrack& track : tracks) {
-    const auto is_it = [&](const ordered_json& channel) {
-      const ordered_json& to = channel["target"];
-      return to.value("node", -1) == track.node && to.value("path", "") == "rotation";
+void check_glb(const std::string& bytes, const std::string& file) { read_glb(bytes, file); }
+
+std::string with_channels(const std::string& bytes, const std::string& file, const SourceRig& rig, int animation,
+                          const std::string& clip_name, const std::vector<Channel>& channels) {
+  Glb glb = read_glb(bytes, file);
+  if (channels.empty()) return bytes;
+  ordered_json& animations = glb.json["animations"];
+  if (animation < 0) {
+    animation = static_cast<int>(animations.size());
+    animations.push_back(
+        {{"name", clip_name}, {"samplers", ordered_json::array()}, {"channels", ordered_json::array()}});
+  }
+  ordered_json& target = animations[static_cast<std::size_t>(animation)];
+  std::map<std::vector<double>, int> inputs;  // one for all that have the same times
+  for (const Channel& channel : channels) {
+    const Node& node = rig.nodes[channel.target];
+    const char* const path = path_name(channel.path);
+    take_apart(glb.json["nodes"][static_cast<std::size_t>(node.in_file)], node);
+    const auto is_it = [&](const ordered_json& one) {
+      const ordered_json& to = one["target"];
+      return to.value("node", -1) == node.in_file && to.value("path", "") == path;
     };
-    for (const Node& node : rig.nodes) {
-      if (node.in_file == track.node) take_apart(glb.json["nodes"][static_cast<std::size_t>(track.node)], node);
-    }
-    const int input = add_accessor(glb, track.times, "SCALAR", 1),
-              output = add_accessor(glb, track.rotations, "VEC4", 4);
-    target["samplers"].push_back({{"input", input}, {"output", output}, {"interpolation", "LINEAR"}});
+    const auto [input, is_new] = inputs.try_emplace(channel.times);
+    if (is_new) input->second = add_accessor(glb, to_floats(channel.times), "SCALAR", 1);
+    const bool is_turn = channel.path == ChannelPath::kRotation;
+    const int output = add_accessor(glb, to_floats(channel.values), is_turn ? "VEC4" : "VEC3", is_turn ? 4 : 3);
+    target["samplers"].push_back(
+        {{"input", input->second}, {"output", output}, {"interpolation", interpolation_name(channel.interpolation)}});
     const std::size_t sampler = target["samplers"].size() - 1;
     const auto found = std::find_if(target["channels"].begin(), target["channels"].end(), is_it);
     if (found != target["channels"].end()) {
       (*found)["sampler"] = sampler;
     } else {
-      target["channels"].push_back({{"sampler", sampler}, {"target", {{"node", track.node}, {"path", "rotation"}}}});
+      target["channels"].push_back({{"sampler", sampler}, {"target", {{"node", node.in_file}, {"path", path}}}});
     }
   }
   if (!glb.json.contains("buffers")) glb.json["buffers"].push_back(ordered_json::object());

@@ -8,21 +8,18 @@
 
 namespace spherechain::baker {
 
-// A joint's rotations from its first key to its last, in place of those that a clip has.
-struct RotationTrack {
-  int node;                      // the file's number
-  std::vector<float> times;      // seconds, ascending
-  std::vector<float> rotations;  // x y z w a key; linear between keys
-};
+// Channels of rotations, linear between keys, in place of those that a clip has: the joints' own with the turns on top.
+// Keys outside of the windows stay as they are; in a window there is one at each frame too. None for what no turn
+// moves.
+std::vector<Channel> turned_channels(const TurnedClip& clip, const Turns& turns, const std::vector<char>& in_window);
 
-// The joint's track with the turns on top: keys outside of the windows stay as they are; in a window there is one at
-// each frame too. None where no turn moves it.
-std::vector<RotationTrack> turned_tracks(const TurnedClip& clip, const Turns& turns,
-                                         const std::vector<char>& in_window);
+// Throws Error(kFile) where the bytes are no GLB.
+void check_glb(const std::string& bytes, const std::string& file);
 
-// A GLB in which these tracks take the place of an animation's rotations. What it had is there, byte for byte; new
-// numbers come after it. `name` is for messages. Throws Error(kFile) where `glb` is none.
-std::string with_tracks(const std::string& glb, const std::string& name, const SourceRig& rig, int animation,
-                        const std::vector<RotationTrack>& tracks);
+// A GLB in which these channels take the place of an animation's, or, where `animation` is -1, are a new one called
+// `clip_name`. What it had is there, byte for byte; new numbers come after it. `file` is for messages. Throws
+// Error(kFile) where `glb` is none.
+std::string with_channels(const std::string& glb, const std::string& file, const SourceRig& rig, int animation,
+                          const std::string& clip_name, const std::vector<Channel>& channels);
 
 }  // namespace spherechain::baker

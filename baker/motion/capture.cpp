@@ -223,6 +223,10 @@ std::vector<Affine> CaptureMotion::joints_at(double t) const {
   return out;
 }
 
+Eigen::Matrix3d CaptureMotion::source_rotation(Index joint, const Eigen::Matrix3d& turned) const {
+  return to_body_.transpose() * turned * followers_[joint].from_rest.transpose();
+}
+
 // So much that in all but the lowest tenth of the capture no foot is lower than at rest.
 double CaptureMotion::lift() const {
   std::vector<double> clearances;

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <filesystem>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -48,6 +47,16 @@ class CaptureMotion : public Motion {
   double duration() const override { return capture_.clip.duration; }
   double rate() const override;
 
+  const Capture& capture() const { return capture_; }
+  const CaptureBody& body() const { return body_; }
+  // How each of the body's joints has moved since rest.
+  std::vector<Affine> joints_at(double t) const;
+  const std::array<Index, 2>& hips() const { return hips_; }  // nodes of the capture
+  // The node of the capture that a joint turns with, -1 none; and how that node is turned in its own space when the
+  // joint is turned so from rest.
+  int source(Index joint) const { return followers_[joint].source; }
+  Eigen::Matrix3d source_rotation(Index joint, const Eigen::Matrix3d& turned) const;
+
  private:
   // The node of the capture that a joint turns with; without one it turns with its parent.
   struct Follower {
@@ -56,7 +65,6 @@ class CaptureMotion : public Motion {
   };
   void align(const RoleJoints& reference, const std::vector<Affine>& world, const Eigen::Matrix3d& axes);
   double lift() const;
-  std::vector<Affine> joints_at(double t) const;
 
   Capture capture_;
   CaptureBody body_;
@@ -66,11 +74,5 @@ class CaptureMotion : public Motion {
   Vec3 anchor_, start_;        // the middle of the hips: the body's at rest, the capture's when it starts
   double stride_, lift_ = 0;   // the body's leg length over the capture's; what brings the feet down
 };
-
-// Plays `file` on a character with a skin of its own. Where its skeleton is the skin's own, nodes are matched by name,
-// else by role.
-std::unique_ptr<Motion> capture_motion(const std::filesystem::path& file, const SourceRig& rig,
-                                       const std::vector<Vec3>& rest, const BodyFrame& frame,
-                                       const std::string& character);
 
 }  // namespace spherechain::baker

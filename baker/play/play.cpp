@@ -6,6 +6,7 @@
 
 #include "mesh/error.h"
 #include "motion/capture.h"
+#include "motion/carried_motion.h"
 #include "motion/clip.h"
 #include "motion/poses.h"
 #include "motion/sequence.h"
@@ -92,6 +93,13 @@ void AnimatedAsset::play(const MotionChoice& motion, const FrameChoice& frames) 
   frames_ = clips.empty() ? frames_of(motion_.get(), frames) : frames_of(character_.rig, clips, frames);
 }
 
+void AnimatedAsset::play_clip(const Clip& clip, const FrameChoice& frames) {
+  fps_ = frames.fps;
+  motion_.reset();
+  use_skin();
+  frames_ = frames_of(character_.rig, {&clip}, frames);
+}
+
 void AnimatedAsset::play_poses(const std::string& file) {
   const std::vector<Joint> joints = joints_of(file_);
   if (joints.empty()) {
@@ -105,7 +113,7 @@ void AnimatedAsset::play_poses(const std::string& file) {
 // On the source's own skeleton, where it has one.
 void AnimatedAsset::play_capture(const std::string& file) {
   if (!character_.rig.bones.empty()) {
-    motion_ = capture_motion(file, character_.rig, character_.source_positions, frame(), source_name_);
+    motion_ = carried_motion(file, character_.rig, character_.source_positions, frame(), source_name_);
     return use_skin();
   }
   const std::vector<Joint> joints = joints_of(file_);

@@ -36,6 +36,8 @@ class AnimatedAsset {
 
   // Plays another motion in place of that one. Throws Error(kFile).
   void play(const MotionChoice& motion, const FrameChoice& frames);
+  // A clip of the source's nodes that is not the source's own; it must outlive this.
+  void play_clip(const Clip& clip, const FrameChoice& frames);
 
   // More frames between those that play now (motion_frames.h).
   void put_between(const std::vector<std::vector<double>>& shares) { frames_ = with_frames_between(frames_, shares); }

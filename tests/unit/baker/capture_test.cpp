@@ -12,6 +12,7 @@
 
 #include "human.h"
 #include "mesh/error.h"
+#include "motion/carried_motion.h"
 #include "motion/clip.h"
 #include "rigged_human.h"
 #include "temporary_folder.h"
@@ -367,7 +368,7 @@ TEST_CASE("a character with a skin of its own is moved by the roles of its bones
 TEST_CASE("a motion of the character's very skeleton is played by the names of its nodes, not by roles") {
   const fs::path file = kModels / "X/Testwuson.X";  // no biped
   const Character wuson = import_character(file);
-  const auto motion = capture_motion(file, wuson.rig, wuson.source_positions, BodyFrame(), "wuson");
+  const auto motion = carried_motion(file, wuson.rig, wuson.source_positions, BodyFrame(), "wuson");
   const ClipMotion own(wuson.rig, {&wuson.rig.clips[1]});  // Walk, the longest
   CHECK(motion->duration() == own.duration());
   for (const double t : {0.0, 0.4, 1.0}) {
@@ -375,7 +376,7 @@ TEST_CASE("a motion of the character's very skeleton is played by the names of i
     for (std::size_t i = 0; i < a.size(); ++i) CHECK(a[i].isApprox(b[i], 1e-9));
   }
   CHECK_THROWS_WITH_AS(
-      capture_motion(kModels / "BVH/01_03.bvh", wuson.rig, wuson.source_positions, BodyFrame(), "wuson.X"),
+      carried_motion(kModels / "BVH/01_03.bvh", wuson.rig, wuson.source_positions, BodyFrame(), "wuson.X"),
       doctest::Contains("wuson.X: its skeleton is not that of a biped"), Error);
 }
 

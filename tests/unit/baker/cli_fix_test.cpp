@@ -15,57 +15,12 @@
 #include "temporary_folder.h"
 #include "tool.h"
 #include "two_shapes.h"
+#include "wall_and_arm.h"
 
 using namespace spherechain::baker;
 using nlohmann::json;
 
 namespace {
-
-constexpr double kMargin = 0.0015;  // metres: the tool's
-
-int mesh_of(Glb& glb, const Shape& shape, double x, double y) {
-  std::vector<float> positions;
-  std::vector<std::uint32_t> corners;
-  for (const auto& p : shape.positions) {
-    positions.insert(positions.end(),
-                     {static_cast<float>(p[0] + x), static_cast<float>(p[1] + y), static_cast<float>(p[2])});
-  }
-  for (const auto& triangle : shape.triangles) corners.insert(corners.end(), triangle.begin(), triangle.end());
-  const int at = glb.accessor(positions, "VEC3");
-  glb.json["meshes"].push_back(
-      {{"primitives", {{{"attributes", {{"POSITION", at}}}, {"indices", glb.accessor(corners, "SCALAR")}}}}});
-  return static_cast<int>(glb.json["meshes"].size()) - 1;
-}
-
-// A wall, and on it an arm that is stretched out at rest. In the clip it hangs down beside the wall, and would be as
-// far from it as the margin if it hung straight; in each frame it is turned so many degrees towards the wall.
-std::string wall_and_arm(const std::vector<double>& degrees) {
-  Glb glb;
-  const int wall = mesh_of(glb, box(0.5, 1, 1), 0, 0), arm = mesh_of(glb, box(0.1, 0.4, 0.1), 0, -0.4);
-  const int far = mesh_of(glb, box(0.1, 0.1, 0.1), 2, 0);  // between the two: neighbours would fold
-  glb.json["nodes"] = {{{"name", "wall"}, {"mesh", wall}, {"children", {1}}},
-                       {{"name", "block"}, {"mesh", far}, {"translation", {3, 0.5, 0}}, {"children", {2}}},
-                       {{"name", "paddle"},
-                        {"mesh", arm},
-                        {"rotation", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}},
-                        {"extras", {{"mine", 7}}}}};
-  std::vector<float> times, rotations, places;
-  for (std::size_t f = 0; f < degrees.size(); ++f) {
-    const double half = -degrees[f] * std::numbers::pi / 360;
-    times.push_back(static_cast<float>(f) / 30);
-    rotations.insert(rotations.end(), {0, 0, static_cast<float>(std::sin(half)), static_cast<float>(std::cos(half))});
-    places.insert(places.end(), {static_cast<float>(0.6 + kMargin), 0.5F, 0});
-  }
-  const int input = glb.accessor(times, "SCALAR");
-  glb.json["animations"] = {{{"name", "swing"},
-                             {"samplers",
-                              {{{"input", input}, {"output", glb.accessor(rotations, "VEC4")}},
-                               {{"input", input}, {"output", glb.accessor(places, "VEC3")}}}},
-                             {"channels",
-                              {{{"sampler", 0}, {"target", {{"node", 2}, {"path", "rotation"}}}},
-                               {{"sampler", 1}, {"target", {{"node", 1}, {"path", "translation"}}}}}}}};
-  return glb.bytes();
-}
 
 struct Fixed {
   tool::Run run;

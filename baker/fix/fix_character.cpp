@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "fix/fix_character.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+
+#include "check/run.h"
+#include "fix/turned_recording.h"
+#include "fix/write_clip.h"
+#include "motion/carried_motion.h"
+#include "pipeline/pipeline.h"
+
+namespace spherechain::baker {
+namespace {
+
+namespace fs = std::filesystem;
+
+// "b/c.glb" and "c.glb" are ends of "/a/b/c.glb".
+bool is_end_of(const std::string& end, const fs::path& path) {
+  const fs::path tail(end), whole = fs::absolute(path).lexically_normal();
+  const auto count = std::distance(tail.begin(), tail.end()), all = std::distance(whole.begin(), whole.end());
+  return count > 0 && count <= all && std::equal(tail.begin(), tail.end(), std::prev(whole.end(), count));
+}
+
+bool is_still(const Mend& mend) {
+  return std::all_of(mend.turns.begin(), mend.turns.end(), [](const Vec3& turn) { return turn.isZero(0); });
+}
+
+Clip with_rotations(Clip clip, const std::vector<Channel>& channels) {
+  for (const Channel& channel : channels) {
+    const auto found = std::find_if(clip.channels.begin(), clip.channels.end(), [&](const Channel& own) {
+      return own.path == ChannelPath::kRotation && own.target == channel.target;
+    });
+    if (found == clip.channels.end()) {
+      clip.channels.push_back(channel);
+    } else {
+      *found = channel;
+    }
+  }
+  return clip;
+}
+
+class Fixer {
+ public:
+  // `bytes`: the character's file, where that is written.
+  Fixer(const FixJob& job, std::string bytes, const Bake& baked, const std::function<void(const std::string&)>& told)
+      : job_(job), roles_(baked.roles), told_(told) {
+    out_.bytes = std::move(bytes);
+    out_.asset.assign(reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size());
+    animated_.emplace(OpenAsset(out_.asset, job.input), job.input, job.input, MotionChoice{{}, job.clip, {}},
+                      FrameChoice{0, 0});
+    out_.parts = parts_of(animated_->asset()).parts;
+    const auto is_part = [&](const std::string& name) {
+      return std::any_of(out_.parts.begin(), out_.parts.end(), [&](const BodyPart& part) { return part.name == name; });
+    };
+    for (const std::string& name : job.config.rules.named_parts()) {
+      if (!is_part(name)) out_.unused_parts.push_back(name);
+    }
+    for (const std::string& name : job.parts) {
+      if (!is_part(name)) fail_part(name);
+    }
+  }
+
+  FixedCharacter run() {
+    const bool has_own = job_.recordings.empty() || job_.numbers;
+    if (has_own && rig().clips.empty()) fail("has no clips to mend (--motion brings one)");
+    if (animated_->asset()->bone_count() == 0 || rig().bones.empty()) fail("no bones move it");
+    if (has_own) fix_own();
+    for (const std::string& recording : job_.recordings) fix_recording(recording);
+    return std::move(out_);
+  }
+
+ private:
+  const SourceRig& rig() const { return animated_->character().rig; }
+  [[noreturn]] void fail(const std::string& what) const { throw Error(ExitCode::kFile, job_.input + ": " + what); }
+  [[noreturn]] void fail_part(const std::string& name) const {
+    std::string all;
+    for (const BodyPart& part : out_.parts) all += (all.empty() ? "" : ", ") + part.name;
+    throw Error(ExitCode::kUsage, "--parts: " + job_.input + " has no '" + name + "' (it has " + all + ")");
+  }
+  void check_gltf(bool is_gltf) const {
+    if (!is_gltf) fail("is no glTF (export it as .glb)");
+  }
+
+  void fix_own() {
+    const std::vector<std::string> names = unique_clip_names(rig());
+    const std::vector<ClipFrames> clips = animated_->clips();
+    for (const ClipFrames& clip : clips) {
+      const auto number = static_cast<std::size_t>(clip.clip - rig().clips.data());
+      const bool is_wanted =
+          !job_.numbers || std::find(job_.numbers->begin(), job_.numbers->end(), number) != job_.numbers->end();
+      if (!is_wanted) continue;
+      check_gltf(clip.clip->in_file >= 0);
+      const std::vector<Channel> turned =
+          mend(clip, roles_, [&](const KnownEvent& event) { return event.clip == names[number]; });
+      out_.bytes = with_channels(out_.bytes, job_.input, rig(), clip.clip->in_file, {}, turned);
+    }
+  }
+
+  void fix_recording(const std::string& recording) {
+    told_("carrying over");
+    const auto carried =
+        carried_motion(recording, rig(), animated_->character().source_positions, animated_->frame(), job_.input);
+    Clip before = carried->clip();
+    before.name = free_name(fs::path(recording).stem().string());
+    animated_->play_clip(before, {0, 0});
+    const ClipFrames clip = animated_->clips()[0];
+    const Roles roles = job_.is_recording_written ? recorded_roles(*carried) : roles_;
+    const std::vector<Channel> turned =
+        mend(clip, roles, [&](const KnownEvent& event) { return is_end_of(event.clip, recording); });
+    const Clip& after = out_.after.back();
+    if (job_.is_recording_written) {
+      out_.bytes = turned_recording(*carried, rig(), before, after, out_.clips.back().mend.in_window, clip.fps);
+      return;
+    }
+    for (const Channel& channel : after.channels) check_gltf(rig().nodes[channel.target].in_file >= 0);
+    out_.bytes = with_channels(out_.bytes, job_.input, rig(), -1, after.name, after.channels);
+  }
+
+  std::string free_name(const std::string& wanted) {
+    std::string name = wanted;
+    const auto is_taken = [&](const Clip& clip) { return clip.name == name; };
+    const auto any = [&](const std::vector<Clip>& clips) { return std::any_of(clips.begin(), clips.end(), is_taken); };
+    for (int n = 2; any(rig().clips) || any(out_.before); ++n) name = fmt::format("{} ({})", wanted, n);
+    return name;
+  }
+
+  // Of the joints that the recording has, too: no other may turn.
+  Roles recorded_roles(const CarriedMotion& carried) const {
+    const std::vector<Index> recorded = carried.recorded_nodes();
+    if (recorded.empty()) fail("none of its joints is in the recording alone (write a .glb)");
+    Roles out = roles_;
+    for (Index n = 0; n < out.of_node.size(); ++n) {
+      if (std::find(recorded.begin(), recorded.end(), n) == recorded.end()) out.of_node[n].role.clear();
+    }
+    return out;
+  }
+
+  template <typename IsOfClip>
+  std::vector<Channel> mend(const ClipFrames& clip, const Roles& roles, const IsOfClip& is_of_clip) {
+    const auto start = std::chrono::steady_clock::now();
+    std::vector<const KnownEvent*> accepted;
+    for (const KnownEvent& event : job_.baseline.events) {
+      const bool is_it = is_end_of(event.character, job_.input) && is_of_clip(event);
+      if (is_it && event.state == EventState::kAccepted) accepted.push_back(&event);
+    }
+    const auto leave = [&](const MendedEvent& mended) {
+      const Event event = event_of(mended);
+      return !is_asked_for(event) || job_.config.rules.leaves_out(event) || !job_.config.rules.excuse(event).empty() ||
+             std::any_of(accepted.begin(), accepted.end(), [&](const KnownEvent* known) {
+               return is_same(*known, event, clip.fps) && !is_worse(*known, event);
+             });
+    };
+    MendedClip mended{clip.name, mend_clip(*animated_, roles, clip, job_.mend, leave,
+                                           [&](const std::string& doing) { told_(clip.name + ": " + doing); })};
+    mended.others = static_cast<int>(
+        std::erase_if(mended.mend.events, [&](const MendedEvent& event) { return !is_asked_for(event_of(event)); }));
+    std::vector<Channel> turned;
+    if (!is_still(mended.mend)) {
+      const TurnedClip with_turns(rig(), *clip.clip, clip.fps, clip.own_count, mended.mend.joints);
+      turned = turned_channels(with_turns, mended.mend.turns, mended.mend.in_window);
+    }
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+    mended.seconds = seconds.count();
+    out_.clips.push_back(std::move(mended));
+    out_.before.push_back(*clip.clip);
+    out_.after.push_back(with_rotations(*clip.clip, turned));
+    return turned;
+  }
+
+  Event event_of(const MendedEvent& mended) const {
+    Event event;
+    event.parts = {out_.parts[mended.part_a].name, out_.parts[mended.part_b].name};
+    event.kind = mended.kind;
+    event.from = mended.from;
+    event.to = mended.to;
+    event.depth_mm = mended.depth_before;
+    return event;
+  }
+
+  bool is_asked_for(const Event& event) const {
+    return job_.parts.empty() || std::any_of(job_.parts.begin(), job_.parts.end(), [&](const std::string& part) {
+             return part == event.parts[0] || part == event.parts[1];
+           });
+  }
+
+  const FixJob& job_;
+  const Roles& roles_;
+  const std::function<void(const std::string&)>& told_;
+  std::optional<AnimatedAsset> animated_;
+  FixedCharacter out_;
+};
+
+}  // namespace
+
+FixedCharacter fix_character(const FixJob& job, const std::function<void(const std::string&)>& told) {
+  std::string bytes;
+  if (!job.is_recording_written) {
+    bytes = read_file(job.input);
+    check_glb(bytes, job.input);
+  }
+  const Bake baked = bake(job.input, job.config.bake, told);
+  return Fixer(job, std::move(bytes), baked, told).run();
+}
+
+double carried_over_again(const FixedCharacter& fixed, const std::string& input, const std::string& recording) {
+  const AnimatedAsset animated(OpenAsset(fixed.asset, input), input, input, {}, {});
+  const Character& character = animated.character();
+  const SourceRig& rig = character.rig;
+  const auto carried = carried_motion(recording, rig, character.source_positions, animated.frame(), input);
+  constexpr std::size_t kVertices = 500;
+  std::vector<Vec3> sample_positions;
+  std::vector<VertexWeights> weights;
+  const std::size_t step = std::max<std::size_t>(1, character.source_positions.size() / kVertices);
+  for (std::size_t v = 0; v < character.source_positions.size(); v += step) {
+    sample_positions.push_back(character.source_positions[v]);
+    weights.push_back(rig.weights[v]);
+  }
+  const Clip& wanted = fixed.after.back();
+  double farthest = 0;
+  const double fps = carried->rate();
+  for (int frame = 0; frame <= static_cast<int>(carried->duration() * fps); ++frame) {
+    const double seconds = frame / fps, t = carried->duration() > 0 ? seconds / carried->duration() : 0;
+    const std::vector<Vec3> a = deform(sample_positions, weights, carried->at(t).bones),
+                            b = deform(sample_positions, weights, sample(rig, wanted, seconds).bones);
+    for (std::size_t v = 0; v < a.size(); ++v) farthest = std::max(farthest, (a[v] - b[v]).norm());
+  }
+  return farthest * mm_per_unit(animated.asset());
+}
+
+}  // namespace spherechain::baker

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "motion/capture.h"
+
+namespace spherechain::baker {
+
+// A recording on a character's own skeleton: as a clip of the character's nodes, and from these back to the
+// recording's.
+class CarriedMotion : public Motion {
+ public:
+  virtual const Capture& capture() const = 0;
+
+  // What the character's nodes do, with keys at the recording's frames; paths that stay as at rest have no channel.
+  // Throws Error(kFile) where no rotations and translations of nodes give the motion: bones are sheared.
+  virtual Clip clip() const = 0;
+
+  // The character's nodes whose turns the recording can take over.
+  virtual std::vector<Index> recorded_nodes() const = 0;
+
+  // The rotations of the recording's nodes, each in its parent's space, at which the character's nodes are turned as
+  // in `world` (world_at). What no node of the character follows stays in its parent's space as it is.
+  virtual std::vector<Eigen::Quaterniond> recorded_rotations(double seconds,
+                                                             const std::vector<Affine>& world) const = 0;
+};
+
+// Plays `file` on a character with a skin of its own, whose `rig` must outlive it. Where its skeleton is the skin's
+// own, nodes are matched by name, else by role. Throws Error(kFile) as read_capture, body_of and CaptureMotion do.
+std::unique_ptr<CarriedMotion> carried_motion(const std::filesystem::path& file, const SourceRig& rig,
+                                              const std::vector<Vec3>& rest, const BodyFrame& frame,
+                                              const std::string& character);
+
+}  // namespace spherechain::baker

@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// `spherechain check --fix`: the characters of a library that have faults, mended into a folder.
+#include <doctest/doctest.h>
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "temporary_folder.h"
+#include "tool.h"
+#include "wall_and_arm.h"
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::vector<double> kFaulty(30, 5), kClean(30, -10);
+
+struct FixedLibrary {
+  TemporaryFolder folder;
+  fs::path mended = folder.path / "mended";
+  FixedLibrary() {
+    fs::create_directories(folder.path / "lib/sub");
+    folder.write("lib/clean.glb", wall_and_arm(kClean));
+    folder.write("lib/sub/hero.glb", wall_and_arm(kFaulty));
+  }
+  tool::Run check(const std::string& more, const std::string& to = "mended") const {
+    return tool::run("check " + (folder.path / "lib").string() + " -o " + (folder.path / "report").string() +
+                     " --cache " + (folder.path / "cache").string() + " --fix " + (folder.path / to).string() + " " +
+                     more);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("check --fix mends the characters with faults, and says what kept it from another") {
+  const FixedLibrary library;
+  // The same as hero.glb, in two files: no GLB.
+  const std::string glb = wall_and_arm(kFaulty);
+  json text = json_of(glb);
+  text["buffers"][0]["uri"] = "loose.bin";
+  std::uint32_t size = 0;
+  std::memcpy(&size, glb.data() + 12, 4);
+  library.folder.write("lib/loose.bin", glb.substr(20 + size + 8));
+  library.folder.write("lib/loose.gltf", text.dump());
+  const tool::Run run = library.check("");
+  CHECK_MESSAGE(run.code == 6, run.error);  // the library is as it was
+  CHECK(run.out.find("not mended " + (library.folder.path / "lib/loose.gltf").string() + ": is no binary glTF") !=
+        std::string::npos);
+  CHECK(run.out.find("mended " + (library.mended / "sub/hero.glb").string() + ": 1 clip, 1 event: 1 cleared\n") !=
+        std::string::npos);
+  CHECK(!fs::exists(library.mended / "clean.glb"));
+  CHECK(!fs::exists(library.mended / "loose.gltf"));
+  CHECK(tool::run("check " + library.mended.string() + " -o " + (library.folder.path / "again").string()).code == 0);
+  CHECK(library.check("").code == 6);  // over its own files
+}
+
+TEST_CASE("check --fix leaves what rules and baseline accept, and mends recordings as new clips") {
+  const FixedLibrary library;
+  const std::string baseline = " --baseline " + (library.folder.path / "baseline.json").string();
+  CHECK(library.check(baseline + " --accept").code == 0);
+  CHECK(!fs::exists(library.mended));
+  CHECK(library.check("--max-depth 500").code == 0);
+  CHECK(!fs::exists(library.mended));
+  const fs::path take = library.folder.write("take.bvh", recording_of_arm(kFaulty));
+  const tool::Run run = library.check(baseline + " --motion " + take.string());
+  CHECK(run.code == 6);
+  const std::string clean = tool::contents(library.mended / "clean.glb"),
+                    hero = tool::contents(library.mended / "sub/hero.glb");
+  REQUIRE(json_of(clean)["animations"].size() == 2);
+  CHECK(json_of(clean)["animations"][1]["name"] == "take");
+  REQUIRE(json_of(hero)["animations"].size() == 2);
+  CHECK(json_of(hero)["animations"][0] == json_of(wall_and_arm(kFaulty))["animations"][0]);
+}
+
+TEST_CASE("check --fix writes over no file of the library, and over none that is no GLB") {
+  const FixedLibrary library;
+  tool::check_error(library.check("", "lib"), 2, {"clean.glb", "a file of the library"});
+  tool::check_error(library.check("--shard 1/2"), 2, {"--fix", "no shards"});
+  fs::create_directories(library.mended / "sub");
+  library.folder.write("mended/sub/hero.glb", "somebody's notes");
+  tool::check_error(library.check(""), 3, {"hero.glb", "not a GLB"});
+  CHECK(tool::contents(library.mended / "sub/hero.glb") == "somebody's notes");
+  const std::string hero = (library.folder.path / "lib/sub/hero.glb").string();
+  tool::check_error(tool::run("check " + hero + " " + hero + " -o " + (library.folder.path / "report").string() +
+                              " --fix " + (library.folder.path / "other").string()),
+                    2, {"hero.glb", "two characters"});
+}
