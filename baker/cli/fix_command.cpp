@@ -85,7 +85,7 @@ ExitCode run_fix(const FixOptions& options) {
   check_replaceable_json(json, options.force, "--force replaces it");
 
   std::vector<MendedClip> clips;
-  std::string text, notes, bytes = read_file(options.input);
+  std::string text, notes, bytes;
   {
     Progress progress("fix " + options.input + ":");
     const Bake baked = bake(options.input, config.bake, [&](const std::string& stage) { progress.show(stage); });
@@ -101,11 +101,11 @@ ExitCode run_fix(const FixOptions& options) {
       }
     }
     for (const ClipFrames& clip : animated.clips()) {
-      if (clip.clip == nullptr || clip.clip->in_file < 0 || animated.asset()->bone_count() == 0) {
-        throw Error(ExitCode::kFile, options.input + (clip.clip == nullptr     ? ": has no clips to mend"
-                                                      : clip.clip->in_file < 0 ? ": is no glTF (export it as .glb)"
-                                                                               : ": no bones move it"));
+      if (clip.clip == nullptr || animated.asset()->bone_count() == 0) {
+        throw Error(ExitCode::kFile,
+                    options.input + (clip.clip == nullptr ? ": has no clips to mend" : ": no bones move it"));
       }
+      if (bytes.empty()) bytes = read_as_glb(options.input);
       const auto start = std::chrono::steady_clock::now();
       const auto leave = [&](const MendedEvent& event) {
         const Event known = event_of(event, parts);

@@ -198,7 +198,7 @@ int main(int argc, char** argv) {
 
   FixOptions fix;
   CLI::App* fix_command = app.add_subcommand("fix", "Turn joints of a clip so that its body parts leave each other");
-  add_name(*fix_command, "INPUT", fix.input, "Character with clips (.glb)")->required();
+  add_name(*fix_command, "INPUT", fix.input, "Character with clips: glTF, or anything assimp reads")->required();
   add_output(*fix_command, "-o,--output", fix.output, "The same with the clips mended (.glb)")->required();
   add_name(*fix_command, "--clip", fix.clip, "The clip to mend: its name or number (default: all)");
   add_name(*fix_command, "--keep", fix.keep, "Rules, as check --config has them: what is fine as it is");

@@ -184,6 +184,20 @@ TEST_CASE("fix: a report folder is written again; what cannot be written is refu
   CHECK(!std::filesystem::exists(folder.path / "out.glb"));
 }
 
+TEST_CASE("fix: a file of another format is mended as a binary glTF") {
+  const TemporaryFolder folder;
+  const std::string source = "/usr/share/assimp/models/FBX/huesitos.fbx", out = (folder.path / "out.glb").string();
+  const auto penetrations = [&](const std::string& file, const char* name) {
+    return tool::run("check " + file + " -o " + (folder.path / name).string()).out;
+  };
+  CHECK(penetrations(source, "before").find("1 penetration;") != std::string::npos);
+  const tool::Run run = tool::run("fix " + source + " -o " + out + " --report " + (folder.path / "report").string());
+  CHECK_MESSAGE(run.code == 0, run.error);
+  CHECK(run.out.find("1 cleared") != std::string::npos);
+  CHECK(penetrations(out, "after").find("0 penetrations;") != std::string::npos);
+  CHECK(import_character(out).source_positions == import_character(source).source_positions);
+}
+
 TEST_CASE("fix: a point of the skin moves with a turn as its derivative says") {
   const TemporaryFolder folder;
   const Character character = import_character(folder.write("arm.glb", wall_and_arm(std::vector<double>(9, 5))));
