@@ -36,21 +36,28 @@ Event event_of(const MendedEvent& mended, const std::vector<BodyPart>& parts) {
   return event;
 }
 
-// Pages of the clips that changed, before and after side by side.
-void write_pages(const FixOptions& options, const fs::path& page, const Bake& baked, const AnimatedAsset& before,
-                 const std::vector<MendedClip>& clips) {
+// Pages of the clips that changed, before and after side by side. Returns a line for each that cannot be shown: what
+// was mended is written by then.
+std::string write_pages(const FixOptions& options, const fs::path& page, const Bake& baked, const AnimatedAsset& before,
+                        const std::vector<MendedClip>& clips) {
   for (const auto& entry : fs::directory_iterator(options.report)) {
     const std::string name = entry.path().filename().string();  // of an earlier run
     if (name.starts_with("clip_") && name.ends_with(".html")) fs::remove(entry.path());
   }
-  if (!fs::is_regular_file(page)) return;
+  std::string notes;
+  if (!fs::is_regular_file(page)) return notes;
   const std::string_view asset(reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size());
   for (std::size_t i = 0; i < clips.size(); ++i) {
     const MendedClip& clip = clips[i];
     if (std::all_of(clip.mend.turns.begin(), clip.mend.turns.end(), [](const Vec3& x) { return x.isZero(0); }))
       continue;
     MotionChoice motion;
-    motion.clip = before.clips()[i].name;
+    // By its number where others have its name.
+    const std::vector<Clip>& all = before.character().rig.clips;
+    const Clip& own = *before.clips()[i].clip;
+    const bool is_only =
+        std::count_if(all.begin(), all.end(), [&](const Clip& other) { return other.name == own.name; }) == 1;
+    motion.clip = is_only ? own.name : std::to_string(&own - all.data());
     const AnimatedAsset one(OpenAsset(asset, options.input), options.input, options.input, motion, {0, 0});
     PageOptions page_options;
     page_options.template_file = page.string();
@@ -61,9 +68,18 @@ void write_pages(const FixOptions& options, const fs::path& page, const Bake& ba
     const AnimatedAsset other(OpenAsset(asset, options.input), options.input, options.output, motion,
                               {0, page_options.fps});
     const Place beside{mm_per_unit(one.asset()) * one.frame().height / 1000, 0, 0};
-    write_atomically(fs::path(options.report) / fmt::format("clip_{}.html", i),
-                     view_page_of_two(one, other, &beside, page_options, [](int) {}));
+    std::string html;
+    try {
+      html = view_page_of_two(one, other, &beside, page_options, [](int) {});
+    } catch (const Error& error) {
+      if (error.code() != ExitCode::kUsage) throw;
+      const std::string what = error.what();  // and in brackets what to do, which other commands can
+      notes += fmt::format("spherechain: warning: {}: has no page: {}\n", clip.name, what.substr(0, what.rfind(" (")));
+      continue;
+    }
+    write_atomically(fs::path(options.report) / fmt::format("clip_{}.html", i), html);
   }
+  return notes;
 }
 
 }  // namespace
@@ -124,7 +140,7 @@ ExitCode run_fix(const FixOptions& options) {
       progress.show("report");
       make_folder(options.report);
       write_atomically(json, fix_json(clips, parts));
-      write_pages(options, page, baked, animated, clips);
+      notes += write_pages(options, page, baked, animated, clips);
     }
     text = fix_text(clips, parts);
   }

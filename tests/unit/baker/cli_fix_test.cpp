@@ -6,6 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "fix/turned_clip.h"
@@ -196,6 +198,21 @@ TEST_CASE("fix: a file of another format is mended as a binary glTF") {
   CHECK(run.out.find("1 cleared") != std::string::npos);
   CHECK(penetrations(out, "after").find("0 penetrations;") != std::string::npos);
   CHECK(import_character(out).source_positions == import_character(source).source_positions);
+}
+
+TEST_CASE("fix: clips of one name have a page each") {
+  const TemporaryFolder folder;
+  const std::string report = (folder.path / "report").string();
+  tool::run("fix '/usr/share/assimp/models/MDL/MDL (HL1)/man.mdl' -o " + (folder.path / "out.glb").string() +
+            " --report " + report);
+  const json fixed = json::parse(tool::contents(report + "/fix.json"));
+  if (!std::filesystem::exists(report + "/clip_2.html")) return;  // built without the page
+  std::set<std::string> pages;
+  for (const int clip : {2, 3, 4}) {
+    CHECK(fixed["clips"][clip]["clip"] == "arms_up");
+    pages.insert(tool::contents(report + "/clip_" + std::to_string(clip) + ".html"));
+  }
+  CHECK(pages.size() == 3);
 }
 
 TEST_CASE("fix: a point of the skin moves with a turn as its derivative says") {
