@@ -186,6 +186,22 @@ TEST_CASE("as glb: morph targets, their tracks, names, pictures and centimetres 
   CHECK(binary.substr(view["byteOffset"], view["byteLength"]) == kPng);
 }
 
+TEST_CASE("as glb: a file in centimetres with Z up stands upright in metres") {
+  const TemporaryFolder folder;
+  std::string fbx = tool::contents(kModels / "FBX/cubes_with_names.fbx");
+  const std::string y_up = "\"UpAxis\", \"int\", \"Integer\", \"\",1";
+  REQUIRE(fbx.find(y_up) != std::string::npos);
+  fbx[fbx.find(y_up) + y_up.size() - 1] = '2';
+  const auto path = folder.write("z_up.fbx", fbx);
+  const Character before = import_character(path), after = read_back(read_as_glb(path));
+  REQUIRE(before.up_hint == Vec3::UnitZ());
+  REQUIRE(after.source_positions.size() == before.source_positions.size());
+  for (std::size_t v = 0; v < before.source_positions.size(); ++v) {
+    const Vec3& p = before.source_positions[v];
+    CHECK(after.source_positions[v].isApprox(before.metres_per_unit * Vec3(p.x(), p.z(), -p.y()), 1e-6));
+  }
+}
+
 TEST_CASE("as glb: a glTF and the files beside it become one, and nothing else of it changes") {
   const TemporaryFolder folder;
   Glb box = morphing_box();
