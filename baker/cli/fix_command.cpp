@@ -26,13 +26,15 @@ void make_folder(const std::string& path) {
   if (failed) throw Error(ExitCode::kFile, path + ": no such folder can be made (" + failed.message() + ")");
 }
 
-// Pages of the clips that changed, before and after side by side.
-void write_pages(const FixOptions& options, const fs::path& page, const FixedCharacter& fixed) {
+// Pages of the clips that changed, before and after side by side. Returns a line for each that cannot be shown: what
+// was mended is written by then.
+std::string write_pages(const FixOptions& options, const fs::path& page, const FixedCharacter& fixed) {
   for (const auto& entry : fs::directory_iterator(options.report)) {
     const std::string name = entry.path().filename().string();  // of an earlier run
     if (name.starts_with("clip_") && name.ends_with(".html")) fs::remove(entry.path());
   }
-  if (!fs::is_regular_file(page)) return;
+  std::string notes;
+  if (!fs::is_regular_file(page)) return notes;
   std::optional<AnimatedAsset> before, after;
   for (std::size_t i = 0; i < fixed.clips.size(); ++i) {
     const Mend& mend = fixed.clips[i].mend;
@@ -51,9 +53,19 @@ void write_pages(const FixOptions& options, const fs::path& page, const FixedCha
     page_options.fps = before->clips()[0].fps;  // the mended one's own may be another
     after->play_clip(fixed.after[i], {0, page_options.fps});
     const Place beside{mm_per_unit(before->asset()) * before->frame().height / 1000, 0, 0};
-    write_atomically(fs::path(options.report) / fmt::format("clip_{}.html", i),
-                     view_page_of_two(*before, *after, &beside, page_options, [](int) {}));
+    std::string html;
+    try {
+      html = view_page_of_two(*before, *after, &beside, page_options, [](int) {});
+    } catch (const Error& error) {
+      if (error.code() != ExitCode::kUsage) throw;
+      const std::string what = error.what();  // and in brackets what to do, which other commands can
+      notes += fmt::format("spherechain: warning: {}: has no page: {}\n", fixed.clips[i].name,
+                           what.substr(0, what.rfind(" (")));
+      continue;
+    }
+    write_atomically(fs::path(options.report) / fmt::format("clip_{}.html", i), html);
   }
+  return notes;
 }
 
 bool has_ending(const std::string& file, const char* ending) {
@@ -108,7 +120,7 @@ ExitCode run_fix(const FixOptions& options) {
   check_files(options, json, writes_bvh);
 
   FixedCharacter fixed;
-  std::string again;
+  std::string again, notes;
   {
     Progress progress("fix " + options.input + ":");
     fixed = fix_character(job, [&](const std::string& doing) { progress.show(doing); });
@@ -117,7 +129,7 @@ ExitCode run_fix(const FixOptions& options) {
       progress.show("report");
       make_folder(options.report);
       write_atomically(json, fix_json(fixed.clips, fixed.parts));
-      write_pages(options, page, fixed);
+      notes = write_pages(options, page, fixed);
     }
     if (writes_bvh) {
       progress.show("carrying over again");
@@ -125,6 +137,7 @@ ExitCode run_fix(const FixOptions& options) {
                           carried_over_again(fixed, options.input, options.output));
     }
   }
+  fmt::print(stderr, "{}", notes);
   for (const std::string& part : fixed.unused_parts) {
     fmt::print(stderr, "spherechain: warning: {}: a rule names '{}', which this character has not\n", options.keep,
                part);

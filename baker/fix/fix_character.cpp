@@ -81,9 +81,6 @@ class Fixer {
     for (const BodyPart& part : out_.parts) all += (all.empty() ? "" : ", ") + part.name;
     throw Error(ExitCode::kUsage, "--parts: " + job_.input + " has no '" + name + "' (it has " + all + ")");
   }
-  void check_gltf(bool is_gltf) const {
-    if (!is_gltf) fail("is no glTF (export it as .glb)");
-  }
 
   void fix_own() {
     const std::vector<std::string> names = unique_clip_names(rig());
@@ -93,7 +90,6 @@ class Fixer {
       const bool is_wanted =
           !job_.numbers || std::find(job_.numbers->begin(), job_.numbers->end(), number) != job_.numbers->end();
       if (!is_wanted) continue;
-      check_gltf(clip.clip->in_file >= 0);
       const std::vector<Channel> turned =
           mend(clip, roles_, [&](const KnownEvent& event) { return event.clip == names[number]; });
       out_.bytes = with_channels(out_.bytes, job_.input, rig(), clip.clip->in_file, {}, turned);
@@ -116,7 +112,6 @@ class Fixer {
       out_.bytes = turned_recording(*carried, rig(), before, after, out_.clips.back().mend.in_window, clip.fps);
       return;
     }
-    for (const Channel& channel : after.channels) check_gltf(rig().nodes[channel.target].in_file >= 0);
     out_.bytes = with_channels(out_.bytes, job_.input, rig(), -1, after.name, after.channels);
   }
 
@@ -198,10 +193,7 @@ class Fixer {
 
 FixedCharacter fix_character(const FixJob& job, const std::function<void(const std::string&)>& told) {
   std::string bytes;
-  if (!job.is_recording_written) {
-    bytes = read_file(job.input);
-    check_glb(bytes, job.input);
-  }
+  if (!job.is_recording_written) bytes = read_as_glb(job.input);
   const Bake baked = bake(job.input, job.config.bake, told);
   return Fixer(job, std::move(bytes), baked, told).run();
 }

@@ -46,6 +46,14 @@ std::vector<FixJob> jobs_of(const std::vector<LibraryCharacter>& library, const 
   return out;
 }
 
+// "dragon.fbx.glb": a GLB, whatever was read.
+fs::path mended_file(const fs::path& folder, const LibraryCharacter& character) {
+  fs::path out = folder / character.relative;
+  const fs::path ending = out.extension();
+  if (ending != ".glb" && ending != ".vrm") out += ".glb";
+  return out;
+}
+
 bool is_glb_or_new(const fs::path& file) {
   std::error_code ignored;
   if (!fs::exists(file, ignored) || fs::file_size(file, ignored) == 0) return true;
@@ -76,7 +84,7 @@ void check_fix_folder(const std::vector<LibraryCharacter>& library, const fs::pa
     for (const LibraryCharacter::Motion& motion : character.motions) inputs.insert(fs::weakly_canonical(motion.file));
   }
   for (const LibraryCharacter& character : library) {
-    const fs::path file = folder / character.relative, place = fs::weakly_canonical(fs::absolute(file));
+    const fs::path file = mended_file(folder, character), place = fs::weakly_canonical(fs::absolute(file));
     const auto fail = [&](ExitCode code, const char* what) { throw Error(code, "--fix: " + file.string() + what); };
     if (inputs.count(place) > 0) fail(ExitCode::kUsage, ": is a file of the library (name another folder)");
     if (!outputs.insert(place).second) {
@@ -97,7 +105,7 @@ std::vector<std::string> fix_library(const std::vector<LibraryCharacter>& librar
   for (std::size_t c = 0; c < all.size(); ++c) {
     const FixJob& job = all[c];
     if (!job.numbers && job.recordings.empty()) continue;
-    const fs::path file = folder / library[c].relative;
+    const fs::path file = mended_file(folder, library[c]);
     std::string& line = lines.emplace_back();
     tasks.push_back({[&job, file](const Task::Tell& tell) {
                        const FixedCharacter fixed = fix_character(job, [](const std::string&) {});

@@ -160,8 +160,6 @@ std::vector<Channel> turned_channels(const TurnedClip& clip, const Turns& turns,
   return out;
 }
 
-void check_glb(const std::string& bytes, const std::string& file) { read_glb(bytes, file); }
-
 std::string with_channels(const std::string& bytes, const std::string& file, const SourceRig& rig, int animation,
                           const std::string& clip_name, const std::vector<Channel>& channels) {
   Glb glb = read_glb(bytes, file);

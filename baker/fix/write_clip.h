@@ -13,9 +13,6 @@ namespace spherechain::baker {
 // moves.
 std::vector<Channel> turned_channels(const TurnedClip& clip, const Turns& turns, const std::vector<char>& in_window);
 
-// Throws Error(kFile) where the bytes are no GLB.
-void check_glb(const std::string& bytes, const std::string& file);
-
 // A GLB in which these channels take the place of an animation's, or, where `animation` is -1, are a new one called
 // `clip_name`. What it had is there, byte for byte; new numbers come after it. `file` is for messages. Throws
 // Error(kFile) where `glb` is none.

@@ -108,12 +108,15 @@ bool anything_moves(const AssimpScene& flat, const std::vector<Clip>& clips) {
 SourceRig read_rig(const aiScene& scene, const AssimpScene& flat, const std::string& file) {
   SourceRig rig;
   rig.clips = read_clips(scene, flat, file);
+  for (std::size_t c = 0; c < rig.clips.size(); ++c) rig.clips[c].in_file = static_cast<int>(c);
   for (const MeshInstance& instance : flat.instances) read_morphs(instance, file, rig.morphs);
   if (anything_moves(flat, rig.clips)) {
     for (const MeshInstance& instance : flat.instances) read_weights(instance, flat, file, rig);
   }
   if (!flat.instances.empty() && rig.bones.empty() && rig.morphs.empty()) return {};
   rig.nodes = flat.nodes;
+  int number = 0;
+  for (Node& node : rig.nodes) node.in_file = number++;
   return rig;
 }
 

@@ -14,14 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string read_bytes(const fs::path& path, const std::string& name) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream bytes;
-  bytes << in.rdbuf();
-  if (!in || in.bad()) throw Error(ExitCode::kFile, name + ": cannot be read");
-  return std::move(bytes).str();
-}
-
 struct Container {
   std::string_view json, binary;
 };
@@ -122,11 +114,21 @@ bool no_image(tinygltf::Image*, int, std::string*, std::string*, int, int, const
 
 void GltfFile::fail(const std::string& what) const { throw Error(ExitCode::kFile, name + ": " + what); }
 
+std::string bytes_of_gltf(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream bytes;
+  bytes << in.rdbuf();
+  if (!in || in.bad()) throw Error(ExitCode::kFile, path.string() + ": cannot be read");
+  return std::move(bytes).str();
+}
+
+std::string_view json_of_gltf(std::string_view bytes, const GltfFile& file) { return split(bytes, file).json; }
+
 nlohmann::json raw_json_of_gltf(const fs::path& path) {
   try {
     const GltfFile file{path.string(), {}};
-    const std::string bytes = read_bytes(path, file.name);
-    return nlohmann::json::parse(split(bytes, file).json, nullptr, false);
+    const std::string bytes = bytes_of_gltf(path);
+    return nlohmann::json::parse(json_of_gltf(bytes, file), nullptr, false);
   } catch (const Error&) {
     return nlohmann::json(nlohmann::json::value_t::discarded);
   }
@@ -168,7 +170,7 @@ std::vector<fs::path> files_of_gltf(const fs::path& path) {
 GltfFile open_gltf(const fs::path& path) {
   GltfFile file;
   file.name = path.string();
-  const std::string bytes = read_bytes(path, file.name);
+  const std::string bytes = bytes_of_gltf(path);
   const Container parts = split(bytes, file);
 
   nlohmann::json json = check_gltf_json(parts.json, file.name);

@@ -32,6 +32,10 @@ struct GltfFile {
 // Reads a .gltf or .glb, told apart by content, with the buffers beside it. Throws Error(kFile).
 GltfFile open_gltf(const std::filesystem::path& path);
 
+// The file's bytes, and the text of their JSON, of which nothing is checked. Both throw Error(kFile).
+std::string bytes_of_gltf(const std::filesystem::path& path);
+std::string_view json_of_gltf(std::string_view bytes, const GltfFile& file);
+
 // The file's JSON, of which nothing is checked; discarded where it is none.
 nlohmann::json raw_json_of_gltf(const std::filesystem::path& path);
 

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "import/archive.h"
+#include "import/glb_file.h"
 #include "import/gltf_file.h"
 #include "import/obj_file.h"
 #include "import/read_in_child.h"
@@ -96,6 +97,11 @@ SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& o
   }));
   if (options.prop) make_rigid(mesh);
   return mesh;
+}
+
+std::string read_as_glb(const std::filesystem::path& path) {
+  check_regular_file(path);
+  return read_in_child(path.string(), [&] { return is_gltf(path) ? pack_gltf(path) : glb_with_assimp(path); });
 }
 
 Character import_character(const std::filesystem::path& path, const ImportOptions& options) {

@@ -125,6 +125,12 @@ SourceMesh read_with_assimp(const std::filesystem::path& path, const ImportOptio
 std::vector<std::string> files_read_with_assimp(const std::filesystem::path& path);
 SourceMesh read_with_tinygltf(const std::filesystem::path& path, const ImportOptions& options);
 
+// The file as a binary glTF, written in a child process: a GLB byte for byte, a .gltf with what lies beside it inside,
+// and of other formats all that the importer reads. Numbers of nodes and clips are those that read_source gives
+// (in_file). Throws Error(kFile).
+std::string read_as_glb(const std::filesystem::path& path);
+std::string glb_with_assimp(const std::filesystem::path& path);
+
 // Checks, welds, cleans and splits what an importer read; `name` is what errors call the file.
 Character build_character(const SourceMesh& source, const std::string& name);
 

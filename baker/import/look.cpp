@@ -16,6 +16,14 @@ std::string read_picture(const std::filesystem::path& file) {
   return std::move(bytes).str();
 }
 
+std::string type_of_picture(std::string_view bytes) {
+  if (bytes.starts_with("\x89PNG\r\n\x1A\n")) return "image/png";
+  if (bytes.starts_with("\xFF\xD8\xFF")) return "image/jpeg";
+  if (bytes.starts_with("RIFF") && bytes.substr(0, 12).ends_with("WEBP")) return "image/webp";
+  if (bytes.starts_with("\xABKTX 20\xBB")) return "image/ktx2";
+  return {};
+}
+
 std::int32_t SourceLook::add_picture(std::string bytes) {
   std::uintmax_t all = bytes.size();
   for (const std::string& picture : pictures) all += picture.size();

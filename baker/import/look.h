@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace spherechain::baker {
@@ -35,5 +36,12 @@ inline constexpr std::uintmax_t kPictureBytesMax = std::uintmax_t{1} << 26;  // 
 
 // A picture's bytes; none where it is no file, or too large.
 std::string read_picture(const std::filesystem::path& file);
+
+// By its first bytes: "image/png", "image/jpeg", "image/webp" or "image/ktx2"; empty for others.
+std::string type_of_picture(std::string_view bytes);
+
+// A picture of another type (TGA, BMP, PSD, GIF) as a PNG; empty where it cannot be read. For a child process
+// (read_in_child.h).
+std::string png_of_picture(const std::string& bytes);
 
 }  // namespace spherechain::baker

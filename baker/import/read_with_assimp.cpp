@@ -14,6 +14,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "import/assimp_glb.h"
 #include "import/assimp_look.h"
 #include "import/assimp_scene.h"
 #include "import/check_bvh.h"
@@ -147,6 +148,35 @@ void add_pictures(const aiMaterial& material, const std::filesystem::path& folde
   }
 }
 
+SourceMesh source_of(const aiScene& scene, const AssimpScene& flat, const std::string& name) {
+  SourceMesh out;
+  out.importer = "assimp";
+  for (const MeshInstance& instance : flat.instances) append(instance, name, out);
+  out.rig = read_rig(scene, flat, name);
+  // Formats without units are taken as metres. FBX says its own, in centimetres.
+  double centimetres = 0;
+  float centimetres_f = 0;
+  if (scene.mMetaData != nullptr) {
+    if (scene.mMetaData->Get("UnitScaleFactor", centimetres) && centimetres > 0)
+      out.metres_per_unit = centimetres / 100;
+    else if (scene.mMetaData->Get("UnitScaleFactor", centimetres_f) && centimetres_f > 0)
+      out.metres_per_unit = static_cast<double>(centimetres_f) / 100;
+    int axis = 1, sign = 1;
+    if (scene.mMetaData->Get("UpAxis", axis) && axis >= 0 && axis < 3) {
+      scene.mMetaData->Get("UpAxisSign", sign);
+      out.up_hint = Vec3::Unit(axis) * (sign < 0 ? -1.0 : 1.0);
+    }
+  }
+  return out;
+}
+
+const aiScene& read_or_fail(Assimp::Importer& importer, const std::filesystem::path& path) {
+  const aiScene* scene = read_scene(importer, path);
+  if (scene != nullptr) return *scene;
+  throw Error(ExitCode::kFile, path.string() + ": not a mesh or motion that assimp reads: " +
+                                   importer.GetErrorString() + " (export it as glTF 2.0)");
+}
+
 }  // namespace
 
 Files files_read_with_assimp(const std::filesystem::path& path) {
@@ -164,33 +194,20 @@ Files files_read_with_assimp(const std::filesystem::path& path) {
 
 SourceMesh read_with_assimp(const std::filesystem::path& path, const ImportOptions& options) {
   Assimp::Importer importer;
-  const std::string name = path.string();
-  const aiScene* scene = read_scene(importer, path);
-  if (scene == nullptr) {
-    throw Error(ExitCode::kFile, name + ": not a mesh or motion that assimp reads: " + importer.GetErrorString() +
-                                     " (export it as glTF 2.0)");
-  }
-  SourceMesh out;
-  out.importer = "assimp";
-  const AssimpScene flat = flatten(*scene, name);
-  for (const MeshInstance& instance : flat.instances) append(instance, name, out);
-  out.rig = read_rig(*scene, flat, name);
-  if (options.look) out.look = read_look(*scene, flat, path.parent_path());
-  // Formats without units are taken as metres. FBX says its own, in centimetres.
-  double centimetres = 0;
-  float centimetres_f = 0;
-  if (scene->mMetaData != nullptr) {
-    if (scene->mMetaData->Get("UnitScaleFactor", centimetres) && centimetres > 0)
-      out.metres_per_unit = centimetres / 100;
-    else if (scene->mMetaData->Get("UnitScaleFactor", centimetres_f) && centimetres_f > 0)
-      out.metres_per_unit = static_cast<double>(centimetres_f) / 100;
-    int axis = 1, sign = 1;
-    if (scene->mMetaData->Get("UpAxis", axis) && axis >= 0 && axis < 3) {
-      scene->mMetaData->Get("UpAxisSign", sign);
-      out.up_hint = Vec3::Unit(axis) * (sign < 0 ? -1.0 : 1.0);
-    }
-  }
+  const aiScene& scene = read_or_fail(importer, path);
+  const AssimpScene flat = flatten(scene, path.string());
+  SourceMesh out = source_of(scene, flat, path.string());
+  if (options.look) out.look = read_look(scene, flat, path.parent_path());
   return out;
+}
+
+std::string glb_with_assimp(const std::filesystem::path& path) {
+  Assimp::Importer importer;
+  const aiScene& scene = read_or_fail(importer, path);
+  const AssimpScene flat = flatten(scene, path.string());
+  SourceMesh source = source_of(scene, flat, path.string());
+  source.look = read_look(scene, flat, path.parent_path());
+  return glb_of(scene, flat, source);
 }
 
 }  // namespace spherechain::baker

@@ -26,7 +26,7 @@ struct Node {
   std::string name;
   std::string humanoid_bone{};  // what a VRM avatar says it is, such as "leftUpperArm"; empty where it says nothing
   int parent = -1;              // comes before its children
-  int in_file = -1;             // a glTF file's number of it
+  int in_file = -1;             // its number in the file, or in what read_as_glb() makes of it
   Affine local = Affine::Identity();
   Vec3 translation = Vec3::Zero();
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
@@ -71,7 +71,7 @@ struct Clip {
   std::string name;
   double duration = 0;  // seconds, of the last key
   std::vector<Channel> channels;
-  int in_file = -1;  // a glTF file's number of it
+  int in_file = -1;  // its number in the file, or in what read_as_glb() makes of it
 };
 
 // A file's skeleton, skin and motion; all empty where it has none.

@@ -18,7 +18,9 @@ struct PageOptions {
   std::string validation;                               // of read_validation; may be empty
   std::string template_file;                            // the page without data, as its build made it
   std::array<std::string, 2> names{"first", "second"};  // of two characters
-  bool they_meet = true;                                // else what touches between the two is not shown
+  // Else they are one character, before and after a change: what touches between the two is not shown, the page can lay
+  // them over each other, and it opens where the deepest fault was.
+  bool they_meet = true;
   Radius radius = SC_RADIUS_DETECT;
   double fps = 30;
   std::size_t max_bytes = 512'000'000;  // Chromium reads no script of 2^29 letters or more

@@ -56,8 +56,8 @@ Vec3 stand_of(const AnimatedAsset& animated, const BodyFrame& axes) {
   return middle - axes.up.dot(middle - axes.origin) * axes.up;
 }
 
-// From the second's space to the first's.
-Affine place_of(const AnimatedAsset& first, const AnimatedAsset& second, const Place* place) {
+// From the second's space to the first's. They are one character where they do not meet.
+Affine place_of(const AnimatedAsset& first, const AnimatedAsset& second, const Place* place, bool they_meet) {
   const double unit = mm_per_unit(second.asset()) / mm_per_unit(first.asset());
   Affine out = Affine::Identity();
   if (place == nullptr) {
@@ -70,7 +70,9 @@ Affine place_of(const AnimatedAsset& first, const AnimatedAsset& second, const P
   there << to.left, to.up, to.forward;
   const double angle = place->degrees * std::numbers::pi / 180, metre = 1000 / mm_per_unit(first.asset());
   out.linear() = unit * there * Eigen::AngleAxisd(angle, Vec3::UnitY()) * own.transpose();
-  const Vec3 stand = stand_of(first, to) + metre * (place->left * to.left + place->forward * to.forward);
+  const Vec3 step = metre * (place->left * to.left + place->forward * to.forward);
+  if (!they_meet) return Affine(Eigen::Translation3d(step));
+  const Vec3 stand = stand_of(first, to) + step;
   out.translation() = stand - out.linear() * stand_of(second, from);
   return out;
 }
@@ -281,7 +283,8 @@ std::string view_page_of_two(const AnimatedAsset& first, const AnimatedAsset& se
   only_clip(second, "--with-clip");
   first.check_clusters();
   second.check_clusters();
-  const Both both(first, second, place_of(first, second, place), options.names);
+  const Affine placed = place_of(first, second, place, options.they_meet);
+  const Both both(first, second, placed, options.names);
   const BodyFrame axes = page_axes(first);
   const ordered_json clip_json{{"name", clip.name.empty() ? options.motion : clip.name},
                                {"first", 0},
@@ -295,6 +298,11 @@ std::string view_page_of_two(const AnimatedAsset& first, const AnimatedAsset& se
                     {"radius", options.radius == SC_RADIUS_FIT ? "fit" : "detect"},
                     {"clips", ordered_json::array({clip_json})},
                     {"look", two_colours(both)}};
+  if (!options.they_meet) {
+    data["change"] = {{"triangle", both.first_triangle()},
+                      {"part", both.first_part()},
+                      {"step", to_json(Vec3(placed.translation()))}};
+  }
   PageMotion motion(both.character(), axes);
   Contacts found(first, second, both, options.they_meet);
   FrameLists<Triangles> contacts;

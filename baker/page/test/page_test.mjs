@@ -6,13 +6,13 @@ import { compare, launch, open, picture, silent } from './browser.mjs';
 import { base64, makePages, unpack } from './pages.mjs';
 
 const { SPHERECHAIN_TOOL: tool, SPHERECHAIN_PAGE: template, SPHERECHAIN_HUMAN: human } = process.env;
-const { SPHERECHAIN_POSES: poses, SPHERECHAIN_CHROMIUM: chromium, SPHERECHAIN_OUT: folder } = process.env;
+const { SPHERECHAIN_HUESITOS: huesitos, SPHERECHAIN_POSES: poses, SPHERECHAIN_CHROMIUM: chromium, SPHERECHAIN_OUT: folder } = process.env;
 
 let pages;
 let browser;
 let arms; // opened once: most tests only look at it, and reset it first
 before(async () => {
-  pages = makePages({ tool, human, poses, folder });
+  pages = makePages({ tool, human, huesitos, poses, folder });
   browser = await launch(chromium);
   arms = await open(browser, pages.arms);
 });
@@ -49,6 +49,39 @@ test('a page of two has the contacts of each, and those between them', async () 
   assert.equal(await two.page.locator('#tab-bake').count(), 0);
   silent(two);
   await two.close();
+});
+
+test('a page of before and after opens at the deepest fault before, and lays one over the other', async () => {
+  const fixed = await open(browser, pages.fixed);
+  const { page } = fixed;
+  const penetrations = (who) => contacts(page).then((list) => list.filter(({ name, kind }) => kind === 5 && name.startsWith(who)));
+  const own = await frame(page);
+  const [{ depth: deepest }] = await penetrations('before');
+  assert.deepEqual(await penetrations('after'), []);
+  for (let other = 0; other < 40; ++other) {
+    await goTo(page, other);
+    for (const { depth } of await penetrations('before')) assert.ok(depth <= deepest, `${other}`);
+  }
+  await goTo(page, own);
+  const beside = await picture(page);
+  await page.keyboard.press('o');
+  assert.equal(await page.locator('[data-over=true]').getAttribute('aria-pressed'), 'true');
+  assert.ok((await compare(page, beside, await picture(page))).differing > 0.02);
+  await page.locator('[data-over=false]').click();
+  const again = (await compare(page, beside, await picture(page))).differing;
+  assert.ok(again < 0.01, `${again}`);
+  silent(fixed);
+  await fixed.close();
+  // With no contact in it, all that the picture loses with the old pose's parts is the ghost.
+  const quiet = await open(browser, pages.variant('ghost.html', (data) => (data.frames.contacts = { counts: '', entries: '' }), 'fixed/clip_0.html'));
+  await goTo(quiet.page, own);
+  await quiet.page.keyboard.press('o');
+  const ghost = await picture(quiet.page);
+  for (const part of await quiet.page.locator('.part').all()) if ((await part.innerText()).startsWith('before')) await part.click();
+  const { differing } = await compare(quiet.page, ghost, await picture(quiet.page));
+  assert.ok(differing > 0.0005 && differing < 0.1, `${differing}`);
+  await quiet.close();
+  assert.equal(await arms.page.locator('[data-over]').count(), 0);
 });
 
 test('the page is one file of less than 6 MB', () => {

@@ -5,7 +5,7 @@ import { join } from 'node:path';
 
 const DATA = /(<script id="spherechain-data" type="application\/json">)([^<]*)(<\/script>)/;
 
-export function makePages({ tool, human, poses, folder }) {
+export function makePages({ tool, human, huesitos, poses, folder }) {
   mkdirSync(folder, { recursive: true });
   const file = (name) => join(folder, name);
   const run = (...words) => execFileSync(tool, words, { encoding: 'utf8' });
@@ -21,7 +21,9 @@ export function makePages({ tool, human, poses, folder }) {
   run('view', asset, '--source', human, '-o', file('rest.html'));
   const second = ['--with', asset, '--with-poses', join(poses, 'animation_arms.json'), '--at', '0,0.2,180'];
   run('view', asset, ...motion, '40', ...second, '-o', file('two.html'));
+  run('fix', huesitos, '-o', file('fixed.glb'), '--report', file('fixed'), '--force');
   return {
+    fixed: file('fixed/clip_0.html'),
     arms: file('arms.html'),
     rest: file('rest.html'),
     two: file('two.html'),
@@ -39,9 +41,9 @@ export function makePages({ tool, human, poses, folder }) {
       const { status, stderr } = spawnSync(tool, words, { encoding: 'utf8' });
       return { code: status, error: stderr, written: existsSync(file('changed.html')) };
     },
-    // The page of the arms with changed data.
-    variant(name, change) {
-      const html = readFileSync(file('arms.html'), 'utf8');
+    // The page of the arms, or another, with changed data.
+    variant(name, change, of = 'arms.html') {
+      const html = readFileSync(file(of), 'utf8');
       const data = JSON.parse(html.match(DATA)[2]);
       change(data);
       const text = JSON.stringify(data).replaceAll('<', '\\u003c');

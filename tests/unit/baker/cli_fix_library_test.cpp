@@ -35,7 +35,7 @@ struct FixedLibrary {
 
 TEST_CASE("check --fix mends the characters with faults, and says what kept it from another") {
   const FixedLibrary library;
-  // The same as hero.glb, in two files: no GLB.
+  // The same as hero.glb, in two files. And a place where nothing can be written.
   const std::string glb = wall_and_arm(kFaulty);
   json text = json_of(glb);
   text["buffers"][0]["uri"] = "loose.bin";
@@ -43,14 +43,16 @@ TEST_CASE("check --fix mends the characters with faults, and says what kept it f
   std::memcpy(&size, glb.data() + 12, 4);
   library.folder.write("lib/loose.bin", glb.substr(20 + size + 8));
   library.folder.write("lib/loose.gltf", text.dump());
+  library.folder.write("lib/blocked.glb", glb);
+  fs::create_directories(library.mended / "blocked.glb/x");
   const tool::Run run = library.check("");
   CHECK_MESSAGE(run.code == 6, run.error);  // the library is as it was
-  CHECK(run.out.find("not mended " + (library.folder.path / "lib/loose.gltf").string() + ": is no binary glTF") !=
+  CHECK(run.out.find("not mended " + (library.folder.path / "lib/blocked.glb").string()) != std::string::npos);
+  CHECK(run.out.find("mended " + (library.mended / "loose.gltf.glb").string() + ": 1 clip, 1 event: 1 cleared\n") !=
         std::string::npos);
   CHECK(run.out.find("mended " + (library.mended / "sub/hero.glb").string() + ": 1 clip, 1 event: 1 cleared\n") !=
         std::string::npos);
   CHECK(!fs::exists(library.mended / "clean.glb"));
-  CHECK(!fs::exists(library.mended / "loose.gltf"));
   CHECK(tool::run("check " + library.mended.string() + " -o " + (library.folder.path / "again").string()).code == 0);
   CHECK(library.check("").code == 6);  // over its own files
 }

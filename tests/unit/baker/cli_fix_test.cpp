@@ -6,6 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "fix/turned_clip.h"
@@ -144,6 +146,35 @@ TEST_CASE("fix: a report folder is written again; what cannot be written is refu
   tool::check_error(tool::run("fix " + file.string() + " -o " + (folder.path / "out.gltf").string()), 2, {".glb"});
   tool::check_error(tool::run("fix " + file.string() + out + " --report " + file.string()), 3, {"no folder"});
   CHECK(!std::filesystem::exists(folder.path / "out.glb"));
+}
+
+TEST_CASE("fix: a file of another format is mended as a binary glTF") {
+  const TemporaryFolder folder;
+  const std::string source = "/usr/share/assimp/models/FBX/huesitos.fbx", out = (folder.path / "out.glb").string();
+  const auto penetrations = [&](const std::string& file, const char* name) {
+    return tool::run("check " + file + " -o " + (folder.path / name).string()).out;
+  };
+  CHECK(penetrations(source, "before").find("1 penetration;") != std::string::npos);
+  const tool::Run run = tool::run("fix " + source + " -o " + out + " --report " + (folder.path / "report").string());
+  CHECK_MESSAGE(run.code == 0, run.error);
+  CHECK(run.out.find("1 cleared") != std::string::npos);
+  CHECK(penetrations(out, "after").find("0 penetrations;") != std::string::npos);
+  CHECK(import_character(out).source_positions == import_character(source).source_positions);
+}
+
+TEST_CASE("fix: clips of one name have a page each") {
+  const TemporaryFolder folder;
+  const std::string report = (folder.path / "report").string();
+  tool::run("fix '/usr/share/assimp/models/MDL/MDL (HL1)/man.mdl' -o " + (folder.path / "out.glb").string() +
+            " --report " + report);
+  const json fixed = json::parse(tool::contents(report + "/fix.json"));
+  if (!std::filesystem::exists(report + "/clip_2.html")) return;  // built without the page
+  std::set<std::string> pages;
+  for (const int clip : {2, 3, 4}) {
+    CHECK(fixed["clips"][clip]["clip"] == "arms_up");
+    pages.insert(tool::contents(report + "/clip_" + std::to_string(clip) + ".html"));
+  }
+  CHECK(pages.size() == 3);
 }
 
 TEST_CASE("fix: a point of the skin moves with a turn as its derivative says") {

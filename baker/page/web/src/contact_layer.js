@@ -120,7 +120,8 @@ export class ContactLayer {
   point(contacts) {
     this.arrows.clear();
     const { unitsPerMm, height } = this.skin.mesh;
-    for (const { at, direction, depth } of contacts) {
+    for (const { at, direction, depth, triangles } of contacts) {
+      const shift = this.skin.shiftOf(triangles[0]);
       const length = depth * unitsPerMm;
       const head = Math.max(0.35 * length, 0.016 * height);
       const shaft = Math.max(length - head, 0.004 * height);
@@ -137,7 +138,7 @@ export class ContactLayer {
       };
       part(SHAFT, 0.14 * head, 0, shaft);
       part(HEAD, 0.35 * head, shaft, head);
-      arrow.position.set(...at);
+      arrow.position.set(...at.map((x, k) => x + shift[k]));
       arrow.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), new THREE.Vector3(...direction));
       this.arrows.add(arrow);
     }

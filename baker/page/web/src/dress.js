@@ -1,17 +1,19 @@
 import { css } from './dom.js';
-import { CLAY, CONTACT, FALSE_ALARM, POINTED, regionColour, SPHERE, tone } from './palette.js';
+import { CLAY, CONTACT, FALSE_ALARM, GHOST, POINTED, regionColour, SPHERE, tone } from './palette.js';
 import { looks } from './skin_layer.js';
 
 function dressSkin(model, state, skinLayer) {
   skinLayer.group.visible = state.skin;
   skinLayer.uniforms.opacity.value = state.skinOpacity;
+  skinLayer.skin.layOver(state.over);
   skinLayer.pose(state.frame);
   const plain = state.regions || state.patches || !state.look;
   skinLayer.uniforms.pictured.value = plain ? 0 : 1;
-  skinLayer.skin.zones.forEach(({ sphere, part, material }, zone) => {
+  skinLayer.skin.zones.forEach(({ sphere, part, material, isBefore }, zone) => {
     const region = model.spheres[sphere]?.region ?? -1;
     const base = state.regions || state.patches ? regionColour(region) : (!plain && material?.colour) || CLAY;
     if (state.hiddenParts.has(part)) skinLayer.setLook(zone, base, looks.HIDDEN);
+    else if (state.over && isBefore) skinLayer.setLook(zone, GHOST, looks.GHOST);
     else if (state.method && sphere === state.pointed) skinLayer.setLook(zone, POINTED, looks.POINTED);
     else skinLayer.setLook(zone, state.patches ? tone(base, sphere) : base, looks.PLAIN);
   });

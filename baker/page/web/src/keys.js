@@ -2,7 +2,7 @@ import { h } from './dom.js';
 
 // Keyboard shortcuts, and the page that lists them.
 
-export function bindKeys(store, { timeline, stage, help, toggleTheme, reset, deepest, chains, hasMethod }) {
+export function bindKeys(store, { timeline, stage, help, toggleTheme, reset, deepest, chains, hasMethod, hasChange }) {
   const flip = (key) => () => store.set({ [key]: !store.state[key] });
   const method = (action) => () => store.state.method && action();
   const allChains = () => store.set({ sets: new Set(chains.every((name) => store.state.sets.has(name)) ? [] : chains) });
@@ -13,6 +13,7 @@ export function bindKeys(store, { timeline, stage, help, toggleTheme, reset, dee
     ['Home', 'Home', 'First frame', () => timeline.step(-Infinity)],
     ['End', 'End', 'Last frame', () => timeline.step(Infinity)],
     ['D', 'd', 'Deepest frame of the clip', deepest],
+    ...(hasChange ? [['O', 'o', 'Before and after: beside each other, or the old pose as a ghost', flip('over')]] : []),
     ['1', '1', 'View from the front', () => stage?.view('front')],
     ['2', '2', 'View from the side', () => stage?.view('side')],
     ['3', '3', 'View from the back', () => stage?.view('back')],

@@ -132,7 +132,9 @@ export function readModel(data) {
     spheres,
     sets: readSets(data.inspect, spheres),
     kinds,
+    change: data.change ?? null, // the page shows one character before and after a change: where the latter begins
     mesh: {
+      changed: data.change ?? null,
       positions: decode(mesh.positions, Float32Array),
       triangles: decode(mesh.triangles, Uint32Array),
       partOf,
@@ -154,6 +156,11 @@ export function readModel(data) {
     costs: frames?.chains ? readCosts(frames) : null,
     contacts: new Contacts(contactLists, partOf, partName, pairLists(frames?.penetrations, Float32Array, MEASURES)),
 
+    // Where the page opens: the deepest fault before a change.
+    get start() {
+      const isBefore = ({ key }) => Number(key.split('-')[0]) < data.change.part;
+      return data.change ? (this.contacts.over(0, count).find(isBefore)?.worst ?? 0) : 0;
+    },
     clipAt: (frame) => Math.max(clips.findLastIndex(({ first }) => first <= frame), 0),
     time: (frame) => times[frame] ?? frame / (frames?.fps || 30),
     // In its clip: the clip's own number of the frame, and seconds from the clip's start.

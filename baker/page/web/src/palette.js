@@ -5,6 +5,7 @@ export const CONTACT = '#d41f2c';
 export const FALSE_ALARM = '#e59400';
 export const SPHERE = '#8497ab';
 export const CLAY = '#c9c2b6';
+export const GHOST = '#6d7278';
 export const POINTED = '#f0e442';
 // Paul Tol's bright palette: lines over the colours above, told apart by their names at the ends too.
 export const CHAINS = ['#4477aa', '#ee6677', '#228833', '#ccbb44', '#66ccee', '#aa3377'];

@@ -15,6 +15,9 @@ export class Skin {
     this.motion = motion;
     this.frame = -1;
     const { positions, triangles, partOf, sphereOf, influences, joints, weights } = mesh;
+    this.isLaidOver = false;
+    const isBefore = (triangle) => mesh.changed !== null && triangle < mesh.changed.triangle;
+    const before = []; // of each vertex
     const ownPath = new Uint8Array(positions.length / 3).fill(motion.vertices ? 1 : 0);
     for (const { vertices } of motion.morphs) for (const v of vertices) ownPath[v] = 1;
     const places = new Map();
@@ -44,13 +47,16 @@ export class Skin {
         source.push(v);
         place.push(placeOf[v]);
         zone.push(z);
+        before.push(isBefore(triangle) ? 1 : 0);
       }
       this.index[corner] = r;
     }
     this.source = Uint32Array.from(source);
     this.place = Uint32Array.from(place);
     this.zone = Float32Array.from(zone);
-    this.zones = [...zones.keys()].map((key) => ({
+    this.before = Uint8Array.from(before);
+    this.zones = [...zones.keys()].map((key, z) => ({
+      isBefore: before[zone.indexOf(z)] === 1,
       sphere: Math.floor(key / 16777216),
       part: Math.floor(key / 65536) % 256,
       material: look?.materials[key % 65536] ?? null,
@@ -59,6 +65,27 @@ export class Skin {
     this.normals = new Float32Array(3 * source.length);
     this.placeNormals = new Float32Array(3 * places.size);
     this.morphed = motion.morphs.length > 0 ? Float32Array.from(positions) : positions;
+  }
+
+  // Lays before and after a change over each other, in the middle between them.
+  layOver(isLaidOver) {
+    if (this.isLaidOver !== isLaidOver) this.frame = -1;
+    this.isLaidOver = isLaidOver;
+  }
+
+  // How far that moves a triangle.
+  shiftOf(t) {
+    if (!this.isLaidOver) return [0, 0, 0];
+    const { triangle, step } = this.mesh.changed;
+    return step.map((x) => (t < triangle ? x : -x) / 2);
+  }
+
+  shift() {
+    const { before, positions } = this;
+    const step = this.shiftOf(0);
+    for (let r = 0; r < before.length; ++r) {
+      for (let k = 0; k < 3; ++k) positions[3 * r + k] += before[r] ? step[k] : -step[k];
+    }
   }
 
   // Positions and normals of a frame; true where they changed.
@@ -75,6 +102,7 @@ export class Skin {
       if (blends) this.blend(bones.subarray(frame * 12 * boneCount));
       else this.take(this.morphed);
     }
+    if (this.isLaidOver) this.shift();
     this.computeNormals();
     return true;
   }

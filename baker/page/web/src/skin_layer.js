@@ -34,9 +34,10 @@ export const LIGHT = `
     return 0.2 + 0.78 * key + 0.2 * fill + 0.18 * sky - 0.1 * grazing;
   }`;
 
-// A look is a colour and, in alpha, a kind: 0 hidden, 1/2 plain, 1 pointed at.
+// A look is a colour and, in alpha, a kind: 0 hidden, 1/4 a ghost, 1/2 plain, 1 pointed at. Ghosts are drawn apart.
 const fragmentShader = `
   uniform float opacity;
+  uniform float ghosts;
   uniform float pictured;
   uniform highp sampler2DArray pictures;
   varying vec4 look;
@@ -54,19 +55,20 @@ const fragmentShader = `
     }
     // A little paler than they are, and never black: nothing is as red as a contact, and shapes can be seen.
     if (pictured > 0.5) colour = 0.025 + 0.975 * mix(vec3(dot(colour, vec3(0.2126, 0.7152, 0.0722))), colour, 0.75);
-    if (look.a < 0.1) discard;
+    if (look.a < 0.1 || (look.a < 0.4) != (ghosts > 0.5)) discard;
     vec3 n = normalize(normalInView);
     vec3 e = normalize(toEye);
     if (dot(n, e) < 0.0) n = -n;
     float edge = pow(1.0 - dot(n, e), 3.0);
     float alpha = opacity + (1.0 - opacity) * 0.55 * edge * smoothstep(0.0, 0.15, opacity);
     if (look.a > 0.9) alpha = max(alpha, 0.62);
+    if (ghosts > 0.5) alpha = opacity * (0.2 + 0.6 * pow(1.0 - dot(n, e), 2.0));
     if (alpha < 0.004) discard;
     gl_FragColor = vec4((colour * (1.0 - painted.a) + painted.rgb) * lightOn(n, e), alpha);
     #include <colorspace_fragment>
   }`;
 
-export const looks = { HIDDEN: 0, PLAIN: 128, POINTED: 255 };
+export const looks = { HIDDEN: 0, GHOST: 64, PLAIN: 128, POINTED: 255 };
 
 function placesOnPictures({ source, zone, zones }, look) {
   const out = new Float32Array(4 * zone.length).fill(-1);
@@ -116,13 +118,15 @@ export class SkinLayer {
       pictured: { value: 0 },
       pictures: { value: pictureTexture(look?.array ?? { pixels: new Uint8Array([255, 255, 255, 255]), size: 1, count: 1 }) },
     };
-    const material = (settings) =>
-      new THREE.ShaderMaterial({ vertexShader, fragmentShader, uniforms: this.uniforms, side: THREE.DoubleSide, ...settings });
-    this.depth = new THREE.Mesh(geometry, material({ colorWrite: false, transparent: true }));
-    const colour = new THREE.Mesh(geometry, material({ transparent: true, depthWrite: false }));
-    this.depth.renderOrder = 3;
-    colour.renderOrder = 4;
-    this.group = new THREE.Group().add(this.depth, colour);
+    const mesh = (order, ghosts, settings) => {
+      const uniforms = { ...this.uniforms, ghosts: { value: ghosts } };
+      const material = new THREE.ShaderMaterial({ vertexShader, fragmentShader, uniforms, side: THREE.DoubleSide, transparent: true, ...settings });
+      return Object.assign(new THREE.Mesh(geometry, material), { renderOrder: order });
+    };
+    this.depth = mesh(3, 0, { colorWrite: false });
+    // Behind the skin where it is in the same place.
+    const ghost = mesh(8, 1, { depthWrite: false, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 40 });
+    this.group = new THREE.Group().add(this.depth, mesh(4, 0, { depthWrite: false }), ghost);
     for (const mesh of this.group.children) mesh.frustumCulled = false;
   }
 

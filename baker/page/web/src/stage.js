@@ -21,7 +21,7 @@ export function createStage(canvas, model, store, { skinLayer, sphereLayer, cont
   let boxes = [];
   const bounds = new THREE.Box3();
   const measure = () => {
-    boxes = framing.boxes(clipNow(), store.state.follow);
+    boxes = framing.boxes(clipNow(), store.state);
     bounds.makeEmpty();
     for (const box of boxes) bounds.union(box);
   };
@@ -175,8 +175,8 @@ export function createStage(canvas, model, store, { skinLayer, sphereLayer, cont
   new ResizeObserver(resize).observe(canvas);
   resize();
   let boundsKey = '';
-  store.watch(['frame', 'follow'], ({ frame, follow }) => {
-    const key = `${model.clipAt(frame)} ${follow}`;
+  store.watch(['frame', 'follow', 'over'], ({ frame, follow, over }) => {
+    const key = `${model.clipAt(frame)} ${follow} ${over}`;
     if (key === boundsKey) return;
     boundsKey = key;
     measure();

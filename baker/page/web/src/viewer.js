@@ -7,7 +7,7 @@ import { fillClips } from './clips.js';
 import { fillContactPanel } from './contact_panel.js';
 import { ContactLayer } from './contact_layer.js';
 import { fillControls } from './controls.js';
-import { css } from './dom.js';
+import { css, h } from './dom.js';
 import { dress } from './dress.js';
 import { bindKeys } from './keys.js';
 import { drawOverlay } from './overlay.js';
@@ -32,6 +32,21 @@ function bindTheme(store) {
     store.set({ theme: event.matches ? 'dark' : 'light' }),
   );
   return toggle;
+}
+
+// Before and after a change: beside each other, or the old pose as a ghost over the new one.
+function addOver(reset, store) {
+  const button = (over, label, title) => {
+    const made = h('button', { type: 'button', 'data-over': `${over}`, title, onclick: () => store.set({ over }) }, label);
+    store.watch(['over'], (state) => made.setAttribute('aria-pressed', state.over === over));
+    return made;
+  };
+  const group = h('div', { class: 'segments', role: 'group', 'aria-label': 'Before and after' });
+  group.append(
+    button(false, 'Beside', 'Before and after beside each other (O)'),
+    button(true, 'Ghost', 'The old pose as a ghost over the new one (O)'),
+  );
+  reset.before(group);
 }
 
 // In a narrow window the controls come and go over the picture.
@@ -75,6 +90,7 @@ const shown = {
   pivots: false,
   numbers: false,
   oneClip: false, // on the timeline
+  over: false, // before and after a change: one over the other
   hiddenParts: new Set(),
   sets: new Set(),
   contact: null, // the key of the contact last gone to
@@ -112,7 +128,7 @@ export function start(model) {
   // Where spheres are no method to study, the skin shows through them.
   const startState = { ...shown, radius: model.radius, ...(model.hasMethod ? {} : { sphereOpacity: 0.4 }) };
   const theme = matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light';
-  const store = createStore({ ...startState, frame: 0, playing: false, theme });
+  const store = createStore({ ...startState, frame: model.start, playing: false, theme });
   const toggleTheme = bindTheme(store);
   const skin = new Skin(model.mesh, model.motion, model.look);
   if (!model.hasSpheres) model.refit = new Refit(model.inspect, model.mesh, skin);
@@ -123,7 +139,7 @@ export function start(model) {
     sphereLayer: new SphereLayer(model.spheres.length),
     contactLayer: new ContactLayer(skin, most),
   };
-  skin.pose(0);
+  skin.pose(model.start);
   const stage = createStage($('view'), model, store, layers);
   if (stage) bindStage(stage, store, model, layers, skin);
   else $('no-webgl').hidden = false;
@@ -137,6 +153,7 @@ export function start(model) {
     const contact = model.contacts.of(store.state.frame).find((other) => other.key === key);
     if (contact) stage?.flyToContact(skin.ballOf(contact.triangles), camera);
   };
+  if (model.change) addOver($('reset'), store);
   fillClips($('clip'), store, model);
   fillControls($('controls'), store, model);
   const deepest = fillContactPanel($('contacts'), store, model, flyToContact);
@@ -157,7 +174,7 @@ export function start(model) {
   $('help-button').addEventListener('click', () => $('help').showModal());
   $('licences').textContent = LICENCES;
   const chains = model.sets.filter((set) => set.kind === 'chain').map((set) => set.name);
-  bindKeys(store, { timeline, stage, help: $('help'), toggleTheme, reset, deepest, chains, hasMethod: model.hasMethod });
+  bindKeys(store, { timeline, stage, help: $('help'), toggleTheme, reset, deepest, chains, hasMethod: model.hasMethod, hasChange: model.change !== null });
   runPlayback(store, model);
 
   window.spherechainViewer = Object.freeze({
