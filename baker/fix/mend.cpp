@@ -39,6 +39,7 @@ constexpr double kShallow = 10;   // mm
 constexpr double kNear = 5;       // mm
 constexpr double kLess = 0.8;     // of its depth: an event is reduced
 constexpr double kBetter = 0.9;   // of what is left: it gets better
+constexpr double kTie = 1e7;                    // of a loop's ends
 constexpr double kWish = 1e4, kWishMost = 1e5;  // the weight of pushes grows by round
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180; }
@@ -191,7 +192,7 @@ class Mender {
       for (Index j = 0; j < clip_.count(); ++j) {
         for (int k = 0; k < 3; ++k) {
           const Vec3 axis = Vec3::Unit(k);
-          out.push_back({{{0, j, axis}, {clip_.frames() - 1, j, -axis}}, 0, kWishMost, kWishMost});
+          out.push_back({{{0, j, axis}, {clip_.frames() - 1, j, -axis}}, 0, kTie, kTie});
         }
       }
     }

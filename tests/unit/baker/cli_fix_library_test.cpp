@@ -43,11 +43,13 @@ TEST_CASE("check --fix mends the characters with faults, and says what kept it f
   std::memcpy(&size, glb.data() + 12, 4);
   library.folder.write("lib/loose.bin", glb.substr(20 + size + 8));
   library.folder.write("lib/loose.gltf", text.dump());
-  library.folder.write("lib/blocked.glb", glb);
-  fs::create_directories(library.mended / "blocked.glb/x");
+  fs::create_directories(library.folder.path / "lib/blocked");
+  library.folder.write("lib/blocked/arm.glb", glb);
+  fs::create_directories(library.mended);
+  library.folder.write("mended/blocked", "a file");
   const tool::Run run = library.check("");
   CHECK_MESSAGE(run.code == 6, run.error);  // the library is as it was
-  CHECK(run.out.find("not mended " + (library.folder.path / "lib/blocked.glb").string()) != std::string::npos);
+  CHECK(run.out.find("not mended " + (library.folder.path / "lib/blocked/arm.glb").string()) != std::string::npos);
   CHECK(run.out.find("mended " + (library.mended / "loose.gltf.glb").string() + ": 1 clip, 1 event: 1 cleared\n") !=
         std::string::npos);
   CHECK(run.out.find("mended " + (library.mended / "sub/hero.glb").string() + ": 1 clip, 1 event: 1 cleared\n") !=
