@@ -28,31 +28,42 @@ double price_of(const std::string& role) {
   return found == kPrices.end() ? 0 : found->second;
 }
 
-// In a joint's own axes: across its two bones, as the clip bends it, and along the lower one. Dear is what is neither,
-// and a little what twists. The identity where there is no such axis.
-Eigen::Matrix3d hinge(const SourceRig& rig, const Clip& clip, Index node) {
-  constexpr double kOff = 30, kTwist = 4;
+constexpr double kDegree = 3.14159265358979323846 / 180;
+constexpr double kBentMost = 150 * kDegree;
+
+// A joint of two bones bends across both, as the clip bends it, and from straight to as far as it does there, or 150
+// degrees. None where there is no such axis.
+std::optional<Hinge> hinge_of(const SourceRig& rig, const Clip& clip, Index node) {
   constexpr int kLooks = 100;
-  const Eigen::Matrix3d none = Eigen::Matrix3d::Identity();
   const auto child = std::find_if(rig.nodes.begin(), rig.nodes.end(),
                                   [&](const Node& n) { return n.parent == static_cast<int>(node); });
-  if (child == rig.nodes.end()) return none;
-  const double upper_length = rig.nodes[node].translation.norm(), lower_length = child->translation.norm();
-  if (upper_length == 0 || lower_length == 0) return none;
-  const Vec3 lower = child->translation / lower_length;
+  if (child == rig.nodes.end()) return {};
+  Hinge out;
+  if (rig.nodes[node].translation.norm() == 0 || child->translation.norm() == 0) return {};
+  out.upper = rig.nodes[node].translation.normalized();
+  out.lower = child->translation.normalized();
   Vec3 sum = Vec3::Zero();
+  std::vector<Eigen::Quaterniond> rotations;
   for (int i = 0; i <= kLooks; ++i) {
-    Eigen::Quaterniond rotation = rig.nodes[node].rotation;
-    for (const Channel& channel : clip.channels) {
-      if (channel.path != ChannelPath::kRotation || channel.target != node) continue;
-      rotation = Eigen::Quaterniond(sample(channel, clip.duration * i / kLooks));
-    }
-    const Vec3 axis = (rotation.inverse() * rig.nodes[node].translation / upper_length).cross(lower);
+    rotations.push_back(rotation_at(rig, clip, node, clip.duration * i / kLooks));
+    const Vec3 axis = (rotations.back().inverse() * out.upper).cross(out.lower);
     sum += sum.dot(axis) < 0 ? Vec3(-axis) : axis;
   }
-  if (sum.norm() < 1e-3) return none;
-  const Vec3 axis = sum.normalized();
-  return kOff * none - (kOff - 1) * axis * axis.transpose() - (kOff - kTwist) * lower * lower.transpose();
+  if (sum.norm() < 1e-3) return {};
+  out.axis = sum.normalized();
+  out.most = kBentMost;
+  for (const Eigen::Quaterniond& rotation : rotations) {
+    out.least = std::min(out.least, out.bend(rotation));
+    out.most = std::max(out.most, out.bend(rotation));
+  }
+  return out;
+}
+
+// Dear is what does not bend, and a little what twists.
+Eigen::Matrix3d price_of(const Hinge& hinge) {
+  constexpr double kOff = 30, kTwist = 4;
+  return kOff * Eigen::Matrix3d::Identity() - (kOff - 1) * hinge.axis * hinge.axis.transpose() -
+         (kOff - kTwist) * hinge.lower * hinge.lower.transpose();
 }
 
 bool is_below(const SourceRig& rig, Index node, Index other) {
@@ -70,14 +81,15 @@ std::vector<TurningJoint> turning_joints(const SourceRig& rig, const Roles& role
     const double price = price_of(role);
     if (price == 0) continue;
     const bool is_hinge = role == "elbow" || role == "knee";
-    out.push_back({n, price * (is_hinge ? hinge(rig, clip, n) : Eigen::Matrix3d::Identity())});
+    const std::optional<Hinge> hinge = is_hinge ? hinge_of(rig, clip, n) : std::nullopt;
+    out.push_back({n, price * (hinge ? price_of(*hinge) : Eigen::Matrix3d::Identity()), hinge});
   }
   if (!out.empty()) return out;
   for (const Bone& bone : rig.bones) {
     const auto carries = [&](const Bone& other) { return is_below(rig, other.node, bone.node); };
     const auto is_it = [&](const TurningJoint& joint) { return joint.node == bone.node; };
     if (std::all_of(rig.bones.begin(), rig.bones.end(), carries)) continue;
-    if (std::none_of(out.begin(), out.end(), is_it)) out.push_back({bone.node});
+    if (std::none_of(out.begin(), out.end(), is_it)) out.push_back({bone.node, Eigen::Matrix3d::Identity(), {}});
   }
   return out;
 }

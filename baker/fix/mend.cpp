@@ -17,6 +17,7 @@
 #include "fix/goals.h"
 #include "fix/joints.h"
 #include "fix/part_joints.h"
+#include "fix/pins.h"
 #include "fix/pushes.h"
 #include "fix/solve.h"
 #include "fix/spans.h"
@@ -39,7 +40,7 @@ constexpr double kShallow = 10;   // mm
 constexpr double kNear = 5;       // mm
 constexpr double kLess = 0.8;     // of its depth: an event is reduced
 constexpr double kBetter = 0.9;   // of what is left: it gets better
-constexpr double kTie = 1e7;                    // of a loop's ends
+constexpr double kTie = 1e7;      // of a loop's ends
 constexpr double kWish = 1e4, kWishMost = 1e5;  // the weight of pushes grows by round
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180; }
@@ -60,6 +61,9 @@ class Mender {
         turns_(static_cast<std::size_t>(clip.own_count) * clip_.count(), Vec3::Zero()),
         feet_(joints_of_role(clip_.joints(), roles, "ankle")),
         wrists_(joints_of_role(clip_.joints(), roles, "wrist")),
+        planted_(planted_hands(clip_, wrists_, feet_, animated.frame().up, height_)),
+        grips_(wrists_.size() == 2 ? gripping_frames(clip_, wrists_[0], wrists_[1], height_)
+                                   : std::vector<char>(static_cast<std::size_t>(clip.own_count), 0)),
         parts_(animated, clip_, feet_),
         loops_(same_pose(clip_.pose(0, turns_).deformation, clip_.pose(clip_.frames() - 1, turns_).deformation,
                          animated.frame())),
@@ -118,16 +122,16 @@ class Mender {
     return out;
   }
 
-  // A joint turns a little a round, unless it is led, and never beyond the budget. Returns the farthest that one turns;
-  // radians.
+  // A joint turns a little a round, unless it is led, and never beyond the budget and its hinge. Returns the farthest
+  // that one turns; radians.
   double take(const Turns& wanted) {
     const double step = radians(kStep), most = radians(options_.budget_degrees);
     double farthest = 0;
     for (std::size_t i = 0; i < turns_.size(); ++i) {
       Vec3 to = wanted[i] - turns_[i];
       if (to.norm() > step && jumps_[i / clip_.count()] == 0) to *= step / to.norm();
-      to += turns_[i];
-      if (to.norm() > most) to *= most / to.norm();
+      to = clip_.within_limits(static_cast<int>(i / clip_.count()), static_cast<Index>(i % clip_.count()),
+                               turns_[i] + to, most);
       farthest = std::max(farthest, (to - turns_[i]).norm());
       turns_[i] = to;
     }
@@ -196,7 +200,14 @@ class Mender {
         }
       }
     }
-    for (const int f : whole_frames_in_window()) add_pins(clip_, feet_, f, height_, turns_, out);
+    for (const int f : whole_frames_in_window()) {
+      add_pins(clip_, feet_, f, height_, turns_, out);
+      add_pins(clip_, planted_[static_cast<std::size_t>(f)], f, height_, turns_, out);
+      if (grips_[static_cast<std::size_t>(f)] != 0) {
+        add_grip(clip_, wrists_[0], wrists_[1], f, height_, turns_, out);
+      }
+      add_limits(clip_, feet_, f, out);
+    }
     return out;
   }
 
@@ -417,7 +428,9 @@ class Mender {
   FaultFinder finder_;
   Pushes pushes_;
   Turns turns_;
-  std::vector<Index> feet_, wrists_;  // joints
+  std::vector<Index> feet_, wrists_;         // joints
+  std::vector<std::vector<Index>> planted_;  // of each frame: hands that stand on the ground
+  std::vector<char> grips_;                  // of each frame: hands hold one thing
   PartJoints parts_;
   bool loops_, touches_ = false;  // what is to part is not yet out
   std::vector<char> in_window_;

@@ -15,7 +15,6 @@ constexpr double kArm = 0.3;        // an arm's
 constexpr double kFarthest = 0.03;  // what a push asks for in a round, at most
 // Weights of a miss of an arm's length, against a radian of a shoulder.
 constexpr double kPullBack = 500;  // of what was shallow, where it is too far
-constexpr double kPinned = 1e6;
 
 Vec3 to_vec3(const spherechain::Vec3& v) { return {v.x, v.y, v.z}; }
 
@@ -87,32 +86,6 @@ void Pushes::add_wishes(double weight, const Turns& turns, std::vector<Wish>& wi
         if (share > 0) wish.parts.push_back({first + 1, joint, share * d});
       }
       wishes.push_back(std::move(wish));
-    }
-  }
-}
-
-void add_pins(const TurnedClip& clip, const std::vector<Index>& joints, int frame, double height, const Turns& turns,
-              std::vector<Wish>& wishes) {
-  if (joints.empty()) return;
-  const TurnedClip::Pose pose = clip.pose(frame, turns);
-  const TurnedClip::Pose wanted = clip.pose(frame, Turns(turns.size(), Vec3::Zero()));
-  const std::vector<Vec3> now = clip.turns_at(frame, turns);
-  const double arm = kArm * height;
-  for (const Index pinned : joints) {
-    const double reach = arm / 3 / pose.axes[pinned].linear().col(0).norm();
-    for (const Vec3& own : {Vec3(0, 0, 0), Vec3(reach, 0, 0), Vec3(0, reach, 0)}) {
-      const Vec3 at = pose.axes[pinned] * own, to = wanted.axes[pinned] * own;
-      for (int axis = 0; axis < 3; ++axis) {
-        Wish wish;
-        wish.weight = wish.weight_over = kPinned / (arm * arm);
-        wish.value = to[axis] - at[axis];
-        for (const Index joint : clip.above_joint(pinned)) {
-          const Vec3 by = turn_moves(pose.axes[joint], at, now[joint]).row(axis).transpose();
-          wish.value += by.dot(now[joint]);
-          wish.parts.push_back({frame, joint, by});
-        }
-        wishes.push_back(std::move(wish));
-      }
     }
   }
 }

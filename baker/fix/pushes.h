@@ -57,8 +57,4 @@ class Pushes {
   std::map<MeetingPlace, std::vector<Push>> of_;
 };
 
-// That three points which each of these joints carries stay where the clip has them.
-void add_pins(const TurnedClip& clip, const std::vector<Index>& joints, int frame, double height, const Turns& turns,
-              std::vector<Wish>& wishes);
-
 }  // namespace spherechain::baker

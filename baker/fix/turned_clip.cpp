@@ -40,6 +40,20 @@ Eigen::Quaterniond turned(const Eigen::Quaterniond& rotation, const Vec3& x) {
   return rotation * Eigen::Quaterniond(Eigen::AngleAxisd(angle, x / angle));
 }
 
+double Hinge::bend(const Eigen::Quaterniond& rotation) const {
+  const Vec3 from = rotation.inverse() * upper;
+  return std::atan2(axis.dot(from.cross(lower)), from.dot(lower));
+}
+
+Eigen::Quaterniond rotation_at(const SourceRig& rig, const Clip& clip, Index node, double seconds) {
+  Eigen::Quaterniond out = rig.nodes[node].rotation;
+  for (const Channel& channel : clip.channels) {
+    if (channel.path != ChannelPath::kRotation || channel.target != node) continue;
+    out = Eigen::Quaterniond(sample(channel, seconds));
+  }
+  return out;
+}
+
 TurnedClip::TurnedClip(const SourceRig& rig, const Clip& clip, double fps, int frames, std::vector<TurningJoint> joints)
     : rig_(rig),
       clip_(clip),
@@ -49,6 +63,21 @@ TurnedClip::TurnedClip(const SourceRig& rig, const Clip& clip, double fps, int f
       joint_of_node_(rig.nodes.size(), -1) {
   for (std::size_t j = 0; j < joints_.size(); ++j) joint_of_node_[joints_[j].node] = static_cast<int>(j);
   for (const Bone& bone : rig.bones) above_.push_back(joints_above(bone.node));
+  for (const TurningJoint& joint : joints_) {
+    rotations_.emplace_back();
+    for (int f = 0; joint.hinge && f < frames; ++f) {
+      rotations_.back().push_back(rotation_at(rig, clip, joint.node, f / fps));
+    }
+  }
+}
+
+Vec3 TurnedClip::within_limits(int frame, Index joint, Vec3 turn, double most) const {
+  constexpr double kSlack = 0.01;  // radians
+  if (turn.norm() > most) turn *= most / turn.norm();
+  const std::optional<Hinge>& hinge = joints_[joint].hinge;
+  if (!hinge) return turn;
+  const double bend = hinge->bend(turned(rotations_[joint][static_cast<std::size_t>(frame)], turn));
+  return turn + (std::clamp(bend, hinge->least - kSlack, hinge->most + kSlack) - bend) * hinge->axis;
 }
 
 std::vector<Index> TurnedClip::joints_above(Index node) const {

@@ -2,16 +2,27 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "motion/clip.h"
 
 namespace spherechain::baker {
 
+// An elbow or a knee: how far it bends. Radians; 0: straight.
+struct Hinge {
+  Vec3 axis;          // in the joint's own axes, as the lower bone
+  Vec3 upper, lower;  // along the bones: of the upper one in the parent's axes
+  double least = 0, most = 0;
+
+  double bend(const Eigen::Quaterniond& rotation) const;
+};
+
 // A joint that a mend may turn.
 struct TurningJoint {
   Index node;
   Eigen::Matrix3d price = Eigen::Matrix3d::Identity();  // a turn x, in the joint's own axes, costs x' price x
+  std::optional<Hinge> hinge;
 };
 
 // Rotation vectors, in the joints' own axes: radians, a joint's after the other's, frame by frame.
@@ -19,6 +30,8 @@ using Turns = std::vector<Vec3>;
 
 // Derivative of a turn: turning by x + d is turning by x, then by this times d, to first order.
 Eigen::Matrix3d turn_derivative(const Vec3& x);
+// A node's rotation in a clip.
+Eigen::Quaterniond rotation_at(const SourceRig& rig, const Clip& clip, Index node, double seconds);
 Eigen::Quaterniond turned(const Eigen::Quaterniond& rotation, const Vec3& x);
 
 // A clip with joints turned on top of what it does.
@@ -44,6 +57,12 @@ class TurnedClip {
   // The turning joints that move a bone, or a turning joint, itself among them.
   const std::vector<Index>& above(Index bone) const { return above_[bone]; }
   std::vector<Index> above_joint(Index joint) const { return joints_above(joints_[joint].node); }
+  // How far a joint with a hinge is bent in a whole frame of the clip.
+  double bend(int frame, Index joint) const {
+    return joints_[joint].hinge->bend(rotations_[joint][static_cast<std::size_t>(frame)]);
+  }
+  // What a joint that may turn by `most` radians, and hardly farther than its hinge, does of a turn in a whole frame.
+  Vec3 within_limits(int frame, Index joint, Vec3 turn, double most) const;
   // Of each joint; between two frames blended.
   std::vector<Vec3> turns_at(double frame, const Turns& turns) const;
 
@@ -57,6 +76,7 @@ class TurnedClip {
   std::vector<TurningJoint> joints_;
   std::vector<int> joint_of_node_;
   std::vector<std::vector<Index>> above_;
+  std::vector<std::vector<Eigen::Quaterniond>> rotations_;  // of a joint with a hinge: by frame
 };
 
 // How a turn of a joint moves what is at `at`: by this times the turn, to first order around the turn x.

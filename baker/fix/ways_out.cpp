@@ -83,8 +83,7 @@ class Search {
   std::vector<Vec3> scaled(int frame, const std::vector<Vec3>& turns, double share) const {
     std::vector<Vec3> out = none(frame);
     for (const Index joint : limb_.joints) {
-      out[joint] = share * turns[joint];
-      if (out[joint].norm() > budget_) out[joint] *= budget_ / out[joint].norm();
+      out[joint] = clip_.within_limits(frame, joint, share * turns[joint], budget_);
     }
     return out;
   }
@@ -181,8 +180,9 @@ class Search {
       for (const Index joint : limb_.joints) {
         for (const Vec3& axis : kAxes) {
           std::vector<Vec3> turns = from.turns;
-          turns[joint] += budget_ * level / kLevels * axis;
-          if (turns[joint].norm() <= budget_ * (1 + 1e-9)) poses.push_back({frame, std::move(turns)});
+          const Vec3 wanted = turns[joint] + budget_ * level / kLevels * axis;
+          turns[joint] = clip_.within_limits(frame, joint, wanted, budget_);
+          poses.push_back({frame, std::move(turns)});
         }
       }
       const std::vector<double> left = judge_(poses);
