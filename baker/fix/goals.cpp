@@ -73,10 +73,11 @@ double Goals::too_deep(const Meeting& meeting) const {
 
 bool Goals::is_worse(const Meeting& meeting) const {
   if (!is_fault(meeting.found.kind)) return false;
+  const double first = std::floor(meeting.frame) - 1, last = std::ceil(meeting.frame) + 1;
   double most = 0;
-  for (int f = static_cast<int>(meeting.frame) - 1; f <= static_cast<int>(meeting.frame) + 2; ++f) {
-    const Penetration* known = before({static_cast<double>(f), meeting.found.part_a, meeting.found.part_b});
-    if (known != nullptr) most = std::max(most, double{known->depth});
+  for (double f = first; f <= last; ++f) {
+    const Penetration* known = before({f, meeting.found.part_a, meeting.found.part_b});
+    if (known != nullptr && is_fault(known->kind)) most = std::max(most, double{known->depth});
   }
   return double{meeting.found.depth} > most + kFoldDeeper / mm_;
 }
