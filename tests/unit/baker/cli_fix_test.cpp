@@ -180,7 +180,7 @@ TEST_CASE("fix: clips of one name have a page each") {
 TEST_CASE("fix: a point of the skin moves with a turn as its derivative says") {
   const TemporaryFolder folder;
   const Character character = import_character(folder.write("arm.glb", wall_and_arm(std::vector<double>(9, 5))));
-  const TurnedClip clip(character.rig, character.rig.clips[0], 30, 9, {{2}});
+  const TurnedClip clip(character.rig, character.rig.clips[0], 30, 9, {{2, Eigen::Matrix3d::Identity(), {}}});
   const SkinSpot spot{character.source_triangles.back(), {0.2, 0.3, 0.5}};
   const auto at = [&](const Vec3& turn) {
     const Turns turns(9, turn);
