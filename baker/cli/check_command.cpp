@@ -141,7 +141,12 @@ ExitCode run_check(const CheckOptions& options) {
     return code_of(verdict);
   }
   const std::vector<LibraryCharacter> library = read_library(options.library, options.motion, config);
-  if (!options.fix.empty()) check_fix_folder(library, options.fix);
+  if (!options.fix.empty()) {
+    check_fix_folder(library, options.fix);
+    if (fs::weakly_canonical(options.fix) == fs::weakly_canonical(options.output)) {
+      throw Error(ExitCode::kUsage, "--fix: " + options.fix + " is the report's folder, too (name another)");
+    }
+  }
   RunOptions run;
   run.fps = options.fps;
   run.continuous = options.continuous;
@@ -170,6 +175,7 @@ ExitCode run_check(const CheckOptions& options) {
     const std::vector<std::string> lines = fix_library(library, verdict, baseline, options.fix, run.jobs,
                                                        [&](const RunState& state) { progress.show(state); });
     for (const std::string& line : lines) fmt::print("{}\n", line);
+    if (lines.empty()) fmt::print("nothing to mend\n");
   }
   return code_of(verdict);
 }

@@ -26,15 +26,24 @@ void make_folder(const std::string& path) {
   if (failed) throw Error(ExitCode::kFile, path + ": no such folder can be made (" + failed.message() + ")");
 }
 
-// Pages of the clips that changed, before and after side by side. Returns a line for each that cannot be shown: what
-// was mended is written by then.
-std::string write_pages(const FixOptions& options, const fs::path& page, const FixedCharacter& fixed) {
+bool is_page(const std::string& name) { return name.starts_with("clip_") && name.ends_with(".html"); }
+
+struct Pages {
+  int written = 0;
+  std::string notes;  // a line for each that cannot be shown: what was mended is written by then
+};
+
+// Pages of the clips that changed, before and after side by side.
+Pages write_pages(const FixOptions& options, const fs::path& page, const FixedCharacter& fixed) {
   for (const auto& entry : fs::directory_iterator(options.report)) {
-    const std::string name = entry.path().filename().string();  // of an earlier run
-    if (name.starts_with("clip_") && name.ends_with(".html")) fs::remove(entry.path());
+    if (is_page(entry.path().filename().string())) fs::remove(entry.path());  // of an earlier run
   }
-  std::string notes;
-  if (!fs::is_regular_file(page)) return notes;
+  Pages out;
+  if (!fs::is_regular_file(page)) {
+    out.notes =
+        "spherechain: warning: no pages: " + page.string() + " is not there (it is built where Node and npm are)\n";
+    return out;
+  }
   std::optional<AnimatedAsset> before, after;
   for (std::size_t i = 0; i < fixed.clips.size(); ++i) {
     const Mend& mend = fixed.clips[i].mend;
@@ -59,19 +68,30 @@ std::string write_pages(const FixOptions& options, const fs::path& page, const F
     } catch (const Error& error) {
       if (error.code() != ExitCode::kUsage) throw;
       const std::string what = error.what();  // and in brackets what to do, which other commands can
-      notes += fmt::format("spherechain: warning: {}: has no page: {}\n", fixed.clips[i].name,
-                           what.substr(0, what.rfind(" (")));
+      out.notes += fmt::format("spherechain: warning: {}: has no page: {}\n", fixed.clips[i].name,
+                               what.substr(0, what.rfind(" (")));
       continue;
     }
     write_atomically(fs::path(options.report) / fmt::format("clip_{}.html", i), html);
+    ++out.written;
   }
-  return notes;
+  return out;
 }
 
 bool has_ending(const std::string& file, const char* ending) {
   std::string own = fs::path(file).extension().string();
   for (char& c : own) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return own == ending;
+}
+
+// A folder of an earlier run is replaced.
+void check_report(const std::string& folder) {
+  if (!fs::is_directory(folder)) throw Error(ExitCode::kFile, folder + ": is no folder");
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (name == "fix.json" || is_page(name)) continue;
+    throw Error(ExitCode::kFile, folder + ": holds other files than a report (name an empty folder)");
+  }
 }
 
 void check_files(const FixOptions& options, const std::string& json, bool writes_bvh) {
@@ -81,14 +101,18 @@ void check_files(const FixOptions& options, const std::string& json, bool writes
                 "-o: " + options.output + ": a BVH is written of a BVH alone (--motion TAKE.bvh, or name it .glb)");
   }
   if (!writes_bvh && !has_ending(options.output, ".glb")) {
-    throw Error(ExitCode::kUsage, "-o: " + options.output + " is written as a binary glTF (name it .glb)");
+    throw Error(
+        ExitCode::kUsage,
+        "-o: " + options.output +
+            (fs::is_directory(options.output) ? " is a folder" : " is written as a binary glTF (name it .glb)"));
+  }
+  if (fs::is_directory(options.motion)) {
+    throw Error(ExitCode::kUsage, "--motion: " + options.motion + " is a folder (name one recording)");
   }
   if (is_sequence(options.motion)) {
     throw Error(ExitCode::kUsage, "--motion: " + options.motion + " holds meshes, and no joints to turn");
   }
-  if (fs::exists(options.report) && !fs::is_directory(options.report)) {
-    throw Error(ExitCode::kFile, options.report + ": is no folder");
-  }
+  if (fs::exists(options.report)) check_report(options.report);
   std::vector<CommandFile> inputs{{"--keep", options.keep}, {"--baseline", options.baseline}};
   MotionChoice motion;
   motion.motion = options.motion;
@@ -120,7 +144,8 @@ ExitCode run_fix(const FixOptions& options) {
   check_files(options, json, writes_bvh);
 
   FixedCharacter fixed;
-  std::string again, notes;
+  std::string again;
+  Pages pages;
   {
     Progress progress("fix " + options.input + ":");
     fixed = fix_character(job, [&](const std::string& doing) { progress.show(doing); });
@@ -129,7 +154,7 @@ ExitCode run_fix(const FixOptions& options) {
       progress.show("report");
       make_folder(options.report);
       write_atomically(json, fix_json(fixed.clips, fixed.parts));
-      notes = write_pages(options, page, fixed);
+      pages = write_pages(options, page, fixed);
     }
     if (writes_bvh) {
       progress.show("carrying over again");
@@ -137,13 +162,18 @@ ExitCode run_fix(const FixOptions& options) {
                           carried_over_again(fixed, options.input, options.output));
     }
   }
-  fmt::print(stderr, "{}", notes);
+  fmt::print(stderr, "{}", pages.notes);
+  if (!options.baseline.empty() && !fixed.is_in_baseline) {
+    fmt::print(stderr, "spherechain: warning: {}: has no event of this character and these clips\n", options.baseline);
+  }
   for (const std::string& part : fixed.unused_parts) {
     fmt::print(stderr, "spherechain: warning: {}: a rule names '{}', which this character has not\n", options.keep,
                part);
   }
   fmt::print("{}{}wrote {}\n", fix_text(fixed.clips, fixed.parts), again, options.output);
-  if (!json.empty()) fmt::print("wrote {}: fix.json, and a page of each clip that changed\n", options.report);
+  if (!json.empty()) {
+    fmt::print("wrote {}: fix.json and {} page{}\n", options.report, pages.written, pages.written == 1 ? "" : "s");
+  }
   return leaves_faults(fixed.clips) ? ExitCode::kTargetMissed : ExitCode::kDone;
 }
 

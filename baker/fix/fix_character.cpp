@@ -140,6 +140,7 @@ class Fixer {
     std::vector<const KnownEvent*> accepted;
     for (const KnownEvent& event : job_.baseline.events) {
       const bool is_it = is_end_of(event.character, job_.input) && is_of_clip(event);
+      out_.is_in_baseline |= is_it;
       if (is_it && event.state == EventState::kAccepted) accepted.push_back(&event);
     }
     const auto leave = [&](const MendedEvent& mended) {

@@ -32,6 +32,7 @@ struct FixedCharacter {
   std::vector<BodyPart> parts;
   std::string asset;                      // bytes of the character's
   std::vector<std::string> unused_parts;  // that a rule names, and the character has not
+  bool is_in_baseline = false;            // events of these clips are
 };
 
 // Bakes the character and mends its clips one after another. `told` is called with what is being done. Throws Error:

@@ -55,7 +55,8 @@ std::string clip_text(const MendedClip& clip, const std::vector<BodyPart>& parts
                         parts[e.part_a].name + ", " + parts[e.part_b].name, e.from, e.to, e.depth_before, e.depth_after,
                         e.turn_degrees, outcome_name(e.outcome));
   }
-  std::string out = fmt::format("{}: {} events", clip.name, clip.mend.events.size());
+  std::string out =
+      fmt::format("{}: {} event{}", clip.name, clip.mend.events.size(), clip.mend.events.size() == 1 ? "" : "s");
   for (const auto& [outcome, count] : counts) out += fmt::format(", {} {}", count, outcome_name(outcome));
   if (clip.others > 0) out += fmt::format("; {} of other parts", clip.others);
   const Comparison& compared = clip.mend.compared;
@@ -111,7 +112,10 @@ std::string fix_text(const std::vector<MendedClip>& clips, const std::vector<Bod
       out += clip_text(clip, parts);
     }
   }
-  return out + (clean > 0 ? fmt::format("{} of {} clips have no event: left as they are\n", clean, clips.size()) : "");
+  if (clean == 0) return out;
+  const bool is_one = clips.size() == 1;
+  return out + fmt::format("{} of {} clip{} no event: left as {} is\n", clean, clips.size(), is_one ? " has" : "s have",
+                           is_one ? "it" : "each");
 }
 
 std::string fix_line(const std::vector<MendedClip>& clips) {

@@ -92,7 +92,7 @@ TEST_CASE("fix: a BVH recording is written again with other angles around the fa
   }
   const tool::Run again = tool::run("fix " + files.character.string() + " --motion " + files.path("out.bvh") + " -o " +
                                     files.path("again.bvh"));
-  CHECK(again.out.find("1 of 1 clips have no event") != std::string::npos);
+  CHECK(again.out.find("1 of 1 clip has no event") != std::string::npos);
   CHECK(tool::contents(files.path("again.bvh")) == after);
 }
 
@@ -109,7 +109,7 @@ TEST_CASE("fix: what cannot be written from a recording is refused, and nothing 
   CHECK(tool::contents(files.path("out.bvh")) == "somebody's notes");
   tool::check_error(tool::run("fix " + files.character.string() + " --motion " + files.folder.path.string() + " -o " +
                               files.path("out.glb")),
-                    2, {"--motion", "meshes"});
+                    2, {"--motion", "is a folder"});
   // A joint that has to turn and has one angle alone.
   files.folder.write("take 1.bvh", recording_of_arm(planted_fault(), true));
   tool::check_error(files.fix("-o " + files.path("hinge.bvh")), 3, {"take 1.bvh: the joint '", "three axes"});
@@ -126,7 +126,7 @@ TEST_CASE("fix: what a baseline accepts is left; what is worse than that is not"
             .code == 0);
   const tool::Run run = tool::run("fix " + file.string() + " -o " + out + " --baseline " + baseline);
   CHECK_MESSAGE(run.code == 0, run.error);
-  CHECK(run.out.find("1 events, 1 accepted") != std::string::npos);
+  CHECK(run.out.find("1 event, 1 accepted") != std::string::npos);
   CHECK(tool::contents(out) == tool::contents(file));
   const auto with = [&](const char* key, const json& value) {
     json changed = json::parse(tool::contents(baseline));

@@ -104,7 +104,7 @@ TEST_CASE("fix: what has no fault, is meant, or costs more than the budget, stay
   CHECK(clean.run.code == 0);
   CHECK(clean.after == clean.before);
   CHECK(clean.report["clips"][0]["events"].empty());
-  CHECK(clean.run.out.find("1 of 1 clips have no event") != std::string::npos);
+  CHECK(clean.run.out.find("1 of 1 clip has no event") != std::string::npos);
 
   const Fixed kept = fix(std::vector<double>(30, 5), "keep");
   CHECK(kept.run.code == 0);
