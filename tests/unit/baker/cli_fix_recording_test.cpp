@@ -59,7 +59,7 @@ TEST_CASE("fix: a recording becomes a clip of the character, mended; its own cli
   CHECK(clip.name == "take 1");
   const std::vector<double> degrees = planted_fault();
   for (int f = 0; f < 120; ++f) {
-    const auto m = world_at(character.rig, clip, f / 30.0)[2].linear();
+    const Eigen::Matrix3d m = world_at(character.rig, clip, f / 30.0)[2].linear();
     const double now = std::atan2(m(0, 1), m(0, 0)) * 180 / std::numbers::pi;
     CHECK(now < 0.2);
     if (std::abs(f - 60) > 20) CHECK(std::abs(now - degrees[static_cast<std::size_t>(f)]) < 1e-3);
