@@ -90,6 +90,16 @@ std::vector<double> FaultFinder::changed(SeenFrames& seen,
   return out;
 }
 
+template <typename Frames>
+std::vector<Meeting> FaultFinder::found_in(const SeenFrames& seen, const Frames& frames) {
+  std::vector<Meeting> out;
+  for (const auto frame : frames) {
+    const std::vector<Meeting>& of_it = seen.at(frame).found;
+    out.insert(out.end(), of_it.begin(), of_it.end());
+  }
+  return out;
+}
+
 std::vector<Meeting> FaultFinder::in_frames(const std::vector<double>& frames, const Turns& turns) {
   std::vector<std::pair<double, std::vector<Vec3>>> now;
   for (const double frame : frames) now.emplace_back(frame, clip_.turns_at(frame, turns));
@@ -98,12 +108,7 @@ std::vector<Meeting> FaultFinder::in_frames(const std::vector<double>& frames, c
   on_threads(players_.size(), again.size(),
              [&](std::size_t t, std::size_t i) { found[i] = look(players_[t], again[i], turns); });
   for (std::size_t i = 0; i < again.size(); ++i) seen_[again[i]].found = std::move(found[i]);
-  std::vector<Meeting> out;
-  for (const double frame : frames) {
-    const std::vector<Meeting>& of_it = seen_[frame].found;
-    out.insert(out.end(), of_it.begin(), of_it.end());
-  }
-  return out;
+  return found_in(seen_, frames);
 }
 
 std::vector<std::vector<Meeting>> FaultFinder::in_poses(const std::vector<TriedPose>& poses,
@@ -154,12 +159,7 @@ std::vector<Meeting> FaultFinder::between(const std::vector<int>& frames, const 
   on_threads(players_.size(), again.size(),
              [&](std::size_t t, std::size_t i) { found[i] = look_after(t, static_cast<int>(again[i]), turns); });
   for (std::size_t i = 0; i < again.size(); ++i) seen_between_[again[i]].found = std::move(found[i]);
-  std::vector<Meeting> out;
-  for (const int frame : frames) {
-    const std::vector<Meeting>& of_it = seen_between_[frame].found;
-    out.insert(out.end(), of_it.begin(), of_it.end());
-  }
-  return out;
+  return found_in(seen_between_, frames);
 }
 
 }  // namespace spherechain::baker

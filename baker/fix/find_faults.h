@@ -47,6 +47,8 @@ class FaultFinder {
   using SeenFrames = std::map<double, Seen>;
   // Those that have to be looked at again.
   static std::vector<double> changed(SeenFrames& seen, const std::vector<std::pair<double, std::vector<Vec3>>>& now);
+  template <typename Frames>
+  static std::vector<Meeting> found_in(const SeenFrames& seen, const Frames& frames);
   std::vector<Meeting> look(SkinPlayer& player, double frame, const Turns& turns) const;
   std::vector<Meeting> look_after(std::size_t thread, int frame, const Turns& turns);
   using IsLeftOut = std::function<bool(const TriangleContact&)>;

@@ -47,8 +47,8 @@ struct Mend {
 };
 
 // Turns joints so that what is a fault in a clip's frames, and between them, is none any more; feet stay where they
-// are. Whole events that would take a joint beyond the budget are left. `leave` says which are to be left as they are.
-// `told` is called with what is being done.
+// are. No joint turns beyond the budget: what then stays is reduced, or as it was. `leave` says which are to be left as
+// they are. `told` is called with what is being done.
 Mend mend_clip(const AnimatedAsset& animated, const Roles& roles, const ClipFrames& clip, const MendOptions& options,
                const std::function<bool(const MendedEvent&)>& leave,
                const std::function<void(const std::string&)>& told);
