@@ -79,4 +79,12 @@ struct FixOptions {
 };
 ExitCode run_fix(const FixOptions& options);
 
+struct ExportOptions {
+  std::string asset, source, format, output, volumes;  // empty volumes: what the format holds best
+  int at_most = 0;                                     // 0: as many as pay
+  bool force = false;
+};
+ExitCode run_export(const ExportOptions& options);
+std::vector<std::string> export_formats();
+
 }  // namespace spherechain::baker

@@ -223,6 +223,23 @@ int main(int argc, char** argv) {
   fix_command->add_flag("--force", fix.force, "Replace output files of another kind");
   fix_command->callback([&] { run = [&] { return run_fix(fix); }; });
 
+  ExportOptions exported;
+  CLI::App* export_command =
+      app.add_subcommand("export", "Write an asset's body parts as colliders for another program");
+  add_name(*export_command, "ASSET", exported.asset, "Asset (.sphc)")->required();
+  export_command->add_option("--to", exported.format, "Format to write (docs/exporting.md)")
+      ->required()
+      ->check(CLI::IsMember(export_formats()));
+  add_output(*export_command, "-o,--output", exported.output, "File to write; what belongs to it is written beside it")
+      ->required();
+  add_name(*export_command, "--source", exported.source, "The mesh it was baked from: vrm, khr and omi write into it");
+  export_command->add_option("--volumes", exported.volumes, "Their shape (default: the best that the format holds)")
+      ->check(CLI::IsMember({"spheres", "cones", "capsules", "ellipsoids", "boxes"}));
+  export_command->add_option("--at-most", exported.at_most, "Volumes in all (default: as many as pay)")
+      ->check(CLI::Range(1, 10000));
+  export_command->add_flag("--force", exported.force, "Replace an output file of another kind");
+  export_command->callback([&] { run = [&] { return run_export(exported); }; });
+
   ViewOptions view;
   CLI::App* view_command = app.add_subcommand("view", "Write a page that shows an asset on its source in motion");
   add_name(*view_command, "ASSET", view.asset, "Asset (.sphc)")->required();

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "cli/commands.h"
+#include "cli/outputs.h"
+#include "export/formats.h"
+#include "import/import.h"
+#include "mesh/error.h"
+#include "volumes/fit_volumes.h"
+#include "write/write.h"
+
+namespace spherechain::baker {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ExportFormat {
+  const char* name;
+  const char* volumes;  // what it holds best
+  Export (*of_colliders)(const Colliders&);
+  Export (*of_source)(const Colliders&, const SourceGlb&);  // of a format that is written into the source
+};
+
+constexpr ExportFormat kExportFormats[] = {
+    {"capsules.json", "cones", export_json, nullptr},
+    {"vrm", "capsules", nullptr, export_vrm},
+    {"khr", "cones", nullptr, export_khr},
+    {"omi", "cones", nullptr, export_omi},
+    {"mjcf", "capsules", export_mjcf, nullptr},
+    {"urdf", "spheres", export_urdf, nullptr},
+    {"xrdf", "spheres", export_xrdf, nullptr},
+    {"curobo", "spheres", export_curobo, nullptr},
+    {"usd", "cones", export_usd, nullptr},
+    {"godot", "capsules", export_godot, nullptr},
+    {"unity", "capsules", export_unity, nullptr},
+    {"unreal", "capsules", export_unreal, nullptr},
+};
+
+const ExportFormat& format_of(const std::string& name) {
+  return *std::find_if(std::begin(kExportFormats), std::end(kExportFormats),
+                       [&](const ExportFormat& format) { return format.name == name; });
+}
+
+VolumeShape shape_of(const std::string& name) {
+  constexpr const char* kNames[] = {"spheres", "cones", "capsules", "ellipsoids", "boxes"};
+  return static_cast<VolumeShape>(std::find(std::begin(kNames), std::end(kNames), name) - std::begin(kNames));
+}
+
+SourceGlb read_source_glb(const OpenAsset& asset, const ExportOptions& options) {
+  const SourceMesh source = read_source(options.source);
+  SourceGlb out{read_as_glb(options.source), {}};
+  const std::size_t bones = asset->info().bone_count;
+  for (std::size_t i = 0; i < bones; ++i) {
+    const bool is_there = i < source.rig.bones.size();
+    if (!is_there && asset->bone(i).is_rest) {
+      out.node_of_bone.push_back(-1);
+      continue;
+    }
+    const std::string name = is_there ? source.rig.nodes[source.rig.bones[i].node].name : std::string();
+    if (!is_there || name != asset->bone(i).name) {
+      throw Error(ExitCode::kFile, options.source + ": has not the bones of " + options.asset +
+                                       " (name the file that it was baked from; one that has bones of its own)");
+    }
+    out.node_of_bone.push_back(source.rig.nodes[source.rig.bones[i].node].in_file);
+  }
+  return out;
+}
+
+// What this tool wrote says so in its first lines.
+void check_ours(const std::string& file, bool force) {
+  std::error_code ignored;
+  if (force || !fs::is_regular_file(file, ignored) || fs::file_size(file, ignored) == 0) return;
+  std::string start(4096, '\0');
+  std::ifstream(file, std::ios::binary).read(start.data(), static_cast<std::streamsize>(start.size()));
+  if (start.find("spherechain") == std::string::npos) {
+    throw Error(ExitCode::kFile, file + ": is there already, and not of this tool (--force replaces it)");
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> export_formats() {
+  std::vector<std::string> out;
+  for (const ExportFormat& format : kExportFormats) out.emplace_back(format.name);
+  return out;
+}
+
+ExitCode run_export(const ExportOptions& options) {
+  const ExportFormat& format = format_of(options.format);
+  check_outputs(with_source({{"ASSET", options.asset}}, "--source", options.source), {{"--output", options.output}});
+  if (format.of_source != nullptr) {
+    if (options.source.empty()) throw Error(ExitCode::kUsage, "--to " + options.format + " needs --source");
+    check_replaceable(options.output, "glTF", "a binary glTF", options.force);
+  } else {
+    check_ours(options.output, options.force);
+  }
+  const OpenAsset asset = open_asset(options.asset);
+  const std::string shape = options.volumes.empty() ? format.volumes : options.volumes;
+  const Colliders colliders = fit_volumes(asset, shape_of(shape), options.at_most);
+  const Export made = format.of_source != nullptr ? format.of_source(colliders, read_source_glb(asset, options))
+                                                  : format.of_colliders(colliders);
+  std::vector<std::string> names;
+  for (const ExportFile& file : made.files) {
+    names.push_back(file.ending.empty() ? options.output
+                                        : fs::path(options.output).replace_extension(file.ending).string());
+    if (!file.ending.empty()) check_ours(names.back(), options.force);
+  }
+  for (std::size_t i = 0; i < names.size(); ++i) write_atomically(names[i], made.files[i].bytes);
+  std::size_t volumes = 0, bodies = 0;
+  for (const ColliderBody& body : colliders.bodies) {
+    volumes += body.volumes.size();
+    bodies += body.volumes.empty() ? 0 : 1;
+  }
+  fmt::print("{} volumes ({}) on {} body parts, {} pairs of parts ignored\n", volumes, shape, bodies,
+             colliders.ignored.size());
+  for (const std::string& note : made.notes) fmt::print("note: {}\n", note);
+  for (const std::string& name : names) fmt::print("wrote {}\n", name);
+  return ExitCode::kDone;
+}
+
+}  // namespace spherechain::baker

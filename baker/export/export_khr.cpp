@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "export/formats.h"
+#include "mesh/error.h"
+
+namespace spherechain::baker {
+
+Export export_khr(const Colliders&, const SourceGlb&) { throw Error(ExitCode::kInternal, "not written yet"); }
+Export export_omi(const Colliders&, const SourceGlb&) { throw Error(ExitCode::kInternal, "not written yet"); }
+
+}  // namespace spherechain::baker

@@ -1,0 +1,9 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "export/formats.h"
+#include "mesh/error.h"
+
+namespace spherechain::baker {
+
+Export export_unity(const Colliders&) { throw Error(ExitCode::kInternal, "not written yet"); }
+
+}  // namespace spherechain::baker

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "volumes/colliders.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace spherechain::baker {
+namespace {
+
+Eigen::Quaterniond from_axes(const Colliders& colliders, const Vec3& left, const Vec3& up, const Vec3& forward) {
+  Eigen::Matrix3d from, to;
+  from << colliders.left, colliders.up, colliders.forward;
+  to << left, up, forward;
+  return Eigen::Quaterniond(Eigen::Matrix3d(to * from.transpose()));
+}
+
+bool any_overlap(const ColliderBody& a, const Eigen::Isometry3d& a_at, const ColliderBody& b,
+                 const Eigen::Isometry3d& b_at) {
+  return std::any_of(a.volumes.begin(), a.volumes.end(), [&](const Volume& one) {
+    return std::any_of(b.volumes.begin(), b.volumes.end(),
+                       [&](const Volume& other) { return overlap(one, a_at, other, b_at); });
+  });
+}
+
+}  // namespace
+
+Eigen::Quaterniond to_y_up(const Colliders& colliders) {
+  return from_axes(colliders, Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ());
+}
+
+Eigen::Quaterniond to_z_up(const Colliders& colliders) {
+  return from_axes(colliders, Vec3::UnitY(), Vec3::UnitZ(), Vec3::UnitX());
+}
+
+Eigen::Isometry3d rest_in_parent(const Colliders& colliders, std::size_t body) {
+  const ColliderBody& one = colliders.bodies[body];
+  if (one.parent < 0) return one.rest;
+  return colliders.bodies[static_cast<std::size_t>(one.parent)].rest.inverse(Eigen::Isometry) * one.rest;
+}
+
+std::string identifier(const std::string& name) {
+  std::string out = name;
+  for (char& c : out) {
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
+  }
+  return out;
+}
+
+Eigen::Isometry3d rigid_part(const Affine& of) {
+  Eigen::Isometry3d out = Eigen::Isometry3d::Identity();
+  Eigen::JacobiSVD<Eigen::Matrix3d> svd(of.linear(), Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Eigen::Matrix3d u = svd.matrixU();
+  if ((u * svd.matrixV().transpose()).determinant() < 0) u.col(2) = -u.col(2);  // a mirrored bone: as near as it gets
+  out.linear() = u * svd.matrixV().transpose();
+  out.translation() = of.translation();
+  return out;
+}
+
+std::vector<Eigen::Isometry3d> posed(const Colliders& colliders, const std::vector<Affine>& bones) {
+  std::vector<Eigen::Isometry3d> out;
+  for (const ColliderBody& body : colliders.bodies) {
+    if (body.bone_index < 0 || static_cast<std::size_t>(body.bone_index) >= bones.size()) {
+      out.push_back(body.rest);
+      continue;
+    }
+    Affine bone = bones[static_cast<std::size_t>(body.bone_index)];
+    bone.translation() *= colliders.metres_per_unit;
+    out.push_back(rigid_part(bone * Affine(body.rest)));
+  }
+  return out;
+}
+
+std::vector<std::pair<int, int>> overlapping(const Colliders& colliders, const std::vector<Eigen::Isometry3d>& at) {
+  std::vector<std::pair<int, int>> out;
+  auto skipped = colliders.ignored.begin();
+  const int count = static_cast<int>(colliders.bodies.size());
+  for (int a = 0; a < count; ++a) {
+    for (int b = a + 1; b < count; ++b) {
+      if (skipped != colliders.ignored.end() && skipped->a == a && skipped->b == b) {
+        ++skipped;
+        continue;
+      }
+      const auto i = static_cast<std::size_t>(a), j = static_cast<std::size_t>(b);
+      if (any_overlap(colliders.bodies[i], at[i], colliders.bodies[j], at[j])) out.emplace_back(a, b);
+    }
+  }
+  return out;
+}
+
+}  // namespace spherechain::baker

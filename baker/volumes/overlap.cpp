@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "volumes/volume.h"
+
+// The algorithm of Gilbert, Johnson and Keerthi: two convex solids share a point where the differences of their points
+// hold the origin. A simplex of such differences walks towards it.
+namespace spherechain::baker {
+namespace {
+
+struct DifferenceSimplex {
+  std::array<Vec3, 4> points{Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
+  std::size_t count = 0;
+
+  void keep(std::initializer_list<std::size_t> which) {
+    std::array<Vec3, 4> kept = points;
+    std::size_t n = 0;
+    for (const std::size_t i : which) kept[n++] = points[i];
+    points = kept;
+    count = n;
+  }
+};
+
+// Each of these drops the points that the nearest point to the origin does not need, and returns that point.
+Vec3 nearest_on_segment(DifferenceSimplex& simplex) {
+  const Vec3 a = simplex.points[0], ab = simplex.points[1] - a;
+  const double t = -a.dot(ab), length = ab.squaredNorm();
+  if (t <= 0 || length == 0) {
+    simplex.keep({0});
+    return a;
+  }
+  if (t >= length) {
+    simplex.keep({1});
+    return simplex.points[0];
+  }
+  return a + t / length * ab;
+}
+
+Vec3 nearest_on_triangle(DifferenceSimplex& simplex) {
+  const Vec3 a = simplex.points[0], b = simplex.points[1], c = simplex.points[2];
+  const Vec3 normal = (b - a).cross(c - a);
+  const double area = normal.squaredNorm();
+  // Barycentric coordinates of the origin's image on the plane.
+  const double wa = normal.dot(b.cross(c)), wb = normal.dot(c.cross(a)), wc = normal.dot(a.cross(b));
+  if (area > 0 && wa >= 0 && wb >= 0 && wc >= 0) return normal.dot(a) / area * normal;
+  Vec3 best = Vec3::Constant(INFINITY);
+  DifferenceSimplex kept = simplex;
+  for (const auto& [i, j] : {std::array<std::size_t, 2>{0, 1}, {1, 2}, {0, 2}}) {
+    DifferenceSimplex edge = simplex;
+    edge.keep({i, j});
+    const Vec3 point = nearest_on_segment(edge);
+    if (point.squaredNorm() < best.squaredNorm()) {
+      best = point;
+      kept = edge;
+    }
+  }
+  simplex = kept;
+  return best;
+}
+
+Vec3 nearest_on_tetrahedron(DifferenceSimplex& simplex) {
+  const auto& p = simplex.points;
+  bool inside = true;
+  Vec3 best = Vec3::Constant(INFINITY);
+  DifferenceSimplex kept = simplex;
+  for (const auto& [i, j, k, l] : {std::array<std::size_t, 4>{0, 1, 2, 3}, {0, 1, 3, 2}, {0, 2, 3, 1}, {1, 2, 3, 0}}) {
+    const Vec3 normal = (p[j] - p[i]).cross(p[k] - p[i]);
+    const double origin = normal.dot(-p[i]), other = normal.dot(p[l] - p[i]);
+    if (other != 0 && origin * other >= 0) continue;  // on the inner side of this face
+    inside = false;
+    DifferenceSimplex face = simplex;
+    face.keep({i, j, k});
+    const Vec3 point = nearest_on_triangle(face);
+    if (point.squaredNorm() < best.squaredNorm()) {
+      best = point;
+      kept = face;
+    }
+  }
+  if (inside) return Vec3::Zero();
+  simplex = kept;
+  return best;
+}
+
+Vec3 nearest(DifferenceSimplex& simplex) {
+  switch (simplex.count) {
+    case 1:
+      return simplex.points[0];
+    case 2:
+      return nearest_on_segment(simplex);
+    case 3:
+      return nearest_on_triangle(simplex);
+    default:
+      return nearest_on_tetrahedron(simplex);
+  }
+}
+
+}  // namespace
+
+bool overlap(const Volume& a, const Eigen::Isometry3d& a_to_world, const Volume& b,
+             const Eigen::Isometry3d& b_to_world) {
+  constexpr int kStepsMax = 200;
+  constexpr double kTouching = 1e-9;  // metres
+  const Eigen::Isometry3d b_to_a = a_to_world.inverse(Eigen::Isometry) * b_to_world;
+  const Eigen::Matrix3d a_to_b = b_to_a.linear().transpose();
+  const auto difference = [&](const Vec3& direction) -> Vec3 {
+    return support(a, direction) - b_to_a * support(b, -(a_to_b * direction));
+  };
+  DifferenceSimplex simplex;
+  simplex.points[simplex.count++] = difference(Vec3::UnitX());
+  Vec3 point = simplex.points[0];
+  for (int step = 0; step < kStepsMax; ++step) {
+    const double distance = point.norm();
+    if (distance <= kTouching) return true;
+    const Vec3 next = difference(-point);
+    if (point.dot(next) > 0) return false;  // a plane lies between
+    simplex.points[simplex.count++] = next;
+    point = nearest(simplex);
+    if (point.norm() >= distance * (1 - 1e-14) && step > 0) return false;  // no nearer: the origin is outside
+  }
+  return point.norm() <= 1e-6;
+}
+
+}  // namespace spherechain::baker
