@@ -46,11 +46,6 @@ const ExportFormat& format_of(const std::string& name) {
                        [&](const ExportFormat& format) { return format.name == name; });
 }
 
-VolumeShape shape_of(const std::string& name) {
-  constexpr const char* kNames[] = {"spheres", "cones", "capsules", "ellipsoids", "boxes"};
-  return static_cast<VolumeShape>(std::find(std::begin(kNames), std::end(kNames), name) - std::begin(kNames));
-}
-
 SourceGlb read_source_glb(const OpenAsset& asset, const ExportOptions& options) {
   const SourceMesh source = read_source(options.source);
   SourceGlb out{read_as_glb(options.source), {}};
@@ -69,6 +64,15 @@ SourceGlb read_source_glb(const OpenAsset& asset, const ExportOptions& options) 
     out.node_of_bone.push_back(source.rig.nodes[source.rig.bones[i].node].in_file);
   }
   return out;
+}
+
+constexpr int kFramesMeasured = 100;
+
+std::string fit_text(const ColliderFit& fit) {
+  return fmt::format(
+      "{:.0f} % of the skin is inside; its distance is {:.1f} mm on average, {:.1f} mm at the 95th "
+      "percentile",
+      100 * fit.coverage, 1000 * fit.gap_mean, 1000 * fit.gap_95);
 }
 
 // What this tool wrote says so in its first lines.
@@ -101,7 +105,7 @@ ExitCode run_export(const ExportOptions& options) {
   }
   const OpenAsset asset = open_asset(options.asset);
   const std::string shape = options.volumes.empty() ? format.volumes : options.volumes;
-  const Colliders colliders = fit_volumes(asset, shape_of(shape), options.at_most);
+  const Colliders colliders = fit_volumes(asset, volume_shape(shape), options.at_most);
   const Export made = format.of_source != nullptr ? format.of_source(colliders, read_source_glb(asset, options))
                                                   : format.of_colliders(colliders);
   std::vector<std::string> names;
@@ -114,10 +118,13 @@ ExitCode run_export(const ExportOptions& options) {
   const ColliderFit fit = measure_fit(asset, colliders);
   fmt::print("{} volumes ({}) on {} body parts; {} pairs of parts are not tested\n", fit.volumes, shape, fit.bodies,
              colliders.ignored.size());
-  fmt::print(
-      "fit at rest: {:.0f} % of the skin is inside; its distance is {:.1f} mm on average, {:.1f} mm at the 95th "
-      "percentile; volume {:.0f} % of the body's\n",
-      100 * fit.coverage, 1000 * fit.gap_mean, 1000 * fit.gap_95, 100 * fit.volume_ratio);
+  fmt::print("at rest: {}; volume {:.0f} % of the body's\n", fit_text(fit), 100 * fit.volume_ratio);
+  if (!options.source.empty()) {
+    const AnimatedAsset animated(open_asset(options.asset), options.asset, options.source, {}, {});
+    if (animated.clips().size() > 1 || animated.frame_count() > 1) {
+      fmt::print("on its clips: {}\n", fit_text(measure_fit(animated, colliders, kFramesMeasured)));
+    }
+  }
   for (const std::string& note : made.notes) fmt::print("note: {}\n", note);
   for (const std::string& name : names) fmt::print("wrote {}\n", name);
   return ExitCode::kDone;

@@ -11,6 +11,7 @@
 #include "cli/commands.h"
 #include "pipeline/pipeline.h"
 #include "play/target.h"
+#include "volumes/fit_volumes.h"
 #include "write/version.h"
 
 namespace {
@@ -108,6 +109,12 @@ void add_radius(CLI::App& command, std::string& radius) {
   command.add_option("--radius", radius, "Radius pairs are reported at")
       ->check(CLI::IsMember({"fit", "detect"}))
       ->capture_default_str();
+}
+
+void add_volumes(CLI::App& command, std::string& volumes, int& at_most, const std::string& description) {
+  CLI::Option* shape = command.add_option("--volumes", volumes, description);
+  shape->check(CLI::IsMember(std::vector<std::string>(std::begin(kVolumeShapes), std::end(kVolumeShapes))));
+  command.add_option("--at-most", at_most, "Volumes in all (default: as many as pay)")->check(CLI::Range(1, 10000));
 }
 
 }  // namespace
@@ -232,11 +239,10 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember(export_formats()));
   add_output(*export_command, "-o,--output", exported.output, "File to write; what belongs to it is written beside it")
       ->required();
-  add_name(*export_command, "--source", exported.source, "The mesh it was baked from: vrm, khr and omi write into it");
-  export_command->add_option("--volumes", exported.volumes, "Their shape (default: the best that the format holds)")
-      ->check(CLI::IsMember({"spheres", "cones", "capsules", "ellipsoids", "boxes"}));
-  export_command->add_option("--at-most", exported.at_most, "Volumes in all (default: as many as pay)")
-      ->check(CLI::Range(1, 10000));
+  add_name(*export_command, "--source", exported.source,
+           "The mesh it was baked from: to measure the fit on its clips; vrm, khr and omi write into it");
+  add_volumes(*export_command, exported.volumes, exported.at_most,
+              "Their shape (default: the best that the format holds)");
   export_command->add_flag("--force", exported.force, "Replace an output file of another kind");
   export_command->callback([&] { run = [&] { return run_export(exported); }; });
 
@@ -248,6 +254,7 @@ int main(int argc, char** argv) {
   add_motion(*view_command, view.motion, view.frames, view.continuous);
   add_with(*view_command, view.with);
   add_radius(*view_command, view.radius);
+  add_volumes(*view_command, view.volumes, view.at_most, "Colliders to show, as export writes them");
   add_name(*view_command, "--report", view.report, "The report that bake wrote, to show in the page");
   add_name(*view_command, "--validation", view.validation, "What validate --json wrote, to show in the page");
   view_command->add_flag("--force", view.force, "Replace an output file that is not a page");

@@ -12,6 +12,7 @@
 #include "page/page.h"
 #include "page/page_inputs.h"
 #include "page/page_of_two.h"
+#include "volumes/fit_volumes.h"
 #include "write/write.h"
 
 namespace spherechain::baker {
@@ -41,8 +42,8 @@ void check_with(const ViewOptions& options) {
   const WithOptions& with = options.with;
   const bool is_same = with.asset == options.asset;
   const std::string wrong =
-      options.continuous || !options.report.empty() || !options.validation.empty()
-          ? "--with: a page of two shows no report, no validation, and frames alone"
+      options.continuous || !options.report.empty() || !options.validation.empty() || !options.volumes.empty()
+          ? "--with: a page of two shows no report, no validation, no colliders, and frames alone"
       : with.source.empty() && !is_same ? "--with-source: name the mesh that " + with.asset + " was baked from"
       : with.at.empty() && is_same      ? "--at: say where the second stands: it would stand in the first"
       : static_cast<int>(!with.motion.clip.empty()) + static_cast<int>(!with.motion.poses.empty()) +
@@ -73,6 +74,11 @@ ExitCode run_view(const ViewOptions& options) {
   }
   page.motion = options.motion.name().empty() ? "rest pose" : options.motion.name();
   page.fps = options.frames.fps;
+  std::optional<Colliders> colliders;
+  if (!options.volumes.empty()) {
+    colliders = fit_volumes(animated.asset(), volume_shape(options.volumes), options.at_most);
+    page.colliders = &*colliders;
+  }
   std::optional<AnimatedAsset> second;
   if (!with.asset.empty()) {
     second.emplace(with.asset, with_source_file, with.motion, options.frames);

@@ -14,6 +14,7 @@
 #include "page/page_penetrations.h"
 #include "report/json_text.h"
 #include "report/report.h"
+#include "volumes/volume_json.h"
 
 namespace spherechain::baker {
 namespace {
@@ -59,6 +60,31 @@ ordered_json clips_json(const AnimatedAsset& animated, const std::string& motion
   return out;
 }
 
+// Each body's place at rest in source units, and which bone moves it.
+ordered_json colliders_json(const Colliders& colliders) {
+  ordered_json out = ordered_json::array();
+  for (const ColliderBody& body : colliders.bodies) {
+    ordered_json volumes = ordered_json::array();
+    for (const Volume& volume : body.volumes) {
+      Affine to_rest(body.rest);
+      to_rest.prescale(1 / colliders.metres_per_unit);
+      volumes.push_back(json_of(moved(volume, to_rest)));
+    }
+    out.push_back({{"part", body.name}, {"bone", body.bone_index}, {"volumes", volumes}});
+  }
+  return out;
+}
+
+// Pairs of bodies that overlap.
+std::vector<std::array<std::uint16_t, 2>> collider_pairs_of(const Colliders& colliders,
+                                                            const Deformation& deformation) {
+  std::vector<std::array<std::uint16_t, 2>> out;
+  for (const auto& [a, b] : overlapping(colliders, posed(colliders, deformation.bones))) {
+    out.push_back({static_cast<std::uint16_t>(a), static_cast<std::uint16_t>(b)});
+  }
+  return out;
+}
+
 // `still` is the size of the page without them.
 ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& options, double still, PageMotion& motion,
                          const std::function<void(int)>& progress) {
@@ -67,7 +93,7 @@ ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& optio
   std::vector<float> numbers, times, seconds, spheres, refit_us, contacts_us;
   FrameLists<std::array<std::uint32_t, 2>> contacts;
   FrameLists<PenetrationEntry> penetrations;
-  FrameLists<std::array<std::uint16_t, 2>> fit_pairs, detect_pairs;
+  FrameLists<std::array<std::uint16_t, 2>> fit_pairs, detect_pairs, collider_pairs;
   Costs chains, all_pairs;
   for (int i = 0; i < frames; ++i) {
     progress(i);
@@ -84,6 +110,7 @@ ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& optio
     penetrations.add(entries_of(frame.penetrations, mm_per_unit(animated.asset())));
     fit_pairs.add(frame.fit_pairs);
     detect_pairs.add(frame.detect_pairs);
+    if (options.colliders != nullptr) collider_pairs.add(collider_pairs_of(*options.colliders, deformation));
     chains.add(frame.chains);
     all_pairs.add(frame.all_pairs);
     refit_us.push_back(static_cast<float>(frame.refit_us));
@@ -104,6 +131,7 @@ ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& optio
           {"penetrations", penetrations.json()},
           {"fit", fit_pairs.json()},
           {"detect", detect_pairs.json()},
+          {"colliders", collider_pairs.json()},
           {"contacts_us", base64(contacts_us)},
           {"refit_us", base64(refit_us)},
           {"chains", chains.json()},
@@ -127,6 +155,7 @@ std::string view_page(const AnimatedAsset& animated, const PageOptions& options,
                     {"validation", parsed_or_null(options.validation)},
                     {"radius", options.radius == SC_RADIUS_FIT ? "fit" : "detect"},
                     {"clips", clips_json(animated, options.motion)},
+                    {"colliders", options.colliders == nullptr ? ordered_json() : colliders_json(*options.colliders)},
                     {"mesh", page_mesh(animated, animated.character().source_positions, parts, spheres)}};
   const double still = static_cast<double>(page.size() + json_text(data, -1).size());
   PageMotion motion(animated.character(), axes);

@@ -8,6 +8,7 @@
 
 #include "play/play.h"
 #include "spherechain/types.h"
+#include "volumes/colliders.h"
 
 namespace spherechain::baker {
 
@@ -22,6 +23,7 @@ struct PageOptions {
   // them over each other, and it opens where the deepest fault was.
   bool they_meet = true;
   Radius radius = SC_RADIUS_DETECT;
+  const Colliders* colliders = nullptr;  // to show; null: none
   double fps = 30;
   std::size_t max_bytes = 512'000'000;  // Chromium reads no script of 2^29 letters or more
 };

@@ -72,7 +72,33 @@ Colliders find_bodies(const OpenAsset& asset) {
   return out;
 }
 
-std::vector<SkinSample> sample_skin(const OpenAsset& asset, const Colliders& colliders, int count) {
+std::vector<Eigen::Isometry3d> at_rest(const Colliders& colliders) {
+  std::vector<Eigen::Isometry3d> out;
+  for (const ColliderBody& body : colliders.bodies) out.push_back(body.rest);
+  return out;
+}
+
+std::vector<Vec3> skin_positions(const OpenAsset& asset) {
+  const Surface& surface = asset.surface();
+  std::vector<Vec3> out;
+  for (std::size_t v = 0; v < surface.rest_positions.size / 3; ++v) {
+    const float* p = surface.rest_positions.data + 3 * v;
+    out.push_back(double{asset->info().metres_per_unit} * Vec3(double{p[0]}, double{p[1]}, double{p[2]}));
+  }
+  return out;
+}
+
+std::vector<Vec3> skin_positions(const OpenAsset& asset, const std::vector<Vec3>& source) {
+  const Surface& surface = asset.surface();
+  std::vector<Vec3> out;
+  for (const std::uint32_t v : surface.source_vertices) {
+    out.push_back(double{asset->info().metres_per_unit} * source[v]);
+  }
+  return out;
+}
+
+std::vector<SkinSample> sample_skin(const OpenAsset& asset, const Colliders& colliders,
+                                    const std::vector<Vec3>& positions, int count) {
   const Surface& surface = asset.surface();
   std::map<std::string, int> by_name;
   for (std::size_t i = 0; i < colliders.bodies.size(); ++i) by_name[colliders.bodies[i].name] = static_cast<int>(i);
@@ -80,11 +106,7 @@ std::vector<SkinSample> sample_skin(const OpenAsset& asset, const Colliders& col
   std::vector<int> body_of_part;
   for (const BodyPart& part : parts.parts) body_of_part.push_back(by_name.at(part.name));
 
-  Mesh mesh;
-  for (std::size_t v = 0; v < surface.rest_positions.size / 3; ++v) {
-    const float* p = surface.rest_positions.data + 3 * v;
-    mesh.positions.push_back(colliders.metres_per_unit * Vec3(double{p[0]}, double{p[1]}, double{p[2]}));
-  }
+  Mesh mesh{positions, {}};
   std::vector<double> areas(colliders.bodies.size(), 0);
   for (std::size_t t = 0; t < surface.triangles.size; ++t) {
     const std::uint32_t* v = surface.triangle_vertices.data + 3 * t;
@@ -125,11 +147,9 @@ void take_spheres(const OpenAsset& asset, Colliders& colliders) {
 }
 
 void ignore_by_rest(Colliders& colliders) {
-  std::vector<Eigen::Isometry3d> at;
-  for (const ColliderBody& body : colliders.bodies) at.push_back(body.rest);
   colliders.ignored.clear();
   std::map<std::pair<int, int>, IgnoredReason> found;
-  for (const auto& [a, b] : overlapping(colliders, at)) found[{a, b}] = IgnoredReason::kRest;
+  for (const auto& [a, b] : overlapping(colliders, at_rest(colliders))) found[{a, b}] = IgnoredReason::kRest;
   for (int b = 0; b < static_cast<int>(colliders.bodies.size()); ++b) {
     const int a = colliders.bodies[static_cast<std::size_t>(b)].parent;
     if (a >= 0) found[{a, b}] = IgnoredReason::kAdjacent;

@@ -8,18 +8,26 @@
 
 namespace spherechain::baker {
 
-// A point of the skin at rest that stands for some of its area, in metres.
+// The asset's body parts as bodies without volumes, parents first.
+Colliders find_bodies(const OpenAsset& asset);
+
+// Where the bodies stand at rest.
+std::vector<Eigen::Isometry3d> at_rest(const Colliders& colliders);
+
+// The skin's vertices in metres: at rest, and where the source's vertices stand in a pose.
+std::vector<Vec3> skin_positions(const OpenAsset& asset);
+std::vector<Vec3> skin_positions(const OpenAsset& asset, const std::vector<Vec3>& source);
+
+// A point of the skin that stands for some of its area.
 struct SkinSample {
   Vec3 point, normal;
   double area;
   int body;  // that it belongs to
 };
 
-// The asset's body parts as bodies without volumes, parents first.
-Colliders find_bodies(const OpenAsset& asset);
-
-// The rest pose's skin, evenly: about `count` points a body.
-std::vector<SkinSample> sample_skin(const OpenAsset& asset, const Colliders& colliders, int count);
+// Of the skin's vertices there; evenly, about `count` points a body.
+std::vector<SkinSample> sample_skin(const OpenAsset& asset, const Colliders& colliders,
+                                    const std::vector<Vec3>& positions, int count);
 
 // Each sphere of the asset, at its detect radius, to the body that most of its triangles belong to.
 void take_spheres(const OpenAsset& asset, Colliders& colliders);

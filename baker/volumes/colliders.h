@@ -23,7 +23,8 @@ struct ColliderBody {
   Eigen::Isometry3d rest = Eigen::Isometry3d::Identity();  // its frame -> the rest pose in metres
   Eigen::AffineCompact3d to_bone =
       Eigen::AffineCompact3d::Identity();  // its frame -> the bone's own space, scale included
-  std::vector<Volume> volumes;             // in its frame, metres
+  int held_by = -1;  // the body whose volumes stand for it, too: that of a small part; -1: it has its own, or none
+  std::vector<Volume> volumes;  // in its frame, metres
 };
 
 // Why two bodies need not be tested against each other.

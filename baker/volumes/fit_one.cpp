@@ -239,19 +239,7 @@ Volume grown(const Volume& volume, const std::vector<BodySample>& samples, const
     const BodySample& sample = samples[static_cast<std::size_t>(i)];
     distances.emplace_back(signed_distance(volume, sample.point), sample.area);
   }
-  const double by = std::max(weighted_quantile(std::move(distances), coverage), 0.0);
-  Volume out = volume;
-  if (auto* ball = std::get_if<BallVolume>(&out)) {
-    ball->radius += by;
-  } else if (auto* cone = std::get_if<ConeVolume>(&out)) {
-    cone->radius_a += by;
-    cone->radius_b += by;
-  } else if (auto* ellipsoid = std::get_if<EllipsoidVolume>(&out)) {
-    ellipsoid->radii.array() += by;
-  } else if (auto* box = std::get_if<BoxVolume>(&out)) {
-    box->half.array() += by;
-  }
-  return out;
+  return padded(volume, std::max(weighted_quantile(std::move(distances), coverage), 0.0));
 }
 
 }  // namespace spherechain::baker

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <optional>
 
 #include "volumes/bodies.h"
 #include "volumes/fit_body.h"
@@ -92,6 +94,14 @@ class VolumeSets {
     return true;
   }
 
+  // The body that it was merged with, and what that was merged with; -1: none.
+  int held_by(std::size_t body) const {
+    if (!merged_with_[body]) return -1;
+    std::size_t at = body;
+    while (merged_with_[at]) at = *merged_with_[at];
+    return static_cast<int>(at);
+  }
+
   std::vector<Volume> volumes_of(std::size_t body) const {
     return alive_[body] ? taken(body).volumes : std::vector<Volume>();
   }
@@ -137,6 +147,7 @@ class VolumeSets {
     fits_[parent] = {fit_body(shape_, samples_[parent], 1)};
     taken_[parent] = 0;
     alive_[i] = false;
+    merged_with_[i] = parent;
     std::erase_if(merged_, [&](const auto& entry) {
       const auto& [pair, gap] = entry;
       return pair.first == i || pair.second == i || pair.first == parent || pair.second == parent;
@@ -149,10 +160,16 @@ class VolumeSets {
   std::vector<std::vector<BodyFit>> fits_;  // of a body: with one volume, two ...
   std::vector<std::size_t> taken_ = std::vector<std::size_t>(fits_.size(), 0);
   std::vector<bool> alive_;
+  std::vector<std::optional<std::size_t>> merged_with_ = std::vector<std::optional<std::size_t>>(samples_.size());
   std::map<std::pair<std::size_t, std::size_t>, double> merged_;  // the gap of two bodies with one volume
 };
 
 }  // namespace
+
+VolumeShape volume_shape(const std::string& name) {
+  return static_cast<VolumeShape>(std::find(std::begin(kVolumeShapes), std::end(kVolumeShapes), name) -
+                                  std::begin(kVolumeShapes));
+}
 
 Colliders fit_volumes(const OpenAsset& asset, VolumeShape shape, int at_most) {
   Colliders out = find_bodies(asset);
@@ -161,7 +178,7 @@ Colliders fit_volumes(const OpenAsset& asset, VolumeShape shape, int at_most) {
     ignore_by_rest(out);
     return out;
   }
-  const std::vector<SkinSample> skin = sample_skin(asset, out, kSamplesOfBody);
+  const std::vector<SkinSample> skin = sample_skin(asset, out, skin_positions(asset), kSamplesOfBody);
   double area = 0;
   for (const SkinSample& sample : skin) area += sample.area;
   VolumeSets sets(out, skin, shape);
@@ -173,6 +190,7 @@ Colliders fit_volumes(const OpenAsset& asset, VolumeShape shape, int at_most) {
   while (room() > 0 && sets.split_best(gain, room())) {
   }
   for (std::size_t i = 0; i < out.bodies.size(); ++i) out.bodies[i].volumes = sets.volumes_of(i);
+  for (std::size_t i = 0; i < out.bodies.size(); ++i) out.bodies[i].held_by = sets.held_by(i);
   ignore_by_rest(out);
   return out;
 }

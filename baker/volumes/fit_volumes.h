@@ -1,11 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <string>
+
 #include "play/asset_file.h"
 #include "volumes/colliders.h"
 #include "volumes/fit_one.h"
 
 namespace spherechain::baker {
+
+inline constexpr const char* kVolumeShapes[] = {"spheres", "cones", "capsules", "ellipsoids", "boxes"};
+VolumeShape volume_shape(const std::string& name);  // one of those
 
 // The asset's body parts with volumes of one shape, `at_most` of them in all; 0: as many as pay. They go where they
 // bring the skin and the volumes' surface nearest to each other. Where there are more parts than volumes, and of small

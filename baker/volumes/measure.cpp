@@ -14,11 +14,11 @@ struct PlacedVolume {
   Vec3 low, high;
 };
 
-std::vector<PlacedVolume> placed_volumes(const Colliders& colliders) {
+std::vector<PlacedVolume> placed_volumes(const Colliders& colliders, const std::vector<Eigen::Isometry3d>& at) {
   std::vector<PlacedVolume> out;
-  for (const ColliderBody& body : colliders.bodies) {
-    for (const Volume& volume : body.volumes) {
-      PlacedVolume one{moved(volume, Affine(body.rest)), Vec3::Zero(), Vec3::Zero()};
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    for (const Volume& volume : colliders.bodies[i].volumes) {
+      PlacedVolume one{moved(volume, Affine(at[i])), Vec3::Zero(), Vec3::Zero()};
       for (int axis = 0; axis < 3; ++axis) {
         one.low[axis] = support(one.volume, -Vec3::Unit(axis))[axis];
         one.high[axis] = support(one.volume, Vec3::Unit(axis))[axis];
@@ -67,12 +67,9 @@ double enclosed_volume(const std::vector<SkinSample>& skin) {
   return out;
 }
 
-}  // namespace
-
-ColliderFit measure_fit(const OpenAsset& asset, const Colliders& colliders) {
-  constexpr int kSamplesOfBody = 2000;
-  const std::vector<SkinSample> skin = sample_skin(asset, colliders, kSamplesOfBody);
-  const std::vector<PlacedVolume> volumes = placed_volumes(colliders);
+// All but the volume ratio.
+ColliderFit fit_of(const std::vector<SkinSample>& skin, const Colliders& colliders,
+                   const std::vector<PlacedVolume>& volumes) {
   ColliderFit out;
   out.volumes = static_cast<int>(volumes.size());
   for (const ColliderBody& body : colliders.bodies) out.bodies += body.volumes.empty() ? 0 : 1;
@@ -92,8 +89,37 @@ ColliderFit measure_fit(const OpenAsset& asset, const Colliders& colliders) {
   out.gap_mean /= area;
   out.gap_95 = weighted_quantile(std::move(gaps), 0.95);
   out.protrusion_95 = weighted_quantile(std::move(protrusions), 0.95);
-  const double enclosed = enclosed_volume(skin);
+  return out;
+}
+
+constexpr int kMeasuredOfBody = 500;  // samples
+
+}  // namespace
+
+ColliderFit measure_fit(const OpenAsset& asset, const Colliders& colliders) {
+  const std::vector<SkinSample> skin = sample_skin(asset, colliders, skin_positions(asset), kMeasuredOfBody);
+  const std::vector<PlacedVolume> volumes = placed_volumes(colliders, at_rest(colliders));
+  ColliderFit out = fit_of(skin, colliders, volumes);
+  const double enclosed = skin.empty() ? 0 : enclosed_volume(skin);
   out.volume_ratio = enclosed > 0 ? union_volume(volumes) / enclosed : 0;
+  return out;
+}
+
+ColliderFit measure_fit(const AnimatedAsset& animated, const Colliders& colliders, int frames) {
+  ColliderFit out;
+  const int count = std::min(frames, animated.frame_count());
+  for (int i = 0; i < count; ++i) {
+    const Deformation pose = animated.deformation(static_cast<int>(std::int64_t{i} * animated.frame_count() / count));
+    const std::vector<Vec3> positions = skin_positions(animated.asset(), animated.positions(pose));
+    const ColliderFit one = fit_of(sample_skin(animated.asset(), colliders, positions, kMeasuredOfBody), colliders,
+                                   placed_volumes(colliders, posed(colliders, pose.bones)));
+    out.volumes = one.volumes;
+    out.bodies = one.bodies;
+    out.coverage += one.coverage / count;
+    out.gap_mean += one.gap_mean / count;
+    out.gap_95 += one.gap_95 / count;
+    out.protrusion_95 += one.protrusion_95 / count;
+  }
   return out;
 }
 

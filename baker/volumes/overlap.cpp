@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -96,13 +97,21 @@ Vec3 nearest(DifferenceSimplex& simplex) {
   }
 }
 
-}  // namespace
+BallVolume ball_around(const BallVolume& ball) { return ball; }
+BallVolume ball_around(const ConeVolume& cone) {
+  return {(cone.a + cone.b) / 2, (cone.b - cone.a).norm() / 2 + std::max(cone.radius_a, cone.radius_b)};
+}
+BallVolume ball_around(const EllipsoidVolume& ellipsoid) { return {ellipsoid.center, ellipsoid.radii.maxCoeff()}; }
+BallVolume ball_around(const BoxVolume& box) { return {box.center, box.half.norm()}; }
 
-bool overlap(const Volume& a, const Eigen::Isometry3d& a_to_world, const Volume& b,
-             const Eigen::Isometry3d& b_to_world) {
+BallVolume bounds_of(const Volume& volume, const Eigen::Isometry3d& to_world) {
+  const BallVolume ball = std::visit([](const auto& one) { return ball_around(one); }, volume);
+  return {to_world * ball.center, ball.radius};
+}
+
+bool overlap_by_simplex(const Volume& a, const Volume& b, const Eigen::Isometry3d& b_to_a) {
   constexpr int kStepsMax = 200;
   constexpr double kTouching = 1e-9;  // metres
-  const Eigen::Isometry3d b_to_a = a_to_world.inverse(Eigen::Isometry) * b_to_world;
   const Eigen::Matrix3d a_to_b = b_to_a.linear().transpose();
   const auto difference = [&](const Vec3& direction) -> Vec3 {
     return support(a, direction) - b_to_a * support(b, -(a_to_b * direction));
@@ -120,6 +129,22 @@ bool overlap(const Volume& a, const Eigen::Isometry3d& a_to_world, const Volume&
     if (point.norm() >= distance * (1 - 1e-14) && step > 0) return false;  // no nearer: the origin is outside
   }
   return point.norm() <= 1e-6;
+}
+
+}  // namespace
+
+bool overlap(const Volume& a, const Eigen::Isometry3d& a_to_world, const Volume& b,
+             const Eigen::Isometry3d& b_to_world) {
+  const BallVolume around_a = bounds_of(a, a_to_world), around_b = bounds_of(b, b_to_world);
+  if ((around_a.center - around_b.center).norm() > around_a.radius + around_b.radius) return false;
+  // The distance to an ellipsoid is not exact.
+  if (std::holds_alternative<BallVolume>(a) && !std::holds_alternative<EllipsoidVolume>(b)) {
+    return signed_distance(b, b_to_world.inverse(Eigen::Isometry) * around_a.center) <= around_a.radius;
+  }
+  if (std::holds_alternative<BallVolume>(b) && !std::holds_alternative<EllipsoidVolume>(a)) {
+    return signed_distance(a, a_to_world.inverse(Eigen::Isometry) * around_b.center) <= around_b.radius;
+  }
+  return overlap_by_simplex(a, b, a_to_world.inverse(Eigen::Isometry) * b_to_world);
 }
 
 }  // namespace spherechain::baker

@@ -117,4 +117,21 @@ Volume moved(const Volume& volume, const Eigen::AffineCompact3d& by) {
   return out;
 }
 
+Volume padded(const Volume& volume, double by) {
+  constexpr double kLeast = 1e-4;
+  const auto longer = [&](double length) { return std::max(length + by, kLeast); };
+  Volume out = volume;
+  if (auto* ball = std::get_if<BallVolume>(&out)) {
+    ball->radius = longer(ball->radius);
+  } else if (auto* cone = std::get_if<ConeVolume>(&out)) {
+    cone->radius_a = longer(cone->radius_a);
+    cone->radius_b = longer(cone->radius_b);
+  } else if (auto* ellipsoid = std::get_if<EllipsoidVolume>(&out)) {
+    ellipsoid->radii = ellipsoid->radii.unaryExpr(longer);
+  } else if (auto* box = std::get_if<BoxVolume>(&out)) {
+    box->half = box->half.unaryExpr(longer);
+  }
+  return out;
+}
+
 }  // namespace spherechain::baker

@@ -50,6 +50,9 @@ double volume_of(const Volume& volume);  // cubic metres
 // The volume after a motion, and after a similarity: radii grow by its scale (the cube root of its determinant).
 Volume moved(const Volume& volume, const Eigen::AffineCompact3d& by);
 
+// Its surface farther out by so many metres, or farther in; no radius is below a tenth of a millimetre.
+Volume padded(const Volume& volume, double by);
+
 // Whether two volumes, each moved rigidly into one space, share a point. Exact to about 1e-9 m.
 bool overlap(const Volume& a, const Eigen::Isometry3d& a_to_world, const Volume& b,
              const Eigen::Isometry3d& b_to_world);

@@ -6,22 +6,19 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "export/volume_json.h"
 #include "play/play.h"
 #include "volumes/fit_volumes.h"
+#include "volumes/volume_json.h"
 
 using namespace spherechain::baker;
 using nlohmann::ordered_json;
 
 int main(int argc, char** argv) try {
   if (argc < 6) return 2;
-  const std::string names[] = {"spheres", "cones", "capsules", "ellipsoids", "boxes"};
-  int shape = 0;
-  while (shape < 4 && names[shape] != argv[3]) ++shape;
   MotionChoice motion;
   if (argc > 6) motion.motion = argv[6];
   AnimatedAsset animated(argv[1], argv[2], motion, {std::atoi(argv[5]), 30});
-  const Colliders colliders = fit_volumes(animated.asset(), static_cast<VolumeShape>(shape), std::atoi(argv[4]));
+  const Colliders colliders = fit_volumes(animated.asset(), volume_shape(argv[3]), std::atoi(argv[4]));
   ordered_json out{{"bodies", ordered_json::array()},
                    {"height", colliders.height},
                    {"metres_per_unit", colliders.metres_per_unit},

@@ -3,8 +3,8 @@
 # not have.
 
 # The baker's folders. Each may include those before it and itself.
-set(stages mesh import roles segment wrap fit chains rig bind clusters write calibrate pipeline motion play truth measure report
-  page check fix volumes export cli)
+set(stages mesh import roles segment wrap fit chains rig bind clusters write calibrate pipeline motion play volumes truth measure report
+  page check fix export cli)
 
 file(GLOB_RECURSE sources ${ROOT}/runtime/*.h ${ROOT}/runtime/*.cpp ${ROOT}/runtime/*.cc ${ROOT}/runtime/*.inl
   ${ROOT}/cuda/*.h ${ROOT}/cuda/*.cuh ${ROOT}/cuda/*.cpp ${ROOT}/cuda/*.cu)

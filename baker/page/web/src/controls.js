@@ -78,6 +78,7 @@ export function fillControls(panel, store, model) {
       check(store, 'spheres', 'Spheres', 'B', (shown) => store.showSpheres(shown)),
       slider(store, 'sphereOpacity', 'Opacity of the spheres'),
     ),
+    model.colliders && h('div', { class: 'row' }, check(store, 'colliders', 'Colliders', 'V'), slider(store, 'colliderOpacity', 'Opacity of the colliders')),
     model.hasMethod && legend(store),
     h('h2', {}, 'Body parts', link('hiddenParts', 'show all')),
     h('div', { class: 'parts' }, partToggles(store, model)),

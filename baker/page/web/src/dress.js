@@ -42,9 +42,13 @@ function dressSpheres(model, state, sphereLayer, visible) {
 }
 
 // Brings the layers to what the state says; `visible` becomes the spheres that are seen.
-export function dress(model, state, { skinLayer, sphereLayer, contactLayer }, visible) {
+export function dress(model, state, { skinLayer, sphereLayer, contactLayer, colliderLayer }, visible) {
   dressSkin(model, state, skinLayer);
   dressSpheres(model, state, sphereLayer, visible);
+  if (colliderLayer) {
+    colliderLayer.group.visible = state.colliders;
+    colliderLayer.pose(state.frame, model.overlappingColliders(state.frame), state.colliderOpacity);
+  }
   contactLayer.hidden.visible = state.hiddenContacts;
   contactLayer.fill(model.contacts.of(state.frame), state.contact, state.hiddenParts);
 }

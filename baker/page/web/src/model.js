@@ -117,6 +117,7 @@ export function readModel(data) {
   const partOf = decode(mesh.parts, Uint8Array);
   const sphereOf = decode(mesh.spheres, Uint16Array);
   const partName = (part) => data.parts[part] ?? 'other parts';
+  const colliderPairs = pairLists(frames?.colliders, Uint16Array);
   const contactLists = pairLists(frames?.contacts, Uint32Array);
   const clips = data.clips?.length > 0 ? data.clips : [{ name: 'rest pose', first: 0, count: 1, own_count: 1 }];
   return {
@@ -147,6 +148,7 @@ export function readModel(data) {
     },
     look: readLook(data.look),
     motion: readMotion(data),
+    colliders: data.colliders ?? null, // a body's bone, and its volumes in the rest pose
     frameCount: Math.max(count, 1),
     hasSpheres: Boolean(frames?.spheres),
     refit: null, // where the page has no spheres of each frame: they follow the skin
@@ -172,6 +174,8 @@ export function readModel(data) {
       const at = (frame * spheres.length + i) * floats;
       return [moved[at], moved[at + 1], moved[at + 2], moved[at + 3 + kinds.indexOf(kind)]];
     },
+    // The bodies whose colliders overlap another's.
+    overlappingColliders: (frame) => new Set(colliderPairs.of(frame)),
     // How deep two spheres are in each other: a length (<= 0: apart), and as the share PD of the sum of their radii.
     depth(frame, a, b, kind) {
       const p = this.sphere(frame, a, kind);

@@ -4,6 +4,7 @@ export const REGIONS = ['#0072b2', '#e69f00', '#56b4e9', '#cc79a7', '#009e73'];
 export const CONTACT = '#d41f2c';
 export const FALSE_ALARM = '#e59400';
 export const SPHERE = '#8497ab';
+export const COLLIDER = '#2f7fd6';
 export const CLAY = '#c9c2b6';
 export const GHOST = '#6d7278';
 export const POINTED = '#f0e442';

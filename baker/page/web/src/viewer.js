@@ -6,6 +6,7 @@ import { fillCharts } from './charts.js';
 import { fillClips } from './clips.js';
 import { fillContactPanel } from './contact_panel.js';
 import { ContactLayer } from './contact_layer.js';
+import { ColliderLayer } from './collider_layer.js';
 import { fillControls } from './controls.js';
 import { css, h } from './dom.js';
 import { dress } from './dress.js';
@@ -84,6 +85,8 @@ const shown = {
   follow: true,
   spheres: false,
   sphereOpacity: 0.8,
+  colliders: true, // where the page has some
+  colliderOpacity: 0.5,
   method: false,
   regions: false, // in their colours
   patches: false, // spheres' triangles in tones
@@ -138,6 +141,7 @@ export function start(model) {
     skinLayer: new SkinLayer(skin, model.look),
     sphereLayer: new SphereLayer(model.spheres.length),
     contactLayer: new ContactLayer(skin, most),
+    colliderLayer: model.colliders ? new ColliderLayer(model.colliders, model.motion) : null,
   };
   skin.pose(model.start);
   const stage = createStage($('view'), model, store, layers);
@@ -174,7 +178,7 @@ export function start(model) {
   $('help-button').addEventListener('click', () => $('help').showModal());
   $('licences').textContent = LICENCES;
   const chains = model.sets.filter((set) => set.kind === 'chain').map((set) => set.name);
-  bindKeys(store, { timeline, stage, help: $('help'), toggleTheme, reset, deepest, chains, hasMethod: model.hasMethod, hasChange: model.change !== null });
+  bindKeys(store, { timeline, stage, help: $('help'), toggleTheme, reset, deepest, chains, hasMethod: model.hasMethod, hasChange: model.change !== null, hasColliders: model.colliders !== null });
   runPlayback(store, model);
 
   window.spherechainViewer = Object.freeze({
