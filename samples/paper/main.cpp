@@ -9,6 +9,7 @@
 
 #include "mesh/error.h"
 #include "report.h"
+#include "tree_time.h"
 #include "write/write.h"
 
 using namespace spherechain;
@@ -58,6 +59,19 @@ std::vector<Setting> settings(bool quick) {
   return out;
 }
 
+// Chains to build trees over: profile paper, and at the greatest depth with head, hands and feet.
+std::vector<Setting> baked_chains(const std::vector<double>& depths) {
+  std::vector<Setting> out;
+  const auto add = [&](const char* profile, double depth) {
+    std::ostringstream json;
+    json << "{\"penetration_depth\":" << depth << "}";
+    out.push_back({kBaked, depth, profile, json.str()});
+  };
+  for (const double depth : depths) add("paper", depth);
+  add("balanced", depths.back());
+  return out;
+}
+
 void run(const Options& options) {
   const auto start = std::chrono::steady_clock::now();
   const auto progress = [&](const std::string& what) {
@@ -84,6 +98,11 @@ void run(const Options& options) {
   const Bake denser = study.bake("paper", dense.word(row, "settings"));
   results.quality =
       measure_quality(study, samples, {{"paper", study.paper()}, {"balanced", study.balanced()}, {"denser", denser}});
+
+  progress("trees over chains");
+  results.trees = options.quick
+                      ? measure_trees(study, baked_chains({0.3, 0.6}), {2, 20}, 3)
+                      : measure_trees(study, baked_chains({0.3, 0.6, 0.8, 0.9}), {2, 4, 10, 20, 40, 100, 200}, 51);
 
   write_page(options.out, results);
   const auto write_asset = [&](const char* name, const Bake& bake) {
