@@ -2,7 +2,6 @@
 #include "chain_trees.h"
 
 #include <cmath>
-#include <numeric>
 
 namespace spherechain::paper {
 namespace {
@@ -47,7 +46,8 @@ Sphere enclosing_sphere(const Sphere* spheres, std::size_t count) {
 }
 
 // Level 0: the asset's pairs in the trees' order, and each sphere with itself.
-Bits ignored_leaves(const AssetView& asset, const std::vector<std::uint32_t>& order) {
+Bits skipped_leaves(const AssetView& asset, const std::vector<std::uint32_t>& order,
+                    const std::vector<RestPair>& rest_pairs) {
   Bits out(words_for(node_bit(0, order.size())));
   for (std::size_t b = 0; b < order.size(); ++b) {
     for (std::size_t a = 0; a <= b; ++a) {
@@ -55,12 +55,27 @@ Bits ignored_leaves(const AssetView& asset, const std::vector<std::uint32_t>& or
       if (i == j || test_bit(asset.ignored(), ignored_bit(i, j))) set_bit({out.data(), out.size()}, node_bit(a, b));
     }
   }
+  for (const RestPair& pair : rest_pairs) set_bit({out.data(), out.size()}, node_bit(pair.a, pair.b));
   return out;
 }
 
-Bits ignored_parents(const std::vector<std::uint32_t>& first_child, const Bits& below) {
+// Those of two spheres in the trees, as places there. Ignored ones are no rest pairs.
+std::vector<RestPair> rest_pairs_in_order(const AssetView& asset, Radius radius,
+                                          const std::vector<std::uint32_t>& order) {
+  const auto nowhere = static_cast<std::uint32_t>(order.size());
+  std::vector<std::uint32_t> place(asset.spheres().size, nowhere);
+  for (std::uint32_t i = 0; i < nowhere; ++i) place[order[i]] = i;
+  std::vector<RestPair> out;
+  for (const RestPair& pair : asset.rest_pairs(radius)) {
+    const auto [a, b] = std::minmax(place[pair.a], place[pair.b]);
+    if (b != nowhere && !test_bit(asset.ignored(), ignored_bit(pair.a, pair.b))) out.push_back({a, b, pair.rest_scale});
+  }
+  return out;
+}
+
+Bits skipped_parents(const std::vector<std::uint32_t>& first_child, const Bits& below) {
   const std::size_t count = first_child.size() - 1;
-  const auto is_ignored = [&](std::size_t a, std::size_t b) {
+  const auto is_skipped = [&](std::size_t a, std::size_t b) {
     for (std::size_t j = first_child[b]; j < first_child[b + 1]; ++j) {
       for (std::size_t i = first_child[a]; i < first_child[a + 1] && i <= j; ++i) {
         if (!test_bit({below.data(), below.size()}, node_bit(i, j))) return false;
@@ -71,7 +86,7 @@ Bits ignored_parents(const std::vector<std::uint32_t>& first_child, const Bits& 
   Bits out(words_for(node_bit(0, count)));
   for (std::size_t b = 0; b < count; ++b) {
     for (std::size_t a = 0; a <= b; ++a) {
-      if (is_ignored(a, b)) set_bit({out.data(), out.size()}, node_bit(a, b));
+      if (is_skipped(a, b)) set_bit({out.data(), out.size()}, node_bit(a, b));
     }
   }
   return out;
@@ -85,16 +100,14 @@ Runs region_runs(const AssetView& asset) {
   return out;
 }
 
-ChainTrees::ChainTrees(const AssetView& asset, Radius radius, const Runs& runs, std::size_t branching)
-    : rest_pairs_(asset.rest_pairs(radius)), first_rest_pair_(asset.spheres().size + 1) {
-  for (const RestPair& pair : rest_pairs_) ++first_rest_pair_[pair.a + 1];
-  std::partial_sum(first_rest_pair_.begin(), first_rest_pair_.end(), first_rest_pair_.begin());
+ChainTrees::ChainTrees(const AssetView& asset, Radius radius, const Runs& runs, std::size_t branching) {
   std::vector<std::size_t> run_sizes;
   for (const auto& run : runs) {
     if (!run.empty()) run_sizes.push_back(run.size());
     order_.insert(order_.end(), run.begin(), run.end());
   }
-  levels_.push_back({std::vector<Sphere>(order_.size()), {}, ignored_leaves(asset, order_)});
+  rest_pairs_ = rest_pairs_in_order(asset, radius, order_);
+  levels_.push_back({std::vector<Sphere>(order_.size()), {}, skipped_leaves(asset, order_, rest_pairs_)});
   while (levels_.back().spheres.size() > run_sizes.size()) {
     add_parents(run_sizes, branching);
     for (std::size_t& size : run_sizes) size = (size + branching - 1) / branching;
@@ -112,7 +125,7 @@ void ChainTrees::add_parents(const std::vector<std::size_t>& run_sizes, std::siz
   }
   level.spheres.resize(level.first_child.size());
   level.first_child.push_back(static_cast<std::uint32_t>(begin));
-  level.ignored = ignored_parents(level.first_child, levels_.back().ignored);
+  level.skipped = skipped_parents(level.first_child, levels_.back().skipped);
   levels_.push_back(std::move(level));
 }
 
@@ -130,6 +143,8 @@ void ChainTrees::refit(const Sphere* spheres) {
 
 PlainResult ChainTrees::all_pairs() const {
   PlainResult out;
+  out.test_count = rest_pairs_.size();
+  for (const RestPair& pair : rest_pairs_) report(pair.a, pair.b, pair.rest_scale, out);
   const std::size_t top = levels_.size() - 1;
   const auto roots = static_cast<std::uint32_t>(levels_[top].spheres.size());
   for (std::uint32_t a = 0; a < roots; ++a) {
@@ -145,9 +160,9 @@ void ChainTrees::descend(std::size_t level, std::uint32_t a, std::uint32_t b, Pl
     ++out.test_count;
     if (!may_touch(here.spheres[a], here.spheres[b])) return;
   }
-  if (test_bit({here.ignored.data(), here.ignored.size()}, node_bit(a, b))) return;
+  if (test_bit({here.skipped.data(), here.skipped.size()}, node_bit(a, b))) return;
   if (level == 0) {
-    report(a, b, out);
+    report(a, b, 1, out);
     return;
   }
   for (std::uint32_t i = here.first_child[a]; i < here.first_child[a + 1]; ++i) {
@@ -157,18 +172,9 @@ void ChainTrees::descend(std::size_t level, std::uint32_t a, std::uint32_t b, Pl
   }
 }
 
-float ChainTrees::rest_scale_of(Pair pair) const {
-  const RestPair* const begin = rest_pairs_.begin() + first_rest_pair_[pair.a];
-  const RestPair* const end = rest_pairs_.begin() + first_rest_pair_[pair.a + 1];
-  const RestPair* const found =
-      std::lower_bound(begin, end, pair.b, [](const RestPair& l, std::uint32_t b) { return l.b < b; });
-  return found != end && found->b == pair.b ? found->rest_scale : 1;
-}
-
-void ChainTrees::report(std::uint32_t a, std::uint32_t b, PlainResult& out) const {
-  const Sphere &p = levels_[0].spheres[a], &q = levels_[0].spheres[b];
-  const Pair pair{std::min(order_[a], order_[b]), std::max(order_[a], order_[b])};
-  if (spheres_touch(p, q, 1) && spheres_touch(p, q, rest_scale_of(pair))) out.pairs.push_back(pair);
+void ChainTrees::report(std::uint32_t a, std::uint32_t b, float rest_scale, PlainResult& out) const {
+  if (!spheres_touch(levels_[0].spheres[a], levels_[0].spheres[b], rest_scale)) return;
+  out.pairs.push_back({std::min(order_[a], order_[b]), std::max(order_[a], order_[b])});
 }
 
 }  // namespace spherechain::paper

@@ -17,17 +17,18 @@ using Runs = std::vector<std::vector<std::uint32_t>>;
 Runs region_runs(const AssetView& asset);
 
 // A tree for each run. A parent stands for up to `branching` neighbours of the level below and encloses their spheres.
-// All trees are of one height: where a level of a run has one sphere only, those above repeat it.
+// All trees are of one height: where a level of a run has one sphere only, those above repeat it. Rest pairs, most of
+// which touch, are tested one by one, as in the product.
 class ChainTrees {
  public:
   struct Level {
     std::vector<Sphere> spheres;             // run after run; level 0: the runs' own spheres
     std::vector<std::uint32_t> first_child;  // in the level below; one more than spheres; level 0: none
-    // Bit b(b+1)/2 + a, a <= b: every pair of a sphere below a and one below b is ignored.
-    std::vector<std::uint64_t> ignored;
+    // Bit b(b+1)/2 + a, a <= b: every pair of a sphere below a and one below b is ignored or a rest pair.
+    std::vector<std::uint64_t> skipped;
   };
 
-  // The asset's bytes must outlive the trees. Every sphere is in one run, or is left out of the test.
+  // Every sphere is in one run, or is left out of the test.
   ChainTrees(const AssetView& asset, Radius radius, const Runs& runs, std::size_t branching);
 
   // Bottom up; every frame, before all_pairs().
@@ -42,13 +43,10 @@ class ChainTrees {
  private:
   void add_parents(const std::vector<std::size_t>& run_sizes, std::size_t branching);
   void descend(std::size_t level, std::uint32_t a, std::uint32_t b, PlainResult& out) const;
-  void report(std::uint32_t a, std::uint32_t b, PlainResult& out) const;
+  void report(std::uint32_t a, std::uint32_t b, float rest_scale, PlainResult& out) const;
 
-  float rest_scale_of(Pair pair) const;
-
-  Span<const RestPair> rest_pairs_;
-  std::vector<std::size_t> first_rest_pair_;  // of the spheres; one more than spheres
-  std::vector<std::uint32_t> order_;          // the sphere of each of level 0
+  std::vector<std::uint32_t> order_;  // the sphere of each of level 0
+  std::vector<RestPair> rest_pairs_;  // of places in level 0
   std::vector<Level> levels_;
 };
 

@@ -28,14 +28,20 @@ struct TreeCost {
 // A number of spheres: the asset, its runs and frames, and a game's buffers.
 class TreeCase {
  public:
-  TreeCase(std::string series, const Asset& asset, const Runs& runs, std::vector<std::vector<Sphere>> frames)
-      : series_(std::move(series)), asset_(asset), frames_(std::move(frames)), plain_(view_of(asset), SC_RADIUS_FIT) {
+  TreeCase(std::string series, std::string source, const Asset& asset, const Runs& runs,
+           std::vector<std::vector<Sphere>> frames)
+      : series_(std::move(series)),
+        source_(std::move(source)),
+        asset_(asset),
+        frames_(std::move(frames)),
+        plain_(view_of(asset), SC_RADIUS_FIT) {
     for (const std::size_t branching : {2, 4, 8}) trees_.emplace_back(view_of(asset), SC_RADIUS_FIT, runs, branching);
     table_.resize(sc_detect_table_words(&asset));
     baker::check_runtime(sc_prepare_detect(&asset, SC_RADIUS_FIT, nullptr, table_.data(), table_.size()));
   }
 
   const std::string& series() const { return series_; }
+  const std::string& source() const { return source_; }
   std::size_t sphere_count() const { return view_of(asset_).spheres().size; }
   std::size_t frame_count() const { return frames_.size(); }
 
@@ -102,7 +108,7 @@ class TreeCase {
     return job.pair_count;
   }
 
-  std::string series_;
+  std::string series_, source_;
   const Asset& asset_;
   std::vector<std::vector<Sphere>> frames_;
   PlainDetection plain_;
@@ -195,7 +201,7 @@ void measure_case(TreeCase& one, int repetitions, Table& out) {
       us[m].push_back(median(frame[m].us));
     }
     const bool is_tree = std::find(kTrees.begin(), kTrees.end(), std::string(kTimed[m])) != kTrees.end();
-    out.add({one.series(), one.sphere_count(), kTimed[m], frames, median(tests[m]), mean(overlaps[m]),
+    out.add({one.series(), one.source(), one.sphere_count(), kTimed[m], frames, median(tests[m]), mean(overlaps[m]),
              is_tree ? Cell(median(refit_us[m])) : Cell(), median(us[m])});
   }
 }
@@ -210,7 +216,7 @@ Table measure_trees(const Study& study, const std::vector<Setting>& baked, const
   const baker::OpenAsset whole = open(study.paper());
   const Runs whole_runs = region_runs(whole.view());
   const std::vector<std::vector<Sphere>> whole_frames = refitted_frames(whole, study);
-  Table out{"trees", {"series", "spheres", "method", "frames", "tests", "overlaps", "refit_us", "us"}, {}};
+  Table out{"trees", {"series", "source", "spheres", "method", "frames", "tests", "overlaps", "refit_us", "us"}, {}};
   const auto measure = [&](TreeCase one) {
     for (std::size_t f = 0; f < one.frame_count(); ++f) one.compare(f);
     const double share = static_cast<double>(whole->spheres().size) / static_cast<double>(one.sphere_count());
@@ -218,13 +224,15 @@ Table measure_trees(const Study& study, const std::vector<Setting>& baked, const
   };
   for (const Setting& setting : baked) {
     const baker::OpenAsset asset = open(study.bake(setting.profile, setting.json));
-    measure({kBaked, asset, region_runs(asset.view()), refitted_frames(asset, study)});
+    measure({kBaked, fmt::format("{}, PD {:g}", setting.profile, setting.value), asset, region_runs(asset.view()),
+             refitted_frames(asset, study)});
   }
   for (const std::uint32_t count : parts) {
     const bench::SplitAsset split(whole, count);
     std::vector<std::vector<Sphere>> frames;
     for (const std::vector<Sphere>& frame : whole_frames) frames.push_back(split.split(frame));
-    measure({kSplit, split.asset(), split_runs(whole_runs, split), std::move(frames)});
+    measure({kSplit, fmt::format("paper in {} parts", count), split.asset(), split_runs(whole_runs, split),
+             std::move(frames)});
   }
   return out;
 }
