@@ -59,7 +59,7 @@ std::vector<Setting> settings(bool quick) {
   return out;
 }
 
-// Chains to build trees over: both profiles as they are and at the greatest depth; between them profile paper.
+// More chains to build trees over, up to the greatest depth.
 std::vector<Setting> baked_chains(bool quick) {
   std::vector<Setting> out;
   const auto add = [&](const char* profile, double depth) {
@@ -67,8 +67,6 @@ std::vector<Setting> baked_chains(bool quick) {
     json << "{\"penetration_depth\":" << depth << "}";
     out.push_back({kBaked, depth, profile, json.str()});
   };
-  add("paper", 0.3);
-  add("balanced", 0.3);
   add("paper", 0.6);
   if (quick) return out;
   for (const double depth : {0.8, 0.9}) add("paper", depth);

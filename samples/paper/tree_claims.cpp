@@ -103,7 +103,7 @@ std::string tree_verdict(const Table& trees) {
   for (const double spheres : sphere_counts(baked)) {
     const double ratio = us_at(baked, spheres, fastest_tree(baked, spheres)) / us_at(baked, spheres, kJob);
     const std::string source = baked.where("spheres", spheres).word(0, "source");
-    if (source.ends_with(fmt::format("PD {:g}", kStatedDepth))) leads = leads && ratio < kTreeLead;
+    if (source == kPaperAsIs || source == kBalancedAsIs) leads = leads && ratio < kTreeLead;
     ratios += fmt::format("{}{:.1f} times at {:g} spheres ({})", ratios.empty() ? "" : ", ", ratio, spheres, source);
   }
   return fmt::format("Trees {} the product. Against its all_pairs the fastest tree takes on baked chains {}.",

@@ -222,10 +222,14 @@ Table measure_trees(const Study& study, const std::vector<Setting>& baked, const
     const double share = static_cast<double>(whole->spheres().size) / static_cast<double>(one.sphere_count());
     measure_case(one, std::max(kFewestRepetitions, static_cast<int>(repetitions * share)), out);
   };
+  const auto measure_bake = [&](const Bake& bake, const std::string& source) {
+    const baker::OpenAsset asset = open(bake);
+    measure({kBaked, source, asset, region_runs(asset.view()), refitted_frames(asset, study)});
+  };
+  measure_bake(study.paper(), kPaperAsIs);
+  measure_bake(study.balanced(), kBalancedAsIs);
   for (const Setting& setting : baked) {
-    const baker::OpenAsset asset = open(study.bake(setting.profile, setting.json));
-    measure({kBaked, fmt::format("{}, PD {:g}", setting.profile, setting.value), asset, region_runs(asset.view()),
-             refitted_frames(asset, study)});
+    measure_bake(study.bake(setting.profile, setting.json), fmt::format("{}, PD {:g}", setting.profile, setting.value));
   }
   for (const std::uint32_t count : parts) {
     const bench::SplitAsset split(whole, count);

@@ -17,11 +17,12 @@ inline constexpr const char *kBinaryTree = "binary tree", *kQuadtree = "quadtree
                             *kLoopM2 = "M2", *kJob = "all_pairs";
 inline constexpr std::array<const char*, 3> kTrees{kBinaryTree, kQuadtree, kOctree};
 
-// Chains as the bake makes them, of several penetration depths; and the spheres of profile `paper` in parts, as in
-// Figure 16.
+// Chains as the bake makes them, of both profiles as they are and of other settings; and the spheres of profile `paper`
+// in parts, as in Figure 16.
 inline constexpr const char *kBaked = "baked", *kSplit = "split";
+inline constexpr const char *kPaperAsIs = "paper", *kBalancedAsIs = "balanced";  // sources
 
-// trees.csv: a row a series, number of spheres and method; medians over frames of both animations. `repetitions` are of
+// trees.csv: a row a source of spheres and method; medians over frames of both animations. `repetitions` are of
 // the fewest spheres; more spheres have fewer. Throws Error(kInternal) where a tree or the product finds other pairs
 // than M2 in a frame; nothing is timed before all are compared.
 Table measure_trees(const Study& study, const std::vector<Setting>& baked, const std::vector<std::uint32_t>& parts,
