@@ -104,10 +104,12 @@ std::string tree_verdict(const Table& trees) {
     const double ratio = us_at(baked, spheres, fastest_tree(baked, spheres)) / us_at(baked, spheres, kJob);
     const std::string source = baked.where("spheres", spheres).word(0, "source");
     if (source == kPaperAsIs || source == kBalancedAsIs) leads = leads && ratio < kTreeLead;
-    ratios += fmt::format("{}{:.1f} times at {:g} spheres ({})", ratios.empty() ? "" : ", ", ratio, spheres, source);
+    ratios += fmt::format("{}{:.2g} at {:g} spheres ({})", ratios.empty() ? "" : ", ", ratio, spheres, source);
   }
-  return fmt::format("Trees {} the product. Against its all_pairs the fastest tree takes on baked chains {}.",
-                     leads ? "would pay in" : "stay out of", ratios);
+  return fmt::format("{} Baked chains, the fastest tree's time divided by that of all_pairs: {}.",
+                     leads ? "A tree would pay in the product: it leads on the bakes of both profiles."
+                           : "Trees stay out of the product: they do not lead on the bakes of both profiles.",
+                     ratios);
 }
 
 }  // namespace spherechain::paper

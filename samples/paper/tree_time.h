@@ -19,7 +19,7 @@ inline constexpr std::array<const char*, 3> kTrees{kBinaryTree, kQuadtree, kOctr
 
 // Chains as the bake makes them, of both profiles as they are and of other settings; and the spheres of profile `paper`
 // in parts, as in Figure 16.
-inline constexpr const char *kBaked = "baked", *kSplit = "split";
+inline constexpr const char *kBaked = "baked", *kSplit = "in parts";
 inline constexpr const char *kPaperAsIs = "paper", *kBalancedAsIs = "balanced";  // sources
 
 // trees.csv: a row a source of spheres and method; medians over frames of both animations. `repetitions` are of
