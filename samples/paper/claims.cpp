@@ -358,7 +358,7 @@ Table judge_claims(const Results& results) {
       "both "
       "refit rules; in part: for one.",
       judge_pivots(results));
-  add("no_trees", "sections 1 and 5", "There are so few spheres that the chains need no hierarchy.",
+  add("no_trees", "sections 1 and 5.2", "There are so few spheres that the chains need no hierarchy.",
       "At the two counts of baked chains nearest to 46 and 80, medians over the frames: the fastest tree, its refit "
       "included, not a twentieth below the faster of M1 and M2 in plain loops; in part: at one of them.",
       judge_no_trees(results.trees));
