@@ -9,6 +9,7 @@
 
 #include "gpu_claims.h"
 #include "statistics.h"
+#include "tree_claims.h"
 
 namespace spherechain::paper {
 namespace {
@@ -357,6 +358,10 @@ Table judge_claims(const Results& results) {
       "both "
       "refit rules; in part: for one.",
       judge_pivots(results));
+  add("no_trees", "sections 1 and 5.2", "There are so few spheres that the chains need no hierarchy.",
+      "At the two counts of baked chains nearest to 46 and 80, medians over the frames: the fastest tree, its refit "
+      "included, not a twentieth below the faster of M1 and M2 in plain loops; in part: at one of them.",
+      judge_no_trees(results.trees));
   const Table gpu = gpu_medians(results.gpu);
   add("gpu", "section 6, Figure 16", "On the GPU M1 takes less time than M2.",
       "At the two sphere counts nearest to 46 and 80, medians over the frames: M1's faster kernel at least a twentieth "

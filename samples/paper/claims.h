@@ -15,6 +15,7 @@ struct Results {
   Table running_time;
   SweepTables sweep;
   Table quality;
+  Table trees;
   GpuTime gpu;          // empty where no GPU was at hand
   std::string machine;  // one line: processor, cores, compiler
 };

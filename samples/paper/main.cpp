@@ -9,6 +9,7 @@
 
 #include "mesh/error.h"
 #include "report.h"
+#include "tree_time.h"
 #include "write/write.h"
 
 using namespace spherechain;
@@ -58,6 +59,21 @@ std::vector<Setting> settings(bool quick) {
   return out;
 }
 
+// More chains to build trees over, up to the greatest depth.
+std::vector<Setting> baked_chains(bool quick) {
+  std::vector<Setting> out;
+  const auto add = [&](const char* profile, double depth) {
+    std::ostringstream json;
+    json << "{\"penetration_depth\":" << depth << "}";
+    out.push_back({kBaked, depth, profile, json.str()});
+  };
+  add("paper", 0.6);
+  if (quick) return out;
+  for (const double depth : {0.8, 0.9}) add("paper", depth);
+  add("balanced", 0.9);
+  return out;
+}
+
 void run(const Options& options) {
   const auto start = std::chrono::steady_clock::now();
   const auto progress = [&](const std::string& what) {
@@ -84,6 +100,11 @@ void run(const Options& options) {
   const Bake denser = study.bake("paper", dense.word(row, "settings"));
   results.quality =
       measure_quality(study, samples, {{"paper", study.paper()}, {"balanced", study.balanced()}, {"denser", denser}});
+
+  progress("trees over chains");
+  const std::vector<std::uint32_t> parts =
+      options.quick ? std::vector<std::uint32_t>{2, 20} : std::vector<std::uint32_t>{2, 4, 10, 20, 40, 100, 200};
+  results.trees = measure_trees(study, baked_chains(options.quick), parts, options.quick ? 3 : 51);
 
   write_page(options.out, results);
   const auto write_asset = [&](const char* name, const Bake& bake) {

@@ -66,7 +66,7 @@ std::vector<double> times(const std::string& method, const std::string& animatio
 
 TEST_CASE("the page and the Markdown state every claim with its verdict and finding") {
   const std::string page = read_output("index.html"), markdown = read_output("paper.md");
-  CHECK(claims().size() == 13);
+  CHECK(claims().size() == 14);
   for (const Row& claim : claims()) {
     CHECK(page.find(">" + claim.at("verdict") + "</span>") != std::string::npos);
     CHECK(markdown.find("| " + claim.at("verdict") + " |") != std::string::npos);
@@ -195,4 +195,42 @@ TEST_CASE("defaults: recomputed from sweep.csv") {
     if (number(depths[i], "value") == follows("penetration_depth")) chosen = sum;
   }
   CHECK(chosen == best);
+}
+
+TEST_CASE(
+    "trees: every method finds as many pairs, and the verdict and the first leads are recomputed from trees.csv") {
+  const std::vector<Row> trees = read_csv("trees.csv");
+  const auto us = [&](const std::string& series, const std::string& spheres, const std::string& method) {
+    return number(only(only(only(trees, "series", series), "spheres", spheres), "method", method).front(), "us");
+  };
+  for (const Row& row : trees) {
+    if (row.at("method") == "M1") continue;
+    const std::vector<Row> m2 =
+        only(only(only(trees, "series", row.at("series")), "spheres", row.at("spheres")), "method", "M2");
+    CHECK(row.at("overlaps") == m2.front().at("overlaps"));
+  }
+  const std::vector<std::string> names{"binary tree", "quadtree", "octree"};
+  int behind = 0;
+  for (const char* spheres : {"50", "84"}) {
+    double fastest = 1e9;
+    for (const std::string& tree : names) fastest = std::min(fastest, us("baked", spheres, tree));
+    behind += fastest >= 0.95 * std::min(us("baked", spheres, "M1"), us("baked", spheres, "M2")) ? 1 : 0;
+  }
+  CHECK(verdict("no_trees") == graded(behind == 2, behind > 0));
+
+  for (const Row& row : read_csv("tree_wins.csv")) {
+    const std::vector<Row> series = only(only(trees, "series", row.at("series")), "method", row.at("tree"));
+    for (const auto& [column, method] :
+         {std::pair("from_m1", "M1"), std::pair("from_m2", "M2"), std::pair("from_all_pairs", "all_pairs")}) {
+      const double from = row.at(column) == "nowhere" ? 1e9 : number(row, column);
+      double last_behind = 0;
+      for (const Row& count : series) {
+        const bool leads = number(count, "us") < 0.95 * us(row.at("series"), count.at("spheres"), method);
+        if (!leads) last_behind = std::max(last_behind, number(count, "spheres"));
+      }
+      for (const Row& count : series) {
+        CHECK((number(count, "spheres") >= from) == (number(count, "spheres") > last_behind));
+      }
+    }
+  }
 }
