@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <doctest/doctest.h>
+
+#include <numbers>
+#include <random>
+
+#include "baked_human.h"
+#include "volumes/fit_body.h"
+#include "volumes/fit_volumes.h"
+#include "volumes/measure.h"
+
+using namespace spherechain::baker;
+
+namespace {
+
+std::vector<Volume> some_volumes() {
+  const Eigen::Quaterniond turn = Eigen::Quaterniond(0.8, 0.3, -0.2, 0.5).normalized();
+  return {BallVolume{{0.1, 0.2, 0.3}, 0.4},
+          ConeVolume{{0, 0, 0}, {0.5, 0.2, 0.1}, 0.3, 0.1},
+          ConeVolume{{0, 0, 0}, {0.5, 0.2, 0.1}, 0.2, 0.2},
+          ConeVolume{{0, 0, 0}, {0.1, 0, 0}, 0.3, 0.1},  // one end holds the other
+          EllipsoidVolume{{0.1, 0, 0}, turn, {0.4, 0.2, 0.1}},
+          BoxVolume{{0, 0.1, 0}, turn, {0.3, 0.2, 0.1}}};
+}
+
+Vec3 random_direction(std::mt19937& random) {
+  std::normal_distribution<double> normal;
+  return Vec3(normal(random), normal(random), normal(random)).normalized();
+}
+
+// Of points all over its surface: where rays from inside leave it, by halving.
+std::vector<Vec3> surface_points(const Volume& volume, int count, std::mt19937& random) {
+  const Vec3 inside = (support(volume, Vec3::UnitX()) + support(volume, -Vec3::UnitX())) / 2;
+  std::vector<Vec3> out;
+  for (int i = 0; i < count; ++i) {
+    const Vec3 direction = random_direction(random);
+    double low = 0, high = 3;
+    for (int step = 0; step < 60; ++step) {
+      const double middle = (low + high) / 2;
+      (signed_distance(volume, inside + middle * direction) <= 0 ? low : high) = middle;
+    }
+    out.push_back(inside + low * direction);
+  }
+  return out;
+}
+
+// A tube with two radii and round ends, sampled.
+std::vector<BodySample> samples_of(const Volume& volume, int count) {
+  std::mt19937 random(5);
+  std::vector<BodySample> out;
+  for (const Vec3& point : surface_points(volume, count, random)) out.push_back({point, 1.0 / count});
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("a volume's farthest points are those of its surface, and its content is that of its points") {
+  std::mt19937 random(1);
+  for (const Volume& volume : some_volumes()) {
+    CAPTURE(volume_name(volume));
+    const std::vector<Vec3> surface = surface_points(volume, 3000, random);
+    for (int i = 0; i < 50; ++i) {
+      const Vec3 direction = random_direction(random);
+      double farthest = -INFINITY;
+      for (const Vec3& point : surface) farthest = std::max(farthest, direction.dot(point));
+      CHECK(direction.dot(support(volume, direction)) == doctest::Approx(farthest).epsilon(0.02));
+      CHECK(direction.dot(support(volume, direction)) >= farthest - 1e-9);
+    }
+    std::uniform_real_distribution<double> place(-1, 1);
+    int inside = 0;
+    constexpr int kPoints = 200000;
+    for (int i = 0; i < kPoints; ++i) {
+      inside += signed_distance(volume, {place(random), place(random), place(random)}) <= 0 ? 1 : 0;
+    }
+    CHECK(volume_of(volume) == doctest::Approx(8.0 * inside / kPoints).epsilon(0.04));
+  }
+}
+
+TEST_CASE("two volumes overlap where a point is in both") {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> place(-0.9, 0.9);
+  int overlaps = 0, close = 0;
+  for (const Volume& a : some_volumes()) {
+    for (const Volume& b : some_volumes()) {
+      for (int i = 0; i < 40; ++i) {
+        Eigen::Isometry3d at = Eigen::Isometry3d::Identity();
+        at.linear() = Eigen::Quaterniond::FromTwoVectors(random_direction(random), random_direction(random)).matrix();
+        at.translation() = Vec3(place(random), place(random), place(random));
+        const Volume moved_b = moved(b, Affine(at));
+        // Two convex volumes that overlap have a point of one's surface in the other, but where one holds the other.
+        double least = INFINITY;
+        for (const Vec3& one : surface_points(moved_b, 400, random)) least = std::min(least, signed_distance(a, one));
+        for (const Vec3& one : surface_points(a, 400, random)) least = std::min(least, signed_distance(moved_b, one));
+        if (std::abs(least) < 0.02) {
+          ++close;
+          continue;
+        }
+        const bool found = overlap(a, Eigen::Isometry3d::Identity(), b, at);
+        CHECK(found == (least < 0));
+        CHECK(found == overlap(b, at, a, Eigen::Isometry3d::Identity()));
+        overlaps += found ? 1 : 0;
+      }
+    }
+  }
+  CHECK(overlaps > 300);
+  CHECK(close < 400);
+}
+
+TEST_CASE("a volume is found again in samples of its surface") {
+  const auto gap_of = [](VolumeShape shape, const Volume& volume) {
+    return fit_body(shape, samples_of(volume, 300), 1).gap;
+  };
+  const Eigen::Quaterniond turn = Eigen::Quaterniond(0.8, 0.3, -0.2, 0.5).normalized();
+  CHECK(gap_of(VolumeShape::kSpheres, BallVolume{{0.1, 0.2, 0.3}, 0.4}) < 1e-3);
+  CHECK(gap_of(VolumeShape::kCones, ConeVolume{{0, 0, 0}, {0.5, 0.2, 0.1}, 0.2, 0.1}) < 1e-3);
+  CHECK(gap_of(VolumeShape::kCapsules, ConeVolume{{0, 0, 0}, {0.5, 0.2, 0.1}, 0.2, 0.2}) < 1e-3);
+  CHECK(gap_of(VolumeShape::kEllipsoids, EllipsoidVolume{{0.1, 0, 0}, turn, {0.4, 0.2, 0.15}}) < 2e-3);
+  CHECK(gap_of(VolumeShape::kBoxes, BoxVolume{{0, 0.1, 0}, turn, {0.4, 0.2, 0.1}}) < 5e-3);
+}
+
+TEST_CASE("a tube that is open at its ends gets a capsule no longer than it is") {
+  std::vector<BodySample> tube;
+  for (int i = 0; i < 20; ++i) {
+    for (int k = 0; k < 12; ++k) {
+      const double angle = 2 * std::numbers::pi * k / 12;
+      tube.push_back({{0.1 * std::cos(angle), 0.1 * std::sin(angle), i / 19.0}, 1});
+    }
+  }
+  const BodyFit fit = fit_body(VolumeShape::kCones, tube, 1);
+  const auto& cone = std::get<ConeVolume>(fit.volumes.at(0));
+  CHECK(std::min(cone.a.z(), cone.b.z()) > -0.03);
+  CHECK(std::max(cone.a.z(), cone.b.z()) < 1.03);
+  CHECK(cone.radius_a == doctest::Approx(0.1).epsilon(0.05));
+  CHECK(cone.radius_b == doctest::Approx(0.1).epsilon(0.05));
+}
+
+TEST_CASE("volumes of a human: never more than asked for, nearer to the skin the more there are") {
+  const Bake& human = baked_human();
+  const OpenAsset asset = open_asset_of(human);
+  const double height = find_bodies(asset).height;
+  for (const VolumeShape shape : {VolumeShape::kCones, VolumeShape::kBoxes}) {
+    double before = INFINITY;
+    for (const int at_most : {4, 12, 24}) {
+      const Colliders colliders = fit_volumes(asset, shape, at_most);
+      const ColliderFit fit = measure_fit(asset, colliders);
+      CHECK(fit.volumes <= at_most);
+      CHECK(fit.volumes >= at_most - 1);
+      CHECK(fit.coverage > 0.85);
+      CHECK(fit.gap_mean < before);
+      before = fit.gap_mean;
+    }
+    CHECK(before < 0.01 * height);
+  }
+  // What stands in another at rest is not tested, nor is a part against the one it hangs on.
+  const Colliders cones = fit_volumes(asset, VolumeShape::kCones, 0);
+  CHECK(overlapping(cones, at_rest(cones)).empty());
+  for (std::size_t i = 0; i < cones.bodies.size(); ++i) {
+    const int parent = cones.bodies[i].parent;
+    if (parent < 0) continue;
+    CHECK(std::any_of(cones.ignored.begin(), cones.ignored.end(), [&](const IgnoredBodies& pair) {
+      return pair.a == parent && pair.b == static_cast<int>(i) && pair.reason == IgnoredReason::kAdjacent;
+    }));
+  }
+}
