@@ -14,13 +14,20 @@ namespace {
 
 constexpr double kWater = 1000;  // kg per cubic metre
 
-SolidMass mass_of(const std::vector<Volume>& volumes) {
+// What several bodies hold at rest is shared among them.
+SolidMass mass_of(const Colliders& colliders, std::size_t body) {
   SolidMass out;
   Vec3 moment = Vec3::Zero();
   Eigen::Matrix3d second = Eigen::Matrix3d::Zero();
+  const std::vector<Volume>& volumes = colliders.bodies[body].volumes;
   for_each_solid_cell(volumes, [&](const Vec3& point, const Vec3& cell) {
     if (!inside_any(volumes, point)) return;
-    const double mass = kWater * cell.prod();
+    const Vec3 at_rest = colliders.bodies[body].rest * point;
+    const auto holders =
+        std::count_if(colliders.bodies.begin(), colliders.bodies.end(), [&](const ColliderBody& other) {
+          return inside_any(other.volumes, other.rest.inverse(Eigen::Isometry) * at_rest);
+        });
+    const double mass = kWater * cell.prod() / static_cast<double>(std::max<std::ptrdiff_t>(holders, 1));
     out.kilograms += mass;
     moment += mass * point;
     second += mass * (point * point.transpose());
@@ -38,8 +45,8 @@ SolidMass mass_of(const std::vector<Volume>& volumes) {
 std::vector<SolidMass> masses_of(const Colliders& colliders) {
   std::vector<SolidMass> out;
   double all = 0;
-  for (const ColliderBody& body : colliders.bodies) {
-    out.push_back(mass_of(body.volumes));
+  for (std::size_t i = 0; i < colliders.bodies.size(); ++i) {
+    out.push_back(mass_of(colliders, i));
     all += out.back().kilograms;
   }
   for (SolidMass& mass : out) {

@@ -18,8 +18,8 @@ struct SolidMass {
   Eigen::Matrix3d inertia = Eigen::Matrix3d::Zero();
 };
 
-// Each body as water: of the union of its volumes, which overlap. A body without volumes gets a thousandth of the
-// character's mass, for engines refuse a moving body without one.
+// Each body as water: the union of its volumes, less what it shares with others at rest. A body without volumes gets a
+// thousandth of the character's mass, for engines refuse a moving body without one.
 std::vector<SolidMass> masses_of(const Colliders& colliders);
 
 // Balls that stand for a volume. A cone: inside it, short of its surface by at most a twentieth of its radius there. An

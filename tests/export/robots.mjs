@@ -1,21 +1,20 @@
 // What the judges of the robotics formats share: a character, its poses, and turning them upright.
 import { execFileSync } from 'node:child_process'
 import fs from 'node:fs'
-import path from 'node:path'
+
+const models = '/usr/share/assimp/models'
 
 // Arguments of a judge: TOOL POSED_COLLIDERS [ASSET SOURCE [SHAPE AT_MOST [MOTION]]]. Without an asset the human of
-// assimp's models, as the tool's own preview writes it.
+// assimp's models, as the tool's own preview writes it, boxing.
 export function character(shapeOfFormat, poses) {
   const [tool, posedColliders, asset, source, shape, atMost, motion] = process.argv.slice(2)
   const run = (...args) => execFileSync(args[0], args.slice(1), { encoding: 'utf8', maxBuffer: 1 << 30 })
   const one = { tool, run, asset, source, shape: shape ?? shapeOfFormat, atMost: atMost ?? '0', motion }
   if (!asset) {
-    const samples = path.resolve(process.env.SPHERECHAIN_SAMPLES)
-    one.source = path.resolve('human.glb')
-    one.asset = path.resolve('human.sphc')
-    one.motion = path.join(samples, 'poses', 'animation_arms.json')
-    if (!fs.existsSync(one.asset)) {
-      run(tool, 'bake', '/usr/share/assimp/models/Collada/human.zae', '-o', 'first.sphc', '--preview', one.source)
+    Object.assign(one, { source: 'human.glb', asset: 'human.sphc', motion: models + '/BVH/Boxing_Toes.bvh' })
+    const time = file => fs.statSync(file, { throwIfNoEntry: false })?.mtimeMs ?? 0
+    if (time(one.asset) < time(tool)) {
+      run(tool, 'bake', models + '/Collada/human.zae', '-o', 'first.sphc', '--preview', one.source)
       run(tool, 'bake', one.source, '-o', one.asset)
     }
   }
