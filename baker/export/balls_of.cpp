@@ -42,8 +42,11 @@ std::vector<BallVolume> balls_in(const ConeVolume& cone) {
     return {cone.radius_a >= cone.radius_b ? BallVolume{cone.a, cone.radius_a} : BallVolume{cone.b, cone.radius_b}};
   }
   for (int count = 2;; ++count) {
-    const std::vector<BallVolume> out = balls_along(cone, count);
-    if (count == kBallsMax || gap_between(cone, out[0], out[1]) <= kGapMax) return out;
+    std::vector<BallVolume> out = balls_along(cone, count);
+    const double gap = gap_between(cone, out[0], out[1]);
+    if (gap > kGapMax && count < kBallsMax) continue;
+    for (BallVolume& ball : out) ball.radius *= 1 + std::min(gap, kGapMax) / 2;  // as far beyond as short
+    return out;
   }
 }
 

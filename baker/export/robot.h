@@ -22,8 +22,9 @@ struct SolidMass {
 // thousandth of the character's mass, for engines refuse a moving body without one.
 std::vector<SolidMass> masses_of(const Colliders& colliders);
 
-// Balls that stand for a volume. A cone: inside it, short of its surface by at most a twentieth of its radius there. An
-// ellipsoid or a box: beyond it by at most a tenth of its smallest radius; the edges of a box stay bare.
+// Balls that stand for a volume. Of a cone their surface is within a fortieth of its radius there; a tip of less than a
+// twentieth of the larger radius stays bare. Of an ellipsoid or a box it is beyond by at most an eighth of the smallest
+// radius; the edges of a box, and the ends of long ellipsoids, stay bare.
 std::vector<BallVolume> balls_of(const Volume& volume);
 
 // The colliders with balls in place of the volumes that `stays` does not accept. What that costs goes into `notes`.
