@@ -86,6 +86,13 @@ void check_ours(const std::string& file, bool force) {
   }
 }
 
+void name_output(std::string& bytes, const std::string& mark, const std::string& output) {
+  const std::string stem = fs::path(output).stem().string();
+  for (std::size_t at = 0; !mark.empty() && (at = bytes.find(mark, at)) != std::string::npos; at += stem.size()) {
+    bytes.replace(at, mark.size(), stem);
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> export_formats() {
@@ -105,14 +112,27 @@ ExitCode run_export(const ExportOptions& options) {
   }
   const OpenAsset asset = open_asset(options.asset);
   const std::string shape = options.volumes.empty() ? format.volumes : options.volumes;
+<<<<<<< HEAD
   const Colliders colliders = fit_volumes(asset, volume_shape(shape), options.at_most);
   const Export made = format.of_source != nullptr ? format.of_source(colliders, read_source_glb(asset, options))
                                                   : format.of_colliders(colliders);
+=======
+  const Colliders colliders = fit_volumes(asset, shape_of(shape), options.at_most);
+  Export made = format.of_source != nullptr ? format.of_source(colliders, read_source_glb(asset, options))
+                                            : format.of_colliders(colliders);
+>>>>>>> f05dcd5ec366289315cd8e5440f8aec19b225712
   std::vector<std::string> names;
   for (const ExportFile& file : made.files) {
     names.push_back(file.ending.empty() ? options.output
                                         : fs::path(options.output).replace_extension(file.ending).string());
     if (!file.ending.empty()) check_ours(names.back(), options.force);
+  }
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0 && names[i] == options.output) {
+      throw Error(ExitCode::kUsage, options.output + ": --to " + options.format +
+                                        " writes a second file of this name " + "(give -o another ending)");
+    }
+    name_output(made.files[i].bytes, made.stem_mark, options.output);
   }
   for (std::size_t i = 0; i < names.size(); ++i) write_atomically(names[i], made.files[i].bytes);
   const ColliderFit fit = measure_fit(asset, colliders);

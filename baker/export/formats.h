@@ -18,6 +18,7 @@ struct ExportFile {
 struct Export {
   std::vector<ExportFile> files;   // the first is -o itself
   std::vector<std::string> notes;  // a sentence each: what the format does not hold
+  std::string stem_mark = {};      // in a file that names another: stands for -o's name without its ending
 };
 
 // The source as a GLB (read_as_glb), and of each of the asset's bones its node in it; -1 where there is none.
