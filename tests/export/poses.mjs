@@ -54,3 +54,16 @@ export function placed(volume, body) {
 // Our poses stand in the axes of the bind pose, a file's scene elsewhere: one rigid map leads there, the same for all
 // poses. It takes the first body's frame in the first pose to where the scene has that body.
 export const map_from = (body, inScene) => inScene.clone().multiply(rigid(body).invert());
+
+// The same from points: the frame of three that are far apart.
+export function fit(from, to) {
+  const farthest = (points, measure) => points.reduce((best, _, i) => (measure(points[i]) > measure(points[best]) ? i : best), 0);
+  const b = farthest(from, (p) => p.distanceTo(from[0]));
+  const axis = new THREE.Line3(from[0], from[b]);
+  const c = farthest(from, (p) => axis.closestPointToPoint(p, false, new THREE.Vector3()).distanceTo(p));
+  const frame = (points) => {
+    const x = points[b].clone().sub(points[0]).normalize(), z = x.clone().cross(points[c].clone().sub(points[0])).normalize();
+    return new THREE.Matrix4().makeBasis(x, z.clone().cross(x), z).setPosition(points[0]);
+  };
+  return frame(to).multiply(frame(from).invert());
+}
