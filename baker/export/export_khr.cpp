@@ -6,10 +6,10 @@
 #include <fmt/format.h>
 
 #include <Eigen/SVD>
-#include <set>
 
 #include "export/formats.h"
 #include "export/glb_json.h"
+#include "export/rest_nodes.h"
 #include "export/simple_volumes.h"
 #include "export/volume_json.h"
 #include "mesh/error.h"
@@ -60,6 +60,12 @@ ordered_json node_at(const std::string& name, const Vec3& translation, const Eig
           {"rotation", json_of(Eigen::Quaterniond(rotation).normalized())}};
 }
 
+bool is_resized(const RestNodes& rest, const ColliderBody& body, int node) {
+  const Affine in_scene = rest.world(node) * body.to_bone;
+  return (Eigen::JacobiSVD<Eigen::Matrix3d>(in_scene.linear()).singularValues() - Vec3::Ones()).cwiseAbs().maxCoeff() >
+         1e-3;
+}
+
 class PhysicsWriter {
  public:
   PhysicsWriter(const Colliders& colliders, const SourceGlb& source, const PhysicsWords& words)
@@ -68,6 +74,7 @@ class PhysicsWriter {
   }
 
   Export write() {
+    const RestNodes rest(json_);
     std::vector<std::string> lost;
     for (std::size_t b = 0; b < colliders_.bodies.size(); ++b) {
       const ColliderBody& body = colliders_.bodies[b];
@@ -76,15 +83,23 @@ class PhysicsWriter {
       if (node < 0) {
         lost.push_back(body.name);
       } else {
+        if (is_resized(rest, body, node)) ++resized_;
         add_body(b, static_cast<std::size_t>(node));
       }
     }
-    if (shape_count_ == 0) throw Error(ExitCode::kFile, "no body part follows a bone: there is nothing to write");
+    if (shape_count_ == 0)
+      throw Error(ExitCode::kFile, colliders_.source_file + ": no body part follows a bone, so nothing can be written");
     Export out{{{"", with_json(source_.bytes, json_)}}, {}};
     if (!lost.empty()) out.notes.push_back(fmt::format("left out, for no bone moves it: {}", fmt::join(lost, ", ")));
     if (stretched_ > 0) {
       out.notes.push_back(fmt::format(
           "{} bones are stretched along an axis: a node of its own undoes that; other poses may shear it", stretched_));
+    }
+    if (resized_ > 0) {
+      out.notes.push_back(
+          fmt::format("{} parts have another size in the file's pose than where their skin was bound: their shapes "
+                      "change with them",
+                      resized_));
     }
     if (replaced_ > 0) {
       out.notes.push_back(
@@ -103,7 +118,7 @@ class PhysicsWriter {
     for (ordered_json& node : nodes) {
       if (is_own(node)) {
         throw Error(ExitCode::kFile,
-                    "the source has bodies of an earlier export among its nodes (name the file without them)");
+                    colliders_.source_file + ": has bodies of an earlier export among its nodes (name a file without)");
       }
       if (!node.contains("children")) continue;
       const auto is_gone = [&](std::size_t, const ordered_json& child) { return child >= kept; };
@@ -201,7 +216,7 @@ class PhysicsWriter {
   const PhysicsWords words_;
   ordered_json json_;
   std::size_t shape_count_ = 0;
-  int stretched_ = 0, replaced_ = 0;
+  int stretched_ = 0, resized_ = 0, replaced_ = 0;
   double off_ = 0;
 };
 

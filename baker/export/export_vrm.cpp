@@ -30,9 +30,9 @@ struct ColliderGroup {
 // What the notes say.
 struct VrmLosses {
   int replaced = 0;
-  double off = 0;                   // metres
-  std::vector<std::string> lost;    // parts without a bone
-  std::vector<std::string> scaled;  // parts whose bone has a scale
+  double off = 0;                 // metres
+  std::vector<std::string> lost;  // parts without a bone
+  int scaled = 0;                 // parts whose bone has a scale
   bool is_stretched = false;
   std::map<std::string, int> left_out;  // parts, and how many springs start inside them
 };
@@ -55,11 +55,13 @@ std::vector<ColliderGroup> groups_of(const Colliders& colliders, const SourceGlb
       for (const Volume& one : taken.volumes) group.volumes.push_back(moved(one, body.to_bone));
     }
     const Vec3 scale = Eigen::JacobiSVD<Eigen::Matrix3d>(body.to_bone.linear()).singularValues();
-    if (std::abs(scale(0) - 1) > 1e-3 || std::abs(scale(2) - 1) > 1e-3) losses.scaled.push_back(body.name);
+    if (std::abs(scale(0) - 1) > 1e-3 || std::abs(scale(2) - 1) > 1e-3) ++losses.scaled;
     if (scale(0) - scale(2) > 1e-3 * scale(0)) losses.is_stretched = true;
     out.push_back(std::move(group));
   }
-  if (out.empty()) throw Error(ExitCode::kFile, "no body part follows a bone: there is nothing to write");
+  if (out.empty()) {
+    throw Error(ExitCode::kFile, colliders.source_file + ": no body part follows a bone, so nothing can be written");
+  }
   return out;
 }
 
@@ -183,9 +185,10 @@ std::vector<std::string> notes_of(const VrmLosses& losses, std::size_t springs, 
   if (!losses.lost.empty()) {
     out.push_back(fmt::format("left out, for no bone moves it: {}", fmt::join(losses.lost, ", ")));
   }
-  if (!losses.scaled.empty()) {
-    out.push_back(fmt::format("bones with a scale: UniVRM scales a radius with them, three-vrm does not: {}",
-                              fmt::join(losses.scaled, ", ")));
+  if (losses.scaled > 0) {
+    out.push_back(fmt::format(
+        "{} parts follow bones with a scale: UniVRM for VRM 0.x scales their radii with it, three-vrm does not",
+        losses.scaled));
   }
   if (losses.is_stretched) out.emplace_back("bones stretched along an axis: their colliders have a mean radius");
   for (const auto& [part, count] : losses.left_out) {

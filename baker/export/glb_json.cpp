@@ -28,7 +28,7 @@ std::string word_of(std::size_t value) {
 std::size_t json_end(const std::string& bytes) {
   const std::size_t end = bytes.size() < kJsonStart ? 0 : kJsonStart + word_at(bytes, 12);
   if (!bytes.starts_with("glTF") || end == 0 || end > bytes.size()) {
-    throw Error(ExitCode::kFile, "the source is no binary glTF");
+    throw Error(ExitCode::kInternal, "the source is no binary glTF");
   }
   return end;
 }
@@ -38,7 +38,7 @@ std::size_t json_end(const std::string& bytes) {
 ordered_json json_of_glb(const std::string& bytes) {
   ordered_json out =
       ordered_json::parse(bytes.substr(kJsonStart, json_end(bytes) - kJsonStart), nullptr, /*allow_exceptions=*/false);
-  if (!out.is_object()) throw Error(ExitCode::kFile, "the source is no binary glTF");
+  if (!out.is_object()) throw Error(ExitCode::kInternal, "the source is no binary glTF");
   return out;
 }
 

@@ -9,7 +9,7 @@
 // What is written into somebody's GLB: a change of its JSON. Every other byte stays.
 namespace spherechain::baker {
 
-// Its JSON, members in their order. Throws Error(kFile) where it has none.
+// Its JSON, members in their order. Throws Error(kInternal) where it has none.
 nlohmann::ordered_json json_of_glb(const std::string& bytes);
 
 // The file with other JSON.

@@ -166,7 +166,7 @@ export async function judgePhysics(file, format, ours) {
   check(bodies.length === ours.bodies.filter((body) => body.volumes.length > 0).length, 'a body is missing');
   bodies.sort((a, b) => a.ours - b.ours);
 
-  let map, worst = 0, agree = 0, all = 0, overlaps = 0, wrong = [];
+  let map, worst = 0, worstAt = '', agree = 0, all = 0, overlaps = 0, wrong = [];
   const scale = new THREE.Vector3();
   for (const [p, pose] of ours.poses.entries()) {
     animated.stand(pose);
@@ -176,9 +176,11 @@ export async function judgePhysics(file, format, ours) {
         const matrix = gltf.nodes[node].matrixWorld;
         const there = placedInScene(shape, matrix), here = placed(body.volumes[k], pose.bodies[body.ours]);
         matrix.decompose(new THREE.Vector3(), new THREE.Quaternion(), scale);
-        const near = (a, b) => (worst = Math.max(worst, a, b));
-        here.points.forEach((point, i) => near(point.applyMatrix4(map).distanceTo(there.points[i]), 0));
-        here.radii.forEach((radius, i) => ['x', 'y', 'z'].forEach((k) => near(Math.abs(there.radii[i] * scale[k] - radius), 0)));
+        const near = (distance) => {
+          if (distance > worst) [worst, worstAt] = [distance, `${body.name} in pose ${p}`];
+        };
+        here.points.forEach((point, i) => near(point.applyMatrix4(map).distanceTo(there.points[i])));
+        here.radii.forEach((radius, i) => ['x', 'y', 'z'].forEach((k) => near(Math.abs(there.radii[i] * scale[k] - radius))));
         return { ...jolt.place(solid, matrix), ...reach(there) };
       });
     }
@@ -199,7 +201,7 @@ export async function judgePhysics(file, format, ours) {
   const off = worst / ours.height;
   const result = `${bodies.length} bodies, ${ours.poses.length} poses: ${agree} of ${all} pairs agree (${((100 * agree) / all).toFixed(3)} %), ` +
     `${overlaps} overlap; transforms off by ${off.toExponential(1)} of the height at most`;
-  check(off <= 1e-5, `transforms: ${result}`);
+  check(off <= 1e-5, `transforms of ${worstAt}: ${result}`);
   check(agree / all >= 0.999, `${result}: ${wrong.slice(0, 5).join('; ')}`);
   return { result, overlaps };
 }

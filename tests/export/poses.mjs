@@ -4,8 +4,8 @@ import * as THREE from 'three';
 
 export const run = (tool, args) => execFileSync(tool, args, { encoding: 'utf8', maxBuffer: 1 << 30, stdio: ['ignore', 'pipe', 'pipe'] });
 
-export const posedColliders = (program, asset, source, shape, poses) =>
-  JSON.parse(run(program, [asset, source, shape, '0', String(poses)]));
+export const posedColliders = (program, asset, source, shape, count, poses) =>
+  JSON.parse(run(program, [asset, source, shape, String(count), String(poses)]));
 
 // Puts the scene into a pose of posed_colliders.
 export class Animated {
