@@ -23,7 +23,7 @@ double distance_to(const ConeVolume& cone, const Vec3& point) {
   const double along = unit.dot(point - cone.a);
   const double beside = (point - cone.a - along * unit).norm();
   const double sine = taper / length, cosine = std::sqrt(1 - sine * sine);
-  const double foot = along + beside * sine / cosine;
+  const double foot = along - beside * sine / cosine;
   const double t = std::clamp(foot / length, 0.0, 1.0);
   return (point - cone.a - t * axis).norm() - (cone.radius_a - t * taper);
 }
