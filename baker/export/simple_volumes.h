@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "volumes/volume.h"
+
+// Volumes for formats that have few kinds of them.
+namespace spherechain::baker {
+
+// What stands for a volume, and how far the two surfaces are apart at most, in metres; 0: it is the same solid.
+struct SimpleVolumes {
+  std::vector<Volume> volumes;
+  double off = 0;
+};
+
+// The volume; of a cone whose one ball holds the other, that ball.
+Volume without_inner_ball(const Volume& volume);
+
+// A ball, or a cone of equal radii. A cone keeps its ends, an ellipsoid and a box their longest axis; all keep their
+// volume where they can.
+SimpleVolumes as_capsule(const Volume& volume);
+
+// Balls inside a ball or a cone, no farther from each other than their radius. Of others: of their capsule.
+SimpleVolumes as_balls(const Volume& volume);
+
+// The same, but an ellipsoid alone becomes a capsule.
+SimpleVolumes without_ellipsoid(const Volume& volume);
+
+}  // namespace spherechain::baker
