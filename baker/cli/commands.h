@@ -79,4 +79,10 @@ struct FixOptions {
 };
 ExitCode run_fix(const FixOptions& options);
 
+struct FilterOptions {
+  std::string asset, source, motion, limits, output;
+  int poses = 20000;
+};
+ExitCode run_filter(const FilterOptions& options);
+
 }  // namespace spherechain::baker
