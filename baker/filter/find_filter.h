@@ -37,7 +37,7 @@ class FilterSearch {
   std::size_t pair_count() const { return parts_ * (parts_ - 1) / 2; }
 
   const AnimatedAsset& animated_;
-  WholeSkin skin_;
+  PartSkin skin_;
   Target target_;
   std::size_t parts_;
   Tally rest_, clips_, random_;

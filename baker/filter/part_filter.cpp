@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "play/play.h"
+#include "filter/touching_parts.h"
 
 namespace spherechain::baker {
 
@@ -31,33 +31,27 @@ const FilteredPair& PartFilter::of(std::size_t a, std::size_t b) const {
 }
 
 std::vector<Pair> idle_sphere_pairs(const OpenAsset& asset, const PartFilter& filter) {
-  const BodyParts parts = parts_of(asset);
-  std::vector<std::vector<std::uint8_t>> parts_of_sphere(asset->spheres().size);
-  for (std::size_t s = 0; s < parts_of_sphere.size(); ++s) {
-    std::vector<std::uint8_t>& own = parts_of_sphere[s];
-    for (const std::uint32_t t : asset.triangles_of(s)) own.push_back(parts.of_triangle[t]);
-    std::sort(own.begin(), own.end());
-    own.erase(std::unique(own.begin(), own.end()), own.end());
-  }
-  const auto never_met = [&](std::size_t p, std::size_t q) {
+  const std::vector<std::vector<std::uint8_t>> parts = parts_of_spheres(asset);
+  const auto never_meet = [&](std::size_t p, std::size_t q) {
     if (p == q) return false;
     const FilteredPair& pair = filter.of(p, q);
     return pair.kind == PairKind::kNever ||
            (pair.kind == PairKind::kAdjacent && pair.clip_poses == 0 && pair.random_poses == 0);
+  };
+  const auto is_idle = [&](std::size_t a, std::size_t b) {
+    return std::all_of(parts[a].begin(), parts[a].end(), [&](std::size_t p) {
+      return std::all_of(parts[b].begin(), parts[b].end(), [&](std::size_t q) { return never_meet(p, q); });
+    });
   };
   const auto is_ignored = [&](std::size_t a, std::size_t b) {
     const std::size_t bit = b * (b - 1) / 2 + a;
     return (asset->ignored()[bit / 64] >> (bit % 64) & 1) != 0;
   };
   std::vector<Pair> out;
-  for (std::uint32_t a = 0; a < parts_of_sphere.size(); ++a) {
-    for (std::uint32_t b = a + 1; b < parts_of_sphere.size(); ++b) {
-      const std::vector<std::uint8_t>&of_a = parts_of_sphere[a], &of_b = parts_of_sphere[b];
-      if (of_a.empty() || of_b.empty() || is_ignored(a, b)) continue;
-      const bool is_idle = std::all_of(of_a.begin(), of_a.end(), [&](std::uint8_t p) {
-        return std::all_of(of_b.begin(), of_b.end(), [&](std::uint8_t q) { return never_met(p, q); });
-      });
-      if (is_idle) out.push_back({a, b});
+  for (std::uint32_t a = 0; a < parts.size(); ++a) {
+    for (std::uint32_t b = a + 1; b < parts.size(); ++b) {
+      const bool have_skin = !parts[a].empty() && !parts[b].empty();
+      if (have_skin && !is_ignored(a, b) && is_idle(a, b)) out.push_back({a, b});
     }
   }
   return out;

@@ -9,29 +9,36 @@
 
 namespace spherechain::baker {
 
-// An asset's skin for contacts that leave out nothing but neighbours on the mesh: what intersects at rest counts, too.
-class WholeSkin {
- public:
-  // The asset must have clusters, and outlive this.
-  explicit WholeSkin(const OpenAsset& asset);
-  const std::uint64_t* table() const { return table_.data(); }
+// The body parts of each sphere's triangles, ascending.
+std::vector<std::vector<std::uint8_t>> parts_of_spheres(const OpenAsset& asset);
 
- private:
-  std::vector<std::uint64_t> table_;
+// What of an asset's skin can tell which body parts meet; of that nothing is left out but neighbours on the mesh: what
+// intersects at rest counts, and so do folds between two parts.
+struct PartSkin {
+  // The asset must have clusters.
+  explicit PartSkin(const OpenAsset& asset);
+
+  std::vector<std::uint64_t> table;     // the runtime's, without rest contacts
+  std::vector<Pair> pairs;              // of spheres that have two parts between them
+  std::vector<std::uint64_t> one_part;  // a bit for each sphere that has no two parts itself
+  std::vector<std::uint64_t> none;      // no bit for any pair
+  bool any_of_two = false;              // whether a sphere has two parts itself
 };
 
-// Which body parts' skins intersect in one pose after another, exactly; of any spheres, ignored or not. One thread's.
+// Which body parts' skins intersect in one pose after another: exactly. For one thread.
 class TouchingParts {
  public:
-  // All must outlive this.
-  TouchingParts(const AnimatedAsset& animated, const WholeSkin& skin, Target target);
+  // Both must outlive this.
+  TouchingParts(const AnimatedAsset& animated, const PartSkin& skin, Target target);
 
-  // Holds until the next call. Parts that meet themselves are among them.
+  // Holds until the next call; two parts may be there twice, and parts that meet themselves are there by chance.
   const std::vector<PartContact>& find(const Deformation& deformation);
 
  private:
+  void add(SkinContactJob& job);
+
   const AnimatedAsset& animated_;
-  const WholeSkin& skin_;
+  const PartSkin& skin_;
   Target target_;
   std::vector<std::uint64_t> scratch_;
   std::vector<PartContact> contacts_;
