@@ -19,8 +19,8 @@ namespace {
 
 std::string poses_text(int count) { return fmt::format("{} pose{}", count, count == 1 ? "" : "s"); }
 
-// A percentage to two digits.
-std::string percent_text(double share) { return fmt::format("{:.2g} %", 100 * share); }
+// A percentage to three digits.
+std::string percent_text(double share) { return fmt::format("{:.3g} %", 100 * share); }
 
 // The pairs of one kind, those that touch most often first.
 std::string rows_text(const PartFilter& filter, PairKind kind) {

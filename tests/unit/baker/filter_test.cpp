@@ -5,8 +5,9 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <set>
+#include <numbers>
 
+#include "check/rules.h"
 #include "filter/confidence.h"
 #include "filter/find_filter.h"
 #include "filter/joint_limits.h"
@@ -25,28 +26,32 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A wall, and on it, far away at rest, a block that a paddle and a core hang on. The paddle's hinge can be put 0.1015
-// from the wall: hanging down it is free by 0.0015, turned towards the wall by more than kFree degrees it is not. The
-// core is in the wall at rest. The clip, of one frame, puts the hinge there and turns the paddle by `degrees`.
-std::string doll(bool has_clip, double degrees = 0) {
+// A wall, and on it a block far away, on which a paddle and a core hang: rigid parts, each with a joint. The clip has
+// one frame. It leaves the block where it is, and the core in the wall; or it `moves` the block so that the paddle's
+// hinge is 0.1015 from the wall: hanging down the paddle is free by 0.0015, turned towards the wall by more than kFree
+// degrees it is not. The clip turns it by `degrees`.
+std::string doll(bool moves, double degrees = 0) {
   Glb glb;
   const int wall = mesh_of(glb, box(0.5, 1, 1), 0, 0), far = mesh_of(glb, box(0.1, 0.1, 0.1), 2, 0),
             paddle = mesh_of(glb, box(0.1, 0.4, 0.1), 0, -0.4), core = mesh_of(glb, box(0.2, 0.2, 0.2), 0, 0);
   glb.json["nodes"] = {{{"name", "wall"}, {"mesh", wall}, {"children", {1}}},
-                       {{"name", "block"}, {"mesh", far}, {"translation", {3, 0.5, 0}}, {"children", {2, 3}}},
-                       {{"name", "paddle"}, {"mesh", paddle}},
+                       {{"name", "block"}, {"mesh", far}, {"translation", {3, 0.5, 0}}, {"children", {2}}},
+                       {{"name", "paddle"}, {"mesh", paddle}, {"children", {3}}},
                        {{"name", "core"}, {"mesh", core}, {"translation", {-2.5, -0.5, 0}}}};
-  if (!has_clip) return glb.bytes();
-  const auto half = static_cast<float>(-degrees * 3.14159265358979323846 / 360);
+  const auto half = static_cast<float>(-degrees * std::numbers::pi / 360);
   const int input = glb.accessor(std::vector<float>{0}, "SCALAR");
-  glb.json["animations"] = {
-      {{"name", "stand"},
-       {"samplers",
-        {{{"input", input}, {"output", glb.accessor(std::vector<float>{0, 0, std::sin(half), std::cos(half)}, "VEC4")}},
-         {{"input", input}, {"output", glb.accessor(std::vector<float>{0.6015F, 0.5F, 0}, "VEC3")}}}},
-       {"channels",
-        {{{"sampler", 0}, {"target", {{"node", 2}, {"path", "rotation"}}}},
-         {{"sampler", 1}, {"target", {{"node", 1}, {"path", "translation"}}}}}}}};
+  const std::vector<std::vector<float>> values{
+      {0, 0, std::sin(half), std::cos(half)}, {moves ? 0.6015F : 3, 0.5F, 0}, {-2.5F, -0.5F, 0}};
+  auto& clip = glb.json["animations"][0];
+  clip["name"] = "stand";
+  const auto add = [&](int node, const char* path, const std::vector<float>& value) {
+    clip["channels"].push_back({{"sampler", clip["samplers"].size()}, {"target", {{"node", node}, {"path", path}}}});
+    clip["samplers"].push_back(
+        {{"input", input}, {"output", glb.accessor(value, value.size() == 4 ? "VEC4" : "VEC3")}});
+  };
+  add(2, "rotation", values[0]);
+  add(1, "translation", values[1]);
+  add(3, "translation", values[2]);
   return glb.bytes();
 }
 constexpr double kFree = 0.1075;  // 0.1 cos + 0.8 sin = 0.1015
@@ -66,7 +71,7 @@ struct Doll {
     RandomPoses poses(played.character(), {});
     read_joint_limits(limits.string(), poses);
     FilterSearch search(played, SC_TARGET_SCALAR);
-    if (!played.character().rig.clips.empty()) search.look_at_frames([](int) {});
+    search.look_at_frames([](int) {});
     search.look_at_random(poses, count, [](int) {});
     return search.result();
   }
@@ -118,7 +123,6 @@ TEST_CASE("a filter's kinds, and its shares of random poses, are those that a do
 TEST_CASE("what intersects in every pose is always in each other, and what only a clip shows is met sometimes") {
   const Doll still(doll(false));
   const PartFilter filter = still.filter(0, 0, 10);
-  CHECK(filter.clip_poses == 0);
   CHECK(pair_of(filter, "wall", "core").kind == PairKind::kAlways);
   CHECK(pair_of(filter, "wall", "core").random_poses == 10);
   CHECK(filter.settled_after == 0);
@@ -201,6 +205,27 @@ TEST_CASE("filter writes what is read back, the same bytes each time, and idle p
   CHECK(job.triangle_count == all);
 }
 
+TEST_CASE("rules that name a filter excuse what it found in each other in every pose, and nothing else") {
+  const Doll doll(::doll(false));
+  const PartFilter filter = doll.filter(0, 0, 5);
+  doll.folder.write("filter.json", part_filter_json(filter, open_asset(doll.asset.string()), "doll.sphc"));
+  const fs::path rules = doll.folder.write("rules.json", R"({"filter": "filter.json"})");
+  const CheckConfig config = read_config(tool::contents(rules), rules.string(), default_config());
+  const auto excuse = [&](const char* a, const char* b) {
+    Event event{};
+    event.parts = {a, b};
+    event.kind = SC_CLASS_PENETRATION;
+    event.depth_mm = 500;
+    return config.rules.excuse(event);
+  };
+  CHECK(excuse("core", "wall") == "wall and core: any depth is allowed");
+  CHECK(excuse("wall", "paddle").empty());
+  CHECK(excuse("wall", "block").empty());
+  const fs::path missing = doll.folder.write("missing.json", "{}");
+  CHECK(
+      contains(refusal(missing, [&](const fs::path& path) { read_part_filter(path.string()); }), "is not what filter"));
+}
+
 TEST_CASE("a filter that is not of this asset, and limits that are none, are refused by name") {
   const Doll doll(::doll(false));
   const OpenAsset asset = open_asset(doll.asset.string());
@@ -218,7 +243,7 @@ TEST_CASE("a filter that is not of this asset, and limits that are none, are ref
       contains(refused_filter(doll.folder.write("bad.json", good.substr(0, 300)), asset), "is not what filter writes"));
   CHECK(contains(refused("\"paddle\"", "\"oar\""), "'oar', which is no body part"));
   CHECK(contains(refused("\"always\"", "\"often\""), "'kind' of pair"));
-  CHECK(contains(refused("\"clips\": 0", "\"clips\": -1"), "'clips' of 'poses'"));
+  CHECK(contains(refused("\"clips\": 1", "\"clips\": -1"), "'clips' of 'poses'"));
   CHECK(contains(refused("\"random_poses\":", "\"other\":"), "has no 'random_poses'"));
   CHECK(contains(refused("\"at_most\":1", "\"at_most\":7"), "'at_most'"));
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(good);
