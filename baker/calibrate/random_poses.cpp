@@ -130,6 +130,24 @@ RandomPoses::RandomPoses(const Character& character, const std::vector<Joint>& j
   }
 }
 
+bool RandomPoses::limit(const std::string& joint, const Vec3& low, const Vec3& high) {
+  bool is_there = false;
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    const Node& node = nodes_[n];
+    if (node.name != joint) continue;
+    is_there = true;
+    Limits& limits = limits_[n];
+    limits.middle = node.rotation;
+    limits.turn = {low, high};
+    if (!limits.moves) {
+      limits.translation = {node.translation, node.translation};
+      limits.scale = {node.scale, node.scale};
+    }
+    limits.moves = true;
+  }
+  return is_there;
+}
+
 RandomPoses::Moment RandomPoses::moment_at(double part) const {
   const auto length = [](const Clip& clip) { return clip.duration + kLastFrame; };
   double seconds = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "calibrate/random.h"
@@ -25,6 +26,10 @@ class RandomPoses {
   // Whether there is anything to move.
   bool any() const { return !bones_.empty(); }
   bool have_clips() const { return clips_ != nullptr; }
+
+  // Lets the joints of that name turn, in poses of the third kind, by rotation vectors between these two from where they
+  // are at rest, about their own axes; in radians. False where there are none.
+  bool limit(const std::string& joint, const Vec3& low, const Vec3& high);
 
   struct Pose {
     std::vector<Affine> bones;  // for each bone: rest -> posed

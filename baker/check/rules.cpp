@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "filter/part_filter.h"
 #include "mesh/error.h"
 
 namespace spherechain::baker {
@@ -56,6 +58,17 @@ class ConfigReader {
     }
   }
 
+  // What intersects in every pose is how the character is made, and no clip's fault.
+  void filter(const json& path, std::vector<Rules::Allowed>& out) const {
+    if (!path.is_string()) fail("'filter' is not the path of a file that filter wrote");
+    const std::filesystem::path folder = std::filesystem::path(file_).parent_path();
+    const PartFilter filter = read_part_filter((folder / path.get<std::string>()).string());
+    for (const FilteredPair& pair : filter.pairs) {
+      if (pair.kind != PairKind::kAlways) continue;
+      out.push_back({{filter.parts[pair.parts[0]], filter.parts[pair.parts[1]]}, Rules::kAnyDepthMm});
+    }
+  }
+
   void leave_out(const json& list, std::vector<std::string>& out) const {
     if (!list.is_array()) fail("'leave_out' is not a list");
     for (const json& entry : list) out.push_back(text(entry, "leave_out"));
@@ -93,6 +106,8 @@ std::string Rules::excuse(const Event& event) const {
   if (!is_fault(event.kind)) return {};
   for (const Allowed& one : allowed) {
     if (concerns(one, event) && event.depth_mm <= one.depth_mm) {
+      if (one.depth_mm >= kAnyDepthMm)
+        return fmt::format("{} and {}: any depth is allowed", one.parts[0], one.parts[1]);
       return fmt::format("{} and {}: {:g} mm are allowed", one.parts[0], one.parts[1], one.depth_mm);
     }
   }
@@ -122,6 +137,8 @@ CheckConfig read_config(const std::string& text, const std::string& file, const 
   for (const auto& [key, value] : object.items()) {
     if (key == "allow") {
       reader.allow(value, config.rules.allowed);
+    } else if (key == "filter") {
+      reader.filter(value, config.rules.allowed);
     } else if (key == "leave_out") {
       reader.leave_out(value, config.rules.left_out);
     } else if (key == "max_depth_mm") {
@@ -131,7 +148,7 @@ CheckConfig read_config(const std::string& text, const std::string& file, const 
     } else if (key == "bake") {
       config.bake = make_settings("balanced", value.dump(), file);
     } else {
-      reader.fail("'" + key + "' is unknown (allow, leave_out, max_depth_mm, severity and bake are known)");
+      reader.fail("'" + key + "' is unknown (allow, filter, leave_out, max_depth_mm, severity and bake are known)");
     }
   }
   return config;

@@ -15,6 +15,8 @@ enum class Severity { kError, kWarning, kIgnore };
 
 // What is fine in a library: the part of a check that a person decides.
 struct Rules {
+  static constexpr double kAnyDepthMm = 1e6;
+
   // A pair of parts that may be so deep in each other; "*" stands for any part.
   struct Allowed {
     std::array<std::string, 2> parts;
@@ -39,8 +41,9 @@ struct CheckConfig {
   BakeSettings bake;
 };
 
-// `json` is an object with the keys `allow`, `leave_out`, `max_depth_mm`, `severity` and `bake`, any of them; what it
-// does not have is as in `start`. Throws Error(kFile) that names `file` and the key.
+// `json` is an object with the keys `allow`, `filter`, `leave_out`, `max_depth_mm`, `severity` and `bake`, any of them;
+// what it does not have is as in `start`. Paths are relative to `file`. Throws Error(kFile) that names `file` and the
+// key.
 CheckConfig read_config(const std::string& json, const std::string& file, const CheckConfig& start);
 CheckConfig default_config();
 

@@ -88,4 +88,10 @@ struct ExportOptions {
 ExitCode run_export(const ExportOptions& options);
 std::vector<std::string> export_formats();
 
+struct FilterOptions {
+  std::string asset, source, motion, limits, output;
+  int poses = 20000;
+};
+ExitCode run_filter(const FilterOptions& options);
+
 }  // namespace spherechain::baker

@@ -246,6 +246,19 @@ int main(int argc, char** argv) {
   export_command->add_flag("--force", exported.force, "Replace an output file of another kind");
   export_command->callback([&] { run = [&] { return run_export(exported); }; });
 
+  FilterOptions filter;
+  CLI::App* filter_command = app.add_subcommand("filter", "Say which pairs of body parts can meet, and need testing");
+  add_name(*filter_command, "ASSET", filter.asset, "Asset (.sphc)")->required();
+  add_name(*filter_command, "--source", filter.source, "The mesh it was baked from")->required();
+  add_name(*filter_command, "--motion", filter.motion,
+           "File of motion capture (BVH, FBX, Collada), or folder or .txt list of meshes, besides the source's clips");
+  filter_command->add_option("--poses", filter.poses, "Number of random poses within joint limits")
+      ->check(CLI::Range(0, 10000000))
+      ->capture_default_str();
+  add_name(*filter_command, "--limits", filter.limits, "JSON file of joint limits (default: from the source's clips)");
+  add_output(*filter_command, "-o,--output", filter.output, "JSON file to write");
+  filter_command->callback([&] { run = [&] { return run_filter(filter); }; });
+
   ViewOptions view;
   CLI::App* view_command = app.add_subcommand("view", "Write a page that shows an asset on its source in motion");
   add_name(*view_command, "ASSET", view.asset, "Asset (.sphc)")->required();

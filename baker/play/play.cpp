@@ -17,15 +17,6 @@ namespace {
 
 Vec3 to_vec3(const spherechain::Vec3& v) { return {v.x, v.y, v.z}; }
 
-std::vector<Joint> joints_of(const OpenAsset& asset) {
-  std::vector<Joint> joints;
-  for (std::size_t i = 0; i < asset->joint_count(); ++i) {
-    const JointView joint = asset->joint(i);
-    joints.push_back({joint.name, joint.parent, to_vec3(joint.position), to_vec3(joint.tail)});
-  }
-  return joints;
-}
-
 // What the asset was baked with: other options read other vertices, and another body may be closed.
 BakeSettings settings_of(const OpenAsset& asset, const std::string& file) {
   return make_settings("balanced", asset->info().settings, file);
@@ -177,6 +168,15 @@ std::vector<Vec3> AnimatedAsset::positions(const Deformation& deformation) const
   if (!deformation.positions.empty()) return deformation.positions;
   return deform(morph(character_.source_positions, character_.rig.morphs, deformation.morphs), weights_,
                 deformation.bones);
+}
+
+std::vector<Joint> joints_of(const OpenAsset& asset) {
+  std::vector<Joint> joints;
+  for (std::size_t i = 0; i < asset->joint_count(); ++i) {
+    const JointView joint = asset->joint(i);
+    joints.push_back({joint.name, joint.parent, to_vec3(joint.position), to_vec3(joint.tail)});
+  }
+  return joints;
 }
 
 double mm_per_unit(const OpenAsset& asset) { return 1000 * double{asset->info().metres_per_unit}; }

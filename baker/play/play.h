@@ -95,6 +95,9 @@ class AnimatedAsset {
 // Of the source's units.
 double mm_per_unit(const OpenAsset& asset);
 
+// The automatic rig's; empty for a character with bones of its own.
+std::vector<Joint> joints_of(const OpenAsset& asset);
+
 // The asset's body parts; 255 where a source triangle has none.
 BodyParts parts_of(const OpenAsset& asset);
 

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "filter/touching_parts.h"
+
+#include <algorithm>
+#include <optional>
+
+#include "play/skin_player.h"
+
+namespace spherechain::baker {
+
+std::vector<std::vector<std::uint8_t>> parts_of_spheres(const OpenAsset& asset) {
+  const BodyParts parts = parts_of(asset);
+  std::vector<std::vector<std::uint8_t>> out(asset->spheres().size);
+  for (std::size_t s = 0; s < out.size(); ++s) {
+    for (const std::uint32_t t : asset.triangles_of(s)) out[s].push_back(parts.of_triangle[t]);
+    std::sort(out[s].begin(), out[s].end());
+    out[s].erase(std::unique(out[s].begin(), out[s].end()), out[s].end());
+  }
+  return out;
+}
+
+PartSkin::PartSkin(const OpenAsset& asset)
+    : table(sc_skin_table_words(asset.handle())),
+      one_part(sc_sphere_words(asset.handle()), 0),
+      none(sc_pair_words(asset.handle()), 0) {
+  check_runtime(sc_prepare_skin(asset.handle(), table.data(), table.size()));
+  Surface surface;
+  check_runtime(read_skin_table(asset.view(), table.data(), surface));
+  // The runtime leaves out the triangles in this list. No triangle has this number.
+  std::fill(surface.rest_contacts.begin(), surface.rest_contacts.end(), Pair{kNoPlace, kNoPlace});
+
+  const std::vector<std::vector<std::uint8_t>> parts = parts_of_spheres(asset);
+  for (std::uint32_t a = 0; a < parts.size(); ++a) {
+    if (parts[a].size() > 1) {
+      any_of_two = true;
+    } else {
+      one_part[a / 64] |= std::uint64_t{1} << a % 64;
+    }
+    for (std::uint32_t b = a + 1; b < parts.size(); ++b) {
+      const bool has_two = parts[a].size() > 1 || parts[b].size() > 1 || parts[a] != parts[b];
+      if (has_two && !parts[a].empty() && !parts[b].empty()) pairs.push_back({a, b});
+    }
+  }
+}
+
+TouchingParts::TouchingParts(const AnimatedAsset& animated, const PartSkin& skin, Target target)
+    : animated_(animated), skin_(skin), target_(target), scratch_(sc_skin_scratch_words(animated.asset().handle())) {}
+
+const std::vector<PartContact>& TouchingParts::find(const Deformation& deformation) {
+  const OpenAsset& asset = animated_.asset();
+  SkinContactJob job;
+  std::optional<BonePose> bones;
+  std::vector<float> vertices;
+  if (moved_by_bones(asset, deformation)) {
+    job.pose = bones.emplace(asset, deformation).pose();
+  } else {
+    vertices = pack(animated_.positions(deformation));
+    job.pose.vertices = vertices.data();
+    job.pose.vertex_count = vertices.size() / 3;
+  }
+  job.asset = asset.handle();
+  job.target = target_;
+  job.skin_table = skin_.table.data();
+  job.scratch = scratch_.data();
+  job.scratch_words = scratch_.size();
+
+  contacts_.clear();
+  SkinContactJob between = job;
+  between.candidates = skin_.pairs.data();
+  between.candidate_count = skin_.pairs.size();
+  if (!skin_.pairs.empty()) add(between);
+  if (!skin_.any_of_two) return contacts_;
+  // A job on pairs does not look within a sphere. This one looks nowhere else: no pair is ignored.
+  sc_filter within;
+  within.ignored = const_cast<std::uint64_t*>(skin_.none.data());  // jobs only read a filter
+  within.ignored_words = skin_.none.size();
+  within.disabled = const_cast<std::uint64_t*>(skin_.one_part.data());
+  within.disabled_words = skin_.one_part.size();
+  job.scope = SC_SCOPE_NEIGHBOURS;
+  job.filter = &within;
+  add(job);
+  return contacts_;
+}
+
+void TouchingParts::add(SkinContactJob& job) {
+  const std::size_t before = contacts_.size(), parts = animated_.asset()->part_count();
+  contacts_.resize(before + parts * (parts + 1) / 2);
+  job.parts = contacts_.data() + before;
+  job.part_capacity = contacts_.size() - before;
+  check_runtime(job.run());
+  contacts_.resize(before + job.part_count);
+}
+
+}  // namespace spherechain::baker
