@@ -81,8 +81,8 @@ struct FixOptions {
 ExitCode run_fix(const FixOptions& options);
 
 struct ExportOptions {
-  std::string asset, source, format, output, volumes;  // empty volumes: what the format holds best
-  int at_most = 0;                                     // 0: as many as pay
+  std::string asset, source, format, output, filter, volumes;  // empty volumes: what the format holds best
+  int at_most = 0;                                             // 0: as many as pay
   bool force = false;
 };
 ExitCode run_export(const ExportOptions& options);

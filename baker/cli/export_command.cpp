@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/outputs.h"
 #include "export/formats.h"
+#include "export/ignore_by_filter.h"
 #include "import/import.h"
 #include "mesh/error.h"
 #include "volumes/fit_volumes.h"
@@ -103,7 +104,8 @@ std::vector<std::string> export_formats() {
 
 ExitCode run_export(const ExportOptions& options) {
   const ExportFormat& format = format_of(options.format);
-  check_outputs(with_source({{"ASSET", options.asset}}, "--source", options.source), {{"--output", options.output}});
+  check_outputs(with_source({{"ASSET", options.asset}, {"--filter", options.filter}}, "--source", options.source),
+                {{"--output", options.output}});
   if (format.of_source != nullptr) {
     if (options.source.empty()) throw Error(ExitCode::kUsage, "--to " + options.format + " needs --source");
     check_replaceable(options.output, "glTF", "a binary glTF", options.force);
@@ -113,7 +115,8 @@ ExitCode run_export(const ExportOptions& options) {
   const OpenAsset asset = open_asset(options.asset);
   const std::string shape = options.volumes.empty() ? format.volumes : options.volumes;
 <<<<<<< HEAD
-  const Colliders colliders = fit_volumes(asset, volume_shape(shape), options.at_most);
+  Colliders colliders = fit_volumes(asset, volume_shape(shape), options.at_most);
+  if (!options.filter.empty()) ignore_by_filter(read_part_filter(options.filter, asset), colliders);
   const Export made = format.of_source != nullptr ? format.of_source(colliders, read_source_glb(asset, options))
                                                   : format.of_colliders(colliders);
 =======

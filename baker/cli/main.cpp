@@ -243,6 +243,7 @@ int main(int argc, char** argv) {
            "The mesh it was baked from: to measure the fit on its clips; vrm, khr and omi write into it");
   add_volumes(*export_command, exported.volumes, exported.at_most,
               "Their shape (default: the best that the format holds)");
+  add_name(*export_command, "--filter", exported.filter, "What filter wrote: pairs that need no test are ignored");
   export_command->add_flag("--force", exported.force, "Replace an output file of another kind");
   export_command->callback([&] { run = [&] { return run_export(exported); }; });
 

@@ -62,10 +62,12 @@ bool begins_with(const std::string& file, std::string_view magic, std::size_t of
   return std::equal(magic.begin(), magic.end(), there.begin() + static_cast<std::ptrdiff_t>(offset), same);
 }
 
-// Whether it is what play --json, validate --json, bake --report, check, filter or fix wrote: by the first keys of these.
+// Whether it is what play --json, validate --json, bake --report, check, filter or fix wrote: by the first keys of
+// these.
 bool begins_as_table(const std::string& file) {
-  for (const char* start : {"{\n \"backend\":", "{\n \"frames\":", "{\n \"writer\":", "{\n \"summary\":",
-                            "{\n \"clips\":", "{\n \"$schema\":", "{\n \"spherechain_baseline\":", "{\n \"spherechain\":"}) {
+  for (const char* start :
+       {"{\n \"backend\":", "{\n \"frames\":", "{\n \"writer\":", "{\n \"summary\":", "{\n \"clips\":",
+        "{\n \"$schema\":", "{\n \"spherechain_baseline\":", "{\n \"spherechain\":"}) {
     if (begins_with(file, start, 0)) return true;
   }
   return false;
