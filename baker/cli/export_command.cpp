@@ -114,16 +114,10 @@ ExitCode run_export(const ExportOptions& options) {
   }
   const OpenAsset asset = open_asset(options.asset);
   const std::string shape = options.volumes.empty() ? format.volumes : options.volumes;
-<<<<<<< HEAD
   Colliders colliders = fit_volumes(asset, volume_shape(shape), options.at_most);
   if (!options.filter.empty()) ignore_by_filter(read_part_filter(options.filter, asset), colliders);
-  const Export made = format.of_source != nullptr ? format.of_source(colliders, read_source_glb(asset, options))
-                                                  : format.of_colliders(colliders);
-=======
-  const Colliders colliders = fit_volumes(asset, shape_of(shape), options.at_most);
   Export made = format.of_source != nullptr ? format.of_source(colliders, read_source_glb(asset, options))
                                             : format.of_colliders(colliders);
->>>>>>> f05dcd5ec366289315cd8e5440f8aec19b225712
   std::vector<std::string> names;
   for (const ExportFile& file : made.files) {
     names.push_back(file.ending.empty() ? options.output
