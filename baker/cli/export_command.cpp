@@ -11,6 +11,7 @@
 #include "import/import.h"
 #include "mesh/error.h"
 #include "volumes/fit_volumes.h"
+#include "volumes/measure.h"
 #include "write/write.h"
 
 namespace spherechain::baker {
@@ -112,13 +113,13 @@ ExitCode run_export(const ExportOptions& options) {
     if (!file.ending.empty()) check_ours(names.back(), options.force);
   }
   for (std::size_t i = 0; i < names.size(); ++i) write_atomically(names[i], made.files[i].bytes);
-  std::size_t volumes = 0, bodies = 0;
-  for (const ColliderBody& body : colliders.bodies) {
-    volumes += body.volumes.size();
-    bodies += body.volumes.empty() ? 0 : 1;
-  }
-  fmt::print("{} volumes ({}) on {} body parts, {} pairs of parts ignored\n", volumes, shape, bodies,
+  const ColliderFit fit = measure_fit(asset, colliders);
+  fmt::print("{} volumes ({}) on {} body parts; {} pairs of parts are not tested\n", fit.volumes, shape, fit.bodies,
              colliders.ignored.size());
+  fmt::print(
+      "fit at rest: {:.0f} % of the skin is inside; its distance is {:.1f} mm on average, {:.1f} mm at the 95th "
+      "percentile; volume {:.0f} % of the body's\n",
+      100 * fit.coverage, 1000 * fit.gap_mean, 1000 * fit.gap_95, 100 * fit.volume_ratio);
   for (const std::string& note : made.notes) fmt::print("note: {}\n", note);
   for (const std::string& name : names) fmt::print("wrote {}\n", name);
   return ExitCode::kDone;

@@ -1,13 +1,178 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "volumes/fit_volumes.h"
 
+#include <algorithm>
+#include <cmath>
+#include <map>
+
 #include "volumes/bodies.h"
+#include "volumes/fit_body.h"
 
 namespace spherechain::baker {
+namespace {
 
-Colliders fit_volumes(const OpenAsset& asset, VolumeShape, int) {
+constexpr int kSamplesOfBody = 300;
+constexpr double kSmallPart = 0.004;  // of the skin's area: stands for no part of its own
+constexpr int kVolumesOfBodyMax = 12;
+constexpr double kGainMin = 0.03;  // of the skin's gap: what a further volume has to save
+
+// The bodies' samples and what is fitted to them so far.
+class VolumeSets {
+ public:
+  VolumeSets(const Colliders& colliders, const std::vector<SkinSample>& skin, VolumeShape shape)
+      : colliders_(colliders), shape_(shape), samples_(colliders.bodies.size()), fits_(colliders.bodies.size()) {
+    for (const SkinSample& sample : skin) {
+      const auto body = static_cast<std::size_t>(sample.body);
+      samples_[body].push_back({colliders.bodies[body].rest.inverse(Eigen::Isometry) * sample.point, sample.area});
+    }
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      alive_.push_back(!samples_[i].empty());
+      if (alive_[i]) fits_[i] = {fit_body(shape, samples_[i], 1)};
+    }
+  }
+
+  int count() const {
+    int out = 0;
+    for (std::size_t i = 0; i < fits_.size(); ++i) out += alive_[i] ? size_of(taken(i)) : 0;
+    return out;
+  }
+  double gap() const {
+    double out = 0;
+    for (std::size_t i = 0; i < fits_.size(); ++i) out += alive_[i] ? taken(i).gap : 0;
+    return out;
+  }
+
+  // Bodies of less area than this go to the one that they hang on.
+  void merge_smaller(double area) {
+    for (std::size_t i = samples_.size(); i-- > 0;) {
+      if (!alive_[i] || area_of(i) >= area || !parent_of(i)) continue;
+      merge(i);
+    }
+  }
+
+  // The merge that costs least. False where no body hangs on another.
+  bool merge_cheapest() {
+    std::size_t best = samples_.size();
+    double least = INFINITY;
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      if (!alive_[i] || !parent_of(i)) continue;
+      const std::size_t parent = *parent_of(i);
+      if (!merged_.contains({i, parent})) merged_[{i, parent}] = fit_body(shape_, joined(i, parent), 1).gap;
+      const double cost = merged_[{i, parent}] - taken(i).gap - taken(parent).gap;
+      if (cost < least) {
+        least = cost;
+        best = i;
+      }
+    }
+    if (best == samples_.size()) return false;
+    merge(best);
+    return true;
+  }
+
+  // Adds volumes to the body where one more saves most; two at once where one alone saves nothing. False where none
+  // saves at least `gain`, or no more than `room` fit.
+  bool split_best(double gain, int room) {
+    std::size_t best = samples_.size(), best_more = 0;
+    double most = gain;
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      if (!alive_[i]) continue;
+      for (std::size_t more = 1; more <= 2 && static_cast<int>(more) <= room; ++more) {
+        const BodyFit* next = fit_of(i, taken_[i] + more);
+        if (next == nullptr) break;
+        const double saved = (taken(i).gap - next->gap) / static_cast<double>(more);
+        if (saved > most) {
+          most = saved;
+          best = i;
+          best_more = more;
+        }
+      }
+    }
+    if (best == samples_.size()) return false;
+    taken_[best] += best_more;
+    return true;
+  }
+
+  std::vector<Volume> volumes_of(std::size_t body) const {
+    return alive_[body] ? taken(body).volumes : std::vector<Volume>();
+  }
+
+ private:
+  static int size_of(const BodyFit& fit) { return static_cast<int>(fit.volumes.size()); }
+  const BodyFit& taken(std::size_t i) const { return fits_[i][taken_[i]]; }
+
+  double area_of(std::size_t i) const {
+    double area = 0;
+    for (const BodySample& sample : samples_[i]) area += sample.area;
+    return area;
+  }
+
+  // With that many volumes more than one; null where a body has no more.
+  const BodyFit* fit_of(std::size_t i, std::size_t more) {
+    if (more >= kVolumesOfBodyMax || samples_[i].size() < 8 * (more + 1)) return nullptr;
+    while (fits_[i].size() <= more)
+      fits_[i].push_back(fit_body(shape_, samples_[i], static_cast<int>(fits_[i].size()) + 1));
+    return &fits_[i][more];
+  }
+
+  // The nearest body above that has samples.
+  std::optional<std::size_t> parent_of(std::size_t i) const {
+    int at = colliders_.bodies[i].parent;
+    while (at >= 0 && !alive_[static_cast<std::size_t>(at)])
+      at = colliders_.bodies[static_cast<std::size_t>(at)].parent;
+    if (at < 0) return std::nullopt;
+    return static_cast<std::size_t>(at);
+  }
+
+  std::vector<BodySample> joined(std::size_t i, std::size_t parent) const {
+    const Eigen::Isometry3d to_parent =
+        colliders_.bodies[parent].rest.inverse(Eigen::Isometry) * colliders_.bodies[i].rest;
+    std::vector<BodySample> out = samples_[parent];
+    for (const BodySample& sample : samples_[i]) out.push_back({to_parent * sample.point, sample.area});
+    return out;
+  }
+
+  void merge(std::size_t i) {
+    const std::size_t parent = *parent_of(i);
+    samples_[parent] = joined(i, parent);
+    fits_[parent] = {fit_body(shape_, samples_[parent], 1)};
+    taken_[parent] = 0;
+    alive_[i] = false;
+    std::erase_if(merged_, [&](const auto& entry) {
+      const auto& [pair, gap] = entry;
+      return pair.first == i || pair.second == i || pair.first == parent || pair.second == parent;
+    });
+  }
+
+  const Colliders& colliders_;
+  VolumeShape shape_;
+  std::vector<std::vector<BodySample>> samples_;
+  std::vector<std::vector<BodyFit>> fits_;  // of a body: with one volume, two ...
+  std::vector<std::size_t> taken_ = std::vector<std::size_t>(fits_.size(), 0);
+  std::vector<bool> alive_;
+  std::map<std::pair<std::size_t, std::size_t>, double> merged_;  // the gap of two bodies with one volume
+};
+
+}  // namespace
+
+Colliders fit_volumes(const OpenAsset& asset, VolumeShape shape, int at_most) {
   Colliders out = find_bodies(asset);
-  take_spheres(asset, out);
+  if (shape == VolumeShape::kSpheres && at_most == 0) {
+    take_spheres(asset, out);
+    ignore_by_rest(out);
+    return out;
+  }
+  const std::vector<SkinSample> skin = sample_skin(asset, out, kSamplesOfBody);
+  double area = 0;
+  for (const SkinSample& sample : skin) area += sample.area;
+  VolumeSets sets(out, skin, shape);
+  sets.merge_smaller(kSmallPart * area);
+  while (at_most > 0 && sets.count() > at_most && sets.merge_cheapest()) {
+  }
+  const double gain = at_most > 0 ? 1e-3 * sets.gap() : kGainMin * sets.gap();
+  const auto room = [&] { return at_most > 0 ? at_most - sets.count() : kVolumesOfBodyMax; };
+  while (room() > 0 && sets.split_best(gain, room())) {
+  }
+  for (std::size_t i = 0; i < out.bodies.size(); ++i) out.bodies[i].volumes = sets.volumes_of(i);
   ignore_by_rest(out);
   return out;
 }

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "volumes/fit_one.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+namespace spherechain::baker {
+namespace {
+
+using Eigen::VectorXd;
+
+constexpr double kOutsideWeight = 4;
+
+// Where samples lie: their mean and main axes, the longest first, and how far they reach along each.
+struct SampleAxes {
+  Vec3 mean = Vec3::Zero();
+  Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();  // from the mean
+};
+
+SampleAxes axes_of(const std::vector<BodySample>& samples, const std::vector<int>& own) {
+  SampleAxes out;
+  double area = 0;
+  for (const int i : own) {
+    const BodySample& sample = samples[static_cast<std::size_t>(i)];
+    out.mean += sample.area * sample.point;
+    area += sample.area;
+  }
+  out.mean /= area;
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const int i : own) {
+    const BodySample& sample = samples[static_cast<std::size_t>(i)];
+    const Vec3 v = sample.point - out.mean;
+    spread += sample.area * v * v.transpose();
+  }
+  const Eigen::Matrix3d vectors = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors();
+  out.axes << vectors.col(2), vectors.col(1), vectors.col(2).cross(vectors.col(1));
+  out.low.setConstant(INFINITY);
+  out.high.setConstant(-INFINITY);
+  for (const int i : own) {
+    const Vec3 local = out.axes.transpose() * (samples[static_cast<std::size_t>(i)].point - out.mean);
+    out.low = out.low.cwiseMin(local);
+    out.high = out.high.cwiseMax(local);
+  }
+  return out;
+}
+
+// A volume as numbers that least squares may change.
+class Numbers {
+ public:
+  Numbers(VolumeShape shape, const SampleAxes& at)
+      : shape_(shape), reach_(std::max((at.high - at.low).norm() / 2, 1e-6)) {}
+
+  VectorXd of(const Volume& volume) {
+    if (const auto* ball = std::get_if<BallVolume>(&volume)) {
+      return (VectorXd(4) << ball->center, ball->radius).finished();
+    }
+    if (const auto* cone = std::get_if<ConeVolume>(&volume)) {
+      if (shape_ == VolumeShape::kCapsules) return (VectorXd(7) << cone->a, cone->b, cone->radius_a).finished();
+      return (VectorXd(8) << cone->a, cone->b, cone->radius_a, cone->radius_b).finished();
+    }
+    if (const auto* ellipsoid = std::get_if<EllipsoidVolume>(&volume)) {
+      turn_ = ellipsoid->rotation;
+      return (VectorXd(9) << ellipsoid->center, Vec3::Zero(), ellipsoid->radii).finished();
+    }
+    const auto& box = std::get<BoxVolume>(volume);
+    turn_ = box.rotation;
+    return (VectorXd(9) << box.center, Vec3::Zero(), box.half).finished();
+  }
+
+  // No radius is below a thousandth of the samples' reach, or above it.
+  Volume volume(const VectorXd& x) const {
+    const auto size = [&](Eigen::Index i) { return std::clamp(x[i], 1e-3 * reach_, reach_); };
+    switch (shape_) {
+      case VolumeShape::kSpheres:
+        return BallVolume{x.head<3>(), size(3)};
+      case VolumeShape::kCapsules:
+        return ConeVolume{x.head<3>(), x.segment<3>(3), size(6), size(6)};
+      case VolumeShape::kCones:
+        return ConeVolume{x.head<3>(), x.segment<3>(3), size(6), size(7)};
+      default: {
+        const Vec3 v = x.segment<3>(3);
+        const Eigen::Quaterniond turn =
+            v.norm() > 0 ? Eigen::Quaterniond(Eigen::AngleAxisd(v.norm(), v.normalized())) * turn_ : turn_;
+        const Vec3 sizes(size(6), size(7), size(8));
+        if (shape_ == VolumeShape::kBoxes) return BoxVolume{x.head<3>(), turn, sizes};
+        return EllipsoidVolume{x.head<3>(), turn, sizes};
+      }
+    }
+  }
+
+  // How far each may be changed for a derivative.
+  double step() const { return 1e-5 * reach_; }
+
+ private:
+  VolumeShape shape_;
+  double reach_;
+  Eigen::Quaterniond turn_ = Eigen::Quaterniond::Identity();
+};
+
+Volume first_guess(VolumeShape shape, const SampleAxes& at, int axis, const std::vector<BodySample>& samples,
+                   const std::vector<int>& own) {
+  const Vec3 half = (at.high - at.low) / 2;
+  const Vec3 center = at.mean + at.axes * (at.high + at.low) / 2;
+  if (shape == VolumeShape::kEllipsoids) return EllipsoidVolume{center, Eigen::Quaterniond(at.axes), half};
+  if (shape == VolumeShape::kBoxes) return BoxVolume{center, Eigen::Quaterniond(at.axes), half};
+  const Vec3 along = at.axes.col(axis);
+  double area = 0, around = 0;
+  for (const int i : own) {
+    const BodySample& sample = samples[static_cast<std::size_t>(i)];
+    Vec3 v = sample.point - center;
+    if (shape != VolumeShape::kSpheres) v -= along.dot(v) * along;
+    area += sample.area;
+    around += sample.area * v.norm();
+  }
+  const double radius = around / area;
+  if (shape == VolumeShape::kSpheres) return BallVolume{center, radius};
+  const Vec3 end = std::max(half[axis] - radius, 0.1 * half[axis]) * along;
+  return ConeVolume{center - end, center + end, radius, radius};
+}
+
+class Residuals {
+ public:
+  Residuals(const std::vector<BodySample>& samples, const std::vector<int>& own)
+      : samples_(samples), own_(own), is_own_(samples.size(), false) {
+    for (const int i : own) {
+      is_own_[static_cast<std::size_t>(i)] = true;
+      own_area_ += samples[static_cast<std::size_t>(i)].area;
+    }
+  }
+
+  void of(const Volume& volume, VectorXd& out) const {
+    out.resize(static_cast<Eigen::Index>(samples_.size()) + 2);
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      const double distance = signed_distance(volume, samples_[i].point);
+      const double weight = is_own_[i] ? (distance > 0 ? kOutsideWeight : 1.0) : (distance > 0 ? 0.0 : 1.0);
+      out[static_cast<Eigen::Index>(i)] = std::sqrt(samples_[i].area * weight) * distance;
+    }
+    out.tail<2>().setZero();
+    const auto* cone = std::get_if<ConeVolume>(&volume);
+    if (cone == nullptr) return;
+    const Vec3 along = (cone->b - cone->a).stableNormalized();
+    double low = INFINITY, high = -INFINITY;
+    for (const int i : own_) {
+      const double t = along.dot(samples_[static_cast<std::size_t>(i)].point);
+      low = std::min(low, t);
+      high = std::max(high, t);
+    }
+    const double weight = std::sqrt(kOutsideWeight * own_area_);
+    out[out.size() - 2] = weight * std::max(0.0, low - along.dot(cone->a));
+    out[out.size() - 1] = weight * std::max(0.0, along.dot(cone->b) - high);
+  }
+
+ private:
+  const std::vector<BodySample>& samples_;
+  const std::vector<int>& own_;
+  std::vector<bool> is_own_;
+  double own_area_ = 0;
+};
+
+// The method of Levenberg and Marquardt with differences for derivatives. Returns the sum of squares.
+double descend(Numbers& numbers, const Residuals& residuals, Volume& volume) {
+  constexpr int kStepsMax = 25;
+  VectorXd x = numbers.of(volume), at, moved_at;
+  residuals.of(volume, at);
+  double error = at.squaredNorm(), damping = 1e-2;
+  Eigen::MatrixXd slope(at.size(), x.size());
+  for (int step = 0; step < kStepsMax; ++step) {
+    for (Eigen::Index k = 0; k < x.size(); ++k) {
+      VectorXd moved_x = x;
+      moved_x[k] += numbers.step();
+      residuals.of(numbers.volume(moved_x), moved_at);
+      slope.col(k) = (moved_at - at) / numbers.step();
+    }
+    const Eigen::MatrixXd normal = slope.transpose() * slope;
+    const VectorXd gradient = slope.transpose() * at;
+    const double size = std::max(normal.diagonal().maxCoeff(), 1e-300);
+    double next_error = error;
+    for (; damping < 1e6; damping *= 8) {
+      Eigen::MatrixXd damped = normal;
+      damped.diagonal() += damping * (normal.diagonal().array() + 1e-6 * size).matrix();
+      const Volume next = numbers.volume(x - damped.ldlt().solve(gradient));
+      residuals.of(next, moved_at);
+      next_error = moved_at.squaredNorm();
+      if (!(next_error < error)) continue;
+      volume = next;
+      break;
+    }
+    if (!(next_error < error)) break;
+    x = numbers.of(volume);
+    at = moved_at;
+    const bool is_done = next_error > error * (1 - 1e-4);
+    error = next_error;
+    damping = std::max(damping / 8, 1e-6);
+    if (is_done) break;
+  }
+  return error;
+}
+
+bool is_of(VolumeShape shape, const Volume& volume) {
+  constexpr std::size_t kIndex[] = {0, 1, 1, 2, 3};
+  return volume.index() == kIndex[static_cast<std::size_t>(shape)];
+}
+
+}  // namespace
+
+Volume fit_one(VolumeShape shape, const std::vector<BodySample>& samples, const std::vector<int>& own,
+               const std::optional<Volume>& start) {
+  const SampleAxes at = axes_of(samples, own);
+  const Residuals residuals(samples, own);
+  if (start && is_of(shape, *start)) {
+    Volume out = *start;
+    Numbers numbers(shape, at);
+    descend(numbers, residuals, out);
+    return out;
+  }
+  // A stout body's longest axis is not always that of its best capsule.
+  const int axes = shape == VolumeShape::kCones || shape == VolumeShape::kCapsules ? 3 : 1;
+  Volume best;
+  double least = INFINITY;
+  for (int axis = 0; axis < axes; ++axis) {
+    Numbers numbers(shape, at);
+    Volume one = first_guess(shape, at, axis, samples, own);
+    const double error = descend(numbers, residuals, one);
+    if (error < least || axis == 0) {
+      least = error;
+      best = one;
+    }
+  }
+  return best;
+}
+
+Volume grown(const Volume& volume, const std::vector<BodySample>& samples, const std::vector<int>& own,
+             double coverage) {
+  std::vector<std::pair<double, double>> distances;
+  for (const int i : own) {
+    const BodySample& sample = samples[static_cast<std::size_t>(i)];
+    distances.emplace_back(signed_distance(volume, sample.point), sample.area);
+  }
+  const double by = std::max(weighted_quantile(std::move(distances), coverage), 0.0);
+  Volume out = volume;
+  if (auto* ball = std::get_if<BallVolume>(&out)) {
+    ball->radius += by;
+  } else if (auto* cone = std::get_if<ConeVolume>(&out)) {
+    cone->radius_a += by;
+    cone->radius_b += by;
+  } else if (auto* ellipsoid = std::get_if<EllipsoidVolume>(&out)) {
+    ellipsoid->radii.array() += by;
+  } else if (auto* box = std::get_if<BoxVolume>(&out)) {
+    box->half.array() += by;
+  }
+  return out;
+}
+
+}  // namespace spherechain::baker
