@@ -79,17 +79,16 @@ Export export_godot(const Colliders& given) {
     }
   }
   for (const IgnoredBodies& pair : colliders.ignored) {
-    ignored += fmt::format("{}{}, {}", ignored.empty() ? "" : ", ",
-                           godot_string(names[static_cast<std::size_t>(pair.a)]),
-                           godot_string(names[static_cast<std::size_t>(pair.b)]));
+    ignored +=
+        fmt::format("{}{}, {}", ignored.empty() ? "" : ", ", godot_string(names[static_cast<std::size_t>(pair.a)]),
+                    godot_string(names[static_cast<std::size_t>(pair.b)]));
   }
   const std::string scene = fmt::format(
       "[gd_scene load_steps={} format=3]\n\n; Written by spherechain for {}: instantiate under its Skeleton3D.\n\n"
       "[sub_resource type=\"GDScript\" id=\"script\"]\nscript/source = {}\n{}\n"
       "[node name=\"Colliders\" type=\"PhysicalBoneSimulator3D\"]\nscript = SubResource(\"script\")\n"
       "ignored = PackedStringArray({})\n{}",
-      count + 2, godot_string(colliders.source_file), godot_string(kGodotScript),
-      shapes, ignored, nodes);
+      count + 2, godot_string(colliders.source_file), godot_string(kGodotScript), shapes, ignored, nodes);
   out.files.push_back({"", scene});
   return out;
 }

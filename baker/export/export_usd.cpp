@@ -62,8 +62,7 @@ UsdShape usd_shape(const ConeVolume& cone) {
     out.attributes += fmt::format("            double radiusBottom = {}\n            double radiusTop = {}\n",
                                   usd_number(cone.radius_a), usd_number(cone.radius_b));
   }
-  out.attributes +=
-      fmt::format("            double radius = {}\n", usd_number((cone.radius_a + cone.radius_b) / 2));
+  out.attributes += fmt::format("            double radius = {}\n", usd_number((cone.radius_a + cone.radius_b) / 2));
   out.center = (cone.a + cone.b) / 2;
   out.rotation = turn_to(1, cone.b - cone.a);
   out.extent = Vec3(widest, length / 2 + widest, widest);
@@ -173,9 +172,8 @@ def Xform "colliders"
   text += "}\n";
   Export out{{{"", text}}, {"UsdSkel joints are no prims: move each Xform with the joint that spherechain:bone names"}};
   if (tapered > 0) {
-    out.notes.push_back(
-        fmt::format("{} cones are Capsule_1; a program that does not know it reads a Capsule of their mean radius",
-                    tapered));
+    out.notes.push_back(fmt::format(
+        "{} cones are Capsule_1; a program that does not know it reads a Capsule of their mean radius", tapered));
   }
   if (scaled > 0) {
     out.notes.push_back(fmt::format(

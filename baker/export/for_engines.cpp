@@ -65,7 +65,8 @@ void renumber(Colliders& colliders, const std::vector<int>& new_place) {
       volumes.insert(volumes.end(), body.volumes.begin(), body.volumes.end());
     }
   }
-  std::map<std::pair<int, int>, std::pair<int, IgnoredReason>> found;  // how many of their pairs, and the first's reason
+  std::map<std::pair<int, int>, std::pair<int, IgnoredReason>>
+      found;  // how many of their pairs, and the first's reason
   for (const IgnoredBodies& pair : colliders.ignored) {
     const int a = new_place[static_cast<std::size_t>(pair.a)], b = new_place[static_cast<std::size_t>(pair.b)];
     if (a < 0 || b < 0 || a == b) continue;
@@ -88,8 +89,8 @@ void use_balls(Colliders& colliders) {
     for (Volume& volume : body.volumes) {
       const auto* cone = std::get_if<ConeVolume>(&volume);
       if (cone == nullptr || (cone->b - cone->a).norm() > std::abs(cone->radius_a - cone->radius_b)) continue;
-      volume = cone->radius_a >= cone->radius_b ? BallVolume{cone->a, cone->radius_a}
-                                                : BallVolume{cone->b, cone->radius_b};
+      volume =
+          cone->radius_a >= cone->radius_b ? BallVolume{cone->a, cone->radius_a} : BallVolume{cone->b, cone->radius_b};
     }
   }
 }
@@ -123,8 +124,9 @@ void keep_bodies_on_bones(Colliders& colliders, std::vector<std::string>& notes)
     new_place.push_back(is_kept ? kept++ : -1);
   }
   if (kept == 0) {
-    throw Error(ExitCode::kFile, colliders.source_file + ": no body part follows a bone, and this format attaches "
-                                                         "colliders to bones (rig the character, or export usd)");
+    throw Error(ExitCode::kFile, colliders.source_file +
+                                     ": no body part follows a bone, and this format attaches "
+                                     "colliders to bones (rig the character, or export usd)");
   }
   if (!without_bone.empty()) notes.push_back("no bone moves, and the file leaves out: " + without_bone);
   renumber(colliders, new_place);
@@ -154,7 +156,8 @@ std::vector<std::string> unique_names(const Colliders& colliders, bool (*is_allo
   std::vector<std::string> out;
   for (const ColliderBody& body : colliders.bodies) {
     std::string name = body.name;
-    std::replace_if(name.begin(), name.end(), [&](char c) { return !is_allowed(c); }, '_');
+    std::replace_if(
+        name.begin(), name.end(), [&](char c) { return !is_allowed(c); }, '_');
     std::string unique = name;
     for (int number = 2; !taken.insert(unique).second; ++number) unique = fmt::format("{}_{}", name, number);
     out.push_back(unique);

@@ -32,6 +32,16 @@ const directions = Array.from({ length: 60 }, (_, i) => {
 const distance = (a, b) => Math.max(...directions.map((d) => Math.abs(d.dot(support(a, d).sub(support(b, d))))));
 
 const Jolt = await initJolt();
+{
+  // A world that nobody steps: making one fills the tables of which shape meets which.
+  const world = new Jolt.JoltSettings(), pairs = new Jolt.ObjectLayerPairFilterTable(1);
+  const layers = new Jolt.BroadPhaseLayerInterfaceTable(1, 1);
+  layers.MapObjectToBroadPhaseLayer(0, new Jolt.BroadPhaseLayer(0));
+  world.mObjectLayerPairFilter = pairs;
+  world.mBroadPhaseLayerInterface = layers;
+  world.mObjectVsBroadPhaseLayerFilter = new Jolt.ObjectVsBroadPhaseLayerFilterTable(layers, 1, pairs, 1);
+  new Jolt.JoltInterface(world);
+}
 
 // A volume as Jolt's, at `scale`, and where it is in its body.
 function joltShape(volume, scale) {
@@ -57,6 +67,7 @@ function joltShape(volume, scale) {
   } else {
     return null;  // Jolt has no ellipsoids
   }
+  part.shape.AddRef();
   const mass = part.shape.GetCenterOfMass();
   part.mass = new Vector3(mass.GetX(), mass.GetY(), mass.GetZ());
   return part;
@@ -65,6 +76,7 @@ function joltShape(volume, scale) {
 const one = new Jolt.Vec3(1, 1, 1), origin = new Jolt.RVec3(0, 0, 0), filter = new Jolt.ShapeFilter();
 const settings = new Jolt.CollideShapeSettings();
 settings.mCollisionTolerance = 1e-6;
+settings.mPenetrationTolerance = 1e-6;
 const collector = new Jolt.CollideShapeAnyHitCollisionCollector();
 const transformed = new Jolt.TransformedShape();
 
@@ -74,7 +86,8 @@ function overlap(a, b) {
   transformed.mShapeRotation = a.rotation;
   collector.Reset();
   collector.ResetEarlyOutFraction();
-  transformed.CollideShape(b.shape, one, b.matrix, settings, origin, collector, filter);
+  const matrix = Jolt.RMat44.prototype.sRotationTranslation(b.rotation, b.position);  // good until the next call
+  transformed.CollideShape(b.shape, one, matrix, settings, origin, collector, filter);
   return collector.HadHit();
 }
 
@@ -86,8 +99,7 @@ function place(parts, { position, rotation }, scale) {
     const q = turn.clone().multiply(part.turn).normalize();
     const mass = part.mass.clone().applyQuaternion(q).addScaledVector(center, scale);
     const at = new Jolt.RVec3(mass.x, mass.y, mass.z), spin = new Jolt.Quat(q.x, q.y, q.z, q.w);
-    const matrix = Jolt.RMat44.prototype.sRotationTranslation(spin, at);
-    return { shape: part.shape, center, bound: part.bound, position: at, rotation: spin, matrix };
+    return { shape: part.shape, center, bound: part.bound, position: at, rotation: spin };
   });
 }
 
@@ -139,7 +151,7 @@ export function judge(name, bodies, ignored, ours, file) {
         ++count;
       }
     }
-    for (const { position, rotation, matrix } of placed.flat()) [position, rotation].forEach(Jolt.destroy), void matrix;
+    for (const { position, rotation } of placed.flat()) [position, rotation].forEach(Jolt.destroy);
   }
   const share = agreed / count;
   const line = `${name}: Jolt agrees in ${agreed} of ${count} (pose, pair), ${(100 * share).toFixed(3)} %; ` +

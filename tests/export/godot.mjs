@@ -47,10 +47,10 @@ export function rebuild(path, file) {
   const [root, ...nodes] = sections.filter(({ tag }) => tag === 'node');
   if (root.type !== 'PhysicalBoneSimulator3D' || root.parent !== undefined) throw new Error('the root is no simulator');
   if (!resources.get('script')['script/source'].includes(`extends ${root.type}`)) throw new Error('not the script of its node');
+  const partOf = new Map();
   const bodies = nodes.filter(({ type }) => type === 'PhysicalBone3D').map((body) => {
-    const bone = JSON.parse(body.bone_name);
-    const { part } = file.bodies.find((one) => one.part === body.name);
-    if (file.bodies.find((one) => one.part === part).bone !== bone) throw new Error(`${part} follows ${bone}`);
+    const bone = JSON.parse(body.bone_name), { part } = file.bodies.find((one) => one.bone === bone);
+    partOf.set(body.name, part);
     if (body.parent !== '.') throw new Error(`${part} is not the simulator's child`);
     const volumes = nodes.filter(({ type, parent }) => type === 'CollisionShape3D' && parent === body.name)
       .map((node) => volumeOf(resources.get(/"(.*)"/.exec(node.shape)[1]), transformOf(node.transform)));
@@ -58,6 +58,6 @@ export function rebuild(path, file) {
   });
   const names = JSON.parse(`[${/\((.*)\)/.exec(root.ignored)[1]}]`);
   const ignored = [];
-  for (let i = 0; i < names.length; i += 2) ignored.push([names[i], names[i + 1]]);
+  for (let i = 0; i < names.length; i += 2) ignored.push([partOf.get(names[i]), partOf.get(names[i + 1])]);
   return { bodies, ignored };
 }

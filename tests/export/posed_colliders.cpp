@@ -4,13 +4,13 @@
 // is compared with. Positions in metres, rotations x y z w, in the axes of the rest pose.
 #include <cstdlib>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
-#include "export/volume_json.h"
 #include "play/play.h"
+#include "posed_json.h"
 #include "volumes/fit_volumes.h"
 
 using namespace spherechain::baker;
+using namespace spherechain::test;
 using nlohmann::ordered_json;
 
 int main(int argc, char** argv) try {
@@ -22,27 +22,10 @@ int main(int argc, char** argv) try {
   if (argc > 6) motion.motion = argv[6];
   AnimatedAsset animated(argv[1], argv[2], motion, {std::atoi(argv[5]), 30});
   const Colliders colliders = fit_volumes(animated.asset(), static_cast<VolumeShape>(shape), std::atoi(argv[4]));
-  ordered_json out{{"bodies", ordered_json::array()},
-                   {"height", colliders.height},
-                   {"metres_per_unit", colliders.metres_per_unit},
-                   {"poses", ordered_json::array()}};
-  for (const ColliderBody& body : colliders.bodies) {
-    ordered_json volumes = ordered_json::array();
-    for (const Volume& volume : body.volumes) volumes.push_back(json_of(volume));
-    out["bodies"].push_back({{"part", body.name}, {"bone", body.bone}, {"parent", body.parent}, {"volumes", volumes}});
-  }
+  ordered_json out = json_of(colliders);
   for (int i = 0; i < animated.frame_count(); ++i) {
-    const Deformation deformation = animated.deformation(i);
-    const std::vector<Eigen::Isometry3d> at = posed(colliders, deformation.bones);
-    ordered_json bodies = ordered_json::array();
-    for (const Eigen::Isometry3d& body : at) {
-      bodies.push_back(
-          {{"position", json_of(Vec3(body.translation()))}, {"rotation", json_of(Eigen::Quaterniond(body.linear()))}});
-    }
-    out["poses"].push_back({{"clip", animated.clip_at(i)},
-                            {"seconds", animated.frame_at(i).seconds},
-                            {"bodies", bodies},
-                            {"overlaps", overlapping(colliders, at)}});
+    const std::vector<Eigen::Isometry3d> at = posed(colliders, animated.deformation(i).bones);
+    add_pose(out, colliders, at, {{"clip", animated.clip_at(i)}, {"seconds", animated.frame_at(i).seconds}});
   }
   std::cout << out.dump() << '\n';
   return 0;

@@ -18,7 +18,7 @@ export function rebuild(path, file) {
   const bones = new Map(file.bodies.map((body) => [body.bone, body]));
   writeFileSync(skeleton, [...bones].map(([bone, { position, rotation }], i) =>
     [bone, ...mirrored(position), ...mirroredRotation(rotation), [1, 0.01, 100][i % 3]].join('\t')).join('\n'));
-  const { colliders, ignored, cloth } = JSON.parse(execFileSync('mono', [program, path, skeleton], { encoding: 'utf8' }));
+  const { colliders, ignored, cloth } = JSON.parse(execFileSync('mono', [program, path, skeleton], { encoding: 'utf8', stdio: ['ignore', 'pipe', 'pipe'] }));
 
   // From the world, which is mirrored, into the frame of the body.
   const bodies = file.bodies.map(({ part, position, rotation }) => {

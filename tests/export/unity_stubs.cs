@@ -144,7 +144,7 @@ namespace UnityEngine
         public static readonly HashSet<string> Ignored = new HashSet<string>();
         public static void IgnoreCollision(Collider a, Collider b)
         {
-            Ignored.Add("[\"" + a.transform.Parent.name + "\", \"" + b.transform.Parent.name + "\"]");
+            Ignored.Add("[" + Program.Quoted(a.transform.Parent.name) + ", " + Program.Quoted(b.transform.Parent.name) + "]");
         }
     }
 
@@ -225,6 +225,8 @@ static class Program
 {
     const float Whole = 2;  // the scale at which somebody set the character into a scene
 
+    public static string Quoted(string text) { return "\"" + text.Replace("\\", "\\\\").Replace("\"", "\\\"") + "\""; }
+
     static string Text(params float[] numbers)
     {
         return "[" + string.Join(", ", numbers.Select(n => n.ToString("R", CultureInfo.InvariantCulture))) + "]";
@@ -243,8 +245,8 @@ static class Program
         string size = sphere != null ? "\"radius\": " + Text(sphere.radius * scale).Trim('[', ']')
             : capsule != null ? "\"direction\": " + capsule.direction + ", \"radius\": " + Text(capsule.radius * scale).Trim('[', ']') + ", \"height\": " + Text(capsule.height * scale).Trim('[', ']')
             : "\"size\": " + Text(box.size.x * scale, box.size.y * scale, box.size.z * scale);
-        return "{\"body\": \"" + at.Parent.name + "\", \"name\": \"" + one.name + "\", \"type\": \"" + one.GetType().Name +
-            "\", \"position\": " + Text(p.x, p.y, p.z) + ", \"rotation\": " + Text(q.x, q.y, q.z, q.w) + ", " + size + "}";
+        return "{\"body\": " + Quoted(at.Parent.name) + ", \"name\": " + Quoted(one.name) + ", \"type\": " + Quoted(one.GetType().Name) +
+            ", \"position\": " + Text(p.x, p.y, p.z) + ", \"rotation\": " + Text(q.x, q.y, q.z, q.w) + ", " + size + "}";
     }
 
     static void Main(string[] args)
