@@ -50,7 +50,8 @@ UsdShape usd_shape(const BallVolume& ball) {
   return out;
 }
 
-// Capsule_1 has two radii. Readers that do not know it take it for a Capsule (fallbackPrimTypes), whose radius is here.
+// Capsule_1 has two radii. No fallbackPrimTypes says that it may be taken for a Capsule: some readers refuse a stage
+// with it.
 UsdShape usd_shape(const ConeVolume& cone) {
   UsdShape out;
   const double length = (cone.b - cone.a).norm(), widest = std::max(cone.radius_a, cone.radius_b);
@@ -58,11 +59,10 @@ UsdShape usd_shape(const ConeVolume& cone) {
   out.type = is_tapered ? "Capsule_1" : "Capsule";
   out.attributes =
       fmt::format("            uniform token axis = \"Y\"\n            double height = {}\n", usd_number(length));
-  if (is_tapered) {
-    out.attributes += fmt::format("            double radiusBottom = {}\n            double radiusTop = {}\n",
-                                  usd_number(cone.radius_a), usd_number(cone.radius_b));
-  }
-  out.attributes += fmt::format("            double radius = {}\n", usd_number((cone.radius_a + cone.radius_b) / 2));
+  out.attributes += is_tapered
+                        ? fmt::format("            double radiusBottom = {}\n            double radiusTop = {}\n",
+                                      usd_number(cone.radius_a), usd_number(cone.radius_b))
+                        : fmt::format("            double radius = {}\n", usd_number(cone.radius_a));
   out.center = (cone.a + cone.b) / 2;
   out.rotation = turn_to(1, cone.b - cone.a);
   out.extent = Vec3(widest, length / 2 + widest, widest);
@@ -129,9 +129,6 @@ Export export_usd(const Colliders& given) {
 (
     defaultPrim = "colliders"
     doc = {}
-    fallbackPrimTypes = {{
-        token[] Capsule_1 = ["Capsule"]
-    }}
     metersPerUnit = 1
     upAxis = "{}"
 )
@@ -173,7 +170,7 @@ def Xform "colliders"
   Export out{{{"", text}}, {"UsdSkel joints are no prims: move each Xform with the joint that spherechain:bone names"}};
   if (tapered > 0) {
     out.notes.push_back(fmt::format(
-        "{} cones are Capsule_1; a program that does not know it reads a Capsule of their mean radius", tapered));
+        "{} cones are Capsule_1, which older programs pass over (--volumes capsules is for them)", tapered));
   }
   if (scaled > 0) {
     out.notes.push_back(fmt::format(

@@ -13,15 +13,16 @@ namespace spherechain::test {
 namespace {
 
 using namespace baker;
+using Vec = baker::Vec3;
 
 // A body for each of these bones; an empty name: no bone moves it.
 Colliders bodies_on(const std::vector<std::string>& bones) {
   Colliders out;
   out.source_file = "person.glb";
   out.height = 1.7;
-  out.left = Vec3::UnitX();
-  out.up = Vec3::UnitY();
-  out.forward = Vec3::UnitZ();
+  out.left = Vec::UnitX();
+  out.up = Vec::UnitY();
+  out.forward = Vec::UnitZ();
   for (const std::string& bone : bones) {
     ColliderBody body;
     body.name = "part " + std::to_string(out.bodies.size());
@@ -99,7 +100,7 @@ TEST_CASE("exports: USD names are identifiers, each once, and its up is the file
   Colliders colliders = bodies_on({"a", "b", "c"});
   colliders.bodies[0].name = "1st toe";
   colliders.bodies[1].name = "1st.toe";
-  colliders.up = Vec3::UnitZ();
+  colliders.up = Vec::UnitZ();
   const std::string text = export_usd(colliders).files[0].bytes;
   CHECK(count(text, "def Xform \"_1st_toe\" (") == 1);
   CHECK(count(text, "def Xform \"_1st_toe_2\" (") == 1);
