@@ -120,8 +120,10 @@ ExitCode run_export(const ExportOptions& options) {
                                             : format.of_colliders(colliders);
   std::vector<std::string> names;
   for (const ExportFile& file : made.files) {
-    names.push_back(file.ending.empty() ? options.output
-                                        : fs::path(options.output).replace_extension(file.ending).string());
+    fs::path name = options.output;
+    if (!file.ending.empty() && file.ending.front() == '.') name.replace_extension(file.ending);
+    if (!file.ending.empty() && file.ending.front() != '.') name.replace_filename(file.ending);
+    names.push_back(name.string());
     if (!file.ending.empty()) check_ours(names.back(), options.force);
   }
   for (std::size_t i = 0; i < names.size(); ++i) {

@@ -11,7 +11,7 @@
 namespace spherechain::baker {
 
 struct ExportFile {
-  std::string ending;  // ".urdf": put in place of -o's ending. Empty: -o itself
+  std::string ending;  // ".urdf": put in place of -o's ending; "importer.cs": a file beside -o. Empty: -o itself
   std::string bytes;
 };
 

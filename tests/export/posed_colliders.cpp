@@ -4,13 +4,14 @@
 // is compared with. Positions in metres, rotations x y z w, in the axes of the rest pose.
 #include <cstdlib>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
 #include "play/play.h"
+#include "posed_json.h"
 #include "volumes/fit_volumes.h"
 #include "volumes/volume_json.h"
 
 using namespace spherechain::baker;
+using namespace spherechain::test;
 using nlohmann::ordered_json;
 
 int main(int argc, char** argv) try {
@@ -29,17 +30,8 @@ int main(int argc, char** argv) try {
     out["bodies"].push_back({{"part", body.name}, {"bone", body.bone}, {"parent", body.parent}, {"volumes", volumes}});
   }
   for (int i = 0; i < animated.frame_count(); ++i) {
-    const Deformation deformation = animated.deformation(i);
-    const std::vector<Eigen::Isometry3d> at = posed(colliders, deformation.bones);
-    ordered_json bodies = ordered_json::array();
-    for (const Eigen::Isometry3d& body : at) {
-      bodies.push_back(
-          {{"position", json_of(Vec3(body.translation()))}, {"rotation", json_of(Eigen::Quaterniond(body.linear()))}});
-    }
-    out["poses"].push_back({{"clip", animated.clip_at(i)},
-                            {"seconds", animated.frame_at(i).seconds},
-                            {"bodies", bodies},
-                            {"overlaps", overlapping(colliders, at)}});
+    const std::vector<Eigen::Isometry3d> at = posed(colliders, animated.deformation(i).bones);
+    add_pose(out, colliders, at, {{"clip", animated.clip_at(i)}, {"seconds", animated.frame_at(i).seconds}});
   }
   std::cout << out.dump() << '\n';
   return 0;

@@ -12,5 +12,5 @@ if ! cmp -s "$here/package-lock.json" package-lock.json || [[ ! -d node_modules/
   cp "$here/package.json" "$here/package-lock.json" "$here/.npmrc" .
   npm ci --no-audit --no-fund
 fi
-cp "$here"/*.mjs .
+cp "$here"/*.mjs "$here"/*.cs "$here"/*.py .
 exec node "$script" "$@"

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "volumes/colliders.h"
+
+// Colliders as game engines can hold them. Each function replaces what they cannot, and adds a sentence to `notes`
+// where something is lost.
+namespace spherechain::baker {
+
+// Of a cone of which one ball holds the other, that ball. Nothing is lost.
+void use_balls(Colliders& colliders);
+
+// Of each cone the capsule of its mean radius.
+void use_capsules_for_cones(Colliders& colliders, std::vector<std::string>& notes);
+
+// Of each ellipsoid the capsule along its longest axis, as long, of the mean of its other radii.
+void use_capsules_for_ellipsoids(Colliders& colliders, std::vector<std::string>& notes);
+
+// Drops bodies that have no bone or no volume. Throws Error(kFile) where none is left.
+void keep_bodies_on_bones(Colliders& colliders, std::vector<std::string>& notes);
+
+// Bodies of one bone become one body, the first's. Two bodies are ignored where all of their parts are.
+void join_bodies_of_a_bone(Colliders& colliders, std::vector<std::string>& notes);
+
+// The rotation that takes +Y (`axis` 1) or +Z (2) along a direction; of no direction none.
+Eigen::Quaterniond turn_to(int axis, const Vec3& direction);
+
+// The bodies' names with each character that `is_allowed` refuses replaced by an underscore, made unique by numbers.
+std::vector<std::string> unique_names(const Colliders& colliders, bool (*is_allowed)(char));
+
+}  // namespace spherechain::baker
