@@ -11,8 +11,8 @@
 #include "export/glb_json.h"
 #include "export/rest_nodes.h"
 #include "export/simple_volumes.h"
-#include "export/volume_json.h"
 #include "mesh/error.h"
+#include "volumes/volume_json.h"
 
 namespace spherechain::baker {
 

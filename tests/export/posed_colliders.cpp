@@ -8,7 +8,6 @@
 #include "play/play.h"
 #include "posed_json.h"
 #include "volumes/fit_volumes.h"
-#include "volumes/volume_json.h"
 
 using namespace spherechain::baker;
 using namespace spherechain::test;
@@ -20,15 +19,7 @@ int main(int argc, char** argv) try {
   if (argc > 6) motion.motion = argv[6];
   AnimatedAsset animated(argv[1], argv[2], motion, {std::atoi(argv[5]), 30});
   const Colliders colliders = fit_volumes(animated.asset(), volume_shape(argv[3]), std::atoi(argv[4]));
-  ordered_json out{{"bodies", ordered_json::array()},
-                   {"height", colliders.height},
-                   {"metres_per_unit", colliders.metres_per_unit},
-                   {"poses", ordered_json::array()}};
-  for (const ColliderBody& body : colliders.bodies) {
-    ordered_json volumes = ordered_json::array();
-    for (const Volume& volume : body.volumes) volumes.push_back(json_of(volume));
-    out["bodies"].push_back({{"part", body.name}, {"bone", body.bone}, {"parent", body.parent}, {"volumes", volumes}});
-  }
+  ordered_json out = json_of(colliders);
   for (int i = 0; i < animated.frame_count(); ++i) {
     const std::vector<Eigen::Isometry3d> at = posed(colliders, animated.deformation(i).bones);
     add_pose(out, colliders, at, {{"clip", animated.clip_at(i)}, {"seconds", animated.frame_at(i).seconds}});

@@ -4,8 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "export/volume_json.h"
 #include "volumes/colliders.h"
+#include "volumes/volume_json.h"
 
 // What foreign engines are compared with. Positions in metres, rotations x y z w, in the axes of the rest pose.
 namespace spherechain::test {
