@@ -161,13 +161,12 @@ class Residuals {
 };
 
 // The method of Levenberg and Marquardt with differences for derivatives. Returns the sum of squares.
-double descend(Numbers& numbers, const Residuals& residuals, Volume& volume) {
-  constexpr int kStepsMax = 25;
+double descend(Numbers& numbers, const Residuals& residuals, int steps_max, Volume& volume) {
   VectorXd x = numbers.of(volume), at, moved_at;
   residuals.of(volume, at);
   double error = at.squaredNorm(), damping = 1e-2;
   Eigen::MatrixXd slope(at.size(), x.size());
-  for (int step = 0; step < kStepsMax; ++step) {
+  for (int step = 0; step < steps_max; ++step) {
     for (Eigen::Index k = 0; k < x.size(); ++k) {
       VectorXd moved_x = x;
       moved_x[k] += numbers.step();
@@ -208,12 +207,13 @@ bool is_of(VolumeShape shape, const Volume& volume) {
 
 Volume fit_one(VolumeShape shape, const std::vector<BodySample>& samples, const std::vector<int>& own,
                const std::optional<Volume>& start) {
+  constexpr int kStepsMax = 20, kStepsToChoose = 4;
   const SampleAxes at = axes_of(samples, own);
   const Residuals residuals(samples, own);
   if (start && is_of(shape, *start)) {
     Volume out = *start;
     Numbers numbers(shape, at);
-    descend(numbers, residuals, out);
+    descend(numbers, residuals, kStepsMax, out);
     return out;
   }
   // A stout body's longest axis is not always that of its best capsule.
@@ -223,12 +223,14 @@ Volume fit_one(VolumeShape shape, const std::vector<BodySample>& samples, const 
   for (int axis = 0; axis < axes; ++axis) {
     Numbers numbers(shape, at);
     Volume one = first_guess(shape, at, axis, samples, own);
-    const double error = descend(numbers, residuals, one);
+    const double error = descend(numbers, residuals, kStepsToChoose, one);
     if (error < least || axis == 0) {
       least = error;
       best = one;
     }
   }
+  Numbers numbers(shape, at);
+  descend(numbers, residuals, kStepsMax, best);
   return best;
 }
 

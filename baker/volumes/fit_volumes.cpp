@@ -13,7 +13,7 @@
 namespace spherechain::baker {
 namespace {
 
-constexpr int kSamplesOfBody = 300;
+constexpr int kSamplesOfBody = 200;
 constexpr double kSmallPart = 0.004;  // of the skin's area: stands for no part of its own
 constexpr int kVolumesOfBodyMax = 12;
 constexpr double kGainMin = 0.03;  // of the skin's gap: what a further volume has to save
