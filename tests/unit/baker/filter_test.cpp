@@ -6,11 +6,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <set>
 
 #include "check/rules.h"
 #include "filter/confidence.h"
 #include "filter/find_filter.h"
 #include "filter/joint_limits.h"
+#include "human.h"
 #include "play/skin_player.h"
 #include "refusal.h"
 #include "spherechain/detect.h"
@@ -148,6 +150,46 @@ TEST_CASE("more random poses begin with the fewer, and those that settle the kin
   CHECK(!same(all, doll.filter(-1, 20, all.settled_after - 1), false));
 }
 
+TEST_CASE("on a human, the parts found to touch are those of a search through the whole skin") {
+  const tool::BakedFiles& files = tool::baked_files();
+  const AnimatedAsset animated(files.asset.string(), kHumanFile, {}, {});
+  const OpenAsset& asset = animated.asset();
+  const PartSkin skin(asset);
+  TouchingParts touching(animated, skin, SC_TARGET_SCALAR);
+  using Parts = std::set<std::pair<std::uint32_t, std::uint32_t>>;
+  const auto set_of = [](const std::vector<spherechain::PartContact>& contacts) {
+    Parts out;
+    for (const auto& contact : contacts) {
+      if (contact.part_a != contact.part_b) out.insert({contact.part_a, contact.part_b});
+    }
+    return out;
+  };
+  const RandomPoses poses(animated.character(), joints_of(asset));
+  std::vector<std::uint64_t> scratch(sc_skin_scratch_words(asset.handle()));
+  Random random(1);
+  std::size_t most = 0;
+  for (int i = 0; i < 30; ++i) {
+    const RandomPoses::Pose drawn = poses.next(random, 2, 0);
+    const Deformation deformation{drawn.bones, drawn.morphs, {}};
+    const BonePose pose(asset, deformation);
+    std::vector<spherechain::PartContact> contacts(asset->part_count() * asset->part_count());
+    spherechain::SkinContactJob job;
+    job.asset = asset.handle();
+    job.pose = pose.pose();
+    job.scope = SC_SCOPE_ALL;
+    job.skin_table = skin.table.data();
+    job.scratch = scratch.data();
+    job.scratch_words = scratch.size();
+    job.parts = contacts.data();
+    job.part_capacity = contacts.size();
+    REQUIRE(job.run() == SC_OK);
+    contacts.resize(job.part_count);
+    CHECK(set_of(touching.find(deformation)) == set_of(contacts));
+    most = std::max(most, contacts.size());
+  }
+  CHECK(most > 10);
+}
+
 TEST_CASE("the bound of a share is Clopper and Pearson's") {
   CHECK(upper_bound_of_share(0, 0) == 1);
   CHECK(upper_bound_of_share(7, 7) == 1);
@@ -189,6 +231,10 @@ TEST_CASE("filter writes what is read back, the same bytes each time, and idle p
     CHECK(sc_ignore_pair(asset.handle(), &spheres, pair[0], pair[1], 1) == SC_OK);
   }
   CHECK(!json["idle_sphere_pairs"].empty());
+  const std::string page = tool::contents(SPHERECHAIN_SAMPLES "/../docs/json.md");
+  for (const auto& object : {json, json["poses"], json["pairs"][0]}) {
+    for (const auto& [key, value] : object.items()) CHECK_MESSAGE(contains(page, ("`" + key + "`").c_str()), key);
+  }
   const BonePose pose(asset, animated.deformation(0));
   std::vector<std::uint64_t> scratch(sc_skin_scratch_words(asset.handle()));
   spherechain::SkinContactJob job;
