@@ -51,7 +51,11 @@ const answer = await new Promise((done) => {
   server.on('told', done);
   setTimeout(() => done('{"error": "the browser says nothing"}'), 60000).unref();
 });
-child.kill('SIGKILL');
+if (child.pid !== undefined) {
+  const gone = new Promise((done) => child.on('exit', done));
+  child.kill();  // not -9: it ends its own children, which write into the folder
+  await gone;
+}
 server.close();
 server.closeAllConnections();
 if (answer === 'missing') {
@@ -75,6 +79,6 @@ bodies.forEach(({ rest, volumes }, i) => {
     worst = Math.max(worst, ...center.map((value, axis) => Math.abs(value - there[axis])));
   });
 });
-rmSync(folder, { recursive: true, force: true, maxRetries: 5 });
+rmSync(folder, { recursive: true, force: true, maxRetries: 20, retryDelay: 100 });
 console.log(`TinyUSDZ: ${bodies.length} bodies and their volumes within ${worst.toExponential(1)}`);
 if (!(worst <= 1e-6)) throw new Error('elsewhere');
