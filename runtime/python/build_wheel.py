@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: MIT
+"""Builds the wheel for pip: CMake compiles the module, this packs it (PEP 517, 427). Standard library alone."""
+
+import base64
+import hashlib
+import os
+import re
+import shutil
+import subprocess
+import sys
+import sysconfig
+import zipfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGE = "spherechain"
+
+METADATA = """\
+Metadata-Version: 2.1
+Name: spherechain
+Version: {version}
+Summary: Self-collision of skinned characters: spheres, exact skin contacts, depth, and losses with gradients
+License: MIT
+Requires-Python: >=3.9
+Requires-Dist: numpy>=1.20
+"""
+
+WHEEL = """\
+Wheel-Version: 1.0
+Generator: spherechain
+Root-Is-Purelib: false
+Tag: {tag}
+"""
+
+
+def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+    version = re.search(r"project\(spherechain VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
+    python = f"cp{sys.version_info[0]}{sys.version_info[1]}"
+    tag = f"{python}-{python}-{re.sub('[^0-9a-zA-Z]', '_', sysconfig.get_platform())}"
+    package = compile_package(ROOT / "build" / "wheel" / python)
+    info = f"{PACKAGE}-{version}.dist-info"
+    files = {f"{PACKAGE}/{path.name}": path.read_bytes() for path in sorted(package.iterdir()) if path.is_file()}
+    files[f"{info}/LICENSE"] = (ROOT / "runtime" / "LICENSE").read_bytes()
+    files[f"{info}/METADATA"] = METADATA.format(version=version).encode()
+    files[f"{info}/WHEEL"] = WHEEL.format(tag=tag).encode()
+    files[f"{info}/RECORD"] = record(files, f"{info}/RECORD")
+    name = f"{PACKAGE}-{version}-{tag}.whl"
+    with zipfile.ZipFile(Path(wheel_directory, name), "w", zipfile.ZIP_DEFLATED) as wheel:
+        for path, data in files.items():
+            entry = zipfile.ZipInfo(path)  # of 1980: the same wheel from the same files
+            entry.compress_type = zipfile.ZIP_DEFLATED
+            entry.external_attr = (0o100755 if path.endswith(".so") else 0o100644) << 16
+            wheel.writestr(entry, data)
+    return name
+
+
+def build_sdist(sdist_directory, config_settings=None):
+    raise NotImplementedError("the checkout is the source: pip install . or pip wheel .")
+
+
+def compile_package(build):
+    """Returns the folder of the package."""
+    package = build / "python" / PACKAGE
+    shutil.rmtree(package, ignore_errors=True)  # nothing of an older checkout
+    generator = ["-G", "Ninja"] if shutil.which("ninja") and not (build / "CMakeCache.txt").exists() else []
+    run("cmake", "-S", ROOT, "-B", build, *generator, "-DCMAKE_BUILD_TYPE=Release", "-DSPHERECHAIN_PYTHON=ON",
+        f"-DPython_EXECUTABLE={sys.executable}", "-DSPHERECHAIN_BAKER=OFF", "-DSPHERECHAIN_TESTS=OFF",
+        "-DSPHERECHAIN_CUDA=OFF")
+    run("cmake", "--build", build, "--target", "spherechain_python", "--parallel", os.cpu_count() or 1)
+    return package
+
+
+def run(*command):
+    subprocess.run([str(word) for word in command], check=True)
+
+
+def record(files, own):
+    lines = []
+    for path, data in files.items():
+        digest = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
+        lines.append(f"{path},sha256={digest},{len(data)}\n")
+    return "".join(lines + [f"{own},,\n"]).encode()

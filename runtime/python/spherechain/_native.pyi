@@ -1,0 +1,53 @@
+from typing import Any, Optional, Tuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+PENETRATION_BYTES: int
+TRIANGLE_BYTES: int
+
+Number = TypeVar("Number", np.float32, np.float64)
+Bytes = NDArray[np.uint8]
+
+def class_name(kind: int) -> str: ...
+
+class Asset:
+    def __init__(self, data: bytes) -> None: ...
+    def bytes(self) -> bytes: ...
+    def info(self) -> dict[str, Any]: ...
+    def spheres(self, bones: NDArray[np.float32], radius: int, threads: int) -> NDArray[np.float32]: ...
+    def pairs(self, bones: NDArray[np.float32], radius: int, threads: int) -> Tuple[Bytes, Bytes]: ...
+    def contacts(
+        self,
+        bones: Optional[NDArray[np.float32]],
+        vertices: Optional[NDArray[np.float32]],
+        morph_weights: Optional[NDArray[np.float32]],
+        scope: int,
+        quick: bool,
+        lists_triangles: bool,
+        threads: int,
+    ) -> Tuple[Bytes, Bytes, Bytes, Bytes]: ...
+    def depth_gradients(
+        self,
+        penetrations: Bytes,
+        first: NDArray[np.uint64],
+        slopes: NDArray[np.float32],
+        morph_weights: Optional[NDArray[np.float32]],
+    ) -> NDArray[np.float32]: ...
+    def pair_energy(
+        self, spheres: NDArray[Number], radius: int, threads: int
+    ) -> Tuple[NDArray[Number], NDArray[Number]]: ...
+    def sphere_energy(
+        self, bones: NDArray[Number], radius: int, threads: int
+    ) -> Tuple[NDArray[Number], NDArray[Number]]: ...
+    def spheres_vjp(
+        self, bones: NDArray[Number], gradient: NDArray[Number], radius: int, threads: int
+    ) -> NDArray[Number]: ...
+    def points(
+        self,
+        bones: NDArray[Number],
+        triangles: NDArray[np.uint32],
+        weights: NDArray[np.float32],
+        morph_weights: Optional[NDArray[np.float32]],
+        threads: int,
+    ) -> NDArray[Number]: ...

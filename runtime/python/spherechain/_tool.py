@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: MIT
+"""The command line tool, called. It is a program of its own under the GPL; nothing of it is linked."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+from typing import Any, Dict, List, NamedTuple, Optional, Union
+
+from ._asset import Asset
+
+PathLike = Union[str, "os.PathLike[str]"]
+
+_TARGET_MISSED, _LIBRARY_FAILS = 5, 6
+# What bake() hands over as an option; all else is a key of the settings (docs/settings.md).
+_BAKE_OPTIONS = ("profile", "body", "roles", "preview", "extremities", "attachments", "prop", "force")
+
+
+class ToolError(RuntimeError):
+    """The tool refused. The text is its own; `code` its exit code: 2 usage, 3 a file, 4 no such body, 1 internal."""
+
+    def __init__(self, message: str, code: int) -> None:
+        super().__init__(message)
+        self.code = code
+
+
+class Baked(NamedTuple):
+    asset: Asset
+    report: Dict[str, Any]  #: as docs/json.md has it; `missed_targets` says what was asked for in vain
+
+
+def bake(path: PathLike, output: Optional[PathLike] = None, *, tool: Optional[PathLike] = None,
+         **settings: Any) -> Baked:
+    """Turns a character, glTF or anything assimp reads, into an asset.
+
+    output: the .sphc file to write; None: none is kept. settings: keys of docs/settings.md (spheres=40,
+    penetration_depth=0.4), or options of `spherechain bake` (profile="paper", body="biped", roles=FILE, preview=FILE,
+    prop=True, force=True). tool: path of the tool; else $SPHERECHAIN_TOOL, or `spherechain` on the PATH.
+
+    ToolError: it says why. A target that was missed is no error: it stands in report["missed_targets"].
+    """
+    options = {key: settings.pop(key) for key in _BAKE_OPTIONS if key in settings}
+    with tempfile.TemporaryDirectory(prefix="spherechain-") as folder:
+        asset = Path(folder, "asset.sphc") if output is None else Path(output)
+        report, config = Path(folder, "report.json"), Path(folder, "config.json")
+        arguments = ["bake", os.fspath(path), "--output", os.fspath(asset), "--report", os.fspath(report)]
+        if settings:
+            config.write_text(json.dumps(settings))
+            options["config"] = config
+        _run(tool, arguments + _options(options), _TARGET_MISSED)
+        return Baked(Asset(asset), json.loads(report.read_text()))
+
+
+def check(*library: PathLike, output: Optional[PathLike] = None, tool: Optional[PathLike] = None,
+          **options: Any) -> Dict[str, Any]:
+    """Says which clips of a library are broken: the JSON of `spherechain check` (docs/json.md).
+
+    library: characters: files, folders, or a manifest. output: folder for the report's pages; None: none are kept.
+    options: those of the command, with _ for -: max_depth=5, baseline=FILE, folds=True, jobs=4. A library that fails is no
+    error: result["summary"]["fails"] says so. tool: as bake() takes it.
+    """
+    with tempfile.TemporaryDirectory(prefix="spherechain-") as folder:
+        result = Path(folder, "check.json")
+        report = Path(folder, "report") if output is None else Path(output)
+        arguments = ["check", *map(os.fspath, library), "--output", os.fspath(report), "--json", os.fspath(result)]
+        _run(tool, arguments + _options(options), _LIBRARY_FAILS)
+        return json.loads(result.read_text())
+
+
+def _options(options: Dict[str, Any]) -> List[str]:
+    """max_depth=5 becomes --max-depth 5; True a flag; False and None nothing."""
+    out: List[str] = []
+    for key, value in options.items():
+        if value is None or value is False:
+            continue
+        out.append("--" + key.replace("_", "-"))
+        if value is not True:
+            out.append(os.fspath(value) if isinstance(value, os.PathLike) else str(value))
+    return out
+
+
+def _run(tool: Optional[PathLike], arguments: List[str], fine: int) -> None:
+    program = os.fspath(tool) if tool is not None else os.environ.get("SPHERECHAIN_TOOL") or "spherechain"
+    found = shutil.which(program)
+    if found is None:
+        raise FileNotFoundError(f"{program}: no such program. Pass tool=PATH, set SPHERECHAIN_TOOL, or put spherechain "
+                                "on the PATH (cmake --build --preset release --target spherechain)")
+    done = subprocess.run([found, *arguments], capture_output=True, text=True, errors="replace", check=False)
+    if done.returncode not in (0, fine):
+        message = done.stderr.strip() or f"{program} ended with {done.returncode}"
+        raise ToolError(message.replace("spherechain: error: ", "", 1), done.returncode)

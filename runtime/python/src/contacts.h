@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// The skin's contacts of a batch, and their gradients.
+#pragma once
+
+#include "loaded_asset.h"
+#include "poses.h"
+
+namespace spherechain::python {
+
+// Where the skin is in each pose: by matrices, or by vertices. Strides in floats.
+struct SkinPoses {
+  std::size_t count = 0;
+  Poses<float> bones{};                  // data null: none
+  const float* vertices = nullptr;       // null: none; x, y, z of each of the source's, side by side
+  const float* morph_weights = nullptr;  // null: none; of each target, pose by pose
+};
+
+struct ContactOptions {
+  Scope scope;
+  bool quick, lists_triangles;
+  std::size_t threads;
+};
+
+// A pose's entries after another's; first[i] is where those of pose i start, the last where all end.
+template <typename T>
+struct Runs {
+  std::vector<T> entries;
+  std::vector<std::size_t> first;
+};
+
+struct FoundContacts {
+  Runs<Penetration> penetrations;
+  Runs<TriangleContact> triangles;  // where asked for
+};
+
+FoundContacts find_contacts(const LoadedAsset& asset, const SkinPoses& poses, const ContactOptions& options);
+
+// Points on the skin: a source triangle and the weights of its corners.
+struct SkinPoints {
+  const std::uint32_t* triangles;
+  const float* weights;  // three a point
+  std::size_t count;
+};
+
+// Where the points are in each pose: x, y, z. Throws where a triangle is not in the asset's skin.
+template <typename T>
+void place_points(const LoadedAsset& asset, const Poses<T>& poses, const float* morph_weights, const SkinPoints& points,
+                  std::size_t threads, T* out);
+
+// A penetration's depth is direction . (deepest_a - deepest_b). Its gradient by the matrices, with the two points fixed
+// on the skin, times the penetration's slope, added up in the pose that it belongs to: 12 numbers a bone.
+void add_depth_gradients(const LoadedAsset& asset, const Penetration* penetrations, const float* slopes,
+                         const std::size_t* first, std::size_t pose_count, const float* morph_weights, float* gradient);
+
+}  // namespace spherechain::python
