@@ -142,6 +142,13 @@ class Asset:
                                                       _count("threads", threads))
         return energy.reshape(batch)[()], gradient.reshape(*batch, len(self.bones), 3, 4)
 
+    def pair_scales(self, *, radius: str = "detect") -> NDArray[np.float32]:
+        """What a pair's sum of radii is multiplied by before it is compared: for a loss of your own, on a GPU say.
+
+        Returns float32 (spheres, spheres), symmetric: 0 where the pair is ignored, a rest pair's rest_scale, else 1.
+        """
+        return self._native.pair_scales(_choice("radius", radius, _RADII))
+
     def pair_energy(self, spheres: np.ndarray, *, radius: str = "detect", threads: int = 1) -> Tuple[Any, np.ndarray]:
         """sphere_energy() of spheres from elsewhere, and its gradient by them.
 

@@ -210,6 +210,25 @@ py::array_t<float> depth_gradients(const LoadedAsset& asset, const Array<std::ui
   return out;
 }
 
+// What a pair's radii are multiplied by: 0 where it is ignored, a rest pair's rest_scale, else 1.
+py::array_t<float> pair_scales(const LoadedAsset& asset, int radius) {
+  const std::size_t count = asset.info().sphere_count;
+  const Span<const std::uint64_t> ignored = asset.view().ignored();
+  py::array_t<float> out = make<float>({count, count});
+  float* const to = out.mutable_data();
+  const auto set = [&](std::size_t a, std::size_t b, float scale) { to[a * count + b] = to[b * count + a] = scale; };
+  for (std::size_t b = 0, bit = 0; b < count; ++b) {
+    set(b, b, 0);
+    for (std::size_t a = 0; a < b; ++a, ++bit) {
+      set(a, b, (ignored[bit / 64] >> bit % 64 & 1) == 0 ? 1.0F : 0.0F);
+    }
+  }
+  for (const RestPair& pair : asset.view().rest_pairs(radius_of(radius))) {
+    set(pair.a, pair.b, pair.rest_scale * to[pair.a * count + pair.b]);
+  }
+  return out;
+}
+
 py::dict info(const LoadedAsset& asset) {
   const AssetInfo& from = asset.info();
   const auto vec = [](const Vec3& v) { return py::make_tuple(v.x, v.y, v.z); };
@@ -274,6 +293,7 @@ PYBIND11_MODULE(_native, module) {
   asset.def(py::init<const std::string&>())
       .def("bytes", [](const LoadedAsset& self) { return py::bytes(self.bytes()); })
       .def("info", &info)
+      .def("pair_scales", &pair_scales)
       .def("spheres", &spheres)
       .def("pairs", &pairs)
       .def("contacts", &contacts)

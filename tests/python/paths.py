@@ -1,0 +1,9 @@
+# SPDX-License-Identifier: MIT
+"""Where the tests' files are. CMake says it by the environment."""
+
+import os
+from pathlib import Path
+
+GOLDEN = Path(__file__).resolve().parents[1] / "golden"
+DOLL, PAPER_DOLL, DOLL_MESH = GOLDEN / "doll.sphc", GOLDEN / "doll_paper.sphc", GOLDEN / "doll.obj"
+REFERENCE = os.environ["SPHERECHAIN_REFERENCE"]

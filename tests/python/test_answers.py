@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: MIT
+"""The answers are those of the C interface, in whatever form poses come."""
+
+import pickle
+import subprocess
+import tempfile
+import threading
+import unittest
+from pathlib import Path
+
+import numpy as np
+import spherechain
+
+from palettes import random_poses, rest_pose
+from paths import DOLL, REFERENCE
+
+
+class Reader:
+    def __init__(self, data):
+        self.data, self.at = data, 0
+
+    def take(self, dtype, count=None):
+        if count is None:
+            count = int(self.take(np.uint64, 1)[0])
+        out = np.frombuffer(self.data, dtype, count, self.at)
+        self.at += out.nbytes
+        return out
+
+
+class Answers(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.asset = spherechain.Asset(DOLL)
+        cls.bones = random_poses(cls.asset, 24, 80)
+        cls.contacts = cls.asset.contacts(cls.bones, triangles=True)
+
+    def test_are_those_of_the_c_interface_bit_by_bit(self):
+        with tempfile.TemporaryDirectory() as folder:
+            poses = Path(folder, "bones")
+            poses.write_bytes(self.bones.tobytes())
+            reader = Reader(subprocess.run([REFERENCE, DOLL, poses], capture_output=True, check=True).stdout)
+        spheres, pairs = self.asset.spheres(self.bones), self.asset.pairs(self.bones)
+        found = 0
+        for i, contacts in enumerate(self.contacts):
+            self.assertEqual(spheres[i].tobytes(), reader.take(np.float32, 4 * self.asset.sphere_count).tobytes())
+            self.assertEqual(pairs[i].tobytes(), reader.take(np.dtype("u4,u4")).tobytes())
+            self.assertEqual(contacts.triangles.tobytes(), reader.take(spherechain.TRIANGLE_PAIR).tobytes())
+            self.assertEqual(contacts.array.tobytes(), reader.take(spherechain.PENETRATION).tobytes())
+            found += len(contacts)
+        self.assertEqual(reader.at, len(reader.data))
+        self.assertGreater(found, 24)
+
+    def test_do_not_depend_on_threads_shape_or_strides(self):
+        wide = np.zeros((4, 6, len(self.asset.bones), 4, 4), np.float32)
+        wide[..., :3, :] = self.bones.reshape(4, 6, -1, 3, 4)
+        backwards = np.flip(np.flip(self.bones, 0).copy(), 0)
+        for bones, threads in ((self.bones, 2), (wide, 0), (backwards, 1), (np.asfortranarray(self.bones), 3)):
+            np.testing.assert_array_equal(self.asset.spheres(bones, threads=threads).reshape(24, -1, 4),
+                                          self.asset.spheres(self.bones))
+            contacts = self.asset.contacts(bones, threads=threads)
+            if bones is wide:
+                contacts = [entry for row in contacts for entry in row]
+            self.assertEqual([c.array.tobytes() for c in contacts], [c.array.tobytes() for c in self.contacts])
+        one = self.asset.contacts(self.bones[3])
+        self.assertEqual(one.array.tobytes(), self.contacts[3].array.tobytes())
+        self.assertEqual(self.asset.contacts(self.bones[:0]), [])
+        self.assertEqual(self.asset.spheres(wide[:0]).shape, (0, 6, self.asset.sphere_count, 4))
+
+    def test_are_the_same_in_threads_of_python_at_once(self):
+        results = [None] * 4
+
+        def run(k):
+            results[k] = [c.array.tobytes() for c in spherechain_asset.contacts(self.bones, threads=2)]
+
+        spherechain_asset = pickle.loads(pickle.dumps(self.asset))  # its tables are made in these threads
+        threads = [threading.Thread(target=run, args=(k,)) for k in range(4)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(results, [[c.array.tobytes() for c in self.contacts]] * 4)
+
+    def test_vertices_give_the_contacts_that_bones_give(self):
+        # The doll's vertices are the corners of its triangles, one after another.
+        numbers = np.repeat(np.arange(self.asset.triangle_count), 3)
+        vertices = self.asset.points(self.bones, numbers, np.tile(np.eye(3, dtype=np.float32), (len(numbers) // 3, 1)))
+        for own, other in zip(self.asset.contacts(vertices=vertices, threads=0), self.contacts):
+            np.testing.assert_array_equal(own.array[["part_a", "part_b", "kind"]], other.array[["part_a", "part_b", "kind"]])
+            np.testing.assert_allclose(own.array["depth"], other.array["depth"], atol=1e-6 * self.asset.height)
+
+    def test_contacts_have_names_and_units(self):
+        names = {part.name for part in self.asset.parts}
+        for contacts in self.contacts:
+            for contact, row in zip(contacts, contacts.array):
+                self.assertLessEqual({contact.part_a, contact.part_b}, names)
+                self.assertAlmostEqual(contact.depth_mm, row["depth"] * self.asset.metres_per_unit * 1000, 3)
+                np.testing.assert_allclose(contact.point_a - contact.point_b, contact.depth * contact.direction,
+                                           atol=1e-6 * self.asset.height)
+                self.assertEqual(contact.is_fault, contact.kind in ("penetration", "deep_fold"))
+            deepest = max((c.depth_mm for c in contacts if c.is_fault), default=0)
+            self.assertAlmostEqual(contacts.depth_mm, deepest, 3)
+
+    def test_at_rest_spheres_are_the_assets_and_nothing_touches(self):
+        rest = rest_pose(self.asset)
+        np.testing.assert_allclose(self.asset.spheres(rest), self.asset.rest_spheres, atol=1e-6 * self.asset.height)
+        self.assertEqual(self.asset.pairs(rest).shape, (0, 2))
+        self.assertEqual(len(self.asset.contacts(rest)), 0)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: MIT
+"""The losses for PyTorch, where it is there."""
+
+import unittest
+
+import numpy as np
+import spherechain
+
+from palettes import random_poses
+from paths import DOLL
+
+try:
+    import torch
+except ImportError:
+    torch = None
+
+
+@unittest.skipIf(torch is None, "skipped: torch is missing (Debian: python3-torch)")
+class Torch(unittest.TestCase):
+    def test_has_the_gradients_of_the_asset(self):
+        import spherechain.torch
+
+        asset = spherechain.Asset(DOLL)
+        poses = random_poses(asset, 12, 80, dtype=np.float64)
+        bones = torch.from_numpy(poses).requires_grad_()
+        weights = torch.arange(12, dtype=torch.float64)
+        energy = spherechain.torch.sphere_energy(asset, bones)
+        self.assertEqual((energy.dtype, energy.shape), (torch.float64, (12,)))
+        (energy * weights).sum().backward()
+        expected = asset.sphere_energy(poses)[1] * weights.numpy()[:, None, None, None]
+        np.testing.assert_allclose(bones.grad.numpy(), expected)
+        self.assertTrue(torch.autograd.gradcheck(lambda b: spherechain.torch.sphere_energy(asset, b), bones[1:2]))
+
+        single = poses.astype(np.float32)[1]
+        one = torch.from_numpy(single).requires_grad_()
+        energy = spherechain.torch.skin_energy(asset, one)
+        self.assertEqual((energy.dtype, energy.shape), (torch.float32, ()))
+        energy.backward()
+        np.testing.assert_allclose(one.grad.numpy(), asset.skin_energy(single)[1])
+
+
+if __name__ == "__main__":
+    unittest.main()
