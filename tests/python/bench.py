@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """The loss of the usual sphere proxy, forward and backward on the CPU: this package beside numpy and torch.
 

@@ -87,5 +87,5 @@ class Contacts(Sequence):
 
     def __repr__(self) -> str:
         deepest = sorted(self, key=lambda contact: -contact.depth)[:3]
-        shown = ", ".join(f"{c.part_a} in {c.part_b} {c.depth_mm:.0f} mm ({c.kind})" for c in deepest)
+        shown = ", ".join(f"{c.part_b} in {c.part_a} {c.depth_mm:.0f} mm ({c.kind})" for c in deepest)
         return f"<{len(self)} contacts{': ' if deepest else ''}{shown}{' ...' if len(self) > 3 else ''}>"
