@@ -5,6 +5,7 @@ import pickle
 import subprocess
 import tempfile
 import threading
+import time
 import unittest
 from pathlib import Path
 
@@ -80,6 +81,16 @@ class Answers(unittest.TestCase):
             thread.join()
         self.assertEqual(results, [[c.array.tobytes() for c in self.contacts]] * 4)
 
+    def test_leave_python_free_in_the_meantime(self):
+        bones = np.tile(self.bones, (8, 1, 1, 1))
+        worker = threading.Thread(target=self.asset.contacts, args=(bones,))
+        worker.start()
+        turns = 0
+        while worker.is_alive():
+            time.sleep(0.001)
+            turns += 1
+        self.assertGreater(turns, 10)
+
     def test_vertices_give_the_contacts_that_bones_give(self):
         # The doll's vertices are the corners of its triangles, one after another.
         numbers = np.repeat(np.arange(self.asset.triangle_count), 3)
@@ -88,15 +99,21 @@ class Answers(unittest.TestCase):
             np.testing.assert_array_equal(own.array[["part_a", "part_b", "kind"]], other.array[["part_a", "part_b", "kind"]])
             np.testing.assert_allclose(own.array["depth"], other.array["depth"], atol=1e-6 * self.asset.height)
 
+    def test_deepest_points_are_points_on_the_skin(self):
+        for bones, contacts in zip(self.bones, self.contacts):
+            for point in (contacts.array["deepest_a"], contacts.array["deepest_b"]):
+                places = self.asset.points(bones, point["triangle"], point["weights"])
+                np.testing.assert_allclose(places, point["position"], atol=1e-6 * self.asset.height)
+
     def test_contacts_have_names_and_units(self):
         names = {part.name for part in self.asset.parts}
         for contacts in self.contacts:
             for contact, row in zip(contacts, contacts.array):
                 self.assertLessEqual({contact.part_a, contact.part_b}, names)
                 self.assertAlmostEqual(contact.depth_mm, row["depth"] * self.asset.metres_per_unit * 1000, 3)
+                self.assertEqual(contact.is_fault, contact.kind in ("penetration", "deep_fold"))
                 np.testing.assert_allclose(contact.point_a - contact.point_b, contact.depth * contact.direction,
                                            atol=1e-6 * self.asset.height)
-                self.assertEqual(contact.is_fault, contact.kind in ("penetration", "deep_fold"))
             deepest = max((c.depth_mm for c in contacts if c.is_fault), default=0)
             self.assertAlmostEqual(contacts.depth_mm, deepest, 3)
 

@@ -224,7 +224,8 @@ class Asset:
                                   self._morphs(morph_weights, batch), _count("threads", threads))
         return out.reshape(*batch, len(numbers), 3)
 
-    def _contact_arguments(self, bones, vertices, morph_weights, scope, quick):
+    def _contact_arguments(self, bones: Any, vertices: Any, morph_weights: Any, scope: str,
+                           quick: bool) -> Tuple[Tuple[Any, Any, Any, int, bool], Tuple[int, ...]]:
         if (bones is None) == (vertices is None):
             raise TypeError("pass bones or vertices, one of the two")
         if bones is not None:
@@ -236,9 +237,9 @@ class Asset:
             poses, batch = np.ascontiguousarray(array.reshape(-1, self.vertex_count, 3)), array.shape[:-2]
         morphs = self._morphs(morph_weights, batch)
         place = (None, poses) if bones is None else (poses, None)
-        return (*place, morphs, _choice("scope", scope, _SCOPES), bool(quick)), batch
+        return (place[0], place[1], morphs, _choice("scope", scope, _SCOPES), bool(quick)), batch
 
-    def _poses(self, bones, types=None):
+    def _poses(self, bones: Any, types: Any = None) -> Tuple[np.ndarray, Tuple[int, ...]]:
         count = len(self.bones)
         if count == 0:
             raise ValueError("this asset has no bones: nothing moves its source")
@@ -250,7 +251,7 @@ class Asset:
         lies_well = lies_well and array.strides[0] % size == 0 and array.strides[1] % size == 0 and array.flags.aligned
         return (array if lies_well else np.ascontiguousarray(array)), batch
 
-    def _morphs(self, morph_weights, batch):
+    def _morphs(self, morph_weights: Any, batch: Tuple[int, ...]) -> Optional[np.ndarray]:
         if morph_weights is None:
             return None
         if not self.morphs:
@@ -258,7 +259,8 @@ class Asset:
         array = self._array("morph_weights", morph_weights, _SINGLE, (*batch, len(self.morphs)), exact=True)
         return np.ascontiguousarray(array.reshape(-1, len(self.morphs)))
 
-    def _array(self, name, given, types, shape, other=None, exact=False):
+    def _array(self, name: str, given: Any, types: Any, shape: Tuple[int, ...],
+               other: Optional[Tuple[int, ...]] = None, exact: bool = False) -> np.ndarray:
         """The argument as an array of one of these types, whose last axes are `shape` or `other`; or what is wrong."""
         array = np.asarray(given)
         if array.dtype not in types:

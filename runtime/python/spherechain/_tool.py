@@ -66,7 +66,7 @@ def check(*library: PathLike, output: Optional[PathLike] = None, tool: Optional[
     with tempfile.TemporaryDirectory(prefix="spherechain-") as folder:
         result = Path(folder, "check.json")
         report = Path(folder, "report") if output is None else Path(output)
-        arguments = ["check", *map(os.fspath, library), "--output", os.fspath(report), "--json", os.fspath(result)]
+        arguments = ["check", *(os.fspath(path) for path in library), "--output", os.fspath(report), "--json", os.fspath(result)]
         _run(tool, arguments + _options(options), _LIBRARY_FAILS)
         return json.loads(result.read_text())
 
