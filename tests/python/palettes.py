@@ -29,6 +29,14 @@ def random_poses(asset, count, degrees=40, seed=1, dtype=np.float32):
     return np.ascontiguousarray(out[:, :, :3], dtype)
 
 
+def heap(asset):
+    """All joints in one place: more touches than any list is made for at first."""
+    out = rest_pose(asset)
+    for bone, (_, bind) in enumerate(asset.bones):
+        out[bone, :, 3] = bind[:, :3].T @ bind[:, 3]
+    return out
+
+
 def rotations(vectors):
     """(n, 3) rotation vectors in radians -> (n, 3, 3)."""
     angles = np.linalg.norm(vectors, axis=1)[:, None, None]

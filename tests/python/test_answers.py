@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import spherechain
 
-from palettes import random_poses, rest_pose
+from palettes import heap, random_poses, rest_pose
 from paths import DOLL, REFERENCE
 
 
@@ -33,6 +33,7 @@ class Answers(unittest.TestCase):
     def setUpClass(cls):
         cls.asset = spherechain.Asset(DOLL)
         cls.bones = random_poses(cls.asset, 24, 80)
+        cls.bones[20] = heap(cls.asset)
         cls.contacts = cls.asset.contacts(cls.bones, triangles=True)
 
     def test_are_those_of_the_c_interface_bit_by_bit(self):
@@ -50,6 +51,9 @@ class Answers(unittest.TestCase):
             found += len(contacts)
         self.assertEqual(reader.at, len(reader.data))
         self.assertGreater(found, 24)
+        self.assertGreater(len(pairs[20]), 256)
+        self.assertGreater(len(self.contacts[20].triangles), 1024)
+        self.assertGreater(len(self.contacts[20]), 32)
 
     def test_do_not_depend_on_threads_shape_or_strides(self):
         wide = np.zeros((4, 6, len(self.asset.bones), 4, 4), np.float32)

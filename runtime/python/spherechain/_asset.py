@@ -187,10 +187,10 @@ class Asset:
         entries, first, _, _ = self._native.contacts(*arguments, False, _count("threads", threads))
         runs = entries.view(PENETRATION)
         depths = np.where(np.isin(runs["kind"], wanted), runs["depth"], np.float32(0))
-        first = first.view(np.uint64)
-        pose_of_run = np.repeat(np.arange(len(first) - 1), np.diff(first).astype(np.int64))
-        energy = np.bincount(pose_of_run, np.square(depths, dtype=np.float64), len(first) - 1).astype(np.float32)
-        gradient = self._native.depth_gradients(entries, first, 2 * depths, arguments[2])
+        places = first.view(np.uint64)
+        pose_of_run = np.repeat(np.arange(len(places) - 1), np.diff(places).astype(np.int64))
+        energy = np.bincount(pose_of_run, np.square(depths, dtype=np.float64), len(places) - 1).astype(np.float32)
+        gradient = self._native.depth_gradients(entries, places, np.asarray(2 * depths, np.float32), arguments[2])
         return energy.reshape(batch)[()], gradient.reshape(*batch, len(self.bones), 3, 4)
 
     def depth_gradients(self, contacts: Contacts,
