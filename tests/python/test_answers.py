@@ -13,7 +13,7 @@ import numpy as np
 import spherechain
 
 from palettes import heap, random_poses, rest_pose
-from paths import DOLL, REFERENCE
+from paths import DOLL, REFERENCE, WRITE_TINY
 
 
 class Reader:
@@ -108,6 +108,26 @@ class Answers(unittest.TestCase):
             for point in (contacts.array["deepest_a"], contacts.array["deepest_b"]):
                 places = self.asset.points(bones, point["triangle"], point["weights"])
                 np.testing.assert_allclose(places, point["position"], atol=1e-6 * self.asset.height)
+
+    def test_morph_weights_move_skin_and_points_alike(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder, "tiny.sphc")
+            subprocess.run([WRITE_TINY, file], check=True)
+            tiny = spherechain.Asset(file)
+        self.assertEqual(len(tiny.morphs), 3)
+        bones = random_poses(tiny, 5, 40)
+        weights = np.random.default_rng(3).random((5, 3)).astype(np.float32)
+        found = tiny.contacts(bones, morph_weights=weights, threads=2)
+        self.assertNotEqual([c.array.tobytes() for c in found], [c.array.tobytes() for c in tiny.contacts(bones)])
+        for pose, own, contacts in zip(bones, weights, found):
+            self.assertGreater(len(contacts), 0)
+            ends = [contacts.array[name] for name in ("deepest_a", "deepest_b")]
+            a, b = (tiny.points(pose, end["triangle"], end["weights"], morph_weights=own) for end in ends)
+            np.testing.assert_allclose(a, ends[0]["position"], atol=1e-5 * tiny.height)
+            np.testing.assert_allclose(b, ends[1]["position"], atol=1e-5 * tiny.height)
+            # A depth is linear in the matrices while its points and its direction stay: its slope by them is itself.
+            slopes = np.einsum("cbij,bij->c", tiny.depth_gradients(contacts, own), pose)
+            np.testing.assert_allclose(slopes, contacts.array["depth"], atol=1e-4 * tiny.height)
 
     def test_contacts_have_names_and_units(self):
         names = {part.name for part in self.asset.parts}
