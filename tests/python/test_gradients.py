@@ -88,8 +88,10 @@ class Gradients(unittest.TestCase):
             gradients = self.asset.depth_gradients(contacts)
             direction = self.rng.normal(size=bones.shape)
             expected = slope_along(distances, bones, direction, 1e-7)
-            deep = contacts.array["depth"] > 1e-3 * self.asset.height  # directions of others are known to few digits
-            np.testing.assert_allclose((gradients * direction).sum((1, 2, 3))[deep], expected[deep], rtol=1e-3, atol=1e-3)
+            # Of shallow contacts the points, in single precision, give the direction to few digits.
+            deep = contacts.array["depth"] > 0.01 * self.asset.height
+            if deep.any():
+                assert_near((gradients * direction).sum((1, 2, 3))[deep], expected[deep], 1e-4)
             seen += deep.sum()
         self.assertGreater(seen, 12)
 

@@ -17,7 +17,7 @@ PathLike = Union[str, "os.PathLike[str]"]
 
 _TARGET_MISSED, _LIBRARY_FAILS = 5, 6
 # What bake() hands over as an option; all else is a key of the settings (docs/settings.md).
-_BAKE_OPTIONS = ("profile", "body", "roles", "preview", "extremities", "attachments", "prop", "force")
+_BAKE_OPTIONS = ("profile", "preview", "force")
 
 
 class ToolError(RuntimeError):
@@ -37,9 +37,9 @@ def bake(path: PathLike, output: Optional[PathLike] = None, *, tool: Optional[Pa
          **settings: Any) -> Baked:
     """Turns a character, glTF or anything assimp reads, into an asset.
 
-    output: the .sphc file to write; None: none is kept. settings: keys of docs/settings.md (spheres=40,
-    penetration_depth=0.4), or options of `spherechain bake` (profile="paper", body="biped", roles=FILE, preview=FILE,
-    prop=True, force=True). tool: path of the tool; else $SPHERECHAIN_TOOL, or `spherechain` on the PATH.
+    output: the .sphc file to write; None: none is kept. settings: keys of docs/settings.md (spheres=40, body="biped",
+    extremities=False, roles={...}), or the options profile="paper", preview=FILE (a .glb to write) and force=True (replace
+    a file of another kind). tool: path of the tool; else $SPHERECHAIN_TOOL, or `spherechain` on the PATH.
 
     ToolError: it says why. A target that was missed is no error: it stands in report["missed_targets"].
     """
