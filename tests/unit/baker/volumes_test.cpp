@@ -5,6 +5,7 @@
 #include <random>
 
 #include "baked_human.h"
+#include "volumes/bodies.h"
 #include "volumes/fit_body.h"
 #include "volumes/fit_volumes.h"
 #include "volumes/measure.h"
@@ -45,10 +46,10 @@ std::vector<Vec3> surface_points(const Volume& volume, int count, std::mt19937& 
 }
 
 // A tube with two radii and round ends, sampled.
-std::vector<BodySample> samples_of(const Volume& volume, int count) {
+BodySkin skin_of(const Volume& volume, int count) {
   std::mt19937 random(5);
-  std::vector<BodySample> out;
-  for (const Vec3& point : surface_points(volume, count, random)) out.push_back({point, 1.0 / count});
+  BodySkin out;
+  for (const Vec3& point : surface_points(volume, count, random)) out.samples.push_back({point, 1.0 / count});
   return out;
 }
 
@@ -108,7 +109,7 @@ TEST_CASE("two volumes overlap where a point is in both") {
 
 TEST_CASE("a volume is found again in samples of its surface") {
   const auto gap_of = [](VolumeShape shape, const Volume& volume) {
-    return fit_body(shape, samples_of(volume, 300), 1).gap;
+    return fit_body(shape, skin_of(volume, 300), 1).gap;
   };
   const Eigen::Quaterniond turn = Eigen::Quaterniond(0.8, 0.3, -0.2, 0.5).normalized();
   CHECK(gap_of(VolumeShape::kSpheres, BallVolume{{0.1, 0.2, 0.3}, 0.4}) < 1e-3);
@@ -119,12 +120,17 @@ TEST_CASE("a volume is found again in samples of its surface") {
 }
 
 TEST_CASE("a tube that is open at its ends gets a capsule no longer than it is") {
-  std::vector<BodySample> tube;
+  BodySkin tube;
   for (int i = 0; i < 20; ++i) {
     for (int k = 0; k < 12; ++k) {
       const double angle = 2 * std::numbers::pi * k / 12;
-      tube.push_back({{0.1 * std::cos(angle), 0.1 * std::sin(angle), i / 19.0}, 1});
+      tube.samples.push_back({{0.1 * std::cos(angle), 0.1 * std::sin(angle), i / 19.0}, 1});
     }
+  }
+  for (const Vec3& direction : reach_directions()) {
+    double most = -INFINITY;
+    for (const BodySample& sample : tube.samples) most = std::max(most, direction.dot(sample.point));
+    tube.reach.push_back(most + 0.1);
   }
   const BodyFit fit = fit_body(VolumeShape::kCones, tube, 1);
   const auto& cone = std::get<ConeVolume>(fit.volumes.at(0));
