@@ -80,7 +80,8 @@ class ConeFinder {
     const float* const scales = reinterpret_cast<const float*>(table_.data() + table_.size()) - stride * links_.size();
     for (std::size_t pose = 0; pose < character_.spheres.size(); ++pose) {
       std::vector<Cone> cones;
-      for (const Pair& l : links_) cones.push_back(cone_of(character_.spheres[pose][l.a], character_.spheres[pose][l.b]));
+      for (const Pair& l : links_)
+        cones.push_back(cone_of(character_.spheres[pose][l.a], character_.spheres[pose][l.b]));
       find(pose);
       std::size_t found = 0;
       for (std::uint32_t a = 0; a < cones.size(); ++a) {
@@ -136,8 +137,8 @@ void run(std::size_t poses, int repetitions) {
   const double a_sphere_test = timing.of("spheres").median / static_cast<double>(pairs.size());
   const auto print = [&](const char* name, const char* what, std::size_t count, std::size_t tests) {
     const double median = timing.of(name).median, one = median / static_cast<double>(tests);
-    fmt::print("{:<28} {:>3} {:>8.0f} ns   {:6.3f} ns a test of {:>5}   {:5.2f} times a sphere test\n", what, count, median,
-               one, tests, one / a_sphere_test);
+    fmt::print("{:<28} {:>3} {:>8.0f} ns   {:6.3f} ns a test of {:>5}   {:5.2f} times a sphere test\n", what, count,
+               median, one, tests, one / a_sphere_test);
   };
   print("spheres", "spheres", human.sphere_count(), pairs.size());
   print("cones", "cones along the chains", chains.links(), chains.tests());

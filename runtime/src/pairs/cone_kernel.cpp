@@ -16,7 +16,6 @@ namespace spherechain {
 namespace HWY_NAMESPACE {
 
 using ConeFloats = hn::ScalableTag<float>;
-using ConeNumbers = hn::ScalableTag<std::int32_t>;  // a pair of links: a * kMaxCones + b
 using V = hn::Vec<ConeFloats>;
 constexpr ConeFloats kOf;
 constexpr std::size_t kConeLanes = hn::MaxLanes(kOf);
@@ -46,8 +45,9 @@ HWY_INLINE void store_spheres(V x, V y, V z, V radius, Sphere* spheres) {
 
 // That of cone_of(). The ball around a cone reaches farther by 2^-18 of itself and 2^-20 of how far it is from the
 // origin: the rule rounds each figure less than 32 times.
-HWY_INLINE void pose_cones(const ConeTable& table, const Sphere* spheres, PosedCones& out) {
-  for (std::size_t i = 0; i < table.count; i += kConeLanes) {
+HWY_NOINLINE void pose_cones(const ConeTable& table, const Sphere* spheres, PosedCones& out) {
+  std::size_t i = 0;
+  do {
     const Pair* const links = table.links + i;
     V ax, ay, az, ar, bx, by, bz, br;
     load_spheres(
@@ -82,7 +82,8 @@ HWY_INLINE void pose_cones(const ConeTable& table, const Sphere* spheres, PosedC
     hn::StoreU(hn::Mul(largest, more), kOf, out.radius + i);
     store_spheres(ax, ay, az, ar, out.base + i);
     store_spheres(ux, uy, uz, growth, out.axis + i);
-  }
+    i += kConeLanes;
+  } while (i < table.count);
 }
 
 HWY_INLINE V unit_clamp_of(V value) {
@@ -102,15 +103,19 @@ HWY_INLINE V nearest_share_of(V along, V d2, V length, V growth) {
   return unit_clamp_of(hn::IfThenElse(hn::Gt(spread, zero), share, one_where(hn::Gt(growth, zero))));
 }
 
-// cones_touch() of the listed pairs.
-HWY_INLINE hn::Mask<ConeFloats> touch(const ConeTable& table, const PosedCones& cones, const std::int32_t* pairs) {
+// Pairs of links whose cones may touch.
+constexpr std::size_t kConeRoom = 256;
+struct ConeCandidates {
+  std::int32_t pairs[kConeRoom + 32];  // a * kMaxCones + b
+  float scales[kConeRoom + 32];
+};
+
+// cones_touch() of the candidates from `first` on.
+HWY_INLINE hn::Mask<ConeFloats> touch(const PosedCones& cones, const ConeCandidates& candidates, std::size_t first) {
+  const std::int32_t* const pairs = candidates.pairs + first;
   const auto a_of = [&](std::size_t k) { return static_cast<std::size_t>(pairs[k]) / kMaxCones; };
   const auto b_of = [&](std::size_t k) { return static_cast<std::size_t>(pairs[k]) % kMaxCones; };
-  HWY_ALIGN float scales[kConeLanes];
-  for (std::size_t k = 0; k < kConeLanes; ++k) {
-    scales[k] = table.scales[a_of(k) * table.stride + b_of(k)];
-  }
-  const V scale = hn::Load(kOf, scales), zero = hn::Zero(kOf);
+  const V scale = hn::LoadU(kOf, candidates.scales + first), zero = hn::Zero(kOf);
   V ax, ay, az, ar, ux, uy, uz, ag, bx, by, bz, br, vx, vy, vz, bg;
   load_spheres(
       kOf, [&](std::size_t k) -> const Sphere& { return cones.base[a_of(k)]; }, ax, ay, az, ar);
@@ -157,18 +162,19 @@ HWY_INLINE hn::Mask<ConeFloats> touch(const ConeTable& table, const PosedCones& 
   return hn::Or(ball_of_a, ball_of_b);
 }
 
-// Those of the candidates that touch, in order.
-HWY_INLINE void keep_touching(const ConeTable& table, const PosedCones& cones, std::int32_t* candidates,
-                              std::size_t count, FoundCones& found) {
+// Those of the candidates that touch, in order. No part of what calls it: there the registers are for the search.
+HWY_NOINLINE void keep_touching(const PosedCones& cones, ConeCandidates& candidates, std::size_t count,
+                                FoundCones& found) {
   for (std::size_t k = 0; k < kConeLanes; ++k) {
-    candidates[count + k] = 0;
+    candidates.pairs[count + k] = 0;
+    candidates.scales[count + k] = 0;
   }
   for (std::size_t i = 0; i < count; i += kConeLanes) {
     const auto is_own = hn::FirstN(kOf, count - i);
-    std::uint64_t bits = bits_of(hn::And(touch(table, cones, candidates + i), is_own));
+    std::uint64_t bits = bits_of(hn::And(touch(cones, candidates, i), is_own));
     for (; bits != 0; bits &= bits - 1, ++found.count) {
       if (found.count < found.capacity) {
-        const auto pair = static_cast<std::uint32_t>(candidates[i + hwy::Num0BitsBelowLS1Bit_Nonzero64(bits)]);
+        const auto pair = static_cast<std::size_t>(candidates.pairs[i + hwy::Num0BitsBelowLS1Bit_Nonzero64(bits)]);
         found.pairs[found.count] = {static_cast<std::uint32_t>(pair / kMaxCones),
                                     static_cast<std::uint32_t>(pair % kMaxCones)};
       }
@@ -176,35 +182,67 @@ HWY_INLINE void keep_touching(const ConeTable& table, const PosedCones& cones, s
   }
 }
 
+// A bit for each pair whose balls around the cones overlap: b of a row a. Row words past its columns are any.
+struct NearCones {
+  std::uint16_t bits[kMaxCones][kMaxCones / 16];
+};
+
+HWY_NOINLINE void find_near(const ConeTable& table, const PosedCones& cones, NearCones& near) {
+  constexpr std::size_t kParts = 16 / kConeLanes;
+  for (std::size_t first = 0; first < table.count; first += 16) {
+    V x[kParts], y[kParts], z[kParts], half[kParts], radius[kParts];
+    for (std::size_t part = 0; part < kParts; ++part) {
+      const std::size_t at = first + part * kConeLanes;
+      x[part] = hn::Load(kOf, cones.x + at);
+      y[part] = hn::Load(kOf, cones.y + at);
+      z[part] = hn::Load(kOf, cones.z + at);
+      half[part] = hn::Load(kOf, cones.half + at);
+      radius[part] = hn::Load(kOf, cones.radius + at);
+    }
+    const std::size_t end = first + 15 < table.count ? first + 15 : table.count - 1;
+    const float* scales = table.scales + first;
+    for (std::size_t a = 0; a < end; ++a, scales += table.stride) {
+      std::uint64_t bits = 0;
+      for (std::size_t part = 0; part < kParts; ++part) {
+        const V dx = hn::Sub(x[part], hn::Set(kOf, cones.x[a])), dy = hn::Sub(y[part], hn::Set(kOf, cones.y[a])),
+                dz = hn::Sub(z[part], hn::Set(kOf, cones.z[a]));
+        const V radii = hn::Add(radius[part], hn::Set(kOf, cones.radius[a]));
+        const V axes = hn::Add(half[part], hn::Set(kOf, cones.half[a]));
+        const V reach = hn::MulAdd(hn::LoadU(kOf, scales + part * kConeLanes), radii, axes);
+        const V d2 = hn::MulAdd(dz, dz, hn::MulAdd(dy, dy, hn::Mul(dx, dx)));
+        bits |= bits_of(hn::Lt(d2, hn::Mul(reach, reach))) << (part * kConeLanes);
+      }
+      near.bits[a][first / 16] = static_cast<std::uint16_t>(bits);
+    }
+  }
+}
+
 void find(const ConeTable& table, const Sphere* spheres, FoundCones& found) {
-  constexpr ConeNumbers kNumbers;
-  constexpr std::size_t kRoom = 256;
+  if (table.count == 0) {
+    return;
+  }
   PosedCones cones;
   pose_cones(table, spheres, cones);
-  std::int32_t candidates[kRoom + 2 * kConeLanes];
+  NearCones near;
+  find_near(table, cones, near);
+  ConeCandidates candidates;
   std::size_t count = 0;
   for (std::size_t a = 0; a + 1 < table.count; ++a) {
-    const V x = hn::Set(kOf, cones.x[a]), y = hn::Set(kOf, cones.y[a]), z = hn::Set(kOf, cones.z[a]);
-    const V half = hn::Set(kOf, cones.half[a]), radius = hn::Set(kOf, cones.radius[a]);
     const float* const scales = table.scales + a * table.stride;
-    for (std::size_t b = (a + 1) / kConeLanes * kConeLanes; b < table.count; b += kConeLanes) {
-      const V dx = hn::Sub(hn::LoadU(kOf, cones.x + b), x), dy = hn::Sub(hn::LoadU(kOf, cones.y + b), y),
-              dz = hn::Sub(hn::LoadU(kOf, cones.z + b), z);
-      const V radii = hn::Add(hn::LoadU(kOf, cones.radius + b), radius);
-      const V reach =
-          hn::Add(hn::Add(hn::LoadU(kOf, cones.half + b), half), hn::Mul(hn::LoadU(kOf, scales + b), radii));
-      const auto is_near = hn::Lt(dot(dx, dy, dz, dx, dy, dz), hn::Mul(reach, reach));
-      const auto numbers = hn::Iota(kNumbers, static_cast<std::int32_t>(a * kMaxCones + b));
-      const auto near_numbers = hn::RebindMask(kNumbers, is_near);
-      hn::StoreU(hn::Compress(numbers, near_numbers), kNumbers, candidates + count);
-      count += hn::CountTrue(kNumbers, near_numbers);
-      if (HWY_UNLIKELY(count > kRoom)) {
-        keep_touching(table, cones, candidates, count, found);
+    for (std::size_t block = (a + 1) / 16; block < table.stride / 16; ++block) {
+      const std::size_t first = block * 16;
+      for (std::uint64_t bits = near.bits[a][block]; bits != 0; bits &= bits - 1) {
+        const std::size_t b = first + hwy::Num0BitsBelowLS1Bit_Nonzero64(bits);
+        candidates.pairs[count] = static_cast<std::int32_t>(a * kMaxCones + b);
+        candidates.scales[count++] = scales[b];
+      }
+      if (HWY_UNLIKELY(count > kConeRoom)) {
+        keep_touching(cones, candidates, count, found);
         count = 0;
       }
     }
   }
-  keep_touching(table, cones, candidates, count, found);
+  keep_touching(cones, candidates, count, found);
 }
 
 }  // namespace HWY_NAMESPACE
