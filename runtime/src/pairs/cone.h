@@ -82,8 +82,9 @@ inline ConeShares facing_shares(const Cone& a, const Cone& b, float wx, float wy
     return {to_s > 0 ? 1.0F : 0.0F, to_t > 0 ? 1.0F : 0.0F};
   }
   const float d = std::abs((wx * cx + wy * cy) + wz * cz) / std::sqrt(left);
-  return {unit_clamp((d * to_s - (b.length * wu - uv * wv)) / det),
-          unit_clamp((d * to_t + (a.length * wv - uv * wu)) / det)};
+  const float by_det = 1 / det;
+  return {unit_clamp((d * to_s - (b.length * wu - uv * wv)) * by_det),
+          unit_clamp((d * to_t + (a.length * wv - uv * wu)) * by_det)};
 }
 
 inline bool balls_touch(float dx, float dy, float dz, float radii, float scale) {

@@ -103,28 +103,30 @@ HWY_INLINE V nearest_share_of(V along, V d2, V length, V growth) {
   return unit_clamp_of(hn::IfThenElse(hn::Gt(spread, zero), share, one_where(hn::Gt(growth, zero))));
 }
 
-// Pairs of links whose cones may touch.
+// Pairs of links whose cones may touch: by the bytes from the first of PosedCones' spheres, which spares a shift a
+// load.
 constexpr std::size_t kConeRoom = 256;
 struct ConeCandidates {
-  std::int32_t pairs[kConeRoom + 32];  // a * kMaxCones + b
+  std::uint32_t a[kConeRoom + 32], b[kConeRoom + 32];
   float scales[kConeRoom + 32];
 };
 
 // cones_touch() of the candidates from `first` on.
 HWY_INLINE hn::Mask<ConeFloats> touch(const PosedCones& cones, const ConeCandidates& candidates, std::size_t first) {
-  const std::int32_t* const pairs = candidates.pairs + first;
-  const auto a_of = [&](std::size_t k) { return static_cast<std::size_t>(pairs[k]) / kMaxCones; };
-  const auto b_of = [&](std::size_t k) { return static_cast<std::size_t>(pairs[k]) % kMaxCones; };
+  const auto at = [](const Sphere* spheres, std::size_t bytes) -> const Sphere& {
+    return *reinterpret_cast<const Sphere*>(reinterpret_cast<const char*>(spheres) + bytes);
+  };
+  const std::uint32_t *const as = candidates.a + first, *const bs = candidates.b + first;
   const V scale = hn::LoadU(kOf, candidates.scales + first), zero = hn::Zero(kOf);
   V ax, ay, az, ar, ux, uy, uz, ag, bx, by, bz, br, vx, vy, vz, bg;
   load_spheres(
-      kOf, [&](std::size_t k) -> const Sphere& { return cones.base[a_of(k)]; }, ax, ay, az, ar);
+      kOf, [&](std::size_t k) -> const Sphere& { return at(cones.base, as[k]); }, ax, ay, az, ar);
   load_spheres(
-      kOf, [&](std::size_t k) -> const Sphere& { return cones.axis[a_of(k)]; }, ux, uy, uz, ag);
+      kOf, [&](std::size_t k) -> const Sphere& { return at(cones.axis, as[k]); }, ux, uy, uz, ag);
   load_spheres(
-      kOf, [&](std::size_t k) -> const Sphere& { return cones.base[b_of(k)]; }, bx, by, bz, br);
+      kOf, [&](std::size_t k) -> const Sphere& { return at(cones.base, bs[k]); }, bx, by, bz, br);
   load_spheres(
-      kOf, [&](std::size_t k) -> const Sphere& { return cones.axis[b_of(k)]; }, vx, vy, vz, bg);
+      kOf, [&](std::size_t k) -> const Sphere& { return at(cones.axis, bs[k]); }, vx, vy, vz, bg);
   const V wx = hn::Sub(ax, bx), wy = hn::Sub(ay, by), wz = hn::Sub(az, bz);
   const V p = hn::Mul(scale, ag), q = hn::Mul(scale, bg);
   const V uu = dot(ux, uy, uz, ux, uy, uz), vv = dot(vx, vy, vz, vx, vy, vz), uv = dot(ux, uy, uz, vx, vy, vz);
@@ -135,8 +137,11 @@ HWY_INLINE hn::Mask<ConeFloats> touch(const PosedCones& cones, const ConeCandida
   const V to_s = hn::Add(hn::Mul(vv, p), hn::Mul(uv, q)), to_t = hn::Add(hn::Mul(uu, q), hn::Mul(uv, p));
   const V left = hn::Sub(det, hn::Add(hn::Mul(to_s, p), hn::Mul(to_t, q)));
   const V d = hn::Div(hn::Abs(dot(wx, wy, wz, cx, cy, cz)), hn::Sqrt(left));
-  const V s_inside = unit_clamp_of(hn::Div(hn::Sub(hn::Mul(d, to_s), hn::Sub(hn::Mul(vv, wu), hn::Mul(uv, wv))), det));
-  const V t_inside = unit_clamp_of(hn::Div(hn::Add(hn::Mul(d, to_t), hn::Sub(hn::Mul(uu, wv), hn::Mul(uv, wu))), det));
+  const V by_det = hn::Div(hn::Set(kOf, 1.0F), det);
+  const V s_inside =
+      unit_clamp_of(hn::Mul(hn::Sub(hn::Mul(d, to_s), hn::Sub(hn::Mul(vv, wu), hn::Mul(uv, wv))), by_det));
+  const V t_inside =
+      unit_clamp_of(hn::Mul(hn::Add(hn::Mul(d, to_t), hn::Sub(hn::Mul(uu, wv), hn::Mul(uv, wu))), by_det));
   const auto falls = hn::Gt(left, zero), crosses = hn::Gt(det, hn::Mul(hn::Set(kOf, kNearlyParallel), hn::Mul(uu, vv)));
   const auto up = hn::Gt(to_s, zero);
   const V s_end = one_where(up), t_end = one_where(hn::Gt(to_t, zero));
@@ -166,7 +171,7 @@ HWY_INLINE hn::Mask<ConeFloats> touch(const PosedCones& cones, const ConeCandida
 HWY_NOINLINE void keep_touching(const PosedCones& cones, ConeCandidates& candidates, std::size_t count,
                                 FoundCones& found) {
   for (std::size_t k = 0; k < kConeLanes; ++k) {
-    candidates.pairs[count + k] = 0;
+    candidates.a[count + k] = candidates.b[count + k] = 0;
     candidates.scales[count + k] = 0;
   }
   for (std::size_t i = 0; i < count; i += kConeLanes) {
@@ -174,9 +179,9 @@ HWY_NOINLINE void keep_touching(const PosedCones& cones, ConeCandidates& candida
     std::uint64_t bits = bits_of(hn::And(touch(cones, candidates, i), is_own));
     for (; bits != 0; bits &= bits - 1, ++found.count) {
       if (found.count < found.capacity) {
-        const auto pair = static_cast<std::size_t>(candidates.pairs[i + hwy::Num0BitsBelowLS1Bit_Nonzero64(bits)]);
-        found.pairs[found.count] = {static_cast<std::uint32_t>(pair / kMaxCones),
-                                    static_cast<std::uint32_t>(pair % kMaxCones)};
+        const std::size_t at = i + hwy::Num0BitsBelowLS1Bit_Nonzero64(bits);
+        found.pairs[found.count] = {static_cast<std::uint32_t>(candidates.a[at] / sizeof(Sphere)),
+                                    static_cast<std::uint32_t>(candidates.b[at] / sizeof(Sphere))};
       }
     }
   }
@@ -233,7 +238,8 @@ void find(const ConeTable& table, const Sphere* spheres, FoundCones& found) {
       const std::size_t first = block * 16;
       for (std::uint64_t bits = near.bits[a][block]; bits != 0; bits &= bits - 1) {
         const std::size_t b = first + hwy::Num0BitsBelowLS1Bit_Nonzero64(bits);
-        candidates.pairs[count] = static_cast<std::int32_t>(a * kMaxCones + b);
+        candidates.a[count] = static_cast<std::uint32_t>(a * sizeof(Sphere));
+        candidates.b[count] = static_cast<std::uint32_t>(b * sizeof(Sphere));
         candidates.scales[count++] = scales[b];
       }
       if (HWY_UNLIKELY(count > kConeRoom)) {

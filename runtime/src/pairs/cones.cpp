@@ -91,6 +91,7 @@ Status check(const ConeJob& job, Target& resolved, ConeTable& table) {
     return refuse(SC_NOT_OPEN, SC_FIELD_ASSET);
   }
   const std::size_t n = asset.spheres().size;
+  fetch(range_of(Span<const Sphere>{job.spheres, job.spheres == nullptr ? 0 : n}));
   for (const Status& status :
        {check_list(job.spheres, 1, SC_FIELD_SPHERES),
         job.sphere_count < n ? refuse(SC_TOO_SMALL, SC_FIELD_SPHERES) : done(),
