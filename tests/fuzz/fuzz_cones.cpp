@@ -82,13 +82,14 @@ void fuzz_cones(Case& c) {
   if (!draw_asset(c) || c.n == 0) {
     return;
   }
+  const auto n = static_cast<std::uint32_t>(c.n);
   std::size_t count = c.random.below(40);
   Pair* links = c.arena.add<Pair>(std::max<std::size_t>(count, c.n));
   if (c.random.one_in(4)) {
-    count = std::min(sc_chain_links(&c.asset, links, c.n), c.n);
+    count = std::min({sc_chain_links(&c.asset, links, c.n), c.n, kMaxCones});
   } else {
     for (std::size_t i = 0; i < count; ++i) {
-      links[i] = {static_cast<std::uint32_t>(c.random.below(c.n)), static_cast<std::uint32_t>(c.random.below(c.n))};
+      links[i] = {c.random.below(n), c.random.below(n)};
     }
   }
   Filter filter;
