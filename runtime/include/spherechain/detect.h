@@ -48,7 +48,7 @@ typedef struct sc_detect_job {
  * numbers in the table. Two links without a sphere in common touch where a ball on the way from one sphere to the other
  * overlaps one of the other link (docs/arithmetic.md). A link of a sphere with itself is that sphere.
  *
- * Allocates nothing, takes no lock. Jobs on other outputs may run at the same time. Needs 40 KiB of stack. */
+ * Allocates nothing, takes no lock. Jobs on other outputs may run at the same time. Needs 32 KiB of stack. */
 typedef struct sc_cone_job {
   const sc_asset* asset SC_ZERO;    /* open */
   const sc_sphere* spheres SC_ZERO; /* refitted at the radius wanted */
@@ -101,27 +101,28 @@ SPHERECHAIN_API sc_status sc_detect_cones(sc_cone_job* job) SC_NOEXCEPT;
 
 /* The asset's own links, sorted: spheres of one region that follow each other in a chain and are neighbours on the
  * body; spheres without any, alone. Writes the first `capacity` and returns how many there are. 0 of an asset that is
- * not open or has more than 512 spheres. */
+ * not open or has more than 256 spheres. */
 SPHERECHAIN_API size_t sc_chain_links(const sc_asset* asset, sc_pair* links, size_t capacity) SC_NOEXCEPT;
 
 /* Fills a table for cone jobs with this asset, which any number of them may share. A link is two spheres in any order,
  * or one twice; spheres in no link are left out. `words` is the caller's, sc_cone_table_words() of them: about 4 bytes
- * a pair of links. That is 0 of more than 512 links, the most that a table has.
+ * an ordered pair of links. That is 0 of more than 256 links, the most that a table has.
  *
  * Never reported are links that share a sphere, have one that `filter` disables, or whose spheres are all ignored with
- * each other in `filter`, or where that is null, in the asset. Its padding is of no effect. `rest`: the spheres at
- * rest, of the radius that jobs will have; links that touch there are reported only where they would with all radii
- * multiplied by 0.9 of what makes them just touch at rest. Or null: as all others.
+ * each other in `filter`, or where that is null, in the asset. Its padding is of no effect.
  *
- * SC_OK; SC_NULL, SC_MISALIGNED, SC_TOO_SMALL, SC_BAD_VALUE (field `pairs`: more than 512 links; `index`: a link has a
+ * `rest`, or null: the asset's spheres at rest, of the radius that jobs will have. Links that touch there are reported
+ * only where they would with all radii multiplied by 0.9 of what makes them just touch at rest.
+ *
+ * SC_OK; SC_NULL, SC_MISALIGNED, SC_TOO_SMALL, SC_BAD_VALUE (field `pairs`: more than 256 links; `index`: a link has a
  * sphere that does not exist), SC_ALIASED, SC_NOT_OPEN: nothing is written. */
 SPHERECHAIN_API size_t sc_cone_table_words(size_t link_count) SC_NOEXCEPT;
 SPHERECHAIN_API sc_status sc_prepare_cones(const sc_asset* asset, const sc_filter* filter, const sc_pair* links,
                                            size_t link_count, const sc_sphere* rest, uint64_t* words,
                                            size_t word_count) SC_NOEXCEPT;
-/* From then on links a < b are reported where they touch with all radii multiplied by `scale`, 0 to 4; any other:
- * never. For scales that are calibrated. SC_BAD_VALUE: `words` is no table, or it has no such links. No job may run
- * meanwhile. */
+/* From then on links a < b are reported where they touch with all radii multiplied by `scale`, 0 to 4; with any other:
+ * never. For scales that are calibrated. No job may run meanwhile. SC_NULL, SC_MISALIGNED, SC_TOO_SMALL; SC_BAD_VALUE:
+ * `words` is no table, or has no such links. */
 SPHERECHAIN_API sc_status sc_scale_cones(uint64_t* words, size_t word_count, uint32_t a, uint32_t b,
                                          float scale) SC_NOEXCEPT;
 

@@ -18,7 +18,7 @@
 
 namespace spherechain {
 
-inline constexpr std::size_t kMaxCones = 512;
+inline constexpr std::size_t kMaxCones = 256;
 inline constexpr float kConeExtent = 0x1p30F;       // what a coordinate or radius may be
 inline constexpr float kShortestAxis = 0x1p-100F;   // squared; a shorter one is none
 inline constexpr float kNearlyParallel = 0x1p-20F;  // squared sine
