@@ -219,8 +219,8 @@ Rows of 36 and 24 spheres are bakes of their own. The last column is the volume 
 in % of the height, at rest with all scales 1. Larger primitives are right more easily: compare precision at equal numbers.
 
 Half as many cones as spheres find as much on all five. Their apart precision is as good on the barbarian and CesiumMan, and lower on the humans and the fox. Half as many
-spheres do so too: better than as many cones on the barbarian and the fox, worse on mh_boxing and CesiumMan. So spheres stay the default. What stands out of the body is not halved
-at equal recall, but for the fox.
+spheres do so too: better than as many cones on the barbarian and the fox, worse on mh_boxing and CesiumMan; human.zae takes no fewer. So spheres stay the default.
+What stands out of the body is halved on the fox alone.
 
 ${characters.length > 0 ? cones() : ""}
 ## Depth against brute force
