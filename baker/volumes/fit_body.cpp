@@ -97,10 +97,11 @@ double gap_of(const std::vector<BodySample>& samples, const std::vector<Volume>&
   return gap;
 }
 
-BodyFit fit_from(VolumeShape shape, const std::vector<BodySample>& samples, Groups groups) {
+BodyFit fit_from(VolumeShape shape, const BodySkin& skin, Groups groups) {
   constexpr int kRounds = 3;
+  const std::vector<BodySample>& samples = skin.samples;
   std::vector<Volume> volumes;
-  for (const std::vector<int>& own : groups) volumes.push_back(fit_one(shape, samples, own, std::nullopt));
+  for (const std::vector<int>& own : groups) volumes.push_back(fit_one(shape, skin, own, std::nullopt));
   for (int round = 0; round < kRounds && volumes.size() > 1; ++round) {
     Groups next = nearest(samples, volumes);
     // One that is left with next to nothing is not needed.
@@ -116,7 +117,7 @@ BodyFit fit_from(VolumeShape shape, const std::vector<BodySample>& samples, Grou
     groups = std::move(kept_groups);
     volumes = std::move(kept);
     if (is_same) break;
-    for (std::size_t k = 0; k < volumes.size(); ++k) volumes[k] = fit_one(shape, samples, groups[k], volumes[k]);
+    for (std::size_t k = 0; k < volumes.size(); ++k) volumes[k] = fit_one(shape, skin, groups[k], volumes[k]);
   }
   BodyFit out;
   for (std::size_t k = 0; k < volumes.size(); ++k) {
@@ -128,11 +129,11 @@ BodyFit fit_from(VolumeShape shape, const std::vector<BodySample>& samples, Grou
 
 }  // namespace
 
-BodyFit fit_body(VolumeShape shape, const std::vector<BodySample>& samples, int count) {
+BodyFit fit_body(VolumeShape shape, const BodySkin& skin, int count) {
   BodyFit best;
   best.gap = INFINITY;
-  for (Groups& groups : beginnings(samples, count)) {
-    BodyFit one = fit_from(shape, samples, std::move(groups));
+  for (Groups& groups : beginnings(skin.samples, count)) {
+    BodyFit one = fit_from(shape, skin, std::move(groups));
     if (one.gap < best.gap) best = std::move(one);
   }
   return best;

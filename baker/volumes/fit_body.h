@@ -16,6 +16,6 @@ struct BodyFit {
 // `count` volumes, or fewer where there are fewer samples: the samples are cut into slabs along one of their axes, or
 // into two rows of slabs; then each sample goes to the volume that is nearest to it, and each volume is fitted to its
 // samples, some rounds of it. 90 % of the area is inside.
-BodyFit fit_body(VolumeShape shape, const std::vector<BodySample>& samples, int count);
+BodyFit fit_body(VolumeShape shape, const BodySkin& skin, int count);
 
 }  // namespace spherechain::baker

@@ -123,41 +123,34 @@ Volume first_guess(VolumeShape shape, const SampleAxes& at, int axis, const std:
 
 class Residuals {
  public:
-  Residuals(const std::vector<BodySample>& samples, const std::vector<int>& own)
-      : samples_(samples), own_(own), is_own_(samples.size(), false) {
+  Residuals(const BodySkin& skin, const std::vector<int>& own) : skin_(skin), is_own_(skin.samples.size(), false) {
+    double area = 0;
     for (const int i : own) {
       is_own_[static_cast<std::size_t>(i)] = true;
-      own_area_ += samples[static_cast<std::size_t>(i)].area;
+      area += skin.samples[static_cast<std::size_t>(i)].area;
     }
+    reach_weight_ = std::sqrt(kOutsideWeight * area);
   }
 
   void of(const Volume& volume, VectorXd& out) const {
-    out.resize(static_cast<Eigen::Index>(samples_.size()) + 2);
-    for (std::size_t i = 0; i < samples_.size(); ++i) {
-      const double distance = signed_distance(volume, samples_[i].point);
+    const std::vector<BodySample>& samples = skin_.samples;
+    out.resize(static_cast<Eigen::Index>(samples.size() + skin_.reach.size()));
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const double distance = signed_distance(volume, samples[i].point);
       const double weight = is_own_[i] ? (distance > 0 ? kOutsideWeight : 1.0) : (distance > 0 ? 0.0 : 1.0);
-      out[static_cast<Eigen::Index>(i)] = std::sqrt(samples_[i].area * weight) * distance;
+      out[static_cast<Eigen::Index>(i)] = std::sqrt(samples[i].area * weight) * distance;
     }
-    out.tail<2>().setZero();
-    const auto* cone = std::get_if<ConeVolume>(&volume);
-    if (cone == nullptr) return;
-    const Vec3 along = (cone->b - cone->a).stableNormalized();
-    double low = INFINITY, high = -INFINITY;
-    for (const int i : own_) {
-      const double t = along.dot(samples_[static_cast<std::size_t>(i)].point);
-      low = std::min(low, t);
-      high = std::max(high, t);
+    for (std::size_t k = 0; k < skin_.reach.size(); ++k) {
+      const Vec3& direction = reach_directions()[k];
+      out[static_cast<Eigen::Index>(samples.size() + k)] =
+          reach_weight_ * std::max(0.0, direction.dot(support(volume, direction)) - skin_.reach[k]);
     }
-    const double weight = std::sqrt(kOutsideWeight * own_area_);
-    out[out.size() - 2] = weight * std::max(0.0, low - along.dot(cone->a));
-    out[out.size() - 1] = weight * std::max(0.0, along.dot(cone->b) - high);
   }
 
  private:
-  const std::vector<BodySample>& samples_;
-  const std::vector<int>& own_;
+  const BodySkin& skin_;
   std::vector<bool> is_own_;
-  double own_area_ = 0;
+  double reach_weight_ = 0;
 };
 
 // The method of Levenberg and Marquardt with differences for derivatives. Returns the sum of squares.
@@ -205,11 +198,26 @@ bool is_of(VolumeShape shape, const Volume& volume) {
 
 }  // namespace
 
-Volume fit_one(VolumeShape shape, const std::vector<BodySample>& samples, const std::vector<int>& own,
+const std::vector<Vec3>& reach_directions() {
+  static const std::vector<Vec3> kDirections = [] {
+    std::vector<Vec3> out;
+    for (int x = -1; x <= 1; ++x) {
+      for (int y = -1; y <= 1; ++y) {
+        for (int z = -1; z <= 1; ++z) {
+          if (x != 0 || y != 0 || z != 0) out.push_back(Vec3(x, y, z).normalized());
+        }
+      }
+    }
+    return out;
+  }();
+  return kDirections;
+}
+
+Volume fit_one(VolumeShape shape, const BodySkin& skin, const std::vector<int>& own,
                const std::optional<Volume>& start) {
   constexpr int kStepsMax = 20, kStepsToChoose = 4;
-  const SampleAxes at = axes_of(samples, own);
-  const Residuals residuals(samples, own);
+  const SampleAxes at = axes_of(skin.samples, own);
+  const Residuals residuals(skin, own);
   if (start && is_of(shape, *start)) {
     Volume out = *start;
     Numbers numbers(shape, at);
@@ -222,7 +230,7 @@ Volume fit_one(VolumeShape shape, const std::vector<BodySample>& samples, const 
   double least = INFINITY;
   for (int axis = 0; axis < axes; ++axis) {
     Numbers numbers(shape, at);
-    Volume one = first_guess(shape, at, axis, samples, own);
+    Volume one = first_guess(shape, at, axis, skin.samples, own);
     const double error = descend(numbers, residuals, kStepsToChoose, one);
     if (error < least || axis == 0) {
       least = error;

@@ -18,18 +18,31 @@ constexpr double kSmallPart = 0.004;  // of the skin's area: stands for no part 
 constexpr int kVolumesOfBodyMax = 12;
 constexpr double kGainMin = 0.03;  // of the skin's gap: what a further volume has to save
 
-// The bodies' samples and what is fitted to them so far.
+// What a body's volumes may reach along each direction: as far as its own samples and half their thickness more, where
+// those of the bodies that it hangs together with reach that far.
+std::vector<double> reach_of(const std::vector<BodySample>& own, const std::vector<Vec3>& beside) {
+  std::vector<double> out;
+  for (const Vec3& direction : reach_directions()) {
+    double low = INFINITY, high = -INFINITY, all = -INFINITY;
+    for (const BodySample& sample : own) {
+      low = std::min(low, direction.dot(sample.point));
+      high = std::max(high, direction.dot(sample.point));
+    }
+    for (const Vec3& point : beside) all = std::max(all, direction.dot(point));
+    out.push_back(std::clamp(all, high, high + (high - low) / 2));
+  }
+  return out;
+}
+
+// The bodies' skins and what is fitted to them so far.
 class VolumeSets {
  public:
   VolumeSets(const Colliders& colliders, const std::vector<SkinSample>& skin, VolumeShape shape)
-      : colliders_(colliders), shape_(shape), samples_(colliders.bodies.size()), fits_(colliders.bodies.size()) {
-    for (const SkinSample& sample : skin) {
-      const auto body = static_cast<std::size_t>(sample.body);
-      samples_[body].push_back({colliders.bodies[body].rest.inverse(Eigen::Isometry) * sample.point, sample.area});
-    }
-    for (std::size_t i = 0; i < samples_.size(); ++i) {
-      alive_.push_back(!samples_[i].empty());
-      if (alive_[i]) fits_[i] = {fit_body(shape, samples_[i], 1)};
+      : colliders_(colliders), skin_(skin), shape_(shape), holder_(colliders.bodies.size()) {
+    for (std::size_t i = 0; i < holder_.size(); ++i) holder_[i] = i;
+    for (const SkinSample& sample : skin) alive_[static_cast<std::size_t>(sample.body)] = true;
+    for (std::size_t i = 0; i < holder_.size(); ++i) {
+      if (alive_[i]) begin(i);
     }
   }
 
@@ -46,7 +59,7 @@ class VolumeSets {
 
   // Bodies of less area than this go to the one that they hang on.
   void merge_smaller(double area) {
-    for (std::size_t i = samples_.size(); i-- > 0;) {
+    for (std::size_t i = skins_.size(); i-- > 0;) {
       if (!alive_[i] || area_of(i) >= area || !parent_of(i)) continue;
       merge(i);
     }
@@ -54,19 +67,19 @@ class VolumeSets {
 
   // The merge that costs least. False where no body hangs on another.
   bool merge_cheapest() {
-    std::size_t best = samples_.size();
+    std::size_t best = skins_.size();
     double least = INFINITY;
-    for (std::size_t i = 0; i < samples_.size(); ++i) {
+    for (std::size_t i = 0; i < skins_.size(); ++i) {
       if (!alive_[i] || !parent_of(i)) continue;
       const std::size_t parent = *parent_of(i);
-      if (!merged_.contains({i, parent})) merged_[{i, parent}] = fit_body(shape_, joined(i, parent), 1).gap;
+      if (!merged_.contains({i, parent})) merged_[{i, parent}] = fit_body(shape_, skin_of(parent, i), 1).gap;
       const double cost = merged_[{i, parent}] - taken(i).gap - taken(parent).gap;
       if (cost < least) {
         least = cost;
         best = i;
       }
     }
-    if (best == samples_.size()) return false;
+    if (best == skins_.size()) return false;
     merge(best);
     return true;
   }
@@ -74,9 +87,9 @@ class VolumeSets {
   // Adds volumes to the body where one more saves most; two at once where one alone saves nothing. False where none
   // saves at least `gain`, or no more than `room` fit.
   bool split_best(double gain, int room) {
-    std::size_t best = samples_.size(), best_more = 0;
+    std::size_t best = skins_.size(), best_more = 0;
     double most = gain;
-    for (std::size_t i = 0; i < samples_.size(); ++i) {
+    for (std::size_t i = 0; i < skins_.size(); ++i) {
       if (!alive_[i]) continue;
       for (std::size_t more = 1; more <= 2 && static_cast<int>(more) <= room; ++more) {
         const BodyFit* next = fit_of(i, taken_[i] + more);
@@ -89,18 +102,13 @@ class VolumeSets {
         }
       }
     }
-    if (best == samples_.size()) return false;
+    if (best == skins_.size()) return false;
     taken_[best] += best_more;
     return true;
   }
 
-  // The body that it was merged with, and what that was merged with; -1: none.
-  int held_by(std::size_t body) const {
-    if (!merged_with_[body]) return -1;
-    std::size_t at = body;
-    while (merged_with_[at]) at = *merged_with_[at];
-    return static_cast<int>(at);
-  }
+  // The body that it was merged with; -1: none.
+  int held_by(std::size_t body) const { return holder_[body] == body ? -1 : static_cast<int>(holder_[body]); }
 
   std::vector<Volume> volumes_of(std::size_t body) const {
     return alive_[body] ? taken(body).volumes : std::vector<Volume>();
@@ -112,15 +120,15 @@ class VolumeSets {
 
   double area_of(std::size_t i) const {
     double area = 0;
-    for (const BodySample& sample : samples_[i]) area += sample.area;
+    for (const BodySample& sample : skins_[i].samples) area += sample.area;
     return area;
   }
 
   // With that many volumes more than one; null where a body has no more.
   const BodyFit* fit_of(std::size_t i, std::size_t more) {
-    if (more >= kVolumesOfBodyMax || samples_[i].size() < 8 * (more + 1)) return nullptr;
+    if (more >= kVolumesOfBodyMax || skins_[i].samples.size() < 8 * (more + 1)) return nullptr;
     while (fits_[i].size() <= more)
-      fits_[i].push_back(fit_body(shape_, samples_[i], static_cast<int>(fits_[i].size()) + 1));
+      fits_[i].push_back(fit_body(shape_, skins_[i], static_cast<int>(fits_[i].size()) + 1));
     return &fits_[i][more];
   }
 
@@ -133,21 +141,43 @@ class VolumeSets {
     return static_cast<std::size_t>(at);
   }
 
-  std::vector<BodySample> joined(std::size_t i, std::size_t parent) const {
-    const Eigen::Isometry3d to_parent =
-        colliders_.bodies[parent].rest.inverse(Eigen::Isometry) * colliders_.bodies[i].rest;
-    std::vector<BodySample> out = samples_[parent];
-    for (const BodySample& sample : samples_[i]) out.push_back({to_parent * sample.point, sample.area});
+  bool hang_together(std::size_t i, std::size_t k) const {
+    return colliders_.bodies[i].parent == static_cast<int>(k) || colliders_.bodies[k].parent == static_cast<int>(i);
+  }
+
+  // In its frame: the skin of all that it holds, and of one body more.
+  BodySkin skin_of(std::size_t body, std::size_t more) const {
+    const auto is_in = [&](std::size_t one) { return holder_[one] == body || holder_[one] == more; };
+    std::vector<bool> is_beside(holder_.size(), false);
+    for (std::size_t i = 0; i < holder_.size(); ++i) {
+      for (std::size_t k = 0; k < holder_.size(); ++k) is_beside[k] = is_beside[k] || (is_in(i) && hang_together(i, k));
+    }
+    const Eigen::Isometry3d to_body = colliders_.bodies[body].rest.inverse(Eigen::Isometry);
+    BodySkin out;
+    std::vector<Vec3> beside;
+    for (const SkinSample& sample : skin_) {
+      const auto of = static_cast<std::size_t>(sample.body);
+      if (is_in(of)) {
+        out.samples.push_back({to_body * sample.point, sample.area});
+      } else if (is_beside[of]) {
+        beside.push_back(to_body * sample.point);
+      }
+    }
+    out.reach = reach_of(out.samples, beside);
     return out;
+  }
+
+  void begin(std::size_t i) {
+    skins_[i] = skin_of(i, i);
+    fits_[i] = {fit_body(shape_, skins_[i], 1)};
+    taken_[i] = 0;
   }
 
   void merge(std::size_t i) {
     const std::size_t parent = *parent_of(i);
-    samples_[parent] = joined(i, parent);
-    fits_[parent] = {fit_body(shape_, samples_[parent], 1)};
-    taken_[parent] = 0;
+    for (std::size_t& holder : holder_) holder = holder == i ? parent : holder;
+    begin(parent);
     alive_[i] = false;
-    merged_with_[i] = parent;
     std::erase_if(merged_, [&](const auto& entry) {
       const auto& [pair, gap] = entry;
       return pair.first == i || pair.second == i || pair.first == parent || pair.second == parent;
@@ -155,12 +185,14 @@ class VolumeSets {
   }
 
   const Colliders& colliders_;
+  const std::vector<SkinSample>& skin_;
   VolumeShape shape_;
-  std::vector<std::vector<BodySample>> samples_;
-  std::vector<std::vector<BodyFit>> fits_;  // of a body: with one volume, two ...
-  std::vector<std::size_t> taken_ = std::vector<std::size_t>(fits_.size(), 0);
-  std::vector<bool> alive_;
-  std::vector<std::optional<std::size_t>> merged_with_ = std::vector<std::optional<std::size_t>>(samples_.size());
+  std::vector<std::size_t> holder_;  // of each body: the one whose volumes stand for it
+  std::vector<bool> alive_ = std::vector<bool>(holder_.size(), false);  // has volumes
+  std::vector<BodySkin> skins_ = std::vector<BodySkin>(holder_.size());
+  std::vector<std::vector<BodyFit>> fits_ =
+      std::vector<std::vector<BodyFit>>(holder_.size());  // with one volume, two ...
+  std::vector<std::size_t> taken_ = std::vector<std::size_t>(holder_.size(), 0);
   std::map<std::pair<std::size_t, std::size_t>, double> merged_;  // the gap of two bodies with one volume
 };
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// volume_study FRAMES ASSET SOURCE [MOTION]...: how well colliders of each shape and number tell which body parts
-// touch. The truth are exact skin contacts. Prints rows of a Markdown table. Pairs that the colliders ignore are
-// missed.
+// volume_study FRAMES ASSET SOURCE[+MOTION] [ASSET SOURCE[+MOTION]]...: how well colliders of each shape and number
+// stand for skins, and tell which body parts touch, over all these characters. The truth are exact skin contacts.
+// Prints a Markdown table.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <iostream>
 #include <map>
 #include <set>
@@ -50,14 +52,23 @@ std::vector<PosedTruth> truths(const AnimatedAsset& animated, const Colliders& b
   return out;
 }
 
-// What touches and is tested, what touches and is not, what is reported, and what of that touches.
+// Over all characters. Paddings in percent of the height.
+constexpr double kPaddings[] = {-2, -1.5, -1, -0.75, -0.5, -0.25, 0, 0.25, 0.5, 0.75, 1, 1.5, 2};
+constexpr std::size_t kNoPadding = 6;
+
 struct PairCounts {
-  double tested = 0, ignored = 0, reported = 0, right = 0;
+  double tested = 0, ignored = 0;  // pairs that touch, and are tested or not
+  double reported = 0, right = 0;  // by the colliders, and what of that touches
   double recall() const { return right / std::max(tested, 1.0); }
   double precision() const { return right / std::max(reported, 1.0); }
 };
 
-PairCounts counts_of(const std::vector<PosedTruth>& truth, Colliders colliders, double padding) {
+struct StudyRow {
+  std::array<PairCounts, std::size(kPaddings)> counts;
+  ColliderFit fit;  // sums; lengths in percent of the height
+};
+
+void add_counts(const std::vector<PosedTruth>& truth, Colliders colliders, double padding, PairCounts& out) {
   for (ColliderBody& body : colliders.bodies) {
     for (Volume& volume : body.volumes) volume = padded(volume, padding);
   }
@@ -67,60 +78,88 @@ PairCounts counts_of(const std::vector<PosedTruth>& truth, Colliders colliders, 
     const int held_by = colliders.bodies[static_cast<std::size_t>(body)].held_by;
     return held_by < 0 ? body : held_by;
   };
-  PairCounts out;
   for (const PosedTruth& one : truth) {
     Pairs touching;  // of the bodies whose volumes stand for those that touch
     for (const auto& [a, b] : one.touching) {
       const int i = holder(a), j = holder(b);
       const std::pair<int, int> pair(std::min(i, j), std::max(i, j));
-      (i == j || ignored.contains(pair) ? out.ignored : out.tested) += 1;
-      if (i != j) touching.insert(pair);
+      if (i == j || ignored.contains(pair)) {
+        out.ignored += 1;
+      } else if (touching.insert(pair).second) {
+        out.tested += 1;
+      }
     }
     for (const std::pair<int, int>& pair : overlapping(colliders, posed(colliders, one.bones))) {
       out.reported += 1;
       out.right += touching.contains(pair) ? 1 : 0;
     }
   }
+}
+
+struct StudyCharacter {
+  OpenAsset asset;
+  std::vector<PosedTruth> truth;
+};
+
+StudyCharacter character_of(const std::string& asset, const std::string& source, int frames) {
+  const std::size_t plus = source.find('+');
+  MotionChoice motion;
+  if (plus != std::string::npos) motion.motion = source.substr(plus + 1);
+  const AnimatedAsset animated(asset, source.substr(0, plus), motion, {frames, 30});
+  return {open_asset(asset), truths(animated, find_bodies(animated.asset()))};
+}
+
+StudyRow row_of(const std::vector<StudyCharacter>& characters, VolumeShape shape, int at_most) {
+  StudyRow out{};
+  for (const StudyCharacter& character : characters) {
+    const Colliders colliders = fit_volumes(character.asset, shape, at_most);
+    const ColliderFit fit = measure_fit(character.asset, colliders);
+    const double percent = 100 / colliders.height;
+    out.fit.volumes += fit.volumes;
+    out.fit.coverage += fit.coverage;
+    out.fit.gap_mean += percent * fit.gap_mean;
+    out.fit.gap_95 += percent * fit.gap_95;
+    out.fit.protrusion_95 += percent * fit.protrusion_95;
+    out.fit.volume_ratio += fit.volume_ratio;
+    for (std::size_t i = 0; i < std::size(kPaddings); ++i) {
+      add_counts(character.truth, colliders, kPaddings[i] / percent, out.counts[i]);
+    }
+  }
   return out;
 }
 
-// With the least padding that finds this share of what is tested: that padding, and the precision.
-std::string precision_at(double recall, const std::vector<PosedTruth>& truth, const Colliders& colliders) {
-  for (const double percent : {-2.0, -1.5, -1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 2.0}) {
-    const double padding = percent / 100 * colliders.height;
-    const PairCounts counts = counts_of(truth, colliders, padding);
-    if (counts.recall() >= recall) return fmt::format("{:.2f} ({:+.0f} mm)", counts.precision(), 1000 * padding);
+// With the least padding that finds 95 % of what is tested.
+std::string precision_at_95(const StudyRow& row) {
+  for (std::size_t i = 0; i < std::size(kPaddings); ++i) {
+    if (row.counts[i].recall() >= 0.95)
+      return fmt::format("{:.0f} ({:+.2f})", 100 * row.counts[i].precision(), kPaddings[i]);
   }
-  return "-";
+  return "";
 }
 
 }  // namespace
 
 int main(int argc, char** argv) try {
-  if (argc < 4) {
-    std::cerr << "usage: volume_study FRAMES ASSET SOURCE [MOTION]...\n";
+  if (argc < 4 || argc % 2 != 0) {
+    std::cerr << "usage: volume_study FRAMES ASSET SOURCE[+MOTION] [ASSET SOURCE[+MOTION]]...\n";
     return 2;
   }
-  std::vector<MotionChoice> motions;
-  for (int i = 4; i < argc; ++i) motions.push_back({"", "", argv[i]});
-  if (motions.empty()) motions.emplace_back();
-  AnimatedAsset animated(argv[2], argv[3], motions[0], {std::atoi(argv[1]), 30});
-  const Colliders bodies = find_bodies(animated.asset());
-  std::vector<PosedTruth> truth = truths(animated, bodies);
-  for (std::size_t i = 1; i < motions.size(); ++i) {
-    animated.play(motions[i], {std::atoi(argv[1]), 30});
-    for (PosedTruth& one : truths(animated, bodies)) truth.push_back(std::move(one));
-  }
+  std::vector<StudyCharacter> characters;
+  for (int i = 2; i < argc; i += 2) characters.push_back(character_of(argv[i], argv[i + 1], std::atoi(argv[1])));
+  fmt::print(
+      "| shape | at most | volumes | recall | precision | precision at 95 (padding) | not tested | inside | distance | "
+      "its 95th | beyond, 95th | volume |\n");
+  fmt::print("| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |\n");
+  const auto n = static_cast<double>(characters.size());
   for (const std::string shape : kVolumeShapes) {
-    for (const int at_most : {0, 15, 32, 64}) {
-      const Colliders colliders = fit_volumes(animated.asset(), volume_shape(shape), at_most);
-      const ColliderFit fit = measure_fit(animated.asset(), colliders);
-      const PairCounts counts = counts_of(truth, colliders, 0);
-      fmt::print("| {} | {} | {} | {:.2f} | {:.2f} | {} | {:.0f} % | {:.0f} % | {:.1f} | {:.1f} | {:.2f} |\n",
-                 std::filesystem::path(argv[3]).filename().string(), shape, fit.volumes, counts.recall(),
-                 counts.precision(), precision_at(0.95, truth, colliders),
-                 100 * counts.ignored / std::max(counts.ignored + counts.tested, 1.0), 100 * fit.coverage,
-                 1000 * fit.gap_mean, 1000 * fit.gap_95, fit.volume_ratio);
+    for (const int at_most : {15, 32, 64, 0}) {
+      const StudyRow row = row_of(characters, volume_shape(shape), at_most);
+      const PairCounts& counts = row.counts[kNoPadding];
+      fmt::print("| {} | {} | {:.0f} | {:.0f} | {:.0f} | {} | {:.0f} | {:.0f} | {:.2f} | {:.2f} | {:.2f} | {:.0f} |\n",
+                 shape, at_most == 0 ? "" : std::to_string(at_most), row.fit.volumes / n, 100 * counts.recall(),
+                 100 * counts.precision(), precision_at_95(row),
+                 100 * counts.ignored / std::max(counts.ignored + counts.tested, 1.0), 100 * row.fit.coverage / n,
+                 row.fit.gap_mean / n, row.fit.gap_95 / n, row.fit.protrusion_95 / n, 100 * row.fit.volume_ratio / n);
       std::fflush(stdout);
     }
   }

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "baked_human.h"
+#include "volumes/bodies.h"
 #include "volumes/fit_body.h"
 #include "volumes/fit_volumes.h"
 #include "volumes/measure.h"
@@ -35,7 +36,7 @@ std::vector<Vec3> surface_points(const Volume& volume, int count, std::mt19937& 
   for (int i = 0; i < count; ++i) {
     const Vec3 direction = random_direction(random);
     double low = 0, high = 3;
-    for (int step = 0; step < 60; ++step) {
+    for (int step = 0; step < 40; ++step) {
       const double middle = (low + high) / 2;
       (signed_distance(volume, inside + middle * direction) <= 0 ? low : high) = middle;
     }
@@ -45,10 +46,10 @@ std::vector<Vec3> surface_points(const Volume& volume, int count, std::mt19937& 
 }
 
 // A tube with two radii and round ends, sampled.
-std::vector<BodySample> samples_of(const Volume& volume, int count) {
+BodySkin skin_of(const Volume& volume, int count) {
   std::mt19937 random(5);
-  std::vector<BodySample> out;
-  for (const Vec3& point : surface_points(volume, count, random)) out.push_back({point, 1.0 / count});
+  BodySkin out;
+  for (const Vec3& point : surface_points(volume, count, random)) out.samples.push_back({point, 1.0 / count});
   return out;
 }
 
@@ -58,7 +59,7 @@ TEST_CASE("a volume's farthest points are those of its surface, and its content 
   std::mt19937 random(1);
   for (const Volume& volume : some_volumes()) {
     CAPTURE(volume_name(volume));
-    const std::vector<Vec3> surface = surface_points(volume, 3000, random);
+    const std::vector<Vec3> surface = surface_points(volume, 2000, random);
     for (int i = 0; i < 50; ++i) {
       const Vec3 direction = random_direction(random);
       double farthest = -INFINITY;
@@ -68,11 +69,11 @@ TEST_CASE("a volume's farthest points are those of its surface, and its content 
     }
     std::uniform_real_distribution<double> place(-1, 1);
     int inside = 0;
-    constexpr int kPoints = 200000;
+    constexpr int kPoints = 50000;
     for (int i = 0; i < kPoints; ++i) {
       inside += signed_distance(volume, {place(random), place(random), place(random)}) <= 0 ? 1 : 0;
     }
-    CHECK(volume_of(volume) == doctest::Approx(8.0 * inside / kPoints).epsilon(0.04));
+    CHECK(volume_of(volume) == doctest::Approx(8.0 * inside / kPoints).epsilon(0.08));
   }
 }
 
@@ -82,16 +83,16 @@ TEST_CASE("two volumes overlap where a point is in both") {
   int overlaps = 0, close = 0;
   for (const Volume& a : some_volumes()) {
     for (const Volume& b : some_volumes()) {
-      for (int i = 0; i < 40; ++i) {
+      for (int i = 0; i < 8; ++i) {
         Eigen::Isometry3d at = Eigen::Isometry3d::Identity();
         at.linear() = Eigen::Quaterniond::FromTwoVectors(random_direction(random), random_direction(random)).matrix();
         at.translation() = Vec3(place(random), place(random), place(random));
         const Volume moved_b = moved(b, Affine(at));
         // Two convex volumes that overlap have a point of one's surface in the other, but where one holds the other.
         double least = INFINITY;
-        for (const Vec3& one : surface_points(moved_b, 400, random)) least = std::min(least, signed_distance(a, one));
-        for (const Vec3& one : surface_points(a, 400, random)) least = std::min(least, signed_distance(moved_b, one));
-        if (std::abs(least) < 0.02) {
+        for (const Vec3& one : surface_points(moved_b, 150, random)) least = std::min(least, signed_distance(a, one));
+        for (const Vec3& one : surface_points(a, 150, random)) least = std::min(least, signed_distance(moved_b, one));
+        if (std::abs(least) < 0.04) {
           ++close;
           continue;
         }
@@ -102,13 +103,13 @@ TEST_CASE("two volumes overlap where a point is in both") {
       }
     }
   }
-  CHECK(overlaps > 300);
-  CHECK(close < 400);
+  CHECK(overlaps > 30);
+  CHECK(close < 120);
 }
 
 TEST_CASE("a volume is found again in samples of its surface") {
   const auto gap_of = [](VolumeShape shape, const Volume& volume) {
-    return fit_body(shape, samples_of(volume, 300), 1).gap;
+    return fit_body(shape, skin_of(volume, 300), 1).gap;
   };
   const Eigen::Quaterniond turn = Eigen::Quaterniond(0.8, 0.3, -0.2, 0.5).normalized();
   CHECK(gap_of(VolumeShape::kSpheres, BallVolume{{0.1, 0.2, 0.3}, 0.4}) < 1e-3);
@@ -119,12 +120,17 @@ TEST_CASE("a volume is found again in samples of its surface") {
 }
 
 TEST_CASE("a tube that is open at its ends gets a capsule no longer than it is") {
-  std::vector<BodySample> tube;
+  BodySkin tube;
   for (int i = 0; i < 20; ++i) {
     for (int k = 0; k < 12; ++k) {
       const double angle = 2 * std::numbers::pi * k / 12;
-      tube.push_back({{0.1 * std::cos(angle), 0.1 * std::sin(angle), i / 19.0}, 1});
+      tube.samples.push_back({{0.1 * std::cos(angle), 0.1 * std::sin(angle), i / 19.0}, 1});
     }
+  }
+  for (const Vec3& direction : reach_directions()) {
+    double most = -INFINITY;
+    for (const BodySample& sample : tube.samples) most = std::max(most, direction.dot(sample.point));
+    tube.reach.push_back(most + 0.1);
   }
   const BodyFit fit = fit_body(VolumeShape::kCones, tube, 1);
   const auto& cone = std::get<ConeVolume>(fit.volumes.at(0));
@@ -138,21 +144,19 @@ TEST_CASE("volumes of a human: never more than asked for, nearer to the skin the
   const Bake& human = baked_human();
   const OpenAsset asset = open_asset_of(human);
   const double height = find_bodies(asset).height;
-  for (const VolumeShape shape : {VolumeShape::kCones, VolumeShape::kBoxes}) {
-    double before = INFINITY;
-    for (const int at_most : {4, 12, 24}) {
-      const Colliders colliders = fit_volumes(asset, shape, at_most);
-      const ColliderFit fit = measure_fit(asset, colliders);
-      CHECK(fit.volumes <= at_most);
-      CHECK(fit.volumes >= at_most - 1);
-      CHECK(fit.coverage > 0.85);
-      CHECK(fit.gap_mean < before);
-      before = fit.gap_mean;
-    }
-    CHECK(before < 0.01 * height);
+  Colliders cones;
+  double before = INFINITY;
+  for (const int at_most : {4, 16}) {
+    cones = fit_volumes(asset, VolumeShape::kCones, at_most);
+    const ColliderFit fit = measure_fit(asset, cones);
+    CHECK(fit.volumes <= at_most);
+    CHECK(fit.volumes >= at_most - 1);
+    CHECK(fit.coverage > 0.85);
+    CHECK(fit.gap_mean < before);
+    before = fit.gap_mean;
   }
+  CHECK(before < 0.01 * height);
   // What stands in another at rest is not tested, nor is a part against the one it hangs on.
-  const Colliders cones = fit_volumes(asset, VolumeShape::kCones, 0);
   CHECK(overlapping(cones, at_rest(cones)).empty());
   for (std::size_t i = 0; i < cones.bodies.size(); ++i) {
     const int parent = cones.bodies[i].parent;

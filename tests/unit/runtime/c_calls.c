@@ -38,6 +38,7 @@ static void call_spheres(const sc_asset* asset, const sc_pose* pose, c_calls_res
   const size_t sphere_count = sc_asset_get_info(asset).sphere_count;
   sc_refit_job refit = {0};
   sc_detect_job detect = {0};
+  sc_cone_job cones = {0};
   sc_crowd_job crowd = {0};
   sc_filter filter = {0};
   uint32_t pair_counts[1];
@@ -63,6 +64,20 @@ static void call_spheres(const sc_asset* asset, const sc_pose* pose, c_calls_res
   detect.pair_capacity = C_CALLS_ROOM;
   OK(sc_detect(&detect));
   out->pair_count = detect.pair_count;
+  {
+    sc_pair links[2 * C_CALLS_SPHERES];
+    const size_t link_count = sc_chain_links(asset, links, 2 * C_CALLS_SPHERES);
+    const size_t cone_words = sc_cone_table_words(link_count);
+    uint64_t* cone_table = words(cone_words);
+    OK(sc_prepare_cones(asset, &filter, links, link_count, out->spheres, cone_table, cone_words));
+    OK(sc_scale_cones(cone_table, cone_words, 0, 1, 0.5F));
+    cones.asset = asset;
+    cones.spheres = out->spheres;
+    cones.sphere_count = sphere_count;
+    cones.table = cone_table;
+    OK(sc_detect_cones(&cones));
+    free(cone_table);
+  }
   crowd.instance_count = 1;
   crowd.filter = &filter;
   crowd.scratch_words = sc_crowd_scratch_words(asset, 1);
