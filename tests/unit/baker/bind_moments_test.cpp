@@ -143,7 +143,8 @@ void check_same(const MomentBinding& a, const MomentBinding& b) {
 
 }  // namespace
 
-TEST_CASE("in any pose of the bones the moments give the skinned pivots' centre and root mean square distance") {
+TEST_CASE("in any pose of the bones the moments give the skinned pivots' centre and root mean square distance" *
+          doctest::test_suite("many bakes")) {
   for (const Bake* bake : {&baked_human(), &baked_person()}) {
     const spherechain::baker::OpenAsset asset = open_asset_of(*bake);
     REQUIRE(asset->refit_rule() == spherechain::RefitRule::kMoments);
@@ -296,7 +297,7 @@ TEST_CASE("moments of a character turned, moved and in other units refit it like
   }
 }
 
-TEST_CASE("every source that bones move has moments, but with the paper's rule") {
+TEST_CASE("every source that bones move has moments, but with the paper's rule" * doctest::test_suite("many bakes")) {
   const spherechain::baker::OpenAsset paper = open_asset_of(paper_baked_human()),
                                       morphing = open_asset_of(morphing_person());
   CHECK(paper->refit_rule() == spherechain::RefitRule::kPaper);

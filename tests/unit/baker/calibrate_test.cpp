@@ -46,7 +46,8 @@ double radii(const Bake& bake, const Pair& pair) {
 
 }  // namespace
 
-TEST_CASE("in random poses of another seed the calibrated spheres report nearly all that truly touches") {
+TEST_CASE("in random poses of another seed the calibrated spheres report nearly all that truly touches" *
+          doctest::test_suite("many bakes")) {
   const Bake& bake = baked_human();
   const OpenAsset asset = open_asset_of(bake);
   Player player(asset, SC_RADIUS_DETECT, false, true, SC_TARGET_SCALAR);

@@ -109,7 +109,8 @@ const std::string kBvh =
 
 }  // namespace
 
-TEST_CASE("a recording on a character is a clip of its nodes; what turns in the clip can turn in the recording") {
+TEST_CASE("a recording on a character is a clip of its nodes; what turns in the clip can turn in the recording" *
+          doctest::test_suite("many bakes")) {
   const Character character = import_character(kModels / "X/BCN_Epileptic.X");
   double top = 0;
   for (const Vec3& p : character.source_positions) top = std::max(top, p.y());

@@ -203,7 +203,8 @@ TEST_CASE("at rest a cluster's box contains its vertices to the last bit, and th
   }
 }
 
-TEST_CASE("without morphs a sphere's vertices are near its hull, as near as the asset says") {
+TEST_CASE("without morphs a sphere's vertices are near its hull, as near as the asset says" *
+          doctest::test_suite("many bakes")) {
   std::mt19937 random(5);
   std::normal_distribution<double> any;
   for (const Bake* bake : {&baked_human(), &morphing_person()}) {
@@ -345,7 +346,8 @@ TEST_CASE("clusters.branching is how many children a node of too many triangles 
                        "test: clusters: setting 'branching' is not 0, 2, 4 or 8", Error);
 }
 
-TEST_CASE("over poses and clips the runtime puts every vertex where skinning does") {
+TEST_CASE("over poses and clips the runtime puts every vertex where skinning does" *
+          doctest::test_suite("many bakes")) {
   std::vector<Deformation> frames;
   for (const char* name : {"animation_arms.json", "animation_legs.json", "deep_squat.json"}) {
     const PoseMotion poses =

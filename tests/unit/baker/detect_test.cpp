@@ -95,7 +95,8 @@ TEST_CASE("arms crossed: arm touches arm or chest") {
   CHECK(count_between(bake, pairs, 2, 3) == 0);
 }
 
-TEST_CASE("in no frame does a hand touch its own arm, a foot its own leg or the head its own neck") {
+TEST_CASE("in no frame does a hand touch its own arm, a foot its own leg or the head its own neck" *
+          doctest::test_suite("many bakes")) {
   const Bake& bake = baked_human();
   std::size_t hands_touching = 0;
   for (const AnimationFrame& frame : animation_frames()) {

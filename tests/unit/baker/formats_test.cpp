@@ -41,7 +41,7 @@ TEST_CASE("a glTF is read as one under every ending") {
   CHECK(read_source(folder.write("a.txt", " \n" + glb.text("a.bin"))).positions == read.positions);
 }
 
-TEST_CASE("other formats with a misleading ending are read by their content") {
+TEST_CASE("other formats with a misleading ending are read by their content" * doctest::test_suite("many bakes")) {
   for (const char* file : {"FBX/spider.fbx", "Collada/human.zae", "X/Testwuson.X", "OBJ/spider.obj", "PLY/Wuson.ply",
                            "BLEND/Suzanne_248.blend", "MS3D/jeep1.ms3d", "STL/Spider_ascii.stl"}) {
     CAPTURE(file);

@@ -322,7 +322,7 @@ TEST_CASE("accessors of the wrong type or length, and figures that are none, are
   });
 }
 
-TEST_CASE("small files that ask for much memory are refused before they get it") {
+TEST_CASE("small files that ask for much memory are refused before they get it" * doctest::test_suite("many bakes")) {
   // A megabyte each; what they ask for is gigabytes.
   const auto memory = [] {
     rusage usage{};

@@ -97,7 +97,8 @@ void check_fit(const FittedCharacter& fit, std::size_t most) {
 
 }  // namespace
 
-TEST_CASE("a hand that the march has no limbs for is fitted by its bones: each finger follows its own") {
+TEST_CASE("a hand that the march has no limbs for is fitted by its bones: each finger follows its own" *
+          doctest::test_suite("many bakes")) {
   const Hand made = hand();
   const FittedCharacter fit = fitted(mesh_of(made));
   check_fit(fit, kHalvedSpheresMax);
@@ -167,7 +168,8 @@ TEST_CASE("a part too small for a sphere of its own joins the one above it" * do
   check_fit(fit, kHalvedSpheresMax);
 }
 
-TEST_CASE("what nothing moves is cut in pieces that hang together; so is a body without bones") {
+TEST_CASE("what nothing moves is cut in pieces that hang together; so is a body without bones" *
+          doctest::test_suite("many bakes")) {
   const Hand made = hand();
   SourceMesh mesh = mesh_of(made);
   for (VertexWeights& weights : mesh.rig.weights) {
