@@ -142,7 +142,7 @@ std::vector<Pair> find(const Asset& asset, const std::vector<Sphere>& spheres, c
 TEST_CASE("cones touch where a ball of the one overlaps a ball of the other, degenerate ones too") {
   std::mt19937 random(5);
   int touching = 0, apart = 0;
-  for (int i = 0; i < 3000; ++i) {
+  for (int i = 0; i < 700; ++i) {
     const Ends a = draw(random, nullptr), b = draw(random, &a);
     const float scale = random() % 2 == 0 && has_sides(a) && has_sides(b) ? uniform(random, 0.1F, 2) : 1.0F;
     const double gap = least_gap(a, b, double{scale});
@@ -153,8 +153,8 @@ TEST_CASE("cones touch where a ball of the one overlaps a ball of the other, deg
     if (gap > 2e-5) CHECK_FALSE(found);
     (found ? touching : apart) += 1;
   }
-  CHECK(touching > 500);
-  CHECK(apart > 500);
+  CHECK(touching > 100);
+  CHECK(apart > 100);
 }
 
 TEST_CASE("the sides of a cone touch where neither end and no ball in the middle does") {
