@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 
 #include "cli/commands.h"
 #include "cli/outputs.h"
@@ -104,48 +105,48 @@ std::vector<std::string> export_formats() {
 
 ExitCode run_export(const ExportOptions& options) {
   const ExportFormat& format = format_of(options.format);
-  check_outputs(with_source({{"ASSET", options.asset}, {"--filter", options.filter}}, "--source", options.source),
-                {{"--output", options.output}});
+  const std::vector<CommandFile> inputs =
+      with_source({{"ASSET", options.asset}, {"--filter", options.filter}}, "--source", options.source);
+  check_outputs(inputs, {{"--output", options.output}});
   if (format.of_source != nullptr) {
     if (options.source.empty()) throw Error(ExitCode::kUsage, "--to " + options.format + " needs --source");
     check_replaceable(options.output, "glTF", "a binary glTF", options.force);
   } else {
     check_ours(options.output, options.force);
   }
+  // What is wrong with a file is said before the fit, which takes seconds.
   const OpenAsset asset = open_asset(options.asset);
+  std::optional<PartFilter> filter;
+  if (!options.filter.empty()) filter = read_part_filter(options.filter, asset);
+  std::optional<AnimatedAsset> animated;
+  if (!options.source.empty()) animated.emplace(options.asset, options.source, MotionChoice(), FrameChoice());
+  SourceGlb source;
+  if (format.of_source != nullptr) source = read_source_glb(asset, options);
   const std::string shape = options.volumes.empty() ? format.volumes : options.volumes;
   Colliders colliders = fit_volumes(asset, volume_shape(shape), options.at_most);
-  if (!options.filter.empty()) ignore_by_filter(read_part_filter(options.filter, asset), colliders);
-  Export made = format.of_source != nullptr ? format.of_source(colliders, read_source_glb(asset, options))
-                                            : format.of_colliders(colliders);
-  std::vector<std::string> names;
-  for (const ExportFile& file : made.files) {
-    fs::path name = options.output;
-    if (!file.ending.empty() && file.ending.front() == '.') name.replace_extension(file.ending);
-    if (!file.ending.empty() && file.ending.front() != '.') name.replace_filename(file.ending);
-    names.push_back(name.string());
-    if (!file.ending.empty()) check_ours(names.back(), options.force);
-  }
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (i > 0 && names[i] == options.output) {
-      throw Error(ExitCode::kUsage, options.output + ": --to " + options.format +
-                                        " writes a second file of this name " + "(give -o another ending)");
-    }
+  if (filter) ignore_by_filter(*filter, colliders);
+  Export made = format.of_source != nullptr ? format.of_source(colliders, source) : format.of_colliders(colliders);
+  std::vector<CommandFile> outputs{{"--output", options.output}};
+  for (std::size_t i = 0; i < made.files.size(); ++i) {
+    const std::string& ending = made.files[i].ending;
     name_output(made.files[i].bytes, made.stem_mark, options.output);
+    if (ending.empty()) continue;
+    fs::path name = options.output;
+    ending.front() == '.' ? name.replace_extension(ending) : name.replace_filename(ending);
+    outputs.push_back({"the file beside it", name.string()});
+    check_ours(outputs.back().path, options.force);
   }
-  for (std::size_t i = 0; i < names.size(); ++i) write_atomically(names[i], made.files[i].bytes);
+  check_outputs(inputs, outputs);
+  for (std::size_t i = 0; i < outputs.size(); ++i) write_atomically(outputs[i].path, made.files[i].bytes);
   const ColliderFit fit = measure_fit(asset, colliders);
   fmt::print("{} volumes ({}) on {} body parts; {} pairs of parts are not tested\n", fit.volumes, shape, fit.bodies,
              colliders.ignored.size());
   fmt::print("at rest: {}; volume {:.0f} % of the body's\n", fit_text(fit), 100 * fit.volume_ratio);
-  if (!options.source.empty()) {
-    const AnimatedAsset animated(open_asset(options.asset), options.asset, options.source, {}, {});
-    if (animated.clips().size() > 1 || animated.frame_count() > 1) {
-      fmt::print("on its clips: {}\n", fit_text(measure_fit(animated, colliders, kFramesMeasured)));
-    }
+  if (animated && animated->frame_count() > 1) {
+    fmt::print("on its clips: {}\n", fit_text(measure_fit(*animated, colliders, kFramesMeasured)));
   }
   for (const std::string& note : made.notes) fmt::print("note: {}\n", note);
-  for (const std::string& name : names) fmt::print("wrote {}\n", name);
+  for (const CommandFile& file : outputs) fmt::print("wrote {}\n", file.path);
   return ExitCode::kDone;
 }
 

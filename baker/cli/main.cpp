@@ -111,10 +111,12 @@ void add_radius(CLI::App& command, std::string& radius) {
       ->capture_default_str();
 }
 
-void add_volumes(CLI::App& command, std::string& volumes, int& at_most, const std::string& description) {
+// Returns --at-most.
+CLI::Option* add_volumes(CLI::App& command, std::string& volumes, int& at_most, const std::string& description) {
   CLI::Option* shape = command.add_option("--volumes", volumes, description);
   shape->check(CLI::IsMember(std::vector<std::string>(std::begin(kVolumeShapes), std::end(kVolumeShapes))));
-  command.add_option("--at-most", at_most, "Volumes in all (default: as many as pay)")->check(CLI::Range(1, 10000));
+  return command.add_option("--at-most", at_most, "Volumes in all (default: as many as pay)")
+      ->check(CLI::Range(1, 10000));
 }
 
 }  // namespace
@@ -268,7 +270,8 @@ int main(int argc, char** argv) {
   add_motion(*view_command, view.motion, view.frames, view.continuous);
   add_with(*view_command, view.with);
   add_radius(*view_command, view.radius);
-  add_volumes(*view_command, view.volumes, view.at_most, "Colliders to show, as export writes them");
+  add_volumes(*view_command, view.volumes, view.at_most, "Colliders to show, as export writes them")
+      ->needs("--volumes");
   add_name(*view_command, "--report", view.report, "The report that bake wrote, to show in the page");
   add_name(*view_command, "--validation", view.validation, "What validate --json wrote, to show in the page");
   view_command->add_flag("--force", view.force, "Replace an output file that is not a page");

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "export/robot.h"
+#include "mesh/even_directions.h"
 
 namespace spherechain::baker {
 namespace {
@@ -48,17 +48,6 @@ std::vector<BallVolume> balls_in(const ConeVolume& cone) {
     for (BallVolume& ball : out) ball.radius *= 1 + std::min(gap, kGapMax) / 2;  // as far beyond as short
     return out;
   }
-}
-
-// Directions, evenly around: points of Fibonacci's spiral.
-std::vector<Vec3> even_directions(int count) {
-  std::vector<Vec3> out;
-  for (int i = 0; i < count; ++i) {
-    const double z = 1 - (2 * i + 1.0) / count, turn = i * std::numbers::pi * (3 - std::sqrt(5.0));
-    const double r = std::sqrt(1 - z * z);
-    out.emplace_back(r * std::cos(turn), r * std::sin(turn), z);
-  }
-  return out;
 }
 
 // Greedily: of balls around points of a grid, each as large as may be, the one that covers the most of the surface.

@@ -3,6 +3,7 @@
 
 #include "export/for_engines.h"
 #include "export/formats.h"
+#include "export/names.h"
 #include "scripts.h"
 
 // A scene of Godot 4 to put under a Skeleton3D. Godot sets a PhysicalBone3D to its bone's transform without scale,

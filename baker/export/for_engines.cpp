@@ -6,26 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
-#include <set>
 
+#include "export/simple_volumes.h"
 #include "mesh/error.h"
 
 namespace spherechain::baker {
 namespace {
-
-// How far apart the surfaces of two convex solids are at most: their supports differ by that much in some direction.
-double surface_distance(const Volume& a, const Volume& b) {
-  constexpr int kDirections = 400;
-  double out = 0;
-  for (int i = 0; i < kDirections; ++i) {  // a spiral, even over the sphere
-    const double z = 1 - (2 * i + 1.0) / kDirections, around = i * std::numbers::pi * (3 - std::sqrt(5.0));
-    const double r = std::sqrt(1 - z * z);
-    const Vec3 direction(r * std::cos(around), r * std::sin(around), z);
-    out = std::max(out, std::abs(direction.dot(support(a, direction) - support(b, direction))));
-  }
-  return out;
-}
 
 // Replaces every volume of kind T. `what` goes into the note, after the count.
 template <class T, class Replace>
@@ -86,12 +72,7 @@ void renumber(Colliders& colliders, const std::vector<int>& new_place) {
 
 void use_balls(Colliders& colliders) {
   for (ColliderBody& body : colliders.bodies) {
-    for (Volume& volume : body.volumes) {
-      const auto* cone = std::get_if<ConeVolume>(&volume);
-      if (cone == nullptr || (cone->b - cone->a).norm() > std::abs(cone->radius_a - cone->radius_b)) continue;
-      volume =
-          cone->radius_a >= cone->radius_b ? BallVolume{cone->a, cone->radius_a} : BallVolume{cone->b, cone->radius_b};
-    }
+    for (Volume& volume : body.volumes) volume = without_inner_ball(volume);
   }
 }
 
@@ -149,20 +130,6 @@ void join_bodies_of_a_bone(Colliders& colliders, std::vector<std::string>& notes
 Eigen::Quaterniond turn_to(int axis, const Vec3& direction) {
   if (direction.norm() <= 0) return Eigen::Quaterniond::Identity();
   return Eigen::Quaterniond::FromTwoVectors(Vec3::Unit(axis), direction);
-}
-
-std::vector<std::string> unique_names(const Colliders& colliders, bool (*is_allowed)(char)) {
-  std::set<std::string> taken;
-  std::vector<std::string> out;
-  for (const ColliderBody& body : colliders.bodies) {
-    std::string name = body.name;
-    std::replace_if(
-        name.begin(), name.end(), [&](char c) { return !is_allowed(c); }, '_');
-    std::string unique = name;
-    for (int number = 2; !taken.insert(unique).second; ++number) unique = fmt::format("{}_{}", name, number);
-    out.push_back(unique);
-  }
-  return out;
 }
 
 }  // namespace spherechain::baker

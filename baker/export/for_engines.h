@@ -28,7 +28,4 @@ void join_bodies_of_a_bone(Colliders& colliders, std::vector<std::string>& notes
 // The rotation that takes +Y (`axis` 1) or +Z (2) along a direction; of no direction none.
 Eigen::Quaterniond turn_to(int axis, const Vec3& direction);
 
-// The bodies' names with each character that `is_allowed` refuses replaced by an underscore, made unique by numbers.
-std::vector<std::string> unique_names(const Colliders& colliders, bool (*is_allowed)(char));
-
 }  // namespace spherechain::baker

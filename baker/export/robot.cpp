@@ -4,15 +4,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
-#include <set>
 
+#include "export/names.h"
 #include "export/solid_grid.h"
 
 namespace spherechain::baker {
 namespace {
 
 constexpr double kWater = 1000;  // kg per cubic metre
+
+bool is_in_identifier(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; }
 
 // What several bodies hold at rest is shared among them.
 SolidMass mass_of(const Colliders& colliders, std::size_t body) {
@@ -96,18 +99,11 @@ Colliders with_balls(const Colliders& colliders, bool (*stays)(const Volume&), s
 }
 
 std::vector<std::string> link_names(const Colliders& colliders) {
-  std::set<std::string> taken{kBaseLink};
-  std::vector<std::string> out;
-  for (const ColliderBody& body : colliders.bodies) {
-    std::string name = identifier(body.name);
-    for (int n = 2; !taken.insert(name).second; ++n) name = identifier(body.name) + "_" + std::to_string(n);
-    out.push_back(name);
-  }
-  return out;
+  return unique_names(colliders, is_in_identifier, {kBaseLink});
 }
 
 std::string robot_name(const Colliders& colliders) {
-  const std::string stem = identifier(std::filesystem::path(colliders.source_file).stem().string());
+  const std::string stem = with_allowed(std::filesystem::path(colliders.source_file).stem().string(), is_in_identifier);
   return stem.empty() ? "character" : stem;
 }
 

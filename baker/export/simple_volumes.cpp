@@ -3,24 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "mesh/even_directions.h"
 
 namespace spherechain::baker {
 namespace {
-
-// Over points of the volume's surface. Of cones and boxes they are on the caps and corners, where a replacement is
-// farthest off.
-double farthest_off(const Volume& volume, const Volume& replacement) {
-  constexpr int kDirections = 400;
-  double off = 0;
-  for (int i = 0; i < kDirections; ++i) {  // evenly on a spiral from pole to pole
-    const double z = 1 - (2 * i + 1.0) / kDirections, angle = i * std::numbers::pi * (3 - std::sqrt(5.0));
-    const double side = std::sqrt(1 - z * z);
-    const Vec3 point = support(volume, Vec3(side * std::cos(angle), side * std::sin(angle), z));
-    off = std::max(off, std::abs(signed_distance(replacement, point)));
-  }
-  return off;
-}
 
 // `of_radius` makes larger volumes of larger radii.
 template <typename OfRadius>
@@ -44,6 +31,15 @@ Volume capsule_along(const Vec3& center, const Eigen::Quaterniond& rotation, con
 }
 
 }  // namespace
+
+double surface_distance(const Volume& a, const Volume& b) {
+  constexpr int kDirections = 400;
+  double out = 0;
+  for (const Vec3& direction : even_directions(kDirections)) {
+    out = std::max(out, std::abs(direction.dot(support(a, direction) - support(b, direction))));
+  }
+  return out;
+}
 
 Volume without_inner_ball(const Volume& volume) {
   const auto* cone = std::get_if<ConeVolume>(&volume);
@@ -69,7 +65,7 @@ SimpleVolumes as_capsule(const Volume& from) {
   } else {
     return {{volume}, 0};
   }
-  return {{out}, farthest_off(volume, out)};
+  return {{out}, surface_distance(volume, out)};
 }
 
 SimpleVolumes as_balls(const Volume& from) {

@@ -14,6 +14,9 @@ struct SimpleVolumes {
   double off = 0;
 };
 
+// How far apart the surfaces of two convex solids are at most: their supports differ by that much in some direction.
+double surface_distance(const Volume& a, const Volume& b);
+
 // The volume; of a cone whose one ball holds the other, that ball.
 Volume without_inner_ball(const Volume& volume);
 

@@ -72,6 +72,14 @@ Colliders find_bodies(const OpenAsset& asset) {
   return out;
 }
 
+std::vector<int> body_of_parts(const OpenAsset& asset, const Colliders& colliders) {
+  std::map<std::string, int> by_name;
+  for (std::size_t i = 0; i < colliders.bodies.size(); ++i) by_name[colliders.bodies[i].name] = static_cast<int>(i);
+  std::vector<int> out;
+  for (std::size_t i = 0; i < asset->part_count(); ++i) out.push_back(by_name.at(asset->part(i).name));
+  return out;
+}
+
 std::vector<Eigen::Isometry3d> at_rest(const Colliders& colliders) {
   std::vector<Eigen::Isometry3d> out;
   for (const ColliderBody& body : colliders.bodies) out.push_back(body.rest);
@@ -100,12 +108,7 @@ std::vector<Vec3> skin_positions(const OpenAsset& asset, const std::vector<Vec3>
 std::vector<SkinSample> sample_skin(const OpenAsset& asset, const Colliders& colliders,
                                     const std::vector<Vec3>& positions, int count) {
   const Surface& surface = asset.surface();
-  std::map<std::string, int> by_name;
-  for (std::size_t i = 0; i < colliders.bodies.size(); ++i) by_name[colliders.bodies[i].name] = static_cast<int>(i);
-  const BodyParts parts = parts_of(asset);
-  std::vector<int> body_of_part;
-  for (const BodyPart& part : parts.parts) body_of_part.push_back(by_name.at(part.name));
-
+  const std::vector<int> body_of_part = body_of_parts(asset, colliders);
   Mesh mesh{positions, {}};
   std::vector<double> areas(colliders.bodies.size(), 0);
   for (std::size_t t = 0; t < surface.triangles.size; ++t) {
@@ -128,18 +131,17 @@ std::vector<SkinSample> sample_skin(const OpenAsset& asset, const Colliders& col
 
 void take_spheres(const OpenAsset& asset, Colliders& colliders) {
   const Surface& surface = asset.surface();
-  const BodyParts parts = parts_of(asset);
-  std::map<std::string, std::size_t> by_name;
-  for (std::size_t i = 0; i < colliders.bodies.size(); ++i) by_name[colliders.bodies[i].name] = i;
+  const std::vector<int> body_of_part = body_of_parts(asset, colliders);
   std::size_t triangle = 0;
   for (const RestSphere& sphere : asset->spheres()) {
-    std::vector<int> votes(parts.parts.size(), 0);
+    std::vector<int> votes(body_of_part.size(), 0);
     for (const std::size_t end = triangle + sphere.triangle_count; triangle < end; ++triangle) {
       ++votes[surface.parts[triangle]];
     }
     const auto most = std::max_element(votes.begin(), votes.end());
     if (most == votes.end() || *most == 0 || sphere.detect_radius <= 0) continue;
-    ColliderBody& body = colliders.bodies[by_name.at(parts.parts[static_cast<std::size_t>(most - votes.begin())].name)];
+    const int of = body_of_part[static_cast<std::size_t>(most - votes.begin())];
+    ColliderBody& body = colliders.bodies[static_cast<std::size_t>(of)];
     const Vec3 center = colliders.metres_per_unit * vec3_of(sphere.center);
     body.volumes.push_back(BallVolume{body.rest.inverse(Eigen::Isometry) * center,
                                       colliders.metres_per_unit * double{sphere.detect_radius}});

@@ -11,6 +11,9 @@ namespace spherechain::baker {
 // The asset's body parts as bodies without volumes, parents first.
 Colliders find_bodies(const OpenAsset& asset);
 
+// Of each of the asset's body parts: its body.
+std::vector<int> body_of_parts(const OpenAsset& asset, const Colliders& colliders);
+
 // Where the bodies stand at rest.
 std::vector<Eigen::Isometry3d> at_rest(const Colliders& colliders);
 

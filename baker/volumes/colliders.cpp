@@ -2,17 +2,9 @@
 #include "volumes/colliders.h"
 
 #include <algorithm>
-#include <cctype>
 
 namespace spherechain::baker {
 namespace {
-
-Eigen::Quaterniond from_axes(const Colliders& colliders, const Vec3& left, const Vec3& up, const Vec3& forward) {
-  Eigen::Matrix3d from, to;
-  from << colliders.left, colliders.up, colliders.forward;
-  to << left, up, forward;
-  return Eigen::Quaterniond(Eigen::Matrix3d(to * from.transpose()));
-}
 
 bool any_overlap(const ColliderBody& a, const Eigen::Isometry3d& a_at, const ColliderBody& b,
                  const Eigen::Isometry3d& b_at) {
@@ -24,26 +16,16 @@ bool any_overlap(const ColliderBody& a, const Eigen::Isometry3d& a_at, const Col
 
 }  // namespace
 
-Eigen::Quaterniond to_y_up(const Colliders& colliders) {
-  return from_axes(colliders, Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ());
-}
-
 Eigen::Quaterniond to_z_up(const Colliders& colliders) {
-  return from_axes(colliders, Vec3::UnitY(), Vec3::UnitZ(), Vec3::UnitX());
+  Eigen::Matrix3d axes;
+  axes << colliders.forward, colliders.left, colliders.up;
+  return Eigen::Quaterniond(Eigen::Matrix3d(axes.transpose()));
 }
 
 Eigen::Isometry3d rest_in_parent(const Colliders& colliders, std::size_t body) {
   const ColliderBody& one = colliders.bodies[body];
   if (one.parent < 0) return one.rest;
   return colliders.bodies[static_cast<std::size_t>(one.parent)].rest.inverse(Eigen::Isometry) * one.rest;
-}
-
-std::string identifier(const std::string& name) {
-  std::string out = name;
-  for (char& c : out) {
-    if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
-  }
-  return out;
 }
 
 Eigen::Isometry3d rigid_part(const Affine& of) {

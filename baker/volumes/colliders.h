@@ -44,17 +44,11 @@ struct Colliders {
   std::vector<IgnoredBodies> ignored;  // sorted by (a, b), each once
 };
 
-// From the rest pose's axes to a world with up = +Y, forward = +Z, left = +X (glTF, OMI, USD here), and to one with
-// up = +Z, forward = +X, left = +Y (URDF, MJCF).
-Eigen::Quaterniond to_y_up(const Colliders& colliders);
+// From the rest pose's axes to a world with up = +Z, forward = +X, left = +Y (URDF, MJCF).
 Eigen::Quaterniond to_z_up(const Colliders& colliders);
 
 // A body's frame relative to that of its parent at rest; of a body without a parent its `rest`.
 Eigen::Isometry3d rest_in_parent(const Colliders& colliders, std::size_t body);
-
-// The name with all but letters, digits and underscores replaced by underscores: for formats whose names are
-// identifiers. Unique among the bodies, as parts' names differ by more than that; throws Error(kInternal) where not.
-std::string identifier(const std::string& name);
 
 // The rotation and the place of a transform; its scale and shear left out.
 Eigen::Isometry3d rigid_part(const Affine& of);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "volumes/fit_body.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -38,27 +37,12 @@ Groups slabs(const std::vector<BodySample>& samples, std::vector<int> own, const
   return out;
 }
 
-Eigen::Matrix3d main_axes(const std::vector<BodySample>& samples) {
-  Vec3 mean = Vec3::Zero();
-  double area = 0;
-  for (const BodySample& sample : samples) {
-    mean += sample.area * sample.point;
-    area += sample.area;
-  }
-  mean /= area;
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const BodySample& sample : samples) {
-    spread += sample.area * (sample.point - mean) * (sample.point - mean).transpose();
-  }
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors().rowwise().reverse();
-}
-
 // The ways to begin: slabs along each of the two longest axes, or two rows of them.
 std::vector<Groups> beginnings(const std::vector<BodySample>& samples, int count) {
   std::vector<int> all(samples.size());
   std::iota(all.begin(), all.end(), 0);
   if (count == 1) return {{all}};
-  const Eigen::Matrix3d axes = main_axes(samples);
+  const Eigen::Matrix3d axes = main_axes(samples, all);
   std::vector<Groups> out{slabs(samples, all, axes.col(0), count), slabs(samples, all, axes.col(1), count)};
   if (count >= 4 && count % 2 == 0) {
     Groups rows;

@@ -20,23 +20,21 @@ struct SampleAxes {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  // from the mean
 };
 
-SampleAxes axes_of(const std::vector<BodySample>& samples, const std::vector<int>& own) {
-  SampleAxes out;
+Vec3 mean_of(const std::vector<BodySample>& samples, const std::vector<int>& own) {
+  Vec3 mean = Vec3::Zero();
   double area = 0;
   for (const int i : own) {
     const BodySample& sample = samples[static_cast<std::size_t>(i)];
-    out.mean += sample.area * sample.point;
+    mean += sample.area * sample.point;
     area += sample.area;
   }
-  out.mean /= area;
-  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const int i : own) {
-    const BodySample& sample = samples[static_cast<std::size_t>(i)];
-    const Vec3 v = sample.point - out.mean;
-    spread += sample.area * v * v.transpose();
-  }
-  const Eigen::Matrix3d vectors = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors();
-  out.axes << vectors.col(2), vectors.col(1), vectors.col(2).cross(vectors.col(1));
+  return mean / area;
+}
+
+SampleAxes axes_of(const std::vector<BodySample>& samples, const std::vector<int>& own) {
+  SampleAxes out;
+  out.mean = mean_of(samples, own);
+  out.axes = main_axes(samples, own);
   out.low.setConstant(INFINITY);
   out.high.setConstant(-INFINITY);
   for (const int i : own) {
@@ -197,6 +195,20 @@ bool is_of(VolumeShape shape, const Volume& volume) {
 }
 
 }  // namespace
+
+Eigen::Matrix3d main_axes(const std::vector<BodySample>& samples, const std::vector<int>& own) {
+  const Vec3 mean = mean_of(samples, own);
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const int i : own) {
+    const BodySample& sample = samples[static_cast<std::size_t>(i)];
+    const Vec3 v = sample.point - mean;
+    spread += sample.area * v * v.transpose();
+  }
+  const Eigen::Matrix3d vectors = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvectors();
+  Eigen::Matrix3d out;
+  out << vectors.col(2), vectors.col(1), vectors.col(2).cross(vectors.col(1));
+  return out;
+}
 
 const std::vector<Vec3>& reach_directions() {
   static const std::vector<Vec3> kDirections = [] {

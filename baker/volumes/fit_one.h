@@ -26,6 +26,9 @@ struct BodySkin {
 };
 const std::vector<Vec3>& reach_directions();  // of unit length
 
+// The main axes of some of the samples (`own`, their indices), the longest first.
+Eigen::Matrix3d main_axes(const std::vector<BodySample>& samples, const std::vector<int>& own);
+
 // Moves the surface of one volume to the samples that it stands for (`own`, their indices): least squares of their
 // distances, those that stick out four times as much as those inside. Samples that it does not stand for only have to
 // stay outside, and it does not reach farther than the skin allows. Starts from `start`, where there is one of that

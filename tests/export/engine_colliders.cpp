@@ -107,9 +107,6 @@ int main(int argc, char** argv) try {
       test::add_pose(ours, colliders, at, {});
     }
   } else {
-    const std::string names[] = {"spheres", "cones", "capsules", "ellipsoids", "boxes"};
-    int number = 0;
-    while (number < 4 && names[number] != shape) ++number;
     std::vector<MotionChoice> motions;
     for (int i = 6; i < argc; ++i) {
       motions.emplace_back();
@@ -117,7 +114,7 @@ int main(int argc, char** argv) try {
     }
     if (motions.empty()) motions.emplace_back();
     AnimatedAsset animated(argv[4], argv[5], motions[0], {poses, 30});
-    colliders = fit_volumes(animated.asset(), static_cast<VolumeShape>(number), 0);
+    colliders = fit_volumes(animated.asset(), volume_shape(shape), 0);
     ours = test::json_of(colliders);
     for (const MotionChoice& motion : motions) {
       animated.play(motion, {poses, 30});

@@ -9,7 +9,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
-#include <map>
 #include <set>
 
 #include "play/play.h"
@@ -31,16 +30,14 @@ struct PosedTruth {
 };
 
 std::vector<PosedTruth> truths(const AnimatedAsset& animated, const Colliders& bodies) {
-  const BodyParts parts = parts_of(animated.asset());
-  std::map<std::string, int> by_name;
-  for (std::size_t i = 0; i < bodies.bodies.size(); ++i) by_name[bodies.bodies[i].name] = static_cast<int>(i);
+  const std::vector<int> body_of_part = body_of_parts(animated.asset(), bodies);
   SkinPlayer player(animated.asset(), choose_target("auto"));
   std::vector<PosedTruth> out;
   for (int i = 0; i < animated.frame_count(); ++i) {
     const Deformation deformation = animated.deformation(i);
     PosedTruth one{deformation.bones, {}};
     for (const sc_triangle_contact& contact : player.find(BonePose(animated.asset(), deformation).pose())) {
-      const int a = by_name.at(parts.parts[contact.part_a].name), b = by_name.at(parts.parts[contact.part_b].name);
+      const int a = body_of_part[contact.part_a], b = body_of_part[contact.part_b];
       if (a == b || bodies.bodies[static_cast<std::size_t>(a)].parent == b ||
           bodies.bodies[static_cast<std::size_t>(b)].parent == a) {
         continue;

@@ -5,10 +5,13 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "human.h"
 #include "mesh/error.h"
 #include "temporary_folder.h"
 #include "tool.h"
+#include "volumes/fit_volumes.h"
 
 using namespace spherechain::baker;
 
@@ -20,12 +23,13 @@ struct Viewed {
 };
 
 // The human's page with `frames` of a motion, in a template without a viewer.
-Viewed view(int frames, std::size_t max_bytes = PageOptions().max_bytes) {
+Viewed view(int frames, std::size_t max_bytes = PageOptions().max_bytes, const Colliders* colliders = nullptr) {
   const TemporaryFolder folder;
   PageOptions options;
   options.template_file =
       folder.write("viewer.html", R"(<script id="spherechain-data" type="application/json">null</script>)").string();
   options.max_bytes = max_bytes;
+  options.colliders = colliders;
   MotionChoice motion;
   motion.poses = tool::pose("arms_crossed.json");
   const AnimatedAsset animated(tool::baked_files().asset.string(), kHumanFile, motion, {frames, 30});
@@ -68,4 +72,31 @@ TEST_CASE("a page is no larger than it may be, whatever it is that is large") {
   CHECK_MESSAGE(advised(moving.error) > 0, moving.error);
   const Viewed still = view(3, size / 2);
   CHECK_MESSAGE(still.error.find("(its mesh has too many triangles)") != std::string::npos, still.error);
+}
+
+TEST_CASE("a page of colliders has each body's bone, and its volumes around the skin at rest") {
+  const OpenAsset asset = open_asset(tool::baked_files().asset.string());
+  const Colliders colliders = fit_volumes(asset, VolumeShape::kCapsules, 8);
+  const std::string page = view(2, PageOptions().max_bytes, &colliders).page;
+  const std::size_t from = page.find('{'), to = page.rfind('}');
+  const auto data = nlohmann::json::parse(page.substr(from, to + 1 - from));
+  REQUIRE(data["colliders"].size() == colliders.bodies.size());
+  std::vector<Volume> at_rest;  // source units
+  for (std::size_t i = 0; i < colliders.bodies.size(); ++i) {
+    const auto& body = data["colliders"][i];
+    CHECK(body["part"] == colliders.bodies[i].name);
+    CHECK(body["bone"] == colliders.bodies[i].bone_index);
+    for (const auto& volume : body["volumes"]) {
+      const auto vec = [&](const char* key) { return Vec3(volume[key][0], volume[key][1], volume[key][2]); };
+      at_rest.push_back(ConeVolume{vec("a"), vec("b"), volume["radius"], volume["radius"]});
+    }
+  }
+  const std::vector<Vec3>& skin = human().character.source_positions;
+  const auto inside = std::count_if(skin.begin(), skin.end(), [&](const Vec3& point) {
+    return std::any_of(at_rest.begin(), at_rest.end(),
+                       [&](const Volume& one) { return signed_distance(one, point) <= 0; });
+  });
+  // Most vertices are in the face and the fingers, less of the area.
+  CHECK(static_cast<double>(inside) > 0.7 * static_cast<double>(skin.size()));
+  CHECK(data["frames"]["colliders"]["counts"].get<std::string>().size() == 12);  // of two frames
 }

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "baked_human.h"
+#include "export/ignore_by_filter.h"
 #include "volumes/bodies.h"
 #include "volumes/fit_body.h"
 #include "volumes/fit_volumes.h"
@@ -165,4 +166,34 @@ TEST_CASE("volumes of a human: never more than asked for, nearer to the skin the
       return pair.a == parent && pair.b == static_cast<int>(i) && pair.reason == IgnoredReason::kAdjacent;
     }));
   }
+}
+
+TEST_CASE("bodies that the filter saw idle are ignored, but those that stand for a part that needs a test") {
+  Colliders colliders;
+  for (const char* name : {"trunk", "arm", "leg", "hand"}) {  // the arm stands for the hand
+    colliders.bodies.push_back({});
+    colliders.bodies.back().name = name;
+  }
+  colliders.bodies[3].held_by = 1;
+  colliders.ignored = {{0, 1, IgnoredReason::kAdjacent}, {0, 2, IgnoredReason::kRest}};
+  PartFilter filter;
+  filter.parts = {"hand", "leg", "arm", "trunk"};
+  const auto ignored_with = [&](PairKind hand_leg, PairKind leg_arm, PairKind leg_trunk) {
+    filter.pairs = {{{0, 1}, hand_leg, 0, 0, 1},         {{0, 2}, PairKind::kAdjacent, 0, 0, 1},
+                    {{0, 3}, PairKind::kNever, 0, 0, 1}, {{1, 2}, leg_arm, 0, 0, 1},
+                    {{1, 3}, leg_trunk, 0, 0, 1},        {{2, 3}, PairKind::kAdjacent, 0, 0, 1}};
+    Colliders out = colliders;
+    ignore_by_filter(filter, out);
+    std::vector<std::array<int, 3>> pairs;
+    for (const IgnoredBodies& pair : out.ignored) pairs.push_back({pair.a, pair.b, static_cast<int>(pair.reason)});
+    return pairs;
+  };
+  using Pairs = std::vector<std::array<int, 3>>;
+  constexpr int kAdjacent = 0, kRest = 1, kAlways = 2, kNever = 3;
+  CHECK(ignored_with(PairKind::kNever, PairKind::kNever, PairKind::kRest) ==
+        Pairs{{0, 1, kAdjacent}, {0, 2, kRest}, {1, 2, kNever}});
+  CHECK(ignored_with(PairKind::kNever, PairKind::kAlways, PairKind::kAlways) ==
+        Pairs{{0, 1, kAdjacent}, {0, 2, kAlways}, {1, 2, kAlways}});
+  CHECK(ignored_with(PairKind::kSometimes, PairKind::kNever, PairKind::kNever) ==
+        Pairs{{0, 1, kAdjacent}, {0, 2, kNever}});
 }
