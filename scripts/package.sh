@@ -5,7 +5,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-cmake --preset release -D CMAKE_INSTALL_PREFIX=/usr >/dev/null
+cmake --preset release >/dev/null
 cmake --build --preset release --target spherechain spherechain_runtime viewer
 [[ -e build/release/share/spherechain/viewer.html ]] || { echo "package: build/release has no page of view: the tool's package would lack it" >&2; exit 1; }
 cmake --preset release -B build/package-shared -D CMAKE_INSTALL_PREFIX=/usr -D BUILD_SHARED_LIBS=ON -D SPHERECHAIN_BAKER=OFF \
