@@ -42,8 +42,10 @@ function(runtime_sample name source expected)
   target_link_libraries(${target} PRIVATE sample_gltf_pose)
   if(source MATCHES "\\.c$")
     set_target_properties(${target} PROPERTIES C_STANDARD 99 C_EXTENSIONS OFF)
-    target_compile_options(${target} PRIVATE
-      -Wall -Wextra -Wconversion -Wpedantic $<$<BOOL:${SPHERECHAIN_WERROR}>:-Werror>)
+    if(NOT MSVC)
+      target_compile_options(${target} PRIVATE
+        -Wall -Wextra -Wconversion -Wpedantic $<$<BOOL:${SPHERECHAIN_WERROR}>:-Werror>)
+    endif()
   else()
     spherechain_target(${target} 17)
   endif()

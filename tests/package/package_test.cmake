@@ -3,6 +3,7 @@
 #   install    KIND=static|shared: this build, or one of the other kind, installed to WORK/KIND
 #   installed  KIND: the stranger finds it with find_package
 #   pkg_config KIND: the stranger's two programs by one compiler line each, the C one without the C++ library
+#   deb        KIND=shared: what cpack makes of it for Debian, unpacked, has licences and dependences, and the stranger finds it
 #   size       KIND=static: the smallest program, stripped, must stay below LIMIT bytes
 #   wrong_abi  KIND=shared: programs compiled with the headers of another version must say so and stop
 #   cuda       the stranger finds this build's crowds on the GPU by find_package, by pkg-config, and a sentence where there are none
@@ -11,7 +12,7 @@
 set(expected_pairs "60 spheres, ${PAIRS} pairs")
 set(expected "${expected_pairs}, ${PARTS} pairs of body parts\n")
 # The public headers, and nothing else.
-set(headers abi asset bodies character crowd detect penetrations pose refit skin_contacts spherechain steps types)
+set(headers abi asset bodies character crowd detect penetrations pose refit skin_contacts spherechain steps types version)
 list(TRANSFORM headers APPEND .h)
 
 function(run)
@@ -97,6 +98,38 @@ elseif(CASE STREQUAL installed)
   if(NOT cache MATCHES "spherechain_DIR:PATH=${prefix}/")
     message(FATAL_ERROR "another spherechain than the one installed to ${prefix} was found")
   endif()
+elseif(CASE STREQUAL deb)
+  set(packages ${WORK}/deb)
+  set(prefix ${packages}/root/usr)
+  file(REMOVE_RECURSE ${packages})
+  run(cpack --config ${WORK}/shared_build/CPackConfig.cmake -G DEB -B ${packages})
+  file(GLOB debs RELATIVE ${packages} ${packages}/*.deb)
+  set(names "^libspherechain-dev_${VERSION}_[a-z0-9]+.deb;libspherechain_${VERSION}_[a-z0-9]+.deb$")
+  if(NOT "${debs}" MATCHES "${names}")
+    message(FATAL_ERROR "packages: ${debs}\ninstead of: ${names}")
+  endif()
+  foreach(deb IN LISTS debs)
+    run(dpkg-deb -x ${packages}/${deb} ${packages}/root)
+    string(REGEX REPLACE "_.*" "" name ${deb})
+    file(READ ${prefix}/share/doc/${name}/copyright copyright)
+    execute_process(COMMAND dpkg-deb -f ${packages}/${deb} Depends OUTPUT_VARIABLE depends COMMAND_ERROR_IS_FATAL ANY)
+    set(wanted "libc6 \\(>= ")
+    if(name STREQUAL "libspherechain-dev")
+      set(wanted "libspherechain \\(= ${VERSION}\\)")
+    endif()
+    if(NOT copyright MATCHES "License: MIT\n Permission is hereby granted" OR NOT depends MATCHES "${wanted}" OR depends MATCHES "stdc")
+      message(FATAL_ERROR "${deb}: depends on ${depends}, or is not said to be MIT")
+    endif()
+  endforeach()
+  file(STRINGS ${prefix}/include/spherechain/version.h version REGEX "SC_VERSION ")
+  if(NOT version STREQUAL "#define SC_VERSION \"${VERSION}\"")
+    message(FATAL_ERROR "version.h says ${version}, the package ${VERSION}")
+  endif()
+  build_stranger(${WORK}/stranger_deb -D spherechain_DIR=${prefix}/lib/cmake/spherechain)
+  find_flags(spherechain)
+  run(${COMPILER_C} -std=c99 ${CMAKE_CURRENT_LIST_DIR}/stranger/stranger.c -o ${packages}/stranger_c ${flags})
+  set(ENV{LD_LIBRARY_PATH} ${prefix}/lib)
+  check_pairs(${packages}/stranger_c)
 elseif(CASE STREQUAL size)
   find_flags(spherechain)
   set(program ${WORK}/smallest)

@@ -20,7 +20,9 @@ class Message {
   }
 
   // Writes the sentence, cut to the buffer.
-#if defined(__GNUC__)
+#if defined(__MINGW_PRINTF_FORMAT)  // there "printf" means Microsoft's old one, without %zu
+  __attribute__((format(__MINGW_PRINTF_FORMAT, 2, 3)))
+#elif defined(__GNUC__)
   __attribute__((format(printf, 2, 3)))
 #endif
   bool

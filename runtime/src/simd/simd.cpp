@@ -2,8 +2,12 @@
 #include "simd/simd.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 #include <iterator>
+#if defined(_WIN32) && (defined(__x86_64__) || defined(_M_X64))
+#include <intrin.h>
+#endif
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "simd/simd.cpp"
@@ -54,6 +58,52 @@ constexpr bool all_have_kernels() {
 }
 static_assert(all_have_kernels());
 
+#if defined(_WIN32) && HWY_ARCH_X86_64
+// Microsoft's libraries have no table of the machine's features, which clang-cl's builtin would read, so cpuid is
+// asked, once: it traps under a hypervisor. Threads that ask at the same time store the same number.
+std::uint32_t ask_machine() {
+  int a[4], b[4];  // eax, ebx, ecx, edx
+  __cpuid(a, 0);
+  const int last = a[0];
+  __cpuid(a, 1);
+  const auto has = [](int word, int first_bit, int second_bit) {
+    return ((word >> first_bit) & 1) != 0 && ((word >> second_bit) & 1) != 0;
+  };
+  std::uint32_t found = 1U << index_of(SC_TARGET_SCALAR) | 1U << index_of(SC_TARGET_SSE2);  // of every x86-64
+  if (has(a[2], 9, 9)) {
+    found |= 1U << index_of(SC_TARGET_SSSE3);
+  }
+  if (last < 7 || !has(a[2], 27, 28)) {  // OSXSAVE, AVX
+    return found;
+  }
+  __cpuidex(b, 7, 0);
+#if defined(_MSC_VER) && !defined(__clang__)
+  const auto saved = static_cast<std::uint32_t>(_xgetbv(0));
+#else
+  std::uint32_t saved = 0, high = 0;
+  __asm__ volatile("xgetbv" : "=a"(saved), "=d"(high) : "c"(0));
+#endif
+  // FMA; AVX2; BMI and BMI2; registers of 256 bits are saved
+  if (has(a[2], 12, 12) && has(b[1], 5, 5) && has(b[1], 3, 8) && (saved & 0x6U) == 0x6U) {
+    found |= 1U << index_of(SC_TARGET_AVX2);
+    // F and DQ; BW and CD; VL; registers of 512 bits and masks are saved
+    if (has(b[1], 16, 17) && has(b[1], 30, 28) && has(b[1], 31, 31) && (saved & 0xE6U) == 0xE6U) {
+      found |= 1U << index_of(SC_TARGET_AVX512);
+    }
+  }
+  return found;
+}
+
+bool machine_has(Target target) {
+  static std::atomic<std::uint32_t> known{0};
+  std::uint32_t found = known.load(std::memory_order_relaxed);
+  if (found == 0) {
+    found = ask_machine();
+    known.store(found, std::memory_order_relaxed);
+  }
+  return (found >> index_of(target) & 1U) != 0;
+}
+#else
 // What the machine has, as libgcc or compiler-rt found it out before main(): a look into a table, no instruction that
 // traps under a hypervisor. They also ask whether the operating system saves the wide registers.
 bool machine_has([[maybe_unused]] Target target) {
@@ -78,6 +128,7 @@ bool machine_has([[maybe_unused]] Target target) {
   return true;  // NEON is compiled only where the build may assume it
 #endif
 }
+#endif
 
 }  // namespace
 

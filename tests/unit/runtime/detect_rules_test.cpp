@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "exact_fma.h"
 #include "jobs.h"
 #include "pairs/plain_detection.h"
 #include "tiny_asset.h"
@@ -54,7 +55,7 @@ TEST_CASE("the squared distance is summed in the order the header gives, where t
     const bool overlaps = !detect(opened.asset, {p, q}, SC_RADIUS_FIT).pairs.empty();
     CHECK(overlaps == (d2 < reach));
     other_order_differs += overlaps != (dx * dx + (dy * dy + dz * dz) < reach);
-    fused_differs += overlaps != (std::fma(dz, dz, std::fma(dy, dy, dx * dx)) < reach);
+    fused_differs += overlaps != (exact_fma(dz, dz, exact_fma(dy, dy, dx * dx)) < reach);
   }
   CHECK(other_order_differs > 100);
   CHECK(fused_differs > 100);

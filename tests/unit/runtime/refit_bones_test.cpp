@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "exact_fma.h"
 #include "jobs.h"
 #include "palette.h"
 
@@ -41,7 +42,7 @@ struct Rows {
 };
 
 float image_of_origin(const float* row, const Vec3& origin) {
-  return std::fma(row[2], origin.z, std::fma(row[1], origin.y, std::fma(row[0], origin.x, row[3])));
+  return exact_fma(row[2], origin.z, exact_fma(row[1], origin.y, exact_fma(row[0], origin.x, row[3])));
 }
 
 float halving_tree(std::vector<float> values) {
@@ -87,7 +88,7 @@ std::vector<Sphere> exact_by_moments(const PosedAsset& s, Radius kind) {
           const CenterTerm& u = tables.centers[b];
           const float share[] = {u.x, u.y, u.z, u.w};
           const float value = moved[tables.bones[b]].at[m][j];
-          sums[j] = b == first ? value * share[j] : std::fma(value, share[j], sums[j]);
+          sums[j] = b == first ? value * share[j] : exact_fma(value, share[j], sums[j]);
         }
       }
       center[m] = ((sums[0] + sums[2]) + (sums[1] + sums[3])) + shift[m];
@@ -98,13 +99,13 @@ std::vector<Sphere> exact_by_moments(const PosedAsset& s, Radius kind) {
         const Rows &left = moved[tables.bones[k]], &right = moved[tables.bones[l]];
         for (std::size_t e = 0; e < kMomentSize; ++e) {
           const std::size_t r = e / 4, c = e % 4;
-          const float low = std::fma(left.at[1][r], right.at[1][c], left.at[0][r] * right.at[0][c]);
-          const float gram = std::fma(left.at[2][r], right.at[2][c], low);
+          const float low = exact_fma(left.at[1][r], right.at[1][c], left.at[0][r] * right.at[0][c]);
+          const float gram = exact_fma(left.at[2][r], right.at[2][c], low);
           const float own = tables.moments[moment].values[e];
           if (sums.size() < kMomentSize) {
             sums.push_back(own * gram);
           } else {
-            sums[e] = std::fma(own, gram, sums[e]);
+            sums[e] = exact_fma(own, gram, sums[e]);
           }
         }
       }
