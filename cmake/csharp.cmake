@@ -13,15 +13,16 @@ elseif(NOT SPHERECHAIN_MONO)
   set(SPHERECHAIN_CSHARP_MISSING "mono is missing (Debian: mono-runtime)")
 endif()
 
-# A program of C# sources and the bindings, into <build>/csharp.
+set(SPHERECHAIN_CSHARP_SOURCES ${PROJECT_SOURCE_DIR}/runtime/csharp/Spherechain.Native.cs
+  ${PROJECT_SOURCE_DIR}/runtime/csharp/Spherechain.cs ${PROJECT_SOURCE_DIR}/runtime/csharp/Spherechain.Bodies.cs)
+
+# A program of C# sources, into <build>/csharp.
 function(spherechain_csharp_program name)
   set(program ${CMAKE_BINARY_DIR}/csharp/${name}.exe)
-  set(sources ${PROJECT_SOURCE_DIR}/runtime/csharp/Spherechain.Native.cs ${PROJECT_SOURCE_DIR}/runtime/csharp/Spherechain.cs
-    ${PROJECT_SOURCE_DIR}/runtime/csharp/Spherechain.Bodies.cs ${ARGN})
   # The oldest language that the sources promise; a warning is an error.
   add_custom_command(OUTPUT ${program}
     COMMAND ${CMAKE_COMMAND} -E make_directory ${CMAKE_BINARY_DIR}/csharp
-    COMMAND ${SPHERECHAIN_MCS} -unsafe -langversion:6 -warnaserror -optimize+ -out:${program} ${sources}
-    DEPENDS ${sources} COMMENT "mcs ${name}.exe" VERBATIM)
+    COMMAND ${SPHERECHAIN_MCS} -unsafe -langversion:6 -warnaserror -optimize+ -r:System.Core -out:${program} ${ARGN}
+    DEPENDS ${ARGN} COMMENT "mcs ${name}.exe" VERBATIM)
   add_custom_target(csharp_${name} ALL DEPENDS ${program})
 endfunction()

@@ -39,7 +39,7 @@ public static class ApiTest
     {
         using (Character character = new Character(file, model.Joints))
         {
-            return model.Frames.OrderByDescending(palette => character.FindPenetrations(palette, kColumns)).First();
+            return model.Frames.Where((p, i) => i % 6 == 0).OrderByDescending(palette => character.FindPenetrations(palette, kColumns)).First();
         }
     }
 
@@ -132,12 +132,12 @@ public static class ApiTest
 
     static void BodyAgrees(byte[] file, Palettes model)
     {
-        int pairs = 0, thorough = 0;
+        int pairs = 0;
         using (Asset asset = new Asset(file))
         using (Character character = new Character(file, model.Joints))
         using (Body body = new Body(asset, model.Joints, model.InverseBinds, kColumns))
         {
-            foreach (float[] palette in model.Frames)
+            foreach (float[] palette in model.Frames.Where((p, i) => i % 6 == 0))
             {
                 character.FindContacts(palette, kColumns);
                 body.SetPalette(palette, kColumns);
@@ -150,10 +150,17 @@ public static class ApiTest
                           body.Penetrations.Take(body.PenetrationCount)), "penetrations");
                 for (int i = 1; i < body.PairCount; ++i) Check(body.Pairs[i - 1].A <= body.Pairs[i].A, "pairs are sorted");
             }
-            body.SetPalette(deepest, kColumns);
-            body.FindContacts(Scope.All);
-            thorough = body.MeasurePenetrations(false);
-            Check(body.Penetrations.Take(thorough).Any(p => p.IsClosed == 1 && p.Volume > 0 && p.Visible > 0), "volumes");
+            // What quick measures leave out: in some frame a line is closed, or partly hidden.
+            bool hasVolume = false, isHidden = false;
+            for (int frame = 0; frame < model.Frames.Length; frame += 30)
+            {
+                body.SetPalette(model.Frames[frame], kColumns);
+                body.FindContacts(Scope.All);
+                body.MeasurePenetrations(false);
+                hasVolume |= body.Penetrations.Take(body.PenetrationCount).Any(p => p.IsClosed == 1 && p.Volume > 0);
+                isHidden |= body.Penetrations.Take(body.PenetrationCount).Any(p => p.Visible < 1);
+            }
+            Check(hasVolume && isHidden, "volumes and visibility");
             // The ground at the height of the knees.
             Vec3 up = asset.Up;
             int below = body.FindFloor(up, asset.Origin.Y + 0.25f * asset.Height);
@@ -161,7 +168,7 @@ public static class ApiTest
             Check(body.Penetrations.Take(below).Any(p => asset.PartNames[p.PartB].Contains("foot")), "feet are below");
             Refused("no way up", Code.BadValue, "floor", "", () => body.FindFloor(new Vec3(), 0));
         }
-        Check(pairs > 100, "pairs of spheres");
+        Check(pairs > 20, "pairs of spheres");
     }
 
     static void TwoBodiesMeet(byte[] file, Palettes model)
@@ -215,7 +222,7 @@ public static class ApiTest
             for (int round = 0; round < 2; ++round)  // the first makes lists as large as they get, and compiles
             {
                 before = GC.GetAllocatedBytesForCurrentThread();
-                for (int frame = 0; frame < model.Frames.Length; frame += 6)
+                for (int frame = 0; frame < model.Frames.Length; frame += 18)
                 {
                     character.FindPenetrations(model.Frames[frame], kColumns);
                     character.FindContacts(model.Frames[frame], kColumns);
@@ -248,7 +255,7 @@ public static class ApiTest
                 {
                     using (Body body = new Body(asset, model.Joints))
                     {
-                        counts[own] = model.Frames.Take(90).Select(palette =>
+                        counts[own] = model.Frames.Skip(60).Take(20).Select(palette =>
                         {
                             body.SetPalette(palette, kColumns);
                             body.FindContacts(Scope.Apart);

@@ -97,7 +97,7 @@ public static class UnityTest
         using (Character reference = new Character(file, model.Joints, model.InverseBinds, MatrixLayout.Columns4x4))
         {
             float height = reference.Asset.Height;
-            for (int frame = 0; frame < model.Frames.Length; ++frame)
+            for (int frame = 0; frame < model.Frames.Length; frame += 3)
             {
                 Stand(component, model, model.Frames[frame], root);
                 Call(component, "LateUpdate");
@@ -121,7 +121,7 @@ public static class UnityTest
                 drawn += component.PenetrationCount;
             }
         }
-        Check(faults > 50, "only " + faults + " faults were compared");
+        Check(faults > 20, "only " + faults + " faults were compared");
         Check(Gizmos.Spheres == drawn && Gizmos.Lines == drawn && Gizmos.RedSpheres > faults, "gizmos");
         Call(component, "OnDisable");
         Console.WriteLine("{0} faults compared, {1} failures", faults, failures);
