@@ -3,6 +3,7 @@
 #   native   Spherechain.Native.cs is what generate.py makes of the headers, and mono lays it out as the C compiler does
 #   drift    of headers with another field, function, enumerator or order, each of the two says so
 #   api      ApiTest.exe;  unity  UnityTest.exe
+#   page     the program of docs/csharp.md prints what stands there
 #   hello.*  Hello.exe prints the lines of samples/hello
 cmake_minimum_required(VERSION 3.25)
 file(GLOB_RECURSE library ${PREFIX}/*/libspherechain.so)
@@ -128,6 +129,19 @@ elseif(CASE MATCHES "^hello")
   execute_process(COMMAND ${MONO} ${PROGRAMS}/Hello.exe ${ROOT}/LICENSE ${PALETTES} RESULT_VARIABLE result ERROR_VARIABLE error)
   if(NOT result EQUAL 3 OR NOT error MATCHES "^hello: error: ")
     message(FATAL_ERROR "of a file that is no asset: exit ${result}, \"${error}\"")
+  endif()
+elseif(CASE STREQUAL page)
+  file(READ ${ROOT}/docs/csharp.md page)
+  string(REGEX MATCH "```csharp\n(.*)\n```\n\nOn Debian" found "${page}")
+  file(WRITE ${WORK}/First.cs "${CMAKE_MATCH_1}\n")
+  string(REGEX MATCH "It prints:\n\n```\n(.*)\n```\n\n\\[samples" found "${page}")
+  set(expected "${CMAKE_MATCH_1}\n")
+  file(GLOB sources ${ROOT}/runtime/csharp/*.cs)
+  run(nothing ${MCS} -unsafe ${sources} ${WORK}/First.cs -out:${WORK}/First.exe)
+  file(COPY_FILE ${ASSET} ${WORK}/human.sphc)
+  execute_process(COMMAND ${MONO} First.exe WORKING_DIRECTORY ${WORK} OUTPUT_VARIABLE text COMMAND_ERROR_IS_FATAL ANY)
+  if(NOT text STREQUAL expected)
+    message(FATAL_ERROR "docs/csharp.md says:\n${expected}\nit prints:\n${text}")
   endif()
 else()
   message(FATAL_ERROR "no such case: ${CASE}")
