@@ -141,6 +141,28 @@ TEST_CASE("a tube that is open at its ends gets a capsule no longer than it is")
   CHECK(cone.radius_b == doctest::Approx(0.1).epsilon(0.05));
 }
 
+TEST_CASE("a cup that is open at its wide end gets a cone that stays near it") {
+  BodySkin cup;
+  for (int i = 0; i < 20; ++i) {
+    const double z = i / 95.0, radius = 0.1 + z;
+    for (int k = 0; k < 16; ++k) {
+      const double angle = 2 * std::numbers::pi * k / 16;
+      cup.samples.push_back({{radius * std::cos(angle), radius * std::sin(angle), z}, radius});
+    }
+  }
+  for (const Vec3& direction : reach_directions()) {
+    double most = -INFINITY;
+    for (const BodySample& sample : cup.samples) most = std::max(most, direction.dot(sample.point));
+    cup.reach.push_back(most + 0.05);
+  }
+  const auto top = [](const BodySkin& skin) {
+    return support(fit_body(VolumeShape::kCones, skin, 1).volumes.at(0), Vec3::UnitZ()).z();
+  };
+  const double bounded = top(cup);
+  cup.reach.clear();
+  CHECK(bounded < 0.75 * top(cup));
+}
+
 TEST_CASE("volumes of a human: never more than asked for, nearer to the skin the more there are") {
   const Bake& human = baked_human();
   const OpenAsset asset = open_asset_of(human);
