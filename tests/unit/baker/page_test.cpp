@@ -76,19 +76,22 @@ TEST_CASE("a page is no larger than it may be, whatever it is that is large") {
 
 TEST_CASE("a page of colliders has each body's bone, and its volumes around the skin at rest") {
   const OpenAsset asset = open_asset(tool::baked_files().asset.string());
-  const Colliders colliders = fit_volumes(asset, VolumeShape::kCapsules, 8);
+  Colliders colliders = fit_volumes(asset, VolumeShape::kCapsules, 8);
+  // The same human in another unit: metres of the volumes stay, positions of the page are in source units.
+  colliders.metres_per_unit /= 2;
   const std::string page = view(2, PageOptions().max_bytes, &colliders).page;
   const std::size_t from = page.find('{'), to = page.rfind('}');
   const auto data = nlohmann::json::parse(page.substr(from, to + 1 - from));
   REQUIRE(data["colliders"].size() == colliders.bodies.size());
-  std::vector<Volume> at_rest;  // source units
+  std::vector<Volume> at_rest;  // in the human's own units
   for (std::size_t i = 0; i < colliders.bodies.size(); ++i) {
     const auto& body = data["colliders"][i];
     CHECK(body["part"] == colliders.bodies[i].name);
     CHECK(body["bone"] == colliders.bodies[i].bone_index);
     for (const auto& volume : body["volumes"]) {
       const auto vec = [&](const char* key) { return Vec3(volume[key][0], volume[key][1], volume[key][2]); };
-      at_rest.push_back(ConeVolume{vec("a"), vec("b"), volume["radius"], volume["radius"]});
+      const double radius = volume["radius"];
+      at_rest.push_back(ConeVolume{vec("a") / 2, vec("b") / 2, radius / 2, radius / 2});
     }
   }
   const std::vector<Vec3>& skin = human().character.source_positions;
