@@ -169,16 +169,19 @@ struct MovingTaken {
 // way, or the line between them? Roundings are less than 2^-20 of what `stray` counts in.
 HWY_INLINE std::uint64_t stay_apart(const MovingTaken& first, const MovingTaken& second, float stray) {
   constexpr Floats kFloats;
-  Vector3 a[2][3], b[2][3], mid_a[3], mid_b[3];
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vector3 origin = first.corner(0, 0);
-    for (std::size_t pose = 0; pose < 2; ++pose) {
-      a[pose][k] = subtract(first.corner(pose, k), origin);
-      b[pose][k] = subtract(second.corner(pose, k), origin);
-    }
-    mid_a[k] = {hn::Add(a[0][k].x, a[1][k].x), hn::Add(a[0][k].y, a[1][k].y), hn::Add(a[0][k].z, a[1][k].z)};
-    mid_b[k] = {hn::Add(b[0][k].x, b[1][k].x), hn::Add(b[0][k].y, b[1][k].y), hn::Add(b[0][k].z, b[1][k].z)};
-  }
+  const Vector3 origin = first.corner(0, 0);
+  const auto corner = [&](const MovingTaken& of, std::size_t pose, std::size_t k)
+                          HWY_ATTR { return subtract(of.corner(pose, k), origin); };
+  const Vector3 a[2][3] = {{corner(first, 0, 0), corner(first, 0, 1), corner(first, 0, 2)},
+                           {corner(first, 1, 0), corner(first, 1, 1), corner(first, 1, 2)}};
+  const Vector3 b[2][3] = {{corner(second, 0, 0), corner(second, 0, 1), corner(second, 0, 2)},
+                           {corner(second, 1, 0), corner(second, 1, 1), corner(second, 1, 2)}};
+  const auto twice_middle = [](const Vector3(&corners)[2][3], std::size_t k) HWY_ATTR {
+    const Vector3 &p = corners[0][k], &q = corners[1][k];
+    return Vector3{hn::Add(p.x, q.x), hn::Add(p.y, q.y), hn::Add(p.z, q.z)};
+  };
+  const Vector3 mid_a[3] = {twice_middle(a, 0), twice_middle(a, 1), twice_middle(a, 2)};
+  const Vector3 mid_b[3] = {twice_middle(b, 0), twice_middle(b, 1), twice_middle(b, 2)};
   const auto parts = [&](const Vector3& n) HWY_ATTR {
     const Vector least = hn::Mul(hn::Sqrt(dot_product(n, n)), hn::Set(kFloats, stray * (1 + 0x1p-18F)));
     auto above = hn::FirstN(kFloats, kLanes), below = above;
