@@ -56,7 +56,7 @@ struct ViewOptions {
   WithOptions with;
   MotionChoice motion;
   FrameChoice frames;
-  std::string radius = "detect", volumes;  // empty volumes: no colliders are shown
+  std::string radius = "detect", volumes, filter;  // empty volumes: no colliders are shown
   int at_most = 0;                         // as for export
   bool force = false, continuous = false;
 };

@@ -3,15 +3,16 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 
 #include "cli/commands.h"
 #include "cli/outputs.h"
 #include "export/formats.h"
+#include "export/glb_json.h"
 #include "export/ignore_by_filter.h"
 #include "import/import.h"
 #include "mesh/error.h"
+#include "report/report.h"
 #include "volumes/fit_volumes.h"
 #include "volumes/measure.h"
 #include "write/write.h"
@@ -23,24 +24,25 @@ namespace fs = std::filesystem;
 
 struct ExportFormat {
   const char* name;
-  const char* volumes;  // what it holds best
+  const char* volumes;               // what it holds best
+  std::vector<std::string> endings;  // of its file
   Export (*of_colliders)(const Colliders&);
   Export (*of_source)(const Colliders&, const SourceGlb&);  // of a format that is written into the source
 };
 
-constexpr ExportFormat kExportFormats[] = {
-    {"capsules.json", "cones", export_json, nullptr},
-    {"vrm", "capsules", nullptr, export_vrm},
-    {"khr", "cones", nullptr, export_khr},
-    {"omi", "cones", nullptr, export_omi},
-    {"mjcf", "capsules", export_mjcf, nullptr},
-    {"urdf", "spheres", export_urdf, nullptr},
-    {"xrdf", "spheres", export_xrdf, nullptr},
-    {"curobo", "spheres", export_curobo, nullptr},
-    {"usd", "cones", export_usd, nullptr},
-    {"godot", "capsules", export_godot, nullptr},
-    {"unity", "capsules", export_unity, nullptr},
-    {"unreal", "capsules", export_unreal, nullptr},
+const ExportFormat kExportFormats[] = {
+    {"capsules.json", "cones", {".json"}, export_json, nullptr},
+    {"vrm", "capsules", {".vrm", ".glb"}, nullptr, export_vrm},
+    {"khr", "cones", {".glb", ".vrm"}, nullptr, export_khr},
+    {"omi", "cones", {".glb", ".vrm"}, nullptr, export_omi},
+    {"mjcf", "capsules", {".xml", ".mjcf"}, export_mjcf, nullptr},
+    {"urdf", "spheres", {".urdf", ".xml"}, export_urdf, nullptr},
+    {"xrdf", "spheres", {".xrdf", ".yaml", ".yml"}, export_xrdf, nullptr},
+    {"curobo", "spheres", {".yml", ".yaml"}, export_curobo, nullptr},
+    {"usd", "cones", {".usda", ".usd"}, export_usd, nullptr},
+    {"godot", "capsules", {".tscn"}, export_godot, nullptr},
+    {"unity", "capsules", {".json"}, export_unity, nullptr},
+    {"unreal", "capsules", {".json"}, export_unreal, nullptr},
 };
 
 const ExportFormat& format_of(const std::string& name) {
@@ -77,15 +79,49 @@ std::string fit_text(const ColliderFit& fit) {
       100 * fit.coverage, 1000 * fit.gap_mean, 1000 * fit.gap_95);
 }
 
-// What this tool wrote says so in its first lines.
+// Programs choose how to read a file by its ending.
+void check_ending(const ExportFormat& format, const std::string& output) {
+  const std::string ending = fs::path(output).extension().string();
+  if (std::find(format.endings.begin(), format.endings.end(), ending) != format.endings.end()) return;
+  throw Error(ExitCode::kUsage, fmt::format("-o {}: --to {} writes a file that ends in {}", output, format.name,
+                                            fmt::join(format.endings, " or ")));
+}
+
+// What this tool wrote says so: texts in their first lines, a GLB in the names of what was added.
+bool is_ours(const std::string& file) {
+  constexpr std::size_t kFirstLines = 4096;
+  std::string bytes = read_file(file);
+  if (bytes.starts_with("glTF")) return bytes.find(fmt::format("\"name\":\"{}", kOwnName)) != std::string::npos;
+  bytes.resize(std::min(bytes.size(), kFirstLines));
+  return bytes.find("spherechain") != std::string::npos;
+}
+
 void check_ours(const std::string& file, bool force) {
   std::error_code ignored;
-  if (force || !fs::is_regular_file(file, ignored) || fs::file_size(file, ignored) == 0) return;
-  std::string start(4096, '\0');
-  std::ifstream(file, std::ios::binary).read(start.data(), static_cast<std::streamsize>(start.size()));
-  if (start.find("spherechain") == std::string::npos) {
-    throw Error(ExitCode::kFile, file + ": is there already, and not of this tool (--force replaces it)");
+  if (force || !fs::is_regular_file(file, ignored) || fs::file_size(file, ignored) == 0 || is_ours(file)) return;
+  throw Error(ExitCode::kFile, file + ": is there already, and not of this tool (--force replaces it)");
+}
+
+void say_how_sure(const PartFilter& filter) {
+  double at_most = 0;
+  for (const FilteredPair& pair : filter.pairs) {
+    if (pair.kind == PairKind::kNever) at_most = std::max(at_most, pair.at_most);
   }
+  fmt::print(
+      "by the filter: parts that met in none of {} poses are not tested; those that meet in {:.2g} % of all "
+      "poses may be among them\n",
+      filter.clip_poses + filter.random_poses, 100 * at_most);
+}
+
+// Bodies are rigid: a tail of many bones bends out of its volumes.
+void say_what_leaves(const Colliders& colliders, const ColliderFit& fit) {
+  constexpr double kFollows = 0.6;
+  std::vector<std::string> leave;
+  for (std::size_t i = 0; i < fit.coverage_of_body.size(); ++i) {
+    if (fit.coverage_of_body[i] >= kFollows) continue;
+    leave.push_back(fmt::format("{} ({:.0f} %)", colliders.bodies[i].name, 100 * fit.coverage_of_body[i]));
+  }
+  if (!leave.empty()) fmt::print("parts that are less inside on them: {}\n", fmt::join(leave, ", "));
 }
 
 void name_output(std::string& bytes, const std::string& mark, const std::string& output) {
@@ -108,12 +144,11 @@ ExitCode run_export(const ExportOptions& options) {
   const std::vector<CommandFile> inputs =
       with_source({{"ASSET", options.asset}, {"--filter", options.filter}}, "--source", options.source);
   check_outputs(inputs, {{"--output", options.output}});
-  if (format.of_source != nullptr) {
-    if (options.source.empty()) throw Error(ExitCode::kUsage, "--to " + options.format + " needs --source");
-    check_replaceable(options.output, "glTF", "a binary glTF", options.force);
-  } else {
-    check_ours(options.output, options.force);
+  if (format.of_source != nullptr && options.source.empty()) {
+    throw Error(ExitCode::kUsage, "--to " + options.format + " needs --source");
   }
+  check_ending(format, options.output);
+  check_ours(options.output, options.force);
   // What is wrong with a file is said before the fit, which takes seconds.
   const OpenAsset asset = open_asset(options.asset);
   std::optional<PartFilter> filter;
@@ -141,9 +176,15 @@ ExitCode run_export(const ExportOptions& options) {
   const ColliderFit fit = measure_fit(asset, colliders);
   fmt::print("{} volumes ({}) on {} body parts; {} pairs of parts are not tested\n", fit.volumes, shape, fit.bodies,
              colliders.ignored.size());
+  if (filter) say_how_sure(*filter);
   fmt::print("at rest: {}; volume {:.0f} % of the body's\n", fit_text(fit), 100 * fit.volume_ratio);
   if (animated && animated->frame_count() > 1) {
-    fmt::print("on its clips: {}\n", fit_text(measure_fit(*animated, colliders, kFramesMeasured)));
+    const ColliderFit moving = measure_fit(*animated, colliders, kFramesMeasured);
+    fmt::print("on its clips: {}\n", fit_text(moving));
+    say_what_leaves(colliders, moving);
+  }
+  if (is_doubtful_length(colliders.height)) {
+    fmt::print("note: the character measures {:.4g} m: its file names no unit, or a wrong one\n", colliders.height);
   }
   for (const std::string& note : made.notes) fmt::print("note: {}\n", note);
   for (const CommandFile& file : outputs) fmt::print("wrote {}\n", file.path);

@@ -272,6 +272,9 @@ int main(int argc, char** argv) {
   add_radius(*view_command, view.radius);
   add_volumes(*view_command, view.volumes, view.at_most, "Colliders to show, as export writes them")
       ->needs("--volumes");
+  add_name(*view_command, "--filter", view.filter,
+           "What filter wrote: colliders of pairs that need no test do not turn red")
+      ->needs("--volumes");
   add_name(*view_command, "--report", view.report, "The report that bake wrote, to show in the page");
   add_name(*view_command, "--validation", view.validation, "What validate --json wrote, to show in the page");
   view_command->add_flag("--force", view.force, "Replace an output file that is not a page");

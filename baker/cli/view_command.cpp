@@ -9,6 +9,7 @@
 #include "cli/installed.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
+#include "export/ignore_by_filter.h"
 #include "page/page.h"
 #include "page/page_inputs.h"
 #include "page/page_of_two.h"
@@ -30,8 +31,10 @@ fs::path viewer_template() {
 
 // What is read of the two characters.
 std::vector<CommandFile> inputs_of(const ViewOptions& options, const std::string& with_source_file) {
-  std::vector<CommandFile> inputs{
-      {"ASSET", options.asset}, {"--report", options.report}, {"--validation", options.validation}};
+  std::vector<CommandFile> inputs{{"ASSET", options.asset},
+                                  {"--report", options.report},
+                                  {"--validation", options.validation},
+                                  {"--filter", options.filter}};
   inputs = with_motion(with_source(std::move(inputs), "--source", options.source), options.motion);
   if (options.with.asset.empty()) return inputs;
   inputs.push_back({"--with", options.with.asset});
@@ -77,6 +80,7 @@ ExitCode run_view(const ViewOptions& options) {
   std::optional<Colliders> colliders;
   if (!options.volumes.empty()) {
     colliders = fit_volumes(animated.asset(), volume_shape(options.volumes), options.at_most);
+    if (!options.filter.empty()) ignore_by_filter(read_part_filter(options.filter, animated.asset()), *colliders);
     page.colliders = &*colliders;
   }
   std::optional<AnimatedAsset> second;

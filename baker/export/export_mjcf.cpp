@@ -66,17 +66,21 @@ struct MjcfWriter {
   }
 };
 
-// Of the rest pose, in the upright world.
-double lowest_point(const Colliders& colliders) {
+// Of the volumes at rest, in the upright world.
+Eigen::AlignedBox3d bounds_of(const Colliders& colliders) {
   const Eigen::Isometry3d up(to_z_up(colliders));
-  double lowest = INFINITY;
+  Eigen::AlignedBox3d out;
   for (const ColliderBody& body : colliders.bodies) {
     const Eigen::Isometry3d at = up * body.rest;
-    for (const Volume& volume : body.volumes) {
-      lowest = std::min(lowest, (at * support(volume, at.linear().transpose() * -Vec3::UnitZ())).z());
+    for (const Volume& one : body.volumes) {
+      const Volume volume = moved(one, Affine(at));
+      for (int axis = 0; axis < 3; ++axis) {
+        out.extend(support(volume, Vec3::Unit(axis)));
+        out.extend(support(volume, -Vec3::Unit(axis)));
+      }
     }
   }
-  return std::isfinite(lowest) ? lowest : 0;
+  return out.isEmpty() ? Eigen::AlignedBox3d(Vec3::Zero()) : out;
 }
 
 }  // namespace
@@ -89,6 +93,8 @@ Export export_mjcf(const Colliders& given) {
   for (const SolidMass& one : writer.masses) mass += one.kilograms;
   const double height = std::max(colliders.height, 1e-3);
   const double inertia = mass * height * height;
+  const Eigen::AlignedBox3d bounds = bounds_of(colliders);
+  const Vec3 above(bounds.center().x(), bounds.center().y(), bounds.max().z() + 2 * height);
   writer.out = fmt::format(
       "<mujoco model=\"{}\">\n"
       "  <!-- Written by spherechain. Metres, kilograms, radians; +Z is up, the character looks along +X. A ball "
@@ -97,17 +103,17 @@ Export export_mjcf(const Colliders& given) {
       "-->\n"
       "  <compiler angle=\"radian\"/>\n"
       "  <option integrator=\"implicitfast\"/>\n"
-      "  <statistic center=\"0 0 {}\" extent=\"{}\"/>\n"
+      "  <statistic center=\"{}\" extent=\"{}\"/>\n"
       "  <default>\n"
       "    <joint damping=\"{}\" armature=\"{}\" range=\"0 2.6\"/>\n"
       "    <geom rgba=\"0.85 0.65 0.45 1\"/>\n"
       "  </default>\n"
       "  <worldbody>\n"
-      "    <light pos=\"0 0 {}\" dir=\"0 0 -1\" directional=\"true\"/>\n"
+      "    <light pos=\"{}\" dir=\"0 0 -1\" directional=\"true\"/>\n"
       "    <geom name=\"floor\" type=\"plane\" size=\"0 0 1\" pos=\"0 0 {}\" rgba=\"0.4 0.45 0.5 1\"/>\n",
-      robot_name(colliders), xml_number(height / 2), xml_number(height),
-      xml_number(0.002 * inertia * std::sqrt(9.81 / height)), xml_number(2e-5 * inertia), xml_number(3 * height),
-      xml_number(lowest_point(colliders)));
+      robot_name(colliders), xml_numbers(bounds.center()), xml_number(height),
+      xml_number(0.002 * inertia * std::sqrt(9.81 / height)), xml_number(2e-5 * inertia), xml_numbers(above),
+      xml_number(bounds.min().z()));
   std::size_t roots = 0;
   for (std::size_t i = 0; i < colliders.bodies.size(); ++i) {
     if (colliders.bodies[i].parent >= 0) continue;

@@ -29,7 +29,7 @@ struct ColliderGroup {
 
 // What the notes say.
 struct VrmLosses {
-  int replaced = 0;
+  int replaced = 0, made = 0;     // volumes, and those in their place
   double off = 0;                 // metres
   std::vector<std::string> lost;  // parts without a bone
   int scaled = 0;                 // parts whose bone has a scale
@@ -50,7 +50,10 @@ std::vector<ColliderGroup> groups_of(const Colliders& colliders, const SourceGlb
     ColliderGroup group{body.name, node, {}};
     for (const Volume& volume : body.volumes) {
       const SimpleVolumes taken = simple(volume);
-      if (taken.off > 0) ++losses.replaced;
+      if (taken.off > 0) {
+        ++losses.replaced;
+        losses.made += static_cast<int>(taken.volumes.size());
+      }
       losses.off = std::max(losses.off, taken.off);
       for (const Volume& one : taken.volumes) group.volumes.push_back(moved(one, body.to_bone));
     }
@@ -178,8 +181,8 @@ std::vector<std::string> notes_of(const VrmLosses& losses, std::size_t springs, 
   std::vector<std::string> out;
   if (springs == 0) out.emplace_back("the file has no spring bones: programs ignore its colliders until it has some");
   if (losses.replaced > 0) {
-    out.push_back(fmt::format("VRM {}: {} volumes became {}, whose surface is up to {:.1f} mm off",
-                              is_0 ? "0.x has only spheres" : "has no such shape", losses.replaced,
+    out.push_back(fmt::format("VRM {}: {} volumes became {} {}, whose surface is up to {:.1f} mm off",
+                              is_0 ? "0.x has only spheres" : "has no such shape", losses.replaced, losses.made,
                               is_0 ? "spheres" : "capsules of one radius", 1000 * losses.off));
   }
   if (!losses.lost.empty()) {

@@ -25,12 +25,20 @@ class FilterReader {
     if (!object.is_object() || !object.contains("spherechain") || !object.contains("pairs")) {
       fail("is not what filter writes (spherechain filter ASSET --source FILE -o FILE.json)");
     }
+    if (object.contains("source")) source_ = object["source"];
     const json& poses = member(object, "poses", "the file");
     out_.clip_poses = count(poses, "clips", "'poses'");
     out_.random_poses = count(poses, "random", "'poses'");
     if (!object["pairs"].is_array()) fail("'pairs' is not a list");
     for (const json& entry : object["pairs"]) add(entry);
     if (poses.contains("settled_after")) out_.settled_after = count(poses, "settled_after", "'poses'");
+  }
+
+  // Rigs of one maker share their names: the source's bytes tell which character a filter is of.
+  void check_source(const AssetInfo& info) const {
+    if (source_.is_object() && source_.value("sha256", "") == info.source_sha256) return;
+    fail(fmt::format("is of another character than the asset, which was baked from {} (run filter on this asset)",
+                     info.source_file));
   }
 
   // Every two parts once; `parts` are those of an asset, or those that the file names.
@@ -110,6 +118,7 @@ class FilterReader {
   }
 
   std::string file_;
+  json source_;
   PartFilter out_;
   std::vector<std::array<std::string, 2>> names_;  // of the pairs
 };
@@ -152,7 +161,9 @@ std::string part_filter_json(const PartFilter& filter, const OpenAsset& asset, c
 PartFilter read_part_filter(const std::string& path, const OpenAsset& asset) {
   std::vector<std::string> parts;
   for (std::size_t p = 0; p < asset->part_count(); ++p) parts.push_back(asset->part(p).name);
-  return FilterReader(path).finish(std::move(parts));
+  FilterReader reader(path);
+  reader.check_source(asset->info());
+  return reader.finish(std::move(parts));
 }
 
 PartFilter read_part_filter(const std::string& path) {

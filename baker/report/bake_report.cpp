@@ -319,10 +319,14 @@ bool is_tall(const Bake& bake) {
   return high - low > 0.999 * bake.regions.frame.height;
 }
 
+bool is_doubtful_length(double metres) {
+  constexpr double kSmallest = 0.02, kLargest = 50;  // what is outside is seldom a character
+  return metres < kSmallest || metres > kLargest;
+}
+
 std::string unit_note(const Bake& bake) {
-  constexpr double kSmallest = 0.02, kLargest = 50;  // metres: what is outside is seldom a character
   const double metres = bake.regions.frame.height * bake.character.metres_per_unit;
-  if (metres >= kSmallest && metres <= kLargest) return {};
+  if (!is_doubtful_length(metres)) return {};
   return fmt::format(
       "{:.4g} m {}: its file names no unit, or a wrong one: believe depths in % of the height, not in mm", metres,
       is_tall(bake) ? "tall" : "long");

@@ -129,25 +129,6 @@ std::vector<SkinSample> sample_skin(const OpenAsset& asset, const Colliders& col
   return out;
 }
 
-void take_spheres(const OpenAsset& asset, Colliders& colliders) {
-  const Surface& surface = asset.surface();
-  const std::vector<int> body_of_part = body_of_parts(asset, colliders);
-  std::size_t triangle = 0;
-  for (const RestSphere& sphere : asset->spheres()) {
-    std::vector<int> votes(body_of_part.size(), 0);
-    for (const std::size_t end = triangle + sphere.triangle_count; triangle < end; ++triangle) {
-      ++votes[surface.parts[triangle]];
-    }
-    const auto most = std::max_element(votes.begin(), votes.end());
-    if (most == votes.end() || *most == 0 || sphere.detect_radius <= 0) continue;
-    const int of = body_of_part[static_cast<std::size_t>(most - votes.begin())];
-    ColliderBody& body = colliders.bodies[static_cast<std::size_t>(of)];
-    const Vec3 center = colliders.metres_per_unit * vec3_of(sphere.center);
-    body.volumes.push_back(BallVolume{body.rest.inverse(Eigen::Isometry) * center,
-                                      colliders.metres_per_unit * double{sphere.detect_radius}});
-  }
-}
-
 void ignore_by_rest(Colliders& colliders) {
   colliders.ignored.clear();
   std::map<std::pair<int, int>, IgnoredReason> found;

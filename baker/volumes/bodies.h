@@ -32,9 +32,6 @@ struct SkinSample {
 std::vector<SkinSample> sample_skin(const OpenAsset& asset, const Colliders& colliders,
                                     const std::vector<Vec3>& positions, int count);
 
-// Each sphere of the asset, at its detect radius, to the body that most of its triangles belong to.
-void take_spheres(const OpenAsset& asset, Colliders& colliders);
-
 // Adds to `ignored` each body and the one that it hangs on, and those whose volumes overlap at rest.
 void ignore_by_rest(Colliders& colliders);
 

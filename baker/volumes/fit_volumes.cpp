@@ -17,6 +17,8 @@ constexpr int kSamplesOfBody = 200;
 constexpr double kSmallPart = 0.004;  // of the skin's area: stands for no part of its own
 constexpr int kVolumesOfBodyMax = 12;
 constexpr double kGainMin = 0.03;  // of the skin's gap: what a further volume has to save
+constexpr double kBend = 0.8;      // how far a point goes when its joint turns by some 60 degrees, of its distance
+constexpr double kAlike = 0.5;     // of what it costs: a merge that was done on the other side
 
 // What a body's volumes may reach along each direction: as far as its own samples and half their thickness more, where
 // those of the bodies that it hangs together with reach that far.
@@ -40,6 +42,15 @@ class VolumeSets {
   VolumeSets(const Colliders& colliders, const std::vector<SkinSample>& skin, VolumeShape shape)
       : colliders_(colliders), skin_(skin), shape_(shape), holder_(colliders.bodies.size()) {
     for (std::size_t i = 0; i < holder_.size(); ++i) holder_[i] = i;
+    std::map<std::string, std::size_t> by_name;
+    for (std::size_t i = 0; i < holder_.size(); ++i) by_name[colliders.bodies[i].name] = i;
+    for (const auto& [name, left] : by_name) {
+      if (!name.starts_with("left ")) continue;
+      const auto right = by_name.find("right " + name.substr(5));
+      if (right == by_name.end()) continue;
+      other_side_[left] = right->second;
+      other_side_[right->second] = left;
+    }
     for (const SkinSample& sample : skin) alive_[static_cast<std::size_t>(sample.body)] = true;
     for (std::size_t i = 0; i < holder_.size(); ++i) {
       if (alive_[i]) begin(i);
@@ -73,7 +84,9 @@ class VolumeSets {
       if (!alive_[i] || !parent_of(i)) continue;
       const std::size_t parent = *parent_of(i);
       if (!merged_.contains({i, parent})) merged_[{i, parent}] = fit_body(shape_, skin_of(parent, i), 1).gap;
-      const double cost = merged_[{i, parent}] - taken(i).gap - taken(parent).gap;
+      const double more = merged_[{i, parent}] - taken(i).gap - taken(parent).gap;
+      double cost = std::max(more, 0.0) + bend_of(i, parent);
+      if (other_side_[i] && !alive_[*other_side_[i]]) cost *= kAlike;
       if (cost < least) {
         least = cost;
         best = i;
@@ -141,6 +154,23 @@ class VolumeSets {
     return static_cast<std::size_t>(at);
   }
 
+  // What a body's skin adds to the gap when its joint bends and the volumes of another body stand for it. The middle of a
+  // limb counts more than its end, because all that hangs on it leaves the limb's volumes, too. With this power of the
+  // number of bodies that hang together neck, shoulders, hands and feet go before heads and arms.
+  double bend_of(std::size_t i, std::size_t holder) const {
+    const int bone = colliders_.bodies[i].bone_index;
+    if (bone < 0 || bone == colliders_.bodies[holder].bone_index) return 0;
+    double farthest = 0;
+    for (const BodySample& sample : skins_[i].samples) farthest = std::max(farthest, sample.point.norm());
+    int limb = 0;
+    for (std::size_t k = 0; k < holder_.size(); ++k) {
+      std::optional<std::size_t> at = k;
+      while (at && *at != i) at = parent_of(*at);
+      limb += alive_[k] && at ? 1 : 0;
+    }
+    return kBend * farthest * area_of(i) * std::pow(limb, 0.75);
+  }
+
   bool hang_together(std::size_t i, std::size_t k) const {
     return colliders_.bodies[i].parent == static_cast<int>(k) || colliders_.bodies[k].parent == static_cast<int>(i);
   }
@@ -188,6 +218,8 @@ class VolumeSets {
   const std::vector<SkinSample>& skin_;
   VolumeShape shape_;
   std::vector<std::size_t> holder_;  // of each body: the one whose volumes stand for it
+  std::vector<std::optional<std::size_t>> other_side_ =
+      std::vector<std::optional<std::size_t>>(holder_.size());          // of a left body the right one, and back
   std::vector<bool> alive_ = std::vector<bool>(holder_.size(), false);  // has volumes
   std::vector<BodySkin> skins_ = std::vector<BodySkin>(holder_.size());
   std::vector<std::vector<BodyFit>> fits_ =
@@ -205,16 +237,15 @@ VolumeShape volume_shape(const std::string& name) {
 
 Colliders fit_volumes(const OpenAsset& asset, VolumeShape shape, int at_most) {
   Colliders out = find_bodies(asset);
-  if (shape == VolumeShape::kSpheres && at_most == 0) {
-    take_spheres(asset, out);
-    ignore_by_rest(out);
-    return out;
-  }
   const std::vector<SkinSample> skin = sample_skin(asset, out, skin_positions(asset), kSamplesOfBody);
   double area = 0;
   for (const SkinSample& sample : skin) area += sample.area;
   VolumeSets sets(out, skin, shape);
   sets.merge_smaller(kSmallPart * area);
+  // Spheres are cheap to test and poor to fit: as many as the asset has.
+  if (shape == VolumeShape::kSpheres && at_most == 0) {
+    at_most = std::max(sets.count(), static_cast<int>(asset->info().sphere_count));
+  }
   while (at_most > 0 && sets.count() > at_most && sets.merge_cheapest()) {
   }
   const double gain = at_most > 0 ? 1e-3 * sets.gap() : kGainMin * sets.gap();

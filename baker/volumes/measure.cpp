@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "volumes/bodies.h"
 
@@ -75,17 +76,22 @@ ColliderFit fit_of(const std::vector<SkinSample>& skin, const Colliders& collide
   for (const ColliderBody& body : colliders.bodies) out.bodies += body.volumes.empty() ? 0 : 1;
   if (volumes.empty() || skin.empty()) return out;
   double area = 0;
+  std::vector<double> area_of_body(colliders.bodies.size(), 0), inside_of_body = area_of_body;
   std::vector<std::pair<double, double>> gaps, protrusions;
   for (const SkinSample& sample : skin) {
     double least = INFINITY;
     for (const PlacedVolume& one : volumes) least = std::min(least, signed_distance(one.volume, sample.point));
     area += sample.area;
-    out.coverage += least <= 0 ? sample.area : 0;
+    area_of_body[static_cast<std::size_t>(sample.body)] += sample.area;
+    inside_of_body[static_cast<std::size_t>(sample.body)] += least <= 0 ? sample.area : 0;
     out.gap_mean += sample.area * std::abs(least);
     gaps.emplace_back(std::abs(least), sample.area);
     protrusions.emplace_back(std::max(-least, 0.0), sample.area);
   }
-  out.coverage /= area;
+  out.coverage = std::accumulate(inside_of_body.begin(), inside_of_body.end(), 0.0) / area;
+  for (std::size_t i = 0; i < area_of_body.size(); ++i) {
+    out.coverage_of_body.push_back(area_of_body[i] > 0 ? inside_of_body[i] / area_of_body[i] : 1);
+  }
   out.gap_mean /= area;
   out.gap_95 = weighted_quantile(std::move(gaps), 0.95);
   out.protrusion_95 = weighted_quantile(std::move(protrusions), 0.95);
@@ -107,6 +113,7 @@ ColliderFit measure_fit(const OpenAsset& asset, const Colliders& colliders) {
 
 ColliderFit measure_fit(const AnimatedAsset& animated, const Colliders& colliders, int frames) {
   ColliderFit out;
+  out.coverage_of_body.resize(colliders.bodies.size(), 0);
   const int count = std::min(frames, animated.frame_count());
   for (int i = 0; i < count; ++i) {
     const Deformation pose = animated.deformation(static_cast<int>(std::int64_t{i} * animated.frame_count() / count));
@@ -116,6 +123,9 @@ ColliderFit measure_fit(const AnimatedAsset& animated, const Colliders& collider
     out.volumes = one.volumes;
     out.bodies = one.bodies;
     out.coverage += one.coverage / count;
+    for (std::size_t k = 0; k < one.coverage_of_body.size(); ++k) {
+      out.coverage_of_body[k] += one.coverage_of_body[k] / count;
+    }
     out.gap_mean += one.gap_mean / count;
     out.gap_95 += one.gap_95 / count;
     out.protrusion_95 += one.protrusion_95 / count;

@@ -69,6 +69,7 @@ namespace UnityEngine
         public GameObject gameObject;
         public new string name { get { return gameObject.name; } }
         public Transform transform { get { return gameObject.transform; } }
+        public T GetComponent<T>() where T : Component { return gameObject.GetComponent<T>(); }
         public T[] GetComponentsInChildren<T>() where T : Component { return gameObject.GetComponentsInChildren<T>(); }
     }
 
@@ -121,6 +122,7 @@ namespace UnityEngine
         }
     }
 
+    public class Rigidbody : Component { public bool isKinematic; }
     public class Collider : Component { public bool isTrigger; }
     public class SphereCollider : Collider { public Vector3 center; public float radius; }
     public class CapsuleCollider : Collider { public Vector3 center; public float radius, height; public int direction; }

@@ -104,13 +104,15 @@ public class SpherechainColliders : MonoBehaviour
         return capsule;
     }
 
-    // Where the bone is, turned as it is, one metre a unit where the character's own scale is 1.
+    // Where the bone is, turned as it is, one metre a unit where the character's own scale is 1. A kinematic Rigidbody,
+    // because Unity takes moving colliders without one for walls; where the bone has a Rigidbody, a ragdoll's, they are its.
     static Transform AddBody(Transform root, Transform bone, string part)
     {
         Transform body = new GameObject(Prefix + part).transform;
         body.SetParent(bone, false);
         Vector3 scale = bone.lossyScale, whole = root.lossyScale;
         body.localScale = new Vector3(whole.x / scale.x, whole.y / scale.y, whole.z / scale.z);
+        if (bone.GetComponent<Rigidbody>() == null) body.gameObject.AddComponent<Rigidbody>().isKinematic = true;
         return body;
     }
 

@@ -42,16 +42,17 @@ TEST_CASE("export: the JSON has the human's parts, each after the one it hangs o
 
 TEST_CASE("export: what is wrong is said before anything is written") {
   const TemporaryFolder folder;
-  const std::filesystem::path out = folder.path / "human.out";
-  const auto refused = [&](const std::string& words, int code, const std::vector<std::string>& parts) {
-    tool::check_error(tool::run(export_of(out, words)), code, parts);
+  const auto refused = [&](const std::string& words, int code, const std::vector<std::string>& parts,
+                           const std::string& name = "human.xml") {
+    tool::check_error(tool::run(export_of(folder.path / name, words)), code, parts);
     CHECK(tool::files_in(folder.path) == 0);
   };
   refused("--to vrm", 2, {"--source"});
   refused("--to mjcf --source /usr/share/assimp/models/OBJ/spider.obj", 3, {"spider.obj"});
   refused("--to mjcf --filter nowhere.json", 3, {"nowhere.json"});
   refused("--to mjcf --at-most 0", 2, {"--at-most"});
-  refused(std::string("--to khr --source ") + kHumanFile, 3, {"bones"});  // it has none of its own
+  refused(std::string("--to khr --source ") + kHumanFile, 3, {"bones"}, "human.glb");  // it has none of its own
+  refused("--to usd", 2, {"human.usdc", ".usda or .usd"}, "human.usdc");
 }
 
 TEST_CASE("export: a file of somebody else stays, also beside the output, but by force") {
@@ -64,5 +65,10 @@ TEST_CASE("export: a file of somebody else stays, also beside the output, but by
   CHECK(tool::run(words + " --force").code == 0);
   CHECK(tool::contents(beside) != "somebody's");
   CHECK(tool::run(words).code == 0);  // of its own making
-  tool::check_error(tool::run(export_of(folder.path / "human.srdf", "--to urdf")), 2, {"human.srdf", "same file"});
+  // A GLB is of this tool if it has what this tool adds.
+  const std::filesystem::path glb = folder.write("human.glb", R"(glTF {"nodes":[{"name":"spherechain\u0020"}]})");
+  const std::string into = export_of(glb, std::string("--to khr --source ") + kHumanFile);
+  tool::check_error(tool::run(into), 3, {"human.glb", "--force"});
+  folder.write("human.glb", R"(glTF {"nodes":[{"name":"spherechain hand"}]})");
+  tool::check_error(tool::run(into), 3, {"bones"});  // it would have been replaced
 }

@@ -3,6 +3,7 @@
 
 #include <numbers>
 #include <random>
+#include <set>
 
 #include "baked_human.h"
 #include "export/ignore_by_filter.h"
@@ -188,6 +189,20 @@ TEST_CASE("volumes of a human: never more than asked for, nearer to the skin the
       return pair.a == parent && pair.b == static_cast<int>(i) && pair.reason == IgnoredReason::kAdjacent;
     }));
   }
+}
+
+TEST_CASE("fewer volumes than parts: both ends of limbs go, never the middle; spheres leave no part out") {
+  const OpenAsset asset = open_asset_of(baked_human());
+  const Colliders few = fit_volumes(asset, VolumeShape::kCones, 12);
+  std::set<std::string> held;
+  for (const ColliderBody& body : few.bodies) {
+    if (body.held_by >= 0) held.insert(body.name);
+  }
+  CHECK(held == std::set<std::string>{"left foot", "left hand", "left shoulder", "neck", "right foot", "right hand",
+                                      "right shoulder"});
+  const Colliders spheres = fit_volumes(asset, VolumeShape::kSpheres, 0);
+  CHECK(measure_fit(asset, spheres).volumes <= static_cast<int>(asset->info().sphere_count));
+  for (const ColliderBody& body : spheres.bodies) CHECK_MESSAGE(!body.volumes.empty(), body.name);
 }
 
 TEST_CASE("bodies that the filter saw idle are ignored, but those that stand for a part that needs a test") {
