@@ -31,13 +31,8 @@ export interface Spherechain {
   open(bytes: Uint8Array | ArrayBuffer): Asset;
 }
 
-/** What the runtime refuses. */
-export class SpherechainError extends Error {
-  /** "too small", "corrupt" ...: what went wrong. */
-  readonly code: string;
-  /** "pose.bone_count" ...: with which argument; "" where with none. */
-  readonly field: string;
-}
+/** What was refused, and why, in its message. */
+export class SpherechainError extends Error {}
 
 /** The character's own left or right; null: neither. */
 export type Side = 'left' | 'right' | null;
@@ -103,7 +98,7 @@ export interface Asset {
    * another rest pose, unit or axis convention is then refused. Without `joints`, palettes come in the order of `bones`. */
   createCharacter(joints?: readonly Joint[]): Character;
 
-  /** Frees the asset's memory. Its characters must be disposed of first. What is not disposed of stays until the page goes. */
+  /** Frees the memory, of its characters too. What is not disposed of stays until the page goes. */
   dispose(): void;
 }
 
