@@ -49,11 +49,17 @@
 #define SPHERECHAIN_SIMD_HIGHWAY_H
 #endif
 
+#if HWY_TARGET == HWY_WASM
+#include "simd/highway_wasm.h"
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
 namespace HWY_NAMESPACE {
 
+#if HWY_TARGET != HWY_WASM
 namespace hn = hwy::HWY_NAMESPACE;
+#endif
 
 // Lane i as bit i.
 HWY_INLINE std::uint64_t bits_of(hn::Mask<hn::ScalableTag<float>> mask) {
