@@ -3,7 +3,7 @@
 #   golden       hashes of spheres, pairs, contacts and penetrations are those of tests/golden
 #   api          the package beside the C interface, and what it refuses
 #   which_parts  the sample prints the lines of samples/hello
-#   page         the programs of docs/javascript.md, word for word, in Node and Chromium
+#   page         the programs of docs/javascript.md, word for word, in Node and Chromium, with the package as npm packs and installs it
 #   chromium     the sample's page; contacts of a human in under half a millisecond; the package in a page from disk
 cmake_minimum_required(VERSION 3.25)
 file(REMOVE_RECURSE ${WORK})
@@ -18,14 +18,14 @@ function(run output)
   set(${output} "${text}" PARENT_SCOPE)
 endfunction()
 
-if(CASE MATCHES "page|chromium" AND NOT CHROMIUM)
-  message("SKIPPED: chromium is missing (Debian: chromium)")
+if(CASE MATCHES "page|chromium" AND NOT (CHROMIUM AND NPM))
+  message("SKIPPED: chromium or npm is missing (Debian: chromium, npm)")
   return()
 endif()
 if(CASE MATCHES "api|which_parts|chromium")
   run(nothing ${WRITE_PALETTES} ${MODEL} human.palettes)
 endif()
-if(CASE MATCHES "which_parts|page|chromium")  # as npm installs it
+if(CASE MATCHES "which_parts|chromium")  # as npm installs it
   file(MAKE_DIRECTORY ${WORK}/node_modules)
   file(CREATE_LINK ${PACKAGE} ${WORK}/node_modules/spherechain SYMBOLIC)
 endif()
@@ -51,6 +51,18 @@ elseif(CASE STREQUAL which_parts)
   if(NOT result EQUAL 3 OR NOT error MATCHES "^which_parts: error: ")
     message(FATAL_ERROR "of a file that is no asset: exit ${result}, \"${error}\"")
   endif()
+elseif(CASE STREQUAL page)
+  run(nothing ${NPM} pack ${PACKAGE} --silent)
+  file(GLOB packed ${WORK}/spherechain-*.tgz)
+  run(nothing ${NPM} install --offline --no-audit --no-fund --silent ${packed})
+  file(COPY_FILE ${AUTOMATIC} ${WORK}/human.sphc)
+  run(nothing ${NODE} ${here}/page.mjs ${ROOT}/docs/javascript.md ${CHROMIUM})
+elseif(CASE STREQUAL chromium)
+  file(GLOB sample ${ROOT}/samples/javascript/*)
+  file(COPY ${sample} DESTINATION ${WORK})
+  file(COPY_FILE ${AUTOMATIC} ${WORK}/human.sphc)
+  run(text ${NODE} ${here}/sample_page.mjs ${CHROMIUM} ${PACKAGE} ${REFERENCE} ${OWN_BONES} human.palettes)
+  message(STATUS "${text}")
 else()
   message(FATAL_ERROR "no such case: ${CASE}")
 endif()
