@@ -78,9 +78,8 @@ test('vertices lie in the spheres’ space, and triangles name them', () => {
   const asset = spherechain.open(bytes);
   const character = asset.createCharacter(joints);
   character.setPalette(posed);
-  const vertices = character.vertices();
+  const found = character.penetrations()[0].deepestA, vertices = character.vertices();
   assert.ok(asset.triangles.every(vertex => 3 * vertex + 2 < vertices.length));
-  const found = character.penetrations()[0].deepestA;
   for (const axis of [0, 1, 2]) {
     const corners = [0, 1, 2].map(k => vertices[3 * asset.triangles[3 * found.triangle + k] + axis]);
     const place = corners.reduce((sum, value, k) => sum + value * found.weights[k], 0);

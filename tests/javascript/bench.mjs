@@ -8,7 +8,7 @@ import { pathToFileURL } from 'node:url';
 import { measureInChromium } from './in_chromium.mjs';
 import { measure } from './measure.mjs';
 
-const PASSES = 20;
+const PASSES = 8;
 const [packageFolder, reference, chromium, ...clips] = process.argv.slice(2);
 const { load } = await import(pathToFileURL(`${packageFolder}/index.js`));
 const bytes = file => new Uint8Array(readFileSync(file)).buffer;

@@ -211,7 +211,7 @@ class PosedCharacter {
 template <typename Frame>
 double time_of(const Palettes& palettes, const Frame& frame) {
   std::vector<double> best(palettes.frames.size(), 1e9);
-  for (int pass = 0; pass < 20; ++pass) {
+  for (int pass = 0; pass < 8; ++pass) {
     for (std::size_t i = 0; i < best.size(); ++i) {
       const auto start = std::chrono::steady_clock::now();
       frame(palettes.frames[i]);

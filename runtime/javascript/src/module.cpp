@@ -256,6 +256,7 @@ PosedCharacter* create_character(const OpenedAsset* asset, const sc_bone* joints
       !made->spheres.reserve(spheres) || !made->pairs.reserve(spheres * (spheres - 1) / 2) ||
       !made->detect_tables[0].reserve(table) || !made->detect_tables[1].reserve(table) ||
       !made->scratch.reserve(sc_skin_scratch_words(&asset->asset)) ||
+      !made->scratch.reserve(sc_penetration_scratch_words(&asset->asset, kTrianglesMin)) ||
       !made->contacts.reserve(parts * (parts + 1) / 2) || !made->penetrations.reserve(parts * (parts + 1) / 2) ||
       !made->previous.reserve(parts * (parts + 1) / 2) ||
       !made->triangles.reserve(asset->has_skin() ? kTrianglesMin : 0) ||
