@@ -16,12 +16,13 @@ for header in hwy flatbuffers doctest; do ln -s "/usr/include/$header" "$root/in
 cp -r /usr/lib/cmake/doctest "$root/lib/cmake/"
 sed -i "s|\"/usr\"|\"$root\"|" "$root"/lib/cmake/*/*Targets.cmake
 
-# The tests throw; the package's runtime does not.
+# The tests throw; the package's runtime does not. Links with -O1: above that emcc asks Node for acorn, which a Node that is not
+# Debian's does not find.
 emcmake cmake --preset release -B build/wasm-tests -DSPHERECHAIN_BAKER=OFF -DSPHERECHAIN_STUDIES=OFF -DSPHERECHAIN_CUDA=OFF -DSPHERECHAIN_PYTHON=OFF \
   -DSPHERECHAIN_HIGHWAY_INCLUDE_DIR="$root/include" -DSPHERECHAIN_FLATBUFFERS_INCLUDE_DIR="$root/include" -Ddoctest_DIR="$root/lib/cmake/doctest" \
-  -DCMAKE_CXX_FLAGS="-msimd128 -fexceptions" -DCMAKE_EXE_LINKER_FLAGS="-sNODERAWFS=1 -sALLOW_MEMORY_GROWTH=1 -sTOTAL_STACK=4mb" >/dev/null
+  -DCMAKE_CXX_FLAGS="-msimd128 -fexceptions" -DCMAKE_EXE_LINKER_FLAGS="-sNODERAWFS=1 -sALLOW_MEMORY_GROWTH=1 -sTOTAL_STACK=4mb -O1" >/dev/null
 cmake --build build/wasm-tests --target test_runtime golden fuzz_jobs
 run() { node --no-experimental-fetch "build/wasm-tests/bin/$1.js" "${@:2}"; }  # emscripten 3.1.6 would fetch a file
 run golden "$PWD/tests/golden"
 run fuzz_jobs --cases 2400
-run test_runtime "$@"
+run test_runtime --test-case-exclude='four threads*' "$@"  # there are none

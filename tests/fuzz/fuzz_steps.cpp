@@ -243,7 +243,7 @@ void fuzz_steps(Case& c) {
       [&] { job.scratch = nullptr, c.spoil(SC_NULL, SC_FIELD_SCRATCH); },
       [&] { job.scratch_words = c.random.up_to(job.scratch_words - 1), c.spoil(SC_TOO_SMALL, SC_FIELD_SCRATCH); },
       [&] { job.contacts = nullptr, job.contact_capacity = 1, c.spoil(SC_NULL, SC_FIELD_CONTACTS); },
-      [&] { other = draw_none<Target>(c, 7), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
+      [&] { other = draw_none<Target>(c, 8), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
       [&] {
         const float none[] = {NAN, -1e-45F, -1, 1.1F, INFINITY};
         job.tolerance = c.random.pick(none);

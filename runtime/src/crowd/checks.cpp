@@ -55,7 +55,7 @@ Status check_instances(const AssetView& asset, const CrowdJob& job) {
     }
     const std::size_t stride = sphere_stride(asset, job);
     return stride >= asset.spheres().size && stride < kMaxCount &&
-                   job.instance_count <= (std::uint64_t{1} << 56) / stride
+                   job.instance_count <= SIZE_MAX / sizeof(Sphere) / stride
                ? done()
                : refuse(SC_BAD_STRIDE, SC_FIELD_INSTANCE_STRIDE);
   }
