@@ -19,7 +19,7 @@
 // Errors are thrown as SpherechainError with the runtime's sentence. Whatever the bytes of an asset and the numbers of a
 // palette are, nothing worse happens.
 
-/** Compiles the module: once a page, a second or less. Every call gives the same object. Needs WebAssembly with SIMD:
+/** Compiles the module: once a page, some tens of milliseconds. Every call gives the same object. Needs WebAssembly with SIMD:
  * Chromium 91, Firefox 89, Safari 16.4, Node 16.4, or newer. */
 export function load(): Promise<Spherechain>;
 
