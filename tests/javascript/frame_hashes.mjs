@@ -15,19 +15,22 @@ class Hash {
   }
 }
 
+// The words of an sc_penetration. `hash` has words() and floats().
+export function addPenetration(hash, found) {
+  hash.words([found.partA, found.partB, KINDS.indexOf(found.kind)]);
+  hash.floats([found.depth, ...found.direction]);
+  hash.words([found.volume === null ? 0 : 1]);
+  hash.floats([found.volume ?? 0, found.contourLength, found.visible]);
+  for (const point of [found.deepestA, found.deepestB]) {
+    hash.floats(point.position);
+    hash.words([point.triangle]);
+    hash.floats(point.weights);
+  }
+}
+
 function hashPenetrations(list) {
   const hash = new Hash();
-  for (const found of list) {
-    hash.words([found.partA, found.partB, KINDS.indexOf(found.kind)]);
-    hash.floats([found.depth, ...found.direction]);
-    hash.words([found.volume === null ? 0 : 1]);
-    hash.floats([found.volume ?? 0, found.contourLength, found.visible]);
-    for (const point of [found.deepestA, found.deepestB]) {
-      hash.floats(point.position);
-      hash.words([point.triangle]);
-      hash.floats(point.weights);
-    }
-  }
+  for (const found of list) addPenetration(hash, found);
   return hash;
 }
 

@@ -2,6 +2,7 @@
 // golden.mjs PACKAGE FOLDER CLIP: the golden hashes of tests/golden that come from bone matrices, by the package.
 import { readFileSync } from 'node:fs';
 import { pathToFileURL } from 'node:url';
+import { addPenetration } from './frame_hashes.mjs';
 
 const [packageFolder, folder, clip] = process.argv.slice(2);
 const { load } = await import(pathToFileURL(`${packageFolder}/index.js`));
@@ -34,7 +35,6 @@ class Hash {
 }
 
 const END = 0xffffffff;
-const KINDS = ['rest', 'shell', 'touch', 'fold', 'deep_fold', 'penetration'];
 const asset = (await load()).open(readFileSync(`${folder}/doll.sphc`));
 const character = asset.createCharacter();
 const bytes = readFileSync(clip);
@@ -81,15 +81,7 @@ for (let frame = 0; frame < frames; ++frame) {
   if (frame % 4 === 0) {
     const measured = hash('penetrations bones');
     for (const found of character.penetrations(false)) {
-      measured.words([found.partA, found.partB, KINDS.indexOf(found.kind)]);
-      measured.floats([found.depth, ...found.direction]);
-      measured.word(found.volume === null ? 0 : 1);
-      measured.floats([found.volume ?? 0, found.contourLength, found.visible]);
-      for (const point of [found.deepestA, found.deepestB]) {
-        measured.floats(point.position);
-        measured.word(point.triangle);
-        measured.floats(point.weights);
-      }
+      addPenetration(measured, found);
       ++measured.count;
     }
     measured.word(END);
