@@ -25,7 +25,7 @@ export async function measureInChromium(chromium, packageFolder, asset, palettes
   const server = await serve(folder);
   const page = await visit(chromium, `${server.url}/index.html`);
   try {
-    const measured = await page.wait('window.measured', 100);
+    const measured = await page.wait('window.measured', 300);
     if (page.noise.length > 0) throw new Error(page.noise.join('\n'));
     return measured;
   } finally {
