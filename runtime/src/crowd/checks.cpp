@@ -70,7 +70,8 @@ Status check_instances(const AssetView& asset, const CrowdJob& job) {
     return refuse(SC_BAD_STRIDE, SC_FIELD_BONE_STRIDE);
   }
   const std::size_t stride = bone_stride(asset, job);
-  return stride <= kMaxCount && stride % sizeof(float) == 0 && stride >= instance_bytes(asset, job)
+  return stride <= kMaxCount && stride % sizeof(float) == 0 && stride >= instance_bytes(asset, job) &&
+                 job.instance_count <= SIZE_MAX / stride
              ? done()
              : refuse(SC_BAD_STRIDE, SC_FIELD_INSTANCE_STRIDE);
 }
