@@ -94,7 +94,8 @@ HWY_INLINE V fused(D d, V a, V b, V c) {
   return hn::MulAdd(a, b, c);
 #elif HWY_TARGET == HWY_SCALAR
   return hn::Set(d, fused_multiply_add(hn::GetLane(a), hn::GetLane(b), hn::GetLane(c)));
-#else                       // as fused_multiply_add, two lanes at a time
+#else
+  // As fused_multiply_add, two lanes at a time.
   static_assert(hn::MaxLanes(D()) == 4, "a whole register");
   const hn::Repartition<std::int32_t, D> words;
 #if HWY_TARGET == HWY_WASM  // Highway 1.0.3 has no doubles there
