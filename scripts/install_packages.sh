@@ -9,6 +9,8 @@ while read -r package; do
   [[ -z $package || $package == \#* ]] && continue
   # Debian's Node would replace parts of one that came from elsewhere.
   [[ $package == nodejs || $package == npm ]] && command -v node >/dev/null && command -v npm >/dev/null && continue
+  # Emscripten would bring Debian's.
+  [[ $package == emscripten ]] && command -v node >/dev/null && ! dpkg-query -W -f='${db:Status-Status}' nodejs 2>/dev/null | grep -qx installed && continue
   dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null | grep -qx installed || missing+=("$package")
 done < packages.txt
 [[ ${#missing[@]} -eq 0 ]] && exit 0

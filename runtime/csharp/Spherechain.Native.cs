@@ -27,6 +27,8 @@ namespace Spherechain
         /// <summary>F, VL, DQ, BW, CD</summary>
         Avx512 = 5,
         Neon = 6,
+        /// <summary>WebAssembly's SIMD of 128 bits</summary>
+        Wasm = 7,
     }
 
     public enum Code : int  // sc_code

@@ -58,7 +58,7 @@ void add_common_ways(Case& c, Job& job, Target& other, Ways& ways) {
   ways.emplace_back([&c, &job, words = job.scratch_words] {
     job.scratch_words = c.random.up_to(words - 1), c.spoil(SC_TOO_SMALL, SC_FIELD_SCRATCH);
   });
-  ways.emplace_back([&] { other = draw_none<Target>(c, 7), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); });
+  ways.emplace_back([&] { other = draw_none<Target>(c, 8), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); });
 }
 
 template <typename Job>

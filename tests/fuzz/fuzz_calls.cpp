@@ -9,7 +9,7 @@ namespace spherechain::test {
 namespace {
 
 std::size_t draw_index(Case& c, std::size_t count) {
-  const std::size_t indices[] = {c.random.up_to(count), count, 0, ~std::size_t{0}, std::size_t{1} << 32};
+  const std::size_t indices[] = {c.random.up_to(count), count, 0, ~std::size_t{0}, power_of_two(32)};
   return c.random.pick(indices);
 }
 
@@ -123,7 +123,7 @@ void fuzz_accessors(Case& c) {
   c.expect((sc_asset_sphere(asset, i).radius > 0) == (i < info.sphere_count), "a sphere's radius");
   if (i >= info.source_buffer_count) c.expect(sc_asset_source_buffer(asset, i).vertex_count == 0, "no buffer");
   c.expect(sc_code_text(draw_none<sc_code>(c, 22)) != nullptr && sc_field_name(draw_none<sc_field>(c, 32)) != nullptr &&
-               sc_target_name(draw_none<Target>(c, 7)) != nullptr,
+               sc_target_name(draw_none<Target>(c, 8)) != nullptr,
            "text of what does not exist");
   for (const Asset* none : {static_cast<const Asset*>(nullptr), static_cast<const Asset*>(&c.closed)}) {
     c.expect(sc_asset_is_open(none) == 0 && sc_pair_words(none) + sc_sphere_words(none) + sc_detect_table_words(none) +

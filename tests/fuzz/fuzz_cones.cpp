@@ -143,7 +143,7 @@ void fuzz_cones(Case& c) {
       [&] { job.sphere_count = c.random.up_to(c.n - 1), c.spoil(SC_TOO_SMALL, SC_FIELD_SPHERES); },
       [&] { job.pairs = nullptr, job.pair_capacity = 1, c.spoil(SC_NULL, SC_FIELD_PAIRS); },
       [&] { job.table = nullptr, c.spoil(SC_NULL, SC_FIELD_TABLE); },
-      [&] { other = draw_none<Target>(c, 7), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
+      [&] { other = draw_none<Target>(c, 8), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
       [&] { put_askew(c, job.spheres), c.spoil(SC_MISALIGNED, SC_FIELD_SPHERES); },
       [&] { put_askew(c, job.table), c.spoil(SC_MISALIGNED, SC_FIELD_TABLE); },
       [&] { job.pairs = c.arena.add<Pair>(9), put_askew(c, job.pairs), c.spoil(SC_MISALIGNED, SC_FIELD_PAIRS); },

@@ -149,7 +149,7 @@ Ways ways_of(Case& c, SkinContactJob& job, Filter& filter, Target& other) {
                  c.spoil(SC_MISALIGNED, SC_FIELD_TRIANGLES);
                },
                [&] { job.scope = draw_none<Scope>(c, 3), c.spoil(SC_BAD_VALUE, SC_FIELD_SCOPE); },
-               [&] { other = draw_none<Target>(c, 7), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
+               [&] { other = draw_none<Target>(c, 8), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
                [&] {
                  if (job.candidates != nullptr) {
                    job.filter = &filter;

@@ -15,11 +15,15 @@ void in_reverse(void*, std::size_t count, Task task, void* data) {
   for (std::size_t i = count; i > 0; --i) task(data, i - 1);
 }
 
+#if defined(__EMSCRIPTEN__) && !defined(__EMSCRIPTEN_PTHREADS__)  // there are no threads
+constexpr auto on_threads = in_reverse;
+#else
 void on_threads(void*, std::size_t count, Task task, void* data) {
   std::vector<std::thread> threads;
   for (std::size_t i = 0; i < count; ++i) threads.emplace_back(task, data, i);
   for (std::thread& thread : threads) thread.join();
 }
+#endif
 
 // Breaks the promise in ways that must not matter.
 void past_the_end(void*, std::size_t count, Task task, void* data) {
@@ -126,7 +130,7 @@ Ways ways_of(Case& c, CrowdJob& job, Filter& filter, Target& other) {
   const std::size_t words = sc_pair_words(&c.asset);
   Ways ways = {
       [&] {
-        const std::size_t counts[] = {std::size_t{1} << 32, 0xFFFFFFFFU, ~std::size_t{0}, std::size_t{1} << 58};
+        const std::size_t counts[] = {power_of_two(32), 0xFFFFFFFFU, ~std::size_t{0}, power_of_two(58)};
         job.instance_count = c.random.pick(counts);
         c.spoil(SC_BAD_VALUE, SC_FIELD_INSTANCES);
       },
@@ -162,7 +166,7 @@ Ways ways_of(Case& c, CrowdJob& job, Filter& filter, Target& other) {
       },
       [&] { job.bits = nullptr, job.bit_words = 1, c.spoil(SC_NULL, SC_FIELD_BITS); },
       [&] { job.radius = draw_none<Radius>(c, 2), c.spoil(SC_BAD_VALUE, SC_FIELD_RADIUS); },
-      [&] { other = draw_none<Target>(c, 7), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
+      [&] { other = draw_none<Target>(c, 8), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
       [&] {
         if (job.filter == nullptr) filter = draw_filter(c);
         job.filter = &filter;
@@ -181,7 +185,7 @@ Ways ways_of(Case& c, CrowdJob& job, Filter& filter, Target& other) {
   if (job.pose.bones != nullptr) {
     ways.emplace_back([&] { job.spheres = c.arena.add<Sphere>(1), c.spoil(SC_BAD_VALUE, SC_FIELD_SPHERES); });
     ways.emplace_back([&] {
-      const std::size_t strides[] = {44, 4 * c.n + 1, ~std::size_t{0}, std::size_t{1} << 62};
+      const std::size_t strides[] = {44, 4 * c.n + 1, ~std::size_t{0}, power_of_two(62)};
       job.instance_stride = c.random.pick(strides);
       c.spoil(SC_BAD_STRIDE, SC_FIELD_INSTANCE_STRIDE);
     });

@@ -77,7 +77,7 @@ void fuzz_detect(Case& c) {
         job.bits = c.arena.add<std::uint64_t>(1), job.bit_words = words + 1, c.spoil(SC_BAD_VALUE, SC_FIELD_BITS);
       },
       [&] { job.radius = draw_none<Radius>(c, 2), c.spoil(SC_BAD_VALUE, SC_FIELD_RADIUS); },
-      [&] { other = draw_none<Target>(c, 7), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
+      [&] { other = draw_none<Target>(c, 8), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
       [&] { put_askew(c, job.spheres), c.spoil(SC_MISALIGNED, SC_FIELD_SPHERES); },
       [&] { job.pairs = c.arena.add<Pair>(9), put_askew(c, job.pairs), c.spoil(SC_MISALIGNED, SC_FIELD_PAIRS); },
       [&] {

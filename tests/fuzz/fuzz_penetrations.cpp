@@ -48,7 +48,7 @@ Ways ways_of(Case& c, PenetrationJob& job, Target& other) {
       [&] { job.touch_depth = -1, c.spoil(SC_BAD_VALUE, SC_FIELD_TOUCH_DEPTH); },
       [&] { job.touch_depth = NAN, c.spoil(SC_BAD_VALUE, SC_FIELD_TOUCH_DEPTH); },
       [&] { job.scope = draw_none<Scope>(c, 3), c.spoil(SC_BAD_VALUE, SC_FIELD_SCOPE); },
-      [&] { other = draw_none<Target>(c, 7), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
+      [&] { other = draw_none<Target>(c, 8), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
       [&] {
         if (job.contact_count > 0) {
           const_cast<TriangleContact*>(job.contacts)->triangle_b = 0xFFFFFFFFU;

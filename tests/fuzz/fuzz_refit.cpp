@@ -17,7 +17,7 @@ void fuzz_refit(Case& c) {
   Ways ways = {[&] { job.spheres = nullptr, c.spoil(SC_NULL, SC_FIELD_SPHERES); },
                [&] { job.sphere_capacity = c.random.up_to(c.n - 1), c.spoil(SC_TOO_SMALL, SC_FIELD_SPHERES); },
                [&] { job.radius = draw_none<Radius>(c, 2), c.spoil(SC_BAD_VALUE, SC_FIELD_RADIUS); },
-               [&] { other = draw_none<Target>(c, 7), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
+               [&] { other = draw_none<Target>(c, 8), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
                [&] { put_askew(c, job.spheres), c.spoil(SC_MISALIGNED, SC_FIELD_SPHERES); }};
   add_asset_ways(c, job.asset, ways);
   const bool has_bones = c.random.one_in(2);

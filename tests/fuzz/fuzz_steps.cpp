@@ -133,7 +133,7 @@ void add_motion_ways(Case& c, Motion& motion, bool is_first, Ways& ways) {
   ways.emplace_back([&] { put_askew(c, motion.body.skin_table), c.spoil(SC_MISALIGNED, SC_FIELD_SKIN_TABLE); });
   ways.emplace_back([&] { motion.body.asset = &c.closed, c.spoil(SC_NOT_OPEN, SC_FIELD_ASSET); });
   ways.emplace_back([&] {
-    motion.joint_count = ~std::size_t{0} >> c.random.below(40);
+    motion.joint_count = ~std::size_t{0} >> c.random.below(8 * sizeof(std::size_t) - 24);
     c.spoil(SC_BAD_VALUE, SC_FIELD_JOINTS);
   });
   ways.emplace_back([&] { motion.blend = draw_none<Blend>(c, 3), c.spoil(SC_BAD_VALUE, SC_FIELD_BLEND); });
@@ -243,7 +243,7 @@ void fuzz_steps(Case& c) {
       [&] { job.scratch = nullptr, c.spoil(SC_NULL, SC_FIELD_SCRATCH); },
       [&] { job.scratch_words = c.random.up_to(job.scratch_words - 1), c.spoil(SC_TOO_SMALL, SC_FIELD_SCRATCH); },
       [&] { job.contacts = nullptr, job.contact_capacity = 1, c.spoil(SC_NULL, SC_FIELD_CONTACTS); },
-      [&] { other = draw_none<Target>(c, 7), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
+      [&] { other = draw_none<Target>(c, 8), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
       [&] {
         const float none[] = {NAN, -1e-45F, -1, 1.1F, INFINITY};
         job.tolerance = c.random.pick(none);

@@ -8,6 +8,11 @@
 
 namespace spherechain::test {
 
+// 2^exponent; where sizes are of 32 bits the largest one.
+constexpr std::size_t power_of_two(unsigned exponent) {
+  return exponent < 8 * sizeof(std::size_t) ? std::size_t{1} << exponent : ~std::size_t{0};
+}
+
 class Random {
  public:
   explicit Random(std::uint64_t seed) : engine_(seed) {}

@@ -18,6 +18,10 @@ CrowdBuffers::CrowdBuffers(const Asset& asset, std::size_t instance_count, std::
 
 void on_threads(void* user, std::size_t count, void (*task)(void*, std::size_t), void* data) {
   const std::size_t threads = *static_cast<std::size_t*>(user);
+#if defined(__EMSCRIPTEN__) && !defined(__EMSCRIPTEN_PTHREADS__)  // no threads: the same tasks, one after the other
+  for (std::size_t i = count; i-- > 0;) task(data, i);
+  (void)threads;
+#else
   std::vector<std::thread> running;
   for (std::size_t t = 0; t < threads; ++t) {
     running.emplace_back([=] {
@@ -25,6 +29,7 @@ void on_threads(void* user, std::size_t count, void (*task)(void*, std::size_t),
     });
   }
   for (std::thread& thread : running) thread.join();
+#endif
 }
 
 }  // namespace spherechain::test

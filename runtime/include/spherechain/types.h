@@ -31,6 +31,7 @@ SC_ENUM(sc_target){
     SC_TARGET_SCALAR = 1, SC_TARGET_SSE2 = 2, SC_TARGET_SSSE3 = 3, SC_TARGET_AVX2 = 4, /* with BMI2 and FMA */
     SC_TARGET_AVX512 = 5,                                                              /* F, VL, DQ, BW, CD */
     SC_TARGET_NEON = 6,
+    SC_TARGET_WASM = 7, /* WebAssembly's SIMD of 128 bits */
 };
 
 /* What went wrong. */

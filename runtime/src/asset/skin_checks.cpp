@@ -236,10 +236,10 @@ class SkinChecker {
   template <typename Lanes>
   bool check_groups(Numbers counts, const char* counts_name, Numbers names, const char* names_name, std::size_t limit,
                     Span<const Lanes> lanes, std::size_t first_length) {
-    std::uint64_t i = 0;
+    std::size_t i = 0;
     for (std::size_t group = 0; group < counts.size; ++group) {
-      const std::uint64_t first = i, end = first + counts[group];
-      if (end > names.size) {
+      const std::size_t first = i, end = first + counts[group];
+      if (counts[group] > names.size - first) {
         return message_.wrong_at(counts_name, group, "its entries are past the end");
       }
       for (; i < end; ++i) {

@@ -55,7 +55,7 @@ Status check_instances(const AssetView& asset, const CrowdJob& job) {
     }
     const std::size_t stride = sphere_stride(asset, job);
     return stride >= asset.spheres().size && stride < kMaxCount &&
-                   job.instance_count <= (std::uint64_t{1} << 56) / stride
+                   job.instance_count <= SIZE_MAX / sizeof(Sphere) / stride
                ? done()
                : refuse(SC_BAD_STRIDE, SC_FIELD_INSTANCE_STRIDE);
   }
@@ -70,7 +70,8 @@ Status check_instances(const AssetView& asset, const CrowdJob& job) {
     return refuse(SC_BAD_STRIDE, SC_FIELD_BONE_STRIDE);
   }
   const std::size_t stride = bone_stride(asset, job);
-  return stride <= kMaxCount && stride % sizeof(float) == 0 && stride >= instance_bytes(asset, job)
+  return stride <= kMaxCount && stride % sizeof(float) == 0 && stride >= instance_bytes(asset, job) &&
+                 job.instance_count <= SIZE_MAX / stride
              ? done()
              : refuse(SC_BAD_STRIDE, SC_FIELD_INSTANCE_STRIDE);
 }

@@ -66,9 +66,9 @@ struct Crowd {
                     batches / task_count * task * lanes + std::min(task, batches % task_count) * lanes);
   }
   // Of a task that has run.
-  std::uint64_t pairs_of(std::size_t task) const { return scratch_of(task)[0]; }
-  std::uint64_t pairs_before(std::size_t task) const {
-    std::uint64_t sum = 0;
+  std::size_t pairs_of(std::size_t task) const { return static_cast<std::size_t>(scratch_of(task)[0]); }
+  std::size_t pairs_before(std::size_t task) const {
+    std::size_t sum = 0;
     for (std::size_t i = 0; i < task; ++i) {
       sum += pairs_of(i);
     }

@@ -40,7 +40,8 @@ Status check_table(const std::uint64_t* words, std::size_t size, bool has_size) 
   if (words[kIsTable] != kMagic || words[kLinks] > kMaxCones) {
     return refuse(SC_BAD_VALUE, SC_FIELD_TABLE);
   }
-  return has_size && size < words_of(words[kLinks]) ? refuse(SC_TOO_SMALL, SC_FIELD_TABLE) : done();
+  return has_size && size < words_of(static_cast<std::size_t>(words[kLinks])) ? refuse(SC_TOO_SMALL, SC_FIELD_TABLE)
+                                                                              : done();
 }
 
 bool is_set(const std::uint64_t* words, std::size_t bit) { return (words[bit / 64] >> (bit % 64) & 1U) != 0; }
@@ -103,7 +104,7 @@ Status check(const ConeJob& job, Target& resolved, ConeTable& table) {
   if (job.table[kAsset] != key_of(asset) || job.table[kSpheres] != n) {
     return refuse(SC_BAD_VALUE, SC_FIELD_TABLE);
   }
-  table.count = job.table[kLinks];
+  table.count = static_cast<std::size_t>(job.table[kLinks]);
   table.stride = stride_of(table.count);
   std::uint64_t* const words = const_cast<std::uint64_t*>(job.table);
   table.links = links_in(words);
@@ -226,7 +227,7 @@ sc_status sc_scale_cones(uint64_t* words, size_t word_count, uint32_t a, uint32_
   if (status != SC_OK) {
     return status;
   }
-  const std::size_t count = words[kLinks];
+  const auto count = static_cast<std::size_t>(words[kLinks]);
   if (a >= b || b >= count) {
     return refuse(SC_BAD_VALUE, SC_FIELD_INDEX);
   }

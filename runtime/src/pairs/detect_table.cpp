@@ -120,7 +120,8 @@ Status read_detect_table(const AssetView& asset, Radius radius, const std::uint6
   scene.choice.padding = {content.padding, words[kIsPadded] != 0 ? n : 0};
   scene.has_lists = is_one_tile(asset);
   if (scene.has_lists) {
-    scene.lists = {lists.wanted, lists.strips, strips_of(n), lists.rest_pairs, lists.rest_scales, words[kRestPairs]};
+    scene.lists = {lists.wanted,     lists.strips,      strips_of(n),
+                   lists.rest_pairs, lists.rest_scales, static_cast<std::size_t>(words[kRestPairs])};
   } else {
     scene.choice.rest_pairs = asset.rest_pairs(radius);
     scene.choice.ignored = {content.ignored, words_for(pairs_of(n))};

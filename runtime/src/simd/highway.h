@@ -17,7 +17,8 @@
 #if !defined(HWY_DISABLED_TARGETS)
 // Of Highway's list, which grows, only the targets of spherechain::Target; by number where Highway 1.0.3 has no name:
 // SSE2 and NEON without AES.
-#define HWY_DISABLED_TARGETS (~(HWY_SCALAR | (1LL << 14) | HWY_SSSE3 | HWY_AVX2 | HWY_AVX3 | HWY_NEON | (1LL << 29)))
+#define HWY_DISABLED_TARGETS \
+  (~(HWY_SCALAR | (1LL << 14) | HWY_SSSE3 | HWY_AVX2 | HWY_AVX3 | HWY_NEON | (1LL << 29) | HWY_WASM))
 // The scalar target is always there to compare with, and is the same one for every compiler.
 #define HWY_COMPILE_ALL_ATTAINABLE
 #define HWY_BROKEN_EMU128 1
@@ -48,11 +49,17 @@
 #define SPHERECHAIN_SIMD_HIGHWAY_H
 #endif
 
+#if HWY_TARGET == HWY_WASM
+#include "simd/highway_wasm.h"
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
 namespace HWY_NAMESPACE {
 
+#if HWY_TARGET != HWY_WASM
 namespace hn = hwy::HWY_NAMESPACE;
+#endif
 
 // Lane i as bit i.
 HWY_INLINE std::uint64_t bits_of(hn::Mask<hn::ScalableTag<float>> mask) {
@@ -73,7 +80,7 @@ HWY_INLINE hn::Mask<hn::ScalableTag<float>> mask_of(std::uint64_t bits) {
 }
 
 #undef SPHERECHAIN_FUSES
-#if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_SSSE3 || HWY_TARGET == (1LL << 14)
+#if HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_SSSE3 || HWY_TARGET == (1LL << 14) || HWY_TARGET == HWY_WASM
 #define SPHERECHAIN_FUSES 0
 #else
 #define SPHERECHAIN_FUSES 1
@@ -87,19 +94,30 @@ HWY_INLINE V fused(D d, V a, V b, V c) {
   return hn::MulAdd(a, b, c);
 #elif HWY_TARGET == HWY_SCALAR
   return hn::Set(d, fused_multiply_add(hn::GetLane(a), hn::GetLane(b), hn::GetLane(c)));
-#else  // as fused_multiply_add, two lanes at a time
+#else
+  // As fused_multiply_add, two lanes at a time.
   static_assert(hn::MaxLanes(D()) == 4, "a whole register");
-  const hn::Repartition<double, D> doubles;
   const hn::Repartition<std::int32_t, D> words;
+#if HWY_TARGET == HWY_WASM  // Highway 1.0.3 has no doubles there
+  const auto sum_of = [](v128_t x, v128_t y, v128_t z) {
+    return wasm_f64x2_add(wasm_f64x2_mul(wasm_f64x2_promote_low_f32x4(x), wasm_f64x2_promote_low_f32x4(y)),
+                          wasm_f64x2_promote_low_f32x4(z));
+  };
+  const auto upper = [](V v) { return wasm_i64x2_shuffle(v.raw, v.raw, 1, 1); };
+  const v128_t low_sums = sum_of(a.raw, b.raw, c.raw), high_sums = sum_of(upper(a), upper(b), upper(c));
+  const hn::Vec<decltype(words)> low{low_sums}, high{high_sums};
+#else
+  const hn::Repartition<double, D> doubles;
   const hn::Half<D> half;
   const auto sum_of = [&](auto x, auto y, auto z) HWY_ATTR {
     return hn::Add(hn::Mul(hn::PromoteTo(doubles, x), hn::PromoteTo(doubles, y)), hn::PromoteTo(doubles, z));
   };
-  const auto low = sum_of(hn::LowerHalf(half, a), hn::LowerHalf(half, b), hn::LowerHalf(half, c));
-  const auto high = sum_of(hn::UpperHalf(half, a), hn::UpperHalf(half, b), hn::UpperHalf(half, c));
-  const auto low_words = hn::ConcatEven(words, hn::BitCast(words, high), hn::BitCast(words, low));
-  const auto high_words =
-      hn::And(hn::ConcatOdd(words, hn::BitCast(words, high), hn::BitCast(words, low)), hn::Set(words, 0x7FFFFFFF));
+  const auto low_sums = sum_of(hn::LowerHalf(half, a), hn::LowerHalf(half, b), hn::LowerHalf(half, c));
+  const auto high_sums = sum_of(hn::UpperHalf(half, a), hn::UpperHalf(half, b), hn::UpperHalf(half, c));
+  const auto low = hn::BitCast(words, low_sums), high = hn::BitCast(words, high_sums);
+#endif
+  const auto low_words = hn::ConcatEven(words, high, low);
+  const auto high_words = hn::And(hn::ConcatOdd(words, high, low), hn::Set(words, 0x7FFFFFFF));
   const auto is_half_way = hn::Eq(hn::And(low_words, hn::Set(words, 0x1FFFFFFF)), hn::Set(words, 0x10000000));
   const auto is_small = hn::And(hn::Gt(high_words, hn::Zero(words)), hn::Gt(hn::Set(words, 0x38100000), high_words));
   if (HWY_UNLIKELY(!hn::AllFalse(words, hn::Or(is_half_way, is_small)))) {
@@ -112,7 +130,11 @@ HWY_INLINE V fused(D d, V a, V b, V c) {
     }
     return hn::Load(d, lanes[0]);
   }
-  return hn::Combine(d, hn::DemoteTo(half, high), hn::DemoteTo(half, low));
+#if HWY_TARGET == HWY_WASM
+  return V{wasm_i64x2_shuffle(wasm_f32x4_demote_f64x2_zero(low_sums), wasm_f32x4_demote_f64x2_zero(high_sums), 0, 2)};
+#else
+  return hn::Combine(d, hn::DemoteTo(half, high_sums), hn::DemoteTo(half, low_sums));
+#endif
 #endif
 }
 

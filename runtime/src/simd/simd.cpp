@@ -46,6 +46,9 @@ constexpr Target kCompiled[] = {
 #if HWY_ARCH_ARM && (HWY_TARGETS & ~HWY_SCALAR)
     SC_TARGET_NEON,
 #endif
+#if HWY_TARGETS & HWY_WASM
+    SC_TARGET_WASM,
+#endif
     SC_TARGET_SCALAR};
 
 constexpr bool all_have_kernels() {
@@ -125,7 +128,7 @@ bool machine_has([[maybe_unused]] Target target) {
   // Other compilers: what the build was told to assume.
   return target == SC_TARGET_SCALAR || count_lanes_kernels[index_of(target)] == &HWY_STATIC_DISPATCH(count_lanes);
 #else
-  return true;  // NEON is compiled only where the build may assume it
+  return true;  // NEON and WebAssembly's are compiled only where the build may assume them
 #endif
 }
 #endif
@@ -171,7 +174,7 @@ extern "C" {
 
 const char* sc_target_name(sc_target target) noexcept {
   static constexpr const char* kNames[spherechain::kTargetCount] = {"best", "scalar", "sse2", "ssse3",
-                                                                    "avx2", "avx512", "neon"};
+                                                                    "avx2", "avx512", "neon", "wasm"};
   const auto number = static_cast<std::size_t>(target);
   return number < spherechain::kTargetCount ? kNames[number] : "unknown target";
 }

@@ -9,7 +9,7 @@
 
 namespace spherechain {
 
-inline constexpr std::size_t kTargetCount = 7;  // values of Target
+inline constexpr std::size_t kTargetCount = 8;  // values of Target
 
 // The targets this build has and this machine runs, best first; the last is SC_TARGET_SCALAR.
 Span<const Target> supported_targets() noexcept;
@@ -33,7 +33,8 @@ bool resolve_target(Target wanted, Target& resolved) noexcept;
                                                                                      HWY_CHOOSE_SSSE3(kernel),        \
                                                                                      HWY_CHOOSE_AVX2(kernel),         \
                                                                                      HWY_CHOOSE_AVX3(kernel),         \
-                                                                                     SPHERECHAIN_CHOOSE_NEON(kernel)}
+                                                                                     SPHERECHAIN_CHOOSE_NEON(kernel), \
+                                                                                     HWY_CHOOSE_WASM(kernel)}
 
 #if defined(HWY_CHOOSE_SSE2)
 #define SPHERECHAIN_CHOOSE_SSE2(kernel) HWY_CHOOSE_SSE2(kernel)

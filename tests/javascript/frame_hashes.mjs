@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// The line that reference.cpp prints of a frame, by the package: for Node and for a page.
+const KINDS = ['rest', 'shell', 'touch', 'fold', 'deep_fold', 'penetration'];
+
+class Hash {
+  value = 2166136261;
+  words(array) {
+    for (const word of array) this.value = Math.imul(this.value ^ word, 16777619);
+  }
+  floats(array) {
+    this.words(new Uint32Array(Float32Array.from(array).buffer));
+  }
+  get hex() {
+    return (this.value >>> 0).toString(16).padStart(8, '0');
+  }
+}
+
+// The words of an sc_penetration. `hash` has words() and floats().
+export function addPenetration(hash, found) {
+  hash.words([found.partA, found.partB, KINDS.indexOf(found.kind)]);
+  hash.floats([found.depth, ...found.direction]);
+  hash.words([found.volume === null ? 0 : 1]);
+  hash.floats([found.volume ?? 0, found.contourLength, found.visible]);
+  for (const point of [found.deepestA, found.deepestB]) {
+    hash.floats(point.position);
+    hash.words([point.triangle]);
+    hash.floats(point.weights);
+  }
+}
+
+function hashPenetrations(list) {
+  const hash = new Hash();
+  for (const found of list) addPenetration(hash, found);
+  return hash;
+}
+
+// Of the palette that was set. A new character for each frame: the thorough measure keeps the frame before.
+export function frameHashes(character) {
+  const spheres = new Hash(), pairs = new Hash(), parts = new Hash(), triangles = new Hash();
+  for (const radius of ['detect', 'fit']) {
+    spheres.floats(character.refit(radius));
+    pairs.words(character.detect(radius));
+  }
+  for (const contact of character.contacts()) {
+    parts.words([contact.partA, contact.partB, contact.trianglePairs]);
+    parts.floats([...contact.low, ...contact.high]);
+  }
+  triangles.words(character.triangleContacts().pairs);
+  const quick = hashPenetrations(character.penetrations()), thorough = hashPenetrations(character.penetrations(false));
+  return [spheres, pairs, parts, triangles, quick, thorough].map(hash => hash.hex).join(' ');
+}
