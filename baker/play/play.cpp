@@ -92,6 +92,16 @@ void AnimatedAsset::play_clip(const Clip& clip, const FrameChoice& frames) {
 }
 
 void AnimatedAsset::play_poses(const std::string& file) {
+  if (rig_of_poses(file) == PoseRig::kOwn) {
+    const SourceRig& rig = character_.rig;
+    if (rig.bones.empty()) {
+      throw Error(ExitCode::kFile, file + ": turns joints of the character's own skeleton, and " + source_name_ +
+                                       " has none (without \"rig\": \"own\" it turns those of the automatic rig)");
+    }
+    const std::vector<Joint> joints = own_joints(rig);
+    motion_ = std::make_unique<BezierMotion>(joints, frame(), read_pose_motion(file, joints, rig.morphs), rig.morphs);
+    return use_skin();
+  }
   const std::vector<Joint> joints = joints_of(file_);
   if (joints.empty()) {
     throw Error(ExitCode::kFile, file + ": turns the joints of a biped, and " + asset_name_ +
