@@ -49,7 +49,7 @@ void add_limbs_by_role(PosableRig& out, const std::vector<std::string>& role_of_
 }
 
 // A limb that is neither arm nor leg of a biped bends at the joint that is nearest to half its length.
-void add_limb(PosableRig& out, const RoleLimb& limb, const std::vector<int>& joint_of_node,
+void add_limb(PosableRig& out, const RoleLimb& limb, bool has_feet, const std::vector<int>& joint_of_node,
               const std::vector<Vec3>& positions) {
   std::vector<int> nodes;  // those with a joint
   for (const int n : limb.nodes) {
@@ -59,7 +59,8 @@ void add_limb(PosableRig& out, const RoleLimb& limb, const std::vector<int>& joi
   const auto at = [&](int node) { return positions[static_cast<std::size_t>(node)]; };
   const auto joint = [&](int node) { return joint_of_node[static_cast<std::size_t>(node)]; };
   // Nodes past the last joint say where the limb ends.
-  const int tip = limb.extremity > 0 ? limb.nodes[static_cast<std::size_t>(limb.extremity)] : limb.nodes.back();
+  const int tip =
+      has_feet && limb.extremity > 0 ? limb.nodes[static_cast<std::size_t>(limb.extremity)] : limb.nodes.back();
   const bool is_joint = joint(tip) >= 0;
   double length = (at(tip) - at(nodes.back())).norm();
   for (std::size_t i = 1; i < nodes.size(); ++i) length += (at(nodes[i]) - at(nodes[i - 1])).norm();
@@ -117,7 +118,7 @@ PosableRig posable_rig(const AnimatedAsset& animated) {
       const bool is_arm_or_leg =
           limb.name == "left_arm" || limb.name == "right_arm" || limb.name == "left_leg" || limb.name == "right_leg";
       if (roles.kind == BodyKind::kBiped && is_arm_or_leg) continue;
-      if (limb.name != "neck") add_limb(out, limb, joint_of_node, positions);
+      if (limb.name != "neck") add_limb(out, limb, roles.kind != BodyKind::kOther, joint_of_node, positions);
     }
   }
   const auto find = [&](const char* role) {

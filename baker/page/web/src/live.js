@@ -1,0 +1,45 @@
+// The runtime in the page: what touches in a pose that no frame has.
+import { load } from 'spherechain';
+import { CLASSES, keyOf } from './contacts.js';
+import { decode } from './frame_lists.js';
+
+const KINDS = ['rest', 'shell', 'touch', 'fold', 'deep_fold', 'penetration']; // the runtime's words for CLASSES
+console.assert(KINDS.length === CLASSES.length);
+
+// Whether the page was built with it.
+export const hasRuntime = load !== null;
+
+export async function openLive(base64, { unitsPerMm }) {
+  const runtime = await load();
+  const asset = runtime.open(decode(base64, Uint8Array));
+  const character = asset.createCharacter();
+  const bones = new Float32Array(12 * character.jointCount);
+  for (let b = 0; b < bones.length; b += 12) bones[b] = bones[b + 5] = bones[b + 10] = 1; // that of what hangs on none stays
+
+  const measure = ({ kind, depth, direction, deepestB, visible, volume }, isQuick) => ({
+    kind: KINDS.indexOf(kind),
+    depth: depth / unitsPerMm,
+    direction: [...direction],
+    at: [...deepestB.position],
+    visible: isQuick ? -1 : visible,
+    volume: volume === null ? -1 : volume / (10 * unitsPerMm) ** 3,
+  });
+
+  return {
+    // Pairs of triangles that intersect, and what their body parts' contacts measure, by key. `isQuick`: along one direction.
+    find(palette, morphs, isQuick) {
+      bones.set(palette);
+      character.setPalette(bones, morphs);
+      const parts = character.contacts('apart');
+      const { count, pairs: words } = parts.length > 0 ? character.triangleContacts() : { count: 0, pairs: [] };
+      const pairs = new Uint32Array(2 * count);
+      for (let i = 0; i < count; ++i) pairs.set([words[12 * i], words[12 * i + 1]], 2 * i);
+      const measures = new Map();
+      if (count > 0) for (const found of character.penetrations(isQuick)) measures.set(keyOf([found.partA, found.partB]), measure(found, isQuick));
+      return { pairs, measures };
+    },
+    // Of the pose that was last looked at.
+    spheres: (radius) => character.refit(radius).slice(),
+    touching: (radius) => character.detect(radius).slice(),
+  };
+}
