@@ -1,6 +1,6 @@
 // Bundles each page into one file that needs no other: node build.mjs FOLDER [RUNTIME]. RUNTIME is the runtime's JavaScript
-// package, for the page of `view`; without it, or where it is not there, that page finds no contacts of its own.
-import { existsSync, mkdirSync, readFileSync, writeFileSync } from 'node:fs';
+// package, for the page of `view`; without it that page finds no contacts of its own.
+import { mkdirSync, readFileSync, writeFileSync } from 'node:fs';
 import { dirname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { build } from 'esbuild';
@@ -37,6 +37,6 @@ async function make(name, entry, template, withRuntime = false) {
 }
 
 mkdirSync(folder, { recursive: true });
-await make('viewer.html', 'src/main.js', read('index.html'), Boolean(runtime) && existsSync(runtime));
+await make('viewer.html', 'src/main.js', read('index.html'), Boolean(runtime));
 await make('report_clip.html', 'src/report/clip.js', read('index.html'));
 await make('report_index.html', 'src/report/library.js', read('library.html'));

@@ -14,7 +14,7 @@ export async function openLive(base64, { unitsPerMm }) {
   const asset = runtime.open(decode(base64, Uint8Array));
   const character = asset.createCharacter();
   const bones = new Float32Array(12 * character.jointCount);
-  for (let b = 0; b < bones.length; b += 12) bones[b] = bones[b + 5] = bones[b + 10] = 1; // that of what hangs on none stays
+  for (let b = 0; b < bones.length; b += 12) bones[b] = bones[b + 5] = bones[b + 10] = 1; // what hangs on none stays there
 
   const measure = ({ kind, depth, direction, deepestB, visible, volume }, isQuick) => ({
     kind: KINDS.indexOf(kind),
@@ -25,18 +25,28 @@ export async function openLive(base64, { unitsPerMm }) {
     volume: volume === null ? -1 : volume / (10 * unitsPerMm) ** 3,
   });
 
+  const rest = bones.slice();
   return {
-    // Pairs of triangles that intersect, and what their body parts' contacts measure, by key. `isQuick`: along one direction.
+    // Directions out of the next pose are looked for as if it were the first: nothing touches at rest.
+    forget() {
+      character.setPalette(rest);
+      character.contacts('apart');
+      character.penetrations(false);
+    },
+    // Pairs of triangles that intersect, and what their body parts' contacts measure, by key. `isQuick`: along one direction;
+    // else directions stay near those of the last pose, so that arrows do not flicker.
     find(palette, morphs, isQuick) {
+      const start = performance.now();
       bones.set(palette);
       character.setPalette(bones, morphs);
       const parts = character.contacts('apart');
       const { count, pairs: words } = parts.length > 0 ? character.triangleContacts() : { count: 0, pairs: [] };
       const pairs = new Uint32Array(2 * count);
       for (let i = 0; i < count; ++i) pairs.set([words[12 * i], words[12 * i + 1]], 2 * i);
+      const between = performance.now();
       const measures = new Map();
       if (count > 0) for (const found of character.penetrations(isQuick)) measures.set(keyOf([found.partA, found.partB]), measure(found, isQuick));
-      return { pairs, measures };
+      return { pairs, measures, times: { contacts: between - start, depths: performance.now() - between } };
     },
     // Of the pose that was last looked at.
     spheres: (radius) => character.refit(radius).slice(),

@@ -58,13 +58,15 @@ export function addHandles({ poser, mesh, stage, store, canvas, remember, change
   const handles = handlesOf(poser, mesh).map((handle) => {
     const { name, kind, joint, at, drag } = handle;
     let grip = null;
+    let isDragged = false;
     const button = h('button', { type: 'button', class: `handle ${kind}`, title: name, 'aria-label': `Handle: ${name}` });
     button.addEventListener('pointerdown', (event) => {
       if (event.button !== 0) return;
       event.preventDefault();
       button.setPointerCapture(event.pointerId);
       const { back } = stage.camera();
-      grip = { x: event.clientX, y: event.clientY, at: at(), back: new Vector3(...back), isDragged: false };
+      grip = { x: event.clientX, y: event.clientY, at: at(), back: new Vector3(...back) };
+      isDragged = false;
     });
     // The grip stays in the plane through it that faces the eye.
     const pointAt = (x, y) => {
@@ -73,10 +75,9 @@ export function addHandles({ poser, mesh, stage, store, canvas, remember, change
       return origin.clone().addScaledVector(direction, along);
     };
     button.addEventListener('pointermove', ({ clientX: x, clientY: y }) => {
-      if (!grip || (!grip.isDragged && Math.hypot(x - grip.x, y - grip.y) < CLICK)) return;
-      if (!drag) return;
-      if (!grip.isDragged) {
-        grip.isDragged = true;
+      if (!grip || !drag || (!isDragged && Math.hypot(x - grip.x, y - grip.y) < CLICK)) return;
+      if (!isDragged) {
+        isDragged = true;
         grip.start = pointAt(grip.x, grip.y);
         remember();
         from = poser.own.slice();
@@ -87,7 +88,7 @@ export function addHandles({ poser, mesh, stage, store, canvas, remember, change
     const end = () => (grip = null);
     button.addEventListener('pointerup', end);
     button.addEventListener('pointercancel', end);
-    button.addEventListener('click', () => store.set({ joint: store.state.joint === joint ? null : joint }));
+    button.addEventListener('click', () => isDragged || store.set({ joint: store.state.joint === joint ? null : joint }));
     return { ...handle, button };
   });
   box.append(...handles.map(({ button }) => button));

@@ -8,8 +8,8 @@ import { Refit } from './refit.js';
 // Posing by hand. It starts from the frame that is shown, and takes that frame's place until another frame is shown: its
 // bones are written over the frame's, and what touches is found anew after each movement.
 
-const SETTLED_MS = 120; // after the last movement; then depths are measured along all directions
-const FAST_MS = 5; // a full measure that takes no longer is made at every movement
+const SETTLED_MS = 120; // after the last movement; then depths are measured anew, as those of a frame are
+const FAST_MS = 5; // depths that take no longer are measured along all directions at every movement, else along one
 
 // A character that takes over the bones of one frame.
 class Posed {
@@ -53,14 +53,16 @@ export function addPosing({ model, skin, store, stage, toolbar, canvas }) {
   let live = null;
   let fullMs = Infinity; // that the last full measure took
   let settle = 0;
+  let isSettled = false;
   let isChanged = false; // the frame's pose, since it was taken over
-  const times = { skinning: 0, contacts: 0 };
+  const times = { contacts: 0, depths: 0, all: 0 }; // milliseconds of the last change: all is what the drawing waits for
 
-  const find = (isQuick) => {
-    const start = performance.now();
-    const found = live?.find(posed.palette(), model.rig.morphWeights(posed.frame), isQuick) ?? { pairs: [], measures: new Map() };
-    times.contacts = performance.now() - start;
-    if (!isQuick) fullMs = times.contacts;
+  const find = (isQuick, isLast = false) => {
+    if (isLast) live?.forget();
+    const found = live?.find(posed.palette(), model.rig.morphWeights(posed.frame), isQuick) ?? { pairs: [], measures: new Map(), times: {} };
+    Object.assign(times, found.times);
+    isSettled = isLast;
+    if (!isQuick) fullMs = times.depths;
     model.contacts.show(found);
     const spheres = {};
     model.live = {
@@ -75,12 +77,14 @@ export function addPosing({ model, skin, store, stage, toolbar, canvas }) {
     store.set({ pose: store.state.pose + 1 });
   };
   const changed = () => {
+    const start = performance.now();
     isChanged = true;
     posed.show();
     const isQuick = fullMs > FAST_MS;
     clearTimeout(settle);
-    if (isQuick) settle = setTimeout(() => posed.frame !== null && find(false), SETTLED_MS);
+    settle = setTimeout(() => posed.frame !== null && find(false, true), SETTLED_MS);
     find(isQuick);
+    times.all = performance.now() - start;
   };
   const remember = () => {
     history.push({ frame: posed.frame, own: poser.own.slice() });
@@ -97,7 +101,7 @@ export function addPosing({ model, skin, store, stage, toolbar, canvas }) {
   };
   const start = (frame) => {
     posed.start(frame);
-    find(false);
+    find(false, true);
   };
 
   const say = (text) => (status.textContent = text);
@@ -162,18 +166,19 @@ export function addPosing({ model, skin, store, stage, toolbar, canvas }) {
     undo();
   });
 
-  say(hasRuntime ? 'Loading …' : 'This page was built without the runtime: it finds no contacts in your poses.');
-  if (hasRuntime && model.rig.asset) {
+  const canFind = hasRuntime && model.rig.asset;
+  say(canFind ? 'Loading …' : 'This page was built without the runtime: it finds no contacts in your poses.');
+  if (canFind) {
     openLive(model.rig.asset, model.mesh).then(
       (opened) => {
         live = opened;
         say('');
-        if (posed.frame !== null) find(false);
+        if (posed.frame !== null) find(false, true);
       },
       (error) => say(`This browser cannot find contacts: ${error.message}`),
     );
   }
-  return { toggle, place: handles.place, file, times, isLive: () => live !== null };
+  return { toggle, place: handles.place, file, times, isLive: () => live !== null, isSettled: () => isSettled };
 }
 
 // A joint a line.

@@ -196,7 +196,7 @@ export function start(model) {
       model.contacts.now(store.state.frame).map(({ name, pairs, triangles, kind, depth }) => ({ name, pairs, triangles: [...triangles], kind, depth })),
     camera: () => stage?.camera() ?? null,
     hovered: () => store.state.pointed,
-    posing: layers.posing && { file: layers.posing.file, times: layers.posing.times, isLive: layers.posing.isLive },
+    posing: layers.posing,
     ready: true,
   });
   return { store, flyToContact, skinLayer: layers.skinLayer, redraw: () => stage?.invalidate() };
