@@ -1,10 +1,9 @@
 // The runtime in the page: what touches in a pose that no frame has.
 import { load } from 'spherechain';
-import { CLASSES, keyOf } from './contacts.js';
+import { keyOf } from './contacts.js';
 import { decode } from './frame_lists.js';
 
-const KINDS = ['rest', 'shell', 'touch', 'fold', 'deep_fold', 'penetration']; // the runtime's words for CLASSES
-console.assert(KINDS.length === CLASSES.length);
+const KINDS = ['rest', 'shell', 'touch', 'fold', 'deep_fold', 'penetration']; // the runtime's words for CLASSES of contacts.js
 
 // Whether the page was built with it.
 export const hasRuntime = load !== null;

@@ -142,8 +142,9 @@ export function addHandles({ poser, mesh, stage, store, canvas, remember, change
       project = latest;
       box.hidden = !store.state.posing;
       if (box.hidden || !project) return;
-      for (const { at, button } of handles) {
-        const { x, y } = project(...at().toArray());
+      for (const { at, button, kind } of handles) {
+        const { x, y, depth } = project(...at().toArray());
+        button.style.zIndex = Math.round(1e6 * (1 - depth)) + (kind === 'joint' ? 0 : 1e7); // the nearest on top, small ones below
         button.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
       }
     },

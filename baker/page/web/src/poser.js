@@ -5,7 +5,7 @@
 // the skinning matrix. A joint that only turns keeps its place at rest. Saved poses hold the own matrices.
 import { Matrix3, Matrix4, Quaternion, Vector3 } from 'three';
 
-const ROUNDING = 1e-6; // of a palette's single floats, as a share of the height
+const ROUNDING = 3e-6; // of a palette's single floats, and of files' numbers, as a share of the height
 
 const matrix = (of, at = 0) => new Matrix4().set(...of.subarray(at, at + 12), 0, 0, 0, 1);
 function put(m, to, at) {

@@ -99,15 +99,30 @@ export function addPosing({ model, skin, store, stage, toolbar, canvas }) {
     model.contacts.show(null);
     store.set({ pose: 0, joint: null });
   };
+  const say = (text) => (status.textContent = text);
+  let isLoading = false;
+  const load = () => {
+    if (isLoading) return;
+    isLoading = true;
+    if (!hasRuntime || !model.rig.asset) return say('This page was built without the runtime: it finds no contacts in your poses.');
+    openLive(model.rig.asset, model.mesh).then(
+      (opened) => {
+        live = opened;
+        if (posed.frame !== null) find(false, true);
+      },
+      (error) => say(`This browser cannot find contacts: ${error.message}`),
+    );
+  };
   const start = (frame) => {
+    load();
     posed.start(frame);
     find(false, true);
   };
 
-  const say = (text) => (status.textContent = text);
   const undo = () => {
     const last = history.pop();
     if (!last) return;
+    isChanged = false; // what is taken back now is not to come back
     if (last.frame !== posed.frame) store.set({ frame: last.frame });
     poser.take(last.own);
     changed();
@@ -166,18 +181,6 @@ export function addPosing({ model, skin, store, stage, toolbar, canvas }) {
     undo();
   });
 
-  const canFind = hasRuntime && model.rig.asset;
-  say(canFind ? 'Loading …' : 'This page was built without the runtime: it finds no contacts in your poses.');
-  if (canFind) {
-    openLive(model.rig.asset, model.mesh).then(
-      (opened) => {
-        live = opened;
-        say('');
-        if (posed.frame !== null) find(false, true);
-      },
-      (error) => say(`This browser cannot find contacts: ${error.message}`),
-    );
-  }
   return { toggle, place: handles.place, file, times, isLive: () => live !== null, isSettled: () => isSettled };
 }
 
