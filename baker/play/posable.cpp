@@ -78,6 +78,26 @@ void add_limb(PosableRig& out, const RoleLimb& limb, bool has_feet, const std::v
                        is_joint ? joint(tip) : joint(nodes.back()), at(tip), name.find("leg") != std::string::npos});
 }
 
+// A body whose roles are not known, such as a hand: every chain of joints that leads to a tip is a limb.
+void add_chains(PosableRig& out) {
+  std::vector<int> children(out.joints.size(), 0);
+  for (const Joint& joint : out.joints) {
+    if (joint.parent >= 0) ++children[static_cast<std::size_t>(joint.parent)];
+  }
+  for (std::size_t tip = 0; tip < out.joints.size(); ++tip) {
+    if (children[tip] > 0) continue;
+    std::vector<int> chain{static_cast<int>(tip)};  // from the tip up
+    for (int above = out.joints[tip].parent; above >= 0 && children[static_cast<std::size_t>(above)] == 1;
+         above = out.joints[static_cast<std::size_t>(above)].parent) {
+      chain.push_back(above);
+    }
+    if (chain.size() < 3) continue;
+    const std::string& name = out.joints[tip].name;
+    out.limbs.push_back(
+        {name, name + " bend", chain.back(), chain[chain.size() / 2], chain.front(), out.joints[tip].position, false});
+  }
+}
+
 // The middle of the box around the skin of the joints at and below one.
 Vec3 center_of_skin(const AnimatedAsset& animated, const std::vector<Joint>& joints, int top) {
   const auto is_below = [&](int j) {
@@ -125,6 +145,10 @@ PosableRig posable_rig(const AnimatedAsset& animated) {
     const auto found = std::find(role_of_joint.begin(), role_of_joint.end(), role);
     return found == role_of_joint.end() ? -1 : static_cast<int>(found - role_of_joint.begin());
   };
+  if (out.limbs.empty()) {
+    add_chains(out);
+    return out;
+  }
   out.hips = find("pelvis");
   out.head = find("head");
   out.neck = find("neck") >= 0 ? find("neck") : out.head;
