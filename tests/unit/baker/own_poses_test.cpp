@@ -112,9 +112,11 @@ TEST_CASE("a pose has weights of morph targets, the others are 0") {
   const BezierMotion motion(h.joints, h.frame, read_pose_motion(file.path, h.joints, morphs), morphs);
   CHECK(motion.at(1).morphs == std::vector<double>{0, 0.5});
   CHECK(motion.at(0.5).morphs == std::vector<double>{0, 0.25});
-  CHECK(refusal_of(R"({"poses": [{"morphs": {"blonk": 1}}]})", morphs),
-             "no morph target 'blonk' (known: smile, blink)"));
-  CHECK(says(refusal_of(R"({"poses": [{"morphs": {"blink": "1"}}]})", morphs).find("the weight of 'blink' is not a number") != std::string::npos);
+  CHECK(refusal_of(R"({"poses": [{"morphs": {"blonk": 1}}]})", morphs)
+            .find("no morph target 'blonk' (known: smile, blink)") != std::string::npos);
+  CHECK(
+      refusal_of(R"({"poses": [{"morphs": {"blink": "1"}}]})", morphs).find("the weight of 'blink' is not a number") !=
+      std::string::npos);
 }
 
 TEST_CASE("a matrix or a rig that makes no sense is refused") {
