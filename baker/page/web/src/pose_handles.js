@@ -45,7 +45,13 @@ export function addHandles({ poser, mesh, stage, store, canvas, remember, change
   // Once for each picture, however often the pointer moves.
   let next = null;
   const soon = (action) => {
-    if (next === null) requestAnimationFrame(() => [next, action] = [null, next()]);
+    if (next === null) {
+      requestAnimationFrame(() => {
+        const latest = next;
+        next = null;
+        latest();
+      });
+    }
     next = action;
   };
   let from = null; // the pose before the drag
@@ -55,27 +61,29 @@ export function addHandles({ poser, mesh, stage, store, canvas, remember, change
     changed();
   };
 
+  let grip = null; // what the pointer holds
+  const letGo = () => (grip = null);
+  // The grip stays in the plane through it that faces the eye.
+  const pointAt = (x, y) => {
+    const { origin, direction } = stage.ray(x, y);
+    const along = grip.at.clone().sub(origin).dot(grip.back) / direction.dot(grip.back);
+    return origin.clone().addScaledVector(direction, along);
+  };
+  store.watch(['frame', 'posing'], letGo);
+  let isDragged = false;
   const handles = handlesOf(poser, mesh).map((handle) => {
     const { name, kind, joint, at, drag } = handle;
-    let grip = null;
-    let isDragged = false;
     const button = h('button', { type: 'button', class: `handle ${kind}`, title: name, 'aria-label': `Handle: ${name}` });
     button.addEventListener('pointerdown', (event) => {
       if (event.button !== 0) return;
       event.preventDefault();
       button.setPointerCapture(event.pointerId);
       const { back } = stage.camera();
-      grip = { x: event.clientX, y: event.clientY, at: at(), back: new Vector3(...back) };
+      grip = { button, x: event.clientX, y: event.clientY, at: at(), back: new Vector3(...back) };
       isDragged = false;
     });
-    // The grip stays in the plane through it that faces the eye.
-    const pointAt = (x, y) => {
-      const { origin, direction } = stage.ray(x, y);
-      const along = grip.at.clone().sub(origin).dot(grip.back) / direction.dot(grip.back);
-      return origin.clone().addScaledVector(direction, along);
-    };
     button.addEventListener('pointermove', ({ clientX: x, clientY: y }) => {
-      if (!grip || !drag || (!isDragged && Math.hypot(x - grip.x, y - grip.y) < CLICK)) return;
+      if (grip?.button !== button || !drag || (!isDragged && Math.hypot(x - grip.x, y - grip.y) < CLICK)) return;
       if (!isDragged) {
         isDragged = true;
         grip.start = pointAt(grip.x, grip.y);
@@ -85,10 +93,12 @@ export function addHandles({ poser, mesh, stage, store, canvas, remember, change
       const to = grip.at.clone().add(pointAt(x, y)).sub(grip.start);
       soon(() => again(() => drag(to)));
     });
-    const end = () => (grip = null);
-    button.addEventListener('pointerup', end);
-    button.addEventListener('pointercancel', end);
-    button.addEventListener('click', () => isDragged || store.set({ joint: store.state.joint === joint ? null : joint }));
+    button.addEventListener('pointerup', letGo);
+    button.addEventListener('pointercancel', letGo);
+    button.addEventListener('click', () => {
+      if (!isDragged) store.set({ joint: store.state.joint === joint ? null : joint });
+      isDragged = false;
+    });
     return { ...handle, button };
   });
   box.append(...handles.map(({ button }) => button));

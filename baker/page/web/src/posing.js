@@ -14,7 +14,7 @@ const FAST_MS = 5; // depths that take no longer are measured along all directio
 // A character that takes over the bones of one frame.
 class Posed {
   constructor(model, skin) {
-    Object.assign(this, { model, skin, frame: null, poser: new Poser(model.rig) });
+    Object.assign(this, { skin, frame: null, poser: new Poser(model.rig) });
     this.bones = model.motion.bones;
     this.size = 12 * model.motion.boneCount;
   }
@@ -77,6 +77,7 @@ export function addPosing({ model, skin, store, stage, toolbar, canvas }) {
     store.set({ pose: store.state.pose + 1 });
   };
   const changed = () => {
+    if (posed.frame === null) return; // left meanwhile
     const start = performance.now();
     isChanged = true;
     posed.show();
