@@ -100,6 +100,7 @@ test('a frame is taken over as it is, and given back', async () => {
   assert.deepEqual(await shown(page), recorded);
   assert.ok(await page.locator('#handles').isHidden());
   await page.locator('#pose').click();
+  assert.deepEqual(await poseOf(page), taken, 'the frame is as it was');
   await page.locator('#pose-undo').click();
   assert.notDeepEqual(await poseOf(page), taken, 'what was left is there again');
   await page.evaluate(() => spherechainViewer.setFrame(2));
