@@ -51,9 +51,15 @@ void add_limbs_by_role(PosableRig& out, const std::vector<std::string>& role_of_
 // A limb that is neither arm nor leg of a biped bends at the joint that is nearest to half its length.
 void add_limb(PosableRig& out, const RoleLimb& limb, bool has_feet, const std::vector<int>& joint_of_node,
               const std::vector<Vec3>& positions) {
-  std::vector<int> nodes;  // those with a joint
+  const auto is_below = [&](int j, int top) {
+    while (j >= 0 && j != top) j = out.joints[static_cast<std::size_t>(j)].parent;
+    return j == top;
+  };
+  std::vector<int> nodes;  // those with a joint that hangs on the one before; a rig's helpers may hang elsewhere
   for (const int n : limb.nodes) {
-    if (joint_of_node[static_cast<std::size_t>(n)] >= 0) nodes.push_back(n);
+    const int joint = joint_of_node[static_cast<std::size_t>(n)];
+    if (joint < 0) continue;
+    if (nodes.empty() || is_below(joint, joint_of_node[static_cast<std::size_t>(nodes.back())])) nodes.push_back(n);
   }
   if (nodes.size() < 2) return;
   const auto at = [&](int node) { return positions[static_cast<std::size_t>(node)]; };
@@ -61,7 +67,7 @@ void add_limb(PosableRig& out, const RoleLimb& limb, bool has_feet, const std::v
   // Nodes past the last joint say where the limb ends.
   const int tip =
       has_feet && limb.extremity > 0 ? limb.nodes[static_cast<std::size_t>(limb.extremity)] : limb.nodes.back();
-  const bool is_joint = joint(tip) >= 0;
+  const bool is_joint = std::find(nodes.begin(), nodes.end(), tip) != nodes.end();
   double length = (at(tip) - at(nodes.back())).norm();
   for (std::size_t i = 1; i < nodes.size(); ++i) length += (at(nodes[i]) - at(nodes[i - 1])).norm();
   int middle = -1;
