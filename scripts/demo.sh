@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The main job, end to end: bakes the MakeHuman body that Debian's assimp-testmodels installs, plays two animations of 40
 # frames and three recordings of people, draws what it found, and checks the recordings as a library. Results go to out/demo;
-# the pages to open are human.html and check/index.html.
+# the pages to open are human.html, live.html (three characters to pose) and check/index.html.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -44,6 +44,7 @@ done
 if [[ -f $page ]]; then
   "$tool" view "$out/human.sphc" --source "$human" --motion "$captures/Boxing_Toes.bvh" --fps 15 \
     --report "$out/human_report.json" -o "$out/human.html" >/dev/null
+  scripts/live_demo.sh "$tool" "$out"
 fi
 
 echo
@@ -58,7 +59,7 @@ echo
 echo "Wrote, in $out:"
 ls -1 "$out" | sed 's/^/  /'
 if [[ -f $page ]]; then
-  echo "Open $out/human.html and $out/check/index.html in a browser."
+  echo "Open $out/human.html, $out/live.html and $out/check/index.html in a browser."
 else
   echo "The page of \`spherechain view\` is left out: it is built where Node and npm are."
 fi

@@ -89,6 +89,11 @@ ExitCode run_view(const ViewOptions& options) {
     page.title += " (first, grey) and " + fs::path(with.asset).filename().string() + " (second, blue)";
   }
   std::string html;
+  if (!second) {
+    animated.take_joints();
+    const std::string asset = read_file(options.asset);
+    page.asset.assign(asset.begin(), asset.end());
+  }
   {
     Progress progress("view " + options.asset + ":");
     const auto show = [&](int i) { progress.show(fmt::format("frame {} of {}", i + 1, animated.frame_count())); };

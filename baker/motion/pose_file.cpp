@@ -15,6 +15,7 @@ using Json = nlohmann::json;
 namespace fs = std::filesystem;
 
 constexpr std::size_t kPosesMax = 1000;  // files that include files multiply
+constexpr double kMovementMax = 1e6;     // heights
 constexpr double kDegreesMax = 180;      // farther round the interpolation would go the other way
 
 [[noreturn]] void fail(const fs::path& file, const std::string& what) {
@@ -39,10 +40,15 @@ Json read_json(const fs::path& file) {
   }
 }
 
+bool has_numbers(const Json& value, std::size_t count) {
+  return value.is_array() && value.size() == count &&
+         std::all_of(value.begin(), value.end(), [](const Json& v) { return v.is_number(); });
+}
+
 Eigen::Quaterniond read_rotation(const fs::path& file, const std::string& joint, const Json& value) {
-  const bool three = value.is_array() && value.size() == 3 &&
-                     std::all_of(value.begin(), value.end(), [](const Json& v) { return v.is_number(); });
-  if (!three) fail(file, "the rotation of '" + joint + "' is not three numbers (write [x, y, z] in degrees)");
+  if (!has_numbers(value, 3)) {
+    fail(file, "the rotation of '" + joint + "' is not three numbers, nor twelve (write [x, y, z] in degrees)");
+  }
   const Vec3 degrees(value[0].get<double>(), value[1].get<double>(), value[2].get<double>());
   const double angle = degrees.norm();
   if (!std::isfinite(angle) || angle > kDegreesMax) {
@@ -52,38 +58,82 @@ Eigen::Quaterniond read_rotation(const fs::path& file, const std::string& joint,
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle * std::numbers::pi / 180, degrees / angle));
 }
 
-Pose read_pose(const fs::path& file, const Json& value, const std::vector<Joint>& joints) {
+// Three rows of four.
+Affine read_movement(const fs::path& file, const std::string& joint, const Json& value) {
+  Affine out;
+  for (std::size_t i = 0; i < 12; ++i) {
+    out.matrix()(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = value[i].get<double>();
+  }
+  if (!out.matrix().allFinite() || out.matrix().cwiseAbs().maxCoeff() > kMovementMax) {
+    fail(file, "the matrix of '" + joint + "' has a number beyond a million (lengths are in heights of the character)");
+  }
+  return out;
+}
+
+template <typename Named>
+void check_name(const fs::path& file, const std::vector<Named>& known, const std::string& name, const char* what) {
+  if (std::any_of(known.begin(), known.end(), [&](const Named& k) { return k.name == name; })) return;
+  std::string names;
+  for (const Named& k : known) names += (names.empty() ? "" : ", ") + k.name;
+  fail(file, std::string("there is no ") + what + " '" + name + "' (known: " + (names.empty() ? "none" : names) + ")");
+}
+
+struct Names {
+  const std::vector<Joint>& joints;
+  const std::vector<Morph>& morphs;
+};
+
+Pose read_pose(const fs::path& file, const Json& value, const Names& names) {
   Pose pose;
-  for (const auto& [name, rotation] : value.items()) {
-    const std::string& joint = name;
-    if (std::none_of(joints.begin(), joints.end(), [&](const Joint& j) { return j.name == joint; })) {
-      std::string known;
-      for (const Joint& j : joints) known += (known.empty() ? "" : ", ") + j.name;
-      fail(file, "there is no joint '" + joint + "' (known: " + known + ")");
+  for (const auto& [name, of] : value.items()) {
+    if (name == "morphs" && of.is_object()) {
+      for (const auto& [morph, weight] : of.items()) {
+        check_name(file, names.morphs, morph, "morph target");
+        if (!weight.is_number() || std::abs(weight.get<double>()) > kMovementMax) {
+          fail(file, "the weight of '" + morph + "' is not a number from -1e6 to 1e6");
+        }
+        pose.morphs[morph] = weight.get<double>();
+      }
+      continue;
     }
-    pose.rotations[joint] = read_rotation(file, joint, rotation);
+    check_name(file, names.joints, name, "joint");
+    if (has_numbers(of, 12))
+      pose.movements[name] = read_movement(file, name, of);
+    else
+      pose.rotations[name] = read_rotation(file, name, of);
   }
   return pose;
 }
 
-void read_into(PoseMotion& motion, const fs::path& file, const std::vector<Joint>& joints,
-               std::vector<fs::path>& open) {
+PoseRig rig_in(const fs::path& file, const Json& json) {
+  const Json rig = json.value("rig", Json("automatic"));
+  if (rig != "automatic" && rig != "own") fail(file, "'rig' is neither \"automatic\" nor \"own\"");
+  return rig == "own" ? PoseRig::kOwn : PoseRig::kAutomatic;
+}
+
+Json read_poses_json(const fs::path& file) {
+  Json json = read_json(file);
+  if (!json.is_object() || !json.contains("poses") || !json["poses"].is_array() || json["poses"].empty()) {
+    fail(file, "is no pose file (it needs an object with a non-empty list 'poses'; see samples/poses/README.md)");
+  }
+  return json;
+}
+
+void read_into(PoseMotion& motion, const fs::path& file, const Names& names, PoseRig rig, std::vector<fs::path>& open) {
   if (!is_file(file)) fail(file, "no such pose file (name an existing JSON file)");
   const fs::path canonical = fs::canonical(file);
   if (std::find(open.begin(), open.end(), canonical) != open.end()) {
     fail(file, "includes itself, directly or through another file (break the circle)");
   }
   open.push_back(canonical);
-  const Json json = read_json(file);
-  if (!json.is_object() || !json.contains("poses") || !json["poses"].is_array() || json["poses"].empty()) {
-    fail(file, "is no pose file (it needs an object with a non-empty list 'poses'; see samples/poses/README.md)");
-  }
+  const Json json = read_poses_json(file);
   for (const auto& [key, value] : json.items()) {
-    if (key != "name" && key != "about" && key != "poses") {
-      fail(file, "the key '" + key + "' is not known (known: name, about, poses)");
+    if (key != "name" && key != "about" && key != "rig" && key != "poses") {
+      fail(file, "the key '" + key + "' is not known (known: name, about, rig, poses)");
     }
     if (key != "poses" && !value.is_string()) fail(file, "'" + key + "' is not a text (write it in quotes)");
   }
+  if (rig_in(file, json) != rig) fail(file, "names joints of another rig than the file that takes its poses");
   if (open.size() == 1) motion.name = json.value("name", file.stem().string());
   for (const Json& entry : json["poses"]) {
     if (entry.is_string()) {
@@ -92,9 +142,9 @@ void read_into(PoseMotion& motion, const fs::path& file, const std::vector<Joint
         fail(file, "takes poses from '" + entry.get<std::string>() +
                        "', and there is no such file next to it (mend the name)");
       }
-      read_into(motion, other, joints, open);
+      read_into(motion, other, names, rig, open);
     } else if (entry.is_object()) {
-      motion.poses.push_back(read_pose(file, entry, joints));
+      motion.poses.push_back(read_pose(file, entry, names));
     } else {
       fail(file,
            "an entry of 'poses' is neither an object of rotations nor the name of a pose file (write one of them)");
@@ -126,10 +176,15 @@ std::vector<fs::path> files_of_poses(const fs::path& path) {
   return found;
 }
 
-PoseMotion read_pose_motion(const fs::path& path, const std::vector<Joint>& joints) {
+PoseRig rig_of_poses(const fs::path& path) {
+  if (!is_file(path)) fail(path, "no such pose file (name an existing JSON file)");
+  return rig_in(path, read_poses_json(path));
+}
+
+PoseMotion read_pose_motion(const fs::path& path, const std::vector<Joint>& joints, const std::vector<Morph>& morphs) {
   PoseMotion motion;
   std::vector<fs::path> open;
-  read_into(motion, path, joints, open);
+  read_into(motion, path, {joints, morphs}, rig_of_poses(path), open);
   return motion;
 }
 

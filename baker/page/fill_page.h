@@ -14,6 +14,8 @@ class PageTemplate {
   explicit PageTemplate(const std::string& file);
 
   std::string fill(const nlohmann::ordered_json& data) const;
+  // Whether the runtime is in it, which finds contacts of poses that are made in the page.
+  bool has_runtime() const { return before_.find("data-runtime") != std::string::npos; }
   std::size_t size() const { return before_.size() + after_.size(); }
 
  private:

@@ -12,6 +12,7 @@
 #include "page/page_mesh.h"
 #include "page/page_motion.h"
 #include "page/page_penetrations.h"
+#include "page/page_rig.h"
 #include "report/json_text.h"
 #include "report/report.h"
 #include "volumes/volume_json.h"
@@ -155,8 +156,10 @@ std::string view_page(const AnimatedAsset& animated, const PageOptions& options,
                     {"validation", parsed_or_null(options.validation)},
                     {"radius", options.radius == SC_RADIUS_FIT ? "fit" : "detect"},
                     {"clips", clips_json(animated, options.motion)},
+                    {"rig", page_rig(animated)},
                     {"colliders", options.colliders == nullptr ? ordered_json() : colliders_json(*options.colliders)},
                     {"mesh", page_mesh(animated, animated.character().source_positions, parts, spheres)}};
+  if (!data["rig"].is_null() && page.has_runtime()) data["asset"] = base64(options.asset);
   const double still = static_cast<double>(page.size() + json_text(data, -1).size());
   PageMotion motion(animated.character(), axes);
   data["frames"] = frames_json(animated, options, still, motion, progress);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "play/play.h"
 #include "spherechain/types.h"
@@ -18,6 +19,7 @@ struct PageOptions {
   std::string report;                                   // of read_bake_report; may be empty
   std::string validation;                               // of read_validation; may be empty
   std::string template_file;                            // the page without data, as its build made it
+  std::vector<char> asset;                              // its bytes, for a page that finds contacts itself
   std::array<std::string, 2> names{"first", "second"};  // of two characters
   // Else they are one character, before and after a change: what touches between the two is not shown, the page can lay
   // them over each other, and it opens where the deepest fault was.

@@ -65,6 +65,7 @@ ordered_json PageMotion::json(Still still) const {
     return out;
   }
   out["bones"] = base64(bones_);
+  out["morph_weights"] = base64(morphs_);
   ordered_json& targets = out["morphs"] = ordered_json::array();
   for (std::size_t m = 0; m < morph_count_; ++m) {
     if (!moves(m) && (still == Still::kInRest || morphs_[m] == 0)) continue;

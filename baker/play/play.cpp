@@ -8,7 +8,6 @@
 #include "motion/capture.h"
 #include "motion/carried_motion.h"
 #include "motion/clip.h"
-#include "motion/poses.h"
 #include "motion/sequence.h"
 #include "pipeline/pipeline.h"
 
@@ -91,7 +90,33 @@ void AnimatedAsset::play_clip(const Clip& clip, const FrameChoice& frames) {
   frames_ = frames_of(character_.rig, {&clip}, frames);
 }
 
+void AnimatedAsset::take_joints() {
+  if (!weights_.empty() || motion_ != nullptr) return;
+  const bool has_skeleton = !character_.rig.bones.empty();
+  const std::vector<Joint> joints = has_skeleton ? own_joints(character_.rig) : joints_of(file_);
+  if (joints.empty()) return;
+  if (has_skeleton)
+    use_skin();
+  else
+    use_rig(joints);
+  motion_ = std::make_unique<BezierMotion>(joints, frame(), PoseMotion(), character_.rig.morphs);
+}
+
+Roles AnimatedAsset::roles() const {
+  return find_roles(character_.rig, character_.source_positions, roles_, segment_settings_.body);
+}
+
 void AnimatedAsset::play_poses(const std::string& file) {
+  if (rig_of_poses(file) == PoseRig::kOwn) {
+    const SourceRig& rig = character_.rig;
+    if (rig.bones.empty()) {
+      throw Error(ExitCode::kFile, file + ": turns joints of the character's own skeleton, and " + source_name_ +
+                                       " has none (without \"rig\": \"own\" it turns those of the automatic rig)");
+    }
+    const std::vector<Joint> joints = own_joints(rig);
+    motion_ = std::make_unique<BezierMotion>(joints, frame(), read_pose_motion(file, joints, rig.morphs), rig.morphs);
+    return use_skin();
+  }
   const std::vector<Joint> joints = joints_of(file_);
   if (joints.empty()) {
     throw Error(ExitCode::kFile, file + ": turns the joints of a biped, and " + asset_name_ +

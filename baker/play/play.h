@@ -8,9 +8,11 @@
 #include "bind/body_parts.h"
 #include "import/import.h"
 #include "motion/motion.h"
+#include "motion/poses.h"
 #include "play/asset_file.h"
 #include "play/motion_frames.h"
 #include "rig/rig.h"
+#include "roles/roles.h"
 #include "segment/segment.h"
 
 namespace spherechain::baker {
@@ -39,6 +41,10 @@ class AnimatedAsset {
   // A clip of the source's nodes that is not the source's own; it must outlive this.
   void play_clip(const Clip& clip, const FrameChoice& frames);
 
+  // Where nothing plays, takes the joints that would move the skin, at rest: the character's own, else the automatic
+  // rig's.
+  void take_joints();
+
   // More frames between those that play now (motion_frames.h).
   void put_between(const std::vector<std::vector<double>>& shares) { frames_ = with_frames_between(frames_, shares); }
 
@@ -54,6 +60,7 @@ class AnimatedAsset {
   // Of every source vertex; empty where nothing moves.
   const std::vector<VertexWeights>& weights() const { return weights_; }
   const std::vector<std::string>& bone_names() const { return bone_names_; }
+  Roles roles() const;  // of the source's nodes, as in the bake
 
   int frame_count() const { return static_cast<int>(frames_.frames.size()); }
   const MotionFrame& frame_at(int frame) const { return frames_.frames[static_cast<std::size_t>(frame)]; }

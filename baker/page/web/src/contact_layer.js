@@ -53,17 +53,12 @@ const probeShader = `
   }`;
 
 export class ContactLayer {
-  // `most` triangles in a frame.
+  // `most` triangles in a frame; there may be more in a pose that no frame has.
   constructor(skin, most) {
     this.skin = skin;
     const geometry = new THREE.BufferGeometry();
-    const attribute = (name, size) => {
-      const buffer = new THREE.BufferAttribute(new Float32Array(3 * size * Math.max(most, 1)), size);
-      geometry.setAttribute(name, buffer.setUsage(THREE.DynamicDrawUsage));
-      return buffer;
-    };
     this.geometry = geometry;
-    this.buffers = { position: attribute('position', 3), normal: attribute('normal', 3), side: attribute('side', 1) };
+    this.makeRoom(most);
     this.shared = { colour: { value: new THREE.Color(CONTACT) }, ratio: { value: 1 }, anyChosen: { value: 0 } };
     const mesh = (alpha, order, settings) => {
       const material = new THREE.ShaderMaterial({
@@ -90,9 +85,23 @@ export class ContactLayer {
     this.probe = mesh(1, 6, { fragmentShader: probeShader, uniforms: { winding: { value: 1 } }, transparent: false });
   }
 
+  // For so many triangles.
+  makeRoom(most) {
+    this.most = Math.max(most, 1);
+    this.geometry.dispose(); // of what was there
+    const attribute = (name, size) => {
+      const buffer = new THREE.BufferAttribute(new Float32Array(3 * size * this.most), size);
+      this.geometry.setAttribute(name, buffer.setUsage(THREE.DynamicDrawUsage));
+      return buffer;
+    };
+    this.buffers = { position: attribute('position', 3), normal: attribute('normal', 3), side: attribute('side', 1) };
+  }
+
   // Shows what touches in the pose that the skin has; `chosen` is a contact's key or null.
   fill(contacts, chosen, hiddenParts) {
     const { index, positions, normals } = this.skin;
+    const most = contacts.reduce((sum, { triangles }) => sum + triangles.length, 0);
+    if (most > this.most) this.makeRoom(2 * most);
     const { position, normal, side } = this.buffers;
     let corner = 0;
     for (const { key, triangles, sides } of contacts) {

@@ -73,10 +73,10 @@ export function fillContactPanel(panel, store, model, flyTo) {
     flyTo(key);
   };
 
-  store.watch(['frame'], ({ frame }) => {
-    const contacts = model.contacts.of(frame);
+  store.watch(['frame', 'pose'], ({ frame, pose }) => {
+    const contacts = model.contacts.now(frame);
     summary.textContent =
-      contacts.length === 0 ? 'The skin touches nowhere in this frame.' : `${plural(contacts.length, 'contact')}:`;
+      contacts.length === 0 ? `The skin touches nowhere in this ${pose ? 'pose' : 'frame'}.` : `${plural(contacts.length, 'contact')}${pose ? ' in this pose' : ''}:`;
     order.hidden = contacts.length === 0;
     list.replaceChildren(...contacts.map(frameRow));
   });
@@ -91,7 +91,7 @@ export function fillContactPanel(panel, store, model, flyTo) {
     clipTitle.hidden = clipList.hidden = clip.count < 2;
     clipList.replaceChildren(...found.map(clipRow));
   });
-  store.watch(['frame', 'contact'], ({ contact }) => {
+  store.watch(['frame', 'pose', 'contact'], ({ contact }) => {
     for (const button of list.querySelectorAll('.pair')) button.setAttribute('aria-pressed', button.dataset.contact === contact);
   });
   // To the deepest contact of the clip.

@@ -12,12 +12,14 @@ export const MEANINGS = [
 const DEEP_FOLD = 4; // from here on a person sees a fault
 export const MEASURES = 12; // numbers of a measured contact (../README.md)
 
+export const keyOf = (parts) => parts.join('-');
+
 // What the runtime measured, by the contact's key.
 function measured(list) {
   const out = new Map();
   for (let i = 0; i < list.length; i += MEASURES) {
     const [a, b, kind, depth, dx, dy, dz, x, y, z, visible, volume] = list.slice(i, i + MEASURES);
-    out.set(`${a}-${b}`, { kind, depth, direction: [dx, dy, dz], at: [x, y, z], visible, volume });
+    out.set(keyOf([a, b]), { kind, depth, direction: [dx, dy, dz], at: [x, y, z], visible, volume });
   }
   return out;
 }
@@ -42,7 +44,7 @@ function group(pairs, partOf, nameOf, measures) {
     const ends = [pairs[i], pairs[i + 1]];
     if (partOf[ends[0]] > partOf[ends[1]]) ends.reverse();
     const parts = ends.map((t) => partOf[t]);
-    const key = parts.join('-');
+    const key = keyOf(parts);
     if (!groups.has(key)) groups.set(key, { key, parts, pairs: 0, side: new Map() });
     const { side } = groups.get(key);
     ++groups.get(key).pairs;
@@ -64,7 +66,17 @@ function group(pairs, partOf, nameOf, measures) {
 
 export class Contacts {
   constructor(lists, partOf, nameOf, measures) {
-    Object.assign(this, { lists, partOf, nameOf, measures, groups: [] });
+    Object.assign(this, { lists, partOf, nameOf, measures, groups: [], live: null });
+  }
+
+  // Contacts of a pose that no frame has take the place of the frame's; null: the frame's own again.
+  show(found) {
+    this.live = found && group(found.pairs, this.partOf, this.nameOf, found.measures);
+  }
+
+  // What is shown in a frame.
+  now(frame) {
+    return this.live ?? this.of(frame);
   }
 
   of(frame) {

@@ -50,5 +50,5 @@ export function dress(model, state, { skinLayer, sphereLayer, contactLayer, coll
     colliderLayer.pose(state.frame, model.overlappingColliders(state.frame), state.colliderOpacity);
   }
   contactLayer.hidden.visible = state.hiddenContacts;
-  contactLayer.fill(model.contacts.of(state.frame), state.contact, state.hiddenParts);
+  contactLayer.fill(model.contacts.now(state.frame), state.contact, state.hiddenParts);
 }

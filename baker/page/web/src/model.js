@@ -76,6 +76,13 @@ function readMotion({ motion, frames }) {
   };
 }
 
+function readRig({ rig, asset, motion }) {
+  if (!rig) return null;
+  const weights = decode(motion.morph_weights, Float32Array);
+  const count = rig.morphs.length;
+  return { ...rig, asset: asset ?? null, morphWeights: (frame) => weights.subarray(count * frame, count * (frame + 1)) };
+}
+
 // The skin's base colours; null where it has none.
 function readLook(look) {
   if (!look) return null;
@@ -148,10 +155,12 @@ export function readModel(data) {
     },
     look: readLook(data.look),
     motion: readMotion(data),
+    rig: readRig(data), // to pose the character by hand; null: none
     colliders: data.colliders ?? null, // a body's bone, and its volumes in the rest pose
     frameCount: Math.max(count, 1),
     hasSpheres: Boolean(frames?.spheres),
     refit: null, // where the page has no spheres of each frame: they follow the skin
+    live: null, // in a pose that no frame has: its spheres, and what touches (posing.js)
     hasMethod: data.spheres !== undefined, // the page of `view`: what the paper's method finds
     fps: frames?.fps || 30,
     clips,
@@ -170,12 +179,15 @@ export function readModel(data) {
     seconds: (frame) => seconds[frame] ?? 0,
     // The sphere in a frame: [x, y, z, radius].
     sphere(frame, i, kind) {
-      if (this.refit) return this.refit.sphere(i, kind);
+      const moving = this.live ?? this.refit;
+      if (moving) return moving.sphere(i, kind);
       const at = (frame * spheres.length + i) * floats;
       return [moved[at], moved[at + 1], moved[at + 2], moved[at + 3 + kinds.indexOf(kind)]];
     },
     // The bodies whose colliders overlap another's.
-    overlappingColliders: (frame) => new Set(colliderPairs.of(frame)),
+    overlappingColliders(frame) {
+      return new Set(this.live ? [] : colliderPairs.of(frame));
+    },
     // How deep two spheres are in each other: a length (<= 0: apart), and as the share PD of the sum of their radii.
     depth(frame, a, b, kind) {
       const p = this.sphere(frame, a, kind);
@@ -185,13 +197,13 @@ export function readModel(data) {
     },
     // Pairs of spheres that touch: [{a, b, depth, isFalse}], the deepest first, false alarms after those whose skin touches.
     spherePairs(frame, kind) {
-      const skin = contactLists.of(frame);
+      const skin = this.live ? this.live.pairs : contactLists.of(frame);
       const real = new Set();
       for (let i = 0; i < skin.length; i += 2) {
         const [p, q] = [sphereOf[skin[i]], sphereOf[skin[i + 1]]];
         real.add(Math.min(p, q) * 65536 + Math.max(p, q));
       }
-      const pairs = touching[kind].of(frame);
+      const pairs = this.live ? this.live.touching(kind) : touching[kind].of(frame);
       const out = [];
       for (let i = 0; i < pairs.length; i += 2) {
         const [a, b] = [pairs[i], pairs[i + 1]];

@@ -126,7 +126,7 @@ function radiusInPixels(model, state, project, id) {
 
 // Each contact's number in the list, at its triangles.
 function numberContacts(names, { model, skin, state, project }) {
-  for (const [i, { key, triangles }] of model.contacts.of(state.frame).entries()) {
+  for (const [i, { key, triangles }] of model.contacts.now(state.frame).entries()) {
     if (triangles.every((t) => state.hiddenParts.has(model.mesh.partOf[t]))) continue;
     const [x, y, z, radius] = skin.ballOf(triangles);
     const at = project(x, y, z);

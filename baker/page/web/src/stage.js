@@ -187,6 +187,7 @@ export function createStage(canvas, model, store, { skinLayer, sphereLayer, cont
   return {
     invalidate,
     view,
+    inner: { scene, camera, controls, toWorld }, // of those that put things of their own into the picture
     onDraw(before, after) {
       beforeDraw = before;
       afterDraw = after;

@@ -112,9 +112,9 @@ export function fillTimeline(panel, store, model) {
     play.setAttribute('aria-label', playing ? 'Pause' : 'Play');
     play.title = `${playing ? 'Pause' : 'Play'} (space)`;
   });
-  store.watch(['frame'], ({ frame }) => {
+  store.watch(['frame', 'pose'], ({ frame }) => {
     const clip = model.clips[model.clipAt(frame)];
-    const touching = model.contacts.of(frame).length;
+    const touching = model.contacts.now(frame).length;
     const number = model.number(frame);
     const text = touching > 0 ? plural(touching, 'contact') : 'no contact';
     input.setAttribute('aria-valuetext', `${clip.name}, frame ${number}, ${text}`);

@@ -13,6 +13,7 @@ import { dress } from './dress.js';
 import { bindKeys } from './keys.js';
 import { drawOverlay } from './overlay.js';
 import { followPointer } from './pointer.js';
+import { addPosing } from './posing.js';
 import { fillSphereCard, fillSpherePanel } from './sphere_panel.js';
 import { Refit } from './refit.js';
 import { Skin } from './skin.js';
@@ -96,6 +97,7 @@ const shown = {
   over: false, // before and after a change: one over the other
   hiddenParts: new Set(),
   sets: new Set(),
+  posing: false, // by hand
   contact: null, // the key of the contact last gone to
   alarm: null, // "a-b": the pair of spheres last gone to
   pinned: null,
@@ -111,7 +113,10 @@ function bindStage(stage, store, model, layers, skin) {
       layers.sphereLayer.upload(eye);
       layers.contactLayer.shared.ratio.value = stage.pixelRatio();
     },
-    (project) => drawOverlay($('overlay'), { model, skin, state: store.state, project, eye, visible }),
+    (project) => {
+      drawOverlay($('overlay'), { model, skin, state: store.state, project, eye, visible });
+      layers.posing?.place(project);
+    },
   );
   store.watch(['theme'], () => stage.setInk(css('--ink')));
   store.watch(Object.keys(store.state), () => {
@@ -131,7 +136,7 @@ export function start(model) {
   // Where spheres are no method to study, the skin shows through them.
   const startState = { ...shown, radius: model.radius, ...(model.hasMethod ? {} : { sphereOpacity: 0.4 }) };
   const theme = matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light';
-  const store = createStore({ ...startState, frame: model.start, playing: false, theme });
+  const store = createStore({ ...startState, frame: model.start, playing: false, theme, pose: 0, joint: null });
   const toggleTheme = bindTheme(store);
   const skin = new Skin(model.mesh, model.motion, model.look);
   if (!model.hasSpheres) model.refit = new Refit(model.inspect, model.mesh, skin);
@@ -147,6 +152,7 @@ export function start(model) {
   const stage = createStage($('view'), model, store, layers);
   if (stage) bindStage(stage, store, model, layers, skin);
   else $('no-webgl').hidden = false;
+  layers.posing = addPosing({ model, skin, store, stage, toolbar: $('reset'), canvas: $('view') });
 
   const flyToSpheres = (a, b) => {
     const { frame, radius } = store.state;
@@ -154,7 +160,7 @@ export function start(model) {
   };
   // `camera`: from where it is seen, where that is known.
   const flyToContact = (key, camera = null) => {
-    const contact = model.contacts.of(store.state.frame).find((other) => other.key === key);
+    const contact = model.contacts.now(store.state.frame).find((other) => other.key === key);
     if (contact) stage?.flyToContact(skin.ballOf(contact.triangles), camera);
   };
   if (model.change) addOver($('reset'), store);
@@ -178,7 +184,7 @@ export function start(model) {
   $('help-button').addEventListener('click', () => $('help').showModal());
   $('licences').textContent = LICENCES;
   const chains = model.sets.filter((set) => set.kind === 'chain').map((set) => set.name);
-  bindKeys(store, { timeline, stage, help: $('help'), toggleTheme, reset, deepest, chains, hasMethod: model.hasMethod, hasChange: model.change !== null, hasColliders: model.colliders !== null });
+  bindKeys(store, { timeline, stage, help: $('help'), toggleTheme, reset, deepest, chains, hasMethod: model.hasMethod, hasChange: model.change !== null, hasColliders: model.colliders !== null, posing: layers.posing });
   runPlayback(store, model);
 
   window.spherechainViewer = Object.freeze({
@@ -187,9 +193,10 @@ export function start(model) {
     },
     setFrame: (frame) => timeline.go(frame),
     contacts: () =>
-      model.contacts.of(store.state.frame).map(({ name, pairs, triangles, kind, depth }) => ({ name, pairs, triangles: [...triangles], kind, depth })),
+      model.contacts.now(store.state.frame).map(({ name, pairs, triangles, kind, depth }) => ({ name, pairs, triangles: [...triangles], kind, depth })),
     camera: () => stage?.camera() ?? null,
     hovered: () => store.state.pointed,
+    posing: layers.posing,
     ready: true,
   });
   return { store, flyToContact, skinLayer: layers.skinLayer, redraw: () => stage?.invalidate() };

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "play/play.h"
+
+namespace spherechain::baker {
+
+// What the page needs to pose the character by hand; null where the bones of the asset do not move it.
+nlohmann::ordered_json page_rig(const AnimatedAsset& animated);
+
+}  // namespace spherechain::baker

@@ -1,0 +1,210 @@
+// Posing by hand in the page of `view`: drags, what touches then, and the way of a saved pose through `play`.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { launch, open, silent } from './browser.mjs';
+
+const { SPHERECHAIN_TOOL: tool, SPHERECHAIN_PAGE: template, SPHERECHAIN_HUMAN: human, SPHERECHAIN_HUESITOS: huesitos } = process.env;
+const { SPHERECHAIN_POSES: poses, SPHERECHAIN_CHROMIUM: chromium, SPHERECHAIN_OUT: folder } = process.env;
+const hasRuntime = readFileSync(template, 'utf8').includes('data-runtime');
+const withRuntime = { skip: hasRuntime ? false : 'the page is built without the runtime' };
+
+const SIZE = { width: 1000, height: 560 }; // small: drawing by software takes most of the time
+const file = (name) => join(folder, name);
+const run = (...words) => execFileSync(tool, words, { encoding: 'utf8' });
+const motion = ['--poses', join(poses, 'arms_crossed.json'), '--frames', '5'];
+const made = (name, source, words = []) => {
+  run('bake', source, '-o', file(`${name}.sphc`));
+  run('view', file(`${name}.sphc`), '--source', source, ...words, '-o', file(`${name}.html`));
+  return { asset: file(`${name}.sphc`), source, page: file(`${name}.html`) };
+};
+
+let browser;
+let man; // with the automatic rig
+let bones; // with a skeleton of its own
+before(async () => {
+  man = made('pose_human', human, motion);
+  bones = made('pose_huesitos', huesitos, ['--frames', '4']);
+  browser = await launch(chromium);
+});
+after(() => browser?.close());
+
+const shown = (page) => page.evaluate(() => spherechainViewer.contacts());
+const poseOf = async (page) => (await page.evaluate(() => spherechainViewer.posing.file())).poses[0];
+const handle = (page, name) => page.locator(`.handle[title="${name}"]`);
+async function middle(page, name) {
+  const { x, y, width, height } = await handle(page, name).boundingBox();
+  return [x + width / 2, y + height / 2];
+}
+const drawn = (page) => page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => requestAnimationFrame(done)))));
+async function drag(page, from, to) {
+  await page.mouse.move(...from);
+  await page.mouse.down();
+  for (const part of [0.5, 1]) await page.mouse.move(...from.map((x, k) => x + part * (to[k] - x)));
+  await drawn(page);
+  await page.mouse.up();
+}
+const apart = ([a, b], [c, d]) => Math.hypot(a - c, b - d);
+
+async function opened(of) {
+  const session = await open(browser, of.page, SIZE);
+  const { page } = session;
+  await page.keyboard.press('j');
+  if (hasRuntime) await page.waitForFunction(() => spherechainViewer.posing.isLive());
+  await drawn(page);
+  return session;
+}
+
+// Saves the pose, and plays it; what the page shows and what `play` says must be the same.
+async function roundTrip(page, { asset, source }) {
+  const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#pose-save').click()]);
+  const saved = asset.replace('.sphc', '_saved.json');
+  await download.saveAs(saved);
+  run('play', asset, '--source', source, '--poses', saved, '--frames', '2', '--contacts', '--json', file('saved_play.json'));
+  const played = JSON.parse(readFileSync(file('saved_play.json'), 'utf8')).frames[1];
+  // Depths along all directions come when the pose has settled.
+  await page.waitForFunction(() => spherechainViewer.posing.isSettled());
+  const listed = await shown(page);
+  const name = ([a, b]) => (a === b ? `${a} with itself` : `${a}, ${b}`);
+  const pairs = played.skin.parts.map(({ a, b, triangle_pairs: count }) => `${name([a, b])}: ${count}`);
+  assert.deepEqual(listed.map((contact) => `${contact.name}: ${contact.pairs}`).sort(), pairs.sort());
+  for (const { parts, depth_mm: depth, class: kind } of played.penetrations) {
+    const own = listed.find((contact) => contact.name === name(parts));
+    if (parts[0] === parts[1]) continue; // two triangles of one part: rounding decides which of them goes out
+    assert.ok(Math.abs(own.depth - depth) < 0.01 * depth + 0.01, `${name(parts)}: ${own.depth} and ${depth} mm`);
+    assert.equal(own.kind, ['rest', 'shell', 'touch', 'fold', 'deep_fold', 'penetration'].indexOf(kind));
+  }
+  return { listed, saved: JSON.parse(readFileSync(saved, 'utf8')) };
+}
+
+test('a frame is taken over as it is, and given back', async () => {
+  const session = await open(browser, man.page, SIZE);
+  const { page } = session;
+  await page.evaluate(() => spherechainViewer.setFrame(4));
+  const recorded = await shown(page);
+  assert.ok(recorded.length > 0);
+  await page.keyboard.press('j');
+  if (hasRuntime) {
+    await page.waitForFunction(() => spherechainViewer.posing.isLive());
+    const same = await shown(page);
+    assert.deepEqual(same.map(({ name, pairs }) => [name, pairs]), recorded.map(({ name, pairs }) => [name, pairs]));
+    same.forEach(({ depth }, i) => assert.ok(Math.abs(depth - recorded[i].depth) < 0.01 * depth + 0.01));
+  }
+  await drawn(page);
+  const taken = await poseOf(page);
+  await drag(page, await middle(page, 'left hand'), [600, 200]);
+  assert.notDeepEqual(await shown(page), recorded);
+  await page.locator('#pose').click();
+  assert.deepEqual(await shown(page), recorded);
+  assert.ok(await page.locator('#handles').isHidden());
+  await page.locator('#pose').click();
+  assert.deepEqual(await poseOf(page), taken, 'the frame is as it was');
+  await page.locator('#pose-undo').click();
+  assert.notDeepEqual(await poseOf(page), taken, 'what was left is there again');
+  await page.evaluate(() => spherechainViewer.setFrame(2));
+  await drag(page, await middle(page, 'left hand'), [600, 200]);
+  for (let i = 0; i < 5 && (await page.locator('#pose-undo').isEnabled()); ++i) await page.locator('#pose-undo').click();
+  assert.ok(await page.locator('#pose-undo').isDisabled(), 'all is taken back');
+  assert.equal(await page.evaluate(() => spherechainViewer.frame), 4);
+  assert.deepEqual(await poseOf(page), taken);
+  silent(session);
+  await session.close();
+});
+
+test('a hand goes where it is dragged, what touches then is what play finds in the saved pose', withRuntime, async () => {
+  const session = await opened(man);
+  const { page } = session;
+  assert.deepEqual(await shown(page), []);
+  const chest = await middle(page, 'chest');
+  const to = [chest[0] + 10, chest[1] - 20];
+  await drag(page, await middle(page, 'left hand'), to);
+  assert.ok(apart(await middle(page, 'left hand'), to) < 12, 'the hand is where it was let go');
+  const hip = await middle(page, 'left_hip');
+  await drag(page, await middle(page, 'right hand'), [hip[0] - 30, hip[1]]);
+  const { listed, saved } = await roundTrip(page, man);
+  assert.ok(listed.some(({ kind }) => kind === 5), 'something penetrates');
+  assert.equal(saved.rig, undefined);
+  const turned = Object.keys(saved.poses[0]).sort();
+  assert.deepEqual(turned, ['left_elbow', 'left_shoulder', 'right_elbow', 'right_shoulder']);
+  assert.equal(await page.locator('.contact').count(), listed.length);
+  await page.locator('#pose-undo').click();
+  assert.deepEqual(Object.keys(await poseOf(page)).sort(), ['left_elbow', 'left_shoulder']);
+  await page.keyboard.press('Control+z');
+  assert.deepEqual(await poseOf(page), {});
+  assert.deepEqual(await shown(page), []);
+  silent(session);
+  await session.close();
+});
+
+test('an elbow turns the arm around, hips go down between the feet, the head looks aside', async () => {
+  const session = await opened(man);
+  const { page } = session;
+  const places = () => Promise.all(['left hand', 'left elbow', 'left foot', 'right foot', 'hips', 'head'].map((name) => middle(page, name)));
+  const before = await places();
+  await drag(page, before[4], [before[4][0], before[4][1] + 40]);
+  const low = await places();
+  assert.ok(apart(low[4], [before[4][0], before[4][1] + 40]) < 3);
+  for (const foot of [2, 3]) assert.ok(apart(low[foot], before[foot]) < 3, 'feet stay');
+  assert.ok(apart(low[5], [before[5][0], before[5][1] + 40]) < 4);
+  await page.keyboard.press('2');
+  await drawn(page);
+  await drag(page, await middle(page, 'left hand'), (await middle(page, 'chest')).map((x, k) => x + [30, 0][k]));
+  const bent = await places();
+  await drag(page, bent[1], [bent[1][0], bent[1][1] - 80]);
+  const up = await places();
+  assert.ok(up[1][1] < bent[1][1] - 8, 'the elbow goes up');
+  assert.ok(apart(up[0], bent[0]) < 2, 'the hand stays');
+  await drag(page, up[5], [up[5][0] + 30, up[5][1] + 10]);
+  assert.ok('neck' in (await poseOf(page)));
+  await page.locator('#pose-reset').click();
+  assert.deepEqual(await poseOf(page), {});
+  silent(session);
+  await session.close();
+});
+
+test('the gizmo turns the joint that is clicked, on a skeleton of its own, and play reads that pose', async () => {
+  const session = await opened(bones);
+  const { page } = session;
+  const taken = await poseOf(page);
+  const names = await page.locator('.handle').evaluateAll((all) => all.map(({ title }) => title));
+  const at = await Promise.all(names.map((name) => middle(page, name)));
+  // The one that stands most alone, so that no other handle is in the way.
+  const alone = at.map((p, i) => Math.min(...at.filter((_, k) => k !== i).map((q) => apart(p, q))));
+  const chosen = names[alone.indexOf(Math.max(...alone))];
+  const center = await middle(page, chosen);
+  await handle(page, chosen).click();
+  assert.equal(await handle(page, chosen).getAttribute('aria-pressed'), 'true');
+  await drawn(page);
+  // Along the gizmo's rings until one is caught.
+  let after = taken;
+  for (let radius = 20; radius < 90 && JSON.stringify(after) === JSON.stringify(taken); radius += 4) {
+    await drag(page, [center[0] + radius, center[1] + 3], [center[0] + radius - 30, center[1] + 40]);
+    after = await poseOf(page);
+  }
+  const changed = [...new Set([...Object.keys(taken), ...Object.keys(after)])].filter((joint) => JSON.stringify(taken[joint]) !== JSON.stringify(after[joint]));
+  assert.deepEqual(changed, [chosen]);
+  if (hasRuntime) {
+    const { saved } = await roundTrip(page, bones);
+    assert.equal(saved.rig, 'own');
+  }
+  await page.keyboard.press('Escape');
+  assert.equal(await handle(page, chosen).getAttribute('aria-pressed'), 'false');
+  silent(session);
+  await session.close();
+});
+
+test('a page without the runtime says so, and poses all the same', async () => {
+  const html = readFileSync(man.page, 'utf8').replace(/"asset":"[^"]*",/, '');
+  writeFileSync(file('no_asset.html'), html);
+  const session = await open(browser, file('no_asset.html'), SIZE);
+  const { page } = session;
+  await page.keyboard.press('j');
+  assert.match(await page.locator('#posing [role=status]').innerText(), /finds no contacts/);
+  await drawn(page);
+  await drag(page, await middle(page, 'left hand'), [360, 250]);
+  assert.ok('left_elbow' in (await poseOf(page)));
+  silent(session);
+  await session.close();
+});
