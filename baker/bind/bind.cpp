@@ -183,7 +183,11 @@ BoundSphere bind_sphere(const Character& character, const std::vector<Index>& su
         mesh, surrounding.size() < kFew ? triangles_around(mesh, sphere, kEverywhere) : surrounding, sphere);
   }
   BoundSphere bound = carried(mesh, sphere, settings.rule, std::move(pivots));
-  bound.detect_radius = detect_ratio(mesh, surrounding, sphere.ball, settings.detect_quantile, at) * bound.rest.radius;
+  bound.detect_radius =
+      sphere.detect_radius
+          ? *sphere.detect_radius
+          : detect_ratio(mesh, surrounding, sphere.ball, settings.detect_quantile, at) * bound.rest.radius;
+  bound.keeps_detect_radius = sphere.detect_radius.has_value();
   return bound;
 }
 

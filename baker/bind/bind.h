@@ -25,7 +25,8 @@ struct BoundSphere {
   double detect_radius;  // at rest
   double spread;         // root mean square (paper: mean) distance of the pivots' centroids from the centre at rest
   std::vector<BoundPivot> pivots;
-  double weight_sum;  // sum of |weight|: 1 means the centre lies inside the pivots' hull
+  double weight_sum;                 // sum of |weight|: 1 means the centre lies inside the pivots' hull
+  bool keeps_detect_radius = false;  // a person chose it
 };
 
 // Two spheres that are reported only when they are closer than rest_scale * (radius of a + radius of b). Most of them

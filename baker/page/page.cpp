@@ -8,6 +8,7 @@
 #include "page/fill_page.h"
 #include "page/from_runtime.h"
 #include "page/page_axes.h"
+#include "page/page_edits.h"
 #include "page/page_look.h"
 #include "page/page_mesh.h"
 #include "page/page_motion.h"
@@ -155,6 +156,7 @@ std::string view_page(const AnimatedAsset& animated, const PageOptions& options,
                     {"validation", parsed_or_null(options.validation)},
                     {"radius", options.radius == SC_RADIUS_FIT ? "fit" : "detect"},
                     {"clips", clips_json(animated, options.motion)},
+                    {"edits", page_edits(animated, spheres)},
                     {"colliders", options.colliders == nullptr ? ordered_json() : colliders_json(*options.colliders)},
                     {"mesh", page_mesh(animated, animated.character().source_positions, parts, spheres)}};
   const double still = static_cast<double>(page.size() + json_text(data, -1).size());

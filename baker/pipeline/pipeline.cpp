@@ -9,6 +9,7 @@
 #include <chrono>
 
 #include "calibrate/calibrate.h"
+#include "edits/ignore_parts.h"
 #include "mesh/error.h"
 #include "pipeline/fit_prop.h"
 #include "pipeline/segment_wraps.h"
@@ -71,6 +72,8 @@ void run_after_fit(Bake& out, const Progress& progress) {
   stage(out, progress, "bind", [&] {
     out.body_parts = find_body_parts(out.character, out.roles, out.regions, out.joints, out.rig_weights);
     if (settings.import.prop) out.body_parts.parts[0].name = std::filesystem::path(out.character.file).stem().string();
+    ignore_parts(out.character, out.regions, out.spheres, out.body_parts, settings.edits.ignored_parts,
+                 settings.bind.neighbour_gap * out.regions.frame.height, out.binding, out.edits_done);
     out.bones = bind_bones(out.character, out.joints, out.rig_weights);
     out.moments = bind_moments(out.character, out.bones, out.rig_weights, out.binding);
   });
@@ -87,6 +90,20 @@ void run_after_fit(Bake& out, const Progress& progress) {
     calibrate(out.character, out.regions, out.joints, out.asset, out.binding);
     write();
   });
+}
+
+// Changes the spheres as a person asked, and binds them again.
+void edit(Bake& out) {
+  std::vector<AppliedEdit> applied;
+  out.spheres =
+      edit_spheres(out.character, out.regions, out.spheres, out.settings.edits.spheres, out.edits_done, applied);
+  Attempt<Binding> binding = bind_spheres(out.character, out.regions, out.spheres, out.settings.bind);
+  if (!binding) {
+    throw Error(ExitCode::kSegmentation, out.character.file + ": with its edits: " + binding.reason().what);
+  }
+  out.binding = std::move(*binding);
+  check_places(out.regions, out.spheres, out.binding, out.settings.edits.spheres, applied, out.edits_done);
+  out.quality = measure_fit(out.character, out.regions, out.binding);
 }
 
 Attempt<Spheres> fit_regions(const Character& character, const Regions& regions, const FitSettings& settings) {
@@ -347,6 +364,7 @@ Bake bake(const std::filesystem::path& input, const BakeSettings& settings, cons
     out.times.back().seconds -= out.closing.seconds;
     out.times.insert(out.times.end() - 1, {"wrap", out.closing.seconds});
   }
+  if (!settings.edits.spheres.empty()) stage(out, progress, "edits", [&] { edit(out); });
   run_after_fit(out, progress);
   return out;
 }

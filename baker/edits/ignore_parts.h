@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "bind/bind.h"
+#include "bind/body_parts.h"
+#include "edits/edit_spheres.h"
+
+namespace spherechain::baker {
+
+// Makes all spheres of two body parts ignore each other, pair by pair. Where a sphere has triangles of a named part
+// and of others, those that are not its own go to the nearest sphere of their part in the region: so contacts of these
+// parts are left out, and no others'. `gap` is BindSettings::neighbour_gap as a length.
+void ignore_parts(const Character& character, const Regions& regions, const Spheres& spheres, const BodyParts& parts,
+                  const std::vector<std::array<std::string, 2>>& pairs, double gap, Binding& binding, EditsDone& done);
+
+}  // namespace spherechain::baker
