@@ -51,8 +51,8 @@ export function createStage(canvas, model, store, { skinLayer, sphereLayer, cont
   let waiting = false;
 
   function place() {
-    const { frame, follow } = store.state;
-    const offset = framing.offset(frame, follow);
+    const { frame, follow, editing } = store.state;
+    const offset = framing.offset(frame, follow && !editing);
     character.matrix.makeTranslation(offset).multiply(framing.toWorld);
     floor.uniforms.slide.value.set(-offset.x, -offset.z);
   }
@@ -187,6 +187,7 @@ export function createStage(canvas, model, store, { skinLayer, sphereLayer, cont
   return {
     invalidate,
     view,
+    inner: { scene, camera, controls, toWorld }, // of those that put things of their own into the picture
     onDraw(before, after) {
       beforeDraw = before;
       afterDraw = after;

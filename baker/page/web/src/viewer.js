@@ -10,6 +10,7 @@ import { ColliderLayer } from './collider_layer.js';
 import { fillControls } from './controls.js';
 import { css, h } from './dom.js';
 import { dress } from './dress.js';
+import { createEditor } from './editor.js';
 import { bindKeys } from './keys.js';
 import { drawOverlay } from './overlay.js';
 import { followPointer } from './pointer.js';
@@ -94,6 +95,7 @@ const shown = {
   numbers: false,
   oneClip: false, // on the timeline
   over: false, // before and after a change: one over the other
+  editing: false, // spheres, at rest
   hiddenParts: new Set(),
   sets: new Set(),
   contact: null, // the key of the contact last gone to
@@ -110,8 +112,9 @@ function bindStage(stage, store, model, layers, skin) {
       eye = from;
       layers.sphereLayer.upload(eye);
       layers.contactLayer.shared.ratio.value = stage.pixelRatio();
+      layers.editor?.draw(eye);
     },
-    (project) => drawOverlay($('overlay'), { model, skin, state: store.state, project, eye, visible }),
+    (project) => store.state.editing ? layers.editor.overlay(project) : drawOverlay($('overlay'), { model, skin, state: store.state, project, eye, visible }),
   );
   store.watch(['theme'], () => stage.setInk(css('--ink')));
   store.watch(Object.keys(store.state), () => {
@@ -166,6 +169,7 @@ export function start(model) {
   const timeline = fillTimeline($('timeline'), store, model);
   fillCharts($('charts'), store, model);
   fillAccuracyPanel($('accuracy'), store, model, flyToSpheres);
+  layers.editor = createEditor({ model, skin, store, stage, layers, canvas: $('view'), overlay: $('overlay') });
   if (model.hasMethod) fillBakePanel($('bake'), model);
   else $('tab-bake').remove();
   bindTabs(store);
@@ -178,7 +182,7 @@ export function start(model) {
   $('help-button').addEventListener('click', () => $('help').showModal());
   $('licences').textContent = LICENCES;
   const chains = model.sets.filter((set) => set.kind === 'chain').map((set) => set.name);
-  bindKeys(store, { timeline, stage, help: $('help'), toggleTheme, reset, deepest, chains, hasMethod: model.hasMethod, hasChange: model.change !== null, hasColliders: model.colliders !== null });
+  bindKeys(store, { timeline, stage, help: $('help'), toggleTheme, reset, deepest, chains, hasMethod: model.hasMethod, hasChange: model.change !== null, hasColliders: model.colliders !== null, editor: layers.editor });
   runPlayback(store, model);
 
   window.spherechainViewer = Object.freeze({
@@ -190,6 +194,7 @@ export function start(model) {
       model.contacts.of(store.state.frame).map(({ name, pairs, triangles, kind, depth }) => ({ name, pairs, triangles: [...triangles], kind, depth })),
     camera: () => stage?.camera() ?? null,
     hovered: () => store.state.pointed,
+    edits: () => layers.editor?.read() ?? null,
     ready: true,
   });
   return { store, flyToContact, skinLayer: layers.skinLayer, redraw: () => stage?.invalidate() };
