@@ -360,8 +360,8 @@ std::string bake_report_text(const Bake& bake) {
                        std::count(bake.regions.of_skin.begin(), bake.regions.of_skin.end(), r),
                        bake.spheres.of_region[r].size());
   }
-  out += fmt::format("{} spheres, {} pairs of neighbours ignored\n", bake.spheres.spheres.size(),
-                     bake.binding.ignored.size());
+  out += fmt::format("{} spheres, {} pairs {} ignored\n", bake.spheres.spheres.size(), bake.binding.ignored.size(),
+                     bake.settings.edits.ignored_parts.empty() ? "of neighbours" : "of neighbours and of edited parts");
   if (const Edits& edits = bake.settings.edits; !edits.empty()) {
     out += fmt::format("{} of {} edits applied\n", bake.edits_done.applied,
                        edits.spheres.size() + edits.ignored_parts.size());
