@@ -18,6 +18,8 @@ using Ids = std::vector<std::uint32_t>;
 
 constexpr std::size_t kSpheresMax = 500;  // as the setting `spheres` has it
 
+constexpr std::size_t kNoEdit = ~std::size_t{0};
+
 // What happens to a fitted sphere, or where a new one comes in.
 struct Change {
   std::size_t edit;
@@ -70,7 +72,9 @@ class SphereEditor {
     };
     const auto put_added = [&](std::uint32_t beside, bool after) {
       for (const Added& added : added_) {
-        if (added.beside == beside && added.after == after) applied.push_back({added.edit, put(added.sphere)});
+        if (added.beside != beside || added.after != after) continue;
+        const std::uint32_t sphere = put(added.sphere);
+        if (added.edit != kNoEdit) applied.push_back({added.edit, sphere});
       }
     };
     for (std::uint32_t s = 0; s < old_.spheres.size(); ++s) {
@@ -172,16 +176,28 @@ class SphereEditor {
       return miss(edit, "the region has no more triangles than spheres");
     }
     const Vec3 point = axes(edit).point(*edits_[edit].to);
-    const std::uint32_t beside = nearest_sphere(old_, old_.of_region[region], point);
-    const FittedSphere& other = old_.spheres[beside];
-    FittedSphere sphere = other;
-    sphere.detect_radius = std::nullopt;
-    sphere = placed(sphere, edit);
-    // The spheres of a level of the torso stand from left to right.
-    const Vec3 onwards = sphere.level >= 0 && !sphere.extremity ? Vec3(-regions_.frame.left) : other.axis;
-    added_.push_back({edit, sphere, beside, onwards.dot(point - other.ball.center) >= 0});
+    insert(placed(beside(region, {point, 0}), edit), edit);
   }
 
+ public:
+  void insert(const FittedSphere& sphere, std::size_t edit = kNoEdit) {
+    const std::uint32_t nearest = nearest_sphere(old_, old_.of_region[sphere.region], sphere.ball.center);
+    // The spheres of a level of the torso stand from left to right.
+    const Vec3 onwards = sphere.level >= 0 && !sphere.extremity ? Vec3(-regions_.frame.left) : sphere.axis;
+    const bool after = onwards.dot(sphere.ball.center - old_.spheres[nearest].ball.center) >= 0;
+    added_.push_back({edit, sphere, nearest, after});
+  }
+
+  // A sphere of the kind that the nearest is.
+  FittedSphere beside(std::uint8_t region, const Ball& ball) const {
+    FittedSphere out = old_.spheres[nearest_sphere(old_, old_.of_region[region], ball.center)];
+    out.ball = ball;
+    out.detect_radius.reset();
+    out.body_part = -1;
+    return out;
+  }
+
+ private:
   // The owner of each triangle of a tree: anew in the regions that edits are about.
   void share_skin(const std::vector<std::optional<std::uint32_t>>& place, Spheres& out) const {
     if (old_.of_skin.empty()) return;
@@ -248,6 +264,20 @@ Spheres edit_spheres(const Character& character, const Regions& regions, const S
   SphereEditor editor(character, regions, spheres, edits, done);
   editor.find();
   done.applied += edits.size() - (done.missed.size() - missed);
+  return editor.result(applied);
+}
+
+Spheres insert_spheres(const Character& character, const Regions& regions, const Spheres& spheres,
+                       const std::vector<PartSphere>& added) {
+  EditsDone done;
+  std::vector<AppliedEdit> applied;
+  const std::vector<SphereEdit> none;
+  SphereEditor editor(character, regions, spheres, none, done);
+  for (const PartSphere& one : added) {
+    FittedSphere sphere = editor.beside(one.region, one.ball);
+    sphere.body_part = one.part;
+    editor.insert(sphere);
+  }
   return editor.result(applied);
 }
 

@@ -28,6 +28,17 @@ struct AppliedEdit {
 Spheres edit_spheres(const Character& character, const Regions& regions, const Spheres& spheres,
                      const std::vector<SphereEdit>& edits, EditsDone& done, std::vector<AppliedEdit>& applied);
 
+// A sphere for a body part in a region.
+struct PartSphere {
+  std::uint8_t region;
+  int part;  // its number
+  Ball ball;
+};
+
+// Adds them, in the order of the chain beside the nearest sphere. Level, side and axis become that one's.
+Spheres insert_spheres(const Character& character, const Regions& regions, const Spheres& spheres,
+                       const std::vector<PartSphere>& added);
+
 // Says which spheres do not stand where they were asked to: the skin that carries one may be too far away. `spheres`
 // are what edit_spheres() returned.
 void check_places(const Regions& regions, const Spheres& spheres, const Binding& binding,

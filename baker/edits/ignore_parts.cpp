@@ -4,42 +4,48 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <set>
 
 #include "bind/neighbours.h"
+#include "fit/piece.h"
 
 namespace spherechain::baker {
 namespace {
 
 constexpr int kNone = -1;
 
+int index_of(const BodyParts& parts, const std::string& name) {
+  const auto found =
+      std::find_if(parts.parts.begin(), parts.parts.end(), [&](const BodyPart& part) { return part.name == name; });
+  return found == parts.parts.end() ? kNone : static_cast<int>(found - parts.parts.begin());
+}
+
+// The parts of pairs whose two parts are there.
+std::set<int> named_parts(const BodyParts& parts, const PartPairs& pairs) {
+  std::set<int> out;
+  for (const auto& [first, second] : pairs) {
+    const int a = index_of(parts, first), b = index_of(parts, second);
+    if (a != kNone && b != kNone) out.insert({a, b});
+  }
+  return out;
+}
+
+// Which part each sphere is of: the one it was made for, or that of most of its skin.
 class PartSpheres {
  public:
   PartSpheres(const Character& character, const Regions& regions, const Spheres& spheres, const BodyParts& parts,
-              Binding& binding)
-      : mesh_(character.skin), regions_(regions), spheres_(spheres), binding_(binding) {
+              std::vector<std::uint32_t>& owner)
+      : mesh_(character.skin), regions_(regions), spheres_(spheres), owner_(owner) {
     for (const Index source : character.skin_source_triangle) part_of_.push_back(parts.of_triangle[source]);
     std::vector<std::vector<double>> areas(spheres.spheres.size(), std::vector<double>(parts.parts.size(), 0.0));
     for (std::size_t t = 0; t < part_of_.size(); ++t) {
-      areas[binding.sphere_of_triangle[t]][static_cast<std::size_t>(part_of_[t])] += triangle_area(mesh_, t);
+      areas[owner[t]][static_cast<std::size_t>(part_of_[t])] += triangle_area(mesh_, t);
     }
-    for (const std::vector<double>& area : areas) {
-      const auto most = std::max_element(area.begin(), area.end());
-      of_sphere_.push_back(most == area.end() || *most <= 0 ? kNone : static_cast<int>(most - area.begin()));
-    }
-  }
-
-  // Gives the triangles of a part to its spheres, and takes from them those of others.
-  void separate(int part) {
-    for (std::size_t t = 0; t < part_of_.size(); ++t) {
-      std::uint32_t& owner = binding_.sphere_of_triangle[t];
-      const int own = part_of_[t];
-      if (of_sphere_[owner] == own || (own != part && of_sphere_[owner] != part)) continue;
-      std::vector<std::uint32_t> among;
-      for (const std::uint32_t s : spheres_.of_region[regions_.of_skin[t]]) {
-        if (of_sphere_[s] == own) among.push_back(s);
-      }
-      if (!among.empty()) owner = nearest_sphere(spheres_, among, triangle_centroid(mesh_, t));
+    for (std::size_t s = 0; s < areas.size(); ++s) {
+      const auto most = std::max_element(areas[s].begin(), areas[s].end());
+      const int of_skin = most == areas[s].end() || *most <= 0 ? kNone : static_cast<int>(most - areas[s].begin());
+      of_sphere_.push_back(spheres.spheres[s].body_part != kNone ? spheres.spheres[s].body_part : of_skin);
     }
   }
 
@@ -50,74 +56,97 @@ class PartSpheres {
     }
     return out;
   }
-
-  // Triangles of a part, and those of them that other parts' spheres have.
-  std::pair<std::size_t, std::size_t> count(int part) const {
-    std::size_t all = 0, elsewhere = 0;
-    for (std::size_t t = 0; t < part_of_.size(); ++t) {
-      if (part_of_[t] != part) continue;
-      ++all;
-      elsewhere += of_sphere_[binding_.sphere_of_triangle[t]] == part ? 0 : 1;
+  std::vector<std::uint32_t> of(int part, std::uint8_t region) const {
+    std::vector<std::uint32_t> out;
+    for (const std::uint32_t s : spheres_.of_region[region]) {
+      if (of_sphere_[s] == part) out.push_back(s);
     }
-    return {all, elsewhere};
+    return out;
+  }
+
+  // A part's triangles in a region.
+  std::vector<Index> triangles(int part, std::uint8_t region) const {
+    std::vector<Index> out;
+    for (Index t = 0; t < part_of_.size(); ++t) {
+      if (part_of_[t] == part && regions_.of_skin[t] == region) out.push_back(t);
+    }
+    return out;
+  }
+
+  // Gives the triangles of a part to its spheres, and takes from them those of others.
+  void separate(int part) {
+    for (std::size_t t = 0; t < part_of_.size(); ++t) {
+      const int own = part_of_[t];
+      const int holder = of_sphere_[owner_[t]];
+      if (holder == own || (own != part && holder != part)) continue;
+      const std::vector<std::uint32_t> among = of(own, regions_.of_skin[t]);
+      if (!among.empty()) owner_[t] = nearest_sphere(spheres_, among, triangle_centroid(mesh_, t));
+    }
+  }
+
+  // How many triangles of a part other parts' spheres have.
+  std::size_t elsewhere(int part) const {
+    std::size_t count = 0;
+    for (std::size_t t = 0; t < part_of_.size(); ++t) {
+      count += part_of_[t] == part && of_sphere_[owner_[t]] != part ? 1 : 0;
+    }
+    return count;
   }
 
  private:
   const Mesh& mesh_;
   const Regions& regions_;
   const Spheres& spheres_;
-  Binding& binding_;
-  std::vector<int> part_of_;    // of a triangle of the skin
-  std::vector<int> of_sphere_;  // the part that most of a sphere's skin is of
+  std::vector<std::uint32_t>& owner_;  // of each triangle of the skin
+  std::vector<int> part_of_;           // likewise
+  std::vector<int> of_sphere_;
 };
 
 }  // namespace
 
-void ignore_parts(const Character& character, const Regions& regions, const Spheres& spheres, const BodyParts& parts,
-                  const std::vector<std::array<std::string, 2>>& pairs, double gap, Binding& binding, EditsDone& done) {
-  if (pairs.empty()) return;
-  const auto index_of = [&](const std::string& name) {
-    const auto found =
-        std::find_if(parts.parts.begin(), parts.parts.end(), [&](const BodyPart& part) { return part.name == name; });
-    return found == parts.parts.end() ? kNone : static_cast<int>(found - parts.parts.begin());
-  };
-  PartSpheres part_spheres(character, regions, spheres, parts, binding);
-  std::set<int> named;
-  for (const auto& pair : pairs) {
-    const std::array<int, 2> two{index_of(pair[0]), index_of(pair[1])};
-    if (two[0] != kNone && two[1] != kNone) named.insert(two.begin(), two.end());
+Spheres add_part_spheres(const Character& character, const Regions& regions, const Spheres& spheres,
+                         const BodyParts& parts, const PartPairs& pairs) {
+  const std::set<int> named = named_parts(parts, pairs);
+  if (named.empty()) return spheres;
+  std::vector<std::uint32_t> owner = assign_triangles(character.skin, regions, spheres);
+  const PartSpheres part_spheres(character, regions, spheres, parts, owner);
+  std::optional<PieceFitter> fitter;
+  std::vector<PartSphere> added;
+  for (const int part : named) {
+    for (std::uint8_t region = 0; region < regions.count(); ++region) {
+      const std::vector<Index> triangles = part_spheres.triangles(part, region);
+      if (triangles.empty() || !part_spheres.of(part, region).empty()) continue;
+      if (!fitter) fitter.emplace(character.skin, kWellFitted * regions.frame.height);
+      added.push_back({region, part, fitter->fit(fitter->samples_of(triangles)).ball});
+    }
   }
-  for (const int part : named) part_spheres.separate(part);
+  return added.empty() ? spheres : insert_spheres(character, regions, spheres, added);
+}
 
+void ignore_parts(const Character& character, const Regions& regions, const Spheres& spheres, const BodyParts& parts,
+                  const PartPairs& pairs, double gap, Binding& binding, EditsDone& done) {
+  if (pairs.empty()) return;
+  PartSpheres part_spheres(character, regions, spheres, parts, binding.sphere_of_triangle);
+  const std::set<int> named = named_parts(parts, pairs);
+  for (const int part : named) part_spheres.separate(part);
   SpherePairs ignored(binding.ignored.begin(), binding.ignored.end());
   if (!named.empty()) add_neighbours(character.skin, binding.sphere_of_triangle, gap, ignored);
+
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const std::string which = fmt::format("ignored_parts[{}]: {} and {}: ", i, pairs[i][0], pairs[i][1]);
-    std::array<std::vector<std::uint32_t>, 2> of;
-    std::string wrong;
-    for (std::size_t k = 0; k < 2 && wrong.empty(); ++k) {
-      const int part = index_of(pairs[i][k]);
-      if (part == kNone) {
-        wrong = fmt::format("there is no body part '{}'", pairs[i][k]);
-        continue;
-      }
-      of[k] = part_spheres.of(part);
-      const auto [all, elsewhere] = part_spheres.count(part);
-      if (of[k].empty()) {
-        wrong = fmt::format("the {} has no sphere of its own (add one)", pairs[i][k]);
-      } else if (elsewhere > 0) {
-        done.missed.push_back(which + fmt::format("ignored but for {} of the {} triangles of the {}, which are in "
-                                                  "regions where it has no sphere of its own",
-                                                  elsewhere, all, pairs[i][k]));
-      }
-    }
-    if (!wrong.empty()) {
-      done.missed.push_back(which + wrong);
+    const auto miss = [&](const std::string& why) {
+      done.missed.push_back(fmt::format("ignored_parts[{}]: {} and {}: {}", i, pairs[i][0], pairs[i][1], why));
+    };
+    const int first = index_of(parts, pairs[i][0]), second = index_of(parts, pairs[i][1]);
+    if (first == kNone || second == kNone) {
+      miss(fmt::format("there is no body part '{}'", pairs[i][first == kNone ? 0 : 1]));
       continue;
     }
     ++done.applied;
-    for (const std::uint32_t a : of[0]) {
-      for (const std::uint32_t b : of[1]) ignored.insert(std::minmax(a, b));
+    for (const std::uint32_t a : part_spheres.of(first)) {
+      for (const std::uint32_t b : part_spheres.of(second)) ignored.insert(std::minmax(a, b));
+    }
+    if (const std::size_t left = part_spheres.elsewhere(first) + part_spheres.elsewhere(second); left > 0) {
+      miss(fmt::format("ignored but for {} triangles, whose spheres are other parts': an edit took theirs", left));
     }
   }
   binding.ignored.assign(ignored.begin(), ignored.end());

@@ -26,6 +26,7 @@ struct FittedSphere {
   Vec3 axis;       // unit direction of the chain here: along the limb or part towards its tip, up the torso
   bool extremity;  // in head, hand or foot, where the paper has no spheres
   std::optional<double> detect_radius = std::nullopt;  // where a person chose it; else it is found when it is bound
+  int body_part = -1;                                  // where it was made for one: its number
 };
 
 // The three fits of one torso sphere. All are measured at the vertices of its part of the disk's band, which goes from

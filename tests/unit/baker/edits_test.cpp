@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -226,9 +227,9 @@ TEST_CASE("a region keeps its last sphere") {
 TEST_CASE("where regions follow the bones, triangles find an owner again, and each sphere has some") {
   Fitted person;
   person.character = baked_person().character;
-  person.regions = segment_by_bones(person.character, baked_person().roles, {}, 40);
+  person.regions = segment_by_bones(person.character, baked_person().roles, {}, 24);
   FitSettings few;
-  few.spheres = 40;
+  few.spheres = 24;
   person.spheres = fit_halves(person.character, person.regions, few);
   const auto most = std::max_element(person.spheres.of_region.begin(), person.spheres.of_region.end(),
                                      [](const auto& a, const auto& b) { return a.size() < b.size(); });
@@ -285,18 +286,17 @@ TEST_CASE("a region's axes turn, move and grow with the mesh, and finer triangle
     CHECK(turned[r].length == doctest::Approx(100 * own[r].length));
   }
   // From shoulder and hip to the tip; up the torso.
-  for (const std::uint8_t r : {0, 1, 2, 3}) {
-    CHECK((human.regions.limbs[r].line.points().back() - own[r].point({1, {0, 0}, 0, {}})).norm() < 0.1);
+  for (std::size_t r = 0; r < 4; ++r) {
+    CHECK((human.regions.limbs[r].line.points().back() - own[r].point({1, {0, 0}, 0, {}})).norm() < 0.2);
   }
   CHECK(own[4].axis.dot(human.regions.frame.up) > 0.99);
 }
 
-TEST_CASE("edits hold on a changed mesh: moved, scaled, reordered, finer, longer in the leg" *
+TEST_CASE("edits hold on a changed mesh: moved, scaled and reordered, or finer and longer in the leg" *
           doctest::test_suite("many bakes")) {
-  const SourceMesh mesh = melt(quadruped_tubes(), 0.05);
+  const SourceMesh mesh = melt(quadruped_tubes(), 0.07);
   const Fitted own = quadruped(mesh);
-  const auto limb = static_cast<std::uint8_t>(1);
-  const std::vector<std::uint32_t>& ids = own.spheres.of_region[limb];
+  const std::vector<std::uint32_t>& ids = own.spheres.of_region[1];
   REQUIRE(ids.size() > 4);
   SphereEdit change = own.edit(ids[1]), remove = own.edit(ids[3]), add = own.edit(own.spheres.of_region[0][1]);
   change.to = change.from;
@@ -305,62 +305,68 @@ TEST_CASE("edits hold on a changed mesh: moved, scaled, reordered, finer, longer
   add.from.reset();
   add.to->across[0] += 0.05;
   const std::vector<SphereEdit> edits{change, remove, add};
-  const Vec3 asked = edited(own, edits).spheres.spheres[ids[1]].ball.center;
+  // Where the first is, changed, and the last, added.
+  const auto places = [](const Edited& out) {
+    std::array<Vec3, 2> found{Vec3::Zero(), Vec3::Zero()};
+    for (const AppliedEdit& one : out.applied) found[one.edit / 2] = out.spheres.spheres[one.sphere].ball.center;
+    return found;
+  };
+  const std::array<Vec3, 2> asked = places(edited(own, edits));
 
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.7, Vec3(-2, 0.3, 1).normalized()).toRotationMatrix();
-  const auto longer = [](const Vec3& p) { return Vec3(p.x(), p.y() < 0.5 ? 1.15 * p.y() - 0.075 : p.y(), p.z()); };
-  const std::vector<std::pair<const char*, SourceMesh>> changed{
-      {"scaled, turned and moved", moved(mesh, [&](const Vec3& p) { return Vec3(40 * (turn * p) + Vec3(9, 8, 7)); })},
-      {"reordered", shuffled(mesh)},
-      {"subdivided", subdivided(mesh)},
-      {"of longer legs", moved(mesh, longer)}};
-  for (const auto& [name, other] : changed) {
-    CAPTURE(name);
+  const auto scaled = [&](const Vec3& p) { return Vec3(40 * (turn * p) + Vec3(9, 8, 7)); };
+  const auto longer = [](const Vec3& p) { return Vec3(p.x(), p.y() < 0.4 ? 1.1 * p.y() - 0.04 : p.y(), p.z()); };
+  const auto check = [&](const SourceMesh& other, const auto& move) {
     const Fitted again = quadruped(other);
     const Edited out = edited(again, edits);
     CHECK(out.done.applied == 3);
     for (const std::string& missed : out.done.missed) MESSAGE(missed);
-    const auto moved_one =
-        std::find_if(out.applied.begin(), out.applied.end(), [](const auto& one) { return one.edit == 0; });
-    REQUIRE(moved_one != out.applied.end());
-    const Vec3 center = out.spheres.spheres[moved_one->sphere].ball.center;
-    Vec3 expected = asked;
-    if (&other == &changed[0].second) expected = 40 * (turn * asked) + Vec3(9, 8, 7);
-    if (&other == &changed[3].second) expected = longer(asked);
-    CHECK((center - expected).norm() < 0.02 * again.regions.frame.height);
-  }
+    const std::array<Vec3, 2> found = places(out);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const double off = (found[k] - move(asked[k])).norm() / again.regions.frame.height;
+      CHECK(off < 0.02);
+    }
+  };
+  check(shuffled(moved(mesh, scaled)), scaled);
+  check(subdivided(moved(mesh, longer)), longer);
 }
 
-TEST_CASE("two parts ignore each other: all of their spheres, and no other parts' triangles") {
+TEST_CASE("two parts ignore each other: all of their triangles, and no other parts'") {
   const Bake& bake = baked_human();
-  Binding binding = bake.binding;
+  const PartPairs pairs{{"left hand", "head"}, {"left hand", "tail"}, {"left thigh", "left upper arm"}};
+  const Spheres spheres = add_part_spheres(bake.character, bake.regions, bake.spheres, bake.body_parts, pairs);
+  CHECK(spheres.spheres.size() == bake.spheres.spheres.size() + 2);  // thigh and upper arm reach into the torso
+  Attempt<Binding> binding = bind_spheres(bake.character, bake.regions, spheres, {});
+  REQUIRE(binding);
   EditsDone done;
-  ignore_parts(bake.character, bake.regions, bake.spheres, bake.body_parts,
-               {{"left hand", "head"}, {"left hand", "tail"}, {"neck", "right hand"}}, 0, binding, done);
-  CHECK(done.applied >= 1);
-  REQUIRE_FALSE(done.missed.empty());
-  CHECK(contains(done.missed[0], "ignored_parts[1]: left hand and tail: there is no body part 'tail'"));
-  const auto part_of = [&](std::size_t t) {
-    return bake.body_parts.parts[bake.body_parts.of_triangle[bake.character.skin_source_triangle[t]]].name;
-  };
-  std::map<std::uint32_t, std::set<std::string>> parts;
-  for (std::size_t t = 0; t < binding.sphere_of_triangle.size(); ++t) {
-    parts[binding.sphere_of_triangle[t]].insert(part_of(t));
-    CHECK_MESSAGE(bake.spheres.spheres[binding.sphere_of_triangle[t]].region == bake.regions.of_skin[t], t);
+  ignore_parts(bake.character, bake.regions, spheres, bake.body_parts, pairs, 0, *binding, done);
+  CHECK(done.applied == 2);
+  REQUIRE(done.missed.size() == 1);
+  CHECK(done.missed[0] == "ignored_parts[1]: left hand and tail: there is no body part 'tail'");
+  std::vector<std::set<std::string>> parts(spheres.spheres.size());
+  bool in_region = true;
+  for (std::size_t t = 0; t < binding->sphere_of_triangle.size(); ++t) {
+    const std::uint32_t owner = binding->sphere_of_triangle[t];
+    parts[owner].insert(
+        bake.body_parts.parts[bake.body_parts.of_triangle[bake.character.skin_source_triangle[t]]].name);
+    in_region = in_region && spheres.spheres[owner].region == bake.regions.of_skin[t];
   }
-  const std::set<std::pair<std::uint32_t, std::uint32_t>> ignored(binding.ignored.begin(), binding.ignored.end());
-  std::size_t pairs = 0;
-  for (const auto& [a, of_a] : parts) {
-    for (const auto& [b, of_b] : parts) {
-      if (!of_a.count("left hand") || !of_b.count("head")) continue;
-      CHECK(of_a.size() == 1);
-      CHECK(of_b.size() == 1);
-      CHECK(ignored.count(std::minmax(a, b)) == 1);
-      ++pairs;
+  CHECK(in_region);
+  const std::set<std::pair<std::uint32_t, std::uint32_t>> ignored(binding->ignored.begin(), binding->ignored.end());
+  CHECK(std::is_sorted(binding->ignored.begin(), binding->ignored.end()));
+  for (const auto& [first, second] : {std::pair("left hand", "head"), std::pair("left thigh", "left upper arm")}) {
+    std::size_t count = 0;
+    for (std::uint32_t a = 0; a < parts.size(); ++a) {
+      for (std::uint32_t b = 0; b < parts.size(); ++b) {
+        if (!parts[a].count(first) || !parts[b].count(second)) continue;
+        CHECK(parts[a].size() == 1);
+        CHECK(parts[b].size() == 1);
+        CHECK(ignored.count(std::minmax(a, b)) == 1);
+        ++count;
+      }
     }
+    CHECK(count > 0);
   }
-  CHECK(pairs > 0);
-  CHECK(std::is_sorted(binding.ignored.begin(), binding.ignored.end()));
 }
 
 TEST_CASE("edits as JSON: what is written is read again, and each fault is told by its field") {
