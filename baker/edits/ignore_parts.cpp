@@ -38,6 +38,7 @@ class PartSpheres {
               std::vector<std::uint32_t>& owner)
       : mesh_(character.skin), regions_(regions), spheres_(spheres), owner_(owner) {
     for (const Index source : character.skin_source_triangle) part_of_.push_back(parts.of_triangle[source]);
+    give_back();
     std::vector<std::vector<double>> areas(spheres.spheres.size(), std::vector<double>(parts.parts.size(), 0.0));
     for (std::size_t t = 0; t < part_of_.size(); ++t) {
       areas[owner[t]][static_cast<std::size_t>(part_of_[t])] += triangle_area(mesh_, t);
@@ -64,6 +65,17 @@ class PartSpheres {
     return out;
   }
 
+  // Regions and parts without a sphere of the part there: of its triangles some are a named part's, or in its spheres.
+  std::set<std::pair<std::uint8_t, int>> lacking(const std::set<int>& named) const {
+    std::set<std::pair<std::uint8_t, int>> out;
+    for (std::size_t t = 0; t < part_of_.size(); ++t) {
+      const std::uint8_t region = regions_.of_skin[t];
+      if (named.count(part_of_[t]) == 0 && named.count(of_sphere_[owner_[t]]) == 0) continue;
+      if (of(part_of_[t], region).empty()) out.insert({region, part_of_[t]});
+    }
+    return out;
+  }
+
   // A part's triangles in a region.
   std::vector<Index> triangles(int part, std::uint8_t region) const {
     std::vector<Index> out;
@@ -84,16 +96,30 @@ class PartSpheres {
     }
   }
 
-  // How many triangles of a part other parts' spheres have.
-  std::size_t elsewhere(int part) const {
+  // How many triangles of a part other parts' spheres have, or of others its spheres.
+  std::size_t misplaced(int part) const {
     std::size_t count = 0;
     for (std::size_t t = 0; t < part_of_.size(); ++t) {
-      count += part_of_[t] == part && of_sphere_[owner_[t]] != part ? 1 : 0;
+      count += (part_of_[t] == part) != (of_sphere_[owner_[t]] == part) ? 1 : 0;
     }
     return count;
   }
 
  private:
+  // A sphere that was made for a part has no triangles of others. So the parts of all others are what they were.
+  void give_back() {
+    for (std::size_t t = 0; t < part_of_.size(); ++t) {
+      const auto may_own = [&](std::uint32_t s) {
+        const int part = spheres_.spheres[s].body_part;
+        return part == kNone || part == part_of_[t];
+      };
+      if (may_own(owner_[t])) continue;
+      std::vector<std::uint32_t> among = spheres_.of_region[regions_.of_skin[t]];
+      among.erase(std::remove_if(among.begin(), among.end(), [&](auto s) { return !may_own(s); }), among.end());
+      if (!among.empty()) owner_[t] = nearest_sphere(spheres_, among, triangle_centroid(mesh_, t));
+    }
+  }
+
   const Mesh& mesh_;
   const Regions& regions_;
   const Spheres& spheres_;
@@ -112,13 +138,9 @@ Spheres add_part_spheres(const Character& character, const Regions& regions, con
   const PartSpheres part_spheres(character, regions, spheres, parts, owner);
   std::optional<PieceFitter> fitter;
   std::vector<PartSphere> added;
-  for (const int part : named) {
-    for (std::uint8_t region = 0; region < regions.count(); ++region) {
-      const std::vector<Index> triangles = part_spheres.triangles(part, region);
-      if (triangles.empty() || !part_spheres.of(part, region).empty()) continue;
-      if (!fitter) fitter.emplace(character.skin, kWellFitted * regions.frame.height);
-      added.push_back({region, part, fitter->fit(fitter->samples_of(triangles)).ball});
-    }
+  for (const auto& [region, part] : part_spheres.lacking(named)) {
+    if (!fitter) fitter.emplace(character.skin, kWellFitted * regions.frame.height);
+    added.push_back({region, part, fitter->fit(fitter->samples_of(part_spheres.triangles(part, region))).ball});
   }
   return added.empty() ? spheres : insert_spheres(character, regions, spheres, added);
 }
@@ -145,8 +167,8 @@ void ignore_parts(const Character& character, const Regions& regions, const Sphe
     for (const std::uint32_t a : part_spheres.of(first)) {
       for (const std::uint32_t b : part_spheres.of(second)) ignored.insert(std::minmax(a, b));
     }
-    if (const std::size_t left = part_spheres.elsewhere(first) + part_spheres.elsewhere(second); left > 0) {
-      miss(fmt::format("ignored but for {} triangles, whose spheres are other parts': an edit took theirs", left));
+    if (const std::size_t left = part_spheres.misplaced(first) + part_spheres.misplaced(second); left > 0) {
+      miss(fmt::format("ignored but for {} triangles at their borders: an edit took the sphere that they need", left));
     }
   }
   binding.ignored.assign(ignored.begin(), ignored.end());

@@ -14,7 +14,8 @@ namespace spherechain::baker {
 using PartPairs = std::vector<std::array<std::string, 2>>;
 
 // Gives each part of these pairs a sphere in each region that has triangles of the part, but no sphere that is most of
-// all the part's. So the spheres of two parts can ignore each other, and no others need to.
+// all the part's; and other parts, too, whose triangles are in spheres of these. So the spheres of two parts can ignore
+// each other, and no others need to.
 Spheres add_part_spheres(const Character& character, const Regions& regions, const Spheres& spheres,
                          const BodyParts& parts, const PartPairs& pairs);
 

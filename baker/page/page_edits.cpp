@@ -13,8 +13,8 @@ using nlohmann::ordered_json;
 
 // Why a bake of this asset would refuse edits; null where it would not.
 ordered_json refusal(const ordered_json& settings) {
-  if (settings.contains("prop")) return "A prop has no edits: its spheres hold all of it.";
-  if (settings["refit"] == "paper") return "The paper's refit has no edits. Bake with the profile balanced.";
+  if (settings.value("prop", false)) return "A prop has no edits: its spheres hold all of it.";
+  if (settings.value("refit", "") == "paper") return "The paper's refit has no edits. Bake with the profile balanced.";
   return nullptr;
 }
 

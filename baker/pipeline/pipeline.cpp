@@ -108,9 +108,9 @@ void edit(Bake& out) {
   }
   out.binding = std::move(*binding);
   check_places(out.regions, out.spheres, out.binding, edits.spheres, applied, out.edits_done);
+  out.quality = measure_fit(out.character, out.regions, out.binding);
   ignore_parts(out.character, out.regions, out.spheres, out.body_parts, edits.ignored_parts,
                out.settings.bind.neighbour_gap * out.regions.frame.height, out.binding, out.edits_done);
-  out.quality = measure_fit(out.character, out.regions, out.binding);
 }
 
 Attempt<Spheres> fit_regions(const Character& character, const Regions& regions, const FitSettings& settings) {

@@ -294,7 +294,7 @@ TEST_CASE("a region's axes turn, move and grow with the mesh, and finer triangle
 
 TEST_CASE("edits hold on a changed mesh: moved, scaled and reordered, or finer and longer in the leg" *
           doctest::test_suite("many bakes")) {
-  const SourceMesh mesh = melt(quadruped_tubes(), 0.07);
+  const SourceMesh mesh = melt(quadruped_tubes(), 0.05);
   const Fitted own = quadruped(mesh);
   const std::vector<std::uint32_t>& ids = own.spheres.of_region[1];
   REQUIRE(ids.size() > 4);

@@ -27,7 +27,7 @@ export function createEditor({ model, skin, store, stage, layers, canvas, overla
   document.getElementById('bake').before(panel);
   const { regions, refusal } = model.edits;
   const names = model.regions.map(({ name }) => name);
-  const keys = [['E', 'e', 'Edit spheres and ignored parts', () => tab.click()], ...KEYS.map(([label, what]) => [label, null, what, () => {}])];
+  const keys = [['E', 'e', 'Edit spheres and ignored parts', () => (store.state.editing ? document.getElementById('tab-contacts') : tab).click()], ...KEYS.map(([label, what]) => [label, null, what, () => {}])];
   const why = refusal ?? (stage ? null : 'Editing needs WebGL 2, which this browser has not.');
   if (why) {
     panel.append(h('p', {}, why));

@@ -95,7 +95,6 @@ const shown = {
   numbers: false,
   oneClip: false, // on the timeline
   over: false, // before and after a change: one over the other
-  editing: false, // spheres, at rest
   hiddenParts: new Set(),
   sets: new Set(),
   contact: null, // the key of the contact last gone to
@@ -134,7 +133,7 @@ export function start(model) {
   // Where spheres are no method to study, the skin shows through them.
   const startState = { ...shown, radius: model.radius, ...(model.hasMethod ? {} : { sphereOpacity: 0.4 }) };
   const theme = matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light';
-  const store = createStore({ ...startState, frame: model.start, playing: false, theme });
+  const store = createStore({ ...startState, frame: model.start, playing: false, theme, editing: false });
   const toggleTheme = bindTheme(store);
   const skin = new Skin(model.mesh, model.motion, model.look);
   if (!model.hasSpheres) model.refit = new Refit(model.inspect, model.mesh, skin);
