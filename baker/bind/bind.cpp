@@ -183,7 +183,11 @@ BoundSphere bind_sphere(const Character& character, const std::vector<Index>& su
         mesh, surrounding.size() < kFew ? triangles_around(mesh, sphere, kEverywhere) : surrounding, sphere);
   }
   BoundSphere bound = carried(mesh, sphere, settings.rule, std::move(pivots));
-  bound.detect_radius = detect_ratio(mesh, surrounding, sphere.ball, settings.detect_quantile, at) * bound.rest.radius;
+  bound.detect_radius =
+      sphere.detect_radius
+          ? *sphere.detect_radius
+          : detect_ratio(mesh, surrounding, sphere.ball, settings.detect_quantile, at) * bound.rest.radius;
+  bound.keeps_detect_radius = sphere.detect_radius.has_value();
   return bound;
 }
 
@@ -206,12 +210,16 @@ std::vector<BoundPair> find_rest_pairs(const std::vector<BoundSphere>& spheres, 
 
 }  // namespace
 
+std::vector<std::uint32_t> assign_triangles(const Mesh& skin, const Regions& regions, const Spheres& spheres) {
+  return regions.is_tree() ? spheres.of_skin : assign_triangles(skin, regions.of_skin, spheres);
+}
+
 Attempt<Binding> bind_spheres(const Character& character, const Regions& regions, const Spheres& spheres,
                               const BindSettings& settings) {
   Binding out;
   out.rule = settings.rule;
   const Mesh& skin = character.skin;
-  out.sphere_of_triangle = regions.is_tree() ? spheres.of_skin : assign_triangles(skin, regions.of_skin, spheres);
+  out.sphere_of_triangle = assign_triangles(skin, regions, spheres);
 
   std::vector<std::vector<Index>> surrounding(spheres.spheres.size());
   const std::vector<bool> loose = loose_triangles(character, regions);

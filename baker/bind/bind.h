@@ -25,7 +25,8 @@ struct BoundSphere {
   double detect_radius;  // at rest
   double spread;         // root mean square (paper: mean) distance of the pivots' centroids from the centre at rest
   std::vector<BoundPivot> pivots;
-  double weight_sum;  // sum of |weight|: 1 means the centre lies inside the pivots' hull
+  double weight_sum;                 // sum of |weight|: 1 means the centre lies inside the pivots' hull
+  bool keeps_detect_radius = false;  // a person chose it
 };
 
 // Two spheres that are reported only when they are closer than rest_scale * (radius of a + radius of b). Most of them
@@ -57,6 +58,9 @@ struct BindSettings {
 // There is none where a sphere finds no pivots. Under the rule of moments rest pairs are left to the calibration.
 Attempt<Binding> bind_spheres(const Character& character, const Regions& regions, const Spheres& spheres,
                               const BindSettings& settings);
+
+// The sphere of each triangle of the skin: the closest of its region (section 5.1); of a tree as it was fitted.
+std::vector<std::uint32_t> assign_triangles(const Mesh& skin, const Regions& regions, const Spheres& spheres);
 
 // What the magnitudes of a sphere's weights may add up to: above 1 the sphere moves more than its pivots do.
 inline constexpr double kIllPosed = 1.5;

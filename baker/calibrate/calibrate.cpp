@@ -78,7 +78,9 @@ void calibrate(const Character& character, const Regions& regions, const std::ve
     std::vector<double> least = radii_of(binding, false);
     for (std::size_t s = 0; s < least.size(); ++s) least[s] /= sampled_radii[s];
     const std::vector<double> factors = radius_factors(sampled, reaches, sampled_radii, least);
-    for (std::size_t s = 0; s < factors.size(); ++s) binding.spheres[s].detect_radius *= factors[s];
+    for (std::size_t s = 0; s < factors.size(); ++s) {
+      if (!binding.spheres[s].keeps_detect_radius) binding.spheres[s].detect_radius *= factors[s];
+    }
   }
 
   const auto listed = static_cast<std::size_t>(kListed * pose_count(character));

@@ -20,8 +20,13 @@ ExitCode run_bake(const BakeOptions& options) {
   if (!options.body.empty()) settings.segment.body = parse_body(options.body);
   if (options.attachments) settings.import.attachments = true;
   if (!options.roles.empty()) settings.roles = parse_role_file(read_file(options.roles), options.roles);
+  if (!options.edits.empty()) {
+    settings.edits = parse_edits(read_file(options.edits), options.edits);
+    check_edits(settings, options.edits);
+  }
   check_regular_file(options.input);
-  check_outputs(with_source({{"--config", options.config}, {"--roles", options.roles}}, "INPUT", options.input),
+  check_outputs(with_source({{"--config", options.config}, {"--roles", options.roles}, {"--edits", options.edits}},
+                            "INPUT", options.input),
                 {{"-o", options.output}, {"--report", options.report}, {"--preview", options.preview}});
   check_replaceable(options.output, "SPHC", "an asset", options.force, 4);
   check_replaceable_json(options.report, options.force, "--force replaces it");
@@ -50,7 +55,10 @@ ExitCode run_bake(const BakeOptions& options) {
   const std::vector<std::string> missed = missed_targets(result);
   for (const std::string& target : missed)
     fmt::print(stderr, "spherechain: target missed: {}: {}\n", options.input, target);
-  return missed.empty() ? ExitCode::kDone : ExitCode::kTargetMissed;
+  for (const std::string& edit : result.edits_done.missed)
+    fmt::print(stderr, "spherechain: edit missed: {}: {}\n", options.edits.empty() ? options.config : options.edits,
+               edit);
+  return missed.empty() && result.edits_done.missed.empty() ? ExitCode::kDone : ExitCode::kTargetMissed;
 }
 
 }  // namespace spherechain::baker

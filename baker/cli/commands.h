@@ -12,7 +12,7 @@ namespace spherechain::baker {
 // One struct of options and one function a subcommand. They throw Error; what they return is the exit code.
 
 struct BakeOptions {
-  std::string input, output, config, report, preview, roles, body;
+  std::string input, output, config, report, preview, roles, body, edits;
   std::string profile = "balanced";
   int spheres = 0;  // 0: no limit
   bool extremities = false, attachments = false, prop = false, force = false;

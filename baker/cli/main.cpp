@@ -140,6 +140,8 @@ int main(int argc, char** argv) {
   add_output(*bake_command, "-o,--output", bake.output, "Asset to write (.sphc)")->required();
   add_name(*bake_command, "--config", bake.config, "JSON file that changes the profile's settings");
   add_name(*bake_command, "--roles", bake.roles, "JSON file of roles by node name, before names and shape");
+  add_name(*bake_command, "--edits", bake.edits,
+           "Edits that the page of view saved: spheres, and parts that are ignored");
   bake_command->add_option("--profile", bake.profile, "Where the settings start")
       ->check(CLI::IsMember({"paper", "balanced"}))
       ->capture_default_str();
@@ -153,7 +155,7 @@ int main(int argc, char** argv) {
                          "Spheres in head, hands and feet too (profile balanced has them)");
   bake_command->add_flag("--attachments", bake.attachments, "Keep rigid meshes that hang on joints: weapons, hats");
   CLI::Option* prop = bake_command->add_flag("--prop", bake.prop, "A rigid thing without a rig: a sword, a chair");
-  for (const char* other : {"--profile", "--roles", "--body", "--extremities", "--attachments"}) {
+  for (const char* other : {"--profile", "--roles", "--body", "--extremities", "--attachments", "--edits"}) {
     prop->excludes(bake_command->get_option(other));
   }
   add_output(*bake_command, "--report", bake.report, "JSON report to write");

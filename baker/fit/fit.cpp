@@ -7,10 +7,24 @@
 namespace spherechain::baker {
 namespace {
 
-using Link = std::pair<std::uint32_t, std::uint32_t>;
+// A trunk deeper than wide: the spheres of a level all but coincide.
+bool is_narrow(const Spheres& torso) {
+  constexpr double kCoincide = 0.8;
+  double sum = 0;
+  int count = 0;
+  for (std::size_t i = 1; i < torso.spheres.size(); ++i) {
+    const FittedSphere &a = torso.spheres[i - 1], &b = torso.spheres[i];
+    if (a.level != b.level) continue;
+    sum += penetration_depth(a.ball, b.ball);
+    ++count;
+  }
+  return count > 0 && sum > kCoincide * count;
+}
 
-std::vector<Link> find_links(const Spheres& spheres, const Regions& regions) {
-  std::vector<Link> links;
+}  // namespace
+
+std::vector<std::pair<std::uint32_t, std::uint32_t>> find_links(const Spheres& spheres, const Regions& regions) {
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> links;
   const std::vector<std::uint32_t>& torso = spheres.of_region[spheres.torso_region()];
   const auto level = [&](std::uint32_t i) { return spheres.spheres[i].level; };
   for (const std::uint32_t a : torso) {
@@ -31,22 +45,6 @@ std::vector<Link> find_links(const Spheres& spheres, const Regions& regions) {
   std::sort(links.begin(), links.end());
   return links;
 }
-
-// A trunk deeper than wide: the spheres of a level all but coincide.
-bool is_narrow(const Spheres& torso) {
-  constexpr double kCoincide = 0.8;
-  double sum = 0;
-  int count = 0;
-  for (std::size_t i = 1; i < torso.spheres.size(); ++i) {
-    const FittedSphere &a = torso.spheres[i - 1], &b = torso.spheres[i];
-    if (a.level != b.level) continue;
-    sum += penetration_depth(a.ball, b.ball);
-    ++count;
-  }
-  return count > 0 && sum > kCoincide * count;
-}
-
-}  // namespace
 
 int Spheres::level_at(double along) const {
   return static_cast<int>(std::lround(along * (static_cast<double>(level_heights.size()) - 1)));

@@ -25,6 +25,8 @@ struct FittedSphere {
   Side side;       // torso: which part of the disk; limbs, head and the middle of a level: none
   Vec3 axis;       // unit direction of the chain here: along the limb or part towards its tip, up the torso
   bool extremity;  // in head, hand or foot, where the paper has no spheres
+  std::optional<double> detect_radius = std::nullopt;  // where a person chose it; else it is found when it is bound
+  int body_part = -1;                                  // where it was made for one: its number
 };
 
 // The three fits of one torso sphere. All are measured at the vertices of its part of the disk's band, which goes from
@@ -32,6 +34,7 @@ struct FittedSphere {
 struct TorsoFit {
   Ball phi1, phi1_adjusted, phi2;
   std::vector<Index> vertices;  // of Character::body
+  std::uint32_t sphere = 0;     // its number
 };
 
 // F of a vertex: positive inside the ball.
@@ -48,7 +51,7 @@ struct Spheres {
   std::vector<FittedSphere> spheres;
   std::vector<std::vector<std::uint32_t>>
       of_region;                      // in the order above; the torso is last, and empty where there is none
-  std::vector<TorsoFit> torso;        // of spheres 0, 1, ... without the head
+  std::vector<TorsoFit> torso;        // without the head; of spheres that a person changed there is none
   std::vector<double> level_heights;  // along frame.up from frame.origin; without the head
   // Neighbours on the body, a < b, sorted: along a limb, on the same or the next torso level, limb and torso, neck and
   // torso. By halves: of a part and the one it hangs on, where their skins are joined, and of skin that moves alike.
@@ -102,6 +105,16 @@ struct KeptSpheres {
 // are enough. Mirrored regions are halved as often.
 Spheres fit_halves(const Character& character, const Regions& regions, const FitSettings& settings,
                    const KeptSpheres& kept = {});
+
+// Neighbours on the body (Spheres::links) of fit_spheres', and of fit_halves'.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> find_links(const Spheres& spheres, const Regions& regions);
+std::vector<std::pair<std::uint32_t, std::uint32_t>> find_links(const Character& character, const Regions& regions,
+                                                                const Spheres& spheres);
+
+// Which of some spheres each of a part's triangles belongs to, by fit_halves' rule. Each sphere gets one, where there
+// are enough.
+std::vector<std::size_t> share_triangles(const Mesh& skin, const BodyFrame& frame, const std::vector<Index>& triangles,
+                                         const std::vector<Ball>& balls);
 
 // Of some spheres the one whose centre is nearest.
 std::uint32_t nearest_sphere(const Spheres& spheres, const std::vector<std::uint32_t>& among, const Vec3& point);

@@ -198,6 +198,8 @@ bool are_joined(const Mesh& skin, const Spheres& spheres, std::uint32_t a, std::
   return false;
 }
 
+}  // namespace
+
 std::vector<std::pair<std::uint32_t, std::uint32_t>> find_links(const Character& character, const Regions& regions,
                                                                 const Spheres& spheres) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> links;
@@ -231,7 +233,13 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> find_links(const Character&
   return links;
 }
 
-}  // namespace
+std::vector<std::size_t> share_triangles(const Mesh& skin, const BodyFrame& frame, const std::vector<Index>& triangles,
+                                         const std::vector<Ball>& balls) {
+  Region region;
+  region.triangles = triangles;
+  for (const Ball& ball : balls) region.pieces.push_back({{}, ball, 0, 0});
+  return region.owners(PieceFitter(skin, kWellFitted * frame.height));
+}
 
 Spheres fit_halves(const Character& character, const Regions& regions, const FitSettings& settings,
                    const KeptSpheres& kept) {

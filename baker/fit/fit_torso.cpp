@@ -190,7 +190,7 @@ std::optional<Reason> fit_torso(const Mesh& mesh, const Regions& regions, const 
     for (const Part& part : levels[i].parts) {
       const double left = &part == &levels[i].parts.front() ? kEverything : part.left + on_plane,
                    right = &part == &levels[i].parts.back() ? -kEverything : part.right - on_plane;
-      TorsoFit fit{part.ball, {}, {}, {}};
+      TorsoFit fit{part.ball, {}, {}, {}, static_cast<std::uint32_t>(out.spheres.size())};
       for (Index v = 0; v < mesh.positions.size(); ++v) {
         const double h = (mesh.positions[v] - frame.origin).dot(frame.up);
         const double across = (mesh.positions[v] - levels[i].disk).dot(frame.left);

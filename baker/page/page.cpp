@@ -8,6 +8,7 @@
 #include "page/fill_page.h"
 #include "page/from_runtime.h"
 #include "page/page_axes.h"
+#include "page/page_edits.h"
 #include "page/page_look.h"
 #include "page/page_mesh.h"
 #include "page/page_motion.h"
@@ -157,6 +158,7 @@ std::string view_page(const AnimatedAsset& animated, const PageOptions& options,
                     {"radius", options.radius == SC_RADIUS_FIT ? "fit" : "detect"},
                     {"clips", clips_json(animated, options.motion)},
                     {"rig", page_rig(animated)},
+                    {"edits", page_edits(animated, spheres)},
                     {"colliders", options.colliders == nullptr ? ordered_json() : colliders_json(*options.colliders)},
                     {"mesh", page_mesh(animated, animated.character().source_positions, parts, spheres)}};
   if (!data["rig"].is_null() && page.has_runtime()) data["asset"] = base64(options.asset);

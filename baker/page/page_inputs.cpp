@@ -114,6 +114,7 @@ std::string read_bake_report(const std::string& file, const OpenAsset& asset, co
   quality["grade"].text();
   quality.numbers({"far_area", "protrusion"});
   report["missed_targets"].each([](const Value& target) { target.text(); });
+  report["edits"]["missed"].each([](const Value& edit) { edit.text(); });
   report["stages"].each([](const Value& stage) {
     stage["stage"].text();
     stage["seconds"].number();

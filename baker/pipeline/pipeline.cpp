@@ -9,6 +9,7 @@
 #include <chrono>
 
 #include "calibrate/calibrate.h"
+#include "edits/ignore_parts.h"
 #include "mesh/error.h"
 #include "pipeline/fit_prop.h"
 #include "pipeline/segment_wraps.h"
@@ -53,6 +54,19 @@ struct Reserve {
   ClosingReport closing;
 };
 
+void run_rig(Bake& out, const Progress& progress) {
+  stage(out, progress, "rig", [&] {
+    if (is_biped(out.regions) && out.joints.empty()) {
+      out.joints = place_joints(out.character, out.regions);
+      if (out.character.rig.bones.empty()) out.rig_weights = rig_weights(out.character, out.joints);
+    }
+    out.body_parts = find_body_parts(out.character, out.roles, out.regions, out.joints, out.rig_weights);
+    if (out.settings.import.prop) {
+      out.body_parts.parts[0].name = std::filesystem::path(out.character.file).stem().string();
+    }
+  });
+}
+
 void run_after_fit(Bake& out, const Progress& progress) {
   const BakeSettings& settings = out.settings;
   stage(out, progress, "chains", [&] {
@@ -63,14 +77,7 @@ void run_after_fit(Bake& out, const Progress& progress) {
     out.chains =
         out.regions.is_tree() ? build_tree_chains(out.spheres, out.regions.parents) : build_chains(out.spheres, limbs);
   });
-  stage(out, progress, "rig", [&] {
-    if (!is_biped(out.regions) || !out.joints.empty()) return;
-    out.joints = place_joints(out.character, out.regions);
-    if (out.character.rig.bones.empty()) out.rig_weights = rig_weights(out.character, out.joints);
-  });
   stage(out, progress, "bind", [&] {
-    out.body_parts = find_body_parts(out.character, out.roles, out.regions, out.joints, out.rig_weights);
-    if (settings.import.prop) out.body_parts.parts[0].name = std::filesystem::path(out.character.file).stem().string();
     out.bones = bind_bones(out.character, out.joints, out.rig_weights);
     out.moments = bind_moments(out.character, out.bones, out.rig_weights, out.binding);
   });
@@ -87,6 +94,23 @@ void run_after_fit(Bake& out, const Progress& progress) {
     calibrate(out.character, out.regions, out.joints, out.asset, out.binding);
     write();
   });
+}
+
+// Changes the spheres as a person asked, and binds them again.
+void edit(Bake& out) {
+  const Edits& edits = out.settings.edits;
+  std::vector<AppliedEdit> applied;
+  out.spheres = add_part_spheres(out.character, out.regions, out.spheres, out.body_parts, edits.ignored_parts);
+  out.spheres = edit_spheres(out.character, out.regions, out.spheres, edits.spheres, out.edits_done, applied);
+  Attempt<Binding> binding = bind_spheres(out.character, out.regions, out.spheres, out.settings.bind);
+  if (!binding) {
+    throw Error(ExitCode::kSegmentation, out.character.file + ": with its edits: " + binding.reason().what);
+  }
+  out.binding = std::move(*binding);
+  check_places(out.regions, out.spheres, out.binding, edits.spheres, applied, out.edits_done);
+  out.quality = measure_fit(out.character, out.regions, out.binding);
+  ignore_parts(out.character, out.regions, out.spheres, out.body_parts, edits.ignored_parts,
+               out.settings.bind.neighbour_gap * out.regions.frame.height, out.binding, out.edits_done);
 }
 
 Attempt<Spheres> fit_regions(const Character& character, const Regions& regions, const FitSettings& settings) {
@@ -347,6 +371,8 @@ Bake bake(const std::filesystem::path& input, const BakeSettings& settings, cons
     out.times.back().seconds -= out.closing.seconds;
     out.times.insert(out.times.end() - 1, {"wrap", out.closing.seconds});
   }
+  run_rig(out, progress);
+  if (!settings.edits.empty()) stage(out, progress, "edits", [&] { edit(out); });
   run_after_fit(out, progress);
   return out;
 }
@@ -371,6 +397,7 @@ Bake rebake(const Bake& bake, const BakeSettings& settings) {
     out.binding = or_throw(bind_spheres(out.character, out.regions, out.spheres, settings.bind));
     out.quality = measure_fit(out.character, out.regions, out.binding);
   });
+  run_rig(out, {});
   run_after_fit(out, {});
   return out;
 }

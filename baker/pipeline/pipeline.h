@@ -15,6 +15,8 @@
 #include "bind/fit_quality.h"
 #include "chains/chains.h"
 #include "clusters/clusters.h"
+#include "edits/edit_spheres.h"
+#include "edits/edits.h"
 #include "fit/fit.h"
 #include "import/import.h"
 #include "mesh/attempt.h"
@@ -41,6 +43,7 @@ struct BakeSettings {
   BindSettings bind;
   ClusterSettings clusters;
   Targets targets;
+  Edits edits;
 };
 
 // "paper" (the paper's refit on 4 pivots, no spheres in head, hands and feet), "balanced" (refit by moments,
@@ -49,10 +52,14 @@ struct BakeSettings {
 // prop has; Error(kUsage) for another profile.
 BakeSettings make_settings(const std::string& profile, const std::string& json, const std::string& file);
 
+// Throws Error(kFile) where a bake with these settings cannot keep to its edits: of a prop, or by the paper's refit.
+// `what` is what the message calls them.
+void check_edits(const BakeSettings& settings, const std::string& what);
+
 // "biped" or "quadruped"; "auto" is unknown: found.
 BodyKind parse_body(const std::string& name);
 
-// The settings as canonical JSON: all keys, sorted, no spaces. `prop` only where it is true.
+// The settings as canonical JSON: all keys, sorted, no spaces. `prop` and `edits` only where there are such.
 std::string to_json(const BakeSettings& settings);
 
 struct StageTime {
@@ -75,6 +82,7 @@ struct Bake {
   std::vector<VertexWeights> rig_weights;  // to the joints, of every source vertex; none where the source has bones
   BodyParts body_parts;
   FitQuality quality;
+  EditsDone edits_done;  // what became of settings.edits
   BoneBinding bones;
   MomentBinding moments;
   Clusters clusters;
@@ -120,7 +128,7 @@ Bake bake(const std::filesystem::path& input, const BakeSettings& settings,
           const std::function<void(const std::string&)>& progress);
 
 // The stages after segmentation again, on the same character and regions, with other settings for them. Where those of
-// the fit are the same, the spheres stay.
+// the fit are the same, the spheres stay. Neither bake has edits.
 Bake rebake(const Bake& bake, const BakeSettings& settings);
 
 // What the settings ask for and the bake has not reached, a sentence each.

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -105,6 +107,14 @@ BodyKind parse_body(const std::string& name) {
   return name == "biped" ? BodyKind::kBiped : BodyKind::kQuadruped;
 }
 
+void check_edits(const BakeSettings& settings, const std::string& what) {
+  if (settings.edits.empty()) return;
+  const char* wrong = settings.import.prop                      ? "a prop"
+                      : settings.bind.rule == RefitRule::kPaper ? "the paper's refit"
+                                                                : nullptr;
+  if (wrong != nullptr) throw Error(ExitCode::kFile, fmt::format("{} does not go with {}", what, wrong));
+}
+
 BakeSettings make_settings(const std::string& profile, const std::string& text, const std::string& file) {
   BakeSettings settings;
   if (profile == "paper") {
@@ -147,6 +157,7 @@ BakeSettings make_settings(const std::string& profile, const std::string& text, 
   reader.integer("pivots", settings.bind.pivots, paper ? 2 : 4, 16);
   reader.number("detect_quantile", settings.bind.detect_quantile, 0, 1);
   reader.number("neighbour_gap", settings.bind.neighbour_gap, 0, 1);
+  if (const json* edits = reader.object("edits")) settings.edits = parse_edits(edits->dump(), file + ": edits");
   if (const json* clusters = reader.object("clusters")) {
     if (!clusters->is_object()) reader.fail("clusters", "is not an object");
     Reader inner(*clusters, file + ": clusters");
@@ -166,6 +177,7 @@ BakeSettings make_settings(const std::string& profile, const std::string& text, 
     inner.done();
   }
   reader.done();
+  check_edits(settings, file + ": setting 'edits'");
   if (settings.import.prop) {
     const auto refuse = [&](const char* key) { reader.fail(key, "is for characters, not for a prop"); };
     if (!settings.roles.role_of.empty()) refuse("roles");
@@ -179,6 +191,7 @@ std::string to_json(const BakeSettings& settings) {
   json out;
   out["attachments"] = settings.import.attachments;
   if (settings.import.prop) out["prop"] = true;
+  if (!settings.edits.empty()) out["edits"] = json::parse(to_json(settings.edits));
   out["roles"] = settings.roles.role_of;
   out["rays"] = settings.fit.rays;
   out["penetration_depth"] = settings.fit.penetration_depth;

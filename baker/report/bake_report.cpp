@@ -144,13 +144,12 @@ const char* name_of(Side side) { return side == Side::kLeft ? "left" : side == S
 ordered_json fit_section(const Bake& bake) {
   const Mesh& mesh = bake.character.body;
   ordered_json torso = ordered_json::array();
-  for (std::size_t i = 0; i < bake.spheres.torso.size(); ++i) {
-    const TorsoFit& fit = bake.spheres.torso[i];
+  for (const TorsoFit& fit : bake.spheres.torso) {
     ordered_json vertices = ordered_json::array();
     for (const Index v : fit.vertices) vertices.push_back(to_json(mesh.positions[v]));
-    torso.push_back({{"sphere", i},
-                     {"level", bake.spheres.spheres[i].level},
-                     {"side", name_of(bake.spheres.spheres[i].side)},
+    torso.push_back({{"sphere", fit.sphere},
+                     {"level", bake.spheres.spheres[fit.sphere].level},
+                     {"side", name_of(bake.spheres.spheres[fit.sphere].side)},
                      {"vertices", std::move(vertices)},
                      {"phi1", fit_entry(fit.phi1, fit, mesh)},
                      {"phi1_adjusted", fit_entry(fit.phi1_adjusted, fit, mesh)},
@@ -191,7 +190,8 @@ std::string why_this_count(const Bake& bake) {
   why += fmt::format(
       ", torso {} (levels {}). Limb spheres touch the skin: their radius is the distance to it, the shortest "
       "ray, and not the mean ray; smaller spheres, so more of them at the same penetration depth.",
-      bake.spheres.torso.size(), bake.spheres.level_heights.size());
+      bake.spheres.of_region[bake.spheres.torso_region()].size() - count_extremity(bake, bake.spheres.torso_region()),
+      bake.spheres.level_heights.size());
   if (bake.settings.fit.extremities) {
     why += " Past where the paper stops:";
     for (std::size_t r = 0; r < bake.regions.count(); ++r) {
@@ -265,6 +265,13 @@ ordered_json bind_section(const Bake& bake) {
           {"spheres", std::move(spheres)}};
 }
 
+ordered_json edits_section(const Bake& bake) {
+  const Edits& edits = bake.settings.edits;
+  return {{"asked", edits.spheres.size() + edits.ignored_parts.size()},
+          {"applied", bake.edits_done.applied},
+          {"missed", bake.edits_done.missed}};
+}
+
 std::string joined(const std::vector<std::string>& names) {
   std::string out;
   for (const std::string& name : names) out += (out.empty() ? "" : ", ") + name;
@@ -301,6 +308,7 @@ std::string bake_report_json(const Bake& bake) {
                             {"counts", counts_section(bake)},
                             {"fit", fit_section(bake)},
                             {"bind", bind_section(bake)},
+                            {"edits", edits_section(bake)},
                             {"missed_targets", missed_targets(bake)},
                             {"stages", std::move(stages)},
                             {"total_seconds", total},
@@ -356,8 +364,12 @@ std::string bake_report_text(const Bake& bake) {
                        std::count(bake.regions.of_skin.begin(), bake.regions.of_skin.end(), r),
                        bake.spheres.of_region[r].size());
   }
-  out += fmt::format("{} spheres, {} pairs of neighbours ignored\n", bake.spheres.spheres.size(),
-                     bake.binding.ignored.size());
+  out += fmt::format("{} spheres, {} pairs {} ignored\n", bake.spheres.spheres.size(), bake.binding.ignored.size(),
+                     bake.settings.edits.ignored_parts.empty() ? "of neighbours" : "of neighbours and of edited parts");
+  if (const Edits& edits = bake.settings.edits; !edits.empty()) {
+    out += fmt::format("{} of {} edits applied\n", bake.edits_done.applied,
+                       edits.spheres.size() + edits.ignored_parts.size());
+  }
   out += fmt::format("\n{:<10} {:>8}\n", "stage", "ms");
   double total = 0;
   for (const StageTime& time : bake.times) {

@@ -117,6 +117,8 @@ TEST_CASE("a bake report is shown only whole: each key that the page reads is as
                         "/bind/quality",
                         "/bind/quality/grade",
                         "/bind/quality/protrusion",
+                        "/edits",
+                        "/edits/missed",
                         "/missed_targets",
                         "/stages",
                         "/stages/0",

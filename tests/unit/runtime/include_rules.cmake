@@ -3,7 +3,7 @@
 # not have.
 
 # The baker's folders. Each may include those before it and itself.
-set(stages mesh import roles segment wrap fit chains rig bind clusters write calibrate pipeline motion play volumes filter truth measure report
+set(stages mesh import roles segment wrap fit chains rig bind edits clusters write calibrate pipeline motion play volumes filter truth measure report
   page check fix export cli)
 
 file(GLOB_RECURSE sources ${ROOT}/runtime/*.h ${ROOT}/runtime/*.cpp ${ROOT}/runtime/*.cc ${ROOT}/runtime/*.inl

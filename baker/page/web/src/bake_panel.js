@@ -1,5 +1,5 @@
 import { h } from './dom.js';
-import { length, number, percent } from './format.js';
+import { length, number, percent, plural } from './format.js';
 
 // Where the asset comes from and what its bake reached: the figures people ask for first; with the method the whole report.
 
@@ -49,8 +49,14 @@ function tree(value) {
 const section = (title, content, kind = '') => h('section', { class: kind }, h('h3', {}, title), content);
 const hash = (value) => (value ? h('code', { class: 'hash', title: value }, value) : '–');
 
+// Of a setting. Edits are many: the tab for them lists each.
+function valueOf(key, value) {
+  if (key === 'edits') return `${plural(value.spheres.length, 'sphere')}, ${plural(value.ignored_parts.length, 'ignored pair')}`;
+  return text(isScalar(value) || Array.isArray(value) ? value : JSON.stringify(value));
+}
+
 function provenance({ source, writer, format_version: version, settings, settings_sha256: settingsHash }) {
-  const chosen = Object.entries(settings ?? {}).map(([key, value]) => [words(key), text(isScalar(value) || Array.isArray(value) ? value : JSON.stringify(value))]);
+  const chosen = Object.entries(settings ?? {}).map(([key, value]) => [words(key), valueOf(key, value)]);
   return [
     section(
       'Provenance',
@@ -105,8 +111,8 @@ function stages(report) {
 }
 
 function missed(report) {
-  if (!report?.missed_targets?.length) return null;
-  return h('p', { class: 'missed', role: 'alert' }, `Targets missed: ${report.missed_targets.map(text).join('; ')}`);
+  const line = (what, list) => list?.length > 0 && h('p', { class: 'missed', role: 'alert' }, `${what} missed: ${list.map(text).join('; ')}`);
+  return [line('Targets', report?.missed_targets), line('Edits', report?.edits?.missed)];
 }
 
 function wholeReport(report) {
@@ -122,6 +128,6 @@ function wholeReport(report) {
 export function fillBakePanel(panel, model) {
   const { inspect, report } = model;
   panel.append(
-    ...[missed(report), achieved(model), stages(report), provenance(inspect), wholeReport(report)].flat().filter(Boolean),
+    ...[...missed(report), achieved(model), stages(report), provenance(inspect), wholeReport(report)].flat().filter(Boolean),
   );
 }

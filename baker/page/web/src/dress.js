@@ -6,7 +6,7 @@ function dressSkin(model, state, skinLayer) {
   skinLayer.group.visible = state.skin;
   skinLayer.uniforms.opacity.value = state.skinOpacity;
   skinLayer.skin.layOver(state.over);
-  skinLayer.pose(state.frame);
+  if (!state.editing) skinLayer.pose(state.frame); // else it stands at rest
   const plain = state.regions || state.patches || !state.look;
   skinLayer.uniforms.pictured.value = plain ? 0 : 1;
   skinLayer.skin.zones.forEach(({ sphere, part, material, isBefore }, zone) => {
@@ -23,8 +23,8 @@ function dressSpheres(model, state, sphereLayer, visible) {
   const marked = new Set(model.sets.filter((set) => state.sets.has(set.name)).flatMap((set) => [...set.spheres]));
   const alarms = new Map();
   visible.clear();
-  sphereLayer.group.visible = state.spheres;
-  if (!state.spheres) return;
+  sphereLayer.group.visible = state.spheres && !state.editing; // else the editor has its own
+  if (!sphereLayer.group.visible) return;
   for (const { a, b, isFalse } of model.spherePairs(state.frame, state.radius)) {
     for (const id of [a, b]) if (!isFalse || !alarms.has(id)) alarms.set(id, isFalse ? FALSE_ALARM : CONTACT);
   }
@@ -46,7 +46,7 @@ export function dress(model, state, { skinLayer, sphereLayer, contactLayer, coll
   dressSkin(model, state, skinLayer);
   dressSpheres(model, state, sphereLayer, visible);
   if (colliderLayer) {
-    colliderLayer.group.visible = state.colliders;
+    colliderLayer.group.visible = state.colliders && !state.editing;
     colliderLayer.pose(state.frame, model.overlappingColliders(state.frame), state.colliderOpacity);
   }
   contactLayer.hidden.visible = state.hiddenContacts;

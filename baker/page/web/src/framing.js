@@ -48,8 +48,8 @@ export function createFraming(model) {
     toWorld,
     offset,
     // The box around each of a clip's frames.
-    boxes({ first, count }, { follow, over }) {
-      if (boxes.length === 0) return [rest];
+    boxes({ first, count }, { follow, over, editing }) {
+      if (boxes.length === 0 || editing) return [rest];
       return Array.from({ length: count }, (_, i) => {
         const [low, high] = [0, 3].map((k) => new THREE.Vector3().fromArray(boxes, 6 * (first + i) + k));
         const box = new THREE.Box3(low, high).translate(offset(first + i, follow));

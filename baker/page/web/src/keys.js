@@ -2,7 +2,7 @@ import { h } from './dom.js';
 
 // Keyboard shortcuts, and the page that lists them.
 
-export function bindKeys(store, { timeline, stage, help, toggleTheme, reset, deepest, chains, hasMethod, hasChange, hasColliders, posing }) {
+export function bindKeys(store, { timeline, stage, help, toggleTheme, reset, deepest, chains, hasMethod, hasChange, hasColliders, posing, editor }) {
   const flip = (key) => () => store.set({ [key]: !store.state[key] });
   const method = (action) => () => store.state.method && action();
   const allChains = () => store.set({ sets: new Set(chains.every((name) => store.state.sets.has(name)) ? [] : chains) });
@@ -26,6 +26,7 @@ export function bindKeys(store, { timeline, stage, help, toggleTheme, reset, dee
     ['B', 'b', 'Spheres', () => store.showSpheres(!store.state.spheres)],
     ...(hasColliders ? [['V', 'v', 'Colliders', flip('colliders')]] : []),
     ...(posing ? [['J', 'j', 'Pose the character by hand', posing.toggle]] : []),
+    ...(editor ? editor.keys : []),
     ['M', 'm', 'Method', () => hasMethod && store.showMethod(!store.state.method)],
     ['G', 'g', 'Method: regions in their colours', method(flip('regions'))],
     ['U', 'u', "Method: spheres' triangles", method(flip('patches'))],

@@ -156,6 +156,7 @@ export function readModel(data) {
     look: readLook(data.look),
     motion: readMotion(data),
     rig: readRig(data), // to pose the character by hand; null: none
+    edits: data.edits ?? null, // each region's coordinates, and the edits that the bake applied (editor.js)
     colliders: data.colliders ?? null, // a body's bone, and its volumes in the rest pose
     frameCount: Math.max(count, 1),
     hasSpheres: Boolean(frames?.spheres),

@@ -21,7 +21,7 @@ function inLane(points, offset) {
   });
 }
 
-class Names {
+export class Names {
   constructor(context, width, height, font) {
     Object.assign(this, { context, width, height, font, taken: [] });
   }

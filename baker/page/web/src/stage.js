@@ -51,8 +51,8 @@ export function createStage(canvas, model, store, { skinLayer, sphereLayer, cont
   let waiting = false;
 
   function place() {
-    const { frame, follow } = store.state;
-    const offset = framing.offset(frame, follow);
+    const { frame, follow, editing } = store.state;
+    const offset = framing.offset(frame, follow && !editing);
     character.matrix.makeTranslation(offset).multiply(framing.toWorld);
     floor.uniforms.slide.value.set(-offset.x, -offset.z);
   }
@@ -133,8 +133,13 @@ export function createStage(canvas, model, store, { skinLayer, sphereLayer, cont
 
   function view(name, fly = true) {
     framed = name;
-    const { target, position } = eyeFor(new THREE.Vector3(...VIEWS[name]));
-    if (fly) return go(target, position);
+    const eye = eyeFor(new THREE.Vector3(...VIEWS[name]));
+    if (fly) return go(eye.target, eye.position);
+    show(eye);
+  }
+
+  // At once.
+  function show({ target, position }) {
     flight = null;
     controls.target.copy(target);
     camera.position.copy(position);
@@ -176,12 +181,14 @@ export function createStage(canvas, model, store, { skinLayer, sphereLayer, cont
   new ResizeObserver(resize).observe(canvas);
   resize();
   let boundsKey = '';
-  store.watch(['frame', 'follow', 'over'], ({ frame, follow, over }) => {
-    const key = `${model.clipAt(frame)} ${follow} ${over}`;
+  store.watch(['frame', 'follow', 'over', 'editing'], ({ frame, follow, over, editing }) => {
+    const key = `${model.clipAt(frame)} ${follow} ${over} ${editing}`;
     if (key === boundsKey) return;
+    const isElsewhere = boundsKey !== '' && boundsKey.endsWith('true') !== editing; // the rest pose may stand where no frame does
     boundsKey = key;
     measure();
     if (framed) view(framed, false);
+    else if (isElsewhere) show(eyeFor(camera.position.clone().sub(controls.target)));
   });
 
   return {

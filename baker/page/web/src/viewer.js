@@ -10,6 +10,7 @@ import { ColliderLayer } from './collider_layer.js';
 import { fillControls } from './controls.js';
 import { css, h } from './dom.js';
 import { dress } from './dress.js';
+import { createEditor } from './editor.js';
 import { bindKeys } from './keys.js';
 import { drawOverlay } from './overlay.js';
 import { followPointer } from './pointer.js';
@@ -112,10 +113,15 @@ function bindStage(stage, store, model, layers, skin) {
       eye = from;
       layers.sphereLayer.upload(eye);
       layers.contactLayer.shared.ratio.value = stage.pixelRatio();
+      layers.editor?.draw(eye);
     },
     (project) => {
-      drawOverlay($('overlay'), { model, skin, state: store.state, project, eye, visible });
-      layers.posing?.place(project);
+      if (store.state.editing) {
+        layers.editor.overlay(project);
+      } else {
+        drawOverlay($('overlay'), { model, skin, state: store.state, project, eye, visible });
+        layers.posing?.place(project);
+      }
     },
   );
   store.watch(['theme'], () => stage.setInk(css('--ink')));
@@ -136,7 +142,7 @@ export function start(model) {
   // Where spheres are no method to study, the skin shows through them.
   const startState = { ...shown, radius: model.radius, ...(model.hasMethod ? {} : { sphereOpacity: 0.4 }) };
   const theme = matchMedia('(prefers-color-scheme: dark)').matches ? 'dark' : 'light';
-  const store = createStore({ ...startState, frame: model.start, playing: false, theme, pose: 0, joint: null });
+  const store = createStore({ ...startState, frame: model.start, playing: false, theme, pose: 0, joint: null, editing: false });
   const toggleTheme = bindTheme(store);
   const skin = new Skin(model.mesh, model.motion, model.look);
   if (!model.hasSpheres) model.refit = new Refit(model.inspect, model.mesh, skin);
@@ -172,6 +178,7 @@ export function start(model) {
   const timeline = fillTimeline($('timeline'), store, model);
   fillCharts($('charts'), store, model);
   fillAccuracyPanel($('accuracy'), store, model, flyToSpheres);
+  layers.editor = createEditor({ model, skin, store, stage, layers, canvas: $('view'), overlay: $('overlay') });
   if (model.hasMethod) fillBakePanel($('bake'), model);
   else $('tab-bake').remove();
   bindTabs(store);
@@ -184,7 +191,7 @@ export function start(model) {
   $('help-button').addEventListener('click', () => $('help').showModal());
   $('licences').textContent = LICENCES;
   const chains = model.sets.filter((set) => set.kind === 'chain').map((set) => set.name);
-  bindKeys(store, { timeline, stage, help: $('help'), toggleTheme, reset, deepest, chains, hasMethod: model.hasMethod, hasChange: model.change !== null, hasColliders: model.colliders !== null, posing: layers.posing });
+  bindKeys(store, { timeline, stage, help: $('help'), toggleTheme, reset, deepest, chains, hasMethod: model.hasMethod, hasChange: model.change !== null, hasColliders: model.colliders !== null, posing: layers.posing, editor: layers.editor });
   runPlayback(store, model);
 
   window.spherechainViewer = Object.freeze({
@@ -197,6 +204,7 @@ export function start(model) {
     camera: () => stage?.camera() ?? null,
     hovered: () => store.state.pointed,
     posing: layers.posing,
+    edits: () => layers.editor?.read() ?? null,
     ready: true,
   });
   return { store, flyToContact, skinLayer: layers.skinLayer, redraw: () => stage?.invalidate() };

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <vector>
+
+#include "page/from_runtime.h"
+#include "play/play.h"
+
+namespace spherechain::baker {
+
+// What the page's editor needs: each region's own coordinates, and the edits that the bake applied.
+nlohmann::ordered_json page_edits(const AnimatedAsset& animated, const std::vector<PageSphere>& spheres);
+
+}  // namespace spherechain::baker
