@@ -200,7 +200,8 @@ TEST_CASE("a human with a long tail keeps arms and legs, and the tail is a limb"
     tubes.push_back({{side * 0.1, 0.92, 0}, {side * 0.16, 0.08, 0}, 0.08, 0.05});
     tubes.push_back({{side * 0.16, 0.06, 0}, {side * 0.16, 0.05, 0.16}, 0.05, 0.04});
   }
-  const Regions regions = segmented(melt(tubes, 0.03));
+  const auto melted = melt(tubes, 0.03);
+  const Regions regions = segmented(melted);
   REQUIRE(names(regions) ==
           std::vector<std::string>{"left_arm", "right_arm", "left_leg", "right_leg", "tail", "torso"});
   CHECK(regions.frame.forward.dot(Vec3::UnitZ()) > 0.98);
@@ -209,9 +210,9 @@ TEST_CASE("a human with a long tail keeps arms and legs, and the tail is a limb"
 
   SegmentSettings settings;
   settings.facing = -Vec3::UnitZ();
-  CHECK(segmented(melt(tubes, 0.03), settings).frame.forward.dot(Vec3::UnitZ()) < -0.98);
+  CHECK(segmented(melted, settings).frame.forward.dot(Vec3::UnitZ()) < -0.98);
   settings.facing = Vec3::UnitX();
-  CHECK(reason_against(melt(tubes, 0.03), settings).find("facing direction") != std::string::npos);
+  CHECK(reason_against(melted, settings).find("facing direction") != std::string::npos);
   // Nor is it said of one without head and tail that these are missing.
   tubes.erase(tubes.begin() + 1, tubes.begin() + 4);
   CHECK(reason_against(melt(tubes, 0.03), settings).find("facing direction") != std::string::npos);
