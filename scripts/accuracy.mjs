@@ -233,7 +233,7 @@ ${characters.length > 0 ? cones() : ""}
 by the exact skin contacts; parts that hang on each other are left out. **Recall** and **precision** are of pairs of parts that are tested. **Precision at 95** is what is
 left with the least padding of all volumes that finds 95 % (padding in % of the height). **Not tested** is the share of touching pairs that are ignored, because the
 volumes overlap at rest or one volume stands for both. Then the fit at rest: the share of the skin **inside**, the skin's mean **distance** from the volumes' surface and its
-95th of 100, how far volumes stand **beyond** the skin, 95th of 100, in % of the height; the **volume** in % of the body's. The first rows without a limit are the asset's own spheres.
+95th of 100, how far volumes stand **beyond** the skin, 95th of 100, in % of the height; the **volume** in % of the body's. The first rows without a limit are the asset's own spheres, which exports took when this was measured; they fit as many anew since.
 
 ${volumes()}
 ## Depth against brute force

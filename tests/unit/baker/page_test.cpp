@@ -50,7 +50,8 @@ int advised(const std::string& error) {
 
 }  // namespace
 
-TEST_CASE("more frames than fit a page that browsers open are refused at the first, with a number that does") {
+TEST_CASE("more frames than fit a page that browsers open are refused at the first, with a number that does" *
+          doctest::test_suite("many bakes")) {
   const Viewed million = view(1000000);
   CHECK(million.frames_played == 1);
   CHECK_MESSAGE(million.error.find(": 1000000 frames make a page of ") != std::string::npos, million.error);
@@ -74,7 +75,8 @@ TEST_CASE("a page is no larger than it may be, whatever it is that is large") {
   CHECK_MESSAGE(still.error.find("(its mesh has too many triangles)") != std::string::npos, still.error);
 }
 
-TEST_CASE("a page of colliders has each body's bone, and its volumes around the skin at rest") {
+TEST_CASE("a page of colliders has each body's bone, and its volumes around the skin at rest" *
+          doctest::test_suite("many bakes")) {
   const OpenAsset asset = open_asset(tool::baked_files().asset.string());
   Colliders colliders = fit_volumes(asset, VolumeShape::kCapsules, 8);
   // The same human in another unit: metres of the volumes stay, positions of the page are in source units.

@@ -164,7 +164,8 @@ TEST_CASE("a cup that is open at its wide end gets a cone that stays near it") {
   CHECK(bounded < 0.75 * top(cup));
 }
 
-TEST_CASE("volumes of a human: never more than asked for, nearer to the skin the more there are") {
+TEST_CASE("volumes of a human: never more than asked for, nearer to the skin the more there are" *
+          doctest::test_suite("many bakes")) {
   const Bake& human = baked_human();
   const OpenAsset asset = open_asset_of(human);
   const double height = find_bodies(asset).height;
@@ -191,7 +192,8 @@ TEST_CASE("volumes of a human: never more than asked for, nearer to the skin the
   }
 }
 
-TEST_CASE("fewer volumes than parts: both ends of limbs go, never the middle; spheres leave no part out") {
+TEST_CASE("fewer volumes than parts: both ends of limbs go, never the middle; spheres leave no part out" *
+          doctest::test_suite("many bakes")) {
   const OpenAsset asset = open_asset_of(baked_human());
   const Colliders few = fit_volumes(asset, VolumeShape::kCones, 12);
   std::set<std::string> held;
