@@ -2,7 +2,7 @@
 # Three characters to pose by hand, in one page that opens from disk: OUT/live.html, which shows OUT/live/*.html.
 # scripts/live_demo.sh build/release/bin/spherechain OUT
 set -euo pipefail
-tool=$1 out=$2
+tool=${1:?usage: live_demo.sh SPHERECHAIN OUT} out=${2:?usage: live_demo.sh SPHERECHAIN OUT}
 models=/usr/share/assimp/models  # Debian: assimp-testmodels
 mkdir -p "$out/live"
 
