@@ -57,7 +57,7 @@ struct ViewOptions {
   MotionChoice motion;
   FrameChoice frames;
   std::string radius = "detect", volumes, filter;  // empty volumes: no colliders are shown
-  int at_most = 0;                         // as for export
+  int at_most = 0;                                 // as for export
   bool force = false, continuous = false;
 };
 ExitCode run_view(const ViewOptions& options);

@@ -107,9 +107,10 @@ void say_how_sure(const PartFilter& filter) {
   for (const FilteredPair& pair : filter.pairs) {
     if (pair.kind == PairKind::kNever) at_most = std::max(at_most, pair.at_most);
   }
+  if (at_most == 0) return;
   fmt::print(
-      "by the filter: parts that met in none of {} poses are not tested; those that meet in {:.2g} % of all "
-      "poses may be among them\n",
+      "by the filter: parts that met in none of {} poses are not tested; some may meet in up to {:.2g} % of all "
+      "poses\n",
       filter.clip_poses + filter.random_poses, 100 * at_most);
 }
 
@@ -119,9 +120,9 @@ void say_what_leaves(const Colliders& colliders, const ColliderFit& fit) {
   std::vector<std::string> leave;
   for (std::size_t i = 0; i < fit.coverage_of_body.size(); ++i) {
     if (fit.coverage_of_body[i] >= kFollows) continue;
-    leave.push_back(fmt::format("{} ({:.0f} %)", colliders.bodies[i].name, 100 * fit.coverage_of_body[i]));
+    leave.push_back(fmt::format("{} ({:.0f} % inside)", colliders.bodies[i].name, 100 * fit.coverage_of_body[i]));
   }
-  if (!leave.empty()) fmt::print("parts that are less inside on them: {}\n", fmt::join(leave, ", "));
+  if (!leave.empty()) fmt::print("parts that leave the volumes there: {}\n", fmt::join(leave, ", "));
 }
 
 void name_output(std::string& bytes, const std::string& mark, const std::string& output) {

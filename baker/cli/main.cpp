@@ -115,7 +115,8 @@ void add_radius(CLI::App& command, std::string& radius) {
 CLI::Option* add_volumes(CLI::App& command, std::string& volumes, int& at_most, const std::string& description) {
   CLI::Option* shape = command.add_option("--volumes", volumes, description);
   shape->check(CLI::IsMember(std::vector<std::string>(std::begin(kVolumeShapes), std::end(kVolumeShapes))));
-  return command.add_option("--at-most", at_most, "Volumes in all (default: as many as pay)")
+  return command
+      .add_option("--at-most", at_most, "Volumes in all (default: as many as pay; as many spheres as the asset has)")
       ->check(CLI::Range(1, 10000));
 }
 

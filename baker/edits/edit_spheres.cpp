@@ -60,6 +60,23 @@ class SphereEditor {
     }
   }
 
+  void insert(const FittedSphere& sphere, std::size_t edit = kNoEdit) {
+    const std::uint32_t nearest = nearest_sphere(old_, old_.of_region[sphere.region], sphere.ball.center);
+    // The spheres of a level of the torso stand from left to right.
+    const Vec3 onwards = sphere.level >= 0 && !sphere.extremity ? Vec3(-regions_.frame.left) : sphere.axis;
+    const bool after = onwards.dot(sphere.ball.center - old_.spheres[nearest].ball.center) >= 0;
+    added_.push_back({edit, sphere, nearest, after});
+  }
+
+  // A sphere of the kind that the nearest is.
+  FittedSphere beside(std::uint8_t region, const Ball& ball) const {
+    FittedSphere out = old_.spheres[nearest_sphere(old_, old_.of_region[region], ball.center)];
+    out.ball = ball;
+    out.detect_radius.reset();
+    out.body_part = -1;
+    return out;
+  }
+
   Spheres result(std::vector<AppliedEdit>& applied) const {
     Spheres out;
     out.level_heights = old_.level_heights;
@@ -179,25 +196,6 @@ class SphereEditor {
     insert(placed(beside(region, {point, 0}), edit), edit);
   }
 
- public:
-  void insert(const FittedSphere& sphere, std::size_t edit = kNoEdit) {
-    const std::uint32_t nearest = nearest_sphere(old_, old_.of_region[sphere.region], sphere.ball.center);
-    // The spheres of a level of the torso stand from left to right.
-    const Vec3 onwards = sphere.level >= 0 && !sphere.extremity ? Vec3(-regions_.frame.left) : sphere.axis;
-    const bool after = onwards.dot(sphere.ball.center - old_.spheres[nearest].ball.center) >= 0;
-    added_.push_back({edit, sphere, nearest, after});
-  }
-
-  // A sphere of the kind that the nearest is.
-  FittedSphere beside(std::uint8_t region, const Ball& ball) const {
-    FittedSphere out = old_.spheres[nearest_sphere(old_, old_.of_region[region], ball.center)];
-    out.ball = ball;
-    out.detect_radius.reset();
-    out.body_part = -1;
-    return out;
-  }
-
- private:
   // The owner of each triangle of a tree: anew in the regions that edits are about.
   void share_skin(const std::vector<std::optional<std::uint32_t>>& place, Spheres& out) const {
     if (old_.of_skin.empty()) return;

@@ -36,7 +36,7 @@ class FilterReader {
 
   // Rigs of one maker share their names: the source's bytes tell which character a filter is of.
   void check_source(const AssetInfo& info) const {
-    if (source_.is_object() && source_.value("sha256", "") == info.source_sha256) return;
+    if (source_.is_object() && source_.contains("sha256") && source_["sha256"] == info.source_sha256) return;
     fail(fmt::format("is of another character than the asset, which was baked from {} (run filter on this asset)",
                      info.source_file));
   }

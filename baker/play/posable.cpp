@@ -24,19 +24,25 @@ std::string words(std::string name) {
   return name;
 }
 
+int joint_of(const std::vector<std::string>& role_of_joint, const std::string& role) {
+  const auto found = std::find(role_of_joint.begin(), role_of_joint.end(), role);
+  return found == role_of_joint.end() ? -1 : static_cast<int>(found - role_of_joint.begin());
+}
+
+bool is_at_or_below(const std::vector<Joint>& joints, int joint, int top) {
+  while (joint >= 0 && joint != top) joint = joints[static_cast<std::size_t>(joint)].parent;
+  return joint == top;
+}
+
 // By role, as the joints of the automatic rig are named.
 void add_limbs_by_role(PosableRig& out, const std::vector<std::string>& role_of_joint) {
-  const auto find = [&](const std::string& role) {
-    const auto found = std::find(role_of_joint.begin(), role_of_joint.end(), role);
-    return found == role_of_joint.end() ? -1 : static_cast<int>(found - role_of_joint.begin());
-  };
   for (const std::string side : {"left", "right"}) {
     const auto add = [&](const char* upper, const char* middle, const char* end, const char* end_name, bool stands) {
       PosableLimb limb{side + " " + end_name,
                        side + " " + middle,
-                       find(side + "_" + upper),
-                       find(side + "_" + middle),
-                       find(side + "_" + end),
+                       joint_of(role_of_joint, side + "_" + upper),
+                       joint_of(role_of_joint, side + "_" + middle),
+                       joint_of(role_of_joint, side + "_" + end),
                        Vec3::Zero(),
                        stands};
       if (limb.upper < 0 || limb.middle < 0 || limb.end < 0) return;
@@ -51,15 +57,12 @@ void add_limbs_by_role(PosableRig& out, const std::vector<std::string>& role_of_
 // A limb that is neither arm nor leg of a biped bends at the joint that is nearest to half its length.
 void add_limb(PosableRig& out, const RoleLimb& limb, bool has_feet, const std::vector<int>& joint_of_node,
               const std::vector<Vec3>& positions) {
-  const auto is_below = [&](int j, int top) {
-    while (j >= 0 && j != top) j = out.joints[static_cast<std::size_t>(j)].parent;
-    return j == top;
-  };
   std::vector<int> nodes;  // those with a joint that hangs on the one before; a rig's helpers may hang elsewhere
   for (const int n : limb.nodes) {
     const int joint = joint_of_node[static_cast<std::size_t>(n)];
     if (joint < 0) continue;
-    if (nodes.empty() || is_below(joint, joint_of_node[static_cast<std::size_t>(nodes.back())])) nodes.push_back(n);
+    if (nodes.empty() || is_at_or_below(out.joints, joint, joint_of_node[static_cast<std::size_t>(nodes.back())]))
+      nodes.push_back(n);
   }
   if (nodes.size() < 2) return;
   const auto at = [&](int node) { return positions[static_cast<std::size_t>(node)]; };
@@ -106,14 +109,10 @@ void add_chains(PosableRig& out) {
 
 // The middle of the box around the skin of the joints at and below one.
 Vec3 center_of_skin(const AnimatedAsset& animated, const std::vector<Joint>& joints, int top) {
-  const auto is_below = [&](int j) {
-    while (j >= 0 && j != top) j = joints[static_cast<std::size_t>(j)].parent;
-    return j == top;
-  };
   Eigen::AlignedBox3d box;
   for (std::size_t v = 0; v < animated.weights().size(); ++v) {
     const VertexWeights& weights = animated.weights()[v];
-    if (weights.weight[0] > 0 && is_below(static_cast<int>(weights.joint[0]))) {
+    if (weights.weight[0] > 0 && is_at_or_below(joints, static_cast<int>(weights.joint[0]), top)) {
       box.extend(animated.character().source_positions[v]);
     }
   }
@@ -147,17 +146,14 @@ PosableRig posable_rig(const AnimatedAsset& animated) {
       if (limb.name != "neck") add_limb(out, limb, roles.kind != BodyKind::kOther, joint_of_node, positions);
     }
   }
-  const auto find = [&](const char* role) {
-    const auto found = std::find(role_of_joint.begin(), role_of_joint.end(), role);
-    return found == role_of_joint.end() ? -1 : static_cast<int>(found - role_of_joint.begin());
-  };
   if (out.limbs.empty()) {
     add_chains(out);
     return out;
   }
-  out.hips = find("pelvis");
-  out.head = find("head");
-  out.neck = find("neck") >= 0 ? find("neck") : out.head;
+  out.hips = joint_of(role_of_joint, "pelvis");
+  out.head = joint_of(role_of_joint, "head");
+  out.neck = joint_of(role_of_joint, "neck");
+  if (out.neck < 0) out.neck = out.head;
   if (out.head >= 0) out.head_center = center_of_skin(animated, out.joints, out.head);
   return out;
 }

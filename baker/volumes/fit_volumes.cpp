@@ -18,6 +18,7 @@ constexpr double kSmallPart = 0.004;  // of the skin's area: stands for no part 
 constexpr int kVolumesOfBodyMax = 12;
 constexpr double kGainMin = 0.03;  // of the skin's gap: what a further volume has to save
 constexpr double kBend = 0.8;      // how far a point goes when its joint turns by some 60 degrees, of its distance
+constexpr double kLimb = 0.75;     // what hangs on a joint that bends: this power of the number of bodies
 constexpr double kAlike = 0.5;     // of what it costs: a merge that was done on the other side
 
 // What a body's volumes may reach along each direction: as far as its own samples and half their thickness more, where
@@ -154,9 +155,9 @@ class VolumeSets {
     return static_cast<std::size_t>(at);
   }
 
-  // What a body's skin adds to the gap when its joint bends and the volumes of another body stand for it. The middle of a
-  // limb counts more than its end, because all that hangs on it leaves the limb's volumes, too. With this power of the
-  // number of bodies that hang together neck, shoulders, hands and feet go before heads and arms.
+  // What a body's skin adds to the gap when its joint bends and the volumes of another body stand for it. The middle of
+  // a limb counts more than its end, because all that hangs on it leaves the limb's volumes, too. So neck, shoulders,
+  // hands and feet go before heads and arms.
   double bend_of(std::size_t i, std::size_t holder) const {
     const int bone = colliders_.bodies[i].bone_index;
     if (bone < 0 || bone == colliders_.bodies[holder].bone_index) return 0;
@@ -168,7 +169,7 @@ class VolumeSets {
       while (at && *at != i) at = parent_of(*at);
       limb += alive_[k] && at ? 1 : 0;
     }
-    return kBend * farthest * area_of(i) * std::pow(limb, 0.75);
+    return kBend * farthest * area_of(i) * std::pow(limb, kLimb);
   }
 
   bool hang_together(std::size_t i, std::size_t k) const {

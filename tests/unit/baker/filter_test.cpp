@@ -293,8 +293,10 @@ TEST_CASE("a filter that is not of this asset, and limits that are none, are ref
   CHECK(contains(refused("\"random_poses\":", "\"other\":"), "has no 'random_poses'"));
   CHECK(contains(refused("\"at_most\":1", "\"at_most\":7"), "'at_most'"));
   nlohmann::ordered_json json = nlohmann::ordered_json::parse(good);
-  json["source"]["sha256"] = "of another file";
-  CHECK(contains(refused_filter(doll.folder.write("bad.json", json.dump()), asset), "is of another character"));
+  for (const nlohmann::ordered_json& other : {nlohmann::ordered_json("of another file"), nlohmann::ordered_json(7)}) {
+    json["source"]["sha256"] = other;
+    CHECK(contains(refused_filter(doll.folder.write("bad.json", json.dump()), asset), "is of another character"));
+  }
   json = nlohmann::ordered_json::parse(good);
   json["pairs"].erase(2);
   CHECK(contains(refused_filter(doll.folder.write("bad.json", json.dump()), asset), "lacks the pair"));

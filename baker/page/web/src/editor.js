@@ -2,7 +2,7 @@ import './editor.css';
 import { Vector3 } from 'three';
 import { h } from './dom.js';
 import { fillEditorPanel } from './editor_panel.js';
-import { addBeside, fileOf, forget, History, ignore, isEdited, mayRemove, place, placeNow, placeOf, pointOf, remove, restore, startState, unignore } from './editor_state.js';
+import { addBeside, fileOf, forget, History, ignore, mayRemove, place, placeNow, placeOf, pointOf, remove, restore, startState, unignore } from './editor_state.js';
 import { createEditorView } from './editor_view.js';
 
 // Editing spheres, and which parts are ignored, for `spherechain bake --edits`. It goes on while its tab is open.
@@ -160,7 +160,7 @@ export function createEditor({ model, skin, store, stage, layers, canvas, overla
     },
     { capture: true },
   );
-  addEventListener('beforeunload', (event) => history.now !== saved && history.now.spheres.some(isEdited) && event.preventDefault());
+  addEventListener('beforeunload', (event) => history.now !== saved && event.preventDefault());
 
   return {
     keys,

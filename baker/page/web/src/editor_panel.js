@@ -1,5 +1,5 @@
 import { h } from './dom.js';
-import { fileOf, isEdited, isIgnored, kindOf, mayRemove, placeNow } from './editor_state.js';
+import { distance, fileOf, isEdited, isIgnored, kindOf, mayRemove, placeNow } from './editor_state.js';
 import { plural } from './format.js';
 import { EDITED } from './palette.js';
 
@@ -58,8 +58,7 @@ export function fillEditorPanel(panel, { model, store, regions, history, actions
   );
 
   const millimetres = (a, b, region) => {
-    const off = Math.hypot(a.along - b.along, a.across[0] - b.across[0], a.across[1] - b.across[1]);
-    return Math.round((off * regions[region].length) / model.mesh.unitsPerMm);
+    return Math.round((distance(a, b) * regions[region].length) / model.mesh.unitsPerMm);
   };
   function whatOf(sphere) {
     const { origin, to, deleted, region } = sphere;

@@ -20,7 +20,7 @@ export const placeOf = ({ start, axes, length }, center, radius, detect) => {
 export const pointOf = ({ start, axes, length }, { along, across }) =>
   start.map((x, k) => x + length * (along * axes[0][k] + across[0] * axes[1][k] + across[1] * axes[2][k]));
 
-const distance = (a, b) => Math.hypot(a.along - b.along, a.across[0] - b.across[0], a.across[1] - b.across[1]);
+export const distance = (a, b) => Math.hypot(a.along - b.along, a.across[0] - b.across[0], a.across[1] - b.across[1]);
 
 // The page's data: `regions` with their axes; `baked`, the file that the asset was baked with, or null. `spheres` are the asset's.
 export function startState({ regions, baked }, names, spheres) {
