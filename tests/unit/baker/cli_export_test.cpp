@@ -52,6 +52,11 @@ TEST_CASE("export: what is wrong is said before anything is written") {
   refused("--to mjcf --filter nowhere.json", 3, {"nowhere.json"});
   refused("--to mjcf --at-most 0", 2, {"--at-most"});
   refused(std::string("--to khr --source ") + kHumanFile, 3, {"bones"}, "human.glb");  // it has none of its own
+  const std::string view =
+      fmt::format("view {} --source {} --filter nowhere.json -o {} ", tool::baked_files().asset.string(), kHumanFile,
+                  (folder.path / "human.html").string());
+  tool::check_error(tool::run(view + "--volumes cones"), 3, {"nowhere.json"});
+  tool::check_error(tool::run(view), 2, {"--volumes"});
   refused("--to usd", 2, {"human.usdc", ".usda or .usd"}, "human.usdc");
 }
 

@@ -202,9 +202,17 @@ TEST_CASE("fewer volumes than parts: both ends of limbs go, never the middle; sp
   }
   CHECK(held == std::set<std::string>{"left foot", "left hand", "left shoulder", "neck", "right foot", "right hand",
                                       "right shoulder"});
-  const Colliders spheres = fit_volumes(asset, VolumeShape::kSpheres, 0);
+  Colliders spheres = fit_volumes(asset, VolumeShape::kSpheres, 0);
   CHECK(measure_fit(asset, spheres).volumes <= static_cast<int>(asset->info().sphere_count));
   for (const ColliderBody& body : spheres.bodies) CHECK_MESSAGE(!body.volumes.empty(), body.name);
+  // A part without its volumes is outside, and no other part is.
+  for (ColliderBody& body : spheres.bodies) {
+    if (body.name == "head") body.volumes.clear();
+  }
+  const ColliderFit headless = measure_fit(asset, spheres);
+  for (std::size_t i = 0; i < spheres.bodies.size(); ++i) {
+    CHECK_MESSAGE((headless.coverage_of_body[i] < 0.5) == (spheres.bodies[i].name == "head"), spheres.bodies[i].name);
+  }
 }
 
 TEST_CASE("bodies that the filter saw idle are ignored, but those that stand for a part that needs a test") {
