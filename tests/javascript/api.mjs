@@ -109,7 +109,11 @@ test('broken bytes are refused', () => {
   refuses(() => spherechain.open(new Uint8Array(0)), /./);
   refuses(() => spherechain.open(new TextEncoder().encode('{"not": "an asset", "but": "long enough to be one"}')), /asset/);
   refuses(() => spherechain.open(null), /\.sphc/);
-  refuses(() => spherechain.open([...bytes]), /\.sphc/);
+  refuses(() => spherechain.open([...bytes]), /ArrayBuffer or a Uint8Array, not an Array of \d+$/);
+  refuses(() => spherechain.open(new DataView(bytes.buffer)), /not a DataView/);
+  refuses(() => spherechain.open(new SharedArrayBuffer(8)), /not a SharedArrayBuffer/);
+  refuses(() => spherechain.open(Promise.resolve(bytes)), /not a Promise: await it/);
+  refuses(() => spherechain.open(new Blob([bytes])), /not a Blob: await its arrayBuffer\(\)/);
   for (let part = 1; part < 32; ++part) refuses(() => spherechain.open(bytes.subarray(0, Math.floor((bytes.length * part) / 32))), /./);
   let refused = 0;
   for (let i = 0; i < 60; ++i) {
@@ -142,21 +146,48 @@ test('wrong arguments are refused', () => {
   refuses(() => character.contacts('everything'), /one of apart, neighbours, all/);
   refuses(() => asset.createCharacter(joints.slice(1)), new RegExp(`bone "${joints[0].name}"`));
   refuses(() => asset.createCharacter(joints.map(joint => ({ ...joint, inverseBind: joint.inverseBind.map(x => 2 * x) }))), /inverse bind/);
-  refuses(() => asset.createCharacter(joints.map(joint => ({ ...joint, inverseBind: [1, 2] }))), /16 floats by columns/);
-  refuses(() => asset.createCharacter([]), /joints/);
   character.setPalette(posed);
   refuses(() => character.checkRest(), /bind pose/);
-  for (const value of [NaN, Infinity]) {
-    character.setPalette(new Float32Array(16 * joints.length).fill(value));
-    character.detect();
-    character.penetrations();
-    character.vertices();
+  refuses(() => character.penetrations('full'), /true or false is wanted, not "full"/);
+  for (const value of [NaN, Infinity, -Infinity]) {
+    const palette = rest.slice();
+    palette[16 * 3 + 5] = value;
+    refuses(() => character.setPalette(palette), new RegExp(`bone "${joints[3].name}" \\(joint 3\\) is not finite`));
+    refuses(() => character.contacts(), /setPalette/);
   }
+  character.setPalette(new Float32Array(16 * joints.length).fill(1e38));
+  character.detect();
+  character.penetrations();
+  character.vertices();
   asset.dispose();
   refuses(() => character.refit(), /disposed/);
   refuses(() => asset.createCharacter(), /disposed/);
   asset.dispose();
   character.dispose();
+});
+
+test('a skeleton that does not fit is refused, and the joint named', () => {
+  const asset = spherechain.open(bytes);
+  const { name } = joints[2], changed = change => joints.map((joint, i) => (i === 2 ? { ...joint, ...change } : joint));
+  const joint = `joint "${name}" \\(joints\\[2\\]\\): inverseBind`;
+  for (const [wrong, message] of [
+    [null, /array of \{ name, inverseBind \} is wanted, not null/],
+    [{ bones: joints }, /not an Object/],
+    [[], /the list is empty/],
+    [[null], /joints\[0\]: its name is undefined/],
+    [changed({ name: 7 }), /joints\[2\]: its name is 7/],
+    [changed({ inverseBind: { elements: joints[2].inverseBind } }), new RegExp(`${joint} is an Object: 16 numbers.*pass its elements`)],
+    [changed({ inverseBind: [1, 2] }), new RegExp(`${joint} is an Array of 2: 16 numbers`)],
+    [changed({ inverseBind: new Float32Array(16).fill(NaN) }), new RegExp(`${joint} is a Float32Array of 16`)],
+    [changed({ inverseBind: '0'.repeat(16) }), new RegExp(`${joint} is "0+"`)],
+    [changed({ inverseBind: new Float32Array(12) }), new RegExp(`${joint} has 12 numbers, that of joint "${joints[0].name}" 16`)],
+    [changed({ inverseBind: undefined }), new RegExp(`${joint} is missing, but joint "${joints[0].name}" has one`)],
+    [joints.map(one => ({ ...one, name: one.name.replace('_', '') })), /bone "left_\w+".*but "left\w+" is/],
+  ]) {
+    refuses(() => asset.createCharacter(wrong), message);
+  }
+  assert.equal(asset.createCharacter(joints.map(one => ({ name: one.name }))).jointCount, joints.length);
+  asset.dispose();
 });
 
 test('memory is given back', () => {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What spherechain.js calls: the C interface, with a character's memory and its lists in one object, and results in
 // words at fixed places. Lists grow to the largest frame so far. One thread.
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
@@ -36,6 +38,10 @@ bool fails_alone(const Status& status) {
   const char* const field = sc_field_name(status.field);
   std::snprintf(message, sizeof message, "%s%s%s", field, *field == 0 ? "" : ": ", sc_code_text(status.code));
   return true;
+}
+
+bool are_finite(const float* values, std::size_t count) {
+  return std::all_of(values, values + count, [](float value) { return std::isfinite(value); });
 }
 
 bool is_out_of_memory() { return fails_alone({SC_NO_MEMORY, SC_FIELD_NONE}); }
@@ -299,7 +305,26 @@ EXPORT(set_pose) int set_pose(PosedCharacter* c, std::int32_t layout, int morphs
   palette.bones = c->palette.data();
   palette.bone_count = c->joint_count;
   palette.bone_layout = static_cast<MatrixLayout>(layout);
-  return fails_alone(sc_gather_bones(&c->asset->asset, c->joint_of_bone.data(), &palette, c->bones.data()));
+  if (fails_alone(sc_gather_bones(&c->asset->asset, c->joint_of_bone.data(), &palette, c->bones.data()))) {
+    return 1;
+  }
+  // A pose that is not finite has no contacts: it would look clean.
+  const sc_asset_info info = c->asset->info();
+  for (std::size_t b = 0; b < info.bone_count; ++b) {
+    if (!are_finite(c->bones.data() + 12 * b, 12)) {
+      std::snprintf(message, sizeof message, "the palette's matrix of bone \"%s\" (joint %u) is not finite",
+                    sc_asset_bone(&c->asset->asset, b).name, c->joint_of_bone.data()[b]);
+      return 1;
+    }
+  }
+  for (std::size_t m = 0; m < (c->morphs ? info.morph_count : 0); ++m) {
+    if (!std::isfinite(c->morph_weights.data()[m])) {
+      std::snprintf(message, sizeof message, "the weight of morph \"%s\" is not finite",
+                    sc_asset_morph_name(&c->asset->asset, m));
+      return 1;
+    }
+  }
+  return 0;
 }
 
 EXPORT(check_rest) int check_rest(PosedCharacter* c) {

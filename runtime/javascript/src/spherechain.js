@@ -89,7 +89,11 @@ class Spherechain {
 
   open(bytes) {
     const isBytes = bytes instanceof Uint8Array || bytes instanceof ArrayBuffer;
-    if (!isBytes) throw new SpherechainError('data: bytes of a .sphc file are wanted');
+    if (!isBytes) {
+      const isLater = typeof bytes?.then === 'function' || typeof bytes?.arrayBuffer === 'function';
+      throw new SpherechainError(`data: the bytes of a .sphc file are wanted, an ArrayBuffer or a Uint8Array, not ${kindOf(bytes)}` +
+        (isLater ? `: await ${bytes.arrayBuffer ? 'its arrayBuffer()' : 'it'}` : ''));
+    }
     return new Asset(this.#native, bytes instanceof ArrayBuffer ? new Uint8Array(bytes) : bytes);
   }
 }
@@ -153,36 +157,29 @@ class Asset {
     if (this.bones.length === 0) {
       throw new SpherechainError('the asset has no bones: no palette moves it');
     }
-    const character = this.#native.borrow(joints ? 8 * joints.length : 8, out => {
-      if (!joints) return this.#native.call.create_character(this.#asset, 0, 0, 0);
-      return this.#withJoints(joints, out);
-    });
-    const made = new Character(this.#native, this, character, joints ? joints.length : this.bones.length,
+    const character = joints === undefined ? this.#native.call.create_character(this.#asset, 0, 0, 0) : this.#withJoints(joints);
+    const made = new Character(this.#native, this, character, joints?.length ?? this.bones.length,
       () => this.#characters.delete(made));
     this.#characters.add(made);
     return made;
   }
 
-  // Joints at `out`, their names and matrices behind each other in memory of their own.
-  #withJoints(joints, out) {
+  // The joints, their matrices and their names lie behind each other.
+  #withJoints(joints) {
     const native = this.#native;
+    const floats = checkJoints(joints);
     const names = joints.map(joint => new TextEncoder().encode(`${joint.name}\0`));
-    const sizes = new Set(joints.map(joint => joint.inverseBind?.length ?? 0));
-    const [floats] = sizes;
-    if (joints.length === 0 || sizes.size > 1 || ![0, 12, 16].includes(floats)) {
-      throw new SpherechainError('joints: inverse bind matrices are 16 floats by columns, or 12 by rows, or none for all joints');
-    }
-    const bytes = names.reduce((sum, name) => sum + name.length, 0);
-    return native.borrow(4 * floats * joints.length + bytes, place => {
-      let text = place + 4 * floats * joints.length;
+    const matrices = 8 * joints.length, texts = matrices + 4 * floats * joints.length;
+    return native.borrow(names.reduce((sum, name) => sum + name.length, texts), place => {
+      let text = place + texts;
       joints.forEach((joint, i) => {
-        const matrix = place + 4 * floats * i;
+        const matrix = place + matrices + 4 * floats * i;
         if (floats > 0) native.floats.set(joint.inverseBind, matrix / 4);
         new Uint8Array(native.memory.buffer).set(names[i], text);
-        native.words.set([text, floats > 0 ? matrix : 0], out / 4 + 2 * i);
+        native.words.set([text, floats > 0 ? matrix : 0], place / 4 + 2 * i);
         text += names[i].length;
       });
-      return native.call.create_character(this.#asset, out, joints.length, floats === 16 ? COLUMNS_4X4 : ROWS_3X4);
+      return native.call.create_character(this.#asset, place, joints.length, floats === 16 ? COLUMNS_4X4 : ROWS_3X4);
     });
   }
 
@@ -271,6 +268,7 @@ class Character {
   }
 
   penetrations(quick = true) {
+    if (typeof quick !== 'boolean') throw new SpherechainError(`quick: true or false is wanted, not ${kindOf(quick)}`);
     this.#find('triangles');
     this.#native.check(this.#native.call.measure(this.#character, SCOPES[this.#scope], quick ? 1 : 0));
     const { floats, words, kinds } = this.#native;
@@ -385,6 +383,42 @@ function columnsOf(rows) {
   for (let i = 0; i < 12; ++i) out[(i % 4) * 4 + Math.floor(i / 4)] = rows[i];
   out[15] = 1;
   return out;
+}
+
+// Floats of each joint's inverse bind matrix; 0 where none has one.
+function checkJoints(joints) {
+  if (!Array.isArray(joints)) {
+    throw new SpherechainError(`joints: an array of { name, inverseBind } is wanted, not ${kindOf(joints)}; without joints ` +
+      'palettes come in the order of asset.bones');
+  }
+  if (joints.length === 0) throw new SpherechainError('joints: the list is empty: is the skeleton loaded?');
+  joints.forEach((joint, i) => {
+    if (typeof joint?.name !== 'string') throw new SpherechainError(`joints[${i}]: its name is ${kindOf(joint?.name)}, a string is wanted`);
+  });
+  const matrixOf = joint => joint.inverseBind ?? null;
+  const first = joints.findIndex(joint => matrixOf(joint) !== null);
+  if (first < 0) return 0;
+  joints.forEach((joint, i) => {
+    const matrix = matrixOf(joint), refuse = what => {
+      throw new SpherechainError(`joint "${joint.name}" (joints[${i}]): inverseBind ${what}`);
+    };
+    if (matrix === null) refuse(`is missing, but joint "${joints[first].name}" has one`);
+    if (![12, 16].includes(matrix.length) || !Array.prototype.every.call(matrix, Number.isFinite)) {
+      refuse(`is ${kindOf(matrix)}: 16 numbers by columns, or 12 by rows, are wanted` + (matrix.elements ? '; pass its elements' : ''));
+    }
+    if (matrix.length !== matrixOf(joints[first]).length) {
+      refuse(`has ${matrix.length} numbers, that of joint "${joints[first].name}" ${matrixOf(joints[first]).length}`);
+    }
+  });
+  return matrixOf(joints[first]).length;
+}
+
+// Of a value that is refused: "null", "a Promise", "an Array of 2".
+function kindOf(value) {
+  if (typeof value === 'string') return `"${value}"`;
+  const name = value?.constructor?.name;
+  if (typeof value !== 'object' || !name) return String(value);
+  return `${/^[AEIOU]/.test(name) ? 'an' : 'a'} ${name}${value.length === undefined ? '' : ` of ${value.length}`}`;
 }
 
 function choice(table, name, what) {
