@@ -4,6 +4,7 @@
 #   api          the package beside the C interface, and what it refuses
 #   which_parts  the sample prints the lines of samples/hello
 #   page         the programs of docs/javascript.md, word for word, in Node and Chromium, with the package as npm packs and installs it
+#   three        the sample with three.js, and the program of docs/javascript.md; three.js is where the page of `view` has it
 #   chromium     the sample's page; contacts of a human in under half a millisecond; the package in a page from disk
 cmake_minimum_required(VERSION 3.25)
 file(REMOVE_RECURSE ${WORK})
@@ -18,14 +19,18 @@ function(run output)
   set(${output} "${text}" PARENT_SCOPE)
 endfunction()
 
-if(CASE MATCHES "page|chromium" AND NOT (CHROMIUM AND NPM))
+if(CASE STREQUAL three AND NOT EXISTS ${THREE})
+  message("SKIPPED: three.js is missing: the page of `view` is not built")
+  return()
+endif()
+if(CASE MATCHES "page|chromium|three" AND NOT (CHROMIUM AND NPM))
   message("SKIPPED: chromium or npm is missing (Debian: chromium, npm)")
   return()
 endif()
 if(CASE MATCHES "api|which_parts|chromium")
   run(nothing ${WRITE_PALETTES} ${MODEL} human.palettes)
 endif()
-if(CASE MATCHES "which_parts|chromium")  # as npm installs it
+if(CASE MATCHES "which_parts|chromium|three")  # as npm installs it
   file(MAKE_DIRECTORY ${WORK}/node_modules)
   file(CREATE_LINK ${PACKAGE} ${WORK}/node_modules/spherechain SYMBOLIC)
 endif()
@@ -62,6 +67,15 @@ elseif(CASE STREQUAL chromium)
   file(COPY ${sample} DESTINATION ${WORK})
   file(COPY_FILE ${AUTOMATIC} ${WORK}/human.sphc)
   run(text ${NODE} ${here}/sample_page.mjs ${CHROMIUM} ${PACKAGE} ${REFERENCE} ${OWN_BONES} human.palettes)
+  message(STATUS "${text}")
+elseif(CASE STREQUAL three)
+  file(CREATE_LINK ${THREE} ${WORK}/node_modules/three SYMBOLIC)
+  file(COPY ${ROOT}/samples/javascript/three.html DESTINATION ${WORK})
+  file(COPY_FILE ${MODEL} ${WORK}/hero.glb)
+  file(COPY_FILE ${OWN_BONES} ${WORK}/hero.sphc)
+  run(text ${HELLO} ${OWN_BONES} ${MODEL})
+  file(WRITE ${WORK}/hello.txt "${text}")
+  run(text ${NODE} ${here}/three.mjs ${CHROMIUM} ${ROOT}/docs/javascript.md hello.txt)
   message(STATUS "${text}")
 else()
   message(FATAL_ERROR "no such case: ${CASE}")
