@@ -210,6 +210,14 @@ export interface Character {
    * takes five to ten times as long, and a direction stays from call to call while it is about as good as the shortest. */
   penetrations(quick?: boolean): Penetration[];
 
+  /** The pairs of body parts where this skin intersects another character's: partA is of this one, partB of `other`; nothing
+   * is swapped or left out. Both need a palette, in one space. */
+  contactsWith(other: Character): PartContact[];
+
+  /** How deep, which way out, and what kind, for what contactsWith() finds. The direction moves `other`. Kinds are 'shell',
+   * 'touch' and 'penetration'; they compare with this asset's height and unit. `quick`: as of penetrations(). */
+  penetrationsWith(other: Character, quick?: boolean): Penetration[];
+
   /** Where the skin's vertices are in this pose: a view, x, y, z each. They are numbered by the asset, which merges the source's
    * duplicates at seams: their count is `length / 3`. Asset.triangles has their triangles. */
   vertices(): Float32Array;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// api.mjs PACKAGE ASSET PALETTES NATIVE: the package through its public functions, beside the C interface: NATIVE is what
-// reference.cpp prints. And what it refuses.
+// api.mjs PACKAGE ASSET PALETTES NATIVE PAIR: the package through its public functions, beside the C interface: NATIVE and PAIR are what
+// reference.cpp prints, without and with --pair. And what it refuses.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import test from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { readPalettes } from '../../samples/javascript/palettes.mjs';
-import { frameHashes } from './frame_hashes.mjs';
+import { frameHashes, pairHashes } from './frame_hashes.mjs';
 
-const [packageFolder, assetFile, palettesFile, nativeFile] = process.argv.slice(2);
+const [packageFolder, assetFile, palettesFile, nativeFile, pairFile] = process.argv.slice(2);
 const { load, SpherechainError } = await import(pathToFileURL(`${packageFolder}/index.js`));
 const spherechain = await load();
 const bytes = new Uint8Array(readFileSync(assetFile));
@@ -54,6 +54,27 @@ test('each frame of a clip gives the bits that the C interface gives', () => {
     assert.equal(frameHashes(character), wanted[frame], `frame ${frame}`);
     character.dispose();
   });
+  asset.dispose();
+});
+
+test('two characters give the bits that the C interface gives', () => {
+  const asset = spherechain.open(bytes);
+  const a = asset.createCharacter(joints), b = spherechain.open(bytes).createCharacter(joints);
+  refuses(() => a.contactsWith(b), /setPalette/);
+  const wanted = readFileSync(pairFile, 'utf8').trim().split('\n');
+  wanted.forEach((line, i) => {
+    a.setPalette(frames[10 * i]);
+    b.setPalette(frames[10 * i].map((value, k) => (k % 16 === 12 || k % 16 === 14 ? value + Math.fround(0.3) : value)));
+    assert.equal(pairHashes(a, b), line, `frame ${10 * i}`);
+  });
+  a.setPalette(posed);
+  const alone = frameHashes(a), [found] = a.penetrationsWith(b, false);
+  assert.equal(frameHashes(a), alone);
+  assert.equal(a.penetrationsWith(b, false)[0], found);
+  for (const other of [a, null, asset]) refuses(() => a.contactsWith(other), /another character/);
+  refuses(() => a.penetrationsWith(b, 'full'), /true or false/);
+  b.asset.dispose();
+  refuses(() => a.contactsWith(b), /disposed/);
   asset.dispose();
 });
 

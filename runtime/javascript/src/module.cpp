@@ -105,6 +105,10 @@ struct Results {
   std::uint32_t penetration_count;
   float* vertices;
   std::uint32_t vertex_count;
+  PartContact* contacts_with;  // another character
+  std::uint32_t contact_with_count;
+  Penetration* penetrations_with;
+  std::uint32_t penetration_with_count;
 };
 
 struct PosedCharacter {
@@ -117,10 +121,10 @@ struct PosedCharacter {
   Words detect_tables[2], scratch;
   List<Sphere> spheres;
   List<Pair> pairs;
-  List<PartContact> contacts;
-  List<TriangleContact> triangles;
-  List<Penetration> penetrations, previous;
-  std::size_t previous_count = 0;
+  List<PartContact> contacts, contacts_with;
+  List<TriangleContact> triangles, triangles_with;
+  List<Penetration> penetrations, previous, penetrations_with;
+  std::size_t previous_count = 0, triangle_with_count = 0;
 
   Pose pose() const {
     Pose pose;
@@ -131,10 +135,11 @@ struct PosedCharacter {
     pose.morph_weight_count = morphs ? asset->info().morph_count : 0;
     return pose;
   }
+  Body body() const { return {&asset->asset, pose(), asset->skin_table.data(), nullptr}; }
 };
 
 // As spherechain.js reads them.
-static_assert(sizeof(void*) == 4 && sizeof(Results) == 13 * 4);
+static_assert(sizeof(void*) == 4 && sizeof(Results) == 17 * 4);
 static_assert(sizeof(PartContact) == 9 * 4 && offsetof(PartContact, low) == 12);
 static_assert(sizeof(TriangleContact) == 12 * 4 && offsetof(TriangleContact, from) == 24);
 static_assert(sizeof(Penetration) == 25 * 4 && offsetof(Penetration, is_closed) == 28);
@@ -153,6 +158,22 @@ bool list_triangles(OpenedAsset& opened) {
                 3 * sizeof(std::uint32_t));
   }
   return true;
+}
+
+// Runs a job that lists triangles, again with more room where they are too many. As the functions below, 0 or 1.
+template <typename Job>
+int find_all(Job& job, List<TriangleContact>& triangles, bool lists_triangles) {
+  for (;;) {
+    job.triangles = lists_triangles ? triangles.data() : nullptr;
+    job.triangle_capacity = lists_triangles ? triangles.capacity() : 0;
+    const Status status = job.run();
+    if (status != SC_OVERFLOW) {
+      return fails_alone(status);
+    }
+    if (!triangles.reserve(job.triangle_count + job.triangle_count / 2)) {
+      return is_out_of_memory();
+    }
+  }
 }
 
 }  // namespace
@@ -371,16 +392,7 @@ EXPORT(find_contacts) int find_contacts(PosedCharacter* c, std::int32_t scope, i
   job.scratch_words = sc_skin_scratch_words(&c->asset->asset);
   job.parts = c->contacts.data();
   job.part_capacity = c->contacts.capacity();
-  Status status = done();
-  do {
-    job.triangles = lists_triangles != 0 ? c->triangles.data() : nullptr;
-    job.triangle_capacity = lists_triangles != 0 ? c->triangles.capacity() : 0;
-    status = job.run();
-    if (status == SC_OVERFLOW && !c->triangles.reserve(job.triangle_count + job.triangle_count / 2)) {
-      return is_out_of_memory();
-    }
-  } while (status == SC_OVERFLOW);
-  if (fails_alone(status)) {
+  if (find_all(job, c->triangles, lists_triangles != 0)) {
     return 1;
   }
   results.contact_count = static_cast<std::uint32_t>(job.part_count);
@@ -421,6 +433,60 @@ EXPORT(measure) int measure(PosedCharacter* c, std::int32_t scope, int quick) {
     c->previous_count = job.penetration_count;
     std::memcpy(c->previous.data(), out.data(), job.penetration_count * sizeof(Penetration));
   }
+  return 0;
+}
+
+// Contacts of two characters; `c` keeps what is found.
+EXPORT(meet) int meet(PosedCharacter* c, const PosedCharacter* other, int lists_triangles) {
+  Results& results = c->results;
+  results.contact_with_count = 0;
+  BodyContactJob job;
+  job.a = c->body();
+  job.b = other->body();
+  if (!c->asset->has_skin() || !other->asset->has_skin()) {
+    return fails_alone({SC_NOT_IN_ASSET, SC_FIELD_ASSET});
+  }
+  if (!c->scratch.reserve(sc_body_scratch_words(job.a.asset, job.b.asset)) ||
+      !c->contacts_with.reserve(c->asset->info().part_count * other->asset->info().part_count) ||
+      !c->triangles_with.reserve(lists_triangles != 0 ? kTrianglesMin : 0)) {
+    return is_out_of_memory();
+  }
+  job.scratch = c->scratch.data();
+  job.scratch_words = c->scratch.capacity();
+  job.parts = c->contacts_with.data();
+  job.part_capacity = c->contacts_with.capacity();
+  if (find_all(job, c->triangles_with, lists_triangles != 0)) {
+    return 1;
+  }
+  results.contacts_with = c->contacts_with.data();
+  results.contact_with_count = static_cast<std::uint32_t>(job.part_count);
+  c->triangle_with_count = job.triangle_count;
+  return 0;
+}
+
+// Of the triangles that meet() listed.
+EXPORT(measure_meeting) int measure_meeting(PosedCharacter* c, const PosedCharacter* other, int quick) {
+  Results& results = c->results;
+  results.penetration_with_count = 0;
+  BodyPenetrationJob job;
+  job.a = c->body();
+  job.b = other->body();
+  job.contacts = c->triangles_with.data();
+  job.contact_count = c->triangle_with_count;
+  job.quick = quick;
+  if (!c->scratch.reserve(sc_body_penetration_scratch_words(job.a.asset, job.b.asset, job.contact_count)) ||
+      !c->penetrations_with.reserve(c->contacts_with.capacity())) {
+    return is_out_of_memory();
+  }
+  job.scratch = c->scratch.data();
+  job.scratch_words = c->scratch.capacity();
+  job.penetrations = c->penetrations_with.data();
+  job.penetration_capacity = c->penetrations_with.capacity();
+  if (fails_alone(job.run())) {
+    return 1;
+  }
+  results.penetrations_with = c->penetrations_with.data();
+  results.penetration_with_count = static_cast<std::uint32_t>(job.penetration_count);
   return 0;
 }
 

@@ -7,7 +7,8 @@ const RADII = { detect: 0, fit: 1 };
 const SCOPES = { apart: 0, neighbours: 1, all: 2 };
 const ROWS_3X4 = 1, COLUMNS_4X4 = 3;  // sc_matrix_layout
 const PALETTE = 0, MORPHS = 1, SPHERES = 2, PAIRS = 3, PAIR_COUNT = 4, CONTACTS = 5, CONTACT_COUNT = 6, TRIANGLES = 7,
-  TRIANGLE_COUNT = 8, PENETRATIONS = 9, PENETRATION_COUNT = 10, VERTICES = 11, VERTEX_COUNT = 12;  // words of Results
+  TRIANGLE_COUNT = 8, PENETRATIONS = 9, PENETRATION_COUNT = 10, VERTICES = 11, VERTEX_COUNT = 12,
+  CONTACTS_WITH = 13, CONTACT_WITH_COUNT = 14, PENETRATIONS_WITH = 15, PENETRATION_WITH_COUNT = 16;  // words of Results
 const CONTACT_WORDS = 9, TRIANGLE_WORDS = 12, PENETRATION_WORDS = 25;
 
 export class SpherechainError extends Error {
@@ -201,6 +202,8 @@ class Character {
   #contacts = new Pool(newContact);
   #triangles = { count: 0, pairs: null, segments: null };
   #penetrations = new Pool(newPenetration);
+  #contactsWith = new Pool(newContact);
+  #penetrationsWith = new Pool(newPenetration);
 
   constructor(native, asset, character, jointCount, gone) {
     if (character === 0) throw native.error();
@@ -248,14 +251,7 @@ class Character {
     if (scope !== this.#scope) this.#has = null;
     this.#scope = scope;
     this.#find('parts');
-    const { floats, words } = this.#native;
-    return this.#contacts.fill(this.#result(CONTACT_COUNT), this.#result(CONTACTS) / 4, CONTACT_WORDS, (contact, at) => {
-      contact.partA = words[at];
-      contact.partB = words[at + 1];
-      contact.trianglePairs = words[at + 2];
-      copy(floats, at + 3, contact.low);
-      copy(floats, at + 6, contact.high);
-    });
+    return this.#contacts.fill(this.#result(CONTACT_COUNT), this.#result(CONTACTS) / 4, CONTACT_WORDS, this.#readContact);
   }
 
   triangleContacts() {
@@ -268,22 +264,24 @@ class Character {
   }
 
   penetrations(quick = true) {
-    if (typeof quick !== 'boolean') throw new SpherechainError(`quick: true or false is wanted, not ${kindOf(quick)}`);
+    checkQuick(quick);
     this.#find('triangles');
     this.#native.check(this.#native.call.measure(this.#character, SCOPES[this.#scope], quick ? 1 : 0));
-    const { floats, words, kinds } = this.#native;
-    return this.#penetrations.fill(this.#result(PENETRATION_COUNT), this.#result(PENETRATIONS) / 4, PENETRATION_WORDS, (found, at) => {
-      found.partA = words[at];
-      found.partB = words[at + 1];
-      found.kind = kinds[words[at + 2]];
-      found.depth = floats[at + 3];
-      copy(floats, at + 4, found.direction);
-      found.volume = words[at + 7] === 1 && !quick ? floats[at + 8] : null;
-      found.contourLength = floats[at + 9];
-      found.visible = floats[at + 10];
-      copyPoint(floats, words, at + 11, found.deepestA);
-      copyPoint(floats, words, at + 18, found.deepestB);
-    });
+    return this.#penetrations.fill(this.#result(PENETRATION_COUNT), this.#result(PENETRATIONS) / 4, PENETRATION_WORDS,
+      quick ? this.#readQuick : this.#readThorough);
+  }
+
+  contactsWith(other) {
+    this.#meet(other, 0);
+    return this.#contactsWith.fill(this.#result(CONTACT_WITH_COUNT), this.#result(CONTACTS_WITH) / 4, CONTACT_WORDS, this.#readContact);
+  }
+
+  penetrationsWith(other, quick = true) {
+    checkQuick(quick);
+    this.#meet(other, 1);
+    this.#native.check(this.#native.call.measure_meeting(this.#character, other.#character, quick ? 1 : 0));
+    return this.#penetrationsWith.fill(this.#result(PENETRATION_WITH_COUNT), this.#result(PENETRATIONS_WITH) / 4, PENETRATION_WORDS,
+      quick ? this.#readQuick : this.#readThorough);
   }
 
   vertices() {
@@ -319,6 +317,40 @@ class Character {
     this.#native.check(this.#native.call.find_contacts(character, SCOPES[this.#scope], what === 'triangles' ? 1 : 0));
     this.#has = what;
   }
+
+  #meet(other, listsTriangles) {
+    const character = this.#posed();
+    if (!(other instanceof Character) || other === this) throw new SpherechainError('other: another character is wanted');
+    this.#native.check(this.#native.call.meet(character, other.#posed(), listsTriangles));
+  }
+
+  #readContact = (contact, at) => {
+    const { floats, words } = this.#native;
+    contact.partA = words[at];
+    contact.partB = words[at + 1];
+    contact.trianglePairs = words[at + 2];
+    copy(floats, at + 3, contact.low);
+    copy(floats, at + 6, contact.high);
+  };
+
+  #readQuick = (found, at) => {
+    const { floats, words, kinds } = this.#native;
+    found.partA = words[at];
+    found.partB = words[at + 1];
+    found.kind = kinds[words[at + 2]];
+    found.depth = floats[at + 3];
+    copy(floats, at + 4, found.direction);
+    found.volume = null;
+    found.contourLength = floats[at + 9];
+    found.visible = floats[at + 10];
+    copyPoint(floats, words, at + 11, found.deepestA);
+    copyPoint(floats, words, at + 18, found.deepestB);
+  };
+
+  #readThorough = (found, at) => {
+    this.#readQuick(found, at);
+    if (this.#native.words[at + 7] === 1) found.volume = this.#native.floats[at + 8];
+  };
 
   // The last one where it still fits: in most frames nothing is new.
   #view(word, Type, length) {
@@ -383,6 +415,10 @@ function columnsOf(rows) {
   for (let i = 0; i < 12; ++i) out[(i % 4) * 4 + Math.floor(i / 4)] = rows[i];
   out[15] = 1;
   return out;
+}
+
+function checkQuick(quick) {
+  if (typeof quick !== 'boolean') throw new SpherechainError(`quick: true or false is wanted, not ${kindOf(quick)}`);
 }
 
 // Floats of each joint's inverse bind matrix; 0 where none has one.
