@@ -25,10 +25,10 @@ export async function serve(folder) {
 }
 
 // A page, to evaluate expressions in; `noise` has what it wrote to the console, and its exceptions.
-export async function visit(chromium, url, size = '1000,800') {
+export async function visit(chromium, url) {
   const profile = mkdtempSync(join(tmpdir(), 'spherechain-'));
   const browser = spawn(chromium, ['--headless=new', '--no-sandbox', '--remote-debugging-pipe', `--user-data-dir=${profile}`,
-    `--window-size=${size}`, '--use-angle=swiftshader', '--enable-unsafe-swiftshader'], { stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe'] });
+    '--window-size=1000,800', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'], { stdio: ['ignore', 'ignore', 'ignore', 'pipe', 'pipe'] });
   const [, , , input, output] = browser.stdio;
   const waiting = new Map(), noise = [];
   let text = '', next = 0, sessionId;

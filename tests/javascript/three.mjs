@@ -17,7 +17,7 @@ assert.ok(wanted.length > 3);
 assert.deepEqual(atKeys(execFileSync(process.execPath, ['three.mjs'], { encoding: 'utf8' })), wanted);
 
 const server = await serve('.');
-const page = await visit(chromium, `${server.url}/three.html`, '320,320');
+const page = await visit(chromium, `${server.url}/three.html`);
 try {
   await page.wait("document.querySelector('.fault')");
   // A frame with faults, and how much of the picture is skin, and red. In one task with the drawing: the canvas is cleared after it.
