@@ -21,7 +21,7 @@
 // palette are, nothing worse happens.
 
 /** Compiles the module: once a page, some tens of milliseconds. Every call gives the same object. Needs WebAssembly with SIMD:
- * Chromium 91, Firefox 89, Safari 16.4, Node 18, or newer. */
+ * Chromium 93, Firefox 92, Safari 16.4, Node 18, or newer. */
 export function load(): Promise<Spherechain>;
 
 export interface Spherechain {

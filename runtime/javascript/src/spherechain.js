@@ -452,6 +452,7 @@ function checkJoints(joints) {
 // Of a value that is refused: "null", "a Promise", "an Array of 2".
 function kindOf(value) {
   if (typeof value === 'string') return `"${value}"`;
+  if (typeof value === 'function') return 'a function';
   const name = value?.constructor?.name;
   if (typeof value !== 'object' || !name) return String(value);
   return `${/^[AEIOU]/.test(name) ? 'an' : 'a'} ${name}${value.length === undefined ? '' : ` of ${value.length}`}`;
