@@ -96,6 +96,19 @@ test('palettes come by columns or rows, in the order of the joints', () => {
   asset.dispose();
 });
 
+test('a palette’s scale changes depths, and no class', () => {
+  const asset = spherechain.open(bytes), character = asset.createCharacter(joints);
+  const answers = palette => {
+    character.setPalette(palette);
+    return character.penetrations(false).map(({ partA, partB, kind, depth }) => ({ partA, partB, kind, depth }));
+  };
+  const own = answers(posed), small = answers(posed.map((value, i) => (i % 4 === 3 ? value : value / 100)));
+  assert.ok(own.some(({ kind }) => kind === 'penetration'));
+  assert.deepEqual(small.map(({ partA, partB, kind }) => [partA, partB, kind]), own.map(({ partA, partB, kind }) => [partA, partB, kind]));
+  small.forEach(({ depth }, i) => assert.ok(Math.abs(100 * depth / own[i].depth - 1) < 0.3));
+  asset.dispose();
+});
+
 test('vertices lie in the spheres’ space, and triangles name them', () => {
   const asset = spherechain.open(bytes);
   const character = asset.createCharacter(joints);
