@@ -22,6 +22,7 @@ const TOUCHING = 8; // a frame with contacts
 const frame = (page) => page.evaluate(() => spherechainViewer.frame);
 const goTo = (page, number) => page.evaluate((n) => spherechainViewer.setFrame(n), number);
 const contacts = (page) => page.evaluate(() => spherechainViewer.contacts());
+const isFault = ({ kind }) => kind >= 4;
 const away = (page) => page.mouse.move(1270, 40);
 async function fresh() {
   const { page } = arms;
@@ -92,7 +93,7 @@ test('the page is one file of less than 6 MB', () => {
 test('contacts are the triangles of the skin that play reports, with class and depth, faults first', async () => {
   const page = await fresh();
   assert.ok(pages.play[TOUCHING].skin.triangles.length > 0);
-  for (const number of [0, TOUCHING, 19, 25, 39]) {
+  for (const number of [0, TOUCHING, 19, 36, 39]) {
     await goTo(page, number);
     const listed = await contacts(page);
     const triangles = (lists) => [...new Set(lists.flat())].sort((a, b) => a - b);
@@ -107,10 +108,20 @@ test('contacts are the triangles of the skin that play reports, with class and d
     listed.forEach(({ name, kind, depth }, i) => {
       const found = measured.find(({ parts: [a, b] }) => partPair({ a, b }) === name);
       assert.ok(Math.abs(depth - found.depth_mm) < 1e-3 * found.depth_mm + 1e-3, name);
-      assert.ok(rows[i].includes(name) && /(as at rest|shell|touch|fold|penetration), [0-9.]+ mm/.test(rows[i]), rows[i]);
+      assert.ok(rows[i].includes(name) && /(as at rest|shell|hidden|touch|fold|penetration), [0-9.]+ mm/.test(rows[i]), rows[i]);
       if (i > 0) assert.ok(kind < listed[i - 1].kind || (kind === listed[i - 1].kind && depth <= listed[i - 1].depth));
     });
+    assert.equal(await page.locator('.readout .warning').count(), listed.some(isFault) ? 1 : 0);
   }
+  // Of the whole clip, as `play` sums it up: a fault's frames are those in which it is one.
+  const said = new Map(await page.locator('.clip-contact').evaluateAll((all) => all.map((row) => [row.querySelector('.part-names').textContent, row.querySelector('.count').textContent])));
+  const { contacts: played } = pages.clip;
+  assert.equal(said.size, played.length);
+  for (const { a, b, class: kind, frames, fault_frames: faults, frame_of_depth_max: deepest } of played) {
+    const runs = (faults.length > 0 ? faults : frames).map(([from, to]) => (from === to ? `${from}` : `${from}–${to}`)).join(', ');
+    assert.match(said.get(`${a}, ${b}`), new RegExp(`^${kind}, [0-9.]+ mm at ${deepest}; frames? ${runs}$`));
+  }
+  assert.ok(played.some(({ frames, fault_frames: faults }) => faults.length > 0 && `${frames}` !== `${faults}`));
 });
 
 test('D goes to the deepest frame of the clip', async () => {
@@ -243,19 +254,61 @@ test('keys step through frames, and the help lists them', async () => {
   assert.equal(await frame(page), 39);
   await page.keyboard.press('?');
   assert.ok((await page.locator('#help tbody tr').count()) >= 19);
+  assert.match(await page.locator('#help tbody').innerText(), /Ctrl Z\s+Pose: undo/);
   await page.keyboard.press('Escape');
   assert.ok(!(await page.locator('#help').isVisible()));
 });
 
+// From a frame on the character is turned by 180 degrees.
+function turnAround(data, first) {
+  const bones = unpack(data.motion.bones, Float32Array);
+  const { up } = data.axes;
+  const turn = up.map((_, row) => up.map((_, column) => 2 * up[row] * up[column] - (row === column ? 1 : 0)));
+  for (let at = (first * bones.length) / data.frames.count; at < bones.length; at += 12) {
+    const bone = bones.slice(at, at + 12);
+    for (let i = 0; i < 12; ++i) bones[at + i] = turn[Math.floor(i / 4)].reduce((sum, x, k) => sum + x * bone[4 * k + (i % 4)], 0);
+  }
+  data.motion.bones = base64(bones);
+}
+// All contacts are shells, the first of a frame is out of sight.
+function hide({ frames: { penetrations } }) {
+  const entries = unpack(penetrations.entries, Float32Array);
+  let at = 0;
+  for (const count of unpack(penetrations.counts, Uint32Array)) {
+    for (let i = 0; i < count; ++i, at += 12) [entries[at + 2], entries[at + 10]] = [1, i === 0 ? 0.1 : 0.5];
+  }
+  penetrations.entries = base64(entries);
+}
+
 test('several clips: a list, a header that follows, frames of the clip, playing within it', async () => {
-  const clips = [{ name: 'Walk', first: 0, count: 15, own_count: 15 }, { name: 'Run', first: 15, count: 25, own_count: 25 }];
+  const clips = [{ name: 'MyArmature|Walk', first: 0, count: 15, own_count: 15 }, { name: 'MyArmature|Run', first: 15, count: 25, own_count: 25 }];
   const opened = await open(browser, pages.variant('clips.html', (data) => {
     data.clips = clips;
     data.frames.numbers = base64(Float32Array.from({ length: 40 }, (_, i) => (i < 15 ? i : i - 15)));
+    turnAround(data, 15);
+    hide(data);
   }));
   const { page } = opened;
+  const from = async () => {
+    const { back } = await page.evaluate(() => spherechainViewer.camera());
+    const { left, forward } = pages.inspect.frame;
+    return [left, forward].map((axis) => Math.round(axis.reduce((sum, x, k) => sum + x * back[k], 0)) + 0);
+  };
+  assert.deepEqual(await from(), [0, 1]);
+  await goTo(page, TOUCHING);
+  const rows = await page.locator('.contact').allInnerTexts();
+  assert.equal(rows.filter((text) => /hidden, /.test(text)).length, 1);
+  assert.equal(rows.filter((text) => /shell, /.test(text)).length, rows.length - 1);
+  assert.match(await page.locator('.contact', { hasText: 'hidden' }).getAttribute('title'), /cannot be seen from outside/);
   await page.locator('#clips').selectOption('1');
   assert.equal(await frame(page), 15);
+  // The second clip's character has turned its back to where it stood.
+  assert.deepEqual(await from(), [0, -1]);
+  await page.keyboard.press('2');
+  assert.deepEqual(await from(), [-1, 0]);
+  await page.keyboard.press('f');
+  await page.keyboard.press('3');
+  assert.deepEqual(await from(), [0, 1]);
   assert.match(await page.locator('.readout').innerText(), /frame 0 \/ 24/);
   await page.keyboard.press('Escape');
   await goTo(page, 14);

@@ -28,6 +28,7 @@ export function makePages({ tool, human, huesitos, poses, folder }) {
     rest: file('rest.html'),
     two: file('two.html'),
     play: readJson('arms.json').frames,
+    clip: readJson('arms.json').clips[0],
     inspect: JSON.parse(run('inspect', asset, '--json')),
     report: readJson('report.json'),
     validation: readJson('validation.json'),
