@@ -1,4 +1,5 @@
-// Posing by hand in the page of `view`: drags, what touches then, and the way of a saved pose through `play`.
+// Posing by hand in the page of `view`: drags, what touches then, and the way of a saved pose through `play`. It uses what
+// page_test.mjs baked.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
@@ -15,18 +16,19 @@ const SIZE = { width: 1000, height: 560 }; // small: drawing by software takes m
 const file = (name) => join(folder, name);
 const run = (...words) => execFileSync(tool, words, { encoding: 'utf8' });
 const motion = ['--poses', join(poses, 'arms_crossed.json'), '--frames', '5'];
-const made = (name, source, words = []) => {
-  run('bake', source, '-o', file(`${name}.sphc`));
-  run('view', file(`${name}.sphc`), '--source', source, ...words, '-o', file(`${name}.html`));
-  return { asset: file(`${name}.sphc`), source, page: file(`${name}.html`) };
+const made = (asset, source, words) => {
+  const page = asset.replace('.sphc', '_posed.html');
+  run('view', asset, '--source', source, ...words, '-o', page);
+  return { asset, source, page };
 };
 
 let browser;
 let man; // with the automatic rig
 let bones; // with a skeleton of its own
 before(async () => {
-  man = made('pose_human', human, motion);
-  bones = made('pose_huesitos', huesitos, ['--frames', '4']);
+  man = made(file('human.sphc'), human, motion);
+  run('bake', huesitos, '-o', file('huesitos.sphc'));
+  bones = made(file('huesitos.sphc'), huesitos, ['--frames', '4']);
   browser = await launch(chromium);
 });
 after(() => browser?.close());

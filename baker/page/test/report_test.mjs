@@ -151,9 +151,10 @@ test('a thousand clips open within two seconds', async () => {
   await open(url('many.html'));
   await page.locator('#rows img').first().waitFor();
   const seconds = (performance.now() - start) / 1000;
-  for (let i = 0; i < 200 && (await page.locator('#rows tr').count()) < 1000; ++i) {
+  const end = performance.now() + 60000;
+  while ((await page.locator('#rows tr').count()) < 1000 && performance.now() < end) {
     await page.evaluate(() => document.querySelector('main').scrollTo(0, 1e6));
-    await page.waitForTimeout(50);
+    await page.waitForTimeout(20);
   }
   assert.equal(await page.locator('#rows tr').count(), 1000);
   assert.ok(seconds < 2, `${seconds} s`);
