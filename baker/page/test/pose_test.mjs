@@ -173,7 +173,9 @@ test('an elbow turns the arm around, hips go down between the feet, the head loo
   await page.mouse.move(...up[0]);
   await page.mouse.down();
   await page.mouse.move(up[0][0] + 40, up[0][1]);
+  await drawn(page);
   await page.keyboard.press('Control+z');
+  assert.notDeepEqual(await poseOf(page), turned);
   await page.mouse.move(up[0][0] + 50, up[0][1] + 20);
   await drawn(page);
   await page.mouse.up();
