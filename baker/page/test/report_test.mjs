@@ -151,7 +151,7 @@ test('a thousand clips open within two seconds', async () => {
   await open(url('many.html'));
   await page.locator('#rows img').first().waitFor();
   const seconds = (performance.now() - start) / 1000;
-  const end = performance.now() + 60000;
+  const end = performance.now() + 20000;
   while ((await page.locator('#rows tr').count()) < 1000 && performance.now() < end) {
     await page.evaluate(() => document.querySelector('main').scrollTo(0, 1e6));
     await page.waitForTimeout(20);
