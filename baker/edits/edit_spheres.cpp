@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -17,6 +18,10 @@ namespace {
 using Ids = std::vector<std::uint32_t>;
 
 constexpr std::size_t kSpheresMax = 500;  // as the setting `spheres` has it
+
+constexpr double kFromSkin = 0.05;  // of the height: so far off the box of its region's skin a sphere may end
+
+constexpr std::size_t kNamesMax = 16;  // of regions, in a line
 
 constexpr std::size_t kNoEdit = ~std::size_t{0};
 
@@ -48,7 +53,8 @@ class SphereEditor {
     axes_ = region_axes(regions.frame, character.skin, regions.of_skin, regions.count());
     for (std::size_t e = 0; e < edits.size(); ++e) {
       region_of_.push_back(find_region(edits[e].region));
-      if (!region_of_[e]) miss(e, fmt::format("there is no region '{}'", edits[e].region));
+      if (!region_of_[e]) miss(e, fmt::format("there is no region '{}', only {}", edits[e].region, region_names()));
+      if (region_of_[e]) drop_if_far(e);
     }
   }
 
@@ -123,6 +129,32 @@ class SphereEditor {
       if (regions_.name(r) == name) return static_cast<std::uint8_t>(r);
     }
     return std::nullopt;
+  }
+
+  std::string region_names() const {
+    std::string out;
+    for (std::size_t r = 0; r < regions_.count(); ++r) {
+      if (r == kNamesMax) return out + " ...";
+      out += (r == 0 ? "" : ", ") + regions_.name(r);
+    }
+    return out;
+  }
+
+  // An edit that would put its sphere where no skin of its region can carry it is none.
+  void drop_if_far(std::size_t edit) {
+    const std::optional<SpherePlace>& to = edits_[edit].to;
+    if (!to) return;
+    const Vec3 center = axes(edit).point(*to);
+    Eigen::AlignedBox3d box;
+    for (Index t = 0; t < regions_.of_skin.size(); ++t) {
+      if (regions_.of_skin[t] != *region_of_[edit]) continue;
+      for (const Index v : character_.skin.triangles[t]) box.extend(character_.skin.positions[v]);
+    }
+    const double from_skin = box.exteriorDistance(center) - to->radius * axes(edit).length;
+    if (from_skin <= kFromSkin * regions_.frame.height) return;
+    miss(edit, fmt::format("it would end {:.1f} % of the height away from the region's skin",
+                           100 * from_skin / regions_.frame.height));
+    region_of_[edit].reset();
   }
 
   const RegionAxes& axes(std::size_t edit) const { return axes_[*region_of_[edit]]; }

@@ -14,6 +14,7 @@ namespace spherechain::baker {
 struct EditsDone {
   std::size_t applied = 0;
   std::vector<std::string> missed;  // a line each: which edit was not applied, or not as it says, and why
+  std::vector<std::string> notes;   // a line each: what edits bring about that is not their aim
 };
 
 // An edit that is in the spheres.
@@ -23,7 +24,8 @@ struct AppliedEdit {
 };
 
 // Changes fitted spheres. An edit is about the sphere of its region whose centre is nearest to `from`, if that lies in
-// it; each sphere is one edit's. A region keeps its last sphere. Links and owners of triangles follow.
+// it; each sphere is one edit's. A region keeps its last sphere. No sphere goes away from its region's skin. Links and
+// owners of triangles follow.
 // `applied` gets the edits that changed or added a sphere.
 Spheres edit_spheres(const Character& character, const Regions& regions, const Spheres& spheres,
                      const std::vector<SphereEdit>& edits, EditsDone& done, std::vector<AppliedEdit>& applied);

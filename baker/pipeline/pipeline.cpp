@@ -9,6 +9,7 @@
 #include <chrono>
 
 #include "calibrate/calibrate.h"
+#include "edits/hidden_contacts.h"
 #include "edits/ignore_parts.h"
 #include "mesh/error.h"
 #include "pipeline/fit_prop.h"
@@ -106,6 +107,7 @@ void edit(Bake& out) {
   if (!binding) {
     throw Error(ExitCode::kSegmentation, out.character.file + ": with its edits: " + binding.reason().what);
   }
+  out.edits_done.notes = hidden_contacts(out.character, out.body_parts, out.binding, *binding);
   out.binding = std::move(*binding);
   check_places(out.regions, out.spheres, out.binding, edits.spheres, applied, out.edits_done);
   out.quality = measure_fit(out.character, out.regions, out.binding);

@@ -75,13 +75,14 @@ MotionFrames frames_of(const Motion* motion, const FrameChoice& choice) {
   const double fps = choice.fps > 0 ? choice.fps : own_rate > 0 ? own_rate : FrameChoice().fps;
   const bool has_pace = duration > 0;
   int own_count = motion == nullptr ? 1 : motion->frame_count();
+  const bool are_poses = own_count == 0 && !has_pace;
   if (own_count == 0)
     own_count = has_pace ? own_frames(duration, fps, choice) : choice.count > 0 ? choice.count : kPoseFrames;
   const int count = choice.count > 0 ? choice.count : own_count;
   Builder builder;
   builder.open({}, nullptr, own_count, 0, fps);
   for (int i = 0; i < count; ++i) {
-    double along = even_place(i, count);
+    double along = count == 1 && are_poses ? 1 : even_place(i, count);
     if (!has_pace) {
       builder.add(i / fps, static_cast<int>(std::lround(along * (own_count - 1))), along);
       continue;

@@ -10,7 +10,7 @@ namespace spherechain::baker {
 
 // The frames of a motion. `count` 0: as many as the motion has of its own, or one every 1 / fps seconds, each clip from
 // its start; 40 of poses, which have no pace; 1 of the rest pose. Else `count` of them, evenly spaced from the start of
-// the first clip to the end of the last.
+// the first clip to the end of the last. One of poses, which begin at rest, is the last.
 struct FrameChoice {
   int count = 0;
   double fps = 30;  // 0: each clip's own (rate_of), 30 where it has none

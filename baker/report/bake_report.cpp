@@ -269,7 +269,8 @@ ordered_json edits_section(const Bake& bake) {
   const Edits& edits = bake.settings.edits;
   return {{"asked", edits.spheres.size() + edits.ignored_parts.size()},
           {"applied", bake.edits_done.applied},
-          {"missed", bake.edits_done.missed}};
+          {"missed", bake.edits_done.missed},
+          {"notes", bake.edits_done.notes}};
 }
 
 std::string joined(const std::vector<std::string>& names) {
@@ -369,6 +370,7 @@ std::string bake_report_text(const Bake& bake) {
   if (const Edits& edits = bake.settings.edits; !edits.empty()) {
     out += fmt::format("{} of {} edits applied\n", bake.edits_done.applied,
                        edits.spheres.size() + edits.ignored_parts.size());
+    for (const std::string& note : bake.edits_done.notes) out += fmt::format("note: {}\n", note);
   }
   out += fmt::format("\n{:<10} {:>8}\n", "stage", "ms");
   double total = 0;

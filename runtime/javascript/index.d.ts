@@ -13,21 +13,22 @@
 // Views and lists. Methods of a Character return typed arrays that look into WebAssembly's memory, and arrays of objects
 // that it owns. Both are overwritten by the next call of the same method, whatever the pose, and nothing is allocated
 // for them in a frame. A typed array becomes empty (length 0) when the memory grows: when an asset is opened, a
-// character is made, or a frame has more contacts than any frame before. So take them anew each frame, and copy what you
-// keep (`array.slice()`, `{...penetration}`).
+// character is made, or a frame has more contacts than any frame before. After dispose() it shows whatever comes to lie
+// there. So take views and lists anew each frame, and copy what you keep, and what a worker posts: `array.slice()`,
+// `structuredClone(penetrations)`. A spread (`{...penetration}`) is no copy: its arrays would still be filled again.
 //
 // Errors are thrown as SpherechainError with the runtime's sentence. Whatever the bytes of an asset and the numbers of a
 // palette are, nothing worse happens.
 
 /** Compiles the module: once a page, some tens of milliseconds. Every call gives the same object. Needs WebAssembly with SIMD:
- * Chromium 91, Firefox 89, Safari 16.4, Node 16.4, or newer. */
+ * Chromium 93, Firefox 92, Safari 16.4, Node 18, or newer. */
 export function load(): Promise<Spherechain>;
 
 export interface Spherechain {
   /** Of the library: "0.1.0". */
   readonly version: string;
-  /** Copies the bytes of a .sphc file and opens them. Throws if they are no asset, cut short, damaged, or of another
-   * format version ("bake it again"). */
+  /** Copies the bytes of a .sphc file and opens them. Throws if they are no asset, cut short, structurally damaged, or of
+   * another format version ("bake it again"). There is no checksum: a changed number may go unseen. */
   open(bytes: Uint8Array | ArrayBuffer): Asset;
 }
 
@@ -39,7 +40,8 @@ export type Side = 'left' | 'right' | null;
 
 /** A bone that moves the skin: a joint of the source's skeleton, or of the automatic rig. */
 export interface Bone {
-  /** "" for the bone that stands for vertices no bone moves: the last, if there is one. */
+  /** The joint's, as the source file has it; "" where the file gives none. Where no bone moves some vertices, a last bone
+   * stands for them. Its name is "" too, and it needs no joint. */
   readonly name: string;
   /** From the rest pose to the bone's space: 16 floats by columns, as in glTF and three.js. */
   readonly inverseBind: Float32Array;
@@ -85,17 +87,18 @@ export interface Asset {
   /** In the source's units. */
   readonly height: number;
   readonly metresPerUnit: number;
-  /** Of the source. */
+  /** Of the source. Character.vertices() may be fewer. */
   readonly vertexCount: number;
   readonly triangleCount: number;
   readonly sourceFile: string;
-  /** Of the skin that is tested, three indices into Character.vertices() for each triangle of the source, in its order.
-   * A triangle that the asset leaves out has three times 0. Empty where the asset has no triangles. */
+  /** Of the skin that is tested, three indices into Character.vertices() for each triangle of the source, in its order: an
+   * index buffer. A triangle that the asset leaves out has three times 0. Empty where the asset has no triangles. */
   readonly triangles: Uint32Array;
 
   /** Working memory for one character at a time. With `joints`, palettes come in the order of these; each bone of the
-   * asset must be there by name. Give inverse bind matrices (16 floats by columns, or 12 by rows) where you have them:
-   * another rest pose, unit or axis convention is then refused. Without `joints`, palettes come in the order of `bones`. */
+   * asset must be there by name, as the source file has it. Give inverse bind matrices (16 floats by columns, or 12 by
+   * rows; for all joints or for none) where you have them: another rest pose, unit or axis convention is then refused.
+   * Without `joints`, palettes come in the order of `bones`. */
   createCharacter(joints?: readonly Joint[]): Character;
 
   /** Frees the memory, of its characters too. What is not disposed of stays until the page goes. */
@@ -103,7 +106,9 @@ export interface Asset {
 }
 
 export interface Joint {
+  /** The source file's. three.js changes some names: give `bone.userData.name ?? bone.name`. */
   name: string;
+  /** three.js: `skeleton.boneInverses[i].elements`. */
   inverseBind?: ArrayLike<number>;
 }
 
@@ -152,7 +157,8 @@ export interface Penetration {
   partA: number;
   partB: number;
   kind: Kind;
-  /** > 0, in the palette's units: moved so far along `direction`, partB no longer intersects partA. */
+  /** > 0, in the palette's units: moved so far along `direction`, partB no longer intersects partA. Metres are
+   * `depth * metresPerUnit`, or `depth * metresPerUnit / scale` where the palette scales the character by `scale`. */
   depth: number;
   /** x, y, z; unit length. It moves partB; its negative moves partA. */
   direction: Float32Array;
@@ -174,15 +180,18 @@ export interface Character {
   readonly jointCount: number;
 
   /** Takes a frame's palette: for each joint the skinning matrix, world matrix times inverse bind matrix. 16 floats each by
-   * columns (three.js: Skeleton.boneMatrices; glTF), or 12 each by rows. Throws where the length is neither. The values
-   * are copied. `morphWeights`: as many as Asset.morphs; none: nothing morphs. */
+   * columns (three.js: Skeleton.boneMatrices; glTF), or 12 each by rows. The values are copied. `morphWeights`: as many as
+   * Asset.morphs; none: nothing morphs. Throws where the length is neither, and where a number that moves the skin is not
+   * finite: then no palette is set. */
   setPalette(palette: Float32Array, morphWeights?: Float32Array): void;
 
   /** For the first run, while the character stands in its bind pose: throws, and names a bone, where the palette does not
-   * move all bones alike: wrong strides, missing inverse bind matrices, another rest pose. */
+   * move all bones alike: wrong strides, missing inverse bind matrices, another rest pose. Stand the character off the
+   * origin and turned: where the model's matrix is the identity, a wrong layout does not show. Wrong orders of joints never
+   * show in this pose: give `joints` by name. */
   checkRest(): void;
 
-  /** Where the spheres are: a view, 4 floats for each of Asset.spheres: x, y, z, radius. Half a microsecond. */
+  /** Where the spheres are: a view, 4 floats for each of Asset.spheres: x, y, z, radius. */
   refit(radius?: Radius): Float32Array;
 
   /** Which spheres touch: a view, two indices for each pair, sorted. Refits first. A cheap alarm with false ones; contacts()
@@ -196,11 +205,22 @@ export interface Character {
   triangleContacts(): TriangleContacts;
 
   /** How deep, which way out, and what kind, for what contacts() found; asks contacts('apart') first where it was not
-   * asked. `quick` (the default): one direction is tried, without volume and visibility. With false: several are, milliseconds
-   * for deep poses, and a direction stays from call to call while it is about as good as the shortest. */
+   * asked. `quick` (the default, for games): one direction is tried, without volume and visibility; nearly all
+   * depths are at least those with false, in the median 4 % longer. With false, what the command line tool shows: several
+   * directions are tried, which takes five to ten times as long, and a direction stays from call to call while it is about
+   * as good as the shortest. */
   penetrations(quick?: boolean): Penetration[];
 
-  /** Where the skin's vertices are in this pose: a view, x, y, z each. Asset.triangles has their triangles. */
+  /** The pairs of body parts where this skin intersects another character's: partA is of this one, partB of `other`; nothing
+   * is swapped or left out. Both need a palette, in one space. */
+  contactsWith(other: Character): PartContact[];
+
+  /** How deep, which way out, and what kind, for what contactsWith() finds. The direction moves `other`. Kinds are 'shell',
+   * 'touch' and 'penetration'; they compare with this asset's height and unit. `quick`: as of penetrations(). */
+  penetrationsWith(other: Character, quick?: boolean): Penetration[];
+
+  /** Where the skin's vertices are in this pose: a view, x, y, z each. They are numbered by the asset, which merges the source's
+   * duplicates at seams: their count is `length / 3`. Asset.triangles has their triangles. */
   vertices(): Float32Array;
 
   /** Frees the memory. Every later call throws. */

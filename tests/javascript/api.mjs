@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// api.mjs PACKAGE ASSET PALETTES NATIVE: the package through its public functions, beside the C interface: NATIVE is what
-// reference.cpp prints. And what it refuses.
+// api.mjs PACKAGE ASSET PALETTES NATIVE PAIR: the package through its public functions, beside the C interface: NATIVE and PAIR are what
+// reference.cpp prints, without and with --pair. And what it refuses.
 import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import test from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { readPalettes } from '../../samples/javascript/palettes.mjs';
-import { frameHashes } from './frame_hashes.mjs';
+import { frameHashes, pairHashes } from './frame_hashes.mjs';
 
-const [packageFolder, assetFile, palettesFile, nativeFile] = process.argv.slice(2);
+const [packageFolder, assetFile, palettesFile, nativeFile, pairFile] = process.argv.slice(2);
 const { load, SpherechainError } = await import(pathToFileURL(`${packageFolder}/index.js`));
 const spherechain = await load();
 const bytes = new Uint8Array(readFileSync(assetFile));
@@ -54,6 +54,27 @@ test('each frame of a clip gives the bits that the C interface gives', () => {
     assert.equal(frameHashes(character), wanted[frame], `frame ${frame}`);
     character.dispose();
   });
+  asset.dispose();
+});
+
+test('two characters give the bits that the C interface gives', () => {
+  const asset = spherechain.open(bytes);
+  const a = asset.createCharacter(joints), b = spherechain.open(bytes).createCharacter(joints);
+  refuses(() => a.contactsWith(b), /setPalette/);
+  const wanted = readFileSync(pairFile, 'utf8').trim().split('\n');
+  wanted.forEach((line, i) => {
+    a.setPalette(frames[10 * i]);
+    b.setPalette(frames[10 * i].map((value, k) => (k % 16 === 12 || k % 16 === 14 ? value + Math.fround(0.3) : value)));
+    assert.equal(pairHashes(a, b), line, `frame ${10 * i}`);
+  });
+  a.setPalette(posed);
+  const alone = frameHashes(a), [found] = a.penetrationsWith(b, false);
+  assert.equal(frameHashes(a), alone);
+  assert.equal(a.penetrationsWith(b, false)[0], found);
+  for (const other of [a, null, asset]) refuses(() => a.contactsWith(other), /another character/);
+  refuses(() => a.penetrationsWith(b, 'full'), /true or false/);
+  b.asset.dispose();
+  refuses(() => a.contactsWith(b), /disposed/);
   asset.dispose();
 });
 
@@ -109,7 +130,11 @@ test('broken bytes are refused', () => {
   refuses(() => spherechain.open(new Uint8Array(0)), /./);
   refuses(() => spherechain.open(new TextEncoder().encode('{"not": "an asset", "but": "long enough to be one"}')), /asset/);
   refuses(() => spherechain.open(null), /\.sphc/);
-  refuses(() => spherechain.open([...bytes]), /\.sphc/);
+  refuses(() => spherechain.open([...bytes]), /ArrayBuffer or a Uint8Array, not an Array of \d+$/);
+  refuses(() => spherechain.open(new DataView(bytes.buffer)), /not a DataView/);
+  refuses(() => spherechain.open(new SharedArrayBuffer(8)), /not a SharedArrayBuffer/);
+  refuses(() => spherechain.open(Promise.resolve(bytes)), /not a Promise: await it/);
+  refuses(() => spherechain.open(new Blob([bytes])), /not a Blob: await its arrayBuffer\(\)/);
   for (let part = 1; part < 32; ++part) refuses(() => spherechain.open(bytes.subarray(0, Math.floor((bytes.length * part) / 32))), /./);
   let refused = 0;
   for (let i = 0; i < 60; ++i) {
@@ -142,21 +167,48 @@ test('wrong arguments are refused', () => {
   refuses(() => character.contacts('everything'), /one of apart, neighbours, all/);
   refuses(() => asset.createCharacter(joints.slice(1)), new RegExp(`bone "${joints[0].name}"`));
   refuses(() => asset.createCharacter(joints.map(joint => ({ ...joint, inverseBind: joint.inverseBind.map(x => 2 * x) }))), /inverse bind/);
-  refuses(() => asset.createCharacter(joints.map(joint => ({ ...joint, inverseBind: [1, 2] }))), /16 floats by columns/);
-  refuses(() => asset.createCharacter([]), /joints/);
   character.setPalette(posed);
   refuses(() => character.checkRest(), /bind pose/);
-  for (const value of [NaN, Infinity]) {
-    character.setPalette(new Float32Array(16 * joints.length).fill(value));
-    character.detect();
-    character.penetrations();
-    character.vertices();
+  refuses(() => character.penetrations('full'), /true or false is wanted, not "full"/);
+  for (const value of [NaN, Infinity, -Infinity]) {
+    const palette = rest.slice();
+    palette[16 * 3 + 5] = value;
+    refuses(() => character.setPalette(palette), new RegExp(`bone "${joints[3].name}" \\(joint 3\\) is not finite`));
+    refuses(() => character.contacts(), /setPalette/);
   }
+  character.setPalette(rest.map(value => 1e38 * value));
+  character.detect();
+  character.penetrations();
+  character.vertices();
   asset.dispose();
   refuses(() => character.refit(), /disposed/);
   refuses(() => asset.createCharacter(), /disposed/);
   asset.dispose();
   character.dispose();
+});
+
+test('a skeleton that does not fit is refused, and the joint named', () => {
+  const asset = spherechain.open(bytes);
+  const { name } = joints[2], changed = change => joints.map((joint, i) => (i === 2 ? { ...joint, ...change } : joint));
+  const joint = `joint "${name}" \\(joints\\[2\\]\\): inverseBind`;
+  for (const [wrong, message] of [
+    [null, /array of \{ name, inverseBind \} is wanted, not null/],
+    [{ bones: joints }, /not an Object/],
+    [[], /the list is empty/],
+    [[null], /joints\[0\]: its name is undefined/],
+    [changed({ name: 7 }), /joints\[2\]: its name is 7/],
+    [changed({ inverseBind: { elements: joints[2].inverseBind } }), new RegExp(`${joint} is an Object: 16 numbers.*pass its elements`)],
+    [changed({ inverseBind: [1, 2] }), new RegExp(`${joint} is an Array of 2: 16 numbers`)],
+    [changed({ inverseBind: new Float32Array(16).fill(NaN) }), new RegExp(`${joint} is a Float32Array of 16`)],
+    [changed({ inverseBind: '0'.repeat(16) }), new RegExp(`${joint} is "0+"`)],
+    [changed({ inverseBind: new Float32Array(12) }), new RegExp(`${joint} has 12 numbers, that of joint "${joints[0].name}" 16`)],
+    [changed({ inverseBind: undefined }), new RegExp(`${joint} is missing, but joint "${joints[0].name}" has one`)],
+    [joints.map(one => ({ ...one, name: one.name.replace('_', '') })), /bone "left_\w+".*but "left\w+" is/],
+  ]) {
+    refuses(() => asset.createCharacter(wrong), message);
+  }
+  assert.equal(asset.createCharacter(joints.map(one => ({ name: one.name }))).jointCount, joints.length);
+  asset.dispose();
 });
 
 test('memory is given back', () => {

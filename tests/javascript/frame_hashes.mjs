@@ -34,17 +34,30 @@ function hashPenetrations(list) {
   return hash;
 }
 
+function hashContacts(list) {
+  const hash = new Hash();
+  for (const contact of list) {
+    hash.words([contact.partA, contact.partB, contact.trianglePairs]);
+    hash.floats([...contact.low, ...contact.high]);
+  }
+  return hash;
+}
+
+// The line of --pair.
+export function pairHashes(a, b) {
+  const contacts = a.contactsWith(b);
+  const hashes = [hashContacts(contacts), hashPenetrations(a.penetrationsWith(b)), hashPenetrations(a.penetrationsWith(b, false))];
+  return `${contacts.length} ${hashes.map(hash => hash.hex).join(' ')}`;
+}
+
 // Of the palette that was set. A new character for each frame: the thorough measure keeps the frame before.
 export function frameHashes(character) {
-  const spheres = new Hash(), pairs = new Hash(), parts = new Hash(), triangles = new Hash();
+  const spheres = new Hash(), pairs = new Hash(), triangles = new Hash();
   for (const radius of ['detect', 'fit']) {
     spheres.floats(character.refit(radius));
     pairs.words(character.detect(radius));
   }
-  for (const contact of character.contacts()) {
-    parts.words([contact.partA, contact.partB, contact.trianglePairs]);
-    parts.floats([...contact.low, ...contact.high]);
-  }
+  const parts = hashContacts(character.contacts());
   triangles.words(character.triangleContacts().pairs);
   const quick = hashPenetrations(character.penetrations()), thorough = hashPenetrations(character.penetrations(false));
   return [spheres, pairs, parts, triangles, quick, thorough].map(hash => hash.hex).join(' ');

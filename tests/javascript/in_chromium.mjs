@@ -6,7 +6,7 @@ import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { serve, visit } from './chromium.mjs';
 
-export async function measureInChromium(chromium, packageFolder, asset, palettes, passes) {
+export async function measureInChromium(chromium, packageFolder, asset, palettes, passes, calls) {
   const folder = mkdtempSync(join(tmpdir(), 'spherechain-'));
   const root = fileURLToPath(new URL('../..', import.meta.url));
   for (const source of ['tests/javascript', 'samples/javascript']) {
@@ -20,7 +20,7 @@ export async function measureInChromium(chromium, packageFolder, asset, palettes
     import { load } from './package/index.js';
     import { measure } from './tests/javascript/measure.mjs';
     const bytes = async name => (await fetch(name)).arrayBuffer();
-    window.measured = await measure(load, await bytes('asset'), await bytes('palettes'), ${passes});
+    window.measured = await measure(load, await bytes('asset'), await bytes('palettes'), ${passes}, ${JSON.stringify(calls)});
   </script>`);
   const server = await serve(folder);
   const page = await visit(chromium, `${server.url}/index.html`);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // What the JavaScript package must give: reference ASSET PALETTES. A line a frame of the palettes
 // (samples/csharp/write_palettes): hashes of the spheres and pairs at both radii, of contacts, triangles and
-// penetrations. Last a line of milliseconds a frame: contacts, then contacts and penetrations. SPHERECHAIN_TARGET names
-// an instruction set.
+// penetrations. --pair: instead a line every tenth frame of two characters, b in a's pose, moved 0.3 along x and z:
+// hashes of contacts, quick and thorough penetrations. --time: last a line of milliseconds a frame: contacts, then
+// contacts and penetrations. SPHERECHAIN_TARGET names an instruction set.
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
@@ -191,6 +192,39 @@ class PosedCharacter {
                 quick.value, thorough.value);
   }
 
+  // This one is a.
+  void print_pair(const ::PosedCharacter& b) {
+    Hash hashes[3];
+    BodyContactJob found;
+    found.a = {&asset_, pose_, table_.data(), nullptr};
+    found.b = {&b.asset_, b.pose_, b.table_.data(), nullptr};
+    Words scratch(sc_body_scratch_words(&asset_, &b.asset_));
+    found.scratch = scratch.data();
+    found.scratch_words = scratch.size();
+    found.parts = parts_.data();
+    found.part_capacity = parts_.size();
+    found.triangles = triangles_.data();
+    found.triangle_capacity = triangles_.size();
+    require(found.run());
+    hashes[0].add(parts_.data(), found.part_count);
+    for (const int quick : {1, 0}) {
+      BodyPenetrationJob job;
+      job.a = found.a;
+      job.b = found.b;
+      job.contacts = triangles_.data();
+      job.contact_count = found.triangle_count;
+      job.quick = quick;
+      scratch.resize(sc_body_penetration_scratch_words(&asset_, &b.asset_, job.contact_count));
+      job.scratch = scratch.data();
+      job.scratch_words = scratch.size();
+      job.penetrations = penetrations_.data();
+      job.penetration_capacity = penetrations_.size();
+      require(job.run());
+      hashes[2 - quick].add(penetrations_.data(), job.penetration_count);
+    }
+    std::printf("%zu %08x %08x %08x\n", found.part_count, hashes[0].value, hashes[1].value, hashes[2].value);
+  }
+
  private:
   Words data_, table_, scratch_, measure_scratch_;
   Asset asset_;
@@ -228,13 +262,28 @@ double time_of(const Palettes& palettes, const Frame& frame) {
 
 int main(int argc, char** argv) {
   const bool is_timed = argc == 4 && std::strcmp(argv[3], "--time") == 0;
-  if (argc != 3 && !is_timed) {
-    std::fputs("usage: reference ASSET PALETTES [--time]\n", stderr);
+  const bool is_pair = argc == 4 && std::strcmp(argv[3], "--pair") == 0;
+  if (argc != 3 && !is_timed && !is_pair) {
+    std::fputs("usage: reference ASSET PALETTES [--time|--pair]\n", stderr);
     return 2;
   }
   try {
     const Palettes palettes(argv[2]);
     ::PosedCharacter character(read(argv[1]), palettes);
+    if (is_pair) {
+      ::PosedCharacter other(read(argv[1]), palettes);
+      for (std::size_t frame = 0; frame < palettes.frames.size(); frame += 10) {
+        std::vector<float> moved = palettes.frames[frame];
+        for (std::size_t i = 12; i < moved.size(); i += 16) {
+          moved[i] += 0.3F;
+          moved[i + 2] += 0.3F;
+        }
+        character.pose(palettes.frames[frame]);
+        other.pose(moved);
+        character.print_pair(other);
+      }
+      return 0;
+    }
     for (const std::vector<float>& palette : palettes.frames) {
       character.pose(palette);
       character.print_frame();

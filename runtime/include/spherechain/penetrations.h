@@ -25,19 +25,20 @@ typedef struct sc_skin_point {
 typedef struct sc_penetration {
   uint32_t part_a, part_b; /* part_a <= part_b; equal where a part meets itself */
   sc_penetration_class kind;
-  float depth;       /* > 0: part_b, moved so far in `direction`, no longer intersects part_a. Of a part that meets
-                        itself: of the triangles that intersect */
-  sc_vec3 direction; /* unit length. Moves part_b; its negative moves part_a */
-  int32_t is_closed; /* 1: the line where the parts cross closes, and `volume` is known */
-  float volume;      /* of part_b inside part_a; 0 where not closed, and with `quick` */
+  float depth;          /* > 0: part_b, moved so far in `direction`, no longer intersects part_a. Of a part that meets
+                           itself: of the triangles that intersect */
+  sc_vec3 direction;    /* unit length. Moves part_b; its negative moves part_a */
+  int32_t is_closed;    /* 1: the line where the parts cross closes, and `volume` is known */
+  float volume;         /* of part_b inside part_a; 0 where not closed, and with `quick` */
   float contour_length; /* of the line where the parts cross */
   float visible;        /* 0 to 1: the share of that line that can be seen from outside; with `quick` 1 */
   sc_skin_point deepest_a, deepest_b; /* the points that part last; deepest_a - deepest_b = depth * direction */
 } sc_penetration;
 
 /* Measures the contacts of one pose. Fill asset, pose, scope, filter and skin_table as in the sc_skin_contact_job that
- * found `contacts`, and pass its whole list of triangles. Classes compare with the asset's height: the pose must not
- * scale the character.
+ * found `contacts`, and pass its whole list of triangles. Classes compare with the character's height: the asset's,
+ * times the scale of the root's bone (the first part that hangs on none), where the pose has bones. Deformed vertices
+ * alone must have the asset's scale.
  *
  * Depth is the shortest of the ways along several directions; a straight way may exist that is a little shorter.
  * Give the last frame's results as `previous`: a direction stays while it is at most a quarter longer than the
@@ -56,8 +57,8 @@ typedef struct sc_penetration_job {
   const sc_penetration* previous SC_ZERO; /* null: none */
   size_t previous_count SC_ZERO;
   int32_t quick SC_ZERO;     /* 1: one direction, no volume, no visibility, no previous frame. For games */
-  float touch_depth SC_ZERO; /* >= 0. 0: 5 mm, by the asset's metres_per_unit, but at least 0.32 % and at most 1.1 % of the
-                                height; up to three times that where the two sides lie flat on each other */
+  float touch_depth SC_ZERO; /* >= 0. 0: 5 mm, by the asset's metres_per_unit, but at least 0.32 % and at most 1.1 % of
+                                the height; up to three times that where the two sides lie flat on each other */
   uint64_t* scratch SC_ZERO; /* sc_penetration_scratch_words() words; nothing is kept there between runs */
   size_t scratch_words SC_ZERO;
   /* Out. Sorted by (part_a, part_b). The count says how many there are, also where the list is too small. */
@@ -74,8 +75,8 @@ extern "C" {
 #endif
 
 /* SC_OK; SC_OVERFLOW: the first entries are written; SC_NULL, SC_MISALIGNED, SC_TOO_SMALL, SC_BAD_STRIDE, SC_ALIASED,
- * SC_NOT_OPEN, SC_NOT_IN_ASSET, SC_UNSUPPORTED_TARGET, SC_BAD_VALUE (also: a contact names a triangle that is not in the
- * asset's skin): nothing is written. `previous` may not overlap `penetrations`. */
+ * SC_NOT_OPEN, SC_NOT_IN_ASSET, SC_UNSUPPORTED_TARGET, SC_BAD_VALUE (also: a contact names a triangle that is not in
+ * the asset's skin): nothing is written. `previous` may not overlap `penetrations`. */
 SPHERECHAIN_API sc_status sc_measure_penetrations(sc_penetration_job* job) SC_NOEXCEPT;
 
 /* Words of scratch memory for so many contacts; 0 where the asset is not open or has no triangles. */

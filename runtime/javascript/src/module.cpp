@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What spherechain.js calls: the C interface, with a character's memory and its lists in one object, and results in
 // words at fixed places. Lists grow to the largest frame so far. One thread.
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
@@ -36,6 +38,10 @@ bool fails_alone(const Status& status) {
   const char* const field = sc_field_name(status.field);
   std::snprintf(message, sizeof message, "%s%s%s", field, *field == 0 ? "" : ": ", sc_code_text(status.code));
   return true;
+}
+
+bool are_finite(const float* values, std::size_t count) {
+  return std::all_of(values, values + count, [](float value) { return std::isfinite(value); });
 }
 
 bool is_out_of_memory() { return fails_alone({SC_NO_MEMORY, SC_FIELD_NONE}); }
@@ -99,6 +105,10 @@ struct Results {
   std::uint32_t penetration_count;
   float* vertices;
   std::uint32_t vertex_count;
+  PartContact* contacts_with;  // another character
+  std::uint32_t contact_with_count;
+  Penetration* penetrations_with;
+  std::uint32_t penetration_with_count;
 };
 
 struct PosedCharacter {
@@ -111,10 +121,10 @@ struct PosedCharacter {
   Words detect_tables[2], scratch;
   List<Sphere> spheres;
   List<Pair> pairs;
-  List<PartContact> contacts;
-  List<TriangleContact> triangles;
-  List<Penetration> penetrations, previous;
-  std::size_t previous_count = 0;
+  List<PartContact> contacts, contacts_with;
+  List<TriangleContact> triangles, triangles_with;
+  List<Penetration> penetrations, previous, penetrations_with;
+  std::size_t previous_count = 0, triangle_with_count = 0;
 
   Pose pose() const {
     Pose pose;
@@ -125,10 +135,11 @@ struct PosedCharacter {
     pose.morph_weight_count = morphs ? asset->info().morph_count : 0;
     return pose;
   }
+  Body body() const { return {&asset->asset, pose(), asset->skin_table.data(), nullptr}; }
 };
 
 // As spherechain.js reads them.
-static_assert(sizeof(void*) == 4 && sizeof(Results) == 13 * 4);
+static_assert(sizeof(void*) == 4 && sizeof(Results) == 17 * 4);
 static_assert(sizeof(PartContact) == 9 * 4 && offsetof(PartContact, low) == 12);
 static_assert(sizeof(TriangleContact) == 12 * 4 && offsetof(TriangleContact, from) == 24);
 static_assert(sizeof(Penetration) == 25 * 4 && offsetof(Penetration, is_closed) == 28);
@@ -147,6 +158,22 @@ bool list_triangles(OpenedAsset& opened) {
                 3 * sizeof(std::uint32_t));
   }
   return true;
+}
+
+// Runs a job that lists triangles, again with more room where they are too many. As the functions below, 0 or 1.
+template <typename Job>
+int find_all(Job& job, List<TriangleContact>& triangles, bool lists_triangles) {
+  for (;;) {
+    job.triangles = lists_triangles ? triangles.data() : nullptr;
+    job.triangle_capacity = lists_triangles ? triangles.capacity() : 0;
+    const Status status = job.run();
+    if (status != SC_OVERFLOW) {
+      return fails_alone(status);
+    }
+    if (!triangles.reserve(job.triangle_count + job.triangle_count / 2)) {
+      return is_out_of_memory();
+    }
+  }
 }
 
 }  // namespace
@@ -299,7 +326,26 @@ EXPORT(set_pose) int set_pose(PosedCharacter* c, std::int32_t layout, int morphs
   palette.bones = c->palette.data();
   palette.bone_count = c->joint_count;
   palette.bone_layout = static_cast<MatrixLayout>(layout);
-  return fails_alone(sc_gather_bones(&c->asset->asset, c->joint_of_bone.data(), &palette, c->bones.data()));
+  if (fails_alone(sc_gather_bones(&c->asset->asset, c->joint_of_bone.data(), &palette, c->bones.data()))) {
+    return 1;
+  }
+  // A pose that is not finite has no contacts: it would look clean.
+  const sc_asset_info info = c->asset->info();
+  for (std::size_t b = 0; b < info.bone_count; ++b) {
+    if (!are_finite(c->bones.data() + 12 * b, 12)) {
+      std::snprintf(message, sizeof message, "the palette's matrix of bone \"%s\" (joint %u) is not finite",
+                    sc_asset_bone(&c->asset->asset, b).name, c->joint_of_bone.data()[b]);
+      return 1;
+    }
+  }
+  for (std::size_t m = 0; m < (c->morphs ? info.morph_count : 0); ++m) {
+    if (!std::isfinite(c->morph_weights.data()[m])) {
+      std::snprintf(message, sizeof message, "the weight of morph \"%s\" is not finite",
+                    sc_asset_morph_name(&c->asset->asset, m));
+      return 1;
+    }
+  }
+  return 0;
 }
 
 EXPORT(check_rest) int check_rest(PosedCharacter* c) {
@@ -346,16 +392,7 @@ EXPORT(find_contacts) int find_contacts(PosedCharacter* c, std::int32_t scope, i
   job.scratch_words = sc_skin_scratch_words(&c->asset->asset);
   job.parts = c->contacts.data();
   job.part_capacity = c->contacts.capacity();
-  Status status = done();
-  do {
-    job.triangles = lists_triangles != 0 ? c->triangles.data() : nullptr;
-    job.triangle_capacity = lists_triangles != 0 ? c->triangles.capacity() : 0;
-    status = job.run();
-    if (status == SC_OVERFLOW && !c->triangles.reserve(job.triangle_count + job.triangle_count / 2)) {
-      return is_out_of_memory();
-    }
-  } while (status == SC_OVERFLOW);
-  if (fails_alone(status)) {
+  if (find_all(job, c->triangles, lists_triangles != 0)) {
     return 1;
   }
   results.contact_count = static_cast<std::uint32_t>(job.part_count);
@@ -396,6 +433,60 @@ EXPORT(measure) int measure(PosedCharacter* c, std::int32_t scope, int quick) {
     c->previous_count = job.penetration_count;
     std::memcpy(c->previous.data(), out.data(), job.penetration_count * sizeof(Penetration));
   }
+  return 0;
+}
+
+// Contacts of two characters; `c` keeps what is found.
+EXPORT(meet) int meet(PosedCharacter* c, const PosedCharacter* other, int lists_triangles) {
+  Results& results = c->results;
+  results.contact_with_count = 0;
+  BodyContactJob job;
+  job.a = c->body();
+  job.b = other->body();
+  if (!c->asset->has_skin() || !other->asset->has_skin()) {
+    return fails_alone({SC_NOT_IN_ASSET, SC_FIELD_ASSET});
+  }
+  if (!c->scratch.reserve(sc_body_scratch_words(job.a.asset, job.b.asset)) ||
+      !c->contacts_with.reserve(c->asset->info().part_count * other->asset->info().part_count) ||
+      !c->triangles_with.reserve(lists_triangles != 0 ? kTrianglesMin : 0)) {
+    return is_out_of_memory();
+  }
+  job.scratch = c->scratch.data();
+  job.scratch_words = c->scratch.capacity();
+  job.parts = c->contacts_with.data();
+  job.part_capacity = c->contacts_with.capacity();
+  if (find_all(job, c->triangles_with, lists_triangles != 0)) {
+    return 1;
+  }
+  results.contacts_with = c->contacts_with.data();
+  results.contact_with_count = static_cast<std::uint32_t>(job.part_count);
+  c->triangle_with_count = job.triangle_count;
+  return 0;
+}
+
+// Of the triangles that meet() listed.
+EXPORT(measure_meeting) int measure_meeting(PosedCharacter* c, const PosedCharacter* other, int quick) {
+  Results& results = c->results;
+  results.penetration_with_count = 0;
+  BodyPenetrationJob job;
+  job.a = c->body();
+  job.b = other->body();
+  job.contacts = c->triangles_with.data();
+  job.contact_count = c->triangle_with_count;
+  job.quick = quick;
+  if (!c->scratch.reserve(sc_body_penetration_scratch_words(job.a.asset, job.b.asset, job.contact_count)) ||
+      !c->penetrations_with.reserve(c->contacts_with.capacity())) {
+    return is_out_of_memory();
+  }
+  job.scratch = c->scratch.data();
+  job.scratch_words = c->scratch.capacity();
+  job.penetrations = c->penetrations_with.data();
+  job.penetration_capacity = c->penetrations_with.capacity();
+  if (fails_alone(job.run())) {
+    return 1;
+  }
+  results.penetrations_with = c->penetrations_with.data();
+  results.penetration_with_count = static_cast<std::uint32_t>(job.penetration_count);
   return 0;
 }
 

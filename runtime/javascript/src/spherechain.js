@@ -7,7 +7,8 @@ const RADII = { detect: 0, fit: 1 };
 const SCOPES = { apart: 0, neighbours: 1, all: 2 };
 const ROWS_3X4 = 1, COLUMNS_4X4 = 3;  // sc_matrix_layout
 const PALETTE = 0, MORPHS = 1, SPHERES = 2, PAIRS = 3, PAIR_COUNT = 4, CONTACTS = 5, CONTACT_COUNT = 6, TRIANGLES = 7,
-  TRIANGLE_COUNT = 8, PENETRATIONS = 9, PENETRATION_COUNT = 10, VERTICES = 11, VERTEX_COUNT = 12;  // words of Results
+  TRIANGLE_COUNT = 8, PENETRATIONS = 9, PENETRATION_COUNT = 10, VERTICES = 11, VERTEX_COUNT = 12,
+  CONTACTS_WITH = 13, CONTACT_WITH_COUNT = 14, PENETRATIONS_WITH = 15, PENETRATION_WITH_COUNT = 16;  // words of Results
 const CONTACT_WORDS = 9, TRIANGLE_WORDS = 12, PENETRATION_WORDS = 25;
 
 export class SpherechainError extends Error {
@@ -89,7 +90,11 @@ class Spherechain {
 
   open(bytes) {
     const isBytes = bytes instanceof Uint8Array || bytes instanceof ArrayBuffer;
-    if (!isBytes) throw new SpherechainError('data: bytes of a .sphc file are wanted');
+    if (!isBytes) {
+      const isLater = typeof bytes?.then === 'function' || typeof bytes?.arrayBuffer === 'function';
+      throw new SpherechainError(`data: the bytes of a .sphc file are wanted, an ArrayBuffer or a Uint8Array, not ${kindOf(bytes)}` +
+        (isLater ? `: await ${bytes.arrayBuffer ? 'its arrayBuffer()' : 'it'}` : ''));
+    }
     return new Asset(this.#native, bytes instanceof ArrayBuffer ? new Uint8Array(bytes) : bytes);
   }
 }
@@ -153,36 +158,29 @@ class Asset {
     if (this.bones.length === 0) {
       throw new SpherechainError('the asset has no bones: no palette moves it');
     }
-    const character = this.#native.borrow(joints ? 8 * joints.length : 8, out => {
-      if (!joints) return this.#native.call.create_character(this.#asset, 0, 0, 0);
-      return this.#withJoints(joints, out);
-    });
-    const made = new Character(this.#native, this, character, joints ? joints.length : this.bones.length,
+    const character = joints === undefined ? this.#native.call.create_character(this.#asset, 0, 0, 0) : this.#withJoints(joints);
+    const made = new Character(this.#native, this, character, joints?.length ?? this.bones.length,
       () => this.#characters.delete(made));
     this.#characters.add(made);
     return made;
   }
 
-  // Joints at `out`, their names and matrices behind each other in memory of their own.
-  #withJoints(joints, out) {
+  // The joints, their matrices and their names lie behind each other.
+  #withJoints(joints) {
     const native = this.#native;
+    const floats = checkJoints(joints);
     const names = joints.map(joint => new TextEncoder().encode(`${joint.name}\0`));
-    const sizes = new Set(joints.map(joint => joint.inverseBind?.length ?? 0));
-    const [floats] = sizes;
-    if (joints.length === 0 || sizes.size > 1 || ![0, 12, 16].includes(floats)) {
-      throw new SpherechainError('joints: inverse bind matrices are 16 floats by columns, or 12 by rows, or none for all joints');
-    }
-    const bytes = names.reduce((sum, name) => sum + name.length, 0);
-    return native.borrow(4 * floats * joints.length + bytes, place => {
-      let text = place + 4 * floats * joints.length;
+    const matrices = 8 * joints.length, texts = matrices + 4 * floats * joints.length;
+    return native.borrow(names.reduce((sum, name) => sum + name.length, texts), place => {
+      let text = place + texts;
       joints.forEach((joint, i) => {
-        const matrix = place + 4 * floats * i;
+        const matrix = place + matrices + 4 * floats * i;
         if (floats > 0) native.floats.set(joint.inverseBind, matrix / 4);
         new Uint8Array(native.memory.buffer).set(names[i], text);
-        native.words.set([text, floats > 0 ? matrix : 0], out / 4 + 2 * i);
+        native.words.set([text, floats > 0 ? matrix : 0], place / 4 + 2 * i);
         text += names[i].length;
       });
-      return native.call.create_character(this.#asset, out, joints.length, floats === 16 ? COLUMNS_4X4 : ROWS_3X4);
+      return native.call.create_character(this.#asset, place, joints.length, floats === 16 ? COLUMNS_4X4 : ROWS_3X4);
     });
   }
 
@@ -204,6 +202,8 @@ class Character {
   #contacts = new Pool(newContact);
   #triangles = { count: 0, pairs: null, segments: null };
   #penetrations = new Pool(newPenetration);
+  #contactsWith = new Pool(newContact);
+  #penetrationsWith = new Pool(newPenetration);
 
   constructor(native, asset, character, jointCount, gone) {
     if (character === 0) throw native.error();
@@ -251,14 +251,7 @@ class Character {
     if (scope !== this.#scope) this.#has = null;
     this.#scope = scope;
     this.#find('parts');
-    const { floats, words } = this.#native;
-    return this.#contacts.fill(this.#result(CONTACT_COUNT), this.#result(CONTACTS) / 4, CONTACT_WORDS, (contact, at) => {
-      contact.partA = words[at];
-      contact.partB = words[at + 1];
-      contact.trianglePairs = words[at + 2];
-      copy(floats, at + 3, contact.low);
-      copy(floats, at + 6, contact.high);
-    });
+    return this.#contacts.fill(this.#result(CONTACT_COUNT), this.#result(CONTACTS) / 4, CONTACT_WORDS, this.#readContact);
   }
 
   triangleContacts() {
@@ -271,21 +264,24 @@ class Character {
   }
 
   penetrations(quick = true) {
+    checkQuick(quick);
     this.#find('triangles');
     this.#native.check(this.#native.call.measure(this.#character, SCOPES[this.#scope], quick ? 1 : 0));
-    const { floats, words, kinds } = this.#native;
-    return this.#penetrations.fill(this.#result(PENETRATION_COUNT), this.#result(PENETRATIONS) / 4, PENETRATION_WORDS, (found, at) => {
-      found.partA = words[at];
-      found.partB = words[at + 1];
-      found.kind = kinds[words[at + 2]];
-      found.depth = floats[at + 3];
-      copy(floats, at + 4, found.direction);
-      found.volume = words[at + 7] === 1 && !quick ? floats[at + 8] : null;
-      found.contourLength = floats[at + 9];
-      found.visible = floats[at + 10];
-      copyPoint(floats, words, at + 11, found.deepestA);
-      copyPoint(floats, words, at + 18, found.deepestB);
-    });
+    return this.#penetrations.fill(this.#result(PENETRATION_COUNT), this.#result(PENETRATIONS) / 4, PENETRATION_WORDS,
+      quick ? this.#readQuick : this.#readThorough);
+  }
+
+  contactsWith(other) {
+    this.#meet(other, 0);
+    return this.#contactsWith.fill(this.#result(CONTACT_WITH_COUNT), this.#result(CONTACTS_WITH) / 4, CONTACT_WORDS, this.#readContact);
+  }
+
+  penetrationsWith(other, quick = true) {
+    checkQuick(quick);
+    this.#meet(other, 1);
+    this.#native.check(this.#native.call.measure_meeting(this.#character, other.#character, quick ? 1 : 0));
+    return this.#penetrationsWith.fill(this.#result(PENETRATION_WITH_COUNT), this.#result(PENETRATIONS_WITH) / 4, PENETRATION_WORDS,
+      quick ? this.#readQuick : this.#readThorough);
   }
 
   vertices() {
@@ -321,6 +317,40 @@ class Character {
     this.#native.check(this.#native.call.find_contacts(character, SCOPES[this.#scope], what === 'triangles' ? 1 : 0));
     this.#has = what;
   }
+
+  #meet(other, listsTriangles) {
+    const character = this.#posed();
+    if (!(other instanceof Character) || other === this) throw new SpherechainError('other: another character is wanted');
+    this.#native.check(this.#native.call.meet(character, other.#posed(), listsTriangles));
+  }
+
+  #readContact = (contact, at) => {
+    const { floats, words } = this.#native;
+    contact.partA = words[at];
+    contact.partB = words[at + 1];
+    contact.trianglePairs = words[at + 2];
+    copy(floats, at + 3, contact.low);
+    copy(floats, at + 6, contact.high);
+  };
+
+  #readQuick = (found, at) => {
+    const { floats, words, kinds } = this.#native;
+    found.partA = words[at];
+    found.partB = words[at + 1];
+    found.kind = kinds[words[at + 2]];
+    found.depth = floats[at + 3];
+    copy(floats, at + 4, found.direction);
+    found.volume = null;
+    found.contourLength = floats[at + 9];
+    found.visible = floats[at + 10];
+    copyPoint(floats, words, at + 11, found.deepestA);
+    copyPoint(floats, words, at + 18, found.deepestB);
+  };
+
+  #readThorough = (found, at) => {
+    this.#readQuick(found, at);
+    if (this.#native.words[at + 7] === 1) found.volume = this.#native.floats[at + 8];
+  };
 
   // The last one where it still fits: in most frames nothing is new.
   #view(word, Type, length) {
@@ -385,6 +415,47 @@ function columnsOf(rows) {
   for (let i = 0; i < 12; ++i) out[(i % 4) * 4 + Math.floor(i / 4)] = rows[i];
   out[15] = 1;
   return out;
+}
+
+function checkQuick(quick) {
+  if (typeof quick !== 'boolean') throw new SpherechainError(`quick: true or false is wanted, not ${kindOf(quick)}`);
+}
+
+// Floats of each joint's inverse bind matrix; 0 where none has one.
+function checkJoints(joints) {
+  if (!Array.isArray(joints)) {
+    throw new SpherechainError(`joints: an array of { name, inverseBind } is wanted, not ${kindOf(joints)}; without joints ` +
+      'palettes come in the order of asset.bones');
+  }
+  if (joints.length === 0) throw new SpherechainError('joints: the list is empty: is the skeleton loaded?');
+  joints.forEach((joint, i) => {
+    if (typeof joint?.name !== 'string') throw new SpherechainError(`joints[${i}]: its name is ${kindOf(joint?.name)}, a string is wanted`);
+  });
+  const matrixOf = joint => joint.inverseBind ?? null;
+  const first = joints.findIndex(joint => matrixOf(joint) !== null);
+  if (first < 0) return 0;
+  joints.forEach((joint, i) => {
+    const matrix = matrixOf(joint), refuse = what => {
+      throw new SpherechainError(`joint "${joint.name}" (joints[${i}]): inverseBind ${what}`);
+    };
+    if (matrix === null) refuse(`is missing, but joint "${joints[first].name}" has one`);
+    if (![12, 16].includes(matrix.length) || !Array.prototype.every.call(matrix, Number.isFinite)) {
+      refuse(`is ${kindOf(matrix)}: 16 numbers by columns, or 12 by rows, are wanted` + (matrix.elements ? '; pass its elements' : ''));
+    }
+    if (matrix.length !== matrixOf(joints[first]).length) {
+      refuse(`has ${matrix.length} numbers, that of joint "${joints[first].name}" ${matrixOf(joints[first]).length}`);
+    }
+  });
+  return matrixOf(joints[first]).length;
+}
+
+// Of a value that is refused: "null", "a Promise", "an Array of 2".
+function kindOf(value) {
+  if (typeof value === 'string') return `"${value}"`;
+  if (typeof value === 'function') return 'a function';
+  const name = value?.constructor?.name;
+  if (typeof value !== 'object' || !name) return String(value);
+  return `${/^[AEIOU]/.test(name) ? 'an' : 'a'} ${name}${value.length === undefined ? '' : ` of ${value.length}`}`;
 }
 
 function choice(table, name, what) {

@@ -157,11 +157,12 @@ class Measurer {
       return false;
     }
     const AssetInfo info = asset_.info();
-    const double touch = job_.touch_depth > 0 ? double{job_.touch_depth}
-                                              : touch_depth_of(1 / double{info.metres_per_unit}, double{info.height});
+    const double scale = scale_of(asset_, job_.body.pose), height = scale * double{info.height};
+    const double touch =
+        job_.touch_depth > 0 ? double{job_.touch_depth} : touch_depth_of(scale / double{info.metres_per_unit}, height);
     out.part_a = SC_FLOOR;
     out.part_b = static_cast<std::uint32_t>(part);
-    out.depth = std::max(static_cast<float>(-deepest), static_cast<float>(1e-7 * double{info.height}));
+    out.depth = std::max(static_cast<float>(-deepest), static_cast<float>(1e-7 * height));
     out.direction = job_.up;
     out.kind = -deepest < touch ? SC_CLASS_TOUCH : SC_CLASS_PENETRATION;
     out.is_closed = below.is_closed() ? 1 : 0;

@@ -59,8 +59,9 @@ class Measurer {
       : in_(in),
         surface_a_(*in.a.surface),
         surface_b_(*in.b.surface),
-        metre_(1 / double{in.a.asset->info().metres_per_unit}),
-        height_(double{in.a.asset->info().height}),
+        rest_height_(double{in.a.asset->info().height}),
+        height_(rest_height_ * scale_of(*in.a.asset, in.a.pose)),
+        metre_(height_ / rest_height_ / double{in.a.asset->info().metres_per_unit}),
         memory_(in.are_one),
         sweep_(memory_.skins, in.rule, std::min(kGapMetres * metre_, kGapMax * height_)) {
     memory_.own.surface = in.a.surface;
@@ -195,7 +196,7 @@ class Measurer {
 
   Penetration measure(Span<Segment3> segments) {
     const std::size_t part_a = surface_a_.parts[segments[0].a], part_b = surface_b_.parts[segments[0].b];
-    const Contour contour = contour_of(memory_.skins, segments, height_, memory_.contour);
+    const Contour contour = contour_of(memory_.skins, segments, rest_height_, memory_.contour);
     set_sides(contour, part_a, part_b);
     const Double3 previous = previous_direction(part_a, part_b);
     const bool has_previous = dot(previous, previous) > 0 && std::isfinite(dot(previous, previous));
@@ -272,12 +273,12 @@ class Measurer {
   }
 
   bool is_fold(const Contour& contour, std::size_t a, std::size_t b) const {
-    if (a == b || hangs_on(a, b) || hangs_on(b, a) || contour.rest_distance < kNeighbourDistance * height_) {
+    if (a == b || hangs_on(a, b) || hangs_on(b, a) || contour.rest_distance < kNeighbourDistance * rest_height_) {
       return true;  // the last: joints that no bones name
     }
     const bool are_near = hangs_twice(a, b) || hangs_twice(b, a);
     const bool lie_close = are_near && (contour.facing > kFoldFacing || !contour.is_one_piece);
-    return (are_siblings(a, b) || lie_close) && contour.rest_distance < kFoldDistance * height_;
+    return (are_siblings(a, b) || lie_close) && contour.rest_distance < kFoldDistance * rest_height_;
   }
 
   PenetrationClass class_of(const Contour& contour, const Penetration& of, double seen_length) const {
@@ -288,7 +289,8 @@ class Measurer {
     if (2 * contour.touching >= 1) {
       return SC_CLASS_REST;
     }
-    if (double{of.visible} < kHidden || (!contour.is_one_piece && contour.rest_distance < kShellDistance * height_)) {
+    if (double{of.visible} < kHidden ||
+        (!contour.is_one_piece && contour.rest_distance < kShellDistance * rest_height_)) {
       return SC_CLASS_SHELL;
     }
     if (of.depth < touch) {
@@ -302,7 +304,7 @@ class Measurer {
 
   const Meeting& in_;
   const Surface &surface_a_, &surface_b_;
-  double metre_, height_;
+  double rest_height_, height_, metre_;  // at rest; in the pose
   Memory memory_;
   Sweep sweep_;
 };

@@ -42,6 +42,33 @@ Difference difference_of(const float* rows, const BoneMatrices& other, double he
 
 bool agrees(const Difference& d) { return d.linear <= kTolerance && d.translation <= kTolerance; }
 
+// The next character of a name that counts where names are alike: a letter in lower case, a digit, a byte of UTF-8.
+char next_counting(const char*& name) {
+  while (*name != '\0') {
+    const char c = *name++;
+    if (c >= 'A' && c <= 'Z') {
+      return static_cast<char>(c - 'A' + 'a');
+    }
+    if ((c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || static_cast<unsigned char>(c) >= 0x80) {
+      return c;
+    }
+  }
+  return '\0';
+}
+
+// Loaders change names: three.js makes FootL of Foot.L, and mixamorigHips of mixamorig:Hips.
+bool are_alike(const char* a, const char* b) {
+  for (;;) {
+    const char c = next_counting(a);
+    if (c != next_counting(b)) {
+      return false;
+    }
+    if (c == '\0') {
+      return true;
+    }
+  }
+}
+
 // Where matrix `bone` of a pose takes a point.
 void move(const BoneMatrices& bones, std::size_t bone, const Vec3& p, double (&out)[3]) {
   const float* const m = bones.data + bone * bones.stride;
@@ -107,7 +134,16 @@ sc_status sc_bind_joints(const sc_asset* asset, const sc_bone* joints, size_t jo
       continue;
     }
     if (!is_there) {
-      sentence.wrong("bone \"%s\" of the asset is no joint of this skeleton", bone.name);
+      const sc_bone* const alike = std::find_if(joints, joints + joint_count, [&](const sc_bone& joint) {
+        return joint.name != nullptr && are_alike(joint.name, bone.name);
+      });
+      if (alike != joints + joint_count) {
+        sentence.wrong(
+            "bone \"%s\" of the asset is no joint of this skeleton, but \"%s\" is: did a loader change the name?",
+            bone.name, alike->name);
+      } else {
+        sentence.wrong("bone \"%s\" of the asset is no joint of this skeleton", bone.name);
+      }
       return refuse(SC_NO_SUCH_BONE, SC_FIELD_JOINTS);
     }
     sentence.wrong(

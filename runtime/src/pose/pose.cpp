@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "pose/pose.h"
 
+#include <cmath>
+
 #include "asset/status.h"
 
 namespace spherechain {
@@ -57,6 +59,28 @@ Status check_skin_pose(const AssetView& asset, const Pose& pose) {
     }
   }
   return check_bones(asset, pose);
+}
+
+double scale_of(const AssetView& asset, const Pose& pose) {
+  constexpr double kRounding = 1e-3;
+  std::size_t root = 0;
+  while (root < asset.part_count() && (asset.part(root).parent >= 0 || asset.part(root).bone < 0)) {
+    ++root;
+  }
+  if (pose.bones == nullptr || root == asset.part_count()) {
+    return 1;
+  }
+  const BoneMatrices matrices = matrices_of(pose);
+  const float* const matrix = matrices.data + static_cast<std::size_t>(asset.part(root).bone) * matrices.stride;
+  double squares = 0;  // of a turn three
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t column = 0; column < 3; ++column) {
+      const double element = double{matrix[row * matrices.row + column * matrices.column]};
+      squares += element * element;
+    }
+  }
+  const double scale = std::sqrt(squares / 3);
+  return !(scale > 0) || !std::isfinite(scale) || std::abs(scale - 1) < kRounding ? 1 : scale;
 }
 
 MemoryRange range_of_bones(const AssetView& asset, const Pose& pose) {

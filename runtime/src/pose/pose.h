@@ -53,6 +53,10 @@ inline Status check_vertices(const AssetView& asset, const Pose& pose) {
 // Whether the pose has what a job on the skin needs: vertices, bones or both.
 Status check_skin_pose(const AssetView& asset, const Pose& pose);
 
+// How much larger the character is in a checked pose than at rest: by the matrix of its root, the first part that hangs
+// on none. 1 without bones, and where only rounding differs.
+double scale_of(const AssetView& asset, const Pose& pose);
+
 // What is read of a checked pose.
 MemoryRange range_of_bones(const AssetView& asset, const Pose& pose);
 MemoryRange range_of_vertices(const AssetView& asset, const Pose& pose);

@@ -15,6 +15,7 @@
 #include "baked_human.h"
 #include "baked_person.h"
 #include "creatures.h"
+#include "edits/hidden_contacts.h"
 #include "edits/ignore_parts.h"
 #include "edits/region_axes.h"
 #include "human.h"
@@ -173,6 +174,34 @@ TEST_CASE("a sphere is moved and resized, one is added, one deleted; all others 
   REQUIRE(done.missed.size() == 1);
   CHECK(contains(done.missed[0], "spheres[0] changes the sphere of left_arm"));
   CHECK(contains(done.missed[0], "1.0 % of the height away"));
+}
+
+TEST_CASE("an edit that would take its sphere away from the skin is none") {
+  const Fitted human = of(baked_human());
+  const std::uint32_t sphere = human.spheres.of_region[0][4];
+  SphereEdit far{human.regions.name(0), std::nullopt, human.place(sphere)}, moved = human.edit(sphere);
+  far.to->across = {2, 2};
+  moved.to = far.to;
+  const Edited after = edited(human, {far, moved});
+  CHECK(after.done.applied == 0);
+  REQUIRE(after.done.missed.size() == 2);
+  CHECK(contains(after.done.missed[0], "% of the height away from the region's skin"));
+  CHECK(after.spheres.spheres.size() == human.spheres.spheres.size());
+  CHECK(is_near(after.spheres.spheres[sphere].ball.center, human.spheres.spheres[sphere].ball.center));
+}
+
+TEST_CASE("where edits make neighbours of two parts, their contacts that are left out are told") {
+  const Bake& human = baked_human();
+  Binding after = human.binding;
+  CHECK(hidden_contacts(human.character, human.body_parts, human.binding, after).empty());
+  const std::vector<std::uint32_t>&left = human.spheres.of_region[0], &right = human.spheres.of_region[1];
+  for (const std::uint32_t a : left) {
+    for (const std::uint32_t b : right) after.ignored.push_back(std::minmax(a, b));
+  }
+  const auto told = hidden_contacts(human.character, human.body_parts, human.binding, after);
+  CHECK(std::any_of(told.begin(), told.end(), [](const std::string& line) {
+    return contains(line, "left hand and right hand: ") && contains(line, "100 % of the two skins, before 0 %");
+  }));
 }
 
 TEST_CASE("edits of the torso keep the levels, and the report's fits are those of spheres that nobody edited") {

@@ -80,6 +80,8 @@ TEST_CASE("other motions have the frames they are made of, or their pace's, or 4
   const Poses poses;
   CHECK(frames_of(&poses, {}).frames.size() == 40);
   CHECK(frames_of(&poses, {5, 10}).frames[4].time == doctest::Approx(0.4));
+  CHECK(frames_of(&poses, {1, 30}).frames[0].along == 1);  // the pose, not rest
+  CHECK(frames_of(&meshes, {1, 30}).frames[0].along == 0);
   CHECK(frames_of(nullptr, {}).frames.size() == 1);
   CHECK(frames_of(nullptr, {3, 30}).frames.size() == 3);
 }

@@ -140,6 +140,27 @@ TEST_CASE("the answer turns, grows and mirrors with the bodies, in whatever orde
   check(only(shuffled.measure(place)), 1, way);
 }
 
+TEST_CASE("a palette's scale changes lengths, and no class") {
+  const TwoShapes balls(ball(1, 12), ball(1, 12));
+  for (const double distance : {1.5, 1.95}) {
+    const spherechain::Penetration plain = only(balls.measure(shifted(distance, 0, 0)));
+    for (const float scale : {0.01F, 100.0F}) {
+      float bones[24];
+      for (int i = 0; i < 24; ++i) bones[i] = i % 12 % 5 == 0 ? scale : 0;
+      bones[15] = scale * static_cast<float>(distance - 40);
+      const auto with_bones = [&](spherechain::PenetrationJob& job) {
+        job.pose.bones = bones;
+        job.pose.bone_count = 2;
+        job.pose.bone_layout = SC_ROWS_3X4;
+      };
+      const auto grown = [&](const Vec& p) { return Vec(double{scale} * p); };
+      const spherechain::Penetration found = only(balls.measure(shifted(distance, 0, 0), with_bones, grown));
+      CHECK(found.depth == doctest::Approx(scale * plain.depth).epsilon(1e-3));
+      CHECK(found.kind == plain.kind);
+    }
+  }
+}
+
 TEST_CASE("a body that went most of the way in is not pushed inside") {
   const TwoShapes shapes(ball(2, 16), capsule(0.2, 0.5, 6));
   // Nearly all of the pin is in the ball: inwards is shorter, but there it would be lost.

@@ -101,6 +101,21 @@ TEST_CASE("a bone that the skeleton lacks is named") {
   CHECK(rig.message.find("\"bone2\"") != std::string::npos);
   rig.joints[3].name = nullptr;
   CHECK(rig.bind() == SC_NO_SUCH_BONE);
+  CHECK(rig.message.find("but") == std::string::npos);
+}
+
+TEST_CASE("where a joint's name differs in case and punctuation alone, the message names it") {
+  Rig rig;
+  for (const char* name : {"Bone.2", "bone:2", "[BONE_2]"}) {
+    rig.joints[3].name = name;
+    CHECK(rig.bind() == SC_NO_SUCH_BONE);
+    CHECK_MESSAGE(rig.message.find(std::string("but \"") + name + "\" is") != std::string::npos, rig.message);
+  }
+  for (const char* name : {"bone22", "bone", "", "..", "b\xC3\xB6ne2"}) {
+    rig.joints[3].name = name;
+    CHECK(rig.bind() == SC_NO_SUCH_BONE);
+    CHECK_MESSAGE(rig.message.find("but") == std::string::npos, rig.message);
+  }
 }
 
 TEST_CASE("another rest pose, and a transposed layout, are found while binding; rounding is not") {
