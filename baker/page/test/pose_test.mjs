@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
-import { join } from 'node:path';
+import { basename, join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { launch, open, silent } from './browser.mjs';
 
@@ -62,12 +62,14 @@ async function opened(of) {
 // Saves the pose, and plays it; what the page shows and what `play` says must be the same.
 async function roundTrip(page, { asset, source }) {
   const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#pose-save').click()]);
-  const saved = asset.replace('.sphc', '_saved.json');
+  const saved = file(download.suggestedFilename());
   await download.saveAs(saved);
-  const [title, own] = [asset, source].map((path) => path.split('/').at(-1));
-  assert.equal((await page.locator('#posing .command').innerText()).trim(), `spherechain play ${title} --source ${own} --poses ${download.suggestedFilename()} --frames 1`);
-  run('play', asset, '--source', source, '--poses', saved, '--frames', '2', '--contacts', '--json', file('saved_play.json'));
-  const played = JSON.parse(readFileSync(file('saved_play.json'), 'utf8')).frames[1];
+  const command = (await page.locator('#posing .command').innerText()).trim();
+  const names = [asset, source, saved].map((path) => basename(path));
+  assert.equal(command, `spherechain play ${names[0]} --source ${names[1]} --poses ${names[2]} --frames 1`);
+  const words = command.split(/\s+/).slice(1).map((word) => [asset, source, saved][names.indexOf(word)] ?? word);
+  run(...words, '--contacts', '--json', file('saved_play.json'));
+  const [played] = JSON.parse(readFileSync(file('saved_play.json'), 'utf8')).frames;
   // Depths along all directions come when the pose has settled.
   await page.waitForFunction(() => spherechainViewer.posing.isSettled());
   const listed = await shown(page);
