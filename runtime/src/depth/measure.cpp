@@ -203,7 +203,7 @@ class Measurer {
     const bool folds = in_.are_one && is_fold(contour, part_a, part_b);
     const Exit exit = find_exit(sweep_, contour,
                                 {in_.quick, kNear * height_, folds ? kDeepFold * height_ : 0,
-                                 has_previous && !in_.quick ? &previous : nullptr});
+                                 are_joined(part_a, part_b), has_previous && !in_.quick ? &previous : nullptr});
     Penetration out{};
     out.part_a = static_cast<std::uint32_t>(part_a);
     out.part_b = static_cast<std::uint32_t>(part_b);
@@ -261,6 +261,8 @@ class Measurer {
     return in_.a.asset->part(a).parent == static_cast<std::int32_t>(b);
   }
 
+  bool are_joined(std::size_t a, std::size_t b) const { return in_.are_one && (hangs_on(a, b) || hangs_on(b, a)); }
+
   // Do both hang on the same third?
   bool are_siblings(std::size_t a, std::size_t b) const {
     return in_.a.asset->part(a).parent >= 0 && in_.a.asset->part(a).parent == in_.a.asset->part(b).parent;
@@ -273,7 +275,7 @@ class Measurer {
   }
 
   bool is_fold(const Contour& contour, std::size_t a, std::size_t b) const {
-    if (a == b || hangs_on(a, b) || hangs_on(b, a) || contour.rest_distance < kNeighbourDistance * rest_height_) {
+    if (a == b || are_joined(a, b) || contour.rest_distance < kNeighbourDistance * rest_height_) {
       return true;  // the last: joints that no bones name
     }
     const bool are_near = hangs_twice(a, b) || hangs_twice(b, a);

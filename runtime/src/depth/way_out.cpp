@@ -15,8 +15,8 @@ constexpr double kSame = 0.9998;        // cosine: a direction that is as near t
 
 class Search {
  public:
-  Search(Sweep& sweep, const Contour& contour, double outwards)
-      : sweep_(sweep), contour_(contour), outwards_(outwards) {}
+  Search(Sweep& sweep, const Contour& contour, double outwards, bool are_joined)
+      : sweep_(sweep), contour_(contour), outwards_(outwards), are_joined_(are_joined) {}
 
   bool has_any() const { return has_any_; }
   const Exit& best() const { return best_; }
@@ -25,6 +25,9 @@ class Search {
     best_ = first;
     has_any_ = true;
     is_new(first.direction);
+  }
+  bool is_enclosed(const Double3& direction, const WayOut& way) {
+    return !are_joined_ && sweep_.is_enclosed(direction, way, contour_, outwards_);
   }
   // From now on, ways that end inside the other part are none.
   void be_careful() {
@@ -63,7 +66,7 @@ class Search {
     Double3 direction = wanted;
     for (int step = 0; step <= kSteps && normalize(direction) && dot(direction, wanted) > kSameWay; ++step) {
       WayOut way;
-      if (sweep_.find(direction, contour_, bound, way) && !sweep_.is_enclosed(direction, way, contour_, outwards_)) {
+      if (sweep_.find(direction, contour_, bound, way) && !is_enclosed(direction, way)) {
         kept = {direction, way};
         bound = way.depth;
         found = true;
@@ -90,13 +93,12 @@ class Search {
     return true;
   }
 
-  bool is_refused(const Double3& direction, const WayOut& way) {
-    return is_careful_ && sweep_.is_enclosed(direction, way, contour_, outwards_);
-  }
+  bool is_refused(const Double3& direction, const WayOut& way) { return is_careful_ && is_enclosed(direction, way); }
 
   Sweep& sweep_;
   const Contour& contour_;
   double outwards_;
+  bool are_joined_;
   bool is_careful_ = false, has_any_ = false;
   Exit best_;
   static constexpr std::size_t kTriedMax = 64;
@@ -148,7 +150,7 @@ Exit find_exit(Sweep& sweep, const Contour& contour, const ExitSettings& setting
   if (settings.one_direction) {
     return out;
   }
-  Search search(sweep, contour, outwards);
+  Search search(sweep, contour, outwards, settings.are_joined);
   search.start(out);
   sweep.keep_near(kNearlyAsGood * out.way.depth);
   Double3 axes[3];
@@ -164,7 +166,7 @@ Exit find_exit(Sweep& sweep, const Contour& contour, const ExitSettings& setting
     }
   };
   try_all();
-  if (!search.has_any() || sweep.is_enclosed(search.best().direction, search.best().way, contour, outwards)) {
+  if (!search.has_any() || search.is_enclosed(search.best().direction, search.best().way)) {
     const Exit fallback = search.has_any() ? search.best() : out;
     search.be_careful();
     sweep.keep_near(HUGE_VAL);

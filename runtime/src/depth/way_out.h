@@ -15,6 +15,7 @@ struct ExitSettings {
   bool one_direction = false;
   double near = 0;                    // ways are likely to be shorter
   double deep = 0;                    // above it many more directions are tried
+  bool are_joined = false;            // one part goes on in the other: neither can lie inside the other whole
   const Double3* previous = nullptr;  // the last frame's, or null
 };
 

@@ -166,6 +166,11 @@ TEST_CASE("a body that went most of the way in is not pushed inside") {
   // Nearly all of the pin is in the ball: inwards is shorter, but there it would be lost.
   const spherechain::Penetration found = only(shapes.measure(shifted(0, 1.4, 0)));
   CHECK(direction_of(found).y() > 0.5);
+  // A limb goes on in the one that it hangs on, and is never lost there: a crease has no inside.
+  const TwoShapes limbs(ball(2, 16), capsule(0.2, 0.5, 6), 5, true);
+  const spherechain::Penetration crease = only(limbs.measure(shifted(0, 1.4, 0)));
+  CHECK(crease.depth < found.depth);
+  CHECK(direction_of(crease).y() < -0.5);
 }
 
 TEST_CASE("spots that are near at rest make a fold, layers a shell, all others a penetration") {

@@ -115,7 +115,7 @@ Shape box(double x, double y, double z) {
 }
 
 TwoShapes::TwoShapes(const Shape& a, const Shape& b, double apart, bool is_child)
-    : first_of_b_(a.positions.size()), apart_(apart), asset_([&] {
+    : first_of_b_(a.positions.size()), apart_(apart), are_joined_(is_child), asset_([&] {
         Glb glb;
         std::vector<float> weights, inverse_binds;
         std::vector<std::uint16_t> joints;
@@ -180,7 +180,8 @@ std::vector<spherechain::Penetration> TwoShapes::measure(
     CHECK(spherechain::test::same_bits(spherechain::test::measure(job, target), out));
   }
   for (const spherechain::Penetration& two : out) {
-    if (two.part_a != two.part_b && job.filter == nullptr) check_as_bodies(job, two);
+    // Of two bodies no part goes on in the other's.
+    if (two.part_a != two.part_b && job.filter == nullptr && !are_joined_) check_as_bodies(job, two);
   }
   return out;
 }

@@ -37,5 +37,6 @@ class TwoShapes {
   std::vector<float> rest_;
   std::size_t first_of_b_;
   double apart_;
+  bool are_joined_;
   spherechain::baker::OpenAsset asset_;
 };
