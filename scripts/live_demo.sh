@@ -36,3 +36,4 @@ cat >"$out/live.html" <<'END'
 <iframe name="character" title="The character" src="live/human.html"></iframe>
 </html>
 END
+echo "Open $out/live.html in a browser."

@@ -9,10 +9,14 @@ export const launch = (executablePath) =>
     args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--ignore-gpu-blocklist'],
   });
 
+// Pixels are drawn by software, which takes most of the time.
+export const SCALE = 0.5;
+
 // Opens a page from disk; `noise` collects what no page may do: write to the console, fail, or ask for another file.
 export async function open(browser, file, { width = 1280, height = 720, scheme = 'light', init } = {}) {
   const context = await browser.newContext({
     viewport: { width, height },
+    deviceScaleFactor: SCALE,
     colorScheme: scheme,
     reducedMotion: 'reduce',
     hasTouch: width < 1000,

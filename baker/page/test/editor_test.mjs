@@ -72,8 +72,35 @@ test('spheres are moved, resized, added and deleted, parts ignored; undone and r
   const changed = (await edits(page)).file;
   assert.equal(changed.spheres.length, 1);
   assert.match(await page.locator('[data-edit]').innerText(), /moved \d+ mm, \d+ % (larger|smaller)/);
+  for (const refused of ['5000', '0', '-20', '1e9']) {
+    await page.locator('#edit-size').fill(refused);
+    await page.keyboard.press('Enter');
+    assert.equal(await page.locator('#edit-size').inputValue(), '50.0');
+    assert.match(await page.locator('#edit-limit').innerText(), /^A radius here is [\d.]+ to [\d,]+ mm[.]$/);
+  }
+  assert.deepEqual((await edits(page)).file, changed);
 
+  // A reset keeps the spheres in sight. Where they are not, none is picked and none can be deleted.
+  await page.locator('#reset').click();
+  assert.ok(await page.locator('#show-spheres').isChecked());
+  assert.equal((await edits(page)).picked, first.id);
+  await page.locator('#show-spheres').uncheck();
+  await page.mouse.click(first.at.x, first.at.y);
+  await page.keyboard.press('Delete');
+  assert.equal((await edits(page)).picked, null);
+  assert.deepEqual((await edits(page)).file, changed);
+  await page.locator('#show-spheres').check();
+
+  // A key that comes in a drag does nothing.
   const second = await pickAnother(page, [first.id]);
+  await page.mouse.down();
+  await page.mouse.move(second.at.x + 20, second.at.y, { steps: 2 });
+  for (const key of ['Delete', 'Control+z']) await page.keyboard.press(key);
+  await page.mouse.move(second.at.x + 30, second.at.y);
+  await page.mouse.up();
+  assert.equal((await edits(page)).file.spheres.length, 2);
+  await page.keyboard.press('Control+z');
+  assert.deepEqual((await edits(page)).file, changed);
   await page.locator('#edit-delete').click();
   assert.equal((await edits(page)).picked, null);
   const third = await pickAnother(page, [first.id, second.id]);
@@ -104,9 +131,13 @@ test('spheres are moved, resized, added and deleted, parts ignored; undone and r
   await download.saveAs(file('human_edits.json'));
   assert.deepEqual(JSON.parse(readFileSync(file('human_edits.json'), 'utf8')), all);
   const wanted = (await edits(page)).spheres;
+  assert.ok(await page.locator('#edit-save').isDisabled(), 'all is saved');
+  const [save, list] = await Promise.all(['#edit-save', '#edit-list'].map((id) => page.locator(id).boundingBox()));
+  assert.ok(save.y < list.y);
 
   // Frames go on where they were.
   await page.locator('#tab-contacts').click();
+  assert.match(await page.locator('#contacts').innerText(), /spheres as baked/);
   assert.ok(!(await page.evaluate(() => document.body.classList.contains('editing'))));
   silent(opened);
   await opened.close();
@@ -123,6 +154,8 @@ test('spheres are moved, resized, added and deleted, parts ignored; undone and r
   const again = await open(browser, file('edited.html'));
   await again.page.locator('#tab-edit').click();
   assert.equal(await again.page.locator('#edit-list li').count(), 4);
+  assert.ok(await again.page.locator('#edit-save').isDisabled(), 'nothing is new');
+  assert.ok(await again.page.locator('#stale').isHidden());
   assert.deepEqual(canonical((await edits(again.page)).file), canonical(all));
   // Taken back, there is no edit of a sphere left, and the one that was deleted is there again.
   for (let i = 0; i < 3; ++i) await again.page.locator('#edit-list .link').first().click();

@@ -20,7 +20,7 @@ export function makePages({ tool, human, huesitos, poses, folder }) {
   run('play', asset, ...motion, '40', '--contacts', '--json', file('arms.json'));
   run('view', asset, '--source', human, '-o', file('rest.html'));
   const second = ['--with', asset, '--with-poses', join(poses, 'animation_arms.json'), '--at', '0,0.2,180'];
-  run('view', asset, ...motion, '40', ...second, '-o', file('two.html'));
+  run('view', asset, ...motion, '14', ...second, '-o', file('two.html'));
   run('fix', huesitos, '-o', file('fixed.glb'), '--report', file('fixed'), '--force');
   return {
     fixed: file('fixed/clip_0.html'),
@@ -28,6 +28,7 @@ export function makePages({ tool, human, huesitos, poses, folder }) {
     rest: file('rest.html'),
     two: file('two.html'),
     play: readJson('arms.json').frames,
+    clip: readJson('arms.json').clips[0],
     inspect: JSON.parse(run('inspect', asset, '--json')),
     report: readJson('report.json'),
     validation: readJson('validation.json'),

@@ -1,8 +1,9 @@
-// Posing by hand in the page of `view`: drags, what touches then, and the way of a saved pose through `play`.
+// Posing by hand in the page of `view`: drags, what touches then, and the way of a saved pose through `play`. It uses what
+// page_test.mjs baked.
 import assert from 'node:assert/strict';
 import { execFileSync } from 'node:child_process';
 import { readFileSync, writeFileSync } from 'node:fs';
-import { join } from 'node:path';
+import { basename, join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { launch, open, silent } from './browser.mjs';
 
@@ -15,18 +16,19 @@ const SIZE = { width: 1000, height: 560 }; // small: drawing by software takes m
 const file = (name) => join(folder, name);
 const run = (...words) => execFileSync(tool, words, { encoding: 'utf8' });
 const motion = ['--poses', join(poses, 'arms_crossed.json'), '--frames', '5'];
-const made = (name, source, words = []) => {
-  run('bake', source, '-o', file(`${name}.sphc`));
-  run('view', file(`${name}.sphc`), '--source', source, ...words, '-o', file(`${name}.html`));
-  return { asset: file(`${name}.sphc`), source, page: file(`${name}.html`) };
+const made = (asset, source, words) => {
+  const page = asset.replace('.sphc', '_posed.html');
+  run('view', asset, '--source', source, ...words, '-o', page);
+  return { asset, source, page };
 };
 
 let browser;
 let man; // with the automatic rig
 let bones; // with a skeleton of its own
 before(async () => {
-  man = made('pose_human', human, motion);
-  bones = made('pose_huesitos', huesitos, ['--frames', '4']);
+  man = made(file('human.sphc'), human, motion);
+  run('bake', huesitos, '-o', file('huesitos.sphc'));
+  bones = made(file('huesitos.sphc'), huesitos, ['--frames', '4']);
   browser = await launch(chromium);
 });
 after(() => browser?.close());
@@ -60,10 +62,14 @@ async function opened(of) {
 // Saves the pose, and plays it; what the page shows and what `play` says must be the same.
 async function roundTrip(page, { asset, source }) {
   const [download] = await Promise.all([page.waitForEvent('download'), page.locator('#pose-save').click()]);
-  const saved = asset.replace('.sphc', '_saved.json');
+  const saved = file(download.suggestedFilename());
   await download.saveAs(saved);
-  run('play', asset, '--source', source, '--poses', saved, '--frames', '2', '--contacts', '--json', file('saved_play.json'));
-  const played = JSON.parse(readFileSync(file('saved_play.json'), 'utf8')).frames[1];
+  const command = (await page.locator('#posing .command').innerText()).trim();
+  const names = [asset, source, saved].map((path) => basename(path));
+  assert.equal(command, `spherechain play ${names[0]} --source ${names[1]} --poses ${names[2]} --frames 1`);
+  const words = command.split(/\s+/).slice(1).map((word) => [asset, source, saved][names.indexOf(word)] ?? word);
+  run(...words, '--contacts', '--json', file('saved_play.json'));
+  const [played] = JSON.parse(readFileSync(file('saved_play.json'), 'utf8')).frames;
   // Depths along all directions come when the pose has settled.
   await page.waitForFunction(() => spherechainViewer.posing.isSettled());
   const listed = await shown(page);
@@ -134,6 +140,11 @@ test('a hand goes where it is dragged, what touches then is what play finds in t
   await page.keyboard.press('Control+z');
   assert.deepEqual(await poseOf(page), {});
   assert.deepEqual(await shown(page), []);
+  await page.keyboard.press('Control+Shift+Z');
+  assert.deepEqual(Object.keys(await poseOf(page)).sort(), ['left_elbow', 'left_shoulder']);
+  await page.keyboard.press('Control+y');
+  assert.deepEqual(await poseOf(page), saved.poses[0]);
+  assert.ok(await page.locator('#pose-redo').isDisabled());
   silent(session);
   await session.close();
 });
@@ -150,14 +161,29 @@ test('an elbow turns the arm around, hips go down between the feet, the head loo
   assert.ok(apart(low[5], [before[5][0], before[5][1] + 40]) < 4);
   await page.keyboard.press('2');
   await drawn(page);
-  await drag(page, await middle(page, 'left hand'), (await middle(page, 'chest')).map((x, k) => x + [30, 0][k]));
+  const [hips, head] = [await middle(page, 'hips'), await middle(page, 'head')];
+  await drag(page, await middle(page, 'left hand'), [(hips[0] + head[0]) / 2 + 30, (hips[1] + head[1]) / 2]);
   const bent = await places();
   await drag(page, bent[1], [bent[1][0], bent[1][1] - 80]);
   const up = await places();
   assert.ok(up[1][1] < bent[1][1] - 8, 'the elbow goes up');
   assert.ok(apart(up[0], bent[0]) < 2, 'the hand stays');
   await drag(page, up[5], [up[5][0] + 30, up[5][1] + 10]);
-  assert.ok('neck' in (await poseOf(page)));
+  const turned = await poseOf(page);
+  assert.ok('neck' in turned);
+  // Undo waits for the end of a drag.
+  await page.mouse.move(...up[0]);
+  await page.mouse.down();
+  await page.mouse.move(up[0][0] + 40, up[0][1]);
+  await drawn(page);
+  await page.keyboard.press('Control+z');
+  assert.notDeepEqual(await poseOf(page), turned);
+  await page.mouse.move(up[0][0] + 50, up[0][1] + 20);
+  await drawn(page);
+  await page.mouse.up();
+  assert.notDeepEqual(await poseOf(page), turned);
+  await page.keyboard.press('Control+z');
+  assert.deepEqual(await poseOf(page), turned);
   await page.locator('#pose-reset').click();
   assert.deepEqual(await poseOf(page), {});
   silent(session);
@@ -168,7 +194,7 @@ test('the gizmo turns the joint that is clicked, on a skeleton of its own, and p
   const session = await opened(bones);
   const { page } = session;
   const taken = await poseOf(page);
-  const names = await page.locator('.handle').evaluateAll((all) => all.map(({ title }) => title));
+  const names = await page.locator('.handle:visible').evaluateAll((all) => all.map(({ title }) => title));
   const at = await Promise.all(names.map((name) => middle(page, name)));
   // The one that stands most alone, so that no other handle is in the way.
   const alone = at.map((p, i) => Math.min(...at.filter((_, k) => k !== i).map((q) => apart(p, q))));
@@ -176,6 +202,8 @@ test('the gizmo turns the joint that is clicked, on a skeleton of its own, and p
   const center = await middle(page, chosen);
   await handle(page, chosen).click();
   assert.equal(await handle(page, chosen).getAttribute('aria-pressed'), 'true');
+  const said = await page.locator('#pose-joint').innerText();
+  assert.ok(said.startsWith(chosen) && /\d° from rest$/.test(said), said);
   await drawn(page);
   // Along the gizmo's rings until one is caught.
   let after = taken;
@@ -185,12 +213,25 @@ test('the gizmo turns the joint that is clicked, on a skeleton of its own, and p
   }
   const changed = [...new Set([...Object.keys(taken), ...Object.keys(after)])].filter((joint) => JSON.stringify(taken[joint]) !== JSON.stringify(after[joint]));
   assert.deepEqual(changed, [chosen]);
+  assert.notEqual(await page.locator('#pose-joint').innerText(), said);
   if (hasRuntime) {
     const { saved } = await roundTrip(page, bones);
     assert.equal(saved.rig, 'own');
   }
   await page.keyboard.press('Escape');
   assert.equal(await handle(page, chosen).getAttribute('aria-pressed'), 'false');
+  // From afar, small handles that would lie on others are left out.
+  await page.mouse.move(300, 250);
+  await page.mouse.wheel(0, 3000);
+  await drawn(page);
+  const left = await page.locator('.handle:visible').evaluateAll((all) =>
+    all.map((one) => {
+      const { x, y, width } = one.getBoundingClientRect();
+      return { isSmall: one.matches('.joint'), at: [x + width / 2, y + width / 2] };
+    }),
+  );
+  assert.ok(left.length < names.length && left.some(({ isSmall }) => isSmall), `${left.length} of ${names.length}`);
+  left.forEach((p, i) => left.slice(0, i).forEach((q) => assert.ok((!p.isSmall && !q.isSmall) || apart(p.at, q.at) > 11.5)));
   silent(session);
   await session.close();
 });
@@ -205,6 +246,10 @@ test('a page without the runtime says so, and poses all the same', async () => {
   await drawn(page);
   await drag(page, await middle(page, 'left hand'), [360, 250]);
   assert.ok('left_elbow' in (await poseOf(page)));
+  // Who leaves with a pose that is not saved is asked.
+  const [dialog] = await Promise.all([page.waitForEvent('dialog'), page.close({ runBeforeUnload: true })]);
+  assert.equal(dialog.type(), 'beforeunload');
+  await dialog.accept();
   silent(session);
   await session.close();
 });

@@ -1,4 +1,5 @@
 import { h } from './dom.js';
+import { withoutCommonStart } from './format.js';
 
 // The clip that plays, and where there are several the list to choose from.
 export function fillClips(box, store, model) {
@@ -12,7 +13,8 @@ export function fillClips(box, store, model) {
     for (let frame = first; frame < first + count; ++frame) frames += model.contacts.of(frame).length > 0 ? 1 : 0;
     return frames;
   };
-  const option = (clip, i) => h('option', { value: i }, `${clip.name} · skin touches in ${touching(clip)} of ${clip.count} frames`);
+  const names = withoutCommonStart(clips.map(({ name }) => name));
+  const option = (clip, i) => h('option', { value: i, title: clip.name }, `${names[i]} · skin touches in ${touching(clip)} of ${clip.count} frames`);
   const choose = () => store.set({ frame: clips[select.value].first, contact: null });
   const select = h('select', { id: 'clips', 'aria-label': 'Clip', onchange: choose }, clips.map(option));
   box.append(select);

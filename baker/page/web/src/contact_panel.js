@@ -1,5 +1,5 @@
 import { h } from './dom.js';
-import { CLASSES, isFault, MEANINGS, millimetres } from './contacts.js';
+import { CLASSES, className, isFault, isHidden, MEANINGS, millimetres } from './contacts.js';
 import { plural } from './format.js';
 
 // The frame's contacts by body parts, and below those of the whole clip; a click goes there.
@@ -42,13 +42,14 @@ export function fillContactPanel(panel, store, model, flyTo) {
       ),
     );
 
-  const what = ({ kind, depth }) => `${CLASSES[kind]}, ${millimetres(depth)}`;
+  const what = (contact) => `${className(contact)}, ${millimetres(contact.depth)}`;
   const millilitres = ({ volume }) => (volume >= 0 ? `, ${Number(volume.toPrecision(2))} ml` : '');
   const minor = (contact) => (isFault(contact) ? '' : ' minor');
   const frameRow = (contact, i) => {
     const { key, name, pairs, visible } = contact;
     const title = [plural(pairs, 'triangle pair')];
     if (visible >= 0) title.push(`${Math.round(100 * visible)} % visible`);
+    if (isHidden(contact)) title.push('most of it cannot be seen from outside');
     const properties = { class: `pair contact${minor(contact)}`, 'data-contact': key, title: title.join(', ') };
     return row(properties, `${i + 1}`, name, what(contact) + millilitres(contact), () => {
       store.set({ contact: key });
@@ -61,7 +62,7 @@ export function fillContactPanel(panel, store, model, flyTo) {
         class: `pair clip-contact${minor(entry)}`,
         'data-contact': entry.key,
         'data-frame': model.number(entry.worst),
-        title: `${what(entry)} at frame ${model.number(entry.worst)}`,
+        title: `${what(entry)} at frame ${model.number(entry.worst)}${isHidden(entry) ? ': most of it cannot be seen from outside' : ''}`,
       },
       null,
       entry.name,

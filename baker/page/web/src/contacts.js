@@ -3,12 +3,14 @@
 export const CLASSES = ['as at rest', 'shell', 'touch', 'fold', 'deep fold', 'penetration'];
 export const MEANINGS = [
   'The same spots are this near in the rest pose, too.',
-  'Layers of the same place, such as a garment on the body, or most of it is hidden.',
+  'Another layer of the same place (clothes), or hidden inside.',
   'Too little of it to be seen.',
-  'Neighbours of a joint that bends.',
+  'Neighbours of a joint that bends, or spots that lie close at rest.',
   'A joint whose skin is far inside itself. A fault.',
-  'One part is inside another. A fault.',
+  'One part is inside another. A fault. A part that is wholly inside another crosses no skin: it is not found.',
 ];
+const SHELL = 1;
+const HIDDEN = 0.3; // less of the contour is visible
 const DEEP_FOLD = 4; // from here on a person sees a fault
 export const MEASURES = 12; // numbers of a measured contact (../README.md)
 
@@ -24,6 +26,9 @@ function measured(list) {
   return out;
 }
 
+// A shell is either clothes or out of sight.
+export const isHidden = ({ kind, visible }) => kind === SHELL && visible >= 0 && visible < HIDDEN;
+export const className = (contact) => (isHidden(contact) ? 'hidden' : CLASSES[contact.kind]);
 export const isFault = ({ kind }) => kind >= DEEP_FOLD;
 export const millimetres = (depth) => `${depth < 9.95 ? depth.toFixed(1) : Math.round(depth)} mm`;
 const worseFirst = (a, b) => b.kind - a.kind || b.depth - a.depth || a.name.localeCompare(b.name);
@@ -93,16 +98,20 @@ export class Contacts {
     return this.of(frame).filter(isFault).reduce((most, { depth }) => Math.max(most, depth), 0);
   }
 
-  // Pairs of body parts over a run of frames: [{key, name, frames, worst, kind, depth}], of each what it is where it is
-  // deepest; faults first, the deepest first.
+  // Pairs of body parts over a run of frames: [{key, name, frames, worst, kind, depth, visible}], faults first, the deepest
+  // first. Of a pair that is a fault in some frame, only frames in which it is one count.
   over(first, count) {
     const found = new Map();
     for (let frame = first; frame < first + count; ++frame) {
-      for (const { key, name, kind, depth } of this.of(frame)) {
-        if (!found.has(key)) found.set(key, { key, name, frames: [], worst: frame, kind, depth });
-        const entry = found.get(key);
+      for (const contact of this.of(frame)) {
+        const { key, name, kind, depth, visible } = contact;
+        const known = found.get(key);
+        if (known && isFault(known) && !isFault(contact)) continue;
+        const isFirst = !known || (isFault(contact) && !isFault(known));
+        const entry = isFirst ? { key, name, frames: [], depth: -1 } : known;
         entry.frames.push(frame);
-        if (depth > entry.depth) Object.assign(entry, { worst: frame, kind, depth });
+        if (depth > entry.depth) Object.assign(entry, { worst: frame, kind, depth, visible });
+        found.set(key, entry);
       }
     }
     return [...found.values()].sort(worseFirst);

@@ -12,6 +12,12 @@ export function h(tag, properties = {}, ...children) {
   return element;
 }
 
+// A command to copy, as a shell reads it: a word that holds a space or the like is quoted.
+export function commandBlock(...words) {
+  const quoted = words.map((word) => (/^[\w./+-]+$/.test(word) ? word : `'${word.replaceAll("'", "'\\''")}'`));
+  return h('code', { class: 'command' }, ...quoted.flatMap((word) => [h('span', {}, word), ' ']));
+}
+
 export const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 // An empty canvas of its box's size in device pixels; the context draws in CSS pixels. It is painted over with nothing: in

@@ -2,13 +2,14 @@ import './editor.css';
 import { Vector3 } from 'three';
 import { h } from './dom.js';
 import { fillEditorPanel } from './editor_panel.js';
-import { addBeside, fileOf, forget, History, ignore, mayRemove, place, placeNow, placeOf, pointOf, remove, restore, startState, unignore } from './editor_state.js';
+import { addBeside, fileOf, forget, ignore, mayRemove, place, placeNow, placeOf, pointOf, remove, restore, startState, unignore } from './editor_state.js';
 import { createEditorView } from './editor_view.js';
+import { History, stepOf } from './history.js';
 
 // Editing spheres, and which parts are ignored, for `spherechain bake --edits`. It goes on while its tab is open.
 
 const NUDGE = 2; // mm of an arrow key; with Shift ten
-const SMALLEST = 2e-4; // of a region's length
+const SMALLEST = 2e-4; // radius, of a region's length
 const LARGEST = 2;
 
 const KEYS = [
@@ -31,7 +32,7 @@ export function createEditor({ model, skin, store, stage, layers, canvas, overla
   const why = refusal ?? (stage ? null : 'Editing needs WebGL 2, which this browser has not.');
   if (why) {
     panel.append(h('p', {}, why));
-    return { keys: keys.slice(0, 1), draw() {}, overlay: null, read: () => null };
+    return { keys: keys.slice(0, 1), draw() {}, overlay: null, read: () => null, asReset: (state) => state };
   }
 
   const history = new History(startState(model.edits, names, model.spheres));
@@ -41,6 +42,7 @@ export function createEditor({ model, skin, store, stage, layers, canvas, overla
   const sphereOf = (id) => history.now.spheres.find((s) => s.id === id && !s.deleted) ?? null;
   const shownRadius = (of) => (store.state.radius === 'fit' ? of.radius : of.detect_radius ?? of.radius);
   const sizeOf = (region, of) => (shownRadius(of) * regions[region].length) / model.mesh.unitsPerMm;
+  const factors = ({ radius, detect_radius: detect = radius }) => [SMALLEST / radius, LARGEST / detect];
   const fileName = `${model.inspect.source.file.replace(/[.][^.]*$/, '')}_edits.json`;
 
   const actions = {
@@ -50,22 +52,27 @@ export function createEditor({ model, skin, store, stage, layers, canvas, overla
       const where = model.spheres[id]?.name ?? names[region].replaceAll('_', ' ');
       return origin === null ? `New sphere, ${where}` : `Sphere ${id}, ${where}`;
     },
-    command: () => `spherechain bake ${model.inspect.source.file} --edits ${fileName} -o ${model.title}`,
     place: (id, to, kind) => history.push(place(history.now, id, to), kind, performance.now()),
     // Both radii by the same factor.
     grow(factor) {
       const sphere = sphereOf(view.picked);
-      if (!sphere || !(factor > 0) || !Number.isFinite(factor)) return;
+      if (!sphere) return;
       const now = placeNow(sphere);
-      const by = (x) => Number((x * Math.min(Math.max(factor, SMALLEST / now.radius), LARGEST / (now.detect_radius ?? now.radius))).toPrecision(7));
+      const [least, most] = factors(now);
+      const by = (x) => Number((x * Math.min(Math.max(factor, least), most)).toPrecision(7));
       const to = { ...now, radius: by(now.radius) };
       if (now.detect_radius !== undefined) to.detect_radius = Math.max(by(now.detect_radius), to.radius);
       actions.place(sphere.id, to, `grow ${sphere.id}`);
     },
+    // Null, or the least and the most millimetres where these are refused.
     resize(mm) {
       const sphere = sphereOf(view.picked);
-      if (sphere && mm > 0) actions.grow(mm / sizeOf(sphere.region, placeNow(sphere)));
-      else shown.update();
+      if (!sphere) return null;
+      const size = sizeOf(sphere.region, placeNow(sphere));
+      const [least, most] = factors(placeNow(sphere)).map((factor) => factor * size);
+      if (!(mm >= least && mm <= most)) return [least, most];
+      actions.grow(mm / size);
+      return null;
     },
     // In the picture, by millimetres to the right and up.
     nudge(right, up) {
@@ -98,7 +105,10 @@ export function createEditor({ model, skin, store, stage, layers, canvas, overla
       const text = `${JSON.stringify(actions.file(), null, 1)}\n`;
       h('a', { href: `data:application/json;charset=utf-8,${encodeURIComponent(text)}`, download: fileName }).click();
       saved = history.now;
+      shown.update();
     },
+    fileName,
+    isSaved: () => history.now === saved,
   };
 
   view = createEditorView({
@@ -117,11 +127,12 @@ export function createEditor({ model, skin, store, stage, layers, canvas, overla
 
   // The tab that is open says what goes on. Meanwhile the skin shows through the spheres, and they through the skin.
   const seeThrough = { spheres: true, skinOpacity: 0.6, sphereOpacity: 0.24 };
+  const lookOf = (state) => Object.fromEntries(Object.keys(seeThrough).map((key) => [key, state[key]]));
   let before = null;
   new MutationObserver(() => {
     const editing = tab.getAttribute('aria-selected') === 'true';
     if (editing === store.state.editing) return;
-    if (editing) before = Object.fromEntries(Object.keys(seeThrough).map((key) => [key, store.state[key]]));
+    if (editing) before = lookOf(store.state);
     store.set({ editing, playing: false, ...(editing ? { posing: false, pinned: null, pointed: null, ...seeThrough } : before) });
     const [a, b] = (store.state.contact ?? '').split('-').map((part) => model.parts.find((other) => `${other.part}` === part)?.name);
     if (editing && a !== b) shown.offer(a, b);
@@ -132,11 +143,9 @@ export function createEditor({ model, skin, store, stage, layers, canvas, overla
   const arrows = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
   function handle(event) {
     const { key, shiftKey: shift } = event;
-    if (event.ctrlKey || event.metaKey) {
-      if (key.toLowerCase() === 'z') return () => history.step(shift ? 1 : -1);
-      return key.toLowerCase() === 'y' ? () => history.step(1) : null;
-    }
-    if (event.altKey) return null;
+    const by = stepOf(event);
+    if (by !== 0) return () => history.step(by);
+    if (event.ctrlKey || event.metaKey || event.altKey) return null;
     if (arrows[key]) return () => actions.nudge(...arrows[key].map((step) => step * (shift ? 5 : 1) * NUDGE));
     if (key === '+' || key === '=') return () => actions.grow(1.03);
     if (key === '-') return () => actions.grow(1 / 1.03);
@@ -156,14 +165,26 @@ export function createEditor({ model, skin, store, stage, layers, canvas, overla
       if (!action) return;
       event.preventDefault();
       event.stopPropagation();
-      action();
+      if (!view.isDragging) action();
     },
     { capture: true },
   );
   addEventListener('beforeunload', (event) => history.now !== saved && event.preventDefault());
 
+  const stale = h('p', { class: 'note', id: 'stale' }, 'Contacts are those of the spheres as baked: bake again with your edits.');
+  document.getElementById('contacts').prepend(stale);
+  const say = () => (stale.hidden = !history.canUndo);
+  history.listeners.push(say);
+  say();
+
   return {
     keys,
+    // What a reset to `start` sets: while spheres are edited they are seen, and the look at the start comes after.
+    asReset(start) {
+      if (!store.state.editing) return start;
+      before = lookOf(start);
+      return { ...start, ...seeThrough };
+    },
     draw: view.draw,
     overlay: view.overlay,
     // For tests and other tools: the file as it would be saved, and where spheres are, in source units.

@@ -1,6 +1,6 @@
-import { h } from './dom.js';
+import { commandBlock, h } from './dom.js';
 import { distance, fileOf, isEdited, isIgnored, kindOf, mayRemove, placeNow } from './editor_state.js';
-import { plural } from './format.js';
+import { number, plural } from './format.js';
 import { EDITED } from './palette.js';
 
 // The panel of the editor: the picked sphere, the parts to ignore, the edits so far, and the file.
@@ -19,10 +19,20 @@ export function fillEditorPanel(panel, { model, store, regions, history, actions
   const remove = button('edit-delete', 'Delete', 'Del', actions.remove);
   const title = h('h2', { id: 'edit-title' });
   const where = h('p', { class: 'note' });
-  const size = h('input', { type: 'number', id: 'edit-size', min: 0, step: 'any', onchange: () => actions.resize(Number(size.value)) });
+  const size = h('input', { type: 'number', id: 'edit-size', min: 0, step: 'any', onchange: () => resize() });
   const larger = button('edit-larger', '+', 'Larger (+, or Shift and the wheel)', () => actions.grow(1.05));
   const smaller = button('edit-smaller', '−', 'Smaller (−, or Shift and the wheel)', () => actions.grow(1 / 1.05));
   const figures = h('div', { class: 'row' }, h('label', { for: 'edit-size' }, 'Radius, mm'), h('span', { class: 'edit-sizes' }, smaller, size, larger));
+  const limit = h('p', { class: 'note warning', id: 'edit-limit', role: 'status', hidden: true });
+  const resize = () => {
+    if (!pickedSphere()) return;
+    const limits = actions.resize(Number(size.value));
+    limit.hidden = limits === null;
+    if (limits) limit.textContent = `A radius here is ${limits.map((mm) => number(Number(mm.toPrecision(2)))).join(' to ')} mm.`;
+    showSize();
+  };
+  const pickedSphere = () => history.now.spheres.find((s) => s.id === actions.picked() && !s.deleted) ?? null;
+  const showSize = (now = placeNow(pickedSphere())) => (size.value = sizeOf(pickedSphere().region, now).toFixed(1));
   for (const name of ['keydown', 'keyup']) size.addEventListener(name, (event) => event.stopPropagation());
 
   const parts = model.parts.map(({ name }) => name).filter((name) => name !== 'other parts').sort();
@@ -39,7 +49,7 @@ export function fillEditorPanel(panel, { model, store, regions, history, actions
   const list = h('ol', { class: 'pairs', id: 'edit-list' });
   const count = h('h2', { role: 'status' });
   const save = button('edit-save', 'Save edits', 'Downloads the file for spherechain bake --edits', actions.save);
-  const command = h('code', { id: 'edit-command' });
+  const command = commandBlock('spherechain', 'bake', model.inspect.source.file, '--edits', actions.fileName, '-o', model.title);
   const how = h('div', { class: 'edit-how' }, h('p', { class: 'note' }, 'Then bake again, with the options of the first bake:'), command);
 
   panel.replaceChildren(
@@ -48,13 +58,14 @@ export function fillEditorPanel(panel, { model, store, regions, history, actions
     title,
     where,
     figures,
+    limit,
     h('h2', {}, 'Ignore contacts of two parts'),
     h('div', { class: 'edit-parts' }, first, second, ignore),
     count,
-    list,
-    h('div', { class: 'edit-legend' }, ...Object.entries(EDITED).map(([kind, colour]) => h('span', { class: 'legend' }, swatch(colour), kind))),
     save,
     how,
+    list,
+    h('div', { class: 'edit-legend' }, ...Object.entries(EDITED).map(([kind, colour]) => h('span', { class: 'legend' }, swatch(colour), kind))),
   );
 
   const millimetres = (a, b, region) => {
@@ -78,12 +89,11 @@ export function fillEditorPanel(panel, { model, store, regions, history, actions
 
   function update(moving = null) {
     const state = history.now;
-    const sphere = state.spheres.find((s) => s.id === actions.picked() && !s.deleted);
+    const sphere = pickedSphere();
     undo.disabled = !history.canUndo;
     redo.disabled = !history.canRedo;
     add.disabled = !sphere;
     remove.disabled = !sphere || !mayRemove(state, sphere.id);
-    remove.title = sphere && remove.disabled ? 'The last sphere of its region stays' : 'Del';
     figures.hidden = !sphere;
     title.textContent = sphere ? actions.name(sphere) : 'No sphere is picked';
     where.textContent = '';
@@ -91,8 +101,10 @@ export function fillEditorPanel(panel, { model, store, regions, history, actions
       const now = moving ?? placeNow(sphere);
       const edited = isEdited({ ...sphere, to: moving ?? sphere.to });
       where.textContent = `${at(now)} along the ${words(names[sphere.region])}${edited ? `, ${whatOf({ ...sphere, to: now })}` : ''}`;
-      if (document.activeElement !== size) size.value = sizeOf(sphere.region, now).toFixed(1);
+      if (remove.disabled) where.append('. The last sphere of its region: it cannot be deleted');
+      if (document.activeElement !== size) showSize(now);
     }
+    if (document.activeElement !== size) limit.hidden = true;
     if (moving) return;
     ignore.disabled = !first.value || !second.value || first.value === second.value || isIgnored(state, [first.value, second.value]);
     const file = fileOf(state, names);
@@ -105,9 +117,8 @@ export function fillEditorPanel(panel, { model, store, regions, history, actions
       ...state.ignored.map((pair) => row(pair.join(' and '), 'ignored', 'var(--muted)', pair.join('-'), null, () => actions.unignore(pair))),
       ...state.missed.map((edit) => row(`${words(edit.region)} ${at(edit.from ?? edit.to)}`, 'not in this bake', 'var(--warning)', 'missed', null, () => actions.forget(edit))),
     );
-    save.disabled = total === 0 && !history.canUndo;
-    how.hidden = save.disabled;
-    command.textContent = actions.command();
+    save.disabled = actions.isSaved();
+    how.hidden = !history.canUndo;
   }
   history.listeners.push(() => update());
   store.watch(['radius'], () => update());

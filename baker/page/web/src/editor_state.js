@@ -86,35 +86,3 @@ export function fileOf(state, names) {
   }));
   return { spherechain_edits: 1, spheres: [...spheres, ...state.missed], ignored_parts: state.ignored };
 }
-
-// States one after another. A run of changes of one `kind` in short time is one step.
-export class History {
-  constructor(state) {
-    Object.assign(this, { states: [state], at: 0, kind: null, time: 0, listeners: [] });
-  }
-  get now() {
-    return this.states[this.at];
-  }
-  get canUndo() {
-    return this.at > 0;
-  }
-  get canRedo() {
-    return this.at + 1 < this.states.length;
-  }
-  push(state, kind = null, time = 0) {
-    const goesOn = kind !== null && kind === this.kind && time - this.time < 1000 && this.at > 0;
-    this.states.splice(this.at + (goesOn ? 0 : 1));
-    this.states.push(state);
-    this.at = this.states.length - 1;
-    Object.assign(this, { kind, time });
-    this.tell();
-  }
-  step(by) {
-    this.at = Math.min(Math.max(this.at + by, 0), this.states.length - 1);
-    this.kind = null;
-    this.tell();
-  }
-  tell() {
-    for (const listener of this.listeners) listener();
-  }
-}

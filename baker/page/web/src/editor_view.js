@@ -1,6 +1,7 @@
 import * as THREE from 'three';
 import { TransformControls } from 'three/addons/controls/TransformControls.js';
 import { css, fitCanvas } from './dom.js';
+import { dragPlane } from './drag_plane.js';
 import { isEdited, kindOf, placeNow, placeOf, pointOf } from './editor_state.js';
 import { Names } from './overlay.js';
 import { EDITED, GHOST, POINTED, SPHERE } from './palette.js';
@@ -36,6 +37,8 @@ export function createEditorView({ model, skin, store, stage, layers, canvas, ov
 
   let picked = null; // a sphere's number
   let moved = null; // while it is dragged: its place
+  let pressed = null; // the pointer's event
+  let grip = null; // of the sphere itself: where its centre goes as the pointer moves
   const kind = () => store.state.radius;
   const radiusAt = (place, region) => regions[region].length * (kind() === 'fit' ? place.radius : place.detect_radius ?? place.radius);
   const current = (sphere) => (moved && sphere.id === picked ? moved : placeNow(sphere));
@@ -70,13 +73,15 @@ export function createEditorView({ model, skin, store, stage, layers, canvas, ov
   }
 
   function pick(id) {
+    if (id !== null && !store.state.spheres) store.set({ spheres: true });
     picked = id;
-    moved = null;
+    moved = grip = null;
     dress();
     actions.picked(id);
   }
 
   const under = ({ clientX, clientY }) => {
+    if (!store.state.spheres) return null;
     const ray = stage.ray(clientX, clientY);
     let best = null;
     let nearest = Infinity;
@@ -114,13 +119,6 @@ export function createEditorView({ model, skin, store, stage, layers, canvas, ov
     if (!value) endMove();
   });
 
-  // The sphere itself is dragged in the plane through its centre that faces the eye.
-  let pressed = null;
-  let grip = null;
-  const inPlane = ({ clientX, clientY }, { at, back }) => {
-    const { origin, direction } = stage.ray(clientX, clientY);
-    return origin.clone().addScaledVector(direction, at.clone().sub(origin).dot(back) / direction.dot(back));
-  };
   const on = (name, listener) => canvas.addEventListener(name, (event) => store.state.editing && listener(event), { capture: true });
   on('pointerdown', (event) => {
     if (event.button !== 0) return;
@@ -128,15 +126,14 @@ export function createEditorView({ model, skin, store, stage, layers, canvas, ov
     if (gizmo.axis !== null || picked === null || under(event) !== picked) return;
     event.stopImmediatePropagation();
     canvas.setPointerCapture(event.pointerId);
-    const { region } = sphereOf(picked);
-    grip = { at: new THREE.Vector3(...pointOf(regions[region], placeNow(sphereOf(picked)))), back: new THREE.Vector3(...stage.camera().back) };
-    grip.start = inPlane(event, grip);
+    const sphere = sphereOf(picked);
+    grip = dragPlane(stage, new THREE.Vector3(...pointOf(regions[sphere.region], placeNow(sphere))), event);
   });
   on('pointermove', (event) => {
     if (!grip) return;
     event.stopImmediatePropagation();
     if (!moved && Math.hypot(event.clientX - pressed.clientX, event.clientY - pressed.clientY) < CLICK) return;
-    moveTo(grip.at.clone().add(inPlane(event, grip)).sub(grip.start).toArray());
+    moveTo(grip(event).toArray());
   });
   on('pointerup', (event) => {
     const still = pressed && Math.hypot(event.clientX - pressed.clientX, event.clientY - pressed.clientY) < CLICK;
@@ -171,7 +168,10 @@ export function createEditorView({ model, skin, store, stage, layers, canvas, ov
     layers.skinLayer.position.needsUpdate = layers.skinLayer.normal.needsUpdate = true;
     dress();
   });
-  store.watch(['spheres'], ({ spheres }) => (layer.group.visible = spheres));
+  store.watch(['spheres'], ({ spheres, editing }) => {
+    layer.group.visible = spheres;
+    if (editing && !spheres) pick(null);
+  });
   store.watch(['radius', 'sphereOpacity', 'theme'], () => store.state.editing && dress());
   history.listeners.push(() => {
     if (picked !== null && !sphereOf(picked)) pick(null);
@@ -182,6 +182,9 @@ export function createEditorView({ model, skin, store, stage, layers, canvas, ov
     pick,
     get picked() {
       return picked;
+    },
+    get isDragging() {
+      return grip !== null || gizmo.dragging;
     },
     draw(eye) {
       group.matrix.copy(toWorld());

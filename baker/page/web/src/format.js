@@ -16,3 +16,10 @@ export const percent = (share) => `${(100 * share).toFixed(2)} %`;
 export const length = (value, height) => (value === null ? '–' : `${number(value)} · ${percent(value / height)}`);
 
 export const plural = (count, word) => `${count.toLocaleString('en')} ${word}${count === 1 ? '' : 's'}`;
+
+// Names without what all of them begin with, up to its last separator. A short start stays.
+export function withoutCommonStart(names) {
+  const differ = names[0].split('').findIndex((letter, i) => names.some((name) => name[i] !== letter));
+  const start = names[0].slice(0, Math.max(differ, 0)).match(/^.*[^\p{L}\p{N}]/u)?.[0] ?? '';
+  return start.length < 8 || names.includes(start) ? names : names.map((name) => name.slice(start.length));
+}

@@ -1,11 +1,13 @@
 import { Object3D, Quaternion, Vector3 } from 'three';
 import { TransformControls } from 'three/addons/controls/TransformControls.js';
 import { h } from './dom.js';
+import { dragPlane } from './drag_plane.js';
 
 // Handles of a character that is posed by hand, over the picture: of the ends of limbs, elbows and knees, head and hips, and a
 // small one of every other joint. A drag moves the skeleton; a click takes the rotation gizmo to the joint.
 
 const CLICK = 4; // pixels that a click may move
+const NEAR = 12; // pixels: a small handle that is so near to another one is left out
 
 // Joints that move skin, by their own weight.
 function movers({ joints, weights }) {
@@ -30,7 +32,7 @@ function handlesOf(poser, mesh) {
   return out;
 }
 
-export function addHandles({ poser, mesh, stage, store, canvas, remember, changed }) {
+export function addHandles({ poser, mesh, stage, store, canvas, changed }) {
   const box = h('div', { id: 'handles' });
   canvas.parentElement.append(box);
   const { scene, camera, controls, toWorld } = stage.inner;
@@ -44,54 +46,46 @@ export function addHandles({ poser, mesh, stage, store, canvas, remember, change
 
   // Once for each picture, however often the pointer moves.
   let next = null;
-  const soon = (action) => {
-    if (next === null) {
-      requestAnimationFrame(() => {
-        const latest = next;
-        next = null;
-        latest();
-      });
-    }
-    next = action;
+  const flush = () => {
+    const latest = next;
+    next = null;
+    latest?.();
   };
-  let from = null; // the pose before the drag
-  const again = (action) => {
-    poser.take(from);
-    action();
-    changed();
+  let drag = null; // that goes on or was the last: the pose before it
+  const soon = (action) => {
+    if (next === null) requestAnimationFrame(flush);
+    const of = drag;
+    next = () => {
+      poser.take(of.from);
+      action();
+      changed(of);
+    };
   };
 
   let grip = null; // what the pointer holds
-  const letGo = () => (grip = null);
-  // The grip stays in the plane through it that faces the eye.
-  const pointAt = (x, y) => {
-    const { origin, direction } = stage.ray(x, y);
-    const along = grip.at.clone().sub(origin).dot(grip.back) / direction.dot(grip.back);
-    return origin.clone().addScaledVector(direction, along);
+  const letGo = () => {
+    flush();
+    grip = null;
   };
-  store.watch(['frame', 'posing'], letGo);
+  store.watch(['frame', 'posing'], () => (grip = next = null));
   let isDragged = false;
   const handles = handlesOf(poser, mesh).map((handle) => {
-    const { name, kind, joint, at, drag } = handle;
+    const { name, kind, joint } = handle;
     const button = h('button', { type: 'button', class: `handle ${kind}`, title: name, 'aria-label': `Handle: ${name}` });
     button.addEventListener('pointerdown', (event) => {
       if (event.button !== 0) return;
       event.preventDefault();
       button.setPointerCapture(event.pointerId);
-      const { back } = stage.camera();
-      grip = { button, x: event.clientX, y: event.clientY, at: at(), back: new Vector3(...back) };
+      grip = { button, hold: event, to: dragPlane(stage, handle.at(), event) };
       isDragged = false;
     });
-    button.addEventListener('pointermove', ({ clientX: x, clientY: y }) => {
-      if (grip?.button !== button || !drag || (!isDragged && Math.hypot(x - grip.x, y - grip.y) < CLICK)) return;
-      if (!isDragged) {
-        isDragged = true;
-        grip.start = pointAt(grip.x, grip.y);
-        remember();
-        from = poser.own.slice();
-      }
-      const to = grip.at.clone().add(pointAt(x, y)).sub(grip.start);
-      soon(() => again(() => drag(to)));
+    button.addEventListener('pointermove', (event) => {
+      if (grip?.button !== button || !handle.drag) return;
+      if (!isDragged && Math.hypot(event.clientX - grip.hold.clientX, event.clientY - grip.hold.clientY) < CLICK) return;
+      if (!isDragged) drag = { from: poser.own.slice() };
+      isDragged = true;
+      const to = grip.to(event);
+      soon(() => handle.drag(to));
     });
     button.addEventListener('pointerup', letGo);
     button.addEventListener('pointercancel', letGo);
@@ -113,9 +107,8 @@ export function addHandles({ poser, mesh, stage, store, canvas, remember, change
   };
   gizmo.addEventListener('dragging-changed', ({ value }) => {
     controls.enabled = !value;
-    if (!value) return;
-    remember();
-    from = poser.own.slice();
+    if (!value) return flush();
+    drag = { from: poser.own.slice() };
     rest = own.quaternion.clone();
   });
   gizmo.addEventListener('objectChange', () => {
@@ -125,7 +118,7 @@ export function addHandles({ poser, mesh, stage, store, canvas, remember, change
     toWorld().clone().decompose(new Vector3(), axes, new Vector3());
     const inSource = axes.clone().invert().multiply(by).multiply(axes);
     const { joint } = store.state;
-    soon(() => again(() => poser.turn(joint, inSource)));
+    soon(() => poser.turn(joint, inSource));
   });
   gizmo.addEventListener('change', () => stage.invalidate());
   store.watch(['joint', 'pose'], ({ joint, posing }) => {
@@ -147,13 +140,21 @@ export function addHandles({ poser, mesh, stage, store, canvas, remember, change
 
   let project = null;
   return {
+    isDragging: () => grip !== null || gizmo.dragging,
     // Handles go to their joints in the picture; `latest` takes source units to pixels.
     place(latest = project) {
       project = latest;
       box.hidden = !store.state.posing;
       if (box.hidden || !project) return;
-      for (const { at, button, kind } of handles) {
-        const { x, y, depth } = project(...at().toArray());
+      const rank = ({ kind, joint }) => (kind !== 'joint' ? 0 : joint === store.state.joint ? 1 : 2);
+      const seen = handles.map(({ at, ...handle }) => ({ ...handle, ...project(...at().toArray()) }));
+      seen.sort((a, b) => rank(a) - rank(b) || a.depth - b.depth);
+      const shown = [];
+      for (const handle of seen) {
+        const { x, y, depth, button, kind } = handle;
+        button.hidden = rank(handle) === 2 && shown.some((other) => Math.hypot(other.x - x, other.y - y) < NEAR);
+        if (button.hidden) continue;
+        shown.push(handle);
         button.style.zIndex = Math.round(1e6 * (1 - depth)) + (kind === 'joint' ? 0 : 1e7); // the nearest on top, small ones below
         button.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translate(-50%, -50%)`;
       }

@@ -78,6 +78,13 @@ export class Poser {
     return point.clone().applyMatrix4(this.wholeOf(j));
   }
 
+  // By how many degrees a joint is turned from rest.
+  angle(j) {
+    const turn = new Quaternion();
+    matrix(this.own, 12 * j).decompose(new Vector3(), turn, new Vector3());
+    return (2 * Math.atan2(Math.hypot(turn.x, turn.y, turn.z), Math.abs(turn.w)) * 180) / Math.PI;
+  }
+
   // Moves a joint and all below it, in the space of the pose.
   apply(j, movement) {
     const { parent } = this.rig.joints[j];

@@ -1,5 +1,6 @@
 import './posing.css';
-import { h } from './dom.js';
+import { commandBlock, h } from './dom.js';
+import { History, stepOf } from './history.js';
 import { hasRuntime, openLive } from './live.js';
 import { addHandles } from './pose_handles.js';
 import { Poser } from './poser.js';
@@ -49,12 +50,12 @@ export function addPosing({ model, skin, store, stage, toolbar, canvas }) {
   const posed = new Posed(model, skin);
   const { poser } = posed;
   const refit = new Refit(model.inspect, model.mesh, skin);
-  const history = []; // poses that a drag or a reset has changed: {frame, own}
+  const history = new History({ frame: null, isChanged: false }); // {frame, own, isChanged}: whether it is other than its frame's
+  let saved = null;
   let live = null;
   let fullMs = Infinity; // that the last full measure took
   let settle = 0;
   let isSettled = false;
-  let isChanged = false; // the frame's pose, since it was taken over
   const times = { contacts: 0, depths: 0, all: 0 }; // milliseconds of the last change: all is what the drawing waits for
 
   const find = (isQuick, isLast = false) => {
@@ -76,10 +77,8 @@ export function addPosing({ model, skin, store, stage, toolbar, canvas }) {
     };
     store.set({ pose: store.state.pose + 1 });
   };
-  const changed = () => {
-    if (posed.frame === null) return; // left meanwhile
+  const show = () => {
     const start = performance.now();
-    isChanged = true;
     posed.show();
     const isQuick = fullMs > FAST_MS;
     clearTimeout(settle);
@@ -87,14 +86,14 @@ export function addPosing({ model, skin, store, stage, toolbar, canvas }) {
     find(isQuick);
     times.all = performance.now() - start;
   };
-  const remember = () => {
-    history.push({ frame: posed.frame, own: poser.own.slice() });
-    if (history.length > 200) history.shift();
+  const stateNow = (isChanged) => ({ frame: posed.frame, own: poser.own.slice(), isChanged });
+  // `drag`: the movement that goes on; all of it is one step back.
+  const changed = (drag) => {
+    history.push(stateNow(true), drag);
+    show();
   };
   const stop = () => {
     clearTimeout(settle);
-    if (isChanged) remember(); // undo brings it back
-    isChanged = false;
     posed.stop();
     model.live = null;
     model.contacts.show(null);
@@ -114,55 +113,77 @@ export function addPosing({ model, skin, store, stage, toolbar, canvas }) {
       (error) => say(`This browser cannot find contacts: ${error.message}`),
     );
   };
+  let isGoingBack = false;
+  // A pose that was left stays in the history.
   const start = (frame) => {
     load();
     posed.start(frame);
+    const { now } = history;
+    if (!isGoingBack && now.isChanged) history.push(stateNow(false));
+    else if (!isGoingBack && now.frame !== frame) history.replace(stateNow(false));
     find(false, true);
   };
 
-  const undo = () => {
-    const last = history.pop();
-    if (!last) return;
-    isChanged = false; // what is taken back now is not to come back
-    if (last.frame !== posed.frame) store.set({ frame: last.frame });
-    poser.take(last.own);
-    changed();
+  const step = (by) => {
+    if (handles.isDragging()) return;
+    history.step(by);
+    const { frame, own } = history.now;
+    isGoingBack = true;
+    store.set({ frame });
+    isGoingBack = false;
+    poser.take(own);
+    show();
   };
   const reset = () => {
-    remember();
+    if (!history.now.isChanged) return;
     poser.load(posed.kept);
-    changed();
+    history.push(stateNow(false));
+    show();
   };
   const file = () => {
     const clip = model.clips[model.clipAt(posed.frame)].name;
     const name = `pose of ${model.title.replace(/[.]sphc$/, '')}`;
     return poser.file(name, `From ${clip}, frame ${model.number(posed.frame)}.`, model.rig.morphWeights(posed.frame));
   };
+  const fileName = `${model.title.replace(/[.]sphc$/, '')}_pose.json`;
   const save = () => {
     const url = URL.createObjectURL(new Blob([textOf(file())], { type: 'application/json' }));
-    h('a', { href: url, download: `${model.title.replace(/[.]sphc$/, '')}_pose.json` }).click();
+    h('a', { href: url, download: fileName }).click();
     setTimeout(() => URL.revokeObjectURL(url), 10000);
+    saved = history.now;
+    tell();
   };
 
   const button = (id, text, title, onclick) => h('button', { type: 'button', id, title, onclick }, text);
   const toggle = () => store.set({ posing: !store.state.posing, playing: false });
   const open = button('pose', 'Pose', 'Pose the character by hand (J)', toggle);
-  const undoButton = button('pose-undo', 'Undo', 'Undo the last change (Ctrl Z)', undo);
+  const undoButton = button('pose-undo', 'Undo', 'Undo the last change (Ctrl Z)', () => step(-1));
+  const redoButton = button('pose-redo', 'Redo', 'Redo what was undone (Ctrl Shift Z, Ctrl Y)', () => step(1));
   const resetButton = button('pose-reset', 'As in the frame', 'Back to the pose of the frame', reset);
   const saveButton = button('pose-save', 'Save pose', 'Download the pose as a pose file', save);
   const status = h('p', { role: 'status' });
+  const turned = h('p', { id: 'pose-joint' });
+  const command = commandBlock('spherechain', 'play', model.title, '--source', model.inspect.source.file, '--poses', fileName, '--frames', '1');
+  const how = h('div', { id: 'pose-how' }, h('p', {}, 'Its contacts, printed:'), command);
   const bar = h(
     'div',
     { id: 'posing', 'aria-label': 'Pose', role: 'group', hidden: true },
     h('p', {}, 'Drag a handle. Click a joint to turn it.'),
-    undoButton,
+    turned,
+    h('div', { class: 'pose-steps' }, undoButton, redoButton),
     resetButton,
     saveButton,
+    how,
     status,
   );
   toolbar.before(open);
   canvas.parentElement.append(bar);
-  const handles = addHandles({ poser, mesh: model.mesh, stage, store, canvas, remember, changed });
+  const handles = addHandles({ poser, mesh: model.mesh, stage, store, canvas, changed });
+  const tell = () => {
+    undoButton.disabled = !history.canUndo;
+    redoButton.disabled = !history.canRedo;
+    how.hidden = history.now !== saved;
+  };
 
   store.watch(['posing', 'frame'], ({ posing, frame }) => {
     open.setAttribute('aria-pressed', posing);
@@ -173,16 +194,26 @@ export function addPosing({ model, skin, store, stage, toolbar, canvas }) {
   });
   store.watch(['playing'], ({ playing }) => playing && store.set({ posing: false }));
   store.watch(['pose', 'posing'], () => {
-    undoButton.disabled = history.length === 0;
+    tell();
     handles.place();
   });
-  document.addEventListener('keydown', (event) => {
-    if (!store.state.posing || !(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== 'z') return;
-    event.preventDefault();
-    undo();
+  store.watch(['pose', 'posing', 'joint'], ({ posing, joint }) => {
+    turned.hidden = !posing || joint === null;
+    if (!turned.hidden) turned.replaceChildren(h('b', {}, model.rig.joints[joint].name), ` ${poser.angle(joint).toFixed(0)}° from rest`);
   });
+  document.addEventListener('keydown', (event) => {
+    const by = stepOf(event);
+    if (!store.state.posing || by === 0 || document.querySelector('dialog[open]')) return;
+    event.preventDefault();
+    step(by);
+  });
+  addEventListener('beforeunload', (event) => history.now.isChanged && history.now !== saved && event.preventDefault());
 
-  return { toggle, place: handles.place, file, times, isLive: () => live !== null, isSettled: () => isSettled };
+  const keys = [
+    ['J', 'j', 'Pose the character by hand', toggle],
+    ['Ctrl Z', null, 'Pose: undo; with Shift redo', () => {}],
+  ];
+  return { keys, toggle, place: handles.place, file, times, isLive: () => live !== null, isSettled: () => isSettled };
 }
 
 // A joint a line.

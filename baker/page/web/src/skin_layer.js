@@ -125,8 +125,8 @@ export class SkinLayer {
     };
     this.depth = mesh(3, 0, { colorWrite: false });
     // Behind the skin where it is in the same place.
-    const ghost = mesh(8, 1, { depthWrite: false, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 40 });
-    this.group = new THREE.Group().add(this.depth, mesh(4, 0, { depthWrite: false }), ghost);
+    const ghost = () => mesh(8, 1, { depthWrite: false, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 40 });
+    this.group = new THREE.Group().add(this.depth, mesh(4, 0, { depthWrite: false }), ...(skin.mesh.changed ? [ghost()] : []));
     for (const mesh of this.group.children) mesh.frustumCulled = false;
   }
 

@@ -58,7 +58,7 @@ export class SphereLayer {
     this.spheres = attribute('sphere', 4);
     this.colours = attribute('colour', 4);
     this.rims = attribute('rim', 1);
-    geometry.instanceCount = count;
+    this.geometry = geometry;
     this.rimColour = new THREE.Color();
     const material = (solid, settings) =>
       new THREE.ShaderMaterial({
@@ -77,10 +77,12 @@ export class SphereLayer {
     for (const mesh of this.group.children) mesh.frustumCulled = false;
   }
 
-  // Writes the items, the farthest from `eye` first.
+  // Writes the items that are seen, the farthest from `eye` first.
   upload(eye) {
     const distance = ({ sphere }) => (sphere[0] - eye.x) ** 2 + (sphere[1] - eye.y) ** 2 + (sphere[2] - eye.z) ** 2;
-    const order = this.items.map((item) => ({ item, far: distance(item) })).sort((a, b) => b.far - a.far);
+    const seen = this.items.filter(({ alpha }) => alpha > 0);
+    const order = seen.map((item) => ({ item, far: distance(item) })).sort((a, b) => b.far - a.far);
+    this.geometry.instanceCount = order.length;
     order.forEach(({ item }, i) => {
       this.spheres.array.set(item.sphere, 4 * i);
       this.colours.array.set([item.colour.r, item.colour.g, item.colour.b, item.alpha], 4 * i);

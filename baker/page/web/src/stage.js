@@ -3,9 +3,11 @@ import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { createViewFinder } from './best_view.js';
 import { createFloor } from './floor.js';
 import { createFraming } from './framing.js';
+import { createHeading } from './heading.js';
 
 // The view of the character: renderer, camera, orbit controls.
 
+// Directions from the character, as it stands at rest.
 const VIEWS = { front: [0, 0.06, 1], side: [1, 0.06, 0], back: [0, 0.06, -1], top: [0, 1, 0.0001] };
 const FLIGHT_MS = 450;
 const FIELD_OF_VIEW = 26;
@@ -47,7 +49,8 @@ export function createStage(canvas, model, store, { skinLayer, sphereLayer, cont
   let beforeDraw = () => {};
   let afterDraw = () => {};
   let flight = null;
-  let framed = 'front'; // the preset that a change of size or clip keeps
+  let framed = 'front'; // the view that a change of size or clip keeps
+  let heading = 0; // of the character when that view was asked for
   let waiting = false;
 
   function place() {
@@ -131,11 +134,20 @@ export function createStage(canvas, model, store, { skinLayer, sphereLayer, cont
     return { target, position: target.clone().addScaledVector(back, distance) };
   }
 
-  function view(name, fly = true) {
+  const eyeOfView = () => eyeFor(new THREE.Vector3(...VIEWS[framed]).applyAxisAngle(new THREE.Vector3(0, 1, 0), heading));
+
+  // From the character's own front, side or back, whichever way it has turned.
+  function aim(name) {
+    const { frame, editing } = store.state;
     framed = name;
-    const eye = eyeFor(new THREE.Vector3(...VIEWS[name]));
-    if (fly) return go(eye.target, eye.position);
-    show(eye);
+    if (!editing) skinLayer.pose(frame);
+    heading = editing ? 0 : headingNow();
+    return eyeOfView();
+  }
+
+  function view(name) {
+    const { target, position } = aim(name);
+    go(target, position);
   }
 
   // At once.
@@ -153,7 +165,7 @@ export function createStage(canvas, model, store, { skinLayer, sphereLayer, cont
     renderer.setSize(width, height, false);
     camera.aspect = width / height;
     camera.updateProjectionMatrix();
-    if (framed) view(framed, false);
+    if (framed) show(eyeOfView());
     invalidate();
   }
 
@@ -179,15 +191,19 @@ export function createStage(canvas, model, store, { skinLayer, sphereLayer, cont
   });
   controls.addEventListener('change', invalidate);
   new ResizeObserver(resize).observe(canvas);
+  const headingNow = createHeading(model, skinLayer.skin);
+  aim('front');
   resize();
   let boundsKey = '';
+  let standing = '';
   store.watch(['frame', 'follow', 'over', 'editing'], ({ frame, follow, over, editing }) => {
     const key = `${model.clipAt(frame)} ${follow} ${over} ${editing}`;
     if (key === boundsKey) return;
     const isElsewhere = boundsKey !== '' && boundsKey.endsWith('true') !== editing; // the rest pose may stand where no frame does
     boundsKey = key;
     measure();
-    if (framed) view(framed, false);
+    const isNew = standing !== (standing = `${model.clipAt(frame)} ${editing}`);
+    if (framed) show(isNew ? aim(framed) : eyeOfView());
     else if (isElsewhere) show(eyeFor(camera.position.clone().sub(controls.target)));
   });
 

@@ -1,5 +1,6 @@
 import { css, fitCanvas, h } from './dom.js';
-import { plural } from './format.js';
+import { isFault } from './contacts.js';
+import { plural, withoutCommonStart } from './format.js';
 import { CONTACT, FALSE_ALARM } from './palette.js';
 
 // Play, step, scrub. A frame with a fault has a bar, as high as it is deep; one in which the skin only folds or touches has a
@@ -28,17 +29,19 @@ function drawNumbers(context, { model, x, base, height, perFrame, inRange }) {
 
 function drawClips(context, { model, x, base, inRange }) {
   if (model.clips.length < 2) return;
+  const names = withoutCommonStart(model.clips.map(({ name }) => name));
   let marked = -Infinity;
-  for (const { name, first, count } of model.clips.filter(inRange)) {
+  for (const [i, { first, count }] of model.clips.entries()) {
+    if (!inRange(model.clips[i])) continue;
     const left = x(first);
     if (left < marked + 4) continue; // too near to tell apart
     marked = left;
     const right = x(first + count);
     context.fillStyle = css('--muted');
     context.fillRect(left, 0, 1, base + 4);
-    let text = name;
+    let text = names[i];
     while (text.length > 1 && context.measureText(text).width > right - left - 8) text = `${text.slice(0, -2)}…`;
-    if (text.length < 6 && text !== name) continue;
+    if (text.length < 6 && text !== names[i]) continue;
     context.textAlign = 'left';
     context.fillText(text, left + 4, 11);
   }
@@ -114,14 +117,15 @@ export function fillTimeline(panel, store, model) {
   });
   store.watch(['frame', 'pose'], ({ frame }) => {
     const clip = model.clips[model.clipAt(frame)];
-    const touching = model.contacts.now(frame).length;
+    const contacts = model.contacts.now(frame);
+    const touching = contacts.length;
     const number = model.number(frame);
     const text = touching > 0 ? plural(touching, 'contact') : 'no contact';
     input.setAttribute('aria-valuetext', `${clip.name}, frame ${number}, ${text}`);
     readout.replaceChildren(
       last === 0 ? h('b', {}, 'One frame') : h('span', {}, 'frame ', h('b', {}, `${number}`), ` / ${clip.own_count - 1}`),
       h('span', {}, `${model.seconds(frame).toFixed(2)} s`),
-      h('span', { class: touching > 0 ? 'warning' : '' }, text),
+      h('span', { class: contacts.some(isFault) ? 'warning' : '' }, text),
     );
   });
   const draw = () => drawBars(bars, model, store.state);

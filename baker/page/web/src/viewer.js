@@ -184,7 +184,7 @@ export function start(model) {
   bindTabs(store);
   bindDrawer();
   const reset = () => {
-    store.set(startState);
+    store.set(layers.editor?.asReset(startState) ?? startState);
     stage?.view('front');
   };
   $('reset').addEventListener('click', reset);

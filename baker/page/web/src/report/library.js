@@ -131,7 +131,7 @@ function start(library) {
     end.unobserve($('end'));
     if (left.length > 0) end.observe($('end'));
   };
-  const end = new IntersectionObserver(([{ isIntersecting }]) => isIntersecting && drawMore(), { root: document.querySelector('main'), rootMargin: '1500px' });
+  const end = new IntersectionObserver((entries) => entries.at(-1).isIntersecting && drawMore(), { root: document.querySelector('main'), rootMargin: '1500px' });
 
   const draw = () => {
     const { of } = COLUMNS[state.sort];
