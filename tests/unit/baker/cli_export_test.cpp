@@ -40,7 +40,7 @@ TEST_CASE("export: the JSON has the human's parts, each after the one it hangs o
   CHECK(out["height"].get<double>() == doctest::Approx(1.7).epsilon(0.1));
 }
 
-TEST_CASE("export: what is wrong is said before anything is written") {
+TEST_CASE("export: what is wrong is said before anything is written" * doctest::test_suite("many bakes")) {
   const TemporaryFolder folder;
   const auto refused = [&](const std::string& words, int code, const std::vector<std::string>& parts,
                            const std::string& name = "human.xml") {
@@ -60,7 +60,8 @@ TEST_CASE("export: what is wrong is said before anything is written") {
   refused("--to usd", 2, {"human.usdc", ".usda or .usd"}, "human.usdc");
 }
 
-TEST_CASE("export: a file of somebody else stays, also beside the output, but by force") {
+TEST_CASE("export: a file of somebody else stays, also beside the output, but by force" *
+          doctest::test_suite("many bakes")) {
   const TemporaryFolder folder;
   const std::filesystem::path beside = folder.write("human.srdf", "somebody's");
   const std::string words = export_of(folder.path / "human.urdf", "--to urdf");

@@ -101,7 +101,8 @@ void check_each_is_needed(Reader read, const json& whole, const std::vector<cons
 
 }  // namespace
 
-TEST_CASE("a bake report is shown only whole: each key that the page reads is asked for by name") {
+TEST_CASE("a bake report is shown only whole: each key that the page reads is asked for by name" *
+          doctest::test_suite("many bakes")) {
   check_each_is_needed(read_bake_report, made().report,
                        {"/source",
                         "/source/sha256",

@@ -5,7 +5,8 @@
 
 using namespace spherechain::baker;
 
-TEST_CASE("a rebake gives the bytes of a bake from the file, whether its spheres stay or not") {
+TEST_CASE("a rebake gives the bytes of a bake from the file, whether its spheres stay or not" *
+          doctest::test_suite("many bakes")) {
   const Bake& balanced = baked_human();
   const Bake& paper = paper_baked_human();
   CHECK(rebake(balanced, paper.settings).asset == paper.asset);

@@ -78,7 +78,8 @@ std::vector<Deformation> frames_of_clips(const SourceRig& rig) {
 
 }  // namespace
 
-TEST_CASE("on the automatic rig, along Bezier curves of poses, bones give the spheres of the skinned mesh") {
+TEST_CASE("on the automatic rig, along Bezier curves of poses, bones give the spheres of the skinned mesh" *
+          doctest::test_suite("many bakes")) {
   const Bake& bake = baked_human();
   std::vector<Deformation> frames;
   for (const char* name : {"animation_arms.json", "animation_legs.json", "hands_on_hips.json", "deep_squat.json"}) {
