@@ -4,7 +4,7 @@ import { looks } from './skin_layer.js';
 
 function dressSkin(model, state, skinLayer) {
   skinLayer.group.visible = state.skin;
-  skinLayer.uniforms.opacity.value = state.skinOpacity;
+  skinLayer.setOpacity(state.skinOpacity);
   skinLayer.skin.layOver(state.over);
   if (!state.editing) skinLayer.pose(state.frame); // else it stands at rest
   const plain = state.regions || state.patches || !state.look;

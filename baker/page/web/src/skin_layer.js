@@ -126,8 +126,16 @@ export class SkinLayer {
     this.depth = mesh(3, 0, { colorWrite: false });
     // Behind the skin where it is in the same place.
     const ghost = () => mesh(8, 1, { depthWrite: false, polygonOffset: true, polygonOffsetFactor: 2, polygonOffsetUnits: 40 });
-    this.group = new THREE.Group().add(this.depth, mesh(4, 0, { depthWrite: false }), ...(skin.mesh.changed ? [ghost()] : []));
+    this.surface = mesh(4, 0, {});
+    this.group = new THREE.Group().add(this.depth, this.surface, ...(skin.mesh.changed ? [ghost()] : []));
     for (const mesh of this.group.children) mesh.frustumCulled = false;
+  }
+
+  // Skin that is seen through shows its front alone: depths come before colours.
+  setOpacity(opacity) {
+    this.uniforms.opacity.value = opacity;
+    this.depth.visible = opacity < 1;
+    this.surface.material.depthWrite = opacity === 1;
   }
 
   setLook(zone, colour, kind) {
