@@ -24,9 +24,8 @@ struct AppliedEdit {
 };
 
 // Changes fitted spheres. An edit is about the sphere of its region whose centre is nearest to `from`, if that lies in
-// it; each sphere is one edit's. A region keeps its last sphere. No sphere goes away from its region's skin. Links and
-// owners of triangles follow.
-// `applied` gets the edits that changed or added a sphere.
+// it; each sphere is one edit's. A region keeps its last sphere. Edits that would end far from their region's skin are
+// missed. Links and owners of triangles follow. `applied` gets the edits that changed or added a sphere.
 Spheres edit_spheres(const Character& character, const Regions& regions, const Spheres& spheres,
                      const std::vector<SphereEdit>& edits, EditsDone& done, std::vector<AppliedEdit>& applied);
 
