@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <memory>
+#include <queue>
+#include <utility>
 
 #include "clusters/clusters.h"
 #include "clusters/round_up.h"
@@ -12,9 +14,10 @@ namespace {
 
 constexpr Eigen::Index kPointsMax = 96, kLanes = 16;  // points of a hull at most; its points come in lanes
 constexpr double kNear = 0.03;              // of the spheres' mean radius: as near to the hull as this is near enough
+constexpr double kNearest = 0.25;           // of that: no nearer point is looked for
 constexpr Eigen::Index kCandidates = 2048;  // vertices of a sphere that may be points of its hull
-constexpr double kEnough = 1e-9;  // of the squared radius: a step that shortens a squared distance by less is the last
-constexpr int kStepsAPoint = 12, kLastSteps = 200, kOnlySteps = 120;
+constexpr double kEnough = 0.01;            // of a distance: what is found may be longer by this
+constexpr int kStepsMax = 100;
 constexpr double kRounding = 1e-13;  // more than double precision takes from shares and sums, of lengths of 1
 
 // A sphere's vertices as the asset has them: their places, seen from the hull's centre, and their weights.
@@ -83,92 +86,131 @@ Eigen::MatrixXd lift(const Skin& skin) {
   return out;
 }
 
-// For each point the shares of the chosen points whose mean is nearest to it. Steps that move a part of one share to
-// another approach them.
+// A mean of chosen points: which, and their shares, which sum to 1.
+struct Mean {
+  std::vector<Eigen::Index> of;
+  std::vector<double> shares;
+  double distance = std::numeric_limits<double>::max();  // to the vertex that it stands for
+};
+
+// The means of chosen points that are nearest to vertices: the nearest points of their hull, by Wolfe's algorithm
+// ("Finding the nearest point in a polytope", 1976). A step takes in the point that lies farthest towards the vertex,
+// and goes to the nearest mean of those taken in; where shares would be negative, it drops their points on the way.
 class NearestMeans {
  public:
-  explicit NearestMeans(const Eigen::MatrixXd& points)
-      : points_(points),
-        enough_(kEnough * points.colwise().squaredNorm().maxCoeff()),
-        shares_(Eigen::MatrixXd::Zero(kPointsMax, points.cols())),
-        slopes_(shares_) {}
+  NearestMeans(const Eigen::MatrixXd& vertices, double near_enough)
+      : vertices_(vertices),
+        near_enough_(near_enough),
+        points_(kPointsMax, vertices.rows()),
+        means_(static_cast<std::size_t>(vertices.cols())) {}
 
   Eigen::Index count() const { return static_cast<Eigen::Index>(chosen_.size()); }
   const std::vector<Eigen::Index>& chosen() const { return chosen_; }
-  double share(std::size_t point, std::size_t of) const {
-    return shares_(static_cast<Eigen::Index>(of), static_cast<Eigen::Index>(point));
+  const Mean& mean(Eigen::Index vertex) const { return means_[static_cast<std::size_t>(vertex)]; }
+
+  void choose(Eigen::Index vertex) {
+    points_.row(count()) = vertices_.col(vertex).transpose();
+    chosen_.push_back(vertex);
   }
 
-  void choose(Eigen::Index point) {
-    const auto last = static_cast<Eigen::Index>(chosen_.size());
-    chosen_.push_back(point);
-    const Eigen::VectorXd with_all = points_.transpose() * points_.col(point);
-    for (Eigen::Index k = 0; k <= last; ++k) {
-      products_(k, last) = products_(last, k) = with_all[chosen_[static_cast<std::size_t>(k)]];
+  void find(Eigen::Index vertex) {
+    Mean& mean = means_[static_cast<std::size_t>(vertex)];
+    const auto place = vertices_.col(vertex);
+    const auto points = points_.topRows(count());
+    if (mean.of.empty()) {
+      Eigen::Index nearest = 0;
+      (points.rowwise() - place.transpose()).rowwise().squaredNorm().minCoeff(&nearest);
+      mean.of = {nearest};
+      mean.shares = {1};
     }
-    if (last == 0) shares_.row(0).setOnes();
-    slopes_.row(last) = products_.row(last).head(last + 1) * shares_.topRows(last + 1) - with_all.transpose();
-  }
-
-  double distance(Eigen::Index point) const {
-    const auto m = static_cast<Eigen::Index>(chosen_.size());
-    Eigen::VectorXd off = points_.col(point);
-    for (Eigen::Index k = 0; k < m; ++k) {
-      if (shares_(k, point) > 0) off -= shares_(k, point) * points_.col(chosen_[static_cast<std::size_t>(k)]);
-    }
-    return off.norm();
-  }
-
-  void improve(Eigen::Index point, int steps) {
-    const auto m = static_cast<Eigen::Index>(chosen_.size());
-    auto shares = shares_.col(point).head(m);
-    auto slopes = slopes_.col(point).head(m);
-    for (int step = 0; step < steps; ++step) {
-      Eigen::Index to = 0, from = -1;
-      for (Eigen::Index k = 0; k < m; ++k) {
-        if (slopes[k] < slopes[to]) to = k;
-        if (shares[k] > 0 && (from < 0 || slopes[k] > slopes[from])) from = k;
+    double before = std::numeric_limits<double>::max();
+    for (int step = 0; step < kStepsMax; ++step) {
+      off_ = -place;
+      for (std::size_t k = 0; k < mean.of.size(); ++k) off_ += mean.shares[k] * points_.row(mean.of[k]).transpose();
+      mean.distance = off_.norm();
+      if (mean.distance <= near_enough_ || mean.distance >= before) return;
+      before = mean.distance;
+      Eigen::Index next = 0;
+      towards_.noalias() = points * off_;
+      const double farthest = off_.dot(off_ + place) - towards_.minCoeff(&next);
+      if (farthest <= kEnough * mean.distance * mean.distance) return;
+      mean.of.push_back(next);
+      mean.shares.push_back(0);
+      while (drop_on_the_way(place, mean)) {
       }
-      const double squared = products_(to, to) + products_(from, from) - 2 * products_(to, from);
-      const double down = slopes[from] - slopes[to];
-      if (!(down > 0) || !(squared > 0)) break;
-      const double moved = std::min(down / squared, shares[from]);
-      if (moved * down < enough_) break;
-      shares[to] += moved;
-      shares[from] -= moved;
-      slopes += moved * (products_.col(to) - products_.col(from)).head(m);
     }
   }
 
  private:
-  const Eigen::MatrixXd& points_;
-  double enough_;
+  // Goes to the nearest mean on the plane of its points, or as far as no share is negative. Returns whether it dropped
+  // points.
+  bool drop_on_the_way(const Eigen::Ref<const Eigen::VectorXd>& place, Mean& mean) {
+    const auto count = static_cast<Eigen::Index>(mean.of.size());
+    from_.resize(place.size(), count);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      from_.col(k) = points_.row(mean.of[static_cast<std::size_t>(k)]).transpose() - place;
+    }
+    // The shares of the least mean are those of this system's solution, over their sum. What is added to each of the
+    // products changes their size alone, and makes the system regular.
+    products_.noalias() = from_.transpose() * from_;
+    products_.array() += products_.trace() / static_cast<double>(count);
+    const Eigen::LLT<Eigen::MatrixXd> factors(products_);
+    wanted_ = factors.solve(Eigen::VectorXd::Ones(count));
+    wanted_ /= wanted_.sum();
+    if (factors.info() != Eigen::Success || !wanted_.allFinite()) return false;
+    double way = 1;
+    std::size_t first = 0;  // to be dropped
+    for (std::size_t k = 0; k < mean.of.size(); ++k) {
+      const double share = mean.shares[k], wanted = wanted_[static_cast<Eigen::Index>(k)];
+      if (wanted >= 0 || share > way * (share - wanted)) continue;
+      way = share / (share - wanted);
+      first = k;
+    }
+    for (std::size_t k = 0; k < mean.of.size(); ++k) {
+      mean.shares[k] += way * (wanted_[static_cast<Eigen::Index>(k)] - mean.shares[k]);
+    }
+    if (way == 1) return false;
+    mean.of.erase(mean.of.begin() + static_cast<std::ptrdiff_t>(first));
+    mean.shares.erase(mean.shares.begin() + static_cast<std::ptrdiff_t>(first));
+    return true;
+  }
+
+  const Eigen::MatrixXd& vertices_;
+  double near_enough_;
+  Eigen::MatrixXd points_;  // a row each
   std::vector<Eigen::Index> chosen_;
-  Eigen::Matrix<double, kPointsMax, kPointsMax> products_;
-  Eigen::MatrixXd shares_, slopes_;  // a point's column: of the chosen ones
+  std::vector<Mean> means_;
+  Eigen::VectorXd off_, towards_, wanted_;
+  Eigen::MatrixXd from_, products_;
 };
 
-// Chooses the point that is farthest from the hull of the points before, again and again. Of fine skin it looks at an
-// even part: that the others are near is measured, not assumed.
-void choose_points(const Eigen::MatrixXd& points, double near, NearestMeans& means) {
-  Eigen::VectorXd distances(points.cols());
+// Chooses the vertex that is farthest from the hull of those before, again and again. More points bring no vertex
+// farther away: only those that may be farthest are looked at again. Of fine skin it looks at an even part: that the
+// others are near is measured, not assumed.
+NearestMeans choose_points(const Eigen::MatrixXd& vertices, double near) {
+  NearestMeans means(vertices, kNearest * near);
+  const Eigen::Index stride = (vertices.cols() + kCandidates - 1) / kCandidates;
+  using Seen = std::pair<double, Eigen::Index>;  // a vertex, and its distance when it was last looked at
+  std::priority_queue<Seen> candidates;
+  for (Eigen::Index v = 0; v < vertices.cols(); v += stride) {
+    candidates.emplace(std::numeric_limits<double>::max(), v);
+  }
+  std::vector<Eigen::Index> looked_at(static_cast<std::size_t>(vertices.cols()), 0);  // when there were so many points
   Eigen::Index farthest = 0;
-  points.colwise().squaredNorm().maxCoeff(&farthest);
-  distances.setConstant(std::numeric_limits<double>::max());
-  const Eigen::Index stride = (points.cols() + kCandidates - 1) / kCandidates;
+  vertices.colwise().squaredNorm().maxCoeff(&farthest);
   do {
     means.choose(farthest);
-    farthest = 0;
-    for (Eigen::Index v = 0; v < points.cols(); v += stride) {
-      if (distances[v] > near) {
-        means.improve(v, kStepsAPoint);
-        distances[v] = means.distance(v);
-      }
-      if (distances[v] > distances[farthest]) farthest = v;
+    for (farthest = candidates.top().second; looked_at[static_cast<std::size_t>(farthest)] < means.count();
+         farthest = candidates.top().second) {
+      candidates.pop();
+      means.find(farthest);
+      looked_at[static_cast<std::size_t>(farthest)] = means.count();
+      candidates.emplace(means.mean(farthest).distance, farthest);
     }
-  } while (means.count() < std::min(kPointsMax, points.cols()) &&
-           (means.count() % kLanes != 0 || distances[farthest] > near));
-  for (Eigen::Index v = 0; v < points.cols(); ++v) means.improve(v, v % stride == 0 ? kLastSteps : kOnlySteps);
+  } while (means.count() < std::min(kPointsMax, vertices.cols()) &&
+           (means.count() % kLanes != 0 || candidates.top().first > near));
+  for (Eigen::Index v = 0; v < vertices.cols(); ++v) means.find(v);
+  return means;
 }
 
 // Measures how far the vertices are from their means: the differences of w_b (v - center; 1), bone by bone.
@@ -176,12 +218,13 @@ void measure(const Skin& skin, const NearestMeans& means, Hull& out) {
   std::vector<Eigen::Vector4d> most(skin.bones.size(), Eigen::Vector4d::Zero());
   double slack = 0;
   for (std::size_t v = 0; v < skin.vertices.size(); ++v) {
+    const Mean& mean = means.mean(static_cast<Eigen::Index>(v));
     Vec3 sum = Vec3::Zero();
     for (std::size_t b = 0; b < skin.bones.size(); ++b) {
       Eigen::Vector4d off = skin.weights[v][b] * skin.places[v].homogeneous();
-      for (std::size_t k = 0; k < means.chosen().size(); ++k) {
-        const auto point = static_cast<std::size_t>(means.chosen()[k]);
-        off -= means.share(v, k) * skin.weights[point][b] * skin.places[point].homogeneous();
+      for (std::size_t k = 0; k < mean.of.size(); ++k) {
+        const auto point = static_cast<std::size_t>(means.chosen()[static_cast<std::size_t>(mean.of[k])]);
+        off -= mean.shares[k] * skin.weights[point][b] * skin.places[point].homogeneous();
       }
       most[b] = most[b].cwiseMax(off.cwiseAbs());
       sum += off.head<3>();
@@ -200,13 +243,12 @@ Hull hull_of(const Skin& skin, double near) {
   Hull out;
   if (skin.vertices.empty()) return out;
   const Eigen::MatrixXd lifted = lift(skin);
-  const auto means = std::make_unique<NearestMeans>(lifted);
-  choose_points(lifted, near, *means);
-  for (const Eigen::Index point : means->chosen()) out.points.push_back(skin.vertices[static_cast<std::size_t>(point)]);
+  const NearestMeans means = choose_points(lifted, near);
+  for (const Eigen::Index point : means.chosen()) out.points.push_back(skin.vertices[static_cast<std::size_t>(point)]);
   out.points.resize((out.points.size() + kLanes - 1) / kLanes * kLanes, out.points.back());
   out.center = skin.center;
   out.radius = round_up(skin.radius * (1 + 1e-15));
-  measure(skin, *means, out);
+  measure(skin, means, out);
   return out;
 }
 

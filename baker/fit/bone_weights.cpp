@@ -8,6 +8,7 @@ namespace spherechain::baker {
 BoneWeights mean_weights(const Character& character, const std::vector<Index>& triangles) {
   BoneWeights means;
   if (character.rig.weights.empty()) return means;
+  means.reserve(3 * kMaxInfluences);
   double sum = 0;
   for (const Index t : triangles) {
     const double share = triangle_area(character.skin, t) / 3;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <map>
+#include <boost/container/flat_map.hpp>
 #include <vector>
 
 #include "import/import.h"
@@ -9,7 +9,7 @@
 namespace spherechain::baker {
 
 // How much each bone moves some skin: the mean of its vertices' weights by area.
-using BoneWeights = std::map<Index, double>;
+using BoneWeights = boost::container::flat_map<Index, double>;
 
 // Of triangles of Character::skin; empty where the source has no bones.
 BoneWeights mean_weights(const Character& character, const std::vector<Index>& triangles);

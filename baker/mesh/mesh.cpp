@@ -4,12 +4,51 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <numeric>
-#include <unordered_map>
+#include <span>
+#include <tuple>
 
 namespace spherechain::baker {
 namespace {
 
-std::uint64_t directed_edge(Index a, Index b) { return (std::uint64_t{a} << 32) | b; }
+// An edge as a triangle has it: edge k runs from corner k to the next one.
+struct EdgeUse {
+  Index high;  // the edge's vertex with the higher number
+  Index triangle;
+  std::uint8_t k;
+  bool forward;  // from its lower vertex to its higher one
+};
+
+// Visits each edge of two vertices once, with its uses in the order of the triangles. They are sorted by the lower
+// vertex first: a hash table of all edges takes five times as long.
+template <class Visit>
+void for_each_edge(const Mesh& mesh, const Visit& visit) {
+  const auto ends = [](const Triangle& t, std::size_t k) { return std::minmax(t[k], t[(k + 1) % 3]); };
+  std::vector<std::size_t> first(mesh.positions.size() + 1);
+  for (const Triangle& t : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [low, high] = ends(t, k);
+      if (low != high) ++first[low + 1];
+    }
+  }
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<EdgeUse> uses(3 * mesh.triangles.size());
+  std::vector<std::size_t> next(first.begin(), first.end() - 1);
+  for (Index t = 0; t < mesh.triangles.size(); ++t) {
+    const Triangle& corners = mesh.triangles[t];
+    for (std::uint8_t k = 0; k < 3; ++k) {
+      const auto [low, high] = ends(corners, k);
+      if (low != high) uses[next[low]++] = {high, t, k, corners[k] == low};
+    }
+  }
+  for (std::size_t v = 0; v + 1 < first.size(); ++v) {
+    const std::span<EdgeUse> around(uses.data() + first[v], uses.data() + first[v + 1]);
+    std::ranges::sort(around, {}, [](const EdgeUse& use) { return std::tuple(use.high, use.triangle, use.k); });
+    for (std::size_t begin = 0, end = 0; begin < around.size(); begin = end) {
+      while (end < around.size() && around[end].high == around[begin].high) ++end;
+      visit(std::span<const EdgeUse>(around.subspan(begin, end - begin)));
+    }
+  }
+}
 
 }  // namespace
 
@@ -27,34 +66,12 @@ Vec3 triangle_cross(const Mesh& mesh, std::size_t t) {
 double triangle_area(const Mesh& mesh, std::size_t t) { return 0.5 * triangle_cross(mesh, t).norm(); }
 
 std::vector<std::array<Index, 3>> triangle_neighbours(const Mesh& mesh) {
-  constexpr Index kShared = kNoIndex - 1;  // more than two triangles: nobody's neighbour
-  struct Sides {
-    Index first = kNoIndex, second = kNoIndex;
-  };
-  std::unordered_map<std::uint64_t, Sides> edges;
-  edges.reserve(mesh.triangles.size() * 2);
-  const auto key = [&](const Triangle& v, int k) {
-    const Index a = v[static_cast<std::size_t>(k)], b = v[static_cast<std::size_t>((k + 1) % 3)];
-    return directed_edge(std::min(a, b), std::max(a, b));
-  };
-  for (Index t = 0; t < mesh.triangles.size(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      Sides& sides = edges[key(mesh.triangles[t], k)];
-      if (sides.first == kNoIndex) {
-        sides.first = t;
-      } else {
-        sides.second = sides.second == kNoIndex ? t : kShared;
-      }
-    }
-  }
-  std::vector<std::array<Index, 3>> neighbours(mesh.triangles.size());
-  for (Index t = 0; t < mesh.triangles.size(); ++t) {
-    for (int k = 0; k < 3; ++k) {
-      const Sides sides = edges[key(mesh.triangles[t], k)];
-      neighbours[t][static_cast<std::size_t>(k)] =
-          sides.second == kShared ? kNoIndex : (sides.first == t ? sides.second : sides.first);
-    }
-  }
+  std::vector<std::array<Index, 3>> neighbours(mesh.triangles.size(), {kNoIndex, kNoIndex, kNoIndex});
+  for_each_edge(mesh, [&](std::span<const EdgeUse> uses) {
+    if (uses.size() != 2) return;
+    neighbours[uses[0].triangle][uses[0].k] = uses[1].triangle;
+    neighbours[uses[1].triangle][uses[1].k] = uses[0].triangle;
+  });
   return neighbours;
 }
 
@@ -81,16 +98,12 @@ Components connected_components(const Mesh& mesh) {
 }
 
 std::size_t count_open_edges(const Mesh& mesh) {
-  std::unordered_map<std::uint64_t, int> directed;
-  directed.reserve(mesh.triangles.size() * 3);
-  for (const Triangle& v : mesh.triangles) {
-    for (std::size_t k = 0; k < 3; ++k) ++directed[directed_edge(v[k], v[(k + 1) % 3])];
-  }
   std::size_t open = 0;
-  for (const auto& [edge, count] : directed) {
-    const auto opposite = directed.find(directed_edge(static_cast<Index>(edge), static_cast<Index>(edge >> 32)));
-    if (count != 1 || opposite == directed.end() || opposite->second != 1) ++open;
-  }
+  for_each_edge(mesh, [&](std::span<const EdgeUse> uses) {
+    const auto forward = static_cast<std::size_t>(std::ranges::count_if(uses, &EdgeUse::forward));
+    const std::size_t back = uses.size() - forward;
+    if (forward != 1 || back != 1) open += (forward > 0) + (back > 0);
+  });
   return open;
 }
 
