@@ -89,8 +89,9 @@ Attempt<Spheres> fit_spheres(const Character& character, const Regions& regions,
     }
   }
   if (regions.has_torso && settings.extremities) append(fit_head(mesh, regions, out, settings));
+  const SurfaceQuery body(mesh);
   for (std::uint8_t region = 0; region < regions.limbs.size(); ++region) {
-    const Attempt<std::vector<FittedSphere>> limb = fit_limb(mesh, regions, region, settings);
+    const Attempt<std::vector<FittedSphere>> limb = fit_limb(mesh, body, regions, region, settings);
     if (!limb) return limb.reason();
     append(*limb);
     if (settings.extremities) append(fit_hand_or_foot(mesh, regions, region, out.spheres.back().ball, settings));

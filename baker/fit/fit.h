@@ -9,6 +9,7 @@
 
 #include "import/import.h"
 #include "mesh/attempt.h"
+#include "mesh/surface_query.h"
 #include "segment/segment.h"
 
 namespace spherechain::baker {
@@ -119,9 +120,9 @@ std::vector<std::size_t> share_triangles(const Mesh& skin, const BodyFrame& fram
 // Of some spheres the one whose centre is nearest.
 std::uint32_t nearest_sphere(const Spheres& spheres, const std::vector<std::uint32_t>& among, const Vec3& point);
 
-// fit_spheres' parts.
-Attempt<std::vector<FittedSphere>> fit_limb(const Mesh& mesh, const Regions& regions, std::uint8_t region,
-                                            const FitSettings& settings);
+// fit_spheres' parts. `body` asks all of the mesh.
+Attempt<std::vector<FittedSphere>> fit_limb(const Mesh& mesh, const SurfaceQuery& body, const Regions& regions,
+                                            std::uint8_t region, const FitSettings& settings);
 std::optional<Reason> fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& settings, Spheres& out);
 // Spheres of the hand or foot past the limb's last sphere; none where the limb ends there.
 std::vector<FittedSphere> fit_hand_or_foot(const Mesh& mesh, const Regions& regions, std::uint8_t region,

@@ -17,8 +17,9 @@ constexpr std::size_t kLimbSpheresMax = 100;
 
 class LimbMarch {
  public:
-  LimbMarch(const Mesh& mesh, const Regions& regions, std::uint8_t region, const FitSettings& settings)
-      : body_(mesh),
+  LimbMarch(const Mesh& mesh, const SurfaceQuery& body, const Regions& regions, std::uint8_t region,
+            const FitSettings& settings)
+      : body_(body),
         skin_(mesh, triangles_of_region(regions, region)),
         regions_(regions),
         region_(region),
@@ -79,7 +80,8 @@ class LimbMarch {
     return cast_ring(body_, line_.at(s), axis(s), reference, rays_);
   }
 
-  SurfaceQuery body_, skin_;
+  const SurfaceQuery& body_;
+  SurfaceQuery skin_;
   const Regions& regions_;
   std::uint8_t region_;
   const Polyline& line_;
@@ -89,10 +91,10 @@ class LimbMarch {
 
 }  // namespace
 
-Attempt<std::vector<FittedSphere>> fit_limb(const Mesh& mesh, const Regions& regions, std::uint8_t region,
-                                            const FitSettings& settings) {
+Attempt<std::vector<FittedSphere>> fit_limb(const Mesh& mesh, const SurfaceQuery& body, const Regions& regions,
+                                            std::uint8_t region, const FitSettings& settings) {
   if (triangles_of_region(regions, region).empty()) return Reason{"the " + regions.name(region) + " has no skin"};
-  const LimbMarch march(mesh, regions, region, settings);
+  const LimbMarch march(mesh, body, regions, region, settings);
   const double end = regions.limbs[region].extremity, step = settings.limb_step * regions.frame.height;
 
   // The first ring on the limb's own skin; a few large triangles with a border of teeth may have none, and then the

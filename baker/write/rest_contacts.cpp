@@ -26,14 +26,15 @@ std::vector<Pair> find_rest_contacts(const std::vector<std::uint8_t>& bytes, con
   job.skin_table = table.data();
   job.scratch = scratch.data();
   job.scratch_words = scratch.size();
-  std::vector<TriangleContact> contacts;
+  std::vector<TriangleContact> contacts(1024);
   Status status = sc_prepare_skin(&asset, table.data(), table.size());
-  if (status == SC_OK) status = job.run();  // to count
-  if (status == SC_OK) {
-    contacts.resize(job.triangle_count);
+  while (status == SC_OK) {
     job.triangles = contacts.data();
     job.triangle_capacity = contacts.size();
     status = job.run();
+    const bool all_fit = job.triangle_count <= contacts.size();
+    contacts.resize(job.triangle_count);
+    if (all_fit) break;
   }
   if (status != SC_OK) {
     throw Error(ExitCode::kInternal,
