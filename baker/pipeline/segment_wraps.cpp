@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "segment/by_shape.h"
 #include "wrap/wrap_skin.h"
@@ -39,7 +40,7 @@ class WrapSearch {
     const Reason no_body{"its triangles enclose no body (close the holes that are as wide as its limbs)"};
     // A coarse wrap is quick.
     constexpr WrapSize kCoarse{60};
-    const Attempt<Wrap> coarse = wrap_skin(character_.skin, kCoarse, closing_);
+    Attempt<Wrap> coarse = wrap_skin(character_.skin, kCoarse, closing_);
     if (!coarse || !is_one_shape(coarse->surface)) return no_body;
     triangles_ = coarse->surface.triangles.size();
     if (coarse->lines_skin()) {
@@ -52,9 +53,10 @@ class WrapSearch {
       const double usual = 130 * std::min(1.0, std::sqrt(kOfHuman / static_cast<double>(triangles_)));
       const Outcome first = attempt({usual});
       const double finest = usual * std::sqrt(static_cast<double>(kWrapTrianglesMax) / static_cast<double>(triangles_));
-      for (const double fineness : {200.0, 90.0, 60.0}) {
+      for (const double fineness : {200.0, 90.0, kCoarse.fineness}) {
         if (first == Outcome::kGood || (first == Outcome::kLeaks && fineness > usual) || fineness > finest) continue;
-        if (attempt({fineness}) == Outcome::kGood) break;
+        const bool is_coarse = fineness == kCoarse.fineness;
+        if ((is_coarse ? attempt(kCoarse, std::move(coarse)) : attempt({fineness})) == Outcome::kGood) break;
       }
     }
     for (std::size_t i = 0; i < tried_.size(); ++i) {
@@ -74,10 +76,11 @@ class WrapSearch {
     std::size_t tried;  // its place in tried_
   };
 
-  Outcome attempt(const WrapSize& size) {
+  Outcome attempt(const WrapSize& size) { return attempt(size, wrap_skin(character_.skin, size, closing_)); }
+
+  Outcome attempt(const WrapSize& size, Attempt<Wrap> wrap) {
     tried_.push_back({name_of(size), {}});
     Reason& reason = tried_.back().reason;
-    Attempt<Wrap> wrap = wrap_skin(character_.skin, size, closing_);
     if (!wrap) {
       reason = wrap.reason();
       return Outcome::kFails;
