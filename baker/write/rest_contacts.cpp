@@ -27,15 +27,16 @@ std::vector<Pair> find_rest_contacts(const std::vector<std::uint8_t>& bytes, con
   job.scratch = scratch.data();
   job.scratch_words = scratch.size();
   std::vector<TriangleContact> contacts(1024);
-  Status status = sc_prepare_skin(&asset, table.data(), table.size());
-  while (status == SC_OK) {
+  const auto find = [&] {
     job.triangles = contacts.data();
     job.triangle_capacity = contacts.size();
-    status = job.run();
-    const bool all_fit = job.triangle_count <= contacts.size();
+    const Status status = job.run();
     contacts.resize(job.triangle_count);
-    if (all_fit) break;
-  }
+    return status;
+  };
+  Status status = sc_prepare_skin(&asset, table.data(), table.size());
+  if (status == SC_OK) status = find();
+  if (status == SC_OVERFLOW) status = find();  // now all fit
   if (status != SC_OK) {
     throw Error(ExitCode::kInternal,
                 std::string("rest contacts: ") + sc_field_name(status.field) + ": " + sc_code_text(status.code));
