@@ -201,7 +201,7 @@ std::vector<BoundPair> find_rest_pairs(const std::vector<BoundSphere>& spheres, 
       const double distance = (spheres[a].rest.center - spheres[b].rest.center).norm();
       const double sum =
           detect ? spheres[a].*detect + spheres[b].*detect : spheres[a].rest.radius + spheres[b].rest.radius;
-      const double rest_scale = kPaperRestScale * distance / sum;
+      const auto rest_scale = static_cast<float>(kPaperRestScale * distance / sum);
       if (rest_scale < 1) pairs.push_back({a, b, rest_scale});
     }
   }

@@ -33,7 +33,7 @@ struct BoundSphere {
 // touch at rest, or would touch soon.
 struct BoundPair {
   std::uint32_t a, b;  // a < b
-  double rest_scale;   // below 1
+  float rest_scale;    // below 1, in the precision of the asset
 };
 
 struct Binding {

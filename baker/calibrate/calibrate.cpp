@@ -89,7 +89,7 @@ void calibrate(const Character& character, const Regions& regions, const std::ve
     std::vector<BoundPair> out;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const auto [a, b] = pairs[i];
-      const double scale = reaches[i] * sum_of(pairs[i], sampled_radii) / sum_of(pairs[i], radii);
+      const auto scale = static_cast<float>(reaches[i] * sum_of(pairs[i], sampled_radii) / sum_of(pairs[i], radii));
       if (scale >= 1) continue;
       const double part = rest_distance(binding, pairs[i]) / sum_of(pairs[i], radii);
       const bool at_rest = part < 1 && part >= scale;  // else it would be reported there

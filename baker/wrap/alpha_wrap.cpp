@@ -5,6 +5,8 @@
 #include <CGAL/Surface_mesh.h>
 #include <CGAL/alpha_wrap_3.h>
 
+#include <algorithm>
+
 #include "mesh/canonical_mesh.h"
 
 namespace spherechain::baker {
@@ -17,6 +19,9 @@ Mesh alpha_wrap(const Mesh& mesh, double alpha, double offset) {
   std::vector<Kernel::Point_3> points;
   points.reserve(canonical.mesh.positions.size());
   for (const Vec3& p : canonical.mesh.positions) points.emplace_back(p.x(), p.y(), p.z());
+  // CGAL leaves triangles without an area out, and crashes where none is left.
+  const auto is_line = [&](const Triangle& t) { return CGAL::collinear(points[t[0]], points[t[1]], points[t[2]]); };
+  if (std::ranges::all_of(canonical.mesh.triangles, is_line)) return {};
   SurfaceMesh wrap;
   CGAL::alpha_wrap_3(points, canonical.mesh.triangles, alpha / canonical.scale, offset / canonical.scale, wrap);
 

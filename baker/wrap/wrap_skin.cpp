@@ -47,6 +47,7 @@ Attempt<Wrap> wrap_skin(const Mesh& skin, const WrapSize& size, ClosingReport& r
   const Mesh& inside = size.holes_first ? stitch(close_cracks(skin, crack_width(skin)).mesh).mesh : skin;
   const double alpha = diameter(skin) / size.fineness, offset = kOffset * alpha;
   Wrap wrap{largest_piece(alpha_wrap(inside, alpha, offset)).mesh, size, 0};
+  if (wrap.surface.triangles.empty()) return Reason{"its triangles are lines, all of them"};
   if (wrap.surface.triangles.size() > kWrapTrianglesMax) {
     return Reason{"it would be of more triangles than a character"};
   }

@@ -57,7 +57,7 @@ std::vector<std::uint64_t> ignored_bits(const AssetSource& in) {
 
 std::vector<schema::RestPair> rest_pairs_of(const std::vector<BoundPair>& pairs) {
   std::vector<schema::RestPair> out;
-  for (const BoundPair& pair : pairs) out.emplace_back(pair.a, pair.b, static_cast<float>(pair.rest_scale));
+  for (const BoundPair& pair : pairs) out.emplace_back(pair.a, pair.b, pair.rest_scale);
   return out;
 }
 

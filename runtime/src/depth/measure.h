@@ -26,7 +26,7 @@ struct Meeting {
   Span<Penetration> out;
 };
 
-// What is less deep is a touch: 5 mm, but in proportion to files without a unit. `metre`: how long it is.
+// What is less deep is a touch: 3 mm, but in proportion to files without a unit. `metre`: how long it is.
 double touch_depth_of(double metre, double height);
 
 std::size_t measure_words(const AssetView& a, const AssetView& b, bool are_one, std::size_t contact_count);

@@ -208,6 +208,18 @@ TEST_CASE("what a third layer hides is a shell, not a fault") {
   CHECK(hidden.kind == SC_CLASS_SHELL);
 }
 
+TEST_CASE("skins that cross touch up to 3 mm, those that lie flat on each other up to 15 mm") {
+  // 1.7 m long.
+  const auto kind = [](const Shape& a, const Shape& b, double distance) {
+    return only(TwoShapes(a, b, 1.4).measure(shifted(distance, 0.03, 0.02))).kind;
+  };
+  const Shape large = box(0.2, 0.2, 0.2), small = box(0.1, 0.1, 0.1), left = ball(0.2, 24), right = left;
+  CHECK(kind(large, small, 0.3 - 0.0028) == SC_CLASS_TOUCH);
+  CHECK(kind(large, small, 0.3 - 0.0036) == SC_CLASS_PENETRATION);
+  CHECK(kind(left, right, 0.4 - 0.0125) == SC_CLASS_TOUCH);
+  CHECK(kind(left, right, 0.4 - 0.018) == SC_CLASS_PENETRATION);
+}
+
 TEST_CASE("a line that is too short to be seen makes a touch, though it is deep") {
   const auto found = [](double half) {  // of a rod, at rest far from the box
     const TwoShapes shapes(box(1, 1, 1), box(0.5, half, half));

@@ -287,8 +287,7 @@ TEST_CASE("a limb cut off and left open is still said to be missing" * doctest::
 }
 
 TEST_CASE("triangles that are no character are refused with a sentence" * doctest::test_suite("many bakes")) {
-  for (const auto& [count, size] :
-       {std::pair<std::size_t, double>(1, 1), {2, 0.5}, {50, 0.5}, {300, 0.03}, {300, 1}}) {
+  for (const auto& [count, size] : {std::pair<std::size_t, double>(1, 1), {2, 0.5}, {50, 0.5}, {300, 0.03}, {300, 1}}) {
     CAPTURE(count);
     CAPTURE(size);
     try {
@@ -299,6 +298,11 @@ TEST_CASE("triangles that are no character are refused with a sentence" * doctes
       CHECK(std::string(error.what()).find("broken.obj: ") == 0);
     }
   }
+}
+
+TEST_CASE("triangles that are lines have no wrap") {
+  const Mesh lines{{Vec3(0, 0, 0), Vec3(1, 2, 3), Vec3(2, 4, 6), Vec3(3, 6, 9)}, {{0, 1, 2}, {3, 2, 1}}};
+  CHECK(alpha_wrap(lines, 0.3, 0.02).triangles.empty());
 }
 
 TEST_CASE("a wrap is closed around open triangles, its offset away, and the same however they are ordered and turned") {
