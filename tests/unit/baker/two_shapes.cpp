@@ -114,8 +114,8 @@ Shape box(double x, double y, double z) {
   return out;
 }
 
-TwoShapes::TwoShapes(const Shape& a, const Shape& b, double apart, bool is_child)
-    : first_of_b_(a.positions.size()), apart_(apart), are_joined_(is_child), asset_([&] {
+TwoShapes::TwoShapes(const Shape& a, const Shape& b, double apart, bool is_child, bool one_piece)
+    : first_of_b_(a.positions.size()), apart_(apart), are_joined_(is_child || one_piece), asset_([&] {
         Glb glb;
         std::vector<float> weights, inverse_binds;
         std::vector<std::uint16_t> joints;
@@ -132,6 +132,11 @@ TwoShapes::TwoShapes(const Shape& a, const Shape& b, double apart, bool is_child
           for (const auto& t : shape->triangles)
             corners.insert(corners.end(), {first + t[0], first + t[1], first + t[2]});
           for (int i = 0; i < 16; ++i) inverse_binds.push_back(i % 5 == 0 ? 1.0F : 0.0F);
+        }
+        if (one_piece) {
+          const auto first_of_b = static_cast<std::uint32_t>(a.positions.size());
+          const auto last = static_cast<std::uint32_t>(a.positions.size() + b.positions.size() - 1);
+          corners.insert(corners.end(), {first_of_b - 2, first_of_b - 1, last});
         }
         glb.json["nodes"] = {{{"name", "root"}, {"children", nlohmann::json::array({1})}},
                              {{"name", "a"}},

@@ -23,8 +23,9 @@ Shape cylinder(double radius, double half, int rings);
 
 class TwoShapes {
  public:
-  // At rest, b stands `apart` from where it is given, along x. The joints are siblings, unless b's is a's child.
-  TwoShapes(const Shape& a, const Shape& b, double apart = 40, bool is_child = false);
+  // At rest, b stands `apart` from where it is given, along x. The joints are siblings, unless b's is a's child. As one
+  // piece, a triangle joins their last vertices.
+  TwoShapes(const Shape& a, const Shape& b, double apart = 40, bool is_child = false, bool one_piece = false);
 
   using Place = std::function<spherechain::baker::Vec3(const spherechain::baker::Vec3&)>;
   // b goes through `place`; a stays; then both go through `both`. All that the runtime finds, by the job's other
