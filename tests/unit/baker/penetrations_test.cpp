@@ -226,13 +226,13 @@ TEST_CASE(
 }
 
 TEST_CASE("a line that is too short to be seen makes a touch, though it is deep") {
-  const auto found = [](double half, double length = 0.5) {  // of a rod, at rest far from the box
-    const TwoShapes shapes(box(1, 1, 1), box(length, half, half));
-    return only(shapes.measure(shifted(length + 0.6, 0.05, 0.04)));
+  const auto found = [](double half, double depth) {  // of a rod, at rest far from the box
+    const TwoShapes shapes(box(1, 1, 1), box(1, half, half));
+    return only(shapes.measure(shifted(2 - depth, 0.05, 0.04)));
   };
-  CHECK(found(0.02).depth == doctest::Approx(0.4).epsilon(1e-3));
-  CHECK(found(0.02).kind == SC_CLASS_TOUCH);
-  CHECK(found(0.2).kind == SC_CLASS_PENETRATION);
+  CHECK(found(0.02, 0.4).depth == doctest::Approx(0.4).epsilon(1e-3));
+  CHECK(found(0.02, 0.4).kind == SC_CLASS_TOUCH);
+  CHECK(found(0.2, 0.4).kind == SC_CLASS_PENETRATION);
   CHECK(found(0.045, 0.9).kind == SC_CLASS_TOUCH);  // however deep
 }
 
