@@ -3,9 +3,9 @@
 // Draws penetrations, and contacts of the other classes, to be judged by eye:
 //   scripts/class_sheet.mjs build/release/bin/spherechain OUT CHARACTER[+MOTION]...
 //   scripts/class_sheet.mjs build/release/bin/spherechain OUT --deepest CHARACTER[+MOTION]...
-// Writes 50 of each, by a fixed seed, evenly over the characters, to OUT: sheets of small pictures (*_sheet.png), large
-// ones to judge (*_1.png ...) and table.json. With --deepest: the ten pairs of body parts of each character that
-// penetrate deepest. A MOTION that ends in .json is a pose file. Pages in OUT/pages are used again: delete them when the
+// Writes 50 of each, by a fixed seed, evenly over the characters, to OUT: large pictures to judge, mixed and without
+// their class (judge_1.png ...), table.json, and a sheet of small ones of each group. With --deepest: large pictures of
+// the ten pairs of body parts of each character that penetrate deepest. A MOTION that ends in .json is a pose file. Pages in OUT/pages are used again: delete them when the
 // tool has changed. Needs Chromium (CHROMIUM names another one).
 // A part is blue, the other orange, the line where they cross black. Large pictures: close up, from another side with the
 // way out (red, of the orange part), and the whole body.
@@ -291,10 +291,11 @@ function sheet(file, tiles, columns, width) {
 }
 
 const loaded = characters.map(load);
-const random = randomFrom(1);
+const random = randomFrom(2);
+const shuffled = (list) => list.map((x) => [random(), x]).sort((p, q) => p[0] - q[0]).map((p) => p[1]);
 const groups = deepest
   ? loaded.map((one) => [`deepest_${one.name}`, chooseDeepest(one)])
-  : [["penetrations", choose(loaded, kCount, random, (kind) => kind === kPenetration)], ["others", choose(loaded, kCount, random, (kind) => kind !== kPenetration)]];
+  : [["judge", shuffled([...choose(loaded, kCount, random, (kind) => kind === kPenetration), ...choose(loaded, kCount, random, (kind) => kind !== kPenetration)])]];
 const table = [];
 for (const [name, samples] of groups.filter(([, list]) => list.length > 0)) {
   const drawn = samples.map((sample, i) => {
@@ -303,13 +304,17 @@ for (const [name, samples] of groups.filter(([, list]) => list.length > 0)) {
     const row = { group: name, number: i + 1, character: sample.name, clip: clip.name, frame: model.number(frame), index: frame, parts, class: CLASSES[contact.kind],
       depth_mm: +contact.depth.toFixed(1), height_share: +(contact.depth * model.mesh.unitsPerMm / model.height).toFixed(4), visible: +contact.visible.toFixed(3), seen: +images.seen.toFixed(2) };
     table.push(row);
-    const kind = name === "others" ? `${row.class}, ` : "";
-    const label = `<b>${row.number}</b> ${row.character} ${row.frame}<br>${parts.join(" / ")}<br>${kind}${row.depth_mm} mm, ${(100 * row.height_share).toFixed(1)} %, ${clip.name}`;
-    return { ...images, label, more: `<br>visible ${row.visible}, volume ${contact.volume.toFixed(1)} ml` };
+    const label = (kind) => `<b>${row.number}</b> ${row.character} ${row.frame}<br>${parts.join(" / ")}<br>${kind}${row.depth_mm} mm, ${(100 * row.height_share).toFixed(1)} %, ${clip.name}`;
+    return { kind: contact.kind, small: { images: [images.small], label: label(contact.kind === kPenetration ? "" : `${row.class}, `), height: 160 },
+      large: { images: images.large, label: `${label("")}<br>visible ${row.visible}`, height: 300 } };
   });
-  if (!deepest) sheet(join(out, `${name}_sheet.png`), drawn.map(({ small, label }) => ({ images: [small], label, height: 160 })), 10, 162);
+  if (!deepest) {
+    for (const [group, ofPenetrations] of [["penetrations", true], ["others", false]]) {
+      sheet(join(out, `${group}.png`), drawn.filter(({ kind }) => (kind === kPenetration) === ofPenetrations).map(({ small }) => small), 10, 162);
+    }
+  }
   for (let i = 0; i < drawn.length; i += 10) {
-    sheet(join(out, `${name}_${i / 10 + 1}.png`), drawn.slice(i, i + 10).map(({ large, label, more }) => ({ images: large, label: label + more, height: 300 })), 2, 902);
+    sheet(join(out, `${name}_${i / 10 + 1}.png`), drawn.slice(i, i + 10).map(({ large }) => large), 2, 902);
   }
   console.log(`${name}: ${drawn.length}`);
 }

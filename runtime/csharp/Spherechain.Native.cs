@@ -547,7 +547,7 @@ namespace Spherechain
             public UIntPtr PreviousCount;
             /// <summary>1: one direction, no volume, no visibility, no previous frame. For games</summary>
             public int Quick;
-            /// <summary>&gt;= 0. 0: 3 mm, by the asset's metres_per_unit, but at least 0.19 % and at most 0.66 % of the height; up to eight times that where the two sides lie flat on each other</summary>
+            /// <summary>&gt;= 0. 0: 3 mm, by the asset's metres_per_unit, but at least 0.19 % and at most 0.66 % of the height; up to ten times that where the two sides lie flat on each other</summary>
             public float TouchDepth;
             /// <summary>sc_penetration_scratch_words() words; nothing is kept there between runs</summary>
             public ulong* Scratch;

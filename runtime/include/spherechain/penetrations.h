@@ -58,7 +58,7 @@ typedef struct sc_penetration_job {
   size_t previous_count SC_ZERO;
   int32_t quick SC_ZERO;     /* 1: one direction, no volume, no visibility, no previous frame. For games */
   float touch_depth SC_ZERO; /* >= 0. 0: 3 mm, by the asset's metres_per_unit, but at least 0.19 % and at most 0.66 % of
-                                the height; up to eight times that where the two sides lie flat on each other */
+                                the height; up to ten times that where the two sides lie flat on each other */
   uint64_t* scratch SC_ZERO; /* sc_penetration_scratch_words() words; nothing is kept there between runs */
   size_t scratch_words SC_ZERO;
   /* Out. Sorted by (part_a, part_b). The count says how many there are, also where the list is too small. */

@@ -13,9 +13,9 @@ namespace {
 
 // Lengths are parts of the character's height, but those in metres.
 constexpr double kTouchMetres = 0.003, kTouchMin = 0.0019, kTouchMax = 0.0066;
-constexpr double kTouchFlat = 4;                        // times more, where the sides lie flat on each other
-constexpr double kTouchFlesh = 16, kTouchSoft = 8;      // likewise of one skin, which gives way; times at most
-constexpr double kTouchSide = 5;                        // times: the side of a square that is too small to be seen
+constexpr double kTouchFlat = 8;                        // times more, where the sides lie flat on each other
+constexpr double kTouchFlesh = 32, kTouchMost = 10;     // likewise of one skin, which gives way; times at most
+constexpr double kTouchSide = 6;                        // times: the side of a square that is too small to be seen
 constexpr double kHidden = 0.3;                         // less of the contour is visible: it is hidden
 constexpr double kGapMetres = 0.0006, kGapMax = 0.001;  // shorter free places on the way are none
 constexpr double kFoldDistance = 0.11;                  // of two spots at rest, to be a fold
@@ -287,7 +287,7 @@ class Measurer {
   PenetrationClass class_of(const Contour& contour, const Penetration& of, double seen_length) const {
     const double few = touch_depth_of(metre_, height_);
     const double flat = std::max(0.0, contour.facing);
-    const double times = contour.is_one_piece ? std::min(1 + kTouchFlesh * flat, kTouchSoft) : 1 + kTouchFlat * flat;
+    const double times = std::min(1 + (contour.is_one_piece ? kTouchFlesh : kTouchFlat) * flat, kTouchMost);
     const double touch = in_.touch_depth > 0 ? double{in_.touch_depth} : few * times;
     const double side = kTouchSide * std::min(few, touch);
     if (2 * contour.touching >= 1) {

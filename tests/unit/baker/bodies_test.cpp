@@ -171,7 +171,7 @@ TEST_CASE("what is below a plane: depth, volume and contour of a box and of a ba
   CHECK(sunk[0].kind == SC_CLASS_PENETRATION);
   CHECK(sunk[0].deepest_a.position.y == doctest::Approx(0));
   CHECK(below(Placed(cube, at(5, 1.01, 0)), {}).empty());
-  CHECK(below(Placed(cube, at(5, 0.995, 0)), {})[0].kind == SC_CLASS_TOUCH);
+  CHECK(below(Placed(cube, at(5, 0.9975, 0)), {})[0].kind == SC_CLASS_TOUCH);
   // All of it: the volume is the box's, and there is no contour.
   const std::vector<Penetration> under = below(Placed(cube, at(5, -3, 0)), {});
   REQUIRE(under.size() == 1);
