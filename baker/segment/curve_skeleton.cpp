@@ -33,11 +33,13 @@ void simplify(SurfaceMesh& surface, double span) {
   const auto squared_length = [&](SurfaceMesh::Edge_index e) {
     return CGAL::squared_distance(surface.point(surface.vertex(e, 0)), surface.point(surface.vertex(e, 1)));
   };
+  const auto are_few = [&] { return surface.number_of_faces() <= kEnoughTriangles; };
   double sum = 0;
   for (const auto e : surface.edges()) sum += std::sqrt(squared_length(e));
-  for (double limit = sum / surface.number_of_edges(); limit < span; limit *= kLonger) {
+  for (double limit = sum / surface.number_of_edges(); limit < span && !are_few(); limit *= kLonger) {
     std::vector<bool> moved(surface.num_vertices());
     for (const auto e : surface.edges()) {
+      if (are_few()) break;
       const auto a = surface.vertex(e, 0), b = surface.vertex(e, 1);
       if (moved[a] || moved[b] || squared_length(e) > limit * limit ||
           !CGAL::Euler::does_satisfy_link_condition(e, surface)) {
@@ -47,9 +49,9 @@ void simplify(SurfaceMesh& surface, double span) {
       const auto kept = CGAL::Euler::collapse_edge(e, surface);
       surface.point(kept) = middle;
       moved[kept] = true;
-      if (surface.number_of_faces() <= kEnoughTriangles) return surface.collect_garbage();
     }
   }
+  surface.collect_garbage();
 }
 
 }  // namespace

@@ -8,9 +8,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <random>
 #include <set>
 
 #include "baked_human.h"
+#include "broken_body.h"
 #include "closed_shapes.h"
 #include "mesh/error.h"
 
@@ -42,6 +44,55 @@ TEST_CASE("every triangle has one of the five regions, and so has every triangle
   for (std::size_t t = 0; t < bake.regions.of_skin.size(); ++t) {
     const Index corner = bake.character.source_triangles[bake.character.skin_source_triangle[t]][0];
     if (bake.character.body_of_source[corner] == kNoIndex) REQUIRE(bake.regions.of_skin[t] == kTorso);
+  }
+}
+
+TEST_CASE("a body of four times as many triangles has the same regions" * doctest::test_suite("many bakes")) {
+  BrokenBody fine = intact_body();  // its skeleton is that of a simplified copy
+  subdivide(fine, 1);
+  const Character character = build_character(fine.source, "test.obj");
+  const Attempt<Regions> regions = segment_by_shape(character, {});
+  REQUIRE(regions);
+  double same = 0;
+  for (std::size_t t = 0; t < character.body.triangles.size(); ++t) {
+    const Index intact = fine.of_intact[character.body_source_triangle[t]];
+    if (regions->of_triangle[t] == human().regions.of_triangle[intact]) same += triangle_area(character.body, t);
+  }
+  CHECK(same > 0.99 * surface_area(character.body));
+}
+
+TEST_CASE("neighbours are the two triangles of an edge; open are the edges that not two use, one each way") {
+  // Few vertices, so that edges have one to many triangles, and triangles may have an edge of one vertex.
+  std::mt19937 random(3);
+  for (int round = 0; round < 50; ++round) {
+    Mesh mesh;
+    mesh.positions.resize(7);
+    for (int t = 0; t < 9; ++t) {
+      const auto corner = [&] { return static_cast<Index>(random() % mesh.positions.size()); };
+      mesh.triangles.push_back({corner(), corner(), corner()});
+    }
+    std::map<std::pair<Index, Index>, std::vector<std::pair<Index, std::size_t>>> uses;
+    std::map<std::pair<Index, Index>, int> directed;
+    for (Index t = 0; t < mesh.triangles.size(); ++t) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Index a = mesh.triangles[t][k], b = mesh.triangles[t][(k + 1) % 3];
+        if (a == b) continue;
+        uses[std::minmax(a, b)].emplace_back(t, k);
+        ++directed[{a, b}];
+      }
+    }
+    std::vector<std::array<Index, 3>> neighbours(mesh.triangles.size(), {kNoIndex, kNoIndex, kNoIndex});
+    for (const auto& [edge, of] : uses) {
+      if (of.size() != 2) continue;
+      neighbours[of[0].first][of[0].second] = of[1].first;
+      neighbours[of[1].first][of[1].second] = of[0].first;
+    }
+    CHECK(triangle_neighbours(mesh) == neighbours);
+    const auto is_open = [&](const auto& edge) {
+      const auto back = directed.find({edge.first.second, edge.first.first});
+      return edge.second != 1 || back == directed.end() || back->second != 1;
+    };
+    CHECK(count_open_edges(mesh) == static_cast<std::size_t>(std::ranges::count_if(directed, is_open)));
   }
 }
 
