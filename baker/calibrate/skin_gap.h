@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Geometry>
 #include <memory>
 #include <vector>
 
@@ -19,12 +20,13 @@ class SkinGaps {
  private:
   struct Skin {
     std::unique_ptr<SurfaceQuery> surface;  // none where the sphere has no triangles
-    std::vector<Vec3> vertices;
-    Ball around;
+    std::vector<Index> vertices;            // sorted
+    Eigen::AlignedBox3d box;                // around its triangles
   };
   // The least distance, or `bound` where it is no less.
-  static double nearest(const Skin& from, const Skin& to, double bound);
+  double nearest(const Skin& from, const Skin& to, double bound) const;
 
+  const Mesh& mesh_;
   std::vector<Skin> skins_;
 };
 
