@@ -286,10 +286,7 @@ class Measurer {
 
   PenetrationClass class_of(const Contour& contour, const Penetration& of, double seen_length) const {
     const double few = touch_depth_of(metre_, height_);
-    const double flat = std::max(0.0, contour.facing);
-    const double times = std::min(1 + (contour.is_one_piece ? kTouchFlesh : kTouchFlat) * flat, kTouchMost);
-    const double touch = in_.touch_depth > 0 ? double{in_.touch_depth} : few * times;
-    const double side = kTouchSide * std::min(few, touch);
+    const double touch = in_.touch_depth > 0 ? double{in_.touch_depth} : few;
     if (2 * contour.touching >= 1) {
       return SC_CLASS_REST;
     }
@@ -303,7 +300,11 @@ class Measurer {
     if (in_.are_one && is_fold(contour, of.part_a, of.part_b)) {
       return of.depth > kDeepFold * height_ && contour.is_one_piece ? SC_CLASS_DEEP_FOLD : SC_CLASS_FOLD;
     }
-    return std::min(double{of.depth}, seen_length) * seen_length < side * side ? SC_CLASS_TOUCH : SC_CLASS_PENETRATION;
+    const double flat = (contour.is_one_piece ? kTouchFlesh : kTouchFlat) * std::max(0.0, contour.facing);
+    const bool lies_flat = in_.touch_depth == 0 && of.depth < few * std::min(1 + flat, kTouchMost);
+    const double side = kTouchSide * std::min(few, touch);
+    const bool is_small = std::min(double{of.depth}, seen_length) * seen_length < side * side;
+    return lies_flat || is_small ? SC_CLASS_TOUCH : SC_CLASS_PENETRATION;
   }
 
   const Meeting& in_;
