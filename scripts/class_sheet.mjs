@@ -5,8 +5,8 @@
 //   scripts/class_sheet.mjs build/release/bin/spherechain OUT --deepest CHARACTER[+MOTION]...
 // Writes 50 of each, by a fixed seed, evenly over the characters, to OUT: large pictures to judge, mixed and without
 // their class (judge_1.png ...), table.json, and a sheet of small ones of each group. With --deepest: large pictures of
-// the ten pairs of body parts of each character that penetrate deepest. A MOTION that ends in .json is a pose file. Pages in OUT/pages are used again: delete them when the
-// tool has changed. Needs Chromium (CHROMIUM names another one).
+// the ten pairs of body parts of each character that penetrate deepest. A MOTION that ends in .json is a pose file.
+// Pages in OUT/pages are used again: delete them when the tool has changed. Needs Chromium (CHROMIUM names another one).
 // A part is blue, the other orange, the line where they cross black. Large pictures: close up, from another side with the
 // way out (red, of the orange part), and the whole body.
 import { spawnSync } from "node:child_process";
@@ -306,7 +306,7 @@ for (const [name, samples] of groups.filter(([, list]) => list.length > 0)) {
     table.push(row);
     const label = (kind) => `<b>${row.number}</b> ${row.character} ${row.frame}<br>${parts.join(" / ")}<br>${kind}${row.depth_mm} mm, ${(100 * row.height_share).toFixed(1)} %, ${clip.name}`;
     return { kind: contact.kind, small: { images: [images.small], label: label(contact.kind === kPenetration ? "" : `${row.class}, `), height: 160 },
-      large: { images: images.large, label: `${label("")}<br>visible ${row.visible}`, height: 300 } };
+      large: { images: images.large, label: `${label("")}<br>visible ${row.visible}, volume ${contact.volume.toFixed(1)} ml`, height: 300 } };
   });
   if (!deepest) {
     for (const [group, ofPenetrations] of [["penetrations", true], ["others", false]]) {

@@ -13,7 +13,7 @@ namespace spherechain::baker {
 // How far the skins of two spheres are apart at rest: the least distance of a vertex of one from the other's triangles.
 class SkinGaps {
  public:
-  SkinGaps(const Mesh& skin, const Binding& binding);
+  SkinGaps(const Mesh& skin, const Binding& binding);  // the skin must outlive it
 
   double between(std::uint32_t a, std::uint32_t b) const;
 

@@ -120,7 +120,7 @@ std::vector<std::size_t> share_triangles(const Mesh& skin, const BodyFrame& fram
 // Of some spheres the one whose centre is nearest.
 std::uint32_t nearest_sphere(const Spheres& spheres, const std::vector<std::uint32_t>& among, const Vec3& point);
 
-// fit_spheres' parts. `body` asks all of the mesh.
+// fit_spheres' parts. `body` searches all of the mesh.
 Attempt<std::vector<FittedSphere>> fit_limb(const Mesh& mesh, const SurfaceQuery& body, const Regions& regions,
                                             std::uint8_t region, const FitSettings& settings);
 std::optional<Reason> fit_torso(const Mesh& mesh, const Regions& regions, const FitSettings& settings, Spheres& out);

@@ -33,7 +33,7 @@ std::vector<Pair> brute_force(const Bake& bake, const std::vector<Sphere>& spher
                                                                   bake.binding.ignored.end());
   std::map<std::pair<std::uint32_t, std::uint32_t>, float> reach;
   for (const BoundPair& near : kind == SC_RADIUS_FIT ? bake.binding.rest_fit : bake.binding.rest_detect) {
-    reach[{near.a, near.b}] = static_cast<float>(near.rest_scale);
+    reach[{near.a, near.b}] = near.rest_scale;
   }
   std::vector<Pair> pairs;
   for (std::uint32_t a = 0; a < spheres.size(); ++a) {
