@@ -1,10 +1,10 @@
 #!/usr/bin/env node
 // SPDX-License-Identifier: MIT
 // Draws penetrations, and contacts of the other classes, to be judged by eye:
-//   scripts/class_sheet.mjs build/release/bin/spherechain OUT CHARACTER[+MOTION]...
+//   scripts/class_sheet.mjs build/release/bin/spherechain OUT [--seed N] CHARACTER[+MOTION]...
 //   scripts/class_sheet.mjs build/release/bin/spherechain OUT --deepest CHARACTER[+MOTION]...
-// Writes 50 of each, by a fixed seed, evenly over the characters, to OUT: large pictures to judge, mixed and without
-// their class (judge_1.png ...), table.json, and a sheet of small ones of each group. With --deepest: large pictures of
+// Writes 50 of each, by the seed (2), evenly over the characters, to OUT: large pictures to judge, mixed and without
+// class and depth (judge_1.png ..., three contacts each), table.json, and a sheet of small ones of each group. With --deepest: large pictures of
 // the ten pairs of body parts of each character that penetrate deepest. A MOTION that ends in .json is a pose file.
 // Pages in OUT/pages are used again: delete them when the tool has changed. Needs Chromium (CHROMIUM names another one).
 // A part is blue, the other orange, the line where they cross black. Large pictures: close up, from another side with the
@@ -18,14 +18,14 @@ import { readModel } from "../baker/page/web/src/model.js";
 import { CLASSES } from "../baker/page/web/src/contacts.js";
 import { Skin } from "../baker/page/web/src/skin.js";
 
-const kCount = 50, kOfPair = 3, kCameras = 60, kDeepest = 10, kPenetration = 5;
+const kCount = 50, kOfPair = 3, kCameras = 60, kOfSheet = 3, kLarge = 360, kDeepest = 10, kPenetration = 5;
 const kBlue = [52, 120, 210], kOrange = [240, 130, 40], kGrey = [190, 190, 190];
 
 const words = process.argv.slice(2);
-const deepest = words.includes("--deepest");
+const deepest = words.includes("--deepest"), seedAt = words.indexOf("--seed"), seed = seedAt < 0 ? 2 : +words.splice(seedAt, 2)[1];
 const [tool, out, ...characters] = words.filter((word) => word !== "--deepest");
-if (!tool || !out || characters.length === 0) {
-  console.error("usage: class_sheet.mjs SPHERECHAIN OUT [--deepest] CHARACTER[+MOTION]...");
+if (!tool || !out || characters.length === 0 || !Number.isInteger(seed)) {
+  console.error("usage: class_sheet.mjs SPHERECHAIN OUT [--deepest | --seed N] CHARACTER[+MOTION]...");
   process.exit(2);
 }
 mkdirSync(join(out, "pages"), { recursive: true });
@@ -277,7 +277,7 @@ function pictures(sample) {
   const bounds = [0, 1, 2].map((k) => { let l = Infinity, h = -Infinity; for (let i = k; i < skin.positions.length; i += 3) { l = Math.min(l, skin.positions[i]); h = Math.max(h, skin.positions[i]); } return [l, h]; });
   const whole = { ...best.camera, center: bounds.map(([l, h]) => (l + h) / 2), half: 0.52 * Math.max(...bounds.map(([l, h]) => h - l)) };
   return { seen: best.seen, small: draw(sample, contour, best.camera, 160),
-    large: [draw(sample, contour, best.camera, 300), draw(sample, contour, other.camera, 300, true), draw(sample, contour, whole, 300, true)] };
+    large: [draw(sample, contour, best.camera, kLarge), draw(sample, contour, other.camera, kLarge, true), draw(sample, contour, whole, kLarge, true)] };
 }
 
 // Writes tiles with a label each as one PNG.
@@ -291,7 +291,7 @@ function sheet(file, tiles, columns, width) {
 }
 
 const loaded = characters.map(load);
-const random = randomFrom(2);
+const random = randomFrom(seed);
 const shuffled = (list) => list.map((x) => [random(), x]).sort((p, q) => p[0] - q[0]).map((p) => p[1]);
 const groups = deepest
   ? loaded.map((one) => [`deepest_${one.name}`, chooseDeepest(one)])
@@ -304,17 +304,17 @@ for (const [name, samples] of groups.filter(([, list]) => list.length > 0)) {
     const row = { group: name, number: i + 1, character: sample.name, clip: clip.name, frame: model.number(frame), index: frame, parts, class: CLASSES[contact.kind],
       depth_mm: +contact.depth.toFixed(1), height_share: +(contact.depth * model.mesh.unitsPerMm / model.height).toFixed(4), visible: +contact.visible.toFixed(3), seen: +images.seen.toFixed(2) };
     table.push(row);
-    const label = (kind) => `<b>${row.number}</b> ${row.character} ${row.frame}<br>${parts.join(" / ")}<br>${kind}${row.depth_mm} mm, ${(100 * row.height_share).toFixed(1)} %, ${clip.name}`;
-    return { kind: contact.kind, small: { images: [images.small], label: label(contact.kind === kPenetration ? "" : `${row.class}, `), height: 160 },
-      large: { images: images.large, label: `${label("")}<br>visible ${row.visible}, volume ${contact.volume.toFixed(1)} ml`, height: 300 } };
+    const who = `<b>${row.number}</b> ${row.character} ${row.frame}<br>${parts.join(" / ")}`, figures = `${row.depth_mm} mm, ${(100 * row.height_share).toFixed(1)} %, ${clip.name}`;
+    return { kind: contact.kind, small: { images: [images.small], label: `${who}<br>${contact.kind === kPenetration ? "" : `${row.class}, `}${figures}`, height: 160 },
+      large: { images: images.large, label: deepest ? `${who}<br>${figures}<br>visible ${row.visible}, volume ${contact.volume.toFixed(1)} ml` : who, height: kLarge } };
   });
   if (!deepest) {
     for (const [group, ofPenetrations] of [["penetrations", true], ["others", false]]) {
       sheet(join(out, `${group}.png`), drawn.filter(({ kind }) => (kind === kPenetration) === ofPenetrations).map(({ small }) => small), 10, 162);
     }
   }
-  for (let i = 0; i < drawn.length; i += 10) {
-    sheet(join(out, `${name}_${i / 10 + 1}.png`), drawn.slice(i, i + 10).map(({ large }) => large), 2, 902);
+  for (let i = 0; i < drawn.length; i += kOfSheet) {
+    sheet(join(out, `${name}_${i / kOfSheet + 1}.png`), drawn.slice(i, i + kOfSheet).map(({ large }) => large), 1, 3 * kLarge);
   }
   console.log(`${name}: ${drawn.length}`);
 }

@@ -13,9 +13,8 @@ namespace {
 
 // Lengths are parts of the character's height, but those in metres.
 constexpr double kTouchMetres = 0.003, kTouchMin = 0.0019, kTouchMax = 0.0066;
-constexpr double kTouchFlat = 8;                        // times more, where the sides lie flat on each other
-constexpr double kTouchFlesh = 32, kTouchMost = 10;     // likewise of one skin, which gives way; times at most
-constexpr double kTouchSide = 6;                        // times: the side of a square that is too small to be seen
+constexpr double kTouchMost = 10;                       // times: no touch is deeper
+constexpr double kSwallowed = 0.25;                     // less of the smaller part is seen to go in: it touches
 constexpr double kHidden = 0.3;                         // less of the contour is visible: it is hidden
 constexpr double kGapMetres = 0.0006, kGapMax = 0.001;  // shorter free places on the way are none
 constexpr double kFoldDistance = 0.11;                  // of two spots at rest, to be a fold
@@ -284,9 +283,44 @@ class Measurer {
     return (are_siblings(a, b) || lie_close) && contour.rest_distance < kFoldDistance * rest_height_;
   }
 
+  // How far a part's skin goes on from a point on it, into that direction.
+  double thickness(const PosedSkin& skin, std::size_t part, Vec3 at, const Double3& direction) const {
+    const Ray ray(to_double(at), direction);
+    double least = HUGE_VAL;
+    for (const TriangleRun& run : runs_of(*skin.surface, part)) {
+      if (!ray.meets(skin.low, skin.high, run.cluster)) {
+        continue;
+      }
+      for (std::uint32_t t = run.first; t < run.first + run.count; ++t) {
+        const double reach = ray.reach(skin.corners(t));
+        least = reach > kClearance * height_ ? std::min(least, reach) : least;
+      }
+    }
+    return least;
+  }
+
+  // How much of the thinner and smaller of two parts is seen to go into the other: what share of its thickness, times
+  // the length of the contour that is in sight, in lengths of the side of a square as large as the part's skin.
+  double swallowed(const Contour& contour, const Penetration& of, double seen_length) const {
+    const double scale_a = height_ / rest_height_;
+    const double scale_b = in_.are_one ? scale_a : scale_of(*in_.b.asset, in_.b.pose);
+    double radius_a = 0, radius_b = 0;  // mean of the spheres whose skin meets
+    for (const Segment3& s : contour.segments) {
+      radius_a += s.length * double{in_.a.asset->spheres()[surface_a_.triangle_spheres[s.a]].radius};
+      radius_b += s.length * double{in_.b.asset->spheres()[surface_b_.triangle_spheres[s.b]].radius};
+    }
+    const Double3 out = to_double(of.direction);
+    const double thin = std::min({2 * std::min(scale_a * radius_a, scale_b * radius_b) / contour.length,
+                                  thickness(memory_.skins.a, of.part_a, of.deepest_a.position, -1.0 * out),
+                                  thickness(memory_.skins.b, of.part_b, of.deepest_b.position, out)});
+    const double side = std::min(scale_a * std::sqrt(double{surface_a_.part_areas[of.part_a]}),
+                                 scale_b * std::sqrt(double{surface_b_.part_areas[of.part_b]}));
+    return double{of.depth} / thin * seen_length / side;
+  }
+
   PenetrationClass class_of(const Contour& contour, const Penetration& of, double seen_length) const {
-    const double few = touch_depth_of(metre_, height_);
-    const double touch = in_.touch_depth > 0 ? double{in_.touch_depth} : few;
+    const bool has_limit = in_.touch_depth > 0;
+    const double touch = has_limit ? double{in_.touch_depth} : touch_depth_of(metre_, height_);
     if (2 * contour.touching >= 1) {
       return SC_CLASS_REST;
     }
@@ -300,11 +334,8 @@ class Measurer {
     if (in_.are_one && is_fold(contour, of.part_a, of.part_b)) {
       return of.depth > kDeepFold * height_ && contour.is_one_piece ? SC_CLASS_DEEP_FOLD : SC_CLASS_FOLD;
     }
-    const double flat = (contour.is_one_piece ? kTouchFlesh : kTouchFlat) * std::max(0.0, contour.facing);
-    const bool lies_flat = in_.touch_depth == 0 && of.depth < few * std::min(1 + flat, kTouchMost);
-    const double side = kTouchSide * std::min(few, touch);
-    const bool is_small = std::min(double{of.depth}, seen_length) * seen_length < side * side;
-    return lies_flat || is_small ? SC_CLASS_TOUCH : SC_CLASS_PENETRATION;
+    const bool may_touch = !has_limit && of.depth < kTouchMost * touch;
+    return may_touch && !(swallowed(contour, of, seen_length) >= kSwallowed) ? SC_CLASS_TOUCH : SC_CLASS_PENETRATION;
   }
 
   const Meeting& in_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "depth/contour.h"
+#include "depth/ray.h"
 
 namespace spherechain {
 
@@ -21,8 +22,8 @@ class Visibility {
   Seen look(const Contour& contour, const Double3 (&axes)[3], double clearance);
 
  private:
-  bool is_free(const Double3& from, const Double3& direction);
-  bool meets_skin(const PosedSkin& skin, const Double3& from, const Double3& direction);
+  bool is_free(const Ray& ray);
+  bool meets_skin(const PosedSkin& skin, const Ray& ray);
   // That cosine, at least 0; -1 where no ray is free. `free`: a direction to try first; then the best one, if any.
   double best_cosine(const Segment3& segment, const Double3 (&axes)[3], double clearance, Double3& free);
 

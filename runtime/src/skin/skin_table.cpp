@@ -9,6 +9,7 @@
 #include "asset/memory.h"
 #include "asset/status.h"
 #include "asset/stream.h"
+#include "skin/double3.h"
 #include "spherechain/skin_contacts.h"
 
 namespace spherechain {
@@ -49,6 +50,7 @@ std::size_t lay_out(const AssetView& asset, std::uint64_t* words, Surface& out, 
   memory.take(out.place_of_source, asset.info().triangle_count);
   memory.take(out.part_runs, skin.part_runs.size + sizes.clusters);
   memory.take(out.first_of_part, asset.part_count() + 1);
+  memory.take(out.part_areas, asset.part_count());
   memory.take(out.pieces, sizes.vertices);
   memory.take(out.source_vertices, sizes.vertices);
   memory.take(out.welds, sizes.vertices);
@@ -98,6 +100,7 @@ class Filler {
       out_.place_of_source[out_.triangles[t]] = t;
     }
     fill_part_runs();
+    fill_part_areas();
     fill_pieces();
     for (Pair& pair : out_.rest_contacts) {
       pair.a = pairs.next();
@@ -304,6 +307,26 @@ class Filler {
       out_.first_of_part[part] = out_.first_of_part[part - 1];
     }
     out_.first_of_part[0] = 0;
+  }
+
+  void fill_part_areas() const {
+    for (std::size_t part = 0; part < out_.part_areas.size; ++part) {
+      double area = 0;
+      for (std::uint32_t i = out_.first_of_part[part]; i < out_.first_of_part[part + 1]; ++i) {
+        for (std::uint32_t t = out_.part_runs[i].first; t < out_.part_runs[i].first + out_.part_runs[i].count; ++t) {
+          area += area_of(out_.triangle_vertices.data + 3 * std::size_t{t});
+        }
+      }
+      out_.part_areas[part] = static_cast<float>(area);
+    }
+  }
+  double area_of(const std::uint32_t* vertices) const {
+    Double3 p[3];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const float* const at = skin_.positions.data + 3 * std::size_t{vertices[i]};
+      p[i] = {double{at[0]}, double{at[1]}, double{at[2]}};
+    }
+    return 0.5 * length(cross(p[1] - p[0], p[2] - p[0]));
   }
 
   // Each vertex points to one of its piece with a number no higher than its own; the lowest stands for the piece.

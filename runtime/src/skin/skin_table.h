@@ -73,6 +73,7 @@ struct Surface {
   Span<std::uint32_t> place_of_source;      // a source triangle's place in `triangles`; kNoPlace where it is not there
   Span<TriangleRun> part_runs;              // of part after part
   Span<std::uint32_t> first_of_part;        // a part's in part_runs, and the end
+  Span<float> part_areas;                   // a part's, at rest
   Span<std::uint32_t> pieces;               // of each vertex: equal where triangles join two vertices
   Span<std::uint32_t> source_vertices;      // a vertex' lowest source vertex
   Span<std::uint32_t> welds;                // the lowest vertex at the same rest position: at most its own number

@@ -51,7 +51,6 @@ TEST_CASE("two balls are as deep as their radii are longer than their distance, 
     CHECK(found.volume == doctest::Approx(lens(1, distance)).epsilon(0.01));
     CHECK(found.contour_length == doctest::Approx(2 * kPi * std::sqrt(1 - distance * distance / 4)).epsilon(0.01));
     CHECK(found.visible == 1);
-    CHECK(found.kind == (distance < 1.8 ? SC_CLASS_PENETRATION : SC_CLASS_TOUCH));
   }
 }
 
@@ -208,32 +207,29 @@ TEST_CASE("what a third layer hides is a shell, not a fault") {
   CHECK(hidden.kind == SC_CLASS_SHELL);
 }
 
-TEST_CASE(
-    "skins that cross touch up to 3 mm; those that lie flat on each other up to 22 mm, of one piece up to 32 mm") {
+TEST_CASE("skins touch up to 3 mm, and up to ten times that where little of the smaller part is seen to go in") {
   // 1.8 m long.
-  const auto kind = [](const Shape& a, const Shape& b, double distance, bool one_piece = false) {
-    return only(TwoShapes(a, b, 1.4, false, one_piece).measure(shifted(distance, 0.03, 0.02))).kind;
+  const auto kind = [](const Shape& b, double depth) {
+    const double half = -b.positions[0][0];
+    return only(TwoShapes(box(0.2, 0.2, 0.2), b, 1.4).measure(shifted(0.2 + half - depth, 0.03, 0.02))).kind;
   };
-  const Shape large = box(0.2, 0.2, 0.2), small = box(0.1, 0.1, 0.1), right = ball(0.2, 24);
-  Shape left = right;
-  CHECK(kind(large, small, 0.3 - 0.0028) == SC_CLASS_TOUCH);
-  CHECK(kind(large, small, 0.3 - 0.0036) == SC_CLASS_PENETRATION);
-  CHECK(kind(left, right, 0.4 - 0.018) == SC_CLASS_TOUCH);
-  CHECK(kind(left, right, 0.4 - 0.028) == SC_CLASS_PENETRATION);
-  left.positions.push_back({0, 0.3, 0});  // above its pole; the triangle that joins the two is far from where they meet
-  CHECK(kind(left, right, 0.4 - 0.028, true) == SC_CLASS_TOUCH);
-  CHECK(kind(left, right, 0.4 - 0.04, true) == SC_CLASS_PENETRATION);
+  const Shape block = box(0.1, 0.1, 0.1), stick = box(0.1, 0.015, 0.015);
+  for (const Shape& shape : {block, stick}) CHECK(kind(shape, 0.0028) == SC_CLASS_TOUCH);
+  for (const double depth : {0.005, 0.02, 0.03}) CHECK(kind(block, depth) == SC_CLASS_TOUCH);
+  CHECK(kind(block, 0.036) == SC_CLASS_PENETRATION);
+  CHECK(kind(stick, 0.005) == SC_CLASS_TOUCH);
+  for (const double depth : {0.025, 0.03, 0.1}) CHECK(kind(stick, depth) == SC_CLASS_PENETRATION);
 }
 
-TEST_CASE("a line that is too short to be seen makes a touch, though it is deep") {
-  const auto found = [](double half, double depth) {  // of a rod, at rest far from the box
-    const TwoShapes shapes(box(1, 1, 1), box(1, half, half));
-    return only(shapes.measure(shifted(2 - depth, 0.05, 0.04)));
+TEST_CASE("with a touch depth of the caller's, depth alone tells a touch") {
+  const TwoShapes shapes(box(0.2, 0.2, 0.2), box(0.1, 0.1, 0.1), 1.4);
+  const auto kind = [&](float limit) {
+    const auto set = [&](spherechain::PenetrationJob& job) { job.touch_depth = limit; };
+    return only(shapes.measure(shifted(0.28, 0.03, 0.02), set)).kind;
   };
-  CHECK(found(0.02, 0.4).depth == doctest::Approx(0.4).epsilon(1e-3));
-  CHECK(found(0.02, 0.4).kind == SC_CLASS_TOUCH);
-  CHECK(found(0.2, 0.4).kind == SC_CLASS_PENETRATION);
-  CHECK(found(0.06, 0.9).kind == SC_CLASS_TOUCH);  // however deep
+  CHECK(kind(0) == SC_CLASS_TOUCH);
+  CHECK(kind(0.019F) == SC_CLASS_PENETRATION);
+  CHECK(kind(0.021F) == SC_CLASS_TOUCH);
 }
 
 TEST_CASE("the quick form and every target agree with the full form, and a kept direction does not flicker") {
