@@ -164,7 +164,7 @@ namespace Spherechain
         Rest = 0,
         /// <summary>another layer of the same place (a garment on the body), or most of it is hidden</summary>
         Shell = 1,
-        /// <summary>less deep than the job's touch_depth; or no fold, and flat or too small to see</summary>
+        /// <summary>less deep than the job's touch_depth; or no fold, and little goes in</summary>
         Touch = 2,
         /// <summary>of neighbours on the body, near the joint: an elbow, a groin</summary>
         Fold = 3,
@@ -547,7 +547,7 @@ namespace Spherechain
             public UIntPtr PreviousCount;
             /// <summary>1: one direction, no volume, no visibility, no previous frame. For games</summary>
             public int Quick;
-            /// <summary>&gt;= 0. 0: 3 mm, by the asset's metres_per_unit, but at least 0.19 % and at most 0.66 % of the height; but for folds, up to ten times that where the sides lie flat</summary>
+            /// <summary>&gt;= 0. 0: 3 mm, by the asset's metres_per_unit, but at least 0.19 % and at most 0.66 % of the height; but for folds, up to ten times that where little goes in: depth / thickness of the thinner part * seen contour / side of a square like the smaller part &lt; 0.25</summary>
             public float TouchDepth;
             /// <summary>sc_penetration_scratch_words() words; nothing is kept there between runs</summary>
             public ulong* Scratch;

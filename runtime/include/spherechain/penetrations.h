@@ -8,7 +8,7 @@
 SC_ENUM(sc_penetration_class){
     SC_CLASS_REST = 0,        /* the two spots touch in the rest pose, too */
     SC_CLASS_SHELL = 1,       /* another layer of the same place (a garment on the body), or most of it is hidden */
-    SC_CLASS_TOUCH = 2,       /* less deep than the job's touch_depth; or no fold, and flat or too small to see */
+    SC_CLASS_TOUCH = 2,       /* less deep than the job's touch_depth; or no fold, and little goes in */
     SC_CLASS_FOLD = 3,        /* of neighbours on the body, near the joint: an elbow, a groin */
     SC_CLASS_DEEP_FOLD = 4,   /* a fold of one piece of skin, deeper than 4.5 % of the character's height */
     SC_CLASS_PENETRATION = 5, /* all else: a fault */
@@ -58,7 +58,8 @@ typedef struct sc_penetration_job {
   size_t previous_count SC_ZERO;
   int32_t quick SC_ZERO;     /* 1: one direction, no volume, no visibility, no previous frame. For games */
   float touch_depth SC_ZERO; /* >= 0. 0: 3 mm, by the asset's metres_per_unit, but at least 0.19 % and at most 0.66 % of
-                                the height; but for folds, up to ten times that where the sides lie flat */
+                                the height; but for folds, up to ten times that where little goes in: depth / thickness
+                                of the thinner part * seen contour / side of a square like the smaller part < 0.25 */
   uint64_t* scratch SC_ZERO; /* sc_penetration_scratch_words() words; nothing is kept there between runs */
   size_t scratch_words SC_ZERO;
   /* Out. Sorted by (part_a, part_b). The count says how many there are, also where the list is too small. */
