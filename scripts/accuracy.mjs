@@ -190,7 +190,7 @@ scripts/accuracy.mjs build/release/bin/spherechain [CHARACTER]... [--depth CHARA
 2. ${kFrames} frames of each motion, evenly spread. \`samples/poses\` is eight files, taken together.
 3. **Recall** is the part of the true pairs whose spheres are reported. **Precision** is the part of the reported pairs of spheres that have a true
    pair, or whose triangles are closer than 0.3 % of the height. **Any** and **all** are frames with a true pair in which one, or each, is found.
-4. **Missed, mm** is the [depth](concepts.md#how-deep-which-way) of the deepest contact that is not reported.
+4. **Missed, mm** is the [depth](concepts.md#how-deep-which-way) of the deepest fault (penetration or deep fold) of which nothing is reported.
 5. Profile \`balanced\` puts ${counts.balanced} spheres into the human. Profile \`paper\` puts ${counts.paper}, with none in head, hands and feet.
 6. A capsule a bone is what games have instead. It is fitted to the triangles that its bone moves most; its radius is a quantile of their distances.
    Neighbours on the skeleton are ignored, and others follow the rest rule of spheres. Its quantile is the best for that motion (harmonic mean of recall and
@@ -233,7 +233,10 @@ ${characters.length > 0 ? cones() : ""}
 by the exact skin contacts; parts that hang on each other are left out. **Recall** and **precision** are of pairs of parts that are tested. **Precision at 95** is what is
 left with the least padding of all volumes that finds 95 % (padding in % of the height). **Not tested** is the share of touching pairs that are ignored, because the
 volumes overlap at rest or one volume stands for both. Then the fit at rest: the share of the skin **inside**, the skin's mean **distance** from the volumes' surface and its
-95th of 100, how far volumes stand **beyond** the skin, 95th of 100, in % of the height; the **volume** in % of the body's. The first rows without a limit are the asset's own spheres, which exports took when this was measured; they fit as many anew since.
+95th of 100, how far volumes stand **beyond** the skin, 95th of 100, in % of the height; the **volume** in % of the body's.
+
+At equal numbers ellipsoids lie nearest to the skin, and they and capsules are right most often. Engines have no ellipsoids, so exports take cones or capsules;
+for MuJoCo and USD try \`--volumes ellipsoids\`. Rows without a number are as many as \`export\` makes of them unasked.
 
 ${volumes()}
 ## Depth against brute force

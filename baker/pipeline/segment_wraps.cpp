@@ -37,6 +37,8 @@ class WrapSearch {
       : character_(character), settings_(settings), closing_(closing), reason_(of_body) {}
 
   Attempt<SegmentedWrap> run(std::vector<PassedOver>& passed_over) {
+    constexpr std::size_t kTrianglesMin = 48;  // a trunk and five limbs, each of four sides
+    if (character_.skin.triangles.size() < kTrianglesMin) return Reason{"it has too few triangles for five limbs"};
     const Reason no_body{"its triangles enclose no body (close the holes that are as wide as its limbs)"};
     // A coarse wrap is quick.
     constexpr WrapSize kCoarse{60};
