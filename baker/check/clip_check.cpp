@@ -152,15 +152,19 @@ void ClipChecker::measure(const ClipFrames& clip, PartMeeting& meeting, std::vec
 }
 
 // The quick form is seldom less deep than the full one, and a little deeper as a rule: frames are measured in full from
-// the deepest on, over all of the event, until none is left that is likely to be deeper. An event has the class of its
-// deepest frame, and no frame is worse than that one.
+// the worst on, over all of the event, until none is left that is likely to be worse. A fault is worse than what is
+// none, however deep. An event has class and depth of its worst frame, and no frame is worse than that one.
 void ClipChecker::find_deepest(Frames& frames, const ClipFrames& clip, EventSpan& span) {
   const auto found = [&](std::size_t m) -> Penetration& { return frames.meetings[m].found; };
   const std::vector<std::size_t>& all = span.meetings;
   std::vector<std::size_t> order(all.size());  // places in `all`
   std::iota(order.begin(), order.end(), 0);
+  const auto severity = [&](std::size_t m) {
+    return std::pair(is_fault(found(m).kind) ? found(m).kind : SC_CLASS_REST, found(m).depth);
+  };
   std::sort(order.begin(), order.end(), [&](auto l, auto r) {
-    return std::pair(-found(all[l]).depth, all[l]) < std::pair(-found(all[r]).depth, all[r]);
+    const auto of_l = severity(all[l]), of_r = severity(all[r]);
+    return of_l != of_r ? of_l > of_r : all[l] < all[r];
   });
   const bool may_be_fault = std::any_of(all.begin(), all.end(), [&](auto m) { return is_fault(found(m).kind); });
   const std::size_t limit = may_be_fault ? kFullMeasures : 1, apart = all.size() / (2 * kFullMeasures);
@@ -170,10 +174,12 @@ void ClipChecker::find_deepest(Frames& frames, const ClipFrames& clip, EventSpan
     const auto is_near = [&](std::size_t other) { return std::max(i, other) - std::min(i, other) <= apart; };
     if (std::any_of(measured.begin(), measured.end(), is_near)) continue;
     if (measured.size() == limit) break;
-    if (!measured.empty() && found(all[i]).depth <= kQuickExcess * found(span.deepest).depth) break;
+    const bool may_be_worse = severity(all[i]).first > severity(span.deepest).first ||
+                              found(all[i]).depth > kQuickExcess * found(span.deepest).depth;
+    if (!measured.empty() && !may_be_worse) break;
     measured.push_back(i);
     measure(clip, frames.meetings[all[i]], frames.contacts[all[i]]);
-    if (found(all[i]).depth > found(span.deepest).depth) span.deepest = all[i];
+    if (severity(all[i]) > severity(span.deepest)) span.deepest = all[i];
   }
   for (const std::size_t m : all) {
     found(m).depth = std::min(found(m).depth, found(span.deepest).depth);

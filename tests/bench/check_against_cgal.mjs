@@ -2,7 +2,7 @@
 //   node check_against_cgal.mjs TOOL FILE[+MOTION]...
 //
 // For each clip: events join the frames in which `play` finds the two body parts in contact, and `validate` finds no
-// contact of any frame missing or extra by CGAL. Shallow: faults that are less than .8 as deep as the deepest that `play`
+// contact of any frame missing or extra by CGAL. Shallow: faults that are less than .8 as deep as the deepest fault that `play`
 // measures of those parts in those frames (it measures each in full, and keeps a direction that is up to 1.25 as long). The ratio is of times of the same frames, one after another on one core:
 // check with its report and without the bake, over the search by CGAL and its comparison with ours.
 import { spawnSync } from 'node:child_process';
@@ -13,7 +13,7 @@ import { basename, join } from 'node:path';
 const [tool, ...files] = process.argv.slice(2);
 if (files.length === 0) throw new Error('node check_against_cgal.mjs TOOL FILE[+MOTION]...');
 const folder = mkdtempSync(join(tmpdir(), 'check-'));
-const kGap = 3;
+const kGap = 3, faults = ['penetration', 'deep_fold'];
 const rate = ['--fps', '30'];
 
 function run(...words) {
@@ -46,9 +46,9 @@ function spans(frames, loops) {
 // Of events, those whose depth is under that share of the deepest frame's.
 function shallow(events, frames, share) {
   return events.filter(({ parts: [a, b], class: kind, from, to, depth_mm: depth }) => {
-    if (kind !== 'penetration' && kind !== 'deep_fold') return false;
+    if (!faults.includes(kind)) return false;
     const here = frames.filter((_, i) => (from <= to ? i >= from && i <= to : i >= from || i <= to));
-    const found = here.flatMap((f) => f.penetrations).filter(({ parts }) => parts[0] === a && parts[1] === b);
+    const found = here.flatMap((f) => f.penetrations).filter((p) => p.parts[0] === a && p.parts[1] === b && faults.includes(p.class));
     return depth < share * Math.max(...found.map((p) => p.depth_mm));
   }).length;
 }
