@@ -282,3 +282,31 @@ TEST_CASE("check --continuous follows the clip's keys between two frames") {
   REQUIRE(report["clips"][0]["events"].size() == 1);
   CHECK(report["clips"][0]["events"][0]["depth_mm"].get<double>() == doctest::Approx(150).epsilon(0.05));
 }
+
+TEST_CASE("each penetration that play finds is in a fault of check, also where a touch of the same parts is deeper" *
+          doctest::test_suite("many bakes")) {
+  const std::string models = "/usr/share/assimp/models/";
+  const std::string motion = " --motion " + models + "BVH/Boxing_Toes.bvh --fps 10";
+  const TemporaryFolder out;
+  const auto path = [&](const char* name) { return " " + (out.path / name).string(); };
+  REQUIRE(tool::run("play " + tool::baked_files().asset.string() + " --source " + models + "Collada/human.zae" +
+                    motion + " --json" + path("play.json"))
+              .code == 0);
+  REQUIRE(tool::run("check " + models + "Collada/human.zae" + motion + " -o" + path("report") + " --json" +
+                    path("check.json"))
+              .code == 6);
+  const json faults = json::parse(tool::contents(out.path / "check.json"))["clips"].back()["events"];
+  const json frames = json::parse(tool::contents(out.path / "play.json"))["frames"];
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    for (const json& found : frames[i]["penetrations"]) {
+      if (found["class"] != "penetration") continue;
+      ++count;
+      CHECK(std::any_of(faults.begin(), faults.end(), [&](const json& event) {
+        return event["class"] == "penetration" && event["parts"] == found["parts"] && event["from"] <= i &&
+               event["to"] >= i;
+      }));
+    }
+  }
+  CHECK(count > 50);
+}
