@@ -154,7 +154,7 @@ void ClipChecker::measure(const ClipFrames& clip, PartMeeting& meeting, std::vec
 // The quick form is seldom less deep than the full one, and a little deeper as a rule: frames are measured in full from
 // the worst on, over all of the event, until none is left that is likely to be worse. A fault is worse than what is
 // none, however deep. An event has class and depth of its worst frame, and no frame is worse than that one.
-void ClipChecker::find_deepest(Frames& frames, const ClipFrames& clip, EventSpan& span) {
+void ClipChecker::find_worst(Frames& frames, const ClipFrames& clip, EventSpan& span) {
   const auto found = [&](std::size_t m) -> Penetration& { return frames.meetings[m].found; };
   const std::vector<std::size_t>& all = span.meetings;
   std::vector<std::size_t> order(all.size());  // places in `all`
@@ -289,7 +289,7 @@ ClipCheck ClipChecker::check(std::size_t index) {
   const ClipFrames& clip = animated_.clips()[index];
   Frames frames = look(clip);
   frames.spans = join_events(frames.meetings, clip.count, frames.loops);
-  for (EventSpan& span : frames.spans) find_deepest(frames, clip, span);
+  for (EventSpan& span : frames.spans) find_worst(frames, clip, span);
   ClipCheck out{{clip.count - clip.between, clip.between, clip.fps, frames.loops, {}}, {}, {}, {}};
   for (const EventSpan& span : frames.spans) out.result.events.push_back(event_of(frames, span, clip));
   out.heat = heat_of(frames);

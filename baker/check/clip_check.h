@@ -42,7 +42,7 @@ class ClipChecker {
   void with_pose(const Deformation& deformation, const Run& run);
   Frames look(const ClipFrames& clip);
   void measure(const ClipFrames& clip, struct PartMeeting& meeting, std::vector<Triangles>& triangles);
-  void find_deepest(Frames& frames, const ClipFrames& clip, struct EventSpan& span);
+  void find_worst(Frames& frames, const ClipFrames& clip, struct EventSpan& span);
   Event event_of(const Frames& frames, const struct EventSpan& span, const ClipFrames& clip) const;
   std::vector<HeatSpot> heat_of(const Frames& frames) const;
   void show(ClipCheck& out, const Frames& frames, const ClipFrames& clip);

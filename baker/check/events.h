@@ -20,7 +20,7 @@ inline constexpr int kGapMax = 3;
 // Meetings of the same two parts, joined over frames: what a person would call one clipping.
 struct EventSpan {
   int from, to;                       // where an event goes over the seam of a loop, from > to
-  std::size_t deepest;                // index of its deepest meeting, the earliest of equals
+  std::size_t deepest;                // index of its deepest meeting, the earliest of equals; ClipChecker: of its worst
   std::vector<std::size_t> meetings;  // indices, in the order of time
 };
 

@@ -130,6 +130,7 @@ TEST_CASE("two props are as deep as their shortest overlap, and part along it") 
   CHECK(found[0].direction.x > 0.9999F);
   REQUIRE(found[0].is_closed == 1);
   CHECK(found[0].volume == doctest::Approx(0.1).epsilon(1e-3));
+  CHECK(found[0].kind == SC_CLASS_PENETRATION);
   CHECK(found[0].deepest_a.position.x == doctest::Approx(4).epsilon(1e-5));
   CHECK(found[0].deepest_b.position.x == doctest::Approx(3.9).epsilon(1e-5));
   // The other way round the way is the other way.

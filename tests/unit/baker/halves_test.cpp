@@ -183,7 +183,7 @@ TEST_CASE("what nothing moves is cut in pieces that hang together; so is a body 
   CHECK(still.quality.grade() != FitGrade::kPoor);
 }
 
-TEST_CASE("two cubes are not wrapped: that takes half a minute, and they have no limbs") {
+TEST_CASE("two cubes are not wrapped: they have too few triangles for limbs") {
   const Shape cube = box(1, 1, 1);
   SourceMesh cubes;
   for (const double x : {0.0, 2.4}) {

@@ -51,6 +51,7 @@ TEST_CASE("two balls are as deep as their radii are longer than their distance, 
     CHECK(found.volume == doctest::Approx(lens(1, distance)).epsilon(0.01));
     CHECK(found.contour_length == doctest::Approx(2 * kPi * std::sqrt(1 - distance * distance / 4)).epsilon(0.01));
     CHECK(found.visible == 1);
+    CHECK(found.kind == (distance < 1.2 ? SC_CLASS_PENETRATION : SC_CLASS_TOUCH));
   }
 }
 
