@@ -2,6 +2,7 @@
 #include "check/events.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
 #include <tuple>
 #include <utility>
