@@ -23,7 +23,9 @@ std::string runs_text(const std::vector<std::pair<double, double>>& runs) {
   std::string out;
   for (std::size_t i = 0; i < std::min(runs.size(), kRunsShownMax); ++i) {
     const auto [first, last] = runs[i];
-    out += (i > 0 ? ", " : "") + frame_text(first) + (first == last ? "" : "-" + frame_text(last));
+    if (i > 0) out += ", ";
+    out += frame_text(first);
+    if (first != last) out += '-' + frame_text(last);
   }
   if (runs.size() > kRunsShownMax) out += fmt::format(" and {} more", runs.size() - kRunsShownMax);
   return out;
