@@ -1,7 +1,7 @@
 # SPHERECHAIN_JAVASCRIPT: AUTO builds the JavaScript package where emscripten and Node are, ON fails without, OFF does not
 # look. Sets SPHERECHAIN_JAVASCRIPT_FOUND.
 set(spherechain_javascript_default OFF)
-if(PROJECT_IS_TOP_LEVEL)
+if(PROJECT_IS_TOP_LEVEL AND NOT BUILD_SHARED_LIBS)  # a shared runtime is built for a program or a package of its own
   set(spherechain_javascript_default AUTO)
 endif()
 set(SPHERECHAIN_JAVASCRIPT ${spherechain_javascript_default} CACHE STRING "Build the JavaScript package: AUTO (where emscripten and Node are), ON or OFF")
