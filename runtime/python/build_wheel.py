@@ -33,18 +33,25 @@ Tag: {tag}
 """
 
 
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    """With it pip looks for numpy first, and compiles where that is found."""
+    info = Path(metadata_directory, info_folder())
+    info.mkdir()
+    Path(info, "METADATA").write_bytes(metadata())
+    return info.name
+
+
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
-    version = re.search(r"project\(spherechain VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
     python = f"cp{sys.version_info[0]}{sys.version_info[1]}"
     tag = f"{python}-{python}-{re.sub('[^0-9a-zA-Z]', '_', sysconfig.get_platform())}"
     package = compile_package(ROOT / "build" / "wheel" / python)
-    info = f"{PACKAGE}-{version}.dist-info"
+    info = info_folder()
     files = {f"{PACKAGE}/{path.name}": path.read_bytes() for path in sorted(package.iterdir()) if path.is_file()}
     files[f"{info}/LICENSE"] = (ROOT / "runtime" / "LICENSE").read_bytes()
-    files[f"{info}/METADATA"] = METADATA.format(version=version).encode()
+    files[f"{info}/METADATA"] = metadata()
     files[f"{info}/WHEEL"] = WHEEL.format(tag=tag).encode()
     files[f"{info}/RECORD"] = record(files, f"{info}/RECORD")
-    name = f"{PACKAGE}-{version}-{tag}.whl"
+    name = f"{PACKAGE}-{version()}-{tag}.whl"
     with zipfile.ZipFile(Path(wheel_directory, name), "w", zipfile.ZIP_DEFLATED) as wheel:
         for path, data in files.items():
             entry = zipfile.ZipInfo(path)  # of 1980: the same wheel from the same files
@@ -56,6 +63,18 @@ def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
 
 def build_sdist(sdist_directory, config_settings=None):
     raise NotImplementedError("the checkout is the source: pip install . or pip wheel .")
+
+
+def version():
+    return re.search(r"project\(spherechain VERSION ([0-9.]+)", (ROOT / "CMakeLists.txt").read_text())[1]
+
+
+def info_folder():
+    return f"{PACKAGE}-{version()}.dist-info"
+
+
+def metadata():
+    return METADATA.format(version=version()).encode()
 
 
 def compile_package(build):

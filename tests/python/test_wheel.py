@@ -43,6 +43,16 @@ class Wheel(unittest.TestCase):
                                   capture_output=True, check=True)
             self.assertEqual(done.stdout.split(), [str(target / "spherechain" / "__init__.py"), "64"])
 
+    def test_numpy_is_looked_for_before_anything_is_compiled(self):
+        with tempfile.TemporaryDirectory() as folder:
+            for program in ("cmake", "ninja"):  # pip must not come to them
+                Path(folder, program).symlink_to("/bin/false")
+            pip = [sys.executable, "-m", "pip", "install", "--no-index", "--ignore-installed", "--target", Path(folder, "site"), ROOT]
+            environment = {**os.environ, "PATH": f"{folder}:{os.environ['PATH']}", "PIP_FIND_LINKS": ""}
+            done = subprocess.run(pip, env=environment, text=True, capture_output=True)
+            self.assertNotEqual(done.returncode, 0)
+            self.assertIn("No matching distribution found for numpy", done.stderr)
+
 
 if __name__ == "__main__":
     unittest.main()
