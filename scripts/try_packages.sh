@@ -1,38 +1,22 @@
 #!/usr/bin/env bash
 # Installs the packages of scripts/package.sh in a bare Debian 12 and uses them as a stranger does: the tool bakes and views a
 # character; a project finds the library by pkg-config and by CMake, then the unpacked archive. `scripts/try_packages.sh`. As
-# root, with debootstrap and Debian's servers. Two minutes the first time; the bare Debian stays in build/bare-debian.
+# root, with Debian's servers. Two minutes the first time.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-[[ $(id -u) -eq 0 ]] || { echo "try_packages: needs root, for chroot" >&2; exit 1; }
 [[ -e build/packages ]] || { echo "try_packages: no build/packages: run scripts/package.sh first" >&2; exit 1; }
-if ! command -v debootstrap >/dev/null; then
-  apt-get update -qq
-  DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends debootstrap >/dev/null
-fi
-bare=$PWD/build/bare-debian
-if [[ ! -e $bare/complete ]]; then
-  rm -rf "$bare"
-  debootstrap --variant=minbase bookworm "$bare" >/dev/null
-  touch "$bare/complete"
-fi
-
-rm -rf "$bare/try"
-mkdir "$bare/try"
-cp build/packages/*.deb build/packages/*.tar.gz "$bare/try/"
-cp -r tests/package/stranger "$bare/try/"
+try=$(mktemp -d)
+trap 'rm -r "$try"' EXIT
+cp build/packages/*.deb build/packages/*.tar.gz "$try/"
+cp -r tests/package/stranger "$try/"
 cmake --build --preset release --target write_tiny_asset >/dev/null
-build/release/bin/write_tiny_asset "$bare/try/tiny.sphc"
-cp /usr/share/assimp/models/Collada/human.zae "$bare/try/"
-cp /etc/resolv.conf "$bare/etc/"
-cat >"$bare/try/run.sh" <<'EOF'
+build/release/bin/write_tiny_asset "$try/tiny.sphc"
+cp /usr/share/assimp/models/Collada/human.zae "$try/"
+cat >"$try/run.sh" <<'EOF'
 set -euo pipefail
-cd /try
-export DEBIAN_FRONTEND=noninteractive
 check() { "$1" tiny.sphc | diff - <(echo "60 spheres, 175 pairs, 4 pairs of body parts") && echo "$1: as it should be"; }
 apt-get update -qq
-apt-get purge -y -qq 'libspherechain*' spherechain >/dev/null 2>&1 || true
 apt-get install -y -qq --no-install-recommends ./libspherechain_*.deb ./libspherechain-dev_*.deb ./spherechain_*.deb >/dev/null 2>log || { cat log; exit 1; }
 cat /etc/debian_version
 spherechain --version
@@ -49,6 +33,4 @@ tar xf spherechain-sdk-*.tar.gz
 cmake -G Ninja -S stranger -B by_archive -D CMAKE_PREFIX_PATH="$(ls -d "$PWD"/spherechain-*-Linux-*/)" >/dev/null && cmake --build by_archive >/dev/null
 check by_archive/stranger_cpp
 EOF
-trap 'umount "$bare/proc"' EXIT  # the tool finds its pages through /proc
-mount -t proc proc "$bare/proc"
-chroot "$bare" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root ${http_proxy:+http_proxy=$http_proxy} bash /try/run.sh
+scripts/in_bare_debian.sh "$try" bash run.sh

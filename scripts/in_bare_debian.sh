@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# Runs a command in a bare Debian 12, as root: `scripts/in_bare_debian.sh FOLDER COMMAND...`. The command starts in /try, a copy
+# of FOLDER, and finds nothing but what debootstrap installs. It gets this machine's Debian mirror, proxy and certificates. The
+# bare Debian is made once, in build/bare-debian; each run gets a copy, build/bare-debian-run, which stays until the next run.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+[[ $(id -u) -eq 0 ]] || { echo "in_bare_debian: needs root, for chroot" >&2; exit 1; }
+if ! command -v debootstrap >/dev/null; then
+  apt-get update -qq
+  DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends debootstrap >/dev/null
+fi
+sources() { apt-get indextargets --format "$1" 'Origin: Debian' "Codename: $2" 'Created-By: Packages' 2>/dev/null | sort -u; }
+bare=$PWD/build/bare-debian root=$PWD/build/bare-debian-run
+if [[ ! -e $bare/complete ]]; then
+  rm -rf "$bare"
+  mirror=$(sources '$(REPO_URI)' bookworm | head -1)
+  debootstrap --variant=minbase bookworm "$bare" ${mirror:+"$mirror"} >/dev/null
+  for codename in bookworm-updates bookworm-security; do
+    sources 'deb $(REPO_URI) $(CODENAME) $(COMPONENT)' "$codename" >>"$bare/etc/apt/sources.list"
+  done
+  touch "$bare/complete"
+fi
+
+rm -rf "$root"
+cp -a "$bare" "$root"
+cp -a "$1" "$root/try"
+chmod a+rx "$root/try"
+shift
+cp /etc/resolv.conf "$root/etc/"
+apt-config dump | grep -E '^Acquire::(http|https|Check)' >"$root/etc/apt/apt.conf.d/machine" || true
+mkdir -p "$root/usr/local/share/ca-certificates"
+cp /usr/local/share/ca-certificates/*.crt "$root/usr/local/share/ca-certificates/" 2>/dev/null || true
+# Mounts and processes end with the command.
+exec unshare --mount --pid --fork --kill-child --root="$root" --wd=/try --mount-proc \
+  env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root DEBIAN_FRONTEND=noninteractive \
+  ${http_proxy:+http_proxy="$http_proxy"} ${https_proxy:+https_proxy="$https_proxy"} \
+  bash -c 'mount -t tmpfs tmpfs /dev/shm && mount -t devpts devpts /dev/pts && exec "$@"' bash "$@"
