@@ -9,6 +9,7 @@
 #include "fix/solve.h"
 #include "fix/turned_clip.h"
 #include "play/play.h"
+#include "spherechain/penetrations.h"
 
 namespace spherechain::baker {
 
