@@ -30,6 +30,13 @@ Volume capsule_along(const Vec3& center, const Eigen::Quaterniond& rotation, con
   }));
 }
 
+// Exactly this volume. An initializer list would make g++ 12 take it for uninitialized outside of unity builds.
+SimpleVolumes unchanged(const Volume& volume) {
+  SimpleVolumes out;
+  out.volumes.push_back(volume);
+  return out;
+}
+
 }  // namespace
 
 double surface_distance(const Volume& a, const Volume& b) {
@@ -53,7 +60,7 @@ SimpleVolumes as_capsule(const Volume& from) {
   const Volume volume = without_inner_ball(from);
   Volume out = volume;
   if (const auto* cone = std::get_if<ConeVolume>(&volume)) {
-    if (cone->radius_a == cone->radius_b) return {{volume}, 0};
+    if (cone->radius_a == cone->radius_b) return unchanged(volume);
     const auto [least, most] = std::minmax(cone->radius_a, cone->radius_b);
     out = of_content(volume_of(volume), least, most, [&](double radius) -> Volume {
       return ConeVolume{cone->a, cone->b, radius, radius};
@@ -63,14 +70,14 @@ SimpleVolumes as_capsule(const Volume& from) {
   } else if (const auto* box = std::get_if<BoxVolume>(&volume)) {
     out = capsule_along(box->center, box->rotation, box->half, volume_of(volume));
   } else {
-    return {{volume}, 0};
+    return unchanged(volume);
   }
   return {{out}, surface_distance(volume, out)};
 }
 
 SimpleVolumes as_balls(const Volume& from) {
   const Volume volume = without_inner_ball(from);
-  if (std::holds_alternative<BallVolume>(volume)) return {{volume}, 0};
+  if (std::holds_alternative<BallVolume>(volume)) return unchanged(volume);
   const auto* cone = std::get_if<ConeVolume>(&volume);
   if (cone == nullptr) {
     const SimpleVolumes capsule = as_capsule(volume);
@@ -100,7 +107,7 @@ SimpleVolumes as_balls(const Volume& from) {
 
 SimpleVolumes without_ellipsoid(const Volume& volume) {
   if (std::holds_alternative<EllipsoidVolume>(volume)) return as_capsule(volume);
-  return {{without_inner_ball(volume)}, 0};
+  return unchanged(without_inner_ball(volume));
 }
 
 }  // namespace spherechain::baker

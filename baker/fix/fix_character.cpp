@@ -10,6 +10,7 @@
 #include "check/run.h"
 #include "fix/turned_recording.h"
 #include "fix/write_clip.h"
+#include "mesh/error.h"
 #include "motion/carried_motion.h"
 #include "pipeline/pipeline.h"
 
