@@ -46,7 +46,7 @@ void read_weights(const MeshInstance& instance, const AssimpScene& flat, const s
     };
     const auto node = flat.by_name.find(bone.mName.C_Str());
     if (node == flat.by_name.end() || bone.mNumWeights == 0) continue;
-    const Affine inverse_bind = to_affine(bone.mOffsetMatrix) * to_mesh;
+    const Affine inverse_bind = offset_of(bone, instance) * to_mesh;
     if (!inverse_bind.matrix().allFinite()) refuse("has a bind pose that is not finite");
     const Index index = add_bone(node->second, inverse_bind, rig.bones);
     for (unsigned w = 0; w < bone.mNumWeights; ++w) {

@@ -3,15 +3,34 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 
 #include "mesh/error.h"
 
 namespace spherechain::baker {
 namespace {
 
+constexpr std::string_view kPivot = "_$AssimpFbx$_";
+
 bool is_pivot(const aiNode& node) {
-  return std::string_view(node.mName.C_Str()).find("_$AssimpFbx$_") != std::string_view::npos && node.mNumMeshes == 0 &&
+  return std::string_view(node.mName.C_Str()).find(kPivot) != std::string_view::npos && node.mNumMeshes == 0 &&
          node.mNumChildren > 0;
+}
+
+// Takes geometric transforms out of a node's chain, and returns the node's own: the others undo the parent's.
+Affine take_geometric(std::vector<const aiNode*>& chain) {
+  Affine own = Affine::Identity();
+  std::vector<const aiNode*> kept;
+  for (const aiNode* link : chain) {
+    const std::string_view name = link->mName.C_Str();
+    const std::size_t at = is_pivot(*link) ? name.rfind(kPivot) + kPivot.size() : name.size();
+    if (!name.substr(at).starts_with("Geometric"))
+      kept.push_back(link);
+    else if (!name.ends_with("Inverse"))
+      own = own * to_affine(link->mTransformation);
+  }
+  chain = std::move(kept);
+  return own;
 }
 
 void visit(const aiScene& scene, const aiNode& node, int parent, std::vector<const aiNode*> chain,
@@ -25,6 +44,7 @@ void visit(const aiScene& scene, const aiNode& node, int parent, std::vector<con
     Node read;
     read.name = node.mName.C_Str();
     read.parent = parent;
+    const Affine geometric = take_geometric(chain);
     for (const aiNode* link : chain) read.local = read.local * to_affine(link->mTransformation);
     decompose(read);
     self = static_cast<int>(out.nodes.size());
@@ -38,7 +58,8 @@ void visit(const aiScene& scene, const aiNode& node, int parent, std::vector<con
       if (node.mMeshes[m] >= scene.mNumMeshes || scene.mMeshes[node.mMeshes[m]] == nullptr) {
         throw Error(ExitCode::kFile, file + ": node '" + node.mName.C_Str() + "' has a mesh that does not exist");
       }
-      out.instances.push_back({scene.mMeshes[node.mMeshes[m]], node.mMeshes[m], index, out.world[index], 0, 0});
+      out.instances.push_back(
+          {scene.mMeshes[node.mMeshes[m]], node.mMeshes[m], index, geometric, out.world[index] * geometric, 0, 0});
     }
   }
   for (unsigned c = 0; c < node.mNumChildren; ++c) {
@@ -70,17 +91,17 @@ class SkinPlacement {
 
   Affine place(const MeshInstance& instance) {
     const aiMesh& mesh = *instance.mesh;
-    const Affine placement = find(mesh, instance.placement);
+    const Affine placement = find(instance);
     for (unsigned b = 0; b < mesh.mNumBones; ++b) {
-      inverse_binds_.emplace(mesh.mBones[b]->mName.C_Str(),
-                             to_affine(mesh.mBones[b]->mOffsetMatrix) * placement.inverse());
+      inverse_binds_.emplace(mesh.mBones[b]->mName.C_Str(), offset_of(*mesh.mBones[b], instance) * placement.inverse());
     }
     return placement;
   }
 
  private:
-  Affine find(const aiMesh& mesh, const Affine& by_node) {
-    const Affine in_rest_pose = shown(mesh, by_node);
+  Affine find(const MeshInstance& instance) {
+    const aiMesh& mesh = *instance.mesh;
+    const Affine &by_node = instance.placement, in_rest_pose = shown(instance);
     if (inverse_binds_.empty()) {
       const Affine placement = axes_and_units(in_rest_pose * by_node.inverse()) * by_node;
       rest_pose_to_rest_ = placement * in_rest_pose.inverse();
@@ -90,7 +111,7 @@ class SkinPlacement {
     for (unsigned b = 0; b < mesh.mNumBones; ++b) {
       const auto bound = inverse_binds_.find(mesh.mBones[b]->mName.C_Str());
       if (bound == inverse_binds_.end()) continue;
-      placement = bound->second.inverse() * to_affine(mesh.mBones[b]->mOffsetMatrix);
+      placement = bound->second.inverse() * offset_of(*mesh.mBones[b], instance);
       break;
     }
     constexpr double kSame = 1e-4;  // singles
@@ -98,7 +119,8 @@ class SkinPlacement {
   }
 
   // Mesh space into the scene, as the mesh's bones have it in the rest pose.
-  Affine shown(const aiMesh& mesh, const Affine& by_node) const {
+  Affine shown(const MeshInstance& instance) const {
+    const aiMesh& mesh = *instance.mesh;
     std::vector<std::pair<Index, const aiBone*>> bones;  // the highest first
     for (unsigned b = 0; b < mesh.mNumBones; ++b) {
       const auto node = flat_.by_name.find(mesh.mBones[b]->mName.C_Str());
@@ -108,13 +130,13 @@ class SkinPlacement {
     std::vector<Affine> maps;
     std::vector<double> weights;
     for (const auto& [node, bone] : bones) {
-      const Affine map = flat_.world[node] * to_affine(bone->mOffsetMatrix);
+      const Affine map = flat_.world[node] * offset_of(*bone, instance);
       if (!map.matrix().allFinite()) continue;
       maps.push_back(map);
       weights.push_back(0);
       for (unsigned w = 0; w < bone->mNumWeights; ++w) weights.back() += std::max(bone->mWeights[w].mWeight, 0.0F);
     }
-    return maps.empty() ? by_node : maps[typical_map(maps, weights)];
+    return maps.empty() ? instance.placement : maps[typical_map(maps, weights)];
   }
 
   const AssimpScene& flat_;
@@ -128,6 +150,10 @@ Affine to_affine(const aiMatrix4x4& m) {
   Affine out;
   out.matrix() << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4;
   return out;
+}
+
+Affine offset_of(const aiBone& bone, const MeshInstance& instance) {
+  return to_affine(bone.mOffsetMatrix) * instance.geometric;
 }
 
 AssimpScene flatten(const aiScene& scene, const std::string& file) {

@@ -19,6 +19,7 @@ struct MeshInstance {
   const aiMesh* mesh;
   Index number;  // of the mesh in the scene
   Index node;
+  Affine geometric;  // an FBX file's geometric transform: of this mesh, neither of its node nor of the node's children
   Affine placement;  // mesh space -> rest positions
   Index first_vertex, first_morph;
 };
@@ -27,12 +28,17 @@ struct MeshInstance {
 struct AssimpScene {
   std::vector<Node> nodes;
   // The scene's nodes that each node replaces; the last one has its name. There are several in FBX, where assimp
-  // unfolds a node's pivots into a chain of nodes that no clip of another file would fit.
+  // unfolds a node's pivots into a chain of nodes that no clip of another file would fit. Geometric transforms, which
+  // assimp has in the chain and undoes for the node's children, are in no chain.
   std::vector<std::vector<const aiNode*>> chains;
   std::vector<Affine> world;
   std::unordered_map<std::string, Index> by_name;  // the first of that name, as assimp refers to them
   std::vector<MeshInstance> instances;
 };
+
+// Mesh space into the bone's, in the bind pose. FBX's clusters, which are all that assimp looks at, leave out the
+// geometric transform.
+Affine offset_of(const aiBone& bone, const MeshInstance& instance);
 
 // Throws Error(kFile) that begins with `file` where a transform is not finite.
 AssimpScene flatten(const aiScene& scene, const std::string& file);
