@@ -18,7 +18,7 @@ namespace spherechain::baker {
 struct BodyFrame {
   Vec3 origin;  // in the plane of symmetry, at the height of the lowest vertex
   Vec3 left, up, forward;
-  double height;  // extent along `up`, of a body by bones the largest extent; lengths in settings are fractions of it
+  double height;  // a rigged biped's stature, else the extent along `up`, by bones the largest; unit of the settings
 };
 
 enum class Side : std::uint8_t { kNone = 0, kLeft = 1, kRight = 2 };

@@ -10,6 +10,7 @@
 
 #include "roles/skeleton.h"
 #include "segment/part_tree.h"
+#include "segment/stature.h"
 
 namespace spherechain::baker {
 namespace {
@@ -70,21 +71,6 @@ std::string name_of(const Part& part, const SourceRig& rig, std::set<std::string
   return name;
 }
 
-// The way up in the file's scene. A biped that lies there stands as its rig does: along the axis of the file that is
-// next to the way from its pelvis to its head.
-Vec3 up_of(const Character& character, const Roles& roles) {
-  constexpr double kUpright = 0.5;
-  const Vec3 up = character.up_hint.normalized();
-  if (roles.kind != BodyKind::kBiped || roles.trunk.empty() || roles.neck_head.empty()) return up;
-  const std::vector<Vec3> rest = rest_positions(character.rig);
-  const Vec3 trunk =
-      rest[static_cast<std::size_t>(roles.neck_head.back())] - rest[static_cast<std::size_t>(roles.trunk.front())];
-  if (!(trunk.norm() > 0) || trunk.normalized().dot(up) > kUpright) return up;
-  Eigen::Index axis = 0;
-  trunk.cwiseAbs().maxCoeff(&axis);
-  return trunk[axis] < 0 ? Vec3(-Vec3::Unit(axis)) : Vec3(Vec3::Unit(axis));
-}
-
 BodyFrame frame_of(const Character& character, const std::vector<Part>& parts, const Roles& roles,
                    const std::optional<Vec3>& wish, std::string& facing) {
   Vec3 left = Vec3::Zero();
@@ -94,7 +80,7 @@ BodyFrame frame_of(const Character& character, const std::vector<Part>& parts, c
     const Vec3 from = extent_of(character.skin, part.triangles).centroid - surface_centroid(character.skin);
     left += area_of(character.skin, part.triangles) * (side == Side::kLeft ? from : Vec3(-from));
   }
-  const Vec3 up = up_of(character, roles);
+  const Vec3 up = way_up(character, roles);
   left -= left.dot(up) * up;
   facing = "forward is as the rig's left and right have it";
   if (!(left.norm() > 1e-6 * surface_area(character.skin) * diameter(character.skin))) {
@@ -108,6 +94,10 @@ BodyFrame frame_of(const Character& character, const std::vector<Part>& parts, c
   }
   left.normalize();
   BodyFrame frame = with_up({Vec3::Zero(), left, up, left.cross(up), 0}, up, character.skin);
+  if (roles.kind == BodyKind::kBiped) {
+    frame.height = stature(character, roles);
+    return frame;
+  }
   for (const Vec3& axis : {frame.left, frame.forward}) {
     double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
     for (const Vec3& p : character.skin.positions) {

@@ -7,6 +7,7 @@
 #include "segment/body_plan.h"
 #include "segment/from_skin.h"
 #include "segment/islands.h"
+#include "segment/stature.h"
 #include "segment/trunk.h"
 
 namespace spherechain::baker {
@@ -63,6 +64,7 @@ Attempt<Regions> segment_by_rig(const Character& character, const Roles& roles, 
   regions.frame.left = left.normalized();
   regions.frame = with_up(regions.frame, chest - hip, character.body);
   const bool biped = roles.kind == BodyKind::kBiped;
+  if (biped) regions.frame.height = stature(character, roles);
   const Vec3& axis = biped ? regions.frame.forward : regions.frame.up;
   if (auto reason = check_facing(settings.facing, axis, biped ? "forward axis" : "trunk")) return *reason;
   if (settings.facing && settings.facing->dot(axis) < 0) {

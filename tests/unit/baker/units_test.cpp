@@ -27,6 +27,23 @@ Affine scaled(double by) {
   return map;
 }
 
+// A tetrahedron about each joint.
+SourceMesh with_skin(const NamedRig& rig) {
+  SourceMesh mesh;
+  mesh.rig = rig.rig;
+  mesh.rig.weights.clear();
+  for (std::size_t v = 0; v < rig.positions.size(); ++v) {
+    const auto first = static_cast<Index>(mesh.positions.size());
+    for (const Vec3& corner : {Vec3(0, 0, 0), Vec3(0.02, 0, 0), Vec3(0, 0.02, 0), Vec3(0, 0, 0.02)}) {
+      mesh.positions.push_back(rig.positions[v] + corner);
+      mesh.rig.weights.push_back(rig.rig.weights[v]);
+    }
+    for (const Triangle& t : {Triangle{0, 2, 1}, Triangle{0, 1, 3}, Triangle{1, 2, 3}, Triangle{0, 3, 2}})
+      mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  return mesh;
+}
+
 }  // namespace
 
 TEST_CASE("the scale of an armature is the character's, whatever it is") {
@@ -63,19 +80,7 @@ TEST_CASE("the map that holds for most of the skin is taken, the first of those 
 }
 
 TEST_CASE("a biped that lies in its file stands upright by its rig where its parts follow the bones") {
-  const NamedRig rig = named_rig(kMixamo);
-  SourceMesh mesh;
-  mesh.rig = rig.rig;
-  mesh.rig.weights.clear();
-  for (std::size_t v = 0; v < rig.positions.size(); ++v) {  // a tetrahedron about each joint
-    const auto first = static_cast<Index>(mesh.positions.size());
-    for (const Vec3& corner : {Vec3(0, 0, 0), Vec3(0.02, 0, 0), Vec3(0, 0.02, 0), Vec3(0, 0, 0.02)}) {
-      mesh.positions.push_back(rig.positions[v] + corner);
-      mesh.rig.weights.push_back(rig.rig.weights[v]);
-    }
-    for (const Triangle& t : {Triangle{0, 2, 1}, Triangle{0, 1, 3}, Triangle{1, 2, 3}, Triangle{0, 3, 2}})
-      mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-  }
+  SourceMesh mesh = with_skin(named_rig(kMixamo));
   for (const Vec3& up : {Vec3(Vec3::UnitY()), Vec3(Vec3::UnitZ()), Vec3(-Vec3::UnitY()), Vec3(Vec3::UnitX())}) {
     mesh.up_hint = up;
     Character character = build_character(mesh, "a.glb");
@@ -83,5 +88,27 @@ TEST_CASE("a biped that lies in its file stands upright by its rig where its par
     const Regions regions = segment_by_bones(character, roles, std::nullopt, 60);
     CHECK(regions.frame.up.isApprox(Vec3::UnitY()));
     CHECK(regions.frame.left.x() > 0.9);
+  }
+}
+
+TEST_CASE("a biped is as high as its crown is above its soles, however wide its arms and whatever it holds up") {
+  NamedRig rig = named_rig(std::string(kMixamo) + "  Cape = other\n");
+  for (std::size_t n = 0, v = 0; n < rig.rig.nodes.size(); ++n) {
+    const std::string& name = rig.rig.nodes[n].name;
+    if (rig.rig.weights[v].joint[0] >= rig.rig.bones.size() || rig.rig.bones[v].node != n) continue;
+    Vec3& at = rig.positions[v];
+    if (name.find("LeftHand") != std::string::npos) at += Vec3(2, 0, 0);
+    if (name.find("RightHandIndex") != std::string::npos) at = Vec3(-0.7, 3, 0);  // a sword
+    if (name == "Cape") at = Vec3(0, -1, -1);
+    rig.rig.bones[v].inverse_bind.translation() = -at;
+    v = std::min(v + 1, rig.positions.size() - 1);
+  }
+  SourceMesh mesh = with_skin(rig);
+  for (const Vec3& up : {Vec3(Vec3::UnitY()), Vec3(Vec3::UnitZ())}) {  // as it stands, and lying
+    mesh.up_hint = up;
+    Character character = build_character(mesh, "a.glb");
+    const Roles roles = find_roles(character.rig, character.source_positions);
+    REQUIRE(roles.kind == BodyKind::kBiped);
+    CHECK(segment_by_bones(character, roles, std::nullopt, 60).frame.height == doctest::Approx(1.6));  // 0.02 to 1.62
   }
 }
