@@ -114,6 +114,9 @@ PartName garment(const Hint& hint, const std::string& name) {
 class Namer {
  public:
   Namer(const SourceRig& rig, const Roles& roles) : rig_(rig), roles_(roles) {
+    std::vector<std::string> names;
+    for (const Node& node : rig.nodes) names.push_back(node.name);
+    hints_ = read_names(names);
     for (const RoleLimb& limb : roles.limbs) {
       if (limb.name == "neck" || limb.name == "tail") continue;
       has_limbs_ = true;
@@ -138,7 +141,7 @@ class Namer {
   PartName own_part(int node) const {
     const NodeRole& role = role_of(node);
     const std::string& name = rig_.nodes[static_cast<std::size_t>(node)].name;
-    const Hint hint = read_name(name);
+    const Hint& hint = hints_[static_cast<std::size_t>(node)];
     if (role.role == "attachment" || hangs_on_attachment(node)) return {name, parent_side(node)};
     if (hint.word == Word::kArm && lower(name).find("wing") != std::string::npos) {
       return {with_side(to_side(hint.side), "wing"), to_side(hint.side)};
@@ -202,6 +205,7 @@ class Namer {
 
   const SourceRig& rig_;
   const Roles& roles_;
+  std::vector<Hint> hints_;
   bool has_limbs_ = false, has_many_legs_ = false;
   std::vector<PartName> parts_;
 };

@@ -209,11 +209,22 @@ struct BodyFinder : Body {
     side_notes.resize(paths.size());
     Vec3 middle = mean(upper, [&](int i) { return start(i); });
     if (!lower.empty()) middle = mean(lower, [&](int i) { return start(i); });
+    const auto off_middle = [&](std::size_t i) {
+      return (0.5 * (start(static_cast<int>(i)) + s.tip[paths[i].nodes.front()]) - middle).dot(left());
+    };
+    // Limbs with names say which side the others are on, whatever the feet say.
+    double named_left = 0;
     for (std::size_t i = 0; i < paths.size(); ++i) {
-      const int limb = static_cast<int>(i);
-      const double off = (0.5 * (start(limb) + s.tip[paths[i].nodes.front()]) - middle).dot(left());
+      if (paths[i].side != NamedSide::kNone)
+        named_left += paths[i].side == NamedSide::kLeft ? off_middle(i) : -off_middle(i);
+    }
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+      const double off = off_middle(i);
       const NamedSide side = off >= 0 ? NamedSide::kLeft : NamedSide::kRight;
-      if (paths[i].side == NamedSide::kNone) {
+      if (paths[i].side == NamedSide::kNone && named_left != 0) {
+        paths[i].side = (off >= 0) == (named_left > 0) ? NamedSide::kLeft : NamedSide::kRight;
+        side_notes[i] = "; side by where it is from the limbs whose names tell theirs";
+      } else if (paths[i].side == NamedSide::kNone) {
         paths[i].side = side;
         side_notes[i] = facing.empty() ? "; side guessed, nothing tells front from back (a role file can)"
                                        : "; side by where it is, forward because " + facing;

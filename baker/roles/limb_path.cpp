@@ -114,14 +114,20 @@ std::vector<Rank> resolve(const Skeleton& s, const std::vector<Hint>& hints, con
       upper = open[short_start ? 1 : first];
     }
   }
-  bool has_upper = false;
+  bool has_upper = false, has_lower = false;
   for (std::size_t i = 0; i < n; ++i) {
     int rank = rank_of(word(i));
-    if (is_open(word(i)) && upper < n) {
+    const bool hand_follows = any(i + 1, [&](std::size_t k) { return fixed(k, kExtremity); });
+    if (has_lower && is_open(word(i)) && !hints[nodes[i]].twist && !hand_follows) {
+      rank = kExtremity;  // some languages call an arm and a hand, a leg and a foot by one word
+    } else if (is_open(word(i)) && upper < n) {
       rank = i < upper ? kGirdle : static_cast<int>(std::min<std::size_t>(kUpper + (i - upper), kDigit));
     } else if (is_girdle_or_upper(word(i))) {
-      const bool upper_follows =
-          any(i + 1, [&](std::size_t k) { return fixed(k, kUpper) || word(k) == Word::kArm || word(k) == Word::kLeg; });
+      std::size_t lower = i + 1;
+      while (lower < n && !fixed(lower, kLower)) ++lower;
+      const bool upper_follows = any(i + 1, [&](std::size_t k) {
+        return fixed(k, kUpper) || (k < lower && (word(k) == Word::kArm || word(k) == Word::kLeg));
+      });
       rank = upper_follows ? kGirdle : kUpper;
     } else if (is_open(word(i))) {
       rank = has_upper ? kLower : kUpper;
@@ -133,6 +139,7 @@ std::vector<Rank> resolve(const Skeleton& s, const std::vector<Hint>& hints, con
       if (rank == kExtremity && ranks[i - 1] == kExtremity && !hints[nodes[i]].twist) rank = kDigit;
     }
     has_upper = has_upper || rank == kUpper;
+    has_lower = has_lower || fixed(i, kLower);
     ranks[i] = static_cast<Rank>(rank);
   }
   return ranks;
@@ -236,6 +243,7 @@ std::vector<LimbPath> find_limb_paths(const Skeleton& s, const std::vector<Hint>
     limb->ranks = resolve(s, hints, limb->nodes);
     for (const int node : nodes) {
       if (limb->place == Place::kNone) limb->place = hints[node].place;
+      if (limb->side == NamedSide::kNone) limb->side = hints[node].side;
     }
   }
   std::erase_if(limbs, [](const LimbPath& limb) { return limb.ranks.back() == kGirdle; });

@@ -3,182 +3,17 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
+#include <algorithm>
 #include <string_view>
 #include <unordered_map>
-#include <vector>
+#include <unordered_set>
+#include <utility>
+
+#include "roles/letters.h"
+#include "roles/words.h"
 
 namespace spherechain::baker {
 namespace {
-
-using Lexicon = std::unordered_map<std::string_view, Word>;
-
-// Words as rigs write them, parts joined and in lower case.
-const Lexicon& lexicon() {
-  static const Lexicon words{{"root", Word::kRoot},
-                             {"armature", Word::kRoot},
-                             {"reference", Word::kRoot},
-                             {"cog", Word::kRoot},
-                             {"hips", Word::kPelvis},
-                             {"pelvis", Word::kPelvis},
-                             {"hip", Word::kHip},
-                             {"spine", Word::kSpine},
-                             {"torso", Word::kSpine},
-                             {"abdomen", Word::kSpine},
-                             {"ab", Word::kSpine},
-                             {"waist", Word::kSpine},
-                             {"back", Word::kSpine},
-                             {"lowerback", Word::kSpine},
-                             {"belly", Word::kSpine},
-                             {"stomach", Word::kSpine},
-                             {"body", Word::kSpine},
-                             {"chest", Word::kChest},
-                             {"upperchest", Word::kChest},
-                             {"thorax", Word::kChest},
-                             {"ribcage", Word::kChest},
-                             {"ribs", Word::kChest},
-                             {"neck", Word::kNeck},
-                             {"head", Word::kHead},
-                             {"skull", Word::kHead},
-
-                             {"clavicle", Word::kClavicle},
-                             {"collar", Word::kClavicle},
-                             {"collarbone", Word::kClavicle},
-                             {"scapula", Word::kClavicle},
-                             {"shoulderblade", Word::kClavicle},
-                             {"clav", Word::kClavicle},
-                             {"shoulder", Word::kShoulder},
-                             {"shldr", Word::kShoulder},
-                             {"arm", Word::kArm},
-                             {"wing", Word::kArm},
-                             {"upperarm", Word::kUpperArm},
-                             {"uparm", Word::kUpperArm},
-                             {"armupper", Word::kUpperArm},
-                             {"bicep", Word::kUpperArm},
-                             {"biceps", Word::kUpperArm},
-                             {"humerus", Word::kUpperArm},
-                             {"forearm", Word::kForeArm},
-                             {"lowerarm", Word::kForeArm},
-                             {"lowarm", Word::kForeArm},
-                             {"loarm", Word::kForeArm},
-                             {"armlower", Word::kForeArm},
-                             {"elbow", Word::kForeArm},
-                             {"ulna", Word::kForeArm},
-                             {"foretwist", Word::kForeArm},
-                             {"hand", Word::kHand},
-                             {"wrist", Word::kHand},
-                             {"palm", Word::kHand},
-                             {"finger", Word::kFinger},
-                             {"fingers", Word::kFinger},
-                             {"thumb", Word::kFinger},
-                             {"index", Word::kFinger},
-                             {"middle", Word::kFinger},
-                             {"ring", Word::kFinger},
-                             {"pinky", Word::kFinger},
-                             {"pinkie", Word::kFinger},
-                             {"little", Word::kFinger},
-                             {"metacarpal", Word::kFinger},
-                             {"carpal", Word::kFinger},
-                             {"knuckle", Word::kFinger},
-
-                             {"hipjoint", Word::kHip},
-                             {"leg", Word::kLeg},
-                             {"foreleg", Word::kLeg},
-                             {"hindleg", Word::kLeg},
-                             {"thigh", Word::kThigh},
-                             {"upperleg", Word::kThigh},
-                             {"upleg", Word::kThigh},
-                             {"legupper", Word::kThigh},
-                             {"femur", Word::kThigh},
-                             {"shin", Word::kShin},
-                             {"calf", Word::kShin},
-                             {"knee", Word::kShin},
-                             {"lowerleg", Word::kShin},
-                             {"lowleg", Word::kShin},
-                             {"loleg", Word::kShin},
-                             {"leglower", Word::kShin},
-                             {"tibia", Word::kShin},
-                             {"foot", Word::kFoot},
-                             {"ankle", Word::kFoot},
-                             {"paw", Word::kFoot},
-                             {"hoof", Word::kFoot},
-                             {"toe", Word::kToe},
-                             {"toes", Word::kToe},
-                             {"toebase", Word::kToe},
-                             {"ball", Word::kToe},
-                             {"metatarsal", Word::kToe},
-                             {"metatarsals", Word::kToe},
-
-                             {"tail", Word::kTail},
-                             {"eye", Word::kEye},
-                             {"eyeball", Word::kEye},
-                             {"jaw", Word::kJaw},
-                             {"chin", Word::kJaw},
-                             {"hair", Word::kHair},
-                             {"ponytail", Word::kHair},
-                             {"bangs", Word::kHair},
-                             {"braid", Word::kHair},
-                             {"face", Word::kHeadPart},
-                             {"tongue", Word::kHeadPart},
-                             {"teeth", Word::kHeadPart},
-                             {"lip", Word::kHeadPart},
-                             {"lips", Word::kHeadPart},
-                             {"mouth", Word::kHeadPart},
-                             {"nose", Word::kHeadPart},
-                             {"ear", Word::kHeadPart},
-                             {"brow", Word::kHeadPart},
-                             {"eyebrow", Word::kHeadPart},
-                             {"eyelid", Word::kHeadPart},
-                             {"lid", Word::kHeadPart},
-                             {"cheek", Word::kHeadPart},
-                             {"forehead", Word::kHeadPart},
-                             {"horn", Word::kHeadPart},
-                             {"antenna", Word::kHeadPart},
-                             {"mandible", Word::kHeadPart},
-
-                             {"handslot", Word::kAttachment},
-                             {"slot", Word::kAttachment},
-                             {"socket", Word::kAttachment},
-                             {"weapon", Word::kAttachment},
-                             {"prop", Word::kAttachment},
-                             {"attach", Word::kAttachment},
-                             {"attachment", Word::kAttachment},
-                             {"mount", Word::kAttachment},
-                             {"grip", Word::kAttachment},
-                             {"holder", Word::kAttachment},
-                             {"camera", Word::kAttachment},
-                             {"sec", Word::kCloth},
-                             {"skirt", Word::kCloth},
-                             {"coat", Word::kCloth},
-                             {"cloth", Word::kCloth},
-                             {"cape", Word::kCloth},
-                             {"cloak", Word::kCloth},
-                             {"sleeve", Word::kCloth},
-                             {"hood", Word::kCloth},
-                             {"breast", Word::kCloth},
-                             {"boob", Word::kCloth},
-                             {"bust", Word::kCloth},
-                             {"pec", Word::kCloth},
-                             {"ribbon", Word::kCloth},
-                             {"belt", Word::kCloth},
-                             {"pad", Word::kCloth},
-                             {"armor", Word::kCloth},
-                             {"armour", Word::kCloth},
-                             {"plate", Word::kCloth},
-                             {"ik", Word::kControl},
-                             {"fk", Word::kControl},
-                             {"ctrl", Word::kControl},
-                             {"control", Word::kControl},
-                             {"ctl", Word::kControl},
-                             {"pole", Word::kControl},
-                             {"target", Word::kControl},
-                             {"mch", Word::kControl},
-                             {"wgt", Word::kControl},
-                             {"vis", Word::kControl},
-                             {"tweak", Word::kControl},
-                             {"footsteps", Word::kControl}};
-  return words;
-}
 
 // The more telling of two words in one name: a finger of the hand, an eye of the face, the slot of a hand.
 int precedence(Word word) {
@@ -212,66 +47,153 @@ int precedence(Word word) {
   }
 }
 
-bool is_letter(char c) {
-  return std::isalpha(static_cast<unsigned char>(c)) != 0 || static_cast<unsigned char>(c) >= 128;
-}
-bool is_upper(char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; }
-bool is_lower(char c) { return std::islower(static_cast<unsigned char>(c)) != 0; }
+using Tokens = std::vector<std::u32string>;
 
-// Runs of letters in lower case: split at all else, before a capital after a small letter, and before the last of
+// The known words of a run of letters that are set without spaces.
+void split_unspaced(const std::u32string& run, Tokens& tokens) {
+  for (std::size_t at = 0; at < run.size();) {
+    const std::size_t length = longest_word(run, at);
+    if (length > 0) tokens.push_back(run.substr(at, length));
+    at += std::max<std::size_t>(length, 1);
+  }
+}
+
+// Runs of letters without case: split at all else, before a capital after a small letter, and before the last of
 // several capitals ("LHipJoint" -> l hip joint). What stands before a colon or a bar is a namespace.
-std::vector<std::string> split(std::string_view name) {
+Tokens split(std::string_view name) {
   const std::size_t space = name.find_last_of(":|");
   if (space != std::string_view::npos && space + 1 < name.size()) name.remove_prefix(space + 1);
-  std::vector<std::string> tokens;
-  bool open = false;
-  for (std::size_t i = 0; i < name.size(); ++i) {
-    const char c = name[i];
-    if (!is_letter(c)) {
-      open = false;
-      continue;
+  const std::vector<Letter> letters = letters_of(name);
+  Tokens tokens;
+  std::u32string run;  // of a script without spaces
+  Letter before;
+  for (std::size_t i = 0; i < letters.size(); ++i) {
+    const Letter& letter = letters[i];
+    if (letter.kind == Letter::Kind::kUnspaced) {
+      run += letter.folded;
+    } else {
+      split_unspaced(run, tokens);
+      run.clear();
     }
-    const bool hump =
-        i > 0 && is_upper(c) &&
-        (is_lower(name[i - 1]) || (is_upper(name[i - 1]) && i + 1 < name.size() && is_lower(name[i + 1])));
-    if (!open || hump) tokens.emplace_back();
-    open = true;
-    tokens.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (letter.kind == Letter::Kind::kSpelled) {
+      const bool hump = letter.is_upper &&
+                        (before.is_lower || (before.is_upper && i + 1 < letters.size() && letters[i + 1].is_lower));
+      if (before.kind != Letter::Kind::kSpelled || hump) tokens.emplace_back();
+      tokens.back() += letter.folded;
+    }
+    before = letter;
   }
+  split_unspaced(run, tokens);
   return tokens;
 }
 
-NamedSide side_of(std::string_view token) {
-  if (token == "l" || token == "left" || token == "lf" || token == "lft") return NamedSide::kLeft;
-  if (token == "r" || token == "right" || token == "rt" || token == "rgt") return NamedSide::kRight;
-  return NamedSide::kNone;
-}
-
-Place place_of(std::string_view token) {
-  if (token == "front" || token == "fore" || token == "foreleg") return Place::kFront;
-  if (token == "hind" || token == "rear" || token == "back" || token == "hindleg") return Place::kHind;
-  return Place::kNone;
-}
-
 // "leftarm", "rfoot", "armleft": the side is taken off where a word of a limb remains.
-void split_off_side(std::string& token, NamedSide& side) {
-  if (lexicon().contains(token)) return;
-  const auto is_limb = [](std::string_view rest) {
-    const auto found = lexicon().find(rest);
-    return found != lexicon().end() && family_of(found->second) != Family::kNone;
-  };
-  for (const std::string_view word : {"left", "right", "l", "r"}) {
-    const std::string_view all(token);
-    std::string rest;
-    if (all.starts_with(word) && is_limb(all.substr(word.size())))
-      rest = all.substr(word.size());
-    else if (word.size() > 1 && all.ends_with(word) && is_limb(all.substr(0, all.size() - word.size())))
-      rest = all.substr(0, all.size() - word.size());
-    if (rest.empty()) continue;
-    side = side_of(word);
+void split_off_side(std::u32string& token, NamedSide& side) {
+  if (word_of(token, true) != Word::kNone) return;
+  const auto take = [&](const std::u32string& word, bool ahead, NamedSide which) {
+    if (token.size() <= word.size() || !(ahead ? token.starts_with(word) : token.ends_with(word))) return false;
+    const std::u32string rest = token.substr(ahead ? word.size() : 0, token.size() - word.size());
+    if (family_of(word_of(rest, true)) == Family::kNone) return false;
+    side = which;
     token = rest;
-    return;
+    return true;
+  };
+  for (const std::u32string& word : glued_sides()) {
+    if (take(word, true, side_of(word)) || take(word, false, side_of(word))) return;
   }
+  for (const auto& [word, which] : {std::pair{U"l", NamedSide::kLeft},
+                                    {U"r", NamedSide::kRight},
+                                    {U"zuo", NamedSide::kLeft},
+                                    {U"you", NamedSide::kRight}}) {
+    if (take(word, true, which)) return;
+  }
+}
+
+// The names' tokens, each name as one text.
+class AllNames {
+ public:
+  explicit AllNames(const std::vector<Tokens>& names) {
+    for (const Tokens& tokens : names) keys_.insert(key_of(tokens));
+  }
+
+  // The side that an abbreviation tells, as there is another name that only has the other side's.
+  NamedSide side_of_pair(Tokens tokens, std::size_t at) const {
+    if (tokens.size() < 2) return NamedSide::kNone;
+    const std::u32string own = tokens[at];
+    for (const SidedPair& pair : pairs_with(own)) {
+      tokens[at] = pair.other;
+      if (keys_.contains(key_of(tokens)) && !(own.size() == 1 && is_lettered(tokens, at, own[0]))) return pair.side;
+    }
+    return NamedSide::kNone;
+  }
+
+ private:
+  static std::u32string key_of(const Tokens& tokens) {
+    std::u32string key;
+    for (const std::u32string& token : tokens) key += token + U' ';
+    return key;
+  }
+
+  // "hair_a", "hair_b" ... count, and tell no sides. `tokens` have the other letter of a pair.
+  bool is_lettered(Tokens tokens, std::size_t at, char32_t own) const {
+    const char32_t other = tokens[at][0];
+    for (char32_t c = U'a'; c <= U'z'; ++c) {
+      tokens[at] = std::u32string(1, c);
+      if (c != own && c != other && keys_.contains(key_of(tokens))) return true;
+    }
+    return false;
+  }
+
+  std::unordered_set<std::u32string> keys_;
+};
+
+Hint read(const Tokens& tokens, const AllNames& all) {
+  Hint hint;
+  Tokens words;
+  for (std::size_t t = 0; t < tokens.size(); ++t) {
+    std::u32string token = tokens[t];
+    NamedSide side = side_of(token);
+    if (side == NamedSide::kNone) side = all.side_of_pair(tokens, t);
+    if (side != NamedSide::kNone) {
+      hint.side = side;
+      continue;
+    }
+    split_off_side(token, hint.side);
+    if (is_twist(token)) hint.twist = true;
+    if (const Place place = place_of(token); place != Place::kNone) hint.place = place;
+    words.push_back(std::move(token));
+  }
+  Section section = Section::kNone;
+  bool of_foot = false;
+  const bool has_side = hint.side != NamedSide::kNone;
+  // Neighbours join first ("upper" "arm"), so that the longer word wins.
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    constexpr std::size_t kJoinedMax = 3;
+    for (std::size_t length = std::min(kJoinedMax, words.size() - i); length >= 1; --length) {
+      std::u32string joined;
+      for (std::size_t k = i; k < i + length; ++k) joined += words[k];
+      const Word word = word_of(joined, has_side);
+      if (word == Word::kNone) {
+        if (length == 1 && section_of(joined) != Section::kNone) section = section_of(joined);
+        continue;
+      }
+      of_foot = of_foot || word == Word::kFoot;
+      if (precedence(word) >= precedence(hint.word)) {
+        hint.word = word;
+        hint.reason = fmt::format("its name says {}", to_utf8(joined));
+      }
+      i += length - 1;
+      break;
+    }
+  }
+  const bool upper = section == Section::kUpper;
+  if (section != Section::kNone && hint.word == Word::kArm) hint.word = upper ? Word::kUpperArm : Word::kForeArm;
+  if (section != Section::kNone && hint.word == Word::kLeg) hint.word = upper ? Word::kThigh : Word::kShin;
+  if (of_foot && hint.word == Word::kFinger) hint.word = Word::kToe;
+  if (hint.word == Word::kHip && hint.side == NamedSide::kNone) hint.word = Word::kPelvis;
+  if (hint.word == Word::kPelvis && hint.side != NamedSide::kNone) hint.word = Word::kHipGirdle;
+  if (family_of(hint.word) != Family::kLeg) hint.place = Place::kNone;
+  return hint;
 }
 
 }  // namespace
@@ -282,39 +204,13 @@ Family family_of(Word word) {
   return Family::kNone;
 }
 
-Hint read_name(const std::string& name) {
-  Hint hint;
-  std::vector<std::string> words;
-  std::string_view said;
-  for (std::string& token : split(name)) {
-    if (const NamedSide side = side_of(token); side != NamedSide::kNone) {
-      hint.side = side;
-      continue;
-    }
-    split_off_side(token, hint.side);
-    if (token == "twist" || token == "roll" || token == "foretwist" || token == "twst") hint.twist = true;
-    if (const Place place = place_of(token); place != Place::kNone) hint.place = place;
-    words.push_back(std::move(token));
-  }
-  // Neighbours join first ("upper" "arm"), so that the longer word wins.
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    for (std::size_t length = 2; length >= 1; --length) {
-      if (i + length > words.size()) continue;
-      const auto found = lexicon().find(length == 2 ? words[i] + words[i + 1] : words[i]);
-      if (found == lexicon().end()) continue;
-      if (precedence(found->second) >= precedence(hint.word)) {
-        hint.word = found->second;
-        said = found->first;
-      }
-      i += length - 1;
-      break;
-    }
-  }
-  if (hint.word == Word::kHip && hint.side == NamedSide::kNone) hint.word = Word::kPelvis;
-  if (hint.word == Word::kPelvis && hint.side != NamedSide::kNone) hint.word = Word::kHipGirdle;
-  if (family_of(hint.word) != Family::kLeg) hint.place = Place::kNone;
-  if (hint.word != Word::kNone) hint.reason = fmt::format("its name says {}", said);
-  return hint;
+std::vector<Hint> read_names(const std::vector<std::string>& names) {
+  std::vector<Tokens> tokens;
+  for (const std::string& name : names) tokens.push_back(split(name));
+  const AllNames all(tokens);
+  std::vector<Hint> hints;
+  for (const Tokens& name : tokens) hints.push_back(read(name, all));
+  return hints;
 }
 
 Hint hint_of_role(const std::string& role) {

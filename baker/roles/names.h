@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace spherechain::baker {
 
@@ -52,7 +53,8 @@ struct Hint {
   std::string reason;
 };
 
-Hint read_name(const std::string& name);
+// What each of a rig's names says. Some tell sides only beside others: "bras_g" and "bras_d".
+std::vector<Hint> read_names(const std::vector<std::string>& names);
 
 // The hint for a role of a role file. Its word is kNone and its reason empty where there is no such role.
 Hint hint_of_role(const std::string& role);

@@ -38,12 +38,60 @@ const char* plain_role(Word word) {
   }
 }
 
-// What the file itself calls the node on the body goes before its name.
-Hint hint_of(const Node& node) {
-  if (node.humanoid_bone.empty()) return read_name(node.name);
-  Hint hint = read_name(node.humanoid_bone);
-  if (hint.word != Word::kNone) hint.reason = "the avatar's humanoid says " + node.humanoid_bone;
-  return hint;
+// What the file itself calls a node on the body goes before its name.
+std::vector<Hint> hints_from_names(const SourceRig& rig) {
+  std::vector<std::string> names;
+  for (const Node& node : rig.nodes) names.push_back(node.humanoid_bone.empty() ? node.name : node.humanoid_bone);
+  std::vector<Hint> hints = read_names(names);
+  for (std::size_t n = 0; n < hints.size(); ++n) {
+    const std::string& bone = rig.nodes[n].humanoid_bone;
+    if (!bone.empty() && hints[n].word != Word::kNone) hints[n].reason = "the avatar's humanoid says " + bone;
+  }
+  return hints;
+}
+
+// Two pairs of limbs, and each is known down to its second bone.
+bool is_complete(const Body& body) {
+  return (body.kind == BodyKind::kBiped || body.kind == BodyKind::kQuadruped) &&
+         std::all_of(body.paths.begin(), body.paths.end(),
+                     [](const LimbPath& path) { return path.first(kUpper) >= 0 && path.first(kLower) >= 0; });
+}
+
+// Gives each limb of the shape the side that most of its names tell.
+void spread_sides(const Skeleton& skeleton, const std::vector<Hint>& shape, std::vector<Hint>& hints) {
+  const std::vector<LimbPath> paths = find_limb_paths(skeleton, shape);
+  const std::vector<int> path_of = skeleton.inherited([&](int n) {
+    for (std::size_t p = 0; p < paths.size(); ++p) {
+      if (paths[p].roots.front() == n) return static_cast<int>(p);
+    }
+    return -1;
+  });
+  std::vector<int> left(paths.size(), 0);
+  const auto of = [&](std::size_t n) -> int& { return left[static_cast<std::size_t>(path_of[n])]; };
+  for (std::size_t n = 0; n < hints.size(); ++n) {
+    if (path_of[n] >= 0 && hints[n].side != NamedSide::kNone) of(n) += hints[n].side == NamedSide::kLeft ? 1 : -1;
+  }
+  for (std::size_t n = 0; n < hints.size(); ++n) {
+    if (path_of[n] < 0) continue;
+    hints[n].side = of(n) == 0 ? NamedSide::kNone : of(n) > 0 ? NamedSide::kLeft : NamedSide::kRight;
+  }
+}
+
+// Where names do not give a body, the rig's shape says what limbs are, and names say the rest: sides, head, tail, hair.
+std::vector<Hint> hints_of(const Skeleton& skeleton, const SourceRig& rig, BodyKind wanted) {
+  const std::vector<Hint> names = hints_from_names(rig);
+  if (is_complete(find_body(skeleton, names, wanted))) return names;
+  const std::vector<Hint> shape = hints_from_shape(skeleton);
+  const bool no_limbs = find_limb_paths(skeleton, names).empty();
+  std::vector<Hint> both = names;
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    const bool in_limb = family_of(names[n].word) != Family::kNone || family_of(shape[n].word) != Family::kNone;
+    if (names[n].word != Word::kNone && (no_limbs || !in_limb)) continue;
+    both[n].word = shape[n].word;
+    both[n].reason = shape[n].reason;
+  }
+  spread_sides(skeleton, shape, both);
+  return no_limbs || is_complete(find_body(skeleton, both, wanted)) ? both : names;
 }
 
 // Gives every node its role and the reason for it.
@@ -215,14 +263,7 @@ const char* body_kind_name(BodyKind kind) {
 
 Roles find_roles(const SourceRig& rig, const std::vector<Vec3>& positions, const RoleFile& file, BodyKind wanted) {
   const Skeleton skeleton = make_skeleton(rig, positions);
-  std::vector<Hint> hints;
-  for (const Node& node : rig.nodes) hints.push_back(hint_of(node));
-  if (find_limb_paths(skeleton, hints).empty()) {
-    const std::vector<Hint> shape = hints_from_shape(skeleton);
-    for (std::size_t n = 0; n < hints.size(); ++n) {
-      if (hints[n].word == Word::kNone) hints[n] = shape[n];
-    }
-  }
+  std::vector<Hint> hints = hints_of(skeleton, rig, wanted);
   for (const auto& [name, role] : file.role_of) {
     bool known = false;
     for (std::size_t n = 0; n < rig.nodes.size(); ++n) {
