@@ -130,11 +130,17 @@ void find_parents(const SourceRig& rig, const std::vector<Joint>& joints, std::v
   };
   for (std::size_t p = 0; p < parts.size(); ++p) part_at[node_of(parts[p])] = static_cast<int>(p);
   part_at.erase(-1);
+  // Of each node the part of the nearest one above that has one.
+  std::vector<int> part_above(own_rig ? rig.nodes.size() : joints.size(), -1);
+  for (std::size_t n = 0; n < part_above.size(); ++n) {
+    const int up = above(static_cast<int>(n));
+    if (up < 0) continue;
+    const auto found = part_at.find(up);
+    part_above[n] = found != part_at.end() ? found->second : part_above[static_cast<std::size_t>(up)];
+  }
   for (BodyPart& part : parts) {
-    int node = node_of(part);
-    if (node >= 0) node = above(node);
-    while (node >= 0 && part_at.count(node) == 0) node = above(node);
-    part.parent = node < 0 ? -1 : part_at[node];
+    const int node = node_of(part);
+    part.parent = node < 0 ? -1 : part_above[static_cast<std::size_t>(node)];
   }
 }
 

@@ -17,7 +17,7 @@ constexpr double kCloseReach = 1.03;  // and are reported up to this part of the
 constexpr double kGapShare = 0.6;     // of another gap must close
 constexpr double kNear = 0.9;         // spheres nearly touch where this part of their distance is within their radii
 constexpr double kListed = 0.01;      // of the poses: what a pair's own distance saves in false alarms, at least
-constexpr std::size_t kTriangles = 30'000'000;  // of all poses together, at most
+constexpr std::size_t kElements = 30'000'000;  // triangles, or nodes and bones, of all poses together, at most
 
 std::vector<Pair> tested_pairs(const Binding& binding) {
   std::vector<Pair> out;
@@ -30,7 +30,8 @@ std::vector<Pair> tested_pairs(const Binding& binding) {
 }
 
 int pose_count(const Character& character) {
-  const std::size_t fitting = kTriangles / character.skin.triangles.size() + 1;
+  const std::size_t of_rig = character.rig.nodes.size() + character.rig.bones.size();
+  const std::size_t fitting = kElements / std::max(character.skin.triangles.size(), of_rig) + 1;
   return static_cast<int>(std::min<std::size_t>(kCalibrationPoses, fitting));
 }
 

@@ -53,10 +53,18 @@ Affine RestNodes::world(int node) const {
 }
 
 void RestNodes::add_below(int node, std::vector<int>& out) const {
-  if (node < 0 || static_cast<std::size_t>(node) >= children_.size()) return;
-  for (const int child : children_[static_cast<std::size_t>(node)]) {
-    out.push_back(child);
-    add_below(child, out);
+  const auto count = static_cast<int>(children_.size());
+  std::vector<int> open;
+  const auto add_children = [&](int of) {
+    if (of < 0 || of >= count) return;
+    const std::vector<int>& children = children_[static_cast<std::size_t>(of)];
+    open.insert(open.end(), children.rbegin(), children.rend());
+  };
+  for (add_children(node); !open.empty();) {
+    const int next = open.back();
+    open.pop_back();
+    out.push_back(next);
+    add_children(next);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <set>
 
 #include "check/run.h"
 #include "fix/turned_recording.h"
@@ -126,11 +127,12 @@ class Fixer {
 
   // Of the joints that the recording has, too: no other may turn.
   Roles recorded_roles(const CarriedMotion& carried) const {
-    const std::vector<Index> recorded = carried.recorded_nodes();
+    const std::vector<Index> nodes = carried.recorded_nodes();
+    const std::set<Index> recorded(nodes.begin(), nodes.end());
     if (recorded.empty()) fail("none of its joints is in the recording alone (write a .glb)");
     Roles out = roles_;
     for (Index n = 0; n < out.of_node.size(); ++n) {
-      if (std::find(recorded.begin(), recorded.end(), n) == recorded.end()) out.of_node[n].role.clear();
+      if (!recorded.contains(n)) out.of_node[n].role.clear();
     }
     return out;
   }

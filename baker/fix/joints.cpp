@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 namespace spherechain::baker {
 namespace {
@@ -66,10 +67,14 @@ Eigen::Matrix3d price_of(const Hinge& hinge) {
          (kOff - kTwist) * hinge.lower * hinge.lower.transpose();
 }
 
-bool is_below(const SourceRig& rig, Index node, Index other) {
-  int n = static_cast<int>(node);
-  while (n >= 0 && n != static_cast<int>(other)) n = rig.nodes[static_cast<std::size_t>(n)].parent;
-  return n >= 0;
+// How many of the rig's bones are at each node or below.
+std::vector<std::size_t> bones_below(const SourceRig& rig) {
+  std::vector<std::size_t> out(rig.nodes.size(), 0);
+  for (const Bone& bone : rig.bones) ++out[bone.node];
+  for (std::size_t n = out.size(); n-- > 0;) {  // children come after their parents
+    if (const int parent = rig.nodes[n].parent; parent >= 0) out[static_cast<std::size_t>(parent)] += out[n];
+  }
+  return out;
 }
 
 }  // namespace
@@ -85,11 +90,11 @@ std::vector<TurningJoint> turning_joints(const SourceRig& rig, const Roles& role
     out.push_back({n, price * (hinge ? price_of(*hinge) : Eigen::Matrix3d::Identity()), hinge});
   }
   if (!out.empty()) return out;
+  const std::vector<std::size_t> carried = bones_below(rig);
+  std::set<Index> taken;
   for (const Bone& bone : rig.bones) {
-    const auto carries = [&](const Bone& other) { return is_below(rig, other.node, bone.node); };
-    const auto is_it = [&](const TurningJoint& joint) { return joint.node == bone.node; };
-    if (std::all_of(rig.bones.begin(), rig.bones.end(), carries)) continue;
-    if (std::none_of(out.begin(), out.end(), is_it)) out.push_back({bone.node, Eigen::Matrix3d::Identity(), {}});
+    if (carried[bone.node] == rig.bones.size() || !taken.insert(bone.node).second) continue;
+    out.push_back({bone.node, Eigen::Matrix3d::Identity(), {}});
   }
   return out;
 }

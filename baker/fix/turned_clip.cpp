@@ -62,6 +62,12 @@ TurnedClip::TurnedClip(const SourceRig& rig, const Clip& clip, double fps, int f
       joints_(std::move(joints)),
       joint_of_node_(rig.nodes.size(), -1) {
   for (std::size_t j = 0; j < joints_.size(); ++j) joint_of_node_[joints_[j].node] = static_cast<int>(j);
+  for (std::size_t n = 0; n < rig.nodes.size(); ++n) {
+    const int parent = rig.nodes[n].parent;
+    joint_at_or_above_.push_back(joint_of_node_[n] >= 0 || parent < 0
+                                     ? joint_of_node_[n]
+                                     : joint_at_or_above_[static_cast<std::size_t>(parent)]);
+  }
   for (const Bone& bone : rig.bones) above_.push_back(joints_above(bone.node));
   for (const TurningJoint& joint : joints_) {
     rotations_.emplace_back();
@@ -82,9 +88,11 @@ Vec3 TurnedClip::within_limits(int frame, Index joint, Vec3 turn, double most) c
 
 std::vector<Index> TurnedClip::joints_above(Index node) const {
   std::vector<Index> out;
-  for (int n = static_cast<int>(node); n >= 0; n = rig_.nodes[static_cast<std::size_t>(n)].parent) {
-    const int joint = joint_of_node_[static_cast<std::size_t>(n)];
-    if (joint >= 0) out.push_back(static_cast<Index>(joint));
+  for (int n = static_cast<int>(node); n >= 0;) {
+    const int joint = joint_at_or_above_[static_cast<std::size_t>(n)];
+    if (joint < 0) break;
+    out.push_back(static_cast<Index>(joint));
+    n = rig_.nodes[joints_[static_cast<std::size_t>(joint)].node].parent;
   }
   return out;
 }

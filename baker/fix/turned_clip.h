@@ -74,7 +74,7 @@ class TurnedClip {
   double fps_;
   int frames_;
   std::vector<TurningJoint> joints_;
-  std::vector<int> joint_of_node_;
+  std::vector<int> joint_of_node_, joint_at_or_above_;
   std::vector<std::vector<Index>> above_;
   std::vector<std::vector<Eigen::Quaterniond>> rotations_;  // of a joint with a hinge: by frame
 };

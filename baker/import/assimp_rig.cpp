@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <map>
 
 #include "import/assimp_scene.h"
 #include "mesh/error.h"
@@ -11,14 +11,26 @@ namespace {
 
 using Influences = std::vector<std::pair<double, Index>>;  // weight, bone
 
-Index add_bone(Index node, const Affine& inverse_bind, std::vector<Bone>& bones) {
-  constexpr double kSame = 1e-5;  // singles
-  for (Index b = 0; b < bones.size(); ++b) {
-    if (bones[b].node == node && bones[b].inverse_bind.isApprox(inverse_bind, kSame)) return b;
+// The bones of a rig as meshes bring them.
+class Bones {
+ public:
+  explicit Bones(std::vector<Bone>& bones) : bones_(bones) {}
+
+  Index add(Index node, const Affine& inverse_bind) {
+    constexpr double kSame = 1e-5;  // singles
+    std::vector<Index>& known = of_node_[node];
+    for (const Index b : known) {
+      if (bones_[b].inverse_bind.isApprox(inverse_bind, kSame)) return b;
+    }
+    known.push_back(static_cast<Index>(bones_.size()));
+    bones_.push_back({node, inverse_bind});
+    return known.back();
   }
-  bones.push_back({node, inverse_bind});
-  return static_cast<Index>(bones.size() - 1);
-}
+
+ private:
+  std::vector<Bone>& bones_;
+  std::map<Index, std::vector<Index>> of_node_;
+};
 
 VertexWeights largest(Influences influences) {
   std::sort(influences.begin(), influences.end(),
@@ -35,7 +47,8 @@ VertexWeights largest(Influences influences) {
 }
 
 // What no bone holds moves with the mesh's node.
-void read_weights(const MeshInstance& instance, const AssimpScene& flat, const std::string& file, SourceRig& rig) {
+void read_weights(const MeshInstance& instance, const AssimpScene& flat, const std::string& file, Bones& bones,
+                  SourceRig& rig) {
   const aiMesh& mesh = *instance.mesh;
   const Affine to_mesh = instance.placement.inverse();
   std::vector<Influences> influences(mesh.mNumVertices);
@@ -48,7 +61,7 @@ void read_weights(const MeshInstance& instance, const AssimpScene& flat, const s
     if (node == flat.by_name.end() || bone.mNumWeights == 0) continue;
     const Affine inverse_bind = offset_of(bone, instance) * to_mesh;
     if (!inverse_bind.matrix().allFinite()) refuse("has a bind pose that is not finite");
-    const Index index = add_bone(node->second, inverse_bind, rig.bones);
+    const Index index = bones.add(node->second, inverse_bind);
     for (unsigned w = 0; w < bone.mNumWeights; ++w) {
       const aiVertexWeight& weight = bone.mWeights[w];
       if (weight.mVertexId >= mesh.mNumVertices)
@@ -59,7 +72,7 @@ void read_weights(const MeshInstance& instance, const AssimpScene& flat, const s
   }
   const bool held = std::none_of(influences.begin(), influences.end(), [](const auto& i) { return i.empty(); });
   if (!held && to_mesh.matrix().allFinite()) {
-    const Index rigid = add_bone(instance.node, flat.world[instance.node].inverse(), rig.bones);
+    const Index rigid = bones.add(instance.node, flat.world[instance.node].inverse());
     for (Influences& own : influences) {
       if (own.empty()) own.emplace_back(1.0, rigid);
     }
@@ -88,18 +101,18 @@ void read_morphs(const MeshInstance& instance, const std::string& file, std::vec
 
 // Whether a skeleton or a clip can move a mesh of the scene.
 bool anything_moves(const AssimpScene& flat, const std::vector<Clip>& clips) {
-  std::set<Index> animated;
+  std::vector<bool> moves(flat.nodes.size(), false);
   for (const Clip& clip : clips) {
     for (const Channel& channel : clip.channels) {
-      if (channel.path != ChannelPath::kMorphWeight) animated.insert(channel.target);
+      if (channel.path != ChannelPath::kMorphWeight) moves[channel.target] = true;
     }
   }
+  for (std::size_t n = 0; n < moves.size(); ++n) {
+    const int parent = flat.nodes[n].parent;
+    moves[n] = moves[n] || (parent >= 0 && moves[static_cast<std::size_t>(parent)]);
+  }
   return std::any_of(flat.instances.begin(), flat.instances.end(), [&](const MeshInstance& instance) {
-    if (instance.mesh->mNumBones > 0) return true;
-    int node = static_cast<int>(instance.node);
-    while (node >= 0 && animated.count(static_cast<Index>(node)) == 0)
-      node = flat.nodes[static_cast<std::size_t>(node)].parent;
-    return node >= 0;
+    return instance.mesh->mNumBones > 0 || moves[instance.node];
   });
 }
 
@@ -111,7 +124,8 @@ SourceRig read_rig(const aiScene& scene, const AssimpScene& flat, const std::str
   for (std::size_t c = 0; c < rig.clips.size(); ++c) rig.clips[c].in_file = static_cast<int>(c);
   for (const MeshInstance& instance : flat.instances) read_morphs(instance, file, rig.morphs);
   if (anything_moves(flat, rig.clips)) {
-    for (const MeshInstance& instance : flat.instances) read_weights(instance, flat, file, rig);
+    Bones bones(rig.bones);
+    for (const MeshInstance& instance : flat.instances) read_weights(instance, flat, file, bones, rig);
   }
   if (!flat.instances.empty() && rig.bones.empty() && rig.morphs.empty()) return {};
   rig.nodes = flat.nodes;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace spherechain::baker {
 namespace {
@@ -40,18 +41,28 @@ double rate_of(const Clip& clip) {
 }
 
 std::vector<Affine> world_at(const SourceRig& rig, const Clip& clip, double seconds) {
-  std::vector<Node> nodes = rig.nodes;
+  std::map<Index, Node> animated;
   for (const Channel& channel : clip.channels) {
     if (channel.path == ChannelPath::kMorphWeight) continue;
     const Eigen::Vector4d v = sample(channel, seconds);
-    Node& node = nodes[channel.target];
+    Node& node = animated.try_emplace(channel.target, rig.nodes[channel.target]).first->second;
     if (channel.path == ChannelPath::kTranslation) node.translation = v.head<3>();
     if (channel.path == ChannelPath::kRotation) node.rotation = Eigen::Quaterniond(v);
     if (channel.path == ChannelPath::kScale) node.scale = v.head<3>();
     node.local.linear() = node.rotation.toRotationMatrix() * node.scale.asDiagonal();
     node.local.translation() = node.translation;
   }
-  return world_of(nodes);
+  std::vector<Affine> world;
+  world.reserve(rig.nodes.size());
+  auto next = animated.cbegin();
+  for (Index n = 0; n < rig.nodes.size(); ++n) {
+    const bool is_animated = next != animated.cend() && next->first == n;
+    const Affine& local = is_animated ? next->second.local : rig.nodes[n].local;
+    const int parent = rig.nodes[n].parent;
+    world.push_back(parent < 0 ? local : world[static_cast<std::size_t>(parent)] * local);
+    if (is_animated) ++next;
+  }
+  return world;
 }
 
 Deformation sample(const SourceRig& rig, const Clip& clip, double seconds) {

@@ -2,7 +2,6 @@
 #include "motion/poses.h"
 
 #include <algorithm>
-#include <functional>
 #include <set>
 
 namespace spherechain::baker {
@@ -95,14 +94,19 @@ std::vector<Affine> bones_of(const std::vector<Joint>& joints, const BodyFrame& 
   };
   std::vector<Affine> out(joints.size());
   std::vector<bool> is_done(joints.size(), false);
-  const std::function<const Affine&(std::size_t)> find = [&](std::size_t j) -> const Affine& {
-    if (is_done[j]) return out[j];
-    is_done[j] = true;
-    const Joint& joint = joints[j];
-    return out[j] =
-               joint.parent < 0 ? own_of(joint) : Affine(find(static_cast<std::size_t>(joint.parent)) * own_of(joint));
-  };
-  for (std::size_t j = 0; j < joints.size(); ++j) find(j);
+  std::vector<std::size_t> way;  // up from a joint: its parent may come after it
+  for (std::size_t j = 0; j < joints.size(); ++j) {
+    for (int up = static_cast<int>(j); up >= 0 && !is_done[static_cast<std::size_t>(up)];
+         up = joints[static_cast<std::size_t>(up)].parent) {
+      way.push_back(static_cast<std::size_t>(up));
+    }
+    for (; !way.empty(); way.pop_back()) {
+      const Joint& joint = joints[way.back()];
+      const Affine own = own_of(joint);
+      out[way.back()] = joint.parent < 0 ? own : out[static_cast<std::size_t>(joint.parent)] * own;
+      is_done[way.back()] = true;
+    }
+  }
   return out;
 }
 

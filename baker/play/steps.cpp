@@ -28,13 +28,32 @@ std::vector<int> bone_parents(const AnimatedAsset& animated) {
   }
   std::vector<int> bone_of(rig.nodes.size(), -1);
   for (std::size_t b = 0; b < rig.bones.size(); ++b) bone_of[rig.bones[b].node] = static_cast<int>(b);
-  for (std::size_t b = 0; b < std::min(out.size(), rig.bones.size()); ++b) {
-    int node = rig.nodes[rig.bones[b].node].parent;
-    while (node >= 0 && bone_of[static_cast<std::size_t>(node)] < 0)
-      node = rig.nodes[static_cast<std::size_t>(node)].parent;
-    if (node >= 0) out[b] = bone_of[static_cast<std::size_t>(node)];
+  std::vector<int> above(rig.nodes.size(), -1);  // a node's nearest bone above
+  for (std::size_t n = 0; n < rig.nodes.size(); ++n) {
+    if (rig.nodes[n].parent < 0) continue;
+    const auto parent = static_cast<std::size_t>(rig.nodes[n].parent);
+    above[n] = bone_of[parent] >= 0 ? bone_of[parent] : above[parent];
   }
+  for (std::size_t b = 0; b < std::min(out.size(), rig.bones.size()); ++b) out[b] = above[rig.bones[b].node];
   return out;
+}
+
+// How many are above each; a parent may come after its children.
+std::vector<std::size_t> depths_of(const std::vector<int>& parents) {
+  std::vector<std::size_t> depths(parents.size(), 0), way;
+  std::vector<bool> is_known(parents.size(), false);
+  for (std::size_t b = 0; b < parents.size(); ++b) {
+    for (int up = static_cast<int>(b); up >= 0 && !is_known[static_cast<std::size_t>(up)];
+         up = parents[static_cast<std::size_t>(up)]) {
+      way.push_back(static_cast<std::size_t>(up));
+    }
+    for (; !way.empty(); way.pop_back()) {
+      const int parent = parents[way.back()];
+      depths[way.back()] = parent < 0 ? 0 : depths[static_cast<std::size_t>(parent)] + 1;
+      is_known[way.back()] = true;
+    }
+  }
+  return depths;
 }
 
 Affine affine_of(const float* rows) {
@@ -75,9 +94,8 @@ sc_pose pose_of(const std::vector<float>& vertices) {
 StepPlayer::StepPlayer(const AnimatedAsset& animated, Target target) : animated_(animated), target_(target) {
   const OpenAsset& asset = animated.asset();
   const std::vector<int> parents = bone_parents(animated);
-  std::vector<std::size_t> depths(parents.size(), 0);
+  const std::vector<std::size_t> depths = depths_of(parents);
   for (std::size_t b = 0; b < parents.size(); ++b) {
-    for (int p = parents[b]; p >= 0; p = parents[static_cast<std::size_t>(p)]) ++depths[b];
     binds_.push_back(asset->bone(b).is_rest ? Affine::Identity() : affine_of(asset->bone(b).inverse_bind).inverse());
     order_.push_back(b);
   }

@@ -100,8 +100,9 @@ struct BodyFinder : Body {
     const std::vector<int>& low = lower.empty() ? upper : lower;
     pelvis = attach_point(low);
     chest = lower.empty() || upper.empty() ? -1 : attach_point(upper);
+    const std::vector<bool> over_chest = at_or_above(s, chest);
     for (int n = pelvis; n >= 0; n = s.parent[n]) {
-      if (hints[n].word != Word::kPelvis || (chest >= 0 && s.common_ancestor(chest, n) != n)) continue;
+      if (hints[n].word != Word::kPelvis || (chest >= 0 && !over_chest[n])) continue;
       pelvis = n;
       break;
     }
@@ -128,11 +129,13 @@ struct BodyFinder : Body {
   }
 
   void find_neck() {
+    std::vector<bool> in_trunk(hints.size(), false);
+    for (const int n : trunk) in_trunk[n] = true;
     const auto leads_up = [&](int n) {
       const Word word = hints[n].word;
       return s.alive[n] && !in_limb(n) && word != Word::kAttachment && word != Word::kCloth && word != Word::kControl &&
              word != Word::kHair && word != Word::kHeadPart && word != Word::kTail && word != Word::kEye &&
-             word != Word::kJaw && std::find(trunk.begin(), trunk.end(), n) == trunk.end();
+             word != Word::kJaw && !in_trunk[n];
     };
     if (head < 0) {
       // No head by name: the end of the neck, or of the longest way on from the chest.
@@ -152,7 +155,7 @@ struct BodyFinder : Body {
     }
     if (head < 0) return;
     for (const int n : s.path(chest, head)) {
-      if (std::find(trunk.begin(), trunk.end(), n) == trunk.end()) neck_head.push_back(n);
+      if (!in_trunk[n]) neck_head.push_back(n);
     }
   }
 
@@ -297,6 +300,12 @@ int find_in_middle(const Skeleton& s, const std::vector<Hint>& hints, const std:
     if (best < 0 || key(n) > key(best)) best = n;
   }
   return best;
+}
+
+std::vector<bool> at_or_above(const Skeleton& skeleton, int node) {
+  std::vector<bool> out(skeleton.parent.size(), false);
+  for (; node >= 0; node = skeleton.parent[node]) out[node] = true;
+  return out;
 }
 
 Body find_body(const Skeleton& skeleton, const std::vector<Hint>& hints, BodyKind wanted) {

@@ -20,6 +20,9 @@ struct Body {
   std::vector<int> trunk, neck_head;  // as in Roles
 };
 
+// Whether each node is the node, or above it.
+std::vector<bool> at_or_above(const Skeleton& skeleton, int node);
+
 Body find_body(const Skeleton& skeleton, const std::vector<Hint>& hints, BodyKind wanted);
 
 // The node outside the limbs whose hint is `word`. Of several: the one in a role file, else the nearest to the root,

@@ -114,21 +114,25 @@ std::vector<Rank> resolve(const Skeleton& s, const std::vector<Hint>& hints, con
       upper = open[short_start ? 1 : first];
     }
   }
+  // What comes after each node on the way.
+  std::vector<bool> hand_follows(n, false), upper_follows(n, false);
+  bool hand = false, upper_by_word = false, open_before_lower = false;
+  for (std::size_t i = n; i-- > 0;) {
+    hand_follows[i] = hand;
+    upper_follows[i] = upper_by_word || open_before_lower;
+    hand = hand || fixed(i, kExtremity);
+    upper_by_word = upper_by_word || fixed(i, kUpper);
+    open_before_lower = !fixed(i, kLower) && (open_before_lower || word(i) == Word::kArm || word(i) == Word::kLeg);
+  }
   bool has_upper = false, has_lower = false;
   for (std::size_t i = 0; i < n; ++i) {
     int rank = rank_of(word(i));
-    const bool hand_follows = any(i + 1, [&](std::size_t k) { return fixed(k, kExtremity); });
-    if (has_lower && is_open(word(i)) && !hints[nodes[i]].twist && !hand_follows) {
+    if (has_lower && is_open(word(i)) && !hints[nodes[i]].twist && !hand_follows[i]) {
       rank = kExtremity;  // some languages call an arm and a hand, a leg and a foot by one word
     } else if (is_open(word(i)) && upper < n) {
       rank = i < upper ? kGirdle : static_cast<int>(std::min<std::size_t>(kUpper + (i - upper), kDigit));
     } else if (is_girdle_or_upper(word(i))) {
-      std::size_t lower = i + 1;
-      while (lower < n && !fixed(lower, kLower)) ++lower;
-      const bool upper_follows = any(i + 1, [&](std::size_t k) {
-        return fixed(k, kUpper) || (k < lower && (word(k) == Word::kArm || word(k) == Word::kLeg));
-      });
-      rank = upper_follows ? kGirdle : kUpper;
+      rank = upper_follows[i] ? kGirdle : kUpper;
     } else if (is_open(word(i))) {
       rank = has_upper ? kLower : kUpper;
     }

@@ -204,9 +204,10 @@ struct RoleWriter {
     if (top >= 0 && body.head >= 0 && s.common_ancestor(top, body.head) == body.head) top = -1;
     const bool by_shape = top < 0 && !body.paths.empty() && hints[body.paths[0].nodes[0]].reason == "the rig's shape";
     if (by_shape && body.pelvis >= 0) {
+      const std::vector<bool> over_chest = at_or_above(s, body.chest);
       for (const int child : s.children[body.pelvis]) {
         if (!s.alive[child] || body.path_of[child] >= 0 || !roles.of_node[child].role.empty() ||
-            hints[child].word != Word::kNone || (body.chest >= 0 && s.common_ancestor(body.chest, child) == child)) {
+            hints[child].word != Word::kNone || over_chest[child]) {
           continue;
         }
         if (top < 0 || s.reach[child] + s.bone(child) > s.reach[top] + s.bone(top)) top = child;

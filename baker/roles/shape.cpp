@@ -21,7 +21,7 @@ constexpr double kLong = 0.3;        // of the longest limb: shorter pairs are e
 constexpr double kPointsAway = 0.5;  // cosine from which legs point away from the arms
 
 // No character's rig has more; the search would take long.
-constexpr std::ptrdiff_t kNodesMax = 600;
+constexpr std::size_t kNodesMax = 600;
 constexpr std::size_t kChildrenMax = 40;
 
 struct Plane {
@@ -30,26 +30,26 @@ struct Plane {
   Vec3 mirror(const Vec3& p) const { return p - 2 * distance(p) * normal; }
 };
 
-double asymmetry(const Skeleton& s, const Plane& plane, double worst) {
-  double sum = 0, count = 0;
-  for (int n = 0; n < s.count(); ++n) {
-    if (!s.alive[n]) continue;
-    const Vec3 image = plane.mirror(s.position[n]);
+double asymmetry(const std::vector<Vec3>& positions, const Plane& plane, double worst) {
+  double sum = 0;
+  for (const Vec3& position : positions) {
+    const Vec3 image = plane.mirror(position);
     double nearest = worst;
-    for (int m = 0; m < s.count(); ++m) {
-      if (s.alive[m]) nearest = std::min(nearest, (s.position[m] - image).norm());
-    }
+    for (const Vec3& other : positions) nearest = std::min(nearest, (other - image).norm());
     sum += nearest;
-    ++count;
   }
-  return sum / count;
+  return sum / static_cast<double>(positions.size());
 }
 
 // Among the planes that mirror a child of a node to another one: the one that fits all nodes best.
 std::optional<Plane> find_symmetry(const Skeleton& s) {
   std::optional<Plane> best;
   double least = kAsymmetry * s.size;
-  if (std::count(s.alive.begin(), s.alive.end(), true) > kNodesMax) return best;
+  std::vector<Vec3> positions;  // of what is alive
+  for (int n = 0; n < s.count(); ++n) {
+    if (s.alive[n]) positions.push_back(s.position[n]);
+  }
+  if (positions.size() > kNodesMax) return best;
   for (int n = 0; n < s.count(); ++n) {
     if (s.children[n].size() > kChildrenMax) continue;
     for (const int a : s.children[n]) {
@@ -59,7 +59,7 @@ std::optional<Plane> find_symmetry(const Skeleton& s) {
         const Vec3 across = s.tip[a] - s.tip[b];
         if (std::abs(la - lb) > kAlike * std::max(la, lb) || across.norm() < kApart * s.size) continue;
         const Plane plane{0.5 * (s.tip[a] + s.tip[b]), across.normalized()};
-        const double error = asymmetry(s, plane, 4 * kAsymmetry * s.size);
+        const double error = asymmetry(positions, plane, 4 * kAsymmetry * s.size);
         if (error >= least) continue;
         least = error;
         best = plane;

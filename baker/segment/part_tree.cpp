@@ -113,24 +113,30 @@ class PartTree {
     of_node.erase(kNone);
 
     const std::vector<Node>& rig = character.rig.nodes;
-    const auto above = [&](int node) {
-      do node = rig[static_cast<std::size_t>(node)].parent;
-      while (node != kNone && of_node.count(node) == 0);
-      return node;
+    // Of each node the nearest one above that has a part.
+    const auto find_above = [&] {
+      std::vector<int> out(rig.size(), kNone);
+      for (std::size_t n = 0; n < rig.size(); ++n) {
+        const int parent = rig[n].parent;
+        if (parent >= 0) out[n] = of_node.count(parent) > 0 ? parent : out[static_cast<std::size_t>(parent)];
+      }
+      return out;
     };
+    std::vector<int> above = find_above();
     // Parents come before their children: from the last on, each small part is complete when it joins.
     for (int node = static_cast<int>(rig.size()) - 1; node >= 0; --node) {
       const auto part = of_node.find(node);
       if (part == of_node.end() || area_of(mesh_, part->second) >= least_area_) continue;
-      const int parent = above(node);
+      const int parent = above[static_cast<std::size_t>(node)];
       if (parent == kNone) continue;
       std::vector<Index>& joined = of_node[parent];
       joined.insert(joined.end(), part->second.begin(), part->second.end());
       of_node.erase(part);
     }
+    above = find_above();
     std::map<int, int> part_of_node;
     for (auto& [node, triangles] : of_node) {
-      const int parent = above(node);
+      const int parent = above[static_cast<std::size_t>(node)];
       part_of_node[node] = static_cast<int>(parts_.size());
       std::sort(triangles.begin(), triangles.end());
       parts_.push_back({node, std::move(triangles), parent == kNone ? kNone : part_of_node[parent]});
