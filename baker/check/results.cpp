@@ -85,7 +85,7 @@ std::string to_bytes(const CharacterResult& result) {
   return json_text({{"clips", result.clips},
                     {"grade", result.grade},
                     {"fit", result.fit},
-                    {"unit_note", result.unit_note},
+                    {"notes", result.notes},
                     {"parts", result.parts}},
                    -1);
 }
@@ -108,7 +108,7 @@ std::optional<CharacterResult> read_character_result(const std::string& bytes) {
     json.at("clips").get_to(out.clips);
     json.at("grade").get_to(out.grade);
     json.at("fit").get_to(out.fit);
-    json.at("unit_note").get_to(out.unit_note);
+    json.at("notes").get_to(out.notes);
     json.at("parts").get_to(out.parts);
     return out;
   });

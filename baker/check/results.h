@@ -49,7 +49,7 @@ struct CharacterResult {
   std::vector<std::string> clips;  // its own; unique
   std::string grade;               // of the spheres' fit
   std::string fit;                 // the same as a sentence: fit_line's
-  std::string unit_note;
+  std::vector<std::string> notes;  // of its units, and its import's
   std::vector<std::string> parts;  // names of its body parts
 };
 

@@ -14,6 +14,7 @@
 
 #include "check/clip_check.h"
 #include "check/workers.h"
+#include "import/notes.h"
 #include "import/sha256.h"
 #include "mesh/error.h"
 #include "page/page.h"
@@ -80,12 +81,16 @@ std::vector<ChosenCharacter> choose(const std::vector<LibraryCharacter>& library
 }
 
 void bake_into(const Store& store, const std::string& key, const LibraryCharacter& character) {
+  take_notes();  // of characters before it
   const Bake baked = bake(character.file, character.config.bake, {});
   CharacterResult result;
   result.clips = unique_clip_names(baked.character.rig);
   result.grade = fit_grade_name(baked.quality.grade());
   result.fit = fit_line(baked);
-  result.unit_note = unit_note(baked);
+  const std::string begin = character.file.string() + ": ";  // the verdict has a name of its own
+  for (const std::string& note : take_notes())
+    result.notes.push_back(note.starts_with(begin) ? note.substr(begin.size()) : note);
+  if (const std::string note = unit_note(baked); !note.empty()) result.notes.push_back(note);
   for (const BodyPart& part : baked.body_parts.parts) result.parts.push_back(part.name);
   store.write(key, kAssetFile, {reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size()});
   store.write(key, kResultFile, to_bytes(result));

@@ -124,7 +124,7 @@ Verdict judge(const std::vector<CheckedClip>& clips, const std::vector<Character
       if (is_new) {
         const std::string bytes_of = store.read(clip.character_key, kResultFile).value_or("");
         character->second = read_character_result(bytes_of).value_or(CharacterResult());
-        if (!character->second.unit_note.empty()) out.notes.push_back(of.name + ": " + character->second.unit_note);
+        for (const std::string& note : character->second.notes) out.notes.push_back(of.name + ": " + note);
       }
       judged.grade = character->second.grade;
       judged.fit = character->second.fit;

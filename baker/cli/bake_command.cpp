@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "cli/commands.h"
+#include "cli/console.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "pipeline/pipeline.h"
@@ -19,6 +20,7 @@ ExitCode run_bake(const BakeOptions& options) {
   if (options.extremities) settings.fit.extremities = true;
   if (!options.body.empty()) settings.segment.body = parse_body(options.body);
   if (options.attachments) settings.import.attachments = true;
+  if (!options.character.empty()) settings.import.character = options.character;
   if (!options.roles.empty()) settings.roles = parse_role_file(read_file(options.roles), options.roles);
   if (!options.edits.empty()) {
     settings.edits = parse_edits(read_file(options.edits), options.edits);
@@ -47,17 +49,15 @@ ExitCode run_bake(const BakeOptions& options) {
   if (!options.preview.empty()) write_atomically(options.preview, preview);
   write_atomically(options.output, {reinterpret_cast<const char*>(result.asset.data()), result.asset.size()});
 
-  fmt::print("{}", bake_report_text(result));
-  fmt::print("wrote {} ({} bytes)\n", options.output, result.asset.size());
-  if (!options.report.empty()) fmt::print("wrote {}\n", options.report);
-  if (!options.preview.empty()) fmt::print("wrote {} ({} bytes)\n", options.preview, preview.size());
-  fmt::print("{}", fit_line(result));
+  say("{}", bake_report_text(result));
+  say("wrote {} ({} bytes)\n", options.output, result.asset.size());
+  if (!options.report.empty()) say("wrote {}\n", options.report);
+  if (!options.preview.empty()) say("wrote {} ({} bytes)\n", options.preview, preview.size());
+  say("{}", fit_line(result));
   const std::vector<std::string> missed = missed_targets(result);
-  for (const std::string& target : missed)
-    fmt::print(stderr, "spherechain: target missed: {}: {}\n", options.input, target);
+  for (const std::string& target : missed) say(stderr, "spherechain: target missed: {}: {}\n", options.input, target);
   for (const std::string& edit : result.edits_done.missed)
-    fmt::print(stderr, "spherechain: edit missed: {}: {}\n", options.edits.empty() ? options.config : options.edits,
-               edit);
+    say(stderr, "spherechain: edit missed: {}: {}\n", options.edits.empty() ? options.config : options.edits, edit);
   return missed.empty() && result.edits_done.missed.empty() ? ExitCode::kDone : ExitCode::kTargetMissed;
 }
 

@@ -10,10 +10,12 @@
 #include "check/report_folder.h"
 #include "check/shards.h"
 #include "cli/commands.h"
+#include "cli/console.h"
 #include "cli/installed.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "fix/fix_library.h"
+#include "import/notes.h"
 #include "play/asset_file.h"
 #include "write/write.h"
 
@@ -103,11 +105,11 @@ Verdict report(const CheckOptions& options, const std::vector<CheckedClip>& clip
   if (!options.junit.empty()) write_atomically(options.junit, check_junit(verdict));
   if (!options.sarif.empty()) write_atomically(options.sarif, check_sarif(verdict));
   if (options.accept) write_atomically(options.baseline, to_bytes(baseline));
-  fmt::print("{}", check_text(verdict));
+  say("{}", check_text(verdict));
   if (has_pages) {
-    fmt::print("wrote {}: open it in a browser\n", (fs::path(options.output) / "index.html").string());
+    say("wrote {}: open it in a browser\n", (fs::path(options.output) / "index.html").string());
   } else {
-    fmt::print("wrote {}, without pages: they are built where Node and npm are\n", options.output);
+    say("wrote {}, without pages: they are built where Node and npm are\n", options.output);
   }
   return verdict;
 }
@@ -121,6 +123,7 @@ ExitCode run_check(const CheckOptions& options) {
   const fs::path pages = installed_page("");  // now: a long run may outlive its program's file
   CheckConfig config = default_config();
   if (!options.config.empty()) config = read_config(read_file(options.config), options.config, config);
+  if (!options.character.empty()) config.bake.import.character = options.character;
   config.rules.max_depth_mm = std::max(config.rules.max_depth_mm, options.max_depth);
   std::vector<CommandFile> inputs{{"--config", options.config}, {"--motion", options.motion}};
   for (const std::string& path : options.library) inputs.push_back({"LIBRARY", path});
@@ -160,22 +163,22 @@ ExitCode run_check(const CheckOptions& options) {
     const Store store(options.cache.empty() ? fs::path(options.output) / kShardStore : fs::path(options.cache));
     const ShardResult result{run.shard, rules_of(library), check(store)};
     write_shard(options.output, result, store);
-    fmt::print("wrote {}: {} clips, shard {} of {}\n", options.output, result.clips.size(), run.shard.index,
-               run.shard.count);
+    say("wrote {}: {} clips, shard {} of {}\n", options.output, result.clips.size(), run.shard.index, run.shard.count);
     return ExitCode::kDone;
   }
   check_report_folder(options.output);
   const fs::path work = options.cache.empty() ? fs::path(options.output) / ".results" : fs::path(options.cache);
   const Store store(work);
   const Verdict verdict = report(options, check(store), rules_of(library), store, pages);
+  take_notes();  // the report has them
   if (options.cache.empty()) fs::remove_all(work);
   if (!options.fix.empty()) {
     RunProgress progress;
     const Baseline baseline = options.baseline.empty() ? Baseline() : read_baseline(options.baseline, false);
     const std::vector<std::string> lines = fix_library(library, verdict, baseline, options.fix, run.jobs,
                                                        [&](const RunState& state) { progress.show(state); });
-    for (const std::string& line : lines) fmt::print("{}\n", line);
-    if (lines.empty()) fmt::print("nothing to mend\n");
+    for (const std::string& line : lines) say("{}\n", line);
+    if (lines.empty()) say("nothing to mend\n");
   }
   return code_of(verdict);
 }

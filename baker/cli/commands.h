@@ -12,7 +12,7 @@ namespace spherechain::baker {
 // One struct of options and one function a subcommand. They throw Error; what they return is the exit code.
 
 struct BakeOptions {
-  std::string input, output, config, report, preview, roles, body, edits;
+  std::string input, output, config, report, preview, roles, body, edits, character;
   std::string profile = "balanced";
   int spheres = 0;  // 0: no limit
   bool extremities = false, attachments = false, prop = false, force = false;
@@ -20,7 +20,8 @@ struct BakeOptions {
 ExitCode run_bake(const BakeOptions& options);
 
 struct InspectOptions {
-  std::string asset;   // with `roles` a character
+  std::string asset;  // with `roles` a character's file
+  std::string character;
   bool roles = false;  // what its rig's nodes are on the body
   bool json = false;
 };
@@ -64,7 +65,7 @@ ExitCode run_view(const ViewOptions& options);
 
 struct CheckOptions {
   std::vector<std::string> library;  // with `merge` folders of shards
-  std::string output, config, baseline, motion, shard, cache, json, junit, sarif, fix;
+  std::string output, config, baseline, motion, shard, cache, json, junit, sarif, fix, character;
   std::string fail_on = "penetration";
   double max_depth = 0, fps = 0;  // 0: each clip's own
   int jobs = 0;                   // 0: as many as the machine has cores
@@ -73,7 +74,7 @@ struct CheckOptions {
 ExitCode run_check(const CheckOptions& options);
 
 struct FixOptions {
-  std::string input, output, clip, motion, keep, baseline, report;
+  std::string input, output, clip, motion, keep, baseline, report, character;
   std::vector<std::string> parts;
   double budget = 25, margin = 1.5;  // degrees; mm
   bool force = false;

@@ -6,12 +6,14 @@
 #include <optional>
 
 #include "cli/commands.h"
+#include "cli/console.h"
 #include "cli/outputs.h"
 #include "export/formats.h"
 #include "export/glb_json.h"
 #include "export/ignore_by_filter.h"
 #include "import/import.h"
 #include "mesh/error.h"
+#include "pipeline/pipeline.h"
 #include "report/report.h"
 #include "volumes/fit_volumes.h"
 #include "volumes/measure.h"
@@ -51,7 +53,9 @@ const ExportFormat& format_of(const std::string& name) {
 }
 
 SourceGlb read_source_glb(const OpenAsset& asset, const ExportOptions& options) {
-  const SourceMesh source = read_source(options.source);
+  // Read as for the bake: other options bind other bones.
+  const SourceMesh source =
+      read_source(options.source, make_settings("balanced", asset->info().settings, options.asset).import);
   SourceGlb out{read_as_glb(options.source), {}};
   const std::size_t bones = asset->info().bone_count;
   for (std::size_t i = 0; i < bones; ++i) {
@@ -108,8 +112,7 @@ void say_how_sure(const PartFilter& filter) {
     if (pair.kind == PairKind::kNever) at_most = std::max(at_most, pair.at_most);
   }
   if (at_most == 0) return;
-  fmt::print(
-      "by the filter: parts that met in none of {} poses are not tested; some may meet in up to {:.2g} % of all "
+  say("by the filter: parts that met in none of {} poses are not tested; some may meet in up to {:.2g} % of all "
       "poses\n",
       filter.clip_poses + filter.random_poses, 100 * at_most);
 }
@@ -122,7 +125,7 @@ void say_what_leaves(const Colliders& colliders, const ColliderFit& fit) {
     if (fit.coverage_of_body[i] >= kFollows) continue;
     leave.push_back(fmt::format("{} ({:.0f} % inside)", colliders.bodies[i].name, 100 * fit.coverage_of_body[i]));
   }
-  if (!leave.empty()) fmt::print("parts that leave the volumes there: {}\n", fmt::join(leave, ", "));
+  if (!leave.empty()) say("parts that leave the volumes there: {}\n", fmt::join(leave, ", "));
 }
 
 void name_output(std::string& bytes, const std::string& mark, const std::string& output) {
@@ -175,20 +178,20 @@ ExitCode run_export(const ExportOptions& options) {
   check_outputs(inputs, outputs);
   for (std::size_t i = 0; i < outputs.size(); ++i) write_atomically(outputs[i].path, made.files[i].bytes);
   const ColliderFit fit = measure_fit(asset, colliders);
-  fmt::print("{} volumes ({}) on {} body parts; {} pairs of parts are not tested\n", fit.volumes, shape, fit.bodies,
-             colliders.ignored.size());
+  say("{} volumes ({}) on {} body parts; {} pairs of parts are not tested\n", fit.volumes, shape, fit.bodies,
+      colliders.ignored.size());
   if (filter) say_how_sure(*filter);
-  fmt::print("at rest: {}; volume {:.0f} % of the body's\n", fit_text(fit), 100 * fit.volume_ratio);
+  say("at rest: {}; volume {:.0f} % of the body's\n", fit_text(fit), 100 * fit.volume_ratio);
   if (animated && animated->frame_count() > 1) {
     const ColliderFit moving = measure_fit(*animated, colliders, kFramesMeasured);
-    fmt::print("on its clips: {}\n", fit_text(moving));
+    say("on its clips: {}\n", fit_text(moving));
     say_what_leaves(colliders, moving);
   }
   if (is_doubtful_length(colliders.height)) {
-    fmt::print("note: the character measures {:.4g} m: its file names no unit, or a wrong one\n", colliders.height);
+    say("note: the character measures {:.4g} m: its file names no unit, or a wrong one\n", colliders.height);
   }
-  for (const std::string& note : made.notes) fmt::print("note: {}\n", note);
-  for (const CommandFile& file : outputs) fmt::print("wrote {}\n", file.path);
+  for (const std::string& note : made.notes) say("note: {}\n", note);
+  for (const CommandFile& file : outputs) say("wrote {}\n", file.path);
   return ExitCode::kDone;
 }
 

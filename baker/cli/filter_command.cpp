@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/commands.h"
+#include "cli/console.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "filter/confidence.h"
@@ -103,8 +104,8 @@ ExitCode run_filter(const FilterOptions& options) {
   if (!options.output.empty()) {
     write_atomically(options.output, part_filter_json(filter, animated.asset(), options.asset));
   }
-  fmt::print("{}", filter_text(filter));
-  if (!options.output.empty()) fmt::print("wrote {}\n", options.output);
+  say("{}", filter_text(filter));
+  if (!options.output.empty()) say("wrote {}\n", options.output);
   return ExitCode::kDone;
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "cli/commands.h"
+#include "cli/console.h"
 #include "cli/installed.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
@@ -138,6 +139,7 @@ ExitCode run_fix(const FixOptions& options) {
   job.is_recording_written = writes_bvh;
   job.config = default_config();
   if (!options.keep.empty()) job.config = read_config(read_file(options.keep), options.keep, job.config);
+  if (!options.character.empty()) job.config.bake.import.character = options.character;
   if (!options.baseline.empty()) job.baseline = read_baseline(options.baseline, false);
   job.parts = options.parts;
   job.mend = {options.budget, options.margin};
@@ -162,17 +164,16 @@ ExitCode run_fix(const FixOptions& options) {
                           carried_over_again(fixed, options.input, options.output));
     }
   }
-  fmt::print(stderr, "{}", pages.notes);
+  say(stderr, "{}", pages.notes);
   if (!options.baseline.empty() && !fixed.is_in_baseline) {
-    fmt::print(stderr, "spherechain: warning: {}: has no event of this character and these clips\n", options.baseline);
+    say(stderr, "spherechain: warning: {}: has no event of this character and these clips\n", options.baseline);
   }
   for (const std::string& part : fixed.unused_parts) {
-    fmt::print(stderr, "spherechain: warning: {}: a rule names '{}', which this character has not\n", options.keep,
-               part);
+    say(stderr, "spherechain: warning: {}: a rule names '{}', which this character has not\n", options.keep, part);
   }
-  fmt::print("{}{}wrote {}\n", fix_text(fixed.clips, fixed.parts), again, options.output);
+  say("{}{}wrote {}\n", fix_text(fixed.clips, fixed.parts), again, options.output);
   if (!json.empty()) {
-    fmt::print("wrote {}: fix.json and {} page{}\n", options.report, pages.written, pages.written == 1 ? "" : "s");
+    say("wrote {}: fix.json and {} page{}\n", options.report, pages.written, pages.written == 1 ? "" : "s");
   }
   return leaves_faults(fixed.clips) ? ExitCode::kTargetMissed : ExitCode::kDone;
 }

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "cli/commands.h"
+#include "cli/console.h"
 #include "play/asset_file.h"
 #include "report/report.h"
 
@@ -9,13 +10,15 @@ namespace spherechain::baker {
 
 ExitCode run_inspect(const InspectOptions& options) {
   if (options.roles) {
-    const Character character = import_character(options.asset);
+    ImportOptions import;
+    import.character = options.character;
+    const Character character = import_character(options.asset, import);
     const Roles roles = find_roles(character.rig, character.source_positions);
-    fmt::print("{}", options.json ? roles_json(character.rig, roles) : roles_text(character.rig, roles));
+    say("{}", options.json ? roles_json(character.rig, roles) : roles_text(character.rig, roles));
     return ExitCode::kDone;
   }
   const OpenAsset file = open_asset(options.asset);
-  fmt::print("{}", options.json ? inspect_json(file) : inspect_text(file));
+  say("{}", options.json ? inspect_json(file) : inspect_text(file));
   return ExitCode::kDone;
 }
 

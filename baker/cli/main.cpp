@@ -9,6 +9,8 @@
 #include <functional>
 
 #include "cli/commands.h"
+#include "cli/console.h"
+#include "import/notes.h"
 #include "pipeline/pipeline.h"
 #include "play/target.h"
 #include "volumes/fit_volumes.h"
@@ -18,17 +20,8 @@ namespace {
 
 using namespace spherechain::baker;
 
-// Control characters in a file's name or an importer's words must not break "one line" apart.
-std::string one_line(std::string text) {
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < 0x20) c = ' ';
-  }
-  while (!text.empty() && text.back() == ' ') text.pop_back();
-  return text;
-}
-
 int fail(ExitCode code, const std::string& message) {
-  std::fprintf(stderr, "spherechain: error: %s\n", one_line(message).c_str());
+  say(stderr, "spherechain: error: {}\n", one_line(message));
   return static_cast<int>(code);
 }
 
@@ -82,6 +75,11 @@ void add_motion(CLI::App& command, MotionChoice& motion, FrameChoice& frames, bo
       ->check(refuse_nan)
       ->capture_default_str();
   add_continuous(command, continuous);
+}
+
+void add_character(CLI::App& command, std::string& character) {
+  add_name(command, "--character", character,
+           "Of several characters in a file the one to take: the name of its node, or of its skin");
 }
 
 void add_with(CLI::App& command, WithOptions& with) {
@@ -155,6 +153,7 @@ int main(int argc, char** argv) {
   bake_command->add_flag("--extremities", bake.extremities,
                          "Spheres in head, hands and feet too (profile balanced has them)");
   bake_command->add_flag("--attachments", bake.attachments, "Keep rigid meshes that hang on joints: weapons, hats");
+  add_character(*bake_command, bake.character);
   CLI::Option* prop = bake_command->add_flag("--prop", bake.prop, "A rigid thing without a rig: a sword, a chair");
   for (const char* other : {"--profile", "--roles", "--body", "--extremities", "--attachments", "--edits"}) {
     prop->excludes(bake_command->get_option(other));
@@ -168,6 +167,7 @@ int main(int argc, char** argv) {
   CLI::App* inspect_command = app.add_subcommand("inspect", "Print what an asset holds, or what a rig's joints are");
   add_name(*inspect_command, "ASSET", inspect.asset, "Asset (.sphc); with --roles a character")->required();
   inspect_command->add_flag("--roles", inspect.roles, "Print the role of each node of a character's rig, and why");
+  add_character(*inspect_command, inspect.character);
   inspect_command->add_flag("--json", inspect.json, "As JSON");
   inspect_command->callback([&] { run = [&] { return run_inspect(inspect); }; });
 
@@ -218,6 +218,7 @@ int main(int argc, char** argv) {
   add_name(*fix_command, "--motion", fix.motion,
            "Recording (BVH, FBX, Collada, glTF) to carry over and mend, in place of the character's own clips")
       ->excludes(clip);
+  add_character(*fix_command, fix.character);
   add_name(*fix_command, "--keep", fix.keep, "Rules, as check --config has them: what is fine as it is");
   add_name(*fix_command, "--baseline", fix.baseline, "What check --accept wrote: faults that are accepted are left");
   fix_command->add_option("--parts", fix.parts, "Body parts, with commas between: only faults of these are mended")
@@ -305,6 +306,7 @@ int main(int argc, char** argv) {
   check_command->add_option("--fps", check.fps, "Frames a second (default: each clip's own)")
       ->check(CLI::Range(1e-3, 1e6))
       ->check(refuse_nan);
+  add_character(*check_command, check.character);
   add_continuous(*check_command, check.continuous);
   check_command->add_option("--jobs", check.jobs, "Processes at a time (default: one for each core)")
       ->check(CLI::Range(1, 1024));
@@ -334,7 +336,9 @@ int main(int argc, char** argv) {
     return fail(ExitCode::kUsage, what + " (try spherechain --help)");
   }
   try {
-    return flush(static_cast<int>(run()));
+    const ExitCode code = run();
+    for (const std::string& note : take_notes()) say(stderr, "spherechain: note: {}\n", one_line(note));
+    return flush(static_cast<int>(code));
   } catch (const Error& error) {
     return fail(error.code(), error.what());
   } catch (const std::exception& error) {

@@ -7,6 +7,7 @@
 
 #include "cli/between.h"
 #include "cli/commands.h"
+#include "cli/console.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "mesh/error.h"
@@ -141,10 +142,10 @@ ExitCode run_play(const PlayOptions& options) {
     }
     if (file) file->finish({{"clips", contacts.json()}});
   }
-  fmt::print("{}{}\n{}\n{}(radius {}, refit {}, backend {})\n", frames_text(animated),
-             contacts.text(options.motion.name()), tally.spheres_text(), tally.times_text(), options.radius, refit,
-             on_cuda ? "cuda: refit and all pairs in one" : backend_text(target));
-  if (!options.json.empty()) fmt::print("wrote {}\n", options.json);
+  say("{}{}\n{}\n{}(radius {}, refit {}, backend {})\n", frames_text(animated), contacts.text(options.motion.name()),
+      tally.spheres_text(), tally.times_text(), options.radius, refit,
+      on_cuda ? "cuda: refit and all pairs in one" : backend_text(target));
+  if (!options.json.empty()) say("wrote {}\n", options.json);
   return ExitCode::kDone;
 }
 

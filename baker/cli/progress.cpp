@@ -5,6 +5,8 @@
 
 #include <cstdio>
 
+#include "cli/console.h"
+
 namespace spherechain::baker {
 
 Progress::Progress(std::string title) : title_(std::move(title)), terminal_(::isatty(STDERR_FILENO) == 1) {}
@@ -14,7 +16,7 @@ Progress::~Progress() {
 }
 
 void Progress::show(const std::string& text) {
-  if (terminal_) std::fprintf(stderr, "\r\033[K%s %s", title_.c_str(), text.c_str());
+  if (terminal_) std::fprintf(stderr, "\r\033[K%s", one_line(title_ + " " + text).c_str());
 }
 
 }  // namespace spherechain::baker

@@ -3,6 +3,7 @@
 
 #include "cli/between.h"
 #include "cli/commands.h"
+#include "cli/console.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "play/target.h"
@@ -34,8 +35,8 @@ ExitCode run_validate(const ValidateOptions& options) {
     });
   }
   if (!options.json.empty()) write_atomically(options.json, validation_json(validation, animated, settings));
-  fmt::print("{}", validation_text(validation, animated, settings));
-  if (!options.json.empty()) fmt::print("wrote {}\n", options.json);
+  say("{}", validation_text(validation, animated, settings));
+  if (!options.json.empty()) say("wrote {}\n", options.json);
   return ExitCode::kDone;
 }
 

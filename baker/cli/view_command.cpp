@@ -6,6 +6,7 @@
 
 #include "cli/between.h"
 #include "cli/commands.h"
+#include "cli/console.h"
 #include "cli/installed.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
@@ -106,12 +107,11 @@ ExitCode run_view(const ViewOptions& options) {
   }
   write_atomically(options.output, html);
   if (html.size() > kLargePageBytes) {
-    fmt::print(
-        stderr,
+    say(stderr,
         "spherechain: warning: {}: {:.0f} MB take browsers long to open (fewer frames: --frames, one clip: --clip)\n",
         options.output, static_cast<double>(html.size()) / 1e6);
   }
-  fmt::print("wrote {} ({:.1f} MB): open it in a browser\n", options.output, static_cast<double>(html.size()) / 1e6);
+  say("wrote {} ({:.1f} MB): open it in a browser\n", options.output, static_cast<double>(html.size()) / 1e6);
   return ExitCode::kDone;
 }
 

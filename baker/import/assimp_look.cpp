@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 
+#include "import/named_file.h"
 #include "import/srgb.h"
 
 namespace spherechain::baker {
@@ -17,10 +18,7 @@ std::string picture_bytes(const aiScene& scene, const std::string& name, const s
     if (inside->mHeight != 0 || inside->pcData == nullptr || inside->mWidth > kPictureBytesMax) return {};
     return {reinterpret_cast<const char*>(inside->pcData), inside->mWidth};
   }
-  for (const std::filesystem::path& place : places_of_picture(name, folder)) {
-    if (std::string bytes = read_picture(place); !bytes.empty()) return bytes;
-  }
-  return {};
+  return read_picture(named_picture(folder, name).path);
 }
 
 // A mesh's texture coordinates are those of its material.
@@ -61,11 +59,6 @@ class Reader {
 };
 
 }  // namespace
-
-std::vector<std::filesystem::path> places_of_picture(std::string name, const std::filesystem::path& folder) {
-  std::replace(name.begin(), name.end(), '\\', '/');
-  return {folder / name, folder / std::filesystem::path(name).filename()};
-}
 
 SourceLook read_look(const aiScene& scene, const AssimpScene& flat, const std::filesystem::path& folder) {
   Reader reader(scene, folder);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string_view>
 
+#include "import/choose_meshes.h"
 #include "mesh/error.h"
 
 namespace spherechain::baker {
@@ -156,9 +157,24 @@ Affine offset_of(const aiBone& bone, const MeshInstance& instance) {
   return to_affine(bone.mOffsetMatrix) * instance.geometric;
 }
 
-AssimpScene flatten(const aiScene& scene, const std::string& file) {
+Index top_joint(const AssimpScene& flat, const aiMesh& mesh) {
+  Index top = kNoIndex;
+  for (unsigned b = 0; b < mesh.mNumBones; ++b) {
+    const auto node = flat.by_name.find(mesh.mBones[b]->mName.C_Str());
+    if (node != flat.by_name.end()) top = std::min(top, node->second);
+  }
+  return top;
+}
+
+AssimpScene flatten(const aiScene& scene, const std::string& file, const std::string& character) {
   AssimpScene out;
   if (scene.mRootNode != nullptr) visit(scene, *scene.mRootNode, -1, {}, file, out);
+  std::vector<ShownMesh> meshes;
+  for (const MeshInstance& instance : out.instances)
+    meshes.push_back({instance.node, top_joint(out, *instance.mesh), instance.mesh->mName.C_Str(), {}, false});
+  const std::vector<bool> chosen = choose_meshes(out.nodes, meshes, character, file);
+  std::size_t place = 0;
+  std::erase_if(out.instances, [&](const MeshInstance&) { return !chosen[place++]; });
   SkinPlacement skins(out);
   Index vertices = 0, morphs = 0;
   for (MeshInstance& instance : out.instances) {

@@ -40,8 +40,12 @@ struct AssimpScene {
 // geometric transform.
 Affine offset_of(const aiBone& bone, const MeshInstance& instance);
 
-// Throws Error(kFile) that begins with `file` where a transform is not finite.
-AssimpScene flatten(const aiScene& scene, const std::string& file);
+// `character` chooses meshes (choose_meshes.h). Throws Error(kFile) that begins with `file` where it has none, or a
+// transform is not finite.
+AssimpScene flatten(const aiScene& scene, const std::string& file, const std::string& character = {});
+
+// The node of the mesh's bones that is nearest to the root; kNoIndex where it has none.
+Index top_joint(const AssimpScene& flat, const aiMesh& mesh);
 
 std::vector<Clip> read_clips(const aiScene& scene, const AssimpScene& flat, const std::string& file);
 

@@ -7,6 +7,7 @@
 
 #include "import/gltf_json.h"
 #include "import/look.h"
+#include "import/named_file.h"
 #include "mesh/error.h"
 
 namespace spherechain::baker {
@@ -52,21 +53,7 @@ Container split(std::string_view bytes, const GltfFile& file) {
   return bytes.rfind("glTF", 0) == 0 ? split_glb(bytes, file) : Container{bytes, {}};
 }
 
-bool is_data(const std::string& uri) { return uri.rfind("data:", 0) == 0; }
-bool is_elsewhere(const std::string& uri) { return uri.find("://") != std::string::npos; }
-
-std::string percent_decoded(const std::string& uri) {
-  std::string out;
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    unsigned value = 0;
-    const bool escaped = uri[i] == '%' && i + 2 < uri.size() && std::isxdigit(static_cast<unsigned char>(uri[i + 1])) &&
-                         std::isxdigit(static_cast<unsigned char>(uri[i + 2]));
-    if (escaped) value = static_cast<unsigned>(std::stoul(uri.substr(i + 1, 2), nullptr, 16));
-    out += escaped ? static_cast<char>(value) : uri[i];
-    if (escaped) i += 2;
-  }
-  return out;
-}
+bool is_data(const std::string& uri) { return uri.starts_with("data:"); }
 
 // The buffer's bytes; none where it has no source (the fallback of a compression extension).
 std::vector<unsigned char> buffer_bytes(const nlohmann::json& buffer, const std::string& where, std::string_view binary,
@@ -93,15 +80,16 @@ std::vector<unsigned char> buffer_bytes(const nlohmann::json& buffer, const std:
     bytes.resize(length);
     return bytes;
   }
-  if (is_elsewhere(uri)) file.fail(where + ".uri is not a file beside it: " + uri.substr(0, 80));
-  const fs::path path = folder / percent_decoded(uri);
+  const NamedFile named = named_by_uri(folder, uri);
+  if (!named.is_there) {
+    file.fail(where + ".uri " + in_quotes(uri) + " " + named.what_is_wrong() + " (put the buffer beside the file)");
+  }
   std::error_code error;
-  if (!fs::is_regular_file(path, error)) file.fail("its buffer " + path.string() + " is missing");
-  check(fs::file_size(path, error), path.string());
+  check(fs::file_size(named.path, error), in_quotes(uri));
   std::vector<unsigned char> bytes(length);
-  std::ifstream in(path, std::ios::binary);
+  std::ifstream in(named.path, std::ios::binary);
   if (!in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(length))) {
-    file.fail("its buffer " + path.string() + " cannot be read");
+    file.fail(where + ".uri " + in_quotes(uri) + " cannot be read");
   }
   return bytes;
 }
@@ -126,7 +114,8 @@ std::string_view json_of_gltf(std::string_view bytes, const GltfFile& file) { re
 
 nlohmann::json raw_json_of_gltf(const fs::path& path) {
   try {
-    const GltfFile file{path.string(), {}};
+    GltfFile file;
+    file.name = path.string();
     const std::string bytes = bytes_of_gltf(path);
     return nlohmann::json::parse(json_of_gltf(bytes, file), nullptr, false);
   } catch (const Error&) {
@@ -137,8 +126,7 @@ nlohmann::json raw_json_of_gltf(const fs::path& path) {
 std::string picture_of_gltf(const GltfFile& file, const nlohmann::json& image, const fs::path& folder) {
   if (image.contains("uri") && image["uri"].is_string()) {
     const auto uri = image["uri"].get<std::string>();
-    if (is_elsewhere(uri)) return {};
-    if (!is_data(uri)) return read_picture(folder / percent_decoded(uri));
+    if (!is_data(uri)) return read_picture(named_by_uri(folder, uri).path);
     std::vector<unsigned char> bytes;
     std::string type;
     if (!tinygltf::DecodeDataURI(&bytes, type, uri, 0, false)) return {};
@@ -161,10 +149,19 @@ std::vector<fs::path> files_of_gltf(const fs::path& path) {
     for (const nlohmann::json& entry : json[list]) {
       if (!entry.is_object() || !entry.contains("uri") || !entry["uri"].is_string()) continue;
       const auto uri = entry["uri"].get<std::string>();
-      if (!is_elsewhere(uri) && !is_data(uri)) files.push_back(path.parent_path() / percent_decoded(uri));
+      if (is_data(uri)) continue;
+      if (NamedFile named = named_by_uri(path.parent_path(), uri); !named.path.empty()) files.push_back(named.path);
     }
   }
   return files;
+}
+
+void note_lost_pictures(const GltfFile& file, const fs::path& folder) {
+  LostFiles lost;
+  for (const std::string& uri : file.pictures) {
+    if (!is_data(uri)) lost.add(uri, named_by_uri(folder, uri));
+  }
+  lost.note(file.name);
 }
 
 GltfFile open_gltf(const fs::path& path) {
@@ -182,6 +179,8 @@ GltfFile open_gltf(const fs::path& path) {
         buffer_bytes(buffer, where, buffers.empty() ? parts.binary : std::string_view(), path.parent_path(), file));
   }
   json.erase("buffers");
+  for (const nlohmann::json& image : json["images"]) file.pictures.push_back(image);
+  json.erase("images");
 
   tinygltf::TinyGLTF loader;
   loader.SetImageLoader(no_image, nullptr);

@@ -20,6 +20,7 @@ inline std::size_t at(int index) { return static_cast<std::size_t>(index); }
 struct GltfFile {
   std::string name;  // what errors call it
   tinygltf::Model model;
+  std::vector<std::string> pictures;  // what its images name: files, or data
 
   [[noreturn]] void fail(const std::string& what) const;
 
@@ -28,6 +29,9 @@ struct GltfFile {
   // Error(kFile) for anything else, where the buffer is too short, or where a number is not finite.
   std::vector<double> numbers(int accessor, int type, const std::vector<int>& components) const;
 };
+
+// Notes which pictures do not lie beside the file.
+void note_lost_pictures(const GltfFile& file, const std::filesystem::path& folder);
 
 // Reads a .gltf or .glb, told apart by content, with the buffers beside it. Throws Error(kFile).
 GltfFile open_gltf(const std::filesystem::path& path);
@@ -42,7 +46,8 @@ nlohmann::json raw_json_of_gltf(const std::filesystem::path& path);
 // The bytes of one of its images; none where they are not there. `folder` is the file's.
 std::string picture_of_gltf(const GltfFile& file, const nlohmann::json& image, const std::filesystem::path& folder);
 
-// The files of its buffers and images, whether they exist or not; none where the file is no glTF.
+// The files that its buffers and images may be read from (named_file.h), whether they exist or not; none where the file
+// is no glTF.
 std::vector<std::filesystem::path> files_of_gltf(const std::filesystem::path& path);
 
 }  // namespace spherechain::baker

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "import/json_depth.h"
 #include "mesh/error.h"
@@ -23,9 +24,9 @@ constexpr const char* kKept[] = {
     "nodes", "skins",          "animations",         "scenes",  "scene"};
 
 // Extensions that may be required without a say in where vertices are.
-constexpr const char* kHarmless[] = {"KHR_mesh_quantization", "KHR_materials_", "KHR_texture_",
-                                     "EXT_texture_",          "MSFT_texture_",  "KHR_lights_",
-                                     "EXT_lights_",           "KHR_xmp",        "VRM"};
+constexpr const char* kHarmless[] = {
+    "KHR_mesh_quantization", "KHR_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_",
+    "KHR_lights_",           "EXT_lights_",    "KHR_xmp",      "VRM",          "MSFT_lod"};
 
 // An object of the file, and how an error calls it.
 class Object {
@@ -291,6 +292,30 @@ void keep_humanoid(const json& all, json& root) {
   }
 }
 
+// The nodes that MSFT_lod has for coarser levels of other nodes.
+std::set<std::size_t> coarse_nodes(const json& root) {
+  const json::json_pointer place("/extensions/MSFT_lod/ids");
+  std::set<std::size_t> out;
+  if (!root.contains("nodes")) return out;
+  for (const json& node : root["nodes"]) {
+    if (!node.contains(place)) continue;
+    for (const json& id : node[place]) {
+      if (id.is_number_unsigned() && id.get<std::size_t>() < root["nodes"].size()) out.insert(id.get<std::size_t>());
+    }
+  }
+  return out;
+}
+
+// Texts. Nothing that is wrong with a picture stops an import.
+json uris_of_images(const json& all) {
+  json uris = json::array();
+  if (!all.contains("images")) return uris;
+  for (const json& image : all["images"]) {
+    if (image.is_object() && image.contains("uri") && image["uri"].is_string()) uris.push_back(image["uri"]);
+  }
+  return uris;
+}
+
 }  // namespace
 
 json check_gltf_json(std::string_view text, const std::string& file) {
@@ -322,8 +347,11 @@ json check_gltf_json(std::string_view text, const std::string& file) {
   }
   check_extensions(root, file);
   check_members(root, file);
+  const std::set<std::size_t> coarse = coarse_nodes(root);
   strip(root);
   keep_humanoid(all, root);
+  for (const std::size_t node : coarse) root["nodes"][node]["extras"]["coarse"] = true;
+  root["images"] = uris_of_images(all);
   return root;
 }
 

@@ -9,6 +9,7 @@
 #include "import/archive.h"
 #include "import/glb_file.h"
 #include "import/gltf_file.h"
+#include "import/notes.h"
 #include "import/obj_file.h"
 #include "import/read_in_child.h"
 #include "import/sha256.h"
@@ -54,6 +55,32 @@ void make_rigid(SourceMesh& mesh) {
   mesh.rig.weights.assign(mesh.positions.size(), whole);
 }
 
+// What the child process tells.
+struct NotedMesh {
+  SourceMesh mesh;
+  std::vector<std::string> notes;
+};
+void members(auto& io, Is<NotedMesh> auto& m) { io(m.mesh, m.notes); }
+
+// Control characters in names (a zero would end them early in an asset) are shown as what is no character.
+void clean(std::string& name) {
+  std::string out;
+  for (const char c : name) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7F)
+      out += "\xEF\xBF\xBD";
+    else
+      out += c;
+  }
+  name = std::move(out);
+}
+
+void clean_names(SourceRig& rig) {
+  for (Node& node : rig.nodes) clean(node.name);
+  for (Morph& morph : rig.morphs) clean(morph.name);
+  for (Clip& clip : rig.clips) clean(clip.name);
+}
+
 }  // namespace
 
 void check_regular_file(const std::filesystem::path& path) {
@@ -92,9 +119,15 @@ SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& o
   if (std::filesystem::file_size(path, ignored) == 0) {
     throw Error(ExitCode::kFile, path.string() + ": is empty (export it again)");
   }
-  SourceMesh mesh = from_bytes<SourceMesh>(read_in_child(path.string(), [&] {
-    return to_bytes(is_gltf(path) ? read_with_tinygltf(path, options) : read_with_assimp(path, options));
+  auto told = from_bytes<NotedMesh>(read_in_child(path.string(), [&] {
+    take_notes();  // the parent's
+    NotedMesh read{is_gltf(path) ? read_with_tinygltf(path, options) : read_with_assimp(path, options), {}};
+    read.notes = take_notes();
+    return to_bytes(read);
   }));
+  for (const std::string& note : told.notes) add_note(note);
+  SourceMesh mesh = std::move(told.mesh);
+  clean_names(mesh.rig);
   if (options.prop) make_rigid(mesh);
   return mesh;
 }

@@ -29,6 +29,7 @@ struct ImportOptions {
   bool attachments = false;  // keep them
   bool prop = false;         // all meshes as one rigid thing: its only bone is kPropBone
   bool look = false;         // read the base colours, too
+  std::string character;     // of several in a file: what a node of this name, or its skin, has; empty: all
 };
 
 // The bone of a prop. Its matrix takes the rest pose to the pose's space.

@@ -6,6 +6,8 @@
 #include <string>
 #include <string_view>
 
+#include "import/named_file.h"
+
 namespace spherechain::baker {
 namespace {
 
@@ -32,9 +34,12 @@ std::vector<fs::path> files_of_obj(const fs::path& path) {
     const std::string name(without_blanks(rest));
     if (name.empty() || name.size() == rest.size()) continue;  // another word that begins so
     // The format has several names in a line, assimp one with blanks in it.
-    files.push_back(path.parent_path() / name);
+    const auto add = [&](const std::string& one) {
+      if (NamedFile named = named_file(path.parent_path(), one); !named.path.empty()) files.push_back(named.path);
+    };
+    add(name);
     std::istringstream words(name);
-    for (std::string word; words >> word;) files.push_back(path.parent_path() / word);
+    for (std::string word; words >> word;) add(word);
   }
   if (!files.empty()) files.push_back(fs::path(path).replace_extension("mtl"));
   return files;

@@ -9,8 +9,12 @@
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
+#include <cctype>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <new>
+#include <set>
 #include <sstream>
 #include <string_view>
 
@@ -18,7 +22,10 @@
 #include "import/assimp_look.h"
 #include "import/assimp_scene.h"
 #include "import/check_bvh.h"
+#include "import/choose_meshes.h"
 #include "import/import.h"
+#include "import/named_file.h"
+#include "import/notes.h"
 #include "mesh/error.h"
 #include "spherechain/asset.h"
 
@@ -58,34 +65,72 @@ void append(const MeshInstance& instance, const std::string& name, SourceMesh& o
   ++out.meshes;
 }
 
-// What a mesh's file names (its materials) is read where it is a file: assimp would wait for ever for a pipe's other
-// end. The mesh's own file may go by an alias with another ending.
-class FilesAlone : public Assimp::DefaultIOSystem {
+// A mesh's own file, which may go by an alias with another ending, and the files that it names (materials, skeletons,
+// other meshes) as far as named_file.h lets it. A pipe is no file: assimp would wait for ever for its other end.
+class OwnFiles : public Assimp::DefaultIOSystem {
  public:
-  FilesAlone(std::string file, Files* opened) : file_(std::move(file)), opened_(opened) {}
+  explicit OwnFiles(const std::filesystem::path& file)
+      : file_(file.string()), folder_(file.parent_path()), prefix_(file_.substr(0, file_.rfind('/') + 1)) {}
   const std::string& alias(const std::string& ending) { return alias_ = file_ + "." + ending; }
-  bool Exists(const char* path) const override {
-    std::error_code ignored;
-    return std::filesystem::is_regular_file(real(path), ignored);
-  }
+  bool Exists(const char* path) const override { return !real(path).empty(); }
   Assimp::IOStream* Open(const char* path, const char* mode) override {
-    if (!Exists(path)) return nullptr;
-    if (opened_ != nullptr) opened_->push_back(real(path));
-    return DefaultIOSystem::Open(real(path), mode);
+    const std::string file = real(path);
+    if (file.empty()) return nullptr;
+    opened_.push_back(file);
+    return DefaultIOSystem::Open(file.c_str(), mode);
+  }
+
+  const Files& opened() const { return opened_; }
+  // The first file outside the folder that an importer asked for, and what is wrong with its name; empty where there is
+  // none. Without `looks` those that are only about materials do not count.
+  std::string refused(bool looks) const {
+    for (const auto& [name, refusal] : refused_) {
+      if (looks || !is_look(name)) return in_quotes(name) + " " + refusal;
+    }
+    return {};
   }
 
  private:
-  const char* real(const char* path) const { return path == alias_ ? file_.c_str() : path; }
+  // Empty where it is no file, or none that may be read.
+  std::string real(const std::string& path) const {
+    if (path == file_ || path == alias_) return is_file(file_) ? file_ : "";
+    const std::string name = path.starts_with(prefix_) ? path.substr(prefix_.size()) : path;
+    // Some put folder, slash and name together where the folder ends in a slash.
+    NamedFile named = named_file(folder_, name.substr(std::min(name.find_first_not_of('/'), name.size())));
+    if (named.is_there) return named.path.string();
+    named = named_file(folder_, name);
+    // Importers try names of their own, too: only a file that is there is missed.
+    if (named.refusal != nullptr && is_file(name.starts_with("/") ? name : path)) refused_.emplace(name, named.refusal);
+    return {};
+  }
+  static bool is_file(const std::filesystem::path& path) {
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(path, ignored);
+  }
+  static std::string ending_of(const std::string& name) {
+    std::string ending = std::filesystem::path(name).extension().string();
+    for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return ending;
+  }
+  bool is_look(const std::string& name) const {
+    if (ending_of(file_) == ".obj") return true;  // which names materials alone
+    static const std::set<std::string> kLooks{".mtl",  ".material", ".shader", ".skin", ".png", ".jpg",
+                                              ".jpeg", ".tga",      ".bmp",    ".dds",  ".tif", ".tiff"};
+    return kLooks.contains(ending_of(name));
+  }
 
   std::string file_, alias_;
-  Files* opened_;
+  std::filesystem::path folder_;
+  std::string prefix_;  // the folder as importers have it before a name
+  Files opened_;
+  mutable std::map<std::string, const char*> refused_;  // names and why
 };
 
 bool has_content(const aiScene* scene) {
   return scene != nullptr && (scene->mNumMeshes > 0 || scene->mNumAnimations > 0);
 }
 
-bool recognises(Assimp::BaseImporter& format, const std::string& name, FilesAlone& files) {
+bool recognises(Assimp::BaseImporter& format, const std::string& name, OwnFiles& files) {
   try {
     return format.CanRead(name, &files, true);
   } catch (const std::exception&) {
@@ -94,7 +139,7 @@ bool recognises(Assimp::BaseImporter& format, const std::string& name, FilesAlon
 }
 
 // Assimp goes by a file's ending. Where that leads to nothing, each format that recognises the content has its turn.
-const aiScene* read_by_ending_or_content(Assimp::Importer& importer, FilesAlone& files, const std::string& name) {
+const aiScene* read_by_ending_or_content(Assimp::Importer& importer, OwnFiles& files, const std::string& name) {
   if (const aiScene* scene = importer.ReadFile(name, 0); has_content(scene)) return scene;
   for (std::size_t f = 0; f < importer.GetImporterCount(); ++f) {
     if (!recognises(*importer.GetImporter(f), files.alias(""), files)) continue;
@@ -118,34 +163,67 @@ void check_faces(const aiScene& scene, const std::string& file) {
   }
 }
 
-// `opened` gets the names of the files that it takes, however it ends.
-const aiScene* read_scene(Assimp::Importer& importer, const std::filesystem::path& path, Files* opened = nullptr) {
-  check_bvh(path);
-  const std::string name = path.string();
-  auto* files = new FilesAlone(name, opened);
-  importer.SetIOHandler(files);  // which the importer deletes
-  // Sticks that importers put where a file has bones and no mesh are no character.
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
-  const aiScene* scene = read_by_ending_or_content(importer, *files, name);
-  // Assimp catches it and goes on.
-  if (scene == nullptr && std::string_view(importer.GetErrorString()).find("bad_alloc") != std::string_view::npos) {
-    throw std::bad_alloc();
+// A file, read; the scene is null where no importer reads it.
+struct ReadFile {
+  explicit ReadFile(const std::filesystem::path& path) : name(path.string()), files(new OwnFiles(path)) {
+    check_bvh(path);
+    importer.SetIOHandler(files);  // which the importer deletes
+    // Sticks that importers put where a file has bones and no mesh are no character.
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
+    scene = read_by_ending_or_content(importer, *files, name);
+    // Assimp catches it and goes on.
+    if (scene == nullptr && std::string_view(importer.GetErrorString()).find("bad_alloc") != std::string_view::npos) {
+      throw std::bad_alloc();
+    }
+    if (scene == nullptr) return;
+    check_faces(*scene, name);
+    scene = importer.ApplyPostProcessing(aiProcess_Triangulate);
   }
-  if (scene == nullptr) return nullptr;
-  check_faces(*scene, name);
-  return importer.ApplyPostProcessing(aiProcess_Triangulate);
+
+  // Throws Error(kFile) where there is none, or the file needs another that may not be read.
+  const aiScene& scene_or_fail() const {
+    const auto fail = [&](const std::string& what) { throw Error(ExitCode::kFile, name + ": " + what); };
+    if (const std::string refused = files->refused(false); !refused.empty()) {
+      fail("needs the file " + refused + " (put the file beside it)");
+    }
+    if (scene == nullptr) {
+      fail(std::string("not a mesh or motion that assimp reads: ") + importer.GetErrorString() +
+           " (export it as glTF 2.0)");
+    }
+    return *scene;
+  }
+
+  std::string name;
+  Assimp::Importer importer;
+  OwnFiles* files;
+  const aiScene* scene = nullptr;
+};
+
+// Calls `each` with the name of each picture of the scene's materials that lies in a file of its own.
+void for_each_picture(const aiScene& scene, const std::function<void(const std::string&)>& each) {
+  for (unsigned m = 0; m < scene.mNumMaterials; ++m) {
+    const aiMaterial& material = *scene.mMaterials[m];
+    for (unsigned p = 0; p < material.mNumProperties; ++p) {
+      const aiMaterialProperty& property = *material.mProperties[p];
+      aiString name;
+      if (std::string_view(property.mKey.C_Str()) == _AI_MATKEY_TEXTURE_BASE &&
+          material.Get(_AI_MATKEY_TEXTURE_BASE, property.mSemantic, property.mIndex, name) == aiReturn_SUCCESS &&
+          name.length > 0 && scene.GetEmbeddedTexture(name.C_Str()) == nullptr) {
+        each(name.C_Str());
+      }
+    }
+  }
 }
 
-void add_pictures(const aiMaterial& material, const std::filesystem::path& folder, Files& files) {
-  for (unsigned p = 0; p < material.mNumProperties; ++p) {
-    const aiMaterialProperty& property = *material.mProperties[p];
-    aiString name;
-    if (std::string_view(property.mKey.C_Str()) != _AI_MATKEY_TEXTURE_BASE ||
-        material.Get(_AI_MATKEY_TEXTURE_BASE, property.mSemantic, property.mIndex, name) != aiReturn_SUCCESS) {
-      continue;
-    }
-    for (const std::filesystem::path& place : places_of_picture(name.C_Str(), folder)) files.push_back(place.string());
-  }
+void note_lost_files(const ReadFile& read, const std::filesystem::path& folder) {
+  if (const std::string refused = read.files->refused(true); !refused.empty())
+    add_note(read.name + ": not read: " + refused);
+  LostFiles lost;
+  std::set<std::string> seen;
+  for_each_picture(*read.scene, [&](const std::string& name) {
+    if (seen.insert(name).second) lost.add(name, named_picture(folder, name));
+  });
+  lost.note(read.name);
 }
 
 SourceMesh source_of(const aiScene& scene, const AssimpScene& flat, const std::string& name) {
@@ -170,42 +248,47 @@ SourceMesh source_of(const aiScene& scene, const AssimpScene& flat, const std::s
   return out;
 }
 
-const aiScene& read_or_fail(Assimp::Importer& importer, const std::filesystem::path& path) {
-  const aiScene* scene = read_scene(importer, path);
-  if (scene != nullptr) return *scene;
-  throw Error(ExitCode::kFile, path.string() + ": not a mesh or motion that assimp reads: " +
-                                   importer.GetErrorString() + " (export it as glTF 2.0)");
-}
-
 }  // namespace
 
 Files files_read_with_assimp(const std::filesystem::path& path) {
-  Files files;
   try {
-    Assimp::Importer importer;
-    const aiScene* scene = read_scene(importer, path, &files);
-    for (unsigned m = 0; scene != nullptr && m < scene->mNumMaterials; ++m) {
-      add_pictures(*scene->mMaterials[m], path.parent_path(), files);
-    }
+    const ReadFile read(path);
+    Files files = read.files->opened();
+    if (read.scene == nullptr) return files;
+    for_each_picture(*read.scene, [&](const std::string& name) {
+      if (const NamedFile picture = named_picture(path.parent_path(), name); !picture.path.empty())
+        files.push_back(picture.path.string());
+    });
+    return files;
   } catch (const Error&) {  // which read_source says
+    return {};
   }
-  return files;
 }
 
 SourceMesh read_with_assimp(const std::filesystem::path& path, const ImportOptions& options) {
-  Assimp::Importer importer;
-  const aiScene& scene = read_or_fail(importer, path);
-  const AssimpScene flat = flatten(scene, path.string());
-  SourceMesh out = source_of(scene, flat, path.string());
+  const ReadFile read(path);
+  const aiScene& scene = read.scene_or_fail();
+  const AssimpScene flat = flatten(scene, read.name, options.character);
+  SourceMesh out = source_of(scene, flat, read.name);
+  std::vector<SkinnedBox> skinned;
+  for (const MeshInstance& instance : flat.instances) {
+    const Index joint = top_joint(flat, *instance.mesh);
+    if (joint == kNoIndex) continue;
+    skinned.push_back({joint, {}});
+    for (Index v = 0; v < instance.mesh->mNumVertices; ++v)
+      skinned.back().box.extend(out.positions[instance.first_vertex + v]);
+  }
+  note_characters(flat.nodes, skinned, out.up_hint, read.name);
+  note_lost_files(read, path.parent_path());
   if (options.look) out.look = read_look(scene, flat, path.parent_path());
   return out;
 }
 
 std::string glb_with_assimp(const std::filesystem::path& path) {
-  Assimp::Importer importer;
-  const aiScene& scene = read_or_fail(importer, path);
-  const AssimpScene flat = flatten(scene, path.string());
-  SourceMesh source = source_of(scene, flat, path.string());
+  const ReadFile read(path);
+  const aiScene& scene = read.scene_or_fail();
+  const AssimpScene flat = flatten(scene, read.name);
+  SourceMesh source = source_of(scene, flat, read.name);
   source.look = read_look(scene, flat, path.parent_path());
   return glb_of(scene, flat, source);
 }

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <set>
 
+#include "import/choose_meshes.h"
 #include "import/gltf_clips.h"
 #include "import/gltf_look.h"
 #include "import/gltf_primitive.h"
@@ -17,6 +18,13 @@ namespace {
 
 std::string primitive_name(int mesh, std::size_t primitive) {
   return "meshes[" + std::to_string(mesh) + "].primitives[" + std::to_string(primitive) + "]";
+}
+
+// Parents come before their children.
+Index top_joint(const GltfNodes& nodes, const tinygltf::Skin& skin) {
+  Index top = kNoIndex;
+  for (const int joint : skin.joints) top = std::min(top, nodes.of_file[at(joint)]);
+  return top;
 }
 
 // The skins of the scene's meshes. The one that moves most vertices leads: its mesh space becomes the rest space.
@@ -53,6 +61,34 @@ std::vector<UsedSkin> skins_of_scene(const GltfFile& file, const GltfNodes& node
   return skins;
 }
 
+// Takes out of the scene the meshes that are not read.
+GltfNodes with_chosen_meshes(const GltfFile& file, GltfNodes nodes, const std::string& character) {
+  std::vector<bool> is_coarse;  // with all below
+  for (const Node& node : nodes.nodes) {
+    const bool is_below = node.parent >= 0 && is_coarse[at(node.parent)];
+    is_coarse.push_back(is_below || file.model.nodes[at(node.in_file)].extras.Has("coarse"));
+  }
+  std::vector<ShownMesh> meshes;
+  std::vector<std::size_t> places;
+  for (std::size_t n = 0; n < file.model.nodes.size(); ++n) {
+    const tinygltf::Node& node = file.model.nodes[n];
+    if (!nodes.in_scene[n] || node.mesh < 0) continue;
+    ShownMesh mesh{nodes.of_file[n], kNoIndex, file.model.meshes[at(node.mesh)].name, {}, is_coarse[nodes.of_file[n]]};
+    if (node.skin >= 0) {
+      const tinygltf::Skin& skin = file.model.skins[at(node.skin)];
+      mesh.skin = skin.name;
+      mesh.top_joint = top_joint(nodes, skin);
+    }
+    meshes.push_back(std::move(mesh));
+    places.push_back(n);
+  }
+  const std::vector<bool> chosen = choose_meshes(nodes.nodes, meshes, character, file.name);
+  for (std::size_t m = 0; m < places.size(); ++m) {
+    if (!chosen[m]) nodes.in_scene[places[m]] = false;
+  }
+  return nodes;
+}
+
 // What moves a primitive: a skin, or the node it hangs on.
 struct Carrier {
   Affine to_rest;             // from the primitive's space
@@ -65,7 +101,7 @@ class GltfReader {
   GltfReader(const GltfFile& file, const ImportOptions& options)
       : file_(file),
         options_(options),
-        nodes_(read_nodes(file)),
+        nodes_(with_chosen_meshes(file, read_nodes(file), options.character)),
         skeleton_(file, nodes_, skins_of_scene(file, nodes_)),
         morphs_of_node_(file.model.nodes.size()) {}
 
@@ -88,7 +124,11 @@ class GltfReader {
       file_.fail("has a skeleton of no sensible size");
     out_.up_hint = (out_.rig.to_rest.linear() * Vec3::UnitY()).normalized();
     out_.rig.clips = read_clips(file_, nodes_, morphs_of_node_);
-    if (skeleton_.has_skins() || !out_.rig.clips.empty()) {
+    note_characters(nodes_.nodes, skinned_, Vec3::UnitY(), file_.name);
+    // An avatar says which node is which bone, whatever moves its meshes.
+    const bool is_avatar = std::any_of(nodes_.nodes.begin(), nodes_.nodes.end(),
+                                       [](const Node& node) { return !node.humanoid_bone.empty(); });
+    if (skeleton_.has_skins() || !out_.rig.clips.empty() || is_avatar) {
       out_.rig.nodes = std::move(nodes_.nodes);
       out_.rig.bones = skeleton_.bones();
     }
@@ -147,6 +187,11 @@ class GltfReader {
 
     std::vector<VertexWeights>& all = out_.rig.weights;
     if (carrier.skin != nullptr) {
+      const Affine to_world = skeleton_.world_to_rest().inverse();
+      SkinnedBox& box = skinned_.emplace_back(
+          SkinnedBox{*std::min_element(carrier.skin->joints.begin(), carrier.skin->joints.end()), {}});
+      for (std::size_t v = part.first_vertex; v < out_.positions.size(); ++v)
+        box.box.extend(to_world * out_.positions[v]);
       const auto weights = read_weights(file_, primitive, carrier.skin->bones, positions.size(), where_);
       all.insert(all.end(), weights.begin(), weights.end());
     } else {
@@ -221,6 +266,7 @@ class GltfReader {
   std::vector<GltfMorphs> morphs_of_node_;  // by the file's index
   SourceMesh out_;
   std::vector<std::pair<const tinygltf::Primitive*, std::size_t>> vertices_read_, triangles_read_;  // in their order
+  std::vector<SkinnedBox> skinned_;
   std::string where_;  // the primitive at hand, for errors
   std::size_t spent_ = 0;
 };
@@ -231,6 +277,7 @@ SourceMesh read_with_tinygltf(const std::filesystem::path& path, const ImportOpt
   const GltfFile file = open_gltf(path);
   GltfReader reader(file, options);
   SourceMesh out = reader.read();
+  note_lost_pictures(file, path.parent_path());
   if (options.look) out.look = reader.read_look(path);
   return out;
 }

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "import/named_file.h"
 #include "mesh/error.h"
 #include "motion/poses.h"
 
@@ -137,12 +138,10 @@ void read_into(PoseMotion& motion, const fs::path& file, const Names& names, Pos
   if (open.size() == 1) motion.name = json.value("name", file.stem().string());
   for (const Json& entry : json["poses"]) {
     if (entry.is_string()) {
-      const fs::path other = file.parent_path() / entry.get<std::string>();
-      if (!is_file(other)) {
-        fail(file, "takes poses from '" + entry.get<std::string>() +
-                       "', and there is no such file next to it (mend the name)");
-      }
-      read_into(motion, other, names, rig, open);
+      const std::string name = entry.get<std::string>();
+      const NamedFile other = named_file(file.parent_path(), name);
+      if (!other.is_there) fail(file, "takes poses from " + in_quotes(name) + ", which " + other.what_is_wrong());
+      read_into(motion, other.path, names, rig, open);
     } else if (entry.is_object()) {
       motion.poses.push_back(read_pose(file, entry, names));
     } else {
@@ -164,7 +163,7 @@ void collect_files(const fs::path& file, std::vector<fs::path>& found) {
   const Json json = Json::parse(stream, nullptr, false);
   if (!json.is_object() || !json.contains("poses")) return;
   for (const Json& entry : json["poses"]) {
-    if (entry.is_string()) collect_files(file.parent_path() / entry.get<std::string>(), found);
+    if (entry.is_string()) collect_files(named_file(file.parent_path(), entry.get<std::string>()).path, found);
   }
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "import/named_file.h"
 #include "mesh/error.h"
 
 namespace spherechain::baker {
@@ -37,7 +38,12 @@ std::vector<fs::path> sequence_files(const fs::path& folder_or_list) {
     if (!list) throw Error(ExitCode::kFile, folder_or_list.string() + ": cannot be read");
     for (std::string line; std::getline(list, line);) {
       if (!line.empty() && line.back() == '\r') line.pop_back();
-      if (!line.empty()) files.push_back(folder_or_list.parent_path() / line);
+      if (line.empty()) continue;
+      const NamedFile mesh = named_file(folder_or_list.parent_path(), line);
+      if (mesh.refusal != nullptr) {
+        throw Error(ExitCode::kFile, folder_or_list.string() + ": the mesh " + in_quotes(line) + " " + mesh.refusal);
+      }
+      files.push_back(mesh.path);
     }
   }
   if (files.empty()) throw Error(ExitCode::kFile, folder_or_list.string() + ": has no meshes to play");

@@ -66,6 +66,12 @@ class Reader {
     fail(key, "is not one of: " + list);
   }
 
+  void word(const char* key, std::string& value) {
+    if (!take(key)) return;
+    if (!object_[key].is_string()) fail(key, "is not a text");
+    value = object_[key].get<std::string>();
+  }
+
   const json* object(const char* key) { return take(key) ? &object_[key] : nullptr; }
 
   void done() const {
@@ -127,6 +133,7 @@ BakeSettings make_settings(const std::string& profile, const std::string& text, 
   Reader reader(object, file);
   reader.boolean("attachments", settings.import.attachments);
   reader.boolean("prop", settings.import.prop);
+  reader.word("character", settings.import.character);
   if (profile == "prop") settings.import.prop = true;
   if (settings.import.prop) {
     settings.fit.few = true;
@@ -191,6 +198,7 @@ std::string to_json(const BakeSettings& settings) {
   json out;
   out["attachments"] = settings.import.attachments;
   if (settings.import.prop) out["prop"] = true;
+  if (!settings.import.character.empty()) out["character"] = settings.import.character;
   if (!settings.edits.empty()) out["edits"] = json::parse(to_json(settings.edits));
   out["roles"] = settings.roles.role_of;
   out["rays"] = settings.fit.rays;

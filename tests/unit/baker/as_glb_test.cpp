@@ -11,6 +11,7 @@
 #include "glb_writer.h"
 #include "human.h"
 #include "import/import.h"
+#include "import/notes.h"
 #include "mesh/error.h"
 #include "motion/clip.h"
 #include "motion/motion.h"
@@ -238,6 +239,82 @@ TEST_CASE("as glb: a glTF and the files beside it become one, and nothing else o
   CHECK(parts_of_glb(read_as_glb(path)).first["images"][0]["uri"] == "a%20b.png");
   std::filesystem::remove(folder.path / "rest.bin");
   CHECK_THROWS_WITH_AS(read_as_glb(path), doctest::Contains("rest.bin"), Error);
+}
+
+TEST_CASE("as glb: no file outside the folder is read, however a glTF names it") {
+  const TemporaryFolder folder;
+  namespace fs = std::filesystem;
+  const Glb box = morphing_box();
+  const std::string secret = "SECRET" + box.binary, picture = kPng + "SECRET";
+  folder.write("out.bin", secret);
+  folder.write("out.png", picture);
+  const fs::path inside = folder.path / "in";
+  fs::create_directories(inside / "sub");
+  folder.write("in/sub/box.bin", box.binary);
+  folder.write("in/a b.png", kPng);
+  for (const char* ending : {"bin", "png"}) {
+    const std::string name = std::string("out.") + ending;
+    fs::create_symlink(folder.path / name, inside / (std::string("link.") + ending));
+  }
+  fs::create_directory_symlink(folder.path, inside / "up");
+  fs::create_symlink("sub/box.bin", inside / "own.bin");
+  const auto glb_with = [&](const std::string& buffer, const std::string& image) {
+    Glb one = box;
+    one.json["images"] = {{{"uri", image}}};
+    return read_as_glb(folder.write("in/box.gltf", one.text(buffer)));
+  };
+  take_notes();
+  for (const char* good : {"sub/box.bin", "sub%2Fbox.bin", "sub\\box.bin", "./sub/../sub/box.bin", "own.bin"}) {
+    CAPTURE(good);
+    CHECK(parts_of_glb(glb_with(good, "a%20b.png")).second.starts_with(box.binary));
+    CHECK(take_notes().empty());
+  }
+  const std::string absolute = (folder.path / "out").string();
+  for (const std::string& out :
+       {std::string("../out"), std::string("%2e%2E/out"), std::string("..%2fout"), std::string("..\\out"),
+        std::string("%2e.%5Cout"), std::string("sub/../../out"), absolute, "file://" + absolute, "file:" + absolute,
+        std::string("link"), std::string("up/out"), std::string("sub/../up/out"), std::string("C:\\out"),
+        std::string("\\\\host\\out"), std::string("https://host/out")}) {
+    CAPTURE(out);
+    CHECK_THROWS_WITH_AS(glb_with(out + ".bin", "a%20b.png"), doctest::Contains(out.c_str()), Error);
+    // A picture is no reason to refuse a character.
+    CHECK(glb_with("sub/box.bin", out + ".png").find("SECRET") == std::string::npos);
+    read_source(inside / "box.gltf");
+    const std::vector<std::string> notes = take_notes();
+    REQUIRE(notes.size() == 1);
+    CHECK(notes[0].find(out) != std::string::npos);
+  }
+  CHECK_THROWS_WITH_AS(glb_with("sub/box.bin%00", "a%20b.png"), doctest::Contains("zero byte"), Error);
+}
+
+TEST_CASE("as glb: other formats read materials and pictures from their folder alone, by the end of a foreign path") {
+  const TemporaryFolder folder;
+  std::filesystem::create_directories(folder.path / "in/tex");
+  folder.write("out.mtl", "newmtl skin\nKd 0 1 0\n");
+  folder.write("out.png", kPng + "SECRET");
+  folder.write("in/tex/skin.png", kPng + "in tex");
+  const auto glb_with = [&](const std::string& library, const std::string& picture) {
+    folder.write("in/a.mtl", "newmtl skin\nmap_Kd " + picture + "\n");
+    return read_as_glb(folder.write("in/a.obj", "mtllib " + library +
+                                                    "\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nusemtl skin\n"
+                                                    "f 1/1 2/1 3/1\nf 1/1 2/1 4/1\n"));
+  };
+  for (const char* named :
+       {"tex/skin.png", "C:\\art\\hero\\tex\\skin.png", "/home/artist/tex/skin.png", "../tex/skin.png"})
+    CHECK(glb_with("a.mtl", named).find("in tex") != std::string::npos);
+  for (const std::string& named : {std::string("../out.png"), (folder.path / "out.png").string()}) {
+    CHECK(glb_with("a.mtl", named).find("SECRET") == std::string::npos);
+    take_notes();
+    read_source(folder.path / "in/a.obj");
+    const std::vector<std::string> notes = take_notes();
+    REQUIRE(notes.size() == 1);
+    CHECK(notes[0].find(named) != std::string::npos);
+  }
+  glb_with("../out.mtl", "tex/skin.png");
+  read_source(folder.path / "in/a.obj");
+  const std::vector<std::string> notes = take_notes();
+  REQUIRE(notes.size() == 1);
+  CHECK(notes[0].find("../out.mtl") != std::string::npos);
 }
 
 TEST_CASE("as glb: a picture that glTF does not have becomes one that it has; a colour stays the colour") {

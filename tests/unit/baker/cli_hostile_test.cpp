@@ -81,6 +81,39 @@ TEST_CASE("a file's name need not be UTF-8, the JSON about it is") {
   }
 }
 
+TEST_CASE("what a name holds does not reach the console, but as text") {
+  const TemporaryFolder folder;
+  // A title, a bell, a C1 control, the right to left mark, a line end of Unicode, no UTF-8.
+  const std::string hostile = "a\x1b]0;t\x07\r\xc2\x9b\xe2\x80\xae\xe2\x80\xa8\xff\xc0\xafz\xc3\xa9";
+  const auto refused = run("inspect '" + hostile + "'");
+  check_error(refused, 3,
+              {R"(a\u001b]0;t\u0007\u000d\u009b\u202e\u2028\xff\xc0\xafz)"
+               "\xc3\xa9"});
+  // Two lines of a name are one.
+  check_error(run("inspect 'a\nspherechain: b'"), 3, {"a spherechain: b"});
+
+  const std::string name = "a\x1b[31m\xc2\x9b\xe2\x80\xae";
+  const std::string gltf =
+      R"({"asset":{"version":"2.0"},"nodes":[{"name":)" + nlohmann::json(name).dump() +
+      R"(,"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"buffers":[{"byteLength":36,"uri":)"
+      R"("data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],"bufferViews":[{"buffer":0,)"
+      R"("byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],)"
+      R"("animations":[{"channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}],"samplers":)"
+      R"([{"input":1,"output":0}]}]})";
+  nlohmann::json still = nlohmann::json::parse(gltf);
+  still["accessors"].push_back({{"componentType", 5126}, {"count", 3}, {"type", "SCALAR"}, {"bufferView", 1}});
+  still["bufferViews"].push_back({{"buffer", 1}, {"byteLength", 12}});
+  still["buffers"].push_back({{"byteLength", 12}, {"uri", "data:;base64,AAAAAAAAgD8AAABA"}});
+  const std::string file = folder.write("a.gltf", still.dump()).string();
+  for (const char* json : {"", " --json"}) {
+    const tool::Run roles = run("inspect --roles " + file + json);
+    REQUIRE_MESSAGE(roles.code == 0, roles.error);
+    for (const char* part : {"\x1b", "\xc2\x9b", "\xe2\x80\xae"}) CHECK(roles.out.find(part) == std::string::npos);
+    CHECK(roles.out.find(R"(\u202e)") != std::string::npos);
+    if (*json != '\0') CHECK(nlohmann::json::parse(roles.out).dump().find("\xe2\x80\xae") != std::string::npos);
+  }
+}
+
 TEST_CASE("settings that no settings are end with 3: numbers past the largest, objects without end") {
   const TemporaryFolder folder;
   const auto bake_with = [&](const std::string& text) {

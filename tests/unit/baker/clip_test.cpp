@@ -164,6 +164,10 @@ TEST_CASE("a folder of meshes plays frame by frame, or as poses of a Bezier curv
   const SequenceMotion listed(rest, sequence_files(folder.path / "list.txt"), SequenceMotion::Path::kFrames);
   CHECK(top(listed.at(0)) == 6);
   CHECK(top(listed.at(1)) == 2);
+  for (const std::string& out : {std::string("../rest.obj"), (folder.path / "rest.obj").string()}) {
+    std::ofstream(folder.path / "frames/list.txt") << out;
+    CHECK_THROWS_WITH_AS(sequence_files(folder.path / "frames/list.txt"), doctest::Contains(out.c_str()), Error);
+  }
 }
 
 TEST_CASE("a sequence whose mesh has another topology is refused by that file's name") {

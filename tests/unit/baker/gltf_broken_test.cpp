@@ -219,19 +219,19 @@ TEST_CASE("buffers, views and accessors that do not fit into one another are ref
        [](Glb& g) {
          g.json["buffers"] = {{{"byteLength", 4294967296}}};
        }},
-      {"is missing",
+      {"'nowhere.bin' is not there",
        [](Glb& g) {
          g.json["buffers"] = {{{"byteLength", 4}, {"uri", "nowhere.bin"}}};
        }},
-      {"is missing",
+      {"'/dev/zero' is an absolute path",
        [](Glb& g) {
          g.json["buffers"] = {{{"byteLength", 4}, {"uri", "/dev/zero"}}};
        }},
-      {"is missing",
+      {"'' is empty",
        [](Glb& g) {
          g.json["buffers"] = {{{"byteLength", 4}, {"uri", ""}}};
        }},
-      {"not a file beside it",
+      {"is no file in the folder",
        [](Glb& g) {
          g.json["buffers"] = {{{"byteLength", 4}, {"uri", "ftp://a/b.bin"}}};
        }},

@@ -5,6 +5,9 @@
 #include <algorithm>
 
 #include "gltf_reference.h"
+#include "import/notes.h"
+#include "mesh/error.h"
+#include "temporary_folder.h"
 
 using namespace spherechain::baker;
 using Eigen::Vector3d;
@@ -53,6 +56,32 @@ int add_box(Glb& glb, float x, float y, float z) {
                                  {{{"attributes", {{"POSITION", glb.accessor(box_corners(x, y, z), "VEC3")}}},
                                    {"indices", glb.accessor(box_triangles(), "SCALAR")}}}}});
   return static_cast<int>(glb.json["meshes"].size()) - 1;
+}
+
+// The column, and beside it another one on joints of its own, both skins named.
+Glb two_columns(double apart) {
+  Glb glb = two_boxes();
+  const json nodes = glb.json["nodes"];
+  for (json node : nodes) {
+    node["name"] = node["name"].get<std::string>() + ".001";
+    if (node.contains("skin")) node["skin"] = 1;
+    if (node.contains("children")) node["children"][0] = node["children"][0].get<int>() + 4;
+    glb.json["nodes"].push_back(node);
+  }
+  glb.json["nodes"][7]["translation"] = {apart, 0, 0};
+  glb.json["skins"].push_back(glb.json["skins"][0]);
+  glb.json["skins"][1]["joints"] = {5, 6};
+  glb.json["skins"][0]["name"] = "first";
+  glb.json["skins"][1]["name"] = "second";
+  glb.json["scenes"] = {{{"nodes", {0, 3, 4, 7}}}};
+  return glb;
+}
+
+SourceMesh read_character(const Glb& glb, const std::string& character) {
+  const TemporaryFolder folder;
+  ImportOptions options;
+  options.character = character;
+  return read_source(folder.write("a.glb", glb.bytes()), options);
 }
 
 double signed_volume(const SourceMesh& mesh) {
@@ -105,6 +134,76 @@ TEST_CASE("a scaled, turned root above the skeleton changes units and axes, not 
   for (std::size_t v = 0; v < world.size(); ++v) {
     CHECK((mesh.rig.to_rest * world[v] - mesh.positions[v]).norm() < 1e-4);
   }
+}
+
+TEST_CASE("of two characters in a file a note tells; a node or a skin by name is one of them") {
+  const Glb glb = two_columns(8);
+  take_notes();
+  CHECK(read_character(glb, "").positions.size() == 32);
+  const std::vector<std::string> notes = take_notes();
+  REQUIRE(notes.size() == 1);
+  for (const char* part : {"2 characters", "'hips'", "'hips.001'", "--character"})
+    CHECK_MESSAGE(notes[0].find(part) != std::string::npos, notes[0]);
+  for (const char* name : {"first", "body", "hips", "armature", "second", "body.001", "hips.001", "armature.001"}) {
+    const SourceMesh one = read_character(glb, name);
+    CHECK(one.positions == raw_positions(glb, 0));
+    REQUIRE(one.rig.bones.size() == 2);
+    const bool is_second = name == std::string("second") || std::string(name).ends_with(".001");
+    CHECK(one.rig.nodes[one.rig.bones[0].node].name == (is_second ? "hips.001" : "hips"));
+    CHECK(take_notes().empty());
+  }
+  CHECK_THROWS_WITH_AS(read_character(glb, "third"), doctest::Contains("'third' (its meshes are 'body', 'body.001')"),
+                       Error);
+  // Clothes on a skeleton of their own are no second one.
+  read_character(two_columns(0.25), "");
+  CHECK(take_notes().empty());
+}
+
+TEST_CASE("of levels of detail the finest is read, and a note tells") {
+  const auto read_as = [](const char* first, const char* second) {
+    Glb glb = two_columns(0);
+    glb.json["nodes"][0]["name"] = first;
+    glb.json["nodes"][4]["name"] = second;
+    return read_character(glb, "").positions.size();
+  };
+  for (const auto& [first, second] :
+       std::vector<std::pair<const char*, const char*>>{{"body_LOD0", "body_LOD1"},
+                                                        {"body_lod2", "body_lod1"},
+                                                        {"LOD0", "LOD1"},
+                                                        {"Body LOD 1", "Body LOD 0.001"}}) {
+    CAPTURE(first);
+    take_notes();
+    CHECK(read_as(first, second) == 16);
+    REQUIRE(take_notes().size() == 1);
+  }
+  for (const auto& [first, second] : std::vector<std::pair<const char*, const char*>>{
+           {"body_LOD0", "hair_LOD1"}, {"explod0", "explod1"}, {"body_LOD0", "body_LOD0"}, {"body0", "body1"}}) {
+    CAPTURE(first);
+    CHECK(read_as(first, second) == 32);
+    CHECK(take_notes().empty());
+  }
+  Glb glb = two_columns(0);
+  glb.json["nodes"][0]["extensions"]["MSFT_lod"]["ids"] = {4};
+  CHECK(read_character(glb, "").positions.size() == 16);
+}
+
+TEST_CASE("an avatar keeps its humanoid where its meshes are rigid") {
+  Glb glb = two_boxes();
+  glb.json.erase("skins");
+  glb.json["nodes"][0].erase("skin");
+  glb.json["nodes"][0].erase("mesh");
+  glb.json["nodes"][1]["mesh"] = 0;
+  CHECK(read_character(glb, "").rig.nodes.empty());
+  glb.json["extensions"]["VRM"]["humanoid"]["humanBones"] = {{{"bone", "hips"}, {"node", 1}}};
+  const SourceMesh avatar = read_character(glb, "");
+  REQUIRE(avatar.rig.bones.size() == 1);
+  CHECK(avatar.rig.nodes[avatar.rig.bones[0].node].humanoid_bone == "hips");
+}
+
+TEST_CASE("control characters in names are shown as what is no character") {
+  Glb glb = two_boxes();
+  glb.json["nodes"][1]["name"] = std::string("a\0b\x1b\n", 5);
+  CHECK(read_character(glb, "").rig.nodes[2].name == "a\uFFFDb\uFFFD\uFFFD");
 }
 
 TEST_CASE("without inverse bind matrices a skin is bound in its joints' own spaces") {

@@ -58,6 +58,37 @@ SourceRig bent_leg() {
 
 }  // namespace
 
+TEST_CASE("a pose file takes poses from its own folder alone") {
+  for (const char* out : {"../poses.json", "/tmp/poses.json", "a/../../poses.json", "..\\\\poses.json"}) {
+    CHECK_MESSAGE(refusal_of("{\"rig\": \"own\", \"poses\": [\"" + std::string(out) + "\"]}").find("poses.json', which is ") !=
+                      std::string::npos,
+                  out);
+  }
+}
+
+TEST_CASE("a long chain of bones of one name takes no time, whatever their order") {
+  SourceRig rig;
+  constexpr Index kCount = 60000;
+  for (Index n = 0; n < kCount; ++n) {
+    Node node;
+    node.name = "bone";
+    node.parent = static_cast<int>(n) - 1;
+    rig.nodes.push_back(node);
+    rig.bones.push_back({kCount - 1 - n, Affine::Identity()});
+  }
+  const std::vector<Joint> joints = own_joints(rig);
+  REQUIRE(joints.size() == kCount);
+  CHECK(joints[0].parent == 1);
+  CHECK(joints.back().parent == -1);
+  CHECK(joints[1].name == "bone 2");
+  CHECK(joints.back().name == "bone 60000");
+  BodyFrame frame;
+  Pose pose;
+  pose.movements["bone 60000"] = Affine(Eigen::Translation3d(0, 1, 0));  // the root's
+  frame.height = 1;
+  CHECK((bones_of(joints, frame, pose)[0] * Vec3::Zero()).norm() == doctest::Approx(1));
+}
+
 TEST_CASE("a character's own joints are its bones, under names of their own and the nearest joint above") {
   const std::vector<Joint> joints = own_joints(bent_leg());
   REQUIRE(joints.size() == 4);

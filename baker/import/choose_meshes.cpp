@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "import/choose_meshes.h"
+
+#include <algorithm>
+#include <cctype>
+#include <map>
+#include <optional>
+#include <set>
+
+#include "import/named_file.h"
+#include "import/notes.h"
+#include "mesh/error.h"
+
+namespace spherechain::baker {
+namespace {
+
+// "body_LOD1": what it is a level of, and how coarse it is.
+struct Level {
+  std::string of;
+  int number;
+};
+
+bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+
+std::size_t digits_at_end(const std::string& text) {
+  std::size_t count = 0;
+  while (count < text.size() && is_digit(text[text.size() - 1 - count])) ++count;
+  return count;
+}
+
+std::optional<Level> level_of(std::string name) {
+  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  // "body_lod1.001" is Blender's name for a second one.
+  if (const std::size_t digits = digits_at_end(name); digits == 3 && name.size() > 3 && name[name.size() - 4] == '.')
+    name.resize(name.size() - 4);
+  const std::size_t digits = digits_at_end(name);
+  constexpr std::size_t kDigitsMax = 2;
+  if (digits == 0 || digits > kDigitsMax) return {};
+  const int number = std::stoi(name.substr(name.size() - digits));
+  name.resize(name.size() - digits);
+  const auto drop_separator = [&] {
+    if (!name.empty() && std::string_view("_- .").find(name.back()) != std::string_view::npos) name.pop_back();
+  };
+  drop_separator();
+  if (!name.ends_with("lod")) return {};
+  name.resize(name.size() - 3);
+  if (!name.empty() && std::isalpha(static_cast<unsigned char>(name.back())) != 0) return {};  // "explod1"
+  drop_separator();
+  return Level{name, number};
+}
+
+// Of each node its own level, or that of the nearest node above that has one.
+std::vector<std::optional<Level>> levels_of(const std::vector<Node>& nodes) {
+  std::vector<std::optional<Level>> out;
+  for (const Node& node : nodes) {
+    out.push_back(level_of(node.name));
+    if (!out.back() && node.parent >= 0) out.back() = out[static_cast<std::size_t>(node.parent)];
+  }
+  return out;
+}
+
+void leave_out_coarse(const std::vector<Node>& nodes, const std::vector<ShownMesh>& meshes, std::vector<bool>& chosen,
+                      const std::string& file) {
+  const std::vector<std::optional<Level>> of_node = levels_of(nodes);
+  std::vector<std::optional<Level>> levels;
+  std::map<std::string, int> finest;
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    levels.push_back(level_of(meshes[m].name));
+    if (!levels.back()) levels.back() = of_node[meshes[m].node];
+    if (!chosen[m] || !levels[m]) continue;
+    const auto known = finest.try_emplace(levels[m]->of, levels[m]->number).first;
+    known->second = std::min(known->second, levels[m]->number);
+  }
+  std::size_t left_out = 0;
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    const bool is_coarse = meshes[m].is_coarse || (levels[m] && levels[m]->number != finest[levels[m]->of]);
+    if (!chosen[m] || !is_coarse) continue;
+    chosen[m] = false;
+    ++left_out;
+  }
+  if (left_out == 0) return;
+  add_note(file + ": has levels of detail: the finest is read, and " +
+           (left_out == 1 ? "1 coarser mesh is" : std::to_string(left_out) + " coarser meshes are") + " left out");
+}
+
+std::string choices_of(const std::vector<Node>& nodes, const std::vector<ShownMesh>& meshes) {
+  constexpr std::size_t kNamed = 8;
+  std::set<std::string> names;
+  for (const ShownMesh& mesh : meshes) names.insert(nodes[mesh.node].name);
+  std::string out;
+  std::size_t count = 0;
+  for (const std::string& name : names) {
+    if (count++ < kNamed) out += (out.empty() ? "" : ", ") + in_quotes(name);
+  }
+  return count > kNamed ? out + " ..." : out;
+}
+
+bool stand_apart(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b, const Vec3& up) {
+  constexpr double kAlike = 0.5, kShared = 0.5;  // of the smaller one's extent
+  Eigen::Index vertical = 0;
+  up.cwiseAbs().maxCoeff(&vertical);
+  const Vec3 sizes_a = a.sizes(), sizes_b = b.sizes(), least = sizes_a.cwiseMin(sizes_b);
+  // A sword or a hat is no second character.
+  if (least[vertical] < kAlike * std::max(sizes_a[vertical], sizes_b[vertical])) return false;
+  const Vec3 shared = a.max().cwiseMin(b.max()) - a.min().cwiseMax(b.min());
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    if (k != vertical && shared[k] < kShared * least[k]) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<bool> choose_meshes(const std::vector<Node>& nodes, const std::vector<ShownMesh>& meshes,
+                                const std::string& character, const std::string& file) {
+  std::vector<bool> chosen(meshes.size(), character.empty());
+  if (!character.empty()) {
+    std::vector<bool> is_below;  // a node of that name
+    for (const Node& node : nodes) {
+      is_below.push_back(node.name == character ||
+                         (node.parent >= 0 && is_below[static_cast<std::size_t>(node.parent)]));
+    }
+    const auto is_any = [&] { return std::find(chosen.begin(), chosen.end(), true) != chosen.end(); };
+    for (std::size_t m = 0; m < meshes.size(); ++m) {
+      const ShownMesh& mesh = meshes[m];
+      chosen[m] =
+          mesh.skin == character || is_below[mesh.node] || (mesh.top_joint != kNoIndex && is_below[mesh.top_joint]);
+    }
+    if (!is_any()) {  // several nodes may show one mesh: its own name comes last
+      for (std::size_t m = 0; m < meshes.size(); ++m) chosen[m] = meshes[m].name == character;
+    }
+    if (!is_any() && !meshes.empty()) {
+      throw Error(ExitCode::kFile, file + ": has no character " + in_quotes(character) + " (its meshes are " +
+                                       choices_of(nodes, meshes) + ")");
+    }
+  }
+  leave_out_coarse(nodes, meshes, chosen, file);
+  return chosen;
+}
+
+void note_characters(const std::vector<Node>& nodes, const std::vector<SkinnedBox>& skinned, const Vec3& up,
+                     const std::string& file) {
+  // Of each node the highest joint at or above it.
+  std::vector<bool> is_joint(nodes.size(), false);
+  for (const SkinnedBox& mesh : skinned) is_joint[mesh.top_joint] = true;
+  std::vector<Index> highest(nodes.size(), kNoIndex);
+  for (Index n = 0; n < nodes.size(); ++n) {
+    if (nodes[n].parent >= 0) highest[n] = highest[static_cast<std::size_t>(nodes[n].parent)];
+    if (highest[n] == kNoIndex && is_joint[n]) highest[n] = n;
+  }
+  std::map<Index, Eigen::AlignedBox3d> bodies;
+  for (const SkinnedBox& mesh : skinned) bodies[highest[mesh.top_joint]].extend(mesh.box);
+  std::vector<Index> apart;
+  constexpr std::size_t kMax = 16;
+  for (const auto& [joint, box] : bodies) {
+    if (apart.size() == kMax) break;
+    if (std::all_of(apart.begin(), apart.end(), [&](Index other) { return stand_apart(bodies[other], box, up); }))
+      apart.push_back(joint);
+  }
+  if (apart.size() < 2) return;
+  std::string names;
+  for (const Index joint : apart) names += (names.empty() ? "" : ", ") + in_quotes(nodes[joint].name);
+  add_note(file + ": has " + std::to_string(apart.size()) + " characters (" + names +
+           ") that are taken for one body (--character NAME takes one)");
+}
+
+}  // namespace spherechain::baker

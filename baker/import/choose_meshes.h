@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Geometry>
+#include <string>
+#include <vector>
+
+#include "import/source_rig.h"
+
+namespace spherechain::baker {
+
+// A mesh where a node of the scene shows it.
+struct ShownMesh {
+  Index node;
+  Index top_joint = kNoIndex;  // of its skin, the nearest to the root
+  std::string name, skin;
+  bool is_coarse = false;  // the file says that it is a coarser level of another
+};
+
+// Which of the meshes are read. `character` is the name of a node, a mesh or a skin: its meshes, those below it, and
+// those that move with a skeleton below it; empty: all. Of several levels of detail ("body_LOD0", "body_LOD1") the
+// finest is read, which a note says. Throws Error(kFile) where the character has no mesh.
+std::vector<bool> choose_meshes(const std::vector<Node>& nodes, const std::vector<ShownMesh>& meshes,
+                                const std::string& character, const std::string& file);
+
+// A skinned mesh at rest, in the scene's axes.
+struct SkinnedBox {
+  Index top_joint;
+  Eigen::AlignedBox3d box;
+};
+
+// Notes that there are several characters: skeletons of their own that move meshes beside each other.
+void note_characters(const std::vector<Node>& nodes, const std::vector<SkinnedBox>& skinned, const Vec3& up,
+                     const std::string& file);
+
+}  // namespace spherechain::baker
