@@ -317,9 +317,10 @@ std::string bake_report_json(const Bake& bake) {
   return json_text(report, 1) + "\n";
 }
 
-// Whether the frame's height, the longest extent, is the one upwards.
+// Whether the frame's height is one upwards: a biped's stature, or the longest extent if that is upwards.
 bool is_tall(const Bake& bake) {
   if (!bake.regions.is_tree()) return is_biped(bake.regions);
+  if (bake.roles.kind == BodyKind::kBiped) return true;
   double low = std::numeric_limits<double>::max(), high = std::numeric_limits<double>::lowest();
   for (const Vec3& p : bake.character.skin.positions) {
     low = std::min(low, p.dot(bake.regions.frame.up));

@@ -85,8 +85,9 @@ std::vector<Hint> hints_of(const Skeleton& skeleton, const SourceRig& rig, BodyK
   const bool no_limbs = find_limb_paths(skeleton, names).empty();
   std::vector<Hint> both = names;
   for (std::size_t n = 0; n < names.size(); ++n) {
-    const bool in_limb = family_of(names[n].word) != Family::kNone || family_of(shape[n].word) != Family::kNone;
-    if (names[n].word != Word::kNone && (no_limbs || !in_limb)) continue;
+    const Word named = names[n].word;
+    if (named != Word::kNone && (family_of(named) == Family::kNone || (no_limbs && shape[n].word == Word::kNone)))
+      continue;
     both[n].word = shape[n].word;
     both[n].reason = shape[n].reason;
   }
