@@ -82,10 +82,9 @@ TEST_CASE("a long chain of bones of one name takes no time, whatever their order
   CHECK(joints.back().parent == -1);
   CHECK(joints[1].name == "bone 2");
   CHECK(joints.back().name == "bone 60000");
-  BodyFrame frame;
+  const BodyFrame frame{Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ(), 1};
   Pose pose;
   pose.movements["bone 60000"] = Affine(Eigen::Translation3d(0, 1, 0));  // the root's
-  frame.height = 1;
   CHECK((bones_of(joints, frame, pose)[0] * Vec3::Zero()).norm() == doctest::Approx(1));
 }
 
