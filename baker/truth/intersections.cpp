@@ -22,7 +22,19 @@ typename Kernel::Triangle_3 triangle_at(const TruthSurface& surface, const std::
   return {corner(0), corner(1), corner(2)};
 }
 
-// Those without area have no box: they intersect nothing.
+// Smaller than a millionth (2^-20) of its greatest coordinate: noise of blended weights, no triangle.
+template <typename Triangle>
+bool is_point(const Triangle& t) {
+  const CGAL::Bbox_3 box = t.bbox();
+  double most = 0, extent = 0;
+  for (int k = 0; k < 3; ++k) {
+    most = std::max({most, -box.min(k), box.max(k)});
+    extent = std::max(extent, box.max(k) - box.min(k));
+  }
+  return extent <= 0x1p-20 * most;
+}
+
+// Those without area, and points, have no box: they intersect nothing.
 struct ExactTriangles {
   using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
   std::vector<Kernel::Triangle_3> triangles;
@@ -33,7 +45,7 @@ struct ExactTriangles {
     boxes.reserve(surface.corners.size());
     for (Index i = 0; i < surface.corners.size(); ++i) {
       triangles.push_back(triangle_at<Kernel>(surface, positions, i));
-      if (!triangles[i].is_degenerate()) boxes.emplace_back(triangles[i].bbox(), i);
+      if (!triangles[i].is_degenerate() && !is_point(triangles[i])) boxes.emplace_back(triangles[i].bbox(), i);
     }
   }
 };

@@ -105,10 +105,32 @@ struct Block {
   }
 };
 
-// The cluster's triangles that touch the box but for what single corners tell. False where there are none. Degenerate
-// triangles intersect nothing. Where two corners meet, as they do all over a pose too far off for its floats, the box
-// is empty, and nothing touches it: else exact arithmetic would have to tell, pair by pair.
-inline HWY_NOINLINE bool load_block(const ContactScene& scene, std::size_t cluster_index, const BoxProbe& box, Block& out) {
+// Lane k: triangle i + k has two corners in one place, is a point but for rounding (is_point()), or is not finite: else
+// exact arithmetic would have to tell, pair by pair. `low`, `high`: its box.
+HWY_INLINE hn::Mask<Floats> without_shape(const float (&corners)[3][3][kBlock + kContactPadding], std::size_t i,
+                                          const Vector (&low)[3], const Vector (&high)[3]) {
+  constexpr Floats kFloats;
+  Vector most = hn::Zero(kFloats), extent = hn::Zero(kFloats), not_finite = hn::Zero(kFloats);
+  auto ab = hn::FirstN(kFloats, kLanes), bc = ab, ca = ab;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const Vector a = hn::LoadU(kFloats, corners[0][axis] + i);
+    const Vector b = hn::LoadU(kFloats, corners[1][axis] + i);
+    const Vector c = hn::LoadU(kFloats, corners[2][axis] + i);
+    ab = hn::And(ab, hn::Eq(a, b));
+    bc = hn::And(bc, hn::Eq(b, c));
+    ca = hn::And(ca, hn::Eq(c, a));
+    most = hn::Max(most, hn::Max(hn::Neg(low[axis]), high[axis]));
+    extent = hn::Max(extent, hn::Sub(high[axis], low[axis]));
+    not_finite = hn::Add(not_finite, hn::Add(hn::Add(hn::Sub(a, a), hn::Sub(b, b)), hn::Sub(c, c)));
+  }
+  const auto is_point = hn::Le(extent, hn::Mul(hn::Set(kFloats, kPointSize), most));
+  return hn::Or(hn::Or(ab, hn::Or(bc, ca)), hn::Or(is_point, hn::Not(hn::Eq(not_finite, hn::Zero(kFloats)))));
+}
+
+// The cluster's triangles that touch the box but for what single corners tell. False where there are none. The box of a
+// triangle without a shape is empty, and nothing touches it.
+inline HWY_NOINLINE bool load_block(const ContactScene& scene, std::size_t cluster_index, const BoxProbe& box,
+                                    Block& out) {
   constexpr Floats kFloats;
   const Surface& surface = *scene.surface;
   const Cluster& cluster = surface.clusters.data[cluster_index];
@@ -147,7 +169,6 @@ inline HWY_NOINLINE bool load_block(const ContactScene& scene, std::size_t clust
   Vector least[3] = {empty_low, empty_low, empty_low}, most[3] = {empty_high, empty_high, empty_high};
   for (std::size_t i = 0; i < count; i += kLanes) {
     const auto used = hn::FirstN(kFloats, count - i);
-    auto ab = used, bc = used, ca = used;
     Vector low[3], high[3];
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const Vector a = hn::LoadU(kFloats, out.corners[0][axis] + i);
@@ -155,11 +176,8 @@ inline HWY_NOINLINE bool load_block(const ContactScene& scene, std::size_t clust
       const Vector c = hn::LoadU(kFloats, out.corners[2][axis] + i);
       low[axis] = hn::Min(hn::Min(a, b), c);
       high[axis] = hn::Max(hn::Max(a, b), c);
-      ab = hn::And(ab, hn::Eq(a, b));
-      bc = hn::And(bc, hn::Eq(b, c));
-      ca = hn::And(ca, hn::Eq(c, a));
     }
-    const auto is_empty = hn::Or(hn::Or(ab, bc), hn::Or(ca, hn::Not(used)));
+    const auto is_empty = hn::Or(without_shape(out.corners, i, low, high), hn::Not(used));
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const Vector first = hn::IfThenElse(is_empty, empty_low, low[axis]);
       const Vector end = hn::IfThenElse(is_empty, empty_high, high[axis]);

@@ -11,14 +11,12 @@
 
 #include <cfloat>
 
-#include "skin/hulls.h"
 #include "skin/scene.h"
+#include "skin/scene_bounds.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
 namespace HWY_NAMESPACE {
-
-constexpr Box kEmptyBox{{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
 
 // A box around the boxes of a sphere's bones, of every sphere: its vertices are means of where those move them.
 inline HWY_NOINLINE void bound_by_bones(const ContactScene& scene) {
@@ -67,7 +65,7 @@ inline HWY_NOINLINE void bound_two(const Bodies& bodies) {
   for (const ContactScene* scene : scenes) {
     for (std::size_t s = 0; s < scene->sphere_count; ++s) {
       if (box_at(scene->spheres, s).touches(room)) {
-        bound_hull(*scene, s);
+        bound_sphere(*scene, s);
       } else {
         put_box(scene->spheres, s, kEmptyBox);
       }

@@ -34,6 +34,20 @@ struct Box {
   }
 };
 
+constexpr Box kEmptyBox{{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
+
+// Is a box that is not empty no larger than that share of its greatest coordinate?
+HWY_INLINE bool is_within(const Box& box, float share) {
+  float most = 0, extent = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float reach = -box.low[axis] > box.high[axis] ? -box.low[axis] : box.high[axis];
+    const float size = box.high[axis] - box.low[axis];
+    most = reach > most ? reach : most;
+    extent = size > extent ? size : extent;
+  }
+  return extent <= share * most && box.low[0] <= box.high[0];
+}
+
 // Of BoxColumns, or of whatever has `low` and `high` by axis.
 template <class Columns>
 HWY_INLINE Box box_at(const Columns& columns, std::size_t i) {

@@ -38,6 +38,7 @@
 
 #include "skin/boxes.h"
 #include "skin/scene.h"
+#include "skin/slots.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace spherechain {
@@ -122,6 +123,27 @@ HWY_INLINE GroupVector spectral_bound(const GroupVector (&r)[3][4]) {
   return hn::IfThenElse(hn::Eq(all, all), norm, hn::Inf(d));
 }
 
+// Balls this much smaller than what their margins are made of may be points: vertices tell. Margins are smaller.
+constexpr float kPointReach = 0x1p-11F;
+
+// Clusters from `first` on whose balls are smaller than that: those that have no shape get an empty box, before each is
+// paired with each.
+inline HWY_NOINLINE void drop_points(const ContactScene& scene, std::size_t first, GroupVector reach) {
+  constexpr GroupLanes d;
+  HWY_ALIGN float reaches[kClusterLanes];
+  hn::Store(reach, d, reaches);
+  for (std::size_t lane = 0; lane < hn::MaxLanes(d); ++lane) {
+    const std::size_t cluster = first + lane;
+    if (scene.ball_columns[3][cluster] < reaches[lane]) {
+      load(scene, cluster);
+      const Box box = box_of_span(scene, cluster);
+      if (box.low[0] > box.high[0]) {
+        put_box(scene.clusters, cluster, box);
+      }
+    }
+  }
+}
+
 // One register's lanes of a group of clusters.
 HWY_INLINE void bound_lanes(const ContactScene& scene, std::size_t group, const GroupEntries& entries,
                             std::size_t lane) {
@@ -196,6 +218,10 @@ HWY_INLINE void bound_lanes(const ContactScene& scene, std::size_t group, const 
     hn::StoreU(center[i], d, scene.ball_columns[i] + first);
   }
   hn::StoreU(radius, d, scene.ball_columns[3] + first);
+  const GroupVector reach = hn::Mul(hn::Set(d, kPointReach), most);
+  if (HWY_UNLIKELY(!hn::AllFalse(d, hn::Lt(radius, reach)))) {
+    drop_points(scene, first, reach);
+  }
 }
 
 // The groups that hold the clusters [first, end), where they are not bounded yet.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "skin/exact_triangles.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "skin/exact_crossing.h"
@@ -56,6 +57,17 @@ bool is_finite(const TriangleCorners& t) {
 
 }  // namespace
 
+bool is_point(const TriangleCorners& t) noexcept {
+  float most = 0, extent = 0;
+  for (float Vec3::*axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+    const float low = std::min({t.p[0].*axis, t.p[1].*axis, t.p[2].*axis});
+    const float high = std::max({t.p[0].*axis, t.p[1].*axis, t.p[2].*axis});
+    most = std::max({most, -low, high});
+    extent = std::max(extent, high - low);
+  }
+  return extent <= kPointSize * most;
+}
+
 bool triangles_intersect(const TriangleCorners& a, const TriangleCorners& b) noexcept {
   const double error = error_of(a, b);
   Crossings crossings{};
@@ -64,7 +76,7 @@ bool triangles_intersect(const TriangleCorners& a, const TriangleCorners& b) noe
   }
   const bool intersect =
       are_in_one_plane(crossings) ? flat_triangles_intersect(a, b) : pieces_of(a, b, crossings, error).overlap();
-  return intersect && is_finite(a) && is_finite(b);  // last: most are
+  return intersect && is_finite(a) && is_finite(b) && !is_point(a) && !is_point(b);  // last: most are sound
 }
 
 }  // namespace spherechain

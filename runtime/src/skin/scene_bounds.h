@@ -29,7 +29,8 @@ inline HWY_NOINLINE void bound_clusters(const ContactScene& scene, std::size_t f
   }
   const Cluster* const clusters = scene.surface->clusters.data;
   for (std::size_t i = first_cluster; i < end_cluster; ++i) {
-    put_box(scene.clusters, i, box_of_cluster(scene, clusters[i]));
+    const Box box = box_of_cluster(scene, clusters[i]);
+    put_box(scene.clusters, i, is_within(box, kPointSize / 2) ? kEmptyBox : box);
   }
 }
 
@@ -39,12 +40,21 @@ HWY_INLINE void bound_once(const ContactScene& scene, std::size_t sphere) {
   }
 }
 
+// A sphere's box by its hull; by its clusters where it may be a point, whose boxes then are empty.
+HWY_INLINE void bound_sphere(const ContactScene& scene, std::size_t sphere) {
+  bound_hull(scene, sphere);
+  if (HWY_UNLIKELY(is_within(box_at(scene.spheres, sphere), kPointReach))) {
+    bound_once(scene, sphere);
+    unite_clusters(scene, sphere);
+  }
+}
+
 // Boxes of the spheres: by their hulls; else of those whose clusters are bounded, of all of them before this. Vectors
 // that are loaded right after their lanes were stored one by one have to wait.
 inline HWY_NOINLINE void bound_spheres(const ContactScene& scene) {
   for (std::size_t s = 0; s < scene.sphere_count; ++s) {
     if (scene.has_hulls) {
-      bound_hull(scene, s);
+      bound_sphere(scene, s);
     } else if (scene.is_bounded[s] != 0) {
       unite_clusters(scene, s);
     }

@@ -159,12 +159,13 @@ HWY_INLINE void put_span(const ContactScene& scene, std::size_t cluster_index) {
 }
 
 // A cluster shrunk to a point, or to a line along an axis, has only degenerate triangles, which intersect nothing: it
-// reaches nowhere. In a pose that takes all to one point each cluster would be paired with each.
-HWY_INLINE void drop_line(const ContactScene& scene, std::size_t cluster_index) {
+// reaches nowhere. In a pose that takes all to one point each cluster would be paired with each. Half of kPointSize: a
+// triangle's greatest coordinate may be a little less than the cluster's.
+HWY_INLINE void drop_point(const ContactScene& scene, std::size_t cluster_index) {
   float* const low = scene.spans + 2 * kSpanLanes * cluster_index;
   float* const high = low + kSpanLanes;
   const int flat_axes = (low[0] >= high[0] ? 1 : 0) + (low[1] >= high[1] ? 1 : 0) + (low[2] >= high[2] ? 1 : 0);
-  if (flat_axes >= 2) {
+  if (flat_axes >= 2 || is_within({{low[0], low[1], low[2]}, {high[0], high[1], high[2]}}, kPointSize / 2)) {
     for (std::size_t k = 0; k < kSpanLanes; ++k) {
       low[k] = FLT_MAX;
       high[k] = -FLT_MAX;
@@ -183,7 +184,7 @@ inline HWY_NOINLINE void load(const ContactScene& scene, std::size_t cluster_ind
     skin_cluster(scene.skin, cluster, slots.axes[0], slots.axes[1], slots.axes[2]);
   }
   put_span(scene, cluster_index);
-  drop_line(scene, cluster_index);
+  drop_point(scene, cluster_index);
 }
 
 HWY_INLINE Box box_of_span(const ContactScene& scene, std::size_t cluster_index) {
@@ -209,7 +210,8 @@ HWY_INLINE bool spans_touch(const ContactScene& scene_a, std::size_t a, const Co
 
 // Does a plane across the line of the middles of two clusters that are loaded part their vertices? Of the two sums of
 // three products each rounding is a unit in the last place of at most the sums of magnitudes, and eight are counted.
-inline HWY_NOINLINE bool plane_parts(const ContactScene& scene_a, std::size_t a, const ContactScene& scene_b, std::size_t b) {
+inline HWY_NOINLINE bool plane_parts(const ContactScene& scene_a, std::size_t a, const ContactScene& scene_b,
+                                     std::size_t b) {
   constexpr Floats kFloats;
   const Box box_a = box_of_span(scene_a, a), box_b = box_of_span(scene_b, b);
   float direction[3], size = 0;

@@ -71,7 +71,7 @@ HWY_INLINE Box way_of_spans(const MovingScene& scene, std::size_t cluster, const
 
 // The cluster's triangles whose boxes around the way, `stray` wider, touch the box, but for what single corners tell;
 // seen along with the drift.
-// False where there are none. Those that are degenerate at both ends are left out.
+// False where there are none. Those that are degenerate at one end are left out: on the way to a point all would meet.
 inline HWY_NOINLINE bool load_moving_block(const MovingScene& scene, std::size_t cluster_index, const Box& box,
                                            const Drift& drift, float stray, MovingBlock& out) {
   constexpr Floats kFloats;
@@ -115,23 +115,21 @@ inline HWY_NOINLINE bool load_moving_block(const MovingScene& scene, std::size_t
   Vector least[3] = {empty_low, empty_low, empty_low}, most[3] = {empty_high, empty_high, empty_high};
   for (std::size_t i = 0; i < count; i += kLanes) {
     const auto used = hn::FirstN(kFloats, count - i);
-    auto ab = used, bc = used, ca = used;
     Vector low[3], high[3];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      low[axis] = empty_low;
-      high[axis] = empty_high;
-      for (std::size_t pose = 0; pose < 2; ++pose) {
+    auto is_empty = hn::Not(used);
+    for (std::size_t pose = 0; pose < 2; ++pose) {
+      Vector pose_low[3], pose_high[3];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
         const Vector a = hn::LoadU(kFloats, out.corners[pose][0][axis] + i);
         const Vector b = hn::LoadU(kFloats, out.corners[pose][1][axis] + i);
         const Vector c = hn::LoadU(kFloats, out.corners[pose][2][axis] + i);
-        low[axis] = hn::Min(hn::Min(hn::Min(a, b), c), low[axis]);
-        high[axis] = hn::Max(hn::Max(hn::Max(a, b), c), high[axis]);
-        ab = hn::And(ab, hn::Eq(a, b));
-        bc = hn::And(bc, hn::Eq(b, c));
-        ca = hn::And(ca, hn::Eq(c, a));
+        pose_low[axis] = hn::Min(hn::Min(a, b), c);
+        pose_high[axis] = hn::Max(hn::Max(a, b), c);
+        low[axis] = pose == 0 ? pose_low[axis] : hn::Min(pose_low[axis], low[axis]);
+        high[axis] = pose == 0 ? pose_high[axis] : hn::Max(pose_high[axis], high[axis]);
       }
+      is_empty = hn::Or(is_empty, without_shape(out.corners[pose], i, pose_low, pose_high));
     }
-    const auto is_empty = hn::Or(hn::Or(ab, bc), hn::Or(ca, hn::Not(used)));
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const Vector first = hn::IfThenElse(is_empty, empty_low, hn::Sub(low[axis], wide));
       const Vector end = hn::IfThenElse(is_empty, empty_high, hn::Add(high[axis], wide));

@@ -303,21 +303,16 @@ HWY_NOINLINE void pair_blocks(const MovingBodies& bodies, const MovingBlock& blo
   }
 }
 
-// False where a cluster is a line along an axis all the time: load() takes away its span. Of one that is it at one end
-// alone the span is put back.
+// False where a cluster has no shape at one end.
 HWY_INLINE bool load_both(const MovingScene& scene, std::size_t cluster) {
-  const auto load_one = [&](const ContactScene& pose) HWY_ATTR {
+  const auto has_shape = [&](const ContactScene& pose) HWY_ATTR {
     if (pose.is_loaded[cluster] == 0) {
       load(pose, cluster);
     }
     const Box box = box_of_span(pose, cluster);
     return box.low[0] <= box.high[0];
   };
-  const bool at_start = load_one(scene.start), at_end = load_one(scene.end);
-  if (at_start != at_end) {
-    put_span(at_start ? scene.end : scene.start, cluster);
-  }
-  return at_start || at_end;
+  return has_shape(scene.start) && has_shape(scene.end);
 }
 
 // May triangles of two clusters touch on the way?

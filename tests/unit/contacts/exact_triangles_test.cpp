@@ -99,7 +99,8 @@ CGAL::Triangle_3<Kernel> to_cgal(const Corners& t) {
 
 bool cgal_intersects(const Corners& a, const Corners& b) {
   const auto ta = to_cgal(a), tb = to_cgal(b);
-  return !ta.is_degenerate() && !tb.is_degenerate() && CGAL::do_intersect(ta, tb);
+  return !spherechain::is_point(a) && !spherechain::is_point(b) && !ta.is_degenerate() && !tb.is_degenerate() &&
+         CGAL::do_intersect(ta, tb);
 }
 
 // Any; or with corners beside the plane, an edge or a corner of the first.
@@ -183,6 +184,22 @@ TEST_CASE("triangles whose corners are on one line, or are not finite, intersect
     spoiled.p[1].y = bad;
     CHECK_FALSE(spherechain::triangles_intersect(triangle, spoiled));
     CHECK_FALSE(spherechain::triangles_intersect(spoiled, spoiled));
+  }
+}
+
+TEST_CASE("triangles smaller than a millionth of their greatest coordinate intersect nothing") {
+  const Corners large{{{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}};
+  const auto upright = [](float x, float size, float height) {  // on edge across the plane of the large one
+    return Corners{{{x, -size, -height}, {x, size, -height}, {x, 0, height}}};
+  };
+  for (const float place : {0.0F, 0.5F, -0.25F}) {
+    CHECK(spherechain::triangles_intersect(large, upright(place, 1e-5F, 1e-5F)));
+    CHECK(spherechain::triangles_intersect(large, upright(place, 0.1F, 1e-8F)));
+  }
+  CHECK(spherechain::triangles_intersect(large, upright(0, 1e-20F, 1e-20F)));  // no rounding there
+  for (const float place : {0.5F, -0.25F}) {
+    CHECK_FALSE(spherechain::triangles_intersect(large, upright(place, 5e-8F, 5e-8F)));
+    CHECK_FALSE(spherechain::triangles_intersect(upright(place, 5e-8F, 5e-8F), large));
   }
 }
 
