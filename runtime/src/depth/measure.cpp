@@ -23,6 +23,7 @@ constexpr double kShellDistance = 0.035;                // likewise, to be layer
 constexpr double kDeepFold = 0.045, kFoldFacing = 0.2;
 constexpr double kNear = 0.006;
 constexpr double kClearance = 3e-4;
+constexpr std::uint64_t kCovered = std::uint64_t{1} << 31;  // bit of a contact's place in its list
 constexpr double kAreaError = 0.03;  // if the contour has another area than the skin inside, the volume is not known
 
 struct Memory {
@@ -83,7 +84,10 @@ class Measurer {
         ++end;
       }
       if (found < in_.out.size) {
-        in_.out[found] = measure({memory_.segments.data + begin, end - begin});
+        const auto first_covered = std::find_if(memory_.keys.begin() + begin, memory_.keys.begin() + end,
+                                                [](std::uint64_t key) { return (key & kCovered) != 0; });
+        const auto seen = static_cast<std::size_t>(first_covered - (memory_.keys.begin() + begin));
+        in_.out[found] = measure({memory_.segments.data + begin, end - begin}, seen);
       }
       ++found;
     }
@@ -96,6 +100,11 @@ class Measurer {
   }
   std::size_t part_b(const TriangleContact& contact) const {
     return surface_b_.parts[surface_b_.place_of_source[contact.triangle_b]];
+  }
+
+  bool is_covered(const TriangleContact& contact) const {
+    return memory_.skins.a.is_covered(surface_a_.place_of_source[contact.triangle_a]) ||
+           memory_.skins.b.is_covered(surface_b_.place_of_source[contact.triangle_b]);
   }
 
   // Those parts alone that meet, where nothing else is looked at.
@@ -147,17 +156,19 @@ class Measurer {
     return out;
   }
 
-  // By pairs of parts, in these as they were given.
+  // By pairs of parts; of these first the contacts of outer layers, as they were given.
   std::size_t sort_segments() {
     std::size_t count = 0;
     for (std::size_t i = 0; i < in_.contacts.size; ++i) {
       const std::uint64_t p = part_a(in_.contacts[i]), q = part_b(in_.contacts[i]);
-      memory_.keys[count++] = in_.are_one ? std::min(p, q) << 48 | std::max(p, q) << 32 | i : p << 48 | q << 32 | i;
+      const std::uint64_t place = i | (is_covered(in_.contacts[i]) ? kCovered : 0);
+      memory_.keys[count++] =
+          in_.are_one ? std::min(p, q) << 48 | std::max(p, q) << 32 | place : p << 48 | q << 32 | place;
     }
     std::sort(memory_.keys.begin(), memory_.keys.begin() + count,
               [](std::uint64_t l, std::uint64_t r) { return l < r; });
     for (std::size_t i = 0; i < count; ++i) {
-      memory_.segments[i] = segment_of(in_.contacts[memory_.keys[i] & 0xFFFFFFFF]);
+      memory_.segments[i] = segment_of(in_.contacts[memory_.keys[i] & (kCovered - 1)]);
     }
     return count;
   }
@@ -181,23 +192,27 @@ class Measurer {
     return {runs.data, static_cast<std::size_t>(end - runs.begin())};
   }
 
-  void set_sides(const Contour& contour, std::size_t part_a, std::size_t part_b) {
+  void set_sides(const Span<Segment3>& segments, const Double3& center, std::size_t part_a, std::size_t part_b) {
     if (!in_.are_one || part_a != part_b) {
-      sweep_.set_sides(runs_of(surface_a_, part_a), runs_of(surface_b_, part_b), contour.center);
+      sweep_.set_sides(runs_of(surface_a_, part_a), runs_of(surface_b_, part_b), center);
       return;
     }
-    const std::size_t count = contour.segments.size;
+    const std::size_t count = segments.size;
     for (std::size_t i = 0; i < count; ++i) {
-      memory_.side_a[i] = {0, contour.segments[i].a, 1};
-      memory_.side_b[i] = {0, contour.segments[i].b, 1};
+      memory_.side_a[i] = {0, segments[i].a, 1};
+      memory_.side_b[i] = {0, segments[i].b, 1};
     }
-    sweep_.set_sides(unique({memory_.side_a.data, count}), unique({memory_.side_b.data, count}), contour.center);
+    sweep_.set_sides(unique({memory_.side_a.data, count}), unique({memory_.side_b.data, count}), center);
   }
 
-  Penetration measure(Span<Segment3> segments) {
+  // `seen`: how many of the segments, the first, are of outer layers. Where there are any, the others lie below a suit,
+  // or are its lining: they must come out, but say nothing of what a person sees.
+  Penetration measure(Span<Segment3> all, std::size_t seen_count) {
+    has_outer_layers_ = seen_count > 0;
+    const Span<Segment3> segments{all.data, has_outer_layers_ ? seen_count : all.size};
     const std::size_t part_a = surface_a_.parts[segments[0].a], part_b = surface_b_.parts[segments[0].b];
     const Contour contour = contour_of(memory_.skins, segments, rest_height_, memory_.contour);
-    set_sides(contour, part_a, part_b);
+    set_sides(all, contour.center, part_a, part_b);
     const Double3 previous = previous_direction(part_a, part_b);
     const bool has_previous = dot(previous, previous) > 0 && std::isfinite(dot(previous, previous));
     const bool folds = in_.are_one && is_fold(contour, part_a, part_b);
@@ -218,7 +233,7 @@ class Measurer {
     if (!in_.quick) {
       if (contour.is_closed && (!in_.are_one || part_a != part_b)) {
         sweep_.keep_on_way(exit.direction, exit.way.depth);
-        const Volume volume = sweep_.volume(exit.direction, exit.way.depth);
+        const Volume volume = sweep_.volume(exit.direction, exit.way.depth, has_outer_layers_);
         const double area = dot(contour.area, exit.direction);
         out.is_closed = std::abs(volume.area - area) <= kAreaError * volume.total && volume.volume >= 0 ? 1 : 0;
         out.volume = out.is_closed != 0 ? static_cast<float>(volume.volume) : 0;
@@ -226,6 +241,11 @@ class Measurer {
       Double3 axes[3];
       axes_of(contour, exit.direction, axes);
       seen = memory_.visibility.look(contour, axes, kClearance * height_);
+      if (seen.share < kHidden && segments.size < all.size) {  // in sight below an open coat?
+        const Seen below = memory_.visibility.look(contour_of(memory_.skins, all, rest_height_, memory_.contour), axes,
+                                                   kClearance * height_);
+        seen = below.share > seen.share ? below : seen;
+      }
     }
     out.visible = static_cast<float>(seen.share);
     out.kind = class_of(contour, out, seen.length);
@@ -292,6 +312,9 @@ class Measurer {
         continue;
       }
       for (std::uint32_t t = run.first; t < run.first + run.count; ++t) {
+        if (has_outer_layers_ && skin.is_covered(t)) {
+          continue;
+        }
         const double reach = ray.reach(skin.corners(t));
         least = reach > kClearance * height_ ? std::min(least, reach) : least;
       }
@@ -343,6 +366,7 @@ class Measurer {
   double rest_height_, height_, metre_;  // at rest; in the pose
   Memory memory_;
   Sweep sweep_;
+  bool has_outer_layers_ = false;  // of the two parts that are measured: covered triangles do not count
 };
 
 }  // namespace

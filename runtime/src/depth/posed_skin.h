@@ -3,6 +3,7 @@
 #pragma once
 
 #include "pose/pose.h"
+#include "skin/covered.h"
 #include "skin/double3.h"
 #include "skin/skin_table.h"
 
@@ -36,6 +37,8 @@ struct PosedSkin {
 
   Corners corners(std::uint32_t triangle) const { return corners_in(positions, triangle); }
   Corners rest_corners(std::uint32_t triangle) const { return corners_in(surface->rest_positions.data, triangle); }
+  // Nobody sees it from outside at rest: it lies below another layer.
+  bool is_covered(std::uint32_t triangle) const { return spherechain::is_covered(*surface, triangle); }
   std::uint32_t piece(std::uint32_t triangle) const {
     return surface->pieces[surface->triangle_vertices[3 * std::size_t{triangle}]];
   }

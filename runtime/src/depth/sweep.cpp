@@ -234,13 +234,16 @@ bool Sweep::find(const Double3& direction, const Contour& contour, double bound,
 // Along each line in the direction, the part of b inside a is as long as the sum over pairs of crossings, with the
 // signs of their surfaces, of how far b's is below a's. Where b is clear of a after the move, only pairs that meet on
 // the way are left of that sum.
-Volume Sweep::volume(const Double3& direction, double depth) {
+Volume Sweep::volume(const Double3& direction, double depth, bool of_outer_layers) {
   look_along(direction);
   see_boxes(0);
   Volume out;
   for_pairs(
       0, [&](double low, double high) { return high > 0 && low <= depth + gap_; },
       [&](std::uint32_t a, std::uint32_t b, std::size_t) {
+        if (of_outer_layers && (skins_.a.is_covered(a) || skins_.b.is_covered(b))) {
+          return true;
+        }
         const Corners seen_a = view_.seen(skins_.a.corners(a)), seen_b = view_.seen(skins_.b.corners(b));
         Shadow shadow(seen_a, seen_b, 0, depth);
         shadow.keep_above(0);

@@ -53,8 +53,8 @@ class Sweep {
   bool find(const Double3& direction, const Contour& contour, double bound, WayOut& out);
   // Is b, moved so, inside a, or a inside b? `outwards`: -1 where the skins are inside out.
   bool is_enclosed(const Double3& direction, const WayOut& way, const Contour& contour, double outwards);
-  // Of b inside a, seen along the direction of a way that long.
-  Volume volume(const Double3& direction, double depth);
+  // Of b inside a, seen along the direction of a way that long; or of the outer layers of both alone.
+  Volume volume(const Double3& direction, double depth, bool of_outer_layers);
 
  private:
   // Blocks of triangles that follow one another, and their boxes in view: along u, v, d. Boxes past the last are empty.

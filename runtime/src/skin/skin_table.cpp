@@ -9,6 +9,7 @@
 #include "asset/memory.h"
 #include "asset/status.h"
 #include "asset/stream.h"
+#include "skin/covered.h"
 #include "skin/double3.h"
 #include "spherechain/skin_contacts.h"
 
@@ -44,7 +45,8 @@ std::size_t lay_out(const AssetView& asset, std::uint64_t* words, Surface& out, 
   memory.take(out.first_clusters, asset.spheres().size + 1);
   memory.take(out.cluster_vertices, sizes.cluster_vertices);
   memory.take(out.cluster_bones, sizes.cluster_bones);
-  memory.take(out.parts, sizes.triangles);
+  memory.take(out.parts, bytes_of_parts(sizes.triangles));
+  out.parts.size = sizes.triangles;
   memory.take(out.triangle_vertices, 3 * sizes.triangles);
   memory.take(out.triangle_spheres, sizes.triangles);
   memory.take(out.place_of_source, asset.info().triangle_count);
@@ -100,8 +102,9 @@ class Filler {
       out_.place_of_source[out_.triangles[t]] = t;
     }
     fill_part_runs();
-    fill_part_areas();
     fill_pieces();
+    find_covered(out_);
+    fill_part_areas();
     for (Pair& pair : out_.rest_contacts) {
       pair.a = pairs.next();
       pair.b = pairs.next();
@@ -311,13 +314,15 @@ class Filler {
 
   void fill_part_areas() const {
     for (std::size_t part = 0; part < out_.part_areas.size; ++part) {
-      double area = 0;
+      double area = 0, seen_area = 0;
       for (std::uint32_t i = out_.first_of_part[part]; i < out_.first_of_part[part + 1]; ++i) {
         for (std::uint32_t t = out_.part_runs[i].first; t < out_.part_runs[i].first + out_.part_runs[i].count; ++t) {
-          area += area_of(out_.triangle_vertices.data + 3 * std::size_t{t});
+          const double of_triangle = area_of(out_.triangle_vertices.data + 3 * std::size_t{t});
+          area += of_triangle;
+          seen_area += is_covered(out_, t) ? 0 : of_triangle;
         }
       }
-      out_.part_areas[part] = static_cast<float>(area);
+      out_.part_areas[part] = static_cast<float>(seen_area > 0 ? seen_area : area);
     }
   }
   double area_of(const std::uint32_t* vertices) const {

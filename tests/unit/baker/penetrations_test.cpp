@@ -208,6 +208,44 @@ TEST_CASE("what a third layer hides is a shell, not a fault") {
   CHECK(hidden.kind == SC_CLASS_SHELL);
 }
 
+TEST_CASE("bodies below suits, or with linings, have the faults of bare ones: the outermost layers alone count") {
+  const auto with_layer = [](const Shape& outer, double scale, bool is_lining) {
+    Shape out = outer;
+    const auto first = static_cast<std::uint32_t>(outer.positions.size());
+    for (const Vec& p : outer.positions) out.positions.push_back(scale * p);
+    for (const auto& [a, b, c] : outer.triangles) {
+      out.triangles.push_back(is_lining ? std::array{first + a, first + c, first + b}
+                                        : std::array{first + a, first + b, first + c});
+    }
+    return out;
+  };
+  const Shape wall = box(1, 1, 1), arm = capsule(0.3, 0.8, 12);
+  const auto into_wall = shifted(0.7, 0, 0);
+  const spherechain::Penetration bare = only(TwoShapes(wall, arm).measure(into_wall));
+  REQUIRE(bare.kind == SC_CLASS_PENETRATION);
+  for (const bool is_lining : {false, true}) {
+    const TwoShapes suited(with_layer(wall, 0.97, is_lining), with_layer(arm, 0.9, is_lining));
+    for (const int quick : {0, 1}) {
+      const auto found = only(suited.measure(into_wall, [&](auto& job) { job.quick = quick; }));
+      CHECK(found.kind == SC_CLASS_PENETRATION);
+      CHECK(found.contour_length == doctest::Approx(bare.contour_length).epsilon(1e-4));
+      CHECK(found.visible == bare.visible);
+      if (quick == 0) CHECK(found.volume == doctest::Approx(bare.volume).epsilon(1e-3));
+    }
+  }
+}
+
+TEST_CASE("what a scale shrinks to a point meets nothing") {
+  const TwoShapes balls(ball(1, 6), ball(1, 6));
+  const auto scaled = [](double x, double y, double z) {
+    return [=](const Vec& p) { return Vec(Vec(0.3, 1.1, 0.7) + Vec(x * p.x(), y * p.y(), z * p.z())); };
+  };
+  CHECK(balls.measure(shifted(1, 0, 0), {}, scaled(0.01, 0.01, 0.01)).size() == 1);
+  for (const double scale : {0.0, 1e-20, 1e-8, -1e-8}) {
+    CHECK(balls.measure(shifted(1, 0, 0), {}, scaled(scale, scale, scale)).empty());
+  }
+}
+
 TEST_CASE("skins touch up to 3 mm, and up to ten times that where little of the smaller part is seen to go in") {
   // 1.8 m long.
   const auto kind = [](const Shape& b, double depth) {
