@@ -63,7 +63,8 @@ std::string check_json(const Verdict& verdict) {
                       {"errors", s.errors},
                       {"fails", verdict.fails},
                       {"seconds", s.seconds}}},
-                    {"clips", std::move(clips)}},
+                    {"clips", std::move(clips)},
+                    {"notes", verdict.notes}},
                    1) +
          "\n";
 }

@@ -290,7 +290,7 @@ ClipCheck ClipChecker::check(std::size_t index) {
   Frames frames = look(clip);
   frames.spans = join_events(frames.meetings, clip.count, frames.loops);
   for (EventSpan& span : frames.spans) find_worst(frames, clip, span);
-  ClipCheck out{{clip.count - clip.between, clip.between, clip.fps, frames.loops, {}}, {}, {}, {}};
+  ClipCheck out{{clip.count - clip.between, clip.between, clip.fps, frames.loops, {}, {}}, {}, {}, {}};
   for (const EventSpan& span : frames.spans) out.result.events.push_back(event_of(frames, span, clip));
   out.heat = heat_of(frames);
   show(out, frames, clip);

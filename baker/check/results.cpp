@@ -77,7 +77,8 @@ std::string to_bytes(const ClipResult& result) {
                     {"between", result.between},
                     {"fps", result.fps},
                     {"loops", result.loops},
-                    {"events", events}},
+                    {"events", events},
+                    {"note", result.note}},
                    -1);
 }
 
@@ -98,6 +99,7 @@ std::optional<ClipResult> read_clip_result(const std::string& bytes) {
     json.at("fps").get_to(out.fps);
     json.at("loops").get_to(out.loops);
     for (const ordered_json& event : json.at("events")) out.events.push_back(read_result_event(event));
+    json.at("note").get_to(out.note);
     return out;
   });
 }

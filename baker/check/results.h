@@ -34,6 +34,7 @@ struct ClipResult {
   double fps = 30;
   bool loops = false;
   std::vector<Event> events;  // by where they begin
+  std::string note;           // what is wrong with the recording and does not keep it from being read
 };
 
 // How often and how deep a triangle of the skin takes part in a fault.

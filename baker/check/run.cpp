@@ -80,6 +80,12 @@ std::vector<ChosenCharacter> choose(const std::vector<LibraryCharacter>& library
   return out;
 }
 
+// The verdict has names of its own.
+std::string without_file(const std::string& note, const fs::path& file) {
+  const std::string begin = file.string() + ": ";
+  return note.starts_with(begin) ? note.substr(begin.size()) : note;
+}
+
 void bake_into(const Store& store, const std::string& key, const LibraryCharacter& character) {
   take_notes();  // of characters before it
   const Bake baked = bake(character.file, character.config.bake, {});
@@ -87,9 +93,7 @@ void bake_into(const Store& store, const std::string& key, const LibraryCharacte
   result.clips = unique_clip_names(baked.character.rig);
   result.grade = fit_grade_name(baked.quality.grade());
   result.fit = fit_line(baked);
-  const std::string begin = character.file.string() + ": ";  // the verdict has a name of its own
-  for (const std::string& note : take_notes())
-    result.notes.push_back(note.starts_with(begin) ? note.substr(begin.size()) : note);
+  for (const std::string& note : take_notes()) result.notes.push_back(without_file(note, character.file));
   if (const std::string note = unit_note(baked); !note.empty()) result.notes.push_back(note);
   for (const BodyPart& part : baked.body_parts.parts) result.parts.push_back(part.name);
   store.write(key, kAssetFile, {reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size()});
@@ -304,6 +308,7 @@ class Run {
                            frames);
           checker.emplace(*animated, choose_target("auto"));
         }
+        take_notes();  // of the character, and of clips before this one
         if (next.unit != kOwnClips) {
           plays_own = false;
           animated->play({{}, {}, character.of->motions[next.unit - 1].file.string()}, frames);
@@ -311,7 +316,8 @@ class Run {
           animated->play({}, frames);
           plays_own = true;
         }
-        check_into(*animated, *checker, next, character.key);
+        check_into(*animated, *checker, next, character.key,
+                   next.unit == kOwnClips ? fs::path() : character.of->motions[next.unit - 1].file);
         tell({});
       } catch (const Error& error) {
         tell(error.what());
@@ -320,10 +326,11 @@ class Run {
   }
 
   // The result last: where it is, all is.
-  void check_into(AnimatedAsset& animated, ClipChecker& checker, const Todo& next,
-                  const std::string& character_key) const {
+  void check_into(AnimatedAsset& animated, ClipChecker& checker, const Todo& next, const std::string& character_key,
+                  const fs::path& recording) const {
     if (options_.continuous) look_between_frames(animated, choose_target("auto"), next.number, [](int) {});
-    const ClipCheck found = checker.check(next.number);
+    ClipCheck found = checker.check(next.number);
+    for (const std::string& note : take_notes()) found.result.note = without_file(note, recording);
     const std::string& key = next.clip->key;
     if (!store_.has(character_key, kPageFile)) {
       store_.write(character_key, kPageFile, "spherechain.character = " + character_page(animated) + ";\n");

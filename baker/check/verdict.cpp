@@ -105,6 +105,7 @@ Verdict judge(const std::vector<CheckedClip>& clips, const std::vector<Character
   Verdict out;
   out.summary.characters = static_cast<int>(characters.size());
   std::map<std::string, CharacterResult> read;  // by key
+  std::set<std::string> noted;                  // of recordings, which several characters play
   for (const CheckedClip& clip : clips) {
     const CharacterRules& of = characters[clip.character];
     JudgedClip judged{of.name, of.file, {}, {}, clip, 0, 0, 30, false, {}, {}};
@@ -117,9 +118,13 @@ Verdict judge(const std::vector<CheckedClip>& clips, const std::vector<Character
         judged.between = result->between;
         judged.fps = result->fps;
         judged.loops = result->loops;
+        const bool is_told = result->note.empty() || !noted.insert(clip.clip).second;
+        if (!is_told) out.notes.push_back(clip.clip + ": " + result->note);
         by.events(judged, *result, of.rules);
         count(out.summary, judged);
       }
+    }
+    if (clip.error.empty() && !clip.character_key.empty()) {
       const auto [character, is_new] = read.try_emplace(clip.character_key);
       if (is_new) {
         const std::string bytes_of = store.read(clip.character_key, kResultFile).value_or("");

@@ -3,50 +3,11 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
+#include <array>
 #include <cmath>
-#include <cstdlib>
 #include <numbers>
-#include <set>
-
-#include "mesh/error.h"
 
 namespace spherechain::baker {
-
-// The words of a text, one after another.
-class BvhWords {
- public:
-  BvhWords(const std::string& text, const std::string& file) : text_(text), file_(file) {}
-
-  [[noreturn]] void fail(const std::string& what) const { throw Error(ExitCode::kFile, file_ + ": " + what); }
-
-  // Empty at the end.
-  std::string_view next() {
-    const auto is_space = [&] { return std::isspace(static_cast<unsigned char>(text_[at_])) != 0; };
-    while (at_ < text_.size() && is_space()) ++at_;
-    begin_ = at_;
-    while (at_ < text_.size() && !is_space()) ++at_;
-    return std::string_view(text_).substr(begin_, at_ - begin_);
-  }
-  void expect(const char* word) {
-    if (next() != word) fail(std::string("is no BVH file that can be written again ('") + word + "' is missing)");
-  }
-  double number() {
-    const std::string word(next());
-    char* end = nullptr;
-    const double out = std::strtod(word.c_str(), &end);
-    if (word.empty()) fail("ends before its motion does");
-    if (*end != '\0' || !std::isfinite(out)) fail("'" + word + "' is no number");
-    return out;
-  }
-  std::size_t begin() const { return begin_; }  // of the last word
-  std::size_t end() const { return at_; }
-
- private:
-  const std::string &text_, &file_;
-  std::size_t begin_ = 0, at_ = 0;
-};
-
 namespace {
 
 constexpr double kDegreesPerRadian = 180 / std::numbers::pi;
@@ -58,64 +19,51 @@ Eigen::Quaterniond about(int axis, double degrees) {
 // The same angle, as near to another as whole turns bring it.
 double wound(double degrees, double near) { return degrees + 360 * std::round((near - degrees) / 360); }
 
-}  // namespace
-
-BvhText::BvhText(std::string text, const std::string& file) : text_(std::move(text)), file_(file) {
-  BvhWords words(text_, file_);
-  words.expect("HIERARCHY");
-  read_joints(words);
-  words.expect("Frames:");
-  const double frames = words.number();
-  words.expect("Frame");
-  words.expect("Time:");
-  frame_time_ = words.number();
-  if (width_ == 0 || !(frames >= 1) || !(frame_time_ > 0)) words.fail("has no motion");
-  for (std::size_t i = 0; i < static_cast<std::size_t>(frames) * width_; ++i) {
-    const double value = words.number();
-    numbers_.push_back({words.begin(), words.end() - words.begin(), value});
-  }
-}
-
-// Up to the word MOTION.
-void BvhText::read_joints(BvhWords& words) {
-  std::set<std::string> names;
-  for (std::string_view word = words.next(); word != "MOTION"; word = words.next()) {
-    if (word.empty()) words.fail("ends before its motion");
-    if (word == "ROOT" || word == "JOINT") {
-      joints_.push_back({std::string(words.next()), {}, {}});
-      if (!names.insert(joints_.back().name).second) {
-        words.fail("two joints are called '" + joints_.back().name + "' (name them apart)");
-      }
-    }
-    if (word != "CHANNELS" || joints_.empty()) continue;
-    for (double left = words.number(); left >= 1; --left, ++width_) {
-      const std::string channel(words.next());
-      if (channel.size() != 9 || channel.substr(1) != "rotation") continue;
-      joints_.back().axes.push_back(channel[0] == 'X' ? 0 : channel[0] == 'Y' ? 1 : 2);
-      joints_.back().columns.push_back(width_);
-    }
-  }
-}
-
-Eigen::Quaterniond BvhText::rotation(int frame, const Joint& joint) const {
-  Eigen::Quaterniond out = Eigen::Quaterniond::Identity();
-  for (std::size_t k = 0; k < joint.axes.size(); ++k) {
-    out = out * about(joint.axes[k], number(frame, joint.columns[k]).value);
+// The angles of a joint: their axes, the outermost first, and their columns in a frame.
+struct Angles {
+  std::vector<int> axes;
+  std::vector<std::size_t> columns;
+};
+Angles angles_of(const BvhJoint& joint) {
+  Angles out;
+  for (std::size_t c = 0; c < joint.channels.size(); ++c) {
+    if (joint.channels[c].kind != BvhChannel::Kind::kRotation) continue;
+    out.axes.push_back(joint.channels[c].axis);
+    out.columns.push_back(joint.first_column + c);
   }
   return out;
 }
 
-void BvhText::turn(int frame, const Joint& joint, const Eigen::Quaterniond& rotation) {
+}  // namespace
+
+BvhText::BvhText(std::string text, const std::string& file)
+    : text_(std::move(text)), bvh_(parse_bvh(text_, file, true)) {}
+
+bool BvhText::turns_freely(const BvhJoint& joint) {
+  const std::vector<int> axes = angles_of(joint).axes;
+  return axes.size() == 3 && axes[0] != axes[1] && axes[1] != axes[2] && axes[0] != axes[2];
+}
+
+Eigen::Quaterniond BvhText::rotation(int frame, const BvhJoint& joint) const {
+  Eigen::Quaterniond out = Eigen::Quaterniond::Identity();
+  const Angles angles = angles_of(joint);
+  for (std::size_t k = 0; k < angles.axes.size(); ++k) {
+    out = out * about(angles.axes[k], bvh_.numbers[place_of(frame, angles.columns[k])]);
+  }
+  return out;
+}
+
+void BvhText::turn(int frame, const BvhJoint& joint, const Eigen::Quaterniond& rotation) {
+  const auto [axes, columns] = angles_of(joint);
   Eigen::Vector3d near;
   for (std::size_t k = 0; k < 3; ++k) {
-    near[static_cast<Eigen::Index>(k)] = number(frame, joint.columns[k]).value;
+    near[static_cast<Eigen::Index>(k)] = bvh_.numbers[place_of(frame, columns[k])];
     if (frame == 0) continue;
-    const std::size_t before = static_cast<std::size_t>(frame - 1) * width_ + joint.columns[k];
+    const std::size_t before = place_of(frame - 1, columns[k]);
     const auto changed = changed_.find(before);
-    if (changed != changed_.end()) near[static_cast<Eigen::Index>(k)] += changed->second - numbers_[before].value;
+    if (changed != changed_.end()) near[static_cast<Eigen::Index>(k)] += changed->second - bvh_.numbers[before];
   }
-  const Eigen::Vector3d one =
-      rotation.toRotationMatrix().eulerAngles(joint.axes[0], joint.axes[1], joint.axes[2]) * kDegreesPerRadian;
+  const Eigen::Vector3d one = rotation.toRotationMatrix().eulerAngles(axes[0], axes[1], axes[2]) * kDegreesPerRadian;
   Eigen::Vector3d best;
   double least = HUGE_VAL;
   for (const Eigen::Vector3d& angles : {one, Eigen::Vector3d(one[0] + 180, 180 - one[1], one[2] + 180)}) {
@@ -127,7 +75,7 @@ void BvhText::turn(int frame, const Joint& joint, const Eigen::Quaterniond& rota
     }
   }
   for (std::size_t k = 0; k < 3; ++k) {
-    changed_[static_cast<std::size_t>(frame) * width_ + joint.columns[k]] = best[static_cast<Eigen::Index>(k)];
+    changed_[place_of(frame, columns[k])] = best[static_cast<Eigen::Index>(k)];
   }
 }
 
@@ -135,10 +83,10 @@ std::string BvhText::text() const {
   std::string out;
   std::size_t at = 0;
   for (const auto& [place, degrees] : changed_) {
-    const Number& number = numbers_[place];
-    out.append(text_, at, number.at - at);
+    const std::size_t begin = bvh_.places[place];
+    out.append(text_, at, begin - at);
     out += fmt::format("{:.6f}", degrees == 0 ? 0.0 : degrees);
-    at = number.at + number.size;
+    at = std::min(text_.find_first_of(" \t\r\n\v\f", begin), text_.size());
   }
   return out + text_.substr(at);
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "fix/turned_recording.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "fix/bvh_text.h"
@@ -26,13 +25,12 @@ std::string turned_recording(const CarriedMotion& carried, const SourceRig& rig,
                                           to = carried.recorded_rotations(seconds, world_at(rig, after, seconds));
     for (std::size_t n = 0; n < nodes.size(); ++n) {
       if (from[n].angularDistance(to[n]) < kUnturnedJoint) continue;
-      const auto joint = std::find_if(bvh.joints().begin(), bvh.joints().end(),
-                                      [&](const BvhText::Joint& one) { return one.name == nodes[n].name; });
-      if (joint == bvh.joints().end() || !joint->turns_freely()) {
+      const BvhJoint& joint = bvh.joints()[n];
+      if (!BvhText::turns_freely(joint)) {
         throw Error(ExitCode::kFile, file + ": the joint '" + nodes[n].name +
                                          "' has no rotations about three axes, it cannot be turned (write a .glb)");
       }
-      bvh.turn(frame, *joint, bvh.rotation(frame, *joint) * (from[n].inverse() * to[n]));
+      bvh.turn(frame, joint, bvh.rotation(frame, joint) * (from[n].inverse() * to[n]));
     }
   }
   return bvh.text();

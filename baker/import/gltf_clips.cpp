@@ -72,6 +72,10 @@ class ClipReader {
 
   // Some exporters give a time twice; the last of them holds.
   void drop_repeats(Channel& channel, std::size_t a_key, int accessor) const {
+    if (!channel.times.empty() && channel.times.front() < 0) {
+      file_.fail(where_ + ": accessors[" + std::to_string(accessor) + "] has a key at " +
+                 std::to_string(channel.times.front()) + " s (times begin at 0: move the keys, and export it again)");
+    }
     std::size_t kept = 0;
     for (std::size_t k = 0; k < channel.times.size(); ++k) {
       if (kept > 0 && channel.times[k] < channel.times[kept - 1]) {

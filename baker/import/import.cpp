@@ -11,6 +11,7 @@
 #include "import/gltf_file.h"
 #include "import/notes.h"
 #include "import/obj_file.h"
+#include "import/read_bvh.h"
 #include "import/read_in_child.h"
 #include "import/sha256.h"
 #include "mesh/error.h"
@@ -103,7 +104,8 @@ std::vector<std::filesystem::path> files_beside(const std::filesystem::path& sou
 
 std::vector<std::filesystem::path> files_read_with(const std::filesystem::path& source) {
   std::error_code ignored;
-  if (!std::filesystem::is_regular_file(source, ignored) || is_gltf(source)) return {};  // files_beside has a glTF's
+  if (!std::filesystem::is_regular_file(source, ignored)) return {};
+  if (is_gltf(source) || is_recording(source)) return {};  // files_beside has a glTF's
   try {
     const auto files = from_bytes<std::vector<std::string>>(
         read_in_child(source.string(), [&] { return to_bytes(files_read_with_assimp(source)); }));
@@ -119,14 +121,20 @@ SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& o
   if (std::filesystem::file_size(path, ignored) == 0) {
     throw Error(ExitCode::kFile, path.string() + ": is empty (export it again)");
   }
-  auto told = from_bytes<NotedMesh>(read_in_child(path.string(), [&] {
-    take_notes();  // the parent's
-    NotedMesh read{is_gltf(path) ? read_with_tinygltf(path, options) : read_with_assimp(path, options), {}};
-    read.notes = take_notes();
-    return to_bytes(read);
-  }));
-  for (const std::string& note : told.notes) add_note(note);
-  SourceMesh mesh = std::move(told.mesh);
+  SourceMesh mesh;
+  if (is_recording(path) && !is_gltf(path)) {
+    mesh.importer = "bvh";
+    mesh.rig = read_bvh(path);
+  } else {
+    auto told = from_bytes<NotedMesh>(read_in_child(path.string(), [&] {
+      take_notes();  // the parent's
+      NotedMesh read{is_gltf(path) ? read_with_tinygltf(path, options) : read_with_assimp(path, options), {}};
+      read.notes = take_notes();
+      return to_bytes(read);
+    }));
+    for (const std::string& note : told.notes) add_note(note);
+    mesh = std::move(told.mesh);
+  }
   clean_names(mesh.rig);
   if (options.prop) make_rigid(mesh);
   return mesh;
@@ -134,6 +142,9 @@ SourceMesh read_source(const std::filesystem::path& path, const ImportOptions& o
 
 std::string read_as_glb(const std::filesystem::path& path) {
   check_regular_file(path);
+  if (is_recording(path) && !is_gltf(path)) {
+    throw Error(ExitCode::kFile, path.string() + ": is a recording without a mesh (name it by --motion)");
+  }
   return read_in_child(path.string(), [&] { return is_gltf(path) ? pack_gltf(path) : glb_with_assimp(path); });
 }
 

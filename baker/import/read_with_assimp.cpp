@@ -21,7 +21,6 @@
 #include "import/assimp_glb.h"
 #include "import/assimp_look.h"
 #include "import/assimp_scene.h"
-#include "import/check_bvh.h"
 #include "import/choose_meshes.h"
 #include "import/import.h"
 #include "import/named_file.h"
@@ -166,7 +165,6 @@ void check_faces(const aiScene& scene, const std::string& file) {
 // A file, read; the scene is null where no importer reads it.
 struct ReadFile {
   explicit ReadFile(const std::filesystem::path& path) : name(path.string()), files(new OwnFiles(path)) {
-    check_bvh(path);
     importer.SetIOHandler(files);  // which the importer deletes
     // Sticks that importers put where a file has bones and no mesh are no character.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);

@@ -313,6 +313,7 @@ TEST_CASE("accessors of the wrong type or length, and figures that are none, are
       {"accessors[6] holds", [](Glb& g) { patch(g, kRotations, 0, kNan); }},
       {"inverseBindMatrices[1] is not an affine", [](Glb& g) { patch(g, kMatrices, 64 + 60, 0.5F); }},
       {"do not ascend", [](Glb& g) { patch(g, kTimes, 0, 5); }},
+      {"has a key at -1", [](Glb& g) { patch(g, kTimes, 0, -1); }},
       {"has 8 numbers in accessors[6] for 1 keys of 4", [](Glb& g) { accessor(g, kTimes)["count"] = 1; }},
       {"for 2 keys of 12", [](Glb& g) { g.json["animations"][0]["samplers"][0]["interpolation"] = "CUBICSPLINE"; }},
       {"interpolation 'SMOOTH'", [](Glb& g) { g.json["animations"][0]["samplers"][0]["interpolation"] = "SMOOTH"; }},
