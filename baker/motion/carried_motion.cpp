@@ -3,41 +3,68 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <unordered_map>
 
 #include "mesh/error.h"
 #include "motion/clip.h"
+#include "motion/frame_times.h"
 
 namespace spherechain::baker {
 namespace {
 
-const Node* find_node(const std::vector<Node>& nodes, const std::string& name) {
-  const auto found = std::find_if(nodes.begin(), nodes.end(), [&](const Node& n) { return n.name == name; });
-  return found == nodes.end() ? nullptr : &*found;
+// The first node of each name.
+class NodesByName {
+ public:
+  explicit NodesByName(const std::vector<Node>& nodes) {
+    for (Index n = 0; n < nodes.size(); ++n) number_.try_emplace(nodes[n].name, n);
+  }
+  std::optional<Index> find(const std::string& name) const {
+    const auto found = number_.find(name);
+    return found == number_.end() ? std::nullopt : std::optional(found->second);
+  }
+
+ private:
+  std::unordered_map<std::string, Index> number_;
+};
+
+// Nodes that move skin and hang on such a node: bones with a length. Others are moved about.
+std::vector<char> hanging_bones(const SourceRig& rig) {
+  std::vector<char> is_bone(rig.nodes.size(), 0), out(rig.nodes.size(), 0);
+  for (const Bone& bone : rig.bones) is_bone[bone.node] = 1;
+  for (Index n = 0; n < rig.nodes.size(); ++n) {
+    const int parent = rig.nodes[n].parent;
+    out[n] = is_bone[n] != 0 && parent >= 0 && is_bone[static_cast<std::size_t>(parent)] != 0 ? 1 : 0;
+  }
+  return out;
 }
 
-// The unit of `capture` in that of `rig` where each node that moves skin is in both, and as long; else 0.
+// The unit of `capture` in that of `rig` where each node that moves skin is in both, and most lie where they do in
+// their parents; else 0. A skeleton whose joints have other axes has its bones in other directions.
 double same_skeleton(const SourceRig& rig, const SourceRig& capture) {
-  double own_sum = 0, other_sum = 0;
-  std::vector<std::pair<double, double>> lengths;
+  const NodesByName others(capture.nodes);
+  const std::vector<char> hangs = hanging_bones(rig);
+  double length_sum = 0;
+  std::vector<std::pair<Vec3, Vec3>> bones;
+  std::vector<std::pair<double, double>> ratios;
   for (const Bone& bone : rig.bones) {
     const Node& own = rig.nodes[bone.node];
-    const Node* other = find_node(capture.nodes, own.name);
-    if (other == nullptr) return 0;
-    // What hangs under no other bone is moved about, it has no length.
-    const bool hangs = std::any_of(rig.bones.begin(), rig.bones.end(),
-                                   [&](const Bone& b) { return static_cast<int>(b.node) == own.parent; });
-    if (!hangs) continue;
-    lengths.emplace_back(own.local.translation().norm(), other->local.translation().norm());
-    own_sum += lengths.back().first;
-    other_sum += lengths.back().second;
+    const std::optional<Index> other = others.find(own.name);
+    if (!other) return 0;
+    if (hangs[bone.node] == 0) continue;
+    bones.emplace_back(own.local.translation(), capture.nodes[*other].local.translation());
+    const double own_length = bones.back().first.norm(), other_length = bones.back().second.norm();
+    length_sum += own_length;
+    if (other_length > 0) ratios.emplace_back(own_length / other_length, other_length);
   }
-  if (other_sum == 0) return 0;
-  const double unit = own_sum / other_sum;
-  constexpr double kSame = 0.02;
-  for (const auto& [own, other] : lengths) {
-    if (std::abs(own - unit * other) > kSame * own_sum / static_cast<double>(lengths.size())) return 0;
-  }
-  return unit;
+  if (ratios.empty()) return 0;
+  const double unit = weighted_quantile(std::move(ratios), 0.5);
+  constexpr double kSame = 0.02, kMost = 0.75;
+  const double tolerance = kSame * length_sum / static_cast<double>(bones.size());
+  const auto alike = std::count_if(bones.begin(), bones.end(), [&](const auto& pair) {
+    return (pair.first - unit * pair.second).norm() <= tolerance;
+  });
+  return static_cast<double>(alike) >= kMost * static_cast<double>(bones.size()) ? unit : 0;
 }
 
 const Affine& parent_of(const Node& node, const std::vector<Affine>& world) {
@@ -47,21 +74,40 @@ const Affine& parent_of(const Node& node, const std::vector<Affine>& world) {
 
 Eigen::Quaterniond rotation_of(const Affine& transform) { return Eigen::Quaterniond(transform.rotation()); }
 
-// A clip of another file on the rig's own nodes of the same names.
+// A clip of another file on the rig's own nodes of the same names. A bone keeps its own length.
 class CarriedByName : public CarriedMotion {
  public:
-  CarriedByName(Capture capture, const SourceRig& rig, double unit) : rig_(rig), capture_(std::move(capture)) {
+  CarriedByName(Capture capture, const SourceRig& rig, double unit)
+      : rig_(rig), own_(rig.nodes), capture_(std::move(capture)) {
+    const std::vector<Node>& theirs = capture_.rig.nodes;
+    const std::vector<char> hangs = hanging_bones(rig);
+    std::vector<char> is_turned(rig.nodes.size(), 0);
     clip_.name = capture_.clip.name;
     clip_.duration = capture_.clip.duration;
     for (Channel channel : capture_.clip.channels) {
       if (channel.path == ChannelPath::kMorphWeight) continue;
-      const Node* own = find_node(rig.nodes, capture_.rig.nodes[channel.target].name);
-      if (own == nullptr) continue;
-      channel.target = static_cast<Index>(own - rig.nodes.data());
+      const Node& other = theirs[channel.target];
+      const std::optional<Index> own = own_.find(other.name);
+      if (!own) continue;
+      channel.target = *own;
+      if (channel.path == ChannelPath::kRotation) is_turned[*own] = 1;
       if (channel.path == ChannelPath::kTranslation) {
-        for (double& value : channel.values) value *= unit;
+        const double length = other.local.translation().norm();
+        const double scale =
+            hangs[*own] != 0 && length > 0 ? rig.nodes[*own].local.translation().norm() / length : unit;
+        for (double& value : channel.values) value *= scale;
       }
       clip_.channels.push_back(std::move(channel));
+    }
+    // Bones without a key stay as the recording's file has them.
+    for (const Node& other : theirs) {
+      const std::optional<Index> own = own_.find(other.name);
+      constexpr double kSame = 1e-5;  // radians
+      if (!own || hangs[*own] == 0 || is_turned[*own] != 0) continue;
+      is_turned[*own] = 1;
+      if (other.rotation.angularDistance(rig.nodes[*own].rotation) < kSame) continue;
+      const Eigen::Vector4d q = other.rotation.coeffs();
+      clip_.channels.push_back({ChannelPath::kRotation, *own, Interpolation::kLinear, {0}, {q.begin(), q.end()}});
     }
   }
   Deformation at(double t) const override { return sample(rig_, clip_, t * clip_.duration); }
@@ -87,12 +133,11 @@ class CarriedByName : public CarriedMotion {
     }
     std::vector<Eigen::Quaterniond> out;
     for (const Node& node : nodes) {
-      const Node* own = find_node(rig_.nodes, node.name);
-      if (own == nullptr) {
+      const std::optional<Index> own = own_.find(node.name);
+      if (!own) {
         out.push_back(node.rotation);
       } else {
-        const Affine& there = world[static_cast<std::size_t>(own - rig_.nodes.data())];
-        out.push_back(rotation_of(parent_of(*own, world)).inverse() * rotation_of(there));
+        out.push_back(rotation_of(parent_of(rig_.nodes[*own], world)).inverse() * rotation_of(world[*own]));
       }
     }
     return out;
@@ -100,6 +145,7 @@ class CarriedByName : public CarriedMotion {
 
  private:
   const SourceRig& rig_;
+  NodesByName own_;
   Capture capture_;
   Clip clip_;
 };
@@ -166,8 +212,8 @@ class CarriedByRole : public CarriedMotion {
   Clip clip() const override {
     const double fps = rate();
     std::vector<double> times;
-    for (int i = 0; i <= static_cast<int>(duration() * fps + 0.05); ++i) times.push_back(i / fps);
-    if (duration() - times.back() > 0.05 / fps) times.push_back(duration());
+    for (int i = 0; i < frames_in(duration(), fps); ++i) times.push_back(i / fps);
+    if (duration() - times.back() > kFrameRounding / fps) times.push_back(duration());
     std::vector<std::array<Path, 3>> paths;
     double longest = 0;
     for (const Node& node : rig_.nodes) {
