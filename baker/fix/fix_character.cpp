@@ -13,6 +13,7 @@
 #include "fix/write_clip.h"
 #include "mesh/error.h"
 #include "motion/carried_motion.h"
+#include "motion/frame_times.h"
 #include "pipeline/pipeline.h"
 
 namespace spherechain::baker {
@@ -218,7 +219,7 @@ double carried_over_again(const FixedCharacter& fixed, const std::string& input,
   const Clip& wanted = fixed.after.back();
   double farthest = 0;
   const double fps = carried->rate();
-  for (int frame = 0; frame <= static_cast<int>(carried->duration() * fps); ++frame) {
+  for (int frame = 0; frame < frames_in(carried->duration(), fps); ++frame) {
     const double seconds = frame / fps, t = carried->duration() > 0 ? seconds / carried->duration() : 0;
     const std::vector<Vec3> a = deform(sample_positions, weights, carried->at(t).bones),
                             b = deform(sample_positions, weights, sample(rig, wanted, seconds).bones);

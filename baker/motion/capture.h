@@ -30,8 +30,10 @@ struct CaptureBody {
   RoleJoints joints;
   std::vector<Index> joint_of_bone;
 };
-CaptureBody body_of(const std::vector<Joint>& joints, const BodyFrame& frame);  // every joint is a bone
-// Throws Error(kFile) that begins with `file` where the skin's skeleton is not that of a biped.
+// Both throw Error(kFile) that begins with `file` and says what the body lacks where it has no two legs.
+// Of the automatic rig's joints, which are a bone each; none where the body is no biped.
+CaptureBody body_of(const std::vector<Joint>& joints, const BodyFrame& frame, const std::string& file);
+// Of a skin's own skeleton.
 CaptureBody body_of(const SourceRig& rig, const std::vector<Vec3>& rest, const BodyFrame& frame,
                     const std::string& file);
 
@@ -46,6 +48,7 @@ class CaptureMotion : public Motion {
   Deformation at(double t) const override;
   double duration() const override { return capture_.clip.duration; }
   double rate() const override;
+  int frame_count() const override { return duration() > 0 ? 0 : 1; }  // of one pose
 
   const Capture& capture() const { return capture_; }
   const CaptureBody& body() const { return body_; }

@@ -15,6 +15,7 @@ namespace spherechain::baker {
 class CarriedMotion : public Motion {
  public:
   virtual const Capture& capture() const = 0;
+  int frame_count() const override { return duration() > 0 ? 0 : 1; }  // of one pose
 
   // What the character's nodes do, with keys at the recording's frames; paths that stay as at rest have no channel.
   // Throws Error(kFile) where no rotations and translations of nodes give the motion: bones are sheared.

@@ -5,24 +5,36 @@
 #include <cmath>
 #include <map>
 
+#include "motion/frame_times.h"
+
 namespace spherechain::baker {
 namespace {
 
 // A clip of one key is a pose: it shows for a frame.
 double length_of(const Clip& clip) { return std::max(clip.duration, 1.0 / 30); }
 
-// Importers round times to milliseconds.
 bool keys_are_frames(const Clip& clip, double rate) {
-  constexpr double kRounding = 0.05;  // of a frame
   for (const Channel& channel : clip.channels) {
     for (const double time : channel.times) {
-      if (std::abs(time * rate - std::round(time * rate)) > kRounding) return false;
+      if (std::abs(time * rate - std::round(time * rate)) > kFrameRounding) return false;
     }
   }
   return true;
 }
 
 }  // namespace
+
+int frames_in(double seconds, double fps) {
+  constexpr double kCountMax = 2e9;
+  return static_cast<int>(std::min(seconds * fps + kFrameRounding, kCountMax)) + 1;
+}
+
+double even_rate(double fps, double own) {
+  constexpr double kSame = 0.005;  // times of four digits are so far off
+  if (fps <= 0 || own <= 0) return own > 0 ? own : fps;
+  const double steps = own > fps ? std::round(own / fps) : 1 / std::round(fps / own);
+  return std::abs(own / steps - fps) < kSame * fps ? own / steps : fps;
+}
 
 double rate_of(const Clip& clip) {
   double densest = 0;

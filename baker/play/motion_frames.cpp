@@ -6,17 +6,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "motion/frame_times.h"
+
 namespace spherechain::baker {
 namespace {
 
-constexpr double kFramesMax = 1e6;
 constexpr int kPoseFrames = 40;
-
-// One every 1 / fps seconds, from 0 on. A rate that is the clip's own is rounded, its last key is a frame all the same.
-int own_frames(double seconds, double fps, const FrameChoice& choice) {
-  const double rounding = choice.fps > 0 ? 1e-6 : 0.05;
-  return static_cast<int>(std::min(seconds * fps + rounding, kFramesMax - 1)) + 1;
-}
 
 int nearest_number(double seconds, double fps) {
   return static_cast<int>(std::lround(std::min(seconds * fps, kFramesMax)));
@@ -49,8 +44,8 @@ MotionFrames frames_of(const SourceRig& rig, const std::vector<const Clip*>& cli
   Builder builder;
   double fps = 0;  // of the clip that is open
   const auto open = [&](std::size_t c) {
-    fps = choice.fps > 0 ? choice.fps : rate_of(*clips[c]);
-    builder.open(clips[c]->name, clips[c], own_frames(clips[c]->duration, fps, choice), motion.start(c), fps);
+    fps = even_rate(choice.fps, rate_of(*clips[c]));
+    builder.open(clips[c]->name, clips[c], frames_in(clips[c]->duration, fps), motion.start(c), fps);
   };
   if (choice.count == 0) {
     for (std::size_t c = 0; c < clips.size(); ++c) {
@@ -72,13 +67,12 @@ MotionFrames frames_of(const SourceRig& rig, const std::vector<const Clip*>& cli
 
 MotionFrames frames_of(const Motion* motion, const FrameChoice& choice) {
   const double duration = motion ? motion->duration() : 0, own_rate = motion ? motion->rate() : 0;
-  const double fps = choice.fps > 0 ? choice.fps : own_rate > 0 ? own_rate : FrameChoice().fps;
+  const double fps = choice.fps > 0 || own_rate > 0 ? even_rate(choice.fps, own_rate) : FrameChoice().fps;
   const bool has_pace = duration > 0;
   int own_count = motion == nullptr ? 1 : motion->frame_count();
   const bool are_poses = own_count == 0 && !has_pace;
-  if (own_count == 0)
-    own_count = has_pace ? own_frames(duration, fps, choice) : choice.count > 0 ? choice.count : kPoseFrames;
-  const int count = choice.count > 0 ? choice.count : own_count;
+  if (own_count == 0) own_count = has_pace ? frames_in(duration, fps) : choice.count > 0 ? choice.count : kPoseFrames;
+  const int count = choice.count > 0 ? choice.count : std::min(own_count, static_cast<int>(kFramesMax));
   Builder builder;
   builder.open({}, nullptr, own_count, 0, fps);
   for (int i = 0; i < count; ++i) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "play/play.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <filesystem>
 
@@ -8,6 +10,7 @@
 #include "motion/capture.h"
 #include "motion/carried_motion.h"
 #include "motion/clip.h"
+#include "motion/frame_times.h"
 #include "motion/sequence.h"
 #include "pipeline/pipeline.h"
 
@@ -19,6 +22,21 @@ Vec3 to_vec3(const spherechain::Vec3& v) { return {v.x, v.y, v.z}; }
 // What the asset was baked with: other options read other vertices, and another body may be closed.
 BakeSettings settings_of(const OpenAsset& asset, const std::string& file) {
   return make_settings("balanced", asset->info().settings, file);
+}
+
+// Throws Error(kFile) where frames are too many to look at each.
+void check_count(const MotionFrames& frames, const std::string& file) {
+  const ClipFrames* longest = nullptr;
+  double count = 0;
+  for (const ClipFrames& clip : frames.clips) {
+    count += clip.own_count;
+    if (longest == nullptr || clip.own_count > longest->own_count) longest = &clip;
+  }
+  if (count <= kFramesMax) return;
+  const std::string clip = longest->clip == nullptr ? "" : fmt::format(", most in the clip '{}'", longest->name);
+  throw Error(ExitCode::kFile, fmt::format("{}: {:.0f} frames at {:.4g} a second{}: {:.0f} at most (cut it, or look at "
+                                           "fewer a second: --fps)",
+                                           file, count, longest->fps, clip, kFramesMax));
 }
 
 }  // namespace
@@ -81,6 +99,7 @@ void AnimatedAsset::play(const MotionChoice& motion, const FrameChoice& frames) 
     use_skin();
   }
   frames_ = clips.empty() ? frames_of(motion_.get(), frames) : frames_of(character_.rig, clips, frames);
+  if (frames.count == 0) check_count(frames_, motion.motion.empty() ? source_name_ : motion.motion);
 }
 
 void AnimatedAsset::play_clip(const Clip& clip, const FrameChoice& frames) {
@@ -133,7 +152,7 @@ void AnimatedAsset::play_capture(const std::string& file) {
     return use_skin();
   }
   const std::vector<Joint> joints = joints_of(file_);
-  motion_ = std::make_unique<CaptureMotion>(read_capture(file), body_of(joints, frame()));
+  motion_ = std::make_unique<CaptureMotion>(read_capture(file), body_of(joints, frame(), source_name_));
   use_rig(joints);
 }
 

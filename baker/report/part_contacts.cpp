@@ -118,7 +118,7 @@ std::string PartContacts::head(std::size_t index, const std::string& motion) con
   const int count = frames.count - frames.between;
   const std::string of = count == frames.own_count ? "" : fmt::format(" of {}", frames.own_count);
   const char* unit = count == 1 && of.empty() ? "frame" : "frames";
-  what += fmt::format(": {}{} {} at {} fps", count, of, unit, animated_.fps());
+  what += fmt::format(": {}{} {} at {:.4g} fps", count, of, unit, frames.fps);
   if (frames.between > 0) {
     what += fmt::format(", and {} {} between them", frames.between, frames.between == 1 ? "pose" : "poses");
   }
@@ -201,7 +201,7 @@ ordered_json PartContacts::json() const {
                    {"first_frame", frames.first},
                    {"frame_count", frames.count},
                    {"own_frame_count", frames.own_count},
-                   {"fps", animated_.fps()},
+                   {"fps", frames.fps},
                    {"contact_frames", clips_[i].contact_frames},
                    {"fault_frames", clips_[i].fault_frames},
                    {"contacts", std::move(contacts)}});

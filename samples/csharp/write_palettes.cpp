@@ -28,7 +28,7 @@ int main(int argc, char** argv) {
   try {
     const samples::GltfCharacter model(argv[1]);
     const std::vector<spherechain::Bone> joints = model.joints();
-    const int frames = static_cast<int>(30 * model.duration(0)) + 1;
+    const int frames = model.frame_count(0, 30);
     std::ofstream out(argv[2], std::ios::binary);
     write(out, static_cast<std::int32_t>(joints.size()));
     write(out, static_cast<std::int32_t>(frames));

@@ -32,6 +32,8 @@ class GltfCharacter {
   std::size_t clip_count() const { return clips_.size(); }
   const std::string& clip_name(std::size_t clip) const { return clips_.at(clip).name; }
   double duration(std::size_t clip) const { return clips_.at(clip).duration; }
+  // Frames at that rate. Files round times: an end that is this near to a frame is one.
+  int frame_count(std::size_t clip, double fps) const { return 1 + static_cast<int>(fps * duration(clip) + 0.05); }
 
   // World matrix times inverse bind matrix of each joint, in the order of joints(). Morph targets are not read.
   Palette palette(std::size_t clip, double seconds) const;

@@ -21,7 +21,7 @@ static void play(const std::vector<char>& file, const samples::GltfCharacter& mo
   const float metres = sc_asset_get_info(&character.asset()).metres_per_unit;
   check(character.check_rest(samples::pose_of(model.rest_palette()), message, sizeof message), message);
 
-  for (int frame = 0; frame <= 30 * model.duration(0); ++frame) {
+  for (int frame = 0; frame < model.frame_count(0, 30); ++frame) {
     const samples::Palette palette = model.palette(0, frame / 30.0);  // what your skinning shader gets
     const spherechain::Pose pose{palette[0].data(), palette.size(), SC_COLUMNS_4X4};
 

@@ -68,7 +68,7 @@ void play(const std::vector<char>& file, const samples::GltfCharacter& model) {
   const Asset& asset = character.asset();
   check_buffers(asset, model);
 
-  for (int frame = 0; frame <= 5 * model.duration(0); ++frame) {
+  for (int frame = 0; frame < model.frame_count(0, 5); ++frame) {
     const std::vector<float> vertices = skin(asset, model, model.palette(0, frame / 5.0));
     Pose pose;
     pose.vertices = vertices.data();

@@ -62,7 +62,7 @@ class Character:
         """The clip's matrices of each node in its parent's space: (frames, nodes, 4, 4)."""
         animation = self.json["animations"][index]
         keys = [self.array(sampler["input"])[:, 0] for sampler in animation["samplers"]]
-        times = np.arange(0, max(key[-1] for key in keys) + 1e-6, 1 / fps)
+        times = np.arange(0, max(key[-1] for key in keys) + 0.05 / fps, 1 / fps)  # files round times
         nodes, count = self.json["nodes"], len(times)
         moved = {(i, path): np.tile(np.asarray(node.get(path, rest), float), (count, 1)) for i, node in enumerate(nodes)
                  for path, rest in (("translation", (0, 0, 0)), ("rotation", (0, 0, 0, 1)), ("scale", (1, 1, 1)))}

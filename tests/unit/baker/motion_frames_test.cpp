@@ -4,6 +4,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 using namespace spherechain::baker;
 
 namespace {
@@ -45,6 +47,40 @@ TEST_CASE("every clip has its own frames, counted from its start") {
   CHECK(frames.frames[14].number == 2);
   CHECK(frames.frames[14].seconds == doctest::Approx(0.2));
   CHECK(frames.frames[14].time == doctest::Approx(1.05 + 1.0 / 30 + 0.2));  // a pose shows for a frame
+}
+
+TEST_CASE("a clip has the frames that its keys lie on, to the last, however its file rounds their times") {
+  const SourceRig rig;
+  const auto rounded = [](double seconds, int digits) {
+    const double scale = std::pow(10, digits);
+    return std::round(seconds * scale) / scale;
+  };
+  for (const double rate : {30.0, 24.0, 25.0, 60.0, 120.0, 30 / 1.001, 24 / 1.001}) {
+    for (const int digits : {4, 5, 6, 7, 17}) {
+      for (const int count : {1, 2, 13, 50, 51, 1000}) {
+        for (const bool add_up : {false, true}) {  // a rounded step, over and over
+          CAPTURE(rate);
+          CAPTURE(digits);
+          CAPTURE(count);
+          CAPTURE(add_up);
+          Channel turn{ChannelPath::kTranslation, 0, Interpolation::kLinear, {}, {}};
+          for (int i = 0; i < count; ++i) {
+            const double time = add_up ? i * rounded(1 / rate, digits) : rounded(i / rate, digits);
+            turn.times.push_back(static_cast<double>(static_cast<float>(time)));
+            turn.values.insert(turn.values.end(), {1.0 * i, 0, 0});
+          }
+          const Clip clip{"clip", turn.times.back(), {turn}};
+          for (const double fps : {0.0, rate, std::round(rate)}) {
+            const MotionFrames frames = frames_of(rig, {&clip}, {0, fps});
+            REQUIRE(frames.frames.size() == static_cast<std::size_t>(count));
+            CHECK(sample(turn, frames.frames.back().seconds)[0] > count - 1.1);
+            CHECK(sample(turn, frames.frames.back().seconds)[0] <= count - 1);
+          }
+          if (rate > 100 && digits > 5) CHECK(frames_of(rig, {&clip}, {0, 30}).frames.size() == (count + 3U) / 4);
+        }
+      }
+    }
+  }
 }
 
 TEST_CASE("a number of frames is spread over all clips, and says where in its clip each is") {

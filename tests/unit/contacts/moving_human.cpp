@@ -29,7 +29,7 @@ MovingHuman make() {
          baker::pack(baker::deform(b.character.source_positions, b.rig_weights, deformation.bones))});
   };
   const baker::CaptureMotion boxing(baker::read_capture(std::filesystem::path(kModels) / "BVH/Boxing_Toes.bvh"),
-                                    baker::body_of(b.joints, b.regions.frame));
+                                    baker::body_of(b.joints, b.regions.frame, b.character.file));
   for (int i = 0; i < kCaptureFrames; ++i) {
     add("Boxing_Toes.bvh, frame " + std::to_string(i), boxing.at(i / (kCaptureFrames - 1.0)));
   }
