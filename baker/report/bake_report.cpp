@@ -310,6 +310,7 @@ std::string bake_report_json(const Bake& bake) {
                             {"fit", fit_section(bake)},
                             {"bind", bind_section(bake)},
                             {"edits", edits_section(bake)},
+                            {"unit_note", unit_note(bake)},
                             {"missed_targets", missed_targets(bake)},
                             {"stages", std::move(stages)},
                             {"total_seconds", total},
@@ -329,17 +330,21 @@ bool is_tall(const Bake& bake) {
   return high - low > 0.999 * bake.regions.frame.height;
 }
 
-bool is_doubtful_length(double metres) {
-  constexpr double kSmallest = 0.02, kLargest = 50;  // what is outside is seldom a character
-  return metres < kSmallest || metres > kLargest;
+std::string unit_note(double metres, const std::vector<std::string>& parts) {
+  constexpr double kSmallest = 0.02, kLargest = 50, kLargestPerson = 10;
+  const auto has = [&](const char* part) { return std::find(parts.begin(), parts.end(), part) != parts.end(); };
+  const bool is_person = has("left hand") && has("right hand") && has("left thigh") && has("right thigh");
+  if (metres >= kSmallest && metres <= (is_person ? kLargestPerson : kLargest)) return {};
+  return fmt::format(
+      "measures {:.4g} m: its file names no unit, or a wrong one (export it in metres); until then depths in % of the "
+      "height are right, those in mm, volumes and masses are not",
+      metres);
 }
 
 std::string unit_note(const Bake& bake) {
-  const double metres = bake.regions.frame.height * bake.character.metres_per_unit;
-  if (!is_doubtful_length(metres)) return {};
-  return fmt::format(
-      "{:.4g} m {}: its file names no unit, or a wrong one: believe depths in % of the height, not in mm", metres,
-      is_tall(bake) ? "tall" : "long");
+  std::vector<std::string> parts;
+  for (const BodyPart& part : bake.body_parts.parts) parts.push_back(part.name);
+  return unit_note(bake.regions.frame.height * bake.character.metres_per_unit, parts);
 }
 
 std::string bake_report_text(const Bake& bake) {
@@ -349,7 +354,7 @@ std::string bake_report_text(const Bake& bake) {
   std::string out = fmt::format("{}: {} triangles ({}), {} components, {:.3f} m {}; {}\n", bake.character.file,
                                 bake.character.source_triangles.size(), what, bake.character.report.components, metres,
                                 is_tall(bake) ? "tall" : "long", bake.regions.facing);
-  if (const std::string note = unit_note(bake); !note.empty()) out += note + "\n";
+  if (const std::string note = unit_note(bake); !note.empty()) out += "note: it " + note + "\n";
   if (const std::size_t dropped = bake.character.report.attachments_dropped; dropped > 0) {
     out += fmt::format("left out: {} on joints, such as weapons and hats (--attachments keeps them)\n",
                        dropped == 1 ? "1 rigid mesh" : fmt::format("{} rigid meshes", dropped));

@@ -20,10 +20,9 @@ std::string bake_report_text(const Bake& bake);
 // The last line of a bake: the grade of the fit, the parts that it fits badly, and those by the generic fit.
 std::string fit_line(const Bake& bake);
 
-// Whether a height in metres is none of a character's.
-bool is_doubtful_length(double metres);
-
-// What a height that is none of a character's says about its file's unit; empty where it may be one.
+// What a length that no such body has says about its file's unit; empty where it may have it. `parts` are the names of
+// its body parts: a dragon may be longer than a person, and toys are small.
+std::string unit_note(double metres, const std::vector<std::string>& parts);
 std::string unit_note(const Bake& bake);
 
 // The end of that line. `generic` are names of some of a character's `parts`.
