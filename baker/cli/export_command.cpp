@@ -187,8 +187,10 @@ ExitCode run_export(const ExportOptions& options) {
     say("on its clips: {}\n", fit_text(moving));
     say_what_leaves(colliders, moving);
   }
-  if (is_doubtful_length(colliders.height)) {
-    say("note: the character measures {:.4g} m: its file names no unit, or a wrong one\n", colliders.height);
+  std::vector<std::string> parts;
+  for (const ColliderBody& body : colliders.bodies) parts.push_back(body.name);
+  if (const std::string note = unit_note(colliders.height, parts); !note.empty()) {
+    say("note: the character {}\n", note);
   }
   for (const std::string& note : made.notes) say("note: {}\n", note);
   for (const CommandFile& file : outputs) say("wrote {}\n", file.path);

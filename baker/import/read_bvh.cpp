@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "import/read_bvh.h"
+
 #include <cctype>
 #include <cmath>
 #include <fstream>
 #include <numbers>
+#include <string>
 
+#include "import/bvh_file.h"
 #include "import/notes.h"
-#include "import/read_bvh.h"
 #include "mesh/error.h"
 
 namespace spherechain::baker {

@@ -305,7 +305,7 @@ TEST_CASE("the limbs of a recorded boxer go where his own go, and no foot sinks 
   const RiggedHuman& h = rigged_human();
   const Capture capture = read_capture(kModels / "BVH/Boxing_Toes.bvh");
   const CaptureMotion motion(capture, body_of(h.joints, h.frame, "human"));
-  CHECK(motion.duration() == doctest::Approx(30.68));
+  CHECK(motion.duration() == doctest::Approx(30.69));
   const auto node = [&](const std::string& name) {
     const auto& nodes = capture.rig.nodes;
     return static_cast<std::size_t>(

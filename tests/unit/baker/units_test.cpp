@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Height, metres and the way up are those of the character as it stands in its scene.
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include "gltf_reference.h"
+#include "report/report.h"
 #include "role_cases.h"
 #include "segment/by_bones.h"
 
@@ -111,4 +113,15 @@ TEST_CASE("a biped is as high as its crown is above its soles, however wide its 
     REQUIRE(roles.kind == BodyKind::kBiped);
     CHECK(segment_by_bones(character, roles, std::nullopt, 60).frame.height == doctest::Approx(1.6));  // 0.02 to 1.62
   }
+}
+
+TEST_CASE("a size that no such body has is told, and that of a toy, a giant or a dragon is not") {
+  const std::vector<std::string> person{"head", "left hand", "right hand", "left thigh", "right thigh"},
+      dragon{"head", "left wing", "right wing", "tail"};
+  for (const double metres : {17.6, 176.0, 0.0176, 0.00176}) {
+    CHECK(unit_note(metres, person).find(fmt::format("measures {:.4g} m", metres)) == 0);
+  }
+  for (const double metres : {0.05, 0.3, 1.76, 8.0}) CHECK(unit_note(metres, person).empty());
+  CHECK(unit_note(17.6, dragon).empty());
+  CHECK(!unit_note(170, dragon).empty());
 }
