@@ -49,7 +49,7 @@ macro(find_flags package)
 endmacro()
 
 function(configure source build)
-  run(${CMAKE_COMMAND} -G Ninja -S ${source} -B ${build} -D CMAKE_BUILD_TYPE=${TYPE}
+  run(${CMAKE_COMMAND} -G Ninja -S ${source} -B ${build} -D CMAKE_BUILD_TYPE=${TYPE} -D CMAKE_CXX_FLAGS_DEBUG=
     -D CMAKE_C_COMPILER=${COMPILER_C} -D CMAKE_CXX_COMPILER=${COMPILER_CXX}
     -D CMAKE_C_COMPILER_LAUNCHER=${LAUNCHER} -D CMAKE_CXX_COMPILER_LAUNCHER=${LAUNCHER} ${ARGN})
 endfunction()
