@@ -29,14 +29,19 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kWorkerClips = 8;  // a process is worth it for so many: it reads the character
 
-// A file's bytes and those of the files that it names.
+// A file's bytes and those of the files that it names. Of one that is too large for any importer the size alone: a
+// sparse file of terabytes costs nothing to send.
 std::string hash_of(const fs::path& file) {
+  constexpr std::uintmax_t kReadMax = std::uintmax_t{1} << 32;
   check_regular_file(file);
-  std::string hashes = sha256_of_file(file);
-  for (const fs::path& beside : files_beside(file)) {
+  const auto of_one = [](const fs::path& one) {
     std::error_code ignored;
-    hashes += fs::is_regular_file(beside, ignored) ? sha256_of_file(beside) : "-";
-  }
+    if (!fs::is_regular_file(one, ignored)) return std::string("-");
+    const std::uintmax_t size = fs::file_size(one, ignored);
+    return size > kReadMax ? std::to_string(size) : sha256_of_file(one);
+  };
+  std::string hashes = of_one(file);
+  for (const fs::path& beside : files_beside(file)) hashes += of_one(beside);
   return hashes;
 }
 

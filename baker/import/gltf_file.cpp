@@ -85,7 +85,7 @@ std::vector<unsigned char> buffer_bytes(const nlohmann::json& buffer, const std:
     file.fail(where + ".uri " + in_quotes(uri) + " " + named.what_is_wrong() + " (put the buffer beside the file)");
   }
   std::error_code error;
-  check(fs::file_size(named.path, error), in_quotes(uri));
+  check(fs::file_size(named.path, error), in_quotes(uri));  // no more of it is read
   std::vector<unsigned char> bytes(length);
   std::ifstream in(named.path, std::ios::binary);
   if (!in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(length))) {
@@ -103,6 +103,10 @@ bool no_image(tinygltf::Image*, int, std::string*, std::string*, int, int, const
 void GltfFile::fail(const std::string& what) const { throw Error(ExitCode::kFile, name + ": " + what); }
 
 std::string bytes_of_gltf(const fs::path& path) {
+  constexpr std::uintmax_t kMax = std::uintmax_t{1} << 32;  // a GLB says its length in 32 bits
+  std::error_code ignored;
+  if (const std::uintmax_t size = fs::file_size(path, ignored); !ignored && size > kMax)
+    throw Error(ExitCode::kFile, path.string() + ": is larger than any glTF file (4 GB)");
   std::ifstream in(path, std::ios::binary);
   std::ostringstream bytes;
   bytes << in.rdbuf();
