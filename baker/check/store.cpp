@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "check/store.h"
 
-#include <chrono>
 #include <fstream>
 #include <sstream>
 
@@ -11,22 +10,8 @@
 #include "write/write.h"
 
 namespace spherechain::baker {
-namespace {
 
 namespace fs = std::filesystem;
-
-// What killed processes left half-written.
-void sweep(const fs::path& folder) {
-  const auto yesterday = fs::file_time_type::clock::now() - std::chrono::hours(24);
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    if (entry.path().extension() == ".tmp" && entry.last_write_time(ignored) < yesterday) {
-      fs::remove(entry.path(), ignored);
-    }
-  }
-}
-
-}  // namespace
 
 Store::Store(fs::path folder) : folder_(std::move(folder)) {
   std::error_code error;
@@ -58,7 +43,6 @@ void Store::write(const std::string& key, const char* kind, std::string_view byt
   if (fs::create_directories(file.parent_path(), error); error) {
     throw Error(ExitCode::kFile, file.parent_path().string() + ": cannot be created (" + error.message() + ")");
   }
-  sweep(file.parent_path());
   write_atomically(file, bytes);
 }
 

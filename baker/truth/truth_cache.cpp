@@ -59,10 +59,7 @@ std::optional<Intersections> read(const fs::path& file) {
 
 void write(const fs::path& file, const std::string& bytes) {
   Temporary temporary(file);
-  std::ofstream out(temporary.path(), std::ios::binary);
-  out << bytes;
-  out.close();
-  if (out) temporary.rename_to_target();
+  if (temporary.is_open() && temporary.write(bytes)) temporary.rename_to_target();
 }
 
 std::string environment(const char* name) {

@@ -30,33 +30,32 @@ int open_directly(const fs::path& path) {
 
 AtomicFile::AtomicFile(const fs::path& path) : path_(path) {
   if (is_written_directly(path)) {
-    file_ = open_directly(path);
+    direct_ = open_directly(path);
+    if (direct_ < 0) fail("created");
   } else {
     temporary_.emplace(written_file(path));
-    file_ = ::open(temporary_->path().c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (!temporary_->is_open()) fail("created");
   }
-  if (file_ < 0) fail("created");
 }
 
 AtomicFile::~AtomicFile() {
-  if (file_ >= 0) ::close(file_);
+  if (direct_ >= 0) ::close(direct_);
 }
 
 void AtomicFile::write(std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ::ssize_t n = ::write(file_, bytes.data(), bytes.size());
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) fail("written");
-    bytes.remove_prefix(static_cast<std::size_t>(n));
-  }
+  if (!(temporary_ ? temporary_->write(bytes) : write_all(direct_, bytes))) fail("written");
 }
 
 void AtomicFile::finish() {
-  if (temporary_ && ::fsync(file_) != 0) fail("written");
-  const int file = file_;
-  file_ = -1;
-  if (::close(file) != 0) fail("written");
-  if (temporary_ && !temporary_->rename_to_target()) fail("replaced");
+  if (temporary_) {
+    if (!temporary_->flush_to_disk()) fail("written");
+    if (!temporary_->rename_to_target()) fail("replaced");
+    temporary_.reset();
+  } else {
+    const int file = direct_;
+    direct_ = -1;
+    if (::close(file) != 0) fail("written");
+  }
 }
 
 void AtomicFile::fail(const char* doing) const {

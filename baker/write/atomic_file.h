@@ -26,7 +26,7 @@ class AtomicFile {
 
   std::filesystem::path path_;
   std::optional<Temporary> temporary_;
-  int file_ = -1;
+  int direct_ = -1;
 };
 
 }  // namespace spherechain::baker

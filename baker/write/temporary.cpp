@@ -1,18 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "write/temporary.h"
 
+#include <fcntl.h>
 #include <signal.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
 #include <atomic>
+#include <cerrno>
 #include <climits>
 #include <cstdio>
-#include <functional>
+#include <set>
 #include <string>
+
+#include "write/leftovers.h"
 
 namespace spherechain::baker {
 namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kDeadly[] = {SIGHUP, SIGINT, SIGQUIT, SIGTERM};
 
 // What the handler deletes: it may call no more than unlink, and read no more than this.
 std::array<char, PATH_MAX> doomed;
@@ -27,7 +36,7 @@ void delete_and_end(int signal) {
 
 // What a program ignores (nohup) or handles stays as it is.
 void handle_signals() {
-  for (const int signal : {SIGHUP, SIGINT, SIGQUIT, SIGTERM}) {
+  for (const int signal : kDeadly) {
     struct sigaction known {};
     if (::sigaction(signal, nullptr, &known) != 0 || known.sa_handler != SIG_DFL) continue;
     struct sigaction own {};
@@ -36,38 +45,104 @@ void handle_signals() {
   }
 }
 
+// They wait until it goes.
+class HeldSignals {
+ public:
+  HeldSignals() {
+    sigset_t deadly;
+    ::sigemptyset(&deadly);
+    for (const int signal : kDeadly) ::sigaddset(&deadly, signal);
+    ::pthread_sigmask(SIG_BLOCK, &deadly, &before_);
+  }
+  ~HeldSignals() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+  HeldSignals(const HeldSignals&) = delete;
+  HeldSignals& operator=(const HeldSignals&) = delete;
+
+ private:
+  sigset_t before_{};
+};
+
 std::mutex& one_at_a_time() {
   static std::mutex mutex;
   return mutex;
 }
 
-// No longer where the target's is as long as names may be; another than that of another target, for processes in two
-// containers may share a folder and be one number.
-std::string name_beside(const std::filesystem::path& target) {
-  const std::size_t hash = std::hash<std::string>()(target.filename().string());
-  return ".spherechain-" + std::to_string(hash) + "-" + std::to_string(::getpid()) + ".tmp";
+// Once for each folder that this process writes to.
+void sweep_once(const fs::path& folder) {
+  static std::set<fs::path> swept;
+  if (swept.insert(folder).second) sweep(folder);
+}
+
+// Where the group cannot be kept, another one gets no more than everybody.
+void take_mode_and_owner(int file, const struct ::stat& from) {
+  ::mode_t mode = from.st_mode & 0777;
+  if (::fchown(file, from.st_uid, from.st_gid) != 0 && ::fchown(file, static_cast<uid_t>(-1), from.st_gid) != 0) {
+    mode &= 0707 | ((mode & 07) << 3);
+  }
+  ::fchmod(file, mode);
 }
 
 }  // namespace
 
-Temporary::Temporary(const std::filesystem::path& target)
-    : only_one_(one_at_a_time()), target_(target), path_(target.parent_path() / name_beside(target)) {
+Temporary::Temporary(const fs::path& target) : only_one_(one_at_a_time()), target_(target) {
   handle_signals();
-  const std::string& name = path_.native();
-  if (name.size() >= doomed.size()) return;  // no file can be opened by such a name
-  doomed.fill('\0');
-  name.copy(doomed.data(), name.size());
-  is_doomed = true;
+  sweep_once(target.parent_path());
+  open();
+}
+
+void Temporary::open() {
+  struct ::stat replaced {};
+  const bool replaces = ::stat(target_.c_str(), &replaced) == 0 && S_ISREG(replaced.st_mode);
+  const HeldSignals held;
+  for (int attempt = 0; attempt < 100 && file_ < 0; ++attempt) {
+    const fs::path path = target_.parent_path() / own_name(kTemporaryEnding);
+    const std::string& name = path.native();
+    if (name.size() >= doomed.size()) {
+      errno = ENAMETOOLONG;
+      return;
+    }
+    file_ = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, replaces ? 0600 : 0666);
+    if (file_ < 0 && errno != EEXIST) return;
+    if (file_ < 0) continue;
+    if (!lock_own(file_, path)) {  // another process swept it in between
+      ::close(file_);
+      file_ = -1;
+      continue;
+    }
+    path_ = path;
+    doomed.fill('\0');
+    name.copy(doomed.data(), name.size());
+    is_doomed = true;
+  }
+  if (file_ >= 0 && replaces) take_mode_and_owner(file_, replaced);
 }
 
 Temporary::~Temporary() {
   if (!path_.empty()) ::unlink(path_.c_str());
   is_doomed = false;
+  if (file_ >= 0) ::close(file_);
 }
+
+bool Temporary::write(std::string_view bytes) { return write_all(file_, bytes); }
+
+bool Temporary::flush_to_disk() { return ::fsync(file_) == 0; }
 
 bool Temporary::rename_to_target() {
   if (std::rename(path_.c_str(), target_.c_str()) != 0) return false;
   path_.clear();
+  is_doomed = false;
+  const int file = file_;
+  file_ = -1;
+  return ::close(file) == 0;
+}
+
+bool write_all(int file, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ::ssize_t n = ::write(file, bytes.data(), bytes.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(n));
+  }
   return true;
 }
 

@@ -3,11 +3,14 @@
 
 #include <filesystem>
 #include <mutex>
+#include <string_view>
 
 namespace spherechain::baker {
 
-// The name of a file that is written beside `target` and then renamed to it. It is deleted where that does not happen,
-// by a signal that ends the program too: SIGHUP, SIGINT, SIGQUIT, SIGTERM. A process has one at a time; the next waits.
+// A new file beside `target`, which is renamed to it. It has a name that nobody can guess, and the mode, owner and
+// group of the file that it replaces, as far as the system lets it. It is deleted where it is not renamed, by a signal
+// that ends the program too: SIGHUP, SIGINT, SIGQUIT, SIGTERM. The next Temporary in its folder deletes it after a kill
+// -9. A process has one at a time; the next waits.
 class Temporary {
  public:
   explicit Temporary(const std::filesystem::path& target);
@@ -15,13 +18,21 @@ class Temporary {
   Temporary(const Temporary&) = delete;
   Temporary& operator=(const Temporary&) = delete;
 
-  const std::filesystem::path& path() const { return path_; }
-  // False, and errno, where the target cannot be replaced.
+  bool is_open() const { return file_ >= 0; }  // else errno says why
+  // Each false, with errno, where it fails.
+  bool write(std::string_view bytes);
+  bool flush_to_disk();
   bool rename_to_target();
 
  private:
+  void open();
+
   std::lock_guard<std::mutex> only_one_;
   std::filesystem::path target_, path_;
+  int file_ = -1;
 };
+
+// Writes all of `bytes` to a descriptor. False, with errno, where that fails.
+bool write_all(int file, std::string_view bytes);
 
 }  // namespace spherechain::baker

@@ -10,6 +10,7 @@
 
 #include <csignal>
 #include <filesystem>
+#include <set>
 
 #include "human.h"
 #include "mesh/error.h"
@@ -174,4 +175,59 @@ TEST_CASE("a file that may not grow (ulimit -f) is one that cannot be written, a
                                   "bash -c 'ulimit -f 8; exec \"$0\" \"$@\"'");
   tool::check_error(run, 3, {"out.sphc: cannot be written (File too large)"});
   CHECK(tool::files_in(folder.path) == 0);
+}
+
+namespace {
+
+// Writes in a process of its own.
+void write_in_child(const fs::path& target) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    write_atomically(target, "all of it");
+    ::_exit(0);
+  }
+  int status = 0;
+  REQUIRE(::waitpid(child, &status, 0) == child);
+  REQUIRE(status == 0);
+}
+
+}  // namespace
+
+TEST_CASE("what a killed process left half-written goes with the next file, what a living one writes stays") {
+  const TemporaryFolder folder;
+  folder.write(".spherechain-notes.tmp", "mine");
+  fs::create_symlink(folder.path / ".spherechain-notes.tmp", folder.path / ".spherechain-aaaaaaaaaaaaaaaa.tmp");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    spherechain::baker::AtomicFile file(folder.path / "half");
+    file.write("half of");
+    for (;;) ::pause();
+  }
+  while (tool::files_in(folder.path) == 2) ::usleep(1000);
+  write_in_child(folder.path / "first");
+  CHECK(tool::files_in(folder.path) == 4);
+  ::kill(child, SIGKILL);
+  REQUIRE(::waitpid(child, nullptr, 0) == child);
+  write_in_child(folder.path / "second");
+  CHECK(tool::files_in(folder.path) == 4);
+  CHECK(tool::contents(folder.path / ".spherechain-notes.tmp") == "mine");
+  CHECK(fs::is_symlink(folder.path / ".spherechain-aaaaaaaaaaaaaaaa.tmp"));
+}
+
+TEST_CASE("a file has the mode of the one that it replaces, from its first byte on; nobody can tell its name before") {
+  const TemporaryFolder folder;
+  const fs::path target = folder.write("secret", "as it was");
+  std::set<fs::path> names;
+  for (const fs::perms mode : {fs::perms(0600), fs::perms(0640), fs::perms(0644)}) {
+    fs::permissions(target, mode);
+    spherechain::baker::AtomicFile file(target);
+    for (const auto& entry : fs::directory_iterator(folder.path)) {
+      CHECK(entry.status().permissions() == mode);
+      names.insert(entry.path().filename());
+    }
+    file.write("all of it");
+    file.finish();
+    CHECK(fs::status(target).permissions() == mode);
+  }
+  CHECK(names.size() == 4);
 }
