@@ -89,10 +89,9 @@ PageFrames::PageFrames(const AnimatedAsset& animated, Radius radius)
 PageFrame PageFrames::run(const std::vector<float>& positions, bool is_next) {
   PageFrame out;
   const FrameResult fit = fit_.run(positions), detect = detect_.run(positions);
-  const FrameResult& timed = radius_ == SC_RADIUS_FIT ? fit : detect;
-  out.refit_us = timed.refit_us;
-  out.chains = *timed.chains;
-  out.all_pairs = *timed.all_pairs;
+  const FrameResult& shown = radius_ == SC_RADIUS_FIT ? fit : detect;
+  out.chains = *shown.chains;
+  out.all_pairs = *shown.all_pairs;
   out.fit_pairs = pairs_of(fit_);
   out.detect_pairs = pairs_of(detect_);
   for (std::size_t s = 0; s < fit_.spheres().size(); ++s) {
@@ -100,7 +99,6 @@ PageFrame PageFrames::run(const std::vector<float>& positions, bool is_next) {
     out.spheres.insert(out.spheres.end(), {sphere.x, sphere.y, sphere.z, sphere.radius, detect_.spheres()[s].radius});
   }
   const Player::TriangleDetection found = detect_.detect_triangles(positions, is_next);
-  out.contacts_us = found.us;
   out.penetrations = found.penetrations;
   for (const Pair& pair : found.pairs) out.contacts.push_back({pair.a, pair.b});
   return out;

@@ -33,12 +33,10 @@ PageParts page_parts(const OpenAsset& asset);
 // What one frame shows. Triangles are source triangle numbers.
 struct PageFrame {
   std::vector<std::array<std::uint32_t, 2>> contacts;  // triangles of the skin that intersect
-  double contacts_us;
   std::vector<Penetration> penetrations;                // deepest first
   std::vector<float> spheres;                           // a sphere's x, y, z, fit radius, detect radius
   std::vector<std::array<std::uint16_t, 2>> fit_pairs;  // spheres that touch at these radii
   std::vector<std::array<std::uint16_t, 2>> detect_pairs;
-  double refit_us;
   Detection chains, all_pairs;  // at the radius the page starts with
 };
 

@@ -23,19 +23,17 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// Tests, pairs and microseconds of each frame.
+// Tests and pairs of each frame. No times: the same input makes the same page.
 class Costs {
  public:
   void add(const Detection& detection) {
     tests_.push_back(static_cast<std::uint32_t>(detection.tests));
     pairs_.push_back(static_cast<std::uint32_t>(detection.raw_pairs));
-    us_.push_back(static_cast<float>(detection.us));
   }
-  ordered_json json() const { return {{"tests", base64(tests_)}, {"pairs", base64(pairs_)}, {"us", base64(us_)}}; }
+  ordered_json json() const { return {{"tests", base64(tests_)}, {"pairs", base64(pairs_)}}; }
 
  private:
   std::vector<std::uint32_t> tests_, pairs_;
-  std::vector<float> us_;
 };
 
 ordered_json parsed_or_null(const std::string& text) {
@@ -92,7 +90,7 @@ ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& optio
                          const std::function<void(int)>& progress) {
   const int frames = animated.frame_count();
   PageFrames runtime(animated, options.radius);
-  std::vector<float> numbers, times, seconds, spheres, refit_us, contacts_us;
+  std::vector<float> numbers, times, seconds, spheres;
   FrameLists<std::array<std::uint32_t, 2>> contacts;
   FrameLists<PenetrationEntry> penetrations;
   FrameLists<std::array<std::uint16_t, 2>> fit_pairs, detect_pairs, collider_pairs;
@@ -115,10 +113,8 @@ ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& optio
     if (options.colliders != nullptr) collider_pairs.add(collider_pairs_of(*options.colliders, deformation));
     chains.add(frame.chains);
     all_pairs.add(frame.all_pairs);
-    refit_us.push_back(static_cast<float>(frame.refit_us));
-    contacts_us.push_back(static_cast<float>(frame.contacts_us));
     // Base64 has four letters for three bytes.
-    constexpr std::size_t kFigures = 14 * sizeof(float);  // times, counts and costs of a frame
+    constexpr std::size_t kFigures = 10 * sizeof(float);  // times, counts and tests of a frame
     const std::size_t bytes = times.size() * kFigures + motion.bytes() + spheres.size() * sizeof(float) +
                               contacts.bytes() + penetrations.bytes() + fit_pairs.bytes() + detect_pairs.bytes();
     check_size(animated, still, static_cast<double>(bytes) * 4 / 3 / (i + 1) * frames, options);
@@ -134,8 +130,6 @@ ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& optio
           {"fit", fit_pairs.json()},
           {"detect", detect_pairs.json()},
           {"colliders", collider_pairs.json()},
-          {"contacts_us", base64(contacts_us)},
-          {"refit_us", base64(refit_us)},
           {"chains", chains.json()},
           {"all_pairs", all_pairs.json()}};
 }

@@ -2,24 +2,13 @@ import uPlot from 'uplot';
 import { css, h } from './dom.js';
 import { number } from './format.js';
 
-// Per frame: tests, pairs and microseconds of the method's two ways, chain by chain and all pairs of spheres, and of exact
-// contacts of the skin. The line is the frame shown; a click goes to a frame.
+// Per frame: tests and pairs of the method's two ways, chain by chain and all pairs of spheres. The line is the frame shown; a click goes to a frame.
 
 const PADDING = 12; // pixels, as in style.css
 const TITLE = 28;
 const CHARTS = [
   { title: 'Tests', series: [['chains', 'chains', (c) => c.chains.tests], ['all pairs', 'all-pairs', (c) => c.allPairs.tests]] },
   { title: 'Pairs', series: [['chain by chain', 'chains', (c) => c.chains.pairs], ['all pairs', 'all-pairs', (c) => c.allPairs.pairs]] },
-  {
-    title: 'Time, µs',
-    digits: 2,
-    series: [
-      ['chains', 'chains', (c) => c.chains.us],
-      ['all pairs', 'all-pairs', (c) => c.allPairs.us],
-      ['refit', 'refit', (c) => c.refit],
-      ['skin', 'skin', (c) => c.skin],
-    ],
-  },
 ];
 
 function options(series, size) {
@@ -48,7 +37,7 @@ function options(series, size) {
   };
 }
 
-function chart({ title, digits, series }, store, model, size) {
+function chart({ title, series }, store, model, size) {
   const frames = Array.from({ length: model.frameCount }, (_, i) => i);
   const values = series.map(([, , read]) => read(model.costs));
   const readouts = series.map(() => h('output', {}));
@@ -62,7 +51,7 @@ function chart({ title, digits, series }, store, model, size) {
   });
   const follow = ({ frame }) => {
     line.style.left = `${plot.valToPos(frame, 'x')}px`;
-    readouts.forEach((readout, i) => (readout.textContent = digits ? (values[i][frame] ?? NaN).toFixed(digits) : number(values[i][frame])));
+    readouts.forEach((readout, i) => (readout.textContent = number(values[i][frame])));
   };
   // The first layout comes after this turn; a redraw before it would lose the scales.
   queueMicrotask(() => {

@@ -98,10 +98,10 @@ function readLook(look) {
 }
 
 // Lists of a number a frame, as the charts want them.
-function readCosts({ chains, all_pairs: allPairs, refit_us: refit, contacts_us: skin }) {
-  const list = (text, Type) => [...decode(text, Type)];
-  const costs = ({ tests, pairs, us }) => ({ tests: list(tests, Uint32Array), pairs: list(pairs, Uint32Array), us: list(us, Float32Array) });
-  return { chains: costs(chains), allPairs: costs(allPairs), refit: list(refit, Float32Array), skin: list(skin, Float32Array) };
+function readCosts({ chains, all_pairs: allPairs }) {
+  const list = (text) => [...decode(text, Uint32Array)];
+  const costs = ({ tests, pairs }) => ({ tests: list(tests), pairs: list(pairs) });
+  return { chains: costs(chains), allPairs: costs(allPairs) };
 }
 
 export function readModel(data) {
