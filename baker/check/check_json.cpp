@@ -5,6 +5,7 @@
 #include "report/json_text.h"
 #include "report/number_json.h"
 #include "report/vec3_json.h"
+#include "write/version.h"
 
 namespace spherechain::baker {
 namespace {
@@ -49,7 +50,8 @@ std::string check_json(const Verdict& verdict) {
   const Summary& s = verdict.summary;
   ordered_json clips = ordered_json::array();
   for (const JudgedClip& clip : verdict.clips) clips.push_back(clip_json(clip));
-  return json_text({{"summary",
+  return json_text({{"writer", kWriter},
+                    {"summary",
                      {{"characters", s.characters},
                       {"clips", s.clips},
                       {"frames", s.frames},

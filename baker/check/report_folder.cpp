@@ -6,6 +6,7 @@
 #include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 
 #include "check/formats.h"
@@ -15,7 +16,7 @@
 #include "report/json_text.h"
 #include "report/number_json.h"
 #include "report/vec3_json.h"
-#include "write/write.h"
+#include "write/own_folder.h"
 
 namespace spherechain::baker {
 namespace {
@@ -133,73 +134,34 @@ class HeatMap {
   std::map<std::uint32_t, HeatSpot> spots_;
 };
 
-// A page refers to what it shows: nothing else stays in `data`.
-class DataFolder {
- public:
-  DataFolder(const fs::path& report, const Store& store) : report_(report), store_(store) {}
+bool is_page(const std::string& name) { return name == "index.html" || name == "clip.html" || name == "library.js"; }
 
-  void take(const std::string& key, const char* kind) {
-    const fs::path to = report_ / (data_name(key) + kind);
-    kept_.insert(to.lexically_relative(report_).string());
-    std::error_code error;
-    if (fs::exists(to, error)) return;
-    fs::create_directories(to.parent_path(), error);
-    const fs::path from = store_.path(key, kind);
-    fs::create_hard_link(from, to, error);
-    if (error) fs::copy_file(from, to, fs::copy_options::overwrite_existing, error);
-    if (error) throw Error(ExitCode::kFile, to.string() + ": cannot be written (" + error.message() + ")");
-  }
-
-  void write(const std::string& name, const std::string& bytes) {
-    kept_.insert(name);
-    write_atomically(report_ / name, bytes);
-  }
-
-  void remove_others() const {
-    std::error_code ignored;
-    std::vector<fs::path> others;
-    for (const auto& entry : fs::recursive_directory_iterator(report_ / "data", ignored)) {
-      if (entry.is_regular_file(ignored) && kept_.count(entry.path().lexically_relative(report_).string()) == 0)
-        others.push_back(entry.path());
-    }
-    for (const fs::path& other : others) fs::remove(other, ignored);
-  }
-
- private:
-  fs::path report_;
-  const Store& store_;
-  std::set<std::string> kept_;
-};
+constexpr const char* kKind = "check report";
 
 }  // namespace
 
-void check_report_folder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw Error(ExitCode::kFile, folder.string() + ": cannot be created (" + error.message() + ")");
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    const std::string name = entry.path().filename().string();
-    if (fs::exists(folder / "library.js") || name[0] == '.' || name == "data") continue;
-    throw Error(ExitCode::kFile, folder.string() + ": holds other files than a report (name an empty folder)");
-  }
-  if (error) throw Error(ExitCode::kFile, folder.string() + ": cannot be read (" + error.message() + ")");
-}
+void check_report_folder(const fs::path& folder) { OwnFolder::check(folder, kKind, is_page); }
 
 bool write_report(const fs::path& folder, const Verdict& verdict, const Store& store, const fs::path& pages) {
-  DataFolder data(folder, store);
+  OwnFolder report(folder, kKind);
+  const auto take = [&](const std::string& key, const std::string& kind) {
+    const std::optional<std::string> bytes = store.read(key, kind.c_str());
+    if (!bytes) throw Error(ExitCode::kFile, store.folder().string() + ": results are lost (run the check again)");
+    report.write(data_name(key) + kind, *bytes);
+  };
   ordered_json clips = ordered_json::array();
   std::map<std::string, HeatMap> heat;      // by character
   std::map<std::string, std::string> fits;  // by body
   for (const JudgedClip& clip : verdict.clips) {
     clips.push_back(page_clip(clip));
     if (!clips.back().contains("data")) continue;
-    data.take(clip.clip.key, kPageFile);
-    data.take(clip.clip.key, picture_file(picture_of(clip)).c_str());
-    data.take(clip.clip.character_key, kPageFile);
+    take(clip.clip.key, kPageFile);
+    take(clip.clip.key, picture_file(picture_of(clip)));
+    take(clip.clip.character_key, kPageFile);
     fits[data_name(clip.clip.character_key)] = clip.fit;
     heat[clip.clip.character_key].add(store.read(clip.clip.key, kHeatFile).value_or(""), clip);
   }
-  for (const auto& [character, map] : heat) data.write(data_name(character) + "_heat.js", map.page());
+  for (const auto& [character, map] : heat) report.write(data_name(character) + "_heat.js", map.page());
   const Summary& s = verdict.summary;
   const ordered_json library{{"fails", verdict.fails},
                              {"characters", s.characters},
@@ -211,15 +173,16 @@ bool write_report(const fs::path& folder, const Verdict& verdict, const Store& s
                              {"errors", s.errors},
                              {"fits", fits},
                              {"rows", std::move(clips)}};
-  write_atomically(folder / "library.js", "spherechain.library = " + json_text(library, -1) + ";\n");
-  data.remove_others();
+  report.write("library.js", "spherechain.library = " + json_text(library, -1) + ";\n");
+  bool has_pages = true;
   for (const std::string page : {"index.html", "clip.html"}) {
     const fs::path made = pages / ("report_" + page);
     std::error_code ignored;
-    if (!fs::is_regular_file(made, ignored)) return false;
-    write_atomically(folder / page, read_file(made.string()));
+    has_pages = has_pages && fs::is_regular_file(made, ignored);
+    if (has_pages) report.write(page, read_file(made.string()));
   }
-  return true;
+  report.finish();
+  return has_pages;
 }
 
 }  // namespace spherechain::baker

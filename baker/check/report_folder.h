@@ -7,7 +7,7 @@
 
 namespace spherechain::baker {
 
-// Throws Error(kFile) where `folder` holds something that is no report, or cannot be made.
+// Before the check: throws Error(kFile) where `folder` cannot be made, or holds what is not this tool's (OwnFolder).
 void check_report_folder(const std::filesystem::path& folder);
 
 // Pages that open from disk: index.html is the library, clip.html a clip with its events. They load `library.js`, and

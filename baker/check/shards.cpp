@@ -11,6 +11,7 @@
 #include "mesh/error.h"
 #include "play/asset_file.h"
 #include "report/json_text.h"
+#include "write/version.h"
 #include "write/write.h"
 
 namespace spherechain::baker {
@@ -18,8 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
-
-constexpr const char* kShardFile = "shard.json";
 
 ordered_json rules_json(const Rules& rules) {
   ordered_json allow = ordered_json::array();
@@ -86,7 +85,8 @@ std::string to_bytes(const ShardResult& result) {
                      {"key", c.key},
                      {"character_key", c.character_key}});
   }
-  return json_text({{"shard", result.shard.index},
+  return json_text({{"writer", kWriter},
+                    {"shard", result.shard.index},
                     {"of", result.shard.count},
                     {"characters", std::move(characters)},
                     {"clips", std::move(clips)}},

@@ -17,6 +17,8 @@ struct ShardResult {
 
 // The store in a shard's folder.
 inline constexpr const char* kShardStore = "results";
+// The file that names the results, in that folder.
+inline constexpr const char* kShardFile = "shard.json";
 
 // Writes the folder, with the results that are in `store`: that in it or another. Throws Error(kFile).
 void write_shard(const std::string& folder, const ShardResult& result, const Store& store);

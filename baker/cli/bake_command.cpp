@@ -29,10 +29,10 @@ ExitCode run_bake(const BakeOptions& options) {
   check_regular_file(options.input);
   check_outputs(with_source({{"--config", options.config}, {"--roles", options.roles}, {"--edits", options.edits}},
                             "INPUT", options.input),
-                {{"-o", options.output}, {"--report", options.report}, {"--preview", options.preview}});
-  check_replaceable(options.output, "SPHC", "an asset", options.force, 4);
-  check_replaceable_json(options.report, options.force, "--force replaces it");
-  check_replaceable(options.preview, "glTF", "a GLB file", options.force);
+                {{"-o", options.output, FileKind::kAsset},
+                 {"--report", options.report, FileKind::kJson},
+                 {"--preview", options.preview, FileKind::kGlb}},
+                options.force ? Force::kGiven : Force::kOffered);
 
   Bake result;
   std::string preview;

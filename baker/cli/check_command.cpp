@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <optional>
 #include <thread>
 
 #include "check/formats.h"
@@ -17,6 +18,7 @@
 #include "fix/fix_library.h"
 #include "import/notes.h"
 #include "play/asset_file.h"
+#include "write/work_folder.h"
 #include "write/write.h"
 
 namespace spherechain::baker {
@@ -55,6 +57,28 @@ void check_usage(const CheckOptions& options) {
     throw Error(ExitCode::kUsage,
                 "--merge: takes rules, motions and results from the shards (give --config, --motion "
                 "and --cache to these)");
+  }
+}
+
+// Its results have names that are hashes; nothing is deleted.
+void check_shard_folder(const std::string& folder, const std::vector<CommandFile>& inputs) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw Error(ExitCode::kFile, folder + ": cannot be created (" + error.message() + ")");
+  check_outputs(inputs, {{"-o", (fs::path(folder) / kShardFile).string(), FileKind::kJson}}, Force::kNone);
+}
+
+void check_folders(const CheckOptions& options) {
+  const std::vector<std::pair<const char*, std::string>> folders{
+      {"-o", options.output}, {"--fix", options.fix}, {"--cache", options.cache}};
+  for (std::size_t i = 0; i < folders.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const auto& [name, folder] = folders[i];
+      const auto& [other_name, other] = folders[j];
+      if (folder.empty() || other.empty() || fs::weakly_canonical(folder) != fs::weakly_canonical(other)) continue;
+      throw Error(ExitCode::kUsage,
+                  folder + ": " + other_name + " and " + name + " are the same folder (name another)");
+    }
   }
 }
 
@@ -128,27 +152,25 @@ ExitCode run_check(const CheckOptions& options) {
   std::vector<CommandFile> inputs{{"--config", options.config}, {"--motion", options.motion}};
   for (const std::string& path : options.library) inputs.push_back({"LIBRARY", path});
   const std::string accepted = options.accept ? options.baseline : "";
-  check_outputs(
-      inputs,
-      {{"--baseline", accepted}, {"--json", options.json}, {"--junit", options.junit}, {"--sarif", options.sarif}});
-  for (const std::string& file : {accepted, options.json, options.sarif}) {
-    check_replaceable_json(file, false, "delete it, or name another");
-  }
+  check_outputs(inputs,
+                {{"--baseline", accepted, FileKind::kJson},
+                 {"--json", options.json, FileKind::kJson},
+                 {"--junit", options.junit, FileKind::kJunit},
+                 {"--sarif", options.sarif, FileKind::kSarif}},
+                Force::kNone);
+  if (!options.shard.empty()) check_shard_folder(options.output, inputs);
+  check_folders(options);
   if (options.merge) {
     check_report_folder(options.output);
-    const fs::path work = fs::path(options.output) / ".results";
-    const Store store(work);
+    const WorkFolder work(options.output);
+    const Store store(work.path());
     const ShardResult all = merge_shards(options.library, store);
     const Verdict verdict = report(options, all.clips, all.characters, store, pages);
-    fs::remove_all(work);
     return code_of(verdict);
   }
   const std::vector<LibraryCharacter> library = read_library(options.library, options.motion, config);
   if (!options.fix.empty()) {
     check_fix_folder(library, options.fix);
-    if (fs::weakly_canonical(options.fix) == fs::weakly_canonical(options.output)) {
-      throw Error(ExitCode::kUsage, "--fix: " + options.fix + " is the report's folder, too (name another)");
-    }
   }
   RunOptions run;
   run.fps = options.fps;
@@ -167,11 +189,11 @@ ExitCode run_check(const CheckOptions& options) {
     return ExitCode::kDone;
   }
   check_report_folder(options.output);
-  const fs::path work = options.cache.empty() ? fs::path(options.output) / ".results" : fs::path(options.cache);
-  const Store store(work);
+  std::optional<WorkFolder> work;
+  if (options.cache.empty()) work.emplace(options.output);
+  const Store store(work ? work->path() : fs::path(options.cache));
   const Verdict verdict = report(options, check(store), rules_of(library), store, pages);
   take_notes();  // the report has them
-  if (options.cache.empty()) fs::remove_all(work);
   if (!options.fix.empty()) {
     RunProgress progress;
     const Baseline baseline = options.baseline.empty() ? Baseline() : read_baseline(options.baseline, false);

@@ -91,21 +91,6 @@ void check_ending(const ExportFormat& format, const std::string& output) {
                                             fmt::join(format.endings, " or ")));
 }
 
-// What this tool wrote says so: texts in their first lines, a GLB in the names of what was added.
-bool is_ours(const std::string& file) {
-  constexpr std::size_t kFirstLines = 4096;
-  std::string bytes = read_file(file);
-  if (bytes.starts_with("glTF")) return bytes.find(fmt::format("\"name\":\"{}", kOwnName)) != std::string::npos;
-  bytes.resize(std::min(bytes.size(), kFirstLines));
-  return bytes.find("spherechain") != std::string::npos;
-}
-
-void check_ours(const std::string& file, bool force) {
-  std::error_code ignored;
-  if (force || !fs::is_regular_file(file, ignored) || fs::file_size(file, ignored) == 0 || is_ours(file)) return;
-  throw Error(ExitCode::kFile, file + ": is there already, and not of this tool (--force replaces it)");
-}
-
 void say_how_sure(const PartFilter& filter) {
   double at_most = 0;
   for (const FilteredPair& pair : filter.pairs) {
@@ -147,12 +132,14 @@ ExitCode run_export(const ExportOptions& options) {
   const ExportFormat& format = format_of(options.format);
   const std::vector<CommandFile> inputs =
       with_source({{"ASSET", options.asset}, {"--filter", options.filter}}, "--source", options.source);
-  check_outputs(inputs, {{"--output", options.output}});
+  const FileKind kind = format.of_source != nullptr ? FileKind::kGlb : FileKind::kColliders;
+  const Force force = options.force ? Force::kGiven : Force::kOffered;
+  std::vector<OutputFile> outputs{{"--output", options.output, kind}};
+  check_outputs(inputs, outputs, force);
   if (format.of_source != nullptr && options.source.empty()) {
     throw Error(ExitCode::kUsage, "--to " + options.format + " needs --source");
   }
   check_ending(format, options.output);
-  check_ours(options.output, options.force);
   // What is wrong with a file is said before the fit, which takes seconds.
   const OpenAsset asset = open_asset(options.asset);
   std::optional<PartFilter> filter;
@@ -165,17 +152,15 @@ ExitCode run_export(const ExportOptions& options) {
   Colliders colliders = fit_volumes(asset, volume_shape(shape), options.at_most);
   if (filter) ignore_by_filter(*filter, colliders);
   Export made = format.of_source != nullptr ? format.of_source(colliders, source) : format.of_colliders(colliders);
-  std::vector<CommandFile> outputs{{"--output", options.output}};
   for (std::size_t i = 0; i < made.files.size(); ++i) {
     const std::string& ending = made.files[i].ending;
     name_output(made.files[i].bytes, made.stem_mark, options.output);
     if (ending.empty()) continue;
     fs::path name = options.output;
     ending.front() == '.' ? name.replace_extension(ending) : name.replace_filename(ending);
-    outputs.push_back({"the file beside it", name.string()});
-    check_ours(outputs.back().path, options.force);
+    outputs.push_back({"the file beside it", name.string(), FileKind::kColliders});
   }
-  check_outputs(inputs, outputs);
+  check_outputs(inputs, outputs, force);
   for (std::size_t i = 0; i < outputs.size(); ++i) write_atomically(outputs[i].path, made.files[i].bytes);
   const ColliderFit fit = measure_fit(asset, colliders);
   say("{} volumes ({}) on {} body parts; {} pairs of parts are not tested\n", fit.volumes, shape, fit.bodies,
@@ -193,7 +178,7 @@ ExitCode run_export(const ExportOptions& options) {
     say("note: the character {}\n", note);
   }
   for (const std::string& note : made.notes) say("note: {}\n", note);
-  for (const CommandFile& file : outputs) say("wrote {}\n", file.path);
+  for (const OutputFile& file : outputs) say("wrote {}\n", file.path);
   return ExitCode::kDone;
 }
 

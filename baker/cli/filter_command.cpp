@@ -78,8 +78,7 @@ ExitCode run_filter(const FilterOptions& options) {
   check_outputs(
       with_motion(with_source({{"ASSET", options.asset}, {"--limits", options.limits}}, "--source", options.source),
                   recording),
-      {{"--output", options.output}});
-  check_replaceable_json(options.output, false, "delete it, or name another");
+      {{"--output", options.output, FileKind::kJson}}, Force::kNone);
   const FrameChoice own_frames{0, 0};
   AnimatedAsset animated(options.asset, options.source, {}, own_frames);
   animated.check_clusters();

@@ -14,6 +14,7 @@
 #include "fix/fix_character.h"
 #include "motion/sequence.h"
 #include "page/page_of_two.h"
+#include "write/own_folder.h"
 #include "write/write.h"
 
 namespace spherechain::baker {
@@ -21,13 +22,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void make_folder(const std::string& path) {
-  std::error_code failed;
-  fs::create_directories(path, failed);
-  if (failed) throw Error(ExitCode::kFile, path + ": no such folder can be made (" + failed.message() + ")");
-}
+constexpr const char* kKind = "fix report";
 
-bool is_page(const std::string& name) { return name.starts_with("clip_") && name.ends_with(".html"); }
+bool is_report_file(const std::string& name) {
+  return name == "fix.json" || (name.starts_with("clip_") && name.ends_with(".html"));
+}
 
 struct Pages {
   int written = 0;
@@ -35,10 +34,7 @@ struct Pages {
 };
 
 // Pages of the clips that changed, before and after side by side.
-Pages write_pages(const FixOptions& options, const fs::path& page, const FixedCharacter& fixed) {
-  for (const auto& entry : fs::directory_iterator(options.report)) {
-    if (is_page(entry.path().filename().string())) fs::remove(entry.path());  // of an earlier run
-  }
+Pages write_pages(const FixOptions& options, const fs::path& page, const FixedCharacter& fixed, OwnFolder& report) {
   Pages out;
   if (!fs::is_regular_file(page)) {
     out.notes =
@@ -73,7 +69,7 @@ Pages write_pages(const FixOptions& options, const fs::path& page, const FixedCh
                                what.substr(0, what.rfind(" (")));
       continue;
     }
-    write_atomically(fs::path(options.report) / fmt::format("clip_{}.html", i), html);
+    report.write(fmt::format("clip_{}.html", i), html);
     ++out.written;
   }
   return out;
@@ -85,17 +81,7 @@ bool has_ending(const std::string& file, const char* ending) {
   return own == ending;
 }
 
-// A folder of an earlier run is replaced.
-void check_report(const std::string& folder) {
-  if (!fs::is_directory(folder)) throw Error(ExitCode::kFile, folder + ": is no folder");
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename().string();
-    if (name == "fix.json" || is_page(name)) continue;
-    throw Error(ExitCode::kFile, folder + ": holds other files than a report (name an empty folder)");
-  }
-}
-
-void check_files(const FixOptions& options, const std::string& json, bool writes_bvh) {
+void check_files(const FixOptions& options, bool writes_bvh) {
   check_regular_file(options.input);
   if (writes_bvh && !has_ending(options.motion, ".bvh")) {
     throw Error(ExitCode::kUsage,
@@ -113,24 +99,20 @@ void check_files(const FixOptions& options, const std::string& json, bool writes
   if (is_sequence(options.motion)) {
     throw Error(ExitCode::kUsage, "--motion: " + options.motion + " holds meshes, and no joints to turn");
   }
-  if (fs::exists(options.report)) check_report(options.report);
+  if (!options.report.empty()) OwnFolder::check(options.report, kKind, is_report_file);
   std::vector<CommandFile> inputs{{"--keep", options.keep}, {"--baseline", options.baseline}};
   MotionChoice motion;
   motion.motion = options.motion;
-  check_outputs(with_motion(with_source(std::move(inputs), "INPUT", options.input), motion), {{"-o", options.output}});
-  if (writes_bvh) {
-    check_replaceable(options.output, "HIERARCHY", "a BVH file", options.force);
-  } else {
-    check_replaceable(options.output, "glTF", "a GLB file", options.force);
-  }
-  check_replaceable_json(json, options.force, "--force replaces it");
+  check_outputs(with_motion(with_source(std::move(inputs), "INPUT", options.input), motion),
+                {{"-o", options.output, writes_bvh ? FileKind::kBvh : FileKind::kGlb,
+                  writes_bvh ? options.motion : options.input}},
+                options.force ? Force::kGiven : Force::kOffered);
 }
 
 }  // namespace
 
 ExitCode run_fix(const FixOptions& options) {
   const fs::path page = installed_page("viewer.html");  // now: a long run may outlive its program's file
-  const std::string json = options.report.empty() ? "" : (fs::path(options.report) / "fix.json").string();
   const bool writes_bvh = has_ending(options.output, ".bvh");
   FixJob job;
   job.input = options.input;
@@ -143,7 +125,7 @@ ExitCode run_fix(const FixOptions& options) {
   if (!options.baseline.empty()) job.baseline = read_baseline(options.baseline, false);
   job.parts = options.parts;
   job.mend = {options.budget, options.margin};
-  check_files(options, json, writes_bvh);
+  check_files(options, writes_bvh);
 
   FixedCharacter fixed;
   std::string again;
@@ -152,11 +134,12 @@ ExitCode run_fix(const FixOptions& options) {
     Progress progress("fix " + options.input + ":");
     fixed = fix_character(job, [&](const std::string& doing) { progress.show(doing); });
     write_atomically(options.output, fixed.bytes);
-    if (!json.empty()) {
+    if (!options.report.empty()) {
       progress.show("report");
-      make_folder(options.report);
-      write_atomically(json, fix_json(fixed.clips, fixed.parts));
-      pages = write_pages(options, page, fixed);
+      OwnFolder report(options.report, kKind);
+      report.write("fix.json", fix_json(fixed.clips, fixed.parts));
+      pages = write_pages(options, page, fixed, report);
+      report.finish();
     }
     if (writes_bvh) {
       progress.show("carrying over again");
@@ -172,7 +155,7 @@ ExitCode run_fix(const FixOptions& options) {
     say(stderr, "spherechain: warning: {}: a rule names '{}', which this character has not\n", options.keep, part);
   }
   say("{}{}wrote {}\n", fix_text(fixed.clips, fixed.parts), again, options.output);
-  if (!json.empty()) {
+  if (!options.report.empty()) {
     say("wrote {}: fix.json and {} page{}\n", options.report, pages.written, pages.written == 1 ? "" : "s");
   }
   return leaves_faults(fixed.clips) ? ExitCode::kTargetMissed : ExitCode::kDone;

@@ -4,7 +4,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -24,6 +25,9 @@ void check_folder(const std::string& file, const fs::path& place) {
   std::error_code ignored;
   if (fs::is_directory(file, ignored)) throw Error(ExitCode::kFile, file + ": cannot be written (it is a folder)");
   if (is_written_directly(file)) return;
+  if (fs::exists(place, ignored) && ::access(place.c_str(), W_OK) != 0) {
+    throw Error(ExitCode::kFile, file + ": cannot be replaced (" + std::strerror(errno) + ")");
+  }
   const fs::path folder = fs::absolute(place, ignored).parent_path();
   if (!fs::is_directory(folder, ignored)) {
     throw Error(ExitCode::kFile, file + ": cannot be created (there is no folder " + folder.string() + ")");
@@ -44,42 +48,15 @@ bool same_file(const fs::path& a, const fs::path& b) {
   return !error && place_a == place_b;
 }
 
-void check_other(const char* other, const fs::path& path, const CommandFile& output, const fs::path& place) {
+void check_other(const char* other, const fs::path& path, const OutputFile& output, const fs::path& place) {
   if (!same_file(path, place)) return;
   throw Error(ExitCode::kUsage,
               output.path + ": " + other + " and " + output.name + " are the same file (name another)");
 }
 
-// Does `file` hold `magic` at `offset`? So does an empty file, and one that is not there.
-bool begins_with(const std::string& file, std::string_view magic, std::size_t offset) {
+bool has_no_bytes(const fs::path& file) {
   std::error_code ignored;
-  if (!fs::is_regular_file(file, ignored) || fs::file_size(file, ignored) == 0) return true;
-  std::string there(offset + magic.size(), '\0');
-  std::ifstream(file, std::ios::binary).read(there.data(), static_cast<std::streamsize>(there.size()));
-  const auto same = [](char a, char b) {
-    return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
-  };
-  return std::equal(magic.begin(), magic.end(), there.begin() + static_cast<std::ptrdiff_t>(offset), same);
-}
-
-// Whether it is what play --json, validate --json, bake --report, check, filter or fix wrote: by the first keys of
-// these.
-bool begins_as_table(const std::string& file) {
-  for (const char* start :
-       {"{\n \"backend\":", "{\n \"frames\":", "{\n \"writer\":", "{\n \"summary\":", "{\n \"clips\":",
-        "{\n \"$schema\":", "{\n \"spherechain_baseline\":", "{\n \"spherechain\":"}) {
-    if (begins_with(file, start, 0)) return true;
-  }
-  return false;
-}
-
-// Whether there is a file that a mesh may be read with: not what this tool writes for itself.
-bool may_be_read(const fs::path& file) {
-  std::error_code ignored;
-  if (!fs::is_regular_file(file, ignored)) return false;
-  const std::string name = file.string();
-  return fs::file_size(file, ignored) == 0 ||
-         !(begins_with(name, "SPHC", 4) || begins_with(name, "<!doctype html", 0) || begins_as_table(name));
+  return fs::is_regular_file(file, ignored) && fs::file_size(file, ignored) == 0;
 }
 
 using Files = std::vector<fs::path>;
@@ -120,9 +97,10 @@ std::vector<CommandFile> with_motion(std::vector<CommandFile> inputs, const Moti
   return inputs;
 }
 
-void check_outputs(const std::vector<CommandFile>& inputs, const std::vector<CommandFile>& outputs) {
-  std::vector<CommandFile> others = inputs, replaced;
-  for (const CommandFile& output : outputs) {
+void check_outputs(const std::vector<CommandFile>& inputs, const std::vector<OutputFile>& outputs, Force force) {
+  std::vector<CommandFile> others = inputs;
+  std::vector<OutputFile> foreign, may_be_read;
+  for (const OutputFile& output : outputs) {
     if (output.path.empty()) continue;
     const fs::path place = written_file(output.path);
     check_folder(output.path, place);
@@ -130,27 +108,23 @@ void check_outputs(const std::vector<CommandFile>& inputs, const std::vector<Com
       if (!other.path.empty()) check_other(other.name, other.path, output, place);
     }
     others.push_back({output.name, place.string()});
-    if (may_be_read(place)) replaced.push_back(output);
+    const bool is_own = is_own_file(place, output.kind, output.copy_of);
+    if (!is_own) foreign.push_back(output);
+    if (!is_own || has_no_bytes(place)) may_be_read.push_back(output);
   }
   // To know what meshes are read with takes as long as reading them: not for what is made again and again.
-  if (replaced.empty()) return;
+  if (may_be_read.empty()) return;
   for (const CommandFile& input : inputs) {
     if (!input.is_mesh) continue;
     for (const fs::path& file : files_read_with(input.path)) {
-      for (const CommandFile& output : replaced) check_other(input.name, file, output, written_file(output.path));
+      for (const OutputFile& output : may_be_read) check_other(input.name, file, output, written_file(output.path));
     }
   }
-}
-
-void check_replaceable(const std::string& file, std::string_view magic, const std::string& kind, bool force,
-                       std::size_t offset) {
-  if (force || begins_with(file, magic, offset)) return;
-  throw Error(ExitCode::kFile, file + ": exists and is not " + kind + " (--force replaces it)");
-}
-
-void check_replaceable_json(const std::string& file, bool force, const std::string& advice) {
-  if (force || begins_as_table(file)) return;
-  throw Error(ExitCode::kFile, file + ": exists and is not what spherechain writes there (" + advice + ")");
+  if (foreign.empty() || force == Force::kGiven) return;
+  throw Error(ExitCode::kFile, foreign.front().path + ": exists and is not " + kind_text(foreign.front().kind) +
+                                   " that spherechain wrote (" +
+                                   (force == Force::kOffered ? "--force replaces it" : "move it, or name another") +
+                                   ")");
 }
 
 }  // namespace spherechain::baker

@@ -2,8 +2,9 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
+
+#include "write/own_file.h"
 
 namespace spherechain::baker {
 
@@ -11,7 +12,7 @@ struct MotionChoice;
 
 // What a command asks of its files before the work that takes seconds.
 
-// A file that a command reads or writes, by the name that the usage has for it ("INPUT", "--report"). An empty path
+// A file that a command reads, by the name that the usage has for it ("INPUT", "--config"). An empty path
 // stands for an option that was not given.
 struct CommandFile {
   const char* name;
@@ -26,17 +27,20 @@ std::vector<CommandFile> with_source(std::vector<CommandFile> inputs, const char
 // turn. Throws Error(kFile) where a sequence has none.
 std::vector<CommandFile> with_motion(std::vector<CommandFile> inputs, const MotionChoice& motion);
 
-// No output is an input, a file that a mesh is read with, or another output, under whatever name or link: Error(kUsage)
-// that names both. Each output's folder is there and writable: Error(kFile). Where an output is there already, and not
-// of this tool's making, the meshes are read for it.
-void check_outputs(const std::vector<CommandFile>& inputs, const std::vector<CommandFile>& outputs);
+// A file that a command writes.
+struct OutputFile {
+  const char* name;
+  std::string path;
+  FileKind kind;
+  std::string copy_of = {};  // a file with the same bytes is no loss either
+};
 
-// Nothing is lost to a slip: a file that is there already is of the same kind (its bytes from `offset` on are `magic`,
-// letters' case aside), or empty, or `force` is given. Throws Error(kFile).
-void check_replaceable(const std::string& file, std::string_view magic, const std::string& kind, bool force,
-                       std::size_t offset = 0);
+// Whether the command has --force: to replace a file that is somebody's.
+enum class Force { kNone, kOffered, kGiven };
 
-// The same for a report or a table in JSON: one of those that this tool writes. `advice` says what to do else.
-void check_replaceable_json(const std::string& file, bool force, const std::string& advice);
+// The rule of every output of every command (docs/cli.md). No output is an input, a file that a mesh is read with, or
+// another output, under whatever name or link: Error(kUsage) that names both. Each output's folder is there and
+// writable, and a file that is there already is empty or this tool's, of the same kind: Error(kFile).
+void check_outputs(const std::vector<CommandFile>& inputs, const std::vector<OutputFile>& outputs, Force force);
 
 }  // namespace spherechain::baker

@@ -18,6 +18,7 @@
 #include "report/parts.h"
 #include "report/play_frames.h"
 #include "report/report.h"
+#include "write/version.h"
 
 namespace spherechain::baker {
 namespace {
@@ -91,8 +92,7 @@ std::string frames_text(const AnimatedAsset& animated) {
 
 ExitCode run_play(const PlayOptions& options) {
   check_outputs(with_motion(with_source({{"ASSET", options.asset}}, "--source", options.source), options.motion),
-                {{"--json", options.json}});
-  check_replaceable_json(options.json, false, "delete it, or name another");
+                {{"--json", options.json, FileKind::kJson}}, Force::kNone);
   const bool on_cuda = options.backend == "cuda";
   if (on_cuda && options.mode == "chains") {
     throw Error(ExitCode::kUsage, "--backend cuda: does not test by chains (--mode all_pairs)");
@@ -111,7 +111,8 @@ ExitCode run_play(const PlayOptions& options) {
   std::optional<PlayFile> file;
   if (!options.json.empty()) {
     file.emplace(options.json,
-                 ordered_json{{"backend", on_cuda ? "cuda" : backend_name(target)},
+                 ordered_json{{"writer", kWriter},
+                              {"backend", on_cuda ? "cuda" : backend_name(target)},
                               {"target", on_cuda ? "cuda" : sc_target_name(target)},
                               {"radius", options.radius},
                               {"refit", refit},

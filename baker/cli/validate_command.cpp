@@ -16,8 +16,7 @@ namespace spherechain::baker {
 
 ExitCode run_validate(const ValidateOptions& options) {
   check_outputs(with_motion(with_source({{"ASSET", options.asset}}, "--source", options.source), options.motion),
-                {{"--json", options.json}});
-  check_replaceable_json(options.json, false, "delete it, or name another");
+                {{"--json", options.json, FileKind::kJson}}, Force::kNone);
   ValidateSettings settings;
   settings.radius = options.radius == "fit" ? SC_RADIUS_FIT : SC_RADIUS_DETECT;
   settings.method = options.mode == "chains" ? Method::kChains : Method::kAllPairs;

@@ -63,8 +63,8 @@ void check_with(const ViewOptions& options) {
 ExitCode run_view(const ViewOptions& options) {
   const WithOptions& with = options.with;
   const std::string with_source_file = with.source.empty() ? options.source : with.source;
-  check_outputs(inputs_of(options, with_source_file), {{"-o", options.output}});
-  check_replaceable(options.output, "<!doctype html", "a page", options.force);
+  check_outputs(inputs_of(options, with_source_file), {{"-o", options.output, FileKind::kPage}},
+                options.force ? Force::kGiven : Force::kOffered);
   if (!with.asset.empty()) check_with(options);
   PageOptions page;
   page.template_file = viewer_template().string();

@@ -13,6 +13,7 @@
 #include "export/simple_volumes.h"
 #include "mesh/error.h"
 #include "volumes/volume_json.h"
+#include "write/glb_mark.h"
 
 namespace spherechain::baker {
 
@@ -89,6 +90,7 @@ class PhysicsWriter {
     }
     if (shape_count_ == 0)
       throw Error(ExitCode::kFile, colliders_.source_file + ": no body part follows a bone, so nothing can be written");
+    mark_as_own(json_);
     Export out{{{"", with_json(source_.bytes, json_)}}, {}};
     if (!lost.empty()) out.notes.push_back(fmt::format("left out, for no bone moves it: {}", fmt::join(lost, ", ")));
     if (stretched_ > 0) {

@@ -13,6 +13,7 @@
 #include "export/simple_volumes.h"
 #include "mesh/error.h"
 #include "volumes/volume_json.h"
+#include "write/glb_mark.h"
 
 namespace spherechain::baker {
 
@@ -209,6 +210,7 @@ Export export_vrm(const Colliders& colliders, const SourceGlb& source) {
   VrmLosses losses;
   const std::vector<ColliderGroup> groups = groups_of(colliders, source, is_0 ? as_balls : as_capsule, losses);
   const std::size_t springs = is_0 ? write_vrm_0(json, groups, losses) : write_vrm_1(json, groups, losses);
+  mark_as_own(json);
   return {{{"", with_json(source.bytes, json)}}, notes_of(losses, springs, is_0)};
 }
 

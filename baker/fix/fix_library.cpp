@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <set>
 
 #include "check/workers.h"
 #include "fix/fix_character.h"
 #include "mesh/error.h"
+#include "write/own_file.h"
 #include "write/write.h"
 
 namespace spherechain::baker {
@@ -54,14 +54,6 @@ fs::path mended_file(const fs::path& folder, const LibraryCharacter& character) 
   return out;
 }
 
-bool is_glb_or_new(const fs::path& file) {
-  std::error_code ignored;
-  if (!fs::exists(file, ignored) || fs::file_size(file, ignored) == 0) return true;
-  char magic[4] = {};
-  std::ifstream(file, std::ios::binary).read(magic, sizeof magic);
-  return std::equal(magic, magic + 4, "glTF");
-}
-
 void make_folder_of(const fs::path& file) {
   std::error_code failed;
   fs::create_directories(file.parent_path(), failed);
@@ -90,7 +82,9 @@ void check_fix_folder(const std::vector<LibraryCharacter>& library, const fs::pa
     if (!outputs.insert(place).second) {
       fail(ExitCode::kUsage, ": two characters would be written to it (check them one after another)");
     }
-    if (!is_glb_or_new(file)) fail(ExitCode::kFile, ": exists and is not a GLB file (name another folder)");
+    if (!is_own_file(file, FileKind::kGlb, character.file)) {
+      fail(ExitCode::kFile, ": exists and is not a GLB file that spherechain wrote (name another folder)");
+    }
   }
 }
 

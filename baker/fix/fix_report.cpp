@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "report/json_text.h"
+#include "write/version.h"
 
 namespace spherechain::baker {
 namespace {
@@ -71,6 +72,7 @@ std::string clip_text(const MendedClip& clip, const std::vector<BodyPart>& parts
 
 std::string fix_json(const std::vector<MendedClip>& clips, const std::vector<BodyPart>& parts) {
   ordered_json out;
+  out["writer"] = kWriter;
   out["clips"] = ordered_json::array();
   for (const MendedClip& clip : clips) {
     ordered_json events = ordered_json::array();

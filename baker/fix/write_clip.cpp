@@ -9,6 +9,7 @@
 #include <set>
 
 #include "mesh/error.h"
+#include "write/glb_mark.h"
 
 namespace spherechain::baker {
 namespace {
@@ -196,6 +197,7 @@ std::string with_channels(const std::string& bytes, const std::string& file, con
   }
   if (!glb.json.contains("buffers")) glb.json["buffers"].push_back(ordered_json::object());
   glb.json["buffers"][0]["byteLength"] = glb.binary.size();
+  mark_as_own(glb.json);
   return to_bytes(glb);
 }
 

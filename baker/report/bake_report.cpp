@@ -300,7 +300,7 @@ std::string bake_report_json(const Bake& bake) {
     stages.push_back({{"stage", time.stage}, {"seconds", time.seconds}});
     total += time.seconds;
   }
-  const ordered_json report{{"writer", std::string("spherechain ") + kVersion},
+  const ordered_json report{{"writer", kWriter},
                             {"source", {{"file", bake.character.file}, {"sha256", bake.character.sha256}}},
                             {"settings", ordered_json::parse(to_json(bake.settings))},
                             {"import", import_section(bake)},

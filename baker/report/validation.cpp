@@ -8,6 +8,7 @@
 
 #include "report/json_text.h"
 #include "report/number_json.h"
+#include "write/version.h"
 
 namespace spherechain::baker {
 namespace {
@@ -140,6 +141,7 @@ std::string validation_json(const Validation& validation, const AnimatedAsset& a
   const Score& score = validation.score;
   const AssetInfo info = animated.asset()->info();
   ordered_json out{
+      {"writer", kWriter},
       {"frames", score.frames},
       {"source", {{"file", info.source_file}, {"sha256", info.source_sha256}}},
       {"settings_sha256", info.settings_sha256},

@@ -188,6 +188,92 @@ TEST_CASE("pictures and heat maps show what the rules leave") {
   CHECK(page("--config " + library.path("rules.json")) == std::pair(false, false));
 }
 
+TEST_CASE("check deletes and replaces in its folder only what it wrote there itself") {
+  const Library library;
+  const fs::path report = library.report(), folder = library.folder.path;
+  const auto refused = [&](const std::string& to, const std::string& part) {
+    tool::check_error(tool::run(fmt::format("check {} -o {} {}", library.file.string(), to, shared_cache())), 3,
+                      {part});
+  };
+  // A stranger's pages, and a folder of sources, are no report.
+  for (const char* name : {"web", "web/data", "proj", "proj/data"}) fs::create_directory(folder / name);
+  library.folder.write("web/library.js", "export default 1");
+  library.folder.write("web/data/table.csv", "1,2");
+  refused((folder / "web").string(), "holds other files than a check report");
+  fs::copy(library.file, folder / "proj/data/hero.glb");
+  refused((folder / "proj").string(), "holds other files than a check report");
+  CHECK(tool::files_in(folder / "web") == 2);
+  CHECK(fs::exists(folder / "web/data/table.csv"));
+  CHECK(fs::exists(folder / "proj/data/hero.glb"));
+
+  // A report is filled again: what somebody added stays, what was damaged is written again, the rest is exchanged.
+  const std::string files = fmt::format("--json {0}/a.json --junit {0}/a.xml --sarif {0}/a.sarif", folder.string());
+  REQUIRE(library.check(files).code == 6);
+  fs::copy(report, folder / "first", fs::copy_options::recursive);
+  library.folder.write("report/notes.txt", "mine");
+  library.folder.write("report/data/notes.js", "mine");
+  for (const auto& entry : fs::recursive_directory_iterator(report / "data")) {
+    if (entry.path().filename() == "notes.js" || !entry.is_regular_file()) continue;
+    fs::resize_file(entry.path(), 9);
+  }
+  REQUIRE(library.check(files).code == 6);
+  CHECK(tool::contents(report / "notes.txt") == "mine");
+  CHECK(tool::contents(report / "data/notes.js") == "mine");
+  fs::remove(report / "notes.txt");
+  fs::remove(report / "data/notes.js");
+  const std::string same = fmt::format("diff -r {} {}", report.string(), (folder / "first").string());
+  CHECK(std::system(same.c_str()) == 0);
+  const std::size_t entries = tool::files_in(report);
+
+  // Other rules show other pictures: those of before go, and come back.
+  REQUIRE(library.check("--max-depth 500").code == 0);
+  CHECK(std::system((same + " >/dev/null").c_str()) != 0);
+  REQUIRE(library.check("").code == 6);
+  CHECK(std::system(same.c_str()) == 0);
+  CHECK(tool::files_in(report) == entries);
+
+  // A page that somebody changed is theirs; so are all beside a list that was copied, or names other places.
+  const std::string page = tool::contents(report / "library.js") + "// mine\n";
+  library.folder.write("report/library.js", page);
+  refused(report.string(), "library.js: exists and is not what spherechain wrote into this check report");
+  CHECK(tool::contents(report / "library.js") == page);
+  const std::string list = tool::contents(report / ".spherechain");
+  library.folder.write("web/.spherechain", list);
+  refused((folder / "web").string(), "library.js: exists and is not what spherechain wrote");
+  fs::remove(folder / "web/library.js");
+  const std::string hash = list.substr(list.find("  library.js") - 64, 64);
+  library.folder.write("library.js", tool::contents(folder / "first/library.js"));
+  library.folder.write("web/.spherechain",
+                       list + hash + "  ../library.js\n" + hash + "  " + (folder / "library.js").string() + "\n");
+  CHECK(tool::run(fmt::format("check {} -o {}/web {}", library.file.string(), folder.string(), shared_cache())).code ==
+        6);
+  CHECK(fs::exists(folder / "library.js"));
+  CHECK(tool::contents(folder / "web/data/table.csv") == "1,2");
+  tool::check_error(library.check("--fix " + library.report()), 2, {"-o and --fix are the same folder"});
+}
+
+TEST_CASE("two checks into one report at a time are both right; one that is killed leaves nothing of its own") {
+  const Library library;
+  const fs::path report = library.report();
+  const std::string check = fmt::format("check {} -o {}", library.file.string(), report.string());
+  const tool::Run run = tool::run(
+      fmt::format("{0} & p=$!; {1} {0} >{2}/other; wait $p", check, SPHERECHAIN_TOOL, library.folder.path.string()));
+  CHECK(run.code == 6);
+  CHECK(tool::contents(library.folder.path / "other") == run.out);
+  const std::size_t entries = tool::files_in(report);
+  fs::remove_all(report);
+  // Only the tool: its workers follow by themselves.
+  for (const char* signal : {"KILL", "TERM"}) {
+    tool::run(
+        fmt::format("{0} & p=$!; until ls {1}/.spherechain-*.work >/dev/null 2>&1; do sleep .01; done; kill -{2} $p; "
+                    "wait $p; n=0; while [ -e {1} ] && [ $n -lt 200 ]; do sleep .05; n=$((n+1)); done",
+                    check, report.string(), signal));
+    CHECK(!fs::exists(report));
+  }
+  CHECK(tool::run(check).code == 6);
+  CHECK(tool::files_in(report) == entries);
+}
+
 TEST_CASE("one bad file stops nothing") {
   const Library library;
   library.folder.write("broken.glb", planted_character(kClips).substr(0, 200));
@@ -202,13 +288,13 @@ TEST_CASE("one bad file stops nothing") {
   CHECK(report["clips"][0]["error"].get<std::string>().find("broken.glb: ") != std::string::npos);
   CHECK(events(report, "dip") == "2-5@4:200 new");
   const std::string other = library.folder.write("other.json", "{}").string();
-  tool::check_error(library.check("--json " + other), 3, {"other.json: exists and is not what spherechain writes"});
+  tool::check_error(library.check("--json " + other), 3, {"other.json: exists and is not JSON that spherechain wrote"});
   tool::check_error(library.check("--json " + library.file.string()), 2, {"LIBRARY and --json are the same file"});
   tool::check_error(library.check("--accept"), 2, {"--accept: needs a baseline"});
   tool::check_error(library.check("--shard 4/3"), 2, {"'4/3' is not I/N"});
   tool::check_error(tool::run("check nowhere.glb -o " + library.report()), 3, {"nowhere.glb: there is no such file"});
   tool::check_error(tool::run("check " + library.file.string() + " -o " + library.folder.path.string()), 3,
-                    {"holds other files than a report"});
+                    {"holds other files than a check report"});
 }
 
 TEST_CASE("nothing is computed that is in the cache, whatever killed the run that made it") {

@@ -134,6 +134,9 @@ TEST_CASE("fix: a report folder is written again; what cannot be written is refu
                             (folder.path / "report").string();
   CHECK(tool::run(again).code == 0);
   CHECK(tool::run(again).code == 0);
+  folder.write("report/clip_art.html", "mine");
+  tool::check_error(tool::run(again), 3, {"clip_art.html: exists and is not what spherechain wrote"});
+  CHECK(tool::contents(folder.path / "report/clip_art.html") == "mine");
   const std::string out = " -o " + (folder.path / "out.glb").string();
   Glb still;
   const int wall = mesh_of(still, box(0.5, 1, 1), 0, 0);

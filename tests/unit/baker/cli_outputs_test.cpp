@@ -202,18 +202,18 @@ TEST_CASE("what goes to /dev/stdout goes to where that leads, and takes the name
   REQUIRE(fs::is_symlink("/proc/self/fd/1"));
   const tool::Run to_file = run(play + "/proc/self/fd/1");  // tool::run sends the output to a file
   CHECK_MESSAGE(to_file.code == 0, to_file.error);
-  CHECK(to_file.out.rfind("{\n \"backend\": ", 0) == 0);
+  CHECK(to_file.out.rfind("{\n \"writer\": ", 0) == 0);
   CHECK(to_file.out.find("\n}\nrest pose: 1 frame") != std::string::npos);
   const tool::Run to_pipe = run(play + "/proc/self/fd/1 | cat");
   CHECK(to_pipe.out.find("\n}\nrest pose: 1 frame") != std::string::npos);
   const TemporaryFolder folder;
   fs::create_symlink("/proc/self/fd/1", folder.path / "link");
   const tool::Run by_link = run(fmt::format("{}{}/link", play, folder.path.string()));
-  CHECK(by_link.out.rfind("{\n \"backend\": ", 0) == 0);
+  CHECK(by_link.out.rfind("{\n \"writer\": ", 0) == 0);
   CHECK(by_link.out.find("\n}\nrest pose: 1 frame") != std::string::npos);
   const std::string third = (folder.path / "third").string();
   CHECK(run(fmt::format("{}/dev/fd/3 3>{}", play, third)).code == 0);
-  CHECK(contents(third).rfind("{\n \"backend\": ", 0) == 0);
+  CHECK(contents(third).rfind("{\n \"writer\": ", 0) == 0);
   CHECK(files_in(folder.path) == 2);
 }
 
@@ -292,10 +292,73 @@ TEST_CASE("reports and tables replace those that the tool wrote, and nothing els
   }
   const std::string thesis = folder.write("thesis.json", "{\"years\": 4}").string();
   for (const std::string& command : {play, validate}) {
-    check_error(run(fmt::format("{} --json {}", command, thesis)), 3, {"thesis.json", "exists", "delete it"});
+    check_error(run(fmt::format("{} --json {}", command, thesis)), 3, {"thesis.json", "exists", "move it"});
   }
   const std::string bake = fmt::format("bake {} -o {}/new.sphc --report ", kHumanFile, folder.path.string());
   check_error(run(bake + thesis), 3, {"thesis.json", "exists", "--force"});
   CHECK(contents(thesis) == "{\"years\": 4}");
+  CHECK(files_in(folder.path) == 2);
+}
+
+TEST_CASE("one rule for every output: a file that somebody else wrote is kept, however like the tool's own it is") {
+  const TemporaryFolder folder;
+  const std::string at = folder.path.string();
+  touch(folder, "human.glb");
+  touch(folder, "take.bvh");
+  const std::string gltf = R"({"asset":{"version":"2.0","generator":"not spherechain","extras":{"by":"me"}}})";
+  const std::string glb =
+      std::string("glTF\2\0\0\0\0\0\0\0", 12) + static_cast<char>(gltf.size()) + std::string("\0\0\0JSON", 7) + gltf;
+  const std::string page = "<!doctype html>\n<title>spherechain, a review</title>", bvh = "HIERARCHY\nROOT hip\n",
+                    table = "{\n \"frames\": 3,\n \"writer\": \"somebody\"\n}\n",
+                    sarif = "{\n \"$schema\": \"https://json.schemastore.org/sarif-2.1.0.json\",\n \"runs\": []\n}\n",
+                    junit = "<?xml version=\"1.0\"?>\n<testsuites>\n <testsuite name=\"mine\"/></testsuites>\n";
+  struct Row {
+    const char* command;
+    const char* file;
+    const std::string& foreign;
+  };
+  for (const auto& [command, file, foreign] :
+       std::initializer_list<Row>{{"bake {0}/human.glb -o", "a.sphc", glb},
+                                  {"bake {0}/human.glb -o {0}/out --report", "a.json", table},
+                                  {"bake {0}/human.glb -o {0}/out --preview", "a.glb", glb},
+                                  {"play a.sphc --source {0}/human.glb --json", "a.json", table},
+                                  {"validate a.sphc --source {0}/human.glb --json", "a.json", table},
+                                  {"view a.sphc --source {0}/human.glb -o", "a.html", page},
+                                  {"filter a.sphc --source {0}/human.glb -o", "a.json", table},
+                                  {"export a.sphc --to mjcf -o", "a.xml", junit},
+                                  {"export a.sphc --to unity -o", "a.json", table},
+                                  {"export a.sphc --source {0}/human.glb --to khr -o", "a.glb", glb},
+                                  {"fix {0}/human.glb -o", "a.glb", glb},
+                                  {"fix {0}/human.glb --motion {0}/take.bvh -o", "a.bvh", bvh},
+                                  {"check {0}/human.glb -o {0}/out --json", "a.json", table},
+                                  {"check {0}/human.glb -o {0}/out --junit", "a.xml", junit},
+                                  {"check {0}/human.glb -o {0}/out --sarif", "a.sarif", sarif},
+                                  {"check {0}/human.glb -o {0}/out --accept --baseline", "a.json", table},
+                                  {"check {0}/human.glb --shard 1/1 -o {0} --cache {0}/out #", "shard.json", table}}) {
+    CAPTURE(command);
+    const fs::path path = folder.write(file, foreign);
+    check_error(run(fmt::format("{} {}", fmt::format(fmt::runtime(command), at), path.string())), 3, {path.string()});
+    CHECK(contents(path) == foreign);
+    fs::remove(path);
+  }
+  CHECK(files_in(folder.path) == 2);
+}
+
+TEST_CASE("an output may have any name that the system takes, and is not a folder, a name too long or a full device") {
+  const TemporaryFolder folder;
+  fs::create_directory(folder.path / "folder");
+  const std::string play =
+      fmt::format("play {} --source {} --frames 1 --json ", baked_files().asset.string(), kHumanFile);
+  const auto path = [&](const std::string& name) { return (folder.path / name).string(); };
+  // Bytes that are no UTF-8, an escape sequence, blanks, a first dash.
+  const std::string odd = "-a \xff\x1b[31m b";
+  const tool::Run done = run(fmt::format("{}\"{}\"", play, path(odd)));
+  CHECK_MESSAGE(done.code == 0, done.error);
+  CHECK(contents(path(odd)).starts_with("{\n \"writer\""));
+  check_error(run(play + path("folder")), 3, {"it is a folder"});
+  check_error(run(play + path("new/")), 3, {"new/"});
+  check_error(run(play + path(std::string(300, 'x'))), 3, {"too long"});
+  check_error(run(play + path("folder/../none/x")), 3, {"no folder"});
+  check_error(run(play + "/dev/full"), 3, {"/dev/full: cannot be written"});
   CHECK(files_in(folder.path) == 2);
 }

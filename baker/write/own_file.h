@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+
+namespace spherechain::baker {
+
+// A kind of file that commands write.
+enum class FileKind { kAsset, kJson, kSarif, kJunit, kPage, kGlb, kBvh, kColliders };
+
+// "an asset", "a page".
+const char* kind_text(FileKind kind);
+
+// Whether writing to `file` loses nothing of anybody's: it is not there, is empty, is written directly (a device), or
+// holds the mark of this tool as it writes it into files of this kind, or has the bytes of `copy_of`. A BVH file has no
+// room for a mark.
+bool is_own_file(const std::filesystem::path& file, FileKind kind, const std::filesystem::path& copy_of = {});
+
+// The key in a glTF's asset.extras that marks it. Its value is the tool's version.
+inline constexpr const char* kGltfMark = "spherechain";
+
+}  // namespace spherechain::baker
