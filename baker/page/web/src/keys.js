@@ -1,11 +1,19 @@
 import { h } from './dom.js';
 
-// Keyboard shortcuts, and the page that lists them.
+// Keyboard shortcuts, and the page that lists them. `listed`: labels and texts of keys that another part of the page binds.
 
-export function bindKeys(store, { timeline, stage, help, toggleTheme, reset, deepest, chains, hasMethod, hasChange, hasColliders, posing, editor }) {
+export function bindKeys(store, { timeline, stage, help, toggleTheme, reset, deepest, chains, hasMethod, hasChange, hasColliders, posing, editor, listed }) {
   const flip = (key) => () => store.set({ [key]: !store.state[key] });
   const method = (action) => () => store.state.method && action();
   const allChains = () => store.set({ sets: new Set(chains.every((name) => store.state.sets.has(name)) ? [] : chains) });
+  const methodKeys = [
+    ['M', 'm', 'Method', () => store.showMethod(!store.state.method)],
+    ['G', 'g', 'Method: regions in their colours', method(flip('regions'))],
+    ['U', 'u', "Method: spheres' triangles", method(flip('patches'))],
+    ['P', 'p', 'Method: pivots', method(flip('pivots'))],
+    ['N', 'n', 'Method: numbers of spheres', method(flip('numbers'))],
+    ['C', 'c', 'Method: all chains', method(allChains)],
+  ];
   const keys = [
     ['Space', ' ', 'Play or pause', flip('playing')],
     ['←', 'ArrowLeft', 'Previous frame', () => timeline.step(-1)],
@@ -27,12 +35,8 @@ export function bindKeys(store, { timeline, stage, help, toggleTheme, reset, dee
     ...(hasColliders ? [['V', 'v', 'Colliders', flip('colliders')]] : []),
     ...(posing?.keys ?? []),
     ...(editor?.keys ?? []),
-    ['M', 'm', 'Method', () => hasMethod && store.showMethod(!store.state.method)],
-    ['G', 'g', 'Method: regions in their colours', method(flip('regions'))],
-    ['U', 'u', "Method: spheres' triangles", method(flip('patches'))],
-    ['P', 'p', 'Method: pivots', method(flip('pivots'))],
-    ['N', 'n', 'Method: numbers of spheres', method(flip('numbers'))],
-    ['C', 'c', 'Method: all chains', method(allChains)],
+    ...(hasMethod ? methodKeys : []),
+    ...listed.map(([label, what]) => [label, null, what]),
     ['T', 't', 'Light or dark', toggleTheme],
     ['Esc', 'Escape', 'Let go of the contact, sphere or joint', () => store.set({ pinned: null, pointed: null, contact: null, alarm: null, joint: null })],
     ['?', '?', 'This list', () => help.showModal()],

@@ -135,8 +135,8 @@ function bindStage(stage, store, model, layers, skin) {
   }
 }
 
-// Shows a model in the page. Returns what other parts of a page need of it.
-export function start(model) {
+// Shows a model in the page. Returns what other parts of a page need of it; `listed` are keys that they bind (keys.js).
+export function start(model, listed = []) {
   document.title = `${model.title} · spherechain`;
   $('title').textContent = model.title;
   // Where spheres are no method to study, the skin shows through them.
@@ -191,7 +191,7 @@ export function start(model) {
   $('help-button').addEventListener('click', () => $('help').showModal());
   $('licences').textContent = LICENCES;
   const chains = model.sets.filter((set) => set.kind === 'chain').map((set) => set.name);
-  bindKeys(store, { timeline, stage, help: $('help'), toggleTheme, reset, deepest, chains, hasMethod: model.hasMethod, hasChange: model.change !== null, hasColliders: model.colliders !== null, posing: layers.posing, editor: layers.editor });
+  bindKeys(store, { timeline, stage, help: $('help'), toggleTheme, reset, deepest, chains, hasMethod: model.hasMethod, hasChange: model.change !== null, hasColliders: model.colliders !== null, posing: layers.posing, editor: layers.editor, listed });
   runPlayback(store, model);
 
   window.spherechainViewer = Object.freeze({

@@ -5,7 +5,7 @@ import { h } from '../dom.js';
 import { readModel } from '../model.js';
 import { decodePictures } from '../pictures.js';
 import { start } from '../viewer.js';
-import { fillEvents } from './events_panel.js';
+import { eventKeys, fillEvents } from './events_panel.js';
 import { fillHeat } from './heat_panel.js';
 import { readLink } from './links.js';
 
@@ -69,7 +69,7 @@ async function main() {
   });
   await decodePictures(model);
   const panel = addTab('Events');
-  const viewer = start(model);
+  const viewer = start(model, eventKeys);
   document.title = `${row.character} ${row.clip} · spherechain`;
   fillEvents(panel, { rows, row, fit: fits[row.body], model, ...viewer });
 }

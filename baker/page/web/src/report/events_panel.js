@@ -24,6 +24,13 @@ export function spheresSection(store, fit) {
   return h('div', { id: 'verdict' }, h('span', {}, `Spheres, ${fit}`), button);
 }
 
+// For the list of all keys.
+export const eventKeys = [
+  ['N', 'Next event, in the next clip too'],
+  ['P', 'Previous event, in the previous clip too'],
+  ['A', 'Accept the event, or take that back'],
+];
+
 export function fillEvents(panel, { rows, row, fit, model, store, flyToContact }) {
   const events = row.events;
   const names = model.parts.map(({ name }) => name);
