@@ -19,7 +19,7 @@ std::string marks(const JudgedEvent& judged) {
   const PenetrationClass kind = judged.event.kind;
   if (kind == SC_CLASS_DEEP_FOLD) add("deep fold");
   if (!is_fault(kind)) add(kind == SC_CLASS_REST ? "as at rest" : sc_penetration_class_name(kind));
-  if (judged.before_mm >= 0) add(fmt::format("worse than {:.0f} mm", judged.before_mm));
+  if (judged.before_mm >= 0) add(worse_text(judged));
   if (!judged.rule.empty()) add(judged.rule);
   if (is_fault(kind) && judged.state != EventState::kNew) add(state_name(judged.state));
   return out.empty() ? out : out + "]";
@@ -64,7 +64,11 @@ std::string frames_text(const Event& event) {
                      event.from > event.to ? " (over the loop)" : "");
 }
 
-std::string check_text(const Verdict& verdict) {
+std::string worse_text(const JudgedEvent& judged) {
+  return judged.before_mm < 0 ? std::string() : fmt::format("worse than {:.0f} mm", judged.before_mm);
+}
+
+std::string check_text(const Verdict& verdict, bool lists_accepted) {
   std::vector<std::array<std::string, 4>> rows;
   std::array<std::size_t, 4> widths{};
   std::string errors;
@@ -75,6 +79,7 @@ std::string check_text(const Verdict& verdict) {
     for (const JudgedEvent& judged : clip.events) {
       const Event& event = judged.event;
       if (event.kind == SC_CLASS_TOUCH) continue;
+      if (judged.state == EventState::kAccepted && !lists_accepted) continue;
       const std::string worst = event.from == event.to || judged.state == EventState::kResolved
                                     ? ""
                                     : fmt::format("  (worst at {})", frame_text(event.deepest));

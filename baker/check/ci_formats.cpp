@@ -53,8 +53,9 @@ std::string uri(const std::string& path) {
 
 std::string fault_text(const JudgedEvent& judged) {
   const Event& event = judged.event;
-  return fmt::format("{}: {}, {:.0f} mm deep at frame {}", frames_text(event), parts_text(event), event.depth_mm,
-                     frame_text(event.deepest));
+  const std::string worse = worse_text(judged);
+  return fmt::format("{}: {}, {:.0f} mm deep at frame {}{}", frames_text(event), parts_text(event), event.depth_mm,
+                     frame_text(event.deepest), worse.empty() ? worse : ", " + worse);
 }
 
 std::string testcase(const JudgedClip& clip) {

@@ -43,6 +43,11 @@ bool is_of(const PartMeeting& meeting, const TriangleContact& contact) {
   return meeting.found.part_a == a && meeting.found.part_b == b;
 }
 
+// A fault is worse than what is none, however deep.
+std::pair<PenetrationClass, float> severity(const Penetration& found) {
+  return {is_fault(found.kind) ? found.kind : static_cast<PenetrationClass>(SC_CLASS_REST), found.depth};
+}
+
 bool is_shown(PenetrationClass kind) { return is_fault(kind) || kind == SC_CLASS_TOUCH; }
 
 }  // namespace
@@ -109,11 +114,12 @@ ClipChecker::Triangles ClipChecker::triangles_of(const TriangleContact& contact)
 }
 
 // Every frame's contacts, measured quickly.
-ClipChecker::Frames ClipChecker::look(const ClipFrames& clip) {
+ClipChecker::Frames ClipChecker::look(const ClipFrames& clip, const Told& told) {
   take_sample();
   Frames out{{}, {}, PageMotion(animated_.character(), axes_), false, {}};
   Deformation first;
   for (int i = 0; i < clip.count; ++i) {
+    told(i, clip.count);
     Deformation deformation = animated_.deformation(clip.first + i);
     with_pose(deformation, [&](const sc_pose& pose) {
       const std::vector<TriangleContact>& contacts = player_.find(pose);
@@ -152,36 +158,49 @@ void ClipChecker::measure(const ClipFrames& clip, PartMeeting& meeting, std::vec
 }
 
 // The quick form is seldom less deep than the full one, and a little deeper as a rule: frames are measured in full from
-// the worst on, over all of the event, until none is left that is likely to be worse. A fault is worse than what is
-// none, however deep. An event has class and depth of its worst frame, and no frame is worse than that one.
-void ClipChecker::find_worst(Frames& frames, const ClipFrames& clip, EventSpan& span) {
+// the worst on, over all of the event, until none is left that is likely to be worse.
+std::size_t ClipChecker::worst_of(const std::vector<std::size_t>& all, Frames& frames, const ClipFrames& clip) {
   const auto found = [&](std::size_t m) -> Penetration& { return frames.meetings[m].found; };
-  const std::vector<std::size_t>& all = span.meetings;
   std::vector<std::size_t> order(all.size());  // places in `all`
   std::iota(order.begin(), order.end(), 0);
-  const auto severity = [&](std::size_t m) {
-    return std::pair(is_fault(found(m).kind) ? found(m).kind : SC_CLASS_REST, found(m).depth);
-  };
   std::sort(order.begin(), order.end(), [&](auto l, auto r) {
-    const auto of_l = severity(all[l]), of_r = severity(all[r]);
+    const auto of_l = severity(found(all[l])), of_r = severity(found(all[r]));
     return of_l != of_r ? of_l > of_r : all[l] < all[r];
   });
   const bool may_be_fault = std::any_of(all.begin(), all.end(), [&](auto m) { return is_fault(found(m).kind); });
   const std::size_t limit = may_be_fault ? kFullMeasures : 1, apart = all.size() / (2 * kFullMeasures);
-  span.deepest = all[order[0]];
+  std::size_t worst = all[order[0]];
   std::vector<std::size_t> measured;
   for (const std::size_t i : order) {
     const auto is_near = [&](std::size_t other) { return std::max(i, other) - std::min(i, other) <= apart; };
     if (std::any_of(measured.begin(), measured.end(), is_near)) continue;
     if (measured.size() == limit) break;
-    const bool may_be_worse = severity(all[i]).first > severity(span.deepest).first ||
-                              found(all[i]).depth > kQuickExcess * found(span.deepest).depth;
+    const bool may_be_worse = severity(found(all[i])).first > severity(found(worst)).first ||
+                              found(all[i]).depth > kQuickExcess * found(worst).depth;
     if (!measured.empty() && !may_be_worse) break;
     measured.push_back(i);
     measure(clip, frames.meetings[all[i]], frames.contacts[all[i]]);
-    if (severity(all[i]) > severity(span.deepest)) span.deepest = all[i];
+    if (severity(found(all[i])) > severity(found(worst))) worst = all[i];
   }
-  for (const std::size_t m : all) {
+  return worst;
+}
+
+// An event has class and depth of its worst frame, and no frame is worse than that one. Frames between others never
+// take a touch away: they make an event worse, or leave it as it is.
+void ClipChecker::find_worst(Frames& frames, const ClipFrames& clip, EventSpan& span) {
+  const auto found = [&](std::size_t m) -> Penetration& { return frames.meetings[m].found; };
+  std::vector<std::size_t> whole, between;
+  for (const std::size_t m : span.meetings) {
+    const bool lies_between = animated_.frame_at(clip.first + frames.meetings[m].frame).between > 0;
+    (lies_between ? between : whole).push_back(m);
+  }
+  span.deepest = worst_of(whole.empty() ? between : whole, frames, clip);
+  if (!whole.empty() && !between.empty()) {
+    const std::size_t other = worst_of(between, frames, clip);
+    const bool may_take_over = is_fault(found(other).kind) || found(other).kind == found(span.deepest).kind;
+    if (may_take_over && severity(found(other)) > severity(found(span.deepest))) span.deepest = other;
+  }
+  for (const std::size_t m : span.meetings) {
     found(m).depth = std::min(found(m).depth, found(span.deepest).depth);
     found(m).kind = std::min(found(m).kind, found(span.deepest).kind);
   }
@@ -285,10 +304,12 @@ std::vector<HeatSpot> ClipChecker::heat_of(const Frames& frames) const {
   return out;
 }
 
-ClipCheck ClipChecker::check(std::size_t index) {
+ClipCheck ClipChecker::check(std::size_t index, const Told& told) {
   const ClipFrames& clip = animated_.clips()[index];
-  Frames frames = look(clip);
-  frames.spans = join_events(frames.meetings, clip.count, frames.loops);
+  Frames frames = look(clip, told);
+  std::vector<double> at;
+  for (int i = 0; i < clip.count; ++i) at.push_back(animated_.number(clip.first + i));
+  frames.spans = join_events(frames.meetings, at, frames.loops);
   for (EventSpan& span : frames.spans) find_worst(frames, clip, span);
   ClipCheck out{{clip.count - clip.between, clip.between, clip.fps, frames.loops, {}, {}}, {}, {}, {}};
   for (const EventSpan& span : frames.spans) out.result.events.push_back(event_of(frames, span, clip));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -29,8 +30,10 @@ class ClipChecker {
   // clusters.
   ClipChecker(const AnimatedAsset& animated, Target target);
 
+  // `done` frames of `all` were looked at.
+  using Told = std::function<void(int done, int all)>;
   // All frames of one of animated.clips().
-  ClipCheck check(std::size_t clip);
+  ClipCheck check(std::size_t clip, const Told& told);
 
  private:
   using Triangles = std::array<std::uint32_t, 2>;  // that intersect: of part_a and of part_b
@@ -40,8 +43,9 @@ class ClipChecker {
   static Triangles triangles_of(const TriangleContact& contact);
   template <typename Run>
   void with_pose(const Deformation& deformation, const Run& run);
-  Frames look(const ClipFrames& clip);
+  Frames look(const ClipFrames& clip, const Told& told);
   void measure(const ClipFrames& clip, struct PartMeeting& meeting, std::vector<Triangles>& triangles);
+  std::size_t worst_of(const std::vector<std::size_t>& all, Frames& frames, const ClipFrames& clip);
   void find_worst(Frames& frames, const ClipFrames& clip, struct EventSpan& span);
   Event event_of(const Frames& frames, const struct EventSpan& span, const ClipFrames& clip) const;
   std::vector<HeatSpot> heat_of(const Frames& frames) const;

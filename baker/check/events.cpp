@@ -10,7 +10,18 @@
 namespace spherechain::baker {
 namespace {
 
-bool is_bridged(int last, int next) { return next - last - 1 <= kGapMax; }
+using Parts = std::pair<std::uint32_t, std::uint32_t>;
+
+Parts parts_of(const PartMeeting& meeting) { return {meeting.found.part_a, meeting.found.part_b}; }
+
+bool is_bridged(double last, double next) { return next - last - 1 <= kGapMax; }
+
+void sort_events(std::vector<EventSpan>& spans, const std::vector<PartMeeting>& meetings) {
+  const auto key = [&](const EventSpan& span) {
+    return std::tuple(span.from, parts_of(meetings[span.deepest]), span.to);
+  };
+  std::sort(spans.begin(), spans.end(), [&](const EventSpan& l, const EventSpan& r) { return key(l) < key(r); });
+}
 
 // The last event of a loop goes on as the first where no more than a gap lies between.
 void close_loop(std::vector<EventSpan>& spans, int frames, const std::vector<PartMeeting>& meetings) {
@@ -27,10 +38,10 @@ void close_loop(std::vector<EventSpan>& spans, int frames, const std::vector<Par
 }  // namespace
 
 std::vector<EventSpan> join_events(const std::vector<PartMeeting>& meetings, int frames, bool loops) {
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<EventSpan>> by_parts;
+  std::map<Parts, std::vector<EventSpan>> by_parts;
   for (std::size_t i = 0; i < meetings.size(); ++i) {
     const PartMeeting& meeting = meetings[i];
-    std::vector<EventSpan>& spans = by_parts[{meeting.found.part_a, meeting.found.part_b}];
+    std::vector<EventSpan>& spans = by_parts[parts_of(meeting)];
     if (spans.empty() || !is_bridged(spans.back().to, meeting.frame)) {
       spans.push_back({meeting.frame, meeting.frame, i, {i}});
       continue;
@@ -45,13 +56,53 @@ std::vector<EventSpan> join_events(const std::vector<PartMeeting>& meetings, int
     if (loops) close_loop(spans, frames, meetings);
     out.insert(out.end(), spans.begin(), spans.end());
   }
-  std::sort(out.begin(), out.end(), [&](const EventSpan& l, const EventSpan& r) {
-    const auto key = [&](const EventSpan& span) {
-      const Penetration& of = meetings[span.deepest].found;
-      return std::tuple(span.from, of.part_a, of.part_b, span.to);
-    };
-    return key(l) < key(r);
-  });
+  sort_events(out, meetings);
+  return out;
+}
+
+std::vector<EventSpan> join_events(const std::vector<PartMeeting>& meetings, const std::vector<double>& numbers,
+                                   bool loops) {
+  const auto number = [&](std::size_t m) { return numbers[static_cast<std::size_t>(meetings[m].frame)]; };
+  std::vector<PartMeeting> whole;
+  std::vector<std::size_t> place;                      // of those in `meetings`
+  std::map<Parts, std::vector<std::size_t>> by_parts;  // all
+  for (std::size_t m = 0; m < meetings.size(); ++m) {
+    by_parts[parts_of(meetings[m])].push_back(m);
+    if (is_between(number(m))) continue;
+    whole.push_back({static_cast<int>(number(m)), meetings[m].found});
+    place.push_back(m);
+  }
+  const int frames = numbers.empty() ? 0 : static_cast<int>(numbers.back()) + 1;
+  std::vector<EventSpan> out = join_events(whole, frames, loops);
+  constexpr std::size_t kNone = ~std::size_t{0};
+  std::vector<std::size_t> event_of(meetings.size(), kNone);
+  for (std::size_t e = 0; e < out.size(); ++e) {
+    out[e].deepest = place[out[e].deepest];
+    for (std::size_t& m : out[e].meetings) event_of[m = place[m]] = e;
+  }
+  // `m` comes right before or after `known`, which is in an event.
+  const auto join = [&](std::size_t m, std::size_t known, bool is_after) {
+    if (event_of[m] != kNone || event_of[known] == kNone) return;
+    if (!is_bridged(number(std::min(m, known)), number(std::max(m, known)))) return;
+    std::vector<std::size_t>& all = out[event_of[known]].meetings;
+    all.insert(std::find(all.begin(), all.end(), known) + (is_after ? 1 : 0), m);
+    event_of[m] = event_of[known];
+  };
+  for (const auto& [parts, of_them] : by_parts) {
+    for (std::size_t i = 1; i < of_them.size(); ++i) join(of_them[i], of_them[i - 1], true);
+    for (std::size_t i = of_them.size(); i-- > 1;) join(of_them[i - 1], of_them[i], false);
+    for (std::size_t i = 0; i < of_them.size(); ++i) {
+      if (i > 0) join(of_them[i], of_them[i - 1], true);
+      if (event_of[of_them[i]] != kNone) continue;
+      event_of[of_them[i]] = out.size();
+      out.push_back({0, 0, of_them[i], {of_them[i]}});
+    }
+  }
+  for (EventSpan& span : out) {
+    span.from = meetings[span.meetings.front()].frame;
+    span.to = meetings[span.meetings.back()].frame;
+  }
+  sort_events(out, meetings);
   return out;
 }
 

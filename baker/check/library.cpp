@@ -37,12 +37,31 @@ bool may_be_motion(const fs::path& file) {
   return kExtensions.count(extension_of(file)) > 0;
 }
 
-// Those below `folder`, by name.
-std::vector<fs::path> files_below(const fs::path& folder, bool (*wanted)(const fs::path&)) {
-  std::vector<fs::path> out;
-  std::error_code ignored;
-  for (const auto& entry : fs::recursive_directory_iterator(folder, ignored)) {
-    if (entry.is_regular_file(ignored) && wanted(entry.path())) out.push_back(entry.path());
+struct Found {
+  fs::path path;
+  std::string error = {};  // of a folder that cannot be read
+
+  bool operator<(const Found& other) const { return path < other.path; }
+};
+
+// What lies in `folder` and below, by name; no file need be readable. Links to folders are not followed: there is no
+// ring of them.
+std::vector<Found> files_below(const fs::path& folder, bool (*wanted)(const fs::path&)) {
+  std::vector<Found> out;
+  std::vector<fs::path> folders{folder};
+  while (!folders.empty()) {
+    const fs::path at = std::move(folders.back());
+    folders.pop_back();
+    std::error_code error, ignored;
+    for (fs::directory_iterator entry(at, error), end; !error && entry != end; entry.increment(error)) {
+      const fs::file_status own = entry->symlink_status(ignored);
+      if (fs::is_directory(own)) {
+        folders.push_back(entry->path());
+      } else if (wanted(entry->path()) && !entry->is_directory(ignored)) {
+        out.push_back({entry->path()});
+      }
+    }
+    if (error) out.push_back({at, at.string() + ": cannot be read (" + error.message() + ")"});
   }
   std::sort(out.begin(), out.end());
   return out;
@@ -57,8 +76,8 @@ Motions motions_at(const fs::path& path) {
   check_there(path);
   if (!fs::is_directory(path)) return {{path.filename().string(), path}};
   Motions out;
-  for (const fs::path& file : files_below(path, may_be_motion))
-    out.push_back({file.lexically_relative(path).string(), file});
+  for (const Found& found : files_below(path, may_be_motion))
+    out.push_back({found.path.lexically_relative(path).string(), found.path, found.error});
   if (out.empty()) throw Error(ExitCode::kFile, path.string() + ": has no recordings (BVH, FBX, glTF or Collada)");
   return out;
 }
@@ -159,8 +178,8 @@ std::vector<LibraryCharacter> read_library(const std::vector<std::string>& paths
       const std::vector<LibraryCharacter> all = Manifest(path).read(config);
       out.insert(out.end(), all.begin(), all.end());
     } else if (fs::is_directory(path)) {
-      for (const fs::path& file : files_below(path, may_be_character))
-        out.push_back({{}, file, {}, config, file.lexically_relative(path)});
+      for (const Found& found : files_below(path, may_be_character))
+        out.push_back({{}, found.path, {}, config, found.path.lexically_relative(path), found.error});
     } else {
       out.push_back({{}, path, {}, config, fs::path(path).filename()});
     }

@@ -16,10 +16,12 @@ struct LibraryCharacter {
   struct Motion {
     std::string name;
     std::filesystem::path file;
+    std::string error = {};  // a folder that cannot be read stands for the recordings in it
   };
   std::vector<Motion> motions;
   CheckConfig config;
   std::filesystem::path relative;  // the file's path below the folder, or the manifest, that has it
+  std::string error = {};          // a folder that cannot be read stands for the characters in it
 };
 
 // The characters of `paths`: files, folders (all files in them and below that a character may be in), and manifests

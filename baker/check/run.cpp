@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <map>
 #include <memory>
 #include <optional>
@@ -14,6 +15,7 @@
 
 #include "check/clip_check.h"
 #include "check/workers.h"
+#include "import/child_process.h"
 #include "import/notes.h"
 #include "import/sha256.h"
 #include "mesh/error.h"
@@ -55,7 +57,8 @@ struct ChosenCharacter {
   const LibraryCharacter* of;
   std::size_t place;
   std::vector<std::size_t> units;  // that are asked for
-  std::string key, error;
+  std::string hash, key, error;
+  bool was_interrupted = false;
 };
 
 // Units weigh what their files weigh: a guess at their frames that every machine makes alike.
@@ -73,7 +76,7 @@ std::vector<ChosenCharacter> choose(const std::vector<LibraryCharacter>& library
   std::vector<ChosenCharacter> out;
   double before = 0;
   for (std::size_t c = 0; c < library.size(); ++c) {
-    ChosenCharacter chosen{&library[c], c, {}, {}, {}};
+    ChosenCharacter chosen{&library[c], c, {}, {}, {}, {}};
     for (std::size_t unit = 0; unit <= library[c].motions.size(); ++unit) {
       const double own = weight(unit == kOwnClips ? library[c].file : library[c].motions[unit - 1].file);
       const int part = std::min(shard.count, 1 + static_cast<int>((before + own / 2) / all * shard.count));
@@ -91,14 +94,18 @@ std::string without_file(const std::string& note, const fs::path& file) {
   return note.starts_with(begin) ? note.substr(begin.size()) : note;
 }
 
-void bake_into(const Store& store, const std::string& key, const LibraryCharacter& character) {
-  take_notes();  // of characters before it
-  const Bake baked = bake(character.file, character.config.bake, {});
+// A key stands for what a file held before it was read.
+void check_unchanged(const fs::path& file, const std::string& hash) {
+  if (hash_of(file) != hash) throw Interrupted(file.string() + ": changed while it was read (run the check again)");
+}
+
+// `file` is the character's.
+void write_bake(const Store& store, const std::string& key, const fs::path& file, const Bake& baked) {
   CharacterResult result;
   result.clips = unique_clip_names(baked.character.rig);
   result.grade = fit_grade_name(baked.quality.grade());
   result.fit = fit_line(baked);
-  for (const std::string& note : take_notes()) result.notes.push_back(without_file(note, character.file));
+  for (const std::string& note : take_notes()) result.notes.push_back(without_file(note, file));
   if (const std::string note = unit_note(baked); !note.empty()) result.notes.push_back(note);
   for (const BodyPart& part : baked.body_parts.parts) result.parts.push_back(part.name);
   store.write(key, kAssetFile, {reinterpret_cast<const char*>(baked.asset.data()), baked.asset.size()});
@@ -113,9 +120,30 @@ std::optional<CharacterResult> read_character(const Store& store, const std::str
 
 bool is_checked(const Store& store, const CheckedClip& clip) {
   const std::optional<std::string> bytes = store.read(clip.key, kResultFile);
-  return bytes && read_clip_result(*bytes) && store.has(clip.key, kPageFile) && store.has(clip.key, kPictureFile) &&
-         store.has(clip.character_key, kPageFile);
+  const std::optional<ClipResult> result = bytes ? read_clip_result(*bytes) : std::nullopt;
+  if (!result || !store.has(clip.character_key, kPageFile)) return false;
+  const std::vector<std::string> kinds = files_of(*result);
+  return std::all_of(kinds.begin(), kinds.end(), [&](const std::string& kind) { return store.has(clip.key, kind); });
 }
+
+// The first letter of a line that a child tells.
+constexpr char kDone = '+', kFailed = '-', kInterrupted = '!', kNow = '~';
+
+// Tells how far a child is, a few times a second.
+class News {
+ public:
+  explicit News(const Task::Tell& tell) : tell_(tell) {}
+  void operator()(const std::string& text) {
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_ < std::chrono::milliseconds(200)) return;
+    last_ = now;
+    tell_(kNow + text);
+  }
+
+ private:
+  const Task::Tell& tell_;
+  std::chrono::steady_clock::time_point last_;
+};
 
 // A clip that is to be checked.
 struct Todo {
@@ -157,18 +185,28 @@ class Run {
     std::deque<Task> tasks;
     std::set<std::string> asked;
     for (ChosenCharacter& character : characters) {
+      character.error = character.of->error;
+      if (!character.error.empty()) continue;
       try {
-        character.key = key_of("character", {hash_of(character.of->file), to_json(character.of->config.bake),
-                                             character.of->file.extension().string()});
+        character.hash = hash_of(character.of->file);
+        character.key = key_of(
+            "character", {character.hash, to_json(character.of->config.bake), character.of->file.extension().string()});
       } catch (const Error& error) {
         character.error = error.what();
         continue;
       }
       if (read_character(store_, character.key) || !asked.insert(character.key).second) continue;
       tasks.push_back({[&](const Task::Tell& tell) { bake_in_child(character, tell); },
-                       [&](const std::string& error) { character.error = error; },
-                       [&](const std::string& failure) {
-                         if (!failure.empty()) character.error = failure_text(character.of->file, failure);
+                       [&](const std::string& line) {
+                         if (line[0] == kNow) return tell_now(character, line.substr(1));
+                         character.error = line.substr(1);
+                       },
+                       [&](const Ending& ending) {
+                         check_store(ending);
+                         if (!ending.failure.empty()) {
+                           character.error = failure_text(character.of->file, ending.failure);
+                           character.was_interrupted = ending.was_interrupted;
+                         }
                          ++done_;
                        }});
     }
@@ -207,26 +245,47 @@ class Run {
 
  private:
   static std::string failure_text(const fs::path& file, const std::string& failure) {
-    return file.string() + ": " + failure;
+    return failure.starts_with(file.string() + ":") ? failure : file.string() + ": " + failure;
   }
 
   void run(const char* doing, std::deque<Task>& tasks, std::size_t all) {
     done_ = 0;
-    run_in_children(tasks, options_.jobs, [&] { progress_({doing, done_, all}); });
+    now_.clear();
+    run_in_children(tasks, options_.jobs, [&] { progress_({doing, done_, all, now_}); });
+  }
+
+  void tell_now(const ChosenCharacter& character, const std::string& what) { now_ = character.of->name + ": " + what; }
+
+  // Children tell what is wrong with a file; an Error that ends one is the store's, and no other child gets on.
+  static void check_store(const Ending& ending) {
+    if (ending.is_error && !ending.was_interrupted) throw Error(ExitCode::kFile, ending.failure);
   }
 
   void bake_in_child(const ChosenCharacter& character, const Task::Tell& tell) const {
+    News news(tell);
+    std::optional<Bake> baked;
+    take_notes();  // of characters before it
     try {
-      bake_into(store_, character.key, *character.of);
+      baked = bake(character.of->file, character.of->config.bake, [&](const std::string& stage) { news(stage); });
+      check_unchanged(character.of->file, character.hash);
+    } catch (const Interrupted&) {
+      throw;
     } catch (const Error& error) {
-      tell(error.what());
+      return tell(kFailed + std::string(error.what()));
     }
+    write_bake(store_, character.key, character.of->file, *baked);
   }
 
   // The clips of a character, checked or not.
   void list(const ChosenCharacter& character, std::vector<CheckedClip>& out) {
     const auto add_row = [&](std::size_t unit, std::size_t number, const std::string& name, const std::string& error) {
-      out.push_back({character.place, unit * kClipsPerUnitMax + number, name, error, {}, character.key});
+      out.push_back({character.place,
+                     unit * kClipsPerUnitMax + number,
+                     name,
+                     error,
+                     {},
+                     character.key,
+                     character.was_interrupted});
     };
     if (!character.error.empty()) return add_row(0, 0, {}, character.error);
     const CharacterResult result = *read_character(store_, character.key);
@@ -240,7 +299,8 @@ class Run {
         continue;
       }
       const LibraryCharacter::Motion& motion = character.of->motions[unit - 1];
-      add_row(unit, 0, motion.name, {});
+      add_row(unit, 0, motion.name, motion.error);
+      if (!motion.error.empty()) continue;
       try {
         out.back().key = key_of("recording", {character.key, motion_hash(motion.file), fps});
       } catch (const Error& error) {
@@ -270,79 +330,100 @@ class Run {
     if (queue->is_empty()) return;
     const auto at = std::make_shared<std::optional<std::size_t>>();  // the clip that it is at
     Task task;
-    task.work = [this, queue](const Task::Tell& tell) { check_in_child(*queue, tell); };
+    task.work = [this, queue, at](const Task::Tell& tell) { check_in_child(*queue, *at, tell); };
     task.told = [this, queue, at](const std::string& line) {
-      if (!*at) {
+      if (line[0] == kNow) {
+        tell_now(queue->character, line.substr(1));
+      } else if (!*at) {
         *at = std::stoul(line);
       } else {
-        end(queue->clips[**at], line);
+        end(queue->clips[**at], line.substr(1), line[0] == kInterrupted);
         at->reset();
       }
     };
-    task.ended = [this, &tasks, queue, at](const std::string& failure) {
+    task.ended = [this, &tasks, queue, at](const Ending& ending) {
+      check_store(ending);
       // What it was at when it failed does not keep the others from being checked.
       if (*at) {
         const Todo& todo = queue->clips[**at];
-        const LibraryCharacter& of = *queue->character.of;
-        const fs::path& file = todo.unit == kOwnClips ? of.file : of.motions[todo.unit - 1].file;
-        end(todo, failure_text(file, failure.empty() ? "ends the check early" : failure));
+        const std::string& failure = ending.failure;
+        end(todo, failure_text(file_of(*queue, todo), failure.empty() ? "ends the check early" : failure),
+            ending.was_interrupted);
       }
-      if (*at || !failure.empty()) add(tasks, queue);
+      if (*at || !ending.failure.empty()) add(tasks, queue);
     };
     tasks.push_back(std::move(task));
   }
 
-  void end(const Todo& todo, const std::string& error) {
+  void end(const Todo& todo, const std::string& error, bool was_interrupted) {
     todo.clip->error = error;
+    todo.clip->was_interrupted = was_interrupted;
     ++done_;
   }
 
-  // Tells two lines for each: its index before, and after it nothing, or what is wrong.
-  void check_in_child(Queue& queue, const Task::Tell& tell) const {
+  static const fs::path& file_of(const Queue& queue, const Todo& todo) {
+    const LibraryCharacter& of = *queue.character.of;
+    return todo.unit == kOwnClips ? of.file : of.motions[todo.unit - 1].file;
+  }
+
+  // Tells two lines for each: its index before, and after it kDone, or what is wrong. `at`: the clip that this process
+  // was at when it was killed.
+  void check_in_child(Queue& queue, std::optional<std::size_t> at, const Task::Tell& tell) const {
     const ChosenCharacter& character = queue.character;
     const FrameChoice frames{0, options_.fps};
     std::optional<AnimatedAsset> animated;
     std::optional<ClipChecker> checker;
-    bool plays_own = true;
-    for (std::size_t i = queue.take(); i < queue.clips.size(); i = queue.take()) {
+    bool plays_own = true, has_page = store_.has(character.key, kPageFile);
+    News news(tell);
+    for (std::size_t i = at ? *at : queue.take(); i < queue.clips.size(); i = queue.take()) {
       const Todo& next = queue.clips[i];
-      tell(std::to_string(i));
+      if (!at) tell(std::to_string(i));
+      at.reset();
+      ClipCheck found;
+      std::string page;
       try {
-        if (!animated) {
-          animated.emplace(store_.path(character.key, kAssetFile).string(), character.of->file.string(), MotionChoice{},
-                           frames);
+        if (!checker) {
+          news("reading");
+          animated.emplace(OpenAsset(store_.read(character.key, kAssetFile).value_or(""), character.of->name),
+                           character.of->name, character.of->file.string(), MotionChoice{}, frames);
+          if (!has_page) page = character_page(*animated);
+          check_unchanged(character.of->file, character.hash);
           checker.emplace(*animated, choose_target("auto"));
         }
         take_notes();  // of the character, and of clips before this one
         if (next.unit != kOwnClips) {
           plays_own = false;
-          animated->play({{}, {}, character.of->motions[next.unit - 1].file.string()}, frames);
+          const fs::path& motion = file_of(queue, next);
+          animated->play({{}, {}, motion.string()}, frames);
+          check_unchanged(motion, motion_hashes_.at(motion.string()));
         } else if (!plays_own) {
           animated->play({}, frames);
           plays_own = true;
         }
-        check_into(*animated, *checker, next, character.key,
-                   next.unit == kOwnClips ? fs::path() : character.of->motions[next.unit - 1].file);
-        tell({});
+        if (options_.continuous) look_between_frames(*animated, choose_target("auto"), next.number, [](int) {});
+        found = checker->check(next.number, [&](int done, int all) {
+          news(fmt::format("{}, frame {} of {}", next.clip->clip, done, all));
+        });
+        const fs::path recording = next.unit == kOwnClips ? fs::path() : file_of(queue, next);
+        for (const std::string& note : take_notes()) found.result.note = without_file(note, recording);
+      } catch (const Interrupted& error) {
+        tell(kInterrupted + std::string(error.what()));
+        continue;
       } catch (const Error& error) {
-        tell(error.what());
+        tell(kFailed + std::string(error.what()));
+        continue;
       }
+      if (!page.empty()) store_.write(character.key, kPageFile, "spherechain.character = " + page + ";\n");
+      has_page = true;
+      write(next.clip->key, found);
+      tell({kDone});
     }
   }
 
   // The result last: where it is, all is.
-  void check_into(AnimatedAsset& animated, ClipChecker& checker, const Todo& next, const std::string& character_key,
-                  const fs::path& recording) const {
-    if (options_.continuous) look_between_frames(animated, choose_target("auto"), next.number, [](int) {});
-    ClipCheck found = checker.check(next.number);
-    for (const std::string& note : take_notes()) found.result.note = without_file(note, recording);
-    const std::string& key = next.clip->key;
-    if (!store_.has(character_key, kPageFile)) {
-      store_.write(character_key, kPageFile, "spherechain.character = " + character_page(animated) + ";\n");
-    }
+  void write(const std::string& key, const ClipCheck& found) const {
     store_.write(key, kPageFile, "spherechain.clip = " + found.page + ";\n");
-    for (std::size_t i = 0; i < found.pictures.size(); ++i)
-      store_.write(key, picture_file(i).c_str(), found.pictures[i]);
+    for (std::size_t i = 0; i < found.pictures.size(); ++i) store_.write(key, picture_file(i), found.pictures[i]);
     store_.write(key, kHeatFile,
                  {reinterpret_cast<const char*>(found.heat.data()), found.heat.size() * sizeof(HeatSpot)});
     store_.write(key, kResultFile, to_bytes(found.result));
@@ -352,6 +433,7 @@ class Run {
   const Store& store_;
   const std::function<void(const RunState&)>& progress_;
   std::size_t done_ = 0;
+  std::string now_;
   std::map<std::string, std::string> motion_hashes_;
 };
 
@@ -372,6 +454,14 @@ std::vector<std::string> unique_clip_names(const SourceRig& rig) {
 
 std::string picture_file(std::size_t number) {
   return number == 0 ? kPictureFile : fmt::format("_{}{}", number, kPictureFile);
+}
+
+std::vector<std::string> files_of(const ClipResult& result) {
+  std::vector<std::string> out{kResultFile, kPageFile, kHeatFile, picture_file(0)};
+  for (const Event& event : result.events) {
+    if (event.picture > 0) out.push_back(picture_file(static_cast<std::size_t>(event.picture)));
+  }
+  return out;
 }
 
 std::vector<CheckedClip> check_library(const std::vector<LibraryCharacter>& library, const RunOptions& options,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "check/library.h"
+#include "check/results.h"
 #include "check/store.h"
 #include "import/source_rig.h"
 
@@ -21,6 +22,7 @@ struct CheckedClip {
   std::string clip;                // name; empty: of a character that has none
   std::string error;               // what kept it from being checked: "FILE: what (what to do)"
   std::string key, character_key;  // in the store: of the clip, of the character
+  bool was_interrupted = false;    // the error is none of the library's: Interrupted
 };
 
 // Part `index` of `count`, from 1, of a library: runs of characters and recordings of about the same size.
@@ -42,10 +44,12 @@ std::vector<std::string> unique_clip_names(const SourceRig& rig);
 struct RunState {
   const char* doing;  // "baking", "checking"
   std::size_t done, all;
+  std::string now = {};  // the latest news of one of those in work: "hero.glb: wrap"
 };
 
 // Brings the results of all clips into `store`: what it has is kept, characters are baked where they must be. Whatever
-// a file does, the others are checked. Returns the clips in the library's order.
+// a file does, the others are checked. Returns the clips in the library's order. Throws Error(kFile) where the store
+// cannot be written.
 std::vector<CheckedClip> check_library(const std::vector<LibraryCharacter>& library, const RunOptions& options,
                                        const Store& store, const std::function<void(const RunState&)>& progress);
 
@@ -55,5 +59,7 @@ inline constexpr const char *kAssetFile = ".sphc", *kResultFile = ".json", *kPag
                             *kHeatFile = ".heat";
 // Of a clip's picture of that number: 0 is kPictureFile.
 std::string picture_file(std::size_t number);
+// Kinds of all files of a clip with that result.
+std::vector<std::string> files_of(const ClipResult& result);
 
 }  // namespace spherechain::baker

@@ -55,20 +55,23 @@ ShardResult read_shard(const fs::path& folder) {
   return out;
 }
 
+// What is whole in `from`. A clip's result without one of its files is none.
 void copy_results(const CheckedClip& clip, const Store& from, const Store& store) {
-  const auto copy = [&](const std::string& key, const char* kind) {
+  const auto copy = [&](const std::string& key, const std::string& kind) {
     if (key.empty() || store.has(key, kind)) return;
-    const fs::path file = from.path(key, kind), to = store.path(key, kind);
-    std::error_code error;
-    if (!fs::exists(file, error)) return;
-    fs::create_directories(to.parent_path(), error);
-    fs::create_hard_link(file, to, error);
-    if (error) fs::copy_file(file, to, error);
-    if (error) throw Error(ExitCode::kFile, to.string() + ": cannot be written (" + error.message() + ")");
+    const std::optional<std::string> bytes = from.read(key, kind);
+    if (!bytes) {
+      throw Error(ExitCode::kFile,
+                  from.folder().string() + ": has lost the results of '" + clip.clip + "' (check this shard again)");
+    }
+    store.write(key, kind, *bytes);
   };
-  for (const char* kind : {kResultFile, kPageFile, kHeatFile}) copy(clip.key, kind);
-  for (std::size_t i = 0; !clip.key.empty() && from.has(clip.key, picture_file(i).c_str()); ++i)
-    copy(clip.key, picture_file(i).c_str());
+  if (!clip.error.empty() || clip.clip.empty()) return;
+  copy(clip.key, kResultFile);
+  const std::optional<ClipResult> result = read_clip_result(store.read(clip.key, kResultFile).value_or(""));
+  if (result) {
+    for (const std::string& kind : files_of(*result)) copy(clip.key, kind);
+  }
   for (const char* kind : {kResultFile, kPageFile}) copy(clip.character_key, kind);
 }
 

@@ -13,37 +13,48 @@ namespace spherechain::baker {
 
 namespace fs = std::filesystem;
 
+namespace {
+
+constexpr std::size_t kSealSize = 65;  // SHA-256 in hex, and the end of a line
+
+std::string seal(const std::string& key, const std::string& kind, std::string_view bytes) {
+  return sha256_of_text((key + kind + "\n").append(bytes)) + "\n";
+}
+
+}  // namespace
+
 Store::Store(fs::path folder) : folder_(std::move(folder)) {
   std::error_code error;
   fs::create_directories(folder_, error);
   if (error) throw Error(ExitCode::kFile, folder_.string() + ": cannot be created (" + error.message() + ")");
 }
 
-// Folders of some hundreds of files each are quick to list.
-fs::path Store::path(const std::string& key, const char* kind) const {
-  return folder_ / key.substr(0, 2) / (key.substr(2, 30) + kind);
-}
-
-bool Store::has(const std::string& key, const char* kind) const {
+std::optional<std::string> Store::read(const std::string& key, const std::string& kind) const {
+  const fs::path file = path(key, kind);
   std::error_code ignored;
-  return fs::is_regular_file(path(key, kind), ignored);
-}
-
-std::optional<std::string> Store::read(const std::string& key, const char* kind) const {
-  std::ifstream in(path(key, kind), std::ios::binary);
-  if (!in.is_open()) return {};
+  if (!fs::is_regular_file(file, ignored)) return {};
+  std::ifstream in(file, std::ios::binary);
+  std::string own_seal(kSealSize, '\0');
   std::ostringstream bytes;
-  bytes << in.rdbuf();
+  if (!in.read(own_seal.data(), static_cast<std::streamsize>(kSealSize))) return {};
+  if (in.peek() != std::ifstream::traits_type::eof()) bytes << in.rdbuf();
+  if (in.bad() || seal(key, kind, bytes.view()) != own_seal) return {};
   return std::move(bytes).str();
 }
 
-void Store::write(const std::string& key, const char* kind, std::string_view bytes) const {
+void Store::write(const std::string& key, const std::string& kind, std::string_view bytes) const {
   const fs::path file = path(key, kind);
   std::error_code error;
   if (fs::create_directories(file.parent_path(), error); error) {
     throw Error(ExitCode::kFile, file.parent_path().string() + ": cannot be created (" + error.message() + ")");
   }
-  write_atomically(file, bytes);
+  if (fs::is_directory(file, error)) fs::remove(file, error);  // an empty one; others are somebody's
+  write_atomically(file, seal(key, kind, bytes).append(bytes));
+}
+
+// Folders of some hundreds of files each are quick to list.
+fs::path Store::path(const std::string& key, const std::string& kind) const {
+  return folder_ / key.substr(0, 2) / (key.substr(2, 30) + kind);
 }
 
 const std::string& tool_identity() {

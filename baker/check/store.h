@@ -8,22 +8,24 @@
 
 namespace spherechain::baker {
 
-// A folder of results, each under a key that is the hash of all that it depends on. A file in it is whole or not there,
-// whenever a process ends; processes that write the same one write the same bytes.
+// A folder of results, each under a key that is the hash of all that it depends on. Each file begins with the hash of
+// its key, its kind and its bytes: a file that was damaged, or belongs elsewhere, is as good as none. Processes that
+// write the same file write the same bytes.
 class Store {
  public:
   // Makes the folder. Throws Error(kFile) where that cannot be done.
   explicit Store(std::filesystem::path folder);
 
   const std::filesystem::path& folder() const { return folder_; }
-  // `kind` is the file's extension, with its dot.
-  std::filesystem::path path(const std::string& key, const char* kind) const;
-  bool has(const std::string& key, const char* kind) const;
-  std::optional<std::string> read(const std::string& key, const char* kind) const;
+  // `kind` is the file's extension, with its dot. No bytes where the file is not there, or not whole.
+  std::optional<std::string> read(const std::string& key, const std::string& kind) const;
+  bool has(const std::string& key, const std::string& kind) const { return read(key, kind).has_value(); }
   // Throws Error(kFile).
-  void write(const std::string& key, const char* kind, std::string_view bytes) const;
+  void write(const std::string& key, const std::string& kind, std::string_view bytes) const;
 
  private:
+  std::filesystem::path path(const std::string& key, const std::string& kind) const;
+
   std::filesystem::path folder_;
 };
 

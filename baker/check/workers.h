@@ -7,15 +7,24 @@
 
 namespace spherechain::baker {
 
+// How a child ended.
+struct Ending {
+  std::string failure;           // empty: it did its work
+  bool is_error = false;         // the work threw an Error
+  bool was_interrupted = false;  // the work threw Interrupted, or the child was killed from outside twice
+};
+
 // Work for a process of its own, so that nothing it meets can end this one.
 struct Task {
   using Tell = std::function<void(const std::string& line)>;
-  std::function<void(const Tell& tell)> work;             // in the child; what it throws ends it
-  std::function<void(const std::string& line)> told;      // here: a line that the child told
-  std::function<void(const std::string& failure)> ended;  // here: empty, or how the child failed; may add tasks
+  std::function<void(const Tell& tell)> work;         // in the child; what it throws ends it
+  std::function<void(const std::string& line)> told;  // here: a line that the child told; ends of lines are spaces
+  std::function<void(const Ending& ending)> ended;    // here; may add tasks
+  bool was_killed = false;
 };
 
-// Runs all tasks, `jobs` at a time. `tick` is called a few times a second. Children end where this process does.
+// Runs all tasks, `jobs` at a time. A child that is killed from outside is started once more. `tick` is called a few
+// times a second. Children end where this process does, or where this throws what `told` or `ended` threw.
 void run_in_children(std::deque<Task>& tasks, int jobs, const std::function<void()>& tick);
 
 }  // namespace spherechain::baker

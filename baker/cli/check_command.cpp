@@ -99,6 +99,7 @@ class RunProgress {
       const int left = static_cast<int>(static_cast<double>(state.all - state.done) / rate);
       text += fmt::format(", {:.1f} a second, {}:{:02} left", rate, left / 60, left % 60);
     }
+    if (!state.now.empty()) text += "; " + state.now;
     progress_.show(text);
   }
 
@@ -115,10 +116,9 @@ std::vector<CharacterRules> rules_of(const std::vector<LibraryCharacter>& librar
 }
 
 Verdict report(const CheckOptions& options, const std::vector<CheckedClip>& clips,
-               const std::vector<CharacterRules>& characters, const Store& store, const fs::path& pages) {
+               const std::vector<CharacterRules>& characters, Baseline baseline, const Store& store,
+               const fs::path& pages) {
   const FailOn fail_on = parse_fail_on(options.fail_on);
-  Baseline baseline;
-  if (!options.baseline.empty()) baseline = read_baseline(options.baseline, options.accept);
   Verdict verdict = judge(clips, characters, store, baseline, options.folds, fail_on);
   if (options.accept) {
     baseline = accept(verdict, baseline);
@@ -129,13 +129,20 @@ Verdict report(const CheckOptions& options, const std::vector<CheckedClip>& clip
   if (!options.junit.empty()) write_atomically(options.junit, check_junit(verdict));
   if (!options.sarif.empty()) write_atomically(options.sarif, check_sarif(verdict));
   if (options.accept) write_atomically(options.baseline, to_bytes(baseline));
-  say("{}", check_text(verdict));
+  say("{}", check_text(verdict, fail_on != FailOn::kNew));
   if (has_pages) {
     say("wrote {}: open it in a browser\n", (fs::path(options.output) / "index.html").string());
   } else {
     say("wrote {}, without pages: they are built where Node and npm are\n", options.output);
   }
   return verdict;
+}
+
+// The library does not fail by what kept a clip from being checked and is none of its faults.
+void check_complete(const std::vector<CheckedClip>& clips) {
+  for (const CheckedClip& clip : clips) {
+    if (clip.was_interrupted) throw Error(ExitCode::kFile, clip.error);
+  }
 }
 
 ExitCode code_of(const Verdict& verdict) { return verdict.fails ? ExitCode::kCheckFailed : ExitCode::kDone; }
@@ -149,6 +156,8 @@ ExitCode run_check(const CheckOptions& options) {
   if (!options.config.empty()) config = read_config(read_file(options.config), options.config, config);
   if (!options.character.empty()) config.bake.import.character = options.character;
   config.rules.max_depth_mm = std::max(config.rules.max_depth_mm, options.max_depth);
+  Baseline baseline;
+  if (!options.baseline.empty()) baseline = read_baseline(options.baseline, options.accept);
   std::vector<CommandFile> inputs{{"--config", options.config}, {"--motion", options.motion}};
   for (const std::string& path : options.library) inputs.push_back({"LIBRARY", path});
   const std::string accepted = options.accept ? options.baseline : "";
@@ -165,7 +174,7 @@ ExitCode run_check(const CheckOptions& options) {
     const WorkFolder work(options.output);
     const Store store(work.path());
     const ShardResult all = merge_shards(options.library, store);
-    const Verdict verdict = report(options, all.clips, all.characters, store, pages);
+    const Verdict verdict = report(options, all.clips, all.characters, baseline, store, pages);
     return code_of(verdict);
   }
   const std::vector<LibraryCharacter> library = read_library(options.library, options.motion, config);
@@ -184,6 +193,7 @@ ExitCode run_check(const CheckOptions& options) {
     run.shard = parse_shard(options.shard);
     const Store store(options.cache.empty() ? fs::path(options.output) / kShardStore : fs::path(options.cache));
     const ShardResult result{run.shard, rules_of(library), check(store)};
+    check_complete(result.clips);
     write_shard(options.output, result, store);
     say("wrote {}: {} clips, shard {} of {}\n", options.output, result.clips.size(), run.shard.index, run.shard.count);
     return ExitCode::kDone;
@@ -192,16 +202,18 @@ ExitCode run_check(const CheckOptions& options) {
   std::optional<WorkFolder> work;
   if (options.cache.empty()) work.emplace(options.output);
   const Store store(work ? work->path() : fs::path(options.cache));
-  const Verdict verdict = report(options, check(store), rules_of(library), store, pages);
+  const std::vector<CheckedClip> clips = check(store);
+  const Verdict verdict = report(options, clips, rules_of(library), baseline, store, pages);
   take_notes();  // the report has them
   if (!options.fix.empty()) {
     RunProgress progress;
-    const Baseline baseline = options.baseline.empty() ? Baseline() : read_baseline(options.baseline, false);
+    if (options.accept) baseline = read_baseline(options.baseline, false);  // what the report wrote
     const std::vector<std::string> lines = fix_library(library, verdict, baseline, options.fix, run.jobs,
                                                        [&](const RunState& state) { progress.show(state); });
     for (const std::string& line : lines) say("{}\n", line);
     if (lines.empty()) say("nothing to mend\n");
   }
+  check_complete(clips);
   return code_of(verdict);
 }
 

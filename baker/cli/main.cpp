@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // spherechain: the command line tool. README.md has the contract.
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
@@ -118,9 +122,20 @@ CLI::Option* add_volumes(CLI::App& command, std::string& volumes, int& at_most, 
       ->check(CLI::Range(1, 10000));
 }
 
+// The next file that is opened would else become a standard stream that is closed, and get what is printed.
+void open_standard_streams() {
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    if (::fcntl(stream, F_GETFD) == -1 && errno == EBADF) {
+      // What is printed then fails, and is no success that nobody sees.
+      static_cast<void>(::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY));
+    }
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
+  open_standard_streams();
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is one that cannot be written
   CLI::App app{"Self-collision of animated characters by sphere chains."};
   app.name("spherechain");
@@ -333,7 +348,9 @@ int main(int argc, char** argv) {
     // Of a command that it does not know the library says only that one is missing.
     const std::vector<std::string> unknown = app.remaining();
     const std::string what = unknown.empty() ? error.what() : "there is no command or option '" + unknown.front() + "'";
-    return fail(ExitCode::kUsage, what + " (try spherechain --help)");
+    const std::vector<CLI::App*> named = app.get_subcommands();
+    const std::string command = named.empty() ? std::string() : named.front()->get_name() + " ";
+    return fail(ExitCode::kUsage, what + " (try spherechain " + command + "--help)");
   }
   try {
     const ExitCode code = run();

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <condition_variable>
+#include <mutex>
 #include <string>
+#include <thread>
 
 namespace spherechain::baker {
 
-// A line on stderr that is replaced by the next; silent where stderr is no terminal.
+// What a command is doing: a line on stderr that is replaced by the next. Where stderr is no terminal, a line every
+// half minute, for logs.
 class Progress {
  public:
   explicit Progress(std::string title);
@@ -15,8 +19,13 @@ class Progress {
   void show(const std::string& text);
 
  private:
-  std::string title_;
-  bool terminal_;
+  void write_lines();
+
+  std::string title_, text_;
+  bool terminal_, is_over_ = false;
+  std::mutex mutex_;
+  std::condition_variable over_;
+  std::thread writer_;  // of lines
 };
 
 }  // namespace spherechain::baker

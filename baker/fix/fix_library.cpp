@@ -108,10 +108,10 @@ std::vector<std::string> fix_library(const std::vector<LibraryCharacter>& librar
                        tell(fix_line(fixed.clips));
                      },
                      [&line, file](const std::string& told) { line = "mended " + file.string() + ": " + told; },
-                     [&line, &job, &done](const std::string& failure) {
-                       if (!failure.empty()) {
-                         const bool is_named = failure.starts_with(job.input + ":");
-                         line = "not mended " + (is_named ? failure : job.input + ": " + failure);
+                     [&line, &job, &done](const Ending& ending) {
+                       if (!ending.failure.empty()) {
+                         const bool is_named = ending.failure.starts_with(job.input + ":");
+                         line = "not mended " + (is_named ? ending.failure : job.input + ": " + ending.failure);
                        }
                        ++done;
                      }});

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "import/import.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <system_error>
 
@@ -92,6 +96,7 @@ void check_regular_file(const std::filesystem::path& path) {
   if (status.type() == std::filesystem::file_type::none) fail("cannot be read (" + error.message() + ")");
   if (std::filesystem::is_directory(status)) fail("is a folder, not a file");
   if (!std::filesystem::is_regular_file(status)) fail("is a pipe or a device, not a file");
+  if (::access(path.c_str(), R_OK) != 0) fail(std::string("cannot be read (") + std::strerror(errno) + ")");
 }
 
 std::vector<std::filesystem::path> files_beside(const std::filesystem::path& source) {

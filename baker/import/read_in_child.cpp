@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "import/read_in_child.h"
 
-#include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/resource.h>
@@ -18,6 +17,7 @@
 #include <new>
 #include <string_view>
 
+#include "import/child_process.h"
 #include "mesh/error.h"
 
 namespace spherechain::baker {
@@ -62,18 +62,12 @@ void limit_memory(rlim_t bytes) {
 #endif
 }
 
-// The child owns nothing: no output, no temporary file, no core file. It ends even where its parent is gone.
-void become_child(int seconds, int megabytes) {
-  for (const int signal : {SIGHUP, SIGINT, SIGQUIT, SIGTERM}) ::signal(signal, SIG_DFL);
+// The child owns nothing: no output, no temporary file, no core file.
+void set_limits(int seconds, int megabytes) {
   const rlimit no_core{0, 0}, time{static_cast<rlim_t>(seconds) + 1, static_cast<rlim_t>(seconds) + 2};
   ::setrlimit(RLIMIT_CORE, &no_core);
   ::setrlimit(RLIMIT_CPU, &time);
   limit_memory(static_cast<rlim_t>(megabytes) << 20);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-  const int nowhere = ::open("/dev/null", O_WRONLY);  // for the last words of importers
-  ::dup2(nowhere, STDOUT_FILENO);
-  ::dup2(nowhere, STDERR_FILENO);
-#endif
 }
 
 std::string outcome_of(const std::function<std::string()>& read) {
@@ -110,36 +104,59 @@ bool receive(int pipe, Clock::time_point end, std::string& bytes) {
   }
 }
 
-}  // namespace
+// What is left of a child: what it sent, whether it ended in time, and how, as waitpid has it.
+struct Ended {
+  std::string bytes;
+  bool is_in_time;
+  int status;
+};
 
-std::string read_in_child(const std::string& file, const std::function<std::string()>& read) {
-  const int seconds = limit(kSecondsName, kImportSeconds), megabytes = limit(kMemoryName, kImportMemory);
-  const auto fail = [&](const std::string& what) { throw Error(ExitCode::kFile, file + ": " + what); };
+Ended run_child(const std::string& file, const std::function<std::string()>& read, int seconds, int megabytes) {
+  const auto fail = [&](const char* what) {
+    throw Interrupted(file + ": cannot be read (" + what + ": " + std::strerror(errno) + ")");
+  };
   int pipe[2];
-  if (::pipe(pipe) != 0) fail(std::string("cannot be read (no pipe: ") + std::strerror(errno) + ")");
-  const pid_t child = ::fork();
+  if (::pipe(pipe) != 0) fail("no pipe");
+  const pid_t parent = ::getpid(), child = ::fork();
   if (child == 0) {
     ::close(pipe[0]);
-    become_child(seconds, megabytes);
+    become_child(parent, SIGKILL);
+    set_limits(seconds, megabytes);
     send(pipe[1], outcome_of(read));
     ::_exit(0);
   }
   const int no_child = errno;
   ::close(pipe[1]);
-  std::string bytes;
-  const bool in_time = child > 0 && receive(pipe[0], Clock::now() + std::chrono::seconds(seconds), bytes);
+  Ended out{{}, false, 0};
+  out.is_in_time = child > 0 && receive(pipe[0], Clock::now() + std::chrono::seconds(seconds), out.bytes);
   ::close(pipe[0]);
-  if (child < 0) fail(std::string("cannot be read (no process: ") + std::strerror(no_child) + ")");
-  if (!in_time) ::kill(child, SIGKILL);
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) continue;
+  errno = no_child;
+  if (child < 0) fail("no process");
+  if (!out.is_in_time) ::kill(child, SIGKILL);
+  while (::waitpid(child, &out.status, 0) < 0 && errno == EINTR) continue;
+  if (WIFSIGNALED(out.status) && WTERMSIG(out.status) == SIGXCPU) out.is_in_time = false;
+  return out;
+}
 
-  if (!in_time) {
+}  // namespace
+
+std::string read_in_child(const std::string& file, const std::function<std::string()>& read) {
+  const int seconds = limit(kSecondsName, kImportSeconds), megabytes = limit(kMemoryName, kImportMemory);
+  const auto fail = [&](const std::string& what) { throw Error(ExitCode::kFile, file + ": " + what); };
+  const auto is_killed = [](const Ended& child) { return child.is_in_time && is_killed_from_outside(child.status); };
+  Ended child = run_child(file, read, seconds, megabytes);
+  if (is_killed(child)) child = run_child(file, read, seconds, megabytes);
+  if (!child.is_in_time) {
     fail("takes more than " + std::to_string(seconds) + " s to read" + std::string(kDamaged) + kSecondsName +
          " allows more)");
   }
-  if (WIFSIGNALED(status) || bytes.empty()) {
-    const char* how = WIFSIGNALED(status) ? ::strsignal(WTERMSIG(status)) : "it ends early";
+  if (is_killed(child)) {
+    throw Interrupted(file + ": its importer was killed twice (" + ::strsignal(WTERMSIG(child.status)) +
+                      "; is memory short? run it again)");
+  }
+  std::string bytes = std::move(child.bytes);
+  if (WIFSIGNALED(child.status) || bytes.empty()) {
+    const char* how = WIFSIGNALED(child.status) ? ::strsignal(WTERMSIG(child.status)) : "it ends early";
     fail(std::string("crashes its importer (") + how + "; the file is damaged: export it again)");
   }
   const auto outcome = static_cast<Outcome>(bytes.back());

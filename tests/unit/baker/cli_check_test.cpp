@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -160,10 +161,12 @@ TEST_CASE("check fails by its rules and its baseline alone") {
   CHECK(events(report, "dip") == "4-6@6:200 accepted");
   CHECK(events(report, "bridged") == "0-4@4:170 new");
   CHECK(events(report, "still") == "0-0@0:90 resolved");
+  CHECK(run.out.find("[accepted]") == std::string::npos);
   CHECK(report["summary"]["new"] == 2);
   CHECK(report["summary"]["resolved"] == 1);
   const std::string junit = tool::contents(library.path("junit.xml"));
   CHECK(junit.find("tests=\"6\" failures=\"2\" errors=\"0\"") != std::string::npos);
+  CHECK(junit.find("170 mm deep at frame 4, worse than 150 mm") != std::string::npos);
   const json sarif = library.read("check.sarif")["runs"][0]["results"];
   CHECK(sarif[0]["baselineState"] == "new");
   CHECK(sarif[0]["level"] == "error");
@@ -314,6 +317,55 @@ TEST_CASE("nothing is computed that is in the cache, whatever killed the run tha
   CHECK(tool::run(command).code == 6);
   CHECK(tool::contents(library.path("all.json")) == first);
   for (const auto& [path, time] : times) CHECK(fs::last_write_time(path) == time);
+}
+
+TEST_CASE("a damaged file of the cache is as good as none, and is made again") {
+  const Library library({kClips[1]});
+  const auto check = [&](const std::string& more) {
+    return tool::run(fmt::format("check {} -o {} --cache {} --jobs 1 {} --json {}", library.file.string(),
+                                 library.report(), library.path("cache"), more, library.path("all.json")));
+  };
+  const auto all_files = [](const fs::path& folder) {
+    std::map<fs::path, std::string> out;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+      if (entry.is_regular_file()) out[entry.path()] = tool::contents(entry.path());
+    }
+    return out;
+  };
+  REQUIRE(check("--fps 10").code == 6);
+  const std::string at_ten = tool::contents(library.path("all.json"));
+  fs::remove_all(library.path("cache"));
+  REQUIRE(check("").code == 6);
+  const auto report = all_files(library.report()), cache = all_files(library.path("cache"));
+  std::size_t count = 0;
+  for (const auto& [file, bytes] : cache) {
+    std::string damaged = bytes;
+    damaged[bytes.size() * (1 + count++ % 3) / 4] ^= 4;
+    std::ofstream(file, std::ios::binary) << damaged;
+    fs::remove_all(library.report());
+    if (file.extension() == ".sphc") {  // of what is cached, needed for another rate
+      CHECK(check("--fps 10").code == 6);
+      CHECK(tool::contents(library.path("all.json")) == at_ten);
+    }
+    CHECK(check("").code == 6);
+    CHECK(all_files(library.report()) == report);
+    CHECK(tool::contents(file) == bytes);
+  }
+  CHECK(count == 8);
+}
+
+TEST_CASE("a link to nothing and a bad baseline are told, the baseline before any work") {
+  const Library library({kClips[1]});
+  fs::create_symlink("nowhere", library.folder.path / "gone.glb");
+  const tool::Run run = tool::run(
+      fmt::format("check {} -o {} {} --fail-on none", library.folder.path.string(), library.report(), shared_cache()));
+  CHECK(run.code == 0);
+  CHECK(run.out.find("gone.glb: no such file") != std::string::npos);
+  fs::remove_all(library.report());
+  library.folder.write("bad.json", "{}");
+  tool::check_error(library.check("--baseline " + library.path("bad.json")), 3, {"bad.json: is no baseline"});
+  CHECK_FALSE(fs::exists(library.report()));
+  tool::check_error(library.check("--no-such-option"), 2, {"try spherechain check --help"});
 }
 
 TEST_CASE("merged shards are what one machine makes, byte for byte") {

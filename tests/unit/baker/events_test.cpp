@@ -77,6 +77,25 @@ TEST_CASE("an event goes on over the seam of a loop") {
   CHECK(events({1, 1, 1, 1, 1}, true) == "0-4@0");
 }
 
+TEST_CASE("frames between add to the events of whole frames, and join none of them") {
+  const auto events_at = [](const std::vector<double>& numbers) {
+    std::string out;
+    for (const bk::EventSpan& span :
+         bk::join_events(meetings(std::vector<double>(numbers.size(), 1)), numbers, false)) {
+      for (const std::size_t m : span.meetings) out += std::to_string(numbers[m]).substr(0, 3) + " ";
+      out += "| ";
+    }
+    return out;
+  };
+  CHECK(events_at({0, 1, 2}) == "0.0 1.0 2.0 | ");
+  CHECK(events_at({0, 4}) == "0.0 4.0 | ");
+  CHECK(events_at({0, 0.2, 0.5, 0.7, 0.9, 4}) == "0.0 0.2 0.5 0.7 0.9 4.0 | ");  // still a gap of three frames
+  CHECK(events_at({0, 2.5, 5}) == "0.0 2.5 | 5.0 | ");
+  CHECK(events_at({0.5, 5}) == "0.5 | 5.0 | ");
+  CHECK(events_at({3.5, 5}) == "3.5 5.0 | ");
+  CHECK(events_at({0.5, 0.7}) == "0.5 0.7 | ");
+}
+
 TEST_CASE("events of different parts are apart") {
   std::vector<bk::PartMeeting> list = meetings({1, 1});
   list.push_back(list[1]);

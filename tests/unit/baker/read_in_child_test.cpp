@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cstdlib>
@@ -14,6 +15,7 @@
 #include "import/archive.h"
 #include "import/import.h"
 #include "mesh/error.h"
+#include "temporary_folder.h"
 
 using namespace spherechain::baker;
 
@@ -61,10 +63,6 @@ TEST_CASE("what a child process reads comes back whole, and so do its errors") {
 TEST_CASE("a child process that crashes, hangs or grows ends with an error that names the file and the cause") {
   CHECK(error_of([]() -> std::string { std::abort(); }) ==
         "3 a.fbx: crashes its importer (Aborted; the file is damaged: export it again)");
-  CHECK(error_of([]() -> std::string {
-          ::raise(SIGKILL);
-          return {};
-        }) == "3 a.fbx: crashes its importer (Killed; the file is damaged: export it again)");
   CHECK(error_of([]() -> std::string { std::_Exit(0); }) ==
         "3 a.fbx: crashes its importer (it ends early; the file is damaged: export it again)");
 
@@ -85,6 +83,30 @@ TEST_CASE("a child process that crashes, hangs or grows ends with an error that 
   const Environment more("SPHERECHAIN_IMPORT_MEMORY", "500");
   CHECK(error_of(much_memory) == "none");
 #endif
+}
+
+TEST_CASE("a child process that is killed from outside is started once more, and no file is called damaged") {
+  CHECK(error_of([]() -> std::string {
+          ::raise(SIGKILL);
+          return {};
+        }) == "3 a.fbx: its importer was killed twice (Killed; is memory short? run it again)");
+  const TemporaryFolder folder;
+  const std::string mark = (folder.path / "killed").string();
+  CHECK(read_in_child("a.fbx", [&]() -> std::string {
+          if (::access(mark.c_str(), F_OK) == 0) return "read";
+          folder.write("killed", "");
+          ::raise(SIGTERM);
+          return {};
+        }) == "read");
+}
+
+TEST_CASE("a signal that a process ignores, as under nohup, does not end the child that reads for it") {
+  const auto before = ::signal(SIGHUP, SIG_IGN);
+  CHECK(read_in_child("a.fbx", []() -> std::string {
+          ::raise(SIGHUP);
+          return "read";
+        }) == "read");
+  ::signal(SIGHUP, before);
 }
 
 TEST_CASE("a limit that is no number is a usage error") {
