@@ -19,6 +19,16 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
+// Figures of floats: -1, 1e30, -1e30, NaN, and a thousand times what is there.
+constexpr std::uint32_t kMinusOne = 0xBF800000, kHuge = 0x7149F2CA, kMinusHuge = 0xF149F2CA, kNoNumber = 0x7FC00000;
+std::uint32_t thousandfold(std::uint32_t word) {
+  float figure = 0;
+  std::memcpy(&figure, &word, sizeof figure);
+  figure *= 1000;
+  std::memcpy(&word, &figure, sizeof figure);
+  return word;
+}
+
 class Fuzzer {
  public:
   explicit Fuzzer(Bytes bytes) : bytes_(std::move(bytes)) {}
@@ -74,8 +84,9 @@ class Fuzzer {
     for (std::size_t i = 0; i + 4 <= bytes_.size(); i += 4 * stride) {
       std::uint32_t original = 0;
       std::memcpy(&original, &bytes_[i], 4);
-      for (const std::uint32_t value : {0U, 1U, 0x7FFFFFFFU, 0x80000000U, 0xFFFFFFFFU, 0xFFFFFFFCU, size, size - 4U,
-                                        0x7F800000U, 0x00000001U, 0x7F7FFFFFU}) {
+      for (const std::uint32_t value :
+           {0U, 1U, 0x7FFFFFFFU, 0x80000000U, 0xFFFFFFFFU, 0xFFFFFFFCU, size, size - 4U, 0x7F800000U, 0x00000001U,
+            0x7F7FFFFFU, kMinusOne, kHuge, kMinusHuge, kNoNumber, thousandfold(original)}) {
         std::memcpy(&bytes_[i], &value, 4);
         if (!open_and_use(bytes_.size())) {
           return complain("with a changed word at", i);

@@ -2,6 +2,7 @@
 #include "use_fully.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 
@@ -72,12 +73,25 @@ bool detect_both_radii(const Asset& asset, const std::vector<Sphere>& spheres) {
   return true;
 }
 
-bool refit_and_detect(const Asset& asset, const Pose& pose) {
+// In the rest pose answers are of the body's size, whatever figures the asset has been given.
+bool are_sane(const Asset& asset, const std::vector<Sphere>& spheres) {
+  constexpr double kFar = 1e5;  // heights
+  const AssetInfo info = sc_asset_get_info(&asset);
+  const double limit = kFar * double{info.height};
+  const double origin[3] = {double{info.origin.x}, double{info.origin.y}, double{info.origin.z}};
+  return std::all_of(spheres.begin(), spheres.end(), [&](const Sphere& s) {
+    return std::abs(double{s.x} - origin[0]) <= limit && std::abs(double{s.y} - origin[1]) <= limit &&
+           std::abs(double{s.z} - origin[2]) <= limit && double{s.radius} >= 0 && double{s.radius} <= limit;
+  });
+}
+
+bool refit_and_detect(const Asset& asset, const Pose& pose, bool is_sane) {
   for (const Radius radius : {SC_RADIUS_FIT, SC_RADIUS_DETECT}) {
     const Refitted refitted = refit(asset, pose, radius);
     const bool has_moments = view_of(asset).refit_rule() == RefitRule::kMoments;
     if (pose.bones != nullptr && !has_moments) return true;
     if (refitted.status != SC_OK) return broken("a refit job failed");
+    if (is_sane && !are_sane(asset, refitted.spheres)) return broken("spheres at rest are not of the body's size");
     if (!detect_both_radii(asset, refitted.spheres)) return false;
   }
   return true;
@@ -124,7 +138,7 @@ bool use_bones(const Asset& asset, bool has_skin, bool is_small) {
     Pose pose{matrices.data(), bones, SC_ROWS_3X4};
     pose.morph_weights = weights.empty() ? nullptr : weights.data();
     pose.morph_weight_count = weights.size();
-    if (!refit_and_detect(asset, pose)) return false;
+    if (!refit_and_detect(asset, pose, is_rest)) return false;
     if (has_skin && (is_small || is_rest) && !find_all_contacts(asset, pose)) return false;
   }
   return true;
@@ -144,7 +158,7 @@ bool use_vertices(const Asset& asset, bool has_skin, bool is_small) {
   Pose pose;
   pose.vertices = vertices.data();
   pose.vertex_count = count;
-  return refit_and_detect(asset, pose) && (!has_skin || !is_small || find_all_contacts(asset, pose));
+  return refit_and_detect(asset, pose, true) && (!has_skin || !is_small || find_all_contacts(asset, pose));
 }
 
 }  // namespace

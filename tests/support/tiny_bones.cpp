@@ -60,8 +60,12 @@ void give_pivots(TinyAsset& tiny, std::size_t i, std::uint16_t count, unsigned s
   sphere.first_pivot = static_cast<std::uint32_t>(tiny.parts.pivots.size());
   sphere.pivot_count = count;
   float left = 1;
+  std::size_t last = tiny.corners.size();
   for (std::uint16_t k = 0; k < count; ++k) {
-    const auto& [a, b, c] = tiny.corners[random() % tiny.corners.size()];
+    std::size_t next = random() % tiny.corners.size();
+    next = next == last ? (next + 1) % tiny.corners.size() : next;  // two of one place have no spread
+    last = next;
+    const auto& [a, b, c] = tiny.corners[next];
     const float weight = k + 1 < count ? uniform(random, -0.1F, 0.3F) : left;
     left -= weight;
     tiny.parts.pivots.push_back({a, b, c, weight});

@@ -310,7 +310,8 @@ class AssetChecker {
 
 bool values_are_valid(const schema::Asset& root, const AssetView& asset, std::size_t size, SkinSizes& sizes,
                       Message& message) {
-  return AssetChecker(root, asset, message).run(size) && skin_values_are_valid(asset, sizes, message);
+  return AssetChecker(root, asset, message).run(size) && skin_values_are_valid(asset, sizes, message) &&
+         figures_are_in_range(asset, size, message);
 }
 
 }  // namespace spherechain

@@ -22,6 +22,10 @@ bool values_are_valid(const schema::Asset& root, const AssetView& asset, std::si
 bool moment_values_are_valid(const AssetView& asset, Message& message);
 bool skin_values_are_valid(const AssetView& asset, SkinSizes& sizes, Message& message);
 
+// Figures are no more than a body of that height could have, so that answers are of its size, and work of the file's:
+// of an asset that is valid otherwise.
+bool figures_are_in_range(const AssetView& asset, std::size_t size, Message& message);
+
 // Of a float, or of a struct that holds nothing but floats.
 template <typename Floats>
 bool is_finite(const Floats& value) {
