@@ -54,6 +54,10 @@ class Refusals(unittest.TestCase):
             for threads in (-1, 1.5, True, 5000):
                 self.refuses(ValueError, "threads is", function, self.rest, threads=threads)
         self.refuses(TypeError, r"astype\(float32\)", self.asset.spheres, self.rest.astype(np.float64))
+        far = self.rest.copy()
+        far[0, 0, 3] = 1e30  # its spheres would touch nothing, and lower the energy
+        self.refuses(ValueError, r"bones\[0, 0, 3\] is 1", self.asset.sphere_energy, far)
+        self.refuses(AttributeError, "height cannot be set", setattr, self.asset, "height", 1)
         self.refuses(ValueError, "radius is 'big': pass one of detect, fit", self.asset.spheres, self.rest, radius="big")
 
     def test_contacts(self):

@@ -12,5 +12,7 @@ from ._asset import Asset, Bone, Part
 from ._contacts import PENETRATION, TRIANGLE_PAIR, Contact, Contacts
 from ._tool import Baked, ToolError, bake, check
 
+from ._native import VERSION as __version__
+
 __all__ = ["Asset", "Baked", "Bone", "Contact", "Contacts", "PENETRATION", "Part", "TRIANGLE_PAIR", "ToolError", "bake",
            "check"]

@@ -81,6 +81,12 @@ class Asset:
         self.source_file: str = info["source_file"]
         self.settings: str = info["settings"]  #: of the bake, as JSON
         self._part_names = tuple(part.name for part in self.parts)
+        self._is_open = True
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if getattr(self, "_is_open", False):
+            raise AttributeError(f"{name} cannot be set: an asset does not change")
+        super().__setattr__(name, value)
 
     def __reduce__(self):
         return Asset, (self._native.bytes(),)
@@ -265,7 +271,8 @@ class Asset:
         array = np.asarray(given)
         if array.dtype not in types:
             wanted = " or ".join(str(t) for t in types)
-            raise TypeError(f"{name} is {array.dtype}: pass {wanted}, as by {name}.astype({types[0]!s})")
+            cast = f"to(torch.{types[0]!s})" if type(given).__module__ == "torch" else f"astype({types[0]!s})"
+            raise TypeError(f"{name} is {array.dtype}: pass {wanted}, as by {name}.{cast}")
         last = array.shape if exact else array.shape[-len(shape):]
         if last != shape and (other is None or last != other):
             wanted = ", ".join(str(size) for size in shape)
@@ -273,9 +280,13 @@ class Asset:
         if not np.isfinite(array).all():
             place = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
             raise ValueError(f"{name}{list(place)} is {array[place]}")
+        if (np.abs(array) > _FAR).any():  # squares would overflow, and such spheres touch nothing
+            place = tuple(int(i) for i in np.argwhere(np.abs(array) > _FAR)[0])
+            raise ValueError(f"{name}{list(place)} is {array[place]}: more than {_FAR:g}")
         return array
 
 
+_FAR = 1e15
 _SINGLE = (np.dtype(np.float32),)
 _BOTH = (np.dtype(np.float32), np.dtype(np.float64))
 

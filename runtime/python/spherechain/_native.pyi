@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 PENETRATION_BYTES: int
 TRIANGLE_BYTES: int
+VERSION: str
 
 Number = TypeVar("Number", np.float32, np.float64)
 Bytes = NDArray[np.uint8]

@@ -11,15 +11,26 @@ from ._asset import Asset
 class _Loss(torch.autograd.Function):
     @staticmethod
     def forward(ctx, bones, loss):
-        energy, gradient = loss(bones.detach().cpu().numpy())
-        ctx.save_for_backward(torch.as_tensor(gradient, device=bones.device))
+        energy, gradient = loss(bones.detach().cpu())
+        ctx.save_for_backward(bones, torch.as_tensor(gradient, device=bones.device))
         return torch.as_tensor(energy, device=bones.device)
 
     @staticmethod
-    @torch.autograd.function.once_differentiable
     def backward(ctx, slopes):
-        (gradient,) = ctx.saved_tensors
-        return slopes[..., None, None, None] * gradient, None
+        bones, gradient = ctx.saved_tensors
+        return _Gradient.apply(bones, slopes, gradient), None
+
+
+class _Gradient(torch.autograd.Function):
+    """The loss' gradient. It depends on the bones, but its own gradient is not known: taking it for 0 would be wrong."""
+
+    @staticmethod
+    def forward(ctx, bones, slopes, gradient):
+        return slopes[..., None, None, None] * gradient
+
+    @staticmethod
+    def backward(ctx, slopes):
+        raise RuntimeError("spherechain.torch: a loss has no second derivative")
 
 
 def sphere_energy(asset: Asset, bones: torch.Tensor, **options) -> torch.Tensor:

@@ -11,6 +11,7 @@
 #include "energy.h"
 #include "pairs.h"
 #include "parallel.h"
+#include "spherechain/version.h"
 
 namespace py = pybind11;
 
@@ -288,6 +289,7 @@ PYBIND11_MODULE(_native, module) {
   using namespace spherechain::python;
   module.attr("PENETRATION_BYTES") = sizeof(Penetration);
   module.attr("TRIANGLE_BYTES") = sizeof(TriangleContact);
+  module.attr("VERSION") = SC_VERSION;
   module.def("class_name", &class_name);
   py::class_<LoadedAsset> asset(module, "Asset");
   asset.def(py::init<const std::string&>())
