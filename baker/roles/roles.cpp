@@ -6,6 +6,7 @@
 
 #include "mesh/error.h"
 #include "roles/body.h"
+#include "roles/joint_parts.h"
 #include "roles/shape.h"
 
 namespace spherechain::baker {
@@ -78,8 +79,7 @@ void spread_sides(const Skeleton& skeleton, const std::vector<Hint>& shape, std:
 }
 
 // Where names do not give a body, the rig's shape says what limbs are, and names say the rest: sides, head, tail, hair.
-std::vector<Hint> hints_of(const Skeleton& skeleton, const SourceRig& rig, BodyKind wanted) {
-  const std::vector<Hint> names = hints_from_names(rig);
+std::vector<Hint> hints_of(const Skeleton& skeleton, const std::vector<Hint>& names, BodyKind wanted) {
   if (is_complete(find_body(skeleton, names, wanted))) return names;
   const std::vector<Hint> shape = hints_from_shape(skeleton);
   const bool no_limbs = find_limb_paths(skeleton, names).empty();
@@ -93,6 +93,20 @@ std::vector<Hint> hints_of(const Skeleton& skeleton, const SourceRig& rig, BodyK
   }
   spread_sides(skeleton, shape, both);
   return no_limbs || is_complete(find_body(skeleton, both, wanted)) ? both : names;
+}
+
+// Throws Error(kFile) where the file names a node that does not exist.
+std::vector<Hint> with_file(const SourceRig& rig, const RoleFile& file, std::vector<Hint> hints) {
+  for (const auto& [name, role] : file.role_of) {
+    bool known = false;
+    for (std::size_t n = 0; n < rig.nodes.size(); ++n) {
+      if (rig.nodes[n].name != name) continue;
+      hints[n] = hint_of_role(role);
+      known = true;
+    }
+    if (!known) throw Error(ExitCode::kFile, file.file + ": the rig has no node '" + name + "'");
+  }
+  return hints;
 }
 
 // Gives every node its role and the reason for it.
@@ -156,7 +170,7 @@ struct RoleWriter {
     const std::vector<int> in_hand = s.inherited([&](int n) { return n == hand ? 1 : -1; });
     for (int n = 0; n < s.count(); ++n) {
       const int parent = s.parent[n];
-      if (body.path_of[n] != path || !roles.of_node[n].role.empty()) continue;
+      if (body.path_of[n] != path || !roles.of_node[n].role.empty() || s.joint[n] >= 0) continue;
       const bool in_girdle = roles.of_node[parent].limb < 0;
       std::string role = plain_role(hints[n].word);
       std::string reason = because(n, "hangs on " + s.names[parent]);
@@ -225,9 +239,22 @@ struct RoleWriter {
     }
   }
 
+  void add_joint_parts(const std::vector<int>& in_head) {
+    for (int n = 0; n < s.count(); ++n) {
+      if (s.joint[n] < 0) continue;
+      const int joint = s.joint[n];
+      const int limb = roles.of_node[joint].limb;
+      if (s.weight[n] > 0)
+        set(n, limb >= 0 ? "twist" : in_head[n] > 0 ? "head_part" : "other", limb, "a part of " + s.names[joint]);
+      else
+        set(n, "other", limb, "moves no skin; belongs to " + s.names[joint]);
+    }
+  }
+
   // What is left: by its word, else by what it hangs on.
   void add_rest() {
     const std::vector<int> in_head = s.inherited([&](int n) { return n == body.head ? 1 : -1; });
+    add_joint_parts(in_head);
     std::vector<bool> above(hints.size(), false);
     for (int n = roles.trunk.empty() ? -1 : roles.trunk.front(); n >= 0; n = s.parent[n]) above[n] = true;
     for (int n = 0; n < s.count(); ++n) {
@@ -264,18 +291,10 @@ const char* body_kind_name(BodyKind kind) {
 }
 
 Roles find_roles(const SourceRig& rig, const std::vector<Vec3>& positions, const RoleFile& file, BodyKind wanted) {
-  const Skeleton skeleton = make_skeleton(rig, positions);
-  std::vector<Hint> hints = hints_of(skeleton, rig, wanted);
-  for (const auto& [name, role] : file.role_of) {
-    bool known = false;
-    for (std::size_t n = 0; n < rig.nodes.size(); ++n) {
-      if (rig.nodes[n].name != name) continue;
-      hints[n] = hint_of_role(role);
-      known = true;
-    }
-    if (!known) throw Error(ExitCode::kFile, file.file + ": the rig has no node '" + name + "'");
-  }
-
+  const std::vector<Hint> names = hints_from_names(rig);
+  Skeleton skeleton = make_skeleton(rig, positions);
+  join_joint_parts(skeleton, with_file(rig, file, names));
+  const std::vector<Hint> hints = with_file(rig, file, hints_of(skeleton, names, wanted));
   const Body body = find_body(skeleton, hints, wanted);
   RoleWriter writer{skeleton, hints, body, {}};
   Roles& roles = writer.roles;

@@ -52,6 +52,36 @@ std::vector<Vec3> rest_positions(const SourceRig& rig) {
   return positions;
 }
 
+void Skeleton::measure() {
+  const std::size_t n = parent.size();
+  depth.assign(n, 0);
+  for (std::size_t i = 0; i < n; ++i) {  // children come after their parents
+    if (parent[i] >= 0) depth[i] = depth[parent[i]] + 1;
+  }
+  reach.assign(n, 0);
+  tip = position;
+  for (std::size_t i = n; i-- > 0;) {
+    const int above = parent[i];
+    if (above < 0 || !alive[i]) continue;
+    const double way = reach[i] + bone(static_cast<int>(i));
+    if (way > reach[above]) {
+      reach[above] = way;
+      tip[above] = tip[i];
+    }
+  }
+  Vec3 mean = Vec3::Zero();
+  double living = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!alive[i]) continue;
+    mean += position[i];
+    ++living;
+  }
+  size = 0;
+  for (std::size_t i = 0; i < n && living > 0; ++i) {
+    if (alive[i]) size = std::max(size, (position[i] - mean / living).norm());
+  }
+}
+
 Skeleton make_skeleton(const SourceRig& rig, const std::vector<Vec3>& positions) {
   Skeleton s;
   const std::size_t n = rig.nodes.size();
@@ -59,7 +89,6 @@ Skeleton make_skeleton(const SourceRig& rig, const std::vector<Vec3>& positions)
   for (std::size_t i = 0; i < n; ++i) {
     s.names.push_back(rig.nodes[i].name);
     s.parent.push_back(rig.nodes[i].parent);
-    s.depth.push_back(s.parent[i] < 0 ? 0 : s.depth[s.parent[i]] + 1);
     if (s.parent[i] >= 0) s.children[s.parent[i]].push_back(static_cast<int>(i));
   }
   s.position = rest_positions(rig);
@@ -77,8 +106,7 @@ Skeleton make_skeleton(const SourceRig& rig, const std::vector<Vec3>& positions)
   const bool skinned = std::any_of(s.weight.begin(), s.weight.end(), [](double w) { return w > 0; });
   s.alive.assign(n, !skinned && rig.bones.empty());
   for (const Bone& bone : rig.bones) s.alive[bone.node] = s.alive[bone.node] || !skinned;
-  s.reach.assign(n, 0);
-  s.tip = s.position;
+  s.joint.assign(n, -1);
   for (std::size_t i = n; i-- > 0;) {  // children come after their parents
     if (s.weight[i] > 0) {
       s.skin[i] /= s.weight[i];
@@ -86,25 +114,9 @@ Skeleton make_skeleton(const SourceRig& rig, const std::vector<Vec3>& positions)
     } else {
       s.skin[i] = s.position[i];
     }
-    const int parent = s.parent[i];
-    if (parent < 0 || !s.alive[i]) continue;
-    s.alive[parent] = true;
-    const double reach = s.reach[i] + s.bone(static_cast<int>(i));
-    if (reach > s.reach[parent]) {
-      s.reach[parent] = reach;
-      s.tip[parent] = s.tip[i];
-    }
+    if (s.parent[i] >= 0 && s.alive[i]) s.alive[s.parent[i]] = true;
   }
-  Vec3 mean = Vec3::Zero();
-  double alive = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    if (!s.alive[i]) continue;
-    mean += s.position[i];
-    ++alive;
-  }
-  for (std::size_t i = 0; i < n && alive > 0; ++i) {
-    if (s.alive[i]) s.size = std::max(s.size, (s.position[i] - mean / alive).norm());
-  }
+  s.measure();
   return s;
 }
 

@@ -19,10 +19,13 @@ struct Skeleton {
   std::vector<Vec3> skin;      // weighted centroid of the vertices it moves; its position where it moves none
   // Whether the node or one below it moves skin. True for all nodes where there are no weights (motion capture).
   std::vector<bool> alive;
+  std::vector<int> joint;     // the joint that a node belongs to that is none itself (joint_parts.h); -1 for others
   std::vector<double> reach;  // length of the longest path down to a tip that is alive
   std::vector<Vec3> tip;      // that tip's position
   double size = 0;            // largest distance of a living node from their mean
 
+  // Sets depth, reach, tip and size from the rest.
+  void measure();
   int count() const { return static_cast<int>(parent.size()); }
   int common_ancestor(int a, int b) const;  // -1 none
   std::vector<int> path(int from, int to) const;

@@ -165,3 +165,42 @@ NamedRig nameless(NamedRig rig) {
   for (std::size_t n = 0; n < rig.rig.nodes.size(); ++n) rig.rig.nodes[n].name = "joint_" + std::to_string(n);
   return rig;
 }
+
+namespace {
+
+struct Rebuilt {
+  std::vector<std::string> names, expected;
+  std::vector<int> parents;
+  std::vector<Vec3> where;
+  std::vector<bool> skinned;
+
+  int add(const std::string& name, int parent, const Vec3& at, bool moves_skin, const std::string& role) {
+    names.push_back(name);
+    parents.push_back(parent);
+    where.push_back(at);
+    skinned.push_back(moves_skin);
+    expected.push_back(role);
+    return static_cast<int>(names.size()) - 1;
+  }
+};
+
+NamedRig with_more(const NamedRig& rig, bool above, const Vec3& shift) {
+  const std::vector<Vec3> where = rest_positions(rig.rig);
+  const std::vector<bool> skinned = skinned_nodes(rig);
+  Rebuilt out;
+  std::vector<int> new_of;
+  for (std::size_t n = 0; n < where.size(); ++n) {
+    const Node& node = rig.rig.nodes[n];
+    int parent = node.parent < 0 ? -1 : new_of[static_cast<std::size_t>(node.parent)];
+    if (above && skinned[n] && parent >= 0)
+      parent = out.add(node.name + "_offset", parent, where[n] + shift, false, "");
+    new_of.push_back(out.add(node.name, parent, where[n], skinned[n], rig.expected[n]));
+    if (!above && skinned[n]) out.add(node.name + "_b", new_of.back(), where[n], true, "");
+  }
+  return build(out.names, out.parents, out.where, out.skinned, out.expected);
+}
+
+}  // namespace
+
+NamedRig with_offsets(const NamedRig& rig, const Vec3& shift) { return with_more(rig, true, shift); }
+NamedRig with_twins(const NamedRig& rig) { return with_more(rig, false, Vec3::Zero()); }

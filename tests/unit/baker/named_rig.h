@@ -27,3 +27,8 @@ spherechain::baker::Vec3 moved(const spherechain::baker::Vec3& position);
 NamedRig shuffled(const NamedRig& rig, unsigned seed);
 // The same rig, its nodes called joint_0, joint_1 ...
 NamedRig nameless(NamedRig rig);
+// The same rig with nodes that are no joints of their own. The expected role of each of those is empty.
+// - a node without skin, `shift` away, above each joint but the topmost
+NamedRig with_offsets(const NamedRig& rig, const spherechain::baker::Vec3& shift);
+// - a leaf that moves skin in each joint's place
+NamedRig with_twins(const NamedRig& rig);

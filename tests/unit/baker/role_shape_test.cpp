@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 #include "role_cases.h"
 
 using namespace spherechain::baker;
@@ -94,4 +96,72 @@ TEST_CASE("roles do not depend on place, size, orientation and order") {
     CHECK(summary_of(moved(six_legs)) == summary_of(six_legs));
     for (const unsigned seed : {1U, 2U, 3U}) CHECK(summary_of(shuffled(six_legs, seed)) == summary_of(six_legs));
   }
+}
+
+TEST_CASE("nodes without skin above joints, and twins in joints' places, leave the joints' roles as they are") {
+  for (const auto& [tree, body] : {std::pair{kMixamo, Body::kHuman}, std::pair{kFox, Body::kFox}}) {
+    const NamedRig named = named_rig(tree, body);
+    NamedRig unnamed = nameless(named);
+    const Roles by_shape = roles_of(unnamed);
+    for (std::size_t n = 0; n < by_shape.of_node.size(); ++n) unnamed.expected[n] = by_shape.of_node[n].role;
+    const Vec3 away(0.02, -0.04, 0.03), here = Vec3::Zero();
+    const NamedRig rigs[] = {with_offsets(named, away),
+                             with_offsets(with_offsets(named, away), here),
+                             with_offsets(unnamed, away),
+                             nameless(with_offsets(unnamed, here)),
+                             with_twins(named),
+                             nameless(with_twins(unnamed)),
+                             nameless(with_twins(with_offsets(unnamed, here)))};
+    for (const NamedRig& rig : rigs) {
+      CAPTURE(&rig - rigs);
+      const Roles roles = roles_of(rig);
+      for (std::size_t n = 0; n < rig.expected.size(); ++n) {
+        const std::string& role = roles.of_node[n].role;
+        CAPTURE(rig.rig.nodes[n].name);
+        if (rig.expected[n].empty())
+          CHECK((role == "twist" || role == "head_part" || role == "other" || role == "root"));
+        else
+          CHECK(role == rig.expected[n]);
+      }
+      CHECK(summary_of(shuffled(rig, 1)) == summary_of(rig));
+    }
+  }
+}
+
+TEST_CASE("a leaf in a joint's place has the role that its own name tells") {
+  NamedRig rig = with_twins(named_rig(kMixamo));
+  const auto leaf = std::find_if(rig.rig.nodes.begin(), rig.rig.nodes.end(),
+                                 [](const Node& node) { return node.name == "mixamorig:Head_b"; });
+  REQUIRE(leaf != rig.rig.nodes.end());
+  leaf->name = "Jaw";
+  CHECK(roles_of(rig).of_node[static_cast<std::size_t>(leaf - rig.rig.nodes.begin())].role == "jaw");
+}
+
+TEST_CASE("a joint without skin keeps its role where the next one down is another joint") {
+  check_roles(named_rig(R"(
+Hips = pelvis
+  Spine = !spine
+    Spine1 = spine
+      Spine2 = chest
+        Neck = !neck
+          Head = head
+        LeftShoulder = !left_clavicle
+          LeftArm = !left_shoulder
+            LeftForeArm = left_elbow
+              LeftHand = !left_wrist
+                LeftHandIndex1 = left_finger
+        RightShoulder = !right_clavicle
+          RightArm = !right_shoulder
+            RightForeArm = right_elbow
+              RightHand = !right_wrist
+                RightHandIndex1 = right_finger
+  LeftUpLeg = left_hip
+    LeftLeg = left_knee
+      LeftFoot = !left_ankle
+        LeftFoot_end = left_toe
+  RightUpLeg = right_hip
+    RightLeg = right_knee
+      RightFoot = !right_ankle
+        RightFoot_end = right_toe
+)"));
 }
