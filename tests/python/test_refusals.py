@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: MIT
 """Bad input: an exception that says what is wrong, and what to pass."""
 
+import _thread
 import re
+import signal
 import tempfile
+import threading
+import time
 import unittest
 from pathlib import Path
 
@@ -10,7 +14,7 @@ import numpy as np
 import spherechain
 from spherechain import _native
 
-from palettes import rest_pose
+from palettes import heap, rest_pose, rotations
 from paths import DOLL, PAPER_DOLL
 
 
@@ -59,6 +63,32 @@ class Refusals(unittest.TestCase):
         self.refuses(ValueError, r"bones\[0, 0, 3\] is 1", self.asset.sphere_energy, far)
         self.refuses(AttributeError, "height cannot be set", setattr, self.asset, "height", 1)
         self.refuses(ValueError, "radius is 'big': pass one of detect, fit", self.asset.spheres, self.rest, radius="big")
+
+    def test_a_pose_that_is_not_the_bind_pose(self):
+        model = np.eye(4, dtype=np.float32)
+        model[:3, :3], model[:3, 3] = rotations(np.array([[0.3, 0.9, -0.2]]))[0], (5, 6, 7)
+        bones = np.tile(model, (2, len(self.asset.bones), 1, 1))
+        self.asset.check_rest(self.rest)
+        self.asset.check_rest(bones)
+        moved = bones.copy()
+        moved[1, 3, 0, 3] += 0.01 * self.asset.height
+        name = re.escape(self.asset.bones[3].name)
+        self.refuses(ValueError, f'^bone "{name}": its matrix is not that of .*bind pose', self.asset.check_rest, moved)
+        bind = np.stack([bone.inverse_bind for bone in self.asset.bones])  # world matrices, not skinning matrices
+        self.refuses(ValueError, '^bone "', self.asset.check_rest, bind)
+        self.refuses(ValueError, "transposed", self.asset.check_rest, bones.swapaxes(2, 3))
+        self.refuses(ValueError, "bones has the shape", self.asset.check_rest, self.rest[1:])
+
+    def test_an_interrupt_ends_a_batch(self):
+        poses = np.repeat(heap(self.asset)[None], 400, 0)
+        handler = signal.signal(signal.SIGINT, signal.default_int_handler)
+        self.addCleanup(signal.signal, signal.SIGINT, handler)
+        for threads in (1, 2):
+            start = time.process_time()
+            threading.Timer(0.1, _thread.interrupt_main).start()
+            with self.assertRaises(KeyboardInterrupt):
+                self.asset.contacts(poses, threads=threads)
+            self.assertLess(time.process_time() - start, 5, "seconds of the processor; the batch would take 40")
 
     def test_contacts(self):
         vertices = np.zeros((self.asset.vertex_count, 3), np.float32)

@@ -38,6 +38,27 @@ class Torch(unittest.TestCase):
         energy.backward()
         np.testing.assert_allclose(one.grad.numpy(), asset.skin_energy(single)[1])
 
+    def test_has_no_second_derivative_and_says_so(self):
+        import spherechain.torch
+
+        asset = spherechain.Asset(DOLL)
+        bones = torch.from_numpy(random_poses(asset, 3, 80)).requires_grad_()
+        for loss in (spherechain.torch.sphere_energy, spherechain.torch.skin_energy):
+            slopes, = torch.autograd.grad(loss(asset, bones).sum(), bones, create_graph=True)
+            with self.assertRaisesRegex(RuntimeError, "no second derivative"):
+                torch.autograd.grad(slopes.square().sum(), bones)
+
+    def test_refuses_what_the_asset_refuses(self):
+        import spherechain.torch
+
+        asset = spherechain.Asset(DOLL)
+        bones = torch.from_numpy(random_poses(asset, 1, 80))
+        with self.assertRaisesRegex(TypeError, r"bones is float64: .*bones\.to\(torch\.float32\)"):
+            spherechain.torch.skin_energy(asset, bones.double())
+        bones[0, 2, 1, 3] = 1e30
+        with self.assertRaisesRegex(ValueError, r"bones\[0, 2, 1, 3\] is 1"):
+            spherechain.torch.sphere_energy(asset, bones)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -38,9 +38,9 @@ class Asset:
 
     Its methods take one pose or a batch: arrays with any number of axes before those named. `bones` are skinning matrices,
     the world matrix of each bone times its inverse bind matrix, in the order of Asset.bones: (..., bones, 3, 4), or
-    (..., bones, 4, 4), whose last rows are not read. Lengths are in the pose's units: as in the character's file, for
-    glTF metres. Arrays that lie well in memory are not copied. Other threads of Python run in the meantime; `threads` is
-    for the batch, 0: as many as cores.
+    (..., bones, 4, 4), whose last rows only check_rest() reads. Lengths are in the pose's units: as in the character's
+    file, for glTF metres. Arrays that lie well in memory are not copied. Other threads of Python run in the meantime; `threads` is
+    for the batch, 0: as many as cores. Ctrl-C ends a batch after the poses that are being computed.
 
     Any number of threads may use one asset. It can be pickled.
     """
@@ -94,6 +94,20 @@ class Asset:
     def __repr__(self) -> str:
         return (f"<Asset of {self.source_file}: {self.sphere_count} spheres, {len(self.bones)} bones, "
                 f"{len(self.parts)} parts>")
+
+    def check_rest(self, bones: NDArray[np.float32]) -> None:
+        """Checks that your matrices are skinning matrices of this character: for the first run.
+
+        bones: float32 (..., bones, 3, 4), what you have while the character stands in its bind pose. There every bone's
+        matrix is the same, the model's own. ValueError names the first bone whose matrix moves the character otherwise, by
+        more than a thousandth of its height: inverse bind matrices are missing, or the rest pose is another. Stand the
+        character off the origin and pass (..., bones, 4, 4), so that transposed matrices show. A wrong order never shows.
+        """
+        poses, _ = self._poses(bones)
+        rows = np.asarray(bones)[..., 3:, :].reshape(-1, 4)
+        for row in rows[(np.abs(rows - (0, 0, 0, 1)) > 1e-3).any(axis=1)][:1]:
+            raise ValueError(f"bones: a last row is {row}, not [0 0 0 1]. Are the matrices transposed?")
+        self._native.check_rest(poses)
 
     def spheres(self, bones: NDArray[np.float32], *, radius: str = "detect", threads: int = 1) -> NDArray[np.float32]:
         """Where the spheres are: x, y, z and radius of each.

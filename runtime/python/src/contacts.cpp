@@ -241,27 +241,28 @@ template void place_points<double>(const LoadedAsset&, const Poses<double>&, con
 void add_depth_gradients(const LoadedAsset& asset, const Penetration* penetrations, const float* slopes,
                          const std::size_t* first, std::size_t pose_count, const float* morph_weights,
                          float* gradient) {
-  PointTerms terms(asset);
   const std::size_t size = 12 * asset.info().bone_count;
-  for (std::size_t i = 0; i < pose_count; ++i) {
-    for (std::size_t p = first[i]; p < first[i + 1]; ++p) {
-      const Penetration& of = penetrations[p];
-      const float direction[3] = {of.direction.x, of.direction.y, of.direction.z};
-      for (const SkinPoint* point : {&of.deepest_a, &of.deepest_b}) {
-        const float slope = point == &of.deepest_a ? slopes[p] : -slopes[p];
-        for (const PointTerm& term : terms.of(point->triangle, point->weights, morphs_of(asset, morph_weights, i))) {
-          float* row = gradient + i * size + 12 * term.bone;
-          for (std::size_t m = 0; m < 3; ++m, row += 4) {
-            const float along = slope * direction[m];
-            row[0] += along * static_cast<float>(term.x);
-            row[1] += along * static_cast<float>(term.y);
-            row[2] += along * static_cast<float>(term.z);
-            row[3] += along * static_cast<float>(term.w);
+  for_each_pose(pose_count, 1, [&] {
+    return [&, terms = PointTerms(asset)](std::size_t i) mutable {
+      for (std::size_t p = first[i]; p < first[i + 1]; ++p) {
+        const Penetration& of = penetrations[p];
+        const float direction[3] = {of.direction.x, of.direction.y, of.direction.z};
+        for (const SkinPoint* point : {&of.deepest_a, &of.deepest_b}) {
+          const float slope = point == &of.deepest_a ? slopes[p] : -slopes[p];
+          for (const PointTerm& term : terms.of(point->triangle, point->weights, morphs_of(asset, morph_weights, i))) {
+            float* row = gradient + i * size + 12 * term.bone;
+            for (std::size_t m = 0; m < 3; ++m, row += 4) {
+              const float along = slope * direction[m];
+              row[0] += along * static_cast<float>(term.x);
+              row[1] += along * static_cast<float>(term.y);
+              row[2] += along * static_cast<float>(term.z);
+              row[3] += along * static_cast<float>(term.w);
+            }
           }
         }
       }
-    }
-  }
+    };
+  });
 }
 
 }  // namespace spherechain::python

@@ -11,6 +11,7 @@
 #include "energy.h"
 #include "pairs.h"
 #include "parallel.h"
+#include "signals.h"
 #include "spherechain/version.h"
 
 namespace py = pybind11;
@@ -188,6 +189,18 @@ py::array_t<T> skin_points(const LoadedAsset& asset, const Array<T>& bones, cons
   return out;
 }
 
+// Throws with the message of sc_check_rest_pose() for the first pose that is no rest pose.
+void check_rest(const LoadedAsset& asset, const Array<float>& bones) {
+  const Poses<float> poses = poses_of(asset, bones);
+  for (std::size_t i = 0; i < poses.count; ++i) {
+    const sc_pose pose = pose_of(asset, poses, i);
+    char message[512] = "";
+    if (sc_check_rest_pose(&asset.asset(), &pose, message, sizeof message) != SC_OK) {
+      throw std::invalid_argument(message);
+    }
+  }
+}
+
 // `penetrations`: bytes; `first`: where each pose's start, and their end.
 py::array_t<float> depth_gradients(const LoadedAsset& asset, const Array<std::uint8_t>& penetrations,
                                    const Array<std::uint64_t>& first, const Array<float>& slopes,
@@ -290,11 +303,13 @@ PYBIND11_MODULE(_native, module) {
   module.attr("PENETRATION_BYTES") = sizeof(Penetration);
   module.attr("TRIANGLE_BYTES") = sizeof(TriangleContact);
   module.attr("VERSION") = SC_VERSION;
+  set_main_thread(py::module_::import("threading").attr("main_thread")().attr("ident").cast<unsigned long>());
   module.def("class_name", &class_name);
   py::class_<LoadedAsset> asset(module, "Asset");
   asset.def(py::init<const std::string&>())
       .def("bytes", [](const LoadedAsset& self) { return py::bytes(self.bytes()); })
       .def("info", &info)
+      .def("check_rest", &check_rest)
       .def("pair_scales", &pair_scales)
       .def("spheres", &spheres)
       .def("pairs", &pairs)

@@ -10,10 +10,12 @@
 #include <thread>
 #include <vector>
 
+#include "signals.h"
+
 namespace spherechain::python {
 
 // Calls make_worker() once in each thread, and the worker that it returns with each index below `count`, in any order.
-// `threads` 0: one for each core. The first exception is thrown again when all have stopped.
+// `threads` 0: one for each core. The first exception, a signal's among them, is thrown again when all have stopped.
 template <typename MakeWorker>
 void for_each_pose(std::size_t count, std::size_t threads, const MakeWorker& make_worker) {
   if (threads == 0) {
@@ -23,10 +25,11 @@ void for_each_pose(std::size_t count, std::size_t threads, const MakeWorker& mak
   std::atomic<std::size_t> next{0};
   std::atomic_flag has_failed = ATOMIC_FLAG_INIT;
   std::exception_ptr failure;
-  const auto run = [&] {
+  const auto run = [&](auto&& before_each) {
     try {
       auto worker = make_worker();
       for (std::size_t i = next++; i < count; i = next++) {
+        before_each();
         worker(i);
       }
     } catch (...) {
@@ -40,13 +43,13 @@ void for_each_pose(std::size_t count, std::size_t threads, const MakeWorker& mak
   others.reserve(threads);
   for (std::size_t i = 1; i < threads; ++i) {
     try {
-      others.emplace_back(run);
+      others.emplace_back([&] { run([] {}); });
     } catch (const std::system_error&) {
       break;  // the system has no more threads: those there are do the work
     }
   }
   if (count > 0) {
-    run();
+    run([signals = SignalCheck()]() mutable { signals.run(); });
   }
   for (std::thread& other : others) {
     other.join();
