@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <assimp/commonMetaData.h>
+#include <assimp/scene.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <string_view>
 
 #include "import/assimp_scene.h"
 #include "mesh/error.h"
@@ -11,6 +15,8 @@ namespace spherechain::baker {
 namespace {
 
 constexpr double kTicksPerSecond = 25;  // where a file does not say, by assimp's convention
+// Where an X file does not say, Direct3D counts 3ds Max's ticks. Some exporters number frames instead.
+constexpr double kDirectTicks = 4800, kDirectTicksApart = 40;
 
 using Channels = std::map<std::string, const aiNodeAnim*>;
 
@@ -143,6 +149,39 @@ void read_morph_weights(const aiMeshMorphAnim& animation, const MeshInstance& in
   }
 }
 
+// In the rotations of a node without pivots assimp applies a PostRotation that FBX takes back. The chain's link has it
+// right: it takes it back.
+void take_back(const aiNode& post, std::vector<Channel>& channels) {
+  const Eigen::Quaterniond back(Eigen::Matrix3d(to_affine(post.mTransformation).linear()));
+  for (Channel& channel : channels) {
+    if (channel.path != ChannelPath::kRotation) continue;
+    for (std::size_t v = 0; v < channel.values.size(); v += 4) {
+      Eigen::Map<Eigen::Quaterniond> key(&channel.values[v]);
+      key = (key * back * back).normalized();
+    }
+  }
+}
+
+double ticks_per_second(const aiScene& scene, const aiAnimation& animation) {
+  if (animation.mTicksPerSecond > 0 && std::isfinite(animation.mTicksPerSecond)) return animation.mTicksPerSecond;
+  aiString format;
+  if (scene.mMetaData == nullptr || !scene.mMetaData->Get(AI_METADATA_SOURCE_FORMAT, format) ||
+      std::string_view(format.C_Str()).find("XFile") == std::string_view::npos) {
+    return kTicksPerSecond;
+  }
+  double apart = std::numeric_limits<double>::max();  // of two keys, at the least on average
+  const auto look = [&](const auto* keys, unsigned count) {
+    if (count > 1) apart = std::min(apart, (keys[count - 1].mTime - keys[0].mTime) / (count - 1));
+  };
+  for (unsigned c = 0; c < animation.mNumChannels; ++c) {
+    const aiNodeAnim& channel = *animation.mChannels[c];
+    look(channel.mPositionKeys, channel.mNumPositionKeys);
+    look(channel.mRotationKeys, channel.mNumRotationKeys);
+    look(channel.mScalingKeys, channel.mNumScalingKeys);
+  }
+  return apart >= kDirectTicksApart && apart < std::numeric_limits<double>::max() ? kDirectTicks : kTicksPerSecond;
+}
+
 // A clip begins with its first key, wherever on the file's time line that is.
 void start_at_zero(Clip& clip) {
   double first = std::numeric_limits<double>::max();
@@ -159,8 +198,7 @@ std::vector<Clip> read_clips(const aiScene& scene, const AssimpScene& flat, cons
   std::vector<Clip> clips;
   for (unsigned a = 0; a < scene.mNumAnimations; ++a) {
     const aiAnimation& animation = *scene.mAnimations[a];
-    const bool paced = animation.mTicksPerSecond > 0 && std::isfinite(animation.mTicksPerSecond);
-    const double ticks = paced ? animation.mTicksPerSecond : kTicksPerSecond;
+    const double ticks = ticks_per_second(scene, animation);
     Clip clip;
     clip.name = animation.mName.length > 0 ? animation.mName.C_Str() : std::to_string(a);
     Channels by_name;
@@ -171,8 +209,10 @@ std::vector<Clip> read_clips(const aiScene& scene, const AssimpScene& flat, cons
       if (flat.by_name.at(name) != n) continue;
       const auto own = by_name.find(name);
       // A channel of the node's own name is all of the node, its pivots included.
-      const std::vector<Channel> channels = own != by_name.end() ? read_node(*own->second, n, ticks, file)
-                                                                 : fold(flat.chains[n], by_name, n, ticks, file);
+      std::vector<Channel> channels = own != by_name.end() ? read_node(*own->second, n, ticks, file)
+                                                           : fold(flat.chains[n], by_name, n, ticks, file);
+      const aiNode* post = post_rotation(flat.chains[n]);
+      if (post != nullptr && own != by_name.end()) take_back(*post, channels);
       clip.channels.insert(clip.channels.end(), channels.begin(), channels.end());
     }
     for (unsigned m = 0; m < animation.mNumMorphMeshChannels; ++m) {

@@ -153,6 +153,13 @@ Affine to_affine(const aiMatrix4x4& m) {
   return out;
 }
 
+const aiNode* post_rotation(const std::vector<const aiNode*>& chain) {
+  const auto found = std::find_if(chain.begin(), chain.end(), [](const aiNode* link) {
+    return std::string_view(link->mName.C_Str()).ends_with("_$AssimpFbx$_PostRotation");
+  });
+  return found == chain.end() ? nullptr : *found;
+}
+
 Affine offset_of(const aiBone& bone, const MeshInstance& instance) {
   return to_affine(bone.mOffsetMatrix) * instance.geometric;
 }

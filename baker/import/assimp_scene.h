@@ -36,6 +36,9 @@ struct AssimpScene {
   std::vector<MeshInstance> instances;
 };
 
+// The link of a chain that takes an FBX node's PostRotation back; null where there is none.
+const aiNode* post_rotation(const std::vector<const aiNode*>& chain);
+
 // Mesh space into the bone's, in the bind pose. FBX's clusters, which are all that assimp looks at, leave out the
 // geometric transform.
 Affine offset_of(const aiBone& bone, const MeshInstance& instance);

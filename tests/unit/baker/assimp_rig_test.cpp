@@ -178,6 +178,21 @@ TEST_CASE("the clip of an X file that holds the bind pose leaves the rest positi
   CHECK(farthest(wuson.positions, posed(wuson, "Wuson_Run", 0)) > 0.01);
 }
 
+TEST_CASE("an X file that names no unit of time counts Direct3D's ticks, or frames where keys are as close as those") {
+  const auto text = [](const std::string& end) {
+    return "xof 0303txt 0032\nFrame a { FrameTransformMatrix { 1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1;; }\n"
+           "Mesh { 3; 0;0;0;, 1;0;0;, 0;1;0;; 1; 3;0,1,2;; } }\n"
+           "AnimationSet s { Animation { { a } AnimationKey { 2; 2; 0;3;0,0,0;;, " +
+           end + ";3;0,0,1;;; } } }\n";
+  };
+  const TemporaryFolder folder;
+  for (const std::string end : {"4800", "25"}) {
+    const SourceMesh mesh = read_with_assimp(folder.write("man.x", text(end)));
+    REQUIRE(mesh.rig.clips.size() == 1);
+    CHECK(mesh.rig.clips[0].duration == doctest::Approx(1));
+  }
+}
+
 TEST_CASE("meshes of one character whose nodes scatter them are at rest where their bones were bound") {
   // The head's node has it in front of the neck; the clip starts in the bind pose.
   const SourceMesh human = read_with_assimp(kModels / "X/BCN_Epileptic.X");

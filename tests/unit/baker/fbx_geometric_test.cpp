@@ -28,13 +28,13 @@ struct Geometric {
 struct Model {
   std::string name, kind;
   Vec3 translation = Vec3::Zero(), rotation = Vec3::Zero(), scaling = Vec3::Ones(), pre = Vec3::Zero(),
-       pivot = Vec3::Zero();
+       post = Vec3::Zero(), pivot = Vec3::Zero();
   Geometric geometric{};
   const Model* parent = nullptr;
 
   Affine world(const Model* turned = nullptr, const Vec3& to = Vec3::Zero()) const {
     const Affine local = move(translation) * move(pivot) * turn(pre) * turn(this == turned ? to : rotation) *
-                         move(-pivot) * scale(scaling);
+                         turn(post).inverse() * move(-pivot) * scale(scaling);
     return parent == nullptr ? local : parent->world(turned, to) * local;
   }
 };
@@ -93,6 +93,7 @@ struct Arm {
       property("Lcl Rotation", model->rotation);
       property("Lcl Scaling", model->scaling);
       property("PreRotation", model->pre);
+      property("PostRotation", model->post);
       property("RotationPivot", model->pivot);
       property("GeometricTranslation", model->geometric.translation);
       property("GeometricRotation", model->geometric.rotation);
@@ -211,6 +212,18 @@ TEST_CASE("geometric transforms go with turned, scaled and pivoted nodes, other 
     arm.fore.pre = {0, 0, 30};
     arm.held.pivot = {1, 0.5, 0};
     arm.held.rotation = {0, 60, 0};
+    check_against_formulas(arm);
+  }
+}
+
+TEST_CASE("an FBX file's post-rotations are taken back, in clips of nodes with pivots and without") {
+  for (const Vec3& pivot : {Vec3(0, 0, 0), Vec3(0.1, 0.2, 0.3)}) {
+    Arm arm;
+    arm.upper.post = {0, 90, 15};
+    arm.fore.pre = {20, 0, 30};
+    arm.fore.post = {-50, 10, 70};
+    arm.fore.pivot = pivot;
+    arm.held.post = {90, 0, 0};
     check_against_formulas(arm);
   }
 }
