@@ -33,10 +33,15 @@ Vec3 way_up(const Character& character, const Roles& roles) {
   const std::vector<Vec3> rest = rest_positions(character.rig);
   const Vec3 trunk =
       rest[static_cast<std::size_t>(roles.neck_head.back())] - rest[static_cast<std::size_t>(roles.trunk.front())];
-  if (!(trunk.norm() > 0) || trunk.normalized().dot(up) > kUpright) return up;
+  if (!(trunk.norm() > 0)) return up;
   Eigen::Index axis = 0;
   trunk.cwiseAbs().maxCoeff(&axis);
-  return trunk[axis] < 0 ? Vec3(-Vec3::Unit(axis)) : Vec3(Vec3::Unit(axis));
+  const Vec3 own = trunk[axis] < 0 ? Vec3(-Vec3::Unit(axis)) : Vec3(Vec3::Unit(axis));
+  // A scene may stand a character at any angle; a scene's up that is an axis of the mesh is the mesh's, too.
+  constexpr double kAxis = 0.999;
+  const bool is_odd = up.cwiseAbs().maxCoeff() < kAxis;
+  const bool is_upright = trunk.normalized().dot(up) > kUpright;
+  return is_upright && !(is_odd && trunk.dot(own) > trunk.dot(up)) ? up : own;
 }
 
 double stature(const Character& character, const Roles& roles) {
