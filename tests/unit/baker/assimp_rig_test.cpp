@@ -180,10 +180,11 @@ TEST_CASE("the clip of an X file that holds the bind pose leaves the rest positi
 
 TEST_CASE("an X file that names no unit of time counts Direct3D's ticks, or frames where keys are as close as those") {
   const auto text = [](const std::string& end) {
-    return "xof 0303txt 0032\nFrame a { FrameTransformMatrix { 1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1;; }\n"
+    return "xof 0303txt 0032\nFrame a { FrameTransformMatrix { "
+           "1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0;; }\n"
            "Mesh { 3; 0;0;0;, 1;0;0;, 0;1;0;; 1; 3;0,1,2;; } }\n"
-           "AnimationSet s { Animation { { a } AnimationKey { 2; 2; 0;3;0,0,0;;, " +
-           end + ";3;0,0,1;;; } } }\n";
+           "AnimationSet s { Animation { { a } AnimationKey { 2; 2; 0;3;0.0,0.0,0.0;;, " +
+           end + ";3;0.0,0.0,1.0;;; } } }\n";
   };
   const TemporaryFolder folder;
   for (const std::string end : {"4800", "25"}) {
