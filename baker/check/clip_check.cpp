@@ -182,6 +182,19 @@ std::size_t ClipChecker::worst_of(const std::vector<std::size_t>& all, Frames& f
     measure(clip, frames.meetings[all[i]], frames.contacts[all[i]]);
     if (severity(found(all[i])) > severity(found(worst))) worst = all[i];
   }
+  // Frames beside a measured one were passed over, and one of them may be worse: climb from the worst to its neighbours.
+  for (bool climbs = may_be_fault; climbs;) {
+    climbs = false;
+    const auto top = static_cast<std::size_t>(std::find(all.begin(), all.end(), worst) - all.begin());
+    for (const std::size_t i : {top - 1, top + 1}) {
+      if (i >= all.size() || std::find(measured.begin(), measured.end(), i) != measured.end()) continue;
+      measured.push_back(i);
+      measure(clip, frames.meetings[all[i]], frames.contacts[all[i]]);
+      if (!(severity(found(all[i])) > severity(found(worst)))) continue;
+      worst = all[i];
+      climbs = true;
+    }
+  }
   return worst;
 }
 

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void fail(const fs::path& path, const std::string& why) {
+[[noreturn]] void fail_to_create(const fs::path& path, const std::string& why) {
   throw Error(ExitCode::kFile, path.string() + ": cannot be created (" + why + ")");
 }
 
@@ -56,9 +56,9 @@ WorkFolder::WorkFolder(const fs::path& in) {
     start_deleter(made);  // first: nothing is there that nobody would delete
     std::error_code error;
     fs::create_directories(in, error);
-    if (error) fail(in, error.message());
+    if (error) fail_to_create(in, error.message());
     sweep(in);
-    if (::mkdir(path_.c_str(), 0700) != 0) fail(path_, std::strerror(errno));
+    if (::mkdir(path_.c_str(), 0700) != 0) fail_to_create(path_, std::strerror(errno));
     lock_ = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     if (lock_ >= 0 && lock_own(lock_, path_)) return;
     stop_deleter();  // another process swept it in between
@@ -67,7 +67,7 @@ WorkFolder::WorkFolder(const fs::path& in) {
 
 void WorkFolder::start_deleter(const std::vector<fs::path>& made) {
   int ends[2];
-  if (::pipe2(ends, O_CLOEXEC) != 0) fail(path_, std::strerror(errno));
+  if (::pipe2(ends, O_CLOEXEC) != 0) fail_to_create(path_, std::strerror(errno));
   deleter_ = ::fork();
   if (deleter_ == 0) {
     ::close(ends[1]);
@@ -75,7 +75,7 @@ void WorkFolder::start_deleter(const std::vector<fs::path>& made) {
   }
   ::close(ends[0]);
   alive_ = ends[1];
-  if (deleter_ < 0) fail(path_, std::strerror(errno));
+  if (deleter_ < 0) fail_to_create(path_, std::strerror(errno));
 }
 
 void WorkFolder::stop_deleter() {
