@@ -21,7 +21,7 @@ namespace spherechain::baker {
 namespace {
 
 // The first letter of each line that a child sends: what the work tells, or why it failed.
-constexpr char kTold = 't', kError = 'e', kInterrupted = 'i', kException = 'x';
+constexpr char kTold = 't', kError = 'e', kStopped = 'i', kException = 'x';
 
 // Names of files may hold ends of lines.
 void send(int pipe, char kind, std::string line) {
@@ -43,7 +43,7 @@ void send(int pipe, char kind, std::string line) {
   try {
     task.work([&](const std::string& line) { send(pipe, kTold, line); });
   } catch (const Interrupted& error) {
-    send(pipe, kInterrupted, error.what());
+    send(pipe, kStopped, error.what());
   } catch (const Error& error) {
     send(pipe, kError, error.what());
   } catch (const std::exception& error) {
@@ -98,7 +98,7 @@ class Child {
       if (kind == kTold) {
         task_.told(line);
       } else {
-        ending_ = {line, kind != kException, kind == kInterrupted};
+        ending_ = {line, kind != kException, kind == kStopped};
       }
     }
     return true;
