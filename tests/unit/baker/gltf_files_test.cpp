@@ -111,7 +111,9 @@ TEST_CASE("files of the real world are where assimp's independent reader sees th
 TEST_CASE("a file's weapons, hats and capes on joints are counted, and come with attachments" *
           doctest::skip(kNoTestData)) {
   const std::string file = test_data("KayKit_Barbarian.glb");
-  const SourceMesh without = read_with_tinygltf(file, {false}), with = read_with_tinygltf(file, {true});
+  ImportOptions attachments;
+  attachments.attachments = true;
+  const SourceMesh without = read_with_tinygltf(file, {}), with = read_with_tinygltf(file, attachments);
   CHECK(without.meshes == 6);
   CHECK(without.attachments_dropped == 7);
   CHECK(with.meshes == 13);

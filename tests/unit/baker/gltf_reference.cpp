@@ -48,7 +48,9 @@ Affine3d world(const json& nodes, std::size_t n) {
 
 SourceMesh read(const Glb& glb, bool attachments) {
   const TemporaryFolder folder;
-  return read_with_tinygltf(folder.write("a.glb", glb.bytes()), {attachments});
+  ImportOptions options;
+  options.attachments = attachments;
+  return read_with_tinygltf(folder.write("a.glb", glb.bytes()), options);
 }
 
 std::vector<Vector3d> world_positions(const Glb& glb) {
