@@ -380,7 +380,7 @@ test('charts show what play measured, and a click on them seeks', async () => {
   const page = await fresh();
   await page.keyboard.press('m');
   await page.locator('#tab-charts').click();
-  await page.locator('.chart canvas').nth(2).waitFor();
+  await page.locator('.chart canvas').nth(1).waitFor();
   await goTo(page, 19);
   const shown = (await page.locator('.key output').allInnerTexts()).map((text) => Number(text.replace(',', '')));
   assert.equal(shown[3], pages.play[19].pairs.length);

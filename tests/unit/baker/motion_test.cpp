@@ -240,9 +240,9 @@ TEST_CASE("pose files that include themselves or what is not there are refused")
   CHECK(says(complaint(folder.write("self.json", R"({"poses": ["self.json"]})")), "includes itself"));
   folder.write("a.json", R"({"poses": ["b.json"]})");
   CHECK(says(complaint(folder.write("b.json", R"({"poses": ["a.json"]})")), "b.json: includes itself"));
-  CHECK(says(complaint(folder.write("c.json", R"({"poses": ["gone.json"]})")), "no such file next to it"));
+  CHECK(says(complaint(folder.write("c.json", R"({"poses": ["gone.json"]})")), "which is not there"));
   const std::string endless = R"({"poses": [")" + std::string(5000, 'a') + R"("]})";
-  CHECK(says(complaint(folder.write("long.json", endless)), "no such file next to it"));
+  CHECK(says(complaint(folder.write("long.json", endless)), "which is not there"));
   // Each file takes the one before it ten times.
   folder.write("d0.json", R"({"poses": [{}]})");
   for (const char digit : {'0', '1', '2', '3', '4'}) {
