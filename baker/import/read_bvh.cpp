@@ -14,8 +14,8 @@
 namespace spherechain::baker {
 namespace {
 
-// Positions take the place of the offset. Some programs write them from the offset on: where they are nearer to
-// nothing than to the offsets, they are added to these. A root's only say where the recording begins.
+// Positions take the place of the offset. Some programs write them from the offset on: where all begin at 0, they are
+// added to the offsets. A root's only say where the recording begins.
 bool are_added(const BvhFile& bvh) {
   double from_nothing = 0, from_offset = 0;
   for (const BvhJoint& joint : bvh.joints) {
@@ -26,7 +26,8 @@ bool are_added(const BvhFile& bvh) {
       from_offset += std::abs(value - joint.offset[joint.channels[c].axis]);
     }
   }
-  return from_nothing < from_offset;
+  constexpr double kNothing = 0.1;
+  return from_nothing < kNothing * from_offset;
 }
 
 class ChannelsOfJoint {

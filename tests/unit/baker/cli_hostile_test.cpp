@@ -96,14 +96,14 @@ TEST_CASE("what a name holds does not reach the console, but as text") {
   const std::string gltf =
       R"({"asset":{"version":"2.0"},"nodes":[{"name":)" + nlohmann::json(name).dump() +
       R"(,"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"buffers":[{"byteLength":36,"uri":)"
-      R"("data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],"bufferViews":[{"buffer":0,)"
+      R"("data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],"bufferViews":[{"buffer":0,)"
       R"("byteLength":36}],"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],)"
       R"("animations":[{"channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}],"samplers":)"
       R"([{"input":1,"output":0}]}]})";
   nlohmann::json still = nlohmann::json::parse(gltf);
   still["accessors"].push_back({{"componentType", 5126}, {"count", 3}, {"type", "SCALAR"}, {"bufferView", 1}});
   still["bufferViews"].push_back({{"buffer", 1}, {"byteLength", 12}});
-  still["buffers"].push_back({{"byteLength", 12}, {"uri", "data:;base64,AAAAAAAAgD8AAABA"}});
+  still["buffers"].push_back({{"byteLength", 12}, {"uri", "data:application/octet-stream;base64,AAAAAAAAgD8AAABA"}});
   const std::string file = folder.write("a.gltf", still.dump()).string();
   for (const char* json : {"", " --json"}) {
     const tool::Run roles = run("inspect --roles " + file + json);

@@ -127,7 +127,8 @@ TEST_CASE("no command writes over the materials of an OBJ: named with blanks, se
                                      "mtllib\tone.mtl two.mtl\nmtllibrary none.mtl\nmtllib")
                               .string();
   fs::create_directory(folder.path / "frames");
-  folder.write("frames/1.obj", "mtllib ../one.mtl\n");
+  folder.write("frames/1.obj", "mtllib one.mtl\n");
+  touch(folder, "frames/one.mtl");
   const std::string at = folder.path.string();
   for (const char* file : {"my body.mtl", "one.mtl", "two.mtl", "body.mtl"}) {
     touch(folder, file);
@@ -136,7 +137,7 @@ TEST_CASE("no command writes over the materials of an OBJ: named with blanks, se
     check_refused(folder.path, fmt::format("bake {} --force -o out --report {}", obj, material), "INPUT", "--report");
     check_refused(folder.path, fmt::format("view a.sphc --source {} --force -o {}", obj, material), "--source", "-o");
   }
-  check_refused(folder.path, fmt::format("play a.sphc --source a.glb --motion {0}/frames --json {0}/one.mtl", at),
+  check_refused(folder.path, fmt::format("play a.sphc --source a.glb --motion {0}/frames --json {0}/frames/one.mtl", at),
                 "--motion", "--json");
   // The comment and the other word name nothing: this is refused for what is in the file.
   for (const char* file : {"not.mtl", "none.mtl"}) {
