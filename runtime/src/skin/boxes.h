@@ -36,7 +36,7 @@ struct Box {
 
 constexpr Box kEmptyBox{{FLT_MAX, FLT_MAX, FLT_MAX}, {-FLT_MAX, -FLT_MAX, -FLT_MAX}};
 
-// Is a box that is not empty no larger than that share of its greatest coordinate?
+// Is a box that is finite and not empty no larger than that share of its greatest coordinate?
 HWY_INLINE bool is_within(const Box& box, float share) {
   float most = 0, extent = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -45,7 +45,7 @@ HWY_INLINE bool is_within(const Box& box, float share) {
     most = reach > most ? reach : most;
     extent = size > extent ? size : extent;
   }
-  return extent <= share * most && box.low[0] <= box.high[0];
+  return most <= FLT_MAX && extent <= share * most && box.low[0] <= box.high[0];
 }
 
 // Of BoxColumns, or of whatever has `low` and `high` by axis.
