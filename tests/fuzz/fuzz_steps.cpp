@@ -204,8 +204,12 @@ void check_contacts(Case& c, const StepJob& job) {
   if (job.a.blend == SC_BLEND_LINEAR && job.b.blend == SC_BLEND_LINEAR) {
     const std::vector<std::uint64_t> scratch(sc_body_scratch_words(&c.asset, &c.asset) +
                                              sc_skin_scratch_words(&c.asset));
-    c.expect(at_start == parts_at(job, false, scratch), "the contacts at the start");
-    c.expect(at_end == parts_at(job, true, scratch), "the contacts at the end");
+    // A step leaves out triangles that are points at its other end, so it may have fewer contacts than a frame.
+    const auto are_among = [](const std::vector<Pair>& some, const std::vector<Pair>& all) {
+      return std::includes(all.begin(), all.end(), some.begin(), some.end());
+    };
+    c.expect(are_among(at_start, parts_at(job, false, scratch)), "the contacts at the start");
+    c.expect(are_among(at_end, parts_at(job, true, scratch)), "the contacts at the end");
   }
 }
 
