@@ -137,6 +137,8 @@ Turns solve_turns(const TurnedClip& clip, const std::vector<char>& in_window, co
     }
     if (!changed) break;
   }
+  // A joint whose scale is 0 moves nothing, and makes no system that can be solved.
+  if (!x.allFinite()) return start;
   for (std::size_t f = 0; f < in_window.size(); ++f) {
     for (Index j = 0; j < count; ++j) {
       if (const Eigen::Index at = system.place(static_cast<int>(f), j); at >= 0) out[f * count + j] = x.segment<3>(at);

@@ -13,6 +13,8 @@ const isOwn = (group) => (group.name ?? '').startsWith('spherechain ');
 // The file's JSON without what the export wrote; equal to the source's where nothing else was touched.
 function without(json, source) {
   const out = structuredClone(json), had = source.extensions ?? {};
+  delete out.asset.extras.spherechain;
+  if (!source.asset.extras) delete out.asset.extras;
   if (had.VRM) {
     const animation = out.extensions.VRM.secondaryAnimation, first = had.VRM.secondaryAnimation.colliderGroups?.length ?? 0;
     animation.colliderGroups = animation.colliderGroups.filter((group) => !isOwn(group));

@@ -71,10 +71,12 @@ TEST_CASE("export: a file of somebody else stays, also beside the output, but by
   CHECK(tool::run(words + " --force").code == 0);
   CHECK(tool::contents(beside) != "somebody's");
   CHECK(tool::run(words).code == 0);  // of its own making
-  // A GLB is of this tool if it has what this tool adds.
+  // A GLB is of this tool if it has its mark.
   const std::filesystem::path glb = folder.write("human.glb", R"(glTF {"nodes":[{"name":"spherechain\u0020"}]})");
   const std::string into = export_of(glb, std::string("--to khr --source ") + kHumanFile);
   tool::check_error(tool::run(into), 3, {"human.glb", "--force"});
-  folder.write("human.glb", R"(glTF {"nodes":[{"name":"spherechain hand"}]})");
+  const std::string own = R"({"asset":{"version":"2.0","extras":{"spherechain":"0"}}} )";
+  const char size[] = {static_cast<char>(own.size()), 0, 0, 0};
+  folder.write("human.glb", "glTF" + std::string(8, ' ') + std::string(size, 4) + "JSON" + own);
   tool::check_error(tool::run(into), 3, {"bones"});  // it would have been replaced
 }
