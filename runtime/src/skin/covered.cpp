@@ -18,6 +18,10 @@ constexpr double kOff = 0.5, kAside = 0.8660254037844386, kDiagonal = 0.70710678
 constexpr double kTurn[kTurns][2] = {{1, 0},  {kDiagonal, kDiagonal},   {0, 1},  {-kDiagonal, kDiagonal},
                                      {-1, 0}, {-kDiagonal, -kDiagonal}, {0, -1}, {kDiagonal, -kDiagonal}};
 
+constexpr std::size_t kCellsMax = 256;  // runs of groups of clusters, looked at first
+constexpr std::size_t kRun = 8;         // triangles of a cluster that follow one another, of which one is looked from
+constexpr std::uint32_t kMixed = 0xFFFFFFFF;
+
 class Looker {
  public:
   explicit Looker(const Surface& surface) : surface_(surface) {
@@ -30,6 +34,10 @@ class Looker {
       }
     }
     clearance_ = kClearance * length(high - low);
+    groups_per_cell_ = surface.boxes.size / kCellsMax + 1;
+    for (std::size_t first = 0; first < surface.boxes.size; first += groups_per_cell_) {
+      cells_[cell_count_++] = cell_of(kClusterLanes * first, kClusterLanes * (first + groups_per_cell_));
+    }
   }
 
   bool is_covered(std::size_t triangle) {
@@ -65,6 +73,43 @@ class Looker {
     const Double3 center{double{lanes.x[i]}, double{lanes.y[i]}, double{lanes.z[i]}};
     const Double3 half{double{lanes.half_x[i]}, double{lanes.half_y[i]}, double{lanes.half_z[i]}};
     return {center - half, center + half};
+  }
+
+  struct Cell {
+    double low[3], high[3];
+    std::uint32_t piece;  // of all of its triangles; kMixed where there are several
+  };
+
+  Cell cell_of(std::size_t first, std::size_t end) const {
+    Cell out{{HUGE_VAL, HUGE_VAL, HUGE_VAL},
+             {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL},
+             piece_of(surface_.clusters[first].first_triangle)};
+    for (std::size_t c = first; c < std::min(end, surface_.clusters.size); ++c) {
+      const Box box = box_of(c);
+      const double low[3] = {box.low.x, box.low.y, box.low.z}, high[3] = {box.high.x, box.high.y, box.high.z};
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double wider = double{kWider} * (std::abs(low[axis]) + std::abs(high[axis]));
+        out.low[axis] = std::min(out.low[axis], low[axis] - wider);
+        out.high[axis] = std::max(out.high[axis], high[axis] + wider);
+      }
+      const Cluster& cluster = surface_.clusters[c];
+      for (std::size_t i = 0; i < cluster.triangle_count; ++i) {
+        out.piece = piece_of(std::size_t{cluster.first_triangle} + i) == out.piece ? out.piece : kMixed;
+      }
+    }
+    return out;
+  }
+
+  // A NaN, of a look along the box's side, keeps the cell.
+  static bool may_meet(const Cell& cell, const double (&from)[3], const double (&slope)[3]) {
+    double enter = 0, leave = HUGE_VAL;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double a = (cell.low[axis] - from[axis]) * slope[axis], b = (cell.high[axis] - from[axis]) * slope[axis];
+      const double first = a < b ? a : b, last = a < b ? b : a;
+      enter = first > enter ? first : enter;
+      leave = last < leave ? last : leave;
+    }
+    return !(enter > leave);
   }
 
   void corners(std::size_t triangle, Double3 (&p)[3]) const {
@@ -132,12 +177,9 @@ class Looker {
     return false;
   }
 
-  // The cluster in which the last look ended is likely to end the next.
-  bool ends_at_skin(const Double3& from, const Double3& direction) {
-    if (ends_in(last_, from, direction)) {
-      return true;
-    }
-    for (std::size_t group = 0; group < surface_.boxes.size; ++group) {
+  bool ends_in_cell(std::size_t cell, const Double3& from, const Double3& direction) {
+    const std::size_t first = cell * groups_per_cell_, last = std::min(first + groups_per_cell_, surface_.boxes.size);
+    for (std::size_t group = first; group < last; ++group) {
       const unsigned met = boxes_met(surface_.boxes[group], from, direction);
       for (std::size_t k = 0; met >> k != 0; ++k) {
         const std::size_t c = kClusterLanes * group + k;
@@ -150,10 +192,26 @@ class Looker {
     return false;
   }
 
+  // The cluster in which the last look ended is likely to end the next.
+  bool ends_at_skin(const Double3& from, const Double3& direction) {
+    if (ends_in(last_, from, direction)) {
+      return true;
+    }
+    const double start[3] = {from.x, from.y, from.z}, slope[3] = {1 / direction.x, 1 / direction.y, 1 / direction.z};
+    for (std::size_t cell = 0; cell < cell_count_; ++cell) {
+      if (cells_[cell].piece != own_ && may_meet(cells_[cell], start, slope) && ends_in_cell(cell, from, direction)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
   const Surface& surface_;
   double clearance_ = 0;
   std::size_t last_ = 0;
   std::uint32_t own_ = 0;
+  std::size_t cell_count_ = 0, groups_per_cell_ = 1;
+  Cell cells_[kCellsMax];
 };
 
 }  // namespace
@@ -166,9 +224,16 @@ void find_covered(const Surface& surface) {
   for (std::size_t t = 0; t < surface.parts.size; ++t) {
     is_one_piece = is_one_piece && piece(t) == piece(0);
   }
+  if (is_one_piece) {
+    return;
+  }
   Looker looker(surface);
-  for (std::size_t t = 0; t < surface.parts.size && !is_one_piece; ++t) {
-    out[t] = looker.is_covered(t) ? 1 : 0;
+  for (const Cluster& cluster : surface.clusters) {
+    for (std::size_t i = 0; i < cluster.triangle_count; ++i) {
+      const std::size_t t = std::size_t{cluster.first_triangle} + i;
+      const bool is_as_before = i % kRun != 0 && piece(t) == piece(t - 1);
+      out[t] = is_as_before ? out[t - 1] : looker.is_covered(t) ? 1 : 0;
+    }
   }
 }
 
