@@ -130,7 +130,7 @@ void find_parents(const SourceRig& rig, const std::vector<Joint>& joints, std::v
   };
   for (std::size_t p = 0; p < parts.size(); ++p) part_at[node_of(parts[p])] = static_cast<int>(p);
   part_at.erase(-1);
-  // Of each node the part of the nearest one above that has one.
+  // Each node takes the part of the nearest node above that has one.
   std::vector<int> part_above(own_rig ? rig.nodes.size() : joints.size(), -1);
   for (std::size_t n = 0; n < part_above.size(); ++n) {
     const int up = above(static_cast<int>(n));

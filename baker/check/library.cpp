@@ -44,7 +44,7 @@ struct Found {
   bool operator<(const Found& other) const { return path < other.path; }
 };
 
-// What lies in `folder` and below, by name; no file need be readable. Links to folders are not followed: there is no
+// Lists `folder` and all below, by name; no file need be readable. Links to folders are not followed: there is no
 // ring of them.
 std::vector<Found> files_below(const fs::path& folder, bool (*wanted)(const fs::path&)) {
   std::vector<Found> out;

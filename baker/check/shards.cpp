@@ -55,7 +55,7 @@ ShardResult read_shard(const fs::path& folder) {
   return out;
 }
 
-// What is whole in `from`. A clip's result without one of its files is none.
+// Reads the whole results in `from`. A clip's result without one of its files is none.
 void copy_results(const CheckedClip& clip, const Store& from, const Store& store) {
   const auto copy = [&](const std::string& key, const std::string& kind) {
     if (key.empty() || store.has(key, kind)) return;

@@ -126,7 +126,7 @@ CLI::Option* add_volumes(CLI::App& command, std::string& volumes, int& at_most, 
 void open_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (::fcntl(stream, F_GETFD) == -1 && errno == EBADF) {
-      // What is printed then fails, and is no success that nobody sees.
+      // Printing then fails, so that lost output is not taken for success.
       static_cast<void>(::open("/dev/null", stream == STDERR_FILENO ? O_WRONLY : O_RDONLY));
     }
   }

@@ -8,7 +8,7 @@
 
 namespace spherechain::baker {
 
-// What a command is doing: a line on stderr that is replaced by the next. Where stderr is no terminal, a line every
+// Shows the work of a command: a line on stderr that is replaced by the next. Where stderr is no terminal, a line every
 // half minute, for logs.
 class Progress {
  public:

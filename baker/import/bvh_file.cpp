@@ -120,7 +120,7 @@ class BvhReader {
     if (at_ == begin && at_ < text_.size()) ++at_;
     return word_ = text_.substr(begin, at_ - begin);
   }
-  // What follows up to the end of the line, or to a brace.
+  // The rest of the line, or of it up to a brace.
   std::string_view rest_of_line() {
     skip_space();
     ended_line_ = false;

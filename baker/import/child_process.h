@@ -9,7 +9,7 @@
 
 namespace spherechain::baker {
 
-// Nothing is wrong with the file: a process was killed from outside or could not be started, or the file changed
+// The file is not to blame: a process was killed from outside or could not be started, or the file changed
 // meanwhile. The same work may succeed later.
 class Interrupted : public Error {
  public:
