@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Triangles that other pieces of the skin hide at rest: a body below a suit, teeth, the lining of a coat. From their
-// fronts every look ends at another piece.
+// fronts every look ends at another piece. Of eight triangles of a cluster that follow one another, one is looked from.
 #pragma once
 
 #include "skin/skin_table.h"
