@@ -60,7 +60,7 @@ TEST_CASE("steps: what poses on the way have is found, and nothing else") {
   CHECK(begun > 20);
   CHECK(ended > 20);
   CHECK(only_between > 0);
-  CHECK(kept > 20);
+  CHECK(kept > 10);
 }
 
 TEST_CASE("a step of vertices has the contacts of a step of bones that put them there") {
