@@ -19,10 +19,7 @@ std::vector<std::vector<std::uint8_t>> parts_of_spheres(const OpenAsset& asset) 
   return out;
 }
 
-PartSkin::PartSkin(const OpenAsset& asset)
-    : table(sc_skin_table_words(asset.handle())),
-      one_part(sc_sphere_words(asset.handle()), 0),
-      none(sc_pair_words(asset.handle()), 0) {
+PartSkin::PartSkin(const OpenAsset& asset) : table(sc_skin_table_words(asset.handle())) {
   check_runtime(sc_prepare_skin(asset.handle(), table.data(), table.size()));
   Surface surface;
   check_runtime(read_skin_table(asset.view(), table.data(), surface));
@@ -31,11 +28,7 @@ PartSkin::PartSkin(const OpenAsset& asset)
 
   const std::vector<std::vector<std::uint8_t>> parts = parts_of_spheres(asset);
   for (std::uint32_t a = 0; a < parts.size(); ++a) {
-    if (parts[a].size() > 1) {
-      any_of_two = true;
-    } else {
-      one_part[a / 64] |= std::uint64_t{1} << a % 64;
-    }
+    if (parts[a].size() > 1) pairs.push_back({a, a});
     for (std::uint32_t b = a + 1; b < parts.size(); ++b) {
       const bool has_two = parts[a].size() > 1 || parts[b].size() > 1 || parts[a] != parts[b];
       if (has_two && !parts[a].empty() && !parts[b].empty()) pairs.push_back({a, b});
@@ -64,31 +57,16 @@ const std::vector<PartContact>& TouchingParts::find(const Deformation& deformati
   job.scratch = scratch_.data();
   job.scratch_words = scratch_.size();
 
-  contacts_.clear();
-  SkinContactJob between = job;
-  between.candidates = skin_.pairs.data();
-  between.candidate_count = skin_.pairs.size();
-  if (!skin_.pairs.empty()) add(between);
-  if (!skin_.any_of_two) return contacts_;
-  // A job on pairs does not look within a sphere. This one looks nowhere else: no pair is ignored.
-  sc_filter within;
-  within.ignored = const_cast<std::uint64_t*>(skin_.none.data());  // jobs only read a filter
-  within.ignored_words = skin_.none.size();
-  within.disabled = const_cast<std::uint64_t*>(skin_.one_part.data());
-  within.disabled_words = skin_.one_part.size();
-  job.scope = SC_SCOPE_NEIGHBOURS;
-  job.filter = &within;
-  add(job);
-  return contacts_;
-}
-
-void TouchingParts::add(SkinContactJob& job) {
-  const std::size_t before = contacts_.size(), parts = animated_.asset()->part_count();
-  contacts_.resize(before + parts * (parts + 1) / 2);
-  job.parts = contacts_.data() + before;
-  job.part_capacity = contacts_.size() - before;
+  job.candidates = skin_.pairs.data();
+  job.candidate_count = skin_.pairs.size();
+  const std::size_t parts = asset->part_count();
+  contacts_.resize(skin_.pairs.empty() ? 0 : parts * (parts + 1) / 2);
+  if (contacts_.empty()) return contacts_;
+  job.parts = contacts_.data();
+  job.part_capacity = contacts_.size();
   check_runtime(job.run());
-  contacts_.resize(before + job.part_count);
+  contacts_.resize(job.part_count);
+  return contacts_;
 }
 
 }  // namespace spherechain::baker

@@ -122,7 +122,6 @@ void view_table(const TableHeader& header, const std::uint64_t* words, GroupView
   const auto point = [&](auto*& to, std::uint32_t place) {
     to = reinterpret_cast<std::remove_reference_t<decltype(to)>>(words + place);
   };
-  point(v.paddings, header.paddings);
   point(v.items, header.items);
   point(v.unit_places, header.unit_places);
   point(v.wanted, header.wanted);

@@ -42,8 +42,7 @@ SPHERECHAIN_HD void for_all_lanes_of(std::uint32_t count, std::uint32_t lane, co
   }
 }
 
-// Places past the last sphere get the last sphere once more. Then adds the filter's padding: each lane to the spheres
-// that it loaded. A sphere padded to below 0 touches nothing.
+// Places past the last sphere get the last sphere once more.
 SPHERECHAIN_HD void load_spheres(const GroupView& v, const WarpInstance& w) {
   const auto* const from = reinterpret_cast<const Float4*>(v.spheres + w.instance * v.instance_stride);
   const std::uint32_t last = v.sphere_count - 1;
@@ -56,12 +55,6 @@ SPHERECHAIN_HD void load_spheres(const GroupView& v, const WarpInstance& w) {
     }
   });
   wait_for_copies();
-  if (v.has_padding != 0) {
-    for_each_of(v.sphere_count, w.lane, [&](std::uint32_t i) {
-      const float radius = w.spheres[i].w + v.paddings[i];
-      w.spheres[i].w = radius < 0 ? NAN : radius;
-    });
-  }
 }
 
 // Fills in what the quick test reads; past the last sphere any figures will do. Clears what is found.

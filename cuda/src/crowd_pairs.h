@@ -24,18 +24,13 @@ SPHERECHAIN_HD float power_of(const Vec3& p, float radius, float margin) {
 // like this one is off by at most 33 * 2^-24 G; the powers add 4 * 2^-24 G here, and the margin is 64 * 2^-24.
 inline constexpr float kPowerMargin = 0x1p-18F;
 
-// Step 6, a warp a sphere: padding and powers. Also clears the outputs' bits, which lie where the matrices were.
+// Step 6, a warp a sphere: powers. Also clears the outputs' bits, which lie where the matrices were.
 SPHERECHAIN_HD void prepare_pairs(const GroupView& v, const Shared& shared, const Place& at) {
   const std::uint32_t lane = at.lane();
   const Float4& first = shared.spheres[lane];
-  const Vec3 origin{first.x, first.y, first.z};  // not the radius, which another thread may be padding
+  const Vec3 origin{first.x, first.y, first.z};
   for (std::uint32_t i = at.warp(); i < v.sphere_count; i += at.warps()) {
-    Float4 sphere = shared.spheres[i * kPitch + lane];
-    if (v.has_padding != 0) {
-      sphere.w += v.paddings[i];
-      sphere.w = sphere.w < 0 ? NAN : sphere.w;  // touches nothing
-      shared.spheres[i * kPitch + lane].w = sphere.w;
-    }
+    const Float4 sphere = shared.spheres[i * kPitch + lane];
     const Vec3 seen{sphere.x - origin.x, sphere.y - origin.y, sphere.z - origin.z};
     shared.powers[i * kPitch + lane] = power_of(seen, sphere.w, kPowerMargin);
   }

@@ -14,18 +14,14 @@ namespace {
 
 // Pairs that the filter, or without one the asset, does not ignore.
 struct WantedPairs {
-  Span<const std::uint64_t> ignored, disabled;
+  Span<const std::uint64_t> ignored;
 
   WantedPairs(const AssetView& asset, const Filter* filter) : ignored(asset.ignored()) {
     if (filter != nullptr) {
       ignored = {filter->ignored, filter->ignored_words};
-      disabled = {filter->disabled, filter->disabled_words};
     }
   }
-  bool is_enabled(std::size_t i) const { return disabled.size == 0 || !test_bit(disabled, i); }
-  bool operator()(std::uint32_t a, std::uint32_t b) const {
-    return !test_bit(ignored, ignored_bit(a, b)) && is_enabled(a) && is_enabled(b);
-  }
+  bool operator()(std::uint32_t a, std::uint32_t b) const { return !test_bit(ignored, ignored_bit(a, b)); }
 };
 
 bool is_rest_pair(Span<const RestPair> rest, std::uint32_t a, std::uint32_t b) {
@@ -147,7 +143,6 @@ void fill(const AssetView& asset, Radius radius, const Filter* filter, TableMemo
   TableHeader* const words = memory.take<TableHeader>(1, start);
   TableHeader& header = memory.is_null() ? places : *words;
   add_moments(asset, radius, memory, header);
-  auto* const paddings = memory.take<float>(n, header.paddings);
   auto* const rest_pairs = memory.take<RestPairItem>(rest_pairs_max(asset), header.rest_pairs);
   auto* const items = memory.take<PairItem>(items_max(n), header.items);
   const std::size_t unit_words = words_of_units(units_of(n));
@@ -160,10 +155,6 @@ void fill(const AssetView& asset, Radius radius, const Filter* filter, TableMemo
   header.sphere_count = n;
   header.bit_words = static_cast<std::uint32_t>(words_for(pairs_of(n)));
   header.origin_sphere = middle_sphere(asset.spheres());
-  if (filter != nullptr && filter->padding_count > 0) {
-    header.has_padding = 1;
-    std::copy_n(filter->padding, n, paddings);
-  }
   const WantedPairs wanted(asset, filter);
   const Span<const RestPair> rest = asset.rest_pairs(radius);
   const auto is_tested = [&](auto a, auto b) { return wanted(a, b) && !is_rest_pair(rest, a, b); };

@@ -122,7 +122,6 @@ struct TableFigures {
   std::uint32_t used_bone_count, item_count, rest_pair_count, run_count, bit_words;
   std::uint32_t reference;      // bone of MomentTables, among those used
   std::uint32_t origin_sphere;  // see see_sphere()
-  std::uint32_t has_padding;
   Vec3 origin;
 };
 
@@ -130,7 +129,7 @@ struct TableFigures {
 inline constexpr std::uint32_t kTableMagic = 0x63756461;
 struct TableHeader : TableFigures {
   std::uint32_t magic;
-  std::uint32_t paddings, items, unit_places, wanted, rest_pairs;
+  std::uint32_t items, unit_places, wanted, rest_pairs;
   std::uint32_t used_bones, runs, run_spheres, moment_steps, moments, run_bones, center_terms;
 };
 
@@ -160,7 +159,6 @@ struct BlockLayout {
 // A group as the kernels read it. Its instance_stride is never 0.
 struct GroupView : TableFigures, CrowdGroup {
   // The arrays of the table's copy on the device.
-  const float* paddings;
   const PairItem* items;
   const std::uint32_t* unit_places;  // of each unit: r and, in the upper half, c
   const std::uint32_t* wanted;       // [word][lane]: bit 31 - i for the lane's pair i
@@ -221,7 +219,7 @@ struct Shared {
   const BlockLayout& layout;
   Float4* matrices = layout.matrices.in(bytes);                 // [3 * bone + row][lane]
   float* reference = layout.reference.in(bytes);                // [axis][lane]: where the reference bone has the origin
-  Float4* spheres = layout.spheres.in(bytes);                   // [sphere][lane], with the filter's padding
+  Float4* spheres = layout.spheres.in(bytes);                   // [sphere][lane]
   float* powers = layout.powers.in(bytes);                      // [sphere][lane], see power_of()
   std::uint32_t* bits = layout.bits.in(bytes);                  // [half word][lane]
   std::uint32_t* ordered_bits = layout.ordered_bits.in(bytes);  // the same in the order of sorted pairs

@@ -426,10 +426,6 @@ namespace Spherechain
         {
             public ulong* Ignored;
             public UIntPtr IgnoredWords;
-            public ulong* Disabled;
-            public UIntPtr DisabledWords;
-            public float* Padding;
-            public UIntPtr PaddingCount;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -451,25 +447,6 @@ namespace Spherechain
             /// <summary>out: bit b(b-1)/2 + a of each pair; sc_pair_words() words exactly; or null. Cheapest</summary>
             public ulong* Bits;
             public UIntPtr BitWords;
-            /// <summary>out: how many there are, also where `pairs` is too small</summary>
-            public UIntPtr PairCount;
-        }
-
-        [StructLayout(LayoutKind.Sequential)]
-        public unsafe struct ConeJob  // sc_cone_job
-        {
-            /// <summary>open</summary>
-            public Asset* Asset;
-            /// <summary>refitted at the radius wanted</summary>
-            public Sphere* Spheres;
-            /// <summary>at least the asset's</summary>
-            public UIntPtr SphereCount;
-            public Target Target;
-            /// <summary>from sc_prepare_cones(), with this asset</summary>
-            public ulong* Table;
-            /// <summary>out: of links; sorted, each once; null: count only</summary>
-            public Pair* Pairs;
-            public UIntPtr PairCapacity;
             /// <summary>out: how many there are, also where `pairs` is too small</summary>
             public UIntPtr PairCount;
         }
@@ -813,9 +790,6 @@ namespace Spherechain
         public static extern UIntPtr sc_pair_words(Asset* asset);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_sphere_words(Asset* asset);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern UIntPtr sc_detect_table_words(Asset* asset);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
@@ -829,27 +803,6 @@ namespace Spherechain
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_ignore_regions(Asset* asset, Filter* filter, UIntPtr region, UIntPtr other, int ignored);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_disable_sphere(Asset* asset, Filter* filter, uint sphere, int disabled);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_pad_sphere(Asset* asset, Filter* filter, uint sphere, float padding);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_detect_cones(ConeJob* job);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_chain_links(Asset* asset, Pair* links, UIntPtr capacity);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_cone_table_words(UIntPtr link_count);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_prepare_cones(Asset* asset, Filter* filter, Pair* links, UIntPtr link_count, Sphere* rest, ulong* words, UIntPtr word_count);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_scale_cones(ulong* words, UIntPtr word_count, uint a, uint b, float scale);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_bind_joints(Asset* asset, Bone* joints, UIntPtr joint_count, MatrixLayout inverse_bind_layout, uint* joint_of_bone, UIntPtr capacity, byte* message, UIntPtr message_size);

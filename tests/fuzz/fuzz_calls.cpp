@@ -44,26 +44,16 @@ Status edit(Case& c, Filter& filter, sc_code& wanted) {
   const std::size_t regions = c.view().region_count();
   const std::size_t region = draw_index(c, regions), other = draw_index(c, regions);
   const int on = c.random.one_in(2) ? 0 : -3;
-  float padding = 0;
-  fill_figures(c, &padding, 1);
-  const auto wants = [&](bool is_there, bool is_sound) {
-    wanted = !is_there ? SC_NULL : is_sound ? SC_OK : SC_BAD_VALUE;
-  };
-  switch (c.random.below(5)) {
+  const auto wants = [&](bool is_sound) { wanted = is_sound ? SC_OK : SC_BAD_VALUE; };
+  switch (c.random.below(3)) {
     case 0:
-      wants(true, a < c.n && b < c.n && a != b);
+      wants(a < c.n && b < c.n && a != b);
       return sc_ignore_pair(&c.asset, &filter, a, b, on);
     case 1:
-      wants(true, region < regions && other < regions);
+      wants(region < regions && other < regions);
       return sc_ignore_regions(&c.asset, &filter, region, other, on);
-    case 2:
-      wants(filter.disabled_words > 0, a < c.n);
-      return sc_disable_sphere(&c.asset, &filter, a, on);
-    case 3:
-      wants(filter.padding_count > 0, a < c.n && padding - padding == 0);
-      return sc_pad_sphere(&c.asset, &filter, a, padding);
     default:
-      wants(true, true);
+      wants(true);
       return sc_reset_filter(&c.asset, &filter);
   }
 }
@@ -126,7 +116,7 @@ void fuzz_accessors(Case& c) {
                sc_target_name(draw_none<Target>(c, 8)) != nullptr,
            "text of what does not exist");
   for (const Asset* none : {static_cast<const Asset*>(nullptr), static_cast<const Asset*>(&c.closed)}) {
-    c.expect(sc_asset_is_open(none) == 0 && sc_pair_words(none) + sc_sphere_words(none) + sc_detect_table_words(none) +
+    c.expect(sc_asset_is_open(none) == 0 && sc_pair_words(none) + sc_detect_table_words(none) +
                                                     sc_skin_table_words(none) + sc_skin_scratch_words(none) +
                                                     sc_crowd_scratch_words(none, 3) ==
                                                 0,
@@ -149,9 +139,7 @@ void fuzz_filter(Case& c) {
     c.expect(status == SC_OK || status.field != SC_FIELD_NONE, "an edit's status without its field");
     (status == SC_OK ? c.tally.ran : c.tally.refused) += 1;
   }
-  const std::vector<Bytes> own = {bytes_of(filter.ignored, filter.ignored_words),
-                                  bytes_of(filter.disabled, filter.disabled_words),
-                                  bytes_of(filter.padding, filter.padding_count)};
+  const std::vector<Bytes> own = {bytes_of(filter.ignored, filter.ignored_words)};
   c.expect(c.arena.kept_but(c.spoiled > 0 ? std::vector<Bytes>() : own), "an edit writes past the filter");
 }
 

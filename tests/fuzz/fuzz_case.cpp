@@ -192,29 +192,16 @@ void add_vertex_ways(Case& c, Pose& pose, Ways& ways) {
 
 Filter draw_filter(Case& c) {
   Filter filter;
-  const auto thin = [&](std::uint64_t* words, std::size_t count, std::uint32_t one_in) {
-    for (std::size_t i = 0; i < count; ++i) {
-      words[i] = c.random.one_in(one_in) ? c.random.bits() & c.random.bits() & c.random.bits() : 0;
-    }
-  };
   filter.ignored_words = sc_pair_words(&c.asset);
   filter.ignored = c.arena.add<std::uint64_t>(filter.ignored_words);
-  thin(filter.ignored, filter.ignored_words, 3);
-  if (c.random.one_in(2)) {
-    filter.disabled_words = sc_sphere_words(&c.asset);
-    filter.disabled = c.arena.add<std::uint64_t>(filter.disabled_words);
-    thin(filter.disabled, filter.disabled_words, 2);
-  }
-  if (c.random.one_in(2)) {
-    filter.padding_count = c.n;
-    filter.padding = c.arena.add<float>(c.n);
-    fill_figures(c, filter.padding, c.n);
+  for (std::size_t i = 0; i < filter.ignored_words; ++i) {
+    filter.ignored[i] = c.random.one_in(3) ? c.random.bits() & c.random.bits() & c.random.bits() : 0;
   }
   return filter;
 }
 
 void spoil_filter(Case& c, Filter& filter) {
-  switch (c.random.below(7)) {
+  switch (c.random.below(4)) {
     case 0:
       filter.ignored_words += 1;
       return c.spoil(SC_TOO_SMALL, SC_FIELD_FILTER);
@@ -228,18 +215,6 @@ void spoil_filter(Case& c, Filter& filter) {
       filter.ignored = nullptr;
       filter.ignored_words += 1;
       return c.spoil(SC_NULL, SC_FIELD_FILTER);
-    case 3:
-      filter.disabled = c.arena.add<std::uint64_t>(9);
-      filter.disabled_words = sc_sphere_words(&c.asset) + 1;
-      return c.spoil(SC_TOO_SMALL, SC_FIELD_FILTER);
-    case 4:
-      filter.disabled = nullptr;
-      filter.disabled_words = sc_sphere_words(&c.asset);
-      return c.spoil(SC_NULL, SC_FIELD_FILTER);
-    case 5:
-      filter.padding = c.arena.add<float>(c.n + 1);
-      filter.padding_count = c.n + 1;
-      return c.spoil(SC_TOO_SMALL, SC_FIELD_FILTER);
     default:
       put_askew(c, filter.ignored);
       return c.spoil(SC_MISALIGNED, SC_FIELD_FILTER);

@@ -122,7 +122,6 @@ void fuzz_prepare(Case& c);
 void fuzz_character(Case& c);
 void fuzz_refit(Case& c);
 void fuzz_detect(Case& c);
-void fuzz_cones(Case& c);
 void fuzz_crowd(Case& c);
 void fuzz_contacts(Case& c);
 void fuzz_penetrations(Case& c);

@@ -47,9 +47,6 @@ bool is_asked(const Case& c, const SkinContactJob& job, std::uint32_t p, std::ui
     return (words[bit / 64] >> (bit % 64) & 1) != 0;
   };
   const Filter* const f = job.filter;
-  if (f != nullptr && f->disabled_words > 0 && (is_set(f->disabled, a) || is_set(f->disabled, b))) {
-    return false;
-  }
   const std::uint64_t* const ignored = f == nullptr ? c.view().ignored().data : f->ignored;
   const bool are_neighbours = a == b || is_set(ignored, std::size_t{b} * (b - 1) / 2 + a);
   return job.scope == SC_SCOPE_ALL || are_neighbours == (job.scope == SC_SCOPE_NEIGHBOURS);
@@ -113,8 +110,8 @@ void draw_question(Case& c, SkinContactJob& job, Filter& filter) {
   if (c.n > 1 && c.random.one_in(3)) {
     std::vector<Pair> pairs;
     for (std::size_t i = c.random.below(40); i > 0; --i) {
-      const std::size_t b = 1 + c.random.up_to(c.n - 2);
-      pairs.push_back({static_cast<std::uint32_t>(c.random.up_to(b - 1)), static_cast<std::uint32_t>(b)});
+      const std::size_t b = c.random.up_to(c.n - 1);  // a pair of one sphere asks about its own triangles
+      pairs.push_back({static_cast<std::uint32_t>(c.random.up_to(b)), static_cast<std::uint32_t>(b)});
     }
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
@@ -162,7 +159,7 @@ Ways ways_of(Case& c, SkinContactJob& job, Filter& filter, Target& other) {
                },
                [&] {
                  const auto n = static_cast<std::uint32_t>(c.n);
-                 const Pair bad[] = {{0, n}, {n, n + 1}, {1, 1}, {1, 0}, {0xFFFFFFFFU, 0xFFFFFFFFU}, {0, 0xFFFFFFFFU}};
+                 const Pair bad[] = {{0, n}, {n, n + 1}, {n, n}, {1, 0}, {0xFFFFFFFFU, 0xFFFFFFFFU}, {0, 0xFFFFFFFFU}};
                  Pair* const candidates = c.arena.add<Pair>(1);
                  *candidates = c.random.pick(bad);
                  job.candidates = candidates;

@@ -128,59 +128,59 @@ void draw_outputs(Case& c, CrowdJob& job, std::size_t there_are) {
 
 Ways ways_of(Case& c, CrowdJob& job, Filter& filter, Target& other) {
   const std::size_t words = sc_pair_words(&c.asset);
-  Ways ways = {
-      [&] {
-        const std::size_t counts[] = {power_of_two(32), 0xFFFFFFFFU, ~std::size_t{0}, power_of_two(58)};
-        job.instance_count = c.random.pick(counts);
-        c.spoil(SC_BAD_VALUE, SC_FIELD_INSTANCES);
-      },
-      [&] {
-        job.task_count = c.random.one_in(2) ? 0xFFFFFFFFU : ~std::size_t{0};
-        c.spoil(SC_BAD_VALUE, SC_FIELD_TASKS);
-      },
-      [&] { job.pose.vertices = c.arena.add<float>(3), c.spoil(SC_BAD_VALUE, SC_FIELD_VERTICES); },
-      [&] { job.scratch = nullptr, c.spoil(SC_NULL, SC_FIELD_SCRATCH); },
-      [&] { put_askew(c, job.scratch), c.spoil(SC_MISALIGNED, SC_FIELD_SCRATCH); },
-      [&] {
-        job.scratch_words =
-            c.random.up_to(sc_crowd_scratch_words(&c.asset, std::max<std::size_t>(job.task_count, 1)) - 1);
-        c.spoil(SC_TOO_SMALL, SC_FIELD_SCRATCH);
-      },
-      [&] { job.counts = nullptr, job.count_capacity = 9, c.spoil(SC_NULL, SC_FIELD_COUNTS); },
-      [&] {
-        job.counts = c.arena.add<std::uint32_t>(1);
-        job.count_capacity = c.random.up_to(std::min<std::size_t>(job.instance_count, 40) - 1);
-        c.spoil(SC_TOO_SMALL, SC_FIELD_COUNTS);
-      },
-      [&] {
-        job.counts = nullptr;
-        job.count_capacity = 0;
-        job.pairs = c.arena.add<CrowdPair>(1);
-        job.pair_capacity = 1;
-        c.spoil(SC_NULL, SC_FIELD_COUNTS);
-      },
-      [&, words] {
-        job.bits = c.arena.add<std::uint64_t>(1);
-        job.bit_words = job.instance_count * words + 1;
-        c.spoil(SC_BAD_VALUE, SC_FIELD_BITS);
-      },
-      [&] { job.bits = nullptr, job.bit_words = 1, c.spoil(SC_NULL, SC_FIELD_BITS); },
-      [&] { job.radius = draw_none<Radius>(c, 2), c.spoil(SC_BAD_VALUE, SC_FIELD_RADIUS); },
-      [&] { other = draw_none<Target>(c, 8), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
-      [&] {
-        if (job.filter == nullptr) filter = draw_filter(c);
-        job.filter = &filter;
-        spoil_filter(c, filter);
-      },
-      [&] {
-        const Bytes read = job.pose.bones != nullptr ? bytes_of(job.pose.bones, 12) : bytes_of(job.spheres, c.n);
-        if (put_over(c, job.scratch, read)) c.spoil(SC_ALIASED, SC_FIELD_OUTPUT);
-      },
-      [&] {
-        if (job.bit_words > 0 && put_over(c, job.bits, bytes_of(job.scratch, job.scratch_words))) {
-          c.spoil(SC_ALIASED, SC_FIELD_OUTPUT);
-        }
-      }};
+  Ways ways = {[&] {
+                 const std::size_t counts[] = {power_of_two(32), 0xFFFFFFFFU, ~std::size_t{0}, power_of_two(58)};
+                 job.instance_count = c.random.pick(counts);
+                 c.spoil(SC_BAD_VALUE, SC_FIELD_INSTANCES);
+               },
+               [&] {
+                 job.task_count = c.random.one_in(2) ? 0xFFFFFFFFU : ~std::size_t{0};
+                 c.spoil(SC_BAD_VALUE, SC_FIELD_TASKS);
+               },
+               [&] { job.pose.vertices = c.arena.add<float>(3), c.spoil(SC_BAD_VALUE, SC_FIELD_VERTICES); },
+               [&] { job.scratch = nullptr, c.spoil(SC_NULL, SC_FIELD_SCRATCH); },
+               [&] { put_askew(c, job.scratch), c.spoil(SC_MISALIGNED, SC_FIELD_SCRATCH); },
+               [&] {
+                 job.scratch_words =
+                     c.random.up_to(sc_crowd_scratch_words(&c.asset, std::max<std::size_t>(job.task_count, 1)) - 1);
+                 c.spoil(SC_TOO_SMALL, SC_FIELD_SCRATCH);
+               },
+               [&] { job.counts = nullptr, job.count_capacity = 9, c.spoil(SC_NULL, SC_FIELD_COUNTS); },
+               [&] {
+                 job.counts = c.arena.add<std::uint32_t>(1);
+                 job.count_capacity = c.random.up_to(std::min<std::size_t>(job.instance_count, 40) - 1);
+                 c.spoil(SC_TOO_SMALL, SC_FIELD_COUNTS);
+               },
+               [&] {
+                 job.counts = nullptr;
+                 job.count_capacity = 0;
+                 job.pairs = c.arena.add<CrowdPair>(1);
+                 job.pair_capacity = 1;
+                 c.spoil(SC_NULL, SC_FIELD_COUNTS);
+               },
+               [&, words] {
+                 job.bits = c.arena.add<std::uint64_t>(1);
+                 job.bit_words = job.instance_count * words + 1;
+                 c.spoil(SC_BAD_VALUE, SC_FIELD_BITS);
+               },
+               [&] { job.bits = nullptr, job.bit_words = 1, c.spoil(SC_NULL, SC_FIELD_BITS); },
+               [&] { job.radius = draw_none<Radius>(c, 2), c.spoil(SC_BAD_VALUE, SC_FIELD_RADIUS); },
+               [&] { other = draw_none<Target>(c, 8), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
+               [&] {
+                 if (job.filter == nullptr) filter = draw_filter(c);
+                 job.filter = &filter;
+                 spoil_filter(c, filter);
+               },
+               [&] {
+                 const Bytes read =
+                     job.pose.bones != nullptr ? bytes_of(job.pose.bones, 12) : bytes_of(job.spheres, c.n);
+                 if (put_over(c, job.scratch, read)) c.spoil(SC_ALIASED, SC_FIELD_OUTPUT);
+               },
+               [&] {
+                 if (job.bit_words > 0 && put_over(c, job.bits, bytes_of(job.scratch, job.scratch_words))) {
+                   c.spoil(SC_ALIASED, SC_FIELD_OUTPUT);
+                 }
+               }};
   add_asset_ways(c, job.asset, ways);
   if (job.pose.bones != nullptr) {
     ways.emplace_back([&] { job.spheres = c.arena.add<Sphere>(1), c.spoil(SC_BAD_VALUE, SC_FIELD_SPHERES); });

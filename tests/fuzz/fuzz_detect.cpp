@@ -9,25 +9,17 @@ namespace spherechain::test {
 namespace {
 
 std::vector<Pair> find(const Case& c, const Sphere* spheres, Radius radius, const Filter* filter) {
-  const bool is_padded = filter != nullptr && filter->padding_count > 0;
   const auto is_set = [](const std::uint64_t* words, std::size_t bit) {
     return (words[bit / 64] >> (bit % 64) & 1) != 0;
   };
-  std::vector<Sphere> padded(spheres, spheres + c.n);
-  std::vector<bool> gone(c.n);
-  for (std::size_t i = 0; i < c.n; ++i) {
-    if (is_padded) padded[i].radius += filter->padding[i];
-    gone[i] = (is_padded && padded[i].radius < 0) ||
-              (filter != nullptr && filter->disabled_words > 0 && is_set(filter->disabled, i));
-  }
   std::vector<float> scales(c.n * c.n, -1.0F);
   for (const RestPair& pair : c.view().rest_pairs(radius)) scales[pair.a * c.n + pair.b] = pair.rest_scale;
   const std::uint64_t* const ignored = filter == nullptr ? c.view().ignored().data : filter->ignored;
   std::vector<Pair> pairs;
   for (std::uint32_t a = 0; a < c.n; ++a) {
     for (std::uint32_t b = a + 1; b < c.n; ++b) {
-      if (gone[a] || gone[b] || is_set(ignored, std::size_t{b} * (b - 1) / 2 + a)) continue;
-      const Sphere &p = padded[a], &q = padded[b];
+      if (is_set(ignored, std::size_t{b} * (b - 1) / 2 + a)) continue;
+      const Sphere &p = spheres[a], &q = spheres[b];
       const float x = p.x - q.x, y = p.y - q.y, z = p.z - q.z, s = p.radius + q.radius;
       const float d2 = (x * x + y * y) + z * z, scale = scales[a * c.n + b], t = scale * s;
       if (d2 < s * s && s * s <= FLT_MAX && (scale < 0.0F || d2 < t * t)) pairs.push_back({a, b});

@@ -23,8 +23,7 @@ constexpr Kind kKinds[] = {{"open", fuzz_open},           {"accessors", fuzz_acc
                            {"character", fuzz_character}, {"refit", fuzz_refit},
                            {"detect", fuzz_detect},       {"crowd", fuzz_crowd},
                            {"contacts", fuzz_contacts},   {"penetrations", fuzz_penetrations},
-                           {"bodies", fuzz_bodies},       {"steps", fuzz_steps},
-                           {"cones", fuzz_cones}};
+                           {"bodies", fuzz_bodies},       {"steps", fuzz_steps}};
 constexpr std::size_t kKindCount = sizeof kKinds / sizeof kKinds[0];
 
 bool read_number(int argc, char** argv, int& i, const char* name, std::uint64_t& number) {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Steps, of one body and of two: what they say of the ends is what a frame's job says, and hostile calls are refused.
 #include <algorithm>
+#include <cmath>
 
 #include "fuzz_case.h"
+#include "jobs.h"
+#include "pose/pose.h"
 #include "skin/skin_table.h"
 
 namespace spherechain::test {
@@ -156,18 +159,61 @@ void add_motion_ways(Case& c, Motion& motion, bool is_first, Ways& ways) {
   });
 }
 
-// What a frame's job finds where the step starts, or ends: of poses that are linear.
-std::vector<Pair> parts_at(const StepJob& job, bool at_end, const std::vector<std::uint64_t>& two_scratch) {
+using Parts = std::vector<Pair>;
+
+// Marks the triangles, by the source's numbers, whose corners lie well apart in the pose. A step leaves out the others:
+// on the way to a point all would meet.
+std::vector<char> sound_triangles(const Case& c, const Body& body, const Pose& pose) {
+  Surface surface;
+  std::vector<char> sound(sc_asset_get_info(&c.asset).triangle_count, 0);
+  if (read_skin_table(c.view(), body.skin_table, surface) != SC_OK) return sound;
+  const std::vector<float> skinned = pose.vertices == nullptr ? skin(c.asset, pose) : std::vector<float>();
+  const float* const places = pose.vertices == nullptr ? skinned.data() : pose.vertices;
+  const std::size_t stride = pose.vertices == nullptr ? 3 * sizeof(float) : vertex_stride(pose);
+  float most = 0;
+  for (const std::uint32_t v : surface.source_vertices) {
+    for (int axis = 0; axis < 3; ++axis) most = std::fmax(most, std::fabs(vertex_at(places, v, stride)[axis]));
+  }
+  for (std::size_t t = 0; t < surface.triangles.size; ++t) {
+    const float* corners[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      corners[k] = vertex_at(places, surface.source_vertices[surface.triangle_vertices[3 * t + k]], stride);
+    }
+    bool is_sound = std::isfinite(most);
+    for (std::size_t k = 0; k < 3; ++k) {
+      float apart = 0;
+      for (int axis = 0; axis < 3; ++axis) {
+        apart = std::max(apart, std::fabs(corners[k][axis] - corners[(k + 1) % 3][axis]));
+      }
+      is_sound = is_sound && apart > most / 1024;
+    }
+    sound[surface.triangles[t]] = is_sound ? 1 : 0;
+  }
+  return sound;
+}
+
+// The pairs of parts that a frame's job finds at one end of a step of linear poses, and those that the step must find.
+struct PartsAtEnd {
+  Parts all, sound;
+};
+
+PartsAtEnd parts_at(const Case& c, const StepJob& job, bool at_end, const std::vector<std::uint64_t>& two_scratch) {
   std::vector<std::uint64_t> scratch = two_scratch;
   std::vector<PartContact> parts(400);
+  std::vector<TriangleContact> triangles(10000);
   const auto find = [&](auto frame) {
     frame.scratch = scratch.data();
     frame.scratch_words = scratch.size();
     frame.parts = parts.data();
     frame.part_capacity = parts.size();
-    parts.resize(frame.run() == SC_OK ? frame.part_count : 0);
+    frame.triangles = triangles.data();
+    frame.triangle_capacity = triangles.size();
+    const Status status = frame.run();
+    parts.resize(status == SC_OK || status == SC_OVERFLOW ? frame.part_count : 0);
+    triangles.resize(std::min(triangles.size(), status == SC_OK || status == SC_OVERFLOW ? frame.triangle_count : 0));
   };
-  if (job.b.body.asset == nullptr) {
+  const bool has_two = job.b.body.asset != nullptr;
+  if (!has_two) {
     SkinContactJob frame;
     frame.asset = job.a.body.asset;
     frame.skin_table = job.a.body.skin_table;
@@ -184,13 +230,27 @@ std::vector<Pair> parts_at(const StepJob& job, bool at_end, const std::vector<st
     }
     find(frame);
   }
-  std::vector<Pair> out;
-  for (const PartContact& part : parts) out.push_back({part.part_a, part.part_b});
+  PartsAtEnd out;
+  for (const PartContact& part : parts) out.all.push_back({part.part_a, part.part_b});
+  const Motion& other = has_two ? job.b : job.a;
+  const std::vector<char> starts[] = {sound_triangles(c, job.a.body, job.a.body.pose),
+                                      sound_triangles(c, other.body, other.body.pose)};
+  const std::vector<char> ends[] = {sound_triangles(c, job.a.body, job.a.end),
+                                    sound_triangles(c, other.body, other.end)};
+  for (const TriangleContact& of : triangles) {
+    if (starts[0][of.triangle_a] != 0 && ends[0][of.triangle_a] != 0 && starts[1][of.triangle_b] != 0 &&
+        ends[1][of.triangle_b] != 0) {
+      const bool is_turned = !has_two && of.part_a > of.part_b;
+      out.sound.push_back(is_turned ? Pair{of.part_b, of.part_a} : Pair{of.part_a, of.part_b});
+    }
+  }
+  std::sort(out.sound.begin(), out.sound.end());
+  out.sound.erase(std::unique(out.sound.begin(), out.sound.end()), out.sound.end());
   return out;
 }
 
 void check_contacts(Case& c, const StepJob& job) {
-  std::vector<Pair> at_start, at_end;
+  Parts at_start, at_end;
   for (std::size_t i = 0; i < job.contact_count; ++i) {
     const StepContact& of = job.contacts[i];
     const Pair parts{of.part_a, of.part_b};
@@ -204,12 +264,12 @@ void check_contacts(Case& c, const StepJob& job) {
   if (job.a.blend == SC_BLEND_LINEAR && job.b.blend == SC_BLEND_LINEAR) {
     const std::vector<std::uint64_t> scratch(sc_body_scratch_words(&c.asset, &c.asset) +
                                              sc_skin_scratch_words(&c.asset));
-    // A step leaves out triangles that are points at its other end, so it may have fewer contacts than a frame.
-    const auto are_among = [](const std::vector<Pair>& some, const std::vector<Pair>& all) {
-      return std::includes(all.begin(), all.end(), some.begin(), some.end());
+    const auto are_as_in = [](const Parts& found, const PartsAtEnd& frame) {
+      return std::includes(frame.all.begin(), frame.all.end(), found.begin(), found.end()) &&
+             std::includes(found.begin(), found.end(), frame.sound.begin(), frame.sound.end());
     };
-    c.expect(are_among(at_start, parts_at(job, false, scratch)), "the contacts at the start");
-    c.expect(are_among(at_end, parts_at(job, true, scratch)), "the contacts at the end");
+    c.expect(are_as_in(at_start, parts_at(c, job, false, scratch)), "the contacts at the start");
+    c.expect(are_as_in(at_end, parts_at(c, job, true, scratch)), "the contacts at the end");
   }
 }
 

@@ -32,8 +32,8 @@ typedef struct sc_triangle_contact {
  * bones bound the search, and each vertex must be where its bone weights put it, up to rounding; else give vertices
  * alone (docs/arithmetic.md).
  *
- * Left out: triangles that share a position at rest (neighbours), triangles that intersect in the rest pose, ignored
- * pairs and disabled spheres of the filter.
+ * Left out: triangles that share a position at rest (neighbours), triangles that intersect in the rest pose, and
+ * ignored pairs.
  *
  * Allocates nothing, takes no lock. Jobs on other outputs and scratch memory may run at the same time. */
 typedef struct sc_skin_contact_job {
@@ -44,7 +44,8 @@ typedef struct sc_skin_contact_job {
   int32_t spheres_only SC_ZERO;       /* 1: find pairs of spheres alone; each ends at its first contact. Cheapest */
   const uint64_t* skin_table SC_ZERO; /* from sc_prepare_skin(), of this asset */
   const sc_filter* filter SC_ZERO;    /* null: the asset's ignored pairs */
-  /* Null, or: only these pairs of spheres, ignored or not; sorted, each once. Then scope and filter must be zero. */
+  /* Null, or: only these pairs of spheres, ignored or not, a <= b; a = b: within one sphere's triangles. Sorted, each
+   * once. Then scope and filter must be zero. */
   const sc_pair* candidates SC_ZERO;
   size_t candidate_count SC_ZERO;
   uint64_t* scratch SC_ZERO; /* sc_skin_scratch_words() words; nothing is kept there between runs */

@@ -33,12 +33,11 @@ MemoryRange range_of_instances(const AssetView& asset, const CrowdJob& job) {
 }
 
 bool is_aliased(const AssetView& asset, const CrowdJob& job) {
-  const FilterRanges filter = ranges_of(job.filter);
   return any_shared(
       {range_of(Span<std::uint32_t>{job.counts, job.count_capacity}),
        range_of(Span<std::uint64_t>{job.bits, job.bit_words}), range_of(Span<CrowdPair>{job.pairs, job.pair_capacity}),
        range_of(Span<std::uint64_t>{job.scratch, job.scratch_words})},
-      {range_of_instances(asset, job), range_of(asset.ignored()), filter.ignored, filter.disabled, filter.padding});
+      {range_of_instances(asset, job), range_of(asset.ignored()), range_of(job.filter)});
 }
 
 Status check_instances(const AssetView& asset, const CrowdJob& job) {

@@ -88,16 +88,6 @@ void choose_pairs(Crowd& crowd) {
   for_each_pair(ignored.data, n, [&](std::uint32_t a, std::uint32_t b) {  // few
     assign_bit(crowd.wanted, sorted_bit(a, b, n), false);
   });
-  if (job.filter != nullptr && job.filter->disabled_words > 0) {
-    const Span<const std::uint64_t> disabled{job.filter->disabled, job.filter->disabled_words};
-    for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t k = 0; k < n && test_bit(disabled, i); ++k) {
-        if (k != i) {
-          assign_bit(crowd.wanted, sorted_bit(std::min(i, k), std::max(i, k), n), false);
-        }
-      }
-    }
-  }
   for (const RestPair& pair : crowd.rest_pairs) {
     set_bit(crowd.is_rest_pair, sorted_bit(pair.a, pair.b, n));
   }
@@ -151,7 +141,6 @@ void run_task(void* data, std::size_t task) {
   LaneBatch batch;
   batch.stride = crowd.stride;
   batch.sphere_count = crowd.asset.spheres().size;
-  batch.padding = job.filter == nullptr ? nullptr : job.filter->padding;
   batch.wanted = crowd.wanted.data;
   batch.is_rest_pair = crowd.is_rest_pair.data;
   batch.rest_pairs = crowd.rest_pairs;

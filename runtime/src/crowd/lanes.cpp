@@ -32,7 +32,7 @@ HWY_INLINE LaneSphere load(const float* lanes, std::size_t sphere) {
           hn::Load(kFloats, at + 3 * n)};
 }
 
-// From one instance after the other to one a lane, padded, and seen from the first sphere. At least |center|^2 +
+// From one instance after the other to one a lane, and seen from the first sphere. At least |center|^2 +
 // radius^2 of each lane's spheres, seen so; infinite where one is not finite.
 HWY_INLINE Vector prepare(const LaneBatch& batch) {
   constexpr Floats kFloats;
@@ -54,10 +54,6 @@ HWY_INLINE Vector prepare(const LaneBatch& batch) {
       load_spheres(
           kFloats, [&](std::size_t lane) -> const Sphere& { return instances[lane][i]; }, center[0], center[1],
           center[2], radius);
-    }
-    if (batch.padding != nullptr) {
-      radius = hn::Add(radius, hn::Set(kFloats, batch.padding[i]));
-      radius = hn::IfThenElse(hn::Lt(radius, hn::Zero(kFloats)), hn::NaN(kFloats), radius);  // as a detect job has it
     }
     hn::Store(radius, kFloats, at + 3 * kLanes);
     for (std::size_t c = 0; c < 3; ++c) {

@@ -22,8 +22,7 @@ inline constexpr std::size_t kMaxListed = 64;
 struct LaneBatch {
   const Sphere* spheres = nullptr;  // null: the first four of a sphere's `lanes` have them already
   std::size_t stride = 0, count = 0, sphere_count = 0;
-  const float* padding = nullptr;  // may be null
-  std::size_t bit_words = 0;       // of each table of bits
+  std::size_t bit_words = 0;  // of each table of bits
   // A bit a pair, in the order of sorted pairs: those to be tested, and those that `rest_pairs` has, in its order.
   const std::uint64_t *wanted = nullptr, *is_rest_pair = nullptr;
   Span<const RestPair> rest_pairs;

@@ -14,14 +14,13 @@ namespace spherechain {
 namespace {
 
 bool is_aliased(const PenetrationJob& job, const AssetView& asset) {
-  const FilterRanges filter = ranges_of(job.filter);
   return any_shared(
       {range_of(Span<Penetration>{job.penetrations, job.penetration_capacity}),
        range_of(Span<std::uint64_t>{job.scratch, measure_words(asset, asset, true, job.contact_count)})},
       {range_of_vertices(asset, job.pose), range_of_bones(asset, job.pose), range_of_morph_weights(asset, job.pose),
        range_of(Span<const std::uint64_t>{job.skin_table, skin_table_words(asset)}), range_of(asset.ignored()),
        range_of(Span<const TriangleContact>{job.contacts, job.contact_count}),
-       range_of(Span<const Penetration>{job.previous, job.previous_count}), filter.ignored, filter.disabled});
+       range_of(Span<const Penetration>{job.previous, job.previous_count}), range_of(job.filter)});
 }
 
 bool is_aliased(const BodyPenetrationJob& job) {
@@ -89,10 +88,9 @@ Status run(PenetrationJob& job) {
   const Meeting::Side side{&asset, &surface, job.pose};
   Meeting meeting = meeting_of(job, side, side, resolved);
   meeting.are_one = true;
-  meeting.rule = {&surface, asset.ignored(), {}, job.scope != SC_SCOPE_NEIGHBOURS, job.scope != SC_SCOPE_APART};
+  meeting.rule = {&surface, asset.ignored(), job.scope != SC_SCOPE_NEIGHBOURS, job.scope != SC_SCOPE_APART};
   if (job.filter != nullptr) {
     meeting.rule.ignored = {job.filter->ignored, job.filter->ignored_words};
-    meeting.rule.disabled = {job.filter->disabled, job.filter->disabled_words};
   }
   const Status contacts = check_contacts(meeting);
   return contacts == SC_OK ? measure(meeting, job.penetration_count) : contacts;

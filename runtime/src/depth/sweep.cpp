@@ -31,9 +31,6 @@ bool PairRule::counts(std::uint32_t a, std::uint32_t b) const {
   }
   const std::size_t s = surface->triangle_spheres[a], t = surface->triangle_spheres[b];
   const std::size_t low = std::min(s, t), high = std::max(s, t);
-  if (is_on(disabled, low) || is_on(disabled, high)) {
-    return false;
-  }
   const bool is_neighbour = low == high || is_on(ignored, high * (high - 1) / 2 + low);
   if (!(is_neighbour ? neighbours : apart)) {
     return false;

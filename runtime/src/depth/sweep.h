@@ -11,7 +11,7 @@ namespace spherechain {
 // Which pairs of triangles count: those that the contact job would report.
 struct PairRule {
   const Surface* surface = nullptr;  // null: all pairs, those of two bodies
-  Span<const std::uint64_t> ignored, disabled;
+  Span<const std::uint64_t> ignored;
   bool apart = true, neighbours = false;
 
   bool counts(std::uint32_t a, std::uint32_t b) const;

@@ -2,7 +2,6 @@
 #include "spherechain/detect.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "asset/memory.h"
 #include "asset/status.h"
@@ -67,28 +66,11 @@ Status check(const DetectJob& job, Target& resolved, Scene& scene) {
   if (!resolve_target(job.target, resolved)) {
     return refuse(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET);
   }
-  const FilterRanges filter = ranges_of(job.filter);
   const bool is_aliased =
-      any_shared({range_of(pairs), range_of(bits)}, {range_of(spheres), range_of(asset.ignored()),
-                                                     range_of(Span<const std::uint64_t>{job.table, scene.table_words}),
-                                                     filter.ignored, filter.disabled, filter.padding});
+      any_shared({range_of(pairs), range_of(bits)},
+                 {range_of(spheres), range_of(asset.ignored()),
+                  range_of(Span<const std::uint64_t>{job.table, scene.table_words}), range_of(job.filter)});
   return is_aliased ? refuse(SC_ALIASED, pairs.size > 0 ? SC_FIELD_PAIRS : SC_FIELD_BITS) : done();
-}
-
-// Spheres from `first` on, padded: those of the scene where nothing is padded, or in `copy`.
-const Sphere* padded(const Scene& scene, std::size_t first, std::size_t count, Sphere* copy) {
-  const Sphere* const spheres = scene.spheres.data + first;
-  if (scene.choice.padding.size == 0) {
-    return spheres;
-  }
-  for (std::size_t i = 0; i < count; ++i) {
-    copy[i] = spheres[i];
-    copy[i].radius += scene.choice.padding[first + i];
-    if (copy[i].radius < 0) {  // no number touches nothing, whatever the other sphere's radius is
-      copy[i].radius = std::numeric_limits<float>::quiet_NaN();
-    }
-  }
-  return copy;
 }
 
 // Those of the tile's columns.
@@ -123,14 +105,13 @@ void find_unprepared(Target target, const Scene& scene, Tile& tile, FoundPairs& 
 void detect(Target target, const Scene& scene, PairOutput& output) {
   const std::size_t n = scene.spheres.size;
   FoundPairs found(output);
-  Sphere columns[kTileSize], rows[kTileSize];
   Tile tile{};
   for (std::size_t first = 0; first < n; first += kTileSize) {
     const std::size_t column_count = std::min(n - first, kTileSize);
-    tile.columns = padded(scene, first, column_count, columns);
+    tile.columns = scene.spheres.data + first;
     for (std::size_t first_row = first; first_row < n; first_row += kTileSize) {
       tile.place = {first, column_count, first_row, std::min(n - first_row, kTileSize)};
-      tile.rows = first_row == first ? tile.columns : padded(scene, first_row, tile.place.row_count, rows);
+      tile.rows = scene.spheres.data + first_row;
       if (scene.has_lists) {
         tile.lists = &scene.lists;
         find_pairs(target, tile, found);
@@ -197,10 +178,6 @@ extern "C" {
 
 size_t sc_pair_words(const sc_asset* asset) noexcept {
   return sc_asset_is_open(asset) != 0 ? words_for(pairs_of(view_of(*asset).spheres().size)) : 0;
-}
-
-size_t sc_sphere_words(const sc_asset* asset) noexcept {
-  return sc_asset_is_open(asset) != 0 ? words_for(view_of(*asset).spheres().size) : 0;
 }
 
 sc_status sc_detect(sc_detect_job* job) noexcept {

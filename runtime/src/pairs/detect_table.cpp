@@ -14,7 +14,7 @@ namespace spherechain {
 namespace {
 
 constexpr std::uint64_t kMagic = 0x6361747465646373;  // says that the words are a table
-enum Place : std::size_t { kIsTable, kAsset, kRadius, kSpheres, kRestRoom, kIsPadded, kRestPairs, kHeaderWords };
+enum Place : std::size_t { kIsTable, kAsset, kRadius, kSpheres, kRestRoom, kRestPairs, kHeaderWords };
 
 bool is_one_tile(const AssetView& asset) { return asset.spheres().size <= kTileSize; }
 
@@ -42,15 +42,12 @@ struct Content {
       take(lists.rest_scales, lists.rest_room);
     } else {
       take(ignored, words_for(pairs_of(n)));
-      take(disabled, words_for(n));
     }
-    take(padding, n);
   }
 
   std::size_t size;
   PairListBuffers lists = {};
-  float* padding = nullptr;
-  std::uint64_t *ignored = nullptr, *disabled = nullptr;
+  std::uint64_t* ignored = nullptr;
 };
 
 Status check(const AssetView& asset, Radius radius, const Filter* filter, Span<std::uint64_t> words) {
@@ -68,9 +65,7 @@ Status check(const AssetView& asset, Radius radius, const Filter* filter, Span<s
   if (status != SC_OK) {
     return status;
   }
-  const FilterRanges ranges = ranges_of(filter);
-  return any_shared({range_of(Span<std::uint64_t>{words.data, needed})},
-                    {range_of(asset.ignored()), ranges.ignored, ranges.disabled, ranges.padding})
+  return any_shared({range_of(Span<std::uint64_t>{words.data, needed})}, {range_of(asset.ignored()), range_of(filter)})
              ? refuse(SC_ALIASED, SC_FIELD_TABLE)
              : done();
 }
@@ -84,10 +79,7 @@ void fill(const AssetView& asset, Radius radius, const Filter* filter, std::uint
   words[kRadius] = static_cast<std::uint64_t>(radius);
   words[kSpheres] = n;
   words[kRestRoom] = padded_rest_pairs(asset);
-  words[kIsPadded] = choice.padding.size > 0 ? 1 : 0;
   words[kRestPairs] = 0;
-  std::fill(content.padding, content.padding + n, 0.0F);
-  std::copy(choice.padding.begin(), choice.padding.end(), content.padding);
   if (is_one_tile(asset)) {
     Target target{};
     resolve_target(SC_TARGET_BEST, target);
@@ -96,8 +88,6 @@ void fill(const AssetView& asset, Radius radius, const Filter* filter, std::uint
     words[kRestPairs] = move_rest_pairs(choice.rest_pairs, place, content.lists);
   } else {
     std::copy(choice.ignored.begin(), choice.ignored.end(), content.ignored);
-    std::fill(content.disabled, content.disabled + words_for(n), std::uint64_t{0});
-    std::copy(choice.disabled.begin(), choice.disabled.end(), content.disabled);
   }
 }
 
@@ -117,7 +107,6 @@ Status read_detect_table(const AssetView& asset, Radius radius, const std::uint6
   const std::size_t n = asset.spheres().size;
   const PairListBuffers& lists = content.lists;
   scene.table_words = content.size;
-  scene.choice.padding = {content.padding, words[kIsPadded] != 0 ? n : 0};
   scene.has_lists = is_one_tile(asset);
   if (scene.has_lists) {
     scene.lists = {lists.wanted,     lists.strips,      strips_of(n),
@@ -125,7 +114,6 @@ Status read_detect_table(const AssetView& asset, Radius radius, const std::uint6
   } else {
     scene.choice.rest_pairs = asset.rest_pairs(radius);
     scene.choice.ignored = {content.ignored, words_for(pairs_of(n))};
-    scene.choice.disabled = {content.disabled, words_for(n)};
   }
   return done();
 }

@@ -2,7 +2,6 @@
 #include "pairs/filter.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace spherechain {
 namespace {
@@ -17,22 +16,10 @@ Status check_edit(const sc_asset* asset, const Filter* filter) {
   if (status != SC_OK) {
     return status;
   }
-  const FilterRanges ranges = ranges_of(filter);
-  return any_shared({ranges.ignored, ranges.disabled, ranges.padding}, {range_of(view.ignored())})
-             ? refuse(SC_ALIASED, SC_FIELD_FILTER)
-             : done();
+  return any_shared({range_of(filter)}, {range_of(view.ignored())}) ? refuse(SC_ALIASED, SC_FIELD_FILTER) : done();
 }
 
 }  // namespace
-
-FilterRanges ranges_of(const Filter* filter) {
-  if (filter == nullptr) {
-    return {};
-  }
-  return {range_of(span_of(filter->ignored, filter->ignored_words)),
-          range_of(span_of(filter->disabled, filter->disabled_words)),
-          range_of(span_of(filter->padding, filter->padding_count))};
-}
 
 }  // namespace spherechain
 
@@ -47,8 +34,6 @@ sc_status sc_reset_filter(const sc_asset* asset, sc_filter* filter) noexcept {
   }
   const Span<const std::uint64_t> own = view_of(*asset).ignored();
   std::copy(own.begin(), own.end(), filter->ignored);
-  std::fill(filter->disabled, filter->disabled + filter->disabled_words, std::uint64_t{0});
-  std::fill(filter->padding, filter->padding + filter->padding_count, 0.0F);
   return done();
 }
 
@@ -85,36 +70,6 @@ sc_status sc_ignore_regions(const sc_asset* asset, sc_filter* filter, size_t reg
       }
     }
   }
-  return done();
-}
-
-sc_status sc_disable_sphere(const sc_asset* asset, sc_filter* filter, uint32_t sphere, int disabled) noexcept {
-  const Status status = check_edit(asset, filter);
-  if (status != SC_OK) {
-    return status;
-  }
-  if (filter->disabled_words == 0) {
-    return refuse(SC_NULL, SC_FIELD_FILTER);
-  }
-  if (sphere >= view_of(*asset).spheres().size) {
-    return refuse(SC_BAD_VALUE, SC_FIELD_INDEX);
-  }
-  assign_bit({filter->disabled, filter->disabled_words}, sphere, disabled != 0);
-  return done();
-}
-
-sc_status sc_pad_sphere(const sc_asset* asset, sc_filter* filter, uint32_t sphere, float padding) noexcept {
-  const Status status = check_edit(asset, filter);
-  if (status != SC_OK) {
-    return status;
-  }
-  if (filter->padding_count == 0) {
-    return refuse(SC_NULL, SC_FIELD_FILTER);
-  }
-  if (sphere >= view_of(*asset).spheres().size || !std::isfinite(padding)) {
-    return refuse(SC_BAD_VALUE, SC_FIELD_INDEX);
-  }
-  filter->padding[sphere] = padding;
   return done();
 }
 

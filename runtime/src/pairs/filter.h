@@ -27,25 +27,19 @@ inline Status check_filter(const AssetView& asset, const Filter& filter) {
   if (!asset.is_open()) {
     return refuse(SC_NOT_OPEN, SC_FIELD_ASSET);
   }
-  if (is_missing(span_of(filter.ignored, filter.ignored_words)) ||
-      is_missing(span_of(filter.disabled, filter.disabled_words)) ||
-      is_missing(span_of(filter.padding, filter.padding_count))) {
+  if (is_missing(span_of(filter.ignored, filter.ignored_words))) {
     return refuse(SC_NULL, SC_FIELD_FILTER);
   }
-  if (any_misaligned(filter.ignored, filter.disabled, filter.padding)) {
+  if (any_misaligned(filter.ignored)) {
     return refuse(SC_MISALIGNED, SC_FIELD_FILTER);
   }
-  const std::size_t n = asset.spheres().size;
-  const bool fits = filter.ignored_words == words_for(pairs_of(n)) &&
-                    (filter.disabled_words == 0 || filter.disabled_words == words_for(n)) &&
-                    (filter.padding_count == 0 || filter.padding_count == n);
-  return fits ? done() : refuse(SC_TOO_SMALL, SC_FIELD_FILTER);
+  return filter.ignored_words == words_for(pairs_of(asset.spheres().size)) ? done()
+                                                                           : refuse(SC_TOO_SMALL, SC_FIELD_FILTER);
 }
 
-struct FilterRanges {
-  MemoryRange ignored, disabled, padding;
-};
-// Nothing of a null filter.
-FilterRanges ranges_of(const Filter* filter);
+// The filter's memory; none of a null filter.
+inline MemoryRange range_of(const Filter* filter) {
+  return filter == nullptr ? MemoryRange{} : range_of(span_of(filter->ignored, filter->ignored_words));
+}
 
 }  // namespace spherechain

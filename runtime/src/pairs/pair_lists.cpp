@@ -14,22 +14,18 @@ namespace spherechain {
 namespace HWY_NAMESPACE {
 
 std::size_t fill(const PairChoice& choice, const TilePlace& place, const PairListBuffers& buffers) {
-  const Span<const std::uint64_t> ignored = choice.ignored, disabled = choice.disabled;
+  const Span<const std::uint64_t> ignored = choice.ignored;
   std::uint16_t* wanted = buffers.wanted;
   ListedPair* strips = buffers.strips;
   for (TwoBlocks blocks(place); blocks.first_column() < place.column_count; blocks.advance()) {
     const std::size_t left = place.column_count - blocks.first_column();
     const std::size_t a = place.first_column + blocks.first_column();
-    std::uint64_t columns = ~std::uint64_t{0} >> (left < 2 * kBlock ? 64 - left : 64 - 2 * kBlock);
-    if (disabled.size > 0) {
-      columns &= ~bits_at(disabled.data, disabled.size, a);
-    }
+    const std::uint64_t columns = ~std::uint64_t{0} >> (left < 2 * kBlock ? 64 - left : 64 - 2 * kBlock);
     const std::size_t first_row = blocks.first_row(), both = first_row + blocks.single_rows();
     std::uint64_t before = place.is_diagonal() ? 1 : ~std::uint64_t{0};  // columns before the row
     std::size_t b = place.first_row + first_row, bit = ignored_bit(a, b);
     for (std::size_t row = first_row; row < place.row_count; ++row, ++b) {
-      const bool is_disabled = disabled.size > 0 && test_bit(disabled, b);
-      const std::uint64_t bits = is_disabled ? 0 : columns & before & ~bits_at(ignored.data, ignored.size, bit);
+      const std::uint64_t bits = columns & before & ~bits_at(ignored.data, ignored.size, bit);
       bit += b;
       before = before << 1 | 1;
       *wanted++ = static_cast<std::uint16_t>(bits);

@@ -11,23 +11,18 @@
 
 namespace spherechain {
 
-// What an asset and a filter leave out, and what they add to radii.
+// The pairs of spheres that an asset and a filter leave out, and those that touch at rest.
 struct PairChoice {
   Span<const RestPair> rest_pairs;
-  Span<const std::uint64_t> ignored;   // in the order of AssetView::ignored()
-  Span<const std::uint64_t> disabled;  // may be empty
-  Span<const float> padding;           // may be empty
+  Span<const std::uint64_t> ignored;  // in the order of AssetView::ignored()
 };
 
 // `filter` may be null.
 inline PairChoice choice_of(const AssetView& asset, Radius radius, const Filter* filter) {
   if (filter == nullptr) {
-    return {asset.rest_pairs(radius), asset.ignored(), {}, {}};
+    return {asset.rest_pairs(radius), asset.ignored()};
   }
-  return {asset.rest_pairs(radius),
-          {filter->ignored, filter->ignored_words},
-          {filter->disabled, filter->disabled_words},
-          {filter->padding, filter->padding_count}};
+  return {asset.rest_pairs(radius), {filter->ignored, filter->ignored_words}};
 }
 
 // How many strips a tile has whose rows are its columns; and up to a whole group.

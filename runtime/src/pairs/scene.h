@@ -11,7 +11,7 @@ struct Scene {
   Span<const Sphere> spheres;
   PairChoice choice;
   std::size_t table_words = 0;  // 0: no table
-  bool has_lists = false;       // of a table: `lists` are those of the only tile, in place of `choice`, padding aside
+  bool has_lists = false;       // of a table: `lists` are those of the only tile, in place of `choice`
   PairLists lists;
 };
 

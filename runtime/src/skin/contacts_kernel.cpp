@@ -208,7 +208,7 @@ HWY_INLINE void list_spheres(const Bodies& bodies, std::size_t a, std::size_t b,
   }
 }
 
-// The pairs of spheres that the caller lists, whatever the scope.
+// The pairs of spheres that the caller lists, whatever the scope; of a sphere with itself, what is within it.
 HWY_NOINLINE void find_listed(const ContactScene& scene, ContactCollector& collector) {
   const Span<const Pair> pairs = scene.candidates;
   for (std::size_t i = 0; i < pairs.size && !scene.has_hulls; ++i) {
@@ -221,8 +221,10 @@ HWY_NOINLINE void find_listed(const ContactScene& scene, ContactCollector& colle
   ClusterPairs clusters;
   for (std::size_t i = 0; i < pairs.size; ++i) {
     const std::size_t a = pairs.data[i].a, b = pairs.data[i].b;
-    if (box_at(scene.spheres, a).touches(box_at(scene.spheres, b)) &&
-        !(scene.has_hulls && hulls_apart(scene, a, scene, b))) {
+    if (a == b) {
+      list_within(scene, a, clusters, collector);
+    } else if (box_at(scene.spheres, a).touches(box_at(scene.spheres, b)) &&
+               !(scene.has_hulls && hulls_apart(scene, a, scene, b))) {
       list_spheres({scene, scene, true}, a, b, clusters, collector);
     }
   }
@@ -236,9 +238,6 @@ HWY_INLINE std::uint64_t paired(const Bodies& bodies, std::size_t first, std::si
   if (bodies.are_one) {
     const std::uint64_t ignored = bits_at(scene.ignored.data, scene.ignored.size, ignored_bit(first, b));
     bits = (scene.neighbours ? ignored : 0) | (scene.apart ? ~ignored : 0);
-  }
-  if (scene.disabled.size > 0) {
-    bits &= ~bits_at(scene.disabled.data, scene.disabled.size, first);
   }
   const std::size_t count = (bodies.are_one ? b : scene.sphere_count) - first;
   return bits & (~std::uint64_t{0} >> (64 - (count < 64 ? count : 64)));
@@ -281,9 +280,6 @@ HWY_NOINLINE void find_all(const Bodies& bodies, ContactCollector& collector) {
   const BoxColumns boxes = bodies.a.spheres;  // in registers, for all that vectors may be written over
   std::size_t count = 0;
   for (std::size_t b = 0; b < bodies.b.sphere_count; ++b) {
-    if (!is_enabled(bodies.b, b)) {
-      continue;
-    }
     if (bodies.b.neighbours) {
       list_within(bodies.b, b, clusters, collector);
     }

@@ -36,7 +36,7 @@ struct BoxColumns {
 struct ContactScene {
   const Surface* surface = nullptr;
   std::size_t sphere_count = 0;
-  Span<const std::uint64_t> ignored, disabled;   // the latter may be empty
+  Span<const std::uint64_t> ignored;
   Span<const Pair> candidates;                   // of spheres: the pairs to decide; null: those of the scope
   Span<const Pair> candidate_clusters;           // of loaded clusters: the pairs to decide; null: those of spheres
   bool apart = true, neighbours = false;         // which of them to pair: see sc_scope

@@ -61,10 +61,6 @@ inline HWY_NOINLINE void bound_spheres(const ContactScene& scene) {
   }
 }
 
-HWY_INLINE bool is_enabled(const ContactScene& scene, std::size_t sphere) {
-  return scene.disabled.size == 0 || !test_bit(scene.disabled, sphere);
-}
-
 }  // namespace HWY_NAMESPACE
 }  // namespace spherechain
 HWY_AFTER_NAMESPACE();

@@ -176,10 +176,10 @@ BodyRanges::BodyRanges(const Body& body)
       ignored_parts(range_of(Span<const std::uint64_t>{body.ignored_parts, sc_part_words(body.asset)})) {}
 
 Status check_asset(const Asset* asset) {
-  return asset == nullptr               ? refuse(SC_NULL, SC_FIELD_ASSET)
-         : !view_of(*asset).is_open()   ? refuse(SC_NOT_OPEN, SC_FIELD_ASSET)
-         : !has_skin(view_of(*asset))   ? refuse(SC_NOT_IN_ASSET, SC_FIELD_ASSET)
-                                        : done();
+  return asset == nullptr             ? refuse(SC_NULL, SC_FIELD_ASSET)
+         : !view_of(*asset).is_open() ? refuse(SC_NOT_OPEN, SC_FIELD_ASSET)
+         : !has_skin(view_of(*asset)) ? refuse(SC_NOT_IN_ASSET, SC_FIELD_ASSET)
+                                      : done();
 }
 
 Status check_skin(const Asset* asset, const Pose& pose, const std::uint64_t* skin_table, Surface& surface) {
@@ -226,7 +226,6 @@ void set_pose(const AssetView& asset, const Surface& surface, const Pose& pose, 
   scene.ignored = asset.ignored();
   if (filter != nullptr) {
     scene.ignored = {filter->ignored, filter->ignored_words};
-    scene.disabled = {filter->disabled, filter->disabled_words};
   }
   if (pose.bones != nullptr) {
     const float* const weights = pose.morph_weights;

@@ -19,7 +19,7 @@ Status check_candidates(const SkinContactJob& job, std::size_t sphere_count) {
   }
   for (std::size_t i = 0; i < job.candidate_count; ++i) {
     const Pair& pair = job.candidates[i];
-    if (pair.a >= pair.b || pair.b >= sphere_count || (i > 0 && !(job.candidates[i - 1] < pair))) {
+    if (pair.a > pair.b || pair.b >= sphere_count || (i > 0 && !(job.candidates[i - 1] < pair))) {
       return refuse(SC_BAD_VALUE, SC_FIELD_CANDIDATES);
     }
   }
@@ -32,7 +32,6 @@ Status check_candidates(const SkinContactJob& job, std::size_t sphere_count) {
 }
 
 bool is_aliased(const SkinContactJob& job, const AssetView& asset) {
-  const FilterRanges filter = ranges_of(job.filter);
   return any_shared(
       {range_of(Span<sc_part_contact>{job.parts, job.part_capacity}),
        range_of(Span<Pair>{job.spheres, job.sphere_capacity}),
@@ -40,7 +39,7 @@ bool is_aliased(const SkinContactJob& job, const AssetView& asset) {
        range_of(Span<std::uint64_t>{job.scratch, skin_scratch_words(asset)})},
       {range_of_vertices(asset, job.pose), range_of_bones(asset, job.pose), range_of_morph_weights(asset, job.pose),
        range_of(Span<const std::uint64_t>{job.skin_table, skin_table_words(asset)}), range_of(asset.ignored()),
-       range_of(Span<const Pair>{job.candidates, job.candidate_count}), filter.ignored, filter.disabled});
+       range_of(Span<const Pair>{job.candidates, job.candidate_count}), range_of(job.filter)});
 }
 
 Status check(const SkinContactJob& job, Target& resolved, Surface& surface) {
@@ -97,7 +96,7 @@ sc_status sc_find_skin_contacts(sc_skin_contact_job* job) noexcept {
   WordMemory memory(job->scratch);
   ContactScene scene = scene_of(asset, surface, job->pose, job->filter, memory);
   scene.apart = job->scope != SC_SCOPE_NEIGHBOURS;
-  scene.neighbours = job->scope != SC_SCOPE_APART;
+  scene.neighbours = job->scope != SC_SCOPE_APART || job->candidates != nullptr;
   scene.candidates = {job->candidates, job->candidate_count};
   scene.first_only = job->spheres_only != 0;
   PartTable parts;

@@ -140,8 +140,7 @@ std::size_t scratch_words(const StepJob& job) { return scratch_words(&job.a, has
 bool is_aliased(const StepJob& job) {
   const MemoryRange contacts = range_of(Span<StepContact>{job.contacts, job.contact_capacity});
   const MemoryRange scratch = range_of(Span<std::uint64_t>{job.scratch, scratch_words(job)});
-  const FilterRanges filter = ranges_of(job.filter);
-  bool shared = any_shared({contacts, scratch}, {filter.ignored, filter.disabled});
+  bool shared = any_shared({contacts, scratch}, {range_of(job.filter)});
   for (const MemoryRange& out : {contacts, scratch}) {
     shared = shared || MotionRanges(job.a).overlaps(out) || (has_two(job) && MotionRanges(job.b).overlaps(out));
   }

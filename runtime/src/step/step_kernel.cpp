@@ -168,9 +168,6 @@ HWY_INLINE std::uint64_t paired(const MovingBodies& bodies, std::size_t first, s
   if (bodies.are_one) {
     bits = ~bits_at(scene.ignored.data, scene.ignored.size, ignored_bit(first, b));
   }
-  if (scene.disabled.size > 0) {
-    bits &= ~bits_at(scene.disabled.data, scene.disabled.size, first);
-  }
   const std::size_t count = (bodies.are_one ? b : scene.sphere_count) - first;
   return bits & (~std::uint64_t{0} >> (64 - (count < 64 ? count : 64)));
 }
@@ -204,9 +201,6 @@ void find_spheres(const MovingBodies& bodies, Span<Pair>& pairs) {
   std::size_t count = 0;
   const BoxColumns boxes = bodies.a.spheres;
   for (std::size_t b = 0; b < bodies.b.start.sphere_count; ++b) {
-    if (!is_enabled(bodies.b.start, b)) {
-      continue;
-    }
     const BoxProbe probe(box_at(bodies.b.spheres, b));
     const std::size_t end = bodies.are_one ? b : bodies.a.start.sphere_count;
     std::uint64_t bits = 0;

@@ -50,20 +50,13 @@ void call_accessors(const Asset& asset) {
 }
 
 void call_filter(const Asset& asset) {
-  std::vector<std::uint64_t> ignored(sc_pair_words(&asset)), disabled(sc_sphere_words(&asset));
-  std::vector<float> padding(sc_asset_get_info(&asset).sphere_count);
+  std::vector<std::uint64_t> ignored(sc_pair_words(&asset));
   Filter filter;
   filter.ignored = ignored.data();
   filter.ignored_words = ignored.size();
-  filter.disabled = disabled.data();
-  filter.disabled_words = disabled.size();
-  filter.padding = padding.data();
-  filter.padding_count = padding.size();
   expect(sc_reset_filter(&asset, &filter) == SC_OK, "reset filter");
   expect(sc_ignore_pair(&asset, &filter, 0, 1, 1) == SC_OK, "ignore pair");
   expect(sc_ignore_regions(&asset, &filter, 0, 1, 1) == SC_OK, "ignore regions");
-  expect(sc_disable_sphere(&asset, &filter, 0, 1) == SC_OK, "disable sphere");
-  expect(sc_pad_sphere(&asset, &filter, 0, 0.5F) == SC_OK, "pad sphere");
   std::vector<std::uint64_t> table(sc_detect_table_words(&asset));
   expect(sc_prepare_detect(&asset, SC_RADIUS_DETECT, &filter, table.data(), table.size()) == SC_OK, "table");
 }

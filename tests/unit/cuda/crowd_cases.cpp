@@ -107,8 +107,6 @@ Expected pairs_of_bones(const Asset& asset, const GroupInput& in, Radius radius,
 
 void edit_randomly(const Asset& asset, Filter& filter, std::mt19937& random) {
   for (std::uint32_t i = 0; i < view_of(asset).spheres().size; ++i) {
-    if (random() % 4 == 0) REQUIRE(sc_disable_sphere(&asset, &filter, i, 1) == SC_OK);
-    REQUIRE(sc_pad_sphere(&asset, &filter, i, uniform(random, i % 6 == 0 ? -3 : -0.05F, 0.3F)) == SC_OK);
     if (i > 0) {
       const auto other = static_cast<std::uint32_t>(random() % i);
       REQUIRE(sc_ignore_pair(&asset, &filter, i, other, random() % 2 == 0) == SC_OK);

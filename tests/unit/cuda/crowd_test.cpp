@@ -53,14 +53,13 @@ TEST_CASE("a crowd of spheres that nearly all touch, more than a warp has room f
   }
 }
 
-TEST_CASE("a crowd of spheres takes a filter; what is padded to below 0 touches nothing") {
+TEST_CASE("a crowd of spheres takes a filter") {
   for (const unsigned n : {20U, 60U, 75U}) {
     CAPTURE(n);
     std::mt19937 random(n);
     const OpenedAsset opened(random_asset(n, n).parts);
     OwnedFilter owned(opened.asset);
     edit_randomly(opened.asset, owned.filter, random);
-    for (unsigned i = 0; i < n; i += 5) owned.padding[i] = -0.5F * static_cast<float>(1 + i % 3);
     GroupInput in = group_of(opened.asset, SC_RADIUS_DETECT, 70, &owned.filter);
     in.spheres = spheres_of(n, 70, n, random);
     const Expected wanted = pairs_of_spheres(opened.asset, in, SC_RADIUS_DETECT, &owned.filter);
@@ -108,7 +107,7 @@ TEST_CASE("spheres that just touch, or just do not, near the origin and far from
   }
 }
 
-TEST_CASE("a crowd takes a filter as a single job does, and the refitted spheres stay without its padding") {
+TEST_CASE("a crowd takes a filter as a single job does") {
   const OpenedAsset opened(moment_asset(70, 6, 5).parts);
   REQUIRE_MESSAGE(opened.status == SC_OK, opened.message);
   std::mt19937 random(5);

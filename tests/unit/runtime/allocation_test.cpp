@@ -46,14 +46,6 @@ TEST_CASE("no job and no function but sc_character_create() allocates, on any ta
     detect.table = detect_table.data();
     detect.pairs = pairs.data();
     detect.pair_capacity = pairs.size();
-    ConeJob cones;
-    std::vector<Pair> links(30);
-    std::vector<std::uint64_t> cone_table(sc_cone_table_words(30));
-    cones.spheres = spheres.data();
-    cones.sphere_count = spheres.size();
-    cones.table = cone_table.data();
-    cones.pairs = pairs.data();
-    cones.pair_capacity = pairs.size();
     CrowdJob crowd = buffers.job;
     crowd.pose = refit.pose;
     crowd.pairs = crowd_pairs.data();
@@ -120,14 +112,11 @@ TEST_CASE("no job and no function but sc_character_create() allocates, on any ta
     sc_status worst{SC_OK, SC_FIELD_NONE};
     const auto run = [&](sc_status status) { worst = worst == SC_OK ? status : worst; };
     run(sc_asset_open(&asset, SC_ABI_VERSION, opened.bytes.data(), opened.bytes.size(), message, sizeof message));
-    refit.asset = detect.asset = cones.asset = crowd.asset = contacts.asset = &asset;
+    refit.asset = detect.asset = crowd.asset = contacts.asset = &asset;
     run(sc_check_source(&asset, SC_WHOLE_SOURCE, tiny.rest.data(), tiny.parts.vertex_count, 12));
     run(sc_reset_filter(&asset, &owned.filter));
     run(sc_ignore_regions(&asset, &owned.filter, 0, 1, 1));
     run(sc_prepare_detect(&asset, SC_RADIUS_DETECT, &owned.filter, detect_table.data(), detect_table.size()));
-    sc_chain_links(&asset, links.data(), links.size());
-    run(sc_prepare_cones(&asset, nullptr, links.data(), 30, spheres.data(), cone_table.data(), cone_table.size()));
-    run(sc_scale_cones(cone_table.data(), cone_table.size(), 0, 1, 1));
     run(sc_prepare_skin(&asset, skin_table.data(), skin_table.size()));
     run(sc_bind_joints(&asset, joints.data(), bones, SC_ROWS_3X4, joint_of_bone.data(), bones, message, 160));
     run(sc_gather_bones(&asset, joint_of_bone.data(), &refit.pose, gathered.data()));
@@ -136,10 +125,9 @@ TEST_CASE("no job and no function but sc_character_create() allocates, on any ta
     const sc_status rest = sc_check_rest_pose(&asset, &refit.pose, message, 160);
     meeting.a.asset = meeting.b.asset = step.a.body.asset = &asset;
     for (const Target target : supported_targets()) {
-      refit.target = detect.target = cones.target = crowd.target = contacts.target = target;
+      refit.target = detect.target = crowd.target = contacts.target = target;
       run(refit.run());
       run(detect.run());
-      run(cones.run());
       run(crowd.run());
       run(contacts.run());
       meeting.target = measure.target = ground.target = step.target = target;

@@ -38,14 +38,11 @@ static void call_spheres(const sc_asset* asset, const sc_pose* pose, c_calls_res
   const size_t sphere_count = sc_asset_get_info(asset).sphere_count;
   sc_refit_job refit = {0};
   sc_detect_job detect = {0};
-  sc_cone_job cones = {0};
   sc_crowd_job crowd = {0};
   sc_filter filter = {0};
   uint32_t pair_counts[1];
   uint64_t* table = words(sc_detect_table_words(asset));
   filter.ignored = words(filter.ignored_words = sc_pair_words(asset));
-  filter.disabled = words(filter.disabled_words = sc_sphere_words(asset));
-  filter.padding = (float*)words(filter.padding_count = sphere_count);
   refit.asset = detect.asset = crowd.asset = asset;
   refit.pose = crowd.pose = *pose;
   refit.spheres = out->spheres;
@@ -54,8 +51,6 @@ static void call_spheres(const sc_asset* asset, const sc_pose* pose, c_calls_res
   OK(sc_reset_filter(asset, &filter));
   OK(sc_ignore_pair(asset, &filter, 2, 5, 1));
   OK(sc_ignore_regions(asset, &filter, 0, 1, 1));
-  OK(sc_disable_sphere(asset, &filter, 3, 1));
-  OK(sc_pad_sphere(asset, &filter, 4, 0.25F));
   OK(sc_prepare_detect(asset, SC_RADIUS_DETECT, &filter, table, sc_detect_table_words(asset)));
   detect.spheres = out->spheres;
   detect.sphere_count = sphere_count;
@@ -64,20 +59,6 @@ static void call_spheres(const sc_asset* asset, const sc_pose* pose, c_calls_res
   detect.pair_capacity = C_CALLS_ROOM;
   OK(sc_detect(&detect));
   out->pair_count = detect.pair_count;
-  {
-    sc_pair links[2 * C_CALLS_SPHERES];
-    const size_t link_count = sc_chain_links(asset, links, 2 * C_CALLS_SPHERES);
-    const size_t cone_words = sc_cone_table_words(link_count);
-    uint64_t* cone_table = words(cone_words);
-    OK(sc_prepare_cones(asset, &filter, links, link_count, out->spheres, cone_table, cone_words));
-    OK(sc_scale_cones(cone_table, cone_words, 0, 1, 0.5F));
-    cones.asset = asset;
-    cones.spheres = out->spheres;
-    cones.sphere_count = sphere_count;
-    cones.table = cone_table;
-    OK(sc_detect_cones(&cones));
-    free(cone_table);
-  }
   crowd.instance_count = 1;
   crowd.filter = &filter;
   crowd.scratch_words = sc_crowd_scratch_words(asset, 1);
@@ -89,8 +70,6 @@ static void call_spheres(const sc_asset* asset, const sc_pose* pose, c_calls_res
   OK(sc_detect_crowd(&crowd));
   out->crowd_pair_count = crowd.pair_count;
   free(crowd.scratch);
-  free(filter.padding);
-  free(filter.disabled);
   free(filter.ignored);
   free(table);
 }

@@ -33,8 +33,6 @@ TEST_CASE("every function called from C99 gives what C++ gets") {
   OwnedFilter owned(opened.asset);
   REQUIRE(sc_ignore_pair(&opened.asset, &owned.filter, 2, 5, 1) == SC_OK);
   REQUIRE(sc_ignore_regions(&opened.asset, &owned.filter, 0, 1, 1) == SC_OK);
-  REQUIRE(sc_disable_sphere(&opened.asset, &owned.filter, 3, 1) == SC_OK);
-  REQUIRE(sc_pad_sphere(&opened.asset, &owned.filter, 4, 0.25F) == SC_OK);
   const std::vector<Pair> pairs = detect(opened.asset, spheres, SC_RADIUS_DETECT, SC_TARGET_BEST, &owned.filter).pairs;
   CHECK(!pairs.empty());
   CHECK(same_bits({c->pairs, c->pairs + c->pair_count}, pairs));

@@ -132,8 +132,6 @@ TEST_CASE("a crowd takes a filter as a single job does") {
   OwnedFilter owned(opened.asset);
   Filter& filter = owned.filter;
   for (std::uint32_t i = 0; i < 70; ++i) {
-    if (random() % 4 == 0) REQUIRE(sc_disable_sphere(&opened.asset, &filter, i, 1) == SC_OK);
-    REQUIRE(sc_pad_sphere(&opened.asset, &filter, i, uniform(random, -0.05F, 0.1F)) == SC_OK);
     if (i > 0)
       REQUIRE(sc_ignore_pair(&opened.asset, &filter, i, static_cast<std::uint32_t>(random() % i), random() % 2) ==
               SC_OK);

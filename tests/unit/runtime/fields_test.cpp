@@ -219,7 +219,7 @@ TEST_CASE("a detection names what it cannot use") {
   std::uint64_t* const words = table.data();
   const std::size_t count = table.size();
   const std::vector<std::uint64_t> before = table;
-  const Filter inside{words, sc_pair_words(s.asset), nullptr, 0, nullptr, 0};
+  const Filter inside{words, sc_pair_words(s.asset)};
   CHECK(prepare(nullptr, SC_RADIUS_FIT, nullptr, words, count) == sc_status{SC_NULL, SC_FIELD_ASSET});
   CHECK(prepare(&s.closed, SC_RADIUS_FIT, nullptr, words, count) == sc_status{SC_NOT_OPEN, SC_FIELD_ASSET});
   CHECK(prepare(s.asset, static_cast<Radius>(2), nullptr, words, count) == sc_status{SC_BAD_VALUE, SC_FIELD_RADIUS});
@@ -500,7 +500,7 @@ TEST_CASE("a crowd names what it cannot use") {
        }},
       {SC_ALIASED, SC_FIELD_OUTPUT, [&](J& j) { j.bits = s.output<std::uint64_t>(1); }},
       {SC_ALIASED, SC_FIELD_OUTPUT, [&](J& j) { j.pairs = as<CrowdPair>(buffers.scratch.data()); }},
-      {SC_ALIASED, SC_FIELD_OUTPUT, [&](J& j) { j.counts = as<std::uint32_t>(owned.padding.data()); }},
+      {SC_ALIASED, SC_FIELD_OUTPUT, [&](J& j) { j.counts = as<std::uint32_t>(owned.ignored.data()); }},
   };
   const std::vector<Refusal<J>> of_bones{
       {SC_BAD_VALUE, SC_FIELD_SPHERES, [&](J& j) { j.spheres = spheres.data(); }},

@@ -24,9 +24,8 @@ std::set<Pair> pairs_in(const std::vector<std::uint64_t>& table, std::uint32_t n
   return pairs;
 }
 
-// What an asset with these ignored pairs, and spheres with these radii, would report.
-std::vector<Pair> expected(AssetParts parts, const std::set<Pair>& ignored, const std::vector<Sphere>& spheres,
-                           const std::set<std::uint32_t>& disabled) {
+// The pairs that an asset with these ignored pairs would report.
+std::vector<Pair> expected(AssetParts parts, const std::set<Pair>& ignored, const std::vector<Sphere>& spheres) {
   std::fill(parts.ignored.begin(), parts.ignored.end(), 0);
   for (const Pair& pair : ignored) {
     const std::size_t bit = std::size_t{pair.b} * (pair.b - 1) / 2 + pair.a;
@@ -34,11 +33,7 @@ std::vector<Pair> expected(AssetParts parts, const std::set<Pair>& ignored, cons
   }
   const OpenedAsset opened(parts);
   REQUIRE(opened.status == SC_OK);
-  std::vector<Pair> pairs;
-  for (const Pair& pair : detect(opened.asset, spheres, SC_RADIUS_DETECT, SC_TARGET_SCALAR).pairs) {
-    if (disabled.count(pair.a) + disabled.count(pair.b) == 0) pairs.push_back(pair);
-  }
-  return pairs;
+  return detect(opened.asset, spheres, SC_RADIUS_DETECT, SC_TARGET_SCALAR).pairs;
 }
 
 }  // namespace
@@ -52,29 +47,17 @@ TEST_CASE("any edits to a filter report what an asset baked that way would, on e
     OwnedFilter owned(opened.asset);
     std::set<Pair> ignored(tiny.ignored_pairs.begin(), tiny.ignored_pairs.end());
     CHECK(pairs_in(owned.ignored, n) == ignored);
-    std::set<std::uint32_t> disabled;
-    std::vector<Sphere> spheres = random_spheres(n, random);
-    std::vector<Sphere> padded = spheres;
+    const std::vector<Sphere> spheres = random_spheres(n, random);
     for (int edit = 0; edit < 60; ++edit) {
       const auto a = static_cast<std::uint32_t>(random() % n), b = static_cast<std::uint32_t>(random() % n);
-      if (edit % 3 == 0 && a != b) {
-        const bool on = random() % 2 == 0;
-        const Pair pair{std::min(a, b), std::max(a, b)};
-        REQUIRE(sc_ignore_pair(&opened.asset, &owned.filter, a, b, on ? 1 : 0) == SC_OK);
-        on ? (void)ignored.insert(pair) : (void)ignored.erase(pair);
-      } else if (edit % 3 == 1) {
-        const bool on = random() % 4 == 0;
-        REQUIRE(sc_disable_sphere(&opened.asset, &owned.filter, a, on ? 1 : 0) == SC_OK);
-        on ? (void)disabled.insert(a) : (void)disabled.erase(a);
-      } else {
-        const float padding = uniform(random, -0.1F, 0.2F);
-        REQUIRE(sc_pad_sphere(&opened.asset, &owned.filter, a, padding) == SC_OK);
-        const float radius = spheres[a].radius + padding;
-        padded[a].radius = radius < 0 ? kNan : radius;
-      }
+      if (a == b) continue;
+      const bool on = random() % 2 == 0;
+      const Pair pair{std::min(a, b), std::max(a, b)};
+      REQUIRE(sc_ignore_pair(&opened.asset, &owned.filter, a, b, on ? 1 : 0) == SC_OK);
+      on ? (void)ignored.insert(pair) : (void)ignored.erase(pair);
     }
     CHECK(pairs_in(owned.ignored, n) == ignored);
-    const std::vector<Pair> wanted = expected(tiny.parts, ignored, padded, disabled);
+    const std::vector<Pair> wanted = expected(tiny.parts, ignored, spheres);
     for (const Target target : supported_targets()) {
       const Detected got = detect(opened.asset, spheres, SC_RADIUS_DETECT, target, &owned.filter);
       CHECK(got.status == SC_OK);
@@ -118,19 +101,12 @@ TEST_CASE("an edit of what is not there, or in a buffer that is not there, is re
   CHECK(sc_ignore_pair(asset, filter, 3, 70, 1) == kNoSuchIndex);
   CHECK(sc_ignore_regions(asset, filter, 5, 0, 1) == kNoSuchIndex);
   CHECK(sc_ignore_regions(asset, filter, 0, 5, 1) == kNoSuchIndex);
-  CHECK(sc_disable_sphere(asset, filter, 70, 1) == kNoSuchIndex);
-  CHECK(sc_pad_sphere(asset, filter, 70, 1) == kNoSuchIndex);
-  CHECK(sc_pad_sphere(asset, filter, 0, kNan) == kNoSuchIndex);
-  Filter plain{owned.filter.ignored, owned.filter.ignored_words, nullptr, 0, nullptr, 0};
-  CHECK(sc_disable_sphere(asset, &plain, 0, 1) == sc_status{SC_NULL, SC_FIELD_FILTER});
-  CHECK(sc_pad_sphere(asset, &plain, 0, 1) == sc_status{SC_NULL, SC_FIELD_FILTER});
 
   const std::vector<Sphere> spheres(70, {0, 0, 0, 1});
   const auto all_refuse = [&](const Asset* of, Filter* wrong, sc_status status) {
     const sc_status all[] = {sc_reset_filter(of, wrong), sc_ignore_pair(of, wrong, 0, 1, 1),
-                             sc_ignore_regions(of, wrong, 0, 1, 1), sc_disable_sphere(of, wrong, 0, 1),
-                             sc_pad_sphere(of, wrong, 0, 1)};
-    CHECK(std::count(std::begin(all), std::end(all), status) == 5);
+                             sc_ignore_regions(of, wrong, 0, 1, 1)};
+    CHECK(std::count(std::begin(all), std::end(all), status) == 3);
   };
   all_refuse(nullptr, filter, {SC_NULL, SC_FIELD_ASSET});
   all_refuse(&closed, filter, {SC_NOT_OPEN, SC_FIELD_ASSET});
@@ -145,17 +121,10 @@ TEST_CASE("an edit of what is not there, or in a buffer that is not there, is re
   };
   refused(SC_TOO_SMALL, [](Filter& f) { --f.ignored_words; });
   refused(SC_TOO_SMALL, [](Filter& f) { f.ignored_words = 0; });
-  refused(SC_TOO_SMALL, [](Filter& f) { --f.disabled_words; });
   refused(SC_NULL, [](Filter& f) { f.ignored = nullptr; });
-  refused(SC_NULL, [](Filter& f) { f.disabled = nullptr; });
-  refused(SC_NULL, [](Filter& f) { f.padding = nullptr; });
-  // Buffers that lie on each other, or on the asset's.
-  refused(SC_ALIASED, [&](Filter& f) { f.padding = reinterpret_cast<float*>(owned.ignored.data()); });
-  refused(SC_ALIASED, [&](Filter& f) { f.disabled = owned.ignored.data() + owned.ignored.size() - 2; });
+  // A buffer that lies on the asset's.
   refused(SC_ALIASED, [&](Filter& f) { f.ignored = const_cast<std::uint64_t*>(opened.view().ignored().data); });
   CHECK(owned.ignored == before.ignored);
-  CHECK(owned.disabled == before.disabled);
-  CHECK(owned.padding == before.padding);
 }
 
 }  // namespace spherechain::test
