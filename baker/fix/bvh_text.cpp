@@ -82,6 +82,12 @@ void BvhText::turn(int frame, const BvhJoint& joint, const Eigen::Quaterniond& r
 std::string BvhText::text() const {
   std::string out;
   std::size_t at = 0;
+  const std::string stated = text_.substr(bvh_.count_begin, bvh_.count_end - bvh_.count_begin);
+  if (stated != std::to_string(frames())) {
+    out =
+        text_.substr(0, bvh_.count_begin) + fmt::format(fmt::runtime(stated.empty() ? "Frames: {}\n" : "{}"), frames());
+    at = bvh_.count_end;
+  }
   for (const auto& [place, degrees] : changed_) {
     const std::size_t begin = bvh_.places[place];
     out.append(text_, at, begin - at);

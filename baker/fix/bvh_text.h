@@ -10,7 +10,7 @@
 
 namespace spherechain::baker {
 
-// The text of a BVH file, in which joints are turned: all else stays byte for byte.
+// The text of a BVH file, in which joints are turned. All else stays byte for byte, but for a wrong number of frames.
 class BvhText {
  public:
   // `file` is for messages. Throws Error(kFile) as parse_bvh does.

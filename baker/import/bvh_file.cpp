@@ -120,6 +120,7 @@ class BvhReader {
     if (at_ == begin && at_ < text_.size()) ++at_;
     return word_ = text_.substr(begin, at_ - begin);
   }
+  std::size_t place_of_word() const { return static_cast<std::size_t>(word_.data() - text_.data()); }
   // The rest of the line, or of it up to a brace.
   std::string_view rest_of_line() {
     skip_space();
@@ -198,6 +199,7 @@ class BvhReader {
       const std::size_t begin = at_, line = line_;
       std::string word = lower(next());
       while (word == ":") word = lower(next());
+      const std::size_t place = place_of_word();
       const auto value = [&] {
         do next();
         while (word_ == ":");
@@ -205,6 +207,8 @@ class BvhReader {
       };
       if (word == "frames") {
         stated_frames_ = number_of(value());
+        out_.count_begin = place_of_word();
+        out_.count_end = at_;
       } else if (word == "frametime" || (word == "frame" && lower(value()) == "time")) {
         const std::string_view text = value();
         const double seconds = number_of(text).value_or(0);
@@ -214,6 +218,7 @@ class BvhReader {
         }
         out_.frame_time = usual_time(text, seconds);
         has_time = true;
+        if (out_.count_end == 0) out_.count_begin = out_.count_end = place;
       } else {
         if (!has_time) fail_here(fmt::format("{} where the frame time is expected (Frame Time: 0.0333333)", quoted()));
         at_ = begin;

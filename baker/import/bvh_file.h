@@ -31,7 +31,9 @@ struct BvhFile {
   double frame_time = 0;            // seconds
   std::vector<double> numbers;      // frame by frame
   std::vector<std::size_t> places;  // where in the text each number begins, if that was asked for
-  std::string note;                 // what is wrong with the file and does not keep it from being read; or empty
+  // Where the text says how many frames there are, and where it would if it does not.
+  std::size_t count_begin = 0, count_end = 0;
+  std::string note;  // what is wrong with the file and does not keep it from being read; or empty
 
   std::size_t frames() const { return numbers.size() / width; }
 };

@@ -96,6 +96,24 @@ TEST_CASE("fix: a BVH recording is written again with other angles around the fa
   CHECK(tool::contents(files.path("again.bvh")) == after);
 }
 
+TEST_CASE("fix: a recording that names a wrong number of frames, or none, is written with the right one") {
+  const Files files;
+  const std::string right = tool::contents(files.take), stated = "Frames: 120\n";
+  const std::size_t at = right.find(stated);
+  REQUIRE(at != std::string::npos);
+  const auto mended = [&](const std::string& header) {
+    files.folder.write("take 1.bvh", right.substr(0, at) + header + right.substr(at + stated.size()));
+    CHECK(files.fix("--force -o " + files.path("out.bvh")).code == 0);
+    return tool::contents(files.path("out.bvh"));
+  };
+  const std::string expected = mended(stated);
+  for (const char* header : {"Frames: 7\n", "Frames: 119\n", "Frames: 4000\n", "Frames: many\n", ""}) {
+    CAPTURE(header);
+    CHECK(mended(header) == expected);
+  }
+  CHECK(mended("FRAMES:\t120.0 \n").find("FRAMES:\t120 \n") != std::string::npos);
+}
+
 TEST_CASE("fix: what cannot be written from a recording is refused, and nothing is written") {
   const Files files;
   const std::string out = "-o " + files.path("out.bvh");
