@@ -83,16 +83,79 @@ void leave_out_coarse(const std::vector<Node>& nodes, const std::vector<ShownMes
            (left_out == 1 ? "1 coarser mesh is" : std::to_string(left_out) + " coarser meshes are") + " left out");
 }
 
-std::string choices_of(const std::vector<Node>& nodes, const std::vector<ShownMesh>& meshes) {
-  constexpr std::size_t kNamed = 8;
-  std::set<std::string> names;
-  for (const ShownMesh& mesh : meshes) names.insert(nodes[mesh.node].name);
-  std::string out;
-  std::size_t count = 0;
-  for (const std::string& name : names) {
-    if (count++ < kNamed) out += (out.empty() ? "" : ", ") + in_quotes(name);
+// Of each mesh, whether `character` is the name of its skin, or of a node at or above the mesh or its skeleton.
+std::vector<bool> taken_by(const std::string& character, const std::vector<Node>& nodes,
+                           const std::vector<ShownMesh>& meshes) {
+  std::vector<bool> is_below;  // a node of that name
+  for (const Node& node : nodes) {
+    is_below.push_back(node.name == character || (node.parent >= 0 && is_below[static_cast<std::size_t>(node.parent)]));
   }
-  return count > kNamed ? out + " ..." : out;
+  std::vector<bool> out;
+  for (const ShownMesh& mesh : meshes) {
+    out.push_back(mesh.skin == character || (mesh.node != kNoIndex && is_below[mesh.node]) ||
+                  (mesh.top_joint != kNoIndex && is_below[mesh.top_joint]));
+  }
+  return out;
+}
+
+// Of each mesh the highest joint at or above its skeleton: the same for clothes on a part of a skeleton.
+std::vector<Index> skeletons_of(const std::vector<Node>& nodes, const std::vector<ShownMesh>& meshes) {
+  std::vector<bool> is_joint(nodes.size(), false);
+  for (const ShownMesh& mesh : meshes) {
+    if (mesh.top_joint != kNoIndex) is_joint[mesh.top_joint] = true;
+  }
+  std::vector<Index> highest(nodes.size(), kNoIndex);
+  for (Index n = 0; n < nodes.size(); ++n) {
+    if (nodes[n].parent >= 0) highest[n] = highest[static_cast<std::size_t>(nodes[n].parent)];
+    if (highest[n] == kNoIndex && is_joint[n]) highest[n] = n;
+  }
+  std::vector<Index> out;
+  for (const ShownMesh& mesh : meshes) out.push_back(mesh.top_joint == kNoIndex ? kNoIndex : highest[mesh.top_joint]);
+  return out;
+}
+
+// The name that takes the meshes of one skeleton, and of no other one: its highest joint's, that of a node above, or
+// one that a mesh or its skin has.
+std::string name_to_take(Index skeleton, const std::vector<Node>& nodes, const std::vector<ShownMesh>& meshes,
+                         const std::vector<Index>& skeletons) {
+  constexpr int kAboveMax = 8;
+  std::vector<std::string> names;
+  int node = static_cast<int>(skeleton);
+  for (int i = 0; i < kAboveMax && node >= 0; ++i, node = nodes[static_cast<std::size_t>(node)].parent) {
+    names.push_back(nodes[static_cast<std::size_t>(node)].name);
+  }
+  for (std::size_t m = 0; m < meshes.size(); ++m) {
+    if (skeletons[m] != skeleton || meshes[m].node == kNoIndex) continue;
+    names.push_back(nodes[meshes[m].node].name);
+    names.push_back(meshes[m].skin);
+  }
+  for (const std::string& name : names) {
+    const std::vector<bool> taken = taken_by(name, nodes, meshes);
+    bool is_right = !name.empty();
+    for (std::size_t m = 0; m < meshes.size() && is_right; ++m) {
+      is_right = skeletons[m] == kNoIndex || taken[m] == (skeletons[m] == skeleton);
+    }
+    if (is_right) return name;
+  }
+  return names.front();
+}
+
+std::string list_of(const std::vector<std::string>& names) {
+  constexpr std::size_t kNamed = 8;
+  std::string out;
+  for (std::size_t i = 0; i < std::min(names.size(), kNamed); ++i) out += (i > 0 ? ", " : "") + in_quotes(names[i]);
+  return names.size() > kNamed ? out + " ..." : out;
+}
+
+std::string choices_of(const std::vector<Node>& nodes, const std::vector<ShownMesh>& meshes) {
+  const std::vector<Index> skeletons = skeletons_of(nodes, meshes);
+  constexpr std::size_t kLookedAtMax = 64;
+  std::set<std::string> names;
+  for (std::size_t m = 0; m < std::min(meshes.size(), kLookedAtMax); ++m) {
+    names.insert(skeletons[m] == kNoIndex ? nodes[meshes[m].node].name
+                                          : name_to_take(skeletons[m], nodes, meshes, skeletons));
+  }
+  return list_of({names.begin(), names.end()});
 }
 
 bool stand_apart(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b, const Vec3& up) {
@@ -115,22 +178,13 @@ std::vector<bool> choose_meshes(const std::vector<Node>& nodes, const std::vecto
                                 const std::string& character, const std::string& file) {
   std::vector<bool> chosen(meshes.size(), character.empty());
   if (!character.empty()) {
-    std::vector<bool> is_below;  // a node of that name
-    for (const Node& node : nodes) {
-      is_below.push_back(node.name == character ||
-                         (node.parent >= 0 && is_below[static_cast<std::size_t>(node.parent)]));
-    }
     const auto is_any = [&] { return std::find(chosen.begin(), chosen.end(), true) != chosen.end(); };
-    for (std::size_t m = 0; m < meshes.size(); ++m) {
-      const ShownMesh& mesh = meshes[m];
-      chosen[m] =
-          mesh.skin == character || is_below[mesh.node] || (mesh.top_joint != kNoIndex && is_below[mesh.top_joint]);
-    }
+    chosen = taken_by(character, nodes, meshes);
     if (!is_any()) {  // several nodes may show one mesh: its own name comes last
       for (std::size_t m = 0; m < meshes.size(); ++m) chosen[m] = meshes[m].name == character;
     }
     if (!is_any() && !meshes.empty()) {
-      throw Error(ExitCode::kFile, file + ": has no character " + in_quotes(character) + " (its meshes are " +
+      throw Error(ExitCode::kFile, file + ": has no character " + in_quotes(character) + " (--character takes " +
                                        choices_of(nodes, meshes) + ")");
     }
   }
@@ -138,18 +192,13 @@ std::vector<bool> choose_meshes(const std::vector<Node>& nodes, const std::vecto
   return chosen;
 }
 
-void note_characters(const std::vector<Node>& nodes, const std::vector<SkinnedBox>& skinned, const Vec3& up,
-                     const std::string& file) {
-  // Of each node the highest joint at or above it.
-  std::vector<bool> is_joint(nodes.size(), false);
-  for (const SkinnedBox& mesh : skinned) is_joint[mesh.top_joint] = true;
-  std::vector<Index> highest(nodes.size(), kNoIndex);
-  for (Index n = 0; n < nodes.size(); ++n) {
-    if (nodes[n].parent >= 0) highest[n] = highest[static_cast<std::size_t>(nodes[n].parent)];
-    if (highest[n] == kNoIndex && is_joint[n]) highest[n] = n;
-  }
+std::vector<std::string> characters_in(const std::vector<Node>& nodes, const std::vector<SkinnedBox>& skinned,
+                                       const Vec3& up) {
+  std::vector<ShownMesh> meshes;
+  for (const SkinnedBox& one : skinned) meshes.push_back(one.mesh);
+  const std::vector<Index> skeletons = skeletons_of(nodes, meshes);
   std::map<Index, Eigen::AlignedBox3d> bodies;
-  for (const SkinnedBox& mesh : skinned) bodies[highest[mesh.top_joint]].extend(mesh.box);
+  for (std::size_t m = 0; m < meshes.size(); ++m) bodies[skeletons[m]].extend(skinned[m].box);
   std::vector<Index> apart;
   constexpr std::size_t kMax = 16;
   for (const auto& [joint, box] : bodies) {
@@ -157,11 +206,20 @@ void note_characters(const std::vector<Node>& nodes, const std::vector<SkinnedBo
     if (std::all_of(apart.begin(), apart.end(), [&](Index other) { return stand_apart(bodies[other], box, up); }))
       apart.push_back(joint);
   }
-  if (apart.size() < 2) return;
-  std::string names;
-  for (const Index joint : apart) names += (names.empty() ? "" : ", ") + in_quotes(nodes[joint].name);
-  add_note(file + ": has " + std::to_string(apart.size()) + " characters (" + names +
-           ") that are taken for one body (--character NAME takes one)");
+  std::vector<std::string> out;
+  for (const Index joint : apart) out.push_back(name_to_take(joint, nodes, meshes, skeletons));
+  return out.size() > 1 ? out : std::vector<std::string>();
+}
+
+std::string characters_text(const std::vector<std::string>& names) {
+  return "has " + std::to_string(names.size()) + " characters (" + list_of(names) + ")";
+}
+
+void note_characters(const std::vector<Node>& nodes, const std::vector<SkinnedBox>& skinned, const Vec3& up,
+                     const std::string& file) {
+  const std::vector<std::string> names = characters_in(nodes, skinned, up);
+  if (names.empty()) return;
+  add_note(file + ": " + characters_text(names) + " that are taken for one body (--character NAME takes one)");
 }
 
 }  // namespace spherechain::baker

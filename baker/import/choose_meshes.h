@@ -23,13 +23,20 @@ struct ShownMesh {
 std::vector<bool> choose_meshes(const std::vector<Node>& nodes, const std::vector<ShownMesh>& meshes,
                                 const std::string& character, const std::string& file);
 
-// A skinned mesh at rest, in the scene's axes.
+// A mesh, or a part of one, that a skeleton moves; where it is at rest, in the scene's axes.
 struct SkinnedBox {
-  Index top_joint;
+  ShownMesh mesh;  // its node may be kNoIndex: not known
   Eigen::AlignedBox3d box;
 };
 
-// Notes that there are several characters: skeletons of their own that move meshes beside each other.
+// The characters in a file where there are several: skeletons of their own that move meshes beside each other. Of each
+// the name by which `choose_meshes` takes it alone. Else empty.
+std::vector<std::string> characters_in(const std::vector<Node>& nodes, const std::vector<SkinnedBox>& skinned,
+                                       const Vec3& up);
+// "has 2 characters ('Hips', 'Hips.001')".
+std::string characters_text(const std::vector<std::string>& names);
+
+// Notes that there are several.
 void note_characters(const std::vector<Node>& nodes, const std::vector<SkinnedBox>& skinned, const Vec3& up,
                      const std::string& file);
 

@@ -272,7 +272,7 @@ SourceMesh read_with_assimp(const std::filesystem::path& path, const ImportOptio
   for (const MeshInstance& instance : flat.instances) {
     const Index joint = top_joint(flat, *instance.mesh);
     if (joint == kNoIndex) continue;
-    skinned.push_back({joint, {}});
+    skinned.push_back({{instance.node, joint, {}, {}, false}, {}});
     for (Index v = 0; v < instance.mesh->mNumVertices; ++v)
       skinned.back().box.extend(out.positions[instance.first_vertex + v]);
   }

@@ -188,8 +188,9 @@ class GltfReader {
     std::vector<VertexWeights>& all = out_.rig.weights;
     if (carrier.skin != nullptr) {
       const Affine to_world = skeleton_.world_to_rest().inverse();
-      SkinnedBox& box = skinned_.emplace_back(
-          SkinnedBox{*std::min_element(carrier.skin->joints.begin(), carrier.skin->joints.end()), {}});
+      const Index top = *std::min_element(carrier.skin->joints.begin(), carrier.skin->joints.end());
+      const std::string& skin = file_.model.skins[at(file_.model.nodes[n].skin)].name;
+      SkinnedBox& box = skinned_.emplace_back(SkinnedBox{{nodes_.of_file[n], top, {}, skin, false}, {}});
       for (std::size_t v = part.first_vertex; v < out_.positions.size(); ++v)
         box.box.extend(to_world * out_.positions[v]);
       const auto weights = read_weights(file_, primitive, carrier.skin->bones, positions.size(), where_);

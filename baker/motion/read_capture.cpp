@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
+#include "import/choose_meshes.h"
 #include "import/import.h"
 #include "mesh/error.h"
 #include "motion/capture.h"
@@ -68,11 +69,34 @@ CaptureBody body_of(const std::vector<Joint>& joints, const BodyFrame& frame, co
   return body;
 }
 
+namespace {
+
+// What a user should hear where no body can be moved: that there are two.
+void check_one_character(const SourceRig& rig, const std::vector<Vec3>& rest, const Vec3& up, const std::string& file) {
+  std::vector<SkinnedBox> skinned;
+  for (const Bone& bone : rig.bones) skinned.push_back({{kNoIndex, bone.node, {}, {}, false}, {}});
+  for (std::size_t v = 0; v < std::min(rest.size(), rig.weights.size()); ++v) {
+    const VertexWeights& of = rig.weights[v];
+    const auto most =
+        static_cast<std::size_t>(std::max_element(of.weight.begin(), of.weight.end()) - of.weight.begin());
+    if (of.weight[most] > 0) skinned[of.joint[most]].box.extend(rest[v]);
+  }
+  std::erase_if(skinned, [](const SkinnedBox& one) { return one.box.isEmpty(); });
+  const std::vector<std::string> names = characters_in(rig.nodes, skinned, up);
+  if (names.empty()) return;
+  throw Error(ExitCode::kFile, file + ": " + characters_text(names) +
+                                   ", and a recording moves one (bake, check and fix take one by --character NAME)");
+}
+
+}  // namespace
+
 CaptureBody body_of(const SourceRig& rig, const std::vector<Vec3>& rest, const BodyFrame& frame,
                     const std::string& file) {
   const Roles roles = find_roles(rig, rest);
   CaptureBody body{frame, joints_by_role(rig.nodes, role_names(roles), rest_positions(rig)), {}};
-  if (roles.kind != BodyKind::kBiped) {
+  const bool is_biped = roles.kind == BodyKind::kBiped;
+  if (!is_biped || !missing_of(body.joints).empty()) check_one_character(rig, rest, frame.up, file);
+  if (!is_biped) {
     throw Error(ExitCode::kFile, file + ": its skeleton is not that of a biped, and a recording moves no other (" +
                                      "spherechain inspect --roles says what its joints are taken for)");
   }
