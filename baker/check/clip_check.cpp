@@ -13,6 +13,7 @@
 #include "page/page_axes.h"
 #include "page/page_motion.h"
 #include "page/page_penetrations.h"
+#include "play/hidden_joints.h"
 #include "report/json_text.h"
 
 namespace spherechain::baker {
@@ -23,18 +24,6 @@ using nlohmann::ordered_json;
 constexpr std::size_t kSampleSize = 1500;
 constexpr std::size_t kFullMeasures = 6;  // of a fault, at most
 constexpr float kQuickExcess = 1.05F;     // how much deeper the quick form is in the median
-
-std::vector<double> sizes_of(const BodyParts& parts, const Character& character) {
-  std::vector<double> out(parts.parts.size(), 0);
-  for (std::size_t t = 0; t < parts.of_triangle.size(); ++t) {
-    if (parts.of_triangle[t] >= out.size()) continue;
-    const Triangle& triangle = character.source_triangles[t];
-    const Vec3& a = character.source_positions[triangle[0]];
-    out[parts.of_triangle[t]] +=
-        (character.source_positions[triangle[1]] - a).cross(character.source_positions[triangle[2]] - a).norm();
-  }
-  return out;
-}
 
 Vec3 to_vec3(const spherechain::Vec3& v) { return {v.x, v.y, v.z}; }
 
@@ -71,6 +60,7 @@ struct ClipChecker::Frames {
   std::vector<PartMeeting> meetings;             // by frame, then by parts
   std::vector<std::vector<Triangles>> contacts;  // of a meeting that is shown: the triangles of part_a and part_b
   PageMotion motion;
+  HiddenJoints hidden;
   bool loops = false;
   std::vector<EventSpan> spans;
 };
@@ -79,7 +69,7 @@ ClipChecker::ClipChecker(const AnimatedAsset& animated, Target target)
     : animated_(animated),
       player_(animated.asset(), target),
       parts_(parts_of(animated.asset())),
-      areas_(sizes_of(parts_, animated.character())),
+      order_(animated),
       mm_(mm_per_unit(animated.asset())),
       axes_(page_axes(animated)),
       picture_(animated.character().source_positions, animated.character().source_triangles, axes_) {
@@ -116,7 +106,7 @@ ClipChecker::Triangles ClipChecker::triangles_of(const TriangleContact& contact)
 // Every frame's contacts, measured quickly.
 ClipChecker::Frames ClipChecker::look(const ClipFrames& clip, const Told& told) {
   take_sample();
-  Frames out{{}, {}, PageMotion(animated_.character(), axes_), false, {}};
+  Frames out{{}, {}, PageMotion(animated_.character(), axes_), HiddenJoints(animated_), false, {}};
   Deformation first;
   for (int i = 0; i < clip.count; ++i) {
     told(i, clip.count);
@@ -137,6 +127,7 @@ ClipChecker::Frames ClipChecker::look(const ClipFrames& clip, const Told& told) 
     });
     out.motion.add(deformation, deformation.positions.empty() ? deform(sample_, sample_weights_, deformation.bones)
                                                               : deformation.positions);
+    if (animated_.frame_at(clip.first + i).between == 0) out.hidden.add(deformation);
     if (i == clip.count - 1) out.loops = clip.count > 2 && same_pose(first, deformation, axes_);
     if (i == 0) first = std::move(deformation);
   }
@@ -182,7 +173,8 @@ std::size_t ClipChecker::worst_of(const std::vector<std::size_t>& all, Frames& f
     measure(clip, frames.meetings[all[i]], frames.contacts[all[i]]);
     if (severity(found(all[i])) > severity(found(worst))) worst = all[i];
   }
-  // Frames beside a measured one were passed over, and one of them may be worse: climb from the worst to its neighbours.
+  // Frames beside a measured one were passed over, and one of them may be worse: climb from the worst to its
+  // neighbours.
   for (bool climbs = may_be_fault; climbs;) {
     climbs = false;
     const auto top = static_cast<std::size_t>(std::find(all.begin(), all.end(), worst) - all.begin());
@@ -219,18 +211,11 @@ void ClipChecker::find_worst(Frames& frames, const ClipFrames& clip, EventSpan& 
   }
 }
 
-// A hand is in a thigh, a foot in a shin: what hangs farther out is in the other; of two alike the smaller.
-std::pair<int, double> ClipChecker::rank(std::uint32_t part) const {
-  int joints = 0;
-  for (int p = parts_.parts[part].parent; p >= 0; p = parts_.parts[static_cast<std::size_t>(p)].parent) ++joints;
-  return {joints, -areas_[part]};
-}
-
 Event ClipChecker::event_of(const Frames& frames, const EventSpan& span, const ClipFrames& clip) const {
   const Penetration& worst = frames.meetings[span.deepest].found;
   Event event;
   event.parts = {parts_.parts[worst.part_a].name, parts_.parts[worst.part_b].name};
-  event.inside = rank(worst.part_a) > rank(worst.part_b) ? 0 : 1;
+  event.inside = order_.is_first(worst.part_a, worst.part_b) ? 0 : 1;
   event.kind = worst.kind;
   const int deepest = frames.meetings[span.deepest].frame;
   event.from = animated_.number(clip.first + span.from);
@@ -324,7 +309,12 @@ ClipCheck ClipChecker::check(std::size_t index, const Told& told) {
   for (int i = 0; i < clip.count; ++i) at.push_back(animated_.number(clip.first + i));
   frames.spans = join_events(frames.meetings, at, frames.loops);
   for (EventSpan& span : frames.spans) find_worst(frames, clip, span);
-  ClipCheck out{{clip.count - clip.between, clip.between, clip.fps, frames.loops, {}, {}}, {}, {}, {}};
+  ClipCheck out;
+  out.result.frames = clip.count - clip.between;
+  out.result.between = clip.between;
+  out.result.fps = clip.fps;
+  out.result.loops = frames.loops;
+  out.result.hidden = frames.hidden.text();
   for (const EventSpan& span : frames.spans) out.result.events.push_back(event_of(frames, span, clip));
   out.heat = heat_of(frames);
   show(out, frames, clip);

@@ -7,6 +7,7 @@
 
 #include "check/picture.h"
 #include "check/results.h"
+#include "play/part_order.h"
 #include "play/play.h"
 #include "play/skin_player.h"
 
@@ -39,7 +40,6 @@ class ClipChecker {
   using Triangles = std::array<std::uint32_t, 2>;  // that intersect: of part_a and of part_b
   struct Frames;                                   // what was seen, frame by frame
   void take_sample();
-  std::pair<int, double> rank(std::uint32_t part) const;
   static Triangles triangles_of(const TriangleContact& contact);
   template <typename Run>
   void with_pose(const Deformation& deformation, const Run& run);
@@ -54,8 +54,8 @@ class ClipChecker {
   const AnimatedAsset& animated_;
   SkinPlayer player_;
   BodyParts parts_;
-  std::vector<double> areas_;  // of the parts, in triangles
-  double mm_;                  // a unit of the source
+  PartOrder order_;
+  double mm_;  // a unit of the source
   BodyFrame axes_;
   Picture picture_;
   std::vector<Vec3> sample_;  // some of the rest positions: they say where the character is

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "check/library.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "check/json_input.h"
 #include "mesh/error.h"
 #include "play/asset_file.h"
 #include "roles/roles.h"
@@ -15,7 +18,7 @@ namespace spherechain::baker {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
+using json = nlohmann::ordered_json;
 using Motions = std::vector<LibraryCharacter::Motion>;
 
 std::string extension_of(const fs::path& file) {
@@ -44,9 +47,12 @@ struct Found {
   bool operator<(const Found& other) const { return path < other.path; }
 };
 
+using Folders = std::vector<fs::path>;  // those that were looked at, as Library has them
+
 // Lists `folder` and all below, by name; no file need be readable. Links to folders are not followed: there is no
 // ring of them.
-std::vector<Found> files_below(const fs::path& folder, bool (*wanted)(const fs::path&)) {
+std::vector<Found> files_below(const fs::path& folder, bool (*wanted)(const fs::path&), Folders& looked_at) {
+  looked_at.push_back(fs::weakly_canonical(folder));
   std::vector<Found> out;
   std::vector<fs::path> folders{folder};
   while (!folders.empty()) {
@@ -72,11 +78,11 @@ void check_there(const fs::path& path) {
   if (!fs::exists(path, ignored)) throw Error(ExitCode::kFile, path.string() + ": there is no such file or folder");
 }
 
-Motions motions_at(const fs::path& path) {
+Motions motions_at(const fs::path& path, Folders& looked_at) {
   check_there(path);
   if (!fs::is_directory(path)) return {{path.filename().string(), path}};
   Motions out;
-  for (const Found& found : files_below(path, may_be_motion))
+  for (const Found& found : files_below(path, may_be_motion, looked_at))
     out.push_back({found.path.lexically_relative(path).string(), found.path, found.error});
   if (out.empty()) throw Error(ExitCode::kFile, path.string() + ": has no recordings (BVH, FBX, glTF or Collada)");
   return out;
@@ -86,18 +92,21 @@ void append(Motions& to, const Motions& from) { to.insert(to.end(), from.begin()
 
 class Manifest {
  public:
-  explicit Manifest(const fs::path& file) : file_(file), folder_(file.parent_path()) {}
+  Manifest(const fs::path& file, Folders& looked_at)
+      : file_(file), folder_(file.parent_path()), looked_at_(looked_at) {}
 
   std::vector<LibraryCharacter> read(const CheckConfig& config) const {
-    const json manifest = json::parse(read_file(file_.string()), nullptr, false);
+    constexpr const char* kRefusal = "is not a manifest (an object with a list 'characters')";
+    const json manifest = parse_input(read_file(file_.string()), file_.string(), kRefusal);
     if (!manifest.is_object() || !manifest.contains("characters") || !manifest["characters"].is_array()) {
-      fail("is not a manifest (an object with a list 'characters')");
+      fail(kRefusal);
     }
-    check_keys(manifest, {"characters", "motions"});
-    const Motions shared = motions_of(manifest);
+    check_keys(manifest, {"characters", "motions"}, {});
+    const Motions shared = motions_of(manifest, {});
     std::vector<LibraryCharacter> out;
     for (const json& entry : manifest["characters"]) {
-      out.push_back(character(entry.is_string() ? json{{"file", entry}} : entry, config));
+      const std::string place = fmt::format("'characters', entry {}", out.size() + 1);
+      out.push_back(character(entry.is_string() ? json{{"file", entry}} : entry, config, place));
       append(out.back().motions, shared);
     }
     return out;
@@ -106,41 +115,45 @@ class Manifest {
  private:
   [[noreturn]] void fail(const std::string& what) const { throw Error(ExitCode::kFile, file_.string() + ": " + what); }
 
-  void check_keys(const json& object, const std::set<std::string>& known) const {
+  // `place`: "'characters', entry 2: ", or empty.
+  void check_keys(const json& object, const std::set<std::string>& known, const std::string& place) const {
     for (const auto& [key, value] : object.items()) {
-      if (known.count(key) == 0) fail("'" + key + "' is unknown");
+      if (known.count(key) == 0) fail(place + "'" + key + "' is unknown");
     }
   }
 
   // Paths are relative to the manifest.
-  fs::path path(const json& value, const char* key) const {
-    if (!value.is_string()) fail(std::string("'") + key + "' is not a path");
+  fs::path path(const json& value, const std::string& place, const char* key) const {
+    if (!value.is_string()) fail(place + "'" + key + "' is not a path");
     return folder_ / value.get<std::string>();
   }
 
-  Motions motions_of(const json& object) const {
+  Motions motions_of(const json& object, const std::string& place) const {
     Motions out;
     if (!object.contains("motions")) return out;
-    if (!object["motions"].is_array()) fail("'motions' is not a list of paths");
-    for (const json& entry : object["motions"]) append(out, motions_at(path(entry, "motions")));
+    if (!object["motions"].is_array()) fail(place + "'motions' is not a list of paths");
+    for (const json& entry : object["motions"]) append(out, motions_at(path(entry, place, "motions"), looked_at_));
     return out;
   }
 
-  LibraryCharacter character(const json& entry, const CheckConfig& config) const {
-    if (!entry.is_object() || !entry.contains("file")) fail("a character has no 'file'");
-    check_keys(entry, {"file", "motions", "roles", "config"});
-    LibraryCharacter out{{}, path(entry["file"], "file"), motions_of(entry), config, {}};
+  LibraryCharacter character(const json& entry, const CheckConfig& config, const std::string& where) const {
+    const std::string place = where + ": ";
+    if (!entry.is_object() || !entry.contains("file")) fail(place + "a character has no 'file'");
+    check_keys(entry, {"file", "motions", "roles", "config"}, place);
+    LibraryCharacter out{{}, path(entry["file"], place, "file"), motions_of(entry, place), config, {}};
     out.relative = out.file.lexically_relative(folder_).lexically_normal();
     if (out.relative.empty() || *out.relative.begin() == "..") out.relative = out.file.filename();
-    if (entry.contains("config")) out.config = read_config(entry["config"].dump(), file_.string(), config);
+    if (entry.contains("config"))
+      out.config = read_config(entry["config"].dump(), file_.string(), config, place + "'config'");
     if (entry.contains("roles")) {
-      const std::string roles = path(entry["roles"], "roles").string();
+      const std::string roles = path(entry["roles"], place, "roles").string();
       out.config.bake.roles = parse_role_file(read_file(roles), roles);
     }
     return out;
   }
 
   fs::path file_, folder_;
+  Folders& looked_at_;
 };
 
 // The shortest ends of the paths that are all different.
@@ -169,16 +182,16 @@ void give_names(std::vector<LibraryCharacter>& characters) {
 
 }  // namespace
 
-std::vector<LibraryCharacter> read_library(const std::vector<std::string>& paths, const std::string& motion,
-                                           const CheckConfig& config) {
-  std::vector<LibraryCharacter> out;
+Library read_library(const std::vector<std::string>& paths, const std::string& motion, const CheckConfig& config) {
+  Library library;
+  std::vector<LibraryCharacter>& out = library.characters;
   for (const std::string& path : paths) {
     check_there(path);
     if (extension_of(path) == ".json") {
-      const std::vector<LibraryCharacter> all = Manifest(path).read(config);
+      const std::vector<LibraryCharacter> all = Manifest(path, library.folders).read(config);
       out.insert(out.end(), all.begin(), all.end());
     } else if (fs::is_directory(path)) {
-      for (const Found& found : files_below(path, may_be_character))
+      for (const Found& found : files_below(path, may_be_character, library.folders))
         out.push_back({{}, found.path, {}, config, found.path.lexically_relative(path), found.error});
     } else {
       out.push_back({{}, path, {}, config, fs::path(path).filename()});
@@ -196,11 +209,11 @@ std::vector<LibraryCharacter> read_library(const std::vector<std::string>& paths
     throw Error(ExitCode::kFile,
                 paths.front() + ": has no characters (docs/cli.md lists the endings that are searched for)");
   if (!motion.empty()) {
-    const Motions shared = motions_at(motion);
+    const Motions shared = motions_at(motion, library.folders);
     for (LibraryCharacter& character : out) append(character.motions, shared);
   }
   give_names(out);
-  return out;
+  return library;
 }
 
 }  // namespace spherechain::baker

@@ -24,10 +24,14 @@ struct LibraryCharacter {
   std::string error = {};          // a folder that cannot be read stands for the characters in it
 };
 
+struct Library {
+  std::vector<LibraryCharacter> characters;
+  std::vector<std::filesystem::path> folders;  // all files in them and below were looked at; as they are on disk
+};
+
 // The characters of `paths`: files, folders (all files in them and below that a character may be in), and manifests
 // (*.json). `motion`, where it is not empty, is a recording or a folder of them for every character. Throws
 // Error(kFile) where there is none, a path is not there, or a manifest is wrong.
-std::vector<LibraryCharacter> read_library(const std::vector<std::string>& paths, const std::string& motion,
-                                           const CheckConfig& config);
+Library read_library(const std::vector<std::string>& paths, const std::string& motion, const CheckConfig& config);
 
 }  // namespace spherechain::baker

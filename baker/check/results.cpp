@@ -78,7 +78,9 @@ std::string to_bytes(const ClipResult& result) {
                     {"fps", result.fps},
                     {"loops", result.loops},
                     {"events", events},
-                    {"note", result.note}},
+                    {"note", result.note},
+                    {"hidden", result.hidden},
+                    {"continuous", result.continuous}},
                    -1);
 }
 
@@ -100,6 +102,8 @@ std::optional<ClipResult> read_clip_result(const std::string& bytes) {
     json.at("loops").get_to(out.loops);
     for (const ordered_json& event : json.at("events")) out.events.push_back(read_result_event(event));
     json.at("note").get_to(out.note);
+    json.at("hidden").get_to(out.hidden);
+    json.at("continuous").get_to(out.continuous);
     return out;
   });
 }

@@ -35,6 +35,8 @@ struct ClipResult {
   bool loops = false;
   std::vector<Event> events;  // by where they begin
   std::string note;           // what is wrong with the recording and does not keep it from being read
+  std::string hidden;         // what HiddenJoints says
+  bool continuous = false;    // all that touches between frames was looked at
 };
 
 // How often and how deep a triangle of the skin takes part in a fault.

@@ -8,13 +8,14 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "check/json_input.h"
 #include "filter/part_filter.h"
 #include "mesh/error.h"
 
 namespace spherechain::baker {
 namespace {
 
-using nlohmann::json;
+using json = nlohmann::ordered_json;
 
 bool is(const std::string& wanted, const std::string& part) { return wanted == "*" || wanted == part; }
 
@@ -26,36 +27,44 @@ bool concerns(const Rules::Allowed& allowed, const Event& event) {
 
 class ConfigReader {
  public:
-  explicit ConfigReader(std::string file) : file_(std::move(file)) {}
+  ConfigReader(std::string file, std::string place) : file_(std::move(file)), place_(std::move(place)) {}
 
-  [[noreturn]] void fail(const std::string& what) const { throw Error(ExitCode::kFile, file_ + ": " + what); }
+  std::string here() const { return file_ + (place_.empty() ? "" : ": " + place_); }
+  [[noreturn]] void fail(const std::string& what) const { throw Error(ExitCode::kFile, here() + ": " + what); }
 
   json parse(const std::string& text) const {
-    json out = json::parse(text, nullptr, false);
-    if (out.is_discarded() || !out.is_object()) fail("is not a JSON object (docs/checking-a-library.md has one)");
+    constexpr const char* kRefusal = "is not a JSON object (docs/checking-a-library.md has one)";
+    json out = parse_input(text, here(), kRefusal);
+    if (!out.is_object()) fail(kRefusal);
     return out;
   }
 
+  // `key`: "'max_depth_mm'", or "'allow', entry 2: 'depth_mm'".
   double depth(const json& value, const std::string& key) const {
-    if (!value.is_number() || value.get<double>() < 0) fail("'" + key + "' is not a depth in mm, 0 or more");
+    if (!value.is_number() || value.get<double>() < 0) fail(key + " is not a depth in mm, 0 or more");
     return value.get<double>();
   }
 
   std::string text(const json& value, const std::string& key) const {
-    if (!value.is_string()) fail("'" + key + "' is not the name of a body part");
+    if (!value.is_string()) fail(key + " is not the name of a body part");
     return value.get<std::string>();
   }
 
   void allow(const json& list, std::vector<Rules::Allowed>& out) const {
     if (!list.is_array()) fail("'allow' is not a list");
-    for (const json& entry : list) {
-      if (!entry.is_object() || !entry.contains("parts") || !entry.contains("depth_mm") || entry.size() != 2 ||
-          !entry["parts"].is_array() || entry["parts"].size() != 2) {
-        fail(R"('allow' has an entry that is not {"parts": [one, other], "depth_mm": depth})");
-      }
-      const json& parts = entry["parts"];
-      out.push_back({{text(parts[0], "allow"), text(parts[1], "allow")}, depth(entry["depth_mm"], "allow")});
+    for (std::size_t i = 0; i < list.size(); ++i) out.push_back(allowed(list[i], entry_text("allow", i)));
+  }
+
+  Rules::Allowed allowed(const json& entry, const std::string& place) const {
+    if (!entry.is_object()) fail(place + R"( is not {"parts": [one, other], "depth_mm": depth})");
+    for (const auto& [key, value] : entry.items()) {
+      if (key != "parts" && key != "depth_mm")
+        fail(place + ": '" + key + "' is unknown (parts and depth_mm are known)");
     }
+    const json parts = entry.value("parts", json()), depth_mm = entry.value("depth_mm", json());
+    if (!parts.is_array() || parts.size() != 2) fail(place + ": 'parts' is not a list of two body parts");
+    const std::string key = place + ": 'parts'";
+    return {{text(parts[0], key), text(parts[1], key)}, depth(depth_mm, place + ": 'depth_mm'")};
   }
 
   // What intersects in every pose is how the character is made, and no clip's fault.
@@ -71,13 +80,14 @@ class ConfigReader {
 
   void leave_out(const json& list, std::vector<std::string>& out) const {
     if (!list.is_array()) fail("'leave_out' is not a list");
-    for (const json& entry : list) out.push_back(text(entry, "leave_out"));
+    for (std::size_t i = 0; i < list.size(); ++i) out.push_back(text(list[i], entry_text("leave_out", i)));
   }
 
   void severity(const json& object, Rules& rules) const {
     if (!object.is_object()) fail("'severity' is not an object");
     for (const auto& [key, value] : object.items()) {
-      if (key != "penetration" && key != "deep_fold") fail("'severity' knows penetration and deep_fold, not " + key);
+      if (key != "penetration" && key != "deep_fold")
+        fail("'severity': '" + key + "' is unknown (penetration and deep_fold are known)");
       Severity& out = key == "penetration" ? rules.penetration : rules.deep_fold;
       if (value == "error") {
         out = Severity::kError;
@@ -86,20 +96,24 @@ class ConfigReader {
       } else if (value == "ignore") {
         out = Severity::kIgnore;
       } else {
-        fail("'severity' is error, warning or ignore");
+        fail("'severity': '" + key + "' is not error, warning or ignore");
       }
     }
   }
 
  private:
-  std::string file_;
+  static std::string entry_text(const char* key, std::size_t index) {
+    return fmt::format("'{}', entry {}", key, index + 1);
+  }
+
+  std::string file_, place_;
 };
 
 }  // namespace
 
-bool Rules::leaves_out(const Event& event) const {
+bool Rules::leaves_out(const std::array<std::string, 2>& parts) const {
   return std::any_of(left_out.begin(), left_out.end(),
-                     [&](const std::string& part) { return part == event.parts[0] || part == event.parts[1]; });
+                     [&](const std::string& part) { return part == parts[0] || part == parts[1]; });
 }
 
 std::string Rules::excuse(const Event& event) const {
@@ -130,8 +144,9 @@ Severity Rules::severity(PenetrationClass kind) const {
   return kind == SC_CLASS_PENETRATION ? penetration : kind == SC_CLASS_DEEP_FOLD ? deep_fold : Severity::kIgnore;
 }
 
-CheckConfig read_config(const std::string& text, const std::string& file, const CheckConfig& start) {
-  const ConfigReader reader(file);
+CheckConfig read_config(const std::string& text, const std::string& file, const CheckConfig& start,
+                        const std::string& place) {
+  const ConfigReader reader(file, place);
   CheckConfig config = start;
   const json object = reader.parse(text);
   for (const auto& [key, value] : object.items()) {
@@ -142,11 +157,11 @@ CheckConfig read_config(const std::string& text, const std::string& file, const 
     } else if (key == "leave_out") {
       reader.leave_out(value, config.rules.left_out);
     } else if (key == "max_depth_mm") {
-      config.rules.max_depth_mm = reader.depth(value, key);
+      config.rules.max_depth_mm = reader.depth(value, "'max_depth_mm'");
     } else if (key == "severity") {
       reader.severity(value, config.rules);
     } else if (key == "bake") {
-      config.bake = make_settings("balanced", value.dump(), file);
+      config.bake = make_settings("balanced", value.dump(), reader.here() + ": 'bake'");
     } else {
       reader.fail("'" + key + "' is unknown (allow, filter, leave_out, max_depth_mm, severity and bake are known)");
     }

@@ -27,7 +27,7 @@ struct Rules {
   double max_depth_mm = 0;            // any fault may be so deep
   Severity penetration = Severity::kError, deep_fold = Severity::kWarning;
 
-  bool leaves_out(const Event& event) const;
+  bool leaves_out(const std::array<std::string, 2>& parts) const;
   // What excuses a fault, in words; empty where nothing does.
   std::string excuse(const Event& event) const;
   // Of body parts, by all rules.
@@ -42,9 +42,10 @@ struct CheckConfig {
 };
 
 // `json` is an object with the keys `allow`, `filter`, `leave_out`, `max_depth_mm`, `severity` and `bake`, any of them;
-// what it does not have is as in `start`. Paths are relative to `file`. Throws Error(kFile) that names `file` and the
-// key.
-CheckConfig read_config(const std::string& json, const std::string& file, const CheckConfig& start);
+// what it does not have is as in `start`. Paths are relative to `file`. Throws Error(kFile) that names `file`, `place`
+// (where in the file the object is: "'characters', entry 2"; empty: it is the file) and the key.
+CheckConfig read_config(const std::string& json, const std::string& file, const CheckConfig& start,
+                        const std::string& place = {});
 CheckConfig default_config();
 
 }  // namespace spherechain::baker

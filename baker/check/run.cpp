@@ -3,25 +3,19 @@
 
 #include <fmt/format.h>
 
-#include <sys/mman.h>
-
 #include <algorithm>
-#include <atomic>
-#include <chrono>
 #include <map>
 #include <memory>
 #include <optional>
 #include <set>
 
-#include "check/clip_check.h"
-#include "check/workers.h"
+#include "check/clip_queue.h"
+#include "check/clip_worker.h"
+#include "check/file_hash.h"
 #include "import/child_process.h"
 #include "import/notes.h"
 #include "import/sha256.h"
 #include "mesh/error.h"
-#include "page/page.h"
-#include "play/steps.h"
-#include "play/target.h"
 #include "report/report.h"
 
 namespace spherechain::baker {
@@ -31,35 +25,11 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kWorkerClips = 8;  // a process is worth it for so many: it reads the character
 
-// A file's bytes and those of the files that it names. Of one that is too large for any importer the size alone: a
-// sparse file of terabytes costs nothing to send.
-std::string hash_of(const fs::path& file) {
-  constexpr std::uintmax_t kReadMax = std::uintmax_t{1} << 32;
-  check_regular_file(file);
-  const auto of_one = [](const fs::path& one) {
-    std::error_code ignored;
-    if (!fs::is_regular_file(one, ignored)) return std::string("-");
-    const std::uintmax_t size = fs::file_size(one, ignored);
-    return size > kReadMax ? std::to_string(size) : sha256_of_file(one);
-  };
-  std::string hashes = of_one(file);
-  for (const fs::path& beside : files_beside(file)) hashes += of_one(beside);
-  return hashes;
-}
-
 std::string key_of(const std::string& what, const std::vector<std::string>& of) {
   std::string text = what + "\n" + tool_identity();
   for (const std::string& part : of) text += "\n" + part;
   return sha256_of_text(text);
 }
-
-struct ChosenCharacter {
-  const LibraryCharacter* of;
-  std::size_t place;
-  std::vector<std::size_t> units;  // that are asked for
-  std::string hash, key, error;
-  bool was_interrupted = false;
-};
 
 // Units weigh what their files weigh: a guess at their frames that every machine makes alike.
 std::vector<ChosenCharacter> choose(const std::vector<LibraryCharacter>& library, const Shard& shard) {
@@ -86,17 +56,6 @@ std::vector<ChosenCharacter> choose(const std::vector<LibraryCharacter>& library
     if (!chosen.units.empty()) out.push_back(std::move(chosen));
   }
   return out;
-}
-
-// The verdict has names of its own.
-std::string without_file(const std::string& note, const fs::path& file) {
-  const std::string begin = file.string() + ": ";
-  return note.starts_with(begin) ? note.substr(begin.size()) : note;
-}
-
-// A key stands for what a file held before it was read.
-void check_unchanged(const fs::path& file, const std::string& hash) {
-  if (hash_of(file) != hash) throw Interrupted(file.string() + ": changed while it was read (run the check again)");
 }
 
 // `file` is the character's.
@@ -126,56 +85,6 @@ bool is_checked(const Store& store, const CheckedClip& clip) {
   return std::all_of(kinds.begin(), kinds.end(), [&](const std::string& kind) { return store.has(clip.key, kind); });
 }
 
-// The first letter of a line that a child tells.
-constexpr char kDone = '+', kFailed = '-', kInterrupted = '!', kNow = '~';
-
-// Tells how far a child is, a few times a second.
-class News {
- public:
-  explicit News(const Task::Tell& tell) : tell_(tell) {}
-  void operator()(const std::string& text) {
-    const auto now = std::chrono::steady_clock::now();
-    if (now - last_ < std::chrono::milliseconds(200)) return;
-    last_ = now;
-    tell_(kNow + text);
-  }
-
- private:
-  const Task::Tell& tell_;
-  std::chrono::steady_clock::time_point last_;
-};
-
-// A clip that is to be checked.
-struct Todo {
-  CheckedClip* clip;
-  std::size_t unit, number;  // number among the file's own
-};
-
-// The clips of one character that are to be checked. Its processes take one after another: who is quick takes more.
-class Queue {
- public:
-  Queue(const ChosenCharacter& of, std::vector<Todo> todo) : character(of), clips(std::move(todo)) {
-    void* shared = ::mmap(nullptr, sizeof(Next), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    if (shared == MAP_FAILED) throw Error(ExitCode::kFile, "--jobs: no memory that processes share");
-    next_ = new (shared) Next(0);
-  }
-  ~Queue() { ::munmap(next_, sizeof(Next)); }
-  Queue(const Queue&) = delete;
-  Queue& operator=(const Queue&) = delete;
-
-  bool is_empty() const { return *next_ >= clips.size(); }
-  // The next one's index; not less than their number where there is none.
-  std::size_t take() { return (*next_)++; }
-
-  const ChosenCharacter& character;
-  const std::vector<Todo> clips;
-
- private:
-  using Next = std::atomic<std::size_t>;
-  static_assert(Next::is_always_lock_free);
-  Next* next_;
-};
-
 class Run {
  public:
   Run(const RunOptions& options, const Store& store, const std::function<void(const RunState&)>& progress)
@@ -188,7 +97,7 @@ class Run {
       character.error = character.of->error;
       if (!character.error.empty()) continue;
       try {
-        character.hash = hash_of(character.of->file);
+        character.hash = hash_of_input(character.of->file);
         character.key = key_of(
             "character", {character.hash, to_json(character.of->config.bake), character.of->file.extension().string()});
       } catch (const Error& error) {
@@ -236,7 +145,7 @@ class Run {
       all += todo[c].size();
       const std::size_t workers = std::min<std::size_t>(static_cast<std::size_t>(options_.jobs),
                                                         (todo[c].size() + kWorkerClips - 1) / kWorkerClips);
-      const auto queue = std::make_shared<Queue>(characters[c], std::move(todo[c]));
+      const auto queue = std::make_shared<ClipQueue>(characters[c], std::move(todo[c]));
       for (std::size_t i = 0; i < workers; ++i) add(tasks, queue);
     }
     run("checking", tasks, all);
@@ -316,7 +225,7 @@ class Run {
     const auto [entry, is_new] = motion_hashes_.try_emplace(file.string());
     if (is_new) {
       try {
-        entry->second = hash_of(file);
+        entry->second = hash_of_input(file);
       } catch (...) {
         motion_hashes_.erase(entry);
         throw;
@@ -326,11 +235,13 @@ class Run {
   }
 
   // A process that checks clips of a character.
-  void add(std::deque<Task>& tasks, const std::shared_ptr<Queue>& queue) {
+  void add(std::deque<Task>& tasks, const std::shared_ptr<ClipQueue>& queue) {
     if (queue->is_empty()) return;
     const auto at = std::make_shared<std::optional<std::size_t>>();  // the clip that it is at
     Task task;
-    task.work = [this, queue, at](const Task::Tell& tell) { check_in_child(*queue, *at, tell); };
+    task.work = [this, queue, at](const Task::Tell& tell) {
+      check_clips(*queue, *at, options_, store_, motion_hashes_, tell);
+    };
     task.told = [this, queue, at](const std::string& line) {
       if (line[0] == kNow) {
         tell_now(queue->character, line.substr(1));
@@ -347,7 +258,7 @@ class Run {
       if (*at) {
         const Todo& todo = queue->clips[**at];
         const std::string& failure = ending.failure;
-        end(todo, failure_text(file_of(*queue, todo), failure.empty() ? "ends the check early" : failure),
+        end(todo, failure_text(queue->file_of(todo), failure.empty() ? "ends the check early" : failure),
             ending.was_interrupted);
       }
       if (*at || !ending.failure.empty()) add(tasks, queue);
@@ -359,74 +270,6 @@ class Run {
     todo.clip->error = error;
     todo.clip->was_interrupted = was_interrupted;
     ++done_;
-  }
-
-  static const fs::path& file_of(const Queue& queue, const Todo& todo) {
-    const LibraryCharacter& of = *queue.character.of;
-    return todo.unit == kOwnClips ? of.file : of.motions[todo.unit - 1].file;
-  }
-
-  // Tells two lines for each: its index before, and after it kDone, or what is wrong. `at`: the clip that this process
-  // was at when it was killed.
-  void check_in_child(Queue& queue, std::optional<std::size_t> at, const Task::Tell& tell) const {
-    const ChosenCharacter& character = queue.character;
-    const FrameChoice frames{0, options_.fps};
-    std::optional<AnimatedAsset> animated;
-    std::optional<ClipChecker> checker;
-    bool plays_own = true, has_page = store_.has(character.key, kPageFile);
-    News news(tell);
-    for (std::size_t i = at ? *at : queue.take(); i < queue.clips.size(); i = queue.take()) {
-      const Todo& next = queue.clips[i];
-      if (!at) tell(std::to_string(i));
-      at.reset();
-      ClipCheck found;
-      std::string page;
-      try {
-        if (!checker) {
-          news("reading");
-          animated.emplace(OpenAsset(store_.read(character.key, kAssetFile).value_or(""), character.of->name),
-                           character.of->name, character.of->file.string(), MotionChoice{}, frames);
-          if (!has_page) page = character_page(*animated);
-          check_unchanged(character.of->file, character.hash);
-          checker.emplace(*animated, choose_target("auto"));
-        }
-        take_notes();  // of the character, and of clips before this one
-        if (next.unit != kOwnClips) {
-          plays_own = false;
-          const fs::path& motion = file_of(queue, next);
-          animated->play({{}, {}, motion.string()}, frames);
-          check_unchanged(motion, motion_hashes_.at(motion.string()));
-        } else if (!plays_own) {
-          animated->play({}, frames);
-          plays_own = true;
-        }
-        if (options_.continuous) look_between_frames(*animated, choose_target("auto"), next.number, [](int) {});
-        found = checker->check(next.number, [&](int done, int all) {
-          news(fmt::format("{}, frame {} of {}", next.clip->clip, done, all));
-        });
-        const fs::path recording = next.unit == kOwnClips ? fs::path() : file_of(queue, next);
-        for (const std::string& note : take_notes()) found.result.note = without_file(note, recording);
-      } catch (const Interrupted& error) {
-        tell(kInterrupted + std::string(error.what()));
-        continue;
-      } catch (const Error& error) {
-        tell(kFailed + std::string(error.what()));
-        continue;
-      }
-      if (!page.empty()) store_.write(character.key, kPageFile, "spherechain.character = " + page + ";\n");
-      has_page = true;
-      write(next.clip->key, found);
-      tell({kDone});
-    }
-  }
-
-  // The result last: where it is, all is.
-  void write(const std::string& key, const ClipCheck& found) const {
-    store_.write(key, kPageFile, "spherechain.clip = " + found.page + ";\n");
-    for (std::size_t i = 0; i < found.pictures.size(); ++i) store_.write(key, picture_file(i), found.pictures[i]);
-    store_.write(key, kHeatFile,
-                 {reinterpret_cast<const char*>(found.heat.data()), found.heat.size() * sizeof(HeatSpot)});
-    store_.write(key, kResultFile, to_bytes(found.result));
   }
 
   const RunOptions& options_;

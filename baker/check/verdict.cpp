@@ -16,42 +16,49 @@ using ClipName = std::pair<std::string, std::string>;  // character, clip
 
 class Judge {
  public:
-  Judge(const Baseline& baseline, bool folds, FailOn fail_on) : folds_(folds), fail_on_(fail_on) {
-    for (const KnownEvent& event : baseline.events) known_[{event.character, event.clip}].push_back(&event);
+  Judge(const Baseline& baseline, bool folds, FailOn fail_on)
+      : all_(baseline.events), folds_(folds), fail_on_(fail_on) {
+    for (std::size_t i = 0; i < all_.size(); ++i) known_[{all_[i].character, all_[i].clip}].push_back(i);
   }
 
   void events(JudgedClip& out, const ClipResult& result, const Rules& rules) const {
-    std::vector<const KnownEvent*> known;
+    std::vector<std::size_t> known;
     if (const auto found = known_.find({out.character, out.clip.clip}); found != known_.end()) known = found->second;
-    std::set<const KnownEvent*> there;
+    std::set<std::size_t> there;
     for (std::size_t i = 0; i < result.events.size(); ++i) {
       const Event& event = result.events[i];
-      if (rules.leaves_out(event)) continue;
+      if (rules.leaves_out(event.parts)) continue;
       if (is_counted_only(event.kind)) ++out.besides[event.kind];
       if (is_counted_only(event.kind) && !folds_) continue;
       JudgedEvent judged{event, EventState::kKnown, rules.excuse(event), -1, Severity::kIgnore, false, i};
       if (is_fault(event.kind)) judge_fault(judged, known, there, result.fps, rules);
       out.events.push_back(std::move(judged));
     }
-    for (const KnownEvent* event : known) {
-      if (there.count(event) == 0) out.events.push_back(resolved(*event, result.fps));
+    for (const std::size_t i : known) {
+      if (there.contains(i) || rules.leaves_out(all_[i].parts) || !is_looked_for(all_[i], result)) continue;
+      out.events.push_back(resolved(i, result.fps));
     }
   }
 
  private:
-  void judge_fault(JudgedEvent& out, const std::vector<const KnownEvent*>& known, std::set<const KnownEvent*>& there,
-                   double fps, const Rules& rules) const {
+  void judge_fault(JudgedEvent& out, const std::vector<std::size_t>& known, std::set<std::size_t>& there, double fps,
+                   const Rules& rules) const {
     out.state = EventState::kNew;
-    for (const KnownEvent* one : known) {
-      if (!is_same(*one, out.event, fps)) continue;
-      there.insert(one);
+    for (const std::size_t i : known) {
+      const KnownEvent& one = all_[i];
+      if (!is_same(one, out.event, fps)) continue;
+      there.insert(i);
       // Of several the most that was approved.
-      if (is_worse(*one, out.event)) {
-        if (out.state == EventState::kNew) out.before_mm = std::max(out.before_mm, one->depth_mm);
+      if (is_worse(one, out.event)) {
+        if (out.state != EventState::kNew) continue;
+        if (one.depth_mm >= out.before_mm) out.known = i;
+        out.before_mm = std::max(out.before_mm, one.depth_mm);
         continue;
       }
       out.before_mm = -1;
-      if (out.state != EventState::kAccepted) out.state = one->state;
+      if (out.state == EventState::kAccepted) continue;
+      out.state = one.state;
+      out.known = i;
     }
     out.severity = out.rule.empty() ? rules.severity(out.event.kind) : Severity::kIgnore;
     out.fails =
@@ -60,8 +67,10 @@ class Judge {
                                                                                 : false);
   }
 
-  static JudgedEvent resolved(const KnownEvent& known, double fps) {
+  JudgedEvent resolved(std::size_t number, double fps) const {
+    const KnownEvent& known = all_[number];
     JudgedEvent out;
+    out.known = number;
     out.state = EventState::kResolved;
     Event& event = out.event;
     event.parts = known.parts;
@@ -73,9 +82,10 @@ class Judge {
     return out;
   }
 
+  const std::vector<KnownEvent>& all_;
   bool folds_;
   FailOn fail_on_;
-  std::map<ClipName, std::vector<const KnownEvent*>> known_;
+  std::map<ClipName, std::vector<std::size_t>> known_;  // numbers among all
 };
 
 void count(Summary& out, const JudgedClip& clip) {
@@ -120,6 +130,7 @@ Verdict judge(const std::vector<CheckedClip>& clips, const std::vector<Character
         judged.loops = result->loops;
         const bool is_told = result->note.empty() || !noted.insert(clip.clip).second;
         if (!is_told) out.notes.push_back(clip.clip + ": " + result->note);
+        if (!result->hidden.empty()) out.notes.push_back(of.name + " " + clip.clip + ": " + result->hidden);
         by.events(judged, *result, of.rules);
         count(out.summary, judged);
       }
@@ -154,22 +165,36 @@ Verdict judge(const std::vector<CheckedClip>& clips, const std::vector<Character
 }
 
 Baseline accept(const Verdict& verdict, const Baseline& before) {
-  std::set<ClipName> checked;
+  Baseline out = before;
+  std::vector<int> faults(before.events.size(), 0);  // of each entry: how many are the same as it
+  std::vector<char> is_gone(before.events.size(), 0);
   for (const JudgedClip& clip : verdict.clips) {
-    if (clip.clip.error.empty()) checked.insert({clip.character, clip.clip.clip});
-  }
-  Baseline out;
-  for (const KnownEvent& event : before.events) {
-    if (checked.count({event.character, event.clip}) == 0) out.events.push_back(event);
+    for (const JudgedEvent& judged : clip.events) {
+      if (judged.known == JudgedEvent::kNoNumber) continue;
+      ++faults[judged.known];
+      if (judged.state == EventState::kResolved) is_gone[judged.known] = 1;
+    }
   }
   for (const JudgedClip& clip : verdict.clips) {
     for (const JudgedEvent& judged : clip.events) {
       const Event& event = judged.event;
-      if (!judged.is_open()) continue;
-      out.events.push_back({clip.character, clip.clip.clip, event.parts, event.kind, event.from / clip.fps,
-                            event.to / clip.fps, event.depth_mm, EventState::kAccepted});
+      if (!judged.is_open() || judged.state == EventState::kAccepted) continue;
+      KnownEvent accepted{clip.character,        clip.clip.clip,      event.parts,    event.kind,
+                          event.from / clip.fps, event.to / clip.fps, event.depth_mm, EventState::kAccepted};
+      const bool is_one = judged.known != JudgedEvent::kNoNumber && faults[judged.known] == 1;
+      if (is_one) {
+        accepted.entry = before.events[judged.known].entry;
+        out.events[judged.known] = std::move(accepted);
+      } else {
+        out.events.push_back(std::move(accepted));
+      }
     }
   }
+  std::vector<KnownEvent> left;
+  for (std::size_t i = 0; i < out.events.size(); ++i) {
+    if (i >= is_gone.size() || is_gone[i] == 0) left.push_back(std::move(out.events[i]));
+  }
+  out.events = std::move(left);
   return out;
 }
 

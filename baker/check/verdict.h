@@ -21,6 +21,7 @@ struct JudgedEvent {
   Severity severity = Severity::kIgnore;
   bool fails = false;
   std::size_t number = kNoNumber;  // of the event among the clip's; a resolved one has none
+  std::size_t known = kNoNumber;   // the baseline's entry that it is the same as
 
   static constexpr std::size_t kNoNumber = ~std::size_t{0};
   bool is_open() const { return state != EventState::kResolved && is_fault(event.kind) && rule.empty(); }
@@ -64,8 +65,9 @@ struct CharacterRules {
 Verdict judge(const std::vector<CheckedClip>& clips, const std::vector<CharacterRules>& characters, const Store& store,
               const Baseline& baseline, bool folds, FailOn fail_on);
 
-// `before`, with all faults of these clips accepted that no rule excuses, and what is resolved left out. Other clips'
-// stay.
+// `before`, which the verdict is by, with all faults of these clips accepted that no rule excuses. An entry is left out
+// if it was looked for and is resolved. One that is accepted already stays as it is, and so does one that a rule
+// excuses, that the run did not look for, or that is of another clip.
 Baseline accept(const Verdict& verdict, const Baseline& before);
 
 }  // namespace spherechain::baker

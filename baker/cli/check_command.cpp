@@ -68,16 +68,35 @@ void check_shard_folder(const std::string& folder, const std::vector<CommandFile
   check_outputs(inputs, {{"-o", (fs::path(folder) / kShardFile).string(), FileKind::kJson}}, Force::kNone);
 }
 
-void check_folders(const CheckOptions& options) {
+bool is_in(const fs::path& place, const fs::path& folder) {
+  const fs::path inside = place.lexically_relative(folder);
+  return !inside.empty() && *inside.begin() != "..";
+}
+
+// A folder that is written to is no other one, and none that is looked through for inputs. Mended characters do not go
+// below one either: the next check would take them for characters of the library.
+void check_folders(const CheckOptions& options, const std::vector<fs::path>& inputs) {
   const std::vector<std::pair<const char*, std::string>> folders{
       {"-o", options.output}, {"--fix", options.fix}, {"--cache", options.cache}};
   for (std::size_t i = 0; i < folders.size(); ++i) {
+    const auto& [name, folder] = folders[i];
+    if (folder.empty()) continue;
+    const fs::path place = fs::weakly_canonical(fs::absolute(folder));
     for (std::size_t j = 0; j < i; ++j) {
-      const auto& [name, folder] = folders[i];
       const auto& [other_name, other] = folders[j];
-      if (folder.empty() || other.empty() || fs::weakly_canonical(folder) != fs::weakly_canonical(other)) continue;
+      if (other.empty() || place != fs::weakly_canonical(fs::absolute(other))) continue;
       throw Error(ExitCode::kUsage,
                   folder + ": " + other_name + " and " + name + " are the same folder (name another)");
+    }
+    for (const fs::path& input : inputs) {
+      if (place == input) {
+        throw Error(ExitCode::kUsage,
+                    folder + ": " + name + " is a folder of the library or of recordings (name another)");
+      }
+      if (folder == options.fix && is_in(place, input)) {
+        throw Error(ExitCode::kUsage, folder + ": --fix is inside " + input.string() +
+                                          ", where the next check would read what it writes (name a folder outside)");
+      }
     }
   }
 }
@@ -162,13 +181,13 @@ ExitCode run_check(const CheckOptions& options) {
   for (const std::string& path : options.library) inputs.push_back({"LIBRARY", path});
   const std::string accepted = options.accept ? options.baseline : "";
   check_outputs(inputs,
-                {{"--baseline", accepted, FileKind::kJson},
+                {{"--baseline", accepted, FileKind::kJson, accepted},  // it was read: its keys stay
                  {"--json", options.json, FileKind::kJson},
                  {"--junit", options.junit, FileKind::kJunit},
                  {"--sarif", options.sarif, FileKind::kSarif}},
                 Force::kNone);
   if (!options.shard.empty()) check_shard_folder(options.output, inputs);
-  check_folders(options);
+  check_folders(options, {});
   if (options.merge) {
     check_report_folder(options.output);
     const WorkFolder work(options.output);
@@ -177,7 +196,9 @@ ExitCode run_check(const CheckOptions& options) {
     const Verdict verdict = report(options, all.clips, all.characters, baseline, store, pages);
     return code_of(verdict);
   }
-  const std::vector<LibraryCharacter> library = read_library(options.library, options.motion, config);
+  const Library read = read_library(options.library, options.motion, config);
+  const std::vector<LibraryCharacter>& library = read.characters;
+  check_folders(options, read.folders);
   if (!options.fix.empty()) {
     check_fix_folder(library, options.fix);
   }

@@ -10,8 +10,10 @@
 #include "cli/console.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
+#include "import/notes.h"
 #include "mesh/error.h"
 #include "play/cuda_frames.h"
+#include "play/hidden_joints.h"
 #include "play/player.h"
 #include "play/target.h"
 #include "report/part_contacts.h"
@@ -106,6 +108,7 @@ ExitCode run_play(const PlayOptions& options) {
   if (on_cuda) cuda = play_on_cuda(animated, radius);
   Player player(animated.asset(), radius, options.mode != "all_pairs", options.mode != "chains", target);
   PartContacts contacts(animated);
+  std::vector<HiddenJoints> hidden(animated.clips().size(), HiddenJoints(animated));  // of each clip
   Tally tally;
   const char* const refit = refit_name(animated.asset()->refit_rule());
   std::optional<PlayFile> file;
@@ -123,7 +126,9 @@ ExitCode run_play(const PlayOptions& options) {
     Progress progress("play " + options.asset + ":");
     for (int i = 0; i < animated.frame_count(); ++i) {
       progress.show(fmt::format("frame {} of {}", i + 1, animated.frame_count()));
-      const std::vector<float> positions = pack(animated.positions(animated.deformation(i)));
+      const Deformation deformation = animated.deformation(i);
+      if (animated.frame_at(i).between == 0) hidden[animated.frame_at(i).clip].add(deformation);
+      const std::vector<float> positions = pack(animated.positions(deformation));
       FrameResult result;
       if (on_cuda) {
         CudaFrame& frame = cuda.frames[static_cast<std::size_t>(i)];
@@ -142,6 +147,11 @@ ExitCode run_play(const PlayOptions& options) {
       file->add(frame);
     }
     if (file) file->finish({{"clips", contacts.json()}});
+  }
+  for (std::size_t c = 0; c < hidden.size(); ++c) {
+    const std::string& clip = animated.clips()[c].name;
+    const std::string text = hidden[c].text();
+    if (!text.empty()) add_note(options.source + ": " + (clip.empty() ? text : clip + ": " + text));
   }
   say("{}{}\n{}\n{}(radius {}, refit {}, backend {})\n", frames_text(animated), contacts.text(options.motion.name()),
       tally.spheres_text(), tally.times_text(), options.radius, refit,

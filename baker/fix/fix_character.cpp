@@ -56,6 +56,7 @@ class Fixer {
     animated_.emplace(OpenAsset(out_.asset, job.input), job.input, job.input, MotionChoice{{}, job.clip, {}},
                       FrameChoice{0, 0});
     out_.parts = parts_of(animated_->asset()).parts;
+    out_.order = PartOrder(*animated_);
     const auto is_part = [&](const std::string& name) {
       return std::any_of(out_.parts.begin(), out_.parts.end(), [&](const BodyPart& part) { return part.name == name; });
     };
@@ -149,7 +150,8 @@ class Fixer {
     }
     const auto leave = [&](const MendedEvent& mended) {
       const Event event = event_of(mended);
-      return !is_asked_for(event) || job_.config.rules.leaves_out(event) || !job_.config.rules.excuse(event).empty() ||
+      return !is_asked_for(event) || job_.config.rules.leaves_out(event.parts) ||
+             !job_.config.rules.excuse(event).empty() ||
              std::any_of(accepted.begin(), accepted.end(), [&](const KnownEvent* known) {
                return is_same(*known, event, clip.fps) && !is_worse(*known, event);
              });

@@ -47,13 +47,14 @@ double quantile(const std::vector<double>& ascending, double q) {
   return ascending[static_cast<std::size_t>(q * static_cast<double>(ascending.size() - 1))];
 }
 
-std::string clip_text(const MendedClip& clip, const std::vector<BodyPart>& parts) {
+std::string clip_text(const MendedClip& clip, const std::vector<BodyPart>& parts, const PartOrder& order) {
   std::map<Outcome, int> counts;
   std::string rows;
   for (const MendedEvent& e : clip.mend.events) {
     ++counts[e.outcome];
+    const auto [first, second] = order.ordered(e.part_a, e.part_b);
     rows += fmt::format("  {:<34} {:>5}-{:<5} {:>6.1f} -> {:>5.1f} mm  {:>5.1f} degrees  {}\n",
-                        parts[e.part_a].name + ", " + parts[e.part_b].name, e.from, e.to, e.depth_before, e.depth_after,
+                        parts[first].name + ", " + parts[second].name, e.from, e.to, e.depth_before, e.depth_after,
                         e.turn_degrees, outcome_name(e.outcome));
   }
   std::string out =
@@ -104,14 +105,14 @@ std::string fix_json(const std::vector<MendedClip>& clips, const std::vector<Bod
 }
 
 // Clips without an event are counted.
-std::string fix_text(const std::vector<MendedClip>& clips, const std::vector<BodyPart>& parts) {
+std::string fix_text(const std::vector<MendedClip>& clips, const std::vector<BodyPart>& parts, const PartOrder& order) {
   std::string out;
   int clean = 0;
   for (const MendedClip& clip : clips) {
     if (clip.mend.events.empty() && clip.others == 0) {
       ++clean;
     } else {
-      out += clip_text(clip, parts);
+      out += clip_text(clip, parts, order);
     }
   }
   if (clean == 0) return out;

@@ -146,14 +146,17 @@ std::string PartContacts::rows(const Clip& clip) const {
   std::vector<std::vector<std::string>> cells;
   for (const Row row : order) {
     const auto [a, b] = row->first;
+    const auto [first, second] = order_.ordered(a, b);
     const Contact& contact = row->second;
     const auto& runs = contact.fault_runs;
     const char* unit = runs.size() == 1 && runs[0].first == runs[0].second ? "frame " : "frames ";
     const char* fold = contact.kind == SC_CLASS_DEEP_FOLD ? "deep fold, " : "";
+    const float way = first == b ? 1.0F : -1.0F;  // the direction is that of b
     const auto& [x, y, z] = contact.direction;
-    cells.push_back({name(a), a == b ? "itself" : name(b), unit + runs_text(runs),
-                     fmt::format("{}{:.0f} mm deep at {}, out along ({:.2f}, {:.2f}, {:.2f})", fold,
-                                 contact.depth_mm_max, frame_text(contact.frame_of_depth_max), x, y, z)});
+    cells.push_back(
+        {name(first), a == b ? "itself" : name(second), unit + runs_text(runs),
+         fmt::format("{}{:.0f} mm deep at {}, out along ({:.2f}, {:.2f}, {:.2f})", fold, contact.depth_mm_max,
+                     frame_text(contact.frame_of_depth_max), way * x, way * y, way * z)});
   }
   std::string rest;
   for (const auto& [kind, count] : others) {
@@ -165,8 +168,9 @@ std::string PartContacts::rows(const Clip& clip) const {
   std::string between;
   for (const auto& [parts, contact] : clip.contacts) {
     if (!is_between_only(contact.runs)) continue;
+    const auto [first, second] = order_.ordered(parts.first, parts.second);
     between += fmt::format("{}{}, {} at {} ({}, {:.0f} mm)", between.empty() ? "  between frames only: " : "; ",
-                           name(parts.first), name(parts.second), frame_text(contact.frame_of_depth_max),
+                           name(first), name(second), frame_text(contact.frame_of_depth_max),
                            sc_penetration_class_name(contact.kind), contact.depth_mm_max);
   }
   return table(cells) + (rest.empty() ? rest : rest + "\n") + (between.empty() ? between : between + "\n");

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bind/body_parts.h"
+#include "play/part_order.h"
 #include "play/play.h"
 #include "spherechain/penetrations.h"
 
@@ -22,7 +23,7 @@ class PartContacts {
  public:
   // `animated` must outlive it.
   explicit PartContacts(const AnimatedAsset& animated)
-      : animated_(animated), mm_(mm_per_unit(animated.asset())), parts_(parts_of(animated.asset())) {}
+      : animated_(animated), mm_(mm_per_unit(animated.asset())), parts_(parts_of(animated.asset())), order_(animated) {}
 
   // Frames are added in order. Returns the frame's counts.
   PartCounts add(int frame, const std::vector<Pair>& triangles, const std::vector<Penetration>& penetrations);
@@ -31,7 +32,8 @@ class PartContacts {
   const BodyParts& parts() const { return parts_; }
 
   // The frames so far, a paragraph for each clip: faults and deep folds, the deepest first, and how many contacts of
-  // other classes there are. `motion` names what is not made of clips.
+  // other classes there are. The part that is named first goes out along the direction. `motion` names what is not made
+  // of clips.
   std::string text(const std::string& motion) const;
   // The same as a list of clips.
   nlohmann::ordered_json json() const;
@@ -62,6 +64,7 @@ class PartContacts {
   const AnimatedAsset& animated_;
   double mm_;  // a unit of the source, in millimetres
   BodyParts parts_;
+  PartOrder order_;
   std::vector<Clip> clips_;
   int last_frame_ = -1;
 };

@@ -172,6 +172,124 @@ TEST_CASE("check fails by its rules and its baseline alone") {
   CHECK(sarif[0]["level"] == "error");
 }
 
+TEST_CASE("--accept drops an entry of a baseline only if its fault was looked for and is gone, and keeps its keys") {
+  using nlohmann::ordered_json;
+  Library library;
+  const std::string file = library.path("baseline.json"), accept = " --accept --baseline " + file;
+  REQUIRE(library.check(accept).code == 0);
+  ordered_json baseline = {{"about", {{"reviewed by", "Ann"}}}};
+  baseline.update(ordered_json::parse(tool::contents(file)));
+  ordered_json& entries = baseline["spherechain_baseline"];
+  REQUIRE(entries.size() == 6);
+  for (std::size_t i = 0; i < entries.size(); ++i) entries[i]["ticket"] = i;
+  library.folder.write("baseline.json", baseline.dump());
+  const auto rules = [&](const char* name, const char* text) {
+    return " --config " + library.folder.write(name, text).string();
+  };
+  for (const std::string& more : {std::string(" --max-depth 500"), rules("a.json", R"({"leave_out": ["ball"]})"),
+                                  rules("b.json", R"({"allow": [{"parts": ["ball", "*"], "depth_mm": 160}]})"),
+                                  rules("c.json", R"({"severity": {"penetration": "ignore"}})"),
+                                  std::string(" --fps 2"), std::string(" --continuous"), std::string()}) {
+    CAPTURE(more);
+    const tool::Run run = library.check(accept + more);
+    CHECK(run.code == 0);
+    CHECK(run.out.find("resolved") == std::string::npos);
+    CHECK(ordered_json::parse(tool::contents(file)) == baseline);
+  }
+  // One fault is new, one is deeper, one is gone.
+  std::vector<PlantedClip> edited = kClips;
+  edited[0].depths_mm[2] = 60;
+  edited[2].depths_mm[4] = 170;
+  edited[4].depths_mm = {-50};
+  library.folder.write("hero.glb", planted_character(edited));
+  CHECK(library.check(accept).out.find("1 resolved") == std::string::npos);
+  const ordered_json after = ordered_json::parse(tool::contents(file))["spherechain_baseline"];
+  REQUIRE(after.size() == 6);
+  CHECK(after[0] == entries[0]);
+  CHECK(after[1]["ticket"] == 1);
+  CHECK(after[1]["depth_mm"].get<double>() == doctest::Approx(170).epsilon(0.01));
+  CHECK(after[2] == entries[2]);
+  CHECK(after[3] == entries[3]);
+  CHECK(after[4] == entries[5]);
+  CHECK(after[5]["clip"] == "clean");
+}
+
+TEST_CASE("what is wrong with a baseline, rules or a manifest is told by file, entry and key") {
+  const Library library({kClips[1]});
+  const std::string file = library.path("baseline.json");
+  REQUIRE(library.check(" --accept --baseline " + file).code == 0);
+  const json good = library.read("baseline.json");
+  const auto refuses = [&](const std::string& option, const std::string& text, const std::string& what) {
+    const std::string wrong = library.folder.write("wrong.json", text).string();
+    tool::check_error(library.check(option + " " + wrong), 3, {"wrong.json: " + what});
+  };
+  refuses("--baseline", "{\n \"spherechain_baseline\": [\n  {]\n}", "is no baseline: line 3 is not JSON");
+  refuses("--baseline", "[1]", "is no baseline: it has no list 'spherechain_baseline'");
+  refuses("--baseline", R"({"spherechain_baseline": [7]})", "'spherechain_baseline', entry 1: is not an object");
+  refuses("--baseline", std::string(5000, '[') + std::string(5000, ']'), "is no baseline: it is nested too deeply");
+  for (const auto& [key, value] : std::vector<std::pair<const char*, json>>{{"character", 3},
+                                                                            {"clip", nullptr},
+                                                                            {"parts", {"ball"}},
+                                                                            {"class", "penetrates"},
+                                                                            {"from_seconds", -1},
+                                                                            {"to_seconds", "2"},
+                                                                            {"depth_mm", {}},
+                                                                            {"state", "acepted"}}) {
+    json wrong = good;
+    wrong["spherechain_baseline"].push_back(good["spherechain_baseline"][0]);
+    wrong["spherechain_baseline"][1][key] = value;
+    const std::string start = fmt::format("'spherechain_baseline', entry 2: '{}' ", key);
+    refuses("--baseline", wrong.dump(), start + "is not ");
+    wrong["spherechain_baseline"][1].erase(key);
+    refuses("--baseline", wrong.dump(), start + "is missing");
+  }
+  refuses("--config", "{\"allow\": [],\n}", "is not a JSON object (docs/checking-a-library.md has one): line 2");
+  refuses("--config", R"({"allow": [{"parts": ["a", "b"], "depth_mm": 1}, {"parts": ["a"], "depth_mm": 1}]})",
+          "'allow', entry 2: 'parts' is not a list of two");
+  refuses("--config", R"({"allow": [{"parts": ["a", 2], "depth_mm": 1}]})",
+          "'allow', entry 1: 'parts' is not the name");
+  refuses("--config", R"({"allow": [{"parts": ["a", "b"], "depth_mm": "1"}]})",
+          "'allow', entry 1: 'depth_mm' is not a");
+  refuses("--config", R"({"allow": [{"parts": ["a", "b"], "depth": 1}]})", "'allow', entry 1: 'depth' is unknown");
+  refuses("--config", R"({"leave_out": ["a", null]})", "'leave_out', entry 2 is not the name");
+  refuses("--config", R"({"severity": {"deep_fold": "eror"}})", "'severity': 'deep_fold' is not error");
+  refuses("--config", R"({"bake": {"spheres": "many"}})", "'bake': setting 'spheres' is not");
+  const auto manifest = [&](const char* text, const std::string& what) {
+    const std::string wrong = library.folder.write("library.json", text).string();
+    tool::check_error(tool::run("check " + wrong + " -o " + library.report()), 3, {"library.json: " + what});
+  };
+  manifest("{\n\n", "is not a manifest (an object with a list 'characters'): line ");
+  manifest(R"({"characters": ["hero.glb", {"file": 3}]})", "'characters', entry 2: 'file' is not a path");
+  manifest(R"({"characters": [{"file": "hero.glb", "rig": 1}]})", "'characters', entry 1: 'rig' is unknown");
+  manifest(R"({"characters": [{"file": "hero.glb", "config": {"leave_out": 1}}]})",
+           "'characters', entry 1: 'config': 'leave_out' is not a list");
+}
+
+TEST_CASE("check and play say which joint a scale of 0 hides, and in how many frames") {
+  const std::vector<PlantedClip> hidden{{"gone", {200, 200, -50, -50, -50}, false, {}, {0, 0, 1, 1, 1}},
+                                        {"small", {-50, -50}, false, {}, {1, 0.01}}};
+  const Library library(hidden);
+  const std::string asset = library.path("hero.sphc"), note = "gone: 'ball' has a scale of 0 in 2 of 5 frames";
+  const tool::Run check = library.check("--fail-on none");
+  CHECK(check.out.find("note: hero.glb " + note) != std::string::npos);
+  CHECK(check.out.find("small") == std::string::npos);
+  REQUIRE(tool::run("bake " + library.file.string() + " -o " + asset).code == 0);
+  const tool::Run play = tool::run("play " + asset + " --source " + library.file.string());
+  CHECK(play.error.find("spherechain: note: " + library.file.string() + ": " + note) != std::string::npos);
+  CHECK(play.error.find("small") == std::string::npos);
+}
+
+TEST_CASE("check, play and fix name two parts in one order, and play the way of the first") {
+  const Library library({kClips[1]});
+  const std::string asset = library.path("hero.sphc");
+  CHECK(library.check("").out.find("ball in wall") != std::string::npos);
+  REQUIRE(tool::run("bake " + library.file.string() + " -o " + asset).code == 0);
+  const std::string play = squeezed(tool::run("play " + asset + " --source " + library.file.string()).out);
+  CHECK(play.find(" ball wall frames 2-5 200 mm deep at 4, out along (1.00, ") != std::string::npos);
+  const tool::Run fix = tool::run("fix " + library.file.string() + " -o " + library.path("mended.glb"));
+  CHECK_MESSAGE(squeezed(fix.out).find(" ball, wall 2-5 ") != std::string::npos, fix.out);
+}
+
 TEST_CASE("pictures and heat maps show what the rules leave") {
   const Library library;
   const auto page = [&](const std::string& more) {
@@ -363,7 +481,8 @@ TEST_CASE("a link to nothing and a bad baseline are told, the baseline before an
   CHECK(run.out.find("gone.glb: no such file") != std::string::npos);
   fs::remove_all(library.report());
   library.folder.write("bad.json", "{}");
-  tool::check_error(library.check("--baseline " + library.path("bad.json")), 3, {"bad.json: is no baseline"});
+  tool::check_error(library.check("--baseline " + library.path("bad.json")), 3,
+                    {"bad.json: is no baseline: it has no list"});
   CHECK_FALSE(fs::exists(library.report()));
   tool::check_error(library.check("--no-such-option"), 2, {"try spherechain check --help"});
 }

@@ -79,7 +79,10 @@ TEST_CASE("check --fix leaves what rules and baseline accept, and mends recordin
 
 TEST_CASE("check --fix writes over no file of the library, and over none that is no GLB") {
   const FixedLibrary library;
-  tool::check_error(library.check("", "lib"), 2, {"clean.glb", "a file of the library"});
+  const std::string lib = (library.folder.path / "lib").string(), report = (library.folder.path / "report").string();
+  tool::check_error(library.check("", "lib"), 2, {"lib: --fix is a folder of the library"});
+  tool::check_error(tool::run("check " + lib + "/clean.glb -o " + report + " --fix " + lib), 2,
+                    {"clean.glb", "a file of the library"});
   tool::check_error(library.check("--shard 1/2"), 2, {"--fix", "no shards"});
   fs::create_directories(library.mended / "sub");
   library.folder.write("mended/sub/hero.glb", "somebody's notes");
@@ -89,4 +92,26 @@ TEST_CASE("check --fix writes over no file of the library, and over none that is
   tool::check_error(tool::run("check " + hero + " " + hero + " -o " + (library.folder.path / "report").string() +
                               " --fix " + (library.folder.path / "other").string()),
                     2, {"hero.glb", "two characters"});
+}
+
+TEST_CASE("check writes no mended character where the next check would read it, and no cache over its inputs") {
+  const FixedLibrary library;
+  const auto path = [&](const char* name) { return (library.folder.path / name).string(); };
+  fs::create_directories(library.folder.path / "takes");
+  library.folder.write("takes/take.bvh", recording_of_arm(kFaulty));
+  library.folder.write("all.json", R"({"characters": ["lib/clean.glb"], "motions": ["takes"]})");
+  fs::create_directory_symlink("lib/sub", library.folder.path / "link");
+  tool::check_error(library.check("", "lib/mended"), 2, {"lib/mended: --fix is inside ", "name a folder outside"});
+  tool::check_error(library.check("", "link/a/b"), 2, {"link/a/b: --fix is inside "});
+  tool::check_error(library.check("--motion " + path("takes"), "takes/mended"), 2, {"--fix is inside "});
+  tool::check_error(tool::run("check " + path("all.json") + " -o " + path("report") + " --fix " + path("takes/x")), 2,
+                    {"--fix is inside "});
+  for (const char* folder : {"lib", "takes", "lib/../takes"}) {
+    tool::check_error(tool::run("check " + path("lib") + " --motion " + path("takes") + " -o " + path("report") +
+                                " --cache " + path(folder)),
+                      2, {"--cache is a folder of the library or of recordings"});
+  }
+  CHECK(tool::files_in(library.folder.path / "lib") == 2);
+  CHECK(tool::files_in(library.folder.path / "takes") == 1);
+  CHECK(library.check("").code == 6);  // beside it
 }

@@ -29,13 +29,15 @@ std::string planted_character(const std::vector<PlantedClip>& clips) {
                        {{"name", "wall"}, {"mesh", wall}},
                        {{"name", "ball"}, {"mesh", sphere}, {"translation", {2, 0, 0}}}};
   for (const PlantedClip& clip : clips) {
-    std::vector<float> times, places, still;
+    std::vector<float> times, places, still, sizes;
     for (std::size_t i = 0; i < clip.depths_mm.size(); ++i) {
       times.push_back(static_cast<float>(i) / 30);
       const double height = clip.heights_mm.empty() ? 0 : clip.heights_mm[i];
       places.insert(places.end(),
                     {static_cast<float>(kTouching - clip.depths_mm[i] / 1000), static_cast<float>(height / 1000), 0});
       still.insert(still.end(), {0, 0, 0});
+      const auto size = static_cast<float>(clip.sizes.empty() ? 1 : clip.sizes[i]);
+      sizes.insert(sizes.end(), {size, size, size});
     }
     const int input = glb.accessor(times, "SCALAR");
     const auto sampler = [&](const std::vector<float>& values) {
@@ -43,12 +45,16 @@ std::string planted_character(const std::vector<PlantedClip>& clips) {
                             {"output", glb.accessor(values, "VEC3")},
                             {"interpolation", clip.is_linear ? "LINEAR" : "STEP"}};
     };
-    const auto channel = [](int number, int node) {
-      return nlohmann::json{{"sampler", number}, {"target", {{"node", node}, {"path", "translation"}}}};
+    const auto channel = [](int number, int node, const char* path = "translation") {
+      return nlohmann::json{{"sampler", number}, {"target", {{"node", node}, {"path", path}}}};
     };
     glb.json["animations"].push_back({{"name", clip.name},
                                       {"samplers", {sampler(still), sampler(places)}},
                                       {"channels", {channel(0, 1), channel(1, 2)}}});
+    if (clip.sizes.empty()) continue;
+    nlohmann::json& animation = glb.json["animations"].back();
+    animation["samplers"].push_back(sampler(sizes));
+    animation["channels"].push_back(channel(2, 2, "scale"));
   }
   return glb.bytes();
 }

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <sys/mman.h>
+
+#include <atomic>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "check/library.h"
+#include "check/run.h"
+#include "mesh/error.h"
+
+namespace spherechain::baker {
+
+// A character of a library, as a run takes it.
+struct ChosenCharacter {
+  const LibraryCharacter* of;
+  std::size_t place;
+  std::vector<std::size_t> units;  // that are asked for
+  std::string hash, key, error;
+  bool was_interrupted = false;
+};
+
+// A clip that is to be checked.
+struct Todo {
+  CheckedClip* clip;
+  std::size_t unit, number;  // number among the file's own
+};
+
+// The clips of one character that are to be checked. Its processes take one after another: a quick one takes more.
+class ClipQueue {
+ public:
+  ClipQueue(const ChosenCharacter& of, std::vector<Todo> todo) : character(of), clips(std::move(todo)) {
+    void* shared = ::mmap(nullptr, sizeof(Next), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (shared == MAP_FAILED) throw Error(ExitCode::kFile, "--jobs: no memory that processes share");
+    next_ = new (shared) Next(0);
+  }
+  ~ClipQueue() { ::munmap(next_, sizeof(Next)); }
+  ClipQueue(const ClipQueue&) = delete;
+  ClipQueue& operator=(const ClipQueue&) = delete;
+
+  bool is_empty() const { return *next_ >= clips.size(); }
+  // The next one's index; not less than their number where there is none.
+  std::size_t take() { return (*next_)++; }
+
+  // The file that a clip is read from.
+  const std::filesystem::path& file_of(const Todo& todo) const {
+    return todo.unit == kOwnClips ? character.of->file : character.of->motions[todo.unit - 1].file;
+  }
+
+  const ChosenCharacter& character;
+  const std::vector<Todo> clips;
+
+ private:
+  using Next = std::atomic<std::size_t>;
+  static_assert(Next::is_always_lock_free);
+  Next* next_;
+};
+
+}  // namespace spherechain::baker
