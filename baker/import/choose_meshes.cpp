@@ -140,7 +140,7 @@ std::string name_to_take(Index skeleton, const std::vector<Node>& nodes, const s
   return names.front();
 }
 
-std::string list_of(const std::vector<std::string>& names) {
+std::string quoted_list(const std::vector<std::string>& names) {
   constexpr std::size_t kNamed = 8;
   std::string out;
   for (std::size_t i = 0; i < std::min(names.size(), kNamed); ++i) out += (i > 0 ? ", " : "") + in_quotes(names[i]);
@@ -155,7 +155,7 @@ std::string choices_of(const std::vector<Node>& nodes, const std::vector<ShownMe
     names.insert(skeletons[m] == kNoIndex ? nodes[meshes[m].node].name
                                           : name_to_take(skeletons[m], nodes, meshes, skeletons));
   }
-  return list_of({names.begin(), names.end()});
+  return quoted_list({names.begin(), names.end()});
 }
 
 bool stand_apart(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b, const Vec3& up) {
@@ -212,7 +212,7 @@ std::vector<std::string> characters_in(const std::vector<Node>& nodes, const std
 }
 
 std::string characters_text(const std::vector<std::string>& names) {
-  return "has " + std::to_string(names.size()) + " characters (" + list_of(names) + ")";
+  return "has " + std::to_string(names.size()) + " characters (" + quoted_list(names) + ")";
 }
 
 void note_characters(const std::vector<Node>& nodes, const std::vector<SkinnedBox>& skinned, const Vec3& up,

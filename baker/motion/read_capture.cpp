@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <numeric>
+#include <optional>
 
 #include "import/choose_meshes.h"
 #include "import/import.h"
@@ -71,15 +73,32 @@ CaptureBody body_of(const std::vector<Joint>& joints, const BodyFrame& frame, co
 
 namespace {
 
-// What a user should hear where no body can be moved: that there are two.
+// What a user should hear where no body can be moved: that there are two. Bones that move a vertex together are of one.
 void check_one_character(const SourceRig& rig, const std::vector<Vec3>& rest, const Vec3& up, const std::string& file) {
+  std::vector<std::size_t> first(rig.bones.size());  // of the bones that hang together one that comes before
+  std::iota(first.begin(), first.end(), 0);
+  const auto root = [&](std::size_t bone) {
+    while (first[bone] != bone) bone = first[bone] = first[first[bone]];
+    return bone;
+  };
+  const auto for_each = [&](const VertexWeights& of, const auto& run) {
+    for (std::size_t k = 0; k < of.joint.size(); ++k) {
+      if (of.weight[k] > 0) run(of.joint[k]);
+    }
+  };
+  for (const VertexWeights& of : rig.weights) {
+    std::optional<std::size_t> one;
+    for_each(of, [&](std::size_t bone) {
+      const std::size_t a = root(bone), b = root(one.value_or(bone));
+      const bool is_above = rig.bones[a].node < rig.bones[b].node;
+      first[is_above ? b : a] = is_above ? a : b;
+      one = bone;
+    });
+  }
   std::vector<SkinnedBox> skinned;
   for (const Bone& bone : rig.bones) skinned.push_back({{kNoIndex, bone.node, {}, {}, false}, {}});
   for (std::size_t v = 0; v < std::min(rest.size(), rig.weights.size()); ++v) {
-    const VertexWeights& of = rig.weights[v];
-    const auto most =
-        static_cast<std::size_t>(std::max_element(of.weight.begin(), of.weight.end()) - of.weight.begin());
-    if (of.weight[most] > 0) skinned[of.joint[most]].box.extend(rest[v]);
+    for_each(rig.weights[v], [&](std::size_t bone) { skinned[root(bone)].box.extend(rest[v]); });
   }
   std::erase_if(skinned, [](const SkinnedBox& one) { return one.box.isEmpty(); });
   const std::vector<std::string> names = characters_in(rig.nodes, skinned, up);
