@@ -60,6 +60,10 @@ RandomPoses::RandomPoses(const Character& character, const std::vector<Joint>& j
     bones_ = rig.bones;
     to_rest_ = rig.to_rest;
     for (const Morph& morph : rig.morphs) morphs_.emplace_back(morph.rest_weight, morph.rest_weight);
+    if (!rig.pivots.empty()) {
+      own_pivots_.assign(nodes_.size(), Vec3::Zero());
+      for (const Bone& bone : bones_) own_pivots_[bone.node] = bone.inverse_bind * rig.pivots[bone.node];
+    }
   } else {
     nodes_ = nodes_of(joints);
     for (Index j = 0; j < joints.size(); ++j) {
@@ -196,12 +200,19 @@ std::vector<Node> RandomPoses::at_moments(const std::vector<Moment>& of_node) co
   return nodes;
 }
 
+void RandomPoses::turn_about_pivot(std::size_t n, Node& node, const Eigen::Quaterniond& rotation) const {
+  const Vec3 before = own_pivots_.empty() ? Vec3(Vec3::Zero()) : node.local * own_pivots_[n];
+  node.rotation = rotation;
+  node.local.linear() = node.rotation.toRotationMatrix() * node.scale.asDiagonal();
+  if (!own_pivots_.empty()) node.local.translation() += before - node.local * own_pivots_[n];
+}
+
 std::vector<Node> RandomPoses::bent(std::vector<Node> nodes, Random& random) const {
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     if (!limits_[n].moves) continue;
     Node& node = nodes[n];
-    node.rotation = node.rotation * rotation_of(random_in(random, Vec3::Constant(-kJitter), Vec3::Constant(kJitter)));
-    node.local.linear() = node.rotation.toRotationMatrix() * node.scale.asDiagonal();
+    const Vec3 jitter = Vec3::Constant(kJitter);
+    turn_about_pivot(n, node, node.rotation * rotation_of(random_in(random, -jitter, jitter)));
   }
   return nodes;
 }
@@ -212,6 +223,10 @@ std::vector<Node> RandomPoses::turned(Random& random) const {
     const Limits& limits = limits_[n];
     if (!limits.moves) continue;
     const Eigen::Quaterniond turn = limits.middle * rotation_of(random_in(random, limits.turn.low, limits.turn.high));
+    if (!own_pivots_.empty()) {
+      turn_about_pivot(n, nodes[n], turn);
+      continue;
+    }
     const Vec3 translation = random_in(random, limits.translation.low, limits.translation.high);
     const Vec3 scale = random_in(random, limits.scale.low, limits.scale.high);
     nodes[n].local.linear() = turn.toRotationMatrix() * scale.asDiagonal();
@@ -225,7 +240,8 @@ RandomPoses::Pose RandomPoses::next(Random& random, int kind, double part) const
   const auto nodes = [&] {
     if (clips_ == nullptr) return turned(random);
     if (kind == kMoment) return at_moments(std::vector<Moment>(nodes_.size(), moment_at(part)));
-    if (kind == kBranches) return bent(at_moments(of_branches(random)), random);
+    // Keys of joints that turn elsewhere than where they are bound move and turn them at a time.
+    if (kind == kBranches || !own_pivots_.empty()) return bent(at_moments(of_branches(random)), random);
     return turned(random);
   };
   Pose out;

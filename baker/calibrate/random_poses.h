@@ -17,7 +17,8 @@ namespace spherechain::baker {
 // 3. each joint turned about its three axes on its own, evenly in a box of rotation vectors: the smallest around all
 //    keys of the clips and 10 degrees more. So are translations, scales and morph weights, without the 10 degrees.
 // In the second kind each joint turns by up to 5 degrees more about each axis. Without clips all poses are of the
-// third kind: a joint turns by up to 45 degrees, and morphs keep their weight at rest.
+// third kind: a joint turns by up to 45 degrees, and morphs keep their weight at rest. A rig with pivots and clips has
+// the second kind in place of the third.
 class RandomPoses {
  public:
   // `joints`: the automatic rig's, for a character without bones. The character must outlive this.
@@ -27,8 +28,8 @@ class RandomPoses {
   bool any() const { return !bones_.empty(); }
   bool have_clips() const { return clips_ != nullptr; }
 
-  // Lets the joints of that name turn, in poses of the third kind, by rotation vectors between these two from where they
-  // are at rest, about their own axes; in radians. False where there are none.
+  // Lets the joints of that name turn, in poses of the third kind, by rotation vectors between these two from where
+  // they are at rest, about their own axes; in radians. False where there are none.
   bool limit(const std::string& joint, const Vec3& low, const Vec3& high);
 
   struct Pose {
@@ -57,6 +58,7 @@ class RandomPoses {
   // The moments of all nodes.
   std::vector<Moment> of_branches(Random& random) const;
   std::vector<Node> at_moments(const std::vector<Moment>& of_node) const;
+  void turn_about_pivot(std::size_t n, Node& node, const Eigen::Quaterniond& rotation) const;
   std::vector<Node> bent(std::vector<Node> nodes, Random& random) const;
   std::vector<Node> turned(Random& random) const;
 
@@ -66,6 +68,7 @@ class RandomPoses {
   std::vector<std::vector<std::vector<const Channel*>>> channels_;  // of each clip and node
   std::vector<int> children_;                                       // of each node
   std::vector<Bone> bones_;
+  std::vector<Vec3> own_pivots_;  // of each node, in its own space; empty without SourceRig::pivots
   Affine to_rest_ = Affine::Identity();
   std::vector<std::pair<double, double>> morphs_;  // the least and the greatest weight
 };

@@ -72,6 +72,8 @@ class Fixer {
     const bool has_own = job_.recordings.empty() || job_.numbers;
     if (has_own && rig().clips.empty()) fail("has no clips to mend (--motion brings one)");
     if (animated_->asset()->bone_count() == 0 || rig().bones.empty()) fail("no bones move it");
+    if (!rig().pivots.empty())
+      fail("its joints are all bound at one place, and turn about no point of their own (bind them where they are)");
     if (has_own) fix_own();
     for (const std::string& recording : job_.recordings) fix_recording(recording);
     return std::move(out_);

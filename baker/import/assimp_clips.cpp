@@ -128,9 +128,10 @@ std::vector<Channel> fold(const std::vector<const aiNode*>& chain, const Channel
 // "Mesh" or "Mesh*3": the mesh's name, or its node's.
 bool is_for(const aiMeshMorphAnim& animation, const MeshInstance& instance, const AssimpScene& flat) {
   std::string name = animation.mName.C_Str();
-  if (name == instance.mesh->mName.C_Str() || name == flat.nodes[instance.node].name) return true;
+  const char* const node = flat.chains[instance.node].back()->mName.C_Str();
+  if (name == instance.mesh->mName.C_Str() || name == node) return true;
   name = name.substr(0, name.rfind('*'));
-  return name == instance.mesh->mName.C_Str() || name == flat.nodes[instance.node].name;
+  return name == instance.mesh->mName.C_Str() || name == node;
 }
 
 void read_morph_weights(const aiMeshMorphAnim& animation, const MeshInstance& instance, double ticks,
@@ -149,26 +150,59 @@ void read_morph_weights(const aiMeshMorphAnim& animation, const MeshInstance& in
   }
 }
 
-// In the rotations of a node without pivots assimp applies a PostRotation that FBX takes back. The chain's link has it
-// right: it takes it back.
-void take_back(const aiNode& post, std::vector<Channel>& channels) {
+// The scale of an FBX node, as its chain has it.
+Vec3 scaling_of(const std::vector<const aiNode*>& chain) {
+  for (const aiNode* link : chain) {
+    if (std::string_view(link->mName.C_Str()).ends_with("_$AssimpFbx$_Scaling"))
+      return to_affine(link->mTransformation).linear().diagonal();
+  }
+  return Vec3::Ones();
+}
+
+// In the rotations of a node without pivots assimp applies a PostRotation that FBX takes back. The chain's links have
+// it right. Assimp takes a scale out of the keys after that, with other signs than the file's where it mirrors.
+void take_back(const aiNode& post, const std::vector<const aiNode*>& chain, std::vector<Channel>& channels) {
   const Eigen::Quaterniond back(Eigen::Matrix3d(to_affine(post.mTransformation).linear()));
+  Vec3 signs = scaling_of(chain);
+  for (const Channel& channel : channels) {
+    if (channel.path == ChannelPath::kScale) signs = signs.cwiseProduct(Vec3(channel.values.data()));
+  }
+  // Half a turn or none, as the signs that are not the file's own.
+  const auto flips = [&](Eigen::Index axis) { return signs[axis] < 0; };
+  Eigen::Quaterniond half = Eigen::Quaterniond::Identity();
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    if (!flips(axis) && flips((axis + 1) % 3) && flips((axis + 2) % 3)) half.coeffs() = Eigen::Vector4d::Unit(axis);
+  }
   for (Channel& channel : channels) {
     if (channel.path != ChannelPath::kRotation) continue;
     for (std::size_t v = 0; v < channel.values.size(); v += 4) {
       Eigen::Map<Eigen::Quaterniond> key(&channel.values[v]);
-      key = (key * back * back).normalized();
+      key = (key * half * back * back * half.conjugate()).normalized();
+    }
+  }
+}
+
+bool is_x_file(const aiScene& scene) {
+  aiString format;
+  return scene.mMetaData != nullptr && scene.mMetaData->Get(AI_METADATA_SOURCE_FORMAT, format) &&
+         std::string_view(format.C_Str()).find("XFile") != std::string_view::npos;
+}
+
+// Assimp takes lengths and a rotation out of an X file's matrices, which have neither where they mirror.
+void check_mirrors(const Node& node, const std::vector<Channel>& channels, const std::string& file) {
+  if (!(node.local.linear().determinant() < 0)) return;
+  for (const Channel& channel : channels) {
+    if (channel.path == ChannelPath::kScale && sample(channel, 0).head<3>().prod() > 0) {
+      throw Error(ExitCode::kFile, file + ": the joint '" + node.name +
+                                       "' mirrors, which its keys lose where they are matrices (export keys of "
+                                       "rotation, position and scale)");
     }
   }
 }
 
 double ticks_per_second(const aiScene& scene, const aiAnimation& animation) {
   if (animation.mTicksPerSecond > 0 && std::isfinite(animation.mTicksPerSecond)) return animation.mTicksPerSecond;
-  aiString format;
-  if (scene.mMetaData == nullptr || !scene.mMetaData->Get(AI_METADATA_SOURCE_FORMAT, format) ||
-      std::string_view(format.C_Str()).find("XFile") == std::string_view::npos) {
-    return kTicksPerSecond;
-  }
+  if (!is_x_file(scene)) return kTicksPerSecond;
   double apart = std::numeric_limits<double>::max();  // of two keys, at the least on average
   const auto look = [&](const auto* keys, unsigned count) {
     if (count > 1) apart = std::min(apart, (keys[count - 1].mTime - keys[0].mTime) / (count - 1));
@@ -205,14 +239,15 @@ std::vector<Clip> read_clips(const aiScene& scene, const AssimpScene& flat, cons
     for (unsigned c = 0; c < animation.mNumChannels; ++c)
       by_name.emplace(animation.mChannels[c]->mNodeName.C_Str(), animation.mChannels[c]);
     for (Index n = 0; n < flat.nodes.size(); ++n) {
-      const std::string& name = flat.nodes[n].name;
+      const std::string name = flat.chains[n].back()->mName.C_Str();
       if (flat.by_name.at(name) != n) continue;
       const auto own = by_name.find(name);
       // A channel of the node's own name is all of the node, its pivots included.
       std::vector<Channel> channels = own != by_name.end() ? read_node(*own->second, n, ticks, file)
                                                            : fold(flat.chains[n], by_name, n, ticks, file);
       const aiNode* post = post_rotation(flat.chains[n]);
-      if (post != nullptr && own != by_name.end()) take_back(*post, channels);
+      if (post != nullptr && own != by_name.end()) take_back(*post, flat.chains[n], channels);
+      if (is_x_file(scene)) check_mirrors(flat.nodes[n], channels, file);
       clip.channels.insert(clip.channels.end(), channels.begin(), channels.end());
     }
     for (unsigned m = 0; m < animation.mNumMorphMeshChannels; ++m) {

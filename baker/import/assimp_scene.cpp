@@ -34,8 +34,8 @@ Affine take_geometric(std::vector<const aiNode*>& chain) {
   return own;
 }
 
-void visit(const aiScene& scene, const aiNode& node, int parent, std::vector<const aiNode*> chain,
-           const std::string& file, AssimpScene& out) {
+void visit(const aiScene& scene, const NamesOfNodes& names, const aiNode& node, int parent,
+           std::vector<const aiNode*> chain, const std::string& file, AssimpScene& out) {
   chain.push_back(&node);
   if (!to_affine(node.mTransformation).matrix().allFinite()) {
     throw Error(ExitCode::kFile, file + ": node '" + node.mName.C_Str() + "' has a transform that is not finite");
@@ -43,14 +43,15 @@ void visit(const aiScene& scene, const aiNode& node, int parent, std::vector<con
   int self = parent;
   if (!is_pivot(node)) {
     Node read;
-    read.name = node.mName.C_Str();
+    const auto known = names.find(node.mName.C_Str());
+    read.name = known == names.end() ? node.mName.C_Str() : known->second;
     read.parent = parent;
     const Affine geometric = take_geometric(chain);
     for (const aiNode* link : chain) read.local = read.local * to_affine(link->mTransformation);
     decompose(read);
     self = static_cast<int>(out.nodes.size());
     const auto index = static_cast<Index>(self);
-    out.by_name.emplace(read.name, index);
+    out.by_name.emplace(node.mName.C_Str(), index);
     out.world.push_back(parent < 0 ? read.local : out.world[static_cast<std::size_t>(parent)] * read.local);
     out.nodes.push_back(std::move(read));
     out.chains.push_back(std::move(chain));
@@ -66,7 +67,7 @@ void visit(const aiScene& scene, const aiNode& node, int parent, std::vector<con
   for (unsigned c = 0; c < node.mNumChildren; ++c) {
     // Importers leave gaps for objects they drop.
     if (node.mChildren[c] == nullptr) continue;
-    visit(scene, *node.mChildren[c], self, chain, file, out);
+    visit(scene, names, *node.mChildren[c], self, chain, file, out);
   }
 }
 
@@ -173,9 +174,10 @@ Index top_joint(const AssimpScene& flat, const aiMesh& mesh) {
   return top;
 }
 
-AssimpScene flatten(const aiScene& scene, const std::string& file, const std::string& character) {
+AssimpScene flatten(const aiScene& scene, const NamesOfNodes& names, const std::string& file,
+                    const std::string& character) {
   AssimpScene out;
-  if (scene.mRootNode != nullptr) visit(scene, *scene.mRootNode, -1, {}, file, out);
+  if (scene.mRootNode != nullptr) visit(scene, names, *scene.mRootNode, -1, {}, file, out);
   std::vector<ShownMesh> meshes;
   for (const MeshInstance& instance : out.instances)
     meshes.push_back({instance.node, top_joint(out, *instance.mesh), instance.mesh->mName.C_Str(), {}, false});

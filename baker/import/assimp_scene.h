@@ -27,9 +27,9 @@ struct MeshInstance {
 // An assimp scene as a flat list of nodes, parents before children. The rest positions are its world.
 struct AssimpScene {
   std::vector<Node> nodes;
-  // The scene's nodes that each node replaces; the last one has its name. There are several in FBX, where assimp
-  // unfolds a node's pivots into a chain of nodes that no clip of another file would fit. Geometric transforms, which
-  // assimp has in the chain and undoes for the node's children, are in no chain.
+  // The scene's nodes that each node replaces; the last one has the name by which assimp refers to it. There are
+  // several in FBX, where assimp unfolds a node's pivots into a chain of nodes that no clip of another file would fit.
+  // Geometric transforms, which assimp has in the chain and undoes for the node's children, are in no chain.
   std::vector<std::vector<const aiNode*>> chains;
   std::vector<Affine> world;
   std::unordered_map<std::string, Index> by_name;  // the first of that name, as assimp refers to them
@@ -43,9 +43,13 @@ const aiNode* post_rotation(const std::vector<const aiNode*>& chain);
 // geometric transform.
 Affine offset_of(const aiBone& bone, const MeshInstance& instance);
 
+// The names that people know nodes by, where assimp has others for them.
+using NamesOfNodes = std::unordered_map<std::string, std::string>;
+
 // `character` chooses meshes (choose_meshes.h). Throws Error(kFile) that begins with `file` where it has none, or a
 // transform is not finite.
-AssimpScene flatten(const aiScene& scene, const std::string& file, const std::string& character = {});
+AssimpScene flatten(const aiScene& scene, const NamesOfNodes& names, const std::string& file,
+                    const std::string& character = {});
 
 // The node of the mesh's bones that is nearest to the root; kNoIndex where it has none.
 Index top_joint(const AssimpScene& flat, const aiMesh& mesh);

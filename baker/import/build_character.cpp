@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "import/import.h"
+#include "import/pivots.h"
 #include "mesh/error.h"
 
 namespace spherechain::baker {
@@ -125,6 +126,7 @@ Character build_character(const SourceMesh& source, const std::string& name) {
     character.source_positions.push_back(f.cast<double>());
   }
   const std::vector<Vec3>& positions = character.source_positions;
+  character.rig.pivots = pivots_of(character.rig, positions);
 
   Eigen::AlignedBox3d box;
   for (const Triangle& t : source.triangles) {

@@ -94,6 +94,27 @@ std::vector<unsigned char> buffer_bytes(const nlohmann::json& buffer, const std:
   return bytes;
 }
 
+// tinygltf refuses indices of a sparse accessor without a buffer view, which the specification allows: they are taken
+// out before it reads the file.
+std::vector<int> take_indices(nlohmann::json& json) {
+  std::vector<int> taken;
+  if (!json.contains("meshes")) return taken;
+  for (nlohmann::json& mesh : json["meshes"]) {
+    for (nlohmann::json& primitive : mesh["primitives"]) {
+      taken.push_back(primitive.value("indices", -1));
+      primitive.erase("indices");
+    }
+  }
+  return taken;
+}
+
+void put_back(const std::vector<int>& indices, tinygltf::Model& model) {
+  std::size_t next = 0;
+  for (tinygltf::Mesh& mesh : model.meshes) {
+    for (tinygltf::Primitive& primitive : mesh.primitives) primitive.indices = indices.at(next++);
+  }
+}
+
 bool no_image(tinygltf::Image*, int, std::string*, std::string*, int, int, const unsigned char*, int, void*) {
   return true;
 }
@@ -185,6 +206,7 @@ GltfFile open_gltf(const fs::path& path) {
   json.erase("buffers");
   for (const nlohmann::json& image : json["images"]) file.pictures.push_back(image);
   json.erase("images");
+  const std::vector<int> indices = take_indices(json);
 
   tinygltf::TinyGLTF loader;
   loader.SetImageLoader(no_image, nullptr);
@@ -199,6 +221,7 @@ GltfFile open_gltf(const fs::path& path) {
     error = thrown.what();
   }
   if (!loaded) file.fail("is not a glTF that can be read (" + error.substr(0, error.find('\n')) + ")");
+  put_back(indices, file.model);
   for (std::vector<unsigned char>& data : buffers) file.model.buffers.emplace_back().data = std::move(data);
   return file;
 }

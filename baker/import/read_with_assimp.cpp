@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <assimp/BaseImporter.h>
 #include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/config.h>
 #include <assimp/importerdesc.h>
 #include <assimp/material.h>
@@ -11,8 +12,10 @@
 #include <assimp/Importer.hpp>
 #include <cctype>
 #include <filesystem>
+#include <fstream>
 #include <functional>
 #include <map>
+#include <memory>
 #include <new>
 #include <set>
 #include <sstream>
@@ -22,9 +25,13 @@
 #include "import/assimp_look.h"
 #include "import/assimp_scene.h"
 #include "import/choose_meshes.h"
+#include "import/collada_names.h"
+#include "import/fbx_curves.h"
+#include "import/fbx_names.h"
 #include "import/import.h"
 #include "import/named_file.h"
 #include "import/notes.h"
+#include "import/ogre_weights.h"
 #include "mesh/error.h"
 #include "spherechain/asset.h"
 
@@ -71,11 +78,15 @@ class OwnFiles : public Assimp::DefaultIOSystem {
   explicit OwnFiles(const std::filesystem::path& file)
       : file_(file.string()), folder_(file.parent_path()), prefix_(file_.substr(0, file_.rfind('/') + 1)) {}
   const std::string& alias(const std::string& ending) { return alias_ = file_ + "." + ending; }
+  // The file has these bytes in place of its own.
+  void replace_content(std::string bytes) { content_ = std::move(bytes); }
   bool Exists(const char* path) const override { return !real(path).empty(); }
   Assimp::IOStream* Open(const char* path, const char* mode) override {
     const std::string file = real(path);
     if (file.empty()) return nullptr;
     opened_.push_back(file);
+    if (file == file_ && !content_.empty())
+      return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(content_.data()), content_.size());
     return DefaultIOSystem::Open(file.c_str(), mode);
   }
 
@@ -122,6 +133,7 @@ class OwnFiles : public Assimp::DefaultIOSystem {
   std::filesystem::path folder_;
   std::string prefix_;  // the folder as importers have it before a name
   Files opened_;
+  std::string content_;
   mutable std::map<std::string, const char*> refused_;  // names and why
 };
 
@@ -162,13 +174,41 @@ void check_faces(const aiScene& scene, const std::string& file) {
   }
 }
 
+// Empty where it is no FBX file.
+std::string bytes_of_fbx(const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) return {};
+  std::ifstream in(path, std::ios::binary);
+  std::string bytes(4096, '\0');
+  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  if (!is_fbx(bytes)) return {};
+  in.clear();
+  std::ostringstream rest;
+  rest << in.rdbuf();
+  return bytes + std::move(rest).str();
+}
+
 // A file, read; the scene is null where no importer reads it.
 struct ReadFile {
   explicit ReadFile(const std::filesystem::path& path) : name(path.string()), files(new OwnFiles(path)) {
     importer.SetIOHandler(files);  // which the importer deletes
     // Sticks that importers put where a file has bones and no mesh are no character.
     importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
+    FbxFile fbx;
+    if (std::string bytes = bytes_of_fbx(path); !bytes.empty()) {
+      fbx = read_fbx(bytes);
+      names = make_names_unique(bytes, fbx);
+      files->replace_content(std::move(bytes));
+    }
     scene = read_by_ending_or_content(importer, *files, name);
+    if (scene != nullptr) {
+      auto& changed = const_cast<aiScene&>(*scene);  // the importer's own, which nobody else reads
+      complete_curves(changed, fbx);
+      separate_shared_weights(changed);
+    }
+    if (scene != nullptr && is_collada(*scene) && !names_are_unique(*scene)) read_by_id();
     // Assimp catches it and goes on.
     if (scene == nullptr && std::string_view(importer.GetErrorString()).find("bad_alloc") != std::string_view::npos) {
       throw std::bad_alloc();
@@ -195,6 +235,16 @@ struct ReadFile {
   Assimp::Importer importer;
   OwnFiles* files;
   const aiScene* scene = nullptr;
+  NamesOfNodes names;
+
+ private:
+  // Bones and clips refer to nodes by one of the two: names that are not unique would lead to wrong nodes.
+  void read_by_id() {
+    const std::unique_ptr<aiScene> by_name(importer.GetOrphanedScene());
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, false);
+    scene = read_by_ending_or_content(importer, *files, name);
+    if (scene != nullptr) names = names_of_ids(*scene, *by_name);
+  }
 };
 
 // Calls `each` with the name of each picture of the scene's materials that lies in a file of its own.
@@ -266,7 +316,7 @@ Files files_read_with_assimp(const std::filesystem::path& path) {
 SourceMesh read_with_assimp(const std::filesystem::path& path, const ImportOptions& options) {
   const ReadFile read(path);
   const aiScene& scene = read.scene_or_fail();
-  const AssimpScene flat = flatten(scene, read.name, options.character);
+  const AssimpScene flat = flatten(scene, read.names, read.name, options.character);
   SourceMesh out = source_of(scene, flat, read.name);
   std::vector<SkinnedBox> skinned;
   for (const MeshInstance& instance : flat.instances) {
@@ -285,7 +335,7 @@ SourceMesh read_with_assimp(const std::filesystem::path& path, const ImportOptio
 std::string glb_with_assimp(const std::filesystem::path& path) {
   const ReadFile read(path);
   const aiScene& scene = read.scene_or_fail();
-  const AssimpScene flat = flatten(scene, read.name);
+  const AssimpScene flat = flatten(scene, read.names, read.name);
   SourceMesh source = source_of(scene, flat, read.name);
   source.look = read_look(scene, flat, path.parent_path());
   return glb_of(scene, flat, source);

@@ -31,8 +31,8 @@ std::vector<Joint> own_joints(const SourceRig& rig) {
     // A node that two skins bind differently has two bones: the second follows the first.
     const int parent = first[node] < static_cast<int>(b) ? first[node] : above[node];
     const Affine& bind = rig.bones[b].inverse_bind;
-    const Vec3 position =
-        std::abs(bind.linear().determinant()) > 0 ? Vec3(bind.inverse().translation()) : positions[node];
+    const bool is_bound = rig.pivots.empty() && std::abs(bind.linear().determinant()) > 0;
+    const Vec3 position = is_bound ? Vec3(bind.inverse().translation()) : positions[node];
     out.push_back({own, parent, position, position});
   }
   return out;

@@ -205,7 +205,7 @@ struct BodyFinder : Body {
     forward.normalize();
   }
 
-  Vec3 left() const { return up.cross(forward); }
+  Vec3 left() const { return s.is_mirrored ? forward.cross(up) : up.cross(forward); }
 
   // Sides the names do not tell are those of the axes.
   void settle_sides() {

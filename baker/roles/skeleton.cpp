@@ -33,6 +33,7 @@ double Skeleton::length(const std::vector<int>& path) const {
 }
 
 std::vector<Vec3> rest_positions(const SourceRig& rig) {
+  if (!rig.pivots.empty()) return rig.pivots;
   std::vector<Affine> world(rig.nodes.size());
   std::vector<const Bone*> bone_of(rig.nodes.size(), nullptr);
   for (const Bone& bone : rig.bones) {
@@ -82,6 +83,39 @@ void Skeleton::measure() {
   }
 }
 
+namespace {
+
+// A node without skin above the whole skeleton says only where the scene has it. Far away it would stretch the shape.
+void bring_near(Skeleton& s) {
+  const auto n = static_cast<std::size_t>(s.count());
+  std::vector<int> living(n, 0), below(n, -1);
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!s.alive[i] || s.parent[i] < 0) continue;
+    const auto parent = static_cast<std::size_t>(s.parent[i]);
+    ++living[parent];
+    below[parent] = static_cast<int>(i);
+  }
+  std::vector<std::size_t> above;
+  Eigen::AlignedBox3d box;
+  std::vector<bool> is_above(n, false);
+  for (std::size_t i = 0; i < n; ++i) {
+    const bool at_top = s.parent[i] < 0 || is_above[static_cast<std::size_t>(s.parent[i])];
+    is_above[i] = at_top && s.weight[i] == 0 && living[i] == 1;
+    if (is_above[i])
+      above.push_back(i);
+    else if (s.alive[i])
+      box.extend(s.position[i]);
+  }
+  constexpr double kFar = 0.25;  // of the skeleton's size
+  const double far = kFar * box.diagonal().norm();
+  for (std::size_t k = above.size(); k-- > 0;) {
+    const std::size_t i = above[k];
+    if (box.exteriorDistance(s.position[i]) > far) s.position[i] = s.position[static_cast<std::size_t>(below[i])];
+  }
+}
+
+}  // namespace
+
 Skeleton make_skeleton(const SourceRig& rig, const std::vector<Vec3>& positions) {
   Skeleton s;
   const std::size_t n = rig.nodes.size();
@@ -92,6 +126,7 @@ Skeleton make_skeleton(const SourceRig& rig, const std::vector<Vec3>& positions)
     if (s.parent[i] >= 0) s.children[s.parent[i]].push_back(static_cast<int>(i));
   }
   s.position = rest_positions(rig);
+  s.is_mirrored = rig.to_rest.linear().determinant() < 0;
   s.weight.assign(n, 0);
   s.skin.assign(n, Vec3::Zero());
   for (std::size_t v = 0; v < std::min(rig.weights.size(), positions.size()); ++v) {
@@ -116,6 +151,7 @@ Skeleton make_skeleton(const SourceRig& rig, const std::vector<Vec3>& positions)
     }
     if (s.parent[i] >= 0 && s.alive[i]) s.alive[s.parent[i]] = true;
   }
+  bring_near(s);
   s.measure();
   return s;
 }

@@ -23,6 +23,7 @@ struct Skeleton {
   std::vector<double> reach;  // length of the longest path down to a tip that is alive
   std::vector<Vec3> tip;      // that tip's position
   double size = 0;            // largest distance of a living node from their mean
+  bool is_mirrored = false;   // the scene shows the mirror image of the rest pose
 
   // Sets depth, reach, tip and size from the rest.
   void measure();

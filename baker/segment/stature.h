@@ -7,7 +7,8 @@
 namespace spherechain::baker {
 
 // The way up in the file's scene. A biped that lies there stands as its rig does: along the axis of the file that is
-// next to the way from its pelvis to its head.
+// next to the way from its pelvis to its head. Where the scene turns the skeleton by any angle, the way is that from
+// its ankles to its head.
 Vec3 way_up(const Character& character, const Roles& roles);
 
 // How far a biped's crown is above its soles as it stands: from the lowest skin of its legs to the highest skin of its

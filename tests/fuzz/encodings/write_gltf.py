@@ -246,7 +246,7 @@ def write_mesh(mesh, draw, data, gltf):
     for _, deltas, _ in mesh.morphs:
         d = deltas[take] if quantized is None else deltas[take]
         if quantized is not None:
-            d = np.round(d * (quantized[2] if quantized[1] else 1))
+            d = np.round(d * (32767 if quantized[1] else 1))
             targets.append({"POSITION": data.add(d, I16, quantized[1], True, vertex=True)})
         else:
             targets.append({"POSITION": data.add(d, FLOAT, False, True, vertex=True)})

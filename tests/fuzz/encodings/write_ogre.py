@@ -24,7 +24,13 @@ def turn(tag, q, draw):
 
 def write(scene, folder, draw):
     names, number = {}, {}
-    nodes = [n for n in scene.ordered() if n.role or any(n in s.joints for s in scene.skins)]
+    needed = set()  # joints and all above them: a skeleton has bones alone
+    for node in scene.nodes:
+        if node.role or any(node in s.joints for s in scene.skins):
+            while node is not None:
+                needed.add(id(node))
+                node = node.parent
+    nodes = [n for n in scene.ordered() if id(n) in needed]
     for k, node in enumerate(nodes):
         number[id(node)] = k
         names[id(node)] = node.name
@@ -83,11 +89,8 @@ def write(scene, folder, draw):
         bones += (f'<bone id="{number[id(node)]}" name={quoteattr(names[id(node)])}>{vector("position", node.t)}'
                   f'{turn("rotation", node.r, draw)}' +
                   (vector("scale", node.s) if not np.allclose(node.s, 1) else "") + "</bone>\n")
-        above = node.parent
-        while above is not None and id(above) not in number:
-            above = above.parent
-        if above is not None:
-            parents += f'<boneparent bone={quoteattr(names[id(node)])} parent={quoteattr(names[id(above)])}/>\n'
+        if node.parent is not None:
+            parents += f'<boneparent bone={quoteattr(names[id(node)])} parent={quoteattr(names[id(node.parent)])}/>\n'
     animation = scene.animations[0]
     by_node = {}
     for track in animation.tracks:

@@ -295,3 +295,21 @@ TEST_CASE("FBX pivots become part of their node, in its clips too") {
     for (std::size_t v = 0; v < 3; ++v) CHECK((held.positions[v] - expected(0, corners[v])).norm() < 1e-5);
   }
 }
+
+TEST_CASE("a Collada file's nodes are called by their names, whether these are unique or not") {
+  const TemporaryFolder folder;
+  const SourceMesh plain = read_with_assimp(folder.write("plain.dae", kArm));
+  for (const auto& [upper, fore] : {std::pair("Oberarm links", "Unterarm"), {"bone", "bone"}}) {
+    CAPTURE(upper);
+    const SourceMesh mesh = read_with_assimp(
+        folder.write("arm.dae", replaced(replaced(kArm, "name='upper' type", std::string("name='") + upper + "' type"),
+                                         "name='fore' type", std::string("name='") + fore + "' type")));
+    REQUIRE(mesh.rig.nodes.size() == plain.rig.nodes.size());
+    for (std::size_t n = 0; n < mesh.rig.nodes.size(); ++n) {
+      const std::string& id = plain.rig.nodes[n].name;
+      CHECK(mesh.rig.nodes[n].name == (id == "upper" ? upper : id == "fore" ? fore : id));
+    }
+    for (const double seconds : {0.0, 1.0, 2.0})
+      CHECK(farthest(posed(mesh, "", seconds), posed(plain, "", seconds)) < 1e-6);
+  }
+}

@@ -126,7 +126,9 @@ struct Arm {
            settings + "}\n}\nObjects:  {\n" + objects +
            "AnimationStack: 40, \"AnimStack::bend\", \"\" {\n}\nAnimationLayer: 50, \"AnimLayer::base\", \"\" {\n}\n"
            "AnimationCurveNode: 60, \"AnimCurveNode::R\", \"\" {\nProperties70:  {\n"
-           "P: \"d|X\", \"Number\", \"\", \"A\",0\nP: \"d|Y\", \"Number\", \"\", \"A\",0\n"
+           "P: \"d|X\", \"Number\", \"\", \"A\"," +
+           list(std::array{fore.rotation.x()}) + "\n" + "P: \"d|Y\", \"Number\", \"\", \"A\"," +
+           list(std::array{fore.rotation.y()}) + "\n" +
            "P: \"d|Z\", \"Number\", \"\", \"A\",0\n}\n}\n"
            "AnimationCurve: 70, \"AnimCurve::\", \"\" {\nDefault: 0\nKeyVer: 4008\n" +
            array("KeyTime", 2, "0,46186158000") + array("KeyValueFloat", 2, "0,80") + "}\n}\nConnections:  {\n" +
@@ -135,7 +137,7 @@ struct Arm {
 
   // Where the corners of Skin, Held and Child are while the fore arm is bent.
   std::vector<Vec3> bent(double degrees) const {
-    const Vec3 to(0, 0, degrees);
+    const Vec3 to(fore.rotation.x(), fore.rotation.y(), degrees);
     std::vector<Vec3> out;
     for (std::size_t v = 0; v < 3; ++v) {
       const double weight = std::array{0.0, 0.75, 1.0}[v];
@@ -170,11 +172,11 @@ void check_against_formulas(const Arm& arm) {
   // The joints are where the bones are, whatever shape the bones have.
   const std::vector<Affine> world = world_of(mesh.rig.nodes);
   for (const Model* bone : {&arm.upper, &arm.fore}) {
-    const auto is_bone = [&](const Node& node) { return node.name == bone->name; };
-    const auto found = std::find_if(mesh.rig.nodes.begin(), mesh.rig.nodes.end(), is_bone);
-    REQUIRE(found != mesh.rig.nodes.end());
-    const auto node = static_cast<std::size_t>(found - mesh.rig.nodes.begin());
-    CHECK((world[node].translation() - bone->world().translation()).norm() < 1e-4);
+    const auto is_bone = [&](const Node& node) {
+      const auto n = static_cast<std::size_t>(&node - mesh.rig.nodes.data());
+      return node.name == bone->name && (world[n].translation() - bone->world().translation()).norm() < 1e-4;
+    };
+    CHECK(std::any_of(mesh.rig.nodes.begin(), mesh.rig.nodes.end(), is_bone));
   }
 }
 
@@ -225,5 +227,45 @@ TEST_CASE("an FBX file's post-rotations are taken back, in clips of nodes with p
     arm.fore.pivot = pivot;
     arm.held.post = {90, 0, 0};
     check_against_formulas(arm);
+  }
+}
+
+TEST_CASE("post-rotations are taken back where a node mirrors, too") {
+  for (const Vec3& scaling : {Vec3(-1, 1, 1), Vec3(1, -2, 1), Vec3(1, 1, -1), Vec3(-1, -1, -1), Vec3(-1, 0.5, -1)}) {
+    CAPTURE(scaling.transpose());
+    Arm arm;
+    arm.upper.scaling = {1, 1, -1};
+    arm.fore.pre = {20, 0, 30};
+    arm.fore.post = {-50, 10, 70};
+    arm.fore.scaling = scaling;
+    check_against_formulas(arm);
+  }
+}
+
+TEST_CASE("an axis of an FBX node without a curve keeps the value that the file has for it") {
+  for (const Vec3& pivot : {Vec3(0, 0, 0), Vec3(0.1, 0.2, 0.3)}) {
+    for (const Vec3& rotation : {Vec3(20, -40, 0), Vec3(0, 70, 0), Vec3(-120, 0, 0), Vec3(10, 90, 0)}) {
+      CAPTURE(pivot.transpose());
+      CAPTURE(rotation.transpose());
+      Arm arm;
+      arm.fore.pre = {20, 0, 30};
+      arm.fore.pivot = pivot;
+      arm.fore.rotation = rotation;
+      check_against_formulas(arm);
+    }
+  }
+}
+
+TEST_CASE("nodes of an FBX file may share a name: joints, and a joint and a mesh") {
+  Arm joints, meshes, short_names;
+  joints.upper.name = joints.fore.name = "Bone";
+  meshes.skin.name = meshes.held.name = "Fore";
+  for (Model Arm::*of : {&Arm::skin, &Arm::upper, &Arm::fore, &Arm::held, &Arm::child}) (short_names.*of).name = "b";
+  for (const Arm& arm : {joints, meshes, short_names}) {
+    Arm own = arm;  // whose nodes are its own parents
+    own.fore.parent = &own.upper;
+    own.held.parent = &own.fore;
+    own.child.parent = &own.held;
+    check_against_formulas(own);
   }
 }

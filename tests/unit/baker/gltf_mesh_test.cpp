@@ -65,6 +65,21 @@ TEST_CASE("sparse accessors change the elements they name, with or without anyth
   CHECK(read(one({{"attributes", {{"POSITION", positions}}}}, glb)).positions == expected);
 }
 
+TEST_CASE("indices of triangles may be sparse, too, on zeros") {
+  Glb glb;
+  const int positions = glb.accessor(kSquare, "VEC3");
+  const int triangles = glb.accessor(std::vector<std::uint16_t>{0, 0, 0, 0, 0, 0}, "SCALAR");
+  json& accessor = glb.json["accessors"][static_cast<std::size_t>(triangles)];
+  accessor.erase("bufferView");
+  const int places = glb.view(std::vector<std::uint8_t>{1, 2, 4, 5}),
+            corners = glb.view(std::vector<std::uint16_t>{1, 2, 2, 3});
+  accessor["sparse"] = {{"count", 4},
+                        {"indices", {{"bufferView", places}, {"componentType", 5121}}},
+                        {"values", {{"bufferView", corners}}}};
+  const SourceMesh mesh = read(one({{"attributes", {{"POSITION", positions}}}, {"indices", triangles}}, glb));
+  CHECK(mesh.triangles == std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}});
+}
+
 TEST_CASE("interleaved and offset elements are found by stride and offset") {
   Glb glb;
   const int view = glb.view(std::vector<float>{-1, 0, 0, 0, 9, 9, 1, 0, 0, 9, 9, 0, 1, 0, 9, 9});

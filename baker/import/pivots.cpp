@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "import/pivots.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace spherechain::baker {
+namespace {
+
+using Weighted = std::pair<Vec3, double>;  // sum of weights times positions, sum of weights
+
+void add_weighted(Weighted& sum, const Vec3& position, double weight) {
+  sum.first += weight * position;
+  sum.second += weight;
+}
+
+// Whether joints are bound near one place, and most of the skin that they move is elsewhere.
+bool are_bound_elsewhere(const SourceRig& rig, const std::vector<Vec3>& positions) {
+  std::vector<Weighted> moved(rig.bones.size(), {Vec3::Zero(), 0});
+  Eigen::AlignedBox3d skin, joints;
+  for (std::size_t v = 0; v < rig.weights.size(); ++v) {
+    skin.extend(positions[v]);
+    for (std::size_t k = 0; k < kMaxInfluences; ++k) {
+      const double weight = rig.weights[v].weight[k];
+      if (weight > 0) add_weighted(moved[rig.weights[v].joint[k]], positions[v], weight);
+    }
+  }
+  std::size_t count = 0;
+  double away = 0;  // sum of distances from joints to their skin
+  for (std::size_t b = 0; b < rig.bones.size(); ++b) {
+    const Affine& bind = rig.bones[b].inverse_bind;
+    if (!(moved[b].second > 0) || !(std::abs(bind.linear().determinant()) > 0)) continue;
+    const Vec3 joint = bind.inverse().translation();
+    joints.extend(joint);
+    away += (joint - moved[b].first / moved[b].second).norm();
+    ++count;
+  }
+  constexpr double kNear = 0.3, kAway = 0.2;  // of the skin's size
+  constexpr std::size_t kJointsMin = 3;
+  const double size = skin.diagonal().norm();
+  return count >= kJointsMin && joints.diagonal().norm() < kNear * size &&
+         away > kAway * size * static_cast<double>(count);
+}
+
+}  // namespace
+
+std::vector<Vec3> pivots_of(const SourceRig& rig, const std::vector<Vec3>& positions) {
+  if (rig.bones.empty() || rig.weights.size() != positions.size() || !are_bound_elsewhere(rig, positions)) return {};
+  const std::size_t n = rig.nodes.size();
+  const Weighted none{Vec3::Zero(), 0};
+  std::vector<Weighted> own(n, none);
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    const VertexWeights& weights = rig.weights[v];
+    for (std::size_t k = 0; k < kMaxInfluences; ++k) {
+      if (weights.weight[k] > 0) add_weighted(own[rig.bones[weights.joint[k]].node], positions[v], weights.weight[k]);
+    }
+  }
+  std::vector<int> above(n, -1);  // the nearest that moves skin
+  for (std::size_t i = 0; i < n; ++i) {
+    const int parent = rig.nodes[i].parent;
+    if (parent >= 0)
+      above[i] = own[static_cast<std::size_t>(parent)].second > 0 ? parent : above[static_cast<std::size_t>(parent)];
+  }
+  std::vector<Weighted> shared(n, none);  // with the joint above
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    std::map<int, double> of_node;
+    for (std::size_t k = 0; k < kMaxInfluences; ++k) {
+      const double weight = rig.weights[v].weight[k];
+      if (weight > 0) of_node[static_cast<int>(rig.bones[rig.weights[v].joint[k]].node)] += weight;
+    }
+    for (const auto& [node, weight] : of_node) {
+      const auto upper = of_node.find(above[static_cast<std::size_t>(node)]);
+      if (upper != of_node.end())
+        add_weighted(shared[static_cast<std::size_t>(node)], positions[v], weight * upper->second);
+    }
+  }
+  std::vector<Vec3> pivots(n, Vec3::Zero());
+  std::vector<Weighted> below(n, none);
+  for (std::size_t i = n; i-- > 0;) {  // children come after their parents
+    const bool is_root = above[i] < 0;
+    if (shared[i].second > 0)
+      pivots[i] = shared[i].first / shared[i].second;
+    else if (own[i].second > 0 && !(is_root && below[i].second > 0))
+      pivots[i] = own[i].first / own[i].second;
+    else if (below[i].second > 0)
+      pivots[i] = below[i].first / below[i].second;
+    else
+      continue;
+    if (rig.nodes[i].parent >= 0) add_weighted(below[static_cast<std::size_t>(rig.nodes[i].parent)], pivots[i], 1);
+  }
+  for (std::size_t i = 0; i < n; ++i) {  // ends that carry nothing
+    const bool has_none = !(own[i].second > 0) && !(below[i].second > 0);
+    if (has_none && rig.nodes[i].parent >= 0) pivots[i] = pivots[static_cast<std::size_t>(rig.nodes[i].parent)];
+  }
+  return pivots;
+}
+
+}  // namespace spherechain::baker
