@@ -20,6 +20,7 @@ void become_child(pid_t parent, int last) {
   const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);  // for the last words of libraries
   ::dup2(nowhere, STDOUT_FILENO);
   ::dup2(nowhere, STDERR_FILENO);
+  if (nowhere > STDERR_FILENO) ::close(nowhere);
 #endif
 }
 
