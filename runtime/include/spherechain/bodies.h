@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Q4: where do two characters, or a character and a prop, penetrate each other? Exact, as Q3 is for one. */
+/* Where do two characters, or a character and a prop, penetrate each other? Exact, as skin_contacts.h is for one. */
 #pragma once
 
 #include "spherechain/penetrations.h"
@@ -25,7 +25,7 @@ typedef struct sc_scene_body {
 
 /* Which of hundreds of characters and props may meet? All pairs of bodies with a sphere each that overlap; where one of
  * the two has no spheres, whose boxes touch. Between boxes of sc_bound_body() no pair whose skins meet is missing; those
- * with a transform are larger by a millionth of their distance from the origin. Spheres are Q2's alarm; those with a
+ * with a transform are larger by a millionth of their distance from the origin. Spheres are an alarm; those with a
  * negative radius touch nothing.
  *
  * Allocates nothing, takes no lock. Jobs on other outputs and scratch memory may run at the same time. */

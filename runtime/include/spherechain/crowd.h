@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Q1 and Q2 for many instances of one asset, one instance a SIMD lane. On a GPU: cuda.h. */
+/* Spheres and their pairs for many instances of one asset, one instance a SIMD lane. On a GPU: cuda.h. */
 #pragma once
 
 #include "spherechain/detect.h"

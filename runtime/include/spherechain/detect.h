@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Q2: which spheres touch? A cheap alarm, about a microsecond: it gives false alarms and can miss contacts. The skin's
+/* Which spheres touch? A cheap alarm, about a microsecond: it gives false alarms and can miss contacts. The skin's
  * answer is exact: skin_contacts.h. */
 #pragma once
 

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Q3: how deep, which way out, how much, and what kind? A measure of what the exact contacts found. */
+/* How deep, which way out, how much, and what kind? A measure of what the exact contacts found. */
 #pragma once
 
 #include "spherechain/skin_contacts.h"

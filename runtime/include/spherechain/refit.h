@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Q1: where are the character's spheres in this pose? */
+/* Where are the character's spheres in this pose? */
 #pragma once
 
 #include "spherechain/pose.h"

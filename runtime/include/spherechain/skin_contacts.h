@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Q3: where does the skin penetrate itself? Exact: all triangles that intersect, and none else. */
+/* Where does the skin penetrate itself? Exact: all triangles that intersect, and none else. */
 #pragma once
 
 #include "spherechain/detect.h"

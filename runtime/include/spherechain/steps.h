@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT */
-/* Q4, between two frames: what touches on the way from one pose to the next, and when? */
+/* Between two frames: what touches on the way from one pose to the next, and when? */
 #pragma once
 
 #include "spherechain/bodies.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Q1: spheres from bones (refit/moments_kernel.cpp), or from the pivots' deformed corners.
+// Spheres from bones (refit/moments_kernel.cpp), or from the pivots' deformed corners.
 #include "spherechain/refit.h"
 
 #include <cmath>
