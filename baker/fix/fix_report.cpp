@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -47,6 +48,25 @@ double quantile(const std::vector<double>& ascending, double q) {
   return ascending[static_cast<std::size_t>(q * static_cast<double>(ascending.size() - 1))];
 }
 
+// Advice for each outcome that leaves a fault; empty where none is left.
+std::string advice_on(const std::vector<MendedEvent>& events) {
+  std::map<Outcome, double> left;  // the largest budget that is needed
+  for (const MendedEvent& e : events) left[e.outcome] = std::max(left[e.outcome], e.needed_degrees);
+  std::string out;
+  if (left.contains(Outcome::kOverBudget)) {
+    const double budget = std::min(180.0, 5 * std::ceil(1.1 * left[Outcome::kOverBudget] / 5));
+    out += fmt::format("  over_budget: joints would turn farther than they may (try --budget {})\n", budget);
+  }
+  if (left.contains(Outcome::kJointLimits)) {
+    out += "  joint_limits: an elbow or a knee would bend the wrong way; no budget helps (change the pose)\n";
+  }
+  if (left.contains(Outcome::kNoWayOut)) {
+    out +=
+        "  no_way_out: none was found that does not shake or push other parts in; no budget helps (change the pose)\n";
+  }
+  return out;
+}
+
 std::string clip_text(const MendedClip& clip, const std::vector<BodyPart>& parts, const PartOrder& order) {
   std::map<Outcome, int> counts;
   std::string rows;
@@ -66,7 +86,8 @@ std::string clip_text(const MendedClip& clip, const std::vector<BodyPart>& parts
   const std::vector<double> turns = turns_of(clip);
   return out +
          fmt::format("; turns {:.1f} degrees in the median, {:.1f} in p90, {:.1f} at most; {} rounds, {:.1f} s\n{}",
-                     quantile(turns, 0.5), quantile(turns, 0.9), most_of(clip), clip.mend.rounds, clip.seconds, rows);
+                     quantile(turns, 0.5), quantile(turns, 0.9), most_of(clip), clip.mend.rounds, clip.seconds, rows) +
+         advice_on(clip.mend.events);
 }
 
 }  // namespace
@@ -141,7 +162,7 @@ std::string fix_line(const std::vector<MendedClip>& clips) {
 bool leaves_faults(const std::vector<MendedClip>& clips) {
   return std::any_of(clips.begin(), clips.end(), [](const MendedClip& clip) {
     return std::any_of(clip.mend.events.begin(), clip.mend.events.end(), [](const MendedEvent& e) {
-      return e.outcome == Outcome::kReduced || e.outcome == Outcome::kOverBudget;
+      return e.outcome != Outcome::kCleared && e.outcome != Outcome::kFold && e.outcome != Outcome::kAccepted;
     });
   });
 }

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <set>
 
 #include "check/clip_check.h"
@@ -87,7 +88,7 @@ class Mender {
         const std::vector<Meeting> between = finder_.between(whole_frames_in_window(), turns_);
         badness += add_pushes(between);
         now.insert(now.end(), between.begin(), between.end());
-        rounds_.push_back({turns_, now});
+        rounds_.push_back({turns_, now, in_window_});
       }
       told_(fmt::format("round {}: {:.1f} mm too deep", round + 1, badness * mm_));
       if (badness == 0 && was_free && moved < radians(kStill) && !touches_) break;
@@ -106,7 +107,10 @@ class Mender {
     take_the_best_rounds();
     calm_down();
     finder_.leave_out({});
-    finish(take_back_what_fails(), out);
+    const std::vector<Meeting> after = take_back_what_fails();
+    finder_.leave_out(goals_.harmless());
+    explain_what_is_left();
+    finish(after, out);
     return out;
   }
 
@@ -252,14 +256,7 @@ class Mender {
     progress_[event].was_led = true;
     if (limb.joints.empty()) return false;
     told_(fmt::format("trying ways out of frames {} to {}", limb.from, limb.to));
-    const auto judge = [&](const std::vector<TriedPose>& poses) {
-      std::vector<double> out;
-      for (const std::vector<Meeting>& meetings : finder_.in_poses(poses, limb.moves)) {
-        out.push_back(0);
-        for (const Meeting& meeting : meetings) out.back() += goals_.too_deep(meeting) / height_;
-      }
-      return out;
-    };
+    const auto judge = [&](const std::vector<TriedPose>& poses) { return left_in(poses, limb); };
     Turns start(turns_.size(), Vec3::Zero());
     for (const auto& [at, turn] : led_) start[static_cast<std::size_t>(at.first) * clip_.count() + at.second] = turn;
     for (const auto& [frame, turns] : find_way_out(clip_, limb, radians(options_.budget_degrees), start, judge)) {
@@ -393,6 +390,68 @@ class Mender {
     }
   }
 
+  void explain_what_is_left() {
+    std::map<std::size_t, Outcome> reasons;
+    for (std::size_t e = 0; e < goals_.events.size(); ++e) {
+      if (goals_.events[e].outcome == Outcome::kOverBudget) reasons[e] = Outcome::kNoWayOut;
+    }
+    for (const auto& [e, reason] : reasons) goals_.events[e].outcome = Outcome::kReduced;  // all are wanted again
+    for (auto& [e, reason] : reasons) reason = reason_of(e);
+    for (const auto& [e, reason] : reasons) goals_.events[e].outcome = reason;
+  }
+
+  // Why an event is about as deep as it was: its limb is tried out again in the worst frame, with more and more
+  // freedom.
+  Outcome reason_of(std::size_t e) {
+    MendedEvent& event = goals_.events[e];
+    const auto is_left = [&](const Meeting& m) { return is_fault(m.found.kind) && Goals::is_in(place_of(m), event); };
+    const bool was_out = std::any_of(rounds_.begin(), rounds_.end(), [&](const Round& round) {
+      const auto first = round.looked_at.begin() + event.from, end = round.looked_at.begin() + event.to + 1;
+      return std::find(first, end, 0) == end && std::none_of(round.found.begin(), round.found.end(), is_left);
+    });
+    const auto is_open = [&](std::size_t i) {
+      return goals_.events[i].outcome != Outcome::kAccepted && goals_.events[i].outcome != Outcome::kFold;
+    };
+    LimbInTrouble limb = limb_in_trouble(goals_, parts_, e, is_open);
+    if (was_out || limb.joints.empty()) return Outcome::kNoWayOut;  // that way was taken back
+    told_(fmt::format("asking why frame {} is not free", event.worst));
+    limb.from = limb.to = event.worst;
+    limb.worst = {event.worst};
+    if (needed_turn(clip_, limb, options_.budget_degrees)) return Outcome::kNoWayOut;  // others are not free
+    for (const double budget : {2 * options_.budget_degrees, 90.0, 180.0}) {
+      if (budget <= options_.budget_degrees) continue;
+      const std::optional<double> needed = needed_turn(clip_, limb, budget);
+      if (!needed) continue;
+      event.needed_degrees = *needed;
+      return Outcome::kOverBudget;
+    }
+    std::vector<TurningJoint> free = clip_.joints();
+    for (TurningJoint& joint : free) joint.hinge.reset();
+    const TurnedClip without_limits(clip_.rig(), clip_.clip(), clip_.fps(), clip_.frames(), std::move(free));
+    return needed_turn(without_limits, limb, 180) ? Outcome::kJointLimits : Outcome::kNoWayOut;
+  }
+
+  // The farthest that a joint turns, in degrees, where the limb's one frame becomes free within the budget.
+  std::optional<double> needed_turn(const TurnedClip& clip, const LimbInTrouble& limb, double budget_degrees) {
+    const auto judge = [&](const std::vector<TriedPose>& poses) { return left_in(poses, limb); };
+    const Turns still(turns_.size(), Vec3::Zero());
+    const std::vector<Vec3> turns = find_way_out(clip, limb, radians(budget_degrees), still, judge).at(limb.from);
+    if (judge({{limb.from, turns}})[0] > 0) return {};
+    double most = 0;
+    for (const Vec3& turn : turns) most = std::max(most, turn.norm());
+    return most * 180 / std::numbers::pi;
+  }
+
+  // How much of a limb is in others in each pose; heights.
+  std::vector<double> left_in(const std::vector<TriedPose>& poses, const LimbInTrouble& limb) {
+    std::vector<double> out;
+    for (const std::vector<Meeting>& meetings : finder_.in_poses(poses, limb.moves)) {
+      out.push_back(0);
+      for (const Meeting& meeting : meetings) out.back() += goals_.too_deep(meeting) / height_;
+    }
+    return out;
+  }
+
   void finish(const std::vector<Meeting>& after, Mend& out) {
     out.joints = clip_.joints();
     out.in_window = in_window_;
@@ -454,6 +513,7 @@ class Mender {
   struct Round {
     Turns turns;
     std::vector<Meeting> found;
+    std::vector<char> looked_at;  // of each frame
   };
   std::vector<Round> rounds_;
 };
@@ -461,7 +521,8 @@ class Mender {
 }  // namespace
 
 const char* outcome_name(Outcome outcome) {
-  static constexpr std::array<const char*, 5> kNames{"cleared", "reduced", "over_budget", "fold", "accepted"};
+  static constexpr std::array<const char*, 7> kNames{"cleared",     "reduced",      "fold",      "accepted",
+                                                     "over_budget", "joint_limits", "no_way_out"};
   return kNames[static_cast<std::size_t>(outcome)];
 }
 

@@ -19,7 +19,9 @@ struct MendOptions {
   double margin_mm = 1.5;      // what is pushed out ends so far apart
 };
 
-enum class Outcome { kCleared, kReduced, kOverBudget, kFold, kAccepted };
+// The last three say why a fault is about as deep as it was: a joint would turn beyond the budget, or beyond how far an
+// elbow or a knee bends; or no way out was found that neither shakes nor pushes others in.
+enum class Outcome { kCleared, kReduced, kFold, kAccepted, kOverBudget, kJointLimits, kNoWayOut };
 const char* outcome_name(Outcome outcome);
 
 // Two body parts in each other over some frames, before and after.
@@ -30,7 +32,8 @@ struct MendedEvent {
   double depth_before, depth_after;  // mm
   double turn_degrees = 0;           // the largest in its frames
   Outcome outcome = Outcome::kReduced;
-  int worst = 0;  // the frame in which it is deepest, before
+  int worst = 0;              // the frame in which it is deepest, before
+  double needed_degrees = 0;  // of kOverBudget: the budget that frees its worst frame
 };
 
 struct Mend {
