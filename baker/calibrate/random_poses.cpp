@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 namespace spherechain::baker {
@@ -56,43 +57,44 @@ Vec3 random_in(Random& random, const Vec3& low, const Vec3& high) {
 RandomPoses::RandomPoses(const Character& character, const std::vector<Joint>& joints) {
   const SourceRig& rig = character.rig;
   if (!rig.bones.empty()) {
-    nodes_ = rig.nodes;
-    bones_ = rig.bones;
-    to_rest_ = rig.to_rest;
+    rig_.nodes = rig.nodes;
+    rig_.bones = rig.bones;
+    rig_.to_rest = rig.to_rest;
     for (const Morph& morph : rig.morphs) morphs_.emplace_back(morph.rest_weight, morph.rest_weight);
     if (!rig.pivots.empty()) {
-      own_pivots_.assign(nodes_.size(), Vec3::Zero());
-      for (const Bone& bone : bones_) own_pivots_[bone.node] = bone.inverse_bind * rig.pivots[bone.node];
+      own_pivots_.assign(rig.nodes.size(), Vec3::Zero());
+      for (const Bone& bone : rig.bones) own_pivots_[bone.node] = bone.inverse_bind * rig.pivots[bone.node];
     }
   } else {
-    nodes_ = nodes_of(joints);
+    rig_.nodes = nodes_of(joints);
     for (Index j = 0; j < joints.size(); ++j) {
-      bones_.push_back({j, Affine(Eigen::Translation3d(-joints[j].position))});
+      rig_.bones.push_back({j, Affine(Eigen::Translation3d(-joints[j].position))});
     }
   }
-  limits_.resize(nodes_.size());
+  limits_.resize(rig_.nodes.size());
   if (rig.bones.empty() || rig.clips.empty()) {
-    for (const Bone& bone : bones_) {
-      const Node& node = nodes_[bone.node];
+    for (const Bone& bone : rig_.bones) {
+      const Node& node = rig_.nodes[bone.node];
       const Vec3 widest = Vec3::Constant(kWithoutClips);
       limits_[bone.node] = {
           node.rotation, {-widest, widest}, {node.translation, node.translation}, {node.scale, node.scale}, true};
     }
+    plan();
     return;
   }
   clips_ = &rig.clips;
-  children_.resize(nodes_.size());
-  for (const Node& node : nodes_) {
+  children_.resize(rig_.nodes.size());
+  for (const Node& node : rig_.nodes) {
     if (node.parent >= 0) ++children_[static_cast<std::size_t>(node.parent)];
   }
   for (const Clip& clip : rig.clips) {
-    channels_.emplace_back(nodes_.size());
+    channels_.emplace_back(rig_.nodes.size());
     for (const Channel& channel : clip.channels) {
       if (channel.path != ChannelPath::kMorphWeight) channels_.back()[channel.target].push_back(&channel);
     }
   }
-  std::vector<std::vector<Eigen::Quaterniond>> turns(nodes_.size());
-  std::vector<std::vector<Vec3>> translations(nodes_.size()), scales(nodes_.size());
+  std::vector<std::vector<Eigen::Quaterniond>> turns(rig_.nodes.size());
+  std::vector<std::vector<Vec3>> translations(rig_.nodes.size()), scales(rig_.nodes.size());
   std::vector<std::vector<double>> weights(morphs_.size());
   for (const Clip& clip : rig.clips) {
     for (const Channel& channel : clip.channels) {
@@ -110,34 +112,35 @@ RandomPoses::RandomPoses(const Character& character, const std::vector<Joint>& j
     for (const Vec3& value : values) range = {range.low.cwiseMin(value), range.high.cwiseMax(value)};
     return range;
   };
-  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+  for (std::size_t n = 0; n < rig_.nodes.size(); ++n) {
     Limits& limits = limits_[n];
     limits.moves = !turns[n].empty() || !translations[n].empty() || !scales[n].empty();
     if (!limits.moves) continue;
     Eigen::Vector4d sum = Eigen::Vector4d::Zero();
     for (const Eigen::Quaterniond& turn : turns[n])
       sum += (turn.coeffs().dot(turns[n][0].coeffs()) < 0 ? -1 : 1) * turn.coeffs();
-    limits.middle = sum.norm() > 0 ? Eigen::Quaterniond(Eigen::Vector4d(sum.normalized())) : nodes_[n].rotation;
+    limits.middle = sum.norm() > 0 ? Eigen::Quaterniond(Eigen::Vector4d(sum.normalized())) : rig_.nodes[n].rotation;
     std::vector<Vec3> vectors;
     for (const Eigen::Quaterniond& turn : turns[n])
       vectors.push_back(rotation_vector(limits.middle.conjugate() * turn));
     limits.turn = range_of(vectors, Vec3::Zero());
     limits.turn.low.array() -= kPadding;
     limits.turn.high.array() += kPadding;
-    limits.translation = range_of(translations[n], nodes_[n].translation);
-    limits.scale = range_of(scales[n], nodes_[n].scale);
+    limits.translation = range_of(translations[n], rig_.nodes[n].translation);
+    limits.scale = range_of(scales[n], rig_.nodes[n].scale);
   }
   for (std::size_t m = 0; m < morphs_.size(); ++m) {
     if (weights[m].empty()) continue;
     const auto [low, high] = std::minmax_element(weights[m].begin(), weights[m].end());
     morphs_[m] = {*low, *high};
   }
+  plan();
 }
 
 bool RandomPoses::limit(const std::string& joint, const Vec3& low, const Vec3& high) {
   bool is_there = false;
-  for (std::size_t n = 0; n < nodes_.size(); ++n) {
-    const Node& node = nodes_[n];
+  for (std::size_t n = 0; n < rig_.nodes.size(); ++n) {
+    const Node& node = rig_.nodes[n];
     if (node.name != joint) continue;
     is_there = true;
     Limits& limits = limits_[n];
@@ -149,6 +152,7 @@ bool RandomPoses::limit(const std::string& joint, const Vec3& low, const Vec3& h
     }
     limits.moves = true;
   }
+  if (is_there) plan();
   return is_there;
 }
 
@@ -171,7 +175,7 @@ std::vector<RandomPoses::Moment> RandomPoses::of_branches(Random& random) const 
   constexpr double kOwn = 0.5;  // of the branches have a moment of their own
   const Moment all = any_moment(random);
   std::vector<Moment> out;
-  for (const Node& node : nodes_) {
+  for (const Node& node : rig_.nodes) {
     const auto parent = static_cast<std::size_t>(node.parent);
     const bool is_branch = node.parent >= 0 && children_[parent] > 1;
     if (is_branch && random.between(0, 1) < kOwn) {
@@ -183,70 +187,90 @@ std::vector<RandomPoses::Moment> RandomPoses::of_branches(Random& random) const 
   return out;
 }
 
-std::vector<Node> RandomPoses::at_moments(const std::vector<Moment>& of_node) const {
-  std::vector<Node> nodes = nodes_;
-  for (std::size_t n = 0; n < nodes.size(); ++n) {
-    if (!limits_[n].moves) continue;
-    Node& node = nodes[n];
+// The moving nodes, in the order of moving_.
+std::vector<RandomPoses::Parts> RandomPoses::at_moments(const std::vector<Moment>& of_node) const {
+  std::vector<Parts> out;
+  for (const Index n : moving_) {
+    Parts parts(rig_.nodes[n]);
     for (const Channel* channel : channels_[of_node[n].clip][n]) {
       const Eigen::Vector4d value = sample(*channel, of_node[n].seconds);
-      if (channel->path == ChannelPath::kTranslation) node.translation = value.head<3>();
-      if (channel->path == ChannelPath::kScale) node.scale = value.head<3>();
-      if (channel->path == ChannelPath::kRotation) node.rotation = Eigen::Quaterniond(value);
+      if (channel->path == ChannelPath::kTranslation) parts.translation = value.head<3>();
+      if (channel->path == ChannelPath::kScale) parts.scale = value.head<3>();
+      if (channel->path == ChannelPath::kRotation) parts.rotation = Eigen::Quaterniond(value);
     }
-    node.local.linear() = node.rotation.toRotationMatrix() * node.scale.asDiagonal();
-    node.local.translation() = node.translation;
+    parts.local.linear() = parts.rotation.toRotationMatrix() * parts.scale.asDiagonal();
+    parts.local.translation() = parts.translation;
+    out.push_back(parts);
   }
-  return nodes;
+  return out;
 }
 
-void RandomPoses::turn_about_pivot(std::size_t n, Node& node, const Eigen::Quaterniond& rotation) const {
-  const Vec3 before = own_pivots_.empty() ? Vec3(Vec3::Zero()) : node.local * own_pivots_[n];
-  node.rotation = rotation;
-  node.local.linear() = node.rotation.toRotationMatrix() * node.scale.asDiagonal();
-  if (!own_pivots_.empty()) node.local.translation() += before - node.local * own_pivots_[n];
+void RandomPoses::turn_about_pivot(Index n, Parts& parts, const Eigen::Quaterniond& rotation) const {
+  const Vec3 before = own_pivots_.empty() ? Vec3(Vec3::Zero()) : parts.local * own_pivots_[n];
+  parts.rotation = rotation;
+  parts.local.linear() = parts.rotation.toRotationMatrix() * parts.scale.asDiagonal();
+  if (!own_pivots_.empty()) parts.local.translation() += before - parts.local * own_pivots_[n];
 }
 
-std::vector<Node> RandomPoses::bent(std::vector<Node> nodes, Random& random) const {
-  for (std::size_t n = 0; n < nodes.size(); ++n) {
-    if (!limits_[n].moves) continue;
-    Node& node = nodes[n];
+std::vector<RandomPoses::Parts> RandomPoses::bent(std::vector<Parts> moving, Random& random) const {
+  for (std::size_t i = 0; i < moving.size(); ++i) {
     const Vec3 jitter = Vec3::Constant(kJitter);
-    turn_about_pivot(n, node, node.rotation * rotation_of(random_in(random, -jitter, jitter)));
+    turn_about_pivot(moving_[i], moving[i], moving[i].rotation * rotation_of(random_in(random, -jitter, jitter)));
   }
-  return nodes;
+  return moving;
 }
 
-std::vector<Node> RandomPoses::turned(Random& random) const {
-  std::vector<Node> nodes = nodes_;
-  for (std::size_t n = 0; n < nodes.size(); ++n) {
+std::vector<RandomPoses::Parts> RandomPoses::turned(Random& random) const {
+  std::vector<Parts> out;
+  for (const Index n : moving_) {
     const Limits& limits = limits_[n];
-    if (!limits.moves) continue;
+    Parts& parts = out.emplace_back(rig_.nodes[n]);
     const Eigen::Quaterniond turn = limits.middle * rotation_of(random_in(random, limits.turn.low, limits.turn.high));
     if (!own_pivots_.empty()) {
-      turn_about_pivot(n, nodes[n], turn);
+      turn_about_pivot(n, parts, turn);
       continue;
     }
     const Vec3 translation = random_in(random, limits.translation.low, limits.translation.high);
     const Vec3 scale = random_in(random, limits.scale.low, limits.scale.high);
-    nodes[n].local.linear() = turn.toRotationMatrix() * scale.asDiagonal();
-    nodes[n].local.translation() = translation;
+    parts.local.linear() = turn.toRotationMatrix() * scale.asDiagonal();
+    parts.local.translation() = translation;
   }
-  return nodes;
+  return out;
+}
+
+void RandomPoses::plan() {
+  std::vector<std::uint8_t> moves;
+  moving_.clear();
+  for (Index n = 0; n < limits_.size(); ++n) {
+    moves.push_back(limits_[n].moves ? 1 : 0);
+    if (limits_[n].moves) moving_.push_back(n);
+  }
+  moved_ = MovedNodes(rig_, moves);
+}
+
+std::vector<Affine> RandomPoses::bones_in(const std::vector<Parts>& moving) const {
+  std::vector<Affine> moved;
+  auto at = moving_.begin();
+  for (const Index n : moved_.list()) {
+    at = std::lower_bound(at, moving_.end(), n);
+    const bool moves = at != moving_.end() && *at == n;
+    const Affine& local = moves ? moving[static_cast<std::size_t>(at - moving_.begin())].local : rig_.nodes[n].local;
+    const int parent = rig_.nodes[n].parent;
+    moved.push_back(parent < 0 ? local : moved_.world(static_cast<Index>(parent), moved) * local);
+  }
+  return moved_.deformation(rig_, moved);
 }
 
 RandomPoses::Pose RandomPoses::next(Random& random, int kind, double part) const {
   constexpr int kMoment = 0, kBranches = 1;
-  const auto nodes = [&] {
+  const auto moving = [&] {
     if (clips_ == nullptr) return turned(random);
-    if (kind == kMoment) return at_moments(std::vector<Moment>(nodes_.size(), moment_at(part)));
+    if (kind == kMoment) return at_moments(std::vector<Moment>(rig_.nodes.size(), moment_at(part)));
     // Keys of joints that turn elsewhere than where they are bound move and turn them at a time.
     if (kind == kBranches || !own_pivots_.empty()) return bent(at_moments(of_branches(random)), random);
     return turned(random);
   };
-  Pose out;
-  const std::vector<Affine> world = world_of(nodes());
-  for (const Bone& bone : bones_) out.bones.push_back(to_rest_ * world[bone.node] * bone.inverse_bind);
+  Pose out{bones_in(moving()), {}};
   for (const auto& [low, high] : morphs_) out.morphs.push_back(random.between(low, high));
   return out;
 }

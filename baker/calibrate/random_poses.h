@@ -6,6 +6,7 @@
 
 #include "calibrate/random.h"
 #include "import/import.h"
+#include "import/moved_nodes.h"
 #include "rig/rig.h"
 
 namespace spherechain::baker {
@@ -25,7 +26,7 @@ class RandomPoses {
   RandomPoses(const Character& character, const std::vector<Joint>& joints);
 
   // Whether there is anything to move.
-  bool any() const { return !bones_.empty(); }
+  bool any() const { return !rig_.bones.empty(); }
   bool have_clips() const { return clips_ != nullptr; }
 
   // Lets the joints of that name turn, in poses of the third kind, by rotation vectors between these two from where
@@ -57,19 +58,29 @@ class RandomPoses {
   Moment any_moment(Random& random) const;
   // The moments of all nodes.
   std::vector<Moment> of_branches(Random& random) const;
-  std::vector<Node> at_moments(const std::vector<Moment>& of_node) const;
-  void turn_about_pivot(std::size_t n, Node& node, const Eigen::Quaterniond& rotation) const;
-  std::vector<Node> bent(std::vector<Node> nodes, Random& random) const;
-  std::vector<Node> turned(Random& random) const;
+  // A moving node's transform, and what it is made of.
+  struct Parts {
+    explicit Parts(const Node& node)
+        : rotation(node.rotation), translation(node.translation), scale(node.scale), local(node.local) {}
+    Eigen::Quaterniond rotation;
+    Vec3 translation, scale;
+    Affine local;
+  };
+  std::vector<Parts> at_moments(const std::vector<Moment>& of_node) const;
+  void turn_about_pivot(Index n, Parts& parts, const Eigen::Quaterniond& rotation) const;
+  std::vector<Parts> bent(std::vector<Parts> moving, Random& random) const;
+  std::vector<Parts> turned(Random& random) const;
+  void plan();
+  std::vector<Affine> bones_in(const std::vector<Parts>& moving) const;
 
-  std::vector<Node> nodes_;
-  std::vector<Limits> limits_;                                      // of each node
-  std::vector<Clip> const* clips_ = nullptr;                        // none: all poses are of the third kind
+  SourceRig rig_;                             // nodes, bones and to_rest; of an automatic rig, too
+  std::vector<Limits> limits_;                // of each node
+  std::vector<Clip> const* clips_ = nullptr;  // none: all poses are of the third kind
   std::vector<std::vector<std::vector<const Channel*>>> channels_;  // of each clip and node
   std::vector<int> children_;                                       // of each node
-  std::vector<Bone> bones_;
-  std::vector<Vec3> own_pivots_;  // of each node, in its own space; empty without SourceRig::pivots
-  Affine to_rest_ = Affine::Identity();
+  std::vector<Index> moving_;                                       // nodes with limits
+  MovedNodes moved_;
+  std::vector<Vec3> own_pivots_;                   // of each node, in its own space; empty without SourceRig::pivots
   std::vector<std::pair<double, double>> morphs_;  // the least and the greatest weight
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 namespace spherechain::baker {
 namespace {
@@ -68,6 +69,16 @@ TurnedClip::TurnedClip(const SourceRig& rig, const Clip& clip, double fps, int f
                                      ? joint_of_node_[n]
                                      : joint_at_or_above_[static_cast<std::size_t>(parent)]);
   }
+  std::vector<std::uint8_t> moves(rig.nodes.size(), 0);
+  std::vector<Index> turning;
+  for (const Channel& channel : clip.channels) {
+    if (channel.path != ChannelPath::kMorphWeight) moves[channel.target] = 1;
+  }
+  for (const TurningJoint& joint : joints_) {
+    moves[joint.node] = 1;
+    turning.push_back(joint.node);
+  }
+  moved_ = MovedNodes(rig, moves, turning);
   for (const Bone& bone : rig.bones) above_.push_back(joints_above(bone.node));
   for (const TurningJoint& joint : joints_) {
     rotations_.emplace_back();
@@ -110,8 +121,11 @@ std::vector<Vec3> TurnedClip::turns_at(double frame, const Turns& turns) const {
 
 TurnedClip::Pose TurnedClip::pose_of(double frame, const std::vector<Vec3>& turns) const {
   const double seconds = frame / fps_;
-  std::vector<Local> locals;
-  for (const Node& node : rig_.nodes) locals.push_back({node.translation, node.scale, node.rotation});
+  std::vector<Local> locals;  // as moved_ lists them
+  for (const Index n : moved_.list()) {
+    const Node& node = rig_.nodes[n];
+    locals.push_back({node.translation, node.scale, node.rotation});
+  }
   Pose out;
   for (const Morph& morph : rig_.morphs) out.deformation.morphs.push_back(morph.rest_weight);
   for (const Channel& channel : clip_.channels) {
@@ -120,17 +134,19 @@ TurnedClip::Pose TurnedClip::pose_of(double frame, const std::vector<Vec3>& turn
       out.deformation.morphs[channel.target] = v[0];
       continue;
     }
-    Local& local = locals[channel.target];
+    if (moved_.place(channel.target) < 0) continue;
+    Local& local = locals[static_cast<std::size_t>(moved_.place(channel.target))];
     local.is_animated = true;
     if (channel.path == ChannelPath::kTranslation) local.translation = v.head<3>();
     if (channel.path == ChannelPath::kRotation) local.rotation = Eigen::Quaterniond(v);
     if (channel.path == ChannelPath::kScale) local.scale = v.head<3>();
   }
-  std::vector<Affine> world(locals.size());
+  std::vector<Affine> world;
   out.axes.resize(joints_.size());
-  for (std::size_t n = 0; n < locals.size(); ++n) {
+  for (std::size_t i = 0; i < locals.size(); ++i) {
+    const Index n = moved_.list()[i];
     const Node& node = rig_.nodes[n];
-    Local& local = locals[n];
+    Local& local = locals[i];
     const int joint = joint_of_node_[n];
     Affine own = node.local;
     if (local.is_animated || joint >= 0) {
@@ -138,8 +154,8 @@ TurnedClip::Pose TurnedClip::pose_of(double frame, const std::vector<Vec3>& turn
       own.linear() = local.rotation.toRotationMatrix() * local.scale.asDiagonal();
       own.translation() = local.translation;
     }
-    const Affine up = node.parent < 0 ? Affine::Identity() : world[static_cast<std::size_t>(node.parent)];
-    world[n] = up * own;
+    const Affine up = node.parent < 0 ? Affine::Identity() : moved_.world(static_cast<Index>(node.parent), world);
+    world.push_back(up * own);
     if (joint >= 0) {
       Affine axes = Affine::Identity();
       axes.linear() = local.rotation.toRotationMatrix();
@@ -147,9 +163,7 @@ TurnedClip::Pose TurnedClip::pose_of(double frame, const std::vector<Vec3>& turn
       out.axes[static_cast<std::size_t>(joint)] = rig_.to_rest * up * axes;
     }
   }
-  for (const Bone& bone : rig_.bones) {
-    out.deformation.bones.push_back(rig_.to_rest * world[bone.node] * bone.inverse_bind);
-  }
+  out.deformation.bones = moved_.deformation(rig_, world);
   return out;
 }
 

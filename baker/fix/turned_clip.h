@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "import/moved_nodes.h"
 #include "motion/clip.h"
 
 namespace spherechain::baker {
@@ -75,6 +76,7 @@ class TurnedClip {
   int frames_;
   std::vector<TurningJoint> joints_;
   std::vector<int> joint_of_node_, joint_at_or_above_;
+  MovedNodes moved_;
   std::vector<std::vector<Index>> above_;
   std::vector<std::vector<Eigen::Quaterniond>> rotations_;  // of a joint with a hinge: by frame
 };

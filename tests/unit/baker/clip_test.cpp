@@ -6,6 +6,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "import/moved_nodes.h"
 #include "mesh/error.h"
 #include "motion/sequence.h"
 #include "temporary_folder.h"
@@ -188,4 +189,32 @@ TEST_CASE("a sequence whose mesh has another topology is refused by that file's 
   CHECK(complaint({folder.path / "gone.obj"}).find("gone.obj") != std::string::npos);
   std::filesystem::create_directory(folder.path / "empty");
   CHECK_THROWS_AS(sequence_files(folder.path / "empty"), Error);
+}
+
+TEST_CASE("a pose needs the nodes alone that move a bone: the others change nothing") {
+  SourceRig rig;
+  const auto add = [&](int parent, double x) {
+    Node node;
+    node.parent = parent;
+    node.local.translation() = Vec3(x, 1, 0);
+    rig.nodes.push_back(node);
+  };
+  add(-1, 1);  // 0: above all, still
+  add(0, 2);   // 1: turns
+  add(1, 3);   // 2: the bone
+  add(1, 4);   // 3: turns, without a bone
+  add(0, 5);   // 4: a bone that nothing moves
+  for (const Index n : {2U, 4U}) rig.bones.push_back({n, Affine::Identity()});
+  const MovedNodes moved(rig, {0, 1, 0, 1, 0});
+  CHECK(moved.list() == std::vector<Index>{1, 2});
+
+  std::vector<Affine> world;
+  for (const Index n : moved.list()) {
+    rig.nodes[n].local.translation().z() = 7;
+    world.push_back(moved.world(static_cast<Index>(rig.nodes[n].parent), world) * rig.nodes[n].local);
+  }
+  const std::vector<Affine> all = world_of(rig.nodes), bones = moved.deformation(rig, world);
+  REQUIRE(bones.size() == 2);
+  CHECK(bones[0].isApprox(all[2]));
+  CHECK(bones[1].isApprox(all[4]));
 }
