@@ -76,7 +76,8 @@ class BinaryFbx {
     while (depth < kDepthMax && at + head <= end) {
       const std::size_t next = offset(at), count = offset(at + word), length = offset(at + 2 * word);
       const std::size_t name_length = static_cast<unsigned char>(bytes_[at + head - 1]);
-      if (next <= at || next > end || name_length > next - at - head || length > next - at - head - name_length) return;
+      if (next < at + head || next > end) return;
+      if (name_length > next - at - head || length > next - at - head - name_length) return;
       const std::string_view name = bytes_.substr(at + head, name_length);
       const std::size_t values = at + head + name_length;
       const bool matters = depth > 0 || name == "Objects" || name == "Connections";
