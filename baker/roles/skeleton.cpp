@@ -106,6 +106,7 @@ void bring_near(Skeleton& s) {
     else if (s.alive[i])
       box.extend(s.position[i]);
   }
+  if (std::all_of(s.weight.begin(), s.weight.end(), [](double weight) { return weight == 0; })) return;
   constexpr double kFar = 0.25;  // of the skeleton's size
   const double far = kFar * box.diagonal().norm();
   for (std::size_t k = above.size(); k-- > 0;) {
