@@ -147,7 +147,7 @@ class Namer {
       return {with_side(to_side(hint.side), "wing"), to_side(hint.side)};
     }
     if (PartName limb = limb_part(node, hint); !limb.name.empty()) return limb;
-    if (PartName trunk = middle(role, hint, name); !trunk.name.empty()) return trunk;
+    if (PartName trunk = middle(node, hint, name); !trunk.name.empty()) return trunk;
     return role.role == "other" ? garment(hint, name) : PartName{};
   }
 
@@ -177,7 +177,8 @@ class Namer {
     return {name + (arm ? " forearm" : " shin"), side_of(limb)};
   }
 
-  PartName middle(const NodeRole& role, const Hint& hint, const std::string& name) const {
+  PartName middle(int node, const Hint& hint, const std::string& name) const {
+    const NodeRole& role = role_of(node);
     const std::string& r = role.role;
     const bool trunk = r == "pelvis" || r == "spine" || r == "chest";
     if (trunk || r == "neck" || r == "head") {
@@ -190,9 +191,17 @@ class Namer {
     if (r == "eye" || r == "jaw" || r == "hair" || r == "head_part") return {"head"};
     if (r != "other" || role.limb >= 0) return {middle_part(r)};
     if (is_digit_or_end(hint.word)) return {name, to_side(hint.side)};
+    if (repeats_parent(node)) return {};
     return {middle_part(hint.word)};
   }
 
+  // A twist joint of the topmost spine joint is named a spine too, and is of the chest.
+  bool repeats_parent(int node) const {
+    const int parent = rig_.nodes[static_cast<std::size_t>(node)].parent;
+    if (parent < 0) return false;
+    const auto above = static_cast<std::size_t>(parent);
+    return !parts_[above].name.empty() && hints_[above].word == hints_[static_cast<std::size_t>(node)].word;
+  }
   bool hangs_on_attachment(int node) const {
     const int parent = rig_.nodes[static_cast<std::size_t>(node)].parent;
     return parent >= 0 && role_of(parent).role == "attachment" && role_of(node).role == "other";

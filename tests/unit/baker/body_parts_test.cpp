@@ -159,6 +159,29 @@ TEST_CASE("a hand has its fingers, a foot its toes, a limb its twist bones") {
   CHECK(parts.at("mixamorig:RightToeBase") == "right foot");
 }
 
+TEST_CASE("twist joints of the topmost spine joint are the chest's") {
+  const auto parts = parts_of(named_rig(R"(
+Hips = pelvis
+  Hips_twist1 = other
+  Spine = spine
+    Spine_twist1 = other
+    Spine1 = chest
+      Spine1_twist1 = other
+      Neck = neck
+        Head = head
+      LeftArm = left_shoulder
+        LeftForeArm = left_elbow
+      RightArm = right_shoulder
+        RightForeArm = right_elbow
+  LeftUpLeg = left_hip
+    LeftLeg = left_knee
+  RightUpLeg = right_hip
+    RightLeg = right_knee)"));
+  CHECK(parts.at("Hips_twist1") == "hips");
+  CHECK(parts.at("Spine_twist1") == "abdomen");
+  CHECK(parts.at("Spine1_twist1") == "chest");
+}
+
 TEST_CASE("hair is the head's, garments and attachments are parts of their own") {
   const auto parts = parts_of(named_rig(R"(
 Root = !root
