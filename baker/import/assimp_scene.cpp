@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "import/choose_meshes.h"
+#include "import/one_space.h"
 #include "mesh/error.h"
 
 namespace spherechain::baker {
@@ -86,10 +88,11 @@ Affine axes_and_units(const Affine& shown) {
 }
 
 // Where skinned meshes are at rest: where their bones were bound. The first mesh stays where its node has it, but for
-// axes and units; the others fit to it by a bone they share, or else by the skeleton's rest pose.
+// axes and units; the others fit to it by a bone they share, or stay where their nodes have them if all bones were
+// bound there, or else fit by the skeleton's rest pose.
 class SkinPlacement {
  public:
-  explicit SkinPlacement(const AssimpScene& flat) : flat_(flat) {}
+  explicit SkinPlacement(const AssimpScene& flat) : flat_(flat), is_one_space_(is_one_space(flat)) {}
 
   Affine place(const MeshInstance& instance) {
     const aiMesh& mesh = *instance.mesh;
@@ -107,9 +110,10 @@ class SkinPlacement {
     if (inverse_binds_.empty()) {
       const Affine placement = axes_and_units(in_rest_pose * by_node.inverse()) * by_node;
       rest_pose_to_rest_ = placement * in_rest_pose.inverse();
+      nodes_to_rest_ = placement * by_node.inverse();
       return placement;
     }
-    Affine placement = rest_pose_to_rest_ * in_rest_pose;
+    Affine placement = is_one_space_ ? Affine(nodes_to_rest_ * by_node) : Affine(rest_pose_to_rest_ * in_rest_pose);
     for (unsigned b = 0; b < mesh.mNumBones; ++b) {
       const auto bound = inverse_binds_.find(mesh.mBones[b]->mName.C_Str());
       if (bound == inverse_binds_.end()) continue;
@@ -118,6 +122,22 @@ class SkinPlacement {
     }
     constexpr double kSame = 1e-4;  // singles
     return placement.isApprox(by_node, kSame) || !placement.matrix().allFinite() ? by_node : placement;
+  }
+
+  // Whether the nodes of all meshes have them where their bones were bound.
+  static bool is_one_space(const AssimpScene& flat) {
+    std::vector<BoundJoint> bound;
+    std::size_t number = 0;
+    for (const MeshInstance& instance : flat.instances) {
+      for (unsigned b = 0; b < instance.mesh->mNumBones; ++b) {
+        const aiBone& bone = *instance.mesh->mBones[b];
+        const auto node = flat.by_name.find(bone.mName.C_Str());
+        if (node != flat.by_name.end())
+          bound.push_back({node->second, number, instance.placement * offset_of(bone, instance).inverse()});
+      }
+      if (instance.mesh->mNumBones > 0) ++number;
+    }
+    return were_bound_in_one_space(flat.nodes, bound);
   }
 
   // Mesh space into the scene, as the mesh's bones have it in the rest pose.
@@ -142,6 +162,8 @@ class SkinPlacement {
   }
 
   const AssimpScene& flat_;
+  bool is_one_space_;
+  Affine nodes_to_rest_ = Affine::Identity();
   Affine rest_pose_to_rest_ = Affine::Identity();
   std::unordered_map<std::string, Affine> inverse_binds_;  // by bone name, of the meshes placed so far
 };

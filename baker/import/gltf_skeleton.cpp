@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "import/one_space.h"
+
 namespace spherechain::baker {
 namespace {
 
@@ -190,7 +192,8 @@ Affine GltfSkeleton::rest_to_world(const UsedSkin& used) const {
   return maps[typical_map(maps, weights)];
 }
 
-// A joint that two skins share is at one place for both when they are bound; without one, at rest must do.
+// A joint that two skins share is at one place for both when they are bound. Without one, all skins may be in one
+// space; or else at rest must do.
 void GltfSkeleton::find_to_rest(const UsedSkin& used, const GltfSkin& lead, const std::vector<Index>& lead_joint) {
   GltfSkin& skin = *skins_[at(used.index)];
   std::optional<Affine> to_rest;
@@ -199,7 +202,18 @@ void GltfSkeleton::find_to_rest(const UsedSkin& used, const GltfSkin& lead, cons
     if (shared == kNoIndex || !invertible(skin.inverse_bind[j])) continue;
     to_rest = lead.inverse_bind[shared].inverse() * skin.inverse_bind[j];
   }
-  if (!to_rest) to_rest = world_to_rest_ * rest_to_world(used);
+  if (!to_rest) {
+    std::vector<BoundJoint> bound;
+    for (std::size_t k = 0, number = 0; k < skins_.size(); ++k) {
+      for (std::size_t j = 0; skins_[k] && j < skins_[k]->joints.size(); ++j)
+        bound.push_back({skins_[k]->joints[j], number, skins_[k]->inverse_bind[j].inverse()});
+      if (skins_[k]) ++number;
+    }
+    if (were_bound_in_one_space(nodes_.nodes, bound))
+      to_rest = Affine::Identity();
+    else
+      to_rest = world_to_rest_ * rest_to_world(used);
+  }
   // Exactly nothing where it is nothing but rounding: then the rest pose is the file's own vertex buffer.
   skin.to_rest = same(Affine::Identity(), *to_rest, extent_) ? Affine::Identity() : *to_rest;
 }

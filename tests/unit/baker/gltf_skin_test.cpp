@@ -257,6 +257,19 @@ TEST_CASE("two skins come into one rest space") {
     glb.json["scenes"][0]["nodes"] = {0, 3, 4, 6};
     CHECK((read(glb).positions[16] - Vec3(7 - 0.1, 3.9, -0.1)).norm() < 1e-6);
   }
+  SUBCASE("that they are in already, where one's joint hangs on the other's, whatever pose the file shows") {
+    const std::vector<float> inverse_bind = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -4, 0, 1,
+                                             1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -5, 0, 1};
+    glb.json["skins"].push_back({{"joints", {4, 5}}, {"inverseBindMatrices", glb.accessor(inverse_bind, "MAT4")}});
+    glb.json["nodes"][2]["children"] = {4};
+    glb.json["nodes"].push_back({{"translation", {0, 2, 0}}, {"rotation", {0.6, 0, 0, 0.8}}, {"children", {5}}});
+    glb.json["nodes"].push_back({{"translation", {0, 1, 0}}});
+    glb.json["nodes"].push_back({{"mesh", mesh}, {"skin", 1}});
+    glb.json["scenes"][0]["nodes"].push_back(6);
+    const SourceMesh read_mesh = read(glb);
+    CHECK((read_mesh.positions[16] - raw_positions(glb, primitive["attributes"]["POSITION"].get<int>())[0]).norm() <
+          1e-6);
+  }
   check_skinning(glb, 2);
 }
 
