@@ -34,7 +34,9 @@ void members(auto& io, Is<Bone> auto& b) { io(b.node, b.inverse_bind); }
 void members(auto& io, Is<Morph> auto& m) { io(m.name, m.vertices, m.deltas, m.rest_weight); }
 void members(auto& io, Is<Channel> auto& c) { io(c.path, c.target, c.interpolation, c.times, c.values); }
 void members(auto& io, Is<Clip> auto& c) { io(c.name, c.duration, c.in_file, c.channels); }
-void members(auto& io, Is<SourceRig> auto& r) { io(r.nodes, r.bones, r.weights, r.morphs, r.clips, r.to_rest); }
+void members(auto& io, Is<SourceRig> auto& r) {
+  io(r.nodes, r.bones, r.weights, r.morphs, r.clips, r.to_rest, r.pivots);
+}
 void members(auto& io, Is<SourceLook> auto& l) { io(l.uvs, l.material_of, l.materials, l.pictures); }
 void members(auto& io, Is<SourceMesh> auto& m) {
   io(m.positions, m.triangles, m.buffers, m.rig, m.look, m.importer, m.meshes, m.points_and_lines_dropped,

@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <string_view>
 
 #include "import/assimp_scene.h"
+#include "import/pivots.h"
 #include "mesh/error.h"
 
 namespace spherechain::baker {
@@ -116,6 +118,39 @@ bool anything_moves(const AssimpScene& flat, const std::vector<Clip>& clips) {
   });
 }
 
+// The point that an FBX node turns about, in its own space: the origin, but for a RotationPivot and what scales.
+Vec3 turning_point(const std::vector<const aiNode*>& chain) {
+  Affine turned = Affine::Identity();  // the node's own space into that of its rotation
+  bool before = chain.size() > 1;
+  for (const aiNode* link : chain) {
+    const std::string_view name = link->mName.C_Str();
+    before = before && (name.ends_with("$_Translation") || name.ends_with("$_RotationOffset") ||
+                        name.ends_with("$_RotationPivot"));
+    if (!before) turned = turned * to_affine(link->mTransformation);
+  }
+  if (chain.size() < 2 || !(std::abs(turned.linear().determinant()) > 0)) return Vec3::Zero();
+  return turned.inverse().translation();
+}
+
+// Where the nodes turn, if one turns elsewhere than where it is. A pivot that no clip of the file uses says nothing.
+std::vector<Vec3> read_pivots(const AssimpScene& flat, const SourceRig& rig) {
+  std::vector<bool> turns(flat.nodes.size(), rig.clips.empty());
+  for (const Clip& clip : rig.clips) {
+    for (const Channel& channel : clip.channels) {
+      if (channel.path == ChannelPath::kRotation) turns[channel.target] = true;
+    }
+  }
+  std::vector<Vec3> pivots;
+  bool elsewhere = false;
+  const std::vector<Affine> places = places_at_rest(rig);
+  for (std::size_t n = 0; n < places.size(); ++n) {
+    const Vec3 own = turns[n] ? turning_point(flat.chains[n]) : Vec3(Vec3::Zero());
+    pivots.emplace_back(places[n] * own);
+    elsewhere = elsewhere || !own.isZero();
+  }
+  return elsewhere ? pivots : std::vector<Vec3>{};
+}
+
 }  // namespace
 
 SourceRig read_rig(const aiScene& scene, const AssimpScene& flat, const std::string& file) {
@@ -131,6 +166,7 @@ SourceRig read_rig(const aiScene& scene, const AssimpScene& flat, const std::str
   rig.nodes = flat.nodes;
   int number = 0;
   for (Node& node : rig.nodes) node.in_file = number++;
+  rig.pivots = read_pivots(flat, rig);
   return rig;
 }
 

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include "import/import.h"
 #include "import/pivots.h"
@@ -126,7 +127,8 @@ Character build_character(const SourceMesh& source, const std::string& name) {
     character.source_positions.push_back(f.cast<double>());
   }
   const std::vector<Vec3>& positions = character.source_positions;
-  character.rig.pivots = pivots_of(character.rig, positions);
+  std::vector<Vec3> pivots = pivots_of(character.rig, positions);
+  if (!pivots.empty()) character.rig.pivots = std::move(pivots);
 
   Eigen::AlignedBox3d box;
   for (const Triangle& t : source.triangles) {

@@ -2,6 +2,7 @@
 #include "import/pivots.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
@@ -15,10 +16,10 @@ void add_weighted(Weighted& sum, const Vec3& position, double weight) {
   sum.second += weight;
 }
 
-// Whether joints are bound near one place, and most of the skin that they move is elsewhere.
+// Whether a third of the joints and more are bound near one place, and most of the skin that these move is elsewhere.
 bool are_bound_elsewhere(const SourceRig& rig, const std::vector<Vec3>& positions) {
   std::vector<Weighted> moved(rig.bones.size(), {Vec3::Zero(), 0});
-  Eigen::AlignedBox3d skin, joints;
+  Eigen::AlignedBox3d skin;
   for (std::size_t v = 0; v < rig.weights.size(); ++v) {
     skin.extend(positions[v]);
     for (std::size_t k = 0; k < kMaxInfluences; ++k) {
@@ -26,24 +27,51 @@ bool are_bound_elsewhere(const SourceRig& rig, const std::vector<Vec3>& position
       if (weight > 0) add_weighted(moved[rig.weights[v].joint[k]], positions[v], weight);
     }
   }
-  std::size_t count = 0;
-  double away = 0;  // sum of distances from joints to their skin
+  std::vector<std::pair<Vec3, double>> joints;  // their places, and how far from these their skin is
   for (std::size_t b = 0; b < rig.bones.size(); ++b) {
     const Affine& bind = rig.bones[b].inverse_bind;
     if (!(moved[b].second > 0) || !(std::abs(bind.linear().determinant()) > 0)) continue;
-    const Vec3 joint = bind.inverse().translation();
-    joints.extend(joint);
-    away += (joint - moved[b].first / moved[b].second).norm();
-    ++count;
+    const Vec3 joint = rig.pivots.empty() ? bind.inverse().translation() : rig.pivots[rig.bones[b].node];
+    joints.emplace_back(joint, (joint - moved[b].first / moved[b].second).norm());
   }
-  constexpr double kNear = 0.3, kAway = 0.2;  // of the skin's size
+  constexpr double kNear = 0.15, kAway = 0.2;  // of the skin's size
   constexpr std::size_t kJointsMin = 3;
   const double size = skin.diagonal().norm();
-  return count >= kJointsMin && joints.diagonal().norm() < kNear * size &&
-         away > kAway * size * static_cast<double>(count);
+  std::size_t most = 0;
+  double away = 0;  // the sum for the joints near the place that most are near
+  for (const auto& [place, unused] : joints) {
+    std::size_t count = 0;
+    double sum = 0;
+    for (const auto& [joint, distance] : joints) {
+      if (!((joint - place).norm() < kNear * size)) continue;
+      ++count;
+      sum += distance;
+    }
+    if (count <= most) continue;
+    most = count;
+    away = sum;
+  }
+  return most >= kJointsMin && 3 * most >= joints.size() && away > kAway * size * static_cast<double>(most);
 }
 
 }  // namespace
+
+std::vector<Affine> places_at_rest(const SourceRig& rig) {
+  std::vector<Affine> places(rig.nodes.size());
+  std::vector<const Bone*> bone_of(rig.nodes.size(), nullptr);
+  for (const Bone& bone : rig.bones) {
+    if (bone_of[bone.node] == nullptr && std::abs(bone.inverse_bind.linear().determinant()) > 0)
+      bone_of[bone.node] = &bone;
+  }
+  for (std::size_t n = 0; n < rig.nodes.size(); ++n) {
+    const Node& node = rig.nodes[n];
+    if (bone_of[n] != nullptr)
+      places[n] = bone_of[n]->inverse_bind.inverse();
+    else
+      places[n] = (node.parent < 0 ? rig.to_rest : places[static_cast<std::size_t>(node.parent)]) * node.local;
+  }
+  return places;
+}
 
 std::vector<Vec3> pivots_of(const SourceRig& rig, const std::vector<Vec3>& positions) {
   if (rig.bones.empty() || rig.weights.size() != positions.size() || !are_bound_elsewhere(rig, positions)) return {};

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "import/pivots.h"
 #include "roles/roles.h"
 
 namespace spherechain::baker {
@@ -34,22 +35,8 @@ double Skeleton::length(const std::vector<int>& path) const {
 
 std::vector<Vec3> rest_positions(const SourceRig& rig) {
   if (!rig.pivots.empty()) return rig.pivots;
-  std::vector<Affine> world(rig.nodes.size());
-  std::vector<const Bone*> bone_of(rig.nodes.size(), nullptr);
-  for (const Bone& bone : rig.bones) {
-    if (bone_of[bone.node] == nullptr && std::abs(bone.inverse_bind.linear().determinant()) > 0) {
-      bone_of[bone.node] = &bone;
-    }
-  }
   std::vector<Vec3> positions;
-  for (std::size_t n = 0; n < rig.nodes.size(); ++n) {
-    const Node& node = rig.nodes[n];
-    if (bone_of[n] != nullptr)
-      world[n] = bone_of[n]->inverse_bind.inverse();
-    else
-      world[n] = (node.parent < 0 ? rig.to_rest : world[node.parent]) * node.local;
-    positions.push_back(world[n].translation());
-  }
+  for (const Affine& place : places_at_rest(rig)) positions.push_back(place.translation());
   return positions;
 }
 

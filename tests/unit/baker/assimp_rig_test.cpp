@@ -293,6 +293,9 @@ TEST_CASE("FBX pivots become part of their node, in its clips too") {
         CHECK((turned[v] - expected(90 * seconds, corners[v])).norm() < 1e-3);  // chords of 3 degrees
     }
     for (std::size_t v = 0; v < 3; ++v) CHECK((held.positions[v] - expected(0, corners[v])).norm() < 1e-5);
+    // The joint is where it turns.
+    REQUIRE(held.rig.pivots.size() == (pivot == 0 ? 0 : 3));
+    if (pivot != 0) CHECK((held.rig.pivots[1] - expected(0, {1, 0, 0})).norm() < 1e-5);
   }
 }
 
