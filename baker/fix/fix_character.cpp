@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <set>
 
@@ -72,7 +73,7 @@ class Fixer {
     const bool has_own = job_.recordings.empty() || job_.numbers;
     if (has_own && rig().clips.empty()) fail("has no clips to mend (--motion brings one)");
     if (animated_->asset()->bone_count() == 0 || rig().bones.empty()) fail("no bones move it");
-    if (!rig().pivots.empty())
+    if (are_bound_at_one_place())
       fail("its joints are all bound at one place, and turn about no point of their own (bind them where they are)");
     if (has_own) fix_own();
     for (const std::string& recording : job_.recordings) fix_recording(recording);
@@ -81,6 +82,18 @@ class Fixer {
 
  private:
   const SourceRig& rig() const { return animated_->character().rig; }
+  // Whether the joints turn about places that lie far apart, but are bound near one.
+  bool are_bound_at_one_place() const {
+    if (rig().pivots.empty()) return false;
+    Eigen::AlignedBox3d bound, turning;
+    for (const Bone& bone : rig().bones) {
+      turning.extend(rig().pivots[bone.node]);
+      if (std::abs(bone.inverse_bind.linear().determinant()) > 0)
+        bound.extend(Vec3(bone.inverse_bind.inverse().translation()));
+    }
+    constexpr double kNear = 0.3;
+    return bound.isEmpty() || bound.diagonal().norm() < kNear * turning.diagonal().norm();
+  }
   [[noreturn]] void fail(const std::string& what) const { throw Error(ExitCode::kFile, job_.input + ": " + what); }
   [[noreturn]] void fail_part(const std::string& name) const {
     std::string all;

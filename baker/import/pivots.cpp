@@ -16,10 +16,10 @@ void add_weighted(Weighted& sum, const Vec3& position, double weight) {
   sum.second += weight;
 }
 
-// Whether a third of the joints and more are bound near one place, and most of the skin that these move is elsewhere.
+// Whether joints are bound near one place, and most of the skin that they move is elsewhere.
 bool are_bound_elsewhere(const SourceRig& rig, const std::vector<Vec3>& positions) {
   std::vector<Weighted> moved(rig.bones.size(), {Vec3::Zero(), 0});
-  Eigen::AlignedBox3d skin;
+  Eigen::AlignedBox3d skin, joints;
   for (std::size_t v = 0; v < rig.weights.size(); ++v) {
     skin.extend(positions[v]);
     for (std::size_t k = 0; k < kMaxInfluences; ++k) {
@@ -27,31 +27,21 @@ bool are_bound_elsewhere(const SourceRig& rig, const std::vector<Vec3>& position
       if (weight > 0) add_weighted(moved[rig.weights[v].joint[k]], positions[v], weight);
     }
   }
-  std::vector<std::pair<Vec3, double>> joints;  // their places, and how far from these their skin is
+  std::size_t count = 0;
+  double away = 0;  // sum of distances from joints to their skin
   for (std::size_t b = 0; b < rig.bones.size(); ++b) {
     const Affine& bind = rig.bones[b].inverse_bind;
     if (!(moved[b].second > 0) || !(std::abs(bind.linear().determinant()) > 0)) continue;
     const Vec3 joint = rig.pivots.empty() ? bind.inverse().translation() : rig.pivots[rig.bones[b].node];
-    joints.emplace_back(joint, (joint - moved[b].first / moved[b].second).norm());
+    joints.extend(joint);
+    away += (joint - moved[b].first / moved[b].second).norm();
+    ++count;
   }
-  constexpr double kNear = 0.15, kAway = 0.2;  // of the skin's size
+  constexpr double kNear = 0.3, kAway = 0.2;  // of the skin's size
   constexpr std::size_t kJointsMin = 3;
   const double size = skin.diagonal().norm();
-  std::size_t most = 0;
-  double away = 0;  // the sum for the joints near the place that most are near
-  for (const auto& [place, unused] : joints) {
-    std::size_t count = 0;
-    double sum = 0;
-    for (const auto& [joint, distance] : joints) {
-      if (!((joint - place).norm() < kNear * size)) continue;
-      ++count;
-      sum += distance;
-    }
-    if (count <= most) continue;
-    most = count;
-    away = sum;
-  }
-  return most >= kJointsMin && 3 * most >= joints.size() && away > kAway * size * static_cast<double>(most);
+  return count >= kJointsMin && joints.diagonal().norm() < kNear * size &&
+         away > kAway * size * static_cast<double>(count);
 }
 
 }  // namespace
