@@ -11,7 +11,11 @@
 namespace spherechain::baker {
 
 Progress::Progress(std::string title) : title_(std::move(title)), terminal_(::isatty(STDERR_FILENO) == 1) {
-  if (!terminal_) writer_ = std::thread([this] { write_lines(); });
+  if (terminal_) return;
+  std::unique_lock lock(mutex_);
+  writer_ = std::thread([this] { write_lines(); });
+  // A child that is forked while a thread starts may inherit a lock that nobody releases.
+  changed_.wait(lock, [this] { return is_waiting_; });
 }
 
 Progress::~Progress() {
@@ -23,7 +27,7 @@ Progress::~Progress() {
     const std::lock_guard lock(mutex_);
     is_over_ = true;
   }
-  over_.notify_one();
+  changed_.notify_one();
   writer_.join();
 }
 
@@ -39,7 +43,9 @@ void Progress::show(const std::string& text) {
 void Progress::write_lines() {
   constexpr std::chrono::seconds kPause(30);
   std::unique_lock lock(mutex_);
-  while (!over_.wait_for(lock, kPause, [this] { return is_over_; })) {
+  is_waiting_ = true;
+  changed_.notify_one();
+  while (!changed_.wait_for(lock, kPause, [this] { return is_over_; })) {
     std::fprintf(stderr, "spherechain: %s\n", one_line(title_ + " " + text_).c_str());
   }
 }

@@ -22,9 +22,9 @@ class Progress {
   void write_lines();
 
   std::string title_, text_;
-  bool terminal_, is_over_ = false;
+  bool terminal_, is_waiting_ = false, is_over_ = false;
   std::mutex mutex_;
-  std::condition_variable over_;
+  std::condition_variable changed_;
   std::thread writer_;  // of lines
 };
 
