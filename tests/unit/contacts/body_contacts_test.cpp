@@ -81,7 +81,8 @@ SkinContacts met(const BodyContactJob& job) {
 
 }  // namespace
 
-TEST_CASE("two bodies' contacts are CGAL's wherever they stand: from bones, from vertices and mixed, on every target") {
+TEST_CASE("two bodies' contacts are CGAL's wherever they stand: from bones, from vertices and mixed, on every target" *
+          doctest::test_suite("long runs")) {
   std::mt19937 random(24);
   std::size_t total = 0, apart = 0;
   for (int i = 0; i < 40; ++i) {
