@@ -25,8 +25,8 @@ struct ChosenCharacter {
   bool was_interrupted = false;
 };
 
-// A clip that is to be checked.
-struct Todo {
+// A clip that waits to be checked.
+struct QueuedClip {
   CheckedClip* clip;
   std::size_t unit, number;  // number among the file's own
 };
@@ -34,7 +34,7 @@ struct Todo {
 // The clips of one character that are to be checked. Its processes take one after another: a quick one takes more.
 class ClipQueue {
  public:
-  ClipQueue(const ChosenCharacter& of, std::vector<Todo> todo) : character(of), clips(std::move(todo)) {
+  ClipQueue(const ChosenCharacter& of, std::vector<QueuedClip> queued) : character(of), clips(std::move(queued)) {
     void* shared = ::mmap(nullptr, sizeof(Next), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     if (shared == MAP_FAILED) throw Error(ExitCode::kFile, "--jobs: no memory that processes share");
     next_ = new (shared) Next(0);
@@ -48,12 +48,12 @@ class ClipQueue {
   std::size_t take() { return (*next_)++; }
 
   // The file that a clip is read from.
-  const std::filesystem::path& file_of(const Todo& todo) const {
-    return todo.unit == kOwnClips ? character.of->file : character.of->motions[todo.unit - 1].file;
+  const std::filesystem::path& file_of(const QueuedClip& queued) const {
+    return queued.unit == kOwnClips ? character.of->file : character.of->motions[queued.unit - 1].file;
   }
 
   const ChosenCharacter& character;
-  const std::vector<Todo> clips;
+  const std::vector<QueuedClip> clips;
 
  private:
   using Next = std::atomic<std::size_t>;

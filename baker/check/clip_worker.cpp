@@ -31,7 +31,7 @@ class ClipWorker {
     bool plays_own = true, has_page = store_.has(character.key, kPageFile);
     News news(tell_);
     for (std::size_t i = at ? *at : queue_.take(); i < queue_.clips.size(); i = queue_.take()) {
-      const Todo& next = queue_.clips[i];
+      const QueuedClip& next = queue_.clips[i];
       if (!at) tell_(std::to_string(i));
       at.reset();
       ClipCheck found;

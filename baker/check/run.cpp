@@ -129,23 +129,23 @@ class Run {
 
   std::vector<CheckedClip> check_all(const std::vector<ChosenCharacter>& characters) {
     std::vector<CheckedClip> clips;
-    std::vector<std::vector<Todo>> todo(characters.size());  // by the clip's index first
+    std::vector<std::vector<QueuedClip>> queued(characters.size());  // by the clip's index first
     for (const ChosenCharacter& character : characters) list(character, clips);
     for (std::size_t c = 0, i = 0; c < characters.size(); ++c) {
       for (; i < clips.size() && clips[i].character == characters[c].place; ++i) {
         CheckedClip& clip = clips[i];
         if (!clip.error.empty() || clip.clip.empty() || is_checked(store_, clip)) continue;
-        todo[c].push_back({&clip, clip.order / kClipsPerUnitMax, clip.order % kClipsPerUnitMax});
+        queued[c].push_back({&clip, clip.order / kClipsPerUnitMax, clip.order % kClipsPerUnitMax});
       }
     }
     std::size_t all = 0;
     std::deque<Task> tasks;
     for (std::size_t c = 0; c < characters.size(); ++c) {
-      if (todo[c].empty()) continue;
-      all += todo[c].size();
+      if (queued[c].empty()) continue;
+      all += queued[c].size();
       const std::size_t workers = std::min<std::size_t>(static_cast<std::size_t>(options_.jobs),
-                                                        (todo[c].size() + kWorkerClips - 1) / kWorkerClips);
-      const auto queue = std::make_shared<ClipQueue>(characters[c], std::move(todo[c]));
+                                                        (queued[c].size() + kWorkerClips - 1) / kWorkerClips);
+      const auto queue = std::make_shared<ClipQueue>(characters[c], std::move(queued[c]));
       for (std::size_t i = 0; i < workers; ++i) add(tasks, queue);
     }
     run("checking", tasks, all);
@@ -256,9 +256,9 @@ class Run {
       check_store(ending);
       // What it was at when it failed does not keep the others from being checked.
       if (*at) {
-        const Todo& todo = queue->clips[**at];
+        const QueuedClip& queued = queue->clips[**at];
         const std::string& failure = ending.failure;
-        end(todo, failure_text(queue->file_of(todo), failure.empty() ? "ends the check early" : failure),
+        end(queued, failure_text(queue->file_of(queued), failure.empty() ? "ends the check early" : failure),
             ending.was_interrupted);
       }
       if (*at || !ending.failure.empty()) add(tasks, queue);
@@ -266,9 +266,9 @@ class Run {
     tasks.push_back(std::move(task));
   }
 
-  void end(const Todo& todo, const std::string& error, bool was_interrupted) {
-    todo.clip->error = error;
-    todo.clip->was_interrupted = was_interrupted;
+  void end(const QueuedClip& queued, const std::string& error, bool was_interrupted) {
+    queued.clip->error = error;
+    queued.clip->was_interrupted = was_interrupted;
     ++done_;
   }
 

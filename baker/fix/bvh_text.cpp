@@ -83,9 +83,8 @@ std::string BvhText::text() const {
   std::string out;
   std::size_t at = 0;
   const std::string stated = text_.substr(bvh_.count_begin, bvh_.count_end - bvh_.count_begin);
-  if (stated != std::to_string(frames())) {
-    out =
-        text_.substr(0, bvh_.count_begin) + fmt::format(fmt::runtime(stated.empty() ? "Frames: {}\n" : "{}"), frames());
+  if (const std::string count = std::to_string(frames()); stated != count) {
+    out = text_.substr(0, bvh_.count_begin) + (stated.empty() ? "Frames: " + count + "\n" : count);
     at = bvh_.count_end;
   }
   for (const auto& [place, degrees] : changed_) {

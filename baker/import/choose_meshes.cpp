@@ -83,7 +83,7 @@ void leave_out_coarse(const std::vector<Node>& nodes, const std::vector<ShownMes
            (left_out == 1 ? "1 coarser mesh is" : std::to_string(left_out) + " coarser meshes are") + " left out");
 }
 
-// Of each mesh, whether `character` is the name of its skin, or of a node at or above the mesh or its skeleton.
+// Says of each mesh whether `character` is the name of its skin, or of a node at or above the mesh or its skeleton.
 std::vector<bool> taken_by(const std::string& character, const std::vector<Node>& nodes,
                            const std::vector<ShownMesh>& meshes) {
   std::vector<bool> is_below;  // a node of that name
@@ -98,7 +98,7 @@ std::vector<bool> taken_by(const std::string& character, const std::vector<Node>
   return out;
 }
 
-// Of each mesh the highest joint at or above its skeleton: the same for clothes on a part of a skeleton.
+// Returns for each mesh the highest joint at or above its skeleton. Clothes on a part of a skeleton have the body's.
 std::vector<Index> skeletons_of(const std::vector<Node>& nodes, const std::vector<ShownMesh>& meshes) {
   std::vector<bool> is_joint(nodes.size(), false);
   for (const ShownMesh& mesh : meshes) {

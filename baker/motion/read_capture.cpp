@@ -73,7 +73,8 @@ CaptureBody body_of(const std::vector<Joint>& joints, const BodyFrame& frame, co
 
 namespace {
 
-// What a user should hear where no body can be moved: that there are two. Bones that move a vertex together are of one.
+// Throws Error(kFile) if the rig has two characters: then that is why no body can be moved. Bones that move a vertex
+// together belong to one.
 void check_one_character(const SourceRig& rig, const std::vector<Vec3>& rest, const Vec3& up, const std::string& file) {
   std::vector<std::size_t> first(rig.bones.size());  // of the bones that hang together one that comes before
   std::iota(first.begin(), first.end(), 0);
