@@ -11,6 +11,7 @@
 
 #include "check/json_input.h"
 #include "mesh/error.h"
+#include "mesh/utf8.h"
 #include "play/asset_file.h"
 #include "roles/roles.h"
 
@@ -80,10 +81,10 @@ void check_there(const fs::path& path) {
 
 Motions motions_at(const fs::path& path, Folders& looked_at) {
   check_there(path);
-  if (!fs::is_directory(path)) return {{path.filename().string(), path}};
+  if (!fs::is_directory(path)) return {{as_utf8(path.filename().string()), path}};
   Motions out;
   for (const Found& found : files_below(path, may_be_motion, looked_at))
-    out.push_back({found.path.lexically_relative(path).string(), found.path, found.error});
+    out.push_back({as_utf8(found.path.lexically_relative(path).string()), found.path, found.error});
   if (out.empty()) throw Error(ExitCode::kFile, path.string() + ": has no recordings (BVH, FBX, glTF or Collada)");
   return out;
 }
@@ -161,7 +162,7 @@ void give_names(std::vector<LibraryCharacter>& characters) {
   const auto tail = [](const fs::path& path, int parts) {
     fs::path out, rest = path;
     for (int i = 0; i < parts && rest.has_filename(); ++i, rest = rest.parent_path()) out = rest.filename() / out;
-    std::string text = out.string();
+    const std::string text = as_utf8(out.string());
     return text.substr(0, text.find_last_not_of('/') + 1);
   };
   for (int parts = 1; parts < 16; ++parts) {
@@ -175,7 +176,7 @@ void give_names(std::vector<LibraryCharacter>& characters) {
   std::map<std::string, int> seen;  // one file that is given twice
   for (LibraryCharacter& c : characters) {
     if (!c.name.empty()) continue;
-    c.name = c.file.filename().string();
+    c.name = as_utf8(c.file.filename().string());
     if (const int n = ++seen[c.file.string()]; n > 1) c.name += " (" + std::to_string(n) + ")";
   }
 }

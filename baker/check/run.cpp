@@ -16,6 +16,7 @@
 #include "import/notes.h"
 #include "import/sha256.h"
 #include "mesh/error.h"
+#include "mesh/utf8.h"
 #include "report/report.h"
 
 namespace spherechain::baker {
@@ -287,7 +288,7 @@ std::vector<std::string> unique_clip_names(const SourceRig& rig) {
   std::set<std::string> names;
   for (std::size_t i = 0; i < rig.clips.size(); ++i) {
     const std::string& own = rig.clips[i].name;
-    const std::string name = own.empty() ? fmt::format("clip {}", i) : own;
+    const std::string name = own.empty() ? fmt::format("clip {}", i) : as_utf8(own);
     std::string unique = name;
     for (int n = 2; !names.insert(unique).second; ++n) unique = fmt::format("{} ({})", name, n);
     out.push_back(unique);

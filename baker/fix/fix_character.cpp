@@ -13,6 +13,7 @@
 #include "fix/turned_recording.h"
 #include "fix/write_clip.h"
 #include "mesh/error.h"
+#include "mesh/utf8.h"
 #include "motion/carried_motion.h"
 #include "motion/frame_times.h"
 #include "pipeline/pipeline.h"
@@ -24,7 +25,7 @@ namespace fs = std::filesystem;
 
 // "b/c.glb" and "c.glb" are ends of "/a/b/c.glb".
 bool is_end_of(const std::string& end, const fs::path& path) {
-  const fs::path tail(end), whole = fs::absolute(path).lexically_normal();
+  const fs::path tail(end), whole = as_utf8(fs::absolute(path).lexically_normal().string());
   const auto count = std::distance(tail.begin(), tail.end()), all = std::distance(whole.begin(), whole.end());
   return count > 0 && count <= all && std::equal(tail.begin(), tail.end(), std::prev(whole.end(), count));
 }

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "roles/letters.h"
 
+#include <optional>
+
+#include "mesh/utf8.h"
+
 namespace spherechain::baker {
 namespace {
 
@@ -10,18 +14,9 @@ constexpr char32_t kBroken = 0xFFFD;
 
 // The code point at `at`, which moves on. One byte that is no UTF-8 is kBroken.
 char32_t next_code_point(std::string_view text, std::size_t& at) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char first = byte(at++);
-  if (first < 0x80) return first;
-  const std::size_t more = first >= 0xF0 ? 3 : first >= 0xE0 ? 2 : 1;
-  if (first < 0xC2 || first > 0xF4 || at + more > text.size()) return kBroken;
-  char32_t code = first & (0x3FU >> more);
-  for (std::size_t i = 0; i < more; ++i) {
-    if ((byte(at + i) & 0xC0U) != 0x80) return kBroken;
-    code = code << 6U | (byte(at + i) & 0x3FU);
-  }
-  at += more;
-  return code;
+  const std::optional<CodePoint> point = first_code_point(text.substr(at));
+  at += point ? point->length : 1;
+  return point ? char32_t{point->code} : kBroken;
 }
 
 // U+00C0 to U+017F without accents.

@@ -418,6 +418,26 @@ TEST_CASE("one bad file stops nothing") {
                     {"holds other files than a check report"});
 }
 
+TEST_CASE("faults that are accepted stay so, whatever bytes a name holds") {
+  const Library library;
+  const fs::path folder = library.folder.path / "lib";
+  fs::create_directory(folder);
+  std::ofstream(folder / "caf\xe9.glb") << planted_character({{"dip", {-10, 80, -10}}});
+  std::ofstream(folder / "caf\xe8.glb") << planted_character({{"dip", {-10, -10, 80, -10}}});
+  const std::string check =
+      fmt::format("check {} -o {} {} --json {} --fail-on new --baseline {}", folder.string(), library.report(),
+                  shared_cache(), library.path("all.json"), library.path("baseline.json"));
+  CHECK(tool::run(check + " --accept").code == 0);
+  CHECK(tool::run(check).code == 0);
+  const json clips = library.read("all.json")["clips"];
+  REQUIRE(clips.size() == 2);
+  CHECK(clips[0]["character"] == R"(caf\xe8.glb)");
+  CHECK(clips[1]["character"] == R"(caf\xe9.glb)");
+  // Two names that are not UTF-8 are not one.
+  fs::rename(folder / "caf\xe8.glb", folder / "caf\xe7.glb");
+  CHECK(tool::run(check).code == 6);
+}
+
 TEST_CASE("nothing is computed that is in the cache, whatever killed the run that made it") {
   const Library library;
   const std::string command = fmt::format("check {} -o {} --cache {} --json {}", library.file.string(),
