@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "import/notes.h"
+
 namespace spherechain::baker {
 namespace {
 
@@ -116,7 +118,11 @@ std::vector<Clip> read_clips(const GltfFile& file, const GltfNodes& nodes, const
   for (std::size_t a = 0; a < file.model.animations.size(); ++a) {
     Clip clip = reader.read(a);
     clip.in_file = static_cast<int>(a);
-    if (!clip.channels.empty()) clips.push_back(std::move(clip));
+    if (clip.channels.empty()) {
+      add_note(file.name + ": the clip '" + clip.name + "' has no keys that move a node: it is left out");
+    } else {
+      clips.push_back(std::move(clip));
+    }
   }
   return clips;
 }

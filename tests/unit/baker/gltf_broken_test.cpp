@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "gltf_reference.h"
+#include "import/notes.h"
 #include "refusal.h"
 #include "temporary_folder.h"
 
@@ -321,6 +322,17 @@ TEST_CASE("accessors of the wrong type or length, and figures that are none, are
        [](Glb& g) { g.json["animations"][0]["samplers"][0]["interpolation"] = 3; }},
       {"no triangles", [](Glb& g) { g.json["nodes"][0].erase("mesh"); }},
   });
+}
+
+TEST_CASE("a clip without a key is left out, and a note tells") {
+  Glb glb = character();
+  for (const int one : {kTimes, kRotations}) accessor(glb, one)["count"] = 0;
+  const TemporaryFolder folder;
+  take_notes();
+  CHECK(read_source(folder.write("a.glb", glb.bytes()), {}).rig.clips.empty());
+  const std::vector<std::string> notes = take_notes();
+  REQUIRE(notes.size() == 1);
+  CHECK(notes[0].find("a.glb: the clip 'animation_0' has no keys that move a node") != std::string::npos);
 }
 
 TEST_CASE("small files that ask for much memory are refused before they get it" * doctest::test_suite("many bakes")) {
