@@ -30,6 +30,7 @@ class ClipWorker {
     std::optional<ClipChecker> checker;
     bool plays_own = true, has_page = store_.has(character.key, kPageFile);
     News news(tell_);
+    const std::string asset = store_.take(character.key, kAssetFile);
     for (std::size_t i = at ? *at : queue_.take(); i < queue_.clips.size(); i = queue_.take()) {
       const QueuedClip& next = queue_.clips[i];
       if (!at) tell_(std::to_string(i));
@@ -39,18 +40,20 @@ class ClipWorker {
       try {
         if (!checker) {
           news("reading");
-          animated.emplace(OpenAsset(store_.read(character.key, kAssetFile).value_or(""), character.of->name),
-                           character.of->name, character.of->file.string(), MotionChoice{}, frames);
-          if (!has_page) page = character_page(*animated);
-          check_unchanged(character.of->file, character.hash);
+          do_unchanged(character.of->file, character.hash, [&] {
+            animated.emplace(OpenAsset(asset, character.of->name), character.of->name, character.of->file.string(),
+                             MotionChoice{}, frames);
+            if (!has_page) page = character_page(*animated);
+          });
           checker.emplace(*animated, choose_target("auto"));
         }
         take_notes();  // of the character, and of clips before this one
         if (next.unit != kOwnClips) {
           plays_own = false;
           const fs::path& motion = queue_.file_of(next);
-          animated->play({{}, {}, motion.string()}, frames);
-          check_unchanged(motion, motion_hashes_.at(motion.string()));
+          do_unchanged(motion, motion_hashes_.at(motion.string()), [&] {
+            animated->play({{}, {}, motion.string()}, frames);
+          });
         } else if (!plays_own) {
           animated->play({}, frames);
           plays_own = true;

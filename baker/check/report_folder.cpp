@@ -145,9 +145,7 @@ void check_report_folder(const fs::path& folder) { OwnFolder::check(folder, kKin
 bool write_report(const fs::path& folder, const Verdict& verdict, const Store& store, const fs::path& pages) {
   OwnFolder report(folder, kKind);
   const auto take = [&](const std::string& key, const std::string& kind) {
-    const std::optional<std::string> bytes = store.read(key, kind.c_str());
-    if (!bytes) throw Error(ExitCode::kFile, store.folder().string() + ": results are lost (run the check again)");
-    report.write(data_name(key) + kind, *bytes);
+    report.write(data_name(key) + kind, store.take(key, kind));
   };
   ordered_json clips = ordered_json::array();
   std::map<std::string, HeatMap> heat;      // by character
@@ -159,7 +157,7 @@ bool write_report(const fs::path& folder, const Verdict& verdict, const Store& s
     take(clip.clip.key, picture_file(picture_of(clip)));
     take(clip.clip.character_key, kPageFile);
     fits[data_name(clip.clip.character_key)] = clip.fit;
-    heat[clip.clip.character_key].add(store.read(clip.clip.key, kHeatFile).value_or(""), clip);
+    heat[clip.clip.character_key].add(store.take(clip.clip.key, kHeatFile), clip);
   }
   for (const auto& [character, map] : heat) report.write(data_name(character) + "_heat.js", map.page());
   const Summary& s = verdict.summary;

@@ -121,8 +121,11 @@ class Run {
                        }});
     }
     run("baking", tasks, tasks.size());
-    for (ChosenCharacter& character : characters) {  // of one content
-      if (character.error.empty() && !read_character(store_, character.key)) {
+    std::set<std::string> failed;  // contents
+    for (ChosenCharacter& character : characters) {
+      if (!character.error.empty()) {
+        failed.insert(character.key);
+      } else if (failed.contains(character.key)) {
         character.error = character.of->file.string() + ": cannot be baked, see the same file above";
       }
     }
@@ -176,8 +179,9 @@ class Run {
     std::optional<Bake> baked;
     take_notes();  // of characters before it
     try {
-      baked = bake(character.of->file, character.of->config.bake, [&](const std::string& stage) { news(stage); });
-      check_unchanged(character.of->file, character.hash);
+      do_unchanged(character.of->file, character.hash, [&] {
+        baked = bake(character.of->file, character.of->config.bake, [&](const std::string& stage) { news(stage); });
+      });
     } catch (const Interrupted&) {
       throw;
     } catch (const Error& error) {
@@ -198,12 +202,13 @@ class Run {
                      character.was_interrupted});
     };
     if (!character.error.empty()) return add_row(0, 0, {}, character.error);
-    const CharacterResult result = *read_character(store_, character.key);
+    const std::optional<CharacterResult> result = read_character(store_, character.key);
+    if (!result) store_.fail_lost();
     const std::string fps = fmt::format("{}{}", options_.fps, options_.continuous ? ", between frames" : "");
     for (const std::size_t unit : character.units) {
       if (unit == kOwnClips) {
-        for (std::size_t i = 0; i < result.clips.size(); ++i) {
-          add_row(unit, i, result.clips[i], {});
+        for (std::size_t i = 0; i < result->clips.size(); ++i) {
+          add_row(unit, i, result->clips[i], {});
           out.back().key = key_of("clip", {character.key, fmt::format("{}", i), fps});
         }
         continue;
@@ -217,7 +222,7 @@ class Run {
         out.back().error = error.what();
       }
     }
-    if (result.clips.empty() && character.of->motions.empty()) {
+    if (result->clips.empty() && character.of->motions.empty()) {
       add_row(0, 0, {}, {});
     }
   }

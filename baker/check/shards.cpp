@@ -66,13 +66,15 @@ void copy_results(const CheckedClip& clip, const Store& from, const Store& store
     }
     store.write(key, kind, *bytes);
   };
-  if (!clip.error.empty() || clip.clip.empty()) return;
+  if (!clip.error.empty()) return;
+  copy(clip.character_key, kResultFile);
+  if (clip.clip.empty()) return;
   copy(clip.key, kResultFile);
   const std::optional<ClipResult> result = read_clip_result(store.read(clip.key, kResultFile).value_or(""));
   if (result) {
     for (const std::string& kind : files_of(*result)) copy(clip.key, kind);
   }
-  for (const char* kind : {kResultFile, kPageFile}) copy(clip.character_key, kind);
+  copy(clip.character_key, kPageFile);
 }
 
 std::string to_bytes(const ShardResult& result) {

@@ -42,6 +42,16 @@ std::optional<std::string> Store::read(const std::string& key, const std::string
   return std::move(bytes).str();
 }
 
+std::string Store::take(const std::string& key, const std::string& kind) const {
+  std::optional<std::string> bytes = read(key, kind);
+  if (!bytes) fail_lost();
+  return *std::move(bytes);
+}
+
+void Store::fail_lost() const {
+  throw Error(ExitCode::kFile, folder_.string() + ": results are lost (run the check again)");
+}
+
 void Store::write(const std::string& key, const std::string& kind, std::string_view bytes) const {
   const fs::path file = path(key, kind);
   std::error_code error;

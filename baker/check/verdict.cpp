@@ -120,26 +120,23 @@ Verdict judge(const std::vector<CheckedClip>& clips, const std::vector<Character
     const CharacterRules& of = characters[clip.character];
     JudgedClip judged{of.name, of.file, {}, {}, clip, 0, 0, 30, false, {}, {}};
     if (clip.error.empty() && !clip.clip.empty()) {
-      const std::optional<std::string> bytes = store.read(clip.key, kResultFile);
-      const std::optional<ClipResult> result = bytes ? read_clip_result(*bytes) : std::nullopt;
-      if (!result) judged.clip.error = of.file + ": the result of '" + clip.clip + "' is not there (check it again)";
-      if (result) {
-        judged.frames = result->frames;
-        judged.between = result->between;
-        judged.fps = result->fps;
-        judged.loops = result->loops;
-        const bool is_told = result->note.empty() || !noted.insert(clip.clip).second;
-        if (!is_told) out.notes.push_back(clip.clip + ": " + result->note);
-        if (!result->hidden.empty()) out.notes.push_back(of.name + " " + clip.clip + ": " + result->hidden);
-        by.events(judged, *result, of.rules);
-        count(out.summary, judged);
-      }
+      const std::optional<ClipResult> result = read_clip_result(store.take(clip.key, kResultFile));
+      if (!result) store.fail_lost();
+      judged.frames = result->frames;
+      judged.between = result->between;
+      judged.fps = result->fps;
+      judged.loops = result->loops;
+      const bool is_told = result->note.empty() || !noted.insert(clip.clip).second;
+      if (!is_told) out.notes.push_back(clip.clip + ": " + result->note);
+      if (!result->hidden.empty()) out.notes.push_back(of.name + " " + clip.clip + ": " + result->hidden);
+      by.events(judged, *result, of.rules);
+      count(out.summary, judged);
     }
     if (clip.error.empty() && !clip.character_key.empty()) {
       const auto [character, is_new] = read.try_emplace(clip.character_key);
       if (is_new) {
-        const std::string bytes_of = store.read(clip.character_key, kResultFile).value_or("");
-        character->second = read_character_result(bytes_of).value_or(CharacterResult());
+        const std::string bytes = store.take(clip.character_key, kResultFile);
+        character->second = read_character_result(bytes).value_or(CharacterResult());
         for (const std::string& note : character->second.notes) out.notes.push_back(of.name + ": " + note);
       }
       judged.grade = character->second.grade;

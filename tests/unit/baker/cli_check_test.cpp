@@ -9,11 +9,19 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "check/file_hash.h"
+#include "check/library.h"
+#include "check/run.h"
+#include "check/store.h"
+#include "check/verdict.h"
+#include "import/child_process.h"
+#include "mesh/error.h"
 #include "planted_library.h"
 #include "tool.h"
 
 namespace {
 
+namespace baker = spherechain::baker;
 namespace fs = std::filesystem;
 using nlohmann::json;
 
@@ -436,6 +444,42 @@ TEST_CASE("faults that are accepted stay so, whatever bytes a name holds") {
   // Two names that are not UTF-8 are not one.
   fs::rename(folder / "caf\xe8.glb", folder / "caf\xe7.glb");
   CHECK(tool::run(check).code == 6);
+}
+
+TEST_CASE("a file that changes while it is read is not called broken") {
+  const TemporaryFolder folder;
+  const fs::path file = folder.write("hero.glb", "whole");
+  const std::string hash = baker::hash_of_input(file);
+  const auto fail = [] { throw baker::Error(baker::ExitCode::kFile, "is cut short"); };
+  CHECK_THROWS_WITH(baker::do_unchanged(file, hash, fail), "is cut short");
+  const auto change = [&](const auto& then) {
+    return [&] {
+      folder.write("hero.glb", "half");
+      then();
+    };
+  };
+  CHECK_THROWS_AS(baker::do_unchanged(file, hash, change(fail)), baker::Interrupted);
+  CHECK_THROWS_AS(baker::do_unchanged(file, hash, change([] {})), baker::Interrupted);
+  fs::remove(file);
+  CHECK_THROWS_WITH(baker::do_unchanged(file, hash, fail), (file.string() + ": no such file").c_str());
+}
+
+TEST_CASE("results that somebody deletes while check runs are lost, and no character is called broken") {
+  const Library library({{"dip", {-10, 80, -10}}});
+  baker::RunOptions options;
+  const auto read = baker::read_library({library.file.string()}, "", baker::default_config()).characters;
+  for (const char* when : {"baking", "checking"}) {
+    CAPTURE(when);
+    const baker::Store store(library.path("cache"));
+    const std::string lost = store.folder().string() + ": results are lost (run the check again)";
+    const auto check = [&] {
+      const auto clips = baker::check_library(read, options, store, [&](const baker::RunState& state) {
+        if (state.doing == std::string(when) && state.done == state.all) fs::remove_all(store.folder());
+      });
+      baker::judge(clips, {{read[0].name, read[0].file.string(), {}}}, store, {}, false, baker::FailOn::kPenetration);
+    };
+    CHECK_THROWS_WITH(check(), lost.c_str());
+  }
 }
 
 TEST_CASE("nothing is computed that is in the cache, whatever killed the run that made it") {
