@@ -12,6 +12,7 @@
 #include "cli/outputs.h"
 #include "cli/progress.h"
 #include "fix/fix_character.h"
+#include "motion/capture.h"
 #include "motion/sequence.h"
 #include "page/page_of_two.h"
 #include "write/own_folder.h"
@@ -126,6 +127,7 @@ ExitCode run_fix(const FixOptions& options) {
   job.parts = options.parts;
   job.mend = {options.budget, options.margin};
   check_files(options, writes_bvh);
+  if (!options.motion.empty()) read_capture(options.motion);  // now: a bake may take minutes
 
   FixedCharacter fixed;
   std::string again;

@@ -140,7 +140,8 @@ class BvhReader {
 
   void open_joint(std::string name, int parent) {
     if (next() != "{") fail_here(fmt::format("{} where a brace opens the joint '{}'", quoted(), name));
-    if (open_.size() == kNestedMax) fail_here(fmt::format("more than {} joints within each other", kNestedMax));
+    if (open_.size() == kNestedMax)
+      fail_here(fmt::format("more than {} joints within each other (export fewer)", kNestedMax));
     if (parent >= 0) has_children_[static_cast<std::size_t>(parent)] = 1;
     open_.push_back(out_.joints.size());
     out_.joints.emplace_back();

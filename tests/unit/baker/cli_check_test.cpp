@@ -468,13 +468,13 @@ TEST_CASE("results that somebody deletes while check runs are lost, and no chara
   const Library library({{"dip", {-10, 80, -10}}});
   baker::RunOptions options;
   const auto read = baker::read_library({library.file.string()}, "", baker::default_config()).characters;
-  for (const char* when : {"baking", "checking"}) {
+  for (const std::string when : {"baking", "checking"}) {
     CAPTURE(when);
     const baker::Store store(library.path("cache"));
     const std::string lost = store.folder().string() + ": results are lost (run the check again)";
     const auto check = [&] {
       const auto clips = baker::check_library(read, options, store, [&](const baker::RunState& state) {
-        if (state.doing == std::string(when) && state.done == state.all) fs::remove_all(store.folder());
+        if (state.doing == when && state.done == state.all) fs::remove_all(store.folder());
       });
       baker::judge(clips, {{read[0].name, read[0].file.string(), {}}}, store, {}, false, baker::FailOn::kPenetration);
     };

@@ -133,6 +133,12 @@ TEST_CASE("fix: what cannot be written from a recording is refused, and nothing 
   tool::check_error(files.fix("-o " + files.path("hinge.bvh")), 3, {"take 1.bvh: the joint '", "three axes"});
   CHECK(!fs::exists(files.path("hinge.bvh")));
   CHECK(files.fix("-o " + files.path("hinge.glb")).code == 0);
+  // Before the character is baked, the recording is read.
+  files.folder.write("take 1.bvh", "HIERARCHY");
+  files.folder.write("none.glb", "no character");
+  tool::check_error(tool::run("fix " + files.path("none.glb") + " --motion '" + files.take.string() + "' -o " +
+                              files.path("none_mended.glb")),
+                    3, {"take 1.bvh: ends before its motion"});
 }
 
 TEST_CASE("fix: what a baseline accepts is left; what is worse than that is not") {
