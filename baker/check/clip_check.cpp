@@ -314,7 +314,7 @@ ClipCheck ClipChecker::check(std::size_t index, const Told& told) {
   out.result.between = clip.between;
   out.result.fps = clip.fps;
   out.result.loops = frames.loops;
-  out.result.hidden = frames.hidden.text();
+  out.result.unseen = unseen_text(frames.hidden, clip);
   for (const EventSpan& span : frames.spans) out.result.events.push_back(event_of(frames, span, clip));
   out.heat = heat_of(frames);
   show(out, frames, clip);

@@ -79,7 +79,7 @@ std::string to_bytes(const ClipResult& result) {
                     {"loops", result.loops},
                     {"events", events},
                     {"note", result.note},
-                    {"hidden", result.hidden},
+                    {"unseen", result.unseen},
                     {"continuous", result.continuous}},
                    -1);
 }
@@ -102,7 +102,7 @@ std::optional<ClipResult> read_clip_result(const std::string& bytes) {
     json.at("loops").get_to(out.loops);
     for (const ordered_json& event : json.at("events")) out.events.push_back(read_result_event(event));
     json.at("note").get_to(out.note);
-    json.at("hidden").get_to(out.hidden);
+    json.at("unseen").get_to(out.unseen);
     json.at("continuous").get_to(out.continuous);
     return out;
   });

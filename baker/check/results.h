@@ -35,7 +35,7 @@ struct ClipResult {
   bool loops = false;
   std::vector<Event> events;  // by where they begin
   std::string note;           // what is wrong with the recording and does not keep it from being read
-  std::string hidden;         // what HiddenJoints says
+  std::string unseen;         // what unseen_text says
   bool continuous = false;    // all that touches between frames was looked at
 };
 

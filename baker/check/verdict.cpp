@@ -128,7 +128,7 @@ Verdict judge(const std::vector<CheckedClip>& clips, const std::vector<Character
       judged.loops = result->loops;
       const bool is_told = result->note.empty() || !noted.insert(clip.clip).second;
       if (!is_told) out.notes.push_back(clip.clip + ": " + result->note);
-      if (!result->hidden.empty()) out.notes.push_back(of.name + " " + clip.clip + ": " + result->hidden);
+      if (!result->unseen.empty()) out.notes.push_back(of.name + " " + clip.clip + ": " + result->unseen);
       by.events(judged, *result, of.rules);
       count(out.summary, judged);
     }

@@ -150,7 +150,7 @@ ExitCode run_play(const PlayOptions& options) {
   }
   for (std::size_t c = 0; c < hidden.size(); ++c) {
     const std::string& clip = animated.clips()[c].name;
-    const std::string text = hidden[c].text();
+    const std::string text = unseen_text(hidden[c], animated.clips()[c]);
     if (!text.empty()) add_note(options.source + ": " + (clip.empty() ? text : clip + ": " + text));
   }
   say("{}{}\n{}\n{}(radius {}, refit {}, backend {})\n", frames_text(animated), contacts.text(options.motion.name()),

@@ -10,13 +10,13 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <optional>
 #include <set>
 
 #include "check/clip_check.h"
 #include "fix/find_faults.h"
 #include "fix/goals.h"
 #include "fix/joints.h"
+#include "fix/obstacle.h"
 #include "fix/part_joints.h"
 #include "fix/pins.h"
 #include "fix/pushes.h"
@@ -400,8 +400,7 @@ class Mender {
     for (const auto& [e, reason] : reasons) goals_.events[e].outcome = reason;
   }
 
-  // Why an event is about as deep as it was: its limb is tried out again in the worst frame, with more and more
-  // freedom.
+  // Why an event is about as deep as it was.
   Outcome reason_of(std::size_t e) {
     MendedEvent& event = goals_.events[e];
     const auto is_left = [&](const Meeting& m) { return is_fault(m.found.kind) && Goals::is_in(place_of(m), event); };
@@ -412,34 +411,13 @@ class Mender {
     const auto is_open = [&](std::size_t i) {
       return goals_.events[i].outcome != Outcome::kAccepted && goals_.events[i].outcome != Outcome::kFold;
     };
-    LimbInTrouble limb = limb_in_trouble(goals_, parts_, e, is_open);
+    const LimbInTrouble limb = limb_in_trouble(goals_, parts_, e, is_open);
     if (was_out || limb.joints.empty()) return Outcome::kNoWayOut;  // that way was taken back
     told_(fmt::format("asking why frame {} is not free", event.worst));
-    limb.from = limb.to = event.worst;
-    limb.worst = {event.worst};
-    if (needed_turn(clip_, limb, options_.budget_degrees)) return Outcome::kNoWayOut;  // others are not free
-    for (const double budget : {2 * options_.budget_degrees, 90.0, 180.0}) {
-      if (budget <= options_.budget_degrees) continue;
-      const std::optional<double> needed = needed_turn(clip_, limb, budget);
-      if (!needed) continue;
-      event.needed_degrees = *needed;
-      return Outcome::kOverBudget;
-    }
-    std::vector<TurningJoint> free = clip_.joints();
-    for (TurningJoint& joint : free) joint.hinge.reset();
-    const TurnedClip without_limits(clip_.rig(), clip_.clip(), clip_.fps(), clip_.frames(), std::move(free));
-    return needed_turn(without_limits, limb, 180) ? Outcome::kJointLimits : Outcome::kNoWayOut;
-  }
-
-  // The farthest that a joint turns, in degrees, where the limb's one frame becomes free within the budget.
-  std::optional<double> needed_turn(const TurnedClip& clip, const LimbInTrouble& limb, double budget_degrees) {
     const auto judge = [&](const std::vector<TriedPose>& poses) { return left_in(poses, limb); };
-    const Turns still(turns_.size(), Vec3::Zero());
-    const std::vector<Vec3> turns = find_way_out(clip, limb, radians(budget_degrees), still, judge).at(limb.from);
-    if (judge({{limb.from, turns}})[0] > 0) return {};
-    double most = 0;
-    for (const Vec3& turn : turns) most = std::max(most, turn.norm());
-    return most * 180 / std::numbers::pi;
+    const Obstacle obstacle = find_obstacle(clip_, limb, event.worst, options_.budget_degrees, judge);
+    event.needed_degrees = obstacle.needed_degrees;
+    return obstacle.outcome;
   }
 
   // How much of a limb is in others in each pose; heights.

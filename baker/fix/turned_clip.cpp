@@ -90,11 +90,13 @@ TurnedClip::TurnedClip(const SourceRig& rig, const Clip& clip, double fps, int f
 
 Vec3 TurnedClip::within_limits(int frame, Index joint, Vec3 turn, double most) const {
   constexpr double kSlack = 0.01;  // radians
-  if (turn.norm() > most) turn *= most / turn.norm();
+  const auto at_most = [&](const Vec3& v) { return v.norm() > most ? Vec3(most / v.norm() * v) : v; };
+  turn = at_most(turn);
   const std::optional<Hinge>& hinge = joints_[joint].hinge;
   if (!hinge) return turn;
   const double bend = hinge->bend(turned(rotations_[joint][static_cast<std::size_t>(frame)], turn));
-  return turn + (std::clamp(bend, hinge->least - kSlack, hinge->most + kSlack) - bend) * hinge->axis;
+  const double allowed = std::clamp(bend, hinge->least - kSlack, hinge->most + kSlack);
+  return at_most(turn + (allowed - bend) * hinge->axis);
 }
 
 std::vector<Index> TurnedClip::joints_above(Index node) const {

@@ -48,4 +48,15 @@ std::string HiddenJoints::text() const {
   return out;
 }
 
+std::string unseen_text(const HiddenJoints& hidden, const ClipFrames& clip) {
+  const std::string out = hidden.text();
+  if (clip.clip == nullptr || clip.own_count > 1) return out;
+  std::size_t keys = 0;
+  for (const Channel& channel : clip.clip->channels) keys = std::max(keys, channel.times.size());
+  if (keys < 3) return out;
+  return out + (out.empty() ? "" : "; ") +
+         fmt::format("lasts {:.2g} s, so one of its {} keys is looked at (are its times in seconds?)",
+                     clip.clip->duration, keys);
+}
+
 }  // namespace spherechain::baker

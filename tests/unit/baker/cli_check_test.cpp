@@ -47,10 +47,10 @@ const std::string& shared_cache() {
   return option;
 }
 
-struct Library {
+struct PlantedLibrary {
   TemporaryFolder folder;
   fs::path file;
-  explicit Library(const std::vector<PlantedClip>& clips = kClips)
+  explicit PlantedLibrary(const std::vector<PlantedClip>& clips = kClips)
       : file(folder.write("hero.glb", planted_character(clips))) {}
 
   std::string report() const { return (folder.path / "report").string(); }
@@ -95,7 +95,7 @@ std::string squeezed(std::string text) {
 }  // namespace
 
 TEST_CASE("check reports planted faults: parts, frames and depth") {
-  const Library library;
+  const PlantedLibrary library;
   const tool::Run run = library.check("--json " + library.path("all.json"));
   CHECK_MESSAGE(run.code == 6, run.error);
   CHECK(squeezed(run.out).find("hero.glb dip frames 2-5 ball in wall 200 mm (worst at 4)\n") != std::string::npos);
@@ -127,7 +127,7 @@ TEST_CASE("check reports planted faults: parts, frames and depth") {
 }
 
 TEST_CASE("check fails by its rules and its baseline alone") {
-  Library library;
+  PlantedLibrary library;
   const std::string baseline = " --baseline " + library.path("baseline.json"),
                     json_file = " --json " + library.path("all.json");
   CHECK(library.check(" --fail-on none").code == 0);
@@ -182,7 +182,7 @@ TEST_CASE("check fails by its rules and its baseline alone") {
 
 TEST_CASE("--accept drops an entry of a baseline only if its fault was looked for and is gone, and keeps its keys") {
   using nlohmann::ordered_json;
-  Library library;
+  PlantedLibrary library;
   const std::string file = library.path("baseline.json"), accept = " --accept --baseline " + file;
   REQUIRE(library.check(accept).code == 0);
   ordered_json baseline = {{"about", {{"reviewed by", "Ann"}}}};
@@ -223,7 +223,7 @@ TEST_CASE("--accept drops an entry of a baseline only if its fault was looked fo
 }
 
 TEST_CASE("what is wrong with a baseline, rules or a manifest is told by file, entry and key") {
-  const Library library({kClips[1]});
+  const PlantedLibrary library({kClips[1]});
   const std::string file = library.path("baseline.json");
   REQUIRE(library.check(" --accept --baseline " + file).code == 0);
   const json good = library.read("baseline.json");
@@ -276,7 +276,7 @@ TEST_CASE("what is wrong with a baseline, rules or a manifest is told by file, e
 TEST_CASE("check and play say which joint a scale of 0 hides, and in how many frames") {
   const std::vector<PlantedClip> hidden{{"gone", {200, 200, -50, -50, -50}, false, {}, {0, 0, 1, 1, 1}},
                                         {"small", {-50, -50}, false, {}, {1, 0.01}}};
-  const Library library(hidden);
+  const PlantedLibrary library(hidden);
   const std::string asset = library.path("hero.sphc"), note = "gone: 'ball' has a scale of 0 in 2 of 5 frames";
   const tool::Run check = library.check("--fail-on none");
   CHECK(check.out.find("note: hero.glb " + note) != std::string::npos);
@@ -287,8 +287,19 @@ TEST_CASE("check and play say which joint a scale of 0 hides, and in how many fr
   CHECK(play.error.find("small") == std::string::npos);
 }
 
+TEST_CASE("check and play say which clip is over before its second frame") {
+  const PlantedLibrary library(
+      {{"brief", {-50, 90, 90}, false, {}, {}, 1e-3F}, {"pose", {-50, -50}, false, {}, {}, 1e-3F}});
+  const std::string asset = library.path("hero.sphc"), note = "brief: lasts 6.7e-05 s, so one of its 3 keys is looked";
+  CHECK(library.check("").out.find("note: hero.glb " + note) != std::string::npos);
+  REQUIRE(tool::run("bake " + library.file.string() + " -o " + asset).code == 0);
+  const tool::Run play = tool::run("play " + asset + " --source " + library.file.string());
+  CHECK(play.error.find(library.file.string() + ": " + note) != std::string::npos);
+  CHECK(play.error.find("pose") == std::string::npos);
+}
+
 TEST_CASE("check, play and fix name two parts in one order, and play the way of the first") {
-  const Library library({kClips[1]});
+  const PlantedLibrary library({kClips[1]});
   const std::string asset = library.path("hero.sphc");
   CHECK(library.check("").out.find("ball in wall") != std::string::npos);
   REQUIRE(tool::run("bake " + library.file.string() + " -o " + asset).code == 0);
@@ -299,7 +310,7 @@ TEST_CASE("check, play and fix name two parts in one order, and play the way of 
 }
 
 TEST_CASE("pictures and heat maps show what the rules leave") {
-  const Library library;
+  const PlantedLibrary library;
   const auto page = [&](const std::string& more) {
     library.check(more);
     const std::string text = tool::contents(library.folder.path / "report/library.js");
@@ -318,7 +329,7 @@ TEST_CASE("pictures and heat maps show what the rules leave") {
 }
 
 TEST_CASE("check deletes and replaces in its folder only what it wrote there itself") {
-  const Library library;
+  const PlantedLibrary library;
   const fs::path report = library.report(), folder = library.folder.path;
   const auto refused = [&](const std::string& to, const std::string& part) {
     tool::check_error(tool::run(fmt::format("check {} -o {} {}", library.file.string(), to, shared_cache())), 3,
@@ -382,7 +393,7 @@ TEST_CASE("check deletes and replaces in its folder only what it wrote there its
 }
 
 TEST_CASE("two checks into one report at a time are both right; one that is killed leaves nothing of its own") {
-  const Library library;
+  const PlantedLibrary library;
   const fs::path report = library.report();
   const std::string check = fmt::format("check {} -o {}", library.file.string(), report.string());
   const tool::Run run = tool::run(
@@ -404,7 +415,7 @@ TEST_CASE("two checks into one report at a time are both right; one that is kill
 }
 
 TEST_CASE("one bad file stops nothing") {
-  const Library library;
+  const PlantedLibrary library;
   library.folder.write("broken.glb", planted_character(kClips).substr(0, 200));
   library.folder.write("empty.fbx", "");
   const tool::Run run =
@@ -427,7 +438,7 @@ TEST_CASE("one bad file stops nothing") {
 }
 
 TEST_CASE("faults that are accepted stay so, whatever bytes a name holds") {
-  const Library library;
+  const PlantedLibrary library;
   const fs::path folder = library.folder.path / "lib";
   fs::create_directory(folder);
   std::ofstream(folder / "caf\xe9.glb") << planted_character({{"dip", {-10, 80, -10}}});
@@ -465,7 +476,7 @@ TEST_CASE("a file that changes while it is read is not called broken") {
 }
 
 TEST_CASE("results that somebody deletes while check runs are lost, and no character is called broken") {
-  const Library library({{"dip", {-10, 80, -10}}});
+  const PlantedLibrary library({{"dip", {-10, 80, -10}}});
   baker::RunOptions options;
   const auto read = baker::read_library({library.file.string()}, "", baker::default_config()).characters;
   for (const std::string when : {"baking", "checking"}) {
@@ -483,7 +494,7 @@ TEST_CASE("results that somebody deletes while check runs are lost, and no chara
 }
 
 TEST_CASE("nothing is computed that is in the cache, whatever killed the run that made it") {
-  const Library library;
+  const PlantedLibrary library;
   const std::string command = fmt::format("check {} -o {} --cache {} --json {}", library.file.string(),
                                           library.report(), library.path("cache"), library.path("all.json"));
   for (int i = 0; i < 12; ++i) {
@@ -502,7 +513,7 @@ TEST_CASE("nothing is computed that is in the cache, whatever killed the run tha
 }
 
 TEST_CASE("a damaged file of the cache is as good as none, and is made again") {
-  const Library library({kClips[1]});
+  const PlantedLibrary library({kClips[1]});
   const auto check = [&](const std::string& more) {
     return tool::run(fmt::format("check {} -o {} --cache {} --jobs 1 {} --json {}", library.file.string(),
                                  library.report(), library.path("cache"), more, library.path("all.json")));
@@ -537,7 +548,7 @@ TEST_CASE("a damaged file of the cache is as good as none, and is made again") {
 }
 
 TEST_CASE("a link to nothing and a bad baseline are told, the baseline before any work") {
-  const Library library({kClips[1]});
+  const PlantedLibrary library({kClips[1]});
   fs::create_symlink("nowhere", library.folder.path / "gone.glb");
   const tool::Run run = tool::run(
       fmt::format("check {} -o {} {} --fail-on none", library.folder.path.string(), library.report(), shared_cache()));
@@ -552,7 +563,7 @@ TEST_CASE("a link to nothing and a bad baseline are told, the baseline before an
 }
 
 TEST_CASE("merged shards are what one machine makes, byte for byte") {
-  const Library library;
+  const PlantedLibrary library;
   library.folder.write("second.glb", planted_character({{"dip", {-10, 80, -10}}}));
   library.folder.write("third.glb", "no character");
   const std::string all =
@@ -572,7 +583,7 @@ TEST_CASE("merged shards are what one machine makes, byte for byte") {
 }
 
 TEST_CASE("check --continuous finds what passes through between two frames, and when") {
-  const Library library(kThrough);
+  const PlantedLibrary library(kThrough);
   REQUIRE(library.check("--json " + library.path("frames.json")).code == 0);
   CHECK(library.read("frames.json")["summary"]["events"] == 0);
   const tool::Run run = library.check("--continuous --json " + library.path("between.json"));
@@ -595,7 +606,7 @@ TEST_CASE("check --continuous finds what passes through between two frames, and 
 }
 
 TEST_CASE("check --continuous follows the clip's keys between two frames") {
-  const Library library(kDetour);
+  const PlantedLibrary library(kDetour);
   REQUIRE(library.check("--fps 15 --json " + library.path("frames.json")).code == 0);
   const tool::Run run = library.check("--fps 15 --continuous --json " + library.path("between.json"));
   CHECK(run.code == 6);

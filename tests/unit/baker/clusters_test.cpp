@@ -353,7 +353,7 @@ TEST_CASE("over poses and clips the runtime puts every vertex where skinning doe
     const PoseMotion poses =
         read_pose_motion(std::string(SPHERECHAIN_SAMPLES) + "/poses/" + name, baked_human().joints);
     const BezierMotion motion(baked_human().joints, baked_human().regions.frame, poses);
-    for (int i = 0; i < 10; ++i) frames.push_back(motion.at(i / 9.0));
+    for (int i = 0; i < 4; ++i) frames.push_back(motion.at(i / 3.0));
   }
   const Checked human = check_frames(baked_human(), frames);
   report("human, poses", human, baked_human().regions.frame.height);
@@ -361,7 +361,7 @@ TEST_CASE("over poses and clips the runtime puts every vertex where skinning doe
   frames.clear();
   for (const Clip& clip : baked_person().character.rig.clips) {
     const ClipMotion motion(baked_person().character.rig, {&clip});
-    for (int i = 0; i < 14; ++i) frames.push_back(motion.at(i / 13.0));
+    for (int i = 0; i < 5; ++i) frames.push_back(motion.at(i / 4.0));
   }
   const Checked person = check_frames(baked_person(), frames);
   report("person, clips", person, baked_person().regions.frame.height);

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "fix/joints.h"
+#include "fix/obstacle.h"
 #include "fix/part_joints.h"
 #include "fix/pins.h"
 #include "fix/solve.h"
@@ -179,6 +180,11 @@ TEST_CASE("mend: an elbow bends, but not backward") {
   CHECK(std::abs(hinge.dot(s.turned.within_limits(0, 0, -0.3 * hinge, 1)) + straight) < 0.02);  // it is straight then
   CHECK(hinge.dot(s.turned.within_limits(kClipFrames - 1, 0, -0.3 * hinge, 1)) == doctest::Approx(-0.3));
   CHECK(s.turned.within_limits(kClipFrames - 1, 0, 0.3 * hinge, 0.1).norm() == doctest::Approx(0.1));
+  // A turn aside bends it backward, too: straightened, it still turns no farther than allowed.
+  for (int aside = 0; aside < 12; ++aside) {
+    const Vec3 out = Eigen::AngleAxisd(30 * kDegree * aside, upper) * Vec3(hinge);
+    CHECK(s.turned.within_limits(0, 0, 3 * out, 0.5).norm() < 0.5 + 1e-9);
+  }
 }
 
 TEST_CASE("mend: a way out turns as little as it must, and changes sides only where it must") {
@@ -214,6 +220,32 @@ TEST_CASE("mend: a way out turns as little as it must, and changes sides only wh
   for (const auto& [frame, turns] : find_way_out(s.turned, limb, 25 * kDegree, s.turns, never)) {
     CHECK(turns[0].z() == doctest::Approx(25 * kDegree).epsilon(0.01));
   }
+}
+
+TEST_CASE("mend: it says why a limb stays where it is") {
+  const Sticks s({"forearm.L"});
+  REQUIRE(s.joints[0].hinge);
+  const Vec3 hinge = s.joints[0].hinge->axis, along = sticks().rig.nodes[node("hand.L")].translation.normalized();
+  const LimbInTrouble limb{{0}, {0}, {}, 10, 40, {25}};
+  // The limb is free once the forearm points so many degrees forward; backward where they are negative.
+  const auto obstacle_of = [&](double degrees) {
+    const Vec3 wanted = (degrees < 0 ? -1 : 1) * hinge.cross(along);
+    return find_obstacle(s.turned, limb, 25, 25, [&](const std::vector<TriedPose>& poses) {
+      std::vector<double> out;
+      for (const TriedPose& pose : poses) {
+        const Vec3 turn = pose.turns[0], now = Eigen::AngleAxisd(turn.norm(), turn.stableNormalized()) * along;
+        out.push_back(std::max(0.0, std::sin(std::abs(degrees) * kDegree) - now.dot(wanted)));
+      }
+      return out;
+    });
+  };
+  CHECK(obstacle_of(20).outcome == Outcome::kNoWayOut);  // it is free alone: another limb is in its way
+  CHECK(obstacle_of(40).outcome == Outcome::kOverBudget);
+  CHECK(obstacle_of(40).needed_degrees >= 40);
+  CHECK(obstacle_of(40).needed_degrees < 50);
+  CHECK(obstacle_of(-60).outcome == Outcome::kJointLimits);
+  const auto never = [](const std::vector<TriedPose>& poses) { return std::vector<double>(poses.size(), 1); };
+  CHECK(find_obstacle(s.turned, limb, 25, 25, never).outcome == Outcome::kNoWayOut);
 }
 
 TEST_CASE("mend: a joint that shakes is seen and smoothed; one that swings is let be") {

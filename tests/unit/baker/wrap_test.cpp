@@ -6,7 +6,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <functional>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -109,7 +108,7 @@ constexpr Expectation kWrappedWell{BodySource::kWrapped, 0.95, 0.006, 0.03};
 // Only what was broken changed.
 constexpr Expectation kRepairedWell{BodySource::kRepaired, 0.995, 0.002, 0.01};
 
-void check(const std::string& name, const BrokenBody& broken, const Expectation& expected) {
+Closed check(const std::string& name, const BrokenBody& broken, const Expectation& expected) {
   CAPTURE(name);
   const Closed closed = close(broken.source, name);
   CHECK(closed.report.body == expected.body);
@@ -138,6 +137,7 @@ void check(const std::string& name, const BrokenBody& broken, const Expectation&
                   "pairs ignored, {} wraps",
                   name, 100 * equal, 100 * distance.mean, 100 * distance.max, binding.ignored.size(),
                   binding.spheres.size() * (binding.spheres.size() - 1) / 2, closed.report.wraps));
+  return closed;
 }
 
 SourceMesh random_triangles(std::size_t count, double size, unsigned seed) {
@@ -210,26 +210,6 @@ TEST_CASE("a closed surface of one piece is left as it is") {
   CHECK(closed.regions.of_triangle == human().regions.of_triangle);
 }
 
-TEST_CASE("cracks, T-junctions, flipped faces and holes are repaired one by one, and nothing else changes" *
-          doctest::test_suite("many bakes")) {
-  using Break = std::function<void(BrokenBody&)>;
-  const std::vector<std::pair<std::string, Break>> cases{
-      {"5 % of the faces flipped", [](BrokenBody& b) { flip(b, 0.05); }},
-      {"5 % of the faces split on one side", [](BrokenBody& b) { split_one_side(b, 0.05); }},
-      {"2 % of the faces missing", [](BrokenBody& b) { punch(b, 0.02); }},
-      {"a hole in the chest",
-       [](BrokenBody& b) {
-         cut_hole(b, {0, 0.7, 0.2}, 0.02);
-       }},
-      {"torn by rounding", [](BrokenBody& b) { tear(b, 2e-5); }},
-  };
-  for (const auto& [name, change] : cases) {
-    BrokenBody broken = intact_body();
-    change(broken);
-    check(name, broken, kRepairedWell);
-  }
-}
-
 TEST_CASE("a body that is cracked, split, flipped and full of holes at once is repaired") {
   BrokenBody broken = intact_body();
   cut_hole(broken, {0, 0.7, 0.2}, 0.02);
@@ -238,12 +218,6 @@ TEST_CASE("a body that is cracked, split, flipped and full of holes at once is r
   tear(broken, 1e-5);
   flip(broken, 0.05);
   check("all of it", broken, kRepairedWell);
-}
-
-TEST_CASE("a body in 60 pieces with gaps between them is wrapped" * doctest::test_suite("many bakes")) {
-  BrokenBody broken = intact_body();
-  cut_into_pieces(broken, 60, 0.03);
-  check("60 pieces", broken, kWrappedWell);
 }
 
 TEST_CASE("a body in 400 pieces with gaps between them, some flipped, is wrapped" * doctest::test_suite("many bakes")) {
@@ -287,7 +261,7 @@ TEST_CASE("a limb cut off and left open is still said to be missing" * doctest::
 }
 
 TEST_CASE("triangles that are no character are refused with a sentence" * doctest::test_suite("many bakes")) {
-  for (const auto& [count, size] : {std::pair<std::size_t, double>(1, 1), {2, 0.5}, {300, 0.03}, {300, 1}}) {
+  for (const auto& [count, size] : {std::pair<std::size_t, double>(2, 0.5), {300, 0.03}, {300, 1}}) {
     CAPTURE(count);
     CAPTURE(size);
     try {
@@ -355,10 +329,11 @@ TEST_CASE("surfaces that share an edge are taken apart there, and a hole is clos
   CHECK(std::count(stitched.of_triangle.begin(), stitched.of_triangle.end(), kNoIndex) == 1);
 }
 
-TEST_CASE("what is found in pieces does not depend on units, pose or order" * doctest::test_suite("many bakes")) {
+TEST_CASE("a body in 60 pieces is wrapped, and what is found depends on no unit, pose or order" *
+          doctest::test_suite("many bakes")) {
   BrokenBody broken = intact_body();
   cut_into_pieces(broken, 60, 0.03);
-  const Closed before = close(broken.source);
+  const Closed before = check("60 pieces", broken, kWrappedWell);
   const Eigen::Matrix3d turn = Eigen::AngleAxisd(2.1, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   const Vec3 moved(300, -200, 500);
   SourceMesh other = broken.source;
