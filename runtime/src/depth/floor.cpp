@@ -5,7 +5,8 @@
 
 #include "asset/memory.h"
 #include "asset/status.h"
-#include "depth/measure.h"
+#include "depth/posed_skin.h"
+#include "depth/rule.h"
 #include "pairs/filter.h"
 #include "simd/simd.h"
 #include "skin/scene_setup.h"
@@ -158,8 +159,7 @@ class Measurer {
     }
     const AssetInfo info = asset_.info();
     const double scale = scale_of(asset_, job_.body.pose), height = scale * double{info.height};
-    const double touch =
-        job_.touch_depth > 0 ? double{job_.touch_depth} : touch_depth_of(scale / double{info.metres_per_unit}, height);
+    const double touch = touch_depth_of(rule_of(job_.touch_depth), scale / double{info.metres_per_unit}, height);
     out.part_a = SC_FLOOR;
     out.part_b = static_cast<std::uint32_t>(part);
     out.depth = std::max(static_cast<float>(-deepest), static_cast<float>(1e-7 * height));

@@ -5,22 +5,15 @@
 #include <algorithm>
 
 #include "asset/status.h"
+#include "depth/rule.h"
 #include "depth/visibility.h"
 #include "depth/way_out.h"
 
 namespace spherechain {
 namespace {
 
-// Lengths are parts of the character's height, but those in metres.
-constexpr double kTouchMetres = 0.003, kTouchMin = 0.0019, kTouchMax = 0.0066;
-constexpr double kTouchMost = 10;                       // times: no touch is deeper
-constexpr double kSwallowed = 0.25;                     // less of the smaller part is seen to go in: it touches
-constexpr double kHidden = 0.3;                         // less of the contour is visible: it is hidden
+// Lengths are shares of the character's height, except where they are in metres.
 constexpr double kGapMetres = 0.0006, kGapMax = 0.001;  // shorter free places on the way are none
-constexpr double kFoldDistance = 0.11;                  // of two spots at rest, to be a fold
-constexpr double kNeighbourDistance = 0.055;            // likewise, whatever the parts are
-constexpr double kShellDistance = 0.035;                // likewise, to be layers of the same place
-constexpr double kDeepFold = 0.045, kFoldFacing = 0.2;
 constexpr double kNear = 0.006;
 constexpr double kClearance = 3e-4;
 constexpr std::uint64_t kCovered = std::uint64_t{1} << 31;  // bit of a contact's place in its list
@@ -63,6 +56,7 @@ class Measurer {
         rest_height_(double{in.a.asset->info().height}),
         height_(rest_height_ * scale_of(*in.a.asset, in.a.pose)),
         metre_(height_ / rest_height_ / double{in.a.asset->info().metres_per_unit}),
+        rule_(rule_of(in.touch_depth)),
         memory_(in.are_one),
         sweep_(memory_.skins, in.rule, std::min(kGapMetres * metre_, kGapMax * height_)) {
     memory_.own.surface = in.a.surface;
@@ -215,10 +209,11 @@ class Measurer {
     set_sides(all, contour.center, part_a, part_b);
     const Double3 previous = previous_direction(part_a, part_b);
     const bool has_previous = dot(previous, previous) > 0 && std::isfinite(dot(previous, previous));
-    const bool folds = in_.are_one && is_fold(contour, part_a, part_b);
+    Measures measures = measures_of(contour, part_a, part_b);
+    const double deep = is_fold(rule_, measures) ? rule_.deep_fold * height_ : 0;
     const Exit exit = find_exit(sweep_, contour,
-                                {in_.quick, kNear * height_, folds ? kDeepFold * height_ : 0,
-                                 are_joined(part_a, part_b), has_previous && !in_.quick ? &previous : nullptr});
+                                {in_.quick, kNear * height_, deep, are_joined(part_a, part_b),
+                                 has_previous && !in_.quick ? &previous : nullptr});
     Penetration out{};
     out.part_a = static_cast<std::uint32_t>(part_a);
     out.part_b = static_cast<std::uint32_t>(part_b);
@@ -241,14 +236,19 @@ class Measurer {
       Double3 axes[3];
       axes_of(contour, exit.direction, axes);
       seen = memory_.visibility.look(contour, axes, kClearance * height_);
-      if (seen.share < kHidden && segments.size < all.size) {  // in sight below an open coat?
+      if (seen.share < rule_.hidden && segments.size < all.size) {  // in sight below an open coat?
         const Seen below = memory_.visibility.look(contour_of(memory_.skins, all, rest_height_, memory_.contour), axes,
                                                    kClearance * height_);
         seen = below.share > seen.share ? below : seen;
       }
     }
     out.visible = static_cast<float>(seen.share);
-    out.kind = class_of(contour, out, seen.length);
+    measures.depth = double{out.depth};
+    measures.visible = double{out.visible};
+    if (depends_on_swallowed(rule_, measures)) {
+      measures.swallowed = swallowed(contour, out, seen.length);
+    }
+    out.kind = classify(rule_, measures);
     return out;
   }
 
@@ -294,13 +294,20 @@ class Measurer {
     return above >= 0 && hangs_on(static_cast<std::size_t>(above), b);
   }
 
-  bool is_fold(const Contour& contour, std::size_t a, std::size_t b) const {
-    if (a == b || are_joined(a, b) || contour.rest_distance < kNeighbourDistance * rest_height_) {
-      return true;  // the last: joints that no bones name
-    }
-    const bool are_near = hangs_twice(a, b) || hangs_twice(b, a);
-    const bool lie_close = are_near && (contour.facing > kFoldFacing || !contour.is_one_piece);
-    return (are_siblings(a, b) || lie_close) && contour.rest_distance < kFoldDistance * rest_height_;
+  Measures measures_of(const Contour& contour, std::size_t a, std::size_t b) const {
+    const Relation relation = !in_.are_one                             ? Relation::kApart
+                              : a == b || are_joined(a, b)             ? Relation::kJoined
+                              : are_siblings(a, b)                     ? Relation::kSiblings
+                              : hangs_twice(a, b) || hangs_twice(b, a) ? Relation::kNear
+                                                                       : Relation::kApart;
+    return {height_,
+            metre_,
+            relation,
+            !in_.are_one,
+            contour.is_one_piece,
+            contour.rest_distance / rest_height_,
+            contour.touching,
+            contour.facing};
   }
 
   // How far a part's skin goes on from a point on it, into that direction.
@@ -322,8 +329,7 @@ class Measurer {
     return least;
   }
 
-  // How much of the thinner and smaller of two parts is seen to go into the other: what share of its thickness, times
-  // the length of the contour that is in sight, in lengths of the side of a square as large as the part's skin.
+  // See Measures.
   double swallowed(const Contour& contour, const Penetration& of, double seen_length) const {
     const double scale_a = height_ / rest_height_;
     const double scale_b = in_.are_one ? scale_a : scale_of(*in_.b.asset, in_.b.pose);
@@ -341,40 +347,16 @@ class Measurer {
     return double{of.depth} / thin * seen_length / side;
   }
 
-  PenetrationClass class_of(const Contour& contour, const Penetration& of, double seen_length) const {
-    const bool has_limit = in_.touch_depth > 0;
-    const double touch = has_limit ? double{in_.touch_depth} : touch_depth_of(metre_, height_);
-    if (2 * contour.touching >= 1) {
-      return SC_CLASS_REST;
-    }
-    if (double{of.visible} < kHidden ||
-        (!contour.is_one_piece && contour.rest_distance < kShellDistance * rest_height_)) {
-      return SC_CLASS_SHELL;
-    }
-    if (of.depth < touch) {
-      return SC_CLASS_TOUCH;
-    }
-    if (in_.are_one && is_fold(contour, of.part_a, of.part_b)) {
-      return of.depth > kDeepFold * height_ && contour.is_one_piece ? SC_CLASS_DEEP_FOLD : SC_CLASS_FOLD;
-    }
-    const bool may_touch = !has_limit && of.depth < kTouchMost * touch;
-    return may_touch && !(swallowed(contour, of, seen_length) >= kSwallowed) ? SC_CLASS_TOUCH : SC_CLASS_PENETRATION;
-  }
-
   const Meeting& in_;
   const Surface &surface_a_, &surface_b_;
   double rest_height_, height_, metre_;  // at rest; in the pose
+  Rule rule_;
   Memory memory_;
   Sweep sweep_;
   bool has_outer_layers_ = false;  // of the two parts that are measured: covered triangles do not count
 };
 
 }  // namespace
-
-// Files without a unit make giants and dwarfs.
-double touch_depth_of(double metre, double height) {
-  return std::min(std::max(kTouchMetres * metre, kTouchMin * height), kTouchMax * height);
-}
 
 std::size_t measure_words(const AssetView& a, const AssetView& b, bool are_one, std::size_t contact_count) {
   Memory memory(are_one);

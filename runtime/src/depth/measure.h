@@ -26,9 +26,6 @@ struct Meeting {
   Span<Penetration> out;
 };
 
-// What is less deep is a touch: 3 mm, but in proportion to files without a unit. `metre`: how long it is.
-double touch_depth_of(double metre, double height);
-
 std::size_t measure_words(const AssetView& a, const AssetView& b, bool are_one, std::size_t contact_count);
 // SC_OK, or SC_BAD_VALUE where one names a triangle that is in no body's skin.
 Status check_contacts(const Meeting& meeting);
