@@ -15,12 +15,18 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// Control characters are none of XML's, and bytes that are not UTF-8 are none of anything.
+// XML has no control characters, nor U+FFFE and U+FFFF, and nothing has bytes that are not UTF-8.
 std::string xml(const std::string& text) {
   std::string clean = json_text(text, -1);  // replaces what is not UTF-8
   clean = ordered_json::parse(clean).get<std::string>();
   std::string out;
-  for (const char c : clean) {
+  for (std::size_t i = 0; i < clean.size(); ++i) {
+    const char c = clean[i];
+    if (clean.compare(i, 3, "\xef\xbf\xbe") == 0 || clean.compare(i, 3, "\xef\xbf\xbf") == 0) {
+      out += ' ';
+      i += 2;
+      continue;
+    }
     switch (c) {
       case '&':
         out += "&amp;";

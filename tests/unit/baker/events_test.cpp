@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Meetings of body parts joined over frames, and what a baseline takes for the same.
+// Meetings of body parts joined over frames, what a baseline takes for the same, and how names reach JUnit.
 #include "check/events.h"
 
 #include <doctest/doctest.h>
 
 #include "check/baseline.h"
+#include "check/formats.h"
 
 namespace bk = spherechain::baker;
 
@@ -126,4 +127,11 @@ TEST_CASE("what is a tenth and a millimetre deeper than what was accepted is wor
   bk::KnownEvent fold = known(0, 1, 20);
   fold.kind = SC_CLASS_DEEP_FOLD;
   CHECK(bk::is_worse(fold, event(0, 30, 20)));
+}
+
+TEST_CASE("a name in JUnit has no character that XML lacks") {
+  bk::Verdict verdict;
+  verdict.clips.emplace_back();
+  verdict.clips[0].character = "a\x01<\xef\xbf\xbe&\xef\xbf\xbf\xff\xef\xbf\xbdz";
+  CHECK(bk::check_junit(verdict).find("classname=\"a &lt; &amp; \xef\xbf\xbd\xef\xbf\xbdz\"") != std::string::npos);
 }
