@@ -132,12 +132,23 @@ Vec3 turning_point(const std::vector<const aiNode*>& chain) {
   return turned.inverse().translation();
 }
 
+// Whether a clip turns a node: rounded keys of one rotation do not.
+bool turns_node(const Channel& channel, const Node& node) {
+  constexpr double kTurned = 1e-3;  // radians
+  if (channel.path != ChannelPath::kRotation) return false;
+  for (std::size_t i = 0; i + 4 <= channel.values.size(); i += 4) {
+    const double* const q = channel.values.data() + i;
+    if (Eigen::Quaterniond(q[3], q[0], q[1], q[2]).angularDistance(node.rotation) > kTurned) return true;
+  }
+  return false;
+}
+
 // Where the nodes turn, if one turns elsewhere than where it is. A pivot that no clip of the file uses says nothing.
 std::vector<Vec3> read_pivots(const AssimpScene& flat, const SourceRig& rig) {
   std::vector<bool> turns(flat.nodes.size(), rig.clips.empty());
   for (const Clip& clip : rig.clips) {
     for (const Channel& channel : clip.channels) {
-      if (channel.path == ChannelPath::kRotation) turns[channel.target] = true;
+      if (turns_node(channel, rig.nodes[channel.target])) turns[channel.target] = true;
     }
   }
   std::vector<Vec3> pivots;

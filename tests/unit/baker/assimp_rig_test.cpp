@@ -297,6 +297,9 @@ TEST_CASE("FBX pivots become part of their node, in its clips too") {
     REQUIRE(held.rig.pivots.size() == (pivot == 0 ? 0 : 3));
     if (pivot != 0) CHECK((held.rig.pivots[1] - expected(0, {1, 0, 0})).norm() < 1e-5);
   }
+  // A pivot that no clip turns about says nothing, and rounded keys are no turn.
+  const std::string still = replaced(replaced(kPivots, "PIVOT", "1,0,0"), "a: 0,90", "a: 0,0.0001");
+  CHECK(read_with_assimp(folder.write("still.fbx", still)).rig.pivots.empty());
 }
 
 TEST_CASE("a Collada file's nodes are called by their names, whether these are unique or not") {
