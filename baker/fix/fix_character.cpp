@@ -30,10 +30,6 @@ bool is_end_of(const std::string& end, const fs::path& path) {
   return count > 0 && count <= all && std::equal(tail.begin(), tail.end(), std::prev(whole.end(), count));
 }
 
-bool is_still(const Mend& mend) {
-  return std::all_of(mend.turns.begin(), mend.turns.end(), [](const Vec3& turn) { return turn.isZero(0); });
-}
-
 Clip with_rotations(Clip clip, const std::vector<Channel>& channels) {
   for (const Channel& channel : channels) {
     const auto found = std::find_if(clip.channels.begin(), clip.channels.end(), [&](const Channel& own) {
@@ -177,7 +173,7 @@ class Fixer {
     mended.others = static_cast<int>(
         std::erase_if(mended.mend.events, [&](const MendedEvent& event) { return !is_asked_for(event_of(event)); }));
     std::vector<Channel> turned;
-    if (!is_still(mended.mend)) {
+    if (!mended.mend.is_still()) {
       const TurnedClip with_turns(rig(), *clip.clip, clip.fps, clip.own_count, mended.mend.joints);
       turned = turned_channels(with_turns, mended.mend.turns, mended.mend.in_window);
     }

@@ -105,9 +105,10 @@ std::vector<std::string> fix_library(const std::vector<LibraryCharacter>& librar
                        const FixedCharacter fixed = fix_character(job, [](const std::string&) {});
                        make_folder_of(file);
                        write_atomically(file, fixed.bytes);
-                       tell(fix_line(fixed.clips));
+                       tell(fmt::format("{}mended {}: {}", changes_any(fixed.clips) ? "" : "not ", file.string(),
+                                        fix_line(fixed.clips)));
                      },
-                     [&line, file](const std::string& told) { line = "mended " + file.string() + ": " + told; },
+                     [&line](const std::string& told) { line = told; },
                      [&line, &job, &done](const Ending& ending) {
                        if (!ending.failure.empty()) {
                          const bool is_named = ending.failure.starts_with(job.input + ":");

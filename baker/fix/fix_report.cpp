@@ -159,6 +159,10 @@ std::string fix_line(const std::vector<MendedClip>& clips) {
   return out;
 }
 
+bool changes_any(const std::vector<MendedClip>& clips) {
+  return !std::all_of(clips.begin(), clips.end(), [](const MendedClip& clip) { return clip.mend.is_still(); });
+}
+
 bool leaves_faults(const std::vector<MendedClip>& clips) {
   return std::any_of(clips.begin(), clips.end(), [](const MendedClip& clip) {
     return std::any_of(clip.mend.events.begin(), clip.mend.events.end(), [](const MendedEvent& e) {

@@ -24,6 +24,9 @@ std::string fix_text(const std::vector<MendedClip>& clips, const std::vector<Bod
 // The same of a whole character in a line: "3 clips, 7 events: 6 cleared, 1 fold".
 std::string fix_line(const std::vector<MendedClip>& clips);
 
+// Whether a joint turns in one of them.
+bool changes_any(const std::vector<MendedClip>& clips);
+
 // Whether an event is left that could have been expected to be cleared.
 bool leaves_faults(const std::vector<MendedClip>& clips);
 

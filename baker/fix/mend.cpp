@@ -107,7 +107,11 @@ class Mender {
     take_the_best_rounds();
     calm_down();
     finder_.leave_out({});
-    const std::vector<Meeting> after = take_back_what_fails();
+    std::vector<Meeting> after = take_back_what_fails();
+    if (take_back_what_gains_nothing()) {
+      after = look_again();
+      judge_events(after);
+    }
     finder_.leave_out(goals_.harmless());
     explain_what_is_left();
     finish(after, out);
@@ -366,6 +370,28 @@ class Mender {
     std::vector<Meeting> after = look_again();
     judge_events(after);
     return after;
+  }
+
+  // Of what lies together in time, where no event is cleared or reduced. False where nothing turned there.
+  bool take_back_what_gains_nothing() {
+    bool turned = false;
+    for (const std::vector<std::size_t>& span : spans_of(in_window_, loops_)) {
+      const auto gains = [&](const MendedEvent& event) {
+        const bool is_better = event.outcome == Outcome::kCleared || event.outcome == Outcome::kReduced;
+        const auto is_in = [&](std::size_t f) {
+          return f >= static_cast<std::size_t>(event.from) && f <= static_cast<std::size_t>(event.to);
+        };
+        return is_better && std::any_of(span.begin(), span.end(), is_in);
+      };
+      if (std::any_of(goals_.events.begin(), goals_.events.end(), gains)) continue;
+      for (const std::size_t f : span) {
+        for (std::size_t i = f * clip_.count(); i < (f + 1) * clip_.count(); ++i) {
+          turned = turned || !turns_[i].isZero(0);
+          turns_[i].setZero();
+        }
+      }
+    }
+    return turned;
   }
 
   bool turns_in(const MendedEvent& event, Index joint) const {

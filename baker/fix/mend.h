@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <functional>
 #include <string>
@@ -47,6 +48,10 @@ struct Mend {
   // Of faults that were to be mended, as far as their contours close; cm3, summed over frames.
   double volume_before = 0, volume_after = 0;
   int rounds = 0;
+
+  bool is_still() const {
+    return std::all_of(turns.begin(), turns.end(), [](const Vec3& turn) { return turn.isZero(0); });
+  }
 };
 
 // Turns joints so that what is a fault in a clip's frames, and between them, is none any more; feet stay where they
