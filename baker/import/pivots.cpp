@@ -16,10 +16,11 @@ void add_weighted(Weighted& sum, const Vec3& position, double weight) {
   sum.second += weight;
 }
 
-// Whether joints are bound near one place, and most of the skin that they move is elsewhere.
+// Whether all joints are bound near one place, or half of them at one, and most of the skin that these move is
+// elsewhere.
 bool are_bound_elsewhere(const SourceRig& rig, const std::vector<Vec3>& positions) {
   std::vector<Weighted> moved(rig.bones.size(), {Vec3::Zero(), 0});
-  Eigen::AlignedBox3d skin, joints;
+  Eigen::AlignedBox3d skin;
   for (std::size_t v = 0; v < rig.weights.size(); ++v) {
     skin.extend(positions[v]);
     for (std::size_t k = 0; k < kMaxInfluences; ++k) {
@@ -27,21 +28,35 @@ bool are_bound_elsewhere(const SourceRig& rig, const std::vector<Vec3>& position
       if (weight > 0) add_weighted(moved[rig.weights[v].joint[k]], positions[v], weight);
     }
   }
-  std::size_t count = 0;
-  double away = 0;  // sum of distances from joints to their skin
+  std::vector<std::pair<Vec3, double>> joints;  // their places, and how far from these their skin is
   for (std::size_t b = 0; b < rig.bones.size(); ++b) {
     const Affine& bind = rig.bones[b].inverse_bind;
     if (!(moved[b].second > 0) || !(std::abs(bind.linear().determinant()) > 0)) continue;
     const Vec3 joint = rig.pivots.empty() ? bind.inverse().translation() : rig.pivots[rig.bones[b].node];
-    joints.extend(joint);
-    away += (joint - moved[b].first / moved[b].second).norm();
-    ++count;
+    joints.emplace_back(joint, (joint - moved[b].first / moved[b].second).norm());
   }
-  constexpr double kNear = 0.3, kAway = 0.2;  // of the skin's size
+  constexpr double kNear = 0.15, kAtOne = 1e-4, kAway = 0.2;  // of the skin's size
   constexpr std::size_t kJointsMin = 3;
   const double size = skin.diagonal().norm();
-  return count >= kJointsMin && joints.diagonal().norm() < kNear * size &&
-         away > kAway * size * static_cast<double>(count);
+  // Where half of them are at one place, the middle one by each coordinate is there.
+  Vec3 middle = Vec3::Zero();
+  for (Index axis = 0; axis < 3 && !joints.empty(); ++axis) {
+    const auto half = joints.begin() + static_cast<std::ptrdiff_t>(joints.size() / 2);
+    std::nth_element(joints.begin(), half, joints.end(),
+                     [&](const auto& l, const auto& r) { return l.first[axis] < r.first[axis]; });
+    middle[axis] = half->first[axis];
+  }
+  const auto are_away = [&](double within, std::size_t least) {
+    std::size_t count = 0;
+    double away = 0;
+    for (const auto& [joint, distance] : joints) {
+      if (!((joint - middle).norm() <= within * size)) continue;
+      ++count;
+      away += distance;
+    }
+    return count >= std::max(kJointsMin, least) && away > kAway * size * static_cast<double>(count);
+  };
+  return are_away(kNear, joints.size()) || are_away(kAtOne, joints.size() / 2 + 1);
 }
 
 }  // namespace
