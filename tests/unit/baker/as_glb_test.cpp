@@ -152,7 +152,8 @@ const std::string kPng = "\x89PNG\r\n\x1A\nnot all of it";
 
 }  // namespace
 
-TEST_CASE("as glb: a character of another format has the same skin, and in each clip the same poses") {
+TEST_CASE("as glb: a character of another format has the same skin, and in each clip the same poses" *
+          doctest::test_suite("many bakes")) {
   for (const char* file : {"FBX/huesitos.fbx", "FBX/animation_with_skeleton.fbx", "X/Testwuson.X", "X/BCN_Epileptic.X",
                            "MDL/MDL (HL1)/man.mdl", "Collada/box_nested_animation.dae", "ASE/anim.ASE"}) {
     check_converted(kModels / file);

@@ -49,7 +49,7 @@ TEST_CASE("calibrated pivots carry their sphere exactly, from inside their hull 
   }
 }
 
-TEST_CASE("the paper's pivots are four, of equal weight, around the sphere") {
+TEST_CASE("the paper's pivots are four, of equal weight, around the sphere" * doctest::test_suite("many bakes")) {
   const Bake& bake = paper_baked_human();
   for (std::size_t i = 0; i < bake.binding.spheres.size(); ++i) {
     REQUIRE(bake.binding.spheres[i].pivots.size() == 4);

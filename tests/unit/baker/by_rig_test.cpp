@@ -30,7 +30,8 @@ Vec3 centroid_of(const Bake& bake, std::uint8_t region) {
 
 }  // namespace
 
-TEST_CASE("a rigged person in open pieces is segmented by the rig, and left is left") {
+TEST_CASE("a rigged person in open pieces is segmented by the rig, and left is left" *
+          doctest::test_suite("many bakes")) {
   const Bake& bake = person_in_pieces();
   CHECK(bake.regions.provider == "rig");
   REQUIRE(is_biped(bake.regions));

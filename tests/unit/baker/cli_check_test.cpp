@@ -392,7 +392,8 @@ TEST_CASE("check deletes and replaces in its folder only what it wrote there its
   tool::check_error(library.check("--fix " + library.report()), 2, {"-o and --fix are the same folder"});
 }
 
-TEST_CASE("two checks into one report at a time are both right; one that is killed leaves nothing of its own") {
+TEST_CASE("two checks into one report at a time are both right; one that is killed leaves nothing of its own" *
+          doctest::test_suite("many bakes")) {
   const PlantedLibrary library;
   const fs::path report = library.report();
   const std::string check = fmt::format("check {} -o {}", library.file.string(), report.string());
@@ -493,7 +494,8 @@ TEST_CASE("results that somebody deletes while check runs are lost, and no chara
   }
 }
 
-TEST_CASE("nothing is computed that is in the cache, whatever killed the run that made it") {
+TEST_CASE("nothing is computed that is in the cache, whatever killed the run that made it" *
+          doctest::test_suite("many bakes")) {
   const PlantedLibrary library;
   const std::string command = fmt::format("check {} -o {} --cache {} --json {}", library.file.string(),
                                           library.report(), library.path("cache"), library.path("all.json"));
@@ -512,7 +514,7 @@ TEST_CASE("nothing is computed that is in the cache, whatever killed the run tha
   for (const auto& [path, time] : times) CHECK(fs::last_write_time(path) == time);
 }
 
-TEST_CASE("a damaged file of the cache is as good as none, and is made again") {
+TEST_CASE("a damaged file of the cache is as good as none, and is made again" * doctest::test_suite("many bakes")) {
   const PlantedLibrary library({kClips[1]});
   const auto check = [&](const std::string& more) {
     return tool::run(fmt::format("check {} -o {} --cache {} --jobs 1 {} --json {}", library.file.string(),

@@ -20,7 +20,8 @@ std::string export_of(const std::filesystem::path& output, const std::string& wo
 
 }  // namespace
 
-TEST_CASE("export: the JSON has the human's parts, each after the one it hangs on, and as many volumes as asked for") {
+TEST_CASE("export: the JSON has the human's parts, each after the one it hangs on, and as many volumes as asked for" *
+          doctest::test_suite("many bakes")) {
   const TemporaryFolder folder;
   const tool::Run run = tool::run(export_of(folder.path / "human.json", "--to capsules.json --at-most 9"));
   REQUIRE_MESSAGE(run.code == 0, run.error);
