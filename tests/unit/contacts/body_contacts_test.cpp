@@ -103,7 +103,8 @@ TEST_CASE("two bodies' contacts are CGAL's wherever they stand: from bones, from
   CHECK(apart > 0);
 }
 
-TEST_CASE("with the bodies swapped all is the same, the other way round; crossings are where they were") {
+TEST_CASE("with the bodies swapped all is the same, the other way round; crossings are where they were" *
+          doctest::test_suite("long runs")) {
   std::mt19937 random(25);
   std::size_t total = 0;
   for (int i = 0; i < 10; ++i) {
