@@ -4,8 +4,10 @@
 #include <cctype>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <string_view>
 
 #include "check/formats.h"
+#include "mesh/utf8.h"
 #include "play/motion_frames.h"
 #include "report/json_text.h"
 #include "write/version.h"
@@ -20,14 +22,9 @@ std::string xml(const std::string& text) {
   std::string clean = json_text(text, -1);  // replaces what is not UTF-8
   clean = ordered_json::parse(clean).get<std::string>();
   std::string out;
-  for (std::size_t i = 0; i < clean.size(); ++i) {
-    const char c = clean[i];
-    if (clean.compare(i, 3, "\xef\xbf\xbe") == 0 || clean.compare(i, 3, "\xef\xbf\xbf") == 0) {
-      out += ' ';
-      i += 2;
-      continue;
-    }
-    switch (c) {
+  for (std::string_view left = clean; !left.empty();) {
+    const CodePoint point = *first_code_point(left);
+    switch (point.code) {
       case '&':
         out += "&amp;";
         break;
@@ -41,8 +38,13 @@ std::string xml(const std::string& text) {
         out += "&quot;";
         break;
       default:
-        out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+        if (point.code < 0x20 || point.code == 0xFFFE || point.code == 0xFFFF) {
+          out += ' ';
+        } else {
+          out += left.substr(0, point.length);
+        }
     }
+    left.remove_prefix(point.length);
   }
   return out;
 }

@@ -19,7 +19,7 @@ class Store {
   const std::filesystem::path& folder() const { return folder_; }
   // `kind` is the file's extension, with its dot. No bytes where the file is not there, or not whole.
   std::optional<std::string> read(const std::string& key, const std::string& kind) const;
-  // What `read` gives of a file that this run made or found. Throws Error(kFile) where somebody deleted it meanwhile.
+  // Reads a file that this run made or found. Throws Error(kFile) where somebody deleted it meanwhile.
   std::string take(const std::string& key, const std::string& kind) const;
   [[noreturn]] void fail_lost() const;
   bool has(const std::string& key, const std::string& kind) const { return read(key, kind).has_value(); }

@@ -62,9 +62,8 @@ std::string advice_on(const std::vector<MendedEvent>& events) {
   }
   if (left.contains(Outcome::kNoWayOut)) {
     out +=
-        "  no_way_out: none was found that is steady over all its frames and pushes nothing else in (mend a shorter "
-        "piece of "
-        "the clip, or change the pose)\n";
+        "  no_way_out: none was found that is steady over all its frames and pushes nothing else in (mend a "
+        "shorter piece of the clip, or change the pose)\n";
   }
   return out;
 }

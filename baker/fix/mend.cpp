@@ -372,7 +372,7 @@ class Mender {
     return after;
   }
 
-  // Of what lies together in time, where no event is cleared or reduced. False where nothing turned there.
+  // Joints turn back in each span of time in which no event is cleared or reduced. False where none had turned there.
   bool take_back_what_gains_nothing() {
     bool turned = false;
     for (const std::vector<std::size_t>& span : spans_of(in_window_, loops_)) {

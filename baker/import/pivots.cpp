@@ -16,8 +16,8 @@ void add_weighted(Weighted& sum, const Vec3& position, double weight) {
   sum.second += weight;
 }
 
-// Whether all joints are bound near one place, or half of them at one, and most of the skin that these move is
-// elsewhere.
+// Whether all joints are bound near one place, or more than half of them at one, and most of the skin that these move
+// is elsewhere.
 bool are_bound_elsewhere(const SourceRig& rig, const std::vector<Vec3>& positions) {
   std::vector<Weighted> moved(rig.bones.size(), {Vec3::Zero(), 0});
   Eigen::AlignedBox3d skin;
@@ -38,7 +38,7 @@ bool are_bound_elsewhere(const SourceRig& rig, const std::vector<Vec3>& position
   constexpr double kNear = 0.15, kAtOne = 1e-4, kAway = 0.2;  // of the skin's size
   constexpr std::size_t kJointsMin = 3;
   const double size = skin.diagonal().norm();
-  // Where half of them are at one place, the middle one by each coordinate is there.
+  // Where more than half of them are at one place, the median of each coordinate is there.
   Vec3 middle = Vec3::Zero();
   for (Index axis = 0; axis < 3 && !joints.empty(); ++axis) {
     const auto half = joints.begin() + static_cast<std::ptrdiff_t>(joints.size() / 2);

@@ -26,8 +26,8 @@ class HiddenJoints {
   std::map<std::size_t, int> hidden_;  // of a bone: the frames
 };
 
-// What frames of a clip do not show: hidden joints, and all keys but the first where the clip is over before its second
-// frame. Empty where there is nothing to tell.
+// A note on all that the frames of a clip do not show: hidden joints, and the keys after the first where the clip is
+// over before its second frame. Empty where there is nothing to tell.
 std::string unseen_text(const HiddenJoints& hidden, const ClipFrames& clip);
 
 }  // namespace spherechain::baker

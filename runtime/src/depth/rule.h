@@ -16,7 +16,7 @@ struct Rule {
   double hidden = 0.3;        // less of the contour is visible
   double shell = 0.035;       // two spots of two pieces are closer at rest: they are layers of one place
   double fold = 0.11;         // two spots of parts that are near each other are closer at rest
-  double neighbours = 0.055;  // likewise of any two parts: joints that no bones name
+  double neighbours = 0.055;  // two spots of any parts are closer at rest: a joint may have no bone of its own
   double fold_facing = 0.2;   // more: a thigh lies flat on the abdomen
   double deep_fold = 0.045;   // a fold of one piece that is deeper is a fault
 };

@@ -130,7 +130,7 @@ TEST_CASE("a limit on the spheres is kept, few or many, and more of them fit clo
           doctest::test_suite("many bakes")) {
   const SourceMesh mesh = mesh_of(hand());
   double last = 1;
-  for (const int limit : {8, 120}) {
+  for (const int limit : {8, 200}) {
     CAPTURE(limit);
     BakeSettings settings;
     settings.fit.spheres = limit;

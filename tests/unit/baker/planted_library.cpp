@@ -31,7 +31,7 @@ std::string planted_character(const std::vector<PlantedClip>& clips) {
   for (const PlantedClip& clip : clips) {
     std::vector<float> times, places, still, sizes;
     for (std::size_t i = 0; i < clip.depths_mm.size(); ++i) {
-      times.push_back(static_cast<float>(i) / 30 * clip.slower);
+      times.push_back(static_cast<float>(i) / 30 * clip.time_scale);
       const double height = clip.heights_mm.empty() ? 0 : clip.heights_mm[i];
       places.insert(places.end(),
                     {static_cast<float>(kTouching - clip.depths_mm[i] / 1000), static_cast<float>(height / 1000), 0});

@@ -13,7 +13,7 @@ struct PlantedClip {
   bool is_linear = false;            // the ball goes from place to place; else it jumps
   std::vector<double> heights_mm{};  // of the ball above the wall's middle; empty: 0. The wall is 2 m high
   std::vector<double> sizes{};       // of the ball, against its own; empty: 1
-  float slower = 1;                  // a frame takes so much longer
+  float time_scale = 1;              // its keys are so many times 1/30 s apart
 };
 
 // Bytes of a GLB file. Its body parts are "wall" and "ball".
