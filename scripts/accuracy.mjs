@@ -232,7 +232,7 @@ ${volumes()}
 
 | column | what it says | goal |
 |---|---|---|
-| frees | the second part, moved by the depth and 0.5 mm, is clear of the first by the exact triangle test | 97 % |
+| frees | the first part, moved out and 0.5 mm more, is clear of the second by the exact triangle test | 97 % |
 | 0.9 frees | so it is after nine tenths of the way: the depth was too long | at most 10 % |
 | ≤ 1.25 | the depth is at most 1.25 times the shortest way that brute force finds | 90 % |
 | turns | from one frame to the next the direction turns by more than 90 degrees | at most 2 % |

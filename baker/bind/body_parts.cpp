@@ -107,12 +107,25 @@ Side side_of_region(const Regions& regions, std::size_t region) {
   return region < regions.limbs.size() ? regions.limbs[region].side : Side::kNone;
 }
 
+// What has no name that says it moves about once more than the part that it hangs on.
+void find_mobility(std::vector<BodyPart>& parts) {
+  for (BodyPart& part : parts) {
+    int mobility = mobility_of(part.name), steps = 0;
+    for (int p = part.parent; mobility < 0 && p >= 0; p = parts[static_cast<std::size_t>(p)].parent) {
+      ++steps;
+      mobility = mobility_of(parts[static_cast<std::size_t>(p)].name);
+    }
+    part.mobility = static_cast<std::uint8_t>(std::min(std::max(mobility, 0) + steps, 255));
+  }
+}
+
 BodyParts parts_of_regions(const Character& character, const Regions& regions) {
   BodyParts out;
   for (std::size_t r = 0; r < regions.count(); ++r) {
     out.parts.push_back({in_words(regions.name(r)), side_of_region(regions, r), -1, -1});
   }
   out.of_triangle = regions_of_source(character, regions);
+  find_mobility(out.parts);
   return out;
 }
 
@@ -193,6 +206,7 @@ BodyParts find_body_parts(const Character& character, const Roles& roles, const 
     out.parts.push_back({"rest of the body", Side::kNone, -1, -1});
   }
   find_parents(character.rig, joints, out.parts);
+  find_mobility(out.parts);
   return out;
 }
 

@@ -18,6 +18,7 @@ struct BodyPart {
   Side side;
   int bone;         // the bone it follows: index in the character's bones, else in the automatic rig's joints; -1 none
   int parent = -1;  // the part it hangs on: that of the nearest bone above which a part follows; -1 none
+  std::uint8_t mobility = 0;  // sc_part.mobility
 };
 
 struct BodyParts {

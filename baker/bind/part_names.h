@@ -23,4 +23,7 @@ std::vector<PartName> name_parts(const SourceRig& rig, const Roles& roles);
 // The part of a joint of the automatic rig.
 PartName name_part(const std::string& joint);
 
+// How mobile a body part of that name is (sc_part.mobility); -1 where the name does not say it.
+int mobility_of(const std::string& part);
+
 }  // namespace spherechain::baker

@@ -53,9 +53,8 @@ std::string summary_text(const Summary& s) {
 }  // namespace
 
 std::string parts_text(const Event& event) {
-  const std::size_t inside = static_cast<std::size_t>(event.inside);
   return event.parts[0] == event.parts[1] ? event.parts[0] + " in itself"
-                                          : event.parts[inside] + " in " + event.parts[1 - inside];
+                                          : event.parts[0] + " in " + event.parts[1];
 }
 
 std::string frames_text(const Event& event) {

@@ -22,19 +22,16 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr std::size_t kSampleSize = 1500;
-constexpr std::size_t kFullMeasures = 6;  // of a fault, at most
-constexpr float kQuickExcess = 1.05F;     // how much deeper the quick form is in the median
 
 Vec3 to_vec3(const spherechain::Vec3& v) { return {v.x, v.y, v.z}; }
 
 bool is_of(const PartMeeting& meeting, const TriangleContact& contact) {
-  const auto [a, b] = std::minmax(contact.part_a, contact.part_b);
-  return meeting.found.part_a == a && meeting.found.part_b == b;
+  return std::minmax(meeting.found.part, meeting.found.other) == std::minmax(contact.part_a, contact.part_b);
 }
 
-// A fault is worse than what is none, however deep.
+// A fault is worse than a contact that is none, however deep.
 std::pair<PenetrationClass, float> severity(const Penetration& found) {
-  return {is_fault(found.kind) ? found.kind : static_cast<PenetrationClass>(SC_CLASS_REST), found.depth};
+  return {is_fault(found.kind) ? found.kind : static_cast<PenetrationClass>(SC_CLASS_REST), found.measures.depth};
 }
 
 bool is_shown(PenetrationClass kind) { return is_fault(kind) || kind == SC_CLASS_TOUCH; }
@@ -58,7 +55,7 @@ bool same_pose(const Deformation& first, const Deformation& last, const BodyFram
 
 struct ClipChecker::Frames {
   std::vector<PartMeeting> meetings;             // by frame, then by parts
-  std::vector<std::vector<Triangles>> contacts;  // of a meeting that is shown: the triangles of part_a and part_b
+  std::vector<std::vector<Triangles>> contacts;  // of a meeting that is shown: see ClipCheck::Triangles
   PageMotion motion;
   HiddenJoints hidden;
   bool loops = false;
@@ -69,7 +66,6 @@ ClipChecker::ClipChecker(const AnimatedAsset& animated, Target target)
     : animated_(animated),
       player_(animated.asset(), target),
       parts_(parts_of(animated.asset())),
-      order_(animated),
       mm_(mm_per_unit(animated.asset())),
       axes_(page_axes(animated)),
       picture_(animated.character().source_positions, animated.character().source_triangles, axes_) {
@@ -116,7 +112,8 @@ ClipChecker::Frames ClipChecker::look(const ClipFrames& clip, const Told& told) 
       const std::size_t before = out.meetings.size();
       for (const Penetration& found : player_.measure_quickly(pose)) {
         out.meetings.push_back({i, found});
-        out.meetings.back().found.visible = -1;  // not known
+        float& visible = out.meetings.back().found.measures.visible;
+        if (visible == 1 && !is_fault(found.kind)) visible = -1;  // nobody looked
       }
       out.contacts.resize(out.meetings.size());
       for (const TriangleContact& contact : contacts) {
@@ -134,7 +131,7 @@ ClipChecker::Frames ClipChecker::look(const ClipFrames& clip, const Told& told) 
   return out;
 }
 
-// Measures a meeting in full.
+// Measures a meeting in full: with its volume, and where it is no fault along many directions.
 void ClipChecker::measure(const ClipFrames& clip, PartMeeting& meeting, std::vector<Triangles>& triangles) {
   with_pose(animated_.deformation(clip.first + meeting.frame), [&](const sc_pose& pose) {
     std::vector<TriangleContact> of_them;
@@ -148,48 +145,6 @@ void ClipChecker::measure(const ClipFrames& clip, PartMeeting& meeting, std::vec
   });
 }
 
-// The quick form is seldom less deep than the full one, and a little deeper as a rule: frames are measured in full from
-// the worst on, over all of the event, until none is left that is likely to be worse.
-std::size_t ClipChecker::worst_of(const std::vector<std::size_t>& all, Frames& frames, const ClipFrames& clip) {
-  const auto found = [&](std::size_t m) -> Penetration& { return frames.meetings[m].found; };
-  std::vector<std::size_t> order(all.size());  // places in `all`
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](auto l, auto r) {
-    const auto of_l = severity(found(all[l])), of_r = severity(found(all[r]));
-    return of_l != of_r ? of_l > of_r : all[l] < all[r];
-  });
-  const bool may_be_fault = std::any_of(all.begin(), all.end(), [&](auto m) { return is_fault(found(m).kind); });
-  const std::size_t limit = may_be_fault ? kFullMeasures : 1, apart = all.size() / (2 * kFullMeasures);
-  std::size_t worst = all[order[0]];
-  std::vector<std::size_t> measured;
-  for (const std::size_t i : order) {
-    const auto is_near = [&](std::size_t other) { return std::max(i, other) - std::min(i, other) <= apart; };
-    if (std::any_of(measured.begin(), measured.end(), is_near)) continue;
-    if (measured.size() == limit) break;
-    const bool may_be_worse = severity(found(all[i])).first > severity(found(worst)).first ||
-                              found(all[i]).depth > kQuickExcess * found(worst).depth;
-    if (!measured.empty() && !may_be_worse) break;
-    measured.push_back(i);
-    measure(clip, frames.meetings[all[i]], frames.contacts[all[i]]);
-    if (severity(found(all[i])) > severity(found(worst))) worst = all[i];
-  }
-  // Frames beside a measured one were passed over, and one of them may be worse: climb from the worst to its
-  // neighbours.
-  for (bool climbs = may_be_fault; climbs;) {
-    climbs = false;
-    const auto top = static_cast<std::size_t>(std::find(all.begin(), all.end(), worst) - all.begin());
-    for (const std::size_t i : {top - 1, top + 1}) {
-      if (i >= all.size() || std::find(measured.begin(), measured.end(), i) != measured.end()) continue;
-      measured.push_back(i);
-      measure(clip, frames.meetings[all[i]], frames.contacts[all[i]]);
-      if (!(severity(found(all[i])) > severity(found(worst)))) continue;
-      worst = all[i];
-      climbs = true;
-    }
-  }
-  return worst;
-}
-
 // An event has class and depth of its worst frame, and no frame is worse than that one. Frames between others never
 // take a touch away: they make an event worse, or leave it as it is.
 void ClipChecker::find_worst(Frames& frames, const ClipFrames& clip, EventSpan& span) {
@@ -199,23 +154,28 @@ void ClipChecker::find_worst(Frames& frames, const ClipFrames& clip, EventSpan& 
     const bool lies_between = animated_.frame_at(clip.first + frames.meetings[m].frame).between > 0;
     (lies_between ? between : whole).push_back(m);
   }
-  span.deepest = worst_of(whole.empty() ? between : whole, frames, clip);
+  const auto worst_of = [&](const std::vector<std::size_t>& all) {
+    return *std::max_element(all.begin(), all.end(),
+                             [&](auto l, auto r) { return severity(found(l)) < severity(found(r)); });
+  };
+  span.deepest = worst_of(whole.empty() ? between : whole);
   if (!whole.empty() && !between.empty()) {
-    const std::size_t other = worst_of(between, frames, clip);
+    const std::size_t other = worst_of(between);
     const bool may_take_over = is_fault(found(other).kind) || found(other).kind == found(span.deepest).kind;
     if (may_take_over && severity(found(other)) > severity(found(span.deepest))) span.deepest = other;
   }
+  measure(clip, frames.meetings[span.deepest], frames.contacts[span.deepest]);
+  const Penetration& worst = found(span.deepest);
   for (const std::size_t m : span.meetings) {
-    found(m).depth = std::min(found(m).depth, found(span.deepest).depth);
-    found(m).kind = std::min(found(m).kind, found(span.deepest).kind);
+    found(m).measures.depth = std::min(found(m).measures.depth, worst.measures.depth);
+    found(m).kind = std::min(found(m).kind, worst.kind);
   }
 }
 
 Event ClipChecker::event_of(const Frames& frames, const EventSpan& span, const ClipFrames& clip) const {
   const Penetration& worst = frames.meetings[span.deepest].found;
   Event event;
-  event.parts = {parts_.parts[worst.part_a].name, parts_.parts[worst.part_b].name};
-  event.inside = order_.is_first(worst.part_a, worst.part_b) ? 0 : 1;
+  event.parts = {parts_.parts[worst.part].name, parts_.parts[worst.other].name};
   event.kind = worst.kind;
   const int deepest = frames.meetings[span.deepest].frame;
   event.from = animated_.number(clip.first + span.from);
@@ -223,11 +183,11 @@ Event ClipChecker::event_of(const Frames& frames, const EventSpan& span, const C
   event.deepest = animated_.number(clip.first + deepest);
   event.first_place = span.from;
   event.place = deepest;
-  event.depth_mm = mm_ * double{worst.depth};
-  event.depth_percent = 100 * double{worst.depth} / animated_.frame().height;
-  if (worst.is_closed != 0) event.volume_ml = std::pow(mm_ / 10, 3) * double{worst.volume};
+  event.depth_mm = mm_ * double{worst.measures.depth};
+  event.depth_percent = 100 * double{worst.measures.depth} / animated_.frame().height;
+  if (worst.measures.volume >= 0) event.volume_ml = std::pow(mm_ / 10, 3) * double{worst.measures.volume};
   event.direction = to_vec3(worst.direction);
-  event.point = to_vec3(worst.deepest_b.position);
+  event.point = to_vec3(worst.deepest.position);
   if (!is_fault(worst.kind)) return event;
   const int length = span.from <= span.to ? span.to - span.from + 1 : clip.count - span.from + span.to + 1;
   event.depths_mm.assign(static_cast<std::size_t>(length), 0);
@@ -235,7 +195,7 @@ Event ClipChecker::event_of(const Frames& frames, const EventSpan& span, const C
     const auto& [frame, found] = frames.meetings[m];
     if (!is_fault(found.kind)) continue;
     const int at = frame >= span.from ? frame - span.from : frame - span.from + clip.count;
-    event.depths_mm[static_cast<std::size_t>(at)] = static_cast<float>(mm_ * double{found.depth});
+    event.depths_mm[static_cast<std::size_t>(at)] = static_cast<float>(mm_ * double{found.measures.depth});
   }
   return event;
 }
@@ -292,7 +252,7 @@ std::vector<HeatSpot> ClipChecker::heat_of(const Frames& frames) const {
         for (const std::uint32_t t : pair) {
           auto& [spot, last] = heat.try_emplace(t, Heat{{e, t, 0, 0}, -1}).first->second;
           spot.frames += last != frame ? 1 : 0;
-          spot.depth_mm = std::max(spot.depth_mm, static_cast<float>(mm_ * double{found.depth}));
+          spot.depth_mm = std::max(spot.depth_mm, static_cast<float>(mm_ * double{found.measures.depth}));
           last = frame;
         }
       }
@@ -329,7 +289,7 @@ ClipCheck ClipChecker::check(std::size_t index, const Told& told) {
         triangles.insert(triangles.end(), frames.contacts[m].begin(), frames.contacts[m].end());
       }
     }
-    std::stable_sort(found.begin(), found.end(), [](const auto& l, const auto& r) { return l.depth > r.depth; });
+    std::stable_sort(found.begin(), found.end(), [](const auto& l, const auto& r) { return l.measures.depth > r.measures.depth; });
     contacts.add(triangles);
     penetrations.add(entries_of(found, mm_));
   }

@@ -7,7 +7,6 @@
 
 #include "check/picture.h"
 #include "check/results.h"
-#include "play/part_order.h"
 #include "play/play.h"
 #include "play/skin_player.h"
 
@@ -45,7 +44,6 @@ class ClipChecker {
   void with_pose(const Deformation& deformation, const Run& run);
   Frames look(const ClipFrames& clip, const Told& told);
   void measure(const ClipFrames& clip, struct PartMeeting& meeting, std::vector<Triangles>& triangles);
-  std::size_t worst_of(const std::vector<std::size_t>& all, Frames& frames, const ClipFrames& clip);
   void find_worst(Frames& frames, const ClipFrames& clip, struct EventSpan& span);
   Event event_of(const Frames& frames, const struct EventSpan& span, const ClipFrames& clip) const;
   std::vector<HeatSpot> heat_of(const Frames& frames) const;
@@ -54,7 +52,6 @@ class ClipChecker {
   const AnimatedAsset& animated_;
   SkinPlayer player_;
   BodyParts parts_;
-  PartOrder order_;
   double mm_;  // a unit of the source
   BodyFrame axes_;
   Picture picture_;

@@ -12,7 +12,7 @@ namespace {
 
 using Parts = std::pair<std::uint32_t, std::uint32_t>;
 
-Parts parts_of(const PartMeeting& meeting) { return {meeting.found.part_a, meeting.found.part_b}; }
+Parts parts_of(const PartMeeting& meeting) { return std::minmax(meeting.found.part, meeting.found.other); }
 
 bool is_bridged(double last, double next) { return next - last - 1 <= kGapMax; }
 
@@ -30,7 +30,7 @@ void close_loop(std::vector<EventSpan>& spans, int frames, const std::vector<Par
   EventSpan &first = spans.front(), &last = spans.back();
   if (!is_bridged(last.to, first.from + period)) return;
   first.from = last.from;
-  if (meetings[last.deepest].found.depth > meetings[first.deepest].found.depth) first.deepest = last.deepest;
+  if (meetings[last.deepest].found.measures.depth > meetings[first.deepest].found.measures.depth) first.deepest = last.deepest;
   first.meetings.insert(first.meetings.begin(), last.meetings.begin(), last.meetings.end());
   spans.pop_back();
 }
@@ -49,7 +49,7 @@ std::vector<EventSpan> join_events(const std::vector<PartMeeting>& meetings, int
     EventSpan& span = spans.back();
     span.to = meeting.frame;
     span.meetings.push_back(i);
-    if (meeting.found.depth > meetings[span.deepest].found.depth) span.deepest = i;
+    if (meeting.found.measures.depth > meetings[span.deepest].found.measures.depth) span.deepest = i;
   }
   std::vector<EventSpan> out;
   for (auto& [parts, spans] : by_parts) {

@@ -18,7 +18,6 @@ ordered_json result_event(const Event& event) {
   ordered_json depths = ordered_json::array();  // in tenths of a millimetre
   for (const float depth : event.depths_mm) depths.push_back(std::lround(10 * depth));
   return {{"parts", event.parts},
-          {"inside", event.inside},
           {"class", static_cast<int>(event.kind)},
           {"from", event.from},
           {"to", event.to},
@@ -38,7 +37,6 @@ ordered_json result_event(const Event& event) {
 Event read_result_event(const ordered_json& json) {
   Event event;
   json.at("parts").get_to(event.parts);
-  json.at("inside").get_to(event.inside);
   event.kind = static_cast<PenetrationClass>(json.at("class").get<int>());
   json.at("from").get_to(event.from);
   json.at("to").get_to(event.to);

@@ -15,7 +15,6 @@ namespace spherechain::baker {
 
 struct Event {
   std::array<std::string, 2> parts;
-  int inside = 0;                          // which of the two a person sees in the other
   PenetrationClass kind = SC_CLASS_REST;   // of the deepest frame, as all that follows
   double from = 0, to = 0, deepest = 0;    // frames, with a fraction between two; from > to: over the seam of a loop
   int first_place = 0, place = 0;          // of `from` and `deepest` among the frames that were looked at

@@ -156,7 +156,7 @@ ExitCode run_fix(const FixOptions& options) {
   for (const std::string& part : fixed.unused_parts) {
     say(stderr, "spherechain: warning: {}: a rule names '{}', which this character has not\n", options.keep, part);
   }
-  say("{}{}wrote {}\n", fix_text(fixed.clips, fixed.parts, fixed.order), again, options.output);
+  say("{}{}wrote {}\n", fix_text(fixed.clips, fixed.parts), again, options.output);
   if (!options.report.empty()) {
     say("wrote {}: fix.json and {} page{}\n", options.report, pages.written, pages.written == 1 ? "" : "s");
   }

@@ -55,16 +55,7 @@ std::vector<Meeting> FaultFinder::look(SkinPlayer& player, double frame, const T
   const std::vector<TriangleContact> contacts = contacts_of(
       player, pose, [&](const TriangleContact& c) { return left_out_.contains(std::minmax(c.part_a, c.part_b)); });
   std::vector<Meeting> out;
-  for (const Penetration& quick : player.measure_quickly(pose, contacts)) out.push_back({frame, quick});
-  for (Meeting& meeting : out) {
-    if (!is_fault(meeting.found.kind)) continue;
-    std::vector<TriangleContact> of_them;
-    for (const TriangleContact& contact : contacts) {
-      const auto [a, b] = std::minmax(contact.part_a, contact.part_b);
-      if (a == meeting.found.part_a && b == meeting.found.part_b) of_them.push_back(contact);
-    }
-    meeting.found = player.measure_parts(pose, of_them);
-  }
+  for (const Penetration& found : player.measure_quickly(pose, contacts)) out.push_back({frame, found});
   return out;
 }
 
@@ -121,8 +112,8 @@ std::vector<std::vector<Meeting>> FaultFinder::in_poses(const std::vector<TriedP
       return c.part_a == c.part_b || (moves[c.part_a] == 0 && moves[c.part_b] == 0) ||
              left_out_.contains(std::minmax(c.part_a, c.part_b));
     });
-    for (const Penetration& quick : players_[t].measure_quickly(pose, contacts)) {
-      found[i].push_back({static_cast<double>(poses[i].frame), quick});
+    for (const Penetration& one : players_[t].measure_quickly(pose, contacts)) {
+      found[i].push_back({static_cast<double>(poses[i].frame), one});
     }
   });
   return found;
@@ -137,10 +128,10 @@ std::vector<Meeting> FaultFinder::look_after(std::size_t thread, int frame, cons
     if (contact.at_start != 0 || contact.at_end != 0) continue;
     const double middle = 0.5 * (double{contact.begin} + double{contact.end});
     for (const Meeting& meeting : look(players_[thread], frame + middle, turns)) {
-      const auto [a, b] = std::minmax(contact.part_a, contact.part_b);
-      if (meeting.found.part_a == a && meeting.found.part_b == b && is_fault(meeting.found.kind)) {
-        out.push_back(meeting);
-      }
+      const Penetration& found = meeting.found;
+      const bool is_its =
+          std::minmax(found.part, found.other) == std::minmax(contact.part_a, contact.part_b);
+      if (is_its && is_fault(found.kind)) out.push_back(meeting);
     }
   }
   return out;

@@ -54,7 +54,6 @@ class Fixer {
     animated_.emplace(OpenAsset(out_.asset, job.input), job.input, job.input, MotionChoice{{}, job.clip, {}},
                       FrameChoice{0, 0});
     out_.parts = parts_of(animated_->asset()).parts;
-    out_.order = PartOrder(*animated_);
     const auto is_part = [&](const std::string& name) {
       return std::any_of(out_.parts.begin(), out_.parts.end(), [&](const BodyPart& part) { return part.name == name; });
     };
@@ -79,9 +78,9 @@ class Fixer {
 
  private:
   const SourceRig& rig() const { return animated_->character().rig; }
-  // Whether the joints turn about places that lie far apart, but are bound near one.
+  // Whether the skin alone says where joints turn, or they turn about places that lie far apart and are bound near one.
   bool are_bound_at_one_place() const {
-    if (rig().pivots.empty()) return false;
+    if (rig().pivots.empty() || rig().are_pivots_from_skin) return rig().are_pivots_from_skin;
     Eigen::AlignedBox3d bound, turning;
     for (const Bone& bone : rig().bones) {
       turning.extend(rig().pivots[bone.node]);
@@ -187,7 +186,7 @@ class Fixer {
 
   Event event_of(const MendedEvent& mended) const {
     Event event;
-    event.parts = {out_.parts[mended.part_a].name, out_.parts[mended.part_b].name};
+    event.parts = {out_.parts[mended.part].name, out_.parts[mended.other].name};
     event.kind = mended.kind;
     event.from = mended.from;
     event.to = mended.to;

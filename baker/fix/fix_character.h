@@ -30,7 +30,6 @@ struct FixedCharacter {
   std::vector<MendedClip> clips;
   std::vector<Clip> before, after;  // the same, whole
   std::vector<BodyPart> parts;
-  PartOrder order;                        // of these
   std::string asset;                      // bytes of the character's
   std::vector<std::string> unused_parts;  // that a rule names, and the character has not
   bool is_in_baseline = false;            // events of these clips are

@@ -68,14 +68,13 @@ std::string advice_on(const std::vector<MendedEvent>& events) {
   return out;
 }
 
-std::string clip_text(const MendedClip& clip, const std::vector<BodyPart>& parts, const PartOrder& order) {
+std::string clip_text(const MendedClip& clip, const std::vector<BodyPart>& parts) {
   std::map<Outcome, int> counts;
   std::string rows;
   for (const MendedEvent& e : clip.mend.events) {
     ++counts[e.outcome];
-    const auto [first, second] = order.ordered(e.part_a, e.part_b);
     rows += fmt::format("  {:<34} {:>5}-{:<5} {:>6.1f} -> {:>5.1f} mm  {:>5.1f} degrees  {}\n",
-                        parts[first].name + ", " + parts[second].name, e.from, e.to, e.depth_before, e.depth_after,
+                        parts[e.part].name + ", " + parts[e.other].name, e.from, e.to, e.depth_before, e.depth_after,
                         e.turn_degrees, outcome_name(e.outcome));
   }
   std::string out =
@@ -100,7 +99,7 @@ std::string fix_json(const std::vector<MendedClip>& clips, const std::vector<Bod
   for (const MendedClip& clip : clips) {
     ordered_json events = ordered_json::array();
     for (const MendedEvent& e : clip.mend.events) {
-      events.push_back({{"parts", {parts[e.part_a].name, parts[e.part_b].name}},
+      events.push_back({{"parts", {parts[e.part].name, parts[e.other].name}},
                         {"from", e.from},
                         {"to", e.to},
                         {"depth_mm_before", e.depth_before},
@@ -127,14 +126,14 @@ std::string fix_json(const std::vector<MendedClip>& clips, const std::vector<Bod
 }
 
 // Clips without an event are counted.
-std::string fix_text(const std::vector<MendedClip>& clips, const std::vector<BodyPart>& parts, const PartOrder& order) {
+std::string fix_text(const std::vector<MendedClip>& clips, const std::vector<BodyPart>& parts) {
   std::string out;
   int clean = 0;
   for (const MendedClip& clip : clips) {
     if (clip.mend.events.empty() && clip.others == 0) {
       ++clean;
     } else {
-      out += clip_text(clip, parts, order);
+      out += clip_text(clip, parts);
     }
   }
   if (clean == 0) return out;

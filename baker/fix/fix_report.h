@@ -6,7 +6,6 @@
 
 #include "bind/body_parts.h"
 #include "fix/mend.h"
-#include "play/part_order.h"
 
 namespace spherechain::baker {
 
@@ -19,7 +18,7 @@ struct MendedClip {
 
 // The file of `fix --report`, and the same for people.
 std::string fix_json(const std::vector<MendedClip>& clips, const std::vector<BodyPart>& parts);
-std::string fix_text(const std::vector<MendedClip>& clips, const std::vector<BodyPart>& parts, const PartOrder& order);
+std::string fix_text(const std::vector<MendedClip>& clips, const std::vector<BodyPart>& parts);
 
 // The same of a whole character in a line: "3 clips, 7 events: 6 cleared, 1 fold".
 std::string fix_line(const std::vector<MendedClip>& clips);

@@ -25,9 +25,9 @@ Goals::Goals(const std::vector<Meeting>& before, int frames, double mm_per_unit,
   }
   for (const EventSpan& span : join_events(faults, frames, false)) {
     const Penetration& worst = faults[span.deepest].found;
-    MendedEvent event{worst.part_a, worst.part_b, span.from, span.to, worst.kind, mm_ * double{worst.depth}, 0};
+    MendedEvent event{worst.part, worst.other, span.from, span.to, worst.kind, mm_ * double{worst.measures.depth}, 0};
     event.worst = faults[span.deepest].frame;
-    if (worst.kind == SC_CLASS_DEEP_FOLD || worst.part_a == worst.part_b) event.outcome = Outcome::kFold;
+    if (worst.kind == SC_CLASS_DEEP_FOLD || worst.part == worst.other) event.outcome = Outcome::kFold;
     if (leave(event)) event.outcome = Outcome::kAccepted;
     events.push_back(event);
   }
@@ -47,13 +47,13 @@ double Goals::allowed(const Meeting& meeting) const {
   const double apart = -margin_mm_ / mm_;
   const MendedEvent* event = event_at(place_of(meeting));
   if (event == nullptr) {
-    const bool is_new = meeting.found.kind == SC_CLASS_PENETRATION && meeting.found.part_a != meeting.found.part_b;
+    const bool is_new = meeting.found.kind == SC_CLASS_PENETRATION && meeting.found.part != meeting.found.other;
     if (is_new) return apart;
   } else if (is_wanted(*event) && meeting.frame >= event->from && meeting.frame <= event->to) {
     return apart;
   }
-  const Penetration* known = before({std::round(meeting.frame), meeting.found.part_a, meeting.found.part_b});
-  return known == nullptr ? 0 : double{known->depth};
+  const Penetration* known = before({std::round(meeting.frame), meeting.found.part, meeting.found.other});
+  return known == nullptr ? 0 : double{known->measures.depth};
 }
 
 bool Goals::is_let_be(const Meeting& meeting) const {
@@ -61,14 +61,14 @@ bool Goals::is_let_be(const Meeting& meeting) const {
   if (may_be < 0) return false;
   const Penetration& p = meeting.found;
   // What is no fault and not to part is let be: folds and touches come and go with a joint.
-  if (!is_fault(p.kind) || p.part_a == p.part_b) return true;
+  if (!is_fault(p.kind) || p.part == p.other) return true;
   const double slack = (p.kind == SC_CLASS_DEEP_FOLD ? kFoldDeeper : kDeeper) / mm_ + kDeeperShare * may_be;
-  return double{p.depth} - may_be <= slack;
+  return double{p.measures.depth} - may_be <= slack;
 }
 
 double Goals::too_deep(const Meeting& meeting) const {
   if (!is_fault(meeting.found.kind) || is_let_be(meeting)) return 0;
-  return double{meeting.found.depth} - std::max(allowed(meeting), 0.0);
+  return double{meeting.found.measures.depth} - std::max(allowed(meeting), 0.0);
 }
 
 bool Goals::is_worse(const Meeting& meeting) const {
@@ -76,16 +76,16 @@ bool Goals::is_worse(const Meeting& meeting) const {
   const double first = std::floor(meeting.frame) - 1, last = std::ceil(meeting.frame) + 1;
   double most = 0;
   for (double f = first; f <= last; ++f) {
-    const Penetration* known = before({f, meeting.found.part_a, meeting.found.part_b});
-    if (known != nullptr && is_fault(known->kind)) most = std::max(most, double{known->depth});
+    const Penetration* known = before({f, meeting.found.part, meeting.found.other});
+    if (known != nullptr && is_fault(known->kind)) most = std::max(most, double{known->measures.depth});
   }
-  return double{meeting.found.depth} > most + kFoldDeeper / mm_;
+  return double{meeting.found.measures.depth} > most + kFoldDeeper / mm_;
 }
 
 std::set<std::pair<std::uint32_t, std::uint32_t>> Goals::harmless() const {
   std::map<std::pair<std::uint32_t, std::uint32_t>, PenetrationClass> worst;
   for (const auto& [place, found] : before_) {
-    PenetrationClass& kind = worst.try_emplace({place.part_a, place.part_b}, found.kind).first->second;
+    PenetrationClass& kind = worst.try_emplace(std::minmax(place.part, place.other), found.kind).first->second;
     kind = std::max(kind, found.kind);
   }
   std::set<std::pair<std::uint32_t, std::uint32_t>> out;

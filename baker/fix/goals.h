@@ -14,7 +14,7 @@
 namespace spherechain::baker {
 
 inline MeetingPlace place_of(const Meeting& meeting) {
-  return {meeting.frame, meeting.found.part_a, meeting.found.part_b};
+  return {meeting.frame, meeting.found.part, meeting.found.other};
 }
 
 // What a mend is to reach: the events of a clip, and how deep each two parts may be in each other in a frame.
@@ -28,7 +28,7 @@ class Goals {
 
   static bool is_wanted(const MendedEvent& event) { return event.outcome == Outcome::kReduced; }
   static bool is_in(const MeetingPlace& place, const MendedEvent& event) {
-    return place.part_a == event.part_a && place.part_b == event.part_b && place.frame >= event.from - 1 &&
+    return place.part == event.part && place.other == event.other && place.frame >= event.from - 1 &&
            place.frame <= event.to + 1;
   }
 

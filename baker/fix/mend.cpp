@@ -154,9 +154,9 @@ class Mender {
     for (const Meeting& meeting : meetings) {
       if (goals_.is_let_be(meeting)) continue;
       sum += goals_.too_deep(meeting);
-      touches_ |= mm_ * double{meeting.found.depth} > options_.margin_mm;
+      touches_ |= mm_ * double{meeting.found.measures.depth} > options_.margin_mm;
       const Penetration* before = goals_.before(place_of(meeting));
-      const bool is_shallow = before != nullptr && mm_ * double{before->depth} <= kShallow;
+      const bool is_shallow = before != nullptr && mm_ * double{before->measures.depth} <= kShallow;
       pushes_.add(place_of(meeting), meeting.found, -goals_.allowed(meeting), is_shallow, turns_);
     }
     return sum;
@@ -237,7 +237,7 @@ class Mender {
       if (!Goals::is_wanted(goals_.events[e])) continue;
       double left = 0;
       for (const Meeting& m : now) {
-        if (is_fault(m.found.kind) && Goals::is_in(place_of(m), goals_.events[e])) left += double{m.found.depth};
+        if (is_fault(m.found.kind) && Goals::is_in(place_of(m), goals_.events[e])) left += double{m.found.measures.depth};
       }
       if (round == 0) progress_[e].begin = left;
       if (progress_[e].gets_better(left, round) || left == 0) continue;
@@ -272,7 +272,7 @@ class Mender {
     }
     for (const std::size_t e : limb.events) progress_[e] = {progress_[e].begin, HUGE_VAL, round + 1, true};
     pushes_.forget([&](const MeetingPlace& place) {
-      const bool is_its = limb.moves[place.part_a] != 0 || limb.moves[place.part_b] != 0;
+      const bool is_its = limb.moves[place.part] != 0 || limb.moves[place.other] != 0;
       return is_its && place.frame >= limb.from - 1 && place.frame <= limb.to + 1;
     });
     return true;
@@ -339,7 +339,7 @@ class Mender {
       for (const Meeting& meeting : after) {
         if (!goals_.is_worse(meeting)) continue;
         const int frame = static_cast<int>(meeting.frame);
-        for (const std::uint32_t part : {meeting.found.part_a, meeting.found.part_b}) {
+        for (const std::uint32_t part : {meeting.found.part, meeting.found.other}) {
           for (const Index joint : parts_.above(part)) fail(joint, frame, frame);
         }
       }
@@ -406,7 +406,7 @@ class Mender {
       event.depth_after = 0;
       for (const Meeting& meeting : after) {
         if (!Goals::is_in(place_of(meeting), event) || !is_fault(meeting.found.kind)) continue;
-        event.depth_after = std::max(event.depth_after, mm_ * double{meeting.found.depth});
+        event.depth_after = std::max(event.depth_after, mm_ * double{meeting.found.measures.depth});
       }
       event.turn_degrees = greatest_turn(event);
       if (event.outcome == Outcome::kAccepted || event.outcome == Outcome::kFold) continue;
@@ -467,20 +467,20 @@ class Mender {
       out.volume_before += volume_of(place.frame, before);
       const auto pushes = pushes_.all().find(place);
       if (pushes == pushes_.all().end() || pushes->second.empty() || !is_fault(before.kind)) continue;
-      if (mm_ * double{before.depth} > kShallow) continue;
+      if (mm_ * double{before.measures.depth} > kShallow) continue;
       ++out.shallow;
       const Deformation pose = clip_.pose(place.frame, turns_).deformation;
-      const double apart = mm_ * distance_between(animated_, pose, place.part_a, place.part_b);
+      const double apart = mm_ * distance_between(animated_, pose, place.part, place.other);
       out.still_near += apart <= kNear ? 1 : 0;
     }
   }
 
   // Of what is to be mended in a whole frame, cm3.
   double volume_of(double frame, const Penetration& found) const {
-    const MendedEvent* event = goals_.event_at({frame, found.part_a, found.part_b});
+    const MendedEvent* event = goals_.event_at({frame, found.part, found.other});
     const bool is_its = event != nullptr && event->outcome != Outcome::kAccepted && event->outcome != Outcome::kFold;
     if (!is_its || frame != std::floor(frame)) return 0;
-    return double{found.volume} * std::pow(mm_ / 10, 3);
+    return double{found.measures.volume} * std::pow(mm_ / 10, 3);
   }
 
   const AnimatedAsset& animated_;

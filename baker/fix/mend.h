@@ -27,7 +27,7 @@ const char* outcome_name(Outcome outcome);
 
 // Two body parts in each other over some frames, before and after.
 struct MendedEvent {
-  std::uint32_t part_a, part_b;
+  std::uint32_t part, other;
   int from, to;  // frames of the clip
   PenetrationClass kind;
   double depth_before, depth_after;  // mm

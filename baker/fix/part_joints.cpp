@@ -46,7 +46,7 @@ std::vector<char> PartJoints::moved_by(const std::set<Index>& joints) const {
 
 LimbInTrouble limb_in_trouble(const Goals& goals, const PartJoints& parts, std::size_t event,
                               const std::function<bool(std::size_t)>& is_open) {
-  const auto joints_of = [&](std::size_t e) { return parts.between(goals.events[e].part_a, goals.events[e].part_b); };
+  const auto joints_of = [&](std::size_t e) { return parts.between(goals.events[e].part, goals.events[e].other); };
   std::set<Index> joints = joints_of(event);
   LimbInTrouble out{{event}, {}, {}, goals.events[event].from, goals.events[event].to, {}};
   for (bool grows = !joints.empty(); grows;) {

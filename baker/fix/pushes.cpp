@@ -41,7 +41,7 @@ double Pushes::gap(const Push& push, double frame, const Turns& turns) const {
 void Pushes::add(const MeetingPlace& place, const Penetration& found, double target, bool is_shallow,
                  const Turns& turns) {
   const Character& character = animated_.character();
-  const Push push{spot_of(character, found.deepest_a), spot_of(character, found.deepest_b), to_vec3(found.direction),
+  const Push push{spot_of(character, found.deepest_other), spot_of(character, found.deepest), to_vec3(found.direction),
                   target, is_shallow};
   std::vector<Push>& all = of_[place];
   const double end = kAtItsEnd / mm_per_unit(animated_.asset());

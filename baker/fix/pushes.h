@@ -16,14 +16,14 @@ namespace spherechain::baker {
 // Two body parts in a frame, or between two.
 struct MeetingPlace {
   double frame;
-  std::uint32_t part_a, part_b;
+  std::uint32_t part, other;
 
-  bool operator<(const MeetingPlace& other) const {
-    return std::tie(frame, part_a, part_b) < std::tie(other.frame, other.part_a, other.part_b);
+  bool operator<(const MeetingPlace& of) const {
+    return std::tie(frame, part, other) < std::tie(of.frame, of.part, of.other);
   }
 };
 
-// Two spots, one of each part, and a way for b's to leave a's.
+// Two spots, b of the part that goes in and a of the other, and a way for b to leave a.
 struct Push {
   SkinSpot a, b;
   Vec3 way;         // unit length

@@ -102,6 +102,7 @@ class SkinPlacement {
     }
     return placement;
   }
+  const std::vector<std::string>& placed_by_rest_pose() const { return placed_by_rest_pose_; }
 
  private:
   Affine find(const MeshInstance& instance) {
@@ -114,14 +115,18 @@ class SkinPlacement {
       return placement;
     }
     Affine placement = is_one_space_ ? Affine(nodes_to_rest_ * by_node) : Affine(rest_pose_to_rest_ * in_rest_pose);
+    bool is_known = is_one_space_ || is_bind_pose_;
     for (unsigned b = 0; b < mesh.mNumBones; ++b) {
       const auto bound = inverse_binds_.find(mesh.mBones[b]->mName.C_Str());
       if (bound == inverse_binds_.end()) continue;
       placement = bound->second.inverse() * offset_of(*mesh.mBones[b], instance);
+      is_known = true;
       break;
     }
     constexpr double kSame = 1e-4;  // singles
-    return placement.isApprox(by_node, kSame) || !placement.matrix().allFinite() ? by_node : placement;
+    if (placement.isApprox(by_node, kSame) || !placement.matrix().allFinite()) return by_node;
+    if (!is_known) placed_by_rest_pose_.emplace_back(mesh.mName.C_Str());
+    return placement;
   }
 
   // Whether the nodes of all meshes have them where their bones were bound.
@@ -141,7 +146,7 @@ class SkinPlacement {
   }
 
   // Mesh space into the scene, as the mesh's bones have it in the rest pose.
-  Affine shown(const MeshInstance& instance) const {
+  Affine shown(const MeshInstance& instance) {
     const aiMesh& mesh = *instance.mesh;
     std::vector<std::pair<Index, const aiBone*>> bones;  // the highest first
     for (unsigned b = 0; b < mesh.mNumBones; ++b) {
@@ -158,11 +163,18 @@ class SkinPlacement {
       weights.push_back(0);
       for (unsigned w = 0; w < bone->mNumWeights; ++w) weights.back() += std::max(bone->mWeights[w].mWeight, 0.0F);
     }
-    return maps.empty() ? instance.placement : maps[typical_map(maps, weights)];
+    if (maps.empty()) return instance.placement;
+    const Affine typical = maps[typical_map(maps, weights)];
+    constexpr double kSame = 1e-3;
+    is_bind_pose_ = is_bind_pose_ && std::all_of(maps.begin(), maps.end(),
+                                                 [&](const Affine& map) { return map.isApprox(typical, kSame); });
+    return typical;
   }
 
   const AssimpScene& flat_;
   bool is_one_space_;
+  bool is_bind_pose_ = true;  // the rest pose, of the meshes so far
+  std::vector<std::string> placed_by_rest_pose_;
   Affine nodes_to_rest_ = Affine::Identity();
   Affine rest_pose_to_rest_ = Affine::Identity();
   std::unordered_map<std::string, Affine> inverse_binds_;  // by bone name, of the meshes placed so far
@@ -215,6 +227,7 @@ AssimpScene flatten(const aiScene& scene, const NamesOfNodes& names, const std::
     vertices += instance.mesh->mNumVertices;
     morphs += instance.mesh->mNumAnimMeshes;
   }
+  out.placed_by_rest_pose = skins.placed_by_rest_pose();
   return out;
 }
 

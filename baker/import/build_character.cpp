@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "import/import.h"
+#include "import/notes.h"
 #include "import/pivots.h"
 #include "mesh/error.h"
 
@@ -128,7 +129,11 @@ Character build_character(const SourceMesh& source, const std::string& name) {
   }
   const std::vector<Vec3>& positions = character.source_positions;
   std::vector<Vec3> pivots = pivots_of(character.rig, positions);
-  if (!pivots.empty()) character.rig.pivots = std::move(pivots);
+  if (!pivots.empty()) {
+    character.rig.pivots = std::move(pivots);
+    character.rig.are_pivots_from_skin = true;
+    add_note(name + ": its joints are bound at one place: where they turn is guessed from the skin (bind each joint where it turns)");
+  }
 
   Eigen::AlignedBox3d box;
   for (const Triangle& t : source.triangles) {

@@ -327,6 +327,10 @@ SourceMesh read_with_assimp(const std::filesystem::path& path, const ImportOptio
       skinned.back().box.extend(out.positions[instance.first_vertex + v]);
   }
   note_characters(flat.nodes, skinned, out.up_hint, read.name);
+  for (const std::string& mesh : flat.placed_by_rest_pose) {
+    add_note(read.name + ": mesh '" + mesh + "' shares no joint with the others: where it is bound is guessed from the " +
+             "rest pose (export the skeleton in its bind pose)");
+  }
   note_lost_files(read, path.parent_path());
   if (options.look) out.look = read_look(scene, flat, path.parent_path());
   return out;

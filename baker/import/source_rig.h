@@ -83,6 +83,7 @@ struct SourceRig {
   std::vector<Clip> clips;
   Affine to_rest = Affine::Identity();  // from the scene's axes and units to those of the rest positions
   std::vector<Vec3> pivots;             // of all nodes; empty where joints turn where they are bound (pivots.h)
+  bool are_pivots_from_skin = false;    // the file does not say where its joints turn
 };
 
 // Which of the maps that a skin's bones are at rest holds for most of it: the one nearest to the median of all, entry

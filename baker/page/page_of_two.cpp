@@ -236,7 +236,7 @@ class Contacts {
       add(between_.measure(poses[0], poses[1], is_next), 0, 1);
     }
     std::stable_sort(measured_.begin(), measured_.end(),
-                     [](const Penetration& l, const Penetration& r) { return l.depth > r.depth; });
+                     [](const Penetration& l, const Penetration& r) { return l.measures.depth > r.measures.depth; });
   }
 
   std::vector<Triangles> triangles;
@@ -251,8 +251,8 @@ class Contacts {
   }
   void add(const std::vector<Penetration>& found, std::uint32_t a, std::uint32_t b) {
     for (Penetration p : found) {
-      p.part_a += a * first_part_;
-      p.part_b += b * first_part_;
+      p.part += a * first_part_;
+      p.other += b * first_part_;
       measured_.push_back(p);
     }
   }

@@ -87,7 +87,7 @@ Player::TriangleDetection Player::detect_triangles(const std::vector<float>& pos
   out.penetrations = skin_.measure(pose, is_next);
   out.measure_us = std::chrono::duration<double, std::micro>(Clock::now() - start).count();
   std::stable_sort(out.penetrations.begin(), out.penetrations.end(),
-                   [](const Penetration& l, const Penetration& r) { return l.depth > r.depth; });
+                   [](const Penetration& l, const Penetration& r) { return l.measures.depth > r.measures.depth; });
   return out;
 }
 

@@ -24,9 +24,6 @@ class BonePose {
 // Whole meshes as poses have no bones.
 bool moved_by_bones(const OpenAsset& asset, const Deformation& deformation);
 
-// What a person sees as a fault.
-inline bool is_fault(PenetrationClass kind) { return kind >= SC_CLASS_DEEP_FOLD; }
-
 // Runs a job on triangles that intersect until there is room for all of them.
 template <typename Job>
 void list_triangles(Job& job, std::vector<TriangleContact>& contacts) {

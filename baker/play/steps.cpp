@@ -186,8 +186,9 @@ double deepest_share(const AnimatedAsset& animated, int frame, const StepContact
     const auto look = [&](const sc_pose& pose) {
       player.find(pose);
       for (const Penetration& found : player.measure_quickly(pose)) {
-        if (found.part_a == contact.part_a && found.part_b == contact.part_b && double{found.depth} > most) {
-          most = double{found.depth};
+        const bool is_its = std::minmax(found.part, found.other) == std::minmax(contact.part_a, contact.part_b);
+        if (is_its && double{found.measures.depth} > most) {
+          most = double{found.measures.depth};
           share = at;
         }
       }

@@ -96,12 +96,13 @@ PartCounts PartContacts::add(int frame, const std::vector<Pair>& triangles,
   }
   bool has_fault = false;
   for (const Penetration& found : penetrations) {
-    Contact& contact = clip.contacts[{found.part_a, found.part_b}];
+    Contact& contact = clip.contacts[std::minmax<std::size_t>(found.part, found.other)];
+    contact.parts = {found.part, found.other};
     const bool fault = is_fault(found.kind);
     has_fault = has_fault || fault;
     if (fault) add_to_runs(contact.fault_runs, number, before);
-    if (std::pair(fault, mm_ * double{found.depth}) > std::pair(is_fault(contact.kind), contact.depth_mm_max)) {
-      contact.depth_mm_max = mm_ * double{found.depth};
+    if (std::pair(fault, mm_ * double{found.measures.depth}) > std::pair(is_fault(contact.kind), contact.depth_mm_max)) {
+      contact.depth_mm_max = mm_ * double{found.measures.depth};
       contact.frame_of_depth_max = number;
       contact.direction = found.direction;
       contact.kind = found.kind;
@@ -145,18 +146,16 @@ std::string PartContacts::rows(const Clip& clip) const {
   });
   std::vector<std::vector<std::string>> cells;
   for (const Row row : order) {
-    const auto [a, b] = row->first;
-    const auto [first, second] = order_.ordered(a, b);
     const Contact& contact = row->second;
+    const auto [first, second] = contact.parts;
     const auto& runs = contact.fault_runs;
     const char* unit = runs.size() == 1 && runs[0].first == runs[0].second ? "frame " : "frames ";
     const char* fold = contact.kind == SC_CLASS_DEEP_FOLD ? "deep fold, " : "";
-    const float way = first == b ? 1.0F : -1.0F;  // the direction is that of b
     const auto& [x, y, z] = contact.direction;
     cells.push_back(
-        {name(first), a == b ? "itself" : name(second), unit + runs_text(runs),
+        {name(first), first == second ? "itself" : name(second), unit + runs_text(runs),
          fmt::format("{}{:.0f} mm deep at {}, out along ({:.2f}, {:.2f}, {:.2f})", fold, contact.depth_mm_max,
-                     frame_text(contact.frame_of_depth_max), way * x, way * y, way * z)});
+                     frame_text(contact.frame_of_depth_max), x, y, z)});
   }
   std::string rest;
   for (const auto& [kind, count] : others) {
@@ -168,7 +167,7 @@ std::string PartContacts::rows(const Clip& clip) const {
   std::string between;
   for (const auto& [parts, contact] : clip.contacts) {
     if (!is_between_only(contact.runs)) continue;
-    const auto [first, second] = order_.ordered(parts.first, parts.second);
+    const auto [first, second] = contact.parts;
     between += fmt::format("{}{}, {} at {} ({}, {:.0f} mm)", between.empty() ? "  between frames only: " : "; ",
                            name(first), name(second), frame_text(contact.frame_of_depth_max),
                            sc_penetration_class_name(contact.kind), contact.depth_mm_max);

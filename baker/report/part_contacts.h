@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "bind/body_parts.h"
-#include "play/part_order.h"
 #include "play/play.h"
 #include "spherechain/penetrations.h"
 
@@ -23,7 +22,7 @@ class PartContacts {
  public:
   // `animated` must outlive it.
   explicit PartContacts(const AnimatedAsset& animated)
-      : animated_(animated), mm_(mm_per_unit(animated.asset())), parts_(parts_of(animated.asset())), order_(animated) {}
+      : animated_(animated), mm_(mm_per_unit(animated.asset())), parts_(parts_of(animated.asset())) {}
 
   // Frames are added in order. Returns the frame's counts.
   PartCounts add(int frame, const std::vector<Pair>& triangles, const std::vector<Penetration>& penetrations);
@@ -41,6 +40,7 @@ class PartContacts {
  private:
   // Two body parts in one clip.
   struct Contact {
+    std::pair<std::size_t, std::size_t> parts;  // the first goes into the second
     // Numbers of the first and the last frame of each run; of all, and of those that are faults.
     std::vector<std::pair<double, double>> runs, fault_runs;
     std::size_t triangle_pairs_max = 0;
@@ -64,7 +64,6 @@ class PartContacts {
   const AnimatedAsset& animated_;
   double mm_;  // a unit of the source, in millimetres
   BodyParts parts_;
-  PartOrder order_;
   std::vector<Clip> clips_;
   int last_frame_ = -1;
 };

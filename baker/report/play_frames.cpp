@@ -59,15 +59,15 @@ ordered_json penetrations_json(const AnimatedAsset& animated, const std::vector<
   };
   ordered_json out = ordered_json::array();
   for (const Penetration& found : penetrations) {
-    const double ml = std::pow(mm / 10, 3) * double{found.volume};
-    out.push_back({{"parts", {contacts.name(found.part_a), contacts.name(found.part_b)}},
+    const double ml = std::pow(mm / 10, 3) * double{found.measures.volume};
+    out.push_back({{"parts", {contacts.name(found.part), contacts.name(found.other)}},
                    {"class", sc_penetration_class_name(found.kind)},
-                   {"depth_mm", mm * double{found.depth}},
+                   {"depth_mm", mm * double{found.measures.depth}},
                    {"direction", {found.direction.x, found.direction.y, found.direction.z}},
-                   {"volume_ml", found.is_closed != 0 ? ordered_json(ml) : ordered_json()},
-                   {"visible", found.visible},
-                   {"contour_mm", mm * double{found.contour_length}},
-                   {"deepest", {point(found.deepest_a), point(found.deepest_b)}}});
+                   {"volume_ml", ml >= 0 ? ordered_json(ml) : ordered_json()},
+                   {"visible", found.measures.visible},
+                   {"contour_mm", mm * double{found.measures.contour_length}},
+                   {"deepest", {point(found.deepest), point(found.deepest_other)}}});
   }
   return out;
 }

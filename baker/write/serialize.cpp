@@ -98,7 +98,7 @@ std::vector<std::uint8_t> bytes_of(const AssetSource& in, const std::vector<Pair
   for (const BodyPart& part : in.parts.parts) {
     parts.push_back(
         schema::CreatePartDirect(builder, part.name.c_str(), static_cast<schema::Side>(part.side), part.bone,
-                                  part.parent));
+                                  part.parent, part.mobility));
   }
   const std::vector<flatbuffers::Offset<schema::Bone>> bones = create_bones(builder, in.bones);
   const auto moments = create_moments(builder, in.moments);

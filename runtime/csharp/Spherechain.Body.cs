@@ -235,7 +235,7 @@ namespace Spherechain
         Scope measured;
 
         /// <summary>How deep what the last FindContacts() of this pose found is, and which way out: Penetrations. `quick`: as a
-        /// Character measures; else several directions, volume and visibility too. Returns PenetrationCount.</summary>
+        /// Character measures, only likely faults in full; else everything in full, with volumes. Returns PenetrationCount.</summary>
         public int MeasurePenetrations(bool quick)
         {
             PenetrationCount = 0;
@@ -272,7 +272,7 @@ namespace Spherechain
             finally { Leave(); }
         }
 
-        /// <summary>Which parts are below the plane up . p = height, and how deep: Penetrations, with PartA Native.Floor.
+        /// <summary>Which parts are below the plane up . p = height, and how deep: Penetrations, with Other Native.Floor.
         /// Returns PenetrationCount.</summary>
         public int FindFloor(Vec3 up, float height)
         {
@@ -298,9 +298,9 @@ namespace Spherechain
             finally { Leave(); }
         }
 
-        internal Native.Body View(Native.Asset* view)
+        internal Native.JobBody View(Native.Asset* view)
         {
-            Native.Body body = default(Native.Body);
+            Native.JobBody body = default(Native.JobBody);
             body.Asset = view;
             body.Pose = Pose;
             body.SkinTable = Skin;

@@ -19,7 +19,7 @@ namespace Spherechain
         public int ContactCount { get; private set; }
         public TriangleContact[] Triangles { get { return triangles; } }
         public int TriangleCount { get; private set; }
-        /// <summary>Of the last MeasurePenetrations(): the first PenetrationCount.</summary>
+        /// <summary>Of the last MeasurePenetrations(): the first PenetrationCount. Part is A's, Other is B's.</summary>
         public Penetration[] Penetrations { get { return penetrations; } }
         public int PenetrationCount { get; private set; }
 
@@ -36,7 +36,7 @@ namespace Spherechain
         /// <summary>Which parts of A and B intersect, exactly. Returns ContactCount.</summary>
         public int FindContacts()
         {
-            Native.Body a, b;
+            Native.JobBody a, b;
             Enter(out a, out b);
             try
             {
@@ -77,7 +77,7 @@ namespace Spherechain
         public int MeasurePenetrations(bool quick)
         {
             PenetrationCount = 0;
-            Native.Body a, b;
+            Native.JobBody a, b;
             Enter(out a, out b);
             try
             {
@@ -109,7 +109,7 @@ namespace Spherechain
             finally { Leave(); }
         }
 
-        void Enter(out Native.Body a, out Native.Body b)
+        void Enter(out Native.JobBody a, out Native.JobBody b)
         {
             if (scratch.Data == null) throw new SpherechainException(Code.NotOpen, Field.Bodies, "the pair is disposed");
             a = A.View(A.Enter(true));

@@ -115,7 +115,7 @@ namespace Spherechain
         Contacts = 32,
         Previous = 33,
         Penetrations = 34,
-        TouchDepth = 35,
+        Rule = 35,
         IgnoredParts = 36,
         Bodies = 37,
         Layers = 38,
@@ -126,6 +126,7 @@ namespace Spherechain
         Parents = 43,
         Tolerance = 44,
         Transform = 45,
+        Allocator = 46,
     }
 
     public enum Side : int  // sc_side
@@ -133,6 +134,44 @@ namespace Spherechain
         None = 0,
         Left = 1,
         Right = 2,
+    }
+
+    public enum PenetrationClass : int  // sc_penetration_class
+    {
+        /// <summary>the two spots touch in the rest pose, too</summary>
+        Rest = 0,
+        /// <summary>another layer of the same place (a garment on the body), or most of it is hidden</summary>
+        Shell = 1,
+        /// <summary>hardly deep; or no fold, and little goes in</summary>
+        Touch = 2,
+        /// <summary>of neighbours on the body, near the joint: an elbow, a groin</summary>
+        Fold = 3,
+        /// <summary>a deep fold of one piece of skin</summary>
+        DeepFold = 4,
+        /// <summary>all else: a fault</summary>
+        Penetration = 5,
+    }
+
+    public enum Relation : int  // sc_relation
+    {
+        Apart = 0,
+        /// <summary>one hangs on a part that hangs on the other: a thigh and the abdomen</summary>
+        Near = 1,
+        /// <summary>both hang on the same third part</summary>
+        Siblings = 2,
+        /// <summary>one hangs on the other, or a part meets itself</summary>
+        Joined = 3,
+        /// <summary>they are of two bodies</summary>
+        TwoBodies = 4,
+    }
+
+    public enum Scope : int  // sc_scope
+    {
+        /// <summary>of two spheres that are not ignored: no neighbours on the body</summary>
+        Apart = 0,
+        /// <summary>of one sphere, or of two that are ignored: folds of elbow and knee; 40 times dearer</summary>
+        Neighbours = 1,
+        All = 2,
     }
 
     public enum MatrixLayout : int  // sc_matrix_layout
@@ -149,29 +188,10 @@ namespace Spherechain
         Columns3x4 = 4,
     }
 
-    public enum Scope : int  // sc_scope
+    public enum Detail : int  // sc_detail
     {
-        /// <summary>of two spheres that are not ignored: no neighbours on the body</summary>
-        Apart = 0,
-        /// <summary>of one sphere, or of two that are ignored: folds of elbow and knee; 40 times dearer</summary>
-        Neighbours = 1,
-        All = 2,
-    }
-
-    public enum PenetrationClass : int  // sc_penetration_class
-    {
-        /// <summary>the two spots touch in the rest pose, too</summary>
-        Rest = 0,
-        /// <summary>another layer of the same place (a garment on the body), or most of it is hidden</summary>
-        Shell = 1,
-        /// <summary>less deep than the job's touch_depth; or no fold, and little goes in</summary>
-        Touch = 2,
-        /// <summary>of neighbours on the body, near the joint: an elbow, a groin</summary>
-        Fold = 3,
-        /// <summary>a fold of one piece of skin, deeper than 4.5 % of the character's height</summary>
-        DeepFold = 4,
-        /// <summary>all else: a fault</summary>
-        Penetration = 5,
+        Quick = 0,
+        Full = 1,
     }
 
     public enum Blend : int  // sc_blend
@@ -244,16 +264,62 @@ namespace Spherechain
     }
 
     [StructLayout(LayoutKind.Sequential)]
-    public struct JointTransform  // sc_transform
+    public struct Measures  // sc_measures
     {
-        public Vec3 Translation;
-        /// <summary>a quaternion: x, y, z, w; of about unit length</summary>
-        public float Rotation0;
-        public float Rotation1;
-        public float Rotation2;
-        public float Rotation3;
-        /// <summary>along its own axes; negative mirrors</summary>
-        public Vec3 Scale;
+        /// <summary>&gt; 0: the way out; the pose's units</summary>
+        public float Depth;
+        /// <summary>of the one part inside the other; negative: not known. The pose's units</summary>
+        public float Volume;
+        /// <summary>of the line where the parts cross; the pose's units</summary>
+        public float ContourLength;
+        /// <summary>0 to 1: the share of that line that can be seen from outside; 1 where it was not looked at</summary>
+        public float Visible;
+        /// <summary>0 to 1: the share of that line that touches at rest</summary>
+        public float Touching;
+        /// <summary>-1 to 1: 1 where the sides lie flat on each other</summary>
+        public float Facing;
+        /// <summary>between the two spots at rest, a share of the height; infinite of two bodies</summary>
+        public float RestDistance;
+        /// <summary>of the thinner part, there, in the pose's units; negative: not known</summary>
+        public float Thickness;
+        /// <summary>depth / thickness * visible length / side of a square like the smaller part; negative: not known, for the class does not depend on it</summary>
+        public float Swallowed;
+        public float Height;
+        /// <summary>how long the character's height and a metre are in the pose's units</summary>
+        public float Metre;
+        public Relation Relation;
+        /// <summary>1: the two spots are of one piece of skin</summary>
+        public int IsOnePiece;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    public struct Rule  // sc_rule
+    {
+        /// <summary>SC_RULE_VERSION; others are refused</summary>
+        public uint Version;
+        /// <summary>the pose's units. Below it parts just touch, and what is deeper is no touch; 0: the next four</summary>
+        public float TouchDepth;
+        public float TouchMetres;
+        public float TouchMin;
+        /// <summary>a touch is less deep than touch_metres metres, but at least touch_min and at most touch_max</summary>
+        public float TouchMax;
+        /// <summary>or up to so many times that, where less goes in than `swallowed` and it is no fold</summary>
+        public float TouchTimes;
+        public float Swallowed;
+        /// <summary>more of the line touches at rest: it was modelled so</summary>
+        public float AtRest;
+        /// <summary>less of the line is visible</summary>
+        public float Hidden;
+        /// <summary>two spots of two pieces are closer at rest: layers of one place</summary>
+        public float Shell;
+        /// <summary>two spots of parts that are near each other are closer at rest</summary>
+        public float Fold;
+        /// <summary>two spots of any parts are closer at rest: a joint may have no bone of its own</summary>
+        public float Neighbours;
+        /// <summary>sides that face each other more fold: a thigh lies flat on the abdomen</summary>
+        public float FoldFacing;
+        /// <summary>a fold of one piece that is deeper is a fault</summary>
+        public float DeepFold;
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -300,33 +366,24 @@ namespace Spherechain
     [StructLayout(LayoutKind.Sequential)]
     public struct Penetration  // sc_penetration
     {
-        public uint PartA;
-        /// <summary>part_a &lt;= part_b; equal where a part meets itself</summary>
-        public uint PartB;
+        public uint Part;
+        public uint Other;
+        /// <summary>moves `part`, in the order of the model's joints; SC_NO_JOINT where none does</summary>
+        public uint Joint;
         public PenetrationClass Kind;
-        /// <summary>&gt; 0: part_b, moved so far in `direction`, no longer intersects part_a. Of a part that meets itself: of the triangles that intersect</summary>
-        public float Depth;
-        /// <summary>unit length. Moves part_b; its negative moves part_a</summary>
+        /// <summary>unit length. `part`, moved by distance * direction, no longer intersects `other`. Of a part that meets itself: of the triangles that intersect</summary>
         public Vec3 Direction;
-        /// <summary>1: the line where the parts cross closes, and `volume` is known</summary>
-        public int IsClosed;
-        /// <summary>of part_b inside part_a; 0 where not closed, and with `quick`</summary>
-        public float Volume;
+        /// <summary>measures.depth, or up to a quarter more where `previous` keeps the direction</summary>
+        public float Distance;
         /// <summary>of the line where the parts cross</summary>
-        public float ContourLength;
-        /// <summary>0 to 1: the share of that line that can be seen from outside; with `quick` 1</summary>
-        public float Visible;
-        public SkinPoint DeepestA;
-        /// <summary>the points that part last; deepest_a - deepest_b = depth * direction</summary>
-        public SkinPoint DeepestB;
-    }
-
-    [StructLayout(LayoutKind.Sequential)]
-    public struct CrowdPair  // sc_crowd_pair
-    {
-        public uint Instance;
-        /// <summary>of spheres</summary>
-        public Pair Pair;
+        public Vec3 Centre;
+        public Vec3 Low;
+        /// <summary>a box around that line</summary>
+        public Vec3 High;
+        public SkinPoint Deepest;
+        /// <summary>the points that part last; deepest_other - deepest = distance * direction</summary>
+        public SkinPoint DeepestOther;
+        public Measures Measures;
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -335,7 +392,7 @@ namespace Spherechain
         public uint PartA;
         public uint PartB;
         public int AtStart;
-        /// <summary>1: they intersect there: more say sc_find_skin_contacts(), sc_find_body_contacts()</summary>
+        /// <summary>1: they intersect there: more say the contacts of that pose</summary>
         public int AtEnd;
         /// <summary>the first time at which they touch; 0 with at_start</summary>
         public float Begin;
@@ -348,6 +405,36 @@ namespace Spherechain
         public Vec3 At;
     }
 
+    [StructLayout(LayoutKind.Sequential)]
+    public struct JointTransform  // sc_transform
+    {
+        public Vec3 Translation;
+        /// <summary>a quaternion: x, y, z, w; of about unit length</summary>
+        public float Rotation0;
+        public float Rotation1;
+        public float Rotation2;
+        public float Rotation3;
+        /// <summary>along its own axes; negative mirrors</summary>
+        public Vec3 Scale;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    public struct Triangle  // sc_triangle
+    {
+        public uint Part;
+        public uint Region;
+        /// <summary>SC_NO_PART, each: the triangle was left out of the skin, as degenerate ones are</summary>
+        public uint Sphere;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    public struct CrowdPair  // sc_crowd_pair
+    {
+        public uint Instance;
+        /// <summary>of spheres</summary>
+        public Pair Pair;
+    }
+
     public static unsafe class Native
     {
 #if (UNITY_IOS || UNITY_WEBGL) && !UNITY_EDITOR
@@ -356,11 +443,13 @@ namespace Spherechain
         public const string Library = "spherechain";  // spherechain.dll, libspherechain.so, libspherechain.dylib
 #endif
 
-        public const uint AbiVersion = 10;
+        public const uint AbiVersion = 11;
         public const uint AssetAlignment = 8;
         public const uint Floor = 0xFFFFFFFFu;
         public const uint NoJoint = 0xFFFFFFFFu;
+        public const uint NoPart = 0xFFFFFFFFu;
         public const uint NoTriangle = 0xFFFFFFFFu;
+        public const uint RuleVersion = 2;
         // Left out: SC_WHOLE_SOURCE: its width depends on the machine: pass new UIntPtr(UIntPtr.Size == 8 ? ulong.MaxValue : uint.MaxValue).
 
         [StructLayout(LayoutKind.Sequential)]
@@ -386,6 +475,8 @@ namespace Spherechain
             public int Bone;
             /// <summary>the part that it hangs on; -1: none</summary>
             public int Parent;
+            /// <summary>of two parts that intersect the one with more goes into the other: from a hand's, over forearm, upper arm, foot, shin, thigh and head, down to the trunk's 0; others have one more than the part that they hang on</summary>
+            public int Mobility;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -500,6 +591,7 @@ namespace Spherechain
             public UIntPtr SphereCapacity;
             public TriangleContact* Triangles;
             public UIntPtr TriangleCapacity;
+            public ulong* ListedParts;
             public UIntPtr PartCount;
             public UIntPtr SphereCount;
             public UIntPtr TriangleCount;
@@ -522,21 +614,25 @@ namespace Spherechain
             /// <summary>null: none</summary>
             public Penetration* Previous;
             public UIntPtr PreviousCount;
-            /// <summary>1: one direction, no volume, no visibility, no previous frame. For games</summary>
+            /// <summary>1: along one direction, without volume and visibility, but for likely faults: these are measured in full, so that both forms find the same faults. For games</summary>
             public int Quick;
-            /// <summary>&gt;= 0. 0: 3 mm, by the asset's metres_per_unit, but at least 0.19 % and at most 0.66 % of the height; but for folds, up to ten times that where little goes in: depth / thickness of the thinner part * seen contour / side of a square like the smaller part &lt; 0.25</summary>
-            public float TouchDepth;
+            /// <summary>null: sc_default_rule()</summary>
+            public Rule* Rule;
             /// <summary>sc_penetration_scratch_words() words; nothing is kept there between runs</summary>
             public ulong* Scratch;
             public UIntPtr ScratchWords;
             /// <summary>null, with a capacity of 0: count only</summary>
             public Penetration* Penetrations;
             public UIntPtr PenetrationCapacity;
+            /// <summary>bit k: penetrations of class k are listed and counted; 0: all</summary>
+            public uint Classes;
+            /// <summary>in: entries that are there already, of other contacts; they are counted, too</summary>
+            public UIntPtr KeptCount;
             public UIntPtr PenetrationCount;
         }
 
         [StructLayout(LayoutKind.Sequential)]
-        public unsafe struct Body  // sc_body
+        public unsafe struct JobBody  // sc_job_body
         {
             /// <summary>open, with triangles; a character, or what `bake --prop` wrote</summary>
             public Asset* Asset;
@@ -585,8 +681,8 @@ namespace Spherechain
         [StructLayout(LayoutKind.Sequential)]
         public unsafe struct BodyContactJob  // sc_body_contact_job
         {
-            public Body A;
-            public Body B;
+            public JobBody A;
+            public JobBody B;
             /// <summary>the same contacts on every one</summary>
             public Target Target;
             /// <summary>1: find pairs of spheres alone; each ends at its first contact. Cheapest</summary>
@@ -600,6 +696,7 @@ namespace Spherechain
             public UIntPtr SphereCapacity;
             public TriangleContact* Triangles;
             public UIntPtr TriangleCapacity;
+            public ulong* ListedParts;
             public UIntPtr PartCount;
             public UIntPtr SphereCount;
             public UIntPtr TriangleCount;
@@ -608,9 +705,9 @@ namespace Spherechain
         [StructLayout(LayoutKind.Sequential)]
         public unsafe struct BodyPenetrationJob  // sc_body_penetration_job
         {
-            public Body A;
+            public JobBody A;
             /// <summary>ignored_parts is not read</summary>
-            public Body B;
+            public JobBody B;
             public Target Target;
             /// <summary>null: none</summary>
             public TriangleContact* Contacts;
@@ -619,20 +716,24 @@ namespace Spherechain
             public Penetration* Previous;
             public UIntPtr PreviousCount;
             public int Quick;
-            public float TouchDepth;
+            public Rule* Rule;
             /// <summary>sc_body_penetration_scratch_words() words; nothing is kept there between runs</summary>
             public ulong* Scratch;
             public UIntPtr ScratchWords;
-            /// <summary>out: sorted by (part_a, part_b)</summary>
+            /// <summary>out: sorted by (part, other)</summary>
             public Penetration* Penetrations;
             public UIntPtr PenetrationCapacity;
+            /// <summary>bit k: penetrations of class k are listed and counted; 0: all</summary>
+            public uint Classes;
+            /// <summary>in: entries that are there already, of other contacts; they are counted, too</summary>
+            public UIntPtr KeptCount;
             public UIntPtr PenetrationCount;
         }
 
         [StructLayout(LayoutKind.Sequential)]
         public unsafe struct FloorJob  // sc_floor_job
         {
-            public Body Body;
+            public JobBody Body;
             /// <summary>the same bits on every one</summary>
             public Target Target;
             /// <summary>of unit length</summary>
@@ -642,14 +743,128 @@ namespace Spherechain
             public IntPtr Terrain;
             public void* User;
             /// <summary>as of an sc_penetration_job</summary>
-            public float TouchDepth;
+            public Rule* Rule;
             /// <summary>sc_floor_scratch_words() words; nothing is kept there between runs</summary>
             public ulong* Scratch;
             public UIntPtr ScratchWords;
-            /// <summary>out: sorted by part_b; null, with a capacity of 0: count only</summary>
+            /// <summary>out: sorted by `part`; null, with a capacity of 0: count only</summary>
             public Penetration* Penetrations;
             public UIntPtr PenetrationCapacity;
+            /// <summary>as of an sc_penetration_job</summary>
+            public uint Classes;
             public UIntPtr PenetrationCount;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        public unsafe struct Allocator  // sc_allocator
+        {
+            public IntPtr Allocate;
+            public IntPtr Release;
+            public void* User;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        public unsafe struct ModelDef  // sc_model_def
+        {
+            /// <summary>the bytes of a .sphc file, copied</summary>
+            public void* Data;
+            public UIntPtr Size;
+            public Bone* Joints;
+            public UIntPtr JointCount;
+            /// <summary>of the joints that have an inverse bind matrix</summary>
+            public MatrixLayout InverseBindLayout;
+            /// <summary>copied; null: malloc</summary>
+            public Allocator* Allocator;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        public unsafe struct BodyDef  // sc_body_def
+        {
+            public UIntPtr MaxTriangles;
+            /// <summary>0: 128; the worst are kept</summary>
+            public UIntPtr MaxPenetrations;
+            /// <summary>of all that it will meet; null: none is larger than its own model</summary>
+            public IntPtr LargestOther;
+            /// <summary>1: sc_find_steps() works; it needs much memory</summary>
+            public int FindsSteps;
+            /// <summary>copied; null: the model's</summary>
+            public Allocator* Allocator;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        public unsafe struct Query  // sc_query
+        {
+            public Scope Scope;
+            public Detail Detail;
+            /// <summary>of a body with itself, by spheres and regions; null: the asset's ignored pairs</summary>
+            public Filter* Filter;
+            /// <summary>sc_part_words() words: bit p: body part p meets nothing; null: all meet</summary>
+            public ulong* IgnoredParts;
+            public ulong* IgnoredPartsOfOther;
+            /// <summary>null: sc_default_rule()</summary>
+            public Rule* Rule;
+            /// <summary>bit k: penetrations of class k are listed; 0: faults alone</summary>
+            public uint Classes;
+            /// <summary>the worst so many; 0: as many as there is room for</summary>
+            public UIntPtr Limit;
+            public Penetration* Previous;
+            public UIntPtr PreviousCount;
+            /// <summary>of steps, a share of the height; 0: 0.0001</summary>
+            public float Tolerance;
+            /// <summary>of spheres and their pairs</summary>
+            public Radius Radius;
+            /// <summary>the same answers on every one</summary>
+            public Target Target;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        public unsafe struct Penetrations  // sc_penetrations
+        {
+            public Penetration* Items;
+            public UIntPtr Count;
+            public UIntPtr Total;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        public unsafe struct Contacts  // sc_contacts
+        {
+            public PartContact* Parts;
+            public UIntPtr PartCount;
+            public Pair* Spheres;
+            public UIntPtr SphereCount;
+            public UIntPtr SphereTotal;
+            public TriangleContact* Triangles;
+            public UIntPtr TriangleCount;
+            public UIntPtr TriangleTotal;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        public unsafe struct SpherePairs  // sc_sphere_pairs
+        {
+            /// <summary>the asset's, in the pose</summary>
+            public Sphere* Spheres;
+            public UIntPtr SphereCount;
+            public Pair* Pairs;
+            public UIntPtr Count;
+            public UIntPtr Total;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        public unsafe struct Steps  // sc_steps
+        {
+            public StepContact* Items;
+            public UIntPtr Count;
+        }
+
+        [StructLayout(LayoutKind.Sequential)]
+        public unsafe struct Ground  // sc_ground
+        {
+            /// <summary>of unit length</summary>
+            public Vec3 Up;
+            /// <summary>up . p = height on the plane</summary>
+            public float Height;
+            public IntPtr Terrain;
+            public void* User;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -702,7 +917,7 @@ namespace Spherechain
         [StructLayout(LayoutKind.Sequential)]
         public unsafe struct Motion  // sc_motion
         {
-            public Body Body;
+            public JobBody Body;
             public Pose End;
             public Blend Blend;
             public JointTransform* StartJoints;
@@ -784,16 +999,16 @@ namespace Spherechain
         public static extern Status sc_check_source(Asset* asset, UIntPtr buffer, float* positions, UIntPtr count, UIntPtr stride);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_detect(DetectJob* job);
+        public static extern Rule sc_default_rule();
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern PenetrationClass sc_classify(Rule* rule, Measures* measures);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern byte* sc_penetration_class_name(PenetrationClass kind);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern UIntPtr sc_pair_words(Asset* asset);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_detect_table_words(Asset* asset);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_prepare_detect(Asset* asset, Radius radius, Filter* filter, ulong* words, UIntPtr word_count);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_reset_filter(Asset* asset, Filter* filter);
@@ -803,6 +1018,15 @@ namespace Spherechain
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_ignore_regions(Asset* asset, Filter* filter, UIntPtr region, UIntPtr other, int ignored);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status sc_detect(DetectJob* job);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern UIntPtr sc_detect_table_words(Asset* asset);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status sc_prepare_detect(Asset* asset, Radius radius, Filter* filter, ulong* words, UIntPtr word_count);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_bind_joints(Asset* asset, Bone* joints, UIntPtr joint_count, MatrixLayout inverse_bind_layout, uint* joint_of_bone, UIntPtr capacity, byte* message, UIntPtr message_size);
@@ -835,9 +1059,6 @@ namespace Spherechain
         public static extern UIntPtr sc_penetration_scratch_words(Asset* asset, UIntPtr contact_count);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern byte* sc_penetration_class_name(PenetrationClass kind);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_find_body_contacts(BodyContactJob* job);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
@@ -856,7 +1077,7 @@ namespace Spherechain
         public static extern UIntPtr sc_floor_scratch_words(Asset* asset);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_bound_body(Body* body, Vec3* low, Vec3* high);
+        public static extern Status sc_bound_body(JobBody* body, Vec3* low, Vec3* high);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_find_meetings(SceneJob* job);
@@ -866,6 +1087,51 @@ namespace Spherechain
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern UIntPtr sc_part_words(Asset* asset);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status sc_create_model(uint abi, ModelDef* def, IntPtr* model, byte* message, UIntPtr message_size);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern void sc_destroy_model(IntPtr model);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Asset* sc_get_asset(IntPtr model);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern uint sc_get_part_joint(IntPtr model, uint part);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Triangle sc_get_triangle(IntPtr model, uint triangle);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status sc_check_rest(IntPtr model, Pose* palette, byte* message, UIntPtr message_size);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status sc_create_body(IntPtr model, BodyDef* def, IntPtr* body);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern void sc_destroy_body(IntPtr body);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status sc_set_pose(IntPtr body, Pose* pose, JointTransform* place);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status sc_find_penetrations(IntPtr body, IntPtr other, Query* query, Penetrations* found);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status sc_find_contacts(IntPtr body, IntPtr other, Query* query, Contacts* found);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status sc_find_sphere_pairs(IntPtr body, Query* query, SpherePairs* found);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status sc_find_steps(IntPtr body, IntPtr other, Query* query, Steps* found);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status sc_find_in_ground(IntPtr body, Ground* ground, Query* query, Penetrations* found);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
+        public static extern Status sc_get_bounds(IntPtr body, Vec3* low, Vec3* high);
 
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_character_create(uint abi, void* data, UIntPtr size, Bone* joints, UIntPtr joint_count, MatrixLayout inverse_bind_layout, IntPtr* character, byte* message, UIntPtr message_size);

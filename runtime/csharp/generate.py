@@ -18,7 +18,7 @@ LEFT_OUT = {
     "SC_WHOLE_SOURCE": "its width depends on the machine: pass new UIntPtr(UIntPtr.Size == 8 ? ulong.MaxValue : uint.MaxValue)",
 }
 RENAMED = {"sc_transform": "JointTransform"}  # Transform is UnityEngine's
-OPAQUE = {"sc_character"}  # handles: IntPtr
+OPAQUE = {"sc_body", "sc_character", "sc_model"}  # handles: IntPtr
 NUMBERS = {"void": "void", "char": "byte", "int": "int", "float": "float", "int32_t": "int", "uint32_t": "uint",
            "uint64_t": "ulong", "size_t": "UIntPtr"}
 KEYWORDS = {"in", "out", "ref", "params", "object", "string", "lock", "fixed", "base", "this", "is", "as", "event", "checked"}
@@ -107,7 +107,7 @@ class Header:
         fields = []
         while body.strip():
             body = body.strip()
-            callback = re.match(r"[\w ]+\(\*(\w+)\)\((?:[^()]|\([^()]*\))*\) ?;", body)
+            callback = re.match(r"[\w \*]+\(\*(\w+)\)\((?:[^()]|\([^()]*\))*\) ?;", body)
             if callback:
                 fields.append((callback.group(1), "IntPtr", 0))
                 body = body[callback.end():]

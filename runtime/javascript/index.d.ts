@@ -152,25 +152,56 @@ export interface SkinPoint {
   weights: Float32Array;
 }
 
-/** Two body parts that intersect, and how deep. */
+/** Two body parts that intersect, and how deep. The kind follows from `depth` and all from `volume` on. */
 export interface Penetration {
-  partA: number;
-  partB: number;
+  /** Indices into Asset.parts: `part` goes into `other`. It is the more mobile of the two, a hand in a thigh; of two alike
+   * the smaller. Both are the same where a part meets itself. */
+  part: number;
+  other: number;
+  /** Index into Asset.bones of the bone that moves `part`; -1 where none does. */
+  bone: number;
   kind: Kind;
-  /** > 0, in the palette's units: moved so far along `direction`, partB no longer intersects partA. Metres are
-   * `depth * metresPerUnit`, or `depth * metresPerUnit / scale` where the palette scales the character by `scale`. */
+  /** > 0, in the palette's units: the shortest way out. `depth / metre` is in metres. */
   depth: number;
-  /** x, y, z; unit length. It moves partB; its negative moves partA. */
+  /** Moved so far along `direction`, `part` no longer intersects `other`: `depth`, or up to a quarter more where the last
+   * call's direction is kept. */
+  distance: number;
+  /** x, y, z; unit length. It moves `part`. */
   direction: Float32Array;
-  /** The points that part last: deepestA - deepestB = depth * direction. */
-  deepestA: SkinPoint;
-  deepestB: SkinPoint;
-  /** Of partB inside partA, in cubed units. Null where the line in which the parts cross does not close, and if quick. */
+  /** Of the line in which the parts cross. */
+  centre: Float32Array;
+  /** A box around that line. */
+  low: Float32Array;
+  high: Float32Array;
+  /** The points of `part` and `other` that part last: deepestOther - deepest = distance * direction. */
+  deepest: SkinPoint;
+  deepestOther: SkinPoint;
+  /** Of the one part inside the other, in cubed units. Null where the line in which the parts cross does not close, and if
+   * quick. */
   volume: number | null;
   /** Of the line in which the parts cross. */
   contourLength: number;
-  /** 0 to 1: the share of that line that can be seen from outside; 1 if quick. */
+  /** 0 to 1: the share of that line that can be seen from outside; 1 where it was not looked at. */
   visible: number;
+  /** 0 to 1: the share of that line that touches at rest. */
+  touching: number;
+  /** -1 to 1: 1 where the sides lie flat on each other. */
+  facing: number;
+  /** Between the two spots at rest, a share of the height; Infinity where they are of two characters. */
+  restDistance: number;
+  /** Of the thinner part, there; null where it is not known. */
+  thickness: number | null;
+  /** depth / thickness * visible length / side of a square like the smaller part; null where it is not known, because the kind
+   * does not depend on it. */
+  swallowed: number | null;
+  /** How long the character's height and a metre are in the palette's units: `depth / metre` is the depth in metres. */
+  height: number;
+  metre: number;
+  /** How the two parts hang together: 'joined', one hangs on the other; 'siblings', both hang on the same third part; 'near',
+   * one hangs on a part that hangs on the other. */
+  relation: 'apart' | 'near' | 'siblings' | 'joined' | 'two_bodies';
+  /** Whether the two spots are of one piece of skin. */
+  isOnePiece: boolean;
 }
 
 /** One character in a pose. All answers are of the palette that was set last; they are worked out when asked for. */
@@ -205,18 +236,18 @@ export interface Character {
   triangleContacts(): TriangleContacts;
 
   /** How deep, which way out, and what kind, for what contacts() found; asks contacts('apart') first where it was not
-   * asked. `quick` (the default, for games): one direction is tried, without volume and visibility; nearly all
-   * depths are at least those with false, in the median 4 % longer. With false, what the command line tool shows: several
-   * directions are tried, which takes five to ten times as long, and a direction stays from call to call while it is about
-   * as good as the shortest. */
+   * asked. `quick` (the default, for games): one direction is tried, without volume and visibility; likely faults alone are
+   * measured in full. With false, all is measured in full, which takes longer, and a fault's direction stays from call to
+   * call while it is about as good as the shortest. Both find the same faults. */
   penetrations(quick?: boolean): Penetration[];
 
   /** The pairs of body parts where this skin intersects another character's: partA is of this one, partB of `other`; nothing
    * is swapped or left out. Both need a palette, in one space. */
   contactsWith(other: Character): PartContact[];
 
-  /** How deep, which way out, and what kind, for what contactsWith() finds. The direction moves `other`. Kinds are 'shell',
-   * 'touch' and 'penetration'; they compare with this asset's height and unit. `quick`: as of penetrations(). */
+  /** How deep, which way out, and what kind, for what contactsWith() finds: `part` is of this one, Penetration.other of `other`.
+   * Kinds are 'shell', 'touch' and 'penetration'; they compare with this asset's height and unit. `quick`: as of
+   * penetrations(). */
   penetrationsWith(other: Character, quick?: boolean): Penetration[];
 
   /** Where the skin's vertices are in this pose: a view, x, y, z each. They are numbered by the asset, which merges the source's

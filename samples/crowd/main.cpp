@@ -128,7 +128,7 @@ void place(const AssetInfo& info, std::vector<float>& bones) {
 }
 
 // Pairs of characters that are in each other: of those whose boxes touch.
-std::size_t find_meetings(const std::vector<Body>& bodies, std::vector<Standing>& characters, std::size_t& boxes) {
+std::size_t find_meetings(const std::vector<JobBody>& bodies, std::vector<Standing>& characters, std::size_t& boxes) {
   std::vector<SceneBody> scene(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     check(sc_bound_body(&bodies[i], &scene[i].low, &scene[i].high));
@@ -171,7 +171,7 @@ float waves(const void* metres_per_unit, Vec3 p) {
 }
 
 // How deep each is in the ground.
-void find_grounded(const std::vector<Body>& bodies, const AssetInfo& info, std::vector<Standing>& characters) {
+void find_grounded(const std::vector<JobBody>& bodies, const AssetInfo& info, std::vector<Standing>& characters) {
   std::vector<std::uint64_t> scratch(sc_floor_scratch_words(bodies[0].asset));
   std::vector<Penetration> parts(info.part_count);
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -187,7 +187,7 @@ void find_grounded(const std::vector<Body>& bodies, const AssetInfo& info, std::
     job.penetration_capacity = parts.size();
     check(job.run());
     for (std::size_t k = 0; k < job.penetration_count; ++k) {
-      characters[i].depth = std::max(characters[i].depth, parts[k].depth);
+      characters[i].depth = std::max(characters[i].depth, parts[k].measures.depth);
     }
   }
 }
@@ -197,7 +197,7 @@ void stand(const Asset& asset, std::vector<float>& bones, const char* map) {
   place(info, bones);
   std::vector<std::uint64_t> table(sc_skin_table_words(&asset));
   check(sc_prepare_skin(&asset, table.data(), table.size()));
-  std::vector<Body> bodies(kCharacters);
+  std::vector<JobBody> bodies(kCharacters);
   for (std::size_t i = 0; i < kCharacters; ++i) {
     bodies[i].asset = &asset;
     bodies[i].skin_table = table.data();

@@ -32,9 +32,9 @@ public static class Hello
     static void Print(int frame, Asset asset, Penetration found)
     {
         string[] parts = asset.PartNames;
-        Vec3 way = found.Direction;  // the way that part B must go
-        Console.WriteLine("frame {0}: {1} in {2}, {3} mm; out along ({4}, {5}, {6})", frame, parts[found.PartB], parts[found.PartA],
-                          Number(1000 * asset.MetresPerUnit * found.Depth, "F0"), Number(way.X, "F2"), Number(way.Y, "F2"),
+        Vec3 way = found.Direction;  // the way that the part must go
+        Console.WriteLine("frame {0}: {1} in {2}, {3} mm; out along ({4}, {5}, {6})", frame, parts[found.Part], parts[found.Other],
+                          Number(1000 * asset.MetresPerUnit * found.Measures.Depth, "F0"), Number(way.X, "F2"), Number(way.Y, "F2"),
                           Number(way.Z, "F2"));
     }
 

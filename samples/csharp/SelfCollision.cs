@@ -112,11 +112,11 @@ public sealed class SelfCollision : MonoBehaviour
         return new Vector3(p.X, p.Y, p.Z);
     }
 
-    /// <summary>The way that part B must go, in this object's space, and how far.</summary>
+    /// <summary>The way that the part must go, in this object's space, and how far.</summary>
     public Vector3 Direction(Penetration found)
     {
         Vec3 d = Mirror.DirectionToEngine(found.Direction, mirroredAxis);
-        float length = found.Depth * sourceUnit;
+        float length = found.Distance * sourceUnit;
         return new Vector3(d.X * length, d.Y * length, d.Z * length);
     }
 
@@ -144,7 +144,7 @@ public sealed class SelfCollision : MonoBehaviour
             // From DeepFold on it is a fault; folds at joints and touches are small and green.
             bool isFault = found.Kind >= PenetrationClass.DeepFold;
             Gizmos.color = isFault ? Color.red : Color.green;
-            Vector3 from = Position(found.DeepestB.Position);
+            Vector3 from = Position(found.Deepest.Position);
             Gizmos.DrawSphere(from, sourceUnit * character.Asset.Height * (isFault ? 0.01f : 0.004f));
             Gizmos.DrawLine(from, from + Direction(found));
         }

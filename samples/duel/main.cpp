@@ -76,7 +76,7 @@ class Fighter {
     check(sc_place_bones(&place_, bones_.data(), model_.info.bone_count), "the place");
   }
 
-  Body body;    // as it stands
+  JobBody body;    // as it stands
   Motion step;  // from where it stood before
 
  private:
@@ -123,8 +123,9 @@ class Referee {
       }
       if (depths.empty()) depths = measure(red.body, blue.body);
       for (const Penetration& depth : depths) {
-        if (depth.part_a != hit.part_a || depth.part_b != hit.part_b) continue;
-        std::printf(", %.0f mm deep in frame %zu", 1000 * double{depth.depth * model_.info.metres_per_unit}, frame);
+        if (depth.part != hit.part_a || depth.other != hit.part_b) continue;
+        const double metres = double{depth.measures.depth * model_.info.metres_per_unit};
+        std::printf(", %.0f mm deep in frame %zu", 1000 * metres, frame);
       }
       std::printf("\n");
     }
@@ -141,7 +142,7 @@ class Referee {
     job.penetration_capacity = found_.size();
     check(job.run(), "the floor");
     float deepest = 0;
-    for (std::size_t i = 0; i < job.penetration_count; ++i) deepest = std::max(deepest, found_[i].depth);
+    for (std::size_t i = 0; i < job.penetration_count; ++i) deepest = std::max(deepest, found_[i].measures.depth);
     return double{deepest * model_.info.metres_per_unit};
   }
 
@@ -150,7 +151,7 @@ class Referee {
  private:
   static constexpr std::size_t kContacts = 1 << 16;
 
-  std::vector<Penetration> measure(const Body& a, const Body& b) {
+  std::vector<Penetration> measure(const JobBody& a, const JobBody& b) {
     BodyContactJob find;
     find.a = a;
     find.b = b;

@@ -30,10 +30,10 @@ static void play(const std::vector<char>& file, const samples::GltfCharacter& mo
     check(character.penetrations(pose, found, count), "the palette does not fit");
     for (std::size_t i = 0; i < count; ++i) {
       if (found[i].kind != SC_CLASS_PENETRATION) continue;  // folds at joints, touches ...
-      const spherechain::Vec3 out = found[i].direction;     // the way that part_b must go
+      const spherechain::Vec3 out = found[i].direction;     // the way that the part must go
       std::printf("frame %d: %s in %s, %.0f mm; out along (%.2f, %.2f, %.2f)\n", frame,
-                  character.part_name(found[i].part_b), character.part_name(found[i].part_a),
-                  1000 * metres * found[i].depth, out.x, out.y, out.z);
+                  character.part_name(found[i].part), character.part_name(found[i].other),
+                  1000 * metres * found[i].measures.depth, out.x, out.y, out.z);
     }
   }
   // [/hello]

@@ -21,8 +21,8 @@ try {
     character.setPalette(palette);  // what your skinning shader gets
     for (const found of character.penetrations()) {
       if (found.kind !== 'penetration') continue;  // folds at joints, touches ...
-      const out = Array.from(found.direction, x => x.toFixed(2)).join(', ');  // the way that part b must go
-      console.log(`frame ${frame}: ${asset.parts[found.partB].name} in ${asset.parts[found.partA].name}, ` +
+      const out = Array.from(found.direction, x => x.toFixed(2)).join(', ');  // the way that the part must go
+      console.log(`frame ${frame}: ${asset.parts[found.part].name} in ${asset.parts[found.other].name}, ` +
         `${(1000 * asset.metresPerUnit * found.depth).toFixed(0)} mm; out along (${out})`);
     }
   });

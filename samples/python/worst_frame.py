@@ -87,7 +87,7 @@ def main():
         raise SystemExit(f"{len(clip)} frames, no fault")
     deepest = max((c for c in contacts[worst] if c.is_fault), key=lambda c: c.depth)
     print(f"{len(clip)} frames, faults in {np.count_nonzero(depths)}")
-    print(f"worst: frame {worst}, {deepest.part_b} in {deepest.part_a}, {deepest.depth_mm:.0f} mm deep")
+    print(f"worst: frame {worst}, {deepest.part} in {deepest.other}, {deepest.depth_mm:.0f} mm deep")
 
     after, path = push_out(asset, character, clip[worst], nodes, inverse_binds)
     print(f"pushed out in {len(path) - 1} steps: {' '.join(f'{depth:.0f}' for depth in path)} mm")
@@ -106,12 +106,12 @@ def draw_both(path, asset, character, contact, before, after):
     part_of_bone = {asset.bones[part.bone].name: name for part, name in zip(asset.parts, names) if part.bone is not None}
     most = character.joints[np.arange(len(character.joints)), character.weights.argmax(1)]
     part_of_joint = [part_of_bone.get(character.names[node], "") for node in character.skin_nodes]
-    palette = {contact.part_a: (0.9, 0.3, 0.25), contact.part_b: (0.25, 0.45, 0.9)}
+    palette = {contact.part: (0.9, 0.3, 0.25), contact.other: (0.25, 0.45, 0.9)}
     colors = np.array([palette.get(name, (0.8, 0.78, 0.75)) for name in part_of_joint])[most[character.triangles[:, 0]]]
     left, up, forward = map(np.array, (asset.left, asset.up, asset.forward))
     eye = 0.87 * forward + 0.5 * left
     axes = [np.cross(up, eye), up, eye]
-    images = [render(character.skinned(pose), character.triangles, colors, contact.point_a, axes, 0.55 * asset.height, 480)
+    images = [render(character.skinned(pose), character.triangles, colors, contact.point, axes, 0.55 * asset.height, 480)
               for pose in (before, after)]
     write_png(path, np.concatenate(images, 1))
 

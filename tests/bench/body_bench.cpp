@@ -89,7 +89,7 @@ class Crowd {
     for (std::size_t i = 0; i < kCount; ++i) {
       scene_[i].spheres = nullptr;
       scene_[i].sphere_count = 0;
-      const Body one = body(i);
+      const JobBody one = body(i);
       require(sc_bound_body(&one, &scene_[i].low, &scene_[i].high), "bounds");
     }
     boxes_touch = meet();
@@ -115,8 +115,8 @@ class Crowd {
     out.bones = bones_[i].data();
     return out;
   }
-  Body body(std::size_t i) const {
-    Body out;
+  JobBody body(std::size_t i) const {
+    JobBody out;
     out.asset = &bodies_.human().asset;
     out.skin_table = bodies_.table();
     out.pose = pose(i);
@@ -252,7 +252,7 @@ class Bench {
   BodyContactJob job_of(const Frame& frame, bool from_bones) {
     BodyContactJob job;
     for (int body = 0; body < 2; ++body) {
-      Body& of = body == 0 ? job.a : job.b;
+      JobBody& of = body == 0 ? job.a : job.b;
       of.asset = &bodies_.human().asset;
       of.skin_table = bodies_.table();
       of.pose = pose_of(frame, body, from_bones);

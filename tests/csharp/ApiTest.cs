@@ -150,22 +150,22 @@ public static class ApiTest
                           body.Penetrations.Take(body.PenetrationCount)), "penetrations");
                 for (int i = 1; i < body.PairCount; ++i) Check(body.Pairs[i - 1].A <= body.Pairs[i].A, "pairs are sorted");
             }
-            // What quick measures leave out: in some frame a line is closed, or partly hidden.
+            // In full, some frame has a volume that is known, and a line that is partly hidden.
             bool hasVolume = false, isHidden = false;
             for (int frame = 0; frame < model.Frames.Length; frame += 30)
             {
                 body.SetPalette(model.Frames[frame], kColumns);
                 body.FindContacts(Scope.All);
                 body.MeasurePenetrations(false);
-                hasVolume |= body.Penetrations.Take(body.PenetrationCount).Any(p => p.IsClosed == 1 && p.Volume > 0);
-                isHidden |= body.Penetrations.Take(body.PenetrationCount).Any(p => p.Visible < 1);
+                hasVolume |= body.Penetrations.Take(body.PenetrationCount).Any(p => p.Measures.Volume > 0);
+                isHidden |= body.Penetrations.Take(body.PenetrationCount).Any(p => p.Measures.Visible < 1);
             }
             Check(hasVolume && isHidden, "volumes and visibility");
             // The ground at the height of the knees.
             Vec3 up = asset.Up;
             int below = body.FindFloor(up, asset.Origin.Y + 0.25f * asset.Height);
-            Check(below > 0 && below < asset.PartCount && body.Penetrations[0].PartA == Native.Floor, "the ground: " + below);
-            Check(body.Penetrations.Take(below).Any(p => asset.PartNames[p.PartB].Contains("foot")), "feet are below");
+            Check(below > 0 && below < asset.PartCount && body.Penetrations[0].Other == Native.Floor, "the ground: " + below);
+            Check(body.Penetrations.Take(below).Any(p => asset.PartNames[p.Part].Contains("foot")), "feet are below");
             Refused("no way up", Code.BadValue, "floor", "", () => body.FindFloor(new Vec3(), 0));
         }
         Check(pairs > 20, "pairs of spheres");
@@ -192,7 +192,7 @@ public static class ApiTest
                 Check(count > 0 == distance < 1, "contacts at " + distance);
                 Check(back.FindContacts() == count && back.TriangleCount == pair.TriangleCount, "contacts the other way round");
                 Check(pair.MeasurePenetrations(true) == count, "measures at " + distance);
-                for (int i = 0; i < pair.PenetrationCount; ++i) Check(pair.Penetrations[i].Depth > 0, "a depth");
+                for (int i = 0; i < pair.PenetrationCount; ++i) Check(pair.Penetrations[i].Measures.Depth > 0, "a depth");
             }
             a.SetPalette(deepest, kColumns);
             b.SetPalette(deepest, kColumns);

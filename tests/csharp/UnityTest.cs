@@ -67,7 +67,7 @@ public static class UnityTest
         for (int i = 0; i < component.PenetrationCount; ++i)
         {
             Penetration found = component.Penetrations[i];
-            if (found.PartA == like.PartA && found.PartB == like.PartB) return found;
+            if (found.Part == like.Part && found.Other == like.Other) return found;
         }
         return default(Penetration);
     }
@@ -105,16 +105,16 @@ public static class UnityTest
                 for (int i = 0; i < count; ++i)
                 {
                     Penetration expected = reference.Penetrations[i];
-                    if (expected.Kind != PenetrationClass.Penetration || expected.Depth < 0.01f * height) continue;
+                    if (expected.Kind != PenetrationClass.Penetration || expected.Measures.Depth < 0.01f * height) continue;
                     ++faults;
                     Penetration found = Find(component, expected);
                     Vec3 d = expected.Direction;
-                    float length = kUnit * expected.Depth;
+                    float length = kUnit * expected.Distance;
                     Vector3 way = new Vector3(-length * d.X, length * d.Y, length * d.Z);
                     // Matrices went through a scene of 30 units in floats: a thousandth of the height.
                     Check(Distance(component.Direction(found), way) < 0.001f * kUnit * height, "frame " + frame + ": the way out differs");
-                    Vec3 at = expected.DeepestB.Position;
-                    Check(Distance(component.Position(found.DeepestB.Position), new Vector3(-kUnit * at.X, kUnit * at.Y, kUnit * at.Z)) <
+                    Vec3 at = expected.Deepest.Position;
+                    Check(Distance(component.Position(found.Deepest.Position), new Vector3(-kUnit * at.X, kUnit * at.Y, kUnit * at.Z)) <
                           0.01f * kUnit * height, "frame " + frame + ": the deepest point differs");
                 }
                 Call(component, "OnDrawGizmosSelected");

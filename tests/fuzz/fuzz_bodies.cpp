@@ -16,7 +16,7 @@ constexpr std::size_t kBodyWords = std::size_t{1} << 17;
 constexpr std::size_t kBodyContacts = 60;
 
 // False where the asset has no skin, or a large one.
-bool draw_body(Case& c, Body& body) {
+bool draw_body(Case& c, JobBody& body) {
   const std::size_t table_words = sc_skin_table_words(&c.asset);
   if (table_words == 0 || table_words > kBodyWords || sc_body_scratch_words(&c.asset, &c.asset) > kBodyWords) {
     return false;
@@ -40,7 +40,7 @@ bool draw_body(Case& c, Body& body) {
   return true;
 }
 
-void add_body_ways(Case& c, Body& body, Ways& ways) {
+void add_body_ways(Case& c, JobBody& body, Ways& ways) {
   ways.emplace_back([&] { body.skin_table = nullptr, c.spoil(SC_NULL, SC_FIELD_SKIN_TABLE); });
   ways.emplace_back([&] { put_askew(c, body.skin_table), c.spoil(SC_MISALIGNED, SC_FIELD_SKIN_TABLE); });
   add_asset_ways(c, body.asset, ways);
@@ -88,7 +88,7 @@ void check_contacts(Case& c, const BodyContactJob& job) {
     return;
   }
   const std::vector<TriangleCorners> a = corners_of(surface, job.a.pose), b = corners_of(surface, job.b.pose);
-  const auto meets = [&](const Body& body, std::size_t triangle) {
+  const auto meets = [&](const JobBody& body, std::size_t triangle) {
     const std::size_t part = surface.parts[triangle];
     return body.ignored_parts == nullptr || (body.ignored_parts[part / 64] >> part % 64 & 1) == 0;
   };
@@ -169,7 +169,7 @@ template <typename Job>
 void add_measure_ways(Case& c, Job& job, Ways& ways) {
   ways.emplace_back(
       [&] { job.penetrations = nullptr, job.penetration_capacity = 1, c.spoil(SC_NULL, SC_FIELD_PENETRATIONS); });
-  ways.emplace_back([&] { job.touch_depth = NAN, c.spoil(SC_BAD_VALUE, SC_FIELD_TOUCH_DEPTH); });
+  ways.emplace_back([&] { job.rule = &bad_rule(), c.spoil(SC_BAD_VALUE, SC_FIELD_RULE); });
 }
 
 void fuzz_body_penetrations(Case& c) {

@@ -113,6 +113,8 @@ Status run_twice(Case& c, const Call& call);
 void make_one_nan(float* figures, std::size_t count);
 
 void make_comparable(Penetration& one);
+// A rule that every job refuses.
+const Rule& bad_rule();
 
 // Each makes one call and says in c.wrong what went wrong.
 void fuzz_open(Case& c);

@@ -45,8 +45,7 @@ Ways ways_of(Case& c, PenetrationJob& job, Target& other) {
       [&, words] { job.scratch_words = c.random.up_to(words - 1), c.spoil(SC_TOO_SMALL, SC_FIELD_SCRATCH); },
       [&] { job.penetrations = nullptr, job.penetration_capacity = 1, c.spoil(SC_NULL, SC_FIELD_PENETRATIONS); },
       [&] { job.previous = nullptr, job.previous_count = 1, c.spoil(SC_NULL, SC_FIELD_PREVIOUS); },
-      [&] { job.touch_depth = -1, c.spoil(SC_BAD_VALUE, SC_FIELD_TOUCH_DEPTH); },
-      [&] { job.touch_depth = NAN, c.spoil(SC_BAD_VALUE, SC_FIELD_TOUCH_DEPTH); },
+      [&] { job.rule = &bad_rule(), c.spoil(SC_BAD_VALUE, SC_FIELD_RULE); },
       [&] { job.scope = draw_none<Scope>(c, 3), c.spoil(SC_BAD_VALUE, SC_FIELD_SCOPE); },
       [&] { other = draw_none<Target>(c, 8), c.spoil(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET); },
       [&] {
@@ -66,10 +65,19 @@ Ways ways_of(Case& c, PenetrationJob& job, Target& other) {
 
 }  // namespace
 
+const Rule& bad_rule() {
+  static const Rule rule = [] {
+    Rule out = sc_default_rule();
+    out.deep_fold = NAN;
+    return out;
+  }();
+  return rule;
+}
+
 void make_comparable(Penetration& one) {
-  make_one_nan(&one.depth, 4);
-  make_one_nan(&one.volume, 3);
-  for (SkinPoint* point : {&one.deepest_a, &one.deepest_b}) {
+  make_one_nan(&one.direction.x, 13);
+  make_one_nan(&one.measures.depth, 11);
+  for (SkinPoint* point : {&one.deepest, &one.deepest_other}) {
     make_one_nan(&point->position.x, 3);
     make_one_nan(point->weights, 3);
   }
@@ -100,8 +108,9 @@ void fuzz_penetrations(Case& c) {
   Penetration* const previous = c.arena.add<Penetration>(4);
   for (std::size_t i = 0; i < 4; ++i) {
     previous[i] = {};
-    previous[i].part_a = static_cast<std::uint32_t>(c.random.below(3));
-    previous[i].part_b = static_cast<std::uint32_t>(c.random.below(3));
+    previous[i].part = static_cast<std::uint32_t>(c.random.below(3));
+    previous[i].other = static_cast<std::uint32_t>(c.random.below(3));
+    previous[i].kind = SC_CLASS_PENETRATION;
     fill_figures(c, &previous[i].direction.x, 3);
   }
   job.previous = previous;

@@ -163,7 +163,7 @@ using Parts = std::vector<Pair>;
 
 // Marks the triangles, by the source's numbers, whose corners lie well apart in the pose. A step leaves out the others:
 // on the way to a point all would meet.
-std::vector<char> sound_triangles(const Case& c, const Body& body, const Pose& pose) {
+std::vector<char> sound_triangles(const Case& c, const JobBody& body, const Pose& pose) {
   Surface surface;
   std::vector<char> sound(sc_asset_get_info(&c.asset).triangle_count, 0);
   if (read_skin_table(c.view(), body.skin_table, surface) != SC_OK) return sound;

@@ -100,11 +100,11 @@ test('a palette’s scale changes depths, and no class', () => {
   const asset = spherechain.open(bytes), character = asset.createCharacter(joints);
   const answers = palette => {
     character.setPalette(palette);
-    return character.penetrations(false).map(({ partA, partB, kind, depth }) => ({ partA, partB, kind, depth }));
+    return character.penetrations(false).map(({ part, other, kind, depth }) => ({ part, other, kind, depth }));
   };
   const own = answers(posed), small = answers(posed.map((value, i) => (i % 4 === 3 ? value : value / 100)));
   assert.ok(own.some(({ kind }) => kind === 'penetration'));
-  assert.deepEqual(small.map(({ partA, partB, kind }) => [partA, partB, kind]), own.map(({ partA, partB, kind }) => [partA, partB, kind]));
+  assert.deepEqual(small.map(({ part, other, kind }) => [part, other, kind]), own.map(({ part, other, kind }) => [part, other, kind]));
   small.forEach(({ depth }, i) => assert.ok(Math.abs(100 * depth / own[i].depth - 1) < 0.3));
   asset.dispose();
 });
@@ -113,7 +113,7 @@ test('vertices lie in the spheres’ space, and triangles name them', () => {
   const asset = spherechain.open(bytes);
   const character = asset.createCharacter(joints);
   character.setPalette(posed);
-  const found = character.penetrations()[0].deepestA, vertices = character.vertices();
+  const found = character.penetrations()[0].deepest, vertices = character.vertices();
   assert.ok(asset.triangles.every(vertex => 3 * vertex + 2 < vertices.length));
   for (const axis of [0, 1, 2]) {
     const corners = [0, 1, 2].map(k => vertices[3 * asset.triangles[3 * found.triangle + k] + axis]);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The line that reference.cpp prints of a frame, by the package: for Node and for a page.
 const KINDS = ['rest', 'shell', 'touch', 'fold', 'deep_fold', 'penetration'];
+const RELATIONS = ['apart', 'near', 'siblings', 'joined', 'two_bodies'];
 
 class Hash {
   value = 2166136261;
@@ -17,15 +18,16 @@ class Hash {
 
 // The words of an sc_penetration. `hash` has words() and floats().
 export function addPenetration(hash, found) {
-  hash.words([found.partA, found.partB, KINDS.indexOf(found.kind)]);
-  hash.floats([found.depth, ...found.direction]);
-  hash.words([found.volume === null ? 0 : 1]);
-  hash.floats([found.volume ?? 0, found.contourLength, found.visible]);
-  for (const point of [found.deepestA, found.deepestB]) {
+  hash.words([found.part, found.other, found.bone, KINDS.indexOf(found.kind)]);
+  hash.floats([...found.direction, found.distance, ...found.centre, ...found.low, ...found.high]);
+  for (const point of [found.deepest, found.deepestOther]) {
     hash.floats(point.position);
     hash.words([point.triangle]);
     hash.floats(point.weights);
   }
+  hash.floats([found.depth, found.volume ?? -1, found.contourLength, found.visible, found.touching, found.facing]);
+  hash.floats([found.restDistance, found.thickness ?? -1, found.swallowed ?? -1, found.height, found.metre]);
+  hash.words([RELATIONS.indexOf(found.relation), found.isOnePiece ? 1 : 0]);
 }
 
 function hashPenetrations(list) {

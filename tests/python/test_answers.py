@@ -100,12 +100,12 @@ class Answers(unittest.TestCase):
         numbers = np.repeat(np.arange(self.asset.triangle_count), 3)
         vertices = self.asset.points(self.bones, numbers, np.tile(np.eye(3, dtype=np.float32), (len(numbers) // 3, 1)))
         for own, other in zip(self.asset.contacts(vertices=vertices, threads=0), self.contacts):
-            np.testing.assert_array_equal(own.array[["part_a", "part_b", "kind"]], other.array[["part_a", "part_b", "kind"]])
+            np.testing.assert_array_equal(own.array[["part", "other", "kind"]], other.array[["part", "other", "kind"]])
             np.testing.assert_allclose(own.array["depth"], other.array["depth"], atol=1e-6 * self.asset.height)
 
     def test_deepest_points_are_points_on_the_skin(self):
         for bones, contacts in zip(self.bones, self.contacts):
-            for point in (contacts.array["deepest_a"], contacts.array["deepest_b"]):
+            for point in (contacts.array["deepest"], contacts.array["deepest_other"]):
                 places = self.asset.points(bones, point["triangle"], point["weights"])
                 np.testing.assert_allclose(places, point["position"], atol=1e-6 * self.asset.height)
 
@@ -121,7 +121,7 @@ class Answers(unittest.TestCase):
         self.assertNotEqual([c.array.tobytes() for c in found], [c.array.tobytes() for c in tiny.contacts(bones)])
         for pose, own, contacts in zip(bones, weights, found):
             self.assertGreater(len(contacts), 0)
-            ends = [contacts.array[name] for name in ("deepest_a", "deepest_b")]
+            ends = [contacts.array[name] for name in ("deepest", "deepest_other")]
             a, b = (tiny.points(pose, end["triangle"], end["weights"], morph_weights=own) for end in ends)
             np.testing.assert_allclose(a, ends[0]["position"], atol=1e-5 * tiny.height)
             np.testing.assert_allclose(b, ends[1]["position"], atol=1e-5 * tiny.height)
@@ -133,11 +133,14 @@ class Answers(unittest.TestCase):
         names = {part.name for part in self.asset.parts}
         for contacts in self.contacts:
             for contact, row in zip(contacts, contacts.array):
-                self.assertLessEqual({contact.part_a, contact.part_b}, names)
+                self.assertLessEqual({contact.part, contact.other}, names)
                 self.assertAlmostEqual(contact.depth_mm, row["depth"] * self.asset.metres_per_unit * 1000, 3)
                 self.assertEqual(contact.is_fault, contact.kind in ("penetration", "deep_fold"))
-                np.testing.assert_allclose(contact.point_a - contact.point_b, contact.depth * contact.direction,
+                np.testing.assert_allclose(contact.point_other - contact.point, contact.distance * contact.direction,
                                            atol=1e-6 * self.asset.height)
+                self.assertEqual(contact.distance, contact.depth)  # no frame before keeps a longer way
+                self.assertTrue((contact.low <= contact.high).all())
+                self.assertEqual(contact.volume is None, row["volume"] < 0)
             deepest = max((c.depth_mm for c in contacts if c.is_fault), default=0)
             self.assertAlmostEqual(contacts.depth_mm, deepest, 3)
 

@@ -79,7 +79,7 @@ class Gradients(unittest.TestCase):
         for bones, contacts in zip(self.bones, self.asset.contacts(self.single)):
             if len(contacts) == 0:
                 continue
-            a, b = contacts.array["deepest_a"], contacts.array["deepest_b"]
+            a, b = contacts.array["deepest"], contacts.array["deepest_other"]
 
             def distances(at):
                 ends = [self.asset.points(at, p["triangle"], p["weights"].copy()) for p in (a, b)]

@@ -65,8 +65,8 @@ struct Posed {
   Posed(const OpenAsset& asset, const std::vector<float>& at, const Penetration& of)
       : surface(asset.surface()), positions(at) {
     for (std::uint32_t t = 0; t < surface.triangles.size; ++t) {
-      if (surface.parts[t] == of.part_a) a.push_back(t);
-      if (surface.parts[t] == of.part_b) b.push_back(t);
+      if (surface.parts[t] == of.other) a.push_back(t);
+      if (surface.parts[t] == of.part) b.push_back(t);
     }
   }
   spherechain::TriangleCorners corners(std::uint32_t triangle, const Vec3& move) const {
@@ -155,7 +155,7 @@ class Study {
     const double height = double{animated_->asset()->info().height};
     const double deep = std::clamp(kDeepMetres * metre, kDeepMin * height, kDeepMax * height);
     const auto is_fault = [&](const Penetration& p) {
-      return p.kind >= SC_CLASS_DEEP_FOLD && p.part_a != p.part_b && double{p.depth} >= deep;
+      return p.kind >= SC_CLASS_DEEP_FOLD && p.part != p.other && double{p.measures.depth} >= deep;
     };
     for (int i = 0; i < animated_->frame_count(); ++i) {
       const bool is_next = i > 0 && animated_->frame_at(i).clip == animated_->frame_at(i - 1).clip;
@@ -167,7 +167,7 @@ class Study {
         if (!is_fault(p)) continue;
         all.push_back({i, p});
         for (const Penetration& before : last) {
-          if (!is_next || before.part_a != p.part_a || before.part_b != p.part_b || !is_fault(before)) continue;
+          if (!is_next || before.part != p.part || before.other != p.other || !is_fault(before)) continue;
           ++tally_.steps;
           const double turn = double{p.direction.x} * double{before.direction.x} +
                               double{p.direction.y} * double{before.direction.y} +
@@ -176,9 +176,9 @@ class Study {
             ++tally_.flips;
             if (list_) {
               fmt::print(stderr, "{} clip '{}' frame {}: {} - {}: {:.2f} mm, turned around from {:.2f} mm\n", mesh_,
-                         animated_->clip_at(i), animated_->frame_at(i).number, animated_->asset()->part(p.part_a).name,
-                         animated_->asset()->part(p.part_b).name, 1000 * double{p.depth} / metre,
-                         1000 * double{before.depth} / metre);
+                         animated_->clip_at(i), animated_->frame_at(i).number, animated_->asset()->part(p.part).name,
+                         animated_->asset()->part(p.other).name, 1000 * double{p.measures.depth} / metre,
+                         1000 * double{before.measures.depth} / metre);
             }
           }
         }
@@ -198,7 +198,7 @@ class Study {
     const Posed posed(asset, positions, what);
     const spherechain::PairRule rule{&asset.surface(), asset->ignored(), {}, true, false};
     const Vec3 direction(double{what.direction.x}, double{what.direction.y}, double{what.direction.z});
-    const double depth = double{what.depth}, margin = kMarginMetres * metre;
+    const double depth = double{what.distance}, margin = kMarginMetres * metre;
     const bool frees = posed.is_free(rule, (depth + margin) * direction);
     const bool frees_early = posed.is_free(rule, 0.9 * depth * direction);
     const quality::Parts parts = posed.parts(rule);
@@ -211,10 +211,10 @@ class Study {
     tally_.quick.push_back(quick_depth(asset, positions, what) / depth);
     double volume_ratio = 0;
     const double millilitre = std::pow(0.01 * metre, 3);
-    if (what.is_closed != 0 && double{what.volume} > 0.1 * millilitre) {
+    if (double{what.measures.volume} > 0.1 * millilitre) {
       const std::optional<double> volume = quality::common_volume(parts.a, parts.b);
       if (volume) {
-        volume_ratio = double{what.volume} / *volume;
+        volume_ratio = double{what.measures.volume} / *volume;
         ++tally_.volumes;
         tally_.volumes_within += std::abs(volume_ratio - 1) <= 0.25;
       }
@@ -224,8 +224,8 @@ class Study {
       fmt::print(stderr,
                  "{} clip '{}' frame {}: {} - {}: class {}, {:.2f} mm along ({:.2f} {:.2f} {:.2f}), {} {}need {:.2f} "
                  "mm along ({:.2f} {:.2f} {:.2f}); volume ratio {:.2f}\n",
-                 mesh_, animated_->clip_at(frame), animated_->frame_at(frame).number, asset->part(what.part_a).name,
-                 asset->part(what.part_b).name, sc_penetration_class_name(what.kind), 1000 * depth / metre,
+                 mesh_, animated_->clip_at(frame), animated_->frame_at(frame).number, asset->part(what.part).name,
+                 asset->part(what.other).name, sc_penetration_class_name(what.kind), 1000 * depth / metre,
                  direction.x(), direction.y(), direction.z(), frees ? "" : "does not free, ",
                  frees_early ? "frees early, " : "", 1000 * way.depth / metre, way.direction.x(), way.direction.y(),
                  way.direction.z(), volume_ratio);
@@ -246,7 +246,7 @@ class Study {
     measure.contact_count = contacts.size();
     measure.quick = 1;
     for (const Penetration& found : spherechain::test::measure(measure, SC_TARGET_BEST)) {
-      if (found.part_a == what.part_a && found.part_b == what.part_b) return double{found.depth};
+      if (found.part == what.part && found.other == what.other) return double{found.measures.depth};
     }
     return 0;
   }

@@ -42,7 +42,7 @@ class Builder {
     });
     const auto body_parts = tables(parts_.parts, [&](const PartEntry& part) {
       return schema::CreatePart(fb_, fb_.CreateString(part.name), static_cast<schema::Side>(part.side), part.bone,
-                                part.parent);
+                                part.parent, part.mobility);
     });
     const auto spheres = structs<schema::Sphere>(fb_, parts_.spheres);
     const auto pivots = structs<schema::Pivot>(fb_, parts_.pivots);

@@ -28,6 +28,7 @@ struct PartEntry {
   std::uint8_t side = SC_SIDE_NONE;
   std::int32_t bone = -1;
   std::int32_t parent = -1;
+  std::uint8_t mobility = 0;
 };
 
 struct ChainEntry {

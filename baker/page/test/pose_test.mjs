@@ -74,8 +74,9 @@ async function roundTrip(page, { asset, source }) {
   await page.waitForFunction(() => spherechainViewer.posing.isSettled());
   const listed = await shown(page);
   const name = ([a, b]) => (a === b ? `${a} with itself` : `${a}, ${b}`);
-  const pairs = played.skin.parts.map(({ a, b, triangle_pairs: count }) => `${name([a, b])}: ${count}`);
-  assert.deepEqual(listed.map((contact) => `${contact.name}: ${contact.pairs}`).sort(), pairs.sort());
+  const inAnyOrder = (text) => text.split(', ').sort().join(', '); // `play` lists the parts of triangles by their numbers
+  const pairs = played.skin.parts.map(({ a, b, triangle_pairs: count }) => `${inAnyOrder(name([a, b]))}: ${count}`);
+  assert.deepEqual(listed.map((contact) => `${inAnyOrder(contact.name)}: ${contact.pairs}`).sort(), pairs.sort());
   for (const { parts, depth_mm: depth, class: kind } of played.penetrations) {
     const own = listed.find((contact) => contact.name === name(parts));
     if (parts[0] === parts[1]) continue; // two triangles of one part: rounding decides which of them goes out

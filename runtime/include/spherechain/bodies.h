@@ -5,12 +5,12 @@
 #include "spherechain/penetrations.h"
 
 /* One of two bodies. Both stand in one space; two bodies may be of one asset. */
-typedef struct sc_body {
+typedef struct sc_job_body {
   const sc_asset* asset SC_ZERO;         /* open, with triangles; a character, or what `bake --prop` wrote */
   sc_pose pose SC_ZERO;                  /* as of an sc_skin_contact_job; a prop has one bone */
   const uint64_t* skin_table SC_ZERO;    /* from sc_prepare_skin(), of this asset */
   const uint64_t* ignored_parts SC_ZERO; /* bit p: body part p meets nothing; null: all parts meet */
-} sc_body;
+} sc_job_body;
 
 /* A character or a prop among those of an sc_scene_job. */
 typedef struct sc_scene_body {
@@ -51,7 +51,7 @@ typedef struct sc_scene_job {
  *
  * Allocates nothing, takes no lock. Jobs on other outputs and scratch memory may run at the same time. */
 typedef struct sc_body_contact_job {
-  sc_body a SC_ZERO, b SC_ZERO;
+  sc_job_body a SC_ZERO, b SC_ZERO;
   sc_target target SC_ZERO;     /* the same contacts on every one */
   int32_t spheres_only SC_ZERO; /* 1: find pairs of spheres alone; each ends at its first contact. Cheapest */
   uint64_t* scratch SC_ZERO;    /* sc_body_scratch_words() words; nothing is kept there between runs */
@@ -63,6 +63,9 @@ typedef struct sc_body_contact_job {
   size_t sphere_capacity SC_ZERO;
   sc_triangle_contact* triangles SC_ZERO;
   size_t triangle_capacity SC_ZERO;
+  /* Null, or: triangles of which two parts are listed; the others are not counted either. One body: bit a n + b - a (a + 1)
+   * / 2 of n parts, a <= b; two: bit a n + b, n the parts of b. */
+  const uint64_t* listed_parts SC_ZERO;
   size_t part_count SC_ZERO, sphere_count SC_ZERO, triangle_count SC_ZERO;
 #if defined(__cplusplus)
   sc_status run() noexcept;
@@ -70,50 +73,50 @@ typedef struct sc_body_contact_job {
 } sc_body_contact_job;
 
 /* Measures two bodies' contacts: fill a and b as in the sc_body_contact_job that found `contacts`, and pass its whole
- * list of triangles. What an sc_penetration_job says holds here, too. part_a is a part of body a; the direction moves
- * the part of body b. Classes are SC_CLASS_SHELL (most of it is hidden), SC_CLASS_TOUCH and SC_CLASS_PENETRATION. They
+ * list of triangles. What an sc_penetration_job says holds here, too. `part` is of body a, `other` of body b. Classes are SC_CLASS_SHELL (most of it is hidden), SC_CLASS_TOUCH and SC_CLASS_PENETRATION. They
  * compare with the unit and the height of body a's asset: of a character and a prop, a is the character.
  *
  * Allocates nothing, takes no lock. Jobs on other outputs and scratch memory may run at the same time. */
 typedef struct sc_body_penetration_job {
-  sc_body a SC_ZERO, b SC_ZERO; /* ignored_parts is not read */
+  sc_job_body a SC_ZERO, b SC_ZERO; /* ignored_parts is not read */
   sc_target target SC_ZERO;
   const sc_triangle_contact* contacts SC_ZERO; /* null: none */
   size_t contact_count SC_ZERO;
   const sc_penetration* previous SC_ZERO; /* null: none */
   size_t previous_count SC_ZERO;
   int32_t quick SC_ZERO;
-  float touch_depth SC_ZERO;
+  const sc_rule* rule SC_ZERO;
   uint64_t* scratch SC_ZERO; /* sc_body_penetration_scratch_words() words; nothing is kept there between runs */
   size_t scratch_words SC_ZERO;
-  sc_penetration* penetrations SC_ZERO; /* out: sorted by (part_a, part_b) */
+  sc_penetration* penetrations SC_ZERO; /* out: sorted by (part, other) */
   size_t penetration_capacity SC_ZERO;
+  uint32_t classes SC_ZERO; /* bit k: penetrations of class k are listed and counted; 0: all */
+  size_t kept_count SC_ZERO; /* in: entries that are there already, of other contacts; they are counted, too */
   size_t penetration_count SC_ZERO;
 #if defined(__cplusplus)
   sc_status run() noexcept;
 #endif
 } sc_body_penetration_job;
 
-#define SC_FLOOR 0xFFFFFFFFu /* in place of a body part and of a triangle: the ground */
-
-/* What of a body is below the ground: all body parts with a vertex there, and how deep it is straight down. part_a is
- * SC_FLOOR; the direction is `up`; `volume` is of the part below the ground, known where its skin does not end there.
+/* What of a body is below the ground: all body parts with a vertex there, and how deep it is straight down. `other` is
+ * SC_FLOOR; the direction is `up`; `volume` is of the part below the ground, known where its skin does not end there; the box is around that part.
  * Classes are SC_CLASS_TOUCH and SC_CLASS_PENETRATION.
  *
  * Allocates nothing, takes no lock. Jobs on other outputs and scratch memory may run at the same time. */
 typedef struct sc_floor_job {
-  sc_body body SC_ZERO;
+  sc_job_body body SC_ZERO;
   sc_target target SC_ZERO; /* the same bits on every one */
   sc_vec3 up SC_ZERO;       /* of unit length */
   float height SC_ZERO;     /* of the plane: up . p = height on it */
   /* Null, or: how far the ground is above the plane at p; called for each vertex of the skin, in no certain order. */
   float (*terrain)(const void* user, sc_vec3 p) SC_ZERO;
   const void* user SC_ZERO;
-  float touch_depth SC_ZERO; /* as of an sc_penetration_job */
+  const sc_rule* rule SC_ZERO; /* as of an sc_penetration_job */
   uint64_t* scratch SC_ZERO; /* sc_floor_scratch_words() words; nothing is kept there between runs */
   size_t scratch_words SC_ZERO;
-  sc_penetration* penetrations SC_ZERO; /* out: sorted by part_b; null, with a capacity of 0: count only */
+  sc_penetration* penetrations SC_ZERO; /* out: sorted by `part`; null, with a capacity of 0: count only */
   size_t penetration_capacity SC_ZERO;
+  uint32_t classes SC_ZERO; /* as of an sc_penetration_job */
   size_t penetration_count SC_ZERO;
 #if defined(__cplusplus)
   sc_status run() noexcept;
@@ -141,7 +144,7 @@ SPHERECHAIN_API size_t sc_floor_scratch_words(const sc_asset* asset) SC_NOEXCEPT
 
 /* A box that holds all of the body's skin for certain: from bones somewhat too large, without reading a vertex; from
  * vertices alone exact. Reads asset, pose and skin_table. Errors as of sc_find_skin_contacts(). */
-SPHERECHAIN_API sc_status sc_bound_body(const sc_body* body, sc_vec3* low, sc_vec3* high) SC_NOEXCEPT;
+SPHERECHAIN_API sc_status sc_bound_body(const sc_job_body* body, sc_vec3* low, sc_vec3* high) SC_NOEXCEPT;
 
 /* SC_OK; SC_OVERFLOW: the first pairs of the sorted list are written; SC_NULL, SC_MISALIGNED, SC_TOO_SMALL,
  * SC_BAD_VALUE, SC_ALIASED: nothing is written. */
@@ -161,7 +164,7 @@ namespace spherechain {
 using SceneBody = sc_scene_body;
 using SceneJob = sc_scene_job;
 using FloorJob = sc_floor_job;
-using Body = sc_body;
+using JobBody = sc_job_body;
 using BodyContactJob = sc_body_contact_job;
 using BodyPenetrationJob = sc_body_penetration_job;
 }  // namespace spherechain

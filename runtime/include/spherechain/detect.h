@@ -3,15 +3,7 @@
  * answer is exact: skin_contacts.h. */
 #pragma once
 
-#include "spherechain/asset.h"
-
-/* The pairs of spheres that a detection leaves out: the asset's own at first (sc_reset_filter), then edited by the
- * caller. The buffer is the caller's. A job reads the filter while it runs: do not edit it then. */
-typedef struct sc_filter {
-  /* Bit b(b-1)/2 + a, a < b: this pair of spheres is ignored. sc_pair_words() words. */
-  uint64_t* ignored SC_ZERO;
-  size_t ignored_words SC_ZERO;
-} sc_filter;
+#include "spherechain/filter.h"
 
 /* The overlap test of all pairs of spheres that are not ignored. Rest pairs, most of which touch at rest, are
  * reported where they come closer than rest_scale times the sum of their radii (docs/arithmetic.md).
@@ -45,29 +37,16 @@ extern "C" {
  * SC_TOO_SMALL, SC_BAD_VALUE, SC_ALIASED, SC_NOT_OPEN, SC_UNSUPPORTED_TARGET: nothing is written. */
 SPHERECHAIN_API sc_status sc_detect(sc_detect_job* job) SC_NOEXCEPT;
 
-/* Words of a bit for each pair. 0 where the asset is not open. */
-SPHERECHAIN_API size_t sc_pair_words(const sc_asset* asset) SC_NOEXCEPT;
-
 /* Fills a table for detect jobs with this asset and radius, and with all that `filter` (or null) says now. Halves the
  * time of a detection; any number of jobs may share it. `words` is the caller's, sc_detect_table_words() of them. */
 SPHERECHAIN_API size_t sc_detect_table_words(const sc_asset* asset) SC_NOEXCEPT;
 SPHERECHAIN_API sc_status sc_prepare_detect(const sc_asset* asset, sc_radius radius, const sc_filter* filter,
                                             uint64_t* words, size_t word_count) SC_NOEXCEPT;
 
-/* These edit a filter's buffer. SC_BAD_VALUE: a sphere or region does not exist; nothing is written then. */
-/* The asset's own pairs. */
-SPHERECHAIN_API sc_status sc_reset_filter(const sc_asset* asset, sc_filter* filter) SC_NOEXCEPT;
-/* `ignored` 0 reports the pair again, also where the asset itself ignores it. */
-SPHERECHAIN_API sc_status sc_ignore_pair(const sc_asset* asset, sc_filter* filter, uint32_t a, uint32_t b,
-                                         int ignored) SC_NOEXCEPT;
-/* Each pair of a sphere of one region with a sphere of the other; the same region twice: the pairs within it. */
-SPHERECHAIN_API sc_status sc_ignore_regions(const sc_asset* asset, sc_filter* filter, size_t region, size_t other,
-                                            int ignored) SC_NOEXCEPT;
 #if defined(__cplusplus)
 }
 inline sc_status sc_detect_job::run() noexcept { return sc_detect(this); }
 namespace spherechain {
-using Filter = sc_filter;
 using DetectJob = sc_detect_job;
 }  // namespace spherechain
 #endif

@@ -2,31 +2,9 @@
 /* Where does the skin penetrate itself? Exact: all triangles that intersect, and none else. */
 #pragma once
 
+#include "spherechain/contacts.h"
 #include "spherechain/detect.h"
 #include "spherechain/pose.h"
-
-/* Which triangles are paired, by the spheres that they belong to. */
-SC_ENUM(sc_scope){
-    SC_SCOPE_APART = 0,      /* of two spheres that are not ignored: no neighbours on the body */
-    SC_SCOPE_NEIGHBOURS = 1, /* of one sphere, or of two that are ignored: folds of elbow and knee; 40 times dearer */
-    SC_SCOPE_ALL = 2,
-};
-
-/* Two body parts whose skins intersect. */
-typedef struct sc_part_contact {
-  uint32_t part_a, part_b; /* part_a <= part_b; equal where a part meets itself */
-  uint32_t triangle_pairs; /* >= 1 */
-  sc_vec3 low, high;       /* a box around the triangles that intersect; the pose's space */
-} sc_part_contact;
-
-/* Two triangles that intersect. What ends with _a is of triangle_a. */
-typedef struct sc_triangle_contact {
-  uint32_t triangle_a, triangle_b; /* the source's numbers, triangle_a < triangle_b */
-  uint32_t sphere_a, sphere_b;
-  uint32_t part_a, part_b;
-  sc_vec3 from, to; /* the segment in which they cross; of triangles in one plane the longest piece of an edge inside
-                       the other triangle. Rounded */
-} sc_triangle_contact;
 
 /* The skin is where the vertices put it; without vertices the job skins what it needs from the bones. With both, the
  * bones bound the search, and each vertex must be where its bone weights put it, up to rounding; else give vertices
@@ -58,6 +36,9 @@ typedef struct sc_skin_contact_job {
   size_t sphere_capacity SC_ZERO;
   sc_triangle_contact* triangles SC_ZERO;
   size_t triangle_capacity SC_ZERO;
+  /* Null, or: triangles of which two parts are listed; the others are not counted either. One body: bit a n + b - a (a + 1)
+   * / 2 of n parts, a <= b; two: bit a n + b, n the parts of b. */
+  const uint64_t* listed_parts SC_ZERO;
   size_t part_count SC_ZERO, sphere_count SC_ZERO, triangle_count SC_ZERO;
 #if defined(__cplusplus)
   sc_status run() noexcept;
@@ -87,9 +68,6 @@ SPHERECHAIN_API size_t sc_skin_scratch_words(const sc_asset* asset) SC_NOEXCEPT;
 }
 inline sc_status sc_skin_contact_job::run() noexcept { return sc_find_skin_contacts(this); }
 namespace spherechain {
-using Scope = sc_scope;
-using PartContact = sc_part_contact;
-using TriangleContact = sc_triangle_contact;
 using SkinContactJob = sc_skin_contact_job;
 }  // namespace spherechain
 #endif

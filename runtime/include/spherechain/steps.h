@@ -20,7 +20,7 @@ SC_ENUM(sc_blend){
  * bone; a bone without a joint stays at rest. A rotation goes the shorter way round: of one that turns a joint by half
  * a turn or more in one step, that way is assumed; of exactly half a turn, the sign that the quaternions have. */
 typedef struct sc_motion {
-  sc_body body SC_ZERO;
+  sc_job_body body SC_ZERO;
   sc_pose end SC_ZERO;
   sc_blend blend SC_ZERO;
   const sc_transform* start_joints SC_ZERO;
@@ -29,18 +29,6 @@ typedef struct sc_motion {
   const uint32_t* parents SC_ZERO;       /* of a joint an earlier one, or SC_NO_JOINT; null: of all SC_NO_JOINT */
   const uint32_t* joint_of_bone SC_ZERO; /* of each bone of the asset: sc_bind_joints(); null: joint b moves bone b */
 } sc_motion;
-
-#define SC_NO_TRIANGLE 0xFFFFFFFFu
-
-/* Two body parts that touch in a step. Times are shares of the step: 0 is its start, 1 its end. */
-typedef struct sc_step_contact {
-  uint32_t part_a, part_b;
-  int32_t at_start, at_end; /* 1: they intersect there: more say sc_find_skin_contacts(), sc_find_body_contacts() */
-  float begin;              /* the first time at which they touch; 0 with at_start */
-  float end;                /* the last time; 1 with at_end. In between they may part and meet again */
-  uint32_t triangle_a, triangle_b; /* that touch at `begin`, by the source's numbers; SC_NO_TRIANGLE with at_start */
-  sc_vec3 at;                      /* where they do; zero with at_start */
-} sc_step_contact;
 
 /* All pairs of body parts that touch on the way from one pose to the next: of body a with itself, where b.body.asset is
  * null, else of a and b. Nothing is missing and nothing made up, but for the tolerance: what comes no further into
@@ -87,7 +75,6 @@ inline sc_status sc_step_job::run() noexcept { return sc_find_step_contacts(this
 namespace spherechain {
 using Blend = sc_blend;
 using Motion = sc_motion;
-using StepContact = sc_step_contact;
 using StepJob = sc_step_job;
 }  // namespace spherechain
 #endif

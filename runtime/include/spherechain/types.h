@@ -97,7 +97,7 @@ SC_ENUM(sc_field){
     SC_FIELD_CONTACTS = 32,
     SC_FIELD_PREVIOUS = 33,
     SC_FIELD_PENETRATIONS = 34,
-    SC_FIELD_TOUCH_DEPTH = 35,
+    SC_FIELD_RULE = 35,
     SC_FIELD_IGNORED_PARTS = 36,
     SC_FIELD_BODIES = 37,
     SC_FIELD_LAYERS = 38,
@@ -108,6 +108,7 @@ SC_ENUM(sc_field){
     SC_FIELD_PARENTS = 43,
     SC_FIELD_TOLERANCE = 44,
     SC_FIELD_TRANSFORM = 45,
+    SC_FIELD_ALLOCATOR = 46,
 };
 
 /* What every operation returns: what went wrong, and with which field. */

@@ -135,16 +135,17 @@ struct PosedCharacter {
     pose.morph_weight_count = morphs ? asset->info().morph_count : 0;
     return pose;
   }
-  Body body() const { return {&asset->asset, pose(), asset->skin_table.data(), nullptr}; }
+  JobBody body() const { return {&asset->asset, pose(), asset->skin_table.data(), nullptr}; }
 };
 
 // As spherechain.js reads them.
 static_assert(sizeof(void*) == 4 && sizeof(Results) == 17 * 4);
 static_assert(sizeof(PartContact) == 9 * 4 && offsetof(PartContact, low) == 12);
 static_assert(sizeof(TriangleContact) == 12 * 4 && offsetof(TriangleContact, from) == 24);
-static_assert(sizeof(Penetration) == 25 * 4 && offsetof(Penetration, is_closed) == 28);
-static_assert(offsetof(Penetration, visible) == 40 && offsetof(Penetration, deepest_b) == 72);
-static_assert(sizeof(sc_bone) == 8 && sizeof(sc_part) == 16 && sizeof(sc_rest_sphere) == 32);
+static_assert(sizeof(Penetration) == 44 * 4 && offsetof(Penetration, direction) == 16);
+static_assert(offsetof(Penetration, centre) == 32 && offsetof(Penetration, deepest_other) == 96);
+static_assert(offsetof(Penetration, measures) == 124 && offsetof(sc_measures, is_one_piece) == 48);
+static_assert(sizeof(sc_bone) == 8 && sizeof(sc_part) == 20 && sizeof(sc_rest_sphere) == 32);
 
 bool list_triangles(OpenedAsset& opened) {
   const std::size_t count = opened.info().triangle_count;

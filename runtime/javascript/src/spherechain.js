@@ -5,11 +5,12 @@ const wasm = '@WASM@';
 const SIDES = [null, 'left', 'right'];
 const RADII = { detect: 0, fit: 1 };
 const SCOPES = { apart: 0, neighbours: 1, all: 2 };
+const RELATIONS = ['apart', 'near', 'siblings', 'joined', 'two_bodies'];
 const ROWS_3X4 = 1, COLUMNS_4X4 = 3;  // sc_matrix_layout
 const PALETTE = 0, MORPHS = 1, SPHERES = 2, PAIRS = 3, PAIR_COUNT = 4, CONTACTS = 5, CONTACT_COUNT = 6, TRIANGLES = 7,
   TRIANGLE_COUNT = 8, PENETRATIONS = 9, PENETRATION_COUNT = 10, VERTICES = 11, VERTEX_COUNT = 12,
   CONTACTS_WITH = 13, CONTACT_WITH_COUNT = 14, PENETRATIONS_WITH = 15, PENETRATION_WITH_COUNT = 16;  // words of Results
-const CONTACT_WORDS = 9, TRIANGLE_WORDS = 12, PENETRATION_WORDS = 25;
+const CONTACT_WORDS = 9, TRIANGLE_WORDS = 12, PENETRATION_WORDS = 44;
 
 export class SpherechainError extends Error {
   constructor(message) {
@@ -268,7 +269,7 @@ class Character {
     this.#find('triangles');
     this.#native.check(this.#native.call.measure(this.#character, SCOPES[this.#scope], quick ? 1 : 0));
     return this.#penetrations.fill(this.#result(PENETRATION_COUNT), this.#result(PENETRATIONS) / 4, PENETRATION_WORDS,
-      quick ? this.#readQuick : this.#readThorough);
+      this.#readPenetration);
   }
 
   contactsWith(other) {
@@ -281,7 +282,7 @@ class Character {
     this.#meet(other, 1);
     this.#native.check(this.#native.call.measure_meeting(this.#character, other.#character, quick ? 1 : 0));
     return this.#penetrationsWith.fill(this.#result(PENETRATION_WITH_COUNT), this.#result(PENETRATIONS_WITH) / 4, PENETRATION_WORDS,
-      quick ? this.#readQuick : this.#readThorough);
+      this.#readPenetration);
   }
 
   vertices() {
@@ -333,23 +334,32 @@ class Character {
     copy(floats, at + 6, contact.high);
   };
 
-  #readQuick = (found, at) => {
+  #readPenetration = (found, at) => {
     const { floats, words, kinds } = this.#native;
-    found.partA = words[at];
-    found.partB = words[at + 1];
-    found.kind = kinds[words[at + 2]];
-    found.depth = floats[at + 3];
+    found.part = words[at];
+    found.other = words[at + 1];
+    found.bone = words[at + 2] | 0;
+    found.kind = kinds[words[at + 3]];
     copy(floats, at + 4, found.direction);
-    found.volume = null;
-    found.contourLength = floats[at + 9];
-    found.visible = floats[at + 10];
-    copyPoint(floats, words, at + 11, found.deepestA);
-    copyPoint(floats, words, at + 18, found.deepestB);
-  };
-
-  #readThorough = (found, at) => {
-    this.#readQuick(found, at);
-    if (this.#native.words[at + 7] === 1) found.volume = this.#native.floats[at + 8];
+    found.distance = floats[at + 7];
+    copy(floats, at + 8, found.centre);
+    copy(floats, at + 11, found.low);
+    copy(floats, at + 14, found.high);
+    copyPoint(floats, words, at + 17, found.deepest);
+    copyPoint(floats, words, at + 24, found.deepestOther);
+    found.depth = floats[at + 31];
+    found.volume = known(floats[at + 32]);
+    found.contourLength = floats[at + 33];
+    found.visible = floats[at + 34];
+    found.touching = floats[at + 35];
+    found.facing = floats[at + 36];
+    found.restDistance = floats[at + 37];
+    found.thickness = known(floats[at + 38]);
+    found.swallowed = known(floats[at + 39]);
+    found.height = floats[at + 40];
+    found.metre = floats[at + 41];
+    found.relation = RELATIONS[words[at + 42]];
+    found.isOnePiece = words[at + 43] === 1;
   };
 
   // The last one where it still fits: in most frames nothing is new.
@@ -392,9 +402,16 @@ function newPoint() {
 
 function newPenetration() {
   return {
-    partA: 0, partB: 0, kind: 'rest', depth: 0, direction: new Float32Array(3), deepestA: newPoint(), deepestB: newPoint(),
-    volume: null, contourLength: 0, visible: 0,
+    part: 0, other: 0, bone: -1, kind: 'rest', depth: 0, distance: 0, direction: new Float32Array(3),
+    centre: new Float32Array(3), low: new Float32Array(3), high: new Float32Array(3), deepest: newPoint(),
+    deepestOther: newPoint(), volume: null, contourLength: 0, visible: 0, touching: 0, facing: 0, restDistance: 0,
+    thickness: null, swallowed: null, height: 0, metre: 0, relation: 'apart', isOnePiece: false,
   };
+}
+
+// The runtime's negative measures are not known.
+function known(measure) {
+  return measure < 0 ? null : measure;
 }
 
 function copy(floats, at, out) {

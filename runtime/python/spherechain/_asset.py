@@ -135,8 +135,8 @@ class Asset:
 
         bones: float32 (..., bones, 3, 4); or vertices: float32 (..., vertices, 3), the deformed vertices in the order of the
         source's file. morph_weights: float32 (..., morphs), with bones. scope: "apart", or with neighbours on the body
-        "all", or those alone "neighbours". quick: measure one direction, no volume, no visibility; for every frame of a
-        game. triangles: list the pairs of triangles, too.
+        "all", or those alone "neighbours". quick: measure likely faults alone in full, all else along one direction; no
+        volumes; for every frame of a game. triangles: list the pairs of triangles, too.
 
         Returns Contacts; of a batch a list of these for its axis, lists of lists for several axes.
         """

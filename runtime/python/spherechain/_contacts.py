@@ -13,10 +13,14 @@ from . import _native
 
 _POINT = np.dtype([("position", "f4", 3), ("triangle", "u4"), ("weights", "f4", 3)])
 
-#: Two body parts that intersect, as the C library has them (sc_penetration). Lengths in the pose's units.
+#: Two body parts that intersect, as the C library has them: sc_penetration, and from "depth" on its sc_measures. Lengths
+#: in the pose's units; a volume, thickness or swallowed below zero is not known.
 PENETRATION = np.dtype([
-    ("part_a", "u4"), ("part_b", "u4"), ("kind", "i4"), ("depth", "f4"), ("direction", "f4", 3), ("is_closed", "i4"),
-    ("volume", "f4"), ("contour_length", "f4"), ("visible", "f4"), ("deepest_a", _POINT), ("deepest_b", _POINT)])
+    ("part", "u4"), ("other", "u4"), ("bone", "i4"), ("kind", "i4"), ("direction", "f4", 3), ("distance", "f4"),
+    ("centre", "f4", 3), ("low", "f4", 3), ("high", "f4", 3), ("deepest", _POINT), ("deepest_other", _POINT),
+    ("depth", "f4"), ("volume", "f4"), ("contour_length", "f4"), ("visible", "f4"), ("touching", "f4"), ("facing", "f4"),
+    ("rest_distance", "f4"), ("thickness", "f4"), ("swallowed", "f4"), ("height", "f4"), ("metre", "f4"),
+    ("relation", "i4"), ("is_one_piece", "i4")])
 
 #: Two triangles that intersect, as the C library has them (sc_triangle_contact), and the segment in which they cross.
 TRIANGLE_PAIR = np.dtype([
@@ -32,16 +36,20 @@ FAULTS = KINDS[4:]
 class Contact(NamedTuple):
     """Two body parts whose skins intersect. Lengths in the pose's units, but depth_mm."""
 
-    part_a: str
-    part_b: str
+    part: str  #: goes into `other`: the more mobile of the two, a hand in a thigh; of two alike the smaller
+    other: str
     kind: str  #: "rest", "shell", "touch", "fold", "deep_fold" or "penetration"
-    depth: float  #: part_b, moved so far in `direction`, is free of part_a
+    depth: float  #: the shortest way out
     depth_mm: float  #: the same in millimetres, by the asset's metres_per_unit
+    distance: float  #: `part`, moved so far in `direction`, is free of `other`
     direction: NDArray[np.float32]  #: (3,), of unit length
-    volume: Optional[float]  #: of part_b inside part_a; None where it is not known, and with quick=True
+    volume: Optional[float]  #: of the one part inside the other; None where it is not known, and with quick=True
     visible: float  #: 0 to 1: the share of the line in which they cross that can be seen from outside
-    point_a: NDArray[np.float32]  #: (3,): the point of part_a that is deepest in part_b
-    point_b: NDArray[np.float32]  #: (3,): point_a - point_b = depth * direction
+    point: NDArray[np.float32]  #: (3,): the point of `part` that is deepest in `other`
+    point_other: NDArray[np.float32]  #: (3,): point_other - point = distance * direction
+    centre: NDArray[np.float32]  #: (3,): of the line in which they cross
+    low: NDArray[np.float32]  #: (3,), with `high` a box around that line
+    high: NDArray[np.float32]
 
     @property
     def is_fault(self) -> bool:
@@ -71,9 +79,10 @@ class Contacts(Sequence):
             return [self[i] for i in range(*index.indices(len(self)))]
         row = self.array[index]
         return Contact(
-            self._part_names[row["part_a"]], self._part_names[row["part_b"]], KINDS[row["kind"]], float(row["depth"]),
-            float(row["depth"]) * self._mm_per_unit, row["direction"], float(row["volume"]) if row["is_closed"] else None,
-            float(row["visible"]), row["deepest_a"]["position"], row["deepest_b"]["position"])
+            self._part_names[row["part"]], self._part_names[row["other"]], KINDS[row["kind"]], float(row["depth"]),
+            float(row["depth"]) * self._mm_per_unit, float(row["distance"]), row["direction"],
+            float(row["volume"]) if row["volume"] >= 0 else None, float(row["visible"]), row["deepest"]["position"],
+            row["deepest_other"]["position"], row["centre"], row["low"], row["high"])
 
     @property
     def is_fault(self) -> NDArray[np.bool_]:
@@ -87,5 +96,5 @@ class Contacts(Sequence):
 
     def __repr__(self) -> str:
         deepest = sorted(self, key=lambda contact: -contact.depth)[:3]
-        shown = ", ".join(f"{c.part_b} in {c.part_a} {c.depth_mm:.0f} mm ({c.kind})" for c in deepest)
+        shown = ", ".join(f"{c.part} in {c.other} {c.depth_mm:.0f} mm ({c.kind})" for c in deepest)
         return f"<{len(self)} contacts{': ' if deepest else ''}{shown}{' ...' if len(self) > 3 else ''}>"

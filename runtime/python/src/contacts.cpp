@@ -247,8 +247,8 @@ void add_depth_gradients(const LoadedAsset& asset, const Penetration* penetratio
       for (std::size_t p = first[i]; p < first[i + 1]; ++p) {
         const Penetration& of = penetrations[p];
         const float direction[3] = {of.direction.x, of.direction.y, of.direction.z};
-        for (const SkinPoint* point : {&of.deepest_a, &of.deepest_b}) {
-          const float slope = point == &of.deepest_a ? slopes[p] : -slopes[p];
+        for (const SkinPoint* point : {&of.deepest_other, &of.deepest}) {
+          const float slope = point == &of.deepest_other ? slopes[p] : -slopes[p];
           for (const PointTerm& term : terms.of(point->triangle, point->weights, morphs_of(asset, morph_weights, i))) {
             float* row = gradient + i * size + 12 * term.bone;
             for (std::size_t m = 0; m < 3; ++m, row += 4) {

@@ -47,8 +47,9 @@ template <typename T>
 void place_points(const LoadedAsset& asset, const Poses<T>& poses, const float* morph_weights, const SkinPoints& points,
                   std::size_t threads, T* out);
 
-// A penetration's depth is direction . (deepest_a - deepest_b). Its gradient by the matrices, with the two points fixed
-// on the skin, times the penetration's slope, added up in the pose that it belongs to: 12 numbers a bone.
+// A penetration's distance is direction . (deepest_other - deepest); without a previous frame it is the depth. Its
+// gradient by the matrices, with the two points fixed on the skin, times the penetration's slope, added up in the pose
+// that it belongs to: 12 numbers a bone.
 void add_depth_gradients(const LoadedAsset& asset, const Penetration* penetrations, const float* slopes,
                          const std::size_t* first, std::size_t pose_count, const float* morph_weights, float* gradient);
 

@@ -148,7 +148,7 @@ RegionView AssetView::region(std::size_t i) const noexcept {
 
 BodyPart AssetView::part(std::size_t i) const noexcept {
   const schema::Part& part = *at(*root_->parts(), i);
-  return {part.name()->c_str(), static_cast<Side>(part.side()), part.bone(), part.parent()};
+  return {part.name()->c_str(), static_cast<Side>(part.side()), part.bone(), part.parent(), part.mobility()};
 }
 
 std::size_t AssetView::chain_count() const noexcept { return root_->chains()->size(); }

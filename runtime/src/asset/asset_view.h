@@ -17,7 +17,7 @@ namespace schema {
 struct Asset;
 }
 
-inline constexpr std::uint32_t kFormatVersion = 3;
+inline constexpr std::uint32_t kFormatVersion = 4;
 inline constexpr std::uint32_t kMaxSphereCount = 65535, kMaxPartCount = 255;
 
 enum class RefitRule : std::uint8_t { kPaper = 0, kMoments = 1 };

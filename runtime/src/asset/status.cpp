@@ -66,7 +66,7 @@ constexpr std::pair<sc_field, const char*> kFieldNames[] = {
     {SC_FIELD_CONTACTS, "contacts"},
     {SC_FIELD_PREVIOUS, "previous"},
     {SC_FIELD_PENETRATIONS, "penetrations"},
-    {SC_FIELD_TOUCH_DEPTH, "touch_depth"},
+    {SC_FIELD_RULE, "rule"},
     {SC_FIELD_IGNORED_PARTS, "ignored_parts"},
     {SC_FIELD_BODIES, "bodies"},
     {SC_FIELD_LAYERS, "layers"},
@@ -77,6 +77,7 @@ constexpr std::pair<sc_field, const char*> kFieldNames[] = {
     {SC_FIELD_PARENTS, "parents"},
     {SC_FIELD_TOLERANCE, "tolerance"},
     {SC_FIELD_TRANSFORM, "transform"},
+    {SC_FIELD_ALLOCATOR, "allocator"},
 };
 
 template <typename Texts, typename Value>

@@ -60,6 +60,11 @@ class Below {
         cut[from.above < 0 ? 0 : 1] = at;  // the way along the triangle goes up at the first
       }
     }
+    for (int i = 0; i < count; ++i) {
+      const Double3& at = kept[i].p;
+      low = {std::min(low.x, at.x), std::min(low.y, at.y), std::min(low.z, at.z)};
+      high = {std::max(high.x, at.x), std::max(high.y, at.y), std::max(high.z, at.z)};
+    }
     for (int i = 1; i + 1 < count; ++i) {
       const Double3 area = 0.5 * handedness_ * cross(kept[i].p - kept[0].p, kept[i + 1].p - kept[0].p);
       area_ = area_ + area;
@@ -80,8 +85,10 @@ class Below {
   // Skin that ends below the ground has edges beside the contour: they enclose an area, too.
   bool is_closed() const { return length(area_ - enclosed_) <= kAreaError * total_ && volume_ >= 0; }
   double volume() const { return volume_; }
+  Double3 centre() const { return 0.5 * (low + high); }
 
   std::size_t triangles = 0;
+  Double3 low{HUGE_VAL, HUGE_VAL, HUGE_VAL}, high{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
   double contour_length = 0;
 
  private:
@@ -107,12 +114,13 @@ class Measurer {
         continue;
       }
       Penetration found{};
-      if (measure(part, found)) {
-        if (job.penetration_count < job.penetration_capacity) {
-          job.penetrations[job.penetration_count] = found;
-        }
-        ++job.penetration_count;
+      if (!measure(part, found) || (job.classes != 0 && (job.classes >> found.kind & 1) == 0)) {
+        continue;
       }
+      if (job.penetration_count < job.penetration_capacity) {
+        job.penetrations[job.penetration_count] = found;
+      }
+      ++job.penetration_count;
     }
     return job.penetration_capacity > 0 && job.penetration_count > job.penetration_capacity
                ? refuse(SC_OVERFLOW, SC_FIELD_PENETRATIONS)
@@ -149,8 +157,8 @@ class Measurer {
         if (least < deepest) {
           deepest = least;
           const std::size_t k = memory_.above[v[0]] == least ? 0 : memory_.above[v[1]] == least ? 1 : 2;
-          out.deepest_b = {to_float(corners.p[k]), surface_.triangles[t], {}};
-          out.deepest_b.weights[k] = 1;
+          out.deepest = {to_float(corners.p[k]), surface_.triangles[t], {}};
+          out.deepest.weights[k] = 1;
         }
       }
     }
@@ -159,19 +167,28 @@ class Measurer {
     }
     const AssetInfo info = asset_.info();
     const double scale = scale_of(asset_, job_.body.pose), height = scale * double{info.height};
-    const double touch = touch_depth_of(rule_of(job_.touch_depth), scale / double{info.metres_per_unit}, height);
-    out.part_a = SC_FLOOR;
-    out.part_b = static_cast<std::uint32_t>(part);
-    out.depth = std::max(static_cast<float>(-deepest), static_cast<float>(1e-7 * height));
+    const double metre = scale / double{info.metres_per_unit};
+    const Rule limits = job_.rule == nullptr ? sc_default_rule() : *job_.rule;
+    out.part = static_cast<std::uint32_t>(part);
+    out.other = SC_FLOOR;
+    out.joint = static_cast<std::uint32_t>(asset_.part(part).bone);
+    out.distance = out.measures.depth = std::max(static_cast<float>(-deepest), static_cast<float>(1e-7 * height));
+    out.measures.volume = below.is_closed() ? static_cast<float>(below.volume()) : -1;
+    out.measures.contour_length = static_cast<float>(below.contour_length);
+    out.measures.visible = 1;
+    out.measures.rest_distance = HUGE_VALF;
+    out.measures.thickness = out.measures.swallowed = -1;
+    out.measures.height = static_cast<float>(height);
+    out.measures.metre = static_cast<float>(metre);
+    out.measures.relation = SC_RELATION_TWO_BODIES;
+    out.kind = -deepest < touch_depth_of(limits, metre, height) ? SC_CLASS_TOUCH : SC_CLASS_PENETRATION;
     out.direction = job_.up;
-    out.kind = -deepest < touch ? SC_CLASS_TOUCH : SC_CLASS_PENETRATION;
-    out.is_closed = below.is_closed() ? 1 : 0;
-    out.volume = out.is_closed != 0 ? static_cast<float>(below.volume()) : 0;
-    out.contour_length = static_cast<float>(below.contour_length);
-    out.visible = 1;
-    const Vec3& b = out.deepest_b.position;
-    out.deepest_a = {
-        {b.x + out.depth * job_.up.x, b.y + out.depth * job_.up.y, b.z + out.depth * job_.up.z}, SC_FLOOR, {}};
+    out.centre = to_float(below.centre());
+    out.low = to_float(below.low);
+    out.high = to_float(below.high);
+    const Vec3& p = out.deepest.position;
+    out.deepest_other = {
+        {p.x + out.distance * job_.up.x, p.y + out.distance * job_.up.y, p.z + out.distance * job_.up.z}, SC_FLOOR, {}};
     return true;
   }
 
@@ -198,8 +215,8 @@ Status check(const FloorJob& job, Target& resolved, Surface& surface) {
   if (!(std::abs(length(to_double(job.up)) - 1) <= kUnitError) || !std::isfinite(job.height)) {
     return refuse(SC_BAD_VALUE, SC_FIELD_FLOOR);
   }
-  if (!(job.touch_depth >= 0) || !std::isfinite(job.touch_depth)) {
-    return refuse(SC_BAD_VALUE, SC_FIELD_TOUCH_DEPTH);
+  if (const Status rule = check_rule(job.rule); rule != SC_OK) {
+    return rule;
   }
   if (!resolve_target(job.target, resolved)) {
     return refuse(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET);

@@ -3,6 +3,7 @@
 #include "depth/measure.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "asset/status.h"
 #include "depth/rule.h"
@@ -56,7 +57,6 @@ class Measurer {
         rest_height_(double{in.a.asset->info().height}),
         height_(rest_height_ * scale_of(*in.a.asset, in.a.pose)),
         metre_(height_ / rest_height_ / double{in.a.asset->info().metres_per_unit}),
-        rule_(rule_of(in.touch_depth)),
         memory_(in.are_one),
         sweep_(memory_.skins, in.rule, std::min(kGapMetres * metre_, kGapMax * height_)) {
     memory_.own.surface = in.a.surface;
@@ -65,7 +65,7 @@ class Measurer {
   }
 
   Status run(std::size_t& found) {
-    found = 0;
+    found = in_.kept;
     if (in_.contacts.size == 0) {
       return done();
     }
@@ -77,18 +77,39 @@ class Measurer {
       while (end < count && memory_.keys[end] >> 32 == memory_.keys[begin] >> 32) {
         ++end;
       }
-      if (found < in_.out.size) {
+      if (in_.out.size > 0) {
         const auto first_covered = std::find_if(memory_.keys.begin() + begin, memory_.keys.begin() + end,
                                                 [](std::uint64_t key) { return (key & kCovered) != 0; });
         const auto seen = static_cast<std::size_t>(first_covered - (memory_.keys.begin() + begin));
-        in_.out[found] = measure({memory_.segments.data + begin, end - begin}, seen);
+        const Penetration one = measure(two_parts({memory_.segments.data + begin, end - begin}, seen));
+        if ((in_.classes >> one.kind & 1) == 0) {
+          continue;
+        }
+        keep(one, found);
       }
       ++found;
     }
-    return in_.out.size > 0 && found > in_.out.size ? refuse(SC_OVERFLOW, SC_FIELD_PENETRATIONS) : done();
+    if (in_.out.size == 0 || found <= in_.out.size) {
+      return done();
+    }
+    const auto parts = [](const Penetration& of) { return std::minmax(of.part, of.other); };
+    std::sort(in_.out.begin(), in_.out.end(), [&](const auto& l, const auto& r) { return parts(l) < parts(r); });
+    return refuse(SC_OVERFLOW, SC_FIELD_PENETRATIONS);
   }
 
  private:
+  // The `count`-th that was found, in place of the least bad one where the list is full.
+  void keep(const Penetration& one, std::size_t count) const {
+    if (count < in_.out.size) {
+      in_.out[count] = one;
+      return;
+    }
+    Penetration* const least = std::max_element(in_.out.begin(), in_.out.end(), is_worse);
+    if (is_worse(one, *least)) {
+      *least = one;
+    }
+  }
+
   std::size_t part_a(const TriangleContact& contact) const {
     return surface_a_.parts[surface_a_.place_of_source[contact.triangle_a]];
   }
@@ -104,10 +125,7 @@ class Measurer {
   // Those parts alone that meet, where nothing else is looked at.
   void pose_skins() {
     if (!in_.quick) {
-      memory_.own.fill(in_.a.pose, in_.target);
-      if (!in_.are_one) {
-        memory_.other.fill(in_.b.pose, in_.target);
-      }
+      pose_all_skins();
       return;
     }
     std::uint64_t parts[2][4] = {};
@@ -121,6 +139,16 @@ class Measurer {
     memory_.own.fill(in_.a.pose, in_.target, parts[0]);
     if (!in_.are_one) {
       memory_.other.fill(in_.b.pose, in_.target, parts[1]);
+    }
+  }
+
+  void pose_all_skins() {
+    if (std::exchange(are_all_posed_, true)) {
+      return;
+    }
+    memory_.own.fill(in_.a.pose, in_.target);
+    if (!in_.are_one) {
+      memory_.other.fill(in_.b.pose, in_.target);
     }
   }
 
@@ -199,57 +227,141 @@ class Measurer {
     sweep_.set_sides(unique({memory_.side_a.data, count}), unique({memory_.side_b.data, count}), center);
   }
 
-  // `seen`: how many of the segments, the first, are of outer layers. Where there are any, the others lie below a suit,
-  // or are its lining: they must come out, but say nothing of what a person sees.
-  Penetration measure(Span<Segment3> all, std::size_t seen_count) {
-    has_outer_layers_ = seen_count > 0;
-    const Span<Segment3> segments{all.data, has_outer_layers_ ? seen_count : all.size};
-    const std::size_t part_a = surface_a_.parts[segments[0].a], part_b = surface_b_.parts[segments[0].b];
-    const Contour contour = contour_of(memory_.skins, segments, rest_height_, memory_.contour);
-    set_sides(all, contour.center, part_a, part_b);
-    const Double3 previous = previous_direction(part_a, part_b);
-    const bool has_previous = dot(previous, previous) > 0 && std::isfinite(dot(previous, previous));
-    Measures measures = measures_of(contour, part_a, part_b);
-    const double deep = is_fold(rule_, measures) ? rule_.deep_fold * height_ : 0;
-    const Exit exit = find_exit(sweep_, contour,
-                                {in_.quick, kNear * height_, deep, are_joined(part_a, part_b),
-                                 has_previous && !in_.quick ? &previous : nullptr});
-    Penetration out{};
-    out.part_a = static_cast<std::uint32_t>(part_a);
-    out.part_b = static_cast<std::uint32_t>(part_b);
-    // Triangles that just touch are clear of each other after any move: the least there is.
-    out.depth = std::max(static_cast<float>(exit.way.depth), static_cast<float>(1e-7 * height_));
-    out.direction = to_float(exit.direction);
-    out.contour_length = static_cast<float>(contour.length);
-    out.deepest_a = point_of(memory_.skins.a, exit.way.a, exit.way.point_a, segments[0].a);
-    out.deepest_b = point_of(memory_.skins.b, exit.way.b, exit.way.point_b, segments[0].b);
-    // All of the line is in sight, as far as its own sides do not hide it.
-    Seen seen{1, contour.length * std::sqrt(std::max(0.0, 1 - contour.facing) / 2)};
-    if (!in_.quick) {
-      if (contour.is_closed && (!in_.are_one || part_a != part_b)) {
-        sweep_.keep_on_way(exit.direction, exit.way.depth);
-        const Volume volume = sweep_.volume(exit.direction, exit.way.depth, has_outer_layers_);
-        const double area = dot(contour.area, exit.direction);
-        out.is_closed = std::abs(volume.area - area) <= kAreaError * volume.total && volume.volume >= 0 ? 1 : 0;
-        out.volume = out.is_closed != 0 ? static_cast<float>(volume.volume) : 0;
-      }
-      Double3 axes[3];
-      axes_of(contour, exit.direction, axes);
-      seen = memory_.visibility.look(contour, axes, kClearance * height_);
-      if (seen.share < rule_.hidden && segments.size < all.size) {  // in sight below an open coat?
-        const Seen below = memory_.visibility.look(contour_of(memory_.skins, all, rest_height_, memory_.contour), axes,
-                                                   kClearance * height_);
-        seen = below.share > seen.share ? below : seen;
-      }
-    }
-    out.visible = static_cast<float>(seen.share);
-    measures.depth = double{out.depth};
-    measures.visible = double{out.visible};
-    if (depends_on_swallowed(rule_, measures)) {
-      measures.swallowed = swallowed(contour, out, seen.length);
-    }
-    out.kind = classify(rule_, measures);
+  // Two parts that meet. Where some segments are of outer layers, the others lie below a suit, or are its lining: they
+  // must come out, but say nothing of what a person sees.
+  struct TwoParts {
+    Span<Segment3> all;
+    std::size_t a, b;
+    Contour contour;  // of what a person sees
+    bool swaps;       // b is named first
+    double side;      // of a square like the smaller part
+  };
+
+  // `seen`: how many of the segments, the first, are of outer layers.
+  TwoParts two_parts(Span<Segment3> all, std::size_t seen) {
+    has_outer_layers_ = seen > 0;
+    TwoParts out{all, surface_a_.parts[all[0].a], surface_b_.parts[all[0].b], {}, false, 0};
+    out.contour =
+        contour_of(memory_.skins, {all.data, seen > 0 ? seen : all.size}, rest_height_, memory_.contour);
+    const double area_a = double{surface_a_.part_areas[out.a]}, area_b = double{surface_b_.part_areas[out.b]};
+    const int mobility_a = in_.a.asset->part(out.a).mobility, mobility_b = in_.b.asset->part(out.b).mobility;
+    out.swaps =
+        in_.are_one && out.a != out.b && (mobility_b > mobility_a || (mobility_b == mobility_a && area_b < area_a));
+    out.side = std::min(scale_of_a() * std::sqrt(area_a), scale_of_b() * std::sqrt(area_b));
     return out;
+  }
+
+  Penetration measure(const TwoParts& parts) {
+    const Contour& contour = parts.contour;
+    set_sides(parts.all, contour.center, parts.a, parts.b);
+    Exit exit = first_exit(sweep_, contour, kNear * height_);
+    // All of the line is in sight, as far as its own sides do not hide it.
+    const Seen in_sight{1, contour.length * std::sqrt(std::max(0.0, 1 - contour.facing) / 2)};
+    const Penetration quick = describe(parts, exit, in_sight, nullptr);
+    const bool is_likely = is_fault(quick.kind);
+    if (in_.quick && !is_likely) {
+      return quick;
+    }
+    pose_all_skins();
+    const ExitSettings settings{is_fold(in_.limits, quick.measures) ? double{in_.limits.deep_fold} * height_ : 0,
+                                are_joined(parts.a, parts.b)};
+    exit = shortest_exit(sweep_, contour, settings, exit);
+    Double3 axes[3];
+    axes_of(contour, exit.direction, axes);
+    // What the quick measures alone call no fault is none: both forms must agree.
+    Penetration out = describe(parts, exit, look(parts, axes), is_likely ? nullptr : &quick);
+    Double3 previous = previous_direction(parts, out);
+    if (is_fault(out.kind) && normalize(previous)) {
+      set_way(parts, steady_exit(sweep_, contour, settings, exit, previous), out);
+    }
+    if (!in_.quick) {
+      out.measures.volume = volume_of(parts, exit);
+    }
+    return out;
+  }
+
+  Seen look(const TwoParts& parts, const Double3 (&axes)[3]) {
+    const Seen seen = memory_.visibility.look(parts.contour, axes, kClearance * height_);
+    if (!(seen.share < double{in_.limits.hidden}) || parts.contour.segments.size == parts.all.size) {
+      return seen;
+    }
+    // In sight below an open coat?
+    const Seen below = memory_.visibility.look(contour_of(memory_.skins, parts.all, rest_height_, memory_.contour), axes,
+                                               kClearance * height_);
+    return below.share > seen.share ? below : seen;
+  }
+
+  // Negative where it is not known.
+  float volume_of(const TwoParts& parts, const Exit& exit) {
+    if (!parts.contour.is_closed || (in_.are_one && parts.a == parts.b)) {
+      return -1;
+    }
+    sweep_.keep_on_way(exit.direction, exit.way.depth);
+    const Volume volume = sweep_.volume(exit.direction, exit.way.depth, has_outer_layers_);
+    const double area = dot(parts.contour.area, exit.direction);
+    const bool is_known = std::abs(volume.area - area) <= kAreaError * volume.total && volume.volume >= 0;
+    return is_known ? static_cast<float>(volume.volume) : -1;
+  }
+
+  // `known`: has the same parts' thickness, and how much is swallowed; or null.
+  Penetration describe(const TwoParts& parts, const Exit& exit, const Seen& seen, const Penetration* known) {
+    const Contour& contour = parts.contour;
+    Penetration out{};
+    set_way(parts, exit, out);
+    out.measures = {out.distance,
+                    -1,
+                    static_cast<float>(contour.length),
+                    static_cast<float>(seen.share),
+                    static_cast<float>(contour.touching),
+                    static_cast<float>(contour.facing),
+                    static_cast<float>(contour.rest_distance / rest_height_),
+                    -1,
+                    -1,
+                    static_cast<float>(height_),
+                    static_cast<float>(metre_),
+                    relation_of(parts.a, parts.b),
+                    contour.is_one_piece ? 1 : 0};
+    if (known != nullptr) {
+      out.measures.thickness = known->measures.thickness;
+      out.measures.swallowed = known->measures.swallowed;
+    } else if (depends_on_swallowed(in_.limits, out.measures)) {
+      const SkinPoint &a = parts.swaps ? out.deepest_other : out.deepest, &b = parts.swaps ? out.deepest : out.deepest_other;
+      const double thin = thickness_of(parts, exit.direction, a.position, b.position);
+      out.measures.thickness = static_cast<float>(thin);
+      out.measures.swallowed = static_cast<float>(double{out.distance} / thin * seen.length / parts.side);
+    }
+    out.kind = sc_classify(&in_.limits, &out.measures);
+    out.part = static_cast<std::uint32_t>(parts.swaps ? parts.b : parts.a);
+    out.other = static_cast<std::uint32_t>(parts.swaps ? parts.a : parts.b);
+    out.joint = static_cast<std::uint32_t>(in_.a.asset->part(out.part).bone);  // -1 is SC_NO_JOINT
+    out.centre = to_float(contour.center);
+    set_box(parts.all, out);
+    return out;
+  }
+
+  // An exit moves b.
+  void set_way(const TwoParts& parts, const Exit& exit, Penetration& out) const {
+    // Triangles that just touch are clear of each other after any move: the least there is.
+    out.distance = std::max(static_cast<float>(exit.way.depth), static_cast<float>(1e-7 * height_));
+    out.direction = to_float(parts.swaps ? exit.direction : -1.0 * exit.direction);
+    const Segment3& any = parts.contour.segments[0];
+    out.deepest = point_of(memory_.skins.a, exit.way.a, exit.way.point_a, any.a);
+    out.deepest_other = point_of(memory_.skins.b, exit.way.b, exit.way.point_b, any.b);
+    if (parts.swaps) {
+      std::swap(out.deepest, out.deepest_other);
+    }
+  }
+
+  static void set_box(const Span<Segment3>& segments, Penetration& out) {
+    Double3 low = segments[0].from, high = low;
+    for (const Segment3& s : segments) {
+      for (const Double3& p : {s.from, s.to}) {
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+      }
+    }
+    out.low = to_float(low);
+    out.high = to_float(high);
   }
 
   static SkinPoint point_of(const PosedSkin& skin, std::uint32_t triangle, const Double3& at, std::uint32_t otherwise) {
@@ -268,10 +380,11 @@ class Measurer {
     return out;
   }
 
-  Double3 previous_direction(std::size_t part_a, std::size_t part_b) const {
+  // In which the last frame moved part b out of a fault; zero where there is none.
+  Double3 previous_direction(const TwoParts& parts, const Penetration& of) const {
     for (const Penetration& last : in_.previous) {
-      if (last.part_a == part_a && last.part_b == part_b) {
-        return to_double(last.direction);
+      if (last.part == of.part && last.other == of.other && is_fault(last.kind)) {
+        return (parts.swaps ? 1.0 : -1.0) * to_double(last.direction);
       }
     }
     return {0, 0, 0};
@@ -294,20 +407,12 @@ class Measurer {
     return above >= 0 && hangs_on(static_cast<std::size_t>(above), b);
   }
 
-  Measures measures_of(const Contour& contour, std::size_t a, std::size_t b) const {
-    const Relation relation = !in_.are_one                             ? Relation::kApart
-                              : a == b || are_joined(a, b)             ? Relation::kJoined
-                              : are_siblings(a, b)                     ? Relation::kSiblings
-                              : hangs_twice(a, b) || hangs_twice(b, a) ? Relation::kNear
-                                                                       : Relation::kApart;
-    return {height_,
-            metre_,
-            relation,
-            !in_.are_one,
-            contour.is_one_piece,
-            contour.rest_distance / rest_height_,
-            contour.touching,
-            contour.facing};
+  Relation relation_of(std::size_t a, std::size_t b) const {
+    return !in_.are_one                             ? SC_RELATION_TWO_BODIES
+           : a == b || are_joined(a, b)             ? SC_RELATION_JOINED
+           : are_siblings(a, b)                     ? SC_RELATION_SIBLINGS
+           : hangs_twice(a, b) || hangs_twice(b, a) ? SC_RELATION_NEAR
+                                                    : SC_RELATION_APART;
   }
 
   // How far a part's skin goes on from a point on it, into that direction.
@@ -329,30 +434,28 @@ class Measurer {
     return least;
   }
 
-  // See Measures.
-  double swallowed(const Contour& contour, const Penetration& of, double seen_length) const {
-    const double scale_a = height_ / rest_height_;
-    const double scale_b = in_.are_one ? scale_a : scale_of(*in_.b.asset, in_.b.pose);
+  double scale_of_a() const { return height_ / rest_height_; }
+  double scale_of_b() const { return in_.are_one ? scale_of_a() : scale_of(*in_.b.asset, in_.b.pose); }
+
+  // Of the thinner part, where they meet: at the deepest points, or as thick as its spheres there.
+  double thickness_of(const TwoParts& parts, const Double3& direction, const Vec3& deepest_a,
+                      const Vec3& deepest_b) const {
     double radius_a = 0, radius_b = 0;  // mean of the spheres whose skin meets
-    for (const Segment3& s : contour.segments) {
+    for (const Segment3& s : parts.contour.segments) {
       radius_a += s.length * double{in_.a.asset->spheres()[surface_a_.triangle_spheres[s.a]].radius};
       radius_b += s.length * double{in_.b.asset->spheres()[surface_b_.triangle_spheres[s.b]].radius};
     }
-    const Double3 out = to_double(of.direction);
-    const double thin = std::min({2 * std::min(scale_a * radius_a, scale_b * radius_b) / contour.length,
-                                  thickness(memory_.skins.a, of.part_a, of.deepest_a.position, -1.0 * out),
-                                  thickness(memory_.skins.b, of.part_b, of.deepest_b.position, out)});
-    const double side = std::min(scale_a * std::sqrt(double{surface_a_.part_areas[of.part_a]}),
-                                 scale_b * std::sqrt(double{surface_b_.part_areas[of.part_b]}));
-    return double{of.depth} / thin * seen_length / side;
+    return std::min({2 * std::min(scale_of_a() * radius_a, scale_of_b() * radius_b) / parts.contour.length,
+                     thickness(memory_.skins.a, parts.a, deepest_a, -1.0 * direction),
+                     thickness(memory_.skins.b, parts.b, deepest_b, direction)});
   }
 
   const Meeting& in_;
   const Surface &surface_a_, &surface_b_;
   double rest_height_, height_, metre_;  // at rest; in the pose
-  Rule rule_;
   Memory memory_;
   Sweep sweep_;
+  bool are_all_posed_ = false;
   bool has_outer_layers_ = false;  // of the two parts that are measured: covered triangles do not count
 };
 

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "spherechain/penetrations.h"
 
-#include <cmath>
-
 #include "asset/status.h"
 #include "depth/measure.h"
+#include "depth/rule.h"
 #include "pairs/filter.h"
 #include "simd/simd.h"
 #include "skin/scene_setup.h"
@@ -48,18 +47,22 @@ Status check_rest(const Job& job, std::size_t words, Target& resolved) {
   if (job.scratch_words < words) {
     return refuse(SC_TOO_SMALL, SC_FIELD_SCRATCH);
   }
-  if (!(job.touch_depth >= 0) || !std::isfinite(job.touch_depth)) {
-    return refuse(SC_BAD_VALUE, SC_FIELD_TOUCH_DEPTH);
+  const Status rule = check_rule(job.rule);
+  if (rule != SC_OK) {
+    return rule;
   }
   return resolve_target(job.target, resolved) ? done() : refuse(SC_UNSUPPORTED_TARGET, SC_FIELD_TARGET);
 }
 
 template <typename Job>
 Meeting meeting_of(const Job& job, const Meeting::Side& a, const Meeting::Side& b, Target resolved) {
-  Meeting out{a, b, false, {}, resolved, {}, {}, job.quick != 0, job.touch_depth, job.scratch, {}};
+  const Rule limits = job.rule == nullptr ? sc_default_rule() : *job.rule;
+  Meeting out{a, b, false, {}, resolved, {}, {}, job.quick != 0, limits, job.scratch, {}};
   out.contacts = {job.contacts, job.contact_count};
   out.previous = {job.previous, job.previous_count};
   out.out = {job.penetrations, job.penetration_capacity};
+  out.classes = job.classes == 0 ? out.classes : job.classes;
+  out.kept = job.kept_count;
   return out;
 }
 
@@ -144,11 +147,6 @@ sc_status sc_measure_penetrations(sc_penetration_job* job) noexcept {
 
 sc_status sc_measure_body_penetrations(sc_body_penetration_job* job) noexcept {
   return job == nullptr ? refuse(SC_NULL, SC_FIELD_NONE) : run(*job);
-}
-
-const char* sc_penetration_class_name(sc_penetration_class kind) noexcept {
-  constexpr const char* kNames[] = {"rest", "shell", "touch", "fold", "deep_fold", "penetration"};
-  return kind >= 0 && kind <= SC_CLASS_PENETRATION ? kNames[kind] : "unknown";
 }
 
 }  // extern "C"

@@ -9,7 +9,7 @@
 namespace spherechain {
 namespace {
 
-constexpr std::size_t kAsked = 64;  // clusters, for the handedness
+constexpr std::size_t kAsked = 32;  // clusters, for the handedness
 
 }  // namespace
 
@@ -43,16 +43,21 @@ void PosedSkin::fill(const Pose& pose, Target resolved) {
 void PosedSkin::fill(const Pose& pose, Target resolved, const std::uint64_t (&parts)[4]) {
   std::fill(is_listed, is_listed + surface->clusters.size, 0);
   clusters.size = 0;
+  const auto list = [&](std::uint32_t c) {
+    if (is_listed[c] == 0) {
+      is_listed[c] = 1;
+      clusters[clusters.size++] = c;
+    }
+  };
+  for (std::size_t c = 0; c < surface->clusters.size; c += asked_step()) {
+    list(static_cast<std::uint32_t>(c));
+  }
   for (std::size_t part = 0; part + 1 < surface->first_of_part.size; ++part) {
     if ((parts[part / 64] >> part % 64 & 1) == 0) {
       continue;
     }
     for (std::size_t i = surface->first_of_part[part]; i < surface->first_of_part[part + 1]; ++i) {
-      const std::uint32_t c = surface->part_runs[i].cluster;
-      if (is_listed[c] == 0) {
-        is_listed[c] = 1;
-        clusters[clusters.size++] = c;
-      }
+      list(surface->part_runs[i].cluster);
     }
   }
   fill_clusters(pose, resolved);
@@ -86,12 +91,14 @@ void PosedSkin::fill_clusters(const Pose& pose, Target resolved) {
   handedness = find_handedness();
 }
 
-// By some clusters: is their vertex that is farthest from a triangle's plane at rest on the other side of it now?
+std::size_t PosedSkin::asked_step() const { return (surface->clusters.size + kAsked - 1) / kAsked; }
+
+// By some clusters, whichever parts stand in the pose: is their vertex that is farthest from a triangle's plane at rest on
+// the other side of it now?
 double PosedSkin::find_handedness() const {
-  const std::size_t step = (clusters.size + kAsked - 1) / kAsked;
   int votes = 0;
-  for (std::size_t i = 0; i < clusters.size; i += step) {
-    const Cluster& cluster = surface->clusters[clusters[i]];
+  for (std::size_t c = 0; c < surface->clusters.size; c += asked_step()) {
+    const Cluster& cluster = surface->clusters[c];
     const Corners rest = rest_corners(cluster.first_triangle), posed = corners(cluster.first_triangle);
     const auto above = [](const Corners& t, const float* p) {
       return dot(normal_of(t), Double3{double{p[0]}, double{p[1]}, double{p[2]}} - t.p[0]);

@@ -45,6 +45,7 @@ struct PosedSkin {
 
  private:
   void fill_clusters(const Pose& pose, Target resolved);
+  std::size_t asked_step() const;
   double find_handedness() const;
   Corners corners_in(const float* all, std::uint32_t triangle) const {
     const std::uint32_t* const v = surface->triangle_vertices.data + 3 * std::size_t{triangle};

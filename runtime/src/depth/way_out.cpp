@@ -127,10 +127,16 @@ void axes_of(const Contour& contour, const Double3& direction, Double3 (&axes)[3
   axes[2] = cross(axes[0], axes[1]);
 }
 
-Exit find_exit(Sweep& sweep, const Contour& contour, const ExitSettings& settings) {
-  const double turn = dot(contour.area, contour.normals);
-  const double outwards = contour.is_closed && turn < 0 ? -1 : 1;  // -1: the skin is inside out
-  const Double3 normals = outwards * contour.normals;
+namespace {
+
+double outwards_of(const Contour& contour) {
+  return contour.is_closed && dot(contour.area, contour.normals) < 0 ? -1 : 1;  // -1: the skin is inside out
+}
+
+}  // namespace
+
+Exit first_exit(Sweep& sweep, const Contour& contour, double near) {
+  const Double3 normals = outwards_of(contour) * contour.normals;
   Double3 first = contour.is_closed ? contour.area : normals;
   if (!normalize(first)) {
     first = contour.is_closed ? normals : contour.area;
@@ -140,23 +146,26 @@ Exit find_exit(Sweep& sweep, const Contour& contour, const ExitSettings& setting
   }
   // Near triangles alone, while the way is shorter than what is near.
   Exit out{first, {}};
-  double reach = std::max(settings.near, kLikely * sweep.find_by_contour(first, contour, HUGE_VAL, out.way));
+  double reach = std::max(near, kLikely * sweep.find_by_contour(first, contour, HUGE_VAL, out.way));
   for (int i = 0; i < kWidenings; ++i, reach *= 4) {
     sweep.keep_on_way(first, i + 1 < kWidenings ? reach : HUGE_VAL);
     if (sweep.find(first, contour, i + 1 < kWidenings ? reach : HUGE_VAL, out.way)) {
       break;
     }
   }
-  if (settings.one_direction) {
-    return out;
-  }
+  return out;
+}
+
+Exit shortest_exit(Sweep& sweep, const Contour& contour, const ExitSettings& settings, const Exit& first) {
+  const double outwards = outwards_of(contour);
   Search search(sweep, contour, outwards, settings.are_joined);
-  search.start(out);
-  sweep.keep_near(kNearlyAsGood * out.way.depth);
+  search.start(first);
+  sweep.keep_near(kNearlyAsGood * first.way.depth);
   Double3 axes[3];
-  axes_of(contour, first, axes);
+  axes_of(contour, first.direction, axes);
   const auto try_all = [&] {
-    for (const Double3& direction : {first, out.way.normal, normals, contour.area, contour.largest_area}) {
+    for (const Double3& direction : {first.direction, first.way.normal, outwards * contour.normals, contour.area,
+                                     contour.largest_area}) {
       search.refine(direction, 2);
     }
     if (!search.has_any() || search.best().way.depth > settings.deep) {
@@ -167,7 +176,7 @@ Exit find_exit(Sweep& sweep, const Contour& contour, const ExitSettings& setting
   };
   try_all();
   if (!search.has_any() || search.is_enclosed(search.best().direction, search.best().way)) {
-    const Exit fallback = search.has_any() ? search.best() : out;
+    const Exit fallback = search.has_any() ? search.best() : first;
     search.be_careful();
     sweep.keep_near(HUGE_VAL);
     try_all();
@@ -175,9 +184,14 @@ Exit find_exit(Sweep& sweep, const Contour& contour, const ExitSettings& setting
       return fallback;
     }
   }
-  if (settings.previous != nullptr) {
-    search.prefer(*settings.previous);
-  }
+  return search.best();
+}
+
+Exit steady_exit(Sweep& sweep, const Contour& contour, const ExitSettings& settings, const Exit& shortest,
+                 const Double3& wanted) {
+  Search search(sweep, contour, outwards_of(contour), settings.are_joined);
+  search.start(shortest);
+  search.prefer(wanted);
   return search.best();
 }
 

@@ -12,17 +12,19 @@ struct Exit {
 };
 
 struct ExitSettings {
-  bool one_direction = false;
-  double near = 0;                    // ways are likely to be shorter
-  double deep = 0;                    // above it many more directions are tried
-  bool are_joined = false;            // one part goes on in the other: neither can lie inside the other whole
-  const Double3* previous = nullptr;  // the last frame's, or null
+  double deep = 0;          // above it many more directions are tried
+  bool are_joined = false;  // one part goes on in the other: neither can lie inside the other whole
 };
 
 // Three directions at right angles that turn with the contour; the first is the one given.
 void axes_of(const Contour& contour, const Double3& direction, Double3 (&axes)[3]);
 
-// The sweep's sides are set.
-Exit find_exit(Sweep& sweep, const Contour& contour, const ExitSettings& settings);
+// Along the one direction that the contour says. The sweep's sides are set; `near`: ways are likely to be shorter.
+Exit first_exit(Sweep& sweep, const Contour& contour, double near);
+// The shortest of many, `first` among them.
+Exit shortest_exit(Sweep& sweep, const Contour& contour, const ExitSettings& settings, const Exit& first);
+// In that direction, or near it, where it is nearly as good as the shortest, which was found last; else the shortest.
+Exit steady_exit(Sweep& sweep, const Contour& contour, const ExitSettings& settings, const Exit& shortest,
+                 const Double3& wanted);
 
 }  // namespace spherechain

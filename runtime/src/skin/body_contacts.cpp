@@ -86,7 +86,7 @@ sc_status sc_find_body_contacts(sc_body_contact_job* job) noexcept {
   return found;
 }
 
-sc_status sc_bound_body(const sc_body* body, sc_vec3* low, sc_vec3* high) noexcept {
+sc_status sc_bound_body(const sc_job_body* body, sc_vec3* low, sc_vec3* high) noexcept {
   if (body == nullptr || low == nullptr || high == nullptr) {
     return refuse(SC_NULL, body == nullptr ? SC_FIELD_NONE : SC_FIELD_OUTPUT);
   }

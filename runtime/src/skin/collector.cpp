@@ -29,7 +29,7 @@ bool ContactCollector::is_left_out(const Candidate& candidate) const {
 }
 
 // The box is of corners alone: the same in whatever order contacts are found.
-void ContactCollector::add_parts(const TriangleContact& of, const Candidate& candidate) {
+std::size_t ContactCollector::add_parts(const TriangleContact& of, const Candidate& candidate) {
   const std::uint32_t low = are_one_ ? std::min(of.part_a, of.part_b) : of.part_a;
   const std::uint32_t high = are_one_ ? std::max(of.part_a, of.part_b) : of.part_b;
   bool is_new = false;
@@ -44,6 +44,7 @@ void ContactCollector::add_parts(const TriangleContact& of, const Candidate& can
       contact.high = {std::max(contact.high.x, p.x), std::max(contact.high.y, p.y), std::max(contact.high.z, p.z)};
     }
   }
+  return part_table_.place(low, high, are_one_);
 }
 
 bool ContactCollector::decide(const Candidate& candidate) {
@@ -73,7 +74,10 @@ bool ContactCollector::decide(const Candidate& candidate) {
   if (spheres_only_) {
     return true;
   }
-  add_parts(contact, candidate);
+  const std::size_t place = add_parts(contact, candidate);
+  if (listed_ != nullptr && (listed_[place / 64] >> place % 64 & 1) == 0) {
+    return true;
+  }
   if (triangles_.is_wanted()) {
     const Segment segment = crossing_segment(*a, *b);
     contact.from = segment.from;

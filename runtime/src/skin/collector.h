@@ -53,13 +53,14 @@ struct ContactLists {
   Span<Pair> spheres;
   Span<TriangleContact> triangles;
   bool spheres_only;
+  const std::uint64_t* listed = nullptr;  // a bit for each place of PartTable: of which parts triangles are listed
 
   template <typename Job>
   static ContactLists of(const Job& job) {
     return {{job.parts, job.part_capacity},
             {job.spheres, job.sphere_capacity},
             {job.triangles, job.triangle_capacity},
-            job.spheres_only != 0};
+            job.spheres_only != 0, job.listed_parts};
   }
 };
 struct ContactCounts {
@@ -97,11 +98,12 @@ class ContactCollector {
         parts_(lists.parts),
         triangles_(lists.triangles),
         spheres_(lists.spheres),
-        spheres_only_(lists.spheres_only) {}
+        spheres_only_(lists.spheres_only),
+        listed_(lists.listed) {}
 
   void end_spheres();
   bool is_left_out(const Candidate& candidate) const;
-  void add_parts(const TriangleContact& contact, const Candidate& candidate);
+  std::size_t add_parts(const TriangleContact& contact, const Candidate& candidate);  // their place
   std::size_t list_parts() const;
 
   Skin a_, b_;
@@ -111,6 +113,7 @@ class ContactCollector {
   LeastEntries<TriangleContact> triangles_;
   LeastEntries<Pair> spheres_;
   bool spheres_only_, touch_ = false;
+  const std::uint64_t* listed_;
   Pair current_{};
 };
 

@@ -168,7 +168,7 @@ void bound_bones_of_two(const AssetView& asset_a, ContactScene& a, const AssetVi
   }
 }
 
-BodyRanges::BodyRanges(const Body& body)
+BodyRanges::BodyRanges(const JobBody& body)
     : vertices(range_of_vertices(view_of(*body.asset), body.pose)),
       bones(range_of_bones(view_of(*body.asset), body.pose)),
       morph_weights(range_of_morph_weights(view_of(*body.asset), body.pose)),

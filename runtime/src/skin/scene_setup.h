@@ -64,7 +64,7 @@ void bound_bones_of_two(const AssetView& asset_a, ContactScene& a, const AssetVi
 struct BodyRanges {
   MemoryRange vertices, bones, morph_weights, skin_table, ignored_parts;
 
-  explicit BodyRanges(const Body& body);
+  explicit BodyRanges(const JobBody& body);
 };
 
 // Of one scene, and of one body's table of parts.

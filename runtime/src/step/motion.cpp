@@ -140,7 +140,7 @@ Status check_motion(const sc_motion& motion, Surface& surface) {
   if (motion.joint_count > kMostJoints) {
     return refuse(SC_BAD_VALUE, SC_FIELD_JOINTS);
   }
-  const Body& body = motion.body;
+  const JobBody& body = motion.body;
   if (motion.blend == SC_BLEND_LINEAR) {
     const Status status = check_skin(body.asset, body.pose, body.skin_table, surface);
     if (status != SC_OK) {

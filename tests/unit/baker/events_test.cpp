@@ -17,8 +17,8 @@ std::vector<bk::PartMeeting> meetings(const std::vector<double>& depths) {
   for (std::size_t i = 0; i < depths.size(); ++i) {
     if (depths[i] <= 0) continue;
     out.push_back({static_cast<int>(i), {}});
-    out.back().found.part_b = 1;
-    out.back().found.depth = static_cast<float>(depths[i]);
+    out.back().found.other = 1;
+    out.back().found.measures.depth = static_cast<float>(depths[i]);
   }
   return out;
 }
@@ -100,11 +100,11 @@ TEST_CASE("frames between add to the events of whole frames, and join none of th
 TEST_CASE("events of different parts are apart") {
   std::vector<bk::PartMeeting> list = meetings({1, 1});
   list.push_back(list[1]);
-  list.back().found.part_b = 2;
+  list.back().found.other = 2;
   const std::vector<bk::EventSpan> spans = bk::join_events(list, 2, false);
   REQUIRE(spans.size() == 2);
   CHECK(spans[0].deepest == 0);
-  CHECK(list[spans[1].deepest].found.part_b == 2);
+  CHECK(list[spans[1].deepest].found.other == 2);
 }
 
 TEST_CASE("a known event is of the same parts at the same time, at any rate") {

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "jobs.h"
 #include "two_shapes.h"
 
 using Vec = spherechain::baker::Vec3;
@@ -17,8 +18,9 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 const auto shifted = [](double x, double y, double z) { return [=](const Vec& p) { return Vec(p + Vec(x, y, z)); }; };
+// In which b, the second part, comes out.
 Vec direction_of(const spherechain::Penetration& of) {
-  return {double{of.direction.x}, double{of.direction.y}, double{of.direction.z}};
+  return (of.part == 1 ? 1 : -1) * Vec(double{of.direction.x}, double{of.direction.y}, double{of.direction.z});
 }
 
 spherechain::Penetration only(const std::vector<spherechain::Penetration>& found) {
@@ -45,12 +47,12 @@ TEST_CASE("two balls are as deep as their radii are longer than their distance, 
   const TwoShapes balls(ball(1, 24), ball(1, 24));
   for (const double distance : {1.9, 1.5, 1.1}) {
     const spherechain::Penetration found = only(balls.measure(shifted(0, 0.6 * distance, -0.8 * distance)));
-    CHECK(found.depth == doctest::Approx(2 - distance).epsilon(0.01));
+    CHECK(found.measures.depth == doctest::Approx(2 - distance).epsilon(0.01));
     CHECK(direction_of(found).dot(Vec(0, 0.6, -0.8)) > 0.99);
-    REQUIRE(found.is_closed == 1);
-    CHECK(found.volume == doctest::Approx(lens(1, distance)).epsilon(0.01));
-    CHECK(found.contour_length == doctest::Approx(2 * kPi * std::sqrt(1 - distance * distance / 4)).epsilon(0.01));
-    CHECK(found.visible == 1);
+    REQUIRE(found.measures.volume >= 0);
+    CHECK(found.measures.volume == doctest::Approx(lens(1, distance)).epsilon(0.01));
+    CHECK(found.measures.contour_length == doctest::Approx(2 * kPi * std::sqrt(1 - distance * distance / 4)).epsilon(0.01));
+    CHECK(found.measures.visible == 1);
     CHECK(found.kind == (distance < 1.2 ? SC_CLASS_PENETRATION : SC_CLASS_TOUCH));
   }
 }
@@ -58,14 +60,14 @@ TEST_CASE("two balls are as deep as their radii are longer than their distance, 
 TEST_CASE("boxes are as deep as their shortest overlap") {
   const TwoShapes boxes(box(1, 1, 1), box(0.5, 0.5, 0.5));
   const spherechain::Penetration found = only(boxes.measure(shifted(1.4, 0.3, 0.2)));
-  CHECK(found.depth == doctest::Approx(0.1).epsilon(1e-4));
+  CHECK(found.measures.depth == doctest::Approx(0.1).epsilon(1e-4));
   CHECK(direction_of(found).x() > 0.9999);
-  CHECK(found.volume == doctest::Approx(0.1).epsilon(1e-3));
+  CHECK(found.measures.volume == doctest::Approx(0.1).epsilon(1e-3));
   // The corner alone: 0.2 by 0.3 by 0.4.
   const spherechain::Penetration corner = only(boxes.measure(shifted(-1.3, 1.2, 1.1)));
-  CHECK(corner.depth == doctest::Approx(0.2).epsilon(1e-4));
+  CHECK(corner.measures.depth == doctest::Approx(0.2).epsilon(1e-4));
   CHECK(direction_of(corner).x() < -0.9999);
-  CHECK(corner.volume == doctest::Approx(0.2 * 0.3 * 0.4).epsilon(1e-3));
+  CHECK(corner.measures.volume == doctest::Approx(0.2 * 0.3 * 0.4).epsilon(1e-3));
 }
 
 TEST_CASE("tubes that cross part over each other's back") {
@@ -76,15 +78,15 @@ TEST_CASE("tubes that cross part over each other's back") {
     for (const double angle : {90.0, 50.0}) {
       const auto place = [&](const Vec& p) { return Vec(Turn(angle * kPi / 180, Vec::UnitX()) * p + Vec(0.4, 0, 0)); };
       const spherechain::Penetration found = only(tubes->measure(place));
-      CHECK(found.depth == doctest::Approx(2 * radius - 0.4).epsilon(0.01));
+      CHECK(found.measures.depth == doctest::Approx(2 * radius - 0.4).epsilon(0.01));
       CHECK(direction_of(found).x() > 0.99);
     }
   }
   // At right angles, axes in one plane: Steinmetz' solid.
   const spherechain::Penetration through =
       only(cylinders.measure([&](const Vec& p) { return Vec(p.x(), p.z(), -p.y()); }));
-  CHECK(through.depth == doctest::Approx(2 * radius).epsilon(0.01));
-  CHECK(through.volume == doctest::Approx(16.0 / 3 * radius * radius * radius).epsilon(0.01));
+  CHECK(through.measures.depth == doctest::Approx(2 * radius).epsilon(0.01));
+  CHECK(through.measures.volume == doctest::Approx(16.0 / 3 * radius * radius * radius).epsilon(0.01));
 }
 
 TEST_CASE("depth goes to zero where a contact ends, and is never zero") {
@@ -93,28 +95,29 @@ TEST_CASE("depth goes to zero where a contact ends, and is never zero") {
   for (const double distance : {1.9, 1.97, 1.98, 1.985}) {
     const auto found = balls.measure(shifted(distance, 0, 0));
     if (found.empty()) break;
-    CHECK(found[0].depth > 0);
-    CHECK(double{found[0].depth} < last);
-    last = double{found[0].depth};
+    CHECK(found[0].measures.depth > 0);
+    CHECK(double{found[0].measures.depth} < last);
+    last = double{found[0].measures.depth};
   }
   CHECK(last < 0.03);
   const TwoShapes boxes(box(1, 1, 1), box(0.5, 0.5, 0.5));
-  CHECK(only(boxes.measure(shifted(1.5, 0.3, 0.2))).depth > 0);  // faces that touch
+  CHECK(only(boxes.measure(shifted(1.5, 0.3, 0.2))).measures.depth > 0);  // faces that touch
 }
 
 TEST_CASE("the deepest points are the ends of the way, and at its end the body is free") {
   const TwoShapes shapes(box(1, 1, 1), capsule(0.3, 0.5, 8));
   const auto place = [](const Vec& p) { return Vec(Turn(0.5, Vec(1, 2, 3).normalized()) * p + Vec(0.4, 1.3, -0.2)); };
   const spherechain::Penetration plain = only(shapes.measure(place));
-  const spherechain::SkinPoint &a = plain.deepest_a, &b = plain.deepest_b;
-  CHECK(a.position.x - b.position.x == doctest::Approx(plain.depth * plain.direction.x).epsilon(0.001));
-  CHECK(a.position.y - b.position.y == doctest::Approx(plain.depth * plain.direction.y).epsilon(0.001));
+  const spherechain::SkinPoint &a = plain.deepest_other, &b = plain.deepest;
+  CHECK(plain.distance == plain.measures.depth);
+  CHECK(a.position.x - b.position.x == doctest::Approx(plain.distance * plain.direction.x).epsilon(0.001));
+  CHECK(a.position.y - b.position.y == doctest::Approx(plain.distance * plain.direction.y).epsilon(0.001));
   for (const spherechain::SkinPoint& point : {a, b}) {
     CHECK(point.weights[0] + point.weights[1] + point.weights[2] == doctest::Approx(1).epsilon(1e-4));
   }
   // Moved so far and a little farther it is free; nine tenths of the way it is not.
   const auto after = [&](double share) {
-    return [&, share](const Vec& p) { return Vec(place(p) + share * double{plain.depth} * direction_of(plain)); };
+    return [&, share](const Vec& p) { return Vec(place(p) + share * double{plain.measures.depth} * direction_of(plain)); };
   };
   CHECK(shapes.measure(after(1.001)).empty());
   CHECK(!shapes.measure(after(0.9)).empty());
@@ -126,9 +129,9 @@ TEST_CASE("the answer turns, grows and mirrors with the bodies, in whatever orde
   const auto place = [](const Vec& p) { return Vec(Turn(0.5, Vec(1, 2, 3).normalized()) * p + Vec(0.4, 1.1, -0.2)); };
   const spherechain::Penetration plain = only(shapes.measure(place));
   const auto check = [&](const spherechain::Penetration& found, double size, const Vec& direction) {
-    CHECK(found.depth == doctest::Approx(size * double{plain.depth}).epsilon(1e-3));
+    CHECK(found.measures.depth == doctest::Approx(size * double{plain.measures.depth}).epsilon(1e-3));
     CHECK(direction_of(found).dot(direction) > 0.9999);
-    CHECK(found.volume == doctest::Approx(size * size * size * double{plain.volume}).epsilon(1e-3));
+    CHECK(found.measures.volume == doctest::Approx(size * size * size * double{plain.measures.volume}).epsilon(1e-3));
     CHECK(found.kind == plain.kind);
   };
   const Turn turn(1.1, Vec(3, -1, 2).normalized());
@@ -155,7 +158,7 @@ TEST_CASE("a palette's scale changes lengths, and no class") {
       };
       const auto grown = [&](const Vec& p) { return Vec(double{scale} * p); };
       const spherechain::Penetration found = only(balls.measure(shifted(distance, 0, 0), with_bones, grown));
-      CHECK(found.depth == doctest::Approx(scale * plain.depth).epsilon(1e-3));
+      CHECK(found.measures.depth == doctest::Approx(scale * plain.measures.depth).epsilon(1e-3));
       CHECK(found.kind == plain.kind);
     }
   }
@@ -169,7 +172,7 @@ TEST_CASE("a body that went most of the way in is not pushed inside") {
   // A limb goes on in the one that it hangs on, and is never lost there: a crease has no inside.
   const TwoShapes limbs(ball(2, 16), capsule(0.2, 0.5, 6), 5, true);
   const spherechain::Penetration crease = only(limbs.measure(shifted(0, 1.4, 0)));
-  CHECK(crease.depth < found.depth);
+  CHECK(crease.measures.depth < found.measures.depth);
   CHECK(direction_of(crease).y() < -0.5);
 }
 
@@ -196,7 +199,7 @@ TEST_CASE("what a third layer hides is a shell, not a fault") {
   const auto found = [](const Shape& a) { return only(TwoShapes(a, box(1, 1, 1)).measure(shifted(1.6, 0.1, 0.2))); };
   Shape a = box(1, 1, 1);
   const spherechain::Penetration seen = found(a);
-  CHECK(seen.visible > 0.3F);
+  CHECK(seen.measures.visible > 0.3F);
   CHECK(seen.kind == SC_CLASS_PENETRATION);
 
   const Shape around = box(6, 6, 6);
@@ -204,7 +207,7 @@ TEST_CASE("what a third layer hides is a shell, not a fault") {
   a.positions.insert(a.positions.end(), around.positions.begin(), around.positions.end());
   for (const auto& t : around.triangles) a.triangles.push_back({first + t[0], first + t[1], first + t[2]});
   const spherechain::Penetration hidden = found(a);
-  CHECK(hidden.visible == 0);
+  CHECK(hidden.measures.visible == 0);
   CHECK(hidden.kind == SC_CLASS_SHELL);
 }
 
@@ -228,9 +231,9 @@ TEST_CASE("bodies below suits, or with linings, have the faults of bare ones: th
     for (const int quick : {0, 1}) {
       const auto found = only(suited.measure(into_wall, [&](auto& job) { job.quick = quick; }));
       CHECK(found.kind == SC_CLASS_PENETRATION);
-      CHECK(found.contour_length == doctest::Approx(bare.contour_length).epsilon(1e-4));
-      CHECK(found.visible == bare.visible);
-      if (quick == 0) CHECK(found.volume == doctest::Approx(bare.volume).epsilon(1e-3));
+      CHECK(found.measures.contour_length == doctest::Approx(bare.measures.contour_length).epsilon(1e-4));
+      CHECK(found.measures.visible == bare.measures.visible);
+      if (quick == 0) CHECK(found.measures.volume == doctest::Approx(bare.measures.volume).epsilon(1e-3));
     }
   }
 }
@@ -263,7 +266,9 @@ TEST_CASE("skins touch up to 3 mm, and up to ten times that where little of the 
 TEST_CASE("with a touch depth of the caller's, depth alone tells a touch") {
   const TwoShapes shapes(box(0.2, 0.2, 0.2), box(0.1, 0.1, 0.1), 1.4);
   const auto kind = [&](float limit) {
-    const auto set = [&](spherechain::PenetrationJob& job) { job.touch_depth = limit; };
+    spherechain::Rule rule = sc_default_rule();
+    rule.touch_depth = limit;
+    const auto set = [&](spherechain::PenetrationJob& job) { job.rule = &rule; };
     return only(shapes.measure(shifted(0.28, 0.03, 0.02), set)).kind;
   };
   CHECK(kind(0) == SC_CLASS_TOUCH);
@@ -271,22 +276,40 @@ TEST_CASE("with a touch depth of the caller's, depth alone tells a touch") {
   CHECK(kind(0.021F) == SC_CLASS_TOUCH);
 }
 
-TEST_CASE("the quick form and every target agree with the full form, and a kept direction does not flicker") {
+TEST_CASE("the quick form finds the faults of the full one, and the rest alike") {
   const TwoShapes balls(ball(1, 16), ball(1, 16));
-  const auto place = shifted(1.3, 0.4, 0);
+  const auto quickly = [](spherechain::PenetrationJob& job) { job.quick = 1; };
+  for (const double distance : {0.9, 1.36, 1.8}) {
+    const spherechain::Penetration full = only(balls.measure(shifted(distance, 0.4, 0)));
+    spherechain::Penetration quick = only(balls.measure(shifted(distance, 0.4, 0), quickly));
+    CHECK(quick.kind == full.kind);
+    CHECK(quick.measures.depth == doctest::Approx(full.measures.depth).epsilon(0.05));
+    if (!spherechain::is_fault(full.kind)) continue;
+    quick.measures.volume = full.measures.volume;
+    CHECK(spherechain::test::same_bits<spherechain::Penetration>({quick}, {full}));
+  }
+}
+
+TEST_CASE("the direction of a fault stays while it is nearly as good as the shortest; depth and class do not care") {
+  const TwoShapes balls(ball(1, 16), ball(1, 16));
+  const auto place = shifted(0.9, 0.4, 0);
   const spherechain::Penetration full = only(balls.measure(place));
-  const spherechain::Penetration quick =
-      only(balls.measure(place, [](spherechain::PenetrationJob& job) { job.quick = 1; }));
-  CHECK(quick.depth == doctest::Approx(full.depth).epsilon(0.05));
+  REQUIRE(full.kind == SC_CLASS_PENETRATION);
   const auto after = [&](const spherechain::Vec3& direction) {
     spherechain::Penetration last = full;
     last.direction = direction;
-    return only(balls.measure(place, [&](spherechain::PenetrationJob& job) {
+    const spherechain::Penetration out = only(balls.measure(place, [&](spherechain::PenetrationJob& job) {
       job.previous = &last;
       job.previous_count = 1;
     }));
+    CHECK(out.kind == full.kind);
+    CHECK(out.measures.depth == full.measures.depth);
+    return out;
   };
-  // Out on the other side, all directions are far worse than the best. Across it, some between the two may be kept.
-  CHECK(after({-full.direction.x, -full.direction.y, -full.direction.z}).depth == full.depth);
-  CHECK(after({0, 0, 1}).depth <= 1.25F * full.depth);
+  // Out on the other side, all directions are far worse than the best. At 65 degrees some between the two are not.
+  CHECK(after({-full.direction.x, -full.direction.y, -full.direction.z}).distance == full.distance);
+  const spherechain::Penetration across = after({0.42F * full.direction.x, 0.42F * full.direction.y, 0.9F});
+  CHECK(across.distance > full.distance);
+  CHECK(across.distance <= 1.25F * full.distance);
+  CHECK(across.direction.z > full.direction.z + 0.05F);
 }

@@ -161,10 +161,10 @@ TEST_CASE("a method misses a fault where it reports no contact of its two body p
   FrameTruth truth;
   truth.contacts = {{{0, 1}, {{0, 1}}}, {{0, 2}, {{0, 2}}}, {{1, 3}, {{1, 3}}}};
   std::vector<spherechain::Penetration> found(2);
-  found[0].part_b = found[1].part_a = 1;
-  found[1].part_b = 2;
-  found[0].depth = 5;
-  found[1].depth = 7;
+  found[0].other = found[1].part = 1;
+  found[1].other = 2;
+  found[0].measures.depth = 5;
+  found[1].measures.depth = 7;
   found[0].kind = SC_CLASS_PENETRATION;
   found[1].kind = SC_CLASS_FOLD;
   const auto missed = [&](const std::vector<Pair>& reported, std::size_t contact) {

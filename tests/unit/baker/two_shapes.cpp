@@ -43,15 +43,27 @@ Shape turned(const std::vector<std::pair<double, double>>& profile, int around) 
   return out;
 }
 
-// Of two bodies that are the asset twice, in which only a part each meets anything, all but the class is the same.
-void check_as_bodies(const spherechain::PenetrationJob& one, spherechain::Penetration expected) {
+// As the body of the part with the lesser number has it: then that part is named first.
+spherechain::Penetration lesser_first(spherechain::Penetration of) {
+  if (of.part > of.other) {
+    std::swap(of.part, of.other);
+    std::swap(of.deepest, of.deepest_other);
+    of.direction = {-of.direction.x, -of.direction.y, -of.direction.z};
+  }
+  return of;
+}
+
+// Of two bodies that are the asset twice, in which only a part each meets anything, all that is measured in the pose is
+// the same.
+void check_as_bodies(const spherechain::PenetrationJob& one, const spherechain::Penetration& found_in_one) {
+  spherechain::Penetration expected = lesser_first(found_in_one);
   std::vector<std::uint64_t> ignored[2];
   spherechain::BodyContactJob find;
-  for (spherechain::Body* body : {&find.a, &find.b}) {
+  for (spherechain::JobBody* body : {&find.a, &find.b}) {
     body->asset = one.asset;
     body->pose = one.pose;
     std::vector<std::uint64_t>& words = ignored[body == &find.a ? 0 : 1];
-    const std::uint32_t part = body == &find.a ? expected.part_a : expected.part_b;
+    const std::uint32_t part = body == &find.a ? expected.part : expected.other;
     words.assign(sc_part_words(one.asset), ~std::uint64_t{0});
     words[part / 64] ^= std::uint64_t{1} << part % 64;
     body->ignored_parts = words.data();
@@ -63,16 +75,21 @@ void check_as_bodies(const spherechain::PenetrationJob& one, spherechain::Penetr
   job.b = find.b;
   job.contacts = found.triangles.data();
   job.contact_count = found.triangles.size();
-  job.previous = one.previous;
-  job.previous_count = one.previous_count;
-  job.quick = one.quick;
-  job.touch_depth = one.touch_depth;
+  job.rule = one.rule;
   for (const spherechain::Target target : spherechain::supported_targets()) {
     std::vector<spherechain::Penetration> measured = spherechain::test::measure(job, target);
     REQUIRE(measured.size() == 1);
     const spherechain::PenetrationClass kind = measured[0].kind;
     CHECK((kind == SC_CLASS_SHELL || kind == SC_CLASS_TOUCH || kind == SC_CLASS_PENETRATION));
-    expected.kind = measured[0].kind;
+    const spherechain::Measures& in_pose = measured[0].measures;
+    expected.kind = kind;
+    expected.joint = measured[0].joint;
+    expected.measures.relation = in_pose.relation;
+    expected.measures.is_one_piece = in_pose.is_one_piece;
+    expected.measures.rest_distance = in_pose.rest_distance;
+    expected.measures.touching = in_pose.touching;
+    expected.measures.thickness = in_pose.thickness;
+    expected.measures.swallowed = in_pose.swallowed;
     CHECK(spherechain::test::same_bits(measured, {expected}));
   }
 }
@@ -186,7 +203,8 @@ std::vector<spherechain::Penetration> TwoShapes::measure(
   }
   for (const spherechain::Penetration& two : out) {
     // Of two bodies no part goes on in the other's.
-    if (two.part_a != two.part_b && job.filter == nullptr && !are_joined_) check_as_bodies(job, two);
+    const bool has_history = job.previous_count > 0 || job.quick != 0;
+    if (two.part != two.other && job.filter == nullptr && !are_joined_ && !has_history) check_as_bodies(job, two);
   }
   return out;
 }

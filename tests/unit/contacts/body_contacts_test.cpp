@@ -189,16 +189,16 @@ TEST_CASE("moved along the way out, a part of body b no longer meets the part of
     for (std::size_t k = 0; k < all.size(); ++k) {
       CAPTURE(k);
       const Penetration& one = all[k];
-      CHECK(Pair{one.part_a, one.part_b} == Pair{found.parts[k].part_a, found.parts[k].part_b});
+      CHECK(Pair{one.part, one.other} == Pair{found.parts[k].part_a, found.parts[k].part_b});
       CHECK(one.kind >= SC_CLASS_SHELL);
       const auto meets_after = [&](float share) {
-        const float way = share * one.depth;
+        const float way = -share * one.distance;  // of body b, in place of a
         const Matrix move{1, 0, 0, way * one.direction.x, 0, 1, 0, way * one.direction.y,
                           0, 0, 1, way * one.direction.z};
         const std::vector<float> palette = placed(move, two.b.palette);
         const SkinContacts after = met(meeting_of(job.a.pose, bones_of(palette)));
         return std::any_of(after.parts.begin(), after.parts.end(), [&](const PartContact& part) {
-          return part.part_a == one.part_a && part.part_b == one.part_b;
+          return part.part_a == one.part && part.part_b == one.other;
         });
       };
       CHECK(!meets_after(1.001F));

@@ -26,7 +26,7 @@ double depth_of(const std::vector<float>& palette, const SkinContacts& found, co
   job.contacts = found.triangles.data();
   job.contact_count = found.triangles.size();
   for (const Penetration& one : measure(job, SC_TARGET_BEST)) {
-    if (one.part_a == part.part_a && one.part_b == part.part_b) return double{one.depth};
+    if (std::minmax(one.part, one.other) == std::minmax(part.part_a, part.part_b)) return double{one.measures.depth};
   }
   return HUGE_VAL;
 }

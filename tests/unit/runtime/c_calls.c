@@ -92,7 +92,7 @@ static void call_skin(const sc_asset* asset, const sc_pose* pose, c_calls_result
 }
 
 static void call_bodies(const sc_asset* asset, const sc_pose* pose, c_calls_result* out) {
-  sc_body body = {0};
+  sc_job_body body = {0};
   sc_body_contact_job find = {0};
   sc_body_penetration_job measure = {0};
   sc_floor_job floor = {0};

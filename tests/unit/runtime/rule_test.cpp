@@ -13,73 +13,101 @@ namespace {
 
 // A hand that goes 50 mm into a thigh of a human of 1.75 m in metres.
 Measures hand_in_thigh() {
-  Measures out{1.75, 1, Relation::kApart, false, true, 0.3, 0, 0.1};
-  out.depth = 0.05;
+  Measures out{};
+  out.height = 1.75F;
+  out.metre = 1;
+  out.is_one_piece = 1;
+  out.rest_distance = 0.3F;
+  out.facing = 0.1F;
+  out.visible = 1;
+  out.depth = 0.05F;
   out.swallowed = 1;
   return out;
+}
+
+PenetrationClass classify(const Measures& of, float touch_depth = 0) {
+  Rule rule = sc_default_rule();
+  rule.touch_depth = touch_depth;
+  return sc_classify(&rule, &of);
 }
 
 }  // namespace
 
 TEST_CASE("a class changes at its limit, and what is measured beyond that changes nothing") {
   struct Row {
-    double Measures::*measure;
-    double below, above;
+    float Measures::*measure;
+    float below, above;
     PenetrationClass class_below, class_above;
   };
-  const Rule rule;
   const Row rows[] = {
-      {&Measures::touching, 0.49, 0.5, SC_CLASS_PENETRATION, SC_CLASS_REST},
-      {&Measures::visible, 0.29, 0.31, SC_CLASS_SHELL, SC_CLASS_PENETRATION},
-      {&Measures::depth, 0.0033, 0.0034, SC_CLASS_TOUCH, SC_CLASS_PENETRATION},  // 0.19 % of the height, above 3 mm
-      {&Measures::rest_distance, 0.054, 0.056, SC_CLASS_FOLD, SC_CLASS_PENETRATION},
+      {&Measures::touching, 0.49F, 0.5F, SC_CLASS_PENETRATION, SC_CLASS_REST},
+      {&Measures::visible, 0.29F, 0.31F, SC_CLASS_SHELL, SC_CLASS_PENETRATION},
+      {&Measures::depth, 0.0033F, 0.0034F, SC_CLASS_TOUCH, SC_CLASS_PENETRATION},  // 0.19 % of the height, above 3 mm
+      {&Measures::rest_distance, 0.054F, 0.056F, SC_CLASS_FOLD, SC_CLASS_PENETRATION},
   };
   for (const Row& row : rows) {
     Measures of = hand_in_thigh();
     of.*row.measure = row.below;
-    CHECK(classify(rule, of) == row.class_below);
+    CHECK(classify(of) == row.class_below);
     of.*row.measure = row.above;
-    CHECK(classify(rule, of) == row.class_above);
+    CHECK(classify(of) == row.class_above);
+    CHECK(sc_classify(nullptr, &of) == row.class_above);
   }
 }
 
 TEST_CASE("a fold depends on how the parts hang together, and is a fault once it is deep") {
-  const Rule rule;
   Measures of = hand_in_thigh();
-  of.rest_distance = 0.1;
-  CHECK(classify(rule, of) == SC_CLASS_PENETRATION);
-  of.relation = Relation::kSiblings;
-  CHECK(classify(rule, of) == SC_CLASS_FOLD);
-  of.relation = Relation::kNear;
-  CHECK(classify(rule, of) == SC_CLASS_PENETRATION);
-  of.facing = 0.3;  // a thigh lies flat on the abdomen
-  CHECK(classify(rule, of) == SC_CLASS_FOLD);
-  of.relation = Relation::kJoined;
-  of.rest_distance = 0.3;
-  CHECK(classify(rule, of) == SC_CLASS_FOLD);
-  of.depth = 0.08;
-  CHECK(classify(rule, of) == SC_CLASS_DEEP_FOLD);
-  of.is_one_piece = false;  // skin in cloth
-  CHECK(classify(rule, of) == SC_CLASS_FOLD);
-  of.rest_distance = 0.03;
-  CHECK(classify(rule, of) == SC_CLASS_SHELL);
-  of.are_two_bodies = true;
-  of.rest_distance = std::numeric_limits<double>::infinity();
-  CHECK(classify(rule, of) == SC_CLASS_PENETRATION);
+  of.rest_distance = 0.1F;
+  CHECK(classify(of) == SC_CLASS_PENETRATION);
+  of.relation = SC_RELATION_SIBLINGS;
+  CHECK(classify(of) == SC_CLASS_FOLD);
+  of.relation = SC_RELATION_NEAR;
+  CHECK(classify(of) == SC_CLASS_PENETRATION);
+  of.facing = 0.3F;  // a thigh lies flat on the abdomen
+  CHECK(classify(of) == SC_CLASS_FOLD);
+  of.relation = SC_RELATION_JOINED;
+  of.rest_distance = 0.3F;
+  CHECK(classify(of) == SC_CLASS_FOLD);
+  of.depth = 0.08F;
+  CHECK(classify(of) == SC_CLASS_DEEP_FOLD);
+  of.is_one_piece = 0;  // skin in cloth
+  CHECK(classify(of) == SC_CLASS_FOLD);
+  of.rest_distance = 0.03F;
+  CHECK(classify(of) == SC_CLASS_SHELL);
+  of.relation = SC_RELATION_TWO_BODIES;
+  of.rest_distance = std::numeric_limits<float>::infinity();
+  CHECK(classify(of) == SC_CLASS_PENETRATION);
 }
 
 TEST_CASE("little that goes in touches up to ten times the depth, unless a depth is given") {
+  const Rule rule = sc_default_rule();
+  Rule limited = rule;
+  limited.touch_depth = 0.02F;
   Measures of = hand_in_thigh();
-  of.depth = 0.03;
-  of.swallowed = 0.2;
-  CHECK(depends_on_swallowed({}, of));
-  CHECK(classify({}, of) == SC_CLASS_TOUCH);
-  CHECK(classify(rule_of(0.02F), of) == SC_CLASS_PENETRATION);
-  CHECK_FALSE(depends_on_swallowed(rule_of(0.02F), of));
-  of.depth = 0.034;
-  CHECK(classify({}, of) == SC_CLASS_PENETRATION);
-  CHECK_FALSE(depends_on_swallowed({}, of));
+  of.depth = 0.03F;
+  of.swallowed = 0.2F;
+  CHECK(depends_on_swallowed(rule, of));
+  CHECK(classify(of) == SC_CLASS_TOUCH);
+  CHECK(classify(of, 0.02F) == SC_CLASS_PENETRATION);
+  CHECK_FALSE(depends_on_swallowed(limited, of));
+  of.depth = 0.034F;
+  CHECK(classify(of) == SC_CLASS_PENETRATION);
+  CHECK_FALSE(depends_on_swallowed(rule, of));
   // Files without a unit make giants and dwarfs: their touches are shares of the height.
-  CHECK(touch_depth_of({}, 1, 175) == doctest::Approx(0.0019 * 175));
-  CHECK(touch_depth_of({}, 1, 0.0175) == doctest::Approx(0.0066 * 0.0175));
+  CHECK(touch_depth_of(rule, 1, 175) == doctest::Approx(0.0019 * 175));
+  CHECK(touch_depth_of(rule, 1, 0.0175) == doctest::Approx(0.0066 * 0.0175));
+}
+
+TEST_CASE("a rule of another version, or with a limit that is no number, is refused") {
+  Rule rule = sc_default_rule();
+  CHECK(check_rule(&rule) == SC_OK);
+  CHECK(check_rule(nullptr) == SC_OK);
+  rule.version = 1;
+  CHECK(check_rule(&rule) == SC_BAD_VALUE);
+  rule = sc_default_rule();
+  rule.deep_fold = std::numeric_limits<float>::quiet_NaN();
+  CHECK(check_rule(&rule) == SC_BAD_VALUE);
+  rule = sc_default_rule();
+  rule.touch_depth = -1;
+  CHECK(check_rule(&rule) == SC_BAD_VALUE);
 }

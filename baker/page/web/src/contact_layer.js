@@ -125,7 +125,7 @@ export class ContactLayer {
     for (const buffer of Object.values(this.buffers)) buffer.needsUpdate = true;
   }
 
-  // The way out of each: from the second part's deepest point to where that is free. It is seen through the skin.
+  // The way out of each: from the first part's deepest point to where that is free. It is seen through the skin.
   point(contacts) {
     this.arrows.clear();
     const { unitsPerMm, height } = this.skin.mesh;

@@ -18,7 +18,7 @@ function runs(frames, numberOf) {
 export function fillContactPanel(panel, store, model, flyTo) {
   const summary = h('p', { role: 'status', class: 'summary' });
   const list = h('ol', { class: 'pairs', id: 'frame-contacts' });
-  const order = h('p', { class: 'note' }, 'Faults first, the deepest first. The arrow is the way out: where it ends, the second part is free of the first.');
+  const order = h('p', { class: 'note' }, 'Faults first, the deepest first. The arrow is the way out: where it ends, the first part is free of the second.');
   const clipTitle = h('h3', {});
   const clipList = h('ol', { class: 'pairs', id: 'clip-contacts' });
   const classes = h(

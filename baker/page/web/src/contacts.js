@@ -14,14 +14,16 @@ const HIDDEN = 0.3; // less of the contour is visible
 const DEEP_FOLD = 4; // from here on a person sees a fault
 export const MEASURES = 12; // numbers of a measured contact (../README.md)
 
-export const keyOf = (parts) => parts.join('-');
+// The same for both orders of the parts.
+export const keyOf = (parts) => [...parts].sort((a, b) => a - b).join('-');
 
 // What the runtime measured, by the contact's key.
 function measured(list) {
   const out = new Map();
   for (let i = 0; i < list.length; i += MEASURES) {
-    const [a, b, kind, depth, dx, dy, dz, x, y, z, visible, volume] = list.slice(i, i + MEASURES);
-    out.set(keyOf([a, b]), { kind, depth, direction: [dx, dy, dz], at: [x, y, z], visible, volume });
+    const [part, other, kind, depth, dx, dy, dz, x, y, z, visible, volume] = list.slice(i, i + MEASURES);
+    const parts = [part, other];
+    out.set(keyOf(parts), { parts, kind, depth, direction: [dx, dy, dz], at: [x, y, z], visible, volume });
   }
   return out;
 }
@@ -40,9 +42,10 @@ function beside(first, second) {
 }
 
 // A frame's contacts: [{key, parts, name, pairs, triangles, sides, kind, depth, direction, at, visible, volume}], faults first,
-// the deepest first: part b, moved by `depth` mm along `direction`, is free of part a; `at` is its deepest point. `pairs` counts the pairs of
-// triangles that intersect, as `play` does. `triangles` are those that touch, each once; `sides` says of each whether it is of
-// the first part (1) or the second (2).
+// the deepest first. The first part goes into the second: moved by `depth` mm along `direction`, the first is free; `at` is its
+// deepest point. `pairs` counts the pairs of triangles that intersect, as `play` does. `triangles` are those that touch, each
+// once; `sides` says of each whether it is of the first part (1) or the second (2). Parts that nobody measured stand in the order
+// of their numbers.
 function group(pairs, partOf, nameOf, measures) {
   const groups = new Map();
   for (let i = 0; i < pairs.length; i += 2) {
@@ -56,16 +59,21 @@ function group(pairs, partOf, nameOf, measures) {
     ends.forEach((t, end) => side.has(t) || side.set(t, parts[0] === parts[1] ? 1 : end + 1));
   }
   const name = ([a, b]) => (a === b ? `${nameOf(a)} with itself` : `${nameOf(a)}, ${beside(nameOf(a), nameOf(b))}`);
+  const unmeasured = { kind: 0, depth: 0, direction: [0, 0, 0], at: [0, 0, 0], visible: 0, volume: -1 };
   return [...groups.values()]
-    .map(({ key, parts, pairs, side }) => ({
-      key,
-      parts,
-      name: name(parts),
-      pairs,
-      triangles: [...side.keys()],
-      sides: [...side.values()],
-      ...(measures.get(key) ?? { kind: 0, depth: 0, direction: [0, 0, 0], at: [0, 0, 0], visible: 0, volume: -1 }),
-    }))
+    .map(({ key, parts: byNumber, pairs, side }) => {
+      const { parts, ...measure } = measures.get(key) ?? { parts: byNumber, ...unmeasured };
+      const sides = [...side.values()];
+      return {
+        key,
+        parts,
+        name: name(parts),
+        pairs,
+        triangles: [...side.keys()],
+        sides: parts[0] === byNumber[0] ? sides : sides.map((end) => 3 - end),
+        ...measure,
+      };
+    })
     .sort(worseFirst);
 }
 

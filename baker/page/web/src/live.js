@@ -1,6 +1,6 @@
 // The runtime in the page: what touches in a pose that no frame has.
 import { load } from 'spherechain';
-import { keyOf } from './contacts.js';
+import { isFault, keyOf } from './contacts.js';
 import { decode } from './frame_lists.js';
 
 const KINDS = ['rest', 'shell', 'touch', 'fold', 'deep_fold', 'penetration']; // the runtime's words for CLASSES of contacts.js
@@ -15,14 +15,19 @@ export async function openLive(base64, { unitsPerMm }) {
   const bones = new Float32Array(12 * character.jointCount);
   for (let b = 0; b < bones.length; b += 12) bones[b] = bones[b + 5] = bones[b + 10] = 1; // what hangs on none stays there
 
-  const measure = ({ kind, depth, direction, deepestB, visible, volume }, isQuick) => ({
-    kind: KINDS.indexOf(kind),
-    depth: depth / unitsPerMm,
-    direction: [...direction],
-    at: [...deepestB.position],
-    visible: isQuick ? -1 : visible,
-    volume: volume === null ? -1 : volume / (10 * unitsPerMm) ** 3,
-  });
+  const measure = (found, isQuick) => {
+    const kind = KINDS.indexOf(found.kind);
+    const isUnseen = isQuick && found.visible === 1 && !isFault({ kind }); // nobody looked
+    return {
+      parts: [found.part, found.other],
+      kind,
+      depth: found.depth / unitsPerMm,
+      direction: [...found.direction],
+      at: [...found.deepest.position],
+      visible: isUnseen ? -1 : found.visible,
+      volume: found.volume === null ? -1 : found.volume / (10 * unitsPerMm) ** 3,
+    };
+  };
 
   const rest = bones.slice();
   return {
@@ -32,8 +37,9 @@ export async function openLive(base64, { unitsPerMm }) {
       character.contacts('apart');
       character.penetrations(false);
     },
-    // Pairs of triangles that intersect, and what their body parts' contacts measure, by key. `isQuick`: along one direction;
-    // else directions stay near those of the last pose, so that arrows do not flicker.
+    // Pairs of triangles that intersect, and what their body parts' contacts measure, by key. `isQuick`: likely faults
+    // alone are measured along all directions; else all are, and the directions of faults stay near those of the last pose, so
+    // that arrows do not flicker.
     find(palette, morphs, isQuick) {
       const start = performance.now();
       bones.set(palette);
@@ -44,7 +50,7 @@ export async function openLive(base64, { unitsPerMm }) {
       for (let i = 0; i < count; ++i) pairs.set([words[12 * i], words[12 * i + 1]], 2 * i);
       const between = performance.now();
       const measures = new Map();
-      if (count > 0) for (const found of character.penetrations(isQuick)) measures.set(keyOf([found.partA, found.partB]), measure(found, isQuick));
+      if (count > 0) for (const found of character.penetrations(isQuick)) measures.set(keyOf([found.part, found.other]), measure(found, isQuick));
       return { pairs, measures, times: { contacts: between - start, depths: performance.now() - between } };
     },
     // Of the pose that was last looked at.

@@ -10,7 +10,7 @@ import { Refit } from './refit.js';
 // bones are written over the frame's, and what touches is found anew after each movement.
 
 const SETTLED_MS = 120; // after the last movement; then depths are measured anew, as those of a frame are
-const FAST_MS = 5; // depths that take no longer are measured along all directions at every movement, else along one
+const FAST_MS = 5; // depths that take no longer are all measured along all directions at every movement, else likely faults alone
 
 // A character that takes over the bones of one frame.
 class Posed {

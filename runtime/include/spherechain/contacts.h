@@ -1,0 +1,76 @@
+/* SPDX-License-Identifier: MIT */
+/* Results: contacts, penetrations, and touches between two poses. */
+#pragma once
+
+#include "spherechain/rule.h"
+
+/* Which triangles are paired, by the spheres that they belong to. */
+SC_ENUM(sc_scope){
+    SC_SCOPE_APART = 0,      /* of two spheres that are not ignored: no neighbours on the body */
+    SC_SCOPE_NEIGHBOURS = 1, /* of one sphere, or of two that are ignored: folds of elbow and knee; 40 times dearer */
+    SC_SCOPE_ALL = 2,
+};
+
+/* Two body parts whose skins intersect. */
+typedef struct sc_part_contact {
+  uint32_t part_a, part_b; /* part_a <= part_b; equal where a part meets itself */
+  uint32_t triangle_pairs; /* >= 1 */
+  sc_vec3 low, high;       /* a box around the triangles that intersect; the pose's space */
+} sc_part_contact;
+
+/* Two triangles that intersect. What ends with _a is of triangle_a. */
+typedef struct sc_triangle_contact {
+  uint32_t triangle_a, triangle_b; /* the source's numbers, triangle_a < triangle_b */
+  uint32_t sphere_a, sphere_b;
+  uint32_t part_a, part_b;
+  sc_vec3 from, to; /* the segment in which they cross; of triangles in one plane the longest piece of an edge inside
+                       the other triangle. Rounded */
+} sc_triangle_contact;
+
+#define SC_FLOOR 0xFFFFFFFFu /* in place of a body part and of a triangle: the ground */
+
+/* A point on the skin. */
+typedef struct sc_skin_point {
+  sc_vec3 position;  /* the pose's space */
+  uint32_t triangle; /* the source's number */
+  float weights[3];  /* of the triangle's corners; their sum is 1 */
+} sc_skin_point;
+
+/* Two body parts that intersect. Lengths in the pose's units. */
+typedef struct sc_penetration {
+  /* `part` goes into `other`. Of one body's parts it is the more mobile (sc_part.mobility), of two alike the smaller, or
+   * a part that meets itself. Of two bodies `part` is of the first. */
+  uint32_t part, other;
+  uint32_t joint; /* moves `part`, in the order of the model's joints; SC_NO_JOINT where none does */
+  sc_penetration_class kind;
+  sc_vec3 direction; /* unit length. `part`, moved by distance * direction, no longer intersects `other`. Of a part that
+                        meets itself: of the triangles that intersect */
+  float distance;    /* measures.depth, or up to a quarter more where `previous` keeps the direction */
+  sc_vec3 centre;    /* of the line where the parts cross */
+  sc_vec3 low, high; /* a box around that line */
+  sc_skin_point deepest, deepest_other; /* the points that part last; deepest_other - deepest = distance * direction */
+  sc_measures measures;
+} sc_penetration;
+
+#define SC_NO_TRIANGLE 0xFFFFFFFFu
+
+/* Two body parts that touch in a step. Times are shares of the step: 0 is its start, 1 its end. */
+typedef struct sc_step_contact {
+  uint32_t part_a, part_b;
+  int32_t at_start, at_end; /* 1: they intersect there: more say the contacts of that pose */
+  float begin;              /* the first time at which they touch; 0 with at_start */
+  float end;                /* the last time; 1 with at_end. In between they may part and meet again */
+  uint32_t triangle_a, triangle_b; /* that touch at `begin`, by the source's numbers; SC_NO_TRIANGLE with at_start */
+  sc_vec3 at;                      /* where they do; zero with at_start */
+} sc_step_contact;
+
+#if defined(__cplusplus)
+namespace spherechain {
+using Scope = sc_scope;
+using PartContact = sc_part_contact;
+using TriangleContact = sc_triangle_contact;
+using SkinPoint = sc_skin_point;
+using Penetration = sc_penetration;
+using StepContact = sc_step_contact;
+}  // namespace spherechain
+#endif

@@ -1,0 +1,109 @@
+/* SPDX-License-Identifier: MIT */
+/* A baked character, its tables and the engine's joints: made once, shared by all of its bodies and by threads. */
+#pragma once
+
+#include "spherechain/pose.h"
+
+/* Memory for models and bodies. It is called when they are made and destroyed, never in a frame, on the thread that
+ * makes or destroys them. Alignment is a power of two, 64 at most. */
+typedef struct sc_allocator {
+  void* (*allocate)(void* user, size_t size, size_t alignment) SC_ZERO; /* null on failure */
+  void (*release)(void* user, void* memory, size_t size, size_t alignment) SC_ZERO;
+  void* user SC_ZERO;
+} sc_allocator;
+
+/* A model never changes. Threads may share it. It must outlive its bodies. */
+typedef struct sc_model sc_model;
+
+typedef struct sc_model_def {
+  const void* data SC_ZERO; /* the bytes of a .sphc file, copied */
+  size_t size SC_ZERO;
+  /* The engine's joints, in the order of its palettes; null: palettes come in the asset's own order of bones. */
+  const sc_bone* joints SC_ZERO;
+  size_t joint_count SC_ZERO;
+  sc_matrix_layout inverse_bind_layout SC_ZERO; /* of the joints that have an inverse bind matrix */
+  const sc_allocator* allocator SC_ZERO;        /* copied; null: malloc */
+} sc_model_def;
+
+/* Where a triangle of the source belongs. */
+typedef struct sc_triangle {
+  uint32_t part, region, sphere; /* SC_NO_PART, each: the triangle was left out of the skin, as degenerate ones are */
+} sc_triangle;
+
+#define SC_NO_PART 0xFFFFFFFFu
+
+#if defined(__cplusplus)
+extern "C" {
+#endif
+
+/* Pass SC_ABI_VERSION for `abi`. On failure *model is null and `message`, where it is not null, says what to do: a status
+ * of sc_asset_open() or sc_bind_joints(), SC_NULL, SC_NOT_IN_ASSET (the asset has no triangles) or SC_NO_MEMORY. */
+SPHERECHAIN_API sc_status sc_create_model(uint32_t abi, const sc_model_def* def, sc_model** model, char* message,
+                                          size_t message_size) SC_NOEXCEPT;
+SPHERECHAIN_API void sc_destroy_model(sc_model* model) SC_NOEXCEPT; /* null is fine */
+
+SPHERECHAIN_API const sc_asset* sc_get_asset(const sc_model* model) SC_NOEXCEPT;
+
+/* The engine's joint that moves a body part; SC_NO_JOINT where none does. */
+SPHERECHAIN_API uint32_t sc_get_part_joint(const sc_model* model, uint32_t part) SC_NOEXCEPT;
+
+/* `triangle` is the source's number. */
+SPHERECHAIN_API sc_triangle sc_get_triangle(const sc_model* model, uint32_t triangle) SC_NOEXCEPT;
+
+/* sc_check_rest_pose() of a palette in the engine's order: call it once, when the character stands in its bind pose. */
+SPHERECHAIN_API sc_status sc_check_rest(const sc_model* model, const sc_pose* palette, char* message,
+                                        size_t message_size) SC_NOEXCEPT;
+
+#if defined(__cplusplus)
+}
+
+namespace spherechain {
+
+using Allocator = sc_allocator;
+using ModelDef = sc_model_def;
+using TriangleOwner = sc_triangle;
+
+/* Owns an sc_model. It moves, and does not copy. One that was not made converts to false, and message() says why. */
+class Model {
+ public:
+  Model() = default;
+  explicit Model(const ModelDef& def) noexcept {
+    status_ = sc_create_model(SC_ABI_VERSION, &def, &handle_, message_, sizeof message_);
+  }
+  Model(const void* data, size_t size, const Bone* joints, size_t joint_count, MatrixLayout layout) noexcept
+      : Model(ModelDef{data, size, joints, joint_count, layout, nullptr}) {}
+  Model(Model&& other) noexcept { *this = static_cast<Model&&>(other); }
+  Model& operator=(Model&& other) noexcept {
+    sc_model* const own = handle_;
+    handle_ = other.handle_;
+    other.handle_ = own;
+    status_ = other.status_;
+    for (size_t i = 0; i < sizeof message_; ++i) message_[i] = other.message_[i];
+    return *this;
+  }
+  ~Model() { sc_destroy_model(handle_); }
+
+  explicit operator bool() const noexcept { return handle_ != nullptr; }
+  Status status() const noexcept { return status_; }
+  const char* message() const noexcept { return message_; }
+
+  /* The rest needs a model that was made. */
+  const sc_model* handle() const noexcept { return handle_; }
+  const Asset& asset() const noexcept { return *sc_get_asset(handle_); }
+  Status check_rest(const Pose& palette) noexcept {
+    return sc_check_rest(handle_, &palette, message_, sizeof message_);
+  }
+  const char* part_name(uint32_t part) const noexcept { return sc_asset_part(&asset(), part).name; }
+  uint32_t part_joint(uint32_t part) const noexcept { return sc_get_part_joint(handle_, part); }
+  TriangleOwner triangle(uint32_t number) const noexcept { return sc_get_triangle(handle_, number); }
+  /* A length in the units of a pose that has the asset's scale. */
+  float millimetres(float length) const noexcept { return 1000 * length * sc_asset_get_info(&asset()).metres_per_unit; }
+
+ private:
+  sc_model* handle_ = nullptr;
+  Status status_{};
+  char message_[256] = {};
+};
+
+}  // namespace spherechain
+#endif

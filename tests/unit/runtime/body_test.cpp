@@ -1,0 +1,410 @@
+// SPDX-License-Identifier: MIT
+// A model and its bodies give the answers of the jobs that they run, from memory that is allocated when they are made.
+#include "spherechain/body.h"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <optional>
+#include <random>
+#include <set>
+#include <string>
+#include <tuple>
+
+#include "counting_new.h"
+#include "jobs.h"
+#include "palette.h"
+#include "tiny_skin.h"
+
+namespace spherechain::test {
+namespace {
+
+constexpr std::size_t kBones = 9, kSpheres = 30;
+constexpr Matrix kUnmoved{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+constexpr std::uint32_t kAllClasses = (1U << (SC_CLASS_PENETRATION + 1)) - 1;
+
+// A band that winds through a box, whose bones go astray. The joints of its engine are in the reverse order.
+struct Winding {
+  TinyAsset tiny = random_band(kSpheres, 1);
+  TinySkin skin;
+  std::optional<OpenedAsset> opened;
+  std::vector<std::string> names;
+  std::vector<Bone> joints;
+
+  Winding() {
+    for (std::size_t i = 0; i < kSpheres; ++i) give_pivots(tiny, i, 2, static_cast<unsigned>(i));
+    skin = add_bones(tiny, kBones, 2);
+    add_skin(tiny, &skin, 4);
+    opened.emplace(tiny.parts);
+    REQUIRE_MESSAGE(opened->status == SC_OK, opened->message);
+    for (std::size_t b = kBones; b-- > 0;) joints.push_back(sc_asset_bone(&opened->asset, b));
+  }
+  Model model(const sc_allocator* allocator = nullptr) const {
+    return Model(ModelDef{opened->bytes.data(), opened->bytes.size(), joints.data(), joints.size(), SC_ROWS_3X4, allocator});
+  }
+  // The last bone stands for what none moves.
+  static std::vector<Matrix> bones(unsigned seed) {
+    std::mt19937 random(seed);
+    std::vector<Matrix> out = random_pose(kBones, PoseKind::kGentle, 1, random);
+    out.back() = kUnmoved;
+    return out;
+  }
+  static std::vector<Matrix> reversed(std::vector<Matrix> bones) {
+    std::reverse(bones.begin(), bones.end());
+    return bones;
+  }
+};
+
+struct Counts {
+  std::size_t made = 0, released = 0, bytes = 0;
+  std::size_t fails_at = ~std::size_t{0};
+
+  sc_allocator allocator() {
+    return {[](void* user, std::size_t size, std::size_t alignment) -> void* {
+              Counts& counts = *static_cast<Counts*>(user);
+              if (counts.made == counts.fails_at) return nullptr;
+              ++counts.made;
+              counts.bytes += size;
+              return std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment);
+            },
+            [](void* user, void* memory, std::size_t size, std::size_t) {
+              Counts& counts = *static_cast<Counts*>(user);
+              ++counts.released;
+              counts.bytes -= size;
+              std::free(memory);
+            },
+            this};
+  }
+};
+
+std::vector<Penetration> by_parts(const Penetrations& found) {
+  std::vector<Penetration> out(found.begin(), found.end());
+  std::sort(out.begin(), out.end(), [](const Penetration& l, const Penetration& r) {
+    return std::minmax(l.part, l.other) < std::minmax(r.part, r.other);
+  });
+  return out;
+}
+
+// What the jobs say, with the engine's joints.
+std::vector<Penetration> expected_of(const Winding& of, const Pose& pose, int quick) {
+  SkinContactJob find;
+  find.asset = &of.opened->asset;
+  find.pose = pose;
+  find.scope = SC_SCOPE_ALL;
+  const SkinContacts contacts = find_contacts(find);
+  PenetrationJob job;
+  job.asset = find.asset;
+  job.pose = pose;
+  job.scope = find.scope;
+  job.contacts = contacts.triangles.data();
+  job.contact_count = contacts.triangles.size();
+  job.quick = quick;
+  std::vector<Penetration> out = measure(job, SC_TARGET_BEST);
+  for (Penetration& one : out) one.joint = one.joint >= kBones - 1 ? SC_NO_JOINT : kBones - 1 - one.joint;
+  return out;
+}
+
+}  // namespace
+
+TEST_CASE("a body finds what the jobs find, with the engine's joints, the worst first") {
+  const Winding winding;
+  const Model model = winding.model();
+  REQUIRE_MESSAGE(model, model.message());
+  Body body(model);
+  REQUIRE(body);
+  std::size_t total = 0;
+  for (unsigned frame = 0; frame < 10; ++frame) {
+    const std::vector<Matrix> bones = Winding::bones(frame), palette = Winding::reversed(bones);
+    REQUIRE(body.set_pose(pose_of(palette)) == SC_OK);
+    for (const Detail detail : {SC_DETAIL_QUICK, SC_DETAIL_FULL}) {
+      Query query;
+      query.scope = SC_SCOPE_ALL;
+      query.detail = detail;
+      query.classes = kAllClasses;
+      const Penetrations found = body.penetrations(query);
+      REQUIRE(body.status() == SC_OK);
+      CHECK(same_bits(by_parts(found), expected_of(winding, pose_of(bones), detail == SC_DETAIL_QUICK ? 1 : 0)));
+      CHECK(found.total == found.count);
+      CHECK(std::is_sorted(found.begin(), found.end(), [](const Penetration& l, const Penetration& r) {
+        return l.kind != r.kind ? l.kind > r.kind : l.measures.depth > r.measures.depth;
+      }));
+      total += found.count;
+      // Without classes the faults alone; with a limit the worst.
+      query.classes = 0;
+      const std::vector<Penetration> all(found.begin(), found.end());
+      const auto faults = static_cast<std::size_t>(
+          std::count_if(all.begin(), all.end(), [](const Penetration& one) { return is_fault(one.kind); }));
+      CHECK(body.penetrations(query).count == faults);
+      query.limit = 2;
+      const Penetrations worst = body.penetrations(query);
+      CHECK(worst.total == faults);
+      REQUIRE(worst.count == std::min<std::size_t>(2, faults));
+      for (std::size_t i = 0; i < worst.count; ++i) CHECK(same_bits<Penetration>({worst.items[i]}, {all[i]}));
+    }
+    std::set<std::tuple<std::uint32_t, std::uint32_t, PenetrationClass, float>> faults[2];
+    for (const Detail detail : {SC_DETAIL_QUICK, SC_DETAIL_FULL}) {
+      for (const Penetration& one : body.penetrations({SC_SCOPE_ALL, detail})) {
+        faults[detail].emplace(one.part, one.other, one.kind, one.measures.depth);
+      }
+    }
+    CHECK(faults[0] == faults[1]);
+    SkinContactJob job;
+    job.asset = &winding.opened->asset;
+    job.pose = pose_of(bones);
+    const SkinContacts expected = find_contacts(job);
+    Query all;
+    all.detail = SC_DETAIL_FULL;
+    const Contacts contacts = body.contacts(all);
+    CHECK(same_bits({contacts.parts, contacts.parts + contacts.part_count}, expected.parts));
+    CHECK(same_bits({contacts.spheres, contacts.spheres + contacts.sphere_count}, expected.spheres));
+    CHECK(same_bits({contacts.triangles, contacts.triangles + contacts.triangle_count}, expected.triangles));
+    CHECK(body.contacts().part_count == expected.parts.size());
+    CHECK(body.contacts().triangle_total == 0);
+    for (const Radius radius : {SC_RADIUS_DETECT, SC_RADIUS_FIT}) {
+      Query query;
+      query.radius = radius;
+      const SpherePairs spheres = body.sphere_pairs(query);
+      const std::vector<Sphere> refitted = refit(winding.opened->asset, pose_of(bones), radius).spheres;
+      CHECK(same_bits({spheres.spheres, spheres.spheres + spheres.sphere_count}, refitted));
+      CHECK(same_bits({spheres.pairs, spheres.pairs + spheres.count},
+                      detect(winding.opened->asset, refitted, radius).pairs));
+    }
+  }
+  CHECK(total > 50);
+}
+
+TEST_CASE("where there is no room for all triangles, or for all penetrations, the answers are the same, or the worst") {
+  const Winding winding;
+  const Model model = winding.model();
+  Body roomy(model), narrow(model, BodyDef{400, 3});
+  Query query;
+  query.scope = SC_SCOPE_ALL;
+  query.classes = kAllClasses;
+  bool overflowed = false;
+  for (unsigned frame = 0; frame < 10; ++frame) {
+    const std::vector<Matrix> bones = Winding::bones(frame);
+    REQUIRE(roomy.set_pose(pose_of(bones)) == SC_OK);
+    REQUIRE(narrow.set_pose(pose_of(bones)) == SC_OK);
+    const Penetrations all = roomy.penetrations(query);
+    const std::vector<Penetration> expected(all.begin(), all.end());
+    const Penetrations worst = narrow.penetrations(query);
+    CHECK(worst.total == expected.size());
+    REQUIRE(worst.count == std::min<std::size_t>(3, expected.size()));
+    CHECK(same_bits<Penetration>({worst.begin(), worst.end()},
+                                 {expected.begin(), expected.begin() + static_cast<std::ptrdiff_t>(worst.count)}));
+    Query lists = query;
+    lists.detail = SC_DETAIL_FULL;
+    const Contacts contacts = narrow.contacts(lists);
+    CHECK(contacts.triangle_total == roomy.contacts(lists).triangle_total);
+    overflowed = overflowed || contacts.triangle_count < contacts.triangle_total;
+  }
+  CHECK(overflowed);
+}
+
+TEST_CASE("two bodies, the ground and the way between two poses give what the jobs give") {
+  const Winding winding;
+  const Model model = winding.model();
+  BodyDef def;
+  def.finds_steps = 1;
+  Body one(model, def), other(model, def);
+  const Transform place{{0.2F, 0.1F, 0}, {0, 0, 0.6F, 0.8F}, {1, 1, 1}};
+  const auto placed = [&](std::vector<Matrix> bones) {
+    REQUIRE(sc_place_bones(&place, bones[0].data(), bones.size()) == SC_OK);
+    return bones;
+  };
+  CHECK(one.penetrations(other).count == 0);
+  CHECK(one.status() == sc_status{SC_NOT_OPEN, SC_FIELD_BODIES});
+  std::vector<std::vector<Matrix>> of_one, of_other;
+  for (const unsigned seed : {3U, 4U}) {
+    of_one.push_back(Winding::bones(seed));
+    of_other.push_back(placed(Winding::bones(seed + 10)));
+    REQUIRE(one.set_pose(pose_of(Winding::reversed(of_one.back()))) == SC_OK);
+    REQUIRE(other.set_pose(pose_of(Winding::reversed(Winding::bones(seed + 10))), place) == SC_OK);
+  }
+  BodyContactJob find;
+  find.a.asset = find.b.asset = &winding.opened->asset;
+  find.a.pose = pose_of(of_one[1]);
+  find.b.pose = pose_of(of_other[1]);
+  const SkinContacts contacts = find_contacts(find);
+  const Contacts found = one.contacts(other, {SC_SCOPE_APART, SC_DETAIL_FULL});
+  CHECK(same_bits({found.triangles, found.triangles + found.triangle_count}, contacts.triangles));
+  CHECK(found.triangle_count > 0);
+  BodyPenetrationJob measure_job;
+  measure_job.a = find.a;
+  measure_job.b = find.b;
+  measure_job.contacts = contacts.triangles.data();
+  measure_job.contact_count = contacts.triangles.size();
+  measure_job.quick = 1;
+  std::vector<Penetration> expected = measure(measure_job, SC_TARGET_BEST);
+  for (Penetration& penetration : expected) penetration.joint = model.part_joint(penetration.part);
+  Query query;
+  query.classes = kAllClasses;
+  const Penetrations penetrations = one.penetrations(other, query);
+  std::vector<Penetration> sorted(penetrations.begin(), penetrations.end());
+  std::sort(sorted.begin(), sorted.end(), [](const Penetration& l, const Penetration& r) {
+    return std::pair(l.part, l.other) < std::pair(r.part, r.other);
+  });
+  CHECK(same_bits(sorted, expected));
+  CHECK(!expected.empty());
+
+  StepJob step;
+  step.a.body = find.a;
+  step.b.body = find.b;
+  step.a.body.pose = pose_of(of_one[0]);
+  step.b.body.pose = pose_of(of_other[0]);
+  step.a.end = find.a.pose;
+  step.b.end = find.b.pose;
+  const Steps steps = one.steps(other);
+  REQUIRE(one.status() == SC_OK);
+  CHECK(same_bits({steps.items, steps.items + steps.count}, find_contacts(step).contacts));
+  CHECK(steps.count > 0);
+
+  const Ground ground{{0, 1, 0}, 0.3F, nullptr, nullptr};
+  query.classes = kAllClasses;
+  const Penetrations below = other.below(ground, query);
+  REQUIRE(other.status() == SC_OK);
+  CHECK(below.count > 0);
+  for (const Penetration& part : below) {
+    CHECK(part.other == SC_FLOOR);
+    CHECK(part.joint == model.part_joint(part.part));
+  }
+  sc_vec3 low, high;
+  CHECK(sc_get_bounds(other.handle(), &low, &high) == SC_OK);
+  for (const Penetration& part : below) CHECK(part.deepest.position.y >= low.y);
+}
+
+TEST_CASE("directions of faults stay steady with the last list as history") {
+  const Winding winding;
+  const Model model = winding.model();
+  Body body(model);
+  Query query;
+  query.scope = SC_SCOPE_ALL;
+  Penetrations last{};
+  for (unsigned frame = 0; frame < 6; ++frame) {
+    const std::vector<Matrix> bones = Winding::bones(frame / 2);
+    REQUIRE(body.set_pose(pose_of(bones)) == SC_OK);
+    query.previous = last.items;
+    query.previous_count = last.count;
+    const std::vector<Penetration> before(last.begin(), last.end());
+    last = body.penetrations(query);
+    REQUIRE(body.status() == SC_OK);
+    CHECK(last.count > 0);
+    if (frame % 2 == 1) CHECK(same_bits(before, {last.begin(), last.end()}));
+  }
+}
+
+TEST_CASE("no question allocates; what cannot be made is null, and leaves nothing behind") {
+  const Winding winding;
+  Counts counts;
+  const sc_allocator allocator = counts.allocator();
+  {
+    const Model model = winding.model(&allocator);
+    REQUIRE(model);
+    Body body(model), other(model);
+    const std::size_t made = counts.made;
+    CHECK(made == 5);
+    const std::vector<Matrix> bones = Winding::bones(1);
+    const Pose pose = pose_of(bones);
+    const std::size_t by_new = allocation_count();
+    std::size_t found = 0;
+    for (int frame = 0; frame < 3; ++frame) {
+      body.set_pose(pose);
+      other.set_pose(pose);
+      found += body.penetrations().total;
+      found += body.penetrations(other).total;
+      found += body.contacts(other).part_count;
+      found += body.sphere_pairs().total;
+    }
+    const std::size_t by_new_after = allocation_count();
+    CHECK(by_new_after == by_new);
+    CHECK(counts.made == made);
+    CHECK(body.status() == SC_OK);
+    CHECK(found > 0);
+    const Body moved(std::move(body));
+    CHECK(moved);
+    CHECK_FALSE(body);
+  }
+  CHECK(counts.made == counts.released);
+  CHECK(counts.bytes == 0);
+  for (std::size_t k = 0; k < 4; ++k) {
+    Counts failing;
+    failing.fails_at = k;
+    const sc_allocator scarce = failing.allocator();
+    const Model model = winding.model(&scarce);
+    const Body body = model ? Body(model) : Body();
+    CHECK_FALSE(body);
+    CHECK((model ? body.status() : model.status()) == SC_NO_MEMORY);
+    if (!model) CHECK(std::string(model.message()) == "out of memory");
+  }
+}
+
+TEST_CASE("a model knows what a triangle belongs to, which joint moves a part, and whether a palette is at rest") {
+  const Winding winding;
+  Model model = winding.model();
+  const PreparedSkin skin(winding.opened->asset);
+  std::size_t known = 0;
+  for (std::uint32_t t = 0; t < winding.tiny.corners.size(); ++t) {
+    const TriangleOwner owner = model.triangle(t);
+    const std::uint32_t place = skin.surface.place_of_source[t];
+    if (place == kNoPlace) {
+      CHECK(owner.part == SC_NO_PART);
+      continue;
+    }
+    ++known;
+    CHECK(owner.part == skin.surface.parts[place]);
+    CHECK(owner.sphere == skin.surface.triangle_spheres[place]);
+    CHECK(owner.region == sc_asset_sphere(&model.asset(), owner.sphere).region);
+  }
+  CHECK(known > 100);
+  CHECK(model.triangle(1000000).part == SC_NO_PART);
+  std::set<std::uint32_t> joints;
+  for (std::uint32_t part = 0; part < sc_asset_get_info(&model.asset()).part_count; ++part) {
+    const auto bone = static_cast<std::uint32_t>(sc_asset_part(&model.asset(), part).bone);
+    CHECK(model.part_joint(part) == (bone >= kBones - 1 ? SC_NO_JOINT : kBones - 1 - bone));
+    joints.insert(model.part_joint(part));
+  }
+  CHECK(joints.size() > 1);
+  CHECK(model.part_joint(1000) == SC_NO_JOINT);
+  const std::vector<Matrix> rest(kBones, kUnmoved), moved = Winding::bones(2);
+  CHECK(model.check_rest(pose_of(rest)) == SC_OK);
+  CHECK(model.check_rest(pose_of(moved)) == SC_OTHER_BIND);
+  CHECK(std::string(model.message()).find("bind pose") != std::string::npos);
+  const Model wrong(winding.opened->bytes.data(), winding.opened->bytes.size() - 100, nullptr, 0, SC_LAYOUT_UNSET);
+  CHECK_FALSE(wrong);
+  CHECK(wrong.status() == SC_CORRUPT);
+}
+
+TEST_CASE("a question with a wrong argument finds nothing and names the field") {
+  const Winding winding;
+  const Model model = winding.model();
+  Body body(model);
+  const std::vector<Matrix> bones = Winding::bones(1);
+  Pose pose = pose_of(bones);
+  pose.bone_layout = SC_LAYOUT_UNSET;
+  CHECK(body.set_pose(pose) == sc_status{SC_BAD_VALUE, SC_FIELD_BONE_LAYOUT});
+  CHECK(body.contacts().part_count == 0);
+  CHECK(body.status() == sc_status{SC_NOT_OPEN, SC_FIELD_BODIES});
+  REQUIRE(body.set_pose(pose_of(bones)) == SC_OK);
+  Query query;
+  Rule rule = sc_default_rule();
+  rule.version = 1;
+  query.rule = &rule;
+  CHECK(body.penetrations(query).count == 0);
+  CHECK(body.status() == sc_status{SC_BAD_VALUE, SC_FIELD_RULE});
+  query = {};
+  query.scope = static_cast<Scope>(7);
+  CHECK(body.penetrations(query).count == 0);
+  CHECK(body.status() == sc_status{SC_BAD_VALUE, SC_FIELD_SCOPE});
+  body.steps();
+  CHECK(body.status() == sc_status{SC_NOT_OPEN, SC_FIELD_BODIES});
+  REQUIRE(body.set_pose(pose_of(bones)) == SC_OK);
+  body.steps();
+  CHECK(body.status() == sc_status{SC_TOO_SMALL, SC_FIELD_BODIES});
+  CHECK(sc_create_body(nullptr, nullptr, nullptr) == sc_status{SC_NULL, SC_FIELD_ASSET});
+  sc_penetrations found{nullptr, 5, 5};
+  CHECK(sc_find_penetrations(nullptr, nullptr, nullptr, &found) == sc_status{SC_NULL, SC_FIELD_BODIES});
+  CHECK(found.count == 0);
+}
+
+}  // namespace spherechain::test
