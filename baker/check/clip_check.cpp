@@ -155,8 +155,9 @@ void ClipChecker::find_worst(Frames& frames, const ClipFrames& clip, EventSpan& 
     (lies_between ? between : whole).push_back(m);
   }
   const auto worst_of = [&](const std::vector<std::size_t>& all) {
-    return *std::max_element(all.begin(), all.end(),
-                             [&](auto l, auto r) { return severity(found(l)) < severity(found(r)); });
+    return *std::max_element(all.begin(), all.end(), [&](auto l, auto r) {  // of equal ones the first in the clip
+      return severity(found(l)) != severity(found(r)) ? severity(found(l)) < severity(found(r)) : l > r;
+    });
   };
   span.deepest = worst_of(whole.empty() ? between : whole);
   if (!whole.empty() && !between.empty()) {

@@ -67,7 +67,7 @@ std::string events(const json& report, const std::string& clip) {
   for (const json& one : report["clips"]) {
     if (one["clip"] != clip) continue;
     for (const json& event : one["events"]) {
-      CHECK(event["parts"] == json{"wall", "ball"});
+      CHECK(event["parts"] == json{"ball", "wall"});
       out +=
           fmt::format("{}{}-{}@{}:{:.0f} {}", out.empty() ? "" : ", ", event["from"].get<int>(), event["to"].get<int>(),
                       event["deepest"].get<int>(), event["depth_mm"].get<double>(), event["state"].get<std::string>());

@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: MIT
 # cmake -D NM=<nm> -D LIBRARY=<archive> -P symbol_rules.cmake: fails where the archive needs what the runtime must not use.
-# character.cpp alone, the short way, may call malloc.
+# model.cpp alone, and for now character.cpp, may call malloc.
 execute_process(COMMAND ${NM} -u -C ${LIBRARY} OUTPUT_VARIABLE symbols RESULT_VARIABLE result)
-string(FIND "${symbols}" "\ncharacter.cpp." first)
-if(first GREATER -1)
-  string(SUBSTRING "${symbols}" 0 ${first} before)
-  string(SUBSTRING "${symbols}" ${first} -1 after)
-  string(FIND "${after}" "\n\n" end)
-  string(SUBSTRING "${after}" ${end} -1 after)
-  set(symbols "${before}${after}")
-endif()
+foreach(source model.cpp character.cpp)
+  string(FIND "${symbols}" "\n${source}." first)
+  if(first GREATER -1)
+    string(SUBSTRING "${symbols}" 0 ${first} before)
+    string(SUBSTRING "${symbols}" ${first} -1 after)
+    string(FIND "${after}" "\n\n" end)
+    string(SUBSTRING "${after}" ${end} -1 after)
+    set(symbols "${before}${after}")
+  endif()
+endforeach()
 if(NOT result EQUAL 0 OR NOT symbols MATCHES "memcpy|memset|vsnprintf")
   message(FATAL_ERROR "cannot read the symbols of ${LIBRARY}")
 endif()
