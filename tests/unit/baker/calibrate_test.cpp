@@ -32,7 +32,7 @@ const std::vector<VertexWeights>& weights_of_human() {
 
 // The skins that intersect, by spheres, found from vertices; without what intersects at rest.
 std::set<Pair> touching_skins(Player& player, const std::vector<float>& positions) {
-  const std::vector<Pair> pairs = player.spheres_of(player.detect_triangles(positions, false).pairs);
+  const std::vector<Pair> pairs = player.spheres_of(player.detect_triangles(pose_of(positions), false).pairs);
   return {pairs.begin(), pairs.end()};
 }
 
