@@ -67,6 +67,7 @@ void fight(const std::vector<char>& file, const samples::GltfCharacter& clips) {
   const Ground floor{info.up, 0, nullptr, nullptr};
   Query all;  // touches, too
   all.classes = ~0U;
+  all.detail = SC_DETAIL_FULL;
   const double duration = clips.duration(0);
   Score score;
   std::size_t frames = 0;
