@@ -24,7 +24,7 @@ constexpr std::size_t kCharacters = 1000;
 
 void check(Status status) {
   if (status != SC_OK) {
-    throw std::runtime_error(std::string(sc_field_name(status.field)) + ": " + sc_code_text(status.code));
+    throw std::runtime_error(std::string(field_name(status)) + ": " + code_text(status));
   }
 }
 
@@ -127,18 +127,19 @@ void place(const AssetInfo& info, std::vector<float>& bones) {
   }
 }
 
-// Pairs of characters that are in each other: of those whose boxes touch.
-std::size_t find_meetings(const std::vector<JobBody>& bodies, std::vector<Standing>& characters, std::size_t& boxes) {
-  std::vector<SceneBody> scene(bodies.size());
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    check(sc_bound_body(&bodies[i], &scene[i].low, &scene[i].high));
+// Pairs of characters that are in each other: of those whose boxes touch. Two bodies serve them all in turn.
+std::size_t find_meetings(const Model& model, const std::vector<Pose>& poses, std::vector<Standing>& characters,
+                          std::size_t& boxes) {
+  Body one(model), other(model);
+  std::vector<SceneBody> scene(poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    check(one.set_pose(poses[i]));
+    check(one.bounds(scene[i].low, scene[i].high));
     characters[i].low = scene[i].low;
     characters[i].high = scene[i].high;
   }
-  const Asset* const asset = bodies[0].asset;
-  std::vector<Pair> pairs(64 * bodies.size());
-  std::vector<std::uint64_t> scratch(
-      std::max(sc_scene_scratch_words(bodies.size()), sc_body_scratch_words(asset, asset)));
+  std::vector<Pair> pairs(64 * poses.size());
+  std::vector<std::uint64_t> scratch(sc_scene_scratch_words(poses.size()));
   SceneJob meet;
   meet.bodies = scene.data();
   meet.body_count = scene.size();
@@ -150,13 +151,11 @@ std::size_t find_meetings(const std::vector<JobBody>& bodies, std::vector<Standi
   boxes = meet.pair_count;
   std::size_t count = 0;
   for (std::size_t i = 0; i < meet.pair_count; ++i) {
-    BodyContactJob job;
-    job.a = bodies[pairs[i].a];
-    job.b = bodies[pairs[i].b];
-    job.scratch = scratch.data();
-    job.scratch_words = scratch.size();
-    check(job.run());
-    if (job.part_count == 0) continue;
+    check(one.set_pose(poses[pairs[i].a]));
+    check(other.set_pose(poses[pairs[i].b]));
+    const Contacts contacts = one.contacts(other);
+    check(one.status());
+    if (contacts.part_count == 0) continue;
     ++count;
     ++characters[pairs[i].a].met;
     ++characters[pairs[i].b].met;
@@ -171,42 +170,33 @@ float waves(const void* metres_per_unit, Vec3 p) {
 }
 
 // How deep each is in the ground.
-void find_grounded(const std::vector<JobBody>& bodies, const AssetInfo& info, std::vector<Standing>& characters) {
-  std::vector<std::uint64_t> scratch(sc_floor_scratch_words(bodies[0].asset));
-  std::vector<Penetration> parts(info.part_count);
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    FloorJob job;
-    job.body = bodies[i];
-    job.up = info.up;
-    job.height = info.up.x * info.origin.x + info.up.y * info.origin.y + info.up.z * info.origin.z;
-    job.terrain = waves;
-    job.user = &info.metres_per_unit;
-    job.scratch = scratch.data();
-    job.scratch_words = scratch.size();
-    job.penetrations = parts.data();
-    job.penetration_capacity = parts.size();
-    check(job.run());
-    for (std::size_t k = 0; k < job.penetration_count; ++k) {
-      characters[i].depth = std::max(characters[i].depth, parts[k].measures.depth);
+void find_grounded(const Model& model, const std::vector<Pose>& poses, std::vector<Standing>& characters) {
+  const AssetInfo info = model.info();
+  const Vec3 up = info.up, o = info.origin;
+  const Ground ground{up, up.x * o.x + up.y * o.y + up.z * o.z, waves, &info.metres_per_unit};
+  Query all;  // touches, too
+  all.classes = ~0U;
+  Body body(model);
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    check(body.set_pose(poses[i]));
+    for (const Penetration& part : body.below(ground, all)) {
+      characters[i].depth = std::max(characters[i].depth, part.measures.depth);
     }
+    check(body.status());
   }
 }
 
-void stand(const Asset& asset, std::vector<float>& bones, const char* map) {
-  const AssetInfo info = sc_asset_get_info(&asset);
+void stand(const Model& model, std::vector<float>& bones, const char* map) {
+  const AssetInfo info = model.info();
   place(info, bones);
-  std::vector<std::uint64_t> table(sc_skin_table_words(&asset));
-  check(sc_prepare_skin(&asset, table.data(), table.size()));
-  std::vector<JobBody> bodies(kCharacters);
+  std::vector<Pose> poses(kCharacters);
   for (std::size_t i = 0; i < kCharacters; ++i) {
-    bodies[i].asset = &asset;
-    bodies[i].skin_table = table.data();
-    bodies[i].pose = {&bones[i * 12 * info.bone_count], info.bone_count, SC_ROWS_3X4};
+    poses[i] = {&bones[i * 12 * info.bone_count], info.bone_count, SC_ROWS_3X4};
   }
   std::vector<Standing> characters(kCharacters);
   std::size_t boxes = 0, grounded = 0;
-  const std::size_t meetings = find_meetings(bodies, characters, boxes);
-  find_grounded(bodies, info, characters);
+  const std::size_t meetings = find_meetings(model, poses, characters, boxes);
+  find_grounded(model, poses, characters);
   float deepest = 0;
   for (const Standing& one : characters) {
     grounded += one.depth > 0 ? 1 : 0;
@@ -218,11 +208,11 @@ void stand(const Asset& asset, std::vector<float>& bones, const char* map) {
   if (map != nullptr) draw_map(info, characters, map);
 }
 
-void run(const std::vector<char>& file, const samples::GltfCharacter& model, const char* map) {
-  Asset asset;
-  char message[256];
-  check(sc_asset_open(&asset, SC_ABI_VERSION, file.data(), file.size(), message, sizeof message), message);
-  std::vector<float> bones = animate(asset, model);
+void run(const std::vector<char>& file, const samples::GltfCharacter& clips, const char* map) {
+  const Model model(file.data(), file.size(), nullptr, 0, SC_LAYOUT_UNSET);  // poses come in the asset's order
+  if (!model) throw std::runtime_error(model.message());
+  const Asset& asset = model.asset();
+  std::vector<float> bones = animate(asset, clips);
 
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
@@ -240,7 +230,7 @@ void run(const std::vector<char>& file, const samples::GltfCharacter& model, con
               alarms.size(), by_spheres.count() / kCharacters);
   std::printf("skin: %zu characters, %zu of the pairs, %.1f us an alarmed character\n", characters, confirmed,
               alarmed == 0 ? 0 : by_skin.count() / static_cast<double>(alarmed));
-  stand(asset, bones, map);
+  stand(model, bones, map);
 }
 
 }  // namespace
