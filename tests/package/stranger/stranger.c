@@ -31,7 +31,7 @@ int main(int argc, char** argv) {
   sc_pose pose = {0};
   size_t i, sphere_pair_count;
   float* matrices;
-  char message[160];
+  char message[160] = "out of memory";
   def.data = bytes;
   if (sc_create_model(SC_ABI_VERSION, &def, &model, message, sizeof message).code != SC_OK ||
       sc_create_body(model, NULL, &body).code != SC_OK) {
