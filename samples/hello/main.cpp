@@ -32,7 +32,8 @@ static void play(const std::vector<char>& file, const samples::GltfCharacter& ri
 int main(int argc, char** argv) {
   if (argc != 3) return std::fputs("usage: hello ASSET.sphc MODEL.glb\n", stderr), 2;
   try {
-    play(samples::read_file(argv[1]), samples::GltfCharacter(argv[2]));
+    const std::vector<char> file = samples::read_file(argv[1]);
+    play(file, samples::GltfCharacter(argv[2]));
   } catch (const std::exception& error) {
     return std::fprintf(stderr, "hello: error: %s\n", error.what()), 3;
   }
