@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Written by runtime/csharp/generate.py from the C headers; the test csharp.native fails where it is not what they say now.
-// Types without pointers are public for all code. Jobs and functions are in the class Native, for unsafe code. The headers
-// (runtime/include/spherechain) say what each function promises; size_t is UIntPtr, and a pointer to a function an IntPtr.
+// Types without pointers are public for all code. Structs with pointers, and functions, are in the class Native, for unsafe code.
+// The headers (runtime/include/spherechain) say what each function promises; size_t is UIntPtr, a function pointer an IntPtr.
 using System;
 using System.Runtime.InteropServices;
 
@@ -192,16 +192,6 @@ namespace Spherechain
     {
         Quick = 0,
         Full = 1,
-    }
-
-    public enum Blend : int  // sc_blend
-    {
-        /// <summary>matrices, vertices and morph weights: each number on its own</summary>
-        Linear = 0,
-        /// <summary>joints: rotations at constant speed; translations, scales and morph weights linearly</summary>
-        Slerp = 1,
-        /// <summary>joints: rotations as quaternions, linearly, brought back to unit length</summary>
-        Nlerp = 2,
     }
 
     [StructLayout(LayoutKind.Sequential)]
@@ -520,29 +510,6 @@ namespace Spherechain
         }
 
         [StructLayout(LayoutKind.Sequential)]
-        public unsafe struct DetectJob  // sc_detect_job
-        {
-            /// <summary>open</summary>
-            public Asset* Asset;
-            public Sphere* Spheres;
-            /// <summary>at least the asset's</summary>
-            public UIntPtr SphereCount;
-            /// <summary>of the spheres: which refit made them</summary>
-            public Radius Radius;
-            public Target Target;
-            public ulong* Table;
-            public Filter* Filter;
-            /// <summary>out: sorted, each once; null: count only</summary>
-            public Pair* Pairs;
-            public UIntPtr PairCapacity;
-            /// <summary>out: bit b(b-1)/2 + a of each pair; sc_pair_words() words exactly; or null. Cheapest</summary>
-            public ulong* Bits;
-            public UIntPtr BitWords;
-            /// <summary>out: how many there are, also where `pairs` is too small</summary>
-            public UIntPtr PairCount;
-        }
-
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct Pose  // sc_pose
         {
             /// <summary>null: none</summary>
@@ -563,85 +530,6 @@ namespace Spherechain
             public UIntPtr VertexCount;
             /// <summary>bytes from one vertex to the next; 0: 12</summary>
             public UIntPtr VertexStride;
-        }
-
-        [StructLayout(LayoutKind.Sequential)]
-        public unsafe struct SkinContactJob  // sc_skin_contact_job
-        {
-            /// <summary>open, with triangles</summary>
-            public Asset* Asset;
-            public Pose Pose;
-            public Scope Scope;
-            public Target Target;
-            /// <summary>1: find pairs of spheres alone; each ends at its first contact. Cheapest</summary>
-            public int SpheresOnly;
-            /// <summary>from sc_prepare_skin(), of this asset</summary>
-            public ulong* SkinTable;
-            /// <summary>null: the asset's ignored pairs</summary>
-            public Filter* Filter;
-            public Pair* Candidates;
-            public UIntPtr CandidateCount;
-            /// <summary>sc_skin_scratch_words() words; nothing is kept there between runs</summary>
-            public ulong* Scratch;
-            public UIntPtr ScratchWords;
-            public PartContact* Parts;
-            public UIntPtr PartCapacity;
-            /// <summary>a = b: within one sphere's triangles</summary>
-            public Pair* Spheres;
-            public UIntPtr SphereCapacity;
-            public TriangleContact* Triangles;
-            public UIntPtr TriangleCapacity;
-            public ulong* ListedParts;
-            public UIntPtr PartCount;
-            public UIntPtr SphereCount;
-            public UIntPtr TriangleCount;
-        }
-
-        [StructLayout(LayoutKind.Sequential)]
-        public unsafe struct PenetrationJob  // sc_penetration_job
-        {
-            /// <summary>open, with triangles</summary>
-            public Asset* Asset;
-            public Pose Pose;
-            public Scope Scope;
-            /// <summary>the same bits on every one</summary>
-            public Target Target;
-            public ulong* SkinTable;
-            public Filter* Filter;
-            /// <summary>null: none</summary>
-            public TriangleContact* Contacts;
-            public UIntPtr ContactCount;
-            /// <summary>null: none</summary>
-            public Penetration* Previous;
-            public UIntPtr PreviousCount;
-            /// <summary>1: along one direction, without volume and visibility, but for likely faults: these are measured in full, so that both forms find the same faults. For games</summary>
-            public int Quick;
-            /// <summary>null: sc_default_rule()</summary>
-            public Rule* Rule;
-            /// <summary>sc_penetration_scratch_words() words; nothing is kept there between runs</summary>
-            public ulong* Scratch;
-            public UIntPtr ScratchWords;
-            /// <summary>null, with a capacity of 0: count only</summary>
-            public Penetration* Penetrations;
-            public UIntPtr PenetrationCapacity;
-            /// <summary>bit k: penetrations of class k are listed and counted; 0: all</summary>
-            public uint Classes;
-            /// <summary>in: entries that are there already, of other contacts; they are counted, too</summary>
-            public UIntPtr KeptCount;
-            public UIntPtr PenetrationCount;
-        }
-
-        [StructLayout(LayoutKind.Sequential)]
-        public unsafe struct JobBody  // sc_job_body
-        {
-            /// <summary>open, with triangles; a character, or what `bake --prop` wrote</summary>
-            public Asset* Asset;
-            /// <summary>as of an sc_skin_contact_job; a prop has one bone</summary>
-            public Pose Pose;
-            /// <summary>from sc_prepare_skin(), of this asset</summary>
-            public ulong* SkinTable;
-            /// <summary>bit p: body part p meets nothing; null: all parts meet</summary>
-            public ulong* IgnoredParts;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -676,83 +564,6 @@ namespace Spherechain
             public UIntPtr PairCapacity;
             /// <summary>out: how many there are, also where `pairs` is too small</summary>
             public UIntPtr PairCount;
-        }
-
-        [StructLayout(LayoutKind.Sequential)]
-        public unsafe struct BodyContactJob  // sc_body_contact_job
-        {
-            public JobBody A;
-            public JobBody B;
-            /// <summary>the same contacts on every one</summary>
-            public Target Target;
-            /// <summary>1: find pairs of spheres alone; each ends at its first contact. Cheapest</summary>
-            public int SpheresOnly;
-            /// <summary>sc_body_scratch_words() words; nothing is kept there between runs</summary>
-            public ulong* Scratch;
-            public UIntPtr ScratchWords;
-            public PartContact* Parts;
-            public UIntPtr PartCapacity;
-            public Pair* Spheres;
-            public UIntPtr SphereCapacity;
-            public TriangleContact* Triangles;
-            public UIntPtr TriangleCapacity;
-            public ulong* ListedParts;
-            public UIntPtr PartCount;
-            public UIntPtr SphereCount;
-            public UIntPtr TriangleCount;
-        }
-
-        [StructLayout(LayoutKind.Sequential)]
-        public unsafe struct BodyPenetrationJob  // sc_body_penetration_job
-        {
-            public JobBody A;
-            /// <summary>ignored_parts is not read</summary>
-            public JobBody B;
-            public Target Target;
-            /// <summary>null: none</summary>
-            public TriangleContact* Contacts;
-            public UIntPtr ContactCount;
-            /// <summary>null: none</summary>
-            public Penetration* Previous;
-            public UIntPtr PreviousCount;
-            public int Quick;
-            public Rule* Rule;
-            /// <summary>sc_body_penetration_scratch_words() words; nothing is kept there between runs</summary>
-            public ulong* Scratch;
-            public UIntPtr ScratchWords;
-            /// <summary>out: sorted by (part, other)</summary>
-            public Penetration* Penetrations;
-            public UIntPtr PenetrationCapacity;
-            /// <summary>bit k: penetrations of class k are listed and counted; 0: all</summary>
-            public uint Classes;
-            /// <summary>in: entries that are there already, of other contacts; they are counted, too</summary>
-            public UIntPtr KeptCount;
-            public UIntPtr PenetrationCount;
-        }
-
-        [StructLayout(LayoutKind.Sequential)]
-        public unsafe struct FloorJob  // sc_floor_job
-        {
-            public JobBody Body;
-            /// <summary>the same bits on every one</summary>
-            public Target Target;
-            /// <summary>of unit length</summary>
-            public Vec3 Up;
-            /// <summary>of the plane: up . p = height on it</summary>
-            public float Height;
-            public IntPtr Terrain;
-            public void* User;
-            /// <summary>as of an sc_penetration_job</summary>
-            public Rule* Rule;
-            /// <summary>sc_floor_scratch_words() words; nothing is kept there between runs</summary>
-            public ulong* Scratch;
-            public UIntPtr ScratchWords;
-            /// <summary>out: sorted by `part`; null, with a capacity of 0: count only</summary>
-            public Penetration* Penetrations;
-            public UIntPtr PenetrationCapacity;
-            /// <summary>as of an sc_penetration_job</summary>
-            public uint Classes;
-            public UIntPtr PenetrationCount;
         }
 
         [StructLayout(LayoutKind.Sequential)]
@@ -900,270 +711,95 @@ namespace Spherechain
             public UIntPtr PairCount;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
-        public unsafe struct RefitJob  // sc_refit_job
-        {
-            /// <summary>open</summary>
-            public Asset* Asset;
-            /// <summary>bones or vertices</summary>
-            public Pose Pose;
-            public Radius Radius;
-            public Target Target;
-            /// <summary>out: the asset's, in its order; in the pose's space</summary>
-            public Sphere* Spheres;
-            public UIntPtr SphereCapacity;
-        }
-
-        [StructLayout(LayoutKind.Sequential)]
-        public unsafe struct Motion  // sc_motion
-        {
-            public JobBody Body;
-            public Pose End;
-            public Blend Blend;
-            public JointTransform* StartJoints;
-            public JointTransform* EndJoints;
-            /// <summary>at most 65536</summary>
-            public UIntPtr JointCount;
-            /// <summary>of a joint an earlier one, or SC_NO_JOINT; null: of all SC_NO_JOINT</summary>
-            public uint* Parents;
-            /// <summary>of each bone of the asset: sc_bind_joints(); null: joint b moves bone b</summary>
-            public uint* JointOfBone;
-        }
-
-        [StructLayout(LayoutKind.Sequential)]
-        public unsafe struct StepJob  // sc_step_job
-        {
-            public Motion A;
-            public Motion B;
-            /// <summary>the same contacts, and times, on every one</summary>
-            public Target Target;
-            /// <summary>of one body; null: the asset's ignored pairs</summary>
-            public Filter* Filter;
-            /// <summary>a share of the height of a's asset; 0: 0.0001</summary>
-            public float Tolerance;
-            /// <summary>sc_step_scratch_words() words; nothing is kept there between runs</summary>
-            public ulong* Scratch;
-            public UIntPtr ScratchWords;
-            public StepContact* Contacts;
-            public UIntPtr ContactCapacity;
-            /// <summary>out: how many there are, also where `contacts` is too small</summary>
-            public UIntPtr ContactCount;
-        }
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern byte* sc_code_text(Code code);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern byte* sc_field_name(Field field);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern byte* sc_target_name(Target target);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Target* sc_supported_targets(UIntPtr* count);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern uint sc_abi_version();
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_asset_open(Asset* asset, uint abi, void* data, UIntPtr size, byte* message, UIntPtr message_size);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern int sc_asset_is_open(Asset* asset);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern AssetInfo sc_asset_get_info(Asset* asset);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern RestSphere sc_asset_sphere(Asset* asset, UIntPtr index);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Bone sc_asset_bone(Asset* asset, UIntPtr index);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Part sc_asset_part(Asset* asset, UIntPtr index);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern byte* sc_asset_morph_name(Asset* asset, UIntPtr index);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern byte* sc_asset_region_name(Asset* asset, UIntPtr index);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern SourceBuffer sc_asset_source_buffer(Asset* asset, UIntPtr index);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern ulong sc_hash_positions(float* positions, UIntPtr count, UIntPtr stride);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_check_source(Asset* asset, UIntPtr buffer, float* positions, UIntPtr count, UIntPtr stride);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Rule sc_default_rule();
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern PenetrationClass sc_classify(Rule* rule, Measures* measures);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern byte* sc_penetration_class_name(PenetrationClass kind);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern UIntPtr sc_pair_words(Asset* asset);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_reset_filter(Asset* asset, Filter* filter);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_ignore_pair(Asset* asset, Filter* filter, uint a, uint b, int ignored);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_ignore_regions(Asset* asset, Filter* filter, UIntPtr region, UIntPtr other, int ignored);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_detect(DetectJob* job);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_detect_table_words(Asset* asset);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_prepare_detect(Asset* asset, Radius radius, Filter* filter, ulong* words, UIntPtr word_count);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_bind_joints(Asset* asset, Bone* joints, UIntPtr joint_count, MatrixLayout inverse_bind_layout, uint* joint_of_bone, UIntPtr capacity, byte* message, UIntPtr message_size);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_gather_bones(Asset* asset, uint* joint_of_bone, Pose* palette, float* bones);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_place_bones(JointTransform* transform, float* bones, UIntPtr bone_count);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_check_rest_pose(Asset* asset, Pose* pose, byte* message, UIntPtr message_size);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_find_skin_contacts(SkinContactJob* job);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_skin_table_words(Asset* asset);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_prepare_skin(Asset* asset, ulong* words, UIntPtr word_count);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_skin_scratch_words(Asset* asset);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_measure_penetrations(PenetrationJob* job);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_penetration_scratch_words(Asset* asset, UIntPtr contact_count);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_find_body_contacts(BodyContactJob* job);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_body_scratch_words(Asset* a, Asset* b);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_measure_body_penetrations(BodyPenetrationJob* job);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_body_penetration_scratch_words(Asset* a, Asset* b, UIntPtr contact_count);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_find_floor_penetrations(FloorJob* job);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_floor_scratch_words(Asset* asset);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_bound_body(JobBody* body, Vec3* low, Vec3* high);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_find_meetings(SceneJob* job);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern UIntPtr sc_scene_scratch_words(UIntPtr body_count);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern UIntPtr sc_part_words(Asset* asset);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_create_model(uint abi, ModelDef* def, IntPtr* model, byte* message, UIntPtr message_size);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern void sc_destroy_model(IntPtr model);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Asset* sc_get_asset(IntPtr model);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern uint sc_get_part_joint(IntPtr model, uint part);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Triangle sc_get_triangle(IntPtr model, uint triangle);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_check_rest(IntPtr model, Pose* palette, byte* message, UIntPtr message_size);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_create_body(IntPtr model, BodyDef* def, IntPtr* body);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern void sc_destroy_body(IntPtr body);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_set_pose(IntPtr body, Pose* pose, JointTransform* place);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_find_penetrations(IntPtr body, IntPtr other, Query* query, Penetrations* found);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_find_contacts(IntPtr body, IntPtr other, Query* query, Contacts* found);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_find_sphere_pairs(IntPtr body, Query* query, SpherePairs* found);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_find_steps(IntPtr body, IntPtr other, Query* query, Steps* found);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_find_in_ground(IntPtr body, Ground* ground, Query* query, Penetrations* found);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_get_bounds(IntPtr body, Vec3* low, Vec3* high);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_character_create(uint abi, void* data, UIntPtr size, Bone* joints, UIntPtr joint_count, MatrixLayout inverse_bind_layout, IntPtr* character, byte* message, UIntPtr message_size);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern void sc_character_destroy(IntPtr character);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Asset* sc_character_asset(IntPtr character);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_character_check_rest(IntPtr character, Pose* palette, byte* message, UIntPtr message_size);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_character_contacts(IntPtr character, Pose* palette, PartContact** contacts, UIntPtr* count);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_character_penetrations(IntPtr character, Pose* palette, Penetration** penetrations, UIntPtr* count);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern Status sc_detect_crowd(CrowdJob* job);
-
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
         public static extern UIntPtr sc_crowd_scratch_words(Asset* asset, UIntPtr task_count);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_refit(RefitJob* job);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_find_step_contacts(StepJob* job);
-
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_step_scratch_words(Motion* a, Motion* b);
     }
 }

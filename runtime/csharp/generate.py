@@ -13,7 +13,10 @@ import re
 import subprocess
 import sys
 
-# What C# does without, and why.
+# What C# does without: classes do it instead (Model, Body). So does every function that takes a struct of these.
+UNUSED = re.compile(r"""sc_(?!crowd_|scene_)\w+_job | sc_job_body | sc_motion | sc_blend | sc_character\w* | sc_place_bones | sc_check_rest_pose
+    | sc_detect_table_words | sc_prepare_\w+ | sc_(?!crowd_|scene_)\w+_scratch_words | sc_skin_table_words""", re.X)
+# Constants that C# cannot have, and why.
 LEFT_OUT = {
     "SC_WHOLE_SOURCE": "its width depends on the machine: pass new UIntPtr(UIntPtr.Size == 8 ? ulong.MaxValue : uint.MaxValue)",
 }
@@ -63,6 +66,7 @@ class Header:
         marks = len(re.findall(r"^SPHERECHAIN_API ", self.raw, re.M))
         if marks != len(self.functions):
             fail("the headers mark %d functions, %d were read" % (marks, len(self.functions)))
+        self.leave_out()
         for line in sorted(preprocess(headers, "-dM").split("\n")):
             define = re.match(r"#define (SC_\w+) (.+)", line)
             if not define or define.group(1) in ("SC_ZERO", "SC_NOEXCEPT") or define.group(1) in LEFT_OUT:
@@ -70,6 +74,13 @@ class Header:
             if not re.fullmatch(r"\d+|0x[0-9A-Fa-f]+u", define.group(2)):
                 fail("what is %s?" % line)
             self.constants[define.group(1)] = define.group(2)
+
+    def leave_out(self):
+        unused = {type_name(name) for name in list(self.structs) + list(self.enums) if UNUSED.fullmatch(name)}
+        self.enums = {name: of for name, of in self.enums.items() if type_name(name) not in unused}
+        self.structs = {name: of for name, of in self.structs.items() if type_name(name) not in unused}
+        self.functions = [f for f in self.functions
+                          if not UNUSED.fullmatch(f[0]) and not any(kind.rstrip("*") in unused for _, kind in f[2])]
 
     def parse(self, text):
         # After the preprocessor SC_ENUM is `typedef int32_t NAME; enum {...};`.
@@ -178,8 +189,8 @@ def struct_lines(header, name, indent):
 def native(header):
     lines = """// SPDX-License-Identifier: MIT
 // Written by runtime/csharp/generate.py from the C headers; the test csharp.native fails where it is not what they say now.
-// Types without pointers are public for all code. Jobs and functions are in the class Native, for unsafe code. The headers
-// (runtime/include/spherechain) say what each function promises; size_t is UIntPtr, and a pointer to a function an IntPtr.
+// Types without pointers are public for all code. Structs with pointers, and functions, are in the class Native, for unsafe code.
+// The headers (runtime/include/spherechain) say what each function promises; size_t is UIntPtr, a function pointer an IntPtr.
 using System;
 using System.Runtime.InteropServices;
 
@@ -213,8 +224,8 @@ namespace Spherechain
     for name, result, parameters in header.functions:
         listed = ", ".join("%s %s%s" % (kind, "@" if p in KEYWORDS else "", p) for p, kind in parameters)
         lines += ["        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]",
-                  "        public static extern %s %s(%s);" % (result, name, listed), ""]
-    lines[-1] = "    }"
+                  "        public static extern %s %s(%s);" % (result, name, listed)]
+    lines.append("    }")
     return "\n".join(lines + ["}"])
 
 
