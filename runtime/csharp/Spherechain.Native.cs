@@ -194,38 +194,27 @@ namespace Spherechain
         Full = 1,
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct Vec3  // sc_vec3
     {
-        public float X;
-        public float Y;
-        public float Z;
+        public float X, Y, Z;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct Sphere  // sc_sphere
     {
-        public float X;
-        public float Y;
-        public float Z;
-        public float Radius;
+        public float X, Y, Z, Radius;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct Pair  // sc_pair
     {
-        public uint A;
-        public uint B;
+        public uint A, B;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct Status  // sc_status
     {
         public Code Code;
         public Field Field;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct RestSphere  // sc_rest_sphere
     {
         public Vec3 Center;
@@ -241,19 +230,15 @@ namespace Spherechain
         public int Level;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct SourceBuffer  // sc_source_buffer
     {
-        public uint Mesh;
         /// <summary>glTF: indices in the file; other formats: the importer's mesh, and 0</summary>
-        public uint Primitive;
-        public uint FirstVertex;
-        public uint VertexCount;
+        public uint Mesh, Primitive;
+        public uint FirstVertex, VertexCount;
         /// <summary>sc_hash_positions() of its positions as the file has them</summary>
         public ulong Hash;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct Measures  // sc_measures
     {
         /// <summary>&gt; 0: the way out; the pose's units</summary>
@@ -274,25 +259,21 @@ namespace Spherechain
         public float Thickness;
         /// <summary>depth / thickness * visible length / side of a square like the smaller part; negative: not known, for the class does not depend on it</summary>
         public float Swallowed;
-        public float Height;
         /// <summary>how long the character's height and a metre are in the pose's units</summary>
-        public float Metre;
+        public float Height, Metre;
         public Relation Relation;
         /// <summary>1: the two spots are of one piece of skin</summary>
         public int IsOnePiece;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct Rule  // sc_rule
     {
         /// <summary>SC_RULE_VERSION; others are refused</summary>
         public uint Version;
         /// <summary>the pose's units. Below it parts just touch, and what is deeper is no touch; 0: the next four</summary>
         public float TouchDepth;
-        public float TouchMetres;
-        public float TouchMin;
         /// <summary>a touch is less deep than touch_metres metres, but at least touch_min and at most touch_max</summary>
-        public float TouchMax;
+        public float TouchMetres, TouchMin, TouchMax;
         /// <summary>or up to so many times that, where less goes in than `swallowed` and it is no fold</summary>
         public float TouchTimes;
         public float Swallowed;
@@ -312,35 +293,26 @@ namespace Spherechain
         public float DeepFold;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct PartContact  // sc_part_contact
     {
-        public uint PartA;
         /// <summary>part_a &lt;= part_b; equal where a part meets itself</summary>
-        public uint PartB;
+        public uint PartA, PartB;
         /// <summary>&gt;= 1</summary>
         public uint TrianglePairs;
-        public Vec3 Low;
         /// <summary>a box around the triangles that intersect; the pose's space</summary>
-        public Vec3 High;
+        public Vec3 Low, High;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct TriangleContact  // sc_triangle_contact
     {
-        public uint TriangleA;
         /// <summary>the source's numbers, triangle_a &lt; triangle_b</summary>
-        public uint TriangleB;
-        public uint SphereA;
-        public uint SphereB;
-        public uint PartA;
-        public uint PartB;
-        public Vec3 From;
+        public uint TriangleA, TriangleB;
+        public uint SphereA, SphereB;
+        public uint PartA, PartB;
         /// <summary>the segment in which they cross; of triangles in one plane the longest piece of an edge inside the other triangle. Rounded</summary>
-        public Vec3 To;
+        public Vec3 From, To;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct SkinPoint  // sc_skin_point
     {
         /// <summary>the pose's space</summary>
@@ -348,16 +320,12 @@ namespace Spherechain
         /// <summary>the source's number</summary>
         public uint Triangle;
         /// <summary>of the triangle's corners; their sum is 1</summary>
-        public float Weights0;
-        public float Weights1;
-        public float Weights2;
+        public float Weights0, Weights1, Weights2;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct Penetration  // sc_penetration
     {
-        public uint Part;
-        public uint Other;
+        public uint Part, Other;
         /// <summary>moves `part`, in the order of the model's joints; SC_NO_JOINT where none does</summary>
         public uint Joint;
         public PenetrationClass Kind;
@@ -367,57 +335,43 @@ namespace Spherechain
         public float Distance;
         /// <summary>of the line where the parts cross</summary>
         public Vec3 Centre;
-        public Vec3 Low;
         /// <summary>a box around that line</summary>
-        public Vec3 High;
-        public SkinPoint Deepest;
+        public Vec3 Low, High;
         /// <summary>the points that part last; deepest_other - deepest = distance * direction</summary>
-        public SkinPoint DeepestOther;
+        public SkinPoint Deepest, DeepestOther;
         public Measures Measures;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct StepContact  // sc_step_contact
     {
-        public uint PartA;
-        public uint PartB;
-        public int AtStart;
+        public uint PartA, PartB;
         /// <summary>1: they intersect there: more say the contacts of that pose</summary>
-        public int AtEnd;
+        public int AtStart, AtEnd;
         /// <summary>the first time at which they touch; 0 with at_start</summary>
         public float Begin;
         /// <summary>the last time; 1 with at_end. In between they may part and meet again</summary>
         public float End;
-        public uint TriangleA;
         /// <summary>that touch at `begin`, by the source's numbers; SC_NO_TRIANGLE with at_start</summary>
-        public uint TriangleB;
+        public uint TriangleA, TriangleB;
         /// <summary>where they do; zero with at_start</summary>
         public Vec3 At;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct JointTransform  // sc_transform
     {
         public Vec3 Translation;
         /// <summary>a quaternion: x, y, z, w; of about unit length</summary>
-        public float Rotation0;
-        public float Rotation1;
-        public float Rotation2;
-        public float Rotation3;
+        public float Rotation0, Rotation1, Rotation2, Rotation3;
         /// <summary>along its own axes; negative mirrors</summary>
         public Vec3 Scale;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct Triangle  // sc_triangle
     {
-        public uint Part;
-        public uint Region;
         /// <summary>SC_NO_PART, each: the triangle was left out of the skin, as degenerate ones are</summary>
-        public uint Sphere;
+        public uint Part, Region, Sphere;
     }
 
-    [StructLayout(LayoutKind.Sequential)]
     public struct CrowdPair  // sc_crowd_pair
     {
         public uint Instance;
@@ -432,6 +386,7 @@ namespace Spherechain
 #else
         public const string Library = "spherechain";  // spherechain.dll, libspherechain.so, libspherechain.dylib
 #endif
+        const CallingConvention Cdecl = CallingConvention.Cdecl;
 
         public const uint AbiVersion = 11;
         public const uint AssetAlignment = 8;
@@ -442,13 +397,11 @@ namespace Spherechain
         public const uint RuleVersion = 2;
         // Left out: SC_WHOLE_SOURCE: its width depends on the machine: pass new UIntPtr(UIntPtr.Size == 8 ? ulong.MaxValue : uint.MaxValue).
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct Asset  // sc_asset
         {
             public fixed ulong Opaque[128];
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct Bone  // sc_bone
         {
             public byte* Name;
@@ -456,7 +409,6 @@ namespace Spherechain
             public float* InverseBind;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct Part  // sc_part
         {
             public byte* Name;
@@ -469,18 +421,11 @@ namespace Spherechain
             public int Mobility;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct AssetInfo  // sc_asset_info
         {
-            public UIntPtr SphereCount;
-            public UIntPtr BoneCount;
-            public UIntPtr PartCount;
-            public UIntPtr MorphCount;
-            public UIntPtr RegionCount;
-            public UIntPtr SourceBufferCount;
-            public UIntPtr VertexCount;
+            public UIntPtr SphereCount, BoneCount, PartCount, MorphCount, RegionCount, SourceBufferCount;
             /// <summary>of the source</summary>
-            public UIntPtr TriangleCount;
+            public UIntPtr VertexCount, TriangleCount;
             /// <summary>pairs of spheres that are neighbours on the body</summary>
             public UIntPtr IgnoredPairCount;
             /// <summary>"spherechain 0.1.0"</summary>
@@ -492,24 +437,19 @@ namespace Spherechain
             public byte* SourceSha256;
             /// <summary>sc_hash_positions() of the whole rest pose</summary>
             public ulong SourceRestHash;
-            public Vec3 Origin;
-            public Vec3 Left;
-            public Vec3 Up;
             /// <summary>the character's own axes; orthonormal, left x up = forward</summary>
-            public Vec3 Forward;
+            public Vec3 Origin, Left, Up, Forward;
             /// <summary>source units</summary>
             public float Height;
             public float MetresPerUnit;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct Filter  // sc_filter
         {
             public ulong* Ignored;
             public UIntPtr IgnoredWords;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct Pose  // sc_pose
         {
             /// <summary>null: none</summary>
@@ -532,21 +472,18 @@ namespace Spherechain
             public UIntPtr VertexStride;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct SceneBody  // sc_scene_body
         {
             /// <summary>refitted; or null: the box counts</summary>
             public Sphere* Spheres;
             public UIntPtr SphereCount;
-            public Vec3 Low;
             /// <summary>without spheres: a box around the body, as sc_bound_body() has it; finite</summary>
-            public Vec3 High;
+            public Vec3 Low, High;
             public JointTransform* Transform;
             /// <summary>below 32</summary>
             public uint Layer;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct SceneJob  // sc_scene_job
         {
             public SceneBody* Bodies;
@@ -566,7 +503,6 @@ namespace Spherechain
             public UIntPtr PairCount;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct Allocator  // sc_allocator
         {
             public IntPtr Allocate;
@@ -574,7 +510,6 @@ namespace Spherechain
             public void* User;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct ModelDef  // sc_model_def
         {
             /// <summary>the bytes of a .sphc file, copied</summary>
@@ -588,7 +523,6 @@ namespace Spherechain
             public Allocator* Allocator;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct BodyDef  // sc_body_def
         {
             public UIntPtr MaxTriangles;
@@ -602,7 +536,6 @@ namespace Spherechain
             public Allocator* Allocator;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct Query  // sc_query
         {
             public Scope Scope;
@@ -628,46 +561,37 @@ namespace Spherechain
             public Target Target;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct Penetrations  // sc_penetrations
         {
             public Penetration* Items;
-            public UIntPtr Count;
-            public UIntPtr Total;
+            public UIntPtr Count, Total;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct Contacts  // sc_contacts
         {
             public PartContact* Parts;
             public UIntPtr PartCount;
             public Pair* Spheres;
-            public UIntPtr SphereCount;
-            public UIntPtr SphereTotal;
+            public UIntPtr SphereCount, SphereTotal;
             public TriangleContact* Triangles;
-            public UIntPtr TriangleCount;
-            public UIntPtr TriangleTotal;
+            public UIntPtr TriangleCount, TriangleTotal;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct SpherePairs  // sc_sphere_pairs
         {
             /// <summary>the asset's, in the pose</summary>
             public Sphere* Spheres;
             public UIntPtr SphereCount;
             public Pair* Pairs;
-            public UIntPtr Count;
-            public UIntPtr Total;
+            public UIntPtr Count, Total;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct Steps  // sc_steps
         {
             public StepContact* Items;
             public UIntPtr Count;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct Ground  // sc_ground
         {
             /// <summary>of unit length</summary>
@@ -678,7 +602,6 @@ namespace Spherechain
             public void* User;
         }
 
-        [StructLayout(LayoutKind.Sequential)]
         public unsafe struct CrowdJob  // sc_crowd_job
         {
             public Asset* Asset;
@@ -711,95 +634,50 @@ namespace Spherechain
             public UIntPtr PairCount;
         }
 
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern byte* sc_code_text(Code code);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern byte* sc_field_name(Field field);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern byte* sc_target_name(Target target);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Target* sc_supported_targets(UIntPtr* count);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern uint sc_abi_version();
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_asset_open(Asset* asset, uint abi, void* data, UIntPtr size, byte* message, UIntPtr message_size);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern int sc_asset_is_open(Asset* asset);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern AssetInfo sc_asset_get_info(Asset* asset);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern RestSphere sc_asset_sphere(Asset* asset, UIntPtr index);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Bone sc_asset_bone(Asset* asset, UIntPtr index);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Part sc_asset_part(Asset* asset, UIntPtr index);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern byte* sc_asset_morph_name(Asset* asset, UIntPtr index);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern byte* sc_asset_region_name(Asset* asset, UIntPtr index);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern SourceBuffer sc_asset_source_buffer(Asset* asset, UIntPtr index);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern ulong sc_hash_positions(float* positions, UIntPtr count, UIntPtr stride);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_check_source(Asset* asset, UIntPtr buffer, float* positions, UIntPtr count, UIntPtr stride);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Rule sc_default_rule();
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern PenetrationClass sc_classify(Rule* rule, Measures* measures);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern byte* sc_penetration_class_name(PenetrationClass kind);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_pair_words(Asset* asset);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_reset_filter(Asset* asset, Filter* filter);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_ignore_pair(Asset* asset, Filter* filter, uint a, uint b, int ignored);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_ignore_regions(Asset* asset, Filter* filter, UIntPtr region, UIntPtr other, int ignored);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_bind_joints(Asset* asset, Bone* joints, UIntPtr joint_count, MatrixLayout inverse_bind_layout, uint* joint_of_bone, UIntPtr capacity, byte* message, UIntPtr message_size);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_gather_bones(Asset* asset, uint* joint_of_bone, Pose* palette, float* bones);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_find_meetings(SceneJob* job);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_scene_scratch_words(UIntPtr body_count);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_part_words(Asset* asset);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_create_model(uint abi, ModelDef* def, IntPtr* model, byte* message, UIntPtr message_size);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern void sc_destroy_model(IntPtr model);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Asset* sc_get_asset(IntPtr model);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern uint sc_get_part_joint(IntPtr model, uint part);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Triangle sc_get_triangle(IntPtr model, uint triangle);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_check_rest(IntPtr model, Pose* palette, byte* message, UIntPtr message_size);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_create_body(IntPtr model, BodyDef* def, IntPtr* body);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern void sc_destroy_body(IntPtr body);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_set_pose(IntPtr body, Pose* pose, JointTransform* place);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_find_penetrations(IntPtr body, IntPtr other, Query* query, Penetrations* found);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_find_contacts(IntPtr body, IntPtr other, Query* query, Contacts* found);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_find_sphere_pairs(IntPtr body, Query* query, SpherePairs* found);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_find_steps(IntPtr body, IntPtr other, Query* query, Steps* found);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_find_in_ground(IntPtr body, Ground* ground, Query* query, Penetrations* found);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_get_bounds(IntPtr body, Vec3* low, Vec3* high);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern Status sc_detect_crowd(CrowdJob* job);
-        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]
-        public static extern UIntPtr sc_crowd_scratch_words(Asset* asset, UIntPtr task_count);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern byte* sc_code_text(Code code);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern byte* sc_field_name(Field field);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern byte* sc_target_name(Target target);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Target* sc_supported_targets(UIntPtr* count);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern uint sc_abi_version();
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_asset_open(Asset* asset, uint abi, void* data, UIntPtr size, byte* message, UIntPtr message_size);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern int sc_asset_is_open(Asset* asset);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern AssetInfo sc_asset_get_info(Asset* asset);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern RestSphere sc_asset_sphere(Asset* asset, UIntPtr index);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Bone sc_asset_bone(Asset* asset, UIntPtr index);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Part sc_asset_part(Asset* asset, UIntPtr index);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern byte* sc_asset_morph_name(Asset* asset, UIntPtr index);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern byte* sc_asset_region_name(Asset* asset, UIntPtr index);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern SourceBuffer sc_asset_source_buffer(Asset* asset, UIntPtr index);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern ulong sc_hash_positions(float* positions, UIntPtr count, UIntPtr stride);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_check_source(Asset* asset, UIntPtr buffer, float* positions, UIntPtr count, UIntPtr stride);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Rule sc_default_rule();
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern PenetrationClass sc_classify(Rule* rule, Measures* measures);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern byte* sc_penetration_class_name(PenetrationClass kind);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern UIntPtr sc_pair_words(Asset* asset);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_reset_filter(Asset* asset, Filter* filter);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_ignore_pair(Asset* asset, Filter* filter, uint a, uint b, int ignored);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_ignore_regions(Asset* asset, Filter* filter, UIntPtr region, UIntPtr other, int ignored);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_bind_joints(Asset* asset, Bone* joints, UIntPtr joint_count, MatrixLayout inverse_bind_layout, uint* joint_of_bone, UIntPtr capacity, byte* message, UIntPtr message_size);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_gather_bones(Asset* asset, uint* joint_of_bone, Pose* palette, float* bones);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_find_meetings(SceneJob* job);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern UIntPtr sc_scene_scratch_words(UIntPtr body_count);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern UIntPtr sc_part_words(Asset* asset);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_create_model(uint abi, ModelDef* def, IntPtr* model, byte* message, UIntPtr message_size);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern void sc_destroy_model(IntPtr model);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Asset* sc_get_asset(IntPtr model);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern uint sc_get_part_joint(IntPtr model, uint part);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Triangle sc_get_triangle(IntPtr model, uint triangle);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_check_rest(IntPtr model, Pose* palette, byte* message, UIntPtr message_size);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_create_body(IntPtr model, BodyDef* def, IntPtr* body);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern void sc_destroy_body(IntPtr body);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_set_pose(IntPtr body, Pose* pose, JointTransform* place);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_find_penetrations(IntPtr body, IntPtr other, Query* query, Penetrations* found);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_find_contacts(IntPtr body, IntPtr other, Query* query, Contacts* found);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_find_sphere_pairs(IntPtr body, Query* query, SpherePairs* found);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_find_steps(IntPtr body, IntPtr other, Query* query, Steps* found);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_find_in_ground(IntPtr body, Ground* ground, Query* query, Penetrations* found);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_get_bounds(IntPtr body, Vec3* low, Vec3* high);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern Status sc_detect_crowd(CrowdJob* job);
+        [DllImport(Library, CallingConvention = Cdecl)] public static extern UIntPtr sc_crowd_scratch_words(Asset* asset, UIntPtr task_count);
     }
 }

@@ -8,6 +8,7 @@ generate.py HEADERS --layout     print a C program that prints the layout of all
 HEADERS is runtime/include. The C preprocessor (cc, or $CC) reads spherechain.h. What is neither an enum, a struct, a function
 nor a number is an error: nothing in the headers can be passed over in silence.
 """
+import itertools
 import os
 import re
 import subprocess
@@ -115,18 +116,18 @@ class Header:
         return re.sub(r"(\d)X(\d)", r"\1x\2", "".join(words))
 
     def struct(self, name, body, again):
-        fields = []
+        fields = []  # name, type, length, and a number that the names of one declaration share
         while body.strip():
             body = body.strip()
             callback = re.match(r"[\w \*]+\(\*(\w+)\)\((?:[^()]|\([^()]*\))*\) ?;", body)
             if callback:
-                fields.append((callback.group(1), "IntPtr", 0))
+                fields.append((callback.group(1), "IntPtr", 0, len(body)))
                 body = body[callback.end():]
                 continue
             found = re.match(r"((?:const )?\w+ ?\**) ?([\w\[\], ]+?) ?;", body) or fail("%s: what is %s?" % (name, body[:80]))
             for field in found.group(2).split(","):
                 array = re.fullmatch(r"(\w+)(?:\[(\d+)\])?", field.strip()) or fail("%s: what is %s?" % (name, field))
-                fields.append((array.group(1), self.type(found.group(1)), int(array.group(2) or 0)))
+                fields.append((array.group(1), self.type(found.group(1)), int(array.group(2) or 0), len(body)))
             body = body[found.end():]
         self.structs[name] = fields
 
@@ -153,7 +154,7 @@ class Header:
 
     def is_plain(self, name):
         """Can code that is not `unsafe` use all of it?"""
-        for _, kind, length in self.structs[name]:
+        for _, kind, length, _ in self.structs[name]:
             inner = [s for s in self.structs if type_name(s) == kind]
             if "*" in kind or kind in ("IntPtr", "UIntPtr") or length > ARRAY_MAX or (inner and not self.is_plain(inner[0])):
                 return False
@@ -173,16 +174,17 @@ def doc(text, indent):
 
 
 def struct_lines(header, name, indent):
-    plain = header.is_plain(name)
-    lines = [indent + "[StructLayout(LayoutKind.Sequential)]",
-             "%spublic %sstruct %s  // %s" % (indent, "" if plain else "unsafe ", type_name(name), name), indent + "{"]
-    for field, kind, length in header.structs[name]:
-        lines += doc(header.comment(name, field), indent + "    ")
-        if length > ARRAY_MAX:
-            lines.append("%s    public fixed %s %s[%d];" % (indent, kind, pascal(field), length))
-        else:
-            names = [pascal(field)] if not length else ["%s%d" % (pascal(field), i) for i in range(length)]
-            lines += ["%s    public %s %s;" % (indent, kind, n) for n in names]
+    """A line for each declaration of the header, as that has them."""
+    lines = ["%spublic %sstruct %s  // %s" % (indent, "" if header.is_plain(name) else "unsafe ", type_name(name), name), indent + "{"]
+    for _, group in itertools.groupby(header.structs[name], key=lambda field: field[3]):
+        names = []
+        for field, kind, length, _ in group:
+            comment = header.comment(name, field)  # behind the last
+            if length > ARRAY_MAX:
+                kind, names = "fixed " + kind, ["%s[%d]" % (pascal(field), length)]
+            else:
+                names += [pascal(field)] if not length else ["%s%d" % (pascal(field), i) for i in range(length)]
+        lines += doc(comment, indent + "    ") + ["%s    public %s %s;" % (indent, kind, ", ".join(names))]
     return lines + [indent + "}", ""]
 
 
@@ -212,6 +214,7 @@ namespace Spherechain
 #else
         public const string Library = "spherechain";  // spherechain.dll, libspherechain.so, libspherechain.dylib
 #endif
+        const CallingConvention Cdecl = CallingConvention.Cdecl;
 """.split("\n")
     for name, value in header.constants.items():
         lines.append("        public const uint %s = %s;" % (header.member(name[3:]), value))
@@ -223,8 +226,7 @@ namespace Spherechain
             lines += struct_lines(header, name, "        ")
     for name, result, parameters in header.functions:
         listed = ", ".join("%s %s%s" % (kind, "@" if p in KEYWORDS else "", p) for p, kind in parameters)
-        lines += ["        [DllImport(Library, CallingConvention = CallingConvention.Cdecl)]",
-                  "        public static extern %s %s(%s);" % (result, name, listed)]
+        lines.append("        [DllImport(Library, CallingConvention = Cdecl)] public static extern %s %s(%s);" % (result, name, listed))
     lines.append("    }")
     return "\n".join(lines + ["}"])
 
@@ -241,7 +243,7 @@ def layout(header):
         lines.append('  printf("constant %s %%u\\n", (unsigned)%s);' % (header.member(name[3:]), name))
     for name, fields in header.structs.items():
         lines.append('  printf("struct %s: %%d bytes\\n", (int)sizeof(%s));' % (type_name(name), name))
-        for field, kind, length in fields:
+        for field, kind, length, _ in fields:
             names = [(pascal(field), field)]
             if 0 < length <= ARRAY_MAX:
                 names = [("%s%d" % (pascal(field), i), "%s[%d]" % (field, i)) for i in range(length)]

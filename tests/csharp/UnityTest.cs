@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // UnityTest.exe ASSET.sphc PALETTES: SelfCollision.cs on a character as an importer of Unity makes it, X turned around and
-// metres made of another unit, the character moved, turned and scaled: the same faults as Character's in the source's space.
+// metres made of another unit, the character moved, turned and scaled: the same faults as a Body's in the source's space.
 using System;
 using System.IO;
 using System.Reflection;
@@ -64,9 +64,8 @@ public static class UnityTest
     // The fault of the same parts, or an empty one.
     static Penetration Find(SelfCollision component, Penetration like)
     {
-        for (int i = 0; i < component.PenetrationCount; ++i)
+        foreach (Penetration found in component.Penetrations)
         {
-            Penetration found = component.Penetrations[i];
             if (found.Part == like.Part && found.Other == like.Other) return found;
         }
         return default(Penetration);
@@ -94,17 +93,19 @@ public static class UnityTest
         Check(Debug.Lines.Count == 1 && Debug.Lines[0] == "log: SelfCollision: the matrices fit", string.Join("; ", Debug.Lines));
 
         int faults = 0, drawn = 0;
-        using (Character reference = new Character(file, model.Joints, model.InverseBinds, MatrixLayout.Columns4x4))
+        using (Model source = new Model(file, model.Joints, model.InverseBinds, MatrixLayout.Columns4x4))
+        using (Body reference = new Body(source))
         {
-            float height = reference.Asset.Height;
+            float height = source.Height;
+            Query query = new Query { Classes = Query.AllClasses };
             for (int frame = 0; frame < model.Frames.Length; frame += 3)
             {
                 Stand(component, model, model.Frames[frame], root);
                 Call(component, "LateUpdate");
-                int count = reference.FindPenetrations(model.Frames[frame], MatrixLayout.Columns4x4);
-                for (int i = 0; i < count; ++i)
+                reference.SetPose(model.Frames[frame], MatrixLayout.Columns4x4);
+                query.Previous = reference.Penetrations(query);
+                foreach (Penetration expected in query.Previous)
                 {
-                    Penetration expected = reference.Penetrations[i];
                     if (expected.Kind != PenetrationClass.Penetration || expected.Measures.Depth < 0.01f * height) continue;
                     ++faults;
                     Penetration found = Find(component, expected);
@@ -118,7 +119,7 @@ public static class UnityTest
                           0.01f * kUnit * height, "frame " + frame + ": the deepest point differs");
                 }
                 Call(component, "OnDrawGizmosSelected");
-                drawn += component.PenetrationCount;
+                drawn += component.Penetrations.Count;
             }
         }
         Check(faults > 20, "only " + faults + " faults were compared");
