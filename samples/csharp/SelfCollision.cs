@@ -15,6 +15,8 @@ public sealed class SelfCollision : MonoBehaviour
     public Axis mirroredAxis = Axis.X;
     [Tooltip("Length of a unit of the source file here: 0.01 where the file is in centimetres and the importer made metres of them")]
     public float sourceUnit = 1;
+    [Tooltip("Keep the way out of the last frame while it is nearly the shortest, so that it does not flicker")]
+    public bool keepsDirections = true;
 
     /// <summary>The last frame's, the worst first; null while disabled. Its positions are the source's: see Position() and
     /// Direction().</summary>
@@ -80,8 +82,8 @@ public sealed class SelfCollision : MonoBehaviour
     {
         FillPalette();
         body.SetPose(palette, MatrixLayout.Columns4x4);
-        // Folds at joints and touches, too. Directions stay steady with those of the last frame.
-        Penetrations = body.Penetrations(new Query { Classes = Query.AllClasses, Previous = Penetrations });
+        // Folds at joints and touches, too.
+        Penetrations = body.Penetrations(new Query { Classes = Query.AllClasses, Previous = keepsDirections ? Penetrations : null });
     }
 
     // World times bind pose, as a skinning shader has it, but in this object's space: its place and scale do not matter.
