@@ -62,6 +62,7 @@ namespace Spherechain
         public readonly Results<PartContact> Parts = new Results<PartContact>();
         public readonly Results<Pair> Spheres = new Results<Pair>();
         public readonly Results<TriangleContact> Triangles = new Results<TriangleContact>();
+        public Results<PartContact>.Enumerator GetEnumerator() { return Parts.GetEnumerator(); }
     }
 
     public sealed class SpherePairs
@@ -211,7 +212,8 @@ namespace Spherechain
             }
         }
 
-        /// <summary>From memory of an engine. Its vertices are not copied: they must stay until the pose after the next.</summary>
+        /// <summary>From memory of an engine. Its vertices are not copied: they must stay until the next pose, and for Steps() until the
+        /// one after it.</summary>
         public void SetPose(Native.Pose pose, JointTransform? place = null) { SetPose(pose, place, null); }
 
         void SetPose(Native.Pose pose, JointTransform? place, float[] copied)
@@ -295,7 +297,7 @@ namespace Spherechain
         }
 
         /// <summary>A box that holds all of the skin.</summary>
-        public void GetBounds(out Vec3 low, out Vec3 high)
+        public void Bounds(out Vec3 low, out Vec3 high)
         {
             Enter(false);
             try

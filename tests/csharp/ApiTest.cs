@@ -178,7 +178,7 @@ public static class ApiTest
                 for (int i = 0; i < vertices.Length; ++i) vertices[i] = i == 0 ? 5 + frame : 0;
                 own.SetPose(null, MatrixLayout.LayoutUnset, vertices: vertices);
                 vertices[0] = 100;
-                own.GetBounds(out low, out high);
+                own.Bounds(out low, out high);
                 Check(low.X == 0 && (high.X == 5 + frame || high.X == 0), "a box around vertices: " + high.X);
             }
         }
@@ -210,6 +210,7 @@ public static class ApiTest
                 Check(body.Contacts().Triangles.Count == 0, "quick: parts alone");
                 Contacts contacts = body.Contacts(new Query { Detail = Detail.Full });
                 Check(contacts.Triangles.Count == contacts.Parts.Items.Take(contacts.Parts.Count).Sum(c => c.TrianglePairs), "triangles");
+                foreach (PartContact contact in contacts) Check(contact.PartA <= contact.PartB && contact.TrianglePairs > 0, "parts");
                 Penetration[] found = Listed(body.Penetrations());
                 faults += found.Length;
                 Check(found.All(p => p.Kind >= PenetrationClass.DeepFold && p.Measures.Depth > 0), "faults alone");
@@ -227,7 +228,8 @@ public static class ApiTest
                 hasVolume |= found.Any(p => p.Measures.Volume > 0);
                 isHidden |= found.Any(p => p.Measures.Visible < 1);
             }
-            Check(pairs > 20 && faults > 10 && hasVolume && isHidden, string.Format("{0} pairs, {1} faults, volumes {2}, hidden {3}", pairs, faults, hasVolume, isHidden));
+            Check(pairs > 20 && faults > 10 && hasVolume && isHidden,
+                  string.Format("{0} pairs, {1} faults, volumes {2}, hidden {3}", pairs, faults, hasVolume, isHidden));
 
             // Of the same pose the way out stays, whatever it was.
             body.SetPose(deepest, kColumns);
