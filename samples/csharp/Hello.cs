@@ -18,18 +18,23 @@ public static class Hello
             for (int frame = 0; frame < clip.Frames.Length; ++frame)
             {
                 body.SetPose(clip.Frames[frame], MatrixLayout.Columns4x4);  // what your skinning shader gets
-                foreach (Penetration found in body.Penetrations()) Print(frame, model, found);
+                foreach (Penetration found in body.Penetrations())  // faults alone: no folds at joints, no touches
+                {
+                    string joint = found.Joint == Native.NoJoint ? "nothing" : clip.Joints[found.Joint];
+                    Print(frame, model, joint, found);
+                }
             }
         }
         // [/hello]
     }
 
-    static void Print(int frame, Model model, Penetration found)
+    static void Print(int frame, Model model, string joint, Penetration found)
     {
-        Vec3 way = found.Direction;  // the way that the part must go
-        Console.WriteLine("frame {0}: {1} in {2}, {3} mm; out along ({4}, {5}, {6})", frame, model.PartName(found.Part),
-                          model.PartName(found.Other), Number(model.Millimetres(found.Measures.Depth), "F0"),
-                          Number(way.X, "F2"), Number(way.Y, "F2"), Number(way.Z, "F2"));
+        Vec3 way = found.Direction;  // moved by Distance along it, the part is free
+        Console.WriteLine("frame {0}: {1} in {2}, {3} mm; move {4} by ({5}, {6}, {7})", frame, model.PartName(found.Part),
+                          model.PartName(found.Other), Number(model.Millimetres(found.Measures.Depth), "F0"), joint,
+                          Number(found.Distance * way.X, "F3"), Number(found.Distance * way.Y, "F3"),
+                          Number(found.Distance * way.Z, "F3"));
     }
 
     // As C prints it: with the sign of -0.00.
