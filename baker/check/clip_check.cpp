@@ -84,16 +84,6 @@ void ClipChecker::take_sample() {
   }
 }
 
-template <typename Run>
-void ClipChecker::with_pose(const Deformation& deformation, const Run& run) {
-  if (moved_by_bones(animated_.asset(), deformation)) return run(BonePose(animated_.asset(), deformation).pose());
-  const std::vector<float> positions = pack(animated_.positions(deformation));
-  sc_pose pose;
-  pose.vertices = positions.data();
-  pose.vertex_count = positions.size() / 3;
-  run(pose);
-}
-
 ClipChecker::Triangles ClipChecker::triangles_of(const TriangleContact& contact) {
   return contact.part_a <= contact.part_b ? Triangles{contact.triangle_a, contact.triangle_b}
                                           : Triangles{contact.triangle_b, contact.triangle_a};
@@ -107,21 +97,20 @@ ClipChecker::Frames ClipChecker::look(const ClipFrames& clip, const Told& told) 
   for (int i = 0; i < clip.count; ++i) {
     told(i, clip.count);
     Deformation deformation = animated_.deformation(clip.first + i);
-    with_pose(deformation, [&](const sc_pose& pose) {
-      const std::vector<TriangleContact>& contacts = player_.find(pose);
-      const std::size_t before = out.meetings.size();
-      for (const Penetration& found : player_.measure_quickly(pose)) {
-        out.meetings.push_back({i, found});
-        float& visible = out.meetings.back().found.measures.visible;
-        if (visible == 1 && !is_fault(found.kind)) visible = -1;  // nobody looked
-      }
-      out.contacts.resize(out.meetings.size());
-      for (const TriangleContact& contact : contacts) {
-        std::size_t m = before;
-        while (!is_of(out.meetings[m], contact)) ++m;
-        if (is_shown(out.meetings[m].found.kind)) out.contacts[m].push_back(triangles_of(contact));
-      }
-    });
+    const SkinPose skin(animated_, deformation);
+    const std::vector<TriangleContact>& contacts = player_.find(skin.pose());
+    const std::size_t before = out.meetings.size();
+    for (const Penetration& found : player_.measure_quickly(skin.pose())) {
+      out.meetings.push_back({i, found});
+      float& visible = out.meetings.back().found.measures.visible;
+      if (visible == 1 && !is_fault(found.kind)) visible = -1;  // nobody looked
+    }
+    out.contacts.resize(out.meetings.size());
+    for (const TriangleContact& contact : contacts) {
+      std::size_t m = before;
+      while (!is_of(out.meetings[m], contact)) ++m;
+      if (is_shown(out.meetings[m].found.kind)) out.contacts[m].push_back(triangles_of(contact));
+    }
     out.motion.add(deformation, deformation.positions.empty() ? deform(sample_, sample_weights_, deformation.bones)
                                                               : deformation.positions);
     if (animated_.frame_at(clip.first + i).between == 0) out.hidden.add(deformation);
@@ -133,16 +122,15 @@ ClipChecker::Frames ClipChecker::look(const ClipFrames& clip, const Told& told) 
 
 // Measures a meeting in full: with its volume, and where it is no fault along many directions.
 void ClipChecker::measure(const ClipFrames& clip, PartMeeting& meeting, std::vector<Triangles>& triangles) {
-  with_pose(animated_.deformation(clip.first + meeting.frame), [&](const sc_pose& pose) {
-    std::vector<TriangleContact> of_them;
-    triangles.clear();
-    for (const TriangleContact& contact : player_.find(pose)) {
-      if (!is_of(meeting, contact)) continue;
-      of_them.push_back(contact);
-      triangles.push_back(triangles_of(contact));
-    }
-    meeting.found = player_.measure_parts(pose, of_them);
-  });
+  const SkinPose skin(animated_, animated_.deformation(clip.first + meeting.frame));
+  std::vector<TriangleContact> of_them;
+  triangles.clear();
+  for (const TriangleContact& contact : player_.find(skin.pose())) {
+    if (!is_of(meeting, contact)) continue;
+    of_them.push_back(contact);
+    triangles.push_back(triangles_of(contact));
+  }
+  meeting.found = player_.measure_parts(skin.pose(), of_them);
 }
 
 // An event has class and depth of its worst frame, and no frame is worse than that one. Frames between others never

@@ -40,8 +40,6 @@ class ClipChecker {
   struct Frames;                                   // what was seen, frame by frame
   void take_sample();
   static Triangles triangles_of(const TriangleContact& contact);
-  template <typename Run>
-  void with_pose(const Deformation& deformation, const Run& run);
   Frames look(const ClipFrames& clip, const Told& told);
   void measure(const ClipFrames& clip, struct PartMeeting& meeting, std::vector<Triangles>& triangles);
   void find_worst(Frames& frames, const ClipFrames& clip, struct EventSpan& span);

@@ -137,7 +137,7 @@ ExitCode run_play(const PlayOptions& options) {
         result = player.run(positions);
       }
       const bool is_next = i > 0 && animated.frame_at(i).clip == animated.frame_at(i - 1).clip;
-      const Player::TriangleDetection skin = player.detect_triangles(positions, is_next);
+      const Player::TriangleDetection skin = player.detect_triangles(SkinPose(animated, deformation).pose(), is_next);
       const PartCounts counts = contacts.add(i, skin.pairs, skin.penetrations);
       tally.add(result, player.pairs(), player.spheres_of(skin.pairs), skin.us, skin.measure_us);
       if (!file) continue;

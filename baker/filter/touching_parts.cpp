@@ -2,7 +2,6 @@
 #include "filter/touching_parts.h"
 
 #include <algorithm>
-#include <optional>
 
 #include "play/skin_player.h"
 
@@ -42,15 +41,8 @@ TouchingParts::TouchingParts(const AnimatedAsset& animated, const PartSkin& skin
 const std::vector<PartContact>& TouchingParts::find(const Deformation& deformation) {
   const OpenAsset& asset = animated_.asset();
   SkinContactJob job;
-  std::optional<BonePose> bones;
-  std::vector<float> vertices;
-  if (moved_by_bones(asset, deformation)) {
-    job.pose = bones.emplace(asset, deformation).pose();
-  } else {
-    vertices = pack(animated_.positions(deformation));
-    job.pose.vertices = vertices.data();
-    job.pose.vertex_count = vertices.size() / 3;
-  }
+  const SkinPose skin(animated_, deformation);
+  job.pose = skin.pose();
   job.asset = asset.handle();
   job.target = target_;
   job.skin_table = skin_.table.data();

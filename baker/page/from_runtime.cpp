@@ -86,7 +86,7 @@ PageFrames::PageFrames(const AnimatedAsset& animated, Radius radius)
       fit_(checked(animated).asset(), SC_RADIUS_FIT, true, true, choose_target("auto")),
       detect_(animated.asset(), SC_RADIUS_DETECT, true, true, choose_target("auto")) {}
 
-PageFrame PageFrames::run(const std::vector<float>& positions, bool is_next) {
+PageFrame PageFrames::run(const std::vector<float>& positions, const sc_pose& skin, bool is_next) {
   PageFrame out;
   const FrameResult fit = fit_.run(positions), detect = detect_.run(positions);
   const FrameResult& shown = radius_ == SC_RADIUS_FIT ? fit : detect;
@@ -98,7 +98,7 @@ PageFrame PageFrames::run(const std::vector<float>& positions, bool is_next) {
     const Sphere& sphere = fit_.spheres()[s];
     out.spheres.insert(out.spheres.end(), {sphere.x, sphere.y, sphere.z, sphere.radius, detect_.spheres()[s].radius});
   }
-  const Player::TriangleDetection found = detect_.detect_triangles(positions, is_next);
+  const Player::TriangleDetection found = detect_.detect_triangles(skin, is_next);
   out.penetrations = found.penetrations;
   for (const Pair& pair : found.pairs) out.contacts.push_back({pair.a, pair.b});
   return out;

@@ -46,7 +46,7 @@ class PageFrames {
   PageFrames(const AnimatedAsset& animated, Radius radius);
 
   // `positions` are the deformed source vertices; `is_next`: of the clip's next frame.
-  PageFrame run(const std::vector<float>& positions, bool is_next);
+  PageFrame run(const std::vector<float>& positions, const sc_pose& skin, bool is_next);
 
  private:
   Radius radius_;

@@ -101,7 +101,7 @@ ordered_json frames_json(const AnimatedAsset& animated, const PageOptions& optio
     const std::vector<Vec3> positions = animated.positions(deformation);
     motion.add(deformation, positions);
     const bool is_next = i > 0 && animated.frame_at(i).clip == animated.frame_at(i - 1).clip;
-    const PageFrame frame = runtime.run(pack(positions), is_next);
+    const PageFrame frame = runtime.run(pack(positions), SkinPose(animated, deformation).pose(), is_next);
     numbers.push_back(static_cast<float>(animated.number(i)));
     seconds.push_back(static_cast<float>(animated.frame_at(i).seconds));
     times.push_back(static_cast<float>(animated.time(i)));

@@ -204,13 +204,6 @@ class Both {
   std::array<std::size_t, 2> bones_;
 };
 
-sc_pose pose_of(const std::vector<float>& vertices) {
-  sc_pose pose;
-  pose.vertices = vertices.data();
-  pose.vertex_count = vertices.size() / 3;
-  return pose;
-}
-
 // What touches in a frame: in each of the two, and between them.
 class Contacts {
  public:

@@ -76,10 +76,7 @@ Detection Player::take(std::vector<Sphere> spheres, const std::vector<Pair>& pai
   return {pairs_.size() - asset_->ignored_count(), pair_count_, pair_count_, us};
 }
 
-Player::TriangleDetection Player::detect_triangles(const std::vector<float>& positions, bool is_next) {
-  sc_pose pose;
-  pose.vertices = positions.data();
-  pose.vertex_count = positions.size() / 3;
+Player::TriangleDetection Player::detect_triangles(const sc_pose& pose, bool is_next) {
   TriangleDetection out{};
   out.us = median_us([&] { skin_.ask(pose); });
   for (const TriangleContact& contact : skin_.find(pose)) out.pairs.push_back({contact.triangle_a, contact.triangle_b});

@@ -50,7 +50,7 @@ class Player {
     double measure_us;                      // what measuring them costs
   };
   // `is_next`: this pose follows the last one in its clip, and directions may follow that one's.
-  TriangleDetection detect_triangles(const std::vector<float>& positions, bool is_next);
+  TriangleDetection detect_triangles(const sc_pose& pose, bool is_next);
   // The spheres that these triangles belong to: pairs a < b, sorted.
   std::vector<Pair> spheres_of(const std::vector<Pair>& triangles) const;
 

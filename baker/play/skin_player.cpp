@@ -26,6 +26,21 @@ bool moved_by_bones(const OpenAsset& asset, const Deformation& deformation) {
   return asset->bone_count() > 0 && deformation.positions.empty();
 }
 
+sc_pose pose_of(const std::vector<float>& vertices) {
+  sc_pose pose;
+  pose.vertices = vertices.data();
+  pose.vertex_count = vertices.size() / 3;
+  return pose;
+}
+
+SkinPose::SkinPose(const AnimatedAsset& animated, const Deformation& deformation) {
+  if (moved_by_bones(animated.asset(), deformation)) {
+    bones_.emplace(animated.asset(), deformation);
+  } else {
+    vertices_ = pack(animated.positions(deformation));
+  }
+}
+
 SkinPlayer::SkinPlayer(const OpenAsset& asset, Target target)
     : asset_(asset), target_(target), scratch_(sc_skin_scratch_words(asset.handle())) {}
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "motion/motion.h"
@@ -10,6 +11,11 @@
 #include "spherechain/skin_contacts.h"
 
 namespace spherechain::baker {
+
+class AnimatedAsset;
+
+// x, y, z of each of the source's vertices, which must outlive the pose.
+sc_pose pose_of(const std::vector<float>& vertices);
 
 // A deformation as the runtime takes it: by bones and morph weights, for an asset that these move.
 class BonePose {
@@ -23,6 +29,18 @@ class BonePose {
 
 // Whole meshes as poses have no bones.
 bool moved_by_bones(const OpenAsset& asset, const Deformation& deformation);
+
+// The same where bones move the asset, else the deformed vertices. Every command asks so, as games do: vertices that are
+// skinned elsewhere differ in their last bits, and so may a contact that hardly is one.
+class SkinPose {
+ public:
+  SkinPose(const AnimatedAsset& animated, const Deformation& deformation);
+  sc_pose pose() const { return bones_ ? bones_->pose() : pose_of(vertices_); }
+
+ private:
+  std::optional<BonePose> bones_;
+  std::vector<float> vertices_;
+};
 
 // Runs a job on triangles that intersect until there is room for all of them.
 template <typename Job>

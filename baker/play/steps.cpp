@@ -82,13 +82,6 @@ bool is_sheared(const Affine& local) {
   return !(std::max({share(0, 1), share(1, 2), share(2, 0)}) < 1e-4);
 }
 
-sc_pose pose_of(const std::vector<float>& vertices) {
-  sc_pose pose;
-  pose.vertices = vertices.data();
-  pose.vertex_count = vertices.size() / 3;
-  return pose;
-}
-
 }  // namespace
 
 StepPlayer::StepPlayer(const AnimatedAsset& animated, Target target) : animated_(animated), target_(target) {
@@ -183,21 +176,14 @@ double deepest_share(const AnimatedAsset& animated, int frame, const StepContact
     const double at = double{contact.begin} + k * (double{contact.end} - double{contact.begin}) / kParts;
     const Deformation deformation =
         animated.deformation(frame_between(animated.frame_at(frame), animated.frame_at(frame + 1), at));
-    const auto look = [&](const sc_pose& pose) {
-      player.find(pose);
-      for (const Penetration& found : player.measure_quickly(pose)) {
-        const bool is_its = std::minmax(found.part, found.other) == std::minmax(contact.part_a, contact.part_b);
-        if (is_its && double{found.measures.depth} > most) {
-          most = double{found.measures.depth};
-          share = at;
-        }
+    const SkinPose skin(animated, deformation);
+    player.find(skin.pose());
+    for (const Penetration& found : player.measure_quickly(skin.pose())) {
+      const bool is_its = std::minmax(found.part, found.other) == std::minmax(contact.part_a, contact.part_b);
+      if (is_its && double{found.measures.depth} > most) {
+        most = double{found.measures.depth};
+        share = at;
       }
-    };
-    if (moved_by_bones(animated.asset(), deformation)) {
-      look(BonePose(animated.asset(), deformation).pose());
-    } else {
-      const std::vector<float> vertices = pack(animated.positions(deformation));
-      look(pose_of(vertices));
     }
   }
   return share;

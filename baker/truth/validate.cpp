@@ -148,7 +148,7 @@ Frame validate_frame(const Context& context, int index) {
       all(animated.asset(), settings.radius, false, true, settings.target);
   const std::vector<Pair> chains_pairs = touching_spheres(chains, positions),
                           all_pairs = touching_spheres(all, positions);
-  const Player::TriangleDetection skin = all.detect_triangles(positions, false);
+  const Player::TriangleDetection skin = all.detect_triangles(pose_of(positions), false);
   const std::vector<Pair> skin_pairs = all.spheres_of(skin.pairs);
   const auto missed = [&](const std::vector<Pair>& reported) {
     return MissedDepth(context.parts.of_triangle, frame.truth, reported, skin.penetrations);

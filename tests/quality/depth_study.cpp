@@ -159,7 +159,8 @@ class Study {
     };
     for (int i = 0; i < animated_->frame_count(); ++i) {
       const bool is_next = i > 0 && animated_->frame_at(i).clip == animated_->frame_at(i - 1).clip;
-      const auto found = player.detect_triangles(pack(animated_->positions(animated_->deformation(i))), is_next);
+      const std::vector<float> vertices = pack(animated_->positions(animated_->deformation(i)));
+      const auto found = player.detect_triangles(pose_of(vertices), is_next);
       ++tally_.frames;
       for (const Penetration& p : found.penetrations) {
         ++tally_.classes[p.kind];
