@@ -14,7 +14,7 @@ import re
 import subprocess
 import sys
 
-# What C# does without: classes do it instead (Model, Body). So does every function that takes a struct of these.
+# Left out of C#, because Model and Body do it. Functions that take one of these structs are left out, too.
 UNUSED = re.compile(r"""sc_(?!crowd_|scene_)\w+_job | sc_job_body | sc_motion | sc_blend | sc_character\w* | sc_place_bones | sc_check_rest_pose
     | sc_detect_table_words | sc_prepare_\w+ | sc_(?!crowd_|scene_)\w+_scratch_words | sc_skin_table_words""", re.X)
 # Constants that C# cannot have, and why.
