@@ -199,7 +199,7 @@ public static class ApiTest
             }
             Refused("no sphere", Code.BadValue, "index", "", () => nothing.IgnorePair(0, 100000, true));
             Query limited = new Query { Limit = 1 }, filtered = new Query { Filter = nothing }, rigid = new Query { Rule = Native.sc_default_rule() };
-            for (int frame = 0; frame < clip.Frames.Length; frame += 6)
+            for (int frame = 0; frame < clip.Frames.Length; frame += 9)
             {
                 body.SetPose(clip.Frames[frame], kColumns);
                 narrow.SetPose(clip.Frames[frame], kColumns);
@@ -223,12 +223,12 @@ public static class ApiTest
                 int listed = 0;
                 foreach (Penetration one in body.Penetrations()) Check(one.Equals(found[listed++]), "foreach");
                 Check(listed == found.Length, "foreach lists all");
-                if (frame % 30 > 0) continue;
+                if (frame % 45 > 0) continue;
                 found = Listed(body.Penetrations(full));
                 hasVolume |= found.Any(p => p.Measures.Volume > 0);
                 isHidden |= found.Any(p => p.Measures.Visible < 1);
             }
-            Check(pairs > 20 && faults > 10 && hasVolume && isHidden,
+            Check(pairs > 20 && faults > 5 && hasVolume && isHidden,
                   string.Format("{0} pairs, {1} faults, volumes {2}, hidden {3}", pairs, faults, hasVolume, isHidden));
 
             // Of the same pose the way out stays, whatever it was.
