@@ -36,13 +36,14 @@ typedef struct sc_query {
   sc_scope scope SC_ZERO;
   sc_detail detail SC_ZERO;
   const sc_filter* filter SC_ZERO;       /* of a body with itself, by spheres and regions; null: the asset's ignored pairs */
-  const uint64_t* ignored_parts SC_ZERO; /* sc_part_words() words: bit p: body part p meets nothing; null: all meet */
+  /* With another body, and in the ground: sc_part_words() words; bit p: body part p meets nothing; null: all meet. */
+  const uint64_t* ignored_parts SC_ZERO;
   const uint64_t* ignored_parts_of_other SC_ZERO;
   const sc_rule* rule SC_ZERO;           /* null: sc_default_rule() */
   uint32_t classes SC_ZERO;              /* bit k: penetrations of class k are listed; 0: faults alone */
   size_t limit SC_ZERO;                  /* the worst so many; 0: as many as there is room for */
-  /* The body's last penetrations of the same question: directions of faults then stay steady (sc_penetration.distance).
-   * A list of this body stays valid for that long. */
+  /* The last penetrations of the same question: directions of faults then stay steady (sc_penetration.distance). The
+   * body's last list is valid for that long; who asks several questions in turn keeps a copy of each list. */
   const sc_penetration* previous SC_ZERO;
   size_t previous_count SC_ZERO;
   float tolerance SC_ZERO;               /* of steps, a share of the height; 0: 0.0001 */
@@ -106,8 +107,8 @@ SPHERECHAIN_API void sc_destroy_body(sc_body* body) SC_NOEXCEPT; /* null is fine
 SPHERECHAIN_API sc_status sc_set_pose(sc_body* body, const sc_pose* pose, const sc_transform* place) SC_NOEXCEPT;
 
 /* The questions. `other` null: the body with itself; else another body, which may be of the same model. Parts of `body`
- * come first. `query` null: all zeros. SC_OK; SC_NULL, SC_BAD_VALUE, SC_NOT_IN_ASSET, SC_UNSUPPORTED_TARGET, SC_TOO_SMALL
- * with SC_FIELD_BODIES (the other's model is larger than the body was made for; of steps: it was not made for them), SC_NOT_OPEN
+ * come first. `query` null: all zeros. SC_OK; SC_NULL, SC_BAD_VALUE, SC_NOT_IN_ASSET, SC_UNSUPPORTED_TARGET, SC_ALIASED
+ * (`other` is the body), SC_TOO_SMALL with SC_FIELD_BODIES (the other's model is larger than the body was made for; of steps: it was not made for them), SC_NOT_OPEN
  * with SC_FIELD_BODIES (a body has no pose; of steps: no pose before): the result is empty then. */
 SPHERECHAIN_API sc_status sc_find_penetrations(sc_body* body, const sc_body* other, const sc_query* query,
                                                sc_penetrations* found) SC_NOEXCEPT;
